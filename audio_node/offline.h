@@ -1,4 +1,4 @@
-// A recorded run in place of bus and card: the node renders the log into a file, as fast as it can.
+// Renders a recorded run (--log) instead of the bus and the sound card: into a file, as fast as possible.
 #pragma once
 
 #include <cstdint>
@@ -19,21 +19,21 @@ struct OfflineOptions : sync::OfflineOptions {
   void add_to(CLI::App& app);
 };
 
-// All times but `clock`, that of whoever looks on, are the log's.
+// All times are times of the log, except `clock`, which is this host's clock.
 class Offline {
  public:
   // Throws std::runtime_error with one sentence when the log holds no run.
   Offline(const OfflineOptions& options, double loop_rate_Hz, sync::HostTime clock);
 
-  // The same where a log is asked for; else null.
+  // As the constructor when --log is given; otherwise null.
   static std::unique_ptr<Offline> open(const OfflineOptions& options, double loop_rate_Hz, sync::HostTime clock);
 
-  // What rang at the end of the log rings on for a second.
+  // The run, extended by a second after the end of the log, so that sounding bodies decay.
   sync::Offline& run() { return run_; }
-  // Opens the file; it may do so once. It outlives neither this nor the output that asked for it.
+  // Opens the file; may be called once. The card must not outlive this or the output that uses it.
   OpenCard open_card();
-  // The file gets its name; before, there is none. What came of it, in lines. Throws std::runtime_error with one
-  // sentence when nothing was played or the disk does not take it.
+  // Renames the file to its final name and returns a summary in lines. Throws std::runtime_error with one sentence
+  // when nothing was played or the file cannot be written.
   std::string result(double rate_Hz, std::int64_t hits, std::int64_t dropped, sync::HostTime clock);
 
  private:

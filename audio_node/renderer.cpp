@@ -22,13 +22,13 @@ namespace tactus::audio {
 namespace {
 
 constexpr int kCallbackPriority = 70;
-constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may choose the card, but need not come
-constexpr sync::Nanoseconds kInputLost{300'000'000};     // snapshots of contacts come at 60 Hz
-constexpr sync::Nanoseconds kContactsLost{100'000'000};  // six of them
+constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may select the card, but may be missing
+constexpr sync::Nanoseconds kInputLost{300'000'000};     // contact snapshots arrive at 60 Hz
+constexpr sync::Nanoseconds kContactsLost{100'000'000};  // six snapshots
 constexpr sync::Nanoseconds kScrapeLead{2'000'000};      // before the callback needs it: two ticks
-// Design: half a tick; a blow takes up to 0.3 ms to prepare. Those that come together wait for the next ticks.
+// Design: half a tick; a blow takes up to 0.3 ms to prepare. Simultaneous blows wait for the next ticks.
 constexpr sync::Nanoseconds kStrikesFor{500'000};
-constexpr sync::Nanoseconds kEarly{20'000'000};  // events of the next moments, should a map run behind
+constexpr sync::Nanoseconds kEarly{20'000'000};  // accepts events of the near future, in case a map lags
 
 void publish_pair(sync::Bus& bus, const std::string& medium, const MediaPair& pair) {
   media_clock_t m{};
@@ -40,7 +40,7 @@ void publish_pair(sync::Bus& bus, const std::string& medium, const MediaPair& pa
   bus.publish(channels::kMediaClock, m);
 }
 
-// Tables of 200 MB take 20 ms to free: not in a loop.
+// Freeing tables of 200 MB takes 20 ms, too long for the loop.
 template <class Unread>
 void free_elsewhere(Unread unread) {
   if (!unread.empty()) std::thread([gone = std::move(unread)] { sync::leave_realtime(); }).detach();
@@ -197,7 +197,7 @@ void NodeRenderer::collect_hits(sync::HostTime now) {
 void NodeRenderer::strike_due(sync::HostTime now) {
   if (!impacts_ || !sampler_) return;
   const sync::ScopedPhaseTimer rendering(sync::Phase::kRender);
-  // A log is rendered as fast as possible, however long a tick of it takes.
+  // A log is rendered as fast as possible, for any duration of a tick.
   const sync::HostTime begun = sync::host_now();
   const Settings& settings = output_.settings();
   due_.handle(
@@ -234,7 +234,7 @@ void NodeRenderer::submit_lasting(sync::HostTime now) {
   const sync::SimTime t = map->to_sim(std::min(now, heard_at - delay));
   contacts_.keep(delay);
   bodies_.keep(delay);
-  // Without snapshots of contacts they would go on for ever.
+  // Without contact snapshots they would never end.
   const bool known = now - frames_.count().newest_arrival < kContactsLost;
   const sync::Contacts lasting = known ? contacts_.state_at(t).value : sync::Contacts{};
   for (const RecordedContact& rub : sampler_->rubs(lasting, heard_at)) output_.submit(rub);

@@ -1,5 +1,5 @@
-// The modality of sound on the renderer host. It prepares strikes and contacts that last for the callback of the sound
-// card, which renders them.
+// The audio renderer of the node: prepares strikes and lasting contacts, which the callback of the sound card
+// renders.
 #pragma once
 
 #include <memory>
@@ -26,9 +26,9 @@
 
 namespace tactus::audio {
 
-// What the command line says, beside the options of every node.
+// Command-line options of this node; every node has further common options.
 struct Options {
-  std::string device;     // empty: the setting's
+  std::string device;     // empty: the setting
   bool no_sound = false;  // computes no samples
   OfflineOptions log;
 
@@ -39,7 +39,7 @@ struct Options {
 
 class NodeRenderer : public sync::SettingsRenderer<Settings> {
  public:
-  // log: null: it renders the bus.
+  // log: null: renders the bus.
   NodeRenderer(sync::RendererHost& host, const Options& options, Offline* log);
 
   std::optional<sync::Status> step(sync::HostTime now) override;
@@ -67,11 +67,12 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
 
   Offline* log_;
   bool no_sound_;
-  bool real_time_;  // a log and a virtual time play into a file, and wait for what is read
+  bool real_time_;  // false for a log or virtual time, which play into a file and wait for background reading
   sync::ModalityEndpoint::Stream<contact_events_t>& events_;
   sync::ModalityEndpoint::Stream<contact_frame_t>& frames_;
   sync::ModalityEndpoint::Stream<world_state_t>& world_;
-  sync::Queue<tool_state_t>& tools_;  // past the profile, which makes events late or rare: the place of the ear is none
+  // bypasses the profile, which delays or thins events; the position of the ear is not an event
+  sync::Queue<tool_state_t>& tools_;
   Ear ear_;
   sync::ContactStream contacts_;
   sync::BodyHistory bodies_;

@@ -1,14 +1,14 @@
-// audio_node: sounds what hits, scrapes and rolls in the scene through a sound card, each on its sample: when PLAYOUT
-// says, else at a delay of its own.
+// audio_node: renders hits, scrapes and rolls of the scene through a sound card, each on its sample: at the time
+// of PLAYOUT, or with its own delay.
 //
-//   in   CONTACT_EVENTS; CONTACTS (what slides, and its clock); WORLD_STATE, how bodies lie; SCENE;
-//        TOOL_STATE of a head, where the ear is; PLAYOUT; SETTING, of which method and recordings are followed
+//   in   CONTACT_EVENTS; CONTACTS (lasting contacts, and the clock map); WORLD_STATE (orientation of bodies); SCENE;
+//        TOOL_STATE of a head (position of the ear); PLAYOUT; SETTING (method and recordings take effect)
 //   out  PRESENTED, MEDIA_CLOCK, SETTING_REPLY, audio.wav
 //
-// Losing CONTACT_EVENTS lets what sounds die away, losing CONTACTS ends what scrapes and rolls, losing WORLD_STATE leaves bodies turned as they
-// were; losing the sound card is reported, and the card is tried again. The loop never waits for another node, the card's
-// callback never for the loop. With --log it renders a recorded run instead of the bus into --wav, as fast as it can; the
-// same log gives the same bytes.
+// When CONTACT_EVENTS is lost, sounding bodies decay. When CONTACTS is lost, scrapes and rolls end. When
+// WORLD_STATE is lost, bodies keep their orientation. A lost sound card is reported and reopened. The loop never
+// waits for another node, and the callback of the card never waits for the loop. With --log it renders a recorded
+// run instead of the bus, as fast as it can, and writes --wav; the same log gives the same bytes.
 #include "audio_node/run.h"
 
 #include <CLI/CLI.hpp>
@@ -22,7 +22,7 @@ using namespace tactus;
 
 namespace {
 
-// The loop only hands events on, below the simulation; the card's callback renders them at 70.
+// The loop only forwards events, at a priority below the simulation; the callback of the card renders them at 70.
 const sync::NodeDescriptor kAudio{.name = "audio_node",
                                   .modality = "audio",
                                   .expected_events = node_health_t::OWES_HIT,

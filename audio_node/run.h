@@ -1,9 +1,10 @@
-// What the program does. A function, so that a virtual time can run it beside others in one process (sync/virtual_time).
+// The program as a function, so that virtual time can run it beside other nodes in one process
+// (sync/virtual_time).
 #pragma once
 
 namespace tactus::audio {
 
-// Returns the exit status, after one sentence on stderr where that is not 0.
+// Returns the exit status; prints one sentence on stderr when it is not 0.
 int run(int argc, char** argv);
 
 }  // namespace tactus::audio

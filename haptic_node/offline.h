@@ -1,6 +1,6 @@
-// A recorded run in place of bus and device: the node renders the log, its hand is where the log says that it was, and
-// what it feels goes into a table. Its ticks are those of the run, so that row by row the force can be
-// held against the one that was felt.
+// Renders a recorded run (--log) instead of the bus and the device. The device is where the log recorded it, the
+// ticks are those of the run, and the felt force goes into a table, so that each row can be compared with the
+// recorded force.
 #pragma once
 
 #include <cstdint>
@@ -16,30 +16,30 @@
 namespace tactus::haptic {
 
 struct OfflineOptions : sync::OfflineOptions {
-  std::string trace;  // CSV
+  std::string trace;  // path of the CSV table
 
   void add_to(CLI::App& app);
 };
 
-// All times but `clock`, that of whoever looks on, are the log's.
+// All times are times of the log, except `clock`, which is this host's clock.
 class Offline {
  public:
   // Throws std::runtime_error with one sentence when the log holds no run or the table cannot be written.
   Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
 
-  // The same where a log is asked for; else null.
+  // As the constructor when --log is given; otherwise null.
   static std::unique_ptr<Offline> open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
 
   sync::Offline& run() { return run_; }
-  // A scene has come: its ticks are those of this tool from now on; -1: of none.
+  // After a scene is loaded: uses the ticks of this tool from now on; -1: no tool.
   void follow(int tool);
   std::unique_ptr<Device> device() const { return std::make_unique<RecordedHand>(tick_.device); }
-  // Once a tick. True when it is one of the run: the tick in which a scene comes is none.
+  // Call once per tick. True when the tick is one of the run; false for the tick in which a scene is loaded.
   bool begin_tick(sync::HostTime now);
-  // What the hand feels in this tick.
+  // Adds the state of this tick to the table.
   void add(const tool_state_t& state);
-  // The table gets its name. What came of it, in lines. Throws std::runtime_error with one sentence when nobody
-  // held the tool; problem: why there is none.
+  // Renames the table to its final name and returns a summary in lines. Throws std::runtime_error with one
+  // sentence when the log has no tick of the tool; problem: the reason, if it is known.
   std::string result(const std::string& problem, sync::HostTime clock);
 
  private:

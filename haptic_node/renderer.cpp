@@ -77,7 +77,7 @@ void NodeRenderer::begin_to_open(const sync::SceneReceiver& scenes) {
 }
 
 void NodeRenderer::finish_opening() {
-  // A log waits for both; the live loop waits for nothing.
+  // A log waits for both; the live loop never waits.
   while (log_ && ((opening_maps_ && !opening_maps_->done()) || (opening_device_ && !opening_device_->done())))
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   if (opening_maps_ && opening_maps_->done()) {
@@ -114,7 +114,7 @@ void NodeRenderer::receive() {
     if (session_) session_->push(m->message, m->arrival);
   while (const auto m = device_states_.pop())
     if (session_) session_->push(m->message, m->arrival);
-  // What others of this run command; a replayed log commands nothing.
+  // Commands of other nodes of this run; a replayed log commands no device.
   const sync::Identity& me = host().bus().identity();
   while (const auto m = device_forces_.pop())
     if (session_ && m->message.header.incarnation != me.incarnation && m->message.header.run_id == me.run_id)

@@ -1,4 +1,4 @@
-// The modality of touch on the renderer host: one tool with its device, from one scene to the next.
+// The haptic renderer of the node: one tool with its device, over all scenes of a run.
 #pragma once
 
 #include <memory>
@@ -19,10 +19,10 @@
 
 namespace tactus::haptic {
 
-// What the command line says, beside the options of every node.
+// Command-line options of this node; every node has further common options.
 struct Options {
-  std::string tool;    // empty: the scene's first
-  std::string device;  // empty: as the scene says
+  std::string tool;    // empty: the first tool of the scene
+  std::string device;  // empty: the device that the scene specifies
   std::shared_ptr<const DeviceSpec> device_spec;
   OfflineOptions log;
 
@@ -33,7 +33,7 @@ struct Options {
 
 class NodeRenderer : public sync::SettingsRenderer<Settings> {
  public:
-  // log: null: it renders the bus.
+  // log: null: renders the bus.
   NodeRenderer(sync::RendererHost& host, const Options& options, Offline* log);
 
   std::optional<sync::Status> step(sync::HostTime now) override;
@@ -57,18 +57,18 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   sync::Queue<device_force_t>& device_forces_;
   sync::ModalityEndpoint::Stream<touch_model_t>& touch_;
   sync::ModalityEndpoint::Stream<contact_events_t>& events_;
-  Safety safety_;  // one for all scenes
+  Safety safety_;  // shared by all scenes
   NodeConfig choice_;
   Quality quality_;
   const scene_t* scene_ = nullptr;
-  // Read in threads of their own. Until the maps are there the surfaces are smooth.
+  // Opened on background threads. The surfaces are smooth until the maps are ready.
   std::optional<sync::BackgroundTask<Device>> opening_device_;
   std::optional<sync::BackgroundTask<SurfaceMaps>> opening_maps_;
   std::shared_ptr<const SurfaceMaps> maps_;
   std::optional<Session> session_;
-  bool points_ = false;    // its tool is a wand or the head: it waits for no touch model
-  bool no_touch_ = false;  // so are all tools of the scene: no touch model marks the beginning of the world
-  tool_state_t published_{};  // the newest, for the tags
+  bool points_ = false;    // the tool is a pointer or the head, and needs no touch model
+  bool no_touch_ = false;  // all tools of the scene are such: no touch model marks the start of the path
+  tool_state_t published_{};  // the latest published state, for the tags
 };
 
 }  // namespace tactus::haptic

@@ -4,16 +4,17 @@
 //        CONTACT_EVENTS                begins and hits of its tool
 //        SCENE_MANIFEST, ASSET_CHUNK   the scene: tools, their paths, materials, pictures of relief and friction
 //        DEVICE_STATE                  of a device that another program drives
-//        DEVICE_FORCE                  of others: a device that two command is lost
+//        DEVICE_FORCE                  of other nodes: a device that two nodes command is lost
 //        SETTING                       changes of its settings while it runs
 //   out  TOOL_STATE                    every tick
 //        DEVICE_FORCE                  to that program, every tick
 //        SETTING_REPLY                 to each change of a setting
 //        PRESENTED                     every begin and hit of its tool
 //
-// Losing TOUCH_MODEL or the device fades the force to zero and says so; losing CONTACT_EVENTS leaves touch without
-// hit transients. The loop never waits for another node. With --log it renders a recorded run instead of the bus into
-// --trace, its hand where TOOL_STATE says that it was, as fast as it can; the same log gives the same bytes.
+// When TOUCH_MODEL or the device is lost, the force fades to zero and the health reports it. When CONTACT_EVENTS
+// is lost, the contact force remains and the hit transients are missing. The loop never waits for another node.
+// With --log it renders a recorded run instead of the bus, as fast as it can, and writes --trace; the device is
+// where TOOL_STATE recorded it. The same log gives the same bytes.
 #include "haptic_node/run.h"
 
 #include <CLI/CLI.hpp>

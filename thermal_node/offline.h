@@ -1,4 +1,4 @@
-// A recorded run in place of the bus: the node renders the log, and what the skin feels goes into a table.
+// Renders a recorded run (--log) instead of the bus; the rendered skin state goes into a table.
 #pragma once
 
 #include <cstdint>
@@ -11,24 +11,24 @@
 namespace tactus::thermal {
 
 struct OfflineOptions : sync::OfflineOptions {
-  std::string trace;  // CSV
+  std::string trace;  // path of the CSV table
 
   void add_to(CLI::App& app);
 };
 
-// All times but `clock`, that of whoever looks on, are the log's.
+// All times are times of the log, except `clock`, which is this host's clock.
 class Offline {
  public:
   // Throws std::runtime_error with one sentence when the log holds no run or the table cannot be written.
   Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
-  // The same where a log is asked for; else null.
+  // As the constructor when --log is given; otherwise null.
   static std::unique_ptr<Offline> open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
 
   sync::Offline& run() { return run_; }
-  // What the skin feels in this tick.
+  // Adds the state of this tick to the table.
   void add(const thermal_state_t& state);
-  // The table gets its name. What came of it, in lines. Throws std::runtime_error with one sentence when there was
-  // nothing to feel; problem: why.
+  // Renames the table to its final name and returns a summary in lines. Throws std::runtime_error with one
+  // sentence when there was no tick; problem: the reason.
   std::string result(const std::string& problem, sync::HostTime clock);
 
  private:

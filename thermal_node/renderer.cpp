@@ -65,7 +65,7 @@ void NodeRenderer::receive() {
   while (const auto m = events_.pop()) stream_.push(m->message, m->arrival);
   while (const auto m = frames_.pop()) stream_.push(m->message, m->arrival);
   while (const auto m = answers_.pop())
-    // Not that of a log which is played meanwhile: its plate is not under this finger.
+    // Ignores readings of a log that is replayed meanwhile: that plate is not under this finger.
     if (device_ && m->message.header.run_id == host().options().run_id) device_->receive(m->message, m->arrival);
 }
 

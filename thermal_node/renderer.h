@@ -1,4 +1,4 @@
-// The modality of warmth on the renderer host: from the contacts of one tool to the command of its display.
+// The thermal renderer of the node: from the contacts of one tool to the command of its display.
 #pragma once
 
 #include <memory>
@@ -22,7 +22,8 @@ namespace tactus::thermal {
 
 class NodeRenderer : public sync::SettingsRenderer<Settings> {
  public:
-  // tool_name: from the command line; empty: the setting's, else the scene's first. log: null: it renders the bus.
+  // tool_name: from the command line; empty: the setting, otherwise the first tool of the scene. log: null:
+  // renders the bus.
   NodeRenderer(sync::RendererHost& host, std::string tool_name, Offline* log);
 
   std::optional<sync::Status> step(sync::HostTime now) override;
@@ -46,12 +47,12 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   Ticks ticks_;
   Quality quality_;
   std::optional<thermal::Renderer> renderer_;
-  Dwell dwell_{DwellLimits{}};  // of the skin, whatever the scene
+  Dwell dwell_{DwellLimits{}};  // of the skin, kept across scenes
   std::unique_ptr<Device> device_;
-  std::optional<double> element_degC_;  // as commanded last, whatever the scene
-  std::optional<double> plate_degC_;    // as measured last
+  std::optional<double> element_degC_;  // last command, kept across scenes
+  std::optional<double> plate_degC_;    // last measurement
   bool device_silent_ = false;
-  thermal_state_t published_{};  // the newest, for the tags
+  thermal_state_t published_{};  // the latest published state, for the tags
 };
 
 }  // namespace tactus::thermal

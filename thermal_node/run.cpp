@@ -1,15 +1,15 @@
-// thermal_node: renders the temperature of what a tool touches on a Peltier element, at 50 Hz.
+// thermal_node: renders the temperature of the objects that a tool touches on a Peltier element, at 50 Hz.
 //
-//   in   CONTACT_EVENTS, CONTACTS      what the tool touches, how firmly and for how long
+//   in   CONTACT_EVENTS, CONTACTS      contacts of the tool, their force and duration
 //        SCENE_MANIFEST, ASSET_CHUNK   the scene: tools and materials
-//        THERMAL_DEVICE                what the display says of itself, if it does
+//        THERMAL_DEVICE                readings of the display, if it sends any
 //   out  THERMAL_STATE                 every tick
 //        THERMAL_DEVICE                every tick, of the simulated display
 //        PRESENTED                     every begin and hit of its tool
 //
-// Losing the display's answers, it is taken to be where it was commanded. Losing the contacts returns the command
-// to the temperature of resting skin; the loop never waits for another node. With --log it renders a recorded run
-// instead of the bus into --trace, as fast as it can; the same log gives the same bytes.
+// When the readings of the display are lost, it is assumed to be at its command. When the contacts are lost, the
+// command returns to the temperature of resting skin. The loop never waits for another node. With --log it renders
+// a recorded run instead of the bus, as fast as it can, and writes --trace; the same log gives the same bytes.
 #include "thermal_node/run.h"
 
 #include <CLI/CLI.hpp>

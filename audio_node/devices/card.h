@@ -1,4 +1,4 @@
-// What the output plays on: a sound card, or a file that a log is rendered into.
+// Interface of the audio output: a sound card, or a file into which a log is rendered.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@ namespace tactus::audio {
 
 struct StreamOptions {
   std::string device =
-      "default";  // default: a real card, else the virtual one; virtual; or part of a device's name
+      "default";  // default: a real card, otherwise the virtual one; virtual; or part of a device name
   int rate_Hz = 48000;
   int period_frames = 128;
-  double latency_periods = 2;  // asked of the card; more is safer and later
-  std::string folder = ".";    // where audio.wav goes
-  int fifo_priority = 0;       // of the callback, where the process runs under FIFO; 0: leave it
+  double latency_periods = 2;  // requested from the card; more is safer and later
+  std::string folder = ".";    // folder of audio.wav
+  int fifo_priority = 0;       // of the callback, if the process runs under FIFO; 0: unchanged
   int channels = 2;
 };
 
@@ -29,13 +29,13 @@ class Card {
 
   virtual ~Card() = default;
 
-  // False when it has gone.
+  // False when the card is lost.
   virtual bool alive(sync::HostTime now) const = 0;
-  // Once a tick. A real card plays by itself.
+  // Call once per tick. A real card plays by itself.
   virtual void play_until(sync::HostTime) {}
   virtual std::int64_t callbacks() const = 0;
   virtual std::int64_t underflows() const = 0;
-  virtual const std::string& card() const = 0;    // name for people
+  virtual const std::string& card() const = 0;    // name for messages
   virtual const std::string& medium() const = 0;  // name of the WAV file
   virtual std::optional<MediaPair> next_pair() = 0;
 };

@@ -7,13 +7,13 @@
 namespace tactus::audio {
 namespace {
 
-constexpr double kWindow_s = 10;       // 200 ppm of drift are 2 ms in it at worst; design
+constexpr double kWindow_s = 10;       // 200 ppm of drift are at most 2 ms in it; design
 constexpr double kBandwidth_Hz = 0.5;  // slow against the jitter of the calls, fast against the drift of a quartz
-constexpr double kOutlier_s = 0.001;   // a thread that was put aside between PortAudio's two readings
+constexpr double kOutlier_s = 0.001;   // a thread that was suspended between the two readings of PortAudio
 constexpr int kOutliersToReseed = 8;
 constexpr double kForget = 0.01;  // of the residual, per block
 constexpr double kMaxLatency_s = 1;
-// PortAudio reads its clock shortly before the callback; that time is in the calibration. 20 us at most on a
+// PortAudio reads its clock shortly before the callback; that time is in the calibration. At most 20 us on a
 // machine that is not stalled.
 constexpr double kCalibration_s = 20e-6;
 
@@ -23,7 +23,8 @@ double DacClock::offset_s(const CallbackTime& t) {
   const double now = sync::to_seconds(t.now - base_), offset = now - t.current_s;
   const double best = std::min(minimum_s_, older_minimum_s_);
   const bool jumped = calibrated_ && std::abs(offset - best) > kMaxLatency_s;
-  // A callback may be late, but not so many in a row: PortAudio's clock has gone back, which no minimum sees.
+  // A callback may be late, but a run of late ones means that the clock of PortAudio stepped back, which no
+  // minimum detects.
   late_minimum_s_ = late_ > 0 ? std::min(late_minimum_s_, offset) : offset;
   late_ = offset - best > kOutlier_s ? late_ + 1 : 0;
   const bool went_back = late_ >= kOutliersToReseed;
@@ -62,7 +63,7 @@ DacClock::Estimate DacClock::block(int frames, const CallbackTime& t, double lat
     seed(raw);
     error = 0;
   }
-  // One bad reading moves nothing.
+  // A single bad reading has no effect.
   const double used = std::abs(error) > kOutlier_s ? 0 : error;
   // At first a plain mean, which settles fastest; then the loop.
   const double dt = frames / rate_Hz_, w = 2 * std::numbers::pi * kBandwidth_Hz * dt;
@@ -74,7 +75,7 @@ DacClock::Estimate DacClock::block(int frames, const CallbackTime& t, double lat
   square_s2_ += kForget * (used * used - square_s2_);
   ++blocks_;
 
-  // An error that is not believed yet may be true.
+  // An error that is not accepted yet may be real.
   const double unsure = outliers_ > 0 ? std::abs(error) : 0;
   const double doubt = 3 * std::sqrt(square_s2_) + kCalibration_s + unsure + (plausible ? 0 : latency_s);
   return {base_ + sync::from_seconds(time), sync::from_seconds(doubt)};

@@ -12,7 +12,7 @@
 namespace tactus::audio {
 namespace {
 
-// What is there and no plain file, such as /dev/null, is written to as it is.
+// An existing path that is not a regular file, such as /dev/null, is written directly.
 std::string part_of(const std::string& wav) {
   std::error_code ignored;
   const bool plain = !std::filesystem::exists(wav, ignored) || std::filesystem::is_regular_file(wav, ignored);
@@ -30,7 +30,7 @@ FileCard::FileCard(const StreamOptions& options, const std::string& wav, Render 
       ahead_(sync::from_seconds(options.latency_periods * options.period_frames / options.rate_Hz)),
       block_(static_cast<std::size_t>(options.period_frames * options.channels)),
       file_(nullptr, sf_close) {
-  // Of two that render into one file the second is refused; who dies lets go.
+  // Of two programs that render into one file the second is rejected; the lock ends with its process.
   lock_ = open(part_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (lock_ >= 0 && part_ != wav_ && flock(lock_, LOCK_EX | LOCK_NB) != 0) {
     close(std::exchange(lock_, -1));
@@ -80,7 +80,8 @@ void FileCard::play_until(sync::HostTime now) {
       pair_ = {frames(), sync::to_ns(first), frames() == 0 ? MediaPair::kStart : MediaPair::kPeriodic, 0};
       next_pair_frame_ += rate_Hz_;
     }
-    // How long rendering took depends on the machine: not told, so the quality is full, or what the setting says.
+    // The rendering time depends on the machine and is not passed on, so the quality is full, or that of the
+    // setting.
     render_(block_.data(), period_frames_, {first, sync::Nanoseconds(0), sync::Nanoseconds(0)});
     if (sf_writef_float(file_.get(), block_.data(), period_frames_) != period_frames_)
       throw std::runtime_error("cannot go on in " + wav_ + " (" + sf_strerror(file_.get()) +

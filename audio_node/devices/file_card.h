@@ -1,5 +1,5 @@
-// A card that plays into a WAV file at an even rate on a clock that it is handed: no thread, no clock, no
-// underflow. What it is given at the same times it plays the same, to the bit.
+// A card that plays into a WAV file at a constant rate on a clock that is passed in: no thread, no clock, no
+// underflow. The same calls at the same times give the same samples, to the bit.
 #pragma once
 
 #include <memory>
@@ -13,17 +13,17 @@ namespace tactus::audio {
 
 class FileCard : public Card {
  public:
-  // Its first sample is out at the first play_until(). Until finish() the file is WAV.part, which goes with this,
-  // so that what bears the name is whole. Throws std::runtime_error with one sentence when the file cannot be
-  // made.
+  // Its first sample is out at the first play_until(). Until finish() the file is WAV.part, which the destructor
+  // removes, so that a file with the final name is complete. Throws std::runtime_error with one sentence when the
+  // file cannot be made.
   FileCard(const StreamOptions& options, const std::string& wav, Render render);
   ~FileCard() override;
   FileCard(const FileCard&) = delete;
   FileCard& operator=(const FileCard&) = delete;
 
   bool alive(sync::HostTime) const override { return true; }
-  // Calls for every block that a card with its latency would have called for by then. Throws std::runtime_error
-  // with one sentence when the disk does not take it.
+  // Renders every block that a card with this latency would have requested by then. Throws std::runtime_error with
+  // one sentence when the file cannot be written.
   void play_until(sync::HostTime now) override;
   std::int64_t callbacks() const override { return blocks_; }
   std::int64_t underflows() const override { return 0; }
@@ -31,11 +31,11 @@ class FileCard : public Card {
   const std::string& medium() const override { return wav_; }
   std::optional<MediaPair> next_pair() override;
 
-  // The file is whole and gets its name; nothing is played any more. Throws std::runtime_error with one sentence
-  // when the disk does not take it.
+  // Completes the file and renames it to its final name; nothing can be played afterwards. Throws
+  // std::runtime_error with one sentence when the file cannot be written.
   void finish();
 
-  // When the first sample was out.
+  // Time at which the first sample was out.
   std::optional<sync::HostTime> start() const { return start_; }
   std::int64_t frames() const { return blocks_ * period_frames_; }
 

@@ -13,7 +13,7 @@ class KeptFileCard : public FileCard {
  public:
   KeptFileCard(const StreamOptions& options, const std::string& folder, std::string name, Render render)
       : FileCard(options, folder + "/" + name, std::move(render)), name_(std::move(name)) {}
-  // As a run names its sound, wherever its folder lies.
+  // The name that a run uses, independent of the location of its folder.
   const std::string& medium() const override { return name_; }
   ~KeptFileCard() override {
     try {

@@ -1,4 +1,4 @@
-// Files in place of sound cards, for a node that does not live by the machine's clock.
+// Opens files instead of sound cards, for a node that does not follow the clock of the machine.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace tactus::audio {
 
-// Each card that it opens plays into a file of its own in that folder: audio.wav, then audio.2.wav. A file has its name once
-// the card has gone. device "null": nothing is kept. What it opens throws what FileCard does.
+// Each opened card plays into its own file in that folder: audio.wav, then audio.2.wav. A file gets its final name
+// when its card is destroyed. device "null": writes no file. The opened card throws the errors of FileCard.
 OpenCard open_files(const std::string& folder, const std::string& device);
 
 }  // namespace tactus::audio

@@ -11,10 +11,10 @@
 namespace tactus::audio {
 namespace {
 
-// A card that has not started by then is said not to; USB cards take about a second.
+// A card that has not started by then is reported; USB cards take about a second.
 constexpr sync::Nanoseconds kPatience{5'000'000'000};
 
-// One until the callback's turn comes, one more that a card of normal priority is given.
+// One until the next callback, one more for a card of normal priority.
 constexpr int kCallbackPeriods = 2;
 constexpr std::size_t kMaxUnsounded = 1024;
 
@@ -26,7 +26,7 @@ bool same_stream(const Settings& a, const Settings& b) {
          a.hrtf_file == b.hrtf_file && a.layout_file == b.layout_file;
 }
 
-// Those that this machine lacks are refused by name; the widest are used.
+// Instructions that this machine lacks are reported by the caller; the widest are used instead.
 Instructions instructions_of(const Settings& settings) {
   return instructions_named(settings.instructions).value_or(available_instructions().back());
 }
@@ -92,7 +92,8 @@ std::unique_ptr<Output::Opened> Output::open(const Settings& settings, const std
   def.hearing = {.full_scale_dB = settings.full_scale_level_dB, .limit_dB = settings.level_limit_dB};
   def.late = late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s));
   def.instructions = instructions_of(settings);
-  if (!silent) def.space = space_of(settings, settings.sample_rate_Hz);  // reading ears takes a third of a second
+  // reading an HRTF takes a third of a second
+  if (!silent) def.space = space_of(settings, settings.sample_rate_Hz);
   def.silent = silent;
   def.clock_ns = [] { return sync::to_ns(sync::host_now()); };
   const auto renderer = std::make_shared<Renderer>(*crossing, def);
@@ -126,7 +127,7 @@ void Output::end_opening(sync::HostTime now) {
   }
   try {
     take(*opening_->take());
-    // The scene may have chosen another card meanwhile.
+    // The scene may have selected another card meanwhile.
     if (!same_stream(opened_with_, settings_)) close();
   } catch (const std::exception& e) {
     trouble_ = e.what();
@@ -177,8 +178,8 @@ sync::Nanoseconds Output::latency() const {
                             settings_.sample_rate_Hz);
 }
 
-// A telling waits until the callback's turn after its sample has been reached. Two of the tellings are for ticks
-// that are not evenly spaced.
+// An update waits until the first callback after its sample has been reached. Two of the updates allow for ticks
+// at uneven intervals.
 sync::Nanoseconds Output::tell_every(sync::Nanoseconds lead) const {
   const auto period = sync::from_seconds(settings_.period_frames / settings_.sample_rate_Hz);
   return (latency() + lead + period) / (kTellings - 2);

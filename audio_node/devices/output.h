@@ -1,4 +1,4 @@
-// The output of the node: a stream with its renderer, opened again when it is lost.
+// The audio output of the node: a stream with its renderer, reopened when it is lost.
 #pragma once
 
 #include <deque>
@@ -19,21 +19,20 @@ namespace tactus::audio {
 
 class Output {
  public:
-  // device: replaces the setting of that name unless empty. open: what it plays on instead of a sound card; opened
-  // at once, and what it throws leaves keep_open(). silent: what it plays is not computed, only told of.
+  // device: replaces the setting of that name unless empty. open: opens another card than a sound card; it is
+  // called in keep_open(), which passes on its exceptions. silent: computes no samples, only reports.
   Output(std::string folder, std::string device, int fifo_priority, OpenCard open = {}, bool silent = false);
 
-  // What a scene or the command line says. A change of card, rate or period closes the stream; so does one of the
-  // limits.
+  // Applies the settings. A change of card, rate, period or a limit closes the stream.
   void configure(Settings settings);
-  // Once a tick: opens the stream, in a thread of its own, when there is none and it is time; closes it when it is
-  // dead. True when it plays.
+  // Call once per tick: opens the stream on a background thread when there is none and it is time; closes it when
+  // it is dead. True when it plays.
   bool keep_open(sync::HostTime now);
 
-  // Once a tick: how long after its event a sound is due. A card that takes so much longer that every blow would be
-  // dropped is told of in note() and news().
+  // Call once per tick with the delay of sound after its event. note() and news() report a card whose latency is
+  // so much longer that every blow would be dropped.
   void allow(sync::Nanoseconds delay) { delay_ = delay; }
-  // Once a tick: what is wrong with the output on purpose.
+  // Call once per tick with the degradation of the output by a profile.
   void degrade(const DropoutDef& dropout);
 
   // When nothing plays or the queue is full the strike will never sound, and is reported as dropped. table: what it refers
@@ -41,49 +40,51 @@ class Output {
   void submit(const Strike& strike, const StrikeLine::Table& table = nullptr);
   // One that is never made: it is reported as dropped.
   void drop(std::int64_t event_id, sync::HostTime scheduled);
-  // Scrapes from now on are of these surfaces; null: of none. It keeps those before as long as the callback may
-  // read them.
+  // Later scrapes are of these surfaces; null: none. The previous surfaces are kept while the callback may read
+  // them.
   void hear(std::shared_ptr<const HeardSurfaces> surfaces) { scrapes_.change(std::move(surfaces)); }
-  // Those that it need not keep any more. Freeing them may take milliseconds: not in a loop.
+  // Returns surfaces that are no longer needed. Freeing them may take milliseconds, so do not free them in the
+  // loop.
   std::vector<std::shared_ptr<const HeardSurfaces>> take_unread() { return scrapes_.take_unread(); }
-  // Where the ear is, from now on, and how near a source may come.
+  // Pose of the listener from now on; sources count as at least nearest_m away.
   void hear_from(const Eigen::Isometry3d& listener);
-  // A state that does not fit is not heard, the next one is; note() counts it. An end is told later.
+  // A state that does not fit is skipped until the next one, and note() counts it. An end is sent later.
   void submit(const Scrape& scrape) {
     if (stream_ && !silent_) scrapes_.submit(scrape);
   }
   void submit(const RecordedContact& rub) {
     if (stream_ && !silent_) rubs_.submit(rub);
   }
-  // How often contacts may be told so that all fit that wait for their sample, latency() and `lead` later.
+  // Interval of contact updates at which all that wait for their sample fit into the queue; they wait for
+  // latency() and `lead`.
   sync::Nanoseconds tell_every(sync::Nanoseconds lead) const;
-  // The recordings that are played. What crosses must be of its newest database.
+  // The recordings in use. Queued commands must refer to its newest database.
   Library& library() { return library_; }
-  // Once a tick: its step(), which knows whether a callback may play any.
+  // Call once per tick: Library::step(), with the information whether a callback may play recordings.
   std::vector<Library::Shared> step_library() { return library_.step(stream_ || opening_); }
   std::optional<presentation_t> next_report();
   std::optional<MediaPair> next_pair() { return stream_ ? stream_->next_pair() : std::nullopt; }
 
-  // One line for people: what it plays on, or why it does not.
+  // One line of status: the card in use, or the reason why nothing plays.
   std::string note() const;
-  // The same once, whenever it plays on another card or has another reason not to.
+  // The same once, whenever the card or the reason changes.
   std::optional<std::string> news();
   const std::string& medium() const { return medium_; }
   // Since the start, over all streams.
   std::int64_t callbacks() const { return past_callbacks_ + (stream_ ? stream_->callbacks() : 0); }
   std::int64_t underflows() const { return past_underflows_ + (stream_ ? stream_->underflows() : 0); }
-  // From the arrival of an event to the sample that it may start on, at the most: the callback's turn, what the
-  // card holds, and the limiter.
+  // Upper bound of the time from the arrival of an event to its earliest sample: the next callback, the buffer of
+  // the card, and the limiter.
   sync::Nanoseconds latency() const;
   double callback_rate_Hz() const { return settings_.sample_rate_Hz / settings_.period_frames; }
   const Settings& settings() const { return settings_; }
-  // What each way of making sound costs a contact, in words; empty while nothing has sounded.
+  // Cost of each method per contact, in words; empty while nothing has sounded.
   std::string costs() const;
-  // What ears have had, and by how much it is turned down for them, in words; empty while nothing has sounded.
+  // Sound dose and current gain reduction, in words; empty while nothing has sounded.
   std::string hearing() const;
-  // Of a card that is too slow for its delay, in words; empty: it is not.
+  // For a card that is too slow for its delay, in words; otherwise empty.
   std::string too_slow() const;
-  // What did not fit, in words; empty while nothing has been lost.
+  // Lost updates and reports, in words; empty if none.
   std::string losses() const;
   // Step of the quality ladder in use.
   int quality() const { return crossing_->quality.load(std::memory_order_relaxed); }
@@ -100,7 +101,7 @@ class Output {
   std::optional<sync::Nanoseconds> delay_;
   sync::HostTime retry_at_{}, opening_since_{};
   std::int64_t past_callbacks_ = 0, past_underflows_ = 0;
-  // The stream's callback owns its share of both.
+  // The callback of the stream shares the ownership of both.
   std::shared_ptr<CallbackQueues> crossing_;
   std::shared_ptr<Renderer> renderer_;
   StrikeLine strikes_;  // goes after the stream, whose callback reads what it keeps; so do the next three
@@ -111,7 +112,7 @@ class Output {
   std::optional<Listener> heard_from_;  // likewise
   OpenCard open_;                       // none: a Stream
   bool silent_;
-  // A card and what renders for it.
+  // A card and its renderer.
   struct Opened {
     std::shared_ptr<Renderer> renderer;
     std::unique_ptr<Card> card;

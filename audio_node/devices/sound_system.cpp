@@ -24,7 +24,7 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-// ALSA reads its configuration once and keeps it; PortAudio opens whatever is current.
+// ALSA reads its configuration once and keeps it; PortAudio opens the current one.
 void use_config(const char* path) {
   if (path)
     setenv("ALSA_CONFIG_PATH", path, 1);
@@ -46,7 +46,7 @@ bool has_sound_card() {
 void silence_sound_libraries() {
   setenv("JACK_NO_START_SERVER", "1", 1);
   snd_lib_error_set_handler(say_nothing);
-  // PortAudio brings libjack along where it is built with it.
+  // PortAudio loads libjack where it is built with it.
   using Handler = void (*)(const char*);
   using SetHandler = void (*)(Handler);
   for (const char* name : {"jack_set_error_function", "jack_set_info_function"})

@@ -29,7 +29,7 @@ void check(PaError error, const std::string& what) {
                              "); choose another --audio-device or \"virtual\"");
 }
 
-constexpr int kFewestChannels = 2;  // of a card that is offered by name
+constexpr int kFewestChannels = 2;  // of a card that is listed by name
 
 [[noreturn]] void refuse_channels(const PaDeviceInfo& card, int channels) {
   throw std::runtime_error("the sound card \"" + std::string(card.name) + "\" has " +
@@ -60,9 +60,8 @@ PaDeviceIndex find_device(const std::string& wanted, int channels) {
                            (known.empty() ? "" : " or one of: " + known));
 }
 
-// Without real-time priority a thread that asks for short slices is served sooner among busy ones: since
-// Linux 6.12 sched_runtime of a normal thread is its slice, 0.1 ms at least (sched(7), EEVDF). Older kernels
-// ignore it.
+// Without real-time priority a thread with short slices is scheduled sooner among busy ones: since Linux 6.12
+// sched_runtime of a normal thread is its slice, 0.1 ms at least (sched(7), EEVDF). Older kernels ignore it.
 void wake_early() {
   struct {
     std::uint32_t size, policy;
@@ -118,7 +117,7 @@ void Stream::open(const StreamOptions& options, const std::string& wav) {
       device = find_device(options.device, options.channels);
     } catch (const std::exception&) {
       portaudio_.reset();
-      if (options.device != "default") throw;  // what was asked for by name is not replaced in silence
+      if (options.device != "default") throw;  // a card requested by name is not replaced silently
     }
   }
   if (!portaudio_) {
@@ -178,7 +177,8 @@ int Stream::on_block(const void*, void* out, unsigned long frames, const PaStrea
   return paContinue;
 }
 
-// The callback's thread inherits the priority of the thread that opened the stream; the card's is higher.
+// The callback thread inherits the priority of the thread that opened the stream; this raises it to that of the
+// callback.
 void Stream::enter_thread() {
   entered_ = true;
   if (!sync::is_realtime()) return wake_early();

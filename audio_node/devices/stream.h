@@ -10,21 +10,21 @@
 #include "audio_node/devices/sound_system.h"
 #include "sync/node/realtime.h"
 
-struct PaStreamCallbackTimeInfo;  // of PortAudio, whose header stays in stream.cpp
+struct PaStreamCallbackTimeInfo;  // of PortAudio, whose header is included in stream.cpp only
 
 namespace tactus::audio {
 
-// One stream, from opening to closing; everything it plays is in its WAV file.
+// One stream, from opening to closing; its WAV file holds everything that it plays.
 class Stream : public Card {
  public:
-  // Throws std::runtime_error with one sentence. render is called in the callback's thread and must be
+  // Throws std::runtime_error with one sentence. render is called on the callback thread and must be
   // realtime-safe.
   Stream(const StreamOptions& options, Render render);
   ~Stream() override;
   Stream(const Stream&) = delete;
   Stream& operator=(const Stream&) = delete;
 
-  // False when the card has gone or its callbacks have stopped for half a second.
+  // False when the card is lost or its callbacks have stopped for half a second.
   bool alive(sync::HostTime now) const override;
   std::int64_t callbacks() const override { return callbacks_.load(std::memory_order_relaxed); }
   std::int64_t underflows() const override { return underflows_.load(std::memory_order_relaxed); }
@@ -33,7 +33,7 @@ class Stream : public Card {
   std::optional<MediaPair> next_pair() override;
 
  private:
-  struct PortAudio;  // initialised as long as it lives
+  struct PortAudio;  // keeps PortAudio initialised while it exists
   void open(const StreamOptions& options, const std::string& wav);
   static int on_block(const void*, void* out, unsigned long frames, const PaStreamCallbackTimeInfo* time,
                       unsigned long flags, void* self);
@@ -48,17 +48,17 @@ class Stream : public Card {
   int pairs_[2] = {-1, -1};
   std::unique_ptr<VirtualCard> virtual_card_;
   std::unique_ptr<PortAudio> portaudio_;
-  std::unique_ptr<Capture> tee_;  // of a real card; the virtual one captures for itself
+  std::unique_ptr<Capture> tee_;  // of a real card; the virtual one captures by itself
   void* stream_ = nullptr;
   double latency_s_ = 0;
   std::atomic<std::int64_t> callbacks_{0}, underflows_{0}, last_ns_{0};
 
-  // Of the callback's thread.
+  // Used on the callback thread only.
   DacClock dac_;
   sync::OverrunGuard guard_;
   bool entered_ = false;
   std::int64_t next_pair_frame_ = 0;
-  sync::Nanoseconds used_{0};  // by the block before
+  sync::Nanoseconds used_{0};  // by the previous block
 };
 
 // "audio.wav", or "audio.2.wav" and so on where that exists: a restarted node overwrites nothing.

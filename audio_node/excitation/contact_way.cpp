@@ -11,17 +11,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-// How a place goes over a surface is looked at for so long: three snapshots at 60 Hz. Design.
+// Time over which the motion of a place over a surface is observed: three snapshots at 60 Hz. Design.
 constexpr double kLook_s = 0.05;
-constexpr double kLeap = 3;        // times the way of the contact (design)
-constexpr double kLeap_m = 0.002;  // nor nearer than that (design)
-// A place goes to where it is told within so long: a snapshot and a bit. Design.
+constexpr double kLeap = 3;        // times the distance that the contact moved (design)
+constexpr double kLeap_m = 0.002;  // and not below this distance (design)
+// Time constant with which a place follows the received one: slightly more than a snapshot interval. Design.
 constexpr double kFollow_s = 0.02;
-// A way that turns back within so long is jitter. Design: with the way below, a speed of 1 mm/s slides.
+// A motion that reverses within this time is jitter. Design: with the distance below, a speed of 1 mm/s slides.
 constexpr double kJitter_s = 0.02;
 constexpr double kPresliding_m = 20e-6;
 
-// Of the pairs of points of a contact that which was heard before: bodies have several corners.
+// Index of the contact point that was used before: bodies have several corners.
 std::size_t same_point(const contact_t& c, std::size_t side, const std::optional<Vector3d>& before) {
   if (!before) return 0;
   const auto far = [&](const contact_point_t& p) {
@@ -50,13 +50,14 @@ double Presliding::moving() const {
   return x * x * (3 - 2 * x);
 }
 
-// All of it under a fingertip, nothing under an edge of the body itself, which stays where it is.
+// Share of the sliding that is motion over this surface: 1 under a fingertip, 0 under an edge of the body itself,
+// which stays in place.
 double ContactWay::share(const Vector3d& place, const Vector3d& along) {
-  // Between two snapshots a place is told again and again.
+  // A place repeats unchanged between two snapshots.
   const bool again = looked_at_m_ && place == *looked_at_m_ && looked_s_ < kLook_s;
   if (again || !(looked_way_m_ > 0)) return std::clamp(share_, 0.0, 1.0);
   const double went_m = looked_at_m_ ? (place - *looked_at_m_).dot(along) : looked_way_m_;
-  // Who leaps further is another corner, or was put there.
+  // A larger jump means another corner, or a repositioned body.
   if (std::abs(went_m) < kLeap * looked_way_m_)
     share_ += (1 - std::exp(-looked_s_ / kLook_s)) * (went_m / looked_way_m_ - share_);
   looked_at_m_ = place;
@@ -75,7 +76,7 @@ void ContactWay::follow(Side& s, const Vector3d& told_m, const Vector3d& step_m,
       const double leap = std::max(kLeap_m, kLeap * step_m.norm() / std::max(dt_s, 1e-9) * s.since_s);
       s.place_m += off.norm() > leap ? off : Vector3d((1 - std::exp(-s.since_s / kFollow_s)) * off);
     } else if (s.since_s > kLook_s) {
-      // It is told again where it was: there it stays.
+      // The received place does not change: stays there.
       s.place_m += (1 - std::exp(-dt_s / kFollow_s)) * (told_m - s.place_m);
       return;
     } else {
@@ -93,7 +94,7 @@ void ContactWay::step(const contact_t& c, const std::array<std::optional<Eigen::
   const std::array<Vector3d, 2> told{to_eigen(point.a_body_m), to_eigen(point.b_body_m)};
   looked_way_m_ += past.norm() * dt_s, looked_s_ += dt_s;
   if (c.tool < 0 && c.kind != contact_t::SURFACE) {
-    // The simulation says how the contact goes: past the mean of both surfaces.
+    // The simulation reports the motion of the contact relative to the mean of both surfaces.
     const Vector3d rolling = to_eigen(c.rolling_velocity_m_s);
     over_.surface = {rolling + 0.5 * past, rolling - 0.5 * past};
   } else {

@@ -1,5 +1,5 @@
-// Hits that have come and are no strikes yet. A tick has time for some of them, each of which costs up to 0.3 ms
-// (peak.h); the others keep the time that they are due at. Pure.
+// Queue of hits that are not yet strikes. A tick processes only some of them, since each costs up to 0.3 ms
+// (peak.h); the others keep their scheduled time. Pure.
 #pragma once
 
 #include <cstddef>
@@ -15,17 +15,17 @@ namespace tactus::audio {
 
 class DueHits {
  public:
-  static constexpr std::size_t kMax = 1024;  // design: half a second of work, and no flood makes it more
+  static constexpr std::size_t kMax = 1024;  // design: half a second of work, the upper bound
 
-  // False when there are too many already: it is not kept.
+  // False when the queue is full: the hit is not stored.
   bool push(const contact_event_t& event, sync::HostTime scheduled) {
     if (hits_.size() >= kMax) return false;
     hits_.emplace(scheduled, event);
     return true;
   }
 
-  // sound(event, scheduled) for those that are due first, the first of them in any case and then as long as
-  // goes_on() says so; drop(event, scheduled) for each that has become so late that the policy drops it.
+  // Calls sound(event, scheduled) for hits in the order of their time: the first in any case, further ones while
+  // goes_on() is true. Calls drop(event, scheduled) for each hit that is so overdue that the policy drops it.
   template <class GoesOn, class Sound, class Drop>
   void handle(sync::HostTime now, const sync::LatePolicy& late, GoesOn goes_on, Sound sound, Drop drop) {
     for (bool first = true; !hits_.empty();) {
@@ -40,7 +40,7 @@ class DueHits {
     }
   }
 
-  // Of a scene that is over: drop(event, scheduled) for each.
+  // For a scene that has ended: calls drop(event, scheduled) for each.
   template <class Drop>
   void clear(Drop drop) {
     for (const auto& [scheduled, event] : hits_) drop(event, scheduled);
@@ -50,7 +50,7 @@ class DueHits {
   std::size_t size() const { return hits_.size(); }
 
  private:
-  std::multimap<sync::HostTime, contact_event_t> hits_;  // those of one time in the order in which they came
+  std::multimap<sync::HostTime, contact_event_t> hits_;  // hits of equal time in their order of arrival
 };
 
 }  // namespace tactus::audio

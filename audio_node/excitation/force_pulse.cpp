@@ -7,7 +7,7 @@
 namespace tactus::audio {
 namespace {
 
-// Sample i of a raised cosine of n samples whose sum is 1.
+// Sample i of a raised cosine of n samples with sum 1.
 float raised_cosine(int i, int n) {
   if (i < 0 || i >= n) return 0;
   if (n == 1) return 1;

@@ -11,7 +11,7 @@ std::unique_ptr<HeardSurfaces> read_surfaces(const scene_t& scene, const sync::P
   std::map<std::int64_t, HeightMap> maps;
   for (const auto& [hash, bytes] : pictures) try {
       maps.emplace(hash, read_height_map(bytes));
-    } catch (const std::runtime_error&) {  // vision and touch say which and why
+    } catch (const std::runtime_error&) {  // vision and touch report the reason
     }
   auto surfaces = std::make_unique<HeardSurfaces>();
   // Materials that inherited a map share it.

@@ -1,5 +1,5 @@
-// What lies on the surfaces of a scene as it is heard of what slides over them: reliefs and friction maps, from
-// the pictures that hand and eye get too. Pure.
+// Reliefs and friction maps of the surfaces of a scene for audio, from the pictures that touch and vision use too.
+// Pure.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace tactus::audio {
 
-// Of one material; null: nothing, or nobody could read it.
+// Of one material; null: none, or not readable.
 struct HeardSurface {
   std::shared_ptr<const ReliefLevels> relief;
   std::shared_ptr<const FrictionMap> friction;
@@ -29,8 +29,8 @@ struct HeardSurfaces {
   }
 };
 
-// Reads them and makes their tables, which may take as long as a second: not for a loop. What cannot be read is
-// smooth.
+// Reads the maps and makes their tables. It may take a second, so do not call it in a loop. Surfaces with
+// unreadable maps are smooth.
 std::unique_ptr<HeardSurfaces> read_surfaces(const scene_t& scene, const sync::Pictures& pictures);
 
 }  // namespace tactus::audio

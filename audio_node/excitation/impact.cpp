@@ -23,22 +23,22 @@ using std::numbers::pi;
 // Air at 20 degrees Celsius (Kinsler et al., Fundamentals of Acoustics, 4th ed., appendix A10).
 constexpr double kAirDensity_kg_m3 = 1.21;
 constexpr double kSoundSpeed_m_s = 343;
-// What no sound may depend on: values beyond these are not of this world.
+// Bounds of plausible input; values beyond them are clamped.
 constexpr double kMaxMass_kg = 1e3, kMaxSpeed_m_s = 50, kLeastSpeed_m_s = 1e-4, kLeastCurvature_1_m = 1;
 // FoleyAutomatic, section 3: impulses at the first four modal frequencies, within 15 ms.
 constexpr std::size_t kMicroCollisions = 4;
 constexpr double kMicroWithin_s = 0.015;
-// Of a strike that is not to be heard at any strength.
+// For a strike that is inaudible at any strength.
 constexpr float kNeverHeard = 2;
 
-// How well an oscillating ball of radius a radiates: pressure at 1 m ahead over rho c v is a (ka)^2 / sqrt(4 +
-// (ka)^4) (the dipole field with the ball's velocity as boundary condition; Pierce, Acoustics, 1981, section 4.2).
+// Radiation of an oscillating ball of radius a: pressure at 1 m ahead over rho c v is a (ka)^2 / sqrt(4 + (ka)^4)
+// (the dipole field with the velocity of the ball as boundary condition; Pierce, Acoustics, 1981, section 4.2).
 double radiation_m(double frequency_Hz, double radius_m) {
   const double ka = 2 * pi * frequency_Hz * radius_m / kSoundSpeed_m_s;
   return radius_m * ka * ka / std::sqrt(4 + ka * ka * ka * ka);
 }
 
-// The shape that stands for a body: the largest that it collides with.
+// The shape that represents a body: its largest collision shape.
 const shape_def_t* main_shape(const scene_t& scene, int body) {
   const shape_def_t* best = nullptr;
   double best_size = -1;
@@ -51,7 +51,7 @@ const shape_def_t* main_shape(const scene_t& scene, int body) {
   return best;
 }
 
-// What touches of a tool, which has no shape that collides. A ball of radius 0, a point, stays as nothing.
+// The contact shape of a tool, which has no collision shape. A ball of radius 0, a point, has none.
 std::optional<shape_def_t> shape_of(const tool_def_t& tool) {
   shape_def_t shape{};
   shape.pose.orientation.w = 1;
@@ -102,7 +102,7 @@ Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>
     if (material_index >= 0 && static_cast<std::size_t>(material_index) < scene.materials.size())
       sound_as_measured(v.sound, scene.materials[static_cast<std::size_t>(material_index)], settings);
     if (body.is_static) v.stands = to_eigen(body.pose);
-    // Nearer to half the rate a resonator would sound as another.
+    // Close to half the sample rate a resonator would sound at another frequency.
     std::erase_if(v.sound.modes, [&](const Mode& m) { return m.frequency_Hz > 0.45 * rate_Hz; });
     for (const Mode& mode : v.sound.modes) {
       const double lost = mode.damping_1_s / (2 * pi);
@@ -163,17 +163,17 @@ std::optional<BodyPlace> Impacts::on_body(int body, const Eigen::Vector3d& point
   return BodyPlace{lies->inverse() * point_m, lies->linear().transpose() * direction.normalized()};
 }
 
-// Peak pressure at 1 m of the click that a body makes because the impact accelerates it as a whole (acceleration
-// noise; Chadwick, Zheng, James, "Precomputed acceleration noise", SIGGRAPH 2012): an oscillating ball whose
-// velocity changes by impulse / mass within the contact time.
+// Peak pressure at 1 m of the click of a body that the impact accelerates as a whole (acceleration noise;
+// Chadwick, Zheng, James, "Precomputed acceleration noise", SIGGRAPH 2012): an oscillating ball whose velocity
+// changes by impulse / mass within the contact time.
 double Impacts::click_Pa(const BodySound& s, double impulse_N_s, double length_s) const {
   if (!s.moves) return 0;
   return kAirDensity_kg_m3 * kSoundSpeed_m_s * impulse_N_s / s.mass_kg * radiation_m(1 / length_s, s.radius_m);
 }
 
-// Hard bodies meet again and again in the first 15 ms, in step with their first four modes; the model of van den
-// Doel, Kry and Pai ("FoleyAutomatic", SIGGRAPH 2001, section 3). Hard: the blow is over before the slowest of
-// them has swung back. The share of the impulse that they carry is theirs; what is left is the blow.
+// Hard bodies collide repeatedly in the first 15 ms, in step with their first four modes; the model of van den
+// Doel, Kry and Pai ("FoleyAutomatic", SIGGRAPH 2001, section 3). Hard means that the blow ends before half a
+// period of the slowest mode. The repeated collisions carry their share of the impulse; the rest is the blow.
 ForcePulse Impacts::pulse(const Voice& a, const Voice& b, double length_s) const {
   const auto in_samples = [&](double s) { return std::max(1, static_cast<int>(std::lround(s * rate_Hz_))); };
   ForcePulse pulse = one_hump(in_samples(length_s));
@@ -186,7 +186,7 @@ ForcePulse Impacts::pulse(const Voice& a, const Voice& b, double length_s) const
   std::vector<double> after_s;
   for (const double f : frequencies)
     if (1 / f > 2 * length_s && 1 / f < kMicroWithin_s) after_s.push_back(1 / f);
-  // The latest first: of the lowest modes.
+  // The latest first: those of the lowest modes.
   after_s.resize(std::min<std::size_t>(after_s.size(), kMicroCollisions));
   const auto share = static_cast<float>(settings_.micro_collisions);
   for (std::size_t i = 0; i < after_s.size(); ++i) {
@@ -219,7 +219,7 @@ Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, c
   strike.pulse = pulse(*bodies[0], *bodies[1], length_s);
   const Eigen::Vector3d point = to_eigen(event.point_m), normal = to_eigen(event.normal);
   const SourcePosition place = place_of(listener_, point, settings_.nearest_m);
-  // The most that a unit-sum raised cosine of n samples changes from one sample to the next.
+  // The largest change between successive samples of a unit-sum raised cosine of n samples.
   const double n = strike.pulse[0].samples;
   const double steepest = n > 1 ? 2 / n * std::sin(pi / n) : 1;
   for (std::size_t i = 0; i < 2; ++i) {

@@ -1,4 +1,4 @@
-// Turns a contact event into a strike: contact time, impulse, place on both bodies, loudness, direction. Pure.
+// Converts a contact event to a strike: contact time, impulse, place on both bodies, loudness, direction. Pure.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -21,28 +21,27 @@ double contact_time_s(double effective_mass_kg, double curvature_1_m, double spe
 // Magnitude of the spectrum of a raised-cosine pulse of unit area and length T at a frequency.
 double pulse_spectrum(double frequency_Hz, double length_s);
 
-// Where a source in the world is for a listener who looks along +x, z up; not nearer than that.
+// Position of a source relative to a listener who faces +x, z up; not nearer than nearest_m.
 SourcePosition place_of(const Eigen::Isometry3d& T_W_listener, const Eigen::Vector3d& source_m, double nearest_m);
 
-// T_world_body of a body at the time of an event, as far as anybody has said.
+// T_world_body of a body at the time of an event; empty when it is not known.
 using PoseOf = std::function<std::optional<Eigen::Isometry3d>(int body)>;
 
 // The sounding bodies of one scene.
 class Impacts {
  public:
-  // mesh: the extent of the mesh asset of that hash. generation: other scenes get other voices, so that old ones
-  // ring out.
+  // mesh: extent of the mesh asset with that hash. generation: each scene has its own voices, so that the previous
+  // ones decay.
   Impacts(const scene_t& scene, const std::function<std::optional<Extent>(std::int64_t)>& mesh,
           const Settings& settings, double rate_Hz, std::int64_t generation);
 
-  // Factor on everything from the next strike on.
+  // Factor on all strikes from the next one on.
   void set_gain(double gain) { settings_.gain = gain; }
-  // T_world_listener from the next strike on; at first the scene's.
+  // T_world_listener from the next strike on; initially that of the scene.
   void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
 
-  // An event that cannot be of this world is a strike that nobody hears (plausible.h).
-  // Bodies or materials that the scene does not have sound as small wooden ones. A body of which nobody says how
-  // it lies sounds as if it were struck anywhere.
+  // An implausible event gives an inaudible strike (plausible.h). Bodies or materials that the scene lacks sound
+  // as small wooden ones. A body of unknown pose sounds as if struck at an average place.
   Strike strike(const contact_event_t& event, sync::HostTime scheduled, const PoseOf& pose = {}) const;
 
   const BodySound& body(int id) const { return voice(id).sound; }
@@ -52,7 +51,7 @@ class Impacts {
   const std::shared_ptr<const ResonatorTable>& table() const { return resonators_; }
   // Pressure at 1 m per impulse of each mode, Pa / (N s), for a force at that place; nothing: anywhere.
   PerMode gains(int body, const std::optional<BodyPlace>& place) const;
-  // Where a point of the world and a direction lie on a body: by `pose`, or by the scene when it stands still.
+  // Converts a world point and direction to the frame of a body: by `pose`, or by the scene for a static body.
   std::optional<BodyPlace> on_body(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& direction,
                                    const PoseOf& pose) const;
 
@@ -61,7 +60,7 @@ class Impacts {
     BodySound sound;
     std::size_t number = 0;  // in the table of resonators
     std::vector<double> radiated;             // of each mode: pressure at 1 m per impulse and Mode::gain
-    std::optional<Eigen::Isometry3d> stands;  // T_world_body of one that never moves
+    std::optional<Eigen::Isometry3d> stands;  // T_world_body of a static body
   };
   const Voice& voice(int id) const;
   Elastic material(int index) const;

@@ -1,4 +1,4 @@
-// The size and the middle of a mesh's bounding box. Pure.
+// Size and centre of the bounding box of a mesh. Pure.
 #pragma once
 
 #include <algorithm>

@@ -6,10 +6,11 @@
 namespace tactus::audio {
 namespace {
 
-// Modes of a blow are loudest while they are in phase, and one of 40 Hz has had its first swing.
+// Time after the blow over which the peak is searched: modes are loudest while they are in phase, and a mode of 40
+// Hz has completed its first swing.
 constexpr double kListen_s = 0.01;  // design
 
-// Adds what one side sounds in the block that begins so many samples after the onset.
+// Adds the sound of one side in the block that begins `begin` samples after the onset.
 void add(const StrikeSide& side, const ForcePulse& pulse, int begin, PerMode& velocity, PerMode& displacement,
          std::array<float, kMaxBlock>& out) {
   std::array<float, kMaxBlock> force;

@@ -7,7 +7,7 @@
 namespace tactus::audio {
 namespace {
 
-// Means over the pixels that each of fewer covers, of rows that lie one after the other.
+// Reduces rows of n values to `fewer` values, each the mean over the covered pixels; rows lie one after the other.
 std::vector<float> coarser(const std::vector<float>& from, int n, int fewer, int count, int stride, int next) {
   std::vector<float> to(static_cast<std::size_t>(fewer) * static_cast<std::size_t>(count));
   const double wide = static_cast<double>(n) / fewer;
@@ -52,8 +52,8 @@ ReliefLevels::ReliefLevels(Relief finest) {
 Eigen::Vector2d ReliefLevels::slope(const Eigen::Vector2d& at, const Eigen::Vector2d& step) const {
   const Relief& fine = levels_.front();
   const double pixels = std::max(std::abs(step.x()) * fine.columns, std::abs(step.y()) * fine.rows);
-  // The shortest wave of a grid is two pixels long, and two samples hold it: from a pixel a sample on the next
-  // grid.
+  // The shortest wave of a grid is two pixels long, and two samples represent it: above one pixel per sample the
+  // next grid is used.
   if (!(pixels > 1)) return fine.slope(at);
   const double level = std::min(std::log2(pixels), static_cast<double>(levels_.size() - 1));
   const auto k = static_cast<std::size_t>(level);

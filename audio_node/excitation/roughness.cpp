@@ -8,17 +8,17 @@
 namespace tactus::audio {
 namespace {
 
-// A wave is two grains long: from the cut-off of ISO 4288 to below the tip of 2 um with which ISO 3274 feels.
+// A wave is two grains long: from the cutoff of ISO 4288 to below the tip of 2 um of ISO 3274.
 constexpr double kGrain_m = 0.4e-3;
 constexpr int kFinest = 8;     // octave; 1.6 um
-constexpr int kCoarsest = -4;  // of maps whose pixels are larger (design)
+constexpr int kCoarsest = -4;  // for maps with larger pixels (design)
 
-// At right angles to each other, and none along an axis of a body.
+// Mutually orthogonal, and none along an axis of a body.
 constexpr double kDirections[3][3] = {
     {2 / 3., 2 / 3., -1 / 3.}, {-1 / 3., 2 / 3., 2 / 3.}, {2 / 3., -1 / 3., 2 / 3.}};
 
-// Mean squares of what goes with 3 t^2 - 2 t^3 between uniform numbers of -1 .. 1, and of its derivative:
-// 1/3 * 26/35 and 2/3 * 6/5.
+// Mean squares of the interpolation 3 t^2 - 2 t^3 between uniform numbers of -1 .. 1, and of its derivative: 1/3 *
+// 26/35 and 2/3 * 6/5.
 constexpr double kSquare = 26.0 / 105, kSquareSlope = 0.8;
 
 // A number of -1 .. 1 for each grain (splitmix64's finaliser, Steele, Lea and Flood 2014).
@@ -36,15 +36,14 @@ int coarsest(const Roughness& of) {
 
 double grain_m(int octave) { return std::ldexp(kGrain_m, -octave); }
 
-// Of one of the three directions and an octave: all octaves from 0 on have together the mean square that is asked
-// for.
+// Of one of the three directions and an octave: all octaves from 0 on together have the requested mean square.
 double amplitude_m(const Roughness& of, int octave) {
   const double fall = std::exp2(-2 * kHurst);
   return of.height_m * std::sqrt((1 - fall) / (3 * kSquare)) * std::exp2(-kHurst * octave);
 }
 
-// What stays of a wave when a sample goes on by so many grains: all below a quarter, nothing from a half on. A
-// grain has its spectrum about half a wave, and an octave above it next to nothing (design).
+// Share of a wave that remains when a sample advances by this number of grains: all below a quarter, nothing from
+// a half on. The spectrum of a grain lies at about half a wave, and is almost zero one octave above (design).
 double kept(double grains) { return std::clamp(2 - 4 * std::abs(grains), 0.0, 1.0); }
 
 }  // namespace

@@ -13,17 +13,18 @@
 namespace tactus::audio {
 namespace {
 
-// Of a blow: louder than its recording by 12 dB at most, as computed ones are above the reference (design).
+// Of a blow: at most 12 dB above its recording, as for computed blows above the reference (design).
 constexpr double kMaxLevel = 4;
-// An octave either way; beyond it a recording sounds of another material (design).
+// An octave either way; beyond it a recording suggests another material (design).
 constexpr double kLeastPitch = 0.5, kMaxPitch = 2;
-// As for scrapes: below, nothing slides or rolls; beyond, nothing becomes louder or faster (design).
+// As for scrapes: below the minimum there is no sliding or rolling; above the maximum loudness and speed are
+// clamped (design).
 constexpr double kLeastSpeed_m_s = 1e-3, kMaxSpeed_m_s = 5, kMaxForce_N = 50;
-// Between two looks at contacts; more is a gap (design).
+// Between two updates of contacts; a longer interval is a gap (design).
 constexpr double kMaxStep_s = 0.1;
 constexpr float kHalfPower = std::numbers::sqrt2_v<float> / 2;
 
-// That of a pair: a ball on a floor, a hand on a bar are told by the smaller of the two (design).
+// Size of a pair: the smaller of the two, by which a ball on a floor or a hand on a bar is recognised (design).
 double size_of(const BodySound& a, const BodySound& b) { return std::min(a.radius_m, b.radius_m); }
 
 }  // namespace
@@ -31,7 +32,7 @@ double size_of(const BodySound& a, const BodySound& b) { return std::min(a.radiu
 MethodGains gains_of(const Settings& s) {
   if (s.method == "samples") return {0, 1};
   if (s.method != "both") return {1, 0};
-  // Exactly nothing of the one that is not wanted: it costs nothing then.
+  // Exactly zero for the unwanted method, which then costs nothing.
   if (s.mix <= 0) return {1, 0};
   if (s.mix >= 1) return {0, 1};
   const double angle = s.mix * std::numbers::pi / 2;
@@ -107,14 +108,14 @@ void Sampler::record(Strike& strike, const contact_event_t& event, const Impacts
     side.impulse *= method.modal, side.click *= method.modal;
     if (method.modal <= 0) side.voice = -1;  // costs nothing
   }
-  // Both are known by their peaks; what is heard of them is no less than the louder.
+  // Both are known by their peaks; the sum is at least as loud as the louder one.
   const auto inaudible = static_cast<float>(settings_.inaudible_level);
   const float computed = inaudible / std::max(strike.heard_from, 1e-12f) * method.modal;
   strike.heard_from = inaudible / std::max({computed, peak / strike.recorded.place.distance_m, 1e-12f});
 }
 
 void Sampler::rub(const contact_t& c, Interaction interaction, double speed_m_s, double level, sync::HostTime at) {
-  // What does not move needs no recording: nothing is said of it.
+  // A contact that does not move needs no recording and prints no message.
   const Database::Found found = level > 0
                                     ? find(c.material_a, c.material_b, interaction)
                                     : database_->find(material(c.material_a), material(c.material_b), interaction);
@@ -140,7 +141,7 @@ void Sampler::rub(const contact_t& c, Interaction interaction, double speed_m_s,
   }
 }
 
-// What is beyond the loops that can be heard is computed instead.
+// Contacts beyond the number of audible loops are computed instead.
 void Sampler::keep_loudest() {
   constexpr auto most = static_cast<std::ptrdiff_t>(Loops::kMax);
   if (static_cast<std::ptrdiff_t>(rubs_.size()) <= most) return;
@@ -160,7 +161,7 @@ void Sampler::end_others(sync::HostTime at) {
     RecordedContact& end = ends.emplace_back();
     end.contact = contact, end.part = part, end.database = number_, end.at = at, end.ends = true;
   }
-  // First, to make room.
+  // First, to free places.
   rubs_.insert(rubs_.begin(), ends.begin(), ends.end());
   heard_ = std::move(heard);
 }
@@ -187,12 +188,12 @@ const std::vector<RecordedContact>& Sampler::rubs(const sync::Contacts& contacts
     Moves& moves = moves_[c.contact_id];
     moves.seen = true;
     moves.slides.step(past, dt_s), moves.rolls.step(round, dt_s);
-    // As strong as the root of the power that friction takes (van den Doel, Kry and Pai 2001, section 4.2).
+    // Proportional to the root of the friction power (van den Doel, Kry and Pai 2001, section 4.2).
     const double friction = std::min(std::sqrt(mu(c.material_a) * mu(c.material_b)), kMaxFriction);
     const double power_W = friction * force_N * slides;
     const double scraping = slides >= kLeastSpeed_m_s ? moves.slides.moving() : 0;
     rub(c, Interaction::kScrape, slides, scraping * settings_.recorded_scrape_level * std::sqrt(power_W), at);
-    // The point of contact of a body that slides moves too: that is no rolling.
+    // The contact point of a sliding body moves too; this is not rolling.
     const double rolling = rolls >= kLeastSpeed_m_s && rolls > slides ? moves.rolls.moving() : 0;
     rub(c, Interaction::kRoll, rolls, rolling * settings_.recorded_roll_level * std::sqrt(force_N * rolls), at);
   }

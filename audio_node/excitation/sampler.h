@@ -1,4 +1,4 @@
-// Which recordings sound for what happens in a scene, and how strongly beside the modes. Pure.
+// Selects the recordings for the contacts of a scene, and their strength relative to the modes. Pure.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -20,16 +20,16 @@
 
 namespace tactus::audio {
 
-// Factors on the amplitude of what is computed and of what is recorded.
+// Factors on the amplitudes of the modal and the recorded sound.
 struct MethodGains {
   float modal = 1, recorded = 0;
 };
 MethodGains gains_of(const Settings& settings);
 
-// Level at 1 m of a blow of that impulse, per level of its recording.
+// Level at 1 m of a blow of that impulse, relative to the level of its recording.
 double level_of(double impulse_N_s, const Settings& settings);
-// How much faster than it was recorded the sound of a body is played: free vibrations of bodies of one form and
-// material are as 1 / size (Fletcher and Rossing, The Physics of Musical Instruments, 1998, chapters 2 and 3).
+// Playback speed relative to the recording: free vibrations of bodies of one form and material scale as 1 / size
+// (Fletcher and Rossing, The Physics of Musical Instruments, 1998, chapters 2 and 3).
 double pitch_of(double size_m, double recorded_size_m);
 
 // Of one scene.
@@ -38,27 +38,27 @@ class Sampler {
   Sampler(const scene_t& scene, const Settings& settings);
 
   void configure(const Settings& settings) { settings_ = settings; }
-  // T_world_listener from the next contacts on; at first the scene's.
+  // T_world_listener from the next contacts on; initially that of the scene.
   void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
-  // Contacts are told so often.
+  // Interval between updates of contacts.
   void tell_every(double period_s) { period_s_ = period_s; }
-  // Of which database recordings are from now on; null: of none. It outlives all calls until the next of this.
+  // Sets the database in use; null: none. It must outlive all calls until the next call of this.
   void play(const Database* database, std::int64_t number) {
     if (number != number_) said_.clear();
     database_ = database, number_ = number;
   }
 
-  // False: nothing is recorded, and nobody need look at contacts.
+  // False: no recording is in use, and contacts need not be processed.
   bool plays() const { return database_ && gains_of(settings_).recorded > 0; }
-  // Gives a strike the recordings of its event, and its modes what the method leaves to them.
+  // Adds the recordings of its event to a strike, and scales its modes by the method.
   void record(Strike& strike, const contact_event_t& event, const Impacts& impacts);
-  // What of these contacts is to be heard at `at`; each that is heard no more ends once. When the method changes
-  // they fade by themselves.
+  // Recorded parts of these contacts that are audible at `at`; each part that is no longer audible ends once. When
+  // the method changes they fade out by themselves.
   const std::vector<RecordedContact>& rubs(const sync::Contacts& contacts, sync::HostTime at);
-  // Factor on what is computed of the scraping or the rolling of a contact, as of the last rubs().
+  // Factor on the computed scraping or rolling of a contact, as of the last rubs().
   float modal_of(std::int64_t contact, Interaction interaction) const;
 
-  // One sentence for each pair and interaction that falls back, once.
+  // Returns one sentence for each pair and interaction without its own recording, once.
   std::vector<std::string> news() { return std::exchange(news_, {}); }
 
  private:
@@ -78,7 +78,7 @@ class Sampler {
   double period_s_ = 0;
   std::vector<RecordedContact> rubs_;
   std::set<std::pair<std::int64_t, std::int32_t>> heard_;  // contacts and parts of the last rubs()
-  sync::HostTime rubbed_{};                                // when the last rubs() were to be heard
+  sync::HostTime rubbed_{};                                // presentation time of the last rubs()
   struct Moves {
     Presliding slides, rolls;
     bool seen = true;

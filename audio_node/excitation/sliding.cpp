@@ -18,22 +18,22 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Beyond these nothing becomes louder or faster: no hand does so, and nothing on the bus shall.
+// Upper bounds of loudness and speed, beyond those of any hand, for any input from the bus.
 constexpr double kMaxSpeed_m_s = 5, kMaxForce_N = 50;
-constexpr double kEdge_1_m = 1000;  // where nobody knows better: a corner that is round by 1 mm (design)
-// Gains go with the place: anew when it has gone so far, or so long ago. Design: below a tenth of the bending
-// waves that 64 modes of a floor board have.
+constexpr double kEdge_1_m = 1000;  // fallback: a corner rounded by 1 mm (design)
+// Gains depend on the place: they are recomputed after this distance or time. Design: below a tenth of the bending
+// waves of a floor board with 64 modes.
 constexpr double kNear_m = 0.002, kGainsFor_s = 0.05;
-// More contacts than these are looked at as often as they are told. Design: 0.1 ms.
+// Above this number, contacts are processed only at the rate of their snapshots. Design: 0.1 ms.
 constexpr std::size_t kMany = 50;
-// Who is heard gives way to who is so much stronger. Design.
+// An audible contact is replaced only by one that is stronger by this factor. Design.
 constexpr double kGivesWay = 2;
-// What is as loud as the law of levels says: 1 N at 0.1 m/s, with friction 0.5, W^(1/2) (design).
+// Reference for the law of level: 1 N at 0.1 m/s, with friction 0.5, W^(1/2) (design).
 constexpr double kReferenceForce_N = 1, kReferenceSpeed_m_s = 0.1, kReferenceStrength = 0.22360679774997896;
-// Of noise, over its rms (design).
+// Of noise, peak over rms (design).
 constexpr double kCrest = 3;
-constexpr double kHearing_Pa = 20e-6;  // threshold at 1 kHz (ISO 226): weaker ones are no more raised than that
-// The heavier side of a body that rolls. Design: an axis of no box.
+constexpr double kHearing_Pa = 20e-6;  // threshold at 1 kHz (ISO 226): weaker sounds are not raised further
+// The heavier side of a rolling body. Design: not an axis of a box.
 const Vector3d kHeavySide = Vector3d(2, -1, 2) / 3;
 
 Vector3d bounded(const Vector3d& v, double most) { return v.norm() > most ? Vector3d(v * (most / v.norm())) : v; }
@@ -83,8 +83,8 @@ Sliding::Ground Sliding::ground(const contact_t& c, std::size_t side, sync::SimT
   return g;
 }
 
-// Of what is round by its shape; else as large as the simulation says. The profile does not throw up what rolls:
-// its force is as large as the load, root mean square, at the most.
+// Round bodies by their shape; otherwise the area that the simulation reports. The profile does not lift a rolling
+// body: the rms force is at most the load.
 Sliding::Patch Sliding::patch(const contact_t& c, double force_N, double speed_m_s, double rms_slope) const {
   double curvature = 0, mobility_1_kg = 0;
   for (const std::int32_t body : {c.body_a, c.body_b}) {
@@ -103,7 +103,7 @@ Sliding::Patch Sliding::patch(const contact_t& c, double force_N, double speed_m
           std::min(rolling_force_N(radius, reduced, mass, speed_m_s), force_N / std::max(rms_slope, 1e-9))};
 }
 
-// Of the finish of both, since only what is known of a surface moves anything.
+// Of the finish of both surfaces; only a surface with known orientation contributes.
 double Sliding::rms_slope(const std::array<Ground, 2>& grounds) const {
   double sum = 0;
   for (const Ground& g : grounds)
@@ -111,7 +111,7 @@ double Sliding::rms_slope(const std::array<Ground, 2>& grounds) const {
   return std::sqrt(sum);
 }
 
-// Once a turn a body that rolls is heavier: as it lies on the place that it touches with.
+// Imbalance of a rolling body: its weight varies once per revolution with the side in contact.
 double Sliding::turn(const Candidate& c) const {
   double factor = 1;
   const Vector3d normal = to_eigen(c.contact->normal);
@@ -137,7 +137,7 @@ std::optional<Sliding::Candidate> Sliding::candidate(const contact_t& c, sync::S
   ContactWay& way = k.live->way;
   way.step(c, {k.grounds[0].to_body, k.grounds[1].to_body}, best, past, dt_s);
   const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMaxForce_N);
-  double mu = 1;  // one without a material: that of the other counts
+  double mu = 1;  // without a material, that of the other counts
   for (const Ground& g : k.grounds) {
     const auto i = static_cast<std::size_t>(g.material);
     if (g.material >= 0 && i < materials_.size()) mu *= materials_[i].friction_dynamic;
@@ -174,14 +174,14 @@ void Sliding::find_gains(const Candidate& k, sync::SimTime t, double dt_s) const
   }
 }
 
-// By gains as of anywhere: on a nodal line it shall be quiet.
+// Uses the gains at an average place: on a nodal line the contact must be quiet.
 void Sliding::find_loudness(const Candidate& k, std::size_t side) const {
   const int body = k.grounds[side].body;
   const PerMode gains = impacts_.gains(body, std::nullopt);
   const Resonators& r = impacts_.resonators(body);
   const auto count = static_cast<std::size_t>(r.count);
-  // A mode that is pushed by white noise of variance 1 a sample has the variance g^2 / (1 - r^2) / 2 of an
-  // oscillation whose envelope falls by r a sample.
+  // A mode driven by white noise of variance 1 per sample has the variance g^2 / (1 - r^2) / 2, for an oscillation
+  // whose envelope falls by r a sample.
   const Patch reference = patch(*k.contact, kReferenceForce_N, kReferenceSpeed_m_s, 0);
   const auto passes = [&](double f_Hz) { return 1 / (1 + std::pow(f_Hz / reference.cutoff_Hz, 4)); };
   double all = 0, last = 0, rolled = 0;
@@ -192,10 +192,10 @@ void Sliding::find_loudness(const Candidate& k, std::size_t side) const {
     rolled += one * passes(impacts_.body(body).modes[m].frequency_Hz);
     if (4 * m >= 3 * count) last += one;
   }
-  // A plate has as many modes in each Hz, which lose sound as the square of their frequency (beta of Rayleigh):
-  // all above the highest that is rendered have together the variance of `count` such as it, of which a quarter
-  // was added up. They die away before anybody could tell them apart.
-  // A measured body has the modes that it was heard to have.
+  // A plate has constant modal density in Hz, and its modes lose sound with the square of their frequency (beta of
+  // Rayleigh). All modes above the highest rendered one together have the variance of `count` modes such as it, of
+  // which a quarter was added up. They decay before they are distinguishable. A measured body has only its
+  // recorded modes.
   const bool measured = impacts_.body(body).radiates_as_Hz.has_value();
   const bool cut = !measured && count > 0 && r.count >= std::min(settings_.max_modes, kMaxModes);
   const double beyond = cut ? 4 * last : 0;
@@ -213,7 +213,7 @@ ScrapeSide Sliding::side(const Candidate& k, std::size_t i) const {
   s.resonators = impacts_.resonators(g.body);
   s.gains = k.live->gains[i];
   if (k.live->beyond_Pa_N[i] > 0) {
-    // Per N s a sample, as gains are.
+    // Per N s a sample, as the gains.
     s.beyond = static_cast<float>(k.live->beyond_Pa_N[i] * rate_Hz_);
     s.beyond_Hz = impacts_.body(g.body).modes.back().frequency_Hz;
   }
@@ -244,13 +244,13 @@ Scrape Sliding::scrape(const Candidate& k, sync::SimTime t, sync::HostTime at, d
     ScrapeSide& side = s.sides[i] = this->side(k, i);
     slid_Pa_N += k.live->heard_Pa_N[i] * k.live->heard_Pa_N[i];
     rolled_Pa_N += k.live->rolled_Pa_N[i] * k.live->rolled_Pa_N[i];
-    // As of its material alone: a map makes it louder, not its roughness quieter.
+    // Without the map: a map makes it louder, but does not reduce its roughness.
     if (side.known)
       slid += static_cast<double>(side.slides.squaredNorm()) * mean_square_slope({side.roughness.height_m, 0});
   }
-  // Full scale per N: the reference over these two is as loud as a blow of the pressure that is to be expected;
-  // others by their force. Friction is that of the surfaces without their maps, which the callback reads on the
-  // way.
+  // Full scale per N: the reference over these two bodies is as loud as a blow of the expected pressure; other
+  // contacts scale by their force. Friction is that of the surfaces without their maps, which the callback reads
+  // along the path.
   const auto scale = [&](double force_N, double slope, double Pa_N) {
     const double expected = std::max(kHearing_Pa, kCrest * force_N * slope * std::sqrt(Pa_N));
     return settings_.gain * level_of(expected, settings_) / expected / rate_Hz_;
@@ -282,7 +282,7 @@ const std::vector<Scrape>& Sliding::scrapes(const sync::Contacts& contacts, sync
   std::partial_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(most),
                     candidates_.end(), [&](const Candidate& a, const Candidate& b) { return kept(a) > kept(b); });
   candidates_.resize(most);
-  // Who is not among them ends first, to make room.
+  // Contacts that are not selected end first, to free places.
   for (auto& [id, live] : live_) {
     const auto is_it = [&, live = &live](const Candidate& k) { return k.live == live; };
     if (!std::exchange(live.heard, std::any_of(candidates_.begin(), candidates_.end(), is_it)) || live.heard)

@@ -1,4 +1,4 @@
-// From contacts that slide or roll to what is heard of them: where on both surfaces, how fast, how strongly. Pure.
+// Computes the sound of sliding and rolling contacts: place on both surfaces, speed, strength. Pure.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -21,28 +21,27 @@
 
 namespace tactus::audio {
 
-// Root of the power that friction takes of a contact, W^(1/2).
+// Root of the friction power of a contact, W^(1/2).
 double sliding_strength(double friction, double force_N, double speed_m_s);
 
-// The contacts of one scene. What is fixed to a body that moves is silent until somebody has said how it is
-// turned.
+// The contacts of one scene. A surface of a moving body is silent until its orientation is known.
 class Sliding {
  public:
-  // surfaces: of that scene, not null. bodies: how those that move are turned. These and impacts outlive this.
+  // surfaces: of that scene, not null. bodies: orientation of moving bodies. bodies and impacts outlive this.
   Sliding(const scene_t& scene, std::shared_ptr<const HeardSurfaces> surfaces, const sync::BodyHistory& bodies,
           const Impacts& impacts, const Settings& settings, double rate_Hz);
 
-  // Factor on everything from the next instant on.
+  // Factor on all sound from the next instant on.
   void set_gain(double gain) { settings_.gain = gain; }
-  // T_world_listener from the next contacts on; at first the scene's.
+  // T_world_listener from the next contacts on; initially that of the scene.
   void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
 
-  // How often to look at contacts: at every tick, when there are many as often as they are told, and never more
-  // often than that.
+  // Interval between updates: every tick, or the snapshot interval when there are many contacts, and at least the
+  // interval of set messages.
   double period_s() const { return std::max(period_s_, many_ ? kSnapshot_s : 0); }
   void tell_every(double period_s) { period_s_ = period_s; }
-  // What of the contacts of the instant t is to be heard at `at`; each that is heard no more ends once. dt_s:
-  // since the instant before.
+  // Scrapes of the contacts at instant t that are audible at `at`; each scrape that is no longer audible ends
+  // once. dt_s: since the previous instant.
   const std::vector<Scrape>& scrapes(const sync::Contacts& contacts, sync::SimTime t, sync::HostTime at,
                                      double dt_s);
 
@@ -58,13 +57,14 @@ class Sliding {
     ContactWay way;
     bool seen = false, heard = false;
     std::array<PerMode, 2> gains;
-    std::array<double, 2> heard_Pa_N{};       // of each body: rms of the pressure at 1 m per rms of a white force
-    std::array<double, 2> beyond_Pa_N{};      // of its modes beyond those that are rendered, likewise
-    std::array<double, 2> rolled_Pa_N{};      // of all, by a force that went through the patch of the reference
-    std::optional<Eigen::Vector3d> struck_m;  // where they are for, world
-    double since_s = 0;                       // they were found
+    std::array<double, 2> heard_Pa_N{};       // of each body: rms pressure at 1 m per rms of a white force
+    std::array<double, 2> beyond_Pa_N{};      // the same for its modes beyond the rendered ones
+    // the same for all modes, with a force filtered by the reference patch
+    std::array<double, 2> rolled_Pa_N{};
+    std::optional<Eigen::Vector3d> struck_m;  // place for which the gains hold, world
+    double since_s = 0;                       // time since the gains were computed
   };
-  // A contact and how strongly it slides and rolls, N for a slope of 1.
+  // A contact with the strength of its sliding and rolling, N for a slope of 1.
   struct Candidate {
     const contact_t* contact;
     Live* live;
@@ -79,7 +79,7 @@ class Sliding {
   void find_gains(const Candidate& candidate, sync::SimTime t, double dt_s) const;
   void find_loudness(const Candidate& candidate, std::size_t side) const;
   double turn(const Candidate& candidate) const;
-  // Of what rolls with that force at that speed.
+  // Contact patch of a rolling body with that force at that speed.
   struct Patch {
     double cutoff_Hz, force_N;
   };
@@ -94,9 +94,9 @@ class Sliding {
   const sync::BodyHistory& bodies_;
   const Impacts& impacts_;
   std::vector<material_def_t> materials_;
-  std::vector<double> masses_kg_;                        // of those that move; 0: none, or nobody knows
-  std::vector<double> curvatures_1_m_;                   // of bodies that are round; 0: flat, or nobody knows
-  std::map<std::int32_t, Eigen::Quaterniond> standing_;  // bodies that never move, of which nobody tells often
+  std::vector<double> masses_kg_;                        // of moving bodies; 0: static or not known
+  std::vector<double> curvatures_1_m_;                   // of round bodies; 0: flat or not known
+  std::map<std::int32_t, Eigen::Quaterniond> standing_;  // static bodies, which are rarely published
   std::map<std::int64_t, Live> live_;
   bool many_ = false;
   double period_s_ = 0;

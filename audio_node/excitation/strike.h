@@ -16,7 +16,7 @@ namespace tactus::audio {
 inline constexpr int kMaxModes = 128;
 static_assert(kMaxModes % kModeGroup == 0);
 
-// One number for each mode of a body; those that it does not have are 0.
+// One number for each mode of a body; unused modes are 0.
 struct alignas(64) PerMode : std::array<float, kMaxModes> {};
 
 // The modes of one body at one sample rate (bank/ring.h).
@@ -24,7 +24,7 @@ struct Resonators {
   int count = 0;
   PerMode damping{}, stiffness{};
 
-  // A mode more; nothing happens beyond kMaxModes.
+  // Adds a mode; ignored beyond kMaxModes.
   void add(const ModeStep& step) {
     if (count == kMaxModes) return;
     const auto i = static_cast<std::size_t>(count++);
@@ -41,8 +41,8 @@ struct StrikeSide {
   const Resonators* resonators = &kNoModes;  // never null; lives while a strike of its scene is held
   PerMode gains{};    // of each mode at the place that is struck, Pa at 1 m per N s; may be negative
   float impulse = 0;  // N s, scaled to full scale per Pa
-  float click = 0;    // response to the change of a unit-sum pulse from one sample to the next (rigid body's jerk)
-  SourcePosition place;        // where it is heard from
+  float click = 0;    // response to the change between samples of a unit-sum pulse (jerk of the rigid body)
+  SourcePosition place;        // position of the source
 };
 
 struct Strike {
@@ -50,7 +50,7 @@ struct Strike {
   std::int64_t scene = 0;  // number of the table that the sides refer to
   sync::HostTime scheduled{};
   ForcePulse pulse = one_hump(1);
-  float heard_from = 0;  // factor on its strength below which it is too weak to be heard, by prediction
+  float heard_from = 0;  // factor on its strength below which it is predicted to be inaudible
   std::array<StrikeSide, 2> sides;
   float impulse_N_s = 0, speed_m_s = 0;  // of the blow
   RecordedStrike recorded;

@@ -13,7 +13,7 @@
 namespace tactus::audio {
 namespace {
 
-constexpr int kRingSeconds = 5;  // how long the disk may stand still
+constexpr int kRingSeconds = 5;  // longest stall of the disk without loss
 constexpr std::chrono::milliseconds kWritePeriod{20};
 
 }  // namespace
@@ -49,7 +49,7 @@ void Capture::append(const float* interleaved, std::size_t frames) {
   lost_.fetch_add(static_cast<std::int64_t>(frames), std::memory_order_relaxed);
 }
 
-// True when nothing is owed any more.
+// Replaces lost frames by silence. True when none remain.
 bool Capture::pay_silence() {
   static constexpr std::array<float, 1024> kZeros{};
   while (owed_silence_ > 0) {

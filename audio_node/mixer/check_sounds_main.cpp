@@ -1,5 +1,5 @@
-// check_sounds: what is in a folder of recordings, what of it is broken, and what contacts of given materials fall
-// back to. tactus check-sounds calls it.
+// check_sounds: lists the contents of a folder of recordings, its faults, and the fallbacks for contacts of given
+// materials. tactus check-sounds calls it.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -29,7 +29,7 @@ nlohmann::json contents(const Database& database) {
   return all;
 }
 
-// What is played for each pair of the materials.
+// Sound source for each pair of the materials.
 nlohmann::json coverage(const Database& database, const std::vector<std::string>& materials) {
   nlohmann::json all = nlohmann::json::array();
   for (std::size_t i = 0; i < materials.size(); ++i)

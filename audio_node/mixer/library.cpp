@@ -9,8 +9,8 @@ namespace tactus::audio {
 namespace {
 
 constexpr std::size_t kMaxSaid = 5;  // faults of one database
-// Of before, while a callback that stands still might play them: newer ones wait. Design: each may be hundreds of
-// MB.
+// Number of previous databases kept while a stopped callback might play them; newer ones wait. Design: each may
+// take hundreds of MB.
 constexpr std::size_t kMaxKept = 2;
 
 }  // namespace
@@ -47,7 +47,7 @@ void Library::take_read(std::vector<Shared>& unread) {
   if (!opening_ || !opening_->done()) return;
   try {
     Shared database = opening_->take();
-    // Nobody needs one that was turned off, or replaced, while it was being read.
+    // Discards a database that was disabled or replaced while it was being read.
     if (wanted_ != reading_) {
       unread.push_back(std::move(database));
     } else {
@@ -62,7 +62,7 @@ void Library::take_read(std::vector<Shared>& unread) {
   read_ = reading_;
 }
 
-// When the callback cannot be told yet, what was is played on.
+// While the callback cannot be notified, the previous database stays in use.
 bool Library::tell(Shared next) {
   if (kept_.size() >= kMaxKept || !crossing_.databases.push(told_ + 1)) return false;
   if (now_) kept_.push_back({told_, std::move(now_)});

@@ -1,4 +1,4 @@
-// The database of recordings in use: read in a thread of its own, and kept as long as the callback may play it.
+// The database of recordings in use: read on a background thread, and kept while the callback may play it.
 #pragma once
 
 #include <cstdint>
@@ -15,30 +15,30 @@
 
 namespace tactus::audio {
 
-// The folder that the setting `sounds` means.
+// The folder of the setting `sounds`.
 std::string sounds_folder(const std::string& setting);
 
-// Of the loop's thread, which never waits for it.
+// Used on the thread of the loop, which never waits for it.
 class Library {
  public:
   using Shared = std::shared_ptr<const Database>;
 
   explicit Library(RecordedQueues& crossing) : crossing_(crossing) {}
 
-  // Begins to read when the method needs recordings and folder, rate or size are others than before. One that
-  // needs none gives back what there is.
+  // Begins to read when the method needs recordings and folder, rate or size have changed. A method without
+  // recordings releases the database.
   void configure(const Settings& settings);
-  // Once a tick. Those of before that nobody plays any more: freeing them may take milliseconds, not in a loop.
-  // heard: there is a callback, or one is being made; false: nobody plays any.
+  // Call once per tick. Returns previous databases that are no longer in use: freeing them may take milliseconds,
+  // so do not free them in the loop. heard: there is a callback, or one is being made; false: none is played.
   std::vector<Shared> step(bool heard = true);
 
   // Null: none has been read yet, and none is needed or it is being read.
   const Database* database() const { return now_.get(); }
-  // A database is on its way. Who renders without a clock steps until it is there.
+  // True while a database is being read. A renderer without a clock repeats step() until it is ready.
   bool reading() const { return opening_ || (wanted_ && wanted_ != read_); }
-  // What whatever crosses with it carries.
+  // Number that all queued commands of this database carry.
   std::int64_t number() const { return told_; }
-  // A sentence for people about each database that was read, once.
+  // A message about each database that was read, once.
   std::vector<std::string> news() { return std::exchange(news_, {}); }
 
  private:

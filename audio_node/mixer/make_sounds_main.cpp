@@ -1,5 +1,5 @@
-// make_sounds: renders the default set of recordings from our own modal models, the same bits each time. The build
-// calls it; README.md says what a set looks like.
+// make_sounds: renders the default set of recordings from the modal models, with the same bits each time. The
+// build calls it; README.md describes the layout of a set.
 //
 // Every material is a bar of 160 x 40 x 10 mm, which is struck at two places, scraped and rolled upon.
 #include <sndfile.h>
@@ -32,16 +32,17 @@ namespace {
 constexpr double kRate_Hz = 48000;
 const Eigen::Vector3d kBar_m{0.16, 0.04, 0.01};
 constexpr double kSpeeds_m_s[] = {0.1, 0.5};  // of layers of each interaction
-constexpr double kPlaces[] = {0.45, 0.2};     // where on its half length a bar is struck: never in its middle
+// struck places as shares of the half length of the bar, never its middle
+constexpr double kPlaces[] = {0.45, 0.2};
 constexpr double kStriker_kg = 0.1;
 constexpr double kLongest_s = 1.5, kLoop_s = 1.2;
-constexpr float kEnd = 1e-3f;       // of the peak: it is over
-constexpr double kLoopRms = 0.1;    // leaves room for its peaks
-constexpr double kRollGrain = 0.1;  // a rolling patch of 1 mm feels no finer grain than that of scraping by 0.1
-// Only its shape counts, not its size.
+constexpr float kEnd = 1e-3f;       // of the peak: the sound has ended
+constexpr double kLoopRms = 0.1;    // leaves headroom for its peaks
+constexpr double kRollGrain = 0.1;  // a rolling patch of 1 mm passes no finer grain than 0.1 of scraping
+// Only its spectrum matters, not its height.
 constexpr Roughness kRough{1e-6, 0};
 constexpr double kRollCutoff_Hz = 400;
-// Each with each other, besides all materials alone.
+// Materials that are paired with each other, in addition to all materials alone.
 const std::set<std::string> kPaired{"steel", "glass", "oak", "rubber"};
 
 std::vector<material_def_t> read_materials(const std::string& path) {
@@ -67,10 +68,10 @@ std::vector<material_def_t> read_materials(const std::string& path) {
   return all;
 }
 
-// Bars of two materials, which lie in the origin.
+// Bars of two materials at the origin.
 scene_t bars(const material_def_t& a, const material_def_t& b) {
   scene_t s{};
-  // A metre before the bars, which lie straight ahead.
+  // A metre in front of the bars, facing them.
   s.listener = to_pose(Eigen::Isometry3d(Eigen::Translation3d(-1, 0, 0)));
   s.materials = {a, b};
   for (int i = 0; i < 2; ++i) {
@@ -91,7 +92,7 @@ class Set {
  public:
   explicit Set(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  // alone: the second material strikes or slides, but is not heard.
+  // alone: the second material strikes or slides, but is not audible.
   void render(const material_def_t& a, const material_def_t& b, bool alone) {
     const scene_t scene = bars(a, b);
     const Impacts impacts(scene, {}, settings_, kRate_Hz, 1);
@@ -114,10 +115,10 @@ class Set {
     e.approach_speed_m_s = static_cast<float>(speed_m_s), e.effective_mass_kg = static_cast<float>(kStriker_kg);
     e.curvature_1_m = 50;  // a corner of 2 cm
     const Strike s = impacts.strike(e, {}, [](int) { return Eigen::Isometry3d::Identity(); });
-    Voices voices(2, kRate_Hz, ring(Instructions::kSse2));  // of every machine: the same bits
+    Voices voices(2, kRate_Hz, ring(Instructions::kSse2));  // available on every machine: the same bits
     for (std::size_t i = 0; i < (alone ? 1u : 2u); ++i) voices.strike(s.sides[i], 1, s.pulse, 0);
     auto x = rendered(voices, kLongest_s, [](int) {});
-    // As of the impulse that a recording stands for.
+    // At the impulse of a recording.
     const auto scale = static_cast<float>(
         std::pow(settings_.recorded_impulse_Ns / static_cast<double>(s.impulse_N_s), settings_.loudness_exponent));
     float peak = 0;
@@ -152,7 +153,7 @@ class Set {
         voices.drive(
             {impacts.voice_id(i), &impacts.resonators(i), &gains[static_cast<std::size_t>(i)], {}, force.data()});
     });
-    // As strong as the modes: what the surfaces radiate by themselves, without which a loop would be a tone.
+    // Direct sound of the surfaces, as strong as the modes; without it a loop would be a tone.
     double of_modes = 0, of_surface = 0, peak = 0;
     const auto steady = static_cast<std::size_t>(0.2 * kRate_Hz);
     for (std::size_t n = steady; n < x.size(); ++n) {
@@ -177,7 +178,7 @@ class Set {
       std::array<float, 2 * kMaxBlock> mix{};
       before(kMaxBlock);
       voices.render(mix.data(), kMaxBlock);
-      // Straight ahead both ears hear the root of a half.
+      // Straight ahead each ear receives the root of a half.
       for (std::size_t n = 0; n < kMaxBlock; ++n) x.push_back(mix[2 * n] * std::sqrt(2.f));
     }
     return x;
@@ -216,7 +217,7 @@ int main(int argc, char** argv) try {
   if (folder.empty() || materials.empty())
     throw std::runtime_error("give a folder and --materials; see make_sounds --help");
   const auto all = read_materials(materials);
-  // What it renders anew is a set of its own, never a folder of somebody's.
+  // It replaces only a set that it made itself, never another folder.
   const auto mark = std::filesystem::path(folder) / ".rendered";
   if (std::filesystem::exists(folder) && !std::filesystem::is_empty(folder) && !std::filesystem::exists(mark))
     throw std::runtime_error(folder + " is there and no set of this program; give a new folder");

@@ -15,7 +15,7 @@ void Recorded::take_databases() {
   const std::int64_t before = database_;
   for (std::int64_t number; crossing_.databases.pop(number);) database_ = number;
   if (database_ == before) return;
-  // Rubs of the databases before crossed before: those of the newest follow in a tick.
+  // Contacts of previous databases were queued before; those of the newest follow in a tick.
   if (next_ && next_->database >= database_) return;
   next_.reset();
   for (RecordedContact r; crossing_.rubs.pop(r);) {
@@ -25,7 +25,7 @@ void Recorded::take_databases() {
   }
 }
 
-// They cross in the order in which they are to be heard; one that is early waits.
+// They are queued in the order of presentation; an early one waits.
 int Recorded::take_rubs(sync::HostTime until) {
   int begun = 0;
   for (RecordedContact r; next_ || crossing_.rubs.pop(r);) {

@@ -11,8 +11,8 @@
 namespace tactus::audio {
 namespace {
 
-// Sound that dies away ends in denormal numbers, which cost a hundred times a normal one: taken for 0 while this
-// lives.
+// Decaying sound ends in denormal numbers, which cost a hundred times as much as normal ones: they count as 0
+// while this exists.
 class FlushToZero {
  public:
 #if defined(__SSE__)
@@ -24,19 +24,19 @@ class FlushToZero {
 #endif
 };
 
-// Blocks are placed anew by the device's clock; a strike on their border may so miss its sample by one without
-// being late. Two samples, and the half by which every onset is rounded.
+// The clock of the device corrects the place of each block, so a strike at a block border may miss its sample by
+// one without being late. Two samples, and the half by which every onset is rounded.
 constexpr double kSlack_samples = 2.5;
 
-// Share of the time of a block that its rendering may take: the rest is for a wake-up that comes late, and for the
-// card's own work. Design.
+// Share of the duration of a block for its rendering: the rest covers late wake-ups and the work of the card.
+// Design.
 constexpr double kBudget = 0.5;
-// The ladder is told of so many means a second. Design, as pictures: at the rate of blocks it would heed every
-// moment in which another process has the processor, to which fewer modes are no answer.
+// Rate of the means that the ladder receives. Design, as for pictures: at the rate of blocks the ladder would
+// react to every moment in which another process has the processor; fewer modes do not help there.
 constexpr double kMeans_Hz = 60;
-constexpr double kCalm_s = 2;  // design: no better step without so much spare time
+constexpr double kCalm_s = 2;  // design: spare time required before a better step
 
-// The onset of a sound is lost when a drop-out takes more than half of its amplitude.
+// The onset of a sound is lost when a drop-out removes more than half of its amplitude.
 constexpr float kSilenced = 0.5f;
 
 HearingDef hearing_of(const RendererDef& def) {
@@ -83,7 +83,7 @@ void Renderer::take_orders() {
   if (moved) voices_.hear_from(listener), recorded_.hear_from(listener);
 }
 
-// The ladder is told what a second of sound would take, since blocks may differ in length.
+// The ladder receives the time per second of sound, since blocks may differ in length.
 void Renderer::adapt(int frames, sync::Nanoseconds used) {
   if (pinned_ < 0 && used > sync::Nanoseconds(0)) frames_ += last_frames_, used_ += used;
   last_frames_ = frames;
@@ -147,8 +147,7 @@ void Renderer::abandon() {
   recorded_.abandon(scheduler_);
 }
 
-// The block's frames are rendered now, reach the ears a little later and leave the limiter kDelay frames after
-// that.
+// The frames of the block are rendered now, pass the spatialiser and leave the limiter kDelay frames later.
 void Renderer::render_some(float* out, int frames, const BlockTime& time) {
   const BlockTime leaving{time.first_sample + samples(delay_), time.uncertainty, {}};
   const sync::HostTime end =
@@ -169,7 +168,7 @@ void Renderer::sound_some(float* out, int frames, sync::HostTime leaving) {
   const std::int64_t computed = clock();
   const int rubs = recorded_.render(out, frames, leaving);
   crossing_.costs[1].contacts.fetch_add(rubs, std::memory_order_relaxed);
-  // A block in which nothing sounds is no contact's.
+  // A block without sound counts for no contact.
   if (voices_.active() > 0) crossing_.costs[0].ns.fetch_add(computed - begun, std::memory_order_relaxed);
   if (recorded_.active() > 0) crossing_.costs[1].ns.fetch_add(clock() - computed, std::memory_order_relaxed);
   for (int n = 0; n < frames; ++n)
@@ -177,16 +176,17 @@ void Renderer::sound_some(float* out, int frames, sync::HostTime leaving) {
   limit(out, frames);
 }
 
-// The level last: so it is that of what is played.
+// The level limiter is last, so that it measures the played sound.
 void Renderer::limit(float* out, int frames) {
   limiter_.process(out, frames);
   level_limiter_.process(out, frames);
-  const double exposure = crossing_.heard.exposure_Pa2_s.load(std::memory_order_relaxed);  // nobody else writes it
+  // no other thread writes it
+  const double exposure = crossing_.heard.exposure_Pa2_s.load(std::memory_order_relaxed);
   crossing_.heard.exposure_Pa2_s.store(exposure + level_limiter_.take_exposure_Pa2_s(), std::memory_order_relaxed);
   crossing_.heard.gain.store(level_limiter_.gain(), std::memory_order_relaxed);
 }
 
-// They cross in the order in which they are to be heard; one that is early waits.
+// They are queued in the order of presentation; an early one waits.
 void Renderer::take_scrapes(sync::HostTime until) {
   for (Scrape s; next_scrape_ || crossing_.scrapes.pop(s);) {
     if (next_scrape_) s = *std::exchange(next_scrape_, std::nullopt);
@@ -229,7 +229,7 @@ void Renderer::begin(const Strike& strike, int frames, const BlockTime& leaving)
   const bool computed = strike.sides[0].voice >= 0 || strike.sides[1].voice >= 0;
   crossing_.costs[0].contacts.fetch_add(computed ? 1 : 0, std::memory_order_relaxed);
   crossing_.costs[1].contacts.fetch_add(strike.recorded.database > 0 ? 1 : 0, std::memory_order_relaxed);
-  // The bodies ring on below the silence.
+  // The bodies keep ringing during the silence.
   if (open_[static_cast<std::size_t>(offset)] < kSilenced)
     return report(strike, presentation_t::DROPPED_BY_PROFILE, -1, sync::Nanoseconds(0));
   const sync::Nanoseconds half_sample = samples(1) / 2;

@@ -1,4 +1,4 @@
-// Keeps strikes until their sample comes. Pure.
+// Holds strikes until their sample. Pure.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace tactus::audio {
 
-// A heap of fixed capacity, ordered by the time of presentation; equal times leave in the order in which they
-// came. Time becomes a sample only when a block is rendered, since the map between the two is corrected all along.
-// Realtime-safe: yes, all but the constructor.
+// A heap of fixed capacity, ordered by presentation time; equal times keep their order of arrival. Time is
+// converted to a sample only when a block is rendered, since the map between the two is corrected continuously.
+// Realtime-safe: yes, except the constructor.
 class Scheduler {
  public:
   explicit Scheduler(int capacity);
@@ -19,7 +19,7 @@ class Scheduler {
   bool push(const Strike& strike);
   // The earliest strike that is scheduled before `end`, or null. It stays valid until the next call.
   const Strike* pop_before(sync::HostTime end);
-  // Those that wait, in no order.
+  // Waiting strikes, in no particular order.
   template <class F>
   void for_each(F f) const {
     for (const Entry& e : heap_) f(slots_[static_cast<std::size_t>(e.slot)]);

@@ -5,13 +5,13 @@
 namespace tactus::audio {
 namespace {
 
-// Ends that are still to be told. Design: four times what is heard at a time; what is older has faded by itself.
+// Maximum number of unsent ends. Design: four times the audible contacts; older ones have faded by themselves.
 constexpr std::size_t kMaxOwed = 4 * Scrapes::kMax;
 
 }  // namespace
 
 void ScrapeLine::change(Surfaces next) {
-  // Into which none points nobody reads, whatever the callback does.
+  // Surfaces that no scrape points to may be freed at once, regardless of the callback.
   if (now_) kept_.push_back({submitted_ > first_ ? submitted_ : 0, std::move(now_)});
   now_ = std::move(next);
   first_ = submitted_;

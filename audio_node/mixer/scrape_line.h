@@ -1,5 +1,5 @@
-// The loop's end of the queue of scrapes into the callback: it numbers them, and keeps the surfaces that they
-// point into until the callback has said that it holds none of them any more. Pure.
+// The loop side of the queue of scrapes to the callback. It numbers the scrapes, and keeps the surfaces that they
+// point to until the callback has released all of them. Pure.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,24 @@
 
 namespace tactus::audio {
 
-// Of the loop's thread. The callback never waits for it, and frees nothing.
+// Used on the loop thread. The callback never waits for it, and frees nothing.
 class ScrapeLine {
  public:
   using Surfaces = std::shared_ptr<const HeardSurfaces>;
 
   explicit ScrapeLine(CallbackQueues& crossing) : crossing_(crossing) {}
 
-  // Scrapes that are submitted from now on point into these; null: into none. Those of before are kept while the
-  // callback may read them. While it stands still no more than the queue holds scrapes.
+  // Later scrapes point to these surfaces; null: none. The previous surfaces are kept while the callback may read
+  // them. While the callback is stopped, at most one queue of scrapes holds them.
   void change(Surfaces next);
-  // False when the queue is full: a state is not heard, and counted as lost; an end is told as soon as there is
-  // room, unless its contact goes on.
+  // False when the queue is full: a state is skipped and counted as lost; an end is sent as soon as there is room,
+  // unless its contact continues.
   bool submit(Scrape scrape);
-  // Once a tick.
+  // Call once per tick.
   void tell_ends();
   std::int64_t lost() const { return lost_; }
-  // Those of before that nobody reads any more. Freeing them may take milliseconds: not in a loop.
+  // Returns previous surfaces that are no longer read. Freeing them may take milliseconds, so do not free them in
+  // the loop.
   std::vector<Surfaces> take_unread();
 
  private:
@@ -39,9 +40,9 @@ class ScrapeLine {
   bool push(Scrape& scrape);
 
   CallbackQueues& crossing_;
-  std::deque<std::int64_t> owed_;  // contacts whose end has not been told
+  std::deque<std::int64_t> owed_;  // contacts whose end has not been sent
   std::int64_t lost_ = 0;
-  std::int64_t submitted_ = 0, first_ = 0;  // scrapes so far; number of the first into `now_`
+  std::int64_t submitted_ = 0, first_ = 0;  // number of scrapes; number of the first one into `now_`
   Surfaces now_;
   std::deque<Kept> kept_;
 };

@@ -6,22 +6,21 @@
 namespace tactus::audio {
 namespace {
 
-// A place that is told differs from where the last one has led: it is taken in within so long. Design: the hand
-// and the world have ticks of 1 ms each and now and then slip by one.
+// A received place differs from the extrapolated one: time constant of the correction. Design: touch and the
+// simulation have ticks of 1 ms each and occasionally slip by one.
 constexpr double kFollow_s = 0.01;
-// What is further off was put there.
+// A larger difference means that it was repositioned.
 constexpr double kLeap_m = 0.005;  // design
-// A strength begins, changes and ends within so long at the least. Design: shorter is heard as a click.
+// Minimum ramp time of a strength at begin, change and end. Design: shorter is audible as a click.
 constexpr double kStrength_s = 0.002;
-// One that is not told of any more, nor that it ends, fades.
-constexpr sync::Nanoseconds kSilence{30'000'000};  // design: a few lost messages are no gap
-constexpr double kMaxOver_s =
-    0.5;  // design: or twice the time until it is to be told anew, but no longer than this
+// A contact without updates and without an end fades out.
+constexpr sync::Nanoseconds kSilence{30'000'000};  // design: a few lost messages are not a gap
+constexpr double kMaxOver_s = 0.5;                 // design: or twice the update interval, but at most this
 
-// Of this world. Design: far beyond what any scene has, so that no number overflows.
+// Plausible range. Design: far beyond any scene, so that no number overflows.
 constexpr double kMaxPlace_m = 1e5, kMaxSpeed_m_s = 1e3, kMaxWay = 10, kMaxStrength = 10;
 
-// Neither is no number.
+// False for NaN and infinity.
 bool within(const Eigen::Vector3d& v, double most) { return v.allFinite() && v.cwiseAbs().maxCoeff() <= most; }
 
 bool sane(const Scrape& s) {
@@ -34,7 +33,7 @@ bool sane(const Scrape& s) {
   return all && std::isfinite(s.over_s) && s.place.distance_m > 0;
 }
 
-// Of a step of a map that is none: as steep as 76 degrees (design).
+// Slope limit for a step in a map: 76 degrees (design).
 constexpr float kSteepest = 4;
 
 bool passes(const ScrapeSide& side) { return !side.slides.isZero(0) || !side.rolls.isZero(0); }
@@ -44,7 +43,7 @@ Eigen::Vector2d on_map(const ScrapeSide& side, const Eigen::Vector3d& v) {
   return {v[side.axes.u] / static_cast<double>(r.size_m.x()), v[side.axes.v] / static_cast<double>(r.size_m.y())};
 }
 
-// Adds the slope of the relief along the way of the sliding and that of the rolling.
+// Adds the slope of the relief along the directions of sliding and of rolling.
 void add_relief(const ScrapeSide& side, const Track& track, int frames, float* slope, float* slope_rolling) {
   const auto along = [&](const Eigen::Vector3f& way) -> Eigen::Vector2d {
     return way.cast<double>()({side.axes.u, side.axes.v});
@@ -111,7 +110,8 @@ void Scrapes::take(const Scrape& scrape) {
   known->slide.go(scrape.slide, within), known->roll.go(scrape.roll, within);
 }
 
-// Where what was told would be at the first of these samples; what is missing is made up on the way.
+// Extrapolates the received place to the first of these samples; the remaining difference is corrected along the
+// track.
 Track Scrapes::follow(const ScrapeSide& told, Side& side, double since_s, bool fresh, int frames) const {
   const double dt = 1 / rate_Hz_;
   Eigen::Vector3d lag = told.place_m + since_s * told.velocity_m_s - side.place_m;
@@ -143,8 +143,8 @@ void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
       friction[static_cast<std::size_t>(n)] *=
           static_cast<float>(side.friction->factor(side.outward, tracks[i].at(n)));
   }
-  // On a slope both the way and the force across it are longer than as told by sqrt(1 + slope^2), the root of
-  // their product as well.
+  // On a slope both the path and the force across it are longer by sqrt(1 + slope^2), and so is the root of their
+  // product.
   for (int n = 0; n < frames; ++n) {
     const auto k = static_cast<std::size_t>(n);
     steep[k] = std::sqrt(1 + std::min(slope[k] * slope[k], kSteepest * kSteepest));
@@ -156,7 +156,7 @@ void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
   c.patch.set(s.cutoff_Hz, rate_Hz_);
   for (int n = 0; n < frames; ++n) {
     const auto k = static_cast<std::size_t>(n);
-    // Of a pair the root of the factors counts, and of power the root again.
+    // The factor of a pair is the root of the product, and the strength goes with the root of the power.
     const float rubs = mapped ? std::sqrt(static_cast<float>(pair_factor(static_cast<double>(friction[k])))) : 1;
     c.force[k] = c.slide.next() * rubs * steep[k] * slope[k] + c.roll.next() * c.patch.next(rolling[k]).low;
   }
@@ -175,7 +175,7 @@ void Scrapes::drive(Contact& c, std::size_t i, Voices& voices, int frames) {
     voices.drive({told.voice, &told.resonators, &gains, c.now.place, force.data(), direct});
   };
   if (!side.changed) return with(side.gains[side.in_use], c.force, side.direct.data());
-  // Linearly from one set of gains to the next. Both bodies share the shares.
+  // Crossfades linearly between the sets of gains. Both bodies use the same shares.
   for (int n = 0; n < frames; ++n) {
     const auto k = static_cast<std::size_t>(n);
     c.in[k] = c.force[k] * static_cast<float>(n) / static_cast<float>(frames);

@@ -1,9 +1,8 @@
-// The contacts that slide or roll just now: the force of each on its two bodies, sample by sample. Pure.
+// The contacts that currently slide or roll: the force of each on its two bodies, sample by sample. Pure.
 //
-// A tip that slides over a profile is pushed up and down by its slope, as a phonograph's needle, stronger with the
-// root of the power that friction takes (van den Doel, Kry and Pai 2001, "FoleyAutomatic", sections 4.1 and 4.2).
-// What rolls feels the same profile through a low-pass, since the patch that touches is wider than the finest
-// waves.
+// The slope of the profile pushes a sliding tip up and down, as a phonograph needle, with the root of the friction
+// power (van den Doel, Kry and Pai 2001, "FoleyAutomatic", sections 4.1 and 4.2). Rolling uses the same profile
+// through a low-pass, since the contact patch is wider than the finest waves.
 #pragma once
 
 #include <array>
@@ -19,27 +18,27 @@ namespace tactus::audio {
 class Scrapes {
  public:
   static constexpr int kMax = kMaxScrapes;
-  // Each drives a body twice at the most, while its place on it goes from one set of gains to the next.
+  // Each contact drives a body at most twice, while its place moves from one set of gains to the next.
   static_assert(2 * kMax <= Voices::kDrives);
 
   explicit Scrapes(double rate_Hz) : rate_Hz_(rate_Hz) {}
 
-  // One that is to be heard from its instant on. Realtime-safe: yes.
+  // Takes a scrape that is due. Realtime-safe: yes.
   void take(const Scrape& scrape);
-  // Drives their bodies for the `frames` <= kMaxBlock frames that are rendered next, the first of which is heard
-  // at `first`. The forces stay where they are until the next call. Realtime-safe: yes.
+  // Drives the bodies for the next `frames` <= kMaxBlock frames, the first of which is presented at `first`. The
+  // forces remain valid until the next call. Realtime-safe: yes.
   void drive(Voices& voices, int frames, sync::HostTime first);
   int active() const;
   // Number of the oldest scrape that it holds, and whose relief it may still read. Realtime-safe: yes.
   std::optional<std::int64_t> oldest() const;
   void clear() { contacts_ = {}; }
 
-  // Force of a contact in the block that was driven last, N s a sample scaled to full scale per Pa; null: no such.
+  // Force of a contact in the last driven block, N s a sample scaled to full scale per Pa; null: no such contact.
   const float* force(std::int64_t id) const;
 
  private:
   using Block = std::array<float, kMaxBlock>;
-  // Goes from where it is to where it is told to be within so many samples, to the bit.
+  // Reaches its target exactly, within a given number of samples.
   struct Ramp {
     float value = 0, target = 0;
     int left = 0;
@@ -49,18 +48,18 @@ class Scrapes {
     float next();
   };
   struct Side {
-    Eigen::Vector3d place_m, step_m;  // of the sample that comes next
-    // Those in use, and those that they go to within a block or were before.
+    Eigen::Vector3d place_m, step_m;  // of the next sample
+    // The set in use, and the set of the next or previous block.
     std::array<PerMode, 2> gains;
     std::size_t in_use = 0;
-    bool changed = false;  // told since
+    bool changed = false;  // new gains have arrived
     Butterworth beyond;
-    Block direct{};  // what its modes beyond those that are rendered sound
+    Block direct{};  // sound of its modes beyond the rendered ones
   };
   struct Contact {
     Scrape now;
     bool on = false, fresh = true;
-    sync::HostTime heard{};  // of the newest
+    sync::HostTime heard{};  // presentation time of the newest scrape
     Ramp slide, roll;
     Butterworth patch;
     std::array<Side, 2> sides;

@@ -7,19 +7,19 @@
 namespace tactus::audio {
 namespace {
 
-// A voice weaker than this is over: -100 dBFS, below the noise of any 16-bit converter.
+// A voice below this level has ended: -100 dBFS, below the noise of any 16-bit converter.
 constexpr float kOver = 1e-5f;
 
-// What rings so much weaker than the next blow is heard from the place of that at once: its crossfade within a
-// block, a bend of some 1/16 of it (spatialiser_test), is 60 dB below the blow. Design.
+// A voice that is weaker than the next blow by this factor jumps to the place of the blow: its crossfade within a
+// block, a distortion of about 1/16 of it (spatialiser_test), is 60 dB below the blow. Design.
 constexpr float kDrowned = 1.f / 64;
 
-// Of the squared amplitude of a mode: what falls by its damping with each sample, whatever its phase.
+// Squared amplitude of a mode: it decays by the damping with each sample, at any phase.
 float squared_amplitude(float c, float k, float v, float u) {
   return std::max(0.f, (c * v + (1 - c - k) * u) * v + k * u * u);
 }
 
-// Sum of f over the squared amplitudes of the modes that are rendered.
+// Sum of f over the squared amplitudes of the rendered modes.
 template <class Voice, class F>
 float over_modes(const Voice& v, F f) {
   float sum = 0;
@@ -49,8 +49,8 @@ Voices::Voice* Voices::sounding(std::int64_t id) {
   return nullptr;
 }
 
-// The weakest give way until no more than so many sound besides those that fade. One that a contact drives is
-// heard from this block on, however weak it has been: it would begin anew in each block.
+// The weakest voices fade until at most at_most sound. A voice that a contact drives counts as stronger, at any
+// level: otherwise it would restart in each block.
 void Voices::leave_room(int at_most) {
   const auto sounds = [](const Voice& v) { return v.id >= 0 && !v.whole.on; };
   auto count = std::count_if(voices_.begin(), voices_.end(), sounds);
@@ -64,7 +64,7 @@ void Voices::leave_room(int at_most) {
   }
 }
 
-// There are more voices than may sound, so what is not free here fades, and the weakest of that ends.
+// There are more voices than may sound, so a voice that is not free fades, and the weakest of these ends.
 Voices::Voice& Voices::free_voice() {
   Voice* best = nullptr;
   for (Voice& v : voices_) {
@@ -102,7 +102,7 @@ Voices::Voice& Voices::voice_of(std::int64_t id, const Resonators& resonators, c
   return fresh;
 }
 
-// Modes that were cut come back at rest, with a force from its beginning: in the middle of one they would jump.
+// Modes that were cut return at rest, before a force begins: within a force they would jump.
 void Voices::bring_back(Voice& v) const {
   const auto pushes = [](const Pulse& p) { return p.on; };
   if (!v.cut.on && v.rendered < allowed(v) && v.driven == 0 &&
@@ -110,8 +110,8 @@ void Voices::bring_back(Voice& v) const {
     v.rendered = v.kept = allowed(v);
 }
 
-// It begins when it does and is as strong as it is; only its place on the body becomes that of the strongest that
-// has room, which is where most of the force is. One that finds none is masked by the 80 humps that push.
+// The blow keeps its time and strength, and takes the place on the body of the strongest pulse that has room,
+// which carries most of the force. A blow without room is masked by the 80 active humps.
 void Voices::join(Voice& v, const Pulse& blow) {
   Pulse* into = nullptr;
   for (Pulse& p : v.pulses)
@@ -153,7 +153,7 @@ void Voices::drive(const Drive& drive) {
   v.drives[static_cast<std::size_t>(v.driven++)] = {drive.gains->data(), drive.force};
 }
 
-// The forces of the block; the clicks, and what is heard beside the modes, go straight to `out`.
+// Collects the forces of the block; clicks and direct sound are added to `out`.
 void Voices::collect(Voice& v, int frames, Pushes& pushes, float* out) {
   for (std::size_t i = 0; i < v.pulses.size(); ++i) {
     Pulse& p = v.pulses[i];
@@ -197,7 +197,7 @@ void Voices::fade(Fade& fade, float* samples, int frames) const {
   }
 }
 
-// Begins when it must and none is on: one after the other.
+// Begins when required and while none is in progress: one after another.
 void Voices::cut(Voice& v) const {
   if (v.cut.on || v.rendered <= allowed(v)) return;
   v.kept = allowed(v);
@@ -234,7 +234,7 @@ void Voices::render(Voice& v, int frames) {
   spatialiser_.add(static_cast<int>(&v - voices_.data()), place, out.data(), frames);
   v.level = over_modes(v, [](float a2) { return std::sqrt(a2); }) / place.distance_m * v.whole.gain;
   const bool pushed = pushes.count > 0;
-  // What is on its way to the ears is still heard, but for a voice that has become no number.
+  // Sound in the filters of the ears still counts, except for a voice that has become NaN.
   const bool over = v.whole.gain <= 0 || (!pushed && !(v.level > kOver));
   if (!numbers || !std::isfinite(v.level) || (over && v.silent >= spatialiser_.tail())) v.id = -1;
   v.silent = over ? v.silent + frames : 0;

@@ -1,4 +1,4 @@
-// The resonators of the bodies that sound just now. Pure.
+// The resonators of the bodies that currently sound. Pure.
 #pragma once
 
 #include <array>
@@ -12,48 +12,48 @@
 
 namespace tactus::audio {
 
-// How much may sound at a time.
+// Limits on the number of voices and modes.
 struct VoiceLimits {
   int voices = 64;
-  // Of the modes of a body one in so many, the lowest, in whole groups of kModeGroup: its pitch stays.
+  // Share of the modes of a body: one in modes_of, the lowest, in whole groups of kModeGroup, so that its pitch
+  // stays.
   int modes_of = 1;
 };
 
-// A force on a body for as long as a contact lasts: that of the frames that are rendered next.
+// Force on a body during a contact, for the next rendered frames.
 struct Drive {
   std::int64_t voice = -1;
   const Resonators* resonators = nullptr;
-  const PerMode* gains = nullptr;  // at the place of the contact, as of a strike
+  const PerMode* gains = nullptr;  // at the place of the contact, as for a strike
   SourcePosition place;
   const float* force = nullptr;   // N s a sample, scaled to full scale per Pa; read until the end of that render()
-  const float* direct = nullptr;  // heard beside the modes, at 1 m, likewise; null: nothing
+  const float* direct = nullptr;  // direct sound at 1 m besides the modes, in the same units; null: none
 };
 
-// A fixed number of voices, each one body, whose modes ring in bank/ring.h. Striking or driving a voice that
-// sounds adds a force and leaves its state alone. When all voices are in use, the weakest gives way; it fades, as
-// does all that lower limits cut. The modes of a body are summed before it is heard from its place. That is where
-// its newest contact is; what rings goes there by a turn a second (glide.h), unless the blow drowns it.
-// Realtime-safe: yes, all but the constructor.
+// A fixed number of voices, one per body, whose modes are rendered by bank/ring.h. Striking or driving a sounding
+// voice adds a force and keeps its state. When all voices are in use, the weakest fades, as do modes and voices
+// beyond lower limits. The modes of a body are summed before they are placed at its newest contact. A ringing
+// voice moves there at one revolution a second (glide.h), unless the blow masks it. Realtime-safe: yes, except the
+// constructor.
 class Voices {
  public:
-  // As many voices as no limit will exceed.
+  // voices: the maximum of all limits.
   Voices(int voices, double rate_Hz, Ring ring, const Space& space = {},
          Instructions instructions = Instructions::kSse2);
 
   // From the next render() on.
   void set_limits(const VoiceLimits& limits);
 
-  // Starts a pulse for one side, `gain` as strong as it says, at `offset` frames (0 .. kMaxBlock-1) into the next
-  // render().
+  // Starts a pulse for one side, scaled by `gain`, at `offset` frames (0 .. kMaxBlock-1) into the next render().
   void strike(const StrikeSide& side, float gain, const ForcePulse& pulse, int offset);
-  // Before each render() as long as the contact lasts. Of one body so many at a time are heard: kDrives.
+  // Call before each render() during the contact. Of one body at most kDrives are rendered at a time.
   void drive(const Drive& drive);
-  // Bodies stay where they are in the world, also those that ring already.
+  // Bodies keep their place in the world, including those that ring already.
   void hear_from(const Listener& listener) { listener_ = listener; }
   // Adds `frames` <= kMaxBlock frames, channels interleaved.
   void render(float* mix, int frames);
 
-  // That sound, with those that fade.
+  // Number of sounding voices, including fading ones.
   int active() const;
   // Sum of the squared amplitudes of all modes of all voices.
   double energy() const;
@@ -62,21 +62,21 @@ class Voices {
 
  private:
   static constexpr int kPulses = 16;  // of one voice at a time; more join the strongest of them
-  // Voices that fade while others sound: so many may be taken within a fade before one ends at once.
+  // Voices that fade while others sound: at most this number can be taken within a fade before one ends at once.
   static constexpr int kFading = 16;  // design
-  // Of what is cut. Shorter is heard as a click (design).
+  // Of a cut. Shorter is audible as a click (design).
   static constexpr double kFade_s = 0.005;
 
   struct Pulse {
     bool on = false;
-    int begin = 0;  // frames until it starts; negative: since it did
+    int begin = 0;  // frames until it starts; negative: since it started
     int end = 0;    // after its start
     ForcePulse humps{};
     float impulse = 0, click = 0;
-    float weight = 0;  // at the sample before
+    float weight = 0;  // at the previous sample
     PerMode gains;
   };
-  // A factor that goes to 0 from when it is told to.
+  // A factor that decreases to 0 once it is switched on.
   struct Fade {
     bool on = false;
     float gain = 1;
@@ -84,7 +84,7 @@ class Voices {
   struct Voice {
     std::int64_t id = -1;
     int modes = 0;  // of the body, in whole groups
-    // Modes that are rendered; those from `kept` on fade, then they are at rest until the voice is struck anew.
+    // Rendered modes; those from `kept` on fade, and then stay at rest until the voice is struck again.
     int rendered = 0, kept = 0;
     Fade cut;
     Fade whole;
@@ -95,16 +95,16 @@ class Voices {
     int driven = 0;
     SourcePosition place;         // of the newest contact
     SourcePosition heard;         // on its way there
-    int silent = 0;      // frames since the last of which something came
-    float expected = 0;  // level that the last pulse will give
-    float level = 0;  // largest sum of amplitudes of the last block; while a pulse is on, what is expected besides
+    int silent = 0;      // frames since the last input
+    float expected = 0;  // expected level of the last pulse
+    float level = 0;  // largest sum of amplitudes of the last block, plus the expected level while a pulse is on
   };
-  // What pushes a voice within one block.
+  // Forces on a voice within one block.
   struct Pushes {
     std::array<std::array<float, kMaxBlock>, kPulses> forces;
     std::array<Push, kPulses + kDrives> list;
     int count = 0;
-    bool of_blows = false;  // some are
+    bool of_blows = false;  // some are blows
   };
 
   Voice* sounding(std::int64_t id);
@@ -124,7 +124,7 @@ class Voices {
 
   VoiceLimits limits_;
   Ring ring_;
-  float fade_step_;  // a sample
+  float fade_step_;  // per sample
   float glide_step_rad_;
   std::vector<Voice> voices_;
   Spatialiser spatialiser_;

@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-// A body whose size nobody knows.
+// Size of a body of unknown size.
 constexpr double kUnknownSize_m = 0.05;  // design
 
 Solid solid_of(const body_def_t& body, const shape_def_t* shape, const Elastic& m,
@@ -51,7 +51,7 @@ Solid solid_of(const body_def_t& body, const shape_def_t* shape, const Elastic& 
 Elastic elastic(const material_def_t& m) {
   Elastic e{m.youngs_modulus_Pa,  m.poissons_ratio,  m.density_kg_m3,
             m.rayleigh_alpha_1_s, m.rayleigh_beta_s, m.restitution};
-  // What a scene leaves out is 0 on the wire: wood then.
+  // Values that a scene omits are 0 in the message: the body is then wood.
   const Elastic wood;
   if (!(e.youngs_modulus_Pa > 0)) e.youngs_modulus_Pa = wood.youngs_modulus_Pa;
   if (!(e.density_kg_m3 > 0)) e.density_kg_m3 = wood.density_kg_m3;
@@ -61,7 +61,7 @@ Elastic elastic(const material_def_t& m) {
 
 BodySound body_sound(const body_def_t& body, const shape_def_t* shape, const Elastic& material,
                      const std::optional<Extent>& mesh, const Settings& settings) {
-  // More than are kept, since those below the lowest frequency are left out.
+  // More modes than are kept, since those below the lowest frequency are removed.
   const Range range{settings.highest_frequency_Hz, 2 * settings.max_modes};
   const Solid solid = solid_of(body, shape, material, mesh, settings, range);
   BodySound sound;

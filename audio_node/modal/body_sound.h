@@ -1,4 +1,4 @@
-// How a body of the scene sounds when it is struck: its modes, from its material, shape, size and mass. Pure.
+// Modes of a struck body, from its material, shape, size and mass. Pure.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -15,17 +15,17 @@
 
 namespace tactus::audio {
 
-// Slower decay than any metal object: keeps a material without damping from ringing for ever.
+// Slower decay than any metal object: a material without damping must not ring for ever.
 inline constexpr double kLeastDamping_1_s = 0.5;  // T60 = 13.8 s, design
 
 struct Mode {
   double frequency_Hz;
   double damping_1_s;
   double gain;      // velocity of the surface per impulse over mass, root mean square over the surface
-  ModeShape shape;  // by how much more or less a force at one place drives it
+  ModeShape shape;  // factor for a force at a given place
 };
 
-// A force on a body: where and in which direction (unit), in the body's frame.
+// A force on a body: place and direction (unit), in the frame of the body.
 struct BodyPlace {
   Eigen::Vector3d point_m, direction;
 };
@@ -33,27 +33,27 @@ struct BodyPlace {
 struct BodySound {
   Elastic material;
   std::vector<Mode> modes;  // ascending
-  double mass_kg = 1;       // of what vibrates
-  double radius_m = 0.05;   // of a ball of the same extent: how well it radiates
-  // Measured modes are heard as strong as they were recorded, so that all radiate as the strongest does.
+  double mass_kg = 1;       // of the vibrating part
+  double radius_m = 0.05;   // of a ball of the same extent: determines the radiation
+  // Measured modes keep their recorded strength, so all radiate as the strongest does.
   std::optional<double> radiates_as_Hz{};
   bool moves = true;
   Eigen::Isometry3d solid_to_body = Eigen::Isometry3d::Identity();  // T_body_solid
   Eigen::Vector3d half_extents_m = Eigen::Vector3d::Zero();         // of the solid, in its frame
 };
 
-// Bounding box of a mesh, m, in the frame of its shape; nothing when the mesh is not known.
+// Bounding box of a mesh, m, in the frame of its shape.
 struct Extent {
   double x_m = 0, y_m = 0, z_m = 0;
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
 };
 
-// shape: null for a body without any. mesh: its extent where the shape is one.
+// shape: null for a body without any. mesh: its extent if the shape is a mesh; empty: not known.
 BodySound body_sound(const body_def_t& body, const shape_def_t* shape, const Elastic& material,
                      const std::optional<Extent>& mesh, const Settings& settings);
 
-// How strongly a force there, or at the nearest point of the solid, drives one of its modes, in the units of
-// Mode::gain. May be negative.
+// Gain of a mode for a force at that place, or at the nearest point of the solid, in the units of Mode::gain. May
+// be negative.
 double gain_at(const BodySound& sound, const Mode& mode, const BodyPlace& place);
 
 Elastic elastic(const material_def_t& material);

@@ -7,15 +7,15 @@ namespace tactus::audio {
 namespace {
 
 struct Finish {
-  double youngs_modulus_Pa, density_kg_m3;  // of sim_node/scenes/materials.csv
+  double youngs_modulus_Pa, density_kg_m3;  // from sim_node/scenes/materials.csv
   double height_m;
 };
 
-// Ra of the usual process by ISO 1302 grades; heights that are normally distributed have an rms 1.25 times that,
-// which the ranges of these processes (a factor of four each) swallow.
+// Ra of the usual process by ISO 1302 grades. Normally distributed heights have an rms of 1.25 times that, which
+// is within the range of these processes (a factor of four each).
 constexpr Finish kFinishes[] = {
     {2.0e11, 7850, 1.6e-6},  // steel: N7, milled or drawn
-    {7.0e10, 2700, 1.6e-6},  // aluminium: N7; also ceramic, which lies next to it: fired without glaze
+    {7.0e10, 2700, 1.6e-6},  // aluminium: N7; also used for ceramic, which lies next to it: fired without glaze
     {1.2e11, 8933, 0.8e-6},  // copper: N6, rolled
     {6.2e10, 2600, 0.2e-6},  // glass: N4; float glass itself is smoother, dust and fingers are not
     {6.0e10, 2630, 6.3e-6},  // granite: N9, sawn

@@ -1,4 +1,4 @@
-// A body that sounds as a recording of such an object did. Pure.
+// Modes measured from a recording of an object. Pure.
 #pragma once
 
 #include <tactus/material_def_t.hpp>
@@ -8,9 +8,9 @@
 
 namespace tactus::audio {
 
-// Replaces the modes of a body by those that its material was measured to have; nothing happens where it has none.
-// The strongest has gain 1; all are heard as strong as they were recorded, and wherever the body is struck. Of
-// more than settings.max_modes the strongest stay.
+// Replaces the modes of a body by the measured modes of its material; nothing happens if there are none. The
+// strongest has gain 1. All keep their recorded strength, independent of the struck place. If there are more than
+// settings.max_modes, the strongest are kept.
 void sound_as_measured(BodySound& sound, const material_def_t& material, const Settings& settings);
 
 }  // namespace tactus::audio

@@ -11,10 +11,10 @@ namespace {
 
 using std::numbers::pi;
 
-// No plate has modes with more nodal lines that are asked for: 128 modes end far below.
+// Upper bound of the nodal lines of a plate: 128 modes end far below.
 constexpr int kMaxLines = 256;
 
-// frequency(n), n = 0, 1, ..., which ascends, as far as the range goes; numbered from `first` on.
+// frequency(n), n = 0, 1, ..., ascending, within the range; numbered from `first` on.
 template <class F>
 std::vector<Natural> ascending(Range range, int first, F frequency) {
   std::vector<Natural> out;
@@ -52,8 +52,8 @@ Beam free_beam(int n) {
   return n == 2 ? Beam{k, 1.248, 5.017} : Beam{k, k * k * (1 - 2 / q), k * k * (1 + 6 / q)};
 }
 
-// Modes of a plate by numbers of half waves or nodes in both directions, as far as the range goes: beyond the
-// rigid motions, more lines mean a higher mode.
+// Modes of a plate by numbers of half waves or nodes in both directions, within the range: beyond the rigid
+// motions, more lines mean a higher mode.
 template <class F>
 std::vector<Natural> plate_modes(Range range, int first, F frequency) {
   std::vector<Natural> all;

@@ -5,7 +5,7 @@
 
 namespace tactus::audio {
 
-// What of a material matters to its sound; the fields of material_def_t.
+// Acoustic properties of a material; fields of material_def_t.
 struct Elastic {
   double youngs_modulus_Pa = 1.1e10;  // wood, NeuralSound (Jin, Li, Rensing, Zheng; SIGGRAPH 2022), material table
   double poissons_ratio = 0.25;
@@ -22,7 +22,7 @@ double damping_1_s(const Elastic& material, double frequency_Hz);
 double bar_speed_m_s(const Elastic& material);
 double shear_speed_m_s(const Elastic& material);
 
-// A natural frequency and the numbers of its mode: half waves or nodes in both directions (each list says which).
+// A natural frequency and the numbers of its mode: half waves or nodes in both directions (see each list).
 struct Natural {
   double frequency_Hz;
   int i = 0, k = 0;
@@ -42,7 +42,7 @@ double free_bar_root(int n);
 // circle) (Euler-Bernoulli; Fletcher and Rossing, The Physics of Musical Instruments, 2nd ed., eq. 2.63). i: from
 // 0.
 std::vector<Natural> free_bar_bending(const Elastic& material, double length_m, double gyration_m, Range range);
-// The same with the first-order correction for shear and rotary inertia, for thick bars (Graff, Wave Motion in
+// As above, with the first-order correction for shear and rotary inertia, for thick bars (Graff, Wave Motion in
 // Elastic Solids, 1975, section 3.4): f / sqrt(1 + (beta r)^2 (1 + E / (kappa G))), kappa = 5/6.
 std::vector<Natural> thick_bar_bending(const Elastic& material, double length_m, double gyration_m, Range range);
 // n c / (2 L), free-free (Fletcher and Rossing, section 2.14). Torsion of a round bar: with the shear speed. i: n,
@@ -59,7 +59,7 @@ std::vector<Natural> free_plate(const Elastic& material, double a_m, double b_m,
 // Free circular plate: lambda^2 / (2 pi R^2) sqrt(D/(rho h)), nu = 0.33 (Leissa, table 2.5). i: nodal diameters,
 // k: nodal circles.
 std::vector<Natural> free_disc(const Elastic& material, double radius_m, double thickness_m, Range range);
-// lambda^2 of one of them. Throws when it is not listed.
+// lambda^2 of one of them. Throws std::logic_error when it is not listed.
 double free_disc_lambda2(int diameters, int circles);
 
 // Solid ball: spheroidal modes k_t R of a ball with nu = 1/4 (Lamb 1882; Sato and Usami, Geophys. Mag. 31, 1962).

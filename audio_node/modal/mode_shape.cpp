@@ -13,13 +13,13 @@ using Eigen::Vector3d;
 using std::numbers::pi;
 using std::numbers::sqrt2;
 
-// Where a coordinate that is 0 in the middle lies along a length, 0 .. 1.
+// Position along a length, 0 .. 1, of a coordinate with origin in the middle.
 double along(double coordinate_m, double length_m) { return std::clamp(coordinate_m / length_m + 0.5, 0.0, 1.0); }
 
 // A function along one direction of a plate, mean square 1, and its slope per metre.
 using Profile = std::function<BeamValue(double coordinate_m)>;
 
-// The displacement of a plate's point off its middle: w upwards, -z grad w in the plane.
+// Displacement of a point of the plate off its mid-plane: w upwards, -z grad w in the plane.
 ModeShape plate_shape(Profile x, Profile y) {
   return [x = std::move(x), y = std::move(y)](const Vector3d& p, const Vector3d& n) {
     const BeamValue u = x(p.x()), v = y(p.y());
@@ -27,7 +27,7 @@ ModeShape plate_shape(Profile x, Profile y) {
   };
 }
 
-// n nodal lines of a free plate: rigid motions first, then those of a beam.
+// Function with n nodal lines of a free plate: rigid motions first, then those of a beam.
 BeamValue free_profile(int n, double coordinate_m, double length_m) {
   const double x = along(coordinate_m, length_m);
   if (n == 0) return {1, 0};
@@ -36,22 +36,22 @@ BeamValue free_profile(int n, double coordinate_m, double length_m) {
   return {beam.value, beam.slope / length_m};
 }
 
-// Sine of i half waves, or what counts of it where the place is as likely as any.
+// Sine of i half waves, or its rms value where all places are equally likely.
 BeamValue supported_profile(int i, double coordinate_m, double length_m, bool patch) {
   if (patch) return {1, 0};
   const double k = i * pi / length_m, x = along(coordinate_m, length_m) * length_m;
   return {sqrt2 * std::sin(k * x), sqrt2 * k * std::cos(k * x)};
 }
 
-// What a mode of n nodal diameters of a free disc does along its radius: J_n(kr) + c I_n(kr), without bending
-// moment at the edge (Leissa, Vibration of Plates, NASA SP-160, 1969, eq. 1.18 and section 2.1.3).
+// Radial function of a mode with n nodal diameters of a free disc: J_n(kr) + c I_n(kr), without bending moment at
+// the edge (Leissa, Vibration of Plates, NASA SP-160, 1969, eq. 1.18 and section 2.1.3).
 class DiscProfile {
  public:
   DiscProfile(int n, double lambda) : n_(n), lambda_(lambda) {
     c_ = -moment(lambda, false) / moment(lambda, true);
-    // Mean square over the disc, of the two degenerate modes together: 2 integral R^2 x dx, and a half of it for
+    // Mean square over the disc, of the two degenerate modes together: 2 integral R^2 x dx, and half of it for
     // each where it has diameters.
-    constexpr int kSteps = 400;  // Simpson's rule: errs by less than 1e-6 for the modes that are listed
+    constexpr int kSteps = 400;  // Simpson's rule: error below 1e-6 for the listed modes
     double sum = 0;
     for (int s = 0; s <= kSteps; ++s) {
       const double x = static_cast<double>(s) / kSteps, weight = s == 0 || s == kSteps ? 1 : s % 2 ? 4 : 2;
@@ -91,8 +91,8 @@ class DiscProfile {
 
 BeamValue free_beam(int n, double x) {
   const double b = free_bar_root(n), s = std::sin(b), e = std::exp(-b);
-  // cosh bx + cos bx - q (sinh bx + sin bx), q = (cosh b - cos b) / (sinh b - sin b), with its growing part
-  // written so that nothing large is subtracted from its like.
+  // cosh bx + cos bx - q (sinh bx + sin bx), q = (cosh b - cos b) / (sinh b - sin b), with the growing part
+  // written so that large numbers do not cancel.
   const double c = std::cos(b), below = 1 - e * e - 2 * s * e;
   const double q = (1 + e * e - 2 * c * e) / below;
   const double grows = (c - s - e) / below * std::exp(-b * (1 - x)), falls = (1 + q) / 2 * std::exp(-b * x);

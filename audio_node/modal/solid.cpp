@@ -11,12 +11,11 @@ namespace {
 
 using std::numbers::pi;
 
-// A ball lighter than so much of a solid one is taken for a shell.
+// A ball below this share of the mass of a solid one counts as a shell.
 constexpr double kHollowBelow = 0.6;  // design
-// Bodies at least so many times longer than wide are bars; of the others those so many times wider than thick,
-// plates.
+// Aspect ratio: longer bodies are bars; of the others, those that are wider than thick by it are plates.
 constexpr double kSlender = 3;  // thin-bar and thin-plate theory err by 10 % there (Graff 1975, section 3.4)
-// Modes of bodies that are moved mostly along the surface (torsion, stretching) move the air less.
+// Modes that move mostly along the surface (torsion, stretching) radiate less.
 constexpr double kInPlaneGain = 0.3;  // design
 
 using ShapeOf = std::function<ModeShape(const Natural&)>;
@@ -25,7 +24,7 @@ void append(std::vector<SolidMode>& to, const std::vector<Natural>& modes, doubl
   for (const Natural& m : modes) to.push_back({m.frequency_Hz, gain, shape(m)});
 }
 
-// A bar or block: bending in both directions, stretching and torsion. Sizes descend.
+// A bar or block: bending in both directions, stretching and torsion. Sizes in descending order.
 std::vector<SolidMode> bar(const Elastic& m, double length, double width, double height, Range range) {
   std::vector<SolidMode> modes;
   const auto bending = [&](double thickness, int across) {
@@ -89,7 +88,7 @@ Solid solid_cylinder(const Elastic& m, double radius, double length, Range range
   return solid;
 }
 
-// Wherever a ball is struck, its modes have their poles there.
+// The modes of a ball have their poles at the struck place.
 Solid solid_sphere(const Elastic& m, double radius, double mass_kg, Range range) {
   Solid solid;
   solid.volume_m3 = 4 * pi / 3 * radius * radius * radius;

@@ -12,10 +12,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of all recordings in memory (design: half an hour at 48 kHz); what comes after is left out.
+// Maximum size of all recordings in memory (design: half an hour at 48 kHz); further files are left out.
 constexpr std::size_t kMaxBytes = std::size_t{350} << 20;
 
-// Sorted, so that the same folder gives the same takes everywhere.
+// Sorted, so that the same folder gives the same takes on every machine.
 std::vector<fs::path> entries(const fs::path& folder) {
   std::vector<fs::path> all;
   std::error_code error;
@@ -30,7 +30,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-// "0.5", "0.5_2": the number up to what tells takes apart.
+// "0.5", "0.5_2": the number before the suffix that distinguishes takes.
 std::optional<double> positive(const std::string& text) {
   const std::string number = text.substr(0, text.find('_'));
   double value = 0;
@@ -48,7 +48,7 @@ std::optional<MaterialPair> materials_of(const std::string& folder) {
   return pair_of(a, b);
 }
 
-// A layer that is weaker by more than 40 dB stays so: there is more noise in it than sound (design).
+// A layer that is weaker by more than 40 dB is not raised further: it contains more noise than sound (design).
 constexpr float kMaxGain = 100;
 
 void even_out(Layers& layers, Interaction interaction) {
@@ -151,7 +151,7 @@ Database::Found Database::find(const std::string& a, const std::string& b, Inter
   Found found;
   if (!a.empty() && !b.empty()) found.pair = of(pair_of(a, b), interaction);
   if (found.pair) return found;
-  // A material on itself is that material alone.
+  // A material on itself counts as that material alone.
   const auto alone = [&](const std::string& m) -> const Layers* {
     if (m.empty()) return nullptr;
     const Layers* single = of({"", m}, interaction);

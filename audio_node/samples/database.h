@@ -1,4 +1,4 @@
-// A folder of recordings, by the materials that meet and what they do; README.md says how it is laid out.
+// A folder of recordings by materials and interaction; README.md describes its layout.
 #pragma once
 
 #include <map>
@@ -11,13 +11,13 @@
 
 namespace tactus::audio {
 
-// Two materials in the order of the alphabet; one alone: the first is empty.
+// Two materials in alphabetical order; for a single one the first is empty.
 using MaterialPair = std::pair<std::string, std::string>;
 MaterialPair pair_of(const std::string& a, const std::string& b);
 
 class Database {
  public:
-  // What is found for two materials: recordings of the pair, or of each alone.
+  // Result for two materials: recordings of the pair, or of each alone.
   struct Found {
     const Layers* pair = nullptr;
     std::array<const Layers*, 2> alone{};  // of the first and of the second material
@@ -39,8 +39,8 @@ class Database {
   const Layers* of(const MaterialPair& materials, Interaction interaction) const;
 };
 
-// Reads all of it, which may take seconds: not for a loop. What is broken is left out and said in `faults`; so is
-// a folder that is not there.
+// Reads the whole folder, which may take seconds: do not call it in a loop. Broken files are left out and listed
+// in `faults`, and so is a missing folder.
 Database read_database(const std::string& folder, double rate_Hz, double size_m);
 
 }  // namespace tactus::audio

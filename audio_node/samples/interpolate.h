@@ -1,4 +1,4 @@
-// A recording between its samples. Pure.
+// Interpolation between the samples of a recording. Pure.
 #pragma once
 
 #include <array>
@@ -6,18 +6,18 @@
 
 namespace tactus::audio {
 
-// Between b and c, `part` of the way (Catmull and Rom 1974): through the samples, with a steady slope.
+// Between b and c at the fraction `part` (Catmull and Rom 1974): through the samples, with continuous slope.
 // Realtime-safe: yes.
 inline float between(float a, float b, float c, float d, float part) {
   const float slope_b = 0.5f * (c - a), slope_c = 0.5f * (d - b), rise = c - b;
   return b + part * (slope_b + part * (3 * rise - 2 * slope_b - slope_c + part * (slope_b + slope_c - 2 * rise)));
 }
 
-// A stretch of a recording: out[k] = x(at + k step), as far as its four samples are all inside, `most` at the
-// most. Returns how many. `at` lies within the recording. Realtime-safe: yes.
+// Reads a part of a recording: out[k] = x(at + k step), as far as all four samples are inside, at most `most`.
+// Returns the count. `at` lies within the recording. Realtime-safe: yes.
 inline int stretch(const float* x, std::size_t size, double at, double step, float* out, int most) {
   if (at < 1 || size < 4) return 0;
-  const double room = (static_cast<double>(size) - 3 - at) / step;  // the last is at size - 3 and a part
+  const double room = (static_cast<double>(size) - 3 - at) / step;  // the last one is at size - 3 and a fraction
   if (room < 0) return 0;
   const int count = room < most ? static_cast<int>(room) : most;
   const float* from = x + static_cast<std::size_t>(at);
@@ -27,7 +27,7 @@ inline int stretch(const float* x, std::size_t size, double at, double step, flo
     for (int k = 0; k < count; ++k) out[k] = from[k];
     return count;
   }
-  // In stages, so that all but the loads are done in vectors.
+  // In stages, so that all but the loads are vectorised.
   constexpr int kStage = 64;
   std::array<int, kStage> whole;
   std::array<float, kStage> part, a, b, c, d;

@@ -1,4 +1,4 @@
-// Recordings of one sound at several speeds, as they are played: in memory, at the rate of the card. Pure.
+// Recordings of one sound at several speeds, ready to play: in memory, at the rate of the card. Pure.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@ namespace tactus::audio {
 enum class Interaction : std::uint8_t { kImpact, kScrape, kRoll };
 inline constexpr std::array<Interaction, 3> kInteractions{Interaction::kImpact, Interaction::kScrape,
                                                           Interaction::kRoll};
-// Its folder.
+// Name of its folder.
 std::string name(Interaction interaction);
 
-// One channel. A blow begins with its first sample, a loop goes on from its last sample with its first.
+// One channel. A blow begins with its first sample; a loop continues from its last sample to its first.
 struct Recording {
   std::vector<float> samples;
   float peak = 0, rms = 0;
@@ -30,11 +30,11 @@ inline constexpr int kMaxLayers = 8;  // of one sound (design)
 
 // Of one pair of materials and one interaction.
 struct Layers {
-  std::vector<Layer> by_speed;  // ascending, each with a take at least; at most kMostLayers
-  double size_m = 0.05;         // of what was recorded: radius of a ball of the same extent
+  std::vector<Layer> by_speed;  // ascending, each with at least one take; at most kMaxLayers
+  double size_m = 0.05;         // of the recorded object: radius of a ball of the same extent
 };
 
-// Of a speed: the layers about it, and how much of each. Powers add up to 1, as recordings that are not alike do
+// The two layers about a speed and their gains. The powers add up to 1, as for uncorrelated recordings
 // (equal-power crossfade over the logarithm of the speed; design).
 struct LayerMix {
   std::array<int, 2> layer{-1, -1};  // -1: none
@@ -42,7 +42,7 @@ struct LayerMix {
 };
 LayerMix mix_of(const Layers& layers, double speed_m_s);
 
-// The same number gives the same take; others another, evenly. Realtime-safe: yes.
+// The same number gives the same take; different numbers are distributed evenly. Realtime-safe: yes.
 const Recording& take_of(const Layer& layer, std::int64_t number);
 
 }  // namespace tactus::audio

@@ -9,14 +9,13 @@
 namespace tactus::audio {
 namespace {
 
-// A level goes to the next within so long. Design: shorter is heard as roughness when contacts are told at 1 kHz.
+// Time constant of a level. Design: shorter is audible as roughness when contacts are updated at 1 kHz.
 constexpr double kLevel_s = 0.005;
-// A contact that is not told of any more fades. Design, as of scrapes: a few lost messages are no gap.
+// A contact without updates fades out. Design, as for scrapes: a few lost messages are not a gap.
 constexpr sync::Nanoseconds kSilence{30'000'000};
-constexpr double kMaxOver_s =
-    0.5;  // design: or twice the time until it is to be told anew, but no longer than this
+constexpr double kMaxOver_s = 0.5;  // design: or twice the update interval, but at most this
 constexpr float kOver = 1e-6f;
-// An octave either way; beyond it a recording sounds of another material (design).
+// An octave either way; beyond it a recording suggests another material (design).
 constexpr double kLeastStep = 0.5, kMaxStep = 2;
 
 }  // namespace
@@ -31,7 +30,7 @@ bool Loops::take(const RecordedContact& rub) {
   if (!rub.layers) return false;
   Voice* free = nullptr;
   for (Voice& v : voices_) {
-    // Of another database it is another sound; the one before fades.
+    // A contact of another database is another sound; the previous one fades.
     if (v.on && v.now.contact == rub.contact && v.now.part == rub.part && v.now.layers == rub.layers) {
       v.now = rub;
       v.ends_in = -1;
@@ -47,7 +46,7 @@ bool Loops::take(const RecordedContact& rub) {
   const auto count = std::min(rub.layers->by_speed.size(), static_cast<std::size_t>(kMaxLayers));
   for (std::size_t i = 0; i < count; ++i) {
     const Recording& r = take_of(rub.layers->by_speed[i], rub.contact);
-    // Contacts that begin together are not heard as one: each begins elsewhere in the loop.
+    // Each contact begins at another place of the loop, so that contacts that begin together remain distinct.
     const auto begin = static_cast<std::uint64_t>(rub.contact + 1) * 0x9E3779B97F4A7C15u % r.samples.size();
     free->layers[i] = {&r, static_cast<double>(begin), 0};
   }
@@ -64,7 +63,7 @@ void Loops::add(Playing& p, double step, float wanted, int ends_in, float* out, 
     n += inside;
     p.at += inside * step;
     if (inside > 0) continue;
-    // Over the seam.
+    // Across the seam.
     const auto i = std::min(static_cast<std::size_t>(p.at), size - 1);
     const auto part = static_cast<float>(p.at - static_cast<double>(i));
     const std::size_t before = i == 0 ? size - 1 : i - 1, after = i + 1 < size ? i + 1 : 0;
@@ -74,7 +73,7 @@ void Loops::add(Playing& p, double step, float wanted, int ends_in, float* out, 
     if (p.at >= length) p.at -= length;
   }
   if (ends_in >= 0) {
-    // Straight to nothing, to the bit.
+    // Linearly to zero, exactly.
     const float begin = p.level, fall = begin / static_cast<float>(std::max(ends_in, 1));
     const int sounding = std::min(frames, ends_in);
     for (int n = 0; n < sounding; ++n)
@@ -82,7 +81,7 @@ void Loops::add(Playing& p, double step, float wanted, int ends_in, float* out, 
     p.level = ends_in > frames ? begin - static_cast<float>(frames) * fall : 0;
     return;
   }
-  // Straight to where it shall be at the end of the block.
+  // Linearly to the level at the end of the block.
   const auto left = static_cast<float>(std::exp(-frames / (kLevel_s * rate_Hz_)));
   const float begin = p.level, rise = (wanted + (begin - wanted) * left - begin) / static_cast<float>(frames);
   for (int n = 0; n < frames; ++n)
@@ -115,7 +114,7 @@ void Loops::render(Voice& v, int frames, sync::HostTime first) {
   spatialiser_.add(static_cast<int>(&v - voices_.data()),
                    listener_ ? heard_by(*listener_, v.now.place) : v.now.place, out.data(), frames);
   v.ends_in = v.ends_in < 0 ? -1 : std::max(0, v.ends_in - frames);
-  // The comparison also ends one that has become no number.
+  // The comparison also ends a level that is NaN.
   const bool over = !told && !(level > kOver);
   if (over && v.silent >= spatialiser_.tail()) v.on = false;
   v.silent = over ? v.silent + frames : 0;

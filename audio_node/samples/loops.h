@@ -1,4 +1,4 @@
-// The recordings of contacts that scrape or roll just now, each a loop as long as its contact lasts. Pure.
+// The recordings of contacts that currently scrape or roll, each a loop for the duration of its contact. Pure.
 #pragma once
 
 #include <array>
@@ -10,13 +10,13 @@
 
 namespace tactus::audio {
 
-// Their layers go over into each other by the speed, and each is played as much faster as the contact is than it
-// was when it was recorded: what passes a relief twice as fast hears all of it an octave higher (van den Doel, Kry
-// and Pai 2001, section 4.2). Realtime-safe: yes.
+// The layers crossfade with the speed, and each is played at the ratio of the speed of the contact to its recorded
+// speed: passing a relief twice as fast raises the sound by an octave (van den Doel, Kry and Pai 2001, section
+// 4.2). Realtime-safe: yes.
 class Loops {
  public:
-  static constexpr int kMax = 32;  // at a time; more are not heard
-  // Design: as what is computed (scrapes.cpp), so that both are silent equally soon.
+  static constexpr int kMax = 32;  // at a time; further ones are silent
+  // Design: as for computed scrapes (scrapes.cpp), so that both end after the same time.
   static constexpr double kEnd_s = 0.002;
 
   explicit Loops(double rate_Hz, const Space& space = {}, Instructions instructions = Instructions::kSse2)
@@ -24,13 +24,13 @@ class Loops {
 
   void hear_from(const Listener& listener) { listener_ = listener; }
 
-  // One that is to be heard from its instant on. True when it begins. One that ends is silent kEnd_s later.
+  // Takes a contact that is due. True when it begins. One that ends is silent after kEnd_s.
   bool take(const RecordedContact& rub);
-  // Adds `frames` <= kMaxBlock frames, channels interleaved, the first of which is heard at `first`.
+  // Adds `frames` <= kMaxBlock frames, channels interleaved, the first of which is presented at `first`.
   void render(float* mix, int frames, sync::HostTime first);
 
   int active() const;
-  // Number of the oldest database that one of them is of; `none` when nothing sounds.
+  // Number of the oldest database in use; `none` when nothing sounds.
   std::int64_t oldest(std::int64_t none) const;
   void clear() { voices_ = {}; }
 
@@ -38,17 +38,17 @@ class Loops {
   struct Playing {
     const Recording* recording = nullptr;
     double at = 0;
-    float level = 0;  // goes to what is told
+    float level = 0;  // follows the received level
   };
   struct Voice {
     RecordedContact now;
     bool on = false;
-    int ends_in = -1;  // frames until it is silent; -1: nobody has said that it ends
-    int silent = 0;    // frames since the last of which something came
+    int ends_in = -1;  // frames until it is silent; -1: its end has not arrived
+    int silent = 0;    // frames since the last input
     std::array<Playing, kMaxLayers> layers;
   };
   void render(Voice& voice, int frames, sync::HostTime first);
-  // ends_in: as of its voice.
+  // ends_in: of its voice.
   void add(Playing& playing, double step, float wanted, int ends_in, float* out, int frames) const;
 
   double rate_Hz_;

@@ -12,16 +12,16 @@
 namespace tactus::audio {
 namespace {
 
-constexpr double kLongest_s = 20;         // what is longer is cut (design: no blow rings on for so long)
-constexpr double kShortestBlow_s = 0.01;  // design: shorter is a click of no material
-constexpr double kShortestLoop_s = 0.25;  // design: shorter is heard as a hum of its repetitions
-constexpr float kOnset = 1e-3f;           // of the peak: before it, a blow has not begun (design: -60 dB)
+constexpr double kLongest_s = 20;         // longer recordings are cut (design: no blow rings longer)
+constexpr double kShortestBlow_s = 0.01;  // design: shorter is a click without material
+constexpr double kShortestLoop_s = 0.25;  // design: shorter is audible as a hum of its repetitions
+constexpr float kOnset = 1e-3f;           // of the peak: a blow begins above it (design: -60 dB)
 constexpr float kSilent = 1e-3f;          // of full scale: quieter is silence (design: -60 dBFS)
-constexpr float kFull = 0.9995f;  // of full scale: what so many samples in a row reach, is clipped (design)
+constexpr float kFull = 0.9995f;  // of full scale: kClipped consecutive samples at this level are clipped (design)
 constexpr int kClipped = 4;
-constexpr double kEnd_s = 0.005;  // fade at the end of a blow (design: shorter is heard as a click)
+constexpr double kEnd_s = 0.005;  // fade at the end of a blow (design: shorter is audible as a click)
 constexpr double kSeam_s = 0.05;  // of a loop, at most a quarter of it (design)
-constexpr float kLoudest = 10;    // of a float file: beyond it is no sound
+constexpr float kLoudest = 10;    // of a float file: larger values are not sound
 
 struct Close {
   void operator()(SNDFILE* file) const { sf_close(file); }
@@ -54,7 +54,7 @@ std::vector<float> cut_blow(std::vector<float> x, double rate_Hz) {
 std::vector<float> close_loop(std::vector<float> x, double rate_Hz) {
   const auto seam = std::min(x.size() / 4, static_cast<std::size_t>(kSeam_s * rate_Hz));
   const std::size_t length = x.size() - seam;
-  // Both parts are of the same noise but not alike: their powers add.
+  // Both parts are uncorrelated noise: their powers add.
   for (std::size_t i = 0; i < seam; ++i) {
     const double angle = static_cast<double>(i) / static_cast<double>(seam) * std::numbers::pi / 2;
     x[i] = static_cast<float>(std::sin(angle)) * x[i] + static_cast<float>(std::cos(angle)) * x[length + i];
@@ -79,7 +79,7 @@ std::optional<Recording> read_recording(const std::string& path, Interaction int
     return refuse("has " + std::to_string(info.samplerate) + " samples a second; give 8000 to 192000");
   const auto most = static_cast<sf_count_t>(kLongest_s * info.samplerate);
   if (info.frames > most) faults.push_back({path, "is longer than 20 s and is played no further; cut it", false});
-  // Frames are counted as they come: a header may promise any number.
+  // Counts the frames that are read: a header may state any number.
   std::vector<float> x, block(4096 * static_cast<std::size_t>(info.channels));
   while (static_cast<sf_count_t>(x.size()) < most) {
     const sf_count_t got = sf_readf_float(file.get(), block.data(), 4096);

@@ -1,4 +1,4 @@
-// One WAV or FLAC file of a database of recordings: read, judged and made ready to be played.
+// One WAV or FLAC file of a database of recordings: reading, validation and preparation for playback.
 #pragma once
 
 #include <optional>
@@ -9,20 +9,20 @@
 
 namespace tactus::audio {
 
-// What is wrong with a file or folder of a database: `what` says it and what to do.
+// A fault of a file or folder of a database; `what` states the fault and the remedy.
 struct SoundFault {
   std::string path, what;
-  bool unusable = true;  // it is not played; else it is, and sounds worse than it should
+  bool unusable = true;  // it is not played; false: it is played with reduced quality
 };
 
-// Any sample rate of 8 to 192 kHz, one or two channels, which are summed to one. Appends what is wrong with it;
-// nothing: it cannot be played. Reads and computes for as long as a second: not for a loop.
+// Accepts sample rates of 8 to 192 kHz and one or two channels, which are summed to one. Appends its faults;
+// empty: it cannot be played. May take a second, so do not call it in a loop.
 std::optional<Recording> read_recording(const std::string& path, Interaction interaction, double rate_Hz,
                                         std::vector<SoundFault>& faults);
 
-// What is quieter before the first sound of a blow is cut off, and its end fades. Empty: it is silent.
+// Removes the part before the onset of a blow and fades its end. Empty: it is silent.
 std::vector<float> cut_blow(std::vector<float> samples, double rate_Hz);
-// The last part of a loop is faded into its first, so that it goes on without a seam; it is shorter by that.
+// Fades the last part of a loop into its first, so that it repeats without a seam; shortens it by that part.
 std::vector<float> close_loop(std::vector<float> samples, double rate_Hz);
 
 }  // namespace tactus::audio

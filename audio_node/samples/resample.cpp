@@ -32,7 +32,7 @@ const std::vector<double>& kernel() {
 
 std::vector<float> resample(const std::vector<float>& in, double from_Hz, double to_Hz) {
   if (from_Hz == to_Hz || in.empty()) return in;
-  const double cutoff = std::min(1.0, to_Hz / from_Hz);  // of what the recording holds
+  const double cutoff = std::min(1.0, to_Hz / from_Hz);  // of the bandwidth of the recording
   const double reach = kCrossings / cutoff;
   const auto& table = kernel();
   std::vector<float> out(static_cast<std::size_t>(std::ceil(static_cast<double>(in.size()) * to_Hz / from_Hz)));

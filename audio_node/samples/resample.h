@@ -1,12 +1,12 @@
-// A recording at another rate. Pure.
+// Sample-rate conversion of a recording. Pure.
 #pragma once
 
 #include <vector>
 
 namespace tactus::audio {
 
-// By a windowed sinc of 32 zero crossings, with all that the slower of the two rates cannot hold taken out.
-// Allocates, and takes about 30 ms for a second at 48 kHz: not for a loop.
+// By a windowed sinc of 32 zero crossings; removes everything above the bandwidth of the slower rate. Allocates,
+// and takes about 30 ms per second at 48 kHz: do not call it in a loop.
 std::vector<float> resample(const std::vector<float>& in, double from_Hz, double to_Hz);
 
 }  // namespace tactus::audio

@@ -5,7 +5,7 @@
 namespace tactus::audio {
 namespace {
 
-// Design: four times what is heard at a time; what is older has faded by itself.
+// Design: four times the audible contacts; older ones have faded by themselves.
 constexpr std::size_t kMaxOwed = 4 * Loops::kMax;
 
 }  // namespace

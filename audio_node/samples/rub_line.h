@@ -1,4 +1,4 @@
-// The loop's end of the queue of contacts that play recordings. Pure.
+// The loop side of the queue of contacts that play recordings. Pure.
 #pragma once
 
 #include <cstdint>
@@ -9,21 +9,21 @@
 
 namespace tactus::audio {
 
-// Of the loop's thread.
+// Used on the loop thread.
 class RubLine {
  public:
   explicit RubLine(Spsc<RecordedContact>& queue) : queue_(queue) {}
 
-  // False when the queue is full: a state is not heard, and counted as lost; an end is told as soon as there is
-  // room, unless its contact goes on.
+  // False when the queue is full: a state is skipped and counted as lost; an end is sent as soon as there is room,
+  // unless its contact continues.
   bool submit(const RecordedContact& rub);
-  // Once a tick.
+  // Call once per tick.
   void tell_ends();
   std::int64_t lost() const { return lost_; }
 
  private:
   Spsc<RecordedContact>& queue_;
-  std::deque<RecordedContact> owed_;  // ends that have not been told
+  std::deque<RecordedContact> owed_;  // ends that have not been sent
   std::int64_t lost_ = 0;
 };
 

@@ -22,7 +22,7 @@ void Shots::leave_room() {
   quietest->fades = true;
 }
 
-// There are more voices than may sound, so what is not free here fades, and the quietest of that ends.
+// There are more voices than may sound, so a voice that is not free fades, and the quietest of these ends.
 Shots::Voice& Shots::free_voice() {
   Voice* best = nullptr;
   for (Voice& v : voices_) {
@@ -52,7 +52,7 @@ void Shots::take(const RecordedStrike& strike, float gain, int offset) {
   v.level = level / strike.place.distance_m;
 }
 
-// Adds it; false when it is over.
+// Adds its samples; false when it has ended.
 bool Shots::play(Playing& p, float* out, int frames) {
   const std::vector<float>& x = p.shot.recording->samples;
   const auto size = static_cast<std::ptrdiff_t>(x.size());

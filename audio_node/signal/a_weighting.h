@@ -9,8 +9,8 @@
 namespace tactus::audio {
 
 // IEC 61672-1:2013, annex E: four zeros at 0 Hz, poles at f1 twice, f2, f3 and f4 twice, gain 1 at 1 kHz. By the
-// bilinear transform: a frequency f weighs what the standard's curve has at (rate / pi) tan(pi f / rate), so at
-// 48 kHz 0.5 dB less at 8 kHz and 2.5 dB less at 12.5 kHz, within class 1. Realtime-safe: yes.
+// bilinear transform: the weight at f is that of the standard at (rate / pi) tan(pi f / rate), so at 48 kHz 0.5 dB
+// less at 8 kHz and 2.5 dB less at 12.5 kHz, within class 1. Realtime-safe: yes.
 class AWeighting {
  public:
   explicit AWeighting(double rate_Hz) {

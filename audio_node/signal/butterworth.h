@@ -1,4 +1,4 @@
-// Second-order Butterworth low-pass and high-pass whose cut-off may change with every sample. Pure.
+// Second-order Butterworth low-pass and high-pass whose cutoff may change with every sample. Pure.
 #pragma once
 
 #include <algorithm>
@@ -7,15 +7,15 @@
 
 namespace tactus::audio {
 
-// |low|^2 = 1 / (1 + (f / cut-off)^4) and |high|^2 = 1 - |low|^2, by the bilinear transform with the cut-off in
-// its place, as a state-variable filter with trapezoidal integrators, which is stable while it is modulated
-// (Zavalishin, The Art of VA Filter Design, 2.1.0, 2018, section 4.4).
+// low|^2 = 1 / (1 + (f / cutoff)^4) and |high|^2 = 1 - |low|^2, by the bilinear transform with a prewarped cutoff,
+// as a state-variable filter with trapezoidal integrators, which is stable under modulation (Zavalishin, The Art
+// of VA Filter Design, 2.1.0, 2018, section 4.4).
 class Butterworth {
  public:
   struct Out {
     float low, high;
   };
-  // Nothing above 0.45 of the rate: that is as good as open.
+  // Clamped to 0.45 of the rate, which is almost open.
   void set(double cutoff_Hz, double rate_Hz) {
     const double f = std::clamp(cutoff_Hz / rate_Hz, 0.0, 0.45);
     g_ = static_cast<float>(std::tan(std::numbers::pi * f));

@@ -7,7 +7,7 @@
 namespace tactus::audio {
 namespace {
 
-constexpr double kSinePower = 0.5;      // of one at full scale
+constexpr double kSinePower = 0.5;      // of a sine at full scale
 constexpr double kReference_Pa = 2e-5;  // of sound pressure level, ISO 1683
 
 double from_dB(double level_dB) { return std::pow(10, level_dB / 10); }
@@ -35,8 +35,7 @@ double LevelLimiter::power_of(std::span<const float> frame) {
   return ears_ ? loudest : all;
 }
 
-// In a time of kFast_s the slow mean comes to slow + (gain^2 fast - slow) / kBurst: that shall not be more than
-// the limit.
+// Within kFast_s the slow mean reaches slow + (gain^2 fast - slow) / kBurst, which must not exceed the limit.
 double LevelLimiter::wanted_gain() const {
   const double allowed = std::max(kBurst * limit_ - (kBurst - 1) * slow_, kPenance * limit_);
   return fast_ <= allowed ? 1 : std::sqrt(allowed / fast_);

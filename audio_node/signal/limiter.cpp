@@ -36,12 +36,12 @@ void Limiter::process(float* samples, int frames) {
     const float needed = smallest_in_window(peak > ceiling_ ? ceiling_ / peak : 1);
     gain_ = std::min(needed, gain_ + (1 - gain_) * release_);
 
-    // Mean of the last kLookAhead gains: each of them knew the sample that leaves now, so none is too large for
-    // it.
+    // Mean of the last kLookAhead gains: each of them took the current output sample into account, so none is too
+    // large for it.
     float& oldest = gains_[slot(count_)];
     sum_ += static_cast<double>(gain_) - static_cast<double>(oldest);
     oldest = gain_;
-    if (slot(count_) == 0) {  // no drift by rounding
+    if (slot(count_) == 0) {  // prevents drift by rounding
       sum_ = 0;
       for (const float g : gains_) sum_ += static_cast<double>(g);
     }

@@ -1,4 +1,4 @@
-// Keeps every sample within a ceiling, whatever comes. Pure.
+// Peak limiter: keeps every sample within a ceiling, for any input. Pure.
 #pragma once
 
 #include <array>
@@ -7,23 +7,22 @@
 
 namespace tactus::audio {
 
-// Looks ahead: the gain that the loudest sample needs is reached by a straight ramp before that sample leaves, so
-// that nothing is clipped. Below the ceiling it is an exact delay of kDelay frames. No number (NaN, infinity)
-// becomes silence. Realtime-safe: yes.
+// Looks ahead: a linear ramp reaches the gain of the loudest sample before that sample leaves, so that nothing is
+// clipped. Below the ceiling it is an exact delay of kDelay frames. NaN and infinity become silence.
+// Realtime-safe: yes.
 class Limiter {
  public:
-  // 1.3 ms at 48 kHz: long enough for a ramp that is not heard as a click, short enough for the presentation
+  // 1.3 ms at 48 kHz: long enough for a ramp that is not audible as a click, short enough for the presentation
   // delay. A power of two, so that a mean of ones is 1.
   static constexpr int kLookAhead = 64;
   static constexpr int kDelay = kLookAhead - 1;
 
   Limiter(double ceiling, double rate_Hz, int channels = 2);
-  // In place, channels interleaved: what comes out is what came in kDelay frames before. All channels get one
-  // gain.
+  // In place, channels interleaved: the output is the input of kDelay frames before. One gain for all channels.
   void process(float* samples, int frames);
 
  private:
-  // 50 ms back to 63 % of the gain: shorter is heard as distortion of low tones (Giannoulis, Massberg, Reiss, J.
+  // 50 ms back to 63 % of the gain: shorter is audible as distortion of low tones (Giannoulis, Massberg, Reiss, J.
   // Audio Eng. Soc. 60, 2012, section 1.3).
   static constexpr double kRelease_s = 0.05;
 
@@ -37,7 +36,7 @@ class Limiter {
   std::size_t channels_;
   std::vector<float> delayed_;
   std::array<float, kLookAhead> gains_;
-  // Monotonic queue of candidates for the window's minimum: their values and when they leave.
+  // Monotonic queue of candidates for the minimum of the window: values and expiry.
   std::array<float, kLookAhead> values_{};
   std::array<std::int64_t, kLookAhead> ends_{};
   std::int64_t front_ = 0, back_ = 0;

@@ -1,5 +1,4 @@
-// From the pressure that a model computes to the level that is played: the same for blows and for what scrapes.
-// Pure.
+// Law from computed pressure to played level, for blows and scrapes. Pure.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +8,8 @@
 
 namespace tactus::audio {
 
-// Level at 1 m, full scale, of a peak pressure: the reference pressure becomes the reference level, others follow
-// with a smaller exponent. Louder than the reference by 12 dB at most: the limiter is for surprises (design).
+// Level at 1 m, full scale, of a peak pressure: the reference pressure gives the reference level, others follow
+// with a smaller exponent. At most 12 dB above the reference: the limiter is for surprises (design).
 inline double level_of(double pressure_Pa, const Settings& settings) {
   return settings.reference_level *
          std::min(4.0, std::pow(pressure_Pa / settings.reference_pressure_Pa, settings.loudness_exponent));

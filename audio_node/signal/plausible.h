@@ -1,6 +1,6 @@
-// Whether a contact can be of this world. What cannot makes no sound: a blow that is played at some bounded
-// strength instead would be a click that nothing has caused. The border (lcmtypes/valid.h) refuses what no message
-// may say; this what no world does. Pure.
+// Plausibility of contacts. An implausible contact is silent: a blow clamped to some strength would be a click
+// without a cause. The message validation (lcmtypes/valid.h) rejects invalid messages; this rejects impossible
+// physics. Pure.
 #pragma once
 
 #include <cmath>
@@ -10,25 +10,26 @@
 
 namespace tactus::audio {
 
-// Nothing in a room outruns sound in its air (20 degrees Celsius).
+// Nothing in a room moves faster than sound in its air (20 degrees Celsius).
 inline constexpr double kMaxSpeedOfWorld_m_s = 343;
-// A lorry, and what a ton-heavy block weighs a hundred times; a tip of a micrometre; a town. Design.
+// The mass of a lorry; a hundred times the weight of a block of a ton; a tip of a micrometre; the extent of a
+// town. Design.
 inline constexpr double kMaxMassOfWorld_kg = 1e5, kMaxForceOfWorld_N = 1e6, kMaxCurvatureOfWorld_1_m = 1e6,
                         kMaxWayOfWorld_m = 1e4;
 
-// Of no dry pair of materials there is more; it bounds how loud a scene can make what scrapes. Design.
+// No dry pair of materials has more; it bounds the loudness of scrapes that a scene can request. Design.
 inline constexpr double kMaxFriction = 2;
 
-// True only of numbers: every comparison with a NaN is false.
+// False for NaN: every comparison with a NaN is false.
 template <class V>
 bool within(const V& v, double most) {
   return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;
 }
 
-// A unit vector, or nothing: far beyond rounding, since the border asks for 1 within 1e-2.
+// A unit vector or zero, with a wide margin: the message validation requires 1 within 1e-2.
 inline constexpr double kMaxDirection = 2;
 
-// No body strikes itself.
+// A body cannot strike itself.
 inline bool plausible(const contact_event_t& e) {
   return e.body_a >= 0 && e.body_b >= 0 && e.body_a != e.body_b && e.approach_speed_m_s >= 0 &&
          e.approach_speed_m_s <= kMaxSpeedOfWorld_m_s && e.effective_mass_kg > 0 &&

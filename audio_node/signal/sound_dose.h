@@ -1,4 +1,4 @@
-// How much of what ears may take in a day they have had. Pure.
+// Sound dose as a share of the daily allowance. Pure.
 #pragma once
 
 #include <cmath>
@@ -7,14 +7,14 @@
 namespace tactus::audio {
 
 // Rec. ITU-T H.870 (2018), 7.1: 80 dBA for 40 hours a week (mode 1, 1.6 Pa^2 h), 75 dBA for children (mode 2); 3
-// dB more are as much in half of the time. A day's is a seventh.
+// dB more halve the time. The daily allowance is a seventh.
 inline double days_of_sound(double exposure_Pa2_s, double weekly_level_dB) {
   constexpr double kReference_Pa = 2e-5, kWeek_s = 40 * 3600;
   const double week_Pa2_s = kReference_Pa * kReference_Pa * std::pow(10, weekly_level_dB / 10) * kWeek_s;
   return 7 * exposure_Pa2_s / week_Pa2_s;
 }
 
-// For people; empty while nothing was heard.
+// For messages; empty while nothing was played.
 inline std::string dose_in_words(double days) {
   if (!(days > 0)) return "";
   const long percent = std::lround(100 * days);

@@ -1,5 +1,4 @@
-// A bounded queue from one thread to one other, without locks: the only way across the border of the audio
-// callback.
+// A bounded lock-free queue from one thread to another: the only connection with the audio callback.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +10,7 @@
 
 namespace tactus::audio {
 
-// Elements cross by value. One thread pushes, one pops. Realtime-safe: yes, all but the constructor.
+// Elements are copied. One thread pushes, one pops. Realtime-safe: yes, except the constructor.
 template <class T>
 class Spsc {
   static_assert(std::is_trivially_destructible_v<T>);  // owns nothing: copying it allocates nothing
@@ -21,7 +20,7 @@ class Spsc {
   Spsc(const Spsc&) = delete;
   Spsc& operator=(const Spsc&) = delete;
 
-  // False, and nothing changes, when it does not fit.
+  // False, without a change, when it does not fit.
   bool push(const T& value) { return push(&value, 1); }
   bool push(const T* values, std::size_t count) {
     const std::size_t head = head_.load(std::memory_order_relaxed);
@@ -31,7 +30,7 @@ class Spsc {
     return true;
   }
 
-  // How many were taken, 0 when empty.
+  // Number of elements taken, 0 when empty.
   bool pop(T& value) { return pop(&value, 1) == 1; }
   std::size_t pop(T* values, std::size_t at_most) {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
@@ -42,7 +41,7 @@ class Spsc {
   }
 
   std::size_t capacity() const { return slots_.size(); }
-  // Free room as the pushing thread sees it; it can only grow until its next push.
+  // Free room for the pushing thread; it can only grow until its next push.
   std::size_t room() const {
     return slots_.size() - (head_.load(std::memory_order_relaxed) - tail_.load(std::memory_order_acquire));
   }
@@ -50,7 +49,7 @@ class Spsc {
  private:
   static_assert(std::atomic<std::size_t>::is_always_lock_free);
   std::vector<T> slots_;
-  // Each on a cache line of its own, so that the two threads do not take it from each other.
+  // On separate cache lines, so that the two threads do not contend for one.
   alignas(64) std::atomic<std::size_t> head_{0};
   alignas(64) std::atomic<std::size_t> tail_{0};
 };

@@ -22,7 +22,7 @@ double absorption_dB_m(double f, const Air& air) {
 float air_keep(double attenuation_dB, double rate_Hz) {
   if (!(attenuation_dB > 0)) return 0;
   const double w = 2 * std::numbers::pi * std::min(kAirFit_Hz, 0.4 * rate_Hz) / rate_Hz;
-  // |H|^2 = (1 - a)^2 / (1 + a^2 - 2 a cos w) = g, solved for a.
+  // H|^2 = (1 - a)^2 / (1 + a^2 - 2 a cos w) = g, solved for a.
   const double g = std::pow(10, -attenuation_dB / 10), half = (1 - g * std::cos(w)) / (1 - g);
   return static_cast<float>(half - std::sqrt(half * half - 1));
 }

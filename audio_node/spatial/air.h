@@ -1,4 +1,4 @@
-// How the air between a source and the ear dulls its sound. Pure.
+// Air absorption between a source and the ear. Pure.
 #pragma once
 
 namespace tactus::audio {
@@ -13,8 +13,8 @@ struct Air {
 // Sutherland, Zuckerwar, Blackstock and Hester, J. Acoust. Soc. Am. 97, 1995).
 double absorption_dB_m(double frequency_Hz, const Air& air = {});
 
-// y <- (1 - keep) x + keep y: the one-pole low-pass that takes as much as the air off a tone of kAirFit_Hz. Up to
-// there both fall with the square of the frequency.
+// y <- (1 - keep) x + keep y: coefficient of the one-pole low-pass that attenuates a tone of kAirFit_Hz as the air
+// does. Below it both attenuations fall with the square of the frequency.
 float air_keep(double attenuation_dB, double rate_Hz);
 inline constexpr double kAirFit_Hz = 8000;  // design: the highest octave in which rooms are measured
 

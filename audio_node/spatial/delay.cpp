@@ -24,7 +24,7 @@ void add_delayed(const float* signal, float from, float to, int frames, float* o
     return;
   }
   // In runs over the same six samples and their neighbours, which are computed in vectors. A place that rounding
-  // puts a little out of 0 .. 1 does no harm: the polynomial goes on.
+  // moves slightly out of 0 .. 1 does no harm: the polynomial continues.
   const float step = (to - from) / static_cast<float>(frames);
   for (int n = 0; n < frames;) {
     const float first = from + step * static_cast<float>(n + 1), whole = std::ceil(first);

@@ -10,13 +10,12 @@ namespace tactus::audio {
 namespace {
 
 constexpr std::size_t kBins = 512;  // of the spectrum, around the circle
-// It never takes or gives more than that against the middle: where the loudspeaker gives nothing there is only
-// noise to lift.
+// Maximum boost or cut relative to the mean: where the loudspeaker emits nothing there is only noise to raise.
 constexpr double kMax = 1.73;  // 15 dB, as a natural logarithm; design
 
-constexpr double kLeastPower = 1e-15;  // far below any response's: that of silence is no logarithm
+constexpr double kLeastPower = 1e-15;  // far below any response; avoids the logarithm of zero
 
-// Its spectrum is the mean of the powers, at a fraction of what a spectrum of each takes.
+// Its spectrum is the mean of the powers, at a fraction of the cost of one spectrum per response.
 std::vector<double> mean_autocorrelation(const std::vector<std::vector<float>>& responses,
                                          const std::vector<double>& weights) {
   const double all = std::accumulate(weights.begin(), weights.end(), 0.0);
@@ -49,7 +48,7 @@ std::vector<float> diffuse_field_inverse(const std::vector<std::vector<float>>& 
     middle += inverse[k] / static_cast<double>(inverse.size());
   }
   for (double& x : inverse) x = std::clamp(x, middle - kMax, middle + kMax);
-  // The cepstrum of least phase, and its response by the recursion of Oppenheim and Schafer, Discrete-Time Signal
+  // The minimum-phase cepstrum, and its response by the recursion of Oppenheim and Schafer, Discrete-Time Signal
   // Processing, 3rd ed., eq. 13.57.
   const auto m = static_cast<std::size_t>(taps);
   std::vector<double> cepstrum(m), filter(m);

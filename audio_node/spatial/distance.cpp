@@ -26,7 +26,7 @@ void Distance::apply(const float* in, float distance_m, int frames, float* out) 
   }
 }
 
-// Four samples at a time, so that they wait for each other only once.
+// Four samples at a time, to shorten the dependency chain.
 void Distance::hold(const float* in, int frames, float* out) {
   const float k = keep_, k2 = k * k, k3 = k2 * k, k4 = k2 * k2, b = 1 - k;
   int n = 0;

@@ -1,16 +1,16 @@
-// What the way to the ear takes off a sound: 1/r of its pressure, and the air its high notes. Pure.
+// Attenuation over the distance to the ear: 1/r of the pressure, and the high-frequency loss in air. Pure.
 #pragma once
 
 namespace tactus::audio {
 
-// Of one source. Levels are those at 1 m, so that the air counts from there. Realtime-safe: yes.
+// Of one source. Levels are those at 1 m, so the air counts from there. Realtime-safe: yes.
 class Distance {
  public:
   explicit Distance(double rate_Hz);
 
-  // The next sound begins; it is not heard through what the last one left.
+  // Begins the next sound: clears the state of the last one.
   void begin() { fresh_ = true; }
-  // Strength and low-pass go straight to where they shall be at the end of these frames.
+  // Gain and low-pass change linearly to their values at the end of these frames.
   void apply(const float* in, float distance_m, int frames, float* out);
 
  private:

@@ -1,4 +1,4 @@
-// Two or four filters on one input, in vectors of the instructions that the processor has (bank/ring.h). Pure.
+// Two or four FIR filters on one input, with the vector instructions of the processor (bank/ring.h). Pure.
 #pragma once
 
 #include "audio_node/modal/bank/ring.h"

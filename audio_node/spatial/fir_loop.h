@@ -1,5 +1,5 @@
-// The loop of fir.h in vectors of kWidth numbers. Included by one file per set of instructions, as
-// bank/ring_loop.h is.
+// The loop of fir.h in vectors of kWidth numbers. One file per instruction set includes it, as with
+// bank/ring_loop.h.
 #pragma once
 
 #include "audio_node/spatial/fir.h"
@@ -8,7 +8,7 @@ namespace tactus::audio::TACTUS_FIR {
 namespace {
 
 constexpr int kWidth = TACTUS_FIR_WIDTH;
-// Sums that fit into the registers beside what they are made of: filters share each load of the input.
+// Number of sums that fit into the registers beside their operands: filters share each load of the input.
 constexpr int kSums = kWidth == 16 ? 16 : 8;
 typedef float Lanes __attribute__((vector_size(4 * TACTUS_FIR_WIDTH)));
 typedef float Anywhere __attribute__((vector_size(4 * TACTUS_FIR_WIDTH), aligned(4)));

@@ -1,4 +1,4 @@
-// A body that rings is struck elsewhere: from where it is heard goes there, and does not leap. Pure.
+// Moves a sounding source smoothly to a new contact point. Pure.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -10,12 +10,12 @@
 
 namespace tactus::audio {
 
-// One turn a second, and as fast nearer or further, in logarithms of the distance. What blocks of kMaxBlock make
-// of that bends a tone of 440 Hz by less than -60 dB of itself (spatialiser_test). Design.
+// One revolution a second, and the same rate for the logarithm of the distance. In blocks of kMaxBlock this
+// distorts a tone of 440 Hz by less than -60 dB (spatialiser_test). Design.
 inline constexpr float kGlide_rad_s = 2 * std::numbers::pi_v<float>;
 
-// From one point towards another, around the origin: by `most_rad`, and by as much of the logarithm of the
-// distance. Opposite points go over by one of the ways around, the same each time. Realtime-safe: yes.
+// Moves from one point towards another around the origin: by at most `most_rad`, and by at most the same change of
+// the logarithm of the distance. Between opposite points it takes one fixed way around. Realtime-safe: yes.
 inline Eigen::Vector3f around(const Eigen::Vector3f& from, const Eigen::Vector3f& to, float most_rad) {
   const float r = from.norm(), to_r = to.norm();
   if (!(r > 1e-6f && to_r > 1e-6f)) return to;
@@ -29,8 +29,8 @@ inline Eigen::Vector3f around(const Eigen::Vector3f& from, const Eigen::Vector3f
   return Eigen::AngleAxisf(share * angle, axis) * a * (r * std::pow(to_r / r, share));
 }
 
-// The place after a step towards another one, for an ear at ear_m in the world. What is no number is left as it is
-// told. Realtime-safe: yes.
+// The place after a step towards another one, for an ear at ear_m in the world. Values that are not finite are
+// passed through. Realtime-safe: yes.
 inline SourcePosition glide(const SourcePosition& from, const SourcePosition& to, const Eigen::Vector3f& ear_m, float most_rad) {
   SourcePosition now = to;
   const Eigen::Vector3f a = from.distance_m * from.direction, b = to.distance_m * to.direction;

@@ -17,11 +17,11 @@ namespace {
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-// After its beginning a response is kept for so long: with what comes before, 128 samples at 48 kHz. Design:
-// levels in octaves stay within 1 dB of the whole response's.
+// Length of a response after its onset: with the lead, 128 samples at 48 kHz. Design: octave levels stay within 1
+// dB of the whole response.
 constexpr double kLength_s = 0.0023;
-constexpr double kEqualised_s = 0.001;  // as finely as bands of 1 kHz. Design.
-constexpr int kUncut = 2;               // as many lengths are equalised, before the rest is cut off
+constexpr double kEqualised_s = 0.001;  // resolves bands of 1 kHz. Design.
+constexpr int kUncut = 2;               // number of lengths that are equalised before the rest is cut off
 constexpr int kFade = 16;               // of its last samples
 
 // A response without its delay, at another rate.
@@ -34,7 +34,7 @@ std::vector<float> align(std::span<const float> response, double begin, double i
   std::vector<float> filter;
   for (int i = 0; i < taps; ++i) {
     const double t = begin + (i - Hrtf::kLead) * in_Hz / out_Hz;
-    // A sample of a filter stands for its integral over a step.
+    // A sample of a filter represents its integral over a step.
     filter.push_back(static_cast<float>(in_Hz / out_Hz * value_at(response, t, std::min(1.0, out_Hz / in_Hz))));
   }
   return filter;
@@ -51,7 +51,7 @@ std::vector<Aligned> align_all(const MeasuredHrtf& m, double rate_Hz, int taps) 
   return all;
 }
 
-// What all have in common goes: it would colour every sound, and headphones bring their own.
+// Removes the common part: it would colour every sound, and headphones add their own.
 void equalise(std::vector<Aligned>& all, const std::vector<Vector3d>& directions, double rate_Hz) {
   const std::vector<double> parts = solid_angles(directions);
   std::vector<std::vector<float>> responses;
@@ -80,7 +80,7 @@ void cut(std::vector<Aligned>& all, int taps) {
     }
 }
 
-// Weights of the three corners whose sum points there, as of loudspeakers (panning.h), of sum 1.
+// Weights of the three corners whose sum points in the direction, as for loudspeakers (panning.h), with sum 1.
 struct Corner {
   Triangle triangle;
   Eigen::Matrix3d weights_of;
@@ -154,7 +154,7 @@ Hrtf::Hrtf(const MeasuredHrtf& m, double rate_Hz)
   begins_ = mean_beginning();
 }
 
-// Each node counts as much as the part of the sphere around it, by the cosine of its elevation.
+// Each node is weighted by its part of the sphere, the cosine of its elevation.
 int Hrtf::mean_beginning() const {
   double sum = 0, weights = 0;
   for (int e = 0; e < kElevations; ++e)

@@ -1,5 +1,5 @@
-// What the head does to a sound from each direction, ready to be heard at one rate: filters without their delay,
-// and the delay between the ears beside them. Pure.
+// Head-related filters for each direction at one sample rate: filters without their delay, and the interaural
+// delay. Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,32 +9,32 @@
 
 namespace tactus::audio {
 
-// A grid of directions. Between those that were measured, and between those of the grid, filters are mixed whose
-// beginnings lie on one sample, so that nothing is cancelled by a comb.
+// A grid of directions. Filters are interpolated between measured directions and between grid nodes with their
+// onsets aligned, so that no comb filter arises.
 class Hrtf {
  public:
-  // Frames of a filter before a fifth of its peak, for what comes before that. The same for all, so that mixed
-  // filters fit.
+  // Frames of a filter before its onset (a fifth of its peak). The same for all filters, so that they can be
+  // mixed.
   static constexpr int kLead = 16;
 
-  // Takes a tenth of a second: off the real-time threads. Throws std::runtime_error with one sentence when the
-  // directions do not surround the head.
+  // Takes a tenth of a second: do not call it on a real-time thread. Throws std::runtime_error with one sentence
+  // when the directions do not surround the head.
   Hrtf(const MeasuredHrtf& measured, double rate_Hz);
 
   // Of one filter, a multiple of 16.
   int taps() const { return taps_; }
-  // Frames after the beginning of its filters at which the nearer ear first hears anything (onset.h), in the mean
-  // over all directions: what makes a sound later whichever way it comes.
+  // Frames from the beginning of the filters to the first audible sample at the nearer ear (onset.h), mean over
+  // all directions: the latency of the filters.
   int begins() const { return begins_; }
-  // No interaural delay is longer, samples.
+  // Upper bound of the interaural delay, samples.
   float longest_delay() const { return longest_delay_; }
 
-  // The filters from a direction, and by how many samples the left ear hears later than the right (negative:
-  // earlier). Straight ahead the two filters have energy 1 together. Realtime-safe: yes.
+  // The filters of a direction. Returns the delay of the left ear relative to the right, samples (negative:
+  // earlier). Straight ahead the two filters together have energy 1. Realtime-safe: yes.
   float at(const Eigen::Vector3f& direction, float* left, float* right) const;
 
  private:
-  static constexpr int kStep_deg = 5;  // of the grid; as finely as KEMAR was measured at the height of the ears
+  static constexpr int kStep_deg = 5;  // of the grid; the resolution of the KEMAR measurement at ear height
   static constexpr int kAzimuths = 360 / kStep_deg, kElevations = 180 / kStep_deg + 1;
 
   std::size_t node(int azimuth, int elevation) const;

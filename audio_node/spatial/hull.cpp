@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFlat = 1e-4;    // height of four points over their plane, below which they are one
-constexpr double kNudge = 1e-6;   // moves points out of common planes: far below what anybody hears or measures
+constexpr double kFlat = 1e-4;    // height of four points over their plane, below which they count as coplanar
+constexpr double kNudge = 1e-6;   // moves points out of common planes: far below audible or measurable differences
 constexpr double kAbove = 1e-12;  // rounding of a distance to a plane
 
 struct Face {
@@ -25,7 +25,7 @@ class Hull {
   explicit Hull(const std::vector<Vector3d>& points) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto x = static_cast<double>(i + 1);
-      // The parts of multiples of irrational numbers: even, and the same each time.
+      // Fractional parts of multiples of irrational numbers: evenly distributed and reproducible.
       const Vector3d nudge(std::fmod(x * 0.6180339887, 1), std::fmod(x * 0.7548776662, 1),
                            std::fmod(x * 0.5698402910, 1));
       points_.push_back(points[i] + kNudge * (nudge - Vector3d::Constant(0.5)));
@@ -52,7 +52,7 @@ class Hull {
     return true;
   }
 
-  // What the point sees goes; from the rim new faces lead to it.
+  // Removes the faces that the point sees; new faces connect their rim to it.
   void take(int point) {
     std::set<std::pair<int, int>> rim;
     std::erase_if(faces_, [&](const Face& f) {

@@ -11,9 +11,9 @@
 namespace tactus::audio {
 namespace {
 
-constexpr std::uintmax_t kMaxBytes = 65536;  // design: far more than kMostChannels rows take
+constexpr std::uintmax_t kMaxBytes = 65536;  // design: far more than kMaxChannels rows need
 
-// In the order of channels of a WAV file; some cards want another, which a file of one's own gives.
+// In the channel order of a WAV file; a custom file gives another order.
 const std::map<std::string, std::string>& built_in() {
   static const std::map<std::string, std::string> all{
       {"stereo", "channel,azimuth_deg,elevation_deg\nleft,30,0\nright,-30,0\n"},

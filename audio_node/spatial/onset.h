@@ -1,4 +1,4 @@
-// Where an impulse response begins, to a fraction of a sample, and what it is between its samples. Pure.
+// Onset of an impulse response, to a fraction of a sample, and its values between samples. Pure.
 #pragma once
 
 #include <cstddef>
@@ -6,21 +6,21 @@
 
 namespace tactus::audio {
 
-// Value at `t` samples after the first, of what the samples stand for below `cutoff` times half of their rate;
-// outside of them it is 0. A windowed sinc of kHalfWidth zeros to each side (Smith and Gossett, ICASSP 1984).
+// Value at `t` samples after the first, of the signal below `cutoff` times half of the rate; 0 outside. A windowed
+// sinc of kHalfWidth zeros to each side (Smith and Gossett, ICASSP 1984).
 double value_at(std::span<const float> samples, double t, double cutoff = 1);
 
-// When it first reaches kOnset of its largest sample; 0 where there is none. It aligns responses with one another.
+// Time at which it first reaches kOnset of its peak, samples; 0 without one. Used to align responses.
 double onset(std::span<const float> samples);
 
-// First sample that reaches kHeard of the largest; 0 where there is none. It says when something sounds.
+// First sample that reaches kHeard of the peak; 0 without one. Used as the time of the sound.
 std::size_t first_heard(std::span<const float> samples);
 
-// A fifth of the peak, as Algazi et al. take it ("The CIPIC HRTF database", WASPAA 2001, section 4).
+// A fifth of the peak, as in Algazi et al. ("The CIPIC HRTF database", WASPAA 2001, section 4).
 inline constexpr double kOnset = 0.2;
 
-// -34 dB: what comes so much weaker, less than a millisecond before the rest, is part of its beginning (design; as
-// tests/measure/measure_onsets reads a recording).
+// -34 dB: a sound weaker than this, less than a millisecond before the rest, is part of its beginning (design; as
+// in tests/measure/measure_onsets).
 inline constexpr double kHeard = 0.02;
 
 }  // namespace tactus::audio

@@ -1,4 +1,4 @@
-// A source between two loudspeakers, by the direction that it comes from. Pure.
+// Stereo panning of a source between two loudspeakers. Pure.
 #pragma once
 
 #include <cmath>

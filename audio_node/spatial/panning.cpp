@@ -17,10 +17,10 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using std::numbers::pi;
 
-constexpr double kLevel = 0.02;  // sine of 1 degree: loudspeakers that differ less in height stand level
-// Pairs further apart give no stable image between them; a pair of 180 degrees has no base at all.
+constexpr double kLevel = 0.02;  // sine of 1 degree: loudspeakers within it are level
+// Pairs further apart give no stable image between them; a pair of 180 degrees has no base.
 constexpr double kWidestPair = 170 * pi / 180;  // design
-// A triangle as near to the listener as that leaves a gap: sine of 10 degrees, as of pairs.
+// A triangle nearer to the listener than this leaves a gap: sine of 10 degrees, as for pairs.
 constexpr double kNearestTriangle = 0.17;  // design
 
 Vector3d around(double azimuth) { return {std::cos(azimuth), std::sin(azimuth), 0}; }
@@ -43,7 +43,7 @@ Panning::Panning(const Layout& layout) : channels_(static_cast<int>(layout.size(
     take_triangles(std::move(directions));
 }
 
-// Neighbours around the listener; in the middle of a gap stands one that is none.
+// Neighbours around the listener; a virtual loudspeaker is placed in the middle of a gap.
 void Panning::take_pairs(std::vector<Vector3d> level) {
   const auto azimuth = [&](int i) {
     const Vector3d& d = level[static_cast<std::size_t>(i)];
@@ -65,7 +65,7 @@ void Panning::take_pairs(std::vector<Vector3d> level) {
       pair(a, b);
       continue;
     }
-    // Of a gap of more than half of the circle, which is halved twice.
+    // A gap of more than half of the circle is divided twice.
     const int steps = static_cast<int>(std::ceil(gap / kWidestPair));
     int last = a;
     for (int s = 1; s < steps; ++s) {
@@ -79,7 +79,7 @@ void Panning::take_pairs(std::vector<Vector3d> level) {
   }
 }
 
-// Until the listener is well within the hull: over or under a ring of loudspeakers stands one that is none.
+// Adds virtual loudspeakers, above or below a ring, until the listener is well within the hull.
 void Panning::take_triangles(std::vector<Vector3d> directions) {
   const auto normal_of = [&](const Triangle& t) {
     const auto at = [&](std::size_t i) { return directions[static_cast<std::size_t>(t[i])]; };
@@ -92,13 +92,13 @@ void Panning::take_triangles(std::vector<Vector3d> directions) {
     for (const Triangle& t : hull) {
       const Vector3d normal = normal_of(t);
       if (normal.dot(directions[static_cast<std::size_t>(t[0])]) >= kNearestTriangle) continue;
-      // All that lie in one plane are one gap.
+      // Coplanar triangles form one gap.
       if (open.isZero()) open = normal;
       if (open.dot(normal) < 0.99) continue;
       for (const int i : t)
         if (i < real_) rim.insert(i);
     }
-    if (hull.empty()) {  // fewer than four, or all in one plane: nothing is opposite to their middle
+    if (hull.empty()) {  // fewer than four, or all coplanar: nothing is opposite to their middle
       Vector3d middle = Vector3d::Zero();
       for (const Vector3d& d : directions) middle += d;
       open = middle.norm() > 1e-6 ? Vector3d(-middle.normalized()) : Vector3d(-Vector3d::UnitZ());
@@ -106,7 +106,7 @@ void Panning::take_triangles(std::vector<Vector3d> directions) {
       if (tries > 0) open = open.unitOrthogonal();
     }
     if (open.isZero()) break;
-    if (rim.empty())  // between those that are none
+    if (rim.empty())  // between virtual ones
       for (int i = 0; i < real_; ++i) rim.insert(i);
     directions.push_back(open);
     rims_.emplace_back(rim.begin(), rim.end());
@@ -140,7 +140,7 @@ void Panning::gains(const Vector3f& direction, float* of_channels) const {
   const auto give = [&](int speaker, float power) {
     of_channels[channel_of_[static_cast<std::size_t>(speaker)]] += power;
   };
-  // As powers; a source over a level ring comes from all of it.
+  // As powers; a source above a level ring is distributed over the whole ring.
   float sum = 0;
   if (best) best_gains = best_gains.cwiseMax(0.f), sum = best_gains.head(flat_ ? 2 : 3).squaredNorm();
   for (int k = 0; best && sum > 0 && k < (flat_ ? 2 : 3); ++k) {

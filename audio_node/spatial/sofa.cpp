@@ -11,7 +11,7 @@ namespace tactus::audio {
 namespace {
 
 constexpr double kSameDistance_m = 0.01;
-constexpr unsigned kLeastDirections = 4;  // that surround a head
+constexpr unsigned kLeastDirections = 4;  // minimum to surround a head
 
 struct Free {
   void operator()(MYSOFA_HRTF* file) const { mysofa_free(file); }
@@ -36,7 +36,8 @@ MeasuredHrtf load_sofa(const std::string& path) {
       !(file->DataSamplingRate.values[0] > 0))
     refuse(path, "holds no impulse responses of two ears in the free field");
   mysofa_tocartesian(file.get());
-  // AES69: the receivers of SimpleFreeFieldHRIR are left and right; files that turn them say so by their places.
+  // AES69: the receivers of SimpleFreeFieldHRIR are left and right; the receiver positions show if a file swaps
+  // them.
   const bool turned = file->ReceiverPosition.elements >= 6 && file->ReceiverPosition.values[1] < 0;
   double far_m = 0;
   for (std::size_t i = 0; i < file->M; ++i) far_m = std::max(far_m, position(*file, i).norm());

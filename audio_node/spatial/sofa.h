@@ -1,4 +1,4 @@
-// Head-related impulse responses as they were measured, from a SOFA file (AES69).
+// Measured head-related impulse responses from a SOFA file (AES69).
 #pragma once
 
 #include <Eigen/Core>
@@ -23,8 +23,8 @@ struct MeasuredHrtf {
   double delay(std::size_t direction, std::size_t ear) const { return delays[2 * direction + ear]; }
 };
 
-// Of the directions at the largest distance that the file holds. Reads a file: not in a loop, nor in the callback.
-// Throws std::runtime_error with one sentence.
+// Loads the directions at the largest distance in the file. Reads a file: do not call it in a loop or in the
+// callback. Throws std::runtime_error with one sentence.
 MeasuredHrtf load_sofa(const std::string& path);
 
 }  // namespace tactus::audio

@@ -1,4 +1,4 @@
-// Where a sound comes from, for the one who hears it. Pure.
+// Position of a sound source relative to the listener. Pure.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,17 +7,17 @@
 
 namespace tactus::audio {
 
-// In the listener's frame: x ahead, y to the left, z up.
+// In the frame of the listener: x ahead, y to the left, z up.
 struct SourcePosition {
   Eigen::Vector3f direction = Eigen::Vector3f::UnitX();  // unit
   float distance_m = 1;
-  // Where it is in the world, so that it stays there while the listener moves; no number: nobody has said.
+  // Position in the world, so that it stays there while the listener moves; NaN: not known.
   Eigen::Vector3f source_m = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
 };
 
 struct Listener {
   Eigen::Isometry3f T_W_listener = Eigen::Isometry3f::Identity();
-  float nearest_m = 0;  // sources nearer than this are heard as from here
+  float nearest_m = 0;  // nearer sources count as at this distance
 
   bool operator==(const Listener& other) const {
     return T_W_listener.matrix() == other.T_W_listener.matrix() && nearest_m == other.nearest_m;

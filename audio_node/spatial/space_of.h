@@ -1,4 +1,4 @@
-// The space that the settings ask for: whose ears, or which loudspeakers.
+// The space that the settings select: ears or loudspeakers.
 #pragma once
 
 #include "audio_node/settings.gen.h"
@@ -6,8 +6,8 @@
 
 namespace tactus::audio {
 
-// Reads files, and takes a tenth of a second: not in a loop, nor in the callback. Throws std::runtime_error with
-// one sentence.
+// Reads files and takes a tenth of a second: do not call it in a loop or in the callback. Throws
+// std::runtime_error with one sentence.
 Space space_of(const Settings& settings, double rate_Hz);
 
 }  // namespace tactus::audio

@@ -8,12 +8,11 @@
 namespace tactus::audio {
 namespace {
 
-// A source that has turned by less stays where it was: a tenth of a degree, where ears tell one apart at best
-// (Mills, J. Acoust. Soc. Am. 30, 1958), so that a tracked head that trembles does not cost new filters in each
-// block.
+// A source that has turned by less keeps its filters: a tenth of a degree, the resolution of hearing at best
+// (Mills, J. Acoust. Soc. Am. 30, 1958), so that tremor of a tracked head does not cost new filters in each block.
 constexpr float kTurned = 0.00175f;
 
-// What has become no number is heard from ahead.
+// A place that is not finite counts as straight ahead.
 const SourcePosition kNowhere;
 
 }  // namespace
@@ -31,7 +30,7 @@ Spatialiser::Spatialiser(const Space& space, int sources, double rate_Hz, Instru
   for (Source& s : sources_) {
     s.left.resize(taps), s.right.resize(taps);
     s.input.resize(taps + kMaxBlock);
-    // And one that a delay of a whole number of samples reads, with the weight 0.
+    // And one more, which a delay of a whole number of samples reads with weight 0.
     s.heard_left.resize(past + kMaxBlock + 1), s.heard_right.resize(past + kMaxBlock + 1);
   }
 }
@@ -49,7 +48,7 @@ void Spatialiser::add(int source, const SourcePosition& told, const float* mono,
   Source& s = sources_[static_cast<std::size_t>(source)];
   std::array<float, kMaxBlock> sound;
   s.distance.apply(mono, place.distance_m, frames, sound.data());
-  // In every second block at most: new filters cost as much again as the old ones.
+  // At most in every second block: new filters double the cost.
   const bool moved = (place.direction - s.direction).squaredNorm() > kTurned * kTurned;
   const bool turned = s.fresh || (moved && s.rested);
   s.rested = !turned;
@@ -61,8 +60,8 @@ void Spatialiser::add(int source, const SourcePosition& told, const float* mono,
   s.fresh = false;
 }
 
-// Filter, then delay: both ears' filters read the same input. Where the direction changes, the output of the old
-// filters goes over into that of the new ones.
+// Filter, then delay: the filters of both ears read the same input. When the direction changes, the output
+// crossfades from the old filters to the new ones.
 void Spatialiser::add_by_ears(Source& s, const float* sound, int frames, bool turned) {
   float* const input = s.input.data() + taps_;
   std::copy(sound, sound + frames, input);
@@ -85,7 +84,7 @@ void Spatialiser::add_by_ears(Source& s, const float* sound, int frames, bool tu
     }
     std::swap(s.left, next_left_), std::swap(s.right, next_right_);
   }
-  // The ear that is nearer hears it at once.
+  // The nearer ear has no additional delay.
   const auto late = [](float by) { return static_cast<float>(kLeastDelay) + std::max(0.f, by); };
   const float from = s.fresh ? s.left_later : later;
   add_delayed(left, late(from), late(s.left_later), frames, bus(0));
@@ -101,7 +100,7 @@ void Spatialiser::gains(const Eigen::Vector3f& direction, float* of_channels) co
   of_channels[0] = left, of_channels[1] = right;
 }
 
-// Gains go straight to where they shall be at the end of the block.
+// Gains change linearly to their values at the end of the block.
 void Spatialiser::add_by_gains(Source& s, const float* sound, int frames, bool turned) {
   std::array<float, kMaxChannels> wanted = s.gains;
   if (turned) gains(s.direction, wanted.data());

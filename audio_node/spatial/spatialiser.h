@@ -1,4 +1,4 @@
-// From where each of several sources is heard: by two ears, by loudspeakers around, or by two in front. Pure.
+// Spatial rendering of several sources: for two ears, for surrounding loudspeakers, or for a stereo pair. Pure.
 #pragma once
 
 #include <array>
@@ -15,35 +15,34 @@
 
 namespace tactus::audio {
 
-// Ears hear no later than so many frames after what went in: the lead of the filters and the least delay.
+// Maximum latency of rendering for ears, frames: the lead of the filters and the minimum delay.
 inline constexpr int kMaxEarsLatency = Hrtf::kLead + kLeastDelay;
 
-// What all sources share. Two channels and equal power by the azimuth (pan.h) where there is neither of the two.
+// Data shared by all sources. Without both members: two channels and equal power by the azimuth (pan.h).
 struct Space {
   std::shared_ptr<const Hrtf> hrtf;
   std::shared_ptr<const Panning> panning;
 
   int channels() const { return panning && !hrtf ? panning->channels() : 2; }
-  // Frames by which what is heard comes after what went in, wherever it comes from; the ear that is further away
-  // hears it later still.
+  // Latency from input to output, frames, for any direction; the further ear has an additional delay.
   int latency() const { return hrtf ? hrtf->begins() + kLeastDelay : 0; }
 };
 
-// A fixed number of sources, each one mono signal. Directions and distances go over within a block, without a
-// click. Realtime-safe: yes, all but the constructor.
+// A fixed number of sources, each one mono signal. Directions and distances change within a block, without a
+// click. Realtime-safe: yes, except the constructor.
 class Spatialiser {
  public:
   Spatialiser(const Space& space, int sources, double rate_Hz, Instructions instructions);
 
   int channels() const { return channels_; }
-  // Of a source of which nothing comes any more, so many frames are still to be heard.
+  // Frames of output that remain after the last input of a source.
   int tail() const { return tail_; }
-  // Another sound begins on that source: nothing of the one before is heard.
+  // Begins another sound on that source: clears the state of the previous one.
   void begin(int source);
-  // The next `frames` <= kMaxBlock frames of a source, heard from there at their end. The same number for all
-  // sources of a block.
+  // The next `frames` <= kMaxBlock frames of a source, which is at `place` at their end. All sources of a block
+  // have the same number of frames.
   void add(int source, const SourcePosition& place, const float* mono, int frames);
-  // Adds the block to `mix`, channels interleaved; the next block begins.
+  // Adds the block to `mix`, channels interleaved, and begins the next block.
   void mix(float* mix, int frames);
 
  private:
@@ -51,11 +50,11 @@ class Spatialiser {
     explicit Source(double rate_Hz) : distance(rate_Hz) {}
     Distance distance;
     bool fresh = true;
-    bool rested = true;  // in the block before it stayed where it was
+    bool rested = true;  // it did not turn in the previous block
     Eigen::Vector3f direction = Eigen::Vector3f::Zero();
     std::array<float, kMaxChannels> gains{};
     float left_later = 0;
-    // Of ears: the filters in use, and the past of what went in and of what came out.
+    // For ears: the filters in use, and the past of input and output.
     std::vector<float> left, right, input, heard_left, heard_right;
   };
   void add_by_ears(Source& source, const float* sound, int frames, bool turned);

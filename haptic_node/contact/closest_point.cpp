@@ -6,15 +6,15 @@
 namespace tactus::haptic {
 namespace {
 
-// A nanometre: far below what a hand or a device resolves, far above rounding in a room.
+// A nanometre: far below the resolution of a hand or a device, far above rounding errors in a room.
 constexpr double kTolerance_m = 1e-9;
-// Sets whose normals span less (square of area or volume) count as dependent: rounding would be a thousandth of
-// the result, for two planes 1e-6 rad apart, for three 1e-5 rad.
+// Sets whose normals span less (square of area or volume) count as dependent. Rounding would be a thousandth of
+// the result: for two planes at 1e-6 rad, for three at 1e-5 rad.
 constexpr double kIndependent = 1e-20;
-// So much of a violation is left where only dependent sets are: 1 mN at 1 N/mm (design).
+// Violation that may remain where only dependent sets exist: 1 mN at 1 N/mm (design).
 constexpr double kNegligible_m = 1e-6;
 
-// Half spaces in coordinates around the goal: find x with normal_i . x >= deficit_i, least |x|.
+// Half spaces in coordinates about the goal: find x with normal_i . x >= deficit_i, least |x|.
 template <std::size_t Capacity>
 struct Problem {
   std::array<Eigen::Vector3d, Capacity> normal;
@@ -29,7 +29,7 @@ struct Problem {
 };
 using Region = Problem<kMaxHalfSpaces>;
 
-// The half spaces that bind, of which there are at most three, and where they put the point.
+// The binding half spaces, at most three, and the point that they determine.
 struct Basis {
   std::array<std::size_t, 3> member{};
   std::array<double, 3> multiplier{};
@@ -51,7 +51,7 @@ bool try_set(const Candidates& c, const std::array<std::size_t, N>& set, Basis& 
   Eigen::Matrix<double, N, 1> multipliers;
   Eigen::Vector3d x;
   if constexpr (N == 3) {
-    // By the normals themselves: the product of the matrix and its transpose would square the error.
+    // Uses the normals themselves: the product of the matrix and its transpose would square the error.
     const double volume = normals.determinant();
     if (volume * volume < kIndependent) return false;
     const Eigen::Matrix3d inverse = normals.inverse();
@@ -71,7 +71,7 @@ bool try_set(const Candidates& c, const std::array<std::size_t, N>& set, Basis& 
   return true;
 }
 
-// The last candidate is violated by the best point of the others: so it is among those that bind.
+// The best point of the others violates the last candidate, so it is among the binding ones.
 bool try_all_sets(const Candidates& c, Basis& out) {
   const std::size_t last = c.size - 1;
   if (try_set<1>(c, {last}, out)) return true;
@@ -94,7 +94,7 @@ std::size_t most_violated(const Region& region, const Eigen::Vector3d& x) {
 }
 
 bool exchange(const Region& region, ClosestPoint& out) {
-  // Each exchange takes the point farther from the goal; more than this many are a circle of rounding.
+  // Each exchange increases the distance from the goal; more than this number is a cycle caused by rounding.
   constexpr std::size_t kMaxExchanges = 2 * kMaxHalfSpaces;
   Basis basis;
   double violation = 0;
@@ -110,7 +110,7 @@ bool exchange(const Region& region, ClosestPoint& out) {
       c.normal[k] = region.normal[number[k]];
       c.deficit[k] = region.deficit[number[k]];
     }
-    // Helly: where four have no point in common, all have none.
+    // Helly: if four have no common point, all have none.
     if (!try_all_sets(c, basis)) break;
     for (std::size_t k = 0; k < basis.size; ++k) basis.member[k] = number[basis.member[k]];
   }
@@ -120,10 +120,9 @@ bool exchange(const Region& region, ClosestPoint& out) {
   return true;
 }
 
-// No common point: every half space yields as a spring does, which has one solution for any region: the least of
+// No common point: every half space yields as a spring does. This has one solution for any region: the minimum of
 // |x|^2 + sum violation_i^2 / kSoftness, a convex function of three variables with a piecewise linear gradient.
-// Newton's method with halved steps finds it in a few turns and then exactly (Mangasarian 2002, for such
-// functions).
+// Newton's method with halved steps finds it in a few iterations, exactly (Mangasarian 2002, for such functions).
 void compromise(const Region& region, ClosestPoint& out) {
   constexpr double kSoftness = 0.02;
   constexpr int kTurns = 30, kHalvings = 20;
@@ -158,7 +157,7 @@ void compromise(const Region& region, ClosestPoint& out) {
   }
   out.feasible = false;
   out.point = x;
-  // The springs of opposed walls balance each other at any size; as forces they would crush what is between.
+  // The springs of opposed walls balance each other at any size; as forces they would crush the body between them.
   for (std::size_t i = 0; i < region.size; ++i) out.multiplier[i] = std::max(0.0, region.deficit[i]);
 }
 

@@ -1,11 +1,12 @@
-// The point of a convex region that is closest to a goal: the quadratic programme behind the god-object (Zilles
-// and Salisbury 1995, section 4; Ruspini, Kolarov and Khatib 1997): minimise |x - goal|^2 so that normal_i . x >=
+// The point of a convex region that is closest to a goal: the quadratic programme of the god-object (Zilles and
+// Salisbury 1995, section 4; Ruspini, Kolarov and Khatib 1997): minimise |x - goal|^2 so that normal_i . x >=
 // offset_i.
 //
-// In three dimensions at most three half spaces bind (the problem is of LP type: Sharir and Welzl 1992). So the one
-// that is violated most is exchanged against those that bind, where all sets of up to three that hold it are tried
-// until one satisfies the Karush-Kuhn-Tucker conditions. Each exchange takes the point farther from the goal, so none
-// comes back: exact, linear in the half spaces per exchange, a few exchanges, and no state from tick to tick.
+// In three dimensions at most three half spaces bind (the problem is of LP type: Sharir and Welzl 1992). Each
+// exchange takes the most violated half space and tries all sets of up to three that contain it, until one
+// satisfies the Karush-Kuhn-Tucker conditions. Each exchange increases the distance from the goal, so no set
+// repeats. The method is exact, linear in the number of half spaces per exchange, takes a few exchanges, and keeps
+// no state between ticks.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,11 +24,10 @@ inline constexpr std::size_t kMaxHalfSpaces = 64;
 
 struct ClosestPoint {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  // point = goal + sum of multiplier_i normal_i, all >= 0: how deep the goal lies under each binding half space,
-  // m.
+  // point = goal + sum of multiplier_i normal_i, all >= 0: depth of the goal under each binding half space, m.
   std::array<double, kMaxHalfSpaces> multiplier{};
-  // False: the half spaces have no point in common. Then the squares of the violations of `point` are least
-  // (nearly), and a multiplier is how far the goal itself lies under that half space.
+  // False: the half spaces have no common point. Then `point` approximately minimises the sum of squared
+  // violations, and a multiplier is the depth of the goal under that half space.
   bool feasible = true;
 };
 

@@ -26,7 +26,7 @@ void ContactImpulses::step(sync::HostTime now, double dt, std::span<const FeltFo
   for (const FeltForce& f : forces) {
     if (f.force_N.isZero(0)) continue;
     Entry& e = entry(f.contact_id, now);
-    if (now - e.last > kToldAfter) e.first = now;  // felt anew
+    if (now - e.last > kToldAfter) e.first = now;  // a new first force
     e.felt = f;
     e.last = now;
   }

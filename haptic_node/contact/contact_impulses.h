@@ -1,5 +1,5 @@
-// What each contact has received: the impulse of its force, and when it was first felt. Kept a while after the
-// force has ended, because the last share of the impulse is known only a tick later and a message may be lost.
+// Impulse of each contact and the time of its first force. An entry remains for a while after the force has ended,
+// because the last part of the impulse is known one tick later and a message may be lost.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,17 +23,19 @@ struct FeltForce {
 
 class ContactImpulses {
  public:
-  static constexpr std::size_t kMaxContacts = 128;            // remembered; the least recently felt is forgotten
-  static constexpr std::size_t kMaxTold = 12;                 // in one message
-  static constexpr sync::Nanoseconds kToldAfter{50'000'000};  // the end of its force
+  static constexpr std::size_t kMaxContacts = 128;  // stored; the least recently felt is removed
+  static constexpr std::size_t kMaxTold = 12;       // in one message
+  // time after the end of the force during which a contact is still published
+  static constexpr sync::Nanoseconds kToldAfter{50'000'000};
 
   ContactImpulses() { contacts_.reserve(kMaxContacts); }
 
-  // One tick: adds what the forces of the last tick did until now, then notes those that act from now on.
+  // One tick: adds the impulse of the forces of the last tick, then stores the forces that act from now on.
   void step(sync::HostTime now, double dt, std::span<const FeltForce> forces);
-  // When force on that contact was first commanded since it was last without for longer than kToldAfter.
+  // Time of the first force on that contact, since it was last without force for longer than kToldAfter.
   std::optional<sync::HostTime> first_felt(std::int64_t contact_id) const;
-  // Those that act or acted lately, latest first. Realtime-safe once `out` has room for kMaxTold.
+  // Writes the contacts that act or recently acted, acting ones first. Realtime-safe once `out` has room for
+  // kMaxTold.
   void tell(sync::HostTime now, std::vector<tool_constraint_t>& out) const;
 
  private:

@@ -23,8 +23,8 @@ void press_directly(std::span<Surface> surfaces, const DevicePose& placed, const
     s.owed.setZero();
     s.slips = true;
   }
-  // d_i d_i / (sum over j of d_j |way_i way_j|): alone its own depth; as many equal ones share one depth; and one
-  // that begins to press begins with nothing, so no force jumps.
+  // d_i d_i / (sum over j of d_j |way_i way_j|). A single surface has its own depth; equal surfaces share one
+  // depth; a surface that begins to press begins at zero, so the force does not jump.
   for (std::size_t i = 0; i < n; ++i) {
     double with = 0;
     for (std::size_t j = 0; j < n; ++j)

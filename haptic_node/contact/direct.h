@@ -1,7 +1,7 @@
-// Direct rendering: no proxy, each surface pushes the tool at the device itself, by how deep it is under it.
-// Without memory: what is thin is passed through, and the surface that is nearest is the one that pushes, as in
-// the first haptic displays (Zilles and Salisbury 1995 say what is wrong with it); for comparison, and where
-// nothing else settles.
+// Direct rendering: without a proxy, each surface pushes the tool at the device, by the depth of the device under
+// it. It has no memory: the tool passes through thin objects and the nearest surface pushes, as in the first
+// haptic displays (Zilles and Salisbury 1995 describe the drawbacks). For comparison, and as the fallback when the
+// surfaces leave no feasible pose.
 #pragma once
 
 #include <span>
@@ -12,9 +12,9 @@ namespace tactus::haptic {
 
 struct DevicePose;
 
-// Sets depth_m of every surface: how deep the device's tool lies under it. Surfaces that push the same way share:
-// together they are as stiff as one. Forgets all friction. placed: the pose for which the surfaces' offsets hold.
-// lever_m: as of RigidProxy. Realtime-safe: yes.
+// Sets depth_m of every surface: the depth of the tool of the device under it. Surfaces that push in the same
+// direction share the load: together they are as stiff as one. Clears all friction. placed: the pose for which the
+// offsets of the surfaces hold. lever_m: as in RigidProxy. Realtime-safe: yes.
 void press_directly(std::span<Surface> surfaces, const DevicePose& placed, const DevicePose& device,
                     double lever_m, double tool_radius_m);
 

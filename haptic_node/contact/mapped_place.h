@@ -1,4 +1,4 @@
-// Where a surface near the tool wears the maps of its material, and what they say at the place that is touched.
+// The place of a touched surface in the maps of its material, and the map values there.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -13,30 +13,31 @@
 namespace tactus::haptic {
 
 struct MappedPlace {
-  std::int32_t material = -1;  // -1: it wears no map
-  // A point of the surface and the outward normal in its body, and how the body is turned now.
+  std::int32_t material = -1;  // -1: no map
+  // A point of the surface and its outward normal, in the frame of the body.
   Eigen::Vector3d point_body = Eigen::Vector3d::Zero(), normal_body = Eigen::Vector3d::UnitZ();
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // body to world
-  double friction_static = 0, friction_dynamic = 0;    // of the pair, without a map
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // current rotation, body to world
+  double friction_static = 0, friction_dynamic = 0;    // of the material pair, without a map
 
-  // What is felt of the maps, from tick to tick; set by Reliefs.
+  // Map values in use, kept between ticks; set by Reliefs.
   bool known = false, jumped = false;
   BumpAxes axes;
   Eigen::Vector2d at{0, 0};                                  // in repetitions of the relief
-  const Relief* raised_by = nullptr;                         // whose height is felt
-  Eigen::Vector3d looked_at_body = Eigen::Vector3d::Zero();  // where it was looked up, m
-  double map_height_m = 0;                                   // there, no steeper than is felt
-  double height_m = 0;                                       // felt
-  Eigen::Vector3d lean = Eigen::Vector3d::Zero();            // world: the direction of the force less the normal
-  double height_lag_m = 0;                                   // what is left of a jump, and goes to zero
-  double height_lag_speed_m_s = 0;                           // at this speed
+  const Relief* raised_by = nullptr;                         // relief whose height is in use
+  Eigen::Vector3d looked_at_body = Eigen::Vector3d::Zero();  // place of the last lookup, m
+  double map_height_m = 0;                                   // height there, limited in slope
+  double height_m = 0;                                       // as rendered
+  Eigen::Vector3d lean = Eigen::Vector3d::Zero();            // world: direction of the force minus the normal
+  double height_lag_m = 0;                                   // remaining part of a jump; decays to zero
+  double height_lag_speed_m_s = 0;                           // speed of the decay
   Eigen::Vector3d lean_lag = Eigen::Vector3d::Zero();
 
-  // Of a plane that has just been told; normal: as it was told, world, unit.
+  // Reads a plane that has just arrived; normal: as received, world, unit.
   void take(const touch_plane_t& plane, const Eigen::Vector3d& normal) {
     const Eigen::Vector3d u = to_eigen(plane.bump_u), n = to_eigen(plane.normal_body);
     const Eigen::Vector3d across = u - u.dot(normal) * normal;
-    // A normal of no direction, or an axis along it, is of no body: then the surface is smooth.
+    // The plane belongs to no body if its normal has no direction or the axis is parallel to it: the surface is
+    // then smooth.
     if (plane.material < 0 || n.norm() < 0.5 || across.norm() < 1e-3) {
       material = -1;
       return;
@@ -49,11 +50,11 @@ struct MappedPlace {
     told_ =
         frame(normal, across) * frame(normal_body, Eigen::Vector3d::Unit(bump_axes(normal_body).u)).transpose();
   }
-  // turned: what the body has turned since then.
+  // turned: rotation of the body since then.
   void move(const Eigen::Matrix3d& turned) { turn = turned * told_; }
 
  private:
-  // Two directions and the one across both.
+  // Frame of the normal, the tangent direction and their cross product.
   static Eigen::Matrix3d frame(const Eigen::Vector3d& normal, const Eigen::Vector3d& towards) {
     const Eigen::Vector3d x = (towards - towards.dot(normal) * normal).normalized();
     Eigen::Matrix3d m;

@@ -7,14 +7,14 @@
 namespace tactus::haptic {
 namespace {
 
-// As for points (closest_point.cpp): far below what a hand resolves, far above rounding in a room.
+// As for points (closest_point.cpp): far below the resolution of a hand, far above rounding errors in a room.
 constexpr double kTolerance_m = 1e-9;
-// So much of a violation is left where only dependent sets are: 1 mN at 1 N/mm (design).
+// Violation that may remain where only dependent sets exist: 1 mN at 1 N/mm (design).
 constexpr double kNegligible_m = 1e-6;
-// A unit normal whose part outside the others' span is shorter counts as dependent.
+// A unit normal whose part outside the span of the others is shorter counts as dependent.
 constexpr double kIndependent = 1e-6;
 
-// In coordinates around the goal, normals of length 1.
+// In coordinates about the goal, normals of length 1.
 struct Problem {
   std::array<Vector6, kMaxHalfSpaces> normal;
   std::array<double, kMaxHalfSpaces> deficit;
@@ -42,7 +42,7 @@ struct State {
   }
 };
 
-// Takes half space p in, letting go what must be; false: it and those that bind have no pose in common.
+// Adds half space p and drops blocking ones; false: it and the binding ones have no common pose.
 bool take_in(const Problem& problem, std::size_t p, State& s) {
   double own = 0;  // its multiplier
   for (int turn = 0; turn <= 6; ++turn) {
@@ -73,7 +73,7 @@ bool take_in(const Problem& problem, std::size_t p, State& s) {
 }
 
 bool solve(const Problem& problem, State& s) {
-  // More than this many are a circle of rounding.
+  // More than this number is a cycle caused by rounding.
   constexpr std::size_t kMaxTurns = 3 * kMaxHalfSpaces;
   for (std::size_t turn = 0; turn < kMaxTurns; ++turn) {
     const std::size_t worst = problem.most_violated(s.x);
@@ -124,7 +124,7 @@ Vector6 compromise(const Problem& problem) {
 
 Vector6 BindingSet::free_part(const Vector6& v) const {
   Vector6 z = v;
-  // Twice: rounding of the first pass is taken out by the second.
+  // Twice: the second pass removes the rounding of the first.
   for (int pass = 0; pass < 2; ++pass)
     for (std::size_t k = 0; k < size_; ++k) z -= basis_[k].dot(z) * basis_[k];
   return z;
@@ -226,7 +226,7 @@ ClosestPose closest_pose(std::span<const PoseHalfSpace> region, const Vector6& g
     out.pose = goal + compromise(p);
     return out;
   }
-  // What binds is known: once more from scratch, without the rounding of the way there.
+  // The binding set is known: solves again from scratch, without the accumulated rounding.
   std::array<double, 6> rates{};
   for (std::size_t k = 0; k < s.set.size(); ++k) rates[k] = p.deficit[s.set.member(k)];
   const std::array<double, 6> u = s.set.shares(rates);

@@ -5,12 +5,12 @@
 namespace tactus::haptic {
 namespace {
 
-// Longer than any arm: no coupling is stretched so far by a scene that makes sense.
+// Longer than any arm: a valid scene never displaces the coupling that far.
 constexpr double kLongestStretch_m = 2;
 
-// v without its component along the normal force of all surfaces together. Not: without those along every normal
-// that binds. Of two facets that meet in a shallow groove that would take the friction across it at once, in the
-// tick in which the second joins, though its share of the force begins at zero.
+// v without its component along the total normal force of all surfaces. It does not remove the component along
+// every binding normal: for two facets that meet in a shallow groove that would remove the friction across it at
+// once, in the tick in which the second facet joins, although its share of the force begins at zero.
 Eigen::Vector3d tangential(const Eigen::Vector3d& v, std::span<const Surface> surfaces) {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   for (const Surface& s : surfaces) normal += s.depth_m * s.normal;
@@ -36,7 +36,7 @@ ClosestPoint solve(std::span<Surface> surfaces, const Eigen::Vector3d& goal) {
 
 }  // namespace
 
-// Where the surfaces carry the place of the proxy within a tick: weighted by how hard each is pressed.
+// Position of the proxy after one tick if it moves with the surfaces, weighted by depth.
 Eigen::Vector3d Proxy::carried(std::span<const Surface> surfaces, double dt) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double weight = 0;
@@ -51,7 +51,8 @@ void Proxy::step(std::span<Surface> surfaces, const Eigen::Vector3d& device, dou
   const Eigen::Vector3d pull = carried(surfaces, dt) - device;
   Eigen::Vector3d shift = touching_ ? tangential(pull, surfaces) : Eigen::Vector3d::Zero();
   ClosestPoint closest = solve(surfaces, device + shift);
-  // The normal force and the width of the cone depend on the shift and it on them: a few rounds settle it.
+  // The normal force and the width of the cone depend on the shift and the shift on them: a few iterations
+  // converge.
   constexpr int kRounds = 4, kNarrowings = 8;
   constexpr double kSettled_m = 1e-9;
   bool slips = slipping_;
@@ -66,7 +67,7 @@ void Proxy::step(std::span<Surface> surfaces, const Eigen::Vector3d& device, dou
     shift = next;
     closest = solve(surfaces, device + shift);
   }
-  // Where they have not settled it may be wider than the cone that it has led to; without a shift it never is.
+  // Without convergence the shift may be wider than the resulting cone; a zero shift never is.
   for (int k = 0; k <= kNarrowings && shift.norm() > cone_width(surfaces, slipping_) + kSettled_m; ++k) {
     slips = true;
     shift *= k < kNarrowings ? cone_width(surfaces, true) / shift.norm() : 0.0;
@@ -80,7 +81,7 @@ void Proxy::step(std::span<Surface> surfaces, const Eigen::Vector3d& device, dou
   feasible_ = closest.feasible;
   touching_ = std::any_of(surfaces.begin(), surfaces.end(), [](const Surface& s) { return s.depth_m > 0; });
   if (!touching_) slipping_ = false;
-  // Garbage in, for example two nearly parallel planes far away, must not send the tool out of the world.
+  // Invalid input, for example two nearly parallel planes far away, must not move the tool out of the world.
   const Eigen::Vector3d stretch = closest.point - device;
   if (stretch.norm() > kLongestStretch_m) closest.point = device + stretch * (kLongestStretch_m / stretch.norm());
   velocity_ = dt > 0 ? Eigen::Vector3d((closest.point - position_) / dt) : Eigen::Vector3d::Zero();

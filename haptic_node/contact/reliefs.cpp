@@ -10,16 +10,16 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A tick of a fast hand leaps over pixels: the force is the mean of what lies between, at so many places at most.
-// Design: at 0.5 m/s and 1 kHz those of a map with 16 pixels a millimetre.
+// In one tick a fast hand crosses several pixels: the slope is the mean over at most this number of places.
+// Design: at 0.5 m/s and 1 kHz this covers a map with 16 pixels per millimetre.
 constexpr int kMaxSteps = 8;
-// In pixels; a hand that went so far in a tick was put there.
+// In pixels; a hand that moved further in one tick was repositioned.
 constexpr double kLeap = 64;
-// Faster over a surface than a hand that feels (as in rendering.cpp): another point of the tool or of the surface
-// is the nearest now, and no slope led from one to the other.
+// Faster over a surface than an exploring hand (as in rendering.cpp): another point of the tool or surface is now
+// the nearest, and no slope connects the two.
 constexpr double kFastestHand_m_s = 5;
 
-// Where a place of the body frame lies in a relief.
+// Position in a relief of a place in the body frame.
 Vector2d repetitions(const Relief& relief, const BumpAxes& axes, const Vector3d& place_body) {
   return {place_body[axes.u] / static_cast<double>(relief.size_m.x()),
           place_body[axes.v] / static_cast<double>(relief.size_m.y())};
@@ -39,7 +39,7 @@ void Reliefs::set_maps(std::shared_ptr<const SurfaceMaps> maps) {
   height_share_ = normal_share_ = 0;
 }
 
-// From the place of the last tick, which is not counted, to this one.
+// Mean over the path from the place of the last tick, excluded, to this one.
 Eigen::Vector2d Reliefs::slope(const Relief& relief, const MappedPlace& before, const Eigen::Vector2d& at) const {
   const Eigen::Vector2d way = before.known ? Eigen::Vector2d(at - before.at) : Eigen::Vector2d::Zero();
   const double pixels = std::hypot(way.x() * relief.columns, way.y() * relief.rows);
@@ -59,21 +59,22 @@ void Reliefs::raise(Surface& s, const Relief& relief, const ToolPlace& tool, con
                     double dt) const {
   MappedPlace& m = s.mapped;
   const BumpAxes axes = bump_axes(m.normal_body);
-  // Where the body turns so far that another projection of the map is nearest, the map jumps; the hand is led
-  // over.
+  // Where the body turns so far that another projection of the map is nearest, the map jumps; the force is
+  // blended.
   m.jumped = m.known && axes.across != m.axes.across;
   m.axes = axes;
   const bool by_height = height_share_ > 0;
   const double map_m = by_height ? relief.height_m(repetitions(relief, axes, place_body)) : 0;
   const double room_m = s.normal.dot(tool.position) - s.offset_m;  // between the proxy and the smooth surface
   const Vector3d way = place_body - m.looked_at_body;
-  const double way_m = (way - way.dot(m.normal_body) * m.normal_body).norm();  // along it: the height itself moves
+  // along the surface; the height itself may move
+  const double way_m = (way - way.dot(m.normal_body) * m.normal_body).norm();
   m.looked_at_body = place_body;
   if (m.raised_by != (by_height ? &relief : nullptr) || m.jumped || way_m > kFastestHand_m_s * dt) {
     m.raised_by = by_height ? &relief : nullptr;
     m.map_height_m = map_m;
     const double height_m = height_share_ * map_m;
-    // One that is new yields as far as it would push the proxy; one that was felt goes on from there.
+    // A new height yields as far as it would push the proxy; a height in use continues from its value.
     const double under_proxy_m = std::max(0.0, room_m) - height_m;
     m.height_lag_m = m.known ? m.height_m - height_m : std::min(0.0, under_proxy_m);
     if (s.depth_m <= 0) m.height_lag_m = std::min(m.height_lag_m, std::max(0.0, under_proxy_m));
@@ -81,7 +82,7 @@ void Reliefs::raise(Surface& s, const Relief& relief, const ToolPlace& tool, con
   } else {
     double rise_m = map_m - m.map_height_m;
     const double most = std::max(def_.steepest * way_m, def_.recovery_speed_m_s * dt);
-    // Not pressed it may go as it is, as long as it stays under the proxy.
+    // Without pressure it may change freely while it stays under the proxy.
     rise_m = s.depth_m > 0 ? std::clamp(rise_m, -most, most)
                            : std::min(rise_m, std::max(most, room_m - m.map_height_m));
     m.map_height_m += rise_m;
@@ -107,7 +108,7 @@ void Reliefs::look(std::span<Surface> surfaces, const ToolPlace& tool, double dt
   const double most = dt / def_.recovery_time_s;
   height_share_ = towards(height_share_, def_.height ? 1 : 0, most);
   normal_share_ = towards(normal_share_, def_.normal ? 1 : 0, most);
-  // A twentieth is left when the recovery time is over.
+  // One twentieth remains at the end of the recovery time.
   kept_ = std::exp(-3 * dt / def_.recovery_time_s);
   for (Surface& s : surfaces) {
     const MaterialMaps* maps = maps_ ? maps_->of(s.mapped.material) : nullptr;

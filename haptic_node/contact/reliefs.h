@@ -1,17 +1,17 @@
-// Relief and friction maps under the hand. The seed's two methods (section 1.9), at any number of contacts:
+// Relief and friction maps for touch, at any number of contacts. The two methods of the seed (section 1.9):
 //
-//   height   the surface stands as high as the map says at the place that is touched; the force keeps its
-//   direction normal   the surface stays flat; the force turns to the map's normal and keeps its size (force
+//   height  the surface stands as high as the map at the touched place; the force keeps its direction
+//   normal  the surface stays flat; the force turns to the normal of the map and keeps its magnitude (force
 //   shading:
-//            Morgenbesser and Srinivasan 1996), so its part along the surface is that of the slope
+//           Morgenbesser and Srinivasan 1996), so its part along the surface is that of the slope
 //
-// The normal is the picture's (lcmtypes/relief.h). It is continuous over the map, so the force is. Neither method
-// stores energy as a true relief does: who presses harder downhill than uphill is given the difference; the limits
-// of energy and power hold.
+// The normal is that of the displayed picture (lcmtypes/relief.h). It is continuous over the map, and so is the
+// force. Neither method stores energy as a true relief does: a user who presses harder downhill than uphill gains
+// the difference. The limits of energy and power apply.
 //
-// Both are felt up to the same slope: the force leans no further, and under pressure a height rises and falls no
-// faster than the way over the surface times that slope. What appears over the proxy, or jumps, yields as surfaces
-// do. Pure.
+// Both methods are limited to the same slope. The force leans no further, and under pressure a height changes by
+// at most the motion over the surface times that slope. A relief that appears over the proxy, or jumps, yields as
+// surfaces do. Pure.
 #pragma once
 
 #include <memory>
@@ -25,30 +25,30 @@ namespace tactus::haptic {
 
 struct ReliefDef {
   bool height = false, normal = true;
-  double steepest = 1;              // slopes are felt up to this, so the force leans by at most atan of it
-  double recovery_time_s = 0.015;   // in which a method, a map that has come, or another side of a body sets in
+  double steepest = 1;              // largest rendered slope; the force leans by at most its arctangent
+  double recovery_time_s = 0.015;   // transition time of a new method, a loaded map or another side of a body
   double recovery_speed_m_s = 0.1;  // a height that changes more slowly is followed at once
 };
-// of the setting `bump`: none, height, normal or both.
+// From the setting `bump`: none, height, normal or both.
 ReliefDef relief_def(const std::string& bump, double steepest, double recovery_time_s, double recovery_speed_m_s);
 
 class Reliefs {
  public:
   explicit Reliefs(const ReliefDef& def) : def_(def), height_share_(def.height), normal_share_(def.normal) {}
 
-  // From now on. Null: none. They set in smoothly.
+  // Sets the maps from now on; they fade in. Null: none.
   void set_maps(std::shared_ptr<const SurfaceMaps> maps);
   void change(const ReliefDef& def) { def_ = def; }
 
-  // Before the proxy moves: raises each surface and sets its friction as its maps say where the tool
-  // touches it. Realtime-safe: yes.
+  // Call before the proxy moves: sets the height and the friction of each surface from its maps at the touched
+  // place. Realtime-safe: yes.
   void look(std::span<Surface> surfaces, const ToolPlace& tool, double dt);
-  // When it has: turns the part of each force that is along its surface's normal, as the map says where the tool
-  // is now. Realtime-safe: yes.
+  // Call after the proxy has moved: turns the normal part of each force by the map at the place of the tool.
+  // Realtime-safe: yes.
   void lean(std::span<Surface> surfaces, const ToolPlace& tool, std::span<Eigen::Vector3d> forces_N) const;
 
  private:
-  // Where it is touched, in the frame of its body, m.
+  // The touched place in the frame of the body, m.
   static Eigen::Vector3d place(const Surface& s, const ToolPlace& tool);
   void raise(Surface& s, const Relief& relief, const ToolPlace& tool, const Eigen::Vector3d& place_body,
              double dt) const;
@@ -57,8 +57,8 @@ class Reliefs {
 
   ReliefDef def_;
   std::shared_ptr<const SurfaceMaps> maps_;
-  double kept_ = 0;                     // of what is left of a jump, from tick to tick
-  double height_share_, normal_share_;  // of each method, follows what is wanted
+  double kept_ = 0;                     // share of a jump that remains from tick to tick
+  double height_share_, normal_share_;  // of each method; follow the setting
 };
 
 }  // namespace tactus::haptic

@@ -11,15 +11,17 @@
 namespace tactus::haptic {
 namespace {
 
-// Rounds in which the linear condition follows the turn, and friction the pressure: each squares what is left of
-// the turn's error, and what friction has not reached is owed to the next tick.
+// Iterations in which the linear condition follows the rotation, and friction follows the pressure. Each squares
+// the remaining rotation error; the remaining friction error is corrected in the next tick.
 constexpr int kRounds = 4;
 constexpr int kSweeps = 6;
 constexpr double kSettled_m = 1e-9;
-// A point this near to its surface may carry too, m: the four feet of a table do, of which three are enough. The
-// less the further, so that a share comes and goes with no step. Design: a fiftieth of the thickness of a hair.
+// A point this close to its surface may also carry load, m: all four feet of a table do, although three would
+// suffice. Its share decreases with the distance, so that it appears and disappears continuously. Design: one
+// fiftieth of the thickness of a hair.
 constexpr double kCarries_m = 1e-6;
-// What a contact that holds may owe, m: beyond, it has been carried off and holds where it is (design).
+// Maximum remaining correction of a contact that holds, m: beyond it the contact was carried away and holds at its
+// new place (design).
 constexpr double kMaxOwed_m = 0.001;
 
 Vector6 reach(const Eigen::Vector3d& direction, const Eigen::Vector3d& arm, double lever_m) {
@@ -49,7 +51,7 @@ void RigidProxy::reset(const DevicePose& at) {
   feasible_ = true;
 }
 
-// About where the proxy is now. start: as it was turned when the surfaces were placed.
+// Linearises about the current pose of the proxy. start: its pose when the surfaces were placed.
 void RigidProxy::linearise(std::span<const Surface> surfaces, const DevicePose& start, Rows& rows) const {
   rows.size = std::min(surfaces.size(), kMaxHalfSpaces);
   for (std::size_t i = 0; i < rows.size; ++i) {
@@ -61,8 +63,8 @@ void RigidProxy::linearise(std::span<const Surface> surfaces, const DevicePose& 
   }
 }
 
-// Sets depths: the pressure, which is one sum, spread over all that carry; and which bind, of which there may be
-// more than the programme needed.
+// Sets the depths: distributes the total pressure over all points that carry load. Sets the binding set, which may
+// be larger than the one of the programme.
 void RigidProxy::press(std::span<Surface> surfaces, const Rows& rows, const Vector6& goal, ClosestPose& closest) {
   const std::span region(rows.region.data(), rows.size);
   std::array<double, kMaxHalfSpaces> weights{};
@@ -82,9 +84,9 @@ void RigidProxy::press(std::span<Surface> surfaces, const Rows& rows, const Vect
   for (std::size_t i = 0; i < rows.size; ++i) surfaces[i].depth_m = closest.multiplier[i];
 }
 
-// As depths are shared in direct rendering: contacts that press the same way share, so that together they damp as one;
-// one that begins to press begins with nothing. Not by the binding set: of contacts that are nearly dependent that would
-// make large rates of both signs, and a surface does not pull.
+// Shared as the depths in direct rendering: contacts that press in the same direction damp together as one, and a
+// contact that begins to press begins at zero. The binding set is not used: for nearly dependent contacts it would
+// give large rates of both signs, and a surface does not pull.
 void RigidProxy::depth_rates(std::span<const Surface> surfaces, const Eigen::Vector3d& velocity,
                              const Eigen::Vector3d& spin, std::span<double> rates) const {
   std::array<Vector6, kMaxHalfSpaces> way;
@@ -102,8 +104,9 @@ void RigidProxy::depth_rates(std::span<const Surface> surfaces, const Eigen::Vec
   }
 }
 
-// Friction of each contact that is pressed, towards where it held, as far as its cone is wide: contact by contact,
-// each seeing what the others did and what the binding surfaces leave free (Gauss and Seidel).
+// Friction of each pressed contact, towards the place where it held, within its cone. Contacts are solved one
+// after another, each with the results of the others and in the directions that the binding surfaces leave free
+// (Gauss and Seidel).
 void RigidProxy::hold(std::span<Surface> surfaces, const DevicePose& start, const Rows& rows,
                       const ClosestPose& closest, double dt) {
   Vector6 motion = closest.pose;
@@ -119,14 +122,14 @@ void RigidProxy::hold(std::span<Surface> surfaces, const DevicePose& start, cons
       const Eigen::Vector3d u = s.normal.unitOrthogonal(), v = s.normal.cross(u);
       const Vector6 along_u = reach(u, rows.arm[i], lever_m_), along_v = reach(v, rows.arm[i], lever_m_);
       const Vector6 free_u = closest.binding.free_part(along_u), free_v = closest.binding.free_part(along_v);
-      // Where the point of the tool is now, against where it was and its surface has gone since.
+      // Current place of the tool point, relative to its previous place as carried by the surface.
       const Eigen::Vector3d on_tool = pose_.orientation * s.tool_point - start.orientation * s.tool_point;
       const Eigen::Vector3d base = pose_.position - start.position + on_tool + s.owed -
                                    dt * s.velocity_at(start.position + start.orientation * s.tool_point);
       const Eigen::Vector2d slid(base.dot(u) + along_u.dot(motion), base.dot(v) + along_v.dot(motion));
       Eigen::Matrix2d answer;
       answer << along_u.dot(free_u), along_u.dot(free_v), along_v.dot(free_u), along_v.dot(free_v);
-      // Where other contacts leave this one no way it has nothing to hold.
+      // A contact that the other contacts leave no freedom has no friction force.
       constexpr double kStiff = 1e-3;
       answer.diagonal().array() += kStiff;
       const Eigen::Vector2d had(s.grip.dot(u), s.grip.dot(v));
@@ -143,8 +146,8 @@ void RigidProxy::hold(std::span<Surface> surfaces, const DevicePose& start, cons
   }
 }
 
-// Carries out a motion as far as it may go; returns how far a point of the tool is from where it began, at most,
-// m.
+// Applies a motion as far as may_move_m allows. Returns the upper bound of the distance of a tool point from its
+// start, m.
 double RigidProxy::move(const DevicePose& start, const Vector6& motion, double may_move_m) {
   const DevicePose from = pose_;
   const auto moved_by = [&](double share) {
@@ -191,7 +194,8 @@ void RigidProxy::step(std::span<Surface> surfaces, const DevicePose& device, dou
   feasible_ = closest.feasible;
   binding_ = closest.binding;
   if (!feasible_) {
-    // Between walls that leave no room each yields, and the hand feels how deep it is itself under each.
+    // Between walls that leave no room each wall yields, and the depth of the device itself under each is
+    // rendered.
     moved_m_ = move(start, closest.pose, may_move_m);
     const DevicePose here = pose_;
     press_directly(surfaces, start, device, lever_m_, tool_radius_m_);

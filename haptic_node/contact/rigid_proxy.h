@@ -1,12 +1,12 @@
-// The proxy of a rigid tool: its image with position and orientation that stays on the surfaces while the device
+// The proxy of a rigid tool: its image, with position and orientation, that stays on the surfaces while the device
 // may be anywhere (Ortega, Redon and Coquillart 2007). It is the allowed pose of least coupling energy 1/2 k (|x -
-// x_d|^2 + lever^2 |theta|^2), where each point of the tool that may meet a surface stays outside of it; what
-// holds it off are the forces of the contacts, so that the wrench on the hand is shared by them without rest.
+// x_d|^2 + lever^2 |theta|^2), where each tool point that may meet a surface stays outside of it. The contact
+// forces hold it there, so the wrench on the hand is exactly their sum.
 //
-// The condition is linear in a small motion from where the proxy is; a few rounds follow the turn. Friction pulls
-// each contact back to where it held, as far as its cone is wide (proxy.h), contact by contact, on the face that
-// the binding surfaces leave free. What must not be passed is not passed: a motion is cut short where the touch
-// model ends.
+// The condition is linear in a small motion from the current pose; a few iterations follow the rotation. Friction
+// pulls each contact back to the place where it held, within its cone (proxy.h), contact by contact, in the
+// directions that the binding surfaces leave free. The proxy never passes through a surface: a motion is cut short
+// where the touch model ends.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -24,30 +24,31 @@ struct DevicePose {
 
 class RigidProxy {
  public:
-  // lever_m: turning by an angle costs as much as moving by lever times it; above 0. bound_m: of the tool around
-  // its centre. tool_radius_m: of a ball, which meets surfaces so far from its centre; else 0.
+  // lever_m: a rotation by an angle costs as much as a translation of lever times angle; above 0. bound_m: radius
+  // of the tool about its centre. tool_radius_m: of a ball, the distance from its centre at which it meets
+  // surfaces; otherwise 0.
   RigidProxy(double lever_m, double bound_m, double tool_radius_m)
       : lever_m_(lever_m), bound_m_(bound_m), tool_radius_m_(tool_radius_m) {}
 
-  // Places it, without friction.
+  // Sets its pose, without friction.
   void reset(const DevicePose& at);
 
-  // One tick: sets depth_m, grip, owed and slips of every surface; their offsets are for the tool turned as the
-  // proxy is. No point of the tool moves further than may_move_m. Realtime-safe: yes.
+  // One tick: sets the depth and the friction state of every surface. The offsets hold for the orientation of the
+  // proxy. No point of the tool moves further than may_move_m. Realtime-safe: yes.
   void step(std::span<Surface> surfaces, const DevicePose& device, double dt, double may_move_m);
 
   const Eigen::Vector3d& position() const { return pose_.position; }
   const Eigen::Quaterniond& orientation() const { return pose_.orientation; }
   const Eigen::Vector3d& velocity() const { return velocity_; }  // m/s, mean over the tick
   const Eigen::Vector3d& spin() const { return spin_; }          // rad/s
-  // How far a point of the tool moved in the last tick, at most, m.
+  // Upper bound of the motion of a tool point in the last tick, m.
   double moved_m() const { return moved_m_; }
   const BindingSet& binding() const { return binding_; }
-  // How fast depths grow while device and surfaces go on as they do, m/s: what each surface is to damp.
+  // Rate of each depth at the given velocities of device and surfaces, m/s: the rate that each surface damps.
   void depth_rates(std::span<const Surface> surfaces, const Eigen::Vector3d& velocity, const Eigen::Vector3d& spin,
                    std::span<double> rates) const;
   bool feasible() const { return feasible_; }
-  // From the centre of the tool to where it meets that surface, m, world.
+  // From the centre of the tool to its contact with that surface, m, world.
   Eigen::Vector3d arm(const Surface& s) const {
     return pose_.orientation * s.tool_point - tool_radius_m_ * s.normal;
   }

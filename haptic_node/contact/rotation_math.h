@@ -1,4 +1,4 @@
-// Turns as rotation vectors: their direction is the axis, their length the angle.
+// Rotation vectors: the direction is the axis, the length is the angle.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -6,7 +6,7 @@
 
 namespace tactus::haptic {
 
-// The turn that a rotation is, at most half a circle, rad.
+// Rotation vector of a quaternion, at most half a revolution, rad.
 inline Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
   const double sine = q.vec().norm();
   if (sine < 1e-12) return (q.w() < 0 ? -2 : 2) * q.vec();
@@ -14,12 +14,12 @@ inline Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
   return (q.w() < 0 ? -2 : 2) * half / sine * q.vec();
 }
 
-// In world axes, the turn that brings `from` to `to`, rad.
+// Rotation from `from` to `to`, in world axes, rad.
 inline Eigen::Vector3d turn_between(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
   return rotation_vector(to * from.conjugate());
 }
 
-// `q` after a turn in world axes.
+// Rotates `q` in world axes.
 inline Eigen::Quaterniond turned_by(const Eigen::Vector3d& turn_rad, const Eigen::Quaterniond& q) {
   const double angle = turn_rad.norm();
   if (angle < 1e-300) return q;

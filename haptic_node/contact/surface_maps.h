@@ -1,5 +1,5 @@
-// The maps of a scene's materials as touch reads them: relief and friction, from the pictures that the eye gets
-// too. They are read before they are felt, in no tick.
+// Relief and friction maps of the materials of a scene, from the pictures that are also displayed. They are read
+// in the background, never in a tick.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace tactus::haptic {
 
-// What lies on the surface of one material; null: nothing, or nobody could read it.
+// Maps of one material; null: none, or not readable.
 struct MaterialMaps {
   std::shared_ptr<const Relief> relief;
   std::shared_ptr<const FrictionMap> friction;
@@ -22,7 +22,7 @@ struct MaterialMaps {
 
 struct SurfaceMaps {
   std::vector<MaterialMaps> by_material;
-  std::string trouble;  // one sentence on the first that cannot be read; empty: all can
+  std::string trouble;  // one sentence on the first map that cannot be read; empty: all were read
 
   const MaterialMaps* of(std::int32_t material) const {
     const auto i = static_cast<std::size_t>(material);
@@ -30,7 +30,8 @@ struct SurfaceMaps {
   }
 };
 
-// Reads them, which may take as long as a second: not for a loop. What cannot be read is smooth.
+// Reads the maps. It may take a second, so do not call it in a loop. Materials whose map cannot be read are
+// smooth.
 SurfaceMaps read_maps(const scene_t& scene, const sync::Pictures& pictures);
 
 }  // namespace tactus::haptic

@@ -18,22 +18,22 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return a == b ? 0.0 : std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// Whether the angle between them is surely no larger, by the chord: its square is 2 - 2 cos x >= x^2 - x^4 / 12.
-// Nearly all surfaces turn so little, and need no arc tangent.
+// True when the angle between them is certainly no larger, by the chord: its square is 2 - 2 cos x >= x^2 - x^4 /
+// 12. Nearly all surfaces turn less, and need no arctangent.
 bool within(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double angle_rad) {
   const double square = angle_rad * angle_rad;
   return (a - b).squaredNorm() <= square - square * square / 12;
 }
 
-// `from` turned towards `to` by at most so much.
+// Rotates `from` towards `to` by at most at_most_rad.
 Eigen::Vector3d turned(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double at_most_rad) {
   if (within(from, to, at_most_rad) || angle_between(from, to) <= at_most_rad) return to;
   Eigen::Vector3d axis = from.cross(to);
-  if (axis.norm() < 1e-9) axis = from.unitOrthogonal();  // opposite: any way round is as short
+  if (axis.norm() < 1e-9) axis = from.unitOrthogonal();  // opposite: all directions are equally short
   return (Eigen::AngleAxisd(at_most_rad, axis.normalized()) * from).normalized();
 }
 
-// The border lets no other in; should one come by another way, it is left out.
+// The message validation rejects other planes; one that arrives by another way is left out.
 bool makes_sense(const touch_plane_t& p) {
   const double square = to_eigen(p.normal).squaredNorm();
   return square > 0 && std::isfinite(square) && to_eigen(p.point_m).allFinite() &&
@@ -42,7 +42,7 @@ bool makes_sense(const touch_plane_t& p) {
          std::isfinite(p.friction_static) && std::isfinite(p.friction_dynamic);
 }
 
-// Faster than a body can seem to turn to a hand: one radian in 10 ms.
+// Above any apparent rotation of a body for a hand: one radian in 10 ms.
 constexpr double kLargestSpin_rad_s = 100;
 
 }  // namespace
@@ -60,7 +60,7 @@ Surfaces::Told Surfaces::predict(const Surface& s) const {
   const double spin = s.angular_velocity.norm();
   Told told{s.told_point_ + age * s.velocity, s.told_normal_, Eigen::Quaterniond::Identity()};
   if (spin == 0 || age == 0) return told;
-  // Rodrigues' formula; the whole turn only for who wears a map.
+  // Rodrigues' formula; the full rotation only for a surface with a map.
   const Eigen::Vector3d axis = s.angular_velocity / spin, across = axis.cross(told.normal);
   const double sine = std::sin(spin * age), cosine = std::cos(spin * age);
   told.normal = (told.normal + sine * across + (1 - cosine) * axis.cross(across)).normalized();
@@ -77,7 +77,7 @@ void Surfaces::take(const touch_plane_t& plane, sync::SimTime at, const Eigen::V
   Surface* const known = const_cast<Surface*>(find(plane.contact_id, expected));
   const bool is_new = known == nullptr;
   Surface& s = is_new ? list_.emplace_back() : *known;
-  // Where the proxy is above the plane as rendered so far, had it only moved as predicted.
+  // Height of the proxy above the plane as rendered so far, predicted to now.
   const double rendered = is_new ? 0 : true_height(predict(s), place_of(s.tool_point, proxy)) + s.lag_m_;
   s.contact_id = plane.contact_id;
   s.body = plane.body;
@@ -99,7 +99,7 @@ void Surfaces::take(const touch_plane_t& plane, sync::SimTime at, const Eigen::V
   if (is_new) s.normal = told.normal;
   // Under pressure every jump is smoothed; otherwise only one that would push the proxy.
   const double height = true_height(told, place_of(s.tool_point, proxy));
-  // What yields already goes on yielding, also in front of the hand, between walls that leave it no room.
+  // A lag in progress continues, also in front of the hand, between walls that leave it no room.
   const double pushes = std::max(0.0, -height);
   s.lag_m_ = s.depth_m > 0 ? rendered - height : is_new ? pushes : std::clamp(rendered - height, 0.0, pushes);
   s.lag_speed_m_s_ = std::max(limits_.recovery_speed_m_s, std::abs(s.lag_m_) / limits_.recovery_time_s);
@@ -117,14 +117,15 @@ std::bitset<Surfaces::kMaxOffered> Surfaces::choose(const TouchModelView& model,
                                                     std::size_t at_most) const {
   const std::size_t offered = std::min(model.plane_count(), kMaxOffered);
   std::bitset<kMaxOffered> chosen;
-  if (offered <= std::min(at_most, kMaxPresent)) {  // as nearly always: no choice
+  if (offered <= std::min(at_most, kMaxPresent)) {  // the usual case: no selection
     for (std::size_t i = 0; i < offered; ++i) chosen.set(i);
     return chosen;
   }
-  // One that is pressed goes before all others, so that where too many press none takes turns.
+  // A pressed plane precedes all others, so that the selection does not alternate when too many press.
   struct Rank {
     bool free;
-    double height_m;  // of the device under a surface that is pressed, else of the proxy over it
+    // depth of the device under a pressed surface, as a negative height; otherwise height of the proxy over it
+    double height_m;
     std::size_t index;
     auto operator<=>(const Rank&) const = default;
   };
@@ -148,7 +149,7 @@ std::bitset<Surfaces::kMaxOffered> Surfaces::choose(const TouchModelView& model,
 void Surfaces::take(const TouchModelView& model, const Eigen::Vector3d& proxy, std::size_t at_most) {
   const auto chosen = choose(model, proxy, at_most);
   for (Surface& s : list_) s.taken_ = false;
-  // The list is in the order of the planes where no message changed it: each is looked for at its own place first.
+  // The list usually has the order of the planes, so each search starts at its own index.
   for (std::size_t i = 0; i < kMaxOffered; ++i)
     if (chosen[i] && makes_sense(model.plane(i))) take(model.plane(i), sync::sim_time(model.header().sim_time_ns), proxy, i);
   for (Surface& s : list_)
@@ -158,8 +159,8 @@ void Surfaces::take(const TouchModelView& model, const Eigen::Vector3d& proxy, s
 void Surfaces::forget_the_gone() {
   std::erase_if(list_,
                 [](const Surface& s) { return s.leaves_in_s_ == 0 || (s.leaves_in_s_ > 0 && s.depth_m <= 0); });
-  // Those that leave have the last places; the one nearest its end goes first. Nearly always they have them.
-  // By insertion: std::stable_sort would ask for memory, and the list is nearly in order.
+  // Surfaces that leave have the last places; the one nearest its end goes first. The order is nearly always
+  // already right. Insertion sort: std::stable_sort would allocate memory, and the list is nearly sorted.
   const auto rank = [](const Surface& s) { return s.leaves_in_s_ < 0 ? 1e9 : s.leaves_in_s_; };
   const auto before = [&](const Surface& x, const Surface& y) { return rank(x) > rank(y); };
   if (!std::is_sorted(list_.begin(), list_.end(), before))
@@ -171,7 +172,7 @@ void Surfaces::forget_the_gone() {
 void Surfaces::render(Surface& s, const Eigen::Vector3d& proxy, double dt) const {
   const Told told = predict(s);
   if (s.leaves_in_s_ > 0) {
-    // Draws back so that the depth is gone when the time is.
+    // Retracts so that the depth is zero when the time is over.
     s.lag_m_ += s.depth_m * std::min(1.0, dt / s.leaves_in_s_);
     s.leaves_in_s_ = std::max(0.0, s.leaves_in_s_ - dt);
   } else {
@@ -179,7 +180,7 @@ void Surfaces::render(Surface& s, const Eigen::Vector3d& proxy, double dt) const
     s.lag_m_ = s.lag_m_ > 0 ? std::max(0.0, s.lag_m_ - step) : std::min(0.0, s.lag_m_ + step);
   }
   s.normal = turned(s.normal, told.normal, s.turn_rad_s_ * dt);
-  // While it turns it pivots about the place under the proxy, whose height is what it should be.
+  // While it turns it pivots about the place under the proxy, where the height is correct.
   s.offset_m = s.normal.dot(proxy) - (true_height(told, place_of(s.tool_point, proxy)) + s.lag_m_);
   s.point = told.point;
   if (s.mapped.material >= 0) s.mapped.move(told.turned.toRotationMatrix());

@@ -1,6 +1,6 @@
-// The surfaces near the tool as the servo loop renders them: the planes of the touch model, moved on to now, and
-// made continuous. A plane that jumps, turns, appears over the proxy or is left out yields within the recovery
-// time (Mark et al. 1996), so that a new message never kicks the hand; what changes slowly is followed at once.
+// The surfaces near the tool as the servo loop renders them: the planes of the touch model, extrapolated to now
+// and made continuous. A plane that jumps, turns, appears over the proxy or disappears yields within the recovery
+// time (Mark et al. 1996), so that a new message never kicks the hand. Slow changes are followed at once.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -35,22 +35,22 @@ struct Surface {
   double friction_static = 0, friction_dynamic = 0;
   // As rendered now.
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
-  double offset_m = 0;  // the tool's centre stays at normal . x >= offset, as it is turned
-  Eigen::Vector3d tool_point = Eigen::Vector3d::Zero();  // that meets it, in the tool's frame, m; of a ball 0
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();       // of the surface, m, world
+  double offset_m = 0;  // the centre of the tool stays at normal . x >= offset, for its current orientation
+  Eigen::Vector3d tool_point = Eigen::Vector3d::Zero();  // contact point in the frame of the tool, m; 0 for a ball
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();       // on the surface, m, world
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
-  // How deep the device was pressed under it in the last tick, m; set by whoever solves for the proxy.
+  // Depth of the device under the surface in the last tick, m; set by the solver of the proxy.
   double depth_m = 0;
   MappedPlace mapped;  // in the maps of its material
-  // Of a rigid tool, kept from tick to tick, m: the stretch of friction, what a contact that holds is still to be
-  // drawn back by, and whether it slips.
+  // Friction state for a rigid tool, kept between ticks: the displacement of friction, m; the remaining correction
+  // of a contact that holds, m; whether it slips.
   Eigen::Vector3d grip = Eigen::Vector3d::Zero(), owed = Eigen::Vector3d::Zero();
   bool slips = false;
   // Gains of the coupling, kept with the surface so that they change smoothly; set by the renderer.
   double coupling_stiffness_N_m = -1, coupling_damping_N_s_m = 0;
 
-  // Whether pushing it moves it.
+  // True when a push moves the body.
   bool moves() const { return effective_mass_kg < 1e9; }
   // Velocity of its material at a place, m/s.
   Eigen::Vector3d velocity_at(const Eigen::Vector3d& place) const {
@@ -59,23 +59,23 @@ struct Surface {
 
  private:
   friend class Surfaces;
-  // As the newest message says, at the instant `at`.
+  // As in the newest message, at the instant `at`.
   Eigen::Vector3d told_point_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d told_normal_ = Eigen::Vector3d::UnitZ();
   sync::SimTime at_{};
-  double lag_m_ = 0;          // rendered height of the proxy over it, less the true one
-  double lag_speed_m_s_ = 0;  // at which the lag goes to zero
-  double turn_rad_s_ = 0;     // at which the rendered normal follows
-  bool taken_ = false;        // from the newest model
-  double leaves_in_s_ = -1;   // time left of one that the model has left out; negative: present
+  double lag_m_ = 0;          // rendered height of the proxy over it, minus the true height
+  double lag_speed_m_s_ = 0;  // speed at which the lag goes to zero
+  double turn_rad_s_ = 0;     // rate at which the rendered normal follows
+  bool taken_ = false;        // in the newest model
+  double leaves_in_s_ = -1;   // remaining time of a surface that the model no longer contains; negative: present
 };
 
-// Where the tool is: what meets a surface is a point of it, or its centre, which a skin keeps off.
+// Pose of the tool. A surface meets one of its points, or its centre at the distance skin_m.
 struct ToolPlace {
   Eigen::Vector3d position;  // m, world
   Eigen::Quaterniond orientation;
   double skin_m;
-  // Where it meets a surface, m, world.
+  // Contact point with a surface, m, world.
   Eigen::Vector3d touched(const Surface& s) const {
     return position + orientation * s.tool_point - skin_m * s.normal;
   }
@@ -84,7 +84,8 @@ struct ToolPlace {
 class Surfaces {
  public:
   static constexpr std::size_t kMaxPresent = 50;
-  static constexpr std::size_t kMaxOffered = 64;  // of a touch model, the first; on the wire it has 8
+  // planes of a touch model that are read, the first ones; a message has 8
+  static constexpr std::size_t kMaxOffered = 64;
 
   Surfaces(double tool_radius_m, const SurfaceLimits& limits) : radius_m_(tool_radius_m), limits_(limits) {
     list_.reserve(kMaxHalfSpaces + kMaxPresent);
@@ -96,22 +97,22 @@ class Surfaces {
   void step(const TouchModelView& fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy, double dt,
             std::size_t at_most = kMaxPresent);
   void clear() { list_.clear(); }
-  // How the tool is turned from now on; without word, not at all.
+  // Sets the orientation of the tool from now on; initially the identity.
   void turn(const Eigen::Quaterniond& orientation) { turned_ = orientation.toRotationMatrix(); }
 
   // At most kMaxHalfSpaces.
   std::span<Surface> list() { return list_; }
   std::span<const Surface> list() const { return list_; }
-  // expected: its index, if it is where it was; the search begins there.
+  // expected: its likely index; the search begins there.
   const Surface* find(std::int64_t contact_id, std::size_t expected = 0) const;
 
  private:
   struct Told {
     Eigen::Vector3d point, normal;
-    Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  // since it was told
+    Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  // rotation since the message
   };
   Told predict(const Surface& s) const;
-  // place: of the tool, what meets the surface, or its centre where a skin keeps that off.
+  // place: the tool point that meets the surface, or the centre of a ball, which stays skin_m away.
   double true_height(const Told& told, const Eigen::Vector3d& place) const;
   Eigen::Vector3d place_of(const Eigen::Vector3d& tool_point, const Eigen::Vector3d& proxy) const {
     return proxy + turned_ * tool_point;
@@ -126,7 +127,7 @@ class Surfaces {
 
   double radius_m_;
   SurfaceLimits limits_;
-  Eigen::Matrix3d turned_ = Eigen::Matrix3d::Identity();  // the tool, from its frame to the world
+  Eigen::Matrix3d turned_ = Eigen::Matrix3d::Identity();  // of the tool, from its frame to the world
   std::optional<sync::SimTime> now_;
   std::vector<Surface> list_;
 };

@@ -14,7 +14,7 @@ void TouchInput::push(touch_model_t page, sync::HostTime arrival) {
   }
   const std::int64_t latest_ns = sync::to_ns(simulation_.latest_credible());
   if (page.header.sim_time_ns > latest_ns) return;
-  // A false first one may lie so far ahead that nothing would ever replace it.
+  // A false first model may lie so far ahead that no later one would replace it.
   const bool overtaken =
       newest_ && page.header.sim_time_ns < newest_.header().sim_time_ns && newest_.header().sim_time_ns <= latest_ns;
   if (!began_anew_ && overtaken) return;

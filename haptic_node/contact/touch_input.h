@@ -1,5 +1,5 @@
-// The touch models of one tool as they arrive, page by page: the newest that is whole, when it arrived, and the
-// map between simulated time and the host clock that it carries. Pure.
+// Input of the touch models of one tool, page by page: the newest complete model, its arrival, and its map between
+// simulated time and the host clock. Pure.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace tactus::haptic {
 
 class TouchInput {
  public:
-  // own: messages of another clock are read through its map; those of another run by arrival.
+  // own: messages of another clock are converted through its map; those of another run by arrival.
   TouchInput(int tool, sync::OwnClock own) : tool_(tool), simulation_(own) {}
 
   // A page. Those of other tools, of a simulation that has been replaced, older ones, and those of a future that
@@ -25,8 +25,8 @@ class TouchInput {
   TouchModelView take() { return std::exchange(fresh_, false) ? newest_ : TouchModelView{}; }
   // When the newest arrived, with its last page; nothing: none yet.
   std::optional<sync::HostTime> arrival() const { return arrival_; }
-  // Since when newer pages have been arriving of which none made a whole model; nothing: the newest page did. A
-  // page that never comes through is a loss, however many others arrive.
+  // Time since which newer pages have arrived without completing a model; empty: the newest page completed one. A
+  // page that never arrives is a loss, even when other pages arrive.
   std::optional<sync::HostTime> unfinished_since() const { return unfinished_since_; }
   std::optional<sync::TimeMap> map(sync::HostTime now) const { return simulation_.map(now); }
 
@@ -37,7 +37,7 @@ class TouchInput {
   TouchModelView newest_;
   std::optional<sync::HostTime> arrival_, unfinished_since_;
   bool fresh_ = false;
-  bool began_anew_ = false;  // and none of the new life is whole yet: older instants are newer then
+  bool began_anew_ = false;  // no model of the new incarnation is complete yet: older instants then count as newer
 };
 
 }  // namespace tactus::haptic

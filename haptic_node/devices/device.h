@@ -1,5 +1,5 @@
-// What holds the hand: a source of pose and a sink of force. Pure: time is an argument, so a device of the real
-// world and one of mathematics look the same to the servo loop.
+// Interface of a haptic device: a source of pose and a sink of force. Pure: time is an argument, so the servo loop
+// handles real and simulated devices in the same way.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,12 +17,12 @@ struct DeviceState {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // m/s, world
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();      // rad/s, world
   std::int32_t buttons = 0;                            // bit 0 first
-  // It does not answer, or nonsense: position and orientation are the last that were known, and no force may be
-  // felt.
+  // It does not answer, or sends invalid data: position and orientation are the last valid ones, and no force may
+  // be rendered.
   bool lost = false;
 };
 
-// On the hand, N and N m, in the axes of the world. The torque is about the position of the device.
+// On the hand, N and N m, in world axes. The torque is about the position of the device.
 struct Wrench {
   Eigen::Vector3d force_N = Eigen::Vector3d::Zero();
   Eigen::Vector3d torque_N_m = Eigen::Vector3d::Zero();
@@ -30,24 +30,25 @@ struct Wrench {
 
 class Device {
  public:
-  // A device whose loop stops must not go on pushing: the amplifier drops a force that is not renewed for so long.
+  // The amplifier drops a force that is not renewed within this time, so that a device whose loop stops does not
+  // keep pushing.
   static constexpr sync::Nanoseconds kWatchdog{20'000'000};
 
   virtual ~Device() = default;
-  // The world has begun: a device that follows a path begins it at this instant, and rests at its first point
-  // before.
+  // Called when the world begins: a device that follows a path starts it at this instant, and stays at its first
+  // point before.
   virtual void begin(sync::HostTime) {}
-  // Where the hand is at `now`. Call once a tick, then write once.
+  // State of the hand at `now`. Call once per tick, before write.
   virtual DeviceState read(sync::HostTime now) = 0;
-  // What the hand is to feel, held until the next write. A device without torque leaves that out.
+  // Force to render, held until the next write. A device without torque ignores the torque.
   virtual void write(const Wrench& wrench) = 0;
   void write(const Eigen::Vector3d& force_N) { write(Wrench{force_N, Eigen::Vector3d::Zero()}); }
 
-  // What programs on the bus say of devices that they drive; it is for the one of that name.
+  // State of a device that another program drives; implementations accept their own name only.
   virtual void hear(const device_state_t&, sync::HostTime /*arrival*/) {}
-  // What other processes tell such programs: a device is held by one.
+  // Force commands of other processes to such programs: only one process may hold a device.
   virtual void hear(const device_force_t&, sync::HostTime /*arrival*/) {}
-  // What such a program must be told after each write; null: nothing. Valid until the next call of this object.
+  // Message for such a program after each write; null: none. Valid until the next call of this object.
   virtual device_force_t* tell() { return nullptr; }
 };
 

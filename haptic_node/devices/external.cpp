@@ -25,11 +25,11 @@ void External::hear(const device_state_t& state, sync::HostTime arrival) {
       return;
     }
   } else if (newest_) {
-    // A repetition, or overtaken.
+    // A repetition, or overtaken by a newer one.
     const std::int64_t passed_ns = state.header.publish_time_ns - newest_->header.publish_time_ns;
     if (passed_ns <= 0) return;
-    // What queued up somewhere arrives at once: times of the sender. No shorter than a tick, for a clock may be
-    // coarse.
+    // Messages that queued up arrive together, so this uses the times of the sender; at least one tick, because
+    // its clock may be coarse.
     const double passed_s = std::max(1e-9 * static_cast<double>(passed_ns), 1e-3);
     const double leap_m = (to_eigen(state.pose.position_m) - to_eigen(newest_->pose.position_m)).norm();
     if (!silent && leap_m > kFastest_m_s * passed_s) contradicted_ = arrival;

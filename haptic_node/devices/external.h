@@ -1,5 +1,5 @@
-// A device that another program drives, in any language that LCM has: it sends device_state_t and receives
-// device_force_t. What it says may be late, missing or contradictory: then the device is lost until it makes sense
+// A device that another program drives, in any language with LCM: the program sends device_state_t and receives
+// device_force_t. Its messages may be late, missing or contradictory; the device is then lost until they are valid
 // again.
 #pragma once
 
@@ -14,19 +14,19 @@ namespace tactus::haptic {
 
 class External : public Device {
  public:
-  // Faster than any hand: a pose that leaps so contradicts the one before (design: twice what
-  // the quickest hand in a device does).
+  // Faster than any hand: a pose that jumps faster contradicts the previous one (design: twice the highest speed
+  // of a hand in a device).
   static constexpr double kFastest_m_s = 20;
 
-  // offset_m: of the device's frame in the world. stale_after_s: silence for which it is lost, and time for which
-  // what it says must make sense before it is believed again.
+  // offset_m: of the frame of the device in the world. stale_after_s: silence after which it is lost, and duration
+  // of valid messages before it is accepted again.
   External(std::string name, const Eigen::Vector3d& offset_m, double stale_after_s);
 
-  // Of the states of this name, the newest of one program counts. Two programs that speak at once, and a pose that
-  // leaps, are contradictions.
+  // Of the states of this name, the newest of one program counts. Two programs that send at once, or a pose that
+  // jumps, are contradictions.
   void hear(const device_state_t& state, sync::HostTime arrival) override;
-  // Of another process. Two that hold one device would shake it from the force of the one to that of the other:
-  // for both of them it is lost as long as that lasts.
+  // Force command of another process. Two processes that hold one device would shake it between their forces: the
+  // device is lost for both while this lasts.
   void hear(const device_force_t& others, sync::HostTime arrival) override;
   DeviceState read(sync::HostTime now) override;
   using Device::write;
@@ -40,8 +40,8 @@ class External : public Device {
   Eigen::Vector3d offset_m_;
   sync::Nanoseconds stale_after_;
   std::optional<device_state_t> newest_;
-  sync::HostTime heard_{};                      // when it arrived
-  std::optional<sync::HostTime> contradicted_;  // last
+  sync::HostTime heard_{};                      // its arrival
+  std::optional<sync::HostTime> contradicted_;  // time of the last contradiction
   DeviceState believed_;
   device_force_t force_{};
 };

@@ -5,7 +5,7 @@
 namespace tactus::haptic {
 namespace {
 
-// Weighted harmonic mean of the two secants, none where they differ in sign (Fritsch and Butland 1984, eq. 4).
+// Weighted harmonic mean of the two secants; zero where they differ in sign (Fritsch and Butland 1984, eq. 4).
 double inner_slope(double before, double after, double h_before, double h_after) {
   if (before * after <= 0) return 0;
   const double w1 = 2 * h_after + h_before, w2 = h_after + 2 * h_before;

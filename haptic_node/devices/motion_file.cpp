@@ -13,7 +13,7 @@
 namespace tactus::haptic {
 namespace {
 
-// Days of seconds and any place on a site; a larger figure has another unit.
+// Covers days of seconds and any place on a site; a larger number has another unit.
 constexpr double kLargest = 1e6;
 constexpr std::size_t kLongestLine = 1000;
 constexpr std::string_view kHeader = "time_s,x_m,y_m,z_m";
@@ -99,7 +99,7 @@ Motion read_motion(std::istream& in, const std::string& name) {
 Motion read_motion(const std::string& path) {
   std::error_code error;
   const auto kind = std::filesystem::status(path, error).type();
-  // A pipe or a device may never end, or never begin.
+  // Reading a pipe or a device may never end, or never begin.
   if (kind != std::filesystem::file_type::regular && kind != std::filesystem::file_type::not_found)
     throw std::runtime_error("motion file " + path + " is no regular file that can be read; name a CSV file");
   std::ifstream in(path);

@@ -12,13 +12,13 @@ struct Motion {
   std::vector<double> times_s;  // strictly increasing
   std::vector<Eigen::Vector3d> positions_m;
   std::vector<Eigen::Quaterniond>
-      orientations;  // unit, neighbours in the same half; identity when the file has none
+      orientations;  // unit, neighbours in the same half space; identity when the file has none
 };
 
-// Only a regular file of at most kMaxMotionFileBytes with lines of at most 1 kB: what another machine names may be
-// anything. Throws std::runtime_error with one sentence that names the file, the line and the remedy.
+// Accepts only a regular file of at most kMaxMotionFileBytes with lines of at most 1 kB, because another machine
+// may name any path. Throws std::runtime_error with one sentence that names the file, the line and the remedy.
 Motion read_motion(const std::string& path);
-// The same from a stream; `name` is for the sentence.
+// As above, from a stream; `name` appears in the error.
 Motion read_motion(std::istream& in, const std::string& name);
 
 }  // namespace tactus::haptic

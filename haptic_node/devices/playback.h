@@ -14,7 +14,7 @@ namespace tactus::haptic {
 class Playback : public Device {
  public:
   Playback(Motion motion, const Placement& placement);
-  // The motion begins with its first sample, and rests at its last.
+  // The motion begins with its first sample, and stays at its last.
   void begin(sync::HostTime at) override { begin_ = at; }
   DeviceState read(sync::HostTime now) override;
   using Device::write;
@@ -25,7 +25,7 @@ class Playback : public Device {
   std::vector<Eigen::Quaterniond> orientations_;
   Placement placement_;
   std::optional<sync::HostTime> begin_;
-  // For the spin, which is the turn since the last tick by its time; 0 where the orientation stands still.
+  // For the spin: the rotation since the last tick divided by its duration; 0 while the orientation is constant.
   std::optional<std::pair<sync::HostTime, Eigen::Quaterniond>> last_;
   Eigen::Vector3d spin_ = Eigen::Vector3d::Zero();
 };

@@ -1,4 +1,4 @@
-// The hand of a run that is over: it is where the log says, and feels nothing any more.
+// The hand of a recorded run: its pose comes from the log, and it ignores the force.
 #pragma once
 
 #include "haptic_node/devices/device.h"
@@ -7,7 +7,7 @@ namespace tactus::haptic {
 
 class RecordedHand final : public Device {
  public:
-  // at: where it is in the present tick; outlives this.
+  // at: state in the current tick; outlives this.
   explicit RecordedHand(const DeviceState& at) : at_(at) {}
   DeviceState read(sync::HostTime) override { return at_; }
   using Device::write;

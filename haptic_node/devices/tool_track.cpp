@@ -58,8 +58,8 @@ std::optional<RecordedTick> ToolTrack::tick_of(const tool_state_t& m, sync::Host
   return tick;
 }
 
-// A tick says at its end which instant of the world it is of: that of its beginning, by the clock of the touch
-// models. What arrived in between was not felt in it.
+// A TOOL_STATE states the simulated instant of the beginning of its tick, by the clock of the touch models.
+// Messages that arrived during the tick were not used in it.
 sync::HostTime ToolTrack::began(const header_t& header) const {
   const sync::HostTime told = sync::host_time(header.publish_time_ns);
   const auto map = simulation_.map(told);

@@ -1,4 +1,4 @@
-// The ticks of a tool as the log of a run tells them: when each was, and where the hand was in it. Pure.
+// The ticks of a tool in the log of a run: the time of each and the state of the hand. Pure.
 #pragma once
 
 #include <cstdint>
@@ -13,28 +13,28 @@
 namespace tactus::haptic {
 
 struct RecordedTick {
-  sync::HostTime at{};            // on the recorder's clock
-  std::int64_t published_ns = 0;  // as its TOOL_STATE says, on the clock of its sender
+  sync::HostTime at{};            // on the clock of the recorder
+  std::int64_t published_ns = 0;  // from its TOOL_STATE, on the clock of its sender
   std::int64_t seq = 0;
   DeviceState device;
 };
 
 class ToolTrack {
  public:
-  // Another process of the same tool is heard only when the one before has been silent for so long.
+  // Another process of the same tool is accepted only after the previous one has been silent for this time.
   static constexpr sync::Nanoseconds kSilence{300'000'000};
-  // A TOOL_STATE that arrived at the recorder so much before or after it says to have been sent is damaged.
+  // A TOOL_STATE that arrived at the recorder further than this before or after its publish time is invalid.
   static constexpr sync::Nanoseconds kMaxUnderWay{1'000'000'000};
 
-  // A tick takes no longer: what says that it began earlier before it was told of is not its beginning.
+  // Maximum duration of a tick: an earlier beginning is not plausible.
   static constexpr sync::Nanoseconds kLongestTick{1'000'000};
 
-  // A sender with another clock than the recorder's is read by arrival. feed: outlives this.
+  // Ticks of a sender with another clock than that of the recorder are read by arrival. feed: outlives this.
   explicit ToolTrack(const sync::LogFeed& feed) : feed_(feed) {}
 
-  // From its beginning, those of this tool.
+  // Starts at the beginning of the log, for this tool.
   void follow(int tool);
-  // The next tick that is later than `after`; nothing: there is none.
+  // The next tick later than `after`; empty: none.
   std::optional<RecordedTick> next(sync::HostTime after);
 
  private:
@@ -48,7 +48,7 @@ class ToolTrack {
   int tool_ = -1;
   sync::SimClockTracker simulation_{own()};
   std::int64_t incarnation_ = 0;
-  sync::HostTime heard_{};  // of that
+  sync::HostTime heard_{};  // last arrival of that incarnation
 };
 
 }  // namespace tactus::haptic

@@ -25,12 +25,12 @@ struct Oscillator {
   double mass, damping, stiffness;
 };
 
-// Exact for a constant load and a target that moves evenly from `from` to `to`: no step size makes it unstable.
+// Exact for a constant load and a target that moves uniformly from `from` to `to`: stable for any step size.
 void advance(const Oscillator& o, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
              const Eigen::Vector3d& load, double dt, Eigen::Vector3d& place, Eigen::Vector3d& rate) {
   const double a = o.damping / (2 * o.mass), w2 = o.stiffness / o.mass;
   const Eigen::Vector3d drift = (to - from) / dt;
-  const Eigen::Vector3d rest = load / o.stiffness;  // offset from the target at which nothing moves
+  const Eigen::Vector3d rest = load / o.stiffness;  // offset from the target at equilibrium
   const Eigen::Vector3d e = place - from - rest, de = rate - drift;
   const auto [decay, c, s] = propagator(a, w2, dt);
   place = to + rest + decay * ((c + s * a) * e + s * de);

@@ -1,5 +1,5 @@
-// A hand of mathematics: a mass that a spring and a damper pull along a path, so that contact pushes it back; and
-// an inertia that they hold in the orientation of its rest, so that torque turns it.
+// A simulated hand: a mass that a spring and a damper pull along a path, so that contact pushes it back; and an
+// inertia held in its rest orientation in the same way, so that torque turns it.
 #pragma once
 
 #include <optional>
@@ -13,16 +13,16 @@ struct HandImpedance {
   double mass_kg = 0.1;
   double damping_N_s_m = 10;
   double stiffness_N_m = 300;
-  // Of turning.
+  // For rotation.
   double inertia_kg_m2 = 0.0003;
   double turn_damping_N_m_s = 0.03;
-  double turn_stiffness_N_m = 1;  // a radian
+  double turn_stiffness_N_m = 1;  // N m per radian
 };
 
 class VirtualHand : public Device {
  public:
-  // loop: begins again at its first point after its last; `path` should end where it begins.
-  // rest: how it is held where nothing turns it.
+  // loop: restarts at the first point after the last; `path` should end where it begins. rest: orientation without
+  // torque.
   VirtualHand(MonotoneCubic path, bool loop, const HandImpedance& hand,
               const Eigen::Quaterniond& rest = Eigen::Quaterniond::Identity());
 
@@ -38,13 +38,13 @@ class VirtualHand : public Device {
   MonotoneCubic path_;
   bool loop_;
   HandImpedance hand_;
-  std::optional<sync::HostTime> begin_;  // of the path
+  std::optional<sync::HostTime> begin_;  // start of the path
   bool read_ = false;
   sync::HostTime last_{};
-  MonotoneCubic::At target_{};  // where the path was at last_
+  MonotoneCubic::At target_{};  // place of the path at last_
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero(), velocity_ = Eigen::Vector3d::Zero();
-  // Away from its rest, as a rotation vector: exact for turns about one axis, near enough for those that a wrist
-  // makes.
+  // Rotation from rest_ as a rotation vector: exact for rotations about one axis, accurate enough for those of a
+  // wrist.
   Eigen::Quaterniond rest_;
   Eigen::Vector3d turn_ = Eigen::Vector3d::Zero(), spin_ = Eigen::Vector3d::Zero();
   Wrench felt_;

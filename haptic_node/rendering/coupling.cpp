@@ -7,18 +7,19 @@ namespace tactus::haptic {
 namespace {
 
 constexpr double kFixed_kg = 1e9;
-// Of K tau, which is what a delay takes from the damping of slow motion: half as much again is left for the
-// faster.
+// Ratio of B to K tau. A delay takes K tau from the damping of slow motion; the additional half covers faster
+// motion.
 constexpr double kLead = 1.5;
-// The damper itself is late: B tau / m stays so many times below the bound on K tau^2 / m.
+// The damper itself is late: this factor keeps B tau / m below its stability bound, relative to the bound on K
+// tau^2 / m.
 constexpr double kMaxLead = 3;
-// Delays up to here are those of a bus that is not disturbed, for which the other rules suffice. Design: a step, a
-// tick and a touch model one or two milliseconds old.
+// Loop delays up to this value are those of an undisturbed bus, for which the other limits suffice. Design: a
+// step, a tick and a touch model of one or two milliseconds.
 constexpr double kUndisturbed_s = 0.004;
-// From here on the delay is a large part of a period of what a hand presses on (10 Hz), and more of the coupling
-// is given up for it. Design.
+// From this delay on, the delay is a large part of a period of the pressing hand (10 Hz), and the coupling is
+// reduced further. Design.
 constexpr double kLate_s = 0.1;
-// The damper grows with the depth up to here: 0.1 N a tick at 0.1 m/s, 5 N s/m and 1 kHz. Design.
+// The damping increases with the depth up to this value: 0.1 N per tick at 0.1 m/s, 5 N s/m and 1 kHz. Design.
 constexpr double kSoftDepth_m = 0.0005;
 
 double squared(double x) { return x * x; }
@@ -36,7 +37,7 @@ Gains coupling_gains(double surface_stiffness_N_m, double surface_damping_N_s_m,
   Gains g;
   g.stiffness_N_m =
       std::min({surface_stiffness_N_m, limits.stiffness_limit_N_m, 2 * (b - most_damping) / period_s});
-  // A light body with much damping would be dragged faster than the loop can tell.
+  // Large damping would drag a light body faster than the loop can measure.
   double most = most_damping;
   if (!fixed) {
     most = std::min(most, kMaxLead * limits.mass_factor * body_mass_kg / loop_delay_s);
@@ -67,7 +68,7 @@ void LoopDelay::relieve(double by_s) {
 }
 
 Gains felt_gains(const Surface& s, double factor, double pressed_m) {
-  // The damping ratio stays as it is when the stiffness is lowered.
+  // Keeps the damping ratio when the stiffness is lowered.
   const double share = s.moves() ? factor : 1;
   return {share * s.coupling_stiffness_N_m,
           std::sqrt(share) * std::min(1.0, pressed_m / kSoftDepth_m) * s.coupling_damping_N_s_m};

@@ -4,7 +4,7 @@
 
 namespace tactus::haptic {
 
-// Whether others bind than in the last tick; notes those that do.
+// True when the binding surfaces differ from those of the last tick; stores the current ones.
 bool ForceCrossfade::changed(std::span<const Surface> surfaces) {
   std::size_t bound = 0;
   bool same = true;

@@ -1,7 +1,6 @@
-// When other surfaces begin to bind while the hand is pressed, the force goes over from the old set to the new
-// within the recovery time (Mark et al. 1996), from where it was. Nothing else is smoothed: the first touch, the
-// release, and whatever happens while the same surfaces bind pass as they are, so real contact stays as sharp as
-// it is.
+// Crossfade of the force when other surfaces begin to bind while the hand is pressed: from the old set to the new
+// within the recovery time (Mark et al. 1996), starting at the current force. Nothing else is smoothed: the first
+// touch, the release and every change while the same surfaces bind pass unchanged, so real contact stays sharp.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,24 +14,25 @@ namespace tactus::haptic {
 
 class ForceCrossfade {
  public:
-  // A change of less than step_N_s per second is passed at once.
+  // A change of less than step_N_s per second passes at once.
   ForceCrossfade(double recovery_time_s, double step_N_s) : time_s_(recovery_time_s), step_N_s_(step_N_s) {
     last_set_.reserve(kMaxHalfSpaces);
   }
 
-  // One tick: the force of the surfaces as they bind now, N; returns the force to render, N. Realtime-safe: yes.
+  // One tick. Input: the force of the surfaces that bind now, N. Returns the force to render, N. Realtime-safe:
+  // yes.
   Eigen::Vector3d step(std::span<const Surface> surfaces, const Eigen::Vector3d& force_N, double dt);
-  // The next step is one in which other surfaces bind, whatever binds: the rendering has changed.
+  // Treats the next step as a change of the binding surfaces, because the rendering method has changed.
   void renew() { renewed_ = true; }
 
  private:
   bool changed(std::span<const Surface> surfaces);
 
   double time_s_, step_N_s_;
-  std::vector<std::int64_t> last_set_;  // contacts that bound in the last tick, in the order of the list
+  std::vector<std::int64_t> last_set_;                   // contacts that bound in the last tick, in list order
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero();       // rendered, N
-  Eigen::Vector3d remainder_ = Eigen::Vector3d::Zero();  // of the old set's force that is still to go, N
-  double left_s_ = 0;                                    // until it is gone
+  Eigen::Vector3d remainder_ = Eigen::Vector3d::Zero();  // remaining part of the force of the old set, N
+  double left_s_ = 0;                                    // time until it is zero
   bool renewed_ = false;
 };
 

@@ -7,12 +7,12 @@
 namespace tactus::haptic {
 namespace {
 
-// Share of a tick; the rest is for a wake-up that comes late and for others (design).
+// Share of a tick; the rest covers late wake-ups and other processes (design).
 constexpr double kBudget = 0.5;
-// The ladder is told of so many means a second. Design, as pictures: at the rate of the loop it would heed every
-// moment in which another process has the processor, to which fewer planes are no answer.
+// Rate of the means that the ladder receives. Design, as for pictures: at the rate of the loop the ladder would
+// react to every moment in which another process has the processor; fewer planes do not help there.
 constexpr double kMeans_Hz = 60;
-constexpr double kCalm_s = 2;  // design: no better step without so much spare time
+constexpr double kCalm_s = 2;  // design: spare time required before a better step
 
 }  // namespace
 

@@ -1,4 +1,5 @@
-// The quality ladder of touch: the time of a tick grows with the planes, so fewer of them are considered when a tick takes more than half of its time. Pure.
+// The quality ladder of haptic_node. The time of a tick increases with the number of planes; when a tick takes
+// more than half of its period, fewer planes are considered. Pure.
 #pragma once
 
 #include <array>
@@ -11,13 +12,13 @@ namespace tactus::haptic {
 
 class Quality {
  public:
-  // Planes at each step: those under pressure, then the nearest. Three are the most that bind a point, so a corner
-  // holds at the last step too.
+  // Planes at each step: those under pressure, then the nearest. At most three planes bind a point, so a corner
+  // still holds at the last step.
   static constexpr std::array<std::size_t, 3> kPlanes{Surfaces::kMaxPresent, 5, 3};
 
   explicit Quality(const Settings& settings);
 
-  // Once a tick: what it took.
+  // Call once per tick with its duration.
   void add(sync::Nanoseconds used);
   int step() const { return held_ < 0 ? ladder_.step() : held_; }
   static constexpr int steps() { return static_cast<int>(kPlanes.size()); }
@@ -25,10 +26,10 @@ class Quality {
 
  private:
   sync::QualityLadder ladder_;
-  int together_;  // ticks, of which the ladder is told the mean
+  int together_;  // ticks per mean that the ladder receives
   int ticks_ = 0;
   sync::Nanoseconds used_{0};
-  int held_;  // by the setting; -1: by the time that ticks take
+  int held_;  // step fixed by the setting; -1: chosen from the tick times
 };
 
 }  // namespace tactus::haptic

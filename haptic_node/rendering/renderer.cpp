@@ -13,7 +13,7 @@
 namespace tactus::haptic {
 namespace {
 
-// The force in levels of `step_N` of its size; 0: as it is.
+// Quantises the magnitude of the force to multiples of `step_N`; 0: returns it unchanged.
 Eigen::Vector3d stepped(const Eigen::Vector3d& force_N, double step_N) {
   const double size = force_N.norm();
   if (!(step_N > 0) || !(size > 0)) return force_N;
@@ -43,7 +43,7 @@ TransientShape transient_shape(const Settings& s) {
            sync::from_seconds(std::max(s.late_tolerance_s, s.drop_after_s))}};
 }
 
-// So many as a message tells of; the others' share goes to these.
+// Keeps the largest forces, up to the number that a message holds; the shares of the others go to these.
 void keep_largest(std::span<Eigen::Vector3d> forces) {
   if (forces.size() <= ContactImpulses::kMaxTold || forces.size() > kMaxHalfSpaces) return;
   std::array<double, kMaxHalfSpaces> sizes;
@@ -128,19 +128,19 @@ void Renderer::take_device(const TickInput& in) {
 }
 
 void Renderer::take_touch(const TickInput& in, double dt) {
-  // A device that is lost may come back anywhere: it begins anew there, as touch does.
+  // A lost device may return anywhere: touch restarts there.
   const bool away = device_share_ <= 0;
   device_share_ = std::clamp(device_share_ + (device_.lost ? -1 : 1) * dt / settings_.fade_s, 0.0, 1.0);
   const bool silent = fade_.step(in.now, in.touch_arrival, dt) <= 0 || away || device_share_ <= 0;
   if (silent) {
-    // Whatever comes after the loss is new.
+    // Surfaces that arrive after the loss are new.
     surfaces_.clear();
     rendering_.reset(device_);
   }
   if (in.fresh) model_time_ = sync::sim_time(in.fresh.header().sim_time_ns);
   const double age_s = model_time_ && in.map ? sync::to_seconds(in.map->to_sim(in.now) - *model_time_) : 0;
   model_age_s_ = age_s;
-  // Else a hand would feel for seconds a delay that a profile has ended.
+  // Otherwise the loop delay would contain, for seconds, a delay that the profile has already removed.
   const auto before = std::exchange(touch_delay_, in.touch_delay);
   if (in.touch_delay < before) loop_delay_.relieve(sync::to_seconds(before - in.touch_delay));
   loop_delay_.pass(age_s, dt);
@@ -181,7 +181,7 @@ Hit Renderer::hit_of(const contact_event_t& e, sync::HostTime scheduled) const {
   Hit hit;
   hit.event_id = e.event_id;
   hit.scheduled = scheduled;
-  hit.direction = (tool_is_b ? 1 : -1) * to_eigen(e.normal).normalized();  // away from what was hit
+  hit.direction = (tool_is_b ? 1 : -1) * to_eigen(e.normal).normalized();  // away from the hit body
   hit.approach_speed_m_s = e.approach_speed_m_s;
   hit.effective_mass_kg = std::min<double>(e.effective_mass_kg, settings_.device_mass_kg);
   if (material >= 0 && material < static_cast<std::int32_t>(youngs_modulus_Pa_.size()))
@@ -203,8 +203,8 @@ void Renderer::take_events(const TickInput& in) {
   }
 }
 
-// What is left of the constraint force after all limits, split over the surfaces: the bodies then feel exactly
-// what the hand feels.
+// Splits the constraint force that remains after all limits over the surfaces, so that the bodies feel exactly the
+// force that the hand feels.
 void Renderer::split(const Wrench& felt_constraint) {
   const auto list = surfaces_.list();
   const bool any = std::any_of(forces_.begin(), forces_.end(), [](const auto& f) { return f.norm() > 0; });
@@ -254,7 +254,7 @@ void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_
 TickOutput& Renderer::step(const TickInput& in) {
   out_.reports.clear();
   take_device(in);
-  // What happened after the watchdog was without force.
+  // Beyond the watchdog time no force was applied.
   const double dt = sync::to_seconds(std::clamp(in.now - last_, sync::Nanoseconds(1000), Device::kWatchdog));
   safety_.begin_tick(in.now);
   last_ = in.now;
@@ -269,7 +269,7 @@ TickOutput& Renderer::step(const TickInput& in) {
   const Wrench limited = safety_.limit(Wrench{wanted, share() * constraint.torque_N_m}, moved_, turned_, dt);
   out_.force_N = limited.force_N;
   out_.torque_N_m = limited.torque_N_m;
-  // The transient takes its part of what the limits left.
+  // The limits reduce the transient in proportion.
   const double left = wanted.norm() > 0 ? std::min(1.0, out_.force_N.norm() / wanted.norm()) : 0.0;
   const Eigen::Vector3d felt_transient = left * share() * transient;
   split({out_.force_N - felt_transient, out_.torque_N_m});

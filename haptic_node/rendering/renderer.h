@@ -1,5 +1,5 @@
-// One tick of touch: from the touch model, the events due and the state of the device to the force on the hand,
-// the state of the tool and the reports. Pure: no clock, no bus, no device.
+// One tick of haptic rendering: from the touch model, the due events and the device state to the force on the
+// hand, the tool state and the reports. Pure: no clock, no bus, no device.
 #pragma once
 
 #include <optional>
@@ -35,49 +35,50 @@ struct TickInput {
   TouchModelView fresh;
   // When the newest touch model arrived, raw; nothing: none yet.
   std::optional<sync::HostTime> touch_arrival;
-  // Between simulated time and the host clock; nothing: not known.
+  // Map between simulated time and the host clock; empty: not known.
   std::optional<sync::TimeMap> map;
-  // Of hit transients, on top of the setting; and by which touch models were held back on purpose: they are felt
-  // as if it were so long ago.
+  // transient_delay: delay of hit transients, in addition to the setting. touch_delay: intended delay of the touch
+  // models; surfaces are rendered as they were that much earlier.
   sync::Nanoseconds transient_delay{0}, touch_delay{0};
-  // The force is commanded in steps of this size; 0: none.
+  // The force is commanded in steps of this size; 0: no steps.
   double force_step_N = 0;
-  // So many of the planes of a touch model are considered.
+  // Number of planes of a touch model that are considered.
   std::size_t planes = Surfaces::kMaxPresent;
-  // Contact events that have become due, each exactly once.
+  // Contact events that have become due; each is passed exactly once.
   std::span<const contact_event_t> events;
 };
 
 struct TickOutput {
   tool_state_t state{};
-  Eigen::Vector3d force_N = Eigen::Vector3d::Zero();     // on the hand, world: command it now
-  Eigen::Vector3d torque_N_m = Eigen::Vector3d::Zero();  // the same
+  Eigen::Vector3d force_N = Eigen::Vector3d::Zero();     // on the hand, in the world frame; to command now
+  Eigen::Vector3d torque_N_m = Eigen::Vector3d::Zero();  // as force_N
   std::vector<presentation_t> reports;
 };
 
 class Renderer {
  public:
-  // The scene is read here and not kept. tool: index in its tools. safety: of the process, outlives this.
+  // Reads the scene and keeps no reference to it. tool: index in its tools. safety: belongs to the process and
+  // outlives this.
   Renderer(const scene_t& scene, int tool, const Settings& settings, Safety& safety);
 
-  // Other settings from the next tick on, where they can be changed while it runs; the limits of safety are not
-  // its.
+  // Applies changed settings from the next tick on, as far as they can change while it runs; not the limits of
+  // safety.
   void change(const Settings& settings);
 
-  // What lies on the surfaces of its scene, from the next tick on; null: nothing.
+  // Relief and friction maps of the scene, used from the next tick on; null: none.
   void set_maps(std::shared_ptr<const SurfaceMaps> maps) { reliefs_.set_maps(std::move(maps)); }
 
-  // Once a tick. The output is valid until the next. Realtime-safe: yes, but for the growth of lists in the first
-  // ticks.
+  // Call once per tick. The output is valid until the next call. Realtime-safe: yes, except for the growth of
+  // lists in the first ticks.
   TickOutput& step(const TickInput& in);
 
   // True while the touch model is lost.
   bool lost() const { return fade_.lost(); }
-  // True while the device is.
+  // True while the device is lost.
   bool device_lost() const { return device_.lost; }
 
  private:
-  // Of the force that is wanted: less while the touch model or the device is lost, or has just come back.
+  // Factor on the wanted force: below 1 while the touch model or the device is lost or has just returned.
   double share() const { return fade_.value() * device_share_; }
   void take_device(const TickInput& in);
   void take_touch(const TickInput& in, double dt);
@@ -101,7 +102,7 @@ class Renderer {
   Rendering rendering_;
   ForceCrossfade handover_, torque_handover_;
   LoopDelay loop_delay_;
-  sync::Nanoseconds touch_delay_{0};  // of the tick before
+  sync::Nanoseconds touch_delay_{0};  // of the previous tick
   Passivity passivity_;
   Transients transients_;
   Safety& safety_;
@@ -113,10 +114,11 @@ class Renderer {
   sync::HostTime last_{};
   DeviceState device_;
   double device_share_ = 1;
-  Eigen::Vector3d moved_ = Eigen::Vector3d::Zero(), turned_ = Eigen::Vector3d::Zero();  // of the device, since the last tick
+  // motion of the device since the last tick
+  Eigen::Vector3d moved_ = Eigen::Vector3d::Zero(), turned_ = Eigen::Vector3d::Zero();
   std::optional<sync::SimTime> model_time_;
   double model_age_s_ = 0;
-  std::vector<Eigen::Vector3d> forces_;  // of each surface, as wanted
+  std::vector<Eigen::Vector3d> forces_;  // of each surface, before the limits
   std::vector<FeltForce> felt_;          // of each surface, as commanded
   TickOutput out_;
 };

@@ -8,8 +8,8 @@
 namespace tactus::haptic {
 namespace {
 
-// As tool_touch.h of the simulation: it looks no further around a tool that says it is faster. Design: faster than
-// a hand that feels (a reach is 1 to 2 m/s).
+// As in tool_touch.h of the simulation, which does not search further around a tool that reports a higher speed.
+// Design: faster than an exploring hand (a reach is 1 to 2 m/s).
 constexpr double kFastestHand_m_s = 5;
 
 Rendering::Kind kind_of(const std::string& name, bool shaped) {
@@ -112,8 +112,8 @@ Stored Rendering::stored(std::span<const Surface> surfaces) const {
     grips_J += 0.5 * K * s.grip.squaredNorm();
   }
   if (kind_ == Kind::kProxy) grips_J = 0.5 * stiffest_N_m * proxy_.shift().squaredNorm();
-  // Where surfaces leave no room, or each is a spring at the device, what they push does not add up to one
-  // stretch.
+  // Where the surfaces leave no feasible pose, or each is a spring at the device, their energies do not combine
+  // into one displacement.
   const bool one = kind_ == Kind::kProxy ? proxy_.feasible() : kind_ == Kind::kRigid && rigid_.feasible();
   all.energy_J = grips_J + (one ? 0.5 * push_N.dot(depth_m) + 0.5 * twist_N.dot(turn_m) : each_J);
   return all;
@@ -136,7 +136,7 @@ void Rendering::share(const Wrench& felt, std::span<const Surface> surfaces, std
     sizes += f.norm();
   }
   if (sizes <= 0) return;
-  // Each keeps its direction as far as the sum does, the rest goes by size.
+  // Each force keeps its direction as far as the sum does; the rest is shared by magnitude.
   const double square = sum.squaredNorm();
   const double kept = square > 0 ? std::clamp(felt.force_N.dot(sum) / square, 0.0, 1.0) : 0.0;
   const Eigen::Vector3d rest = felt.force_N - kept * sum;

@@ -1,6 +1,6 @@
-// How the constraint force is made of the surfaces near the tool, one of three ways, which may be changed while
-// the hand is pressed: direct, a spring at the device itself; proxy, a point that stays on the surfaces, force
-// alone; rigid, a body that does, with torque.
+// The methods that make the constraint force from the surfaces near the tool. They can be switched while the hand
+// is pressed. direct: a spring at the device itself. proxy: a point that stays on the surfaces, force only. rigid:
+// a rigid body that stays on them, force and torque.
 #pragma once
 
 #include <algorithm>
@@ -21,44 +21,44 @@ class Rendering {
   enum class Kind { kDirect, kProxy, kRigid };
 
   Rendering(const tool_def_t& tool, const Settings& settings);
-  // Another from the next tick on, as the settings say: it begins where the one before had the proxy. True: it is
-  // another.
+  // Selects the method of the settings from the next tick on; it starts at the current proxy pose. Returns true
+  // when the method has changed.
   bool change(const Settings& settings);
   Kind kind() const { return kind_; }
-  // Of so many planes that may be considered, how many must be: three hold a point, six a body, and as many again
-  // are what it meets next (design).
+  // Minimum number of planes to consider, given the allowed number. Three planes hold a point and six a body; as
+  // many again are the ones that it meets next (design).
   std::size_t planes(std::size_t allowed) const { return turns() ? std::max<std::size_t>(allowed, 12) : allowed; }
 
-  // The proxy is where the device is, and holds nothing.
+  // Sets the proxy to the device pose, without contact state.
   void reset(const DeviceState& device);
-  // A touch model has come: so much further the tool may go.
+  // Call when a touch model has arrived: restores the distance that the tool may move on it.
   void renew(const DeviceState& device);
-  // One tick: sets depths. Realtime-safe: yes.
+  // One tick: sets the depths. Realtime-safe: yes.
   void solve(std::span<Surface> surfaces, const DeviceState& device, double dt);
-  // Then the force of each surface on the hand, N. factor: on the stiffness of the coupling to what moves.
+  // After solve(): the force of each surface on the hand, N. factor: on the coupling stiffness to moving bodies.
   void press(std::span<const Surface> surfaces, const DeviceState& device, double factor,
              std::span<Eigen::Vector3d> forces) const;
-  // And what their springs hold, of those that move, with a factor of 1.
+  // Energy in the springs to moving bodies, at factor 1.
   Stored stored(std::span<const Surface> surfaces) const;
 
-  // Of the proxy; of direct rendering, the device's.
+  // Pose of the proxy; with direct rendering, of the device.
   const Eigen::Vector3d& position() const { return pose_.position; }
   const Eigen::Quaterniond& orientation() const { return pose_.orientation; }
   const Eigen::Vector3d& velocity() const { return velocity_; }  // m/s
   const Eigen::Vector3d& spin() const { return spin_; }          // rad/s
-  // How the tool is turned for which surfaces are to be placed: a point proxy follows the device in that.
+  // Orientation of the tool for which surfaces are placed; a point proxy has the orientation of the device.
   const Eigen::Quaterniond& turned(const DeviceState& device) const {
     return kind_ == Kind::kRigid ? pose_.orientation : device.orientation;
   }
-  // From the centre of the proxy to where it meets a surface, m, world.
+  // From the centre of the proxy to its contact with a surface, m, world frame.
   Eigen::Vector3d arm(const Surface& s) const { return place().touched(s) - pose_.position; }
   ToolPlace place() const { return {pose_.position, pose_.orientation, radius_m_}; }
-  // Force and torque of all together; no torque unless it is rigid, or a shape is rendered directly.
+  // Sum of force and torque. The torque is zero except with rigid rendering or direct rendering of a shape.
   Wrench sum(std::span<const Surface> surfaces, std::span<const Eigen::Vector3d> forces) const;
-  // Makes the forces such that together they are what the hand feels of the constraints.
+  // Changes the forces so that their sum is the constraint wrench that the hand feels.
   void share(const Wrench& felt, std::span<const Surface> surfaces, std::span<Eigen::Vector3d> forces);
   double lever_m() const { return rigid_.lever_m(); }
-  // Torque is felt.
+  // True when the torque is rendered.
   bool turns() const { return kind_ == Kind::kRigid || (kind_ == Kind::kDirect && shaped_); }
 
  private:
@@ -66,7 +66,7 @@ class Rendering {
   double radius_m_, bound_m_;
   Kind kind_;
   double reach_m_, reach_time_s_, force_limit_N_;
-  double left_m_ = 0;  // that the tool may go on this touch model
+  double left_m_ = 0;  // distance that the tool may still move on this touch model
   Proxy proxy_;
   RigidProxy rigid_;
   DevicePose pose_;
@@ -74,7 +74,7 @@ class Rendering {
   std::vector<Eigen::Vector3d> arms_;  // scratch
 };
 
-// What keeps a ball off a surface, m; the points of a shape touch with themselves.
+// Distance that keeps a ball off a surface, m; zero for a shape, whose points touch directly.
 inline double skin_m(const tool_def_t& tool) { return tool.shape == tool_def_t::BALL ? tool.radius_m : 0; }
 
 }  // namespace tactus::haptic

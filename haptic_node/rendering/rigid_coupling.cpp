@@ -18,12 +18,13 @@ Eigen::Vector3d within(const Eigen::Vector3d& v, double most) {
   return size > most ? Eigen::Vector3d(v * (most / size)) : v;
 }
 
-// Speed of the device's tool over a surface where they meet, m/s.
+// Velocity of the tool of the device over a surface at the contact point, m/s.
 Eigen::Vector3d past(const Surface& s, const DeviceState& device, const Eigen::Vector3d& arm) {
   return device.velocity + device.spin.cross(arm) - s.velocity_at(s.point);
 }
 
-// |normal, moment / lever|^2: what a contact off the centre takes of a stiffness, it gives back in turning.
+// normal, moment / lever|^2: a contact off the centre is less stiff in translation by this factor; the rest is
+// rotation.
 double off_centre(const Surface& s, const Eigen::Vector3d& arm, double lever_m) {
   return 1 + (arm.cross(s.normal) / lever_m).squaredNorm();
 }
@@ -90,8 +91,8 @@ void share_wrench(const Wrench& felt, std::span<const Eigen::Vector3d> arms, std
   if (!(sizes > 0)) return;
   for (std::size_t i = 0; i < forces.size(); ++i) lever_m = std::max(lever_m, arms[i].norm());
   lever_m = std::max(lever_m, 1e-3);
-  // In two passes: the force exactly, the torque by what is left of the freedom, force couples: about the middle
-  // of the places, weighted by size, the two do not mix.
+  // Two passes. The first makes the force exact. The second uses the remaining freedom, force couples, for the
+  // torque. About the mean of the contact points, weighted by force, the two do not interact.
   Eigen::Vector3d middle = Eigen::Vector3d::Zero(), force = felt.force_N, torque = felt.torque_N_m;
   for (std::size_t i = 0; i < forces.size(); ++i) {
     middle += forces[i].norm() / sizes * arms[i];
@@ -104,7 +105,7 @@ void share_wrench(const Wrench& felt, std::span<const Eigen::Vector3d> arms, std
     const Eigen::Vector3d r = arms[i] - middle;
     spread += forces[i].norm() / sizes * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
   }
-  // About an axis that all places lie on there is no torque to be had.
+  // No torque is possible about an axis on which all contact points lie.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();
   for (int k = 0; k < 3; ++k) {

@@ -1,5 +1,5 @@
-// The virtual coupling of renderings other than the point proxy: the force of each surface on a rigid tool, which
-// acts where the two meet, so that all together are the wrench on the hand.
+// The virtual coupling of a rigid tool. The force of each surface acts at the contact point; together they give
+// the wrench on the hand. Used by the renderings other than the point proxy.
 #pragma once
 
 #include <span>
@@ -11,24 +11,24 @@
 
 namespace tactus::haptic {
 
-// Turning by an angle costs as much as moving by so much times it, m: the root of the stiffest coupling against
-// turning over the stiffest against moving, each by the rules of coupling_gains, with the inertia and the damping
-// of turning.
+// Lever that relates rotation to translation, m: a rotation by an angle costs as much as a translation of lever
+// times angle. It is the square root of the largest rotational over the largest translational stiffness, each from
+// coupling_gains; the rotational one uses the inertia and the damping of rotation.
 double coupling_lever_m(const Settings& settings);
 
-// Of each surface that binds, N, into `forces`: along its normal by its depth and by the rate at which the device
-// presses into it, shared among all that bind; never pulling. Along it by its grip, within the cone.
-// factor: as of coupling_forces. Realtime-safe: yes.
+// Computes the force of each binding surface, N, into `forces`. Normal part: from the depth and from the rate at
+// which the device presses into the surface, shared among all binding surfaces; it never pulls. Tangential part:
+// from the grip of the surface, within the friction cone. factor: as in coupling_forces. Realtime-safe: yes.
 void rigid_forces(std::span<const Surface> surfaces, const RigidProxy& proxy, const DeviceState& device,
                   double factor, std::span<Eigen::Vector3d> forces);
 
-// The same of direct rendering, where friction is dynamic and fades with the speed over the surface.
+// As rigid_forces, for direct rendering: friction is dynamic and vanishes with the speed over the surface.
 void direct_forces(std::span<const Surface> surfaces, const DeviceState& device, double lever_m,
                    double tool_radius_m, double factor, std::span<Eigen::Vector3d> forces);
 
-// Changes forces at those arms as little as can be, the large ones most, so that together they are `felt`: exactly
-// the force, and the torque as far as the places allow without couples of forces larger than most_N: places that lie
-// nearly on a line would need them.
+// Changes the forces at those arms as little as possible, large forces most, so that their sum is `felt`. The
+// force is exact. The torque is exact as far as the contact points allow without force couples larger than most_N;
+// points that lie almost on a line would need larger ones.
 void share_wrench(const Wrench& felt, std::span<const Eigen::Vector3d> arms, std::span<Eigen::Vector3d> forces,
                   double most_N);
 

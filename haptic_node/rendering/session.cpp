@@ -11,8 +11,8 @@
 namespace tactus::haptic {
 namespace {
 
-// From a step of the simulation to the tick that takes its touch model: a few of each. More is a clock that is
-// wrong.
+// Maximum time from a simulation step to the tick that uses its touch model: a few steps and ticks. A larger value
+// means a wrong clock.
 constexpr sync::Nanoseconds kLongestWay{10'000'000};
 
 }  // namespace
@@ -59,11 +59,11 @@ TickOutput& Session::step(sync::HostTime now, const Degraded& degraded, std::siz
   if (!over_) {
     in.fresh = touch_.take();
     begin_path(now, in.fresh, degraded);
-    // A commanded gap is not a loss.
+    // An intended gap is not a loss.
     in.touch_arrival = touch_.arrival();
     if (in.touch_arrival && degraded.touch_arrival)
       in.touch_arrival = std::max(*in.touch_arrival, *degraded.touch_arrival);
-    // Pages of which none makes a whole are no touch model.
+    // Pages that never complete a model do not count as a touch model.
     if (in.touch_arrival && touch_.unfinished_since())
       in.touch_arrival = std::min(*in.touch_arrival, *touch_.unfinished_since());
     in.map = touch_.map(now);
@@ -73,7 +73,7 @@ TickOutput& Session::step(sync::HostTime now, const Degraded& degraded, std::siz
   in.touch_delay = degraded.touch_delay;
   in.force_step_N = degraded.force_step_N;
   in.planes = planes;
-  // Events are published when their time is reached, so all that have come are due.
+  // The simulation publishes events when they are due, so all received events are due.
   std::vector<contact_event_t> due;
   if (in.map) due = events_.take_events(sync::SimTime::max());
   in.events = due;

@@ -1,5 +1,4 @@
-// One tool of one scene with its device, from the messages that arrive to the state of the tool. Pure: no bus, no
-// clock.
+// One tool of one scene with its device: from the arriving messages to the tool state. Pure: no bus, no clock.
 #pragma once
 
 #include <memory>
@@ -19,23 +18,23 @@
 
 namespace tactus::haptic {
 
-// What a policy or a profile does to this sense.
+// Degradation by a playout policy or a profile.
 struct Degraded {
-  sync::Nanoseconds delay{0};        // of hit transients, on top of the setting
-  sync::Nanoseconds touch_delay{0};  // by which touch models are held back
-  double force_step_N = 0;           // of the force that is commanded; 0: none
-  // When the newest touch model really arrived; nothing: as it came here.
+  sync::Nanoseconds delay{0};        // of hit transients, in addition to the setting
+  sync::Nanoseconds touch_delay{0};  // intended delay of the touch models
+  double force_step_N = 0;           // step of the commanded force; 0: no steps
+  // Actual arrival of the newest touch model, before any intended delay; empty: as received here.
   std::optional<sync::HostTime> touch_arrival;
 };
 
-// The device of the tool that was chosen. given: from the command line; null: as the tool says, maybe from a
-// file, so not for a loop. Throws std::runtime_error with one sentence when there is no such device.
+// Makes the device of the selected tool. given: from the command line; null: the device of the scene. It may read
+// a file, so do not call it in a loop. Throws std::runtime_error with one sentence when there is no such device.
 std::unique_ptr<Device> device_of(const scene_t& scene, const NodeConfig& choice, const DeviceSpec* given = nullptr);
 
 class Session {
  public:
-  // choice.tool must be one of the scene's. safety: of the process, outlives this; it goes on with the limits of
-  // this scene.
+  // choice.tool must be a tool of the scene. safety: belongs to the process and outlives this; it takes the limits
+  // of this scene.
   Session(const scene_t& scene, const NodeConfig& choice, std::unique_ptr<Device> device, sync::OwnClock own,
           Safety& safety);
 
@@ -46,27 +45,26 @@ class Session {
     if (!over_) events_.push(events, arrival);
   }
 
-  // Other settings from the next tick on, as Renderer::change; with the limits of safety.
+  // Applies changed settings from the next tick on, as Renderer::change, and also the limits of safety.
   void change(const Settings& settings);
 
-  // Of this scene, when they have been read; until then its surfaces are smooth.
+  // The maps of this scene, once they are loaded; until then its surfaces are smooth.
   void set_maps(std::shared_ptr<const SurfaceMaps> maps) { renderer_.set_maps(std::move(maps)); }
 
   void push(const device_state_t& state, sync::HostTime arrival) { device_->hear(state, arrival); }
   void push(const device_force_t& others, sync::HostTime arrival) { device_->hear(others, arrival); }
-  // After a step: what a program that drives the device must be told; null: nothing.
+  // After a step: the message for the program that drives the device; null: none.
   device_force_t* tell() { return device_->tell(); }
 
-  // Once a tick: reads the device, renders, commands the device. planes: so many are considered. The output is
-  // valid, and may be stamped, until the next.
+  // Call once per tick: reads the device, renders and commands the device. planes: number of planes to consider.
+  // The output is valid, and may be stamped, until the next call.
   TickOutput& step(sync::HostTime now, const Degraded& degraded = {}, std::size_t planes = Surfaces::kMaxPresent);
 
-  // Its scene is over: from now on what comes is ignored, and the force goes to zero as fast as the limits
-  // allow.
+  // Ends the scene: later messages are ignored, and the force goes to zero as fast as the limits allow.
   void let_go() { over_ = true; }
   bool over() const { return over_; }
 
-  bool heard() const { return touch_.arrival().has_value(); }  // a touch model has come
+  bool heard() const { return touch_.arrival().has_value(); }  // a touch model has arrived
   bool lost() const { return renderer_.lost(); }
   bool device_lost() const { return renderer_.device_lost(); }
 
@@ -79,7 +77,7 @@ class Session {
   TouchInput touch_;
   sync::ContactStream events_;
   bool over_ = false;
-  std::optional<sync::HostTime> since_;  // the first tick
+  std::optional<sync::HostTime> since_;  // time of the first tick
   bool path_begun_ = false;
 };
 

@@ -1,4 +1,5 @@
-// What of a hand can be recorded by name, beside TOOL_STATE, and drive what others render (<tactus:map>).
+// Tags of haptic_node: values of a hand that can be recorded by name, beside TOOL_STATE, and can drive other
+// renderers (<tactus:map>).
 #pragma once
 
 #include <cmath>
@@ -11,7 +12,7 @@ namespace tactus::haptic {
 
 inline double norm(const auto& v) { return std::hypot(double(v.x), double(v.y), double(v.z)); }
 
-// state: as it was told last; outlives the tags.
+// state: as last published; outlives the tags.
 inline void tag(sync::Tags& tags, const tool_state_t& state) {
   tags.add("force", "N", [&] { return norm(state.force_N); });
   tags.add("force.x", "N", &state.force_N.x);
@@ -22,7 +23,7 @@ inline void tag(sync::Tags& tags, const tool_state_t& state) {
   tags.add("position.x", "m", &state.proxy.position_m.x);
   tags.add("position.y", "m", &state.proxy.position_m.y);
   tags.add("position.z", "m", &state.proxy.position_m.z);
-  // How far the device is beyond what the surface lets it.
+  // Distance between device and proxy.
   tags.add("depth", "m", [&] {
     const vec3_t &d = state.device.position_m, &p = state.proxy.position_m;
     return std::hypot(d.x - p.x, d.y - p.y, d.z - p.z);

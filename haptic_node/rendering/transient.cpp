@@ -10,7 +10,8 @@ namespace {
 // Young's moduli between which the frequency is interpolated: rubber (0.01 GPa) and aluminium (70 GPa), Ashby
 // 2011.
 constexpr double kSoft_Pa = 1e7, kHard_Pa = 7e10;
-// A hundredth of a newton is below what fingers notice in a vibration of a held tool; below it the ringing ends.
+// The ringing ends below this amplitude. One hundredth of a newton is below the threshold of fingers for a
+// vibration of a held tool.
 constexpr double kSilent_N = 0.01;
 
 presentation_t report_of(const Hit& hit, std::int64_t presented_ns, sync::Nanoseconds uncertainty,

@@ -1,4 +1,4 @@
-// The hit transient: a short decaying vibration at each hit, which a coupling of finite stiffness cannot give
+// The hit transient: a short decaying vibration at each hit, which a coupling of finite stiffness cannot render
 // (Kuchenbecker, Fiene and Niemeyer 2006). F(t) = A exp(-decay t) sin(2 pi f t), as tapped materials ring
 // (Okamura, Cutkosky and Dennerlein 2001). Its first half wave carries the momentum of the hit: A = gain pi f m v.
 #pragma once
@@ -13,12 +13,12 @@
 
 namespace tactus::haptic {
 
-// A tap is felt as it should be, or not at all: a weaker one would be a hit of another material.
+// A late transient is dropped, not reduced: a weaker one would suggest another material.
 inline constexpr sync::Late kLate = sync::Late::kDrop;
 
 struct TransientShape {
   double gain = 1;
-  double limit_N = 3;  // of one and of all together
+  double limit_N = 3;  // of each transient and of their sum
   double soft_frequency_Hz = 30;
   double hard_frequency_Hz = 300;
   double decay_1_s = 80;
@@ -28,13 +28,13 @@ struct TransientShape {
 struct Hit {
   std::int64_t event_id = 0;
   sync::HostTime scheduled{};
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  // of the force on the hand, unit
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  // of the force on the hand, unit vector
   double approach_speed_m_s = 0;
   double effective_mass_kg = 0;
-  double youngs_modulus_Pa = 0;  // of what is hit; 0: not known, taken as hard
+  double youngs_modulus_Pa = 0;  // of the hit body; 0: not known, treated as hard
 };
 
-// Between rubber and aluminium, even on logarithmic scales of both.
+// Interpolates between rubber and aluminium, on logarithmic scales of modulus and frequency.
 double transient_frequency_Hz(double youngs_modulus_Pa, const TransientShape& shape);
 double transient_amplitude_N(const Hit& hit, const TransientShape& shape);
 
@@ -47,13 +47,13 @@ class Transients {
     sounding_.reserve(kMaxSounding);
   }
 
-  // What begins from now on has this shape.
+  // Applies to transients that begin from now on.
   void change(const TransientShape& shape) { shape_ = shape; }
 
-  // Every hit gets exactly one report, here (no place left) or in a later step.
+  // Every hit gets exactly one report: here when the queue is full, otherwise in a later step.
   void schedule(const Hit& hit, std::vector<presentation_t>& reports);
-  // Force on the hand over the tick that begins now, N (its value at mid tick). felt: false when no force reaches
-  // the hand, then what is due is dropped. Realtime-safe: yes.
+  // Force on the hand over the tick that begins now, N (value at mid tick). felt: false when no force reaches the
+  // hand; due hits are then dropped. Realtime-safe: yes.
   Eigen::Vector3d step(sync::HostTime now, double dt, bool felt, sync::Nanoseconds uncertainty,
                        std::vector<presentation_t>& reports);
 

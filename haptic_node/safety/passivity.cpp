@@ -9,23 +9,24 @@
 namespace tactus::haptic {
 namespace {
 
-// Longer than any delay that a touch model may have before it counts as lost, so that the last books are in.
+// Longer than any delay of a touch model before it counts as lost, so that the last reports have arrived.
 constexpr double kApart_s = 0.2;
-// From a tick to the step that applies its force and back, beyond the age of the touch model: a step and a tick.
+// From a tick to the simulation step that applies its force and back, in addition to the age of the touch model: a
+// step and a tick.
 constexpr double kWay_s = 0.002;
-// So many books are kept while nothing is felt on them. Design: several times what a touch model tells of.
+// Number of entries kept without force. Design: several times the number in a touch model.
 constexpr std::size_t kMaxBooks = 32;
-// What was dissipated counts as credit up to here, so that old friction does not pay for a new oscillation.
+// Dissipated energy counts as credit up to this value, so that old friction does not pay for a new oscillation.
 constexpr double kMaxCredit_J = 0.01;
-// The allowance fills up so fast: after one bad moment touch comes back within seconds.
+// Refill rate of the allowance: after a violation, touch recovers within seconds.
 constexpr double kRefill_W = 0.0002;
-// The factor falls to nothing within 5 ms of 1 kHz: a force of 8 N then stays below the limit of slew; and comes
-// back in a second, slower than any hand or body sways, so that it drives no cycle of its own.
+// The factor falls to zero within 5 ms at 1 kHz, which keeps a force of 8 N below the slew limit. It recovers
+// within a second, slower than any oscillation of hand or body, so that it drives no cycle itself.
 constexpr double kFall_1_s = 200, kRise_1_s = 1;
-// As in safety.cpp: faster than a hand can be; the device jumped, no work is done.
+// As in safety.cpp: faster than any hand. The device jumped, and no work is counted.
 constexpr double kFastest_m_s = 40, kFastest_rad_s = 100;
 
-// As surfaces clamp it: who says that he comes faster than anything gives no credit for that.
+// Clamped as the surfaces are: a body that reports a higher speed gives no credit for it.
 Eigen::Vector3d slow_enough(const Eigen::Vector3d& velocity, double most_m_s) {
   const double speed = velocity.norm();
   return speed > most_m_s ? Eigen::Vector3d(velocity * (most_m_s / speed)) : velocity;
@@ -110,7 +111,7 @@ void Passivity::begin_episode() {
   }
 }
 
-// Those of facets that were stroked over long ago; what their bodies got stays counted.
+// Removes entries of facets that were touched long ago; the energy of their bodies stays counted.
 void Passivity::forget_the_idle() {
   while (books_.size() > kMaxBooks) {
     const auto oldest = std::max_element(books_.begin(), books_.end(),
@@ -150,7 +151,7 @@ void Passivity::observe(const Stored& coupling, const Eigen::Vector3d& moved_m, 
   const double allowed_J = std::max(0.0, credit_J_ + limits_.allowance_J);
   double wanted = 1;
   if (stored_J > allowed_J) {
-    // On the way from factor to wanted so much is still made: half of what the force of now would.
+    // Energy generated while the factor moves to `wanted`: half of the energy at the present force.
     const double falling_J = 0.5 / kFall_1_s * std::max(0.0, generating_W);
     wanted = stored_J > falling_J ? std::max(0.0, allowed_J - factor_ * falling_J) / (stored_J - falling_J) : 0.0;
   }

@@ -6,20 +6,20 @@
 namespace tactus::haptic {
 namespace {
 
-// Of one entry of the history at least: a tick of 1 kHz, less rounding.
+// Minimum duration of one entry of the history: a tick at 1 kHz, less rounding.
 constexpr double kPush_s = 0.00099;
-// How fast the estimate of what holds a body follows; a few models of 30 Hz are not averaged, nor is the noise of
-// one step believed.
+// Time constant of the holding-force estimate: it does not average several models at 30 Hz, and does not follow
+// the noise of one step.
 constexpr double kHeld_s = 0.02;
-// For so long it is believed that what held a body still does; then it counts as free. Longer than a period of 30
-// Hz, shorter than the 50 ms after which a touch model is lost.
+// Time for which the holding force is assumed to persist; after it the body counts as free. Longer than a period
+// of 30 Hz, shorter than the 50 ms after which a touch model is lost.
 constexpr double kTrust_s = 0.04;
 
 }  // namespace
 
 void PendingEnergyEstimator::tell(const Told& told, double most_N) {
   if (told_.sim_ns >= 0 && told.sim_ns > told_.sim_ns) {
-    // Newton: what the body's motion changed by, less the push, is what others did.
+    // Newton: the change of momentum minus the push is the impulse of other bodies.
     const double dt = 1e-9 * static_cast<double>(told.sim_ns - told_.sim_ns);
     const double others_N_s =
         told.normal.dot(told.mass_kg * (told.velocity - told_.velocity) - (told.impulse_N_s - told_.impulse_N_s));
@@ -65,14 +65,16 @@ void PendingEnergyEstimator::advance(double push_N, double dt) {
   speed_m_s_ = next;
 }
 
-// One that came may swing: so much faster it then goes along with the push.
+// A body that came towards the hand may have swung back: the speed that this adds along the push.
 double PendingEnergyEstimator::on_its_way_back_m_s() const { return 2 * std::max(0.0, told_.normal.dot(told_.velocity)); }
 
-// Those of the last window_s, as far back as they add up to what is unseen; what is missing came before them.
+// Replays the pushes of the last window_s, as far back as they add up to the unreported impulse; the missing part
+// came before them.
 void PendingEnergyEstimator::play(double window_s, double unseen_N_s) {
   const auto push = [&](std::size_t back) { return pushes_[(newest_ + pushes_.size() - back) % pushes_.size()]; };
   std::size_t first = 0;
-  double time_s = 0, missing_N_s = unseen_N_s, share = 1;  // of the first of them, which may be unseen in part
+  // share of the first push, which may be unreported in part
+  double time_s = 0, missing_N_s = unseen_N_s, share = 1;
   while (first < count_ && time_s < window_s && share == 1) {
     const Push p = push(first++);
     if (p.impulse_N_s > missing_N_s) share = missing_N_s / p.impulse_N_s;

@@ -9,17 +9,17 @@
 namespace tactus::haptic {
 namespace {
 
-// Faster than a hand can be (a pitcher's reaches 40 m/s): the device jumped, as a replayed motion may; no work is
-// done.
+// Faster than any hand (that of a pitcher reaches 40 m/s): the device jumped, as a replayed motion may; no work is
+// counted.
 constexpr double kFastest_m_s = 40;
-// The same of turning: a turn a tenth of a second (design: twice what a wrist can).
+// The same for rotation: one revolution per tenth of a second (design: twice the speed of a wrist).
 constexpr double kFastest_rad_s = 63;
 
-// A late tick is not paid back by a jump of the force: it counts as two ticks of 1 kHz at most.
+// A late tick must not cause a jump of the force: it counts as two ticks of 1 kHz at most.
 constexpr double kLongestSlew_s = 0.002;
 
-// Of the radius of the workspace, over which the force goes to zero. Design: 0.2 m of 2 m are 0.2 s at a hand's 1
-// m/s.
+// Share of the workspace radius over which the force goes to zero. Design: 0.2 m of 2 m take 0.2 s at a hand speed
+// of 1 m/s.
 constexpr double kWorkspaceEdge = 0.1;
 
 Eigen::Vector3d clamped(const Eigen::Vector3d& v, double limit) {
@@ -56,10 +56,10 @@ Eigen::Vector3d Safety::limit(const Eigen::Vector3d& wanted_N, const Eigen::Vect
   const bool leaps = !moved_m.allFinite() || moved_m.norm() > kFastest_m_s * dt;
   const double work_J = (leaps ? 0 : last_.dot(moved_m)) + std::exchange(turn_work_J_, 0.0);
   energy_J_ += work_J;
-  // A debt is paid off within a second at most: one bad instant does not silence touch for long.
+  // A negative tank recovers within a second, so that one bad instant does not stop touch for long.
   tank_J_ = std::clamp(tank_J_ - work_J + limits_.power_W * dt, -limits_.power_W, limits_.energy_J);
   const Eigen::Vector3d wanted = wanted_N.allFinite() ? wanted_N : Eigen::Vector3d(Eigen::Vector3d::Zero());
-  // Full force until half of the allowance is spent: the change is too slow to be felt as a step.
+  // Full force until half of the allowance is spent; the change is too slow to be felt as a step.
   const double left = std::clamp(2 * tank_J_ / limits_.energy_J, 0.0, 1.0);
   const Eigen::Vector3d allowed = inside_ * left * clamped(wanted, limits_.force_N);
   last_ += clamped(allowed - last_, limits_.slew_N_s * std::min(dt, kLongestSlew_s));

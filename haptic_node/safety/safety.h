@@ -1,6 +1,6 @@
-// What keeps the person safe whatever arrives: the force is limited in size, in change per time and in the energy
-// that it gives to the hand and in where it acts, and it fades when the touch model is lost. Scenes come and go;
-// the hand, its force and what it has been given stay, so there is one Safety for the life of the process.
+// Safety limits of the device: on the force, its rate of change, the energy given to the hand and the workspace,
+// for any input; and the fade when the touch model is lost. The hand, its force and the energy that it received
+// persist across scenes, so there is one Safety per process.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,33 +23,34 @@ struct SafetyLimits {
 };
 SafetyLimits safety_limits(const Settings& settings);
 
-// A passivity observer (Hannaford and Ryu 2002) with an allowance: a tank that what the hand takes in drains and
-// what it gives fills, besides a small power. As it empties the force goes to zero.
+// A passivity observer (Hannaford and Ryu 2002) with an allowance: a tank that energy to the hand drains and
+// energy from the hand fills, plus a small constant power. The force goes to zero as the tank empties.
 class Safety {
  public:
   explicit Safety(const SafetyLimits& limits) : limits_(limits), tank_J_(limits.energy_J) {}
 
-  // Those of another scene. What the hand has been given stays given, and the force goes on from where it is.
+  // Applies the limits of another scene. The spent energy stays counted and the force continues from its current
+  // value.
   void set_limits(const SafetyLimits& limits) { limits_ = limits; }
 
-  // A tick begins. A force that was not renewed within the watchdog of the device has been let go.
+  // Begins a tick. A force that was not written within the watchdog time of the device has been dropped.
   void begin_tick(sync::HostTime now);
 
-  // Where the device is, before limit. The workspace is a ball about the place where it was first; over the
-  // outermost tenth of it the force goes to zero, outside there is none. A place that is not finite is outside.
+  // Sets the position of the device; call before limit(). The workspace is a ball about the first position. The
+  // force goes to zero over its outermost tenth and is zero outside. A position that is not finite is outside.
   void at(const Eigen::Vector3d& device_m);
 
-  // One tick: the force to command now, N. moved_m: how far the device moved since the last call, under the force
-  // that was returned then. A wanted force that is not finite counts as none. Realtime-safe: yes.
+  // One tick: returns the force to command now, N. moved_m: motion of the device since the last call, under the
+  // force returned then. A wanted force that is not finite counts as zero. Realtime-safe: yes.
   Eigen::Vector3d limit(const Eigen::Vector3d& wanted_N, const Eigen::Vector3d& moved_m, double dt);
 
-  // The same of force and torque together: a limit of size that one reaches holds back both, so that what is felt
-  // comes from where it did. turned_rad: how far the device turned.
+  // As above, for force and torque together: when one reaches its limit, both are reduced, so that the felt
+  // contact point does not move. turned_rad: rotation of the device.
   Wrench limit(const Wrench& wanted, const Eigen::Vector3d& moved_m, const Eigen::Vector3d& turned_rad, double dt);
 
-  // Energy given to the hand since the beginning, J.
+  // Energy given to the hand since the start, J.
   double energy_J() const { return energy_J_; }
-  // What the hand may still be given at once, J.
+  // Energy that the hand may receive now, J.
   double tank_J() const { return tank_J_; }
 
  private:
@@ -63,12 +64,12 @@ class Safety {
   double inside_ = 1;  // factor of the workspace
 };
 
-// Factor on the force: 1 while touch models arrive, to 0 within `fade` from the moment at which the newest is
-// older than stale_after, and back as slowly.
+// Factor on the force: 1 while touch models arrive. It goes to 0 within `fade` once the newest is older than
+// stale_after, and back to 1 at the same rate.
 class Fade {
  public:
   Fade(double stale_after_s, double fade_s) : stale_after_s_(stale_after_s), fade_s_(fade_s) {}
-  // newest: when the newest touch model arrived, raw; nothing: none yet.
+  // newest: arrival of the newest touch model, as measured; empty: none yet.
   double step(sync::HostTime now, std::optional<sync::HostTime> newest, double dt);
   double value() const { return value_; }
   bool lost() const { return lost_; }

@@ -1,4 +1,4 @@
-// What is worst of all that a world can do, and what no world does, through ears, loudspeakers and recordings.
+// Extreme and impossible contacts through ears, loudspeakers and recordings.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -129,7 +129,7 @@ Extremes extremes_of(const std::vector<float>& x) {
   return e;
 }
 
-// A blow a fifth of a second and a stroke; between them so many things that no world does.
+// A blow every fifth of a second and a stroke, with `wild` impossible contacts in between.
 std::vector<float> play(const std::string& spatial, const std::string& method, int wild) {
   auto stage = std::make_unique<Stage>(spatial, method);
   std::int64_t id = 0, wild_id = 1'000'000;
@@ -145,7 +145,7 @@ std::vector<float> play(const std::string& spatial, const std::string& method, i
        : block % 4 == 2 ? e.point_m.x
                         : e.normal.y) = value;
       stage->hit(e);
-      // Also of the contact that is there: a contradiction.
+      // Also for the existing contact: a contradiction.
       contact_t c = stroke(i % 2 ? 7 : ++wild_id, 0.1f, 2);
       (block % 3 == 0   ? c.sliding_velocity_m_s.x
        : block % 3 == 1 ? c.normal_force_N
@@ -194,7 +194,7 @@ TEST_CASE(
   CHECK(e.finite);
   CHECK(e.loudest > 0.05);
   CHECK(e.loudest <= static_cast<double>(static_cast<float>(kCeiling)));
-  // What rings on after it are numbers too.
+  // The decay after it is finite too.
   for (int block = 0; block < 20; ++block) stage->rub({}), stage->play();
   CHECK(extremes_of(stage->out).finite);
 }

@@ -1,4 +1,4 @@
-// What no world does, said all the same: it is refused, and what sounds besides is as if it had never been said.
+// Impossible contacts are rejected, and other sounds are as if they had never arrived.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -39,7 +39,7 @@ void poison(vec3f_t& v, float value, std::mt19937& random) {
   (random() % 3 == 0 ? v.x : random() % 2 ? v.y : v.z) = value;
 }
 
-// One thing in it is impossible.
+// One of its fields is impossible.
 contact_event_t wild_event(std::int64_t id, std::mt19937& random) {
   contact_event_t e = RecordedRun::hit(id, 0, 0, 1);
   switch (random() % 7) {
@@ -85,7 +85,7 @@ scene_t rough_scene() {
 
 std::optional<Extent> no_mesh(std::int64_t) { return std::nullopt; }
 
-// Two seconds of blows and of a stroke over the board, with as many impossible ones between them as are asked for.
+// Two seconds of blows and of a stroke over the board, with the given number of impossible ones in between.
 std::vector<float> play(int wild, unsigned seed) {
   const scene_t scene = rough_scene();
   const Impacts impacts(scene, no_mesh, Settings{}, kRate, 1);
@@ -101,7 +101,7 @@ std::vector<float> play(int wild, unsigned seed) {
       bench->crossing.strikes.push(impacts.strike(wild_event(++wild_id, wild_random), at));
     sync::Contacts contacts{slide(7, 0.1f, 2)};
     for (int i = 0; i < wild; ++i)
-      // Also of the contact that is there: a contradiction.
+      // Also for the existing contact: a contradiction.
       contacts.push_back(wild_slide(wild_random() % 2 ? 7 : static_cast<std::int64_t>(++wild_id), wild_random));
     for (Scrape s : sliding.scrapes(contacts, sync::SimTime{}, at, 128 / kRate)) {
       s.number = number++;
@@ -140,7 +140,7 @@ TEST_CASE("Whatever is said, possible or not, what is heard are numbers below th
   Sliding sliding(scene, wavy_surfaces(), bodies, impacts, Settings{}, kRate);
   auto bench = std::make_unique<Bench>();
   std::mt19937 random(9);
-  // Also the bits of a float at random: NaNs, infinities, denormal and huge numbers.
+  // Also random bits of a float: NaNs, infinities, denormal and huge numbers.
   const auto any = [&] {
     const auto bits = static_cast<std::uint32_t>(random());
     float x = 0;
@@ -176,7 +176,7 @@ TEST_CASE("Whatever is said, possible or not, what is heard are numbers below th
     bench->play(128);
   }
   bool below = true;
-  for (const float x : bench->left) below &= std::abs(x) <= static_cast<float>(kCeiling);  // false of a NaN
+  for (const float x : bench->left) below &= std::abs(x) <= static_cast<float>(kCeiling);  // false for NaN
   CHECK(below);
   SECTION("each blow is reported, heard or not") {
     bench->play(4800);

@@ -1,4 +1,4 @@
-// A recorded run rendered by the program itself, without bus and card.
+// The program renders a recorded run, without bus and card.
 #include <fcntl.h>
 #include <sndfile.h>
 #include <sys/wait.h>
@@ -41,7 +41,7 @@ struct Done {
   std::string said;
 };
 
-// The program beside this one.
+// Runs the program in the folder of this one.
 Done render(const Folder& folder, std::vector<std::string> words) {
   const auto bin = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   const std::string said = folder.file("said.txt");
@@ -79,7 +79,7 @@ std::vector<float> mono_of(const std::string& path) {
   return mono;
 }
 
-// Hits far enough apart that each can be told, at times by chance. Returns them.
+// Hits far enough apart to be distinguished, at random times. Returns them.
 std::vector<double> record(const std::string& path, const std::string& profile = "") {
   RecordedRun run(std::make_unique<sync::FileSink>(path));
   if (!profile.empty())
@@ -111,7 +111,7 @@ std::int64_t first_sample_ns(const std::string& said) {
   return std::stoll(said.substr(at + before.size()));
 }
 
-// Samples after its time and its delay at which the hit of t is heard out of silence.
+// Samples from the time of hit t plus its delay to its onset out of silence.
 double onset_after(const std::vector<float>& wav, const std::string& said, double t) {
   const double start_s = static_cast<double>(first_sample_ns(said) - kLogBegins_ns) * 1e-9;
   const double due = (t + kDelay_s - start_s) * kRate;
@@ -150,11 +150,12 @@ TEST_CASE("A log rendered twice gives the same bytes, and each hit its onset at 
   const std::vector<float> wav = mono_of(folder.file("a.wav")), plain = mono_of(folder.file("pair.wav"));
   for (const double t : times) {
     CAPTURE(t);
-    // Rounded to a sample; a raised cosine reaches a fiftieth of what follows it within some samples more.
+    // Rounded to a sample; a raised cosine reaches a fiftieth of the following signal some samples later.
     const double late = onset_after(plain, pair.said, t);
     CHECK(late > -1);
     CHECK(late < 8);
-    // From one side ears may hear it by so much earlier or later than in the mean over all (spatialiser_test).
+    // From one side ears may receive it earlier or later than the mean over all directions by this much
+    // (spatialiser_test).
     CHECK(std::abs(onset_after(wav, first.said, t) - late) <= 8);
   }
 
@@ -170,7 +171,7 @@ TEST_CASE("A log rendered twice gives the same bytes, and each hit its onset at 
       power += x * x, difference += d * d;
     }
     // Single-precision poles round alike in all of them; a fused multiply-add rounds once less, 6e-8 a sample,
-    // which 12,000 samples of ringing make 7e-4 of phase at the most.
+    // which over 12,000 samples of ringing gives at most 7e-4 of phase.
     CHECK(std::sqrt(difference / power) < 1e-3);
   }
 }
@@ -210,7 +211,7 @@ TEST_CASE("A profile is laid on the raw log, whatever the run was degraded by, w
       dropped += row.at(6) == "dropped_by_profile";
       if (row.at(6) != "presented") continue;
       ++presented;
-      // Rounded to a sample, each.
+      // Each rounded to a sample.
       CHECK(std::abs(std::stoll(row.at(4)) - at_ns.at(row.at(1)) - 40'000'000) <= 21'000);
     }
     CHECK(presented + dropped == kHits);
@@ -224,7 +225,7 @@ TEST_CASE("What is no log of a run is refused in one sentence that says what to 
   const auto refusal = [&](const std::string& log) {
     const Done done = render(folder, {"--log", log, "--wav", folder.file("x.wav")});
     CHECK(done.status == 1);
-    CHECK(std::count(done.said.begin(), done.said.end(), '\n') <= 2);  // one more that says which node this is
+    CHECK(std::count(done.said.begin(), done.said.end(), '\n') <= 2);  // one more, which names the node
     return done.said;
   };
   CHECK_THAT(refusal(folder.file("none.lcmlog")), Catch::Contains("cannot read"));

@@ -13,7 +13,7 @@ namespace {
 constexpr int kPeriod = 128;
 constexpr std::size_t kFade = 240;  // 5 ms
 
-// A body of `modes` modes, 200 Hz apart; the lowest group of four sounds with a quarter of them.
+// A body of `modes` modes, 200 Hz apart; with a quarter of them the lowest group of four sounds.
 StrikeSide body(std::int64_t voice, int modes, float impulse) {
   StrikeSide side = strike_of(0, voice, 200, 2, 0, impulse).sides[0];
   Resonators resonators;
@@ -44,7 +44,7 @@ struct Sounding {
   }
 };
 
-// Blocks take a share of their time that each step of quality halves.
+// Blocks take a share of their duration that each step of quality halves.
 int run(Bench& bench, double share, int blocks) {
   for (int b = 0; b < blocks; ++b) {
     const double time_s = kPeriod / kRate;
@@ -79,7 +79,7 @@ TEST_CASE("Sound whose quality is held does not heed the time") {
 
 TEST_CASE("With fewer modes the lowest stay as they were, and the others fade") {
   Sounding full{Voices(4, kRate, kRing)}, less{Voices(4, kRate, kRing)};
-  Sounding low{Voices(4, kRate, kRing)};  // of the lowest 16 of 64 alone
+  Sounding low{Voices(4, kRate, kRing)};  // only the lowest 16 of 64
   full.voices.strike(body(1, 64, 0.1f), 1, one_hump(20), 0);
   less.voices.strike(body(1, 64, 0.1f), 1, one_hump(20), 0);
   low.voices.strike(body(1, 16, 0.1f), 1, one_hump(20), 0);
@@ -87,11 +87,11 @@ TEST_CASE("With fewer modes the lowest stay as they were, and the others fade") 
   CHECK(less.left == full.left);
   less.voices.set_limits({4, 4});
   for (Sounding* s : {&full, &less, &low}) s->render(20);
-  // The sums are of the same modes in the same order: equal to the bit once the rest has gone.
+  // The sums are of the same modes in the same order: equal to the bit once the rest has faded.
   CHECK(std::equal(less.left.begin() + 20 * kMaxBlock + kFade, less.left.end(),
                    low.left.begin() + 20 * kMaxBlock + kFade));
   CHECK(less.left.back() != full.left.back());
-  // No step is larger than those of the sound itself and of its share that fades: sum of 0.1 / k over 5 ms.
+  // No step is larger than those of the sound itself and of its fading part: sum of 0.1 / k over 5 ms.
   const float own = full.largest_step(20 * kMaxBlock);
   CHECK(less.largest_step(20 * kMaxBlock) <= own + 0.1f * 4 / kFade);
 }
@@ -129,8 +129,7 @@ TEST_CASE("When there are too many voices the quietest fade, the others go on") 
   s.render(10), loud.render(10);
   CHECK(s.voices.active() == 3);
   for (std::size_t n = 10 * kMaxBlock + kFade; n < s.left.size(); ++n) CHECK(s.left[n] == loud.left[n]);
-  // Each moves by 2 pi f / rate of its amplitude a sample, of 0.15 in all, at 324 Hz at the most; 0.03 of it
-  // fades.
+  // Each moves by 2 pi f / rate of its amplitude a sample, of 0.15 in total, at 324 Hz at most; 0.03 of it fades.
   CHECK(s.largest_step(10 * kMaxBlock) < 0.15f * 0.0425f + 0.03f / kFade);
 }
 
@@ -139,7 +138,7 @@ TEST_CASE("A strike that finds all voices in use takes the quietest, which fades
   s.voices.strike(strike_of(0, 1, 300, 2, 0, 0.1f).sides[0], 1, one_hump(1), 0);
   s.voices.strike(strike_of(0, 2, 200, 2, 0, 0.05f).sides[0], 1, one_hump(1), 0);
   s.render(10);
-  // A long pulse, so that it is no jump by itself: slower than its own period it leaves little.
+  // A long pulse, so that it is not a jump itself: slower than its own period it leaves little.
   s.voices.strike(strike_of(0, 3, 250, 2, 0, 0.1f).sides[0], 1, one_hump(48), 0);
   CHECK(s.voices.active() == 3);
   s.render(10);

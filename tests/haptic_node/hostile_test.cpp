@@ -1,6 +1,5 @@
-// Touch models that lie. What gets in over the border and what never would are both given to the renderer:
-// whatever arrives, the force stays finite and inside its limits of size, slew, energy and workspace, at 1, 2 and
-// 4 kHz.
+// False touch models. The renderer receives messages that pass the validation and messages that never would. For
+// any input the force stays finite and within its limits of size, slew, energy and workspace, at 1, 2 and 4 kHz.
 #include <catch2/catch.hpp>
 #include <limits>
 #include <map>
@@ -20,11 +19,11 @@ using namespace tactus::haptic::test;
 
 namespace {
 
-// A source of lies: every number may be as large, as small or as wrong as a number can be.
+// A source of false models: every number may be as large, small or wrong as a number can be.
 struct Liar {
   std::mt19937 random;
-  bool finite;                              // only what may be valid
-  std::map<std::int64_t, bool> moves = {};  // whether a surface did when it was told of last
+  bool finite;                              // only values that may pass the validation
+  std::map<std::int64_t, bool> moves = {};  // whether a surface moved in the last message
 
   int below(int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); }
   double number() {
@@ -39,7 +38,7 @@ struct Liar {
     return below(2) ? kFinite[below(8)] : std::normal_distribution<double>(0, 1)(random);
   }
   Vector3d vector() { return {number(), number(), number()}; }
-  // At the tool's size, unit where it must be: where a lie does most.
+  // At the size of the tool, with unit vectors where required: there false values have the largest effect.
   Vector3d place() { return 0.02 * Vector3d(unit().x(), unit().y(), unit().z()); }
   Vector3d unit() {
     std::normal_distribution<double> normal(0, 1);
@@ -48,7 +47,7 @@ struct Liar {
 
   touch_plane_t lying_plane(int tick) {
     const int kind = below(6);
-    const Vector3d normal = kind == 0 ? Vector3d(0, 0, tick % 2 ? 1 : -1)  // facing each other, and turning round
+    const Vector3d normal = kind == 0   ? Vector3d(0, 0, tick % 2 ? 1 : -1)  // facing each other, and alternating
                             : kind == 1 ? (finite ? unit() : Vector3d::Zero())
                                         : unit();
     auto p = plane(below(3) ? below(4) : static_cast<std::int64_t>(random()), kind == 2 ? 5 * unit() : place(),
@@ -58,7 +57,7 @@ struct Liar {
     if (kind == 3) p.point_m = to_vec3(vector());
     if (!finite && kind == 4) p.normal = to_vec3f(vector());
     const auto positive = [&](double x) { return finite ? std::clamp(std::abs(x), 1e-30, 9e8) : x; };
-    // Every third stands still, for all that it says: what moves the controller of passivity soon lets go of.
+    // Every third is static, regardless of its other fields: the passivity controller soon releases moving ones.
     p.effective_mass_kg = below(3) == 0 ? 1e10f : static_cast<float>(positive(number()));
     moves[p.contact_id] = p.effective_mass_kg < 1e9f;
     p.stiffness_N_m = static_cast<float>(positive(number()));
@@ -77,8 +76,9 @@ struct Liar {
   touch_model_t lying_model(int tick, double ms) {
     std::vector<touch_plane_t> planes;
     for (int i = below(8); i > 0; --i) planes.push_back(lying_plane(tick));
-    if (planes.size() > 1 && below(3) == 0) planes.back().contact_id = planes.front().contact_id;  // told twice
-    // Time stands still, goes back, or is of another world.
+    // twice in one message
+    if (planes.size() > 1 && below(3) == 0) planes.back().contact_id = planes.front().contact_id;
+    // Time stands still, goes back, or belongs to another run.
     touch_model_t m = model(below(4) ? ms : below(2) ? 0 : std::abs(std::fmod(1e3 * number(), 1e6)), planes);
     if (m.header.sim_time_ns < 0) m.header.sim_time_ns = 0;
     m.page = static_cast<std::int8_t>(finite ? 0 : below(256) - 128);
@@ -106,7 +106,7 @@ TEST_CASE("Touch models that lie keep the force inside its limits of size, slew,
   settings.workspace_m = 0.05;
   Bench bench(settings);
   Liar liar{std::mt19937(seed), finite};
-  // A hand that goes out of its workspace and comes back.
+  // A hand that leaves its workspace and returns.
   std::vector<double> times;
   std::vector<Vector3d> places;
   for (int k = 0; k < 20; ++k)
@@ -135,7 +135,7 @@ TEST_CASE("Touch models that lie keep the force inside its limits of size, slew,
     hand.write(out.force_N);
     REQUIRE(out.force_N.allFinite());
     REQUIRE(out.force_N.norm() <= settings.force_limit_N + 1e-9);
-    // A tick that was left out counts as at most 2 ms.
+    // A skipped tick counts as at most 2 ms.
     REQUIRE((out.force_N - last_force).norm() <= settings.slew_limit_N_s * 0.002 + 1e-9);
     if (!finite) REQUIRE((out.force_N - last_force).norm() <= settings.slew_limit_N_s / rate_Hz + 1e-9);
     const double drawn_back_s = settings.force_limit_N / settings.slew_limit_N_s;
@@ -154,7 +154,7 @@ TEST_CASE("Touch models that lie keep the force inside its limits of size, slew,
         [&](const tool_constraint_t& c) { return to_eigen(c.force_N).norm() > 0.1 && liar.moves[c.contact_id]; });
     last_force = out.force_N;
   }
-  // That it was pressed at all, on what moves too, and that lies did get in.
+  // Shows that surfaces were pressed, moving ones too, and that false values passed the validation.
   CHECK(pressed > ticks / 50);
   CHECK(on_moving > ticks / 50);
   if (finite) CHECK(let_in > ticks / 20);

@@ -1,4 +1,4 @@
-// A recorded run felt again by the program itself, held tick by tick against a session that lived through it.
+// The program renders a recorded run; the result is compared tick by tick with a live session.
 #include <cmath>
 #include <random>
 #include <tactus/body_def_t.hpp>
@@ -29,7 +29,7 @@ using tactus::test::RenderedLog;
 
 namespace {
 
-constexpr std::int32_t kClock = 4711;  // of RecordedRun
+constexpr std::int32_t kClock = 4711;  // as in RecordedRun
 constexpr std::int64_t kRun = 7;
 constexpr double kFrom_s = 0.1, kUntil_s = 2.1;
 
@@ -44,8 +44,8 @@ scene_t floor_and_stylus() {
   return s;
 }
 
-// The tip goes up and down through a floor at z = 5 mm, slides, and hits it once; a hand that the floor does not
-// stop.
+// The tip moves up and down through a floor at z = 5 mm, slides, and hits it once; the floor does not stop the
+// hand.
 DeviceState hand_at(double t_s) {
   DeviceState d;
   d.position = {0.02 * std::sin(3 * t_s), 0.01 * std::cos(2 * t_s), 0.0095 + 0.004 * std::cos(20 * t_s)};
@@ -79,8 +79,8 @@ contact_events_t hit_at(double t_s) {
   return m;
 }
 
-// Lives through the run and records it: touch models at even milliseconds, ticks some time after each, as a real
-// loop wakes. Returns what the hand felt, as a table.
+// Runs a live session and records it: touch models at whole milliseconds, ticks a varying time after each, as in a
+// real loop. Returns the rendered force as a table.
 std::string live(const std::string& log, const std::string& profile = "", double until_s = kUntil_s) {
   const scene_t scene = floor_and_stylus();
   RecordedRun run(std::make_unique<sync::FileSink>(log), scene);
@@ -110,7 +110,7 @@ std::string live(const std::string& log, const std::string& profile = "", double
     const std::int64_t sim_time_ns = state.header.sim_time_ns;
     state.header = header;
     state.header.sim_time_ns = sim_time_ns;
-    run.raw(tick_s + 50e-6, channels::kToolState, sync::encode(state));  // it takes a while to the recorder
+    run.raw(tick_s + 50e-6, channels::kToolState, sync::encode(state));  // transport time to the recorder
     table += sync::csv_row(state);
   }
   run.finish();
@@ -157,7 +157,7 @@ TEST_CASE("A profile degrades what is felt of a log, and that of the run holds o
         std::find_if(events.begin(), events.end(), [](const auto& row) { return row.at(2) == "transient"; });
     REQUIRE(hit != events.end());
     CHECK(std::stoll(hit->at(3)) == kLogBegins_ns + 200'000'000 + 20'000'000);
-    // The floor comes with the first model that is let through.
+    // The floor arrives with the first delayed model.
     CHECK(table.at(18).at(20) == "none");
     CHECK(table.at(25).at(20) != "none");
   }
@@ -192,7 +192,7 @@ TEST_CASE("A log that lost its first event, LOG_INFO, is felt again, too, and sa
   const auto rows = cells_of(RenderedLog::bytes(of.file("trace.csv")));
   const auto all = cells_of(felt);
   REQUIRE(rows.size() > 1990);
-  // Where the beginning is is known to a latency only; the forces are of the same ticks.
+  // Without LOG_INFO the beginning is known only to a latency; the forces belong to the same ticks.
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto& same = all.at(static_cast<std::size_t>(std::stoll(rows[i].at(24))));
     for (std::size_t cell = 11; cell < 14; ++cell)

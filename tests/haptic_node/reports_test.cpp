@@ -21,7 +21,7 @@ TEST_CASE("A contact book sums force over time per contact, also the last share"
   for (int ms = 0; ms < 10; ++ms) book.step(host_ms(ms), 1e-3, std::vector{felt(7, 2)});
   book.tell(host_ms(9), told);
   REQUIRE(told.size() == 1);
-  CHECK(told[0].impulse_N_s.z == Approx(9 * 2e-3));  // what acted until now
+  CHECK(told[0].impulse_N_s.z == Approx(9 * 2e-3));  // impulse so far
   CHECK(told[0].force_N.z == Approx(2));
   book.step(host_ms(10), 1e-3, {});
   book.tell(host_ms(10), told);
@@ -33,7 +33,7 @@ TEST_CASE("A contact book sums force over time per contact, also the last share"
   CHECK(told.empty());
   book.step(host_ms(71), 1e-3, std::vector{felt(7, 2)});
   book.tell(host_ms(71), told);
-  CHECK(told[0].impulse_N_s.z == Approx(10 * 2e-3));  // goes on where it was
+  CHECK(told[0].impulse_N_s.z == Approx(10 * 2e-3));  // continues from its value
   CHECK(book.first_felt(7) == host_ms(71));
 }
 

@@ -1,4 +1,4 @@
-// A profile on touch models of several pages, from the bus to what the hand gets: each model is felt whole or not
+// A profile on touch models of several pages, from the bus to the hand: each model is rendered completely or not
 // at all.
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -26,13 +26,13 @@ sync::OperatorChain stack_of(const std::string& attributes) {
           {}};
 }
 
-// The way of the touch models as in the node's loop. A tick comes between the pages of each model: the last of
-// them arrive a tick later.
+// The path of the touch models as in the loop of the node. A tick comes between the pages of each model: the last
+// of them arrive a tick later.
 struct TouchWay {
   sync::OperatorChain stack;
   sync::DegradedSnapshots<touch_model_t> degraded;
   TouchInput input{0, 1};
-  std::vector<touch_model_t> late;  // pages that come with the next tick
+  std::vector<touch_model_t> late;  // pages that arrive with the next tick
   std::int64_t seq = 0;
 
   // One tick; what the hand gets new, or none.
@@ -43,7 +43,7 @@ struct TouchWay {
     late = pages_of(said, seq);
     arrive(late.front());
     late.erase(late.begin());
-    // As Sense does for a servo loop, whose news waits.
+    // As in ModalityEndpoint for a servo loop, where new messages wait.
     const sync::HostTime lets = now - stack.presentation_delay(sync::sim_time(ms * kMs));
     while (const auto m = degraded.pop(lets)) input.push(m->first, m->second);
     return input.take();
@@ -77,16 +77,17 @@ bool whole(const TouchModelView& m, bool zero) {
 
 struct Case {
   std::string profile;
-  double share, tolerance;  // of the models that come through
-  int least_ms, most_ms;    // how late
+  double share, tolerance;  // of the models that pass
+  int least_ms, most_ms;    // delay
   double stiffness_N_m = 1000;
 };
 
 }  // namespace
 
 TEST_CASE("Whatever a profile does to touch models of several pages, the hand gets whole ones, newer and newer") {
-  // Without a profile a model is whole a tick after it was said. Shares to five standard deviations of 2000 draws;
-  // where newer ones overtake (jitter, and a deadband beside losses) they are those that were measured first.
+  // Without a profile a model is complete one tick after it was sent. Shares to five standard deviations of 2000
+  // draws. Where newer models overtake (jitter, and a deadband beside losses) the shares are those of the first
+  // measurement.
   const Case c = GENERATE(
       Case{"delay=\"40ms\"", 1, 0, 41, 41}, Case{"delay=\"40ms network\"", 1, 0, 40, 40},
       Case{"rate=\"100Hz\"", 0.1, 0.002, 1, 1}, Case{"rate=\"100Hz\" delay=\"30ms network\"", 0.1, 0.002, 30, 30},
@@ -162,7 +163,7 @@ TEST_CASE("A profile that comes between the pages of a model splits none: that m
     REQUIRE(whole(m, zero));
     ++came;
   }
-  CHECK(came > 30);  // also behind a deadband, which lets 6 of 30 through
+  CHECK(came > 30);  // also behind a deadband, which passes 6 of 30
   CHECK(zero == (after == "freeze=\"zero\"" || after == "off=\"true\""));
 }
 

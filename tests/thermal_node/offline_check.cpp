@@ -1,4 +1,4 @@
-// A recorded run felt again by the program itself: the temperature of the skin.
+// The program renders the skin temperature of a recorded run.
 #include <cmath>
 #include <tactus/body_def_t.hpp>
 #include <tactus/contact_frame_t.hpp>
@@ -44,7 +44,7 @@ scene_t copper() {
   return s;
 }
 
-// The finger lies on the block for 1.5 s with 1 N.
+// The finger rests on the block for 1.5 s with 1 N.
 void record(const std::string& path, const std::string& profile = "") {
   RecordedRun run(std::make_unique<sync::FileSink>(path), copper());
   if (!profile.empty()) run.raw(0.01, channels::kDegradation, test::in_force(profile, header_at(0.01, 0, 33)));
@@ -94,7 +94,7 @@ TEST_CASE("Warmth that is delayed by 200 ms is the same ten ticks later, and the
   const std::string delayed = of.trace({"--degrade", of.write("late.xml", kLate)});
   const auto late = test::cells_of(delayed);
   REQUIRE(late.size() == now.size());
-  // From where both have something to feel.
+  // From the tick at which both have a contact.
   for (std::size_t i = 20; i + 10 < now.size(); ++i) {
     INFO(now[i].at(1));
     CHECK(degC(late[i + 10], kSkin) == Approx(degC(now[i], kSkin)).margin(1e-3));

@@ -25,7 +25,7 @@ const Material kMaterials[] = {{"copper", 401, 8933, 385},
                                {"foam", 0.026, 70, 1045}};
 const double kTimes[] = {0.1, 1, 10};
 
-// Deep enough that 10 s never reach the end: 20 sqrt(diffusivity t).
+// Deep enough that heat does not reach the end within 10 s: 20 sqrt(diffusivity t).
 Slab deep(double conductivity, double heat_capacity) {
   return {20 * std::sqrt(conductivity / heat_capacity * 10), conductivity, heat_capacity};
 }
@@ -51,7 +51,8 @@ TEST_CASE("Half-spaces with blood and air are within 10 mK of the oracle") {
     const double h = contact_conductance_W_m2K(m.conductivity);
     SkinModel skin(SkinProperties{});
     skin.set_object({23, effusivity(m.conductivity, m.density, m.specific_heat)});
-    // As its equations have it: temperatures from rest, blood at rest, of the touched pad no loss to the room.
+    // In the form of its equations: temperatures relative to rest, blood at rest, no loss to the room from the
+    // touched pad.
     Slab tissue = deep(0.37, 3.77e6);
     tissue.blood_W_m3K = 0.0025 * 3.77e6;
     FiniteDifferences truth({{tissue}, deep(m.conductivity, m.heat_capacity()), h});
@@ -79,7 +80,7 @@ TEST_CASE("Living layers on things of any thickness are within 10 mK of the orac
                             l.perfused ? tissue.perfusion_1_s * kBloodHeatCapacity_J_m3K : 0});
     if (thickness < touch.object.thickness_m) touch.object.thickness_m = thickness, touch.object_air_W_m2K = 8;
     touch.blood_degC = skin.blood_degC();
-    // Untouched the skin loses to the room, touched it does not.
+    // Untouched skin loses heat to the room, touched skin does not.
     Touch bare = touch;
     bare.skin_air_W_m2K = 8;
     FiniteDifferences rest(bare), truth(touch);

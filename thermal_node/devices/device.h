@@ -1,5 +1,4 @@
-// A thermal display under a finger: a command for its plate in, what its sensors say out. Pure: time is an
-// argument.
+// Interface of a thermal display under a finger: plate command in, sensor readings out. Pure: time is an argument.
 #pragma once
 
 #include <optional>
@@ -14,23 +13,23 @@ struct PlateReading {
   double sink_degC = 0;
   double current_A = 0;
   double voltage_V = 0;
-  bool limited = false;  // gives less than was commanded
-  bool fault = false;    // does not follow
+  bool limited = false;  // gives less than the command
+  bool fault = false;    // does not follow the command
 };
 
 class Device {
  public:
-  // A display that is not heard for so long is no longer reckoned with, and one that hears no command for so long
-  // goes back to neutral: 15 ticks of 20 ms.
+  // After this silence the readings of a display are no longer used, and a display without commands returns to
+  // neutral: 15 ticks of 20 ms.
   static constexpr sync::Nanoseconds kSilence{300'000'000};
 
   virtual ~Device() = default;
-  // What a program that drives a display says of it.
+  // Reading of a display that another program drives.
   virtual void receive(const thermal_device_t&, sync::HostTime /*arrival*/) {}
-  // Whether its readings are this process's own, to be told to others.
+  // True when the readings belong to this process, which then publishes them.
   virtual bool simulated() const { return false; }
-  // Once a tick: the plate's temperature to come to, the heat that the finger is thought to give to it, W; answers
-  // what is known of it since the last tick; nothing while it is silent.
+  // Call once per tick. command_degC: target of the plate; load_W: estimated heat from the finger, W. Returns the
+  // reading since the last tick; empty while the display is silent.
   virtual std::optional<PlateReading> step(double command_degC, double load_W, sync::HostTime now) = 0;
 };
 

@@ -1,15 +1,15 @@
-// thermal_device: a thermal display as a program of its own, behind the two messages of `device=external`, at 100
-// Hz. Its Peltier element is simulated; to drive a real one, replace `plate` by what talks to yours.
+// thermal_device: a thermal display as a separate program, behind the two messages of `device=external`, at 100
+// Hz. Its Peltier element is simulated; to drive a real one, replace `plate` by its driver.
 //
-//   in   THERMAL_STATE    what its tool's plate is to be brought to
+//   in   THERMAL_STATE    command for the plate of its tool
 //   out  THERMAL_DEVICE   every tick
 //
-// Losing THERMAL_STATE for 0.3 s brings the plate back to neutral; its own limits hold whatever is commanded.
+// When THERMAL_STATE is missing for 0.3 s the plate returns to neutral. Its own limits apply to any command.
 //
-// The whole contract: read THERMAL_STATE of your tool; never trust it further than your own limits; answer with
-// THERMAL_DEVICE. Both are in lcmtypes/ and begin with header_t; sync::Bus fills and checks it here. In another
-// language fill it by hand: run_id and clock as in the THERMAL_STATE that you answer when you run on its machine,
-// source and incarnation of your own, seq counting up from 0, publish_time_ns of CLOCK_MONOTONIC.
+// The contract: read THERMAL_STATE of your tool; apply your own limits to it; answer with THERMAL_DEVICE. Both are
+// in lcmtypes/ and begin with header_t; sync::Bus fills and checks it here. In another language fill it by hand:
+// run_id and clock as in the THERMAL_STATE that you answer if you run on its machine, source and incarnation of
+// your own, seq counting up from 0, publish_time_ns of CLOCK_MONOTONIC.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <tactus/node_health_t.hpp>

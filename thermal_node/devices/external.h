@@ -10,7 +10,7 @@ namespace tactus::thermal {
 
 class External final : public Device {
  public:
-  // Of this tool; other messages are not for it.
+  // tool: index; messages of other tools are ignored.
   explicit External(int tool) : tool_(tool) {}
 
   void receive(const thermal_device_t& message, sync::HostTime arrival) override;
@@ -22,7 +22,7 @@ class External final : public Device {
   std::optional<sync::HostTime> arrival_;
 };
 
-// A reading as the message that says it; of the header only that it speaks of no instant.
+// Converts a reading to a message. Of the header it sets only sim_time_ns, to -1 (no simulated instant).
 thermal_device_t to_message(const PlateReading& reading, int tool);
 PlateReading to_reading(const thermal_device_t& message);
 

@@ -1,4 +1,4 @@
-// The display that the settings ask for.
+// Makes the display that the settings select.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace tactus::thermal {
 
-// Null for device=none. plate_degC: where a simulated plate stands at the beginning.
+// Null for device=none. plate_degC: initial temperature of a simulated plate.
 std::unique_ptr<Device> make_device(const Settings& settings, int tool, double plate_degC);
 
 }  // namespace tactus::thermal

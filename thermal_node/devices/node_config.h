@@ -1,4 +1,4 @@
-// What a scene and the command line make of this node: its settings and its tool. Pure.
+// Settings and tool of this node from the scene and the command line. Pure.
 #pragma once
 
 #include <string>
@@ -13,13 +13,13 @@ struct NodeConfig {
   Settings settings;
   int tool = -1;  // index in scene.tools; -1: none
   int tool_body = -1;
-  std::string problem;               // why there is no tool, one sentence; else empty
-  std::vector<std::string> refused;  // settings that do not fit, one sentence each
+  std::string problem;               // reason why there is no tool, one sentence; otherwise empty
+  std::vector<std::string> refused;  // invalid settings, one sentence each
 };
 
-// tool_name: from the command line; empty: the setting, else the scene's first tool.
+// tool_name: from the command line; empty: the setting, otherwise the first tool of the scene.
 NodeConfig resolve_config(const scene_t& scene, const Settings& settings, const std::string& tool_name);
-// The same with the settings of the scene and of the command line. set: name=value.
+// As above, with the settings of the scene and of the command line. set: name=value.
 NodeConfig resolve_config(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set);
 
 }  // namespace tactus::thermal

@@ -7,7 +7,7 @@ namespace tactus::thermal {
 namespace {
 
 constexpr double kStep_s = 0.001;
-// However long the process was stopped.
+// Upper bound of one step, also after a long stop of the process.
 constexpr double kLongest_s = 1;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A Peltier element of mathematics, with the controller that drives a real one. Pure.
+// A simulated Peltier element with the controller of a real one. Pure.
 #pragma once
 
 #include "thermal_node/devices/device.h"
@@ -8,7 +8,7 @@ namespace tactus::thermal {
 
 class SimulatedPeltier final : public Device {
  public:
-  // plate_degC: where it stands at the beginning.
+  // plate_degC: initial temperature of the plate.
   SimulatedPeltier(const PeltierPlant& plant, const PlateLimits& limits, double plate_degC)
       : plant_(plant), controller_(plant, limits), state_{plate_degC, plant.room_degC} {}
 

@@ -1,5 +1,5 @@
-// Turns a wanted skin temperature into a command that a Peltier element may give to skin: within the skin-safe
-// range, no faster than the element, whatever is asked.
+// Converts a wanted skin temperature into a safe command for a Peltier element: within the skin-safe range and the
+// slew limit, for any input.
 #pragma once
 
 namespace tactus::thermal {
@@ -12,20 +12,20 @@ struct ControllerLimits {
 
 struct Command {
   double command_degC = 0;
-  bool limited = false;  // cut to the range
+  bool limited = false;  // clamped to the range
 };
 
 // Realtime-safe: yes.
 class Controller {
  public:
-  // start_degC: where the element stands, cut to the range.
+  // start_degC: current temperature of the element, clamped to the range.
   Controller(const ControllerLimits& limits, double start_degC);
 
   // Limits may change at run time; the next command obeys them.
   void set_limits(const ControllerLimits& limits) { limits_ = limits; }
 
-  // A wish that is no number keeps the command where it is. The range comes before the slew limit: when a range is
-  // narrowed, the command is inside at once.
+  // NaN keeps the current command. The range has priority over the slew limit: when a range is narrowed, the
+  // command is inside at once.
   Command step(double wanted_degC, double dt_s);
 
  private:

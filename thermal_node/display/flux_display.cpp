@@ -5,7 +5,7 @@
 namespace tactus::thermal {
 namespace {
 
-// A plate is what its controller holds it at, whatever flows: so good a conductor that no finger changes it.
+// Properties of the plate as an ideal conductor: its controller holds its temperature for any heat flux.
 constexpr double kConductivity_W_mK = 1e6;
 constexpr double kHeatCapacity_J_m3K = 1e12;
 
@@ -16,8 +16,8 @@ double FluxDisplay::step(double skin_degC, double flux_W_m2, double plate_degC, 
   if (dt_s > 0 && std::isfinite(plate_degC)) {
     finger_->set_object({plate_degC, std::sqrt(kConductivity_W_mK * kHeatCapacity_J_m3K), kConductivity_W_mK,
                          kHeatCapacity_J_m3K});
-    // The model of the touch and that of the finger leave the loss to the room the same, so both are at rest
-    // together.
+    // The model of the touch and the model of the finger treat the loss to the room alike, so both are in
+    // equilibrium together.
     finger_->step(dt_s, contact_.conductance_W_m2K, 0, longest_substep_s);
   }
   const double forward = skin_degC - flux_W_m2 / contact_.conductance_W_m2K;

@@ -1,10 +1,9 @@
-// Which temperature a plate must have so that the skin on it loses the heat that it would lose to the touched
-// thing.
+// The plate temperature for which the skin on the plate loses the same heat as to the touched object.
 //
-// The finger rests on the plate, and what flows between them is h (skin - plate). So the plate that takes the flux
-// q from skin of temperature T_s stands at T_s - q/h: that is fed forward from the model of the touch. A second
-// model of skin, which touches the plate as it really is, tells how far the finger has come; its error is fed
-// back. So a plate that is too slow for the first moment of a touch makes up for it after.
+// The finger rests on the plate, and the flux between them is h (skin - plate). For a flux q from skin of
+// temperature T_s the plate must be at T_s - q/h: this is the feed-forward part, from the model of the touch. A
+// second skin model, in contact with the measured plate, estimates the real finger temperature; its error is fed
+// back. A plate that is too slow for the first moment of a touch therefore compensates afterwards.
 #pragma once
 
 #include <memory>
@@ -16,7 +15,7 @@ namespace tactus::thermal {
 
 struct PlateContact {
   double conductance_W_m2K = 0;  // between finger and plate, > 0
-  double feedback = 3;           // K of plate for each K that the finger is off; design: see flux_display_test.cpp
+  double feedback = 3;           // K of plate per K of error of the finger; design: see flux_display_test.cpp
 };
 
 // Realtime-safe: yes. Not thread-safe.
@@ -26,14 +25,14 @@ class FluxDisplay {
   FluxDisplay(const PlateContact& contact, std::unique_ptr<Skin> finger)
       : contact_(contact), finger_(std::move(finger)) {}
 
-  // The plate's temperature to aim at. skin_degC, flux_W_m2: of the touch as it should be felt, out of the skin;
-  // plate_degC: mean over the last dt, as measured, or as commanded where nothing is measured. What is no number
-  // leaves the finger as it is.
+  // Returns the target temperature of the plate. skin_degC, flux_W_m2: of the touch to render, flux out of the
+  // skin; plate_degC: mean over the last dt, measured, or commanded without a measurement. A value that is not
+  // finite leaves the finger unchanged.
   double step(double skin_degC, double flux_W_m2, double plate_degC, double dt_s, double longest_substep_s);
 
-  // Of the finger that rests on the plate, as far as is known.
+  // Estimated temperature of the finger on the plate.
   double finger_degC() const { return finger_->surface_degC(); }
-  // Out of it into the plate.
+  // From the finger into the plate.
   double finger_flux_W_m2() const { return finger_->heat_flux_W_m2(); }
 
  private:

@@ -33,7 +33,8 @@ double pumped_W(const PeltierModule& m, const PeltierState& s, double current_A)
 }
 
 double current_for_A(const PeltierModule& m, const PeltierState& s, double pumped_W) {
-  // R/2 I^2 - S T I + (pumped + K (T_s - T_p)) = 0, the smaller root: the larger wastes more for the same.
+  // R/2 I^2 - S T I + (pumped + K (T_s - T_p)) = 0, the smaller root: the larger one dissipates more for the same
+  // result.
   const double peltier = m.seebeck_V_K * (s.plate_degC + kZero_K);
   const double wanted = pumped_W + m.conductance_W_K * (s.sink_degC - s.plate_degC);
   const double under = peltier * peltier - 2 * m.resistance_ohm * wanted;

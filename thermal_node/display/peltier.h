@@ -1,4 +1,5 @@
-// A thermoelectric module between a plate that skin touches and a heat sink: what current and heat do to both.
+// A thermoelectric module between a plate that skin touches and a heat sink: the effect of current and heat on
+// both temperatures.
 //
 //   plate:  C_p dT_p/dt = load - (S I T_p - I^2 R/2 - K (T_s - T_p))
 //   sink:   C_s dT_s/dt = S I T_s + I^2 R/2 - K (T_s - T_p) - (T_s - room)/R_s
@@ -10,17 +11,17 @@
 
 namespace tactus::thermal {
 
-// As data sheets give it, for a hot side at hot_K.
+// Values of a data sheet, for a hot side at hot_K.
 struct PeltierDataSheet {
-  double current_max_A;             // at which the difference is largest
+  double current_max_A;             // at the largest temperature difference
   double voltage_max_V;             // at that current and difference
   double temperature_difference_K;  // largest, without load
   double hot_K = 300.15;
 };
 
 // ElectraCool TM 31-1.4-8.5 (electracool.com/TM-31-14-85.html): 20 x 20 x 3.4 mm, 31 couples, hot side at 27 degC.
-// The sheet's other figures, 0.35 ohm +- 10 % and 18.8 W pumped without a difference, are left to check the model
-// with.
+// The other values of the sheet, 0.35 ohm +- 10 % and 18.8 W pumped without a difference, serve to check the
+// model.
 inline constexpr PeltierDataSheet kTm31_14_85{8.5, 3.8, 70};
 
 struct PeltierModule {
@@ -28,8 +29,8 @@ struct PeltierModule {
   double resistance_ohm = 0;
   double conductance_W_K = 0;
 
-  // From the three equations at the data sheet's point: no load, the largest difference, d(load)/dI = 0. They give
-  // S = V/T_h, R = V (T_h - dT)/(I T_h), K = V I (T_h - dT)/(2 T_h dT).
+  // From the three equations at the operating point of the data sheet: no load, the largest difference, d(load)/dI
+  // = 0. They give S = V/T_h, R = V (T_h - dT)/(I T_h), K = V I (T_h - dT)/(2 T_h dT).
   static PeltierModule from(const PeltierDataSheet& sheet);
 };
 
@@ -50,14 +51,14 @@ struct PeltierState {
   double sink_degC = 23;
 };
 
-// Heat that the module takes out of the plate, W.
+// Heat that the module removes from the plate, W.
 double pumped_W(const PeltierModule& module, const PeltierState& state, double current_A);
-// The current that pumps this much, or the one that pumps most.
+// The current that pumps this heat, or the one that pumps most.
 double current_for_A(const PeltierModule& module, const PeltierState& state, double pumped_W);
 double voltage_V(const PeltierModule& module, const PeltierState& state, double current_A);
 
-// After dt with a steady current and load (W, from the skin into the plate): midpoint rule, for dt well below the
-// seconds in which plate and sink change (1 ms). Realtime-safe: yes.
+// State after dt with constant current and load (W, from the skin into the plate): midpoint rule, for dt well
+// below the seconds in which plate and sink change (1 ms). Realtime-safe: yes.
 PeltierState step(const PeltierPlant& plant, const PeltierState& state, double current_A, double load_W,
                   double dt_s);
 

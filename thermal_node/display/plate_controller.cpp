@@ -6,13 +6,13 @@
 namespace tactus::thermal {
 namespace {
 
-// Design: the plate closes a gap in 30 ms, what the model leaves (load, resistance of sensors) in 0.5 s; both far
-// slower than the 1 ms in which the controller answers, far faster than skin.
+// Design: the plate closes a gap in 30 ms and the remaining model error (load, sensor resistance) in 0.5 s. Both
+// are far slower than the controller period of 1 ms and far faster than skin.
 constexpr double kClosing_s = 0.03;
 constexpr double kIntegral_s = 0.5;
-// Of the integral: what a finger can give at most, 20 kW/m^2 on 1 cm^2.
+// Bound of the integral: the largest heat of a finger, 20 kW/m^2 on 1 cm^2.
 constexpr double kMaxUnknown_W = 2;
-// Beyond a limit by so much is a fault, not an overshoot.
+// A temperature beyond a limit by more than this is a fault, not an overshoot.
 constexpr double kSlack_K = 1;
 
 }  // namespace
@@ -41,7 +41,7 @@ PlateDrive PlateController::step(const PeltierState& s, double wanted_degC, doub
   drive.current_A = low <= high ? std::clamp(asked, low, high) : 0;
   drive.limited = wanted != wanted_degC || drive.current_A != asked || std::abs(rate) >= limits_.rate_K_s;
 
-  // No windup: only while the plate is free to follow.
+  // Anti-windup: integrates only while the plate is free to follow.
   if (!drive.limited && dt_s > 0)
     integral_W_ = std::clamp(integral_W_ - plant_.plate_J_K * gap_K / kClosing_s / kIntegral_s * dt_s,
                              -kMaxUnknown_W, kMaxUnknown_W);

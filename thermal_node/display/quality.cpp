@@ -5,9 +5,9 @@
 namespace tactus::thermal {
 namespace {
 
-// Share of a tick; the rest is for a wake-up that comes late and for others (design).
+// Share of a tick; the rest covers late wake-ups and other processes (design).
 constexpr double kBudget = 0.5;
-constexpr double kCalm_s = 2;  // design: no better step without so much spare time
+constexpr double kCalm_s = 2;  // design: spare time required before a better step
 
 }  // namespace
 

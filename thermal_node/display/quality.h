@@ -1,5 +1,5 @@
-// The quality ladder of warmth: longer substeps of the skin model when a tick takes more than half of its time.
-// Pure.
+// The quality ladder of thermal_node: longer substeps of the skin model when a tick takes more than half of its
+// period. Pure.
 #pragma once
 
 #include <array>
@@ -12,13 +12,13 @@ namespace tactus::thermal {
 
 class Quality {
  public:
-  // Each halves the work of a tick of 20 ms. The last is 0.15 K off in the tick in which a touch on copper at room
-  // temperature begins, within 1 % of its change from the next on.
+  // Each step halves the work of a tick of 20 ms. The last is 0.15 K off in the tick in which a touch on copper at
+  // room temperature begins, and within 1 % of its change from the next tick on.
   static constexpr std::array<double, 3> kLongestSubsteps_s{Skin::kLongestSubstep_s, 0.010, 0.020};
 
   explicit Quality(const Settings& settings);
 
-  // Once a tick: what it took.
+  // Call once per tick with its duration.
   void add(sync::Nanoseconds used) {
     if (held_ < 0) ladder_.add(used);
   }
@@ -28,7 +28,7 @@ class Quality {
 
  private:
   sync::QualityLadder ladder_;
-  int held_;  // by the setting; -1: by the time that ticks take
+  int held_;  // step fixed by the setting; -1: chosen from the tick times
 };
 
 }  // namespace tactus::thermal

@@ -20,8 +20,8 @@ Tick Ticks::next(sync::ContactStream& stream, sync::HostTime now, sync::HostTime
 
   tick.sim_end = map->to_sim(now - ago);
   if (!sim_end_) sim_end_ = map->to_sim(tick.begin - ago);
-  // The map slews; what it takes back for a moment has been felt already. What lies farther back is a new
-  // beginning.
+  // The map slews; an interval that it returns for a moment has already been rendered. A larger step back is a new
+  // start.
   const bool fell_back = *sim_end_ - tick.sim_end > kLongest;
   tick.sim_begin = fell_back ? tick.sim_end : std::max(*sim_end_, tick.sim_end - kLongest);
   tick.sim_end = std::max(tick.sim_end, tick.sim_begin);

@@ -1,5 +1,5 @@
-// Cuts the contact stream into the intervals that one thermal tick after the other integrates: without a gap,
-// without an overlap, over pauses and restarts of the simulation. Pure.
+// Divides the contact stream into the intervals that successive thermal ticks integrate, without gap or overlap,
+// across pauses and restarts of the simulation. Pure.
 #pragma once
 
 #include <optional>
@@ -11,29 +11,29 @@
 
 namespace tactus::thermal {
 
-// What one tick is made from.
+// Input of one tick.
 struct Tick {
   sync::HostTime begin{}, end{};         // on the host clock: the skin is real and ages in host time
-  sync::SimTime sim_begin{}, sim_end{};  // the interval of the world that is felt in it
-  sync::ContactIntegral contact;         // over that interval; while the world is paused, the last one holds
-  sync::Nanoseconds contact_interval{};  // that `contact` is the mean of
-  std::vector<contact_event_t> events;   // that have become due, of all tools
+  sync::SimTime sim_begin{}, sim_end{};  // the rendered interval of simulated time
+  sync::ContactIntegral contact;         // over that interval; while the simulation is paused, the last one holds
+  sync::Nanoseconds contact_interval{};  // interval over which `contact` is the mean
+  std::vector<contact_event_t> events;   // events that have become due, of all tools
   sync::TimeMap map;                     // from simulated to host time
-  sync::Nanoseconds delay{0};            // what is felt happened so long ago, beyond what is still on its way
+  sync::Nanoseconds delay{0};            // age of the rendered interval, in addition to kSettle
 
   double contact_interval_s() const { return sync::to_seconds(contact_interval); }
 };
 
 class Ticks {
  public:
-  // Contacts of so short ago may still be on their way; heat can wait for them (Fowler et al. 1988: cold takes 0.4
-  // s to the brain), so the interval ends that much before now and no part of a touch falls between two ticks.
+  // Contacts more recent than this may still be in transit. Heat can wait for them (Fowler et al. 1988: cold takes
+  // 0.4 s to the brain), so the interval ends this much before now and no part of a touch falls between two ticks.
   static constexpr sync::Nanoseconds kSettle{5'000'000};
-  // No tick integrates more than this of the world, however long the process was stopped.
+  // A tick integrates at most this much simulated time, also after a long stop of the process.
   static constexpr sync::Nanoseconds kLongest{2'000'000'000};
 
-  // now: the clock; newest_arrival: when the newest contact message really came; delay: of presentation. A gap in the
-  // stream while messages arrive is commanded: the last contact is held.
+  // now: the clock; newest_arrival: actual arrival of the newest contact message; delay: of presentation. A gap in
+  // the stream while messages arrive is intended: the last contact is held.
   Tick next(sync::ContactStream& stream, sync::HostTime now, sync::HostTime newest_arrival, int tool,
             int tool_body, sync::Nanoseconds delay = sync::Nanoseconds(0));
 

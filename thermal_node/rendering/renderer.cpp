@@ -10,9 +10,9 @@
 namespace tactus::thermal {
 namespace {
 
-// Of what gives no temperature.
+// For a material without a temperature.
 constexpr double kRoom_degC = 23;
-// Colder than this is nothing, hotter no solid: tungsten melts at 3422 degC.
+// Absolute zero, and the melting point of tungsten, the highest of a solid.
 constexpr double kColdest_degC = -273.15, kHottest_degC = 3422;
 
 std::unique_ptr<Skin> make_skin(const Settings& s) {
@@ -24,16 +24,16 @@ std::unique_ptr<Skin> make_skin(const Settings& s) {
       s.perfusion_1_s, s.air_conductance_W_m2K});
 }
 
-// How far a plate may be beyond its range before it counts as out of control: an overshoot is less.
+// Excess over the range above which a plate counts as out of control; an overshoot is smaller.
 constexpr double kRunaway_K = 2;
-// What a plate under a finger can be at all; what says otherwise is a broken sensor.
+// Possible range of a plate under a finger; other values mean a broken sensor.
 constexpr double kColdestPlate_degC = -50, kHottestPlate_degC = 150;
 
 ControllerLimits limits(const Settings& s) {
   return {s.temperature_min_degC, s.temperature_max_degC, s.slew_max_K_s};
 }
 
-// As published: what is no quantity reads as none.
+// As published: an invalid quantity reads as 0.
 float reading(double x) { return x > 0 && x < 1e9 ? static_cast<float>(x) : 0; }
 
 bool usable(sync::SampleStatus status) { return status != sync::SampleStatus::kNone && status != sync::SampleStatus::kStale; }
@@ -69,8 +69,7 @@ ObjectProperties Renderer::object(const material_def_t& m, int body) const {
   return object;
 }
 
-// Where the thing is held, with the heat that it has taken; a new one takes the place of what was touched longest
-// ago.
+// Index of the object in the skin model, which keeps its heat; a new object replaces the one touched longest ago.
 std::size_t Renderer::thing_of(int body, int material) {
   const auto same = [&](const Thing& t) { return t.body == body && t.material == material && t.touched >= 0; };
   auto found = std::find_if(things_.begin(), things_.end(), same);
@@ -85,8 +84,8 @@ std::size_t Renderer::thing_of(int body, int material) {
   return static_cast<std::size_t>(found - things_.begin());
 }
 
-// Means over the tick hide that the tool may touch for a part of it only, with more force: conductance is taken at
-// the force and area of the touch itself and then weighted with its time.
+// Means over the tick hide that the tool may touch only for a part of it, with more force. The conductance is
+// therefore taken at the force and area of the touch itself and then weighted with its time.
 void Renderer::add(Exchange& sum, const sync::ContactPart& c, double interval_s) {
   const double contact_s = sync::to_seconds(c.contact_time);
   if (!(contact_s > 0) || !(interval_s > 0) || c.material < 0 || c.material >= static_cast<int>(materials_.size()))
@@ -103,8 +102,8 @@ void Renderer::add(Exchange& sum, const sync::ContactPart& c, double interval_s)
   sum.touched_share = std::min(1.0, sum.touched_share + covered * time_share);
 }
 
-// Touches that were over before this tick's interval but are heard of only now: their heat is still owed. The
-// force follows from the momentum of a plastic impact, m v, over the time of touch, as in
+// Adds touches that ended before the interval of this tick but arrive only now, so that their heat is not lost.
+// The force follows from the momentum of a plastic impact, m v, over the time of touch, as in
 // sync/resampling/contact_integral.cpp.
 void Renderer::add_missed_touches(Exchange& sum, const Tick& tick, double interval_s) {
   for (const contact_event_t& end : tick.events) {
@@ -123,8 +122,9 @@ void Renderer::add_missed_touches(Exchange& sum, const Tick& tick, double interv
   }
 }
 
-// Heat is a slow state: an event is applied in the tick in which it becomes due, however late, never dropped. The
-// skin is told with the end of the tick; where in the tick the element begins to move is known to half a tick.
+// Heat is a slow state: an event is applied in the tick in which it becomes due, at any lateness, and never
+// dropped. The report carries the end of the tick; the start of the change within the tick is known to half a
+// tick.
 void Renderer::report(const contact_event_t& event, const Tick& tick) {
   if (event.tool != tool_ || event.kind == contact_event_t::END) return;
   presentation_t r{};
@@ -140,9 +140,8 @@ void Renderer::report(const contact_event_t& event, const Tick& tick) {
 
 double Renderer::load_W() const { return display_.finger_flux_W_m2() * settings_.reference_area_m2; }
 
-// From the skin as it should feel to what the plate is told: lag, then what the plate must be for it, then the
-// limits, the tightest last. A plate that its sensor finds out of its range or that reports a fault is called back
-// to rest.
+// From the wanted skin state to the plate command: lag, then the required plate temperature, then the limits, the
+// tightest last. A plate whose sensor is out of its range or that reports a fault is commanded to rest.
 Command Renderer::command(const Rendering& rendering, double interval_s) {
   const bool measured = rendering.plate && rendering.plate->plate_degC > kColdestPlate_degC &&
                         rendering.plate->plate_degC < kHottestPlate_degC;
@@ -179,9 +178,9 @@ thermal_state_t Renderer::step(const Tick& tick, const Rendering& rendering) {
   ++tick_;
   Exchange e;
   if (interval_s > 0) add_missed_touches(e, tick, interval_s);
-  e.pressed_share = 0;  // those had the pad to themselves
+  e.pressed_share = 0;  // each missed touch had the whole pad
   if (!lost) {
-    // What presses most, should it be more than the models hold.
+    // The strongest contacts, if there are more than the models hold.
     std::vector<sync::ContactPart> parts = tick.contact.parts;
     std::stable_sort(parts.begin(), parts.end(),
                      [](const auto& a, const auto& b) { return a.force_N > b.force_N; });

@@ -1,4 +1,4 @@
-// The thermal sense of one tool: contacts in, skin temperature, command and reports of presentation out. Pure.
+// Thermal rendering of one tool: contacts in; skin temperature, command and presentation reports out. Pure.
 #pragma once
 
 #include <array>
@@ -24,60 +24,61 @@
 
 namespace tactus::thermal {
 
-// Heat is a slow state: what comes late still warms.
+// Heat is a slow state: late events still apply.
 inline constexpr sync::Late kLate = sync::Late::kAlwaysApply;
 
-// How well a tick is rendered.
+// Quality of a tick.
 struct Rendering {
   double response_s = 0;  // time constant of a display that is slow on purpose; 0: none
   double longest_substep_s = Skin::kLongestSubstep_s;
   std::optional<PlateReading>
-      plate{};  // of the display since the last tick; nothing: it is where it was commanded
+      plate{};  // reading of the display since the last tick; empty: assumed to be at its command
 };
 
 class Renderer {
  public:
-  // materials: of the scene; tool, tool_body: index of the tool in the scene and its body. element_degC: where the
-  // element stands, as another scene left it; nothing: at resting skin. thickness_m: by body, see thickness.h; a
-  // body beyond its end is infinite.
+  // materials: of the scene. tool, tool_body: index of the tool in the scene and its body. element_degC:
+  // temperature of the element from the previous scene; empty: at resting skin. thickness_m: by body, see
+  // thickness.h; bodies beyond its end count as infinite.
   Renderer(const Settings& settings, std::vector<material_def_t> materials, int tool, int tool_body,
            std::optional<double> element_degC = std::nullopt, std::vector<double> thickness_m = {});
 
-  // The state to publish at tick.end; of the header only the instant of the world is filled. Input that is stale
-  // or missing counts as no contact, and then the command returns to the resting temperature whatever the skin
-  // model and the rendering say.
+  // The state to publish at tick.end; of the header only the simulated instant is filled. Stale or missing input
+  // counts as no contact; the command then returns to the resting temperature, independent of skin model and
+  // quality.
   thermal_state_t step(const Tick& tick, const Rendering& rendering = {});
 
-  // Other settings from the next step on, of those that can be changed while it runs.
+  // Applies changed settings from the next step on, as far as they can change while it runs.
   void change(const Settings& settings) {
     settings_.reference_force_N = settings.reference_force_N;
     settings_.pressure_exponent = settings.pressure_exponent;
   }
 
-  // What the finger is thought to give to the plate, W.
+  // Estimated heat from the finger to the plate, W.
   double load_W() const;
 
-  // What the skin has had of warmth and cold; resume it when another scene takes over, for the skin is the same.
+  // Accumulated warm and cold exposure of the skin; pass it to resume() when the scene changes, because the skin
+  // is the same.
   const Dwell& dwell() const { return dwell_; }
   void resume(const Dwell& before) { dwell_.resume(before); }
 
-  // Whether the last step had no input that could be relied on.
+  // True when the last step had no reliable input.
   bool input_lost() const { return input_lost_; }
 
-  // What became of the begin and hit events of the own tool in the last step, each exactly once.
+  // Reports of the begin and hit events of the own tool in the last step, each exactly once.
   const std::vector<presentation_t>& reports() const { return reports_; }
 
  private:
   // Means over the tick.
   struct Exchange {
-    std::array<double, Skin::kThings> conductance_W_m2K{};  // to each thing under the skin
+    std::array<double, Skin::kThings> conductance_W_m2K{};  // to each object under the skin
     double touched_share = 0;                               // of the pad and of the time
-    double pressed_share = 0;  // of what the whole pad, firmly pressed, conducts: at most 1
+    double pressed_share = 0;  // share of the conductance of the whole pad, firmly pressed: at most 1
   };
-  // A thing that the models hold under the skin.
+  // An object that the models hold under the skin.
   struct Thing {
     int material = -1, body = -1;
-    std::int64_t touched = -1;  // tick in which it was last
+    std::int64_t touched = -1;  // last tick in which it was touched
   };
   void add(Exchange& sum, const sync::ContactPart& part, double interval_s);
   void add_missed_touches(Exchange& sum, const Tick& tick, double interval_s);

@@ -7,12 +7,12 @@
 namespace tactus::thermal {
 namespace {
 
-// Heat passes this many s^0.5 in about (95/2)^2 s = 2000 s: beyond it a thing is infinite.
+// Heat crosses this length, in s^0.5, in about (95/2)^2 s = 2000 s: a thicker object is infinite.
 constexpr double kFarthest = 95;
-// Of the thinnest cells that a caller may ask for.
+// Bound for the thinnest cells that a caller may request.
 constexpr std::size_t kMaxCells = 1000;
 
-// Wider than any material by far; beyond it the grid would lose its numbers.
+// Far wider than the range of any material; beyond it the grid would lose precision.
 bool conducts(double conductivity_W_mK, double heat_capacity_J_m3K) {
   const double diffusivity = conductivity_W_mK / heat_capacity_J_m3K;
   return diffusivity > 1e-12 && diffusivity < 1e3 && conductivity_W_mK > 1e-9 && conductivity_W_mK < 1e9;
@@ -52,8 +52,9 @@ BioheatModel::BioheatModel(const Tissue& tissue, const Mesh& mesh, Grid grid)
   reset();
 }
 
-// The temperature of undisturbed skin is linear in that of the blood, so that of the blood follows from the
-// difference that one kelvin makes. Without blood nothing balances a loss to the room, so then there is none.
+// The temperature of undisturbed skin is linear in the blood temperature, so the blood temperature follows from
+// the difference that one kelvin makes. Without blood flow nothing balances a loss to the room, so the room is
+// then at the resting temperature.
 void BioheatModel::reset() {
   const bool living = tissue_.perfusion_1_s > 0 && std::any_of(tissue_.layers.begin(), tissue_.layers.end(),
                                                                [](const Layer& layer) { return layer.perfused; });
@@ -86,7 +87,7 @@ void BioheatModel::set_object(const ObjectProperties& object, std::size_t thing)
         growing_widths(ends ? object.thickness_m : far_m, mesh_.first_cell * root, mesh_.growth, thing_width_m_);
     for (std::size_t i = 0; i < count; ++i)
       thing_cells_[i] = {thing_width_m_[i] * c, 2 * k / thing_width_m_[i], 0};
-    // A thing that ends loses heat at its back; one that is infinite ends nowhere.
+    // A finite object loses heat at its back; an infinite one has no back.
     if (ends && count > 0 && tissue_.air_conductance_W_m2K > 0)
       back_W_m2K = 1 / (1 / tissue_.air_conductance_W_m2K + 1 / thing_cells_[count - 1].half);
   }

@@ -1,12 +1,12 @@
-// The temperature of layered, living skin and of things of finite thickness under it.
+// Temperature of layered, perfused skin and of objects of finite thickness under it.
 //
 // Pennes' bioheat equation (Pennes 1948), on one axis into the depth:
 //   rho c T_t = (k T_x)_x + w rho_b c_b (T_a - T)
-// in epidermis, dermis, fat and muscle or bone, whose deepest end is insulated; plain conduction in the thing,
-// whose back loses heat to the room. Heat of metabolism is left out: it has no significant effect on a touch (Ho
-// and Jones 2008). The blood of a hand at rest is cooler than the core; its temperature T_a is the one that keeps
-// the untouched surface at rest against the loss to the room, so that skin at rest stays at rest exactly. Cells
-// grow with depth and end at each layer.
+// in epidermis, dermis, fat and muscle or bone, whose deepest end is insulated; plain conduction in the object,
+// whose back loses heat to the room. Metabolic heat is omitted: it has no significant effect on a touch (Ho and
+// Jones 2008). The blood of a hand at rest is cooler than the core. Its temperature T_a is the one that balances
+// the loss of the untouched surface to the room, so that skin at rest stays at rest exactly. Cells grow with depth
+// and end at each layer.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace tactus::thermal {
 
-// How fine. Widths in units of the square root of diffusivity, s^0.5, as in skin_model.h.
+// Resolution. Widths in units of the square root of diffusivity, s^0.5, as in skin_model.h.
 struct Mesh {
   double first_cell = 0.02;  // resolves (0.02)^2 s = 0.4 ms
   double growth = 1.12;
@@ -32,8 +32,8 @@ class BioheatModel final : public Skin {
 
   using Skin::step;
   void reset() override;
-  // An object without conductivity or heat capacity, or of more than any material has, takes no heat. A thickness
-  // that is not positive counts as infinite.
+  // An object without conductivity or heat capacity, or with values beyond any material, takes no heat. A
+  // thickness that is not positive counts as infinite.
   void set_object(const ObjectProperties& object, std::size_t thing = 0) override;
   void step(double dt_s, std::span<const double> conductance_W_m2K, double touched_share,
             double longest_substep_s = kLongestSubstep_s) override;
@@ -41,9 +41,9 @@ class BioheatModel final : public Skin {
   double heat_flux_W_m2() const override { return columns_.flux_W_m2(); }
 
   double blood_degC() const { return blood_degC_; }
-  // Of the tissue, linear between the middles of cells.
+  // Temperature of the tissue, linear between the centres of cells.
   double at_depth_degC(double depth_m) const;
-  // For the balance of heat.
+  // For the heat balance.
   const HeatColumns& columns() const { return columns_; }
 
  private:
@@ -59,7 +59,7 @@ class BioheatModel final : public Skin {
   std::vector<double> width_m_;  // of the cells of skin, surface first
   std::array<ObjectProperties, kThings> objects_{};
   HeatColumns columns_;
-  std::vector<double> thing_width_m_;  // room for set_object
+  std::vector<double> thing_width_m_;  // scratch for set_object
   std::vector<HeatCell> thing_cells_;
   double blood_degC_ = 0;
 };

@@ -6,7 +6,7 @@
 namespace tactus::thermal {
 namespace {
 
-// Of Sapareto and Dewey 1984: per kelvin, above and below 43 degC.
+// Sapareto and Dewey 1984: factor per kelvin, above and below 43 degC.
 constexpr double kReference_degC = 43;
 constexpr double kAbove = 2, kBelow = 4;
 
@@ -26,7 +26,7 @@ TemperatureRange Dwell::step(double degC, double dt_s, const TemperatureRange& w
   else
     dose_s_ *= std::exp(-dt_s / kForgets_s);
   cold_s_ = std::max(0.0, cold_s_ + (coldest < limits_.cold_degC ? dt_s : -dt_s));
-  // So that recovery does not take longer than what came before could justify.
+  // Bounds the recovery time.
   dose_s_ = std::min(dose_s_, 2 * limits_.dose_max_s);
   cold_s_ = std::min(cold_s_, 2 * limits_.cold_max_s);
 

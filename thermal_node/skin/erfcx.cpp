@@ -6,8 +6,8 @@
 namespace tactus::thermal {
 namespace {
 
-// Beyond this the continued fraction converges to double precision in kTerms terms; below it the C library's erfc
-// is far from its underflow (x = 26) and exp(x^2) loses no more than x^2 units of rounding, 16 here.
+// Above this value the continued fraction converges to double precision in kTerms terms. Below it the erfc of the
+// C library is far from its underflow (x = 26), and exp(x^2) loses at most x^2 units of rounding, 16 here.
 constexpr double kSwitch = 4;
 constexpr int kTerms = 60;
 
@@ -15,8 +15,8 @@ constexpr int kTerms = 60;
 
 double erfcx(double x) {
   if (x < kSwitch) return std::exp(x * x) * std::erfc(x);
-  // Laplace's continued fraction (Abramowitz and Stegun 1964, 7.1.14), from its tail:
-  // sqrt(pi) erfcx(x) = 1/(x + (1/2)/(x + (2/2)/(x + (3/2)/(x + ...)))).
+  // Laplace's continued fraction (Abramowitz and Stegun 1964, 7.1.14), from its tail: sqrt(pi) erfcx(x) = 1/(x +
+  // (1/2)/(x + (2/2)/(x + (3/2)/(x + ...)))).
   double tail = x;
   for (int n = kTerms; n >= 1; --n) tail = x + 0.5 * n / tail;
   return std::numbers::inv_sqrtpi / tail;

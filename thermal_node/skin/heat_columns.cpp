@@ -10,7 +10,7 @@ namespace {
 constexpr double kMaxSubsteps = 2000;
 // Alexander 1977, two stages: gamma = 1 - 1/sqrt(2).
 constexpr double kGamma = 0.29289321881345254;
-// Of the thinnest layer or thing.
+// Minimum number of cells of a layer or object.
 constexpr std::size_t kFewestCells = 4;
 
 double in_series(double a, double b) { return a > 0 && b > 0 ? 1 / (1 / a + 1 / b) : 0; }
@@ -48,9 +48,9 @@ void HeatColumns::set_thing(std::size_t thing, std::span<const HeatCell> cells, 
   std::fill_n(c.u.begin(), cells.size(), degC);
 }
 
-// The equations of all columns, (capacity_share * capacity + weight * conduction) x = capacity_share * capacity *
-// old + weight
-// * sources, each eliminated from its far end up to the surface. They hold for all stages of a step.
+// Factors the equations of all columns, (capacity_share * capacity + weight * conduction) x = capacity_share *
+// capacity * old + weight * sources, each eliminated from its far end up to the surface. They hold for all stages
+// of a step.
 void HeatColumns::factor(double capacity_share, double weight_s) {
   capacity_share_ = capacity_share;
   weight_s_ = weight_s;
@@ -161,7 +161,7 @@ void HeatColumns::settle_skin(double room_W_m2K) {
     columns_[k].cells.clear();
     columns_[k].contact = 0;
   }
-  // Nothing is stored: what comes into each cell goes out.
+  // Steady state: the inflow of each cell equals its outflow.
   factor(0, 1);
   solve(false);
   columns_[0].u = columns_[0].stage;

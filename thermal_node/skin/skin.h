@@ -1,5 +1,4 @@
-// What a model of touched skin answers, whichever it is: the temperature of its surface and the heat that it
-// loses.
+// Interface of a model of touched skin: its surface temperature and its heat loss.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +7,8 @@
 
 namespace tactus::thermal {
 
-// What lies under the skin. A model takes from it what it can tell apart: half-spaces only the effusivity.
+// Properties of an object under the skin. A model uses those that it distinguishes: half-spaces only the
+// effusivity.
 struct ObjectProperties {
   double rest_degC = 23;
   double effusivity = 0;  // W s^0.5 m^-2 K^-1: sqrt(conductivity * heat capacity)
@@ -17,7 +17,7 @@ struct ObjectProperties {
   double thickness_m = std::numeric_limits<double>::infinity();
 };
 
-// Realtime-safe: yes, all but the constructors of what derives from it. Not thread-safe.
+// Realtime-safe: yes, except the constructors of derived classes. Not thread-safe.
 class Skin {
  public:
   // Second-order accuracy needs substeps well below the time constant of a contact, 0.1 s and more.
@@ -25,26 +25,26 @@ class Skin {
 
   virtual ~Skin() = default;
 
-  // Everything back to rest.
+  // Returns skin and objects to rest.
   virtual void reset() = 0;
-  // So many things can touch the skin at once.
+  // Number of objects that can touch the skin at once.
   static constexpr std::size_t kThings = 4;
   // Puts another object, uniformly at its own temperature, under the skin.
   virtual void set_object(const ObjectProperties& object, std::size_t thing = 0) = 0;
 
-  // Advances by dt seconds, during which the skin exchanges heat with each thing through a conductance (W/(m^2 K),
-  // mean over dt and pad; those beyond the end are not touched) and, for the share of dt and area that it touches
-  // none, with the room. Longer substeps are cheaper and less exact; they may change from step to step.
+  // Advances by dt seconds. conductance_W_m2K: to each object, W/(m^2 K), mean over dt and pad; objects beyond its
+  // end are not touched. touched_share: share of dt and area in contact; the rest exchanges heat with the room.
+  // Longer substeps are cheaper and less exact; they may change from step to step.
   virtual void step(double dt_s, std::span<const double> conductance_W_m2K, double touched_share,
                     double longest_substep_s = kLongestSubstep_s) = 0;
-  // With the first of them alone.
+  // As above, with the first object only.
   void step(double dt_s, double conductance_W_m2K, double touched_share,
             double longest_substep_s = kLongestSubstep_s) {
     step(dt_s, std::span<const double>(&conductance_W_m2K, 1), touched_share, longest_substep_s);
   }
 
   virtual double surface_degC() const = 0;
-  // Mean over the last substep, out of the skin into all that touches it, W/m^2.
+  // Mean over the last substep, out of the skin into all objects, W/m^2.
   virtual double heat_flux_W_m2() const = 0;
 };
 

@@ -6,7 +6,7 @@ namespace tactus::thermal {
 namespace {
 
 // Grid in s^0.5: the surface cell resolves changes of (0.02)^2 s = 0.4 ms; 56 cells that grow by 12 % reach 95
-// s^0.5, which heat passes in about (95/2)^2 s = 2000 s, so the far end is never felt.
+// s^0.5, which heat crosses in about (95/2)^2 s = 2000 s, so the far end has no effect.
 constexpr std::size_t kCells = 56;
 constexpr double kFirstCell = 0.02;
 constexpr double kGrowth = 1.12;

@@ -1,4 +1,4 @@
-// The temperature of a patch of skin and of the things under it, while contacts come and go: half-spaces.
+// Temperature of a patch of skin and of the objects under it during intermittent contacts: half-spaces.
 //
 // Heat conduction in half-spaces, each on one axis into its depth, joined at the surface by conductances that may
 // change from step to step. Depth is measured in units of the square root of diffusivity (s^0.5), in which every
@@ -18,7 +18,7 @@ namespace tactus::thermal {
 struct SkinProperties {
   double rest_degC = 33;
   double effusivity = 1181;       // W s^0.5 m^-2 K^-1
-  double perfusion_1_s = 0.0025;  // blood flow per volume of tissue; of tissue and blood rho c is nearly equal
+  double perfusion_1_s = 0.0025;  // blood flow per volume of tissue; rho c of tissue and blood is nearly equal
   double air_conductance_W_m2K = 8;
 };
 

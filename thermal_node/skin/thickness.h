@@ -1,4 +1,4 @@
-// How thick the things of a scene are. Pure.
+// Thickness of the bodies of a scene. Pure.
 #pragma once
 
 #include <tactus/scene_t.hpp>
@@ -6,9 +6,8 @@
 
 namespace tactus::thermal {
 
-// By body, m: what lies behind the touched surface before the object ends, from its thickest shape: the shortest
-// edge of a box, the diameter of what is round. Infinity: planes, meshes (their inside is not looked at) and
-// bodies without a shape.
+// By body, m: the depth behind the touched surface, from its thickest shape: the shortest edge of a box, the
+// diameter of a round shape. Infinity: planes, meshes (their inside is not examined) and bodies without a shape.
 std::vector<double> thickness_of_bodies(const scene_t& scene);
 
 }  // namespace tactus::thermal

@@ -5,7 +5,8 @@ namespace {
 
 // Conductivity and specific heat of epidermis and dermis, specific heat of fat: porcine, in vitro; conductivity of
 // fat: human; all from doi 10.1016/j.burns.2016.11.014, table 3. Density of skin, and all of muscle and bone: doi
-// 10.3390/cancers11081183, table 1 (from the IT'IS database). Density of fat: the IT'IS database, not read again.
+// 10.3390/cancers11081183, table 1 (from the IT'IS database). Density of fat: the IT'IS database, not verified
+// again.
 //
 // Thickness: the horny layer of a finger pad is 0.3 mm (Adams et al. 2013, J. R. Soc. Interface 10, 20120467,
 // figure 1), the living epidermis adds about 0.1 mm (design); dermis 1 mm, pulp 3.5 mm, half of the bone 3 mm, and

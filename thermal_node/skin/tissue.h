@@ -1,4 +1,5 @@
-// The layers of living tissue under a patch of skin, from its surface to where heat no longer goes deeper.
+// The layers of living tissue under a patch of skin, from the surface to the depth that heat of a touch does not
+// reach.
 #pragma once
 
 #include <string>
@@ -19,15 +20,15 @@ struct Layer {
 inline constexpr double kBloodHeatCapacity_J_m3K = 1050 * 3600.0;
 
 struct Tissue {
-  std::vector<Layer> layers;  // surface first; the deepest end is taken as insulated
+  std::vector<Layer> layers;  // surface first; the deepest end counts as insulated
   double rest_degC = 33;      // of the surface, untouched
   double room_degC = 23;
-  double perfusion_1_s = 0.0025;  // blood flow per volume of the layers that are perfused
+  double perfusion_1_s = 0.0025;  // blood flow per volume of the perfused layers
   double air_conductance_W_m2K = 8;
 };
 
 // "finger": the pad over the bone of the last phalanx, to the middle of the bone; "palm": the ball of the thumb,
-// over muscle. Anything else gives no layer.
+// over muscle. Any other site gives no layer.
 std::vector<Layer> layers_of(const std::string& site);
 
 }  // namespace tactus::thermal

@@ -1,4 +1,4 @@
-// Where a sound card that plays at an even rate is at a given time. Pure.
+// Position of a sound card that plays at a constant rate. Pure.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ struct PlayClock {
   std::int64_t start_ns = 0;
   std::int64_t rate_Hz = 48000;
 
-  // Frames whose time has come, >= 0.
+  // Number of frames whose time has come, >= 0.
   std::int64_t position(std::int64_t now_ns) const {
     if (now_ns < start_ns) return 0;
     const std::int64_t seconds = (now_ns - start_ns) / kSecond, rest = (now_ns - start_ns) % kSecond;

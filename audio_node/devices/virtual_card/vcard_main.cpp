@@ -3,8 +3,8 @@
 //   in   samples, 32-bit float, from any ALSA program
 //   out  the same samples in a WAV file, and (sample, host time) pairs on a pipe
 //
-// It plays at an even rate on CLOCK_MONOTONIC: a program that is late gets a real underflow. An underflow inserts
-// nothing into the file; the pair that follows says when playing went on. Configuration:
+// It plays at a constant rate on CLOCK_MONOTONIC: a late program gets a real underflow. An underflow inserts
+// nothing into the file; the next pair holds the time at which playing resumed. Configuration:
 //   pcm.NAME { type vcard  file "out.wav"  rate 48000  channels 2  pairs_fd 7 }
 #include <alsa/asoundlib.h>
 #include <alsa/pcm_external.h>
@@ -39,7 +39,7 @@ struct Card {
   int pairs_fd = -1;
   int timer = -1;
   std::unique_ptr<Capture>
-      capture;  // made at the first prepare: programs open a card several times just to look at it
+      capture;  // made at the first prepare, because programs open a card several times to inspect it
   PlayClock clock;
   std::int64_t first_index = 0;  // index in the file of the frame that is out at clock.start_ns
   std::int64_t next_pair = 0;    // seconds since the start at which the next pair is due
@@ -67,7 +67,7 @@ int on_prepare(snd_pcm_ioplug_t* io) try {
   if (!card.capture)
     card.capture = std::make_unique<Capture>(card.path, static_cast<int>(io->rate), static_cast<int>(io->channels),
                                              card.pairs_fd);
-  card.wake_at(1);  // a program that polls before it starts is let through
+  card.wake_at(1);  // releases a program that polls before it starts
   return 0;
 } catch (const std::exception& e) {
   SNDERR("vcard: %s", e.what());
@@ -85,13 +85,13 @@ int on_start(snd_pcm_ioplug_t* io) {
 }
 
 int on_stop(snd_pcm_ioplug_t* io) {
-  card_of(io).wake_at(1);  // whoever still polls must learn of it
+  card_of(io).wake_at(1);  // wakes a program that still polls
   return 0;
 }
 
 snd_pcm_sframes_t on_pointer(snd_pcm_ioplug_t* io) {
   Card& card = card_of(io);
-  if (io->state == SND_PCM_STATE_PREPARED) return 0;  // asked before the start too
+  if (io->state == SND_PCM_STATE_PREPARED) return 0;  // also called before the start
   const std::int64_t now = now_ns(), written = static_cast<std::int64_t>(io->appl_ptr);
   const std::int64_t played = card.clock.position(now);
   if (played > written) {
@@ -142,8 +142,8 @@ const snd_pcm_ioplug_callback_t* callbacks() {
   return &table;
 }
 
-// What a program may choose: float, interleaved, the configured rate and channels, 2 to 32 periods of 16 to 8192
-// frames.
+// Parameters that a program may choose: float, interleaved, the configured rate and channels, 2 to 32 periods of
+// 16 to 8192 frames.
 int limit(snd_pcm_ioplug_t* io, unsigned rate, unsigned channels) {
   const unsigned access[] = {SND_PCM_ACCESS_MMAP_INTERLEAVED, SND_PCM_ACCESS_RW_INTERLEAVED};
   const unsigned format[] = {SND_PCM_FORMAT_FLOAT};

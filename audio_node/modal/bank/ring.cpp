@@ -53,7 +53,7 @@ std::optional<Instructions> instructions_named(std::string_view wanted) {
 
 ModeStep mode_step(double frequency_Hz, double damping_1_s, double rate_Hz) {
   const double w = 2 * std::numbers::pi * frequency_Hz / rate_Hz, r = std::exp(-damping_1_s / rate_Hz);
-  // 1 + r^2 - 2 r cos w, without the loss of digits near 0.
+  // 1 + r^2 - 2 r cos w, without loss of digits near 0.
   const double half = std::sin(w / 2), lost = -std::expm1(-damping_1_s / rate_Hz);
   const double k = lost * lost + 4 * r * half * half;
   // After a unit impulse v_n = r^n (cos n w - (1 - r cos w) / (r sin w) sin n w), of amplitude sqrt(k) / (r sin

@@ -1,13 +1,13 @@
-// How many damped oscillators ring on for a block, pushed or not: the inner loop of modal sound, compiled once for
-// each set of vector instructions and chosen when the program runs. Pure.
+// Damped oscillators over one block, with or without forces: the inner loop of modal sound, compiled once for each
+// set of vector instructions and selected at run time. Pure.
 //
 // A mode is a mass on a spring, stepped so that its frequency and damping are exact:
 //
 //   v <- c v - k u + g force,   u <- u + v,   c = r^2,  k = 1 + r^2 - 2 r cos w
 //
-// whose poles are r e^(+-i w). That is the direct two-pole with the difference of its two samples for a state: at
-// low frequencies its coefficients lose nothing in single precision (those of the direct form lie near 2 and 1:
-// rounding the first may put 40 Hz at 48 kHz off by 0.1 %). Its velocity v is what is heard.
+// with the poles r e^(+-i w). It is the direct two-pole filter with the difference of its two samples as a state.
+// At low frequencies its coefficients lose nothing in single precision (those of the direct form lie near 2 and 1:
+// rounding the first may shift 40 Hz at 48 kHz by 0.1 %). Its velocity v is the sound.
 #pragma once
 
 #include <optional>
@@ -17,9 +17,9 @@
 namespace tactus::audio {
 
 inline constexpr int kMaxBlock = 64;   // frames that are rendered at once
-inline constexpr int kModeGroup = 16;  // modes are computed in groups of so many
+inline constexpr int kModeGroup = 16;  // modes are computed in groups of this size
 
-// A force on a body at one place: how strongly it drives each mode, and its samples.
+// A force on a body at one place: the gain of each mode, and its samples.
 struct Push {
   const float* gains;  // of each mode; aligned to 64 bytes
   const float* force;  // of each frame
@@ -34,22 +34,22 @@ struct Ringing {
   int modes;
 };
 
-// Adds the sum of all modes' velocities to `out`. frames <= kMaxBlock. Realtime-safe: yes; denormal numbers are
-// the caller's to flush.
+// Adds the sum of the velocities of all modes to `out`. frames <= kMaxBlock. Realtime-safe: yes; the caller must
+// flush denormal numbers.
 using Ring = void (*)(const Ringing& modes, const Push* pushes, int count, int frames, float* out);
 
-// The instructions it may use. The same bits come out for the same instructions, others may round otherwise.
+// Vector instructions in use. The same instructions give the same bits; others may round differently.
 enum class Instructions { kSse2, kAvx2, kAvx512 };
 
-// Those that this machine has, the widest last. kSse2 stands for what every machine has, also one of another kind.
+// Instructions of this machine, the widest last. kSse2 is available on every machine, also on other architectures.
 std::vector<Instructions> available_instructions();
 Ring ring(Instructions instructions);
 const char* name(Instructions instructions);
-// sse2, avx2, avx512, or auto: the widest there is. Nothing: no such name, or the machine lacks them.
+// sse2, avx2, avx512, or auto: the widest available. Empty: no such name, or not available on this machine.
 std::optional<Instructions> instructions_named(std::string_view name);
 
-// Coefficients of one mode of that damped frequency, and the factor on a gain so that a unit impulse makes the
-// velocity of a unit mass: exp(-d t) (cos w t - d / w sin w t), in the middle of each sample.
+// Coefficients of one mode of that damped frequency. unit_gain: factor on a gain with which a unit impulse gives
+// the velocity of a unit mass: exp(-d t) (cos w t - d / w sin w t), in the middle of each sample.
 struct ModeStep {
   float damping, stiffness;
   float unit_gain;

@@ -1,6 +1,6 @@
-// The loop of ring.h in vectors of kWidth numbers. Included by one file per set of instructions, which names the
-// namespace, so that no linker takes one's code for another's; for that reason nothing of the standard library is
-// used here.
+// The loop of ring.h in vectors of kWidth numbers. One file per instruction set includes it and names the
+// namespace, so that the linker never merges their code; for the same reason it uses nothing of the standard
+// library.
 #pragma once
 
 #include "audio_node/modal/bank/ring.h"
@@ -10,14 +10,14 @@ namespace {
 
 typedef float Lanes __attribute__((vector_size(4 * TACTUS_RING_WIDTH)));
 constexpr int kWidth = TACTUS_RING_WIDTH;
-// In flight at once, so that no one waits for its own last result.
+// Vectors processed together, so that none waits for its own last result.
 constexpr int kAtOnce = 4;
 
 inline Lanes all(float x) { return x - Lanes{}; }
 inline Lanes load(const float* from) { return *reinterpret_cast<const Lanes*>(from); }
 inline void store(float* to, Lanes x) { *reinterpret_cast<Lanes*>(to) = x; }
 
-// kVectors * kWidth modes from `at` on, under `count` pushes; kPushes: their number where it is known, else -1.
+// kVectors * kWidth modes from `at` on, under `count` pushes; kPushes: their number if known, otherwise -1.
 template <int kVectors, int kPushes>
 void some(const Ringing& m, int at, const Push* pushes, int count, int frames, Lanes* sum) {
   Lanes c[kVectors], k[kVectors], v[kVectors], u[kVectors], g[kVectors];
@@ -52,7 +52,7 @@ void each(const Ringing& m, const Push* pushes, int count, int frames, Lanes* su
   int at = 0;
   for (; at + kAtOnce * kWidth <= m.modes; at += kAtOnce * kWidth)
     some<kAtOnce, kPushes>(m, at, pushes, count, frames, sum);
-  // A group is a vector of 16, two of 8 or four of 4.
+  // A group is one vector of 16, two of 8 or four of 4.
   constexpr int kOfGroup = kModeGroup / kWidth;
   for (; at < m.modes; at += kModeGroup) some<kOfGroup, kPushes>(m, at, pushes, count, frames, sum);
 }

@@ -13,7 +13,7 @@
 namespace tactus::haptic {
 namespace {
 
-// The way back to the first point, so that a path that repeats does not jump.
+// Adds the way back to the first point, so that a repeated path does not jump.
 void close_path(std::vector<double>& times, std::vector<Eigen::Vector3d>& points, double speed_m_s) {
   const double distance = (points.front() - points.back()).norm();
   if (distance == 0) return;

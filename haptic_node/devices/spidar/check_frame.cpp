@@ -24,7 +24,7 @@ void check_strings(const StringFrame& f) {
   for (std::size_t i = 0; i < f.strings.size(); ++i) {
     const StringEnds& s = f.strings[i];
     const std::string which = "string " + std::to_string(i + 1);
-    // A room, and what two hands hold.
+    // Limits: a room for anchors, a two-handed grip for knots.
     if (!s.anchor_m.allFinite() || s.anchor_m.norm() > 20)
       refuse(f, which + ": its anchor is no place within 20 m");
     if (!s.knot_m.allFinite() || s.knot_m.norm() > 1) refuse(f, which + ": its knot is no place within 1 m");
@@ -38,7 +38,7 @@ void check_strings(const StringFrame& f) {
   }
 }
 
-// At the middle, and at its border in 26 directions, each straight and tilted to either side about each axis.
+// Checks the middle and the border in 26 directions, each upright and tilted to either side about each axis.
 void check_workspace(const StringFrame& f) {
   const auto check = [&](const Eigen::Vector3d& at, const Eigen::Vector3d& turn) {
     const GripPose pose{at, turn.isZero() ? Eigen::Quaterniond::Identity()

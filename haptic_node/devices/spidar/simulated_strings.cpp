@@ -23,7 +23,7 @@ Counts SimulatedStrings::read(sync::HostTime now) {
   if (!last_) wound_m_ = straight_m;
   last_ = now;
 
-  // The grip pulls string out at any speed; a motor takes it in as fast as it turns.
+  // The grip pulls a string out at any speed; a motor winds it in at most at its winding speed.
   wound_m_ = (wound_m_.array() - frame_.winding_speed_m_s * dt).max(straight_m.array()).matrix();
   const double follow = 1 - std::exp(-dt / frame_.tension_time_s);
   tension_N_ += follow * (wanted_N_ - tension_N_);

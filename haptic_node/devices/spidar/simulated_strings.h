@@ -1,5 +1,5 @@
-// A string frame without hardware: a hand moves the grip, strings follow it or hang through, encoders count in
-// steps, motors reach their tension late.
+// A simulated string frame: a hand moves the grip, strings follow it or go slack, encoders count in steps, and
+// motors reach their tension with a delay.
 #pragma once
 
 #include <memory>
@@ -12,15 +12,15 @@ namespace tactus::haptic {
 
 class SimulatedStrings : public StringMotors {
  public:
-  // hand: holds the grip; its pose is in the world, and so is the force on it. origin_m: of the frame in the
-  // world.
+  // hand: holds the grip; its pose and the force on it are in the world frame. origin_m: origin of the frame in
+  // the world.
   SimulatedStrings(StringFrame frame, const Eigen::Vector3d& origin_m, std::unique_ptr<Device> hand);
 
   void begin(sync::HostTime at) override { hand_->begin(at); }
   Counts read(sync::HostTime now) override;
   void write(const PerString& tensions_N) override { wanted_N_ = tensions_N; }
 
-  // What the strings really do: for tests and tables.
+  // True state of the strings, for tests and tables.
   const DeviceState& hand() const { return state_; }
   const Eigen::Vector3d& force_N() const { return felt_.force_N; }
   const Eigen::Vector3d& torque_N_m() const { return felt_.torque_N_m; }
@@ -32,7 +32,7 @@ class SimulatedStrings : public StringMotors {
   std::unique_ptr<Device> hand_;
   DeviceState state_;
   PerString middle_m_;  // lengths where the counts are 0
-  PerString wound_m_;   // length that is off the pulley; longer than the string is straight: it hangs through
+  PerString wound_m_;   // unwound length; longer than the straight string: it is slack
   PerString wanted_N_, tension_N_;
   Wrench felt_;
   std::optional<sync::HostTime> last_;

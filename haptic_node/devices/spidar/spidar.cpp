@@ -8,10 +8,10 @@
 namespace tactus::haptic {
 namespace {
 
-// Half a count on every string moves the pose by so many counts at the worst, within the workspace of every known
-// frame (tests/bench/spidar_table).
+// Largest change of the pose, in counts, when every string changes by half a count, within the workspace of every
+// known frame (tests/bench/spidar_table).
 constexpr double kPoseCounts = 1.6;
-// Of a grip on a single knot, which does not turn.
+// For a grip with a single knot, which does not rotate.
 constexpr double kLeastLever_m = 0.001;
 
 }  // namespace

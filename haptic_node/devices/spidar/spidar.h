@@ -1,4 +1,4 @@
-// A string-driven device: pose from the lengths of its strings, force as tensions that are never negative.
+// A string-driven device: pose from the lengths of its strings, force by tensions that are never negative.
 #pragma once
 
 #include <memory>
@@ -12,28 +12,29 @@
 
 namespace tactus::haptic {
 
-// Outside the workspace a wanted force fades to none over this share of its radius, and every string to its least
-// tension: there strings no longer pull all ways (design: a tenth, felt as the edge, not as a blow).
+// Outside the workspace the force fades to zero over this share of its radius, and every string goes to its
+// minimum tension, because the strings no longer pull in all directions there (design: a tenth feels like an edge,
+// not like a blow).
 inline constexpr double kEdgeShare = 0.1;
-// A string that is broken, tangled or hangs through shows as lengths that no pose explains, to the mean square
-// (design: ten times what counts and the curve of a string at its least tension explain).
+// Root mean square error of the lengths above which the device is lost: a string is broken, tangled or slack
+// (design: ten times the effect of counts and of the sag of a string at minimum tension).
 inline constexpr double kLostResidual_m = 0.01;
 
 class Spidar : public Device {
  public:
-  // origin_m: of the frame in the world; its axes are the world's. Throws what check_frame does.
+  // origin_m: of the frame in the world, with the axes of the world. Throws the errors of check_frame.
   Spidar(StringFrame frame, const Eigen::Vector3d& origin_m, std::unique_ptr<StringMotors> motors);
 
   void begin(sync::HostTime at) override { motors_->begin(at); }
-  // Outside the workspace the pose is what the strings say. While no pose explains them it is the last that did,
-  // and the device is lost.
+  // The pose follows the strings also outside the workspace. While no pose fits the lengths, the last valid pose
+  // stays and the device is lost.
   DeviceState read(sync::HostTime now) override;
   using Device::write;
-  // The torque is left out with four strings. Realtime-safe: yes, also the one above.
+  // With four strings the torque is ignored. Realtime-safe: yes, as read().
   void write(const Wrench& wanted) override;
 
   double residual_m() const { return solved_.residual_m; }
-  // How far the last written force is from what the strings give, and why.
+  // Tensions of the last written force, its error and the reason.
   const Tensions& tensions() const { return tensions_; }
   // 1 inside the workspace, 0 beyond its edge.
   double inside() const;
@@ -45,9 +46,9 @@ class Spidar : public Device {
   PerString middle_m_;
   WindowVelocity velocity_;
   WindowVelocity spin_;
-  Eigen::Vector3d turned_rad_ = Eigen::Vector3d::Zero();  // all small turns so far
+  Eigen::Vector3d turned_rad_ = Eigen::Vector3d::Zero();  // sum of all small rotations so far
   SolvedPose solved_;
-  GripPose pose_;  // the last that explained the strings
+  GripPose pose_;  // the last pose that fitted the strings
   Tensions tensions_;
   bool lost_ = false;
 };

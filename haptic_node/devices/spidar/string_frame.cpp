@@ -5,13 +5,13 @@
 namespace tactus::haptic {
 namespace {
 
-// Motors, pulleys and encoders are those that the makers of SPIDAR give with their Springhead library for maxon
-// motors with a pulley of 8 mm: "measured value" 29.24 um of string per count; least 0.5 N (desktop), 1 N (room);
-// most 20 N.
+// Motors, pulleys and encoders: from the Springhead library of the makers of SPIDAR, for maxon motors with a
+// pulley of 8 mm: "measured value" 29.24 um of string per count; minimum tension 0.5 N (desktop), 1 N (room);
+// maximum 20 N.
 constexpr double kDesktopCount_m = 2.924062107079e-5;
 // SPIDAR-G6X3, same source: 16.6555 um, 0.3 to 20 N.
 constexpr double kGripCount_m = 1.66555e-5;
-// design: a motor of some 5000 rpm on a pulley of 8 mm radius winds 4 m/s.
+// design: a motor of about 5000 rpm on a pulley of 8 mm radius winds 4 m/s.
 constexpr double kWinding_m_s = 4;
 // design: the current loop of a servo amplifier follows within half a millisecond.
 constexpr double kTensionTime_s = 0.5e-3;
@@ -32,11 +32,12 @@ StringFrame desktop() {
   StringFrame f = motors("desktop", 0.5, kDesktopCount_m);
   for (const Eigen::Vector3d& corner : {Eigen::Vector3d(1, 1, 1), {-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}})
     f.strings.push_back({0.265 * corner, Eigen::Vector3d::Zero()});
-  f.workspace_radius_m = 0.12;  // design: with 4 N in every direction; at 0.15 the pull outward ends
+  f.workspace_radius_m = 0.12;  // design: 4 N in every direction; the outward pull ends at 0.15
   return f;
 }
 
-// Frame and grip of SPIDAR-G6X3 (12 x 14 x 12 cm; a ball of 45 mm), or larger ones with the same knots.
+// Frame and grip of SPIDAR-G6X3 (12 x 14 x 12 cm; a ball of 45 mm), or larger frames with the same arrangement of
+// knots.
 StringFrame grip(StringFrame f, const Eigen::Vector3d& half_m, double knot_m) {
   const Eigen::Vector3d left = Eigen::Vector3d::UnitY() * knot_m, up = Eigen::Vector3d::UnitZ() * knot_m;
   for (const int z : {-1, 1}) {
@@ -51,7 +52,7 @@ StringFrame grip(StringFrame f, const Eigen::Vector3d& half_m, double knot_m) {
 }
 
 // Anchors measured on the string device around a multi-projection room (Hashimoto; Springhead library, October
-// 2003), turned into our axes; the origin is moved to their middle.
+// 2003), rotated into our axes, with the origin at their mean.
 StringFrame cave() {
   StringFrame f = motors("cave", 1, kDesktopCount_m);
   for (const Eigen::Vector3d& anchor :
@@ -60,7 +61,7 @@ StringFrame cave() {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const StringEnds& string : f.strings) middle += string.anchor_m / 4;
   for (StringEnds& string : f.strings) string.anchor_m -= middle;
-  f.workspace_radius_m = 0.5;  // design: with 4 N in every direction
+  f.workspace_radius_m = 0.5;  // design: 4 N in every direction
   return f;
 }
 
@@ -99,13 +100,14 @@ std::optional<StringFrame> known_frame(std::string_view name) {
   if (name == "cave") return cave();
   if (name == "desktop8") {
     StringFrame f = grip(motors("desktop8", 0.3, kGripCount_m), {0.06, 0.06, 0.07}, 0.0225);
-    f.workspace_radius_m = 0.012;  // design, both: what a frame of 12 cm keeps with 5 N in every direction
+    f.workspace_radius_m = 0.012;  // design, both: a frame of 12 cm gives 5 N in every direction there
     f.workspace_tilt_rad = 0.26;
     return f;
   }
-  if (name == "cave8") {  // design: the room's motors on a cuboid about it, and a cross of 20 cm for two hands
+  // design: the motors of the room on a cuboid about it, and a cross of 20 cm for two hands
+  if (name == "cave8") {
     StringFrame f = grip(motors("cave8", 1, kDesktopCount_m), {1.3, 1.7, 1.5}, 0.1);
-    f.workspace_radius_m = 0.3;  // design, both: with 5 N in every direction
+    f.workspace_radius_m = 0.3;  // design, both: 5 N in every direction
     f.workspace_tilt_rad = 0.17;
     return f;
   }

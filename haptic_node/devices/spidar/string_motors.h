@@ -1,5 +1,5 @@
-// The motors of a string frame as their amplifier shows them: counts in, tensions out. What drives real ones
-// implements this; SimulatedStrings is a frame of mathematics.
+// Interface of the motors of a string frame: counts in, tensions out. A driver of a real amplifier implements it;
+// SimulatedStrings simulates one.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,14 +10,14 @@
 
 namespace tactus::haptic {
 
-// Counts since the grip was held in the middle of its frame; positive is longer.
+// Counts relative to the grip in the middle of its frame; positive is longer.
 using Counts = Eigen::Matrix<std::int32_t, Eigen::Dynamic, 1, 0, kMaxStrings, 1>;
 
 class StringMotors {
  public:
   virtual ~StringMotors() = default;
   virtual void begin(sync::HostTime) {}
-  // Call once a tick, then write once.
+  // Call once per tick, before write.
   virtual Counts read(sync::HostTime now) = 0;
   virtual void write(const PerString& tensions_N) = 0;
 };

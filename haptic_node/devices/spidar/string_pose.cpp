@@ -7,10 +7,11 @@ namespace tactus::haptic {
 namespace {
 
 constexpr int kMaxSteps = 30;
-// Damping relative to the diagonal (Marquardt 1963): next to none at first, since it starts from the last pose.
+// Damping relative to the diagonal (Marquardt 1963): almost zero at first, since the iteration starts from the
+// last pose.
 constexpr double kLeastDamping = 1e-12, kFirstDamping = 1e-9, kMaxDamping = 1e6;
 
-// A change of position and a rotation in units of lever_m, so that both are lengths.
+// Applies a translation and a rotation in units of lever_m, so that both are lengths.
 GripPose moved(const GripPose& pose, const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>& by, double lever_m) {
   GripPose out = pose;
   out.position_m += by.head<3>();
@@ -36,7 +37,8 @@ SolvedPose solve_pose(const StringFrame& frame, const PerString& lengths_m, cons
   double damping = kFirstDamping;
   while (out.steps < kMaxSteps && !out.converged) {
     ++out.steps;
-    // A string gets shorter by what its end moves along it: the lengths' derivative is minus the structure matrix.
+    // A string shortens by the motion of its end along it: the derivative of the lengths is minus the structure
+    // matrix.
     const StructureMatrix w = structure_matrix(frame, out.pose);
     const Step slope = w * error;
     const Normal normal = w * w.transpose();

@@ -8,18 +8,18 @@ namespace tactus::haptic {
 namespace {
 
 using Vector2 = Eigen::Vector2d;
-// Ratio of the smallest to the largest pivot below which a pose counts as singular (design: forces a thousandth of
-// the tensions would need a thousandfold of them).
+// Ratio of the smallest to the largest pivot below which a pose counts as singular (design: a force of a
+// thousandth of the tensions would need a thousand times larger tensions).
 constexpr double kSingular = 1e-3;
-// Rounding of the tensions, N: far below what a motor resolves.
+// Rounding of the tensions, N: far below the resolution of a motor.
 constexpr double kSlack_N = 1e-9;
 
-// A force that is cut gives up to this much more, so that tensions have room and do not leap from one corner of
-// what the limits allow to another (design: a fiftieth, less than a hand tells apart).
+// A reduced force is lowered by up to this additional share, so that the tensions have room and do not jump
+// between corners of the allowed region (design: one fiftieth, below the discrimination threshold of a hand).
 constexpr double kRoom = 0.02;
 
-// The tensions that give share * w are particular * share + null * z: a plane (with four strings a line) cut by
-// the limits of every string, which leaves a convex polygon.
+// The tensions that give share * w are particular * share + null * z: a plane (with four strings a line). The
+// limits of every string cut it to a convex polygon.
 struct Solutions {
   PerString particular;
   Eigen::Matrix<double, Eigen::Dynamic, 2, 0, kMaxStrings, 2>
@@ -33,7 +33,7 @@ struct Polygon {
   int size = 0;
 };
 
-// Keeps what lies where normal . z <= bound (Sutherland and Hodgman 1974).
+// Keeps the part where normal . z <= bound (Sutherland and Hodgman 1974).
 void cut(Polygon& p, const Vector2& normal, double bound) {
   Polygon out;
   for (int i = 0; i < p.size; ++i) {
@@ -48,7 +48,7 @@ void cut(Polygon& p, const Vector2& normal, double bound) {
 }
 
 Polygon allowed(const Solutions& s, double share) {
-  // |z| = |tensions - their part in the row space|, so no z outside this square is within the limits.
+  // z| = |tensions - their part in the row space|, so no z outside this square is within the limits.
   const double reach = 2 * s.most * kMaxStrings + share * s.particular.norm();
   Polygon p;
   p.corner[0] = {-reach, -reach}, p.corner[1] = {reach, -reach}, p.corner[2] = {reach, reach},
@@ -81,7 +81,7 @@ Vector2 closest(const Polygon& p, const Vector2& goal) {
   return inside ? goal : best;
 }
 
-// False: the structure matrix has not full rank.
+// False: the structure matrix does not have full rank.
 template <int Rows, int Strings>
 bool decompose(const StructureMatrix& w, const Eigen::Matrix<double, Rows, 1>& wanted, Solutions& s) {
   const Eigen::Matrix<double, Strings, Rows> transposed = w.transpose();
@@ -97,13 +97,13 @@ bool decompose(const StructureMatrix& w, const Eigen::Matrix<double, Rows, 1>& w
   return true;
 }
 
-// The share of the wanted wrench to give: all, or the largest with allowed tensions but for some room; below 0:
-// not even none of it.
+// Share of the wanted wrench that the strings give: 1, or the largest share with allowed tensions, less some room;
+// below 0: not even a share of 0 is possible.
 double given_share(const Solutions& s) {
   if (allowed(s, 1).size > 0) return 1;
   if (allowed(s, 0).size == 0) return -1;
   double low = 0, high = 1;
-  for (int i = 0; i < 40; ++i) {  // halves 1 to 1e-12, a millionth of a millionth of the force
+  for (int i = 0; i < 40; ++i) {  // bisects 1 to 1e-12 of the force
     const double middle = (low + high) / 2;
     (allowed(s, middle).size > 0 ? low : high) = middle;
   }
@@ -128,7 +128,7 @@ Tensions solve_tensions(const StringFrame& frame, const GripPose& pose, const Wr
   if (share >= 0) {
     out.held = true;
     out.share = share;
-    // Closest to the least tension of every string; the particular solution has no part in the null space.
+    // Closest to the minimum tension of every string; the particular solution has no part in the null space.
     const Vector2 z = closest(allowed(s, share), s.null.transpose() * out.tensions_N);
     out.tensions_N = (share * s.particular + s.null * z).cwiseMax(s.least).cwiseMin(s.most);
   }

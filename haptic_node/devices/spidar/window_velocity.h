@@ -1,6 +1,6 @@
-// The velocity of something whose position is known to a step: the longest run of samples that one line passes
-// within the step of gives the slope. First-order adaptive windowing, end-fit (Janabi-Sharifi, Hayward and Chen
-// 2000): smooth when it is slow, prompt when it is fast.
+// Velocity from a quantised position: the slope of the longest run of samples that one line fits within the step.
+// First-order adaptive windowing, end-fit (Janabi-Sharifi, Hayward and Chen 2000): smooth at low speed, prompt at
+// high speed.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@ namespace tactus::haptic {
 
 class WindowVelocity {
  public:
-  // step_m: how far a position may be from the truth.
+  // step_m: largest error of a position.
   explicit WindowVelocity(double step_m) : step_m_(step_m) {}
   // m/s, per axis over its own window; 0 until there are two samples. Realtime-safe: yes.
   Eigen::Vector3d add(const Eigen::Vector3d& position_m, sync::HostTime at);
@@ -23,7 +23,7 @@ class WindowVelocity {
     Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
     sync::HostTime at{};
   };
-  // design: 20 ms at 1 kHz, about the lag that a hand's servo forgives.
+  // design: 20 ms at 1 kHz, about the lag that the servo of a hand tolerates.
   static constexpr std::size_t kMax = 20;
   const Sample& back(std::size_t age) const { return samples_[(newest_ + kMax - age) % kMax]; }
 

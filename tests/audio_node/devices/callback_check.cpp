@@ -1,4 +1,4 @@
-// The callback of the real stream, on the virtual card, with everything trapped that it must not do.
+// The callback of the real stream, on the virtual card, with a trap for every forbidden operation.
 #include <portaudio.h>
 
 #include <dlfcn.h>
@@ -42,14 +42,14 @@ using namespace tactus::audio::test;
 
 namespace {
 
-// What PortAudio was to call.
+// The callback that PortAudio would call.
 PaStreamCallback* callback = nullptr;
 void* of_callback = nullptr;
 std::atomic<int> calls{0};
 
 int call_trapped(const void* in, void* out, unsigned long frames, const PaStreamCallbackTimeInfo* time,
                  PaStreamCallbackFlags flags, void*) {
-  // The first call asks for the thread's priority, once.
+  // The first call asks for the priority of the thread, once.
   if (calls.fetch_add(1) == 0) return callback(in, out, frames, time, flags, of_callback);
   const Trap trap;
   return callback(in, out, frames, time, flags, of_callback);
@@ -67,7 +67,7 @@ struct Folder {
 Scrape scrape(std::int64_t number, std::mt19937& random, const HeardSurface* surface, const Strike& of) {
   Scrape s;
   s.number = number;
-  s.id = static_cast<std::int64_t>(random() % 24);  // more than are heard at a time
+  s.id = static_cast<std::int64_t>(random() % 24);  // more than are audible at a time
   s.at = sync::host_now();
   s.slide = s.roll = 1e-4f, s.cutoff_Hz = 1000;
   s.place = of.sides[1].place;
@@ -81,7 +81,7 @@ Scrape scrape(std::int64_t number, std::mt19937& random, const HeardSurface* sur
   return s;
 }
 
-// Recordings of a blow and of a loop in two speeds.
+// Recordings of a blow and of a loop at two speeds.
 struct Recordings {
   Layers blow, loop;
   Recordings() {
@@ -105,7 +105,7 @@ struct Recordings {
   }
 };
 
-// Ears, the loudspeakers of a cube (a card of eight channels), and a pair.
+// Ears, the loudspeakers of a cube (a card of eight channels), and a stereo pair.
 Space space_for(const std::string& spatial) {
   Settings settings;
   settings.spatial = spatial, settings.layout_file = "cube";
@@ -114,7 +114,7 @@ Space space_for(const std::string& spatial) {
 
 }  // namespace
 
-// In front of PortAudio's own: the stream is opened with our callback around its.
+// Replaces PortAudio's function: the stream is opened with our callback around the original one.
 extern "C" PaError Pa_OpenStream(PaStream** stream, const PaStreamParameters* in, const PaStreamParameters* out,
                                  double rate, unsigned long frames, PaStreamFlags flags, PaStreamCallback* call,
                                  void* user) {
@@ -145,8 +145,8 @@ TEST_CASE("The trap catches what allocates, locks, waits and writes, and nothing
   CHECK(caught([] { (void)!::write(-1, "", 0); }) == "write");
   CHECK_FALSE(caught([] { std::ifstream("/dev/null"); }).empty());
   CHECK_FALSE(caught([] { std::thread([] {}).join(); }).empty());
-  CHECK(caught([] { (void)sync::host_now(); }).empty());  // the clock is read without a call of the system
-  // Another thread may, meanwhile.
+  CHECK(caught([] { (void)sync::host_now(); }).empty());  // the clock is read without a system call
+  // Another thread may do so at the same time.
   CHECK(caught([] {}).empty());
   forget_trapped();
   std::vector<int> outside(1000, 1);
@@ -179,7 +179,7 @@ TEST_CASE(
   timeval at_once{0, 0};
   epoll_event event{};
   int waiting = -1;
-  // Of conditions: nobody waits for ever, the time is over; and a thread that is woken.
+  // Of conditions: the timeout has expired, so no thread waits for ever; and a thread that is woken.
   pthread_mutex_lock(&mutex);
   bool woken = false;
   const auto wait_to_be_woken = [&] {
@@ -199,7 +199,7 @@ TEST_CASE(
   };
   struct Call {
     const char* name;
-    std::function<bool()> does;  // true: as without the trap
+    std::function<bool()> does;  // true: the result is the same as without the trap
   };
   const std::vector<Call> calls{
       {"poll", [&] { return poll(&fd, 1, 0) == 0; }},
@@ -274,7 +274,7 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatev
     Stream stream(options,
                   [&](float* out, int frames, const BlockTime& time) { renderer.render(out, frames, time); });
     for (int i = 0; i < 400; ++i) {
-      // Some bodies that the scene has and many that it has not, in time, late and far too late.
+      // Some bodies of the scene and many that it lacks, in time, late and far too late.
       for (int k = 0; k < 3; ++k, ++struck) {
         const double early_s = std::uniform_real_distribution<double>(-0.05, 0.04)(random);
         Strike s = impacts.strike(RecordedRun::hit(struck, 0, 0, 1 + static_cast<int>(random() % 2)),
@@ -285,7 +285,7 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatev
         if (k == 1)
           crossing.scrapes.push(scrape(i, random, random() % 3 ? &surfaces->by_material[0] : nullptr, s));
       }
-      // The head turns, and now and then there is another database.
+      // The head turns, and the database changes from time to time.
       Listener listener;
       listener.T_W_listener.rotate(Eigen::AngleAxisf(0.1f * static_cast<float>(i), Eigen::Vector3f::UnitZ()));
       listener.nearest_m = 0.3f;
@@ -303,7 +303,7 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatev
   }
   renderer.abandon();
   for (presentation_t r; crossing.reports.pop(r);) ++reported;
-  CHECK(reported == struck);  // so all of that was rendered
+  CHECK(reported == struck);  // shows that all of it was rendered
   CHECK(steps == 40);
   CAPTURE(first_trapped());
   CHECK(trapped() == 0);
@@ -342,7 +342,7 @@ TEST_CASE("Neither does what keeps the samples of a real card") {
   forget_trapped();
   {
     const Trap trap;
-    // Longer than what the ring holds: the disk cannot follow, and silence is owed.
+    // Longer than the ring: the disk cannot follow, and silence is pending.
     for (int i = 0; i < 3000; ++i) {
       capture.append(block.data(), 128);
       if (i % 100 == 0) capture.mark({capture.frames(), 0, MediaPair::kPeriodic, 0});

@@ -100,8 +100,8 @@ TEST_CASE("Through PortAudio and the virtual card sound is out when it was to be
     if (wav[i] != 0 && wav[i - 1] == 0) onsets_ns.push_back(out_at_ns(pairs, static_cast<std::int64_t>(i)));
   REQUIRE(onsets_ns.size() >= scheduled_ns.size());
 
-  // Within a millisecond of what was reported; and of what was asked, for those that were in time. A machine that
-  // stalls while the card is read may shift a few: most must hold.
+  // Within a millisecond of the reported time; and of the scheduled time, for strikes that were in time. A machine
+  // that stalls while the card is read may shift a few: most must hold.
   int near_report = 0, in_time = 0, near_schedule = 0;
   double worst_us = 0;
   for (const presentation_t& r : reports) {

@@ -10,11 +10,11 @@ using audio::DacClock;
 
 namespace {
 
-// A card that plays at an even rate, read by callbacks that are late by chance.
+// A card that plays at a constant rate, read by callbacks with random lateness.
 struct Card {
   double drift = 0;        // of the card against the host clock
-  double pa_offset_s = 0;  // PortAudio's clock less the host's
-  double jitter_s = 6e-6;  // of PortAudio's readings, rms as measured on the virtual card
+  double pa_offset_s = 0;  // clock of PortAudio minus host clock
+  double jitter_s = 6e-6;  // of the readings of PortAudio, rms as measured on the virtual card
   double start_s = 5000;
   double latency_s = 0.008;
   std::mt19937 random{7};
@@ -67,7 +67,7 @@ TEST_CASE("After an underflow the time is begun anew at once") {
   card.start_s += 0.06;  // a stall
   const double truth = card.out_s();
   const auto e = clock.block(128, card.next(128, true), 0.008);
-  // One reading and one calibration: its noise, and how late that one callback was (some 30 us, seldom 200).
+  // One reading and one calibration: its noise, and the lateness of that one callback (about 30 us, seldom 200).
   CHECK(std::abs(static_cast<double>(sync::to_ns(e.first_sample)) * 1e-9 - truth) < 300e-6);
 }
 
@@ -101,13 +101,13 @@ TEST_CASE("Blocks follow each other evenly however unevenly they are asked for")
   double before = 0, worst = 0;
   for (int block = 0; block < 4000; ++block) {
     CallbackTime t = card.next(128);
-    // Now and then the thread is put aside for half a block between the card's reading and ours.
+    // From time to time the thread is suspended for half a block between the reading of the card and ours.
     if (block % 50 == 49) t.now += sync::Nanoseconds(1'300'000);
     const double at = static_cast<double>(sync::to_ns(clock.block(128, t, 0.008).first_sample)) * 1e-9;
     if (block > 750) worst = std::max(worst, std::abs(at - before - 128 * kSample_s));
     before = at;
   }
-  // Of each reading's noise of some 10 us the loop passes on sqrt(2) 2 pi 0.5 Hz 2.7 ms = 1.2 %.
+  // Of the noise of each reading of about 10 us the loop passes on sqrt(2) 2 pi 0.5 Hz 2.7 ms = 1.2 %.
   CHECK(worst < 1e-6);
 }
 
@@ -145,8 +145,8 @@ TEST_CASE("PortAudio's clock may step, forwards or backwards, and the time of a 
     worst = std::max(worst, std::abs(error));
     covered &= std::abs(error) <= sync::to_seconds(e.uncertainty) + kSample_s / 2;
   }
-  // One callback calibrates a step beyond a second, the least late of eight one below: 30 us each in the mean, 0.2
-  // ms seldom, of which the loop passes on a few per cent until the minimum is found again.
+  // One callback calibrates a step beyond a second, the earliest of eight a smaller one: 30 us each on average,
+  // 0.2 ms seldom, of which the loop passes on a few per cent until the minimum is found again.
   CHECK(worst < 2 * kSample_s);
   CHECK(covered);
 }

@@ -42,7 +42,7 @@ TEST_CASE("A rendering that does not come to its end leaves no file that looks w
     CHECK(std::filesystem::file_size(wav) == 9);
   }
   CHECK(folder.files() == 1);
-  CHECK(std::filesystem::file_size(wav) == 9);  // that of before is still there
+  CHECK(std::filesystem::file_size(wav) == 9);  // the previous file is still there
 
   SECTION("and one that does has its file, and nothing beside it") {
     FileCard card({}, wav, silence);

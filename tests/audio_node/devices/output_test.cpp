@@ -14,7 +14,7 @@ using namespace tactus::audio::test;
 
 namespace {
 
-// A card on a hand-moved clock, which a test can pull out.
+// A card on a manual clock, which a test can unplug.
 struct FakeCard : Card {
   struct Plug {
     bool in = true;
@@ -41,7 +41,7 @@ struct FakeCard : Card {
   float loudest = 0;
 };
 
-// One that asks for a period at a time, at which it is heard: what is told ahead waits longest.
+// A card that requests one period at a time, at its presentation: updates sent ahead wait longest.
 struct SlowCard : FakeCard {
   SlowCard(Render r, const StreamOptions& o)
       : FakeCard(std::make_shared<Plug>(), std::move(r)),
@@ -57,8 +57,7 @@ struct SlowCard : FakeCard {
   sync::HostTime next{};
 };
 
-// What health says after ten seconds in which all contacts that can be heard begin, and as many end, whenever it
-// is time to tell of them.
+// The health note after ten seconds in which all audible contacts begin and end at every update.
 std::string note_after_telling(const Settings& settings, std::optional<sync::Nanoseconds> every = {}) {
   constexpr sync::Nanoseconds kLead{2'000'000};
   Output output(".", "", 0, [](const StreamOptions& options, Card::Render render) {
@@ -114,13 +113,13 @@ TEST_CASE("A card that is pulled out is a lost output, and when it is back the n
   const std::int64_t played = output.callbacks();
   CHECK(played >= 20);
 
-  output.submit(strike_of(2, 1, 500, 20, sync::to_ns(at_block(now + 500))));  // still waits when the card goes
+  output.submit(strike_of(2, 1, 500, 20, sync::to_ns(at_block(now + 500))));  // still waits when the card is lost
   play(2);
   plug->in = false;
   CHECK_THROWS_WITH(output.keep_open(at_block(now++)), "there is no such card");
   CHECK(outcome_of(2) == presentation_t::DROPPED_LATE);
   output.submit(strike_of(3, 1, 500, 20, sync::to_ns(at_block(now + 5))));
-  CHECK(outcome_of(3) == presentation_t::DROPPED_LATE);  // nothing plays: said at once
+  CHECK(outcome_of(3) == presentation_t::DROPPED_LATE);  // nothing plays: reported at once
   CHECK(output.note().find("has gone") != std::string::npos);
 
   plug->in = true;
@@ -145,7 +144,7 @@ TEST_CASE("However long the card's periods are, no contact that is told of is lo
     CAPTURE(rate_Hz, period_frames, latency_periods);
     CHECK_THAT(note_after_telling(settings), !Catch::Contains("lost"));
   }
-  // Where they are told all the same every tick, health says what has been lost.
+  // When they are sent every tick all the same, the health shows the losses.
   settings.sample_rate_Hz = 48000, settings.period_frames = 4096;
   CHECK_THAT(note_after_telling(settings, sync::Nanoseconds(0)), Catch::Contains(" states of contacts lost"));
 }

@@ -14,7 +14,7 @@ TEST_CASE("A ball of steel of 10 mm on steel under 1 N has Hertz' patch of 41 um
   const double a = patch_radius_m(1, 1 / 0.01, reduced_modulus_Pa(steel, steel));
   CHECK(a == Approx(40.95e-6).epsilon(1e-3));
   CHECK(patch_radius_m(8, 100, 1e11) == Approx(2 * patch_radius_m(1, 100, 1e11)));
-  // At 0.5 m/s 6 kHz; without a patch, all.
+  // At 0.5 m/s 6 kHz; without a patch, all frequencies.
   CHECK(patch_cutoff_Hz(0.5, a) == Approx(0.5 / (2 * a)));
   CHECK(std::isfinite(patch_cutoff_Hz(0.5, 0)));
 }
@@ -30,14 +30,14 @@ TEST_CASE("A material has the finish of the one that it is most alike, whatever 
 TEST_CASE("What rolls is pushed by the waves as long as its patch, or follows them when it is light or slow") {
   const double reduced = 1.1e11, radius_m = 0.01, force_N = 1, mass_kg = 0.03;
   const double a = patch_radius_m(force_N, 1 / radius_m, reduced);
-  // Hertz' law F = 4/3 E* R^(1/2) d^(3/2), at d = a^2 / R, changed by the height of a wave of length 2 a and
-  // slope 1.
+  // Hertz' law F = 4/3 E* R^(1/2) d^(3/2), at d = a^2 / R, changed by the height of a wave of length 2 a and slope
+  // 1.
   const auto hertz = [&](double d) { return 4.0 / 3 * reduced * std::sqrt(radius_m) * std::pow(d, 1.5); };
   const double deep = a * a / radius_m, little = 1e-6 * deep, wave_m = 2 * a / (2 * M_PI);
   CHECK(hertz(deep) == Approx(force_N));
   const double spring = (hertz(deep + little) - hertz(deep - little)) / (2 * little);
   CHECK(rolling_force_N(a, reduced, mass_kg, 10) == Approx(spring * wave_m).epsilon(1e-6));
-  // At 1 mm/s a wave goes by at 12 Hz: mass times the acceleration of its height.
+  // At 1 mm/s a wave passes at 12 Hz: mass times the acceleration of its height.
   const double at_rad_s = 2 * M_PI * 0.001 / (2 * a);
   CHECK(rolling_force_N(a, reduced, mass_kg, 0.001) == Approx(mass_kg * at_rad_s * at_rad_s * wave_m));
   CHECK(rolling_force_N(a, reduced, mass_kg, 0) == 0);

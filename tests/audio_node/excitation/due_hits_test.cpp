@@ -14,7 +14,7 @@ const sync::LatePolicy kLate{sync::Late::kPlayWithFade, sync::Nanoseconds(50'000
 
 sync::HostTime at_ms(int ms) { return sync::host_time(1'000'000'000) + ms * kMs; }
 
-// A loop of ticks of 1 ms in each of which there is time for some hits.
+// A loop of ticks of 1 ms, each with time for some hits.
 struct Loop {
   DueHits due;
   std::vector<std::int64_t> sounded, dropped;
@@ -57,7 +57,7 @@ TEST_CASE("A tick without time handles one hit all the same, and hits of one tim
 TEST_CASE("A hit that the late policy drops while it waits is said to be, and costs no time") {
   Loop loop;
   for (int i = 0; i < 100; ++i) loop.push(i, 0);
-  // Two a tick, up to 30 ms late: 31 ticks of them. The others are dropped at once.
+  // Two per tick, up to 30 ms late: in 31 ticks. The others are dropped at once.
   for (int ms = 0; ms < 40; ++ms) loop.tick(ms, 2);
   CHECK(loop.sounded.size() == 62);
   CHECK(loop.dropped.size() == 38);

@@ -55,7 +55,7 @@ TEST_CASE("A force that joins another is felt in full beside it, from its own be
     const ForcePulse full = both;
     join(both, 20, other, 25, 1);
     CHECK(sum(both) == sum(full));
-    // At 41 the first hump alone is over.
+    // At 41 only the first hump is over.
     REQUIRE(has_room(both, 41));
     join(both, 41, other, 45, 0.5f);
     for (int i = 41; i < 100; ++i)

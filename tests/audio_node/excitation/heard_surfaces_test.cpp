@@ -31,7 +31,7 @@ TEST_CASE(
   CHECK_FALSE(surfaces->of(1)->relief);
   CHECK(surfaces->of(1)->friction);
   REQUIRE(surfaces->of(2));
-  CHECK(surfaces->of(2)->relief == surfaces->of(0)->relief);  // one for both
+  CHECK(surfaces->of(2)->relief == surfaces->of(0)->relief);  // shared
   CHECK_FALSE(surfaces->of(2)->friction);
   for (const int material : {-1, 3, 4}) CHECK_FALSE(surfaces->of(material));
   CHECK_FALSE(read_surfaces(scene, {})->of(0));

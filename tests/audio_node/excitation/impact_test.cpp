@@ -98,7 +98,7 @@ TEST_CASE("The spectrum of the pulse is that of a raised cosine") {
 }
 
 TEST_CASE("A source is heard where it is") {
-  Eigen::Isometry3d listener = Eigen::Isometry3d::Identity();  // looks along +x
+  Eigen::Isometry3d listener = Eigen::Isometry3d::Identity();  // faces +x
   const auto heard = [&](const Eigen::Vector3d& source) { return pan(place_of(listener, source, 0.3)); };
   const auto left = heard({0, 2, 0}), right = heard({0, -2, 0}), ahead = heard({2, 0, 0}), far = heard({4, 0, 1});
   CHECK(left.left == Approx(0.5));
@@ -108,7 +108,7 @@ TEST_CASE("A source is heard where it is") {
   CHECK(std::hypot(far.left, far.right) == Approx(1 / std::sqrt(17.0)));
   CHECK(place_of(listener, {4, 0, 1}, 0.3).distance_m == Approx(std::sqrt(17.0)));
   SECTION("and a turn of the listener turns it too") {
-    listener.rotate(Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitZ()));  // looks along +y
+    listener.rotate(Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitZ()));  // faces +y
     CHECK(heard({2, 0, 0}).right == Approx(0.5));
   }
   SECTION("and nearness does not make it infinite") { CHECK(heard({0, 0, 0}).left < 4); }
@@ -118,15 +118,15 @@ TEST_CASE(
     "A blow is heard from where the ear is when it comes, and before anybody moves it from where the scene has "
     "it") {
   Impacts all = impacts();
-  const contact_event_t ahead = hit(0, 2, 1, 0.1f);  // at (1, 0, 0), which the scene's listener looks at
+  const contact_event_t ahead = hit(0, 2, 1, 0.1f);  // at (1, 0, 0), which the listener of the scene faces
   const auto place = [&] { return all.strike(ahead, {}).sides[0].place; };
   CHECK(place().direction.isApprox(Eigen::Vector3f::UnitX()));
   Eigen::Isometry3d ear = Eigen::Isometry3d::Identity();
-  ear.rotate(Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitZ()));  // looks along +y: it is to the right
+  ear.rotate(Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitZ()));  // faces +y: the hit is to the right
   all.hear_from(ear);
   CHECK(place().direction.isApprox(-Eigen::Vector3f::UnitY()));
   CHECK(place().distance_m == Approx(1));
-  ear.translation().x() = -1;  // twice as far
+  ear.translation().x() = -1;  // twice the distance
   all.hear_from(ear);
   CHECK(place().distance_m == Approx(2));
 }
@@ -176,8 +176,8 @@ TEST_CASE("An impact's level follows pressure to the power 0.6, and says when it
     for (const float s : x) peak = std::max(peak, std::abs(s));
     return static_cast<double>(peak);
   };
-  // Of the same spectrum (same contact time: speed 1 and mass 1 against mass 4 and speed 16, T ~ (m^2/v)^(1/5))
-  // the pressure is 64 times as much, the level 64^0.6 = 12.1 times.
+  // With the same spectrum (same contact time: speed 1 and mass 1 against mass 4 and speed 16, T ~ (m^2/v)^(1/5))
+  // the pressure is 64 times as large, the level 64^0.6 = 12.1 times.
   const double weak = rendered_peak(hit(0, 1, 0.02f, 0.001f)), strong = rendered_peak(hit(0, 1, 0.32f, 0.004f));
   CHECK(strong / weak == Approx(std::pow(64, 0.6)).epsilon(0.02));
   CHECK(all.strike(hit(0, 1, 0.0001f, 1e-6f), {}).heard_from > 1);
@@ -195,8 +195,8 @@ TEST_CASE("An impact's level follows pressure to the power 0.6, and says when it
     const contact_event_t blow = hit(0, 3, 0.5f, static_cast<float>(all.body(3).mass_kg), 100);
     const double length_s = all.strike(blow, {}).pulse[0].samples / 48000.0;
     REQUIRE(length_s > 0.01);
-    // rho c v (1 + e) a (ka)^2 / 2 of an oscillating ball that is small beside the wave, k of 1 / T (80 Hz): 0.04
-    // Pa.
+    // rho c v (1 + e) a (ka)^2 / 2 of an oscillating ball that is small compared with the wave, k of 1 / T (80
+    // Hz): 0.04 Pa.
     const double ka = 2 * pi / length_s * 0.05 / 343, jerk_Pa = 1.21 * 343 * 0.5 * 1.6 * 0.05 * ka * ka / 2;
     const double least = 0.25 * std::pow(jerk_Pa / 10, 0.6);
     CHECK(rendered_peak(blow) > least);
@@ -235,7 +235,7 @@ TEST_CASE(
   const double length = 0.3;
   contact_event_t blow = hit(0, 1, 0.5f, 0.353f);
   blow.normal.z = 1;
-  // The bar lies with its middle at (1, 2, 3), turned about the vertical.
+  // The centre of the bar is at (1, 2, 3), and it is rotated about the vertical.
   Eigen::Isometry3d lies = Eigen::Isometry3d::Identity();
   lies.translation() = Eigen::Vector3d(1, 2, 3);
   lies.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()));
@@ -255,7 +255,7 @@ TEST_CASE(
   CHECK(end[0] * middle[0] < 0);
   const PerMode anywhere = all.gains(1, std::nullopt), somewhere = all.strike(blow, {}).sides[1].gains;
   CHECK(somewhere[0] == anywhere[0]);
-  // The end of a free bar moves twice as much as the root of its mean square.
+  // The end of a free bar moves twice its rms value.
   CHECK(std::abs(end[0]) == Approx(2 * anywhere[0]).epsilon(1e-3));
   SECTION("also one beside the body counts as one on it") {
     CHECK(gains(1, 0.1)[0] == Approx(end[0]));

@@ -13,7 +13,8 @@ using std::numbers::pi;
 
 TEST_CASE("The peak of a strike is that of the sound it makes") {
   SECTION("of one mode from rest: the impulse, less what it loses until its first swing") {
-    // 1 kHz, short beside its period: v(t) = J g e^(-d t) (cos w t - d/w sin w t), largest in the first sample.
+    // 1 kHz, with a pulse that is short compared with the period: v(t) = J g e^(-d t) (cos w t - d/w sin w t),
+    // largest in the first sample.
     const Strike s = strike_of(1, 7, 1000, 20, 0, 0.1f);
     const double t = 0.5 / kRate, truth = 0.1 * std::exp(-20 * t) * std::cos(2 * pi * 1000 * t);
     CHECK(peak_Pa(s, kRate) == Approx(truth).epsilon(0.01));
@@ -23,7 +24,7 @@ TEST_CASE("The peak of a strike is that of the sound it makes") {
     const double alone = peak_Pa(s, kRate);
     s.sides[1] = s.sides[0];
     CHECK(peak_Pa(s, kRate) == Approx(2 * alone));
-    s.sides[1].gains[0] *= -1;  // the other way round
+    s.sides[1].gains[0] *= -1;  // opposite sign
     CHECK(peak_Pa(s, kRate) == Approx(0).margin(1e-6));
   }
   SECTION("of a click: the largest change of its pulse") {
@@ -36,7 +37,7 @@ TEST_CASE("The peak of a strike is that of the sound it makes") {
     CHECK(peak_Pa(s, kRate) == Approx(2 * most));
   }
   SECTION("of one that swings slower than the pulse: it comes after the pulse, and is found") {
-    // 40 Hz, a quarter period 6 ms: v = J g / n sum of the pulse so far; largest when it ends.
+    // 40 Hz, a quarter period 6 ms: v = J g / n times the sum of the pulse so far; largest when it ends.
     Strike s = strike_of(1, 7, 40, 1, 0, 1.f);
     s.pulse = one_hump(96);  // 2 ms
     CHECK(peak_Pa(s, kRate) == Approx(std::cos(2 * pi * 40 * 0.001)).epsilon(0.03));

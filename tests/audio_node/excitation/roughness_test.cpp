@@ -8,7 +8,7 @@ using namespace tactus::audio;
 
 namespace {
 
-// Slopes along a line, every so many metres.
+// Slopes along a line, at intervals of step_m.
 std::vector<double> line(const Roughness& of, const Eigen::Vector3d& along, double step_m, int count) {
   std::vector<double> all;
   for (int begin = 0; begin < count; begin += 64) {
@@ -27,8 +27,8 @@ const Eigen::Vector3d kOblique = Eigen::Vector3d(3, 1, -2).normalized();
 TEST_CASE("Heights and slopes of roughness have the mean square that is asked for, whichever way it is crossed") {
   const Roughness of{2e-6, 0};
   const Eigen::Vector3d along = GENERATE(Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), kOblique);
-  // A quarter of the finest grain, so that nothing is left out: 0.25 m in all. The longest waves, of 2.4 mm where
-  // a line crosses them at a third, come some 100 to 600 times: their mean square is off by a tenth.
+  // A quarter of the finest grain, so that nothing is omitted: 0.25 m in total. The longest waves, of 2.4 mm where
+  // a line crosses them at a third, occur about 100 to 600 times: their mean square has an error of a tenth.
   const double step_m = 0.4e-6;
   const auto slopes = line(of, along, step_m, 640'000);
   double height = 0, square_height = 0, mean = 0, square_slope = 0;
@@ -51,8 +51,8 @@ TEST_CASE("Roughness is fractal: over twice the way heights differ by 2^H more")
     for (std::size_t i = lag; i < heights.size(); ++i) sum += std::pow(heights[i] - heights[i - lag], 2);
     return sum / static_cast<double>(heights.size() - lag);
   };
-  // From 8 um to 64 um, between the finest grain and the longest wave. Sums of octaves that begin and end bend the
-  // law by what is missing of them at either end: by 2^(-2 (1 - H) 2.3 octaves) of the slope below and less above.
+  // From 8 um to 64 um, between the finest grain and the longest wave. The finite sum of octaves bends the law at
+  // either end: by 2^(-2 (1 - H) 2.3 octaves) of the slope below and less above.
   const double exponent = 0.5 * std::log2(differ(160) / differ(20)) / 3;
   CHECK(exponent == Approx(kHurst).margin(0.08));
 }
@@ -65,7 +65,7 @@ TEST_CASE("Below a map roughness has no waves that the map shows") {
     for (const double s : slopes) most = std::max(most, std::abs(height += s * step_m));
     return most;
   };
-  // Grains of 25 um at the most: four octaves less, 2^(-4 H) of the height.
+  // Grains of at most 25 um: four octaves less, 2^(-4 H) of the height.
   CHECK(long_waves(25e-6) < 0.25 * long_waves(0));
   CHECK(mean_square_slope({2e-6, 25e-6}) < mean_square_slope({2e-6, 0}));
   CHECK(mean_square_slope({2e-6, 1e-9}) == 0);

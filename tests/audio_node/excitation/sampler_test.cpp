@@ -91,7 +91,7 @@ struct World {
   }
 };
 
-// Root mean square of what the renderer makes of a strike, to the left.
+// Root mean square of the rendered strike, left channel.
 double rms_of(Strike s) {
   auto bench = std::make_unique<Bench>();
   s.scheduled = sync::host_time(kStart_ns + 1'000'000);
@@ -112,7 +112,7 @@ contact_t sliding(double slide_m_s, double roll_m_s, double force_N) {
   return c;
 }
 
-// What is heard to the left when blows of these methods come one after the other, 20 ms apart.
+// Left channel of blows by these methods, one after another, 20 ms apart.
 std::vector<float> blows_by(const std::vector<std::string>& methods) {
   World w(with("modal"));
   auto bench = std::make_unique<Bench>();
@@ -152,11 +152,10 @@ TEST_CASE("What a recorded blow sounds like in the air grows as its impulse to t
   World w(with("samples"));
   const double once = rms_of(w.strike(hit(1, 0.5)));
   REQUIRE(once > 0);
-  // One layer, so that the speed changes nothing else; the limiter leaves what is below 0.9 alone. Single
-  // precision.
+  // One layer, so that the speed changes nothing else; the limiter changes nothing below 0.9. Single precision.
   for (const double factor : {0.1, 0.5, 2.0, 4.0})
     CHECK(rms_of(w.strike(hit(1, 0.5 * factor))) / once == Approx(std::pow(factor, 0.6)).epsilon(1e-4));
-  // 12 dB above its recording it grows no more.
+  // More than 12 dB above its recording it does not grow.
   CHECK(level_of(1e6, w.settings) == 4);
   CHECK(level_of(-1, w.settings) == 0);
 }
@@ -165,7 +164,7 @@ TEST_CASE("A body half as large sounds an octave higher, and no more than that")
   for (const auto& [radius, pitch] :
        std::vector<std::pair<double, double>>{{0.05, 1}, {0.04, 1.25}, {0.025, 2}, {0.01, 2}, {0.5, 0.5}}) {
     World w(with("samples"), radius);
-    // Of ball and floor the smaller gives the size.
+    // The smaller of ball and floor gives the size.
     CHECK(static_cast<double>(w.strike(hit(1)).recorded.shots[0].step) == Approx(pitch).epsilon(1e-5));
   }
 }
@@ -207,7 +206,7 @@ TEST_CASE(
   REQUIRE(rubs.size() == 1);
   CHECK(rubs[0].database == 5);
   CHECK(rubs[0].speed_m_s == Approx(0.2));
-  // The root of the power that friction takes: 0.5 * 4 N * 0.2 m/s.
+  // The root of the friction power: 0.5 * 4 N * 0.2 m/s.
   CHECK(static_cast<double>(rubs[0].level) ==
         Approx(Settings{}.recorded_scrape_level * std::sqrt(0.4)).epsilon(1e-6));
   CHECK(w.sampler.modal_of(11, Interaction::kScrape) == 0);
@@ -223,7 +222,7 @@ TEST_CASE(
 TEST_CASE("What rests under load and jitters does not scrape, neither as recorded nor as computed") {
   World w(with("samples"));
   for (int ms = 1; ms < 2000; ++ms) {
-    // 2 mm/s to and fro, 50 times a second: it never gets 20 um away.
+    // 2 mm/s back and forth, 50 times a second: it never moves 20 um away.
     const auto& rubs =
         w.sampler.rubs({sliding(ms / 10 % 2 ? 0.002 : -0.002, 0, 50)}, sync::host_time(1'000'000 * ms));
     REQUIRE(rubs.empty());
@@ -295,7 +294,7 @@ TEST_CASE("Changing the method while bodies sound is not heard as a click: what 
   float most = 0;
   for (std::size_t n = 0; n < together.size(); ++n) {
     most = std::max(most, std::abs(together[n]));
-    // Below the limiter all of it is linear; single precision, and a voice ends at -100 dBFS.
+    // Below the limiter everything is linear; single precision, and a voice ends at -100 dBFS.
     REQUIRE(together[n] == Approx(first[n] + second[n] + third[n] + fourth[n]).margin(2e-5));
   }
   CHECK(most > 0.05f);
@@ -323,7 +322,7 @@ TEST_CASE("A contact that scrapes while the method changes fades from one way to
     most = std::max(most, std::abs(bench->left[n]));
   }
   REQUIRE(most > 0.01f);
-  // The slope of the wave, an octave up at the most, and 1/240 of it a sample, at which its level goes to another.
+  // The slope of the wave, at most an octave up, and 1/240 of it a sample, the ramp of its level.
   CHECK(steepest <= most * (2 * M_PI * 200 / kRate + 1.0 / 240) * 1.01);
   CHECK(std::abs(bench->left.back()) < 1e-4f);  // the last 100 ms were modal: nothing is computed here
 }

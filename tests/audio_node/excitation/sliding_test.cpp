@@ -3,8 +3,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
-#include <tactus/contact_t.hpp>
-#include <tactus/scene_t.hpp>
 #include <tactus/world_state_t.hpp>
 
 #include "audio_node/excitation/contact_patch.h"
@@ -21,7 +19,7 @@ namespace {
 
 constexpr std::int64_t kRun = 1, kMs = 1'000'000;
 
-// Of body 1 past body 0, which wears the map.
+// Of body 1 relative to body 0, which has the map.
 contact_t sliding(const Vector3d& velocity_m_s, double force_N, const Vector3d& place_body,
                   const Vector3d& normal = Vector3d::UnitZ()) {
   contact_t c{};
@@ -35,7 +33,7 @@ contact_t sliding(const Vector3d& velocity_m_s, double force_N, const Vector3d& 
   return c;
 }
 
-// Turned by 90 degrees about z, so that +y of the world is +x of the board.
+// Rotated by 90 degrees about z, so that +y of the world is +x of the board.
 scene_t board(bool stands) {
   scene_t s{};
   s.listener = to_pose(Eigen::Isometry3d::Identity());
@@ -45,7 +43,7 @@ scene_t board(bool stands) {
   s.bodies[1].mass_kg = 1;
   s.materials = {rough(), material_def_t{}}, s.material_count = 2;
   s.materials[1].friction_dynamic = 0.5;
-  // Of wood: what a material leaves out.
+  // Of wood, by the omitted material.
   s.shapes.resize(2), s.shape_count = 2;
   for (shape_def_t& shape : s.shapes)
     shape.kind = shape_def_t::BOX, shape.pose = to_pose(Eigen::Isometry3d::Identity());
@@ -54,7 +52,7 @@ scene_t board(bool stands) {
   return s;
 }
 
-// How the board is turned, as the simulation tells it.
+// Orientation of the board, as the simulation publishes it.
 world_state_t told(std::int64_t ms, const Eigen::Quaterniond& orientation,
                    const Vector3d& spin_rad_s = Vector3d::Zero()) {
   world_state_t m{};
@@ -70,7 +68,7 @@ world_state_t told(std::int64_t ms, const Eigen::Quaterniond& orientation,
 
 sync::SimTime sim_ms(std::int64_t ms) { return sync::sim_time(ms * kMs); }
 
-// With the bodies of a scene, which sound, and a clock that goes on by 1 ms with each look at its contacts.
+// With the bodies of a scene, which sound, and a clock that advances by 1 ms with each update.
 struct Heard {
   explicit Heard(const scene_t& of, std::shared_ptr<const HeardSurfaces> surfaces = wavy_surfaces(),
                  const Settings& settings = {})
@@ -133,7 +131,7 @@ TEST_CASE("What slides is as strong as the root of the power that friction takes
 }
 
 TEST_CASE("The reference stroke is as loud over one pair of bodies as a blow that makes them as loud") {
-  // Twice the force per slope, and so the pressure to be expected: the law of level takes a power of 0.6.
+  // Twice the force per slope, and so twice the expected pressure: the law of level takes a power of 0.6.
   const auto told = [](double force_N) {
     Settings settings;
     settings.scrape_force_N = force_N;
@@ -159,7 +157,7 @@ TEST_CASE("What rests under load is silent, however it jitters, and what begins 
       for (const Scrape& s : all) (s.ends ? ends : later) += 1;
     }
     CHECK(ends == 1);
-    // Its way of 0.1 mm is forgotten within ln(5) 20 ms.
+    // Its path of 0.1 mm decays within ln(5) 20 ms.
     CHECK(later <= (rests ? 33 : 0));
   }
 }
@@ -207,7 +205,8 @@ TEST_CASE("A body that moves scrapes as it is turned just then, and is silent un
 }
 
 TEST_CASE("A finger on a turning board goes over its map as fast as the places that are told") {
-  // Two thirds of a turn a second under a finger that stays; the board is told of at 60 Hz, the finger at 1 kHz.
+  // Two thirds of a revolution a second under a finger that stays; the board is published at 60 Hz, the finger at
+  // 1 kHz.
   const double spin_rad_s = 4, radius_m = 0.03;
   Heard h(board(false));
   Vector3d gone = Vector3d::Zero(), began = Vector3d::Zero();
@@ -219,7 +218,7 @@ TEST_CASE("A finger on a turning board goes over its map as fast as the places t
     const contact_t c = sliding(-board, 2, turn(rad).conjugate() * finger);
     const ScrapeSide side = h.look(c).at(0).sides[0];
     if (ms == 0) began = side.place_m;
-    // By what was told of the velocity before; half a tick of a circle off, of 60 waves in all.
+    // Extrapolated with the previous velocity; an error of half a tick of a circle, of 60 waves in total.
     REQUIRE((began + gone - side.place_m).norm() < 0.06 * kWave_m);
     gone += 1e-3 * side.velocity_m_s;
   }
@@ -236,7 +235,7 @@ TEST_CASE("Over a map that is told of at 60 Hz the way is steady, and a body's o
   for (std::int64_t ms = 0; ms < 500; ++ms) {
     const double told_m = own_edge ? 0.02 : 1e-3 * speed_m_s * static_cast<double>(ms - ms % 17);
     contact_t c = sliding({speed_m_s, 0, 0}, 2, {told_m, 0, 0});
-    // The other corners of what lies there, and now and then another that is deepest.
+    // The other corners of the body; from time to time another one is deepest.
     c.points.resize(2), c.point_count = 2;
     c.points[1].a_body_m = to_vec3f(Vector3d(told_m + 0.1, 0.05, 0));
     if (ms % 34 >= 17) std::swap(c.points[0], c.points[1]);
@@ -244,15 +243,15 @@ TEST_CASE("Over a map that is told of at 60 Hz the way is steady, and a body's o
     if (own_edge) continue;
     const ScrapeSide& side = s.sides[0];
     REQUIRE(side.velocity_m_s.x() == Approx(speed_m_s).epsilon(0.01));
-    // On its way between two snapshots, never back to the one before.
+    // Moves between two snapshots, never back to the previous one.
     if (ms > 0) REQUIRE(side.place_m.x() - before_m == Approx(1e-3 * speed_m_s).epsilon(0.2));
     REQUIRE(side.place_m.x() == Approx(1e-3 * speed_m_s * static_cast<double>(ms)).margin(1e-3 * speed_m_s));
     before_m = side.place_m.x();
   }
   if (own_edge) {
-    // What there was at first has gone: nine looks at it of 50 ms each.
+    // The initial value has decayed: nine updates of 50 ms each.
     CHECK(s.sides[0].velocity_m_s.norm() < 0.001 * speed_m_s);
-    CHECK(s.sides[1].velocity_m_s.norm() == 0);  // nobody has said how it is turned
+    CHECK(s.sides[1].velocity_m_s.norm() == 0);  // its orientation is not known
     CHECK(s.slide > 0);
   }
 }
@@ -260,7 +259,7 @@ TEST_CASE("Over a map that is told of at 60 Hz the way is steady, and a body's o
 TEST_CASE(
     "A ball that rolls is heard of its own circumference, once a turn louder, through the patch that it rests "
     "on") {
-  // Of 20 mm, on a floor, 1.6 turns a second.
+  // Of 20 mm, on a floor, 1.6 revolutions a second.
   const double radius_m = 0.02, spin_rad_s = 10, speed_m_s = radius_m * spin_rad_s, force_N = 0.5;
   scene_t scene = board(true);
   scene.bodies[0].pose = to_pose(Eigen::Isometry3d::Identity());
@@ -300,11 +299,12 @@ TEST_CASE(
   CHECK(s.sides[1].velocity_m_s.norm() == Approx(speed_m_s));
   const double reduced = reduced_modulus_Pa(elastic(scene.materials[0]), elastic(scene.materials[1]));
   CHECK(s.cutoff_Hz == Approx(speed_m_s / (2 * std::cbrt(3 * force_N * radius_m / (4 * reduced)))));
-  // Of the second half second on: the same place of the ball after a turn, within what it rolls in 2 ms.
+  // From the second half second on: the same place of the ball after a revolution, within the distance that it
+  // rolls in 2 ms.
   const auto turn_ms = static_cast<std::size_t>(std::lround(2000 * M_PI / spin_rad_s));
   for (std::size_t ms = 500; ms + turn_ms < places.size(); ++ms)
     REQUIRE((places[ms + turn_ms] - places[ms]).norm() < 0.002 * speed_m_s);
-  // The heavy side (2, -1, 2) / 3 turns by sqrt(8) / 3.
+  // The heavy side (2, -1, 2) / 3 rotates by sqrt(8) / 3.
   const auto [least, most] =
       std::minmax_element(strong.begin() + 700, strong.begin() + 700 + static_cast<long>(turn_ms));
   const double depth = settings.turn_depth * std::sqrt(8.0) / 3;
@@ -322,16 +322,16 @@ TEST_CASE("What rolls is as strong as its inertia makes it while it is slow, and
     c.tool = -1;
     c.rolling_velocity_m_s = to_vec3f(Vector3d(speed_m_s, 0, 0));
     Scrape s;
-    for (int ms = 0; ms < 200; ++ms)  // gone far enough to be known to move
+    for (int ms = 0; ms < 200; ++ms)  // moved far enough to be detected
       for (const Scrape& last : h.look(c)) s = last;
     return static_cast<double>(s.roll);
   };
-  // Of 1 kg at millimetres a second: with the square of the speed. The patch, a little, with the load: the waves
-  // are longer by its cube root, so each is higher by that and slower by its square.
+  // Of 1 kg at millimetres a second: with the square of the speed. The patch grows slightly with the load: the
+  // waves are longer by its cube root, so each is higher by that and slower by its square.
   CHECK(rolls(1, 0.003) > 0);
   CHECK(rolls(1, 0.006) == Approx(4 * rolls(1, 0.003)).epsilon(1e-3));
   CHECK(rolls(8, 0.003) == Approx(rolls(1, 0.003) / 2).epsilon(1e-3));
-  // At 1 m/s: it would be thrown up; no faster, louder with the load.
+  // At 1 m/s the profile would lift it: independent of the speed, proportional to the load.
   CHECK(rolls(1, 2) == Approx(rolls(1, 1)).epsilon(1e-4));
   CHECK(rolls(2, 1) == Approx(2 * rolls(1, 1)).epsilon(1e-4));
 }
@@ -353,9 +353,9 @@ TEST_CASE("From sliding to rolling nothing jumps") {
       CHECK(slides == 0);
       CHECK(rolls > 0);
     }
-    // Sliding goes with a root, which is steepest where it ends: of the hundredth part of the whole way a tenth.
-    // Rolling goes with the square of the speed: of its last hundredth part 2 %; the gate adds no jump but what 20
-    // um open.
+    // Sliding goes with a root, which is steepest where it ends: a hundredth of the whole path changes it by a
+    // tenth. Rolling goes with the square of the speed: its last hundredth changes it by 2 %; the gate adds at
+    // most the opening over 20 um.
     if (ms > 1) {
       REQUIRE(std::abs(slides - slide) < 0.2 * 1e-3);
       REQUIRE(std::abs(rolls - roll) < 0.2 * 1e-3);

@@ -54,7 +54,7 @@ TEST_CASE("What the disk cannot take becomes silence, so that indices hold") {
     const std::vector<float> too_much(kFrames, 1.f), little(1, 0.5f);
     capture.append(too_much.data(), kFrames);
     CHECK(capture.lost_frames() == kFrames);
-    while (capture.lost_frames() < kFrames + 1) capture.append(little.data(), 1);  // its silence is still owed
+    while (capture.lost_frames() < kFrames + 1) capture.append(little.data(), 1);  // its silence is still pending
     CHECK(capture.frames() > kFrames);
   }
   std::filesystem::remove_all(folder);

@@ -55,7 +55,7 @@ TEST_CASE(
   REQUIRE(crossing.rubs.push(rub));
   bench->play(480);
   CHECK(bench->renderer.recorded() == 1);
-  rub.at = sync::host_time(kStart_ns + 1'000'000'000);  // still in the queue when the next database comes
+  rub.at = sync::host_time(kStart_ns + 1'000'000'000);  // still in the queue when the next database arrives
   REQUIRE(crossing.rubs.push(rub));
   REQUIRE(crossing.databases.push(2));
   bench->play(480);
@@ -91,7 +91,7 @@ TEST_CASE("The library reads what the settings ask for, once, and gives back wha
   settings.sounds = one.path();
   library.configure(settings);
   CHECK(library.step().empty());
-  CHECK_FALSE(library.database());  // by modes alone nothing is read
+  CHECK_FALSE(library.database());  // the modal method reads nothing
   const auto read = [&](std::int64_t number) {
     std::vector<Library::Shared> unread;
     for (int i = 0; i < 10000 && library.number() < number; ++i) {
@@ -113,7 +113,7 @@ TEST_CASE("The library reads what the settings ask for, once, and gives back wha
   library.configure(settings);
   for (std::int64_t spins = 0; library.number() < 2 && spins < 200'000'000; ++spins) read(2);
   CHECK(library.database()->find("steel", "steel", Interaction::kImpact).any());
-  CHECK(library.step().empty());  // the callback has not been told yet
+  CHECK(library.step().empty());  // the callback has not been notified yet
   callback.take_databases();
   callback.let_go(none);
   CHECK(library.step().size() == 1);
@@ -121,7 +121,7 @@ TEST_CASE("The library reads what the settings ask for, once, and gives back wha
 
 namespace {
 
-// A library and a callback that is called by hand, with one folder of recordings, or two by turns.
+// A library and a manually called callback, with one folder of recordings, or two in alternation.
 struct Lent {
   SoundFolder one, two;
   RecordedQueues crossing;
@@ -133,7 +133,7 @@ struct Lent {
     one.write("oak/impact/1.wav", tone(300, 0.1));
     two.write("oak/impact/1.wav", tone(300, 0.1));
   }
-  // Until all that is to be read has been.
+  // Until everything has been read.
   void read(bool heard = true) {
     for (std::int64_t spins = 0; library.reading() && spins < 2'000'000'000; ++spins) {
       given_back += library.step(heard).size();
@@ -193,7 +193,7 @@ TEST_CASE("Without a card recordings are given back as soon as others replace th
     REQUIRE(l.library.database());
     CHECK(l.given_back == i);
   }
-  // A callback that comes then plays the newest.
+  // A later callback plays the newest.
   Recorded callback(l.crossing, 48000);
   callback.take_databases();
   callback.let_go(l.none);
@@ -210,7 +210,7 @@ TEST_CASE("A callback that stands still makes no more than four databases wait")
     l.want("samples", i % 2 ? l.two : l.one);
     l.read();
   }
-  // Two that it might play, one that is told, one that is next.
+  // Two that it might play, one that is announced, one that is next.
   CHECK(l.given_back == 16);
   CHECK(l.library.number() == 3);
   l.call();

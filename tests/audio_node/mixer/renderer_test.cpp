@@ -53,7 +53,7 @@ TEST_CASE("A late strike is played at once, a very late one is dropped, and both
   CHECK(bench->reports[0].outcome == presentation_t::DROPPED_LATE);
   CHECK(bench->reports[0].presented_ns == -1);
   CHECK(bench->reports[1].outcome == presentation_t::LATE);
-  // The earliest that can still be changed: past the limiter's delay.
+  // The earliest sample that can still be changed, after the delay of the limiter.
   CHECK(first_sound(bench->left) == 480 + Limiter::kDelay);
   CHECK(std::abs(bench->reports[1].presented_ns - bench->time_ns(480 + Limiter::kDelay)) <= 2);
 }
@@ -63,7 +63,7 @@ TEST_CASE("Of the sense's row of late rules: on time within its slack, then the 
   const auto played = [](double late_s) {
     auto bench = std::make_unique<Bench>();
     bench->play(480);
-    const double first = 480 + Limiter::kDelay;  // that can still be changed
+    const double first = 480 + Limiter::kDelay;  // the earliest sample that can still be changed
     const auto at = kStart_ns + std::llround((first / kRate - late_s) * 1e9);
     REQUIRE(bench->crossing.strikes.push(strike_of(1, 1, 500, 0, at)));
     for (int i = 0; i < 4; ++i) bench->play(480);
@@ -78,7 +78,7 @@ TEST_CASE("Of the sense's row of late rules: on time within its slack, then the 
   for (const double late_s : {2.7 / kRate, 0.001, 0.01, 0.02, 0.0299}) {
     const auto [outcome, level] = played(late_s);
     CHECK(outcome == presentation_t::LATE);
-    // By a straight line from the slack of 2.5 samples to the limit of 30 ms.
+    // Linear from the slack of 2.5 samples to the limit of 30 ms.
     const double slack_s = 2.5 / kRate;
     CHECK(level == Approx(full * (0.03 - late_s) / (0.03 - slack_s)).margin(1e-3 * full));
   }
@@ -105,7 +105,7 @@ TEST_CASE("A struck voice rings at its frequency and decays at its rate") {
   REQUIRE(bench->crossing.strikes.push(strike_of(1, 1, f, d, bench->time_ns(1000))));
   while (bench->left.size() < 30000) bench->play(128);
   // A mass on a spring and a damper, struck: its velocity is exp(-d t) (cos w t - d/w sin w t), here in the middle
-  // of each sample from 1000 on. Single precision poles are off by 6e-8 a sample: 2e-3 of 29000 of them.
+  // of each sample from 1000 on. Single-precision poles have an error of 6e-8 a sample: 2e-3 over 29000 of them.
   double worst = 0;
   for (std::size_t n = 1000; n < 30000; ++n) {
     const double t = (static_cast<double>(n - 1000) + 0.5) / kRate, w = 2 * pi * f;
@@ -228,7 +228,7 @@ TEST_CASE("A callback of any length has no block so short that a sound leaps to 
   while (bench->left.size() < 2000) bench->play(frames);
   const std::size_t from = bench->left.size();
   const double gain = *std::max_element(bench->left.begin(), bench->left.end());
-  // Blows of nothing on the last sample of each callback, from the right and the left in turn.
+  // Blows without strength on the last sample of each callback, from the right and the left in alternation.
   for (std::int64_t i = 0; i < 8; ++i) {
     const std::size_t last = bench->left.size() + static_cast<std::size_t>(frames + Limiter::kDelay) - 1;
     Strike turned = strike_of(2 + i, 1, f, 0, bench->time_ns(last), 0);
@@ -242,6 +242,6 @@ TEST_CASE("A callback of any length has no block so short that a sound leaps to 
     const auto at = [&](std::size_t k) { return static_cast<double>(bench->left[k]); };
     bend = std::max(bend, std::abs(at(n + 1) - 2 * at(n) + at(n - 1)));
   }
-  // At worst the side is left within 32 samples: a corner of 1/32, and twice that times the slope of the tone.
+  // At worst the crossfade takes 32 samples: a corner of 1/32, and twice that times the slope of the tone.
   CHECK(bend < (w * w + 1.0 / 32 + 2 * w / 32) * gain);
 }

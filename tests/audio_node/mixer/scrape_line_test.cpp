@@ -1,4 +1,4 @@
-// Surfaces that scenes leave behind, and a callback that may still read them: they go once it has let go of them,
+// Surfaces of previous scenes and a callback that may still read them: they are freed once it has released them,
 // and never before.
 #include "audio_node/mixer/scrape_line.h"
 
@@ -18,15 +18,15 @@ using namespace tactus::audio::test;
 
 namespace {
 
-// What is heard of them is not louder; and what is heard of freed ones is.
+// Valid sound stays below this level; the sound of freed surfaces exceeds it.
 constexpr float kLoudest = 0.1f;
 
-// As the surfaces of a scene; freed they become so steep that a callback which reads them is heard.
+// As the surfaces of a scene; once freed they become so steep that a callback that reads them is audible.
 ScrapeLine::Surfaces poisoned_when_freed() {
   auto* surfaces = new HeardSurfaces;
   auto relief = std::make_shared<ReliefLevels>(make_relief(waves(), rough()));
   surfaces->by_material.push_back({relief, nullptr});
-  static std::vector<std::shared_ptr<ReliefLevels>> graveyard;  // memory that is never used again
+  static std::vector<std::shared_ptr<ReliefLevels>> graveyard;  // memory that is never reused
   return {surfaces, [relief](const HeardSurfaces* gone) {
             for (Eigen::Vector2f& slope : const_cast<Relief&>(relief->finest()).slopes) slope.setConstant(1e6f);
             graveyard.push_back(relief);
@@ -51,17 +51,17 @@ Scrape over(const ReliefLevels* relief, std::int64_t id, std::int64_t at_ns, flo
   return s;
 }
 
-// A loop and a callback in one thread, by turns.
+// A loop and a callback in one thread, in alternation.
 struct Line {
   std::unique_ptr<Bench> bench = std::make_unique<Bench>();
   ScrapeLine line{bench->crossing};
 
-  // Of the contact `id`, heard from now, or so much later.
+  // Of the contact `id`, presented now or later_samples later.
   bool scrape(const ScrapeLine::Surfaces& surfaces, std::int64_t id = 1, int later_samples = 0) {
     return line.submit(over(surfaces->by_material[0].relief.get(), id,
                             bench->time_ns(bench->left.size() + static_cast<std::size_t>(later_samples)), 1e-4f));
   }
-  // Something was heard, and nothing of what was freed.
+  // True when there was sound, and none of it from freed surfaces.
   bool sound() const {
     float loudest = 0;
     for (const float x : bench->left) loudest = std::max(loudest, std::abs(x));
@@ -88,7 +88,7 @@ TEST_CASE("Surfaces of a scene that is over go when their last scrape has died a
     REQUIRE_FALSE(watched.expired());
     l.bench->play(kBlock);
   }
-  CHECK(blocks > 10);  // it was heard for 30 ms at least
+  CHECK(blocks > 10);  // it sounded for at least 30 ms
   CHECK(l.line.take_unread().size() == 1);
   CHECK(watched.expired());
   CHECK(l.sound());
@@ -98,7 +98,7 @@ TEST_CASE("They stay while a scrape of theirs waits in the queue or for its time
   Line l;
   const auto first = poisoned_when_freed(), second = poisoned_when_freed();
   l.line.change(first);
-  REQUIRE(l.scrape(first, 1, 4800));  // heard in 100 ms
+  REQUIRE(l.scrape(first, 1, 4800));  // presented in 100 ms
   l.line.change(second);
   REQUIRE(l.scrape(second, 2, 4800));  // waits behind it
   l.line.change(nullptr);
@@ -122,7 +122,7 @@ TEST_CASE("Of two scenes in quick succession the one that nobody heard goes at o
   const auto unread = l.line.take_unread();
   REQUIRE(unread.size() == 1);
   CHECK(unread[0] == second);
-  // The same contact goes on in the new scene: its voice then reads the new surfaces alone.
+  // The same contact continues in the new scene: its voice then reads only the new surfaces.
   REQUIRE(l.scrape(third));
   l.bench->play(kBlock);
   const auto later = l.line.take_unread();
@@ -144,7 +144,7 @@ TEST_CASE(
     l.scrape(next, scene);
     freed += l.line.take_unread().size();
   }
-  // All but those with a scrape in the queue, the one that sounds and the present one.
+  // All except those with a scrape in the queue, the sounding one and the present one.
   CHECK(freed == 3000 + 1 - l.bench->crossing.scrapes.capacity() - 1 - 1);
   SECTION("until it goes on") {
     l.line.change(nullptr);
@@ -223,7 +223,7 @@ TEST_CASE(
   CHECK(line.lost() == 1);
   CHECK_FALSE(tell(1, true));
   CHECK_FALSE(tell(2, true));
-  CHECK_FALSE(tell(2, false));  // it goes on
+  CHECK_FALSE(tell(2, false));  // it continues
   CHECK(line.lost() == 2);
   line.tell_ends();  // there is no room yet
   std::int64_t next = 0;

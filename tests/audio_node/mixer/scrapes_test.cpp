@@ -19,10 +19,10 @@ const ReliefLevels& wavy() {
   return relief;
 }
 constexpr double kSlope = M_PI * kHigh_m / kWave_m;
-// Of k sin x sqrt(1 + k^2 sin^2 x) the first harmonic is k (1 + 3/8 k^2) but for the fourth power.
+// Of k sin x sqrt(1 + k^2 sin^2 x) the first harmonic is k (1 + 3/8 k^2), except for the fourth power.
 constexpr double kTone = kSlope * (1 + 0.375 * kSlope * kSlope);
 
-// What a unit force at a frequency makes of the velocity of a unit mass on its spring.
+// Velocity of a unit mass on its spring under a unit force at a frequency.
 double driven(double frequency_Hz, double natural_Hz, double damping_1_s) {
   const std::complex<double> iw(0, 2 * M_PI * frequency_Hz);
   const double w0_squared = std::pow(2 * M_PI * natural_Hz, 2) + damping_1_s * damping_1_s;
@@ -36,12 +36,12 @@ TEST_CASE("What slides pushes with the slope of the relief under it, as often a 
   const auto r = rub(
       [&](double ms) {
         Scrape s = along_x(&wavy(), speed, ms);
-        if (static_cast<int>(ms) % 3 == 0) s.sides[0].place_m.x() += 1e-3 * speed;  // now and then a tick ahead
+        if (static_cast<int>(ms) % 3 == 0) s.sides[0].place_m.x() += 1e-3 * speed;  // occasionally a tick ahead
         return s;
       },
       1000, 1000);
   const double tone_Hz = speed / kWave_m, should_be = static_cast<double>(kForce) * kTone;
-  // Central differences and linear interpolation over 32 pixels a wave lose 1 %, the jitter some more.
+  // Central differences and linear interpolation over 32 pixels a wave lose 1 %, the jitter slightly more.
   CHECK(amplitude(r.force, tone_Hz, 0.2, 0.8) == Approx(should_be).epsilon(0.05));
   CHECK(amplitude(r.force, 1.4 * tone_Hz, 0.2, 0.8) < 0.02 * should_be);
 }
@@ -51,7 +51,7 @@ TEST_CASE("Told at 60 Hz a slide is as steady as told at 1 kHz") {
   const auto rare = rub(told, 500, 500, 16).force, often = rub(told, 500, 500, 1).force;
   float off = 0;
   for (std::size_t n = 0; n < often.size(); ++n) off = std::max(off, std::abs(rare[n] - often[n]));
-  // But for the rounding of places.
+  // Except for the rounding of places.
   CHECK(off < 1e-5f * kForce);
 }
 
@@ -65,8 +65,8 @@ TEST_CASE("A mode rings as a driven oscillator does, loudest where the waves pas
         return s;
       },
       1500, 1500);
-  // N s a sample, so as many a second. From 0.5 s on what rang at first has decayed by exp(-15). A mode that is
-  // stepped by impulses differs from one in continuous time by (w / rate)^2 = 2 % at 1 kHz.
+  // N s a sample, so the same number per second. From 0.5 s on the initial ringing has decayed by exp(-15). A mode
+  // that is stepped by impulses differs from one in continuous time by (w / rate)^2 = 2 % at 1 kHz.
   const double ratio = amplitude(r.sound, tone_Hz, 0.5, 1.5) / (kRate * amplitude(r.force, tone_Hz, 0.5, 1.5));
   CHECK(ratio == Approx(driven(tone_Hz, natural_Hz, damping_1_s)).epsilon(0.02));
   if (tone_Hz == natural_Hz) CHECK(ratio == Approx(1 / (2 * damping_1_s)).epsilon(0.01));
@@ -102,7 +102,7 @@ TEST_CASE("Waves too short for a sample do not fold back, neither of a map nor o
     return rub([&](double ms) { return along_x(&fine, tone_Hz * 1e-4, ms); }, 200, 200).force;
   };
   CHECK(rms(at(2000), 0.05, 0.2) == Approx(static_cast<double>(kForce) * kTone / std::sqrt(2)).epsilon(0.03));
-  // Would be heard at 9.6 and 2 kHz.
+  // Would alias to 9.6 and 2 kHz.
   CHECK(rms(at(38400), 0.05, 0.2) < 0.01 * rms(at(2000), 0.05, 0.2));
   CHECK(rms(at(46000), 0.05, 0.2) < 0.01 * rms(at(2000), 0.05, 0.2));
   const auto rough_at = [](double speed_m_s) {
@@ -115,7 +115,7 @@ TEST_CASE("Waves too short for a sample do not fold back, neither of a map nor o
                500, 500)
         .force;
   };
-  // Near half the rate next to nothing, of what there is at an eighth of it. Means over 20 neighbours.
+  // Near half the rate almost nothing, compared with an eighth of the rate. Means over 20 neighbours.
   const auto fast = rough_at(0.5);
   const auto level = [&](double about_Hz) {
     double sum = 0;
@@ -171,7 +171,7 @@ TEST_CASE("Friction that changes on the map changes the strength at that place")
         100, 100);
     return rms(r.force, 0.02, 0.1);
   };
-  // The middles of black and of white; 10 mm further on it is a tenth of the way to the other.
+  // The middles of black and of white; 10 mm further is a tenth of the way to the other.
   CHECK(loud(0.295, true) == Approx(2 * loud(0.095, true)).epsilon(0.05));
   CHECK(loud(0.295, false) == Approx(loud(0.095, false)).epsilon(0.01));
 }
@@ -184,8 +184,8 @@ TEST_CASE("A contact that ends is silent 2 ms later, its bodies when they have r
     return s;
   };
   const auto r = rub(tell, 500, 1000);
-  // Within a sample the slope goes on by its curvature, the strength by its ramp of 2 ms; what is steep is
-  // stronger, by k^2 / 2, and that changes with 3 k^2 / 2 at the most.
+  // Within a sample the slope changes by its curvature, the strength by its ramp of 2 ms. Steep parts are
+  // stronger, by k^2 / 2, which changes by at most 3 k^2 / 2.
   const double tone = 2 * M_PI * 0.1 / kWave_m / kRate, ramp = 1 / (0.002 * kRate);
   double step = std::abs(static_cast<double>(r.force[0]));
   for (std::size_t n = 1; n < r.force.size(); ++n)
@@ -193,7 +193,7 @@ TEST_CASE("A contact that ends is silent 2 ms later, its bodies when they have r
   CHECK(step < (1 + 2 * kSlope * kSlope) * static_cast<double>(kForce) * kSlope * (tone + ramp));
   CHECK(rms(r.force, 0.4, 0.5) > 0);
   for (std::size_t n = 24000 + 96; n < r.force.size(); ++n) REQUIRE(r.force[n] == 0);
-  // Of what sounds exp(-60 t) is left, and nothing below -100 dBFS: from 0.02 that takes 0.13 s.
+  // The sound decays by exp(-60 t), and ends below -100 dBFS: from 0.02 that takes 0.13 s.
   const auto loudest = *std::max_element(r.sound.begin() + 12000, r.sound.begin() + 24000);
   CHECK(loudest > 1e-3f);
   CHECK(loudest < 0.3f);
@@ -211,7 +211,7 @@ TEST_CASE("One that is told of no more, not even that it ended, is silent after 
 }
 
 TEST_CASE("Where on a body it is struck changes without a click") {
-  // A mode so fast and so damped that it follows the force: its jumps would be heard.
+  // A mode of such a high frequency and damping that it follows the force: its jumps would be audible.
   const double mode_Hz = 9000;
   const auto tell = [&](double ms) {
     Scrape s = along_x(&wavy(), 0.1, ms);
@@ -222,9 +222,8 @@ TEST_CASE("Where on a body it is struck changes without a click") {
   double change = 0;
   for (std::size_t n = 11900; n < 14400; ++n)
     change = std::max(change, std::abs(static_cast<double>(r.sound[n] - r.sound[n - 1])));
-  // A block of 1 ms goes from one to the other: beside the tone the factor changes the force by 2 / 48 a sample,
-  // of which the mode's displacement, rate / w at the most, is heard. At once it would be 2, a click of 50 times
-  // as much.
+  // The gains change over a block of 1 ms: beside the tone the factor changes the force by 2 / 48 a sample, of
+  // which the displacement of the mode, rate / w at most, is audible. A jump would be 2, a click of 50 times that.
   const double step = 2 / 48. + 2 * M_PI * 50 / kRate;
   CHECK(change <
         (1 + 2 * kSlope * kSlope) * static_cast<double>(kForce) * kSlope * step * kRate / (2 * M_PI * mode_Hz));

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kFrequency_Hz = 1000, kDamping_1_s = 40;
 
-// A body of one mode that is pushed by a force, N s a sample.
+// A body of one mode that is driven by a force, N s a sample.
 struct Pushed {
   Resonators resonators;
   PerMode gains{};
@@ -50,7 +50,7 @@ std::vector<float> sine(double frequency_Hz, int frames) {
   return f;
 }
 
-// Of the velocity of a driven oscillator, per unit of force: w / |w0^2 + d^2 - w^2 + 2 i d w| (w0: as it rings).
+// Velocity of a driven oscillator per unit of force: w / |w0^2 + d^2 - w^2 + 2 i d w| (w0: its ringing frequency).
 double response(double frequency_Hz) {
   const double w0 = 2 * pi * kFrequency_Hz, w = 2 * pi * frequency_Hz, d = kDamping_1_s;
   return w / std::hypot(w0 * w0 + d * d - w * w, 2 * d * w);
@@ -64,8 +64,8 @@ TEST_CASE("A body that a force drives answers as a damped oscillator does, at, b
     CAPTURE(f);
     Pushed body;
     body.play(sine(f, frames));
-    // What it swings into has died by e^(-40 / 2). The oracle is continuous; steps of 1 / 48000 s change the
-    // response off resonance by (w T)^2 / 12, 0.6 % at 2 kHz, and a sample may miss the crest by as much again.
+    // The transient has decayed by e^(-40 / 2). The oracle is continuous; steps of 1 / 48000 s change the response
+    // off resonance by (w T)^2 / 12, 0.6 % at 2 kHz, and a sample may miss the crest by the same amount.
     CHECK(body.amplitude(24000) == Approx(0.001 * kRate * response(f)).epsilon(0.02));
   }
 }
@@ -117,7 +117,7 @@ TEST_CASE("What contacts drive keeps ringing when all voices are in use by loude
     voices.render(mix.data(), kMaxBlock);
     if (at > 24000) most = std::max<double>(most, voices.active());
   }
-  // Two of the loud ones gave way, and nobody after that.
+  // Two of the loud ones were replaced, and none after that.
   CHECK(most == 4);
 }
 

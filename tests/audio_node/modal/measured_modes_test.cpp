@@ -15,7 +15,7 @@ using namespace tactus::audio;
 
 namespace {
 
-// A bell of three modes on body 1, which would sound as a steel bar; body 0 is a floor.
+// A bell of three modes on body 1, which would otherwise sound as a steel bar; body 0 is a floor.
 scene_t scene(std::vector<measured_mode_t> modes) {
   scene_t s{};
   material_def_t steel{}, bell{};
@@ -59,7 +59,7 @@ TEST_CASE("A body of a material with measured modes has these, in their proporti
 
 TEST_CASE("What is heard of measured modes is in the proportions of the recording, wherever the body is struck") {
   const Impacts all = impacts(kBell);
-  // mode_step's unit gain makes each a unit of velocity: gains over it are pressures.
+  // The unit gain of mode_step makes each a unit of velocity: gains over it are pressures.
   const auto pressures = [&](const BodyPlace& place) {
     const PerMode gains = all.gains(1, place);
     std::array<double, 3> p{};

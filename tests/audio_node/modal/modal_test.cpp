@@ -37,7 +37,7 @@ TEST_CASE("A thin free bar has the frequencies of Euler and Bernoulli") {
   for (std::size_t i = 0; i < 8; ++i) {
     const double x =
         std::sqrt(f[i].frequency_Hz * 2 * pi * 0.09 / (0.005 / std::sqrt(12) * bar_speed_m_s(kSteel)));
-    // Near a root the product's slope is cosh x; an error of 1e-6 in x leaves 1e-6 cosh x.
+    // Near a root the slope of the product is cosh x; an error of 1e-6 in x leaves 1e-6 cosh x.
     CHECK(std::abs(std::cos(x) * std::cosh(x) - 1) < 1e-6 * std::cosh(x) + 1e-3 * (i >= 4));
   }
 }
@@ -68,8 +68,8 @@ TEST_CASE("A supported plate has the frequencies of Navier's double sine") {
 
 TEST_CASE("A free square plate agrees with Leissa's exact values as well as Warburton's method allows") {
   // Leissa, J. Sound Vib. 31, 1973, table C21: lambda^2 = 13.489, 19.789, 24.432, 35.024, 35.024 for nu = 0.3. The
-  // beam functions of the second and third are one degenerate pair, (2,0) and (0,2): 22.4 for both, 13 % and 9 %
-  // off.
+  // beam functions of the second and third are one degenerate pair, (2,0) and (0,2): 22.4 for both, with errors of
+  // 13 % and 9 %.
   Elastic m = kSteel;
   m.poissons_ratio = 0.3;
   const double a = 0.5, h = 0.002;
@@ -108,7 +108,7 @@ TEST_CASE("The modes of a thin spherical shell obey the membrane equation") {
     const double o2 = std::pow(2 * pi * f[i].frequency_Hz * R, 2) * kSteel.density_kg_m3 * (1 - nu * nu) /
                       kSteel.youngs_modulus_Pa;
     CHECK(o2 * o2 - (1 + 3 * nu + l) * o2 + (1 - nu * nu) * (l - 2) == Approx(0).margin(1e-9 * l * l));
-    // The lower branch tends to that of a bar's longitudinal wave around the ball, c / R.
+    // The lower branch tends to that of a longitudinal bar wave around the ball, c / R.
     CHECK(2 * pi * f[i].frequency_Hz * R < bar_speed_m_s(kSteel));
   }
 }

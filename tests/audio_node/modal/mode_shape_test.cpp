@@ -31,7 +31,7 @@ TEST_CASE(
     CHECK(mean([&](double x) { return std::pow(free_beam(n, x).value, 2); }) == Approx(1).epsilon(1e-4));
     CHECK(free_beam(n, 0).value == Approx(2).epsilon(1e-6));
     CHECK(std::abs(free_beam(n, 1).value) == Approx(2).epsilon(1e-6));
-    // A free bar keeps its centre of mass and does not turn as a whole.
+    // The centre of mass of a free bar stays in place, and the bar does not rotate as a whole.
     CHECK(mean([&](double x) { return free_beam(n, x).value; }) == Approx(0).margin(1e-4));
     CHECK(mean([&](double x) { return free_beam(n, x).value * (x - 0.5); }) == Approx(0).margin(1e-4));
     for (int k = 0; k < n; ++k)
@@ -99,8 +99,8 @@ TEST_CASE("A disc's modes lose no momentum, and their circles lie where Leissa p
     CAPTURE(m.i, m.k);
     const double share = m.i > 0 ? 2 : 1;  // of two degenerate modes
     CHECK(2 * mean([&](double x) { return std::pow(at(m.i, m.k, x), 2) * x; }) == Approx(share).epsilon(1e-4));
-    // Without a diameter the mean displacement is none; with one, its first moment is none: free of outer forces.
-    // lambda^2 is printed to four digits, which leaves some 1e-3.
+    // Without a diameter the mean displacement is zero; with one, its first moment is zero: free of external
+    // forces. lambda^2 is printed to four digits, which leaves about 1e-3.
     if (m.i == 0) CHECK(mean([&](double x) { return at(m.i, m.k, x) * x; }) == Approx(0).margin(3e-3));
     if (m.i == 1) CHECK(mean([&](double x) { return at(m.i, m.k, x) * x * x; }) == Approx(0).margin(3e-3));
   }

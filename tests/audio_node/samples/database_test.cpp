@@ -80,7 +80,7 @@ TEST_CASE("What is wrong with a folder is named, and the rest is played") {
   folder.write("lost.wav", tone(500, 0.2));
   folder.text("oak/size.txt", "large");
   std::filesystem::create_directories(folder.path() + "/oak/roll");
-  // Who opened it would wait for ever.
+  // Opening it would block for ever.
   REQUIRE(mkfifo((folder.path() + "/oak/impact/4.wav").c_str(), 0600) == 0);
   const Database d = read(folder);
   CHECK(d.find("oak", "oak", Interaction::kImpact).any());

@@ -17,7 +17,7 @@ Layers three() {
 
 TEST_CASE("Layers go over into each other by the logarithm of the speed, with the same power throughout") {
   const Layers l = three();
-  // Halfway on a logarithmic scale: both are as strong, -3 dB each.
+  // Halfway on a logarithmic scale: equal strength, -3 dB each.
   const LayerMix half = mix_of(l, 0.2);
   CHECK(half.layer[0] == 0);
   CHECK(half.layer[1] == 1);
@@ -45,6 +45,6 @@ TEST_CASE("Takes are chosen by the number of the event: the same again, and all 
     CHECK(&take_of(layer, id) == &layer.takes[static_cast<std::size_t>(i)]);
     ++count[static_cast<std::size_t>(i)];
   }
-  // Of 4000 draws of 1/4 the standard deviation is 27: within 5 of them.
+  // The standard deviation of 4000 draws of 1/4 is 27: within 5 of them.
   for (const int n : count) CHECK(std::abs(n - 1000) < 137);
 }

@@ -16,7 +16,7 @@ using std::numbers::pi;
 
 namespace {
 
-// Whole waves, so that it is seamless: 240 samples of 200 Hz and more of them.
+// Whole waves, so that it is seamless: multiples of 240 samples at 200 Hz.
 Recording waves(double frequency_Hz, int samples = 24000) {
   Recording r;
   for (int n = 0; n < samples; ++n)
@@ -33,7 +33,7 @@ Layers layers(std::vector<std::pair<double, double>> speed_and_frequency) {
 
 sync::HostTime at(double samples) { return sync::host_time(kStart_ns + std::llround(samples * 1e9 / kRate)); }
 
-// Told once a block of kMaxBlock by `tell` (nothing: not told), all to the left at 1 m.
+// Updated once a block of kMaxBlock by `tell` (null: no update), left channel at 1 m.
 struct Sliding {
   Loops loops{kRate};
   std::vector<float> left;
@@ -64,7 +64,7 @@ struct Sliding {
   }
 };
 
-// Upward crossings of zero a second.
+// Upward crossings of zero per second.
 double frequency_Hz(const std::vector<float>& x, std::size_t from, std::size_t to) {
   int count = 0;
   std::size_t first = 0, last = 0;
@@ -87,8 +87,8 @@ TEST_CASE("A loop sounds as long as its contact, at its level, over its seam, an
   s.play(2 * kSecond, tell);
   CHECK(s.loops.active() == 1);
   CHECK(s.most(24000, 96000) == Approx(0.1).epsilon(1e-3));
-  // A sine of that level, over four turns of the loop: no step is above its slope; while it sets in, that of the
-  // level is added (1/240 of it a sample).
+  // A sine of that level, over four passes of the loop: no step is above its slope; at the beginning the slope of
+  // the level is added (1/240 of it a sample).
   CHECK(s.steepest() <= 0.1 * (2 * pi * 400 / kRate + 1.0 / 240) * 1.001);
   const std::size_t ended = s.left.size();
   s.play(kSecond, nullptr);
@@ -116,7 +116,7 @@ TEST_CASE("Layers go over into each other while the speed changes, without a cli
   Sliding s;
   double v = 0.3;
   s.play(2 * kSecond, [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = v *= 1.002; });
-  // Two sines whose powers add up to that of one, an octave up at the most, and the levels' own slope.
+  // Two sines whose powers add up to that of one, at most an octave up, and the slope of the levels.
   CHECK(s.steepest() <= 0.1 * std::sqrt(2) * (2 * pi * 600 / kRate + 1.0 / 240) * 1.001);
   for (std::size_t n = 4800; n + 4800 < s.left.size(); n += 4800) CHECK(s.most(n, n + 4800) > 0.01);
 }
@@ -163,13 +163,13 @@ TEST_CASE("A loop whose contact is told to end is silent 2 ms later, to the bit 
   s.play(kSecond, tell);
   const std::size_t ended = s.left.size();
   const auto end = [](RecordedContact& r) { r.ends = true; };
-  s.play(2, end);  // told twice, it ends no later
+  s.play(2, end);  // a repeated end does not delay it
   s.play(kSecond / 10, nullptr);
   const auto over = ended + static_cast<std::size_t>(Loops::kEnd_s * kRate);
-  CHECK(s.most(over - 48, over) > 0.01f);  // halfway it is heard
+  CHECK(s.most(over - 48, over) > 0.01f);  // still audible halfway
   CHECK(s.most(over, s.left.size()) == 0);
   CHECK(s.loops.active() == 0);
-  // The wave's own slope, and that of a level that falls from 0.1 within 96 samples.
+  // The slope of the wave, and that of a level that falls from 0.1 within 96 samples.
   CHECK(s.steepest(ended) <= 0.1 * (2 * pi * 400 / kRate + 1.0 / 96) * 1.001);
 
   SECTION("and one that begins again before it was silent goes on from where it is") {
@@ -188,7 +188,7 @@ TEST_CASE("A loop that is told of rarely goes on until it is told anew") {
   for (int i = 0; i < 10; ++i) {
     const auto tell = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1, r.over_s = 0.088; };
     s.play(1, tell);
-    s.play(65, nullptr);  // 88 ms in all
+    s.play(65, nullptr);  // 88 ms in total
   }
   for (std::size_t n = 24000; n + 480 < s.left.size(); n += 480) CHECK(s.most(n, n + 480) > 0.09f);
 }

@@ -13,7 +13,7 @@ using namespace tactus::audio::test;
 
 namespace {
 
-// What is said of a file; empty: nothing is wrong.
+// The faults of a file; empty: none.
 std::string said(const std::string& path, Interaction interaction, bool* read = nullptr) {
   std::vector<SoundFault> faults;
   const auto r = read_recording(path, interaction, 48000, faults);
@@ -40,7 +40,8 @@ TEST_CASE("WAV and FLAC are read, of one channel or two, at any rate") {
       const auto r = read_recording(folder.path() + "/a" + ending, Interaction::kScrape, 48000, faults);
       REQUIRE(r);
       CHECK(faults.empty());
-      // A root mean square of 0.5 / sqrt(2); the seam of 50 ms of 300 may add two tones by their phases, to 3 dB.
+      // A root mean square of 0.5 / sqrt(2); in the seam of 50 of 300 ms two tones may add by their phases, to 3
+      // dB.
       CHECK(r->rms == Approx(0.3536).epsilon(0.1));
       CHECK(r->samples.size() == Approx(0.25 * 48000).margin(4));
     }
@@ -66,14 +67,14 @@ TEST_CASE("A loop goes on over its seam as it goes on elsewhere") {
   std::normal_distribution<float> normal(0, 0.2f);
   std::vector<float> x(48000);
   float low = 0;
-  // Noise through a low-pass: what is steady from sample to sample, so that a jump would stand out.
+  // Noise through a low-pass: continuous from sample to sample, so that a jump would stand out.
   for (float& s : x) s = low += 0.05f * (normal(random) - low);
   float inside = 0;
   for (std::size_t n = 1; n < x.size(); ++n) inside = std::max(inside, std::abs(x[n] - x[n - 1]));
   const auto loop = close_loop(x, 48000);
   REQUIRE(loop.size() == 48000 - 2400);
-  // At the seam one follows the other as in the recording; in it, of two parts whose gains add up to sqrt(2) at
-  // most and turn by pi/2 in 2400 samples.
+  // At the seam one sample follows the other as in the recording; in the seam, two parts with gains that add up to
+  // at most sqrt(2) and rotate by pi/2 in 2400 samples.
   CHECK(std::abs(loop.front() - loop.back()) <= inside * 1.001f);
   const float most =
       *std::max_element(x.begin(), x.end(), [](float a, float b) { return std::abs(a) < std::abs(b); });

@@ -23,8 +23,8 @@ TEST_CASE("A tone is the same tone at another rate") {
       CAPTURE(from, f);
       const auto x = resample(sine(f, from, 0.2), from, 48000), truth = sine(f, 48000, 0.2);
       REQUIRE(x.size() == Approx(truth.size()).margin(2));
-      // Away from the ends, where the kernel reaches beyond the recording; side lobes of -92 dB on both sides of
-      // each of the images, and the table's -108 dB.
+      // Away from the ends, where the kernel extends beyond the recording; side lobes of -92 dB on both sides of
+      // each image, and the -108 dB of the table.
       for (std::size_t n = 1000; n < 8600; ++n) REQUIRE(x[n] == Approx(truth[n]).margin(2e-4));
     }
 }

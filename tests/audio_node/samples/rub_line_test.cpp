@@ -18,7 +18,7 @@ TEST_CASE("The end of a recorded contact waits for room, unless the contact goes
   CHECK(line.lost() == 1);
   CHECK_FALSE(tell(1, 0, true));
   CHECK_FALSE(tell(1, 1, true));
-  CHECK_FALSE(tell(1, 1, false));  // that part goes on
+  CHECK_FALSE(tell(1, 1, false));  // that part continues
   CHECK(line.lost() == 2);
   for (RecordedContact r; queue.pop(r);) CHECK_FALSE(r.ends);
   line.tell_ends();

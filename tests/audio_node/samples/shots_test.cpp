@@ -83,8 +83,8 @@ TEST_CASE("The centre of the spectrum moves as the pitch") {
     const double centre = centroid_Hz(left_of(shots, 2048 / kMaxBlock));
     if (step == 1) whole = centre;
     CAPTURE(step, centre, whole);
-    // The decay widens the line to 60 step / 2 pi Hz, and what of it lies at the far ends weighs a little more;
-    // the cubic's images at 20 kHz are below -60 dB for 2 kHz.
+    // The decay widens the line to 60 step / 2 pi Hz, and its parts at the far ends weigh slightly more; the
+    // images of the cubic at 20 kHz are below -60 dB for 2 kHz.
     CHECK(centre / whole == Approx(static_cast<double>(step)).epsilon(0.02));
   }
 }
@@ -120,12 +120,12 @@ TEST_CASE("When all are in use the quietest gives way, and fades without a click
   shots.take(shot(r, 1e-2f), 1, 0);
   const auto left = left_of(shots, 10);
   CHECK(shots.active() == Shots::kMax);
-  // All but the weak one go on: 63 in step, one that begins. Of a cosine 0.5 cos(w n) no step is above 0.5 w, and
-  // the new one begins with its first sample.
+  // All except the weak one continue: 63 in step, and one that begins. No step of a cosine 0.5 cos(w n) is above
+  // 0.5 w, and the new one begins with its first sample.
   const double w = 2 * std::numbers::pi * 200 / kRate;
   for (std::size_t n = 1; n < left.size(); ++n)
     REQUIRE(std::abs(left[n] - left[n - 1]) <= (63 * 1e-2 + 1e-3 + 1e-2) * 0.5 * w + 1e-3 * 0.5 / 240 + 1e-6);
-  // Beyond what may fade at a time one ends at once; never more than there is room for.
+  // Beyond the number that may fade at a time one ends at once; never more than there is room for.
   for (int i = 0; i < 1000; ++i) shots.take(shot(r), 1, 0);
   left_of(shots, 1);
   CHECK(shots.active() <= Shots::kMax + 16);

@@ -19,8 +19,8 @@ double curve_dB(double f) {
   return 20 * std::log10(weight(f * f) / weight(1e6));
 }
 
-// Of a tone of `f`, once the transient of the slowest pole (e^-129 after a second) is over: by its part in phase
-// and the other, over whole periods, since the frequencies are whole numbers.
+// Level of a tone of `f` after the transient of the slowest pole (e^-129 after a second): from its in-phase and
+// quadrature parts, over whole periods, since the frequencies are whole numbers.
 double measured_dB(double f, double rate_Hz) {
   AWeighting filter(rate_Hz);
   double in_phase = 0, other = 0;
@@ -51,7 +51,7 @@ TEST_CASE(
     for (const double f : {20., 31., 100., 440., 1000., 2000., 3500., 7000., 9000., 18000., 40000.}) {
       if (f >= 0.48 * rate_Hz) continue;
       CAPTURE(rate_Hz, f);
-      // Rounding alone: 1e-16 of states that are up to (rate / f1)^2 times what they leave.
+      // Only rounding: 1e-16 of states that are up to (rate / f1)^2 times the output.
       CHECK(measured_dB(f, rate_Hz) ==
             Approx(curve_dB(bent(f, rate_Hz)) - curve_dB(bent(1000, rate_Hz))).margin(1e-4));
     }

@@ -31,7 +31,7 @@ float largest_step(const std::vector<float>& x) {
   return most;
 }
 
-// A tone that lasts, with drop-outs or without.
+// A lasting tone, with or without drop-outs.
 struct Tone {
   explicit Tone(const DropoutDef& dropout) { order(dropout); }
   void order(const DropoutDef& dropout) { REQUIRE(bench->crossing.orders.push(RenderCommand{dropout, 0})); }
@@ -54,7 +54,7 @@ TEST_CASE("A drop-out is silence of its length, so often, with edges of a millis
     if (since >= kLength + kEdge) CHECK(gains[n] == 1);
     lost += 1 - static_cast<double>(gains[n]);
   }
-  // What the first edge lets through the second takes away.
+  // The second edge removes the amount that the first one passes.
   CHECK(lost == Approx(10 * kLength).epsilon(1e-6));
   CHECK(largest_step(gains) <= kSteepest);
 }
@@ -76,7 +76,7 @@ TEST_CASE("Drop-outs are switched on and off without a click, and keep their pla
     for (const float gain : next(dropout, samples)) gains.push_back(gain);
   };
   play(400);
-  dropout.set(kTwenty_ms);  // in the middle of where it would have been silent
+  dropout.set(kTwenty_ms);  // in the middle of its silence
   play(100);
   CHECK(gains.back() == 0);
   dropout.set({});

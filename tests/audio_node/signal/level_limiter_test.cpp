@@ -17,11 +17,11 @@ using std::numbers::pi;
 
 namespace {
 
-constexpr HearingDef kDef{};  // 85 dBA under 100 dB at full scale
+constexpr HearingDef kDef{};  // 85 dBA with 100 dB at full scale
 constexpr auto kSecond = static_cast<std::size_t>(kRate);
 constexpr auto kSettled = static_cast<std::size_t>(LevelLimiter::kSettled_s * kRate);
 
-// Of two equal channels: a tone that is at full scale times `level`.
+// A tone of two equal channels, at full scale times `level`.
 std::vector<float> tone(double frequency_Hz, double level, std::size_t frames) {
   std::vector<float> x;
   for (std::size_t n = 0; n < frames; ++n)
@@ -31,13 +31,13 @@ std::vector<float> tone(double frequency_Hz, double level, std::size_t frames) {
 }
 
 std::vector<float> played(std::vector<float> x, LevelLimiter limiter) {
-  // Blocks of no round size.
+  // Blocks of an odd size.
   const int frames = static_cast<int>(x.size() / 2);
   for (int done = 0; done < frames; done += 77) limiter.process(x.data() + 2 * done, std::min(77, frames - done));
   return x;
 }
 
-// Loudest mean of a whole second from `from` on, dBA, of one channel; by no mean but the sum itself.
+// Loudest mean of a whole second from `from` on, dBA, of one channel; computed by direct summation.
 double loudest_second_dBA(const std::vector<float>& x, std::size_t channel, std::size_t from) {
   AWeighting weighting(kRate);
   std::vector<double> sum{0};
@@ -72,9 +72,9 @@ TEST_CASE("A full-scale tone ends at the limit, at any frequency, through a gain
     const double level = loudest_second_dBA(out, 0, kSettled);
     CAPTURE(frequency_Hz, level);
     CHECK(level < kDef.limit_dB + 0.1);
-    CHECK(level > kDef.limit_dB - 0.1);  // and no quieter than is asked
+    CHECK(level > kDef.limit_dB - 0.1);  // and no quieter than required
     CHECK(loudest_second_dBA(in, 0, kSettled) > kDef.limit_dB + 3);
-    // 200 dB a second, and twice in the frames around a zero that are left out: -60 dB of the tone is 0.0087 dB.
+    // 200 dB a second, and twice that in the omitted frames around a zero: -60 dB of the tone is 0.0087 dB.
     CHECK(steepest_dB(in, out) < 0.0087);
   }
 }
@@ -93,7 +93,7 @@ TEST_CASE("Below the limit the level limiter changes no bit, not even of numbers
   both.insert(both.end(), rest.begin(), rest.end());
   const auto out = played(both, {kDef, kRate, 2});
   CHECK(out[loud - 101] != both[loud - 101]);
-  // 20 dB up at 10 dB a second, after the slow mean has let go.
+  // 20 dB up at 10 dB a second, after the slow mean has decayed.
   CHECK(std::equal(out.end() - 4 * 96000, out.end(), both.end() - 4 * 96000));
 }
 
@@ -126,7 +126,7 @@ TEST_CASE("What is no number, or beyond all numbers, is silence or full scale at
     std::vector<float> x(2 * 100, bad);
     limiter.process(x.data(), 100);
     bool bounded = true;
-    for (const float y : x) bounded &= std::abs(y) <= 1;  // false of a NaN
+    for (const float y : x) bounded &= std::abs(y) <= 1;  // false for NaN
     CHECK(bounded);
     if (!(bad == 1e38f)) CHECK(std::all_of(x.begin(), x.end(), [](float y) { return y == 0; }));
     const auto after = tone(1000, 0.1, kSecond / 2);
@@ -138,7 +138,7 @@ TEST_CASE("What is no number, or beyond all numbers, is silence or full scale at
 TEST_CASE("The dose is that of the level: 80 dBA for 40 hours are a week's, and 3 dB more take half of the time") {
   const auto exposure = [](double level_dB, std::size_t seconds) {
     LevelLimiter limiter(kDef, kRate, 1);
-    // One channel is heard as it is.
+    // One channel, unchanged.
     std::vector<float> x;
     const double level = std::pow(10, (level_dB - kDef.full_scale_dB) / 20);
     for (std::size_t n = 0; n < seconds * kSecond; ++n)
@@ -153,7 +153,7 @@ TEST_CASE("The dose is that of the level: 80 dBA for 40 hours are a week's, and 
   CHECK(exposure(83.0103, 2) == Approx(exposure(80, 4)).epsilon(1e-3));
   CHECK(days_of_sound(0.04 * 40 * 3600, 80) == Approx(7));
   CHECK(days_of_sound(0.04 * 40 * 3600, 75) == Approx(7 * std::pow(10, 0.5)));
-  // What is turned down counts as it is played.
+  // Reduced sound counts as played.
   CHECK(exposure(100, 8) < 4 * exposure(85, 8));
 }
 
@@ -175,8 +175,7 @@ TEST_CASE("A roar of 128 bodies is played within the limit, and its dose is told
   for (const float x : bench->left) both.insert(both.end(), 2, x);
   const double loud = loudest_second_dBA(both, 0, 0), level = loudest_second_dBA(both, 0, kSettled);
   CAPTURE(loud, level);
-  // Its power fluctuates by beats within the slow mean, which may differ by 0.5 dB from the mean of a whole
-  // second.
+  // Beats modulate its power within the slow mean, which may differ by 0.5 dB from the mean of a whole second.
   CHECK(level < kDef.limit_dB + 0.5);
   CHECK(level > kDef.limit_dB - 1);
   CHECK(bench->crossing.heard.gain.load() < 0.5);

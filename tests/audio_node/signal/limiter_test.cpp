@@ -31,7 +31,7 @@ TEST_CASE("The limiter keeps every sample within its ceiling, whatever comes") {
       }
     }
     limiter.process(x.data(), static_cast<int>(x.size() / 2));
-    for (const float s : x) within &= std::abs(s) <= 0.9f;  // false for no number
+    for (const float s : x) within &= std::abs(s) <= 0.9f;  // false for NaN
   }
   CHECK(within);
 }

@@ -23,7 +23,7 @@ TEST_CASE("Air takes off a tone what the table of ISO 9613-2 says") {
   for (std::size_t i = 0; i < row.dB_km.size(); ++i) {
     const double f = 1000 * std::pow(10, 0.3 * (static_cast<double>(i) - 4));
     INFO(row.temperature_degC << " degrees, " << row.humidity_percent << " %, " << f << " Hz");
-    // Half of the last digit that is printed, and what three-digit constants leave open.
+    // Half of the last printed digit, and the uncertainty of three-digit constants.
     const double half = row.dB_km[i] >= 100 ? 0.5 : 0.05;
     CHECK(std::abs(1000 * absorption_dB_m(f, {row.temperature_degC, row.humidity_percent, 101325}) -
                    row.dB_km[i]) <= half + 1e-3 * row.dB_km[i]);
@@ -38,7 +38,7 @@ TEST_CASE("The low-pass of the air takes as much off as the air at 8 kHz, and ne
            std::log10((1 - keep) / std::abs(1.0 - keep * std::polar(1.0, -2 * std::numbers::pi * f / rate_Hz)));
   };
   CHECK(lost_dB(8000) == Approx(absorption_dB_m(8000) * distance_m).epsilon(1e-4));  // float
-  // Below 8 kHz it is never wrong by more than the least difference of level that ears notice, up to 30 m.
+  // Below 8 kHz the error is never larger than the smallest audible difference of level, up to 30 m.
   for (double f = 100; f < 8000; f *= 1.1) CHECK(std::abs(lost_dB(f) - absorption_dB_m(f) * distance_m) < 1);
   CHECK(air_keep(0, rate_Hz) == 0);
 }

@@ -47,7 +47,7 @@ TEST_CASE(
     "Nothing is read beyond the frames that are there and one more, nor before the past that a delay reaches") {
   const float from = GENERATE(2.f, 2.3f, 9.f), to = GENERATE(2.f, 9.f, 8.5f);
   const int past = static_cast<int>(std::ceil(std::max(from, to))) + kDelayReach;
-  // No number wherever nothing may be read: whatever it is weighed with, it would be heard.
+  // NaN in every place that must not be read: with any weight it would be audible.
   std::vector<float> x(static_cast<std::size_t>(past + kFrames + 1), 1.f);
   x.insert(x.begin(), 8, NAN);
   x.insert(x.end(), 8, NAN);

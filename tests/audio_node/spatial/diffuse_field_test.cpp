@@ -9,7 +9,7 @@
 using namespace tactus::audio;
 
 TEST_CASE("What all directions have in common is undone") {
-  // 1 + 0.5 z^-1 has least phase, and the inverse (-0.5)^n, of which 1e-7 is left after 24 samples.
+  // 1 + 0.5 z^-1 has minimum phase, and the inverse (-0.5)^n, of which 1e-7 remains after 24 samples.
   const auto inverse = diffuse_field_inverse({{1, 0.5f}, {1, 0.5f}, {1, 0.5f}}, {1, 2, 1}, 24);
   REQUIRE(inverse.size() == 24);
   for (std::size_t n = 0; n < inverse.size(); ++n)
@@ -17,7 +17,7 @@ TEST_CASE("What all directions have in common is undone") {
 }
 
 TEST_CASE("A direction that was measured twice counts once, by the part of the sphere around it") {
-  // Where directions are dense they sound otherwise.
+  // Where directions are dense the responses differ.
   std::vector<Eigen::Vector3d> directions;
   for (const double z : {-1.0, 0.0, 0.8, 0.9})
     for (int i = 0; i < 8; ++i) {

@@ -45,13 +45,13 @@ TEST_CASE("The ear is where the scene has it until somebody says where the head 
     return Eigen::Vector3d(ear.at(sync::host_time(ms * kMs)).translation());
   };
   CHECK(place(100).isApprox(Eigen::Vector3d(2, 0, 0)));
-  ear.push(report(0, 9, 101 * kMs), sync::host_time(101 * kMs));  // a hand is no head
+  ear.push(report(0, 9, 101 * kMs), sync::host_time(101 * kMs));  // a hand is not a head
   CHECK(place(101).isApprox(Eigen::Vector3d(2, 0, 0)));
   ear.push(report(1, 5, 102 * kMs), sync::host_time(102 * kMs));
   // 2 m beside the eye, as in the scene.
   CHECK(place(102).isApprox(Eigen::Vector3d(2, 5, 0)));
-  CHECK(place(9000).isApprox(Eigen::Vector3d(2, 5, 0)));  // lost: where it was
+  CHECK(place(9000).isApprox(Eigen::Vector3d(2, 5, 0)));  // lost: at its last place
 
   ear.set_scene(with_head(3));
-  CHECK(place(9001).isApprox(Eigen::Vector3d(3, 0, 0)));  // of another world
+  CHECK(place(9001).isApprox(Eigen::Vector3d(3, 0, 0)));  // of another scene
 }

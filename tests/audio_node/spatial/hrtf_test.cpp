@@ -7,15 +7,15 @@
 using namespace tactus::audio;
 using namespace tactus::audio::test;
 
-// 10 us is the least difference of time that ears notice (Klumpp and Eady 1956), 1 dB the least of level (Mills
-// 1960).
+// 10 us is the smallest audible interaural time difference (Klumpp and Eady 1956), 1 dB the smallest level
+// difference (Mills 1960).
 TEST_CASE("A source on a circle has the time difference between the ears that the measured responses have") {
   for (int azimuth = 0; azimuth < 360; azimuth += 5) {
     INFO("azimuth " << azimuth);
     const double ours = time_difference_us(heard_from(towards(azimuth)), 48000);
     const double measured = time_difference_us(measured_from(azimuth), kemar().rate_Hz);
     CHECK(std::abs(ours - measured) <= 10);
-    // The left ear is nearer to what is on the left.
+    // The left ear is nearer to sources on the left.
     if (azimuth > 10 && azimuth < 170) CHECK(ours < -50);
     if (azimuth > 190 && azimuth < 350) CHECK(ours > 50);
   }
@@ -27,8 +27,8 @@ TEST_CASE("A source on a circle has the level difference between the ears that t
     INFO("azimuth " << azimuth << ", octave from " << from_Hz);
     const double ours = level_difference_dB(heard_from(towards(azimuth)), 48000, from_Hz, 2 * from_Hz);
     const double measured = level_difference_dB(measured_from(azimuth), kemar().rate_Hz, from_Hz, 2 * from_Hz);
-    // Around 8 kHz the far ear has notches, which the end of the response that is cut and the polynomial of the
-    // delay (0.3 dB at 11 kHz) fill a little: 2.0 dB in the worst direction.
+    // Around 8 kHz the far ear has notches, which the cut end of the response and the polynomial of the delay (0.3
+    // dB at 11 kHz) fill slightly: 2.0 dB in the worst direction.
     CHECK(std::abs(ours - measured) <= (from_Hz > 5000 ? 2.1 : 1));
   }
 }

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Every edge belongs to two triangles that run through it in opposite ways, and no point lies outside of any.
+// Every edge belongs to two triangles with opposite directions, and no point lies outside of any triangle.
 void check_closed(const std::vector<Vector3d>& points, const std::vector<Triangle>& hull) {
   std::set<std::pair<int, int>> edges;
   const auto at = [&](int i) { return points[static_cast<std::size_t>(i)]; };
@@ -21,7 +21,7 @@ void check_closed(const std::vector<Vector3d>& points, const std::vector<Triangl
   for (const Triangle& t : hull) {
     for (std::size_t i = 0; i < 3; ++i) CHECK(edges.insert({t[i], t[(i + 1) % 3]}).second);
     const Vector3d normal = (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0]));
-    // Points are nudged by 1e-6 to cut planes into triangles.
+    // Points are nudged by 1e-6 to divide planes into triangles.
     for (const Vector3d& p : points) outside += normal.dot(p - at(t[0])) > 4e-6;
   }
   CHECK(outside == 0);

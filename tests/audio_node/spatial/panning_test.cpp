@@ -16,7 +16,7 @@ std::vector<double> gains(const Panning& panning, const Eigen::Vector3f& directi
   return {g.begin(), g.end()};
 }
 
-// Where the gains point: the sum of the loudspeakers' directions (Pulkki 1997, eq. 4).
+// Direction of the gains: the sum of the directions of the loudspeakers (Pulkki 1997, eq. 4).
 Eigen::Vector3d pointed(const Layout& layout, const std::vector<double>& g) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < g.size(); ++i)
@@ -24,7 +24,7 @@ Eigen::Vector3d pointed(const Layout& layout, const std::vector<double>& g) {
   return sum.normalized();
 }
 
-// All in single precision, of bases no worse than a triangle at 10 degrees: 1e-4.
+// All in single precision, with bases no worse than a triangle at 10 degrees: 1e-4.
 constexpr double kRounding = 1e-4;
 
 }  // namespace
@@ -84,7 +84,7 @@ TEST_CASE("Where loudspeakers leave a gap, its rim takes over without a jump") {
     }
     INFO(csv << azimuth << ", elevation " << elevation);
     CHECK(power == Approx(1).margin(kRounding));
-    // A quarter of a degree is 1/360 of the least arc of a gap of 90 degrees; powers change at most 12 times as
+    // A quarter of a degree is 1/360 of the smallest arc of a gap of 90 degrees; powers change at most 12 times as
     // fast.
     CHECK(jump < 0.035);
     before = g;

@@ -18,7 +18,7 @@ struct Heard {
   std::vector<double> left, right;
 };
 
-// A tone of amplitude 1 from where `place` says at the end of each block.
+// A tone of amplitude 1 at place(block) at the end of each block.
 template <class PlaceAt>
 Heard tone(const Space& space, double frequency_Hz, int blocks, PlaceAt place) {
   Spatialiser spatialiser(space, 1, kRate, available_instructions().back());
@@ -74,9 +74,9 @@ TEST_CASE("A source that circles the head once a second is heard without a click
     const auto still = tone(space, f, 12, [&](int) { return at(azimuth); });
     gain = std::max({gain, largest(still.left, kSettled), largest(still.right, kSettled)});
   }
-  // The second difference of a tone is w^2 of its amplitude. At the borders of blocks it is bent besides: in every
-  // second block the delay goes 4 pi 31 samples a second, 0.008 w, and gains change at most 4 pi a second, 2.6e-4;
-  // both together 0.22 w^2. A click of -50 dB would be one of w^2.
+  // The second difference of a tone is w^2 of its amplitude. Block borders add to it: in every second block the
+  // delay changes by 4 pi 31 samples a second, 0.008 w, and gains change by at most 4 pi a second, 2.6e-4; both
+  // together 0.22 w^2. A click of -50 dB would be one of w^2.
   CHECK(std::max(largest_bend(swept.left, kSettled), largest_bend(swept.right, kSettled)) < 1.25 * w * w * gain);
 }
 
@@ -84,8 +84,8 @@ TEST_CASE("A source that leaps to the other side goes over within a block") {
   const double f = 440, w = 2 * std::numbers::pi * f / kRate;
   const auto leapt = tone({ears(), nullptr}, f, 40, [](int b) { return at(b < 20 ? 90 : -90); });
   const double gain = std::max(largest(leapt.left, kSettled), largest(leapt.right, kSettled));
-  // Within 64 samples the delay changes by 31, so that the tone is bent by (1 + 31/64)^2 w^2; where that begins
-  // and ends its slope leaps by 31/64 w, and the crossfade adds twice the gain over 64.
+  // Within 64 samples the delay changes by 31, so the tone bends by (1 + 31/64)^2 w^2; at the beginning and the
+  // end of that its slope jumps by 31/64 w, and the crossfade adds twice the gain over 64.
   CHECK(std::max(largest_bend(leapt.left, kSettled), largest_bend(leapt.right, kSettled)) <
         (2.2 * w * w + 0.5 * w + 2.0 / 64) * gain);
 }
@@ -119,7 +119,7 @@ TEST_CASE("After the tail nothing of a source is left to be heard") {
   }
   const auto after = heard.begin() + 2 * (kMaxBlock + spatialiser.tail());
   CHECK(std::all_of(after, heard.end(), [](float x) { return x == 0; }));
-  // Of the far ear something comes in the last quarter.
+  // The far ear still has output in the last quarter.
   CHECK(std::any_of(after - spatialiser.tail() / 2, after, [](float x) { return x != 0; }));
 }
 
@@ -131,7 +131,7 @@ TEST_CASE("Pressure falls as the distance grows, and the air takes the high note
   const auto r = static_cast<double>(distance_m);
   const double air_dB = std::max(0.0, r - 1) * absorption_dB_m(f);
   const double expected = rms(near.left, 2000) / r * std::pow(10, -air_dB / 20);
-  // The one-pole is true at 8 kHz; at 500 Hz it takes 1/256 of that off instead of 1/40: 0.05 dB at 20 m.
+  // The one-pole is exact at 8 kHz; at 500 Hz it attenuates by 1/256 of that instead of 1/40: 0.05 dB at 20 m.
   CHECK(rms(far.left, 2000) == Approx(expected).epsilon(0.006));
 }
 
@@ -188,7 +188,7 @@ TEST_CASE("A voice that has ended leaves nothing to the next on its source") {
 
 namespace {
 
-// The sample on which a blow that is due on sample 960 is first heard, by the nearer ear.
+// The first audible sample, at the nearer ear, of a blow that is due on sample 960.
 double first_heard_blow(const Space& space, const Eigen::Vector3f& from) {
   RendererDef def;
   def.space = space;
@@ -216,14 +216,14 @@ TEST_CASE("A blow from any side is first heard when it is without ears, in the m
       CAPTURE(azimuth, elevation);
       const Eigen::Vector3f from = towards(azimuth, elevation);
       const double later = first_heard_blow(by_ears, from) - first_heard_blow({}, from);
-      // Responses rise as fast as the pinna lets them: 6 to 16 samples from the beginning of the filters to a
-      // fiftieth of the peak, around a mean of 11; two more as the blow itself rises.
+      // Responses rise as fast as the pinna allows: 6 to 16 samples from the beginning of the filters to a
+      // fiftieth of the peak, around a mean of 11; two more for the rise of the blow itself.
       CHECK(later >= -7);
       CHECK(later <= 7);
       const double weight = std::cos(elevation * std::numbers::pi / 180);
       sum += weight * later, weights += weight;
     }
-  // Half of a period of its 6 kHz, 4 samples, is what a blow rises for, and so may be heard later than an impulse.
+  // A blow rises for half a period of its 6 kHz, 4 samples, and may be audible later than an impulse by that much.
   CHECK(std::abs(sum / weights) <= 4);
 }
 
@@ -242,7 +242,7 @@ TEST_CASE("A place that is no number is heard from ahead") {
 
 namespace {
 
-// A body that rings at 440 Hz for ever and is struck from the left; then from elsewhere.
+// A body that rings at 440 Hz without damping and is struck from the left, then from elsewhere.
 struct Restruck {
   Voices voices;
   Heard heard;
@@ -283,9 +283,9 @@ TEST_CASE("A body that rings and is struck elsewhere goes there without a click"
   body.strike(towards(80), 1, 0.1f);
   body.play(20);
   CHECK(body.left_over_right() > 1.5);
-  // A blow of nothing, so that there is no other sound than the one that moves.
+  // A blow without strength, so that the only sound is the one that moves.
   body.strike(towards(-80), distance_m, 0);
-  body.play(400);  // 0.53 s: half a turn takes 0.5 s
+  body.play(400);  // 0.53 s: half a revolution takes 0.5 s
   const double w = 2 * std::numbers::pi * 440 / kRate;
   const double gain = std::max(largest(body.heard.left, kSettled), largest(body.heard.right, kSettled));
   CHECK(std::max(largest_bend(body.heard.left, kSettled), largest_bend(body.heard.right, kSettled)) <
@@ -305,6 +305,6 @@ TEST_CASE("A blow that drowns what rings is heard from its own place at once") {
   body.strike(towards(80), 1, 0.001f);
   body.play(20);
   body.strike(towards(-80), 1, 0.1f);
-  body.play(8);  // 480 frames, and what it takes through the filters
+  body.play(8);  // 480 frames, plus the delay of the filters
   CHECK(body.left_over_right() < 1 / 1.5);
 }

@@ -1,4 +1,4 @@
-// A renderer with a clock that is moved by hand, and strikes of a body with one mode.
+// A renderer with a manual clock, and strikes of a body with one mode.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace tactus::audio::test {
 
 inline constexpr double kRate = 48000;
-// Of every machine.
+// Available on every machine.
 inline const Ring kRing = ring(Instructions::kSse2);
 inline constexpr std::int64_t kStart_ns = 1'000'000'000'000;
 
@@ -41,7 +41,7 @@ inline Strike strike_of(std::int64_t id, std::int64_t voice, double frequency_Hz
 
 struct Bench {
   CallbackQueues crossing;
-  sync::Nanoseconds used{0};  // that each block says it took
+  sync::Nanoseconds used{0};  // reported rendering time of each block
   Renderer renderer{crossing, {}};
   std::vector<float> left;
   std::vector<presentation_t> reports;

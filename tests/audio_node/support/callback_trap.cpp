@@ -39,15 +39,15 @@ void note(const char* what) {
   first.compare_exchange_strong(none, what);
 }
 
-// The next definition of a function after ours. No static local: its guard would be a lock.
+// The next definition of a function after ours. Without a static local, because its guard would be a lock.
 template <class F>
 F* next(std::atomic<void*>& kept, const char* name) {
   void* f = kept.load(std::memory_order_relaxed);
   if (!f) {
-    // dlsym() may allocate: that is of the trap, not of the callback.
+    // dlsym() may allocate: this belongs to the trap, not to the callback.
     const int before = std::exchange(armed, 0);
-    // Conditions have an older entry of the same name, for another layout of them; where there is only one, it is
-    // the next.
+    // Conditions have an older symbol of the same name, for another layout; where there is only one, it is the
+    // next.
     f = dlvsym(RTLD_NEXT, name, "GLIBC_2.3.2");
     if (!f) f = dlsym(RTLD_NEXT, name);
     armed = before;
@@ -89,7 +89,7 @@ using tactus::audio::test::note;
   }
 
 #if !defined(TACTUS_SANITIZED)
-// glibc's own entries: dlsym() itself allocates before it has found the next malloc.
+// Entry points of glibc: dlsym() itself allocates before it has found the next malloc.
 extern "C" {
 void* __libc_malloc(std::size_t);
 void __libc_free(void*);
@@ -185,7 +185,7 @@ extern "C" int open(const char* path, int flags, ...) {
   va_end(list);
   return next<int(const char*, int, ...)>(kept, "open")(path, flags, mode);
 }
-// So does telling a device what to do.
+// ioctl takes further arguments too.
 extern "C" int ioctl(int fd, unsigned long request, ...) noexcept {
   static std::atomic<void*> kept{nullptr};
   note("ioctl");
@@ -195,7 +195,7 @@ extern "C" int ioctl(int fd, unsigned long request, ...) noexcept {
   va_end(list);
   return next<int(int, unsigned long, ...)>(kept, "ioctl")(fd, request, argument);
 }
-// What the C library has no name for, a futex first of all.
+// Calls without a function in the C library, mainly futex.
 extern "C" long syscall(long number, ...) noexcept {
   static std::atomic<void*> kept{nullptr};
   note("syscall");

@@ -1,12 +1,13 @@
-// Counts what a thread does that a sound card's callback must not: allocate, lock, wait, read or write. The
-// executable that links callback_trap.cpp answers those calls itself, for all libraries too, and passes them on.
+// Counts operations of a thread that the callback of a sound card must not perform: allocate, lock, wait, read or
+// write. The executable that links callback_trap.cpp intercepts those calls, also from libraries, and passes them
+// on.
 #pragma once
 
 #include <string>
 
 namespace tactus::audio::test {
 
-// What this thread does while one lives is counted.
+// Operations of this thread are counted while an instance exists.
 class Trap {
  public:
   Trap();
@@ -15,13 +16,13 @@ class Trap {
   Trap& operator=(const Trap&) = delete;
 };
 
-// Of all threads so far.
+// Count over all threads so far.
 int trapped();
-// The first call that was, empty: none.
+// The first counted call; empty: none.
 std::string first_trapped();
 void forget_trapped();
 
-// False where a sanitizer answers the calls of the allocator itself.
+// False where a sanitizer intercepts the allocator itself.
 bool traps_allocation();
 
 }  // namespace tactus::audio::test

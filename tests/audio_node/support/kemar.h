@@ -1,4 +1,4 @@
-// The measured ears that libmysofa installs, and what is heard through our own.
+// The measured ears that libmysofa installs, and the output of our own rendering.
 #pragma once
 
 #include <cmath>
@@ -43,7 +43,7 @@ inline TwoEars measured_from(double azimuth_deg) {
   return {{l.begin(), l.end()}, {r.begin(), r.end()}};
 }
 
-// Of a unit impulse at 1 m from there.
+// Response to a unit impulse at 1 m from there.
 inline TwoEars heard_from(const Eigen::Vector3f& direction, int blocks = 8) {
   static const auto hrtf = ears();
   Spatialiser spatialiser({hrtf, nullptr}, 1, 48000, Instructions::kSse2);
@@ -68,10 +68,10 @@ inline std::complex<double> spectrum_at(const std::vector<double>& x, double fre
   return sum;
 }
 
-// In both, each frequency counts alike, so that a filter that both ears have in common plays no part.
+// In both functions each frequency has equal weight, so that a filter common to both ears has no effect.
 //
-// By how much the left ear hears later: the maximum of the cross-correlation below `up_to_Hz`, from the
-// cross-spectrum on a grid of 50 Hz, so that the rate plays no part. Microseconds.
+// Delay of the left ear relative to the right, microseconds: the maximum of the cross-correlation below
+// `up_to_Hz`, from the cross-spectrum on a grid of 50 Hz, independent of the sample rate.
 inline double time_difference_us(const TwoEars& ears, double rate_Hz, double up_to_Hz = 1500) {
   std::vector<std::complex<double>> cross;
   for (double f = 50; f <= up_to_Hz; f += 50) {

@@ -1,4 +1,4 @@
-// The log of a run in which bodies are struck at times that a test chooses, as our recorder would have written it.
+// The log of a run in which bodies are struck at times that a test selects, as our recorder would write it.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ namespace tactus::audio::test {
 
 inline constexpr std::int64_t kLogBegins_ns = 50'000'000'000, kLogOffset_ns = 1'700'000'000'123'456'789;
 
-// An oak board that stands, a steel bar and a glass ball.
+// A static oak board, a steel bar and a glass ball.
 inline scene_t struck_scene() {
   scene_t s{};
   const auto material = [&](const char* name, double E, double nu, double rho, double alpha, double beta) {
@@ -78,7 +78,7 @@ class RecordedRun {
       write(sync::to_ns(e.time), e.channel, e.data);
   }
 
-  // The simulation speaks so long after the beginning; its time is that since the beginning.
+  // at_s: publish time since the beginning; simulated time is the same.
   void hear(double at_s, const std::vector<contact_event_t>& events) {
     contact_events_t m{};
     stamp(m, at_s, events_seq_++);

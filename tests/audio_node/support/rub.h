@@ -1,5 +1,4 @@
-// A contact that slides or rolls over a surface, told as often as one likes, and what it does to a body with one
-// mode.
+// A contact that slides or rolls over a surface, updated at any rate, and its effect on a body with one mode.
 #pragma once
 
 #include <cmath>
@@ -15,7 +14,7 @@ namespace tactus::audio::test {
 
 inline constexpr float kForce = 0.01f;  // N s a sample and unit of slope
 
-// Along x; heard from the left, at 1 m.
+// Along x, to the left of the listener, at 1 m.
 inline Scrape along_x(const ReliefLevels* relief, double speed_m_s, double ms) {
   Scrape s;
   s.id = 3, s.at = at_ms(ms), s.slide = kForce;
@@ -39,7 +38,7 @@ struct Rubbed {
   std::vector<float> force, sound;
 };
 
-// Told every `every_ms` by `tell` for so long; then it ends, and the rest is what comes after.
+// Updated by `tell` every `every_ms` for told_ms; then it ends, and the rest is the decay.
 inline Rubbed rub(const std::function<Scrape(double ms)>& tell, int told_ms, int whole_ms, int every_ms = 1) {
   auto scrapes = std::make_unique<Scrapes>(kRate);
   auto voices = std::make_unique<Voices>(4, kRate, kRing);
@@ -64,7 +63,7 @@ inline Rubbed rub(const std::function<Scrape(double ms)>& tell, int told_ms, int
   return out;
 }
 
-// Of a tone, between two times.
+// Amplitude of a tone, between two times.
 inline double amplitude(const std::vector<float>& x, double frequency_Hz, double from_s, double to_s) {
   std::complex<double> sum = 0;
   double weight = 0;

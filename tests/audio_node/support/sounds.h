@@ -1,4 +1,4 @@
-// Small databases of recordings in a folder of their own, which goes when they do.
+// Small databases of recordings in a temporary folder, which the destructor removes.
 #pragma once
 
 #include <sndfile.h>

@@ -1,4 +1,4 @@
-// A surface of waves along u, to slide over.
+// A surface of waves along u, for sliding contacts.
 #pragma once
 
 #include <cmath>
@@ -28,7 +28,7 @@ inline material_def_t rough() {
   return m;
 }
 
-// Of a scene whose first material has the waves, and no other.
+// Surfaces of a scene in which only the first material has the waves.
 inline std::shared_ptr<HeardSurfaces> wavy_surfaces() {
   auto surfaces = std::make_shared<HeardSurfaces>();
   surfaces->by_material.push_back({std::make_shared<const ReliefLevels>(make_relief(waves(), rough())), nullptr});

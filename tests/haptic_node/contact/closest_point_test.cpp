@@ -13,7 +13,7 @@ Vector3d random_unit(std::mt19937& random) {
   return Vector3d(normal(random), normal(random), normal(random)).normalized();
 }
 
-// Half spaces that all hold a given point, as around a tool between surfaces.
+// Random half spaces that all contain a given point, as around a tool between surfaces.
 std::vector<HalfSpace> random_region(std::mt19937& random, int count, const Vector3d& inside) {
   std::uniform_real_distribution<double> clearance(0, 0.02);
   std::vector<HalfSpace> region;
@@ -69,7 +69,7 @@ TEST_CASE("The closest point is that of alternating projections") {
     const auto region = random_region(random, 1 + round % 50, inside);
     const Vector3d goal(place(random), place(random), place(random));
     const Vector3d found = closest_point(region, goal).point, oracle = dykstra(region, goal);
-    // Dykstra converges slowly in narrow wedges: it may be short of the goal, never beyond.
+    // Dykstra converges slowly in narrow wedges: it may stop before the goal, never beyond it.
     CHECK((found - oracle).norm() < 2e-5);
     CHECK((found - goal).norm() < (oracle - goal).norm() + 2e-5);
   }
@@ -115,7 +115,7 @@ TEST_CASE("The facets around a place on a fine mesh, nearly parallel and nearly 
   std::mt19937 random(14);
   std::uniform_real_distribution<double> place(-1, 1);
   for (int round = 0; round < 3000; ++round) {
-    // Facets that touch a sphere or a cup of 0.1 m within a few millimetres, or down to a hair's breadth.
+    // Facets that touch a sphere or a cup of 0.1 m within a few millimetres, down to the width of a hair.
     const double spread = std::pow(10.0, -1.0 - 0.5 * (round % 9)), cup = round % 2 == 0 ? 1 : -1;
     const Vector3d far = 10 * Vector3d(place(random), place(random), place(random));
     std::vector<HalfSpace> region;
@@ -146,7 +146,8 @@ TEST_CASE("Between fifty walls that leave no room no small move of the point mak
     const Vector3d goal = 0.002 * random_unit(random);
     const ClosestPoint c = closest_point(region, goal);
     REQUIRE_FALSE(c.feasible);
-    // The squares of the violations, and a fiftieth of the square of the way from the goal, which chooses among equals.
+    // The squares of the violations, plus a fiftieth of the square of the distance from the goal, which decides
+    // between equal costs.
     const auto cost = [&](const Vector3d& x) {
       double sum = 0.02 * (x - goal).squaredNorm();
       for (const HalfSpace& h : region) {

@@ -10,8 +10,8 @@ using namespace tactus::haptic;
 
 namespace {
 
-// Tries every set of up to six half spaces: the one whose multipliers are all >= 0 and whose pose all others allow
-// is the answer (Karush, Kuhn and Tucker; the programme is convex).
+// Tries every set of up to six half spaces. The solution is the set whose multipliers are all >= 0 and whose pose
+// all others allow (Karush, Kuhn and Tucker; the programme is convex).
 std::optional<Vector6> brute_force(const std::vector<PoseHalfSpace>& region, const Vector6& goal) {
   const auto allowed = [&](const Vector6& q) {
     for (const PoseHalfSpace& h : region)
@@ -40,7 +40,7 @@ double uniform(std::mt19937& random, double low, double high) {
   return std::uniform_real_distribution<>(low, high)(random);
 }
 
-// A contact of a tool: a direction, and where on the tool in levers.
+// A contact of a tool: a direction, and its place on the tool in levers.
 PoseHalfSpace contact(std::mt19937& random) {
   std::normal_distribution<> g;
   const Eigen::Vector3d n = Eigen::Vector3d(g(random), g(random), g(random)).normalized();
@@ -71,7 +71,7 @@ TEST_CASE("The closest pose is that of the best of all sets that might bind") {
     ++feasible;
     REQUIRE(found.feasible);
     CHECK((found.pose - *expected).norm() < 1e-7 * (1 + (*expected - goal).norm()));
-    // The way from the goal is what the multipliers say, exactly: so the wrench is shared without rest.
+    // The multipliers give the difference to the goal exactly, so the contacts share the wrench completely.
     Vector6 sum = goal;
     int binding = 0;
     for (std::size_t i = 0; i < region.size(); ++i) {

@@ -57,7 +57,7 @@ TEST_CASE("The proxy never passes a surface, wherever the device goes, with and 
         sum += s.depth_m * s.normal;
         cone += s.friction_static * s.depth_m;
       }
-      REQUIRE((sum - proxy.position()).norm() < 1e-9);  // the stretch splits exactly
+      REQUIRE((sum - proxy.position()).norm() < 1e-9);  // the displacement splits exactly
       REQUIRE(proxy.shift().norm() < 2 * cone + 1e-9);
     }
   }
@@ -117,7 +117,7 @@ TEST_CASE("A surface that moves carries the proxy along") {
 }
 
 TEST_CASE("A proxy that sticks beside a wall does not jump to it") {
-  // The device is drawn into the wall, but friction on the floor holds the proxy before it.
+  // The device moves into the wall, but friction on the floor holds the proxy in front of it.
   std::vector<Surface> corner{surface(Vector3d::UnitZ(), 0, 0.8, 0.8),
                               surface(-Vector3d::UnitX(), -0.001, 0.8, 0.8)};
   Proxy proxy;

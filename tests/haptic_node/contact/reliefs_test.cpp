@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kWave_m = 0.02, kHigh_m = 0.001, kRadius_m = 0.005;
 
-// Waves along u, of 20 mm and 1 mm high; a friction map of two halves along u, black then white.
+// Waves along u, 20 mm long and 1 mm high; a friction map of two halves along u, black then white.
 std::shared_ptr<const SurfaceMaps> waves(double high_m = kHigh_m, double wave_m = kWave_m, bool friction = false) {
   HeightMap map{64, 4, 65535, {}};
   for (int i = 0; i < 64 * 4; ++i)
@@ -40,7 +40,7 @@ std::shared_ptr<const SurfaceMaps> waves(double high_m = kHigh_m, double wave_m 
 double height(double u_m) { return kHigh_m * (0.5 + 0.5 * std::sin(2 * M_PI * u_m / kWave_m)); }
 double slope(double u_m) { return kHigh_m * M_PI / kWave_m * std::cos(2 * M_PI * u_m / kWave_m); }
 
-// The plane z = 0 of a body that is turned about z by `turned`, at `origin`; told at the place nearest to x.
+// The plane z = 0 of a body rotated about z by `turned`, at `origin`; its message holds the point nearest to x.
 touch_plane_t mapped(std::int64_t id, const Vector3d& x, double turned = 0,
                      const Vector3d& origin = Vector3d::Zero(), double friction = 0) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(turned, Vector3d::UnitZ()).toRotationMatrix();
@@ -59,7 +59,7 @@ Settings settled(const std::string& bump) {
   return s;
 }
 
-// Pressed 2 mm deep at one place until all has settled.
+// Pressed 2 mm deep at one place until the force has settled.
 Vector3d force_at(Bench& bench, const Vector3d& place, std::vector<touch_plane_t> planes, double& ms,
                   double* proxy_z_m = nullptr) {
   Vector3d force = Vector3d::Zero();
@@ -81,7 +81,7 @@ TEST_CASE("By heights the surface is as high as its map, and the force keeps its
   double ms = 0;
   for (const double x : {0.0, 0.004, 0.011, 0.017, -0.013}) {
     const Vector3d f = force_at(bench, {x, 0.003, 0}, {mapped(7, {x, 0.003, 0})}, ms);
-    // 1 N/mm; one pixel is 1/64 of a wave, of which the spline loses (2 pi / 64)^2 / 4 of 1 mm / 2.
+    // 1 N/mm; one pixel is 1/64 of a wave, over which the spline loses (2 pi / 64)^2 / 4 of 1 mm / 2.
     CHECK(f.z() == Approx(1000 * (0.002 + height(x))).margin(0.003));
     CHECK(f.head<2>().norm() < 1e-9);
   }
@@ -108,14 +108,15 @@ TEST_CASE("The map goes with its body, wherever that is and however it is turned
   double ms = 0;
   const Vector3d u(std::cos(turned), std::sin(turned), 0), place = origin + 0.004 * u + 0.03 * u.unitOrthogonal();
   const double along_m = (place - origin).dot(u);
-  // Told at another place of the plane than the one that is touched.
+  // The message holds another point of the plane than the touched one.
   const Vector3d f = force_at(bench, place, {mapped(7, place + Vector3d(0.002, 0.003, 0), turned, origin)}, ms);
   CHECK(-f.dot(u) / f.z() == Approx(slope(along_m)).margin(0.16 * 0.005));
   CHECK(std::abs(f.cross(u).z()) < 1e-6);
 }
 
 TEST_CASE("Every plane that is touched has its own relief, up to many at once") {
-  // Five floors at one height touched at once press with a fifth each, or any one with all: the force is the same.
+  // Five floors at one height touched at once carry a fifth each, or a single one carries all: the force is the
+  // same.
   Bench bench(settled("normal"));
   bench.renderer.set_maps(waves());
   double ms = 0;
@@ -140,7 +141,7 @@ TEST_CASE("Every plane that is touched has its own relief, up to many at once") 
       m = model(t, {mapped(7, {0.015, 0.003, 0}), wall});
       force = corner.tick(t, device, &m).force_N;
     }
-    // 2 N of the floor where it is touched, x = 15 mm; 1 N of the wall at y = 3 mm.
+    // 2 N on the floor at the touched place, x = 15 mm; 1 N on the wall at y = 3 mm.
     const double floor = std::atan(slope(0.02 - kRadius_m)), side = std::atan(slope(0.003));
     CHECK(force.z() == Approx(2 * std::cos(floor)).margin(0.005));
     CHECK(force.x() == Approx(-2 * std::sin(floor) - std::cos(side)).margin(0.005));
@@ -174,7 +175,7 @@ TEST_CASE("Methods change while the hand is pressed, without a kick") {
   const bool high = to == "height" || to == "both", leans = to == "normal" || to == "both";
   const double size = 2 + (high ? 1000 * height(0.004) : 0), angle = leans ? std::atan(slope(0.004)) : 0;
   CHECK((last - size * Vector3d(-std::sin(angle), 0, std::cos(angle))).norm() < 0.01);
-  // At most 1 N of height and 0.3 N of slope in 15 ticks; twice that while two are on their way.
+  // At most 1 N from heights and 0.3 N from slopes in 15 ticks; twice that during two transitions.
   CHECK(worst < 2 * (1 + 0.3) / 15);
 }
 
@@ -216,7 +217,7 @@ TEST_CASE("However steep a map, the force leans by no more than the steepest slo
     const Vector3d f = bench.tick(ms, place + Vector3d(0, 0, kRadius_m - 0.002), &told).force_N;
     REQUIRE(f.norm() <= s.force_limit_N + 1e-9);
     REQUIRE((f - last).norm() <= s.slew_limit_N_s * 1e-3 + 1e-9);
-    // The slew limit lets a force lag; of one that is not limited:
+    // The slew limit delays the force; for a force below it:
     if (method == "normal") REQUIRE(f.head<2>().norm() <= f.z() * s.bump_steepest * (1 + 1e-6) + 1e-9);
     last = f;
   }
@@ -229,7 +230,7 @@ TEST_CASE("A surface that is first told of when its relief stands over the proxy
   bench.renderer.set_maps(waves());
   touch_model_t m;
   const auto tick = [&](int ms, double under_m, bool told) {
-    // A wall far away keeps the touch model from being lost.
+    // A distant wall keeps the touch model from being lost.
     m = model(ms, {plane(3, {-1, 0, 0}, Vector3d::UnitX())});
     if (told) m.planes.push_back(mapped(7, place)), m.plane_count = 2;
     return bench.tick(ms, place + Vector3d(0, 0, kRadius_m - under_m), &m).force_N.z();
@@ -249,7 +250,7 @@ TEST_CASE("A surface that is first told of when its relief stands over the proxy
     CHECK(last == Approx(0.7).margin(0.003));
   }
   SECTION("where the hand comes from outside, it is felt as it is from the first tick on") {
-    // As a smooth surface is that is so much higher.
+    // The same force as on a smooth surface at that height.
     Bench smooth(s);
     touch_plane_t high = plane(7, {place.x(), 0, height(place.x())}, Vector3d::UnitZ());
     double worst = 0, force = 0;
@@ -267,7 +268,7 @@ TEST_CASE("A surface that is first told of when its relief stands over the proxy
 
 TEST_CASE(
     "By heights the force changes no faster than the steepest slope that is felt lets it, and to the same end") {
-  // 6 mm high on waves of 20 mm: the slope is up to 0.94, of which 0.5 are felt.
+  // 6 mm high on waves of 20 mm: the slope is up to 0.94, of which 0.5 are rendered.
   Settings s = settled("height");
   s.bump_steepest = 0.5;
   s.force_limit_N = 30, s.slew_limit_N_s = 100000;
@@ -294,16 +295,17 @@ TEST_CASE(
     least = std::min(least, force), most = std::max(most, force);
     last = force;
   }
-  // Of the way of a tick half, or 0.1 mm; at 1 N/mm.
+  // Half of the motion per tick, or 0.1 mm; at 1 N/mm.
   CHECK(worst < 1.001 * std::max(0.5 * speed_m_s, 0.1));
-  // The waves are still felt, slow ones in full (0.1 mm a tick is a slope of 2 there).
+  // The waves remain perceptible, slow ones in full (0.1 mm a tick is a slope of 2 there).
   CHECK(most - least > (speed_m_s < 0.1 ? 5.8 : 2));
   for (int i = 0; i < 200; ++i) last = tick();
   CHECK(last == Approx(1000 * (0.002 + 6 * height(at.x()))).margin(0.02));
 }
 
 TEST_CASE("Who presses harder downhill than uphill is given no more than the limits of energy and power") {
-  // By normals the surface stores nothing: 3 mm deeper over 12 mm down, wave after wave, would be given for ever.
+  // With `normal` the surface stores no energy: pressing 3 mm deeper over 12 mm of descent, wave after wave, would
+  // give energy for ever.
   const auto stroke = [](const Settings& s) {
     Bench bench(s);
     bench.renderer.set_maps(waves(12 * kHigh_m, 2 * kWave_m));
@@ -325,7 +327,8 @@ TEST_CASE("Who presses harder downhill than uphill is given no more than the lim
       REQUIRE(f.norm() <= s.force_limit_N + 1e-9);
       REQUIRE((f - last_force).norm() <= s.slew_limit_N_s * 1e-3 + 1e-9);
       last_force = f;
-      // As of models that lie (hostile_test.cpp): what a force that is drawn back still gives comes on top.
+      // As for false touch models (hostile_test.cpp): the energy that the force gives while it is reduced is
+      // additional.
       const double drawn_back_s = s.force_limit_N / s.slew_limit_N_s + 0.002;
       REQUIRE(given_J <= s.energy_limit_J + s.power_limit_W * (ms + 1) * 1e-3 +
                              s.force_limit_N * kFastest_m_s * drawn_back_s);
@@ -338,7 +341,7 @@ TEST_CASE("Who presses harder downhill than uphill is given no more than the lim
   s.energy_limit_J = 10, s.power_limit_W = 50;
   CAPTURE(limited_J);
   CHECK(limited_J > 0.025);
-  // That the hand is hostile.
+  // Shows that the motion is hostile.
   CHECK(stroke(s) > 5 * 0.09);
 }
 
@@ -346,7 +349,7 @@ TEST_CASE("A friction map multiplies the friction of its surface where it is tou
   const double x = GENERATE(0.025, 0.075);  // the middles of black and white
   Bench bench(settled("none"));
   bench.renderer.set_maps(waves(0, kWave_m, true));
-  // Slides at 20 mm/s, 2 mm deep; the pair has 0.2.
+  // Slides at 20 mm/s, 2 mm deep; the friction of the pair is 0.2.
   touch_model_t m;
   Vector3d f = Vector3d::Zero();
   for (int ms = 0; ms < 300; ++ms) {
@@ -385,7 +388,7 @@ TEST_CASE("Maps are read from the pictures of the scene. What cannot be is said,
   const SurfaceMaps maps = read_maps(s, {{1, good}, {2, bad}});
   REQUIRE(maps.by_material.size() == 4);
   CHECK(maps.by_material[0].relief);
-  CHECK(maps.by_material[0].relief == maps.by_material[2].relief);  // one for both
+  CHECK(maps.by_material[0].relief == maps.by_material[2].relief);  // shared
   CHECK_FALSE(maps.by_material[0].friction);
   CHECK(maps.by_material[1].friction);
   CHECK_FALSE(maps.by_material[2].friction);

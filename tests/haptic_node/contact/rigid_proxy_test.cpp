@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kLever_m = 0.05, kStiffness = 1000, kTick_s = 0.001;
 
-// A plane that one point of the tool must stay outside of.
+// A plane that limits one point of the tool.
 struct Wall {
   Vector3d normal, point, tool_point;
   double friction = 0;
@@ -88,7 +88,7 @@ TEST_CASE("A box pressed flat on a floor gives the spring's force, and its torqu
   const Vector3d half(0.02, 0.03, 0.01);
   World w = box_on_floor(half);
   const double depth = 0.003;
-  // The torque of the turning spring, lever^2 k phi, tips the box when it exceeds the force times half an edge.
+  // The torque of the rotational spring, lever^2 k phi, tips the box when it exceeds the force times half an edge.
   const double tips = depth * half.x() / (kLever_m * kLever_m);
   for (const double part : {0.0, 0.3, 0.9}) {
     const DevicePose device{{0, 0, half.z() - depth}, about(Vector3d::UnitY(), part * tips)};
@@ -234,7 +234,7 @@ TEST_CASE("Forces that are to be another wrench are, as far as their places allo
     }
     CHECK((sum.force_N - felt.force_N).norm() < 1e-9);
     if (count >= 3) CHECK((sum.torque_N_m - felt.torque_N_m).norm() < 1e-6);
-    if (count == 2) {  // about the line through both there is none
+    if (count == 2) {  // no torque is possible about the line through both
       const Vector3d line = (arms[1] - arms[0]).normalized();
       const Vector3d error = sum.torque_N_m - felt.torque_N_m;
       CHECK((error - error.dot(line) * line).norm() < 1e-6);

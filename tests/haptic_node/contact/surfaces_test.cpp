@@ -16,7 +16,7 @@ namespace {
 constexpr double kDt = 1e-3;
 sync::SimTime sim_ms(double ms) { return sync::sim_time(static_cast<std::int64_t>(ms * 1e6)); }
 
-// Surfaces and proxy together, the device held still.
+// Surfaces and proxy together, with a fixed device.
 struct Touch {
   explicit Touch(double radius_m = 0) : surfaces(radius_m, SurfaceLimits{}) { proxy.reset(Vector3d(0, 0, 0.01)); }
   void tick(double ms, const Vector3d& device, const touch_model_t* fresh) {
@@ -85,7 +85,7 @@ TEST_CASE("A jump of a pressed surface is spread over the recovery time") {
 TEST_CASE("A surface that changes slowly is followed without a lag") {
   Touch touch;
   for (int ms = 0; ms < 100; ++ms) {
-    const double z = 0.00009 * ms;  // 0.09 m/s, unannounced
+    const double z = 0.00009 * ms;  // 0.09 m/s, not in the message
     const auto m = model(ms, {plane(7, {0, 0, z}, Vector3d::UnitZ())});
     touch.tick(ms, {0, 0, z - 0.002}, &m);
     CHECK(touch.proxy.position().z() == Approx(z).margin(1e-9));

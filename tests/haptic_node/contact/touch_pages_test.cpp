@@ -1,5 +1,5 @@
-// Pages of touch models on a wire that loses, repeats and reorders them: what comes out is whole models only, and
-// never of two steps.
+// Pages of touch models on a network that loses, repeats and reorders them: only complete models come out, and
+// never a mixture of two steps.
 #include "haptic_node/contact/touch_pages.h"
 
 #include <algorithm>
@@ -59,7 +59,7 @@ TEST_CASE("Whatever the wire does to pages, each whole model comes out once and 
       }
       complete.push_back(all);
     }
-    // Neighbours overtake each other, by no more than a step and a bit.
+    // Neighbouring pages overtake each other, by little more than a step.
     for (int round = 0; round < 5; ++round)
       for (std::size_t i = 0; i + 1 < wire.size(); ++i)
         if (chance(0.3)) std::swap(wire[i], wire[i + 1]);

@@ -15,7 +15,7 @@ namespace {
 
 sync::HostTime at_ms(double ms) { return sync::host_time(5'000'000'000 + static_cast<std::int64_t>(ms * 1e6)); }
 
-// Sent at `ms` of the driver's own clock, which is not ours.
+// Sent at `ms` of the clock of the driver, which differs from ours.
 device_state_t said(double ms, double x_m, std::int64_t incarnation = 1, const std::string& name = "arm") {
   device_state_t m{};
   m.header.publish_time_ns = 77'000'000'000 + static_cast<std::int64_t>(ms * 1e6);
@@ -35,7 +35,7 @@ External arm() { return External("arm", Vector3d(1, 2, 3), 0.05); }
 
 TEST_CASE("A device of another program is where that program says, moved by the offset") {
   External device = arm();
-  CHECK(device.read(at_ms(0)).lost);  // nobody spoke yet
+  CHECK(device.read(at_ms(0)).lost);  // no message yet
   CHECK(device.read(at_ms(0)).position == Vector3d(1, 2, 3));
   device.hear(said(0, 0.1), at_ms(1));
   const DeviceState s = device.read(at_ms(1));
@@ -60,7 +60,7 @@ TEST_CASE("A driver that falls silent loses the device where it was, and finds i
   CHECK(s.velocity.isZero());
   CHECK(s.buttons == 0);
   CHECK((s.position - Vector3d(1.1, 2, 3)).norm() < 1e-12);
-  device.hear(said(900, 0.9), at_ms(900));  // it may have moved any distance meanwhile
+  device.hear(said(900, 0.9), at_ms(900));  // it may have moved any distance in the meantime
   CHECK_FALSE(device.read(at_ms(900)).lost);
   CHECK(device.read(at_ms(900)).position.x() == Approx(1.9));
 }

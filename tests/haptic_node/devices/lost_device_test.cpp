@@ -21,7 +21,7 @@ struct Fickle : Device {
     DeviceState s;
     s.position = at;
     s.lost = lost;
-    if (lost) s.velocity = Vector3d(9, 9, 9);  // nobody may believe it
+    if (lost) s.velocity = Vector3d(9, 9, 9);  // must be ignored
     return s;
   }
   using Device::write;
@@ -73,10 +73,10 @@ TEST_CASE("A device that stops answering is pushed no more, within the fade, and
     const tool_state_t& s = r.tick();
     CHECK(r.push() == 0);
     CHECK(s.fade == 0);
-    for (const tool_constraint_t& c : s.constraints) CHECK(c.force_N.z == 0);  // nor does the world feel it
+    for (const tool_constraint_t& c : s.constraints) CHECK(c.force_N.z == 0);  // no force on the bodies either
   }
   CHECK(r.session->device_lost());
-  CHECK_FALSE(r.session->lost());  // touch itself is there
+  CHECK_FALSE(r.session->lost());  // the touch model is not lost
 }
 
 TEST_CASE("A device that answers again is felt again, as slowly, wherever it has come back") {
@@ -90,7 +90,7 @@ TEST_CASE("A device that answers again is felt again, as slowly, wherever it has
     double last = 0;
     for (int i = 0; i < 300; ++i) {
       r.tick();
-      CHECK(std::abs(r.push() - last) <= 2.0 + 1e-9);  // the slew limit, and far below it in fact
+      CHECK(std::abs(r.push() - last) <= 2.0 + 1e-9);  // the slew limit, by a wide margin
       CHECK(r.push() < 1.5 * before + 0.1);
       last = r.push();
     }

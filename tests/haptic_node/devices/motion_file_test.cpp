@@ -27,7 +27,7 @@ TEST_CASE("A motion file is read with or without orientation") {
   REQUIRE(plain.times_s.size() == 2);
   CHECK(plain.positions_m[1] == Vector3d(4, 5, 6));
   const Motion posed = read("time_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,0,0,-0.8,0,0,-0.6\n");
-  CHECK(posed.orientations[1].w() == Approx(0.8));  // of the same half as its neighbour
+  CHECK(posed.orientations[1].w() == Approx(0.8));  // in the same half space as its neighbour
 }
 
 TEST_CASE("What is wrong with a motion file is said with its line") {

@@ -1,4 +1,4 @@
-// Devices that turn: torque to the hand, spin from it.
+// Rotating devices: torque on the hand, spin from it.
 #include <catch2/catch.hpp>
 #include <tactus/device_state_t.hpp>
 
@@ -32,7 +32,7 @@ TEST_CASE("A virtual hand yields to a torque as its spring says, and comes back"
     hand.write(Wrench{Vector3d::Zero(), torque});
     const Quaterniond before = state.orientation;
     state = hand.read(ms(i));
-    // Spin is the rate at which it turns.
+    // Spin is the rotation rate.
     if (i > 2)
       CHECK((turn_between(before, state.orientation) / 1e-3 - state.spin).norm() < 0.05 * (1 + state.spin.norm()));
     turned = turn_between(rest, state.orientation);

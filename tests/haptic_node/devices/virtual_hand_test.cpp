@@ -22,7 +22,7 @@ TEST_CASE("A hand that is pushed evenly rests at force over stiffness from its p
     state = hand.read(at_ms(ms));
     hand.write({0, 0, 3});
   }
-  // Decay: roots of 0.1 s^2 + 10 s + 300 are -50 +- 22i, so after 2 s nothing of the motion is left.
+  // Decay: the roots of 0.1 s^2 + 10 s + 300 are -50 +- 22i, so after 2 s the motion has decayed completely.
   CHECK((state.position - Vector3d(0.1, 0.2, 0.31)).norm() < 1e-12);
   CHECK(state.velocity.norm() < 1e-12);
 }
@@ -63,8 +63,8 @@ TEST_CASE("A hand follows its path and begins again, without a jump") {
     CHECK((state.position - last).norm() < 0.45e-3);
     last = state.position;
   }
-  // 0.5 s after a beginning it is near the far end. Lag of a second-order follower whose damper sees the target's
-  // velocity: m/k times the acceleration, at most 0.1/300 * 6 * 0.1/0.25 = 0.8 mm.
+  // 0.5 s after a start it is near the far end. Lag of a second-order follower whose damper uses the velocity of
+  // the target: m/k times the acceleration, at most 0.1/300 * 6 * 0.1/0.25 = 0.8 mm.
   CHECK((hand.read(at_ms(5500)).position - Vector3d(0.1, 0, 0)).norm() < 0.0008);
 }
 
@@ -75,7 +75,7 @@ TEST_CASE("A hand rests at the first point of its path until the path begins, an
   SECTION("which takes as long as it is") {
     hand.begin(at_ms(699.5));
     for (int ms = 700; ms <= 949; ++ms) hand.read(at_ms(ms));
-    CHECK(hand.read(at_ms(949.5)).position.x() == Approx(0.15).margin(2e-4));  // but for the lag of the hand
+    CHECK(hand.read(at_ms(949.5)).position.x() == Approx(0.15).margin(2e-4));  // except for the lag of the hand
     CHECK(hand.read(at_ms(1600)).position.x() == Approx(0.2).epsilon(1e-6));
   }
   SECTION("by a force") {

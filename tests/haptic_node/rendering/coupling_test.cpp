@@ -57,7 +57,7 @@ TEST_CASE("The loop delay is the worst age lately, and forgets it slowly") {
 TEST_CASE("What models are held back less is forgotten at once, and what else was learnt of the way stays") {
   LoopDelay delay;
   delay.observe(0.043);
-  constexpr double kLearnt_s = 1e-5;  // the mean is that near after ten of its time constants
+  constexpr double kLearnt_s = 1e-5;  // accuracy of the mean after ten of its time constants
   for (int k = 0; k < 5000; ++k) delay.pass(0.043, 1e-3);
   CHECK(delay.value_s(0, 0) == Approx(0.043).margin(kLearnt_s));
   delay.relieve(0.04);
@@ -98,7 +98,7 @@ TEST_CASE("Forces push, never pull, and stay in the cone of friction") {
     for (int i = 0; i < 3; ++i) {
       const double push = forces[i].dot(surfaces[i].normal);
       if (surfaces[i].depth_m <= 0) REQUIRE(forces[i].norm() == 0);
-      // A shift that is not quite tangential may tilt the tangential part by itself at most.
+      // A shift that is not exactly tangential may tilt the tangential part by at most its own angle.
       REQUIRE(push >= -0.5 * 1e-9 - 0.5 * forces[i].norm());
     }
   }

@@ -31,7 +31,7 @@ TEST_CASE("The force of the surfaces goes over to that of others within the reco
   double t = 0;
   for (; t < kRecovery_s - 1e-9; t += dt) {
     const Vector3d force = handover.step(after, next, dt);
-    // Its share, and what is let through in the tick of the change.
+    // Its share, plus the change that passes in the tick of the transition.
     CHECK((force - last).norm() <= std::max(kAtOnce_N_s * dt, 2 * dt / kRecovery_s) + 1e-12);
     CHECK((force - old).norm() > (last - old).norm() - 1e-12);
     last = force;
@@ -65,7 +65,7 @@ TEST_CASE("A small change of the surfaces passes at once") {
 }
 
 TEST_CASE("Sliding from one facet over a shallow groove onto the next, friction does not break off") {
-  // Facets that meet at 10 degrees in x = 0; the hand goes over them at 0.1 m/s, 3 mm deep.
+  // Facets that meet at 10 degrees in x = 0; the hand crosses them at 0.1 m/s, 3 mm deep.
   const double lean = 5 * M_PI / 180, speed = 0.1;
   std::vector<Surface> groove(2);
   for (int i = 0; i < 2; ++i) {
@@ -87,11 +87,10 @@ TEST_CASE("Sliding from one facet over a shallow groove onto the next, friction 
     both = both || (groove[0].depth_m > 0 && groove[1].depth_m > 0);
     if (ms > 50) largest_m = std::max(largest_m, (stretch - last).norm());
     last = stretch;
-    // Nothing but the dynamic cone of friction leans back, whichever facets bind.
+    // Only the dynamic friction cone leans back, for any binding facets.
     if (ms > 50) CHECK(proxy.shift().x() < -0.2 * 0.003);
   }
   REQUIRE(both);
-  // No step is longer than the hand's own: what it moves in a tick and the turn of the normal spread over the
-  // groove.
+  // No step exceeds that of the hand: its motion in a tick and the rotation of the normal spread over the groove.
   CHECK(largest_m < 2 * speed * kDt);
 }

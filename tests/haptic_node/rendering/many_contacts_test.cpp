@@ -1,4 +1,4 @@
-// A face that lies on more places than a message tells of.
+// A face in contact at more places than a message holds.
 #include <catch2/catch.hpp>
 #include <tactus/scene_t.hpp>
 #include <tactus/tool_constraint_t.hpp>
@@ -21,7 +21,7 @@ TEST_CASE(
   settings.rendering = GENERATE("rigid", "direct");
   INFO(settings.rendering);
   Bench bench(settings, box);
-  // Under a face of 40 mm, 5 by 5 places of one floor; the hand goes down off the middle.
+  // Under a face of 40 mm, 5 by 5 places of one floor; the hand moves down off the middle.
   std::vector<touch_plane_t> planes;
   for (int i = 0; i < 25; ++i) {
     const Vector3d place(0.01 * (i % 5 - 2), 0.01 * (i / 5 - 2), -0.01);

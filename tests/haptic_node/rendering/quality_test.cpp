@@ -11,7 +11,7 @@ using namespace tactus::haptic::test;
 
 namespace {
 
-// Ticks of 1 ms that take `full_ms` with all planes and half as long at each further step.
+// Ticks of 1 ms that take `full_ms` with all planes, and half of it at each further step.
 int run(Quality& quality, double full_ms, int ticks) {
   for (int i = 0; i < ticks; ++i) quality.add(sync::from_seconds(full_ms * 1e-3 / std::pow(2, quality.step())));
   return quality.step();
@@ -23,7 +23,7 @@ Settings held(const std::string& quality) {
   return s;
 }
 
-// A pit: a floor at z = 0 and four walls, 4 mm from the middle there, which lean away from it as far as it says.
+// A pit: a floor at z = 0 and four walls, 4 mm from the middle there, which lean outwards by `lean`.
 std::vector<touch_plane_t> pit(double lean) {
   std::vector<touch_plane_t> planes{plane(1, Vector3d::Zero(), Vector3d::UnitZ())};
   const std::array<Vector3d, 4> in{Vector3d(-1, 0, 0), Vector3d(1, 0, 0), Vector3d(0, -1, 0), Vector3d(0, 1, 0)};
@@ -33,7 +33,7 @@ std::vector<touch_plane_t> pit(double lean) {
   return planes;
 }
 
-// Presses into the pit while the number of planes changes; no limit but that of the force hides a step.
+// Presses into the pit while the number of planes changes; only the force limit applies, so no limit hides a step.
 struct Pressing {
   double lean;
   Bench bench{free()};
@@ -94,7 +94,7 @@ TEST_CASE("Of many planes those under pressure are considered, deepest first, th
   Surfaces surfaces(0, SurfaceLimits{});
   Proxy proxy;
   proxy.reset({0, 0, 0.001});
-  // The first lie far above each other, the last is the one that is pressed.
+  // The first planes are far apart in height; the last one is pressed.
   std::vector<touch_plane_t> planes;
   for (int i = 0; i < 6; ++i) planes.push_back(plane(i, {0, 0, -0.01 * (6 - i)}, Vector3d::UnitZ()));
   planes.push_back(plane(7, Vector3d::Zero(), Vector3d::UnitZ()));
@@ -115,7 +115,7 @@ TEST_CASE("Of many planes those under pressure are considered, deepest first, th
 
 TEST_CASE("In a corner the force is the same at each step of quality") {
   Pressing pressing{.lean = 0.1};
-  const Vector3d device(0.001, 0.001, 0.003);  // into floor and two walls, for a tool of 5 mm
+  const Vector3d device(0.001, 0.001, 0.003);  // in contact with the floor and two walls, for a tool of 5 mm
   const Vector3d full = pressing.press(0, 200, device, 8);
   REQUIRE(full.norm() > 1);
   CHECK((pressing.press(200, 400, device, 5) - full).norm() < 1e-9);
@@ -127,15 +127,15 @@ TEST_CASE("In a corner the force is the same at each step of quality") {
 
 TEST_CASE("Where more planes press than are considered, the force goes over within the recovery time") {
   Pressing pressing{.lean = 0};
-  // Wedged: the pit is narrower than the tool, so that all five press.
+  // Wedged: the pit is narrower than the tool, so all five planes are pressed.
   const Vector3d device(0.0005, 0.0003, 0.003);
   const Vector3d full = pressing.press(0, 300, device, 8);
   pressing.largest_step_N = 0;
   const Vector3d few = pressing.press(300, 400, device, 3);
   const Vector3d again = pressing.press(400, 700, device, 8);
   CAPTURE(full.transpose(), few.transpose(), again.transpose(), pressing.largest_step_N);
-  CHECK((few - full).norm() > 0.2);  // it matters what is left out,
+  CHECK((few - full).norm() > 0.2);  // the omitted planes matter,
   CHECK((again - full).norm() < 1e-3);
-  // and it goes no faster than walls may jump: 0.1 mm a tick at 1 N/mm, of two directions.
+  // and the force changes no faster than walls may jump: 0.1 mm a tick at 1 N/mm, in two directions.
   CHECK(pressing.largest_step_N < 0.1 * std::sqrt(2) + 1e-6);
 }

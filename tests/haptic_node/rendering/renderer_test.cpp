@@ -20,7 +20,7 @@ using namespace tactus::haptic::test;
 
 namespace {
 
-// What the bus would add, so that the state can be checked as a receiver does.
+// Adds the fields that the bus fills, so that the state can be validated as by a receiver.
 bool valid_on_the_bus(tool_state_t state) {
   state.header.run_id = state.header.incarnation = 1;
   return valid(state);
@@ -44,7 +44,7 @@ double wall_stiffness(const Settings& s) {
 TEST_CASE("A hand that presses on a wall rests where its spring and the coupling balance") {
   const Settings settings;
   const HandImpedance impedance{settings.hand_mass_kg, settings.hand_damping_Ns_m, settings.hand_stiffness_N_m};
-  // The path ends 1 cm below the place where the tool of 5 mm touches.
+  // The path ends 1 cm below the height at which the tool of 5 mm touches.
   VirtualHand hand(
       MonotoneCubic({0, 1}, {Vector3d(0, 0, 0.02), Vector3d(0, 0, -0.005)}, MonotoneCubic::Ends::kRest), false,
       impedance);
@@ -70,7 +70,7 @@ TEST_CASE("A hand that presses on a wall rests where its spring and the coupling
   CHECK(out->state.proxy.position_m.z == Approx(0.005).margin(1e-9));
   CHECK(out->state.device.position_m.z == Approx(0.005 - out->force_N.z() / K).margin(1e-9));
   CHECK(out->state.energy_J == Approx(energy_J).margin(1e-6));
-  // The wall takes the energy of its spring from the hand, and what its damper burns.
+  // The wall takes the energy of its spring from the hand, and the loss of its damper.
   CHECK(energy_J < -0.5 * out->force_N.z() * out->force_N.z() / K);
   REQUIRE(out->state.constraint_count == 1);
   CHECK(out->state.constraints[0].contact_id == 7);
@@ -209,7 +209,7 @@ TEST_CASE("The worst possible messages keep force, slew and energy within their 
     for (int ms = 0; ms < 4000; ++ms) {
       std::vector<touch_plane_t> planes;
       for (int i = 0; i < 8; ++i) {
-        // Flips each tick, teleports, is as stiff and as fast as a finite number can say.
+        // Flips each tick, jumps, and is as stiff and as fast as a finite number allows.
         Vector3d n(normal(random), normal(random), normal(random));
         if (i < 2) n = Vector3d(0, 0, ms % 2 ? 1 : -1);
         auto p = plane(
@@ -240,7 +240,8 @@ TEST_CASE("The worst possible messages keep force, slew and energy within their 
       REQUIRE(valid_on_the_bus(out.state));
       REQUIRE(out.force_N.norm() <= settings.force_limit_N + 1e-9);
       REQUIRE((out.force_N - last_force).norm() <= settings.slew_limit_N_s * 1e-3 + 1e-9);
-      // Beyond the allowance: while the force is drawn back by its slew, 4 ms from the limit, it works on.
+      // In addition to the allowance: the force keeps working while the slew limit reduces it, for 4 ms from the
+      // limit.
       const double drawn_back_J =
           settings.force_limit_N * fastest * settings.force_limit_N / settings.slew_limit_N_s;
       REQUIRE(energy_J <= settings.energy_limit_J + settings.power_limit_W * (ms + 1) * 1e-3 + drawn_back_J);
@@ -269,8 +270,7 @@ TEST_CASE("A force in steps, as a profile asks for, keeps its direction and is p
     const auto m = model(ms, {plane(7, Vector3d::Zero(), Vector3d(0.3, 0, 1))});
     const auto& out = bench.tick(ms, Vector3d(0, 0, 0.006 - 0.000003 * ms), &m, {}, in);
     const double level = out.force_N.norm() / kStep_N;
-    // The limits come after: a step of 0.5 N takes less than the 2 N that a tick may change, so each level is
-    // reached at once.
+    // The limits apply afterwards: a step of 0.5 N is below the 2 N of a tick, so each level is reached at once.
     REQUIRE(level == Approx(std::round(level)).margin(1e-9));
     levels.insert(std::lround(level));
     if (level > 0.5) CHECK(out.force_N.normalized().dot(Vector3d(0.3, 0, 1).normalized()) == Approx(1));

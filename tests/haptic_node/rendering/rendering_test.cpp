@@ -1,4 +1,4 @@
-// The three ways of making the force: each by itself, and changed for another while the hand is pressed.
+// The three rendering methods: each by itself, and switched while the hand is pressed.
 #include "haptic_node/rendering/rendering.h"
 
 #include <catch2/catch.hpp>
@@ -111,7 +111,7 @@ TEST_CASE("Renderings change while the hand is pressed: within the slew, and set
       }
       CHECK(settled_N > 1);
       CHECK(last.z() > 1);
-      CHECK(most <= 0.5);  // far within the slew limit of 2 N a tick
+      CHECK(most <= 0.5);  // far below the slew limit of 2 N a tick
       CHECK(most_torque <= 0.075);
       if (to == "proxy") CHECK(last_torque.norm() < 1e-9);
       if (to == "rigid") CHECK(last_torque.norm() > 0.005);
@@ -181,7 +181,7 @@ TEST_CASE("Nonsense about a rigid tool leaves the limits where they are") {
   Vector3d last = Vector3d::Zero(), last_torque = Vector3d::Zero();
   for (int ms = 0; ms < 300; ++ms) {
     std::vector<touch_plane_t> planes = corners(0.5);
-    for (touch_plane_t& p : planes) {  // contradictory, far off, turning
+    for (touch_plane_t& p : planes) {  // contradictory, distant, rotating
       const double k = std::sin(ms * 0.7 + static_cast<double>(p.contact_id));
       p.normal = to_vec3f(Vector3d(k, std::cos(3.0 * ms), 0.3).normalized());
       p.tool_point_m = to_vec3f(Vector3d(k, 5 * k, -1));

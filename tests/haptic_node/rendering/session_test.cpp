@@ -37,7 +37,7 @@ contact_events_t events_of(double sim_ms, std::vector<contact_event_t> list) {
 
 NodeConfig choice_of(const scene_t& s) { return resolve_config(s, "", {}); }
 
-// The tool rests 2 mm under the floor of z = 0.005 + ...: see the bodies' pose.
+// The tool is 2 mm under the floor of z = 0.005 + ...: see the poses of the bodies.
 scene_t pressing_scene() {
   scene_t s = scene();
   s.bodies[1].pose.position_m.z = 0.003;
@@ -65,7 +65,7 @@ TEST_CASE("The tool and its settings are chosen by name, and what does not fit i
   CHECK(resolve_config(s, "", {}).settings.stale_after_s == 0.02);
   CHECK(resolve_config(s, "toe", {}).tool == -1);
   CHECK_THAT(resolve_config(s, "toe", {}).problem, Contains("toe"));
-  CHECK_THAT(choose(scene_t{}, "", {}).problem, Contains("no tool"));
+  CHECK_THAT(resolve_config(scene_t{}, "", {}).problem, Contains("no tool"));
   CHECK(resolve_config(s, "", {"force=2"}).refused.size() == 1);
   CHECK_THAT(limits_sentence(resolve_config(s, "", {}).settings), Contains("3 N") && Contains("0.49 J"));
 }
@@ -93,7 +93,7 @@ TEST_CASE("A scene cannot loosen what protects the hand. The command line can") 
     REQUIRE(refused.refused.size() == 1);
     CHECK_THAT(refused.refused[0], Contains(name) && Contains("only tighten") && Contains("--set"));
     CHECK(limits_sentence(refused.settings) == limits_sentence(safe));
-    CHECK(choose(scene(), "", {name + "=" + value}).refused.empty());
+    CHECK(resolve_config(scene(), "", {name + "=" + value}).refused.empty());
   }
   CHECK(resolve_config(s, "", {"force_limit=12"}).settings.force_limit_N == 12);
 }
@@ -136,7 +136,7 @@ TEST_CASE("Events that are repeated, as they are on the bus, are rendered once")
       r.part == presentation_t::TRANSIENT ? ++hits : ++begins;
       CHECK(r.outcome == presentation_t::PRESENTED);
       CHECK(r.scheduled_ns == sync::to_ns(host_ms(99.5)));
-      // The transient in the tick that took it; the constraint was felt from the first one on.
+      // The transient is in the tick that received it; the constraint was felt from the first one on.
       CHECK(r.presented_ns == sync::to_ns(host_ms(r.part == presentation_t::TRANSIENT ? 100 : 0)));
     }
   }
@@ -150,7 +150,7 @@ TEST_CASE("A restarted simulation is followed, its first touch model comes witho
   Session session(s, choice_of(s), device_of(s, choice_of(s)), 1, safety);
   double last = 0;
   for (int ms = 0; ms < 1000; ++ms) {
-    // Killed at 200 ms, back at 500 ms with a time of its own that begins at 0.
+    // Stopped at 200 ms, restarted at 500 ms with its time beginning at 0.
     if (ms < 200) session.push(sent(ms, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())}), host_ms(ms));
     if (ms >= 500) {
       auto m = sent(ms - 500, {plane(99, Vector3d::Zero(), Vector3d::UnitZ())}, 0, 2);
@@ -175,7 +175,7 @@ TEST_CASE("The path of the hand begins with the world, not with the process") {
   Safety safety{SafetyLimits{}};
   Session session(s, choice_of(s), device_of(s, choice_of(s)), 1, safety);
   const auto x = [](const TickOutput& out) { return out.state.device.position_m.x; };
-  // The scene is offered half a second before its time begins; the ticks fall anywhere between its steps.
+  // The scene arrives half a second before its time begins; the ticks fall anywhere between its steps.
   const double tick_ms = GENERATE(0.0, 0.3, 0.9);
   for (int ms = -500; ms < 0; ++ms) CHECK(x(session.step(host_ms(ms + tick_ms))) == 0);
   SECTION("at the simulated instant of its first touch model") {
@@ -185,7 +185,7 @@ TEST_CASE("The path of the hand begins with the world, not with the process") {
       const double here = x(session.step(host_ms(ms + tick_ms)));
       if (ms == 250) at_250 = here;
     }
-    CHECK(at_250 == Approx(0.05 + 0.3e-3 * tick_ms).margin(2e-4));  // half way, at 0.3 m/s
+    CHECK(at_250 == Approx(0.05 + 0.3e-3 * tick_ms).margin(2e-4));  // halfway, at 0.3 m/s
     CHECK(x(session.step(host_ms(1000))) == Approx(0.1).epsilon(1e-6));
   }
   SECTION("also when touch models are held back on purpose: then as the first one arrives") {
@@ -223,7 +223,7 @@ TEST_CASE("When the scene changes the force goes on from where it is, through th
     session.emplace(s, slow, device_of(s, slow), 1, safety);
     tick(300);
     CHECK(last.z() > 0.3);
-    CHECK(safety.energy_J() == given_J);  // a new hand in another place: no work
+    CHECK(safety.energy_J() == given_J);  // a new hand at another place: no work
     for (int ms = 301; ms < 330; ++ms) tick(ms);
     CHECK(last.z() > 0);
   }
@@ -246,6 +246,6 @@ TEST_CASE("A device that the scene names but nobody can make is refused in one s
     s.tools[0].device = device;
     CHECK_THROWS_WITH(device_of(s, choice_of(s)), Contains(device.substr(device.find(':') + 1)));
     const DeviceSpec given;
-    CHECK(device_of(s, choice_of(s), &given));  // the command line goes before the scene
+    CHECK(device_of(s, choice_of(s), &given));  // the command line overrides the scene
   }
 }

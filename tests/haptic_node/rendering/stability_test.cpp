@@ -1,4 +1,4 @@
-// Closed loops of hand, renderer and world with the delays of a bus between them.
+// Closed loops of hand, renderer and simulation with the delays of a bus between them.
 #include <catch2/catch.hpp>
 #include <deque>
 #include <tactus/touch_model_t.hpp>
@@ -27,12 +27,12 @@ struct Body {
 struct Run {
   double force_N = 0;          // at the end
   double most_motion_m_s = 0;  // of hand or body in the last half second
-  int force_reversals = 0;     // changes between growing and shrinking by more than 0.05 N, in all
+  int force_reversals = 0;     // changes between increase and decrease by more than 0.05 N, in total
   double energy_J = 0;         // given to the hand
 };
 
-// The hand goes down 1 cm beyond the surface within 0.3 s and stays. The touch model arrives delay_ms late, the
-// force of the tool acts on the body a step after it was told. Of the models only each every_ms-th comes.
+// The hand moves to 1 cm beyond the surface within 0.3 s and stays. The touch model arrives delay_ms late, and the
+// force of the tool acts on the body one step after it is sent. Only every every_ms-th model arrives.
 Run press(std::optional<Body> body, double delay_ms, int every_ms = 1) {
   const Settings settings;
   VirtualHand hand(
@@ -54,7 +54,7 @@ Run press(std::optional<Body> body, double delay_ms, int every_ms = 1) {
     const DeviceState state = hand.read(host_ms(ms));
     const bool due = on_the_way.size() > static_cast<std::size_t>(delay_ms);
     const touch_model_t* fresh = due && ms % every_ms == 0 ? &on_the_way.front() : nullptr;
-    bench.arrival = host_ms(ms);  // thinned on purpose: it does not count as lost
+    bench.arrival = host_ms(ms);  // an intended low rate does not count as a loss
     const auto& out = bench.tick(ms, state.position, fresh);
     if (due) on_the_way.pop_front();
     hand.write(out.force_N);
@@ -80,7 +80,7 @@ TEST_CASE("A hand on a stiff wall comes to rest with a touch model that is 1 to 
   const Run run = press(std::nullopt, delay_ms);
   CHECK(run.most_motion_m_s < 1e-9);
   CHECK(run.force_reversals <= 2);  // at most one overshoot
-  // The hand was given no energy: it gave what its way down 1 cm against the wall cost.
+  // The hand received no energy: it spent the work of its 1 cm against the wall.
   CHECK(run.energy_J < -0.5 * run.force_N * run.force_N / 1000 * 0.99);
 }
 
@@ -88,8 +88,8 @@ TEST_CASE("A hand on a body of any mass comes to rest with a touch model that is
   const double delay_ms = GENERATE(1, 2, 3);
   const double mass_kg = GENERATE(0.002, 0.01, 0.05, 0.2, 1.0, 5.0);
   CAPTURE(delay_ms, mass_kg);
-  // On a spring with a twentieth of critical damping, that resonates at 100 rad/s at most: what moves faster than
-  // the loop can tell (its delay is up to 5 ms) no coupling can damp.
+  // On a spring with a twentieth of critical damping and a resonance of at most 100 rad/s: no coupling can damp
+  // motion that is faster than the loop delay of up to 5 ms.
   const double stiffness_N_m = std::min(500.0, 1e4 * mass_kg);
   const Run run = press(Body{mass_kg, stiffness_N_m, 0.1 * std::sqrt(stiffness_N_m * mass_kg)}, delay_ms);
   // The heaviest rings by itself, at 10 rad/s and 0.5 1/s: after 2.2 s still with a third of its first speed.
@@ -99,7 +99,7 @@ TEST_CASE("A hand on a body of any mass comes to rest with a touch model that is
 }
 
 TEST_CASE("A free light body that is pushed along gains no energy from the delays") {
-  // No spring holds it: pushed down by the hand it leaves at about the speed of the hand, once.
+  // No spring holds it: pushed down by the hand it leaves once, at about the speed of the hand.
   const double delay_ms = GENERATE(1, 2, 3);
   const Run run = press(Body{0.02, 0, 0}, delay_ms);
   CHECK(run.force_N == Approx(0).margin(1e-6));

@@ -1,5 +1,5 @@
-// A stroke over a bumpy sphere of flat facets, whose touch model is made as the simulation makes it: the plane of
-// the facet that is nearest to the proxy, a little late.
+// A stroke over a bumpy sphere of flat facets, with touch models as the simulation makes them: the plane of the
+// facet nearest to the proxy, slightly late.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <tactus/touch_model_t.hpp>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kRadius_m = 0.05, kBump_m = 0.0003, kFacet_rad = 5 * M_PI / 180;
 
-// Facets of 5 degrees in latitude and longitude; each lies higher or lower than a sphere by up to 0.3 mm.
+// Facets of 5 degrees in latitude and longitude; each is higher or lower than a sphere by up to 0.3 mm.
 touch_plane_t facet_under(const Vector3d& place) {
   const Vector3d u = place.normalized();
   const double latitude = std::round(std::asin(u.z()) / kFacet_rad) * kFacet_rad;
@@ -38,7 +38,7 @@ TEST_CASE("A stroke over the facets of a bumpy sphere has no kick") {
   const int ticks = static_cast<int>(M_PI * kRadius_m / speed * 1000);
   for (int ms = 0; ms < ticks; ++ms) {
     const double angle = speed / kRadius_m * ms * 1e-3;
-    const double inwards = std::min(1.0, ms / 100.0);  // the first tenth of a second it goes in
+    const double inwards = std::min(1.0, ms / 100.0);  // moves in over the first tenth of a second
     const double r = kRadius_m + tool + 0.001 - (depth + 0.001) * inwards;
     const Vector3d device = r * Vector3d(std::cos(angle), std::sin(angle), 0.4 * std::sin(3 * angle)).normalized();
     late[ms % 3] = model(ms, {facet_under(proxy)});
@@ -55,8 +55,8 @@ TEST_CASE("A stroke over the facets of a bumpy sphere has no kick") {
   // 3 mm under 1 N/mm, with friction; the surface is up to 0.3 mm higher or lower.
   CHECK(mean > 2.0);
   CHECK(mean < 4.5);
-  // Per tick: a pressed facet is yielded to by 0.1 mm (0.1 N) and turned to by 30 rad/s (0.03 mean), friction
-  // follows by its coefficient twice, the damper of at most b/2 sees the speed change by its turn: 5 N s/m * speed
-  // * 0.03. Facets meet at up to 7 degrees and lie up to 0.6 mm apart; a step of that in 15 ticks is 0.04 mm.
+  // Per tick: a pressed facet yields by 0.1 mm (0.1 N) and turns by 30 rad/s (0.03 mean), friction follows twice
+  // with its coefficient, and the damper of at most b/2 sees the change of speed by the rotation: 5 N s/m * speed
+  // * 0.03. Facets meet at up to 7 degrees and are up to 0.6 mm apart; a step of that in 15 ticks is 0.04 mm.
   CHECK(worst < 1.6 * (0.1 + 0.03 * 4.5) + 5 * speed * 0.1);
 }

@@ -16,13 +16,13 @@ namespace {
 
 constexpr double kDt = 1e-3;
 
-// A hand that is moved as the test says, and one body that moves as the test says, joined by a spring through an
-// observer. What the body gets is told at once, or never.
+// A hand and one body, both with motion set by the test, joined by a spring through an observer. The energy of the
+// body is reported at once, or never.
 struct Ports {
   explicit Ports(double mass_kg, double stiffness_N_m = 1000) : mass_kg(mass_kg), stiffness_N_m(stiffness_N_m) {}
 
-  // The hand is `in` under the surface of the body and moved by moved_m (up: positive) since the last tick, as did
-  // the body by body_m.
+  // The hand is `in` under the surface of the body. Since the last tick it moved by moved_m (up: positive) and the
+  // body by body_m.
   double tick(double in, double moved_m, double body_m, bool told = true) {
     given_J += -force * body_m;
     impulse -= force * kDt;
@@ -58,7 +58,7 @@ struct Ports {
     return force;
   }
 
-  // The hand moves its end by turning, where it is not 0.
+  // If not 0, the hand moves its end by rotation.
   double lever_m = 0;
 
   double mass_kg, stiffness_N_m;
@@ -85,7 +85,8 @@ TEST_CASE(
     const double next = 0.005 * std::pow(std::sin(M_PI * k / 200), 2);
     ports.tick(next, in - next, 0);
     in = next;
-    // There is no damper for what the hold of a tick makes: K T / 2 times the integral of v^2, 0.31 mJ a press.
+    // No damper compensates the energy from holding the force over a tick: K T / 2 times the integral of v^2, 0.31
+    // mJ a press.
     REQUIRE(ports.passivity.factor() == 1);
     REQUIRE(ports.passivity.generated_J() < 3.2e-4);
   }
@@ -93,7 +94,7 @@ TEST_CASE(
 
 TEST_CASE("Force that comes from nowhere is generated, and the coupling gives no more of it than the allowance") {
   Ports ports(1);
-  // The surface is 5 mm over the hand at once and gives way at 0.1 m/s: 12.5 mJ.
+  // The surface is suddenly 5 mm above the hand and retreats at 0.1 m/s: 12.5 mJ.
   double hand_J = 0;
   for (int k = 0; k < 50; ++k) {
     const double force = ports.tick(0.005 - 1e-4 * k, 1e-4, 0);
@@ -107,8 +108,8 @@ TEST_CASE("Force that comes from nowhere is generated, and the coupling gives no
 TEST_CASE("A hand that pushes with a lever is judged as one that pushes straight") {
   Ports straight(1), lever(1);
   lever.lever_m = 0.1;
-  // Pushed along at 0.5 m/s, and 5 mm deep from one tick to the next: more than is allowed, though the way alone
-  // makes nothing.
+  // Pushed along at 0.5 m/s, and 5 mm deep within one tick: more than the allowance, although the path alone
+  // generates nothing.
   for (int k = 0; k < 20; ++k) {
     straight.tick(0.005, -5e-4, -5e-4);
     lever.tick(0.005, -5e-4, -5e-4);
@@ -122,7 +123,7 @@ TEST_CASE("A hand that pushes with a lever is judged as one that pushes straight
 
 TEST_CASE("A body that is told of twice counts as told last, and none comes faster than a body can") {
   const bool twice = GENERATE(true, false);
-  // Pressed by 10 mm all at once, that nobody gave, on 0.05 kg.
+  // Suddenly pressed by 10 mm, without energy from hand or body, on 0.05 kg.
   const auto factor = [&](bool lies) {
     Ports ports(0.05);
     for (int k = 0; k < 3; ++k) ports.tick(0.0005, 0, 0);
@@ -144,7 +145,7 @@ TEST_CASE("A body that is told of twice counts as told last, and none comes fast
     return ports.passivity.factor();
   };
   if (twice) CHECK(factor(true) == factor(false));
-  // 10 m/s give at most 8 N a millisecond at a time; 1e9 m/s would pay for everything.
+  // 10 m/s give at most 8 N a millisecond at a time; 1e9 m/s would cover everything.
   if (!twice) CHECK(factor(true) < 1);
 }
 
@@ -177,7 +178,7 @@ TEST_CASE(
 TEST_CASE("After a while apart an episode begins anew, and what the simulation knows from before is not counted") {
   Ports ports(1);
   for (int k = 0; k < 30; ++k) ports.tick(1e-4 * k, -1e-4, 0);
-  for (int k = 0; k < 100; ++k) ports.tick(0.003, -5e-4, -5e-4);  // pushed along: the body has got 150 mJ
+  for (int k = 0; k < 100; ++k) ports.tick(0.003, -5e-4, -5e-4);  // pushed along: the body has received 150 mJ
   for (int k = 0; k < 300; ++k) ports.tick(0, 0, 0);
   for (int k = 0; k < 30; ++k) ports.tick(1e-4 * k, -1e-4, 0);
   CHECK(ports.passivity.factor() == 1);
@@ -221,7 +222,7 @@ TEST_CASE("Touch that is degraded gives a hand and a body at most 1 mJ that nobo
 }
 
 TEST_CASE("Long losses while a body swings, or runs away from the hand, neither make energy nor end touch") {
-  // Each once made more than 1 mJ, swayed on, or left nothing to push with.
+  // Each of these cases once generated more than 1 mJ, kept oscillating, or left no force.
   const auto run = [](Act act, double mass_kg, std::size_t hand, unsigned seed) {
     EpisodeDef def;
     def.act = act, def.mass_kg = mass_kg, def.seed = seed;

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kDt = 1e-3, kMax_N = 8;
 
-// A body that a hand pushes down and others hold with a force of their own, and the estimate of what it was given,
-// from what is told of it some milliseconds late until nothing is told any more.
+// A body that a hand pushes down and other forces hold, and the estimate of the energy that it received, from
+// reports that are some milliseconds late until they stop.
 struct Pushed {
   double mass_kg;
   std::function<double(double t_s, double down_m_s)> others_N;  // upwards
@@ -32,7 +32,7 @@ struct Pushed {
   std::deque<News> on_the_way{};
   double told_J = 0;
 
-  // What was estimated over what it really was given since it was told, J.
+  // Estimated minus true energy since the last report, J.
   double step(double push_N) {
     const double before = down_m_s;
     double next = before + (push_N - others_N(kDt * ms, before)) / mass_kg * kDt;
@@ -75,7 +75,7 @@ TEST_CASE("Of a free body the estimate is exact, however late it is told of and 
 }
 
 TEST_CASE("What holds a body is learnt, and counts for a while after it was told of last") {
-  // A slider that rubs with 0.5 N is pushed along with 0.6 N.
+  // A slider with a friction of 0.5 N is pushed along with 0.6 N.
   Pushed body{0.05, [](double, double) { return 0.5; }, 2, 300};
   body.stops = true;
   double off_J = 0;
@@ -94,8 +94,8 @@ TEST_CASE("What holds a body is learnt, and counts for a while after it was told
 }
 
 TEST_CASE("A push that fades finds the body as fast as the pushes before have made it") {
-  // Half of its impulse is over when what holds the body has done a quarter of its own: halves of both would say
-  // that it was given less.
+  // Half of its impulse has passed when the holding force has done a quarter of its work: assuming halves of both
+  // would give too low a value.
   for (const double held_N : {0.5, 1.0, 2.0}) {
     Pushed body{1, [&](double, double) { return held_N; }, 2, 200};
     body.stops = true;
@@ -109,16 +109,16 @@ TEST_CASE("A push that fades finds the body as fast as the pushes before have ma
 }
 
 TEST_CASE("Who is drawn away from the hand while it pushes is given more than a free body") {
-  // A swing on its way back: 2 N draw it down.
+  // A swing on its way back: 2 N pull it down.
   Pushed body{1, [](double, double) { return -2.0; }, 2, 200};
   for (int ms = 0; ms < 200; ++ms) body.step(0.5);
   for (int ms = 0; ms < 38; ++ms) CHECK(std::abs(body.step(2)) < 2e-5);
-  // Also when nothing has been told of it for long.
+  // Also without a report for a long time.
   for (int ms = 38; ms < 70; ++ms) CHECK(body.step(2) > -2e-5);
 }
 
 TEST_CASE("A body that comes gives no more than its motion") {
-  // A spring drives it on towards the hand: that is not known to go on.
+  // A spring drives it towards the hand; the estimate must not assume that this continues.
   Pushed body{0.5, [](double, double) { return 3.0; }, 2, 200};
   body.down_m_s = 0;
   for (int ms = 0; ms < 200; ++ms) body.step(2);
@@ -139,14 +139,14 @@ TEST_CASE("One that came may swing, and counts as on its way back when nothing w
     off_J = body.step(0.5);
     if (ms > 1 && ms < 35) CHECK(std::abs(off_J) < 1e-6);
   }
-  // 0.5 N on a body that is 0.4 m/s faster, for the last 20 ms at least.
+  // 0.5 N on a body that is faster by 0.4 m/s, for the last 20 ms at least.
   CHECK(off_J > 0.004);
 }
 
 TEST_CASE("A push that was never applied does not stay unseen for ever") {
   Pushed body{0.2, nothing, 2};
   for (int ms = 0; ms < 100; ++ms) body.step(1);
-  body.impulse_N_s -= 0.5;  // from now on the simulation tells of less
+  body.impulse_N_s -= 0.5;  // from now on the simulation reports less
   for (int ms = 0; ms < 100; ++ms) body.step(0);
   CHECK(body.unseen.energy_J(0.002, kMax_N) < 0.02 * 0.02 / (2 * 0.2) + 0.02 * 0.5 + 1e-9);
 }

@@ -47,12 +47,12 @@ TEST_CASE("A force that follows the hand gives it no more than the allowance and
   for (int k = 1; k <= 10000; ++k) {
     given += force.dot(moved);
     force = safety.limit({8, 0, 0}, moved, kDt);
-    moved = {1e-3, 0, 0};  // the hand runs away at 1 m/s with the force
-    // Beyond: the force of the very tick that emptied the tank, 8 N times 1 mm.
+    moved = {1e-3, 0, 0};  // the hand moves away at 1 m/s with the force
+    // In addition: the force of the tick that emptied the tank, 8 N times 1 mm.
     REQUIRE(given <= limits.energy_J + limits.power_W * k * kDt + 0.008 + 1e-9);
   }
   CHECK(safety.energy_J() == Approx(given));
-  CHECK(force.norm() == Approx(limits.power_W / 1.0).epsilon(0.01));  // lastingly 1 W at 1 m/s: 1 N
+  CHECK(force.norm() == Approx(limits.power_W / 1.0).epsilon(0.01));  // continuous 1 W at 1 m/s: 1 N
 }
 
 TEST_CASE("A wall that only takes what it was given is not limited") {

@@ -14,11 +14,11 @@ namespace tactus::haptic::test {
 namespace {
 
 constexpr double kDt = 1e-3, kTool_m = 0.005;
-// The body hangs on a spring so that it can be pressed on; the damper takes its swing within seconds.
+// The body is on a spring so that it can be pressed; the damper removes its oscillation within seconds.
 constexpr double kBodySpring_N_m = 500, kBodyDamper_Ns_m = 0.5;
-// Pushed along a table: rubbing wood.
+// Pushed along a table: friction of wood.
 constexpr double kTableFriction = 0.3, kGravity_m_s2 = 9.81;
-// The hand waits, so that the renderer knows the network before the first touch.
+// The hand waits, so that the renderer has measured the network before the first touch.
 constexpr double kWaits_s = 1;
 constexpr int kHold_ms = 3800, kEnd_ms = 5000, kJudged_ms = 500, kApart_ms = 200;
 constexpr double kSwing_N = 0.03;
@@ -56,7 +56,7 @@ MonotoneCubic path_of(Act act) {
 
 struct World {
   const EpisodeDef& def;
-  double z = 0, v = 0, impulse = 0, energy_J = 0;  // of the body, and what was given to it
+  double z = 0, v = 0, impulse = 0, energy_J = 0;  // of the body, and the impulse and energy that it received
 
   void step(double force_N) {
     const double m = def.mass_kg;
@@ -87,7 +87,7 @@ struct World {
   }
 };
 
-// About the straight line that fits best: a drift is no cycle.
+// About the straight line that fits best: a drift is not an oscillation.
 struct Sway {
   double rms_N = 0;
   int swings = 0;
@@ -141,7 +141,7 @@ EpisodeResult run_episode(const EpisodeDef& def, bool timed) {
     const double ms = static_cast<double>(i) / per_ms;
     const touch_model_t* fresh = nullptr;
     if (i % per_ms == 0) {
-      // What the hand was told of reaches the body a step later, as the mean force of that step.
+      // The reported force of the hand reaches the body a step later, as the mean force of that step.
       world.step(-(felt - told) / kDt);
       told = felt;
       const bool lost = def.network.bursts && bursts.lost();
@@ -164,7 +164,7 @@ EpisodeResult run_episode(const EpisodeDef& def, bool timed) {
     if (ms - last_felt_ms > kApart_ms) taken_J = 0, booked_J = world.energy_J;
     TickInput in;
     in.touch_delay = sync::Nanoseconds(def.network.delay_ms * kMs);
-    bench.arrival = host_ms(ms);  // degraded on purpose: the messages themselves keep coming
+    bench.arrival = host_ms(ms);  // an intended degradation: the messages themselves keep arriving
     const auto begin = std::chrono::steady_clock::now();
     const TickOutput& out = bench.tick(ms, state.position, fresh, {}, in);
     if (timed)
@@ -201,11 +201,12 @@ EpisodeResult run_episode(const EpisodeDef& def, bool timed) {
 }
 
 std::span<const HandKind> hand_kinds() {
-  // finger: 92 N/m and 41 N/m more for each newton that it presses, between 2 and 20 N (Hajian and Howe 1997, as
-  // Friedman and Flash 2007 fitted it): that of 7.5 N; grams and a few N s/m, orders of magnitude. hand: what holds a
-  // stylus like a pen, 0.20 to 0.27 kg, 4.6 to 18 N s/m and 79 to 272 N/m, by direction (Fu and Cavusoglu 2012, table
-  // II: M, b2, k2). arm: a kilogram and tens of N s/m (Tsuji et al. 1995), hundreds of N/m (Mussa-Ivaldi, Hogan and
-  // Bizzi 1985): orders of magnitude. What has numbers is as others quote it; the papers were not at hand.
+  // finger: 92 N/m and 41 N/m more for each newton of pressing force, between 2 and 20 N (Hajian and Howe 1997, as
+  // fitted by Friedman and Flash 2007): that of 7.5 N; grams and a few N s/m, orders of magnitude. hand: holds a
+  // stylus like a pen, 0.20 to 0.27 kg, 4.6 to 18 N s/m and 79 to 272 N/m, by direction (Fu and Cavusoglu 2012,
+  // table II: M, b2, k2). arm: a kilogram and tens of N s/m (Tsuji et al. 1995), hundreds of N/m (Mussa-Ivaldi,
+  // Hogan and Bizzi 1985): orders of magnitude. Numbers are as quoted by others; the original papers were not
+  // available.
   static constexpr HandKind kKinds[] = {
       {"default", {0.1, 10, 300}}, {"finger", {0.006, 4, 400}}, {"hand", {0.2, 6, 150}}, {"arm", {1.0, 20, 400}}};
   return kKinds;

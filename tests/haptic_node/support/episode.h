@@ -1,6 +1,6 @@
 // One episode of touch in closed loop: a hand with the impedance of the virtual hand, the renderer, a world of one
-// wall or one body, and a bus between them that is late, thin, lossy or frozen. Pure; each figure is taken at the
-// true ports, from the motion of the body and not from what anybody says of it.
+// wall or one body, and a bus between them that is late, thin, lossy or frozen. Pure. Every result is measured at
+// the true ports, from the motion of the body, not from reports of it.
 #pragma once
 
 #include <span>
@@ -11,15 +11,15 @@
 
 namespace tactus::haptic::test {
 
-inline constexpr double kPress_m = 0.01, kTap_m = 0.006, kPush_m = 0.12;  // deep, deep, and far
+inline constexpr double kPress_m = 0.01, kTap_m = 0.006, kPush_m = 0.12;  // depth, depth, distance
 
-// What becomes of the touch model on its way.
+// Degradation of the touch model in transit.
 struct Network {
   const char* name = "as it is";
   int delay_ms = 0;
   double rate_Hz = 1000;
   bool bursts = false;   // 30 % lost, 10 messages in a row on average (Gilbert's chain)
-  bool freezes = false;  // for half a second, 0.7 s after the hand began, nothing comes
+  bool freezes = false;  // no message for half a second, 0.7 s after the hand began
 };
 
 enum class Act {
@@ -39,30 +39,30 @@ struct EpisodeDef {
 };
 
 struct EpisodeResult {
-  // The most that device port and body port have given together, over what they had taken in, at any moment of an
-  // episode of contact (time-domain passivity: Hannaford and Ryu 2002), mJ. A wall takes nothing. An episode ends
+  // Maximum over an episode of the energy that device port and body port have given minus the energy that they
+  // have received (time-domain passivity: Hannaford and Ryu 2002), mJ. A wall receives nothing. An episode ends
   // when hand and surface have been apart, without force, for 0.2 s.
   double generated_mJ = 0;
-  // The same as the renderer's observer has it: the most that it told.
+  // The same as reported by the observer of the renderer: the maximum.
   double observed_mJ = 0;
-  double least_coupling = 1;  // the lowest factor that the controller chose
-  // Of the last half second of the hold: the force, its rms about its trend, that in the half second before, the
+  double least_coupling = 1;  // the lowest factor of the controller
+  // For the last half second of the hold: the force, its rms about its trend, that in the half second before, the
   // least of the last three, and force over depth.
   double force_N = 0, sway_N = 0, sway_before_N = 0, sway_least_N = 0, stiffness_N_m = 0;
-  int swings = 0;  // how often it goes by more than 0.03 N from one side of its trend to the other
-  // Sways all the time, to and fro, and does not die away: a body on a spring rings by itself, at 1 kg with 0.88
-  // of the sway after half a second; and what a long loss shakes once is no cycle.
+  int swings = 0;  // number of crossings of its trend by more than 0.03 N to either side
+  // Oscillates continuously without decay. A body on a spring rings by itself, at 1 kg with 0.88 of the amplitude
+  // after half a second; a single disturbance by a long loss is not an oscillation.
   bool cycles() const { return swings >= 3 && sway_least_N > 0.05 && sway_N > 0.95 * sway_before_N; }
-  double peak_N = 0;            // of the whole run
-  double ideal_N = 0;           // of springs in a row: hand, surface, what holds the body; pushed along: friction
-  double pushed_m = 0;          // how far the body came
+  double peak_N = 0;            // over the whole run
+  double ideal_N = 0;           // of springs in series: hand, surface, support of the body; pushed along: friction
+  double pushed_m = 0;          // displacement of the body
   double largest_step_N = 0;    // largest change of the force from tick to tick
-  std::vector<double> tick_us;  // what each tick took, where asked for
+  std::vector<double> tick_us;  // duration of each tick, if requested
 };
 
 EpisodeResult run_episode(const EpisodeDef& def, bool timed = false);
 
-// That of the settings, a finger tip, a hand, an arm: as published where a number was found, see there.
+// Hand of the settings, finger tip, hand, arm; published values where available, see the definition.
 struct HandKind {
   const char* name;
   HandImpedance impedance;

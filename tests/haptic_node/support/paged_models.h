@@ -1,4 +1,4 @@
-// Touch models of several pages, as the simulation sends them, that say which step they are of.
+// Touch models of several pages, as the simulation sends them; each page identifies its step.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace tactus::haptic::test {
 
 inline constexpr std::int64_t kMs = 1'000'000;
 
-// A model whose every plane and book names its step.
+// A model in which every plane and every applied impulse identifies its step.
 inline touch_model_t whole_model(std::int64_t step, std::size_t planes, std::size_t books) {
   touch_model_t m{};
   m.header.incarnation = 5;

@@ -1,4 +1,4 @@
-// A small world for the tests of touch: a scene with one tool, planes, touch models and a clock moved by hand.
+// A small world for touch tests: a scene with one tool, planes, touch models and a manual clock.
 #pragma once
 
 #include <optional>
@@ -85,12 +85,12 @@ inline contact_event_t event(std::int64_t id, std::int8_t kind, double sim_ms, s
   return e;
 }
 
-// Drives a renderer tick by tick with a device that is put where the test says.
+// Drives a renderer tick by tick with a device whose position the test sets.
 struct Bench {
   explicit Bench(const Settings& s = {}, const scene_t& in_scene = scene())
       : safety(safety_limits(s)), renderer(in_scene, 0, s, safety) {}
 
-  // One tick at `ms` of simulated time; the model, if any, arrives just then. in: what else there is.
+  // One tick at `ms` of simulated time; the model, if any, arrives at the same time. in: other input.
   TickOutput& tick(double ms, const Vector3d& device, const touch_model_t* fresh = nullptr,
                    std::vector<contact_event_t> events = {}, TickInput in = {}) {
     in.now = host_ms(ms);

@@ -39,7 +39,7 @@ TEST_CASE("Nonsense for a command or a load leaves the simulated display without
       CHECK(std::abs(r.current_A) <= thermal::PlateLimits{}.current_A);
       CHECK(r.plate_degC < 44);
     }
-  // A clock that falls back or jumps ahead does not shake it.
+  // A clock that steps back or jumps ahead does no harm.
   CHECK(std::isfinite(device.step(30, 0, at(-50'000))->plate_degC));
   CHECK(std::isfinite(device.step(30, 0, at(500'000'000))->plate_degC));
 }

@@ -42,7 +42,7 @@ TEST_CASE("Whatever is asked, the command stays inside the range and within the 
       const std::uint64_t bits = random();
       double wanted;
       static_assert(sizeof wanted == sizeof bits);
-      std::memcpy(&wanted, &bits, sizeof wanted);  // every number, infinity and no number that a double can be
+      std::memcpy(&wanted, &bits, sizeof wanted);  // every value of a double, infinity and NaN included
       const double dt = 0.001 * static_cast<double>(random() % 100);
       const Command command = controller.step(wanted, dt);
       REQUIRE(command.command_degC >= 15);

@@ -15,7 +15,7 @@ const double kPlate = contact_conductance_W_m2K(24);  // alumina
 
 std::unique_ptr<Skin> finger() { return std::make_unique<SkinModel>(SkinProperties{}); }
 
-// A touch, and a person's finger on a plate that follows its command within `rate`.
+// A touch, and the finger of a person on a plate that follows its command within `rate`.
 struct Felt {
   SkinModel touch{SkinProperties{}}, person{SkinProperties{}};
   FluxDisplay display;
@@ -46,8 +46,8 @@ TEST_CASE("At rest the plate is wanted at rest") {
 }
 
 TEST_CASE("A plate without limits makes the finger lose what it would lose to the thing") {
-  // The command lags the touch by one tick; beyond the first ten the finger is within 3 % of the change, after
-  // a second within 1 %.
+  // The command lags the touch by one tick; after the first ten ticks the finger is within 3 % of the change,
+  // after a second within 1 %.
   const bool copper = GENERATE(true, false);
   Felt felt(3, copper ? 401 : 0.18, copper ? 37137 : 514, 1e9);
   for (int i = 0; i < 500; ++i) {
@@ -59,7 +59,7 @@ TEST_CASE("A plate without limits makes the finger lose what it would lose to th
 }
 
 TEST_CASE("What a slow plate owes of the first moment it makes up for, faster than without feedback") {
-  // The first second is the plate's own, ten kelvin at 10 K/s; then the finger is still warm.
+  // In the first second the plate limits the change, ten kelvin at 10 K/s; the finger is still warm then.
   const auto error = [](double feedback) {
     Felt felt(feedback, 401, 37137, 10);
     double sum = 0;
@@ -74,8 +74,8 @@ TEST_CASE("What a slow plate owes of the first moment it makes up for, faster th
 }
 
 TEST_CASE("Feedback does not ring") {
-  // The finger answers a step of the plate in one tick by 1 - erfcx(beta sqrt(t)) = 0.21: a gain of 3 is a loop
-  // gain of 0.6. After the touch has settled the wish moves one way only.
+  // The finger responds to a step of the plate within one tick by 1 - erfcx(beta sqrt(t)) = 0.21: a gain of 3 is a
+  // loop gain of 0.6. After the touch has settled the target changes in one direction only.
   Felt felt(3, 401, 37137, 20);
   for (int i = 0; i < 200; ++i) felt.tick(true);
   double before = felt.plate_degC;

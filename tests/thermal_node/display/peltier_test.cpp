@@ -17,8 +17,8 @@ TEST_CASE("The module does what its data sheet says, also what it was not made f
   // The largest difference: neither more nor less current pumps more.
   CHECK(pumped_W(kModule, farthest, 8.4) < 0);
   CHECK(pumped_W(kModule, farthest, 8.6) < 0);
-  // Not used to make it: 0.35 ohm within its 10 %; 18.8 W without a difference, 10 % for what a lumped model
-  // leaves out (it knows no Thomson effect and no change with temperature).
+  // Values that were not used to make it: 0.35 ohm within its 10 %; 18.8 W without a difference, with 10 % for the
+  // effects that a lumped model omits (the Thomson effect and the temperature dependence).
   CHECK(kModule.resistance_ohm == Approx(0.35).epsilon(0.1));
   CHECK(pumped_W(kModule, {27, 27}, 8.5) == Approx(18.8).epsilon(0.1));
 }
@@ -50,8 +50,8 @@ TEST_CASE("What the supply and the skin give is found in plate, sink and room") 
     balance_J += 0.001 * (current * voltage_V(plant.module, middle, current) + load -
                           (middle.sink_degC - plant.room_degC) / plant.sink_to_room_K_W);
   }
-  // Trapezium against midpoint, both of second order in 1 ms over seconds: 1e-6 of the some 100 J that went
-  // through.
+  // Trapezium against midpoint, both of second order in 1 ms over seconds: 1e-6 of the approximately 100 J of the
+  // run.
   CHECK(stored() - before_J == Approx(balance_J).margin(1e-4));
 }
 
@@ -70,7 +70,7 @@ TEST_CASE("Cooling heats the sink by what it takes and what it wastes") {
   PeltierPlant plant;
   PeltierState s{33, 23};
   for (int i = 0; i < 600'000; ++i) s = step(plant, s, 2, 0.5, 0.001);
-  // Steady: what is pumped is the load; all of it and the supply's go to the room.
+  // Steady state: the pumped heat is the load; all of it and the heat of the supply go to the room.
   CHECK(pumped_W(plant.module, s, 2) == Approx(0.5).margin(1e-3));
   CHECK((s.sink_degC - 23) / plant.sink_to_room_K_W ==
         Approx(0.5 + 2 * voltage_V(plant.module, s, 2)).epsilon(1e-3));

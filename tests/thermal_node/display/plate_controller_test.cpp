@@ -51,7 +51,7 @@ TEST_CASE("Ten kelvin down take about half a second and do not overshoot") {
     lowest = std::min(lowest, plate.state.plate_degC);
     if (plate.state.plate_degC < 24) break;
   }
-  // 9 K at 20 K/s are 0.45 s; the current of 6 A gives some 17 W or 19 K/s.
+  // 9 K at 20 K/s take 0.45 s; the current of 6 A gives about 17 W or 19 K/s.
   CHECK(ticks * kDt < 0.6);
   plate.follow(23, 0, 2, 0);
   CHECK(plate.state.plate_degC == Approx(23).margin(0.02));
@@ -92,8 +92,8 @@ TEST_CASE("Whatever is wanted, the plate itself stays within its range and rate"
       plate.follow(wanted, 0.01 * static_cast<double>(random() % 200), kDt, 0);
       REQUIRE(plate.state.plate_degC < limits.plate_max_degC + 0.3);
       REQUIRE(plate.state.plate_degC > limits.plate_min_degC - 0.3);
-      // An unknown load of 2 W moves the plate by 2.2 K/s more than was planned, as much again what was learnt of
-      // the load before it changed.
+      // An unknown load of 2 W moves the plate by 2.2 K/s more than planned, and the integral for the previous
+      // load by the same amount.
       REQUIRE(std::abs(plate.state.plate_degC - before) <= (limits.rate_K_s + 4.5) * kDt);
     }
   }
@@ -107,7 +107,7 @@ TEST_CASE("A sensor that fails, a wish that is no number and a hot sink switch t
     CHECK(d.current_A == 0);
     CHECK(d.fault);
   }
-  // A plate beyond its range is led back, and said to be wrong.
+  // A plate beyond its range is led back, and reported as a fault.
   const PlateDrive back = c.step({46, 30}, 33, 0, kDt);
   CHECK(back.fault);
   CHECK(back.current_A > 0);

@@ -11,7 +11,7 @@ using namespace tactus::thermal;
 
 namespace {
 
-// Ticks of 20 ms that take `full_ms` at full quality and half as long at each further step.
+// Ticks of 20 ms that take `full_ms` at full quality, and half of it at each further step.
 int run(Quality& quality, double full_ms, int ticks) {
   for (int i = 0; i < ticks; ++i) quality.add(sync::from_seconds(full_ms * 1e-3 / std::pow(2, quality.step())));
   return quality.step();
@@ -46,9 +46,9 @@ TEST_CASE("Warmth whose quality is held does not heed the time") {
 }
 
 TEST_CASE("Also the cheapest step follows the closed form") {
-  // As in the test of the skin model, and in time (20 ms/tau)^2/10 = 0.4 % with tau >= 0.1 s: together below 1 %
-  // of the change; in the tick of the touch itself the change is as the root of time, and one substep
-  // errs by 7 % of it, 0.15 K.
+  // In space as in the test of the skin model; in time (20 ms/tau)^2/10 = 0.4 % with tau >= 0.1 s: together below
+  // 1 % of the change. In the tick of the touch itself the change follows the root of time, and one substep has an
+  // error of 7 % of it, 0.15 K.
   const double h = contact_conductance_W_m2K(401);
   const SteadyContact exact{kSkin, kCopper, h, 33, 23};
   for (const double substep_s : Quality::kLongestSubsteps_s) {

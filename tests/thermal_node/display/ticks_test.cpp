@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-// A simulation whose time runs with the host's, 1 s behind, that speaks every millisecond.
+// A simulation whose time advances with the host's, 1 s behind, and which publishes every millisecond.
 struct World {
   sync::ContactStream stream{1};
   std::int64_t host_ms = 1000;
@@ -108,7 +108,7 @@ TEST_CASE("Ticks cut the world's time without a gap or an overlap") {
 }
 
 TEST_CASE("Every part of a touch is felt in one tick, however its events fall on their borders") {
-  // A touch of 7 ms, begun at each millisecond of a tick: the contact times of all ticks sum up to 7 ms.
+  // A touch of 7 ms, begun at each millisecond of a tick: the contact times of all ticks add up to 7 ms.
   for (int begin = 100; begin < 120; ++begin) {
     World world;
     Ticks ticks;
@@ -117,7 +117,7 @@ TEST_CASE("Every part of a touch is felt in one tick, however its events fall on
     sync::Nanoseconds sum{0};
     std::size_t events = 0;
     for (int ms = 61; ms < 300; ++ms) {
-      // What happened in a step is known at its end.
+      // Events of a step are known at its end.
       if (ms == begin + 1) world.contacts = {touch(4, 1)};
       if (ms == begin + 8) world.contacts.clear();
       world.run(1);

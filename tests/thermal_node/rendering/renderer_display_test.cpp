@@ -38,7 +38,8 @@ TEST_CASE("The plate under a touch of copper is colder than the skin, by what it
   thermal_state_t state{};
   for (int i = 0; i < 150; ++i) state = d.tick(kCopper, 1);
   const double resistance = 1 / contact_conductance_W_m2K(24);
-  // After 3 s the plate has long come up with the touch: 0.2 K for what feedback still owes and the tick between.
+  // After 3 s the plate has caught up with the touch: 0.2 K for the remaining feedback error and the tick of
+  // delay.
   CHECK(d.reading.plate_degC == Approx(state.skin_degC - state.heat_flux_W_m2 * resistance).margin(0.2));
   CHECK(d.reading.plate_degC < state.skin_degC - 1);
   for (int i = 0; i < 500; ++i) state = d.tick(-1, 0);
@@ -61,8 +62,8 @@ TEST_CASE("Held on a furnace or on ice the display gives in before it hurts, and
     if (d.reading.plate_degC > 41.5) warm_s += 0.02;
     if (d.reading.plate_degC < 19.5) cold_s += 0.02;
   }
-  // In 500 s: 4 min at 42 degC, then none until half is forgotten, which at 39 degC takes 3.5 min; of the cold one
-  // minute, half a minute's rest, half a minute and so on.
+  // In 500 s: 4 min at 42 degC, then none until half of the dose has decayed, which at 39 degC takes 3.5 min; of
+  // the cold one minute, then half a minute of rest and half a minute of cold in turn.
   CHECK(warm_s < 300);
   CHECK(cold_s < 350);
   CHECK(warm_s + cold_s > 60);

@@ -48,7 +48,7 @@ TEST_CASE("Firmly pressed copper cools the skin as the closed form says, plastic
   dry.perfusion_1_s = 0;
   Hand copper(kMaterials, dry), plastic(kMaterials, dry);
   const thermal_state_t c = copper.press(kCopper, 1, 50), p = plastic.press(kPlastic, 1, 50);
-  // perception of the closed form at 1 s: -6.77 and -2.15 K; the numeric model is within 0.5 % of it.
+  // The closed form at 1 s gives -6.77 and -2.15 K; the numeric model is within 0.5 % of it.
   CHECK(c.skin_degC == Approx(33 - 6.77).margin(0.05));
   CHECK(p.skin_degC == Approx(33 - 2.16).margin(0.05));
   CHECK(c.commanded_degC == c.skin_degC);
@@ -119,7 +119,7 @@ TEST_CASE("The worst possible object does not drive the command out of the skin-
         REQUIRE(state.commanded_degC >= 15);
         REQUIRE(state.commanded_degC <= 42);
       }
-      // What was impossible is forgotten: the skin is a number again at rest.
+      // Impossible input leaves no trace: the skin temperature is finite again at rest.
       REQUIRE(std::isfinite(hand.rest(5).skin_degC));
     }
   }
@@ -231,8 +231,8 @@ TEST_CASE("More than the whole pad does not conduct, however many things press i
 }
 
 TEST_CASE("A thing touched again is still as cold or as warm as the touch has left it") {
-  // Plastic that a finger has warmed cools it less the second time, though copper was touched in between; another
-  // piece of the same plastic cools it anew.
+  // Plastic that a finger has warmed cools it less the second time, although copper was touched in between;
+  // another piece of the same plastic cools it as the first time.
   Hand warmed, fresh;
   const auto flux = [&](Hand& hand, int body) {
     hand.press(kPlastic, 1, 250);
@@ -287,7 +287,8 @@ TEST_CASE("When the scene changes the command goes on from where the element sta
 }
 
 TEST_CASE("A display that is slow on purpose approaches the skin by the closed form") {
-  // From where another scene left it, 20 degrees, to resting skin: 13 K/s at first, less than the element can.
+  // From the temperature of the previous scene, 20 degrees, to resting skin: 13 K/s at first, below the limit of
+  // the element.
   const thermal::Settings settings = bare();
   Hand hand(kMaterials, settings);
   hand.renderer = Renderer(settings, kMaterials, 0, 9, 20.0);
@@ -307,9 +308,9 @@ TEST_CASE("A slow display is later than the skin, and switching it on and off is
     touch(tick, kCopper, 1);
     const bool slow = i >= 10 && i < 100;
     const thermal_state_t state = hand.renderer.step(tick, {.response_s = slow ? 2.0 : 0.0});
-    // The element's own limit; the step to the skin's temperature takes some ticks of it.
+    // The slew limit of the element; the step to the temperature of the skin takes some ticks of it.
     CHECK(std::abs(state.commanded_degC - before) <= settings.slew_max_K_s * 0.02 + 1e-4);
-    if (i == 10) CHECK(std::abs(state.commanded_degC - before) < 0.02);  // on: goes on from there
+    if (i == 10) CHECK(std::abs(state.commanded_degC - before) < 0.02);  // on: continues from there
     if (i == 50) CHECK(state.commanded_degC > state.skin_degC + 0.5);
     if (i == 199) CHECK(state.commanded_degC == state.skin_degC);
     before = state.commanded_degC;
@@ -330,7 +331,7 @@ TEST_CASE("However slow a display is on purpose, it is in the safe range, and lo
     state = hand.renderer.step(tick, {.response_s = 60});
   }
   CHECK(state.commanded_degC == 33);
-  // Back again it goes on from there, not from where it was when the input was lost.
+  // It resumes from there, not from its value when the input was lost.
   for (int i = 0; i < 50; ++i) state = hand.renderer.step(hand.next(), {.response_s = 1e6});
   CHECK(state.commanded_degC == Approx(33).margin(0.1));
 }

@@ -24,7 +24,7 @@ struct Material {
 const Material kCopper{"copper", 401, 8933, 385}, kSteel{"steel", 60.5, 7850, 434},
     kGlass{"glass", 1.4, 2600, 750}, kOak{"oak", 0.16, 750, 1255}, kFoam{"foam", 0.026, 70, 1045};
 
-// The skin of Ho and Jones, as deep as is said, without blood and air unless they are given.
+// The skin of Ho and Jones, with the given depth, without blood and air unless they are given.
 Tissue plain(double depth_m, double perfusion_1_s = 0, double air_W_m2K = 0) {
   return {{{depth_m, 0.37, 1000, 3770, perfusion_1_s > 0}}, 33, 23, perfusion_1_s, air_W_m2K};
 }
@@ -40,7 +40,7 @@ double slab_root(int n, double biot) {
   return (low + high) / 2;
 }
 
-// Surface of a slab, insulated behind, that begins at 1 and meets 0 through a conductance: Carslaw and Jaeger
+// Surface of a slab, insulated at the back, that begins at 1 and meets 0 through a conductance: Carslaw and Jaeger
 // 1959, section 3.11. fourier: diffusivity t/depth^2.
 double slab_surface(double biot, double fourier) {
   double sum = 0;
@@ -54,7 +54,7 @@ double slab_surface(double biot, double fourier) {
 }  // namespace
 
 TEST_CASE("Deep plain skin on a deep object follows the closed form of two half-spaces from 20 ms to 100 s") {
-  // The bound of skin_model_test.cpp: 0.5 % of the change, derived there; 0.5 m is never crossed in 100 s.
+  // The bound of skin_model_test.cpp: 0.5 % of the change, derived there; heat does not cross 0.5 m in 100 s.
   for (const Material& m : {kCopper, kSteel, kGlass, kOak, kFoam}) {
     const double h = contact_conductance_W_m2K(m.conductivity);
     const SteadyContact exact{kSkinEffusivity, m.object(23).effusivity, h, 33, 23};
@@ -71,7 +71,7 @@ TEST_CASE("Deep plain skin on a deep object follows the closed form of two half-
 }
 
 TEST_CASE("Skin of finite depth cools as the series for a slab says") {
-  // Against an object that no skin can warm, through 1000 W/(m^2 K). Grid and time as above: 0.5 % of the change.
+  // Against an object that skin cannot warm, through 1000 W/(m^2 K). Grid and time as above: 0.5 % of the change.
   const double depth = 0.004, h = 1000, diffusivity = 0.37 / (1000.0 * 3770);
   BioheatModel skin(plain(depth));
   skin.set_object({23, 1e9, 1e6, 1e12, 1e9});
@@ -96,10 +96,10 @@ TEST_CASE("Skin and a finite object without losses end at the temperature that t
 }
 
 TEST_CASE("The profile of resting skin is the steady solution of Pennes' equation") {
-  // T_a - T = (T_a - T_s) cosh(m (L - x))/cosh(m L), m^2 = w rho c of blood/k, and what comes out at the surface
-  // is lost to the room. The volumes are of second order: 0.1 % of the difference to the blood; between the
-  // middles of cells, of at most 1.2 mm, the profile is taken as linear: (1.2 mm m)^2/8 = 0.5 % at 0.0025/s, and
-  // with more blood the difference is gone where cells are as wide.
+  // T_a - T = (T_a - T_s) cosh(m (L - x))/cosh(m L), m^2 = w rho c of blood/k; the heat that leaves the surface is
+  // lost to the room. The volumes are of second order: 0.1 % of the difference to the blood. Between the centres
+  // of cells, of at most 1.2 mm, the profile is linear: (1.2 mm m)^2/8 = 0.5 % at 0.0025/s; with more blood the
+  // difference is zero where cells are that wide.
   const double depth = 0.01, perfusion = GENERATE(0.0005, 0.0025, 0.02), air = 8;
   const BioheatModel skin(plain(depth, perfusion, air));
   const double m = std::sqrt(perfusion * kBloodHeatCapacity_J_m3K / 0.37);
@@ -114,7 +114,8 @@ TEST_CASE("The profile of resting skin is the steady solution of Pennes' equatio
 TEST_CASE("Untouched skin stays at rest, and comes back to it") {
   const char* site = GENERATE("finger", "palm");
   BioheatModel skin(living(site));
-  // The hand is cooler than the core, its blood too (Pennes 1948 measured arteries of the arm below 37 degC).
+  // The hand is cooler than the core, and so is its blood (Pennes 1948 measured arteries of the arm below 37
+  // degC).
   CHECK(skin.blood_degC() > 33);
   CHECK(skin.blood_degC() < 37.5);
   for (int i = 0; i < 1000; ++i) skin.step(0.02, 0, 0);
@@ -147,7 +148,7 @@ TEST_CASE("No heat is lost: what the skin loses is found in the object, the bloo
       moved += std::abs(f.skin_to_things);
     }
     REQUIRE(moved > 0);
-    // Rounding of sums of some 1e7 J/m^2 over at most 1e5 substeps.
+    // Rounding of sums of about 1e7 J/m^2 over at most 1e5 substeps.
     CHECK(skin.columns().skin_energy() == Approx(skin_J).margin(1e-9 * all));
     CHECK(skin.columns().things_energy() == Approx(object_J).margin(1e-9 * all));
   }
@@ -177,7 +178,7 @@ TEST_CASE("The error falls with the square of the grid") {
     skin.step(1, h, 1, 2e-4);
     return std::abs(skin.surface_degC() - exact.skin_surface_degC(1));
   };
-  // Halved everywhere: twice the cells of half the width, growing by the root.
+  // Halved everywhere: twice the number of cells of half the width, growing by the root.
   const double coarse = error({0.08, 1.4}), fine = error({0.04, std::sqrt(1.4)});
   CHECK(std::log2(coarse / fine) > 1.7);
 }
@@ -236,7 +237,7 @@ TEST_CASE("An object without properties takes no heat, and one of no thickness i
         ObjectProperties{1000, 1, -1, -1}}) {
     skin.set_object(none);
     skin.step(1, 1000, 1);
-    // The covered pad no longer loses heat to the room: it warms a little, towards the blood.
+    // The covered pad no longer loses heat to the room: it warms slightly, towards the blood.
     CHECK(skin.surface_degC() >= 33);
     CHECK(skin.surface_degC() < skin.blood_degC());
     skin.reset();

@@ -15,8 +15,8 @@ struct Row {
   double effusivity, conductivity;
   double after_0_1_s, after_1_s, after_10_s;  // change of skin temperature, K
 };
-// Skin at 33 degC on an object at 23 degC; evaluated with mpmath from k, rho, c of handbooks: conductivities from
-// which the resistance follows (Ho and Jones 2008), two decimals as printed in the reference notes.
+// Skin at 33 degC on an object at 23 degC; evaluated with mpmath from k, rho, c of handbooks; the resistance
+// follows from the conductivities (Ho and Jones 2008); two decimals as printed in the reference notes.
 const Row kTable[] = {{"copper", 37137, 401, -3.80, -6.77, -8.65},
                       {"aluminium", 24047, 237, -3.78, -6.70, -8.52},
                       {"stainless 304", 7493, 14.9, -3.60, -6.22, -7.79},
@@ -50,7 +50,7 @@ TEST_CASE("Materials from copper to foam cool the skin as tabulated") {
   for (const Row& row : kTable) {
     const SteadyContact c = contact(row.effusivity, contact_conductance_W_m2K(row.conductivity));
     INFO(row.name);
-    // The table is rounded to 0.005 K, its conductivities to two digits: 0.02 K in all.
+    // The table is rounded to 0.005 K, its conductivities to two digits: 0.02 K in total.
     CHECK(c.skin_surface_degC(0.1) - 33 == Approx(row.after_0_1_s).margin(0.02));
     CHECK(c.skin_surface_degC(1) - 33 == Approx(row.after_1_s).margin(0.02));
     CHECK(c.skin_surface_degC(10) - 33 == Approx(row.after_10_s).margin(0.02));
@@ -61,7 +61,7 @@ TEST_CASE("A contact begins at rest and ends at the contact temperature") {
   for (const Row& row : kTable) {
     const SteadyContact c = contact(row.effusivity, contact_conductance_W_m2K(row.conductivity));
     CHECK(c.skin_surface_degC(0) == 33);
-    // After t the distance left is (33 - T)/(beta sqrt(pi t)); at 1e12 s below 1e-5 K.
+    // The remaining difference after t is (33 - T)/(beta sqrt(pi t)); at 1e12 s below 1e-5 K.
     CHECK(c.skin_surface_degC(1e12) == Approx(c.contact_degC()).margin(1e-4));
     double before = 33;
     for (double t = 1e-6; t < 1e4; t *= 1.3) {

@@ -9,7 +9,7 @@ using namespace tactus::thermal;
 
 namespace {
 constexpr TemperatureRange kWide{15, 42};
-// Seconds at degC until the range is no longer wide; at most an hour.
+// Seconds at degC until the range narrows; at most an hour.
 double lasts_s(double degC) {
   Dwell dwell({60, 20, 60});
   for (int i = 1; i <= 180'000; ++i) {

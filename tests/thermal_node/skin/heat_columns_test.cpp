@@ -34,7 +34,7 @@ TEST_CASE("Two halves of a pad on the same thing are a whole pad on it") {
     if (layers) return std::make_unique<BioheatModel>(Tissue{layers_of("finger"), 33, 23, 0.0025, 8});
     return std::make_unique<SkinModel>(SkinProperties{});
   };
-  // Each half of the pad meets half of the thing: its effusivity counts half, and the conductance too.
+  // Each half of the pad meets half of the object: its effusivity and the conductance count half.
   const auto whole = skin(), halves = skin();
   whole->set_object({23, 1620, 1.4, 1.95e6});
   for (const std::size_t i : {0, 1}) halves->set_object({23, 810, 0.7, 0.975e6}, i);

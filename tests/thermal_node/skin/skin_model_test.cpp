@@ -10,7 +10,7 @@ using namespace tactus::thermal;
 
 namespace {
 constexpr double kSkin = 1181.0588469674;    // sqrt(0.37 * 1000 * 3770)
-const SkinProperties kDry{33, kSkin, 0, 0};  // no blood, no air: as the closed form
+const SkinProperties kDry{33, kSkin, 0, 0};  // no blood, no air: as in the closed form
 struct Material {
   const char* name;
   double effusivity, conductivity;
@@ -51,7 +51,7 @@ TEST_CASE("The result hardly depends on the tick") {
 }
 
 TEST_CASE("A touch warms by the heat that it brings, however it lies in the tick") {
-  // Mean conductance over the tick against the touch resolved: the heat of 5 ms in a tick of 20 ms. Both are
+  // Mean conductance over the tick against the resolved touch: the heat of 5 ms in a tick of 20 ms. Both are
   // linear in a small touch; they differ by the curvature of the flux over the tick, beta sqrt(t) ~ 0.3: below 15
   // %.
   const double h = contact_conductance_W_m2K(401);
@@ -78,8 +78,8 @@ TEST_CASE("After the touch the skin returns to rest") {
       heat += skin.heat_flux_W_m2() * 0.001;
     }
     skin.step(9.95, 0, 0);
-    // 10 s after the middle of a touch of 0.1 s the correction is of second order in 0.1/10: 1 % covers grid and
-    // that.
+    // 10 s after the middle of a touch of 0.1 s the correction is of second order in 0.1/10: 1 % covers the grid
+    // and this correction.
     CHECK(33 - skin.surface_degC() == Approx(heat / (kSkin * std::sqrt(M_PI * 10))).epsilon(0.01));
   }
   SECTION("with blood and air faster, and then wholly") {
@@ -91,7 +91,7 @@ TEST_CASE("After the touch the skin returns to rest") {
     CHECK(living.surface_degC() == Approx(dry.surface_degC()).margin(0.2));
     for (SkinModel* skin : {&dry, &living}) skin->step(300, 0, 0);
     CHECK(living.surface_degC() > dry.surface_degC());
-    // 300 s of 0.0025/s: what is left of the dry deviation is exp(-0.75), and less with air.
+    // 300 s of 0.0025/s: exp(-0.75) of the dry deviation remains, and less with air.
     CHECK(33 - living.surface_degC() < std::exp(-0.75) * (33 - dry.surface_degC()));
     living.step(3600, 0, 0);
     CHECK(living.surface_degC() == Approx(33).margin(0.001));
@@ -99,14 +99,14 @@ TEST_CASE("After the touch the skin returns to rest") {
 }
 
 TEST_CASE("Energy is conserved between skin and object") {
-  // Without blood and air what the skin loses the object gains: with equal effusivities and one conductance the
-  // two surfaces stay symmetric about the mean.
+  // Without blood and air the object gains the heat that the skin loses: with equal effusivities and one
+  // conductance the two surfaces stay symmetric about the mean.
   SkinModel skin(kDry);
   skin.set_object({13, kSkin});
   for (int i = 0; i < 1000; ++i) {
     skin.step(0.01, 1000, 1);
     const double gap_K = skin.heat_flux_W_m2() / 1000;  // between the two surfaces
-    // Flux is the mean of the last 5 ms, the surface its end: from 0.5 s on that is 0.25 % of at most 10 K.
+    // The flux is the mean of the last 5 ms, the surface its end: from 0.5 s on that is 0.25 % of at most 10 K.
     if (i < 50) continue;
     REQUIRE(skin.surface_degC() - gap_K / 2 == Approx(23).margin(0.02));
   }

@@ -1,7 +1,6 @@
-// An oracle for the temperature of touched skin that shares nothing with the models it judges: nodes on the
-// surfaces and on every border of layers (the models have cells around none of them), linear finite elements with
-// lumped heat, Crank and Nicolson's rule begun with backward Euler (Rannacher 1984), steps that grow with time, a
-// direct solver of its own.
+// An independent oracle for the temperature of touched skin: nodes on the surfaces and on every border of layers
+// (the models have cells and no such nodes), linear finite elements with lumped heat, Crank and Nicolson's rule
+// started with backward Euler (Rannacher 1984), steps that grow with time, its own direct solver.
 #pragma once
 
 #include <algorithm>
@@ -11,24 +10,24 @@
 
 namespace tactus::thermal::oracle {
 
-// Of skin or object: properties between two depths.
+// Layer of skin or object: properties between two depths.
 struct Slab {
   double thickness_m, conductivity_W_mK, heat_capacity_J_m3K;
   double blood_W_m3K = 0;
 };
 
 struct Touch {
-  std::vector<Slab> skin;  // surface first, insulated behind
-  Slab object;             // insulated behind, or open to the room
+  std::vector<Slab> skin;  // surface first, insulated at the back
+  Slab object;             // insulated at the back, or open to the room
   double conductance_W_m2K;
   double skin_air_W_m2K = 0;    // of the touched surface to the room
-  double object_air_W_m2K = 0;  // of the object's back
+  double object_air_W_m2K = 0;  // of the back of the object
   double skin_degC = 33, object_degC = 23, room_degC = 23, blood_degC = 33;
 };
 
 class FiniteDifferences {
  public:
-  // finest_m: the first interval at the surface; each is `growth` times the one before.
+  // finest_m: the first interval at the surface; each is `growth` times the previous one.
   explicit FiniteDifferences(const Touch& t, double finest_m = 1e-6, double growth = 1.01) : touch_(t) {
     for (const Slab& s : t.skin) append(s, finest_m, growth, points_.empty() ? 0 : last_interval_ * growth);
     surface_ = points_.size();
@@ -52,7 +51,7 @@ class FiniteDifferences {
     std::fill(u_.begin() + static_cast<std::ptrdiff_t>(surface_), u_.end(), t.object_degC);
   }
 
-  // Skin that is not touched, until nothing changes. Only before advance().
+  // Steady state of untouched skin. Call before advance().
   void begin_at_rest() {
     FiniteDifferences rest(*this);
     rest.diagonal_[0] -= touch_.conductance_W_m2K;
@@ -61,10 +60,10 @@ class FiniteDifferences {
     for (double dt = 1e-3; rest.time_s_ < 1e6; dt *= 1.05) rest.implicit(dt);
     begin_like(rest);
   }
-  // With the skin of another of the same layers.
+  // With the skin of another oracle of the same layers.
   void begin_like(const FiniteDifferences& other) { std::copy_n(other.u_.begin(), surface_, u_.begin()); }
 
-  // Goes on to this time after the touch.
+  // Advances to this time after the touch.
   void advance(double until_s) {
     for (; count_ < 4 && time_s_ < until_s; ++count_) implicit(1e-6);
     while (time_s_ < until_s * (1 - 1e-12))
@@ -122,8 +121,8 @@ class FiniteDifferences {
     solve(dt / 2, right);
     time_s_ += dt;
   }
-  // (heat + w * conduction) u = right: each side is eliminated from its far end up to its surface; what is left
-  // are two equations for the two surfaces.
+  // (heat + w * conduction) u = right: each side is eliminated from its far end up to its surface; two equations
+  // remain for the two surfaces.
   void solve(double w, std::vector<double>& right) {
     std::vector<double> d(u_.size());
     for (std::size_t i = 0; i < d.size(); ++i) d[i] = points_[i].heat_J_m2K + w * diagonal_[i];
@@ -146,7 +145,7 @@ class FiniteDifferences {
 
   Touch touch_;
   std::vector<Point> points_;
-  std::size_t surface_ = static_cast<std::size_t>(-1);  // the object's
+  std::size_t surface_ = static_cast<std::size_t>(-1);  // of the object
   double last_interval_ = 0;
   std::vector<double> diagonal_, coupling_, source_, u_;
   double time_s_ = 0;

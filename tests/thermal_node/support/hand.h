@@ -1,4 +1,4 @@
-// A hand that touches by hand-made ticks, for tests of the thermal renderer.
+// A hand that touches in manual ticks, for tests of the thermal renderer.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ inline Settings with_model(const char* model) {
   return settings;
 }
 
-// The plate at the temperature of the skin itself: what the lag and the limits do shows bare.
+// The plate at the temperature of the skin itself, so that the effect of lag and limits is visible.
 inline Settings bare() {
   Settings settings;
   settings.display = "skin";
@@ -71,7 +71,7 @@ struct Hand {
     for (int i = 0; i < ticks; ++i) state = renderer.step(next());
     return state;
   }
-  // In ticks of half a second, coarsely.
+  // In coarse ticks of half a second.
   thermal_state_t rest_long(double seconds) {
     thermal_state_t state{};
     for (int i = 0; i < 2 * seconds; ++i)

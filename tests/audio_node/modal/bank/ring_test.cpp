@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRate_Hz = 48000;
 
-// A bank of modes with their true places in time, in double precision.
+// A bank of modes with their exact trajectories, in double precision.
 struct Bank {
   struct Mode {
     double frequency_Hz, damping_1_s;
@@ -41,7 +41,7 @@ struct Bank {
     gains = a + 4 * n;
   }
 
-  // Sample n after a unit impulse at sample 0, as the header says.
+  // Sample n after a unit impulse at sample 0, as documented in the header.
   double truth(std::size_t i, int n) const {
     const double w = 2 * pi * modes[i].frequency_Hz, d = modes[i].damping_1_s, t = (n + 0.5) / kRate_Hz;
     return std::exp(-d * t) * (std::cos(w * t) - d / w * std::sin(w * t));
@@ -92,8 +92,8 @@ TEST_CASE("A mode rings at its frequency and dies with its damping, from 40 Hz t
         for (int n = 0; n < frames; ++n)
           worst =
               std::max(worst, std::abs(static_cast<double>(out[static_cast<std::size_t>(n)]) - bank.truth(0, n)));
-        // Frequencies 0.01 % off would leave 2 pi f t 1e-4 after 0.2 s: 0.005 at 40 Hz and 2 at 16 kHz. Steps of
-        // single precision leave 6e-8 each, as in a random walk, times 1 / w at low frequencies.
+        // A frequency error of 0.01 % would give 2 pi f t 1e-4 after 0.2 s: 0.005 at 40 Hz and 2 at 16 kHz.
+        // Single-precision steps have an error of 6e-8 each, as in a random walk, times 1 / w at low frequencies.
         CHECK(worst < 0.002);
       }
 }
@@ -106,7 +106,7 @@ TEST_CASE(
         Bank bank(random_modes(count, static_cast<unsigned>(count)));
         const int frames = 200;
         const auto out = bank.play(ring(use), frames, {impulse(frames, 3)}, block);
-        // The mean velocity of a sample is that of its middle, but for a phase of d w T^2 / 12.
+        // The mean velocity of a sample is that of its middle, except for a phase of d w T^2 / 12.
         double phases = 0;
         for (const Bank::Mode& m : bank.modes)
           phases += m.damping_1_s * 2 * pi * m.frequency_Hz / (kRate_Hz * kRate_Hz) / 12;

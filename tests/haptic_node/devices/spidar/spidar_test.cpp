@@ -20,7 +20,7 @@ namespace {
 
 sync::HostTime at_ms(double ms) { return sync::host_time(1'000'000'000 + static_cast<std::int64_t>(ms * 1e6)); }
 
-// A hand that is moved as the test says and notes the force.
+// A hand whose motion the test sets, and which stores the force.
 struct MovedHand : Device {
   explicit MovedHand(std::function<GripPose(double ms)> path) : path(std::move(path)) {}
   DeviceState read(sync::HostTime now) override {
@@ -68,8 +68,8 @@ TEST_CASE("A string device knows where its grip is, to its encoders, wherever th
     const DeviceState s = rig.device->read(at_ms(ms));
     const GripPose truth = path(ms);
     REQUIRE_FALSE(s.lost);
-    // The worst that half a count on every string does anywhere in the workspace is below two counts; three with
-    // the reading of a turn.
+    // Half a count on every string changes the pose by less than two counts anywhere in the workspace; three
+    // including the read-out of a rotation.
     CHECK((s.position - truth.position_m).norm() < 3 * f.encoder_step_m);
     CHECK(s.orientation.angularDistance(truth.orientation) * f.lever_m() < 3 * f.encoder_step_m);
   }
@@ -83,7 +83,8 @@ TEST_CASE("The velocity is smooth when the grip is slow and prompt when it is fa
   double worst = 0;
   for (int ms = 0; ms < 700; ++ms) {
     const DeviceState s = rig.device->read(at_ms(ms));
-    // One count in one tick would read as 29 mm/s. Over 19 ms two ends wrong by two counts each are 6 mm/s.
+    // One count in one tick would read as 29 mm/s. Over 19 ms two ends with an error of two counts each give 6
+    // mm/s.
     if (ms > 50 && ms < 500) worst = std::max(worst, (s.velocity - Vector3d(0.01, 0, 0)).norm());
     if (ms == 505) CHECK(s.velocity.x() == Approx(0.3).epsilon(0.1));
   }
@@ -102,7 +103,7 @@ TEST_CASE("A hand on strings feels the force that is written, a few time constan
       rig.device->read(at_ms(ms));
       rig.device->write(force);
     }
-    // The pose is known to some 50 um, a thousandth of a string's length at the least: so far do directions err,
+    // The pose is known to about 50 um, a thousandth of the shortest string: this is the error of the directions,
     // times the 20 N of a few strings.
     CHECK((rig.hand->felt - force).norm() < 0.05);
     CHECK(rig.device->tensions().share == 1);
@@ -117,20 +118,21 @@ TEST_CASE("Beyond the workspace force fades to nothing, and comes back") {
   double last = 0;
   for (int ms = 0; ms <= 2000; ++ms) {
     const DeviceState s = rig.device->read(at_ms(ms));
-    CHECK(s.position.z() == Approx(0.16 - 0.00016 * std::abs(ms - 1000)).margin(1e-4));  // the pose goes on
+    // the pose is still reported
+    CHECK(s.position.z() == Approx(0.16 - 0.00016 * std::abs(ms - 1000)).margin(1e-4));
     rig.device->write(force);
     const double felt = rig.hand->felt.norm();
     if (ms == 200 || ms == 1800) CHECK(felt == Approx(3).margin(0.02));
-    // Every string at its least: at 0.16 m up, above the inner tetrahedron, what is left of them is below 0.7 N.
+    // Every string at its minimum: 0.16 m up, above the inner tetrahedron, their sum is below 0.7 N.
     if (ms == 1000) CHECK(felt < 0.7);
     if (ms > 10)
-      CHECK(std::abs(felt - last) < 0.12);  // 3 N over 12 mm at 0.16 m/s is 0.04 N a tick, and the idle pull
+      CHECK(std::abs(felt - last) < 0.12);  // 3 N over 12 mm at 0.16 m/s is 0.04 N a tick, plus the idle tension
     last = felt;
   }
 }
 
 TEST_CASE("A string that hangs through while the hand is snatched away is no blow") {
-  // 9 m/s along the edge: strings at 55 degrees to it get shorter at 5 m/s, faster than a motor winds.
+  // 9 m/s along the edge: strings at 55 degrees to it shorten at 5 m/s, faster than a motor winds.
   Rig rig("desktop", [](double ms) {
     return GripPose{Vector3d(ms < 20 ? -0.03 : std::min(0.03, -0.03 + (ms - 20) * 9e-3), 0, 0),
                     Eigen::Quaterniond::Identity()};
@@ -150,7 +152,7 @@ TEST_CASE("A string that hangs through while the hand is snatched away is no blo
 
 namespace {
 
-// Strings that can be cut: a motor with nothing on it winds up what it has.
+// Strings that can be cut: a motor without load winds up its string.
 struct BrokenString : StringMotors {
   Counts read(sync::HostTime) override {
     Counts c = Counts::Zero(4);
@@ -173,7 +175,7 @@ TEST_CASE("A broken string loses the device and lets go of all others, until it 
     const DeviceState s = device.read(at_ms(ms));
     device.write({0, 0, 5});
     CHECK(s.lost == strings.broken);
-    CHECK(s.position.norm() < 1e-9);  // the last that was known
+    CHECK(s.position.norm() < 1e-9);  // the last known position
     CHECK((strings.last.maxCoeff() > 1) == !strings.broken);
   }
 }
@@ -195,7 +197,7 @@ TEST_CASE("A string device is made by name, holds the path of its tool and is pu
     device->write(ms < 2000 ? Vector3d::Zero() : Vector3d(0, 0, 3));
     if (ms == 1900) CHECK((s.position - Vector3d(1.1, 0, 0)).norm() < 1e-4);
   }
-  CHECK((s.position - Vector3d(1.1, 0, 0.01)).norm() < 3e-4);  // 3 N over the hand's 300 N/m
+  CHECK((s.position - Vector3d(1.1, 0, 0.01)).norm() < 3e-4);  // 3 N over the 300 N/m of the hand
   CHECK_THROWS_WITH(parse_device_spec("spidar:phantom"),
                     Catch::Contains("no such frame") && Catch::Contains("cave8"));
 }

@@ -42,7 +42,7 @@ TEST_CASE("The structure matrix is minus the derivative of the string lengths, b
           p.orientation = Eigen::AngleAxisd(by / f.lever_m(), Vector3d::Unit(k - 3)) * p.orientation;
         return string_lengths(f, p);
       };
-      // Central difference: h^2/6 times a third derivative of at most some 1/length^2, and rounding 1e-16/h.
+      // Central difference: h^2/6 times a third derivative of at most about 1/length^2, and rounding 1e-16/h.
       const PerString slope = (at(h) - at(-h)) / (2 * h);
       CHECK((slope + w.row(k).transpose()).cwiseAbs().maxCoeff() < 1e-8);
     }
@@ -72,9 +72,9 @@ TEST_CASE("Counting strings in steps moves a pose by no more than the worst roun
     const SolvedPose found = solve_pose(f, counted(f, truth), truth);
     REQUIRE(found.converged);
     CHECK(found.residual_m <=
-          f.encoder_step_m / 2);  // the truth leaves no more, and least squares no more than it
-    // |x - x0| <= |W^+| |rounding|, with sqrt(n) half steps of rounding; lengths curve by |x|^2/(2 L), which is
-    // 1e-3 of it at the steps here. A pose is searched to a thousandth of a step.
+          f.encoder_step_m / 2);  // the residual of the truth, which least squares cannot exceed
+    // x - x0| <= |W^+| |rounding|, with sqrt(n) half steps of rounding; lengths curve by |x|^2/(2 L), which is
+    // 1e-3 of it at these steps. The search ends at a thousandth of a step.
     const Eigen::MatrixXd w = structure_matrix(f, truth);
     const double least = Eigen::JacobiSVD<Eigen::MatrixXd>(w).singularValues().minCoeff();
     const double bound = 1.01 * std::sqrt(f.size()) * f.encoder_step_m / 2 / least + 2e-3 * f.encoder_step_m;
@@ -99,7 +99,7 @@ TEST_CASE("From one tick to the next a pose takes a step or two") {
 TEST_CASE("Lengths that no pose has are told by their residual") {
   const StringFrame f = *known_frame("desktop");
   PerString lengths = string_lengths(f, {});
-  lengths(2) += 0.1;  // a string hangs through
+  lengths(2) += 0.1;  // a slack string
   const SolvedPose found = solve_pose(f, lengths, {});
   CHECK(found.residual_m > kLostResidual_m);
   CHECK(found.pose.position_m.allFinite());

@@ -24,7 +24,7 @@ Eigen::VectorXd stacked(const StringFrame& f, const Wrench& w) {
   return out;
 }
 
-// Calls `visit` with every way to fix `fixed` of n strings at their least (0) or largest (1) tension; -1: free.
+// Calls `visit` with every way to fix `fixed` of n strings at their minimum (0) or maximum (1) tension; -1: free.
 void active_sets(int n, int fixed, std::vector<int>& set,
                  const std::function<void(const std::vector<int>&)>& visit) {
   if (static_cast<int>(set.size()) == n) {
@@ -38,8 +38,8 @@ void active_sets(int n, int fixed, std::vector<int>& set,
   }
 }
 
-// Another way to the largest share: of the linear programme max s, W t = s w, least <= t <= most, 0 <= s <= 1,
-// every basic solution. Nothing: it has none.
+// Independent computation of the largest share: every basic solution of the linear programme max s, W t = s w,
+// least <= t <= most, 0 <= s <= 1. Empty: there is none.
 std::optional<double> oracle_share(const StringFrame& f, const Eigen::MatrixXd& w, const Eigen::VectorXd& wanted) {
   const int n = f.size(), m = static_cast<int>(w.rows());
   std::optional<double> best;
@@ -72,7 +72,7 @@ std::optional<double> oracle_share(const StringFrame& f, const Eigen::MatrixXd& 
   return best;
 }
 
-// Some within reach, some not, some of the device's strength many times over.
+// Some within the capability of the device, some beyond it, some far beyond.
 Wrench random_wrench(const StringFrame& f, std::mt19937& random) {
   std::uniform_real_distribution<double> decade(-1, 1.7);
   Wrench w;
@@ -101,7 +101,7 @@ TEST_CASE("Tensions stay within their limits, wherever the grip is and whatever 
     REQUIRE(t.tensions_N.size() == f.size());
     CHECK(t.tensions_N.minCoeff() >= f.min_tension_N);
     CHECK(t.tensions_N.maxCoeff() <= f.max_tension_N);
-    // What is told is what they give.
+    // The reported wrench is that of the tensions.
     const Eigen::VectorXd got = structure_matrix(f, pose) * t.tensions_N;
     CHECK((got - stacked(f, t.realised)).norm() < 1e-9);
     CHECK(t.force_error_N == Approx((t.realised.force_N - wanted.force_N).norm()).margin(1e-12));
@@ -119,7 +119,7 @@ TEST_CASE("A force is exact wherever tensions for it exist, and else nearly the 
     const Eigen::MatrixXd w = structure_matrix(f, pose);
     const auto truth = oracle_share(f, w, stacked(f, wanted));
     const Tensions t = solve_tensions(f, pose, wanted);
-    // A share above 0 while the grip cannot be kept at rest does not count: such a force cannot be let go.
+    // A share above 0 while the grip cannot be held at rest does not count: such a force could not be released.
     const bool at_rest = oracle_share(f, w, Eigen::VectorXd::Zero(w.rows())).has_value();
     REQUIRE(t.held == (at_rest || (truth && *truth > 1 - 1e-9)));
     if (!t.held) {
@@ -134,7 +134,7 @@ TEST_CASE("A force is exact wherever tensions for it exist, and else nearly the 
     CHECK((stacked(f, t.realised) - t.share * stacked(f, wanted)).norm() < 1e-7);
     if (*truth > 1 - 1e-9) CHECK(t.force_error_N < 1e-7);
   }
-  // The sample holds every case: else it shows nothing.
+  // The sample must contain every case.
   CHECK(all > 10);
   CHECK(some > 10);
 }
@@ -148,7 +148,7 @@ TEST_CASE("Of all tensions that give a force none are closer to the least") {
     const Wrench wanted{0.5 * random_direction(random), Vector3d::Zero()};
     const Tensions t = solve_tensions(f, pose, wanted);
     REQUIRE(t.held);
-    // Every other solution lies this way: along the null space, as far as a limit lets it.
+    // Every other solution differs along the null space, as far as the limits allow.
     const Eigen::MatrixXd null = Eigen::FullPivLU<Eigen::MatrixXd>(structure_matrix(f, pose)).kernel();
     const Eigen::VectorXd above = t.tensions_N - PerString::Constant(f.size(), f.min_tension_N);
     for (int k = 0; k < 24; ++k) {
@@ -180,7 +180,7 @@ TEST_CASE("Tensions change little where force and pose do, also where limits beg
       for (int i = 0; i <= steps; ++i) {
         const double s = double(i) / steps;
         const GripPose pose{(1 - s) * a.position_m + s * b.position_m, a.orientation.slerp(s, b.orientation)};
-        // Through the limits: up to 25 N and back, turning from one direction to another.
+        // Across the limits: up to 25 N and back, while the direction rotates.
         const Wrench w{25 * std::sin(M_PI * s) * ((1 - s) * pull + s * push), Vector3d::Zero()};
         const Tensions t = solve_tensions(f, pose, w);
         REQUIRE(t.held);
@@ -188,14 +188,14 @@ TEST_CASE("Tensions change little where force and pose do, also where limits beg
         last = t.tensions_N;
       }
     }
-    // A leap would not get smaller with the step: a quarter of it is a slope.
+    // A jump would not shrink with the step: a quarter of the step gives a quarter of the change.
     CHECK(largest[1] < 0.4 * largest[0]);
   }
 }
 
 TEST_CASE("A singular pose renders nothing and says so") {
   StringFrame f = *known_frame("desktop");
-  for (StringEnds& s : f.strings) s.anchor_m.z() = 0;  // all in one plane, and the grip in it
+  for (StringEnds& s : f.strings) s.anchor_m.z() = 0;  // all coplanar, with the grip in the plane
   const Tensions t = solve_tensions(f, {}, {Vector3d(0, 0, 1), Vector3d::Zero()});
   CHECK_FALSE(t.held);
   CHECK(t.tensions_N.maxCoeff() == f.min_tension_N);
