@@ -14,9 +14,7 @@ using namespace tactus;
 using namespace tactus::audio;
 using namespace tactus::audio::test;
 using Eigen::Vector3d;
-
 namespace {
-
 constexpr std::int64_t kRun = 1, kMs = 1'000'000;
 
 // Of body 1 relative to body 0, which has the map.

@@ -97,13 +97,13 @@ TEST_CASE("Of a log the profiles of the run hold only when they are asked for, a
   SECTION("nor does that of the scene") {
     Offline offline(of(log), {}, kRate_Hz, HostTime{});
     offline.adapt(none);
-    CHECK(none.profile == "<profile/>");
+    CHECK(none.profile.text == "<profile/>");
     offline.adapt(own);
     CHECK(own.degrade == "own.xml");
-    CHECK(own.profile.empty());
+    CHECK(own.profile.text.empty());
     offline.adapt(logged);
     CHECK(logged.degrade.empty());
-    CHECK(logged.profile.empty());
+    CHECK(logged.profile.text.empty());
   }
 }
 
