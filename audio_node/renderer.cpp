@@ -171,7 +171,7 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   const bool plays = (impacts_ || (real_time_ && now - started_ > kOpenAnyway)) && output_.keep_open(now);
   const sync::ModalityEndpoint& sense = host().sense();
   output_.allow(sense.delay());
-  output_.degrade({sense.output().dropout_s, sense.output().dropout_every_s});
+  output_.degrade({sense.output().value("dropout"), sense.output().value("dropout.every")});
   if (scene_) output_.hear_from(ear_.at(now + output_.latency()));
   receive();
   collect_hits(now);

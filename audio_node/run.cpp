@@ -15,6 +15,7 @@
 #include <tactus/node_health_t.hpp>
 
 #include "audio_node/renderer.h"
+#include "sync/degradation/known_modalities.h"
 #include "sync/node/run_renderer.h"
 
 using namespace tactus;
@@ -31,7 +32,7 @@ const sync::NodeDescriptor kAudio{.name = "audio_node",
                                   .inputs = {channels::kContactEvents, channels::kContacts, channels::kWorldState},
                                   .presentation_instant = "the DAC time of its first sample",
                                   .late_policy = audio::kLate,
-                                  .degradable = {"dropout"},
+                                  .output_operators = sync::output_operators_of("audio"),
                                   .phases = {sync::Phase::kRender}};
 
 class Factory : public sync::RendererFactory {

@@ -140,7 +140,7 @@ TickOutput& NodeRenderer::render(sync::HostTime now) {
   return session_->step(now,
                         {.delay = sense.delay(),
                          .touch_delay = sense.profile_delay(),
-                         .force_step_N = sense.output().force_step_N,
+                         .force_step_N = sense.output().value("force_step"),
                          .touch_arrival = no_touch_ ? now : touch_.count().newest_arrival},
                         quality_.planes());
 }

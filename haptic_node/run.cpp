@@ -21,6 +21,7 @@
 #include <tactus/node_health_t.hpp>
 
 #include "haptic_node/renderer.h"
+#include "sync/degradation/known_modalities.h"
 #include "sync/node/run_renderer.h"
 
 using namespace tactus;
@@ -37,7 +38,7 @@ const sync::NodeDescriptor kHaptic{
     .inputs = {channels::kTouchModel, channels::kContactEvents},
     .presentation_instant = "the tick whose force shows it",
     .late_policy = haptic::kLate,
-    .degradable = {"force_step"}};
+    .output_operators = sync::output_operators_of("haptic")};
 
 class Factory : public sync::RendererFactory {
   void add_options(CLI::App& app) override { options_.add_to(app); }

@@ -84,7 +84,7 @@ void NodeRenderer::render(sync::HostTime now) {
   std::optional<sync::ScopedPhaseTimer> rendering(sync::Phase::kRender);
   const double command_degC = element_degC_.value_or(choice_.settings.skin_rest_degC);
   const auto plate = device_ ? device_->step(command_degC, renderer_->load_W(), now) : std::nullopt;
-  thermal_state_t state = renderer_->step(tick, {.response_s = sense.output().response_s,
+  thermal_state_t state = renderer_->step(tick, {.response_s = sense.output().value("response"),
                                                  .longest_substep_s = quality_.longest_substep_s(),
                                                  .plate = plate});
   rendering.reset();

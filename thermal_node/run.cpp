@@ -15,6 +15,7 @@
 #include <CLI/CLI.hpp>
 #include <tactus/node_health_t.hpp>
 
+#include "sync/degradation/known_modalities.h"
 #include "sync/node/run_renderer.h"
 #include "thermal_node/renderer.h"
 
@@ -31,7 +32,7 @@ const sync::NodeDescriptor kThermal{
     .inputs = {channels::kContacts, channels::kContactEvents},
     .presentation_instant = "the end of the tick whose heat holds it",
     .late_policy = thermal::kLate,
-    .degradable = {"response"},
+    .output_operators = sync::output_operators_of("thermal"),
     .phases = {sync::Phase::kRender}};
 
 class Factory : public sync::RendererFactory {

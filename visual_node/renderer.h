@@ -80,7 +80,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   const scene_t* scene_ = nullptr;
   bool loaded_ = false;  // in this tick
   Frame frame_;
-  sync::OutputDef output_;  // what was wrong with it on purpose
+  sync::OutputValues output_;  // output operators in force
   sync::HostTime fence_{};
   FrameTimes times_;
   sync::Nanoseconds took_{0}, waited_{0};

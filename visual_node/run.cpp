@@ -15,6 +15,7 @@
 #include <iostream>
 #include <tactus/node_health_t.hpp>
 
+#include "sync/degradation/known_modalities.h"
 #include "sync/node/run_renderer.h"
 #include "visual_node/renderer.h"
 
@@ -31,7 +32,7 @@ const sync::NodeDescriptor kVisual{
     .inputs = {channels::kWorldState, channels::kContactEvents, channels::kToolState},
     .presentation_instant = "the fence after the frame that first shows it",
     .late_policy = sync::Late::kShowNewest,
-    .degradable = {"frame_rate", "resolution"},
+    .output_operators = sync::output_operators_of("visual"),
     .phases = {sync::Phase::kRender}};
 
 class Factory : public sync::RendererFactory {

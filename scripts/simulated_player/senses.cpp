@@ -70,7 +70,7 @@ bool Senses::rendered(const std::string& modality, sync::HostTime now) const {
 
 // A picture shows the world at its presentation delay, and stays until the next.
 void Senses::look(sync::HostTime now) {
-  const double slow_Hz = eyes_.output().frame_rate_Hz;
+  const double slow_Hz = eyes_.output().value("frame_rate");
   next_look_ = now + sync::from_seconds(1 / (slow_Hz > 0 ? slow_Hz : frame_rate_Hz_));
   const auto map = bodies_.map(now);
   for (std::size_t i = 0; i < shown_.size(); ++i) {

@@ -154,18 +154,10 @@ Nanoseconds OperatorChain::presentation_delay(SimTime now) const {
   return sum;
 }
 
-OutputDef OperatorChain::output(SimTime now) const {
-  OutputDef sum;
-  const auto worse = [](double& a, double b) { a = a == 0 ? b : b == 0 ? a : std::min(a, b); };
-  for (const Active& a : rules_) {
-    if (!in_time(a.rule, now)) continue;
-    const OutputDef& o = a.rule.output;
-    worse(sum.frame_rate_Hz, o.frame_rate_Hz);
-    worse(sum.resolution, o.resolution);
-    sum.force_step_N = std::max(sum.force_step_N, o.force_step_N);
-    sum.response_s += o.response_s;
-    if (o.dropout_s > 0) sum.dropout_s = o.dropout_s, sum.dropout_every_s = o.dropout_every_s;
-  }
+OutputValues OperatorChain::output(SimTime now) const {
+  OutputValues sum;
+  for (const Active& a : rules_)
+    if (in_time(a.rule, now)) sum.add(a.rule.output);
   return sum;
 }
 

@@ -60,7 +60,7 @@ class OperatorChain {
   bool lost_on_wire(std::uint64_t message, SimTime now);
   // Extra presentation delay of the whole modality, from delay and skew.
   Nanoseconds presentation_delay(SimTime now) const;
-  OutputDef output(SimTime now) const;
+  OutputValues output(SimTime now) const;
 
   // A value after quantise, gain, bias and low-pass. id: of the contact, body or plane; component: of its vectors.
   double changed(Quantity quantity, std::int64_t id, int component, double value, SimTime t,

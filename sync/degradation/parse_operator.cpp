@@ -104,8 +104,6 @@ class Words {
 
 constexpr double kLongest_s = 60;  // design: an output more than a minute late is a separate event
 constexpr double kLargest = 1e9;
-// An event is settled one second after it happened; with a longer frame period it would count as lost.
-constexpr double kLeastFrameRate_Hz = 2;
 
 const std::map<std::string, Quantity> kQuantities{
     {"force", Quantity::kForce}, {"velocity", Quantity::kVelocity}, {"position", Quantity::kPosition}};
@@ -233,15 +231,6 @@ const std::map<std::string, Fill>& operators() {
       {"duplicate", [](Rule& r, Words& w) { r.duplicate = w.value("1", 0, 1); }},
       {"freeze", [](Rule& r, Words& w) { r.freeze = conceal_of(w); }},
       {"conceal", [](Rule& r, Words& w) { r.conceal = conceal_of(w); }},
-      {"frame_rate", [](Rule& r, Words& w) { r.output.frame_rate_Hz = w.value("Hz", kLeastFrameRate_Hz, 240); }},
-      {"resolution", [](Rule& r, Words& w) { r.output.resolution = w.value("1", 0.01, 1); }},
-      {"dropout",
-       [](Rule& r, Words& w) {
-         r.output.dropout_s = w.value("s", 1e-3, 10);
-         r.output.dropout_every_s = w.pair("every", "s", 1, 2e-3, kLongest_s);
-       }},
-      {"force_step", [](Rule& r, Words& w) { r.output.force_step_N = w.value("N", 1e-6, 100); }},
-      {"response", [](Rule& r, Words& w) { r.output.response_s = w.value("s", 1e-3, kLongest_s); }},
       {"from", [](Rule& r, Words& w) { r.from_s = w.value("s", 0, 1e6); }},
       {"until", [](Rule& r, Words& w) { r.until_s = w.value("s", 0, 1e6); }},
   };
@@ -250,26 +239,38 @@ const std::map<std::string, Fill>& operators() {
 
 }  // namespace
 
-std::vector<std::string> output_operators(const OutputDef& o) {
-  std::vector<std::string> names;
-  if (o.frame_rate_Hz > 0) names.emplace_back("frame_rate");
-  if (o.resolution > 0) names.emplace_back("resolution");
-  if (o.dropout_s > 0) names.emplace_back("dropout");
-  if (o.force_step_N > 0) names.emplace_back("force_step");
-  if (o.response_s > 0) names.emplace_back("response");
-  return names;
-}
+namespace {
 
-void parse_operator(Rule& rule, const std::string& name, const std::string& value) {
-  const auto it = operators().find(name);
-  if (it == operators().end()) throw std::invalid_argument("there is no operator \"" + name + "\"");
+template <class Parse>
+void parse_words(const std::string& name, const std::string& value, Parse parse) {
   try {
     Words words(value);
-    it->second(rule, words);
+    parse(words);
     words.expect_end();
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(name + "=\"" + value + "\": " + e.what());
   }
+}
+
+}  // namespace
+
+bool parse_operator(Rule& rule, const std::string& name, const std::string& value) {
+  const auto it = operators().find(name);
+  if (it == operators().end()) return false;
+  parse_words(name, value, [&](Words& words) { it->second(rule, words); });
+  return true;
+}
+
+void parse_output(Rule& rule, const OutputOperator& declared, const std::string& value) {
+  parse_words(declared.name, value, [&](Words& words) {
+    rule.output.set(declared.name, words.value(declared.unit, declared.min, declared.max), declared.combine);
+    for (const OutputPair& pair : declared.pairs)
+      rule.output.set(declared.name + "." + pair.name,
+                      words.pair(pair.name, pair.unit, pair.initial, pair.min, pair.max), declared.combine);
+  });
+  for (const OutputPair& pair : declared.pairs)
+    if (!pair.too_small.empty() && rule.output.value(declared.name) >= rule.output.value(declared.name + "." + pair.name))
+      throw std::invalid_argument(pair.too_small);
 }
 
 }  // namespace tactus::sync

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "sync/degradation/known_senses.h"
+#include "sync/degradation/known_modalities.h"
 #include "sync/degradation/profile.h"
 
 namespace tactus::sync {
@@ -15,20 +15,40 @@ namespace {
 using Element = tinyxml2::XMLElement;
 constexpr std::size_t kMaxRules = 64;  // design: a chain that a person can still understand
 
-// A known modality declares its degradable outputs; a modality of the user's own may have any.
-void refuse_what_it_has_not(const Rule& rule) {
-  if (!is_known_sense(rule.modality)) return;
-  const std::vector<std::string> has = known_output_operators(rule.modality);
-  for (const std::string& name : output_operators(rule.output))
-    if (std::find(has.begin(), has.end(), name) == has.end())
-      throw std::invalid_argument(rule.modality + " has no " + name + ", which only " + senses_with(name) +
-                                  " has");
+struct Attribute {
+  std::string name, value;
+};
+
+const OutputOperator* find(const std::vector<OutputOperator>& operators, const std::string& name) {
+  const auto it = std::find_if(operators.begin(), operators.end(), [&](const OutputOperator& o) { return o.name == name; });
+  return it == operators.end() ? nullptr : &*it;
 }
 
-Rule parse_rule(const Element& e) {
+// A rule for an unknown modality can name any output operator; the node of the modality reports the operators that it does not
+// have.
+void read_output(Rule& rule, const Attribute& a, const DeclaredOutput& own) {
+  const OutputOperator* anywhere = find_output_operator(a.name);
+  const KnownModality* known = known_modality(rule.modality);
+  if (const auto* declared = rule.modality == own.modality ? find(own.operators, a.name) : nullptr) {
+    parse_output(rule, *declared, a.value);
+  } else if (const auto* here = known ? find(known->operators, a.name) : nullptr) {
+    parse_output(rule, *here, a.value);
+  } else if (known && anywhere) {
+    throw std::invalid_argument(rule.modality + " has no " + a.name + ", which only " + modalities_with(a.name) + " has");
+  } else if (known) {
+    throw std::invalid_argument("there is no operator \"" + a.name + "\"");
+  } else if (anywhere) {
+    parse_output(rule, *anywhere, a.value);
+  } else {
+    rule.output.set(a.name, 0);
+  }
+}
+
+Rule parse_rule(const Element& e, const DeclaredOutput& own) {
   Rule rule;
   rule.line = e.GetLineNum();
   int operators = 0;
+  std::vector<Attribute> of_output;
   for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a; a = a->Next()) {
     const std::string name = a->Name(), value = a->Value();
     if (name == "modality") {
@@ -42,7 +62,7 @@ Rule parse_rule(const Element& e) {
       if (!(two >> rule.body_a >> rule.body_b) || two >> rest)
         throw std::invalid_argument("bodies=\"" + value + "\": name two bodies, with a blank between them");
     } else {
-      parse_operator(rule, name, value);
+      if (!parse_operator(rule, name, value)) of_output.push_back({name, value});
       operators += name != "from" && name != "until" && name != "conceal";
     }
   }
@@ -51,9 +71,7 @@ Rule parse_rule(const Element& e) {
   if (operators == 0)
     throw std::invalid_argument("this <degrade> does nothing; give it an operator, for example delay=\"40ms\"");
   if (rule.until_s && *rule.until_s <= rule.from_s) throw std::invalid_argument("until must be after from");
-  if (rule.output.dropout_s > 0 && rule.output.dropout_s >= rule.output.dropout_every_s)
-    throw std::invalid_argument("a dropout must be shorter than the time between two of them (every=)");
-  refuse_what_it_has_not(rule);
+  for (const Attribute& a : of_output) read_output(rule, a, own);
   return rule;
 }
 
@@ -101,8 +119,8 @@ void refuse_more_than_root(const tinyxml2::XMLDocument& document, const tinyxml2
 
 }  // namespace
 
-Profile parse_profile(const std::string& xml, const std::string& file) {
-  // XML allows no NUL; the parser would silently ignore all text after it.
+Profile parse_profile(const std::string& xml, const std::string& file, const DeclaredOutput& own) {
+  // XML has none; what comes after it would be lost in silence.
   if (const std::size_t nul = xml.find('\0'); nul != std::string::npos)
     refuse(file,
            1 + static_cast<int>(std::count(xml.begin(), xml.begin() + static_cast<std::ptrdiff_t>(nul), '\n')),
@@ -136,7 +154,7 @@ Profile parse_profile(const std::string& xml, const std::string& file) {
       if (e->FirstChildElement()) throw std::invalid_argument("a <degrade> has attributes, no elements within");
       refuse_other_than_elements(*e, "a <degrade> has attributes, no text within", line);
       if (profile.rules.size() == kMaxRules) throw std::invalid_argument("a profile has at most 64 <degrade>");
-      profile.rules.push_back(parse_rule(*e));
+      profile.rules.push_back(parse_rule(*e, own));
     }
   } catch (const std::invalid_argument& e) {
     refuse(file, line, e.what());

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "sync/degradation/deadband.h"
+#include "sync/degradation/output_operator.h"
 #include "sync/random/jitter.h"
 #include "sync/random/loss.h"
 #include "sync/time/time.h"
@@ -49,20 +50,6 @@ struct ReorderDef {
   double share = 0;  // share of all items that are held back
   double by_s = 0;
 };
-// Degradations of the output itself: they model a slow renderer, not a slow network. 0: none.
-struct OutputDef {
-  double frame_rate_Hz = 0;    // visual
-  double resolution = 0;       // visual, factor on width and height
-  double dropout_s = 0;        // audio: silence of this length,
-  double dropout_every_s = 0;  // audio: period of the silences
-  double force_step_N = 0;     // haptic
-  double response_s = 0;       // thermal: time constant
-
-  bool any() const {
-    return frame_rate_Hz > 0 || resolution > 0 || dropout_s > 0 || force_step_N > 0 || response_s > 0;
-  }
-};
-
 // One <degrade>: the operators act in the order of the members.
 struct Rule {
   std::string modality;
@@ -87,7 +74,7 @@ struct Rule {
   std::optional<double> duplicate;  // share of items that arrive twice
   std::optional<Conceal> freeze;    // no new messages arrive
   Conceal conceal = Conceal::kHold;
-  OutputDef output;
+  OutputValues output;  // operators on the output itself: a slow renderer, not a slow network
 
   bool filtered() const { return !material.empty() || !body_a.empty(); }
 };
@@ -98,9 +85,16 @@ struct Profile {
   std::vector<Rule> rules;
 };
 
-// Throws std::invalid_argument, "FILE:LINE: reason and remedy", when anything is invalid; then nothing is changed. file: the
-// name for messages. A profile without rules degrades nothing.
-Profile parse_profile(const std::string& xml, const std::string& file);
+// A modality and the output operators that its node declares.
+struct DeclaredOutput {
+  std::string modality;
+  std::vector<OutputOperator> operators = {};
+};
+
+// Throws std::invalid_argument, "FILE:LINE: reason and remedy", when anything is wrong; then nothing is changed.
+// file: the name for messages. No rules: a profile that degrades nothing. own: the modality of the calling node; its operators
+// come before those of the tables. Any operator name is accepted for a modality that is in neither, with the value 0.
+Profile parse_profile(const std::string& xml, const std::string& file, const DeclaredOutput& own = {});
 
 // A profile in force, and the time since when. Its text is parsed once in a process.
 struct ProfileInForce {
@@ -114,10 +108,10 @@ struct ProfileInForce {
 // Parses the text: generation 0, in force from the start. Throws as parse_profile does.
 ProfileInForce read_profile(std::string xml, const std::string& file);
 
-// The names of the attributes that degrade the output itself.
-std::vector<std::string> output_operators(const OutputDef& output);
-
-// Parses one attribute of <degrade> into the rule. Throws std::invalid_argument with one sentence.
-void parse_operator(Rule& rule, const std::string& name, const std::string& value);
+// Reads an attribute of <degrade> into the rule. Returns false, and changes nothing, when no operator on the stream has this
+// name. Throws std::invalid_argument with one sentence.
+bool parse_operator(Rule& rule, const std::string& name, const std::string& value);
+// Reads an operator on the output into the rule. Throws std::invalid_argument with one sentence.
+void parse_output(Rule& rule, const OutputOperator& declared, const std::string& value);
 
 }  // namespace tactus::sync

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iostream>
+#include <memory>
+#include <stdexcept>
 #include <tactus/body_def_t.hpp>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/contact_events_t.hpp>
@@ -13,6 +15,8 @@
 #include <tactus/node_health_t.hpp>
 #include <tactus/presentation_t.hpp>
 #include <utility>
+
+#include "sync/degradation/known_modalities.h"
 
 namespace tactus::sync {
 namespace {
@@ -27,10 +31,19 @@ std::vector<std::string> not_declared(const Profile& profile, const NodeDescript
   std::vector<std::string> missing;
   for (const Rule& rule : profile.rules) {
     if (rule.modality != d.modality) continue;
-    for (const std::string& name : output_operators(rule.output))
-      if (std::find(d.degradable.begin(), d.degradable.end(), name) == d.degradable.end()) missing.push_back(name);
+    for (const std::string& name : rule.output.operators())
+      if (std::none_of(d.output_operators.begin(), d.output_operators.end(),
+                       [&](const OutputOperator& o) { return o.name == name; }))
+        missing.push_back(name);
   }
   return missing;
+}
+
+// The parser of the process has no ranges for the operators of an unknown modality; its node parses the text with its own.
+// Throws std::invalid_argument with one sentence.
+std::shared_ptr<const Profile> parsed_for(const ProfileInForce& profile, const NodeDescriptor& d) {
+  if (known_modality(d.modality)) return profile.parsed;
+  return std::make_shared<const Profile>(parse_profile(profile.text, "profile", {d.modality, d.output_operators}));
 }
 
 }  // namespace
@@ -75,7 +88,14 @@ void ModalityEndpoint::set_scene(const scene_t& scene, int tool) {
 
 void ModalityEndpoint::put_in_force(const ProfileInForce& profile) {
   const NodeDescriptor& d = descriptor_;
-  const Profile& parsed = *profile.parsed;
+  std::shared_ptr<const Profile> shared;
+  try {
+    shared = parsed_for(profile, d);
+  } catch (const std::invalid_argument& e) {
+    std::cerr << d.name << ": refused: " << e.what() << std::endl;
+    return;
+  }
+  const Profile& parsed = *shared;
   stack_ = OperatorChain(parsed, d.modality, profile.start);
   stack_.set_scene(names_);
   for (const auto& stream : streams_) stream->change_profile();

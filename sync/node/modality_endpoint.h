@@ -104,9 +104,9 @@ class ModalityEndpoint {
   // The time at which to present an event that happened at `happened`: delay() later, or as soon as this modality can under
   // the policy asap.
   HostTime schedule(std::int64_t event_id, HostTime happened) const;
-  // The degradation of the output itself.
-  const OutputDef& output() const { return output_; }
-  // The name of the profile in force, whether or not it concerns this modality; empty: none is in force.
+  // Output operators in force.
+  const OutputValues& output() const { return output_; }
+  // What the profile in force calls itself, whether or not it concerns this sense; empty: none is.
   const std::string& profile_name() const { return profile_name_; }
   // The arrival of the newest message of any stream, before any delay of the profile.
   HostTime newest_arrival() const;
@@ -174,7 +174,7 @@ class ModalityEndpoint {
   PlayoutFollower playout_;
   std::optional<Lockstep> lockstep_;
   Nanoseconds delay_{0}, serial_delay_{0}, profile_delay_{0}, output_latency_{0};
-  OutputDef output_;
+  OutputValues output_;
   PresentationReporter reporter_;
   std::function<void(const presentation_t&)> tell_;
   const DegradedEvents* events_ = nullptr;  // of the first stream of events; null: there is none

@@ -6,6 +6,7 @@
 #include <tactus/node_health_t.hpp>
 #include <vector>
 
+#include "sync/degradation/output_operator.h"
 #include "sync/presentation/late.h"
 #include "sync/time/phases.h"
 
@@ -22,8 +23,8 @@ struct NodeDescriptor {
   // Of a modality only.
   std::vector<std::string> inputs = {};    // channels that it reads and that its profile acts on
   std::string presentation_instant = {};   // the instant that PRESENTED reports
-  Late late_policy = Late::kShowNewest;    // treatment of an event that comes too late
-  std::vector<std::string> degradable = {};  // attributes of a profile that act on its output, e.g. "frame_rate"
+  Late late_policy = Late::kShowNewest;    // what becomes of an event that comes too late
+  std::vector<OutputOperator> output_operators = {};  // operators on its output that a profile can use
 
   std::vector<Phase> phases = {};  // tagged phases of its tick beside decoding and the rest: "work.render"
 };

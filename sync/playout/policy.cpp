@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sync/degradation/known_modalities.h"
 #include "sync/text/settings.h"
 
 namespace tactus::sync {
@@ -15,19 +16,22 @@ namespace {
 
 constexpr std::array<const char*, 5> kNames{"asap", "aligned", "experiment", "local_haptic_first", "itouch2005"};
 constexpr double kLongest_s = 60;
-// The order of the modalities in the loop of I-Touch (Pocheville 2005); modalities that I-Touch did not have follow.
-constexpr std::array<const char*, 3> kSerial{"haptic", "audio", "visual"};
-
+// Known modalities in the order of the loop of I-Touch (Pocheville 2005), which their tables give; then unknown ones by name.
 std::vector<std::string> serial_order(const std::map<std::string, Nanoseconds>& needed) {
   std::vector<std::string> order;
-  for (const char* name : kSerial)
-    if (needed.contains(name)) order.emplace_back(name);
-  for (const auto& [name, time] : needed)
-    if (std::find(kSerial.begin(), kSerial.end(), name) == kSerial.end()) order.push_back(name);
+  for (const auto& [name, time] : needed) order.push_back(name);
+  std::stable_sort(order.begin(), order.end(), [](const std::string& a, const std::string& b) {
+    return place_of_modality(a) < place_of_modality(b);
+  });
   return order;
 }
 
-// The largest need of the modalities that the others wait for.
+bool is_local(const std::string& modality) {
+  const KnownModality* known = known_modality(modality);
+  return known && known->kind == PlayoutKind::kLocal;
+}
+
+// What the one needs that takes longest of those that are waited for.
 Nanoseconds common_delay(const PlayoutPlan& plan, const std::map<std::string, Nanoseconds>& needed,
                          const std::set<std::string>& slow) {
   if (plan.aligner == AlignerKind::kFixed) return std::min(plan.base, plan.budget);
@@ -94,7 +98,7 @@ std::map<std::string, Nanoseconds> playout_delays(const PlayoutPlan& plan,
     case Policy::kAligned:
     case Policy::kLocalHapticFirst: {
       auto others = needed;
-      if (plan.policy == Policy::kLocalHapticFirst) others.erase("haptic");
+      if (plan.policy == Policy::kLocalHapticFirst) std::erase_if(others, [](const auto& o) { return is_local(o.first); });
       for (const auto& [name, time] : others) delays[name] = common_delay(plan, others, slow);
       break;
     }

@@ -1,8 +1,8 @@
 #include "sync/presentation/presentation_matcher.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
+#include <string_view>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/decision_t.hpp>
 #include <tactus/header_t.hpp>
@@ -10,6 +10,7 @@
 #include <tactus/presentation_t.hpp>
 
 #include "lcmtypes/channels.h"
+#include "sync/degradation/known_modalities.h"
 
 namespace tactus::sync {
 namespace {
@@ -17,9 +18,12 @@ namespace {
 // A modality has at most three parts; with a realistic number of nodes, an event has fewer reports than this.
 constexpr std::size_t kMaxReportsPerEvent = 64;
 
-std::size_t place(const std::string& modality) {
-  static const std::array<std::string, 5> known = {"haptic_push", "haptic", "audio", "visual", "thermal"};
-  return static_cast<std::size_t>(std::distance(known.begin(), std::find(known.begin(), known.end(), modality)));
+// Sorts the push of a modality before its other parts, and unknown modalities last, by name.
+constexpr std::string_view kPush = "_push";
+std::size_t place(const std::string& name) {
+  const bool push = name.ends_with(kPush);
+  const std::size_t known = place_of_modality(push ? name.substr(0, name.size() - kPush.size()) : name);
+  return known < known_modalities().size() ? 2 * known + (push ? 0 : 1) : 2 * known;
 }
 
 bool was_presented(std::int8_t outcome) {
@@ -285,7 +289,7 @@ void PresentationMatcher::count_asynchrony(const Event& e) {
   std::map<std::string, const Report*> onset;
   for (const Report& r : e.reports) {
     if (!was_presented(r.outcome) || r.presented_ns < 0 || !is_onset(r.part, e.kind)) continue;
-    const Report*& first = onset[r.part == presentation_t::CONSTRAINT ? r.modality + "_push" : r.modality];
+    const Report*& first = onset[r.part == presentation_t::CONSTRAINT ? r.modality + std::string(kPush) : r.modality];
     if (first == nullptr || r.presented_ns < first->presented_ns) first = &r;
   }
   for (const auto& [a, report_a] : onset)

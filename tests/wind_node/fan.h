@@ -2,7 +2,6 @@
 #pragma once
 #include <cmath>
 #include <tactus/contact_event_t.hpp>
-#include <tactus/presentation_t.hpp>
 #include "sync/presentation/late.h"
 #include "wind_node/settings.gen.h"
 

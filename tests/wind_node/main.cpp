@@ -2,10 +2,6 @@
 //   in   CONTACT_EVENTS, CONTACTS, SCENE       out   PRESENTED of every hit, wind.csv
 #include <fstream>
 #include <map>
-#include <tactus/contact_event_t.hpp>
-#include <tactus/contact_events_t.hpp>
-#include <tactus/contact_frame_t.hpp>
-#include <tactus/node_health_t.hpp>
 
 #include "sync/resampling/contact_stream.h"
 #include "sync/node/run_renderer.h"
@@ -20,7 +16,7 @@ const sync::NodeDescriptor kWind{
     .about = "Blows a gust for every hit.",
     .inputs = {channels::kContactEvents, channels::kContacts},
     .presentation_instant = "the tick whose command begins the gust",
-    .degradable = {"response"}};
+    .output_operators = {{"response", "s", 1e-3, 60, "time constant of the fan"}}};
 
 struct WindRenderer : sync::SettingsRenderer<wind::Settings> {
   explicit WindRenderer(sync::RendererHost& host)
@@ -36,7 +32,7 @@ struct WindRenderer : sync::SettingsRenderer<wind::Settings> {
     for (const contact_event_t& e : contacts.take_events(sync::SimTime::max()))
       if (e.kind == contact_event_t::HIT)
         due.emplace(host().sense().schedule(e.event_id, map->to_host(sync::sim_time(e.time_ns))), e);
-    fan.step(settings(), host().sense().output().response_s);
+    fan.step(settings(), host().sense().output().value("response"));
     for (; !due.empty() && due.begin()->first <= now; due.erase(due.begin()))
       host().report(fan.blow(settings(), due.begin()->second, due.begin()->first, now));
     table << sync::to_ns(now) << "," << fan.gust << "," << fan.share << "\n";

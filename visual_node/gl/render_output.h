@@ -47,8 +47,8 @@ class RenderOutput {
       const SceneView& view, const DrawList& sample, const Settings& settings,
       const std::function<void()>& meanwhile = [] {});
   // True when the tick at `now` shows a new picture, at the frame rate of the degraded output.
-  bool due(sync::HostTime now, const sync::OutputDef& output) {
-    return rate_.due(now, output.frame_rate_Hz, loop_rate_Hz_);
+  bool due(sync::HostTime now, const sync::OutputValues& output) {
+    return rate_.due(now, output.value("frame_rate"), loop_rate_Hz_);
   }
   // Call once a tick. Opens the device again when it was lost, hangs, or the display server of its window is gone
   // (then without a window), and loads the scene again. sample: a picture of it. Returns one sentence on the
@@ -63,7 +63,7 @@ class RenderOutput {
 
   // The two parts of a picture; each returns when the part is drawn. show() then presents it, which ends with a
   // fence.
-  void draw_scene(const DrawList& list, const sync::OutputDef& output);
+  void draw_scene(const DrawList& list, const sync::OutputValues& output);
   void draw_over(const DrawList& list);
   void show();
 

@@ -74,8 +74,8 @@ void append_ages(std::vector<std::string>& lines, const PanelFacts& f) {
 void append_degradation(std::vector<std::string>& lines, const PanelFacts& f) {
   lines.push_back("profile   " + (f.profile.empty() ? "none" : f.profile));
   lines.push_back(text("delay     %.0f ms, profile %.0f ms", ms(f.delay), ms(f.profile_delay)));
-  if (f.output.frame_rate_Hz > 0) lines.push_back(text("pictures  %.3g Hz", f.output.frame_rate_Hz));
-  if (f.output.resolution > 0) lines.push_back(text("resolution x%.2f", f.output.resolution));
+  if (const double Hz = f.output.value("frame_rate"); Hz > 0) lines.push_back(text("pictures  %.3g Hz", Hz));
+  if (const double x = f.output.value("resolution"); x > 0) lines.push_back(text("resolution x%.2f", x));
   lines.push_back(text("quality   step %d of 0 to %d", f.quality, std::max(0, f.qualities - 1)));
 }
 

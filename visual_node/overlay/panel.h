@@ -43,7 +43,7 @@ struct PanelFacts {
   std::vector<InputLine> inputs;
   std::string profile;  // empty: none
   sync::Nanoseconds delay{0}, profile_delay{0};
-  sync::OutputDef output;
+  sync::OutputValues output;
 };
 
 std::vector<std::string> panel_lines(const OverlaySet& on, const PanelFacts& facts);

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "sim_node/scene/sdf/attributes.h"
-#include "sync/degradation/known_senses.h"
+#include "sync/degradation/known_modalities.h"
 #include "sync/degradation/profile.h"
 #include "sync/degradation/profile_exchange.h"
 
@@ -45,7 +45,7 @@ void check_names(const LoadContext& context, const sdf::Element& element, const 
   const WorldDef& world = context.world;
   for (const sync::Rule& rule : profile.rules) {
     const std::string at = file.empty() ? "" : file + ":" + std::to_string(rule.line) + ": ";
-    if (!sync::is_known_sense(rule.modality))
+    if (!sync::known_modality(rule.modality))
       context.warn(element, at + "there is no modality \"" + rule.modality + "\"; another program may have it");
     if (!rule.material.empty() && !context.material_of.contains(rule.material))
       context.refuse(element, "is invalid: " + at + "material=\"" + rule.material +

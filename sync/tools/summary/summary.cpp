@@ -12,6 +12,7 @@
 #include <tactus/world_state_t.hpp>
 
 #include "sync/bus/decode.h"
+#include "sync/degradation/known_modalities.h"
 #include "sync/log/log_header.h"
 #include "sync/log/log_origin.h"
 
@@ -187,8 +188,8 @@ std::map<std::string, NodeSummary> RunSummary::nodes() const {
 
 std::vector<std::string> RunSummary::absent() const {
   std::vector<std::string> out;
-  for (const char* sense : kSenses)
-    if (!matcher_.modalities().contains(sense)) out.push_back(sense);
+  for (const KnownModality& m : known_modalities())
+    if (!matcher_.modalities().contains(m.name)) out.push_back(m.name);
   return out;
 }
 

@@ -2,7 +2,6 @@
 // log after the other.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -57,11 +56,7 @@ class RunSummary {
  public:
   // A node counts as alive at the end when it reported health within this time of it.
   static constexpr Nanoseconds kAliveWithin{3'000'000'000};
-  // The modalities of this repository.
-  static constexpr std::array kSenses{"haptic", "audio", "visual", "thermal"};
-
-  // A gap in the log of this length, after which the numbering of a sender continues farther up, means that the recorder was
-  // stopped.
+  // So long without an event, and then the numbering of a sender goes on farther up: the recorder was stopped.
   static constexpr Nanoseconds kHole{1'000'000'000};
   // Time for the messages that the kernel had buffered meanwhile, which come first.
   static constexpr Nanoseconds kHoleShowsWithin{2'000'000'000};

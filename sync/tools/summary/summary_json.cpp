@@ -6,6 +6,7 @@
 #include <tactus/game_state_t.hpp>
 #include <tactus/hole_state_t.hpp>
 
+#include "sync/degradation/known_modalities.h"
 #include "sync/tools/summary/summary.h"
 #include "sync/presentation/thresholds.h"
 
@@ -54,9 +55,10 @@ Json nodes(const RunSummary& s) {
   return out;
 }
 
-// The four modalities of this repository are always present, so that a reader of the file needs no check.
+// The known modalities are always present, so that a reader of the file does not have to check.
 std::vector<std::string> senses(const PresentationMatcher& m) {
-  std::set<std::string> names(RunSummary::kSenses.begin(), RunSummary::kSenses.end());
+  std::set<std::string> names;
+  for (const KnownModality& known : known_modalities()) names.insert(known.name);
   for (const auto& [name, tally] : m.modalities()) names.insert(name);
   std::vector<std::string> out(names.begin(), names.end());
   std::sort(out.begin(), out.end(), named_before);
@@ -111,7 +113,12 @@ Json contacts(const PresentationMatcher& m) {
 Json asynchrony(const PresentationMatcher& m) {
   const Json none = {{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}, {"uncertainty", nullptr},
                      {"beyond_least_threshold", nullptr}, {"beyond_all_thresholds", nullptr}};
-  Json out = {{"haptic_audio", none}, {"haptic_visual", none}, {"audio_visual", none}};
+  // Pairs of known modalities that are not slow are always present.
+  Json out = Json::object();
+  const auto& known = known_modalities();
+  for (auto a = known.begin(); a != known.end(); ++a)
+    for (auto b = a + 1; b != known.end(); ++b)
+      if (a->kind != PlayoutKind::kSlow && b->kind != PlayoutKind::kSlow) out[a->name + "_" + b->name] = none;
   for (const auto& [names, soa] : m.pairs()) {
     const Beyond beyond = beyond_thresholds(names.first, names.second, soa);
     const auto count = [](std::int64_t n) { return n < 0 ? Json(nullptr) : Json(n); };

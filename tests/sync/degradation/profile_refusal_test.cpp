@@ -1,10 +1,6 @@
 // What looks like a profile and is none: nothing of it may hold, and what it says may not be lost in silence.
 #include <catch2/catch.hpp>
-#include <fstream>
-#include <regex>
-#include <sstream>
 
-#include "sync/degradation/known_senses.h"
 #include "sync/degradation/profile.h"
 
 using namespace tactus::sync;
@@ -130,20 +126,13 @@ TEST_CASE("What a known sense does not have is refused, and a sense of one's own
   CHECK(refusal_of("frame_rate=\"20Hz\" response=\"2s\"", "wind").empty());
 }
 
-TEST_CASE("The known senses have what their nodes declare") {
-  for (const std::string sense : {"audio", "haptic", "thermal", "visual"}) {
-    INFO(sense);
-    std::stringstream main;
-    main << std::ifstream(std::string(TACTUS_SOURCE_DIR) + "/" + sense + "_node/run.cpp").rdbuf();
-    const std::string text = main.str();
-    std::smatch found;
-    REQUIRE(std::regex_search(text, found, std::regex("degradable = \\{([^}]*)\\}")));
-    std::string declared = found[1];
-    std::string known;
-    for (const std::string& name : known_output_operators(sense))
-      known += (known.empty() ? "\"" : ", \"") + name + "\"";
-    CHECK(declared == known);
-    CHECK(is_known_sense(sense));
-  }
-  CHECK_FALSE(is_known_sense("wind"));
+TEST_CASE("A node parses the operators that it declares, and accepts others without a value") {
+  const DeclaredOutput wind{"wind", {{"response", "s", 0.1, 5, ""}, {"swirl", "Hz", 1, 9, ""}}};
+  const std::string rule = "<profile><degrade modality=\"wind\" swirl=\"2Hz\" hum=\"3\"/></profile>";
+  const OutputValues asked = parse_profile(rule, "p.xml", wind).rules.front().output;
+  CHECK(asked.value("swirl") == 2);
+  CHECK(asked.operators() == std::vector<std::string>{"swirl", "hum"});
+  CHECK_NOTHROW(parse_profile(rule, "p.xml"));  // without the operators of the node, any name is accepted
+  CHECK_THROWS_WITH(parse_profile("<profile><degrade modality=\"wind\" swirl=\"20Hz\"/></profile>", "p.xml", wind),
+                    Contains("between 1 and 9 Hz"));
 }

@@ -72,10 +72,10 @@ TEST_CASE("Every operator is read") {
   CHECK(rule_of(R"(reorder="5% by=10ms")").reorder->by_s == Approx(0.01));
   CHECK(rule_of(R"(skew="200ppm")").skew == Approx(200e-6));
   CHECK(rule_of(R"(wire_loss="2%")").wire_loss == Approx(0.02));
-  CHECK(rule_of(R"(frame_rate="20Hz" resolution="50%")", "visual").output.resolution == Approx(0.5));
-  CHECK(rule_of(R"(dropout="20ms every=1s")").output.dropout_s == Approx(0.02));
-  CHECK(rule_of(R"(force_step="0.1N")", "haptic").output.force_step_N == Approx(0.1));
-  CHECK(rule_of(R"(response="2s")", "thermal").output.response_s == 2);
+  CHECK(rule_of(R"(frame_rate="20Hz" resolution="50%")", "visual").output.value("resolution") == Approx(0.5));
+  CHECK(rule_of(R"(dropout="20ms every=1s")").output.value("dropout") == Approx(0.02));
+  CHECK(rule_of(R"(force_step="0.1N")", "haptic").output.value("force_step") == Approx(0.1));
+  CHECK(rule_of(R"(response="2s")", "thermal").output.value("response") == 2);
 }
 
 TEST_CASE("A wrong profile is refused whole, with line and reason") {

@@ -133,7 +133,7 @@ TEST_CASE("All lines of all overlays fit at 640 x 480, beside the plots and abov
   facts.physics.push(health(0, {}));
   facts.rendering = facts.period = microseconds(16667);
   facts.delay = facts.profile_delay = microseconds(250000);
-  facts.output.frame_rate_Hz = 12.5, facts.output.resolution = 0.25;
+  facts.output.set("frame_rate", 12.5), facts.output.set("resolution", 0.25);
   for (const char* channel : {"WORLD_STATE", "CONTACT_EVENTS", "TOOL_STATE", "CONTACTS"})
     facts.inputs.push_back({channel, {microseconds(1234567), {}}, sync::SampleStatus::kExtrapolated});
   OverlaySet on = parse_overlays("all");

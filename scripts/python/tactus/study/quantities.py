@@ -11,7 +11,7 @@ OPERATORS = {
     "loss": ("%", {"%": 1.0}, 0, 100), "rate": ("Hz", {"Hz": 1.0}, 0.1, 1000), "deadband": ("%", {"%": 1.0}, 0, 100),
     "quantise": ("N", {"N": 1.0, "mN": 1e-3}, 0, 100), "gain": ("", {"": 1.0}, 0, 10), "lowpass": ("Hz", {"Hz": 1.0}, 0.1, 1000),
     "frame_rate": ("Hz", {"Hz": 1.0}, 2, 240), "resolution": ("", {"": 1.0}, 0.01, 1), "response": ("ms", TIME_MS, 0, 60_000)}
-OUTPUT_OF = {"frame_rate": "visual", "resolution": "visual", "response": "thermal"}  # sync/degradation/known_senses.cpp
+OUTPUT_OF = {"frame_rate": "visual", "resolution": "visual", "response": "thermal"}  # modality.csv of each node folder
 FALLING = ("rate", "frame_rate", "lowpass", "resolution", "gain")  # less is worse, as in scripts/python/tactus/analysis/operators.py
 SMALLEST = {"response": 1.0}  # of levels above 0
 ASYNCHRONY = ("ms", TIME_MS, -5_000, 5_000)

@@ -1,0 +1,44 @@
+// The modalities of the node folders, read from the modality.csv of each folder at build time. Other modalities can join a
+// cluster; for them only the name from the bus is available.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sync/degradation/output_operator.h"
+
+namespace tactus::sync {
+
+// How a modality takes part in the playout.
+enum class PlayoutKind : std::uint8_t {
+  kAligned,  // presents with the others
+  kLocal,    // presents without playout delay under local_haptic_first
+  kSlow      // presents with the others, but they do not wait for it
+};
+
+struct KnownModality {
+  std::string name;
+  PlayoutKind kind = PlayoutKind::kAligned;
+  std::vector<OutputOperator> operators = {};
+};
+
+// Sorted by the "min" cell of their rows, which is their place in the serial order.
+const std::vector<KnownModality>& known_modalities();
+// Null: no table has it.
+const KnownModality* known_modality(const std::string& name);
+// Index in known_modalities(); its size for an unknown modality.
+std::size_t place_of_modality(const std::string& name);
+
+// Output operators of a known modality; empty for an unknown one.
+std::vector<OutputOperator> output_operators_of(const std::string& modality);
+// Names of the known modalities that have this output operator, separated by ", "; empty: none.
+std::string modalities_with(const std::string& output_operator);
+// First output operator of this name in the tables; null: none.
+const OutputOperator* find_output_operator(const std::string& name);
+
+// Parses concatenated modality.csv tables. Throws std::invalid_argument with one sentence.
+std::vector<KnownModality> parse_modalities(const std::string& csv);
+
+}  // namespace tactus::sync
