@@ -224,7 +224,7 @@ TEST_CASE("Moving bodies are published, coming to rest once, and all bodies once
   CHECK(times_published <= 2);
   CHECK(published.begin()->second.back().velocity_m_s.x == 0);
   published.clear();
-  snapshots.want_full();
+  snapshots.request_full();
   run(30);
   CHECK(published.begin()->second.size() == 40);
   published.clear();

@@ -275,7 +275,7 @@ TEST_CASE("A damaged or foreign state is rejected with a sentence, and nothing c
     refused(damaged);
     refused(Bytes(earlier.begin(), earlier.begin() + static_cast<std::ptrdiff_t>(random() % earlier.size())));
   }
-  CHECK_THAT(refused({}), Catch::Contains("no state"));
+  CHECK_THAT(refused({}), Catch::Contains("not a saved state"));
   Bytes version = earlier;
   ++version[8];
   CHECK_THAT(refused(version), Catch::Contains("version"));
