@@ -55,21 +55,38 @@ struct Telling {
   sim::SimPacer pacer;
 };
 
+const sync::NodeDescriptor kSimulation{.name = "sim_node",
+                                       .modality = "",
+                                       .rate_Hz = 1000,
+                                       .fifo_priority = 50,
+                                       .about = "Simulates the world of a scene and publishes its contacts.",
+                                       .phases = {sync::Phase::kCollision, sync::Phase::kSolve, sync::Phase::kIntegrate}};
+
+// Publishes the state after a step, or while the simulation is paused (steps: false). due: deadline of this tick, which has no
+// jitter, unlike the wake-up.
+void publish_state(Telling& telling, sim::Simulation& simulation, bool steps, sync::HostTime due) {
+  static const std::vector<contact_event_t> no_events;
+  sim::SimPacer& pacer = telling.pacer;
+  const sync::TimeMap map = steps ? pacer.tick(simulation.now(), due) : pacer.hold(simulation.now(), due);
+  telling.publisher.publish({.time = simulation.now(),
+                             .touch_models = &simulation.touch_models(),
+                             .events = steps ? &simulation.events() : &no_events,
+                             .tool_contacts = &simulation.tool_contacts(),
+                             .state = {simulation.bodies(), [&](auto& out) { simulation.body_contacts(out); },
+                                       simulation.ahead()},
+                             .game = &simulation.game()},
+                            map);
+}
+
 }  // namespace
 
 int tactus::sim::run(int argc, char** argv, const WorldDef* read_before) try {
-  const sync::NodeDescriptor descriptor{.name = "sim_node",
-                                        .modality = "",
-                                        .rate_Hz = 1000,
-                                        .fifo_priority = 50,
-                                        .about = "Simulates the world of a scene and publishes its contacts.",
-                                        .phases = {sync::Phase::kCollision, sync::Phase::kSolve, sync::Phase::kIntegrate}};
   CLI::App app;
   sync::NodeOptions options;
   std::string scene;
-  options.add_to(app, descriptor);
+  options.add_to(app, kSimulation);
   app.add_option("SCENE", scene, "SDF file of the world")->required()->check(CLI::ExistingFile);
-  sync::parse_or_exit(app, descriptor.name, argc, argv);
+  sync::parse_or_exit(app, kSimulation.name, argc, argv);
 
   std::vector<std::string> warnings;
   const sim::WorldDef world = read_before ? *read_before : sim::load_sdf(scene, warnings);
@@ -78,7 +95,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* read_before) try {
 
   sim::Simulation simulation(world, settings);
 
-  sync::Node node(descriptor, options);
+  sync::Node node(kSimulation, options);
   simulation.start(node.bus().identity().incarnation);
   sync::SceneSender scene_sender(node.bus(), sim::make_assets(world, simulation.step_length().count()));
   std::optional<Telling> telling;
@@ -93,7 +110,6 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* read_before) try {
   std::set<std::int64_t> known;
   sim::FollowedRate followed(settings.visual_follows);
   std::vector<tool_state_t> news;
-  const std::vector<contact_event_t> no_events;
 
   node.tags().add("world.time", "s", [&] { return sync::to_seconds(simulation.now().time_since_epoch()); });
   node.tags().add("world.realtime_factor", "1", [&] { return telling->pacer.realtime_factor(); }, 10);
@@ -138,19 +154,8 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* read_before) try {
     }
     const bool steps = commander.step_due();
     steps ? simulation.step(news) : simulation.hold(news);
-    // The deadline of this tick, which does not tremble as the wake-up does.
-    const sync::HostTime due = node.deadlines().next() - simulation.step_length();
-    sim::SimPacer& pacer = telling->pacer;
-    const sync::TimeMap map = steps ? pacer.tick(simulation.now(), due) : pacer.hold(simulation.now(), due);
-    telling->publisher.publish({.time = simulation.now(),
-                                .touch_models = &simulation.touch_models(),
-                                .events = steps ? &simulation.events() : &no_events,
-                                .tool_contacts = &simulation.tool_contacts(),
-                                .state = {simulation.bodies(), [&](auto& out) { simulation.body_contacts(out); },
-                                          simulation.ahead()},
-                                .game = &simulation.game()},
-                               map);
-    node.set_realtime_factor(pacer.realtime_factor());
+    publish_state(*telling, simulation, steps, node.deadlines().next() - simulation.step_length());
+    node.set_realtime_factor(telling->pacer.realtime_factor());
     node.set_state(node_health_t::RUNNING, commander.paused() ? "the world stands still" : "");
   }
   return 0;

@@ -79,39 +79,65 @@ void describe(const sync::LogOrigin& origin, const std::vector<sync::Asset>& ass
   std::cout << j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) try {
-  const sync::NodeDescriptor descriptor{.name = "replay",
-                                        .modality = "",
-                                        .rate_Hz = 1000,
-                                        .fifo_priority = 50,
-                                        .about = "Plays a log to the senses of a running cluster, in place of its simulation."};
-  CLI::App app;
-  sync::NodeOptions options;
-  options.add_to(app, descriptor);
+// The command line.
+struct ReplayArguments {
   std::string log, speed = "1", control;
   sync::ReplayOptions play;
   sync::ReplayWishes wishes;
   bool only_describe = false, stay = false;
-  app.add_option("LOG", log, "run.lcmlog of a run, or a log of the stock lcm-logger")->required();
-  app.add_option("--speed", speed, "0.01 to 100 times as fast as it was, or max: as fast as --most lets it")->capture_default_str();
-  app.add_option("--start", play.start_s, "s since the world began");
-  app.add_option("--end", play.end_s, "likewise; default: the end of the log");
-  app.add_flag("--loop", play.loop, "begins anew at its end");
-  app.add_flag("--paused", play.paused, "waits for an order of --control");
-  app.add_option("--most", play.most_per_s, "messages per second, at any speed")->check(CLI::Range(1.0, 1e6))->capture_default_str();
-  app.add_option("--channels", wishes.channels, "regular expression: only channels that match as a whole");
-  app.add_option("--leave-out", wishes.leave_out, "likewise: not these");
-  app.add_option("--also", wishes.also, "likewise: these too, which would be left out");
-  app.add_option("--rename", wishes.rename, "FROM=TO, channels; may be repeated");
-  app.add_option("--live", wishes.live, "a process that runs: what it said then stays in the log; may be repeated");
-  app.add_flag("--as-recorded", wishes.as_recorded, "the degradation profiles of the log hold too");
-  app.add_flag("--verbatim", wishes.verbatim, "every message of every channel as it is, as the stock lcm-logplayer does");
-  app.add_option("--control", control, "named pipe to read orders from, or - for stdin");
-  app.add_flag("--stay", stay, "does not leave at the end of the log");
-  app.add_flag("--describe", only_describe, "says what is in the log, as JSON, and leaves");
-  sync::parse_or_exit(app, descriptor.name, argc, argv);
+
+  void add_to(CLI::App& app) {
+    app.add_option("LOG", log, "run.lcmlog of a run, or a log of the stock lcm-logger")->required();
+    app.add_option("--speed", speed, "0.01 to 100 times as fast as it was, or max: as fast as --most lets it")->capture_default_str();
+    app.add_option("--start", play.start_s, "s since the world began");
+    app.add_option("--end", play.end_s, "likewise; default: the end of the log");
+    app.add_flag("--loop", play.loop, "begins anew at its end");
+    app.add_flag("--paused", play.paused, "waits for an order of --control");
+    app.add_option("--most", play.most_per_s, "messages per second, at any speed")->check(CLI::Range(1.0, 1e6))->capture_default_str();
+    app.add_option("--channels", wishes.channels, "regular expression: only channels that match as a whole");
+    app.add_option("--leave-out", wishes.leave_out, "likewise: not these");
+    app.add_option("--also", wishes.also, "likewise: these too, which would be left out");
+    app.add_option("--rename", wishes.rename, "FROM=TO, channels; may be repeated");
+    app.add_option("--live", wishes.live, "a process that runs: what it said then stays in the log; may be repeated");
+    app.add_flag("--as-recorded", wishes.as_recorded, "the degradation profiles of the log hold too");
+    app.add_flag("--verbatim", wishes.verbatim, "every message of every channel as it is, as the stock lcm-logplayer does");
+    app.add_option("--control", control, "named pipe to read orders from, or - for stdin");
+    app.add_flag("--stay", stay, "does not leave at the end of the log");
+    app.add_flag("--describe", only_describe, "says what is in the log, as JSON, and leaves");
+  }
+};
+
+// Position, speed, and faults of a replay. refused: messages that the network did not take.
+std::string position_text(const sync::Replay& replay, const sync::ReplayOptions& play, std::int64_t refused) {
+  std::ostringstream text;
+  text << std::fixed;
+  text.precision(2);
+  text << replay.position_s() << " of " << replay.length_s() << " s at ";
+  replay.speed() == 0 ? text << "full speed" : text << replay.speed() << " x";
+  text << (replay.over() ? ", over" : replay.paused() ? ", paused" : "") << ", " << replay.sent() << " messages";
+  if (replay.behind_s() > 0) text << ", " << replay.behind_s() << " s behind, for no more than " << play.most_per_s << " messages a second go out";
+  if (refused > 0) text << ", " << refused << " refused by the network";
+  if (replay.scanner().damaged_regions() > 0)
+    text << ", " << replay.scanner().damaged_regions() << " damaged places (" << replay.scanner().damaged_bytes() << " bytes) passed over";
+  return text.str();
+}
+
+const sync::NodeDescriptor kReplay{.name = "replay",
+                                   .modality = "",
+                                   .rate_Hz = 1000,
+                                   .fifo_priority = 50,
+                                   .about = "Plays a log to the senses of a running cluster, in place of its simulation."};
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app;
+  sync::NodeOptions options;
+  options.add_to(app, kReplay);
+  ReplayArguments given;
+  given.add_to(app);
+  sync::parse_or_exit(app, kReplay.name, argc, argv);
+  auto& [log, speed, control, play, wishes, only_describe, stay] = given;
   play.speed = sync::speed_of(speed);
   if (play.speed < 0) throw std::runtime_error("--speed " + speed + ": give a number from 0.01 to 100, or max");
 
@@ -131,7 +157,7 @@ int main(int argc, char** argv) try {
   const std::vector<sync::Asset> assets = wishes.verbatim ? std::vector<sync::Asset>() : sync::scene_of(file.bytes(), origin);
   if (only_describe) return describe(origin, assets, replay->length_s()), 0;
 
-  sync::Node node(descriptor, options);
+  sync::Node node(kReplay, options);
   if (!origin.recovered.empty()) std::cerr << "replay: " << sync::printable(log) << ": " << origin.recovered << "\n";
   if (!wishes.verbatim && scene_asset(assets) == assets.end())
     std::cerr << "replay: " << sync::printable(log) << " holds no whole scene; senses that have none stay idle\n";
@@ -148,19 +174,7 @@ int main(int argc, char** argv) try {
   sync::Lines lines;
   std::vector<std::uint8_t> message;
   bool quit = false, told_over = false;
-  const auto note = [&] {
-    std::ostringstream text;
-    text << std::fixed;
-    text.precision(2);
-    text << replay->position_s() << " of " << replay->length_s() << " s at ";
-    replay->speed() == 0 ? text << "full speed" : text << replay->speed() << " x";
-    text << (replay->over() ? ", over" : replay->paused() ? ", paused" : "") << ", " << replay->sent() << " messages";
-    if (replay->behind_s() > 0) text << ", " << replay->behind_s() << " s behind, for no more than " << play.most_per_s << " messages a second go out";
-    if (port.refused() > 0) text << ", " << port.refused() << " refused by the network";
-    if (replay->scanner().damaged_regions() > 0)
-      text << ", " << replay->scanner().damaged_regions() << " damaged places (" << replay->scanner().damaged_bytes() << " bytes) passed over";
-    return text.str();
-  };
+  const auto note = [&] { return position_text(*replay, play, port.refused()); };
   std::cerr << "replay: begins, " << note() << std::endl;
   sync::HostTime next_note{};
   while (node.running() && !quit) {

@@ -70,35 +70,62 @@ std::string clocks_note(const std::vector<clock_map_t>& maps) {
          std::to_string((worst_ns + 999) / 1000) + " us";
 }
 
+// A clock that drifts and jumps once, for tests: these options are not in --help.
+struct EmulatedClockOptions {
+  double drift_ppm = 0, jump_ms = 0, jump_after_s = 0;
+
+  void add_to(CLI::App& app) {
+    app.add_option("--emulate-drift", drift_ppm)->check(CLI::Range(-1000.0, 1000.0))->group("");
+    app.add_option("--emulate-jump", jump_ms)->group("");
+    app.add_option("--emulate-jump-after", jump_after_s)->group("");
+  }
+  sync::EmulatedClock clock(sync::HostTime start) const {
+    return {drift_ppm * 1e-6, sync::from_seconds(jump_ms * 1e-3), start,
+            jump_ms != 0 ? start + sync::from_seconds(jump_after_s) : sync::HostTime::max()};
+  }
+};
+
+// The profile of the command line, or the one that was in force when an earlier process of this run ended.
+std::optional<sync::ProfileInForce> first_profile(const sync::NodeOptions& options, sync::ProfileReceiver& profiles) {
+  std::optional<sync::ProfileInForce> profile;
+  if (!options.profile.text.empty()) {
+    profile = options.profile;
+    profiles.set_generation(0);
+  }
+  if (auto kept = sync::kept_profile(options.out, options.run_id)) {
+    std::cerr << options.name << ": goes on with the profile that was put in force before" << std::endl;
+    profiles.set_generation(kept->generation);
+    profile = std::move(kept);
+  }
+  return profile;
+}
+
+const sync::NodeDescriptor kSyncNode{.name = "sync_node",
+                                     .modality = "",
+                                     .rate_Hz = 50,  // at least: it wakes on messages
+                                     .fifo_priority = 40,
+                                     .about = "Agrees on time with other hosts; matches contact events with what each sense reports."};
+
 }  // namespace
 
 int tactus::sync::run_sync_node(int argc, char** argv) try {
-  const sync::NodeDescriptor descriptor{.name = "sync_node",
-                                        .modality = "",
-                                        .rate_Hz = 50,  // at least: it wakes on messages
-                                        .fifo_priority = 40,
-                                        .about = "Agrees on time with other hosts; matches contact events with what each sense reports."};
   CLI::App app;
   sync::NodeOptions options;
-  options.add_to(app, descriptor);
-  double drift_ppm = 0, jump_ms = 0, jump_after_s = 0;
-  // For tests only, hence not in --help: the clock that is compared with others drifts, and jumps once.
-  app.add_option("--emulate-drift", drift_ppm)->check(CLI::Range(-1000.0, 1000.0))->group("");
-  app.add_option("--emulate-jump", jump_ms)->group("");
-  app.add_option("--emulate-jump-after", jump_after_s)->group("");
+  options.add_to(app, kSyncNode);
+  EmulatedClockOptions emulated;
+  emulated.add_to(app);
   sync::PlayoutOptions playout_options;
   playout_options.add_to(app, true);
   sync::PlayoutPlan plan;
   app.callback([&] { plan = playout_options.plan(); });  // also when only the arguments are checked
-  sync::parse_or_exit(app, descriptor.name, argc, argv);
+  sync::parse_or_exit(app, kSyncNode.name, argc, argv);
 
-  sync::Node node(descriptor, options);
+  sync::Node node(kSyncNode, options);
   auto& health = node.bus().queue<node_health_t>(channels::kNodeHealth, kHealthQueue);
   auto& events = node.bus().queue<contact_events_t>(channels::kContactEvents, kEventsQueue);
   auto& presented = node.bus().queue<presented_t>(channels::kPresented, kReportsQueue);
   const sync::HostTime start = sync::host_now();
-  const sync::EmulatedClock clock{drift_ppm * 1e-6, sync::from_seconds(jump_ms * 1e-3), start,
-                                  jump_ms != 0 ? start + sync::from_seconds(jump_after_s) : sync::HostTime::max()};
+  const sync::EmulatedClock clock = emulated.clock(start);
   std::cerr << options.name << ": clock " << node.bus().identity().clock << " at " << sync::to_ns(start) << " ns" << std::endl;
   // In virtual time there is one clock, and no host to probe.
   std::optional<sync::ProbeThread> probes;
@@ -113,16 +140,7 @@ int tactus::sync::run_sync_node(int argc, char** argv) try {
     std::cerr << options.name << ": goes on with what was asked for before: policy " << name_of(playout.plan().policy) << std::endl;
   auto& degradations = node.bus().queue<degradation_t>(channels::kDegradation, kReportsQueue);
   sync::ProfileReceiver profiles;
-  std::optional<sync::ProfileInForce> profile;
-  if (!node.options().profile.text.empty()) {
-    profile = node.options().profile;
-    profiles.set_generation(0);
-  }
-  if (auto kept = sync::kept_profile(options.out, options.run_id)) {
-    std::cerr << options.name << ": goes on with the profile that was put in force before" << std::endl;
-    profiles.set_generation(kept->generation);
-    profile = std::move(kept);
-  }
+  std::optional<sync::ProfileInForce> profile = first_profile(node.options(), profiles);
   node.set_state(node_health_t::RUNNING);
 
   sync::HostTime next_report = start + kReportPeriod, next_maps = start + kMapPeriod;
