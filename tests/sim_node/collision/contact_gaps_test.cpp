@@ -150,7 +150,7 @@ TEST_CASE("An impact reported within the step is a contact, whatever the gap at 
   CHECK(events.empty());
   SECTION("begin, hit and end are at the times that the solver reports, in steps of any length") {
     Manifold met = m;
-    met.impact.blows = 2;
+    met.impact.count = 2;
     met.impact.first_s = 0.002, met.impact.last_s = 0.011, met.impact.speed_m_s = 3,
     met.impact.effective_mass_kg = 0.1;
     met.points[0].normal_force_N = 10;
