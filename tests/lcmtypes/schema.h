@@ -36,7 +36,7 @@ struct Spot {
 class Schema {
  public:
   explicit Schema(const std::string& folder) {
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
       if (entry.path().extension() == ".lcm") read(entry.path());
   }
 

@@ -272,7 +272,7 @@ TEST_CASE("A stored state is restored under its name, from memory and, by anothe
   CHECK(other.commander.paused());
 
   std::ofstream(b.folder / "broken.state") << "TACTSTAT and then nothing of use";
-  CHECK_THAT(b.refusal(command(sim_command_t::RESTORE, "broken")), Catch::Contains("no state"));
+  CHECK_THAT(b.refusal(command(sim_command_t::RESTORE, "broken")), Catch::Contains("not a saved state"));
 }
 
 TEST_CASE("The number of stored states is limited. A repeated name replaces the old state") {

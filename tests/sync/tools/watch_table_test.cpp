@@ -58,6 +58,7 @@ TEST_CASE("The table fits the terminal") {
   for (const char* name : {"audio_node", "haptic_node", "a_node_with_quite_a_long_name_indeed"})
     table.observe(health(name), kNow);
   sync_report_t report{};
+  report.pages = 1;
   report.hits = 12;
   report.modalities = {{"audio", 12, 11, 1, 0, 0, 0, 0}};
   report.pairs = {{"haptic", "audio", 11, 1, -19'500'000, 3, 40'000, -1, -1}};

@@ -59,7 +59,7 @@ TEST_CASE("A plot with an unknown name is rejected in one sentence with similar 
              Catch::Contains("there is no channel \"TOOL_STAT\"; nearest: TOOL_STATE"));
   CHECK_THAT(sentence("graph TOOL_STATE.farce_N.z"), Catch::Contains("nearest: force_N"));
   CHECK_THAT(sentence("graph TOOL_STATE"), Catch::Contains("which field"));
-  CHECK_THAT(sentence("pie TOOL_STATE.tool"), Catch::Contains("graph, bar, text"));
+  CHECK_THAT(sentence("pie TOOL_STATE.tool"), Catch::Contains("graph, bar or text"));
   CHECK_THAT(sentence("graph NODE_HEALTH.note"), Catch::Contains("text, not a number"));
   CHECK_THAT(sentence("graph TOOL_STATE.fade@tool=x"), Catch::Contains("is not a number"));
   CHECK_THAT(sentence("graph TOOL_STATE.fade@tolo=1"), Catch::Contains("nearest: tool"));
