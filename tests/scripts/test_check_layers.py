@@ -22,7 +22,7 @@ class CheckLayers(unittest.TestCase):
             "audio_node/a.cpp": '#include "audio_node/a.h"\n#include "sync/time/time.h"\n#include "lcmtypes/valid.h"\n#include <tactus/pose_t.hpp>\n',
             "sync/bus/bus.cpp": "#include <lcm/lcm-cpp.hpp>\n",
             "sim_node/behaviour/world.cpp": "#include <ode/ode.h>\n",
-            "visual_node/egl/context.cpp": "#include <epoxy/egl.h>\n",
+            "visual_node/devices/context.cpp": "#include <epoxy/egl.h>\n",
             "tests/sync/a_test.cpp": '#include "audio_node/a.h"\n',
             "build/x.cpp": "TO" "DO\n"}))
 
