@@ -81,7 +81,7 @@ class Arguments(unittest.TestCase):
         for words, named in ((["--set", "../x.y=1"], "../x has no settings"), (["--set", ".x=1"], "NODE.NAME=VALUE"),
                              (["--set", "sync_node.x=1"], "sync_node has no settings"),
                              (["--set", "audio_node.device=a\nb"], "control character"), (["--out", "a\x1bb"], "control character"),
-                             (["--without", "recorder"], "all results are made from what it records"),
+                             (["--without", "recorder"], "all results come from its log"),
                              (["--degrade", "/no/such.xml"], "/no/such.xml")):
             self.assertIn(named, refusal_of(*words))
             self.assertNotIn("\n", refusal_of(*words))
@@ -144,9 +144,9 @@ class Hands(Folders):
         self.assertEqual([], self.after(commands["haptic_node_b"], "--device"))
 
     def test_a_tool_that_is_not_there_gets_two_devices_or_shares_that_of_another_program_is_refused(self):
-        for words, said in ((["head=external:e"], 'no tool "head"; it has a, b'), (["b=external:e", "b=virtual_hand"], "has a device already"),
-                            (["external:e", "a=external:f"], "has a device already"),
-                            (["a=external:e,offset=0/0/1", "b=external:e"], "a holds external:e already")):
+        for words, said in ((["head=external:e"], 'no tool "head"; it has a, b'), (["b=external:e", "b=virtual_hand"], "already has a device"),
+                            (["external:e", "a=external:f"], "already has a device"),
+                            (["a=external:e,offset=0/0/1", "b=external:e"], "a already holds external:e")):
             with self.assertRaises(arguments.Refusal) as refused:
                 self.of("a", "b", words=[w for word in words for w in ("--device", word)])
             self.assertIn(said, str(refused.exception))
@@ -198,7 +198,7 @@ class Walls(Folders):
     def test_a_room_that_is_none_is_refused_in_a_sentence(self):
         (self.folder / "empty.csv").write_text("wall\n", encoding="utf-8")
         for room, said in (("cave5", "choose cave4, cave6, desk"), (str(self.folder / "empty.csv"), "has no wall"),
-                           (str(self.folder), "is no file of walls"), (__file__, "is no file of walls")):
+                           (str(self.folder), "is not a file of walls"), (__file__, "is not a file of walls")):
             self.assertIn(said, refusal_of("--room", room))
 
     def test_a_setting_of_visual_node_is_one_of_every_wall_but_its_own_comes_last(self):
