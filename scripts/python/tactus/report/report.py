@@ -9,7 +9,7 @@ class Report:
 
     def __init__(self, logs, gallery):
         self.logs, self.gallery = logs, gallery
-        self.thresholds = log_tables.thresholds(REPOSITORY / "sync" / "thresholds.csv")
+        self.thresholds = log_tables.thresholds(REPOSITORY / "sync" / "presentation" / "thresholds.csv")
         self.tables, self.sources, self.missing = 0, [], []
 
     @property
