@@ -150,7 +150,7 @@ class Hosts(unittest.TestCase):
         finally:
             subprocess.run([*sound.inside(), "nft", "delete table inet deaf"], check=True)
             picture.mend()
-        self.assertTrue([w for w in wrong if w.startswith("sound: hears none of the others")], wrong)
+        self.assertTrue([w for w in wrong if w.startswith("sound: receives nothing from the other hosts")], wrong)
         self.assertTrue([w for w in wrong if w.startswith("world: loses") and "picture" in w], wrong)
         self.assertTrue([w for w in wrong if w.startswith("picture: loses") and "world" in w], wrong)
         self.expect_whole()

@@ -77,9 +77,9 @@ class ClusterFile(unittest.TestCase):
         self.refused(GOOD.replace(*self.SITES[1]).replace("<relay host=\"sound\" at=\"198.51.100.2\" kbit=\"2000\"/>", ""), "one site, which needs no relay")
         self.refused(self.of_sites(("<relay host=\"desk\"", "<relay host=\"cellar\"")), "no host \"cellar\"")
         self.refused(self.of_sites(("<relay host=\"desk\" at=\"192.0.2.7\"/>", "")), "no host of the site of desk has a relay")
-        self.refused(self.of_sites(("<relay host=\"desk\"", "<relay host=\"sound\"")), "has a relay already, on sound")
-        self.refused(self.of_sites(("at=\"192.0.2.7\"", "at=\"desk\"")), "is no address")
-        self.refused(self.of_sites(("rules=\"wide\"", "rules=\"narrow\"")), "rules=\"narrow\" is no file", "all, wide")
+        self.refused(self.of_sites(("<relay host=\"desk\"", "<relay host=\"sound\"")), "already has a relay, on sound")
+        self.refused(self.of_sites(("at=\"192.0.2.7\"", "at=\"desk\"")), "is not an IPv4 address")
+        self.refused(self.of_sites(("rules=\"wide\"", "rules=\"narrow\"")), "rules=\"narrow\" is not a file", "all, wide")
         self.refused(self.of_sites(("kbit=\"2000\"", "kbit=\"2\"")), "kbit")
         self.refused(self.of_sites(("rules=\"wide\"", "rules=\"wide\" port=\"7668\"")), "a port of the bus")
 

@@ -37,11 +37,11 @@ class Pairs(unittest.TestCase):
     def test_one_that_hears_nobody_and_one_that_nobody_hears(self):
         self.deafen("b", "a")
         self.deafen("b", "c")
-        self.found("b: hears none of the others", "route")
+        self.found("b: receives nothing from the other hosts", "route")
         self.setUp()
         self.deafen("a", "b")
         self.deafen("c", "b")
-        self.found("a: does not hear b", "a firewall on a")
+        self.found("a: receives nothing from b", "a firewall on a")
 
     def test_a_ttl_of_zero_is_named(self):
         for name in self.said:
@@ -68,7 +68,7 @@ class Pairs(unittest.TestCase):
 
     def test_answers_that_do_not_come_back(self):
         self.said["a"]["others"]["b"]["answered"] = False
-        self.found("a: b hears it, and its answers do not come back")
+        self.found("a: b receives its datagrams, but the answers are lost")
 
     def test_a_host_that_said_nothing_is_no_error(self):
         del self.said["c"]

@@ -111,14 +111,14 @@ class Units(unittest.TestCase):
             self.assertEqual(run("install", "--root", folder, "--units-only").returncode, 0)
             file = pathlib.Path(folder) / "etc/tactus/tactus.env"
             file.write_text("TACTUS_PORT=1\n", encoding="ascii")
-            self.assertIn("as it was", run("install", "--root", folder, "--units-only", "--port", "7700").stdout)
+            self.assertIn("was kept", run("install", "--root", folder, "--units-only", "--port", "7700").stdout)
             self.assertEqual(file.read_text(encoding="ascii"), "TACTUS_PORT=1\n")
             self.assertFalse((pathlib.Path(folder) / "etc/systemd/system/tactus-path.service").exists(), "unless it is asked for")
 
     def test_each_wrong_word_is_one_sentence(self):
         for sentence, words in (("no unit of \"smell\"", ["--only", "smell"]), ("absolute path", ["--prefix", "opt"]), ("absolute path", ["--out", "/a b"]),
                                 ("from 0 to 255", ["--ttl", "256"]), ("no multicast group", ["--group", "10.0.0.1"]), ("--host", ["--host", "a b"]),
-                                ("is no folder", ["--root", "/none/such"]), ("--help", ["--wrong"])):
+                                ("is not a folder", ["--root", "/none/such"]), ("--help", ["--wrong"])):
             done = run("install", "--units-only", "--root", os.devnull, *words)
             self.assertEqual((done.returncode, done.stdout), (1, ""), words)
             self.assertRegex(done.stderr, r"\Aunits: [^\n]*" + re.escape(sentence) + r"[^\n]*\n\Z")
