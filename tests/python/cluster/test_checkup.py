@@ -55,7 +55,7 @@ class Lossy(unittest.TestCase):
         figures = {"hosts": {}, "remarks": []}
         answer = {"out": '{"lines": [{"what": "real-time priority", "verdict": "missing", "found": "SCHED_FIFO is refused", "remedy": ""}]}'}
         wrong = checkup.of_host(operator, "sound", {"machine": "x", "cores": 2}, answer, LOST, figures)
-        self.assertTrue(wrong[0].startswith(f"{LOST}, and did a moment before"), wrong)
+        self.assertTrue(wrong[0].startswith(f"{LOST}, but was reached a moment before"), wrong)
         self.assertEqual("sound: SCHED_FIFO is refused", wrong[1])
         self.assertEqual((None, None), (figures["hosts"]["sound"]["reached_s"], figures["hosts"]["sound"]["load"]))
 
