@@ -52,7 +52,7 @@ class Pairs(unittest.TestCase):
 
     def test_losses_bursts_and_buffers(self):
         self.said["a"]["others"]["b"]["lost"] = 0.1
-        self.found("a: loses 10.0 % of what b sends")
+        self.found("a: loses 10.0 % of the datagrams of b")
         self.said["c"]["others"]["a"]["of_bursts"] = 200
         self.found("c: 100 of 300 datagrams of bursts of a")
         self.said["b"]["buffer_bytes"] = 212992

@@ -186,13 +186,13 @@ class Whole(Logs):
     def test_a_log_of_nothing_makes_a_report_that_says_what_it_lacks(self):
         page = self.made(self.log(nodes={}, contacts={"begin": 0, "hit": 0, "end": 0, "late": 0, "lost": 0, "dropped_by_profile": 0, "by_modality": {}}, realtime_factor=0,
                                   absent=["audio"]))
-        for sentence in ("There was no simulation", "No sense reported", "No process told of its health", "no latency can be told", "no asynchrony", "No hand was recorded",
+        for sentence in ("The log has no simulation", "No modality reported", "No process published its health", "latency is unknown", "no asynchrony", "No tool was recorded",
                          "No temperature", "No degradation profile"):
             self.assertTrue(sentence in page, sentence)
 
     def test_lost_events_stand_in_the_first_paragraph(self):
         contacts = {**summary()["contacts"], "lost": 2}
-        self.assertIn("<b>2 events that a sense owed were lost.</b>", self.made(self.log(contacts=contacts)))
+        self.assertIn("<b>2 expected events were lost.</b>", self.made(self.log(contacts=contacts)))
 
     def test_several_logs_stand_beside_each_other(self):
         page = self.made(self.of_events(2, [20, 21, 25], [33, 30, 40]), self.of_events(2, [60, 61, 65], [33, 30, 40]))

@@ -149,7 +149,7 @@ class Files(unittest.TestCase):
     def test_what_is_wrong_is_said_in_one_sentence(self):
         log = self.path("run.lcmlog")
         open(log, "w", encoding="utf-8").close()
-        self.assertIn("is no log, and no folder of a run", self.refusal(self.path("none.lcmlog")))
+        self.assertIn("is neither a log nor the folder of a run", self.refusal(self.path("none.lcmlog")))
         self.assertIn("not empty", self.refusal(log, "--out", self.folder.name))
         self.assertIn("is no file", self.refusal(log, "--degrade", self.path("none.xml")))
         self.assertIn("SENSE:NAME=VALUE", self.refusal(log, "--set", "smell:rose=1"))
