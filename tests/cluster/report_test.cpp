@@ -40,7 +40,7 @@ TEST_CASE(
                               "Degradation", "Missing data", "Sources"})
     CHECK_THAT(first, Catch::Contains(section));
   CHECK_THAT(first, Catch::Contains("delay=&quot;60ms&quot;"));
-  CHECK_THAT(first, Catch::Contains("sense visual was not there"));
+  CHECK_THAT(first, Catch::Contains("modality visual was absent"));
   const std::regex outside("(src|href)=\"(?!#|data:)");
   CHECK_FALSE(std::regex_search(first, outside));
 
