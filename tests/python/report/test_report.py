@@ -90,7 +90,7 @@ class Figures(Logs):
         self.assertEqual(log.first_heard_ns(), {"9": LIVE_FROM + 500_000_000})
 
     def test_published_thresholds_stand_on_the_side_of_what_comes_later(self):
-        rows = log_tables.thresholds(ROOT / "sync" / "thresholds.csv")
+        rows = log_tables.thresholds(ROOT / "sync" / "presentation" / "thresholds.csv")
         both = {at: row["source"] for at, row in log_tables.bands(rows, "audio", "visual")}
         self.assertIn("ITU-R BT.1359-1, 1998", both[45.0])
         self.assertIn("ITU-R BT.1359-1, 1998", both[-125.0])
