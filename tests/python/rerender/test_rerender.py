@@ -151,7 +151,7 @@ class Files(unittest.TestCase):
         open(log, "w", encoding="utf-8").close()
         self.assertIn("is neither a log nor the folder of a run", self.refusal(self.path("none.lcmlog")))
         self.assertIn("not empty", self.refusal(log, "--out", self.folder.name))
-        self.assertIn("is no file", self.refusal(log, "--degrade", self.path("none.xml")))
+        self.assertIn("is not a file", self.refusal(log, "--degrade", self.path("none.xml")))
         self.assertIn("SENSE:NAME=VALUE", self.refusal(log, "--set", "smell:rose=1"))
 
     def test_a_node_that_refuses_is_quoted_and_one_that_renders_says_how_fast(self):
