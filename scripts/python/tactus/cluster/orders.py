@@ -206,7 +206,7 @@ class Operator:
             time.sleep(0.1)
         return False
 
-    # what runs where
+    # placement of nodes
 
     def placement(self, states):
         """{node: host} as reported by the hosts; after a move it differs from the file."""

@@ -106,6 +106,6 @@ def missed(told):
                     found.append(f"{who}: {r['beyond_in_time']} of {r['aimed']} beyond what is stated and the grain, and not called late; at worst {r['aside_worst_ms']:.1f} ms aside")
     for r in told["summary"]:
         if r["n"] != r["n_said"] or (r["differs_ms"] or 0) > SUMMARY_BIN_MS or abs((r["uncertainty_said_ms"] or 0) - r["uncertainty_ms"]) > SUMMARY_ROUNDS_MS:
-            found.append(f"asynchrony of {r['pair']}: summarise tells {r['n_said']} of them within {r['uncertainty_said_ms']} ms, here are {r['n']} within {r['uncertainty_ms']:.3f} ms, "
+            found.append(f"asynchrony of {r['pair']}: summarise reports {r['n_said']} of them within {r['uncertainty_said_ms']} ms, here are {r['n']} within {r['uncertainty_ms']:.3f} ms, "
                          f"and their quantiles differ by {r['differs_ms']} ms")
     return found

@@ -46,7 +46,7 @@ def identity(files):
 
 
 def messages():
-    """What this build says of its messages."""
+    """The message types of this build, as printed by message_types."""
     return subprocess.run([BIN / "message_types"], capture_output=True, text=True, check=True).stdout
 
 
