@@ -1,4 +1,4 @@
-"""What the doctor of a cluster makes of hosts that answer late, or not."""
+"""Tests of tactus cluster doctor with hosts that answer late or never."""
 import pathlib
 import sys
 import types
@@ -12,7 +12,7 @@ LOST = Unreachable("sound: does not answer within 10 s")
 
 
 def operator_of(*answers):
-    """One whose hosts answer so, one question after the other; what it was asked of whom is in `asked`."""
+    """A fake operator with prepared answers of hosts, in order; `asked` records the requests."""
     left, asked = list(answers), []
 
     def ask_all(_, hosts, **request):

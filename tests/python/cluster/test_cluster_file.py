@@ -1,4 +1,4 @@
-"""The cluster file: what is right is read whole, what is wrong is refused with its line."""
+"""Tests of the cluster file: valid files are read completely, invalid ones rejected with their line."""
 import pathlib
 import sys
 import tempfile

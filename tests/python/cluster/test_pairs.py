@@ -1,4 +1,4 @@
-"""What is wrong between hosts is found, and said with what to do."""
+"""Tests that faults between hosts are found and reported with a remedy."""
 import copy
 import pathlib
 import sys

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tactus private-path makes keys that only their owner reads and configurations that keep the bus inside, or refuses in one sentence."""
+"""Tests of tactus private-path: keys readable only by their owner, configurations that keep the bus inside, one sentence for wrong arguments."""
 import os
 import pathlib
 import re

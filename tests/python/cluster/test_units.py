@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tactus units installs units that systemd understands, that are shut in, and that have the priorities of the sources."""
+"""Tests that tactus units installs valid, sandboxed systemd units with the priorities of the sources."""
 import os
 import pathlib
 import re
@@ -13,7 +13,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 KINDS = ("sync", "recorder", "haptic", "audio", "visual", "thermal", "sim", "relay", "path")
 SOURCES = {"sync": "sync/tools/sync_node.cpp", "recorder": "sync/tools/recorder/recorder_node.cpp", "haptic": "haptic_node/run.cpp", "audio": "audio_node/run.cpp",
            "visual": "visual_node/run.cpp", "thermal": "thermal_node/run.cpp", "sim": "sim_node/run.cpp"}
-MOST_EXPOSED = 5  # systemd calls what is below "OK"
+MOST_EXPOSED = 5  # systemd rates lower values as "OK"
 
 
 def run(*words):
@@ -31,7 +31,7 @@ class Units(unittest.TestCase):
         assert done.returncode == 0, done.stderr
         cls.said = done.stdout
         cls.system = cls.root / "etc/systemd/system"
-        # What units of any system lean on, and programs to find.
+        # Units on which these depend, and the programs that they name.
         base = cls.root / "usr/lib/systemd/system"
         base.mkdir(parents=True)
         for path in [*pathlib.Path("/lib/systemd/system").glob("*.target"), *pathlib.Path("/lib/systemd/system").glob("*.slice")]:
@@ -52,7 +52,7 @@ class Units(unittest.TestCase):
         return subprocess.run(["systemd-analyze", what, f"--root={self.root}", "--no-pager", *words], capture_output=True, text=True, check=False)
 
     def last(self, kind, key):
-        """What holds of a unit where a key comes more than once."""
+        """The effective value of a key that occurs several times in a unit."""
         values = re.findall(rf"(?m)^{key}=(.*)$", (self.system / f"tactus-{kind}.service").read_text(encoding="ascii"))
         return values[-1] if values else None
 

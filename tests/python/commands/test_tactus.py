@@ -1,4 +1,4 @@
-"""The command `tactus`: it finds its commands from anywhere, lists and explains them, and names the nearest to a misspelt one."""
+"""Tests of the command `tactus`: dispatch from any folder, help, nearest name of a misspelt command, refusals."""
 import os
 import pathlib
 import subprocess

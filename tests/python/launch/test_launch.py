@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""scripts/run meets terminals that go away, texts that are none, full disks and wrong words with its results, or one sentence."""
+"""Tests of scripts/run: closed terminals, invalid texts, full disks and wrong arguments give results or one sentence."""
 import errno
 import os
 import pathlib
@@ -17,7 +17,7 @@ from tactus.launch import arguments, cluster, main, results, services
 from tactus.paths import SCRIPTS
 from tactus.refusal import Interrupted, Refusal
 
-signal.signal(signal.SIGINT, signal.default_int_handler)  # main took it
+signal.signal(signal.SIGINT, signal.default_int_handler)  # main replaced it
 HOSTILE = b"\xff\xfe caf\xe9 \x1b[2J"
 
 
@@ -107,7 +107,7 @@ class Arguments(unittest.TestCase):
 
 
 class Hands(Folders):
-    """Every tool of a scene has a process of its own."""
+    """Each tool of a scene has its own process."""
 
     def of(self, *tools, words=()):
         scene = self.folder / "scene.sdf"
@@ -165,7 +165,7 @@ class Hands(Folders):
 
 
 class Walls(Folders):
-    """Every wall of a room has a process of its own."""
+    """Each wall of a room has its own process."""
 
     def of(self, *words):
         plan = arguments.parse(list(words), os.getcwd())
@@ -214,7 +214,7 @@ class Walls(Folders):
 
 
 class Shaders(Folders):
-    """Shaders that a scene brings are read again when somebody changes them where they lie."""
+    """Shaders of a scene are reloaded from the folder of the scene after a change."""
 
     def words(self, world, *words):
         scene = self.folder / "scene.sdf"
@@ -263,7 +263,7 @@ class Checks(Folders):
 
 
 class Running:
-    """A cluster whose world begins when its clock, which main reads, says so."""
+    """A fake cluster whose simulation begins at a set time of its clock, which main reads."""
 
     def __init__(self, begins_at, expected=True):
         self.now, self.begins_at, self.expected, self.table = 0.0, begins_at, expected, False

@@ -1,4 +1,4 @@
-"""What rerender says of two renderings, where the truth is made up, and what it refuses."""
+"""Tests of rerender: differences of synthetic renderings, and refusals."""
 import csv
 import os
 import pathlib
