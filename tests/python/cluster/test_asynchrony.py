@@ -165,7 +165,7 @@ class Asynchrony(unittest.TestCase):
         pair, = a.of_walls(found, {}, {"visual_node": "front", "visual_node_right": "right"})
         self.assertEqual((4_000_000, 0, 2 * 30_002 + 6_000_000), (pair.true_ns, pair.off_ns, pair.stated_ns))
         self.assertFalse(pair.beyond)
-        with self.assertRaisesRegex(ValueError, "same log"):
+        with self.assertRaisesRegex(ValueError, "different logs"):
             a.frames(told[:1], shown, self.maps, HOSTS, AHEAD_S, {})
 
     def test_pairs_are_told_apart_by_what_was_spoilt_meanwhile(self):
