@@ -165,8 +165,8 @@ def onsets(rows, kinds, maps, host_of, ahead_s):
 
 
 def frames(told, shown, maps, host_of, ahead_s, own_ns):
-    """Onsets of frames, by wall: told are rows of FRAME_SHOWN, wide, and shown those of frame_shown.csv of the same log, in the same order, which have
-    the instant. own_ns: {wall: half width that it states of what it presents}."""
+    """Onsets of frames, by wall. told: rows of FRAME_SHOWN, wide, with the arrival; shown: rows of frame_shown.csv of the same log, in the same order,
+    with the presentation time. own_ns: {wall: half width that the wall states for its presentations}."""
     found = []
     told = [r for r in map(plain, told) if r["sender"]]  # rows without a readable header are only in the first table
     if [r["frame"] for r in told] != [r["frame"] for r in shown]:
