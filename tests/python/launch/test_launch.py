@@ -102,7 +102,7 @@ class Arguments(unittest.TestCase):
                 file.flush()
                 plan = arguments.parse(["--degrade", file.name], os.getcwd())
                 with self.assertRaises(Refusal) as caught:
-                    arguments.strangers(plan)
+                    arguments.unknown_modalities(plan)
                 self.assertIn("save it as UTF-8", str(caught.exception))
 
 
@@ -330,9 +330,9 @@ class TakenDown(Folders):
             with tempfile.TemporaryDirectory() as folder:
                 self.folder = pathlib.Path(folder)
                 service = self.service(stat)
-                self.assertEqual(taken, service.is_taken_down(), stat)
+                self.assertEqual(taken, service.is_stopped_by_user(), stat)
                 (service.path / "lost").write_text("left down", encoding="utf-8")
-                self.assertFalse(service.is_taken_down(), stat)
+                self.assertFalse(service.is_stopped_by_user(), stat)
 
 
 class Results(Folders):

@@ -118,7 +118,7 @@ class Words(unittest.TestCase):
     def test_wrong_words_are_refused_with_one_sentence(self):
         self.assertIn("sim_node", self.refusal("--only", "sim_node"))
         self.assertIn("contradict", self.refusal("--degrade", "a.xml", "--as-recorded"))
-        self.assertIn("first hand", self.refusal("--only", "haptic_node_lamp"))
+        self.assertIn("holds the first tool", self.refusal("--only", "haptic_node_lamp"))
         self.assertIn("control character", self.refusal("--channels", "a\nb"))
         self.assertIn("--help", self.refusal("--speeed", "2"))
         self.assertIn("a.xml", self.refusal("--degrade", "a.xml"))

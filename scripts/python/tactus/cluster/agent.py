@@ -260,7 +260,7 @@ def stop(request):
         write_record(request, {**kept, "here": [n for n in kept["here"] if n not in request["names"]]})
     for s in members:
         (s.path / "asked").touch()  # not counted as a death: services.FINISH
-    services.ask_to_end(members, request.get("patience", END_S))
+    services.request_end(members, request.get("patience", END_S))
     stubborn = [s for s in members if not s.is_down()]
     for s in stubborn:
         s.order("k")
@@ -287,8 +287,8 @@ def state(request):
     nodes = {}
     for name in kept.get("here", []):
         s = running(request, name)
-        nodes[name] = {"up": s.is_up(), "pid": s.pid(), "deaths": s.deaths(), "lost": s.lost(), "taken_down": s.is_taken_down(), "last": s.last_words()[-200:],
-                       "begun": name == "sim_node" and s.has_said("sim_node: the world begins")}
+        nodes[name] = {"up": s.is_up(), "pid": s.pid(), "deaths": s.deaths(), "lost": s.lost(), "taken_down": s.is_stopped_by_user(), "last": s.last_output_line()[-200:],
+                       "begun": name == "sim_node" and s.log_contains("sim_node: the world begins")}
     return {"run": kept, "nodes": nodes, "load": os.getloadavg()[0], "cores": os.cpu_count()}
 
 

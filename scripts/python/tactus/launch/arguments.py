@@ -182,7 +182,7 @@ def profile(here, text):
     return path.absolute()
 
 
-def strangers(plan):
+def unknown_modalities(plan):
     """Modalities of the profile and of --soa that no node of this run has: a user's own node may join later, or the name is misspelt."""
     named = {part.partition("=")[0] for word in plan.playout if word.startswith("--soa=") for part in word[len("--soa="):].split(",")}
     try:

@@ -155,7 +155,7 @@ class Cluster:
                 if not (self.folder / "address").exists():  # supervisor and network exist, so tactus attach works
                     self.write_address()
             if group != (self.plan.world,):  # loading the scene is awaited elsewhere
-                services.wait_until(lambda: all(s.has_spoken() for s in members), 5.0)
+                services.wait_until(lambda: all(s.has_output() for s in members), 5.0)
 
     def write_address(self):
         """Writes the file by which tactus attach finds the cluster."""
@@ -184,7 +184,7 @@ class Cluster:
 
     def world_has_begun(self):
         world = self.plan.world
-        return world in self.services and self.services[world].has_said(WORLD_BEGINS[world])
+        return world in self.services and self.services[world].log_contains(WORLD_BEGINS[world])
 
     def alive(self):
         return self.holder is not None and self.holder.poll() is None
@@ -195,7 +195,7 @@ class Cluster:
 
     def taken_down(self):
         """The nodes that the user stopped with sv. Call it before stop()."""
-        return [name for name, s in self.services.items() if s.is_taken_down()] if self.alive() else []
+        return [name for name, s in self.services.items() if s.is_stopped_by_user()] if self.alive() else []
 
     def stop(self):
         """Stops all processes in order. Returns the names of those that had to be killed."""
@@ -206,10 +206,10 @@ class Cluster:
             return []
         for names, grace_s in STOP_ORDER:
             names = (*self.plan.senses(), *self.plan.people()) if names == SENSES else names
-            services.ask_to_end([self.services[name] for name in names if name in self.services], grace_s)
+            services.request_end([self.services[name] for name in names if name in self.services], grace_s)
             if names == WORLDS:
                 time.sleep(PRESENT_THE_LAST_S)
-        stubborn = services.make_end(self.services.values(), PATIENCE_S)
+        stubborn = services.end_or_kill(self.services.values(), PATIENCE_S)
         self.end_supervisor()
         return stubborn
 

@@ -57,7 +57,7 @@ def watch_over(running, seconds, stop):
         for name, why in running.lost().items():
             if name not in named:
                 named.add(name)
-                say(f"{name}: {why}; the others continue ({running.services[name].last_words()})")
+                say(f"{name}: {why}; the others continue ({running.services[name].last_output_line()})")
         time.sleep(0.1)
     return end is not None
 
@@ -96,7 +96,7 @@ def run(plan, watch=watch_over):
         if not os.access(cluster.BIN / name, os.X_OK):
             raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
     cluster.check(cluster.commands(plan, run_id, git), stop)
-    for name in arguments.strangers(plan):
+    for name in arguments.unknown_modalities(plan):
         say(f"{name!r} is no modality of this run; check the names in the profile and in --soa")
     expectation = priority.expectation(plan.realtime)
     net = network.choose(plan.network, plan.port)
@@ -128,7 +128,7 @@ def run(plan, watch=watch_over):
         stubborn = running.stop()
         lost = running.lost()
         restarts = {name: s.deaths() for name, s in running.services.items() if s.deaths()}
-        words_of = {name: running.services[name].last_words() for name in lost}
+        words_of = {name: running.services[name].last_output_line() for name in lost}
         running.clean()
     wrong += [f"{name}: could not be kept running: {why} ({words_of[name]}); see {plan.out}/logs/{name}.log"
               for name, why in lost.items()]

@@ -103,9 +103,9 @@ def watcher(control, stay):
                 if not begun and running.world_has_begun():
                     begun = True
                     running.show_table()
-                if orders.pass_on() or world.has_said(ENDS):
+                if orders.pass_on() or world.log_contains(ENDS):
                     break
-                over = OVER in world.last_words()
+                over = OVER in world.last_output_line()
                 over_since = (over_since or time.monotonic()) if over else None
                 if over and not stay and time.monotonic() > over_since + AFTERWARDS_S:
                     break
@@ -114,7 +114,7 @@ def watcher(control, stay):
                 for name, why in running.lost().items():
                     if name not in named:
                         named.add(name)
-                        say(f"{name}: {why}; the others continue ({running.services[name].last_words()})")
+                        say(f"{name}: {why}; the others continue ({running.services[name].last_output_line()})")
                 if world.lost():
                     break
                 time.sleep(0.05)

@@ -115,7 +115,7 @@ class Service:
         except OSError:
             return True
 
-    def is_taken_down(self):
+    def is_stopped_by_user(self):
         """True when the user stopped the service with sv; a node that died has "want up"."""
         try:
             stat = (self.path / "supervise" / "stat").read_text(encoding="utf-8")
@@ -123,16 +123,16 @@ class Service:
             return False
         return stat.startswith("down") and "want up" not in stat and not self.lost()
 
-    def has_spoken(self):
+    def has_output(self):
         return self.log.exists() and self.log.stat().st_size > 0
 
-    def has_said(self, line):
+    def log_contains(self, line):
         try:
             return line in self.log.read_text(encoding="utf-8", errors="replace")
         except OSError:
             return False
 
-    def last_words(self):
+    def last_output_line(self):
         try:
             lines = self.log.read_text(encoding="utf-8", errors="replace").split("\n")
         except OSError:
@@ -153,14 +153,14 @@ class Service:
             return ""
 
 
-def ask_to_end(services, patience_s):
+def request_end(services, patience_s):
     """Asks all services to end and waits at most patience_s."""
     for s in services:
         s.order("d")
     wait_until(lambda: all(s.is_down() for s in services), patience_s)
 
 
-def make_end(services, patience_s):
+def end_or_kill(services, patience_s):
     """Waits at most patience_s for all services, then kills the others. Returns their names."""
     wait_until(lambda: all(s.is_down() for s in services), patience_s)
     stubborn = [s for s in services if not s.is_down()]

@@ -31,7 +31,7 @@ def run(plan, stop, claim_out):
     git = git_commit()
     words = commands(plan, git)
     cluster.check(words, stop)
-    for name in arguments.strangers(plan):
+    for name in arguments.unknown_modalities(plan):
         say(f"{name!r} is no modality of this run; check the names in the profile and in --soa")
     claim = claim_out(plan)
     for name in words:  # claim_out may have chosen another folder
