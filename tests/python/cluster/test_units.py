@@ -82,7 +82,8 @@ class Units(unittest.TestCase):
         for kind, source in SOURCES.items():
             text = (ROOT / source).read_text(encoding="utf-8")
             declared = re.search(r"\.fifo_priority = (\d+)", text)
-            callback = re.search(r"kCallbackPriority = (\d+)", text)
+            renderer = ROOT / "audio_node" / "renderer.cpp"
+            callback = kind == "audio" and re.search(r"kCallbackPriority = (\d+)", renderer.read_text(encoding="utf-8"))
             for unit in (kind, f"{kind}@") if kind in ("haptic", "visual") else (kind,):
                 self.assertEqual(self.last(unit, "CPUSchedulingPriority"), declared and declared.group(1), unit)
                 self.assertEqual(self.last(unit, "CPUSchedulingPolicy"), "fifo" if declared else None, unit)
