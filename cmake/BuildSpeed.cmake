@@ -1,8 +1,8 @@
-# A compiler cache and a fast linker, where they are installed. Neither changes what is built.
+# Uses a compiler cache and a fast linker if installed. Neither changes the result.
 option(TACTUS_CACHE "Use ccache where it is installed" ON)
 option(TACTUS_FAST_LINKER "Use mold where it is installed" ON)
 
-# The cache finds objects of another clone, too: paths below the source folder count as relative.
+# Paths in the source folder count as relative, so clones share cached objects.
 find_program(TACTUS_CCACHE ccache)
 if(TACTUS_CACHE AND TACTUS_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(launcher ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=true

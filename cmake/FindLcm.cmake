@@ -1,5 +1,5 @@
-# Finds LCM: by its own CMake configuration where that is installed (1.4 and later), otherwise by its files. Debian's
-# 1.3.1 has no configuration, and its .pc file asks for glib, which LCM's public headers do not need.
+# Finds LCM by its CMake configuration (1.4 and later), otherwise by its files. LCM 1.3.1 of Debian has no configuration, and
+# its .pc file requires glib, which the public headers of LCM do not need.
 #
 #   Lcm::lcm      the library          LCM_GEN   the generator
 find_package(lcm CONFIG QUIET)

@@ -1,6 +1,6 @@
-# Makes a generated decoder refuse hostile lengths before it allocates for them: lcm-gen 1.3.1 resizes to whatever
-# count the message claims, and builds a string of length - 1 from a length of 0. Every element has at least one byte on
-# the wire, so a count above the bytes left is a lie.
+# Patches a generated decoder so that it rejects invalid lengths before an allocation: lcm-gen 1.3.1 resizes to any count in
+# the message, and builds a string of length - 1 from a length of 0. Each element has at least one byte on the wire, so a count
+# above the remaining bytes is invalid.
 file(READ ${HEADER} text)
 string(REGEX REPLACE
   "this->([A-Za-z0-9_]+)\\.resize\\(this->([A-Za-z0-9_]+)\\);"

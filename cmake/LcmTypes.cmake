@@ -1,6 +1,6 @@
 find_package(Lcm REQUIRED)
 
-# Generates a header for every .lcm file given and makes an interface library of them.
+# Generates a header for each .lcm file and an interface library with all of them.
 function(tactus_lcm_types target)
   set(out ${CMAKE_CURRENT_BINARY_DIR}/generated)
   foreach(file IN LISTS ARGN)
@@ -16,7 +16,7 @@ function(tactus_lcm_types target)
   add_custom_target(${target}_headers DEPENDS ${headers})
   add_library(${target} INTERFACE)
   add_dependencies(${target} ${target}_headers)
-  # SYSTEM: generated code is not held to our warnings.
+  # SYSTEM: no compiler warnings for generated code.
   target_include_directories(${target} SYSTEM INTERFACE ${out})
   target_link_libraries(${target} INTERFACE Lcm::lcm)
 endfunction()

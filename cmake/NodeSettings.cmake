@@ -1,8 +1,8 @@
 # Every option and constant of a node is one row of its settings.csv: name, unit, default, min, max, meaning, source.
-# From it come the node's Settings struct, the check of scenes (sim_node) and the table in docs/settings.md.
+# It is the source of the Settings struct of the node, the check of scenes (sim_node) and the table in docs/settings.md.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 
-# Generates ${node}/settings.gen.h for the node folder that calls it.
+# Generates ${node}/settings.gen.h for the calling node folder.
 function(tactus_node_settings target)
   get_filename_component(node ${CMAKE_CURRENT_SOURCE_DIR} NAME)
   set(out ${CMAKE_BINARY_DIR}/generated/${node})

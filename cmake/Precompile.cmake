@@ -1,8 +1,7 @@
-# Reads the headers that nearly every file of a target includes once for the target: parsing them takes a large part of the time
-# of a build from nothing. Every file still includes what it uses; a build without precompiled headers checks that
-# (-DTACTUS_PRECOMPILE=OFF, as in the presets with sanitizers). With precompiled headers GCC 12 warns of string operations
-# that leave their bounds where there are none (its bug 105651), so those warnings are off here. The release preset
-# precompiles nothing and has them on.
+# Precompiles the headers that nearly every file of a target includes, because parsing them takes a large part of a full build.
+# Each file still includes the headers that it uses; a build without precompiled headers checks this
+# (-DTACTUS_PRECOMPILE=OFF, as in the sanitizer presets). With precompiled headers GCC 12 reports false out-of-bounds string
+# operations (GCC bug 105651), so these warnings are off here. The release preset precompiles nothing and has them on.
 option(TACTUS_PRECOMPILE "Read common headers once for each target" ON)
 
 #   tactus_precompile(TARGET [<HEADER>...])

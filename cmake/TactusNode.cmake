@@ -1,4 +1,4 @@
-# A node folder: every .cpp but main.cpp is its library, main.cpp its thin executable.
+# A node folder: all .cpp files except main.cpp form its library; main.cpp is the executable.
 #
 #   tactus_node(LIBRARIES external libraries of the library)
 function(tactus_node)

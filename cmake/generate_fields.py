@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Turns the message types into a table that programs read while they run: lcmtypes/fields.h says what for.
+"""Generates a table of the message types for use at run time; lcmtypes/fields.h describes its use.
 
   generate_fields.py OUT.cpp channels.h TYPE.lcm ...
 
-A comment belongs to the field under it. The type that a channel carries is the comment behind its name in channels.h.
+A comment belongs to the field below it. The comment after a channel name in channels.h is its message type.
 """
 import os
 import re

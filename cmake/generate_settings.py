@@ -37,7 +37,7 @@ def read(path):
 
 
 def check_default(place, row):
-    """The default is a value that the node would accept."""
+    """Checks that the node would accept the default."""
     unit, default = row["unit"], row["default"]
     if "|" in unit:
         if default not in unit.split("|"):
@@ -140,9 +140,9 @@ def markdown(out, sources):
     lines = ["# Settings", "",
              "Every option and constant of every node. In a scene: `<tactus:NODE name=\"value\"/>` inside `<world>`, for",
              "example `<tactus:audio_node presentation_delay=\"20ms\"/>`; on the command line of a node: `--set name=value`.",
-             "A limit that protects a person has a second, narrower range for scenes, since these come over the bus, from anybody:",
+             "A limit that protects a person has a second, narrower range for scenes, because scenes arrive over the bus from any sender:",
              "a scene may tighten it; to loosen it beyond its default takes `--set` on the node's own command line.",
-             "What is marked *live* can be changed while the node runs: `tactus set NODE NAME=VALUE`.",
+             "Settings marked *live* can be changed while the node runs: `tactus set NODE NAME=VALUE`.",
              "Generated from each folder's `settings.csv` by `cmake/generate_settings.py`; a test keeps it up to date.", ""]
     for source in sources:
         lines += [f"## {node_of(source)}", "", "| name | unit | default | range | meaning | source |",

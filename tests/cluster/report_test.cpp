@@ -35,12 +35,12 @@ TEST_CASE(
   run.output_of(words);
   CHECK((contents(page) == first));
 
-  for (const char* section : {"Comparison", "The run", "Contacts and what became of them", "Rates, ticks",
+  for (const char* section : {"Comparison", "The run", "Contacts and outcomes", "Rates, ticks",
                               "Latency", "Asynchrony of onsets", "Events", "Force, position, temperature",
-                              "Degradation", "What the log does not hold", "Sources"})
+                              "Degradation", "Missing data", "Sources"})
     CHECK_THAT(first, Catch::Contains(section));
   CHECK_THAT(first, Catch::Contains("delay=&quot;60ms&quot;"));
-  CHECK_THAT(first, Catch::Contains("sense visual was not there"));
+  CHECK_THAT(first, Catch::Contains("modality visual was absent"));
   const std::regex outside("(src|href)=\"(?!#|data:)");
   CHECK_FALSE(std::regex_search(first, outside));
 

@@ -1,1 +1,1 @@
-"""Tactus: runs, clusters, studies and analyses, around the programs of the repository."""
+"""Tactus: runs, clusters, studies and analyses with the programs of this repository."""

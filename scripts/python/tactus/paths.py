@@ -1,4 +1,4 @@
-"""Where things are, and how a command or a module of this package is run as a process of its own."""
+"""Paths of the repository, and the command lines that run a command or a module of this package as a process."""
 import os
 import pathlib
 
@@ -6,15 +6,15 @@ SCRIPTS = pathlib.Path(__file__).resolve().parents[2]
 REPOSITORY = SCRIPTS.parent
 SCENES = REPOSITORY / "sim_node" / "scenes"
 TACTUS = SCRIPTS / "tactus"
-# TACTUS_BIN: programs of another build; then nothing is installed or built.
+# TACTUS_BIN: the programs of another build; then nothing is installed or built.
 BIN = pathlib.Path(os.environ.get("TACTUS_BIN") or REPOSITORY / "build" / "dev" / "bin").absolute()
 
 
 def tactus_command(name):
-    """Words that run a command of `tactus`; its own words follow."""
+    """Command words that run a command of `tactus`; its arguments follow."""
     return [str(TACTUS), name]
 
 
 def tactus_module(name):
-    """Words that run main() of a module of this package, for example "sweep.job"; its own words follow."""
+    """Command words that run main() of a module of this package, for example "sweep.job"; its arguments follow."""
     return [str(TACTUS), "--module", f"tactus.{name}"]

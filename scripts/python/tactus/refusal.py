@@ -1,15 +1,15 @@
-"""The errors of this folder."""
+"""Exceptions of the commands."""
 
 
 class Refusal(Exception):
-    """One sentence: what is wrong, with which value, and what to do."""
+    """An error of the user or the system; one sentence: the fault, the value, and the remedy."""
 
 
 class Interrupted(Exception):
-    """Ctrl-C or its like before anything was started."""
+    """SIGINT, SIGTERM or SIGHUP arrived before anything was started."""
 
 
 def sentence_of(error):
-    """One sentence from an OSError."""
+    """The message of an OSError: file and reason."""
     where = f"{error.filename}: " if error.filename else ""
     return f"{where}{error.strerror or error}"

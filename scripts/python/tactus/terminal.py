@@ -1,28 +1,28 @@
-"""What a person is told. A terminal or a pipe that has gone away ends the telling, never the run."""
+"""Output for the user. When the terminal or the pipe is closed, further output is discarded and the run continues."""
 import os
 import sys
 
 
 def prepare():
-    """Text that the terminal cannot show is shown escaped."""
+    """Escapes characters that the terminal cannot encode."""
     for stream in (sys.stdout, sys.stderr):
-        if stream is not None:  # it was closed from the start
+        if stream is not None:  # closed at the start
             stream.reconfigure(errors="backslashreplace")
 
 
 def printable(text):
-    """Control characters would be orders to the terminal."""
+    """Escapes control characters, which the terminal would execute."""
     return "".join(c if c == "\n" or not (ord(c) < 32 or 127 <= ord(c) < 160) else f"\\x{ord(c):02x}" for c in text)
 
 
 def tell(text, stream=None):
-    """Prints whole lines."""
+    """Prints complete lines and flushes."""
     stream = stream or sys.stdout
     try:
         print(printable(text), file=stream, flush=True)
     except OSError:
         null = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(null, stream.fileno())  # what is still in the buffer goes there too
+        os.dup2(null, stream.fileno())  # discards the rest of the buffer too
         os.close(null)
 
 

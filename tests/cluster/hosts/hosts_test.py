@@ -150,7 +150,7 @@ class Hosts(unittest.TestCase):
         finally:
             subprocess.run([*sound.inside(), "nft", "delete table inet deaf"], check=True)
             picture.mend()
-        self.assertTrue([w for w in wrong if w.startswith("sound: hears none of the others")], wrong)
+        self.assertTrue([w for w in wrong if w.startswith("sound: receives nothing from the other hosts")], wrong)
         self.assertTrue([w for w in wrong if w.startswith("world: loses") and "picture" in w], wrong)
         self.assertTrue([w for w in wrong if w.startswith("picture: loses") and "world" in w], wrong)
         self.expect_whole()
@@ -265,7 +265,7 @@ class Hosts(unittest.TestCase):
         from tactus.cluster.orders import Operator
         config = str(self.r.lab.folder / "ssh_config")
         same = Operator(read(str(write_file(self.folder, "second", 7667)), self.folder / "x"), config, quiet=True)
-        with self.assertRaisesRegex(Refusal, "another cluster speaks already"):
+        with self.assertRaisesRegex(Refusal, "another cluster already uses"):
             same.up("second")
         other = Operator(read(str(write_file(self.folder, "second", 7777)), self.folder / "x"), config, quiet=True)
         before = self.incarnations()
@@ -292,7 +292,7 @@ class Hosts(unittest.TestCase):
         (own / "message_types").chmod(0o755)
         path = write_file(self.folder, "mixed", 7787, ' build="~/own"')
         mixed = Operator(read(str(path), self.folder / "x"), str(self.r.lab.folder / "ssh_config"), quiet=True)
-        with self.assertRaisesRegex(Refusal, "picture: its build speaks otherwise: .*contact_events_t"):
+        with self.assertRaisesRegex(Refusal, "picture: the messages of its build differ: .*contact_events_t"):
             mixed.up("mixed")
 
     def test_90_at_the_end_all_results_are_gathered_and_every_log_is_whole(self):
@@ -306,7 +306,7 @@ class Hosts(unittest.TestCase):
         described = subprocess.run([BIN / "replay", out / "run.lcmlog", "--describe"], capture_output=True, text=True, check=True).stdout
         self.assertIn('"recovered": ""', described)
         wrong, ran = self.r.operator.down(out)
-        self.assertEqual(["nothing of three runs"], wrong)
+        self.assertEqual(["no node of three runs"], wrong)
         for host in self.r.lab.hosts.values():
             names = {pathlib.Path(f"/proc/{p}/comm").read_text(encoding="ascii").strip() for p in host.processes()}
             self.assertFalse({"sim_node", "audio_node", "sync_node", "runsv", "runsvdir"} & names)

@@ -1,7 +1,7 @@
 """An artefact as a sequence of units, its digest, and the first difference between two of them.
 
 A unit is a line of a table or of JSON, a block of a binary file, or a message of a log. The digest is the SHA-256 of all units.
-A trail of short digests after 1, 2, 4, 8, ... units tells roughly where two artefacts begin to differ, without their bytes.
+A trail of short digests after 1, 2, 4, 8, ... units gives the approximate position of the first difference, without the bytes.
 """
 import fnmatch
 import hashlib
@@ -47,7 +47,7 @@ class Digest:
 
 
 def unit_name(path):
-    """What a unit of this file is called."""
+    """Name of a unit of this file."""
     if path.endswith(".json") or path.endswith(TABLES):
         return "lines"
     return "blocks"
@@ -92,7 +92,7 @@ def kept_lines(name, lines):
 
 
 def files_below(folder):
-    """Paths of all artefacts below a folder, relative to it. Logs of programs and plans are none."""
+    """Paths of all artefacts below a folder, relative to it. Without logs of programs and plans."""
     found = []
     for where, folders, names in os.walk(folder):
         folders[:] = sorted(name for name in folders if name != "logs")
@@ -121,7 +121,7 @@ def digest_of(sequence):
 
 
 def sequence_of(folder, artefact, changes):
-    """The units of one artefact that records() named, or None where it is not there."""
+    """The units of one artefact that records() named, or None when it is missing."""
     path, colon, channel = artefact.partition(".lcmlog:")
     if colon:
         log = os.path.join(folder, path + ".lcmlog")
@@ -133,7 +133,7 @@ def sequence_of(folder, artefact, changes):
 
 
 def first_difference(kind, ours, theirs, channel=""):
-    """Where two sequences of units begin to differ, as text. kind: "lines", "messages" or "blocks"; channel: of messages."""
+    """Position of the first difference of two sequences of units, as text. kind: "lines", "messages" or "blocks"; channel: of messages."""
     offset = 0
     for number, (one, two) in enumerate(itertools.zip_longest(ours, theirs)):
         if one != two:

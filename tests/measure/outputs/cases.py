@@ -1,4 +1,4 @@
-"""What is run: scenes in virtual time, the renderings of their logs, and the tables that programs make of them."""
+"""The cases: scenes in virtual time, renderings of their logs, and tables from the logs."""
 import dataclasses
 import json
 import os
@@ -56,14 +56,14 @@ def of_log(path):
 
 
 def chosen(only, quick, log):
-    """The cases of --only, --quick and --log. Raises KeyError with a name that is none."""
+    """The cases of --only, --quick and --log. Raises KeyError with an unknown name."""
     names = only or ([] if log and not quick else list(QUICK)) if (only or quick or log) else [case.name for case in CASES]
     by_name = {case.name: case for case in CASES}
     return [by_name[name] for name in names] + ([of_log(log)] if log else [])
 
 
 def profile_file(root, name):
-    """A profile of the checkout; where it has none yet, ours."""
+    """A profile of the checkout; otherwise that of this folder."""
     path = os.path.join(root, "tests", "measure", "outputs", "profiles", name + ".xml")
     return path if os.path.exists(path) else os.path.join(HERE, "profiles", name + ".xml")
 
@@ -133,7 +133,7 @@ def renderings(case, log, folder, forced):
 
 
 def games():
-    """What play_games reads: three games, one of them with a degraded modality."""
+    """Input of play_games: three games, one of them with a degraded modality."""
     late = '<profile><degrade modality="haptic" delay="20ms"/></profile>'
     wanted = [{"game": "1", "seed": 11, "limit_s": 20}, {"game": "2", "seed": 12, "limit_s": 20}, {"game": "3", "seed": 13, "limit_s": 20, "profile": late}]
     return "".join(json.dumps(game) + "\n" for game in wanted)

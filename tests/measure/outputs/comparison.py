@@ -16,7 +16,7 @@ class Row:
 
 
 def kind_of(record):
-    """What the units of an artefact are called."""
+    """Name of the units of an artefact."""
     return next(name for name in ("lines", "messages", "blocks") if name in record)
 
 
@@ -43,7 +43,7 @@ def compare(case, ours, theirs, changes, locate):
 
 
 def locate_in(folder, other, changes):
-    """locate() of compare() for two folders whose artefacts are there; other may lack some."""
+    """locate() of compare() for two folders with artefacts; some may be missing in other."""
     def locate(name, record, stored):
         ours, theirs = (artefacts.sequence_of(where, name, changes) for where in (folder, other))
         if ours is None or theirs is None:

@@ -1,4 +1,4 @@
-"""What results depend on besides the sources: the instruction set and the versions of libraries."""
+"""The instruction set and the library versions, on which results depend besides the sources."""
 import os
 import re
 import subprocess
@@ -37,7 +37,7 @@ def libraries():
 
 
 def key(choice, cpuinfo="/proc/cpuinfo"):
-    """What results are stored under. choice: "best" or the name of an instruction set that programs are held to."""
+    """Key of stored results. choice: "best" or the name of an instruction set to which programs are limited."""
     instructions = available(cpuinfo)[-1] if choice == "best" else choice
     return {"instructions": instructions, "forced": choice != "best", "libraries": libraries()}
 
@@ -47,7 +47,7 @@ def forced_settings(choice):
 
 
 def of_programs(choice, home):
-    """Environment variables of all programs: nothing of the caller's session reaches them."""
+    """Environment variables of all programs: independent of the session of the caller."""
     found = {"PATH": "/usr/local/bin:/usr/bin:/bin", "HOME": home, "LC_ALL": "C.UTF-8", "TZ": "UTC", "LIBGL_ALWAYS_SOFTWARE": "1",
              "LP_NUM_THREADS": "1", "MESA_SHADER_CACHE_DISABLE": "true"}
     if os.path.exists(MESA):

@@ -13,7 +13,7 @@ class Failed(Exception):
 
 
 class Build:
-    """The programs of one folder, the checkout that their scenes lie in, and what they are started with."""
+    """The programs of one folder, the checkout with their scenes, and their start options."""
 
     def __init__(self, folder, root, changes, choice, instructions, variables, settings):
         self.folder, self.root, self.changes = os.path.abspath(folder), os.path.abspath(root), changes
@@ -21,7 +21,7 @@ class Build:
         self.helps = {}
 
     def help_of(self, front):
-        """What a program prints with --help."""
+        """The output of a program with --help."""
         if tuple(front) not in self.helps:
             done = subprocess.run([*front, "--help"], capture_output=True, text=True, errors="replace", env=self.variables, check=False)
             self.helps[tuple(front)] = done.stdout + done.stderr

@@ -31,12 +31,12 @@ def completed(found, first):
 
 
 def reduced(found, first):
-    """What completed() makes whole again."""
+    """The short form that completed() expands."""
     return {name: found.get(name) for name in found.keys() | first.keys() if found.get(name) != first.get(name)}
 
 
 def entry_for(entries, key):
-    """The entry of this instruction set: that of the same libraries if there is one. None: there is none at all."""
+    """The entry of this instruction set: that of the same libraries if there is one. None without any."""
     same = [entry for entry in entries if all(entry["key"][name] == key[name] for name in ("instructions", "forced"))]
     return next((entry for entry in same if entry["key"]["libraries"] == key["libraries"]), same[0] if same else None)
 

@@ -1,4 +1,4 @@
-"""Asynchronies across hosts are laid on one clock by the truth and by the maps, and what the maps state is held against the difference."""
+"""Tests of asynchronies between hosts: by exact clocks and by clock maps, and the stated uncertainty of the maps against the difference."""
 import pathlib
 import sys
 import unittest
@@ -6,11 +6,11 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "python"))
 from tactus.cluster import asynchrony as a
 
-AHEAD_S = {"world": 1000, "sound": 2000, "left": 3000, "right": 3000}  # of the lab's clock; 500 s after it began nearly everything here happens
+AHEAD_S = {"world": 1000, "sound": 2000, "left": 3000, "right": 3000}  # ahead of the clock of the lab; most events are at 500 s of it
 HOSTS = {"recorder": "world", "sync_node": "world", "sync_node_sound": "sound", "sync_node_left": "left", "sync_node_right": "right",
          "haptic_node": "world", "audio_node": "sound", "visual_node": "left", "visual_node_right": "right"}
 CLOCKS = {"world": 1, "sound": 2, "left": 3, "right": 4}
-BEGIN_S = 490  # the log's zero on the lab's clock
+BEGIN_S = 490  # log time 0 on the clock of the lab
 PERIODS_NS = {"visual_node": 50_000_000, "visual_node_right": 50_000_000, "haptic_node": 1_000_000}
 
 
@@ -19,14 +19,14 @@ def s(seconds):
 
 
 def map_row(of, to, at_s, error_ns=0, half_ns=30_000, drift=0.0, growth=0.0):
-    """As sync_node of `to` sends it at that time of the lab."""
+    """A CLOCK_MAP as sync_node of `to` publishes it at a time of the lab."""
     sender = next(n for n, h in HOSTS.items() if h == to and n.startswith("sync_node"))
     return {"log_s": f"{at_s - BEGIN_S:.9f}", "sender": sender, "of_clock": str(CLOCKS[of]), "to_clock": str(CLOCKS[to]), "at_ns (ns)": str(s(at_s + AHEAD_S[to])),
             "offset_ns (ns)": str(s(AHEAD_S[of] - AHEAD_S[to]) + error_ns), "drift": str(drift), "uncertainty_ns (ns)": str(half_ns), "uncertainty_drift": str(growth)}
 
 
 def all_maps(**errors_ns):
-    own = [map_row("world", to, 491) for to in ("sound", "left", "right")]  # what the others know; it tells whose clocks those are
+    own = [map_row("world", to, 491) for to in ("sound", "left", "right")]  # maps of the other hosts; they identify the clocks
     return own + [map_row(of, "world", 495, errors_ns.get(of, 0)) for of in ("sound", "left", "right")]
 
 
@@ -141,7 +141,7 @@ class Asynchrony(unittest.TestCase):
         delays = a.Delays([r for i in range(60) for r in delays_row(495 + i / 10, haptic=0, audio=0.15)], self.maps)
         felt = lambda after_s: self.pairs(report("haptic_node", 500 + after_s, part=a.TRANSIENT, meant_s=500.0, ready_s=500.003), report("audio_node", 500.150, ready_s=500.2),
                                           delays=delays)["haptic", "audio"]
-        self.assertEqual([4_000_000] * 2, [felt(t).grain_ns for t in (0.003, 0.008)])  # a tick and the way; what sound needs is in its delay
+        self.assertEqual([4_000_000] * 2, [felt(t).grain_ns for t in (0.003, 0.008)])  # a tick and the transmission; the latency of sound is in its delay
         self.assertEqual([False, True], [felt(t).beyond for t in (0.003, 0.008)])
 
     def test_while_a_delay_changes_and_for_the_push_nothing_is_aimed_at(self):
@@ -165,7 +165,7 @@ class Asynchrony(unittest.TestCase):
         pair, = a.of_walls(found, {}, {"visual_node": "front", "visual_node_right": "right"})
         self.assertEqual((4_000_000, 0, 2 * 30_002 + 6_000_000), (pair.true_ns, pair.off_ns, pair.stated_ns))
         self.assertFalse(pair.beyond)
-        with self.assertRaisesRegex(ValueError, "same log"):
+        with self.assertRaisesRegex(ValueError, "different logs"):
             a.frames(told[:1], shown, self.maps, HOSTS, AHEAD_S, {})
 
     def test_pairs_are_told_apart_by_what_was_spoilt_meanwhile(self):

@@ -1,4 +1,4 @@
-"""What the doctor of a cluster makes of hosts that answer late, or not."""
+"""Tests of tactus cluster doctor with hosts that answer late or never."""
 import pathlib
 import sys
 import types
@@ -12,7 +12,7 @@ LOST = Unreachable("sound: does not answer within 10 s")
 
 
 def operator_of(*answers):
-    """One whose hosts answer so, one question after the other; what it was asked of whom is in `asked`."""
+    """A fake operator with prepared answers of hosts, in order; `asked` records the requests."""
     left, asked = list(answers), []
 
     def ask_all(_, hosts, **request):
@@ -55,7 +55,7 @@ class Lossy(unittest.TestCase):
         figures = {"hosts": {}, "remarks": []}
         answer = {"out": '{"lines": [{"what": "real-time priority", "verdict": "missing", "found": "SCHED_FIFO is refused", "remedy": ""}]}'}
         wrong = checkup.of_host(operator, "sound", {"machine": "x", "cores": 2}, answer, LOST, figures)
-        self.assertTrue(wrong[0].startswith(f"{LOST}, and did a moment before"), wrong)
+        self.assertTrue(wrong[0].startswith(f"{LOST}, but was reached a moment before"), wrong)
         self.assertEqual("sound: SCHED_FIFO is refused", wrong[1])
         self.assertEqual((None, None), (figures["hosts"]["sound"]["reached_s"], figures["hosts"]["sound"]["load"]))
 

@@ -1,4 +1,4 @@
-"""The cluster file: what is right is read whole, what is wrong is refused with its line."""
+"""Tests of the cluster file: valid files are read completely, invalid ones rejected with their line."""
 import pathlib
 import sys
 import tempfile
@@ -70,18 +70,18 @@ class ClusterFile(unittest.TestCase):
         of_file = '<host name="sound" reach="ssh" address="me@10.0.0.2" folder="~/t"/>'
         c = self.read(GOOD.replace(of_file, second.format("namespace")))
         self.assertEqual(("~/.local/share/tactus/hosts/sound", ""), (c.hosts["sound"].folder, c.hosts["desk"].folder))
-        self.refused(GOOD.replace(of_file, second.format("local")), "c.xml:5: ", "a second one that is local")
+        self.refused(GOOD.replace(of_file, second.format("local")), "c.xml:5: ", "is a second local host")
 
     def test_sites_without_relays_or_with_wrong_ones_are_refused(self):
         self.refused(GOOD.replace(*self.SITES[0]), "c.xml:5: ", "hosts of 2 sites and no relays")
         self.refused(GOOD.replace(*self.SITES[1]).replace("<relay host=\"sound\" at=\"198.51.100.2\" kbit=\"2000\"/>", ""), "one site, which needs no relay")
         self.refused(self.of_sites(("<relay host=\"desk\"", "<relay host=\"cellar\"")), "no host \"cellar\"")
         self.refused(self.of_sites(("<relay host=\"desk\" at=\"192.0.2.7\"/>", "")), "no host of the site of desk has a relay")
-        self.refused(self.of_sites(("<relay host=\"desk\"", "<relay host=\"sound\"")), "has a relay already, on sound")
-        self.refused(self.of_sites(("at=\"192.0.2.7\"", "at=\"desk\"")), "is no address")
-        self.refused(self.of_sites(("rules=\"wide\"", "rules=\"narrow\"")), "rules=\"narrow\" is no file", "all, wide")
+        self.refused(self.of_sites(("<relay host=\"desk\"", "<relay host=\"sound\"")), "already has a relay, on sound")
+        self.refused(self.of_sites(("at=\"192.0.2.7\"", "at=\"desk\"")), "is not an IPv4 address")
+        self.refused(self.of_sites(("rules=\"wide\"", "rules=\"narrow\"")), "rules=\"narrow\" is not a file", "all, wide")
         self.refused(self.of_sites(("kbit=\"2000\"", "kbit=\"2\"")), "kbit")
-        self.refused(self.of_sites(("rules=\"wide\"", "rules=\"wide\" port=\"7668\"")), "one of the bus'")
+        self.refused(self.of_sites(("rules=\"wide\"", "rules=\"wide\" port=\"7668\"")), "a port of the bus")
 
     def test_a_whole_file_is_read(self):
         c = self.read(GOOD)
@@ -120,7 +120,7 @@ class ClusterFile(unittest.TestCase):
 
     def test_what_is_wrong_is_refused_with_its_line(self):
         for old, new, line, *words in (
-                ('ttl="1"', 'ttl="0"', 2, "several hosts and ttl is 0"),
+                ('ttl="1"', 'ttl="0"', 2, "several hosts, but with ttl 0"),
                 ('host="sound" nice', 'host="cellar" nice', 8, 'no host "cellar"', "desk, sound"),
                 ('name="right" host', 'name="roof" host', 14, 'no wall "roof"', "left, front, right, floor"),
                 ('<wall name="left" host="desk"/>', '', 12, "the wall left is on no host"),
@@ -128,7 +128,7 @@ class ClusterFile(unittest.TestCase):
                 ('<node name="sim_node" host="desk" realtime="require" cpus="0-1"/>', '', 1, "sim_node is on no host"),
                 ('name="audio_node"', 'name="smell_node"', 8, '"smell_node"'),
                 ('group="239.1.2.3"', 'group="10.1.2.3"', 2, "group"),
-                ('group="239.1.2.3"', 'group="239.1.2.300"', 2, "no address"),
+                ('group="239.1.2.3"', 'group="239.1.2.300"', 2, "not a multicast address"),
                 ('nice="3"', 'nice="-3"', 8, "nice"),
                 ('port="7700"', 'port="77000"', 2, "port"),
                 ('folder="~/t"', 'folder="t"', 5, "not absolute"),
@@ -139,7 +139,7 @@ class ClusterFile(unittest.TestCase):
                 ('</walls>', '</wals>', 15, ""),
                 ("'HDA Intel'", "'HDA Intel", 8, "quotation"),
                 ('<host name="desk" reach="local"/>', '<host name="desk" reach="local"/><bus/>', 4, "second <bus>"),
-                ('<walls room="cave4">', '<node name="visual_node" host="desk"/><walls room="cave4">', 12, "leave one away"),
+                ('<walls room="cave4">', '<node name="visual_node" host="desk"/><walls room="cave4">', 12, "remove one"),
                 ('cpus="0-1"', 'cpus="all"', 6, "cpus"),
                 ('<run scene', '<run colour="red" scene', 3, "colour")):
             with self.subTest(new or old):

@@ -1,4 +1,4 @@
-"""The simulation of a large cluster is held against closed forms."""
+"""Tests of the model of a large cluster against closed forms."""
 import pathlib
 import random
 import sys
@@ -78,7 +78,7 @@ class Growth(unittest.TestCase):
     def test_with_many_hosts_the_clocks_take_a_share_that_grows_no_faster_than_they_do(self):
         probes = next(f for f in growth.flows() if f.channel == "CLOCK_PROBE")
         of_all = lambda hosts: hosts * growth.rate(probes, hosts)
-        self.assertAlmostEqual(4 * 6 * 6, of_all(6))       # 8 asked in 2 s, 5 answers to each
+        self.assertAlmostEqual(4 * 6 * 6, of_all(6))       # 8 probes in 2 s, 5 answers to each
         self.assertLess(of_all(250) / of_all(64), 1.3 * 250 / 64)
         self.assertLess(of_all(64) / of_all(16), 1.3 * 64 / 16 * 16 / 15)
 

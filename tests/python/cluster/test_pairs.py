@@ -1,4 +1,4 @@
-"""What is wrong between hosts is found, and said with what to do."""
+"""Tests that faults between hosts are found and reported with a remedy."""
 import copy
 import pathlib
 import sys
@@ -37,11 +37,11 @@ class Pairs(unittest.TestCase):
     def test_one_that_hears_nobody_and_one_that_nobody_hears(self):
         self.deafen("b", "a")
         self.deafen("b", "c")
-        self.found("b: hears none of the others", "route")
+        self.found("b: receives nothing from the other hosts", "route")
         self.setUp()
         self.deafen("a", "b")
         self.deafen("c", "b")
-        self.found("a: does not hear b", "a firewall on a")
+        self.found("a: receives nothing from b", "a firewall on a")
 
     def test_a_ttl_of_zero_is_named(self):
         for name in self.said:
@@ -52,7 +52,7 @@ class Pairs(unittest.TestCase):
 
     def test_losses_bursts_and_buffers(self):
         self.said["a"]["others"]["b"]["lost"] = 0.1
-        self.found("a: loses 10.0 % of what b sends")
+        self.found("a: loses 10.0 % of the datagrams of b")
         self.said["c"]["others"]["a"]["of_bursts"] = 200
         self.found("c: 100 of 300 datagrams of bursts of a")
         self.said["b"]["buffer_bytes"] = 212992
@@ -68,7 +68,7 @@ class Pairs(unittest.TestCase):
 
     def test_answers_that_do_not_come_back(self):
         self.said["a"]["others"]["b"]["answered"] = False
-        self.found("a: b hears it, and its answers do not come back")
+        self.found("a: b receives its datagrams, but the answers are lost")
 
     def test_a_host_that_said_nothing_is_no_error(self):
         del self.said["c"]

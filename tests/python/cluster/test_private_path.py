@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tactus private-path makes keys that only their owner reads and configurations that keep the bus inside, or refuses in one sentence."""
+"""Tests of tactus private-path: keys readable only by their owner, configurations that keep the bus inside, one sentence for wrong arguments."""
 import os
 import pathlib
 import re
@@ -40,7 +40,7 @@ class Refusals(unittest.TestCase):
             self.refused("neither an address nor a name", *make(server="a b"))
             self.refused("from 1 to 65534", *make(port="65535"))
             self.refused("--days", *make(days="0"))
-            self.refused("is there already", *make(out=folder))
+            self.refused("already exists", *make(out=folder))
             self.refused("--help", "make", "--hosts", "a,b")
             self.refused("--help", "mace")
             self.refused("no name of a network device", "macsec", "--hosts", "a,b", "--device", "eth0; ls")

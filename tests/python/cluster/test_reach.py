@@ -1,4 +1,4 @@
-"""How hosts are reached: which connections are shared, and which must not be."""
+"""Tests of access to hosts: which connections are shared and which are separate."""
 import os
 import pathlib
 import subprocess

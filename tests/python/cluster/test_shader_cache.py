@@ -1,4 +1,4 @@
-"""Compiled shaders go from host to host whole, and nothing else does."""
+"""Tests that complete compiled shaders, and no other files, are copied between hosts."""
 import io
 import pathlib
 import sys

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tactus units installs units that systemd understands, that are shut in, and that have the priorities of the sources."""
+"""Tests that tactus units installs valid, sandboxed systemd units with the priorities of the sources."""
 import os
 import pathlib
 import re
@@ -13,7 +13,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 KINDS = ("sync", "recorder", "haptic", "audio", "visual", "thermal", "sim", "relay", "path")
 SOURCES = {"sync": "sync/tools/sync_node.cpp", "recorder": "sync/tools/recorder/recorder_node.cpp", "haptic": "haptic_node/run.cpp", "audio": "audio_node/run.cpp",
            "visual": "visual_node/run.cpp", "thermal": "thermal_node/run.cpp", "sim": "sim_node/run.cpp"}
-MOST_EXPOSED = 5  # systemd calls what is below "OK"
+MOST_EXPOSED = 5  # systemd rates lower values as "OK"
 
 
 def run(*words):
@@ -31,7 +31,7 @@ class Units(unittest.TestCase):
         assert done.returncode == 0, done.stderr
         cls.said = done.stdout
         cls.system = cls.root / "etc/systemd/system"
-        # What units of any system lean on, and programs to find.
+        # Units on which these depend, and the programs that they name.
         base = cls.root / "usr/lib/systemd/system"
         base.mkdir(parents=True)
         for path in [*pathlib.Path("/lib/systemd/system").glob("*.target"), *pathlib.Path("/lib/systemd/system").glob("*.slice")]:
@@ -52,7 +52,7 @@ class Units(unittest.TestCase):
         return subprocess.run(["systemd-analyze", what, f"--root={self.root}", "--no-pager", *words], capture_output=True, text=True, check=False)
 
     def last(self, kind, key):
-        """What holds of a unit where a key comes more than once."""
+        """The effective value of a key that occurs several times in a unit."""
         values = re.findall(rf"(?m)^{key}=(.*)$", (self.system / f"tactus-{kind}.service").read_text(encoding="ascii"))
         return values[-1] if values else None
 
@@ -82,7 +82,8 @@ class Units(unittest.TestCase):
         for kind, source in SOURCES.items():
             text = (ROOT / source).read_text(encoding="utf-8")
             declared = re.search(r"\.fifo_priority = (\d+)", text)
-            callback = re.search(r"kCallbackPriority = (\d+)", text)
+            renderer = ROOT / "audio_node" / "renderer.cpp"
+            callback = kind == "audio" and re.search(r"kCallbackPriority = (\d+)", renderer.read_text(encoding="utf-8"))
             for unit in (kind, f"{kind}@") if kind in ("haptic", "visual") else (kind,):
                 self.assertEqual(self.last(unit, "CPUSchedulingPriority"), declared and declared.group(1), unit)
                 self.assertEqual(self.last(unit, "CPUSchedulingPolicy"), "fifo" if declared else None, unit)
@@ -111,14 +112,14 @@ class Units(unittest.TestCase):
             self.assertEqual(run("install", "--root", folder, "--units-only").returncode, 0)
             file = pathlib.Path(folder) / "etc/tactus/tactus.env"
             file.write_text("TACTUS_PORT=1\n", encoding="ascii")
-            self.assertIn("as it was", run("install", "--root", folder, "--units-only", "--port", "7700").stdout)
+            self.assertIn("was kept", run("install", "--root", folder, "--units-only", "--port", "7700").stdout)
             self.assertEqual(file.read_text(encoding="ascii"), "TACTUS_PORT=1\n")
             self.assertFalse((pathlib.Path(folder) / "etc/systemd/system/tactus-path.service").exists(), "unless it is asked for")
 
     def test_each_wrong_word_is_one_sentence(self):
         for sentence, words in (("no unit of \"smell\"", ["--only", "smell"]), ("absolute path", ["--prefix", "opt"]), ("absolute path", ["--out", "/a b"]),
-                                ("from 0 to 255", ["--ttl", "256"]), ("no multicast group", ["--group", "10.0.0.1"]), ("--host", ["--host", "a b"]),
-                                ("is no folder", ["--root", "/none/such"]), ("--help", ["--wrong"])):
+                                ("from 0 to 255", ["--ttl", "256"]), ("not a multicast group", ["--group", "10.0.0.1"]), ("--host", ["--host", "a b"]),
+                                ("is not a folder", ["--root", "/none/such"]), ("--help", ["--wrong"])):
             done = run("install", "--units-only", "--root", os.devnull, *words)
             self.assertEqual((done.returncode, done.stdout), (1, ""), words)
             self.assertRegex(done.stderr, r"\Aunits: [^\n]*" + re.escape(sentence) + r"[^\n]*\n\Z")

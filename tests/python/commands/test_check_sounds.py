@@ -1,6 +1,6 @@
-"""check_sounds: what it says of folders of recordings, whole and broken, and how it ends.
+"""Tests of check_sounds: reports and exit status for valid and damaged folders of recordings.
 
-TACTUS_BIN names the folder of the programs.
+TACTUS_BIN: the folder of the programs.
 """
 import json
 import math

@@ -1,4 +1,4 @@
-"""The modules of the package import each other by their whole names, and neither modules nor packages do so in a circle."""
+"""Tests that modules import each other by full names, without cycles of modules or packages."""
 import ast
 import pathlib
 import sys
@@ -10,7 +10,7 @@ KNOWN = {*sys.stdlib_module_names, "tactus", "numpy", "scipy", "statsmodels", "m
 
 
 def imports(name):
-    """Whole names of all that a module imports, also inside of its functions."""
+    """Full names of all imports of a module, also inside functions."""
     found = set()
     for node in ast.walk(ast.parse(FILES[name].read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
@@ -22,7 +22,7 @@ def imports(name):
 
 
 def circle(graph):
-    """Names of a circle in {name: names}, the first again at its end; [] when there is none."""
+    """Names of a cycle in {name: names}, the first repeated at the end; [] without a cycle."""
     path, done = [], set()
 
     def visit(name):

@@ -1,4 +1,4 @@
-"""The command `tactus`: it finds its commands from anywhere, lists and explains them, and names the nearest to a misspelt one."""
+"""Tests of the command `tactus`: dispatch from any folder, help, nearest name of a misspelt command, refusals."""
 import os
 import pathlib
 import subprocess
@@ -80,7 +80,7 @@ class Refusals(unittest.TestCase):
                 (("degrade", "none.xml"), "degrade: the profile none.xml is not a file; give the path of an XML file, or off"),
                 (("degrade", "--fast"), "degrade: unknown option '--fast'; see tactus degrade --help"),
                 (("playout", "asap", "--in"), "playout: --in needs the folder that a run writes to; see tactus playout --help"),
-                (("set", "haptic_node", "a=1", "--in", "/none"), "set: the folder /none is not there; name the folder that a run writes to"),
+                (("set", "haptic_node", "a=1", "--in", "/none"), "set: the folder /none does not exist; name the folder that a run writes to"),
                 (("attach", "/tmp/"), "attach: name a command to run; see tactus attach --help"),
                 (("export",), "export: name a log; see tactus export --help"),
                 (("export", "none.lcmlog"), "export: cannot read none.lcmlog; give the run.lcmlog of a run, or its folder"),

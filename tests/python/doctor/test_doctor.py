@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`tactus doctor` finds what is wrong with a machine: each bad case is provoked, and the figures are those of the machine."""
+"""Tests of `tactus doctor`: each fault is simulated, and figures are compared with the machine."""
 import json
 import os
 import pathlib
@@ -21,7 +21,7 @@ LCM = {"int8_t": "b", "int16_t": "h", "int32_t": "i", "int64_t": "q", "float": "
 
 
 def layout(name):
-    """The fields of a message type of plain numbers, as struct has them."""
+    """The struct format of a message type with only numbers."""
     text = next((ROOT / "lcmtypes" / "types").glob(f"*/{name}.lcm")).read_text()
     fields = re.findall(r"^\s*(\w+) (\w+);", re.sub(r"//.*", "", text), re.M)
     return ">" + "".join(LCM[kind] for kind, _ in fields if kind in LCM)

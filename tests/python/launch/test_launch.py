@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""scripts/run meets terminals that go away, texts that are none, full disks and wrong words with its results, or one sentence."""
+"""Tests of scripts/run: closed terminals, invalid texts, full disks and wrong arguments give results or one sentence."""
 import errno
 import os
 import pathlib
@@ -17,7 +17,7 @@ from tactus.launch import arguments, cluster, main, results, services
 from tactus.paths import SCRIPTS
 from tactus.refusal import Interrupted, Refusal
 
-signal.signal(signal.SIGINT, signal.default_int_handler)  # main took it
+signal.signal(signal.SIGINT, signal.default_int_handler)  # main replaced it
 HOSTILE = b"\xff\xfe caf\xe9 \x1b[2J"
 
 
@@ -81,7 +81,7 @@ class Arguments(unittest.TestCase):
         for words, named in ((["--set", "../x.y=1"], "../x has no settings"), (["--set", ".x=1"], "NODE.NAME=VALUE"),
                              (["--set", "sync_node.x=1"], "sync_node has no settings"),
                              (["--set", "audio_node.device=a\nb"], "control character"), (["--out", "a\x1bb"], "control character"),
-                             (["--without", "recorder"], "all results are made from what it records"),
+                             (["--without", "recorder"], "all results come from its log"),
                              (["--degrade", "/no/such.xml"], "/no/such.xml")):
             self.assertIn(named, refusal_of(*words))
             self.assertNotIn("\n", refusal_of(*words))
@@ -102,12 +102,12 @@ class Arguments(unittest.TestCase):
                 file.flush()
                 plan = arguments.parse(["--degrade", file.name], os.getcwd())
                 with self.assertRaises(Refusal) as caught:
-                    arguments.strangers(plan)
+                    arguments.unknown_modalities(plan)
                 self.assertIn("save it as UTF-8", str(caught.exception))
 
 
 class Hands(Folders):
-    """Every tool of a scene has a process of its own."""
+    """Each tool of a scene has its own process."""
 
     def of(self, *tools, words=()):
         scene = self.folder / "scene.sdf"
@@ -144,9 +144,9 @@ class Hands(Folders):
         self.assertEqual([], self.after(commands["haptic_node_b"], "--device"))
 
     def test_a_tool_that_is_not_there_gets_two_devices_or_shares_that_of_another_program_is_refused(self):
-        for words, said in ((["head=external:e"], 'no tool "head"; it has a, b'), (["b=external:e", "b=virtual_hand"], "has a device already"),
-                            (["external:e", "a=external:f"], "has a device already"),
-                            (["a=external:e,offset=0/0/1", "b=external:e"], "a holds external:e already")):
+        for words, said in ((["head=external:e"], 'no tool "head"; it has a, b'), (["b=external:e", "b=virtual_hand"], "already has a device"),
+                            (["external:e", "a=external:f"], "already has a device"),
+                            (["a=external:e,offset=0/0/1", "b=external:e"], "a already holds external:e")):
             with self.assertRaises(arguments.Refusal) as refused:
                 self.of("a", "b", words=[w for word in words for w in ("--device", word)])
             self.assertIn(said, str(refused.exception))
@@ -165,7 +165,7 @@ class Hands(Folders):
 
 
 class Walls(Folders):
-    """Every wall of a room has a process of its own."""
+    """Each wall of a room has its own process."""
 
     def of(self, *words):
         plan = arguments.parse(list(words), os.getcwd())
@@ -198,7 +198,7 @@ class Walls(Folders):
     def test_a_room_that_is_none_is_refused_in_a_sentence(self):
         (self.folder / "empty.csv").write_text("wall\n", encoding="utf-8")
         for room, said in (("cave5", "choose cave4, cave6, desk"), (str(self.folder / "empty.csv"), "has no wall"),
-                           (str(self.folder), "is no file of walls"), (__file__, "is no file of walls")):
+                           (str(self.folder), "is not a file of walls"), (__file__, "is not a file of walls")):
             self.assertIn(said, refusal_of("--room", room))
 
     def test_a_setting_of_visual_node_is_one_of_every_wall_but_its_own_comes_last(self):
@@ -214,7 +214,7 @@ class Walls(Folders):
 
 
 class Shaders(Folders):
-    """Shaders that a scene brings are read again when somebody changes them where they lie."""
+    """Shaders of a scene are reloaded from the folder of the scene after a change."""
 
     def words(self, world, *words):
         scene = self.folder / "scene.sdf"
@@ -263,7 +263,7 @@ class Checks(Folders):
 
 
 class Running:
-    """A cluster whose world begins when its clock, which main reads, says so."""
+    """A fake cluster whose simulation begins at a set time of its clock, which main reads."""
 
     def __init__(self, begins_at, expected=True):
         self.now, self.begins_at, self.expected, self.table = 0.0, begins_at, expected, False
@@ -330,9 +330,9 @@ class TakenDown(Folders):
             with tempfile.TemporaryDirectory() as folder:
                 self.folder = pathlib.Path(folder)
                 service = self.service(stat)
-                self.assertEqual(taken, service.is_taken_down(), stat)
+                self.assertEqual(taken, service.is_stopped_by_user(), stat)
                 (service.path / "lost").write_text("left down", encoding="utf-8")
-                self.assertFalse(service.is_taken_down(), stat)
+                self.assertFalse(service.is_stopped_by_user(), stat)
 
 
 class Results(Folders):

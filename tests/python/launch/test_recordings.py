@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How long the files of a recording get, as scripts/run is asked."""
+"""Tests of the options of scripts/run for the size of recording files."""
 import os
 import pathlib
 import sys

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tactus replay: what keys and lines order, and what of its words is refused, each with one sentence."""
+"""Tests of tactus replay: commands from keys and lines, and one sentence for each wrong argument."""
 import os
 import pathlib
 import random
@@ -67,11 +67,11 @@ class Keys(unittest.TestCase):
             path = os.path.join(folder, "control")
             os.mkfifo(path)
             orders = keys.Orders(path)
-            orders.send("pause")  # nobody has opened it
+            orders.send("pause")  # no reader has opened it
             reader = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
             orders.send("seek +5")
             self.assertEqual(os.read(reader, 100), b"seek +5\n")
-            for _ in range(20000):  # more than a pipe takes
+            for _ in range(20000):  # more than the capacity of a pipe
                 orders.send("toggle")
             os.close(reader)
             orders.send("pause")
@@ -104,7 +104,7 @@ class Words(unittest.TestCase):
         self.assertEqual(self.parse().without, [])
         self.assertEqual(set(self.parse("--only", "audio_node").without), {"haptic_node", "visual_node", "thermal_node", "haptic_node_lamp"})
         self.assertEqual(set(self.parse("--only", "haptic_node").without), {"audio_node", "visual_node", "thermal_node"})
-        # The hand of another tool asks the first hand's process; without that there is none.
+        # The process of another tool needs haptic_node.
         self.assertEqual(set(self.parse("--without", "haptic_node").without), {"haptic_node", "haptic_node_lamp"})
 
     def test_what_the_replay_does_is_passed_on_to_it(self):
@@ -118,7 +118,7 @@ class Words(unittest.TestCase):
     def test_wrong_words_are_refused_with_one_sentence(self):
         self.assertIn("sim_node", self.refusal("--only", "sim_node"))
         self.assertIn("contradict", self.refusal("--degrade", "a.xml", "--as-recorded"))
-        self.assertIn("first hand", self.refusal("--only", "haptic_node_lamp"))
+        self.assertIn("holds the first tool", self.refusal("--only", "haptic_node_lamp"))
         self.assertIn("control character", self.refusal("--channels", "a\nb"))
         self.assertIn("--help", self.refusal("--speeed", "2"))
         self.assertIn("a.xml", self.refusal("--degrade", "a.xml"))

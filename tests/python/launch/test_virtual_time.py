@@ -1,4 +1,4 @@
-"""A whole run in virtual time: the same to the bit, every sense presents what it owes, and faults of the bus and of senses tell."""
+"""Tests of a complete run in virtual time: bit-identical results, presentation of all expected events, effects of faults of bus and modalities."""
 import filecmp
 import json
 import os

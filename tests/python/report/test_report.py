@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tactus report: its figures against logs of which they are known; what a log lacks is said; hostile texts stay texts."""
+"""Tests of tactus report: figures of logs with known values, missing data is named, hostile texts are escaped."""
 import csv
 import json
 import pathlib
@@ -52,7 +52,7 @@ class Logs(unittest.TestCase):
         return [["log_s", "world_s", "sender", "seq", "field", "unit", "value"], *rows]
 
     def of_events(self, heard_after_ms, audio_ms, visual_ms, push_ms=()):
-        """A log with events every 100 ms, heard and presented so many ms later."""
+        """A log with events every 100 ms, received and presented after the given times in ms."""
         at = [LIVE_FROM + i * 100_000_000 for i in range(len(audio_ms))]
         presented = [["modality", "event_id", "part", "scheduled_ns", "presented_ns", "uncertainty_ns", "outcome"]]
         for sense, part, list_ms in (("audio", "whole", audio_ms), ("visual", "whole", visual_ms), ("haptic", "constraint", push_ms)):
@@ -74,7 +74,7 @@ class Figures(Logs):
         np.testing.assert_allclose(hops["event to visual"], [33, 40], atol=1e-6)
         np.testing.assert_allclose(hops["event to haptic_push"], [1, 1.5, 2], atol=1e-6)
         np.testing.assert_allclose(log.lateness_ms()["audio"], [10, 11, 15], atol=1e-6)
-        self.assertNotIn("haptic", log.lateness_ms())  # a push is due at once
+        self.assertNotIn("haptic", log.lateness_ms())  # a push is scheduled immediately
 
     def test_asynchronies_are_signed_and_of_events_that_both_presented(self):
         log = self.of_events(1, [20, 21, 25], [33, None, 15], [1, 1, 1])
@@ -154,7 +154,7 @@ class Words(unittest.TestCase):
         self.assertEqual(words.figure(0.9991, 4), "0.9991")
 
     def test_a_table_takes_any_text(self):
-        self.assertIn('<th>a</th><th class="n">n</th>', words.table("c", ["a", "n"], [["x", 3]], 1))  # a head lies over its column
+        self.assertIn('<th>a</th><th class="n">n</th>', words.table("c", ["a", "n"], [["x", 3]], 1))  # heads are aligned with their columns
         made = words.table("c", ["<b>"], [["<script>"], [3.0]], 1)
         self.assertIn("&lt;script&gt;", made)
         self.assertNotIn("<script>", made)
@@ -186,13 +186,13 @@ class Whole(Logs):
     def test_a_log_of_nothing_makes_a_report_that_says_what_it_lacks(self):
         page = self.made(self.log(nodes={}, contacts={"begin": 0, "hit": 0, "end": 0, "late": 0, "lost": 0, "dropped_by_profile": 0, "by_modality": {}}, realtime_factor=0,
                                   absent=["audio"]))
-        for sentence in ("There was no simulation", "No sense reported", "No process told of its health", "no latency can be told", "no asynchrony", "No hand was recorded",
+        for sentence in ("The log has no simulation", "No modality reported", "No process published its health", "latency is unknown", "no asynchrony", "No tool was recorded",
                          "No temperature", "No degradation profile"):
             self.assertTrue(sentence in page, sentence)
 
     def test_lost_events_stand_in_the_first_paragraph(self):
         contacts = {**summary()["contacts"], "lost": 2}
-        self.assertIn("<b>2 events that a sense owed were lost.</b>", self.made(self.log(contacts=contacts)))
+        self.assertIn("<b>2 expected events were lost.</b>", self.made(self.log(contacts=contacts)))
 
     def test_several_logs_stand_beside_each_other(self):
         page = self.made(self.of_events(2, [20, 21, 25], [33, 30, 40]), self.of_events(2, [60, 61, 65], [33, 30, 40]))

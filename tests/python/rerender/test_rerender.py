@@ -1,4 +1,4 @@
-"""What rerender says of two renderings, where the truth is made up, and what it refuses."""
+"""Tests of rerender: differences of synthetic renderings, and refusals."""
 import csv
 import os
 import pathlib
@@ -149,9 +149,9 @@ class Files(unittest.TestCase):
     def test_what_is_wrong_is_said_in_one_sentence(self):
         log = self.path("run.lcmlog")
         open(log, "w", encoding="utf-8").close()
-        self.assertIn("is no log, and no folder of a run", self.refusal(self.path("none.lcmlog")))
+        self.assertIn("is neither a log nor the folder of a run", self.refusal(self.path("none.lcmlog")))
         self.assertIn("not empty", self.refusal(log, "--out", self.folder.name))
-        self.assertIn("is no file", self.refusal(log, "--degrade", self.path("none.xml")))
+        self.assertIn("is not a file", self.refusal(log, "--degrade", self.path("none.xml")))
         self.assertIn("SENSE:NAME=VALUE", self.refusal(log, "--set", "smell:rose=1"))
 
     def test_a_node_that_refuses_is_quoted_and_one_that_renders_says_how_fast(self):

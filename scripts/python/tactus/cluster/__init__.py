@@ -1,1 +1,1 @@
-"""Runs a scene on several hosts, as a cluster file says; the lab, private paths and units for systemd."""
+"""Runs a scene on several hosts described by a cluster file; also the lab, private paths and systemd units."""

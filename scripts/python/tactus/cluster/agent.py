@@ -1,5 +1,5 @@
-"""What is done on a host, one question at a time: it comes over reach.py with the question, answers, and is gone. What runs is
-kept running by runit, as on one machine (scripts/python/tactus/launch/services.py).
+"""The agent: runs on a host for one request, which reach.py sends together with this code, answers and exits. runit supervises
+the nodes, as on one machine (scripts/python/tactus/launch/services.py).
 
 FOLDER (~/.local/share/tactus) holds builds/IDENTITY and clusters/NAME with run.json, files/ and out/."""
 import base64
@@ -38,7 +38,7 @@ def place(request):
 
 
 def record(request):
-    """What runs here of the cluster; {} when nothing does."""
+    """The record of the running cluster on this host; {} when it does not run."""
     try:
         kept = json.loads((place(request) / "run.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -47,7 +47,7 @@ def record(request):
 
 
 def is_held(folder):
-    """Its supervisor lives: it holds the lock until it ends."""
+    """True while the supervisor runs, because it holds the lock."""
     try:
         with open(folder / "in_use", "r", encoding="ascii") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -63,7 +63,7 @@ def nothing(_):
 
 
 def look(request):
-    """What this host is, and what of ours it has."""
+    """Properties of this host, and the state of build and cluster on it."""
     build = build_folder(request)
     programs = [str(p) for p in sorted((build / "bin").glob("*")) if p.is_file()] if build.is_dir() else []
     kept = record(request)
@@ -89,7 +89,7 @@ def said_of_messages(build):
 
 
 def receive(request):
-    """Unpacks what follows the question: a build, or the files of a run. Whole or not at all."""
+    """Unpacks the tar behind the request: a build, or the files of a run. All or nothing."""
     into = build_folder(request) if request["into"] == "build" else place(request) / "files"
     into.parent.mkdir(parents=True, exist_ok=True)
     fresh = into.with_name(f"{into.name}.{os.getpid()}.new")
@@ -98,7 +98,7 @@ def receive(request):
             tar.extractall(fresh)
     except (OSError, tarfile.TarError, EOFError) as error:
         shutil.rmtree(fresh, ignore_errors=True)
-        raise Refusal(f"what was sent cannot be unpacked in {into.parent} ({error}); make room there, or name another folder= of the host") from None
+        raise Refusal(f"cannot unpack the received files in {into.parent} ({error}); free space there, or set another folder= of the host") from None
     shutil.rmtree(into, ignore_errors=True)
     fresh.rename(into)
     if request["into"] == "build":
@@ -111,17 +111,17 @@ def receive(request):
 
 
 def shaders(_):
-    """Those that were compiled here."""
+    """The compiled shaders of this host, base64."""
     return {"tar": base64.b64encode(shader_cache.packed(shader_cache.folder())).decode()}
 
 
 def take_shaders(_):
-    """Those that follow the question."""
+    """Stores the shaders behind the request."""
     return {"taken": shader_cache.unpack(sys.stdin.buffer.read(), shader_cache.folder())}
 
 
 def filled(request, words):
-    """The words with the folders of this host in them."""
+    """The words with placeholders replaced by the folders of this host."""
     into = {"@BUILD@": str(build_folder(request)), "@FILES@": str(place(request) / "files"), "@OUT@": str(place(request) / "out")}
     done = []
     for word in words:
@@ -132,7 +132,7 @@ def filled(request, words):
 
 
 def check(request):
-    """Lets each node check its options and files, all at once."""
+    """Runs all nodes with --check in parallel; {node: error}, and "warnings"."""
     started = {}
     for name, words in request["nodes"].items():
         words = filled(request, words)
@@ -155,7 +155,7 @@ def check(request):
 
 
 def prepare(request):
-    """A supervisor with every node as a service that is down: whichever is wanted here can be started at once."""
+    """Starts the supervisor with every node as a stopped service, so that any node can be started immediately."""
     if record(request):
         return {"prepared": False}
     home = place(request)
@@ -183,12 +183,12 @@ def prepare(request):
     write_record(request, run)
     controls = [folder / "services" / name / "supervise" / "control" for name in request["nodes"]]
     if not services.wait_until(lambda: all(p.exists() for p in controls), 15):
-        raise Refusal(f"the supervisor does not take up its services; see {out}/logs/supervisor.log there")
+        raise Refusal(f"the supervisor does not start its services; see {out}/logs/supervisor.log on the host")
     return {"prepared": True, "kept": kept}
 
 
 def clear_of_before(home, out):
-    """Results of a run before: gone when they were gathered, else kept beside; where, or ""."""
+    """Removes the results of an earlier run when they were gathered; otherwise renames them. Returns the new path, or ""."""
     marker = home / "gathered"
     gathered = marker.exists()
     marker.unlink(missing_ok=True)
@@ -209,7 +209,7 @@ def write_record(request, kept):
 
 
 class Running(services.Service):
-    """One that is there already."""
+    """An existing service."""
 
     def __init__(self, folder, name, log):  # pylint: disable=super-init-not-called
         self.name, self.log, self.path = name, log, folder / "services" / name
@@ -227,7 +227,7 @@ class Running(services.Service):
 def running(request, name):
     kept = record(request)
     if not kept:
-        raise Refusal(f"nothing of the cluster {request['cluster']} runs here; tactus cluster up starts it")
+        raise Refusal(f"the cluster {request['cluster']} does not run here; start it with tactus cluster up")
     service = Running(pathlib.Path(kept["services"]), name, place(request) / "out" / "logs" / f"{name}.log")
     if not service.path.is_dir():
         raise Refusal(f"there is no node {name} in this cluster")
@@ -235,7 +235,7 @@ def running(request, name):
 
 
 def start(request):
-    """Starts nodes here, and remembers that they belong here. Returns when each has said something."""
+    """Starts nodes and records that they belong to this host. Returns when each has written to its log."""
     kept = record(request)
     members = [running(request, name) for name in request["names"]]
     since = {**kept.get("since", {}), **{n: time.time() for n in request["names"] if n not in kept["here"]}}
@@ -251,7 +251,7 @@ def start(request):
 
 
 def stop(request):
-    """Asks nodes to end, waits, and kills those that do not; they belong here no longer if leave."""
+    """Asks nodes to end, waits, and kills the others. With leave they no longer belong to this host."""
     kept = record(request)
     if not kept:
         return {"killed": []}
@@ -259,8 +259,8 @@ def stop(request):
     if request.get("leave"):
         write_record(request, {**kept, "here": [n for n in kept["here"] if n not in request["names"]]})
     for s in members:
-        (s.path / "asked").touch()  # no death: services.FINISH
-    services.ask_to_end(members, request.get("patience", END_S))
+        (s.path / "asked").touch()  # not counted as a death: services.FINISH
+    services.request_end(members, request.get("patience", END_S))
     stubborn = [s for s in members if not s.is_down()]
     for s in stubborn:
         s.order("k")
@@ -269,26 +269,26 @@ def stop(request):
 
 
 def restart(request):
-    """stop and start, with one question."""
+    """stop and start in one request."""
     return stop(request) | start(request)
 
 
 def order(request):
-    """A letter of runsv(8) to nodes: p pause, c continue, k kill, t end (it starts again)."""
+    """Sends a command of runsv(8) to nodes: p pause, c continue, k kill, t end (the node restarts)."""
     for name in request["names"]:
         if not running(request, name).order(request["letter"]):
-            raise Refusal(f"{name}: its supervisor does not listen")
+            raise Refusal(f"{name}: its supervisor does not respond; see the log supervisor.log of the host")
     return {}
 
 
 def state(request):
-    """How every node fares that belongs here, as the supervisor sees it."""
+    """State of every node of this host, from its supervisor."""
     kept = record(request)
     nodes = {}
     for name in kept.get("here", []):
         s = running(request, name)
-        nodes[name] = {"up": s.is_up(), "pid": s.pid(), "deaths": s.deaths(), "lost": s.lost(), "taken_down": s.is_taken_down(), "last": s.last_words()[-200:],
-                       "begun": name == "sim_node" and s.has_said("sim_node: the world begins")}
+        nodes[name] = {"up": s.is_up(), "pid": s.pid(), "deaths": s.deaths(), "lost": s.lost(), "taken_down": s.is_stopped_by_user(), "last": s.last_output_line()[-200:],
+                       "begun": name == "sim_node" and s.log_contains("sim_node: the world begins")}
     return {"run": kept, "nodes": nodes, "load": os.getloadavg()[0], "cores": os.cpu_count()}
 
 
@@ -305,10 +305,10 @@ def logs(request):
 
 
 def on_the_bus(request):
-    """What a program that speaks to the bus says, run where the cluster's network is."""
+    """Runs a program of the bus in the network of the cluster; returns status, out and err."""
     kept = record(request)
     words = filled(request, request["words"])
-    for name, text in request.get("files", {}).items():  # that the words name
+    for name, text in request.get("files", {}).items():  # named by the words
         (place(request) / "files").mkdir(parents=True, exist_ok=True)
         (place(request) / "files" / name).write_text(text, encoding="utf-8")
     if "--net" in kept.get("namespaces", []):
@@ -322,7 +322,7 @@ def on_the_bus(request):
 
 
 def end(request):
-    """Ends the supervisor; what was recorded stays."""
+    """Ends the supervisor; the recording stays."""
     kept = record(request)
     if kept:
         folder = pathlib.Path(kept["services"])
@@ -344,7 +344,7 @@ def end(request):
 
 
 def collect(request):
-    """All results as a tar, instead of an answer."""
+    """Writes all results as a tar to stdout, instead of an answer."""
     with gzip.GzipFile(fileobj=sys.stdout.buffer, mode="wb", compresslevel=1) as packed, tarfile.open(fileobj=packed, mode="w|") as tar:
         out = place(request) / "out"
         for path in sorted(out.rglob("*")):

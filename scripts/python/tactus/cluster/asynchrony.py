@@ -1,16 +1,16 @@
-"""How far apart senses and walls on different hosts presented what belongs together: what was, what the system says, and how sure it says to be.
+"""Asynchronies of modalities and walls on different hosts: the true ones, those that the system reports, and their stated uncertainty.
 
-A lab knows by how much the clocks of its hosts differ, so that the times at which two hosts presented one event can be laid on one
-clock exactly: the true asynchrony. The system knows that of its CLOCK_MAPs only. What it says is reckoned here as
-sync/presentation/presentation_matcher.cpp does, for each event, from the maps that had arrived at the recorder when the report did.
+The clock offsets of the hosts of a lab are known exactly, so the times at which two hosts present one event can be mapped to one clock:
+the true asynchrony. The system has only its CLOCK_MAPs. The reported asynchrony is computed here for each event as in
+sync/presentation/presentation_matcher.cpp, from the maps that had reached the recorder before the report.
 
-  off        what it says minus what was: the maps are all that lies between, so it is within the sum of what they state
-  stated     that sum, and with it the uncertainties of the two presentations themselves
-  aside      the true asynchrony minus that which the playout delays aim at: what the senses made of it. It is within what is
-             stated and the grain of both: a picture is the nearest one, half a period away, a tick the next one; sound falls on its sample.
-             A sense that is to present at once, touch by default, does so when it has heard of the event: from then on by its own word
+  off        reported minus true asynchrony. Only the maps cause it, so it is within the sum of their uncertainties
+  stated     that sum plus the uncertainties of the two presentations
+  aside      true asynchrony minus that of the playout delays. It is within the stated uncertainty plus the grain of both modalities:
+             the nearest frame, half a period away; the next tick; sound has the grain of a sample. A modality with the delay 0, touch by
+             default, presents when it has received the event; its report gives that time (ready)
 
-Pure: rows of tables in, rows out. Times are ns of the lab's clock where nothing else is said.
+Pure functions: rows of tables in, rows out. Times are ns of the clock of the lab unless stated otherwise.
 """
 import bisect
 import dataclasses
@@ -20,27 +20,27 @@ import re
 NAMES = ("haptic_push", "haptic", "audio", "visual", "thermal")  # the order of sync/presentation/presentation_matcher.cpp
 CONSTRAINT, TRANSIENT = 1, 2                                     # presentation_t: part
 PRESENTED, LATE, INAUDIBLE = 0, 1, 4                             # presentation_t: outcome
-GRAIN = {"haptic": 1.0, "thermal": 1.0, "visual": 0.5}           # of the period: by how much a presentation may be off its instant
+GRAIN = {"haptic": 1.0, "thermal": 1.0, "visual": 0.5}           # share of the period by which a presentation may miss its time
 SLEW = 0.05                                                      # sync/playout/follower.h
 MOST_UNCERTAIN_NS = 16_000_000                                   # sync/clocks/clock_maps.h
 PER_S = 1_000_000_000
-BEFORE_NS = PER_S // 2                                           # a delay that changed so shortly before is one that changes: on its way, and in a picture begun
+BEFORE_NS = PER_S // 2                                           # after a change, the delay counts as changing for this time: messages on their way, frames begun
 
 
 @dataclasses.dataclass(frozen=True)
 class Onset:
-    """One event, or frame, as one node presented it."""
+    """The presentation of one event or frame by one node."""
     what: int
-    sense: str     # haptic_push: the force that answers a begin at once whatever the policy
+    sense: str     # haptic_push: the immediate force at a begin, independent of the policy
     node: str
     host: str
     true_ns: int
-    told_ns: int   # on the recorder's clock, by the maps
+    told_ns: int   # on the clock of the recorder, by the maps
     clock_ns: int  # half width that the map states
     own_ns: int    # half width that the node states
     late: bool = False
-    meant_ns: int | None = None  # when it was to be
-    ready_ns: int | None = None  # when it could have been at the earliest
+    meant_ns: int | None = None  # scheduled time
+    ready_ns: int | None = None  # earliest possible time
 
 
 @dataclasses.dataclass(frozen=True)
@@ -49,12 +49,12 @@ class Pair:
     a: str
     b: str
     hosts: tuple
-    at_ns: int            # when the first of them was
+    at_ns: int            # time of the first onset
     true_ns: int
     told_ns: int
     clocks_ns: int
-    stated_ns: int        # clocks_ns and what both nodes state
-    aim_ns: int | None    # by the playout delays; None: they were changing, or aim at nothing
+    stated_ns: int        # clocks_ns plus the uncertainties of both nodes
+    aim_ns: int | None    # of the playout delays; None: changing or without an aim
     grain_ns: int
     late: bool
 
@@ -75,15 +75,15 @@ class Pair:
         return self.aside_ns is not None and abs(self.aside_ns) > self.stated_ns + self.grain_ns
 
 
-# what arrived
+# reports
 
 def plain(row):
-    """A row of a wide table of export_log without the units in its names."""
+    """A row of a wide table of export_log with units removed from the column names."""
     return {name.partition(" (")[0]: value for name, value in row.items()}
 
 
 def messages(rows):
-    """(log_s, sender, {field: value}, {place: {field: value}}) of each message of a long table of export_log whose type has one list."""
+    """(log_s, sender, {field: value}, {place: {field: value}}) of each message of a long table of export_log; its type must have at most one list."""
     for (log_s, sender, _), fields in itertools.groupby(rows, lambda r: (r["log_s"], r["sender"], r["seq"])):
         once, lists = {}, {}
         for r in fields:
@@ -96,7 +96,7 @@ def messages(rows):
 
 
 class Maps:
-    """What a log holds of other clocks in the clock of the host that recorded it, as it was known at each instant."""
+    """The clock maps of a log between other hosts and the host of the recorder, as known at each time."""
 
     def __init__(self, rows, host_of, home, ahead_s):
         """rows: CLOCK_MAP, wide. host_of: {node: host}. home: the recorder's host."""
@@ -111,15 +111,15 @@ class Maps:
             if home in (of, to) and of and to:
                 self.lines.setdefault((of, to), []).append((float(r["log_s"]), r))
         shifts.sort()
-        # A map is of the instant at which it is sent, so that it ties the log's time to its host's clock: to some ms, on the way to the recorder.
+        # A map refers to its sending time, so it relates log time to the clock of its host, within the ms of transmission.
         self.begin_ns = shifts[len(shifts) // 2] if shifts else None
 
     def at_ns(self, log_s):
-        """An instant of the log on the lab's clock."""
+        """Log time in s to the clock of the lab, ns."""
         return self.begin_ns + round(log_s * PER_S)
 
     def read(self, of_ns, host, log_s):
-        """(ns, half width) on the recorder's clock of an instant of that host's, by what was known then; None: nothing certain enough was."""
+        """(ns, half width) on the clock of the recorder of a time of a host, by the map known at log_s; None without a map that is certain enough."""
         if host == self.home:
             return of_ns, 0
         for key, read in (((host, self.home), from_of), ((self.home, host), to_of)):
@@ -146,7 +146,7 @@ def to_of(row, ns):
 
 
 def onsets(rows, kinds, maps, host_of, ahead_s):
-    """Of PRESENTED, long: the onset that each node gave each event. kinds: {event_id: kind}, as events.csv has them."""
+    """Onsets of each event by each node, from the long table of PRESENTED. kinds: {event_id: kind}, as events.csv has them."""
     found = {}
     for log_s, node, once, reports in messages(rows):
         host = host_of.get(node)
@@ -165,12 +165,12 @@ def onsets(rows, kinds, maps, host_of, ahead_s):
 
 
 def frames(told, shown, maps, host_of, ahead_s, own_ns):
-    """Onsets of frames, by wall: told are rows of FRAME_SHOWN, wide, and shown those of frame_shown.csv of the same log, in the same order, which have
-    the instant. own_ns: {wall: half width that it states of what it presents}."""
+    """Onsets of frames, by wall. told: rows of FRAME_SHOWN, wide, with the arrival; shown: rows of frame_shown.csv of the same log, in the same order,
+    with the presentation time. own_ns: {wall: half width that the wall states for its presentations}."""
     found = []
-    told = [r for r in map(plain, told) if r["sender"]]  # of the others the header cannot be read: they are in the first table alone
+    told = [r for r in map(plain, told) if r["sender"]]  # rows without a readable header are only in the first table
     if [r["frame"] for r in told] != [r["frame"] for r in shown]:
-        raise ValueError("FRAME_SHOWN.csv and frame_shown.csv are not of the same log; make both anew from one")
+        raise ValueError("FRAME_SHOWN.csv and frame_shown.csv are from different logs; export both from one log")
     for arrived, row in zip(told, shown):
         node = arrived["sender"]
         host = host_of.get(node)
@@ -181,10 +181,10 @@ def frames(told, shown, maps, host_of, ahead_s, own_ns):
 
 
 class Delays:
-    """The playout delay of each sense, as it follows what PLAYOUT asks for."""
+    """The playout delay of each modality, which follows the requests of PLAYOUT."""
 
     def __init__(self, rows, maps):
-        self.told = {}  # by sense: (ns, delay from then on, what is asked for)
+        self.told = {}  # by modality: (ns, delay from then on, requested delay)
         for log_s, _, _, entries in messages(rows):
             at = maps.at_ns(log_s)
             for e in entries.values():
@@ -192,7 +192,7 @@ class Delays:
                 of_sense.append((at, followed(of_sense[-1], at) if of_sense else asked, asked))
 
     def at(self, sense, ns):
-        """The delay, when it did not change from the event until it was presented; else None."""
+        """The delay if it was constant from the event to the presentation; else None."""
         told = self.told.get(sense, ())
         end = bisect.bisect_right(told, ns, key=lambda t: t[0])
         if not end:
@@ -208,7 +208,7 @@ def followed(before, at):
     return delay + max(-most, min(asked - delay, most))
 
 
-# what belongs together
+# pairs
 
 def between(a, b, name, delays, periods_ns):
     aims = [0, 0]
@@ -229,7 +229,7 @@ def by_event(found):
 
 
 def of_senses(found, delays, periods_ns):
-    """A row for each event and pair of senses; of several walls the first to show it, by what the system says."""
+    """Yields a Pair for each event and pair of modalities; of several walls the first one by reported times."""
     place = lambda sense: (NAMES.index(sense) if sense in NAMES else len(NAMES), sense)
     for event in by_event(found):
         first = {}
@@ -241,15 +241,15 @@ def of_senses(found, delays, periods_ns):
 
 
 def of_walls(found, periods_ns, names):
-    """A row for each event or frame and pair of walls. names: {node: wall}."""
+    """Yields a Pair for each event or frame and pair of walls. names: {node: wall}."""
     for event in by_event(o for o in found if o.node in names):
         for a, b in itertools.combinations(sorted(event, key=lambda o: list(names).index(o.node)), 2):
             yield between(a, b, lambda o: names[o.node], None, periods_ns)
 
 
 def by_window(pairs, windows, home):
-    """{"nothing": pairs while nothing was spoilt, "others": while another host was, "spoilt": while one of theirs was, or the recorder's, whose maps
-    these are}. windows: (spoilt host or None, begin, end) in ns; what is in none of them is left out."""
+    """{"nothing": pairs without a fault, "others": with a fault of another host, "spoilt": with a fault of one of their hosts or of the
+    recorder host, which has the maps}. windows: (faulty host or None, begin, end) in ns; pairs outside all windows are left out."""
     found = {"nothing": [], "others": [], "spoilt": []}
     for p in pairs:
         for host, begin, end in windows:
@@ -262,7 +262,7 @@ def by_window(pairs, windows, home):
 # tables
 
 def quantile(values, q):
-    """As SoaHistogram::quantile, but for its bins."""
+    """As SoaHistogram::quantile, without bins."""
     values = sorted(values)
     return values[max(0, -int(-q * len(values) // 1) - 1)]
 
@@ -285,8 +285,8 @@ def summed_up(pairs):
 
 
 def instants(found, events_ns, delays):
-    """A row for each node, in ms: what it meant to be the instant of an event, against the event itself and the playout delay; and how far from what
-    it meant it presented. The first crosses hosts and should be as small as their maps state, the second is the node's own. events_ns: {event: ns}."""
+    """A row for each node, in ms: meant, the scheduled time minus event and playout delay; met, the presentation minus the scheduled time. The first
+    crosses hosts and should be within the uncertainty of their maps, the second is of the node alone. events_ns: {event: ns}."""
     nodes = {}
     for o in found:
         delay = delays.at(o.sense, o.true_ns)
@@ -314,7 +314,7 @@ def text(rows):
 
 
 def against_summary(pairs, said):
-    """Rows of what summarise says of the same log (asynchrony_ms) beside the same reckoned here: both count the same events, and differ by a bin."""
+    """Rows that compare asynchrony_ms of summarise with the values computed here: equal counts, quantiles within a bin."""
     rows = []
     for name, s in said.items():
         of = [p for p in pairs if f"{p.a}_{p.b}" == name]

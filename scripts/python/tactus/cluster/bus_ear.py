@@ -1,8 +1,8 @@
-"""Hears the bus as LCM's own programs do, bound to any address, and counts what the intruder forged, for tests/measure/measure_private_path.
+"""Receives the bus like the programs of LCM, bound to any address, and counts forged messages; for tests/measure/measure_private_path.
 
   tactus --module tactus.cluster.bus_ear GROUP PORT [DEVICE_ADDRESS]     until stdin is closed; prints {kind: count} as JSON
 
-With the address of a device it joins the group there too, as a program with business of its own on the open network does.
+With DEVICE_ADDRESS it also joins the group on that device, like a program that uses the open network.
 """
 import json
 import select
@@ -25,7 +25,7 @@ def main(words):
                 ear.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton(group) + socket.inet_aton(device))
             except OSError:
                 if device == "0.0.0.0":
-                    raise  # that of the route is the other one already
+                    raise  # the route already leads to the other device
         ears.append(ear)
     print("{}", flush=True)
     heard = dict.fromkeys(intruder.KINDS, 0)

@@ -1,4 +1,4 @@
-"""tactus cluster doctor: every host by itself, then every pair of hosts."""
+"""tactus cluster doctor: checks every host, then every pair of hosts."""
 import json
 import os
 import random
@@ -8,13 +8,13 @@ from tactus.cluster.reach import Failed, Unreachable
 from tactus.refusal import Refusal
 from tactus.terminal import tell
 
-BESIDE = 2            # the ports after the bus' own two: probes disturb nobody
+BESIDE = 2            # offset to the ports after the two of the bus, so that probes do not disturb the run
 HOST_S, WAKE_S = 60, 2
-NEEDED = ("multicast route", "multicast loopback", "receive buffers", "real-time priority")  # on every host; the rest of what is weak is remarked
+NEEDED = ("multicast route", "multicast loopback", "receive buffers", "real-time priority")  # on every host; other weak points are remarks
 
 
 def run(operator, seconds):
-    """(figures for a program, what is wrong: a sentence each). Prints as it goes."""
+    """(figures for --json, errors, one sentence each). Prints the tables."""
     operator.files = shipment.parts()
     operator.identity = shipment.identity(operator.files)
     looked = ask_again(operator, "look", list(operator.reaches), patience_s=15)
@@ -24,7 +24,7 @@ def run(operator, seconds):
         raise Refusal(wrong[0])
     operator.refuse_mixed(looked, hosts, {})
     operator.install(looked, hosts)
-    tell(f"{'host':14} {'reached in':>10}  cores  load  priority  what is not good")
+    tell(f"{'host':14} {'reached in':>10}  cores  load  priority  weak or missing")
     figures = {"hosts": {}, "pairs": {}, "wrong": wrong, "remarks": []}
     answers = ask_again(operator, "on_the_bus", hosts, patience_s=HOST_S + 5, patience=HOST_S, words=examination(operator))
     states = ask_again(operator, "state", hosts)
@@ -40,7 +40,7 @@ def run(operator, seconds):
 
 
 def ask_again(operator, what, hosts, **request):
-    """operator.ask_all, and once more of who could not be reached: a cable that is bad enough to be found also breaks connections."""
+    """operator.ask_all, repeated once for unreachable hosts, because a faulty cable also breaks connections."""
     answers = operator.ask_all(what, hosts, **request)
     away = unreachable(answers)
     return answers | operator.ask_all(what, away, **request) if away else answers
@@ -51,7 +51,7 @@ def unreachable(answers):
 
 
 def examination(operator):
-    """`tactus doctor`, on the host."""
+    """Command line of `tactus doctor` on a host."""
     return ["sh", "-c", f"@BUILD@/share/scripts/tactus doctor --seconds {WAKE_S} --port {operator.cluster.bus.port} --out /tmp --json \"$1\" >&2; cat \"$1\"; "
             "rm -f \"$1\"", "doctor", f"/tmp/tactus-doctor-{os.getpid()}-{random.randrange(10**9)}.json"]
 
@@ -62,13 +62,13 @@ def of_host(operator, host, looked, answer, state, figures):
     try:
         said = json.loads(answer["out"])
     except ValueError:
-        return [f"{host}: its examination failed ({(answer['err'].strip().splitlines() or ['nothing is said'])[-1]})"]
+        return [f"{host}: tactus doctor failed ({(answer['err'].strip().splitlines() or ['no output'])[-1]}); run it on this host"]
     not_good = [line for line in said["lines"] if line["verdict"] != "good" and line["what"] not in unneeded(operator, host)]
     late = []
     try:
         took_s = operator.reaches[host].measure_s()
     except (Unreachable, Failed) as error:
-        took_s, late = None, [f"{error}, and did a moment before; look at the cable, switch or wireless on the way to it"]
+        took_s, late = None, [f"{error}, but was reached a moment before; check cable, switch or wireless link of this host"]
     load = state["load"] if not isinstance(state, Exception) else None
     figures["hosts"][host] = {**said, "reached_s": took_s, "machine": looked["machine"], "cores": looked["cores"], "load": load}
     priority = next((line["verdict"] for line in said["lines"] if line["what"] == "real-time priority"), "?")
@@ -84,9 +84,9 @@ def shown(value, factor, width, digits):
 
 
 def unneeded(operator, host):
-    """What a host need not have for what it runs."""
+    """Checks that are irrelevant for the nodes of a host."""
     nodes = operator.cluster.of_host(host)
-    lines = {"private network", "other clocks"}  # the pairs below say more of clocks
+    lines = {"private network", "other clocks"}  # the pairs below measure the clocks
     if not any(n.startswith("audio_node") for n in nodes):
         lines.add("sound card")
     if not any(n.startswith("visual_node") for n in nodes):
@@ -98,7 +98,7 @@ def of_pairs(operator, hosts, seconds, figures):
     bus = operator.cluster.bus
     words = lambda h, round_: ["@BUILD@/bin/probe_pairs", "--host", h, "--expect", ",".join(hosts), "--round", str(round_), "--seconds", f"{seconds:g}", "--group", bus.group,
                        "--port", str(bus.port + BESIDE), "--ttl", str(bus.ttl)]
-    for _ in range(2):  # all of them once more when one is missing: their probes are of one round
+    for _ in range(2):  # repeated for all hosts when one is missing, because probes belong to one round
         round_ = random.getrandbits(60)
         answers = operator.ask_all("on_the_bus", hosts, patience_s=seconds + 20, patience=seconds + 15, words=lambda h: words(h, round_))
         if not unreachable(answers):

@@ -1,4 +1,4 @@
-"""The cluster file: which hosts there are, which nodes run where and how. Checked whole before anything starts."""
+"""The cluster file: hosts, and placement and options of the nodes. Validated completely before anything starts."""
 import dataclasses
 import pathlib
 import shlex
@@ -10,7 +10,7 @@ from tactus.refusal import Refusal
 SCHEMA = pathlib.Path(__file__).with_name("cluster.xsd")
 SHIPPED = pathlib.Path(__file__).with_name("clusters")
 LARGEST_BYTES = 1_000_000
-MOST_HOSTS = 250  # one for each address of a small network
+MOST_HOSTS = 250  # the addresses of a /24 network
 RECORDER, SYNC, WORLD = "recorder", "sync_node", "sim_node"
 NEEDED = (WORLD, RECORDER)
 RUN_OPTIONS = ("seed", "realtime", "degrade", "policy", "aligner", "base", "budget", "soa", "split_mb", "split_minutes", "keep", "max_mb", "tags")
@@ -20,20 +20,20 @@ RUN_OPTIONS = ("seed", "realtime", "degrade", "policy", "aligner", "base", "budg
 class Host:
     name: str
     reach: str    # local, ssh or namespace
-    address: str  # for ssh: as on its command line; of a namespace: its name
-    folder: str   # where it keeps builds and results; "": in the home
-    build: str    # folder of a build of its own; "": ours is installed
-    site: str     # hosts of a site hear each other's multicast; "": the site that is not named
+    address: str  # for ssh: as on its command line; for a namespace: its name
+    folder: str   # for builds and results; "": in the home directory
+    build: str    # folder of its own build; "": this build is installed
+    site: str     # multicast reaches all hosts of a site; "": the unnamed site
 
 
 @dataclasses.dataclass(frozen=True)
 class Placed:
-    """A node and how it runs."""
+    """Placement and options of a node."""
     host: str
-    realtime: str     # "": as the run
+    realtime: str     # "": that of the run
     cpus: str         # of taskset; "": any
     nice: int
-    options: tuple    # words for the node
+    options: tuple    # arguments of the node
     environment: tuple  # (name, value)
 
 
@@ -51,14 +51,14 @@ class Cluster:
     bus: Bus
     hosts: dict  # {name: Host}, in the order of the file
     nodes: dict  # {process: Placed}, sync_nodes among them
-    plan: object  # arguments.Plan: the same checks as of scripts/run
-    relays: object  # sites.Relays; None: there is one site
+    plan: object  # arguments.Plan, with the same checks as scripts/run
+    relays: object  # sites.Relays; None: one site
 
     def of_host(self, host):
         return [name for name, placed in self.nodes.items() if placed.host == host]
 
     def is_private(self):
-        """All on this machine, and nothing leaves it: in a network of its own, where that can be."""
+        """True when all nodes run on this machine with ttl 0; they then get a private network, if possible."""
         return len(self.hosts) == 1 and self.bus.ttl == 0 and all(h.reach == "local" for h in self.hosts.values())
 
     def sync_node_of(self, host):
@@ -66,12 +66,12 @@ class Cluster:
 
 
 def sync_name(host, first):
-    """Every host has one, with a name of its own: a process is known by its name."""
+    """Name of the sync_node of a host; each host has one, and process names are unique."""
     return SYNC if host == first else f"{SYNC}_{host}"
 
 
 def find(text):
-    """A file, or the name of a shipped one."""
+    """Path of a file, or of the shipped file of this name."""
     path = pathlib.Path(text)
     if not path.is_file() and path.name == text:
         for name in (text, text + ".xml"):
@@ -81,16 +81,16 @@ def find(text):
 
 
 def read(text, out="."):
-    """Cluster of the file, or of the shipped one of that name. Raises Refusal, with the line."""
-    from lxml import etree  # only who reads a file needs it
+    """The Cluster of a file, or of the shipped file of this name. Raises Refusal with the line."""
+    from lxml import etree  # imported only when a file is read
     path = find(text)
     try:
         data = path.read_bytes()
     except OSError as error:
         shipped = ", ".join(sorted(p.stem for p in SHIPPED.glob("*.xml")))
-        raise Refusal(f"{text}: cannot be read ({error.strerror}); give a cluster file, or one of {shipped}") from None
+        raise Refusal(f"{text}: cannot be read ({error.strerror}); give a cluster file, or the name of a shipped one: {shipped}") from None
     if len(data) > LARGEST_BYTES:
-        raise Refusal(f"{text}: is longer than {LARGEST_BYTES} bytes; that is no cluster file")
+        raise Refusal(f"{text}: is longer than {LARGEST_BYTES} bytes; this cannot be a cluster file; give another")
     try:
         root = etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True))
     except etree.XMLSyntaxError as error:
@@ -103,14 +103,14 @@ def read(text, out="."):
 
 
 def plain(message):
-    """libxml2's sentence without what only schemas know."""
+    """The message of libxml2 without schema jargon."""
     for word in ("[facet 'pattern'] ", "[facet 'enumeration'] ", "[facet 'maxInclusive'] ", "[facet 'minInclusive'] "):
         message = message.replace(word, "")
     return message.rstrip(".")
 
 
 class Reading:
-    """What a form cannot say, checked on a tree that has the right one."""
+    """Checks of a tree that the schema has validated."""
 
     def __init__(self, text, path, root, out):
         self.text, self.path, self.root, self.out = text, path.resolve(), root, out
@@ -129,14 +129,14 @@ class Reading:
         if not hosts:
             self.refuse(self.root, "there is no <host>; name at least one")
         if len(hosts) > MOST_HOSTS:
-            self.refuse(self.root, f"there are {len(hosts)} hosts; at most {MOST_HOSTS} speak on one bus, more need relays between sites")
+            self.refuse(self.root, f"there are {len(hosts)} hosts; at most {MOST_HOSTS} can share one bus; split them into sites with relays")
         placed, words = {}, []
         self.settings = {}  # {process: words of --set}
         known = (WORLD, RECORDER, *arguments.SENSES, *hands.processes(scene.tools(self.scene())))
         for element in self.root.findall("node"):
             name = element.get("name")
             if name not in known and not name.startswith(SYNC):
-                self.refuse(element, f"there is no node \"{name}\"; there are {', '.join(known)}, and {SYNC}, of which every host has one anyway")
+                self.refuse(element, f"there is no node \"{name}\"; there are {', '.join(known)}, and {SYNC}, which every host has in any case")
             placed[name] = self.placed(element, hosts)
             self.take_settings(element, name)
             if element.get("device") is not None:
@@ -149,11 +149,11 @@ class Reading:
         plan = self.plan(placed, words, bus)
         relays = sites.read(self, hosts)
         if relays and bus.port <= relays.port <= bus.port + 3:
-            self.refuse(self.one("relays"), f"port=\"{relays.port}\" is one of the bus'; choose another")
+            self.refuse(self.one("relays"), f"port=\"{relays.port}\" is a port of the bus; choose another")
         first = placed[RECORDER].host
         for e in self.root.findall("node"):
             if e.get("name").startswith(SYNC) and e.get("name") != sync_name(e.get("host"), first):
-                self.refuse(e, f"the {SYNC} of {e.get('host')} is {sync_name(e.get('host'), first)}; call it so, or leave it away: every host has one")
+                self.refuse(e, f"the {SYNC} of {e.get('host')} is {sync_name(e.get('host'), first)}; use this name, or remove the node: every host has one")
         for host in hosts:
             placed[sync_name(host, first)] = placed.get(sync_name(host, first)) or Placed(host, "", "", 0, (), ())
         placed |= {name: Placed(relay.host, "", "", 0, (), ()) for name, relay in (relays.by_name if relays else {}).items()}
@@ -164,11 +164,11 @@ class Reading:
         if reach == "local" and address:
             self.refuse(e, f"the host {e.get('name')} is local and has an address; leave one away")
         if reach == "local" and next(h for h in self.root.findall("host") if h.get("reach") == "local") is not e:
-            self.refuse(e, f"the host {e.get('name')} is a second one that is local; there is one such machine: leave it away, or give it a network namespace")
+            self.refuse(e, f"the host {e.get('name')} is a second local host, but only this machine is local; remove it, or use reach=\"namespace\"")
         for attribute in ("folder", "build"):
             if e.get(attribute) and not e.get(attribute).startswith(("/", "~/")):
                 self.refuse(e, f"{attribute}=\"{e.get(attribute)}\" of the host {e.get('name')} is not absolute; begin it with / or ~/")
-        # Namespaces share this machine's disk, and each keeps what is its own.
+        # Namespaces share the disk of this machine, so each gets its own folder.
         folder = e.get("folder", f"~/.local/share/tactus/hosts/{e.get('name')}" if reach == "namespace" else "")
         return Host(e.get("name"), reach, address or e.get("name"), folder, e.get("build", ""), e.get("site", ""))
 
@@ -177,10 +177,10 @@ class Reading:
         get = lambda name, default: default if e is None else e.get(name, default)
         bus = Bus(get("group", "239.255.76.67"), int(get("port", "7667")), int(get("ttl", "0")))  # as in lcmtypes/channels.h
         if any(int(part) > 255 for part in bus.group.split(".")):
-            self.refuse(e, f"group=\"{bus.group}\" is no address; multicast groups go from 224.0.0.0 to 239.255.255.255")
+            self.refuse(e, f"group=\"{bus.group}\" is not a multicast address; use one from 224.0.0.0 to 239.255.255.255")
         if len(hosts) > 1 and bus.ttl == 0:
-            self.refuse(self.root if e is None else e, "there are several hosts and ttl is 0, with which nothing leaves a host; add "
-                        "<bus ttl=\"1\"/> (this network, no further) where everyone on it may hear and disturb the run, or read docs/between_sites.md")
+            self.refuse(self.root if e is None else e, "there are several hosts, but with ttl 0 no message leaves a host; add "
+                        "<bus ttl=\"1\"/> (this network only) if every machine on it may receive and disturb the run, or read docs/between_sites.md")
         return bus
 
     def placed(self, e, hosts):
@@ -197,7 +197,7 @@ class Reading:
                       tuple((v.get("name"), v.get("value")) for v in environment))
 
     def take_settings(self, e, process):
-        """The names are checked here, the values by the node itself."""
+        """Checks the names of settings; the node checks the values."""
         program = next((n for n in (hands.FIRST, walls.FIRST) if process.startswith(n)), process)
         for s in e.findall("set"):
             try:
@@ -220,7 +220,7 @@ class Reading:
         if e is None:
             return []
         if walls.FIRST in placed:
-            self.refuse(e, f"{walls.FIRST} is placed as a node and its walls too; leave one away")
+            self.refuse(e, f"{walls.FIRST} is placed as a node and by <walls>; remove one")
         try:
             room, names = walls.room(self.path.parent, e.get("room"))
         except ValueError as error:
@@ -233,7 +233,7 @@ class Reading:
             process = process_of[w.get("name")]
             placed[process] = self.placed(w, hosts)
             self.take_settings(e, process)
-            self.take_settings(w, process)  # comes last, and so wins
+            self.take_settings(w, process)  # comes last, so it overrides
         for wall in names:
             if process_of[wall] not in placed:
                 self.refuse(e, f"the wall {wall} is on no host; add <wall name=\"{wall}\" host=\"...\"/>")
@@ -244,7 +244,7 @@ class Reading:
         return arguments.scene_file(self.path.parent, "dark_room.sdf" if run is None else run.get("scene", "dark_room.sdf"))
 
     def plan(self, placed, words, bus):
-        """By the command line of scripts/run that would run the same on one machine."""
+        """The plan of the equivalent command line of scripts/run on one machine."""
         run = self.one("run")
         get = lambda name: None if run is None else run.get(name)
         line = [str(self.scene()), "--port", str(bus.port), *words]
@@ -254,7 +254,7 @@ class Reading:
         if get("listen") in ("true", "1"):
             line.append("--listen")
         others = hands.processes(scene.tools(self.scene()))
-        for process in others:  # the scene's other hands: with the first unless they have a place of their own
+        for process in others:  # further tools of the scene run with the first one unless placed
             if process not in placed and hands.FIRST in placed:
                 placed[process] = dataclasses.replace(placed[hands.FIRST], options=())
         line += [word for name in arguments.SENSES if name not in placed for word in ("--without", name)]

@@ -1,4 +1,4 @@
-"""The command line of every node of a cluster, in words that each host completes: @BUILD@, @FILES@ and @OUT@ are its own folders."""
+"""Command lines of the nodes of a cluster, with placeholders @BUILD@, @FILES@ and @OUT@ for the folders of each host."""
 
 from tactus.cluster.cluster_file import SYNC
 from tactus.cluster.sites import RELAY
@@ -6,21 +6,21 @@ from tactus.launch import cluster as one_machine
 
 
 def of_nodes(cluster, run_id, git, there):
-    """{node: words}. there: {path here: path on the hosts}, of shipment.of_run."""
+    """{node: command line}. there: {path here: path on the hosts}, of shipment.of_run."""
     plan = cluster.plan
     paths = {str(one_machine.BIN): "@BUILD@/bin", str(plan.out): "@OUT@", **there}
     made = one_machine.commands(plan, run_id, git)
     for name in cluster.nodes:
         if cluster.relays and name in cluster.relays.by_name:
             made[name] = [str(one_machine.BIN / RELAY), *cluster.relays.words(name), *one_machine.common(plan, run_id)]
-        elif name not in made:  # the other hosts' sync_nodes
+        elif name not in made:  # sync_node of another host
             made[name] = [*made[SYNC], "--name", name]
     return {name: around(placed, [translated(word, paths) for word in made[name]] + bus_words(cluster, name, placed))
             for name, placed in cluster.nodes.items()}
 
 
 def translated(word, paths):
-    """Whole paths only: the longest that the word is, or that is a folder of it."""
+    """Replaces the longest path that equals the word or is a parent folder of it."""
     head, equals, tail = word.rpartition("=") if word.startswith(("room=", "shader_folder=")) else ("", "", word)
     for path in sorted(paths, key=len, reverse=True):
         if tail == path or tail.startswith(path + "/"):
@@ -36,10 +36,10 @@ def bus_words(cluster, name, placed):
 
 
 def around(placed, words):
-    """What is before the program: which processors, how nice, what is in its environment. Programs keep their place in the words:
-    the first is looked for by nobody."""
+    """Prepends env, taskset and nice to a command line, as the cluster file specifies, and removes the realtime choice of the
+    run when the node has its own."""
     if placed.realtime:
-        at = words.index("--realtime")  # of the run; the node's own comes last
+        at = words.index("--realtime")  # of the run; that of the node comes last
         words = words[:at] + words[at + 2:]
     before = []
     if placed.environment:

@@ -1,8 +1,8 @@
-"""What is on the wires of a large cluster, and how long messages take through them: queues in a row, each served in order.
+"""Model of the network load and message delay of a large cluster: queues in series, each served in order.
 
-Sources: sizes and rates are those of the default scene's log (traffic.csv). A queue of constant service with random arrivals waits
-rho s / (2 (1 - rho)) in the mean (Pollaczek and Khinchine for M/D/1; Kleinrock, Queueing Systems I, 1975, equation 5.63), against
-which the tests hold it.
+Sources: sizes and rates are those of the default scene's log (traffic.csv). The mean wait of a queue with constant
+service time s and random arrivals is rho s / (2 (1 - rho)) (Pollaczek and Khinchine for M/D/1; Kleinrock, Queueing Systems I, 1975,
+equation 5.63); the tests compare with it.
 """
 import csv
 import dataclasses
@@ -21,7 +21,7 @@ class Flow:
     of: str         # world, hand, node, host or pair
     per_s: float    # of one sender
     bytes: int      # of the message
-    thin_per_s: float  # what a relay lets pass of it
+    thin_per_s: float  # messages a second that a relay forwards
 
 
 def flows():
@@ -30,16 +30,16 @@ def flows():
 
 
 def senders(of, hosts):
-    """The default scene has two hands."""
+    """Number of senders; the default scene has two tools."""
     return {"world": 1, "hand": 2, "node": hosts, "host": hosts, "pair": hosts}[of]
 
 
 def rate(flow, hosts, thin=False):
-    """Messages a second of one sender in a site of so many hosts. Clocks of other sites are known by their relays' hosts alone."""
+    """Messages a second of one sender in a site with `hosts` hosts. Only the relay hosts track the clocks of other sites."""
     others = min(hosts - 1, MOST_CLOCKS)
     stretch = max(1, others // FEW_CLOCKS)
     if flow.channel == "CLOCK_PROBE":
-        return 0.0 if thin else PROBES / (PERIOD_S * stretch) * (1 + others)  # its questions, and its answers to those of all others
+        return 0.0 if thin else PROBES / (PERIOD_S * stretch) * (1 + others)  # its probes, and its answers to those of all others
     if flow.channel == "CLOCK_MAP":
         return 0.0 if thin else MAPS_PER_S / stretch * others
     return flow.thin_per_s if thin else flow.per_s
@@ -50,12 +50,12 @@ def bits(flow):
 
 
 def offered_bit_s(hosts, has_world, thin=False):
-    """Of a site's own senders, on the wire."""
+    """Load of the senders of a site on the wire, bit/s."""
     return sum(senders(f.of, hosts) * rate(f, hosts, thin) * bits(f) for f in flows() if has_world or f.of not in ("world", "hand"))
 
 
 def arrivals(hosts, has_world, seconds, seed, thin=False):
-    """[(time in s, bits, flow)] of one site's senders, in order: each sender periodic, from a random phase on."""
+    """[(time in s, bits, flow)] of the senders of one site, sorted by time; each sender is periodic with a random phase."""
     dice = random.Random(seed)
     found = []
     for f in flows():
@@ -74,7 +74,7 @@ def arrivals(hosts, has_world, seconds, seed, thin=False):
 
 
 class Queue:
-    """A link or a processor: serves one after the other, forgets what would wait longer than `most_s`."""
+    """A link or a processor: serves messages in order; drops those that would wait longer than `most_s`."""
 
     def __init__(self, bit_per_s, most_s=float("inf"), each_s=0.0):
         self.bit_per_s, self.most_s, self.each_s = bit_per_s, most_s, each_s
@@ -82,7 +82,7 @@ class Queue:
         self.lost = 0
 
     def serve(self, at, size):
-        """When it is through; None when it is lost."""
+        """Time of completion in s; None when the message is dropped."""
         begin = max(at, self.free)
         if begin - at > self.most_s:
             self.lost += 1
@@ -94,7 +94,7 @@ class Queue:
 
 
 class Bucket(Queue):
-    """Tokens: so many bits at once, so many a second. What does not fit waits, `most_s` at the longest."""
+    """A token bucket: burst in bits, rate in bit/s. Messages without tokens wait at most `most_s`."""
 
     def __init__(self, bit_per_s, burst_bits, most_s):
         super().__init__(bit_per_s, most_s)
@@ -115,7 +115,7 @@ class Bucket(Queue):
 
 
 class Ticks:
-    """Who wakes so often and handles what has come: at the next tick, from a phase on."""
+    """A periodic loop: handles messages at the next tick."""
 
     def __init__(self, rate_hz, phase_s):
         self.period_s, self.phase_s = 1 / rate_hz, phase_s

@@ -1,8 +1,8 @@
-"""Somebody on the network without a key, for tests/measure/measure_private_path: takes down every frame, and puts forged ones on the wire.
+"""A simulated attacker without a key, for tests/measure/measure_private_path: records all frames and sends forged ones.
 
-  tactus --module tactus.cluster.intruder DEVICE KNOWN.json     orders on stdin: "hear", "forge SECONDS", "tell"; each is answered by a line of JSON on stdout
+  tactus --module tactus.cluster.intruder DEVICE KNOWN.json     commands on stdin: "hear", "forge SECONDS", "tell"; each is answered by a line of JSON on stdout
 
-KNOWN.json says what he may know of the hosts: {"hosts": [{"mac", "address", "inside"}], "group", "port", "listen"}.
+KNOWN.json holds what the attacker knows of the hosts: {"hosts": [{"mac", "address", "inside"}], "group", "port", "listen"}.
 """
 import itertools
 import json
@@ -20,9 +20,9 @@ OUTGOING = 4               # PACKET_OUTGOING of packet(7)
 BUFFER_BYTES = 64 << 20
 RATE_HZ = 300              # of forged frames
 KEPT = 500                 # frames to send again
-MARK = b"FORGED_"          # channels that nobody but the intruder uses, with the number of the kind behind it
-# A message of LCM, wherever it lies: magic number, number, name of the channel; or a fragment: magic number, number, size and offset below
-# 16 MB, number and count below 256. The magic number alone is in one of 4 GB of what is sealed.
+MARK = b"FORGED_"          # prefix of the channels of the intruder, followed by the number of the kind
+# An LCM message at any offset: magic number, sequence number, channel name; or a fragment: magic number, sequence number, size and offset
+# below 16 MB, number and count below 256. In encrypted data the magic number alone occurs once in 4 GB.
 MESSAGE = re.compile(rb"LC02[\s\S]{4}[A-Z]+_[A-Z_]+\0|LC03[\s\S]{4}(?:\0[\s\S]{3}){2}(?:\0[\s\S]){2}")
 CHANNELS = re.compile(rb"TOUCH_MODEL|CONTACT_EVENTS|WORLD_STATE|TOOL_STATE|PRESENTED|NODE_HEALTH|SYNC_REPORT|CLOCK_PROBE|CLOCK_MAP|THERMAL_STATE|SCENE_MANIFEST")
 TEXTS = re.compile(rb"sim_node|haptic_node|audio_node|visual_node|thermal_node|steel_ball")
@@ -35,7 +35,7 @@ def marked(kind):
 
 
 def frame(to, by, source, destination, port, data, source_port=40000):
-    """An Ethernet frame with one UDP datagram; without its checksum, which IPv4 allows."""
+    """An Ethernet frame with one UDP datagram, without UDP checksum, which IPv4 allows."""
     udp = struct.pack(">HHHH", source_port, port, 8 + len(data), 0) + data
     head = struct.pack(">BBHHHBBH4s4s", 0x45, 0, 20 + len(udp), random.randrange(65536), 0, 64, 17, 0, socket.inet_aton(source),
                        socket.inet_aton(destination))
@@ -46,7 +46,7 @@ def frame(to, by, source, destination, port, data, source_port=40000):
 
 
 def unsummed(data):
-    """A frame of UDP without its checksum, which virtual cables leave open for a card that there is not."""
+    """The UDP frame with a zero checksum, because virtual links leave the checksum to a network card that does not exist."""
     return data[:40] + b"\0\0" + data[42:]
 
 
@@ -66,19 +66,19 @@ class Intruder:
             try:
                 data, sender = self.wire.recvfrom(65536)
             except OSError:
-                return  # the lab ends
+                return  # the lab ended
             if sender[2] != OUTGOING:
                 with self.lock:
                     self.frames.append(data)
 
     def hear(self):
-        """From here on."""
+        """Starts a new recording."""
         with self.lock:
             self.frames = []
         return {}
 
     def tell(self):
-        """What was heard, and how much of it could be read."""
+        """Counts of the recorded frames, and of those with readable content."""
         with self.lock:
             frames, self.frames = self.frames, []
         said = [data for data in frames if MARK not in data]
@@ -101,7 +101,7 @@ class Intruder:
                    "as if of the host itself": lambda: frame(mac, self.mac, "127.0.0.1", group, port, data)}[KINDS[kind]]()
 
     def of_path(self, kind, heard):
-        """To the port of OpenVPN: bits turned in what was heard, noise, a new connection, an Ethernet frame without a key."""
+        """Frames to the port of OpenVPN: recorded ones with a flipped bit, noise, a new connection, an Ethernet frame without a key."""
         host = self.known["hosts"][0]
         mac = bytes.fromhex(host["mac"].replace(":", ""))
         inner = frame(b"\xff" * 6, self.mac, host["inside"], self.known["group"], self.known["port"], marked(kind))
@@ -114,7 +114,7 @@ class Intruder:
             yield bytes(turned)
 
     def forge(self, seconds):
-        """Frames of every kind in turn. Returns how many of each."""
+        """Sends frames of all kinds cyclically. Returns the count of each kind."""
         count = dict.fromkeys(KINDS, 0)
         with self.lock:
             heard = [unsummed(d) for d in self.frames[-KEPT:] if d[12:14] == b"\x08\0" and d[14] == 0x45 and d[23] == 17]
@@ -131,7 +131,7 @@ class Intruder:
                 try:
                     self.wire.send(data)
                     count[KINDS[kind]] += 1
-                except OSError:  # longer than the wire bears: the kernel had put it together
+                except OSError:  # longer than the MTU: the kernel had reassembled it
                     pass
             ahead_s = sum(count.values()) / RATE_HZ - (time.monotonic() - begin)
             if ahead_s > 0:

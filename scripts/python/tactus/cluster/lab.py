@@ -1,7 +1,7 @@
 """Hosts on one machine: each is a network namespace on one switch, with its own monotonic clock, processes, home, /tmp and sshd.
 
-What the hosts share is the machine's processors and its programs; this repository they do not see. The lab ends with the process
-that made it, and everything in it.
+The hosts share the processors and the programs of the machine; this repository is hidden from them. The lab and all of its
+processes end with the process that made it.
 """
 import json
 import os
@@ -15,11 +15,11 @@ import time
 from tactus.cluster import reach
 from tactus.paths import REPOSITORY
 
-VARIABLE = "TACTUS_LAB"  # for programs that run in the lab: its folder
+VARIABLE = "TACTUS_LAB"  # environment variable with the folder of the lab
 SUBNET = "10.77.0"
 OPERATOR = f"{SUBNET}.254"
 MOST_HOSTS = 100
-APART_S = 1000           # one host's clock from the next
+APART_S = 1000           # clock offset between successive hosts
 PATIENCE_S = 20
 SSHD = """Port 22
 HostKey /root/.lab/host_key
@@ -32,7 +32,7 @@ PidFile none
 MaxStartups 50
 MaxSessions 50
 """
-PERSON = "person"  # who logs in where nobody is root
+PERSON = "person"  # login name on hosts without root login
 PERSON_ID = 1000
 SSH = """Host *
   User root
@@ -43,11 +43,11 @@ SSH = """Host *
 
 
 class Error(Exception):
-    """One sentence."""
+    """An error of the lab; one sentence."""
 
 
 def sh(*words, check=True):
-    """What the command prints. Raises Error with the last line of what it complains about."""
+    """Output of a command. Raises Error with the last line of its stderr."""
     done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False)
     if check and done.returncode != 0:
         raise Error(f"{' '.join(words)}: {(done.stderr.strip() or 'failed').splitlines()[-1]}")
@@ -58,17 +58,17 @@ class Host:
     """A host of the lab; number from 1."""
 
     def __init__(self, lab, name, number, ordinary=False):
-        """ordinary: who logs in there is not root, and has the limits of somebody whom nobody gave any."""
+        """ordinary: the login user is not root and has the default resource limits."""
         self.lab, self.name, self.number, self.ordinary = lab, name, number, ordinary
-        self.port = f"port{number}"  # its socket of the switch
+        self.port = f"port{number}"  # its port of the switch
         self.address = f"{SUBNET}.{number}"
         self.ahead_s = APART_S * number
         self.disk = lab.folder / name
-        self.home = self.disk / PERSON if ordinary else self.disk  # of who logs in
+        self.home = self.disk / PERSON if ordinary else self.disk  # of the login user
         self.process = self.pid = None
 
     def prepare(self):
-        """Its disk, which outlives it."""
+        """Creates its disk, which survives kill()."""
         (self.disk / ".lab").mkdir(parents=True)
         (self.home / ".ssh").mkdir(mode=0o700, parents=True)
         shutil.copy(self.lab.folder / "key.pub", self.home / ".ssh" / "authorized_keys")
@@ -89,7 +89,7 @@ class Host:
         person = (f"mount --bind /root/.lab/passwd /etc/passwd && mount -t tmpfs tmpfs /home && mkdir /home/{PERSON} && mount --bind {self.home} /home/{PERSON} && "
                   if self.ordinary else "")
         limits = "" if self.ordinary else "ulimit -l unlimited 2>/dev/null; "
-        # The repository is hidden first: it may lie in a folder that is hidden after it, where there is nothing to be mounted on.
+        # The repository is hidden first, because its mount point may be inside a folder that is hidden next.
         inside = (f"mount -t tmpfs tmpfs {REPOSITORY} && mount --bind {self.disk} /root && {person} mount -t tmpfs tmpfs /tmp && mount -t tmpfs tmpfs /run && "
                   f"mkdir -m 755 /run/sshd && hostname {self.name} && cd /root && export HOME=/root && "
                   "ip link set lo up && echo up && read linked && { ulimit -l unlimited 2>/dev/null; exec /usr/sbin/sshd -D -f /root/.lab/sshd_config -E /root/.lab/sshd.log; }")
@@ -99,10 +99,10 @@ class Host:
              "--mount-proc", "sh", "-c", inside],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, start_new_session=True, env=environment)
         if self.process.stdout.readline() != "up\n":
-            raise Error(f"the host {self.name} cannot be made; the lab needs the rights of root, and Linux 5.6 or later")
+            raise Error(f"cannot create the host {self.name}; run as root on Linux 5.6 or later")
         self.pid = int(pathlib.Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text(encoding="ascii").split()[0])
         sh("ip", "link", "add", self.port, "type", "veth", "peer", "name", "eth0", "address", f"02:00:00:00:00:{self.number:02x}",
-           "netns", str(self.pid))  # the same after a restart: the others remember it
+           "netns", str(self.pid))  # unchanged by a restart, because other hosts cache it
         sh("ip", "link", "set", self.port, "master", "switch", "up")
         for words in (f"addr add {self.address}/24 dev eth0", "link set eth0 up", "route add 224.0.0.0/4 dev eth0"):
             sh(*self.inside(), "ip", *words.split())
@@ -115,11 +115,11 @@ class Host:
             time.sleep(0.02)
 
     def inside(self):
-        """Words in front of a command that is to use its network."""
+        """Command words that enter the network of the host."""
         return ["nsenter", f"--net=/proc/{self.pid}/ns/net"]
 
     def processes(self):
-        """All of its processes, as this process names them."""
+        """Process ids of the host, in the namespace of the caller."""
         mine = os.readlink(f"/proc/{self.pid}/ns/pid")
         found = []
         for folder in pathlib.Path("/proc").glob("[0-9]*"):
@@ -127,27 +127,27 @@ class Host:
                 if os.readlink(folder / "ns" / "pid") == mine:
                     found.append(int(folder.name))
             except OSError:
-                continue  # it has just ended
+                continue  # the process has just ended
         return found
 
     def cut(self):
         sh("ip", "link", "set", self.port, "down")
 
     def mend(self):
-        """Takes back whatever was done to its cable."""
+        """Removes all faults of its cable."""
         sh("ip", "link", "set", self.port, "up")
         sh("tc", "qdisc", "del", "dev", self.port, "root", check=False)
         sh(*self.inside(), "tc", "qdisc", "del", "dev", "eth0", "root", check=False)
         sh(*self.inside(), "nft", "delete", "table", "inet", "lab", check=False)
 
     def limit(self, kbit):
-        """Both ways."""
+        """Limits the rate in both directions."""
         bucket = ["root", "tbf", "rate", f"{kbit}kbit", "burst", "16kb", "latency", "50ms"]
         sh("tc", "qdisc", "replace", "dev", self.port, *bucket)
         sh(*self.inside(), "tc", "qdisc", "replace", "dev", "eth0", *bucket)
 
     def lose(self, percent):
-        """Of what comes and of what goes."""
+        """Drops received and sent packets at random."""
         rules = "; ".join(f"add chain inet lab {hook} {{ type filter hook {hook} priority 0; }}; "
                           f"add rule inet lab {hook} {device} eth0 numgen random mod 1000 < {round(10 * percent)} counter drop"
                           for hook, device in (("input", "iifname"), ("output", "oifname")))
@@ -162,22 +162,22 @@ class Host:
             signal_to(pid, signal.SIGCONT)
 
     def kill(self):
-        """As when its power fails; boot() again."""
+        """Simulates a power failure; boot() restarts the host."""
         if self.process is None:
             return
         signal_to(self.pid or self.process.pid, signal.SIGKILL)
         self.process.wait()
         self.process.stdin.close()
         self.process.stdout.close()
-        sh("ip", "link", "del", self.port, check=False)  # gone with the host, a moment later
+        sh("ip", "link", "del", self.port, check=False)  # the kernel also removes it, but later
         self.process = self.pid = None
 
 
 class Lab:
-    """Made in the network of the caller, who is to be alone in it: see enter()."""
+    """All hosts, in the network namespace of the caller, which must be private: see enter()."""
 
     def __init__(self, names, ordinary=()):
-        """ordinary: those of the hosts that nobody is root on."""
+        """ordinary: names of the hosts without root login."""
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="tactus-lab-"))
         self.hosts = {}
         try:
@@ -201,7 +201,7 @@ class Lab:
             raise
 
     def write_hosts(self):
-        """For whoever cuts a cable from elsewhere: `of_environment`."""
+        """Writes process ids and numbers of the hosts for other processes, such as `tactus lab HOST cut`."""
         known = {name: {"pid": host.pid, "number": host.number} for name, host in self.hosts.items()}
         (self.folder / "hosts.json").write_text(json.dumps(known), encoding="utf-8")
 
@@ -209,7 +209,7 @@ class Lab:
         return dict(os.environ, **{VARIABLE: str(self.folder)})
 
     def split(self, names):
-        """These hosts hear each other from now on, and nobody else."""
+        """Moves these hosts to a separate switch."""
         sh("ip", "link", "add", "switch2", "type", "bridge")
         sh("ip", "link", "set", "switch2", "up")
         for name in names:
@@ -221,15 +221,15 @@ class Lab:
         sh("ip", "link", "del", "switch2")
 
     def sites(self, sites, line_port=None):
-        """These groups of hosts hear each other's multicast no more; what is from one to one still passes, as between sites. line_port:
-        of the relays' lines, which slow() then bounds."""
+        """Blocks multicast between these groups of hosts; unicast still passes, as between sites. line_port: UDP port of
+        the lines between relays, which slow() limits."""
         ports = lambda names: "{ " + ", ".join(self.hosts[n].port for n in names) + " }"
         sh("nft", "add table bridge sites; add chain bridge sites forward { type filter hook forward priority 0; }; "
            "add chain bridge sites lines; " + (f"add rule bridge sites forward udp dport {line_port} jump lines; " if line_port else "") + "; ".join(
                f"add rule bridge sites forward iifname {ports(a)} oifname {ports(b)} ip daddr 224.0.0.0/4 drop" for a in sites for b in sites if a != b))
 
     def slow(self, name, kbit):
-        """Lines to and from this host carry so much; what is more is lost. 0: as before."""
+        """Limits the lines to and from this host to kbit/s and drops the excess. 0: no limit."""
         sh("nft", "flush chain bridge sites lines")
         if kbit:
             for way in ("iifname", "oifname"):
@@ -246,9 +246,9 @@ class Lab:
 
 
 def enter(words):
-    """Starts the program again, with these words, in namespaces of its own. Raises Error where that cannot be."""
+    """Restarts the program with these words in new namespaces. Raises Error when the system refuses."""
     if os.geteuid() != 0:
-        raise Error("a lab needs the rights of root: it makes hosts with clocks and disks of their own")
+        raise Error("a lab needs root, because it makes network, mount and time namespaces; run it as root")
     for program in ("unshare", "nsenter", "ip", "tc", "nft", "/usr/sbin/sshd", "ssh", "ssh-keygen"):
         if not shutil.which(program, path=os.environ.get("PATH", "") + ":/usr/sbin:/sbin"):
             raise Error(f"{program} is not installed; run scripts/setup --packages")
@@ -256,7 +256,7 @@ def enter(words):
     space = ["unshare", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc"]
     probe = subprocess.run([*space, "unshare", "--time", "--monotonic", "1", "--fork", "true"], capture_output=True, check=False)
     if probe.returncode != 0:
-        raise Error("this system allows no network and time namespaces of one's own")
+        raise Error("this system refuses network or time namespaces; use Linux 5.6 or later, outside a restricted container")
     os.execvpe(space[0], [*space, *words], environment)
 
 

@@ -1,11 +1,11 @@
-"""Runs a command in a lab: hosts of one's own on this machine, to try a cluster of several machines on one.
+"""Runs a command in a lab: simulated hosts on this machine, to test a cluster of several machines.
 
   tactus lab [--hosts N | --hosts NAME,NAME,...] CMD [ARG]...
   tactus lab HOST cut | mend | stop | go-on | kill | boot | limit KBIT | lose PERCENT
 
-Each host is a network namespace on one switch, with processes, a home, a /tmp, an sshd and a monotonic clock of its own; they are
-named host1, host2, ... unless named. CMD runs beside them: it reaches them by ssh (the file $TACTUS_LAB/ssh_config says how), and
-when it ends so does the lab, with all that runs in it. The second form, within CMD, spoils a host or its cable. For example:
+Each host is a network namespace on one switch, with its own processes, home, /tmp, sshd and monotonic clock; the default names
+are host1, host2, ... CMD reaches the hosts by ssh (configuration: $TACTUS_LAB/ssh_config). When CMD ends, the lab and all of its
+processes end. The second form, inside CMD, causes or removes a fault of a host or its cable. For example:
 
   tactus lab --hosts desk,sound tactus cluster up desk_and_sound.xml
   tactus lab --hosts 3 bash
@@ -24,14 +24,14 @@ FAULTS = {"cut": 0, "mend": 0, "stop": 0, "go-on": 0, "kill": 0, "boot": 0, "lim
 
 
 def names_of(words):
-    """(names of the hosts, the command)."""
+    """(names of the hosts, the command). Raises lab.Error."""
     names = "3"
     if words and (words[0] == "--hosts" or words[0].startswith("--hosts=")):
         if "=" in words[0]:
             names, words = words[0].partition("=")[2], words[1:]
         else:
             if len(words) < 2:
-                raise lab.Error("--hosts needs a number, or names; see tactus lab --help")
+                raise lab.Error("--hosts needs a number or names; see tactus lab --help")
             names, words = words[1], words[2:]
     if words and words[0].startswith("-"):
         raise lab.Error(f"{words[0]}: there is no such option; see tactus lab --help")
@@ -41,16 +41,16 @@ def names_of(words):
     if not 1 <= len(names) <= lab.MOST_HOSTS or len(set(names)) != len(names) or not all(n.replace("-", "").isalnum() and n.isascii() for n in names):
         raise lab.Error(f"--hosts {','.join(names)[:60]}: give a number from 1 to {lab.MOST_HOSTS}, or different names of letters, digits and hyphens")
     if not words:
-        raise lab.Error("name a command to run in it; see tactus lab --help")
+        raise lab.Error("name a command to run in the lab; see tactus lab --help")
     return names, words
 
 
 def spoil(words):
-    """The second form. boot and kill are done by whoever made the lab: hosts are its children."""
+    """The second form: sends the command to the process that made the lab, because the hosts are its children."""
     folder = pathlib.Path(os.environ[lab.VARIABLE])
     name, what, *rest = words
     if len(rest) != FAULTS[what] or not all(r.replace(".", "", 1).isdigit() for r in rest):
-        raise lab.Error(f"{what} needs {'a number' if FAULTS[what] else 'nothing behind it'}; see tactus lab --help")
+        raise lab.Error(f"{what} needs {'a number' if FAULTS[what] else 'no argument'}; see tactus lab --help")
     (folder / "orders").mkdir(exist_ok=True)
     known = json.loads((folder / "hosts.json").read_text(encoding="utf-8"))
     if name not in known:
@@ -69,11 +69,11 @@ def spoil(words):
 
 
 def keep(made, command):
-    """Carries out orders until the command has ended; its status."""
+    """Executes requests until the command has ended; returns its status."""
     pipe = made.folder / "order"
     os.mkfifo(pipe)
     child = subprocess.Popen(command, env=made.environment())
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # the command's to answer
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # forwarded to the command
         signal.signal(number, lambda n, _: child.poll() is None and child.send_signal(n) if n != signal.SIGINT else None)
     descriptor = os.open(pipe, os.O_RDWR | os.O_NONBLOCK)
     rest = b""

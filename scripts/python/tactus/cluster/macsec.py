@@ -1,19 +1,19 @@
-"""An Ethernet that the kernel encrypts (IEEE 802.1AE), as commands of iproute2."""
+"""Commands of iproute2 for an Ethernet that the kernel encrypts (MACsec, IEEE 802.1AE)."""
 import os
 
 from tactus.cluster import path_files
 
 DEVICE = "macsec0"
-SUBNET = "10.76.68"  # beside that of path_files.py
+SUBNET = "10.76.68"  # differs from that of path_files.py
 KEY_BYTES = 32       # of GCM-AES-256
 
 
 def commands(hosts, device, port):
-    """For each host, which has to learn the others' hardware addresses. Keys are fresh with each call."""
+    """The commands for each host, with new keys. The user inserts the hardware addresses of the other hosts."""
     keys = {name: os.urandom(KEY_BYTES).hex() for name in hosts}
-    lines = [f"# MACsec on the Ethernet of {', '.join(hosts)}; run each part as root on its host, and keep all of it secret.",
-             f"# MAC_OF_HOST: what `cat /sys/class/net/{device}/address` prints there. Keys of one's own serve as long as 2^32 frames go out",
-             "# of each host (a month at 1,500 a second); wpa_supplicant's MKA renews them by itself."]
+    lines = [f"# MACsec on the Ethernet of {', '.join(hosts)}; run each part as root on its host, and keep the whole text secret.",
+             f"# MAC_OF_HOST: output of `cat /sys/class/net/{device}/address` on this host. Static keys are valid for 2^32 sent frames",
+             "# of each host (a month at 1,500 a second); MKA of wpa_supplicant renews keys automatically."]
     for number, name in enumerate(hosts, 1):
         lines += ["", f"# on {name}",
                   f"ip link add link {device} {DEVICE} type macsec cipher gcm-aes-256 encrypt on validate strict replay on window 64",

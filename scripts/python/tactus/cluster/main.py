@@ -44,14 +44,14 @@ def parsed(words):
     command("doctor", (["--seconds"], {"type": float, "default": 5.0}), (["--json"], {}))
     a = parser.parse_args(words)
     if getattr(a, "name", None) and a.file:
-        raise Refusal("the cluster file is named twice; leave one away")
+        raise Refusal("the cluster file is given twice, as an argument and with --file; remove one")
     if a.command == "logs" and not 0 <= a.lines <= MOST_LINES:
         raise Refusal(f"--lines {a.lines}: give a number from 0 to {MOST_LINES}")
     return a
 
 
 def memory():
-    """Remembers which cluster was brought up last."""
+    """Path of the file that holds the cluster file of the last up."""
     return pathlib.Path(os.environ.get("XDG_STATE_HOME") or "~/.local/state").expanduser() / "tactus" / "cluster"
 
 
@@ -64,7 +64,7 @@ def file_of(a):
     try:
         return memory().read_text(encoding="utf-8").strip()
     except OSError:
-        raise Refusal("no cluster file is named, and there is no cluster.xml here; give one with --file, or the name of a shipped one: "
+        raise Refusal("no cluster file is named, and there is no cluster.xml here; give one with --file, or the name of a shipped file: "
                       "one_machine, desk_and_sound, cave4, cave6") from None
 
 
@@ -73,14 +73,14 @@ def remember(path):
         memory().parent.mkdir(parents=True, exist_ok=True)
         memory().write_text(str(path), encoding="utf-8")
     except OSError:
-        pass  # it will have to be named
+        pass  # the next command then needs --file
 
 
 def operator_of(a, cluster):
     from tactus.cluster.orders import Operator
     config = a.ssh_config or (os.path.join(os.environ[LAB], "ssh_config") if LAB in os.environ else None)
     if config and not os.path.isfile(config):
-        raise Refusal(f"--ssh-config {config}: is not a file")
+        raise Refusal(f"--ssh-config {config}: is not a file; give the path of an ssh configuration")
     return Operator(cluster, config)
 
 
@@ -92,7 +92,7 @@ def up(a, cluster):
     away = operator.up(results.git_commit())
     if not operator.wait_for_world():
         raise Refusal("sim_node: its world has not begun after 10 minutes; see tactus cluster logs sim_node")
-    operator.say(f"{cluster.name} runs on {len(cluster.hosts) - len(away)} of {len(cluster.hosts)} hosts, {time.monotonic() - begin:.1f} s after the order")
+    operator.say(f"{cluster.name} runs on {len(cluster.hosts) - len(away)} of {len(cluster.hosts)} hosts, {time.monotonic() - begin:.1f} s after the command")
     return []
 
 
@@ -100,7 +100,7 @@ def down(a, cluster):
     from tactus.launch import results
     out = pathlib.Path(a.out) if a.out else pathlib.Path("out") / time.strftime("%Y-%m-%d_%H-%M-%S")
     if out.is_file() or out.is_dir() and any(out.iterdir()):
-        raise Refusal(f"--out {out}: is there already; name another folder")
+        raise Refusal(f"--out {out}: already exists; choose another folder")
     operator = operator_of(a, cluster)
     wrong, ran = operator.down(out.absolute())
     if ran:
@@ -122,10 +122,10 @@ def status(a, cluster):
             tell(json.dumps({"cluster": cluster.name, "whole": table.whole(cluster, states, bus), "nodes": found}))
         else:
             if live:
-                os.write(1, b"\x1b[H\x1b[2J")  # to the corner, and clear
+                os.write(1, b"\x1b[H\x1b[2J")  # cursor home, clear the screen
             tell(table.text(found, os.get_terminal_size().columns if live else 160))
         if not live:
-            return [] if any(r.get("process") == "up" for r in found) else [f"nothing of {cluster.name} runs; tactus cluster up starts it"]
+            return [] if any(r.get("process") == "up" for r in found) else [f"no node of {cluster.name} runs; start it with tactus cluster up"]
         time.sleep(max(0.0, PERIOD_S - (time.monotonic() - begin)))
 
 
@@ -161,13 +161,13 @@ def move(a, cluster):
 
 
 def tell_program(a, cluster):
-    """Runs the program on a host of the cluster; a file that is named goes along."""
+    """Runs degrade, playout or set on a host of the cluster; copies a profile there."""
     words, files = [a.command], {}
     for word in a.words:
         if a.command == "degrade" and os.path.isfile(word):
             files["told.xml"] = pathlib.Path(word).read_text(encoding="utf-8", errors="replace")
             if len(files["told.xml"]) > LONGEST_FILE:
-                raise Refusal(f"{word}: is longer than {LONGEST_FILE} bytes; that is no profile")
+                raise Refusal(f"{word}: is longer than {LONGEST_FILE} bytes; this cannot be a profile; give a smaller file")
             word = "@FILES@/told.xml"
         words.append(word)
     said = operator_of(a, cluster).tell(words, files)
@@ -182,12 +182,12 @@ def doctor(a, cluster):
     figures, wrong = checkup.run(operator_of(a, cluster), a.seconds)
     if a.json:
         pathlib.Path(a.json).write_text(json.dumps(figures, indent=1), encoding="utf-8")
-    tell("" if wrong else "\nall is well")
+    tell("" if wrong else "\nno fault found")
     return wrong
 
 
 def check(_, cluster):
-    tell(f"cluster: {cluster.name} is in order: {len(cluster.nodes)} nodes on {len(cluster.hosts)} hosts, {cluster.bus.group}:{cluster.bus.port}, ttl {cluster.bus.ttl}")
+    tell(f"cluster: {cluster.name} is valid: {len(cluster.nodes)} nodes on {len(cluster.hosts)} hosts, {cluster.bus.group}:{cluster.bus.port}, ttl {cluster.bus.ttl}")
     return []
 
 

@@ -1,4 +1,4 @@
-"""What tactus cluster can be told to do."""
+"""The operations of tactus cluster: up, down, restart, move, and requests to the hosts."""
 import base64
 import os
 import subprocess
@@ -14,8 +14,8 @@ from tactus.launch.arguments import SENSES
 from tactus.refusal import Refusal
 from tactus.terminal import tell
 
-SEND_S = 600          # a build over a slow line
-CHECK_S = 620         # agent.READ_SCENE_S, and the way
+SEND_S = 600          # for a build over a slow line
+CHECK_S = 620         # agent.READ_SCENE_S and the transfer
 START_S, STOP_S = 40, 25
 LOADING_S = 600
 SHADERS_S = 20
@@ -25,7 +25,7 @@ ENDED_BEFORE_S = 0.2  # sound comes 20 ms after its event, and each report is re
 
 
 class Operator:
-    """Whoever gives the orders: knows the file, reaches the hosts; all that runs is known by the hosts alone."""
+    """Sends requests to the hosts of a cluster file. Only the hosts store the state of running nodes."""
 
     def __init__(self, cluster, ssh_config=None, quiet=False):
         self.cluster, self.quiet = cluster, quiet
@@ -38,20 +38,20 @@ class Operator:
             tell(f"cluster: {text}")
 
     def common(self, host):
-        """What an agent is told each time."""
+        """Fields of every request to an agent."""
         return {"cluster": self.cluster.name, "build": self.identity or "", "own_build": self.cluster.hosts[host].build}
 
     def ask(self, host, what, patience_s=10, **request):
         return self.reaches[host].ask(what, patience_s=patience_s, **self.common(host), **request)
 
     def ask_all(self, what, hosts=None, patience_s=10, **request):
-        """{host: answer or error}; values of the request that are functions are called with the host's name."""
+        """{host: answer or error}; callable values of the request are called with the name of the host."""
         hosts = self.reaches if hosts is None else {h: self.reaches[h] for h in hosts}
         made = {h: {k: v(h) if callable(v) else v for k, v in request.items()} for h in hosts}
         return of_all(hosts, lambda reach: reach.ask(what, patience_s=patience_s, **self.common(reach.host.name), **made[reach.host.name]))
 
     def insist(self, answers):
-        """The answers; raises Refusal with the first that is an error."""
+        """Returns the answers; raises Refusal with the first error among them."""
         for answer in answers.values():
             if isinstance(answer, Exception):
                 raise Refusal(str(answer))
@@ -63,7 +63,7 @@ class Operator:
     # up
 
     def up(self, git, forced=()):
-        """Starts what does not run. Hosts that cannot be reached are left out and named, but for those that hold what a run needs."""
+        """Starts all nodes that do not run. Skips and reports unreachable hosts; raises Refusal when one of them has sim_node or the recorder."""
         self.files = shipment.parts()
         self.identity = shipment.identity(self.files)
         looked = self.ask_all("look", patience_s=15)
@@ -71,14 +71,14 @@ class Operator:
         for host, error in away.items():
             needed = [n for n in (WORLD, RECORDER) if self.cluster.nodes[n].host == host]
             if needed:
-                raise Refusal(f"{error}; {needed[0]} is to run there")
-            self.say(f"{error}; left out, tactus cluster up takes it in later")
+                raise Refusal(f"{error}; {needed[0]} must run there; make the host reachable or place the node elsewhere in the file")
+            self.say(f"{error}; skipped; run tactus cluster up again to add it")
         hosts = [h for h in looked if h not in away]
         runs = {h: looked[h]["run"] for h in hosts if looked[h]["run"]}
         self.refuse_mixed(looked, hosts, runs)
         run_ids = {kept["run_id"] for kept in runs.values()}
         if len(run_ids) > 1:
-            raise Refusal(f"two runs of {self.cluster.name} go on ({', '.join(f'{r} on {h}' for h, r in ((h, k['run_id']) for h, k in runs.items()))}); "
+            raise Refusal(f"two runs of {self.cluster.name} exist ({', '.join(f'{r} on {h}' for h, r in ((h, k['run_id']) for h, k in runs.items()))}); "
                           "end both with tactus cluster down")
         run_id = run_ids.pop() if run_ids else time.time_ns()
         self.install(looked, hosts)
@@ -97,12 +97,12 @@ class Operator:
         answers = self.insist(self.ask_all("prepare", new, patience_s=START_S, nodes=words, run_id=run_id, private=self.cluster.is_private(), **url))
         for host, answer in answers.items():
             if answer.get("kept"):
-                self.say(f"{host}: results of a run before, which nobody gathered, lie there in {answer['kept']}")
+                self.say(f"{host}: results of an earlier run, which were not gathered, are on this host in {answer['kept']}")
         self.start_all(hosts, wanted)
         return away
 
     def end_doubles(self, runs):
-        """A host that could not be reached when its node was placed elsewhere still runs it: the later place holds."""
+        """Stops nodes that run twice, after a move from an unreachable host; the later place is kept."""
         holders = {}
         for host, kept in runs.items():
             for name in kept["here"]:
@@ -110,25 +110,25 @@ class Operator:
         for name, places in holders.items():
             for _, host in sorted(places)[:-1]:
                 self.ask(host, "stop", patience_s=STOP_S, names=[name], leave=True, patience=3)
-                self.say(f"{name} ran on {host} too, from where it had been moved; it was ended there")
+                self.say(f"{name} also ran on {host}, from which it had been moved; it was stopped there")
 
     def refuse_mixed(self, looked, hosts, runs):
         ours = shipment.messages()
         for host in hosts:
             a = looked[host]
             if not a["runit"]:
-                raise Refusal(f"{host}: runit is not installed there; run there: apt install runit")
+                raise Refusal(f"{host}: runit is not installed; run on this host: apt install runit")
             own = self.cluster.hosts[host].build
             if own and not a["messages"]:
-                raise Refusal(f"{host}: its build=\"{own}\" is not there or does not run; build it, or leave build= away and ours is installed")
+                raise Refusal(f"{host}: its build=\"{own}\" does not exist or does not run; build it, or remove build= to install this build")
             if own and a["messages"] != ours:
-                raise Refusal(f"{host}: its build speaks otherwise: {difference(ours, a['messages'])}; build the same version there, or leave build= "
-                              "away and ours is installed")
+                raise Refusal(f"{host}: the messages of its build differ: {difference(ours, a['messages'])}; build the same version there, or remove build= "
+                              "to install this build")
             if host in runs and runs[host]["build"] != self.identity and not own:
-                raise Refusal(f"{host}: runs the build {runs[host]['build']}, and this is {self.identity}; a cluster runs one build: first tactus cluster "
-                              "down")
+                raise Refusal(f"{host}: runs the build {runs[host]['build']}, and this is {self.identity}; a cluster runs one build: run tactus cluster "
+                              "down first")
             if not own and a["machine"] != os.uname().machine:
-                raise Refusal(f"{host}: is a {a['machine']}, and this build is for {os.uname().machine}; build there, and name its folder with build=")
+                raise Refusal(f"{host}: is a {a['machine']}, but this build is for {os.uname().machine}; build there, and name its folder with build=")
 
     def install(self, looked, hosts):
         lacking = [h for h in hosts if not looked[h]["build"]]
@@ -139,9 +139,9 @@ class Operator:
             looked |= self.insist(self.ask_all("look", lacking, patience_s=15))
         for host, answer in ((h, looked[h]) for h in hosts):
             if answer["missing"]:
-                raise Refusal(f"{host}: lacks {', '.join(answer['missing'])}; install there: apt install {' '.join(packages(answer['missing']))}")
+                raise Refusal(f"{host}: lacks {', '.join(answer['missing'])}; run on this host: apt install {' '.join(packages(answer['missing']))}")
             if not answer["messages"]:
-                raise Refusal(f"{host}: the programs installed there do not run; its processor or its C library may be older than ours: build there, "
+                raise Refusal(f"{host}: the programs installed there do not run; its processor or its C library may be older than that of this machine: build there, "
                               "and name the folder with build=")
 
     def send(self, hosts, into, data):
@@ -149,7 +149,7 @@ class Operator:
         return of_all(reaches, lambda reach: reach.ask("receive", patience_s=SEND_S, data=data, into=into, **self.common(reach.host.name)))
 
     def check(self, hosts, words, wanted):
-        """Each node checks its options where it is to run."""
+        """Runs each node with --check on its host. Raises Refusal."""
         answers = self.insist(self.ask_all("check", hosts, patience_s=CHECK_S, nodes=lambda h: {n: words[n] for n in wanted[h]}))
         for host, said in answers.items():
             warnings = said.pop("warnings", "")
@@ -159,7 +159,7 @@ class Operator:
                 tell(warnings, sys.stderr)
 
     def refuse_others(self, hosts, run_id):
-        """Two clusters on one port of one network would hear each other."""
+        """Raises Refusal when another cluster uses the same group and port, because both would receive the messages of the other."""
         if self.cluster.is_private():
             return
         words = ["@BUILD@/bin/watch", "--once", "--run-id", "0", "--group", self.cluster.bus.group, "--port", str(self.cluster.bus.port)]
@@ -168,8 +168,8 @@ class Operator:
             if isinstance(a, Exception):
                 raise Refusal(f"{a}")
             if a["status"] == 0:
-                raise Refusal(f"{host}: another cluster speaks already on {self.cluster.bus.group}, port {self.cluster.bus.port}; choose another port= of "
-                              "<bus>, or end that one")
+                raise Refusal(f"{host}: another cluster already uses {self.cluster.bus.group}, port {self.cluster.bus.port}; choose another port= of "
+                              "<bus>, or end the other cluster")
             if "route" in a["err"] or "join" in a["err"]:
                 raise Refusal(f"{host}: {a['err'].strip().splitlines()[-1]}")
 
@@ -181,7 +181,7 @@ class Operator:
                 self.insist(self.ask_all("start", at, patience_s=START_S, names=lambda h, names=names: names[h], patience=5))
 
     def groups(self):
-        """In the order of starting."""
+        """Names of the nodes, in groups, in start order."""
         syncs = [n for n in self.cluster.nodes if n == SYNC or n.startswith(SYNC + "_")]
         senses = [n for n in self.cluster.nodes if n.startswith(SENSES)]
         return ([RECORDER, *syncs, *self.relays()], senses, [WORLD])
@@ -190,7 +190,7 @@ class Operator:
         return list(self.cluster.relays.by_name) if self.cluster.relays else []
 
     def wait_for_world(self):
-        """False when it does not begin."""
+        """True when the simulation began; False after LOADING_S. Raises Refusal when sim_node was left down."""
         host, begin = self.cluster.nodes[WORLD].host, time.monotonic()
         said = begin
         while time.monotonic() < begin + LOADING_S:
@@ -206,10 +206,10 @@ class Operator:
             time.sleep(0.1)
         return False
 
-    # what runs where
+    # placement of nodes
 
     def placement(self, states):
-        """{node: host} of what belongs where by the hosts' own word: a move may have changed what the file says."""
+        """{node: host} as reported by the hosts; after a move it differs from the file."""
         found = {}
         for host, s in states.items():
             if not isinstance(s, Exception):
@@ -218,7 +218,7 @@ class Operator:
         return found
 
     def where(self, node):
-        """The host that runs it. Raises Refusal."""
+        """The host that runs the node. Raises Refusal."""
         if node not in self.cluster.nodes:
             raise Refusal(f"{node}: there is no such node in {self.cluster.name}; there are {', '.join(self.cluster.nodes)}")
         states = self.states()
@@ -227,34 +227,34 @@ class Operator:
         host = self.placement(states).get(node)
         if host is None:
             away = [h for h, s in states.items() if isinstance(s, Exception)]
-            raise Refusal(f"{node}: runs on no host that can be reached" + (f" ({', '.join(away)} cannot); --lost moves it all the same, and up ends it there later" if away else "; tactus cluster up starts it"))
+            raise Refusal(f"{node}: runs on no host that can be reached" + (f" ({', '.join(away)} cannot); --lost moves it anyway, and a later up stops it there" if away else "; start it with tactus cluster up"))
         return host
 
     def restart(self, node):
         host = self.where(node)
         self.began = time.monotonic()
         self.ask(host, "restart", patience_s=STOP_S + START_S, names=[node], patience=3)
-        self.say(f"{node} was started anew on {host}, {time.monotonic() - self.began:.1f} s after it was asked to end")
+        self.say(f"{node} was restarted on {host}, {time.monotonic() - self.began:.1f} s after it was asked to end")
 
     def move(self, node, to, anew=False, lost=False):
         if to not in self.cluster.hosts:
             raise Refusal(f"{to}: there is no such host in {self.cluster.name}; there are {', '.join(self.cluster.hosts)}")
         if node.startswith(SYNC):
-            raise Refusal(f"{node}: every host has a sync_node of its own; it is not moved")
+            raise Refusal(f"{node}: each host has its own sync_node, which cannot be moved")
         if node in self.relays():
-            raise Refusal(f"{node}: it stands where the other sites' relays look for it; place it elsewhere in the file and begin another run")
+            raise Refusal(f"{node}: the relays of other sites expect it on this host; place it elsewhere in the file and start a new run")
         if node == RECORDER:
-            raise Refusal(f"{node}: its recording lies on its host; end the run, place it elsewhere in the file and begin another")
+            raise Refusal(f"{node}: its recording is on its host; end the run, place it elsewhere in the file and start a new run")
         if node == WORLD and not anew:
-            raise Refusal(f"{node}: elsewhere its world would begin anew; say so with --anew")
+            raise Refusal(f"{node}: after a move its simulation restarts from the beginning; confirm with --anew")
         origin = None if lost else self.where(node)
         if lost and any(node in s["nodes"] for s in self.states().values() if not isinstance(s, Exception)):
-            raise Refusal(f"{node}: its host can be reached; leave --lost away")
+            raise Refusal(f"{node}: its host can be reached; remove --lost")
         if origin == to:
-            raise Refusal(f"{node}: runs on {to} already")
+            raise Refusal(f"{node}: already runs on {to}; name another host")
         state = self.ask(to, "state")
         if not state["run"]:
-            raise Refusal(f"{to}: nothing of the cluster runs there yet; first tactus cluster up")
+            raise Refusal(f"{to}: the cluster does not run there yet; run tactus cluster up first")
         self.identity = state["run"]["build"]
         if not lost and node.startswith(PICTURE):
             self.carry_shaders(origin, to)
@@ -270,19 +270,19 @@ class Operator:
         self.say(f"{node} moved from {origin or 'where it was lost'} to {to} in {time.monotonic() - self.began:.1f} s" + (f"; it did not end when asked and was killed" if killed else ""))
 
     def carry_shaders(self, origin, to):
-        """Before the picture ends where it is: a host that never drew would compile them for seconds."""
+        """Copies compiled shaders before visual_node stops; without them the new host would compile for seconds."""
         try:
             data = base64.b64decode(self.ask(origin, "shaders", patience_s=SHADERS_S)["tar"])
             self.ask(to, "take_shaders", patience_s=SHADERS_S, data=data)
         except (Unreachable, Failed) as error:
-            self.say(f"shaders were not carried along ({error}); the picture may need seconds to begin")
+            self.say(f"shaders were not copied ({error}); the picture may need seconds to start")
 
     def tell(self, words, files):
-        """Runs a program that speaks to the bus on the recorder's host, with these files beside it. Returns what it says."""
+        """Runs a program of the bus on the host of the recorder, with these files in its folder. Returns status, out and err."""
         host = self.cluster.nodes[RECORDER].host
         state = self.ask(host, "state")
         if not state["run"]:
-            raise Refusal(f"nothing of {self.cluster.name} runs; tactus cluster up starts it")
+            raise Refusal(f"no node of {self.cluster.name} runs; start it with tactus cluster up")
         self.identity = state["run"]["build"]
         bus = self.cluster.bus
         words = ["@BUILD@/bin/" + words[0], *words[1:], "--group", bus.group, "--port", str(bus.port), "--ttl", str(bus.ttl), "--run-id", str(state["run"]["run_id"])]
@@ -291,13 +291,13 @@ class Operator:
     # down
 
     def down(self, out):
-        """Ends everything in order and gathers the results in the folder. Returns what went wrong, a sentence each, and for
-        sum_up() how long it ran, which nodes are not expected at its end and which were started again; None: nothing ran."""
+        """Stops everything in order and gathers the results in the folder. Returns the errors, one sentence each, and the
+        arguments of sum_up(): duration, nodes not expected at the end, restarts; None when nothing ran."""
         states = self.states()
         runs = {h: s["run"] for h, s in states.items() if not isinstance(s, Exception) and s["run"]}
-        wrong = [str(s) + "; what runs there goes on until tactus cluster down reaches it" for s in states.values() if isinstance(s, Exception)]
+        wrong = [str(s) + "; its nodes continue to run; repeat tactus cluster down when it is reachable" for s in states.values() if isinstance(s, Exception)]
         if not runs:
-            return wrong or [f"nothing of {self.cluster.name} runs"], None
+            return wrong or [f"no node of {self.cluster.name} runs"], None
         nodes = {name: (h, node) for h, s in states.items() if h in runs for name, node in s["nodes"].items()}
         seconds = time.time() - min(kept["began"] for kept in runs.values())
         lost = [n for n, (_, node) in nodes.items() if node["lost"] or node["taken_down"]]
@@ -323,7 +323,7 @@ class Operator:
         return results.sum_up(self.cluster.plan, git, lost, restarts, [])
 
     def gather(self, out, hosts):
-        """What the recorder's host has lies in the folder itself; what the others have in one of their names."""
+        """Copies the results of the recorder host into the folder itself, of each other host into a subfolder of its name. Returns the errors."""
         first = self.cluster.nodes[RECORDER].host
         wrong = []
         for host in hosts:
@@ -335,9 +335,9 @@ class Operator:
                     file.seek(0)
                     done = subprocess.run(["tar", "-xz", "-C", str(into)], stdin=file, capture_output=True, check=False)
                     if done.returncode != 0:
-                        wrong.append(f"{host}: its results did not arrive whole; they lie there in its folder")
+                        wrong.append(f"{host}: its results arrived incomplete; the originals are in its folder on the host")
                 except (Unreachable, Failed) as error:
-                    wrong.append(f"{error}; its results lie there")
+                    wrong.append(f"{error}; its results remain on the host")
         return wrong
 
 
@@ -346,15 +346,15 @@ def own_files(there):
 
 
 def difference(ours, theirs):
-    """The first line in which two builds' messages differ, in words."""
+    """Text of the first line in which the messages of two builds differ."""
     for mine, other in zip(ours.splitlines(), theirs.splitlines()):
         if mine != other:
-            return f"\"{other.strip()}\" where ours says \"{mine.strip()}\""
-    return "it knows other messages"
+            return f"\"{other.strip()}\" where this build has \"{mine.strip()}\""
+    return "it has other messages"
 
 
 def packages(libraries):
-    """Debian packages of shared libraries, as this machine has them."""
+    """Debian packages of shared libraries, looked up on this machine."""
     found = []
     for name in libraries:
         said = subprocess.run(["dpkg", "-S", name], capture_output=True, text=True, check=False).stdout

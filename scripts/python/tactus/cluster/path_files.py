@@ -1,20 +1,20 @@
-"""What each host of a private path gets: what starts it, the configuration of OpenVPN with its keys in it, and the rules that keep the
-bus inside."""
+"""Files of each host of a private path: start script, configuration of OpenVPN with keys, and firewall rules that keep the bus
+inside the path."""
 import os
 import pathlib
 import subprocess
 import tempfile
 
-AUTHORITY = "authority"  # the folder of what signs; no host needs it
+AUTHORITY = "authority"  # the folder of the signing key; no host needs it
 DEVICE = "tactus0"
-SUBNET = "10.76.67"      # of the path itself: the numbers of LCM's group 239.255.76.67
+SUBNET = "10.76.67"      # of the path; 76.67 as in the LCM group 239.255.76.67
 MOST_HOSTS = 250
 MULTICAST = "224.0.0.0/4"
 START = """\
 #!/bin/sh
-# Starts the private path of the bus on {name}, as root: rules, device, route; then it is openvpn(8). All but openvpn stays when
-# that ends: the bus then goes nowhere, not out openly, and who listens hears the others again as soon as it is back.
-# `start prepare` makes rules, device and route, and ends.
+# Starts the private path of the bus on {name}, as root: rules, device and route, then openvpn(8). Rules, device and route stay
+# when openvpn ends: the bus is then interrupted and never leaves unencrypted; it continues when openvpn runs again.
+# `start prepare` makes rules, device and route, and exits.
 set -e
 PATH=$PATH:/usr/sbin:/sbin
 cd "$(dirname "$0")"
@@ -24,22 +24,22 @@ ip addr replace {address}/24 dev {device}
 ip link set {device} up
 ip route replace {multicast} dev {device}
 [ "${{1-}}" != prepare ] || exit 0
-# Before what is drawn and built here, and after what has real-time priority.
+# Above the priority of normal processes, below real-time priority.
 exec nice -n -10 openvpn --config tactus.conf "$@"
 """
-# A host that is lost is noticed within 5 s, and dialled again each second: the bus has no use for more patience.
+# A lost host is detected within 5 s and dialled again each second, because the bus cannot use delayed data.
 COMMON = """\
 dev {device}
 dev-type tap
 ifconfig-noexec
 proto udp4
-# A datagram of 1500 bytes goes in two: fragments of IP would carry no seal of their own.
+# OpenVPN splits a datagram of 1500 bytes, because IP fragments would not be authenticated individually.
 fragment 1400 mtu
 mssfix 1400 mtu
 tls-version-min 1.3
 data-ciphers AES-256-GCM:CHACHA20-POLY1305
 auth SHA256
-# As the nodes ask for (sync/bus/udp_port.cpp).
+# The buffer sizes of the nodes (sync/bus/udp_port.cpp).
 sndbuf 4194304
 rcvbuf 4194304
 persist-tun
@@ -72,9 +72,9 @@ explicit-exit-notify 1
 remote-cert-tls server
 verify-x509-name {first} name
 """
-# LCM's own programs hear what is sent to any address of the host, and all send to wherever the route leads.
+# The programs of LCM receive datagrams to any address of the host, and send along the current route.
 RULES = """\
-# What is of the bus stays on the private path and on this host, whether the path is up or not; and nothing is routed into it.
+# Keeps the bus on the private path and on this host, also when the path is down; nothing is routed into the path.
 table inet tactus
 delete table inet tactus
 table inet tactus {{
@@ -99,7 +99,7 @@ EXTENSIONS = {"ca": "basicConstraints=critical,CA:TRUE\nkeyUsage=critical,keyCer
 
 
 def write(folder, a):
-    """All of a path into a new folder that only its owner reads. Raises subprocess.CalledProcessError, OSError."""
+    """Writes all files of a path into a new folder that only its owner can read. Raises subprocess.CalledProcessError, OSError."""
     keys = Keys(a.days)
     for number, name in enumerate(a.hosts, 1):
         first = number == 1
@@ -128,7 +128,7 @@ def keep(path, text, mode=0o600):
 
 
 class Keys:
-    """An authority, whose key signs those of the hosts."""
+    """A certificate authority that signs the keys of the hosts."""
 
     def __init__(self, days):
         self.days = days
@@ -143,7 +143,7 @@ class Keys:
         return key, self.sign(name, key, use)
 
     def sign(self, name, key, use):
-        with tempfile.TemporaryDirectory() as folder:  # only its owner looks into it
+        with tempfile.TemporaryDirectory() as folder:  # readable only by its owner
             at = pathlib.Path(folder)
             files = {"own.key": key, "ca.key": self.key, "extensions": EXTENSIONS[use], **({} if use == "ca" else {"ca.crt": self.certificate})}
             for file, text in files.items():
@@ -163,9 +163,9 @@ def openssl(*words):
 
 
 def guide(out, a):
-    """What to do with them, for people."""
-    return (f"{len(a.hosts)} hosts; {a.hosts[0]} listens at {a.server}, UDP port {a.listen}. Give each its folder of {out}, over a way that nobody else\n"
-            f"reads, and keep {out / AUTHORITY} away from all of them. As root on each:\n\n"
+    """Instructions for the user."""
+    return (f"{len(a.hosts)} hosts; {a.hosts[0]} listens at {a.server}, UDP port {a.listen}. Copy to each its folder of {out}, over a\n"
+            f"confidential channel, and keep {out / AUTHORITY} away from all of them. As root on each:\n\n"
             f"  {a.hosts[0]}/start              # until Ctrl-C, or\n"
             f"  cp -rT {a.hosts[0]} /etc/tactus/path && tactus units install --only path && systemctl enable --now tactus-path\n\n"
-            f"The nodes then get --ttl 1 --port {a.port}.")
+            f"Start the nodes with --ttl 1 --port {a.port}.")

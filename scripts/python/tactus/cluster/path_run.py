@@ -1,5 +1,5 @@
-"""The default scene over two hosts of a lab, for tests/measure/measure_private_path: the simulation and the recorder on the first, all senses on the
-second."""
+"""Runs the default scene on two hosts of a lab, for tests/measure/measure_private_path: simulation and recorder on the first, all
+modalities on the second."""
 import collections
 import contextlib
 import json
@@ -14,17 +14,17 @@ GROUP, PORT = "239.255.76.67", 7667
 FIRST, SECOND = ("sync_node", "recorder", "sim_node"), ("sync_node_two", "haptic_node", "haptic_node_lamp", "audio_node", "visual_node", "thermal_node")
 OPTIONS = {"sync_node_two": ["--name", "sync_node_two"], "haptic_node_lamp": ["--name", "haptic_node_lamp", "--tool", "lamp"],
            "audio_node": ["--audio-device", "virtual"],
-           # Drawn on the processor that all hosts share: as cheap as it can be.
+           # Software rendering on the shared processors, therefore the cheapest settings.
            "visual_node": ["--no-video", *(w for s in ("width=320", "height=240", "rate=30", "quality=3") for w in ("--set", s))]}
 SCENE = SCENES / "dark_room.sdf"
-PATIENCE_S = 60  # on a machine that others use too
-SELF_TEST = b"LCM_SELF_TEST"  # of a node that begins, the same on both ports
-STARVED = 0.1    # of its ticks missed
+PATIENCE_S = 60  # for a machine with other load
+SELF_TEST = b"LCM_SELF_TEST"  # sent by each starting node, identical on both ports
+STARVED = 0.1    # share of missed ticks
 EVENT, SYNC = 28, 0xEDA1DA01  # LCM's log format
 
 
 class Trouble(Exception):
-    """One sentence."""
+    """A failed run; one sentence."""
 
 
 def wait_until(holds, what, patience_s=PATIENCE_S):
@@ -36,7 +36,7 @@ def wait_until(holds, what, patience_s=PATIENCE_S):
 
 
 class Run:
-    """The default scene on both hosts, until it is ended."""
+    """The running scene on both hosts, until end() or kill()."""
 
     def __init__(self, hosts, folder):
         self.hosts, self.folder, self.nodes = hosts, folder, {}
@@ -61,7 +61,7 @@ class Run:
         return (self.folder / f"{name}.log").read_text(encoding="utf-8", errors="replace")
 
     def read_on(self):
-        """Takes in what the recorder wrote since."""
+        """Reads the new events of the log of the recorder."""
         with contextlib.suppress(FileNotFoundError), open(self.folder / "run.lcmlog", "rb") as file:
             file.seek(self.read_to)
             data, at = file.read(), 0
@@ -76,7 +76,7 @@ class Run:
                 self.count["recorded"] += 1
                 self.count["presentations"] += event.startswith(b"PRESENTED")
                 self.count["forged"] += event.startswith(intruder.MARK)
-                # A header says sender and number: two alike are one that was sent again.
+                # The header has sender and sequence number, so an identical message was replayed.
                 digest = hash(event)
                 self.count["repeated"] += digest in self.seen and not event.startswith(SELF_TEST)
                 self.seen.add(digest)
@@ -88,12 +88,12 @@ class Run:
         return self.count["presentations"]
 
     def end(self):
-        """Figures of the bus as the recorder heard it, and of the events that the senses owed."""
+        """Stops the nodes. Returns figures of the bus as received by the recorder, and of expected events."""
         for names in (FIRST[2:], SECOND, FIRST[:1], FIRST[1:2]):
             for name in names:
                 if self.nodes[name].poll() is not None:
                     raise Trouble(f"{name}: ended by itself: {(self.said(name).strip() or 'silently').splitlines()[-1]}")
-            time.sleep(0.3)  # for the last to be presented
+            time.sleep(0.3)  # until the last event is presented
             for name in names:
                 self.nodes[name].terminate()
             for name in names:
@@ -108,7 +108,7 @@ class Run:
         senses = {}
         for sense, debt in summary["contacts"]["by_modality"].items():
             node = summary["nodes"][f"{sense}_node"]
-            # One that the processors had no time for loses events without anybody's help.
+            # A node without enough processor time loses events without an attack.
             starved = node["missed_ticks"] > STARVED * (node["ticks"] + node["missed_ticks"])
             senses[sense] = {**{what: debt[what] for what in ("owed", "presented", "lost")}, "starved": starved}
         return {**self.count, **{what: sum(s[what] for s in senses.values()) for what in ("owed", "presented", "lost")}, "senses": senses, "touch_age_ms": age}

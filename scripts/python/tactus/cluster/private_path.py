@@ -3,19 +3,19 @@
   tactus private-path make --hosts A,B,C --server ADDRESS --out DIR [--listen PORT] [--port N] [--days N]
   tactus private-path macsec --hosts A,B,C --device NAME [--port N]
 
-make    Makes keys and one folder for each host, with `start` in it. The first host listens at ADDRESS (UDP, --listen,
-        default 1194); the others dial it. An Ethernet of their own (OpenVPN's, the device tactus0) then joins them that nobody
-        else can read or write, multicast goes there, and what is of the bus goes nowhere else.
-macsec  Prints the commands that encrypt one Ethernet instead, by the kernel, for each host of it: fresh keys, iproute2.
+make    Makes keys and one folder for each host, with the script `start`. The first host listens at ADDRESS (UDP, --listen,
+        default 1194); the others dial it. A virtual Ethernet (OpenVPN, device tactus0) then connects the hosts, encrypted and
+        authenticated. Multicast uses it, and the bus uses nothing else.
+macsec  Prints the commands of iproute2 that encrypt one Ethernet in the kernel instead, with new keys for each host.
 
   --hosts   names of letters, digits and hyphens
-  --server  the address or name at which the others reach the first host
-  --out     a folder that is not there yet
-  --port    the bus' port, as the nodes have it (default 7667; the next one is the bus' too)
-  --device  the network device that the hosts share, e.g. eth0
-  --days    how long the keys are good for (default 825)
+  --server  address or name at which the other hosts reach the first host
+  --out     a new folder
+  --port    port of the bus, as for the nodes (default 7667; the bus also uses the next port)
+  --device  network device of the shared Ethernet, e.g. eth0
+  --days    validity of the keys in days (default 825)
 
-docs/between_sites.md says how to start it and what it protects.
+docs/between_sites.md explains the start and the protection.
 """
 import argparse
 import ipaddress
@@ -32,7 +32,7 @@ from tactus.refusal import Refusal, sentence_of
 
 NAME = re.compile(r"[A-Za-z0-9]([A-Za-z0-9-]{0,30}[A-Za-z0-9])?")
 DNS_NAME = re.compile(r"(?=.{1,253}$)[A-Za-z0-9]([A-Za-z0-9.-]*[A-Za-z0-9])?")
-DAYS = 825  # as easy-rsa's certificates
+DAYS = 825  # as for certificates of easy-rsa
 
 
 class Parser(argparse.ArgumentParser):
@@ -46,7 +46,7 @@ def parsed(words):
     make_words = commands.add_parser("make", add_help=False, allow_abbrev=False)
     for option in ("--hosts", "--server", "--out"):
         make_words.add_argument(option, required=True)
-    make_words.add_argument("--listen", type=int, default=1194)  # IANA's number of openvpn
+    make_words.add_argument("--listen", type=int, default=1194)  # IANA port of openvpn
     make_words.add_argument("--days", type=int, default=DAYS)
     macsec_words = commands.add_parser("macsec", add_help=False, allow_abbrev=False)
     for option in ("--hosts", "--device"):
@@ -61,21 +61,21 @@ def parsed(words):
     if a.command == "make":
         a.server = server_address(a.server)
     elif not re.fullmatch(r"[A-Za-z0-9_.-]{1,15}", a.device):
-        raise Refusal(f"--device {a.device}: is no name of a network device; ip link shows them")
+        raise Refusal(f"--device {a.device}: is no name of a network device; list them with ip link")
     return a
 
 
 def host_names(text):
     names = text.split(",")
     if not 2 <= len(names) <= path_files.MOST_HOSTS:
-        raise Refusal(f"--hosts {text[:60]}: a path joins 2 to {path_files.MOST_HOSTS} hosts; name them with commas in between")
+        raise Refusal(f"--hosts {text[:60]}: a path joins 2 to {path_files.MOST_HOSTS} hosts; separate their names by commas")
     for name in names:
         if not NAME.fullmatch(name):
             raise Refusal(f"--hosts: \"{name[:60]}\" is no name of a host; use letters, digits and hyphens, at most 32")
         if name == path_files.AUTHORITY:
-            raise Refusal(f"--hosts: {name} is the folder of the keys of all; name the host otherwise")
+            raise Refusal(f"--hosts: {name} is the folder of the signing key; rename the host")
     if len(set(names)) != len(names):
-        raise Refusal(f"--hosts {text[:60]}: a host is named twice; leave one away")
+        raise Refusal(f"--hosts {text[:60]}: a host is named twice; remove one")
     return names
 
 
@@ -85,9 +85,9 @@ def server_address(text):
     except ValueError:
         if DNS_NAME.fullmatch(text) and not re.fullmatch(r"[0-9.]+", text):
             return text
-        raise Refusal(f"--server {text[:60]}: is neither an address nor a name; give that at which the others reach the first host") from None
+        raise Refusal(f"--server {text[:60]}: is neither an address nor a name; give the one at which the other hosts reach the first host") from None
     if address.version != 4 or address.is_multicast or address.is_unspecified:
-        raise Refusal(f"--server {text}: is no IPv4 address of a host; give that at which the others reach the first host")
+        raise Refusal(f"--server {text}: is no IPv4 address of a host; give the one at which the other hosts reach the first host")
     return text
 
 
@@ -96,8 +96,8 @@ def make(a):
         raise Refusal("openssl is not installed; run scripts/setup --packages")
     out = pathlib.Path(a.out)
     if out.exists() or out.is_symlink():
-        raise Refusal(f"--out {out}: is there already, and its keys may be in use; name a folder that is not")
-    fresh = out.with_name(f".{out.name}.{os.getpid()}")  # whole or not at all
+        raise Refusal(f"--out {out}: already exists, and its keys may be in use; name a new folder")
+    fresh = out.with_name(f".{out.name}.{os.getpid()}")  # renamed when complete
     try:
         path_files.write(fresh, a)
         fresh.rename(out)

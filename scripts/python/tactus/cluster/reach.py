@@ -1,7 +1,7 @@
-"""How a host is reached: as this machine, over ssh, or as a network namespace of this machine. Everything that is asked of a host
-is asked of agent.py, which goes there with each question: a host needs nothing of ours before.
+"""Sends requests to a host: this machine, over ssh, or a network namespace of this machine. Each request carries agent.py, which
+answers it, so that a host needs no installation.
 
-No question waits longer than it is given: a host that does not answer is one that is not there."""
+Each request has a timeout; a host that does not answer in time counts as unreachable."""
 import base64
 import concurrent.futures
 import hashlib
@@ -14,7 +14,7 @@ import time
 import zlib
 
 PACKAGE = pathlib.Path(__file__).resolve().parents[1]
-# What the agent needs, packages before what is in them; in an order in which each imports only those before it.
+# Modules of the agent, in import order: packages before their modules.
 MODULES = {"tactus": PACKAGE / "__init__.py", "tactus.refusal": PACKAGE / "refusal.py",
            "tactus.launch": PACKAGE / "launch" / "__init__.py", "tactus.launch.services": PACKAGE / "launch" / "services.py",
            "tactus.launch.network": PACKAGE / "launch" / "network.py",
@@ -31,22 +31,22 @@ MOST_AT_ONCE = 32
 
 
 class Unreachable(Exception):
-    """One sentence."""
+    """The host cannot be reached; one sentence."""
 
 
 class Failed(Exception):
-    """The host was reached and cannot do it; one sentence."""
+    """The host was reached but the request failed; one sentence."""
 
 
 def control_folder(ssh_config):
-    """For the connections that ssh shares between questions; only ours. ssh names them by user, host and port: a host of that name which another
-    configuration or another network leads to is another host, and has a folder of its own."""
+    """Folder of the sockets of shared ssh connections, private to the user. ssh names a socket by user, host and port, so each
+    configuration and each network namespace has its own folder. Raises Unreachable."""
     parent = pathlib.Path(os.environ.get("XDG_RUNTIME_DIR") or f"/tmp/tactus-ssh-{os.getuid()}")
     way = f"{pathlib.Path(ssh_config).resolve() if ssh_config else ''} {os.readlink('/proc/self/ns/net')}"
     folder = parent / "tactus" / hashlib.sha256(way.encode()).hexdigest()[:8]
     folder.mkdir(parents=True, exist_ok=True, mode=0o700)
     if folder.stat().st_uid != os.getuid() or parent.stat().st_uid not in (os.getuid(), 0):
-        raise Unreachable(f"the folder {folder} belongs to somebody else; set XDG_RUNTIME_DIR to one of your own")
+        raise Unreachable(f"the folder {folder} belongs to another user; set XDG_RUNTIME_DIR to your own folder")
     return folder
 
 
@@ -55,7 +55,7 @@ class Reach:
         self.host, self.ssh_config = host, ssh_config
 
     def words(self, command):
-        """The command line that runs the words there."""
+        """The command line that runs a command on the host."""
         if self.host.reach == "local":
             return list(command)
         if self.host.reach == "namespace":
@@ -66,8 +66,8 @@ class Reach:
                 self.host.address, "--", shlex.join(command)]
 
     def ask(self, what, patience_s=ASK_S, data=None, to=None, **request):
-        """What the agent answers to the request. data: a file that goes there; to: one that what comes is written to, and then
-        there is no answer. Raises Unreachable or Failed."""
+        """The answer of the agent to a request. data: bytes to send with it; to: file for the output, then the result is None.
+        Raises Unreachable or Failed."""
         modules = {name: path.read_text(encoding="utf-8") for name, path in MODULES.items()}
         asked = {"what": what, "folder": self.host.folder, **request}
         line = base64.b64encode(zlib.compress(json.dumps({"modules": modules, "request": asked}).encode())) + b"\n"
@@ -90,20 +90,20 @@ class Reach:
         try:
             answer = json.loads(out)
         except ValueError:
-            raise Failed(f"{self.host.name}: its shell says something before or after what it is asked ({out[:60]!r}); make it silent "
-                         "for commands") from None
+            raise Failed(f"{self.host.name}: its shell prints text besides the answer ({out[:60]!r}); remove the output from "
+                         "its start-up files") from None
         if "refusal" in answer:
             raise Failed(f"{self.host.name}: {answer['refusal']}")
         return answer
 
     def forget(self):
-        """Ends the shared connection: the next question makes a new one."""
+        """Closes the shared connection; the next request opens a new one."""
         if self.host.reach == "ssh":
             words = self.words(["true"])
             subprocess.run([*words[:-2][:-1], "-O", "exit", self.host.address], capture_output=True, check=False, timeout=5)
 
     def measure_s(self):
-        """How long a question and its answer take."""
+        """Duration of a request and its answer, s."""
         begin = time.monotonic()
         self.ask("nothing")
         return time.monotonic() - begin
@@ -114,7 +114,7 @@ def last_line(text):
 
 
 def of_all(reaches, question):
-    """{host: answer, or the Unreachable or Failed} of question(reach) to each at once."""
+    """{host: answer, or Unreachable or Failed} of question(reach), called in parallel."""
     def safely(reach):
         try:
             return question(reach)

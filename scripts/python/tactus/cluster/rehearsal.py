@@ -1,4 +1,4 @@
-"""A cluster in a lab, for measurements and tests: hosts whose cables can be cut, and an observer on the switch who hears them all."""
+"""A cluster in a lab, for measurements and tests: hosts with faults on request, and an observer on the switch."""
 import json
 import os
 import pathlib
@@ -11,20 +11,20 @@ import time
 
 from tactus.cluster import cluster_file, lab
 from tactus.cluster.orders import Operator
-from tactus.cluster.reach import Failed, Unreachable  # noqa: F401  for whoever gives orders that may fail
+from tactus.cluster.reach import Failed, Unreachable  # noqa: F401  re-exported
 from tactus.paths import BIN
 
 PATIENCE_S = 60
 STAYS_S = 0.3
-SILENT_S = 3.0  # the observer hears nothing at all
+SILENT_S = 3.0  # the observer receives nothing
 
 
 class Rehearsal:
-    """The cluster of the file, in a lab that has its hosts. Only inside of lab.enter()."""
+    """The cluster of a file in a lab with its hosts. Only inside lab.enter()."""
 
     def __init__(self, file, folder, ordinary=()):
         self.folder = pathlib.Path(folder)
-        os.environ["HOME"] = str(self.folder / "home")  # of whoever gives the orders; hosts have homes of their own
+        os.environ["HOME"] = str(self.folder / "home")  # of this process; each host has its own home
         (self.folder / "home").mkdir(parents=True, exist_ok=True)
         self.cluster = cluster_file.read(str(file), self.folder / "plan")
         self.lab = lab.Lab([name for name, host in self.cluster.hosts.items() if host.reach == "ssh"], ordinary)
@@ -33,7 +33,7 @@ class Rehearsal:
         self.watch = None
 
     def up(self):
-        """Seconds that it took from nothing until the world began."""
+        """Starts the cluster; returns the seconds until the simulation began."""
         begin = time.monotonic()
         self.operator.up("rehearsal")
         self.operator.wait_for_world()
@@ -52,7 +52,7 @@ class Rehearsal:
         return self.watch.all_run(self.placement)
 
     def wait_until_whole(self, patience_s=PATIENCE_S):
-        """Seconds until it is whole and stays so for a moment, or None when it does not become whole."""
+        """Seconds until all nodes run, and run for STAYS_S; None on timeout."""
         begin, since = time.monotonic(), None
         while time.monotonic() < begin + patience_s:
             if not self.whole():
@@ -65,7 +65,7 @@ class Rehearsal:
         return None
 
     def record(self, name, seconds=None, until=None):
-        """What the observer hears in so many seconds, or until an event is set, as summary.json says it; the log stays in the folder."""
+        """summary.json of the observer after `seconds`, or when the event `until` is set; the log stays in the folder."""
         out = self.folder / name
         shutil.rmtree(out, ignore_errors=True)
         out.mkdir(parents=True)
@@ -84,7 +84,7 @@ class Rehearsal:
         return json.loads((out / "summary.json").read_text(encoding="utf-8"))
 
     def down(self, out):
-        """What went wrong, a sentence each. The results of all hosts are in the folder, with the tables of events and clocks."""
+        """Stops the cluster and gathers its results, with tables of events and clocks. Returns the errors, one sentence each."""
         wrong = self.operator.down(out)[0]
         subprocess.run([BIN / "export_events", out, "--out", out], capture_output=True, check=False)
         return wrong
@@ -96,7 +96,7 @@ class Rehearsal:
 
 
 class Watch:
-    """What the nodes say of themselves, ten times a second."""
+    """The states of all nodes, received ten times a second."""
 
     def __init__(self, cluster, run_id):
         self.run_id = run_id
@@ -110,7 +110,7 @@ class Watch:
             try:
                 self.newest, self.heard = json.loads(line)["nodes"], time.monotonic()
             except (ValueError, KeyError):
-                continue  # it was just ended
+                continue  # incomplete line at the end
 
     def state(self, node):
         return self.newest.get(node, {}).get("state", "not heard") if time.monotonic() < self.heard + SILENT_S else "not heard"
@@ -124,10 +124,10 @@ class Watch:
 
 
 def enter(script, words):
-    """Starts the script again in namespaces of its own, unless it is there already; with status 77 where that cannot be."""
+    """Restarts the script in new namespaces, unless it runs inside; exits with 77 when the system refuses."""
     if lab.is_inside():
         del os.environ["TACTUS_LAB_INSIDE"]
-        for number in (signal.SIGTERM, signal.SIGHUP):  # the first process of a namespace is ended by what it answers to only
+        for number in (signal.SIGTERM, signal.SIGHUP):  # the first process of a namespace receives only signals with a handler
             signal.signal(number, lambda *_: sys.exit("ended from outside"))
         return
     try:

@@ -1,4 +1,4 @@
-"""The asynchronies of a run that was gathered from the hosts of a lab: tables of its logs, and what asynchrony.py makes of them."""
+"""The asynchronies of a run that was gathered from the hosts of a lab: exports its logs and evaluates them with asynchrony.py."""
 import csv
 import json
 import pathlib
@@ -10,12 +10,12 @@ from tactus.cluster import asynchrony
 from tactus.paths import BIN
 
 TITLES = {"nothing": "nothing spoilt", "others": "another host spoilt", "spoilt": "one of the two hosts spoilt, or the recorder's"}
-SUMMARY_BIN_MS = 0.11     # a bin of SoaHistogram, and what summary.json rounds to
+SUMMARY_BIN_MS = 0.11     # a bin of SoaHistogram, and the rounding of summary.json
 SUMMARY_ROUNDS_MS = 0.011
 
 
 def logs(out):
-    """Parts of the run's log, in order: another one begins when the recorder is started again."""
+    """Parts of the log of a run, in order; each restart of the recorder starts a new part."""
     number = lambda path: int(re.sub(r"\D", "", path.name) or 1)
     return sorted(out.glob("run*.lcmlog"), key=number)
 
@@ -46,7 +46,7 @@ def read(out, host_of, ahead_s, home, walls):
             run(BIN / "export_events", part, "--out", scratch)
             maps = asynchrony.Maps(rows(scratch / "wide" / "CLOCK_MAP.csv"), host_of, home, ahead_s)
             if maps.begin_ns is None:
-                continue  # too short a part for a map
+                continue  # the part is too short for a map
             presented = rows(scratch / "long" / "PRESENTED.csv")
             events = rows(scratch / "events.csv")
             kinds = {r["event_id"]: r["kind"] for r in events}
@@ -65,11 +65,11 @@ def read(out, host_of, ahead_s, home, walls):
 
 
 def measured(out, host_of, ahead_s, home, walls, windows):
-    """What measure_hosts prints and writes. windows: as of asynchrony.by_window."""
+    """The figures of measure_hosts. windows: as of asynchrony.by_window."""
     senses, by_event, by_frame, parts = read(out, host_of, ahead_s, home, walls)
     with tempfile.TemporaryDirectory() as scratch:
         summary = pathlib.Path(scratch) / "summary.json"
-        subprocess.run([str(BIN / "summarise"), *map(str, logs(out)), "--out", str(summary)], capture_output=True, check=False)  # it may find fault with the run
+        subprocess.run([str(BIN / "summarise"), *map(str, logs(out)), "--out", str(summary)], capture_output=True, check=False)  # a nonzero status only reports losses
         said = json.loads(summary.read_text(encoding="utf-8"))["asynchrony_ms"]
     tables = {}
     for name, pairs in (("senses", senses), ("walls by event", by_event), ("walls by frame", by_frame)):
@@ -94,7 +94,7 @@ def text(told):
 
 
 def missed(told):
-    """What is not as required, a sentence each: what is stated holds whatever is spoilt; what the playout aims at is met while nothing is."""
+    """Violated requirements, one sentence each: stated uncertainties must hold in all windows, playout delays in windows without faults."""
     found = []
     for name, by_when in told["tables"].items():
         for when, of in by_when.items():
@@ -106,6 +106,6 @@ def missed(told):
                     found.append(f"{who}: {r['beyond_in_time']} of {r['aimed']} beyond what is stated and the grain, and not called late; at worst {r['aside_worst_ms']:.1f} ms aside")
     for r in told["summary"]:
         if r["n"] != r["n_said"] or (r["differs_ms"] or 0) > SUMMARY_BIN_MS or abs((r["uncertainty_said_ms"] or 0) - r["uncertainty_ms"]) > SUMMARY_ROUNDS_MS:
-            found.append(f"asynchrony of {r['pair']}: summarise tells {r['n_said']} of them within {r['uncertainty_said_ms']} ms, here are {r['n']} within {r['uncertainty_ms']:.3f} ms, "
+            found.append(f"asynchrony of {r['pair']}: summarise reports {r['n_said']} of them within {r['uncertainty_said_ms']} ms, here are {r['n']} within {r['uncertainty_ms']:.3f} ms, "
                          f"and their quantiles differ by {r['differs_ms']} ms")
     return found

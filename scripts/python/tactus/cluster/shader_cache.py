@@ -1,6 +1,5 @@
-"""Compiled shaders of one host carried to another, so that a picture that moves there does not have to wait until they are compiled
-anew. Mesa names each by its content, its driver and that driver's build: a host with another processor or Mesa finds nothing of use
-in them, and nothing wrong."""
+"""Copies compiled shaders between hosts, so that a moved visual_node starts without compiling them. Mesa names each file by
+content, driver and build of the driver, so a host with another processor or Mesa ignores them."""
 import io
 import os
 import pathlib
@@ -13,13 +12,13 @@ NAME = re.compile(r"mesa_shader_cache(_db)?(/[A-Za-z0-9_.-]+){1,3}")
 
 
 def folder():
-    """Where Mesa keeps them, for whoever this is (its documentation, environment variables)."""
+    """Folder of the shader caches of Mesa for the current user (documentation of Mesa, environment variables)."""
     own = os.environ.get("MESA_SHADER_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or "~/.cache"
     return pathlib.Path(own).expanduser()
 
 
 def packed(root, largest_bytes=LARGEST_BYTES):
-    """A tar of them, the newest first, no more than so many bytes; what is being written meanwhile has another name, and is left out."""
+    """A tar of the shaders, newest first, at most largest_bytes; skips files that are being written, which have another name."""
     files = [p for name in FOLDERS for p in (root / name).rglob("*") if p.is_file() and not p.is_symlink() and p.suffix != ".tmp" and p.name != "index"]
     into, left = io.BytesIO(), largest_bytes
     with tarfile.open(fileobj=into, mode="w:gz", compresslevel=1) as tar:
@@ -35,7 +34,7 @@ def packed(root, largest_bytes=LARGEST_BYTES):
 
 
 def unpack(data, root, largest_bytes=LARGEST_BYTES):
-    """Puts those there that are not there yet; returns how many. Takes regular files below Mesa's folders only."""
+    """Stores shaders that are missing; returns their number. Accepts only regular files in the folders of Mesa."""
     count = 0
     with tarfile.open(fileobj=io.BytesIO(data), mode="r:gz") as tar:
         for entry in tar:

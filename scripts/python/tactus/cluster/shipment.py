@@ -1,4 +1,4 @@
-"""What a host needs to run any node: programs, sounds, scenes, rooms; made of one build, and known by what is in it."""
+"""The files that a host needs to run any node: programs, sounds, scenes, rooms of one build, identified by a hash."""
 import hashlib
 import io
 import os
@@ -15,13 +15,13 @@ PROGRAMS = ("sim_node", "haptic_node", "audio_node", "visual_node", "thermal_nod
             "playout", "set", "message_types", "probe_pairs", "relay")
 FOLDERS = {"share/scenes": REPOSITORY / "sim_node" / "scenes", "share/rooms": REPOSITORY / "visual_node" / "rooms", "share/relays": sites.SHIPPED}
 LEFT_OUT = {".py", ".md"}
-# What `tactus doctor` imports beside its own package.
+# Files that `tactus doctor` imports besides its own package.
 DOCTOR = ("__init__.py", "refusal.py", "commands/__init__.py", "commands/dispatch.py", "commands/table.py", "launch/__init__.py", "launch/equipment.py", "launch/network.py")
 LARGEST_SCENE_BYTES = 500_000_000
 
 
 def parts():
-    """{path there: path here} of all files."""
+    """{path on the host: local path} of all files. Raises Refusal."""
     found = {f"bin/{name}": BIN / name for name in PROGRAMS}
     found |= {f"bin/{path.name}": path for path in BIN.glob("lib*.so")}
     found |= {f"bin/sounds/{path.relative_to(BIN / 'sounds')}": path for path in sorted((BIN / "sounds").rglob("*")) if path.is_file()}
@@ -38,7 +38,7 @@ def parts():
 
 
 def identity(files):
-    """Of a build: the same for the same files."""
+    """Identity of a build: a hash of its files."""
     total = hashlib.sha256()
     for there, here in sorted(files.items()):
         total.update(there.encode() + b"\0" + hashlib.sha256(here.read_bytes()).digest())
@@ -46,12 +46,12 @@ def identity(files):
 
 
 def messages():
-    """What this build says of its messages."""
+    """The message types of this build, as printed by message_types."""
     return subprocess.run([BIN / "message_types"], capture_output=True, text=True, check=True).stdout
 
 
 def packed(files):
-    """The files as one compressed tar, programs without what only a debugger reads."""
+    """The files as one compressed tar, programs without debug information."""
     into = io.BytesIO()
     with tarfile.open(fileobj=into, mode="w:gz", compresslevel=1) as tar:
         for there, here in sorted(files.items()):
@@ -72,7 +72,7 @@ def stripped(path):
 
 
 def of_run(cluster):
-    """(tar of what this run has of its own, {path here: path there}): a scene that is not shipped, with its folder, the profile, a room."""
+    """(tar of the files of this run, {local path: path on the host}): a scene with its folder, the profile, a room, relay rules. Raises Refusal."""
     into, there = io.BytesIO(), {}
     with tarfile.open(fileobj=into, mode="w:gz", compresslevel=1) as tar:
         scene = cluster.plan.scene
@@ -81,8 +81,8 @@ def of_run(cluster):
         if FOLDERS["share/scenes"] not in scene.parents:
             size = sum(p.stat().st_size for p in scene.parent.rglob("*") if p.is_file())
             if size > LARGEST_SCENE_BYTES:
-                raise Refusal(f"sim_node: the folder {scene.parent} of the scene holds {size // 1_000_000} MB, and goes to every host; put the scene "
-                              "and what it needs into a folder of their own")
+                raise Refusal(f"sim_node: the folder {scene.parent} of the scene holds {size // 1_000_000} MB, which is too much to copy to every host; put the scene "
+                              "and its files into a separate folder")
             tar.add(scene.parent, "scene")
             there[str(scene.parent)] = "@FILES@/scene"
         rules = cluster.relays.rules if cluster.relays and sites.SHIPPED not in cluster.relays.rules.parents else None

@@ -1,4 +1,4 @@
-"""Hosts of several sites, which do not hear each other's multicast: in each site one host runs a relay with a line to every other."""
+"""Sites without multicast between them: in each site one host runs a relay with a line to every other relay."""
 import dataclasses
 import ipaddress
 import pathlib
@@ -11,7 +11,7 @@ RELAY = "relay"
 class Relay:
     host: str
     at: str    # its address, for other relays
-    kbit: int  # what the line to it carries; 0: as much as comes
+    kbit: int  # capacity of the line to it, kbit/s; 0: unlimited
 
 
 @dataclasses.dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Relays:
     by_name: dict  # {process: Relay}
 
     def words(self, process):
-        """Of its command line, behind those that all nodes have. The path of the rules is one of this machine."""
+        """Arguments of a relay after the common ones. The path of the rules is local."""
         own = self.by_name[process]
         to = [f"{r.at}:{self.port}" + (f",{r.kbit}" if r.kbit else "") for r in self.by_name.values() if r != own]
         return ["--name", process, "--listen", f"{own.at}:{self.port}", *(w for line in to for w in ("--to", line)), "--rules", str(self.rules)]
@@ -39,7 +39,7 @@ def read(reading, hosts):
         if len(sites) > 1:
             first = next(h for h in reading.root.findall("host") if h.get("site"))
             reading.refuse(first, f"there are hosts of {len(sites)} sites and no relays between them; add <relays rules=\"wide\"> with a <relay host= at=/> for each "
-                           "site, or leave site= away where all hear each other's multicast")
+                           "site, or remove site= when multicast reaches all hosts")
         return None
     found, covered = {}, {}
     for r in e.findall("relay"):
@@ -48,16 +48,16 @@ def read(reading, hosts):
             reading.refuse(r, f"there is no host \"{host}\"; there are {', '.join(hosts)}")
         site = hosts[host].site
         if site in covered:
-            reading.refuse(r, f"the site of {host} has a relay already, on {covered[site]}; leave one away")
+            reading.refuse(r, f"the site of {host} already has a relay, on {covered[site]}; remove one")
         if not is_address(at):
-            reading.refuse(r, f"at=\"{at}\" is no address; write the one at which other relays reach {host}, as in 192.0.2.7")
+            reading.refuse(r, f"at=\"{at}\" is not an IPv4 address; give the one at which other relays reach {host}, for example 192.0.2.7")
         covered[site] = host
         found[name_of(host)] = Relay(host, at, int(r.get("kbit", "0")))
     for name, host in hosts.items():
         if host.site not in covered:
             reading.refuse(e, f"no host of the site of {name} has a relay; add <relay host=\"{name}\" at=\"...\"/>")
     if len(found) < 2:
-        reading.refuse(e, "there is one site, which needs no relay; say site= of the hosts that are elsewhere, or leave <relays> away")
+        reading.refuse(e, "there is one site, which needs no relay; set site= of the other hosts, or remove <relays>")
     return Relays(rules_file(reading, e), int(e.get("port", "7700")), found)
 
 
@@ -69,7 +69,7 @@ def is_address(text):
 
 
 def rules_file(reading, e):
-    """A file beside the cluster file, or a shipped one by its name."""
+    """Path of the rules: a file relative to the cluster file, or a shipped file by its name."""
     text = e.get("rules", "wide")
     beside, shipped = reading.path.parent / text, SHIPPED / f"{text}.xml"
     if beside.is_file():
@@ -77,4 +77,4 @@ def rules_file(reading, e):
     if pathlib.Path(text).name == text and shipped.is_file():
         return shipped
     known = ", ".join(sorted(p.stem for p in SHIPPED.glob("*.xml")))
-    reading.refuse(e, f"rules=\"{text}\" is no file; give one, or one of {known}")
+    reading.refuse(e, f"rules=\"{text}\" is not a file; give a file, or one of {known}")

@@ -1,4 +1,4 @@
-"""One table over all hosts: what their supervisors say of each node, and what the bus says."""
+"""One table of all hosts: the state of each node from its supervisor and from the bus."""
 import json
 
 from tactus.cluster.cluster_file import RECORDER
@@ -7,8 +7,8 @@ COLUMNS = ("host", "node", "process", "on the bus", "rate Hz", "missed", "input 
 
 
 def gather(operator):
-    """{host: state or error}, and what the bus says as watch --json: of the hosts the first that answers."""
-    states = operator.states(patience_s=3)  # who answers later is shown as not reached
+    """({host: state or error}, output of watch --json from the first host that answers)."""
+    states = operator.states(patience_s=3)  # a later answer counts as not reached
     first = operator.cluster.nodes[RECORDER].host
     bus = {}
     for host in sorted(states, key=lambda h: h != first):
@@ -22,13 +22,13 @@ def gather(operator):
             said = operator.ask(host, "on_the_bus", words=words, patience_s=5, patience=4)
             bus = {"host": host, **json.loads(said["out"] or "{}")}
             break
-        except Exception:  # pylint: disable=broad-except  # the next one may know
+        except Exception:  # pylint: disable=broad-except  # try the next host
             continue
     return states, bus
 
 
 def rows(cluster, states, bus):
-    """Dictionaries of COLUMNS, in the order of the file; a node that is nowhere has no host that runs it."""
+    """Dictionaries of COLUMNS, in the order of the file; host is empty for a node that no host runs."""
     heard = bus.get("nodes", {})
     found = []
     seen = set()
@@ -73,7 +73,7 @@ def cell(value):
 
 
 def whole(cluster, states, bus):
-    """Every node of the file runs, and is heard."""
+    """True when every node of the file runs and publishes."""
     up = {n for s in states.values() if not isinstance(s, Exception) for n, node in s["nodes"].items() if node["up"]}
     heard = bus.get("nodes", {})
     return all(n in up and heard.get(n, {}).get("state") == "running" for n in cluster.nodes)

@@ -3,17 +3,17 @@
   tactus units install [--root DIR] [--only KIND,KIND,...] [--prefix DIR] [--out DIR] [--units-only]
                         [--group ADDRESS] [--port N] [--ttl N] [--run-id N] [--scene FILE] [--host NAME]
 
-Writes units of systemd for an installation that stays, and copies the programs of the build. Enables and starts nothing: it
-says how to do that.
+Writes systemd units for a permanent installation and copies the programs of the build. Enables and starts nothing, but
+prints the commands for it.
 
-  --only        of sim, haptic, audio, visual, thermal, sync, recorder, relay, path; default: all but relay and path
-  --root        where the system's root is (default /)
-  --prefix      where the programs go (default /opt/tactus)
-  --out         where the nodes write (default /var/lib/tactus)
-  --units-only  copies no programs: they are in PREFIX already
-  --group, --port, --ttl, --run-id, --scene   as the nodes take them; they go to /etc/tactus/tactus.env, which is kept where it is
-                there already: edit it then
-  --host        a name for this host, where it is not that of the recorder: its sync_node is then called sync_node_NAME
+  --only        comma-separated list of sim, haptic, audio, visual, thermal, sync, recorder, relay, path; default: all but relay and path
+  --root        root of the target system (default /)
+  --prefix      folder for the programs (default /opt/tactus)
+  --out         output folder of the nodes (default /var/lib/tactus)
+  --units-only  copies no programs, because they are already in PREFIX
+  --group, --port, --ttl, --run-id, --scene   as for the nodes; written to /etc/tactus/tactus.env. An existing file is kept;
+                edit it in that case
+  --host        name of this host, if it is not the host of the recorder; its sync_node is then called sync_node_NAME
 
 units/README.md describes the units.
 """
@@ -29,8 +29,8 @@ from tactus.refusal import Refusal, sentence_of
 
 UNITS = pathlib.Path(__file__).with_name("units")
 KINDS = ("sync", "recorder", "haptic", "audio", "visual", "thermal", "sim", "relay", "path")
-LEFT_OUT = ("relay", "path")  # unless they are asked for
-TEMPLATES = ("haptic", "visual")  # of a second hand, of another wall
+LEFT_OUT = ("relay", "path")  # unless requested with --only
+TEMPLATES = ("haptic", "visual")  # for further tools and walls
 SYSTEM, ETC = "etc/systemd/system", "etc/tactus"
 
 
@@ -71,14 +71,14 @@ def parsed(words):
         if not ipaddress.IPv4Address(a.group).is_multicast:
             raise ValueError
     except ValueError:
-        raise Refusal(f"--group {a.group[:40]}: is no multicast group; they go from 224.0.0.0 to 239.255.255.255") from None
+        raise Refusal(f"--group {a.group[:40]}: is not a multicast group; use one from 224.0.0.0 to 239.255.255.255") from None
     if a.host is not None and not re.fullmatch(r"[A-Za-z0-9-]{1,32}", a.host):
         raise Refusal(f"--host {a.host[:40]}: give a name of letters, digits and hyphens")
     return a
 
 
 def sections(text):
-    """{section: its lines} of a unit or of common.conf."""
+    """{section: text} of a unit or of common.conf."""
     found, name = {"": []}, ""
     for line in text.splitlines():
         if re.fullmatch(r"\[\w+\]", line):
@@ -90,8 +90,8 @@ def sections(text):
 
 
 def with_common(name):
-    """A service with what every unit has; its own lines come after, and so prevail."""
-    common = sections((UNITS / "common.conf").read_text(encoding="ascii").replace(f" {name}", ""))  # none comes after itself
+    """The text of a service with the common lines; its own lines come after them and override."""
+    common = sections((UNITS / "common.conf").read_text(encoding="ascii").replace(f" {name}", ""))  # no unit is ordered after itself
     own = sections((UNITS / name).read_text(encoding="ascii"))
     parts = [own.pop("")] + [f"{name}\n{common[name]}\n{own.get(name, '')}".strip() for name in ("[Unit]", "[Service]", "[Install]")]
     return "\n\n".join(part for part in parts if part) + "\n"
@@ -104,7 +104,7 @@ def filled(text, a):
 
 
 def files(a):
-    """{path below the root: text} of all that is written."""
+    """{path relative to the root: text} of all written files."""
     read = lambda name: filled((UNITS / name).read_text(encoding="ascii"), a)
     found = {f"{SYSTEM}/tactus.target": read("tactus.target")}
     for kind in a.only:
@@ -117,8 +117,8 @@ def files(a):
 def install(a):
     root = pathlib.Path(a.root)
     if not root.is_dir():
-        raise Refusal(f"--root {root}: is no folder; make it first")
-    # One that is there already is somebody's work.
+        raise Refusal(f"--root {root}: is not a folder; create it first")
+    # An existing file may have been edited by the user.
     kept = (root / ETC / "tactus.env").exists()
     texts = {path: text for path, text in files(a).items() if not (kept and path.endswith("tactus.env"))}
     if not a.units_only:
@@ -132,14 +132,14 @@ def install(a):
         fresh.rename(into)
     units = [f"tactus-{kind}" for kind in a.only]
     where = "" if root == pathlib.Path("/") else " (in that system)"
-    terminal.tell((f"{root / ETC / 'tactus.env'} was there, and is as it was\n" if kept else "") +
+    terminal.tell((f"{root / ETC / 'tactus.env'} already existed and was kept\n" if kept else "") +
                   f"units of {', '.join(a.only)} are in {root / SYSTEM}; nothing is enabled. As root{where}:\n\n"
                   "  systemd-sysusers && systemd-tmpfiles --create && systemctl daemon-reload\n"
                   f"  systemctl enable {' '.join(units)} tactus.target && systemctl start tactus.target")
 
 
 def copy_programs(prefix):
-    """Those of the build, without what only a debugger reads. A program that runs keeps its own file until it ends."""
+    """Copies the programs of the build without debug information. A running program keeps its old file."""
     from tactus.cluster import shipment
     for there, here in shipment.parts().items():
         into = prefix / there

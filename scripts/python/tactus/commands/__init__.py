@@ -1,1 +1,1 @@
-"""The command `tactus`: its table of commands, and those commands that belong to no other package."""
+"""The command `tactus`: the table of its commands, and the commands that belong to no other package."""

@@ -11,21 +11,21 @@ from tactus.refusal import Refusal
 
 USAGE = """Usage: tactus attach [OUT_DIR] CMD [ARG]...
 
-Runs CMD inside the network of the running cluster that writes to OUT_DIR; default: the one that was started last. CMD sees
-only the cluster's processes. Its environment names the bus (LCM_DEFAULT_URL, for LCM's own tools; TACTUS_GROUP, TACTUS_PORT, TACTUS_TTL), the run
-(TACTUS_RUN_ID) and the services (SVDIR, for sv), and its PATH begins with Tactus' own programs. For example:
+Runs CMD inside the network of the running cluster that writes to OUT_DIR; default: the cluster that was started last. CMD sees
+only the processes of the cluster. Its environment holds the bus (LCM_DEFAULT_URL, for LCM's own tools; TACTUS_GROUP, TACTUS_PORT, TACTUS_TTL), the run
+(TACTUS_RUN_ID) and the services (SVDIR, for sv), and its PATH begins with the programs of Tactus. For example:
 
   tactus attach watch                            the live table
   tactus attach lcm-logger heard.lcmlog          record with LCM's own logger
-  tactus attach sv down sim_node                 take the simulation away, and then
-  tactus attach lcm-logplayer old/run.lcmlog     replay a log into the senses: beside a living world they would render now
-                                                  the one, now the other
-  tactus attach sv pause visual_node             freeze a sense; sv cont visual_node lets it go on
-  tactus attach pkill -x audio_node              kill one; the supervisor starts it again"""
+  tactus attach sv down sim_node                 stop the simulation, and then
+  tactus attach lcm-logplayer old/run.lcmlog     replay a log to the modalities; if the simulation still ran, they would
+                                                  receive both states alternately
+  tactus attach sv pause visual_node             freeze a node; sv cont visual_node resumes it
+  tactus attach pkill -x audio_node              kill a node; the supervisor restarts it"""
 
 
 def address(folder):
-    """{key: value} of a cluster that runs and is seen from here: its folder is locked as long as it runs. None: there is none."""
+    """{key: value} of the running cluster of this folder; None without one. The folder is locked while its cluster runs, and the holder must be visible here."""
     try:
         text = (folder / "address").read_text(encoding="utf-8", errors="surrogateescape")
         with open(folder / "in_use", "r", encoding="ascii") as lock:
@@ -40,7 +40,7 @@ def address(folder):
 
 
 def cluster_of(out):
-    """(folder, address) of the cluster that writes there. Raises Refusal."""
+    """(folder, address) of the cluster that writes to `out`. Raises Refusal."""
     folder = pathlib.Path(os.path.realpath(os.path.join(out, "cluster")))
     found = address(folder)
     if found is None:
@@ -49,7 +49,7 @@ def cluster_of(out):
 
 
 def newest():
-    """(folder, address) of the cluster that was started last. Raises Refusal."""
+    """(folder, address) of the newest running cluster. Raises Refusal."""
     folders = [pathlib.Path(f) for f in glob.glob(os.path.join(glob.escape(os.environ.get("TMPDIR") or "/tmp"), "tactus-*-*")) if os.path.isdir(f)]
     for folder in sorted(folders, key=lambda f: f.stat().st_mtime, reverse=True):
         found = address(folder)
@@ -66,7 +66,7 @@ def environment(folder, found):
 
 
 def entering(found):
-    """Words that run a command in the namespaces of the cluster."""
+    """Command words that enter the namespaces of the cluster; the command follows."""
     if found["namespaces"] == "none":
         return []
     ns = f"/proc/{found['holder']}/ns"
@@ -90,7 +90,7 @@ def main(words):
         else:
             folder, found = newest()
         there = environment(folder, found)
-        if words[0] == "tactus":  # this one, wherever it is installed
+        if words[0] == "tactus":  # this installation
             words = [str(TACTUS), *words[1:]]
         if not shutil.which(words[0], path=there["PATH"]):
             raise Refusal(f"there is no command {words[0]}; see tactus attach --help for examples")

@@ -1,12 +1,12 @@
-"""Says what a folder of recordings holds, what of it is broken, and what contacts fall back to.
+"""Reports the contents of a folder of recordings, its defects, and the fallbacks of contacts.
 
 Usage: tactus check-sounds [DIR] [--scene SCENE.sdf] [--json]
 
-  DIR      laid out as audio_node/samples/README.md says; default: the set that the build renders
-  --scene  looks up every pair of the scene's materials: the pair's own recording, that of a material alone, or modal
-  --json   the same as JSON
+  DIR      folder with the layout of audio_node/samples/README.md; default: the set that the build renders
+  --scene  looks up every pair of materials of the scene: recording of the pair, recording of one material, or modal
+  --json   prints the report as JSON
 
-Ends with 1 when a file cannot be played or sounds worse than it should, or is not where it belongs.
+Exit status 1: a file cannot be played, has poor quality, or is in the wrong place.
 """
 import argparse
 import subprocess
@@ -19,16 +19,16 @@ PROGRAM = str(BIN / "check_sounds")
 
 
 def materials_of(scene):
-    """All that a surface or a tool of the scene is made of."""
+    """Names of the materials of all surfaces and tools of the scene."""
     try:
         elements = ET.parse(scene).iter()
     except OSError as e:
         sys.exit(f"check_sounds: {scene}: {e.strerror}; give an SDF scene")
     except ET.ParseError as e:
-        sys.exit(f"check_sounds: {scene} is no XML ({e}); give an SDF scene")
+        sys.exit(f"check_sounds: {scene} is not valid XML ({e}); give an SDF scene")
     found = sorted({e.get("material") for e in elements if e.get("material")})
     if not found:
-        sys.exit(f"check_sounds: {scene} names no material; give another scene")
+        sys.exit(f"check_sounds: {scene} names no material; give a scene with the attribute material")
     return found
 
 

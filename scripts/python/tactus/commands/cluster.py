@@ -1,4 +1,4 @@
-"""Installs what is missing, builds, and runs a scene on several hosts."""
+"""The command `tactus cluster`: runs a scene on several hosts. `up` first installs missing packages and builds."""
 import pathlib
 
 import tactus.cluster

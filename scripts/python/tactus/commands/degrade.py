@@ -1,4 +1,4 @@
-"""Puts a degradation profile in force in a running cluster, or takes it away."""
+"""Applies a degradation profile to a running cluster, or removes it."""
 import os
 
 from tactus.commands import prepare
@@ -6,8 +6,8 @@ from tactus.paths import tactus_command
 
 USAGE = """Usage: tactus degrade PROFILE.xml|off [OUT_DIR]
 
-Puts the degradation profile in force in the running cluster that writes to OUT_DIR; default: the one that was started last.
-"off" takes it away. Says which senses have taken it, and since when in the time of the world."""
+Applies the degradation profile to the running cluster that writes to OUT_DIR; default: the cluster that was started last.
+"off" removes it. Prints the modalities that applied it, and since which simulation time."""
 
 
 def main(words):
@@ -21,5 +21,5 @@ def main(words):
     if profile != "off" and not os.path.isfile(profile):
         return prepare.refuse("degrade", f"the profile {profile} is not a file; give the path of an XML file, or off")
     if folder and not os.path.isdir(folder[0]):
-        return prepare.refuse("degrade", f"the folder {folder[0]} is not there; name the folder that a run writes to")
+        return prepare.refuse("degrade", f"the folder {folder[0]} does not exist; name the folder that a run writes to")
     prepare.become([*tactus_command("attach"), *map(os.path.realpath, folder), "degrade", profile])

@@ -8,7 +8,7 @@ import sys
 from tactus.commands.table import BY_NAME, GROUPS
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[3]
-MODULE = "--module"  # for this package's own processes: the module to run, then its words
+MODULE = "--module"  # internal: runs main() of a module of this package; the module and its arguments follow
 
 
 def usage():
@@ -20,7 +20,7 @@ def usage():
 
 
 def unknown(name):
-    """One sentence."""
+    """Message for an unknown command, with the nearest name."""
     near = difflib.get_close_matches(name.replace("_", "-"), BY_NAME, 1, 0.5)
     return f"tactus: there is no command '{name}'; " + (f"did you mean '{near[0]}'?" if near else "tactus --help lists them")
 

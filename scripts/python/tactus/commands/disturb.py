@@ -1,9 +1,9 @@
-"""Sends what no node of a cluster should have to hear, to see what it minds. Run it inside: tactus attach tactus disturb ...
+"""Sends malformed or useless messages to a cluster, to test its robustness. Run it inside the network of a cluster: tactus attach tactus disturb ...
 
-  tactus disturb malformed [--channel NAME] [--rate N] [--seconds S]   messages that are no messages, on the real-time port
-  tactus disturb bulk [--rate BYTES_PER_S] [--seconds S]               data of no use to anyone, on the bulk port
+  tactus disturb malformed [--channel NAME] [--rate N] [--seconds S]   malformed messages on the real-time port
+  tactus disturb bulk [--rate BYTES_PER_S] [--seconds S]               useless data on the bulk port
 
-On the port of TACTUS_PORT, with ttl 0: nothing leaves the machine.
+Uses the port of TACTUS_PORT with ttl 0, so the messages stay on this machine.
 """
 import argparse
 import os
@@ -21,7 +21,7 @@ STEP_S = 0.001
 def arguments(words):
     parser = argparse.ArgumentParser(prog="tactus disturb", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=("malformed", "bulk"))
-    parser.add_argument("--channel", default="CONTACT_EVENTS", help="that the malformed messages are on (default: %(default)s)")
+    parser.add_argument("--channel", default="CONTACT_EVENTS", help="channel of the malformed messages (default: %(default)s)")
     parser.add_argument("--rate", type=float, help="messages a second, or bytes a second (default: 10,000 and 60,000,000)")
     parser.add_argument("--seconds", type=float, default=10)
     parser.add_argument("--port", type=int, default=int(os.environ.get("TACTUS_PORT", "7667")))
@@ -33,7 +33,7 @@ def packet(number, channel, payload):
 
 
 def payloads(what):
-    """A few of each kind, used in turn: to make them costs more than to send them."""
+    """Prepared payloads, sent cyclically, because generating one takes longer than sending it."""
     if what == "bulk":
         return [bytes(BULK_BYTES)]
     chance = random.Random(1)

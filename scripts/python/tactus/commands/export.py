@@ -10,22 +10,22 @@ from tactus.refusal import Refusal
 VALUES = ("--channels", "--since", "--until")
 USAGE = """Usage: tactus export LOG... [option]...
 
-Makes tables of a log for pandas, R, MATLAB and PlotJuggler: one of each channel, one of all tagged variables, and those of the
-contact events and of what every sense presented of them. docs/export.md describes them, schema.json beside them too.
+Makes tables of a log for pandas, R, MATLAB and PlotJuggler: one for each channel, one for all tagged variables, and tables of the
+contact events and of their presentation by each modality. docs/export.md and schema.json in the folder describe them.
 
   LOG                    run.lcmlog of a run, or its folder: all parts of its recording
   --out DIR              folder for the tables; default: tables, beside the log
-  --channels REGEX       only channels whose whole name matches: 'TOOL_STATE|CONTACT.*'; default: all
+  --channels REGEX       only channels whose complete name matches: 'TOOL_STATE|CONTACT.*'; default: all
   --since S, --until S   from and up to this second of the log
-  --wide                 a row for each message with a column for each field that is in no list, as PlotJuggler wants it, instead
-                         of a row for each value
+  --wide                 one row for each message with a column for each scalar field, for PlotJuggler; default: one row for
+                         each value
   --help                 this text
 
-Damaged logs are read as far as they are whole; what is missing is said at the end."""
+Damaged logs are read up to the damage; the missing parts are reported at the end."""
 
 
 def parsed(words):
-    """(logs, options of export_log, folder of the tables or ""). Raises Refusal."""
+    """(logs, options for export_log, folder of the tables or ""). Raises Refusal."""
     logs, options, out, words = [], [], "", list(words)
     while words:
         word = words.pop(0)
@@ -59,7 +59,7 @@ def main(words):
         try:
             os.makedirs(out, exist_ok=True)
         except OSError:
-            raise Refusal(f"cannot make {out}; give --out a folder that can be written") from None
+            raise Refusal(f"cannot create the folder {out}; give a writable folder with --out") from None
     except Refusal as refusal:
         return prepare.refuse("export", refusal)
     prepare.install_and_build()

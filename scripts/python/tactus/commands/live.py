@@ -1,4 +1,4 @@
-"""The live page: of a log, and without a browser."""
+"""The command `tactus live`: the live page of a log, and a client without a browser."""
 import importlib
 
 from tactus.commands import prepare
@@ -6,10 +6,10 @@ from tactus.commands import prepare
 VERBS = {"open": "tactus.commands.live_open", "follow": "tactus.commands.live_follow"}
 USAGE = """Usage: tactus live VERB ...
 
-  open LOG [--http-port N]     shows a log in a web page, with seek; of a run: scripts/run --live
-  follow URL [option]...       opens a live page without a browser, and counts its frames, values and pictures
+  open LOG [--http-port N]     shows a log in a web page with a seek bar; for a run: scripts/run --live
+  follow URL [option]...       connects to a live page without a browser, and counts frames, values and pictures
 
-tactus live VERB --help says more of each."""
+tactus live VERB --help describes a verb."""
 
 
 def main(words):

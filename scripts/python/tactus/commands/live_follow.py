@@ -1,9 +1,9 @@
-"""A page without a browser: opens the live page's WebSocket as a page does, shows what it is told, and counts.
+"""A client of the live page without a browser: opens the WebSocket, receives frames and pictures, and counts them.
 
   tactus live follow URL [--watch NAME]... [--seconds S] [--json FILE]
 
-URL is what scripts/run --live prints. It watches NAMEs ("sim_node.work.collision", "TOOL_STATE:force_N.z") and takes the pictures,
-and at its end prints how many frames, values and pictures came, and how many frames the server left out because this page was slow.
+scripts/run --live prints the URL. The client watches NAMEs ("sim_node.work.collision", "TOOL_STATE:force_N.z") and receives pictures.
+At the end it prints the numbers of received frames, values and pictures, and of frames that the server dropped because this client was slow.
 """
 import argparse
 import asyncio
@@ -14,7 +14,7 @@ import urllib.parse
 
 import websockets
 
-# What the page shows when it is opened first, and the work of each sense.
+# Values that the page shows first, and the computing time of each node.
 USUAL = ["TOOL_STATE:force_N.z", "TOOL_STATE:proxy.position_m.z", "THERMAL_STATE:skin_degC",
          *(f"{node}_node.work.other" for node in ("sim", "haptic", "audio", "visual", "thermal"))]
 
@@ -45,16 +45,16 @@ async def follow(url, names, seconds, counted):
 def main(words):
     parser = argparse.ArgumentParser(prog="tactus live follow", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("url", metavar="URL")
-    parser.add_argument("--watch", metavar="NAME", action="append", help="a tagged variable or a field; default: what a page shows first")
+    parser.add_argument("--watch", metavar="NAME", action="append", help="a tagged variable or a field; default: the values that a page shows first")
     parser.add_argument("--seconds", type=float, default=10, help="default: 10")
-    parser.add_argument("--json", metavar="FILE", help="the same, for programs")
+    parser.add_argument("--json", metavar="FILE", help="also writes the counts to FILE")
     options = parser.parse_args(words)
     counted = {"frames": 0, "values": 0, "pictures": 0, "dropped": 0}
     try:
         asyncio.run(follow(options.url, options.watch or USUAL, options.seconds, counted))
     except (OSError, ValueError, websockets.WebSocketException) as error:
-        # The run may end before its page; what came is told all the same.
-        print(f"follow: {options.url.split('?')[0]} does not answer any more ({error})", file=sys.stderr)
+        # The run may end before this client; the counts are printed in any case.
+        print(f"follow: {options.url.split('?')[0]} no longer answers ({error})", file=sys.stderr)
     print("  ".join(f"{name} {value}" for name, value in counted.items()))
     if options.json:
         with open(options.json, "w", encoding="utf-8") as file:

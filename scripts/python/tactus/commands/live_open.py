@@ -1,4 +1,4 @@
-"""Shows a log in a web page."""
+"""The command `tactus live open`: shows a log in a web page."""
 import subprocess
 import sys
 
@@ -7,7 +7,7 @@ from tactus.paths import BIN, SCRIPTS
 
 USAGE = """Usage: tactus live open LOG [--http-port N]
 
-Serves a web page that shows a log as the live page shows a run, with a seek bar; prints its address. Ctrl-C ends it."""
+Serves the live page for a log, with a seek bar, and prints its address. Ctrl-C ends it."""
 
 
 def main(words):

@@ -1,4 +1,4 @@
-"""What commands do before their work: install, build, explain themselves, and give way to a program."""
+"""Common steps of commands: install, build, print the usage, and replace this process by a program."""
 import os
 import signal
 import subprocess
@@ -8,19 +8,19 @@ from tactus.paths import BIN, SCRIPTS
 
 
 def show(usage, asked=True):
-    """Prints how a command is used; its exit status. asked: by --help, and not by words that are missing."""
+    """Prints a usage text; returns the exit status. asked: the user gave --help; otherwise arguments are missing and the text goes to stderr."""
     print(usage, file=sys.stdout if asked else sys.stderr)
     return 0 if asked else 1
 
 
 def refuse(name, sentence):
-    """Prints what is wrong; the exit status."""
+    """Prints an error message to stderr; returns the exit status 1."""
     print(f"{name}: {sentence}", file=sys.stderr)
     return 1
 
 
 def install_and_build(*targets):
-    """Unless TACTUS_BIN names programs that are built. targets: of the build; default: all programs. Ends this process where that fails."""
+    """Installs missing packages and builds, unless TACTUS_BIN is set. targets: of the build; default: all programs. Exits with 1 on failure."""
     if os.environ.get("TACTUS_BIN"):
         return
     for words in ([SCRIPTS / "setup", "--packages"], [SCRIPTS / "build", *(targets or ("--programs",))]):
@@ -29,7 +29,7 @@ def install_and_build(*targets):
 
 
 def program(name):
-    """Path of a program of the build, which is built when it is not there. Ends this process where that fails."""
+    """Path of a program of the build; builds it when missing. Exits with 1 on failure."""
     path = BIN / name
     if not os.access(path, os.X_OK) and subprocess.run([SCRIPTS / "build", name], check=False).returncode != 0:
         sys.exit(1)
@@ -37,8 +37,8 @@ def program(name):
 
 
 def become(words, environment=None):
-    """This process goes on as that program, with the signals as the shell has them. Does not return."""
-    for number in (signal.SIGPIPE, signal.SIGXFSZ):  # Python ignores them, and what it ignores is inherited
+    """Replaces this process by a program, with default signal handlers. Does not return."""
+    for number in (signal.SIGPIPE, signal.SIGXFSZ):  # Python ignores them, and ignored signals are inherited
         signal.signal(number, signal.SIG_DFL)
     sys.stdout.flush()
     os.execvpe(words[0], words, environment or os.environ)

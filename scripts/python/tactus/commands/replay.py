@@ -1,39 +1,39 @@
-"""Installs what is missing, builds, and plays the log of a run to live renderers."""
+"""The command `tactus replay`: plays the log of a run to live nodes. First installs missing packages and builds."""
 from tactus.commands import prepare
 
 USAGE = """Usage: tactus replay LOG [option]...
 
-Plays a log to the senses, each in a process of its own, as scripts/run does with a scene: they render it anew, live.
+Plays a log to the nodes of the modalities, which render it again, live. Each node runs in its own process, as with scripts/run.
 
-  LOG                    run.lcmlog of a run, or its folder: all parts of its recording; damaged ones are played as far as
-                         they are whole
-  --speed FACTOR         0.01 to 100 times as fast as it was; max: as fast as --most lets it; default: 1
-  --start S, --end S     from and until this second of the world; default: all of it
-  --loop                 begins anew at its end
-  --paused               waits for an order before it begins
-  --only NODE            only this sense is live; may be repeated
-  --without NODE         this sense is not; may be repeated. Nodes: haptic_node audio_node visual_node thermal_node sync_node
-  --degrade PROFILE.xml  another profile than the recorded one; --as-recorded: that one; default: none
-  --channels REGEX       only channels that match as a whole; --leave-out REGEX: not these; --also REGEX: these too, which
-                         would stay in the log
-  --rename FROM=TO       another name for a channel; may be repeated
-  --most N               messages a second, at any speed; default: 16000
+  LOG                    run.lcmlog of a run, or its folder: all parts of its recording; damaged logs are played up to
+                         the damage
+  --speed FACTOR         0.01 to 100 times the recorded speed; max: limited only by --most; default: 1
+  --start S, --end S     from and to this second of the simulation; default: the whole log
+  --loop                 restarts at the end
+  --paused               starts paused and waits for a command
+  --only NODE            only this node is live; may be repeated
+  --without NODE         this node is not live; may be repeated. Nodes: haptic_node audio_node visual_node thermal_node sync_node
+  --degrade PROFILE.xml  applies this degradation profile; --as-recorded: applies the recorded profile; default: none
+  --channels REGEX       only channels whose complete name matches; --leave-out REGEX: not these channels; --also REGEX: also
+                         these channels, which are not replayed by default
+  --rename FROM=TO       renames a channel; may be repeated
+  --most N               maximum number of messages a second, at any speed; default: 16000
   --set, --seed, --device, --policy, --soa, --base, --budget, --aligner, --window, --listen, --realtime, --network, --port, --out
-                         as of scripts/run
-  --stay                 does not end at the end of the log
+                         as for scripts/run
+  --stay                 continues to run at the end of the log
   --help                 this text
 
-What the world said goes out, and what those senses said that are not live now. Their measurements, the clocks, commands and
-decisions of the recorded run stay in the log, and the log's own profile too, unless told --as-recorded: they would be mistaken
-for the live ones. Times are made those of now; at twice the speed the world runs twice as fast.
+The replay publishes the messages of the simulation and of the nodes that are not live. It leaves out the measurements, clocks,
+commands and decisions of the recorded run, because receivers would take them for live ones; the recorded profile is also left out
+unless --as-recorded is given. Timestamps are shifted to the current time; at twice the speed the simulation runs twice as fast.
 
-While it runs, in a terminal: blank pauses and goes on, . plays one picture's time, left and right seek 5 s, + and - double and
-halve the speed, 1 is the speed it was, m is max, 0 goes to the beginning, l loops, q ends. From elsewhere, a line each, into
-OUT/control or stdin: pause, resume, toggle, step [S], seek [+|-]S, speed FACTOR|max, loop on|off, quit.
+Keys in a terminal during the replay: space pauses and resumes, . plays the time of one frame, left and right seek 5 s, + and -
+double and halve the speed, 1 sets the recorded speed, m sets max, 0 seeks to the start, l toggles the loop, q ends. Commands in
+OUT/control or stdin, one a line: pause, resume, toggle, step [S], seek [+|-]S, speed FACTOR|max, loop on|off, quit.
 
-The results are those of scripts/run, of the live senses: audio.wav, video.mp4, summary.json, ... and a log of the replay.
+The results are those of scripts/run for the live nodes: audio.wav, video.mp4, summary.json, ... and a log of the replay.
 
-Exit status: as of scripts/run."""
+Exit status: as for scripts/run."""
 
 
 def main(words):

@@ -1,18 +1,18 @@
-"""Changes settings of a node of a running cluster."""
+"""The command `tactus set`: changes settings of a node of a running cluster."""
 from tactus.commands import ask
 
 USAGE = """Usage: tactus set NODE NAME=VALUE... [--in OUT_DIR]
 
-Changes settings of a node of the running cluster, at once and until the node's next scene or start. NODE is what the live
-table (tactus attach watch) calls it. For example:
+Changes settings of a node of the running cluster immediately, until the node loads a scene or restarts. NODE is its name in the
+live table (tactus attach watch). For example:
 
-  tactus set haptic_node force_limit=5N          never more than the default: a limit that protects a person may only be
-                                                  tightened so
-  tactus set visual_node overlay=contacts,report what is laid over the picture
+  tactus set haptic_node force_limit=5N          at most the default: a safety limit can only be
+                                                  lowered in this way
+  tactus set visual_node overlay=contacts,report overlays of the picture
 
-  --in OUT_DIR                   the cluster that writes to OUT_DIR; default: the one that was started last
+  --in OUT_DIR                   the cluster that writes to OUT_DIR; default: the cluster that was started last
 
-Says what was done, or in one sentence why it was not. docs/settings.md says which settings can be changed so: live."""
+Prints the change, or one sentence with the reason for the failure. docs/settings.md marks these settings as live."""
 
 
 def main(words):

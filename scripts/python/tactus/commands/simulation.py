@@ -1,21 +1,21 @@
-"""Pauses, steps, resets and changes the simulation of a running cluster."""
+"""The command `tactus simulation`: pauses, steps, resets and changes the simulation of a running cluster."""
 from tactus.commands import ask
 
 USAGE = """Usage: tactus simulation COMMAND [--in OUT_DIR]
 
-  pause                          the world stands still; hands feel its surfaces, which do not yield
-  resume                         it goes on
-  step [N]                       N steps of 1 ms of a world that stands still; default: 1
-  reset                          back to the first instant of the scene
-  set NAME.PROPERTY VALUE...     for example steel_ball.mass 0.3, world.gravity 0 0 -1.6, fan::axle.motor 0.02 1000
+  pause                          stops simulation time; haptic devices still feel the surfaces, which are rigid
+  resume                         continues the simulation
+  step [N]                       computes N steps of 1 ms of a paused simulation; default: 1
+  reset                          returns to the initial state of the scene
+  set NAME.PROPERTY VALUE...     changes a property, for example steel_ball.mass 0.3, world.gravity 0 0 -1.6, fan::axle.motor 0.02 1000
   push BODY FX FY FZ [--torque TX TY TZ] [--seconds S]
-                                 a force (N) and a torque (N m) on a body, for 0.1 s or as long as is said
-  snapshot NAME [--to-file]      keeps the state of the world; --to-file: in OUT_DIR/NAME.state too
-  restore NAME                   puts it back, from memory or from that file
+                                 applies a force (N) and a torque (N m) to a body for S seconds; default: 0.1
+  snapshot NAME [--to-file]      saves the simulation state in memory; --to-file: also in OUT_DIR/NAME.state
+  restore NAME                   restores the state from memory or from that file
 
-  --in OUT_DIR                   the cluster that writes to OUT_DIR; default: the one that was started last
+  --in OUT_DIR                   the cluster that writes to OUT_DIR; default: the cluster that was started last
 
-Says what was done, or in one sentence why it was not. docs/commands.md lists what can be set."""
+Prints the result, or one sentence with the reason for the failure. docs/commands.md lists the properties."""
 
 
 def main(words):

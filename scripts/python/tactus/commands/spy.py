@@ -1,4 +1,4 @@
-"""Shows every channel of the bus of a running cluster, in a terminal."""
+"""The command `tactus spy`: shows every channel of the bus of a running cluster in a terminal."""
 import os
 
 from tactus.commands import prepare
@@ -6,17 +6,17 @@ from tactus.paths import tactus_command
 
 USAGE = """Usage: tactus spy [OUT_DIR] [option]...
 
-Shows every channel of the running cluster that writes to OUT_DIR (default: the one that was started last): messages a second,
-bandwidth, gaps in their numbering, jitter, age between sending and arrival. It only listens.
+Shows every channel of the running cluster that writes to OUT_DIR (default: the cluster that was started last): messages a
+second, bandwidth, gaps in the sequence numbers, jitter, and age from sending to arrival. It publishes nothing except requests for tags.
 
-  up, down      marks a line; enter shows the fields of the newest message, with the course of the marked one
-  t             tagged variables of all nodes, with unit and course; they are asked for only while they are shown
-  p, q          pauses; ends
-  --once N      listens for N seconds and prints the table
-  --json FILE   with --once: the same figures for a program
+  up, down      selects a line; enter shows the fields of the newest message, with a plot of the selected field
+  t             tagged variables of all nodes, with unit and plot; they are requested only while shown
+  p, q          pause; quit
+  --once N      receives for N seconds and prints the table
+  --json FILE   with --once: also writes the figures to FILE
   --help        this text
 
-On a network without a cluster of scripts/run, call the program itself: build/dev/bin/spy --port N --ttl 1."""
+On a network without a cluster of scripts/run, run the program directly: build/dev/bin/spy --port N --ttl 1."""
 
 
 def main(words):

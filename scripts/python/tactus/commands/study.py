@@ -1,4 +1,4 @@
-"""Studies: how far can one modality degrade before the interaction is ruined?"""
+"""The command `tactus study`: studies of how far one modality can degrade before the interaction breaks down."""
 import importlib
 
 from tactus.commands import prepare
@@ -7,17 +7,17 @@ from tactus.paths import SCRIPTS
 VERBS = {"check": "tactus.study.check", "run": "tactus.study.run", "sweep": "tactus.sweep.main", "analyse": "tactus.analysis.main"}
 USAGE = """Usage: tactus study VERB ...
 
-  check STUDY.xml                        is the file right? Prints the plan, its trials, how long it takes, and how much it can find
-  run STUDY.xml --participant P01        leads a participant through it on a live cluster; goes on where it was interrupted
-  sweep STUDY.xml --games N --out DIR    games of the artificial player in virtual time, as many as the machine or a Slurm cluster has room for
-  analyse FOLDER...                      fits, limits and one report, from what the others left
+  check STUDY.xml                        validates the file; prints the plan, its trials, the duration and the statistical power
+  run STUDY.xml --participant P01        runs the study with a participant on a live cluster; resumes an interrupted study
+  sweep STUDY.xml --games N --out DIR    plays games of the simulated player in virtual time, in parallel on this machine or on a Slurm cluster
+  analyse FOLDER...                      computes fits, limits and one report from the results
 
-STUDY.xml is a file, or the name of a shipped one:"""
+STUDY.xml is a file, or the name of a shipped study:"""
 
 
 def usage():
     shipped = sorted(path.stem for path in (SCRIPTS / "studies").glob("*.xml"))
-    return "\n".join([USAGE, *(f"  {name}" for name in shipped), "", "tactus study VERB --help says more of each."])
+    return "\n".join([USAGE, *(f"  {name}" for name in shipped), "", "tactus study VERB --help describes a verb."])
 
 
 def main(words):

@@ -1,4 +1,4 @@
-"""The commands of `tactus`: name, what it does in one line, and where it is."""
+"""The table of the commands of `tactus`: name, summary and target of each."""
 import dataclasses
 
 
@@ -12,42 +12,42 @@ class Command:
 
 GROUPS = {
     "Run": (
-        Command("run", "runs a scene with every node in a process of its own, and sums up", "run"),
-        Command("replay", "plays the log of a run to live renderers", "tactus.commands.replay"),
+        Command("run", "runs a scene with each node in its own process, and summarises the results", "run"),
+        Command("replay", "plays the log of a run to live nodes", "tactus.commands.replay"),
         Command("live", "live page: `live open LOG`, `live follow URL`", "tactus.commands.live"),
         Command("doctor", "checks whether this machine is fit for a run", "tactus.doctor.main"),
     ),
     "While a cluster runs": (
         Command("attach", "runs a command in the network of the running cluster", "tactus.commands.attach"),
         Command("spy", "shows every channel of the bus in a terminal", "tactus.commands.spy"),
-        Command("degrade", "puts a degradation profile in force, or takes it away", "tactus.commands.degrade"),
+        Command("degrade", "applies or removes a degradation profile", "tactus.commands.degrade"),
         Command("playout", "shows or changes when each modality presents an event", "tactus.commands.playout"),
         Command("simulation", "pauses, steps, resets and changes the simulation", "tactus.commands.simulation"),
         Command("set", "changes settings of a node", "tactus.commands.set"),
-        Command("disturb", "floods the bus on purpose", "tactus.commands.disturb"),
+        Command("disturb", "sends malformed or useless messages on purpose", "tactus.commands.disturb"),
     ),
     "Results of a run": (
         Command("export", "makes tables of a log", "tactus.commands.export"),
-        Command("report", "makes one HTML page about a run, or about several", "tactus.report.main"),
+        Command("report", "makes one HTML page about one or several runs", "tactus.report.main"),
         Command("rerender", "renders a log again under other degradation profiles, and compares", "tactus.rerender.main"),
     ),
     "Studies": (
         Command("study", "`study check`, `run`, `sweep`, `analyse`: how far can a modality degrade?", "tactus.commands.study"),
     ),
     "Several hosts": (
-        Command("cluster", "runs a scene on several hosts, as a cluster file says", "tactus.commands.cluster"),
-        Command("lab", "runs a command beside simulated hosts on this machine", "tactus.cluster.lab_command"),
-        Command("private-path", "makes keys and configurations that carry the bus privately", "tactus.cluster.private_path"),
+        Command("cluster", "runs a scene on several hosts described by a cluster file", "tactus.commands.cluster"),
+        Command("lab", "runs a command together with simulated hosts on this machine", "tactus.cluster.lab_command"),
+        Command("private-path", "makes keys and configurations for a private path of the bus", "tactus.cluster.private_path"),
         Command("units", "installs systemd units of the nodes", "tactus.cluster.units"),
     ),
     "Scenes and sounds": (
-        Command("convert-geometry", "makes a glTF file of a geometry file, with material, relief and modes", "tactus.commands.convert_geometry"),
+        Command("convert-geometry", "converts a geometry file to glTF with material, relief and modes", "tactus.commands.convert_geometry"),
         Command("analyse-modes", "finds the modes of a struck object in a recording", "tactus.modal_analysis.main"),
         Command("check-sounds", "checks a folder of recordings", "tactus.commands.check_sounds"),
         Command("drumkit-sounds", "makes a folder of recordings from a Debian package of drums", "tactus.commands.drumkit_sounds"),
     ),
     "Installation": (
-        Command("setup", "installs what Tactus is built from and run with", "setup"),
+        Command("setup", "installs the packages that Tactus needs", "setup"),
         Command("build", "configures and builds", "build"),
         Command("test", "builds and runs the tests", "test"),
     ),

@@ -1,1 +1,1 @@
-"""Checks whether a machine is fit to run a cluster."""
+"""Checks whether this machine is fit for a cluster."""

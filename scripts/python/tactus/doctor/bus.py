@@ -1,4 +1,4 @@
-"""Does multicast work here, and is there room for what arrives?"""
+"""Checks multicast, network namespaces and receive buffers."""
 import select
 import socket
 import struct
@@ -8,7 +8,7 @@ import time
 from tactus.doctor.line import GOOD, MISSING, WEAK, Line
 
 GROUP = "239.255.76.67"  # as in lcmtypes/channels.h
-# Design: a flood of 20,000 messages of 100 bytes takes 16 MB of the kernel's memory: its blocks of 256 bytes have a head of 512.
+# Design: 20,000 messages of 100 bytes take 16 MB of kernel memory, because each block of 256 bytes has an overhead of 512 bytes.
 ROOM = 4 << 20
 SENT = 200
 SIZE = 1400
@@ -19,20 +19,20 @@ def route():
     if found.returncode == 0 and " dev " in found.stdout:
         device = found.stdout.split(" dev ")[1].split()[0]
         return Line("multicast route", GOOD, f"messages to {GROUP} leave by {device}", figures={"device": device})
-    return Line("multicast route", WEAK, f"there is no route to {GROUP}: only runs in a network of their own (--network private) "
-                "can be had", "ip route add 224.0.0.0/4 dev lo, or dev of the network that the hosts share")
+    return Line("multicast route", WEAK, f"there is no route to {GROUP}: only runs in a private network (--network private) "
+                "are possible", "ip route add 224.0.0.0/4 dev lo, or dev of the network that the hosts share")
 
 
 def namespaces(allowed):
-    """allowed: whether a network of one's own can be made."""
+    """allowed: whether this system allows a private network."""
     if allowed:
-        return Line("private network", GOOD, "a run may have a network of its own, which nobody else hears")
-    return Line("private network", WEAK, "no network namespace can be made: runs use the machine's network",
+        return Line("private network", GOOD, "runs can use a private network, isolated from other processes")
+    return Line("private network", WEAK, "network namespaces are refused: runs use the machine's network",
                 "sysctl user.max_user_namespaces=10000, or run as root")
 
 
 def room():
-    """What the kernel keeps for a process that is late."""
+    """Size of the receive buffer that the kernel allows a process."""
     with open("/proc/sys/net/core/rmem_max", encoding="ascii") as file:
         most = int(file.read())
     forced = False
@@ -42,16 +42,16 @@ def room():
             forced = True
         except OSError:
             s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM)
-        given = s.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF) // 2  # the kernel doubles what is asked
+        given = s.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF) // 2  # the kernel doubles the requested size
     figures = {"given_bytes": given, "rmem_max_bytes": most, "forced": forced}
     if given >= ROOM:
         return Line("receive buffers", GOOD, f"{given / 2**20:.1f} MB for a process" + (", as root" if forced else ""), figures=figures)
-    return Line("receive buffers", WEAK, f"{given / 2**20:.2f} MB for a process: a burst of more than {given // 2300} messages loses some",
+    return Line("receive buffers", WEAK, f"{given / 2**20:.2f} MB for a process: it loses messages of a burst of more than {given // 2300} ",
                 f"sysctl net.core.rmem_max={ROOM}", figures)
 
 
 def loopback():
-    """Sends a burst to itself and counts what comes back."""
+    """Sends a burst to itself and counts the received messages."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
         s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM)
         try:
@@ -63,7 +63,7 @@ def loopback():
             for number in range(SENT):
                 s.sendto(struct.pack("!I", number).ljust(SIZE, b"\0"), (GROUP, port))
         except OSError as error:
-            return Line("multicast loopback", WEAK, f"nothing can be sent to {GROUP} here ({error.strerror})",
+            return Line("multicast loopback", WEAK, f"cannot send to {GROUP} ({error.strerror})",
                         "ip route add 224.0.0.0/4 dev lo")
         heard, last = 0, begun
         while heard < SENT and time.monotonic() - begun < 1:
@@ -72,19 +72,19 @@ def loopback():
                 heard, last = heard + 1, time.monotonic()
     figures = {"sent": SENT, "heard": heard, "seconds": round(last - begun, 4)}
     if heard == 0:
-        return Line("multicast loopback", WEAK, "nothing of what is sent comes back",
-                    f"let the firewall pass UDP to {GROUP} from this machine to itself", figures)
+        return Line("multicast loopback", WEAK, "no sent message is received",
+                    f"allow UDP to {GROUP} from this machine to itself in the firewall", figures)
     if heard < SENT:
-        return Line("multicast loopback", WEAK, f"{heard} of a burst of {SENT} messages came back",
+        return Line("multicast loopback", WEAK, f"{heard} of a burst of {SENT} messages were received",
                     f"sysctl net.core.rmem_max={ROOM}", figures)
-    return Line("multicast loopback", GOOD, f"all of a burst of {SENT} messages of {SIZE} bytes came back in "
+    return Line("multicast loopback", GOOD, f"all of a burst of {SENT} messages of {SIZE} bytes were received in "
                 f"{1000 * (last - begun):.1f} ms", figures=figures)
 
 
 def either(lines):
-    """A run needs one of the two networks."""
+    """Marks the private network as missing when neither network works, because a run needs one of them."""
     by_name = {line.what: line for line in lines}
     private, loop = by_name["private network"], by_name["multicast loopback"]
     if private.verdict != GOOD and loop.verdict != GOOD:
         private.verdict, private.needed = MISSING, True
-        private.found += ", where multicast does not work either: no cluster can run"
+        private.found += ", and multicast does not work either: no cluster can run"

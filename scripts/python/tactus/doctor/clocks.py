@@ -1,4 +1,4 @@
-"""How far the clocks of other hosts of a running cluster are apart, as it says itself (CLOCK_MAP)."""
+"""Clock offsets between the hosts of a running cluster, received as CLOCK_MAP."""
 import select
 import socket
 import struct
@@ -7,10 +7,10 @@ import time
 from tactus.doctor.bus import GROUP
 from tactus.doctor.line import GOOD, WEAK, Line
 
-SMALL = 0x4C433032  # of a message in one datagram: lcm/udp_multicast.md
+SMALL = 0x4C433032  # magic number of a message in one datagram: lcm/udp_multicast.md
 HEADER = ">qqiqiqq"  # header_t
-MAP = ">iiqqdqdiqi"  # what follows in clock_map_t
-FEW_MS = 1.0        # design: a tenth of the smallest asynchrony that anybody tells apart
+MAP = ">iiqqdqdiqi"  # the other fields of clock_map_t
+FEW_MS = 1.0        # design: a tenth of the smallest asynchrony that a person can distinguish
 
 
 def map_of(packet):
@@ -47,15 +47,15 @@ def listen(port, seconds):
 def offsets(port, seconds=1.5):
     maps, heard = listen(port, seconds)
     if not heard:
-        return Line("other clocks", GOOD, f"no cluster is heard on port {port}: nothing to compare", figures={"hosts": 0})
+        return Line("other clocks", GOOD, f"no cluster on port {port}: nothing to compare", figures={"hosts": 0})
     if not maps:
-        return Line("other clocks", GOOD, "a cluster runs, all of it on one clock", figures={"hosts": 1})
+        return Line("other clocks", GOOD, "a cluster runs on one clock", figures={"hosts": 1})
     figures = {"hosts": 1 + len({of for of, _ in maps}),
                "maps": [{"of": of, "to": to, "offset_ms": offset / 1e6, "uncertainty_ms": u / 1e6}
                         for (of, to), (offset, u) in sorted(maps.items())]}
     worst = max(m["uncertainty_ms"] for m in figures["maps"])
-    text = f"{len(maps)} maps between clocks, known within {worst:.3f} ms at the worst"
+    text = f"{len(maps)} maps between clocks, uncertainty at most {worst:.3f} ms"
     if worst <= FEW_MS:
         return Line("other clocks", GOOD, text, figures=figures)
-    return Line("other clocks", WEAK, text + ": no asynchrony across hosts is known better",
-                "use a wired network between the hosts, and leave it to the cluster", figures)
+    return Line("other clocks", WEAK, text + ": the uncertainty of every asynchrony between hosts is at least as large",
+                "use a wired network between the hosts for the cluster alone", figures)

@@ -1,4 +1,4 @@
-"""What sounds and draws here, the processor, and the disk that takes the logs."""
+"""Checks sound card, renderer, processor, and the disk for logs."""
 import ctypes
 import glob
 import os
@@ -10,7 +10,7 @@ import time
 from tactus.doctor.line import GOOD, MISSING, WEAK, Line
 
 SURFACELESS = 0x31DD  # EGL_PLATFORM_SURFACELESS_MESA
-LOG_MB_s = 2          # design: a cluster with all its variables writes less than one
+LOG_MB_s = 2          # design: a cluster with all tagged variables writes less than 1 MB/s
 CHUNK = 1 << 20
 
 
@@ -19,27 +19,27 @@ def sound(has_card):
     names = [line.split("]:")[1].strip() for line in cards.read_text().splitlines() if "]:" in line] if cards.exists() else []
     if has_card:
         return Line("sound card", GOOD, ", ".join(names) or "by a sound server", figures={"cards": names})
-    return Line("sound card", WEAK, "there is none: sound is rendered into audio.wav and heard by nobody",
-                "plug one in, or start the sound server of your desktop; then scripts/run --listen", {"cards": names})
+    return Line("sound card", WEAK, "there is none: sound is only written to audio.wav",
+                "connect one, or start the sound server of the desktop; then scripts/run --listen", {"cards": names})
 
 
 def renderer():
-    """The name of what draws, or raises OSError."""
+    """Name of the OpenGL renderer. Raises OSError."""
     egl, gl = ctypes.CDLL("libEGL.so.1"), ctypes.CDLL("libGL.so.1")
     address = egl.eglGetProcAddress
     address.restype, address.argtypes = ctypes.c_void_p, [ctypes.c_char_p]
     of_platform = address(b"eglGetPlatformDisplayEXT")
     if not of_platform:
-        raise OSError("this EGL knows no platforms")
+        raise OSError("this EGL has no platform extension")
     egl.eglCreateContext.restype = gl.glGetString.restype = ctypes.c_void_p
     handle = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_uint, ctypes.c_void_p, ctypes.c_void_p)(of_platform)(SURFACELESS, None, None)
     display = ctypes.c_void_p(handle)
     if not handle or not egl.eglInitialize(display, None, None) or not egl.eglBindAPI(0x30A2):  # EGL_OPENGL_API
-        raise OSError("no display can be opened")
+        raise OSError("cannot open a display")
     wanted = (ctypes.c_int * 5)(0x3098, 3, 0x30FB, 3, 0x3038)  # version 3.3
     context = ctypes.c_void_p(egl.eglCreateContext(display, None, None, wanted))
     if not context or not egl.eglMakeCurrent(display, None, None, context):
-        raise OSError("no context of OpenGL 3.3 can be made")
+        raise OSError("cannot create a context of OpenGL 3.3")
     gl.glGetString.argtypes = [ctypes.c_uint]
     name = ctypes.string_at(gl.glGetString(0x1F01)).decode(errors="replace")  # GL_RENDERER
     egl.eglMakeCurrent(display, None, None, None)
@@ -51,10 +51,10 @@ def picture(find=renderer):
     try:
         name = find()
     except (OSError, AttributeError, ValueError) as error:
-        return Line("pictures (EGL)", MISSING, f"nothing can be drawn: {error}", "scripts/setup --packages installs a software renderer")
+        return Line("pictures (EGL)", MISSING, f"rendering is impossible: {error}", "scripts/setup --packages installs a software renderer")
     if "llvmpipe" in name or "softpipe" in name:
-        return Line("pictures (EGL)", WEAK, f"{name}: drawn by the processor, 60 pictures a second of 640 x 480 with one core to itself",
-                    "a graphics card and its driver draw larger pictures", {"renderer": name})
+        return Line("pictures (EGL)", WEAK, f"{name}: software rendering, 60 frames a second of 640 x 480 on one free core",
+                    "install a graphics card and its driver for larger frames", {"renderer": name})
     return Line("pictures (EGL)", GOOD, name, figures={"renderer": name})
 
 
@@ -65,16 +65,16 @@ def cores():
     figures = {"cores": count, "governors": sorted(governors), "load": load}
     text = f"{count} cores" + (f", governor {' '.join(sorted(governors))}" if governors else "") + f", load {load:.1f}"
     if count < 2:
-        return Line("processor", WEAK, text + ": the senses share one core", "leave senses out (--without), or spread them over machines", figures)
+        return Line("processor", WEAK, text + ": all nodes share one core", "leave nodes out (--without), or distribute them over several hosts", figures)
     if load > count / 2:
-        return Line("processor", WEAK, text + ": something else runs", "end it before measuring anything", figures)
+        return Line("processor", WEAK, text + ": other programs run", "end them before a measurement", figures)
     if governors - {"performance", "schedutil"}:
-        return Line("processor", WEAK, text + ": slow to wake", "cpupower frequency-set -g performance", figures)
+        return Line("processor", WEAK, text + ": slow to wake up", "cpupower frequency-set -g performance", figures)
     return Line("processor", GOOD, text, figures=figures)
 
 
 def disk(folder, megabytes=64):
-    """Writes and removes a file as large as a minute of a log."""
+    """Writes and removes a file of the size of about a minute of log, MB."""
     try:
         free = shutil.disk_usage(folder).free
         with tempfile.TemporaryFile(dir=folder) as file:
@@ -89,9 +89,9 @@ def disk(folder, megabytes=64):
         return Line("disk for logs", MISSING, f"{folder}: cannot be written ({error.strerror})", "choose another folder with --out", needed=True)
     hours = free / 1e6 / LOG_MB_s / 3600
     figures = {"folder": str(folder), "free_bytes": free, "MB_per_s": round(rate, 1)}
-    text = f"{free / 1e9:.1f} GB free, {hours:.1f} h of logs; takes {rate:.0f} MB/s"
+    text = f"{free / 1e9:.1f} GB free, {hours:.1f} h of logs; writes {rate:.0f} MB/s"
     if rate < 5 * LOG_MB_s:
         return Line("disk for logs", WEAK, text + ": logs may lose messages", "choose a faster disk with --out", figures)
     if hours < 1:
-        return Line("disk for logs", WEAK, text, "make room, or choose another disk with --out", figures)
+        return Line("disk for logs", WEAK, text, "free space, or choose another disk with --out", figures)
     return Line("disk for logs", GOOD, text, figures=figures)

@@ -1,4 +1,4 @@
-"""One line of what tactus doctor finds."""
+"""One result of tactus doctor."""
 import dataclasses
 
 GOOD, WEAK, MISSING = "good", "weak", "missing"
@@ -6,9 +6,9 @@ GOOD, WEAK, MISSING = "good", "weak", "missing"
 
 @dataclasses.dataclass
 class Line:
-    what: str        # a few words
-    verdict: str     # GOOD; WEAK: works, but worse than it should; MISSING: a run or a part of it cannot be had
+    what: str        # name of the check, a few words
+    verdict: str     # GOOD; WEAK: works with restrictions; MISSING: a run, or a part of it, is impossible
     found: str       # one sentence with figures
-    remedy: str = ""  # what to do about it; empty: nothing
+    remedy: str = ""  # action of the user; empty: none
     figures: dict = dataclasses.field(default_factory=dict)
-    needed: bool = False  # without it the machine is not fit
+    needed: bool = False  # True: when MISSING, the machine is not fit

@@ -1,14 +1,14 @@
-"""Is this machine fit? Looks at everything that a cluster needs of it and says, line by line, what to do about it.
+"""Checks whether this machine is fit for a cluster; prints one line for each check, with the remedy for each fault.
 
 Usage: tactus doctor [--seconds N] [--port N] [--out DIR] [--json FILE]
 
-  --seconds N   how long each of the two loops is watched for how late it wakes; default: 10
-  --port N      port of a cluster that may be running, whose clocks are compared; default: 7667
-  --out DIR     folder that shall take the logs; default: the one that you are in
-  --json FILE   the same figures for a program
+  --seconds N   duration of each of the two measurements of wake-up latency; default: 10
+  --port N      port of a running cluster whose clocks are compared; default: 7667
+  --out DIR     folder for the logs; default: the current directory
+  --json FILE   also writes the figures to FILE
 
-good: as it should be; weak: works, but worse than it could; missing: a part cannot be had. Exit status: 0 when a cluster can run
-here, 1 when not.
+good: as required; weak: works with restrictions; missing: a part is impossible. Exit status: 0 when a cluster can run on this
+machine, else 1.
 """
 import argparse
 import json
@@ -39,7 +39,7 @@ def progress(what):
 
 
 def examine(seconds, port, out):
-    """Every line, as soon as it is known."""
+    """Yields the result of each check."""
     private = any(allowed(flags, ROUTE) for flags, _ in candidates(net=True))
     network = [bus.route(), bus.loopback(), bus.namespaces(private)]
     bus.either(network)
@@ -74,7 +74,7 @@ def main(words):
         print(__doc__)
         return 0
     if not 0.1 <= options.seconds <= 3600 or not 0 < options.port < 65535:
-        print("doctor: --seconds is from 0.1 to 3600, --port from 1 to 65534", file=sys.stderr)
+        print("doctor: give --seconds from 0.1 to 3600 and --port from 1 to 65534", file=sys.stderr)
         return 1
     lines = []
     for line in examine(options.seconds, options.port, options.out):
@@ -82,7 +82,7 @@ def main(words):
         lines.append(line)
     fit = not any(line.needed and line.verdict == MISSING for line in lines)
     weak = [line.what for line in lines if line.verdict != GOOD]
-    print(f"\n{'fit' if fit else 'not fit'}" + (f", but for: {', '.join(weak)}" if weak else ""))
+    print(f"\n{'fit' if fit else 'not fit'}" + (f"; not good: {', '.join(weak)}" if weak else ""))
     if options.json:
         with open(options.json, "w", encoding="utf-8") as file:
             json.dump({"fit": fit, "lines": [{"what": line.what, "verdict": line.verdict, "found": line.found, "remedy": line.remedy,

@@ -1,4 +1,4 @@
-"""May loops have real-time priority, and how late does this machine wake them?"""
+"""Checks real-time priority and locked memory, and measures wake-up latency."""
 import ctypes
 import os
 import resource
@@ -8,9 +8,9 @@ import time
 
 from tactus.doctor.line import GOOD, WEAK, Line
 
-RATE_Hz = 1000           # of the servo loop, the fastest that sleeps
-PRIORITY = 60            # haptic_node's
-# Design: a twentieth and a half of the period of a servo loop; beyond the first its ticks tremble, beyond the second some are lost.
+RATE_Hz = 1000           # of the haptic servo loop, the fastest loop with sleep
+PRIORITY = 60            # of haptic_node
+# Design: a twentieth and a half of the period of the servo loop; above the first its ticks jitter, above the second it misses ticks.
 GOOD_us, WEAK_us = 50, 500
 LIBC = ctypes.CDLL(None, use_errno=True)
 
@@ -20,7 +20,7 @@ class Timespec(ctypes.Structure):
 
 
 def may_fifo(priority=PRIORITY):
-    """None, or why not. In a thread, which takes the priority with it when it ends."""
+    """None when SCHED_FIFO is allowed, else the reason. Tried in a thread, so that this process keeps its priority."""
     why = []
 
     def attempt():
@@ -41,7 +41,7 @@ def priority():
     if not why:
         return Line("real-time priority", GOOD, f"SCHED_FIFO {PRIORITY} is allowed", figures={"rtprio": limit})
     return Line("real-time priority", WEAK, f"SCHED_FIFO {PRIORITY} is refused ({why}): other work delays every loop",
-                f"a line \"{os.environ.get('USER', 'you')} - rtprio 90\" in /etc/security/limits.d/tactus.conf, then log in again",
+                f"add the line \"{os.environ.get('USER', 'you')} - rtprio 90\" to /etc/security/limits.d/tactus.conf, then log in again",
                 {"rtprio": limit})
 
 
@@ -51,8 +51,8 @@ def memory():
     text = "unlimited" if soft == resource.RLIM_INFINITY else f"{soft / 2**20:.0f} MB"
     if free:
         return Line("locked memory", GOOD, f"may be locked ({text})", figures={"memlock": soft})
-    return Line("locked memory", WEAK, f"may not be locked ({text}): a page that was swapped out stops a loop for milliseconds",
-                f"a line \"{os.environ.get('USER', 'you')} - memlock unlimited\" in /etc/security/limits.d/tactus.conf, then log in again",
+    return Line("locked memory", WEAK, f"may not be locked ({text}): a swapped-out page stops a loop for milliseconds",
+                f"add the line \"{os.environ.get('USER', 'you')} - memlock unlimited\" to /etc/security/limits.d/tactus.conf, then log in again",
                 {"memlock": soft})
 
 
@@ -63,15 +63,15 @@ def share(path="/proc/sys/kernel/sched_rt_runtime_us"):
         text = "no limit" if runtime < 0 else f"{runtime / 10_000:.0f} % of a core"
         return Line("share of real-time work", GOOD, text, figures={"runtime_us": runtime})
     return Line("share of real-time work", WEAK, f"{runtime / 10_000:.0f} % of a core: loops that need more are stopped for the rest of "
-                "a second", "sysctl kernel.sched_rt_runtime_us=950000", {"runtime_us": runtime})
+                "each second", "sysctl kernel.sched_rt_runtime_us=950000", {"runtime_us": runtime})
 
 
 def lateness_us(seconds, fifo, progress):
-    """How late a loop of 1 kHz wakes, us, once for each tick; every tenth of a second progress(share done)."""
+    """Wake-up latency of each tick of a 1 kHz loop, us. Calls progress(share done) every half second."""
     late, clock = [], time.CLOCK_MONOTONIC
 
     def loop():
-        LIBC.prctl(29, 1000, 0, 0, 0)  # PR_SET_TIMERSLACK, ns: as the loops of the nodes
+        LIBC.prctl(29, 1000, 0, 0, 0)  # PR_SET_TIMERSLACK, ns, as in the loops of the nodes
         if fifo:
             os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
         period = 1_000_000_000 // RATE_Hz
@@ -97,10 +97,10 @@ def lateness_us(seconds, fifo, progress):
 def wakeups(seconds, fifo, progress):
     late = sorted(lateness_us(seconds, fifo, progress))
     at = {name: late[min(len(late) - 1, int(share * len(late)))] for name, share in (("p50", 0.5), ("p99", 0.99), ("max", 1))}
-    text = f"{at['p50']:.0f} us late in the middle, 99 of 100 at most {at['p99']:.0f}, all at most {at['max']:.0f} (over {seconds:g} s)"
+    text = f"{at['p50']:.0f} us late in the median, p99 {at['p99']:.0f}, maximum {at['max']:.0f} (over {seconds:g} s)"
     figures = {"seconds": seconds, **{k: round(v, 1) for k, v in at.items()}, "ticks": len(late)}
     what = "waking with priority" if fifo else "waking without priority"
     if at["p99"] <= (GOOD_us if fifo else WEAK_us) and at["max"] <= 10 * WEAK_us:
         return Line(what, GOOD, text, figures=figures)
-    return Line(what, WEAK, text, "end what else runs, set the CPU governor to performance, and in a virtual machine ask for cores of its "
-                "own" if fifo else "run with real-time priority", figures)
+    return Line(what, WEAK, text, "end other programs, set the CPU governor to performance, and in a virtual machine use dedicated "
+                "cores" if fifo else "run with real-time priority", figures)

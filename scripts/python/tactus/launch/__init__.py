@@ -1,1 +1,1 @@
-"""Runs a scene, or replays a log, with every node in a process of its own."""
+"""Runs a scene, or replays a log, with each node in its own process."""

@@ -1,4 +1,4 @@
-"""The command line of scripts/run: what may be asked for, checked before anything starts."""
+"""The command line of scripts/run, checked completely before anything starts."""
 import argparse
 import csv
 import dataclasses
@@ -14,28 +14,28 @@ from tactus.refusal import Refusal
 SENSES = ("haptic_node", "audio_node", "visual_node", "thermal_node")
 PARTICIPANT = "participant"
 REMOVABLE = ("sim_node", *SENSES, "sync_node")
-LEAST_FREE_BYTES = 20_000_000  # some ten seconds of log and sound
-LONGEST_S = 86400  # a day of log fills most disks
+LEAST_FREE_BYTES = 20_000_000  # about ten seconds of log and sound
+LONGEST_S = 86400  # one day; a longer log fills most disks
 RECORDING = ("split_mb", "split_minutes", "keep", "max_mb")  # sync/tools/recorder/recorder_node.cpp
-WIRE = {"latency-ms": 10_000, "jitter-ms": 10_000, "loss-percent": 100}  # and the most of each: scripts/virtual_time/virtual_time_main.cpp
+WIRE = {"latency-ms": 10_000, "jitter-ms": 10_000, "loss-percent": 100}  # maximum of each: scripts/virtual_time/virtual_time_main.cpp
 PLAYOUT = ("policy", "aligner", "base", "budget", "soa")  # sync/playout/options.cpp
 
 
 @dataclasses.dataclass
 class Plan:
-    """What one run does. All paths are absolute."""
+    """Configuration of one run. All paths are absolute."""
     scene: pathlib.Path
-    shaders: pathlib.Path  # folder of the scene's own shaders, or None
+    shaders: pathlib.Path  # folder of the shaders of the scene, or None
     seconds: float
     out: pathlib.Path
-    out_is_ours: bool  # nobody named it: another name does as well
+    out_is_ours: bool  # --out was not given, so another name may be chosen
     without: list
-    devices: dict  # of --device, by tool; "": the first tool's
+    devices: dict  # of --device, by tool; "": the first tool
     hands: dict  # {process: tool} of the tools after the first
     room: str  # of --room; "": none
-    walls: dict  # {process: wall}, all of its walls; the first is visual_node's
-    degrade: pathlib.Path  # profile of what is wrong on purpose, or None
-    playout: list  # options of sync_node: when each sense presents
+    walls: dict  # {process: wall} of all walls; visual_node draws the first
+    degrade: pathlib.Path  # degradation profile, or None
+    playout: list  # options of sync_node: playout policy
     window: bool
     listen: bool
     realtime: str
@@ -43,28 +43,28 @@ class Plan:
     network: str
     port: int
     settings: dict  # node: list of "name=value"
-    world: str = "sim_node"  # the process that says what happens: the simulation, or replay
+    world: str = "sim_node"  # the process that publishes the simulation state: sim_node or replay
     replay: list = dataclasses.field(default_factory=list)  # command line of replay
-    recorder: list = dataclasses.field(default_factory=list)  # options of the recorder: how long its files get
-    live: int = None  # port of the live page, 0: any that is free; None: there is none
-    player: bool = False  # a simulated person holds the first tool's device
-    virtual: list = None  # options of virtual_time; None: the run lasts as long as it says
+    recorder: list = dataclasses.field(default_factory=list)  # options of the recorder: size of its files, tags
+    live: int = None  # port of the live page; 0: any free port; None: no page
+    player: bool = False  # a simulated player holds the device of the first tool
+    virtual: list = None  # options of virtual_time; None: a live run in real time
 
     def nodes(self):
-        """Names of the processes of this run; the order is that of starting."""
+        """Names of the processes of this run, in start order."""
         return [n for n in ("recorder", "sync_node", *self.senses(), *self.people(), self.world) if n not in self.without]
 
     def people(self):
-        """Names of the processes that are in the place of a person."""
+        """Names of the simulated players."""
         return [PARTICIPANT] if self.player else []
 
     def senses(self):
-        """Names of the processes of all senses, those that are left out too."""
+        """Names of the processes of all modalities, including the left-out ones."""
         each = {hands.FIRST: self.hands, walls.FIRST: self.walls}
         return [name for sense in SENSES for name in dict.fromkeys((sense, *each.get(sense, ())))]
 
     def program(self, name):
-        """What is started under that name."""
+        """Name of the program of a process."""
         return hands.FIRST if name in self.hands else walls.FIRST if name in self.walls else name
 
 
@@ -74,7 +74,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def parse(words, here):
-    """Plan from the command line; `here` is the caller's directory. Raises Refusal."""
+    """Plan of a command line. here: the directory of the caller. Raises Refusal."""
     parser = Parser(add_help=False, allow_abbrev=False, prog="run")
     parser.add_argument("scene", nargs="?", default=str(SCENES / "dark_room.sdf"))
     parser.add_argument("--seconds", default="20")
@@ -102,7 +102,7 @@ def parse(words, here):
     parser.add_argument("--set", action="append", default=[])
     for word in words:
         if any(ord(c) < 32 or ord(c) == 127 for c in word):
-            raise Refusal(f"argument {word!r}: has a control character in it; leave it out")
+            raise Refusal(f"argument {word!r}: contains a control character; remove it")
     a = parser.parse_args(with_live_port(words))
     here = pathlib.Path(here)
     scene_path = scene_file(here, a.scene)
@@ -112,12 +112,12 @@ def parse(words, here):
     several = {**others, **{process: wall for process, wall in pictures.items() if process != walls.FIRST}}
     for node in a.without:
         if node == "recorder":
-            raise Refusal("--without recorder: it cannot be left out, all results are made from what it records")
+            raise Refusal("--without recorder: the recorder cannot be left out, because all results come from its log; leave this option away")
         if node not in (*REMOVABLE, *several):
             raise Refusal(f"--without {node}: there is no such node to leave out; choose from {', '.join((*REMOVABLE, *several))}")
-    if hands.FIRST in a.without:  # the sense of touch, all of it
+    if hands.FIRST in a.without:  # all processes of touch
         others = {}
-    if walls.FIRST in a.without:  # the sense of sight, likewise
+    if walls.FIRST in a.without:  # all processes of vision
         pictures = {}
     others = {process: tool for process, tool in others.items() if process not in a.without}
     pictures = {process: wall for process, wall in pictures.items() if process not in a.without}
@@ -140,7 +140,7 @@ def parse(words, here):
 
 
 def with_live_port(words):
-    """--live may stand alone: then the port is any that is free."""
+    """Inserts the port 0, any free port, after --live without a number."""
     return [part for word, following in zip(words, [*words[1:], ""])
             for part in ((word, "0") if word == "--live" and not following.isdigit() else (word,))]
 
@@ -173,7 +173,7 @@ def scene_file(here, text):
 
 
 def profile(here, text):
-    """The nodes themselves check what is in it."""
+    """Absolute path of the profile, or None. The nodes check its content. Raises Refusal."""
     if text is None:
         return None
     path = here / text
@@ -182,21 +182,21 @@ def profile(here, text):
     return path.absolute()
 
 
-def strangers(plan):
-    """What profile and asynchronies name that is none of this run's senses. One's own may join later; a misspelt one never will."""
+def unknown_modalities(plan):
+    """Modalities of the profile and of --soa that no node of this run has: a user's own node may join later, or the name is misspelt."""
     named = {part.partition("=")[0] for word in plan.playout if word.startswith("--soa=") for part in word[len("--soa="):].split(",")}
     try:
         if plan.degrade is not None:
             named |= {rule.get("modality", "") for rule in xml.etree.ElementTree.parse(plan.degrade).getroot().iter("degrade")}
     except (xml.etree.ElementTree.ParseError, OSError):
-        pass  # the nodes say what is wrong with it, with the line
+        pass  # the nodes report the error with its line
     except (LookupError, ValueError):
-        raise Refusal(f"--degrade {plan.degrade}: says an encoding in which it cannot be read; save it as UTF-8") from None
+        raise Refusal(f"--degrade {plan.degrade}: declares an encoding in which it cannot be read; save it as UTF-8") from None
     return sorted(named - {node.removesuffix("_node") for node in SENSES})
 
 
 def of_room(here, text):
-    """(room, {process: wall}) of --room."""
+    """(room, {process: wall}) of --room. Raises Refusal."""
     if text is None:
         return "", {}
     try:
@@ -207,21 +207,21 @@ def of_room(here, text):
 
 
 def playout(a):
-    """The options for sync_node, which checks itself what is in them."""
+    """The options for sync_node, which checks their values. Raises Refusal."""
     words = [f"--{option}={value}" for option in PLAYOUT if (value := getattr(a, option)) is not None]
     if words and "sync_node" in a.without:
-        raise Refusal(f"{words[0].partition('=')[0]} and --without sync_node contradict each other: it says when each sense "
-                      "presents; leave one away")
+        raise Refusal(f"{words[0].partition('=')[0]} and --without sync_node contradict each other: sync_node applies the "
+                      "playout policy; leave one away")
     return words
 
 
 def virtual(a):
-    """The options for virtual_time; None: the run is live."""
+    """The options for virtual_time; None: a live run. Raises Refusal."""
     given = {option: value for option in WIRE if (value := getattr(a, option.replace("-", "_"))) is not None}
     if not a.virtual_time:
         if given:
-            raise Refusal(f"--{next(iter(given))} is of the simulated bus, which only --virtual-time has; on a real one "
-                          "--degrade says what is wrong with a sense")
+            raise Refusal(f"--{next(iter(given))} needs --virtual-time, because only the simulated bus has it; for a live run "
+                          "use --degrade")
         return None
     for option, value in (("--window", a.window), ("--listen", a.listen), ("--live", a.live is not None), ("--room", a.room),
                           ("--realtime require", a.realtime == "require"), ("--network host", a.network == "host"),
@@ -233,21 +233,21 @@ def virtual(a):
 
 
 def recording(a):
-    """The options for the recorder."""
+    """The options for the recorder. Raises Refusal."""
     bounds = {"split_mb": (1, 1e6), "split_minutes": (0.01, 1e5), "keep": (1, 100_000), "max_mb": (1, 1e7)}  # sync/tools/recorder/recorder_node.cpp
     given = {name: number("--" + name.replace("_", "-"), value, *bounds[name], "", whole=name == "keep")
              for name in RECORDING if (value := getattr(a, name)) is not None}
     splits = "split_mb" in given or "split_minutes" in given
     if "keep" in given and not splits:
-        raise Refusal("--keep needs --split-mb or --split-minutes: it says how many files of the recording stay")
+        raise Refusal("--keep needs --split-mb or --split-minutes: it is the number of recording files to keep")
     if splits and given.get("max_mb", 1e9) < 2 * given.get("split_mb", 0):
-        raise Refusal("--max-mb must be at least twice --split-mb, so that one file is whole while the next is written")
+        raise Refusal("--max-mb must be at least twice --split-mb, so that one complete file remains while the next is written")
     words = [word for name, value in given.items() for word in ("--" + name.replace("_", "-"), f"{value:g}")]
     return words + [word for pattern in a.tags for word in ("--tags", pattern)]
 
 
 def out_folder(here, text):
-    """Where the results go; it is not made yet."""
+    """Absolute path of the results folder, which is not created here. Raises Refusal."""
     path = here / text if text else here / "out" / time.strftime("%Y-%m-%d_%H-%M-%S")
     while not text and path.exists():
         path = path.with_name(path.name + "+")
@@ -267,7 +267,7 @@ def out_folder(here, text):
 
 
 def devices(words, without, tools):
-    """The nodes themselves check what the devices are."""
+    """{tool: spec} of --device. The nodes check the specs. Raises Refusal."""
     if words and hands.FIRST in without:
         raise Refusal("haptic_node: --device and --without haptic_node contradict each other; leave one away")
     try:
@@ -277,9 +277,9 @@ def devices(words, without, tools):
 
 
 def settings(words, others):
-    """{"node": ["name=value"]}. The names are checked here, the values by the nodes themselves (--check). What is said of
-    haptic_node or visual_node holds for every hand or wall; what is said of one by its own name comes last there, and so wins.
-    others: the processes beside the first of its kind."""
+    """{node: ["name=value"]} of --set. Names are checked here, values by the nodes (--check). A setting of haptic_node or
+    visual_node applies to all tools or walls; a setting of one process by its own name comes last and so overrides it.
+    others: the processes of further tools and walls. Raises Refusal."""
     found, own = {}, {}
     program = lambda node: next((n for n in (hands.FIRST, walls.FIRST) if node in others and node.startswith(n)), node)
     for word in words:

@@ -1,4 +1,4 @@
-"""The running cluster: its processes, in the order in which they start and end."""
+"""The running cluster: command lines of its processes, start and stop order, supervision."""
 import contextlib
 import ctypes
 import os
@@ -15,11 +15,11 @@ from tactus.refusal import Interrupted, Refusal
 from tactus.terminal import complain, say
 
 INSIDE = pathlib.Path(__file__).resolve().parent / "inside"
-# Simulation first, so that all senses present what it has told them; the recorder last, so that the log is whole.
-# Each group has so long to end before the next is asked: a sense that still closes its video has said all it had to say.
+# The simulation stops first, so that all modalities present its last events; the recorder last, so that the log is complete.
+# Grace time in s before the next group is stopped; a node that still closes its video has already published everything.
 WORLDS = ("sim_node", "replay")
 STOP_ORDER = ((WORLDS, 0.3), (SENSES, 0.3), (("sync_node",), 0.3), (("recorder",), 10.0))
-SCATTER_M = "0.08"  # design: the balls of the dark room stay apart from each other and from what stands there
+SCATTER_M = "0.08"  # design: keeps the balls of the dark room apart from each other and from other bodies
 PRESENT_THE_LAST_S = 0.2  # sound comes 20 ms after its event, and each report is repeated 20 ms later
 PATIENCE_S = 15           # to close a video on a busy machine
 CHECK_S, READ_SCENE_S = 60, 600
@@ -28,20 +28,20 @@ WORLD_BEGINS = {"sim_node": "sim_node: the world begins", "replay": "replay: beg
 
 
 def common(plan, run_id):
-    """The words that all nodes have."""
+    """Arguments common to all nodes."""
     return ["--port", str(plan.port), "--run-id", str(run_id), "--seed", str(plan.seed), "--realtime", plan.realtime, "--out", str(plan.out)]
 
 
 def commands(plan, run_id, git):
-    """{name: words} of every process of the plan."""
+    """{name: command line} of every process of the plan."""
     own = {
         "recorder": ["--scene", str(plan.scene), "--seconds", f"{plan.seconds:g}", "--git", git, *plan.recorder],
         "haptic_node": device_words(plan, ""),
-        # A run makes no noise unless it is asked to; with --listen the node finds the card.
+        # A run is silent by default; with --listen the node searches for the sound card.
         "audio_node": [] if plan.listen or names_sound_card(plan) else ["--audio-device", "virtual"],
         "visual_node": ["--window"] if plan.window else [],
         "sim_node": [str(plan.scene)],
-        # Nobody plays from memory: the seed says where the balls lie.
+        # The seed sets the positions of the balls, so no player can rely on fixed ones.
         arguments.PARTICIPANT: [str(plan.scene), "--device", arguments.PARTICIPANT, "--scatter-along", SCATTER_M, "--scatter-aside", SCATTER_M],
         "replay": [*plan.replay, *(word for name in plan.nodes() if name != "replay" for word in ("--live", name))],
     }
@@ -69,12 +69,12 @@ def names_sound_card(plan):
 
 
 def check(words, stop):
-    """Lets every node check its options and files. Raises Refusal with the sentence of the first that objects."""
+    """Runs every node with --check. Raises Refusal with the message of the first that fails."""
     started = {}
     try:
         for name, command in words.items():
             at = command.index("--out")
-            # A session of its own: Ctrl-C is ours to answer.
+            # A new session, so that only this process receives Ctrl-C.
             started[name] = subprocess.Popen(command[:at] + command[at + 2:] + ["--check"], stdin=subprocess.DEVNULL,
                                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace",
                                              start_new_session=True, preexec_fn=die_with_parent)
@@ -93,7 +93,7 @@ def check(words, stop):
 
 
 def last_of_check(name, process, stop):
-    """What the check says, once it has ended. Raises Interrupted when asked to stop."""
+    """Output of the check after it has ended. Raises Interrupted when the user stops the run."""
     now = begin = time.monotonic()
     at_most_s, next_said = READ_SCENE_S if name == "sim_node" else CHECK_S, begin + PROGRESS_S
     while now < begin + at_most_s:
@@ -114,7 +114,7 @@ def last_of_check(name, process, stop):
 
 
 def die_with_parent():
-    """For Popen: the child is killed when this process is, whatever kills it."""
+    """For Popen: the kernel kills the child when this process dies for any reason."""
     pr_set_pdeathsig = 1
     ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)
 
@@ -138,11 +138,11 @@ class Cluster:
                           "TMPDIR to another folder") from None
 
     def start(self):
-        """Supervisor, recorder and sync_node, the senses, the simulation. Raises Refusal."""
+        """Starts the supervisor, recorder and sync_node, the modalities, then the simulation. Raises Refusal."""
         words = [*self.network.unshare, str(INSIDE), str(self.folder),
                  "private" if self.network.private else "host"]
         if not self.network.unshare:
-            # Without a process namespace runsvdir must pass the end on to all below it: that is what HUP means to it.
+            # Without a process namespace, SIGHUP makes runsvdir end all of its services.
             words = ["setpriv", "--pdeathsig", "HUP", *words]
         with open(self.plan.out / "logs" / "supervisor.log", "w", encoding="utf-8") as log:
             self.holder = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
@@ -152,13 +152,13 @@ class Cluster:
             for service in members:
                 if not service.start():
                     raise Refusal(f"{service.name}: the supervisor does not start it; see {self.plan.out}/logs/supervisor.log")
-                if not (self.folder / "address").exists():  # the supervisor is there, and so is the network: who joins finds both
+                if not (self.folder / "address").exists():  # supervisor and network exist, so tactus attach works
                     self.write_address()
-            if group != (self.plan.world,):  # nobody waits for the scene here
-                services.wait_until(lambda: all(s.has_spoken() for s in members), 5.0)
+            if group != (self.plan.world,):  # loading the scene is awaited elsewhere
+                services.wait_until(lambda: all(s.has_output() for s in members), 5.0)
 
     def write_address(self):
-        """Where tactus attach finds the cluster."""
+        """Writes the file by which tactus attach finds the cluster."""
         names = [n for n, flag in (("net", "--net"), ("user", "--user"), ("pid", "--pid")) if flag in self.network.unshare]
         (self.folder / "address").write_text(
             f"holder={self.holder.pid}\nnamespaces={','.join(names) or 'none'}\nrun_id={self.run_id}\n"
@@ -169,7 +169,7 @@ class Cluster:
         link.symlink_to(self.folder)
 
     def show_table(self):
-        """The live table, once a second, until the end."""
+        """Starts the live table, printed once a second until the end."""
         words = [*tactus_command("attach"), str(self.plan.out), str(BIN / "watch")]
         self.table = subprocess.Popen(words, stdin=subprocess.DEVNULL, start_new_session=True, preexec_fn=die_with_parent)
 
@@ -179,12 +179,12 @@ class Cluster:
             self.table = None
 
     def expects_world(self):
-        """False: there is no simulation, or it was left down."""
+        """False without a simulation, or after it was left down."""
         return self.plan.world in self.services and not self.services[self.plan.world].lost()
 
     def world_has_begun(self):
         world = self.plan.world
-        return world in self.services and self.services[world].has_said(WORLD_BEGINS[world])
+        return world in self.services and self.services[world].log_contains(WORLD_BEGINS[world])
 
     def alive(self):
         return self.holder is not None and self.holder.poll() is None
@@ -194,22 +194,22 @@ class Cluster:
         return {name: s.lost() for name, s in self.services.items() if s.lost()}
 
     def taken_down(self):
-        """The nodes that somebody took away and did not bring back. To be asked before all are stopped."""
-        return [name for name, s in self.services.items() if s.is_taken_down()] if self.alive() else []
+        """The nodes that the user stopped with sv. Call it before stop()."""
+        return [name for name, s in self.services.items() if s.is_stopped_by_user()] if self.alive() else []
 
     def stop(self):
-        """Ends everything in order and reaps it. Returns the nodes that had to be killed."""
+        """Stops all processes in order. Returns the names of those that had to be killed."""
         self.end_table()
-        with contextlib.suppress(OSError):  # a full disk: deaths are counted on, no more
+        with contextlib.suppress(OSError):  # full disk: the only effect is that exits count as deaths
             (self.folder / "stopping").touch()
         if not self.alive():
             return []
         for names, grace_s in STOP_ORDER:
             names = (*self.plan.senses(), *self.plan.people()) if names == SENSES else names
-            services.ask_to_end([self.services[name] for name in names if name in self.services], grace_s)
+            services.request_end([self.services[name] for name in names if name in self.services], grace_s)
             if names == WORLDS:
                 time.sleep(PRESENT_THE_LAST_S)
-        stubborn = services.make_end(self.services.values(), PATIENCE_S)
+        stubborn = services.end_or_kill(self.services.values(), PATIENCE_S)
         self.end_supervisor()
         return stubborn
 
@@ -224,7 +224,7 @@ class Cluster:
             self.holder.wait()
 
     def clean(self):
-        """Removes what only a running cluster needs."""
+        """Removes the temporary files of the running cluster."""
         with contextlib.suppress(OSError):
             (self.plan.out / "cluster").unlink(missing_ok=True)
         shutil.rmtree(self.folder, ignore_errors=True)
@@ -245,6 +245,6 @@ def kill_group(process):
         process.wait(2)
     except ProcessLookupError:
         process.wait()
-    except subprocess.TimeoutExpired:  # it hangs in a terminal that is held
+    except subprocess.TimeoutExpired:  # it blocks on a stopped terminal
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()

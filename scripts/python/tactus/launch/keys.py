@@ -1,18 +1,18 @@
-"""Orders to a running replay: keys of the terminal, or lines of a pipe on stdin, written to the named pipe that it reads."""
+"""Commands to a running replay: keys of the terminal, or lines of a pipe on stdin, written to its named pipe."""
 import os
 import select
 import stat
 import termios
 import tty
 
-LONGEST = 65536  # what is read and not yet a whole line
+LONGEST = 65536  # bytes of an incomplete line
 OF_KEY = {b" ": "toggle", b".": "step", b"\x1b[C": "seek +5", b"\x1b[D": "seek -5", b"0": "seek 0", b"1": "speed 1", b"m": "speed max",
           b"\x1b[H": "seek 0"}
 SLOWEST, FASTEST = 1 / 64, 64
 
 
 class Orders:
-    """While it is open the terminal gives keys, not lines."""
+    """A context manager; inside it the terminal delivers single keys."""
 
     def __init__(self, control):
         self.control = control
@@ -29,7 +29,7 @@ class Orders:
             elif stat.S_ISFIFO(kind):
                 self.stdin = 0
         except (OSError, termios.error):
-            pass  # no stdin: nobody speaks
+            pass  # no stdin: no commands
         return self
 
     def __exit__(self, *_):
@@ -37,7 +37,7 @@ class Orders:
             termios.tcsetattr(0, termios.TCSADRAIN, self.before)
 
     def pass_on(self):
-        """Passes on what has been said since. True: it shall end."""
+        """Forwards new commands to the replay. True: the user quits."""
         if self.stdin is None or not select.select([self.stdin], [], [], 0)[0]:
             return False
         read = os.read(self.stdin, 4096)
@@ -76,10 +76,10 @@ class Orders:
         try:
             pipe = os.open(self.control, os.O_WRONLY | os.O_NONBLOCK)
         except OSError:
-            return  # it is not there yet, or not any more
+            return  # the pipe does not exist yet, or no longer
         try:
             os.write(pipe, f"{order}\n".encode())
         except OSError:
-            pass  # it has just gone, or reads no more: nobody waits for it
+            pass  # the replay has ended or no longer reads
         finally:
             os.close(pipe)

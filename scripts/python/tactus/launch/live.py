@@ -1,4 +1,4 @@
-"""The live page of a running cluster (scripts/run --live): its socket is opened here, outside of the cluster's network, and
+"""The live page of a running cluster (scripts/run --live). Its socket is opened here, outside the network of the cluster, and
 inherited by the server inside."""
 import os
 import signal
@@ -14,15 +14,15 @@ from tactus.terminal import say
 PAGE = SCRIPTS / "live" / "page" / "dist"
 ADDRESS = "live_server: open "  # scripts/live/live_server_main.cpp
 PATIENCE_S = 10
-AGAIN_S = 1  # a server that died is started again, no faster than this
+AGAIN_S = 1  # minimum time between two starts of the server
 
 
 class Page:
     def __init__(self, port):
-        """Raises Refusal when the port is taken, or there is no page."""
+        """Raises Refusal when the port is in use, or the page was not built."""
         for path in (BIN / "live_server", PAGE / "main.js"):
             if not path.is_file():
-                raise Refusal(f"--live: {path} is not there; run scripts/build live_server and scripts/live/bundle")
+                raise Refusal(f"--live: {path} does not exist; run scripts/build live_server and scripts/live/bundle")
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         try:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -38,7 +38,7 @@ class Page:
         self.started = 0.0
 
     def start(self, out):
-        """Inside the cluster that writes to `out`; says where the page is."""
+        """Starts the server inside the cluster that writes to `out`; prints the address of the page."""
         self.out = out
         self.launch()
         end = time.monotonic() + PATIENCE_S
@@ -48,7 +48,7 @@ class Page:
                     say(f"the live page: http://127.0.0.1:{self.socket.getsockname()[1]}/?token={self.token}")
                     return
             time.sleep(0.05)
-        say(f"the live page does not start; the others go on (see {self.log()})")
+        say(f"the live page does not start; the run continues without it; see {self.log()}")
 
     def log(self):
         return self.out / "logs" / "live_server.log"
@@ -63,7 +63,7 @@ class Page:
                                             pass_fds=(self.socket.fileno(),), preexec_fn=die_with_parent)
 
     def keep(self):
-        """Starts it again when it died: the page finds it under the same address."""
+        """Restarts a server that died; the address of the page stays the same."""
         if self.process is not None and self.process.poll() is not None and time.monotonic() > self.started + AGAIN_S:
             self.launch()
 

@@ -1,9 +1,9 @@
-"""What scripts/run does once all is built: checks, starts, shows, stops, sums up."""
+"""One run, after the build: checks, start, live table, stop, summary."""
 import os
 import signal
 
-INTERRUPTED = 130  # as a shell names an end by Ctrl-C
-# Until there is something to stop, Ctrl-C ends this at once, also while the rest is imported.
+INTERRUPTED = 130  # exit status of a shell after Ctrl-C
+# Until a process was started, Ctrl-C exits immediately, also during the imports below.
 signal.signal(signal.SIGINT, lambda *_: (os.write(2, b"run: interrupted\n"), os._exit(INTERRUPTED)))
 
 import fcntl
@@ -20,7 +20,7 @@ PROGRESS_S = 5
 
 
 class Stop:
-    """Set by Ctrl-C and its like; looked at by the loop."""
+    """Flag set by SIGINT, SIGTERM and SIGHUP; polled by the loop."""
 
     def __init__(self):
         self.asked = False
@@ -32,9 +32,9 @@ class Stop:
 
 
 def watch_over(running, seconds, stop):
-    """Returns when the world is so old, or earlier when asked to. A large scene takes minutes to load before the world
-    begins; a world that there will not be is not waited for. Names each node that is lost as it happens. False: the world
-    never began."""
+    """Returns after `seconds` of simulation, or when the user stops the run. Waits first until the scene is loaded, which takes
+    minutes for a large scene, unless there is no simulation. Reports each node that is left down. Returns False when the
+    simulation never began. Raises Refusal."""
     now = loading_since = time.monotonic()
     next_said = now + PROGRESS_S
     end = None
@@ -53,18 +53,18 @@ def watch_over(running, seconds, stop):
         if running.page is not None:
             running.page.keep()
         if not running.alive():
-            raise Refusal(f"supervisor: ended before its time; see {running.plan.out}/logs/supervisor.log")
+            raise Refusal(f"supervisor: ended too early; see {running.plan.out}/logs/supervisor.log")
         for name, why in running.lost().items():
             if name not in named:
                 named.add(name)
-                say(f"{name}: {why}; the others go on ({running.services[name].last_words()})")
+                say(f"{name}: {why}; the others continue ({running.services[name].last_output_line()})")
         time.sleep(0.1)
     return end is not None
 
 
 def claim_out(plan):
-    """Makes the folder of the results and keeps others out of it until the descriptor returned is closed, or this process
-    is no more: of two runs that start in the same second the later takes the next name. Raises Refusal."""
+    """Makes and locks the results folder; returns the descriptor that holds the lock. Of two runs that start in the same
+    second the later one takes the next name. Raises Refusal."""
     while True:
         try:
             plan.out.mkdir(parents=True, exist_ok=not plan.out_is_ours)
@@ -73,7 +73,7 @@ def claim_out(plan):
             plan.out = plan.out.with_name(plan.out.name + "+")
             continue
         except OSError as error:
-            raise Refusal(f"recorder: the folder {plan.out} cannot be made ({error.strerror}); name another with --out") from None
+            raise Refusal(f"recorder: cannot create the folder {plan.out} ({error.strerror}); name another with --out") from None
         try:
             fcntl.flock(claim, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -85,7 +85,8 @@ def claim_out(plan):
 
 
 def run(plan, watch=watch_over):
-    """One run; watch says how long it lasts, as watch_over does. Returns what went wrong, a sentence each. Raises Refusal when it does not start."""
+    """Executes one run; watch(running, seconds, stop) determines its duration. Returns the errors, one sentence each.
+    Raises Refusal when the run does not start."""
     if plan.virtual is not None:
         return virtual.run(plan, Stop(), claim_out)
     stop = Stop()
@@ -95,8 +96,8 @@ def run(plan, watch=watch_over):
         if not os.access(cluster.BIN / name, os.X_OK):
             raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
     cluster.check(cluster.commands(plan, run_id, git), stop)
-    for name in arguments.strangers(plan):
-        say(f"{name!r} is named, which is none of this run's senses")
+    for name in arguments.unknown_modalities(plan):
+        say(f"{name!r} is no modality of this run; check the names in the profile and in --soa")
     expectation = priority.expectation(plan.realtime)
     net = network.choose(plan.network, plan.port)
     services.remove_leftovers()
@@ -127,7 +128,7 @@ def run(plan, watch=watch_over):
         stubborn = running.stop()
         lost = running.lost()
         restarts = {name: s.deaths() for name, s in running.services.items() if s.deaths()}
-        words_of = {name: running.services[name].last_words() for name in lost}
+        words_of = {name: running.services[name].last_output_line() for name in lost}
         running.clean()
     wrong += [f"{name}: could not be kept running: {why} ({words_of[name]}); see {plan.out}/logs/{name}.log"
               for name, why in lost.items()]

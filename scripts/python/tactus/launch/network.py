@@ -1,7 +1,7 @@
-"""The cluster's own network and process namespaces, or the machine's network.
+"""A private network and process namespace of the cluster, or the network of the machine.
 
-A private network has only a loopback interface with a multicast route: nobody else hears or disturbs it, and no setting of
-the system is changed. The namespaces die with the process that made them, and with them all that runs inside.
+A private network has only a loopback interface with a multicast route. It is isolated from all other processes and changes no
+setting of the system. The namespaces end with the process that made them, and with them all processes inside.
 """
 import dataclasses
 import os
@@ -13,15 +13,15 @@ import subprocess
 from tactus.refusal import Refusal
 
 GROUP = "239.255.76.67"  # as in lcmtypes/channels.h
-PATH = os.environ.get("PATH", "/usr/bin:/bin") + ":/usr/sbin:/sbin"  # an ordinary user's path may lack ip
+PATH = os.environ.get("PATH", "/usr/bin:/bin") + ":/usr/sbin:/sbin"  # the PATH of an ordinary user may lack ip
 ROUTE = "ip link set lo up && ip route add 224.0.0.0/4 dev lo"
 
 
 @dataclasses.dataclass
 class Network:
     private: bool
-    unshare: list  # command words before the program that is to run inside; empty: no namespaces
-    how: str       # for people
+    unshare: list  # command words before the program inside; empty: no namespaces
+    how: str       # description for the user
 
 
 def choose(wish, port):
@@ -41,13 +41,13 @@ def choose(wish, port):
 
 
 def candidates(net):
-    """Ways to make the namespaces, the best first: (command words, name)."""
-    # A user stays who he is, so that files and sound servers know him, and keeps the right to set up his own network;
-    # an older unshare can only make him root in there.
+    """Yields the ways to make the namespaces, best first: (command words, name)."""
+    # --map-current-user keeps the identity of the user for files and sound servers, --keep-caps the right to configure
+    # the private network; an older unshare can only map the user to root.
     users = [([], "root")] if os.geteuid() == 0 else [(["--user", "--map-current-user", "--keep-caps"], "user namespace")]
     users.append((["--user", "--map-root-user"], "user namespace"))
     for user, how in users:
-        # A /proc of their own lets pkill and the like, run inside, see only the cluster.
+        # With a separate /proc, programs such as pkill see only the cluster.
         for proc in (["--mount-proc"], ["--mount"]):
             yield ["unshare", *user, *(["--net"] if net else []), "--pid", "--fork", "--kill-child", *proc], how
 
@@ -55,7 +55,7 @@ def candidates(net):
 def allowed(flags, command):
     if not shutil.which("unshare"):
         return False
-    # A mount that is refused leaves the status 0 in some versions, but never an empty stderr.
+    # Some versions return 0 after a refused mount, but always write to stderr.
     test = subprocess.run([*flags, "sh", "-c", command], env={**os.environ, "PATH": PATH}, capture_output=True, timeout=10)
     return test.returncode == 0 and not test.stderr
 
@@ -67,7 +67,7 @@ def check_host(port):
             try:
                 s.bind(("", number))
             except OSError as error:
-                raise Refusal(f"network: UDP port {number} is in use ({error.strerror}), perhaps by another run; choose "
+                raise Refusal(f"network: UDP port {number} is in use ({error.strerror}), possibly by another run; choose "
                               "another --port, or --network private") from None
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
         s.settimeout(1)

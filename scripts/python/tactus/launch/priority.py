@@ -1,22 +1,22 @@
-"""Real-time priority: what may be had here, and what to expect without it."""
+"""Real-time priority: whether this system grants it, and the effect of its absence."""
 import os
 import subprocess
 
 from tactus.refusal import Refusal
 
-HIGHEST = 70  # of audio_node; the others take less
+HIGHEST = 70  # of audio_node; all others are lower
 
 
 def expectation(choice):
-    """One sentence for people. Raises Refusal when priority is required and refused."""
+    """One sentence for the user. Raises Refusal when priority is required and refused."""
     if choice == "off":
-        return "real-time priority off: beside a busy renderer a 1 ms loop wakes up to 3 ms late (p99)"
+        return "real-time priority is off: beside a busy renderer a 1 ms loop wakes up to 3 ms late (p99)"
     if granted():
-        return "real-time priority: audio 70, haptic 60, sim 50, sync_node and recorder 40; the renderers of pictures normal"
+        return "real-time priority: audio 70, haptic 60, sim 50, sync_node and recorder 40; visual nodes normal"
     if choice == "require":
         raise Refusal(f"haptic_node: --realtime require, but {remark()}; run scripts/setup --realtime and log in again, or "
                       "use --realtime try")
-    return (f"no real-time priority ({remark()}): everything runs, but beside a busy renderer a 1 ms loop wakes up to 3 ms "
+    return (f"no real-time priority ({remark()}): the run works, but beside a busy renderer a 1 ms loop wakes up to 3 ms "
             "late (p99); scripts/setup --realtime allows it")
 
 

@@ -1,5 +1,5 @@
-"""What tactus replay does once all is built: reads what the log says of itself, then does as scripts/run, with `replay` in the
-place of the simulation."""
+"""A replay, after the build: reads the description of the log, then runs like scripts/run with `replay` instead of the
+simulation."""
 import json
 import os
 import pathlib
@@ -17,12 +17,12 @@ SENSES = arguments.SENSES
 OF_REPLAY = ("speed", "start", "end", "channels", "leave_out", "also", "most")
 OVER = "replay: over"   # sync/tools/replay_main.cpp
 ENDS = "replay: ends"
-AFTERWARDS_S = 0.5      # what is heard and seen last comes a while after it was said
+AFTERWARDS_S = 0.5      # the last sounds and frames are presented after the last message
 LONGEST_S = arguments.LONGEST_S
 
 
 def described(log):
-    """What the log says of itself. Raises Refusal."""
+    """Description of the log: scene, tools, seed, recovered. Raises Refusal."""
     program = cluster.BIN / "replay"
     if not os.access(program, os.X_OK):
         raise Refusal(f"replay: {program} is not built; run scripts/build")
@@ -33,7 +33,7 @@ def described(log):
 
 
 def parse(words, here):
-    """(plan, seconds it lasts at the most, whether it ends by itself). Raises Refusal."""
+    """(plan, --stay, description of the log). Raises Refusal."""
     parser = arguments.Parser(add_help=False, allow_abbrev=False, prog="replay")
     parser.error = lambda message: (_ for _ in ()).throw(Refusal(f"{message}; see tactus replay --help"))
     parser.add_argument("log")
@@ -49,10 +49,10 @@ def parse(words, here):
     parser.add_argument("--port", default="7667")
     for word in words:
         if any(ord(c) < 32 or ord(c) == 127 for c in word):
-            raise Refusal(f"argument {word!r}: has a control character in it; leave it out")
+            raise Refusal(f"argument {word!r}: contains a control character; remove it")
     a = parser.parse_args(words)
     here = pathlib.Path(here)
-    log = here / a.log  # of a folder replay itself takes all parts
+    log = here / a.log  # for a folder, the program replay reads all parts
     says = described(log)
     others = hands.processes(says["tools"])
     known = (*SENSES, *others, "sync_node")
@@ -64,7 +64,7 @@ def parse(words, here):
         wanted = {*a.only, *(name for name in others if hands.FIRST in a.only)}
         without += [n for n in (*SENSES, *others) if n not in wanted]
         if hands.FIRST in without and wanted & set(others):
-            raise Refusal(f"--only {', '.join(sorted(wanted & set(others)))}: the first hand is {hands.FIRST}; name it too")
+            raise Refusal(f"--only {', '.join(sorted(wanted & set(others)))}: {hands.FIRST} holds the first tool; add --only {hands.FIRST}")
     elif hands.FIRST in without:
         without += [*others]
     if a.degrade and a.as_recorded:
@@ -93,7 +93,7 @@ def argparse_like(a, without):
 
 
 def watcher(control, stay):
-    """For main.run: watches a replay to its end and passes on what is said to it."""
+    """Returns the watch function for main.run: waits for the end of the replay and forwards commands to it."""
     def watch_over(running, _seconds, stop):
         world = running.services["replay"]
         begun, over_since = False, None
@@ -103,18 +103,18 @@ def watcher(control, stay):
                 if not begun and running.world_has_begun():
                     begun = True
                     running.show_table()
-                if orders.pass_on() or world.has_said(ENDS):
+                if orders.pass_on() or world.log_contains(ENDS):
                     break
-                over = OVER in world.last_words()
+                over = OVER in world.last_output_line()
                 over_since = (over_since or time.monotonic()) if over else None
                 if over and not stay and time.monotonic() > over_since + AFTERWARDS_S:
                     break
                 if not running.alive():
-                    raise Refusal(f"supervisor: ended before its time; see {running.plan.out}/logs/supervisor.log")
+                    raise Refusal(f"supervisor: ended too early; see {running.plan.out}/logs/supervisor.log")
                 for name, why in running.lost().items():
                     if name not in named:
                         named.add(name)
-                        say(f"{name}: {why}; the others go on ({running.services[name].last_words()})")
+                        say(f"{name}: {why}; the others continue ({running.services[name].last_output_line()})")
                 if world.lost():
                     break
                 time.sleep(0.05)

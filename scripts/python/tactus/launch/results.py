@@ -1,4 +1,4 @@
-"""What a run leaves: of which commit it was, and its summary and tables, made from its log."""
+"""Results of a run: the commit, and the summary and tables made from its log."""
 import os
 import subprocess
 
@@ -7,7 +7,7 @@ from tactus.paths import BIN, REPOSITORY
 
 
 def git_commit():
-    """The commit of this repository, with + when files differ from it; "unknown" without git."""
+    """The commit of this repository, with + for modified files; "unknown" without git."""
     git = ["git", "-c", "safe.directory=*", "-C", str(REPOSITORY)]
     try:
         said = lambda *words: subprocess.run([*git, *words], capture_output=True, check=True, text=True, errors="replace",
@@ -19,8 +19,8 @@ def git_commit():
 
 
 def sum_up(plan, git, lost, restarts, warnings):
-    """Writes summary.json and the CSVs from the log. lost: the nodes that are not expected at its end. Returns what went
-    wrong, a sentence each."""
+    """Writes summary.json and the CSV tables from the log. lost: the nodes that are not expected at the end of the log.
+    Returns the errors, one sentence each."""
     if not any(plan.out.glob("run*.lcmlog")):
         return [f"recorder: {plan.out}/run.lcmlog was not written; see {plan.out}/logs/recorder.log"]
     kept = [name for name in plan.nodes() if name not in lost]
@@ -29,7 +29,7 @@ def sum_up(plan, git, lost, restarts, warnings):
                  *(word for name, count in restarts.items() for word in ("--restarts", f"{name}={count}")),
                  *(word for sentence in warnings for word in ("--warning", sentence))]
     exports = [[str(BIN / name), str(plan.out), "--out", str(plan.out)] for name in ("export_csv", "export_events")]
-    # All results are written before any of them is shown. A second Ctrl-C does not reach these programs.
+    # All results are written before the first is printed. A second Ctrl-C does not reach these programs.
     all_done = [subprocess.run(words, capture_output=True, text=True, errors="replace", check=False, start_new_session=True)
                 for words in (summarise, *exports)]
     terminal.tell(all_done[0].stdout.rstrip("\n"))

@@ -1,9 +1,9 @@
-"""What a run knows of its scene before it begins. sim_node says what is wrong with one."""
+"""Reads tools and shaders from a scene before the run. sim_node reports the errors of a scene."""
 import xml.parsers.expat
 
 
 def in_world(scene):
-    """[(element, attributes)] that lie right in the world, in their order; none where the scene cannot be read."""
+    """[(element, attributes)] of the children of <world>, in order; empty when the scene cannot be read."""
     found, path = [], []
 
     def begin(name, attributes):
@@ -11,7 +11,7 @@ def in_world(scene):
         if path[1:] == ["world", name]:
             found.append((name, attributes))
 
-    # Prefixes as they are written: a prefix that nobody declared is none of our business.
+    # Without namespace processing, so that undeclared prefixes are no error.
     parser = xml.parsers.expat.ParserCreate()
     parser.StartElementHandler = begin
     parser.EndElementHandler = lambda name: path.pop()
@@ -23,12 +23,12 @@ def in_world(scene):
 
 
 def tools(scene):
-    """Names of its tools."""
+    """Names of the tools of the scene."""
     return [attributes.get("name", "") for name, attributes in in_world(scene) if name == "tactus:tool"]
 
 
 def shader_folder(scene):
-    """Where shaders of its own lie, to be read again when they change; None: it has none, or says itself where they are."""
+    """Folder of the shaders of the scene, which are reloaded on change; None without shaders, or when the scene sets shader_folder."""
     world = in_world(scene)
     says = any(name == "tactus:visual_node" and "shader_folder" in attributes for name, attributes in world)
     return scene.parent if not says and any(name == "tactus:shader" for name, _ in world) else None

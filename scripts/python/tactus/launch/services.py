@@ -1,7 +1,7 @@
-"""Service folders for runit, and orders to the services in them.
+"""Service folders for runit, and commands to their services.
 
-A node runs as a service: runsv starts it again when it dies. Its `finish` script notes each death and, when there are more
-than MOST_DEATHS within WINDOW_S, leaves the node down and says so in the file `lost`.
+A node runs as a service: runsv restarts it when it dies. Its `finish` script records each death. After more than MOST_DEATHS
+deaths within WINDOW_S it leaves the node down and writes the reason to the file `lost`.
 """
 import fcntl
 import os
@@ -18,7 +18,7 @@ MOST_DEATHS = 5
 WINDOW_S = 10
 
 FINISH = """#!/bin/sh
-# {name} died with exit code $1 (-1: by signal $2); runsv starts it again when this ends.
+# {name} died with exit code $1 (-1: by signal $2); runsv restarts it after this script.
 [ -e ../../stopping ] && exit 0
 [ -e asked ] && rm asked && exit 0
 date +%s >>deaths
@@ -32,7 +32,7 @@ printf d >supervise/control
 """
 
 RUN = """#!/bin/sh
-# Appends what {name} says to its log. It dies with its supervisor.
+# Appends the output of {name} to its log. The node dies with its supervisor.
 exec >>{log} 2>&1 </dev/null
 cd {folder} || exit 1
 exec setpriv --pdeathsig KILL -- {command}
@@ -59,27 +59,27 @@ def make_folder(out):
 
 
 def hold(folder):
-    """Marks the folder as in use until the file returned is closed, or this process is no more. Process numbers would not
-    do: other process namespaces have others."""
+    """Marks the folder as in use until the returned file is closed or this process ends. A lock, because process ids differ
+    between process namespaces."""
     lock = open(folder / "new", "w", encoding="ascii")
     fcntl.flock(lock, fcntl.LOCK_EX)
-    (folder / "new").rename(folder / "in_use")  # never there without the lock
+    (folder / "new").rename(folder / "in_use")  # in_use never exists unlocked
     return lock
 
 
 def remove_leftovers():
-    """Removes the folders of clusters whose run was killed outright."""
+    """Removes the folders of clusters whose run was killed."""
     for folder in pathlib.Path(tempfile.gettempdir()).glob(f"tactus-{os.getuid()}-*"):
         try:
             with open(folder / "in_use", "r", encoding="ascii") as lock:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 shutil.rmtree(folder, ignore_errors=True)
         except OSError:
-            continue  # in use, or not quite made
+            continue  # in use, or incomplete
 
 
 def write_script(path, text):
-    path.write_text(text, encoding="utf-8", errors="surrogateescape")  # names of files are bytes
+    path.write_text(text, encoding="utf-8", errors="surrogateescape")  # file names are bytes
     path.chmod(0o755)
 
 
@@ -90,13 +90,13 @@ class Service:
         self.name, self.log = name, log
         self.path = folder / "services" / name
         self.path.mkdir()
-        (self.path / "down").touch()  # runsv waits for our order
+        (self.path / "down").touch()  # runsv waits for a command
         write_script(self.path / "run", RUN.format(name=name, log=shlex.quote(str(log)),
                                                    folder=shlex.quote(str(working_folder)), command=shlex.join(command)))
         write_script(self.path / "finish", FINISH.format(name=name, window=WINDOW_S, most=MOST_DEATHS))
 
     def order(self, letter):
-        """A command of runsv(8): u, d, t, k, p, c. False when no runsv listens."""
+        """Sends a command of runsv(8): u, d, t, k, p, c. False without a running runsv."""
         try:
             pipe = os.open(self.path / "supervise" / "control", os.O_WRONLY | os.O_NONBLOCK)
         except OSError:
@@ -106,7 +106,7 @@ class Service:
         return True
 
     def start(self, patience_s=5.0):
-        """True once the order is taken; runsv needs a moment to be there."""
+        """Starts the node; True on success. Waits up to patience_s for runsv."""
         return wait_until(lambda: self.order("u"), patience_s)
 
     def is_down(self):
@@ -115,24 +115,24 @@ class Service:
         except OSError:
             return True
 
-    def is_taken_down(self):
-        """By somebody who told it to stay down; one that died is wanted up."""
+    def is_stopped_by_user(self):
+        """True when the user stopped the service with sv; a node that died has "want up"."""
         try:
             stat = (self.path / "supervise" / "stat").read_text(encoding="utf-8")
         except OSError:
             return False
         return stat.startswith("down") and "want up" not in stat and not self.lost()
 
-    def has_spoken(self):
+    def has_output(self):
         return self.log.exists() and self.log.stat().st_size > 0
 
-    def has_said(self, line):
+    def log_contains(self, line):
         try:
             return line in self.log.read_text(encoding="utf-8", errors="replace")
         except OSError:
             return False
 
-    def last_words(self):
+    def last_output_line(self):
         try:
             lines = self.log.read_text(encoding="utf-8", errors="replace").split("\n")
         except OSError:
@@ -146,22 +146,22 @@ class Service:
             return 0
 
     def lost(self):
-        """Why the node was left down; "": it was not."""
+        """The reason why the node was left down; "" otherwise."""
         try:
             return (self.path / "lost").read_text(encoding="utf-8").strip()
         except OSError:
             return ""
 
 
-def ask_to_end(services, patience_s):
-    """Asks all to end and waits for it, no longer than patience_s."""
+def request_end(services, patience_s):
+    """Asks all services to end and waits at most patience_s."""
     for s in services:
         s.order("d")
     wait_until(lambda: all(s.is_down() for s in services), patience_s)
 
 
-def make_end(services, patience_s):
-    """Waits until all have ended and kills those that do not. Returns the names of these."""
+def end_or_kill(services, patience_s):
+    """Waits at most patience_s for all services, then kills the others. Returns their names."""
     wait_until(lambda: all(s.is_down() for s in services), patience_s)
     stubborn = [s for s in services if not s.is_down()]
     for s in stubborn:

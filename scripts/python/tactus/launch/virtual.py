@@ -1,4 +1,4 @@
-"""A run in virtual time: all nodes in one process, as fast as they compute."""
+"""A run in virtual time: all nodes in one process, as fast as possible."""
 import json
 import os
 import signal
@@ -15,7 +15,7 @@ PROGRAMS = ("virtual_time", "summarise", "export_csv", "export_events")
 
 
 def commands(plan, git):
-    """{name: words} of every node: those of a live run, whose number is drawn from the clock, but for what a screen shows."""
+    """{name: command line} of every node, as in a live run but without pictures; the run id comes from the seed, not from the clock."""
     words = cluster.commands(plan, plan.seed + 1, git)
     for name in words:
         if plan.program(name) == "visual_node":
@@ -24,17 +24,17 @@ def commands(plan, git):
 
 
 def run(plan, stop, claim_out):
-    """One run, in a folder that claim_out keeps others out of. Returns what went wrong, a sentence each. Raises Refusal when it does not start."""
+    """Executes one run in the folder that claim_out locks. Returns the errors, one sentence each. Raises Refusal when it does not start."""
     for name in [*dict.fromkeys(plan.program(n) for n in plan.nodes()), *PROGRAMS]:
         if not os.access(cluster.BIN / name, os.X_OK):
             raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
     git = git_commit()
     words = commands(plan, git)
     cluster.check(words, stop)
-    for name in arguments.strangers(plan):
-        say(f"{name!r} is named, which is none of this run's senses")
+    for name in arguments.unknown_modalities(plan):
+        say(f"{name!r} is no modality of this run; check the names in the profile and in --soa")
     claim = claim_out(plan)
-    for name in words:  # a run of the same second may have had its name
+    for name in words:  # claim_out may have chosen another folder
         words[name][words[name].index("--out") + 1] = str(plan.out)
     (plan.out / "logs").mkdir(exist_ok=True)
     plan_file = plan.out / "logs" / "virtual_time.json"
@@ -48,7 +48,7 @@ def run(plan, stop, claim_out):
 
 
 def play(plan, plan_file, stop):
-    """Runs it and passes its progress on. Returns what went wrong."""
+    """Runs virtual_time and prints its progress. Returns the errors."""
     command = [str(cluster.BIN / "virtual_time"), str(plan_file), "--seconds", f"{plan.seconds:g}", "--seed", str(plan.seed), *plan.virtual]
     log = plan.out / "logs" / "virtual_time.log"
     with open(log, "w", encoding="utf-8") as said, open(log, encoding="utf-8", errors="replace") as heard:
@@ -69,7 +69,7 @@ def play(plan, plan_file, stop):
 
 
 def tell(heard):
-    """What virtual_time itself says; what its nodes say is in the log."""
+    """Prints the lines of virtual_time itself; the output of its nodes stays in the log."""
     for line in heard:
         if line.startswith("virtual_time:"):
             complain(line.rstrip("\n"))

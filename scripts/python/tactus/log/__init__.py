@@ -1,1 +1,1 @@
-"""Reads what a run left: the tables of its log, its sound and its video."""
+"""Reads the results of a run: tables of the log, sound and video."""

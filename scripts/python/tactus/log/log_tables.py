@@ -1,21 +1,21 @@
-"""What the tables of one log say (docs/export.md), as plain figures and arrays. No drawing, no clock."""
+"""Reads the tables of one log (docs/export.md) into numbers and arrays. No drawing, no clock."""
 import csv
 import json
 import os
 
 import numpy as np
 
-# Channels that a report is made of; the large ones are left in the log.
+# Channels of a report; large channels are not exported.
 CHANNELS = "LOG_INFO|NODE_HEALTH|CONTACT_EVENTS|PLAYOUT|DEGRADATION|DEGRADED|TAG_LIST|TAG_VALUES"
 PHASES = ("collision", "solve", "integrate", "decode", "render", "other")  # sync/time/phases.h
 WHY = ("let through", "rate", "deadband", "loss", "off", "freeze")          # sync::Why, sync/degradation/operator_chain.h
-PRESENTED = ("presented", "late", "inaudible")                               # outcomes of presented.csv that came out (docs/results.md)
+PRESENTED = ("presented", "late", "inaudible")                               # outcomes of presented.csv that count as presented (docs/results.md)
 POLICIES = ("asap", "aligned", "experiment", "local_haptic_first", "itouch2005")  # lcmtypes/types/control/playout_t.lcm
-SENSES = ("haptic", "haptic_push", "audio", "visual", "thermal")             # an asynchrony is that of the later in this list
+SENSES = ("haptic", "haptic_push", "audio", "visual", "thermal")             # an asynchrony is later minus earlier in this list
 
 
 class LogTables:
-    """The folder that tactus export and summarise wrote for one log. Files that are not there are empty."""
+    """The folder that tactus export and summarise wrote for one log. Missing files count as empty."""
 
     def __init__(self, folder, name):
         self.folder, self.name = folder, name
@@ -28,7 +28,7 @@ class LogTables:
         self.live_from_ns = int(self.info.get("live_from_ns", 0))
 
     def rows(self, name, wanted=None):
-        """Dictionaries of a table; wanted: only lines that contain this text are taken apart."""
+        """Dictionaries of a table; wanted: only lines that contain this text are parsed."""
         path = os.path.join(self.folder, name)
         if not os.path.exists(path):
             return
@@ -43,7 +43,7 @@ class LogTables:
         return next(iter(self.rows(name)), None) is not None
 
     def nominal_rates(self):
-        """{process: Hz}, as each says of itself."""
+        """{process: nominal rate in Hz}, from NODE_HEALTH."""
         return {row["sender"]: float(row["value"]) for row in self.rows("NODE_HEALTH.csv", "nominal_rate_Hz") if row["field"] == "nominal_rate_Hz"}
 
     def work(self):
@@ -59,14 +59,14 @@ class LogTables:
         return {row["event_id"]: row for row in self.rows("events.csv")}
 
     def first_heard_ns(self):
-        """{event_id: host ns at which the recorder first heard of it}."""
+        """{event_id: host ns at which the recorder first received it}."""
         heard = {}
         for row in self.rows("CONTACT_EVENTS.csv", ".event_id,"):
             heard.setdefault(row["value"], self.live_from_ns + round(float(row["log_s"]) * 1e9))
         return heard
 
     def presented_ns(self):
-        """{sense: {event_id: host ns}}; what touch pushes at once is the sense haptic_push."""
+        """{modality: {event_id: host ns}}; the immediate force of touch is haptic_push."""
         out = {}
         for row in self.rows("presented.csv"):
             at = int(row["presented_ns"])
@@ -77,7 +77,7 @@ class LogTables:
         return out
 
     def lateness_ms(self):
-        """{sense: presented less scheduled, ms}."""
+        """{modality: presented minus scheduled, ms}."""
         out = {}
         for row in self.rows("presented.csv"):
             if int(row["presented_ns"]) >= 0 and int(row["scheduled_ns"]) >= 0 and row["part"] != "constraint":
@@ -85,7 +85,7 @@ class LogTables:
         return {sense: np.array(values) for sense, values in out.items()}
 
     def budget_ms(self):
-        """The newest that sync_node announced; None: nobody did."""
+        """The last budget that sync_node published, ms; None without one."""
         last = None
         for row in self.rows("PLAYOUT.csv", "budget_ns"):
             if row["field"] == "budget_ns":
@@ -93,7 +93,7 @@ class LogTables:
         return last
 
     def policy(self):
-        """Name of the one that was announced last; None: nobody did."""
+        """Name of the last published policy; None without one."""
         last = None
         for row in self.rows("PLAYOUT.csv", ",policy,"):
             if row["field"] == "policy":
@@ -101,7 +101,7 @@ class LogTables:
         return last if last is None else POLICIES[last] if 0 <= last < len(POLICIES) else f"number {last}"
 
     def profile(self):
-        """(XML of the newest degradation profile, log_s at which it was first heard); None: there was none."""
+        """(XML of the newest degradation profile, log_s of its first message); None without one."""
         pages, newest, first = {}, -1, 0.0
         for message in self.messages("DEGRADATION.csv"):
             generation = int(message["generation"])
@@ -113,7 +113,7 @@ class LogTables:
         return (text, first) if text else None
 
     def decisions(self):
-        """{(sense, "events" or "snapshots"): {"why": {reason: count}, "held_ms": of what was let through}} of what the profile did."""
+        """{(modality, "events" or "snapshots"): {"why": {reason: count}, "held_ms": delays of passed messages, "twice": repetitions}}."""
         out = {}
         for message in self.messages("DEGRADED.csv"):
             for i in range(int(message["count"])):
@@ -130,7 +130,7 @@ class LogTables:
         return out
 
     def messages(self, name):
-        """One dictionary for each message of a long table: its fields, and log_s."""
+        """Yields a dictionary for each message of a long table: its fields, log_s and sender."""
         key, message = None, {}
         for row in self.rows(name):
             if (row["sender"], row["seq"], row["log_s"]) != key:
@@ -142,7 +142,7 @@ class LogTables:
             yield message
 
     def hand(self, tool):
-        """Arrays of haptic.csv of one tool: seq, world s (NaN: before the world), force (n,3) N, device and proxy height m."""
+        """Arrays of haptic.csv of one tool: seq, simulation time s (NaN: before its start), force (n,3) N, device and proxy height m."""
         seq, time, force, device, proxy = [], [], [], [], []
         for row in self.rows("haptic.csv"):
             if row["tool"] != tool:
@@ -159,13 +159,13 @@ class LogTables:
         return sorted({row["tool"] for row in self.rows("haptic.csv")}, key=int)
 
     def warmth(self):
-        """Arrays of thermal.csv: world s, skin and commanded temperature, degC."""
+        """Array (n,3) of thermal.csv: simulation time s, skin and commanded temperature, degC."""
         told = [(float(row["time_s"]), float(row["skin_degC"]), float(row["commanded_degC"])) for row in self.rows("thermal.csv") if row["time_s"]]
         return np.array(told).reshape(-1, 3)
 
 
 def asynchronies_ms(presented):
-    """{(a, b): presentation in b less that in a, ms, of every event presented in both}, as in summary.json."""
+    """{(a, b): presentation in b minus that in a, ms, of every event presented in both}, as in summary.json."""
     out = {}
     for i, a in enumerate(SENSES):
         for b in SENSES[i + 1:]:
@@ -178,7 +178,7 @@ def asynchronies_ms(presented):
 
 
 def latencies_ms(events, heard, presented):
-    """{hop: ms}: of each event from its instant to the bus, and from there to each sense."""
+    """{hop: ms} of each event, from its instant to the bus and to the presentation of each modality."""
     at = {event: int(row["host_ns"]) for event, row in events.items() if row["host_ns"] and int(row["host_ns"]) > 0}
     out = {"simulation to bus": np.array([(heard[e] - ns) * 1e-6 for e, ns in at.items() if e in heard])}
     for sense in SENSES:
@@ -194,7 +194,7 @@ def thresholds(path):
 
 
 def bands(rows, a, b):
-    """[(ms, row)] of a pair, in the sign of asynchronies_ms: positive when b came later."""
+    """[(ms, row)] of a pair, in the sign of asynchronies_ms: positive when b is later."""
     plain = lambda sense: "haptic" if sense == "haptic_push" else sense
     return sorted(((float(r["threshold_ms"]) if r["earlier"] == plain(a) else -float(r["threshold_ms"]), r) for r in rows
                    if {r["earlier"], r["later"]} == {plain(a), plain(b)}), key=lambda band: band[0])

@@ -1,4 +1,4 @@
-"""Reads the marker cells at the lower left edge of a frame of visual_node; frame/marker.h defines their layout.
+"""Decodes the marker cells at the lower left edge of a frame of visual_node; frame/marker.h defines their layout.
 
   tactus --module tactus.log.marker video.mp4     one line per frame: index in the file, frame number, events that flash
 """

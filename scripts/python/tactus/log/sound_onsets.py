@@ -1,13 +1,13 @@
-"""Onsets of sound in the WAV of a run, and the clock that says when each of its samples was out."""
+"""Onsets of sound in the WAV of a run, and the output time of each sample."""
 import numpy as np
 
 from tactus.refusal import Refusal
 
-ALONE_BEFORE_S, ALONE_AFTER_S = 0.060, 0.025  # no other hit this long before and after one that is judged
+ALONE_BEFORE_S, ALONE_AFTER_S = 0.060, 0.025  # minimum time to the hits before and after an evaluated one
 
 
 def read_wav(path):
-    """Samples as floats, mono sum, and the rate. Float WAVs are read by hand: the wave module knows only integers. Raises Refusal."""
+    """(samples as floats, mean of the channels; rate in Hz). Parses the file itself, because the module wave reads only integers. Raises Refusal."""
     with open(path, "rb") as file:
         data = file.read()
     position, kind, channels, rate, bits = 12, 1, 2, 48000, 16
@@ -27,26 +27,26 @@ def read_wav(path):
             samples = np.frombuffer(body, dtype).astype(float) / (1.0 if kind == 3 else 2.0 ** (bits - 1))
             return samples.reshape(-1, channels).sum(axis=1) / channels, rate
         position += 8 + size + size % 2
-    raise Refusal(f"{path} has no samples")
+    raise Refusal(f"{path} has no samples; give the audio.wav of a complete run")
 
 
 def clock_of(pairs, medium):
     """(index, host ns) of one file, in order. Raises Refusal."""
     rows = sorted({(int(p["index"]), int(p["host_ns"])) for p in pairs if p["medium"] == medium})
     if len(rows) < 2:
-        raise Refusal(f"the log has no clock of {medium}; was the run shorter than a second?")
+        raise Refusal(f"the log has no clock of {medium}; use a run of more than a second")
     return np.array(rows, dtype=float)
 
 
 def index_at(clock, host_ns, rate):
-    """Index in the file of a host time, between pairs, and by the nominal rate outside of them."""
+    """Sample index at a host time: from the previous pair of the clock and the nominal rate."""
     host = clock[:, 1]
     i = int(np.clip(np.searchsorted(host, host_ns) - 1, 0, len(host) - 1))
     return clock[i, 0] + (host_ns - host[i]) * 1e-9 * rate
 
 
 def onset(samples, expected, rate, rise=0.02):
-    """First sample near `expected` that leaves the level before it, by `rise` of its loudest; None when nothing stands out."""
+    """First sample near the index `expected` that exceeds the level before it by `rise` of the peak; None without a clear onset."""
     begin, end = int(expected - 0.018 * rate), int(expected + 0.025 * rate)
     quiet = int(expected - 0.030 * rate)
     if quiet < 0 or end >= len(samples):

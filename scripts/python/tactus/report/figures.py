@@ -1,4 +1,4 @@
-"""How figures look, and how they are written: SVG for the page, PNG and SVG beside it, the same bytes each time."""
+"""Style and output of figures: SVG in the page, PNG and SVG in a folder, reproducible to the byte."""
 import base64
 import os
 
@@ -16,7 +16,7 @@ import numpy as np  # noqa: E402
 WIDTH_IN = 7.2
 COLOUR = {"simulation": "#555555", "haptic": "#c2562b", "haptic_push": "#e0a184", "audio": "#2a6fb0", "visual": "#3c8c50", "thermal": "#a8871d"}
 PHASE_COLOUR = {"collision": "#7b5ea7", "solve": "#b07aa1", "integrate": "#d4a6c8", "decode": "#76b7b2", "render": "#4e79a7", "other": "#bab0ac"}
-OF_LOG = ("#222222", "#6a3d9a", "#159a9a", "#d6559a", "#7f7f00", "#5a3a22")  # several logs in one figure; the first has the colours of the senses
+OF_LOG = ("#222222", "#6a3d9a", "#159a9a", "#d6559a", "#7f7f00", "#5a3a22")  # several logs in one figure; the first has the colours of the modalities
 DASHES = ("-", ":", "--", "-.")
 NAME = {"haptic": "touch (hit)", "haptic_push": "touch (push)", "audio": "sound", "visual": "vision", "thermal": "warmth"}
 
@@ -32,7 +32,7 @@ def cdf(axes, values, **style):
 
 
 def envelope(x, y, most=1500):
-    """At most so many points of a curve, with the least and the largest of each stretch, so that no peak is lost."""
+    """A curve reduced to about `most` points: minimum and maximum of each section, so that peaks remain."""
     if len(x) <= most:
         return x, y
     pieces = np.array_split(np.arange(len(x)), most // 2)
@@ -41,7 +41,7 @@ def envelope(x, y, most=1500):
 
 
 def stretches(x, lists, most=1500):
-    """Means of several curves in the same stretches of x, for a band between them."""
+    """Means of several curves in `most` common sections of x, for a band between them."""
     if len(x) <= most:
         return x, lists
     pieces = np.array_split(np.arange(len(x)), most)
@@ -49,7 +49,7 @@ def stretches(x, lists, most=1500):
 
 
 def name_logs(fig, names, line=False):
-    """A legend of which log is which, above a figure of several."""
+    """Adds a legend with the names of the logs above a figure."""
     if len(names) > 1:
         marks = [plt.Line2D([], [], color="#444444" if line or i == 0 else OF_LOG[i % len(OF_LOG)], linestyle=DASHES[i % len(DASHES)] if line else "-",
                             linewidth=3 if i == 0 and not line else 1.2) for i in range(len(names))]
@@ -57,7 +57,7 @@ def name_logs(fig, names, line=False):
 
 
 class Gallery:
-    """Numbers figures and keeps them: `folder`/NAME.svg and .png."""
+    """Numbers figures and writes them: `folder`/NAME.svg and .png."""
 
     def __init__(self, folder):
         self.folder = folder

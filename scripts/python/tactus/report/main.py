@@ -1,15 +1,15 @@
-"""A report on a run, or on several beside each other: one HTML file that needs nothing else.
+"""Writes a report on one or several runs as a self-contained HTML file.
 
   tactus report LOG... [--out FILE.html] [--name NAME]... [--json FILE]
 
-  LOG          run.lcmlog of a run, or its folder. Of several the first is told of, with the others laid over it
-  --out FILE   default: report.html beside the first log. The figures lie beside it, in FILE_figures, as PNG and SVG
-  --name NAME  what a log is called in the report, in the order of the logs; default: the name of its folder
-  --json FILE  the figures in it, for programs
+  LOG          run.lcmlog of a run, or its folder. With several, the first is described and the others are overlaid
+  --out FILE   default: report.html beside the first log. Figures are also written to FILE_figures, as PNG and SVG
+  --name NAME  name of a log in the report, in the order of the logs; default: the name of its folder
+  --json FILE  also writes the figures of the report as JSON
 
-Scene and versions; contacts and what became of them; rates, missed ticks and where the time went; latency of each hop; asynchrony of
-onsets with published thresholds; events; force with the tube of what is just noticeable, position, temperature; the degradation profile
-and what it really did. The same logs give the same bytes.
+Contents: scene and versions; contacts and their outcomes; rates, missed ticks and time per phase; latency of each hop; asynchrony of
+onsets with published thresholds; events; force with just noticeable differences, position, temperature; the degradation profile and
+its measured effect. The same logs give the same bytes.
 """
 import argparse
 import json
@@ -35,9 +35,9 @@ def arguments(words):
     options = parser.parse_args(words)
     for log in options.log:
         if not os.path.exists(log):
-            refuse(f"{log} is not there; give the run.lcmlog of a run, or its folder")
+            refuse(f"{log} does not exist; give the run.lcmlog of a run, or its folder")
     if len(options.name) > len(options.log):
-        refuse(f"{len(options.name)} names for {len(options.log)} logs; give one --name for each log at most")
+        refuse(f"{len(options.name)} names for {len(options.log)} logs; give at most one --name for each log")
     folder = lambda log: os.path.abspath(log) if os.path.isdir(log) else os.path.dirname(os.path.abspath(log))
     options.out = options.out or os.path.join(folder(options.log[0]), "report.html")
     options.name += [os.path.basename(folder(log)) or log for log in options.log[len(options.name):]]
@@ -47,16 +47,16 @@ def arguments(words):
 
 
 def tables_of(log, folder):
-    """Exports what a report needs of one log into the folder."""
+    """Exports the tables of one log for the report into the folder."""
     from tactus.log import log_tables
     os.makedirs(folder)
     for words in ([BIN / "summarise", log, "--out", os.path.join(folder, "summary.json")],
                   [BIN / "export_log", log, "--out", folder, "--channels", log_tables.CHANNELS],
                   [BIN / "export_events", log, "--out", folder], [BIN / "export_csv", log, "--out", folder]):
         if not os.access(words[0], os.X_OK):
-            refuse(f"{words[0]} is not built; call scripts/build --programs")
+            refuse(f"{words[0]} is not built; run scripts/build --programs")
         done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False)
-        # summarise ends with 1 also when an event was lost, which is worth a report.
+        # summarise also exits with 1 after a lost event, which the report shows.
         if done.returncode != 0 and not (words[0].name == "summarise" and os.path.exists(os.path.join(folder, "summary.json"))):
             refuse((done.stderr.strip().splitlines() or [f"{words[0].name} failed on {log}"])[-1])
 
@@ -90,7 +90,7 @@ def main(words):
                                                            for (a, b), v in log_tables.asynchronies_ms(log.presented_ns()).items()}} for log in logs],
                                "figures": gallery.count, "tables": made.tables}, file, indent=1)
         except OSError as error:
-            refuse(f"cannot write {error.filename or options.out} ({error.strerror}); give --out and --json files in folders that can be written")
+            refuse(f"cannot write {error.filename or options.out} ({error.strerror}); give --out and --json files in writable folders")
     print(f"report: {options.out}, {os.path.getsize(options.out) // 1000} kB, {gallery.count} figures in {gallery.folder}")
     return 0
 

@@ -1,11 +1,11 @@
-"""A report on one log or several: its sections, in order. What a log does not hold is said, not left out."""
+"""A report on one or several logs: its sections, in order. The report states which data a log lacks."""
 from tactus.log import log_tables
 from tactus.paths import REPOSITORY
 from tactus.report import sections, traces, words
 
 
 class Report:
-    """What the sections share: the logs, figures, the numbering of tables and sources, and what is missing."""
+    """State shared by the sections: logs, figures, numbers of tables and sources, missing data."""
 
     def __init__(self, logs, gallery):
         self.logs, self.gallery = logs, gallery
@@ -14,7 +14,7 @@ class Report:
 
     @property
     def log(self):
-        """The one that is told of; of several the first, which the others are held against."""
+        """The described log: the first, with which the others are compared."""
         return self.logs[0]
 
     def table(self, caption, head, rows):
@@ -38,7 +38,7 @@ class Report:
             parts.append(sections.comparison(self))
         parts += [section(self) for section in (sections.methods, sections.contacts, sections.processes, sections.latency, sections.asynchrony,
                                                 sections.raster, traces.section, sections.degradation)]
-        parts.append("<h2>What the log does not hold</h2>\n")
+        parts.append("<h2>Missing data</h2>\n")
         parts.append("<ul>" + "".join(f"<li>{words.safe(m)}</li>" for m in [*self.missing, *sections.always_missing(self)]) + "</ul>\n")
         if self.sources:
             parts.append('<h2>Sources</h2>\n<ol class="refs">' + "".join(f'<li id="ref{i + 1}">{words.safe(s)}</li>' for i, s in enumerate(self.sources)) +

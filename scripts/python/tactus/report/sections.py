@@ -1,4 +1,4 @@
-"""The sections of a report but for the traces. Each takes the Report and returns HTML."""
+"""The sections of a report except the traces. Each takes the Report and returns HTML."""
 import numpy as np
 
 from tactus.log import log_tables
@@ -17,7 +17,7 @@ def scene_of(log):
 
 
 def degraded(log):
-    """True when a profile that degrades anything was in force."""
+    """True when a profile with at least one operator was applied."""
     return bool(log.profile() and "<degrade" in log.profile()[0])
 
 
@@ -26,14 +26,14 @@ def head(report):
     c = s["contacts"]
     lost = c["lost"]
     slow = [name for name, n in s["nodes"].items() if n["missed_ticks"] > 0.01 * max(1, n["ticks"])]
-    sentences = [f"{number(c['begin'])} contacts began and {number(c['hit'])} blows fell in {number(s['seconds'])} s of {safe(scene_of(log))}.",
-                 "No event that a sense owed was lost." if lost == 0 else f"<b>{number(lost)} events that a sense owed were lost.</b>",
-                 f"The world ran at {number(s['realtime_factor'], 4)} of real time." if s["realtime_factor"] else "There was no simulation in it.",
-                 f"More than 1 % of their ticks were missed by {safe(listed(slow))}." if slow else "No process missed more than 1 % of its ticks."]
+    sentences = [f"{number(c['begin'])} contacts began and {number(c['hit'])} hits occurred in {number(s['seconds'])} s of {safe(scene_of(log))}.",
+                 "No expected event was lost." if lost == 0 else f"<b>{number(lost)} expected events were lost.</b>",
+                 f"The simulation ran at {number(s['realtime_factor'], 4)} of real time." if s["realtime_factor"] else "The log has no simulation.",
+                 f"{safe(listed(slow))} missed more than 1 % of the ticks." if slow else "No process missed more than 1 % of its ticks."]
     if degraded(log):
-        sentences.append("A degradation profile was in force.")
-    several = f", held against {len(report.logs) - 1} other log{'s' if len(report.logs) > 2 else ''}" if len(report.logs) > 1 else ""
-    return (f"<h1>{safe(scene_of(log))}: what was rendered, when, and how well</h1>\n"
+        sentences.append("A degradation profile was applied.")
+    several = f", compared with {len(report.logs) - 1} other log{'s' if len(report.logs) > 2 else ''}" if len(report.logs) > 1 else ""
+    return (f"<h1>{safe(scene_of(log))}: content, timing and quality of the rendering</h1>\n"
             f'<p class="sub">Report on {safe(log.name)}{several}</p>\n<p class="sum">{" ".join(sentences)}</p>\n')
 
 
@@ -42,34 +42,34 @@ def methods(report):
     damage = log.schema.get("damaged_regions", 0)
     rates = log.nominal_rates()
     nominal = listed(f"{name} at {number(rate)} Hz" for name, rate in sorted(rates.items()) if name.endswith("_node")) if rates else ""
-    facts = [["Scene", scene_of(log)], ["Asked for", f"{number(s['seconds'])} s"], ["Recorded", f"{number(s['recorded_seconds'], 4)} s"],
-             ["Seed", str(log.info.get("seed", "–"))], ["Version", log.info.get("version", "–")], ["Commit", log.info.get("git") or "not known"],
-             ["Policy of presentation", log.policy() or "none was announced"], ["Damaged places of the log", str(damage)],
+    facts = [["Scene", scene_of(log)], ["Requested", f"{number(s['seconds'])} s"], ["Recorded", f"{number(s['recorded_seconds'], 4)} s"],
+             ["Seed", str(log.info.get("seed", "–"))], ["Version", log.info.get("version", "–")], ["Commit", log.info.get("git") or "unknown"],
+             ["Playout policy", log.policy() or "none published"], ["Damaged regions of the log", str(damage)],
              ["Messages", number(sum(b["messages"] for b in s["bus"].values()))],
-             ["Numbers missing", number(sum(b["gaps"] for b in s["bus"].values()))]]
+             ["Missing sequence numbers", number(sum(b["gaps"] for b in s["bus"].values()))]]
     text = [f"<p>The scene was simulated and rendered by separate processes that exchange messages{': ' + safe(nominal) if nominal else ''}. All messages were "
-            "recorded, each with its time of arrival by the recorder’s monotonic clock. Instants of the world are those that the simulation "
-            "gives; instants of presentation are what each renderer reports of its own output: the sample that leaves the card, the fence of "
+            "recorded with the arrival time on the monotonic clock of the recorder. The simulation gives the times of "
+            "events; each node reports the times of its presentations: the sample that leaves the sound card, the fence of "
             "the frame, the tick that commands the force or the plate. Differences between two processes on one machine need no "
-            "correction of clocks; between machines they carry the uncertainty of the clock maps in the log.</p>\n"]
+            "clock correction; between machines they carry the uncertainty of the clock maps in the log.</p>\n"]
     if s["warnings"]:
-        text.append("<p>Where it ran: " + safe(" ".join(w.rstrip(".") + "." for w in s["warnings"])) + "</p>\n")
-    return "<h2>The run</h2>\n" + "".join(text) + report.table("What the log says of itself.", ["", "", ], facts)
+        text.append("<p>Machine: " + safe(" ".join(w.rstrip(".") + "." for w in s["warnings"])) + "</p>\n")
+    return "<h2>The run</h2>\n" + "".join(text) + report.table("Description of the log.", ["", "", ], facts)
 
 
 def contacts(report):
-    out = ["<h2>Contacts and what became of them</h2>\n"]
+    out = ["<h2>Contacts and outcomes</h2>\n"]
     c = report.log.summary["contacts"]
     rows = []
     for sense, m in c["by_modality"].items():
         rows.append([figures.NAME.get(sense, sense).replace(" (hit)", ""), *(m[k] for k in ("owed", "presented", "late", "dropped_late", "dropped_by_profile", "stalled", "dead", "lost"))])
-    out.append(f"<p>{number(c['begin'])} contacts began, {number(c['end'])} ended, and {number(c['hit'])} blows fell. Sound owes each blow; vision each "
-               "begin and blow; touch and warmth those of their own tool.</p>\n")
+    out.append(f"<p>{number(c['begin'])} contacts began, {number(c['end'])} ended, and {number(c['hit'])} hits occurred. Sound must present each hit; vision each "
+               "begin and hit; touch and warmth those of their own tool.</p>\n")
     if not rows:
-        return "".join(out) + report.lacks("No sense reported what it presented.")
-    out.append(report.table("Events that each sense owed.", ["sense", "owed", "presented", "of it late", "dropped, late", "dropped, profile", "stalled", "dead", "lost"], rows))
+        return "".join(out) + report.lacks("No modality reported its presentations.")
+    out.append(report.table("Expected events of each modality and their outcomes.", ["modality", "expected", "presented", "of them late", "dropped, late", "dropped, profile", "stalled", "dead", "lost"], rows))
     for absent in report.log.summary["absent"]:
-        out.append(report.lacks(f"The sense {absent} was not there: no process reported for it."))
+        out.append(report.lacks(f"The modality {absent} was absent: no process reported for it."))
     game = report.log.summary.get("game")
     if game:
         won = f", all at {number(game['won_at_s'])} s" if game.get("won_at_s") is not None else ""
@@ -83,14 +83,14 @@ def processes(report):
     for name, n in sorted(log.summary["nodes"].items()):
         rows.append([name, rates.get(name), n["rate_hz"], n["missed_ticks"], n["tick_us"]["p50"], n["tick_us"]["p99"], n["tick_us"]["max"], n["wake_us"]["p50"],
                      n["wake_us"]["p99"], n["restarts"]])
-    out = ["<h2>Rates, ticks and where the time went</h2>\n"]
+    out = ["<h2>Rates, ticks and computing time</h2>\n"]
     if not rows:
-        return "".join(out) + report.lacks("No process told of its health.")
-    out.append(report.table("Processes: nominal rate and that which was reached, ticks missed, time that a tick takes and how late it began. sync_node also wakes when something arrives.",
-                            ["process", "nominal, Hz", "reached, Hz", "missed", "tick p50, µs", "p99", "max", "late p50, µs", "p99", "restarts"], rows))
+        return "".join(out) + report.lacks("No process published its health.")
+    out.append(report.table("Processes: nominal and achieved rate, missed ticks, duration and start latency of a tick. sync_node also wakes when a message arrives.",
+                            ["process", "nominal, Hz", "achieved, Hz", "missed", "tick p50, µs", "p99", "max", "late p50, µs", "p99", "restarts"], rows))
     work = log.work()
     if not work:
-        return "".join(out) + report.lacks("No time per phase of any process was recorded (tagged variables work.*), so that physics and rendering are told only by their ticks.")
+        return "".join(out) + report.lacks("No time per phase of any process was recorded (tagged variables work.*), so physics and rendering are shown only by their ticks.")
     names = sorted(work)
     fig, axes = figures.new(height_in=0.9 + 0.28 * len(names))
     for row, name in enumerate(names):
@@ -110,8 +110,8 @@ def processes(report):
                 bbox_to_anchor=(0.45, 1.0), handlelength=1, columnspacing=1.2)
     physics = work.get("sim_node", {})
     told = [f"{phase} {number(physics[phase].mean())} µs" for phase in ("collision", "solve", "integrate") if phase in physics]
-    caption = ("Mean time of a tick by phase; the stroke is the 99th percentile of the whole tick. "
-               + (f"Physics took {listed(told)} of a step on average, {number(percentile(physics['all'], 99))} µs in 99 of 100 steps." if told and "all" in physics else ""))
+    caption = ("Mean time of a tick by phase; the mark is the 99th percentile of the whole tick. "
+               + (f"Physics took {listed(told)} of a step on average, {number(percentile(physics['all'], 99))} µs at the 99th percentile." if told and "all" in physics else ""))
     out.append(report.gallery.keep(fig, "work", caption))
     render = [[name, *(float(work[name][p].mean()) if p in work[name] else None for p in log_tables.PHASES),
                percentile(work[name]["all"], 99) if "all" in work[name] else None] for name in names]
@@ -132,7 +132,7 @@ def latency(report):
     hops = [log_tables.latencies_ms(log.events(), log.first_heard_ns(), log.presented_ns()) for log in report.logs]
     own, late = hops[0], report.log.lateness_ms()
     if not own:
-        return "".join(out) + report.lacks("No event has an instant of the world on the host’s clock, so that no latency can be told.")
+        return "".join(out) + report.lacks("No event has a time on the host clock, so latency is unknown.")
     fig, (left, right) = figures.new(columns=2, height_in=2.7)
     for hop, values in own.items():
         sense = hop.removeprefix("event to ")
@@ -149,17 +149,17 @@ def latency(report):
     left.legend(loc="lower right")
     for sense, values in late.items():
         figures.cdf(right, values, color=figures.COLOUR.get(sense, "#555555"), label=figures.NAME.get(sense, sense))
-    right.set(xlabel="after it was due, ms", ylim=(0, 1.02))
-    right.set_title("b  from the instant that was asked for")
+    right.set(xlabel="after the scheduled time, ms", ylim=(0, 1.02))
+    right.set_title("b  from the scheduled time")
     if late:
         low, high = min(percentile(v, 1) for v in late.values()), max(percentile(v, 99) for v in late.values())
         right.set_xlim(min(-1.0, low * 1.2), max(2.0, high * 1.2))
         right.legend(loc="lower right")
     medians = listed(f"{figures.NAME[h.removeprefix('event to ')]} {number(percentile(v, 50))} ms" for h, v in own.items() if h != "simulation to bus")
-    asked = f" The dashed line is the budget of {number(budget)} ms that no chosen delay exceeds." if budget else ""
+    asked = f" The dashed line is the budget of {number(budget)} ms, the maximum of chosen delays." if budget else ""
     dotted = " Dotted and dashed curves are the other logs." if len(report.logs) > 1 else ""
-    out.append(report.gallery.keep(fig, "latency", f"Distribution of latency per hop. <b>a</b> From the instant of the event in the world until it was first heard on the bus, and until "
-                                   f"each sense presented it: in the median {medians}.{asked} <b>b</b> From the instant at which the policy asked for the presentation until it was.{dotted}"))
+    out.append(report.gallery.keep(fig, "latency", f"Distribution of latency per hop. <b>a</b> From the simulated event to its first message on the bus, and to the "
+                                   f"presentation by each modality: in the median {medians}.{asked} <b>b</b> From the time that the policy scheduled to the presentation.{dotted}"))
     rows = [[f"event → {figures.NAME.get(hop.removeprefix('event to '), 'bus')}", len(v), *(percentile(v, q) for q in QUANTILES), float(v.max())] for hop, v in own.items()]
     rows += [[f"due → {figures.NAME.get(sense, sense)}", len(v), *(percentile(v, q) for q in QUANTILES), float(v.max())] for sense, v in late.items()]
     out.append(report.table("Latency per hop, ms.", ["hop", "events", "p5", "p50", "p95", "p99", "max"], rows))
@@ -171,7 +171,7 @@ def asynchrony(report):
     pairs = [log_tables.asynchronies_ms(log.presented_ns()) for log in report.logs]
     own = pairs[0]
     if not own:
-        return "".join(out) + report.lacks("No event was presented by two senses, so that there is no asynchrony.")
+        return "".join(out) + report.lacks("No event was presented by two modalities, so there is no asynchrony.")
     columns = 2 if len(own) > 1 else 1
     rows_n = (len(own) + columns - 1) // columns
     fig, axes = figures.new(rows_n, columns, height_in=0.4 + 1.55 * rows_n, squeeze=False)
@@ -209,9 +209,9 @@ def asynchrony(report):
     cited = sorted({(safe(band["what"]), safe(band["situation"]), band["source"]) for _, _, _, band in used}, key=lambda c: c[::-1])
     lines = listed(f"{what} ({situation}) {report.cite(source)}" for what, situation, source in cited)
     steps = " Outlines: the other logs." if len(report.logs) > 1 else ""
-    out.append(report.gallery.keep(fig, "asynchrony", "Onset of the second sense after that of the first, for every event that both presented; negative: before it. Dashed: published thresholds, each for its own "
-                                   f"order and task: {lines or 'none for these pairs'}. The ground is green within the narrowest of them on each side.{steps}"))
-    out.append(report.table("Asynchrony, ms; the last column is the share beyond the narrowest published threshold of its side, where there is one.",
+    out.append(report.gallery.keep(fig, "asynchrony", "Onset of the second modality after that of the first, for every event that both presented; negative: before it. Dashed: published thresholds, each for its own "
+                                   f"order and task: {lines or 'none for these pairs'}. The background is green within the narrowest threshold on each side.{steps}"))
+    out.append(report.table("Asynchrony, ms; the last column is the share beyond the narrowest published threshold of each side, if there is one.",
                             ["pair", "events", "p5", "p50", "p95", "beyond, %"], table))
     return "".join(out)
 
@@ -229,12 +229,12 @@ def raster(report):
     rows += [[(ns - begin) * 1e-9 for ns in presented[sense].values()] for sense in lanes]
     colours = [figures.COLOUR["simulation"]] * 3 + [figures.COLOUR[s] for s in lanes]
     axes.eventplot(rows, lineoffsets=range(len(rows)), linelengths=0.72, linewidths=0.8, colors=colours)
-    axes.set_yticks(range(len(rows)), ["contacts begin", "blows", "contacts end", *(figures.NAME[s] for s in lanes)])
+    axes.set_yticks(range(len(rows)), ["contacts begin", "hits", "contacts end", *(figures.NAME[s] for s in lanes)])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     axes.set_xlabel("s after the first event")
     return "<h2>Events</h2>\n" + report.gallery.keep(
-        fig, "raster", f"Every event of the world and its presentation by each sense: {number(len(instants))} events, {number(sum(len(presented[s]) for s in lanes))} presentations.")
+        fig, "raster", f"Every simulated event and its presentation by each modality: {number(len(instants))} events, {number(sum(len(presented[s]) for s in lanes))} presentations.")
 
 
 def degradation(report):
@@ -246,12 +246,12 @@ def of_profile(report, log, which):
     out = []
     profile, decisions = log.profile(), log.decisions()
     if not profile or "<degrade" not in profile[0]:
-        out.append("<p>No sense was degraded: the profile in force was empty.</p>\n" if profile else "<p>No degradation profile was announced.</p>\n")
+        out.append("<p>No modality was degraded: the profile was empty.</p>\n" if profile else "<p>No degradation profile was published.</p>\n")
     else:
-        out.append(f"<p>The profile in force, as it crossed the bus (first heard at {number(profile[1])} s):</p>\n<pre>{safe(profile[0])}</pre>\n")
+        out.append(f"<p>The profile as published on the bus (first message at {number(profile[1])} s):</p>\n<pre>{safe(profile[0])}</pre>\n")
     if not decisions:
         if profile and "<degrade" in profile[0]:
-            out.append(report.lacks("No sense told what the profile did to it."))
+            out.append(report.lacks("No modality reported the effect of the profile."))
         return "".join(out)
     rows = []
     named = lambda sense, what: f"{figures.NAME.get(sense, sense).replace(' (hit)', '')}, {what}"
@@ -259,16 +259,16 @@ def of_profile(report, log, which):
         dropped = ", ".join(f"{number(n)} by {why}" for why, n in sorted(d["why"].items()) if why != "let through") or "none"
         total = sum(d["why"].values())
         rows.append([named(sense, what), total, d["why"].get("let through", 0), dropped, d["twice"], percentile(d["held_ms"], 5), percentile(d["held_ms"], 50), percentile(d["held_ms"], 95)])
-    out.append(report.table("What the profile really did: events and snapshots that it was asked of, let through, dropped, repeated, and for how long they were held back, ms.",
-                            ["sense", "asked", "let through", "dropped", "twice", "held p5", "p50", "p95"], rows))
+    out.append(report.table("Measured effect of the profile: events and snapshots received, passed, dropped and repeated, and their delay, ms.",
+                            ["modality", "received", "passed", "dropped", "repeated", "delay p5", "p50", "p95"], rows))
     held = {s: d["held_ms"] for s, d in decisions.items() if len(d["held_ms"]) and d["held_ms"].max() > 0}
     if held:
         fig, axes = figures.new(height_in=2.1)
         for (sense, what), values in sorted(held.items()):
             figures.cdf(axes, values, color=figures.COLOUR.get(sense, "#555555"), linestyle="-" if what == "events" else ":", label=named(sense, what))
-        axes.set(xlabel="held back, ms", ylabel="share", ylim=(0, 1.02))
+        axes.set(xlabel="delay, ms", ylabel="share", ylim=(0, 1.02))
         axes.legend(loc="lower right")
-        out.append(report.gallery.keep(fig, f"held_back_{which + 1}", "For how long the profile held back what it let through."))
+        out.append(report.gallery.keep(fig, f"held_back_{which + 1}", "Distribution of the delay that the profile added to passed messages."))
     return "".join(out)
 
 
@@ -282,11 +282,11 @@ def comparison(report):
                      *(of(hops, f"event to {sense}") for sense in ("haptic", "audio", "visual", "thermal")), of(pairs, ("haptic", "audio")), of(pairs, ("haptic", "visual")),
                      of(pairs, ("audio", "visual"))])
     return "<h2>Comparison</h2>\n" + report.table(
-        f"The logs beside each other; what follows tells of the first, {safe(report.log.name)}, with the others laid over it. Latency and asynchrony are medians, ms.",
-        ["log", "scene", "blows", "lost", "dropped by profile", "touch after", "sound after", "vision after", "warmth after", "touch to sound", "touch to vision", "sound to vision"], rows)
+        f"Comparison of the logs; the other sections describe the first, {safe(report.log.name)}, with the others overlaid. Latency and asynchrony are medians, ms.",
+        ["log", "scene", "hits", "lost", "dropped by profile", "touch after", "sound after", "vision after", "warmth after", "touch to sound", "touch to vision", "sound to vision"], rows)
 
 
 def always_missing(report):
-    return ["What really left the loudspeaker, the display and the device: the instants are those that the renderers report. A microphone, a photodiode "
-            "and an accelerometer would tell.", "The machine that it ran on, but for what its processes said of their priority.",
+    return ["The physical output of loudspeaker, display and device: the times are those that the nodes report. A microphone, a photodiode "
+            "and an accelerometer would measure it.", "The machine, except for the priorities that its processes report.",
             *([] if report.log.summary["nodes"] else ["The health of any process."])]

@@ -1,11 +1,11 @@
-"""Force, position and temperature over time, with the tube of what is just noticeable around the reference. HTML."""
+"""The section on force, position and temperature over time, with the just noticeable difference around the reference. HTML."""
 import numpy as np
 
 from tactus.report import figures
 from tactus.report.words import figure as number, safe
 
-# Weber fractions of force: what is just noticeable lies between them; below the floor, where nobody measured, the tube keeps
-# its width (as scripts/python/tactus/rerender/compare.py).
+# Range of published Weber fractions of force. Below the floor, where no study measured, the band keeps its width, as in
+# scripts/python/tactus/rerender/compare.py.
 JND, FLOOR_N = (0.07, 0.10), 0.5
 FORCE_SOURCES = ("Pang, Tan and Durlach 1991, Perception & Psychophysics 49(6):531-540: roughly 7 % from 2.5 to 10 N, pinch grasp, five persons",
                  "Raghu Prasad, Purswani and Manivannan 2013, Force JND for right index finger using contra lateral force matching paradigm, ICoRD'13: "
@@ -14,7 +14,7 @@ MOST_TOOLS = 4
 
 
 def beyond(reference_N, other_N, fraction):
-    """Share of the ticks with force in either in which the difference exceeds the just noticeable one. (n,3) each."""
+    """Share of ticks, among those with force in either, in which the difference exceeds the just noticeable one. Arrays (n,3), N."""
     size = np.linalg.norm(reference_N, axis=1)
     felt = (size > 1e-3) | (np.linalg.norm(other_N, axis=1) > 1e-3)
     apart = np.linalg.norm(other_N - reference_N, axis=1)
@@ -22,7 +22,7 @@ def beyond(reference_N, other_N, fraction):
 
 
 def resampled(hand, times_s):
-    """Force of a hand at instants of the world: that of its newest tick at or before each. NaN before the first."""
+    """Force at simulation times: that of the newest tick at or before each. NaN before the first tick."""
     known = ~np.isnan(hand["time_s"])
     order = np.argsort(hand["time_s"][known], kind="stable")
     at, force = hand["time_s"][known][order], hand["force_N"][known][order]
@@ -37,7 +37,7 @@ def of_tool(report, tool, first):
     own = hands[0]
     known = ~np.isnan(own["time_s"])
     if not known.any():
-        return report.lacks(f"The hand of tool {tool} felt nothing of the world: no tick of it has an instant there.")
+        return report.lacks(f"Tool {tool} has no force during the simulation: none of its ticks has a simulation time.")
     t, force = own["time_s"][known], own["force_N"][known]
     size = np.linalg.norm(force, axis=1)
     fig, (top, bottom) = figures.new(rows=2, height_in=3.5, sharex=True)
@@ -54,7 +54,7 @@ def of_tool(report, tool, first):
             continue
         top.plot(*figures.envelope(t[both], np.linalg.norm(other[both], axis=1)), color=figures.OF_LOG[i % len(figures.OF_LOG)], linewidth=0.7, label=log.name)
         share = [100 * beyond(force[both], other[both], k) for k in JND]
-        told.append(f"the force of {safe(log.name)} was outside the tube of 7 % in {number(share[0])} % of the ticks with force, and outside that of 10 % in {number(share[1])} %")
+        told.append(f"the force of {safe(log.name)} was outside the band of 7 % in {number(share[0])} % of the ticks with force, and outside the band of 10 % in {number(share[1])} %")
     top.set(ylabel="force, N", ylim=(0, None))
     top.legend(ncols=6, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
     bottom.plot(*figures.envelope(t, own["device_m"][known] * 1e3), color="#888888", linewidth=0.9, label="device")
@@ -62,11 +62,11 @@ def of_tool(report, tool, first):
     bottom.set(ylabel="height, mm", xlabel="s of the world")
     bottom.legend(ncols=2, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
     cited = ", ".join(report.cite(source) for source in FORCE_SOURCES)
-    more = (" The world is not the same in two runs with a person in them; " + "; ".join(told) + ".") if told else ""
+    more = (" Two runs with a person differ in their motion; " + "; ".join(told) + ".") if told else ""
     in_contact = float(np.mean(size > 1e-3)) * 100
-    return report.gallery.keep(fig, f"force_{tool}", f"Tool {safe(tool)}{' (the first)' if first else ''}: force on the hand, largest {number(size.max())} N, felt in {number(in_contact)} % of the ticks. Shaded: "
-                               f"differences from it that are not noticed, by Weber fractions of 7 and 10 % {cited}, beyond the forces of those studies too, and never narrower than at {FLOOR_N} N (our choice). Below: height of the device and of the "
-                               f"proxy that stays on the surface.{more}")
+    return report.gallery.keep(fig, f"force_{tool}", f"Tool {safe(tool)}{' (the first)' if first else ''}: force on the hand, maximum {number(size.max())} N, present in {number(in_contact)} % of the ticks. Shaded: "
+                               f"unnoticeable differences, by Weber fractions of 7 and 10 % {cited}, also outside the forces of those studies, and never narrower than at {FLOOR_N} N (design). Below: height of the device and of the "
+                               f"proxy, which stays on the surface.{more}")
 
 
 def temperature(report):
@@ -82,17 +82,17 @@ def temperature(report):
             axes.plot(other[:, 0], other[:, 1], color=figures.OF_LOG[i % len(figures.OF_LOG)], linewidth=0.8, label=f"skin, {log.name}")
     axes.set(xlabel="s of the world", ylabel="°C")
     axes.legend(ncols=4, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
-    return report.gallery.keep(fig, "temperature", f"Temperature of the skin by the model, {number(warm[:, 1].min(), 4)} to {number(warm[:, 1].max(), 4)} °C, and what was commanded to the display.")
+    return report.gallery.keep(fig, "temperature", f"Model temperature of the skin, {number(warm[:, 1].min(), 4)} to {number(warm[:, 1].max(), 4)} °C, and the command to the display.")
 
 
 def section(report):
     out = ["<h2>Force, position, temperature</h2>\n"]
     tools = report.log.tools()
     if not tools:
-        out.append(report.lacks("No hand was recorded: there is no force and no position."))
+        out.append(report.lacks("No tool was recorded, so force and position are missing."))
     for i, tool in enumerate(tools[:MOST_TOOLS]):
         out.append(of_tool(report, tool, i == 0))
     if len(tools) > MOST_TOOLS:
-        out.append(report.lacks(f"{len(tools) - MOST_TOOLS} more tools are in the log and not drawn here."))
+        out.append(report.lacks(f"{len(tools) - MOST_TOOLS} more tools of the log are not drawn."))
     out.append(temperature(report))
     return "".join(out)

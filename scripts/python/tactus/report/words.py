@@ -7,7 +7,7 @@ def safe(text):
 
 
 def figure(value, digits=3):
-    """A number as one prints it: so many digits that count, no exponent where it can be helped."""
+    """A number as text with `digits` significant digits, without exponent if possible."""
     if value is None or value != value:
         return "–"
     whole = isinstance(value, int) or float(value).is_integer() or abs(value) >= 10 ** (digits - 1)
@@ -20,7 +20,7 @@ def figure(value, digits=3):
 
 
 def table(caption, head, rows, number):
-    """rows: lists of cells; a text stays left, a number goes right, and so does the head of a column with numbers."""
+    """HTML of a table. rows: lists of cells; texts are left-aligned, numbers and the heads of their columns right-aligned."""
     out = [f"<table><caption><b>Table {number}.</b> {caption}</caption>"]
     if any(head):
         texts = [all(isinstance(row[i], str) for row in rows if i < len(row)) for i in range(len(head))]

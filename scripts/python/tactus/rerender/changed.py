@@ -1,4 +1,4 @@
-"""Two renderings of one sense, in two folders, held against each other."""
+"""Compares two renderings of one modality in two folders."""
 import filecmp
 import itertools
 import os
@@ -26,7 +26,7 @@ def thermal(reference, other, _):
 
 
 def audio(reference, other, first_ns):
-    """first_ns: (of the one, of the other), when their first samples were out."""
+    """first_ns: output times of the first samples of both, ns."""
     one, two = (read.Sound(os.path.join(folder, "audio.wav"), first) for folder, first in zip((reference, other), first_ns))
     found = [sound.onsets_ns(presented(folder, "audio")) for sound, folder in ((one, reference), (two, other))]
     shift = compare.shifts_ms(*found)
@@ -39,7 +39,7 @@ def visual(reference, other, _):
     means, seen = [], []
     both = set(n for n in differ if n < min(map(len, hashes)))
     one, two = (read.pictures(os.path.join(folder, "video.mp4"), both) for folder in (reference, other))
-    for a, b in itertools.zip_longest(one, two):  # both to their ends
+    for a, b in itertools.zip_longest(one, two):  # reads both to the end
         if a is None or b is None:
             continue
         (_, a), (_, b) = a, b
@@ -59,7 +59,7 @@ def changed(sense, reference, other, first_ns=None):
 
 
 def same_bytes(sense, one, other):
-    """Whether two renderings of one sense are equal to the bit, and what was compared."""
+    """Compares the files of two renderings of one modality bit by bit."""
     files = {"audio": ["audio.wav"], "haptic": ["haptic.csv"], "thermal": ["thermal.csv"], "visual": ["frames.csv", "video.mp4"]}[sense]
     files.append(f"presented_{sense}.csv")
     differ = [name for name in files if not filecmp.cmp(os.path.join(one, name), os.path.join(other, name), shallow=False)]

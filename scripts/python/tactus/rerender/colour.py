@@ -1,5 +1,5 @@
-"""How different two pictures look: CIEDE2000 (CIE 142-2001) as in Sharma, Wu and Dalal 2005, whose equations are numbered here, on
-arrays; tests/visual_node/golden/colour_difference.h is the same of single pixels."""
+"""Perceived colour difference of two images: CIEDE2000 (CIE 142-2001) as in Sharma, Wu and Dalal 2005, whose equations are numbered here, on
+arrays; tests/visual_node/golden/colour_difference.h does the same for single pixels."""
 import numpy as np
 
 # sRGB to CIE XYZ (IEC 61966-2-1), white D65.
@@ -16,7 +16,7 @@ def lab_of(rgb):
 
 
 def ciede2000(one, two):
-    """Of L*a*b* (..., 3) and (..., 3)."""
+    """CIEDE2000 of two arrays of L*a*b* (..., 3)."""
     seventh = lambda c: np.sqrt(c**7 / (c**7 + 25.0**7))
     cosine = lambda degrees: np.cos(np.radians(degrees))
     mean_chroma = (np.hypot(one[..., 1], one[..., 2]) + np.hypot(two[..., 1], two[..., 2])) / 2  # (3)

@@ -1,13 +1,13 @@
-"""What changed from one rendering of a log to another, per sense. Arrays and rows in, one dictionary out; no file, no clock."""
+"""Differences between two renderings of a log, per modality. Arrays and rows in, a dictionary out; no file, no clock."""
 import numpy as np
 
 # Weber fractions of force: 7 % (Pang, Tan and Durlach 1991, 2.5 to 10 N) to 10 % (Raghu Prasad, Purswani and Manivannan
-# 2013, 2 to 5 N). Small forces are told apart worse; nobody measured below: there the tube keeps the width that it has at 0.5 N
-# (design).
+# 2013, 2 to 5 N). Smaller forces are discriminated less well, but no study measured below: there the band keeps the width at
+# 0.5 N (design).
 FORCE_JND, FORCE_FLOOR_N = (0.07, 0.10), 0.5
-# Less is no force: what rounding leaves.
+# Smaller values are rounding errors.
 NO_FORCE_N = 1e-3
-# What CIEDE2000 is scaled to, for surfaces side by side.
+# Unit of CIEDE2000, for adjacent surfaces: about just noticeable.
 SEEN = 1.0
 
 
@@ -18,7 +18,7 @@ def percentiles(values, name, unit):
 
 
 def times_of(rows):
-    """{(event, part): ns at which it was presented} of the rows of a presented.csv; what was not presented is not in it."""
+    """{(event, part): ns at which it was presented} of the rows of presented.csv; only presented events."""
     times = {}
     for row in rows:
         if int(row["presented_ns"]) >= 0 and row["outcome"] in ("presented", "late"):
@@ -27,20 +27,20 @@ def times_of(rows):
 
 
 def shifts_ms(reference, other):
-    """Of each event that both present, how much later the other does."""
+    """Delay of the other rendering for each common event, ms."""
     return np.array([(other[key] - at) * 1e-6 for key, at in reference.items() if key in other])
 
 
 def events(reference, other):
-    """reference, other: times_of. By how much later what both present is, and what only one does."""
+    """Delays of common events, and counts of events in one only. reference, other: from times_of()."""
     shift = shifts_ms(reference, other)
     return {"presented": len(other), "dropped": len(reference.keys() - other.keys()),
             "added": len(other.keys() - reference.keys()), **percentiles(shift, "shift", "ms")}
 
 
 def force(reference, other):
-    """(n, 3) N of the same ticks. Beside RMS and peak of the difference the share of those ticks with force in either in which
-    it is beyond the just noticeable difference, by the least and by the largest fraction."""
+    """Differences of forces (n, 3) in N of the same ticks: RMS, peak, percentiles, and the share of ticks with force in either in
+    which the difference exceeds the just noticeable one, by the smallest and by the largest fraction."""
     apart = np.linalg.norm(other - reference, axis=1)
     size = np.linalg.norm(reference, axis=1)
     felt = (size > NO_FORCE_N) | (np.linalg.norm(other, axis=1) > NO_FORCE_N)
@@ -51,13 +51,13 @@ def force(reference, other):
 
 
 def warmth(reference_K, other_K, name):
-    """Temperatures at the same instants."""
+    """RMS and peak of the difference of temperatures at the same times, K."""
     apart = other_K - reference_K
     return {f"{name}_rms_K": rms(apart), f"{name}_peak_K": peak(apart)}
 
 
 def sound(reference, other):
-    """Samples of one rate from the same instant on."""
+    """Differences of samples with the same rate and start."""
     n = max(len(reference), len(other))
     apart = np.pad(other, (0, n - len(other))) - np.pad(reference, (0, n - len(reference)))
     quiet = 1e-12
@@ -66,7 +66,7 @@ def sound(reference, other):
 
 
 def frames(reference, other):
-    """Hashes of the pixels of each frame, in order: numbers of those that differ. Where one has more, these do."""
+    """Numbers of different frames, by the pixel hashes in order; surplus frames count as different."""
     n = max(len(reference), len(other))
     return [i for i in range(n) if i >= len(reference) or i >= len(other) or reference[i] != other[i]]
 

@@ -1,4 +1,4 @@
-"""A rendering of a log against what the run itself left beside it: is a log the run?"""
+"""Compares a rendering of a log with the results of the run."""
 import os
 
 import numpy as np
@@ -19,7 +19,7 @@ def of_run(run, sense):
 
 
 def presented(run, folder, sense):
-    """Both as the node tells."""
+    """Difference of the presentation times that the nodes report."""
     live, again = of_run(run, sense), compare.times_of(read.rows(os.path.join(folder, f"presented_{sense}.csv")))
     shift = compare.shifts_ms(live, again)
     return row(sense, "presented, as the node says", shift, "ms", f"{len(live.keys() - again.keys())} only live, {len(again.keys() - live.keys())} only again")
@@ -37,7 +37,7 @@ def haptic(run, folder, _):
 
 
 def audio(run, folder, first_ns):
-    """Onsets in the samples of both WAVs: of the live one by its card's clock, of the other from its first sample on."""
+    """Onsets in the samples of both WAVs: the live one by the clock of its sound card, the other from its first sample."""
     clock = sound_onsets.clock_of(read.rows(os.path.join(run, "media_clock.csv")), "audio.wav")
     live, again = read.Sound(os.path.join(run, "audio.wav"), clock=clock), read.Sound(os.path.join(folder, "audio.wav"), first_ns)
     heard_live = live.onsets_ns(of_run(run, "audio"))
@@ -57,7 +57,7 @@ NEEDS = {"haptic": ["haptic.csv"], "audio": ["audio.wav", "media_clock.csv"], "t
 
 
 def against_live(sense, run, folder, first_ns):
-    """Rows; none when the run left nothing of this sense."""
+    """Rows of the comparison; none when the run has no results of this modality."""
     if any(not os.path.isfile(os.path.join(run, name)) for name in ["presented.csv", *NEEDS[sense]]):
         return []
     more = MORE[sense](run, folder, first_ns) if sense in MORE else []

@@ -1,29 +1,29 @@
-"""Renders a recorded run again, once for each degradation profile, and says what changed.
+"""Renders a recorded run again, once for each degradation profile, and prints the changes.
 
   tactus rerender LOG [--degrade PROFILE.xml]... [--only SENSE]... [--out DIR] [--json FILE]
-  tactus rerender LOG --twice     the same once more: are all bytes and pixels the same?
-  tactus rerender LOG --live      against what the run left beside the log: is the log the run?
+  tactus rerender LOG --twice     renders twice and compares all bytes and pixels
+  tactus rerender LOG --live      compares the log with the results of the run
 
-  LOG          run.lcmlog of a run, or its folder: all parts of its recording. The profile that the run had is left out
-  --degrade    a profile (sync/degradation/README.md); "logged": that of the run, as it was put in force
-  --only       haptic, audio, visual or thermal; may be repeated. Without it all four
+  LOG          run.lcmlog of a run, or its folder: all parts of its recording. The profile of the run is not applied
+  --degrade    a profile (sync/degradation/README.md); "logged": the profile of the run
+  --only       haptic, audio, visual or thermal; may be repeated; default: all four
   --out        new or empty folder (default: rerendered, beside LOG)
-  --tool       tool that the hand and the skin are those of (default: as live, the scene's first)
-  --set        SENSE:NAME=VALUE, a setting of one sense in all renderings: visual:width=320
+  --tool       tool of haptic and thermal (default: as live, the first of the scene)
+  --set        SENSE:NAME=VALUE, a setting of one modality in all renderings: visual:width=320
 
-DIR/reference is the log without any profile, DIR/PROFILE that with one: audio.wav, video.mp4, haptic.csv and thermal.csv as in
-the folder of a run, presented_SENSE.csv with what became of each event, frames.csv with the hash of each frame's pixels.
+DIR/reference is the rendering without a profile, DIR/PROFILE with one: audio.wav, video.mp4, haptic.csv and thermal.csv as in
+the folder of a run, presented_SENSE.csv with the outcome of each event, frames.csv with the pixel hash of each frame.
 
-Columns: events presented, those that only the reference (dropped) or only this one (added) presents, how much later the others
-are; then, of each sense, what changed against the reference:
-  haptic   RMS and peak of the difference of force, the share of ticks with force in which it is beyond 7 and 10 % of the
-           reference's force (its just noticeable difference; below 0.5 N that of 0.5 N)
-  audio    shift of those onsets that stand out in the samples, the level, the share of samples that differ
-  visual   frames that differ, their CIEDE2000 in the mean and of the worst, the share of their pixels beyond 1
-  thermal  RMS and peak of the difference of the skin's temperature and of the command
-The hand is where it was in the run: what it would have done, had it felt otherwise, no log knows.
-Ends with 1 when a sense could not be rendered, with --twice when anything differs, with --live when an onset of sound is more
-than 1 ms off.
+Columns: presented events, events of the reference only (dropped) and of this rendering only (added), delay of the common events;
+then for each modality the change against the reference:
+  haptic   RMS and peak of the force difference; share of ticks with force in which it exceeds 7 and 10 % of the reference force
+           (the just noticeable difference; below 0.5 N that of 0.5 N)
+  audio    shift of clear onsets in the samples, level, share of different samples
+  visual   different frames, mean and maximum CIEDE2000, share of their pixels above 1
+  thermal  RMS and peak of the differences of skin temperature and of the command
+The motion of the hand is that of the run; the log cannot show how it would have reacted to other forces.
+Exit status 1: a modality could not be rendered; with --twice a difference; with --live an onset of sound that is off by more
+than 1 ms.
 """
 import argparse
 import glob
@@ -39,7 +39,7 @@ from tactus.refusal import Refusal
 from tactus.rerender import changed, live, render
 
 REFERENCE = "reference"
-MOST_APART_MS = 1.0  # onsets of sound, live and again
+MOST_APART_MS = 1.0  # maximum shift of onsets, live and rerendered
 
 
 def arguments(words):
@@ -51,37 +51,37 @@ def arguments(words):
     parser.add_argument("--tool")
     parser.add_argument("--set", action="append", default=[], metavar="SENSE:NAME=VALUE")
     parser.add_argument("--twice", action="store_true", help="render the reference twice and compare all bytes")
-    parser.add_argument("--live", action="store_true", help="compare with what the run itself wrote")
-    parser.add_argument("--json", metavar="FILE", help="write the tables here too")
+    parser.add_argument("--live", action="store_true", help="compare with the results of the run")
+    parser.add_argument("--json", metavar="FILE", help="also write the tables to FILE")
     options = parser.parse_args(words)
     refuse = lambda sentence: sys.exit(f"rerender: {sentence}")
     options.run = os.path.abspath(options.log) if os.path.isdir(options.log) else os.path.dirname(os.path.abspath(options.log))
     if not os.path.isfile(options.log) and not (os.path.isdir(options.log) and glob.glob(os.path.join(glob.escape(options.log), "run*.lcmlog"))):
-        refuse(f"{options.log} is no log, and no folder of a run; give the run.lcmlog of a run, or its folder")
+        refuse(f"{options.log} is neither a log nor the folder of a run; give the run.lcmlog of a run, or its folder")
     options.out = options.out or os.path.join(options.run, "rerendered")
     if os.path.exists(options.out) and (not os.path.isdir(options.out) or os.listdir(options.out)):
-        refuse(f"{options.out} is there and not empty; remove it or give --out another folder")
+        refuse(f"{options.out} exists and is not empty; remove it or give another --out")
     options.settings = {}
     for setting in options.set:
         sense, colon, rest = setting.partition(":")
         if sense not in render.SENSES or not colon or "=" not in rest:
-            refuse(f'--set {setting}: is no SENSE:NAME=VALUE with one of {", ".join(render.SENSES)}')
+            refuse(f'--set {setting}: is not SENSE:NAME=VALUE with one of {", ".join(render.SENSES)}')
         options.settings.setdefault(sense, []).append(rest)
     options.only = [s for s in render.SENSES if s in (options.only or render.SENSES)]
     options.profiles = named(options.degrade, refuse)
     options.programs = str(BIN)
     for sense in options.only:
         if not os.access(os.path.join(options.programs, render.SENSES[sense][0]), os.X_OK):
-            refuse(f"{render.SENSES[sense][0]} is not built; call scripts/build --programs")
+            refuse(f"{render.SENSES[sense][0]} is not built; run scripts/build --programs")
     return options
 
 
 def named(files, refuse):
-    """{name of its folder: file} of the profiles; two files of one name get numbers."""
+    """{folder name: file} of the profiles; files of the same name get numbers."""
     profiles = {}
     for file in files:
         if file != "logged" and not os.path.isfile(file):
-            refuse(f'--degrade {file}: is no file; give the path of a profile (XML) or "logged"')
+            refuse(f'--degrade {file}: is not a file; give the path of a profile (XML) or "logged"')
         stem = os.path.splitext(os.path.basename(file))[0]
         names = itertools.chain([stem], (f"{stem}_{n}" for n in itertools.count(2)))
         profiles[next(n for n in names if n not in profiles and n not in (REFERENCE, "again", "as_run"))] = file
@@ -89,7 +89,7 @@ def named(files, refuse):
 
 
 class Renderings:
-    """All that are wanted, one after the other, and what the nodes said of each."""
+    """Executes the renderings one after the other and stores the output of the nodes."""
 
     def __init__(self, options, folders):
         self.options, self.folders = options, folders
@@ -114,7 +114,7 @@ class Renderings:
             print(file=sys.stderr)
 
     def tell(self, text, passing=False):
-        """One line that is written over on a terminal; in a file only where something begins."""
+        """Prints a progress line; on a terminal it overwrites the last one, elsewhere passing lines are skipped."""
         if self.terminal:
             print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
         elif not passing:
@@ -131,7 +131,7 @@ class Renderings:
 
 
 def compared(renderings, options):
-    """A row for each sense and profile."""
+    """Yields a row for each modality and profile."""
     for sense in options.only:
         for name in options.profiles:
             if renderings.done(REFERENCE, sense) and renderings.done(name, sense):
@@ -149,7 +149,7 @@ def percent(share):
     return f"{100 * share:.1f}"
 
 
-# Title and cell of what each sense adds to the columns of all.
+# (title, cell) of the additional columns of each modality.
 COLUMNS = {
     "haptic": [("differs by RMS N", lambda r: number(r["difference_rms_N"], 3)), ("peak N", lambda r: number(r["difference_peak_N"])),
                ("beyond 7 %", lambda r: percent(r["beyond_7_percent"]) + " %"), ("10 %", lambda r: percent(r["beyond_10_percent"]) + " %")],
@@ -166,7 +166,7 @@ OF_ALL = [("presented", lambda r: str(r["presented"])), ("dropped", lambda r: st
 
 
 def show(head, lines):
-    """Columns as wide as what is in them, the first to the left."""
+    """Prints a table with fitted columns, the first left-aligned."""
     widths = [max(len(line[i]) for line in [head, *lines]) for i in range(len(head))]
     for line in [head, *lines]:
         print("  ".join(cell.ljust(w) if i == 0 else cell.rjust(w) for i, (cell, w) in enumerate(zip(line, widths))))
@@ -211,7 +211,7 @@ def against_live(renderings, options):
             rows += live.against_live(sense, run, os.path.join(options.out, "as_run"), first)
     print()
     if not rows:
-        print(f"live: {run} holds nothing that the run itself wrote")
+        print(f"live: {run} has no results of the run")
         return rows
     show(["live and again", "n", "p50", "p99", "most", "unit", "what"],
          [[r["sense"], str(r["n"]), *(number(r[k], 4) for k in ("p50", "p99", "max")), r["unit"], r["what"] + (f' ({r["note"]})' if r["note"] else "")]

@@ -1,4 +1,4 @@
-"""Files of a rendering, or of a run, as arrays."""
+"""Reads the files of a rendering or of a run as arrays."""
 import csv
 import subprocess
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from tactus.log import sound_onsets
 
-STRIDE = 4  # design: of a picture every fourth pixel of every fourth row is looked at
+STRIDE = 4  # design: only every fourth pixel of every fourth row is compared
 
 
 def rows(path):
@@ -15,13 +15,13 @@ def rows(path):
 
 
 def nanoseconds(text):
-    """Of seconds with nine digits behind the point, exactly; a float would round them."""
+    """ns of a text of seconds with nine decimals, exact, unlike a float."""
     whole, _, rest = text.partition(".")
     return int(whole) * 1_000_000_000 + int((rest + "0" * 9)[:9])
 
 
 def forces(path, tool=None):
-    """{(host ns, seq): force, N} of one tool; None: of the first that is told of."""
+    """{(host ns, seq): force, N} of one tool; None: the first in the file."""
     found = {}
     for row in rows(path):
         tool = row["tool"] if tool is None else tool
@@ -31,7 +31,7 @@ def forces(path, tool=None):
 
 
 def tool_of(path):
-    """Number of the tool that a table is of, as text; None: it is empty."""
+    """Number of the tool of a table, as text; None for an empty one."""
     with open(path, encoding="utf-8") as file:
         return next((row["tool"] for row in csv.DictReader(file)), None)
 
@@ -44,7 +44,7 @@ def temperatures(path, tool=None):
 
 
 def pictures(path, wanted):
-    """(number, sRGB bytes of some pixels) of the frames of a video whose numbers are wanted, one at a time."""
+    """Yields (number, sRGB bytes of the sampled pixels) of the wanted frames of a video."""
     size = subprocess.run(["ffprobe", "-v", "error", "-select_streams", "v:0", "-show_entries", "stream=width,height", "-of", "csv=p=0", path],
                           capture_output=True, text=True, check=True).stdout.strip()
     width, height = (int(n) for n in size.split(",")[:2])
@@ -58,10 +58,10 @@ def pictures(path, wanted):
 
 
 class Sound:
-    """A WAV and when each of its samples was out."""
+    """A WAV and the output time of its samples."""
 
     def __init__(self, path, first_sample_ns=None, clock=None):
-        """clock: (index, host ns) pairs of a run; else the first sample was out at first_sample_ns."""
+        """clock: (index, host ns) pairs of a run; otherwise first_sample_ns is the output time of the first sample."""
         self.samples, self.rate = sound_onsets.read_wav(path)
         self.clock = clock if clock is not None else np.array([[0, first_sample_ns]], dtype=float)
 
@@ -73,12 +73,12 @@ class Sound:
         return self.clock[i, 1] + (index - self.clock[i, 0]) / self.rate * 1e9
 
     def onset_ns(self, presented_ns):
-        """When the sound of an event really begins that was presented then; None when nothing stands out."""
+        """Time of the onset near a reported presentation, ns; None without a clear onset."""
         found = sound_onsets.onset(self.samples, self.at(presented_ns), self.rate)
         return None if found is None else self.host_ns(found)
 
     def lone(self, times):
-        """Of {key: ns} those that no other comes near to."""
+        """Keys of {key: ns} without another event nearby."""
         before, after = sound_onsets.ALONE_BEFORE_S * 1e9, sound_onsets.ALONE_AFTER_S * 1e9
         order = sorted(times, key=times.get)
         at = [times[key] for key in order]
@@ -86,6 +86,6 @@ class Sound:
                 if (i == 0 or at[i] - at[i - 1] >= before) and (i + 1 == len(at) or at[i + 1] - at[i] >= after)]
 
     def onsets_ns(self, times):
-        """{key: ns} of the lone events whose onset stands out."""
+        """{key: ns} of the lone events with a clear onset."""
         found = ((key, self.onset_ns(times[key])) for key in self.lone(times))
         return {key: at for key, at in found if at is not None}

@@ -1,9 +1,9 @@
-"""One sense of a log, rendered by its node into a folder."""
+"""Renders one modality of a log into a folder by calling its node."""
 import os
 import re
 import subprocess
 
-# What each sense is rendered by and into; the files are called as in the folder of a run.
+# {modality: (program, option, file)}; file names as in the folder of a run.
 SENSES = {
     "haptic": ("haptic_node", "--trace", "haptic.csv"),
     "audio": ("audio_node", "--wav", "audio.wav"),
@@ -14,11 +14,11 @@ OF_A_TOOL = ("haptic", "thermal")
 
 
 class Refused(Exception):
-    """One sentence of the node on why it rendered nothing."""
+    """The node failed; its last message."""
 
 
 def command(programs, sense, log, folder, profile, tool, settings):
-    """profile: a file, "logged", or None; settings: {sense: [name=value]}."""
+    """The command line of a node. profile: a file, "logged", or None; settings: {modality: [name=value]}."""
     node, output, name = SENSES[sense]
     words = [os.path.join(programs, node), "--log", log, output, os.path.join(folder, name),
              "--presented", os.path.join(folder, f"presented_{sense}.csv")]
@@ -34,7 +34,7 @@ def command(programs, sense, log, folder, profile, tool, settings):
 
 
 def render(words, tell):
-    """What the node says when it is done, line by line. tell: is handed the share of the log, in %."""
+    """Runs a node; returns its lines of output. Calls tell(share of the log in %). Raises Refused."""
     said = []
     with subprocess.Popen(words, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, errors="replace") as node:
         try:
@@ -48,12 +48,12 @@ def render(words, tell):
             node.terminate()
             raise
     if node.returncode != 0:
-        raise Refused(said[-1] if said else f"{words[0]} ended with {node.returncode} and said nothing")
+        raise Refused(said[-1] if said else f"{words[0]} ended with status {node.returncode} without a message")
     return said
 
 
 def figure(said, pattern):
-    """The number that a line of a node tells, or None."""
+    """The number in the last line that matches, or None."""
     for line in reversed(said):
         found = re.search(pattern, line)
         if found:
@@ -62,6 +62,6 @@ def figure(said, pattern):
 
 
 def facts(said):
-    """How long was rendered how fast, and when the first sample of sound was out, as the node says."""
+    """Duration and speed of a rendering, and the output time of the first sound sample, from the output of the node."""
     return {"took_s": figure(said, r" in ([\d.e+-]+) s \("), "times_as_fast_as_time": figure(said, r"\(([\d.e+-]+) times as fast"),
             "first_sample_ns": next((int(m.group(1)) for m in (re.search(r"first sample was out at (\d+) ns", line) for line in said) if m), None)}
