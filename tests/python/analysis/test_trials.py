@@ -57,7 +57,7 @@ class Tables(unittest.TestCase):
             HEADER + GOOD.replace("20,1", "twenty,1"): ":2: level is 'twenty'",
             HEADER + GOOD.replace("7.5", "-1"): ":2: completion_time_s is -1",
             HEADER + GOOD.replace("7.5", "inf"): ":2: completion_time_s is 'inf'",
-            HEADER + GOOD.replace(",9\n", "\n"): ":2: 10 fields where the header has 11",
+            HEADER + GOOD.replace(",9\n", "\n"): ":2: 10 fields, but the header has 11",
             HEADER + GOOD.replace("simulated", "ghost"): ":2: observer is 'ghost'",
             HEADER + GOOD + GOOD: "row 2: the same trial of P01",
             HEADER.replace("observer,", "") + GOOD: ":1: there is no column observer",
@@ -69,16 +69,16 @@ class Tables(unittest.TestCase):
 
     def test_a_level_that_no_severity_answers_to_is_refused(self):
         head = HEADER.replace(",level,", ",level,modality_degraded,operator,")
-        for operator, level, reason in (("rate", "0", "a level of rate is above 0"), ("delay", "-3", "0 or more"), ("lowpass", "", "has no level"), ("delay", "1_0", "level is '1_0'")):
+        for operator, level, reason in (("rate", "0", "a level of rate must be above 0"), ("delay", "-3", "0 or more"), ("lowpass", "", "has no level"), ("delay", "1_0", "level is '1_0'")):
             self.assertIn(reason, self.refusal(head + GOOD.replace(",20,", f",{level},visual,{operator},")))
         for operator, level in (("gain", "0"), ("off", ""), ("delay", "0")):
             self.assertEqual(len(trials.read([self.file(head + GOOD.replace(",20,", f",{level},visual,{operator},"))])), 1)
 
     def test_a_table_without_rows_and_a_place_without_tables_are_refused(self):
-        with self.assertRaisesRegex(Refusal, "there is no trial"):
+        with self.assertRaisesRegex(Refusal, "holds no trials"):
             trials.read([self.file(HEADER)])
         (self.root / "empty").mkdir()
-        for place, reason in (("nowhere", "is not there"), ("empty", "holds no trials.csv or games.csv")):
+        for place, reason in (("nowhere", "does not exist"), ("empty", "holds no trials.csv or games.csv")):
             with self.assertRaisesRegex(Refusal, reason):
                 trials.files_of([self.root / place])
 
