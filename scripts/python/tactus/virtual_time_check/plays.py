@@ -49,7 +49,7 @@ def live_game(scene, asked, settings, out, keep):
     profile = out.with_suffix(".xml")
     profile.write_text(asked["profile"], encoding="utf-8")
     try:
-        played = games.in_a_world_of_its_own(out, scene, profile, asked["seed"], asked["limit_s"], settings)
+        played = games.play_in_new_cluster(out, scene, profile, asked["seed"], asked["limit_s"], settings)
         told = {"trouble": played.missed} if played.missed else {"won": bool(played.row["success"]), "time_s": played.row["completion_time_s"], "wrong": played.row["errors"]}
     except Refusal as refusal:
         told = {"trouble": str(refusal)}
