@@ -6,7 +6,7 @@ import re
 from tactus.analysis.operators import Factor
 from tactus.paths import REPOSITORY
 
-THRESHOLDS = REPOSITORY / "sync" / "thresholds.csv"
+THRESHOLDS = REPOSITORY / "sync" / "presentation" / "thresholds.csv"
 
 
 @dataclasses.dataclass(frozen=True)
