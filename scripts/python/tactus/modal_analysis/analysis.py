@@ -112,7 +112,7 @@ def cross_check(modes, peaks):
                            abs(nearest[1] - mode.damping_1_s) <= SAME_DAMPING * mode.damping_1_s)
 
 
-def analyse(samples, rate, most_modes=64, below_Hz=16000.0, begin_s=None):
+def analyse(samples, rate, max_modes=64, below_Hz=16000.0, begin_s=None):
     """begin_s: start of the analysis after the onset, s; None: after the blow. Raises Refusal if nothing rings."""
     from_onset = samples[onset_of(samples, rate):]
     begins = loudest_at(from_onset, rate) if begin_s is None else int(begin_s * rate)
@@ -135,7 +135,7 @@ def analyse(samples, rate, most_modes=64, below_Hz=16000.0, begin_s=None):
     at_onset = np.abs(c) * np.exp(poles[:, 1] * begins / rate)
     strong = np.abs(c) > np.abs(c).max() * 10 ** (-WEAKEST_DB / 20)
     # Keeps the modes with the most energy.
-    order = [i for i in np.argsort(-np.abs(c) ** 2 / poles[:, 1]) if strong[i]][:most_modes]
+    order = [i for i in np.argsort(-np.abs(c) ** 2 / poles[:, 1]) if strong[i]][:max_modes]
     modes = [Mode(float(np.hypot(poles[i, 0], poles[i, 1] / (2 * np.pi))), float(poles[i, 1]), float(at_onset[i]), float(np.angle(c[i])))
              for i in sorted(order)]
     cross_check(modes, decay.find_peaks(ringing, rate, min(below_Hz, 0.49 * rate)))

@@ -85,13 +85,13 @@ def poles_of_band(x, most):
     return np.linalg.eigvals(rotation(vectors, order)[0]) if order else np.zeros(0, complex)
 
 
-def find_poles(samples, rate, below_Hz, most_in_band=40):
+def find_poles(samples, rate, below_Hz, max_in_band=40):
     """(n, 2): damped frequency, Hz, and damping, 1/s, of all decaying modes, ascending. `samples` starts after the blow."""
     found = []
     for band in range(int(np.ceil(below_Hz / BAND_HZ))):
         centre = (band + 0.5) * BAND_HZ
         x, band_rate = band_signal(samples, rate, centre, BAND_HZ)
-        for z in poles_of_band(x, most_in_band):
+        for z in poles_of_band(x, max_in_band):
             frequency = centre + np.angle(z) * band_rate / (2 * np.pi)
             damping = -np.log(max(abs(z), 1e-12)) * band_rate
             inside = abs(frequency - centre) <= BAND_HZ / 2 + OVERLAP_HZ and 0 < frequency < below_Hz
