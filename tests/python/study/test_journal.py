@@ -61,7 +61,7 @@ class Folder(unittest.TestCase):
         """The bytes of a journal of `count` trials, with texts that need escapes."""
         with Journal(self.folder) as j:
             j.begin(**SESSION)
-            j.append({"kind": "note", "text": 'he said "ä \u2028 \\ no"\n\t, "crc32": "'})
+            j.append({"kind": "note", "text": 'they said "ä \u2028 \\ no"\n\t, "crc32": "'})
             for n in range(1, count + 1):
                 j.append(trial(n, missed="late by 30 ms"))
                 j.append(trial(n, level=[n / 3, -1.0] if n % 2 else n / 3))
