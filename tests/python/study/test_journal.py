@@ -236,7 +236,7 @@ class Processes(Folder):
         text = limit + WRITER.format(python=str(SCRIPTS / "python"), folder=str(self.folder), session=SESSION)
         done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=False)
         self.assertIn("cannot be written", done.stderr)
-        self.assertIn("make room", done.stderr)
+        self.assertIn("free space", done.stderr)
         with Journal(self.folder) as j:
             self.assertEqual((j.repaired, len(j.answered())), ("", len(done.stdout.split())))
             self.assertGreaterEqual(len(j.answered()), 2)
