@@ -57,7 +57,7 @@ class Tables(unittest.TestCase):
             HEADER + GOOD.replace("20,1", "twenty,1"): ":2: level is 'twenty'",
             HEADER + GOOD.replace("7.5", "-1"): ":2: completion_time_s is -1",
             HEADER + GOOD.replace("7.5", "inf"): ":2: completion_time_s is 'inf'",
-            HEADER + GOOD.replace(",9\n", "\n"): ":2: 10 fields, but the header has 11",
+            HEADER + GOOD.replace(",9\n", "\n"): ":2: has 10 fields, but the header has 11",
             HEADER + GOOD.replace("simulated", "ghost"): ":2: observer is 'ghost'",
             HEADER + GOOD + GOOD: "row 2: the same trial of P01",
             HEADER.replace("observer,", "") + GOOD: ":1: there is no column observer",
