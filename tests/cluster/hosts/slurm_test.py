@@ -129,7 +129,7 @@ class SweepOnSlurm(unittest.TestCase):
     def test_a_partition_that_is_not_there_is_refused_in_a_sentence(self):
         done = asked(*self.words(self.study, "--games", 1, "--slurm", "--partition", "none", "--out", self.folder / "refused"))
         self.assertEqual((1, 1), (done.returncode, len(done.stderr.strip().splitlines())), done.stderr)
-        self.assertIn("sbatch refuses", done.stderr)
+        self.assertIn("sbatch refused", done.stderr)
 
 
 if __name__ == "__main__":

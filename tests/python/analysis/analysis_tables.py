@@ -1,4 +1,4 @@
-"""Tables of trials for tests, written as a study leaves them."""
+"""Tables of trials for tests, in the format of a study's results."""
 import csv
 import math
 import pathlib
@@ -21,7 +21,7 @@ def write(path, rows):
 
 
 def game(number, won, time_s, degraded=(), participant="P01", study="dark room", observer="simulated", limit_s=30.0, **more):
-    """One row. degraded: [(modality, operator, level, unit)], two at most."""
+    """One row. degraded: [(modality, operator, level, unit)], at most two."""
     row = {"study": study, "participant_id": participant, "task": "game", "observer": observer, "trial": number, "success": int(won),
            "completion_time_s": round(time_s, 6) if won else limit_s}
     for prefix, name in (("", "modality_degraded"), ("second_", "second_modality")):
@@ -36,7 +36,7 @@ def games(rng, n, degraded, share, mean_s, first=0, **more):
 
 
 def judgements(rng, pss, sd, lapse, levels, repetitions, participant="P01", pair=("audio", "visual"), jitter_ms=2.0, observer="simulated", study="synchrony", first=0):
-    """Synchrony judgements of an observer with a Gaussian window; what was achieved lies off by jitter_ms (sd)."""
+    """Synchrony judgements of an observer with a Gaussian window; the measured asynchrony has an error of jitter_ms (sd)."""
     rows = []
     for i, level in enumerate(rng.permutation(np.repeat(levels, repetitions))):
         achieved = level + rng.normal(0, jitter_ms)

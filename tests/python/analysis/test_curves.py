@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Psychometric functions per condition, L_detect and L_appear, from answers of observers whose thresholds are known."""
+"""Psychometric functions per condition, L_detect and L_appear, from answers of observers with known thresholds."""
 import math
 import unittest
 
@@ -13,12 +13,12 @@ from tactus.psychophysics import observers
 from tactus.refusal import Refusal
 from tactus.study import felt_properties
 
-EDGE = math.sqrt(2 * math.log(4 / 3))  # of sd: where exp(-x^2 / 2 sd^2) = 3/4
+EDGE = math.sqrt(2 * math.log(4 / 3))  # in sd: exp(-x^2 / 2 sd^2) = 3/4
 LEVELS = np.arange(-200, 201, 40)
 
 
 def matches(rng, people, cost, levels=(0, 20, 40, 80, 120), each=8, study="stiffness", question="How stiff was it? (stiffness)"):
-    """Stiffness that people matched: each scales it in his own way, and it falls by `cost` of itself a ms."""
+    """Stiffness matched by people with individual scales; it falls by the share `cost` a ms."""
     rows = []
     for p in range(people):
         scale = 200 * math.exp(rng.normal(0, 0.4))
@@ -31,7 +31,7 @@ def matches(rng, people, cost, levels=(0, 20, 40, 80, 120), each=8, study="stiff
 
 
 def pressings(rng, people, cost, levels=(5, 10, 20, 40, 60), each=20):
-    """Two presses a trial: stiffness falls by `cost` of itself a ms, is measured to 3 %, and a Presser with a weber fraction of 0.2 says which was the softer."""
+    """Two presses a trial: stiffness falls by the share `cost` a ms and is measured to 3 %; a Presser with a Weber fraction of 0.2 judges the softer one."""
     rows = []
     for p in range(people):
         presser = observers.Presser(0.2, 0.02, [p, int(rng.integers(1 << 30))])
@@ -47,14 +47,14 @@ def pressings(rng, people, cost, levels=(5, 10, 20, 40, 60), each=20):
 
 
 class Curves(unittest.TestCase):
-    def test_the_fit_is_over_what_was_achieved_and_not_what_was_asked_for(self):
+    def test_the_fit_uses_measured_levels_and_not_requested_ones(self):
         rows = judgements(np.random.default_rng(1), 10, 60, 0.02, LEVELS, 40)
         for row in rows:
-            row["soa_achieved_ms"] += 25  # an apparatus that is late always
+            row["soa_achieved_ms"] += 25  # an apparatus with a constant delay
         pooled, = psychometric.curves(trials.of_rows(rows), 1)
         self.assertTrue(pooled.intervals["pss"][0] <= 35 <= pooled.intervals["pss"][1], pooled.intervals)
 
-    def test_each_participant_has_a_curve_and_one_more_changes_nobodys(self):
+    def test_each_participant_has_a_curve_that_others_do_not_change(self):
         rows = [r for i in range(3) for r in judgements(np.random.default_rng(i), 20 * i, 60, 0.02, LEVELS, 20, f"P{i:02}")]
         three = psychometric.curves(trials.of_rows(rows), 1)
         two = psychometric.curves(trials.of_rows(rows[:-len(rows) // 3]), 1)
@@ -65,23 +65,23 @@ class Curves(unittest.TestCase):
         rng = np.random.default_rng(3)
         rows = judgements(rng, 30, 60, 0.02, LEVELS, 40)
         for i, level in enumerate(rng.permutation(np.repeat(LEVELS, 40))):
-            first = rng.random() < 0.5 * (1 + math.erf((level - 30) / 40 / math.sqrt(2)))  # audio first the oftener, the later vision comes
+            first = rng.random() < 0.5 * (1 + math.erf((level - 30) / 40 / math.sqrt(2)))  # "audio first" gets more likely the later vision is
             rows.append({**rows[0], "task": "toj", "trial": 10_000 + i, "soa_nominal_ms": level, "soa_achieved_ms": float(level), "response": "audio" if first else "visual"})
         synchrony, order = psychometric.curves(trials.of_rows(rows), 1)
         for curve in (synchrony, order):
             self.assertTrue(curve.intervals["pss"][0] <= 30 <= curve.intervals["pss"][1], curve.intervals)
-        # 0.6745 * 40 = 27; 440 answers place it to about 3 (standard error).
+        # 0.6745 * 40 = 27; 440 answers give a standard error of about 3.
         self.assertAlmostEqual(order.value("jnd"), 27, delta=9)
 
-    def test_what_bears_no_fit_says_why(self):
+    def test_a_curve_without_a_fit_has_a_reason(self):
         few = psychometric.curves(trials.of_rows(judgements(np.random.default_rng(1), 0, 60, 0, [0, 40], 4)), 1)
         self.assertIn("too few", few[0].why)
         same = psychometric.curves(trials.of_rows(judgements(np.random.default_rng(1), 0, 1e6, 0, LEVELS, 10)), 1)
         self.assertIn("all answers are the same", same[0].why)
 
-    def test_an_answer_that_is_not_understood_is_refused(self):
+    def test_an_unknown_answer_is_refused(self):
         for kind, response, pair in (("sj", "perhaps", ("audio", "visual")), ("toj", "haptic", ("audio", "visual"))):
-            with self.assertRaisesRegex(Refusal, "is not understood"):
+            with self.assertRaisesRegex(Refusal, "is unknown"):
                 answers.says_yes(kind, response, math.nan, pair)
         with self.assertRaisesRegex(Refusal, "is not two senses"):
             answers.pair_of("audio")
@@ -90,7 +90,7 @@ class Curves(unittest.TestCase):
         rng = np.random.default_rng(2)
         x, yes = rng.normal(0, 50, 5000), (rng.random(5000) < 0.4) * 1.0
         levels, said, total = psychometric.binned(x, yes)
-        self.assertEqual((said.sum(), total.sum(), len(levels)), (yes.sum(), 5000, psychometric.MOST_LEVELS))
+        self.assertEqual((said.sum(), total.sum(), len(levels)), (yes.sum(), 5000, psychometric.MAX_LEVELS))
         self.assertAlmostEqual((levels * total).sum(), x.sum(), places=6)
         self.assertTrue((np.diff(levels) > 0).all())
 
@@ -105,18 +105,18 @@ class Detection(unittest.TestCase):
         # 57 expected, binomial standard deviation 1.7.
         self.assertTrue((inside >= 53).all(), inside)
 
-    def test_of_many_people_the_limit_is_of_people(self):
+    def test_with_many_people_the_limit_is_of_people(self):
         inside = 0
         for seed in range(25):
             rng = np.random.default_rng(seed)
             rows = [r for i in range(10) for r in judgements(rng, rng.normal(15, 20), 60, 0.02, LEVELS, 15, f"P{i:02}", jitter_ms=0.0)]
             late = {l.factor.modality: l for l in detection.detected(psychometric.curves(trials.of_rows(rows), 1), 1)}["visual"]
             inside += late.low <= 15 + 60 * EDGE <= late.high
-            # People differ by 20 ms: ten of them place their mean to 6 ms, so that the interval is about 25 ms wide.
+            # People differ by 20 ms: the standard error of the mean of ten is 6 ms, so the interval is about 25 ms wide.
             self.assertTrue(14 < late.high - late.low < 45, late)
         self.assertGreaterEqual(inside, 21)
 
-    def test_of_two_intervals_it_is_where_75_percent_are_right(self):
+    def test_for_two_intervals_the_limit_is_at_75_percent_right(self):
         rng = np.random.default_rng(4)
         rows = []
         for i in range(600):
@@ -125,11 +125,11 @@ class Detection(unittest.TestCase):
             rows.append({"study": "lag", "participant_id": "P01", "task": "2ifc", "observer": "human", "trial": i + 1, "modality_degraded": "haptic", "operator": "delay",
                          "level": x, "unit": "ms", "correct": int(rng.random() < p)})
         found, = detection.detected(psychometric.curves(trials.of_rows(rows), 1), 1)
-        truth = 25 * math.log(2) ** (1 / 2.5)  # half of the way from 0.5 to 1
+        truth = 25 * math.log(2) ** (1 / 2.5)  # half way from 0.5 to 1
         self.assertEqual(found.factor, Factor("haptic", "delay", "ms"))
         self.assertTrue(found.low <= truth <= found.high, found)
 
-    def test_of_a_rate_it_is_found_by_its_period(self):
+    def test_the_limit_of_a_rate_is_found_by_its_period(self):
         rng = np.random.default_rng(5)
         rows = []
         for i in range(600):
@@ -144,7 +144,7 @@ class Detection(unittest.TestCase):
 
 
 class Appearance(unittest.TestCase):
-    def test_the_level_at_which_stiffness_is_off_by_a_jnd_is_recovered(self):
+    def test_the_level_of_a_stiffness_change_by_one_jnd_is_recovered(self):
         inside = 0
         for seed in range(60):
             rng = np.random.default_rng(seed)
@@ -152,35 +152,35 @@ class Appearance(unittest.TestCase):
             felt, = appearance.felt(name, rows, rng)
             self.assertEqual((felt.property, felt.toward, felt.limit.factor), ("stiffness", "less", Factor("haptic", "delay", "ms")))
             inside += felt.limit.low <= 100 <= felt.limit.high  # 0.23 / 0.0023
-        # 57 expected; percentile intervals of six people hold less.
+        # 57 expected; percentile intervals of six people cover less.
         self.assertGreaterEqual(inside, 49)
 
-    def test_what_a_study_file_names_counts_before_the_question(self):
+    def test_the_property_of_the_study_file_takes_precedence_over_the_question(self):
         rows = matches(np.random.default_rng(1), 2, 0.0023, question="How much was it?")
         self.assertEqual(appearance.judged(trials.of_rows(rows), lambda study: ""), [])
         self.assertEqual([name for name, _ in appearance.judged(trials.of_rows(rows), lambda study: "temperature")], ["temperature"])
 
-    def test_who_never_felt_the_undegraded_is_left_out_and_counted(self):
+    def test_participants_without_an_undegraded_answer_are_left_out_and_counted(self):
         rows = matches(np.random.default_rng(1), 3, 0.0023)
         rows = [r for r in rows if r["participant_id"] != "P02" or r["level"]]
         (name, kept), = appearance.judged(trials.of_rows(rows), lambda study: "")
         felt, = appearance.felt(name, kept, np.random.default_rng(1))
         self.assertEqual((felt.left_out, sum(felt.counts)), (32, 64))
 
-    def test_who_took_the_undegraded_for_nothing_is_left_out_and_counted(self):
+    def test_participants_with_an_undegraded_answer_of_0_are_left_out_and_counted(self):
         rows = [{**r, "answer_value": 0.0} if r["participant_id"] == "P02" else r for r in matches(np.random.default_rng(1), 3, 0.0023)]
         (name, kept), = appearance.judged(trials.of_rows(rows), lambda study: "")
         felt, = appearance.felt(name, kept, np.random.default_rng(1))
         self.assertEqual((felt.left_out, sum(felt.counts)), (40, 64))
 
-    def test_a_gain_above_1_is_another_degradation_than_one_below(self):
+    def test_a_gain_above_1_is_a_separate_factor(self):
         rows = [{**r, "operator": "gain", "unit": "", "level": {0.0: 1.0, 20.0: 0.8, 40.0: 0.4, 80.0: 2.0, 120.0: 0.0}[r["level"]]} for r in matches(np.random.default_rng(1), 2, 0.0023)]
         (name, kept), = appearance.judged(trials.of_rows(rows), lambda study: "")
         self.assertEqual([(f.factor.operator, f.levels) for f in appearance.felt(name, kept, np.random.default_rng(1))], [("gain", [0.8, 0.4]), ("gain_above_1", [2.0])])
 
 
 class Presses(unittest.TestCase):
-    def test_the_delay_at_which_the_measured_stiffness_is_off_by_a_jnd_is_recovered(self):
+    def test_the_delay_of_a_measured_stiffness_change_by_one_jnd_is_recovered(self):
         inside = 0
         for seed in range(60):
             rng = np.random.default_rng(seed)
@@ -191,18 +191,18 @@ class Presses(unittest.TestCase):
         # 57 expected, binomial standard deviation 1.7.
         self.assertGreaterEqual(inside, 52)
 
-    def test_the_delay_from_which_on_three_in_four_call_it_softer_is_recovered(self):
-        truth = (1 - 1 / 1.2) / 0.008  # where the two differ by the weber fraction
+    def test_the_delay_of_75_percent_right_answers_is_recovered(self):
+        truth = (1 - 1 / 1.2) / 0.008  # at a difference of the Weber fraction
         inside = 0
         for seed in range(25):
             rows = trials.of_rows(pressings(np.random.default_rng(seed), 1, 0.008, each=40))
             found, = detection.detected(psychometric.curves(rows, 1), 1, lambda study: "stiffness")
             self.assertEqual((found.kind, found.by, found.observer), ("appear", "stiffness, judged", "simulated"))
             inside += found.low <= truth <= found.high
-        # 24 expected; the function that is fitted is not quite the observer's own.
+        # 24 expected; the fitted function differs slightly from that of the observer.
         self.assertGreaterEqual(inside, 21)
         found, = detection.detected(psychometric.curves(rows, 1), 1)
-        self.assertEqual((found.kind, found.by), ("detect", "2ifc"))  # of a study that does not ask which was the softer
+        self.assertEqual((found.kind, found.by), ("detect", "2ifc"))  # the study does not ask which was the softer
 
     def test_a_delay_that_changes_nothing_reaches_no_limit(self):
         felt, = presses.felt(trials.of_rows(pressings(np.random.default_rng(1), 2, 0.0)), np.random.default_rng(1))
@@ -210,7 +210,7 @@ class Presses(unittest.TestCase):
         self.assertEqual(felt.limit.low, math.inf)
         self.assertTrue(all(abs(s) < 0.03 for s in felt.shifts), felt.shifts)
 
-    def test_trials_without_both_stiffnesses_are_no_presses(self):
+    def test_trials_without_both_stiffnesses_are_left_out(self):
         rows = pressings(np.random.default_rng(1), 1, 0.008)
         for row, name in zip(rows, presses.COLUMNS):
             del row[name]
@@ -239,7 +239,7 @@ class Published(unittest.TestCase):
 
 
 class Points(unittest.TestCase):
-    def test_achieved_levels_that_lie_beside_one_another_are_drawn_as_one_and_no_answer_is_lost(self):
+    def test_nearby_measured_levels_are_drawn_as_one_without_loss_of_answers(self):
         from tactus.analysis import curve_plots
         rng = np.random.default_rng(4)
         levels = np.repeat(LEVELS, 20) + rng.uniform(-4, 4, 20 * len(LEVELS))
@@ -248,7 +248,7 @@ class Points(unittest.TestCase):
         self.assertEqual([20.0] * len(LEVELS), list(yes))
         self.assertLess(np.abs(at - LEVELS).max(), 4)
 
-    def test_levels_that_are_everywhere_stay_apart(self):
+    def test_evenly_spread_levels_stay_separate(self):
         from tactus.analysis import curve_plots
         at, yes, total = curve_plots.together(np.arange(0, 100, 0.5), np.zeros(200), np.ones(200))
         self.assertGreater(len(at), 12)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Models over participants recover what holds of people, and say when they cannot."""
+"""Mixed models recover known effects, and report when they cannot be fitted."""
 import unittest
 
 import analysis_tables  # noqa: F401 (the path)
@@ -19,7 +19,7 @@ def people(rng, participants, intercept, slope, levels, repetitions):
 
 
 class Logistic(unittest.TestCase):
-    def test_the_slope_of_people_lies_in_its_interval_in_95_of_100(self):
+    def test_the_interval_covers_the_slope_in_95_of_100(self):
         inside, between = np.zeros(2), []
         for seed in range(60):
             rng = np.random.default_rng(seed)
@@ -29,7 +29,7 @@ class Logistic(unittest.TestCase):
             between.append((model.sd_intercept, model.sd_slope))
         # 57 expected, binomial standard deviation 1.7.
         self.assertTrue((inside >= 53).all(), inside)
-        # Maximum likelihood takes the spread of 12 people for a little smaller than it is, by about (1 - 1/12)^0.5.
+        # Maximum likelihood underestimates the spread of 12 people by about (1 - 1/12)^0.5.
         np.testing.assert_allclose(np.median(between, axis=0), (0.57, 0.0038), rtol=0.15)
 
     def test_laplaces_integral_is_near_the_true_one(self):
@@ -61,19 +61,19 @@ class Logistic(unittest.TestCase):
         found = next(e for e in model.effects if e.name == "PSS")
         self.assertTrue(found.low <= 25 <= found.high and found.high - found.low < 25, found)
 
-    def test_one_participant_bears_no_model_and_that_is_said(self):
+    def test_one_participant_permits_no_model(self):
         self.assertEqual(mixed.logistic(["P01"] * 10, np.arange(10.0), np.arange(10) % 2, "delay"), mixed.ONE)
         self.assertEqual(mixed.log_linear(["P01"] * 10, np.arange(10.0), np.ones(10), "delay"), mixed.ONE)
         self.assertIn("same", mixed.logistic(["P01", "P02"] * 5, np.arange(10.0), np.ones(10), "delay"))
 
-    def test_few_participants_are_doubted(self):
+    def test_few_participants_cause_a_warning(self):
         rng = np.random.default_rng(6)
         names, x, odds = people(rng, 3, (1.0, 0.3), (-0.01, 0.002), (0, 100, 200), 20)
-        self.assertIn("3 participants say little", mixed.logistic(names, x, (rng.random(len(x)) < 1 / (1 + np.exp(-odds))) * 1.0, "delay").words)
+        self.assertIn("3 participants are too few", mixed.logistic(names, x, (rng.random(len(x)) < 1 / (1 + np.exp(-odds))) * 1.0, "delay").words)
 
 
 class Times(unittest.TestCase):
-    def test_the_ratio_of_times_lies_in_its_interval_in_95_of_100(self):
+    def test_the_interval_covers_the_ratio_of_times_in_95_of_100(self):
         inside = 0
         for seed in range(100):
             rng = np.random.default_rng(seed)

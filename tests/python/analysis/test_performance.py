@@ -63,18 +63,18 @@ class Draws(unittest.TestCase):
         own = np.random.default_rng(1).normal(10, 2, 8)
         values, names = np.repeat(own, 50), np.repeat(people, 50)
         drawn, _ = resampling.Resampler(names, np.random.default_rng(2), 20000).of_cell(names, values[:, None])
-        # Their 400 values say no more than 8 do.
+        # 400 values of 8 people carry the information of 8 values.
         self.assertAlmostEqual(drawn.std(), own.std(ddof=1) / math.sqrt(8), delta=0.03 * drawn.std())
         few, _ = resampling.Resampler(names[:200], np.random.default_rng(2), 20000).of_cell(names[:200], values[:200, None])
         self.assertLess(few.std(), 0.3 * drawn.std())
 
-    def test_20_of_20_are_no_proof_of_certainty(self):
+    def test_20_of_20_do_not_prove_certainty(self):
         drawer = resampling.Resampler(["P01"], np.random.default_rng(2), 20000)
         means, mass = drawer.of_cell(["P01"] * 20, np.ones((20, 1)))
         low, _ = resampling.interval(drawer.share(means[:, 0], mass), 0.9)
         self.assertAlmostEqual(low, stats.beta.ppf(0.05, 20.5, 0.5), delta=0.02)
 
-    def test_what_was_never_reached_lies_above_all(self):
+    def test_limits_that_were_not_reached_are_the_largest(self):
         self.assertEqual(resampling.interval(np.array([1.0] * 10 + [np.inf] * 10)), (1.0, np.inf))
 
 
@@ -111,7 +111,7 @@ class Breaking(unittest.TestCase):
     def test_l_break_is_recovered_in_95_of_100(self):
         inside, values, repetitions = np.zeros(2), [], 300
         for seed in range(repetitions):
-            # A limit that nobody reaches, and losers who gave up: then time and success are separate, and each has its known crossing.
+            # No game reaches the limit, and lost games end early: time and success are separate, each with its known crossing.
             rows = self.rows(np.random.default_rng(seed))
             made, _ = cells(rows, seed, 400)
             found = limits.breaking(made, DELAY, MARGINS, "simulated")[0]
@@ -137,7 +137,7 @@ class Breaking(unittest.TestCase):
             rng = np.random.default_rng(seed)
             rows = []
             for p in range(12):
-                slope = rng.normal(0.1, 0.03)  # people differ in how much a delay costs them
+                slope = rng.normal(0.1, 0.03)  # the effect of a delay differs between people
                 for x in (0, *self.LEVELS):
                     rows += games(rng, 10, [("visual", "delay", x, "ms")], 1.1, 6 * (1 + slope * x / 120), first=len(rows), participant=f"P{p:02}")
             made, clustered = cells(rows, seed, 400)
@@ -158,20 +158,20 @@ class Breaking(unittest.TestCase):
         self.assertFalse(found[0].reached)
         self.assertEqual(found[0].up_to, 5)
 
-    def test_what_was_not_reached_says_up_to_where(self):
+    def test_a_limit_that_was_not_reached_names_the_largest_level(self):
         rows = [row for x in (0, 40, 80) for row in games(np.random.default_rng(x), 100, [("visual", "delay", x, "ms")], 1.1, 6, first=1000 * x)]
         found = limits.breaking(cells(rows)[0], DELAY, (0.1, 1.5), "simulated")
         self.assertEqual([(l.reached, l.up_to) for l in found], [(False, 80)] * 3)
 
-    def test_harmless_is_shown_and_not_taken_for_granted(self):
+    def test_harmless_needs_evidence(self):
         for n, harmless in ((20, False), (600, True)):
             rows = [row for x in (0, 40) for row in games(np.random.default_rng(x + 1), n, [("visual", "delay", x, "ms")], 0.95, 6, first=1000 * x)]
             made, clustered = cells(rows)
             d, = performance.differences(made, clustered, MARGINS).values()
             self.assertEqual((d.harmless, d.harmful), (harmless, False), n)
 
-    def test_the_tests_of_a_factor_are_corrected_by_holm_and_those_of_another_are_none_of_them(self):
-        # All won in the same time: p of time is the least there is, p of success between alpha/2 and alpha, which Holm's second test bears and Bonferroni's not.
+    def test_holm_corrects_the_tests_of_each_factor_separately(self):
+        # All won in the same time: p of time is the smallest possible, p of success lies between alpha/2 and alpha, which passes Holm's second test but not Bonferroni's.
         alike = lambda factor, first: [game(first + i, True, 5, factor) for i in range(27)]
         sight = alike((), 0) + alike([("visual", "delay", 40, "ms")], 100)
         one, = performance.differences(*cells(sight), MARGINS).values()
@@ -180,9 +180,9 @@ class Breaking(unittest.TestCase):
         other = performance.differences(*cells(sight + alike([("audio", "delay", 40, "ms")], 200)), MARGINS)
         self.assertTrue(all(d.harmless for d in other.values()))
         second = performance.differences(*cells(sight + alike([("visual", "delay", 80, "ms")], 200)), MARGINS)
-        self.assertFalse(any(d.harmless for d in second.values()))  # two of success: the lesser p is to be at most alpha/2
+        self.assertFalse(any(d.harmless for d in second.values()))  # two tests of success: the smaller p must be at most alpha/2
 
-    def test_a_game_that_is_lost_anyway_shows_no_level_to_be_harmless(self):
+    def test_a_low_baseline_shows_no_level_to_be_harmless(self):
         rows = [game(i, i % 600 < 30, 29, [("visual", "delay", 40, "ms")] if i >= 600 else ()) for i in range(1200)]
         made, clustered = cells(rows)
         self.assertTrue(performance.differences(made, clustered, (0.04, 1.001), limit=30.0)[((DELAY, 40.0),)].p_success < 1)
@@ -236,7 +236,7 @@ class Games(unittest.TestCase):
 
 
 class Frontiers(unittest.TestCase):
-    def test_two_that_add_give_a_straight_frontier(self):
+    def test_two_additive_senses_give_a_straight_frontier(self):
         touch, sight = Factor("haptic", "delay", "ms"), DELAY
         rows = []
         for a in (0, 20, 40):
@@ -249,7 +249,7 @@ class Frontiers(unittest.TestCase):
         np.testing.assert_allclose([l.value for _, l in found.edge], [100, 50, 0], atol=1e-6)
         self.assertFalse(np.isnan(found.grid(lambda c: c.share)).any())
 
-    def test_where_the_first_alone_reaches_the_margin_no_rate_of_the_second_is_borne(self):
+    def test_if_the_first_alone_reaches_the_margin_the_limit_of_the_second_is_0(self):
         slow = {None: [], 20: [("visual", "rate", 20, "Hz")], 5: [("visual", "rate", 5, "Hz")]}
         rows = [game(100 * i + j, not late, 6, ([("haptic", "delay", late, "ms")] if late else []) + slow[hz]) for i, (late, hz) in enumerate((late, hz) for late in (0, 200) for hz in slow)
                 for j in range(20)]

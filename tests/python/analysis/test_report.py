@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`study analyse`: one page without outside references, every figure as SVG and PNG, tables that say who answered, and the same bytes each time."""
+"""`study analyse`: one page without outside references, every figure as SVG and PNG, tables that name the observer, and the same bytes each time."""
 import csv
 import json
 import pathlib
@@ -55,18 +55,18 @@ class Whole(unittest.TestCase):
     def call(cls, *words, place=None):
         return subprocess.run(["/usr/bin/python3", "-I", "-W", "error", TACTUS, "study", "analyse", place or cls.root / "trials.csv", *words], capture_output=True, text=True, check=False)
 
-    def test_it_ends_well_and_says_what_it_made(self):
+    def test_it_succeeds_and_lists_its_results(self):
         self.assertEqual((self.done.returncode, self.done.stderr), (0, ""))
         for word in ("L_detect", "L_appear", "L_break", "1 left out", "observer = simulated", "report.html"):
             self.assertIn(word, self.done.stdout)
 
-    def test_the_page_needs_nothing_else(self):
+    def test_the_page_is_self_contained(self):
         for reference in re.findall(r"""(?:src|href|url)\s*[=(]\s*["']?([^"')\s>]*)""", self.page):
             self.assertRegex(reference, r"^(#|data:image/svg\+xml;base64,)")
         self.assertNotIn("<script", self.page)
         self.assertNotIn("<link", self.page)
 
-    def test_of_senses_that_were_degraded_together_alone_there_is_a_map_and_no_frontier(self):
+    def test_senses_degraded_only_together_have_a_map_and_no_frontier(self):
         rng, pair = np.random.default_rng(1), [("haptic", "delay", 20, "ms"), ("visual", "delay", 50, "ms")]
         place = self.root / "together.csv"
         rows = games(rng, 6, [], 1, 8, first=1)
@@ -75,7 +75,7 @@ class Whole(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual({p.stem for p in (self.root / "together" / "figures").iterdir()}, {"frontier_map_haptic_delay_visual_delay"})
 
-    def test_every_figure_is_there_as_svg_and_png(self):
+    def test_every_figure_exists_as_svg_and_png(self):
         named = re.findall(r'<figure id="([^"]+)">', self.page)
         self.assertEqual(len(named), len(set(named)))
         wanted = {"curve_audio_visual_sj", "participants_audio_visual_sj", "achieved_audio_visual_sj", "levels_audio_visual_sj", "felt_stiffness_haptic_delay", "felt_stiffness_haptic_delay_2", "games_visual_delay",
@@ -87,7 +87,7 @@ class Whole(unittest.TestCase):
             self.assertTrue((folder / f"{name}.png").read_bytes().startswith(PNG))
             self.assertTrue((folder / f"{name}.svg").read_bytes().rstrip().endswith(b"</svg>"))
 
-    def test_what_is_simulated_says_so_everywhere(self):
+    def test_simulated_results_are_marked_everywhere(self):
         captions = re.findall(r"<(?:figcaption|caption)>(.*?)</(?:figcaption|caption)>", self.page)
         self.assertGreater(len(captions), 12)
         for caption in captions:
@@ -113,14 +113,14 @@ class Whole(unittest.TestCase):
         with open(self.root / "a" / "limits.csv", newline="", encoding="utf-8") as file:
             self.assertEqual(len(list(csv.DictReader(file))), len(found["limits"]))
 
-    def test_published_thresholds_stand_behind_the_data_with_their_sources(self):
+    def test_published_thresholds_are_shown_with_their_sources(self):
         for source in ("Vogels 2004", "Jones and Hunter 1990"):
             self.assertIn(source, self.page)
 
-    def test_what_was_measured_of_presses_is_told_from_what_was_judged(self):
+    def test_measured_and_judged_stiffness_are_separate(self):
         with open(self.root / "a" / "felt.csv", newline="", encoding="utf-8") as file:
             measured = [float(r["shift"]) for r in csv.DictReader(file) if r["by"] == "measured"]
-        np.testing.assert_allclose(measured, [-0.1, -0.2, -0.4], atol=1e-5)  # six digits of each stiffness
+        np.testing.assert_allclose(measured, [-0.1, -0.2, -0.4], atol=1e-5)  # each stiffness has six digits
         self.assertIn("Measured stiffness under touch: delay", self.page)
         self.assertIn("Felt stiffness under touch: delay", self.page)
         self.assertIn("stiffness, measured", (self.root / "a" / "limits.csv").read_text())
@@ -128,23 +128,23 @@ class Whole(unittest.TestCase):
     def test_texts_stay_texts(self):
         self.assertIn("dark&lt;script&gt;", self.page)
 
-    def test_senses_of_any_name_are_drawn_and_write_nowhere_else(self):
+    def test_senses_of_any_name_are_drawn_and_write_inside_the_folder(self):
         rows = judgements(np.random.default_rng(1), 10, 60, 0.02, np.arange(-200, 201, 40), 5, pair=("../../$\\frac{", "<b>x</b>"))
         done = self.call("--out", self.root / "odd", place=analysis_tables.write(self.root / "odd.csv", rows))
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertNotIn("<b>x</b>", (self.root / "odd" / "report.html").read_text(encoding="utf-8"))
         self.assertFalse([p for p in self.root.glob("**/*frac*") if p.parent != self.root / "odd" / "figures"])
 
-    def test_what_cannot_be_analysed_is_said_in_one_sentence(self):
+    def test_input_that_cannot_be_analysed_is_refused_with_one_sentence(self):
         empty = analysis_tables.write(self.root / "free.csv", [{"participant_id": "P01", "task": "free", "observer": "human", "trial": 1}])
         lost = analysis_tables.write(self.root / "lost.csv", [game(1, True, 5), game(2, False, 0, limit_s=float("nan"))])
-        for words, place, reason in ((("--seed", "x"), None, "invalid int value"), (("--alpha", "3"), None, "--alpha 3"), (("--nonsense",), None, "--nonsense"), ((), self.root / "no", "is not there"),
-                                     ((), empty, "nothing in"), ((), lost, "--time-limit")):
+        for words, place, reason in ((("--seed", "x"), None, "invalid int value"), (("--alpha", "3"), None, "--alpha 3"), (("--nonsense",), None, "--nonsense"), ((), self.root / "no", "does not exist"),
+                                     ((), empty, "holds no judgements"), ((), lost, "--time-limit")):
             done = self.call("--out", self.root / "c", *words, place=place)
             self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1), done.stderr)
             self.assertIn(reason, done.stderr)
 
-    def test_help_explains_itself(self):
+    def test_help_lists_options_and_tables(self):
         done = self.call("--help")
         self.assertEqual(done.returncode, 0)
         for word in ("--seed", "--margin-time", "--time-limit", "limits.csv"):

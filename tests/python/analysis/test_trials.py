@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tables of trials are read whole, or refused with file, line and reason."""
+"""Tables of trials are read completely, or refused with file, line and reason."""
 import pathlib
 import tempfile
 import unittest
@@ -33,7 +33,7 @@ class Tables(unittest.TestCase):
         self.assertIn(str(path), str(caught.exception))
         return str(caught.exception)
 
-    def test_what_is_empty_is_not_a_number_and_what_no_file_has_is_empty(self):
+    def test_empty_numbers_are_nan_and_absent_columns_are_empty(self):
         read = trials.read([self.file(HEADER + "P01,game,human,s,1,1,,1,7.5,,9\n")])
         self.assertEqual(len(read), 1)
         self.assertTrue(np.isnan(read["level"][0]) and np.isnan(read["loss_achieved"][0]))
@@ -46,18 +46,18 @@ class Tables(unittest.TestCase):
         read = trials.read(trials.files_of([self.root, self.root / "study" / "P01", self.root / "sweep" / "games.csv"]))
         self.assertEqual(read.participants(), ["P01", "P02", "virtual"])
 
-    def test_a_trial_whose_apparatus_missed_is_left_out_and_counted(self):
+    def test_a_missed_trial_is_left_out_and_counted(self):
         read = trials.read([self.file(HEADER + GOOD + GOOD.replace(",1,1,20", ",1,2,20").replace(",7.5,0", ",7.5,1"))])
         kept, left_out = trials.usable(read)
         self.assertEqual((len(kept), left_out), (1, 1))
 
-    def test_a_hostile_table_is_refused_with_its_line(self):
+    def test_an_invalid_table_is_refused_with_its_line(self):
         cases = {
             HEADER + GOOD + GOOD.replace("20,1,7.5", "20,2,7.5"): ":3: success is 2",
             HEADER + GOOD.replace("20,1", "twenty,1"): ":2: level is 'twenty'",
             HEADER + GOOD.replace("7.5", "-1"): ":2: completion_time_s is -1",
             HEADER + GOOD.replace("7.5", "inf"): ":2: completion_time_s is 'inf'",
-            HEADER + GOOD.replace(",9\n", "\n"): ":2: 10 fields where the header has 11",
+            HEADER + GOOD.replace(",9\n", "\n"): ":2: has 10 fields, but the header has 11",
             HEADER + GOOD.replace("simulated", "ghost"): ":2: observer is 'ghost'",
             HEADER + GOOD + GOOD: "row 2: the same trial of P01",
             HEADER.replace("observer,", "") + GOOD: ":1: there is no column observer",
@@ -67,18 +67,18 @@ class Tables(unittest.TestCase):
             with self.subTest(reason):
                 self.assertIn(reason, self.refusal(text))
 
-    def test_a_level_that_no_severity_answers_to_is_refused(self):
+    def test_a_level_without_a_severity_is_refused(self):
         head = HEADER.replace(",level,", ",level,modality_degraded,operator,")
-        for operator, level, reason in (("rate", "0", "a level of rate is above 0"), ("delay", "-3", "0 or more"), ("lowpass", "", "has no level"), ("delay", "1_0", "level is '1_0'")):
+        for operator, level, reason in (("rate", "0", "a level of rate must be above 0"), ("delay", "-3", "0 or more"), ("lowpass", "", "has no level"), ("delay", "1_0", "level is '1_0'")):
             self.assertIn(reason, self.refusal(head + GOOD.replace(",20,", f",{level},visual,{operator},")))
         for operator, level in (("gain", "0"), ("off", ""), ("delay", "0")):
             self.assertEqual(len(trials.read([self.file(head + GOOD.replace(",20,", f",{level},visual,{operator},"))])), 1)
 
     def test_a_table_without_rows_and_a_place_without_tables_are_refused(self):
-        with self.assertRaisesRegex(Refusal, "there is no trial"):
+        with self.assertRaisesRegex(Refusal, "holds no trials"):
             trials.read([self.file(HEADER)])
         (self.root / "empty").mkdir()
-        for place, reason in (("nowhere", "is not there"), ("empty", "holds no trials.csv or games.csv")):
+        for place, reason in (("nowhere", "does not exist"), ("empty", "holds no trials.csv or games.csv")):
             with self.assertRaisesRegex(Refusal, reason):
                 trials.files_of([self.root / place])
 

@@ -1,4 +1,4 @@
-"""The modes that are found in a sound are those that it was made of; what cannot be analysed is said in one sentence."""
+"""tactus analyse-modes finds the modes of synthetic sounds, and refuses invalid recordings with one sentence."""
 import csv
 import json
 import os
@@ -25,7 +25,7 @@ ALONE = slice(2, None)
 
 
 def ringing(count, snr_dB=None, seed=0, frequency_Hz=FREQUENCY_HZ, damping_1_s=DAMPING_1_S, amplitude=AMPLITUDE):
-    """Damped sines, and white noise so far below their mean power."""
+    """Damped sines, and white noise at a given distance below their mean power."""
     t = np.arange(count)[:, None] / RATE
     x = (amplitude * np.exp(-damping_1_s * t) * np.cos(2 * np.pi * frequency_Hz * t + np.arange(len(amplitude)))).sum(axis=1)
     if snr_dB is not None:
@@ -34,14 +34,14 @@ def ringing(count, snr_dB=None, seed=0, frequency_Hz=FREQUENCY_HZ, damping_1_s=D
 
 
 def errors(found, frequency_Hz=FREQUENCY_HZ, damping_1_s=DAMPING_1_S):
-    """Of the nearest that was found to each: Hz, and share of the damping."""
+    """Errors of the nearest found mode to each: Hz, and share of the damping."""
     distance = np.abs(found[:, 0] - frequency_Hz[:, None]) + 0.1 * np.abs(found[:, 1] - damping_1_s[:, None])
     nearest = found[np.argmin(distance, axis=1)]
     return np.abs(nearest[:, 0] - frequency_Hz), np.abs(nearest[:, 1] / damping_1_s - 1)
 
 
 class Esprit(unittest.TestCase):
-    # Bounds: what a full-band ESPRIT of 512 rows in C++ reached on these very modes and this length (design).
+    # Bounds: results of a full-band ESPRIT of 512 rows in C++ on the same modes and length (design).
     def errors_at(self, snr_dB):
         of = [errors(esprit.find_poles(ringing(6000, snr_dB, seed), RATE, BELOW_HZ)) for seed in range(3)]
         return np.max([e[0] for e in of], axis=0), np.max([e[1] for e in of], axis=0)
@@ -63,7 +63,7 @@ class Esprit(unittest.TestCase):
         self.assertLess(share.max(), 0.67)  # 9 -> 15 1/s
 
     def test_is_exact_without_noise_wherever_a_mode_lies_in_its_band(self):
-        # Also at the edges that two bands share, and only once there. 1e-4: the filter lets through 1e-4.5 of what it stops.
+        # Also at the common edge of two bands, and only once there. 1e-4: the filter passes 10^-4.5 of its stop band.
         frequency = np.array([999.5, 1700.0, 2000.0, 3003.0])
         found = esprit.find_poles(ringing(6000, None, 0, frequency, DAMPING_1_S[:4], AMPLITUDE[:4]), RATE, 8000)
         hertz, share = errors(found, frequency, DAMPING_1_S[:4])
@@ -74,36 +74,36 @@ class Esprit(unittest.TestCase):
 
 
 class Analysis(unittest.TestCase):
-    def test_keeps_the_six_modes_and_nothing_else_at_any_level_of_noise(self):
+    def test_finds_exactly_the_six_modes_at_any_level_of_noise(self):
         for snr_dB in (None, 60, 40, 20):
             with self.subTest(snr_dB=snr_dB):
                 modes = analysis.analyse(ringing(RATE // 2, snr_dB), RATE, below_Hz=BELOW_HZ).modes
                 self.assertEqual(len(modes), 6)
                 np.testing.assert_allclose([m.amplitude for m in modes], AMPLITUDE, rtol=0.05)
 
-    def test_both_ways_agree_on_modes_that_are_alone_and_not_on_a_beating_pair(self):
+    def test_both_methods_agree_on_isolated_modes_and_not_on_a_beating_pair(self):
         modes = analysis.analyse(ringing(RATE // 2, 60), RATE, below_Hz=BELOW_HZ).modes
         self.assertEqual([m.agrees for m in modes][ALONE], [True] * 4)
         self.assertFalse(all(m.agrees for m in modes[:2]))
 
-    def test_decay_alone_finds_frequency_and_damping_of_modes_that_are_alone(self):
+    def test_decay_finds_frequency_and_damping_of_isolated_modes(self):
         peaks = decay.find_peaks(ringing(RATE // 2, 60), RATE, 8000)
         hertz, share = errors(peaks[:, :2])
         self.assertLess(hertz[ALONE].max(), 0.1)  # a parabola through bins of 2.9 Hz errs by 0.02 of them
         self.assertLess(share[ALONE].max(), 0.02)
 
-    def test_leaves_out_what_is_60_dB_below_the_strongest(self):
+    def test_leaves_out_modes_60_dB_below_the_strongest(self):
         amplitude = np.array([1.0, 2e-3, 5e-4])
         modes = analysis.analyse(ringing(RATE // 2, None, 0, np.array([500.0, 1500.0, 2500.0]), np.array([10.0, 10.0, 10.0]), amplitude),
                                  RATE, below_Hz=BELOW_HZ).modes
         np.testing.assert_allclose([m.frequency_Hz for m in modes], [500.0, 1500.0], atol=0.01)
 
-    def test_what_grows_is_no_mode(self):
+    def test_a_growing_sine_is_no_mode(self):
         x = ringing(RATE // 4, 80, 0, np.array([500.0, 1500.0]), np.array([10.0, -4.0]), np.array([1.0, 0.3]))
         modes = analysis.analyse(np.concatenate([np.zeros(2000), x]), RATE, below_Hz=BELOW_HZ).modes
         np.testing.assert_allclose([m.frequency_Hz for m in modes], [500.0], atol=0.01)
 
-    def test_begins_after_the_blow_and_says_the_amplitude_at_it(self):
+    def test_begins_after_the_blow_and_gives_the_amplitude_at_the_onset(self):
         silence, blow = np.zeros(RATE // 5), 3 * np.random.default_rng(2).standard_normal(88)  # 2 ms
         x = ringing(RATE // 2, 60)
         x[:88] += blow
@@ -112,7 +112,7 @@ class Analysis(unittest.TestCase):
         # The onset is found within 2 ms: 2 ms * 45 1/s = 9 %.
         np.testing.assert_allclose([m.amplitude for m in modes], AMPLITUDE, rtol=0.12)
 
-    def test_what_its_modes_sound_like_is_what_was_analysed(self):
+    def test_the_resynthesis_equals_the_analysed_sound(self):
         a = analysis.analyse(ringing(RATE // 2), RATE, below_Hz=BELOW_HZ)
         again = analysis.resynthesis(a, RATE // 4)
         original = a.samples[a.begins:a.begins + RATE // 4]
@@ -123,18 +123,18 @@ class Damping(unittest.TestCase):
     frequency = np.geomspace(200, 9000, 12)
     amplitude = np.geomspace(1, 0.05, 12)
 
-    def test_that_follows_alpha_and_beta_gives_them_back(self):
+    def test_rayleigh_damping_is_recovered(self):
         law = damping.fit(self.frequency, damping.rayleigh(self.frequency, 6, 1e-7), self.amplitude)
         self.assertAlmostEqual(law["rayleigh_alpha_1_s"], 6, delta=1e-6)
         self.assertAlmostEqual(law["rayleigh_beta_s"], 1e-7, delta=1e-13)
         self.assertEqual(law["better"], "rayleigh")
 
-    def test_that_follows_a_loss_factor_gives_it_back(self):
+    def test_a_loss_factor_is_recovered(self):
         law = damping.fit(self.frequency, damping.constant_loss(self.frequency, 0.004), self.amplitude)
         self.assertAlmostEqual(law["loss_factor"], 0.004, delta=1e-9)
         self.assertEqual(law["better"], "loss factor")
 
-    def test_that_falls_with_frequency_gives_no_negative_beta(self):
+    def test_damping_that_falls_with_frequency_gives_no_negative_beta(self):
         law = damping.fit(self.frequency, 20 - self.frequency / 1000, self.amplitude)
         self.assertGreaterEqual(law["rayleigh_beta_s"], 0)
         self.assertGreater(law["rayleigh_alpha_1_s"], 0)
@@ -143,7 +143,7 @@ class Damping(unittest.TestCase):
         f = np.array([300.0, 830.0, 1620.0, 2680.0, 4000.0, 5600.0])
         x = ringing(RATE // 2, 50, 1, f, damping.rayleigh(f, 12, 4e-8), AMPLITUDE)
         law = analysis.analyse(x, RATE, below_Hz=BELOW_HZ).law
-        # Dampings err by 1 % at 50 dB, and alpha rests on the lowest.
+        # Dampings have an error of 1 % at 50 dB, and alpha depends on the lowest mode.
         self.assertAlmostEqual(law["rayleigh_alpha_1_s"], 12, delta=0.24)
         self.assertAlmostEqual(law["rayleigh_beta_s"], 4e-8, delta=1.2e-9)
 
@@ -186,7 +186,7 @@ class TheProgram(unittest.TestCase):
         self.assertTrue(lines[0].startswith("analyse-modes: "), lines[0])
         return lines[0]
 
-    def test_refuses_what_is_no_recording_of_a_blow(self):
+    def test_refuses_invalid_recordings(self):
         cases = {"empty.wav": b"", "text.wav": b"This is not a sound.\n" * 40, "silence.wav": wav(np.zeros(RATE)),
                  "nan.wav": wav(np.where(np.arange(RATE) == 99, np.nan, 0.1), 32, 3), "short.wav": wav(0.5 * np.ones(50)),
                  "cut.wav": wav(ringing(RATE) / 4)[:30], "header.wav": b"RIFF\xff\xff\xff\xffWAVE",
@@ -197,7 +197,7 @@ class TheProgram(unittest.TestCase):
                 self.assertIn(name, self.refused(self.path(name, content)))
         self.assertIn("nowhere.wav", self.refused(self.path("nowhere.wav")))
 
-    def test_refuses_options_that_make_no_sense(self):
+    def test_refuses_contradictory_options(self):
         good = self.path("good.wav", wav(ringing(RATE // 2) / 4))
         self.refused()
         self.refused(good, "--modes", "0")
@@ -207,7 +207,7 @@ class TheProgram(unittest.TestCase):
         self.assertIn("butter", self.refused(good, "--out", self.path("new.xml"), "--material", "bell", "--base", "butter"))
         self.refused(good, "--json", os.path.join(self.folder, "no", "such.json"))
 
-    def test_refuses_modes_higher_than_a_scene_takes(self):
+    def test_refuses_modes_above_the_limit_of_a_scene(self):
         done = subprocess.run([SCRIPTS / "tactus", "analyse-modes", "x.wav", "--max-frequency", "20001"], capture_output=True, text=True, timeout=120)
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("20000 Hz", done.stderr)
@@ -232,7 +232,7 @@ class TheProgram(unittest.TestCase):
         subprocess.run(["ffmpeg", "-v", "error", "-i", self.path("sound.wav", wav(ringing(RATE // 3) / 4)), flac], check=True)
         self.assertEqual(self.run_it(flac).returncode, 0)
 
-    def test_writes_a_material_with_its_modes_beside_it_a_picture_and_json(self):
+    def test_writes_a_material_with_its_table_of_modes_a_picture_and_json(self):
         sound, xml, svg, text = (self.path(n) for n in ("bell.wav", "bell.xml", "bell.svg", "bell.json"))
         self.path("bell.wav", wav(ringing(RATE // 2) / 4))
         done = self.run_it(sound, "--out", xml, "--base", "copper", "--picture", svg, "--json", text)

@@ -1,4 +1,4 @@
-"""The closed forms that measure_modes holds the renderer against give the figures that the literature prints."""
+"""The closed forms for measure_modes agree with published values."""
 import math
 import pathlib
 import sys

@@ -1,4 +1,4 @@
-"""Fits find the maximum of the likelihood, and intervals hold the truth as often as they say."""
+"""Fits find the maximum of the likelihood, and intervals have the nominal coverage."""
 import math
 import pathlib
 import sys
@@ -24,7 +24,7 @@ def answers(name, levels, count, truth, n, seed):
 
 
 class Fits(unittest.TestCase):
-    def test_the_maximum_is_that_of_an_independent_search(self):
+    def test_the_maximum_agrees_with_an_independent_search(self):
         for name, levels, truth, fixed in (("order", SOA, {"pss": 10, "sd": 60, "lapse": 0.03}, {}),
                                            ("cumulative_gaussian", DELAYS, {"threshold": 45, "sd": 15, "guess": 0.5, "lapse": 0.02}, {"guess": 0.5}),
                                            ("weibull", DELAYS[1:], {"threshold": 45, "slope": 3, "guess": 0.5, "lapse": 0.02}, {"guess": 0.5})):
@@ -43,7 +43,7 @@ class Fits(unittest.TestCase):
                              for scale in (0.7, 1.0, 1.4)), key=lambda r: r.fun)
                 self.assertGreater(got.log_likelihood, -other.fun - 1e-4, name)
 
-    def test_many_at_once_are_each_alone(self):
+    def test_many_fits_at_once_equal_single_fits(self):
         truth = {"pss": 20, "sd": 60, "guess": 0.02, "lapse": 0.02}
         yes, total = answers("synchrony_window", SOA, 20, truth, 12, 4)
         many = fits.fit_many(SOA, yes, total, "synchrony_window")
@@ -60,26 +60,26 @@ class Fits(unittest.TestCase):
         for a, b in zip(fits.interval(in_ms, "jnd"), fits.interval(in_ns, "jnd")):
             self.assertAlmostEqual(a, b / 1e6, places=3)
 
-    def test_levels_without_trials_say_nothing(self):
+    def test_levels_without_trials_have_no_effect(self):
         truth = {"pss": 10, "sd": 60, "lapse": 0.03}
         (yes,), (total,) = answers("order", SOA, 20, truth, 1, 6)
         padded = fits.fit(np.append(SOA, 9e9), np.append(yes, 0), np.append(total, 0), "order")
         self.assertAlmostEqual(padded.params["pss"], fits.fit(SOA, yes, total, "order").params["pss"], places=9)
 
     def test_deviance_of_many_trials_is_chi_square(self):
-        # 11 levels less 3 parameters; lapses of 0.03 are inside of their bounds for most.
+        # 11 levels minus 3 parameters; lapse rates of 0.03 are mostly inside their bounds.
         yes, total = answers("order", SOA, 400, {"pss": 10, "sd": 80, "lapse": 0.03}, 100, 7)
         deviances = [fits.fit(SOA, y, t, "order").deviance for y, t in zip(yes, total)]
         self.assertLess(abs(np.mean(deviances) - 8), 4 * math.sqrt(2 * 8 / 100))
 
-    def test_answers_without_a_threshold_are_no_fit(self):
+    def test_answers_without_a_threshold_do_not_converge(self):
         total = np.full(len(SOA), 20.0)
         for name in ("order", "synchrony_window", "cumulative_gaussian"):
             self.assertFalse(fits.fit(SOA, total * 0, total, name).converged, name)
             self.assertFalse(fits.fit(SOA, total, total, name).converged, name)
         self.assertFalse(fits.fit(SOA, total / 2, total, "order").converged)
 
-    def test_a_step_has_a_threshold_and_no_more_than_a_bound_of_its_slope(self):
+    def test_a_step_has_a_threshold_and_only_a_bound_of_its_slope(self):
         total = np.full(len(DELAYS), 20.0)
         step = fits.fit(DELAYS, np.where(DELAYS > 50, 20.0, 0.0), total, "cumulative_gaussian", {"guess": 0.0, "lapse": 0.0})
         self.assertTrue(48 < step.params["threshold"] < 60)
@@ -87,17 +87,17 @@ class Fits(unittest.TestCase):
         self.assertEqual(low, 0.0)
         self.assertTrue(0 < high < 20)
 
-    def test_what_is_fixed_stays_and_has_no_width(self):
+    def test_a_fixed_parameter_stays_and_has_no_width(self):
         (yes,), (total,) = answers("cumulative_gaussian", DELAYS, 30, {"threshold": 45, "sd": 15, "guess": 0.5, "lapse": 0.02}, 1, 8)
         got = fits.fit(DELAYS, yes, total, "cumulative_gaussian", {"guess": 0.5})
         self.assertEqual((got.params["guess"], fits.interval(got, "guess")), (0.5, (0.5, 0.5)))
         low, high = fits.interval(got, "lapse")
         self.assertTrue(0 <= low <= got.params["lapse"] <= high <= 0.06)
 
-    def test_nonsense_is_refused(self):
+    def test_invalid_answers_are_refused(self):
         for words, levels, yes, total, name, fixed in (
-                ("more yes than trials", [1, 2], [3, 1], [2, 2], "order", {}), ("no number", [1, float("nan")], [1, 1], [2, 2], "order", {}),
-                ("without any trial", [1, 2], [0, 0], [0, 0], "order", {}), ("'guess' of order cannot be fixed", [1, 2], [1, 1], [2, 2], "order", {"guess": 0}),
+                ("more yes than trials", [1, 2], [3, 1], [2, 2], "order", {}), ("not finite numbers", [1, float("nan")], [1, 1], [2, 2], "order", {}),
+                ("has no trials", [1, 2], [0, 0], [0, 0], "order", {}), ("'guess' of order cannot be fixed", [1, 2], [1, 1], [2, 2], "order", {"guess": 0}),
                 ("QUEST", [1, 2], [1, 1], [2, 2], "threshold_surface", {})):
             with self.assertRaisesRegex(ValueError, words):
                 fits.fit(levels, yes, total, name, fixed)
@@ -128,8 +128,8 @@ class Intervals(unittest.TestCase):
         for end in fits.interval(got, "threshold", method="profile"):
             self.assertAlmostEqual(got.log_likelihood - best(end), 3.841459 / 2, delta=0.01)  # chi-square of one degree, 0.95
 
-    def test_they_hold_the_truth_in_95_of_100(self):
-        # 300 sessions: the standard error is 1.3 %, and four of it are allowed here; tests/measure/measure_recovery looks closer.
+    def test_they_cover_the_truth_in_95_of_100(self):
+        # 300 sessions: the standard error is 1.3 %, and four of them are allowed; tests/measure/measure_recovery is more precise.
         truth = {"pss": 12, "sd": 60, "guess": 0.02, "lapse": 0.02}
         yes, total = answers("synchrony_window", SOA, 20, truth, 300, 11)
         many = fits.fit_many(SOA, yes, total, "synchrony_window")
@@ -139,7 +139,7 @@ class Intervals(unittest.TestCase):
                 held = ((low <= truth[name]) & (truth[name] <= high)).mean()
                 self.assertLess(abs(held - 0.95), 4 * math.sqrt(0.95 * 0.05 / 300), f"{method} {name}")
 
-    def test_a_wider_level_is_a_wider_interval(self):
+    def test_a_higher_level_gives_a_wider_interval(self):
         (yes,), (total,) = answers("order", SOA, 20, {"pss": 10, "sd": 60, "lapse": 0.03}, 1, 12)
         got = fits.fit(SOA, yes, total, "order")
         narrow, usual, wide = (fits.interval(got, "pss", level) for level in (0.5, 0.95, 0.99))

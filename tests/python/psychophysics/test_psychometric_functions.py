@@ -1,4 +1,4 @@
-"""Psychometric functions have the values that the literature prints and the derivatives that their fits need."""
+"""Psychometric functions agree with published values, and their derivatives with differences."""
 import math
 import pathlib
 import sys
@@ -21,7 +21,7 @@ def of(f, **more):
 
 
 class Functions(unittest.TestCase):
-    def test_far_away_are_guess_and_lapse(self):
+    def test_the_limits_are_guess_and_lapse(self):
         for f in ONE:
             far = [1e6] if f.name.startswith("weibull") else [-1e6, 1e6]
             got = f.p(np.array(far), **of(f))
@@ -43,7 +43,7 @@ class Functions(unittest.TestCase):
     def test_the_core_of_order_is_the_normal_distribution(self):
         x = np.linspace(-150, 150, 31)
         np.testing.assert_allclose(FUNCTIONS["order"].p(x, pss=5, sd=30, lapse=0), norm(5, 30).cdf(x), atol=1e-12)
-        # 0.6745 sd above is 75 %: the just noticeable difference.
+        # 75 % at 0.6745 sd above: the just noticeable difference.
         self.assertAlmostEqual(float(FUNCTIONS["order"].p(5 + 0.6744898 * 30, pss=5, sd=30, lapse=0)), 0.75, places=6)
         self.assertAlmostEqual(FUNCTIONS["order"].derived(5, 30, 0)["jnd"], 20.2347, places=3)
 
@@ -55,7 +55,7 @@ class Functions(unittest.TestCase):
             self.assertAlmostEqual(float(f.p(derived[edge], pss=10, sd=50, guess=0, lapse=0)), 0.75)
         self.assertAlmostEqual(derived["high75"] - derived["low75"], derived["window75"])
 
-    def test_threshold75_is_where_an_observer_without_lapses_is_right_in_three_of_four(self):
+    def test_threshold75_is_the_level_of_75_percent_right_answers_without_lapses(self):
         for name in ("cumulative_gaussian", "logistic", "weibull", "weibull_dB"):
             f = FUNCTIONS[name]
             for guess in (0.0, 0.04, 0.5):
@@ -63,7 +63,7 @@ class Functions(unittest.TestCase):
                 m, s, _, _ = f.inner(params)
                 self.assertAlmostEqual(float(f.p(f.derived(float(m), float(s), guess)["threshold75"], **params)), 0.75, msg=f"{name} {guess}")
 
-    def test_derivatives_are_those_of_differences(self):
+    def test_derivatives_agree_with_differences(self):
         for f in ONE:
             z = np.linspace(-0.4, 0.5, 7)[None]
             for anchor in [None, *f.anchors()]:
@@ -77,24 +77,24 @@ class Functions(unittest.TestCase):
                     up, down = (likelihood.probability(f, z, theta + sign * step, anchor)[0][0] for sign in (1, -1))
                     np.testing.assert_allclose(by[:, i], (up - down) / 2e-6, atol=1e-6, err_msg=f"{f.name} {anchor} {i}")
 
-    def test_two_senses_that_notice_independently_add_up_as_probabilities(self):
+    def test_independent_senses_show_probability_summation(self):
         f = FUNCTIONS["threshold_surface"]
         params = {"threshold_a": 40, "threshold_b": 90, "slope": 2.5, "summation": 2.5, "guess": 0, "lapse": 0}
         alone_a, alone_b, both = f.p(np.array([[30, 0], [0, 60], [30, 60]]), **params)
         self.assertAlmostEqual(both, 1 - (1 - alone_a) * (1 - alone_b))
         self.assertAlmostEqual(alone_a, float(FUNCTIONS["weibull"].p(30, threshold=40, slope=2.5, guess=0, lapse=0)))
 
-    def test_wrong_names_are_refused_with_the_right_ones(self):
+    def test_unknown_names_are_refused_with_the_known_ones(self):
         with self.assertRaisesRegex(ValueError, "'gauss'; choose one of synchrony_window"):
             function("gauss")
         with self.assertRaisesRegex(ValueError, "guess is missing"):
             FUNCTIONS["weibull"].p(1.0, threshold=1, slope=2, lapse=0)
-        with self.assertRaisesRegex(ValueError, "guess is missing or too much"):
+        with self.assertRaisesRegex(ValueError, "guess is missing or unknown"):
             SimulatedObserver("order", {"pss": 0, "sd": 10, "lapse": 0, "guess": 0.5}, 1)
 
 
 class Observers(unittest.TestCase):
-    def test_they_answer_as_often_as_their_function_says_and_the_same_for_the_same_seed(self):
+    def test_answers_follow_the_function_and_depend_on_the_seed_only(self):
         params = {"pss": 10, "sd": 40, "guess": 0.02, "lapse": 0.03}
         first, again = (SimulatedObserver("synchrony_window", params, 5) for _ in range(2))
         said = [first.answer(50.0) for _ in range(4000)]

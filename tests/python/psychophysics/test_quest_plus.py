@@ -1,4 +1,4 @@
-"""QUEST+ asks what tells most, in one dimension and in two, and needs no more trials than were published."""
+"""QUEST+ chooses the most informative level, in one dimension and in two, and needs at most the published number of trials."""
 import itertools
 import math
 import pathlib
@@ -50,7 +50,7 @@ class Quest(unittest.TestCase):
             quest.answer(level, yes)
         np.testing.assert_allclose(quest.posterior, want / want.sum(), atol=1e-12)
 
-    def test_it_ends_at_the_precision_asked_for(self):
+    def test_it_ends_at_the_requested_precision(self):
         quest = QuestPlus("cumulative_gaussian", {**PARAMETERS, "threshold": [float(x) for x in range(10, 101, 2)]}, LEVELS, stop_sd={"threshold": 6.0})
         run(quest, SimulatedObserver("cumulative_gaussian", {"threshold": 50, "sd": 12, "guess": 0.5, "lapse": 0.0}, 4))
         self.assertLessEqual(quest.estimate()["threshold_sd"], 6.0)
@@ -58,7 +58,7 @@ class Quest(unittest.TestCase):
         self.assertEqual(quest.expected, quest.done)
 
     def test_credible_intervals_are_quantiles_of_the_marginal(self):
-        # A flat marginal over four values 20 apart stands for 10 to 90.
+        # A flat marginal over four values 20 apart covers 10 to 90.
         quest = QuestPlus("cumulative_gaussian", PARAMETERS, LEVELS, trials=4)
         low, high = quest.credible("threshold", 0.5)
         self.assertAlmostEqual(low, 30)
@@ -80,7 +80,7 @@ class Quest(unittest.TestCase):
             self.assertLess(abs(np.mean([f[name] for f in found]) - truth[name]), tolerance, name)
         self.assertLess(np.mean([f["entropy_bits"] for f in found]), 0.5 * math.log2(48))
 
-    def test_what_cannot_be_is_refused(self):
+    def test_invalid_input_is_refused(self):
         with self.assertRaisesRegex(ValueError, "coarser"):
             QuestPlus("cumulative_gaussian", {**PARAMETERS, "threshold": [float(x) for x in range(10 ** 6)]}, LEVELS, trials=1)
         with self.assertRaisesRegex(ValueError, "4 weights"):
@@ -91,15 +91,15 @@ class Quest(unittest.TestCase):
 
 
 class Economy(unittest.TestCase):
-    def test_the_ideal_sweat_factor_is_that_of_the_information(self):
-        # A yes/no observer on a logistic function has K = 4 scale^2; Weibull's has no closed form, and is searched on a finer axis here.
+    def test_the_ideal_sweat_factor_follows_from_the_information(self):
+        # A yes/no observer with a logistic function has K = 4 scale^2; Weibull's has no closed form, and is searched on a finer axis here.
         x = np.linspace(-5, 5, 40001)
         e = 10 ** (3.5 * x / 20)
         p, by = 0.98 - 0.48 * np.exp(-e), 0.48 * np.exp(-e) * e * 3.5 / 20 * math.log(10)
         self.assertAlmostEqual(trial_economy.sweat_factor(3.5), (p * (1 - p) / by ** 2).min(), places=3)
 
-    def test_no_more_trials_than_published_and_no_less_than_possible(self):
-        # Kontsevich and Tyler 1999: a threshold within 2 dB takes less than 30 trials. The prior (40 dB wide) helps little over the ideal.
+    def test_the_number_of_trials_lies_between_the_ideal_and_the_published_one(self):
+        # Kontsevich and Tyler 1999: a threshold within 2 dB takes less than 30 trials. The prior (40 dB wide) improves little on the ideal.
         threshold, _ = trial_economy.errors("threshold, slope", 60, 3)
         self.assertLessEqual(trial_economy.first_within(threshold, 2.0), 30)
         rms, ideal = math.sqrt((threshold[:, 99] ** 2).mean()), math.sqrt(trial_economy.sweat_factor(3.5) / 100)

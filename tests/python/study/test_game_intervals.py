@@ -1,4 +1,4 @@
-"""The intervals by which the power of games is told are those of other programs."""
+"""The intervals for the power of games agree with other programs."""
 import pathlib
 import sys
 import unittest
@@ -13,7 +13,7 @@ from tactus.study import power_games
 
 
 class Intervals(unittest.TestCase):
-    def test_of_one_share_and_of_two_they_are_those_of_statsmodels(self):
+    def test_intervals_of_one_and_two_shares_agree_with_statsmodels(self):
         dice = np.random.default_rng(1)
         for n in (3, 10, 80):
             won = dice.random((50, 2, 1, n)) < dice.random((50, 2, 1, 1))
@@ -23,7 +23,7 @@ class Intervals(unittest.TestCase):
                 expected = confint_proportions_2indep(int(b), n, int(a), n, method="newcomb", compare="diff", alpha=0.1)
                 self.assertTrue(np.allclose((low[i], high[i]), expected, atol=1e-9), (a, b, n))
 
-    def test_of_five_people_and_more_they_are_paired_over_people_as_scipy_has_them(self):
+    def test_intervals_of_five_or_more_people_agree_with_the_paired_test_of_scipy(self):
         dice = np.random.default_rng(2)
         won, time_s = dice.random((20, 2, 7, 9)) < 0.6, dice.gamma(4, 1, (20, 2, 7, 9))
         shares, ratios = power_games.interval(won, time_s, 0.05)

@@ -1,4 +1,4 @@
-"""The journal of a participant: nothing answered is lost or asked twice, whatever ends the session."""
+"""The journal of a participant: no answer is lost or asked twice, however the session ends."""
 import fcntl
 import json
 import pathlib
@@ -25,7 +25,7 @@ STUDY = """<study name="random" version="1" scene="single_taps.sdf" task="{task}
   <blocks count="{blocks}"/>
 </study>
 """
-# A program that appends trials until it is killed, and says which are on the disk.
+# A program that appends trials until it is killed, and prints the number of each stored trial.
 WRITER = """
 import sys
 sys.path.insert(0, {python!r})
@@ -58,10 +58,10 @@ class Folder(unittest.TestCase):
         return j
 
     def written(self, count=4):
-        """The bytes of a journal of so many trials, with texts that need care."""
+        """The bytes of a journal of `count` trials, with texts that need escapes."""
         with Journal(self.folder) as j:
             j.begin(**SESSION)
-            j.append({"kind": "note", "text": 'he said "ä \u2028 \\ no"\n\t, "crc32": "'})
+            j.append({"kind": "note", "text": 'they said "ä \u2028 \\ no"\n\t, "crc32": "'})
             for n in range(1, count + 1):
                 j.append(trial(n, missed="late by 30 ms"))
                 j.append(trial(n, level=[n / 3, -1.0] if n % 2 else n / 3))
@@ -76,7 +76,7 @@ class Folder(unittest.TestCase):
 
 
 class Lines(Folder):
-    def test_what_was_appended_is_read_back(self):
+    def test_appended_entries_are_read_back(self):
         j = self.opened()
         self.assertFalse(j.begin(**SESSION))
         kept = [j.append(trial(1, row={"pair": "audio,visual"}, level=(1, 2.5))), j.append({"kind": "questionnaire", "item": "demand", "answer": 55.0}),
@@ -96,9 +96,9 @@ class Lines(Folder):
         synced = []
         with mock.patch("tactus.study.journal.os.fsync", side_effect=lambda fd: synced.append(self.path.read_bytes())):
             j.append(trial(1))
-        self.assertEqual(synced, [self.path.read_bytes()], "one sync, after the whole line was written")
+        self.assertEqual(synced, [self.path.read_bytes()], "one sync, after the complete line is written")
 
-    def test_texts_of_any_language_and_numbers_come_back_as_they_were(self):
+    def test_texts_of_any_language_and_numbers_are_unchanged(self):
         dice = random.Random(2)
         j = self.opened()
         j.begin(**SESSION)
@@ -121,7 +121,7 @@ class Lines(Folder):
         self.assertEqual(self.path.read_bytes(), before)
         self.assertEqual([e["n"] for e in j.answered()], [3])
 
-    def test_what_is_no_entry_is_not_written(self):
+    def test_an_invalid_entry_is_not_written(self):
         j = self.opened()
         for entry in (trial(1), {"kind": "end"}):
             with self.assertRaisesRegex(ValueError, "begins with its session"):
@@ -137,7 +137,7 @@ class Lines(Folder):
                 j.append(entry)
             self.assertEqual(self.path.read_bytes(), before)
 
-    def test_a_session_is_resumed_only_as_the_same_one(self):
+    def test_a_session_is_resumed_only_with_the_same_parameters(self):
         self.written()
         with Journal(self.folder) as j:
             self.assertTrue(j.begin(**SESSION))
@@ -147,7 +147,7 @@ class Lines(Folder):
 
 
 class Damage(Folder):
-    def test_cut_at_any_byte_it_keeps_all_whole_lines_and_goes_on(self):
+    def test_a_journal_cut_at_any_byte_keeps_all_complete_lines(self):
         data = self.written(2)
         self.assertGreater(len(data), 500)
         for size in range(len(data)):
@@ -183,14 +183,14 @@ class Damage(Folder):
             self.path.write_bytes(b"".join(changed))
             self.refused(f"{self.path}:{line}: ")
 
-    def test_zeros_that_a_crash_of_the_machine_left_at_the_end_are_cut_off(self):
+    def test_zeros_at_the_end_after_a_crash_are_removed(self):
         data = self.written()
         self.path.write_bytes(data + b"\0" * 4096)
         with Journal(self.folder) as j:
-            self.assertIn("torn", j.repaired)
+            self.assertIn("incomplete", j.repaired)
         self.assertEqual(self.path.read_bytes(), data)
 
-    def test_a_line_that_says_what_no_session_could_is_refused_though_its_sum_is_right(self):
+    def test_an_impossible_entry_with_a_valid_checksum_is_refused(self):
         first = {"n": 1, "time_utc": "t", "kind": "session", **SESSION}
         for entries, line in (([{**trial(1), "n": 1}], 1), ([first, {**trial(1), "n": 2, "missed": ""}, {**trial(1), "n": 3}], 3), ([first, {**first, "n": 2}], 2),
                               ([first, {"n": 2, "kind": "?"}], 2)):
@@ -208,7 +208,7 @@ class Processes(Folder):
         self.opened()
         self.refused(str(self.folder), "another process")
 
-    def test_the_lock_goes_with_its_process(self):
+    def test_the_lock_ends_with_its_process(self):
         with self.writer() as process:
             process.stdout.readline()
             self.refused("another process")
@@ -216,7 +216,7 @@ class Processes(Folder):
         with Journal(self.folder) as j:
             self.assertGreaterEqual(len(j.answered()), 1)
 
-    def test_killed_at_any_moment_it_has_all_that_it_said_it_had(self):
+    def test_a_killed_process_leaves_every_acknowledged_trial(self):
         said = 0
         dice = random.Random(3)
         for _ in range(12):
@@ -231,17 +231,17 @@ class Processes(Folder):
             self.assertLessEqual(said, len(numbers))
             self.assertLessEqual(len(numbers), said + 1)
 
-    def test_a_full_disk_is_said_and_leaves_the_journal_whole(self):
+    def test_a_full_disk_is_reported_and_leaves_the_journal_intact(self):
         limit = "import resource, signal; signal.signal(signal.SIGXFSZ, signal.SIG_IGN); resource.setrlimit(resource.RLIMIT_FSIZE, (10000, 10000))\n"
         text = limit + WRITER.format(python=str(SCRIPTS / "python"), folder=str(self.folder), session=SESSION)
         done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=False)
         self.assertIn("cannot be written", done.stderr)
-        self.assertIn("make room", done.stderr)
+        self.assertIn("free space", done.stderr)
         with Journal(self.folder) as j:
             self.assertEqual((j.repaired, len(j.answered())), ("", len(done.stdout.split())))
             self.assertGreaterEqual(len(j.answered()), 2)
 
-    def test_a_line_of_which_half_was_taken_is_taken_back(self):
+    def test_a_partially_written_line_is_removed(self):
         j = self.opened()
         j.begin(**SESSION)
         before, take = self.path.read_bytes(), j.file.write
@@ -260,7 +260,7 @@ class Processes(Folder):
         with self.assertRaisesRegex(Refusal, "give the folder of a participant"):
             journal.read(self.folder.parent)
 
-    def test_who_reads_needs_no_lock(self):
+    def test_a_reader_needs_no_lock(self):
         j = self.opened()
         j.begin(**SESSION)
         with open(self.path, "ab") as file:
@@ -269,11 +269,11 @@ class Processes(Folder):
             file.write(b'{"n": 2, "ti')
         torn = self.path.read_bytes()
         self.assertEqual(journal.read(self.folder), j.entries)
-        self.assertEqual(self.path.read_bytes(), torn, "who reads changes nothing")
+        self.assertEqual(self.path.read_bytes(), torn, "a reader changes nothing")
 
 
 def random_study(dice):
-    """Text of a study of any kind that is asked trial by trial."""
+    """Text of a random study of a kind that asks trial by trial."""
     response = dice.choice(["synchrony", "order", "two_interval"])
     levels = " ".join(f"{x}ms" for x in sorted(dice.sample(range(5, 200, 5), dice.randint(2, 4))))
     one = (lambda: f'<factor modality="{dice.choice(["haptic", "audio"])}" operator="delay" levels="{levels}"/>') if response == "two_interval" else (
@@ -289,7 +289,7 @@ def random_study(dice):
 
 
 class Resuming(Folder):
-    """A session that ends after any line of its journal goes on as if it had not."""
+    """A session that ends after any line of its journal resumes with the same trials."""
 
     def study(self, dice):
         file = self.folder.parent / "study.xml"
@@ -298,8 +298,8 @@ class Resuming(Folder):
         return study_file.read(str(file))
 
     def led(self, study, seed, journal_of=None):
-        """Asks all trials that are left, some of them missed at first; [(number, condition, level, attempt)]. Answers hang on the trial alone, as a
-        person's would not, so that two runs can be compared."""
+        """Asks all remaining trials, some of them missed at first; [(number, condition, level, attempt)]. Answers depend on the trial
+        alone, so that two runs can be compared."""
         plan, asked = Plan(study, "P03"), []
         if journal_of is not None:
             journal_of.begin(**SESSION)
@@ -338,7 +338,7 @@ class Resuming(Folder):
         with Journal(self.folder) as j:
             j.begin(**SESSION)
             j.append(trial(1, level=12345.0))
-            with self.assertRaisesRegex(Refusal, "is not the one of this plan"):
+            with self.assertRaisesRegex(Refusal, "is not in this plan"):
                 session.resume(Plan(study, "P03"), j.answered())
 
 

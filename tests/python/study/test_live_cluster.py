@@ -1,4 +1,4 @@
-"""The cluster of a study: what it says is heard when it says it, however late that is."""
+"""The cluster of a study: the address of its live page is read from its log, also when it is printed late."""
 import pathlib
 import sys
 import tempfile
@@ -27,7 +27,7 @@ class TheLivePageOfAStudy(unittest.TestCase):
         with open(self.cluster.log, "a", encoding="utf-8") as log:
             log.write(text)
 
-    def test_is_waited_for_until_its_line_is_whole(self):
+    def test_is_awaited_until_its_line_is_complete(self):
         def later():
             time.sleep(0.1)
             self.say("run: the live page: http://127.0.0.1:46")
@@ -38,12 +38,12 @@ class TheLivePageOfAStudy(unittest.TestCase):
         self.addCleanup(teller.join)
         self.assertEqual(self.cluster.page(), "http://127.0.0.1:46417/?token=3a8d")
 
-    def test_is_none_when_the_run_says_that_it_does_not_start(self):
+    def test_is_none_if_the_run_reports_that_it_does_not_start(self):
         self.say(f"run: {live_cluster.NO_PAGE}; the others go on (see logs/live_server.log)\n")
         self.assertIsNone(self.cluster.page())
         self.assertIn(live_cluster.NO_PAGE, (SCRIPTS / "python" / "tactus" / "launch" / "live.py").read_text(encoding="utf-8"))
 
-    def test_is_not_waited_for_when_the_run_has_ended(self):
+    def test_is_not_awaited_after_the_run_has_ended(self):
         self.returncode = 1
         with self.assertRaisesRegex(Refusal, "the cluster has ended"):
             self.cluster.page()

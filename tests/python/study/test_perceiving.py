@@ -1,4 +1,4 @@
-"""What a simulated participant perceives is what was really out, whatever was reported."""
+"""A simulated participant perceives the presented signals and not the reports."""
 import base64
 import collections
 import io
@@ -21,19 +21,19 @@ FRAME_NS = 16_666_667
 
 
 def lead_of(**kept):
-    """One that has heard all that it will hear."""
+    """A Lead that has received all its messages."""
     return types.SimpleNamespace(wait_for=lambda condition, _: bool(condition()), pulses=collections.deque(), pictures=collections.deque(), media={}, **kept)
 
 
 def row(number, event):
-    """Cells as visual_node/frame/marker.h lays them out."""
+    """Cells of the marker, as in visual_node/frame/marker.h."""
     data = number.to_bytes(3, "big") + (event & 0xFFFFFFFF).to_bytes(4, "big")
     bits = np.unpackbits(np.frombuffer(data + bytes([marker._crc8(data)]), np.uint8))
     return np.concatenate([[1, 0, 1, 0], bits])
 
 
 def picture(number, events=(), width=320, height=240, seed=0):
-    """Luma with something in it and the marker at its lower edge."""
+    """Luma of a picture with content and the marker at its lower edge."""
     luma = np.random.default_rng(seed).integers(60, 120, (height, width)).astype(np.uint8)
     for k, event in enumerate(events or (0,)):
         luma[height - 4 * (k + 1):height - 4 * k, :4 * 68] = np.repeat(255 * row(number, event), 4)
@@ -55,26 +55,26 @@ class TheEye(unittest.TestCase):
         lead.pictures.extend(pictures)
         return eye.Eye(lead).onset_ns(EVENT, expected_ns)
 
-    def test_a_hit_is_seen_in_the_first_frame_whose_pixels_show_it_whenever_it_was_reported(self):
+    def test_a_hit_is_seen_in_the_first_frame_that_shows_it_regardless_of_reports(self):
         for shows_from in (3, 4, 5):
             self.assertEqual(shows_from * FRAME_NS, self.seen_ns(self.stream(900, shows_from), 4 * FRAME_NS))
 
-    def test_numbers_of_frames_come_again_after_24_bits(self):
+    def test_frame_numbers_repeat_after_24_bits(self):
         self.assertEqual(4 * FRAME_NS, self.seen_ns(self.stream(eye.FRAMES - 4, 4), 4 * FRAME_NS))
 
-    def test_where_the_frame_before_was_not_seen_nothing_is_told(self):
+    def test_without_the_preceding_frame_the_onset_is_unknown(self):
         pictures = self.stream(900, 4)
         del pictures[3]
         self.assertIsNone(self.seen_ns(pictures, 4 * FRAME_NS))
 
-    def test_what_no_frame_shows_is_not_seen_and_what_is_no_picture_neither(self):
+    def test_an_event_in_no_frame_and_an_invalid_picture_are_not_seen(self):
         self.assertIsNone(self.seen_ns(self.stream(900, 99), 4 * FRAME_NS))
         self.assertIsNone(self.seen_ns([(at_ns, "/9j/nonsense") for at_ns, _ in self.stream(900, 4)], 4 * FRAME_NS))
         self.assertIsNone(self.seen_ns([], 4 * FRAME_NS))
 
 
 class TheSkin(unittest.TestCase):
-    def test_the_tick_next_to_the_expected_one_is_felt_and_none_that_is_far(self):
+    def test_the_tick_nearest_to_the_expected_one_is_felt(self):
         lead = lead_of()
         lead.pulses.extend([(0, 0.3), (96_000_000, 0.4), (140_000_000, 0.2)])
         self.assertEqual(96_000_000, skin.Skin(lead).onset_ns(100_000_000))
@@ -98,12 +98,12 @@ class TheEar(unittest.TestCase):
             lead.media[name] = collections.deque([(0, at_ns)])
             return ear.Ear(folder, lead).onset_ns(expected_ns)
 
-    def test_a_hit_is_heard_at_its_first_sample_whenever_it_was_reported(self):
+    def test_a_hit_is_heard_at_its_first_sample_regardless_of_reports(self):
         for report_ns in (-15_000_000, 0, 12_000_000):
             heard_ns = self.heard_ns(24000, 1_500_000_000 + report_ns)
             self.assertAlmostEqual(1_500_000_000, heard_ns, delta=1e9 / self.RATE)
 
-    def test_where_the_sense_was_started_again_it_is_heard_in_the_newer_file(self):
+    def test_after_a_restart_the_newer_file_is_used(self):
         self.assertAlmostEqual(1_500_000_000, self.heard_ns(24000, 1_500_000_000, name="audio.2.wav"), delta=1e9 / self.RATE)
 
     def test_silence_is_not_heard(self):
@@ -111,7 +111,7 @@ class TheEar(unittest.TestCase):
 
 
 class AParticipant(unittest.TestCase):
-    def test_what_was_perceived_is_told_and_what_was_not_is_named(self):
+    def test_perceived_asynchrony_is_returned_and_a_missing_percept_is_named(self):
         study = types.SimpleNamespace()
         lead = lead_of()
         lead.pulses.append((30_000_000, 0.4))

@@ -1,5 +1,5 @@
-"""Studies drawn by chance from all that a study file can say, right and wrong: read, each is led to its end, and goes on from every line of its
-journal; or it is refused with its line. Nothing else ever happens."""
+"""Random study files, valid and invalid: each is read, completed and resumed from every trial of its
+plan, or refused with its line."""
 import collections
 import pathlib
 import random
@@ -13,12 +13,12 @@ SCRIPTS = pathlib.Path(__file__).resolve().parents[3] / "scripts"
 sys.path.insert(0, str(SCRIPTS / "python"))
 from tactus.psychophysics import functions
 from tactus.refusal import Refusal
-from tactus.study import asking, check, quantities, study_file, trial_table
+from tactus.study import check, quantities, questions, study_file, trial_table
 from tactus.study.plan import Plan
 
 STUDIES = 400
-MOST_TRIALS = 25  # of each that are led
-ODD = 0.03        # chance that a part is wrong, or at an end of what can be said
+MAX_TRIALS = 25  # of each study
+ODD = 0.03        # probability that a part is invalid, or at an end of its range
 SENSES = ("audio", "visual", "haptic", "thermal")
 NUMBERS = ("NaN", "INF", "-INF", "", "x", "-1", "1e300", "0", " 7 ")
 LEVELS = ("5", "10", "100", "0.5", "1", "20", "50", "2")
@@ -26,7 +26,7 @@ SPECIAL = {"frame_rate": "visual", "resolution": "visual", "response": "thermal"
 
 
 class Author:
-    """Writes a study that is right but for what is drawn to be odd."""
+    """Writes a valid study, except for randomly drawn odd parts."""
 
     def __init__(self, seed):
         self.dice = random.Random(seed)
@@ -119,24 +119,24 @@ class RandomStudies(unittest.TestCase):
                 except Refusal as refusal:
                     cls.refusals[str(refusal).replace(str(path), "s.xml")] += 1
 
-    def test_many_are_right_and_many_wrong(self):
+    def test_many_studies_are_valid_and_many_are_not(self):
         self.assertGreater(len(self.right), STUDIES // 4)
         self.assertGreater(sum(self.refusals.values()), STUDIES // 10)
 
-    def test_what_is_refused_is_refused_with_its_line_in_one_sentence(self):
+    def test_a_refusal_has_its_line_and_one_sentence(self):
         for said in self.refusals:
             self.assertRegex(said, r"^s\.xml:\d+: \S[^\n]{10,}$")
 
-    def test_every_right_one_is_led_and_goes_on_the_same_from_every_trial(self):
+    def test_every_valid_study_resumes_with_the_same_trial(self):
         for seed, study in self.right:
             dice = random.Random(seed)
             plan, again = Plan(study, "P07"), Plan(study, "P07")
-            for _ in range(MOST_TRIALS):
+            for _ in range(MAX_TRIALS):
                 trial = plan.next()
                 if trial is None:
                     break
                 with self.subTest(seed=seed, trial=trial.number):
-                    # One that is made anew from the answers so far, and one that was asked twice for its next trial.
+                    # A second plan with the same answers; next() may be called twice.
                     self.assertEqual(again.next(), trial)
                     self.assertEqual(again.next(), trial)
                     self.assertTrue(1 <= trial.block <= study.blocks)
@@ -144,10 +144,10 @@ class RandomStudies(unittest.TestCase):
                     self.assertIsNone(trial_table.wrong(row), row)
                     xml.fromstring(study.profile(trial.condition, trial.level))
                     if not plan.performs:
-                        words = asking.words(study, trial)
+                        words = questions.words(study, trial)
                         self.assertLessEqual(len(words["text"]), study_file.LONGEST_TEXT + 20)
                         self.assertNotIn("{a}", words["text"] if trial.condition.senses else "")
-                        asking.meaning(study, trial, {"number": 1.0, "choice": 0})
+                        questions.meaning(study, trial, {"number": 1.0, "choice": 0})
                     yes = dice.random() < 0.5
                     plan.answered(trial, yes)
                     again.answered(trial, yes)
@@ -155,10 +155,10 @@ class RandomStudies(unittest.TestCase):
             plan.describe()
 
     @unittest.skipUnless((check.BIN / "sync_node").is_file(), "needs the programs")
-    def test_every_profile_of_a_right_one_can_be_put_in_force(self):
+    def test_every_profile_of_a_valid_study_is_valid(self):
         for seed, study in self.right[:150]:
             with self.subTest(seed=seed):
-                self.assertRegex(check.profiles(study), "can be put in force|no profile")
+                self.assertRegex(check.profiles(study), "are valid|no degradations")
 
 
 if __name__ == "__main__":

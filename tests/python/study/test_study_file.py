@@ -1,4 +1,4 @@
-"""The study file: what is right is read whole, what is wrong is refused with its line."""
+"""Study files: valid files are read, invalid files are refused with line and reason."""
 import pathlib
 import random
 import sys
@@ -59,13 +59,13 @@ class StudyFile(unittest.TestCase):
         self.assertIn(old, GOOD)
         return GOOD.replace(old, new)
 
-    def test_a_right_one_is_read_whole(self):
+    def test_a_valid_file_is_read_completely(self):
         s = self.read(GOOD)
         self.assertEqual((s.name, s.response, s.blocks, s.break_s, s.tolerance_ms, s.base_delay_ms), ("s", "synchrony", 2, 30.0, 10.0, 80.0))
         self.assertEqual(s.conditions[0].levels, (-100.0, 0.0, 100.0))
         self.assertEqual(s.observer(s.conditions[0]).params["sd"], 50)
 
-    def test_an_asynchrony_delays_the_sense_that_is_to_be_later(self):
+    def test_an_asynchrony_delays_the_later_sense(self):
         s = self.read(GOOD)
         elements = lambda level: [dict(e.attrib) for e in xml.fromstring(s.profile(s.conditions[0], level))]
         base = {"modality": "thermal", "off": "true"}
@@ -73,76 +73,76 @@ class StudyFile(unittest.TestCase):
         self.assertEqual(elements(-100.0), [base, {"modality": "audio", "delay": "100ms"}])
         self.assertEqual(elements(0.0), [base])
 
-    def test_what_is_wrong_is_refused_with_its_line(self):
+    def test_an_error_is_refused_with_its_line(self):
         for old, new, word in (
                 ('between="audio visual"', 'between="audio smell"', "there is no sense smell"),
                 ('between="audio visual"', 'between="audio audio"', "between two senses"),
-                ('levels="-100ms 0ms 0.1s"', 'levels="-100ms 0ms 0s"', "each stands there once"),
-                ('levels="-100ms 0ms 0.1s"', 'levels="3Hz"', "has not the unit"),
-                ('levels="-100ms 0ms 0.1s"', 'levels="9s"', "is not from"),
-                ('scene="single_taps.sdf"', 'scene="nowhere.sdf"', "is not a file"),
+                ('levels="-100ms 0ms 0.1s"', 'levels="-100ms 0ms 0s"', "repeats a level"),
+                ('levels="-100ms 0ms 0.1s"', 'levels="3Hz"', "needs the unit"),
+                ('levels="-100ms 0ms 0.1s"', 'levels="9s"', "is out of range"),
+                ('scene="single_taps.sdf"', 'scene="nowhere.sdf"', "neither a file beside the study nor"),
                 ('task="tap"', 'task="game"', "performance"),
                 ('repetitions="4"', '', "needs repetitions="),
                 ('repetitions="4"', 'repetitions="4" trials="3"', "has no trials="),
-                ('repetitions="4"', 'repetitions="100000"', "these are 300000 trials"),
-                ('<choice>no</choice>', '', "has 2 choices"),
-                ('Together?', 'T' * 601, "1 to 600 characters"),
-                ('name="sd" value="50"', 'name="width" value="50"', "has the parameters pss, sd"),
+                ('repetitions="4"', 'repetitions="100000"', "300000 trials are too many"),
+                ('<choice>no</choice>', '', "takes 2 choices"),
+                ('Together?', 'T' * 601, "has 601 characters; write 1 to 600"),
+                ('name="sd" value="50"', 'name="width" value="50"', "needs the parameters pss, sd"),
                 ('function="synchrony_window"', 'function="bell"', "there is no function bell"),
                 ('<blocks', '<chunks', "chunks")):
             with self.subTest(new):
                 self.refused(self.changed(old, new), word)
 
-    def test_an_observer_of_presses_judges_what_he_felt_and_is_asked_for_that(self):
+    def test_an_observer_of_felt_stiffness_needs_a_study_that_compares_stiffness(self):
         s = self.read(PRESSED)
         self.assertEqual((s.of, s.question, s.observer(s.conditions[0]).params), ("stiffness", study_file.SOFTER, {"weber": 0.23, "lapse": 0.02}))
         for old, new, word in (
-                (' of="stiffness"', '', "ask for that by"),
-                ('of="stiffness"', 'of="temperature"', "it is the stiffness that is judged, not temperature"),
+                (' of="stiffness"', '', "ask for that with"),
+                ('of="stiffness"', 'of="temperature"', "compared by stiffness, not by temperature"),
                 ('value="0.23"', 'value="0"', "a weber fraction is above 0"),
                 ('value="0.02"', 'value="1.5"', "a lapse rate from 0 to 1"),
-                ('name="weber"', 'name="threshold"', "has the parameters weber, lapse"),
-                ('operator="delay"', 'operator="network_delay"', "gets over network_delay within seconds only"),
+                ('name="weber"', 'name="threshold"', "needs the parameters weber, lapse"),
+                ('operator="delay"', 'operator="network_delay"', "recovers from network_delay within seconds only"),
                 ('felt_stiffness"', 'felt_softness"', "choose from synchrony_window"),
                 ('"two_interval" of="stiffness"', '"rating" of="stiffness" lowest="1" highest="9" step="1"', "which of two presses felt softer")):
             with self.subTest(new):
                 self.assertIn(old, PRESSED)
                 self.refused(PRESSED.replace(old, new), word)
 
-    def test_a_study_of_two_intervals_without_such_an_observer_is_read_as_ever(self):
+    def test_a_study_of_two_intervals_needs_no_observer(self):
         s = self.read(PRESSED.replace(' of="stiffness"', "").replace(PRESSED[PRESSED.index("<observer"):], "</study>"))
         self.assertEqual((s.of, s.question, s.observers), ("", study_file.QUESTIONS["two_interval"][0], {}))
 
     def test_a_text_that_is_not_ascii_is_refused_with_its_letter(self):
-        self.refused(self.changed("<choice>no</choice>", "<choice>n\u00e4</choice>"), "a text of choice is ASCII", "'\u00e4'")
+        self.refused(self.changed("<choice>no</choice>", "<choice>n\u00e4</choice>"), "the text of choice contains '\u00e4'", "ASCII")
 
-    def test_what_is_no_xml_is_refused(self):
+    def test_a_file_that_is_not_xml_is_refused(self):
         for text in ("", "<study", GOOD.replace("</study>", ""), GOOD + "<more/>"):
             with self.subTest(text[-20:]):
                 self.refused(text)
 
-    def test_a_doctype_is_refused_and_instructions_to_programs_say_nothing(self):
+    def test_a_doctype_is_refused_and_processing_instructions_are_ignored(self):
         self.refused('<!DOCTYPE study [<!ENTITY e "sound">]>' + self.changed("Together?", "Did &e; come?"), "<!DOCTYPE>")
         self.refused('<!DOCTYPE study [<!ATTLIST study seed CDATA "77">]>' + GOOD, "<!DOCTYPE>")
         self.assertEqual(self.read(self.changed("Together?", "Do both<?x y?> come?")).question, "Do both come?")
         self.assertEqual(len(self.read(self.changed("<conditions>", "<conditions><?x y?>")).conditions), 1)
 
-    def test_a_pair_of_more_levels_than_could_ever_be_tried_is_refused_at_once(self):
+    def test_a_pair_with_too_many_levels_is_refused_at_once(self):
         many = " ".join(f"{i / 100:.2f}ms" for i in range(20_000))
         pair = "".join(f'<factor modality="{sense}" operator="delay" levels="{many}"/>' for sense in ("audio", "visual"))
         self.refused(f'''<study name="s" version="1" scene="dark_room_game.sdf" task="game"><conditions><pair>{pair}</pair></conditions>
             <procedure kind="constant" repetitions="1"/><response kind="performance"/></study>''', "20000 and 20000 levels")
 
-    def test_what_falls_as_it_gets_worse_is_judged_of_two_intervals_by_constant_stimuli_and_by_people(self):
+    def test_operators_whose_lower_level_is_worse_take_constant_stimuli_and_no_observer_in_two_intervals(self):
         rate = PRESSED.replace(' of="stiffness"', "").replace('operator="delay" levels="10ms 40ms"', 'operator="rate" levels="5Hz 50Hz"')
         alone = rate[:rate.index("  <observer")] + "</study>"
         self.assertEqual(self.read(alone).conditions[0].levels, (5.0, 50.0))
         self.refused(alone.replace('kind="constant" repetitions="4"', 'kind="staircase" rule="1up2down" start="50Hz" step="8Hz" minimum_step="1Hz" lowest="1Hz" '
-                                   'highest="100Hz" reversals="8"'), "less of rate")
+                                   'highest="100Hz" reversals="8"'), "a lower rate")
         self.refused(alone.replace("</study>", '<observer function="weibull"><parameter name="threshold" value="20" source="x"/><parameter name="slope" value="3" source="x"/>'
                                    '<parameter name="guess" value="0.5" source="x"/><parameter name="lapse" value="0" source="x"/></observer></study>'), "rises with the level")
 
-    def test_a_copy_is_read_without_the_scene_that_lay_beside_the_file(self):
+    def test_a_copy_is_read_without_its_scene(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "study.xml"
             path.write_text(GOOD.replace("single_taps.sdf", "mine.sdf"), encoding="utf-8")
@@ -150,7 +150,7 @@ class StudyFile(unittest.TestCase):
             with self.assertRaisesRegex(Refusal, r"study\.xml:1: the scene mine\.sdf"):
                 study_file.read(path)
 
-    def test_a_file_that_was_damaged_anywhere_is_read_or_refused_with_a_line_and_never_more(self):
+    def test_a_damaged_file_is_read_or_refused_with_its_line(self):
         dice = random.Random(1)
         refused = 0
         for _ in range(300):
@@ -164,7 +164,7 @@ class StudyFile(unittest.TestCase):
                 self.assertRegex(str(refusal), r"s\.xml:\d+: ")
         self.assertGreater(refused, 100)
 
-    def test_every_operator_makes_an_element_that_says_its_level(self):
+    def test_every_operator_writes_its_level_to_its_element(self):
         for operator, (unit, _, least, most) in quantities.OPERATORS.items():
             level = min(max(least, 5.0), most)
             element = xml.fromstring(quantities.degrade("haptic", operator, level))
@@ -172,7 +172,7 @@ class StudyFile(unittest.TestCase):
             value = next(v for k, v in element.attrib.items() if k != "modality")
             self.assertTrue(value.startswith(f"{level:g}{unit}"), value)
 
-    def test_every_shipped_study_is_right(self):
+    def test_every_shipped_study_is_valid(self):
         names = sorted(p.stem for p in study_file.SHIPPED.glob("*.xml"))
         self.assertGreaterEqual(len(names), 6)
         for name in names:

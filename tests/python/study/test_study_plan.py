@@ -1,4 +1,4 @@
-"""The plan: the same trials for the same study, participant, seed and answers, wherever it was interrupted."""
+"""The plan: study, participant, seed and answers determine the trials, also after an interruption."""
 import collections
 import dataclasses
 import pathlib
@@ -29,18 +29,18 @@ class ThePlan(unittest.TestCase):
         self.games = study_file.read("two_senses")
         self.stairs = dataclasses.replace(study_file.read("haptic_delay_stiffness"), procedure=STAIRS)
 
-    def test_constant_stimuli_present_each_level_as_often(self):
+    def test_constant_stimuli_present_each_level_equally_often(self):
         trials = played(Plan(self.synchrony, "P01"), lambda t: t.level > 0)
         self.assertEqual(set(collections.Counter(t.level for t in trials).values()), {20})
         self.assertEqual([t.number for t in trials], list(range(1, 241)))
         self.assertEqual(collections.Counter(t.block for t in trials), {1: 60, 2: 60, 3: 60, 4: 60})
 
-    def test_another_participant_gets_another_order_and_the_same_one_the_same(self):
+    def test_participants_get_different_orders_and_each_the_same_order_again(self):
         levels = lambda name: [t.level for t in played(Plan(self.synchrony, name), lambda t: True)]
         self.assertEqual(levels("P01"), levels("P01"))
         self.assertNotEqual(levels("P01"), levels("P02"))
 
-    def test_a_plan_that_is_told_the_same_answers_again_goes_on_with_the_same_trial(self):
+    def test_a_plan_with_the_same_answers_continues_with_the_same_trial(self):
         for study in (self.synchrony, self.stairs, self.games):
             dice = random.Random(5)
             answers = [dice.random() < 0.7 for _ in range(5000)]
@@ -52,7 +52,7 @@ class ThePlan(unittest.TestCase):
                     again.answered(trial, answers[trial.number])
                 self.assertEqual(again.next(), whole[stop])
 
-    def test_a_spoiled_trial_comes_again(self):
+    def test_a_missed_trial_is_repeated(self):
         plan = Plan(self.stairs, "P01")
         self.assertEqual(plan.next(), plan.next())
 
@@ -72,7 +72,7 @@ class ThePlan(unittest.TestCase):
             self.assertEqual(len({t.condition.id for t in trials[begin:begin + 32]}), 32)
         self.assertEqual(order_of(4, "none", "P1", 0, 1), [0, 1, 2, 3])
 
-    def test_of_two_intervals_either_is_degraded_about_as_often(self):
+    def test_either_of_two_intervals_is_degraded_about_equally_often(self):
         trials = played(Plan(study_file.read("haptic_delay_stiffness"), "P01"), lambda t: True)
         second = sum(t.degraded_interval for t in trials)
         self.assertTrue(55 <= second <= 105, second)  # 160 fair coins: 80 +- 4 standard deviations of 6.3

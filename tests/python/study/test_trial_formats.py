@@ -1,4 +1,4 @@
-"""The files made of a journal say what the journal says, in each of their formats."""
+"""Exports of a journal agree with the journal in each format."""
 import csv
 import json
 import pathlib
@@ -64,7 +64,7 @@ class Formats(unittest.TestCase):
             again = rows[int(row["repeated_as"])]
             self.assertEqual((again["missed"], int(again["trial"])), ("0", int(row["trial"]) + 1))
 
-    def test_psignifit_counts_the_answers_of_trials_that_count_at_the_asynchrony_that_was_measured(self):
+    def test_psignifit_counts_answers_at_the_measured_asynchrony_without_missed_trials(self):
         rows = self.table("psignifit/audio-visual.csv")
         answered = [e for e in self.entries if e["kind"] == "trial" and not e["missed"]]
         self.assertEqual(sum(int(r["total"]) for r in rows), len(answered))
@@ -87,7 +87,7 @@ class Formats(unittest.TestCase):
         self.assertIn("observer=simulated", (self.folder / "bids" / "README").read_text(encoding="utf-8"))
         self.assertIn("observer=simulated", json.loads((self.folder / "bids" / "dataset_description.json").read_text(encoding="utf-8"))["Name"])
 
-    def test_bids_events_begin_when_the_question_was_asked(self):
+    def test_bids_events_begin_at_the_question(self):
         rows = self.table("bids/sub-P01/ses-1/beh/sub-P01_ses-1_task-oftwo_events.tsv", delimiter="\t", quoting=csv.QUOTE_NONE)
         self.assertEqual(list(rows[0])[:2], ["onset", "duration"])
         answered = [e for e in self.entries if e["kind"] == "trial" and not e["missed"]]
@@ -108,16 +108,16 @@ class Formats(unittest.TestCase):
             self.assertEqual((row["participant"], row["expName"], row["key_resp.rt"]), ("P01", "of two", "0.8"))
         self.assertEqual(sum(seen.values()), 60)
 
-    def test_the_page_describes_every_column_as_the_sidecars_do_and_no_other(self):
+    def test_the_page_describes_the_same_columns_as_the_sidecars(self):
         page = (ROOT / "docs" / "study_formats.md").read_text(encoding="utf-8")
         described = re.findall(r"^\| `(\w+)` \| ([^|]*) \| ([^|]*) \|$", page, re.M)
-        told = lambda column: column.description + (f" ({', '.join(column.levels)})" if column.levels else "")
+        meaning = lambda column: column.description + (f" ({', '.join(column.levels)})" if column.levels else "")
         self.assertEqual([(name, unit.strip(), text.strip()) for name, unit, text in described],
-                         [(name, column.unit, told(column)) for name, column in trial_table.COLUMNS.items()])
+                         [(name, column.unit, meaning(column)) for name, column in trial_table.COLUMNS.items()])
 
 
 def a_value(dice, column):
-    """Anything that a field of this column may hold."""
+    """A random valid value of this column."""
     if column.kind == "flag":
         return dice.randrange(2)
     if column.kind == "whole":
@@ -141,7 +141,7 @@ class Tables(unittest.TestCase):
         self.addCleanup(kept.cleanup)
         self.path = pathlib.Path(kept.name) / "trials.csv"
 
-    def test_what_is_written_is_read_back(self):
+    def test_a_written_table_is_read_back(self):
         for seed in range(40):
             dice = random.Random(seed)
             rows = [a_row(dice) for _ in range(dice.randrange(12))]
@@ -149,7 +149,7 @@ class Tables(unittest.TestCase):
             read = [{k: v for k, v in row.items() if v not in (None, "")} for row in trial_table.read(self.path)]
             self.assertEqual(read, rows)
 
-    def test_a_row_that_is_wrong_is_not_written_and_the_table_stays(self):
+    def test_an_invalid_row_is_not_written_and_the_table_stays(self):
         trial_table.write(self.path, [a_row(random.Random(1))])
         before = self.path.read_bytes()
         good = {"participant_id": "P01", "task": "sj", "observer": "human"}
@@ -163,8 +163,8 @@ class Tables(unittest.TestCase):
     def test_a_hostile_table_is_refused_with_its_line_and_reason(self):
         header, good = "participant_id,task,observer,level,missed", "P01,sj,human,1.5,0"
         for text, line, reason in (
-                ("", 1, "no column participant_id"), (header.replace("level", "colour"), 1, "the column 'colour' is not one"), (header + ",level", 1, "'level' stands there twice"),
-                (f"{header}\n{good}\n{good},7", 3, "6 fields where the header has 5"), (f"{header}\n{good}\n\n{good}", 3, "0 fields"), (f"{header}\nP01,sj,human,much,0", 2, "level is 'much'"),
+                ("", 1, "no column participant_id"), (header.replace("level", "colour"), 1, "the column 'colour' is not a column"), (header + ",level", 1, "'level' occurs twice"),
+                (f"{header}\n{good}\n{good},7", 3, "6 fields, but the header has 5"), (f"{header}\n{good}\n\n{good}", 3, "0 fields"), (f"{header}\nP01,sj,human,much,0", 2, "level is 'much'"),
                 (f"{header}\n{good}\nP01,sj,human,nan,0", 3, "level is 'nan'"), (f"{header}\nP01,sj,human,1,0.5", 2, "missed is 0.5"), (f"{header}\nP01,sj,robot,1,0", 2, "observer is 'robot'"),
                 (f"{header}\n,sj,human,1,0", 2, "participant_id is empty"), (f'{header}\n"P01,sj', 2, "unexpected end"), (f"{header}\nP01,sj,human,1e999,0", 2, "level is 'inf'")):
             self.path.write_text(text, encoding="utf-8")
@@ -181,7 +181,7 @@ class Tables(unittest.TestCase):
 
 
 def random_journal(folder, dice):
-    """A journal of several conditions: some answers yes or no, some numbers, some of pairs of levels; some trials missed, more than once."""
+    """A journal of several conditions with yes/no answers, numbers, pairs of levels and repeatedly missed trials."""
     names = ["haptic delay", "haptic-delay", "Haptic delay", "audio x visual", "ü"]
     with journal.Journal(folder) as j:
         j.begin(study="s", study_sha256="0" * 64, participant="P_7", seed=1, observer=dice.choice(["human", "simulated"]))
@@ -203,7 +203,7 @@ def random_journal(folder, dice):
 
 
 class RandomJournals(unittest.TestCase):
-    def test_every_format_says_what_the_journal_says(self):
+    def test_every_format_agrees_with_the_journal(self):
         for seed in range(25):
             with tempfile.TemporaryDirectory() as scratch:
                 folder = pathlib.Path(scratch)
@@ -231,7 +231,7 @@ class RandomJournals(unittest.TestCase):
                 self.assertEqual([r["condition"] for r in wide], [e["condition"] for e in counted])
 
     def psignifit(self, folder, answered):
-        """Each condition in a file of its own, though their names hardly differ, and no answer lost."""
+        """Each condition has its own file, even with similar names, and no answer is lost."""
         files = list(folder.glob("psignifit/*.csv"))
         self.assertEqual(len({f.name.lower() for f in files}), len({e["condition"] for e in answered}))
         sums = []
@@ -243,7 +243,7 @@ class RandomJournals(unittest.TestCase):
         expected = [(sum(e["yes"] for e in answered if e["condition"] == c), sum(e["condition"] == c for e in answered)) for c in {e["condition"] for e in answered}]
         self.assertEqual(sorted(sums), sorted(expected))
 
-    def test_a_row_that_no_table_has_is_refused_with_the_line_of_the_journal(self):
+    def test_an_invalid_row_is_refused_with_the_line_of_the_journal(self):
         with tempfile.TemporaryDirectory() as scratch:
             folder = pathlib.Path(scratch)
             with journal.Journal(folder) as j:

@@ -1,4 +1,4 @@
-"""tactus study sweep: games by chance and yet the same, whoever plays them when; killed at any moment, nothing is lost or played twice."""
+"""tactus study sweep: games depend on their seeds only; after a kill at any moment no game is lost or played twice."""
 import csv
 import io
 import lzma
@@ -44,7 +44,7 @@ class Sweep(unittest.TestCase):
         self.study = self.folder / "short.xml"
         self.study.write_text(STUDY, encoding="utf-8")
 
-    def test_games_are_the_same_however_many_jobs_play_them_and_their_rows_say_what_was_degraded(self):
+    def test_games_do_not_depend_on_the_number_of_jobs_and_their_rows_name_the_degradation(self):
         for jobs in (1, 3):
             sweep(self.study, "--games", 2, "--jobs", jobs, "--out", self.folder / str(jobs))
         one, three = ((self.folder / str(jobs) / "games.csv").read_bytes() for jobs in (1, 3))
@@ -55,10 +55,10 @@ class Sweep(unittest.TestCase):
         self.assertEqual({(r["modality_degraded"], r["operator"], r["level"]) for r in rows},
                          {("", "", None), ("audio", "off", None), ("visual", "delay", 50), ("visual", "delay", 300), ("audio", "delay", 100)})
         self.assertEqual({(r["second_modality"], r["second_operator"], r["second_level"]) for r in rows}, {("", "", None), ("visual", "loss", 50)})
-        self.assertTrue(all(r["missed"] == 0 and r["success"] == 0 and r["completion_time_s"] == 1 for r in rows), rows)  # a second is too short
+        self.assertTrue(all(r["missed"] == 0 and r["success"] == 0 and r["completion_time_s"] == 1 for r in rows), rows)  # 1 s is too short to win
         self.assertEqual(len({r["seed"] for r in rows}), 10)
 
-    def test_killed_at_random_moments_it_goes_on_and_nothing_is_lost_or_played_twice(self):
+    def test_a_sweep_killed_at_random_moments_resumes_without_lost_or_repeated_games(self):
         whole, killed = self.folder / "whole", self.folder / "killed"
         sweep(self.study, "--games", 4, "--jobs", 2, "--out", whole)
         random.seed(8)
@@ -80,7 +80,7 @@ class Sweep(unittest.TestCase):
         self.assertGreater(kills, 0)
         self.assertEqual((whole / "games.csv").read_bytes(), (killed / "games.csv").read_bytes())
 
-    def test_a_line_that_was_being_written_when_its_writer_died_is_played_again(self):
+    def test_a_game_with_an_incomplete_line_is_played_again(self):
         out = self.folder / "out"
         sweep(self.study, "--games", 1, "--jobs", 1, "--out", out)
         before = (out / "games.csv").read_bytes()
@@ -89,36 +89,36 @@ class Sweep(unittest.TestCase):
         sweep("--resume", "--out", out)
         self.assertEqual((out / "games.csv").read_bytes(), before)
 
-    def test_a_study_in_another_encoding_is_kept_as_it_is(self):
+    def test_a_study_in_another_encoding_is_copied_unchanged(self):
         self.study.write_bytes(STUDY.replace("UTF-8", "UTF-16").encode("utf-16"))
         sweep(self.study, "--games", 1, "--out", self.folder / "out")
         self.assertEqual((self.folder / "out" / "study.xml").read_bytes(), self.study.read_bytes())
 
-    def test_a_game_that_fails_is_a_row_that_says_so(self):
+    def test_a_failed_game_is_marked_in_its_row(self):
         study = study_file.read(str(self.study))
         game = virtual_games.games_of(study, 1)[0][0]
         row = virtual_games.row(study, game, {"trouble": "the world does not begin", "said": "sim_node: no"})
         self.assertEqual((row["missed"], row["missed_reason"]), (1, "the world does not begin: sim_node: no"))
         self.assertIsNone(trial_table.wrong(row))
 
-    def test_two_cannot_hold_one_chunk(self):
+    def test_only_one_process_holds_a_chunk(self):
         held = chunk_file.ChunkFile(self.folder / "chunk.csv")
         with self.assertRaises(chunk_file.Busy):
             chunk_file.ChunkFile(self.folder / "chunk.csv")
         held.close()
         chunk_file.ChunkFile(self.folder / "chunk.csv").close()
 
-    def test_a_larger_sweep_takes_the_games_of_a_smaller_one_and_comes_to_the_same(self):
+    def test_a_larger_sweep_reuses_the_games_of_a_smaller_one_with_the_same_result(self):
         sweep(self.study, "--games", 3, "--jobs", 2, "--out", self.folder / "whole")
         sweep(self.study, "--games", 2, "--jobs", 2, "--out", self.folder / "small")
         small = self.folder / "small" / "games.csv"
         (self.folder / "small.csv.xz").write_bytes(lzma.compress(small.read_bytes()))
         for table in (small, self.folder / "small.csv.xz"):
             out = self.folder / f"from{table.suffix}"
-            self.assertIn("10 games are those of", sweep(self.study, "--games", 3, "--jobs", 2, "--from", table, "--out", out).stdout)
+            self.assertIn("10 games are reused from", sweep(self.study, "--games", 3, "--jobs", 2, "--from", table, "--out", out).stdout)
             self.assertEqual((self.folder / "whole" / "games.csv").read_bytes(), (out / "games.csv").read_bytes())
 
-    def test_games_of_another_build_are_not_mixed_with_those_of_this_one(self):
+    def test_games_of_another_build_are_refused(self):
         sweep(self.study, "--games", 1, "--jobs", 1, "--out", self.folder / "small")
         table = self.folder / "small" / "games.csv"
         rows = list(csv.reader(io.StringIO(table.read_text(encoding="utf-8"), newline="")))
@@ -126,11 +126,11 @@ class Sweep(unittest.TestCase):
         other = self.folder / "other.csv"
         with open(other, "w", newline="", encoding="utf-8") as file:
             csv.writer(file).writerows(rows)
-        self.assertIn("comes to something else", sweep(self.study, "--games", 2, "--from", other, "--out", self.folder / "mixed", status=1).stderr)
+        self.assertIn("has another result", sweep(self.study, "--games", 2, "--from", other, "--out", self.folder / "mixed", status=1).stderr)
         other.with_suffix(".csv.xz").write_bytes(b"none")
         self.assertIn("holds no table", sweep(self.study, "--games", 2, "--from", other.with_suffix(".csv.xz"), "--out", self.folder / "none", status=1).stderr)
 
-    def test_what_cannot_be_swept_is_refused_in_a_sentence(self):
+    def test_an_invalid_sweep_is_refused_with_one_sentence(self):
         other = self.folder / "other.xml"
         out = self.folder / "out"
         sweep(self.study, "--games", 1, "--jobs", 1, "--out", out)

@@ -1,11 +1,11 @@
-"""What an answer means: yes or no at a level, for each kind of task."""
+"""Interpretation of answers: yes or no at a level, for each kind of task."""
 import re
 
 import numpy as np
 
 from tactus.refusal import Refusal
 
-# What a trial's task is called, and the psychometric function of scripts/python/tactus/psychophysics/functions.py that it follows.
+# Task of a trial: the psychometric function of tactus/psychophysics/functions.py that it follows.
 FUNCTION = {"sj": "synchrony_window", "toj": "order", "2ifc": "weibull"}
 CALLED = {"sj": "synchrony judgement", "toj": "temporal order judgement", "2ifc": "two intervals, which one was degraded"}
 OTHER_NAMES = {"synchrony": "sj", "order": "toj", "two_interval": "2ifc", "2afc": "2ifc"}
@@ -29,9 +29,7 @@ def pair_of(text):
 
 
 def says_yes(kind, row_response, row_correct, pair):
-    """Whether one answer counts as yes: together (sj), b was first (toj; the share falls as b comes later), correct (2ifc).
-
-    None where there is no answer."""
+    """Whether one answer counts as yes: together (sj), a was first (toj), correct (2ifc). None: no answer."""
     if kind == "2ifc":
         return None if row_correct != row_correct else bool(row_correct)
     word = row_response.strip().lower()
@@ -40,19 +38,19 @@ def says_yes(kind, row_response, row_correct, pair):
     if kind == "sj":
         if word in TOGETHER | APART:
             return word in TOGETHER
-        raise Refusal(f"the response '{row_response[:40]}' to a synchrony judgement is not understood; write yes or no")
+        raise Refusal(f"the response '{row_response[:40]}' to a synchrony judgement is unknown; write yes or no")
     a, b = pair
     first = word.removesuffix(" first").removesuffix("_first")
-    # `order` of functions.py rises with SOA(a, b) = t(b) - t(a): the later b comes, the oftener a is called first.
+    # `order` of functions.py rises with SOA(a, b) = t(b) - t(a): the later b is, the more answers call a first.
     if first in (a, "a", "first"):
         return True
     if first in (b, "b", "second"):
         return False
-    raise Refusal(f"the response '{row_response[:40]}' to a temporal order judgement is not understood; write {a} or {b}, whichever was first")
+    raise Refusal(f"the response '{row_response[:40]}' to a temporal order judgement is unknown; write {a} or {b}, the first of them")
 
 
 def answered(kind, trials, pair):
-    """(rows that have an answer and a level, yes as 0/1)."""
+    """(mask of rows with an answer, yes as 0/1)."""
     said = [says_yes(kind, r, c, pair) for r, c in zip(trials["response"], trials["correct"])]
     rows = np.array([s is not None for s in said], dtype=bool)
     return rows, np.array([bool(s) for s in said], dtype=float)

@@ -1,8 +1,7 @@
-"""L_appear: the level at which a felt property is off by more than its JND, from what participants matched or rated it to be; presses.py adds what was
-measured of what they felt.
+"""L_appear: the level at which a felt property differs by more than its JND, from matches and ratings; presses.py adds measured stiffness.
 
-Each answer is held against the mean of the same participant's answers about the undegraded stimulus: people use scales differently.
-The JND is a published one (study/just_noticeable.csv), a share of that reference or an absolute step.
+Each answer is compared with the mean of the same participant's answers about the undegraded stimulus, because people use scales differently. The JND is
+published (study/just_noticeable.csv): a share of that reference, or an absolute step.
 """
 import dataclasses
 
@@ -28,15 +27,15 @@ class Felt:
     jnd: float
     source: felt_properties.JustNoticeable
     limit: limits.Limit
-    toward: str  # less, more: where the property goes
-    left_out: int  # answers of participants who never judged the undegraded stimulus, or took it for nothing
+    toward: str  # less, more: direction of the change
+    left_out: int  # answers of participants without an answer to the undegraded stimulus, or with a mean of 0 for it
     observer: str
-    measured: bool = False  # what the hand was given; else what it was judged to be
+    measured: bool = False  # measured at the hand; else judged by the participant
 
 
 def judged(trials, stated):
-    """[(property, Trials)] of answers with a number about a property that has a published JND. stated(study): the property that the study
-    file names, or ""; else the question is to name it."""
+    """[(property, Trials)] of numeric answers about a property with a published JND. stated(study): the property in the study file; "": the question
+    names it."""
     known = felt_properties.just_noticeable()
     mine = trials.where(np.isin(trials["task"], TASKS) & ~np.isnan(trials["answer_value"]))
     names = np.array([stated(study) or felt_properties.property_of(question, known) for study, question in zip(mine["study"], mine["question"])], dtype=object)
@@ -49,14 +48,14 @@ def felt(property, trials, rng):
     plain = np.array([not (m and o) or operators.factor(m, o, u, level).undegraded(level) for m, o, u, level in
                       zip(*(trials[name] for name in ("modality_degraded", "operator", "unit", "level")))], dtype=bool)
     own = {name: float(np.mean(rows["answer_value"])) for (name,), rows in trials.where(plain).groups("participant_id")}
-    own = {name: reference for name, reference in own.items() if reference or jnd.unit != "%"}  # of nothing there is no share
+    own = {name: reference for name, reference in own.items() if reference or jnd.unit != "%"}  # no relative shift to a reference of 0
     known = np.array([p in own for p in trials["participant_id"]], dtype=bool)
     single = known & (trials["second_modality"] == "")
     made = []
     for factor, rows in operators.factors(trials.where(single & ~plain)):
         if factor.removal:
             continue
-        # Per participant: the reference is a share of what this participant takes the undegraded to be.
+        # The reference is that of the same participant.
         baseline = trials.where(known & plain & np.isin(trials["participant_id"], rows["participant_id"]))
         made.append(of_factor(property, jnd, factor, rows, baseline, own, int(np.count_nonzero(~known)), rng))
     return made

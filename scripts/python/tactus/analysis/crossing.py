@@ -1,4 +1,4 @@
-"""Where a worsening that grows with severity crosses a margin."""
+"""The severity at which a worsening, made non-decreasing, crosses a margin."""
 import numpy as np
 
 
@@ -8,7 +8,7 @@ def isotonic(values, weights):
     sums = np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(values * weights[:, None], axis=0)])
     mass = np.concatenate([[0.0], np.cumsum(weights)])
     out = np.empty_like(values)
-    # least[i] at j: the least mean of i..j' over j' >= j; out[j] = max over i <= j.
+    # least[i] at j: the smallest mean of i..j' over j' >= j; out[j] = max over i <= j.
     best = np.full((k, values.shape[1]), -np.inf)
     for i in range(k):
         means = (sums[i + 1:] - sums[i]) / (mass[i + 1:] - mass[i])[:, None]
@@ -19,10 +19,10 @@ def isotonic(values, weights):
 
 
 def crossing(severities, worsening, weights, margin, at_zero=0.0):
-    """(B,) severities at which the worsening (K, B), made non-decreasing, first reaches the margin; infinite where it does not.
+    """(B,) severities at which the worsening (K, B), made non-decreasing, first reaches the margin; infinite: it does not.
 
-    severities: (K,) ascending, above 0. at_zero: (B,) worsening at severity 0; 0 by definition where that is the baseline itself.
-    Between the severities it is a straight line."""
+    severities: (K,) ascending, above 0. at_zero: (B,) worsening at severity 0; 0 by definition if that is the baseline itself. Interpolates linearly
+    between the severities."""
     severities = np.concatenate([[0.0], severities])
     begin = np.broadcast_to(at_zero, worsening.shape[1:])[None]
     curve = np.concatenate([begin, np.maximum(isotonic(worsening, np.asarray(weights, dtype=float)), begin)])

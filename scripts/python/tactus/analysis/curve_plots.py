@@ -1,16 +1,16 @@
-"""Figures of psychometric functions: curves, participants side by side, achieved asynchronies, and the levels as they were given."""
+"""Figures of psychometric functions: curves, participants side by side, measured asynchronies, and levels in order of presentation."""
 import numpy as np
 
 from tactus.analysis import answers, psychometric, published
 from tactus.analysis.look import BREAK, INK, PALE, colour, figures, label_of, stamp, thresholds_behind
 from tactus.psychophysics import fits, functions
 
-BAND_DRAWS = 300  # design: of the band about a curve
+BAND_DRAWS = 300  # draws of the band around a curve; design
 SIDE_BY_SIDE = 4  # columns of small multiples
-RUNNING_FROM, RUNNING_POINTS = 10, 24  # the estimate while answers came in: from so many on, at so many instants; design
-ADAPTIVE = 0.2  # of the range: levels that mostly change by less were chosen from the answers; design
-BESIDE, WIDEST = 0.02, 0.06  # of the range: levels that are so near are drawn as one, and no wider; design
-MOST_SMALL = 24  # participants on one figure, design
+RUNNING_FROM, RUNNING_POINTS = 10, 24  # running estimate: first number of answers, number of points; design
+ADAPTIVE = 0.2  # share of the range: median step of levels below which the procedure counts as adaptive; design
+NEARBY, WIDEST = 0.02, 0.06  # shares of the range: levels closer than the first are drawn as one point, up to the second in width; design
+MAX_SMALL = 24  # participants on one figure; design
 ASKED = {"sj": "share judged synchronous", "toj": "share “{a} first”", "2ifc": "share correct"}
 
 
@@ -19,19 +19,19 @@ def asked(condition):
 
 
 def span(curve, margin=0.08):
-    """Where to draw a curve: the levels and the middle of the function, a little beyond."""
+    """Range of the drawn curve: the levels plus a margin."""
     low, high = float(curve.levels.min()), float(curve.levels.max())
     room = margin * ((high - low) or 1)
     return (low - room if curve.condition.pair else max(0.0, low - room)), high + room
 
 
 def together(levels, yes, total):
-    """(levels, yes, total) with those that lie beside one another joined, at their mean: achieved levels are all a little apart."""
+    """(levels, yes, total) with nearby levels joined at their mean, because measured levels all differ slightly."""
     order = np.argsort(levels)
     levels, yes, total = levels[order], yes[order], total[order]
     group, first, whole = np.zeros(len(levels), int), 0, np.ptp(levels) or 1
     for i in range(1, len(levels)):
-        apart = levels[i] - levels[i - 1] > BESIDE * whole or levels[i] - levels[first] > WIDEST * whole
+        apart = levels[i] - levels[i - 1] > NEARBY * whole or levels[i] - levels[first] > WIDEST * whole
         first = i if apart else first
         group[i] = group[i - 1] + apart
     sums = np.bincount(group, weights=total)
@@ -39,13 +39,13 @@ def together(levels, yes, total):
 
 
 def points(axes, curve, scale=1.0, **style):
-    """A point for each level, its area in proportion to its answers."""
+    """A point for each level, its area proportional to the number of answers."""
     levels, yes, total = together(curve.levels, curve.yes, curve.total)
     axes.scatter(levels, yes / total, s=scale * (6 + 60 * total / total.max()), facecolor="white", edgecolor=style.get("color", INK), linewidth=0.9, zorder=3)
 
 
 def finite(levels):
-    """Where to end what has no end: a range of the levels beyond them."""
+    """(low, high) ends for infinite intervals: the levels plus their range on either side."""
     return levels.min() - np.ptp(levels), levels.max() + np.ptp(levels)
 
 
@@ -58,7 +58,7 @@ def redrawn(curve, rng):
 
 
 def line(axes, curve, rng=None, **style):
-    """The fitted function, and the band in which 95 % of the functions lie that fit answers drawn from it."""
+    """The fitted function, and the 95 % band of functions refitted to answers drawn from it (parametric bootstrap)."""
     function = functions.FUNCTIONS[answers.FUNCTION[curve.condition.kind]]
     x = np.linspace(*span(curve), 240)
     if rng is not None:
@@ -69,7 +69,7 @@ def line(axes, curve, rng=None, **style):
 
 
 def curve_figure(curve, seed):
-    """One condition, everybody together, published thresholds behind."""
+    """(figure, number of thresholds outside it): one condition, all participants together, with published thresholds."""
     condition = curve.condition
     fig, axes = figures.new(height_in=2.9)
     tint = colour(condition.pair[1] if condition.pair else condition.factor.modality)
@@ -85,20 +85,20 @@ def curve_figure(curve, seed):
         for edge in ("low75", "high75"):
             axes.axvline(curve.value(edge), color=tint, linewidth=0.8, linestyle=":")
     lapse = curve.fit.params.get("lapse")
-    told = f"{'PSS' if condition.pair else 'threshold'} {value:.4g} [{low:.4g}, {high:.4g}]"
+    label = f"{'PSS' if condition.pair else 'threshold'} {value:.4g} [{low:.4g}, {high:.4g}]"
     if condition.pair:
         name = "window75" if condition.kind == "sj" else "jnd"
-        told += f"\n{name} {curve.value(name):.1f} [{curve.intervals[name][0]:.1f}, {curve.intervals[name][1]:.1f}]"
-    told += (f"\nlapse {lapse:.3f}" if lapse is not None else "") + f"\nn = {int(curve.total.sum())}"
-    axes.text(1.02, 0.02, told, transform=axes.transAxes, fontsize=7.5, va="bottom")
+        label += f"\n{name} {curve.value(name):.1f} [{curve.intervals[name][0]:.1f}, {curve.intervals[name][1]:.1f}]"
+    label += (f"\nlapse {lapse:.3f}" if lapse is not None else "") + f"\nn = {int(curve.total.sum())}"
+    axes.text(1.02, 0.02, label, transform=axes.transAxes, fontsize=7.5, va="bottom")
     axes.set(ylim=(-0.07, 1.03), xlabel=condition.axis(), ylabel=asked(condition), title=condition.words())
     stamp(fig, curve.observer)
     return fig, beyond
 
 
 def small_multiples(curves):
-    """Each participant's own answers and function, that of everybody behind."""
-    people = [c for c in curves if c.participant != psychometric.EVERYBODY][:MOST_SMALL]
+    """Answers and function of each participant, with the function of all participants behind."""
+    people = [c for c in curves if c.participant != psychometric.EVERYBODY][:MAX_SMALL]
     everybody = next(c for c in curves if c.participant == psychometric.EVERYBODY)
     rows = -(-len(people) // SIDE_BY_SIDE)
     fig, grid = figures.new(rows, SIDE_BY_SIDE, height_in=0.5 + 1.35 * rows, sharex=True, sharey=True, squeeze=False)
@@ -124,20 +124,20 @@ def small_multiples(curves):
 
 
 def achieved_figure(curve):
-    """How far the achieved asynchrony lay from the one asked for, and how often each was given."""
+    """Histograms of the measured asynchrony and of its difference to the requested one."""
     achieved, nominal = curve.trials["soa_achieved_ms"], curve.trials["soa_nominal_ms"]
     fig, (whole, off) = figures.new(1, 2, height_in=2.2, width_ratios=(2, 1))
     bins = max(20, min(120, int(np.ptp(achieved) / 2) + 1))
     whole.hist(achieved, bins=bins, color=colour(curve.condition.pair[1]), alpha=0.85)
     marks = np.unique(nominal[~np.isnan(nominal)])
-    for x in marks if len(marks) <= MOST_SMALL else []:
+    for x in marks if len(marks) <= MAX_SMALL else []:
         whole.axvline(x, color=INK, linewidth=0.6, linestyle=":")
-    whole.set(xlabel=curve.condition.axis(), ylabel="trials", title="achieved" + ("; dotted: asked for" if 0 < len(marks) <= MOST_SMALL else ""))
+    whole.set(xlabel=curve.condition.axis(), ylabel="trials", title="achieved" + ("; dotted: requested" if 0 < len(marks) <= MAX_SMALL else ""))
     error = (achieved - nominal)[~np.isnan(nominal)]
     if len(error):
         off.hist(error, bins=40, color=PALE)
         off.axvline(float(np.median(error)), color=INK, linewidth=1)
-        off.set(xlabel="achieved − asked for (ms)", title=f"median {np.median(error):.2f} ms, 95 % within {np.percentile(np.abs(error - np.median(error)), 95):.2f}")
+        off.set(xlabel="achieved − requested (ms)", title=f"median {np.median(error):.2f} ms, 95 % within {np.percentile(np.abs(error - np.median(error)), 95):.2f}")
         off.title.set_fontsize(7.5)
     else:
         off.set_visible(False)
@@ -146,27 +146,26 @@ def achieved_figure(curve):
 
 
 def running(curve, levels, yes, name):
-    """(answers so far, the fitted centre then)."""
+    """(numbers of answers, fitted centre after each)."""
     ends = np.unique(np.linspace(min(RUNNING_FROM, len(levels)), len(levels), RUNNING_POINTS).astype(int))
     same, at = np.unique(levels, return_inverse=True)
-    if len(same) > psychometric.MOST_LEVELS:
-        cuts = np.quantile(levels, np.linspace(0, 1, psychometric.MOST_LEVELS + 1)[1:-1])
+    if len(same) > psychometric.MAX_LEVELS:
+        cuts = np.quantile(levels, np.linspace(0, 1, psychometric.MAX_LEVELS + 1)[1:-1])
         at = np.searchsorted(cuts, levels)
-        same = np.array([levels[at == i].mean() if (at == i).any() else 0.0 for i in range(psychometric.MOST_LEVELS)])
+        same = np.array([levels[at == i].mean() if (at == i).any() else 0.0 for i in range(psychometric.MAX_LEVELS)])
     total = np.stack([np.bincount(at[:end], minlength=len(same)) for end in ends])
     said = np.stack([np.bincount(at[:end], weights=yes[:end], minlength=len(same)) for end in ends])
     found = fits.fit_many(same, said, total, answers.FUNCTION[curve.condition.kind], curve.fit.fixed)
-    # An estimate before both answers were given at all is none.
+    # There is no estimate before both answers have occurred.
     values = np.where((said.sum(axis=1) > 0) & (said.sum(axis=1) < total.sum(axis=1)) & found.placed(), found.estimates(name), np.nan)
     low, high = finite(levels)
     return ends, np.where((values > low) & (values < high), values, np.nan)
 
 
 def trace_figure(curves):
-    """The levels in the order in which they were given, filled where the answer was yes; the estimate as the answers came in; and the
-    interval of the last."""
+    """Levels in order of presentation, filled for the answer yes; the running estimate; and the final interval."""
     people = [c for c in curves if c.participant != psychometric.EVERYBODY] or curves
-    people = [c for c in people if len(c.trials)][:MOST_SMALL]
+    people = [c for c in people if len(c.trials)][:MAX_SMALL]
     rows = -(-len(people) // SIDE_BY_SIDE)
     columns = min(SIDE_BY_SIDE, len(people))
     fig, grid = figures.new(rows, columns, height_in=0.6 + 1.4 * rows, sharey=True, squeeze=False)

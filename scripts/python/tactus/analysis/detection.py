@@ -1,13 +1,12 @@
-"""L_detect: the level at which a degradation is noticed.
+"""L_detect: the level at which a degradation is detected.
 
-  synchrony judgement   the edges of the window, where the curve is at 75 % of its peak; one for each sense being late
-  temporal order        PSS ± JND, where 75 % of the orders are right, lapses aside
-  two intervals         75 % correct; where the study asks which of two felt softer, that is L_appear as it was judged
+  synchrony judgement   the edges of the window, where the curve is at 75 % of its peak; one for each late sense
+  temporal order        PSS ± JND, where 75 % of the orders are right, without lapses
+  two intervals         75 % correct; if the study asks which of two felt softer, this is L_appear as judged
 
-Of FEWEST_PARTICIPANTS people or more, the mean of the people's own values, with draws over people; of fewer, that of their answers taken
-together, with draws from the fit's interval: a normal distribution of either half's width. (PSS and JND of an order judgement are
-estimated independently of each other where the levels lie about the PSS, for the curve is symmetric.) A degradation that is noticed when there
-is none has a limit of 0.
+With FEWEST_PARTICIPANTS people or more, the limit is the mean of their own values, with draws over people. With fewer, it comes from the fit to all
+answers, with draws from the interval of the fit: a normal distribution with a separate width for each half. (PSS and JND of an order judgement are
+estimated independently of each other if the levels surround the PSS, because the curve is symmetric.) A limit below 0 counts as 0.
 """
 import numpy as np
 from scipy.stats import norm
@@ -26,7 +25,7 @@ def draws_of(value, interval, rng, draws=resampling.DRAWS):
 
 
 def edges(curve, sign, rng):
-    """(value, draws) of how late one sense may be in one fit; sign: +1 for the second of the pair, -1 for the first."""
+    """(value, draws) of the largest lateness of one sense, ms, in one fit; sign: +1 for the second of the pair, -1 for the first."""
     if curve.condition.kind == "sj":
         name = "high75" if sign > 0 else "low75"
         return sign * curve.value(name), None if rng is None else sign * draws_of(curve.value(name), curve.intervals[name], rng)
@@ -41,12 +40,12 @@ def threshold(curve, rng):
 
 
 def severities(values):
-    """(n,), what is below 0 as nothing at all."""
+    """(n,) severities; values below 0 become 0."""
     return np.array([max(v, 0.0) for v in values])
 
 
 def of_condition(condition, curves, rng, felt=""):
-    """[Limit] of one condition from its curves. felt: the property that its two intervals were judged by, or ""."""
+    """[Limit] of one condition from its curves. felt: the property by which its two intervals were compared, or ""."""
     fitted = [c for c in curves if c.fit is not None]
     everybody = [c for c in fitted if c.participant == EVERYBODY]
     people = [c for c in fitted if c.participant != EVERYBODY]
@@ -73,7 +72,7 @@ def of_condition(condition, curves, rng, felt=""):
 
 
 def detected(curves, seed, felt=lambda study: ""):
-    """[Limit] of all conditions. felt(study): the property that its file asks for, or ""."""
+    """[Limit] of all conditions. felt(study): the property in its study file, or ""."""
     made = []
     conditions = []
     for c in curves:

@@ -1,8 +1,8 @@
-"""Two senses degraded together: what remains of the performance at each pair of levels, and where it falls below the margin.
+"""Two senses degraded together: performance at each pair of levels, and the levels at which it reaches the margin.
 
 The frontier: for each level of the first factor, the level of the second at which success or time is worse than undegraded by the margin. A
-frontier that falls as the first level rises says that the senses make up for each other only in part; one that stays says that
-they do not depend on each other.
+frontier that falls with a rising first level shows that the senses compensate for each other only in part; a constant one shows that they are
+independent.
 """
 import dataclasses
 
@@ -23,12 +23,12 @@ class Frontier:
     edge: list
 
     def grid(self, of_cell):
-        """(i, j) array of a figure of each cell, NaN where nothing was played."""
+        """(i, j) array of of_cell(cell), NaN for a pair that was not played."""
         return np.array([[np.nan if cell is None else of_cell(cell) for cell in row] for row in self.cells])
 
 
 def pairs_of(cells):
-    """Pairs of factors that were played together, removals left out."""
+    """Pairs of factors that were played together, without removals."""
     return sorted({(d[0][0], d[1][0]) for d in cells if len(d) == 2 and not d[0][0].removal and not d[1][0].removal})
 
 
@@ -45,7 +45,7 @@ def frontier(cells, first, second, margins, observer):
 
 
 def edge_of(row, baseline, second, levels, margins, observer):
-    """L_break of the second factor along one row of the grid; None when too little of the row was played."""
+    """L_break of the second factor along one row of the grid; None: too few cells of the row were played."""
     played = [(second.severity(level), cell) for level, cell in zip(levels, row[1:]) if cell is not None]
     if row[0] is None or not played:
         return None
@@ -53,7 +53,7 @@ def edge_of(row, baseline, second, levels, margins, observer):
     weights = np.array([cell.n for _, cell in played], dtype=float)
 
     def first_reached(of, of_baseline):
-        """of: [(B, 2)] of the cells, that without the second factor first."""
+        """of: [(B, 2)] of the cells; the first is the one without the second factor."""
         found = []
         for worsening, margin in (([of_baseline[:, 0] - d[:, 0] for d in of], margins[0]), ([d[:, 1] / of_baseline[:, 1] - 1 for d in of], margins[1] - 1)):
             found.append(crossing(severities, np.stack(worsening[1:]), weights, margin, worsening[0]))

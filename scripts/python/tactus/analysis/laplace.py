@@ -1,9 +1,9 @@
 """Maximum likelihood of a logistic model with a random intercept and slope for each participant.
 
-The random effects are integrated out by Laplace's approximation about their mode (Breslow and Clayton 1993, Journal of the American
-Statistical Association 88:9; Bates et al. 2015, Journal of Statistical Software 67:1, for the form u = L v with v ~ N(0, 1), which lets a
-variance be 0). statsmodels has no such model: the mode of its BinomialBayesMixedGLM lies at a variance of 0 whatever the data, and its
-variational fit takes fixed and random effects as independent, so that its intervals are too narrow.
+Laplace's approximation about their mode integrates the random effects out (Breslow and Clayton 1993, Journal of the American Statistical Association
+88:9; Bates et al. 2015, Journal of Statistical Software 67:1, for the form u = L v with v ~ N(0, 1), which permits a variance of 0). statsmodels has no
+such model: the mode of its BinomialBayesMixedGLM lies at a variance of 0 for any data, and its variational fit assumes independent fixed and random
+effects, so that its intervals are too narrow.
 """
 import dataclasses
 
@@ -11,8 +11,8 @@ import numpy as np
 from scipy.optimize import minimize
 from statsmodels.tools.numdiff import approx_hess
 
-NEWTON_STEPS = 50  # design: at most; it converges in 5 to 10
-NEWTON_DONE = 1e-10  # of the largest step
+NEWTON_STEPS = 50  # maximum; it converges in 5 to 10; design
+NEWTON_DONE = 1e-10  # largest step at convergence
 
 
 @dataclasses.dataclass
@@ -32,7 +32,7 @@ def sums(at, values, groups):
 
 
 def negative_log_likelihood(theta, fixed, random, at, yes, groups, start):
-    """theta: beta, then the lower triangle of L (00, 10, 11). start: (groups, 2) v to begin with, overwritten by the mode."""
+    """theta: beta, then the lower triangle of L (00, 10, 11). start: (groups, 2) initial v, overwritten by the mode."""
     k = fixed.shape[1]
     factor = np.array([[theta[k], 0.0], [theta[k + 1], theta[k + 2]]])
     base, z = fixed @ theta[:k], random @ factor
@@ -43,7 +43,7 @@ def negative_log_likelihood(theta, fixed, random, at, yes, groups, start):
         slope = sums(at, (yes - p)[:, None] * z, groups) - v
         curve = sums(at, (p * (1 - p))[:, None, None] * outer, groups) + np.eye(2)
         step = np.linalg.solve(curve, slope[:, :, None])[:, :, 0]
-        # A Newton step on a logistic can overshoot where all answers agree; so long a one is cut.
+        # A Newton step on a logistic can overshoot if all answers agree; steps are limited to 3.
         v = v + step * np.minimum(1, 3 / np.maximum(np.abs(step).max(axis=1, keepdims=True), 1e-300))
         if np.abs(step).max() < NEWTON_DONE:
             break
@@ -55,7 +55,7 @@ def negative_log_likelihood(theta, fixed, random, at, yes, groups, start):
 
 
 def fit(fixed, slope, at, yes):
-    """fixed: (n, k) with an intercept first; slope: (n,) what the random slope is of; at: (n,) participant's number; yes: (n,) 0 or 1."""
+    """fixed: (n, k), intercept first; slope: (n,) variable of the random slope; at: (n,) index of the participant; yes: (n,) 0 or 1."""
     groups, k = int(at.max()) + 1, fixed.shape[1]
     random = np.stack([np.ones_like(slope), slope], axis=1)
     start = np.zeros((groups, 2))
@@ -68,7 +68,7 @@ def fit(fixed, slope, at, yes):
         good = bool(np.all(np.linalg.eigvalsh(hessian) > 0))
     except np.linalg.LinAlgError:
         good = False
-    if not good:  # a variance at 0 leaves the likelihood flat there: the fixed effects given the variances
+    if not good:  # at a variance of 0 the likelihood is flat: covariance of the fixed effects given the variances
         covariance = np.linalg.pinv(hessian[:k, :k])
     factor = np.array([[theta[k], 0.0], [theta[k + 1], theta[k + 2]]])
     converged = bool(found.success or np.abs(found.jac).max() < 1e-2) and bool(np.all(np.diag(covariance) > 0))

@@ -1,4 +1,4 @@
-"""Figures of limits: all of them by factor, the ratio of L_break to L_detect, and felt properties."""
+"""Figures of limits: all limits of a factor, the ratio of L_break to L_detect, and felt properties."""
 import numpy as np
 
 from tactus.analysis.look import BREAK, INK, PALE, colour, figures, stamp
@@ -9,7 +9,7 @@ TINT = {"detect": "#2a6fb0", "appear": "#a8871d", "break": BREAK}
 
 
 def limits_figure(factor, found, thresholds, observer):
-    """Limits of one factor below each other, published thresholds behind. found: [Limit]; thresholds: [Threshold]."""
+    """Limits of one factor, one a row, with published thresholds. found: [Limit]; thresholds: [Threshold]."""
     fig, axes = figures.new(height_in=0.9 + 0.27 * (len(found) + len(thresholds)))
     names = []
     y = 0
@@ -27,7 +27,7 @@ def limits_figure(factor, found, thresholds, observer):
         names.append(f"{NAME[limit.kind]} by {limit.by}")
         y -= 1
     axes.set_yticks(range(0, y, -1), names, fontsize=7.5)
-    axes.set(xlabel=factor.axis(), title="open triangle: not reached up to there")
+    axes.set(xlabel=factor.axis(), title="open triangle: not reached up to this level")
     if factor.falling:
         axes.invert_xaxis()
     else:
@@ -58,14 +58,14 @@ def forest_figure(rows, observer):
     axes.xaxis.set_minor_formatter(lambda v, _: f"{v:g}" if f"{v:e}"[0] in "25" else "")
     axes.tick_params(which="minor", labelsize=7)
     axes.set_yticks(y, [row[0] for row in rows], fontsize=7.5)
-    axes.set(xlabel="L_break / L_detect", title="right of 1: noticed before it harms", ylim=(-0.7, len(rows) - 0.3))
+    axes.set(xlabel="L_break / L_detect", title="above 1: noticed before it harms the task", ylim=(-0.7, len(rows) - 0.3))
     axes.grid(axis="y", visible=False)
     stamp(fig, observer)
     return fig
 
 
 def felt_figure(felt):
-    """The shift of a felt property against the level, with the tube of what is just noticeable."""
+    """The shift of a felt property over the level, with the band of the JND."""
     fig, axes = figures.new(height_in=2.5)
     scale, unit = (100, "%") if felt.source.unit == "%" else (1, felt.source.unit)
     tint = colour(felt.factor.modality)

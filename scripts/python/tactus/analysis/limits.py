@@ -1,11 +1,11 @@
-"""How far one sense can degrade: L_detect, L_appear and L_break of an operator, and their ratio.
+"""Limits of the degradation of one sense: L_detect, L_appear and L_break of an operator, and their ratio.
 
-  L_detect  it is noticed            detection.py: 75 % detected, or the edge of the window in which the senses are judged synchronous
-  L_appear  the world feels changed  appearance.py: the felt property is off by more than its JND
+  L_detect  noticed                  detection.py: 75 % detected, or the edge of the window in which the senses are judged synchronous
+  L_appear  a felt property changes  appearance.py: the property differs by more than its JND
   L_break   the task suffers         here: success or time is worse than undegraded by the study's margin
 
-L_break is where the worsening, made non-decreasing over the levels played and joined by straight lines, reaches the margin. Its interval
-is that of the bootstrap, of the levels and of the baseline at once.
+L_break is the level at which the worsening, made non-decreasing over the played levels and interpolated linearly, reaches the margin. Its interval comes
+from a joint bootstrap of the levels and the baseline.
 """
 import dataclasses
 
@@ -16,7 +16,7 @@ from tactus.analysis.crossing import crossing
 from tactus.analysis.operators import Factor
 
 
-EITHER = "either"  # by success or by time, whichever comes first
+EITHER = "either"  # by success or by time, the earlier of both
 
 
 @dataclasses.dataclass
@@ -24,7 +24,7 @@ class Limit:
     """One limit of one factor. value, low, high: levels in the factor's unit; infinite: not reached up to `up_to`; 0: reached when nothing is degraded."""
     kind: str  # detect, appear, break
     factor: Factor
-    by: str  # by what: success, time, either; the pair of senses; the property
+    by: str  # criterion: success, time, either; the pair of senses; the property
     value: float
     low: float
     high: float
@@ -45,7 +45,7 @@ def of_draws(kind, factor, by, point, draws, up_to, observer, n):
     def at(s):
         if not np.isfinite(s):
             return float(s)
-        return factor.level(s) if np.isfinite(factor.level(s)) else 0.0  # of a rate nothing is degraded at infinity, which is said of what is not reached
+        return factor.level(s) if np.isfinite(factor.level(s)) else 0.0  # a rate is undegraded at infinity, but an infinite limit means "not reached"
     return Limit(kind, factor, by, at(float(point)), at(low), at(high), factor.level(up_to), draws, observer, n)
 
 
@@ -56,7 +56,7 @@ def series(cells, factor):
 
 
 def factors_of(cells):
-    """Factors with levels that were played alone."""
+    """Factors with levels that were played without another degradation."""
     return sorted({degraded[0][0] for degraded in cells if len(degraded) == 1 and not degraded[0][0].removal})
 
 
@@ -83,7 +83,7 @@ def breaking(cells, factor, margins, observer):
 
 @dataclasses.dataclass
 class Ratio:
-    """L_break / L_detect, the tolerance of an interaction to what is noticed. Of severities, so that it is above 1 where the task outlasts the percept."""
+    """L_break / L_detect, a ratio of severities: above 1, the degradation is noticed before it harms the task."""
     upper: Limit
     lower: Limit
     value: float
@@ -92,7 +92,7 @@ class Ratio:
 
 
 def ratio(upper, lower, rng):
-    """Their draws are of different trials, hence paired by chance."""
+    """Ratio of two limits. Their draws come from different trials, so they are paired at random."""
     a, b = upper.draws[~np.isnan(upper.draws)], lower.draws[~np.isnan(lower.draws)]
     if not len(a) or not len(b):
         return Ratio(upper, lower, *[float("nan")] * 3)
@@ -106,5 +106,5 @@ def ratio(upper, lower, rng):
 
 
 def severity_of(limit):
-    """Severity of a limit; infinite where it was not reached."""
+    """Severity of a limit; infinite: not reached."""
     return limit.value if np.isinf(limit.value) or limit.value == 0 else limit.factor.severity(limit.value)

@@ -1,8 +1,8 @@
-"""What the figures of a study share: the run report's look, who answered, and published thresholds behind the data."""
+"""Common style of the figures of a study: colours, mark of simulated observers, and published thresholds behind the data."""
 
 from tactus.report import figures
 
-figures.matplotlib.rcParams["text.parse_math"] = False  # names are texts, whatever they hold
+figures.matplotlib.rcParams["text.parse_math"] = False  # shows names literally
 
 INK, PALE, BREAK = "#222222", "#9aa7b5", "#b3261e"
 BANDS = ("#4e79a7", "#f28e2b", "#59a14f", "#b07aa1", "#76b7b2", "#9c755f", "#bab0ac")
@@ -13,13 +13,14 @@ def colour(modality):
 
 
 def stamp(fig, observer):
-    """Says on the figure itself who answered, when it was not people."""
+    """Marks a figure whose answers are partly or all simulated."""
     if "simulated" in observer:
         fig.text(0.998, 1.0, f"observer = {observer}", ha="right", va="bottom", fontsize=7, color="#8a2be2")
 
 
 def thresholds_behind(axes, found, legend=True):
-    """found: [(x, Threshold)]; a line for each, of one colour per source, and the stretch between the least and the largest on each side."""
+    """Draws a line for each of found, [(x, Threshold)], one colour per source, and the range between the smallest and the largest on each side. Returns
+    the number of thresholds outside the axis."""
     low, high = axes.get_xlim()
     shown = [(x, t) for x, t in found if low <= x <= high]
     for side in (-1, 1):

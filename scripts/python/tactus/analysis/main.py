@@ -8,21 +8,21 @@ import sys
 
 from tactus.refusal import Refusal
 
-USAGE = """Analyses trials and games: what is noticed, what feels changed, what breaks the task.
+USAGE = """Analyses trials and games: limits of detection, of a felt change and of the task for each degradation.
 
   tactus study analyse PLACE... [--out DIR] [--json FILE] [--seed N] [--time-limit S] [--margin-success POINTS] [--margin-time PERCENT] [--alpha A]
 
-  PLACE                    a folder that `study run` or `study sweep` left (all trials.csv and games.csv in it), or one such table
-  --out DIR                where tables, figures and report.html go; default: analysis, in the first folder
-  --json FILE              all tables for programs
-  --seed N                 of the bootstrap; the same input and seed give the same bytes; default: 1
-  --time-limit S           how long a game may take; games not won count with it. Default: as the study file says, else the tables
-  --margin-success POINTS  how much less success is worse, in points; default: as the study file says, else 10
-  --margin-time PERCENT    how much more time is worse; default: as the study file says, else 10
+  PLACE                    a results folder of `study run` or `study sweep` (all trials.csv and games.csv in it), or one such table
+  --out DIR                folder of tables, figures and report.html; default: analysis, in the first PLACE
+  --json FILE              also writes all tables to FILE as JSON
+  --seed N                 seed of the bootstrap; the same input and seed give the same bytes; default: 1
+  --time-limit S           time limit of a game, which games not won count with; default: that of the study file, else of the tables
+  --margin-success POINTS  smallest relevant loss of success, in points; default: that of the study file, else 10
+  --margin-time PERCENT    smallest relevant increase of time; default: that of the study file, else 10
   --alpha A                level of the tests of non-inferiority; default: 0.05
 
-Levels are those that were achieved; trials whose apparatus missed its tolerance are left out and counted. Writes psychometric.csv, limits.csv,
-ratios.csv, conditions.csv, frontier.csv, felt.csv and mixed_models.csv as far as there is something in them, figures/ and report.html.
+Levels are measured ones where the apparatus measured them. Missed trials are left out and counted. Writes report.html, figures/, and those of
+psychometric.csv, limits.csv, ratios.csv, conditions.csv, frontier.csv, felt.csv and mixed_models.csv that have rows.
 """
 
 
@@ -45,9 +45,9 @@ def parsed(words):
     for name, value, low, high in (("--margin-success", options.margin_success, 0, 100), ("--margin-time", options.margin_time, 0, 1000),
                                    ("--alpha", options.alpha, 0, 0.5), ("--time-limit", options.time_limit, 0, 1e6)):
         if value is not None and not low < value < high:
-            raise Refusal(f"{name} {value:g}: give a number above {low} and below {high:g}")
+            raise Refusal(f"{name} {value:g}: is out of range; give a number above {low} and below {high:g}")
     if options.seed < 0:
-        raise Refusal(f"--seed {options.seed}: give a number from 0 on")
+        raise Refusal(f"--seed {options.seed}: is negative; give a number of 0 or more")
     first = pathlib.Path(options.place[0])
     options.out = options.out or str((first if first.is_dir() else first.parent) / "analysis")
     return options
@@ -69,7 +69,7 @@ def analyse(options):
     analysis = study_analysis.analyse(rows, settings)
     made = result_tables.all_rows(analysis)
     if not made:
-        raise Refusal(f"nothing in {options.place[0]} can be analysed: no answers to judgements, no matches of a known property, no games")
+        raise Refusal(f"{options.place[0]}: holds no judgements, no matches of a known property and no games; give results of a study")
     os.makedirs(options.out, exist_ok=True)
     result_tables.write(made, options.out)
     report = study_report.Report(analysis, os.path.join(options.out, "figures"))
@@ -82,19 +82,19 @@ def analyse(options):
         with open(options.json, "w", encoding="utf-8") as file:
             json.dump({"trials": len(analysis.trials), "left_out": analysis.left_out, "observer": analysis.observer, **result_tables.for_programs(made)}, file, indent=1)
             file.write("\n")
-    tell(analysis, made, page, report)
+    print_summary(analysis, made, page, report)
 
 
-def tell(analysis, made, page, report):
+def print_summary(analysis, made, page, report):
     from tactus.analysis import operators
     who = f", observer = {analysis.observer}" if "simulated" in analysis.observer else ""
-    print(f"study analyse: {len(analysis.trials)} trials, {analysis.left_out} left out since the apparatus missed its tolerance{who}")
+    print(f"study analyse: {len(analysis.trials)} trials, {analysis.left_out} left out because the apparatus missed its tolerance{who}")
     if "limits" in made:
         print(f"{'limit':9} {'sense':9} {'operator':10} {'by':34} {'value':>9} {'low':>9} {'high':>9} unit")
         for row in made["limits"]:
-            beyond = ("<" if row["operator"] in operators.FALLING else ">") + f"{row['up_to']:.4g}"  # not reached up to there
-            told = [f"{row[k]:9.4g}" if math.isfinite(row[k]) else f"{beyond:>9}" for k in ("value", "low", "high")]
-            print(f"{row['limit']:9} {row['modality']:9} {row['operator']:10} {row['by']:34} {' '.join(told)} {row['unit']}")
+            beyond = ("<" if row["operator"] in operators.FALLING else ">") + f"{row['up_to']:.4g}"  # not reached up to this level
+            fields = [f"{row[k]:9.4g}" if math.isfinite(row[k]) else f"{beyond:>9}" for k in ("value", "low", "high")]
+            print(f"{row['limit']:9} {row['modality']:9} {row['operator']:10} {row['by']:34} {' '.join(fields)} {row['unit']}")
     print(f"study analyse: {page}, {os.path.getsize(page) // 1000} kB, {report.gallery.count} figures, tables {', '.join(name + '.csv' for name in made)}")
 
 
@@ -108,6 +108,6 @@ def main(argv):
         print(f"study analyse: {error}", file=sys.stderr)
         return 1
     except OSError as error:
-        print(f"study analyse: {error.filename or 'a file'}: {error.strerror or error}; give folders that can be read and written", file=sys.stderr)
+        print(f"study analyse: {error.filename or 'a file'}: {error.strerror or error}; give folders with permission to read and write", file=sys.stderr)
         return 1
     return 0

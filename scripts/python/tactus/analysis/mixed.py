@@ -1,12 +1,12 @@
-"""A model over participants: what holds of people, beside what holds of these.
+"""Mixed models over participants, which generalize to other people.
 
-Yes or no (success, answers): logistic with a random intercept and slope for each participant, by maximum likelihood (laplace.py). GEE would
-give the mean over people, with a sandwich variance that needs some 40 of them (Mancl and DeRouen 2001, Biometrics 57:126); a study has 5 to
-20. Times: linear in the logarithm, with the same random effects, by restricted maximum likelihood (MixedLM of statsmodels). Intervals
-and p are of Student's t with as many degrees of freedom as participants less one.
+Yes/no outcomes (success, answers): logistic with a random intercept and slope for each participant, by maximum likelihood (laplace.py). GEE estimates the
+mean over people, but its sandwich variance needs about 40 of them (Mancl and DeRouen 2001, Biometrics 57:126); a study has 5 to 20. Times: linear in the
+logarithm, with the same random effects, by restricted maximum likelihood (MixedLM of statsmodels). Intervals and p use Student's t with (participants - 1)
+degrees of freedom.
 
-Synchrony judgements peak at the PSS: their log odds are taken as a parabola of the asynchrony, a + b x + c x^2, with the PSS at -b / 2c; only
-intercept and slope are random. Severities and asynchronies enter divided by their standard deviation, and are told per unit again.
+Synchrony judgements peak at the PSS: their log odds are modelled as a parabola of the asynchrony, a + b x + c x^2, with the PSS at -b / 2c; only intercept
+and slope are random. Severities and asynchronies are divided by their standard deviation for the fit; results are per unit.
 """
 import dataclasses
 import warnings
@@ -18,8 +18,8 @@ from statsmodels.regression.mixed_linear_model import MixedLM
 from tactus.analysis import laplace
 
 FEWEST = 2
-ONE = "There is one participant only: what differs between people cannot be told, and no mixed model was fitted."
-ONCE = "Each participant did one trial: what differs between people cannot be told from chance, and no mixed model was fitted."
+ONE = "There is only one participant: differences between people cannot be estimated, and no mixed model was fitted."
+ONCE = "Each participant did one trial: differences between people cannot be separated from chance, and no mixed model was fitted."
 FEW = 5  # design, as resampling.FEWEST_PARTICIPANTS
 
 
@@ -35,7 +35,8 @@ class Effect:
 
 @dataclasses.dataclass
 class Model:
-    """effects; sd_intercept, sd_slope: between participants, on the scale of the model (slope: per unit of x); words: what was fitted, and doubts."""
+    """effects; sd_intercept, sd_slope: between participants, on the scale of the model (slope: per unit of x); words: description of the model, and
+    warnings."""
     kind: str
     effects: list
     sd_intercept: float
@@ -59,17 +60,17 @@ def effect(name, estimate, sd, participants, per=1.0):
 
 
 def doubts(people, converged):
-    few = f" {len(people)} participants say little of how people differ." if len(people) < FEW else ""
+    few = f" {len(people)} participants are too few for a good estimate of differences between people." if len(people) < FEW else ""
     return few + ("" if converged else " The fit did not converge: do not use it.")
 
 
 def logistic(participants, x, yes, name, parabola=False):
-    """Model of log odds of yes over x, or the sentence why there is none."""
+    """Model of the log odds of yes over x, or the reason why there is none, as a sentence."""
     people, at, scale = design(participants, x)
     if len(people) < FEWEST:
         return ONE
     if scale == 0 or len(set(yes)) < 2:
-        return "All answers are the same, or all levels: there is no slope to be told."
+        return "All answers, or all levels, are the same: there is no slope to estimate."
     z = x / scale
     fixed = np.stack([np.ones_like(z), z] + ([z**2] if parabola else []), axis=1)
     fitted = laplace.fit(fixed, z, at, np.asarray(yes, dtype=float))
@@ -91,12 +92,12 @@ def peak(fitted, scale, participants):
 
 
 def log_linear(participants, x, times, name):
-    """Model of ln(time) over x, or the sentence why there is none. The effect is a ratio per unit: exp(estimate)."""
+    """Model of ln(time) over x, or the reason why there is none, as a sentence. The effect is a ratio per unit: exp(estimate)."""
     people, at, scale = design(participants, x)
     if len(people) < FEWEST:
         return ONE
     if scale == 0:
-        return "All levels are the same: there is no slope to be told."
+        return "All levels are the same: there is no slope to estimate."
     y, z = np.log(times), x / scale
     exog = np.stack([np.ones_like(z), z], axis=1)
     with warnings.catch_warnings(record=True) as said:
@@ -104,7 +105,7 @@ def log_linear(participants, x, times, name):
         fitted = MixedLM(y, exog, groups=at, exog_re=exog).fit(reml=True, method=["lbfgs", "powell"])
     good = fitted.converged and not any("converge" in str(w.message).lower() for w in said)
     edge = any(word in str(w.message).lower() for w in said for word in ("boundary", "singular"))
-    boundary = " The random effects are at the edge of what can be (a variance of 0, or a correlation of 1)." if edge else ""
+    boundary = " The random effects are at a boundary (a variance of 0, or a correlation of 1)." if edge else ""
     sds = np.sqrt(np.maximum(0, np.diag(np.atleast_2d(fitted.cov_re))))
     effects = [effect("intercept", fitted.fe_params[0], fitted.bse_fe[0], len(people)), effect(name, fitted.fe_params[1], fitted.bse_fe[1], len(people), scale)]
     return Model("mixed log-linear", effects, float(sds[0]), float(sds[1] / scale), len(people), len(z),

@@ -1,32 +1,32 @@
-"""What is degraded, as one axis: how the levels of an operator become a severity that is 0 when nothing is degraded and grows with it."""
+"""Factors of a degradation: a sense and an operator, and the conversion of its levels to a severity that is 0 undegraded and grows with the degradation."""
 import dataclasses
 import math
 
 NO_GAIN = "gain_of_0"
-REMOVALS = ("off", "freeze", "remove", NO_GAIN)  # an operator without levels: the sense is not there
-# Less is worse. Their severity is 1/level: the period of a rate, the time constant of a low-pass; of shares of what there was, 1/level - 1.
+REMOVALS = ("off", "freeze", "remove", NO_GAIN)  # operators without levels: the sense is absent
+# Operators whose lower level is worse. Their severity is 1/level: the period of a rate, the time constant of a low-pass; for shares (FROM_ONE) 1/level - 1.
 FALLING = ("rate", "frame_rate", "lowpass", "resolution", "gain")
 FROM_ONE = ("resolution", "gain")
-GAIN_ABOVE = "gain_above_1"  # a gain above 1 is another degradation than one below: it grows
+GAIN_ABOVE = "gain_above_1"  # a gain above 1 is a separate factor, whose severity grows with the level
 NAME = {"haptic": "touch", "audio": "sound", "visual": "vision", "thermal": "warmth"}
 
 
 def factor(modality, operator, unit="", level=math.nan):
-    """The Factor of a row of a table; what it is called depends on the level of a gain only."""
+    """The Factor of a row of a table; the level matters only for a gain."""
     if operator == "gain" and (level == 0 or level > 1):
         return Factor(modality, GAIN_ABOVE if level else NO_GAIN, unit)
     return Factor(modality, operator, unit)
 
 
 def factors(trials):
-    """[(Factor, Trials)] of the rows that agree in what is degraded, levels aside."""
+    """[(Factor, Trials)] of the rows with the same sense, operator and unit."""
     of_row = [factor(*values) for values in zip(*(trials[name] for name in ("modality_degraded", "operator", "unit", "level")))]
     return [(one, trials.where([i for i, other in enumerate(of_row) if other == one])) for one in sorted(set(of_row))]
 
 
 @dataclasses.dataclass(frozen=True, order=True)
 class Factor:
-    """A sense and what is done to it."""
+    """A sense and the operator that degrades it."""
     modality: str
     operator: str
     unit: str = ""
@@ -37,22 +37,22 @@ class Factor:
 
     @property
     def falling(self):
-        """Whether less is worse."""
+        """Whether a lower level is worse."""
         return self.operator in FALLING
 
     def severity(self, level):
-        """0 or more, of a level that trials.read lets through."""
+        """Severity, 0 or more, of a level that trials.read accepts."""
         return 1.0 / level - (self.operator in FROM_ONE) if self.falling else level - (self.operator == GAIN_ABOVE)
 
     def level(self, severity):
-        """The level that has this severity; the other way round."""
+        """The level of a severity; inverse of severity()."""
         if not self.falling:
             return severity + (self.operator == GAIN_ABOVE)
         inverse = severity + (self.operator in FROM_ONE)
         return 1.0 / inverse if inverse else math.inf
 
     def undegraded(self, level):
-        """Whether the level does nothing."""
+        """Whether the level has no effect."""
         return not self.removal and level == (1 if self.operator in FROM_ONE else math.nan if self.falling else 0)
 
     def words(self):

@@ -1,12 +1,12 @@
-"""Games at each level of degradation, held against the undegraded ones: success, time, and whether the level is harmless.
+"""Games at each level of degradation compared with undegraded games: success, time, and whether the level is harmless.
 
-A game that was not won counts with the time limit, so that the mean time is the restricted mean of the time to win (Royston and Parmar
-2013, BMC Medical Research Methodology 13:152): all games are watched for the same time, so the area under Kaplan and Meier's curve up to the
-limit is the plain mean of min(time, limit). It needs no guess of when a lost game would have been won.
+A game that was not won counts with the time limit, so the mean time is the restricted mean of the time to win (Royston and Parmar 2013, BMC Medical
+Research Methodology 13:152): all games are observed for the same time, so the area under the Kaplan-Meier curve up to the limit equals the mean of
+min(time, limit). No assumption about the later course of a lost game is needed.
 
-Non-inferiority: of success, the score test of Farrington and Manning 1990 (Statistics in Medicine 9:1447) and the interval of Newcombe
-1998 (Statistics in Medicine 17:873, method 10); of time, and of both where people are the sample, the bootstrap of resampling.py.
-Levels of one factor are several tests: Holm 1979, over all levels and both outcomes of the factor.
+Non-inferiority: for success, the score test of Farrington and Manning 1990 (Statistics in Medicine 9:1447) and the interval of Newcombe 1998 (Statistics
+in Medicine 17:873, method 10); for time, and for both if people are the sample, the bootstrap of resampling.py. The levels of one factor are several
+tests: Holm 1979, over all levels and both outcomes of the factor.
 """
 import dataclasses
 import math
@@ -20,12 +20,12 @@ from tactus.analysis import answers, operators, resampling
 from tactus.refusal import Refusal
 
 TASK = "game"
-EXTRAS = ("errors", "peak_force_n", "force_rmse_n", "path_m")  # told of, not tested
+EXTRAS = ("errors", "peak_force_n", "force_rmse_n", "path_m")  # reported, not tested
 
 
 @dataclasses.dataclass
 class Cell:
-    """The games of one condition. degraded: ((Factor, level), ...), none for the baseline."""
+    """The games of one condition. degraded: ((Factor, level), ...), empty for the baseline."""
     degraded: tuple
     participants: np.ndarray
     success: np.ndarray
@@ -51,7 +51,7 @@ class Cell:
 
 
 def degraded_of(row):
-    """((Factor, level), ...) of one row's columns; what does nothing is left away."""
+    """((Factor, level), ...) of one row's columns, without levels that have no effect."""
     found = []
     for prefix, modality in (("", "modality_degraded"), ("second_", "second_modality")):
         level = row[prefix + "level"]
@@ -62,13 +62,13 @@ def degraded_of(row):
 
 
 def limit_s(games, stated):
-    """The time limit of the games: as stated, or what those not won were watched for. Infinite when all were won."""
+    """Time limit of the games, s: as stated, or the longest time of a game that was not won. Infinite if all were won."""
     lost = games["success"] == 0
     times = games["completion_time_s"]
     if np.isnan(times[~lost & ~np.isnan(games["success"])]).any():
-        raise Refusal("a game that was won has no completion_time_s; say when each was won")
+        raise Refusal("a game that was won has no completion_time_s; add the time of each won game")
     if (times[games["success"] == 1] <= 0).any():
-        raise Refusal("a game was won after 0 s: it was won before it began; leave it away, or mark it as missed")
+        raise Refusal("a game was won after 0 s: it was won before it began; remove it, or mark it as missed")
     if stated is not None:
         return stated
     if not lost.any():
@@ -84,7 +84,7 @@ def games_of(trials):
 
 
 def achieved_of(games, degraded):
-    """Mean achieved level of a condition with one factor; the level asked for where none was measured."""
+    """Mean measured level of a condition with one factor; the requested level if none was measured."""
     (factor, level), = degraded
     if factor.operator == "loss" and not np.isnan(games["loss_achieved"]).all():
         return float(np.nanmean(games["loss_achieved"])) * (100 if factor.unit == "%" else 1)
@@ -97,7 +97,7 @@ def achieved_of(games, degraded):
 
 
 def cells_of(games, limit, rng, draws=resampling.DRAWS):
-    """{degraded: Cell}, all drawn together."""
+    """({degraded: Cell}, all drawn jointly; whether people are the sample)."""
     keys = ("modality_degraded", "operator", "level", "unit", "second_modality", "second_operator", "second_level", "second_unit")
     merged = {}
     for key, rows in games.groups(*keys):
@@ -110,7 +110,7 @@ def cells_of(games, limit, rng, draws=resampling.DRAWS):
         join = lambda name: np.concatenate([p[name] for p in parts])
         success = join("success")
         times = np.where(success == 1, np.minimum(join("completion_time_s"), limit), limit)
-        # Won after the limit is not won within it.
+        # A game won after the limit counts as not won.
         success = np.where((success == 1) & (join("completion_time_s") <= limit), 1.0, 0.0)
         cell = Cell(degraded, join("participant_id"), success, times, {name: join(name) for name in EXTRAS})
         if len(degraded) == 1 and not degraded[0][0].removal:
@@ -124,20 +124,20 @@ def cells_of(games, limit, rng, draws=resampling.DRAWS):
 
 @dataclasses.dataclass
 class Difference:
-    """A condition held against the baseline. success: share(cell) - share(baseline); time: mean(cell) / mean(baseline)."""
+    """A condition compared with the baseline. success: share(cell) - share(baseline); time: mean(cell) / mean(baseline)."""
     cell: Cell
     success: float
     success_interval: tuple
     time: float
     time_interval: tuple
-    p_success: float  # that success is worse by the margin or more: small = shown harmless; 1 where the baseline leaves no room to be worse by so much
+    p_success: float  # of the hypothesis that success is worse by the margin or more; small: shown harmless; 1: the baseline is too low to fall by the margin
     p_time: float
     harmless: bool = False  # after Holm, in success and time
-    harmful: bool = False  # an interval lies beyond its margin whole
+    harmful: bool = False  # an interval lies completely beyond its margin
 
 
 def sampled(cell, clustered):
-    """How many were drawn at random: people, or games."""
+    """Size of the sample: people, or games."""
     return len(set(cell.participants)) if clustered else cell.n
 
 
@@ -153,11 +153,11 @@ def difference(cell, baseline, clustered, margins, limit=math.inf):
         p_success = farrington_manning(*counts, margins[0])
     made = Difference(cell, cell.share - baseline.share, success_interval, cell.mean_time_s / baseline.mean_time_s, resampling.interval(ratio),
                       p_success, resampling.share_beyond(ratio, margins[1]))
-    if min(sampled(cell, clustered), sampled(baseline, clustered)) < 2:  # one says nothing of how far off it is
+    if min(sampled(cell, clustered), sampled(baseline, clustered)) < 2:  # a sample of one has no interval
         made.time_interval, made.p_time = (math.nan, math.nan), 1.0
         if clustered:
             made.success_interval, made.p_success = (math.nan, math.nan), 1.0
-    if baseline.share < margins[0]:  # a game that is lost anyway cannot be lost by the degradation
+    if baseline.share < margins[0]:  # success cannot fall by the margin
         made.p_success = 1.0
     if baseline.mean_time_s * margins[1] > limit:
         made.p_time = 1.0
@@ -168,8 +168,8 @@ def difference(cell, baseline, clustered, margins, limit=math.inf):
 def farrington_manning(yes, n, yes_baseline, n_baseline, margin):
     """p of the hypothesis that the share is lower than the baseline's by the margin or more (one-sided).
 
-    Their appendix: the shares of greatest likelihood among those that differ by the margin solve a cubic. statsmodels 0.13 has this
-    test too, with other shares, which are not those of greatest likelihood."""
+    Their appendix: the maximum likelihood shares among those that differ by the margin solve a cubic. statsmodels 0.13 also has this test, but with shares
+    that are not of maximum likelihood."""
     p, q = yes / n, yes_baseline / n_baseline
     ratio, apart = n_baseline / n, -margin
     a = 1 + ratio
@@ -186,9 +186,9 @@ def farrington_manning(yes, n, yes_baseline, n_baseline, margin):
 
 
 def differences(cells, clustered, margins, alpha=0.05, limit=math.inf):
-    """{degraded: Difference} of all conditions but the baseline, Holm's correction within each set of factors."""
+    """{degraded: Difference} of all conditions except the baseline, with Holm's correction within each set of factors."""
     if () not in cells:
-        raise Refusal("no game was played undegraded; play the baseline too, nothing can be said to be worse without it")
+        raise Refusal("no game was played undegraded; play the baseline too, since every comparison needs it")
     made = {degraded: difference(cell, cells[()], clustered, margins, limit) for degraded, cell in cells.items() if degraded}
     families = {}
     for degraded, d in made.items():

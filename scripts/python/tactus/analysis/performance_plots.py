@@ -1,4 +1,4 @@
-"""Figures of games: success and time against what is degraded, two senses together, and each sense removed."""
+"""Figures of games: success and time over the level of a degradation, two degraded senses, and each sense removed."""
 import numpy as np
 from matplotlib.colors import TwoSlopeNorm
 
@@ -17,7 +17,7 @@ def limit_mark(axes, limit):
 
 
 def factor_figure(cells, factor, found, margins, observer):
-    """Success and time against the level, with the margin and where it is crossed. found: [Limit] of breaking()."""
+    """Success and time over the level, with the margin and its crossing. found: [Limit] of breaking()."""
     baseline, mine = cells[()], limits.series(cells, factor)
     fig, (left, right) = figures.new(1, 2, height_in=2.6)
     tint = colour(factor.modality)
@@ -50,15 +50,15 @@ def factor_figure(cells, factor, found, margins, observer):
     right.set_ylim(bottom=0)
     for axes, limit in ((left, found[0]), (right, found[1])):
         limit_mark(axes, limit)
-        axes.set_title(said(limit), fontsize=8)
+        axes.set_title(limit_text(limit), fontsize=8)
     counts = sorted({min(c.n for c in mine), max(c.n for c in mine)})
     fig.suptitle(f"{factor.words()}; baseline n = {baseline.n}, each level n = {'–'.join(map(str, counts))}", fontsize=9, x=0.01, ha="left")
     stamp(fig, observer)
     return fig
 
 
-def said(limit):
-    """L_break and its interval in words."""
+def limit_text(limit):
+    """L_break and its interval as text."""
     unit = f" {limit.factor.unit}" if limit.factor.unit else ""
     number = lambda v: f"{v:.3g}"
     if not limit.reached:
@@ -116,7 +116,7 @@ def edge_figure(made, observer):
     joined = [(i, limit.value) for i, (_, limit) in enumerate(made.edge) if limit.reached]
     axes.plot(*zip(*joined) if joined else ([], []), color=colour(made.second.modality), linewidth=0.8)
     axes.set_xticks(range(len(made.edge)), [mark(level) for level, _ in made.edge])
-    axes.set(xlabel=made.first.axis(), ylabel=f"L_break: {made.second.axis()}", title="frontier; open triangle: not reached up to there; 0: the first alone reaches the margin")
+    axes.set(xlabel=made.first.axis(), ylabel=f"L_break: {made.second.axis()}", title="frontier; open triangle: not reached up to this level; 0: the first alone reaches the margin")
     axes.set_xlim(-0.5, len(made.edge) - 0.5)
     stamp(fig, observer)
     return fig

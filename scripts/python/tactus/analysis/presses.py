@@ -1,8 +1,8 @@
-"""Stiffness that was felt in two presses of which one was degraded, as it was measured: the slope of the force over the depth of the hand.
+"""Measured stiffness of two presses, one of them degraded: the slope of the force over the depth of the hand.
 
-L_appear by measurement is the level at which the degraded press is as much softer or stiffer than the other one of its trial as a published JND. It needs no
-answer: it says what the apparatus did to the hand. What people say of it, which of the two felt softer, is a psychometric function like any other; where
-the study asks for that (of="stiffness"), the level with 75 % right is L_appear as it was judged (detection.py).
+L_appear by measurement is the level at which the degraded press is softer or stiffer than the other press of its trial by a published JND. It needs no
+answers; it describes the effect of the apparatus on the hand. The answers to "which felt softer" give a psychometric function. If the study asks for
+them (of="stiffness"), the level of 75 % right answers is L_appear as judged (detection.py).
 """
 import numpy as np
 
@@ -14,19 +14,19 @@ COLUMNS = ("stiffness_first_n_m", "stiffness_second_n_m", "degraded_interval")
 
 
 def pressed(trials):
-    """The Trials in which both stiffnesses were measured, one sense was degraded, and the other press gave a hand something to hold it against."""
+    """The Trials with both stiffnesses measured, one degraded sense, and a positive stiffness of the undegraded press."""
     first, second, degraded = (trials[name] for name in COLUMNS)
     _, plain = stiffnesses(first, second, degraded)
     return trials.where(~np.isnan(first + second + degraded) & (plain > 0) & (trials["modality_degraded"] != "") & (trials["second_modality"] == ""))
 
 
 def stiffnesses(first, second, degraded):
-    """(of the degraded press, of the other), each (n,), N/m."""
+    """(stiffness of the degraded press, of the other), each (n,), N/m."""
     return np.where(degraded == 1, first, second), np.where(degraded == 1, second, first)
 
 
 def shift(trials):
-    """(n,) by which share the degraded press was stiffer than the other of the same trial."""
+    """(n,) relative difference of stiffness of the degraded press to the other press of the same trial; above 0: stiffer."""
     degraded, plain = stiffnesses(*(trials[name] for name in COLUMNS))
     return degraded / plain - 1
 

@@ -1,7 +1,7 @@
-"""Psychometric functions per condition: of each participant and of all together, over achieved levels.
+"""Psychometric functions of each condition: for each participant and for all together, over measured levels.
 
-What a condition is: of a synchrony or order judgement, the pair of senses; of a detection task, the sense, what is done to it, and in which
-unit. Fits are those of scripts/python/tactus/psychophysics (maximum likelihood with guess and lapse rates).
+A condition of a synchrony or order judgement is the pair of senses; of a detection task it is the sense, the operator and the unit. Fits are those of
+tactus/psychophysics (maximum likelihood with guess and lapse rates).
 """
 import dataclasses
 import math
@@ -13,18 +13,18 @@ from tactus.analysis.detection import EVERYBODY
 from tactus.analysis.operators import Factor
 from tactus.psychophysics import fits
 
-MOST_LEVELS = 60  # design: more achieved values than these are put into as many bins, each at its mean
-FEWEST_TRIALS = 20  # design: of fewer no function is fitted
+MAX_LEVELS = 60  # design; more measured values are grouped into this number of bins, each at its mean
+FEWEST_TRIALS = 20  # needed for a fit; design
 
 
 @dataclasses.dataclass
 class Condition:
-    """kind: sj, toj, 2ifc. pair: (a, b), or None. factor: what is degraded, or None for a pair. condition: the study's own name for it."""
+    """kind: sj, toj, 2ifc. pair: (a, b), or None. factor: the degraded sense and its operator, or None for a pair."""
     study: str
     kind: str
     pair: tuple
     factor: Factor
-    measured: bool  # whether the levels are achieved ones; else those asked for. Where less is worse they are severities, so that functions rise
+    measured: bool  # whether the levels are measured, else requested. If a lower level is worse, they are severities, so that functions rise
 
     def words(self):
         what = f"{self.pair[0]}–{self.pair[1]}" if self.pair else self.factor.words() + (f" as {self.factor.severity_axis()}" if self.factor.falling else "")
@@ -33,7 +33,7 @@ class Condition:
     def axis(self):
         if self.pair:
             return f"SOA({self.pair[0]}, {self.pair[1]}) = t({self.pair[1]}) − t({self.pair[0]}), achieved (ms)"
-        return self.factor.severity_axis() + (", achieved" if self.measured else ", as asked for")
+        return self.factor.severity_axis() + (", achieved" if self.measured else ", requested")
 
     def slug(self):
         what = "_".join(self.pair) if self.pair else f"{self.factor.modality}_{self.factor.operator}"
@@ -42,9 +42,8 @@ class Condition:
 
 @dataclasses.dataclass
 class Curve:
-    """One fit. levels, yes, total: (k,) what it was fitted to; intervals: {name: (low, high)} of parameters and derived values.
-
-    fit is None, and why a sentence, where there is none."""
+    """One fit. levels, yes, total: (k,) data of the fit; intervals: {name: (low, high)} of parameters and derived values. Without a fit, fit is None
+    and why the reason."""
     condition: Condition
     participant: str
     levels: np.ndarray
@@ -61,7 +60,7 @@ class Curve:
 
 
 def achieved(rows, condition):
-    """(n,) levels of the trials and whether they were measured."""
+    """((n,) levels of the trials, whether they were measured)."""
     if condition[1] is not None:
         return rows["soa_achieved_ms"], True
     factor = condition[2]
@@ -73,20 +72,20 @@ def achieved(rows, condition):
 
 
 def binned(levels, yes):
-    """(levels, yes, total): answers at the same level together; many levels into bins of equal counts, each at the mean of its levels."""
+    """(levels, yes, total): joins answers at the same level; many levels are grouped into bins of equal counts, each at its mean level."""
     order = np.argsort(levels, kind="stable")
     levels, yes = levels[order], yes[order]
     same = np.unique(levels)
-    if len(same) <= MOST_LEVELS:
+    if len(same) <= MAX_LEVELS:
         index = np.searchsorted(same, levels)
     else:
-        index = np.minimum(np.arange(len(levels)) * MOST_LEVELS // len(levels), MOST_LEVELS - 1)
+        index = np.minimum(np.arange(len(levels)) * MAX_LEVELS // len(levels), MAX_LEVELS - 1)
     total = np.bincount(index).astype(float)
     return np.bincount(index, weights=levels) / total, np.bincount(index, weights=yes), total
 
 
 def conditions_of(trials):
-    """[(Condition, Trials)] of the trials that have a psychometric function."""
+    """[(Condition, Trials)] of the trials with a psychometric function."""
     kinds = np.array([answers.kind_of(t) or "" for t in trials["task"]], dtype=object)
     found = []
     for kind in answers.FUNCTION:
@@ -103,23 +102,23 @@ def conditions_of(trials):
 
 
 def curve(condition, participant, rows, rng):
-    """The Curve of these rows; its fit is None, with the reason, when they do not bear one."""
+    """The Curve of these rows; its fit is None, with the reason, if they do not permit one."""
     levels, _ = achieved(rows, (None, condition.pair, condition.factor))
     answered, yes = answers.answered(condition.kind, rows, condition.pair)
     keep = answered & ~np.isnan(levels)
     rows, levels, yes = rows.where(keep), levels[keep], yes[keep]
     made = Curve(condition, participant, *(binned(levels, yes) if len(levels) else (np.array([]),) * 3), rows, rows.observer() if len(rows) else "")
     if len(levels) < FEWEST_TRIALS:
-        made.why = f"{len(levels)} answers with an achieved level are too few to fit a function to; {FEWEST_TRIALS} are needed"
+        made.why = f"{len(levels)} answers with a measured level are too few for a fit; {FEWEST_TRIALS} are needed"
     elif len(set(yes)) < 2:
         made.why = "all answers are the same: the levels did not reach the threshold"
     elif len(made.levels) < 2:
-        made.why = "there is one level only"
+        made.why = "there is only one level"
     else:
         fitted = fits.fit(made.levels, made.yes, made.total, answers.FUNCTION[condition.kind], fixed={"guess": answers.GUESS_2IFC} if condition.kind == "2ifc" else {},
                           rng=rng)
         if not fitted.converged or not all(math.isfinite(v) for v in fitted.params.values()):
-            made.why = "the fit did not converge; were there enough levels on either side of the threshold?"
+            made.why = "the fit did not converge; use more levels on either side of the threshold"
         else:
             made.fit = fitted
             made.intervals = {name: tuple(float(v) for v in fits.interval(fitted, name, rng=rng)) for name in wanted(fitted)}
@@ -127,13 +126,13 @@ def curve(condition, participant, rows, rng):
 
 
 def wanted(fitted):
-    """What intervals are told of: all but a guess that is fixed."""
+    """Names of the parameters and derived values with an interval: all except fixed ones."""
     return [name for name in [*fitted.params, *fitted.derived] if name not in fitted.fixed]
 
 
 def curves(trials, seed):
-    """[Curve]: of each condition that of everybody first, then of each participant. Each has random numbers of its own, so that one more
-    participant changes nobody's interval."""
+    """[Curve]: for each condition first that of all participants, then one for each. Each has its own random numbers, so an additional participant does
+    not change the intervals of the others."""
     made = []
     for i, (condition, rows) in enumerate(conditions_of(trials)):
         people = rows.participants()

@@ -1,4 +1,4 @@
-"""Published thresholds of asynchrony (sync/presentation/thresholds.csv). Nothing is said here without a source."""
+"""Published thresholds of asynchrony, from sync/presentation/thresholds.csv. Every value has a source."""
 import csv
 import dataclasses
 import re
@@ -11,7 +11,7 @@ THRESHOLDS = REPOSITORY / "sync" / "presentation" / "thresholds.csv"
 
 @dataclasses.dataclass(frozen=True)
 class Threshold:
-    """How late `later` may come after `earlier`, in ms."""
+    """Largest lateness of `later` after `earlier`, in ms."""
     earlier: str
     later: str
     ms: float
@@ -24,7 +24,7 @@ class Threshold:
         return Factor(self.later, "delay", "ms")
 
     def short(self):
-        """Who and when: the source up to its year, three names and more as the first of them."""
+        """Authors and year of the source; three or more authors are shortened to the first."""
         whole = re.match(r"(.*?)((?:, )?\b(?:19|20)\d\d)\b", self.source)
         if not whole:
             return self.source.split(",")[0]
@@ -38,10 +38,10 @@ def thresholds(path=THRESHOLDS):
 
 
 def of_pair(a, b):
-    """[(SOA, Threshold)] of SOA(a, b) = t(b) - t(a): positive where b is the later."""
+    """[(SOA in ms, Threshold)] with SOA(a, b) = t(b) - t(a), positive if b is later."""
     return sorted(((t.ms if t.later == b else -t.ms, t) for t in thresholds() if {t.earlier, t.later} == {a, b}), key=lambda pair: (pair[0], pair[1].source))
 
 
 def of_factor(factor):
-    """Thresholds that a delay of one sense can be held against, by whatever sense it is late after."""
+    """Thresholds for a delay of one sense after any other sense."""
     return [t for t in thresholds() if t.factor == factor]

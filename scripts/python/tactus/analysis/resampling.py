@@ -1,15 +1,14 @@
 """Draws of means, and intervals from draws.
 
-The Bayesian bootstrap (Rubin 1981, Annals of Statistics 9:130): the rows keep their values and are given random weights. Rows of one
-participant get one weight when there are enough participants, for people are the sample then; otherwise each row has its own, and what
-is found holds of these participants. Weights are gamma distributed with shape 1 - 2/n, so that the variance of a mean of n equal
-clusters is the unbiased s^2/n, where Rubin's (shape 1) is smaller by (n-1)/(n+1).
+The Bayesian bootstrap (Rubin 1981, Annals of Statistics 9:130) gives random weights to the rows. With enough participants, people are the sample, and all
+rows of one participant get the same weight. Otherwise each row has its own weight, and the results hold for these participants only. Weights are gamma
+distributed with shape 1 - 2/n, so that the variance of a mean of n equal clusters is the unbiased s^2/n; Rubin's (shape 1) is smaller by (n-1)/(n+1).
 """
 import numpy as np
 
 DRAWS = 2000  # Efron and Tibshirani 1993, section 12.5: at least 1000 for percentile intervals
-FEWEST_PARTICIPANTS = 5  # design: of fewer, the variance between people is a guess
-AT_ONCE = 4_000_000  # weights held in memory; design
+FEWEST_PARTICIPANTS = 5  # for an estimate of the variance between people; design
+AT_ONCE = 4_000_000  # weights in memory; design
 
 
 def weights(n, draws, rng):
@@ -22,7 +21,7 @@ def by_participant(participants):
 
 
 class Resampler:
-    """Draws of means of cells (conditions) that share their participants. One is made for each analysis, so that its cells are drawn together."""
+    """Draws of means of cells (conditions) that share their participants. Each analysis uses one Resampler, which draws its cells jointly."""
 
     def __init__(self, participants, rng, draws=DRAWS):
         self.draws, self.rng = draws, rng
@@ -39,7 +38,7 @@ class Resampler:
             sums = np.stack([np.bincount(index, weights=v, minlength=len(self.people)) for v in values.T], axis=1)
             counts = np.bincount(index, minlength=len(self.people))
             mass = self.of_people @ counts
-            # A cell that few people did may get no weight in a draw: it says nothing there.
+            # A cell of few people may get no weight in a draw; the draw is NaN there.
             return np.divide(self.of_people @ sums, mass[:, None], out=np.full((self.draws, values.shape[1]), np.nan), where=mass[:, None] > 0), mass
         sums, mass = np.empty((self.draws, values.shape[1])), np.empty(self.draws)
         step = max(1, AT_ONCE // len(values))
@@ -57,7 +56,7 @@ class Resampler:
 
 
 def interval(draws, level=0.95):
-    """(low, high) percentiles of draws; infinite draws (never reached) count as larger than all, NaN are left out."""
+    """(low, high) percentiles of draws; infinite draws (not reached) count as the largest, NaN are left out."""
     kept = np.sort(draws[~np.isnan(draws)])
     if not len(kept):
         return float("nan"), float("nan")
@@ -67,6 +66,6 @@ def interval(draws, level=0.95):
 
 
 def share_beyond(draws, bound):
-    """One-sided p: how many draws are not below the bound; never 0 (Davison and Hinkley 1997, equation 4.11)."""
+    """One-sided p: share of draws at or above the bound; never 0 (Davison and Hinkley 1997, equation 4.11)."""
     kept = draws[~np.isnan(draws)]
     return (np.count_nonzero(kept >= bound) + 1) / (len(kept) + 1)

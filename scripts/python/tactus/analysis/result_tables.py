@@ -1,4 +1,4 @@
-"""The results as tables: one CSV for each kind of figure, and all of them for programs."""
+"""The results as tables: one CSV for each kind of result, and JSON of all."""
 import csv
 import math
 import os
@@ -7,7 +7,7 @@ from tactus.analysis import mixed, resampling
 
 
 def plain(value):
-    """A field of a CSV: six digits, `inf` where nothing was reached, empty where there is nothing."""
+    """A field of a CSV: six digits, `inf` for a limit that was not reached, empty for no value."""
     if isinstance(value, float):
         return "" if value != value else f"{value:.6g}"
     return "" if value is None else str(value)
@@ -93,7 +93,7 @@ TABLES = {"psychometric": curve_rows, "limits": limit_rows, "ratios": ratio_rows
 
 
 def all_rows(analysis):
-    """{table: [row]} of those that have rows."""
+    """{table: [row]} of the tables that have rows."""
     made = {name: list(rows(analysis)) for name, rows in TABLES.items()}
     return {name: rows for name, rows in made.items() if rows}
 
@@ -107,9 +107,9 @@ def write(made, folder):
 
 
 def for_programs(made):
-    """The same for JSON, which has no NaN and no infinity: null, and the word."""
-    def told(value):
+    """The rows for JSON, which has no NaN and no infinity: null, and "not reached"."""
+    def plain_json(value):
         if isinstance(value, float) and not math.isfinite(value):
             return None if value != value else "not reached"
         return value
-    return {name: [{key: told(value) for key, value in row.items()} for row in rows] for name, rows in made.items()}
+    return {name: [{key: plain_json(value) for key, value in row.items()} for row in rows] for name, rows in made.items()}

@@ -1,4 +1,4 @@
-"""All that is computed of a study's trials, in one object: what the tables, the figures and the report are made from."""
+"""The complete analysis of a study's trials in one object, from which tables, figures and report are made."""
 import dataclasses
 
 import numpy as np
@@ -7,13 +7,13 @@ from tactus.analysis import appearance, detection, frontier, limits, mixed, perf
 from tactus.analysis.answers import kind_of
 
 
-MARGIN = 0.10  # design, where neither the command nor a study file says it: 10 points of success, 10 % of time
+MARGIN = 0.10  # design; default of command and study file: 10 points of success, 10 % of time
 
 
 @dataclasses.dataclass
 class Settings:
-    """margin_success: share of games, 0.1 = 10 points; margin_time: share of the time; time_limit_s: of a game. None: as the study file says.
-    stated: {study: study_files.Stated}."""
+    """margin_success: share of games, 0.1 = 10 points; margin_time: share of the time; time_limit_s: of a game. None: value of the study file. stated:
+    {study: study_files.Stated}."""
     margin_success: float = None
     margin_time: float = None
     alpha: float = 0.05
@@ -28,7 +28,7 @@ class Settings:
         return success if self.margin_success is None else self.margin_success, 1 + (time if self.margin_time is None else self.margin_time)
 
     def limit_s(self, study):
-        """None: as the games say."""
+        """Time limit of a game, s; None: from the games."""
         return self.stated[study].limit_s if self.time_limit_s is None and study in self.stated else self.time_limit_s
 
     def felt(self, study):
@@ -37,7 +37,7 @@ class Settings:
 
 @dataclasses.dataclass
 class Performance:
-    """The games of one study."""
+    """Results of the games of one study."""
     study: str
     margins: tuple
     cells: dict
@@ -61,7 +61,7 @@ class Analysis:
     limits: list
     ratios: list  # of L_break to a measured L_detect
     against_published: list  # [(Limit, Threshold)]
-    models: list  # [(words, Model or the sentence why there is none)]
+    models: list  # [(words, Model, or the reason why there is none)]
     observer: str
 
 
@@ -85,7 +85,7 @@ def curves_of(trials, seed):
 
 
 def ratios_of(limits_, rng):
-    """L_break by whichever comes first, over each L_detect of the same factor."""
+    """Ratio of L_break (by the earlier of success and time) to each L_detect of the same factor."""
     breaks = [l for l in limits_ if l.kind == "break" and l.by.split()[0] == limits.EITHER]
     return [limits.ratio(b, d, rng) for b in breaks for d in limits_ if d.kind == "detect" and d.factor == b.factor]
 
@@ -122,7 +122,7 @@ def answers_model(curve):
 
 
 def analyse(trials, settings):
-    """Analysis of all rows. Raises Refusal when the rows do not say what an analysis needs."""
+    """Analysis of all rows. Raises Refusal if the rows lack data that an analysis needs."""
     kept, left_out = tables.usable(trials)
     rng = np.random.default_rng([settings.seed, 3000])
     curves = curves_of(kept, settings.seed)
@@ -131,7 +131,7 @@ def analyse(trials, settings):
     found = detection.detected(curves, settings.seed, settings.felt) if curves else []
     found += [f.limit for f in felt]
     for p in performances:
-        several = f" ({p.study})" if len(performances) > 1 else ""  # whose games, where there are those of more than one study
+        several = f" ({p.study})" if len(performances) > 1 else ""  # names the study if there are several
         found += [dataclasses.replace(l, by=l.by + several) for of_factor in p.limits.values() for l in of_factor]
     return Analysis(settings, kept, left_out, curves, felt, performances, found, ratios_of(found, rng), against_published(found),
                     models_of(kept, curves, performances), trials.observer())

@@ -1,4 +1,4 @@
-"""What the study files beside the tables say of the analysis: margins, the time limit of games, and what was matched."""
+"""Settings of the analysis from the study files beside the tables: margins, time limit of games, matched property."""
 import dataclasses
 import pathlib
 
@@ -8,7 +8,7 @@ HIGHEST = 3  # design: folders above a table in which the study may lie: OUT/stu
 
 @dataclasses.dataclass(frozen=True)
 class Stated:
-    """margin_success, margin_time: shares. limit_s: of a game. felt: the property that was matched, or judged of two presses, or ""."""
+    """margin_success, margin_time: shares. limit_s: time limit of a game. felt: the property that was matched, or compared between two presses, or ""."""
     margin_success: float
     margin_time: float
     limit_s: float
@@ -22,7 +22,7 @@ def beside(table):
 
 
 def stated(tables):
-    """{study's name: Stated} of the study files beside the tables. Raises Refusal when one of them is wrong."""
+    """{study's name: Stated} of the study files beside the tables. Raises Refusal if one of them is invalid."""
     found = {}
     for path in sorted({p for p in map(beside, tables) if p}):
         from tactus.study import study_file

@@ -1,4 +1,4 @@
-"""The report on a study: one page that needs nothing else, with its figures beside it as SVG and PNG."""
+"""The report of a study: one self-contained HTML page, with its figures beside it as SVG and PNG."""
 import collections
 import re
 
@@ -11,7 +11,7 @@ from tactus.report.words import figure as number, listed, page, safe, table
 
 
 class Report:
-    """Numbers figures, tables and sources while the sections are written."""
+    """Numbers figures, tables and sources while the sections are generated."""
 
     def __init__(self, analysis, folder):
         self.analysis = analysis
@@ -19,7 +19,7 @@ class Report:
         self.tables, self.sources, self.slugs = 0, [], collections.Counter()
 
     def keep(self, fig, slug, caption):
-        """Each figure's name is its own, also where two studies have the same condition, and a file's name whatever its senses are called."""
+        """Adds a figure under a unique, valid file name, also if two studies share a condition; returns its HTML."""
         slug = re.sub(r"[^A-Za-z0-9_]+", "-", slug)
         self.slugs[slug] += 1
         return self.gallery.keep(fig, slug if self.slugs[slug] == 1 else f"{slug}_{self.slugs[slug]}", caption + self.who())
@@ -45,11 +45,11 @@ class Report:
         return page(f"Study {name}", body)
 
 
-SMALLEST = 1e-6  # of what is told as more than 0, design
+SMALLEST = 1e-6  # magnitudes below are printed as 0; design
 
 
 def span(low, high, endless="not reached"):
-    """An interval; endless: what is said of an end that is infinite."""
+    """An interval as text; endless: text of an infinite end."""
     end = lambda v: endless if np.isinf(v) else number(0.0 if abs(v) < SMALLEST else v)
     return f"[{end(low)}, {end(high)}]"
 
@@ -64,18 +64,18 @@ def head(report):
     studies = sorted({s for s in a.trials["study"] if s}) or ["a study without a name"]
     people = len(a.trials.participants())
     sentences = [f"{number(len(a.trials))} trials and games of {number(people)} participant{'s' if people != 1 else ''} were analysed"
-                 + (f"; {number(a.left_out)} were left out, since the apparatus missed its tolerance." if a.left_out else "; none was left out.")]
+                 + (f"; {number(a.left_out)} were left out because the apparatus missed its tolerance." if a.left_out else "; none was left out.")]
     if "simulated" in a.observer:
-        sentences.append("<b>observer = simulated</b>: no person took part; what follows holds of the simulated ones."
+        sentences.append("<b>observer = simulated</b>: no person took part; all results are of simulated participants."
                          if a.observer == "simulated" else "<b>Some observers were simulated</b>; figures and tables mix them with people.")
     for limit in (l for l in a.limits if l.kind == "break" and l.by.split()[0] == limits.EITHER):
         whose = limit.by.removeprefix(limits.EITHER)
         sentences.append(f"L_break of {safe(limit.factor.words() + whose)}: {safe(value_of(limit))}.")
-    return f"<h1>{safe(listed(studies))}</h1>\n<p class=\"sub\">How far a sense can degrade: noticed, felt, in the way</p>\n<p class=\"sum\">{' '.join(sentences)}</p>\n"
+    return f"<h1>{safe(listed(studies))}</h1>\n<p class=\"sub\">Limits of degradation of each sense: noticed, felt, harmful to the task</p>\n<p class=\"sum\">{' '.join(sentences)}</p>\n"
 
 
 def margins_of(analysis):
-    """ (10 points, 10 %), where all studies have the same."""
+    """" (10 points, 10 %)" if all studies have the same margins, else ""."""
     found = {p.margins for p in analysis.performances}
     return "".join(f" ({100 * success:g} points, {100 * (time - 1):.3g} %)" for success, time in found) if len(found) == 1 else ""
 
@@ -85,8 +85,8 @@ def limits_section(report):
     if not a.limits:
         return ""
     factors = sorted({l.factor for l in a.limits})
-    parts = ["<h2>The limits of each sense</h2>\n",
-             report.table("Limits with 95 % intervals. L_detect: noticed; L_appear: a felt property off by more than its JND; L_break: success or time worse than "
+    parts = ["<h2>Limits of each sense</h2>\n",
+             report.table("Limits with 95 % intervals. L_detect: noticed; L_appear: a felt property differs by more than its JND; L_break: success or time worse than "
                           f"undegraded by the margin{margins_of(a)}.",
                           ["sense and operator", "limit", "by", "level", "n"],
                           [[l.factor.words(), f"L_{l.kind}", l.by, value_of(l), l.n] for f in factors for l in a.limits if l.factor == f])]
@@ -101,7 +101,7 @@ def limits_section(report):
     rows += [(f"{l.factor.words()} / {t.earlier} → {t.later}, {t.what}: {t.short()}", True, l.value / t.ms, l.low / t.ms, l.high / t.ms) for l, t in a.against_published]
     if rows:
         parts.append(report.keep(limit_plots.forest_figure(rows, a.observer), "ratio_break_detect",
-                                 "L_break / L_detect with 95 % intervals. Black: both measured here; grey: against a published threshold, whose own spread is "
+                                 "L_break / L_detect with 95 % intervals. Black: both measured here; grey: relative to a published threshold, whose own spread is "
                                  "not in the interval."))
     return "".join(parts)
 
@@ -128,17 +128,17 @@ def curves_section(report):
             fig, beyond = curve_plots.curve_figure(everybody, seed)
             for t in dict.fromkeys(t for _, t in published.of_pair(*condition.pair)) if condition.pair else []:
                 report.cite(t.source)
-            parts.append(report.keep(fig, f"curve_{condition.slug()}", f"{safe(condition.words().capitalize())}: points in proportion to their answers, the function with its band of 95 %; at the bottom the 95 % interval of its centre" + ("; dashed: published thresholds" if condition.pair else "")
-                                     + (f", {beyond} of them beyond the levels given" if beyond else "") + "."))
+            parts.append(report.keep(fig, f"curve_{condition.slug()}", f"{safe(condition.words().capitalize())}: points proportional to the number of answers, the function with its 95 % band; at the bottom the 95 % interval of its centre" + ("; dashed: published thresholds" if condition.pair else "")
+                                     + (f", {beyond} of them outside the presented levels" if beyond else "") + "."))
         if len(mine) > 2:
             parts.append(report.keep(curve_plots.small_multiples(mine), f"participants_{condition.slug()}", "Each participant; grey: all together."))
         if condition.pair and len(everybody.levels):
-            parts.append(report.keep(curve_plots.achieved_figure(everybody), f"achieved_{condition.slug()}", "Asynchronies that were achieved, and how far from those asked for."))
+            parts.append(report.keep(curve_plots.achieved_figure(everybody), f"achieved_{condition.slug()}", "Measured asynchronies, and their differences to the requested ones."))
         if any(len(c.trials) for c in mine):
-            parts.append(report.keep(curve_plots.trace_figure(mine), f"levels_{condition.slug()}", "Levels in the order in which they were given; filled: "
-                                     f"{ {'sj': 'judged synchronous', 'toj': 'first sense first', '2ifc': 'correct'}[condition.kind]}. Line: the fitted centre as answers came in; band: its interval at the end."))
+            parts.append(report.keep(curve_plots.trace_figure(mine), f"levels_{condition.slug()}", "Levels in order of presentation; filled: "
+                                     f"{ {'sj': 'judged synchronous', 'toj': 'first sense first', '2ifc': 'correct'}[condition.kind]}. Line: running estimate of the centre; band: its final interval."))
         if len(mine) > psychometric.FEWEST_TRIALS + 5:
-            parts.append(f"<p>The first {curve_plots.MOST_SMALL} participants are drawn; the table has all.</p>\n")
+            parts.append(f"<p>The first {curve_plots.MAX_SMALL} participants are shown; the table lists all.</p>\n")
     return "".join(parts)
 
 
@@ -146,11 +146,11 @@ def felt_section(report):
     felt = report.analysis.felt
     if not felt:
         return ""
-    parts = ["<h2>What is felt</h2>\n"]
+    parts = ["<h2>Felt properties</h2>\n"]
     for f in felt:
         left = f" {f.left_out} answers of participants who never judged the undegraded stimulus are left out." if f.left_out else ""
         parts.append(report.keep(limit_plots.felt_figure(f), f"felt_{f.property}_{f.factor.modality}_{f.factor.operator}",
-                                 f"{'Measured' if f.measured else 'Felt'} {f.property} under {safe(f.factor.words())}, against the undegraded, with 95 % intervals. Band: the JND {report.cite(f.source.source)} "
+                                 f"{'Measured' if f.measured else 'Felt'} {f.property} under {safe(f.factor.words())}, relative to the undegraded stimulus, with 95 % intervals. Band: the JND {report.cite(f.source.source)} "
                                  f"({safe(f.source.situation)}). L_appear: {safe(value_of(f.limit))}; the property is felt as {f.toward}.{left}"))
     return "".join(parts)
 
@@ -167,25 +167,25 @@ def performance_section(report):
             rows.append([degraded_words(degraded), c.n, f"{100 * c.share:.1f} [{100 * c.share_interval()[0]:.1f}, {100 * c.share_interval()[1]:.1f}]", f"{c.mean_time_s:.2f} {span(*time)}"]
                         + ([f"{100 * d.success:+.1f} [{100 * d.success_interval[0]:+.1f}, {100 * d.success_interval[1]:+.1f}]", f"{d.time:.3f} {span(*d.time_interval)}",
                             "harmless" if d.harmless else "harmful" if d.harmful else "open"] if d else ["", "", "baseline"]))
-        parts.append(report.table(f"Games won (%, Wilson’s interval), time to win (s; games not won count {number(p.limit_s) if np.isfinite(p.limit_s) else 'not at all: all were won'}"
-                                  f"{' s' if np.isfinite(p.limit_s) else ''}), and both against all senses. Harmless: shown to be within both margins, Holm’s correction; harmful: an interval lies "
+        parts.append(report.table(f"Games won (%, Wilson’s interval), time to win (s; games not won count {number(p.limit_s) if np.isfinite(p.limit_s) else 'with the limit, but all were won'}"
+                                  f"{' s' if np.isfinite(p.limit_s) else ''}), and both compared with all senses. Harmless: shown to be within both margins, Holm’s correction; harmful: an interval lies "
                                   "beyond its margin.", ["condition", "n", "won %", "time s", "difference, points", "ratio of time", "shown"], rows))
         if baseline.share < p.margins[0] or baseline.mean_time_s * p.margins[1] > p.limit_s:
-            parts.append("<p>The undegraded games were won so seldom, or so late, that no level could be worse by a margin: none is shown to be harmless by that outcome.</p>\n")
+            parts.append("<p>The undegraded games were won too rarely, or too late, for any level to be worse by a margin: no level is shown to be harmless by that outcome.</p>\n")
         for factor, found in p.limits.items():
             parts.append(report.keep(performance_plots.factor_figure(p.cells, factor, found, p.margins, p.observer), f"games_{factor.modality}_{factor.operator}",
                                      f"Games under {safe(factor.words())}. Green: all senses, with their interval; dashed: the margin; red: L_break with its interval."))
         removed = [(degraded_words(degraded), d) for degraded, d in p.differences.items() if all(f.removal for f, _ in degraded)]
         if removed:
             parts.append(report.keep(performance_plots.removal_figure(removed, baseline, p.margins, p.observer), "removal",
-                                     "What each sense is worth: games without it, against all senses, with 95 % intervals. Dashed: the margins."))
+                                     "Contribution of each sense: games without it compared with all senses, with 95 % intervals. Dashed: the margins."))
         for f in p.frontiers:
             slug = f"{f.first.modality}_{f.first.operator}_{f.second.modality}_{f.second.operator}"
             parts.append(report.keep(performance_plots.frontier_figure(f, p.cells, p.margins, p.observer), f"frontier_map_{slug}",
                                      f"{safe(f.first.words().capitalize())} and {safe(f.second.words())} together. Red line: where the margin is reached; dashed: 75 % of the games won."))
-            if f.edge:  # not where neither was played alone
+            if f.edge:  # empty if neither sense was degraded alone
                 parts.append(report.keep(performance_plots.edge_figure(f, p.observer), f"frontier_{slug}",
-                                         f"How much of {safe(f.second.words())} the game bears, by success or time, at each level of {safe(f.first.words())}, with 95 % intervals."))
+                                         f"L_break of {safe(f.second.words())}, by success or time, at each level of {safe(f.first.words())}, with 95 % intervals."))
     return "".join(parts)
 
 
@@ -201,7 +201,7 @@ def models_section(report):
         rows += [[words if i == 0 else "", e.name, f"{number(e.estimate)} {span(e.low, e.high)}", "< 0.0001" if e.p < 1e-4 else f"{e.p:.4f}"] for i, e in enumerate(model.effects)]
         rows.append(["", "between participants", f"sd of intercept {number(model.sd_intercept)}, of slope {number(model.sd_slope)}", f"{model.participants} people"])
         doubts.append((words, model.words))
-    text = "<h2>Over participants</h2>\n"
+    text = "<h2>Models over participants</h2>\n"
     if rows:
         text += report.table("Mixed models: effects with 95 % intervals, in log odds or in ln(s), per unit of the level.", ["of", "effect", "estimate", "p"], rows)
     by_words = {}
@@ -213,9 +213,9 @@ def models_section(report):
 def methods(report):
     a = report.analysis
     clusters = "Participants were the sample of the bootstrap." if len(a.trials.participants()) >= resampling.FEWEST_PARTICIPANTS else \
-        f"There were fewer than {resampling.FEWEST_PARTICIPANTS} participants: intervals are of these participants’ trials and say nothing of other people."
+        f"There were fewer than {resampling.FEWEST_PARTICIPANTS} participants: intervals hold for the trials of these participants and not for other people."
     limit = " Games not won count with the time limit, so that times are restricted means." if any(np.isfinite(p.limit_s) for p in a.performances) else ""
-    return ("<h2>How it was computed</h2>\n<p>All levels are those achieved, where the apparatus measured them. "
-            f"{clusters} Bayesian bootstrap with {resampling.DRAWS} draws, seed {a.settings.seed}.{limit} L_break is where the worsening, made non-decreasing over the levels and joined by "
-            "straight lines, reaches the margin. Success was tested by Farrington and Manning’s score test of non-inferiority with Newcombe’s interval, time by the "
+    return ("<h2>Methods</h2>\n<p>All levels are measured ones where the apparatus measured them. "
+            f"{clusters} Bayesian bootstrap with {resampling.DRAWS} draws, seed {a.settings.seed}.{limit} L_break is the level at which the worsening, made non-decreasing over the levels and interpolated "
+            "linearly, reaches the margin. Success was tested by Farrington and Manning’s score test of non-inferiority with Newcombe’s interval, time by the "
             f"bootstrap of the ratio of means, at α = {a.settings.alpha:g} with Holm’s correction over the levels of a factor.</p>\n")

@@ -1,7 +1,6 @@
-"""Tables of trials and games, put together: rows as scripts/python/tactus/study/trial_table.py reads and checks them, as columns.
+"""Tables of trials and games as columns. study/trial_table.py reads and validates the rows.
 
-A table that does not hold what its header promises is refused whole, with file, line and reason: an analysis of half a table would look
-like one of all of it.
+An invalid row refuses the whole table, with file, line and reason, because an analysis of a part would look complete.
 """
 import math
 import pathlib
@@ -15,12 +14,12 @@ from tactus.study import trial_table
 FILES = ("trials.csv", "games.csv")
 DEEPEST = 4  # design: OUT/study/participant/session/trials.csv
 TEXTS = {name for name, column in trial_table.COLUMNS.items() if column.kind == "text"} | {"seed"}  # a seed may need more than 53 bits
-# Of one row: the same participant did not do the same trial twice.
+# Columns that identify a row; a repeated row is refused.
 IDENTITY = ("study", "participant_id", "session", "condition", "block", "trial", "seed", "question")
 
 
 class Trials:
-    """Rows by column: float arrays (NaN where a field is empty) and text arrays. Columns that no file has read as empty."""
+    """Rows by column: float arrays (NaN for an empty field) and text arrays. Absent columns read as empty."""
 
     def __init__(self, columns, rows):
         self.columns, self.rows = columns, rows
@@ -65,7 +64,7 @@ def of_rows(rows):
 
 
 def files_of(places):
-    """The tables under folders or files, sorted; each once. Raises Refusal when a place holds none."""
+    """The tables under folders or files, sorted, each once. Raises Refusal if a place holds none."""
     found = []
     for place in map(pathlib.Path, places):
         if place.is_file():
@@ -73,24 +72,24 @@ def files_of(places):
         elif place.is_dir():
             mine = sorted(p for depth in range(DEEPEST + 1) for name in FILES for p in place.glob("*/" * depth + name))
         else:
-            raise Refusal(f"{place} is not there; give a folder that `study run` or `study sweep` left, or a table of trials")
+            raise Refusal(f"{place} does not exist; give a results folder of `study run` or `study sweep`, or a table of trials")
         if not mine:
-            raise Refusal(f"{place} holds no {' or '.join(FILES)}; give a folder that `study run` or `study sweep` left")
+            raise Refusal(f"{place} holds no {' or '.join(FILES)}; give a results folder of `study run` or `study sweep`")
         found += [p for p in mine if p.resolve() not in {f.resolve() for f in found}]
     return found
 
 
 def no_severity(row):
-    """Why the level of a row says nothing of how severe its degradation is; None: it does, or there is none."""
+    """Reason why the level of a row gives no severity, as a sentence; None: it does, or nothing is degraded."""
     for prefix, modality in (("", "modality_degraded"), ("second_", "second_modality")):
         operator, level = row.get(prefix + "operator"), row.get(prefix + "level")
         if not row.get(modality) or not operator or operator in operators.REMOVALS:
             continue
         if level is None and row["task"] == "game":
-            return f"a game under {operator} has no {prefix}level; write how much of it there was"
+            return f"a game under {operator} has no {prefix}level; write its level"
         falls = operator in operators.FALLING and operator != "gain"
         if level is not None and (level < 0 or falls and level == 0):
-            return f"{prefix}level is {level:g}; a level of {operator} is {'above 0, and off where nothing is left' if falls else '0 or more'}"
+            return f"{prefix}level is {level:g}; a level of {operator} must be {'above 0; use the operator off for nothing at all' if falls else '0 or more'}"
     return None
 
 
@@ -102,17 +101,17 @@ def read(files):
             where = f"{path} row {number}"
             identity = tuple(row.get(name) for name in IDENTITY)
             if identity in seen:
-                raise Refusal(f"{where}: the same trial of {row['participant_id']} stands in {seen[identity]} already; give each table once")
+                raise Refusal(f"{where}: the same trial of {row['participant_id']} is already in {seen[identity]}; give each table once")
             seen[identity] = where
             if sentence := no_severity(row):
                 raise Refusal(f"{where}: {sentence}")
             kept.append(row)
     if not kept:
-        raise Refusal(f"{files[0]}: there is no trial in it; let somebody do the study first")
+        raise Refusal(f"{files[0]}: holds no trials; run the study first")
     return of_rows(kept)
 
 
 def usable(trials):
-    """(those to analyse, number left out): a trial whose apparatus missed its tolerance says nothing of the person."""
+    """(Trials to analyse, number of missed ones)."""
     missed = trials["missed"] == 1
     return trials.where(~missed), int(np.count_nonzero(missed))

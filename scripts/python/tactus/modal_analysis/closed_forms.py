@@ -1,4 +1,4 @@
-"""Natural frequencies of ideal bodies, written down from the literature and not from our own renderer."""
+"""Natural frequencies of ideal bodies, from the literature and independent of the renderer."""
 import math
 
 
@@ -24,7 +24,7 @@ def euler_bernoulli_Hz(material, length_m, thickness_m, root):
 
 def free_bar_Hz(material, length_m, thickness_m, count):
     """The same with shear and rotary inertia to first order (Graff, Wave Motion in Elastic Solids, 1975, section 3.4), E / G = 2 (1 + nu),
-    kappa = 5/6: 0.1 % of the lowest mode of a bar 60 times as long as thick, and more of the higher ones."""
+    kappa = 5/6. The correction of the lowest mode of a bar 60 times as long as thick is 0.1 %, and larger for higher modes."""
     shear = 2 * (1 + material["poissons_ratio"]) / (5 / 6)
     found = []
     for root in free_bar_roots(count):
@@ -41,7 +41,7 @@ def free_bar_shape(root, place):
 
 
 def free_bar_node(root):
-    """The nodal point that is nearest to the end, 0 .. 1 of the length."""
+    """The nodal point nearest to the end, 0 .. 1 of the length."""
     low, high = 0.0, 1e-3
     while free_bar_shape(root, high) > 0:
         low, high = high, high + 1e-3

@@ -1,4 +1,4 @@
-"""Which law of damping a set of modes follows."""
+"""Fits laws of damping to a set of modes."""
 import math
 
 import numpy as np
@@ -15,8 +15,8 @@ def constant_loss(frequency_Hz, eta):
 
 
 def fit(frequency_Hz, damping_1_s, amplitude):
-    """Least squares of relative errors, weighted by amplitude: a slow decay is heard as wrong by its share, not by its size. Neither
-    alpha nor beta may be negative. Returns a dictionary; `better` names the law with the smaller weighted error."""
+    """Least squares of relative errors, weighted by amplitude, because hearing judges decay times relatively. alpha and beta are not
+    negative. Returns a dictionary; `better` names the law with the smaller weighted error."""
     f, d = np.asarray(frequency_Hz, float), np.asarray(damping_1_s, float)
     weight = np.abs(np.asarray(amplitude, float))
     weight = weight / weight.sum()

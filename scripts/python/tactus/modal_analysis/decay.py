@@ -1,15 +1,15 @@
-"""Frequencies and dampings from how the peaks of short-time spectra decay: the older way, as a second opinion.
+"""Frequencies and dampings from the decay of the peaks of short-time spectra: an independent check of ESPRIT.
 
-Each peak of the mean spectrum is followed through time; the slope of its log amplitude is the damping (Smith, "Physical Audio Signal
-Processing", sinusoidal modelling and energy decay relief). Two modes nearer than the resolution are one peak here.
+Each peak of the mean spectrum is tracked over time; the slope of its log amplitude is the damping (Smith, "Physical Audio Signal
+Processing", sinusoidal modelling and energy decay relief). Two modes nearer than the resolution give one peak.
 """
 import numpy as np
 
 SHORTEST_S, LONGEST_S = 0.02, 0.085  # of a window: design
-HOP = 8  # of a window
-PAD = 4
-PEAK_DB = 70.0  # below the highest: not looked at
-FIT_DB = 25.0  # of the decay that is fitted: what a room adds comes later (design)
+HOP = 8  # hops in a window
+PAD = 4  # zero padding, factor
+PEAK_DB = 70.0  # peaks further below the highest are ignored
+FIT_DB = 25.0  # range of the fitted decay; the reverberation of a room comes later (design)
 ABOVE_NOISE_DB = 12.0
 FEWEST_FRAMES = 4
 
@@ -23,7 +23,7 @@ def frames_of(samples, size):
 
 
 def window_s(samples, rate):
-    """As long as most of the energy takes to decay, for a spectrum as fine as that allows."""
+    """Length of the window, s: a third of the time in which the energy falls by 30 dB, within bounds, for the finest possible spectrum."""
     energy = np.cumsum(samples[::-1] ** 2)[::-1]
     rings_s = np.argmax(energy < 1e-3 * energy[0]) / rate or len(samples) / rate
     return min(max(rings_s / 3, SHORTEST_S), LONGEST_S, len(samples) / rate / 3)
@@ -37,7 +37,7 @@ def peak_between_bins(log_spectrum, i):
 
 
 def slope(times_s, log_amplitude, noise):
-    """Damping of one track, 1/s, from the top on as far as it stands out of the noise; None: too short a piece. And how straight it is."""
+    """(damping of one track, 1/s, from its maximum until it reaches the noise, or None if this part is too short; straightness 0 .. 1)."""
     top = int(np.argmax(log_amplitude[:max(FEWEST_FRAMES, len(log_amplitude) // 4)]))
     limit = max(noise + ABOVE_NOISE_DB * np.log(10) / 20, log_amplitude[top] - FIT_DB * np.log(10) / 20)
     below = np.nonzero(log_amplitude[top:] < limit)[0]
@@ -51,7 +51,7 @@ def slope(times_s, log_amplitude, noise):
 
 
 def find_peaks(samples, rate, below_Hz):
-    """(frequency Hz, damping 1/s, straightness 0 .. 1 of the decay) of every peak that decays, ascending."""
+    """(n, 3): frequency Hz, damping 1/s and straightness 0 .. 1 of every decaying peak, ascending."""
     size = int(window_s(samples, rate) * rate)
     spectra, hop = frames_of(samples, size)
     if not len(spectra):

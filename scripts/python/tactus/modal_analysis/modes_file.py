@@ -1,4 +1,4 @@
-"""Measured modes as files: a table (CSV), which a scene's material names, and the material itself (XML)."""
+"""Files of measured modes: a table (CSV), which a material of a scene refers to, and the material itself (XML)."""
 import csv
 import math
 import os
@@ -29,7 +29,7 @@ def write_csv(path, modes):
             writer.writerow(COLUMNS)
             writer.writerows(rows_of(modes))
     except OSError as e:
-        raise Refusal(f"{path} cannot be written: {e.strerror}; name another file") from e
+        raise Refusal(f"{path} cannot be written: {e.strerror}; give another file") from e
 
 
 def builtin_materials():
@@ -38,15 +38,15 @@ def builtin_materials():
 
 
 def write_xml(path, analysis, name, base):
-    """The material as an element for the world of a scene, and its modes beside it as NAME.modes.csv."""
+    """Writes the material as an element for the world of a scene, and its modes beside it as NAME.modes.csv; returns the path of that table."""
     known = builtin_materials()
     if not NAME.fullmatch(name):
-        raise Refusal(f'a material cannot be called "{name}"; use letters, digits, dots, spaces, - and _')
+        raise Refusal(f'"{name}" is not a valid name of a material; use letters, digits, dots, spaces, - and _')
     if base is None and name not in known:
-        raise Refusal(f'"{name}" is a new material, and a sound does not tell its stiffness or friction; say which it resembles: '
+        raise Refusal(f'"{name}" is a new material, and a sound does not contain its stiffness or friction; give a similar material with '
                       f"--base {'|'.join(known)}")
     if base is not None and base not in known:
-        raise Refusal(f'there is no material "{base}"; --base is one of {", ".join(known)}')
+        raise Refusal(f'there is no material "{base}"; give --base with one of {", ".join(known)}')
     table = os.path.splitext(path)[0] + ".modes.csv"
     write_csv(table, analysis.modes)
     law = analysis.law
@@ -57,7 +57,7 @@ def write_xml(path, analysis, name, base):
         with open(path, "w", encoding="utf-8") as file:
             file.write(f"<tactus:material {' '.join(words)}/>\n")
     except OSError as e:
-        raise Refusal(f"{path} cannot be written: {e.strerror}; name another file") from e
+        raise Refusal(f"{path} cannot be written: {e.strerror}; give another file") from e
     return table
 
 

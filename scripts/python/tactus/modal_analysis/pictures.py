@@ -1,4 +1,4 @@
-"""Pictures of an analysis: the spectrum with its modes, damping against frequency, recordings beside their re-synthesis."""
+"""Pictures of an analysis: spectrum with modes, damping over frequency, recordings beside their re-synthesis."""
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -11,7 +11,7 @@ RECORDED, AGAIN, MARK = "#555", "#2166ac", "#b2182b"
 
 
 class Panel:
-    """Axes with a logarithmic frequency to the right and anything upwards."""
+    """SVG axes: logarithmic frequency to the right, values upwards."""
 
     def __init__(self, box, frequencies_Hz, values, is_log=False):
         (self.x0, self.y0, self.wide, self.tall), (self.low_Hz, self.high_Hz), (self.low, self.high) = box, frequencies_Hz, values
@@ -47,14 +47,14 @@ class Panel:
 
 
 def spectrum_dB(samples, rate):
-    """Of what begins with a blow: the window falls from its start to 0. Undamped amplitude 1 is 0 dB."""
+    """(frequencies Hz, level dB) of a signal that starts with a blow: the window falls from its start to 0. An undamped amplitude of 1 is 0 dB."""
     window = np.hanning(2 * len(samples) + 1)[len(samples):-1]
     spectrum = np.abs(np.fft.rfft(samples * window, 2 * len(samples))) / (window.sum() / 2)
     return np.fft.rfftfreq(2 * len(samples), 1 / rate), 20 * np.log10(np.maximum(spectrum, 1e-12))
 
 
 def outlined(f, level, low_Hz, high_Hz, columns=420):
-    """The highest point of each of so many equal columns of a logarithmic axis."""
+    """The highest point in each of `columns` equal columns of a logarithmic axis."""
     edges = np.geomspace(low_Hz, high_Hz, columns + 1)
     at = np.searchsorted(f, edges)
     centres, tops = [], []
@@ -67,7 +67,7 @@ def outlined(f, level, low_Hz, high_Hz, columns=420):
 
 
 def compared(a):
-    """What was analysed and its re-synthesis, equally long."""
+    """The analysed samples and their re-synthesis, of equal length."""
     count = min(len(a.samples) - a.begins, int(1.5 * a.rate))
     return a.samples[a.begins:a.begins + count], analyses.resynthesis(a, count)
 
@@ -77,7 +77,7 @@ def range_of(a):
 
 
 def spectrum_panel(box, a, title, is_marked):
-    """Recording and re-synthesis over each other; a circle on each mode, filled where both analyses agree."""
+    """Spectra of recording and re-synthesis, or a circle on each mode, filled if both methods agree."""
     original, again = compared(a)
     low_Hz, high_Hz = range_of(a)
     f, level = spectrum_dB(original, a.rate)
@@ -100,7 +100,7 @@ def damping_panel(box, a):
     decades = 10.0 ** np.arange(np.log10(panel.low), np.log10(panel.high) + 0.5)
     law = a.law
     panel.grid(decades, "damping, 1/s", f'alpha {law["rayleigh_alpha_1_s"]:.3g} 1/s, beta {law["rayleigh_beta_s"]:.3g} s (line); '
-               f'loss factor {law["loss_factor"]:.3g} (dashed); {"the line" if law["better"] == "rayleigh" else "the dashed one"} fits better')
+               f'loss factor {law["loss_factor"]:.3g} (dashed); {"the line" if law["better"] == "rayleigh" else "the dashed line"} fits better')
     strongest = max(m.amplitude for m in a.modes)
     for m in a.modes:
         panel.circle(m.frequency_Hz, m.damping_1_s, MARK, m.agrees, 2 + 4 * max(0.0, 1 + np.log10(m.amplitude / strongest) / 3))
@@ -118,7 +118,7 @@ def write(path, width, height, parts):
         with open(path, "w", encoding="utf-8") as file:
             file.write("\n".join([head, '<rect width="100%" height="100%" fill="white"/>', *parts, "</svg>"]) + "\n")
     except OSError as e:
-        raise Refusal(f"{path} cannot be written: {e.strerror}; name another file") from e
+        raise Refusal(f"{path} cannot be written: {e.strerror}; give another file") from e
 
 
 def draw_analysis(path, a, title):
@@ -130,7 +130,7 @@ def draw_analysis(path, a, title):
 
 
 def draw_comparison(path, analysed):
-    """analysed: (title, Analysis) of each; recording to the left, re-synthesis to the right, modes marked in the first."""
+    """analysed: [(title, Analysis)]; each row shows the recording with its modes on the left and the re-synthesis on the right."""
     wide, tall, gap = 400, 180, 70
     parts = []
     for i, (title, a) in enumerate(analysed):
@@ -143,7 +143,7 @@ def draw_comparison(path, analysed):
         f_again, level_again = spectrum_dB(again, a.rate)
         highest = 10 * np.ceil(level.max() / 10)
         panel = Panel((2 * LEFT + wide, top, wide, tall), (low_Hz, high_Hz), (highest - RANGE_DB, highest))
-        panel.grid(np.arange(highest - RANGE_DB, highest + 1, 30), "dB", f"re-synthesis from {len(a.modes)} modes; what is missing: {rest_dB:.1f} dB")
+        panel.grid(np.arange(highest - RANGE_DB, highest + 1, 30), "dB", f"re-synthesis from {len(a.modes)} modes; residual: {rest_dB:.1f} dB")
         panel.line(*outlined(f_again, level_again, low_Hz, high_Hz), AGAIN)
         parts += panel.out
         parts.append(f'<text x="{LEFT}" y="{top - 22}" font-size="13" font-weight="bold">{escape(title)}</text>')

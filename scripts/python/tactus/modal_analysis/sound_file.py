@@ -1,4 +1,4 @@
-"""Reads a recording: WAV by hand, since Python's wave module knows only integers, anything else through ffmpeg."""
+"""Reads recordings: WAV directly, because Python's wave module reads integer samples only; other formats through ffmpeg."""
 import shutil
 import subprocess
 
@@ -7,7 +7,7 @@ import numpy as np
 from tactus.refusal import Refusal
 
 FEWEST_SAMPLES = 256
-LONGEST_S = 60  # design: no struck object that is worth analysing rings on for longer
+LONGEST_S = 60  # longer than the ringing of any struck object; design
 WAYS = {(1, 8): "u1", (1, 16): "<i2", (1, 24): "24", (1, 32): "<i4", (3, 32): "<f4", (3, 64): "<f8"}
 
 
@@ -15,7 +15,7 @@ def chunks_of(data):
     position = 12
     while position + 8 <= len(data):
         size = int.from_bytes(data[position + 4:position + 8], "little")
-        # A file whose writer was killed says 0 or all ones: it goes on to its end.
+        # The size is 0 or all ones if the writer was killed: the samples extend to the end of the file.
         if data[position:position + 4] == b"data" and (size == 0 or position + 8 + size > len(data)):
             size = len(data) - position - 8
         yield data[position:position + 4], data[position + 8:position + 8 + size]
@@ -40,7 +40,7 @@ def read_wav(path, data):
         if name == b"fmt " and len(body) >= 16:
             kind, channels = int.from_bytes(body[0:2], "little"), int.from_bytes(body[2:4], "little")
             rate, bits = int.from_bytes(body[4:8], "little"), int.from_bytes(body[14:16], "little")
-            if kind == 0xFFFE and len(body) >= 26:  # the extensible form says the kind later
+            if kind == 0xFFFE and len(body) >= 26:  # WAVE_FORMAT_EXTENSIBLE stores the kind later
                 kind = int.from_bytes(body[24:26], "little")
         if name == b"data" and kind is not None:
             if (kind, bits) not in WAYS or not 1 <= channels <= 64 or not 1000 <= rate <= 400000:
@@ -53,12 +53,12 @@ def read_wav(path, data):
 
 def read_by_ffmpeg(path):
     if not shutil.which("ffmpeg"):
-        raise Refusal(f"{path} is no WAV, and ffmpeg, which reads others, is not installed: apt-get install ffmpeg")
+        raise Refusal(f"{path} is not a WAV file, and ffmpeg, which reads other formats, is not installed; run apt-get install ffmpeg")
     probe = subprocess.run(["ffprobe", "-v", "error", "-select_streams", "a:0", "-show_entries", "stream=sample_rate,channels", "-of",
                             "csv=p=0", f"file:{path}"], capture_output=True, text=True, errors="replace")
     numbers = probe.stdout.strip().split(",")[:2]
     if probe.returncode or len(numbers) != 2 or not all(n.isdigit() for n in numbers):
-        raise Refusal(f"{path} holds no sound that can be read; give a WAV or FLAC file")
+        raise Refusal(f"{path} holds no readable sound; give a WAV or FLAC file")
     rate, channels = int(numbers[0]), int(numbers[1])
     raw = subprocess.run(["ffmpeg", "-v", "error", "-i", f"file:{path}", "-map", "0:a:0", "-t", str(LONGEST_S), "-f", "f32le", "-"],
                          capture_output=True).stdout
@@ -79,16 +79,16 @@ def read_channels(path):
     samples, rate = read_wav(path, data) if is_wav else read_by_ffmpeg(path)
     samples = samples[:LONGEST_S * rate]
     if len(samples) < FEWEST_SAMPLES:
-        raise Refusal(f"{path} has {len(samples)} samples, too few to analyse; give a recording of at least a few hundredths of a second")
+        raise Refusal(f"{path} has {len(samples)} samples, too few to analyse; give a recording of at least {FEWEST_SAMPLES} samples")
     if not np.isfinite(samples).all():
-        raise Refusal(f"{path} contains samples that are no numbers; record it again")
+        raise Refusal(f"{path} contains samples that are not numbers; record it again")
     if not samples.any():
         raise Refusal(f"{path} is silent; record a blow")
     return samples, rate
 
 
 def read_sound(path):
-    """Mono sum of the channels and the rate in Hz. Channels that cancel each other are not summed: the louder one then counts."""
+    """Mean of the channels, and the rate in Hz. If the channels cancel each other, the loudest one is used."""
     channels, rate = read_channels(path)
     mono = channels.mean(axis=1)
     loudest = channels[:, np.argmax((channels ** 2).sum(axis=0))]

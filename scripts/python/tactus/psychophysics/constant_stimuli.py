@@ -1,10 +1,10 @@
-"""The method of constant stimuli: fixed levels, each as often, in a random order."""
+"""The method of constant stimuli: fixed levels, presented equally often in a random order."""
 import random
 
 
 class ConstantStimuli:
-    """levels: numbers, or pairs for two senses; repetitions of each. All levels come once, in a random order, before any comes again, so that
-    what drifts over a session drifts at all levels alike."""
+    """levels: numbers, or pairs for two senses; repetitions of each. Each round presents all levels once, in a random order, so that a drift over the
+    session affects all levels equally."""
 
     def __init__(self, levels, repetitions, seed):
         if len(levels) < 1 or repetitions < 1:
@@ -31,12 +31,12 @@ class ConstantStimuli:
 
     def next_level(self):
         if self.finished:
-            raise IndexError("all trials of these constant stimuli are answered; ask `finished` first")
+            raise IndexError("all trials of these constant stimuli are answered; check `finished` first")
         return self.levels[self.done]
 
     def answer(self, level, yes):
         self.history.append((level, bool(yes)))
 
     def estimate(self):
-        """None: constant stimuli have no running estimate; fit what was answered."""
+        """None: constant stimuli have no running estimate; fit the answers."""
         return None

@@ -4,8 +4,8 @@
   fit_many(levels, yes, total, "order")     n sets at once, arrays (n, k) -> Fits
   interval(fit, "pss")                      (low, high)
 
-Lapse rates are sought within [0, 0.06] (Wichmann and Hill 2001), guess rates of yes/no tasks within [0, 0.5] under the weak prior Beta(1, 10)
-(Schuett et al. 2016); of forced choice the guess rate is fixed by the number of choices: fixed={"guess": 0.5}.
+Lapse rates are fitted within [0, 0.06] (Wichmann and Hill 2001), guess rates of yes/no tasks within [0, 0.5] under the weak prior Beta(1, 10) (Schuett
+et al. 2016). In forced choice the number of choices fixes the guess rate: fixed={"guess": 0.5}.
 """
 import dataclasses
 import math
@@ -17,16 +17,16 @@ from tactus.psychophysics.functions import GUESS as GUESS_BOUNDS, LAPSE as LAPSE
 from tactus.psychophysics.likelihood import GUESS, LAPSE, Q, T, Answers, log_likelihood, probability
 from tactus.psychophysics.starts import fit_from_grid
 
-FARTHEST = 3.0              # locations are sought so many spans of the levels to either side of their middle; design
-SPREAD = (1e-3, 30.0)       # and spreads within so many spans; design
-WIDEST = 1.5                # spans of the levels: a wider spread was not measured; design
-FIRST_RATES = (0.02, 0.02)  # guess and lapse of a first guess; design
+FARTHEST = 3.0              # largest distance of a location from the middle of the levels, in spans of the levels; design
+SPREAD = (1e-3, 30.0)       # range of spreads, in spans of the levels; design
+WIDEST = 1.5                # largest spread of a valid fit, in spans of the levels; design
+FIRST_RATES = (0.02, 0.02)  # initial guess and lapse rates; design
 
 
 @dataclasses.dataclass
 class Fits:
     """n fits of one function. theta (n, 4) and answers are on an axis where the levels of each set span 1, from -0.5 to 0.5: z = middle +
-    span * axis. free (4,): what was fitted. value (n,): log likelihood and prior. done (n,): scoring reached its end."""
+    span * axis. free (4,): mask of fitted parameters. value (n,): log likelihood plus log prior. done (n,): scoring converged."""
     function: object
     answers: Answers
     theta: np.ndarray
@@ -51,7 +51,7 @@ class Fits:
         return self.middle + self.span * self.theta[:, Q], self.span * np.exp(self.theta[:, T]), self.theta[:, GUESS], self.theta[:, LAPSE]
 
     def estimates(self, name):
-        """(n,) of a parameter or a derived value."""
+        """(n,) values of a parameter or a derived value."""
         m, s, guess, lapse = self.inner()
         found = self.function.outer(m, s, guess, lapse)
         if name in found:
@@ -63,8 +63,8 @@ class Fits:
         raise ValueError(f"{self.function.name} has no parameter '{name}'; it has {', '.join([*found, *self.function.anchors(), *self.function.widths()])}")
 
     def placed(self):
-        """(n,) whether the levels reach the threshold: answers differ, the location is within the levels or a spread beside them, and the spread is
-        at most WIDEST."""
+        """(n,) whether the levels reach the threshold: the answers differ, the location is at most one spread outside the levels, and the spread is at most
+        WIDEST."""
         spread, yes = np.exp(self.theta[:, T]), self.answers.yes.sum(axis=1)
         return (np.abs(self.theta[:, Q]) <= 0.5 + spread) & (spread <= WIDEST) & (yes > 0) & (yes < self.answers.total.sum(axis=1))
 
@@ -73,9 +73,9 @@ class Fits:
 class Fit:
     """One fit.
 
-    params, derived: name -> value in the units of the levels. log_likelihood: at the maximum, without binomial coefficients and prior.
-    deviance: twice what the log likelihood is below that of the observed shares (Wichmann and Hill 2001). converged: scoring
-    came to its end, and the levels reach the threshold (Fits.placed). at_bound: names of what ended at the end of where it was sought."""
+    params, derived: name -> value in the units of the levels. log_likelihood: at the maximum, without binomial coefficients and prior. deviance: twice the
+    difference of the log likelihood to that of the observed shares (Wichmann and Hill 2001). converged: scoring converged, and the levels reach the
+    threshold (Fits.placed). at_bound: names of the parameters at a bound."""
     function: str
     params: dict
     derived: dict
@@ -91,26 +91,25 @@ class Fit:
 
 
 def arranged(levels, yes, total):
-    """Arrays (n, k) of float; ValueError when they are no answers."""
+    """Arrays (n, k) of float. Raises ValueError if they are not valid answers."""
     levels, yes, total = (np.asarray(a, dtype=float) for a in (levels, yes, total))
     levels = np.broadcast_to(levels, yes.shape)
     if yes.ndim != 2 or total.shape != yes.shape:
-        raise ValueError(f"levels, yes and total have the shapes {levels.shape}, {yes.shape} and {total.shape}; give as many of each")
+        raise ValueError(f"levels, yes and total have the shapes {levels.shape}, {yes.shape} and {total.shape}; give equal shapes")
     if not (np.isfinite(levels).all() and np.isfinite(yes).all() and np.isfinite(total).all()):
-        raise ValueError("levels, yes or total hold what is no number; leave such trials out")
+        raise ValueError("levels, yes or total hold values that are not finite numbers; leave such trials out")
     if (yes < 0).any() or (yes > total).any():
-        raise ValueError("there are more yes than trials at a level, or fewer than none; yes counts the trials of total that were answered so")
+        raise ValueError("a level has more yes than trials, or a negative number; yes counts the yes answers among total")
     if (((total > 0).sum(axis=1)) < 1).any():
-        raise ValueError("a set without any trial cannot be fitted; leave it out")
+        raise ValueError("a set has no trials; leave it out")
     return levels, yes, total
 
 
 def fit_many(levels, yes, total, name, fixed=None):
-    """Fits of n sets of answers. levels (k,) or (n, k), yes and total (n, k); total 0 fills up shorter sets. fixed: name -> value of guess or
-    lapse."""
+    """Fits of n sets of answers. levels (k,) or (n, k), yes and total (n, k); total 0 pads shorter sets. fixed: name -> value of guess or lapse."""
     shape, fixed = function(name), dict(fixed or {})
     if shape.dimensions != 1:
-        raise ValueError(f"{name} has two levels in each trial; it is estimated by QUEST+ and not fitted here")
+        raise ValueError(f"{name} has two levels in each trial and cannot be fitted here; estimate it with QUEST+")
     wrong = set(fixed) - set(shape.parameters[2:])
     if wrong:
         raise ValueError(f"'{sorted(wrong)[0]}' of {name} cannot be fixed; {' and '.join(shape.parameters[2:])} can")
@@ -130,7 +129,7 @@ def fit_many(levels, yes, total, name, fixed=None):
 
 
 def fit(levels, yes, total, name, fixed=None, rng=None):
-    """Fit of one set: levels, yes, total (k,). rng is not needed: the maximum is found without chance."""
+    """Fit of one set: levels, yes, total (k,). rng is not used; the search is deterministic."""
     levels, yes, total = (np.asarray(a, dtype=float).reshape(1, -1) for a in (levels, yes, total))
     many = fit_many(levels, yes, total, name, fixed)
     m, s, guess, lapse = (float(v[0]) for v in many.inner())
@@ -150,6 +149,6 @@ def saturated(yes, total):
 
 
 def interval(fitted, name, level=0.95, rng=None, method="posterior"):
-    """(low, high) of a parameter or derived value of a Fit; what was fixed has no width. intervals.py says what the methods are; rng is for the bootstrap."""
+    """(low, high) of a parameter or derived value of a Fit; a fixed one has width 0. intervals.py describes the methods; rng is for the bootstrap."""
     low, high = intervals.of_many(fitted.many, name, level, method, rng)
     return float(low[0]), float(high[0])

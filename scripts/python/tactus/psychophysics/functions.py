@@ -1,18 +1,18 @@
 """Psychometric functions: the probability of a yes, or of a right answer, at a level of the stimulus.
 
-All of one level x are p = A + B F((z(x) - m) / s): a core F, a location m, a spread s, and how often there is guessing and lapsing
-(Wichmann and Hill 2001, Perception & Psychophysics 63:1293, equation 1: A = guess, B = 1 - guess - lapse). Levels are in whatever unit the
-study has; location and spread are in the same one, save where a class says otherwise.
+All functions of one level x are p = A + B F((z(x) - m) / s) with a core F, a location m, a spread s, and guess and lapse rates (Wichmann and Hill 2001,
+Perception & Psychophysics 63:1293, equation 1: A = guess, B = 1 - guess - lapse). Levels have the unit of the study; location and spread have the same
+unit, unless a class states another one.
 """
 import math
 
 import numpy as np
 from scipy.special import expit, ndtr, ndtri
 
-LAPSE = (0.0, 0.06)  # Wichmann and Hill 2001: a lapse rate outside is no lapse rate
-GUESS = (0.0, 0.5)   # design: who says yes to half of what is not there has another threshold than the one that is fitted
-GUESS_PRIOR = 10.0   # Schuett et al. 2016, Vision Research 122:105: Beta(1, 10) on rates that are near 0
-SMALLEST_LEVEL = 1e-12  # of a logarithm; design
+LAPSE = (0.0, 0.06)  # range of plausible lapse rates: Wichmann and Hill 2001
+GUESS = (0.0, 0.5)   # design; above, the fitted threshold is meaningless
+GUESS_PRIOR = 10.0   # Schuett et al. 2016, Vision Research 122:105: Beta(1, 10) on rates near 0
+SMALLEST_LEVEL = 1e-12  # argument of a logarithm; design
 
 
 class Gaussian:
@@ -56,9 +56,9 @@ class Gumbel:
 
 
 class Window:
-    """exp(-u^2 / 2): rises and falls."""
+    """exp(-u^2 / 2), which rises and falls."""
     quartile = None
-    half_width75 = math.sqrt(2 * math.log(4 / 3))  # where it is three quarters of its peak
+    half_width75 = math.sqrt(2 * math.log(4 / 3))  # u at 75 % of the peak
 
     @staticmethod
     def both(u):
@@ -69,8 +69,8 @@ class Window:
 class OneLevel:
     """A function of one level.
 
-    parameters: names, location and spread first. bounds: of each (low, high), within which fits look. core, symmetric (order judgements
-    lapse to either side alike, and do not guess). z: level to the axis on which the core is a shift and a stretch."""
+    parameters: names, location and spread first. bounds: {parameter: (low, high)} of fits. core: F. symmetric: lapses go to both answers equally, and
+    there is no guess rate (order judgements). z: converts a level to the axis of location and spread."""
     dimensions = 1
     symmetric = False
 
@@ -106,8 +106,8 @@ class OneLevel:
         return a + b * self.core.both((self.z(levels) - m) / s)[0]
 
     def anchors(self):
-        """Derived values that are points on the axis: name -> the u at which they lie, or None for the u at which answers are 75 % right
-        once lapses are set aside, which depends on the guess rate."""
+        """Derived values that are points on the axis: name -> their u, or None for the u of 75 % right answers without lapses, which depends on the guess
+        rate."""
         return {"threshold75": None}
 
     def widths(self):
@@ -115,7 +115,7 @@ class OneLevel:
         return {"jnd": self.core.quartile} if self.core.quartile else {}
 
     def anchor(self, name, guess):
-        """u of a derived point. NaN where guessing alone gives 75 %."""
+        """u of a derived point. NaN: guessing alone gives 75 %."""
         u = self.anchors()[name]
         if u is not None:
             return u + 0 * np.asarray(guess)
@@ -123,7 +123,7 @@ class OneLevel:
             return self.core.inverse((0.75 - np.asarray(guess)) / (1 - np.asarray(guess)))
 
     def level_of(self, z):
-        """Back from the axis to a level."""
+        """Converts a point on the axis to a level."""
         return z
 
     def derived(self, m, s, guess):
@@ -133,8 +133,8 @@ class OneLevel:
 
 
 class Synchrony(OneLevel):
-    """Judgements of synchrony over SOA: a Gaussian window around the point of subjective simultaneity (pss). window75 is the width over
-    which it is at least three quarters of its peak, from low75 to high75."""
+    """Judgements of synchrony over SOA: a Gaussian window around the point of subjective simultaneity (pss). window75 is the width at 75 % of the peak,
+    from low75 to high75."""
 
     def anchors(self):
         return {"low75": -self.core.half_width75, "high75": self.core.half_width75}
@@ -160,7 +160,7 @@ class Order(OneLevel):
 
 
 class Weibull(OneLevel):
-    """1 - exp(-(x / threshold)^slope) of levels above 0 (Quick 1974, Kybernetik 16:65; Watson 1979): threshold at 63 % of the way up."""
+    """1 - exp(-(x / threshold)^slope) of levels above 0 (Quick 1974, Kybernetik 16:65; Watson 1979); the threshold is at 63 %."""
 
     def z(self, levels):
         return np.log(np.maximum(np.asarray(levels, dtype=float), SMALLEST_LEVEL))
@@ -176,7 +176,7 @@ class Weibull(OneLevel):
 
 
 class WeibullDecibel(Weibull):
-    """The same of levels and threshold in dB: 1 - exp(-10^(slope (x - threshold) / 20)) (Watson 2017)."""
+    """Weibull's function with levels and threshold in dB: 1 - exp(-10^(slope (x - threshold) / 20)) (Watson 2017)."""
     PER_DB = math.log(10) / 20
 
     def z(self, levels):
@@ -194,8 +194,8 @@ class WeibullDecibel(Weibull):
 
 class Surface:
     """Two senses degraded together, levels (a, b) at least 0: Weibull's function of the pooled level ((a / threshold_a)^summation +
-    (b / threshold_b)^summation)^(1 / summation) (Quick 1974). summation = slope is probability summation of two senses that
-    notice independently, 1 adds them up, a large one leaves the worse sense alone. Levels have a last axis of 2."""
+    (b / threshold_b)^summation)^(1 / summation) (Quick 1974). summation = slope: probability summation of two independent senses; 1: sum of levels; large:
+    only the worse sense counts. Levels have a last axis of 2."""
     dimensions = 2
     name = "threshold_surface"
     parameters = ("threshold_a", "threshold_b", "slope", "summation", "guess", "lapse")
@@ -214,7 +214,7 @@ FUNCTIONS = {f.name: f for f in (
 
 
 def function(name):
-    """The function of this name; ValueError with the names that there are."""
+    """The function of this name. Raises ValueError with the known names."""
     if name not in FUNCTIONS:
         raise ValueError(f"there is no psychometric function '{name}'; choose one of {', '.join(FUNCTIONS)}")
     return FUNCTIONS[name]

@@ -1,15 +1,15 @@
-"""Intervals of what was fitted.
+"""Intervals of fitted parameters.
 
-posterior: central credible intervals under weak priors (posterior.py). They are what is told, for they alone hold the truth as often as they
-say in every procedure that tests/measure/measure_recovery tries, adaptive ones with a hundred trials among them.
+posterior: central credible intervals under weak priors (posterior.py). This is the default, because only these have the nominal coverage in every
+procedure of tests/measure/measure_recovery, including adaptive ones with about 100 trials.
 
-profile: the values at which the log likelihood, maximised over all other parameters, is less than half a chi-square quantile below its maximum
-(Venzon and Moolgavkar 1988, Applied Statistics 37:87; Meeker and Escobar 1995). They hold for adaptive procedures as they are: the rule that
-chose the levels is no part of the likelihood. An end that is not reached within the bounds is infinite, or the bound of a rate.
+profile: the values at which the log likelihood, maximised over all other parameters, is less than half a chi-square quantile below its maximum (Venzon and
+Moolgavkar 1988, Applied Statistics 37:87; Meeker and Escobar 1995). They are valid for adaptive procedures, whose rule is not part of the likelihood. An end
+that is not reached within the bounds is infinite, or the bound of a rate.
 
-bootstrap: answers drawn from the fit at the same levels, fitted again, and percentiles of these corrected for bias and acceleration (Efron
-1987, JASA 82:171; Wichmann and Hill 2001b, Perception & Psychophysics 63:1314). Levels of an adaptive procedure hang on the answers, which
-these draws leave out: it is for constant stimuli.
+bootstrap: percentiles of refits to answers drawn from the fit at the same levels, corrected for bias and acceleration (Efron 1987, JASA 82:171; Wichmann
+and Hill 2001b, Perception & Psychophysics 63:1314). It ignores that the levels of an adaptive procedure depend on the answers, so use it for constant
+stimuli only.
 """
 import dataclasses
 
@@ -22,7 +22,7 @@ from tactus.psychophysics.posterior import WIDE, credible
 from tactus.psychophysics.starts import fit_from_grid
 
 DRAWS = 2000          # Efron and Tibshirani 1993, section 12.5: at least 1000 for the ends of an interval
-STEPS = 14            # of the search for an end; the interval left is below 1e-3 of a standard error then; design
+STEPS = 14            # of the search for an end, whose error is then below 1e-3 of a standard error; design
 METHODS = ("posterior", "profile", "bootstrap")
 
 
@@ -31,7 +31,7 @@ def of_many(fits, name, level=0.95, method="posterior", rng=None):
     if method not in METHODS:
         raise ValueError(f"there are no intervals '{method}'; choose posterior, profile or bootstrap")
     if not 0 < level < 1:
-        raise ValueError(f"the level {level} of an interval is not between 0 and 1; 0.95 is usual")
+        raise ValueError(f"the level {level} of an interval is not between 0 and 1; give for example 0.95")
     estimate = fits.estimates(name)
     if name in fits.fixed:
         return estimate, estimate
@@ -43,7 +43,7 @@ def of_many(fits, name, level=0.95, method="posterior", rng=None):
 
 
 def index_of(fits, name):
-    """(which of theta, name of the anchor or None, function from that to the value named)."""
+    """(index in theta, name of the anchor or None, function from that parameter to the named value)."""
     f = fits.function
     guess, lapse = fits.theta[:, GUESS], fits.theta[:, LAPSE]
 
@@ -65,7 +65,7 @@ def index_of(fits, name):
 
 
 def posterior(fits, name, level):
-    """Of a location, a spread or what is derived from them; of rates, which bounds and priors hold more than answers do, the profile."""
+    """Credible interval of a location, a spread or a value derived from them; for a rate, which bounds and priors dominate, the profile interval."""
     which, anchor, out = index_of(fits, name)
     if which not in (Q, T):
         return profile(fits, name, level)
@@ -81,7 +81,7 @@ def profile(fits, name, level):
 
 
 def profile_ends(fits, which, anchor, level):
-    """(low, high), each (n,), of theta: infinite where the profile does not drop far enough within the bounds of a location or spread."""
+    """(low, high), each (n,), of theta; infinite: the profile does not drop far enough within the bounds of a location or spread."""
     theta = fits.theta.copy()
     if anchor is not None:
         theta[:, Q] += np.exp(theta[:, T]) * fits.function.anchor(anchor, theta[:, GUESS])
@@ -95,8 +95,8 @@ def profile_ends(fits, which, anchor, level):
 
 
 def end(fits, theta, which, anchor, side, drop):
-    """(where the profile has dropped, whether it does within the bounds), each (n,). Sought on the root of the drop, which is nearly straight:
-    first outwards in doubled steps, then by the rule of false position (Illinois; Dowell and Jarratt 1971)."""
+    """(end of the profile interval, whether it lies within the bounds), each (n,). Searches on the square root of the drop, which is nearly linear: first
+    outwards in doubled steps, then by regula falsi (Illinois variant; Dowell and Jarratt 1971)."""
     n = len(theta)
     free = fits.free.copy()
     free[which] = False
@@ -148,7 +148,7 @@ def end(fits, theta, which, anchor, side, drop):
 
 
 def first_step(fits, theta, free, which, anchor, goal):
-    """(n,) `goal` standard errors by the information, the other parameters free."""
+    """(n,) first step: `goal` standard errors by the information matrix, with the other parameters free."""
     p, by = probability(fits.function, fits.answers.z, np.where(np.isfinite(theta), theta, 0), anchor)
     information = np.einsum("nk,nki,nkj->nij", fits.answers.total / (p * (1 - p)), by, by)
     others = np.flatnonzero(free)
@@ -187,7 +187,7 @@ def bootstrap(fits, name, level, rng, draws=DRAWS):
 
 
 def jackknife(fits, name):
-    """Acceleration (Efron and Tibshirani 1993, equation 14.15) from leaving out one trial; trials of one level and answer do the same."""
+    """Acceleration (Efron and Tibshirani 1993, equation 14.15) by leaving out one trial; trials of equal level and answer are computed once."""
     yes, total = fits.answers.yes[0], fits.answers.total[0]
     kinds = [(i, says) for i in range(len(total)) for says in (1, 0) if (yes if says else total - yes)[i] >= 1]
     counts = np.array([yes[i] if says else total[i] - yes[i] for i, says in kinds])

@@ -1,10 +1,10 @@
-"""The most likely parameters of psychometric functions: many sets of answers at once, by Fisher scoring within bounds.
+"""Maximum likelihood parameters of psychometric functions, for many sets of answers at once, by Fisher scoring within bounds.
 
-Parameters are here always four, theta = (location q, log spread t, guess, lapse); functions.py says what they are for each function. q is the
-point at which u = `anchor`: the location m itself where that is 0, or a derived point, m + s u. Arrays: n sets of answers, k levels.
+There are always four parameters, theta = (location q, log spread t, guess, lapse); functions.py defines them for each function. q is the point at which
+u = `anchor`: the location m for an anchor of 0, or a derived point, m + s u. Arrays: n sets of answers, k levels.
 
-The steps are those of scoring (McCullagh and Nelder 1989, section 2.5), damped as Levenberg and Marquardt do (Marquardt 1963), with parameters that
-press against a bound held there (projected Newton; Bertsekas 1982). A set is done when a step promises less than TOLERANCE of log likelihood.
+Fisher scoring (McCullagh and Nelder 1989, section 2.5) with Levenberg-Marquardt damping (Marquardt 1963); parameters at a bound are held there (projected
+Newton; Bertsekas 1982). A set is done when the expected gain of a step is below TOLERANCE of log likelihood.
 """
 import dataclasses
 
@@ -12,16 +12,16 @@ import numpy as np
 
 from tactus.psychophysics.functions import GUESS_PRIOR
 
-TOLERANCE = 1e-7    # of the log likelihood; intervals are of 1.9 of it, so that this does not show; design
-MOST_STEPS = 200    # design; scoring takes 5 to 30
-FLOOR = 1e-6        # of information, where a hundred trials give 1 to 1e4; design
-LEAST_P = 1e-10     # probabilities are kept so far from 0 and 1: an answer that cannot be costs 23, not infinity; design
+TOLERANCE = 1e-7    # of the log likelihood; negligible against the drop of 1.9 of an interval; design
+MAX_STEPS = 200     # scoring takes 5 to 30; design
+FLOOR = 1e-6        # of the information; 100 trials give 1 to 1e4; design
+LEAST_P = 1e-10     # smallest distance of probabilities to 0 and 1: an impossible answer costs 23 of log likelihood, not infinity; design
 Q, T, GUESS, LAPSE = range(4)
 
 
 @dataclasses.dataclass
 class Answers:
-    """z (n, k): levels on the axis of the function; yes, total (n, k): counts, total 0 where a set has fewer levels."""
+    """z (n, k): levels on the axis of the function; yes, total (n, k): counts; total 0 pads sets with fewer levels."""
     function: object
     z: np.ndarray
     yes: np.ndarray
@@ -32,7 +32,7 @@ class Answers:
 
 
 def probability(function, z, theta, anchor=None):
-    """p, dp/dtheta (n, k, 4) at z (n, k) of theta (n, 4). anchor: name of a derived point that q is, or None."""
+    """(p (n, k), dp/dtheta (n, k, 4)) at z (n, k) for theta (n, 4). anchor: name of the derived point that q stands for, or None."""
     q, t, guess, lapse = (theta[:, i:i + 1] for i in range(4))
     s = np.exp(t)
     u0 = 0.0 if anchor is None else function.anchor(anchor, guess)
@@ -52,19 +52,19 @@ def probability(function, z, theta, anchor=None):
 
 
 def log_likelihood(answers, p):
-    """(n,) without the binomial coefficients."""
+    """(n,) log likelihood without the binomial coefficients."""
     return (answers.yes * np.log(p) + (answers.total - answers.yes) * np.log1p(-p)).sum(axis=-1)
 
 
 def log_prior(theta, free):
-    """(n,) of Beta(1, GUESS_PRIOR) on guess rates that are fitted; lapse rates are bounded only."""
+    """(n,) log prior: Beta(1, GUESS_PRIOR) on fitted guess rates; lapse rates have bounds only."""
     return np.where(free[GUESS], (GUESS_PRIOR - 1) * np.log1p(-theta[:, GUESS]), 0.0)
 
 
 def maximise(answers, start, free, low, high, anchor=None):
-    """(theta (n, 4), value (n,), done (n,)): value is log likelihood and prior at the maximum.
+    """(theta (n, 4), value (n,), done (n,)): value is log likelihood plus log prior at the maximum.
 
-    start (n, 4); free (4,) of bool: what is fitted, the rest stays as in start; low, high (n, 4): bounds."""
+    start (n, 4); free (4,) of bool: fitted parameters, the others keep their start; low, high (n, 4): bounds."""
     free = np.asarray(free, dtype=bool)
     theta = np.where(free, np.clip(start, low, high), start)
     n = len(theta)
@@ -75,7 +75,7 @@ def maximise(answers, start, free, low, high, anchor=None):
     p, by = probability(answers.function, answers.z, theta, anchor)
     value = log_likelihood(answers, p) + log_prior(theta, free)
     some = answers
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         if not len(index):
             break
         step, gain = scoring_step(some, p, by, theta[index], free, low[index], high[index], damping[index])
@@ -84,7 +84,7 @@ def maximise(answers, start, free, low, high, anchor=None):
         new = log_likelihood(some, new_p) + log_prior(tried, free)
         better = new >= value[index]
         finished = (better & (np.abs(new - value[index]) < TOLERANCE) & (gain < 1e3 * TOLERANCE)) | (~better & (gain < TOLERANCE)) | (damping[index] > 1e12)
-        # Expected information is less than the observed where answers surprise: steps then go too far, to and fro, and are damped as well.
+        # For unlikely answers the expected information is smaller than the observed one: steps overshoot and oscillate, so they are damped as well.
         poor = new - value[index] < 0.1 * gain
         theta[index[better]], value[index[better]] = tried[better], new[better]
         p, by = np.where(better[:, None], new_p, p), np.where(better[:, None, None], new_by, by)
@@ -97,7 +97,7 @@ def maximise(answers, start, free, low, high, anchor=None):
 
 
 def scoring_step(answers, p, by, theta, free, low, high, damping):
-    """(step (n, 4), gain (n,) of log likelihood that it promises)."""
+    """(step (n, 4), its expected gain (n,) of log likelihood)."""
     weight = 1 / (p * (1 - p))
     score = np.einsum("nk,nki->ni", (answers.yes - answers.total * p) * weight, by)
     information = np.einsum("nk,nki,nkj->nij", answers.total * weight, by, by)
@@ -108,8 +108,8 @@ def scoring_step(answers, p, by, theta, free, low, high, damping):
     score = np.where(held, 0.0, score)
     information[held[:, :, None] | held[:, None, :]] = 0.0
     diagonal = np.einsum("nii->ni", information)
-    # The floor keeps the matrix of a parameter of which the answers say nothing from being singular.
+    # The floor prevents a singular matrix if the answers carry no information about a parameter.
     diagonal += np.where(held, 1.0, damping[:, None] * diagonal + FLOOR)
     step = np.linalg.solve(information, score[..., None])[..., 0]
-    step[:, T] = np.clip(step[:, T], -1.0, 1.0)  # at most a factor of e at once
+    step[:, T] = np.clip(step[:, T], -1.0, 1.0)  # at most a factor of e in a step
     return step, np.einsum("ni,ni->n", step, score)

@@ -1,6 +1,6 @@
-"""Observers that are simulated: they answer as a psychometric function of the level says, or by what they felt, each time by chance of their own seed.
+"""Simulated observers: they answer randomly, by a psychometric function of the level or by felt stiffness, each with its own seed.
 
-Everything that is made of their answers has to say so (observer=simulated).
+All results of their answers must be marked (observer=simulated).
 """
 import math
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from tactus.psychophysics.functions import Gaussian, function
 
-NO_STIFFNESS_N_m = 0.1  # what gives way like this, or draws, is as soft as anything; design: 2 mN at 2 cm, of which nobody feels anything
+NO_STIFFNESS_N_m = 0.1  # smaller or negative stiffnesses count as this; design: 2 mN at 2 cm is not noticeable
 
 
 class SimulatedObserver:
@@ -18,11 +18,11 @@ class SimulatedObserver:
         self.function, self.params = function(name), {k: float(v) for k, v in params.items()}
         wrong = set(self.params) ^ set(self.function.parameters)
         if wrong:
-            raise ValueError(f"an observer of {name} has the parameters {', '.join(self.function.parameters)}; {sorted(wrong)[0]} is missing or too much")
+            raise ValueError(f"an observer of {name} needs the parameters {', '.join(self.function.parameters)}; {sorted(wrong)[0]} is missing or unknown")
         self.dice = np.random.default_rng(seed)
 
     def probability(self, level):
-        """Of a yes at this level (a number, or a pair for two senses)."""
+        """Probability of a yes at this level (a number, or a pair for two senses)."""
         return float(self.function.p(level, **self.params))
 
     def answer(self, level):
@@ -31,25 +31,24 @@ class SimulatedObserver:
 
 
 class Presser:
-    """Has felt two surfaces and calls one of them the softer, by nothing but their stiffness. weber: the share by which two have to differ so that three
-    in four answers are right, lapses aside (design: the `jnd` of functions.py); stiffnesses are told apart by their ratio, whichever came first.
-    lapse: share of answers by chance alone."""
+    """Judges which of two felt surfaces is softer, by their stiffness only. weber: relative difference with 75 % right answers without lapses (design: the
+    `jnd` of functions.py). Only the ratio of the stiffnesses counts, not their order. lapse: share of random answers."""
     parameters = ("weber", "lapse")
 
     def __init__(self, weber, lapse, seed):
         if not (0 < weber < math.inf and 0 <= lapse <= 1):
-            raise ValueError("a weber fraction is above 0, and a lapse rate from 0 to 1")
+            raise ValueError("a parameter is out of range; a weber fraction is above 0, and a lapse rate from 0 to 1")
         self.weber, self.lapse = weber, lapse
         self.dice = np.random.default_rng(seed)
 
     def first_is_softer(self, first_N_m, second_N_m):
-        """Probability that he says so."""
+        """Probability of the answer "the first is softer"."""
         ratio = max(second_N_m, NO_STIFFNESS_N_m) / max(first_N_m, NO_STIFFNESS_N_m)
         return self.lapse / 2 + (1 - self.lapse) * float(Gaussian.both(Gaussian.quartile * math.log(ratio) / math.log1p(self.weber))[0])
 
     def softer(self, first_N_m, second_N_m):
-        """0 or 1: which of the two."""
+        """The answer: 0, the first is softer, or 1."""
         return 0 if self.dice.random() < self.first_is_softer(first_N_m, second_N_m) else 1
 
 
-PERCEPTS = {"felt_stiffness": Presser}  # by the name that a study file gives them: observers who are told what was felt, not the level
+PERCEPTS = {"felt_stiffness": Presser}  # name in a study file: observer that receives felt quantities instead of the level

@@ -1,9 +1,9 @@
-"""Credible intervals: the likelihood integrated over a grid, rather than maximised (Kuss, Jaekel and Wichmann 2005, Journal of Vision 5(5):8; Schuett et
-al. 2016, Vision Research 122:105).
+"""Credible intervals: integrates the likelihood over a grid (Kuss, Jaekel and Wichmann 2005, Journal of Vision 5(5):8; Schuett et al. 2016, Vision
+Research 122:105).
 
-Priors: flat over the location (or the derived point), flat over the logarithm of the spread between SPREAD, the lapse rate flat within its bounds, a guess
-rate that is fitted Beta(1, 10). Of a location and a scale these are the priors whose intervals hold the truth as often as they say (Welch and Peers
-1963, JRSS B 25:318). Grid and nodes lie within what the profile likelihood leaves, so that they see what many trials see.
+Priors: flat over the location (or the derived point), flat over the logarithm of the spread within SPREAD, flat over the lapse rate within its bounds,
+Beta(1, 10) over a fitted guess rate. For a location and a scale these priors give intervals with the nominal coverage (Welch and Peers 1963, JRSS B
+25:318). Grid and nodes cover the wide profile interval, so that they resolve the narrow likelihood of many trials.
 """
 import math
 
@@ -13,16 +13,16 @@ from scipy.special import roots_legendre
 from tactus.psychophysics.functions import GUESS_PRIOR
 from tactus.psychophysics.likelihood import GUESS, LAPSE, LEAST_P, T
 
-SPREAD = (0.01, 0.9)       # of the span of the levels: 3.3 of it (5 to 95 %) are at most three spans (Schuett et al. 2016), and see a step
-CELLS = (49, 33)           # of the grid over the location and the spread; design
-NODES = 6                  # of each rate: 1.3 standard deviations apart at most; design
-WIDE = 0.9998              # grid and nodes span the profile interval of this level; design
-AT_ONCE = 3_000_000        # probabilities held in memory; design
+SPREAD = (0.01, 0.9)       # in spans of the levels: 3.3 spreads (5 to 95 %) are at most three spans (Schuett et al. 2016); the lower end resolves a step
+CELLS = (49, 33)           # of the grid over location and spread; design
+NODES = 6                  # of each rate, at most 1.3 standard deviations apart; design
+WIDE = 0.9998              # level of the profile interval that grid and nodes span; design
+AT_ONCE = 3_000_000        # probabilities in memory; design
 
 
 def rate_nodes(fits, rate, profile_range):
-    """[(values (n,), log weights (n,))] of one rate: Gauss and Legendre's within its profile interval, for many trials leave little of its bounds;
-    one node where it is fixed."""
+    """[(values (n,), log weights (n,))] of one rate: Gauss-Legendre nodes within its profile interval, which is narrow for many trials; one node for a
+    fixed rate."""
     if not fits.free[rate]:
         return [(fits.theta[:, rate], np.zeros(len(fits)))]
     low, high = profile_range(rate, None)
@@ -48,7 +48,7 @@ def marginals(fits, anchor, q_range, t_range, nodes):
 
 
 def integrated(fits, rows, anchor, q, t, nodes):
-    """Likelihood (m, i, j), the rates integrated out over their nodes (guess, lapse), relative to the largest of each set."""
+    """Likelihood (m, i, j), integrated over the nodes of the rates (guess, lapse), relative to the largest of each set."""
     f = fits.function
     z, yes, total = (a[rows][:, None, None, :] for a in (fits.answers.z, fits.answers.yes, fits.answers.total))
     total_log = None
@@ -65,7 +65,7 @@ def integrated(fits, rows, anchor, q, t, nodes):
 
 
 def quantiles(low, high, weights, level):
-    """(low, high) ends (n,) of the central interval; weights (n, c) are spread evenly over c equal cells between low and high (n,)."""
+    """(low, high), each (n,), of the central interval; weights (n, c) belong to c equal cells between low and high (n,)."""
     cumulative = np.concatenate([np.zeros((len(weights), 1)), np.cumsum(weights, axis=1)], axis=1)
     cumulative /= cumulative[:, -1:]
     edges = np.linspace(0, 1, weights.shape[1] + 1)
@@ -73,7 +73,7 @@ def quantiles(low, high, weights, level):
 
 
 def credible(fits, which, anchor, level, profile_range):
-    """(low, high) of q or of t on the axis of the fit. profile_range(which, anchor) gives the profile interval of level WIDE there."""
+    """(low, high) of q or of t on the axis of the fit. profile_range(which, anchor) returns their profile interval of level WIDE."""
     q_range, t_range = ([np.clip(end, *limits) for end in profile_range(w, a)] for w, a, limits in
                         ((0, anchor, (-4.0, 4.0)), (T, None, tuple(math.log(s) for s in SPREAD))))
     t_range = [np.minimum(t_range[0], t_range[1] - 1e-3), t_range[1]]

@@ -1,42 +1,42 @@
-"""Which level comes next: procedures made from a specification, as a study file holds it.
+"""Procedures, which choose the next level, made from the specification of a study file.
 
-A procedure has next_level(), answer(level, yes), finished, done, expected (trials in all, as far as known), estimate() (a dict, or None) and history,
-[(level, yes)]. It is decided by its specification, its seed and the answers so far: fed the same answers again it is where it was. A trial that was
-spoiled is not told to answer(); next_level() gives the same level again.
+A procedure has next_level(), answer(level, yes), finished, done, expected (estimated total of trials), estimate() (a dict, or None) and history,
+[(level, yes)]. Its state depends on the specification, the seed and the answers only, so the same answers restore it. A missed trial is not passed to
+answer(); next_level() then returns the same level again.
 """
 import numpy as np
 
 from tactus.psychophysics.constant_stimuli import ConstantStimuli
 from tactus.psychophysics.quest_plus import QuestPlus
-from tactus.psychophysics.staircases import MOST_TRIALS, Staircase
+from tactus.psychophysics.staircases import MAX_TRIALS, Staircase
 
-# What a specification of each kind has to hold, and what it may.
+# Required and optional members of the specification of each kind.
 NEEDED = {"constant": {"levels", "repetitions"}, "staircase": {"rule", "start", "step", "minimum_step", "lowest", "highest", "reversals"},
           "quest_plus": {"levels", "parameters", "function"}}
-ALLOWED = {"constant": set(), "staircase": {"most_trials"}, "quest_plus": {"trials", "stop_sd", "prior"}}
+ALLOWED = {"constant": set(), "staircase": {"max_trials"}, "quest_plus": {"trials", "stop_sd", "prior"}}
 
 
 def make_procedure(spec, seed):
-    """A procedure; ValueError in one sentence when the specification is wrong. Only constant stimuli need the seed: the others hang on the
-    answers alone."""
+    """A procedure. Raises ValueError with one sentence if the specification is invalid. Only constant stimuli use the seed; the others depend on the answers
+    only."""
     kind = spec.get("kind")
     if kind not in NEEDED:
         raise ValueError(f"there is no procedure '{kind}'; choose one of {', '.join(NEEDED)}")
     given = set(spec) - {"kind"}
     missing, more = NEEDED[kind] - given, given - NEEDED[kind] - ALLOWED[kind]
     if missing:
-        raise ValueError(f"the procedure {kind} lacks {', '.join(sorted(missing))}")
+        raise ValueError(f"the procedure {kind} lacks {', '.join(sorted(missing))}; add it")
     if more:
-        raise ValueError(f"the procedure {kind} knows no {', '.join(sorted(more))}; it takes {', '.join(sorted(NEEDED[kind] | ALLOWED[kind]))}")
+        raise ValueError(f"the procedure {kind} has no {', '.join(sorted(more))}; it takes {', '.join(sorted(NEEDED[kind] | ALLOWED[kind]))}")
     if kind == "constant":
         return ConstantStimuli(spec["levels"], spec["repetitions"], seed)
     if kind == "staircase":
-        return Staircase(*(spec[k] for k in ("rule", "start", "step", "minimum_step", "lowest", "highest", "reversals")), spec.get("most_trials", MOST_TRIALS))
+        return Staircase(*(spec[k] for k in ("rule", "start", "step", "minimum_step", "lowest", "highest", "reversals")), spec.get("max_trials", MAX_TRIALS))
     return QuestPlus(spec["function"], spec["parameters"], spec["levels"], spec.get("trials"), spec.get("stop_sd"), spec.get("prior"))
 
 
 def run(procedure, observer):
-    """Asks a simulated observer until the procedure has finished, and returns its history."""
+    """Runs the procedure with a simulated observer until it has finished; returns its history."""
     while not procedure.finished:
         level = procedure.next_level()
         procedure.answer(level, observer.answer(level))
@@ -44,14 +44,14 @@ def run(procedure, observer):
 
 
 def counts(history):
-    """(levels, yes, total), arrays (k,) of numbers: the answers of equal levels together, for a fit."""
+    """(levels, yes, total), arrays (k,): answers counted by level, for a fit."""
     levels, where = np.unique([level for level, _ in history], return_inverse=True)
     yes = np.array([says for _, says in history], dtype=float)
     return levels, np.bincount(where, weights=yes), np.bincount(where).astype(float)
 
 
 def stacked(histories):
-    """(levels, yes, total), arrays (n, k) of n histories; shorter ones are filled up with total 0."""
+    """(levels, yes, total), arrays (n, k) of n histories; shorter ones are padded with total 0."""
     many = [counts(h) for h in histories]
     k = max(len(levels) for levels, _, _ in many)
     made = np.zeros((3, len(many), k))

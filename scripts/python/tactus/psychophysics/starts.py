@@ -1,6 +1,6 @@
-"""From where fits start: the likeliest of a grid of locations and spreads, once among narrow and once among wide ones.
+"""Starting points of fits: the most likely cell of a grid of locations and spreads, one among narrow and one among wide spreads.
 
-Likelihoods of psychometric functions may have more than one maximum (few trials, a lapse at an easy level), and scoring climbs the nearest.
+The likelihood of a psychometric function may have several maxima (few trials, a lapse at an easy level), and scoring finds the nearest.
 """
 import numpy as np
 
@@ -34,12 +34,12 @@ def grid_starts(answers, rates):
 
 
 def quick(answers, theta):
-    """p alone."""
+    """p without its derivatives."""
     return probability(answers.function, answers.z, theta)[0]
 
 
 def fit_from_grid(answers, rates, free, low, high, more=()):
-    """maximise() from the grid's starts and `more` of them; of each set the best: (theta, value, done)."""
+    """maximise() from the starts of the grid and from `more`; returns the best of each set: (theta, value, done)."""
     best = None
     for start in [*grid_starts(answers, rates), *more]:
         theta, value, done = maximise(answers, start, free, low, high)

@@ -1,15 +1,15 @@
-"""How many trials QUEST+ needs, held against published numbers and against what no procedure can do better.
+"""Number of trials that QUEST+ needs, compared with published numbers and with the theoretical optimum.
 
 Designs are those of Watson 2017 (Journal of Vision 17(3):10), figures 2 and 3: forced choice of two, Weibull's function of levels from -40 to 0 dB,
 threshold -20 dB, slope 3.5 or 3, lapse rate 0.02; 32 trials with the threshold alone unknown, 64 with slope and lapse unknown as well. The figures show
-one session each and tell no spread of estimates. So the spread is held against
+one session each and no spread of estimates. So the spread is compared with
 
   the ideal        with the slope known, n trials at the best level give a standard deviation of sqrt(K / n), K = min over x of p (1 - p) /
                    (dp/dthreshold)^2: the ideal sweat factor (Taylor and Creelman 1967, JASA 41:782; Watson and Pelli 1983, Perception & Psychophysics
                    33:113)
   published        threshold and slope unknown: a threshold within 2 dB takes less than 30 trials, a slope within 2 dB about 300 (Kontsevich and
-                   Tyler 1999, Vision Research 39:2729, abstract; minimum expected entropy too). Required of the threshold; the slope is told
-                   beside it, for it hangs on the range of slopes that are thought possible (here 1 to 12), which the abstract does not tell
+                   Tyler 1999, Vision Research 39:2729, abstract; minimum expected entropy too). Required for the threshold; the slope is
+                   only reported, because it depends on the range of possible slopes (here 1 to 12), which the abstract does not state
 """
 import math
 
@@ -31,15 +31,15 @@ DESIGNS = {
 
 
 def sweat_factor(slope, guess=0.5, lapse=0.02):
-    """K in dB^2 of Weibull's function over dB: variance times trials, at the level where it is least."""
+    """K in dB^2 of Weibull's function over dB: the smallest variance times trials over all levels."""
     f, x, h = function("weibull_dB"), np.linspace(-8, 8, 1601), 1e-4
     p, up, down = (f.p(x, threshold=t, slope=slope, guess=guess, lapse=lapse) for t in (0, h, -h))
     return float((p * (1 - p) / ((up - down) / (2 * h)) ** 2).min())
 
 
 def errors(design, participants, seed):
-    """(threshold errors in dB, slope errors in dB), each (participants, trials): after each trial, of the posterior means. Thresholds are drawn
-    evenly from -25 to -15 dB, off the grid."""
+    """(threshold errors in dB, slope errors in dB), each (participants, trials): errors of the posterior means after each trial. Thresholds are drawn
+    uniformly from -25 to -15 dB, off the grid."""
     parameters, trials, slope = DESIGNS[design]
     made = np.empty((2, participants, trials))
     dice = np.random.default_rng([seed, 99])
@@ -55,14 +55,14 @@ def errors(design, participants, seed):
 
 
 def first_within(errors_dB, bound_dB):
-    """Trials from which on the root of the mean square error stays within the bound, or None."""
+    """Number of trials after which the root mean square error stays within the bound, or None."""
     over = np.flatnonzero(np.sqrt((errors_dB ** 2).mean(axis=0)) > bound_dB)
     last = over[-1] + 1 if len(over) else 0
     return int(last) + 1 if last < errors_dB.shape[1] else None
 
 
 def rows(participants, seed):
-    """[dict] of each design: root of the mean square error of the threshold at its last trial, its error over the ideal, trials to 2 dB."""
+    """[dict] of each design: root mean square error of the threshold at the last trial, its ideal value, trials to 2 dB."""
     found = []
     for design, (_, trials, slope) in DESIGNS.items():
         of_threshold, of_slope = errors(design, participants, seed)
@@ -74,9 +74,9 @@ def rows(participants, seed):
 
 
 def missed(found):
-    """Sentences of what takes more trials than published."""
+    """[sentence] if the threshold takes more trials than published."""
     trials = next(r["threshold_trials"] for r in found if r["design"] == "threshold, slope")
-    return [] if trials is not None and trials <= THRESHOLD_TRIALS else [f"QUEST+ takes {trials or 'too many'} trials to a threshold within 2 dB, {THRESHOLD_TRIALS} are published"]
+    return [] if trials is not None and trials <= THRESHOLD_TRIALS else [f"QUEST+ takes {trials or 'too many'} trials to a threshold within 2 dB; the published number is {THRESHOLD_TRIALS}"]
 
 
 def table(found):

@@ -1,1 +1,1 @@
-"""Studies: the study file, its plan, sessions with participants and the files that they leave."""
+"""Studies: the study file, its plan, sessions with participants and their results."""

@@ -3,10 +3,10 @@
   dataset_description.json, README, participants.tsv
   sub-P01/ses-1/beh/sub-P01_ses-1_task-STUDY_beh.tsv      the trial table
   sub-P01/ses-1/beh/sub-P01_ses-1_task-STUDY_events.tsv   when each question was asked, or each game began
-  phenotype/questionnaire.tsv                             what was answered at the end
+  phenotype/questionnaire.tsv                             answers to the questionnaire
 
-each table with a .json that says what its columns mean. Data sets of several participants and sessions have no file name in common but those above
-sub-*, so that copying them over each other puts them together, but for the rows of participants.tsv and questionnaire.tsv.
+Each table has a .json that describes its columns. Data sets of several participants and sessions share only the files above sub-*. Copying them into
+one folder merges them, except the rows of participants.tsv and questionnaire.tsv.
 """
 import datetime
 import json
@@ -16,21 +16,21 @@ from tactus.study.trial_table import COLUMNS, replace, text_of
 
 VERSION = "1.8.0"
 EVENTS = {
-    "onset": {"LongName": "onset", "Description": "when the question was asked, or the game began, since the session began: from the clock of the computer, to some "
-              "hundredths of a second. When the stimulus was presented is in the log of the run", "Units": "s"},
-    "duration": {"LongName": "duration", "Description": "until the answer, or the end of the game", "Units": "s"},
+    "onset": {"LongName": "onset", "Description": "time of the question, or of the start of the game, since the start of the session; by the clock of the computer, accurate to some "
+              "hundredths of a second. The log of the run holds the presentation time of the stimulus", "Units": "s"},
+    "duration": {"LongName": "duration", "Description": "time until the answer, or until the end of the game", "Units": "s"},
     "trial_type": {"LongName": "type of trial", "Description": "the condition"},
-    "trial": {"LongName": "trial", "Description": "number of the trial, as in the table of the trials"},
-    "observer": {"LongName": "observer", "Description": "who answered", "Levels": {"human": "a person", "simulated": "a program"}}}
+    "trial": {"LongName": "trial", "Description": "number of the trial, as in the trial table"},
+    "observer": {"LongName": "observer", "Description": "source of the answers", "Levels": {"human": "a person", "simulated": "a program"}}}
 
 
 def label(text):
-    """The standard allows letters and digits in labels."""
+    """A label of the standard: letters and digits only."""
     return re.sub(r"[^A-Za-z0-9]", "", text) or "x"
 
 
 def described():
-    """What each column of the trial table means."""
+    """{column: description} of the trial table for its sidecar."""
     found = {}
     for name, column in COLUMNS.items():
         entry = {"LongName": name.replace("_", " "), "Description": column.description}
@@ -47,12 +47,12 @@ def described():
 
 
 def field(value):
-    """Tabs and ends of lines would be others' columns and rows."""
+    """Text of a field; tabs and line ends become spaces."""
     return re.sub(r"[\t\r\n]", " ", text_of(value)) or "n/a"
 
 
 def put(path, columns, rows, meaning):
-    """A table and its sidecar."""
+    """Writes a table and its sidecar."""
     replace(path.with_suffix(".tsv"), "".join("\t".join(map(field, row)) + "\n" for row in (columns, *rows)))
     replace(path.with_suffix(".json"), json.dumps(meaning, indent=2, ensure_ascii=False) + "\n")
 
@@ -62,7 +62,7 @@ def seconds_between(earlier, later):
 
 
 def events(session, entries):
-    """Rows of EVENTS, of those whose answer says how long it took."""
+    """Rows of EVENTS, for answers with a response or completion time."""
     found = []
     for e in entries:
         if e["kind"] != "trial" or e["missed"]:
@@ -74,15 +74,15 @@ def events(session, entries):
 
 
 def write(folder, session, entries, rows):
-    """folder: of the data set. session: the first entry of the journal, entries: all. rows: of the trial table."""
+    """Writes the data set to `folder`. session: first entry of the journal; entries: all its entries; rows: of the trial table."""
     number = next((row["session"] for row in rows if row.get("session") is not None), 1)
     subject, visit, task = f"sub-{label(session['participant'])}", f"ses-{number}", f"task-{label(session['study'])}"
     simulated = session["observer"] == "simulated"
     head = {"Name": session["study"] + (" (observer=simulated)" if simulated else ""), "BIDSVersion": VERSION, "DatasetType": "raw", "GeneratedBy": [{"Name": "Tactus"}]}
     replace(folder / "dataset_description.json", json.dumps(head, indent=2) + "\n")
     replace(folder / "README", f"Answers to the study {session['study']}.\n\n" + (
-        "observer=simulated: a program answered, nobody was asked.\n" if simulated else "The participants are people; observer=human in every row.\n")
-        + "Asynchronies are those of presentation, t(b) - t(a) of a pair a,b, as they were measured (soa_achieved_ms) and asked for (soa_nominal_ms).\n")
+        "observer=simulated: a program answered; no person took part.\n" if simulated else "The participants are people; observer=human in every row.\n")
+        + "Asynchronies are differences of presentation times, t(b) - t(a) of a pair a,b, measured (soa_achieved_ms) and requested (soa_nominal_ms).\n")
     put(folder / "participants", ("participant_id", "observer"), [(subject, session["observer"])],
         {"observer": EVENTS["observer"]})
     beh = folder / subject / visit / "beh"

@@ -1,4 +1,4 @@
-"""tactus study check: is the file right, what will happen, how long does it take, and how much can it find?"""
+"""tactus study check: validates a study file and prints its plan, its duration and its statistical power."""
 import argparse
 import dataclasses
 import json
@@ -11,12 +11,12 @@ from tactus.paths import BIN
 from tactus.refusal import Refusal, sentence_of
 from tactus.study import felt_properties, study_file
 
-USAGE = """Reads a study file, refuses it with line and reason when something is wrong with it, and prints the plan of a participant, the number of trials, how
-long it takes, and what it can find, by simulated observers: how narrow the 95 % interval of each estimate will be, or how small a loss of success
-and a slowing will be noticed."""
-MOST_SHOWN = 20       # trials of the plan, in --json
-MOST_PARTICIPANTS = 10_000
-CHECKED_WITHIN_S = 60
+USAGE = """Validates a study file, and refuses it with line and reason if it has an error. Prints the plan of a participant, the number of trials, the
+duration, and the power of the study from simulated observers: the width of the 95 % interval of each estimate, or the smallest loss of success and the
+smallest slowing that games show."""
+MAX_SHOWN = 20       # trials of the plan, in --json
+MAX_PARTICIPANTS = 10_000
+CHECK_TIMEOUT_S = 60
 
 
 class Parser(argparse.ArgumentParser):
@@ -27,46 +27,46 @@ class Parser(argparse.ArgumentParser):
 def parsed(words):
     p = Parser(prog="tactus study check", description=USAGE, allow_abbrev=False)
     p.add_argument("study", help="a study file, or the name of a shipped one")
-    p.add_argument("--participant", default="P01", help="whose plan; default: P01")
-    p.add_argument("--participants", default="1,12,24", metavar="N,...", help="numbers of participants of whom is told what they can show; default: 1,12,24")
-    p.add_argument("--pilot", metavar="TRIALS.csv", help="how games go with nothing degraded, or what was felt in presses at each level, from a table of trials")
-    p.add_argument("--simulations", type=int, default=100, help="simulated participants; default: 100")
-    p.add_argument("--seed", type=int, default=1, help="of the simulated participants; default: 1")
-    p.add_argument("--json", metavar="FILE", help="writes the same here")
+    p.add_argument("--participant", default="P01", help="participant whose plan is printed; default: P01")
+    p.add_argument("--participants", default="1,12,24", metavar="N,...", help="numbers of participants for which power is computed; default: 1,12,24")
+    p.add_argument("--pilot", metavar="TRIALS.csv", help="trial table of a pilot: its undegraded games, or the felt stiffness of its presses, replace assumed values")
+    p.add_argument("--simulations", type=int, default=100, help="number of simulated participants; default: 100")
+    p.add_argument("--seed", type=int, default=1, help="seed of the simulated participants; default: 1")
+    p.add_argument("--json", metavar="FILE", help="also writes the results to FILE")
     a = p.parse_args(words)
     if not (2 <= a.simulations <= 100_000 and a.seed >= 0):
-        raise Refusal("--simulations is from 2 to 100000, and --seed not below 0; see tactus study check --help")
+        raise Refusal("--simulations must be from 2 to 100000, and --seed 0 or more; see tactus study check --help")
     try:
         a.participants = tuple(int(n) for n in a.participants.split(","))
     except ValueError:
         a.participants = (0,)
-    if not all(1 <= n <= MOST_PARTICIPANTS for n in a.participants):
-        raise Refusal(f"--participants are numbers from 1 to {MOST_PARTICIPANTS}, as 1,12,24; see tactus study check --help")
+    if not all(1 <= n <= MAX_PARTICIPANTS for n in a.participants):
+        raise Refusal(f"--participants needs numbers from 1 to {MAX_PARTICIPANTS}, for example 1,12,24; see tactus study check --help")
     return a
 
 
 def profiles(study):
-    """Has the program that knows the operators read all that the study will put in force; a line that says so. Raises Refusal with its reason."""
+    """Checks all degradations of the study with sync_node; returns a line that reports the result. Raises Refusal with the reason of sync_node."""
     elements = list(dict.fromkeys([*study.base, *(e for c in study.conditions for level in (c.levels or (None,)) for e in c.elements(level))]))
     if not (BIN / "sync_node").is_file():
-        return f"profiles were not tried, since {BIN} holds no sync_node; scripts/build makes it"
+        return f"profiles not checked: {BIN} holds no sync_node; run scripts/build"
     if not elements:
-        return "no profile degrades anything"
+        return "the study has no degradations"
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "profile.xml"
         file.write_text("<profile>\n" + "\n".join(elements) + "\n</profile>\n", encoding="utf-8")
-        done = subprocess.run([BIN / "sync_node", "--degrade", file, "--check"], capture_output=True, text=True, errors="replace", timeout=CHECKED_WITHIN_S, check=False)
+        done = subprocess.run([BIN / "sync_node", "--degrade", file, "--check"], capture_output=True, text=True, errors="replace", timeout=CHECK_TIMEOUT_S, check=False)
     if done.returncode:
-        said = (done.stderr.strip().splitlines() or ["it said nothing"])[-1]
+        said = (done.stderr.strip().splitlines() or ["no message"])[-1]
         line, _, reason = said.partition(f"{file}:")[2].partition(": ")
         of = elements[int(line) - 2] if line.isdigit() and 2 <= int(line) < len(elements) + 2 else "a profile"
-        raise Refusal(f"{study.path}: {of} cannot be put in force: {reason or said}")
-    return f"all {len(elements)} degradations can be put in force"
+        raise Refusal(f"{study.path}: {of} is not valid: {reason or said}")
+    return f"all {len(elements)} degradations are valid"
 
 
 def sequence(plan):
-    """The first trials, in words; of an adaptive procedure as if every answer were yes."""
-    for _ in range(MOST_SHOWN):
+    """The first trials as text; an adaptive procedure receives the answer yes each time."""
+    for _ in range(MAX_SHOWN):
         trial = plan.next()
         if trial is None:
             return
@@ -86,7 +86,7 @@ def assumed_of(study, options):
         return assumed
     presses = any(o.function in observers.PERCEPTS for o in study.observers.values())
     if study.response != "performance" and not presses:
-        raise Refusal(f"--pilot is of games, or of presses whose <observer> judges what he feels; {study.name} asks for neither")
+        raise Refusal(f"--pilot applies to games, and to presses with an <observer> of felt stiffness; {study.name} has neither; remove --pilot")
     try:
         rows = trial_table.read(options.pilot)
         made = {"presses": power_felt.pilot(rows, options.pilot)} if presses else {"games": power_games.pilot(rows, options.pilot)}
@@ -96,17 +96,17 @@ def assumed_of(study, options):
 
 
 def unnamed(study):
-    """[a line] where the analysis will not know which property was rated."""
+    """[a warning] if the analysis cannot determine the rated property; else []."""
     if study.response != "rating" or study.of:
         return []
     known = felt_properties.just_noticeable()
     if study.number and felt_properties.property_of(study.question, known):
         return []
-    return [f"these ratings will stand in the tables and not be analysed: that takes numbers, and of= or a question that names one of {', '.join(known)}"]
+    return [f"these ratings are stored but not analysed; an analysis needs numbers, and of= or a question that names one of {', '.join(known)}"]
 
 
 def checked(study, options):
-    """(lines, figures)."""
+    """(lines for the terminal, {figure: value} for --json)."""
     from tactus.study import duration
     from tactus.study import power
     from tactus.study.plan import Plan
@@ -117,7 +117,7 @@ def checked(study, options):
     lines.append(f"{plan.expected_trials} {'games' if study.task == 'game' else 'trials'}, {about} {minutes:.0f} minutes: "
                  + ", ".join(f"{part} {seconds / 60:.1f}" for part, seconds in parts))
     first = list(sequence(plan))
-    lines.append(f"it begins{'' if study.procedure['kind'] == 'constant' else ', if every answer is yes,'} with " + ", ".join(first[:6]))
+    lines.append(f"first trials{'' if study.procedure['kind'] == 'constant' else ' (if every answer is yes)'}: " + ", ".join(first[:6]))
     found = power.of(study, assumed)
     figures = {"study": study.name, "trials": Plan(study, options.participant).expected_trials, "blocks": study.blocks, "conditions": [c.id for c in study.conditions],
                "minutes": round(minutes, 2), "parts_s": dict(parts), "sequence": first, "power": found}
@@ -137,5 +137,5 @@ def main(words):
     except Refusal as refusal:
         terminal.complain(f"study: {refusal}")
     except (OSError, subprocess.TimeoutExpired) as error:
-        terminal.complain(f"study: {sentence_of(error) if isinstance(error, OSError) else 'sync_node did not end; is this build whole?'}")
+        terminal.complain(f"study: {sentence_of(error) if isinstance(error, OSError) else 'sync_node did not end in time; run scripts/build again'}")
     return 1

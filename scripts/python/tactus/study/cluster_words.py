@@ -1,14 +1,14 @@
-"""The words of scripts/run for the live cluster of a study."""
+"""Command line of scripts/run for the live cluster of a study."""
 from tactus.study import eye
 
 
 def sees(study, options):
-    """Whether a simulated participant looks at the pictures of this study."""
+    """Whether a simulated participant needs the pictures of this study."""
     return options.simulated and any("visual" in c.senses for c in study.conditions)
 
 
 def cluster_words(study, options):
-    """The words of scripts/run."""
+    """Arguments of scripts/run."""
     words = [str(study.scene), "--policy", "experiment", "--base", f"{study.base_delay_ms:g}ms", "--seed", str(study.seed)]
     words += ["--device", options.device or "external:conductor"]
     for flag in ("window", "listen"):
@@ -16,7 +16,7 @@ def cluster_words(study, options):
             words.append(f"--{flag}")
     if options.live is not None:
         words += ["--live", options.live]
-        if not options.window:  # the page asks over the picture; it need not be in the picture, too
+        if not options.window:  # the page shows the questions itself
             words += ["--set", "visual_node.questions=false"]
     if sees(study, options):
         for setting in eye.SETTINGS:

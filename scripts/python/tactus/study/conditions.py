@@ -1,4 +1,4 @@
-"""What is varied in a study: a condition is one thing that is degraded, at levels that a procedure chooses, or one fixed degradation."""
+"""Conditions of a study: a condition is one degradation at levels that a procedure chooses, or one fixed degradation."""
 import dataclasses
 
 from tactus.study import quantities
@@ -8,7 +8,7 @@ SENSES = ("haptic", "audio", "visual", "thermal")
 
 @dataclasses.dataclass(frozen=True)
 class Factor:
-    """One sense and what is done to it, at a level in the operator's unit (quantities.OPERATORS)."""
+    """One sense and the operator that degrades it, at a level in the operator's unit (quantities.OPERATORS)."""
     modality: str
     operator: str
 
@@ -17,7 +17,7 @@ class Factor:
         return quantities.OPERATORS[self.operator][0]
 
     def degrade(self, level):
-        """Element of a profile; "": this level leaves the sense as it is."""
+        """Element of a profile; "": this level has no effect."""
         return "" if quantities.nothing(self.operator, level) else quantities.degrade(self.modality, self.operator, level)
 
     def words(self):
@@ -26,8 +26,8 @@ class Factor:
 
 @dataclasses.dataclass(frozen=True)
 class Condition:
-    """id: names it in every file. kind: asynchrony (of a pair of senses, levels in ms), factor, pair (of factors, levels are tuples), remove or
-    nothing. levels: those of the file; a performance study has one condition a level, with `fixed` set to it."""
+    """id: its name in every file. kind: asynchrony (of two senses, levels in ms), factor, pair (of factors, levels are tuples), remove or nothing.
+    levels: those of the study file. A performance study has one condition for each level, with `fixed` set to the level."""
     id: str
     kind: str
     senses: tuple = ()    # asynchrony: (a, b); a level is t(b) - t(a) in ms, positive: b later
@@ -38,7 +38,7 @@ class Condition:
     fixed: object = None  # the level of a performance condition
 
     def elements(self, level):
-        """Elements of the profile at this level; None: of what is varied nothing is degraded."""
+        """Elements of the profile at this level; None: the condition is not applied."""
         if level is None and self.levels:
             return []
         if self.kind == "asynchrony":
@@ -53,11 +53,11 @@ class Condition:
 
     @property
     def unit(self):
-        """Of the levels of an asynchrony or of one factor."""
+        """Unit of the levels of an asynchrony or of one factor; "" for other kinds."""
         return "ms" if self.kind == "asynchrony" else self.factors[0].unit if self.kind == "factor" else ""
 
     def words(self, level):
-        """Condition and level for a person; those that are fixed have it in their name."""
+        """Condition and level as text for a user; the id of a fixed condition contains its level."""
         if level is None or self.fixed is not None:
             return self.id
         if self.kind == "pair":
@@ -65,7 +65,7 @@ class Condition:
         return f"{self.id} {quantities.written(level)}{self.unit}"
 
     def row(self, level):
-        """The columns of trial_table.py that say what was degraded."""
+        """The columns of trial_table.py that describe the degradation."""
         if self.kind == "asynchrony":
             return {"pair": ",".join(self.senses), "modality_degraded": self.senses[1] if level > 0 else self.senses[0] if level < 0 else "",
                     "operator": "delay", "level": abs(level), "unit": "ms", "soa_nominal_ms": level}
@@ -84,7 +84,7 @@ class Condition:
 
 
 def fixed_ones(condition):
-    """A condition for each level of one, as a performance study has them."""
+    """One condition for each level of a condition, for a performance study."""
     if condition.kind in ("remove", "nothing"):
         return [condition]
     def named(level):

@@ -1,14 +1,14 @@
-"""How long a participant needs, in parts: what the apparatus takes, by its own constants, and what a person takes, by assumption."""
+"""Estimated duration of a session in parts: the apparatus by its constants, the participant by assumed times."""
 
 from tactus.study import stimuli
 
-IN_FORCE_S = 0.15  # a sense says ten times a second which profile it has: half of that, and the way there and back
-AFTER_S = 0.34     # reports of a sense come twice, 20 ms apart; then the hand goes back (stimuli.py). Sums of these agree with live sessions to 0.1 s a trial
+IN_FORCE_S = 0.15  # a sense reports its profile at 10 Hz: half a period, plus the transport both ways
+AFTER_S = 0.34     # a sense reports twice, 20 ms apart; then the hand returns (stimuli.py). The sums agree with live sessions to 0.1 s a trial
 APPROACH_S = 0.5   # of the hand to the surface before a press, and back after it (scripts/trial_runner/hand.cpp)
 ANSWER_S = 1.5     # design: a choice between two, at leisure
 NUMBER_S = 4.0     # design: a slider
-BETWEEN_GAMES_S = 5.0  # design: the word that he is ready, and the world put back
-ITEM_S = 5.0       # design: to answer an item of a questionnaire, once it is read
+BETWEEN_GAMES_S = 5.0  # design: the participant confirms, and the simulation is reset
+ITEM_S = 5.0       # design: to answer an item of a questionnaire after reading it
 WORDS_A_SECOND = 238 / 60  # silent reading of texts: Brysbaert 2019, Journal of Memory and Language 109:104047
 
 
@@ -17,7 +17,7 @@ def reading(texts):
 
 
 def of_trial(study):
-    """[(part, s)] of one trial, the mean over the levels of constant stimuli."""
+    """[(part, s)] of one trial; asynchronies by their mean over the levels."""
     s = study.stimulus
     ready = IN_FORCE_S + stimuli.SETTLES_S + sum(stimuli.FOREPERIOD_S) / 2
     answer = ("answer", NUMBER_S if study.number else ANSWER_S)
@@ -30,7 +30,7 @@ def of_trial(study):
 
 
 def of_session(study, trials):
-    """[(part, s)] of all of it, none of which is missed and repeated."""
+    """[(part, s)] of a session without missed trials."""
     items = len(study.questionnaire) * (study.blocks if study.questionnaire_at == "block" else 1)
     asked = items * ITEM_S + items / max(1, len(study.questionnaire)) * reading(i.text for i in study.questionnaire)
     parts = [("instructions", reading(study.instructions)), *((part, trials * seconds) for part, seconds in of_trial(study)),

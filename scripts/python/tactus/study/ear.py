@@ -1,15 +1,16 @@
-"""Hears: when the sound of a hit was really out, by the samples of audio.wav while it is written; of audio.2.wav, where the sense was started again."""
+"""Audio perception of a simulated participant: onset time of the sound of a hit, from the samples of audio.wav while it is written. After a restart of
+audio_node it is audio.2.wav."""
 import pathlib
 
 import numpy as np
 
-HEARD_WITHIN_S = 1.5  # until the samples are on the disk: the writer wakes a few times a second
-QUIET_S, NEAR_S = 0.030, (0.018, 0.025)  # before the expected onset, and around it: as tests/measure/measure_onsets
-RISE = 1e-4  # of a tap, in a scene where nothing else sounds: the first sample of it can be told (tests/measure/measure_soa)
+SAMPLES_TIMEOUT_S = 1.5  # until the samples are on the disk; the writer runs a few times a second
+QUIET_S, NEAR_S = 0.030, (0.018, 0.025)  # before the expected onset, and around it; as tests/measure/measure_onsets
+RISE = 1e-4  # share of the peak at which an onset counts; finds the first sample of a tap in a silent scene (tests/measure/measure_soa)
 
 
 class Ear:
-    """Listens to what audio_node writes to the folder, through a Lead that hears which of its samples was out when."""
+    """Reads the recording of audio_node in the folder; a Lead provides the presentation times of its samples."""
 
     def __init__(self, out, lead):
         self.out, self.lead = pathlib.Path(out), lead
@@ -20,7 +21,7 @@ class Ear:
             self.path, self.layout = self.out / name, None
 
     def _layout(self):
-        """(first byte of the samples, dtype, channels, rate), from the header; None: it is not written yet. Only what the sound sense writes is understood."""
+        """(first byte of the samples, dtype, channels, rate) from the header; None: not written yet. Reads only the formats of audio_node."""
         if self.layout is None and self.path.exists():
             head = self.path.read_bytes()[:4096]
             at, form = 12, None
@@ -39,7 +40,7 @@ class Ear:
         return self.layout
 
     def _samples(self, begin, end):
-        """Mean over the channels of samples begin .. end; None: they are not all on the disk yet."""
+        """Mean over the channels of samples begin .. end; None: not all are on the disk yet."""
         first, dtype, channels, _ = self.layout
         width = np.dtype(dtype).itemsize * channels
         if begin < 0 or self.path.stat().st_size < first + end * width:
@@ -50,7 +51,7 @@ class Ear:
         return data.astype(float).reshape(-1, channels).mean(axis=1)
 
     def onset_ns(self, expected_ns):
-        """When the first sample of a sound near that instant was out, host time; None: nothing stands out there."""
+        """Presentation time of the first sample of a sound near the expected time, host time in ns; None: no onset there."""
         heard = [(abs(at_ns - expected_ns), name, index, at_ns) for name, pairs in self.lead.media.items() for index, at_ns in pairs]
         if not heard:
             return None
@@ -61,7 +62,7 @@ class Ear:
         rate = self.layout[3]
         expected = index + (expected_ns - at_ns) * 1e-9 * rate
         begin, end = int(expected - QUIET_S * rate), int(expected + NEAR_S[1] * rate)
-        if not self.lead.wait_for(lambda: self._samples(begin, end) is not None, HEARD_WITHIN_S):
+        if not self.lead.wait_for(lambda: self._samples(begin, end) is not None, SAMPLES_TIMEOUT_S):
             return None
         samples = np.abs(self._samples(begin, end))
         quiet = int((QUIET_S - NEAR_S[0]) * rate)

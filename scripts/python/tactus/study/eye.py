@@ -1,4 +1,4 @@
-"""Sees: when the frame that first shows a hit was really out, by the pictures that visual_node streams and the marker in their pixels."""
+"""Visual perception of a simulated participant: time of the first frame that shows a hit, from the pictures that visual_node streams and their pixel marker."""
 import base64
 import bisect
 import io
@@ -8,14 +8,14 @@ from PIL import Image
 
 from tactus.log import marker
 
-SEEN_WITHIN_S = 1.5     # as the ear
-NEAR_NS = 100_000_000   # about the expected frame: six periods of 60 Hz, more than any lateness that is not dropped (design)
-FRAMES = 1 << 24        # the marker's numbers come again (visual_node/frame/marker.h)
-SETTINGS = ("stream=60", "stream_width=4096", "width=320", "height=240")  # every picture, its marker unscaled, 1 MB/s at the most (visual_node/video/picture_stream.h)
+PICTURES_TIMEOUT_S = 1.5  # as for the ear
+NEAR_NS = 100_000_000   # around the expected frame: six periods of 60 Hz, longer than the lateness of any frame that is not dropped (design)
+FRAMES = 1 << 24        # frame numbers of the marker repeat after this number (visual_node/frame/marker.h)
+SETTINGS = ("stream=60", "stream_width=4096", "width=320", "height=240")  # every frame, marker unscaled, at most 1 MB/s (visual_node/video/picture_stream.h)
 
 
 def luma(jpeg):
-    """The picture as rows from the top, one byte a pixel; None: it is none."""
+    """The picture as rows from the top, one byte a pixel; None: not a picture."""
     try:
         return np.asarray(Image.open(io.BytesIO(base64.b64decode(jpeg))).convert("L"))
     except OSError:
@@ -23,8 +23,8 @@ def luma(jpeg):
 
 
 def first_that_shows(pictures, event):
-    """Instant of the first of (at_ns, luma), in order, in which the event flashes, ns; None: in none, or the frame before it is not among them, so
-    that it may have flashed there already."""
+    """Time in ns of the first of the (at_ns, luma), in order, whose marker shows the event. None: none does, or the preceding frame is absent, so that
+    the event may have appeared earlier."""
     before = None
     for at_ns, picture in pictures:
         number = None if picture is None else marker.frame_number(picture)
@@ -37,15 +37,15 @@ def first_that_shows(pictures, event):
 
 
 class Eye:
-    """Looks at the pictures that a Lead keeps."""
+    """Searches the pictures that a Lead stores."""
 
     def __init__(self, lead):
         self.lead = lead
 
     def onset_ns(self, event, expected_ns):
-        """When the first frame was out that shows the event, host time; None: it cannot be told."""
+        """Presentation time of the first frame that shows the event, host time in ns; None: unknown."""
         pictures = self.lead.pictures
-        if not self.lead.wait_for(lambda: pictures and pictures[-1][0] > expected_ns + NEAR_NS / 2, SEEN_WITHIN_S):
+        if not self.lead.wait_for(lambda: pictures and pictures[-1][0] > expected_ns + NEAR_NS / 2, PICTURES_TIMEOUT_S):
             return None
         kept = sorted(pictures)
         begin = bisect.bisect_left(kept, expected_ns - NEAR_NS, key=lambda p: p[0])

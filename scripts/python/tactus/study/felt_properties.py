@@ -1,4 +1,4 @@
-"""Properties that are felt, with their published just noticeable differences (just_noticeable.csv). Nothing is said here without a source."""
+"""Felt properties and their published just noticeable differences (JND), from just_noticeable.csv. Every value has a source."""
 import csv
 import dataclasses
 import pathlib
@@ -19,7 +19,7 @@ class JustNoticeable:
 
 
 def just_noticeable():
-    """{property: [JustNoticeable]}; the first of each is what L_appear is held against."""
+    """{property: [JustNoticeable]}; L_appear is compared with the first of each."""
     found = {}
     with open(JUST_NOTICEABLE, newline="", encoding="utf-8") as file:
         for r in csv.DictReader(file):
@@ -28,6 +28,6 @@ def just_noticeable():
 
 
 def property_of(text, known):
-    """The property that a question names; "" when it names none or several."""
+    """The property that a question names; "" if it names none or several."""
     named = [name for name in known if name in text.lower()]
     return named[0] if len(named) == 1 else ""

@@ -1,9 +1,9 @@
-"""The journal in the files that people have tools for already; docs/study_formats.md describes each.
+"""Exports the journal to standard file formats, which docs/study_formats.md describes.
 
   trials.csv                             long format, a row a trial (trial_table.py)
   psignifit/CONDITION.csv                level, yes, total: n x 3, for psignifit, Palamedes and quickpsy
   bids/                                  a data set of the Brain Imaging Data Structure (bids.py)
-  psychopy.csv                           wide format as ExperimentHandler leaves it
+  psychopy.csv                           wide format of PsychoPy's ExperimentHandler
   questionnaire.csv                      item, answer
 """
 import collections
@@ -16,12 +16,12 @@ from tactus.refusal import Refusal
 from tactus.study import bids, journal, trial_table
 from tactus.study.trial_table import COLUMNS, replace, text_of
 
-# What psychopy.csv has under names of PsychoPy's own.
+# Columns that psychopy.csv stores under PsychoPy's names.
 RENAMED = ("participant_id", "session", "trial", "study", "response", "correct", "response_time", "observer", "repeated_as", "missed", "missed_reason")
 
 
 def rows_of(entries, path=journal.NAME):
-    """Rows of the trial table, of entries of a journal. A missed trial says which one repeated it. Raises Refusal with the line of the journal."""
+    """Rows of the trial table from entries of a journal. A missed trial names its repetition. Raises Refusal with the line of the journal."""
     trials = [e for e in entries if e["kind"] == "trial"]
     rows, later = [], {}
     for entry in reversed(trials):
@@ -32,13 +32,13 @@ def rows_of(entries, path=journal.NAME):
         later[asked] = row.get("trial")
         wrong = trial_table.wrong(row)
         if wrong:
-            raise Refusal(f"{path}:{entry['n']}: {wrong}; was it written by another version?")
+            raise Refusal(f"{path}:{entry['n']}: {wrong}; export it with the version of Tactus that wrote it")
         rows.append(row)
     return rows[::-1]
 
 
 def counted(entries):
-    """{condition: {level: [entries]}} of answers that are yes or no and whose apparatus kept its tolerance; level as commanded."""
+    """{condition: {requested level: [entries]}} of yes/no answers, without missed trials."""
     found = collections.defaultdict(lambda: collections.defaultdict(list))
     for e in entries:
         if e["kind"] == "trial" and not e["missed"] and e["yes"] is not None and isinstance(e["level"], (int, float)):
@@ -47,13 +47,13 @@ def counted(entries):
 
 
 def achieved(level, entries):
-    """The level of answers at one commanded level: the mean of the asynchronies that were measured, where each was."""
+    """Mean measured asynchrony of answers at one requested level; the requested level if one was not measured."""
     measured = [e["row"].get("soa_achieved_ms") for e in entries]
     return level if None in measured or "" in measured else sum(measured) / len(measured)
 
 
 def file_names(texts):
-    """{text: name of a file}, no two alike, also where they differ in letters of either size only."""
+    """{text: file name}; the names differ even without regard to case."""
     names, taken = {}, set()
     for text in texts:
         plain = name = re.sub(r"[^A-Za-z0-9]+", "-", text).strip("-") or "condition"
@@ -83,8 +83,8 @@ def table(columns, rows):
 
 
 def psychopy(folder, session, entries):
-    """Names of columns as PsychoPy's ExperimentHandler and TrialHandler write them: thisRepN counts repetitions of a stimulus, thisTrialN the trials
-    within a repetition, thisIndex is the stimulus' place in the list of all."""
+    """Writes psychopy.csv with the column names of PsychoPy's ExperimentHandler and TrialHandler: thisRepN counts repetitions of a stimulus, thisTrialN
+    trials within a repetition, thisIndex is the index of the stimulus."""
     answered = [e for e in entries if e["kind"] == "trial" and not e["missed"]]
     filled = [name for name in COLUMNS if name not in RENAMED and any(e["row"].get(name) not in (None, "") for e in answered)]
     stimuli = list(dict.fromkeys((e["condition"], str(e["level"])) for e in answered))
@@ -108,7 +108,7 @@ def questionnaire(folder, session, entries):
 
 
 def export(folder):
-    """Writes all of them beside the journal. Raises Refusal as the journal does."""
+    """Writes all formats beside the journal. Raises Refusal, like the journal."""
     folder = pathlib.Path(folder)
     entries = journal.read(folder)
     if not entries:

@@ -1,4 +1,4 @@
-"""A game as a trial: won or not, how fast, with how many mistakes."""
+"""A game as a trial: runs it and records success, completion time and mistakes."""
 import dataclasses
 
 from tactus.refusal import Refusal
@@ -6,12 +6,12 @@ from tactus.study import stimuli
 from tactus.study.lead import Lead
 from tactus.study.live_cluster import LiveCluster
 
-BEGINS_WITHIN_S = 60
+START_TIMEOUT_S = 60
 
 
 @dataclasses.dataclass
 class Played:
-    """As stimuli.Observed, of a game."""
+    """Result of a game, with the members of stimuli.Observed."""
     missed: str = ""
     row: dict = dataclasses.field(default_factory=dict)
     event: str = ""
@@ -26,7 +26,7 @@ class Played:
 
 
 def outcome(lead, limit_s):
-    """Waits for the end of the game; a Played."""
+    """Waits for the end of the game; returns a Played."""
     began_ns = lead.sim_ns
     wrong = [0]
 
@@ -35,16 +35,16 @@ def outcome(lead, limit_s):
             wrong[0] = max(wrong[0], lead.game["wrong"])
         return lead.game is not None and lead.game["won"] or lead.sim_ns - began_ns >= limit_s * 1e9
     if not lead.wait_for(over, 2 * limit_s + 10):
-        return Played(missed="the world did not go on")
+        return Played(missed="the simulation stopped")
     if lead.game is None:
-        return Played(missed="the scene says nothing of a game")
+        return Played(missed="the scene reports no game")
     won = lead.game["won"]
     seconds = min(limit_s, (lead.game["won_sim_ns"] - began_ns) * 1e-9) if won else limit_s
     return Played(row={"success": int(won), "completion_time_s": round(max(0.0, seconds), 4), "errors": wrong[0]})
 
 
 def play(session, trial, attempt):
-    """With a person, in the world that runs: it is put back to its beginning."""
+    """A game with a person, in the running simulation, after a reset."""
     lead, study = session.lead, session.study
     missed = stimuli.ready(lead, study.profile(trial.condition, trial.level))
     if missed:
@@ -53,13 +53,13 @@ def play(session, trial, attempt):
     lead.reply = lead.game = None
     lead.order(command={"kind": "reset"})
     if not lead.wait_for(lambda: lead.reply is not None, 5) or not lead.reply["done"]:
-        return Played(missed="the world was not put back to its beginning")
-    stimuli.wait(lead, 0.6)  # until the senses and the clock of the world are heard anew
+        return Played(missed="the simulation was not reset")
+    stimuli.wait(lead, 0.6)  # until health and simulation time arrive again
     return outcome(lead, study.stimulus.limit_s)
 
 
-def play_anew(session, trial, attempt):
-    """With the artificial player, in a world of its own, whose seed says where the balls lie."""
+def play_simulated(session, trial, attempt):
+    """A game with the simulated player, in a separate cluster; its seed places the balls."""
     study = session.study
     runs = session.folder / "runs"
     runs.mkdir(exist_ok=True)
@@ -67,14 +67,14 @@ def play_anew(session, trial, attempt):
     profile.write_text(study.profile(trial.condition, trial.level), encoding="utf-8")
     seed = session.plan.draw(f"game {trial.number} {attempt}")
     out = runs / f"game{trial.number}_{attempt}"
-    played = in_a_world_of_its_own(out, study.scene, profile, seed, study.stimulus.limit_s, session.options.set)
+    played = play_in_new_cluster(out, study.scene, profile, seed, study.stimulus.limit_s, session.options.set)
     played.row["seed"] = seed
     played.row["log_file"] = str((out / "run.lcmlog").relative_to(session.folder))
     return played
 
 
-def in_a_world_of_its_own(out, scene, profile, seed, limit_s, settings):
-    """The artificial player's game in a live cluster that begins and ends with it and leaves its results in `out`; a Played. profile: a file.
+def play_in_new_cluster(out, scene, profile, seed, limit_s, settings):
+    """Starts a live cluster with the simulated player, plays one game and ends the cluster; returns a Played. out: results folder. profile: a file.
     settings: of the cluster, NODE.NAME=VALUE each. Raises Refusal."""
     words = [str(scene), "--player", "--seed", str(seed), "--degrade", str(profile)]
     cluster = LiveCluster(out, words + [w for s in settings for w in ("--set", s)])
@@ -82,9 +82,9 @@ def in_a_world_of_its_own(out, scene, profile, seed, limit_s, settings):
     try:
         cluster.wait_until_it_runs()
         lead = Lead(out)
-        if not lead.wait_for(lambda: lead.sim_ns is not None and lead.sim_ns > 0, BEGINS_WITHIN_S):
-            raise Refusal(f"the world has not begun after {BEGINS_WITHIN_S} s; see {cluster.log}")
-        lead.sim_ns = 0  # the player begins with the world
+        if not lead.wait_for(lambda: lead.sim_ns is not None and lead.sim_ns > 0, START_TIMEOUT_S):
+            raise Refusal(f"the simulation has not started after {START_TIMEOUT_S} s; see {cluster.log}")
+        lead.sim_ns = 0  # the player starts with the simulation
         return outcome(lead, limit_s)
     finally:
         if lead is not None:

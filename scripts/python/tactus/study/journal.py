@@ -1,13 +1,13 @@
-"""The journal of a participant: what was asked and answered, one line of JSON each, on the disk before the next thing is asked.
+"""The journal of a participant: questions and answers, one line of JSON each, written to disk before the next question.
 
-  journal = Journal(folder)                 locks it; reads what is there
-  journal.begin(study=..., ...)             the first line, or a check that it is the same study and participant
+  journal = Journal(folder)                 locks the journal and reads its entries
+  journal.begin(study=..., ...)             writes the first line, or checks that study and participant are the same
   journal.append({"kind": "trial", ...})    written and synced when this returns
-  journal.entries                           all of them
+  journal.entries                           all entries
 
-A line holds n (its number, from 1), time_utc, the entry, and crc32 of all before it in the line, so that a line that was damaged or edited
-is found. A last line that was torn by a crash is cut off: it was never acknowledged, so its trial is asked again. All other damage is refused
-with its line, and nothing is changed.
+A line holds n (its number, from 1), time_utc, the entry, and crc32 of all preceding bytes of the line, which detects damage and edits. A last
+line that a crash left incomplete is removed: it was never acknowledged, so its trial is repeated. Any other damage is refused with its line,
+and the file stays unchanged.
 """
 import contextlib
 import datetime
@@ -22,7 +22,7 @@ from tactus.refusal import Refusal, sentence_of
 
 NAME = "journal.jsonl"
 LARGEST_BYTES = 1_000_000_000  # design: far above the longest study
-# Members that entries of each kind have at least.
+# Required members of the entries of each kind.
 KINDS = {
     "session": ("study", "study_sha256", "participant", "seed", "observer"),
     "trial": ("trial", "attempt", "block", "condition", "question", "level", "response", "yes", "missed", "row"),
@@ -36,7 +36,7 @@ def utc_now():
 
 
 def key_of(entry):
-    """What is asked once: a question of a trial."""
+    """Key of a question that is answered once: (trial, question)."""
     return entry["trial"], entry["question"]
 
 
@@ -45,18 +45,18 @@ def is_count(value):
 
 
 def is_level(value):
-    """A number, two of them for two senses, or None where the condition has no level."""
+    """A number, two numbers for two senses, or None for a condition without a level."""
     numbers = value if isinstance(value, list) and len(value) == 2 else [value]
     return value is None or all(isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v) for v in numbers)
 
 
 def wrong(entry, answered, first):
-    """What is wrong with an entry, in words; None: nothing. answered: keys of trials that are answered. first: nothing stands before it."""
+    """The first error of an entry, as a sentence; None: the entry is valid. answered: keys of answered trials. first: the entry is the first one."""
     kind = entry.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
         return f"the kind {str(kind)[:40]!r} is not one of {', '.join(KINDS)}"
     if first != (kind == "session"):
-        return "a journal begins with its session" if first else "there is a second session; one folder holds one participant's session"
+        return "a journal begins with its session" if first else "there is a second session; one folder holds one session of one participant"
     missing = [name for name in KINDS[kind] if name not in entry]
     if missing:
         return f"a {kind} has no {missing[0]}"
@@ -65,37 +65,37 @@ def wrong(entry, answered, first):
     if kind != "trial":
         return None
     if not all(is_count(entry[name]) for name in ("trial", "attempt", "block")):
-        return "trial, attempt and block are whole numbers"
+        return "trial, attempt and block must be whole numbers"
     if not isinstance(entry["condition"], str) or not isinstance(entry["question"], str) or not isinstance(entry["missed"], str):
-        return "condition, question and missed are texts"
+        return "condition, question and missed must be texts"
     if not is_level(entry["level"]) or entry["yes"] not in (True, False, None) or not isinstance(entry["row"], dict):
-        return "level is a number, two or null; yes is true, false or null; row is an object"
+        return "level must be a number, two numbers or null; yes true, false or null; row an object"
     if key_of(entry) in answered:
         return f"trial {entry['trial']} is answered already"
     return None
 
 
 def line_of(entry):
-    """The bytes of a line. ValueError where an entry is not JSON (NaN among others)."""
+    """The bytes of a line. Raises ValueError if an entry is not JSON (for example NaN)."""
     body = json.dumps(entry, ensure_ascii=False, allow_nan=False, separators=(", ", ": "))
     return f'{body[:-1]}, "crc32": "{zlib.crc32(body.encode()):08x}"}}\n'.encode()
 
 
 def entry_of(line, number):
-    """The entry of a line (bytes without newline); ValueError with what is wrong."""
+    """The entry of a line (bytes without newline); raises ValueError with the reason."""
     head, mark, tail = line.rpartition(b', "crc32": "')
     if not mark or len(tail) != 10 or not tail.endswith(b'"}'):
-        raise ValueError("it is no line of a journal, or torn")
+        raise ValueError("the line is not of a journal, or incomplete")
     if tail[:8] != b"%08x" % zlib.crc32(head + b"}"):
-        raise ValueError("it is not what was written: damaged, or edited")
+        raise ValueError("the line does not match its checksum: it was damaged or edited")
     entry = json.loads(head + b"}")
     if entry.get("n") != number:
-        raise ValueError(f"it is number {entry.get('n')}; lines are missing, or stand twice")
+        raise ValueError(f"the line has number {entry.get('n')}; lines are missing or repeated")
     return entry
 
 
 def read_lines(data, path):
-    """(entries, bytes to keep, what is to be repaired or ""). Raises Refusal with the line."""
+    """(entries, number of bytes to keep, description of a repair or ""). Raises Refusal with the line."""
     entries, answered, at = [], set(), 0
     while at < len(data):
         end = data.find(b"\n", at)
@@ -105,7 +105,7 @@ def read_lines(data, path):
             entry = entry_of(line, number)
         except ValueError as error:
             if end < 0:
-                return entries, at, f"{path}:{number}: the last line was torn and is cut off ({len(line)} bytes); what it said is asked again"
+                return entries, at, f"{path}:{number}: the last line was incomplete and is removed ({len(line)} bytes); its question is asked again"
             raise Refusal(f"{path}:{number}: {error}; restore the file from a copy, or begin in another folder") from None
         sentence = wrong(entry, answered, number == 1)
         if sentence:
@@ -114,7 +114,7 @@ def read_lines(data, path):
             answered.add(key_of(entry))
         entries.append(entry)
         if end < 0:
-            return entries, len(data), f"{path}:{number}: the last line was whole but for its end, and is kept"
+            return entries, len(data), f"{path}:{number}: the last line lacked only its line end, and is kept"
         at = end + 1
     return entries, at, ""
 
@@ -122,22 +122,23 @@ def read_lines(data, path):
 def read_bytes(file, path):
     data = file.read(LARGEST_BYTES + 1)
     if len(data) > LARGEST_BYTES:
-        raise Refusal(f"{path}: is longer than {LARGEST_BYTES} bytes; that is no journal")
+        raise Refusal(f"{path}: is longer than {LARGEST_BYTES} bytes; give the journal of a participant")
     return data
 
 
 def read(folder):
-    """Entries of a journal that somebody else may be writing; a torn last line is passed over. Raises Refusal."""
+    """Entries of a journal, which another process may be writing; an incomplete last line is skipped. Raises Refusal."""
     path = pathlib.Path(folder) / NAME
     try:
         with open(path, "rb") as file:
             return read_lines(read_bytes(file, path), path)[0]
     except OSError as error:
-        raise Refusal(f"{path}: cannot be read ({error.strerror}); give the folder of a participant, as tactus study run leaves it") from None
+        raise Refusal(f"{path}: cannot be read ({error.strerror}); give the folder of a participant that tactus study run wrote") from None
 
 
 class Journal:
-    """Of one folder, held by one process at a time. Raises Refusal. entries: what it holds. repaired: what was mended, in words; "": nothing."""
+    """The journal of one folder; one process at a time holds its lock. Raises Refusal. entries: its entries. repaired: description of a repair;
+    "": none."""
 
     def __init__(self, folder, now=utc_now):
         self.folder, self.now = pathlib.Path(folder), now
@@ -170,7 +171,7 @@ class Journal:
         self._size = os.fstat(self.file.fileno()).st_size
         folder = os.open(self.folder, os.O_RDONLY | os.O_DIRECTORY)
         try:
-            os.fsync(folder)  # the file's name is on the disk too
+            os.fsync(folder)  # writes the file's name to disk
         finally:
             os.close(folder)
 
@@ -184,14 +185,14 @@ class Journal:
         os.fsync(self.file.fileno())
 
     def append(self, entry):
-        """The entry as written, on the disk when this returns. ValueError: it is no entry, or its trial is answered already. Refusal: the disk
-        did not take it; then the journal is as before."""
+        """Writes and syncs an entry; returns it as written. Raises ValueError if it is invalid or its trial is already answered, and Refusal if it
+        cannot be written; then the journal is unchanged."""
         taken = [name for name in OWN if name in entry]
         if taken:
-            raise ValueError(f"an entry of the journal must not have {taken[0]}; the journal adds it")
+            raise ValueError(f"an entry must not contain {taken[0]}; the journal adds it")
         whole = {"n": len(self.entries) + 1, "time_utc": self.now(), **entry}
         line = line_of(whole)
-        whole = json.loads(line)  # as it will be read again: tuples are lists
+        whole = json.loads(line)  # as it is read later: tuples become lists
         del whole["crc32"]
         sentence = wrong(whole, self._answered, not self.entries)
         if sentence:
@@ -201,7 +202,7 @@ class Journal:
         except OSError as error:
             with contextlib.suppress(OSError):
                 self._cut(self._size)
-            raise Refusal(f"{self.path}: cannot be written ({sentence_of(error)}); make room on its disk and resume") from None
+            raise Refusal(f"{self.path}: cannot be written ({sentence_of(error)}); free space on its disk and resume") from None
         self._size += len(line)
         self.entries.append(whole)
         if whole["kind"] == "trial" and not whole["missed"]:
@@ -209,7 +210,7 @@ class Journal:
         return whole
 
     def begin(self, **session):
-        """Writes the session's line, or checks that the one that is there says the same (time aside). True: the session is resumed."""
+        """Writes the session's line, or checks it against the existing one (except the time). True: the session is resumed."""
         if not self.entries:
             self.append({"kind": "session", **session})
             return False
@@ -224,12 +225,12 @@ class Journal:
         return any(entry["kind"] == "end" for entry in self.entries)
 
     def answered(self):
-        """Entries of trials that count, in the order in which they were answered: those whose apparatus kept its tolerance."""
+        """Entries of the trials that count, in order of their answers; missed trials do not count."""
         return [e for e in self.entries if e["kind"] == "trial" and not e["missed"]]
 
     def close(self):
         if self.file is not None:
-            self.file.close()  # gives the lock back
+            self.file.close()  # releases the lock
             self.file = None
 
     def __enter__(self):

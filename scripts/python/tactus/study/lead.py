@@ -1,4 +1,4 @@
-"""The conductor (scripts/conductor) as seen from here: orders go out, what it observes is kept, nothing is waited for longer than said."""
+"""Client of the trial runner (scripts/trial_runner, program `conductor`): sends orders, stores observations, waits with time limits."""
 import collections
 import json
 import os
@@ -9,13 +9,13 @@ import time
 from tactus.paths import tactus_command
 from tactus.refusal import Refusal
 
-MOST_KEPT = 512  # events, and felt samples times ten; design: a trial has a handful
-PICTURES_KEPT = 240  # 4 s at 60 Hz; design: longer than from a hit to when the eye is asked of it
-ENDS_WITHIN_S = 3
+MAX_KEPT = 512  # events; ten times as many felt samples; design: a trial has a handful
+PICTURES_KEPT = 240  # 4 s at 60 Hz; design: longer than the time from a hit to its lookup by the eye
+END_TIMEOUT_S = 3
 
 
 class Lead:
-    """A conductor inside the cluster that writes to `out`. hand: (x, y, z, above) in m where it holds the device. looks: it keeps the pictures, too."""
+    """A trial runner in the cluster whose results are in `out`. hand: (x, y, z, above) in m, if it holds the device. looks: it also sends pictures."""
 
     def __init__(self, out, hand=None, looks=False):
         words = [*tactus_command("attach"), str(out), "conductor", "--out", str(out)]
@@ -30,35 +30,35 @@ class Lead:
         self.events = collections.OrderedDict()     # id: event
         self.presented = collections.OrderedDict()  # (id, modality, part): report
         self.media = {}                             # medium: deque of (index, at_ns)
-        self.felt = collections.deque(maxlen=10 * MOST_KEPT)  # (at_ns, z_m, force_N)
-        self.pulses = collections.deque(maxlen=MOST_KEPT)      # (at_ns, force_N): a hit begins to vibrate in the hand
+        self.felt = collections.deque(maxlen=10 * MAX_KEPT)  # (at_ns, z_m, force_N)
+        self.pulses = collections.deque(maxlen=MAX_KEPT)      # (at_ns, force_N): onset of the vibration of a hit
         self.pictures = collections.deque(maxlen=PICTURES_KEPT)  # (at_ns, JPEG in base64)
         self.game, self.answer, self.in_force, self.moved, self.reply, self.asked = None, None, None, False, None, None
         self.refused = collections.deque(maxlen=16)
 
     def order(self, **what):
-        """One order; raises Refusal when the conductor has gone."""
+        """Sends one order. Raises Refusal if the trial runner has ended."""
         try:
             self.process.stdin.write(json.dumps(what).encode() + b"\n")
             self.process.stdin.flush()
         except OSError:
-            raise Refusal(f"conductor: has ended ({self.last_words()}); is the cluster still running?") from None
+            raise Refusal(f"conductor: has ended ({self.last_words()}); check that the cluster is running") from None
 
     def last_words(self):
         try:
             self.said = (self.said + (os.read(self.process.stderr.fileno(), 65536) or b""))[-4096:]
         except OSError:
             pass
-        return (self.said.decode(errors="replace").strip().splitlines() or ["it said nothing"])[-1]
+        return (self.said.decode(errors="replace").strip().splitlines() or ["no message"])[-1]
 
-    def pump(self, at_most_s):
-        """Takes in what has come, waiting for it no longer than that. Raises Refusal when the conductor has gone."""
-        ready, _, _ = select.select([self.process.stdout], [], [], at_most_s)
+    def pump(self, timeout_s):
+        """Reads pending observations, or waits up to timeout_s for some. Raises Refusal if the trial runner has ended."""
+        ready, _, _ = select.select([self.process.stdout], [], [], timeout_s)
         if not ready:
             return
         data = os.read(self.process.stdout.fileno(), 1 << 20)
         if not data:
-            raise Refusal(f"conductor: has ended ({self.last_words()}); is the cluster still running?")
+            raise Refusal(f"conductor: has ended ({self.last_words()}); check that the cluster is running")
         *lines, self.rest = (self.rest + data).split(b"\n")
         for line in lines:
             self.take(json.loads(line))
@@ -94,9 +94,9 @@ class Lead:
             if "asked" in line:
                 self.asked = line
 
-    def wait_for(self, condition, at_most_s):
-        """Whether condition() came true in time; a refused order ends the wait with a Refusal."""
-        end = time.monotonic() + at_most_s
+    def wait_for(self, condition, timeout_s):
+        """Waits until condition() is true; False after timeout_s. A refused order raises Refusal."""
+        end = time.monotonic() + timeout_s
         while not condition():
             left = end - time.monotonic()
             if left <= 0:
@@ -106,14 +106,14 @@ class Lead:
                 raise Refusal(f"conductor: {self.refused.popleft()}")
         return True
 
-    def put_in_force(self, profile, at_most_s):
-        """Whether every sense has the profile; if so self.in_force says since when in the time of the world."""
+    def put_in_force(self, profile, timeout_s):
+        """Whether every sense has the profile in time; then self.in_force holds its start in simulation time."""
         self.in_force = None
         self.order(profile=profile)
-        return self.wait_for(lambda: self.in_force is not None, at_most_s)
+        return self.wait_for(lambda: self.in_force is not None, timeout_s)
 
     def missing(self):
-        """Nodes that have not the profile."""
+        """Names of the nodes without the profile in force."""
         return sorted(name for name, s in self.senses.items() if not s["in_force"])
 
     def end(self):
@@ -122,7 +122,7 @@ class Lead:
         except Refusal:
             pass
         try:
-            self.process.wait(ENDS_WITHIN_S)
+            self.process.wait(END_TIMEOUT_S)
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
@@ -130,5 +130,5 @@ class Lead:
 
 def keep(store, key, value):
     store[key] = value
-    while len(store) > MOST_KEPT:
+    while len(store) > MAX_KEPT:
         store.popitem(last=False)

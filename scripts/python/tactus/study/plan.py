@@ -1,5 +1,5 @@
-"""Which trial comes next: decided by the study, the participant, the seed and what was answered so far, and by nothing else. So an
-interrupted session goes on with the trial that it would have had."""
+"""The order of trials. The next trial depends only on the study, the participant, the seed and the answers so far, so an interrupted session resumes
+with the same trial."""
 import dataclasses
 import math
 import random
@@ -10,12 +10,12 @@ from tactus.psychophysics import fits, procedures
 from tactus.study import procedure_element, quantities, study_file
 
 FUNCTIONS = {"synchrony": ("synchrony_window", None), "order": ("order", None), "two_interval": ("cumulative_gaussian", {"guess": 0.5})}
-FEWEST_FOR_A_FIT = 30  # answers; below, a running estimate says nothing (design)
+FEWEST_FOR_A_FIT = 30  # answers; a running estimate from fewer is meaningless (design)
 
 
 @dataclasses.dataclass(frozen=True)
 class Trial:
-    """number: from 1, of those that were answered and counted. level: of the condition. degraded_interval: of two intervals, 0 or 1."""
+    """number: from 1, counts answered trials. level: of the condition. degraded_interval: which of two intervals is degraded, 0 or 1."""
     number: int
     block: int
     condition: object
@@ -24,14 +24,14 @@ class Trial:
 
 
 def place_of(participant):
-    """Which row of a square a participant gets: the number in his name, else one that is drawn from the name."""
+    """Row of the square for a participant: the number in the name, else a hash of the name."""
     digits = re.search(r"(\d+)\D*$", participant)
     return int(digits.group(1)) if digits else zlib.crc32(participant.encode())
 
 
 def williams(n):
-    """Rows of a square in which each condition stands once in each column, and each follows each other equally often (Williams 1949,
-    Australian Journal of Scientific Research A 2:149); for odd n they are two squares, one the mirror of the other."""
+    """Rows of a Williams square: each condition occurs once in each column, and each follows every other equally often (Williams 1949, Australian
+    Journal of Scientific Research A 2:149). For odd n these are two squares, one the mirror of the other."""
     first = [0]
     low, high = 1, n - 1
     while len(first) < n:
@@ -53,7 +53,7 @@ def order_of(n, kind, participant, block, seed):
 
 
 class Plan:
-    """All trials of one participant. `next()` gives the trial, `answered(trial, yes)` counts it; one that is spoiled is simply not counted, and comes
+    """All trials of one participant. `next()` returns the trial, `answered(trial, yes)` counts it. A missed trial is not counted, so `next()` returns it
     again."""
 
     def __init__(self, study, participant, seed=None):
@@ -68,7 +68,7 @@ class Plan:
             self.procedures = [procedures.make_procedure(procedure_element.of_condition(study.procedure, c), self.draw(f"procedure {c.id}")) for c in study.conditions]
 
     def draw(self, what):
-        """A seed of its own for each use."""
+        """A separate seed for each use."""
         return zlib.crc32(f"{self.seed} {self.participant} {what}".encode())
 
     @property
@@ -84,18 +84,18 @@ class Plan:
         return max(1, math.ceil(self.expected_trials / self.study.blocks))
 
     def block_of(self, number):
-        """Of the trial with this number, from 1. What takes longer than expected belongs to the last."""
+        """Block of the trial with this number, from 1. Trials beyond the expected number belong to the last block."""
         return min(self.study.blocks, 1 + (number - 1) // self.trials_a_block)
 
     def next(self):
-        """Trial, or None when all is done."""
+        """The next Trial; None: all are done."""
         if self.finished:
             return None
         number = self.done + 1
         if self.performs:
             condition = self.study.conditions[self.sequence[self.done]]
             return Trial(number, self.block_of(number), condition, condition.fixed)
-        # Among the procedures that are not through, each as likely as it has trials left: they are interleaved evenly.
+        # Draws an unfinished procedure with a probability proportional to its remaining trials, which interleaves them evenly.
         left = [i for i, p in enumerate(self.procedures) if not p.finished]
         weights = [max(1, self.procedures[i].expected - self.procedures[i].done) for i in left]
         chance = random.Random(f"{self.seed} {self.participant} trial {number}")
@@ -106,7 +106,7 @@ class Plan:
         return Trial(number, self.block_of(number), condition, level, chance.randrange(2))
 
     def answered(self, trial, yes):
-        """yes: what the procedure is told, True or False; of a game, rating or matching it does not matter."""
+        """Counts an answer. yes: input of the procedure, True or False; ignored for a game, rating or matching."""
         if not self.performs:
             i = self.study.conditions.index(trial.condition)
             level = trial.condition.levels.index(trial.level) if trial.condition.kind == "pair" else trial.level
@@ -114,7 +114,8 @@ class Plan:
         self.done += 1
 
     def estimates(self):
-        """{condition id: what its procedure says so far; where it says nothing, as constant stimuli, a fit of the answers; None: there are too few}."""
+        """{condition id: running estimate of its procedure}. A procedure without an estimate (constant stimuli) gets a fit of its answers; None: too few
+        answers."""
         if self.study.response not in study_file.YES_OR_NO:
             return {}
         return {c.id: p.estimate() or (None if any(f.operator in quantities.FALLING for f in c.factors) else self.fitted(p)) for c, p in zip(self.study.conditions, self.procedures)}
@@ -127,7 +128,7 @@ class Plan:
         return {k: float(v) for k, v in list(fit.params.items())[:2]} if fit.converged else None
 
     def describe(self):
-        """Lines that say what will happen."""
+        """Lines that describe the plan."""
         s = self.study
         lines = [f"{s.name}: {s.response}, {self.expected_trials} {'games' if self.performs else 'trials'} in {s.blocks} block{'s' * (s.blocks > 1)}"
                  f"{f' with breaks of {s.break_s:g} s' if s.break_s and s.blocks > 1 else ''}, scene {s.scene.name}, seed {self.seed}"]

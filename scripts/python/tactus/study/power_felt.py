@@ -1,6 +1,6 @@
-"""What two presses can show, of an observer who judges the stiffness that he feels. Which stiffness follows from a level is what the study measures; so
-without presses that were made, all that is told is how small a difference of stiffness his answers show. With those of a pilot it is simulated where three
-in four answers call the degraded press the softer, and how well that is known from one participant.
+"""Power of a comparison of two presses by an observer of felt stiffness. The stiffness at a level is the result of the study, so without a pilot only
+the smallest detectable difference of stiffness is computed. With the presses of a pilot the level of 75 % right answers is simulated, and its uncertainty
+for one participant.
 """
 import bisect
 import collections
@@ -12,20 +12,20 @@ from scipy.stats import binom
 
 from tactus.psychophysics.observers import PERCEPTS
 
-FEWEST = 3  # presses of a level in a pilot, and levels; design: a spread can be seen
-FIT, PARAMETER = "weibull", "threshold75"  # as scripts/python/tactus/analysis fits them
-STEPS = 40  # of a search by halves, to far below what is printed; design
+FEWEST = 3  # presses at a level of a pilot, and levels; design: enough to show a spread
+FIT, PARAMETER = "weibull", "threshold75"  # as in tactus/analysis
+STEPS = 40  # of a bisection, to far below the printed precision; design
 
 
 @dataclasses.dataclass(frozen=True)
 class Presses:
-    """Of a pilot. felt: {condition: {level: ((N/m of the degraded press, N/m of the other), ...)}}, levels ascending."""
+    """Presses of a pilot. felt: {condition: {level: ((N/m of the degraded press, N/m of the other), ...)}}, levels ascending."""
     felt: dict
     source: str
 
 
 def pilot(rows, path):
-    """Presses of rows of a trial table (trial_table.read); ValueError where they say too little."""
+    """Presses of rows of a trial table (trial_table.read). Raises ValueError if they are too few."""
     felt = collections.defaultdict(lambda: collections.defaultdict(list))
     for r in rows:
         both, degraded = (r.get("stiffness_first_n_m"), r.get("stiffness_second_n_m")), r.get("degraded_interval")
@@ -40,7 +40,7 @@ def pilot(rows, path):
 
 
 class Felt:
-    """Answers as one who feels at a level what somebody felt at it in the pilot; between two of its levels at one of them, the nearer the likelier."""
+    """Observer who feels at a level the presses of the pilot at that level. Between two levels one of them is drawn, the nearer with higher probability."""
 
     def __init__(self, levels, observer, seed):
         self.levels, self.presses = list(levels), list(levels.values())
@@ -56,7 +56,7 @@ class Felt:
 
 
 def truth(levels, observer):
-    """The level at which one who never lapses is right in three of four, by straight lines between the levels; nan: at none."""
+    """The level of 75 % right answers of an observer without lapses, by linear interpolation between levels; nan: none."""
     presser = PERCEPTS[observer.function](**{**observer.params, "lapse": 0.0}, seed=1)
     right = [np.mean([presser.first_is_softer(*p) for p in presses]) for presses in levels.values()]
     x, y = np.array([0.0, *levels]), np.maximum.accumulate([0.5, *right])
@@ -65,13 +65,13 @@ def truth(levels, observer):
 
 
 def differences(study, condition, participants, wanted, alpha):
-    """[{condition, participants, answers, softer}]: the smallest share by which one press has to be softer so that the answers at one level differ from chance
-    (binomial test, two-sided) with this power; None: at no share. [] for a procedure without fixed levels."""
+    """[{condition, participants, answers, softer}]: the smallest share by which one press must be softer so that the answers at one level differ from chance
+    (two-sided binomial test) with this power; None: no share. [] for a procedure without fixed levels."""
     observer = study.observer(condition)
     presser, found = PERCEPTS[observer.function](**observer.params, seed=1), []
     for people in participants if study.procedure["kind"] == "constant" else ():
         n = people * study.procedure["repetitions"]
-        needed = int(binom.isf(alpha / 2, n, 0.5)) + 1  # right answers, of n, that chance seldom gives
+        needed = int(binom.isf(alpha / 2, n, 0.5)) + 1  # right answers out of n that chance exceeds with probability alpha / 2
         shows = lambda softer: binom.sf(needed - 1, n, presser.first_is_softer(1 - softer, 1.0)) >= wanted
         low, high = 0.0, 0.99
         for _ in range(STEPS):
@@ -85,15 +85,15 @@ def words(study, found, presses):
     """Lines for a terminal. found: of differences()."""
     lines = []
     for condition in dict.fromkeys(f["condition"] for f in found):
-        told = (f"{f['answers']} answers of {f['participants']} participant{'s' * (f['participants'] > 1)} " + ("none" if f["softer"] is None else f"{100 * f['softer']:.0f} %")
+        shares = (f"{f['answers']} answers of {f['participants']} participant{'s' * (f['participants'] > 1)} " + ("none" if f["softer"] is None else f"{100 * f['softer']:.0f} %")
                 for f in found if f["condition"] == condition)
-        lines.append(f"{condition}: a press that is so much softer than the other is told from chance at one level with 80 % power: " + ", ".join(told))
+        lines.append(f"{condition}: smallest difference of stiffness that the answers at one level show with 80 % power: " + ", ".join(shares))
     if presses is None:
-        return [*lines, "how soft a press is at a level is what the study measures: at which level it is noticed is not simulated; --pilot TRIALS.csv takes the presses of a session"]
+        return [*lines, "the threshold level is not simulated, because the stiffness at a level is what the study measures; add --pilot TRIALS.csv with the presses of a session"]
     for condition in (c for c in study.conditions if study.observer(c) and study.observer(c).function in PERCEPTS):
         levels = presses.felt.get(condition.id)
         if levels is None:
-            lines.append(f"{condition.id}: {presses.source} are of other conditions")
+            lines.append(f"{condition.id}: {presses.source} belong to other conditions")
         elif math.isnan(truth(levels, study.observer(condition))):
-            lines.append(f"{condition.id}: at no level were the presses so soft that three of four answers call them the softer")
-    return [*lines, f"felt as in {presses.source}"]
+            lines.append(f"{condition.id}: at no level of the pilot do 75 % of the answers call the degraded press the softer")
+    return [*lines, f"felt stiffness from {presses.source}"]

@@ -1,8 +1,8 @@
-"""What games can show: the smallest loss of success, and the smallest slowing, that are found with 80 % power, and how often a level that does
-nothing is shown to be harmless. By simulation of games that go as assumed, or as those of a pilot did.
+"""Power of a study of games, by simulation of assumed games or of those of a pilot: the smallest loss of success and the smallest slowing that are found
+with 80 % power, and how often a level without effect is shown to be harmless.
 
-The tests stand for those of scripts/python/tactus/analysis, which resample and are too slow for here: of five participants and more, paired t-tests over people; of
-fewer, over games, Newcombe's interval of a difference of shares and the normal interval of the logarithm of a ratio of mean times.
+The tests approximate those of tactus/analysis, whose resampling is too slow here. Five or more participants: paired t-tests over people. Fewer: over
+games, Newcombe's interval of a difference of shares, and the normal interval of the logarithm of a ratio of mean times.
 """
 import collections
 import dataclasses
@@ -13,27 +13,27 @@ from scipy.stats import norm, t
 
 from tactus.study import quantities
 
-FEWEST_PEOPLE = 5  # as scripts/python/tactus/analysis: of fewer the games are the sample
-FEWEST_DRAWS, MOST_DRAWN = 100, 200_000  # studies, and games of each condition, of a step in the search for participants: 1 to 4 points of power; design
-MOST_PEOPLE = 500  # design: larger studies are planned otherwise
-STEPS = 12         # of a search by halves; design
-SIMULATIONS = 10   # times as many as of observers, since each costs less; design
+FEWEST_PEOPLE = 5  # as in tactus/analysis: with fewer, the games are the sample
+FEWEST_DRAWS, MAX_DRAWN = 100, 200_000  # studies, and games of each condition, in a step of the search for participants: 1 to 4 points of power; design
+MAX_PEOPLE = 500  # design
+STEPS = 12         # of a bisection; design
+SIMULATIONS = 10   # factor on the number of simulated observers, since a game costs less; design
 
 
 @dataclasses.dataclass(frozen=True)
 class Games:
-    """With nothing degraded. success: share won. time_s: median time to win, None: half the limit. spread, between: standard deviations of the logarithm
-    of times, of one person's games and between people; success_between: of the logits of success between people. source: whence."""
+    """Games without degradation. success: share won. time_s: median time to win, None: half the limit. spread, between: standard deviations of the logarithm
+    of times within and between people; success_between: standard deviation of the logits of success between people. source: origin of these values."""
     success: float = 0.95
     time_s: float = None
     spread: float = 0.35
     between: float = 0.25
     success_between: float = 0.5
-    source: str = "assumed (design); --pilot takes them from games that were played"
+    source: str = "assumed (design); give --pilot to use measured games"
 
 
 def pilot(rows, path):
-    """Games of rows of a trial table (trial_table.read); ValueError where they say too little."""
+    """Games of rows of a trial table (trial_table.read). Raises ValueError if they are too few."""
     games = [r for r in rows if r["task"] == "game" and r.get("success") is not None and not r.get("missed") and not r.get("modality_degraded")]
     won = [r for r in games if r["success"] and r.get("completion_time_s")]
     if len(games) < 10 or len(won) < 5:
@@ -45,12 +45,13 @@ def pilot(rows, path):
     within = np.concatenate([np.asarray(v) - np.mean(v) for v in logs.values()])
     spread = math.sqrt((within ** 2).sum() / max(1, len(within) - len(logs)))
     between = float(np.std(means, ddof=1)) if len(means) > 1 else Games.between
-    success = min(len(won) / len(games), 1 - 0.5 / len(games))  # all won: as if half a game were not
+    success = min(len(won) / len(games), 1 - 0.5 / len(games))  # if all are won: half a game counts as lost
     return Games(success, math.exp(np.mean(means)), spread, between, Games.success_between, f"{len(games)} games of {len(logs)} participants in {path}")
 
 
 def drawn(games, limit_s, people, each, loss, slower, dice, count):
-    """(won, time_s), each (count, 2, people, each): with nothing degraded, and with that much success lost and times so many times as long."""
+    """Random games: (won, time_s), each (count, 2, people, each). Index 0 of the second axis: undegraded; 1: success reduced by `loss`, times multiplied by
+    `slower`."""
     odds = math.log(games.success / (1 - games.success)) + games.success_between * dice.standard_normal((count, 1, people, 1))
     p = 1 / (1 + np.exp(-odds))
     p = np.concatenate([p, np.clip(p - loss, 0, 1)], axis=1)
@@ -91,7 +92,7 @@ def wilson(p, n, alpha):
 
 
 def smallest(finds, lowest, highest, wanted):
-    """The smallest effect that finds(effect), a share, reaches `wanted` at; None: not even the highest does."""
+    """The smallest effect at which finds(effect), a share, reaches `wanted`, by bisection; None: the highest effect does not reach it."""
     if finds(highest) < wanted:
         return None
     for _ in range(STEPS):
@@ -101,8 +102,8 @@ def smallest(finds, lowest, highest, wanted):
 
 
 def family_of(condition):
-    """Conditions of one family are tested together (scripts/python/tactus/analysis): removals, or those that degrade the same senses in the same ways; None: nothing is
-    degraded."""
+    """Family of a condition; conditions of one family are tested together (tactus/analysis): removals, or those with the same senses and operators. None:
+    nothing is degraded."""
     if condition.kind == "remove":
         return "removal"
     levels = condition.fixed if condition.kind == "pair" else (condition.fixed,)
@@ -112,9 +113,9 @@ def family_of(condition):
 
 
 def of(study, assumed, wanted, alpha):
-    """{baseline: whether some games have nothing degraded, tests: of the largest family, rows: [{participants, games, loss, slower, harmless}], needed}.
-    loss, slower: the smallest loss of success and ratio of times that are found, None where none is; harmless: share of levels that do nothing which are
-    shown to be within the margins of the study; needed: the fewest participants with whom that is `wanted`, None: not even MOST_PEOPLE."""
+    """{baseline: whether some games are undegraded, tests: number of tests of the largest family, rows: [{participants, games, loss, slower, harmless}],
+    needed}. loss, slower: the smallest detected loss of success and ratio of times, None: none; harmless: share of levels without effect that are shown to
+    be within the margins of the study; needed: the smallest number of participants at which that share is `wanted`, None: more than MAX_PEOPLE."""
     each, limit_s, games = study.procedure["repetitions"], study.stimulus.limit_s, assumed.games
     families = collections.Counter(map(family_of, study.conditions))
     baseline, tests = bool(families.pop(None, 0)), 2 * max(families.values(), default=1)
@@ -137,32 +138,32 @@ def of(study, assumed, wanted, alpha):
                 row["slower"] = None if slower is None else math.exp(slower)
                 row["harmless"] = harmless(people)
             rows.append(row)
-        needed = fewest(lambda people: harmless(people, min(count, max(FEWEST_DRAWS, MOST_DRAWN // (people * each)))), wanted)
+        needed = fewest(lambda people: harmless(people, min(count, max(FEWEST_DRAWS, MAX_DRAWN // (people * each)))), wanted)
     return {"baseline": baseline, "tests": tests, "rows": rows, "needed": needed}
 
 
 def fewest(shows, wanted):
-    """The fewest participants, to a tenth, of whom shows(participants) reaches `wanted`; None: not even MOST_PEOPLE."""
+    """The smallest number of participants, to 10 %, at which shows(participants) reaches `wanted`; None: more than MAX_PEOPLE."""
     people = FEWEST_PEOPLE
     while shows(people) < wanted:
         people = max(people + 1, round(1.1 * people))
-        if people > MOST_PEOPLE:
+        if people > MAX_PEOPLE:
             return None
     return people
 
 
 def words(found, assumed, wanted):
     g = assumed.games
-    lines = [f"found with {wanted:.0%} power between nothing degraded and a level, and how often a level that does nothing is shown to be within the margins:",
+    lines = [f"effects that are found with {wanted:.0%} power between undegraded games and a level, and how often a level without effect is shown to be within the margins:",
              "  participants  games of each  loss of success  slower by  shown harmless"]
     for f in found["rows"]:
         loss = "none" if f["loss"] is None else f"{100 * f['loss']:.0f} points"
         slower = "none" if f["slower"] is None else f"{100 * (f['slower'] - 1):.0f} %"
         lines.append(f"  {f['participants']:12d}  {f['games']:13d}  {loss:>15s}  {slower:>9s}  {f['harmless']:14.0%}")
     time = "half the limit" if g.time_s is None else f"{g.time_s:.3g} s"
-    lines.append(f"  shown harmless with {wanted:.0%} power: " + (f"from about {found['needed']} participants on" if found["needed"] else f"not even with {MOST_PEOPLE} participants"))
+    lines.append(f"  shown harmless with {wanted:.0%} power: " + (f"from about {found['needed']} participants on" if found["needed"] else f"not with {MAX_PEOPLE} participants"))
     lines.append(f"  games undegraded: {g.success:.0%} won, after {time} (median), spread {g.spread:.2g} within and {g.between:.2g} between people (sd of log time); {g.source}")
-    lines.append(f"  shown harmless is after Bonferroni over {found['tests']} tests, levels and outcomes of one family; Holm's correction in the analysis shows it at least as often")
+    lines.append(f"  shown harmless applies Bonferroni's correction over {found['tests']} tests (levels and outcomes of one family); Holm's correction in the analysis shows it at least as often")
     if not found["baseline"]:
-        lines.append("in no condition nothing is degraded, so that there is nothing to hold the others against; add <nothing/>")
+        lines.append("no condition is undegraded, so the others have no baseline; add <nothing/>")
     return lines

@@ -1,18 +1,18 @@
-"""Numbers with their units, as study files have them: each operator of a profile has one unit in which its levels are counted."""
+"""Numbers with units in study files. Each operator of a profile has one unit for its levels."""
 import re
 
 from tactus.refusal import Refusal
 
 TIME_MS = {"us": 1e-3, "ms": 1.0, "s": 1e3}
-# Operator of a study: (unit of its levels, factor of each unit that may be written, least, most). The ranges are those of
-# sync/degradation/parse_operator.cpp where it has one, else what a person could still notice (design).
+# Operator of a study: (unit of its levels, factor of each permitted unit, least, most). The ranges are those of
+# sync/degradation/parse_operator.cpp where it has one, else the range that a person could notice (design).
 OPERATORS = {
     "delay": ("ms", TIME_MS, 0, 10_000), "network_delay": ("ms", TIME_MS, 0, 10_000), "jitter": ("ms", TIME_MS, 0, 10_000),
     "loss": ("%", {"%": 1.0}, 0, 100), "rate": ("Hz", {"Hz": 1.0}, 0.1, 1000), "deadband": ("%", {"%": 1.0}, 0, 100),
     "quantise": ("N", {"N": 1.0, "mN": 1e-3}, 0, 100), "gain": ("", {"": 1.0}, 0, 10), "lowpass": ("Hz", {"Hz": 1.0}, 0.1, 1000),
     "frame_rate": ("Hz", {"Hz": 1.0}, 2, 240), "resolution": ("", {"": 1.0}, 0.01, 1), "response": ("ms", TIME_MS, 0, 60_000)}
 OUTPUT_OF = {"frame_rate": "visual", "resolution": "visual", "response": "thermal"}  # modality.csv of each node folder
-FALLING = ("rate", "frame_rate", "lowpass", "resolution", "gain")  # less is worse, as in scripts/python/tactus/analysis/operators.py
+FALLING = ("rate", "frame_rate", "lowpass", "resolution", "gain")  # a lower level is a stronger degradation, as in analysis/operators.py
 SMALLEST = {"response": 1.0}  # of levels above 0
 ASYNCHRONY = ("ms", TIME_MS, -5_000, 5_000)
 PAUSE = ("s", {"ms": 1e-3, "s": 1.0}, 0, 3600)
@@ -20,27 +20,27 @@ SHARE = ("%", {"%": 1.0}, 0, 1000)
 
 
 def read(text, of, where):
-    """The number that `text` says, in the unit of `of` (an entry as those above). Raises Refusal; `where` begins its sentence."""
+    """The number in `text`, converted to the unit of `of` (an entry like those above). Raises Refusal; `where` begins its sentence."""
     unit, factors, least, most = of
     number, written = re.fullmatch(r"([+-]?[0-9.]+)([A-Za-z%]*)", text).groups()
     value = float(number)
     if value == 0 and written == "" and unit != "":
         written = unit
     if written not in factors:
-        raise Refusal(f"{where}: {text} has not the unit {' or '.join(factors) or 'none'}; write for example {least if least > 0 else 10}{unit}")
+        raise Refusal(f"{where}: {text} needs the unit {' or '.join(factors) or 'none'}; write for example {least if least > 0 else 10}{unit}")
     value = round(value * factors[written], 9)
     if not least <= value <= most:
-        raise Refusal(f"{where}: {text} is not from {least}{unit} to {most}{unit}")
+        raise Refusal(f"{where}: {text} is out of range; give {least}{unit} to {most}{unit}")
     return value
 
 
 def written(value):
-    """The shortest decimal of a level."""
+    """The shortest decimal form of a level."""
     return f"{value:.9g}"
 
 
 def degrade(modality, operator, level):
-    """The element of a profile (sync/degradation/README.md) that degrades a sense so."""
+    """Profile element (sync/degradation/README.md) that applies the operator to a sense at this level."""
     unit = OPERATORS[operator][0]
     words = {"network_delay": ("delay", f"{written(level)}ms network"), "jitter": ("jitter", f"{written(level)}ms normal")}
     name, value = words.get(operator, (operator, written(level) + unit))
@@ -48,5 +48,5 @@ def degrade(modality, operator, level):
 
 
 def nothing(operator, level):
-    """Whether the level leaves the sense as it is: then no element is written."""
+    """Whether the level has no effect; then no element is written."""
     return level == 0 and operator in ("delay", "network_delay", "jitter", "loss", "deadband", "quantise", "response") or level == 1 and operator in ("gain", "resolution")

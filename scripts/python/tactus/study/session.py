@@ -1,4 +1,4 @@
-"""One session: trial after trial, each in the journal before the next begins."""
+"""One session of a participant: presents the trials and writes each to the journal before the next begins."""
 import contextlib
 import hashlib
 import json
@@ -8,7 +8,7 @@ import signal
 import time
 
 from tactus.refusal import Refusal
-from tactus.study import asking, formats, games, stimuli
+from tactus.study import formats, games, questions, stimuli
 from tactus.study.cluster_words import cluster_words, sees
 from tactus.study.journal import Journal
 from tactus.study.lead import Lead
@@ -19,8 +19,8 @@ from tactus.study.study_file import YES_OR_NO
 from tactus.terminal import tell
 
 TASKS = {"synchrony": "sj", "order": "toj", "two_interval": "2ifc", "rating": "rating", "matching": "matching", "performance": "game"}
-ESTIMATE_EVERY = 10  # trials: a fit takes a tenth of a second
-STUCK_AFTER = 10     # trials in a row that were missed: the apparatus is not fit for the study (design)
+ESTIMATE_EVERY = 10      # trials; a fit takes 0.1 s
+MAX_MISSED_IN_A_ROW = 10  # missed trials in a row; more: the apparatus does not suit the study (design)
 
 
 def folder_of(study, options):
@@ -29,24 +29,24 @@ def folder_of(study, options):
 
 
 def resume(plan, answered):
-    """The plan as it was after these answers. Raises Refusal when they are not of this plan."""
+    """Brings the plan to its state after these answers. Raises Refusal if they do not belong to this plan."""
     for entry in answered:
         trial = plan.next()
         level = list(trial.level) if trial is not None and isinstance(trial.level, tuple) else getattr(trial, "level", None)
         if trial is None or (trial.number, trial.condition.id, level) != (entry["trial"], entry["condition"], entry["level"]):
-            raise Refusal(f"the journal's trial {entry['trial']} ({entry['condition']} at {entry['level']}) is not the one of this plan; was it written by another version?")
+            raise Refusal(f"the journal's trial {entry['trial']} ({entry['condition']} at {entry['level']}) is not in this plan; resume with the version of Tactus that wrote it")
         plan.answered(trial, entry["yes"])
 
 
 def lead(study, options):
-    """Exit status."""
+    """Runs or resumes a session; returns the exit status."""
     signal.signal(signal.SIGTERM, lambda *_: (_ for _ in ()).throw(KeyboardInterrupt()))
     folder = folder_of(study, options)
     plan = Plan(study, options.participant, options.seed)
     observer = "simulated" if options.simulated else "human"
     with Journal(folder) as journal:
         resumed = journal.begin(study=study.name, study_sha256=study.sha256, participant=options.participant, seed=plan.seed, observer=observer)
-        with contextlib.suppress(shutil.SameFileError):  # it goes on with the copy itself
+        with contextlib.suppress(shutil.SameFileError):  # resumed from the copy itself
             shutil.copyfile(study.path, folder / "study.xml")
         if journal.repaired:
             tell(f"study: {journal.repaired}")
@@ -54,11 +54,11 @@ def lead(study, options):
         for line in plan.describe():
             tell(line)
         if journal.ended:
-            formats.export(folder)  # it may have been killed before it could
-            tell(f"study: this session has ended, after {plan.done} trials; analyse it: tactus study analyse {folder}")
+            formats.export(folder)  # the process may have been killed before its export
+            tell(f"study: this session ended after {plan.done} trials; analyse it: tactus study analyse {folder}")
             return 0
         if resumed:
-            tell(f"study: goes on after {plan.done} of {plan.expected_trials} trials")
+            tell(f"study: resumes after {plan.done} of {plan.expected_trials} trials")
         s = Session(study, options, plan, journal, folder, observer)
         try:
             s.run()
@@ -76,10 +76,10 @@ class Session:
         self.study, self.options, self.plan, self.journal, self.folder, self.observer = study, options, plan, journal, folder, observer
         self.cluster = self.lead = self.participant = None
         self.began, self.led = time.monotonic(), 0
-        self.trials_began = self.began  # the cluster was started and instructions were read before
+        self.trials_began = self.began  # set again after the start of the cluster and the instructions
         self.errors_ms, self.missed = [], 0
 
-    # The cluster, and who leads it.
+    # The cluster and its trial runner.
 
     def start(self):
         runs = self.folder / "runs"
@@ -92,14 +92,14 @@ class Session:
         if self.options.live is not None:
             page = self.cluster.page()
             if page is None and not (self.options.window or self.options.simulated):
-                raise Refusal(f"the live page does not start, so that nobody could be asked; see {out}/logs/live_server.log")
+                raise Refusal(f"the live page does not start, so the participant cannot answer; see {out}/logs/live_server.log, or use --window")
             if page is not None:
                 tell(f"study: the participant's page is {page}{'&' if '?' in page else '?'}participant")
-                tell(f"study: yours, to look on, is {page}")
+                tell(f"study: the experimenter's page is {page}")
         s = self.study.stimulus
         self.lead = Lead(out, None if self.options.device else (*s.rest_m, s.above_m), looks=sees(self.study, self.options))
         if not self.lead.wait_for(lambda: self.lead.senses and self.lead.sim_ns is not None and all(x["state"] == 1 for x in self.lead.senses.values()), 60):
-            raise Refusal(f"the senses are not ready after a minute; see {out}/logs")
+            raise Refusal(f"the senses are not ready after 60 s; see {out}/logs")
         if self.options.simulated:
             self.participant = Participant(self.study, self.options.participant, self.plan.seed, out, self.lead)
 
@@ -109,10 +109,10 @@ class Session:
         if self.cluster is not None:
             self.cluster.end()
 
-    # What the participant is asked.
+    # Questions to the participant.
 
     def ask(self, question, trial=None):
-        """The answer, however long it takes."""
+        """Publishes a question and waits for its answer, without a time limit."""
         progress = f"{self.plan.done} of {self.plan.expected_trials} done"
         self.lead.answer = self.lead.asked = None
         self.lead.order(question={**question, "progress": progress, "trial": trial.number if trial else 0, "condition": trial.condition.id[:64] if trial else ""})
@@ -121,10 +121,10 @@ class Session:
         return self.lead.answer
 
     def answered(self, **answer):
-        """Of a simulated participant, who presses a key like any other."""
+        """Publishes the answer of a simulated participant."""
         self.lead.order(answer=answer)
         if not self.lead.wait_for(lambda: self.lead.answer is not None, 5):
-            raise Refusal("conductor: did not take the answer of the simulated participant; see its lines in the log of the run")
+            raise Refusal("conductor: did not accept the answer of the simulated participant; see its lines in the log of the run")
         return self.lead.answer
 
     def read(self, text):
@@ -135,7 +135,7 @@ class Session:
 
     def run(self):
         if self.study.task == "game" and self.options.simulated:
-            return self.run_trials(games.play_anew)
+            return self.run_trials(games.play_simulated)
         self.start()
         for text in self.study.instructions:
             self.read(text)
@@ -156,24 +156,23 @@ class Session:
             if self.study.task != "game":
                 self.cluster.check()
             answer = None
-            # The last attempt counts however it went: the participant cannot mend the apparatus, and it is marked.
             if not observed.missed:
                 answer = self.answer(trial, attempt, observed)
             self.keep(trial, attempt, observed, answer)
             in_a_row = in_a_row + 1 if observed.missed else 0
-            if in_a_row >= STUCK_AFTER or attempt > self.study.repeats and observed.missed:
-                raise Refusal(f"trial {trial.number} ({trial.condition.id} at {trial.level}) was missed {attempt} times ({observed.missed}); the apparatus is not fit for "
-                              "this study: see the summary of its run, and resume with the same command")
+            if in_a_row >= MAX_MISSED_IN_A_ROW or attempt > self.study.repeats and observed.missed:
+                raise Refusal(f"trial {trial.number} ({trial.condition.id} at {trial.level}) was missed {attempt} times ({observed.missed}); the apparatus does not meet "
+                              "the tolerance of this study: see the summary of its run, and resume with the same command")
             self.led += not observed.missed
         self.questionnaire(self.study.blocks)
         self.journal.append({"kind": "end"})
         if self.lead is not None:
-            self.read("That was the last one. Thank you!")  # all is kept: whoever does not press a key any more loses nothing
+            self.read("That was the last one. Thank you!")  # all answers are already on the disk
 
     def answer(self, trial, attempt, observed):
         if self.study.task == "game":
             return {"choice": -1, "number": 0, "after_s": None, "by": "play"}
-        question = asking.words(self.study, trial)
+        question = questions.words(self.study, trial)
         if self.participant is None:
             return self.ask(question, trial)
         level = trial.level
@@ -185,16 +184,16 @@ class Session:
         self.ask(question, trial)
         if self.study.response in YES_OR_NO:
             yes = self.participant.says_yes(trial, attempt, level, observed)
-            return self.answered(choice=asking.choice_of(self.study, trial, yes))
+            return self.answered(choice=questions.choice_of(self.study, trial, yes))
         return self.answered(number=self.study.number[0]) if self.study.number else self.answered(choice=0)
 
     def keep(self, trial, attempt, observed, answer):
-        """The trial goes into the journal, and is told."""
+        """Writes the trial to the journal and prints its line."""
         profile = self.study.profile(trial.condition, trial.level)
         presented = 1 + sum(e["kind"] == "trial" for e in self.journal.entries)
         row = {"participant_id": self.options.participant, "session": self.options.session, "block": trial.block, "trial": presented, "task": TASKS[self.study.response],
                "study": self.study.name, "condition": trial.condition.id, "observer": self.observer, "seed": self.plan.seed, "d_base_ms": self.study.base_delay_ms,
-               "profile_sha256": hashlib.sha256(profile.encode()).hexdigest(), "question": asking.words(self.study, trial)["text"], "missed": int(bool(observed.missed)),
+               "profile_sha256": hashlib.sha256(profile.encode()).hexdigest(), "question": questions.words(self.study, trial)["text"], "missed": int(bool(observed.missed)),
                "missed_reason": observed.missed, **trial.condition.row(trial.level), **observed.row}
         if self.cluster is not None:
             row["log_file"] = str((self.cluster.out / "run.lcmlog").relative_to(self.folder))
@@ -203,7 +202,7 @@ class Session:
         response, yes = "", None
         if answer is not None:
             if self.study.task != "game":
-                response, yes, more = asking.meaning(self.study, trial, answer)
+                response, yes, more = questions.meaning(self.study, trial, answer)
                 row.update(more, response_time=round(answer["after_s"], 4))
             row["response"] = response
         if observed.reached_N is not None:
@@ -221,9 +220,9 @@ class Session:
             self.plan.answered(trial, yes)
             if observed.soa_ms is not None:
                 self.errors_ms.append(observed.soa_ms - trial.level)
-        self.tell(trial, observed, response)
+        self.report(trial, observed, response)
 
-    def tell(self, trial, observed, response):
+    def report(self, trial, observed, response):
         done, expected = self.plan.done, self.plan.expected_trials
         left_s = (time.monotonic() - self.trials_began) / max(1, self.led + 1) * max(0, expected - done)
         words = f"trial {trial.number:4d} of {expected}  {trial.condition.words(trial.level)}"
@@ -249,14 +248,14 @@ class Session:
             self.questionnaire(trial.block - 1)
         if self.participant is None and self.lead is not None:
             since = time.monotonic()
-            self.ask({"kind": "read", "text": f"Block {trial.block - 1} of {self.study.blocks} is done. Take a break of {self.study.break_s:.0f} s or longer; go on when you are ready."})
+            self.ask({"kind": "read", "text": f"Block {trial.block - 1} of {self.study.blocks} is done. Take a break of {self.study.break_s:.0f} s or longer; continue when you are ready."})
             left_s = self.study.break_s - (time.monotonic() - since)
             if left_s > 0:
                 self.lead.wait_for(lambda: False, left_s)
         self.journal.append({"kind": "break", "before": trial.number})
 
     def questionnaire(self, block):
-        """Asked once, at the end; or at the end of each block, then ITEM_blockN in the journal."""
+        """Asks the items once, at the end of the session, or at the end of each block; then they are ITEM_blockN in the journal."""
         if self.lead is None:
             return
         known = {e["item"] for e in self.journal.entries if e["kind"] == "questionnaire"}
@@ -265,8 +264,8 @@ class Session:
             if name in known:
                 continue
             if self.participant is not None:
-                continue  # it feels nothing that it could be asked about
-            answer = self.ask(asking.of_item(item))
+                continue  # a simulated participant has no answer to an item
+            answer = self.ask(questions.of_item(item))
             self.journal.append({"kind": "questionnaire", "item": name, "answer": answer["number"] if item.step else item.choices[answer["choice"]]})
 
     def figures(self):
@@ -278,7 +277,7 @@ class Session:
 
     def summary(self):
         f = self.figures()
-        words = f"study: {f['trials']} of {f['expected']} trials are done, {f['missed']} were missed and repeated in this run"
+        words = f"study: {f['trials']} of {f['expected']} trials done, {f['missed']} missed and repeated in this run"
         if self.errors_ms:
-            words += f"; asynchrony was off by {f['asynchrony_error_p50_ms']:.2f} ms (median), {f['asynchrony_error_p95_ms']:.2f} ms (95 %)"
+            words += f"; error of the asynchrony: {f['asynchrony_error_p50_ms']:.2f} ms (median), {f['asynchrony_error_p95_ms']:.2f} ms (95 %)"
         return words + f"; in {self.folder}"

@@ -1,12 +1,12 @@
-"""A simulated participant on the live cluster: he hears the samples of audio.wav, feels the ticks and sees the frames, and answers as a
-psychometric function says of what he perceived. Everything that he answers is marked observer=simulated."""
+"""A simulated participant on the live cluster: perceives audio samples, haptic ticks and video frames, and answers by a psychometric function of
+the perceived stimulus. All answers are marked observer=simulated."""
 
 from tactus.psychophysics import observers
 from tactus.study.ear import Ear
 from tactus.study.eye import Eye
 from tactus.study.skin import Skin
 
-UNPERCEIVED = {"audio": "the sound of the hit is not in the samples", "visual": "the frame that shows the hit first was not seen",
+UNPERCEIVED = {"audio": "the sound of the hit is not in the samples", "visual": "the first frame that shows the hit was not received",
                "haptic": "the vibration of the hit is not in the ticks"}
 
 
@@ -18,8 +18,7 @@ class Participant:
                        "haptic": lambda o: skin.onset_ns(o.times_ns["haptic"])}
 
     def perceived_ms(self, observed):
-        """(asynchrony of what was really heard, felt and seen, ""), or (None, what of it was not perceived). Of warmth, which has no onset, it is the
-        tick that its sense reports."""
+        """(perceived asynchrony in ms, ""), or (None, reason why it was not perceived). Warmth has no onset; its reported time is used."""
         times = {}
         for sense, reported_ns in observed.times_ns.items():
             times[sense] = self.organs[sense](observed) if sense in self.organs else reported_ns
@@ -29,8 +28,8 @@ class Participant:
         return (b - a) * 1e-6, ""
 
     def says_yes(self, trial, attempt, level, observed):
-        """Of a synchrony: together; of an order: the first sense came first; of two intervals: he has found the degraded one. Of stiffness he judges the
-        two that he felt, and the level is nothing to him."""
+        """Whether the answer is yes: together (synchrony), the first sense first (order), or the degraded interval found (two_interval). An observer of
+        stiffness judges the two felt stiffnesses and ignores the level."""
         observer = self.study.observer(trial.condition)
         seed = [self.seed, len(self.name), *self.name.encode(), trial.number, attempt]
         if observer.function in observers.PERCEPTS:

@@ -1,16 +1,16 @@
-"""Feels: in which tick of the hand a hit began to vibrate, by the forces of TOOL_STATE."""
-FELT_WITHIN_S = 0.5   # a tick tells of itself at once
-NEAR_NS = 25_000_000  # about the expected tick, as the ear
+"""Haptic perception of a simulated participant: tick in which the vibration of a hit began, from the forces in TOOL_STATE."""
+PULSE_TIMEOUT_S = 0.5  # pulses arrive without delay
+NEAR_NS = 25_000_000   # around the expected tick, as for the ear
 
 
 class Skin:
-    """Feels the pulses that a Lead keeps."""
+    """Searches the pulses that a Lead stores."""
 
     def __init__(self, lead):
         self.lead = lead
 
     def onset_ns(self, expected_ns):
-        """The tick nearest to the expected one in which a vibration began, host time; None: none did."""
+        """Time of the vibration onset nearest to the expected time, host time in ns; None: no onset there."""
         near = lambda: [at_ns for at_ns, _ in self.lead.pulses if abs(at_ns - expected_ns) <= NEAR_NS]
-        self.lead.wait_for(near, FELT_WITHIN_S)
+        self.lead.wait_for(near, PULSE_TIMEOUT_S)
         return min(near(), key=lambda at_ns: abs(at_ns - expected_ns), default=None)

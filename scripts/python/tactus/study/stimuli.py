@@ -1,21 +1,20 @@
-"""What happens in a trial on the live cluster: the profile is in force everywhere, the stimulus comes, and what was really presented is
-read back."""
+"""Stimuli of a trial on the live cluster: puts the profile in force, triggers a tap or press, and reads the measured presentation times."""
 import dataclasses
 import random
 
 import numpy as np
 
-IN_FORCE_WITHIN_S = 5.0      # health comes ten times a second; longer, and a sense is stuck
-FOREPERIOD_S = (0.3, 0.7)    # from when all is ready to the stimulus, drawn: it cannot be awaited to the tenth of a second (design)
-SETTLES_S = 0.2              # after a profile has changed, what was on its way under the one before has come out (design)
-REPORTED_WITHIN_S = 1.5      # a sense reports twice, 20 ms apart, once it has presented
-PART = {"haptic": "transient"}  # what answers a hit when it is due; the push of a surface never waits
+IN_FORCE_TIMEOUT_S = 5.0     # health arrives at 10 Hz; after this time a sense is considered stuck
+FOREPERIOD_S = (0.3, 0.7)    # range of the random time before the stimulus, which makes its onset unpredictable (design)
+SETTLES_S = 0.2              # after a change of the profile, until messages under the previous profile have been presented (design)
+REPORT_TIMEOUT_S = 1.5       # a sense reports twice, 20 ms apart, after it has presented
+PART = {"haptic": "transient"}  # the part of a hit that is scheduled; the contact force of a surface is never delayed
 
 
 @dataclasses.dataclass
 class Observed:
-    """missed: why the apparatus did not do what was wanted; "": it did. times_ns: {modality: when}, uncertainties_ns likewise. soa_ms of the pair,
-    uncertainty_ms: what it may be wrong by. stiffnesses_N_m: felt in each interval of a press."""
+    """Measured result of a stimulus. missed: reason why the apparatus missed its tolerance; "": it did not. times_ns: {modality: presentation time},
+    uncertainties_ns likewise. soa_ms: asynchrony of the pair; uncertainty_ms: its uncertainty. stiffnesses_N_m: felt stiffness in each interval."""
     missed: str = ""
     event: str = ""
     times_ns: dict = dataclasses.field(default_factory=dict)
@@ -24,7 +23,7 @@ class Observed:
     uncertainty_ms: float = None
     stiffnesses_N_m: tuple = ()
     reached_N: float = None
-    sensed_ms: float = None  # what a simulated participant perceived of it
+    sensed_ms: float = None  # asynchrony that a simulated participant perceived
     row: dict = dataclasses.field(default_factory=dict)
 
     def words(self):
@@ -36,20 +35,20 @@ def wait(lead, seconds):
 
 
 def ready(lead, profile):
-    """"" when the profile is in force everywhere, else why it is not."""
-    if not lead.put_in_force(profile, IN_FORCE_WITHIN_S):
-        return f"the profile was not in force in {', '.join(lead.missing()) or 'any sense'} after {IN_FORCE_WITHIN_S:g} s"
+    """"" if the profile is in force in every sense, else the reason."""
+    if not lead.put_in_force(profile, IN_FORCE_TIMEOUT_S):
+        return f"the profile was not in force in {', '.join(lead.missing()) or 'any sense'} after {IN_FORCE_TIMEOUT_S:g} s"
     wait(lead, SETTLES_S)
     return ""
 
 
 def first_hit(lead, known):
-    """The first hit that is none of the known events; None: there is none yet."""
+    """The first hit that is not among the known events; None: none yet."""
     return next((e for i, e in lead.events.items() if i not in known and e["kind"] == "hit"), None)
 
 
 def tap(lead, study, trial, seed):
-    """One tap under the trial's profile."""
+    """One tap under the trial's profile; returns an Observed."""
     senses = trial.condition.senses
     missed = ready(lead, study.profile(trial.condition, trial.level))
     if missed:
@@ -58,9 +57,9 @@ def tap(lead, study, trial, seed):
     known = set(lead.events)
     if study.stimulus.by == "apparatus":
         lead.order(tap={"depth_m": study.stimulus.depth_m})
-    longest_s = study.base_delay_ms / 1e3 + abs(trial.level or 0) / 1e3 + REPORTED_WITHIN_S
+    longest_s = study.base_delay_ms / 1e3 + abs(trial.level or 0) / 1e3 + REPORT_TIMEOUT_S
     if not lead.wait_for(lambda: first_hit(lead, known) is not None, longest_s if study.stimulus.by == "apparatus" else 3600):
-        return Observed(missed="the tap made no hit")
+        return Observed(missed="the tap caused no hit")
     event = first_hit(lead, known)["event"]
     report = lambda sense: lead.presented.get((event, sense, PART.get(sense, "whole")))
     lead.wait_for(lambda: all(report(s) for s in senses), longest_s)
@@ -68,7 +67,7 @@ def tap(lead, study, trial, seed):
     for sense in senses:
         r = report(sense)
         if r is None or r["at_ns"] is None:
-            return dataclasses.replace(observed, missed=f"{sense} did not present it" + (f" ({r['outcome'].replace('_', ' ')})" if r else ""))
+            return dataclasses.replace(observed, missed=f"{sense} did not present the hit" + (f" ({r['outcome'].replace('_', ' ')})" if r else ""))
         observed.times_ns[sense], observed.uncertainties_ns[sense] = r["at_ns"], r["uncertainty_ns"]
     a, b = senses
     observed.soa_ms = (observed.times_ns[b] - observed.times_ns[a]) * 1e-6
@@ -76,13 +75,14 @@ def tap(lead, study, trial, seed):
     error = observed.soa_ms - trial.level
     if abs(error) > study.tolerance_ms:
         observed.missed = f"the asynchrony was {observed.soa_ms:.1f} ms instead of {trial.level:g} ms, more than {study.tolerance_ms:g} ms off"
-    wait(lead, 0.3)  # the hand is back, and what rings has died away
+    wait(lead, 0.3)  # until the hand is back and the ringing has decayed
     return observed
 
 
 def felt_stiffness(samples):
-    """N/m of one press: the slope of force over depth, by least squares, over samples (at_ns, z_m, force_N) in which anything is felt; None: nothing was."""
-    data = np.array([s for s in samples if s[2] > 0.02], dtype=float).reshape(-1, 3)  # below what a fingertip notices, and the device's own noise (design)
+    """Stiffness of one press, N/m: least-squares slope of force over depth, of samples (at_ns, z_m, force_N) with a noticeable force; None: there are
+    too few."""
+    data = np.array([s for s in samples if s[2] > 0.02], dtype=float).reshape(-1, 3)  # N; about the noise of the device, below the threshold of a fingertip (design)
     if len(data) < 10 or np.ptp(data[:, 1]) < 1e-4:
         return None
     depth = data[:, 1].max() - data[:, 1]
@@ -90,7 +90,7 @@ def felt_stiffness(samples):
 
 
 def press(lead, study, trial, seed):
-    """Two presses, one of them under the trial's profile, the other under the base alone."""
+    """Two presses: one under the trial's profile, the other under the base alone. Returns an Observed."""
     stiffnesses, strongest = [], 0.0
     for interval in (0, 1):
         level = trial.level if interval == trial.degraded_interval else None
@@ -103,7 +103,7 @@ def press(lead, study, trial, seed):
         s = study.stimulus
         lead.order(press={"depth_m": s.depth_m, "period_s": s.period_s, "times": s.times})
         if not lead.wait_for(lambda: lead.moved, s.period_s * s.times + 5):
-            return Observed(missed="the hand did not come back from the press")
+            return Observed(missed="the hand did not return from the press")
         stiffness = felt_stiffness(lead.felt)
         if stiffness is None:
             return Observed(missed=f"nothing was felt in interval {interval + 1}")

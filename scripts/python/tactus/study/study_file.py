@@ -1,4 +1,4 @@
-"""The study file: what is varied, what is asked, in which order. Checked whole before anything starts."""
+"""The study file: conditions, questions, procedure and blocks. The whole file is checked before anything starts."""
 import dataclasses
 import hashlib
 import itertools
@@ -16,25 +16,25 @@ SCHEMA = pathlib.Path(__file__).with_name("study.xsd")
 SHIPPED = SCRIPTS / "studies"
 LARGEST_BYTES = 1_000_000
 LONGEST_TEXT, LONGEST_CHOICE = 600, 40  # lcmtypes/types/control/question_t.lcm
-MOST_CONDITIONS = 2000
-MOST_LEVELS = 100_000  # of a pair; procedure_element.MOST_TRIALS, each once
+MAX_CONDITIONS = 2000
+MAX_LEVELS = 100_000  # of a pair; equals procedure_element.MAX_TRIALS with one trial a level
 YES_OR_NO = ("synchrony", "order", "two_interval")  # answers that a psychometric function describes
 QUESTIONS = {
     "synchrony": ("Did {a} and {b} come together?", ("together", "apart")),
     "order": ("Which came first?", ("{a}", "{b}")),
     "two_interval": ("In which of the two was something wrong?", ("the first", "the second")),
     "rating": ("How good was that?", ()), "matching": ("How much was it?", ()), "performance": ("", ())}
-JUDGED = {"tap": "asynchrony", "press": "factor"}  # kinds of conditions of a task
-SOFTER = "Which of the two felt softer?"  # of two presses, where the study asks for their stiffness
-# What touch learns of its channel it forgets within seconds (LoopDelay in haptic_node/rendering/coupling.h), a delay of its output alone at once: the press after one
-# that was degraded so would be soft of it, too.
-SLOW_TO_FORGET = ("network_delay", "jitter", "loss", "rate", "deadband")
+JUDGED = {"tap": "asynchrony", "press": "factor"}  # kind of condition that each task allows
+SOFTER = "Which of the two felt softer?"  # default question for two presses of a study of stiffness
+# The haptic node adapts its coupling to these operators of its input and recovers within seconds (LoopDelay in haptic_node/rendering/coupling.h). A degraded
+# press would therefore also soften the next press. A delay of the output ends at once.
+SLOW_RECOVERY = ("network_delay", "jitter", "loss", "rate", "deadband")
 SPOKEN = {"haptic": "touch", "audio": "sound", "visual": "picture", "thermal": "warmth"}
 
 
 @dataclasses.dataclass(frozen=True)
 class Item:
-    """A question of a questionnaire. choices, or a number from lowest to highest."""
+    """A question of a questionnaire, answered by one of choices, or by a number from lowest to highest in steps."""
     id: str
     text: str
     choices: tuple
@@ -45,8 +45,8 @@ class Item:
 
 @dataclasses.dataclass(frozen=True)
 class Stimulus:
-    """by: apparatus (its hand strikes when the trial wants it, from `rest_m`, `above_m` over the surface, `depth_m` into it; a press goes down and up
-    `times` times in `period_s`) or participant. limit_s: of a game."""
+    """by: apparatus or participant. The hand of the apparatus starts at `rest_m`, `above_m` over the surface, and taps or presses `depth_m` into the
+    surface; a press goes down and up `times` times, each in `period_s`. limit_s: time limit of a game."""
     by: str = "apparatus"
     rest_m: tuple = (0.0, 0.0, 0.04)
     above_m: float = 0.032
@@ -58,8 +58,8 @@ class Stimulus:
 
 @dataclasses.dataclass(frozen=True)
 class Observer:
-    """A simulated participant in a condition. function: psychometric, of the level; or one of observers.PERCEPTS, of what he felt. sources: {parameter:
-    where its value is from}."""
+    """A simulated participant in a condition. function: a psychometric function of the level, or one of observers.PERCEPTS, which judge the felt
+    stiffness. sources: {parameter: source of its value}."""
     function: str
     params: dict
     sources: dict
@@ -70,32 +70,32 @@ class Study:
     name: str
     path: pathlib.Path
     sha256: str         # of the file
-    scene: pathlib.Path  # None where it was not looked for
+    scene: pathlib.Path  # None: not searched for
     task: str           # tap, press or game
     seed: int
     instructions: tuple
-    base_delay_ms: float  # of every sense, under the policy experiment: so that each can be early
-    base: tuple           # elements of the profile that is always there
+    base_delay_ms: float  # common delay of all senses under the policy experiment; it permits negative asynchronies
+    base: tuple           # elements of the profile that apply in every trial
     conditions: tuple     # of conditions.Condition
-    procedure: dict       # as scripts/python/tactus/psychophysics/procedures.py reads it, but for the levels of each condition
+    procedure: dict       # specification for tactus/psychophysics/procedures.py, without the levels of each condition
     response: str
     question: str
     choices: tuple
     number: tuple         # (lowest, highest, step) of a rating or matching; ()
-    of: str               # the property that is matched, or judged of two presses; ""
+    of: str               # the property that is matched, or compared between two presses; "": none
     stimulus: Stimulus
     questionnaire: tuple
     questionnaire_at: str  # end or block
     blocks: int
     break_s: float
     counterbalance: str
-    tolerance_ms: float   # a trial whose asynchrony misses what was wanted by more is repeated
-    repeats: int          # so often at the most
+    tolerance_ms: float   # a trial whose asynchrony differs by more from the requested one is repeated
+    repeats: int          # largest number of repetitions of a trial
     margin: dict          # {"time": share, "success": share}
     observers: dict       # {condition id, or "": Observer}
 
     def profile(self, condition, level):
-        """XML of the profile of a trial."""
+        """XML of the degradation profile of a trial; level None: the base alone."""
         name = f"{self.name}: {condition.id}" + ("" if level is None else f" at {level}")
         return f"<profile name={quoteattr(name)} seed=\"{self.seed}\">" + "".join((*self.base, *condition.elements(level))) + "</profile>"
 
@@ -104,7 +104,7 @@ class Study:
 
 
 def find(text):
-    """A file, or the name of a shipped one."""
+    """Path of a study file; `text` is a path, or the name of a shipped study."""
     path = pathlib.Path(text)
     if not path.is_file() and path.name == text:
         for name in (text, text + ".xml"):
@@ -114,9 +114,9 @@ def find(text):
 
 
 def read(text, with_scene=True):
-    """Study of the file, or of the shipped one of that name. with_scene: False for a copy beside the results, whose scene lies where the file came
-    from. Raises Refusal, with the line."""
-    from lxml import etree  # only who reads a file needs it
+    """Study of a file, or of the shipped study of that name. with_scene: False for a copy beside the results, which has no scene beside it. Raises
+    Refusal with the line."""
+    from lxml import etree  # slow to import
     path = find(str(text))
     try:
         data = path.read_bytes()
@@ -124,19 +124,19 @@ def read(text, with_scene=True):
         shipped = ", ".join(sorted(p.stem for p in SHIPPED.glob("*.xml")))
         raise Refusal(f"{text}: cannot be read ({error.strerror}); give a study file, or one of {shipped}") from None
     if len(data) > LARGEST_BYTES:
-        raise Refusal(f"{text}: is longer than {LARGEST_BYTES} bytes; that is no study file")
+        raise Refusal(f"{text}: is longer than {LARGEST_BYTES} bytes; give a study file")
     try:
         root = etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True))
     except etree.XMLSyntaxError as error:
         raise Refusal(f"{text}:{error.lineno}: {error.msg.splitlines()[0]}") from None
     if root.getroottree().docinfo.internalDTD is not None:
-        raise Refusal(f"{text}:1: has a <!DOCTYPE>, whose entities and defaults a study file does not use; leave it away, and write out what it stands for")
+        raise Refusal(f"{text}:1: has a <!DOCTYPE>, but a study file uses no entities and no defaults; remove it and write its entities out")
     schema = etree.XMLSchema(etree.parse(str(SCHEMA)))
     if not schema.validate(root):
         first = schema.error_log[0]
         for e in root.iter("instructions", "question", "choice", "text"):
             if e.sourceline == first.line and (letter := next((c for c in e.text or "" if not c.isascii()), None)):
-                raise Refusal(f"{text}:{first.line}: a text of {e.tag} is ASCII, which {letter!r} is not")
+                raise Refusal(f"{text}:{first.line}: the text of {e.tag} contains {letter!r}; use ASCII only")
         raise Refusal(f"{text}:{first.line}: {first.message.splitlines()[0]}")
     return Reading(text, path, root, hashlib.sha256(data).hexdigest(), with_scene).study()
 
@@ -158,7 +158,7 @@ class Reading:
     def words(self, element, longest=LONGEST_TEXT):
         text = " ".join((element.text or "").split())
         if not text or len(text) > longest:
-            self.refuse(element, f"a text of {element.tag} has 1 to {longest} characters, this one {len(text)}")
+            self.refuse(element, f"the text of {element.tag} has {len(text)} characters; write 1 to {longest}")
         return text
 
     def sense(self, element, name):
@@ -172,14 +172,14 @@ class Reading:
         kind = response.get("kind", "synchrony") if response is not None else "synchrony"
         task = root.get("task")
         if (task == "game") != (kind == "performance"):
-            self.refuse(root, "a game is answered by performance, and nothing else is; set task=\"game\" and <response kind=\"performance\"/>, or neither")
+            self.refuse(root, "task=\"game\" and <response kind=\"performance\"/> belong together; set both, or neither")
         found = self.conditions(find("conditions"), kind)
         wanted = JUDGED.get(task)
         if wanted and any(c.kind != wanted for c in found):
-            self.refuse(find("conditions"), f"what is judged of a {task} is of <{wanted}> alone; that of a tap is <asynchrony>, that of a press <factor>")
+            self.refuse(find("conditions"), f"a condition is not <{wanted}>; a tap takes <asynchrony> only, a press <factor> only")
         question, choices, number = self.asked(response, kind, found)
         if kind == "two_interval" and self.of(response, kind):
-            self.forgotten_at_once(find("conditions"), found)
+            self.check_recovery(find("conditions"), found)
         blocks, tolerance, margin, base = find("blocks"), find("tolerance"), find("margin"), find("base")
         return Study(
             name=root.get("name"), path=self.path, sha256=self.sha256, scene=self.scene() if self.with_scene else None, task=task, seed=int(root.get("seed", "1")),
@@ -202,7 +202,7 @@ class Reading:
         for path in (self.path.parent / text, SCENES / text):
             if path.is_file():
                 return path.resolve()
-        self.refuse(self.root, f"the scene {text} is not a file beside the study, nor in sim_node/scenes")
+        self.refuse(self.root, f"the scene {text} is neither a file beside the study nor in sim_node/scenes; give another scene=")
 
     def element(self, e):
         self.sense(e, e.get("modality", ""))
@@ -214,15 +214,15 @@ class Reading:
         self.distinct(e, levels)
         modality, only = self.sense(e, e.get("modality")), quantities.OUTPUT_OF.get(operator)
         if only not in (None, modality):
-            self.refuse(e, f"{modality} has no {operator}, which only {only} has")
+            self.refuse(e, f"{modality} has no operator {operator}; only {only} has it")
         low = [l for l in levels if 0 < l < quantities.SMALLEST.get(operator, 0)]
         if low:
-            self.refuse(e, f"a level of {operator} is 0 or at least {quantities.SMALLEST[operator]:g} {quantities.OPERATORS[operator][0]}, not {low[0]:g}")
+            self.refuse(e, f"the level {low[0]:g} of {operator} is too small; give 0, or at least {quantities.SMALLEST[operator]:g} {quantities.OPERATORS[operator][0]}")
         return conditions.Factor(modality, operator), levels
 
     def distinct(self, e, levels):
         if not levels or len(set(levels)) < len(levels):
-            self.refuse(e, "levels are one or more, and each stands there once")
+            self.refuse(e, "levels= is empty or repeats a level; give one or more levels, each once")
 
     def conditions(self, all_of, kind):
         found = []
@@ -240,9 +240,9 @@ class Reading:
             elif e.tag == "pair":
                 factors, levels = zip(*(self.factor(f) for f in e))
                 if factors[0] == factors[1]:
-                    self.refuse(e, "a pair is of two different factors")
-                if len(levels[0]) * len(levels[1]) > MOST_LEVELS:
-                    self.refuse(e, f"a pair of {len(levels[0])} and {len(levels[1])} levels has more than {MOST_LEVELS}")
+                    self.refuse(e, "both factors of a pair are the same; give two different factors")
+                if len(levels[0]) * len(levels[1]) > MAX_LEVELS:
+                    self.refuse(e, f"a pair of {len(levels[0])} and {len(levels[1])} levels has more than {MAX_LEVELS} combinations; give fewer levels")
                 one = conditions.Condition(" x ".join(f.words() for f in factors), "pair", factors=factors, levels=tuple(itertools.product(*levels)))
             elif e.tag == "remove":
                 modality = self.sense(e, e.get("modality"))
@@ -250,20 +250,20 @@ class Reading:
             else:
                 one = conditions.Condition("nothing degraded", "nothing")
             if kind in ("synchrony", "order") and one.kind != "asynchrony":
-                self.refuse(e, f"{kind} is judged of two senses; give <asynchrony between=\"audio visual\" levels=\"-100ms 0ms 100ms\"/>")
+                self.refuse(e, f"a judgement of {kind} compares two senses; give <asynchrony between=\"audio visual\" levels=\"-100ms 0ms 100ms\"/>")
             if kind == "two_interval" and one.kind != "factor":
-                self.refuse(e, "of two intervals one is degraded by a factor; give <factor .../>")
+                self.refuse(e, "two_interval compares an interval degraded by a factor with one that is not; give <factor .../>")
             if kind != "performance" and one.kind in ("remove", "nothing"):
-                self.refuse(e, f"<{e.tag}> is a condition of <response kind=\"performance\"/> only")
+                self.refuse(e, f"<{e.tag}> is a condition of <response kind=\"performance\"/> only; remove it, or change the response")
             found += conditions.fixed_ones(one) if kind == "performance" else [one]
             if found[-1].id in (c.id for c in found[:-1]):
-                self.refuse(e, f"the condition {found[-1].id} stands there twice")
-            if len(found) > MOST_CONDITIONS:
-                self.refuse(e, f"these are more than {MOST_CONDITIONS} conditions")
+                self.refuse(e, f"the condition {found[-1].id} occurs twice; remove one")
+            if len(found) > MAX_CONDITIONS:
+                self.refuse(e, f"there are more than {MAX_CONDITIONS} conditions; give fewer, or fewer levels")
         return found
 
     def asked(self, e, kind, found):
-        """(question, choices, number) with what is usual where the file is silent."""
+        """(question, choices, number), with defaults for absent elements."""
         text, choices = QUESTIONS[kind]
         given = [self.words(c, LONGEST_CHOICE) for c in e.findall("choice")] if e is not None else []
         if kind == "two_interval" and self.of(e, kind):
@@ -271,32 +271,32 @@ class Reading:
         if e is not None and e.find("question") is not None:
             text = self.words(e.find("question"))
         if given and kind in (*YES_OR_NO, "performance") and len(given) != len(choices):
-            self.refuse(e, f"an answer to {kind} has {len(choices)} choices")
+            self.refuse(e, f"{kind} takes {len(choices)} choices, but the file gives {len(given)}; give {len(choices)} <choice>, or none")
         number = ()
         if kind in ("rating", "matching"):
             if e.get("lowest") is None or e.get("highest") is None or e.get("step") is None:
                 if len(given) < 2 or kind == "matching":
-                    self.refuse(e, f"a {kind} needs lowest=, highest= and step=" + ("" if kind == "matching" else ", or two to nine <choice>"))
+                    self.refuse(e, f"{kind} needs lowest=, highest= and step=" + ("" if kind == "matching" else ", or two to nine <choice>"))
             else:
                 number = tuple(float(e.get(n)) for n in ("lowest", "highest", "step"))
                 if not (number[0] < number[1] and 0 < number[2] <= number[1] - number[0]):
-                    self.refuse(e, "lowest= is below highest=, and step= is above 0 and no larger than their difference")
+                    self.refuse(e, "lowest= must be below highest=, and step= above 0 and at most their difference")
         if kind == "matching" and e.get("of") is None:
-            self.refuse(e, "a matching says of what: of=\"stiffness\" or of=\"temperature\"")
+            self.refuse(e, "matching needs a property; give of=\"stiffness\" or of=\"temperature\"")
         return text, tuple(given or choices), number
 
     def of(self, e, kind):
-        """What the answers are about, where the file says it."""
+        """The property that the answers describe; "": the file names none."""
         of = e.get("of", "") if e is not None else ""
         if kind == "two_interval" and of not in ("", "stiffness"):
-            self.refuse(e, f"of two presses it is the stiffness that is judged, not {of}; write of=\"stiffness\", or leave it away")
+            self.refuse(e, f"two presses are compared by stiffness, not by {of}; write of=\"stiffness\", or remove of=")
         return of
 
-    def forgotten_at_once(self, e, found):
-        """Refuses what would still be felt in the press that is compared with it."""
-        slow = next((f for c in found for f in c.factors if f.modality == "haptic" and f.operator in SLOW_TO_FORGET), None)
+    def check_recovery(self, e, found):
+        """Refuses operators that would still affect the other press of a comparison."""
+        slow = next((f for c in found for f in c.factors if f.modality == "haptic" and f.operator in SLOW_RECOVERY), None)
         if slow is not None:
-            self.refuse(e, f"touch gets over {slow.operator} within seconds only, so that the other press would feel of it, too; the stiffness of two presses is judged under a delay")
+            self.refuse(e, f"touch recovers from {slow.operator} within seconds only, so that the other press would be softer too; compare the stiffness of two presses under a delay")
 
     def stimulus(self, e):
         if e is None:
@@ -305,14 +305,14 @@ class Reading:
         rest = tuple(float(x) for x in e.get("rest", "0 0 0.04").split())
         number = lambda name, default, most: self.within(e, name, float(e.get(name, default)), most)
         if len(rest) != 3:
-            self.refuse(e, "rest= is three numbers: x y z, m")
+            self.refuse(e, "rest= needs three numbers: x y z, m")
         return Stimulus(e.get("by", usual.by), rest, number("above", usual.above_m, 1), number("depth", usual.depth_m, 0.1),
                         self.quantity(e, "period", quantities.OPERATORS["delay"], usual.period_s * 1e3) / 1e3, int(e.get("times", usual.times)),
                         self.quantity(e, "limit", ("s", {"s": 1.0}, 1, 3600), usual.limit_s))
 
     def within(self, e, name, value, most):
         if not 0 <= value <= most:
-            self.refuse(e, f"{name}={value:g} is not from 0 to {most} m")
+            self.refuse(e, f"{name}={value:g} is not from 0 to {most}; give a length in m")
         return value
 
     def questionnaire(self, e):
@@ -321,12 +321,12 @@ class Reading:
             choices = tuple(self.words(c, LONGEST_CHOICE) for c in i.findall("choice"))
             number = [i.get(n) for n in ("lowest", "highest", "step")]
             if not (len(choices) >= 2 and number == [None] * 3 or None not in number and len(choices) in (0, 2)):
-                self.refuse(i, "an item has two to nine <choice>, or lowest=, highest= and step= (and then two <choice> name its ends, or none)")
+                self.refuse(i, "an item needs two to nine <choice>, or lowest=, highest= and step= (then two <choice> may name its ends)")
             values = [float(n) for n in number] if None not in number else [0.0] * 3
             if None not in number and not (values[0] < values[1] and 0 < values[2] <= values[1] - values[0]):
-                self.refuse(i, "lowest= is below highest=, and step= is above 0 and no larger than their difference")
+                self.refuse(i, "lowest= must be below highest=, and step= above 0 and at most their difference")
             if i.get("id") in (known.id for known in items):
-                self.refuse(i, f"the item {i.get('id')} stands there twice")
+                self.refuse(i, f"the item {i.get('id')} occurs twice; rename one")
             items.append(Item(i.get("id"), self.words(i.find("text")), choices, *values))
         return tuple(items)
 
@@ -341,25 +341,25 @@ class Reading:
                 self.refuse(e, f"there is no function {name}; choose from {', '.join((*functions.FUNCTIONS, *observers.PERCEPTS))}")
             params = {p.get("name"): float(p.get("value")) for p in e}
             if set(params) != set(function.parameters) or len(params) < len(e):
-                self.refuse(e, f"{name} has the parameters {', '.join(function.parameters)}, each once")
+                self.refuse(e, f"{name} needs the parameters {', '.join(function.parameters)}, each once")
             if name in observers.PERCEPTS:
                 self.percept(e, name, params, kind)
             elif kind == "two_interval" and any(f.operator in quantities.FALLING for c in found if of in ("", c.id) for f in c.factors):
-                self.refuse(e, f"{name} rises with the level, but less of {', '.join(quantities.FALLING)} is worse; leave its <observer> away")
+                self.refuse(e, f"{name} rises with the level, but a lower {', '.join(quantities.FALLING)} is a stronger degradation; remove its <observer>")
             elif function.dimensions == 1 and kind in YES_OR_NO:
                 with np.errstate(all="ignore"):
                     p = [function.p(c.levels, **params) for c in found if c.levels and of in ("", c.id)]
                 if not all(np.all((x >= 0) & (x <= 1)) for x in p):
-                    self.refuse(e, "with these parameters there is a level without a probability from 0 to 1; spreads are above 0, and guess and lapse together at most 1")
+                    self.refuse(e, "these parameters give a probability outside 0 to 1 at some level; set spreads above 0, and guess and lapse to at most 1 together")
             elif kind in YES_OR_NO:
-                self.refuse(e, f"{name} is of two levels, and a {kind} has one")
+                self.refuse(e, f"{name} takes two levels, but {kind} has one; choose another function")
             all_of[of] = Observer(name, params, {p.get("name"): p.get("source") for p in e})
         return all_of
 
     def percept(self, e, name, params, kind):
-        """Refuses an observer who is told what he felt and is asked for something else."""
+        """Refuses an observer of felt stiffness in a study that does not compare stiffness."""
         if kind != "two_interval" or not self.of(self.root.find("response"), kind):
-            self.refuse(e, f"{name} tells which of two presses felt softer; ask for that by <response kind=\"two_interval\" of=\"stiffness\">")
+            self.refuse(e, f"{name} judges which of two presses felt softer; ask for that with <response kind=\"two_interval\" of=\"stiffness\">")
         try:
             observers.PERCEPTS[name](**params, seed=1)
         except ValueError as error:

@@ -1,4 +1,4 @@
-"""Games that were played before go into a new sweep: of a table that an earlier one left, with fewer games or other levels."""
+"""Reuses the games of an earlier sweep, which had fewer games or other levels, in a new sweep."""
 import lzma
 import pathlib
 import tempfile
@@ -9,7 +9,7 @@ from tactus.sweep import virtual_games
 from tactus.sweep.chunk_file import ChunkFile
 from tactus.sweep.player import Player
 
-SAME = ("missed", "success", "completion_time_s", "errors", "peak_force_n", "path_m")  # what a game comes to
+SAME = ("missed", "success", "completion_time_s", "errors", "peak_force_n", "path_m")  # columns with the result of a game
 
 
 def read(path):
@@ -24,13 +24,13 @@ def read(path):
                 plain.write_bytes(lzma.decompress(path.read_bytes()))
                 rows = trial_table.read(plain)
     except (lzma.LZMAError, ValueError) as error:
-        raise Refusal(f"{path}: holds no table of games ({error})") from None
+        raise Refusal(f"{path}: holds no table of games ({error}); give games.csv or .csv.xz of a sweep") from None
     return {(row["condition"], row["seed"]): row for row in rows if row["task"] == "game"}
 
 
 def adopt(folder, table):
-    """How many games of the table are games of this sweep too: their rows go into its chunks. The first one of each condition is played anew, and
-    must come to the same to the digit: else another build would be mixed with this one. Raises Refusal, OSError."""
+    """Copies the rows of the table that belong to this sweep into its chunks; returns their number. Replays the first game of each condition; its result must
+    be identical, since another build may give other games. Raises Refusal, OSError."""
     known, seen, count = read(table), set(), 0
     with Player(folder.study.scene) as player:
         for number, chunk in enumerate(folder.chunks):
@@ -42,9 +42,9 @@ def adopt(folder, table):
                 row = {**row, "trial": game.number}
                 if game.condition.id not in seen:
                     seen.add(game.condition.id)
-                    again = virtual_games.row(folder.study, game, player.told(virtual_games.asked(folder.study, game)))
+                    again = virtual_games.row(folder.study, game, player.play(virtual_games.request(folder.study, game)))
                     if [row[k] for k in ("profile_sha256", *SAME)] != [again.get(k) for k in ("profile_sha256", *SAME)]:
-                        raise Refusal(f"{table}: its game {row['condition']}, seed {row['seed']}, comes to something else with this build; leave --from away")
+                        raise Refusal(f"{table}: its game {row['condition']}, seed {row['seed']}, has another result with this build; remove --from")
                 rows.append(row)
             if rows:
                 file = ChunkFile(folder.file(number))

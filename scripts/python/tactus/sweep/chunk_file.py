@@ -1,4 +1,4 @@
-"""The rows of one chunk of games: a file that only grows, line by line, so that whoever dies loses nothing that was played."""
+"""The rows of one chunk of games: an append-only file, so that a killed job loses no finished game."""
 import csv
 import fcntl
 import io
@@ -12,7 +12,7 @@ class Busy(Exception):
 
 
 class ChunkFile:
-    """Holds the file for as long as it lives. Raises Busy, OSError."""
+    """Locks the file until close(). Raises Busy, OSError."""
 
     def __init__(self, path):
         self.file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
@@ -22,7 +22,7 @@ class ChunkFile:
             os.close(self.file)
             raise Busy from None
         whole = whole_lines(os.pread(self.file, os.fstat(self.file).st_size, 0))
-        os.ftruncate(self.file, len(whole))  # of a line that was being written when its writer died nothing is kept
+        os.ftruncate(self.file, len(whole))  # removes an incomplete last line
         if not whole:
             os.write(self.file, line(trial_table.COLUMNS))
         self.done = {int(r["trial"]) for r in rows(whole)}
@@ -47,7 +47,7 @@ def line(fields):
 
 
 def whole_lines(data):
-    """Up to the end of the last line that has one. No field of ours holds a line break: what is told in words is one line."""
+    """The data up to the last line end. Fields of these tables contain no line break."""
     return data[:data.rfind(b"\r\n") + 2] if b"\r\n" in data else b""
 
 
@@ -56,7 +56,7 @@ def rows(data):
 
 
 def count(path):
-    """Games that a chunk's file holds, also while it grows."""
+    """Number of games in a chunk's file, also while it grows."""
     try:
         return max(0, whole_lines(path.read_bytes()).count(b"\r\n") - 1)
     except FileNotFoundError:

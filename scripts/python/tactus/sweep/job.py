@@ -1,9 +1,9 @@
-"""Plays chunks of games of a sweep: what each job of GNU parallel and each task of a Slurm array runs.
+"""Plays chunks of games of a sweep, as a job of GNU parallel or a task of a Slurm array.
 
-    tactus --module tactus.sweep.job FOLDER CHUNK...                     those
+    tactus --module tactus.sweep.job FOLDER CHUNK...                     these chunks
     tactus --module tactus.sweep.job FOLDER --of-array LIST.txt          every SLURM_ARRAY_TASK_COUNT-th line of the list, from SLURM_ARRAY_TASK_ID on
 
-What was played before is not played again. One process of bin/play_games plays all games of a chunk.
+Finished games are not played again. One process of bin/play_games plays all games of a chunk.
 """
 import os
 import pathlib
@@ -17,7 +17,7 @@ from tactus.sweep.sweep_folder import SweepFolder
 
 
 def play(folder, number):
-    """The games of a chunk that are not there yet. Raises Refusal, OSError."""
+    """Plays the missing games of a chunk. Raises Refusal, OSError."""
     try:
         file = ChunkFile(folder.file(number))
     except Busy:
@@ -25,7 +25,7 @@ def play(folder, number):
     try:
         with Player(folder.study.scene) as player:
             for game in (g for g in folder.chunks[number] if g.number not in file.done):
-                file.append(virtual_games.row(folder.study, game, player.told(virtual_games.asked(folder.study, game))))
+                file.append(virtual_games.row(folder.study, game, player.play(virtual_games.request(folder.study, game))))
     finally:
         file.close()
 

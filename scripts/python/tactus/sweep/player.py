@@ -1,4 +1,4 @@
-"""One process of bin/play_games, which plays games of a scene one after the other."""
+"""Client of bin/play_games, a process that plays games of a scene one after the other."""
 import json
 import subprocess
 import tempfile
@@ -10,7 +10,7 @@ PROGRAM = BIN / "play_games"
 
 
 class Player:
-    """With its process, for as long as the block lasts. Raises Refusal."""
+    """Context manager that starts and ends the process. Raises Refusal."""
 
     def __init__(self, scene):
         self.scene = scene
@@ -31,16 +31,16 @@ class Player:
             self.process.wait()
         self.scratch.cleanup()
 
-    def told(self, asked):
-        """What it tells of a game, from what it is asked; scripts/virtual_time/README.md says both. Raises Refusal when it has left."""
+    def play(self, request):
+        """Plays one game and returns its result; scripts/virtual_time/README.md describes request and result. Raises Refusal if the process has ended."""
         try:
-            self.process.stdin.write(json.dumps(asked) + "\n")
+            self.process.stdin.write(json.dumps(request) + "\n")
             self.process.stdin.flush()
             line = self.process.stdout.readline()
             if not line:
                 raise BrokenPipeError
         except BrokenPipeError:
             self.process.kill()
-            said = (self.process.communicate()[1].strip().splitlines() or ["it says nothing"])[-1]
-            raise Refusal(f"play_games has left before game {asked['game']}: {said}") from None
+            said = (self.process.communicate()[1].strip().splitlines() or ["no message"])[-1]
+            raise Refusal(f"play_games ended before game {request['game']}: {said}") from None
         return json.loads(line)

@@ -1,4 +1,4 @@
-"""Who plays the chunks of a sweep: GNU parallel on this machine, or a Slurm cluster."""
+"""Runners of the chunks of a sweep: GNU parallel on this machine, or a Slurm cluster."""
 import contextlib
 import ctypes
 import os
@@ -16,17 +16,17 @@ SETTLED = ("COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "OUT_OF_M
 
 def needed(program, package):
     if not shutil.which(program):
-        raise Refusal(f"there is no {program}; install it: apt install {package}")
+        raise Refusal(f"{program} is not installed; run apt install {package}")
 
 
 def die_with_parent():
-    """For Popen: the child ends when this process does, whatever ends it."""
+    """For Popen: the child gets SIGTERM when this process ends for any reason."""
     pr_set_pdeathsig = 1
     ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGTERM)
 
 
 class Parallel:
-    """On the cores of this machine. A chunk that fails does not keep the others from being played."""
+    """Plays chunks on the cores of this machine. A failed chunk does not stop the others."""
 
     def __init__(self, folder, chunks, jobs):
         needed("parallel", "parallel")
@@ -36,15 +36,15 @@ class Parallel:
                                         preexec_fn=die_with_parent)
 
     def poll(self):
-        """True when all is through."""
+        """True when all chunks are finished."""
         return self.process.poll() is not None
 
     def said(self):
         self.errors.seek(0)
-        return (self.errors.read().strip().splitlines() or ["without a word"])[-1]
+        return (self.errors.read().strip().splitlines() or ["no message"])[-1]
 
     def end(self):
-        with contextlib.suppress(ProcessLookupError):  # twice: parallel then ends what runs, too
+        with contextlib.suppress(ProcessLookupError):  # on the second SIGTERM parallel also ends running jobs
             for _ in range(2):
                 if self.process.poll() is None:
                     self.process.terminate()
@@ -56,7 +56,7 @@ class Parallel:
 
 
 class Slurm:
-    """As an array of jobs. TACTUS_BIN and PATH go with it; DIR and the repository must be where they are here."""
+    """Plays chunks as an array job, with TACTUS_BIN and PATH of this process. DIR and the repository must have the same paths on its nodes."""
 
     def __init__(self, folder, chunks, partition, size):
         for program in ("sbatch", "squeue", "scancel"):
@@ -70,20 +70,20 @@ class Slurm:
                  "--wrap", "exec " + shlex.join([*JOB, str(folder.path.absolute()), "--of-array", str(listed)])]
         done = subprocess.run(words, capture_output=True, text=True, check=False)
         if done.returncode != 0:
-            raise Refusal(f"sbatch refuses the jobs: {(done.stderr.strip().splitlines() or ['without a word'])[-1]}")
+            raise Refusal(f"sbatch refused the jobs: {(done.stderr.strip().splitlines() or ['no message'])[-1]}")
         self.job = done.stdout.strip().split(";")[0]
         self.over = False
 
     def poll(self):
-        """True when no task of the array waits or runs any more."""
+        """True when no task of the array is pending or running."""
         done = subprocess.run(["squeue", "--noheader", "--jobs", self.job, "--states=all", "--format=%T"], capture_output=True, text=True, check=False)
-        gone = done.returncode != 0 and "Invalid job id" in done.stderr  # it has been forgotten: long over
+        gone = done.returncode != 0 and "Invalid job id" in done.stderr  # Slurm has removed the finished job
         self.over = gone or done.returncode == 0 and all(state in SETTLED for state in done.stdout.split())
         return self.over
 
     def said(self):
         said = [line for file in sorted(self.folder.path.glob("slurm-*.txt")) for line in file.read_text(errors="replace").splitlines()]
-        return (said or ["without a word"])[-1]
+        return (said or ["no message"])[-1]
 
     def end(self):
         if not self.over:

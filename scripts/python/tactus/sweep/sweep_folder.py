@@ -1,4 +1,4 @@
-"""The folder of a sweep: the study as it was when the sweep began, what was asked for, a file for each chunk of games, the table."""
+"""The folder of a sweep: a copy of the study, the requested games, a file for each chunk of games, and the table."""
 import fcntl
 import hashlib
 import json
@@ -12,7 +12,7 @@ from tactus.sweep.virtual_games import games_of
 
 
 class SweepFolder:
-    """path: of an existing sweep. Raises Refusal when it is none."""
+    """path: of an existing sweep. Raises Refusal if it holds none."""
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
@@ -20,33 +20,33 @@ class SweepFolder:
             self.asked = json.loads((self.path / "sweep.json").read_text(encoding="utf-8"))
             self.games_each, study = int(self.asked["games"]), str(self.asked["study"])
         except (OSError, ValueError, KeyError, TypeError):
-            raise Refusal(f"{self.path}: holds no sweep that could be gone on with; leave --resume away, with a new --out") from None
+            raise Refusal(f"{self.path}: holds no sweep to resume; remove --resume and give a new --out") from None
         self.study = study_file.read(study)
         for file, sha256, name in ((self.study.path, self.study.sha256, "study_sha256"), (self.study.scene, scene_sha256(self.study), "scene_sha256")):
             if sha256 != self.asked.get(name):
-                raise Refusal(f"{file}: has changed since this sweep began, and so would its games; begin anew with another --out")
+                raise Refusal(f"{file}: has changed since this sweep began, so its games would differ; start a new sweep with another --out")
         self.chunks = games_of(self.study, self.games_each)
         (self.path / "chunks").mkdir(exist_ok=True)
-        trial_table.replace(self.path / "study.xml", self.study.path.read_bytes())  # for whoever reads the table elsewhere
+        trial_table.replace(self.path / "study.xml", self.study.path.read_bytes())  # for an analysis on another machine
 
     @staticmethod
     def begin(path, study, games):
-        """A new one. Raises Refusal when something is there already."""
+        """Creates the folder of a new sweep. Raises Refusal if the path is in use."""
         path = pathlib.Path(path)
         if path.exists() and (not path.is_dir() or any(path.iterdir())):
-            raise Refusal(f"{path}: is there already; add --resume to go on with that sweep, or choose another --out")
+            raise Refusal(f"{path}: already exists; add --resume to continue that sweep, or choose another --out")
         path.mkdir(parents=True, exist_ok=True)
         trial_table.replace(path / "sweep.json", json.dumps(
             {"study": str(study.path.resolve()), "games": games, "study_sha256": study.sha256, "scene_sha256": scene_sha256(study)}, indent=1) + "\n")
         return SweepFolder(path)
 
     def hold(self):
-        """Keeps others from leading this sweep at the same time, until the process ends. Raises Refusal."""
+        """Locks the sweep until the process ends. Raises Refusal if another process holds it."""
         self.lock = os.open(self.path, os.O_RDONLY)
         try:
             fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise Refusal(f"{self.path}: another tactus study sweep is at work there; wait for it, or stop it") from None
+            raise Refusal(f"{self.path}: another tactus study sweep is running there; wait for it, or stop it") from None
 
     def file(self, number):
         return self.path / "chunks" / f"{number:05}.csv"
@@ -56,7 +56,7 @@ class SweepFolder:
         return [i for i, chunk in enumerate(self.chunks) if chunk_file.count(self.file(i)) < len(chunk)]
 
     def done(self):
-        """Games that have been played, and of how many."""
+        """(number of finished games, number of all games)."""
         return sum(chunk_file.count(self.file(i)) for i in range(len(self.chunks))), sum(len(c) for c in self.chunks)
 
     def merge(self):

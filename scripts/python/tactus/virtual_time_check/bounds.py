@@ -1,4 +1,4 @@
-"""What is held against a bound: a figure of the live cluster, the same in virtual time, and how far apart the two may be."""
+"""Comparison with a bound: a figure of the live cluster, the same figure in virtual time, and their largest permitted difference."""
 import dataclasses
 import math
 
@@ -6,7 +6,7 @@ HOLDS, OPEN, MISSED = "holds", "open", "missed"
 
 
 def verdict(low, high, bound):
-    """Of a difference that lies from low to high: within the bound whole, beyond it whole, or neither: then more runs would tell."""
+    """Verdict on a difference with the interval low to high: HOLDS inside the bound, MISSED outside it, OPEN if it straddles the bound and needs more runs."""
     if math.isnan(low) or math.isnan(high):
         return OPEN
     if -bound <= low and high <= bound:
@@ -16,7 +16,7 @@ def verdict(low, high, bound):
 
 @dataclasses.dataclass(frozen=True)
 class Held:
-    """A figure of both. low, high: the interval of the difference live - virtual; both are the difference where the figure is told by itself."""
+    """A figure of both. low, high: interval of the difference live - virtual; both equal the difference for a figure without an interval."""
     figure: str
     unit: str
     live: float
@@ -34,18 +34,18 @@ class Held:
         return verdict(self.low, self.high, self.bound)
 
     def row(self):
-        """For a table of JSON, which has no NaN."""
+        """{member: value} for JSON, which has no NaN: null."""
         found = {**dataclasses.asdict(self), "difference": self.difference, "says": self.says}
         return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in found.items()}
 
 
-def told(figure, unit, live, virtual, bound):
-    """A figure that needs no interval; NaN where one of both has none, which agrees with nothing and stays open."""
+def single(figure, unit, live, virtual, bound):
+    """A figure without an interval. NaN: one of both has no value; the verdict is OPEN."""
     return Held(figure, unit, live, virtual, live - virtual, live - virtual, bound)
 
 
 def of_means(figure, unit, live, virtual, bound, interval):
-    """The means of both, each of some runs or games. interval: (low, high) of their difference."""
+    """The means of both over runs or games. interval: (low, high) of their difference."""
     return Held(figure, unit, mean(live), mean(virtual), *(float(x) for x in interval), bound)
 
 
@@ -54,5 +54,5 @@ def mean(values):
 
 
 def count(rows):
-    """{verdict: how many}."""
+    """{verdict: number of rows}."""
     return {word: sum(r["says"] == word for r in rows) for word in (HOLDS, OPEN, MISSED)}

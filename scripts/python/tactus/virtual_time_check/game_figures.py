@@ -1,8 +1,8 @@
-"""Games of the same seeds, live and in virtual time, held against each other: success and time of each condition, and the order of conditions. Pure.
+"""Compares games of the same seeds, live and in virtual time: success and time of each condition, and the order of conditions. No side effects.
 
-Games of one seed have their balls in the same places, and no more in common: what happens then hangs on every instant at which a loop wakes up. So
-shares are held against each other as those of two samples (Newcombe 1998, Statistics in Medicine 17:873, method 10), which is the wider interval where
-equal seeds make the two alike; times by the differences of equal seeds (t).
+Games of one seed start with the same positions of the balls only; their course depends on the exact wake-up times of all loops. Shares are therefore
+compared as those of two independent samples (Newcombe 1998, Statistics in Medicine 17:873, method 10), which is conservative if equal seeds correlate.
+Times are compared by the differences of equal seeds (Student's t).
 """
 import dataclasses
 import math
@@ -15,14 +15,14 @@ from tactus.study import power_games
 from tactus.virtual_time_check import bounds
 
 ALPHA = 0.05
-SUCCESS = 0.15     # largest difference of success; tests/measure/measure_agreement says why, as of the others
+SUCCESS = 0.15     # largest difference of success; tests/measure/measure_agreement gives the reasons for all bounds
 LEAST_TAU = 0.6
-DRAWS = 2000       # of the samples that say which tau could be had: its percentiles to a hundredth
+DRAWS = 2000       # of the attainable tau; gives its percentiles to 0.01
 
 
 @dataclasses.dataclass
 class Pairs:
-    """The games of one condition: a row for each seed. won: 0 or 1; time_s: the limit where it was not won."""
+    """The games of one condition, one entry for each seed. won: 0 or 1; time_s: the limit for a game not won."""
     condition: str
     limit_s: float
     live_won: list = dataclasses.field(default_factory=list)
@@ -31,7 +31,7 @@ class Pairs:
     virtual_s: list = dataclasses.field(default_factory=list)
 
     def add(self, live, virtual):
-        """(won, time_s) of both."""
+        """Adds a game: (won, time_s) live and in virtual time."""
         for (won, time_s), wons, times in ((live, self.live_won, self.live_s), (virtual, self.virtual_won, self.virtual_s)):
             won = bool(won) and time_s <= self.limit_s
             wons.append(int(won))
@@ -48,14 +48,14 @@ class Pairs:
         return bounds.of_means(f"time: {self.condition}", "s", self.live_s, self.virtual_s, SUCCESS * self.limit_s, of_times([self], newcombe(self.virtual_won, self.live_won)))
 
     def row(self):
-        """For the table: what is held, and the intervals of both shares."""
+        """Row of the table: the comparisons, and the intervals of both shares."""
         shares = [wilson(won) if won else (None, None) for won in (self.live_won, self.virtual_won)]
         return {"condition": self.condition, "games": self.n, "live_interval": shares[0], "virtual_interval": shares[1],
                 "success": self.success().row(), "time": self.time().row()}
 
 
 def wilson(won):
-    """(low, high) of a share, 95 %."""
+    """(low, high) of a share: Wilson's 95 % interval."""
     return tuple(float(x) for x in power_games.wilson(np.float64(np.mean(won)), len(won), ALPHA))
 
 
@@ -67,7 +67,7 @@ def newcombe(a, b):
 
 
 def paired(a, b):
-    """(low, high) of the mean of a - b, by equal seeds; NaN of fewer than two."""
+    """(low, high) of the mean of a - b over equal seeds; NaN: fewer than two."""
     if len(a) < 2:
         return math.nan, math.nan
     low, high = power_games.paired(np.array([np.subtract(a, b)], dtype=float), ALPHA)
@@ -75,8 +75,8 @@ def paired(a, b):
 
 
 def of_times(cells, of_success):
-    """(low, high) of the mean difference of times. Where no two differ, as of games that nobody won, what is not known of success is not known of times: by
-    so much of the limit they can be apart."""
+    """(low, high) of the mean difference of times. If no two times differ, for example because no game was won, the interval of success times the limit is
+    used."""
     pairs = [(a, b) for c in cells for a, b in zip(c.live_s, c.virtual_s)]
     if any(a != b for a, b in pairs):
         return paired(*zip(*pairs))
@@ -86,8 +86,8 @@ def of_times(cells, of_success):
 
 
 def stratified(cells):
-    """(low, high) of the difference of success, the mean over conditions: the normal interval, with the variance of each share as if half a game more had been
-    won and half a game lost, for 5 of 5 are no proof of all (as Agresti and Caffo 2000, The American Statistician 54:280, who add a whole one)."""
+    """(low, high) of the mean difference of success over conditions: the normal interval. The variance of each share adds half a won and half a lost game,
+    because 5 of 5 does not prove 100 % (Agresti and Caffo 2000, The American Statistician 54:280, add a whole game)."""
     apart = np.mean([np.mean(c.live_won) - np.mean(c.virtual_won) for c in cells])
     smoothed = [((sum(won) + 0.5) / (c.n + 1), c.n) for c in cells for won in (c.live_won, c.virtual_won)]
     half = norm.ppf(1 - ALPHA / 2) * math.sqrt(sum(p * (1 - p) / n for p, n in smoothed)) / len(cells)
@@ -95,7 +95,7 @@ def stratified(cells):
 
 
 def together(cells):
-    """[bounds.Held] of all games: the mean differences of success and of time, which show more than those of any one condition."""
+    """[bounds.Held] of all games: the mean differences of success and of time, which are more precise than those of one condition."""
     cells = [c for c in cells if c.n]
     of_success = stratified(cells) if cells else (math.nan, math.nan)
     means = lambda name: [np.mean(getattr(c, name)) for c in cells]
@@ -106,8 +106,8 @@ def together(cells):
 
 @dataclasses.dataclass(frozen=True)
 class Order:
-    """How alike live and virtual time order the conditions. reached: what two sets of virtual games, as many as there were, have at least in 95 % of
-    all draws; below the bound these games are too few to tell."""
+    """Rank correlation of the conditions, live and in virtual time. reached: 5 % quantile of tau between two sets of virtual games of the same size; below
+    the bound, the games are too few."""
     of: str
     tau: float
     rho: float
@@ -125,13 +125,13 @@ class Order:
 
 
 def correlation(of, a, b):
-    """kendalltau (tau-b) or spearmanr; NaN where one of both is the same everywhere, or there are fewer than three."""
+    """kendalltau (tau-b) or spearmanr; NaN: one of both is constant, or there are fewer than three values."""
     return math.nan if len(a) < 3 or np.ptp(a) == 0 or np.ptp(b) == 0 else float(of(a, b).statistic)
 
 
 def redrawn(cells, dice, draws):
-    """Two sets of games as they could have come, of the same truth: ((success, mean time), (success, mean time)), each (draws, conditions). What share is
-    won in truth is drawn around the virtual one with Jeffreys' prior, for 5 of 5 are no proof of all; times to win from those of the condition, or of all."""
+    """Two random sets of games with the same true shares: ((success, mean time), (success, mean time)), each (draws, conditions). The true share is drawn
+    around the virtual one with Jeffreys' prior, because 5 of 5 does not prove 100 %; times to win are drawn from those of the condition, or of all."""
     sets = [([], []), ([], [])]
     won_s = [t for c in cells for won, t in zip(c.virtual_won, c.virtual_s) if won]
     for c in cells:

@@ -1,4 +1,4 @@
-"""Who plays: runs of a scene and games, live and in virtual time."""
+"""Runs of a scene and games, live and in virtual time."""
 import os
 import shutil
 import subprocess
@@ -10,12 +10,12 @@ from tactus.sweep.player import Player
 from tactus.virtual_time_check import scene_figures
 
 STUDY = "game_limits"
-# From harmless to ruinous, of each of the three senses that the player has; by bin/play_games, 8 games each: 8, 8, 8, 6, 4, 3, 2 and 0 won.
+# From harmless to fatal, for each of the three senses of the player; bin/play_games wins 8, 8, 8, 6, 4, 3, 2 and 0 of 8 games.
 CONDITIONS = ("nothing degraded", "audio removed", "visual rate 5Hz", "haptic delay 20ms", "visual loss 90%", "haptic jitter 20ms", "visual loss 95%", "visual delay 200ms")
 
 
 def machine():
-    """What a figure of the live cluster hangs on."""
+    """Properties of the machine that affect figures of the live cluster."""
     with open("/proc/cpuinfo", encoding="utf-8") as file:
         model = next((line.partition(":")[2].strip() for line in file if line.startswith("model name")), "unknown")
     return {"processor": model, "cores": len(os.sched_getaffinity(0)), "load": load()}
@@ -31,38 +31,38 @@ def run(scene, seconds, seed, settings, out, virtual):
     words += [w for s in settings for w in ("--set", s)] + (["--virtual-time"] if virtual else [])
     done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", check=False)
     try:
-        return scene_figures.read(out)  # one that lost an event ends with status 1, and has figures that say so
+        return scene_figures.read(out)  # a run that lost an event exits with status 1 but has figures
     except (OSError, ValueError, KeyError) as error:
         said = (done.stderr.strip().splitlines() or [str(error)])[-1]
-        raise Refusal(f"scripts/run: left no figures ({said})") from None
+        raise Refusal(f"scripts/run: wrote no figures ({said}); see {out}") from None
 
 
-def virtual_games(scene, asked):
-    """Yields what bin/play_games tells of each game of `asked`, in their order. Raises Refusal."""
+def virtual_games(scene, requests):
+    """Yields the result of bin/play_games for each request, in order. Raises Refusal."""
     with Player(scene) as player:
-        for game in asked:
-            yield player.told(game)
+        for game in requests:
+            yield player.play(game)
 
 
-def live_game(scene, asked, settings, out, keep):
-    """The same game on the live cluster: what play_games tells, and how the cluster was. Without `keep` nothing of it stays."""
+def live_game(scene, request, settings, out, keep):
+    """Plays the same game on the live cluster; returns the members of a result of play_games, and the state of the cluster. keep: keeps its files."""
     profile = out.with_suffix(".xml")
-    profile.write_text(asked["profile"], encoding="utf-8")
+    profile.write_text(request["profile"], encoding="utf-8")
     try:
-        played = games.in_a_world_of_its_own(out, scene, profile, asked["seed"], asked["limit_s"], settings)
-        told = {"trouble": played.missed} if played.missed else {"won": bool(played.row["success"]), "time_s": played.row["completion_time_s"], "wrong": played.row["errors"]}
+        played = games.play_in_new_cluster(out, scene, profile, request["seed"], request["limit_s"], settings)
+        result = {"trouble": played.missed} if played.missed else {"won": bool(played.row["success"]), "time_s": played.row["completion_time_s"], "wrong": played.row["errors"]}
     except Refusal as refusal:
-        told = {"trouble": str(refusal)}
-    told["cluster"] = state_of(out)
+        result = {"trouble": str(refusal)}
+    result["cluster"] = state_of(out)
     if not keep:
         shutil.rmtree(out, ignore_errors=True)
         out.with_suffix(".log").unlink(missing_ok=True)
         profile.unlink()
-    return told
+    return result
 
 
 def state_of(out):
-    """Of the summary of a game's run, what tells whether the machine kept up; {} where there is none."""
+    """Figures from the summary of a run that show whether the machine kept up; {}: no summary."""
     try:
         tables = scene_figures.RunTables(out)
         nodes = tables.summary["nodes"]

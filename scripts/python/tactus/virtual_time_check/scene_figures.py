@@ -1,4 +1,4 @@
-"""The figures of runs of a scene, live and in virtual time, each with how far apart they may be. Pure but for reading what a run left."""
+"""Figures of runs of a scene, live and in virtual time, with their largest permitted differences. Reads the results of runs; no other side effects."""
 import json
 import math
 import os
@@ -9,19 +9,19 @@ from scipy.stats import t
 from tactus.log import log_tables
 from tactus.virtual_time_check import bounds
 
-RATE_SHARE = 0.005   # tests/measure/measure_isolation: a rate within this share is that of a loop that nothing hinders
-COUNT_SHARE = 0.10   # design: the touches of a scripted hand are those of its path; how often a ball bounces after them is chaos
-# {sense: node whose loop presents it}; an asynchrony is that of the later of two in this order (log_tables.SENSES).
+RATE_SHARE = 0.005   # a loop without disturbance keeps its rate to this share (tests/measure/measure_isolation)
+COUNT_SHARE = 0.10   # design: the path of a scripted hand fixes its touches, but the number of bounces of a ball is chaotic
+# {sense: node whose loop presents it}, in the order of log_tables.SENSES; an asynchrony is t(second) - t(first) in this order.
 NODE_OF = {"haptic": "haptic_node", "haptic_push": "haptic_node", "audio": "audio_node", "visual": "visual_node", "thermal": "thermal_node"}
-TOGETHER = ("audio", "visual", "thermal")  # wait for the slowest of them but warmth (sync/playout): vision, whose drawing takes no virtual time
+TOGETHER = ("audio", "visual", "thermal")  # wait for the slowest of them except warmth (sync/playout): vision, whose drawing takes no virtual time
 ANSWER_ALL = ("audio", "visual")
 NO_RATE = ("sync_node",)  # wakes when something arrives
-SETTLES_NS = 2_000_000_000  # design: the longest delay of the playout, 60 ms, is followed at 5 % of the time that passes (sync/playout)
+SETTLES_NS = 2_000_000_000  # design: the playout approaches its longest delay, 60 ms, at 5 % of real time (sync/playout)
 LEVEL = 0.95
 
 
 class RunTables(log_tables.LogTables):
-    """The tables that scripts/run leaves, as those of a report."""
+    """The tables of a results folder of scripts/run, with the interface of a report."""
 
     def __init__(self, folder):
         self.folder, self.name, self.since_ns = str(folder), "", 0
@@ -29,7 +29,7 @@ class RunTables(log_tables.LogTables):
             self.summary = json.load(file)
 
     def settle(self):
-        """Leaves away the events before sound and vision were ready, which answer to all of them, and the playout had followed. Returns how many are left."""
+        """Leaves out events before sound and vision were ready and the playout had settled. Returns the number of remaining events."""
         presented = self.presented_ns()
         self.since_ns = max((min(presented[sense].values()) for sense in ANSWER_ALL if sense in presented), default=0) + SETTLES_NS
         return len(self.events())
@@ -44,7 +44,7 @@ class RunTables(log_tables.LogTables):
         return (row for row in super().rows(name, wanted) if row["event_id"] in counted)
 
     def delays_ms(self):
-        """{sense: scheduled less event, ms}: what the playout has chosen, and profiles have added."""
+        """{sense: scheduled time minus event time, ms}: the delay of the playout plus that of profiles."""
         at = {event: int(row["host_ns"]) for event, row in self.events().items()}
         out = {}
         for row in self.rows("presented.csv"):
@@ -54,7 +54,7 @@ class RunTables(log_tables.LogTables):
 
 
 class Runs:
-    """Runs of one kind: values of events pooled over them, counts and rates of each."""
+    """Runs of one kind: values of events pooled over all runs, counts and rates of each run."""
 
     def __init__(self):
         self.each, self.rates = [], {}
@@ -82,7 +82,7 @@ class Runs:
 
 
 def periods_ms(rates):
-    """{node: ms between two of its ticks}, of runs in virtual time, whose loops miss none."""
+    """{node: period of its tick, ms} of runs in virtual time, whose loops miss no ticks."""
     return {name: 1e3 / median(values) for name, values in rates.items() if median(values) > 0}
 
 
@@ -91,7 +91,7 @@ def median(values):
 
 
 def welch(a, b, level=LEVEL):
-    """Interval of mean(a) - mean(b), variances not taken for equal; NaN when one has a single value (Welch 1947, Biometrika 34:28)."""
+    """Interval of mean(a) - mean(b) with unequal variances; NaN if one has a single value (Welch 1947, Biometrika 34:28)."""
     if min(len(a), len(b)) < 2:
         return math.nan, math.nan
     of_a, of_b = np.var(a, ddof=1) / len(a), np.var(b, ddof=1) / len(b)
@@ -104,7 +104,7 @@ def welch(a, b, level=LEVEL):
 
 
 def rows(live, virtual):
-    """[bounds.Held] of two Runs; tests/measure/measure_agreement says why each bound is what it is."""
+    """[bounds.Held] of two Runs; tests/measure/measure_agreement gives the reason for each bound."""
     period = periods_ms(virtual.rates)
     tick = {sense: period.get(node, math.nan) for sense, node in NODE_OF.items()}
     frame = tick["visual"] if not math.isnan(tick["visual"]) else 0.0
@@ -112,29 +112,29 @@ def rows(live, virtual):
     onset = {sense: max(tick[sense], waits[sense]) if sense in ("visual", "thermal") else tick[sense] + waits[sense] for sense in NODE_OF}
     found = [bounds.of_means(f"{name} in a run", "", a, b, COUNT_SHARE * bounds.mean(a), welch(a, b))
              for name, a, b in ((name, live.of(name), virtual.of(name)) for name in ("begins", "hits"))]
-    found += [bounds.told("events lost, live", "", float(sum(live.of("lost"))), 0.0, 0.0), bounds.told("events lost, virtual", "", 0.0, float(sum(virtual.of("lost"))), 0.0)]
+    found += [bounds.single("events lost, live", "", float(sum(live.of("lost"))), 0.0, 0.0), bounds.single("events lost, virtual", "", 0.0, float(sum(virtual.of("lost"))), 0.0)]
     shared = lambda a, b: [key for key in NODE_OF if key in a or key in b]
     of = lambda runs, key: median(runs.get(key, []))
     for sense in shared(live.scheduled, virtual.scheduled):
-        found.append(bounds.told(f"{sense}: scheduled after the event", "ms", of(live.scheduled, sense), of(virtual.scheduled, sense), waits[sense] or tick[sense]))
+        found.append(bounds.single(f"{sense}: scheduled after the event", "ms", of(live.scheduled, sense), of(virtual.scheduled, sense), waits[sense] or tick[sense]))
     for sense in shared(live.met, virtual.met):
-        found.append(bounds.told(f"{sense}: presented after that", "ms", of(live.met, sense), of(virtual.met, sense), tick[sense]))
+        found.append(bounds.single(f"{sense}: presented after that", "ms", of(live.met, sense), of(virtual.met, sense), tick[sense]))
     for sense in shared(live.latency, virtual.latency):
-        found.append(bounds.told(f"{sense}: presented after the event", "ms", of(live.latency, sense), of(virtual.latency, sense), onset[sense]))
+        found.append(bounds.single(f"{sense}: presented after the event", "ms", of(live.latency, sense), of(virtual.latency, sense), onset[sense]))
     for pair in sorted({*live.soa, *virtual.soa}, key=lambda p: [log_tables.SENSES.index(x) for x in p]):
         a, b = pair
-        # What both wait for is in neither's lead over the other.
+        # A common wait cancels in the asynchrony.
         bound = tick[a] + tick[b] if a in TOGETHER and b in TOGETHER else onset[a] + onset[b]
-        found.append(bounds.told(f"asynchrony {a} to {b}", "ms", of(live.soa, pair), of(virtual.soa, pair), bound))
+        found.append(bounds.single(f"asynchrony {a} to {b}", "ms", of(live.soa, pair), of(virtual.soa, pair), bound))
     for name in sorted({*live.rates, *virtual.rates}):
         expected = of(virtual.rates, name)
-        found.append(bounds.told(f"rate of {name}", "Hz", of(live.rates, name), expected, RATE_SHARE * expected))
+        found.append(bounds.single(f"rate of {name}", "Hz", of(live.rates, name), expected, RATE_SHARE * expected))
     return found
 
 
 def read(folder):
-    """RunTables of a run; OSError or ValueError where it left none."""
+    """RunTables of a run. Raises OSError or ValueError if it wrote none."""
     tables = RunTables(folder)
     if not tables.has("events.csv"):
-        raise ValueError(f"{folder}: holds no events; nothing was touched, or the run ended before")
+        raise ValueError(f"{folder}: holds no events: nothing was touched, or the run ended early")
     return tables

@@ -1,12 +1,10 @@
-"""What a participant is asked, in words, and what his answer means."""
+"""Questions to a participant as text, and the interpretation of the answers."""
 
 from tactus.study import study_file
 
-KEYS = "Keys 1, 2, ..., buttons of gamepad or device, or the page."
-
 
 def words(study, trial):
-    """{kind, text, choices, ...} of a conductor's question after a trial."""
+    """{kind, text, choices, ...}: question of the trial runner after a trial."""
     spoken = [study_file.SPOKEN[s] for s in trial.condition.senses]
     fill = lambda text: text.replace("{a}", spoken[0]).replace("{b}", spoken[1]) if spoken else text
     if study.number:
@@ -22,13 +20,13 @@ def of_item(item):
 
 
 def meaning(study, trial, answer):
-    """(response in words, yes for the procedure or None, columns of the trial table) of an answer."""
+    """(response as text, yes for the procedure or None, columns of the trial table) of an answer."""
     if study.number:
         return f"{answer['number']:g}", None, {"answer_value": answer["number"]}
     choice = answer["choice"]
     if study.response == "synchrony":
         return ("yes" if choice == 0 else "no"), choice == 0, {}
-    if study.response == "order":  # a level is t(b) - t(a): the larger, the likelier that a came first
+    if study.response == "order":  # a level is t(b) - t(a): above 0, a came first
         return trial.condition.senses[choice], choice == 0, {"correct": int((choice == 0) == (trial.level > 0))} if trial.level else {}
     if study.response == "two_interval":
         right = choice == trial.degraded_interval
@@ -37,7 +35,7 @@ def meaning(study, trial, answer):
 
 
 def choice_of(study, trial, yes):
-    """The choice that says yes or no: what a simulated participant presses."""
+    """Index of the choice that means yes or no, for a simulated participant."""
     if study.response == "two_interval":
         return trial.degraded_interval if yes else 1 - trial.degraded_interval
     return 0 if yes else 1
