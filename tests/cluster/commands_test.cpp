@@ -48,7 +48,7 @@ struct Commanded : Running {
 
 }  // namespace
 
-TEST_CASE("A world that is paused stands still while every process lives on, takes single steps, and goes on") {
+TEST_CASE("A world that is paused stands still while every process lives on, takes single steps, and goes on", "[smoke]") {
   Commanded c;
   c.start();
   CHECK_THAT(c.ask({"step"}, 1), Catch::Contains("pause it"));

@@ -260,7 +260,7 @@ std::int64_t world_at(const std::filesystem::path& path, double at_s) {
 
 TEST_CASE(
     "What a person does in the live page is done on the bus, a frozen or killed browser changes nothing, and the "
-    "log is shown again") {
+    "log is shown again", "[exclusive]") {
   require_what_the_browser_needs();
   RunScript run;
   const std::filesystem::path profile = run.folder.path() / "late_warmth.xml";

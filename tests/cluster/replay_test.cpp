@@ -6,7 +6,7 @@
 using namespace tactus;
 using namespace tactus::cluster;
 
-TEST_CASE("The stock lcm-logplayer replays a log into a running audio_node and visual_node, and they render it") {
+TEST_CASE("The stock lcm-logplayer replays a log into a running audio_node and visual_node, and they render it", "[smoke]") {
   Folder folder;
   {
     Running c;

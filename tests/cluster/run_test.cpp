@@ -24,7 +24,7 @@ void check_keys(const json& object, const std::vector<std::string>& keys) {
 
 }  // namespace
 
-TEST_CASE("scripts/run leaves the log, sound, pictures, tables and a whole summary") {
+TEST_CASE("scripts/run leaves the log, sound, pictures, tables and a whole summary", "[smoke]") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "8", "--out", run.out()});
   const int status = run.finish(kLongest_s);
@@ -100,7 +100,7 @@ TEST_CASE("A reader that closes the pipe costs no results, and nothing keeps run
   }
 }
 
-TEST_CASE("What is wrong is said in one sentence before anything starts") {
+TEST_CASE("What is wrong is said in one sentence before anything starts", "[smoke]") {
   struct Wrong {
     std::vector<std::string> options;
     std::string names;

@@ -76,7 +76,7 @@ TEST_CASE("In a terminal keys show the fields of a channel and the variables of 
   CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
 }
 
-TEST_CASE("Without a terminal or anything to hear, spy says so in one sentence") {
+TEST_CASE("Without a terminal or anything to hear, spy says so in one sentence", "[smoke]") {
   Running c;
   c.processes.spawn("none", {programs() / "spy"});
   CHECK(c.processes.wait_for_exit("none", 20) == 1);

@@ -39,7 +39,7 @@ Bytes numbered(int i, std::size_t size = 300) {
 
 }  // namespace
 
-TEST_CASE("Messages of both ports come in order, also those that came while nobody read") {
+TEST_CASE("Messages of both ports come in order, also those that came while nobody read", "[smoke]") {
   sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);
   Datagrams wire;
   constexpr int kMany = 4000;
