@@ -56,7 +56,7 @@ TEST_CASE("What finds no room at a socket counts, and what its own filter refuse
   REQUIRE(setsockopt(to, SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program) == 0);
   const std::int64_t with = kernel_drops();
   close(to), close(from);
-  if (without < 0) return;  // it is not known on this machine
+  if (without < 0) return;  // the count is not available on this machine
   CHECK(without >= 40);
   CHECK(with == 0);
 }

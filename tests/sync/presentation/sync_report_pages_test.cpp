@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kHit = node_health_t::OWES_HIT;
 
-// So many senses, each of which has presented one event.
+// `senses` modalities, each of which has presented one event.
 void fill(MatcherFixture& f, int senses, std::size_t name_length = 12) {
   for (int i = 0; i < senses; ++i) {
     std::string name = "sense" + std::to_string(i);

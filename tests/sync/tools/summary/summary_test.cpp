@@ -169,7 +169,7 @@ TEST_CASE("Incarnations of a node are added up") {
   const NodeSummary& n = nodes.at("audio_node");
   CHECK(n.restarts == 1);
   CHECK(n.missed_ticks == 12);
-  CHECK(n.rate_Hz == Approx(1000));  // the waiting, at another rate, is not counted
+  CHECK(n.rate_Hz == Approx(1000));  // the wait at another rate is not counted
   CHECK(n.tick.count() == 2);
   CHECK(n.tick.max() == Nanoseconds(200'000));
   CHECK(n.alive_at_end);
@@ -257,7 +257,7 @@ TEST_CASE("The logs of a restarted recorder make one run") {
     for (LogEvent e; scanner.next(e);) s.add(e);
     s.end_of_log(0);
   }
-  // The same events again, within a run: nothing is owed twice.
+  // The same events again, within a run: no modality must present an event twice.
   CHECK(s.matcher().hits() <= 160);
   CHECK(s.failure().empty());
   CHECK(s.recorded_seconds() == Approx(20.0));
