@@ -40,7 +40,7 @@ class Sound {
   }
   sync::ContactStream& stream() { return stream_; }
   double delay_s() const { return settings_.presentation_delay_s; }
-  // Up to a host time.
+  // Renders up to a host time.
   void run(sync::HostTime until, Rendered& out) {
     for (;;) {
       const auto first = sync::host_time(kWorldBegins_ns +
@@ -75,7 +75,7 @@ class Sound {
   std::map<std::int64_t, std::int64_t> due_;
 };
 
-// The first sample that leaves the level before it, by 2 % of the loudest near it, where one stands out.
+// The first sample that leaves the preceding level by 2 % of the loudest one near it, where one stands out.
 void hear(Rendered& out, double delay_s) {
   std::vector<std::pair<double, std::int64_t>> hits;
   for (const contact_event_t& e : out.events)
