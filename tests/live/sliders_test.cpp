@@ -101,6 +101,6 @@ TEST_CASE("Wherever the sliders stand, the profile is one, and shows them where 
       REQUIRE(shown.contains(sense));
       REQUIRE(same(shown.at(sense), s));
     }
-    REQUIRE(slid(text, at) == text);  // who changes nothing changes nothing
+    REQUIRE(slid(text, at) == text);  // unchanged sliders leave the profile unchanged
   }
 }

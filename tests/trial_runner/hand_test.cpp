@@ -45,7 +45,7 @@ TEST_CASE("No motion of the hand leaps") {
   SECTION("of a tap") { REQUIRE(hand.tap({0.05})); }
   SECTION("of a press") { REQUIRE(hand.press({0.02, 0.5, 3})); }
   const Path path = followed(hand);
-  CHECK(path.fastest_m_s < 1.3);  // half the swing of the way up, of a cosine: pi / 2 times its mean
+  CHECK(path.fastest_m_s < 1.3);  // for half a cosine the peak speed is pi / 2 times the mean
   CHECK(path.largest_step_m < 1.3 * kStep_s);
 }
 
