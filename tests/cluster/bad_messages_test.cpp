@@ -1,3 +1,4 @@
+// Tests of malformed messages on the bus of a running cluster: every node counts and drops them, and none exits.
 #include <chrono>
 #include <limits>
 #include <random>

@@ -14,7 +14,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-constexpr std::size_t kPeriod_ms = 500;          // of the taps in tapping.sdf, whose path follows the host's time
+constexpr std::size_t kPeriod_ms = 500;          // period of the taps in tapping.sdf, whose path follows the host's time
 using Trace = std::vector<std::vector<double>>;  // by ms of the period
 
 std::size_t phase_ms(const header_t& h) {
@@ -27,7 +27,7 @@ struct Felt {
   std::set<int> steps_cN;                                          // forces that were held for at least 5 ticks
   std::vector<std::int64_t> ticks, world;                          // send times of TOOL_STATE and TOUCH_MODEL
   Trace told = Trace(kPeriod_ms / 20);    // degrees C, by tick of the period: setpoint of the display
-  std::map<std::string, double> wait_ms;  // of the other modalities, median
+  std::map<std::string, double> wait_ms;  // median delay of each other modality
 
   double peak_N() const {
     double most = 0;

@@ -1,3 +1,4 @@
+// Tests of stopped, frozen, killed and late nodes in a running cluster: the other nodes keep their rates.
 #include <signal.h>
 #include <tactus/input_health_t.hpp>
 #include <tactus/node_health_t.hpp>

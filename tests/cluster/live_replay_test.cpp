@@ -1,3 +1,4 @@
+// Tests of a recorded run replayed on the bus to live renderers, with its control pipe and with LCM's stock tools.
 #include <signal.h>
 #include <sys/stat.h>
 

@@ -1,3 +1,4 @@
+// Tests of the recorder under a kill, a full disk and a flood of messages.
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/mount.h>

@@ -1,3 +1,4 @@
+// Tests of a log replayed by the stock lcm-logplayer to running renderers.
 #include <signal.h>
 
 #include "sync/bus/bus.h"

@@ -61,7 +61,7 @@ std::vector<std::map<std::string, std::string>> table(const std::filesystem::pat
 }
 
 struct Result {
-  std::map<std::string, std::string> kind;                            // of each settled event, by id
+  std::map<std::string, std::string> kind;                            // kind of each settled event, by id
   std::map<std::string, std::map<std::string, std::string>> outcome;  // by modality and event
   std::map<std::string, double> soonest_ms;                           // after the event, by modality
   std::vector<double> lasted_ms;                                      // durations of the contacts

@@ -112,7 +112,7 @@ struct Story {
     joined = c.watch();
     c.output_of({"sv", "kill", c.service("haptic_node_third")});  // the supervisor restarts it
     again = c.watch();
-    // By the command line script.
+    // Through the command line script.
     const std::string answer =
         c.output_of({"env", "TACTUS_BIN=" + programs().string(), repository() / "scripts/tactus", "set", "--in", c.out(),
                      "haptic_node", "force_limit=1N"});

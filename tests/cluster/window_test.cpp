@@ -15,7 +15,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-constexpr int kWide = 1024, kHigh = 768;  // of the screen; the window is 640 x 480 at its upper left
+constexpr int kWide = 1024, kHigh = 768;  // size of the screen, pixels; the window is 640 x 480 at its upper left
 
 struct Desktop : Seeing {
   std::string display;

@@ -1,3 +1,4 @@
+// Tests of reading single fields of encoded messages by their path.
 #include "lcmtypes/fields.h"
 
 #include <catch2/catch.hpp>

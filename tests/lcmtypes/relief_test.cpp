@@ -1,3 +1,4 @@
+// Tests of heights and slopes of a surface relief.
 #include "lcmtypes/relief.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of questions and answers between the bus and the live page.
 #include "scripts/live/answers.h"
 
 #include <catch2/catch.hpp>

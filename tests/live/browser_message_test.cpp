@@ -1,3 +1,4 @@
+// Tests of parsing messages of the browser.
 #include "scripts/live/browser_message.h"
 
 #include <catch2/catch.hpp>

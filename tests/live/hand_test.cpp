@@ -1,3 +1,4 @@
+// Tests of the mouse as a hand: ray through a pixel, speed limit, release.
 #include "scripts/live/hand.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of playing a log in the live page: speed, seek, length and damage.
 #include "scripts/live/log_player.h"
 
 #include <catch2/catch.hpp>
@@ -52,7 +53,7 @@ TEST_CASE("A log is played at its own speed, each event once and in order") {
   Playing p;
   CHECK(p.player.length_s() == Approx(59.99));
   for (int i = 0; i < 200; ++i) p.advance(0.05);
-  REQUIRE(p.heard.size() == 1001);  // of the first ten seconds, with both ends
+  REQUIRE(p.heard.size() == 1001);  // the first ten seconds, with both ends
   for (int i = 0; i < 1001; ++i) REQUIRE(p.heard[static_cast<std::size_t>(i)] == i);
   CHECK(p.player.position_s() == Approx(10));
 

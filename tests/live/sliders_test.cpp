@@ -1,3 +1,4 @@
+// Tests of the conversion between sliders and degradation profiles.
 #include "scripts/live/sliders.h"
 
 #include <catch2/catch.hpp>

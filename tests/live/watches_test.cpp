@@ -1,3 +1,4 @@
+// Tests of the variables that a page plots: decimation, bounds and hostile bytes.
 #include "scripts/live/watches.h"
 
 #include <catch2/catch.hpp>

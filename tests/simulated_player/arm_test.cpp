@@ -1,3 +1,4 @@
+// Tests of the arm model of the simulated player: mass, spring, damper and tremor.
 #include "scripts/simulated_player/arm.h"
 
 #include <catch2/catch.hpp>

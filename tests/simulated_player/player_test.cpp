@@ -1,3 +1,4 @@
+// Tests of the simulated player in a toy world of balls and holes.
 #include "scripts/simulated_player/player.h"
 
 #include <algorithm>

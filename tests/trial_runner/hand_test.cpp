@@ -1,3 +1,4 @@
+// Tests of the taps and presses of the trial runner's hand.
 #include "scripts/trial_runner/hand.h"
 
 #include <catch2/catch.hpp>

@@ -27,7 +27,7 @@ using namespace tactus::audio;
 namespace {
 
 constexpr double kRate_Hz = 48000;
-constexpr double kStrikes_Hz = 200;  // of all bodies together
+constexpr double kStrikes_Hz = 200;  // over all bodies
 
 // Keeps the modes of a body until the program ends.
 const Resonators* kept(const Resonators& resonators) {

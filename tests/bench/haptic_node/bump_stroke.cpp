@@ -1,3 +1,4 @@
+// Board, mesh and hand of the stroke over planks.png.
 #include "tests/bench/haptic_node/bump_stroke.h"
 
 #include <cmath>

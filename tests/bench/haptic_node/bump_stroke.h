@@ -13,7 +13,7 @@ struct BumpStroke {
       "normal";  // map methods of a board: none, height, normal, both; "mesh": the relief in triangles
   double speed_m_s = 0.1, rate_Hz = 1000, height_m = 0.0005;
   double length_m = 0.4, oblique = 0.3;  // length along v, and the way along u per metre
-  double friction = 0;                   // of the pair of materials
+  double friction = 0;                   // friction of the pair of materials
   double depth_m = 0.002;                // of the device under the level of black; 1000 N/m
   double lateral_m = 0.0;                // u at the beginning
 };

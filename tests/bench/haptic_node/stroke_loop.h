@@ -17,7 +17,7 @@
 
 namespace tactus::bench {
 
-inline constexpr double kStiffness_N_m = 1000;  // of every stroked surface
+inline constexpr double kStiffness_N_m = 1000;  // stiffness of every stroked surface
 
 class StrokeLoop {
  public:

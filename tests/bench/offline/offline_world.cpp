@@ -1,3 +1,4 @@
+// Steps of the simulation and the hands on simulated time, and the log of their messages.
 #include "tests/bench/offline/offline_world.h"
 
 #include <chrono>

@@ -1,3 +1,4 @@
+// Rendering of a log by the libraries of audio_node, visual_node and thermal_node on a manual clock.
 #include "tests/bench/offline/senses.h"
 
 #include <algorithm>
@@ -23,7 +24,7 @@
 namespace tactus::bench {
 namespace {
 
-constexpr int kFrames = 128;  // of a block
+constexpr int kFrames = 128;  // block size
 constexpr double kRate_Hz = 48000;
 constexpr double kAloneBefore_s = 0.060, kAloneAfter_s = 0.025;  // as tests/measure/measure_onsets
 

@@ -1,3 +1,4 @@
+// Spectrum in octaves, jitter and gaps of a contact force.
 #include "tests/bench/offline/steadiness.h"
 
 #include <algorithm>

@@ -21,7 +21,7 @@ using Eigen::Isometry3d;
 
 namespace {
 
-constexpr int kRounds = 9;  // of every query at every pose
+constexpr int kRounds = 9;  // rounds of every query at every pose
 constexpr double kRadius_m = 0.1;
 
 struct Row {

@@ -30,15 +30,15 @@ class Engine {
 
   virtual void set_motion(int body, const Eigen::Vector3d& velocity_m_s, const Eigen::Vector3d& spin_rad_s) = 0;
   virtual void step(double h_s) = 0;
-  virtual Eigen::Vector3d position(int body) = 0;  // of the centre of mass
+  virtual Eigen::Vector3d position(int body) = 0;  // centre of mass
   virtual Eigen::Quaterniond orientation(int body) = 0;
   virtual Eigen::Vector3d velocity(int body) = 0;  // velocity and spin: of a free body
   virtual Eigen::Vector3d spin(int body) = 0;
   virtual double contact_force_N() = 0;  // sum along the normals, of the last step
-  virtual double chain_energy_J() = 0;   // of chain or pendulum
+  virtual double chain_energy_J() = 0;   // energy of chain or pendulum
   virtual double joint_gap_m() = 0;
   virtual double pendulum_angle_rad() = 0;
-  virtual Eigen::Vector3d link_spin() = 0;  // of the hanging rod, world frame
+  virtual Eigen::Vector3d link_spin() = 0;  // angular velocity of the hanging rod, world frame
 };
 
 std::unique_ptr<Engine> make_ours();

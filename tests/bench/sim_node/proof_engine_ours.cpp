@@ -1,3 +1,4 @@
+// The proof engine by our impulse solver and joint coordinates.
 #include "tests/bench/sim_node/proof_engine.h"
 #include "tests/sim_node/support/articulated_trees.h"
 #include "tests/sim_node/support/toys.h"

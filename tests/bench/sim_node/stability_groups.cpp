@@ -1,3 +1,4 @@
+// Stability limits of contact and hands in worlds of one and two groups, with the whole simulation.
 #include "tests/bench/sim_node/stability_groups.h"
 
 #include <array>
@@ -46,7 +47,7 @@ Settings settings_for(const GroupedRow& row) {
   s.solver = row.solver;
   s.step_s = row.step_s;
   s.visual_thread = "none";
-  s.visual_substeps = 1;  // of 1/60 s, as in the paper
+  s.visual_substeps = 1;  // steps of 1/60 s, as in the paper
   return s;
 }
 

@@ -9,7 +9,7 @@ namespace tactus::sim::bench {
 
 struct GroupedRow {
   std::string name, groups, solver;  // as the settings
-  double step_s;                     // of the bodies near the hand
+  double step_s;                     // step for the bodies near the hand
 };
 
 // The rows of the table.

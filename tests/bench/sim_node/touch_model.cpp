@@ -27,13 +27,13 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kTool_m = 0.005;
-constexpr int kSteps = 2000;  // of 1 ms
+constexpr int kSteps = 2000;  // steps of 1 ms
 
 struct Scene {
   std::string name;
   WorldDef world;
   std::vector<BodyMotion> bodies;
-  std::vector<Vector3d> path;  // of the tool
+  std::vector<Vector3d> path;  // path of the tool
   std::vector<double> us = {};
   std::size_t planes = 0;
   std::unique_ptr<Ids> ids = std::make_unique<Ids>(1);

@@ -1,3 +1,4 @@
+// Scenes and measurement of the touch model of tools with a shape.
 #include "tests/bench/sim_node/touch_shapes.h"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kMargin_m = 0.003;  // of a tool with a shape over meshes, at rest
+constexpr double kMargin_m = 0.003;  // margin of a tool with a shape over meshes, at rest
 constexpr double kGap_m = 0.00015;   // gap of the tool at the start: the skin and a little more
 
 struct ToolCase {

@@ -9,8 +9,8 @@ namespace tactus::sim::test {
 struct ShapeRow {
   std::string scene, tool;
   double speed_m_s = 0;  // speed that the device reports: the margin of the model grows with it
-  double triangles = 0;  // of the scene that meet the ball around the tool with its margin; mean
-  double planes = 0;     // mean
+  double triangles = 0;  // mean number of scene triangles that meet the ball around the tool with its margin
+  double planes = 0;     // mean number of planes
   double median_us = 0, p99_us = 0;
 };
 

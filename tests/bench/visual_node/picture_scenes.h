@@ -13,7 +13,7 @@ struct PictureScene {
   scene_t scene;
   visual::Meshes meshes;
   visual::HeightMaps height_maps;
-  int triangles = 0;  // of the meshes
+  int triangles = 0;  // number of triangles of the meshes
 };
 
 // Two balls of 10,608 triangles each on a floor, all of one rough material, before a camera that sees nothing else; a spot light that

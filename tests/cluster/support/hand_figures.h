@@ -19,7 +19,7 @@
 namespace tactus::cluster {
 
 inline constexpr int kLeft = 0, kRight = 1, kThird = 2;  // order of the tools in three_hands.sdf
-inline constexpr double kPeriod_s = 0.5;                 // of the taps of the left hand
+inline constexpr double kPeriod_s = 0.5;                 // period of the taps of the left hand
 
 // Figures of the simulation and of the hand that stays over a span.
 struct Figures {

@@ -1,3 +1,4 @@
+// Start, signals and output of the processes of a test.
 #include "tests/cluster/support/processes.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// Tests of the exchange of a scene manifest and its assets, with loss and forged chunks.
 #include "sync/assets/scene_exchange.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of the inputs in NODE_HEALTH and of the size of the message.
 #include "sync/bus/health_inputs.h"
 
 #include <catch2/catch.hpp>

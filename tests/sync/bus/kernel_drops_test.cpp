@@ -1,3 +1,4 @@
+// Tests of the count of datagrams that the kernel dropped at our sockets.
 #include "sync/bus/kernel_drops.h"
 
 #include <linux/filter.h>

@@ -1,3 +1,4 @@
+// Tests of the bound and order of a message batch.
 #include "sync/bus/message_batch.h"
 
 #include <catch2/catch.hpp>

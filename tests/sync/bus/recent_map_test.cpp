@@ -1,3 +1,4 @@
+// Tests of the map that keeps the newest keys.
 #include "sync/bus/recent_map.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Tests of sequence numbers: gaps, late and repeated messages, restarts and several senders.
 #include "sync/bus/sequence.h"
 
 #include <algorithm>

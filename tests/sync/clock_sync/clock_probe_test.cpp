@@ -1,3 +1,4 @@
+// Tests of clock probes between hosts: offsets, rejected answers and rate of messages.
 #include "sync/clock_sync/clock_probe.h"
 
 #include <catch2/catch.hpp>

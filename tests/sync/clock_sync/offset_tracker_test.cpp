@@ -1,3 +1,4 @@
+// Tests of tracking the offset of another clock: uncertainty, drift, slew and jumps.
 #include "sync/clock_sync/offset_tracker.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Tests of the probes of a pair of hosts: datagrams, losses and offset.
 #include "sync/clock_sync/pair_probe.h"
 
 #include <catch2/catch.hpp>

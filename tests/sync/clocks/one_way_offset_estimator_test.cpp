@@ -1,3 +1,4 @@
+// Tests of estimating a clock offset from arrivals only.
 #include "sync/clocks/one_way_offset_estimator.h"
 
 #include <algorithm>

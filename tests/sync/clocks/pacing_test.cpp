@@ -1,3 +1,4 @@
+// Tests of periodic deadlines: no burst, missed ticks are counted.
 #include "sync/clocks/pacing.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of the Weber deadband.
 #include "sync/degradation/deadband.h"
 
 #include <catch2/catch.hpp>

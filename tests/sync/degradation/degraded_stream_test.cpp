@@ -1,3 +1,4 @@
+// Tests of a degraded input stream: pages, groups, repetitions, delays and changes of the profile.
 #include "sync/degradation/degraded_stream.h"
 
 #include <catch2/catch.hpp>

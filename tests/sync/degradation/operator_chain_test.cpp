@@ -1,3 +1,4 @@
+// Tests of the operators of a profile, one by one and combined.
 #include "sync/degradation/operator_chain.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Tests of profiles on the bus: pages, generations and the copy on disk.
 #include "sync/degradation/profile_exchange.h"
 
 #include <unistd.h>

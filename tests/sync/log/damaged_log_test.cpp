@@ -1,3 +1,4 @@
+// Tests of reading and replaying damaged logs.
 #include "tests/sync/support/damaged_log.h"
 
 #include <unistd.h>
@@ -83,7 +84,7 @@ TEST_CASE("A log with damage anywhere is rendered to its end, with every message
     }
   }
   CHECK(refused == 0);
-  CHECK(missed_in_all < 1000);  // of about 110,000
+  CHECK(missed_in_all < 1000);  // out of about 110,000
 }
 
 TEST_CASE("A log without its LOG_INFO says what it is by its messages, to a latency") {

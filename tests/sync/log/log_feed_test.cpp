@@ -1,3 +1,4 @@
+// Tests of the timestamps of log events, with wrong stamps.
 #include "sync/log/log_feed.h"
 
 #include <unistd.h>

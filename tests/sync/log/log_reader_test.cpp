@@ -1,3 +1,4 @@
+// Tests of scanning a log: whole, cut off and damaged.
 #include "sync/log/log_reader.h"
 
 #include <catch2/catch.hpp>

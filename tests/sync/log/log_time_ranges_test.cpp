@@ -1,3 +1,4 @@
+// Tests of grouping the stamps of a log into time ranges.
 #include "sync/log/log_time_ranges.h"
 
 #include <algorithm>

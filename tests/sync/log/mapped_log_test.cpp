@@ -1,3 +1,4 @@
+// Tests of memory-mapped logs, also while they grow.
 #include "sync/log/mapped_log.h"
 
 #include <sys/wait.h>

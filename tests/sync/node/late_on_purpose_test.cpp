@@ -1,3 +1,4 @@
+// Tests of presentation deadlines for a modality with a commanded delay.
 #include <catch2/catch.hpp>
 #include <tactus/decision_t.hpp>
 #include <tactus/degraded_t.hpp>

@@ -1,3 +1,4 @@
+// Tests of the endpoint of a modality on the bus.
 #include "sync/node/modality_endpoint.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of rendering a log offline: profiles, ticks, progress and output files.
 #include "sync/node/offline.h"
 
 #include <unistd.h>

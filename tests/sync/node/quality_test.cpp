@@ -1,3 +1,4 @@
+// Tests of the quality ladder under constant and changing load.
 #include "sync/node/quality.h"
 
 #include <catch2/catch.hpp>

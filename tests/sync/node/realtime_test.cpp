@@ -1,3 +1,4 @@
+// Tests of the overrun guard of real-time loops.
 #include "sync/node/realtime.h"
 
 #include <catch2/catch.hpp>

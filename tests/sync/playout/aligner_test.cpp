@@ -1,3 +1,4 @@
+// Tests of the aligners that choose a playout delay.
 #include "sync/playout/aligner.h"
 
 #include <algorithm>

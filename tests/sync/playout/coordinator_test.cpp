@@ -1,3 +1,4 @@
+// Tests of the playout coordinator: demands, policies and requests.
 #include "sync/playout/coordinator.h"
 
 #include <catch2/catch.hpp>

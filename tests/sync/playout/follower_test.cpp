@@ -1,3 +1,4 @@
+// Tests of the slew of a modality to its playout delay.
 #include "sync/playout/follower.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of matching presentations of hosts with different clocks.
 #include "sync/presentation/presentation_matcher.h"
 
 #include <catch2/catch.hpp>

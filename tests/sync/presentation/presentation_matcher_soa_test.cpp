@@ -1,3 +1,4 @@
+// Tests of the SOA statistics of the presentation matcher.
 #include "sync/presentation/presentation_matcher_soa.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Tests of matching expected events to presentation reports, and of their outcomes.
 #include "sync/presentation/presentation_matcher.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Tests of the pages of a sync report.
 #include "sync/presentation/sync_report_pages.h"
 
 #include <catch2/catch.hpp>

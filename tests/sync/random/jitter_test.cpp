@@ -1,3 +1,4 @@
+// Tests of the distributions and the correlation of jitter.
 #include "sync/random/jitter.h"
 
 #include <algorithm>

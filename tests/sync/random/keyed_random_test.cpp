@@ -1,3 +1,4 @@
+// Tests of random numbers by key and of the normal quantile.
 #include "sync/random/keyed_random.h"
 
 #include <array>

@@ -1,3 +1,4 @@
+// Tests of independent and bursty losses.
 #include "sync/random/loss.h"
 
 #include <catch2/catch.hpp>

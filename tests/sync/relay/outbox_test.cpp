@@ -1,3 +1,4 @@
+// Tests of the rate-limited outbox of a relay.
 #include "sync/relay/outbox.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of relays between simulated sites.
 #include "sync/relay/relay.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of interpolating body poses.
 #include "sync/resampling/body_history.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of resampling contacts and contact events.
 #include "sync/resampling/contact_stream.h"
 
 #include <algorithm>

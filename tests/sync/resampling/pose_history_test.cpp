@@ -1,3 +1,4 @@
+// Tests of interpolating and predicting reported poses.
 #include "sync/resampling/pose_history.h"
 
 #include <catch2/catch.hpp>

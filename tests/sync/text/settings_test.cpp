@@ -1,3 +1,4 @@
+// Tests of settings: units, ranges and precedence.
 #include "sync/text/settings.h"
 
 #include <array>

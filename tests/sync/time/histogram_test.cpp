@@ -1,3 +1,4 @@
+// Tests of the duration histogram.
 #include "sync/time/histogram.h"
 
 #include <algorithm>

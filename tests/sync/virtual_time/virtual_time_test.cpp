@@ -1,3 +1,4 @@
+// Tests of programs in virtual time.
 #include "sync/virtual_time/virtual_time.h"
 
 #include <catch2/catch.hpp>

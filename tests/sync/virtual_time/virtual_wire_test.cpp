@@ -1,3 +1,4 @@
+// Tests of the network in virtual time: latency, jitter and loss.
 #include "sync/virtual_time/virtual_wire.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of the recorder: order, buffering, assets and disk errors.
 #include "sync/tools/recorder/recorder.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of replaying a log: speed, pause, seek, damage and new stamps.
 #include "sync/tools/replay/replay.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of the summary of a run.
 #include "sync/tools/summary/summary.h"
 
 #include <catch2/catch.hpp>
@@ -380,7 +381,7 @@ TEST_CASE("The summary tells how long each step of a quality ladder was in use, 
   }
   const Json j = Json::parse(to_json(log.summary()))["nodes"]["visual_node"];
   CHECK(j["quality"] == Json::array({0.75, 0, 0.25}));
-  // To a bin of the histogram, a quarter octave.
+  // Tolerance: a bin of the histogram, a quarter octave.
   CHECK(j["input_age_ms"]["WORLD_STATE"]["p50"].get<double>() == Approx(5).epsilon(0.19));
   CHECK(j["input_age_ms"]["WORLD_STATE"]["p99"].get<double>() == Approx(80).epsilon(0.19));
 }
