@@ -1,13 +1,12 @@
-// A driver for a device that haptic_node does not know: it says where the device is and exerts the force that it
-// is told.
+// Driver of a device that haptic_node has no code for: it publishes the pose of the device and exerts the force that it receives.
 //
-//   device_driver [NAME [GROUP [PORT [RUN]]]]        and beside it: haptic_node --device external:NAME
+//    device_driver [NAME [GROUP [PORT [RUN]]]]        and beside it: haptic_node --device external:NAME
 //
-//   out  DEVICE_STATE   a thousand times a second
-//   in   DEVICE_FORCE   let go when it is not renewed
+//    out  DEVICE_STATE   1000 times per second
+//    in   DEVICE_FORCE   the force is 0 when no new message arrives in time
 //
-// It needs LCM and the generated types, nothing of Tactus. The hardware here is a weight of 0.1 kg that a spring
-// and a damper hold 5 mm below where a floor may be; for a real device replace `Hardware`.
+// It needs LCM and the generated types, nothing else of Tactus. The hardware here is a weight of 0.1 kg that a spring and a damper hold 5
+// mm below the level of a floor; for a real device replace `Hardware`.
 #include <lcm/lcm-cpp.hpp>
 
 #include <chrono>
@@ -20,12 +19,12 @@
 
 namespace {
 
-using Clock = std::chrono::steady_clock;  // CLOCK_MONOTONIC on Linux, which header_t asks for
+using Clock = std::chrono::steady_clock;  // CLOCK_MONOTONIC on Linux, as header_t requires
 std::int64_t to_ns(Clock::time_point t) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(t.time_since_epoch()).count();
 }
 
-// What to replace. Along z only, in m, m/s, N.
+// Simulated hardware; replace it for a real device. Along z only, in m, m/s, N.
 struct Hardware {
   double z = 0.05, velocity = 0, force = 0;
 
@@ -50,7 +49,7 @@ struct Forces {
     newest = *m;
     arrived = Clock::now();
   }
-  // 0 when it was not renewed: haptic_node is gone, and a device must not go on pushing.
+  // Force in N; 0 when it was not renewed in time: haptic_node has ended, and a device must not push any longer.
   double z_N(Clock::time_point now) const {
     return now - arrived > std::chrono::nanoseconds(newest.valid_for_ns) ? 0 : newest.force_N.z;
   }
@@ -67,7 +66,7 @@ int main(int argc, char** argv) {
     return argument(1, "") == "--help" ? 0 : 1;
   }
   Forces forces{argument(1, "arm")};
-  // ttl=0: nothing leaves this machine.
+  // ttl=0: messages stay on this machine.
   lcm::LCM bus("udpm://" + argument(2, "239.255.76.67") + ":" + argument(3, "7667") + "?ttl=0");
   if (!bus.good()) {
     std::cerr << "device_driver: cannot open the bus; check that the network lets multicast through\n";
@@ -75,11 +74,11 @@ int main(int argc, char** argv) {
   }
   bus.subscribe("DEVICE_FORCE", &Forces::hear, &forces);
 
-  tactus::device_state_t state{};  // LCM zeroes nothing by itself
+  tactus::device_state_t state{};  // LCM initialises nothing by itself
   state.device = forces.device;
   state.header.sim_time_ns = -1;
   state.header.run_id = std::stoll(argument(4, "1"));
-  // Another number at every start: a driver that was started again is no driver whose clock fell back.
+  // A new number at every start distinguishes a restarted driver from one whose clock was set back.
   std::random_device random;
   state.header.incarnation = std::uniform_int_distribution<std::int64_t>(1, INT64_MAX)(random);
   state.pose.orientation.w = 1;

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""A driver for a device that haptic_node does not know, in Python: it says where the device is and takes the force.
+"""Driver in Python of a device that haptic_node has no code for: it publishes the pose of the device and exerts the force.
 
   lcm-gen -p --ppath TYPES lcmtypes/types/*/*.lcm             once
   PYTHONPATH=TYPES driver.py [NAME [GROUP [PORT [RUN]]]]     and beside it: haptic_node --device external:NAME
 
-It sends DEVICE_STATE 250 times a second and hears DEVICE_FORCE, which it lets go when it is not renewed. The hardware here is
-a weight of 0.1 kg that a spring and a damper hold 5 mm below where a floor may be; for a real device replace Hardware.
+It publishes DEVICE_STATE 250 times per second and receives DEVICE_FORCE; the force is 0 when no new message arrives in time. The
+hardware here is a weight of 0.1 kg that a spring and a damper hold 5 mm below the level of a floor; for a real device replace Hardware.
 """
 import random
 import select
@@ -20,8 +20,8 @@ PERIOD_S = 0.004
 
 
 class Bus:
-    """The little of LCM that a driver needs, so that this runs without its Python module; with it: lcm.LCM(url), and
-    its publish and subscribe. A small message is one datagram: "LC02", a number, the channel, 0, the message."""
+    """The part of LCM that a driver needs, so that LCM's Python module is not required. With the module: lcm.LCM(url) and its
+    publish and subscribe. A small message is one datagram: "LC02", a sequence number, the channel, 0, the message."""
 
     SMALL = 0x4C433032
 
@@ -30,7 +30,7 @@ class Bus:
         self.sequence = 0
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)  # nothing leaves this machine
+        self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)  # messages stay on this machine
         self.socket.bind(("", port))
         self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP,
                                socket.inet_aton(group) + socket.inet_aton("0.0.0.0"))
@@ -40,7 +40,7 @@ class Bus:
         self.sequence = (self.sequence + 1) & 0xFFFFFFFF
 
     def heard(self, channel):
-        """The messages on a channel that have arrived, without waiting."""
+        """The messages of a channel that have arrived; does not wait."""
         while select.select([self.socket], [], [], 0)[0]:
             datagram = self.socket.recv(65536)
             name, found, data = datagram[8:].partition(b"\0")
@@ -49,14 +49,14 @@ class Bus:
 
 
 class Hardware:
-    """What to replace. Along z only, in m, m/s, N."""
+    """Simulated hardware; replace it for a real device. Along z only, in m, m/s, N."""
     MASS_KG, DAMPING_NS_M, STIFFNESS_N_M, REST_M = 0.1, 10, 300, -0.005
 
     def __init__(self):
         self.z, self.velocity = 0.05, 0.0
 
     def step(self, force_n, dt):
-        for _ in range(4):  # a stiff spring wants small steps
+        for _ in range(4):  # a stiff spring needs small steps
             pull = self.DAMPING_NS_M * self.velocity + self.STIFFNESS_N_M * (self.z - self.REST_M)
             self.velocity += dt / 4 / self.MASS_KG * (force_n - pull)
             self.z += dt / 4 * self.velocity
@@ -68,7 +68,7 @@ def first_state(name, run):
     state.header = header_t()
     state.header.sim_time_ns = -1
     state.header.run_id = run
-    state.header.incarnation = random.SystemRandom().randrange(1, 2**63)  # another at every start
+    state.header.incarnation = random.SystemRandom().randrange(1, 2**63)  # a new number at every start
     state.pose = pose_t()
     state.pose.position_m, state.pose.orientation = vec3_t(), quat_t()
     state.pose.orientation.w = 1.0
@@ -91,7 +91,7 @@ def main():
         for data in bus.heard("DEVICE_FORCE"):
             try:
                 message = device_force_t.decode(data)
-            except ValueError:  # of another type
+            except ValueError:  # a message of another type
                 continue
             if message.device == name:
                 force_n, good_until = message.force_N.z, time.monotonic() + message.valid_for_ns * 1e-9

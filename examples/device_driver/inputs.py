@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Mouse, gamepad or 3D mouse as a device without force: a wand for the spot light, a head for the view, a hand that feels
-nothing. Beside it: haptic_node --tool TOOL --device external:NAME
+"""Mouse, gamepad or 3D mouse as a device without force: a wand for the spot light, a head for the view, or a hand without force
+feedback. Beside it: haptic_node --tool TOOL --device external:NAME
 
   lcm-gen -p --ppath TYPES lcmtypes/types/*/*.lcm             once
   PYTHONPATH=TYPES inputs.py mouse /dev/input/event5 --name wand
@@ -8,8 +8,8 @@ nothing. Beside it: haptic_node --tool TOOL --device external:NAME
   PYTHONPATH=TYPES inputs.py spacenav                 a 3D mouse, by spacenavd
 
 Mouse: to the right is -y, away is +x, the wheel is z. Gamepad: the left stick moves in x and y, the right one up and down. 3D
-mouse: pushing it moves, turning it turns. A source that ends, or was never there, is tried again every second; meanwhile the
-device says that it is lost.
+mouse: pushing it moves the tool, twisting it rotates the tool. A missing source is tried again every second; meanwhile the state of
+the device is LOST.
 """
 import argparse
 import fcntl
@@ -23,14 +23,14 @@ import time
 
 PERIOD_S = 0.004
 TRY_AGAIN_S = 1.0
-# design: a mouse of 1000 counts an inch moves the wand as far as the hand, times five; a notch of the wheel 1 cm.
+# design: a mouse with 1000 counts per inch moves the wand five times as far as the hand; a notch of the wheel 1 cm.
 MOUSE_M, WHEEL_M = 5 * 0.0254 / 1000, 0.01
-FASTEST_M_S = 10  # design: half of what haptic_node still believes; a mouse may be flicked
+FASTEST_M_S = 10  # design: half of the speed that haptic_node accepts; a mouse may be flicked
 STICK_M_S = 0.3  # design: an unhurried hand
-DEAD = 0.1  # design: what sticks read at rest
-# design: spacenavd reads some 350 at full push by default: 0.3 m/s and a quarter turn a second.
+DEAD = 0.1  # design: noise of a stick at rest
+# design: spacenavd reports about 350 at full push by default: 0.3 m/s and a quarter turn per second.
 PUSH_M_S, TURN_RAD_S = 0.3 / 350, 1.57 / 350
-# spacenavd tells of motion some 60 times a second and once when it ends: what is older is over (design: three of them).
+# spacenavd reports motion about 60 times per second and once when it ends. An older report has expired (design: three periods).
 MOTION_S = 0.05
 
 
@@ -66,7 +66,7 @@ class Pose:
 
 
 class Evdev:
-    """What Linux says of a mouse or a gamepad: struct input_event of linux/input.h."""
+    """Events of a mouse or a gamepad from Linux: struct input_event of linux/input.h."""
     EVENT = struct.Struct("@llHHi")
     KEY, REL, ABS = 1, 2, 3
     FIRST_BUTTONS = (0x110, 0x130)  # BTN_LEFT, BTN_SOUTH
@@ -77,7 +77,7 @@ class Evdev:
         self.left, self.sticks, self.ranges = b"", {}, {}
 
     def range_of(self, axis):
-        """(least, most) of an axis: EVIOCGABS, or that of a common gamepad where the source is no device."""
+        """(minimum, maximum) of an axis by EVIOCGABS; those of a common gamepad where the source is no device."""
         if axis not in self.ranges:
             try:
                 info = fcntl.ioctl(self.file, 2 << 30 | 24 << 16 | 0x45 << 8 | 0x40 + axis, bytes(24))
@@ -108,7 +108,7 @@ class Evdev:
                     by[{0: 1, 1: 0, self.WHEEL: 2}[code]] += value * (WHEEL_M if code == self.WHEEL else -MOUSE_M)
                 elif kind == self.ABS:
                     self.sticks[code] = value
-                elif kind == self.KEY and value < 2:  # 2: held down
+                elif kind == self.KEY and value < 2:  # value 2: held down (repeated)
                     for first in self.FIRST_BUTTONS:
                         if first <= code < first + 0x10:
                             pose.press(code - first, value)
@@ -122,8 +122,8 @@ class Evdev:
 
 
 class Spacenav:
-    """A 3D mouse by its daemon: eight numbers an event on a socket, as libspnav 1.0 reads them (protocol 0). What it calls
-    x, y, z (right, up, to the back) becomes -y, z, -x; axes that run the other way are turned round in /etc/spnavrc."""
+    """Events of a 3D mouse from its daemon: eight numbers per event on a socket, as libspnav 1.0 reads them (protocol 0). Its axes
+    x, y, z (right, up, to the back) become -y, z, -x; reversed axes are corrected in /etc/spnavrc."""
     EVENT = struct.Struct("@8i")
     MOTION, PRESS, RELEASE = 0, 1, 2
 
@@ -161,7 +161,7 @@ class Spacenav:
 
 
 def opened(kind, path):
-    """The source, or nothing while it is not there."""
+    """The open source; None when it is missing."""
     try:
         return Spacenav(path) if kind == "spacenav" else Evdev(path)
     except OSError:

@@ -1,4 +1,4 @@
-// What a 3D mouse is pushed and twisted becomes where a tool is: pushing moves it, twisting turns it. Pure.
+// Integrates the push and twist of a 3D mouse to the pose of a tool: pushing sets the velocity, twisting the angular velocity. Pure.
 #pragma once
 
 #include <algorithm>
@@ -10,17 +10,15 @@ namespace tactus::examples {
 
 class PushMotion {
  public:
-  // design: spacenavd reads some 350 at full push by default: 0.3 m/s, an unhurried hand, and a quarter turn a
-  // second.
+  // design: spacenavd reports about 350 at full push by default: 0.3 m/s, an unhurried hand, and a quarter turn per second.
   static constexpr double kSpeed_m_s = 0.3 / 350, kTurn_rad_s = 1.57 / 350;
-  // The daemon tells of motion some 60 times a second and once when it ends: what is older is over (design: three
-  // of them).
+  // The daemon reports motion about 60 times per second and once when it ends. An older report has expired (design: three periods).
   static constexpr double kHolds_s = 0.05;
 
-  // It stays within so many metres of its origin along each axis.
+  // half_m: range to each side of the origin along each axis, m.
   explicit PushMotion(double half_m) : half_m_(half_m) {}
 
-  // As libspnav has it: x to the right, y up, z towards the person; twists about them. Ours: x away, y to the
+  // Arguments in the axes of libspnav: x to the right, y up, z towards the person; twists about them. Stored in our axes: x away, y to the
   // left, z up.
   void push(int x, int y, int z, int rx, int ry, int rz) {
     push_ = {-double(z), -double(x), double(y)};
@@ -53,7 +51,7 @@ class PushMotion {
   std::int32_t buttons() const { return buttons_; }
 
  private:
-  // By the spin, about the axes of the world.
+  // Rotates by the spin, about the axes of the world.
   void turn(double angle, double dt) {
     if (angle == 0) return;
     const double s = std::sin(angle / 2) * dt / angle, w = std::cos(angle / 2);

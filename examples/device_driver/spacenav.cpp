@@ -1,11 +1,10 @@
-// A 3D mouse as a device without force, by libspnav: a head for the view, a wand for the lamp, a hand that feels
-// nothing.
+// Driver of a 3D mouse as a device without force, by libspnav: a head for the view, a wand for the lamp, or a hand without force feedback.
 //
-//   spacenav [NAME [GROUP [PORT [RUN]]]]        and beside it: haptic_node --tool TOOL --device external:NAME
+//    spacenav [NAME [GROUP [PORT [RUN]]]]        and beside it: haptic_node --tool TOOL --device external:NAME
 //
-//   out  DEVICE_STATE   250 times a second
+//    out  DEVICE_STATE   250 times per second
 //
-// A daemon that is not there, or goes, is tried again every second; meanwhile the device says that it is lost.
+// A missing daemon is tried again every second; meanwhile the state of the device is LOST.
 #include <spnav.h>
 #include <sys/socket.h>
 
@@ -22,12 +21,12 @@
 
 namespace {
 
-using Clock = std::chrono::steady_clock;  // CLOCK_MONOTONIC on Linux, which header_t asks for
+using Clock = std::chrono::steady_clock;  // CLOCK_MONOTONIC on Linux, as header_t requires
 constexpr auto kPeriod = std::chrono::milliseconds(4);
 constexpr auto kTryAgain = std::chrono::seconds(1);
-constexpr double kHalf_m = 0.5;  // it moves so far to each side of its origin (design: an arm's reach)
+constexpr double kHalf_m = 0.5;  // range to each side of its origin (design: the reach of an arm)
 
-// The daemon, while it is there.
+// The connection to spacenavd.
 class Daemon {
  public:
   bool there() const { return there_; }
@@ -43,11 +42,11 @@ class Daemon {
                    "it is tried every second\n";
     said_ = true;
   }
-  // Takes in what it has said.
+  // Reads the events that have arrived.
   void read(tactus::examples::PushMotion& motion) {
     if (!there_) return;
     char byte = 0;
-    if (recv(spnav_fd(), &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0) {  // it has ended
+    if (recv(spnav_fd(), &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0) {  // the daemon has ended
       spnav_close();
       there_ = false;
       std::cerr << "spacenav: the daemon is gone; it is tried every second\n";
@@ -76,13 +75,13 @@ int main(int argc, char** argv) {
                  "TOOL --device external:NAME\n";
     return 0;
   }
-  // ttl=0: nothing leaves this machine.
+  // ttl=0: messages stay on this machine.
   lcm::LCM bus("udpm://" + argument(2, "239.255.76.67") + ":" + argument(3, "7667") + "?ttl=0");
   if (!bus.good()) {
     std::cerr << "spacenav: cannot open the bus; check that the network lets multicast through\n";
     return 1;
   }
-  tactus::device_state_t state{};  // LCM zeroes nothing by itself
+  tactus::device_state_t state{};  // LCM initialises nothing by itself
   state.device = argument(1, "head");
   state.header.sim_time_ns = -1;
   state.header.run_id = std::stoll(argument(4, "1"));

@@ -1,3 +1,4 @@
+// Tests of malformed messages on the bus of a running cluster: every node counts and drops them, and none exits.
 #include <chrono>
 #include <limits>
 #include <random>
@@ -36,7 +37,7 @@ Message headed() {
   return m;
 }
 
-// Well-formed messages with one value that is not finite, by channel.
+// Well-formed messages with one non-finite value, by channel.
 std::map<std::string, Bytes> not_finite() {
   auto events = headed<contact_events_t>();
   events.pages = 1;
@@ -70,7 +71,7 @@ const std::vector<std::string> kAll{channels::kTouchModel,  channels::kContactEv
                                     channels::kAssetChunk,  channels::kAssetRequest,  channels::kThermalDevice,
                                     channels::kDeviceState, channels::kDeviceForce};
 
-// One round of everything that is wrong, on both ports.
+// One round of every kind of bad datagram, on both ports.
 void spoil(Datagrams& wire, std::mt19937& random) {
   std::uniform_int_distribution<int> byte(0, 255);
   const auto noise = [&](std::size_t size) {
@@ -92,7 +93,7 @@ void spoil(Datagrams& wire, std::mt19937& random) {
       wire.send_message(channel, noise(64), port);
       wire.send_message(channel, noise(4000), port);
     }
-    wire.send(noise(100), port);  // not even LCM's
+    wire.send(noise(100), port);  // noise without LCM's header
     wire.send({'L', 'C', '0', '2'}, port);
     wire.send({}, port);
   }
@@ -107,7 +108,7 @@ TEST_CASE("Malformed, truncated, oversized and non-finite messages are counted a
   std::mt19937 random(1);
   std::map<std::string, std::int64_t> before;
   for (const std::string& node : kNodes) before[node] = c.ear.bad(node);
-  // For 3 s, some 10,000 datagrams a second.
+  // 3 s of about 10,000 datagrams per second.
   for (int round = 0; round < 300; ++round) {
     spoil(wire, random);
     c.ear.listen(0.01);

@@ -1,4 +1,4 @@
-// Two hosts whose clocks differ: they agree on time, and what one presents is known on the other.
+// Tests of two hosts with different clocks: the clocks are mapped, and presentations of one host are matched on the other.
 #include <nlohmann/json.hpp>
 #include <tactus/input_health_t.hpp>
 #include <tactus/node_health_t.hpp>
@@ -14,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-// A command on a host of its own, as far as its clock is concerned: an hour ahead.
+// Runs a command in a time namespace whose clock is an hour ahead: another host, as far as clocks are concerned.
 std::vector<std::string> an_hour_ahead(std::vector<std::string> command) {
   const std::vector<std::string> host{"unshare", "--time", "--monotonic", "3600", "--fork", "--kill-child"};
   command.insert(command.begin(), host.begin(), host.end());
@@ -26,7 +26,7 @@ bool time_namespaces(RunScript& run) {
   return run.processes.wait_for_exit("probe", 20) == 0;
 }
 
-// One scenario of tests/measure/measure_clocks.
+// Runs one scenario of tests/measure/measure_clocks.
 json measured(RunScript& run, const std::string& scenario) {
   const std::filesystem::path file = run.folder.path() / (scenario + ".json");
   run.processes.spawn("measure", {"env", "TACTUS_BIN=" + programs().string(), (repository() / "tests/measure/measure_clocks").string(),
@@ -46,7 +46,7 @@ TEST_CASE("Two hosts agree on time, and their uncertainty holds the truth: idle,
   const std::string scenario = GENERATE(as<std::string>{}, "idle", "drift", "held", "jump", "restart");
   RunScript run;
   const json row = measured(run, scenario);
-  if (row.is_null()) return;  // no time namespaces here
+  if (row.is_null()) return;  // this machine has no time namespaces
   INFO(row.dump());
   REQUIRE(row["n"].get<int>() > 20);
   CHECK(row["within"].get<double>() >= 0.99);
@@ -60,7 +60,7 @@ TEST_CASE("A sense on a host an hour ahead renders, keeps its debts, and its hea
   RunScript run;
   if (!time_namespaces(run)) return;
   Running r;
-  // Both in one time namespace: each namespace is a clock of its own, and a host has one sync_node.
+  // Both processes share one time namespace: each namespace is a clock of its own, and a host has one sync_node.
   const std::string common = " --run-id " + std::to_string(Running::kRunId) + " --out " + quoted(r.folder.path());
   const std::string there = quoted(programs() / "sync_node") + common + " --name sync_node_there & exec " +
                             quoted(programs() / "visual_node") + common;
@@ -81,7 +81,7 @@ TEST_CASE("A sense on a host an hour ahead renders, keeps its debts, and its hea
   const bool presented = r.ear.wait_until(known, kPatience_s);
   INFO(r.words());
   REQUIRE(presented);
-  // Half an hour would be the wrong clock; half a second is a slow machine.
+  // The wrong clock would give half an hour; a slow machine gives half a second.
   CHECK(std::abs(pair->p50_ns) < 500'000'000);
   CHECK(pair->uncertainty_ns > 1'000);
   const node_health_t* health = r.ear.health("visual_node");

@@ -1,4 +1,4 @@
-// Commands to the simulation of a running cluster, by the program that people use.
+// Tests of commands to the simulation of a running cluster, sent by the command line program.
 #include <tactus/body_state_t.hpp>
 #include <tactus/touch_model_t.hpp>
 #include <tactus/world_state_t.hpp>
@@ -10,13 +10,13 @@ using namespace tactus::cluster;
 
 namespace {
 
-// A cluster whose touch models are listened to: they come with every step, and carry the map of its time.
+// A cluster and a subscriber to its touch models, which come with every step and carry the map of simulated time.
 struct Commanded : Running {
   sync::Queue<touch_model_t>& models = ear.bus().queue<touch_model_t>(channels::kTouchModel, 8192);
   std::optional<touch_model_t> newest;
   int asked = 0;
 
-  // What the program says.
+  // Runs the program and returns its output.
   std::string ask(const std::vector<std::string>& words, int wanted_status = 0) {
     const std::string name = "simulation" + std::to_string(++asked);
     std::vector<std::string> command{programs() / "simulation", "--run-id", std::to_string(kRunId)};
@@ -39,7 +39,7 @@ struct Commanded : Running {
     }
     return false;
   }
-  // Events that a sense has presented so far.
+  // Number of events that a modality has presented so far.
   std::size_t presented(const std::string& modality) const {
     const auto it = ear.presented().find(modality);
     return it == ear.presented().end() ? 0 : it->second.size();
@@ -111,7 +111,7 @@ TEST_CASE(
   lives_anew(second_life, c.sim_ns() + 1);
   CHECK(c.ear.rejoined("sim_node") == 2);
 
-  // A simulation that was killed and came back has it from its file.
+  // A restarted simulation loads it from its file.
   c.processes.kill("sim_node");
   c.processes.start("sim_node", {tapping_scene()});
   CHECK(c.ear.wait_until([&] { return c.lives("sim_node"); }, kPatience_s));

@@ -1,4 +1,4 @@
-// Touch and warmth made worse on purpose, one way at a time: the hand feels it, and no other sense notices.
+// Tests of each degradation of touch and warmth: it changes the rendered force, and no other modality is affected.
 #include <cmath>
 #include <set>
 #include <tactus/header_t.hpp>
@@ -14,20 +14,20 @@ using namespace tactus::cluster;
 
 namespace {
 
-constexpr std::size_t kPeriod_ms = 500;          // of the taps in tapping.sdf, whose path keeps the host's time
+constexpr std::size_t kPeriod_ms = 500;          // period of the taps in tapping.sdf, whose path follows the host's time
 using Trace = std::vector<std::vector<double>>;  // by ms of the period
 
 std::size_t phase_ms(const header_t& h) {
   return static_cast<std::size_t>(h.publish_time_ns / 1'000'000) % kPeriod_ms;
 }
 
-// What the hand felt for a while, and how the others fared.
+// Measurements over one span: the rendered force, and the timing of the other modalities.
 struct Felt {
-  Trace force = Trace(kPeriod_ms), warmed_by = Trace(kPeriod_ms);  // N: on the hand; what warmth was told of it
-  std::set<int> steps_cN;                                          // forces that were held for 5 ticks and more
-  std::vector<std::int64_t> ticks, world;                          // when TOOL_STATE and TOUCH_MODEL were sent
-  Trace told = Trace(kPeriod_ms / 20);    // degrees C, by tick of the period: what the display is told
-  std::map<std::string, double> wait_ms;  // of the other senses, median
+  Trace force = Trace(kPeriod_ms), warmed_by = Trace(kPeriod_ms);  // force on the hand, N, and the force in the input of warmth, N
+  std::set<int> steps_cN;                                          // forces that were held for at least 5 ticks
+  std::vector<std::int64_t> ticks, world;                          // send times of TOOL_STATE and TOUCH_MODEL
+  Trace told = Trace(kPeriod_ms / 20);    // degrees C, by tick of the period: setpoint of the display
+  std::map<std::string, double> wait_ms;  // median delay of each other modality
 
   double peak_N() const {
     double most = 0;
@@ -36,7 +36,7 @@ struct Felt {
   }
 };
 
-// How far the display goes up and down with each tap, K.
+// Peak-to-peak temperature of the display with each tap, K.
 double ripple_K(const Felt& f) {
   double least = 100, most = -100;
   for (const auto& told : f.told) {
@@ -100,7 +100,7 @@ double error_N(const Felt& clean, const Felt& f) {
   return sum / n;
 }
 
-// By how much what warmth was told of follows the force on the hand, ms: the shift in which the two agree best.
+// Lag of the force in the input of warmth behind the force on the hand, ms: the shift of best agreement.
 double lag_ms(const Felt& f) {
   double best = -1;
   std::size_t at = 0;
@@ -114,8 +114,7 @@ double lag_ms(const Felt& f) {
   return static_cast<double>(at);
 }
 
-// In the best of three spans, as Running::check_rates_hold; that vision is faster when other work on the machine
-// has ended is no fault.
+// Checks the rates in the best of three spans, as Running::check_rates_hold. Vision may become faster when other work on the machine ends.
 void check_not_slower(Degraded& c, std::map<std::string, double> left) {
   std::map<std::string, double> now;
   for (int span = 0; span < 3 && !left.empty(); ++span) {
@@ -126,8 +125,8 @@ void check_not_slower(Degraded& c, std::map<std::string, double> left) {
     FAIL_CHECK(node << ": " << rate << " Hz before, " << now[node] << " Hz at the last of three looks");
 }
 
-// The servo loop and the world, and how long the other senses take from their earliest chance to the output: wide
-// medians, for other work comes and goes.
+// Checks the rates of the servo loop and of the simulation, and the time of the other modalities from the earliest possible instant to the
+// output. The medians have wide bounds, because other work comes and goes.
 void check_others(Degraded& c, const std::map<std::string, double>& rates, const Felt& clean, const Felt& f,
                   const std::string& degraded) {
   check_not_slower(c, rates);
@@ -139,7 +138,7 @@ void check_others(Degraded& c, const std::map<std::string, double>& rates, const
     if (sense == degraded) continue;
     INFO(sense);
     REQUIRE(f.wait_ms.contains(sense));
-    // Vision, at no priority, has a few frames more or less beside other work.
+    // Vision has no real-time priority and may vary by a few frames beside other work.
     const double tolerance_ms = sense == "visual" ? 60 : 20;
     CHECK(f.wait_ms.at(sense) == Approx(wait).margin(tolerance_ms));
   }
@@ -150,18 +149,18 @@ void check_others(Degraded& c, const std::map<std::string, double>& rates, const
 TEST_CASE("DEGRADE-5: touch is delayed, thinned, lost, frozen, off or coarse, and only the hand feels it", "[exclusive]") {
   Degraded c;
   c.start();
-  // Each sense by itself: aligned ones wait for the slowest, which is vision, whose time wavers beside other work.
+  // Each modality runs by itself: aligned ones wait for the slowest, which is vision, whose time varies beside other work.
   ask_for(c, {"asap"});
   c.feel(2);  // delays of presentation settle
   Felt clean = c.feel(5), again = c.feel(5);
-  // A machine that stood still for a moment has a tap in one of the spans elsewhere: until two are alike.
+  // A pause of the machine shifts a tap in one of the spans: measures until two spans are alike.
   for (int span = 2; span < 5 && error_N(clean, again) > 0.002 * clean.peak_N(); ++span)
     clean = std::move(again), again = c.feel(5);
   const auto rates = c.rates(2);
   const double peak_N = clean.peak_N(), noise_N = error_N(clean, again);
   REQUIRE(peak_N > 1);
   REQUIRE(noise_N < 0.01 * peak_N);
-  // The same taps differ by a few mN, beside heavy work by some 20.
+  // The same taps differ by a few mN, beside heavy load by about 20 mN.
   const double effect_N = std::max(1.5 * noise_N, 0.004 * peak_N);
   for (const std::string rule : {"delay=\"40ms\"", "rate=\"3Hz\"", "loss=\"98% burst=400\"", "freeze=\"zero\"",
                                  "off=\"true\"", "force_step=\"1N\""}) {
@@ -187,7 +186,7 @@ TEST_CASE("DEGRADE-5: touch is delayed, thinned, lost, frozen, off or coarse, an
 TEST_CASE("DEGRADE-6: warmth is delayed, slow or off, and the hand that it is on does not notice", "[exclusive]") {
   Degraded c;
   c.start();
-  // Each sense by itself: aligned ones wait for the slowest, which is vision, whose time wavers beside other work.
+  // Each modality runs by itself: aligned ones wait for the slowest, which is vision, whose time varies beside other work.
   ask_for(c, {"asap"});
   c.feel(2);
   const Felt clean = c.feel(4);
@@ -202,7 +201,7 @@ TEST_CASE("DEGRADE-6: warmth is delayed, slow or off, and the hand that it is on
               << ripple_K(f) << " K up and down, clean " << ripple_K(clean) << " K");
     if (rule.starts_with("delay"))
       CHECK(std::remainder(lag_ms(f) - lag - 150, kPeriod_ms) == Approx(0).margin(40));
-    // A lag of 1 s leaves 1 / sqrt(1 + (2 pi 2 Hz 1 s)^2), a thirteenth, of what goes up and down twice a second.
+    // A lag of 1 s leaves 1 / sqrt(1 + (2 pi 2 Hz 1 s)^2), a thirteenth, of a variation at 2 Hz.
     if (rule.starts_with("response")) CHECK(ripple_K(f) < 0.4 * ripple_K(clean));
     double told_N = 0;
     for (const auto& by : f.warmed_by)

@@ -1,3 +1,4 @@
+// Tests of stopped, frozen, killed and late nodes in a running cluster: the other nodes keep their rates.
 #include <signal.h>
 #include <tactus/input_health_t.hpp>
 #include <tactus/node_health_t.hpp>
@@ -16,7 +17,7 @@ std::vector<std::string> without(const std::string& node) {
   return rest;
 }
 
-// Ids carry 24 bits of the incarnation of the simulation that gave them.
+// Ids carry 24 bits of the incarnation of the simulation that assigned them.
 bool of_incarnation(std::int64_t id, std::int64_t incarnation) {
   return id >> 40 == sync::prefixed_id(incarnation, 0) >> 40;
 }
@@ -44,7 +45,7 @@ TEST_CASE("DEGRADE-2: visual_node, frozen for 2 s, disturbs nobody and then show
   c.start();
   const std::int64_t stale_at_start = c.ear.health("visual_node")->stale_ticks;
   const auto before = c.rates(2);
-  // Beside heavy load it may be stale now and then by itself: as often as before the freeze is no effect of it.
+  // Heavy load alone makes some inputs stale: the same number as before the freeze is no effect of the freeze.
   const std::int64_t stale = c.ear.health("visual_node")->stale_ticks;
   const std::int64_t usual = stale - stale_at_start;
   const std::int64_t frames = c.ear.ticks("visual_node");
@@ -60,9 +61,9 @@ TEST_CASE("DEGRADE-2: visual_node, frozen for 2 s, disturbs nobody and then show
   REQUIRE(h != nullptr);
   CHECK(h->state == node_health_t::RUNNING);
   CHECK(h->ticks > frames);
-  // Two frames, and beside heavy load a few more: less than 0.1 s.
+  // Two frames, and a few more beside heavy load: less than 0.1 s.
   CHECK(h->stale_ticks - stale <= 5 + usual);
-  // It skipped what it missed: at its rate there were two seconds of frames.
+  // The node skipped the missed frames: two seconds at its rate.
   CHECK(h->missed_ticks - missed > before.at("visual_node"));
   for (const input_health_t& in : h->inputs) {
     INFO(in.channel << " is " << in.age_ns << " ns old");

@@ -1,4 +1,4 @@
-// Tables of the log of a real run.
+// Tests of the tables exported from the log of a real run.
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -46,7 +46,7 @@ TEST_CASE("The log of a run becomes tables that agree with what the run says of 
   CHECK(schema["broken_messages"] == 0);
   CHECK(schema["foreign_messages"] == 0);
 
-  // What the run itself made of TOOL_STATE, message by message.
+  // The table of TOOL_STATE that the run itself wrote, message by message.
   const Rows own = read(run.out() / "haptic.csv");
   const Rows tool = read(tables / "TOOL_STATE.csv");
   CHECK(schema["files"]["TOOL_STATE.csv"]["messages"] == own.rows.size());

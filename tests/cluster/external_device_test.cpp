@@ -1,4 +1,4 @@
-// Devices that programs of their own drive: they come, are felt, are lost and come back; in C++ and in Python.
+// Tests of devices with drivers in separate programs, in C++ and in Python: connection, rendering, loss and reconnection.
 #include <signal.h>
 
 #include <cstdlib>
@@ -12,7 +12,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-// lcm-gen's types for Python, made where the test may write.
+// Generates lcm-gen's types for Python in the test's folder.
 std::filesystem::path python_types(const Folder& folder) {
   const auto types = folder.path() / "types";
   const std::string command = "lcm-gen -p --ppath " + quoted(types.string()) + " " +
@@ -22,7 +22,7 @@ std::filesystem::path python_types(const Folder& folder) {
 }
 
 struct WithDriver : Running {
-  // One sense with an external device, and no driver yet.
+  // Starts touch with an external device, without a driver.
   void start_touch() {
     processes.start("sim_node", {tapping_scene()});
     processes.start("haptic_node", {"--device", "external:arm"});
@@ -41,8 +41,7 @@ struct WithDriver : Running {
                                  "arm", channels::kGroup, "7667", run});
     }
   }
-  // Its spring holds the driver's weight 5 mm under the floor, with the tool's radius 13 mm: 300 N/m of it against
-  // the coupling, so some 3 N.
+  // The spring pulls the driver's weight 5 mm under the floor, plus the tool's radius of 13 mm: 300 N/m against the coupling, about 3 N.
   bool is_felt() {
     return ear.wait_until([&] { return lives("haptic_node") && ear.force_N() > 1.5; }, kPatience_s);
   }
@@ -64,7 +63,7 @@ TEST_CASE("A device that a program drives is felt, lost when it is killed or fro
   INFO(c.processes.said("driver") << c.processes.said("haptic_node"));
   REQUIRE(felt);
 
-  // The weight rests where its spring and the floor balance: above its rest, which is 5 mm under the floor.
+  // The weight rests where its spring and the floor balance: above its rest position, which is 5 mm under the floor.
   const tool_state_t* tool = c.ear.tool_state();
   REQUIRE(tool);
   CHECK(tool->device.position_m.z > -0.005);

@@ -1,4 +1,4 @@
-// A run that is over, drawn again from its log.
+// Tests of a recorded run rendered again as a film.
 #include <tactus/contact_event_t.hpp>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/world_state_t.hpp>
@@ -12,7 +12,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-// The word after `before` in what a program has said.
+// The word after `before` in a program's output.
 std::string word_after(const std::string& said, const std::string& before) {
   const auto at = said.find(before);
   REQUIRE(at != std::string::npos);
@@ -22,7 +22,7 @@ std::string word_after(const std::string& said, const std::string& before) {
   return word;
 }
 
-// Begins and hits that happened at least so long before the log ends, each once.
+// Number of begins and hits at least before_end_ns before the log ends, each counted once.
 std::size_t events_of(const RunLog& log, std::int64_t before_end_ns) {
   std::int64_t end_ns = 0;
   log.each<world_state_t>(channels::kWorldState, [&](const auto& m) { end_ns = m.header.publish_time_ns; });
@@ -61,7 +61,7 @@ TEST_CASE("A run that was recorded is drawn into the same film each time, with a
   CHECK(events_of(events, 200'000'000) > 5);
   CHECK(first.find("not shown") == std::string::npos);
 
-  // It is this log, and this setting, that make the pixels.
+  // This log and this setting determine the pixels.
   CHECK(word_after(film("other.mp4", {"--set", "geometry=physics"}), "; pixels ") !=
         word_after(first, "; pixels "));
 }

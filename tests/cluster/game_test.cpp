@@ -1,4 +1,4 @@
-// The dark room's game, played by the scene's hand with real processes.
+// Tests of the dark room's game with real processes, played by the scene's virtual hand.
 #include <nlohmann/json.hpp>
 
 #include "tests/cluster/support/run_script.h"
@@ -8,8 +8,8 @@ using nlohmann::json;
 
 namespace {
 
-// The hand follows the clock with closed eyes: where the machine held the world still, longer than this, it went
-// on without it and has passed the ball. Such a run says nothing of the scene and is played again.
+// The hand follows the clock with closed eyes. If the machine stops the simulation for longer than this, the hand moves past the ball
+// meanwhile. Such a run is no evidence about the scene and is repeated.
 constexpr double kStandstillUs = 20000;
 
 double longest_standstill_us(const json& summary) {
@@ -39,8 +39,7 @@ TEST_CASE("A simulated person finds every ball and pushes it into its hole, live
 }
 
 TEST_CASE("The hand of the dark room, and a string device in its place, push every ball into its hole", "[exclusive]") {
-  // What drives a simulated string device is the same hand, whose pose comes from the lengths of strings, whose
-  // force from tensions.
+  // The simulated string device is driven by the same hand; its pose comes from string lengths, its force from tensions.
   const std::string device = GENERATE("virtual_hand", "spidar:cave,offset=-0.1/0/0.2");
   for (int attempt = 1;; ++attempt) {
     RunScript run;
@@ -58,7 +57,7 @@ TEST_CASE("The hand of the dark room, and a string device in its place, push eve
     INFO("the world stood still for at most " << longest_standstill_us(summary) / 1000 << " ms");
     CHECK(summary["game"]["filled"] == 3);
     REQUIRE(summary["game"]["won_at_s"].is_number());
-    // The path is over its last hole 17.5 s after its begin.
+    // The path passes its last hole 17.5 s after its begin.
     CHECK(summary["game"]["won_at_s"].get<double>() < 19);
     CHECK(summary["contacts"]["by_modality"]["haptic"]["lost"] == 0);
     break;

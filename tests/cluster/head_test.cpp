@@ -1,4 +1,4 @@
-// A head that a program moves: the picture follows it, and nothing else does.
+// Tests of a head pose from an external program: it moves the camera and nothing else.
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -26,8 +26,8 @@ double apart(const Pixels& a, const Pixels& b) {
 
 struct WithHead : Running {
   std::filesystem::path snapshot = folder.path() / "now.png";
-  bool pointed = false;  // its process was RUNNING
-  int buttons = 0;       // of the head, as any TOOL_STATE had them: beside heavy work a device is lost for moments
+  bool pointed = false;  // its node was RUNNING
+  int buttons = 0;       // of the head, as in any TOOL_STATE: beside heavy load a device is lost for moments
   sync::Bus tracker{sync::Identity::fresh("tracker", kRunId), {}};
 
   void start_all() {
@@ -46,7 +46,7 @@ struct WithHead : Running {
                     {programs() / "haptic_node", "--run-id", std::to_string(kRunId), "--out", folder.path(),
                      "--name", "haptic_node_" + tool, "--tool", tool});
   }
-  // The head is there, 250 times a second, for so long. Yaw about z.
+  // Sends the head pose at 250 Hz for the given time. Yaw about z.
   void hold(const Eigen::Vector3d& moved_m, double yaw_rad, double seconds, const char* device = "head") {
     const sync::HostTime end = sync::host_now() + sync::from_seconds(seconds);
     while (sync::host_now() < end) {
@@ -63,7 +63,7 @@ struct WithHead : Running {
       pointed = pointed || lives("haptic_node_head");
     }
   }
-  // What is seen after a second of it; beside heavy work frames are rare, and a snapshot is one of them.
+  // The picture after 1 s at this pose. Frames are rare beside heavy load, and a snapshot is one of them.
   Pixels seen(const Eigen::Vector3d& moved_m, double yaw_rad, const char* device = "head") {
     const std::int64_t before = ear.ticks("visual_node");
     for (double held = 0; held < 1.5 || (ear.ticks("visual_node") < before + 12 && held < kPatience_s);
@@ -89,7 +89,7 @@ TEST_CASE("A head that a program moves changes the picture and nothing else, and
   c.start_all();
   const Pixels at_rest = c.seen({0, 0, 0}, 0);
   REQUIRE(at_rest.size() == 320 * 240);
-  CHECK(*std::max_element(at_rest.begin(), at_rest.end()) > 40);  // something is lit
+  CHECK(*std::max_element(at_rest.begin(), at_rest.end()) > 40);  // the picture is lit
   CHECK(apart(at_rest, c.seen({0, 0, 0}, 0)) < 0.5);
   CHECK(c.pointed);
   CHECK(c.buttons == 5);
@@ -99,15 +99,15 @@ TEST_CASE("A head that a program moves changes the picture and nothing else, and
   CHECK(apart(at_rest, turned) > 3);
   CHECK(apart(at_rest, aside) > 3);
   CHECK(apart(turned, aside) > 3);
-  CHECK(apart(at_rest, c.seen({0, 0, 0}, 0)) < 0.5);  // and back
+  CHECK(apart(at_rest, c.seen({0, 0, 0}, 0)) < 0.5);  // and back at rest
   c.check_rates_hold(before, 2);
 
-  // The device says no more: the view stays, touch by the other hand goes on.
+  // The device sends no more: the view stays, touch by the other hand continues.
   c.seen({0, -0.15, 0}, 0);
   CHECK(c.ear.wait_until([&] { return c.state("haptic_node_head", node_health_t::OUTPUT_LOST); }, kPatience_s));
   c.ear.listen(0.5);
   CHECK(apart(c.picture(), aside) < 0.5);
-  // Its process is gone.
+  // Its node is killed.
   c.processes.kill("haptic_node_head");
   const bool said = c.ear.wait_until(
       [&] { return c.note("visual_node").find("the head is lost: the view stays") != std::string::npos; },
@@ -134,7 +134,7 @@ TEST_CASE(
   const Pixels left = c.seen({0, 0.3, 0}, 0, "wand"), right = c.seen({0, -0.3, 0}, 0, "wand");
   CHECK(apart(middle, left) > 1);
   CHECK(apart(left, right) > 1);
-  // The lit side is the one it points to: the picture's left is the camera's.
+  // The lit half is the one that the head points to: the left of the picture is the left of the camera.
   const auto half = [](const Pixels& p, bool left_half) {
     double sum = 0;
     for (std::size_t i = 0; i < p.size(); ++i)

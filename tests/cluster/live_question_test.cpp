@@ -1,5 +1,5 @@
-// A study's questions in the live page: asked on the bus by the test, answered by scripts/live/page/test in a real browser, and
-// the answers heard on the bus.
+// Tests of a study's questions in the live page: the test publishes them on the bus, scripts/live/page/test answers in a real browser, and
+// the test receives the answers.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -20,7 +20,7 @@ namespace {
 constexpr double kPatience_s = 60;  // liveness, not speed
 constexpr std::int64_t kRunId = 4712;
 constexpr const char* kToken = "0123456789abcdef0123";
-constexpr std::int64_t kFirst = 4'611'686'018'427'387'901;  // no double holds it: JavaScript must not either
+constexpr std::int64_t kFirst = 4'611'686'018'427'387'901;  // no double represents it: JavaScript must not use one either
 
 question_t question(std::int64_t id, int kind, const std::string& text, std::vector<std::string> choices = {}) {
   question_t m{};
@@ -36,7 +36,7 @@ question_t question(std::int64_t id, int kind, const std::string& text, std::vec
   return m;
 }
 
-// In this order, each until it is answered and for a second more; study.test.mjs knows them by their text.
+// In this order, each until it is answered and for a second more. study.test.mjs identifies them by their text.
 std::vector<question_t> study() {
   std::vector<question_t> all{
       question(kFirst, question_t::READ, "You will see a ball fall and hear it."),
@@ -71,7 +71,7 @@ TEST_CASE("What a study asks is answered in the live page by click, key and slid
   auto& heard = bus.queue<answer_t>(channels::kAnswer, 1024);
   std::map<std::int64_t, std::vector<answer_t>> answers;
   std::vector<question_t> left = study();
-  sync::HostTime over{};  // of the question that has been answered
+  sync::HostTime over{};  // time at which the current question was answered
   const sync::HostTime end = sync::host_now() + sync::from_seconds(2 * kPatience_s);
   for (sync::HostTime next{}; processes.running("browser") && sync::host_now() < end; bus.wait(std::chrono::milliseconds(20))) {
     const sync::HostTime now = sync::host_now();
@@ -92,11 +92,11 @@ TEST_CASE("What a study asks is answered in the live page by click, key and slid
   CHECK(status == 0);
   CHECK(left.empty());
   const std::vector<question_t> asked = study();
-  CHECK(answers.size() == asked.size());  // to nothing else
+  CHECK(answers.size() == asked.size());  // no other question has an answer
   for (const question_t& m : asked) {
     CAPTURE(m.text);
     REQUIRE(answers.contains(m.id));
-    CHECK(answers[m.id].size() >= 3);  // again for each repetition
+    CHECK(answers[m.id].size() >= 3);  // the answer is repeated for each repetition of the question
     for (const answer_t& a : answers[m.id]) {
       CHECK((a.choice == answers[m.id][0].choice && a.number == answers[m.id][0].number));
       CHECK(a.by == "page");

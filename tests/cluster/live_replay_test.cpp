@@ -1,3 +1,4 @@
+// Tests of a recorded run replayed on the bus to live renderers, with its control pipe and with LCM's stock tools.
 #include <signal.h>
 #include <sys/stat.h>
 
@@ -17,7 +18,7 @@ namespace {
 
 constexpr std::int64_t kLiveRun = Running::kRunId + 1;
 
-// Four seconds of the small scene, recorded into folder/run.lcmlog.
+// Records four seconds of the small scene into folder/run.lcmlog.
 std::filesystem::path recorded(const Folder& folder) {
   Running c;
   c.processes.start("recorder");
@@ -36,7 +37,7 @@ std::vector<std::string> options_of_replay(const std::filesystem::path& log, std
   return words;
 }
 
-// What a log holds, but for what only says that somebody tried its network.
+// Events of a log, without LCM's network self-tests.
 std::vector<std::pair<std::string, std::vector<std::uint8_t>>> events_in(const std::filesystem::path& path) {
   sync::MappedLog file(path);
   sync::LogScanner scanner(file.bytes());
@@ -65,7 +66,7 @@ TEST_CASE("All senses render a replayed log, and go on rendering it when one of 
   for (const std::string& n : kSenses) INFO(n << " rendered " << ear.rendered(n) << ": " << processes.said(n));
   INFO(processes.said("replay"));
   REQUIRE(rendered);
-  // What the recorded senses said of themselves is not heard: one haptic_node speaks, and in this life.
+  // The recorded health of renderers is not replayed: one haptic_node publishes, with one incarnation.
   CHECK(ear.rejoined("haptic_node") == 0);
   CHECK(ear.health("sim_node") == nullptr);
 
@@ -96,7 +97,7 @@ TEST_CASE("A running replay obeys what is written into its pipe") {
   auto& states = ear.bus().queue<world_state_t>(channels::kWorldState, 4096);
   processes.start("replay", {log, "--paused", "--stay", "--control", pipe});
   const auto order = [&](const std::string& words) { std::ofstream(pipe) << words << std::endl; };
-  // Instants of the world that go out within so long.
+  // Instants of the world that are published within the given time.
   const auto heard = [&](double seconds) {
     ear.listen(0.3);
     while (states.pop()) {
@@ -140,7 +141,7 @@ TEST_CASE("The stock lcm-logger hears all of what is replayed as it is, and its 
     Ear ear(kLiveRun);
     ear.wait_until([&] { return std::filesystem::exists(to); }, kPatience_s);
     ear.listen(0.5);
-    // No faster than the stock logger follows on a busy machine: its receive buffer of 208 KiB holds 0.3 s of this.
+    // No faster than the stock logger can follow on a busy machine: its receive buffer of 208 KiB holds 0.3 s of this.
     std::vector<std::string> words{from, "--most", "500"};
     words.insert(words.end(), options.begin(), options.end());
     processes.start("replay", words);
@@ -153,7 +154,7 @@ TEST_CASE("The stock lcm-logger hears all of what is replayed as it is, and its 
   CHECK_THAT(processes.said("replay"), Catch::Contains("holds no message of Tactus"));
   const bool heard_all = events_in(ours) == events_in(folder.path() / "stock.lcmlog");
   CHECK(heard_all);
-  // What replay says of itself has been recorded, too: not foreign any more.
+  // The replay's own messages are recorded, too, and are no longer foreign.
   through_lcm_logger(folder.path() / "stock.lcmlog", folder.path() / "again.lcmlog", {"--verbatim"});
   const bool same = events_in(folder.path() / "stock.lcmlog") == events_in(folder.path() / "again.lcmlog");
   CHECK(same);

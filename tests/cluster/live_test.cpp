@@ -1,5 +1,5 @@
-// The live page in a real browser: what a person does there is done by scripts/live/page/test, and its effect is
-// read from the bus, that is from the log of the run.
+// Tests of the live page in a real browser: scripts/live/page/test performs the user's actions, and the test checks their effect on the
+// bus in the log of the run.
 #include <nlohmann/json.hpp>
 #include <tactus/body_state_t.hpp>
 #include <tactus/degradation_t.hpp>
@@ -26,7 +26,7 @@ namespace {
 
 constexpr double kPatience_s = 60;  // liveness, not speed
 
-// The address that a program has printed; "": none came.
+// The address printed by a program; "": none.
 std::string address_of(Processes& processes, const std::string& name) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience_s);
   while (std::chrono::steady_clock::now() < end && processes.running(name)) {
@@ -57,7 +57,7 @@ void in_browser(RunScript& run, const std::string& test, const std::vector<std::
   REQUIRE(status == 0);
 }
 
-// When the browser did what, CLOCK_MONOTONIC.
+// Times of the browser's actions, CLOCK_MONOTONIC.
 struct Marks {
   json times;
   std::int64_t at(const std::string& name) const { return times.at(name).get<std::int64_t>(); }
@@ -67,7 +67,7 @@ struct Marks {
 constexpr std::int64_t kMs = 1'000'000;
 
 void check_commands(const RunLog& log) {
-  std::map<int, std::int64_t> asked;  // by kind: id
+  std::map<int, std::int64_t> asked;  // id by kind
   int steps = 0;
   log.each<sim_command_t>(channels::kSimCommand, [&](const sim_command_t& m) {
     asked[m.kind] = m.id;
@@ -87,7 +87,7 @@ void check_commands(const RunLog& log) {
   CHECK(steps == 25);
 }
 
-// Instants of the world that are told within a span.
+// Instants of the world that are published within a span.
 std::set<std::int64_t> instants(const RunLog& log, const Span& span) {
   std::set<std::int64_t> out;
   log.each<world_state_t>(channels::kWorldState, span,
@@ -103,7 +103,7 @@ void check_world(const RunLog& log, const Marks& marks) {
   REQUIRE(after.size() == 1);
   CHECK(*after.begin() - *before.begin() == 25 * kMs);  // 25 steps of 1 ms
   CHECK(instants(log, {stepped + 200 * kMs, marks.at("reset")}).size() > 5);
-  // The balls, which have lain on the floor for long, are dropped again from 0.3 m and more.
+  // The balls, which have rested on the floor, are dropped again from at least 0.3 m.
   double before_m = 0, after_m = 0;
   log.each<world_state_t>(channels::kWorldState, [&](const world_state_t& m) {
     const std::int64_t t = m.header.publish_time_ns;
@@ -142,7 +142,7 @@ void check_profiles(const RunLog& log, const Marks& marks) {
   std::map<std::string, sync::Rule> rules;
   for (const sync::Rule& r : sync::parse_profile(worse.text, "of the sliders").rules) rules[r.modality] = r;
   CHECK(rules.size() == 4);
-  // What was in force before stays, also what no slider shows.
+  // Rules in force before remain, including those without a slider.
   REQUIRE(rules["thermal"].delay);
   CHECK(rules["thermal"].delay->delay_s == Approx(0.03));
   CHECK(rules["thermal"].jitter);
@@ -176,7 +176,7 @@ void check_hand(const RunLog& log, const Marks& marks) {
   });
   REQUIRE(path.size() > 100);
   CHECK(highest_m - lowest_m > 0.05);
-  // 1 m/s, and the lateness of two turns of the server's loop on a busy machine.
+  // 1 m/s, and the lateness of two ticks of the server's loop on a busy machine.
   for (std::size_t i = 0, j = 0; j < path.size(); ++j) {
     while (path[j].t_ns - path[i].t_ns > 100 * kMs) ++i;
     const auto &a = path[i].p, &b = path[j].p;
@@ -184,14 +184,14 @@ void check_hand(const RunLog& log, const Marks& marks) {
     CHECK(far_m <= static_cast<double>(path[j].t_ns - path[i].t_ns) * 1e-9 + 0.05);
   }
   CHECK(path.front().t_ns >= marks.at("hand"));
-  // The server lets go after 350 ms of silence.
+  // The server releases the hand after 350 ms without messages.
   CHECK(path.back().t_ns < marks.at("let_go") + 1000 * kMs);
 
   double most_N = 0;
   log.each<tool_state_t>(channels::kToolState, marks.between("hand", "let_go"), [&](const tool_state_t& m) {
     most_N = std::max(most_N, std::hypot<double>(m.force_N.x, m.force_N.y, m.force_N.z));
   });
-  CHECK(most_N > 0.5);  // the floor is felt through the mouse
+  CHECK(most_N > 0.5);  // the floor pushes back through the mouse
   std::map<int, int> states;
   log.each<node_health_t>(channels::kNodeHealth, marks.between("freeze", "over"), [&](const node_health_t& m) {
     if (m.node == "haptic_node") ++states[m.state];
@@ -212,7 +212,7 @@ void check_tag(const RunLog& log, const Marks& marks) {
   CHECK(before == 0);
 }
 
-// Ticks per second of each node, as NODE_HEALTH tells them.
+// Ticks per second of each node, from NODE_HEALTH.
 std::map<std::string, double> rates(const RunLog& log, const Span& span) {
   std::map<std::string, std::pair<node_health_t, node_health_t>> ends;
   log.each<node_health_t>(channels::kNodeHealth, span, [&](const node_health_t& m) {
@@ -241,7 +241,7 @@ void check_nobody_notices(const RunLog& log, const Marks& marks) {
   }
 }
 
-// The instant of the world that was told last before a place in a log; -1: none.
+// The last published instant of the world before a place in a log; -1: none.
 std::int64_t world_at(const std::filesystem::path& path, double at_s) {
   sync::MappedLog file(path);
   sync::LogScanner scanner(file.bytes());
@@ -298,7 +298,7 @@ TEST_CASE(
   for (const json& place : seen["places"]) {
     const double to_s = place["to_s"].get<double>();
     INFO(place.dump());
-    // Shown to four figures; the world is told 100 times a second, and a variable is thinned to 200.
+    // Shown to four figures. The world is published 100 times per second, and a variable is decimated to 200 points.
     const auto expected = static_cast<double>(world_at(recorded, to_s));
     CHECK(place["sim_ns"].get<double>() == Approx(expected).margin(60e6));
   }

@@ -1,5 +1,5 @@
-// Runs each test in network and process namespaces of its own: it hears and disturbs nobody, and whatever becomes of the
-// test, no process of it is left.
+// Runs each test in its own network and process namespaces, so that it cannot receive from or disturb other programs. No process of a test
+// survives it, however the test ends.
 #define CATCH_CONFIG_RUNNER
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 namespace {
 
 constexpr const char* kInside = "TACTUS_TEST_INSIDE";
-constexpr int kSkipped = 77;  // as told to CTest
+constexpr int kSkipped = 77;  // the skip code that CTest expects
 constexpr const char* kNetwork =
     "PATH=$PATH:/usr/sbin:/sbin; ip link set lo up && ip route add 224.0.0.0/4 dev lo || exit 77; exec \"$0\" \"$@\"";
 

@@ -1,4 +1,4 @@
-// Nothing to draw on: vision says what it tried and is not there; nobody else notices.
+// Tests of visual_node without a rendering context: it reports the attempted contexts and exits; no other node is affected.
 #include "tests/cluster/support/seeing.h"
 
 using namespace tactus;
@@ -24,7 +24,7 @@ TEST_CASE("Where no OpenGL context can be had vision ends with what it tried, an
                        Catch::Contains("EGL default display") && Catch::Contains("install libegl-mesa0"));
   CHECK(c.others_live());
   c.check_rates_hold(before, 1, "visual_node");
-  // And with one, it is there again.
+  // With a context it starts again.
   c.start_vision(c.snapshots());
   CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
 }

@@ -1,4 +1,4 @@
-// Overlays, plots and the stream of a running picture, changed from outside.
+// Tests of overlays, plots and the picture stream of a running node, changed over the bus.
 #include "tests/cluster/support/seeing.h"
 
 using namespace tactus;
@@ -10,7 +10,7 @@ TEST_CASE(
   c.start_with(c.snapshots());
   const auto before = c.rates(1);
   const Grey plain = c.later_picture();
-  // Words on a dark plate at the upper left, and a plot at the upper right, change their part of the picture.
+  // Text on a dark plate at the upper left and a plot at the upper right each change their part of the picture.
   const auto part_apart = [](const Grey& a, const Grey& b, bool left) {
     Grey of_a, of_b;
     for (std::size_t i = 0; i < a.size(); ++i)
@@ -34,7 +34,7 @@ TEST_CASE(
              Catch::Contains("force_N") || Catch::Contains("vec3"));
   CHECK_THAT(c.set({"overlai=none"}, 1), Catch::Contains("\"overlai\"") && Catch::Contains("overlay"));
   CHECK_THAT(c.set({"stream_quality=1000"}, 1), Catch::Contains("stream_quality"));
-  CHECK(part_apart(again, c.later_picture(), false) > 5);  // what was there stays
+  CHECK(part_apart(again, c.later_picture(), false) > 5);  // the existing overlay stays
 
   c.set({"overlay=all", "plot_span=1s"});
   c.check_rates_hold(before, 2);

@@ -1,4 +1,4 @@
-// A run that is recorded in parts.
+// Tests of a run that is recorded in several parts.
 #include <nlohmann/json.hpp>
 #include <tactus/tool_state_t.hpp>
 
@@ -32,7 +32,7 @@ TEST_CASE(
   const std::vector<std::string> parts = sync::log_parts_in(run.out());
   REQUIRE(parts.size() >= 3);
 
-  // The results of the run are of all parts: every tick of the hand is there, once.
+  // The results of the run cover all parts: every tick of the hand is present, once.
   std::set<std::int64_t> ticks;
   std::size_t heard = 0;
   for (const std::string& part : parts) {
@@ -58,12 +58,12 @@ TEST_CASE(
     run.output_of({(programs() / "haptic_node").string(), "--log", log, "--trace", trace});
     return lines_of(trace) - 1;
   };
-  CHECK(felt(run.out(), "all.csv") >= heard - 50);  // those before the world has begun are not felt
+  CHECK(felt(run.out(), "all.csv") >= heard - 50);  // touch states before the first world state have no result
   const std::size_t second = felt(parts[1], "second.csv");
   CHECK(second > 100);
   CHECK(second < heard / 2);
 
-  // Played as one, from an instant in the last part.
+  // Replays the parts as one, from an instant in the last part.
   const json says =
       json::parse(run.output_of({(programs() / "replay").string(), run.out(), "--describe"}), nullptr, false);
   REQUIRE_FALSE(says.is_discarded());

@@ -1,5 +1,4 @@
-// When the senses of a running cluster present: by policy, changed while it runs, kept when nobody says so any
-// more.
+// Tests of playout policies in a running cluster: changed at run time, and kept when no program repeats them.
 #include <cstdlib>
 
 #include "tests/cluster/support/profiles.h"
@@ -9,7 +8,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-// Presented in a after b, ms, of hits of the tool that neither had reported before; touch by its transient.
+// Asynchronies of a after b, ms, for new hits of the tool; touch by its transient.
 std::vector<double> asynchronies_ms(const Ear& ear, const std::string& a, const std::string& b,
                                     const EventsHeard& before) {
   std::vector<double> out;
@@ -25,7 +24,7 @@ std::vector<double> asynchronies_ms(const Ear& ear, const std::string& a, const 
   return out;
 }
 
-// Of events of the next few seconds, once the delays have been slewed in.
+// Median asynchrony over the next seconds, after the delays have been slewed.
 double settled_asynchrony_ms(Running& c, const std::string& a, const std::string& b, double slewed_s) {
   c.ear.listen(slewed_s);
   const EventsHeard before = heard_of(c.ear);
@@ -38,7 +37,7 @@ double settled_asynchrony_ms(Running& c, const std::string& a, const std::string
 TEST_CASE("Sound and picture are as far apart as an experiment asks, changed while the cluster runs", "[exclusive]") {
   Running c;
   c.start();
-  // 100 ms of a base of 200 ms come at 5 % of the time: within 4 s and a half of it.
+  // 100 ms of a base of 200 ms are slewed at 5 % of the time: within 4.5 s.
   CHECK(ask_for(c, {"experiment", "--base", "200ms", "--soa", "audio=-60ms,visual=60ms"}).find("experiment") !=
         std::string::npos);
   const double apart = settled_asynchrony_ms(c, "visual", "audio", 6);
@@ -82,7 +81,7 @@ TEST_CASE("What the display takes after the fence is in what is reported as pres
   c.processes.start("visual_node", {"--set", "display_latency=0.1"});
   CHECK(c.ear.wait_until([&] { return c.lives("visual_node"); }, kPatience_s));
   ask_for(c, {"asap"});
-  // Without, picture and sound come within a frame or two of each other.
+  // Without the policy, picture and sound come within one or two frames of each other.
   CHECK(settled_asynchrony_ms(c, "visual", "audio", 2) > 60);
   ask_for(c, {"experiment", "--base", "300ms"});
   CHECK(std::abs(settled_asynchrony_ms(c, "visual", "audio", 7)) < 60);

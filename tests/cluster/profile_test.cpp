@@ -1,4 +1,4 @@
-// A degradation profile in a running cluster.
+// Tests of a degradation profile in a running cluster.
 #include <algorithm>
 #include <fstream>
 #include <sstream>

@@ -1,3 +1,4 @@
+// Tests of the recorder under a kill, a full disk and a flood of messages.
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/mount.h>
@@ -20,7 +21,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-// Numbered messages of a kind that nobody else sends.
+// Sends numbered messages on a channel that no other program uses.
 struct Sender {
   static constexpr const char* kChannel = channels::kGameState;
   Ear ear{Running::kRunId};
@@ -46,7 +47,7 @@ std::vector<std::int64_t> numbers_in(const std::filesystem::path& log) {
   for (sync::LogEvent e; scanner.next(e);)
     if (e.channel == Sender::kChannel)
       if (const auto header = sync::peek_header(e.data.data(), e.data.size())) numbers.push_back(header->seq);
-  // Whatever ended it, the file ends at the end of an event.
+  // However the recorder ended, the file ends at the end of an event.
   CHECK(scanner.damaged_regions() == 0);
   return numbers;
 }
@@ -59,7 +60,7 @@ TEST_CASE("Of a recorder that is killed at most the last 100 ms are missing, and
   Sender sender;
   processes.start("recorder");
   REQUIRE(sender.ear.wait_until([&] { return sender.ear.health("recorder") != nullptr; }, kPatience_s));
-  // Without a scene the log begins after 5 s; what came until then waits.
+  // Without a scene the log begins after 5 s; earlier messages wait until then.
   sender.send(7000, sync::Nanoseconds(1'000'000));
   const sync::HostTime killed = sync::host_now();
   processes.kill("recorder");
@@ -122,7 +123,7 @@ TEST_CASE("Of a node that floods all is recorded that the kernel delivers, and w
   }
   CHECK(parts > 3);
   CHECK_THAT(processes.said("recorder"), !Catch::Contains("want of"));
-  // What is missing is a gap that the recorder has counted: as many as the kernel dropped at its socket.
+  // The missing messages form a gap that the recorder has counted: as many as the kernel dropped at its socket.
   const std::string said = processes.said("recorder");
   const std::size_t at = said.rfind("GAME_STATE ");
   const std::int64_t gaps = at == std::string::npos ? 0 : std::stoll(said.substr(at + 11));

@@ -1,3 +1,4 @@
+// Tests of a log replayed by the stock lcm-logplayer to running renderers.
 #include <signal.h>
 
 #include "sync/bus/bus.h"
@@ -21,7 +22,7 @@ TEST_CASE("The stock lcm-logplayer replays a log into a running audio_node and v
   }
   const std::filesystem::path log = folder.path() / "run.lcmlog";
 
-  // Another run, in which there is no simulation.
+  // Another run, without a simulation.
   constexpr std::int64_t kOtherRun = Running::kRunId + 1;
   Processes processes(folder.path() / "again", kOtherRun);
   Ear ear(kOtherRun);

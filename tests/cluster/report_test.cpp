@@ -1,4 +1,4 @@
-// A report on a real run.
+// Tests of a report on a real run.
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -44,7 +44,7 @@ TEST_CASE(
   const std::regex outside("(src|href)=\"(?!#|data:)");
   CHECK_FALSE(std::regex_search(first, outside));
 
-  // What the page is made of agrees with what the runs say of themselves.
+  // The data of the page agree with the summaries of the runs.
   const json made = json::parse(contents(table), nullptr, false);
   REQUIRE_FALSE(made.is_discarded());
   CHECK(made["figures"] >= 6);

@@ -1,4 +1,4 @@
-// A run that is over, rendered again by every sense: the same each time, and as the run itself was.
+// Tests of a recorded run rendered again by every modality: identical each time, and equal to the run itself.
 #include <nlohmann/json.hpp>
 
 #include "tests/cluster/support/run_script.h"
@@ -32,7 +32,7 @@ TEST_CASE("A recorded run is rendered to the same bytes twice, sounds within a m
   REQUIRE(status == 0);
   const std::filesystem::path late = run.folder.path() / "late.xml", table = run.folder.path() / "table.json";
   std::ofstream(late) << R"(<profile name="late"><degrade modality="audio" delay="40ms"/></profile>)";
-  // It ends with 1 when a byte differs, or an onset of sound is more than 1 ms off.
+  // Exits with 1 when a byte differs, or when an onset of sound is more than 1 ms off.
   const std::string said = run.output_of(
       {"env", "TACTUS_BIN=" + programs().string(), (repository() / "scripts/tactus").string(), "rerender", run.out() / "run.lcmlog", "--degrade", late,
        "--twice", "--live", "--set", "visual:width=320", "--set", "visual:height=240", "--json", table});
@@ -58,7 +58,7 @@ TEST_CASE("A recorded run is rendered to the same bytes twice, sounds within a m
   CHECK(audio["presented"] >= 3);
   CHECK(audio["dropped"] == 0);
   CHECK(std::abs(audio["shift_p50_ms"].get<double>() - 40) < 0.05);        // rounded to a sample, twice
-  CHECK(std::abs(audio["heard_shift_p50_ms"].get<double>() - 40) < 0.2);   // as heard in the samples
+  CHECK(std::abs(audio["heard_shift_p50_ms"].get<double>() - 40) < 0.2);   // onset measured in the samples
   CHECK(changed_of(result, "haptic")["difference_peak_N"] == 0);
   CHECK(changed_of(result, "visual")["frames_differ"] == 0);
   CHECK(changed_of(result, "thermal")["skin_peak_K"] == 0);

@@ -1,4 +1,4 @@
-// What a person meets who calls scripts/run.
+// Tests of scripts/run as a user calls it.
 #include <nlohmann/json.hpp>
 
 #include "tests/cluster/support/run_script.h"
@@ -148,7 +148,7 @@ TEST_CASE("A busy port is named, with the remedy, when the machine's network is 
   CHECK(said.find("7667") != std::string::npos);
   CHECK(said.find("--port") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(run.out("b")));
-  // Ctrl-C ends the first early, with its results.
+  // Ctrl-C ends the first run early, with its results.
   run.processes.signal("first", SIGINT);
   const int status = run.finish(60, "first");
   INFO(run.processes.said("first"));
@@ -167,7 +167,7 @@ TEST_CASE("Two runs at once do not hear each other", "[exclusive]") {
     CHECK(status == 0);
     const json summary = json::parse(contents(run.out(name) / "summary.json"), nullptr, false);
     REQUIRE_FALSE(summary.is_discarded());
-    // Another node of the same name would have been taken for a restart.
+    // Another node of the same name would count as a restart.
     for (const auto& [node, figures] : summary["nodes"].items()) CHECK(figures["restarts"] == 0);
   }
 }

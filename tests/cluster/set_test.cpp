@@ -1,4 +1,4 @@
-// Settings of a node of a running cluster, changed by the program that people use.
+// Tests of settings of a running node, changed by the command line program.
 #include <cmath>
 #include <tactus/tool_state_t.hpp>
 
@@ -24,7 +24,7 @@ struct Set : Running {
     CHECK(std::count(said.begin(), said.end(), '\n') == 1);
     return said;
   }
-  // The largest force in TOOL_STATE over so many seconds, N: the hand taps twice a second.
+  // The largest force in TOOL_STATE over the given time, N: the hand taps twice per second.
   double largest_N(double seconds) {
     double most = 0;
     std::int64_t states = 0;
@@ -57,7 +57,7 @@ TEST_CASE(
   CHECK_THAT(c.ask({"haptic_node", "force_limit=0.5N"}), Catch::Contains("force_limit"));
   const double tightened_N = c.largest_N(2);
   CHECK(tightened_N <= 0.5 + 1e-6);
-  CHECK(tightened_N > 0.4);  // it is a limit, not an end of touch
+  CHECK(tightened_N > 0.4);  // the setting limits the force and does not end touch
   c.ask({"haptic_node", "force_limit=8N"});
   CHECK(c.largest_N(2) > 0.8 * before_N);
   CHECK(c.ear.wait_until([&] { return c.lives("haptic_node"); }, kPatience_s));

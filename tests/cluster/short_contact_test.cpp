@@ -1,5 +1,5 @@
-// A contact of 3 ms, over before the next picture and the next tick of heat: whatever one sense suffers, no other
-// misses it.
+// Tests of a contact of 3 ms, which is over before the next video frame and the next thermal tick: no degradation of one modality makes
+// another modality miss it.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -13,8 +13,8 @@ using namespace tactus::cluster;
 
 namespace {
 
-// Policies of presentation to hold under, as scripts/run takes them; "": its default. Each has its turn with one sense that is
-// degraded; with TACTUS_ALL_POLICIES in the environment, which takes five minutes, all with every one.
+// Playout policies under test, as options of scripts/run; "": its default. Each policy is tested with one degraded modality. With
+// TACTUS_ALL_POLICIES in the environment, which takes five minutes, each policy is tested with all of them.
 const std::map<std::string, std::string> kPolicy{
     {"", ""}, {"audio", "asap"}, {"visual", "experiment"}, {"haptic", "itouch2005"}, {"thermal", "aligned"}};
 
@@ -26,8 +26,8 @@ std::vector<std::string> policies_for(const std::string& degraded) {
 const std::map<std::string, std::vector<std::string>> kOwes{
     {"haptic", {"begin", "hit"}}, {"audio", {"hit"}}, {"visual", {"begin", "hit"}}, {"thermal", {"begin", "hit"}}};
 
-// The tool dips 0.6 mm into the floor and out of it at 0.5 m/s: 3 ms from touch to where the surfaces are told to
-// have parted, 0.3 mm apart. 257 ms between two dips, which is no multiple of any sense's period.
+// The tool dips 0.6 mm into the floor and out of it at 0.5 m/s: 3 ms from touch to the published end, at a gap of 0.3 mm. 257 ms between
+// two dips, which is no multiple of the period of any modality.
 std::filesystem::path write_motion(const std::filesystem::path& file) {
   constexpr double kRadius_m = 0.008, kDip_m = 0.0006, kSpeed_m_s = 0.5, kAbove_m = 0.03;
   std::ofstream out(file);
@@ -61,10 +61,10 @@ std::vector<std::map<std::string, std::string>> table(const std::filesystem::pat
 }
 
 struct Result {
-  std::map<std::string, std::string> kind;                            // of each settled event, by id
-  std::map<std::string, std::map<std::string, std::string>> outcome;  // by sense and event
-  std::map<std::string, double> soonest_ms;                           // after the event, by sense
-  std::vector<double> lasted_ms;                                      // the contacts
+  std::map<std::string, std::string> kind;                            // kind of each settled event, by id
+  std::map<std::string, std::map<std::string, std::string>> outcome;  // by modality and event
+  std::map<std::string, double> soonest_ms;                           // after the event, by modality
+  std::vector<double> lasted_ms;                                      // durations of the contacts
 };
 
 Result read(const std::filesystem::path& out) {
@@ -73,7 +73,7 @@ Result read(const std::filesystem::path& out) {
   REQUIRE_FALSE(events.empty());
   const auto ns = [](const auto& row, const char* name) { return std::stoll(row.at(name)); };
   std::map<std::string, std::int64_t> began, happened_ns;
-  // The last 1.2 s may not have been reported when the run ended.
+  // Events of the last 1.2 s may be unreported when the run ends.
   const std::int64_t settled = ns(events.back(), "host_ns") - 1'200'000'000;
   for (const auto& row : events) {
     happened_ns[row.at("event_id")] = ns(row, "host_ns");
@@ -129,11 +129,10 @@ void check_all_but(const std::string& degraded) {
       for (const auto& [outcome, n] : outcomes) said << n << " " << outcome << ", ";
       INFO(sense << " of " << owed << ": " << said.str());
       CHECK(owed >= 10);
-      // The profile did what it says, to the sense that it names: 30 ms, less half a video frame, for a picture shows
-      // what is nearest to it.
+      // The profile takes effect on its modality: 30 ms, less half a video frame, because a picture shows the nearest event.
       if (sense == degraded && r.soonest_ms.contains(sense)) CHECK(r.soonest_ms.at(sense) > 21);
-      // Held back by its rate the degraded sense may be too late to make sense, and says so. In the serial loop touch feels only
-      // what is there when its turn comes.
+      // A rate limit may delay an event too far for the degraded modality, which then reports a refusal. In the serial loop touch renders
+      // only contacts that exist in its own slot.
       const bool may_refuse = sense == degraded || (policy == "itouch2005" && sense == "haptic");
       CHECK(presented + (may_refuse ? refused : 0) == owed);
     }

@@ -1,4 +1,4 @@
-// A sense that no folder but its own knows of, in a running cluster.
+// Tests of a modality that is defined in its own folder only, in a running cluster.
 #include <signal.h>
 
 #include <nlohmann/json.hpp>
@@ -16,7 +16,7 @@ using nlohmann::json;
 
 namespace {
 
-// Waits until each of these senses has presented so many events that it had not before.
+// Waits until each of these modalities has presented the given number of new events.
 bool presents(Running& c, const std::vector<std::string>& modalities, const EventsHeard& before,
               std::size_t events) {
   return c.ear.wait_until(
@@ -61,7 +61,7 @@ TEST_CASE(
   INFO("presented " << kept.presented << " of " << kept.owed << ", with " << paired_with.size() << " others");
   CHECK(kept.lost == 0);
 
-  // Nobody else is disturbed by it.
+  // The other nodes keep their rates.
   c.check_rates_hold(before, 2);
   for (const auto& [node, rate] : before) CHECK(c.lives(node));
   for (const char* node : {"wind_node", "recorder"}) {
@@ -89,7 +89,7 @@ TEST_CASE("A profile delays the sixth sense by just its 50 ms, and no other sens
   REQUIRE(c.ear.wait_until([&] { return c.lives("wind_node"); }, kPatience_s));
   std::vector<std::string> all = kOthers;
   all.push_back("wind");
-  ask_for(c, {"asap"});  // else all wait for the slowest, as long as it happens to need
+  ask_for(c, {"asap"});  // otherwise all modalities wait for the slowest
   c.ear.listen(2);
   constexpr std::size_t kEvents = 12;
   const EventsHeard none = heard_of(c.ear);
@@ -98,7 +98,7 @@ TEST_CASE("A profile delays the sixth sense by just its 50 ms, and no other sens
   for (const std::string& m : all) before[m] = median(waits_ms(c.ear, m, none));
 
   CHECK(put_in_force(c, "<degrade modality=\"wind\" delay=\"50ms\"/>").find("wind_node") != std::string::npos);
-  c.ear.listen(0.5);  // what was on its way
+  c.ear.listen(0.5);  // events in flight
   const EventsHeard until = heard_of(c.ear);
   REQUIRE(presents(c, all, until, kEvents));
   REQUIRE(c.ear.health("wind_node"));
@@ -106,7 +106,7 @@ TEST_CASE("A profile delays the sixth sense by just its 50 ms, and no other sens
   for (const std::string& m : all) {
     const double now = median(waits_ms(c.ear, m, until));
     INFO(m << " waited " << before[m] << " ms before and " << now << " ms now");
-    // A busy machine moves a median by some ticks, not by half of the delay.
+    // A busy machine moves a median by some ticks, but not by half of the delay.
     CHECK(std::abs(now - before[m] - (m == "wind" ? 50 : 0)) < 25);
   }
 }

@@ -1,4 +1,4 @@
-// The bus of a running cluster, looked at in a terminal.
+// Tests of the spy on the bus of a running cluster, in a terminal.
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -58,7 +58,7 @@ TEST_CASE("In a terminal keys show the fields of a channel and the variables of 
   c.start();
   const std::string typescript = c.folder.path() / "typescript";
   const std::string spy = (programs() / "spy").string() + " --run-id " + std::to_string(Running::kRunId);
-  // Down to TOOL_STATE, enter; back; variables; end.
+  // Keys: down to TOOL_STATE, enter; back; variables; end.
   c.processes.spawn("spy", {"sh", "-c",
                             "(sleep 3; for i in $(seq 60); do printf j; sleep 0.01; done; sleep 1; printf k; "
                             "sleep 1; printf '\\r'; sleep 2; "

@@ -1,4 +1,4 @@
-// Pictures for who looks on from outside, while the cluster runs.
+// Tests of the picture stream for observers while the cluster runs.
 #include "tests/cluster/support/seeing.h"
 
 using namespace tactus;
@@ -6,7 +6,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-// As they sort: by source and number.
+// In sorted order: by source and number.
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) files.push_back(entry.path());
@@ -45,7 +45,7 @@ TEST_CASE("A running picture is streamed on request as whole JPEG files, in orde
   for (const auto& file : files) {
     const Grey picture = c.grey("-i " + quoted(file));
     REQUIRE(picture.size() == 160 * 120);
-    // The same scene with another flash and another place of the hand.
+    // The same scene with another flash and another position of the hand.
     CHECK(apart(picture, small) < 20);
   }
   CHECK(apart(c.grey("-i " + quoted(files.front())), Grey(160 * 120, 0)) > 5);

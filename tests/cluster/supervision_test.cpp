@@ -1,4 +1,4 @@
-// The real supervision: what scripts/run does when nodes die.
+// Tests of the supervision of nodes by scripts/run: nodes that die are restarted.
 #include <nlohmann/json.hpp>
 #include <tactus/node_health_t.hpp>
 
@@ -12,8 +12,7 @@ namespace {
 
 constexpr double kPatience_s = 60;
 
-// The id of the run that was started, once it has a recorder. Ends the test, with what the run said, when it never
-// comes.
+// The id of the started run, once it has a recorder. Fails the test with the run's output when there is none in time.
 std::int64_t run_id_of(RunScript& run) {
   for (int i = 0; i < 1200; ++i) {
     const std::string address = contents(run.out() / "cluster/address");
@@ -31,7 +30,7 @@ std::int64_t run_id_of(RunScript& run) {
 
 TEST_CASE("DEGRADE-4: any node that is killed rejoins alone", "[exclusive]") {
   RunScript run;
-  // The network of this test, so that it can listen.
+  // Uses the network of this test, so that the test receives the bus.
   run.start({tapping_scene(), "--seconds", "120", "--network", "host", "--out", run.out()});
   Ear ear(run_id_of(run));
   const auto all_live = [&] {
@@ -91,7 +90,7 @@ TEST_CASE("tactus attach runs a command inside the cluster's own network") {
              run.out()});
   run_id_of(run);
   const std::string tactus = repository() / "scripts/tactus";
-  // Its own network: the logger there hears the cluster, and here nobody does.
+  // A network of its own: the logger there receives the cluster, the test does not.
   const std::string log = run.folder.path() / "heard.lcmlog";
   run.output_of({tactus, "attach", run.out(), "timeout", "3", "lcm-logger", log}, 124);
   CHECK(std::filesystem::file_size(log) > 10000);
@@ -99,7 +98,7 @@ TEST_CASE("tactus attach runs a command inside the cluster's own network") {
   CHECK(processes.find("sim_node") != std::string::npos);
   CHECK(processes.find("cluster_test") == std::string::npos);
   run.output_of({tactus, "attach", run.out(), "pkill", "-KILL", "-x", "thermal_node"});
-  // The supervisor has noticed: what dies while the run is being stopped is no death.
+  // Waits until the supervisor has counted the death: a node that ends while the run is being stopped does not count.
   const std::filesystem::path deaths = run.out() / "cluster/services/thermal_node/deaths";
   for (int i = 0; i < 600 && !std::filesystem::exists(deaths); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));

@@ -1,4 +1,4 @@
-// Tagged variables of a running cluster: taken while somebody asks, and driving what others render.
+// Tests of tagged variables in a running cluster: sampled on request, and driving settings of other nodes.
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -27,7 +27,7 @@ struct Tagged : Running {
   std::map<std::string, Series> heard;  // by "node.tag"
   std::int64_t messages = 0;
 
-  // Listens for so long; asks for the pattern once a second.
+  // Receives for the given time; requests the pattern once per second.
   void listen(double seconds, const std::string& pattern = "") {
     for (double left = seconds; left > 0; left -= 0.5) {
       if (!pattern.empty()) {
@@ -59,7 +59,7 @@ struct Tagged : Running {
   }
 };
 
-// The small scene with an element more in its world.
+// The small scene with one more element in its world.
 std::string scene_with(const Folder& folder, const std::string& element) {
   std::ifstream file(tapping_scene());
   std::stringstream text;
@@ -95,12 +95,12 @@ TEST_CASE("Variables of every node are told while somebody asks, each tick of th
     const auto& v = c.heard[name].values;
     return v.empty() ? -1 : *std::max_element(v.begin(), v.end());
   };
-  CHECK(most("haptic_node.force") > 1);  // it taps
+  CHECK(most("haptic_node.force") > 1);  // the hand taps
   for (const char* phase : {"collision", "solve", "integrate", "decode", "other"}) {
     INFO(phase);
     CHECK(most(std::string("sim_node.work.") + phase) > 0);
   }
-  // Phases are parts of the whole.
+  // Phases are parts of the whole tick.
   const auto sum = [&](const std::string& name) {
     double total = 0;
     for (const double x : c.heard[name].values) total += x;
@@ -121,7 +121,7 @@ TEST_CASE("Variables of every node are told while somebody asks, each tick of th
 
 TEST_CASE("One line of a scene lets what is heard make what is felt weaker", "[exclusive]") {
   Tagged c;
-  // Each hit that sounded takes half a newton off the largest force, down to half a newton.
+  // Each hit that sounded reduces the largest force by half a newton, down to half a newton.
   c.processes.start_all(scene_with(
       c.folder,
       "<tactus:map from='audio_node.hits' to='haptic_node.force_limit' gain='-0.5' offset='8N' low='0.5N'/>"));

@@ -1,4 +1,4 @@
-// The promises of isolation, with the senses on two machines; and with a log in the place of the world.
+// Tests of isolation between modalities on two machines, and with a log in place of the simulation.
 #include <tactus/input_health_t.hpp>
 #include <tactus/modality_report_t.hpp>
 #include <tactus/node_health_t.hpp>
@@ -51,7 +51,7 @@ TEST_CASE(
   const node_health_t* h = m.ear().health("visual_node");
   REQUIRE(h != nullptr);
   CHECK(h->ticks > frames);
-  // It skipped what it missed: at its rate there were two seconds of frames.
+  // The node skipped the missed frames: two seconds at its rate.
   CHECK(h->missed_ticks - missed > before.at("visual_node"));
   for (const input_health_t& in : h->inputs) {
     INFO(in.channel << " is " << in.age_ns << " ns old");
@@ -129,7 +129,7 @@ TEST_CASE("On two machines no event is lost, and no sense's asynchrony is that o
     CHECK(r.owed > 0);
     CHECK(r.lost == 0);
   }
-  // An hour would be the wrong clock; half a second is a slow machine.
+  // The wrong clock would give an hour; a slow machine gives half a second.
   for (const char* names : {"haptic audio", "haptic visual", "haptic thermal"})
     CHECK(std::abs(pairs[names].p50_ns) < 500'000'000);
 }

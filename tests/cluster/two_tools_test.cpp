@@ -1,5 +1,5 @@
-// Several hands on one scene, each a process: one goes and one comes, and neither the world nor the hand that
-// stays notices.
+// Tests of several hands on one scene, each a process: hands leave and join, and neither the simulation nor the remaining hand is
+// affected.
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -19,8 +19,7 @@ namespace {
 
 void sleep_s(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
-// Beside other work single ticks come late, with and without the other hands: only what is a multiple is an
-// effect.
+// Beside other work single ticks come late, with and without the other hands. Only a multiple of the figures before is an effect.
 void check_unchanged(const Figures& before, const Figures& now) {
   const auto close = [](double a, double b, double share) { return std::abs(b - a) <= share * a; };
   const auto no_later = [](double a, double b, double factor, double least_ms) {
@@ -40,7 +39,7 @@ void check_unchanged(const Figures& before, const Figures& now) {
   CHECK(apart_N(before, now) < 0.05 * before.peak_N());
 }
 
-// Begins of a tool without their end.
+// Begins of a tool's contacts without an end.
 std::set<std::int64_t> left_open(const RunLog& log, int tool) {
   std::set<std::int64_t> open, ended;
   log.each<contact_events_t>(channels::kContactEvents, [&](const contact_events_t& m) {
@@ -84,7 +83,7 @@ struct ThreeHands : RunScript {
     INFO(processes.said("run"));
     REQUIRE(up());
   }
-  // Three spans in which nothing is changed, once what was changed has settled.
+  // Three spans without changes, after the last change has settled.
   std::vector<Span> watch() {
     sleep_s(0.5);
     std::vector<Span> spans;
@@ -97,7 +96,7 @@ struct ThreeHands : RunScript {
   }
 };
 
-// One goes, another comes, is killed and comes back, and one is told to push less.
+// One hand leaves; another joins, is killed and comes back; one is set to push less.
 struct Story {
   ThreeHands c;
   std::vector<Span> two, alone, joined, again, gentle;
@@ -111,16 +110,16 @@ struct Story {
     alone = c.watch();
     c.output_of({"sv", "up", c.service("haptic_node_third")});
     joined = c.watch();
-    c.output_of({"sv", "kill", c.service("haptic_node_third")});  // comes back by itself
+    c.output_of({"sv", "kill", c.service("haptic_node_third")});  // the supervisor restarts it
     again = c.watch();
-    // By the script that people use.
+    // Through the command line script.
     const std::string answer =
         c.output_of({"env", "TACTUS_BIN=" + programs().string(), repository() / "scripts/tactus", "set", "--in", c.out(),
                      "haptic_node", "force_limit=1N"});
     CHECK_THAT(answer, Catch::Contains("force_limit is 1N"));
     gentle = c.watch();
     c.processes.signal("run", SIGINT);
-    CHECK(c.finish(60) == 0);  // who was taken away is missed by nobody
+    CHECK(c.finish(60) == 0);  // a hand that was removed does not count as missing
     CHECK_THAT(c.processes.said("run"), Catch::Contains("haptic_node_right was taken down"));
   }
 };
@@ -128,7 +127,7 @@ struct Story {
 }  // namespace
 
 TEST_CASE("Of several hands one goes and another comes, and neither the world nor the hand that stays notices", "[exclusive]") {
-  // A machine that is kept from its work before anything is changed has nothing to compare with: once more then.
+  // Repeats the run once when the machine was too slow even before the first change: there is no baseline then.
   auto story = std::make_unique<Story>();
   for (int tries = 1; tries < 3 && figures(RunLog(story->c.out()), story->two).sim_Hz < 990; ++tries) {
     story.reset();
@@ -151,18 +150,18 @@ TEST_CASE("Of several hands one goes and another comes, and neither the world no
   for (const auto& [name, spans] : after) {
     INFO(name);
     check_unchanged(before, figures(log, spans));
-    // Nor in the half second in which it goes or comes.
+    // Also during the half second in which a hand leaves or joins.
     const Figures meanwhile = of_span(log, {spans.front().from_ns - 500'000'000, spans.front().from_ns});
     CHECK(meanwhile.sim_step_p50_ms == Approx(1).margin(0.05));
     CHECK(meanwhile.hand_step_p50_ms == Approx(1).margin(0.05));
   }
 
-  // The right one pressed when it went.
+  // The right hand pressed when it left.
   CHECK(largest_N(log, kRight, two) > 0.5);
   CHECK(begins(log, kRight) >= 1);
   CHECK(left_open(log, kRight).empty());
   CHECK(largest_N(log, kRight, joined) == 0);
-  // The third one works, both times.
+  // The third hand works, both times.
   CHECK(largest_N(log, kThird, alone) == 0);
   CHECK(largest_N(log, kThird, joined) > 0.5);
   CHECK(largest_N(log, kThird, again) > 0.5);

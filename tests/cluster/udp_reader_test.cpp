@@ -1,4 +1,4 @@
-// The receiving end of the bus on real sockets, in a network namespace of its own.
+// Tests of the receiving end of the bus on real sockets, in a network namespace of its own.
 #include "sync/bus/udp_reader.h"
 
 #include <catch2/catch.hpp>
@@ -16,7 +16,7 @@ namespace {
 
 using Heard = std::map<std::pair<std::size_t, std::string>, std::vector<Bytes>>;
 
-// Reads for so long, or until `enough` messages have come.
+// Reads for the given time, or until `enough` messages have arrived.
 Heard read(sync::UdpReader& reader, double seconds, std::size_t enough) {
   Heard heard;
   std::size_t count = 0;
@@ -47,7 +47,7 @@ TEST_CASE("Messages of both ports come in order, also those that came while nobo
     wire.send_message("A", numbered(i));
     wire.send_message("B", numbered(i), 1);
     if (i % 100 == 99)
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));  // 0.2 s: somebody must relieve us
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));  // 0.2 s in all: the reader's thread must drain the sockets meanwhile
   }
   const Heard heard = read(reader, 10, 2 * kMany);
   for (const auto& key : {std::pair<std::size_t, std::string>{0, "A"}, {1, "B"}}) {
@@ -114,7 +114,7 @@ TEST_CASE("What comes in by another network, where another program joined the gr
     WARN("skipped: this system allows no second network with a cable to it");
     return;
   }
-  sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);  // on the cable, as the route says
+  sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);  // on the cable, according to the route
   const int other = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
   const int yes = 1;
   setsockopt(other, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -130,6 +130,6 @@ TEST_CASE("What comes in by another network, where another program joined the gr
   wire.send_message("A", numbered(1));
   CHECK(read(reader, 0.2, 1).empty());
   char byte = 0;
-  CHECK(recv(other, &byte, sizeof byte, 0) == 1);  // it was there to be heard
+  CHECK(recv(other, &byte, sizeof byte, 0) == 1);  // the datagram did arrive at the machine
   close(other);
 }

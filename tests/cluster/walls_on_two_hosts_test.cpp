@@ -1,5 +1,5 @@
-// Two walls of one room on two hosts whose clocks differ: each frame shows the same instant and the same head on
-// both, however slow one of them is, and neither waits for the other.
+// Tests of two walls of one room on two hosts whose clocks differ: each frame shows the same instant and the same head on both, at any
+// speed of either wall, and neither wall waits for the other.
 #include <tactus/frame_shown_t.hpp>
 #include <tactus/node_health_t.hpp>
 
@@ -13,9 +13,9 @@ namespace {
 struct TwoHosts {
   static constexpr const char* kLeft = "visual_node";
   static constexpr const char* kFront = "visual_node_front";
-  static constexpr std::int64_t kFrames = 120;  // that a wall at 60 Hz shows: so many in 100 allow a share of 99 %
-  // Head and clock are those told so long before: more than a picture of this size takes beside other load, so
-  // that it is never begun before they are told.
+  static constexpr std::int64_t kFrames = 120;  // of a wall at 60 Hz; more than 100 frames allow a share of 99 %
+  // Frames show the head and the world of this time ago, s. It exceeds the drawing time of a picture of this size beside other load, so
+  // that no frame begins before its data have arrived.
   static constexpr const char* kLag = "frame_lag=0.15";
   struct Shown {
     std::int64_t world_ns = 0, head_ns = 0;
@@ -25,7 +25,7 @@ struct TwoHosts {
   std::optional<Running> running;
   std::map<std::string, std::map<std::int64_t, Shown>> frames;  // by wall and number
 
-  // False where the system allows no second host. front: words for the wall there.
+  // Returns false where the system allows no second host. front: command prefix of the wall there.
   bool start(const std::vector<std::string>& front = {}, const std::string& lock = "time") {
     if (!cable.made()) {
       WARN("skipped: this system allows no second network with a cable to it");
@@ -53,7 +53,7 @@ struct TwoHosts {
     running->ear.listen(1);  // until the clocks of both are mapped
     return true;
   }
-  // Listens until the left wall has shown so many frames from here on, and both at least `both`.
+  // Receives until the left wall has shown kFrames more frames, and both walls have shown at least `both`.
   void watch(std::int64_t both) {
     frames.clear();
     while (shown_->pop()) continue;
@@ -70,7 +70,7 @@ struct TwoHosts {
   std::int64_t common() const {
     return count([](const Shown&, const Shown&) { return true; });
   }
-  // That both walls have shown and of which that holds.
+  // Number of frames that both walls have shown and for which the predicate holds.
   template <class Holds>
   std::int64_t count(const Holds& holds) const {
     std::int64_t n = 0;
@@ -86,8 +86,8 @@ struct TwoHosts {
     INFO(n << " frames of both");
     CHECK(count([](auto& a, auto& b) { return a.world_ns == b.world_ns; }) >= 0.99 * static_cast<double>(n));
     CHECK(count([](auto& a, auto& b) { return a.head_ns == b.head_ns; }) >= 0.99 * static_cast<double>(n));
-    CHECK(count([](auto& a, auto&) { return a.head_ns >= 0 && a.world_ns >= 0; }) == n);  // and there is one
-    // Agreement on something that stands still would be none.
+    CHECK(count([](auto& a, auto&) { return a.head_ns >= 0 && a.world_ns >= 0; }) == n);  // and the frame has one
+    // Agreement on a static world and head would prove nothing.
     std::set<std::int64_t> worlds, heads;
     for (const auto& [number, frame] : frames.at(kLeft))
       worlds.insert(frame.world_ns), heads.insert(frame.head_ns);
@@ -141,10 +141,10 @@ TEST_CASE(
   const auto& left = c.frames[TwoHosts::kLeft];
   const auto due = static_cast<double>(left.rbegin()->first - left.begin()->first + 1);
   CHECK(static_cast<double>(left.size()) >
-        0.5 * due);  // of 60 a second; beside a wall that is waited for, 10 at most
+        0.5 * due);  // of 60 per second; at most 10 if it waited for the slow wall
   const double share = static_cast<double>(c.frames[TwoHosts::kFront].size()) /
                        static_cast<double>(c.frames[TwoHosts::kLeft].size());
-  CHECK(share < 0.3);  // 10 of 60, and what else the machine has to do
+  CHECK(share < 0.3);  // 10 of 60, and other work of the machine
 }
 
 TEST_CASE("Walls that wait for one another show the same, and one that is dead is waited for no longer", "[exclusive]") {

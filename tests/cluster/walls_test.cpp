@@ -1,4 +1,4 @@
-// Two walls of one room, each drawn by a process of its own.
+// Tests of two walls of one room, each drawn by a process of its own.
 #include <csignal>
 
 #include "tests/cluster/support/running.h"

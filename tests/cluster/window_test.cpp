@@ -1,5 +1,5 @@
-// The window of visual_node on a display server of its own (Xvfb): what is seen in it, keys, mouse, and what
-// becomes of the node when window or server go.
+// Tests of the window of visual_node on a separate display server (Xvfb): its picture, keys and mouse, and the node's behaviour when the
+// window or the server closes.
 #include <signal.h>
 
 #include <set>
@@ -15,7 +15,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-constexpr int kWide = 1024, kHigh = 768;  // of the screen; the window is 640 x 480 at its upper left
+constexpr int kWide = 1024, kHigh = 768;  // size of the screen, pixels; the window is 640 x 480 at its upper left
 
 struct Desktop : Seeing {
   std::string display;
@@ -26,9 +26,9 @@ struct Desktop : Seeing {
   std::map<std::int64_t, std::vector<answer_t>> answered;  // by id
   question_t asked_now{};
   sync::HostTime ask_next{};
-  double rate = -1;          // of the world, as last told
-  int aimed = 0;             // times that the mouse was told as a device
-  std::set<float> aimed_at;  // world y of that, m
+  double rate = -1;          // rate of the world, as last published; -1: unknown
+  int aimed = 0;             // number of messages of the mouse as a device
+  std::set<float> aimed_at;  // world y of the mouse in those messages, m
 
   void start_server() {
     processes.spawn("Xvfb", {"Xvfb", "-displayfd", "1", "-screen", "0",
@@ -54,7 +54,7 @@ struct Desktop : Seeing {
     std::vector<std::string> command{"env", "DISPLAY=" + display, "xdotool"};
     command.insert(command.end(), words.begin(), words.end());
     processes.spawn(name, command);
-    hear_until([&] { return !processes.running(name); });  // what is asked is repeated meanwhile
+    hear_until([&] { return !processes.running(name); });  // the question is repeated meanwhile
     const int status = processes.wait_for_exit(name, kPatience_s);
     INFO("xdotool (Debian package xdotool): " << processes.said(name));
     CHECK(status == 0);
@@ -96,7 +96,7 @@ struct Desktop : Seeing {
     const sync::HostTime end = sync::host_now() + sync::from_seconds(seconds);
     hear_until([&] { return sync::host_now() >= end; });
   }
-  // As a window manager asks a window to close (ICCCM 4.2.8.1).
+  // Asks the window to close as a window manager does (ICCCM 4.2.8.1).
   void ask_to_close() {
     const char* program = R"(
 import ctypes, sys
@@ -142,7 +142,7 @@ TEST_CASE(
   const Grey still = c.later_picture();
   c.x({"key", "h"});
   const Grey helped = c.later_picture();
-  CHECK(apart(still, helped) > 3);  // a plate full of words
+  CHECK(apart(still, helped) > 3);  // a plate full of text
   c.x({"key", "h"});
   CHECK(apart(still, c.later_picture()) < 1);
   c.x({"key", "period"});
@@ -169,7 +169,7 @@ TEST_CASE(
   c.ear.listen(1);
   c.x({"mousemove", "300", "300"});
   c.x({"key", "space"});
-  REQUIRE(c.hear_until([&] { return c.rate == 0; }));  // a picture that stands still
+  REQUIRE(c.hear_until([&] { return c.rate == 0; }));  // a still picture
   const Grey still = c.later_picture();
   const auto ask = [&](std::int64_t id, std::int8_t kind, const std::string& text) {
     question_t m{};
@@ -180,7 +180,7 @@ TEST_CASE(
     m.progress = "block 1 of 4";
     c.asked_now = m;
     c.ask_next = {};
-    c.hear_for(1);  // until a picture has it
+    c.hear_for(1);  // until a picture shows the change
   };
   const auto answer = [&](std::int64_t id) {
     REQUIRE(c.hear_until([&] { return c.answered[id].size() >= 3; }));  // each repetition is answered
@@ -194,13 +194,13 @@ TEST_CASE(
 
   ask(11, question_t::CHOICE, "Did you hear the ball and see it touch the floor at the same time?");
   CHECK(apart(still, c.picture()) > 3);
-  c.x({"key", "3"});  // there is no third choice, and no overlay either
+  c.x({"key", "3"});  // there is no third choice; the key must not open an overlay either
   c.hear_for(0.5);
   CHECK(c.answered.empty());
   c.x({"key", "2"});
   CHECK((answer(11).choice == 1 && answer(11).number == 0));
   c.hear_for(0.5);
-  CHECK(apart(still, c.picture()) < 1);  // it is gone, and no overlay was laid
+  CHECK(apart(still, c.picture()) < 1);  // the question is closed, and no overlay is open
 
   ask(12, question_t::NUMBER, "How hard was it?");
   for (const char* key : {"Right", "Up", "Up", "Left", "Left"}) c.x({"key", key});  // 5 and 1, 1, 1, less 2
@@ -210,9 +210,9 @@ TEST_CASE(
   ask(13, question_t::READ, "Read this.");
   c.x({"key", "space"});
   CHECK(answer(13).choice == -1);
-  CHECK(c.rate == 0);  // space did not let the world go on
+  CHECK(c.rate == 0);  // the space key did not resume the simulation
 
-  // A second window shows none.
+  // A second window shows no questions.
   c.set({"questions=false"});
   ask(14, question_t::READ, "Not here.");
   CHECK(apart(still, c.picture()) < 1);
@@ -220,7 +220,7 @@ TEST_CASE(
   c.hear_for(1);
   CHECK(apart(still, c.picture()) > 1);
 
-  // Who asked is gone.
+  // The program with the question has stopped publishing.
   c.asked_now = {};
   c.hear_for(3.5);
   CHECK(apart(still, c.picture()) < 1);
@@ -273,12 +273,12 @@ TEST_CASE("The spot light shines at what the mouse is held on, and stays there w
   CHECK(apart(left, right) > 1);
   CHECK(brightness(left, true) > brightness(right, true));
   CHECK(brightness(right, false) > brightness(left, false));
-  c.x({"mousemove", "120", "300"});  // not held: it only passes
+  c.x({"mousemove", "120", "300"});  // no button: the mouse only passes
   const Grey after = c.later_picture();
   INFO("from where it was held " << apart(right, after) << ", from where it passes " << apart(left, after));
   CHECK(apart(right, after) < 0.5);
 
-  // Let go and moved on within one frame.
+  // Released and moved within one frame.
   c.hear_for(0.1);
   c.aimed_at.clear();
   for (int i = 0; i < 20; ++i)
@@ -314,7 +314,7 @@ TEST_CASE(
   CHECK_THAT(c.processes.said("visual_node"), Catch::Contains("visual_node: the window was closed\n"));
   CHECK(c.others_live());
 
-  // Destroyed by another program.
+  // Another program destroys the window.
   std::vector<std::string> options = c.snapshots();
   options.push_back("--window");
   c.start_vision(options, c.on_display());
@@ -329,7 +329,7 @@ TEST_CASE(
   c.start_window();
   const auto before = c.rates(1);
   c.processes.kill("Xvfb");
-  // It goes on before it knows: the picture that is being drawn, and the ticks it owes beside load.
+  // The node continues until it detects the loss: the frame in progress, and the missed ticks beside load.
   CHECK(c.ear.wait_until(
       [&] {
         return c.processes.said("visual_node").find("the display server of the window is gone; drawing continues with ") !=

@@ -1,4 +1,4 @@
-// Any bytes, as a datagram on the bus: none of LCM's, or a channel and data that lie within them.
+// Arbitrary bytes as a datagram on the bus: rejected as no LCM datagram, or parsed into a channel and data that lie within them.
 #include <cstdlib>
 
 #include "sync/bus/datagram.h"

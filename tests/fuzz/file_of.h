@@ -1,4 +1,4 @@
-// A file of this process' own, for readers that take a path.
+// A temporary file of this process, for readers that take a path.
 #pragma once
 
 #include <unistd.h>
@@ -12,7 +12,7 @@ namespace tactus::fuzz {
 
 class FileOf {
  public:
-  // name: within a folder of its own, and different from that of any other of this process.
+  // name: file name within a folder that no other object of this process uses.
   explicit FileOf(const std::filesystem::path& name)
       : folder_(std::filesystem::temp_directory_path() /
                 ("tactus_fuzz_" + std::to_string(getpid()) + "_" + name.filename().string())),

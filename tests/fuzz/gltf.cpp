@@ -1,4 +1,4 @@
-// Any bytes, read as glTF or GLB: refused with a sentence, or triangles whose corners are there and finite.
+// Arbitrary bytes read as glTF or GLB: rejected with one sentence, or triangles whose vertices exist and are finite.
 #include <cstdlib>
 #include <stdexcept>
 

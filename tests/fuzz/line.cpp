@@ -1,5 +1,5 @@
-// Any bytes, as a datagram of the line between relays, and its message as one heard on the bus: nothing that a relay sends is
-// anything but a datagram that the other end reads.
+// Arbitrary bytes as a datagram of the line between relays, whose message is then received from the bus: every datagram that a relay sends
+// can be read at the other end.
 #include <cstdlib>
 
 #include "sync/relay/relay.h"
@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto m = parse_line_datagram({data, size});
   if (!m) return 0;
   if (!m->message.fits() || m->message.channel.empty()) std::abort();
-  const auto header_run = [&] {  // that the relay may take it for one of its run
+  const auto header_run = [&] {  // the run id in the message's own header, so that the relay accepts it
     std::int64_t run = 0;
     for (std::size_t i = 28; i < 36 && i < m->message.data.size(); ++i) run = static_cast<std::int64_t>(static_cast<std::uint64_t>(run) << 8 | m->message.data[i]);
     return run > 0 ? run : 1;
@@ -28,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     relay.flush(now, [&](const LineEnd&, std::span<const std::uint8_t> bytes) {
       const auto back = parse_line_datagram(bytes);
       if (!back || back->message.channel != m->message.channel || back->bulk != m->bulk) std::abort();
-      if (!other.hear_line(0, *back, now)) std::abort();  // what one lets out the other lets in
+      if (!other.hear_line(0, *back, now)) std::abort();  // the other relay accepts each datagram that a relay sends
       return true;
     });
   }

@@ -1,5 +1,5 @@
-// Any bytes, read as a log whose messages everybody hears who listens to a whole bus: the summary, the tables, the
-// spy, the live page, and what puts pages and pieces together again.
+// Arbitrary bytes read as a log by all subscribers of a whole bus: the summary, the tables, the spy, the live page, and the assembly of
+// pages and fragments.
 #include <cstdlib>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::int64_t kRun = 7;
 
-// Of those that the reader is for.
+// Calls use for the messages of one channel.
 template <class Message, class Use>
 void as(const LogEvent& e, const char* channel, Use&& use) {
   if (e.channel != channel) return;

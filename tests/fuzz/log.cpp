@@ -1,5 +1,5 @@
-// Any bytes, read as a log: scanned, dated, sought and replayed. The scanner always goes on and says how much it
-// skipped; what is replayed is no more than what was found.
+// Arbitrary bytes read as a log: scanned, timestamped, sought and replayed. The scanner always continues and reports the number of skipped
+// bytes; the replay sends no more events than the scanner found.
 #include <cstdlib>
 
 #include "sync/bus/decode.h"
@@ -13,7 +13,7 @@ using namespace tactus::sync;
 
 namespace {
 
-// Returns the events found.
+// Returns the number of events found.
 std::int64_t scan(std::span<const std::uint8_t> log, LogClockDetector& finder, LogTimeRanges& ages) {
   LogScanner scanner(log);
   LogEvent event;
@@ -47,7 +47,7 @@ void play(std::span<const std::uint8_t> log, const LogOrigin& origin, std::int64
   replay.seek(replay.length_s() / 2, now);
   replay.poll(now += Nanoseconds(10'000'000), [](const LogEvent&, const ReplayMoment&) { return true; });
 } catch (const std::runtime_error&) {
-  // one sentence: nothing to replay
+  // rejected with one sentence: nothing to replay
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-// Any bytes, decoded as the message type that they claim to be: refused, or a valid message, and what it encodes
-// to is read to the same message. (Whatever ends a text is read as its NUL, and a NUL within ends it when it is
-// encoded: those bytes are others, and may be fewer or refused.)
+// Arbitrary bytes, decoded as the message type that they claim to be: rejected, or a valid message whose encoding decodes to the same
+// message. (The last byte of a string is read as its NUL, and encoding ends a string at an inner NUL. The new bytes then differ, and may
+// be fewer or rejected.)
 #include <cstdlib>
 #include <tactus/answer_t.hpp>
 #include <tactus/asset_chunk_t.hpp>

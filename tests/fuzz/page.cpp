@@ -1,5 +1,5 @@
-// Any text, as a page of a browser might send it: refused with one sentence, or a message within its bounds; and a
-// profile of its sliders is a profile.
+// Arbitrary text as a message of a browser: rejected with one sentence, or a message within its bounds. The profile of its sliders is a
+// valid profile.
 #include <cstdlib>
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-// Any bytes, read as a picture of a surface and as a map of heights: refused, or as many pixels as it says.
+// Arbitrary bytes read as a picture of a surface and as a height map: rejected, or as many pixels as width and height give.
 #include <cstdlib>
 #include <stdexcept>
 

@@ -1,5 +1,4 @@
-// Any text, read as a degradation profile: refused with one sentence, or a profile whose text is read to the same
-// again.
+// Arbitrary text read as a degradation profile: rejected with one sentence, or a profile whose text parses to the same profile again.
 #include <cstdlib>
 #include <stdexcept>
 #include <string>

@@ -1,4 +1,4 @@
-// Any text, read as the rules of a relay: refused with one sentence that names the file, or rules.
+// Arbitrary text read as the rules of a relay: rejected with one sentence that names the file, or rules.
 #include <cstdlib>
 #include <stdexcept>
 #include <string>

@@ -1,9 +1,8 @@
-// Runs a fuzz target without libFuzzer: its seeds and regressions, then so many mutations of them, the same each
-// time.
+// Runs a fuzz target without libFuzzer: its seeds and regressions, then RUNS mutations of them, the same in every run.
 //
-//   fuzz_NAME RUNS FOLDER...
+//    fuzz_NAME RUNS FOLDER...
 //
-// What fails is written to fuzz_NAME.failed in the present folder, to be kept under tests/fuzz/regressions/NAME.
+// A failing input is written to fuzz_NAME.failed in the current folder; keep it under tests/fuzz/regressions/NAME.
 #include <fcntl.h>
 #include <signal.h>
 #include <unistd.h>
@@ -32,7 +31,7 @@ constexpr std::size_t kLongest = 1 << 20;
 Bytes present;
 std::string failed_path;
 
-// Says which input it was, then lets the signal do what it does.
+// Writes the current input to failed_path, then raises the signal again with its default action.
 void keep(int signal) {
   const int file = open(failed_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   if (file >= 0 && write(file, present.data(), present.size()) >= 0) close(file);
@@ -57,7 +56,7 @@ std::vector<Bytes> seeds_of(const std::vector<std::string>& folders) {
 std::size_t below(std::mt19937& random, std::size_t n) { return n == 0 ? 0 : random() % n; }
 
 void overwrite(Bytes& b, std::mt19937& random) {
-  // Numbers at the edges of what integers and floating point hold.
+  // Edge values of integers and floating point numbers.
   static constexpr std::uint64_t kEdges[] = {0,
                                              1,
                                              0x7f,
@@ -95,18 +94,18 @@ void change(Bytes& b, const Bytes& other, std::mt19937& random) {
       if (!b.empty()) b[below(random, b.size())] = static_cast<std::uint8_t>(random());
       return;
     case 3: return overwrite(b, random);
-    case 4: {  // cut
+    case 4: {  // truncates
       const std::size_t at = below(random, b.size());
       b.erase(begin(at), begin(std::min(b.size(), at + 1 + below(random, 64))));
       return;
     }
-    case 5: {  // a piece of itself once more
+    case 5: {  // repeats a piece of the input
       const std::size_t at = below(random, b.size()), n = std::min(b.size() - at, 1 + below(random, 64));
       const Bytes piece(begin(at), begin(at + n));
       b.insert(begin(below(random, b.size() + 1)), piece.begin(), piece.end());
       return;
     }
-    case 6: {  // a piece of another
+    case 6: {  // inserts a piece of another input
       const std::size_t at = below(random, other.size()), n = std::min(other.size() - at, 1 + below(random, 256));
       const auto from = other.begin() + static_cast<std::ptrdiff_t>(at);
       b.insert(begin(below(random, b.size() + 1)), from, from + static_cast<std::ptrdiff_t>(n));
@@ -132,7 +131,7 @@ int main(int argc, char** argv) {
   }
   for (const int signal : {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS, SIGALRM, SIGTERM}) ::signal(signal, keep);
   const auto run = [&] {
-    alarm(30);  // what takes so long for one input hangs (design)
+    alarm(30);  // an input that takes this long counts as a hang (design), s
     LLVMFuzzerTestOneInput(present.data(), present.size());
     alarm(0);
   };

@@ -1,4 +1,4 @@
-// Any text, read as a scene: refused with a sentence, or a world.
+// Arbitrary text read as a scene: rejected with one sentence, or a world.
 #include <cstdlib>
 #include <stdexcept>
 
@@ -7,7 +7,7 @@
 
 namespace {
 
-// What scenes name lies beside them.
+// Copies the files that scenes refer to into their folder.
 bool put_beside(const std::filesystem::path& folder) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(TACTUS_SOURCE_DIR "/sim_node/scenes"))

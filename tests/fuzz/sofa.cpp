@@ -1,5 +1,5 @@
-// Any bytes, read as measured ears (SOFA, which is HDF5): refused with a sentence, or ears whose figures are
-// finite. What libmysofa itself makes of them is its own affair: its code is not instrumented.
+// Arbitrary bytes read as an HRTF (SOFA, which is HDF5): rejected with one sentence, or an HRTF with finite values. libmysofa itself is
+// not instrumented.
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>

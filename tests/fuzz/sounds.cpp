@@ -1,5 +1,4 @@
-// Any bytes, as the one recording in a folder of recordings: left out with a sentence, or samples that are finite
-// and no louder than full scale.
+// Arbitrary bytes as the only recording in a folder: skipped with one sentence, or samples that are finite and within full scale.
 #include <cmath>
 #include <cstdlib>
 #include <fstream>

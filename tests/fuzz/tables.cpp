@@ -1,5 +1,5 @@
-// Any text, read as each of the small texts that people write: tables of materials, modes, loudspeakers, walls and
-// motions, string frames, devices, plots, overlays and quantities. Each is refused with a sentence or read.
+// Arbitrary text read as each of the small text formats: tables of materials, modes, loudspeakers, walls and motions, string frames,
+// devices, plots, overlays and quantities. Each is rejected with one sentence or parsed.
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
@@ -21,7 +21,7 @@
 
 namespace {
 
-// A complaint is a std::exception with a sentence; anything else ends this.
+// A rejection is a std::exception with one sentence; anything else aborts.
 template <class Read>
 void try_to(Read&& read) {
   try {

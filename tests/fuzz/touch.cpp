@@ -1,5 +1,5 @@
-// Any bytes, read as a log of what touch hears: its pages are put together, and a hand feels what comes of them.
-// No force beyond the limit, whatever the messages say.
+// Arbitrary bytes read as a log of the inputs of touch: its pages are assembled and a hand renders them. No message makes the force exceed
+// the limit.
 #include <cmath>
 #include <cstdlib>
 #include <tactus/body_def_t.hpp>

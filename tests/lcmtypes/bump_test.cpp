@@ -1,3 +1,4 @@
+// Tests of the projection of a surface point into a map, and of the validation of a relief.
 #include "lcmtypes/bump.h"
 
 #include <catch2/catch.hpp>

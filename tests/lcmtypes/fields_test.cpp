@@ -1,3 +1,4 @@
+// Tests of reading single fields of encoded messages by their path.
 #include "lcmtypes/fields.h"
 
 #include <catch2/catch.hpp>
@@ -49,7 +50,7 @@ using namespace tactus::test;
 
 namespace {
 
-// Another list of types, besides that of hostile_test: the most frequent ones, lists of lists, strings, text.
+// A list of types besides that of hostile_test: the most frequent ones, arrays of arrays, strings, text.
 #define EVERY_KIND                                                                                                \
   world_state_t, contact_frame_t, contact_events_t, touch_model_t, tool_state_t, device_state_t, thermal_state_t, \
       thermal_device_t, presented_t, node_health_t, sync_report_t, clock_map_t, media_clock_t, frame_shown_t,     \
@@ -62,7 +63,7 @@ const Schema& schema() {
   return s;
 }
 
-// By the independent reader of the wire format, tests/lcmtypes/schema.h.
+// Reads a number with the independent reader of the wire format, tests/lcmtypes/schema.h.
 double number_at(const std::vector<std::uint8_t>& bytes, const Spot& spot) {
   const auto raw = [&](auto number) {
     std::uint8_t swapped[sizeof number];

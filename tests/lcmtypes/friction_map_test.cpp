@@ -1,3 +1,4 @@
+// Tests of friction maps: factors, axes and interpolation.
 #include "lcmtypes/friction_map.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of reading height maps from PNG.
 #include "lcmtypes/height_map.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of the validation of measured modes in a scene.
 #include "lcmtypes/measured_modes.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of the size and the validation of questions.
 #include <catch2/catch.hpp>
 #include <tactus/question_t.hpp>
 

@@ -1,3 +1,4 @@
+// Tests of heights and slopes of a surface relief.
 #include "lcmtypes/relief.h"
 
 #include <catch2/catch.hpp>
@@ -56,8 +57,8 @@ TEST_CASE("The slopes of a sine are its derivative, and up in the picture is alo
     for (double v = 0.007; v < 1; v += 0.043) {
       const double du = 0.002 / 0.4 * w * (0.3 * std::cos(w * (u + 2 * v)) - 0.2 * std::sin(w * u));
       const double dv = 0.002 / 0.2 * w * 2 * 0.3 * std::cos(w * (u + 2 * v));
-      // Central differences over a step of s radians lose s^2 / 6 of each wave, linear interpolation s^2 / 8
-      // more; 2 pi / 64 in both directions.
+      // Central differences over a step of s radians lose s^2 / 6 of each wave, linear interpolation another s^2 / 8; s = 2 pi / 64 in
+      // both directions.
       const double lost = std::pow(w / 64, 2) * (1 / 6. + 2 / 8.);
       const Vector2d s = relief.slope({u, v});
       CHECK(std::abs(s.x() - du) < lost * 0.002 / 0.4 * w * 0.5 + 2e-5);
@@ -88,7 +89,7 @@ TEST_CASE("For ridges the slope is the derivative of the height, along u and alo
   for (int r = 0; r < 24; ++r)
     for (int c = 0; c < 5; ++c) along_v.levels.push_back(along_u.levels[static_cast<std::size_t>(r)]);
   const Relief u = make_relief(along_u, rough(0.024, 1, 0.001)), v = make_relief(along_v, rough(1, 0.024, 0.001));
-  constexpr double kStep = 1e-6;  // of the map: the height is of second order between its knots
+  constexpr double kStep = 1e-6;  // step in parts of the map; the height is of second order between its samples
   for (double at = 0.00013; at < 1; at += 0.0071) {
     const double rise = (u.height_m({at + kStep, 0.3}) - u.height_m({at - kStep, 0.3})) / (2 * kStep * 0.024);
     CHECK(u.slope({at, 0.3}).x() == Approx(rise).epsilon(1e-4).margin(1e-4));

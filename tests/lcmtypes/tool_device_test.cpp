@@ -1,3 +1,4 @@
+// Tests of parsing the device of a tool.
 #include "lcmtypes/tool_device.h"
 
 #include <catch2/catch.hpp>

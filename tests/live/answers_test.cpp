@@ -1,3 +1,4 @@
+// Tests of questions and answers between the bus and the live page.
 #include "scripts/live/answers.h"
 
 #include <catch2/catch.hpp>
@@ -11,7 +12,7 @@ using namespace tactus::live;
 
 namespace {
 
-constexpr std::int64_t kBig = 4'611'686'018'427'387'901;  // no double holds it
+constexpr std::int64_t kBig = 4'611'686'018'427'387'901;  // no double represents it
 
 sync::HostTime at(double s) { return sync::host_time(10'000'000'000) + sync::from_seconds(s); }
 
@@ -32,7 +33,7 @@ std::string why_not(Answers& answers, const AnswerThus& answer, sync::HostTime n
   try {
     answers.answer(answer, now);
   } catch (const std::invalid_argument& e) {
-    CHECK(std::string(e.what()).find(';') != std::string::npos);  // what is wrong; what to do
+    CHECK(std::string(e.what()).find(';') != std::string::npos);  // the problem; the remedy
     return e.what();
   }
   return "";
@@ -65,7 +66,7 @@ TEST_CASE("An answer of a page is sent again for each repetition of its question
   a.push(question(question_t::CHOICE, 1), at(0.2));
   CHECK(a.take_answer());
   a.push(question(question_t::CHOICE, 2), at(0.4));
-  a.push(question(question_t::READ, 3, 12), at(0.6));  // before it was taken
+  a.push(question(question_t::READ, 3, 12), at(0.6));  // before the answer was accepted
   CHECK_FALSE(a.take_answer());
   CHECK(a.told(at(0.6))["answered"] == false);
 }

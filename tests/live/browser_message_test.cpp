@@ -1,3 +1,4 @@
+// Tests of parsing messages of the browser.
 #include "scripts/live/browser_message.h"
 
 #include <catch2/catch.hpp>
@@ -22,7 +23,7 @@ const std::vector<std::string> kGood{
     R"({"t":"answer","question":"4.11","choice":1,"number":0,"after_ns":350000000})",
 };
 
-// What a message may hold at the most, whatever was sent.
+// Checks the bounds of a message, for any input.
 void check_bounds(const BrowserMessage& m) {
   if (const auto* w = std::get_if<WatchThese>(&m)) {
     CHECK(w->names.size() <= kMaxWatched);
@@ -49,7 +50,7 @@ void check_bounds(const BrowserMessage& m) {
   }
 }
 
-// True: it was taken. Anything but one sentence ends the test.
+// True when the message is accepted. Any exception without one sentence fails the test.
 bool taken(const std::string& text) {
   try {
     check_bounds(parse_browser_message(text));
@@ -57,7 +58,7 @@ bool taken(const std::string& text) {
   } catch (const std::invalid_argument& e) {
     const std::string why = e.what();
     CHECK(why.size() > 20);
-    CHECK(why.find(';') != std::string::npos);  // what is wrong; what to do
+    CHECK(why.find(';') != std::string::npos);  // the problem; the remedy
     CHECK(why.find('\n') == std::string::npos);
     return false;
   }
@@ -114,7 +115,7 @@ TEST_CASE("What is no message of a page, or beyond its range, is refused with a 
   for (std::size_t i = 0; i <= kMaxWatched; ++i) many["names"].push_back("n" + std::to_string(i));
   CHECK_FALSE(taken(many.dump()));
   CHECK_FALSE(taken(std::string(kMaxBrowserBytes + 1, ' ')));
-  CHECK_FALSE(taken(std::string(kMaxBrowserBytes, '[')));  // deep
+  CHECK_FALSE(taken(std::string(kMaxBrowserBytes, '[')));  // deep nesting
 }
 
 TEST_CASE("10,000 mutated messages are taken within their bounds or refused with a sentence") {
@@ -135,6 +136,6 @@ TEST_CASE("10,000 mutated messages are taken within their bounds or refused with
     }
     ++(taken(text) ? good : refused);
   }
-  CHECK(good > 100);  // both happen, or the mutations try nothing
+  CHECK(good > 100);  // both occur; otherwise the mutations test nothing
   CHECK(refused > 1000);
 }

@@ -1,4 +1,4 @@
-// On a bus within this process: LCM's memq, no network; time is told by hand.
+// Tests on a bus within this process: LCM's memq transport, no network, a manual clock.
 #include "scripts/live/controls.h"
 
 #include <catch2/catch.hpp>
@@ -72,7 +72,7 @@ TEST_CASE("A command is repeated until it is answered, with one number, and the 
   }
   sim_reply_t reply{};
   reply.header.sim_time_ns = -1;
-  reply.id = sent[0].id + 1;  // of somebody else
+  reply.id = sent[0].id + 1;  // the id of another request
   reply.done = 1;
   reply.text = "other";
   p.bus.publish(channels::kSimReply, reply);
@@ -106,7 +106,7 @@ TEST_CASE("Sliders begin from the profile in force, and the newest profile is th
   REQUIRE(p.controls.profile());
   CHECK(p.controls.profile()->generation == kRealtime_ns + 50);
 
-  // A clock that was set back must not make what the page asks for the older one.
+  // A clock that was set back must not make the page's request the older one.
   p.controls.degrade({{{"audio", {80, 0, 0}}}, false}, kRealtime_ns, p.now);
   p.pass(0.05);
   const auto sent = Page::all(p.profiles);

@@ -1,3 +1,4 @@
+// Tests of the event and health feed of the live page.
 #include "scripts/live/feed.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of the mouse as a hand: ray through a pixel, speed limit, release.
 #include "scripts/live/hand.h"
 
 #include <catch2/catch.hpp>
@@ -40,7 +41,7 @@ TEST_CASE("A place in the picture is a place on the ray behind it") {
     camera.translate(5 * Vector3d(unit(random), unit(random), unit(random)));
     camera.rotate(Eigen::Quaterniond(unit(random), unit(random), unit(random), unit(random)).normalized());
     const double fov = 1.2 + unit(random), x = unit(random), y = unit(random), depth = 5.1 + 5 * unit(random);
-    // Projected again as a pinhole camera does: by the focal length in half widths.
+    // Projected again with a pinhole camera, by the focal length in half widths.
     const Vector3d p = camera.inverse() * behind_pixel(scene(camera, fov), kAspect, x, y, depth);
     const double focal = 1 / std::tan(fov / 2);
     REQUIRE(p.x() == Approx(depth));
@@ -67,7 +68,7 @@ TEST_CASE("The hand begins at the tool and follows the mouse in the tool's plane
     if (i % 10 == 0) hand.aim({0.4, 0.2, 0, true}, scene(), kAspect, std::nullopt, at(t));
     m = hand.state(at(t));
     REQUIRE(m);
-    // A straight line at the limit, and then it stands: the closed form.
+    // Closed form: a straight line at the speed limit, then at rest.
     REQUIRE((place(*m) - (tool + (target - tool) * std::min(1.0, t / way_s))).norm() < 1e-9);
   }
   CHECK(m->buttons == 1);
@@ -98,7 +99,7 @@ TEST_CASE("However the mouse jumps, two places of the hand lie no farther apart 
 
 TEST_CASE("A silent page lets go, and who takes hold again begins where the tool is then") {
   Hand hand;
-  CHECK_FALSE(hand.state(at(0)));  // nobody holds it
+  CHECK_FALSE(hand.state(at(0)));  // the hand is not held
   hand.aim({0, 0, 0, false}, scene(), kAspect, Vector3d(1, 0, 0), at(0));
   CHECK(hand.state(at(0.35)));
   CHECK_FALSE(hand.state(at(0.351)));

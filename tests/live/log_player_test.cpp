@@ -1,3 +1,4 @@
+// Tests of playing a log in the live page: speed, seek, length and damage.
 #include "scripts/live/log_player.h"
 
 #include <catch2/catch.hpp>
@@ -14,9 +15,9 @@ using namespace tactus::live;
 namespace {
 
 constexpr std::int64_t kBegin_us = 1'700'000'000'000'000;
-constexpr int kEvents = 6000;  // one each 10 ms: a minute
+constexpr int kEvents = 6000;  // one per 10 ms: a minute
 
-// A log whose events carry their number.
+// A log of numbered events.
 std::shared_ptr<sync::MemorySink::State> minute() {
   auto state = std::make_shared<sync::MemorySink::State>();
   sync::LogWriter writer(std::make_unique<sync::MemorySink>(state));
@@ -52,7 +53,7 @@ TEST_CASE("A log is played at its own speed, each event once and in order") {
   Playing p;
   CHECK(p.player.length_s() == Approx(59.99));
   for (int i = 0; i < 200; ++i) p.advance(0.05);
-  REQUIRE(p.heard.size() == 1001);  // of the first ten seconds, with both ends
+  REQUIRE(p.heard.size() == 1001);  // the first ten seconds, with both ends
   for (int i = 0; i < 1001; ++i) REQUIRE(p.heard[static_cast<std::size_t>(i)] == i);
   CHECK(p.player.position_s() == Approx(10));
 
@@ -88,7 +89,7 @@ TEST_CASE("Wherever a log is wound to, it stands there, and what lay three secon
     REQUIRE_FALSE(p.heard.empty());
     const int last = static_cast<int>(std::floor(std::min(to_s, p.player.length_s()) * 100 + 1e-6));
     REQUIRE(p.heard.back() == last);
-    // From a place that was kept, at most half a second farther before.
+    // Playback begins at an index entry, at most half a second earlier.
     const int from = last - 300;
     REQUIRE(p.heard.front() <= std::max(0, from));
     REQUIRE(p.heard.front() >= std::max(0, from - 52));

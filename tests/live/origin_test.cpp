@@ -1,3 +1,4 @@
+// Tests of the check of origin, host and token of a browser request.
 #include "scripts/live/origin.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of the send queue of a page: bounds, order and pictures.
 #include "scripts/live/send_queue.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of the conversion between sliders and degradation profiles.
 #include "scripts/live/sliders.h"
 
 #include <catch2/catch.hpp>
@@ -101,6 +102,6 @@ TEST_CASE("Wherever the sliders stand, the profile is one, and shows them where 
       REQUIRE(shown.contains(sense));
       REQUIRE(same(shown.at(sense), s));
     }
-    REQUIRE(slid(text, at) == text);  // who changes nothing changes nothing
+    REQUIRE(slid(text, at) == text);  // unchanged sliders leave the profile unchanged
   }
 }

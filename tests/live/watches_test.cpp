@@ -1,3 +1,4 @@
+// Tests of the variables that a page plots: decimation, bounds and hostile bytes.
 #include "scripts/live/watches.h"
 
 #include <catch2/catch.hpp>
@@ -54,7 +55,7 @@ TEST_CASE("Two hands that send one variable are two curves") {
   }
   std::map<std::int64_t, std::set<double>> values;
   const auto all = w.watches.values();
-  CHECK(all.size() == 20);  // neither thins out the other
+  CHECK(all.size() == 20);  // the senders are decimated separately
   for (const auto& v : all) values[v[3].get<std::int64_t>()].insert(v[2].get<double>());
   CHECK(values.size() == 2);
   for (const auto& [source, of] : values) CHECK(of.size() == 1);
@@ -72,7 +73,7 @@ TEST_CASE("Values are thinned out to 200 a second, and what waits is bounded by 
   for (int i = 0; i < 100'000; ++i) w.tool_at(2 + 0.005 * i, i);
   const auto all = w.watches.values();
   REQUIRE(all.size() == Watches::kMaxWaiting);
-  CHECK(all.back()[2] == 99'999);  // a log that was wound shows what lies just before its place
+  CHECK(all.back()[2] == 99'999);  // after a jump in a log, the newest values before its place remain
 }
 
 TEST_CASE("Values of a log that was wound back are shown, and what is no number is not") {
@@ -91,7 +92,7 @@ TEST_CASE("Bytes that are no message of their channel give no value") {
   w.watches.take(channels::kToolState, {}, at(0));
   for (std::size_t size = 0; size + 1 < good.size(); size += 7)
     w.watches.take(channels::kToolState, std::span(good).first(size), at(static_cast<double>(size)));
-  for (const auto& v : w.watches.values()) CHECK(v[2].is_number());  // a cut behind the field is not looked at
+  for (const auto& v : w.watches.values()) CHECK(v[2].is_number());  // bytes after the field may be missing
   auto other = good;
   other[0] ^= 0xff;  // another fingerprint
   w.watches.take(channels::kToolState, other, at(1e4));

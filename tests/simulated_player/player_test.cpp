@@ -1,3 +1,4 @@
+// Tests of the simulated player in a toy world of balls and holes.
 #include "scripts/simulated_player/player.h"
 
 #include <algorithm>
@@ -20,12 +21,11 @@ Rules two_balls() {
   return rules;
 }
 
-// A world of balls that stay where they are pushed, on a plane, and fall where their hole is; and a hand that is where it wants to
-// be.
+// A world of balls that stay where they are pushed, on a plane, and fall at the place of their hole; and a hand at its commanded position.
 struct Toy {
   explicit Toy(Rules r, std::vector<Vector3d> at) : rules(std::move(r)), balls(std::move(at)), player(rules, {}) {}
 
-  // True when all balls are in their holes before so many seconds.
+  // True when all balls are in their holes within `seconds` of simulated time.
   bool play(double seconds, const std::function<void(Percept&)>& sense = [](Percept&) {}) {
     for (const double end = time_s + seconds; time_s < end; time_s += kStep_s) {
       Percept p;
@@ -86,7 +86,7 @@ TEST_CASE("A player takes one ball after the other, and each into its own hole")
 TEST_CASE("A player does nothing about what he has not had time to see") {
   Toy toy(one_ball(), {{0, 0, 0.025}});
   const Vector3d rest = toy.hand;
-  // Nothing is known before the first percept is heeded: he goes where he was told that balls are.
+  // Before the reaction time has passed no percept takes effect: the player moves towards its first guess of the ball, beside the hole.
   toy.play(0.14);
   const Vector3d before = toy.hand;
   toy.play(0.1);
@@ -100,7 +100,7 @@ TEST_CASE("A hand never moves faster than it can, whatever it senses") {
   toy.play(20, [&](Percept& p) {
     fastest = std::max(fastest, (p.hand_m - last).norm() / kStep_s);
     last = p.hand_m;
-    if (static_cast<int>(p.time_s * 10) % 3 == 0) p.balls_m[0] = Vector3d(0.3, -0.3, 0.025);  // it seems to leap
+    if (static_cast<int>(p.time_s * 10) % 3 == 0) p.balls_m[0] = Vector3d(0.3, -0.3, 0.025);  // the ball seems to jump
   });
   CHECK(fastest <= 1.001 * std::max(PlayerDef{}.reach_m_s, 6 * 0.2));
 }
@@ -129,7 +129,7 @@ TEST_CASE("Who does not see finds a ball by touch, near where he was told that i
   Toy toy(one_ball(), {{-0.05, 0.04, 0.025}});
   const auto blind = [](Percept& p) { p.balls_m.assign(p.balls_m.size(), std::nullopt); };
   toy.play(40, blind);
-  CHECK((toy.balls[0] - Vector3d(-0.05, 0.04, 0.025)).norm() > 0.01);  // it was touched, and moved
+  CHECK((toy.balls[0] - Vector3d(-0.05, 0.04, 0.025)).norm() > 0.01);  // the hand touched and moved it
 
   Toy numb(one_ball(), {{-0.05, 0.04, 0.025}});
   numb.play(40, [&](Percept& p) {
@@ -137,5 +137,5 @@ TEST_CASE("Who does not see finds a ball by touch, near where he was told that i
     p.force_N.setZero();
     p.fell.assign(1, false);
   });
-  CHECK(numb.player.goal() == 0);  // nothing told him that anything was reached
+  CHECK(numb.player.goal() == 0);  // no percept reported a reached goal
 }

@@ -1,3 +1,4 @@
+// Tests of waiting until a profile is in force in every modality.
 #include "scripts/trial_runner/enforcement.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of the taps and presses of the trial runner's hand.
 #include "scripts/trial_runner/hand.h"
 
 #include <catch2/catch.hpp>
@@ -45,7 +46,7 @@ TEST_CASE("No motion of the hand leaps") {
   SECTION("of a tap") { REQUIRE(hand.tap({0.05})); }
   SECTION("of a press") { REQUIRE(hand.press({0.02, 0.5, 3})); }
   const Path path = followed(hand);
-  CHECK(path.fastest_m_s < 1.3);  // half the swing of the way up, of a cosine: pi / 2 times its mean
+  CHECK(path.fastest_m_s < 1.3);  // for half a cosine the peak speed is pi / 2 times the mean
   CHECK(path.largest_step_m < 1.3 * kStep_s);
 }
 

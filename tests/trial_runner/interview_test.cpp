@@ -1,3 +1,4 @@
+// Tests of publishing a question and accepting its answer.
 #include "scripts/trial_runner/interview.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of the line protocol of the trial runner: non-blocking, without loss of order.
 #include "scripts/trial_runner/lines.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// Tests of the lines that report messages of the bus to a study.
 #include "scripts/trial_runner/observations.h"
 
 #include <catch2/catch.hpp>

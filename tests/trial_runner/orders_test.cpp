@@ -1,3 +1,4 @@
+// Tests of parsing the orders of a study.
 #include "scripts/trial_runner/orders.h"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// A fan that blows a gust for every hit. Pure.
+// A fan that blows a gust for every hit. Pure: no bus, no clock.
 #pragma once
 #include <cmath>
 #include <tactus/contact_event_t.hpp>
@@ -7,13 +7,13 @@
 
 namespace tactus::wind {
 struct Fan {
-  double gust = 0, share = 0;  // of the hits; of the fan's full speed, which is commanded: 0 .. 1
-  // One tick. response_s: time constant of a fan that is made slow on purpose; 0: none.
+  double gust = 0, share = 0;  // gust: of the hits, 0 .. 1; share: commanded share of the fan's full speed, 0 .. 1
+  // One tick. response_s: time constant of the fan as an output operator sets it; 0: none.
   void step(const Settings& s, double response_s) {
     gust *= std::exp(-1 / (s.rate_Hz * s.gust_time_s));
     share += (response_s > 0 ? 1 - std::exp(-1 / (s.rate_Hz * response_s)) : 1) * (gust - share);
   }
-  // The gust of a hit begins in this tick, unless it is too late. Returns the report.
+  // Starts the gust of a hit in this tick, unless it is too late. Returns the report.
   presentation_t blow(const Settings& s, const contact_event_t& hit, sync::HostTime scheduled, sync::HostTime now) {
     const sync::LatePolicy late{sync::Late::kShowNewest, sync::from_seconds(s.late_after_s),
                                 sync::from_seconds(s.drop_after_s)};

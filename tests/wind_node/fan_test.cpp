@@ -1,3 +1,4 @@
+// Tests of the fan model.
 #include "tests/wind_node/fan.h"
 
 #include <catch2/catch.hpp>

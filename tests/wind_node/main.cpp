@@ -1,4 +1,4 @@
-// wind_node: a fan that blows a gust for every hit, at 50 Hz. Losing its inputs lets the gust die away.
+// wind_node: a fan that blows a gust for every hit, at 50 Hz. When its inputs are lost the gust decays.
 //   in   CONTACT_EVENTS, CONTACTS, SCENE       out   PRESENTED of every hit, wind.csv
 #include <fstream>
 #include <map>

@@ -1,8 +1,7 @@
-// Writes the log of a run that nobody simulated: on materials_bench a bar of each material is struck, scraped and
-// rolled on by a tip of its own material, all alike, with silence after each. What audio_node --log makes of it is drawn by
-// tests/measure/draw_sounds.
+// Writes a synthetic log: on materials_bench a tip of the same material strikes, scrapes and rolls on a bar of each material, with the
+// same motion, and silence after each. tests/measure/draw_sounds draws the output of audio_node --log for it.
 //
-//   bin/bench_sounds LOG MATERIAL...
+//    bin/bench_sounds LOG MATERIAL...
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
@@ -26,7 +25,7 @@ using audio::test::RecordedRun;
 
 namespace {
 
-// Of each material, s: tests/measure/draw_sounds draws it by the same.
+// Times per material, s; tests/measure/draw_sounds uses the same.
 constexpr double kFirst_s = 1, kEach_s = 4.2, kScrape_s = 1.6, kRoll_s = 2.9, kLasts_s = 0.6;
 constexpr double kSpeed_m_s = 0.15, kForce_N = 4, kStep_s = 1.0 / 60;
 constexpr double kTip_1_m = 200;  // a round tip of 5 mm
@@ -37,8 +36,8 @@ int body_named(const scene_t& scene, const std::string& name) {
   throw std::runtime_error("materials_bench has no " + name + "; name a material that has a bar there");
 }
 
-// Whose tip it is: the bar of skin, which is nearly silent itself. The tip is of the material of the bar that it
-// strikes, so that nothing else is heard: a recording of a pair holds both.
+// The body of the tip: the bar of skin, which is nearly silent itself. The tip has the material of the bar that it strikes, so that
+// nothing else sounds: a recording of a pair contains both.
 int striker(const scene_t& scene) { return body_named(scene, "skin_bar"); }
 
 double patch_m2(const scene_t& scene, int material) {
@@ -47,11 +46,11 @@ double patch_m2(const scene_t& scene, int material) {
   return M_PI * radius_m * radius_m;
 }
 
-// As the simulation tells it (audio_node/excitation/contact_way.h): the contact goes over the bar; a tip that slides stays at
-// its place of the tip, one that rolls goes over both.
+// A contact as the simulation publishes it (audio_node/excitation/contact_way.h): it moves over the bar. A sliding tip keeps its contact
+// point, a rolling one moves over both surfaces.
 contact_t contact(const scene_t& scene, int bar, int material, double went_m, bool rolls) {
   const Eigen::Isometry3d lies = to_eigen(scene.bodies[static_cast<std::size_t>(bar)].pose);
-  // Beside the middle of its width, where the bar twists too.
+  // Beside the middle of its width, so that torsional modes ring, too.
   const Eigen::Vector3d on_bar(-0.05 + went_m, 0.008, 0.01), on_tip(rolls ? went_m : 0, 0, 0);
   const int tip = striker(scene);
   contact_t c{};
@@ -62,7 +61,7 @@ contact_t contact(const scene_t& scene, int bar, int material, double went_m, bo
   c.normal_force_N = static_cast<float>(kForce_N), c.depth_m = 1e-5f;
   c.area_m2 = static_cast<float>(patch_m2(scene, material));
   c.sliding_velocity_m_s.x = static_cast<float>(rolls ? 0 : bar_first ? kSpeed_m_s : -kSpeed_m_s);
-  // The mean of the ways over both.
+  // The mean of the velocities over both surfaces.
   c.rolling_velocity_m_s.x = static_cast<float>(rolls ? kSpeed_m_s : kSpeed_m_s / 2);
   contact_point_t p{};
   p.a_world_m = p.b_world_m = to_vec3f(lies * on_bar);

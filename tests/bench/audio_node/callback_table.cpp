@@ -1,8 +1,7 @@
-// What a block costs in the card's callback when 100 bodies of 100 modes ring, each struck again and again:
-// median, 99th percentile and most, as a share of the block's own time, with each set of instructions that this
-// machine has.
+// Cost of a block in the callback of the sound card while 100 bodies of 100 modes ring and are struck repeatedly: median, 99th percentile
+// and maximum, as a share of the block's duration, for each instruction set of this machine.
 //
-//   bin/callback_table [--bodies N] [--modes N] [--frames N] [--seconds S] [--json FILE]
+//    bin/callback_table [--bodies N] [--modes N] [--frames N] [--seconds S] [--json FILE]
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -28,9 +27,9 @@ using namespace tactus::audio;
 namespace {
 
 constexpr double kRate_Hz = 48000;
-constexpr double kStrikes_Hz = 200;  // of all bodies together
+constexpr double kStrikes_Hz = 200;  // over all bodies
 
-// Of the modes of a body, for as long as the program runs.
+// Keeps the modes of a body until the program ends.
 const Resonators* kept(const Resonators& resonators) {
   static std::deque<Resonators> all;
   return &all.emplace_back(resonators);

@@ -1,7 +1,7 @@
-// By how much one ear hears later and louder than the other what comes from a circle around the head: ours, as the
-// callback renders it at 48 kHz, and the SOFA file's own responses. A negative time: the left ear hears first.
+// Interaural time and level differences of a source on a circle around the head: ours, as the callback renders it at 48 kHz, and those of
+// the SOFA file's responses. A negative time: the left ear leads.
 //
-//   bin/circle_table [--json FILE]
+//    bin/circle_table [--json FILE]
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>

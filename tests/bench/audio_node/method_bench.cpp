@@ -1,7 +1,7 @@
-// What one contact costs the audio callback when it is computed, played from recordings, or both: impacts on four
-// materials, and contacts that slide, in blocks of 64 frames with a stereo pan.
+// Cost of one contact for the audio callback when it is computed, played from recordings, or both: impacts on four materials, and sliding
+// contacts, in blocks of 64 frames with a stereo pan.
 //
-//   bin/method_bench [--seconds N] [--json FILE]
+//    bin/method_bench [--seconds N] [--json FILE]
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -38,7 +38,7 @@ std::int64_t clock_ns() {
       .count();
 }
 
-// Plates of 0.3 m of four materials, all struck by each other.
+// Plates of 0.3 m of four materials, each struck by all others.
 scene_t plates() {
   scene_t s{};
   s.listener = to_pose(Eigen::Isometry3d(Eigen::Translation3d(-1, 0, 0)));
@@ -62,7 +62,7 @@ scene_t plates() {
 }
 
 struct Cost {
-  double modal_us = 0, samples_us = 0, all_us = 0;  // of each contact; of a sliding one: a second of it
+  double modal_us = 0, samples_us = 0, all_us = 0;  // per contact; for sliding: per second of it
 };
 
 class Rehearsal {
@@ -118,7 +118,7 @@ class Rehearsal {
     return Impacts(scene_, {}, settings_, settings_.sample_rate_Hz, 1);
   }
 
-  // Of a over the roughness of b.
+  // Body a scrapes over the roughness of b.
   Scrape scrape(const contact_t& c, float share, double now_s, sync::HostTime at) {
     Scrape s;
     s.id = c.contact_id, s.number = number_++, s.at = at;

@@ -1,9 +1,9 @@
-// Stands in for sim_node in measurements of time: a dull board around the listener and a ball that strikes it at random
-// times and places, on every side, alone, for ever; each hit is told as the simulation tells it, in the step in which
-// its time is reached and for 50 ms after.
+// Replaces sim_node in measurements of sound timing: a dull board around the listener and a ball that strikes it at random times and
+// places, on every side, one hit at a time, without end. Each hit is published as the simulation does, in the step of its time and for 50
+// ms after.
 //
-//   in   ASSET_REQUEST
-//   out  SCENE_MANIFEST, ASSET_CHUNK, CONTACT_EVENTS, CONTACTS
+//    in   ASSET_REQUEST
+//    out  SCENE_MANIFEST, ASSET_CHUNK, CONTACT_EVENTS, CONTACTS
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <iostream>
@@ -27,13 +27,13 @@ using namespace tactus;
 
 namespace {
 
-constexpr double kLeastGap_s = 0.07, kMaxGap_s = 0.13;  // 10 a second; the board has fallen silent by then
-constexpr double kAround_m = 0.08;                       // of the listener, who is amid the board
+constexpr double kLeastGap_s = 0.07, kMaxGap_s = 0.13;  // 10 per second; the board is silent again by then
+constexpr double kAround_m = 0.08;                       // distance from the listener, who is in the middle of the board
 constexpr sync::Nanoseconds kRepeat{50'000'000};         // as sim_node/publish repeats its events
-constexpr sync::Nanoseconds kGrace{3'000'000'000};       // in which the scene is read, as sim_node's scene_grace
+constexpr sync::Nanoseconds kGrace{3'000'000'000};       // time to load the scene, as sim_node's scene_grace
 constexpr int kSnapshotEvery = 17;                       // ticks: 60 Hz
 
-// Stiff, so that the blow is short, and so damped that each blow is over before the next: by 1/e in 3 ms.
+// Stiff, so that the impact is short, and damped so that each sound ends before the next: by 1/e in 3 ms.
 scene_t dull_board() {
   scene_t s{};
   material_def_t dull{};

@@ -1,9 +1,8 @@
-// How many modes of a vibrating body ring at 48 kHz on one core, in blocks of 64: by a plain loop over modes and
-// samples, by STK's modal instrument where it is installed, and by bank/ring.h with each set of instructions that
-// this machine has; pushed, ringing on freely, and after a silence in which all of it has become too small to be a
-// number.
+// Number of modes of a vibrating body that one core renders at 48 kHz in blocks of 64: by a plain loop over modes and samples, by STK's
+// modal instrument where it is installed, and by bank/ring.h with each instruction set of this machine; driven, ringing freely, and after
+// a silence in which all states have become denormal.
 //
-//   bin/ring_bench [--modes N] [--json FILE]
+//    bin/ring_bench [--modes N] [--json FILE]
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -43,7 +42,7 @@ __attribute__((noinline)) void plain(const Ringing& m, const Push* pushes, int c
   }
 }
 
-// Median of rounds that take turns with the others, modes at 48 kHz.
+// Median of rounds interleaved with the other methods; modes at 48 kHz.
 struct Way {
   std::string name;
   std::function<void(int pushes)> block;

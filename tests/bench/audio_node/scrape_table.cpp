@@ -1,4 +1,4 @@
-// What a contact that slides or rolls costs the callback, per block of 64 frames, and the node's loop, per tick.
+// Cost of a sliding or rolling contact: of the audio callback per block of 64 frames, and of the node's loop per tick.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -30,7 +30,7 @@ namespace {
 constexpr double kRate_Hz = 48000;
 constexpr int kFrames = kMaxBlock;
 
-// A relief of 512 x 512 pixels of 0.2 mm, and a friction map of the same.
+// A relief of 512 x 512 pixels of 0.2 mm, and a friction map of the same size.
 HeightMap heights() {
   HeightMap map{512, 512, 65535, {}};
   for (int i = 0; i < 512 * 512; ++i) map.levels.push_back(static_cast<std::uint16_t>((i * 2654435761u) >> 16));

@@ -1,8 +1,8 @@
-// What share of one core it takes to hear many sources through measured ears, of real time at 48 kHz: ours in
-// blocks of 64 with each set of instructions that this machine has, beside OpenAL Soft's loopback device with its
-// own ears in blocks of 256, in turns. Sources that stay, and sources that all circle the head once a second.
+// Share of one core that many binaural sources take in real time at 48 kHz: ours in blocks of 64 with each instruction set of this
+// machine, and OpenAL Soft's loopback device with its own HRTF in blocks of 256, interleaved. Sources that stay, and sources that all
+// circle the head once per second.
 //
-//   bin/spatial_bench [--json FILE]
+//    bin/spatial_bench [--json FILE]
 #include <AL/al.h>
 #include <AL/alc.h>
 #include <AL/alext.h>
@@ -31,7 +31,7 @@ using namespace tactus::audio;
 namespace {
 
 constexpr int kRate_Hz = 48000;
-constexpr int kRoundFrames = 4096;  // 85 ms of sound for each way, then the next one's turn
+constexpr int kRoundFrames = 4096;  // 85 ms of sound with each method, then the next method
 constexpr int kRounds = 41;
 
 std::vector<float> noise() {
@@ -49,7 +49,7 @@ Eigen::Vector3f direction(int source, int sources, std::int64_t frame, bool circ
   return Eigen::Vector3d(std::cos(azimuth), std::sin(azimuth), height).normalized().cast<float>();
 }
 
-// Of this thread: what other programs take counts for nobody.
+// Time of this thread; other programs are not counted.
 double processor_s() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

@@ -1,4 +1,4 @@
-// Spectra of two signals along a stroke: how much of the one is in the other, by bands.
+// Cross spectra of two signals along a stroke: coherence and gain by bands.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@ struct Spectrum {
   std::vector<std::complex<double>> cross;
 };
 
-// Welch's method: segments of `length_m`, half over each other, each less its mean, under a Hann window; bins up
-// to highest_per_m. step_m: between samples.
+// Welch's method: segments of `length_m`, overlapping by half, each without its mean, under a Hann window; bins up to highest_per_m.
+// step_m: between samples.
 inline Spectrum spectra(const std::vector<double>& x, const std::vector<double>& y, double step_m, double length_m,
                         double highest_per_m) {
   const auto n = static_cast<std::size_t>(std::lround(length_m / step_m));

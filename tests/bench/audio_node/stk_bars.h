@@ -1,4 +1,4 @@
-// As many struck bars of STK, of four modes each, as have so many modes together: to compare with.
+// Struck bars of STK with four modes each, as a reference: as many bars as the given number of modes needs.
 #pragma once
 
 #include <stk/ModalBar.h>
@@ -13,8 +13,7 @@
 class StkBars {
  public:
   StkBars(int modes, double rate_Hz) {
-    // The sound of its mallet, which Debian's library comes without: 256 samples of 16 bits. What is in it changes
-    // no cost.
+    // The mallet sound that Debian's library lacks: 256 samples of 16 bits. Its content does not affect the cost.
     char folder[] = "/tmp/tactus-stk-XXXXXX";
     if (!mkdtemp(folder)) throw std::runtime_error("ring_bench: cannot make a folder in /tmp");
     {

@@ -1,5 +1,5 @@
-// Strikes bodies one after the other, each alone, through the card's callback and the virtual card, and says into which WAV file.
-// tests/measure/measure_modes holds what is in them against closed forms.
+// Strikes bodies one after the other, each alone, through the callback and the virtual sound card, and prints the WAV file of each.
+// tests/measure/measure_modes compares the files with closed forms.
 #include <chrono>
 #include <fstream>
 #include <iostream>
@@ -30,7 +30,7 @@ constexpr sync::Nanoseconds kAhead{60'000'000};  // the stream has settled by th
 vec3_t vec3(const json& of) { return {of.at(0), of.at(1), of.at(2)}; }
 vec3f_t vec3f(const json& of) { return {of.at(0), of.at(1), of.at(2)}; }
 
-// The body of that case, and a hammer so small that nothing of it is heard.
+// The body of that case, and a hammer too small to be audible.
 scene_t scene_of(const json& of) {
   scene_t scene{};
   material_def_t material{};
@@ -62,7 +62,7 @@ contact_event_t blow(const json& of) {
   event.event_id = 1, event.kind = contact_event_t::HIT;
   event.body_a = 0, event.body_b = 1, event.tool = -1;
   event.point_m = vec3f(of.at("point_m")), event.normal = vec3f(of.at("normal"));
-  // A contact of some 30 us between hard bodies: one or two samples, so that it drives all that is heard.
+  // A contact of about 30 us between hard bodies: one or two samples, so that it excites all audible modes.
   event.approach_speed_m_s = 1, event.effective_mass_kg = 0.001f, event.curvature_1_m = 500;
   return event;
 }

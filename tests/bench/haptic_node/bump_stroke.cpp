@@ -1,3 +1,4 @@
+// Board, mesh and hand of the stroke over planks.png.
 #include "tests/bench/haptic_node/bump_stroke.h"
 
 #include <cmath>
@@ -17,8 +18,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kTile_m = 0.08;   // one repetition, as in bump_plane.sdf
-constexpr double kEnds_s = 0.15;   // in which the hand comes in and the force settles; not counted
-constexpr double kStart_s = 0.05;  // in which the hand sets off, and the damper answers; not counted either
+constexpr double kEnds_s = 0.15;   // the hand enters and the force settles; not counted
+constexpr double kStart_s = 0.05;  // the hand starts to move and the damper responds; not counted either
 
 const HeightMap& planks() {
   static const HeightMap map = [] {
@@ -36,7 +37,7 @@ material_def_t material(double height_m) {
   return m;
 }
 
-// The heights of the map at the middles of its pixels, joined by triangles: no filter of anybody.
+// The heights of the map at the centres of its pixels, joined by triangles, without a filter.
 sim::TriangleMesh mesh_of(const BumpStroke& s) {
   const HeightMap& map = planks();
   const double pixel = kTile_m / map.columns;

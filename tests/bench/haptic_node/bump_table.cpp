@@ -1,11 +1,11 @@
-// Does the hand feel the map that the eye sees? A stroke over planks.png: the spectrum of the force along it
-// against that of the map's slope, and heights against normals on one stroke, beside the relief in triangles.
+// Agreement of the rendered force with the displayed map: a stroke over planks.png, the spectrum of the force along it against that of the
+// map's slope, and heights against normals on one stroke, compared with the relief in triangles.
 //
-//   bin/bump_table [--check] [--json FILE] [--picture FILE.svg]
+//    bin/bump_table [--check] [--json FILE] [--picture FILE.svg]
 //
-// --check: exit 1 unless, by normals at 0.05 to 0.5 m/s, the force has the spectrum of the slope in every band
-// that holds more than 1 % of it (coherence at least 0.95, gain 0.9 to 1.1), its correlation with the force of the
-// triangles is at least 0.9 and larger than by heights, and the force changes by no more than the limit of slew.
+// --check: exit 1 unless, by normals at 0.05 to 0.5 m/s, the force has the spectrum of the slope in every band that holds more than 1 % of
+// it (coherence at least 0.95, gain 0.9 to 1.1), its correlation with the force of the triangles is at least 0.9 and larger than by
+// heights, and the force changes by no more than the slew limit.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
@@ -18,13 +18,13 @@ using namespace tactus::bench;
 
 namespace {
 
-constexpr double kBands_per_m[] = {12, 50, 150, 400, 700, 1000};  // the picture's pixels are 3200 per metre
-// A proxy over triangles rounds off what is narrower than the device is deep: as much as the relief is high.
+constexpr double kBands_per_m[] = {12, 50, 150, 400, 700, 1000};  // the map has 3200 pixels per metre
+// A proxy over triangles smooths details narrower than the depth of the device, so the depth equals the height of the relief.
 constexpr double kShallow_m = 0.0005;
 constexpr double kSlew_N_s = 2000;  // slew_limit
 constexpr double kSegment_m = 0.1;
 
-// What a force of that size that leans as the slope says has along the stroke.
+// The component along the stroke of a force of that size whose direction follows the slope.
 std::vector<double> leaning(const BumpTrace& t, double force_N) {
   std::vector<double> out;
   for (const double s : t.slope) out.push_back(-force_N * s / std::hypot(1, s));
@@ -43,10 +43,10 @@ bool spectrum_table(nlohmann::json& json) {
         const BumpTrace t = run(stroke);
         const Spectrum s =
             spectra(t.along_N, leaning(t, 1e3 * stroke.depth_m), t.step_m, kSegment_m, kBands_per_m[5]);
-        // Steep and fast: what the limit of slew takes away is no matter of maps.
+        // Steep and fast strokes reach the slew limit, which is no property of the map.
         const bool limited = quantile(t.change_N, 1) > 0.999 * kSlew_N_s / rate_Hz;
         for (std::size_t b = 0; b + 1 < std::size(kBands_per_m); ++b) {
-          // At half the rate of samples there is nothing to compare.
+          // Near half the sampling rate there is nothing to compare.
           if (kBands_per_m[b + 1] > 0.45 / t.step_m) continue;
           const Band band = in_band(s, kBands_per_m[b], kBands_per_m[b + 1]);
           std::printf("%8g %6g %5g mm | %5g to %5g %10.4f %10.4f %10.3f%s\n", speed_m_s, rate_Hz, 1e3 * height_m,
@@ -71,7 +71,7 @@ struct Compared {
   double along = 0, up = 0;  // correlation with the force of the triangles
 };
 
-// y over x, at the places `at`, linear between.
+// y over x, interpolated linearly at the places `at`.
 std::vector<double> sampled(const std::vector<double>& x, const std::vector<double>& y,
                             const std::vector<double>& at) {
   std::vector<double> out;
@@ -96,7 +96,7 @@ bool method_table(nlohmann::json& json) {
   std::printf("%8s %6s %-8s %11s %11s %11s %9s %9s %9s %9s\n", "m/s", "Hz", "method", "r along", "r up",
               "along rms N", "up rms N", "p99 N", "max N", "hand um");
   bool good = true;
-  // Of triangles that change the proxy needs time to yield: their force is true while the hand is slow.
+  // On changing triangles the proxy takes time to yield: their force is accurate at low speed only.
   const BumpTrace truth = run({.method = "mesh",
                                .speed_m_s = 0.01,
                                .length_m = 0.16,
@@ -163,7 +163,7 @@ bool steep_table(nlohmann::json& json) {
   return good;
 }
 
-// Curves over one axis, each with its own scale about its middle, one below the other.
+// Curves over one axis, one below the other, each with its own scale about its middle.
 class Picture {
  public:
   void title(const std::string& text) {

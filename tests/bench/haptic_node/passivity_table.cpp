@@ -1,23 +1,21 @@
-// Does touch give a hand and a body more energy than they gave? Hands of three sizes press on walls and bodies,
-// tap on them and push bodies along, while the touch model is late, thin, lossy or frozen; and what is left of
-// touch then.
+// Energy that touch generates beyond the energy that it received from hand and body. Hands of three sizes press on walls and bodies, tap
+// on them and push bodies along, while the touch model is late, thin, lossy or frozen; and the remaining quality of touch.
 //
-//   bin/passivity_table [--check] [--all] [--seeds N | --seed N] [--json FILE]
+//    bin/passivity_table [--check] [--all] [--seeds N | --seed N] [--json FILE]
 //
-// A row is one surface with one touch model; each figure the worst of all hands and, where messages are lost by
-// chance, of all seeds; energy also of pressing, tapping and pushing along (tests/haptic_node/support/episode.h):
-//   generated   the most that device port and body port gave together, over what they had taken in, in an episode
-//   told        the most that the observer of the renderer told of it
+// A row is one surface with one touch model. Each figure is the worst of all hands and, where messages are lost at random, of all seeds;
+// energy also of pressing, tapping and pushing along (tests/haptic_node/support/episode.h):
+//   generated   maximum net energy out of device port and body port together in an episode
+//   told_mJ     maximum of the same energy as the renderer's observer reports it
 //   without     generated, with the controller switched off
-//   cycle       the force sways to and fro at the end of the hold, by more than 0.05 N rms, and does not die away
-//   of ideal    mean force of the hold over that of springs in a row: hand, surface and what holds the body
-//   of design   the same, with the stiffness that the rules of the coupling leave to a mass at that delay
+//   cycle       the force oscillates at the end of the hold by more than 0.05 N rms and does not decay
+//   of ideal    mean force of the hold relative to that of springs in series: hand, surface and support of the body
+//   of design   the same, relative to the stiffness that the coupling rules allow for a mass at that delay
 //   K           force over depth
-//   factor      the lowest that the controller chose
-// --all prints every episode. --check: exit 1 where generated > 1 mJ, a cycle, or touch that amounts to none: a
-// wall whose force is off by more than 25 %; a body with less than half of the force of the design (after losses
-// and a gap, which are softer than the mean age tells: a fifth), or that is pushed along by less than half of the
-// way.
+//   factor      the minimum that the controller chose
+// --all prints every episode. --check: exit 1 where generated > 1 mJ, at a cycle, or where touch is too weak: a wall whose force is off by
+// more than 25 %; a body with less than half of the force of the design (a fifth after losses and a gap, which are softer than the mean
+// age implies), or one that is pushed along by less than half of the way.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -63,7 +61,7 @@ struct SurfaceKind {
 constexpr SurfaceKind kSurfaces[] = {{0, 200},    {0, 1000},   {0, 5000},   {0.05, 1000},
                                      {0.1, 1000}, {0.2, 1000}, {0.5, 1000}, {1, 1000}};
 
-// The stiffness that the rules of the coupling leave at the mean age of the touch model.
+// The stiffness that the coupling rules allow at the mean age of the touch model.
 double design_N_m(const EpisodeDef& def) {
   const Settings& s = def.settings;
   const double age_s = 1e-3 * def.network.delay_ms + (def.network.rate_Hz < 1000 ? 0.5 / def.network.rate_Hz : 0);
@@ -72,7 +70,7 @@ double design_N_m(const EpisodeDef& def) {
              {s.stiffness_limit_N_m, s.mass_factor, s.damping_ratio, s.device_mass_kg, s.device_damping_Ns_m})
       .stiffness_N_m;
 }
-// The force of the hold with it, and how far a body is pushed along.
+// The force of the hold with that stiffness, and the distance that a body is pushed along.
 double design_N(const EpisodeDef& def, double ideal_N) {
   return kPress_m / (kPress_m / ideal_N - 1 / def.stiffness_N_m + 1 / design_N_m(def));
 }
@@ -80,7 +78,7 @@ double design_m(const EpisodeDef& def, double friction_N) {
   return std::max(0.0, kPush_m - friction_N / design_N_m(def) - friction_N / def.hand.stiffness_N_m);
 }
 
-// An episode with the controller, and what it generates without.
+// An episode with the controller, and the energy generated without it.
 struct Pair {
   EpisodeResult with;
   double without_mJ = 0;
@@ -92,7 +90,7 @@ Pair with_and_without(EpisodeDef def) {
   return pair;
 }
 
-// Where nothing is lost by chance, one is as good as all.
+// Without random losses, one seed is enough.
 std::vector<unsigned> seeds_of(const Network& network, unsigned seeds) {
   std::vector<unsigned> all(network.bursts ? seeds : 1);
   std::iota(all.begin(), all.end(), 1u);
@@ -208,7 +206,7 @@ int main(int argc, char** argv) {
                       {"factor", row.factor},
                       {"good", row.good}});
     }
-  // What the disturbances cost the servo loop.
+  // Cost of the disturbances for the servo loop.
   std::printf("\n%-20s %10s %10s\n", "touch model", "median us", "p99 us");
   nlohmann::json ticks = nlohmann::json::array();
   for (const Network& network : kNetworks) {

@@ -1,8 +1,8 @@
-// What one tick of touch costs: a hand that moves and presses among so many planes, with a touch model that is
-// fresh each tick, each millisecond, or never again. proxy: a ball, in three degrees of freedom; rigid: a tool
-// with a shape, in six, that the planes meet all over.
+// Cost of one tick of touch: a hand that moves and presses among the given number of planes, with a touch model that is fresh each tick,
+// each millisecond, or once only. proxy: a ball, in three degrees of freedom; rigid: a tool with a shape, in six, surrounded by the
+// planes.
 //
-//   bin/servo_bench [--ticks N] [--json FILE]
+//    bin/servo_bench [--ticks N] [--json FILE]
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -26,8 +26,8 @@ namespace {
 enum class Fresh { kEachTick, kEachMs, kOnce };
 constexpr const char* kName[] = {"each tick", "each ms", "once"};
 
-// The tangent planes of a cup of 20 mm around a tool of 5 mm, about its pole: all are near, and those that the
-// hand presses on change as it goes round. Half of them slide and turn, as those of bodies do.
+// The tangent planes of a cup of 20 mm around a tool of 5 mm, about its pole: all are near, and the pressed ones change as the hand moves
+// around. Half of them slide and rotate, as those of moving bodies do.
 std::vector<touch_plane_t> cup(int count, bool rigid) {
   std::vector<touch_plane_t> planes;
   const double golden = M_PI * (3 - std::sqrt(5.0));
@@ -36,7 +36,7 @@ std::vector<touch_plane_t> cup(int count, bool rigid) {
     const Vector3d n(r * std::cos(golden * i), r * std::sin(golden * i), up);
     touch_plane_t p = plane(i + 1, -0.02 * n, n, 0.3);
     if (i % 2 == 0) p.velocity_m_s.x = 0.01f, p.angular_velocity_rad_s.z = 0.1f;
-    // Of a shape: as many points as planes, on a ball of the same size that is a little longer than wide.
+    // With a shape: the same number of points as planes, on a ball of the same size that is a little longer than wide.
     if (rigid) p.tool_point_m = to_vec3f(Vector3d(-0.005 * n.x(), -0.005 * n.y(), -0.008 * n.z()));
     planes.push_back(p);
   }
@@ -61,13 +61,13 @@ Figures measure(int planes, double rate_Hz, Fresh fresh, int ticks, bool rigid) 
   int last_ms = -1;
   for (int i = 0; i < ticks + warm_up; ++i) {
     const double ms = 1000 * i / rate_Hz, angle = 2 * M_PI * ms * 1e-3;  // once around a second
-    // 3 mm beyond where the cup leaves room for the tool, so that the spring is stretched all along.
+    // 3 mm beyond the room that the cup leaves for the tool, so that the spring is stretched all the time.
     const Vector3d device = 0.018 * Vector3d(0.6 * std::cos(angle), 0.6 * std::sin(angle), -0.8);
     const bool news =
         i == 0 || fresh == Fresh::kEachTick || (fresh == Fresh::kEachMs && static_cast<int>(ms) != last_ms);
     last_ms = static_cast<int>(ms);
     if (news) m.header.sim_time_ns = static_cast<std::int64_t>(ms * 1e6);
-    // Never again: it arrives anew all the same, else it would count as lost.
+    // Only the arrival time is renewed, because the model would count as lost otherwise.
     bench.arrival = host_ms(ms);
     const auto begin = std::chrono::steady_clock::now();
     TickInput in;

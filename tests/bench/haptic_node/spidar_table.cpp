@@ -1,6 +1,5 @@
-// What a string device can render: for each frame, in the middle, over its workspace and beyond, the force that
-// every direction is sure of, the torque likewise, how finely it knows its pose, and how long a tick's mathematics
-// take.
+// Performance of string devices. For each frame, in the middle, over its workspace and beyond: the force available in every direction, the
+// torque likewise, the resolution of the pose, and the time of a tick's computation.
 #include <CLI/CLI.hpp>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -24,7 +23,7 @@ using nlohmann::json;
 
 namespace {
 
-// Spread evenly over the sphere (a spiral of golden angles), so that every run asks the same.
+// Spread evenly over the sphere (a spiral of golden angles), so that every run uses the same directions.
 std::vector<Vector3d> directions(int count) {
   std::vector<Vector3d> out;
   for (int i = 0; i < count; ++i) {
@@ -34,9 +33,9 @@ std::vector<Vector3d> directions(int count) {
   return out;
 }
 
-// What the least favourable direction is sure of; 0 where the strings do not keep the grip.
+// The force or torque in the least favourable direction; 0 where the strings do not hold the grip.
 double sure(const StringFrame& f, const GripPose& pose, bool torque, const std::vector<Vector3d>& ways) {
-  constexpr double kFar = 1000;  // N or N m: more than any motor here gives
+  constexpr double kFar = 1000;  // N or N m: more than any motor here provides
   double least = kFar;
   for (const Vector3d& way : ways) {
     Wrench w;
@@ -87,7 +86,7 @@ double median_us(std::vector<double>& v) {
   return v[v.size() / 2];
 }
 
-// One tick: the pose from lengths a millimetre on, the tensions of a force that is given and of one that is cut.
+// One tick: the pose from lengths one millimetre further, the tensions of a feasible force and of a clipped one.
 json speeds(const StringFrame& f) {
   using Clock = std::chrono::steady_clock;
   const auto us = [](Clock::duration d) { return std::chrono::duration<double, std::micro>(d).count(); };
@@ -104,7 +103,7 @@ json speeds(const StringFrame& f) {
       start = Clock::now();
       const Tensions t = solve_tensions(f, pose, {size * way, Vector3d::Zero()});
       (size < 1 ? given_us : cut_us).push_back(us(Clock::now() - start));
-      if (t.share > 2) return {};  // never: keeps the call
+      if (t.share > 2) return {};  // never happens: prevents the optimiser from removing the call
     }
   }
   return {{"pose_us", median_us(pose_us)},

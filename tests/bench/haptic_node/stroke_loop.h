@@ -1,5 +1,5 @@
-// A hand that strokes what stands still, without a bus or a clock: what the simulation says of the surface
-// (ToolTouch, at 1 kHz) and what touch makes of it (haptic::Renderer, as often as it likes).
+// A hand that strokes static surfaces, without a bus or a clock: the touch model of the simulation (ToolTouch, at 1 kHz) and its rendering
+// (haptic::Renderer, at any rate).
 #pragma once
 
 #include <algorithm>
@@ -17,11 +17,11 @@
 
 namespace tactus::bench {
 
-inline constexpr double kStiffness_N_m = 1000;  // of every surface that is stroked
+inline constexpr double kStiffness_N_m = 1000;  // stiffness of every stroked surface
 
 class StrokeLoop {
  public:
-  // Of the first tool of that world. world, trees: outlive this.
+  // Uses the first tool of that world. world, trees: outlive this.
   StrokeLoop(const sim::WorldDef& world, sim::MeshTrees& trees, const haptic::Settings& settings)
       : rate_Hz_(settings.rate_Hz),
         per_step_(static_cast<std::int64_t>(settings.rate_Hz / 1000)),
@@ -35,7 +35,7 @@ class StrokeLoop {
     }
   }
 
-  // One tick with the device there, at time_s(); its velocity follows from where it was.
+  // One tick with the device at this position, at time_s(); its velocity follows from the previous position.
   const haptic::TickOutput& tick(const Eigen::Vector3d& device) {
     const std::int64_t ns = time_ns();
     haptic::TickInput in;
@@ -44,7 +44,7 @@ class StrokeLoop {
     in.device.velocity = (device - last_device_.value_or(device)) * rate_Hz_;
     last_device_ = device;
     in.map = sync::TimeMap{sync::sim_time(0), sync::host_time(kBegins_ns), 1};
-    // What the world said at its last step arrives with the next tick.
+    // The touch model of the last step arrives with the next tick.
     if (std::exchange(sent_, false)) in.fresh = &on_the_way_, arrival_ = in.now;
     in.touch_arrival = arrival_;
     const haptic::TickOutput& out = renderer_.step(in);
@@ -64,7 +64,7 @@ class StrokeLoop {
   }
 
   double time_s() const { return 1e-9 * static_cast<double>(time_ns()); }  // of the next tick
-  double change_N() const { return change_N_; }                            // of the force, in the last
+  double change_N() const { return change_N_; }                            // change of the force in the last tick
   const touch_model_t& model() const { return on_the_way_; }
   haptic::Renderer& renderer() { return renderer_; }
 

@@ -1,12 +1,12 @@
-// How smooth is the force of a stroke over facets? A ball tool is stroked over a bumpy sphere of 20,480 triangles,
-// as the simulation sees it (ToolTouch) and as touch renders it (haptic::Renderer), without a clock or a bus.
+// Smoothness of the force of a stroke over facets. A ball tool strokes over a bumpy sphere of 20,480 triangles, with the touch model of
+// the simulation (ToolTouch) and its rendering (haptic::Renderer), without a clock or a bus.
 //
-//   bin/stroke_table [--check] [--json FILE] [--trace FILE]
+//    bin/stroke_table [--check] [--json FILE] [--trace FILE]
 //
-// The scene is that in which CHAI3D 3.3.0 was measured: radius 100 mm, bumps of 1.5 mm up and down, 0.1 m/s, 3 mm
-// deep, 1000 N/m, friction 0.3. --check: exit 1 unless the force changes by at most 0.2 N a tick at p99 and 0.5 N
-// ever on the stroke and no tick of it pops through, with less than 0.05 N; and by at most 0.5 N a tick at the
-// first touch and the release, at up to 0.15 m/s ("ends max").
+// The scene is the one in which CHAI3D 3.3.0 was measured: radius 100 mm, bumps of 1.5 mm up and down, 0.1 m/s, 3 mm deep, 1000 N/m,
+// friction 0.3. --check: exit 1 unless, on the stroke, the force changes by at most 0.2 N per tick at p99 and by at most 0.5 N in any
+// tick, and no tick of it pops through, with less than 0.05 N; and unless it changes by at most 0.5 N per tick at the first touch and the
+// release, at up to 0.15 m/s ("ends max").
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -60,7 +60,7 @@ struct Row {
 struct Stroke {
   double tool_m, rate_Hz, sway_m, waves, seconds;
 
-  // In at 0.1 m/s, around the sphere on a circle that no edge of the mesh follows, out again.
+  // In at 0.1 m/s, around the sphere on a circle that no edge of the mesh follows, and out again.
   double ends_s() const { return (kAir_m + kMean_N / kStiffness_N_m) / kSpeed_m_s; }
   double depth_m(double t) const {
     const double end = std::min(t, seconds + 2 * ends_s() - t);
@@ -104,12 +104,12 @@ Row run(const sim::WorldDef& world, sim::MeshTrees& trees, const Stroke& stroke,
       *trace << '\n';
     }
     if (t < stroke.ends_s() + 0.02 || t > end_s - stroke.ends_s()) {
-      // The hand is set going sideways from one tick to the next when it is in: that step of its speed is its own.
+      // The hand starts its sideways motion from one tick to the next when it is in: that step of the damping force is expected.
       if (t <= stroke.ends_s() || t > end_s - stroke.ends_s()) row.ends_max_N = std::max(row.ends_max_N, change);
       continue;
     }
     changes.push_back(change);
-    if (out.force_N.norm() < 0.05) ++row.pops;  // all along it is 3 mm inside
+    if (out.force_N.norm() < 0.05) ++row.pops;  // the stroke is 3 mm inside everywhere
     row.mean_N += out.force_N.norm();
     row.planes += static_cast<double>(loop.model().planes.size());
   }
@@ -162,7 +162,7 @@ int main(int argc, char** argv) {
                        {"ticks", r.ticks},
                        {"pops", r.pops},
                        {"planes", r.planes}});
-        // What is not pressed is as smooth as can be: the force has to be there, and friction adds 4 %.
+        // Zero force would be perfectly smooth: the check requires the mean force, to which friction adds 4 %.
         const double mean_N = kMean_N + kStiffness_N_m * sway_m / 2;
         good = good && r.p99_N <= 0.2 && r.max_N <= 0.5 && r.ends_max_N <= 0.5 && r.pops == 0 &&
                std::abs(r.mean_N - mean_N) < 0.1 * mean_N;

@@ -1,5 +1,5 @@
-// A hand and a world, without a bus or a clock: the simulation at 1 kHz, touch as often as it likes, and what each
-// says reaches the other with its next step.
+// A hand and a world without a bus or a clock: the simulation at 1 kHz and touch at any rate. Messages of each reach the other with its
+// next step.
 #pragma once
 
 #include <cmath>
@@ -39,7 +39,7 @@ class TouchLoop {
     simulation_.start(1);
   }
 
-  // One tick of touch with the device there; its velocities follow from where it was.
+  // One tick of touch with the device at this pose; its velocities follow from the previous pose.
   const haptic::TickOutput& tick(const Eigen::Vector3d& position, const Eigen::Quaterniond& orientation) {
     haptic::DeviceState device;
     device.position = position;

@@ -1,3 +1,4 @@
+// Steps of the simulation and the hands on simulated time, and the log of their messages.
 #include "tests/bench/offline/offline_world.h"
 
 #include <chrono>
@@ -49,7 +50,7 @@ void OfflineWorld::note(const char* channel, std::span<const std::uint8_t> bytes
   if (log_) log_->write(sync::to_ns(now) / 1000, channel, bytes);
 }
 
-// What was sent in this step, as if sent at its instant: the wall clock has no part in this.
+// Messages of this step get the simulated instant as send time; the wall clock is not used.
 template <class Message, class Deliver>
 void OfflineWorld::collect(const char* channel, sync::Queue<Message>& queue, Deliver&& deliver) {
   while (auto m = queue.pop()) {

@@ -1,5 +1,5 @@
-// A scene run without a clock: the simulation and the hands that a scene has, step by step, with everything that
-// they say to the senses kept as a log.
+// Runs a scene without a clock: the simulation and the hands of the scene, step by step, with all their messages to the renderers kept as
+// a log.
 #pragma once
 
 #include <functional>
@@ -31,8 +31,8 @@ scene_t scene_of(const sim::WorldDef& world, sync::Nanoseconds step);
 
 class OfflineWorld {
  public:
-  // hands: whether the tools of the scene are held; log: where messages go, may be null. Throws std::runtime_error
-  // with one sentence when the pairing of the settings is refused.
+  // hands: whether the tools of the scene are held; log: destination of the messages, may be null. Throws std::runtime_error with one
+  // sentence when the pairing of the settings is refused.
   OfflineWorld(const sim::WorldDef& world, const sim::Settings& settings, bool hands,
                std::unique_ptr<sync::LogSink> log);
 
@@ -44,8 +44,8 @@ class OfflineWorld {
 
   sim::Simulation& simulation() { return simulation_; }
   const scene_t& scene() const { return scene_; }
-  double step_us() const { return step_us_; }  // that the last step of the simulation took
-  // Of the last tick: force on each hand, and what was felt of events so far.
+  double step_us() const { return step_us_; }  // duration of the last step of the simulation
+  // Values of the last tick: force on each hand, and the number of events that touch has presented so far.
   const std::vector<Eigen::Vector3d>& hand_forces_N() const { return hand_forces_N_; }
   const std::vector<presentation_t>& felt() const { return felt_; }
 

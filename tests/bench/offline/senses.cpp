@@ -1,3 +1,4 @@
+// Rendering of a log by the libraries of audio_node, visual_node and thermal_node on a manual clock.
 #include "tests/bench/offline/senses.h"
 
 #include <algorithm>
@@ -23,7 +24,7 @@
 namespace tactus::bench {
 namespace {
 
-constexpr int kFrames = 128;  // of a block
+constexpr int kFrames = 128;  // block size
 constexpr double kRate_Hz = 48000;
 constexpr double kAloneBefore_s = 0.060, kAloneAfter_s = 0.025;  // as tests/measure/measure_onsets
 
@@ -40,7 +41,7 @@ class Sound {
   }
   sync::ContactStream& stream() { return stream_; }
   double delay_s() const { return settings_.presentation_delay_s; }
-  // Up to a host time.
+  // Renders up to a host time.
   void run(sync::HostTime until, Rendered& out) {
     for (;;) {
       const auto first = sync::host_time(kWorldBegins_ns +
@@ -75,7 +76,7 @@ class Sound {
   std::map<std::int64_t, std::int64_t> due_;
 };
 
-// The first sample that leaves the level before it, by 2 % of the loudest near it, where one stands out.
+// The first sample that leaves the preceding level by 2 % of the loudest one near it, where one stands out.
 void hear(Rendered& out, double delay_s) {
   std::vector<std::pair<double, std::int64_t>> hits;
   for (const contact_event_t& e : out.events)

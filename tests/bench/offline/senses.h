@@ -1,5 +1,5 @@
-// A log rendered by sound, picture and warmth, faster than time: the libraries of the nodes on a clock that is
-// moved by hand. Touch is rendered while the world runs, since it answers.
+// Renders a log by sound, picture and warmth, faster than real time: the libraries of the nodes on a manual clock. Touch is rendered while
+// the world runs, because it acts on the world.
 #pragma once
 
 #include <map>
@@ -15,14 +15,14 @@ namespace tactus::bench {
 
 struct SenseResult {
   std::int64_t owed = 0, presented = 0;
-  // Presented, minus the instant of the event plus the delay that the sense was told to keep; s, of each.
+  // Time of presentation, minus the instant of the event and the commanded delay; s, for each event.
   std::vector<double> error_s;
 };
 
 struct Rendered {
-  std::vector<contact_event_t> events;  // of the whole log, each once, in order of time
+  std::vector<contact_event_t> events;  // events of the whole log, each once, in order of time
   SenseResult audio, visual, thermal;
-  // Onsets read out of the samples, of hits that are alone: event and host time, less the delay.
+  // Onsets found in the samples, of isolated hits: time by event id, less the delay.
   std::map<std::int64_t, double> heard_s;  // simulated time at which its sound begins
   std::vector<float> samples;              // left, at 48 kHz, from kWorldBegins_ns on
 };

@@ -1,3 +1,4 @@
+// Spectrum in octaves, jitter and gaps of a contact force.
 #include "tests/bench/offline/steadiness.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@ namespace {
 
 constexpr double kWindow_s = 0.5, kFast_Hz = 20;
 
-// rms by the mean in octaves, by a Fourier sum under a Hann window.
+// rms in octaves relative to the mean, by a Fourier sum under a Hann window.
 std::array<double, kBands> octaves(std::span<const double> x, double mean, double rate) {
   std::array<double, kBands> out{};
   const std::size_t n = x.size();
@@ -23,7 +24,7 @@ std::array<double, kBands> octaves(std::span<const double> x, double mean, doubl
     }
     const double f = static_cast<double>(k) * rate / static_cast<double>(n);
     const int band = std::min(kBands - 1, static_cast<int>(std::floor(std::log2(f))));
-    // Parseval; 3/8 is the mean square of the window.
+    // Parseval's theorem; 3/8 is the mean square of the window.
     if (band >= 0)
       out[static_cast<std::size_t>(band)] += 2 * (re * re + im * im) / (static_cast<double>(n * n) * 0.375);
   }

@@ -1,7 +1,6 @@
-// What a step of the chain of 22 degrees of freedom costs, and how well it keeps its energy.
+// Cost of a step of the chain of 22 degrees of freedom, and its energy error.
 //
-//   bin/chain_bench      for planar and spatial swings: us a step (p50, p99, largest, mean), energy error,
-//   sub-steps
+//    bin/chain_bench      for planar and spatial swings: us per step (p50, p99, largest, mean), energy error, sub-steps
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

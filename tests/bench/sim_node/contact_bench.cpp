@@ -1,8 +1,7 @@
-// What a step of many boxes costs: the impulse solver against ODE's QuickStep on the same contacts; then the whole
-// step, contacts found and surfaces kept apart, with the settings as they are, against ODE's dSpaceCollide and
-// QuickStep. Medians of interleaved runs.
+// Cost of a step of many boxes: the impulse solver against ODE's QuickStep on the same contacts; then the whole step, with contact
+// detection and separation of surfaces at the default settings, against ODE's dSpaceCollide and QuickStep. Medians of interleaved runs.
 //
-//   bin/contact_bench [--json FILE]      boxes apart on the floor and in towers of ten, 1/240 s
+//    bin/contact_bench [--json FILE]      boxes apart on the floor and in towers of ten, 1/240 s
 #include <ode/ode.h>
 #include <CLI/CLI.hpp>
 
@@ -49,7 +48,7 @@ struct Scene {
     dJointGroupDestroy(joints);
     dWorldDestroy(world);
   }
-  // The contacts of the impulse solver's poses; ODE is put there first.
+  // The same contacts as those of the impulse solver: its poses are first copied to ODE.
   double ode_us() {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const BodyMotion& m = toys.motion(static_cast<int>(i) + 1);
@@ -82,13 +81,13 @@ double us_since(Clock::time_point begin) {
   return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
 }
 
-// The place of a box.
+// Position of a box.
 Eigen::Vector3d place(int i, int high) {
   const int tower = i / high;
   return {0.3 * (tower % 25), 0.3 * (tower / 25), kSize * (i % high + 0.5)};
 }
 
-// The same boxes in a world of ours, whole, and in one of ODE, whole.
+// The same boxes with the whole step, in our world and in one of ODE.
 class Whole {
  public:
   Whole(int boxes, int high) {
@@ -125,7 +124,7 @@ class Whole {
     solver_->step();
     return us_since(begin);
   }
-  // The whole step; quick: of which its QuickStep.
+  // Duration of the whole step; quick: the part of its QuickStep.
   double ode_us(double& quick) {
     const auto begin = Clock::now();
     dSpaceCollide(space_, this, &Whole::meet);

@@ -1,5 +1,5 @@
-// What a world in two groups costs: a haptic tick against the number of bodies, and a second of the world against
-// one that is simulated whole at the haptic rate.
+// Cost of a world in two groups: a haptic tick against the number of bodies, and a second of the world against one that is simulated whole
+// at the haptic rate.
 #include <time.h>
 
 #include <CLI/CLI.hpp>
@@ -21,7 +21,7 @@ using namespace tactus::sim::test;
 
 namespace {
 
-// Of this thread alone: what others do on the machine is not in it, but for what they push out of the caches.
+// Time of this thread alone. Other programs affect it only by evicting data from the caches.
 double cpu_us() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -35,7 +35,7 @@ double quantile(std::vector<double> v, double q) {
   return *at;
 }
 
-// Balls that roll about on a plane, a place for each; the first four stand near the tool, which is at the origin.
+// Balls that roll on a plane, each in its own place; the first four are near the tool, which is at the origin.
 WorldDef rolling(int balls, double speed_m_s, bool by_the_tool = true) {
   WorldDef w = empty_world();
   add_floor(w, 0.3, 0.5);
@@ -46,14 +46,14 @@ WorldDef rolling(int balls, double speed_m_s, bool by_the_tool = true) {
     const int body = near
                          ? add_ball(w, 0.2, 0.03, {0.07 * (i % 2) - 0.035, 0.07 * (i / 2) - 0.035, 0.03}, 0.3, 0.5)
                          : add_ball(w, 0.2, 0.03, {x, y, 0.03}, 0.3, 0.5);
-    // To and fro, so that neighbours do not meet.
+    // In alternating directions, so that neighbours do not meet.
     if (!near) w.bodies[static_cast<std::size_t>(body)].velocity_m_s = {speed_m_s, 0.3 * speed_m_s, 0};
   }
   add_tool(w, {0, 0, 0.05});
   return w;
 }
 
-// Boxes that slide about on a plane without friction, so that none comes to rest.
+// Boxes that slide on a plane without friction, so that none comes to rest.
 WorldDef sliding(int boxes, double speed_m_s) {
   WorldDef w = empty_world();
   add_floor(w, 0, 0);
@@ -85,7 +85,7 @@ Settings settings_for(bool dual, int substeps, const char* thread) {
   return s;
 }
 
-// One row: a tick of the loop, by this thread's own time, paced as the loop is.
+// One row: a tick of the loop in the time of this thread, paced as the loop is.
 nlohmann::json tick_row(int balls, int ticks) {
   Simulation s(rolling(balls, 0.2), settings_for(true, 4, "own"));
   s.start(1);

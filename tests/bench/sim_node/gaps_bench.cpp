@@ -1,7 +1,7 @@
-// What finding contacts with their gaps costs: each pair of shapes beside ODE's dCollide and FCL's distance, and
-// all of a scene of boxes beside ODE's dSpaceCollide. Medians of interleaved runs, microseconds.
+// Cost of finding contacts and their gaps: each pair of shapes compared with ODE's dCollide and FCL's distance, and a whole scene of boxes
+// compared with ODE's dSpaceCollide. Medians of interleaved runs, microseconds.
 //
-//   bin/gaps_bench [--json FILE]
+//    bin/gaps_bench [--json FILE]
 #include <ode/ode.h>
 
 #include <CLI/CLI.hpp>
@@ -48,7 +48,7 @@ ShapeDef shape(ShapeKind kind, const Vector3d& size) {
   return s;
 }
 
-// A pose for b at which its least gap to a is the wanted one, by bisection along a random way.
+// A pose for b at which its least gap to a has the given value, by bisection along a random direction.
 Isometry3d at_gap(Detector& gaps, int a, int b, double gap, Random& random) {
   Isometry3d pose = random_pose(random, 0);
   Vector3d way = direction(random);
@@ -138,7 +138,7 @@ void boxes(int count, int high, nlohmann::json& json) {
   std::vector<double> ours, theirs;
   for (int i = 0; i < 200; ++i) {
     ours.push_back(us([&] { finder.find(motions, active, kStep, found); }));
-    // As in a step: what moved has new boxes.
+    // As in a step: moved bodies have new bounding boxes.
     for (int g = 1; g < dSpaceGetNumGeoms(space); ++g) {
       const dBodyID body = dGeomGetBody(dSpaceGetGeom(space, g));
       if (!body) continue;

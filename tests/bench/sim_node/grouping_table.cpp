@@ -1,5 +1,5 @@
-// How many contacts two rules of grouping miss, and how large they make the group, against a hand that accelerates
-// as it likes: the table behind sim_node/dual/grouping.h.
+// Number of contacts that two rules of grouping miss, and size of the group, for a hand with arbitrary acceleration: the table behind
+// sim_node/dual/grouping.h.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>

@@ -1,7 +1,7 @@
-// What mesh against mesh costs: two lumpy spheres at an exact gap, our layers beside FCL's distance and ODE's
-// trimesh collide, interleaved in one run.
+// Cost of mesh against mesh: two lumpy spheres at an exact gap, our layers compared with FCL's distance and ODE's trimesh collide,
+// interleaved in one run.
 //
-//   bin/mesh_contact [--triangles 5120] [--gap_mm 0.3] [--tolerance_mm 1] [--poses 40] [--json FILE]
+//    bin/mesh_contact [--triangles 5120] [--gap_mm 0.3] [--tolerance_mm 1] [--poses 40] [--json FILE]
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -21,12 +21,12 @@ using Eigen::Isometry3d;
 
 namespace {
 
-constexpr int kRounds = 9;  // of every query at every pose
+constexpr int kRounds = 9;  // rounds of every query at every pose
 constexpr double kRadius_m = 0.1;
 
 struct Row {
   std::string name;
-  std::function<std::size_t(const Isometry3d&)> query;  // returns how many it found
+  std::function<std::size_t(const Isometry3d&)> query;  // returns the number of contacts
   std::vector<double> all_us, per_pose_us;
   double found = 0;
 };
@@ -43,8 +43,7 @@ double time_us(const std::function<std::size_t(const Isometry3d&)>& query, const
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
 }
 
-// Moves b straight towards a until the gap is exact: each time by what cannot be too far (conservative
-// advancement).
+// Moves b straight towards a until the gap is exact, each time by a distance that cannot overshoot (conservative advancement).
 Isometry3d approach(const ContactMesh& a, const ContactMesh& b, Random& random, double gap_m) {
   MeshContact contact;
   Isometry3d pose = random_pose(random, 1);

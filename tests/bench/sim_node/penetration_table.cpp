@@ -1,5 +1,5 @@
-// How deep bodies are in each other at most, in every scene, by an oracle that is none of the detectors that see
-// gaps: the default pairing of solver and detector, and others beside it; at 1 ms and at 60 Hz.
+// Maximum penetration of bodies in every scene, by an oracle independent of the detectors that compute gaps: the default pairing of solver
+// and detector, and others for comparison; at 1 ms and at 60 Hz.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -22,8 +22,8 @@ namespace {
 struct Outcome {
   double deepest_m = 0, at_s = 0, us_a_step = 0;
   int shape_a = -1, shape_b = -1;
-  double found_m = 0;  // what the detector says of that pair then; -1: it says nothing
-  int through = 0;     // bodies that are where no way leads but through something
+  double found_m = 0;  // depth of that pair by the detector at that time; -1: not reported
+  int through = 0;     // bodies at a place that they can reach only through another body
   long pieces = 0, separated = 0, held = 0, steps = 0;
 };
 

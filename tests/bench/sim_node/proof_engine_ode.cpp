@@ -1,5 +1,4 @@
-// ODE alone, set up as its manual does: boxes, spheres, capsules and a plane in a space, a contact joint for each
-// point.
+// ODE alone, set up as in its manual: boxes, spheres, capsules and a plane in a space, a contact joint for each point.
 #include <ode/ode.h>
 
 #include <cmath>
@@ -63,7 +62,7 @@ class Ode : public Engine {
       dJointSetUniversalAxis1(j, 0, 0, 1);
       dJointSetUniversalAxis2(j, 0, 1, 0);
       hinges_.push_back(j);
-      // As one rod about the vertical: only the first joint turns.
+      // As one rod about the vertical: only the first joint rotates.
       dBodySetAngularVel(bodies_.back(), 0, 0, about_vertical);
       dBodySetLinearVel(bodies_.back(), 0, about_vertical * kLength * (i + 0.5), 0);
       static_cast<void>(b);

@@ -1,3 +1,4 @@
+// The proof engine by our impulse solver and joint coordinates.
 #include "tests/bench/sim_node/proof_engine.h"
 #include "tests/sim_node/support/articulated_trees.h"
 #include "tests/sim_node/support/toys.h"
@@ -58,7 +59,7 @@ class Ours : public Engine {
   Eigen::Vector3d link_spin() override { return toys_.world.system_of(jointed_).motion(0).spin_rad_s; }
   double contact_force_N() override { return toys_.force_N(); }
   double chain_energy_J() override { return energy_J(toys_.world.system_of(jointed_)); }
-  double joint_gap_m() override { return 0; }  // the coordinates have none
+  double joint_gap_m() override { return 0; }  // joint coordinates have no gap
   double pendulum_angle_rad() override { return toys_.world.system_of(jointed_).state().positions[0]; }
 
  private:

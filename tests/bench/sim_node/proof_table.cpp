@@ -1,8 +1,6 @@
-// How far from the truth: scenes with a known outcome, solved by impulses and joint coordinates (ours), and by ODE
-// alone.
+// Errors of scenes with a known outcome, solved by impulses and joint coordinates (ours), and by ODE alone.
 //
-//   bin/proof_table [--json FILE] [--stand SECONDS]     the error of each proof; exits 1 when one of ours is over
-//   its limit
+//    bin/proof_table [--json FILE] [--stand SECONDS]     the error of each proof; exits 1 when one of ours is over its limit
 //
 // Stacks stand 60 s, which takes ODE's exact solver minutes; --stand shortens it.
 #include <CLI/CLI.hpp>
@@ -32,7 +30,7 @@ int main(int argc, char** argv) {
   for (const Proof& p : proofs) {
     const double ours = p.error(make_ours), step = p.error([] { return make_ode(false); }),
                  quick = p.error([] { return make_ode(true); });
-    const bool holds = ours <= p.limit;  // not of what is no number
+    const bool holds = ours <= p.limit;  // false for NaN
     good &= holds;
     std::printf("%-42s %-7s %10.2g %12.3g %12.3g %12.3g %c %-36s %s\n", p.what.c_str(), p.unit.c_str(), p.limit,
                 ours, step, quick, holds ? ' ' : '!', p.truth.c_str(), p.why.c_str());

@@ -1,4 +1,4 @@
-// Scenes whose outcome is known in closed form, each run to one number: how far the outcome is from the truth.
+// Scenes with a known outcome in closed form, each reduced to one number: the error of the outcome.
 #pragma once
 
 #include <functional>
@@ -12,12 +12,12 @@ namespace tactus::bench {
 struct Proof {
   std::string what, unit;
   double limit = 0;
-  std::string truth;  // what the outcome is to be
-  std::string why;    // the limit
+  std::string truth;  // the expected outcome
+  std::string why;    // the reason of the limit
   std::function<double(const std::function<std::unique_ptr<Engine>()>&)> error;
 };
 
-// stand_s: how long the stacks have to stand.
+// stand_s: time that the stacks must stand.
 std::vector<Proof> free_proofs();
 std::vector<Proof> contact_proofs(double stand_s);
 std::vector<Proof> joint_proofs();

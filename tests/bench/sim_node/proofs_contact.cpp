@@ -67,7 +67,7 @@ double rolling(const Make& make) {
   return worst;
 }
 
-// Blocks on inclines on either side of tipping and of sliding: how many do what they should not.
+// Blocks on inclines on either side of tipping and of sliding: number of wrong outcomes.
 double tipping(const Make& make) {
   const double width = 0.06, height = 0.2, edge = width / height;
   const auto tips = [&](double slope, double mu) {
@@ -124,7 +124,7 @@ double weight(const Make& make) {
   return 100 * std::abs(felt / sum - 1);
 }
 
-// How far the top of a stack has moved, at h = 1/240 s.
+// Displacement of the top of a stack, at h = 1/240 s.
 double stack(const Make& make, int n, double seconds) {
   const auto e = make();
   e->plane({0, 0, 1}, 0.5, 0);
@@ -181,7 +181,7 @@ double period(const Make& make) {
   return worst;
 }
 
-// A ball strikes a hung rod without gravity, so far below its joint.
+// A ball strikes a hung rod without gravity, `depth` below its joint.
 struct Blow {
   static constexpr double kBallMass = 0.03, kSpeed_m_s = 2;
   static constexpr double kRodInertia = 0.05 * (3e-4 + 1e-2) / 12 + 0.05 * 0.0025;  // about the joint
@@ -200,7 +200,7 @@ struct Blow {
   int ball = -1;
 };
 
-// Velocity of the ball against the compound pendulum's blow.
+// Velocity of the ball against that after the impact on a compound pendulum.
 double percussion(const Make& make) {
   double worst = 0;
   for (const double c : {0.5, 1.0})
@@ -214,7 +214,7 @@ double percussion(const Make& make) {
   return worst;
 }
 
-// What the ball loses of angular momentum the link gains: 100 % when they miss each other.
+// Angular momentum: the loss of the ball equals the gain of the link. 100 % when they miss each other.
 double link_momentum(const Make& make, const std::vector<double>& restitutions) {
   double worst = 0;
   for (const double c : restitutions)

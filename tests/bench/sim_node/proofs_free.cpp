@@ -63,7 +63,7 @@ double bounces(const Make& make) {
     const Vector3d v = e->velocity(ball);
     if (before.z() < -0.1 && v.z() > 0.1) {
       ++bounce;
-      // Apex from here: the velocity is that of the middle of the step.
+      // Height of the apex from here: the velocity is that of the middle of the step.
       const double now = v.z() - h / 2 * kG, top_m = e->position(ball).z() - r + now * now / (2 * kG);
       worst = std::max(worst, std::abs(top_m / (height * std::pow(c, 2 * bounce)) - 1));
     }
@@ -72,7 +72,7 @@ double bounces(const Make& make) {
   return bounce == 5 ? 100 * worst : 100;
 }
 
-// How long five hops take after the first fall: t0 (1 + 2 e + 2 e^2 ...) up to the point where it stops bouncing.
+// Duration of five hops after the first fall: t0 (1 + 2 e + 2 e^2 ...) up to the point where it stops bouncing.
 double zeno(const Make& make) {
   const auto e = make();
   const double r = 0.03, height = 0.5, c = 0.7;

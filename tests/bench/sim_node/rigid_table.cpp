@@ -1,13 +1,12 @@
-// How true and how smooth is touch with six degrees of freedom? A box and a capsule in the hand, as the simulation
-// sees them and as touch renders them, without a clock or a bus.
+// Accuracy and smoothness of touch with six degrees of freedom: a box and a capsule in the hand, with the touch model of the simulation
+// and its rendering, without a clock or a bus.
 //
-//   bin/rigid_table [--check] [--json FILE] [--seconds S]
+//    bin/rigid_table [--check] [--json FILE] [--seconds S]
 //
-// pressed: a box on a floor, 2.5 mm deep and turned a little, against springs in closed form. pushed: a free body
-// pushed off its centre; its momentum against the opposite of what the hand felt. thin: a plate of 2 mm that the
-// hand goes through and the box does not. between: a body between the box and a wall. hole: a peg, a mesh, let
-// into its hole by a virtual hand that is 1 mm and 3 degrees off. stroke: over the bumpy sphere of stroke_table;
-// change of force and torque a tick. --check: exit 1 when a row breaks its limit.
+// pressed: a box on a floor, 2.5 mm deep and slightly rotated, against springs in closed form. pushed: a free body pushed off its centre;
+// its momentum against the opposite of the impulse on the hand. thin: a plate of 2 mm that the hand passes through and the box does not.
+// between: a body between the box and a wall. hole: a peg, a mesh, inserted into its hole by a virtual hand that is 1 mm and 3 degrees
+// off. stroke: over the bumpy sphere of stroke_table; change of force and torque per tick. --check: exit 1 when a row exceeds its limit.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -34,7 +33,7 @@ namespace {
 
 using Figures = std::vector<std::pair<std::string, double>>;
 
-// From there on a tool touches.
+// A tool touches from this distance on.
 constexpr double kSkin_m = sim::ShapeSearch::kSkin_m;
 
 struct Report {
@@ -113,7 +112,7 @@ void pushed(Report& report, double rate_Hz) {
   add_shaped_tool(w, tool_def_t::BOX, {0.02, 0.02, 0.02}, {0, 0, 0});
   TouchLoop loop(w, at_rate(rate_Hz));
   Vector3d impulse = Vector3d::Zero(), moment = Vector3d::Zero();
-  // On for 0.3 s, then away, so that all that was felt has been given.
+  // Contact for 0.3 s, then away, so that all energy on the way has been delivered.
   for (int i = 0; i < static_cast<int>(rate_Hz); ++i) {
     const double t = loop.time_s();
     const double x = t < 0.3 ? 0.05 * t : 0.015 - 0.1 * (t - 0.3);
@@ -215,7 +214,7 @@ void hole(Report& report, const std::string& scenes, double rate_Hz) {
              depth > 0.8 * down);
 }
 
-// As of stroke_table.
+// The values of stroke_table.
 constexpr double kRadius_m = 0.1, kBump_m = 0.0015, kSpeed_m_s = 0.1, kFriction = 0.3, kDeep_m = 0.003;
 double surface_m(const Vector3d& way, double waves) {
   return kRadius_m +

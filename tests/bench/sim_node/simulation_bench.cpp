@@ -1,8 +1,7 @@
-// One scene with one detector and one law of contact: what a step costs, how deep and how steady contact is, what
-// it does to energy; and its log rendered by all senses. Prints JSON; tests/measure/benchmark_simulation runs all
-// pairings.
+// One scene with one detector and one law of contact: cost of a step, depth and steadiness of contact, change of energy; and its log
+// rendered by all modalities. Prints JSON; tests/measure/benchmark_simulation runs all pairings.
 //
-//   bin/simulation_bench SCENE.sdf [--detector ode] [--solver quick] [--seconds 3] [--log FILE]
+//    bin/simulation_bench SCENE.sdf [--detector ode] [--solver quick] [--seconds 3] [--log FILE]
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -35,7 +34,7 @@ double quantile(std::vector<double> x, double q) {
   return x[static_cast<std::size_t>(q * static_cast<double>(x.size() - 1))];
 }
 
-// Kinetic energy and that of the weights, in the middle of the step before: velocities are of then.
+// Kinetic and potential energy in the middle of the previous step, because the velocities belong to that instant.
 double energy_J(const sim::WorldDef& world, std::span<const sim::BodyMotion> bodies, double h) {
   double sum = 0;
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
@@ -103,7 +102,7 @@ int body_named(const sim::WorldDef& world, const std::string& model) {
   return -1;
 }
 
-// Of bodies that are told of ahead too, in the step in which they are told of: then `told` is theirs anew.
+// Includes the contacts of bodies that are published ahead, in the step in which they are published; the second list then holds their new contacts.
 void body_contacts(sim::Simulation& simulation, std::vector<contact_t>& out, std::vector<contact_t>& told) {
   simulation.body_contacts(out);
   const sim::Ahead* ahead = simulation.ahead();
@@ -112,9 +111,9 @@ void body_contacts(sim::Simulation& simulation, std::vector<contact_t>& out, std
   out.insert(out.end(), told.begin(), told.end());
 }
 
-using Series = std::map<std::pair<int, int>, std::vector<double>>;  // of a pair of bodies: force of each step
+using Series = std::map<std::pair<int, int>, std::vector<double>>;  // by pair of bodies: force of each step
 
-// Fills a force up to step n, for at most `held` steps with what it was last, the rest with nothing.
+// Extends a force series to step n: for at most `held` steps with its last value, the rest with zero.
 void hold(std::vector<double>& force, std::size_t n, std::size_t held) {
   if (force.empty() || force.size() >= n || n - force.size() > held) return;
   force.resize(n, force.back());
@@ -130,7 +129,7 @@ void set_going(sim::WorldDef& world) {
   world.bodies[static_cast<std::size_t>(body_named(world, "rolling"))].velocity_m_s = {0.4, 0, 0};
 }
 
-// Between body and floor, from one time to another: steadiness of its force, contacts that begin anew, and hits.
+// Between body and floor, from one time to another: steadiness of its force, contacts that begin again, and hits.
 json contact_of(const sim::WorldDef& world, const std::string& model, const Series& series,
                 const Rendered& rendered, double h, double from_s, double to_s) {
   const int body = body_named(world, model), floor = body_named(world, "floor");
@@ -153,7 +152,7 @@ json contact_of(const sim::WorldDef& world, const std::string& model, const Seri
   return out;
 }
 
-// When the ball truly meets the floor, against the events and against the samples of their sounds.
+// True times of the ball's bounces, against the events and against the samples of their sounds.
 json bounces_of(const sim::WorldDef& world, const Rendered& rendered, double seconds) {
   const int body = body_named(world, "bouncing");
   std::vector<double> events, heard;
@@ -190,14 +189,14 @@ json bounces_of(const sim::WorldDef& world, const Rendered& rendered, double sec
           {"heard_error_ms_worst", 1e3 * worst_heard}};
 }
 
-// With hands: forces, events, and the log rendered by all senses.
+// With hands: forces, events, and the log rendered by all modalities.
 json rendered_by_all(const sim::WorldDef& world, const sim::Settings& settings, double seconds,
                      const std::string& file) {
   const auto bytes = std::make_shared<sync::MemorySink::State>();
   OfflineWorld run(world, settings, true, std::make_unique<sync::MemorySink>(bytes));
   const double h = settings.step_s;
   const int steps = static_cast<int>(seconds / h);
-  // Two groups tell of contacts with each visual step; in between their forces hold.
+  // Two groups publish contacts with each visual step; in between their forces hold.
   const auto held =
       static_cast<std::size_t>(settings.groups == "dual" ? std::ceil(1 / (settings.visual_rate_Hz * h)) : 0);
   Series series;
@@ -224,7 +223,7 @@ json rendered_by_all(const sim::WorldDef& world, const sim::Settings& settings, 
 
   std::vector<std::vector<double>> all;
   for (const auto& [pair, s] : series) all.push_back(s);
-  // A contact that begins again within 20 ms of its end did not end.
+  // A contact that begins again within 20 ms of its end counts as interrupted.
   int begins = 0, anew = 0;
   std::map<std::pair<int, int>, std::int64_t> ended;
   for (const contact_event_t& e : rendered.events) {

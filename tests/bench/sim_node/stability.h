@@ -1,4 +1,4 @@
-// What the proofs of stability share.
+// Definitions shared by the stability proofs.
 #pragma once
 
 #include "sim_node/behaviour/impulse/penalty.h"
@@ -7,16 +7,16 @@
 namespace tactus::sim::bench {
 
 inline constexpr double kLightest_kg = 0.05, kDampingRatio = 0.05;
-inline constexpr double kStiffestTried = 1e5;  // k h^2 / m: far beyond what any explicit step bears
+inline constexpr double kStiffestTried = 1e5;  // k h^2 / m: far beyond the limit of any explicit step
 using test::kToyG;
 
-// A tower of boxes, or a ball, at rest in a shell that is so many times as thick as one of them bends its springs:
-// there spring and damper are linear.
+// A tower of boxes, or a ball, rests in a shell kBends times as thick as the deflection of its springs under one of them: there spring and
+// damper are linear.
 inline constexpr double kBends = 8;
 static_assert(kBends * impulse::kDamperSetsIn < 1);
 inline double bend_m(double k) { return kLightest_kg * kToyG / k; }
 
-// The largest value at which stays(value) holds, to 1 %, sought downwards from `most` to `least`; 0: none.
+// The largest value for which stays(value) holds, to 1 %, searched downwards from `most` to `least`; 0: none.
 template <class Stays>
 double largest(double most, double least, Stays stays) {
   double low = most, high = most;

@@ -1,3 +1,4 @@
+// Stability limits of contact and hands in worlds of one and two groups, with the whole simulation.
 #include "tests/bench/sim_node/stability_groups.h"
 
 #include <array>
@@ -22,13 +23,13 @@ namespace {
 using Eigen::Vector3d;
 using namespace tactus::sim::test;
 
-// Of the simulation, at which surfaces meet behind their springs (law_of).
+// Shell of the simulation, at which surfaces meet behind their springs (law_of).
 constexpr double kShell_m = 1e-5;
 // Out of reach of the hand.
 constexpr double kFar_m = 3;
 // Steps before the push, and after it.
 constexpr int kSettle = 300, kWatched = 3000;
-// What is far from the hand stands while it is not further than this from where it began, m.
+// A structure far from the hand stands while it is no further than this from its first position, m.
 constexpr double kStands_m = 1e-3;
 
 const std::array<GroupedRow, 6> kRows{{
@@ -46,7 +47,7 @@ Settings settings_for(const GroupedRow& row) {
   s.solver = row.solver;
   s.step_s = row.step_s;
   s.visual_thread = "none";
-  s.visual_substeps = 1;  // of 1/60 s, as the paper has them
+  s.visual_substeps = 1;  // steps of 1/60 s, as in the paper
   return s;
 }
 
@@ -58,8 +59,8 @@ double kinetic_J(std::span<const BodyMotion> bodies) {
   return sum;
 }
 
-// The ball or tower at x, each surface above the next at the gap at which its springs bear what stands on it, or,
-// where there are none, at the gap at which they meet.
+// The ball or tower at x. Each surface lies above the next at the gap at which its springs bear the load above it or, without springs, at
+// the gap at which they meet.
 void add_standing(WorldDef& w, double x, int boxes, double each_m, double up_m, bool springs) {
   const auto gap = [&](int bears) { return kShell_m + up_m - (springs ? bears * each_m : 0); };
   if (boxes == 0) add_ball(w, kLightest_kg, 0.03, {x, 0, 0.03 + gap(1)}, 0.5, 0);
@@ -82,7 +83,7 @@ bool grouped_stays_stable(const GroupedRow& row, int boxes, double x) {
   s.penalty_stiffness_N_m = k;
   s.penalty_damping_Ns_m = kDampingRatio * 2 * std::sqrt(k * kLightest_kg);
   s.contact_tolerance_m = up + kShell_m;
-  s.correcting_speed_m_s = 0;  // what stands in its springs from the beginning on is borne at once
+  s.correcting_speed_m_s = 0;  // a load on its springs from the beginning is borne at once
   WorldDef w = empty_world(kToyG);
   add_floor(w);
   std::mt19937 random(1);
@@ -92,8 +93,8 @@ bool grouped_stays_stable(const GroupedRow& row, int boxes, double x) {
   const int near = static_cast<int>(w.bodies.size());
   add_standing(w, kFar_m, boxes, bend_m(k), up, !dual);
   const int all = static_cast<int>(w.bodies.size());
-  // Of now, while the law reckons with that half a step before, when gravity alone had not acted yet: with this it
-  // is none.
+  // The state gives the velocity now, but the law uses that of half a step before, when gravity alone had not acted yet. This offset makes
+  // the latter zero.
   for (int i = 1; i < all; ++i) {
     w.bodies[static_cast<std::size_t>(i)].velocity_m_s = any();
     if (i < near || !dual) w.bodies[static_cast<std::size_t>(i)].velocity_m_s.z() -= kToyG * h / 2;
@@ -122,8 +123,8 @@ bool grouped_stays_stable(const GroupedRow& row, int boxes, double x) {
 
 namespace {
 
-// A hand that is held where it is, with a spring and a damper where a surface is in it. Between the words of the
-// simulation a surface goes on as it did.
+// A hand that is held in place, with a spring and a damper where a surface penetrates it. Between messages of the simulation a surface
+// continues its motion.
 struct Holding {
   Vector3d place;
   double stiffness_N_m, damping_N_s_m, radius_m = 0.01;
@@ -167,7 +168,7 @@ struct Holding {
 }  // namespace
 
 bool hands_hold(const GroupedRow& row, double k) {
-  // Each presses with 2 N, within what the simulation lets a hand do; the push moves the box by a tenth of that.
+  // Each presses with 2 N, within the limit of the simulation for a hand; the push moves the box by a tenth of that.
   constexpr double kPress_N = 2, kHalf_m = 0.05, kRadius_m = 0.01;
   const double depth = kPress_N / k, swing = std::sqrt(2 * k / kHeld_kg);
   WorldDef w = empty_world(0);
@@ -181,7 +182,7 @@ bool hands_hold(const GroupedRow& row, double k) {
   }
   w.bodies[static_cast<std::size_t>(box)].velocity_m_s = {0.1 * depth * swing, 0, 0};
   Settings s = settings_for(row);
-  s.penalty_stiffness_N_m = 1, s.penalty_damping_Ns_m = 0;  // of contact between bodies, which there is none
+  s.penalty_stiffness_N_m = 1, s.penalty_damping_Ns_m = 0;  // contact between bodies, which does not occur here
   Simulation simulation(w, s);
   simulation.start(1);
   const double period_s = 2 * M_PI / swing;

@@ -1,8 +1,8 @@
-// Penalty against analytic contact: what a step costs, whether forces are finite and continuous, which step a
-// stiffness needs, and how stiff contact may be at a given step; then the same scene in one group and in two.
-// Table 1 of Kim, Sung, Park 2005 and its claim of better stability, measured.
+// Penalty against analytic contact: cost of a step, finite and continuous forces, the step that a stiffness needs, and the contact
+// stiffness limit at a given step; then the same scene in one group and in two. Measures Table 1 of Kim, Sung, Park 2005 and its claim of
+// better stability.
 //
-//   bin/stability_table [--json FILE]
+//    bin/stability_table [--json FILE]
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
@@ -23,13 +23,13 @@ using nlohmann::json;
 
 namespace {
 
-// design: a shell so thick that 1 m/s is stopped in it.
+// design: a shell thick enough to stop 1 m/s.
 constexpr double kShell_m = 0.02;
 
-// A way to solve contact.
+// A method of solving contact.
 struct Model {
   std::string name;
-  // Steps a scene by h, however often it needs to inside.
+  // Advances a scene by h, in any number of internal steps.
   std::function<void(Toys&, double h)> step;
   std::function<impulse::Law(double stiffness, double damping)> law;
 };
@@ -52,7 +52,7 @@ struct Resting {
   Toys toys;
   std::vector<std::pair<int, double>> bodies;  // and their mass
 
-  // boxes: in the tower; 0: a ball. k 0: hard contact, under the weight of the earth.
+  // boxes: in the tower; 0: a ball. k 0: hard contact, under the gravity of the earth.
   Resting(const impulse::Law& law, int boxes, double k) : toys(law) {
     const double each = k > 0 ? bend_m(k) : 0, up = kBends * each;
     toys.reach_m = up + 0.002;
@@ -78,8 +78,8 @@ struct Resting {
   }
 };
 
-// Whether a push at random, 1 um/s, dies away or at least does not grow. It may swing up at first, as a swing near
-// its limit does, by 1/sqrt(1 - h^2 k / 4 m): ten times within 1 % of it, a hundred times in energy.
+// Whether the motion after a random push of 1 um/s decays or at least does not grow. It may grow at first, as an oscillation near its
+// limit does, by 1/sqrt(1 - h^2 k / 4 m): ten times within 1 % of it, a hundred times in energy.
 bool stays_stable(const Model& model, int boxes, double x, double h) {
   const double k = x * kLightest_kg / (h * h), d = kDampingRatio * 2 * std::sqrt(k * kLightest_kg);
   impulse::Law law = model.law(k, d);
@@ -100,7 +100,7 @@ bool stays_stable(const Model& model, int boxes, double x, double h) {
   return true;
 }
 
-// The largest k h^2 / m at which it does; 0: none, since a softer tower topples for want of stiffness.
+// The largest stable k h^2 / m; 0: none, because a softer tower topples for lack of stiffness.
 double stiffest(const Model& model, int boxes, double h) {
   return largest(kStiffestTried, 0.01, [&](double x) { return stays_stable(model, boxes, x, h); });
 }
@@ -134,7 +134,7 @@ double median(std::vector<double> x) {
   return x[x.size() / 2];
 }
 
-// Median of a step of 100 boxes at rest, contacts found beforehand, us.
+// Median duration of a step of 100 boxes at rest, contacts found beforehand, us.
 double cost_us(const Model& model, double k, double h) {
   Toys toys(model.law(k, 5));
   toys.reach_m = 0.002;
@@ -230,7 +230,7 @@ int main(int argc, char** argv) {
     }
     out.push_back(row);
   }
-  // What a spring of this stiffness needs, by the bound and as found.
+  // The step that a spring of this stiffness needs, by the bound and as measured.
   std::printf(
       "\nforce of the spring itself: v sqrt(k m) = %.2f N; explicit bound: k h^2 + 2 h d < 4 m, here k h^2/m < "
       "%.2f\n",

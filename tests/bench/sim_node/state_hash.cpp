@@ -1,8 +1,8 @@
-// What each scene comes to in 500 steps, as one number: the same in every build, with every instruction set.
+// Hash of each scene's state after 500 steps: the same in every build, with every instruction set.
 //
-//   bin/state_hash [--scenes DIR] [--steps N] [--set NAME=VALUE]...
+//    bin/state_hash [--scenes DIR] [--steps N] [--set NAME=VALUE]...
 //
-// Prints a line for each scene: its name and the number.
+// Prints a line for each scene: its name and the hash.
 #include <CLI/CLI.hpp>
 #include <cinttypes>
 #include <cstdio>

@@ -1,7 +1,7 @@
-// What the touch model of a tool costs: of a ball on one fine mesh, and with many meshes in the scene; of a box, a capsule
-// and a mesh that touch one mesh or lie in the corner of three.
+// Cost of the touch model of a tool: of a ball on one fine mesh, and with many meshes in the scene; of a box, a capsule and a mesh that
+// touch one mesh or lie in the corner of three.
 //
-//   bin/touch_model [--steps N] [--only NAME] [--json FILE]
+//    bin/touch_model [--steps N] [--only NAME] [--json FILE]
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -27,20 +27,20 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kTool_m = 0.005;
-constexpr int kSteps = 2000;  // of 1 ms
+constexpr int kSteps = 2000;  // steps of 1 ms
 
 struct Scene {
   std::string name;
   WorldDef world;
   std::vector<BodyMotion> bodies;
-  std::vector<Vector3d> path;  // of the tool
+  std::vector<Vector3d> path;  // path of the tool
   std::vector<double> us = {};
   std::size_t planes = 0;
   std::unique_ptr<Ids> ids = std::make_unique<Ids>(1);
   std::unique_ptr<ToolTouch> touch = nullptr;
 };
 
-// `count` lumpy spheres of that fineness on a grid, the first at zero with the tool stroking around it.
+// `count` lumpy spheres of that subdivision level on a grid, the first at the origin, with the tool stroking around it.
 Scene scene_of(const std::string& name, int level, int count, bool moving) {
   Scene s{name, empty_world(), {}, {}};
   const Soup soup = lumpy_sphere(level, 0.05, 1);
@@ -68,7 +68,7 @@ Scene scene_of(const std::string& name, int level, int count, bool moving) {
     m.inverse_mass_1_kg = moving ? 1 : 0;
     s.bodies.push_back(m);
   }
-  // Around the sphere at 0.2 m/s, each time as far out as its surface is, found by the tree itself.
+  // Around the sphere at 0.2 m/s, at the distance of its surface in each direction, which the tree finds.
   ClosestSurface surface(s.world.shapes[0], &s.world.meshes[0]);
   std::vector<SurfacePlane> planes;
   for (int i = 0; i < kSteps; ++i) {

@@ -1,3 +1,4 @@
+// Scenes and measurement of the touch model of tools with a shape.
 #include "tests/bench/sim_node/touch_shapes.h"
 
 #include <algorithm>
@@ -22,22 +23,22 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kMargin_m = 0.003;  // of a tool with a shape over meshes, at rest
-constexpr double kGap_m = 0.00015;   // at which the tool is put: the skin, and a little
+constexpr double kMargin_m = 0.003;  // margin of a tool with a shape over meshes, at rest
+constexpr double kGap_m = 0.00015;   // gap of the tool at the start: the skin and a little more
 
 struct ToolCase {
   std::string name;
   std::int8_t shape;
   Vector3d size_m;
-  TriangleMesh mesh;  // of a mesh
+  TriangleMesh mesh;  // for the shape "mesh"
 };
 
 struct SceneCase {
   std::string name;
-  std::vector<TriangleMesh> meshes;  // a body each
-  Vector3d from;                     // where the tool begins in the first step
-  std::vector<Vector3d> ways;        // along which it comes nearer, one after the other
-  bool strokes = false;              // around zero, once in a thousand steps
+  std::vector<TriangleMesh> meshes;  // one per body
+  Vector3d from;                     // position of the tool at the beginning of the first step
+  std::vector<Vector3d> ways;        // directions in which it approaches, one after the other
+  bool strokes = false;              // around the origin, once in a thousand steps
   std::vector<double> speeds_m_s{0};
 };
 
@@ -105,7 +106,7 @@ SceneCase hole(const std::string& folder) {
           {0, 0.2}};
 }
 
-// Of this thread: what else the machine does is not counted.
+// Time of this thread; other programs are not counted.
 double processor_us() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -170,7 +171,7 @@ class Bench {
   }
 
  private:
-  // The tool of that step, brought near until it touches; it turns a little with each.
+  // The tool of that step, moved closer until it touches; it rotates a little with each step.
   tool_state_t come_near(int step, ToolTouch& probe) {
     tool_state_t m{};
     m.header.sim_time_ns = std::int64_t{1'000'000} * step;

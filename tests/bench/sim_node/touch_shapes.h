@@ -1,5 +1,4 @@
-// What the touch model of a tool with a shape costs a step: over bumps, in a bowl, in a hole, and in the corner of
-// three meshes.
+// Cost per step of the touch model of a tool with a shape: over bumps, in a bowl, in a hole, and in the corner of three meshes.
 #pragma once
 
 #include <functional>
@@ -9,14 +8,14 @@ namespace tactus::sim::test {
 
 struct ShapeRow {
   std::string scene, tool;
-  double speed_m_s = 0;  // that the device tells of: the margin of the model grows with it
-  double triangles = 0;  // of the scene that meet the ball around the tool with its margin; on average
-  double planes = 0;     // on average
+  double speed_m_s = 0;  // speed that the device reports: the margin of the model grows with it
+  double triangles = 0;  // mean number of scene triangles that meet the ball around the tool with its margin
+  double planes = 0;     // mean number of planes
   double median_us = 0, p99_us = 0;
 };
 
-// scenes: the folder of the scenes' own meshes. only: what "scene tool" has to hold. done: gets each row as it is
-// ready. The tool touches in every step.
+// scenes: the folder of the scenes' own meshes. only: text that "scene tool" must contain. done: receives each row when it is complete.
+// The tool touches in every step.
 void shape_rows(const std::string& scenes, int steps, const std::string& only,
                 const std::function<void(const ShapeRow&)>& done);
 

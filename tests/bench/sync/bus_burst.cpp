@@ -1,7 +1,7 @@
-// Sends a burst of numbered messages, as fast as it can, to see what a running recorder keeps of it:
+// Sends a burst of numbered messages at full speed, to measure the losses of a running recorder:
 //   bus_burst [--count 20000] [--bytes 100] [--channel BURST] [--port N]
-// Then `summarise run.lcmlog` says how many arrived and how many are missing in their numbering; the recorder's health
-// says how many the kernel dropped.
+// Then `summarise run.lcmlog` prints the number of messages that arrived and the gaps in their numbers; the recorder's health gives the
+// number that the kernel dropped.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <tactus/asset_chunk_t.hpp>

@@ -1,6 +1,6 @@
-// The least that a renderer is to the bus: one more that hears it. Sixty times a second it takes in what has arrived,
-// decodes what a renderer needs, counts gaps, and takes the time from publish_time_ns to the arrival that the kernel
-// stamped. Behind tests/measure/measure_growth; prints one JSON object when it is ended.
+// A minimal subscriber with the bus load of a renderer. Sixty times per second it drains its queues, decodes the messages that a renderer
+// needs, counts gaps, and measures the time from publish_time_ns to the kernel's arrival stamp. Started by tests/measure/measure_growth;
+// prints one JSON object at its end.
 #include <arpa/inet.h>
 #include <signal.h>
 #include <sys/socket.h>

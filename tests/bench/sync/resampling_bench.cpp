@@ -1,7 +1,6 @@
-// What a sense spends on its contacts: messages of a 1 kHz stream decoded, degraded and resampled for its ticks.
+// Cost of contact streams per modality: messages of a 1 kHz stream decoded, degraded and resampled for its ticks.
 //
-//   bin/resampling_bench [--json FILE]      a table: time per period of the sense, share of a core, time per
-//   contact and tick
+//    bin/resampling_bench [--json FILE]      a table: time per period of the modality, share of a core, time per contact and tick
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -28,8 +27,8 @@ using namespace tactus::sync;
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
-constexpr std::int64_t kRecorded_ms = 1000;  // then the same second again, as another life of the simulation
-constexpr int kContactsPerPage = 6, kEventsPerPage = 14, kBodiesPerPage = 18;  // as fit into a message
+constexpr std::int64_t kRecorded_ms = 1000;  // then the same second again, as another incarnation of the simulation
+constexpr int kContactsPerPage = 6, kEventsPerPage = 14, kBodiesPerPage = 18;  // the numbers that fit into a message
 
 using Wire = std::vector<std::vector<std::uint8_t>>;  // encoded messages of one millisecond
 
@@ -46,7 +45,7 @@ Message stamped(std::int64_t ms, int page, int pages) {
 
 int pages_of(int things, int per_page) { return std::max(1, (things + per_page - 1) / per_page); }
 
-// All contacts last; the force of each swings, so that a deadband has something to compare.
+// All contacts last; the force of each oscillates, so that a deadband has something to compare.
 Wire contacts_at(std::int64_t ms, int contacts) {
   Wire wire;
   const int pages = pages_of(contacts, kContactsPerPage);
@@ -137,7 +136,7 @@ OperatorChain stack_of(bool degraded) {
       "m", SimTime{});
 }
 
-// A sense that takes in a millisecond at a time.
+// An endpoint that receives one millisecond of messages at a time.
 struct ModalityEndpoint {
   OperatorChain stack;
   DegradedSnapshots<contact_frame_t> contacts;
@@ -157,7 +156,7 @@ struct ModalityEndpoint {
   }
 };
 
-// reads: what of the second; render: what is asked for at a tick. One iteration is one period.
+// reads: the streams of the second to receive; render: the requests at a tick. One iteration is one period.
 template <class Read, class Render>
 void sense(benchmark::State& state, int period_ms, const Read& read, const Render& render) {
   const auto n = static_cast<int>(state.range(0));
@@ -179,7 +178,7 @@ void sense(benchmark::State& state, int period_ms, const Read& read, const Rende
   state.counters["period_ms"] = period_ms;
 }
 
-// One line a benchmark: what people ask for.
+// One line per benchmark: the figures of interest.
 class Table : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context&) override {
@@ -203,7 +202,7 @@ void read_contacts(ModalityEndpoint& s, const Second& second, std::size_t ms, Ho
   s.take<contact_frame_t>(second.contacts[ms], now, s.contacts, s.stream);
 }
 
-// Events and state of all contacts, a thousand times a second.
+// Events and state of all contacts, a thousand times per second.
 void every_millisecond(benchmark::State& state) {
   sense(state, 1, read_contacts, [](ModalityEndpoint& s, SimTime t, int) {
     benchmark::DoNotOptimize(s.stream.take_events(t));
@@ -211,7 +210,7 @@ void every_millisecond(benchmark::State& state) {
   });
 }
 
-// As audio_node: the events alone, a block of 128 samples at 48 kHz is 2.7 ms.
+// As audio_node: the events alone; a block of 128 samples at 48 kHz is 2.7 ms.
 void audio_node(benchmark::State& state) {
   sense(
       state, 3,
@@ -229,7 +228,7 @@ void thermal_node(benchmark::State& state) {
   });
 }
 
-// As visual_node: the events, and the pose of as many bodies as there are contacts.
+// As visual_node: the events, and as many body poses as there are contacts.
 void visual_node(benchmark::State& state) {
   sense(
       state, 16,

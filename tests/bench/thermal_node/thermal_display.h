@@ -1,4 +1,4 @@
-// A person's finger on a thermal display, tick by tick, beside the same finger on the thing itself.
+// A finger on a thermal display, tick by tick, compared with the same finger on the material itself.
 #pragma once
 
 #include <memory>
@@ -29,7 +29,7 @@ inline std::unique_ptr<Skin> skin_of(const std::string& model) {
 // Skin temperature at each tick of 20 ms, degC.
 using Trace = std::vector<double>;
 
-// On the thing itself.
+// On the material itself.
 inline Trace touching(const Material& m, const std::string& person, double seconds) {
   const auto skin = skin_of(person);
   skin->set_object(m.object());
@@ -43,8 +43,8 @@ inline Trace touching(const Material& m, const std::string& person, double secon
 
 enum class Drive { kPassive, kSkin, kFlux };
 
-// On the display that renders the thing with `model`. The plate, the person and the controller run at 1 kHz; the
-// controller knows the load only as thermal_node thinks it is, the plate bears the person's.
+// On the display that renders the material with `model`. The plate, the person and the controller run at 1 kHz. The controller uses the
+// thermal load that thermal_node estimates; the plate carries the load of the person.
 inline Trace display(const Material& m, const std::string& model, const std::string& person, Drive drive,
                      double seconds) {
   Settings settings = with_model(model.c_str());
@@ -64,7 +64,7 @@ inline Trace display(const Material& m, const std::string& model, const std::str
       current =
           drive == Drive::kPassive ? 0 : controller.step(plate, command, hand.renderer.load_W(), 0.001).current_A;
       plate = step(plant, plate, current, finger->heat_flux_W_m2() * settings.reference_area_m2, 0.001);
-      if (drive == Drive::kPassive) plate = {33, 33};  // a plate that someone keeps neutral, and nothing else
+      if (drive == Drive::kPassive) plate = {33, 33};  // a plate held at neutral temperature, without a drive
       finger->set_object({plate.plate_degC, 1e9, 1e6, 1e12});
       finger->step(0.001, conductance, 0, 0.001);
       sum += plate.plate_degC / 20;

@@ -1,8 +1,7 @@
-// How true is warmth? Ten materials against finite differences and against what was measured on people; what a
-// display makes of them, beside a passive plate; and which pairs a person could tell apart by published
-// thresholds, before the display and after.
+// Accuracy of warmth: ten materials against finite differences and against measurements on people; their rendering by a display, compared
+// with a passive plate; and the pairs that a person can discriminate by published thresholds, before and after the display.
 //
-//   bin/thermal_table [--json FILE]
+//    bin/thermal_table [--json FILE]
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -99,8 +98,7 @@ json against_oracle(const std::vector<Material>& ten) {
   return {{"rows", rows}, {"worst_K", worst_K}};
 }
 
-// What was measured on people, as far as its text could be read: Jones 2009 (Scholarpedia 4(5):7955, citing Ho and
-// Jones 2006).
+// Measurements on people, as far as the text could be obtained: Jones 2009 (Scholarpedia 4(5):7955, citing Ho and Jones 2006).
 json against_people(const std::vector<Material>& ten) {
   std::puts(
       "\nAgainst what was measured (Jones 2009, citing Ho and Jones 2006): after 10 s of contact at room "
@@ -143,7 +141,7 @@ double rms_K(const Trace& a, const Trace& b) {
   return std::sqrt(sum);
 }
 
-// Until nine tenths of what the real touch has changed in the end are reached; -1: never.
+// Time until nine tenths of the final change of the real touch are reached; -1: never.
 double time_to_90_s(const Trace& trace, double end_K) {
   for (std::size_t i = 0; i < trace.size(); ++i)
     if (std::abs(trace[i] - 33) >= 0.9 * std::abs(end_K)) return 0.02 * static_cast<double>(i);
@@ -191,7 +189,7 @@ json displayed(const std::vector<Material>& ten, const std::string& model, const
   return rows;
 }
 
-// Bergmann Tiest and Kappers 2009: of two stimuli that take heat at different rates the faster is told from 43 %
+// Bergmann Tiest and Kappers 2009: of two stimuli that extract heat at different rates, the faster is identified from a difference of 43 %
 // on.
 constexpr double kWeberOfRate = 0.43;
 
@@ -232,7 +230,7 @@ json told_apart(const std::vector<Shown>& shown) {
   return result;
 }
 
-// What a tick of 20 ms costs: a touch rendered with both models of skin, the touched and the finger's.
+// Cost of a tick of 20 ms: a touch rendered with both models of skin, of the touched body and of the finger.
 json costs(const Material& m) {
   std::puts("\nA tick of 20 ms, us: median and p99 of 5000\n");
   json result;

@@ -1,6 +1,6 @@
-// Draws pictures of the shipped scenes for the documents: each into its own file of the folder given.
+// Draws pictures of the shipped scenes for the documentation, each into its own file in the given folder.
 //
-//   bin/draw_looks FOLDER [dark_room | bump_plane | looks | reflecting | stereo | questions]... [--samples N]
+//    bin/draw_looks FOLDER [dark_room | bump_plane | looks | reflecting | stereo | questions]... [--samples N]
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -22,7 +22,7 @@ namespace {
 visual::Settings sized(int width, int height, int samples) {
   visual::Settings settings;
   settings.width = width, settings.height = height, settings.anti_aliasing = samples;
-  settings.shadow_size = 1024;  // pictures are looked at longer than frames
+  settings.shadow_size = 1024;  // still pictures are viewed longer than frames
   return settings;
 }
 
@@ -30,7 +30,7 @@ ShippedScene load(const std::string& name) {
   return ShippedScene(TACTUS_SOURCE_DIR "/sim_node/scenes/" + name + ".sdf");
 }
 
-// Pictures of one size, from left to right.
+// Joins pictures of one size from left to right.
 Picture beside(const std::vector<Picture>& parts) {
   Picture all{0, parts.front().height, {}};
   for (const Picture& p : parts) all.width += p.width;
@@ -45,7 +45,7 @@ Picture beside(const std::vector<Picture>& parts) {
   return all;
 }
 
-// Two rows become one: their bytes differ by little.
+// Averages pairs of rows as bytes, which is accurate enough because the two rows differ little.
 Picture half_as_high(const Picture& from) {
   Picture to{from.width, from.height / 2, {}};
   const auto row = static_cast<std::size_t>(4 * from.width);
@@ -56,7 +56,7 @@ Picture half_as_high(const Picture& from) {
   return to;
 }
 
-// Nothing of a scene may be drawn otherwise than it says.
+// Throws if a part of the scene could not be drawn as specified.
 Picture checked(const ShippedScene& from, Picture picture) {
   if (!from.trouble.empty()) throw std::runtime_error(from.trouble.front());
   return picture;
@@ -68,12 +68,11 @@ Picture dark_room(int samples) {
   return checked(s, std::move(picture));
 }
 
-// The boards from above, the deepest relief at the lower end, in light that comes in low from the left, from
-// above, from the right and from below.
+// The boards from above, the deepest relief at the lower end, in grazing light from the left, from above, from the right and from below.
 Picture bump_plane(int samples) {
   ShippedScene s = load("bump_plane");
   scene_t scene = s.scene;
-  // Looks down, the picture's up is +y.
+  // The view is down, the picture's up is +y.
   Eigen::Matrix3d axes;
   axes << -Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY();
   scene.camera = to_pose(Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1.2) * Eigen::Quaterniond(axes)));
@@ -98,7 +97,7 @@ Picture looks(int samples) {
   return checked(s, std::move(picture));
 }
 
-// The mirror and the glass of looks_bench from near by.
+// The mirror and the glass of looks_bench from close by.
 Picture reflecting(int samples) {
   ShippedScene s = load("looks_bench");
   scene_t scene = s.scene;
@@ -108,8 +107,8 @@ Picture reflecting(int samples) {
   return checked(s, std::move(picture));
 }
 
-// The left eye's picture on the left, for who lets the eyes look straight ahead. Both are squeezed for a display
-// that stretches them, and made as narrow here in height.
+// The left eye's picture on the left, for parallel free viewing. Both are squeezed for a display that stretches them; the height is
+// reduced here to match.
 Picture stereo(int samples) {
   ShippedScene s = load("dark_room");
   visual::Settings settings = sized(1000, 800, samples);
@@ -119,7 +118,7 @@ Picture stereo(int samples) {
   return checked(s, half_as_high(picture));
 }
 
-// What the participant of a study is asked, above the cells of the marker.
+// A question to the participant of a study, above the cells of the marker.
 Picture asked(const question_t& m, double number, int width, int height, int samples) {
   constexpr float kMarker_px = 48;
   ShippedScene s = load("dark_room");

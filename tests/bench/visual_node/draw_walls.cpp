@@ -1,7 +1,7 @@
-// Draws a scene as the walls of a room show it, unfolded around the front, and says how well they meet: mean
-// difference of the pixels on both sides of an edge, beside that of neighbours within a wall.
+// Draws a scene on the walls of a room, unfolded around the front, and prints how well they meet: mean difference of the pixels on both
+// sides of an edge, compared with neighbours within a wall.
 //
-//   bin/draw_walls OUT.png [SCENE.sdf] [--room ROOM] [--edge PIXELS] [--at X Y Z] [--set name=value]...
+//    bin/draw_walls OUT.png [SCENE.sdf] [--room ROOM] [--edge PIXELS] [--at X Y Z] [--set name=value]...
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -27,7 +27,7 @@ namespace {
 
 using Pixels = std::vector<std::uint8_t>;
 
-// Where a wall lies in the picture, in walls from the lower left, and across which of its edges it meets which other.
+// Position of a wall in the picture, in walls from the lower left.
 struct Place {
   std::string wall;
   int column, row;
@@ -44,7 +44,7 @@ struct Sheet {
     for (int c = 0; c < 3; ++c) sum += std::abs(at(x, y)[c] - at(other_x, other_y)[c]);
     return sum / 3;
   }
-  // Of the pixels on both sides of the line above which, or to the right of which, `column, row` lies.
+  // Mean difference of the pixels on both sides of the line below or to the left of `column, row`.
   double across(int column, int row, bool upright) const {
     double sum = 0;
     for (int i = 0; i < edge; ++i)
@@ -52,7 +52,7 @@ struct Sheet {
                      : difference(column * edge + i, row * edge - 1, column * edge + i, row * edge);
     return sum / edge;
   }
-  // The same, of all lines within that wall.
+  // The same, for all lines within that wall.
   double within(int column, int row, bool upright) const {
     double sum = 0;
     for (int n = 1; n < edge; ++n)

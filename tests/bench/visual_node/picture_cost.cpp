@@ -1,8 +1,8 @@
-// What a picture costs: 20,000 triangles of rough surface under two lamps at two sizes, with and without shadows;
-// how that grows with the number of bodies; and how much longer the loop is busy when each picture also goes into
-// a video. Everything is measured in turns, so that other load on the machine falls on all.
+// Cost of a frame: 20,000 triangles of rough surface under two lamps at two sizes, with and without shadows; growth with the number of
+// bodies; and additional time of the loop when each frame also goes into a video. All measurements are interleaved, so that other load on
+// the machine affects all of them.
 //
-//   bin/picture_cost triangles|bodies|video [--pictures N] [--threads N] [--json FILE] [--png FOLDER]
+//    bin/picture_cost triangles|bodies|video [--pictures N] [--threads N] [--json FILE] [--png FOLDER]
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -34,7 +34,7 @@ double quantile(std::vector<double> values, double q) {
 
 double ms_since(sync::HostTime begin) { return 1e3 * sync::to_seconds(sync::host_now() - begin); }
 
-// A scene, ready to be drawn again and again.
+// A scene, ready to be drawn repeatedly.
 class Scenery {
  public:
   Scenery(const bench::PictureScene& from, int width, int height, bool shadows)
@@ -128,7 +128,7 @@ nlohmann::json bodies(const Options& options) {
                     {}});
   draw_in_turns(rows, options);
   nlohmann::json all = table(rows);
-  // Linear: what each body adds between 100 and 1,000 is what it adds between 1,000 and 3,000.
+  // Linear growth: the cost per body between 100 and 1,000 equals that between 1,000 and 3,000.
   const auto p50 = [&](std::size_t row) { return quantile(rows[row].ms, 0.5); };
   const double first_us = 1e3 * (p50(2) - p50(1)) / 900, second_us = 1e3 * (p50(3) - p50(2)) / 2000;
   std::printf("a body adds %.2f us from 100 to 1,000 and %.2f us from 1,000 to 3,000\n\n", first_us, second_us);
@@ -136,7 +136,7 @@ nlohmann::json bodies(const Options& options) {
   return all;
 }
 
-// As the node does: a picture each 1/60 s, which the writer's thread encodes on the other core.
+// As in the node: a frame each 1/60 s, which the writer's thread encodes on the other core.
 nlohmann::json video(const Options& options) {
   std::printf("640x480 at 60 Hz: how long the loop is busy with a picture, alone and with video out\n\n");
   Scenery scenery(bench::rough_balls(), 640, 480, false);
@@ -152,7 +152,7 @@ nlohmann::json video(const Options& options) {
     std::int64_t tick = 0;
     const auto read = [&](std::span<std::uint8_t> rgba) { scenery.picture().read(rgba); };
     sync::Loop loop(scenery.settings().rate_Hz);
-    // Turns of half a second, the first of each after a pause in which the encoder catches up.
+    // Rounds of half a second, the first of each after a pause in which the encoder catches up.
     for (int turn = 0; turn < std::max(2, options.pictures / 15); ++turn) {
       const bool on = turn % 2 == 1;
       for (int i = 0; i < 30; ++i) {
@@ -161,7 +161,7 @@ nlohmann::json video(const Options& options) {
         const double drawn_ms = ms_since(begin);
         if (on) recording.add(tick++, begin, read);
         const double busy_ms = ms_since(begin);
-        if (i < 5) continue;  // of another turn
+        if (i < 5) continue;  // still affected by the previous round
         (on ? with_video : alone).push_back(busy_ms);
         if (on) handing_over.push_back(busy_ms - drawn_ms);
       }

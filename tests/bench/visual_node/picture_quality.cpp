@@ -1,8 +1,7 @@
-// What a picture costs in each step of vision's quality ladder, and at a coarse resolution: time from its
-// beginning to the fence after the surfaces and to the fence after the flashes. The steps take turns, so that
-// other load on the machine falls on all.
+// Cost of a frame in each step of the quality ladder of vision, and at a coarse resolution: time from its beginning to the fence after the
+// surfaces and to the fence after the flashes. The steps are interleaved, so that other load on the machine affects all of them.
 //
-//   bin/picture_quality [SCENE.sdf] [--pictures N] [--png FOLDER]
+//    bin/picture_quality [SCENE.sdf] [--pictures N] [--png FOLDER]
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>

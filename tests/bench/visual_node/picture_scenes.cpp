@@ -1,3 +1,4 @@
+// Meshes, materials and lamps of the scenes for the measurement of frame cost.
 #include "tests/bench/visual_node/picture_scenes.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Scenes of which the cost of a picture is measured: made here, so that their numbers are exact.
+// Scenes for the measurement of frame cost, generated in code so that their numbers are exact.
 #pragma once
 
 #include <numbers>
@@ -13,14 +13,14 @@ struct PictureScene {
   scene_t scene;
   visual::Meshes meshes;
   visual::HeightMaps height_maps;
-  int triangles = 0;  // of the meshes
+  int triangles = 0;  // number of triangles of the meshes
 };
 
-// Two balls of 10,608 triangles each on a floor, all of one rough material, before a camera that sees nothing
-// else; a spot light that casts shadows and a point light.
+// Two balls of 10,608 triangles each on a floor, all of one rough material, before a camera that sees nothing else; a spot light that
+// casts shadows and a point light.
 PictureScene rough_balls();
 
-// So many boxes and balls, half of each, on a square grid that fills the picture.
+// `count` boxes and balls, half of each, on a square grid that fills the picture.
 PictureScene many_bodies(int count);
 
 }  // namespace tactus::bench

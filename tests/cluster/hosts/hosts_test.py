@@ -1,6 +1,6 @@
-"""A cluster on three hosts of a lab: brought up, moved, cut, split, joined late, and ended, with real processes.
+"""Tests of a cluster on three hosts of a lab, with real processes: start, move of a node, cut, split, late join and end.
 
-One cluster serves all tests, which run in the order of their names; each leaves it whole.
+All tests share one cluster and run in the order of their names; each leaves it intact.
 """
 import csv
 import os
@@ -62,20 +62,20 @@ class Hosts(unittest.TestCase):
             time.sleep(0.05)
 
     def at(self, host, *words):
-        """What a program of ours says that is run with this host's view of the network."""
+        """Output of one of our programs, run with this host's view of the network."""
         c = self.r.cluster
         environment = dict(os.environ, TACTUS_GROUP=c.bus.group, TACTUS_PORT=str(c.bus.port), TACTUS_TTL=str(c.bus.ttl), TACTUS_RUN_ID=str(self.r.watch.run_id))
         inside = self.r.lab.hosts[host].inside() if host else []
         return subprocess.run([*inside, str(BIN / words[0]), *words[1:]], env=environment, capture_output=True, text=True, timeout=60, check=False)
 
     def states_at(self, host):
-        """{node: state} as it is heard on that host."""
+        """{node: state} as received on that host."""
         import json
         said = self.at(host, "watch", "--once", "--json").stdout
         return {name: n["state"] for name, n in json.loads(said)["nodes"].items()} if said else {}
 
     def health(self, seconds=1.5):
-        """{node: newest row of NODE_HEALTH} by an observer's log."""
+        """{node: newest row of NODE_HEALTH} from an observer's log."""
         self.r.record("health", seconds)
         out = self.r.folder / "health"
         subprocess.run([BIN / "export_log", out, "--out", out, "--channels", "NODE_HEALTH", "--wide"], check=True, capture_output=True)
@@ -83,7 +83,7 @@ class Hosts(unittest.TestCase):
             return {row["node"]: row for row in csv.DictReader(file)}
 
     def incarnations(self):
-        """{node: process}: another one has another number."""
+        """{node: incarnation}; a restarted process has another number."""
         return {name: node["pid"] for s in self.r.operator.states().values() for name, node in s["nodes"].items()}
 
     def test_10_every_host_runs_what_the_file_says_from_a_build_of_its_own(self):
@@ -142,7 +142,7 @@ class Hosts(unittest.TestCase):
 
     def test_14_the_doctor_finds_a_firewall_and_a_lossy_cable(self):
         sound, picture = self.r.lab.hosts["sound"], self.r.lab.hosts["picture"]
-        picture.lose(10)  # ten times what is named, and questions over ssh still pass
+        picture.lose(10)  # ten times the named loss; requests over ssh still pass
         drop = "add table inet deaf; add chain inet deaf input { type filter hook input priority 0; }; add rule inet deaf input udp dport 7669 drop"
         subprocess.run([*sound.inside(), "nft", drop], check=True)
         try:
@@ -215,7 +215,7 @@ class Hosts(unittest.TestCase):
         self.assertEqual("running", self.states_at("world").get("visual_node"))
         self.assertNotIn("sim_node", [n for n, s in self.states_at("sound").items() if s == "running"])
         here = self.at("world", "degrade", str(self.folder / "here.xml"))
-        self.assertRegex(here.stderr + here.stdout, "no sense .audio. is heard")  # it is in the other half: nothing was changed
+        self.assertRegex(here.stderr + here.stdout, "no sense .audio. is heard")  # the node runs in the other half: nothing was changed
         there = self.at("sound", "degrade", str(self.folder / "there.xml"))
         self.assertEqual(0, there.returncode, there.stderr)
         halves = {row["profile"] for name, row in self.health().items() if name in ("haptic_node", "visual_node")}

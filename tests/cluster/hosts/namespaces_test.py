@@ -1,4 +1,4 @@
-"""A cluster on this machine and a network namespace of it, without any ssh: brought up, a sense moved, ended. Real processes."""
+"""Tests of a cluster on this machine and a network namespace of it, without ssh: start, move of a modality and end. Real processes."""
 import os
 import pathlib
 import shutil

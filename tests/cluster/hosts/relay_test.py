@@ -1,7 +1,7 @@
-"""Three sites, which do not hear each other's multicast, with a relay in each: what crosses, what does not, and a site that is slow
-or gone. Real processes, hosts of a lab.
+"""Tests of three sites without common multicast, with a relay in each: forwarded and blocked messages, and a slow or missing site.
+Real processes, hosts of a lab.
 
-One cluster serves all tests, which run in the order of their names; each leaves it whole.
+All tests share one cluster and run in the order of their names; each leaves it intact.
 """
 import csv
 import json
@@ -65,7 +65,7 @@ class Sites(unittest.TestCase):
             time.sleep(0.05)
 
     def hear(self, hosts, seconds):
-        """{host: summary} of what each hears of its bus."""
+        """{host: summary} of the messages that each host receives on its bus."""
         c, outs, recorders = self.r.cluster, {}, {}
         for host in hosts:
             outs[host] = self.folder / f"heard_{host}"
@@ -86,7 +86,7 @@ class Sites(unittest.TestCase):
         return heard
 
     def rows(self, host, channel):
-        """The messages of a channel that hear() has last recorded there."""
+        """The messages of a channel in the last recording of hear() there."""
         out = self.folder / f"heard_{host}"
         subprocess.run([BIN / "export_log", out, "--out", out, "--channels", channel, "--wide"], check=True, capture_output=True)
         path = out / f"{channel}.csv"
@@ -96,7 +96,7 @@ class Sites(unittest.TestCase):
             return list(csv.DictReader(file))
 
     def channels(self, host):
-        """Those on which anything was heard there, whatever it was; by LCM's log format."""
+        """All channels with a message in the recording there, of known or unknown type; read by LCM's log format."""
         data, at, found = (self.folder / f"heard_{host}" / "run.lcmlog").read_bytes(), 0, set()
         while at + 28 <= len(data):
             channel, size = struct.unpack_from(">II", data, at + 20)
@@ -206,7 +206,7 @@ class Sites(unittest.TestCase):
             self.r.operator.move("relay_near", "world")
 
     def test_34_who_is_no_relay_is_not_heard(self):
-        """The same bytes from the address of a relay, that is down meanwhile, are: its address is all that it is known by."""
+        """The same bytes from the address of a relay that is down are accepted: a relay is identified by its address only."""
         header = struct.pack(">qqiqiqq", -1, 1, 1, self.r.watch.run_id, 7, 1, 0)
         datagram = b"TRL1\0SIM_COMMAND\0" + bytes(8) + header + bytes(40)
 

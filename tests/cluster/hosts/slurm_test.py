@@ -1,4 +1,4 @@
-"""A sweep as an array of jobs of a Slurm cluster of one node: slurmctld and slurmd as Debian has them, in namespaces of their own."""
+"""Tests of a sweep as a job array on a Slurm cluster of one node: slurmctld and slurmd of Debian, in namespaces of their own."""
 import os
 import pathlib
 import shutil
@@ -15,7 +15,7 @@ sys.path.insert(0, str(ROOT / "scripts" / "python"))
 from tactus.study import trial_table
 
 SKIPPED = 77
-NODE, ADDRESS = "one", "10.88.0.1"  # of an interface that nobody else has
+NODE, ADDRESS = "one", "10.88.0.1"  # an interface name and an address that no other program uses
 NAMESPACES = ["unshare", "--net", "--uts", "--pid", "--fork", "--kill-child", "--mount-proc"]
 SOON_S = 60
 CONFIGURATION = """ClusterName=one

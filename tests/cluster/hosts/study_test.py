@@ -1,4 +1,4 @@
-"""A study on a live cluster: what was asked for is what was presented, and a session that was killed goes on where it was."""
+"""Tests of a study on a live cluster: presented stimuli match the requested ones, and a killed session resumes at its last trial."""
 import json
 import os
 import pathlib
@@ -57,8 +57,8 @@ class AStudyOnALiveCluster(unittest.TestCase):
         self.assertEqual([t["trial"] for t in counted], list(range(1, len(counted) + 1)))
         self.assertGreaterEqual(len(counted), 5)
         for t in counted:
-            self.assertLessEqual(abs(t["row"]["soa_achieved_ms"] - t["level"]), 5)  # the study's tolerance: else it would be missed
-            self.assertLess(abs(t["sensed_ms"] - t["row"]["soa_achieved_ms"]), 2)   # samples of the WAV against what was reported
+            self.assertLessEqual(abs(t["row"]["soa_achieved_ms"] - t["level"]), 5)  # the study's tolerance: otherwise the trial counts as missed
+            self.assertLess(abs(t["sensed_ms"] - t["row"]["soa_achieved_ms"]), 2)   # measured in the WAV, against the reported value
             self.assertEqual((t["by"], t["row"]["observer"]), ("simulated", "simulated"))
         self.assertTrue((self.out / study / "P01" / "trials.csv").exists())
 
@@ -69,7 +69,7 @@ class AStudyOnALiveCluster(unittest.TestCase):
         counted = [t for t in self.trials(study) if not t["missed"]]
         self.assertGreaterEqual(len(counted), 4)
         for t in counted:
-            self.assertLess(abs(t["sensed_ms"] - t["row"]["soa_achieved_ms"]), 2)  # pixels and samples against what was reported
+            self.assertLess(abs(t["sensed_ms"] - t["row"]["soa_achieved_ms"]), 2)  # measured in pixels and samples, against the reported value
 
     def test_of_two_presses_each_is_felt_and_a_delay_of_touch_makes_one_softer(self):
         study = "haptic_delay_stiffness"
@@ -85,7 +85,7 @@ class AStudyOnALiveCluster(unittest.TestCase):
         felt = lambda t, degraded: t["stiffnesses_N_m"][t["row"]["degraded_interval"] - 1 if degraded else 2 - t["row"]["degraded_interval"]]
         plain = statistics.median(felt(t, False) for t in pressed)
         late = statistics.median(felt(t, True) for t in pressed if t["level"] >= 30)
-        self.assertLess(late, 0.75 * plain)  # 0.41 was measured, and a delay that changes nothing gives 1
+        self.assertLess(late, 0.75 * plain)  # 0.41 was measured; a delay without effect gives 1
 
     def test_a_game_is_a_trial(self):
         study = "senses_removed"

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The units of tactus units under a systemd of their own: it boots in namespaces, on a copy of this system that is thrown away, and
-starts them; every sense presents, each is as shut in as its unit says, and what is killed comes back. Exits 77 where that cannot be."""
+"""Tests of the systemd units that `tactus units` writes, under a systemd that boots in namespaces on a temporary copy of this system.
+Every modality presents, each unit is confined as it specifies, and killed nodes restart. Exits 77 where namespaces do not allow it."""
 import json
 import os
 import pathlib
@@ -18,7 +18,7 @@ KINDS = ("sync", "recorder", "haptic", "haptic@lamp", "audio", "visual", "therma
 PRIORITIES = {"sync": 40, "recorder": 40, "haptic": 60, "haptic@lamp": 60, "audio": 45, "visual": 0, "thermal": 0, "sim": 50}
 PATIENCE_S = 60
 SKIPPED = 77
-# The system's own units but for the targets are left out: this one has nothing to do but to run ours.
+# Includes only the targets of the system's own units: this system runs only the units of Tactus.
 BOOT = r"""
 set -e
 cd "$1"
@@ -56,7 +56,7 @@ exec env -i container=other PATH="$PATH" chroot . /lib/systemd/systemd --system 
 
 
 class System:
-    """Boots, and ends with everything in it."""
+    """Boots a system; its end ends all its processes."""
 
     def __init__(self, folder, cgroups):
         self.folder = folder
@@ -121,7 +121,7 @@ def wait_until(holds, what):
 
 
 def cgroups():
-    """Where systemd can have a tree of its own; None where it cannot."""
+    """A cgroup folder in which systemd can have a tree of its own; None if there is none."""
     for line in pathlib.Path("/proc/mounts").read_text(encoding="utf-8").splitlines():
         _, place, kind, options, *_ = line.split()
         if kind == "cgroup2" and "rw" in options.split(",") and os.access(place, os.W_OK):
@@ -149,7 +149,7 @@ def check(system):
     assert "tactus0" in rules and "7667" in rules, rules
     pid = system.of("sim", "MainPID")
     for path, may in (("/usr/it", False), ("/etc/it", False), ("/var/it", False), ("/home/it", False), ("/var/lib/tactus/it", True)):
-        made = system.inside("nsenter", "-t", pid, "--mount", "--root", "sh", "-c", f"touch {path} && echo made", check=False)  # not even root
+        made = system.inside("nsenter", "-t", pid, "--mount", "--root", "sh", "-c", f"touch {path} && echo made", check=False)  # root neither
         assert (made.strip() == "made") == may, path
     system.inside("kill", "-9", pid)
     wait_until(lambda: system.of("sim", "ActiveState") == "active" and system.of("sim", "NRestarts") == "1" and system.of("sim", "MainPID") != pid,
@@ -162,7 +162,7 @@ def check(system):
 
 
 def senses(system):
-    """{sense: presented events} of what the units' recorder wrote."""
+    """{modality: number of presented events} in the log of the units' recorder."""
     out = system.folder / "out"
     out.mkdir(exist_ok=True)
     for name in system.inside("ls", "/var/lib/tactus").split():

@@ -1,4 +1,4 @@
-// Puts bytes of one's own choice on the bus, as an enemy or a broken program would.
+// Sends arbitrary bytes on the bus, as an attacker or a faulty program would.
 #pragma once
 
 #include <arpa/inet.h>
@@ -25,13 +25,13 @@ class Datagrams {
   Datagrams(const Datagrams&) = delete;
   Datagrams& operator=(const Datagrams&) = delete;
 
-  // Sends by the loopback interface from now on, wherever the route to the group leads.
+  // Sends by the loopback interface from now on, regardless of the route to the group.
   void by_loopback() const {
     const in_addr loopback{htonl(INADDR_LOOPBACK)};
     setsockopt(socket_, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof loopback);
   }
 
-  // Sends to the real-time port (0) or the bulk port (1). Not more than the network carries: what it refuses is gone.
+  // Sends to the real-time port (0) or the bulk port (1). Datagrams that the network refuses are lost.
   void send(const Bytes& bytes, int port = 0) const {
     sockaddr_in to{};
     to.sin_family = AF_INET;
@@ -39,8 +39,8 @@ class Datagrams {
     inet_pton(AF_INET, channels::kGroup, &to.sin_addr);
     sendto(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
   }
-  // One message as LCM wraps it: magic number, sequence number, name of the channel, payload (LCM, "UDP Multicast
-  // Protocol Description").
+  // Sends one message in LCM's framing: magic number, sequence number, name of the channel, payload (LCM, "UDP Multicast Protocol
+  // Description").
   void send_message(const std::string& channel, const Bytes& payload, int port = 0) {
     Bytes bytes{'L', 'C', '0', '2'};
     for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(sequence_ >> shift));

@@ -1,3 +1,4 @@
+// Reception and bookkeeping of the subscriber of the cluster tests.
 #include "tests/cluster/support/ear.h"
 
 #include <cmath>

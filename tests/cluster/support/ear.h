@@ -1,4 +1,4 @@
-// What a test hears of the cluster on the bus: the newest health of each node, and some channels as they arrive.
+// Subscriber of the cluster tests: the newest health of each node, and some channels as they arrive.
 #pragma once
 
 #include <functional>
@@ -19,31 +19,31 @@ namespace tactus::cluster {
 
 class Ear {
  public:
-  // Hears only messages of this run: a replayed log speaks of nodes of the same names.
+  // Accepts only messages of this run: a replayed log contains nodes of the same names.
   explicit Ear(std::int64_t run_id);
 
-  // Takes in what has arrived until the condition holds; false when it does not within so many seconds.
+  // Receives messages until the condition holds; false when it does not hold within at_most_s seconds.
   bool wait_until(const std::function<bool()>& condition, double at_most_s);
-  // Takes in what arrives for so long.
+  // Receives messages for the given time, s.
   void listen(double seconds);
 
-  // The newest health of a node; null when it has been silent for 1.5 s.
+  // The newest health of a node; null after 1.5 s without one.
   const node_health_t* health(const std::string& node) const;
   bool in_state(const std::string& node, std::int8_t state) const;
-  // Ticks that a node has done and events that it has presented, as it last said; 0: it never spoke.
+  // Ticks and presented events of a node in its newest health message; 0: none was received.
   std::int64_t ticks(const std::string& node) const;
   std::int64_t rendered(const std::string& node) const;
   // Rejected messages, over all inputs of a node.
   std::int64_t bad(const std::string& node) const;
-  // Times that a node was heard with another incarnation than before.
+  // Number of changes of a node's incarnation.
   std::int64_t rejoined(const std::string& node) const;
 
   const tool_state_t* tool_state() const { return tool_ ? &*tool_ : nullptr; }
-  // N, of the newest TOOL_STATE; -1: none came.
+  // N, of the newest TOOL_STATE; -1: none was received.
   double force_N() const;
-  // Ids of the live contacts, as the newest complete snapshots of both groups say; and of the simulation that sent them.
+  // Ids of the live contacts in the newest complete snapshots of both groups, and the incarnation of the simulation that sent them.
   std::set<std::int64_t> contact_ids() const;
-  // Number of hits told so far.
+  // Number of hits received so far.
   std::int64_t hits() const { return static_cast<std::int64_t>(hits_.size()); }
 
   // Events presented or dropped so far, by modality and event.

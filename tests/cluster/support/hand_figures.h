@@ -1,4 +1,4 @@
-// What the world and the first hand of three_hands.sdf are like over a while, from the log of a run.
+// Figures of the simulation and of the first hand of three_hands.sdf over a span, from the log of a run.
 #pragma once
 
 #include <algorithm>
@@ -19,16 +19,16 @@
 namespace tactus::cluster {
 
 inline constexpr int kLeft = 0, kRight = 1, kThird = 2;  // order of the tools in three_hands.sdf
-inline constexpr double kPeriod_s = 0.5;                 // of the taps of the left one
+inline constexpr double kPeriod_s = 0.5;                 // period of the taps of the left hand
 
-// What the world and the hand that stays are like over a while.
+// Figures of the simulation and of the hand that stays over a span.
 struct Figures {
-  double sim_Hz = 0, hand_Hz = 0;                     // steps told to that hand, ticks of its loop
+  double sim_Hz = 0, hand_Hz = 0;                     // rate of the touch models for that hand, rate of its loop
   double sim_step_p50_ms = 0, sim_step_p99_ms = 0;    // from one touch model to the next
   double hand_step_p50_ms = 0, hand_step_p99_ms = 0;  // from one tool state to the next
-  double age_p50_ms = 0, age_p90_ms = 0;  // of the newest touch model, as that hand says it 10 times a second
-  double felt_p50_ms = 0;                 // from a hit to its vibration
-  std::vector<double> force_N;            // by ms of the path that is repeated, median
+  double age_p50_ms = 0, age_p90_ms = 0;  // age of the newest touch model, as that hand reports it 10 times per second
+  double felt_p50_ms = 0;                 // delay from a hit to its vibration
+  std::vector<double> force_N;            // by ms of the repeated path, median
   double peak_N() const { return *std::max_element(force_N.begin(), force_N.end()); }
 };
 
@@ -42,7 +42,7 @@ inline Figures of_span(const RunLog& log, const Span& span) {
   log.each<tool_state_t>(channels::kToolState, span, [&](const tool_state_t& m) {
     if (m.tool != kLeft) return;
     ticks.push_back(m.header.publish_time_ns);
-    // Of the host's time, which the path of a virtual hand keeps.
+    // The host's time, which the path of a virtual hand follows.
     const auto ms = static_cast<std::size_t>(m.header.publish_time_ns / 1'000'000) % force.size();
     force[ms].push_back(std::hypot(m.force_N.x, m.force_N.y, m.force_N.z));
   });
@@ -76,8 +76,8 @@ inline Figures of_span(const RunLog& log, const Span& span) {
   return f;
 }
 
-// The best of each figure over three spans: other work on the machine comes and goes, and holds now the world and
-// now a hand back, but what the other hands do to them would be in all three. The force is the median.
+// The best of each figure over three spans: other work on the machine comes and goes and delays the simulation or a hand in some spans,
+// but an effect of the other hands would be in all three. The force is the median.
 inline Figures figures(const RunLog& log, const std::vector<Span>& spans) {
   std::vector<Figures> each;
   for (const Span& span : spans) each.push_back(of_span(log, span));
@@ -98,7 +98,7 @@ inline Figures figures(const RunLog& log, const std::vector<Span>& spans) {
   return f;
 }
 
-// Mean difference of two traces of force where either is felt, N: of the same taps some ms apart it is small, too.
+// Mean difference of two traces of force where either is not 0, N. It is also small for the same taps shifted by some ms.
 inline double apart_N(const Figures& a, const Figures& b) {
   double sum = 0;
   int felt = 0;

@@ -1,3 +1,4 @@
+// Start, signals and output of the processes of a test.
 #include "tests/cluster/support/processes.h"
 
 #include <fcntl.h>
@@ -43,7 +44,7 @@ Processes::~Processes() {
 
 void Processes::start(const std::string& node, const std::vector<std::string>& options) {
   std::vector<std::string> command{programs() / node, "--run-id", std::to_string(run_id_), "--out", out_};
-  // No test makes noise.
+  // Tests do not open the sound card.
   if (node == "audio_node") command.insert(command.end(), {"--audio-device", "virtual"});
   command.insert(command.end(), options.begin(), options.end());
   spawn(node, command);

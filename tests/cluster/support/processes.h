@@ -1,4 +1,4 @@
-// Real processes of the cluster, started, stopped, frozen and killed by a test. All end with the test.
+// Starts, stops, freezes and kills real processes of the cluster. All processes end with the test.
 #pragma once
 
 #include <sys/types.h>
@@ -13,10 +13,10 @@ namespace tactus::cluster {
 inline const std::vector<std::string> kSenses{"haptic_node", "audio_node", "visual_node", "thermal_node"};
 inline const std::vector<std::string> kNodes{"sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node"};
 
-// The small scene of these tests: balls that drop and a tool that taps for ever.
+// The small scene of these tests: balls that drop, and a tool that taps without end.
 std::string tapping_scene();
 
-// A folder that vanishes with it.
+// A temporary folder that is removed with its object.
 class Folder {
  public:
   Folder();
@@ -29,27 +29,27 @@ class Folder {
 
 class Processes {
  public:
-  // Nodes write into `out`; what they say goes to out/logs/NAME.log.
+  // Nodes write into `out`; their output goes to out/logs/NAME.log.
   Processes(std::filesystem::path out, std::int64_t run_id);
   ~Processes();
   Processes(const Processes&) = delete;
   Processes& operator=(const Processes&) = delete;
 
-  // Starts one of our nodes with the options that all have and some of its own.
+  // Starts one of our nodes with the common options and the given ones.
   void start(const std::string& node, const std::vector<std::string>& options = {});
-  // sim_node with a scene, all senses, sync_node.
+  // Starts sim_node with a scene, all modalities, and sync_node.
   void start_all(const std::string& scene);
   // Starts any program.
   void spawn(const std::string& name, const std::vector<std::string>& command);
 
   void signal(const std::string& name, int number);
-  // SIGKILL, and waits until it is gone.
+  // Sends SIGKILL and waits until the process has ended.
   void kill(const std::string& name);
   // True while the process has not ended.
   bool running(const std::string& name);
-  // Exit status once it has ended within so many seconds; -1 when it was killed by a signal, -2 when it has not ended.
+  // Waits up to at_most_s seconds. Returns the exit status; -1 when a signal killed the process, -2 when it still runs.
   int wait_for_exit(const std::string& name, double at_most_s);
-  // What it has said.
+  // The output of a process so far.
   std::string said(const std::string& name) const;
 
  private:
@@ -59,7 +59,7 @@ class Processes {
   std::map<std::string, int> ended_;
 };
 
-// For a shell: a folder may have a blank in its name.
+// Quotes for a shell: a folder may have a blank in its name.
 inline std::string quoted(const std::string& word) { return "'" + word + "'"; }
 
 // The folder of the programs under test.

@@ -1,4 +1,4 @@
-// Profiles put in force in a running cluster, and how late its senses then are.
+// Puts degradation profiles in force in a running cluster, and measures the delays of its modalities.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,7 @@
 
 namespace tactus::cluster {
 
-// By the program that people use. rules: <degrade .../> elements; none: nothing is degraded any more. Returns what
-// it said.
+// Runs the command line program. rules: <degrade .../> elements; "": no degradation. Returns the program's output.
 inline std::string put_in_force(Running& c, const std::string& rules) {
   static int number = 0;
   const std::string name = "degrade" + std::to_string(++number);
@@ -27,7 +26,7 @@ inline std::string put_in_force(Running& c, const std::string& rules) {
   return c.processes.said(name);
 }
 
-// Asks for a policy through the program that people use. Returns what it said.
+// Requests a playout policy by the command line program. Returns the program's output.
 inline std::string ask_for(Running& c, std::vector<std::string> words) {
   static int number = 0;
   const std::string name = "playout" + std::to_string(++number);
@@ -42,7 +41,7 @@ inline std::string ask_for(Running& c, std::vector<std::string> words) {
 
 using EventsHeard = std::map<std::string, std::set<std::int64_t>>;
 
-// The events that each sense has reported so far.
+// The events that each modality has reported so far.
 inline EventsHeard heard_of(const Ear& ear) {
   EventsHeard heard;
   for (const auto& [modality, reports] : ear.presented())
@@ -50,7 +49,7 @@ inline EventsHeard heard_of(const Ear& ear) {
   return heard;
 }
 
-// How long after its earliest chance each event was presented that was not heard of before, ms.
+// Delays of the events reported since, from the earliest possible presentation to the presentation, ms.
 inline std::vector<double> waits_ms(const Ear& ear, const std::string& modality, const EventsHeard& before) {
   std::vector<double> out;
   const auto reports = ear.presented().find(modality);

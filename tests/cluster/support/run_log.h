@@ -1,4 +1,4 @@
-// The log of a run, read by a test when the run is over.
+// Reads the log of a finished run.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@ class RunLog {
       if (e.channel == channel)
         if (const auto m = sync::decode<Message>(e.data.data(), e.data.size())) use(*m);
   }
-  // Those that were sent within a span.
+  // The messages that were sent within a span.
   template <class Message>
   void each(const char* channel, const Span& span, const auto& use) const {
     each<Message>(channel, [&](const Message& m) {
@@ -43,7 +43,7 @@ class RunLog {
   sync::MappedLog file_;
 };
 
-// The value that a share q of x is not above; 0: there is none.
+// The value at or below which a share q of x lies; 0: x is empty.
 inline double quantile(std::vector<double> x, double q) {
   if (x.empty()) return 0;
   const auto at = std::min(x.size() - 1, static_cast<std::size_t>(q * static_cast<double>(x.size())));
@@ -51,7 +51,7 @@ inline double quantile(std::vector<double> x, double q) {
   return x[at];
 }
 
-// Times between one and the next of increasing times, ms.
+// Differences of consecutive times, ms.
 inline std::vector<double> steps_ms(const std::vector<std::int64_t>& times_ns) {
   std::vector<double> out;
   for (std::size_t i = 1; i < times_ns.size(); ++i)

@@ -1,4 +1,4 @@
-// scripts/run, started by a test in the folder of the test.
+// Starts scripts/run in the folder of the test.
 #pragma once
 
 #include <signal.h>
@@ -28,7 +28,7 @@ struct RunScript {
     processes.spawn(name, command);
   }
   int finish(double at_most_s, const std::string& name = "run") { return processes.wait_for_exit(name, at_most_s); }
-  // Runs a program to its end and returns what it says.
+  // Runs a program to its end and returns its output.
   std::string output_of(const std::vector<std::string>& command, int wanted_status = 0) {
     const std::string name = "command" + std::to_string(++commands_);
     processes.spawn(name, command);
@@ -42,7 +42,7 @@ struct RunScript {
   int commands_ = 0;
 };
 
-// Processes of this namespace that have not ended, but for the test itself.
+// Processes of this namespace that have not ended, without the test itself.
 inline std::set<int> living_processes() {
   while (waitpid(-1, nullptr, WNOHANG) > 0) {
   }
@@ -59,7 +59,7 @@ inline std::set<int> living_processes() {
   return found;
 }
 
-// True when nothing but the test lives, at the latest after so many seconds.
+// Waits until no process but the test runs; false after at_most_s seconds.
 inline bool nothing_lives(double at_most_s) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(at_most_s);
   while (!living_processes().empty()) {

@@ -1,4 +1,4 @@
-// A whole cluster that runs the small scene, and a test that listens to it.
+// A whole cluster with the small scene, and a subscriber to its bus.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -10,7 +10,7 @@
 
 namespace tactus::cluster {
 
-// Long enough for a loaded machine: liveness is asserted, not speed.
+// Long enough for a loaded machine: the tests assert liveness, not speed.
 constexpr double kPatience_s = 40;
 
 struct Running {
@@ -25,7 +25,7 @@ struct Running {
   bool all_live(const std::vector<std::string>& nodes) const {
     return std::all_of(nodes.begin(), nodes.end(), [&](const auto& n) { return lives(n); });
   }
-  // Starts everything and waits until all senses have rendered something.
+  // Starts everything and waits until all modalities have rendered something.
   void start() {
     processes.start_all(tapping_scene());
     const bool alive = ear.wait_until([&] { return all_live(kNodes) && ear.hits() > 0; }, kPatience_s);
@@ -46,8 +46,8 @@ struct Running {
     }
     return out;
   }
-  // Rates hold within a factor of two, in the best of three spans: other work on the machine comes and goes, but
-  // who is held back, or runs away, is so in all of them.
+  // Checks that rates hold within a factor of two, in the best of three spans: other work on the machine comes and goes, but a node that
+  // is blocked, or runs too fast, is so in all of them.
   void check_rates_hold(const std::map<std::string, double>& before, double seconds,
                         const std::string& except = "") {
     std::map<std::string, double> left = before;
@@ -63,7 +63,7 @@ struct Running {
     for (const auto& [node, rate] : left)
       FAIL_CHECK(node << ": " << rate << " Hz before, " << now[node] << " Hz at the last of three looks");
   }
-  // The last words of every process, for the report of a failure.
+  // The last output of every process, for the report of a failure.
   std::string words() const {
     std::string all;
     for (const char* n : {"sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node"}) {

@@ -1,5 +1,4 @@
-// What a test of a running cluster sees: the newest picture of visual_node, as grey values, and what it answers to
-// changes of its settings.
+// Access of a cluster test to the picture: the newest frame of visual_node as grey values, and its replies to changes of settings.
 #pragma once
 
 #include <cmath>
@@ -25,11 +24,11 @@ struct Seeing : Running {
   std::filesystem::path snapshot = folder.path() / "now.png";
   int asked = 0;
 
-  // As options of visual_node: pictures of 640 x 480, ten a second.
+  // Options of visual_node: pictures of 640 x 480, ten per second.
   std::vector<std::string> snapshots() const {
     return {"--no-video", "--snapshot", snapshot, "--snapshot-every", "0.1"};
   }
-  // A cluster whose visual_node has these options and is started as the words before it say.
+  // Starts a cluster whose visual_node has these options; the given words precede its command.
   void start_with(const std::vector<std::string>& options, const std::vector<std::string>& before = {}) {
     processes.start("sync_node");
     for (const char* node : {"haptic_node", "audio_node", "thermal_node"}) processes.start(node);
@@ -47,7 +46,7 @@ struct Seeing : Running {
     command.insert(command.end(), options.begin(), options.end());
     processes.spawn("visual_node", command);
   }
-  // As ffmpeg reads it.
+  // Decodes a picture with ffmpeg.
   Grey grey(const std::string& input) {
     const auto raw = folder.path() / "now.raw";
     const std::string command =
@@ -57,14 +56,14 @@ struct Seeing : Running {
     return Grey(std::istreambuf_iterator<char>(file), {});
   }
   Grey picture() { return grey("-i " + quoted(snapshot)); }
-  // One that a few frames later than now is drawn.
+  // A picture that is drawn a few frames from now.
   Grey later_picture() {
     const std::int64_t before = ear.ticks("visual_node");
     CHECK(ear.wait_until([&] { return ear.ticks("visual_node") > before + 12; }, kPatience_s));
     ear.listen(0.5);
     return picture();
   }
-  // What the program `set` says: a line for each change, one when it is refused.
+  // Output of the program `set`: a line for each change, one line when it refuses.
   std::string set(const std::vector<std::string>& words, int wanted_status = 0) {
     const std::string name = "set" + std::to_string(++asked);
     std::vector<std::string> command{programs() / "set", "--run-id", std::to_string(kRunId), "visual_node"};
@@ -81,7 +80,7 @@ struct Seeing : Running {
     const std::int64_t before = ear.ticks(node);
     return ear.wait_until([&] { return lives(node) && ear.ticks(node) > before + 5; }, kPatience_s);
   }
-  // Without vision: touch, sound and warmth live, and blows are told.
+  // The modalities without vision: touch, sound and warmth are live, and hits are published.
   bool others_live() {
     const std::int64_t hits = ear.hits();
     return ear.wait_until(

@@ -1,6 +1,5 @@
-// Two machines, as far as programs can tell: the namespaces of the test and a second network with a cable in
-// between, where the system allows it with a clock that is an hour ahead. Touch and the simulation run here,
-// sound, picture and heat there.
+// Two simulated machines: the namespaces of the test and a second network with a cable between them, where the system allows it with a
+// clock that is an hour ahead. Touch and the simulation run on the first, sound, picture and heat on the second.
 #pragma once
 
 #include <signal.h>
@@ -15,11 +14,11 @@ namespace tactus::cluster {
 
 inline const std::vector<std::string> kThere{"audio_node", "visual_node", "thermal_node"};
 
-// Made before anything listens: who joined a group on the old route would not hear what comes over the cable.
+// Must exist before any program listens: a socket that joined a group on the old route would not receive from the cable.
 class Cable {
  public:
   Cable() : processes_(folder_.path(), 1) {
-    // One namespace of time for all over there: each would be a clock of its own.
+    // One time namespace for all processes there, because each time namespace is a clock of its own.
     std::vector<std::string> machine{"unshare", "--net"};
     clock_ = run("unshare --time --monotonic 3600 --fork true");
     if (clock_) machine.insert(machine.end(), {"--time", "--monotonic", "3600", "--fork", "--kill-child"});
@@ -39,7 +38,7 @@ class Cable {
   ~Cable() { run("ip link del cable; ip route replace 224.0.0.0/4 dev lo"); }
 
   bool made() const { return made_; }
-  // In front of a command that is to run over there, and that takes the place of this one.
+  // Command prefix for the second machine; nsenter replaces itself by the command.
   std::vector<std::string> there() const {
     std::vector<std::string> words{"nsenter", "--net=" + space("net")};
     if (clock_) words.push_back("--time=" + space("time"));
@@ -67,8 +66,7 @@ struct TwoMachines {
   std::optional<Running> running;
   sync::Queue<sync_report_t>* reports = nullptr;
 
-  // Starts everything and waits until all senses have rendered something. False where the system allows no such
-  // thing.
+  // Starts everything and waits until all modalities have rendered something. Returns false where the system allows no second machine.
   bool start() {
     if (!cable.made()) {
       WARN("skipped: this system allows no second network with a cable to it");
@@ -90,7 +88,7 @@ struct TwoMachines {
     return true;
   }
   Ear& ear() { return running->ear; }
-  // Where it belongs.
+  // Starts a node on its machine.
   void start_node(const std::string& node) {
     if (std::find(kThere.begin(), kThere.end(), node) != kThere.end()) return start_there(node, node);
     std::vector<std::string> options{"--ttl", "1"};

@@ -1,3 +1,4 @@
+// Tests of the exchange of a scene manifest and its assets, with loss and forged chunks.
 #include "sync/assets/scene_exchange.h"
 
 #include <catch2/catch.hpp>
@@ -76,7 +77,7 @@ TEST_CASE("Forged chunks do not become an asset") {
   SceneSender sender(bus, assets_of("room", 3'000));
   SceneReceiver receiver(bus);
   HostTime now = host_time(1);
-  // A forger answers first with wrong bytes for the mesh.
+  // A forged sender answers first, with wrong bytes for the mesh.
   const asset_ref_t& mesh = sender.manifest()[1];
   bool done = false;
   for (int ms = 0; ms < 1000 && !done; ++ms, now += Nanoseconds(1'000'000)) {
@@ -120,7 +121,7 @@ TEST_CASE("Another scene replaces the first, and what it does not name is forgot
 
 namespace {
 
-// A receiver on a bus in memory, and announcers of any incarnation.
+// A receiver on an in-memory bus, and announcers of any incarnation.
 struct Exchange {
   Bus bus{Identity::fresh("receiver", 1), in_memory()};
   SceneReceiver receiver{bus};
@@ -132,7 +133,7 @@ struct Exchange {
     now += Nanoseconds(1'000'000);
     return complete;
   }
-  // A page that was never sent by our bus: its incarnation is another.
+  // A forged page: its incarnation differs from that of the real sender.
   void forge(std::int64_t incarnation, const std::vector<asset_ref_t>& refs, int page = 0, int pages = 1) {
     scene_manifest_t m{};
     m.header.sim_time_ns = -1;
@@ -199,7 +200,7 @@ TEST_CASE("What is announced takes memory only as it arrives, and is given up wh
   m.size = 1024;
   m.data.assign(1024, 0xee);
   for (int i = 0; i < 2000; ++i) {
-    m.chunk = i % 2 == 0 ? i / 2 : 65535 - i;  // one as asked for, one far ahead
+    m.chunk = i % 2 == 0 ? i / 2 : 65535 - i;  // one as requested, one far ahead
     x.bus.publish(channels::kAssetChunk, m, Port::kBulk);
     x.poll();
   }

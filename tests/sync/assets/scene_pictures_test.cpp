@@ -1,3 +1,4 @@
+// Tests of the pictures of a scene as assets.
 #include "sync/assets/scene_pictures.h"
 
 #include <catch2/catch.hpp>

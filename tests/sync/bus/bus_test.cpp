@@ -1,4 +1,4 @@
-// The bus within one process: LCM's memq, no network.
+// Tests of the bus within one process: LCM's memq transport, no network.
 #include "sync/bus/bus.h"
 
 #include <catch2/catch.hpp>

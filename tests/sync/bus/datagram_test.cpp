@@ -1,3 +1,4 @@
+// Tests of parsing LCM datagrams and fragments.
 #include "sync/bus/datagram.h"
 
 #include <catch2/catch.hpp>

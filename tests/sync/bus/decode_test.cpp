@@ -1,4 +1,4 @@
-// tests/lcmtypes/ sends hostile bytes of every type; here is what the border does with assets and good messages.
+// Tests of decoding: assets and good messages. tests/lcmtypes/ sends hostile bytes of every type.
 #include "sync/bus/decode.h"
 
 #include <catch2/catch.hpp>

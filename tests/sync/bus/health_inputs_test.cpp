@@ -1,3 +1,4 @@
+// Tests of the inputs in NODE_HEALTH and of the size of the message.
 #include "sync/bus/health_inputs.h"
 
 #include <catch2/catch.hpp>
@@ -53,6 +54,6 @@ TEST_CASE("However much a node hears and has to say, its health fits a datagram,
       REQUIRE((left_out == 0) == fits);
       if (left_out > 0) REQUIRE_THAT(m.note, Catch::EndsWith(std::to_string(left_out) + " inputs not listed"));
       if (m.input_count > 0) REQUIRE(m.inputs.front().channel == "CHANNEL_OF_A_NAME_0");
-      REQUIRE(m.input_count >= std::min(n, 6));  // what a renderer has to hear, and more
+      REQUIRE(m.input_count >= std::min(n, 6));  // the inputs that a renderer needs, and more
     }
 }

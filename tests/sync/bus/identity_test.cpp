@@ -1,3 +1,4 @@
+// Tests of incarnations, event ids and clock ids.
 #include "sync/bus/identity.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of the count of datagrams that the kernel dropped at our sockets.
 #include "sync/bus/kernel_drops.h"
 
 #include <linux/filter.h>
@@ -56,7 +57,7 @@ TEST_CASE("What finds no room at a socket counts, and what its own filter refuse
   REQUIRE(setsockopt(to, SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program) == 0);
   const std::int64_t with = kernel_drops();
   close(to), close(from);
-  if (without < 0) return;  // it is not known on this machine
+  if (without < 0) return;  // the count is not available on this machine
   CHECK(without >= 40);
   CHECK(with == 0);
 }

@@ -1,3 +1,4 @@
+// Tests of the bound and order of a message batch.
 #include "sync/bus/message_batch.h"
 
 #include <catch2/catch.hpp>
@@ -7,7 +8,7 @@ using namespace tactus::sync;
 TEST_CASE("A batch refuses what exceeds its bound and keeps the rest in order") {
   constexpr HostTime kStart{};
   const auto bytes = [](std::size_t n) { return std::vector<std::uint8_t>(n, 7); };
-  // What each takes beside its bytes.
+  // Overhead of a message beside its bytes.
   MessageBatch one;
   REQUIRE(one.add(kStart, {"A", bytes(50)}, 1000));
   const std::size_t beside = one.bytes() - 51, kMax = 100 + 2 * beside;

@@ -1,4 +1,4 @@
-// Pages on a wire that loses, repeats, reorders and forges them: only whole messages come out, each once, and memory
+// Tests of reassembly from a wire that loses, repeats, reorders and forges pages: only whole messages come out, each once, and memory
 // stays bounded.
 #include "sync/bus/page_assembler.h"
 
@@ -16,7 +16,7 @@ struct Sent {
   int number, count;
 };
 
-// The text of a page: which message and which page it is.
+// The text of a page: its message and its page number.
 std::string text(const Sent& s) { return std::to_string(s.key) + "/" + std::to_string(s.number) + " "; }
 
 std::string text(std::int64_t key, int count) {

@@ -1,3 +1,4 @@
+// Tests of queues of undecoded messages.
 #include "sync/bus/raw_queue.h"
 
 #include <catch2/catch.hpp>

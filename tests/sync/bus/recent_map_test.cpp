@@ -1,3 +1,4 @@
+// Tests of the map that keeps the newest keys.
 #include "sync/bus/recent_map.h"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ TEST_CASE("The newest keys are known with their first values, and no others") {
   std::mt19937 random(3);
   for (const std::size_t max : {1u, 2u, 7u, 64u}) {
     RecentMap<int, int> recent(max);
-    std::vector<std::pair<int, int>> expected;  // the oldest first
+    std::vector<std::pair<int, int>> expected;  // oldest first
     for (int i = 0; i < 2000; ++i) {
       const int key = static_cast<int>(random() % 100);
       const auto known = std::find_if(expected.begin(), expected.end(), [&](const auto& e) { return e.first == key; });

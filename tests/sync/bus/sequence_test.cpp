@@ -1,3 +1,4 @@
+// Tests of sequence numbers: gaps, late and repeated messages, restarts and several senders.
 #include "sync/bus/sequence.h"
 
 #include <algorithm>
@@ -130,7 +131,7 @@ TEST_CASE("Whatever order and repetition the network chooses, gaps are what neve
       arrived.push_back(seq);
       if (random() % 10 == 0) arrived.push_back(seq);
     }
-    // Overtaking by up to five places; the first and the last keep theirs.
+    // Reorders by up to five places; the first and the last message keep their places.
     for (std::size_t i = 1; i + 6 < arrived.size(); ++i) std::swap(arrived[i], arrived[i + random() % 5]);
     SequenceTracker t;
     for (const std::int64_t seq : arrived) t.observe(message(seq, seq));

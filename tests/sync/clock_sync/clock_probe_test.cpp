@@ -1,3 +1,4 @@
+// Tests of clock probes between hosts: offsets, rejected answers and rate of messages.
 #include "sync/clock_sync/clock_probe.h"
 
 #include <catch2/catch.hpp>
@@ -21,7 +22,7 @@ Identity host(std::int32_t clock, std::int64_t run = 7) {
   return id;
 }
 
-// What sync/clock_sync/probe_thread.cpp puts into the header.
+// Fills the header as sync/clock_sync/probe_thread.cpp does.
 clock_probe_t sent_by(const Identity& id, clock_probe_t m, HostTime now) {
   m.header = {-1, to_ns(now), id.clock, id.run_id, id.source, id.incarnation, 0};
   return m;
@@ -33,7 +34,7 @@ struct Pair {
   std::int64_t nonce = 100;
 
   clock_probe_t ask(HostTime now) { return sent_by(a, *prober.request(now, now, nonce++), now); }
-  // The answer of b, whose clock is kAhead ahead.
+  // The answer of host b, whose clock is kAhead ahead.
   clock_probe_t answer(const clock_probe_t& request, std::int64_t arrived_ns, std::int64_t replied_ns) {
     clock_probe_t m = *probe_answer(request, b, host_time(arrived_ns + kAhead));
     m.reply_sent_ns = replied_ns + kAhead;
@@ -98,7 +99,7 @@ TEST_CASE("Of many clocks each is asked less often, so that all probes grow with
     }
     INFO(others << " other clocks");
     CHECK(last == ClockProber::kPeriod * std::max(1, others / 16));
-    // Requests and answers of all hosts together, a second: each answers each.
+    // Requests and answers of all hosts together, per second: each host answers each other host.
     const double hosts = others + 1.0;
     CHECK(8 * hosts * (1 + others) / to_seconds(last) <= 64 * 2 * hosts + 64);
   }
@@ -145,14 +146,14 @@ TEST_CASE("A hostile reply is refused and changes nothing") {
   };
   altered([](auto& m) { ++m.nonce; });
   altered([](auto& m) { m.request_sent_ns -= 10 * kMs; });
-  altered([](auto& m) { m.reply_sent_ns += 5000; });                       // it took longer there than it was away
-  altered([](auto& m) { m.reply_sent_ns = m.request_arrived_ns - 1; });    // answered before it came
+  altered([](auto& m) { m.reply_sent_ns += 5000; });                       // longer at the other host than the whole round trip
+  altered([](auto& m) { m.reply_sent_ns = m.request_arrived_ns - 1; });    // answered before the request arrived
   altered([](auto& m) { m.header.run_id = 8; });
-  altered([](auto& m) { m.header.clock = 1; });                            // in our own name
+  altered([](auto& m) { m.header.clock = 1; });                            // with the receiver's own clock id
   altered([](auto& m) { m.kind = clock_probe_t::REQUEST; });
   for (const clock_probe_t& m : hostile) p.prober.reply(m, back);
   CHECK(p.prober.refused() == static_cast<std::int64_t>(hostile.size()));
-  p.prober.reply(good, host_time(200 * kMs));                              // too late
+  p.prober.reply(good, host_time(200 * kMs));                              // too late for this request
   CHECK(p.prober.refused() == static_cast<std::int64_t>(hostile.size()) + 1);
   for (int i = 1; i < ClockProber::kProbes; ++i) p.ask(p.prober.next());
   CHECK(p.prober.finish(p.prober.next()).empty());

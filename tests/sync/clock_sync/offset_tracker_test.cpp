@@ -1,3 +1,4 @@
+// Tests of tracking the offset of another clock: uncertainty, drift, slew and jumps.
 #include "sync/clock_sync/offset_tracker.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace {
 constexpr double kSecond = 1e9;
 HostTime at(double ns) { return host_time(static_cast<std::int64_t>(ns)); }
 
-// Another host: theirs(t) = t + offset(t). Probes to it take what a network would.
+// Another host: theirs(t) = t + offset(t). Probes have the delays of a network.
 struct Network {
   std::mt19937 random{1};
   std::function<double(double)> offset = [](double) { return 5000 * kSecond; };
@@ -43,13 +44,13 @@ double uncertainty_at(const OffsetLine& line, double now) {
 }
 
 struct Course {
-  double worst_excess_ns = -1e18;   // of the error beyond the uncertainty
-  double worst_step_ns = 0;         // between lines of one epoch
+  double worst_excess_ns = -1e18;   // part of the error that exceeds the uncertainty
+  double worst_step_ns = 0;         // between two lines of one epoch
   double fastest_slew = 0;
   double last_uncertainty_ns = 0;
   OffsetTracker tracker;
 
-  // Waves every 2 s, lines every 0.5 s, checked in between; `drop` says which waves are lost.
+  // Waves every 2 s, lines every 0.5 s, checked in between; `drop` selects the waves that are lost.
   void run(Network& network, double from_s, double to_s, const std::function<bool(int)>& drop = [](int) { return false; }) {
     std::optional<OffsetLine> line;
     for (int half = static_cast<int>(2 * from_s); half < static_cast<int>(2 * to_s); ++half) {
@@ -125,7 +126,7 @@ TEST_CASE("A rate that changes is noticed, within the drift that clocks have") {
   Course c;
   c.run(n, 10, 60);
   c.worst_excess_ns = -1e18;
-  c.run(n, 64, 120);  // from the second wave after it on
+  c.run(n, 64, 120);  // from the second wave after the change on
   CHECK(c.worst_excess_ns <= 0);
   CHECK(c.worst_step_ns <= 2);
   CHECK(c.tracker.epoch() == 0);
@@ -168,7 +169,7 @@ TEST_CASE("An error is slewed away, not stepped: the map stays continuous and mo
   tracker.add({at(12 * kSecond), Nanoseconds(4'000'000), Nanoseconds(100'000)});
   OffsetLine line = tracker.line(at(12 * kSecond));
   CHECK(std::abs(line.offset.count()) < 1000);
-  CHECK(line.uncertainty > Nanoseconds(4'000'000));  // says how far it still is
+  CHECK(line.uncertainty > Nanoseconds(4'000'000));  // the reported uncertainty covers the remaining error
   for (int i = 1; i <= 40; ++i) {
     const OffsetLine next = tracker.line(at((12 + 0.5 * i) * kSecond));
     REQUIRE(next.offset >= line.offset - Nanoseconds(1));

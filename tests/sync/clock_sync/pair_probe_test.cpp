@@ -1,3 +1,4 @@
+// Tests of the probes of a pair of hosts: datagrams, losses and offset.
 #include "sync/clock_sync/pair_probe.h"
 
 #include <catch2/catch.hpp>
@@ -10,7 +11,7 @@ namespace {
 
 PairDatagram ask(std::uint64_t number) { return {7, PairDatagram::kAsk, number, "b", "", 1, 0, 0}; }
 
-// An answer over a way that took `there` and `back`, by a clock that is `ahead` of ours.
+// An answer over a path with the delays `there` and `back`, from a clock that is `ahead` of ours.
 PairDatagram answer(HostTime asked, Nanoseconds there, Nanoseconds worked, Nanoseconds ahead) {
   PairDatagram m{7, PairDatagram::kAnswer, 0, "b", "a", to_ns(asked), 0, 0};
   m.heard_ns = to_ns(asked + there + ahead);
@@ -49,7 +50,7 @@ TEST_CASE("What is no datagram of a pair of hosts is refused, whatever it is") {
   for (int i = 0; i < 10000; ++i) {
     auto bad = good;
     for (int k = 0; k < 4; ++k) bad[random() % bad.size()] = static_cast<std::uint8_t>(random());
-    if (const auto m = PairDatagram::decode(bad)) {  // it may still be one, and then it is within bounds
+    if (const auto m = PairDatagram::decode(bad)) {  // a damaged datagram may still be valid; then its values are within bounds
       CHECK(m->from.size() <= PairDatagram::kLongestName);
       CHECK(m->asked_ns >= 0);
       CHECK(m->number < 1 << 20);
@@ -70,7 +71,7 @@ TEST_CASE("The share of what was lost is that of the numbers that are missing, t
   PairRecord late;
   for (std::uint64_t i = 50; i < 100; ++i) late.hear(ask(i), 1);
   CHECK(late.lost() == 0);
-  r.hear(ask(5), 1);  // a repetition is no second one
+  r.hear(ask(5), 1);  // a repetition does not count as a second request
   CHECK(r.lost() == Approx(0.19));
   CHECK(r.ttl() == 1);
 }

@@ -1,3 +1,4 @@
+// Tests of the queue between the probe thread and the node, and of the emulated clock.
 #include "sync/clock_sync/probe_thread.h"
 
 #include <catch2/catch.hpp>

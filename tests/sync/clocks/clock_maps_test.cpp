@@ -1,3 +1,4 @@
+// Tests of the maps between the clocks of several hosts.
 #include "sync/clocks/clock_maps.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of estimating a clock offset from arrivals only.
 #include "sync/clocks/one_way_offset_estimator.h"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace {
 
 constexpr double kSecond = 1e9;
 
-// A sender whose clock is `offset` ahead and gains `drift` seconds a second.
+// A sender whose clock is `offset` ahead and gains `drift` seconds per second.
 struct Sender {
   double offset_ns, drift;
   std::int64_t stamp(double host_ns) const {
@@ -28,7 +29,7 @@ TEST_CASE("The bias is never negative and at most the smallest latency plus the 
       const Sender sender{offset_s * kSecond, drift};
       std::exponential_distribution<double> latency_ns(1 / 3e6);
       OneWayOffsetEstimator clock;
-      std::vector<std::pair<double, double>> heard;  // when, latency
+      std::vector<std::pair<double, double>> heard;  // arrival, latency
       double now = 10 * kSecond;
       for (int i = 0; i < 3000; ++i) {
         now += 20e6;
@@ -43,7 +44,7 @@ TEST_CASE("The bias is never negative and at most the smallest latency plus the 
         for (const auto& [when, l] : heard)
           bound = std::min(bound, l + 2 * OneWayOffsetEstimator::kMaxDrift * (now - when + l));
         INFO("drift " << drift << ", step " << i);
-        // Each of the two conversions rounds by a nanosecond.
+        // Each of the two conversions rounds by up to 1 ns.
         REQUIRE(bias >= -2);
         REQUIRE(bias <= bound + 2);
       }
@@ -84,7 +85,7 @@ TEST_CASE("A clock that was put back by less than two seconds is noticed within 
         clock.observe(static_cast<std::int64_t>(now - latency + offset), host_time(static_cast<std::int64_t>(now)));
         const double error = static_cast<double>(to_ns(clock.to_host(static_cast<std::int64_t>(now + offset),
                                                                      host_time(static_cast<std::int64_t>(now))))) - now;
-        // Before and after the estimate is late by a latency; between, by the jump too early.
+        // Before and after the jump, the estimate is late by a latency. In between, it is early by the size of the jump.
         if (now >= jump_at && noticed_s < 0 && error > -0.2e6) noticed_s = (now - jump_at) / kSecond;
       }
       INFO(back_ms << " ms back at " << rate_Hz << " Hz");

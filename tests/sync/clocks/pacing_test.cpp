@@ -1,3 +1,4 @@
+// Tests of periodic deadlines: no burst, missed ticks are counted.
 #include "sync/clocks/pacing.h"
 
 #include <catch2/catch.hpp>
@@ -41,13 +42,13 @@ TEST_CASE("A loop that fell behind skips whole periods and counts them. It never
     HostTime now = kStart;
     std::int64_t periods = 0;
     for (int i = 0; i < 5000; ++i) {
-      // Mostly in time, sometimes up to 20 periods late.
+      // Mostly on time, sometimes up to 20 periods late.
       const double lateness = random() % 10 ? 0.5 * period_ns : 20 * period_ns;
       now = d.next() +
             Nanoseconds(static_cast<std::int64_t>(lateness * static_cast<double>(random() % 1000) / 1000));
       const HostTime before = d.next();
       periods += 1 + d.advance(now);
-      // The next deadline is in the future, by one period at most (a nanosecond for rounding): no burst.
+      // The next deadline is in the future by at most one period, with 1 ns for rounding: no burst.
       REQUIRE(d.next() - now >= Nanoseconds(-1));
       REQUIRE(static_cast<double>((d.next() - now).count()) <= period_ns + 1);
       REQUIRE(d.next() > before);

@@ -1,3 +1,4 @@
+// Tests of the choice of the clock source for a sender.
 #include "sync/clocks/sender_clock.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of tracking simulated time from messages.
 #include "sync/clocks/sim_clock_tracker.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of the Weber deadband.
 #include "sync/degradation/deadband.h"
 
 #include <catch2/catch.hpp>
@@ -10,7 +11,7 @@ namespace {
 
 SimTime ms(int i) { return sim_time(std::int64_t{i} * 1'000'000); }
 
-// A stroke to and fro, 1 kHz: speed up to 0.2 m/s.
+// A stroke back and forth, 1 kHz: speed up to 0.2 m/s.
 Eigen::Vector3d stroke(int i) { return {0.2 * std::sin(2 * M_PI * i / 1000.0), 0, 0}; }
 
 double sent_share(const DeadbandDef& def, double speed_m_s = 0) {
@@ -48,8 +49,7 @@ TEST_CASE("What is not sent differs from what was by no more than the band") {
 }
 
 TEST_CASE("A deadband of a tenth saves most messages of a stroke, and the more the wider it is") {
-  // A sine of amplitude A crosses levels a factor 1.1 apart, or the floor: four times a period ln(A/floor)/ln(1.1)
-  // of them.
+  // A sine of amplitude A crosses levels a factor 1.1 apart, or the floor: 4 ln(A/floor)/ln(1.1) crossings per period.
   const DeadbandDef tenth{.fraction = 0.1, .quantity = Quantity::kVelocity, .floor = 0.002};
   const double levels = 4 * (std::log(0.2 / 0.02) / std::log(1.1) + 10);
   CHECK(sent_share(tenth) == Approx(levels / 1000).epsilon(0.5));

@@ -1,3 +1,4 @@
+// Tests of a degraded input stream: pages, groups, repetitions, delays and changes of the profile.
 #include "sync/degradation/degraded_stream.h"
 
 #include <catch2/catch.hpp>
@@ -23,7 +24,7 @@ using namespace tactus::sync;
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
-constexpr std::int64_t kEpoch = 5'000'000'000'000;  // of the host's clock
+constexpr std::int64_t kEpoch = 5'000'000'000'000;  // on the host's clock
 
 OperatorChain stack_of(const std::string& attributes) {
   return OperatorChain(parse_profile("<profile><degrade modality=\"audio\" " + attributes + "/></profile>", "p.xml"),
@@ -53,7 +54,7 @@ contact_event_t event(std::int64_t id, int ms) {
   return e;
 }
 
-// All events that are younger than 50 ms, as sim_node repeats them.
+// All events younger than 50 ms, as sim_node repeats them.
 contact_events_t events_at(int ms, const std::vector<contact_event_t>& all, std::int64_t seq) {
   contact_events_t m{};
   m.header = header(ms, seq);
@@ -177,7 +178,7 @@ TEST_CASE(
       frames.push(page_at(7, page, 3, 3 * k + page), arrival(7 + k), stack, nullptr);
     }
   int came = 0;
-  while (const auto m = frames.pop(arrival(20))) came += m->first.contacts.empty() ? 0 : 1;  // off shows none
+  while (const auto m = frames.pop(arrival(20))) came += m->first.contacts.empty() ? 0 : 1;  // the profile "off" delivers none
   CHECK(came == (between_pages ? 4 : 5) * 3);
 }
 
@@ -244,7 +245,7 @@ TEST_CASE("A long network delay is no restart: all events come, once, later by j
   }
   CHECK(heard == 100);
   CHECK(stream.restarts() == 0);
-  // What it knows of the contacts is old by the delay; how the clocks lie is not.
+  // The contact data are old by the delay; the clock map is current.
   const auto map = stream.map(arrival(1000 + delay_ms));
   REQUIRE(map);
   CHECK(std::abs(to_ns(map->to_sim(host_time(kEpoch + 5 * kMs))) - 5 * kMs) <= kMs / 4);
@@ -314,7 +315,7 @@ TEST_CASE("Values are changed in each message, and stay valid") {
 }
 
 TEST_CASE("What is held back says nothing about the clock of who sent it") {
-  // A sender with a clock of its own, 7 s behind ours, known to 50 us; its messages take 300 us.
+  // A sender whose clock is 7 s behind ours, mapped to 50 us; its messages take 300 us.
   constexpr std::int32_t kTheirs = 5, kOurs = 6;
   constexpr Nanoseconds kBehind{7'000'000'000}, kWay{300'000};
   ClockMaps maps(1);

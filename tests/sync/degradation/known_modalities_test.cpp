@@ -1,3 +1,4 @@
+// Tests of the tables of modalities and their operators.
 #include "sync/degradation/known_modalities.h"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// What a rule remembers: of each stream by itself, and no longer than the world lives.
+// Tests of operator state: each stream has its own, and a new incarnation of the simulation clears it.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -44,8 +44,8 @@ StreamItem event(std::uint64_t id, std::int64_t ms, std::int64_t incarnation) {
           .signals = {}};
 }
 
-// Both groups of CONTACTS as they are told: that of the tool each step, the others 16 ms ahead of their time.
-// Returns the instants of those that come through, by group, ms.
+// Both groups of CONTACTS as sim_node publishes them: that of the tool at each step, the others 16 ms ahead of their time. Returns the
+// instants of the delivered snapshots, by group, ms.
 std::map<int, std::vector<std::int64_t>> both_groups(OperatorChain& stack, double (*force_N)(int group, std::int64_t ms)) {
   DegradedSnapshots<contact_frame_t> frames;
   std::map<int, std::vector<std::int64_t>> kept;
@@ -84,7 +84,7 @@ TEST_CASE("A deadband compares all pages of a snapshot, in whatever order they c
   for (std::int64_t ms = 0; ms < 200; ++ms) {
     for (int i = 0; i < 3; ++i) {
       const int page = ms % 2 == 0 ? i : 2 - i;
-      // Only what is on the last page changes, once.
+      // Only the last page changes, once.
       contact_frame_t m = frame(contact_frame_t::TOOL, ms, ms, page == 2 && ms >= 100 ? 2 : 1);
       m.contacts[0].contact_id = page;
       m.page = page, m.pages = 3;
@@ -93,8 +93,7 @@ TEST_CASE("A deadband compares all pages of a snapshot, in whatever order they c
     }
     while (const auto m = frames.pop(host_time(ms * kMs))) ++kept[m->first.header.sim_time_ns / kMs];
   }
-  // That of which a page is missing is let through when four newer ones are on their way: none was, so it never
-  // is.
+  // A snapshot with a missing page is released when four newer ones have arrived. None arrived, so it is never released.
   CHECK(kept == std::map<std::int64_t, int>{{0, 3}, {100, 3}});
   CHECK(decisions.size() == 199);
 }
@@ -107,11 +106,11 @@ TEST_CASE(
   std::vector<std::int64_t> kept;
   for (std::int64_t ms = 0; ms < 10; ++ms) {
     contact_frame_t m = frame(contact_frame_t::TOOL, ms, ms, 1);
-    m.pages = 2;  // the second never comes
+    m.pages = 2;  // the second page never arrives
     frames.push(m, host_time(ms * kMs), stack, nullptr);
     while (const auto let = frames.pop(host_time(ms * kMs))) kept.push_back(let->first.header.sim_time_ns / kMs);
   }
-  CHECK(kept == std::vector<std::int64_t>{0});  // the first; the others tell of no change
+  CHECK(kept == std::vector<std::int64_t>{0});  // the first; the others contain no change
 }
 
 TEST_CASE("Bursts of one stream are as long as asked for, whatever arrives in between") {
@@ -132,7 +131,7 @@ TEST_CASE("Bursts of one stream are as long as asked for, whatever arrives in be
     lost += gone;
     bursts += gone && (ms == 0 || through.contains(ms - 1));
   }
-  // Geometric, mean 5: standard deviation sqrt(20), over the bursts seen.
+  // Geometric, mean 5: standard deviation sqrt(20), over the bursts counted.
   CHECK(std::abs(static_cast<double>(lost) / bursts - 5) < 5 * std::sqrt(20.0 / bursts));
 }
 
@@ -159,7 +158,7 @@ TEST_CASE("When the world begins anew, so do the times of a rule and its low-pas
   const auto dropped = [&](std::int64_t ms, std::int64_t incarnation) {
     return stack.decide(event(1, ms, incarnation)).dropped();
   };
-  CHECK_FALSE(dropped(49'900, 1));  // on its way when it came into force
+  CHECK_FALSE(dropped(49'900, 1));  // in flight when the rule came into force
   CHECK_FALSE(dropped(50'900, 1));
   CHECK(dropped(51'500, 1));
   CHECK_FALSE(dropped(900, 2));

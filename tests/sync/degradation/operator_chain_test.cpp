@@ -1,3 +1,4 @@
+// Tests of the operators of a profile, one by one and combined.
 #include "sync/degradation/operator_chain.h"
 
 #include <algorithm>
@@ -109,7 +110,7 @@ TEST_CASE("The same seed decides the same, in whatever order and company things 
     lost += v.dropped();
   }
   CHECK(std::abs(lost - 0.2 * kN) < 5 * std::sqrt(0.16 * kN));
-  CHECK(differ > 0.2 * kN);  // 2 * 0.2 * 0.8 of two independent seeds
+  CHECK(differ > 0.2 * kN);  // 2 * 0.2 * 0.8 for two independent seeds
 }
 
 TEST_CASE("Two rules and two senses draw different numbers") {

@@ -1,5 +1,5 @@
-// Every operator of chance against its definition, as a sense meets it: through a profile, on events and on
-// snapshots. A count of what has probability p is binomial; 4.5 standard deviations are exceeded once in 150,000.
+// Distributions of every random operator, applied as in a modality: through a profile, to events and snapshots. A count of outcomes of
+// probability p is binomial; 4.5 standard deviations are exceeded once in 150,000.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -28,7 +28,7 @@ OperatorChain stack_of(const std::string& attributes, int seed = 1) {
                "a", SimTime{});
 }
 
-// The i-th of a millisecond clock: an event with an id as sim_node gives them, or a snapshot.
+// The i-th item of a millisecond clock: an event with an id as sim_node assigns it, or a snapshot.
 StreamItem item(int i, bool is_event) {
   const std::uint64_t key =
       is_event ? (0xabcdefull << 40) + static_cast<std::uint64_t>(i) : mixed(7, static_cast<std::uint64_t>(i));
@@ -71,7 +71,7 @@ std::uint64_t fingerprint(const std::vector<Decision>& all) {
 TEST_CASE("The quantiles of a jittered delay are those of its distribution, of events and of snapshots") {
   struct Shape {
     std::string words;
-    std::function<double(double)> quantile_s;  // of what is added
+    std::function<double(double)> quantile_s;  // quantile function of the added delay
   };
   const Shape shape = GENERATE(
       values<Shape>({{"8ms uniform", [](double p) { return 0.008 * (2 * p - 1); }},
@@ -80,7 +80,7 @@ TEST_CASE("The quantiles of a jittered delay are those of its distribution, of e
                      {"4ms pareto", [](double p) { return 0.004 * 1.5 * (std::pow(1 - p, -1 / 2.5) - 1); }}}));
   const bool is_event = GENERATE(true, false);
   INFO(shape.words << (is_event ? ", events" : ", snapshots"));
-  // So long a delay that nothing is cut off at 0: six standard deviations.
+  // The constant delay is six standard deviations, so that no delay is cut off at 0.
   const auto held =
       held_s(verdicts("delay=\"20ms network\" jitter=\"" + shape.words + " order=free\"", is_event), is_event);
   for (const double p : {0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99}) {
@@ -96,7 +96,7 @@ TEST_CASE("A constant delay is its value to the nanosecond, and jitter without o
   const auto held = held_s(verdicts("jitter=\"5ms normal order=free\"", true), true);
   CHECK(*std::min_element(held.begin(), held.end()) == 0);
   check_share(static_cast<double>(std::count(held.begin(), held.end(), 0.0)),
-              0.5);  // that half would have been early
+              0.5);  // one half would have been early
 }
 
 TEST_CASE("Correlated jitter of a sense follows itself as asked for") {
@@ -109,7 +109,7 @@ TEST_CASE("Correlated jitter of a sense follows itself as asked for") {
     square += (x[i] - 0.030) * (x[i] - 0.030);
     product += (x[i] - 0.030) * (x[i - 1] - 0.030);
   }
-  // Of a first-order process the standard error is sqrt((1 - rho^2) / n) (Bartlett 1946).
+  // Standard error for a first-order process: sqrt((1 - rho^2) / n) (Bartlett 1946).
   CHECK(std::abs(product / square - rho) < kSigmas * std::sqrt((1 - rho * rho) / kN));
 }
 
@@ -137,10 +137,10 @@ TEST_CASE("Independent and bursty loss have their share and their mean burst, of
     bursts += all[i].dropped() && (i == 0 || !all[i - 1].dropped());
   }
   INFO(words.str() << " lost " << lost << " in " << bursts);
-  // Runs are geometric, mean b and variance b (b - 1); those of independent losses are 1 / (1 - share) long.
+  // Run lengths are geometric with mean b and variance b (b - 1); for independent losses b = 1 / (1 - share).
   const double b = burst > 0 ? burst : 1 / (1 - share);
   CHECK(std::abs(static_cast<double>(lost) / bursts - b) <= kSigmas * std::sqrt(b * (b - 1) / bursts));
-  // Of a two-state chain the variance is enlarged by (1 + r) / (1 - r), r: its second eigenvalue.
+  // A two-state chain enlarges the variance by (1 + r) / (1 - r), where r is its second eigenvalue.
   const double r = burst > 0 ? 1 - share / (burst * (1 - share)) - 1 / burst : 0;
   CHECK(std::abs(lost - share * n) <= kSigmas * std::sqrt(share * (1 - share) * n * (1 + r) / (1 - r)));
 }
@@ -162,7 +162,7 @@ TEST_CASE("One seed decides the same to the byte, another seed otherwise") {
     CHECK(fingerprint(verdicts(everything, is_event, 7)) == fingerprint(verdicts(everything, is_event, 7)));
     CHECK(fingerprint(verdicts(everything, is_event, 7)) != fingerprint(verdicts(everything, is_event, 8)));
   }
-  // Without logarithms and powers, which differ between C libraries, it is the same on every machine.
+  // Profiles without logarithms and powers, which differ between C libraries, give the same result on every machine.
   CHECK(fingerprint(verdicts("loss=\"20%\" reorder=\"10% by=10ms\" duplicate=\"5%\"", true, 7)) ==
         0xeb7f74d09e8e226eull);
 }

@@ -1,3 +1,4 @@
+// Tests of profiles on the bus: pages, generations and the copy on disk.
 #include "sync/degradation/profile_exchange.h"
 
 #include <unistd.h>
@@ -15,7 +16,7 @@ using namespace tactus::sync;
 
 namespace {
 
-// With so many remarks, which make it long.
+// The number of remarks sets the length of the profile.
 std::string profile(int remarks) {
   std::string text = "<profile><degrade modality=\"audio\" delay=\"40ms\"/>";
   for (int i = 0; i < remarks; ++i)
@@ -70,7 +71,7 @@ TEST_CASE(
   CHECK(whole->start == sim_time(5));
   CHECK_FALSE(take_all(r, messages));
   CHECK_FALSE(take_all(r, pages(profile(1), 2)));
-  CHECK(take_all(r, pages(profile(100), 4)));  // the same text, asked for anew
+  CHECK(take_all(r, pages(profile(100), 4)));  // the same text, requested again
 }
 
 TEST_CASE("A wrong profile is refused whole and takes nobody's turn") {

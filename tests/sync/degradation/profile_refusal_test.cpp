@@ -1,4 +1,4 @@
-// What looks like a profile and is none: nothing of it may hold, and what it says may not be lost in silence.
+// Tests of malformed profiles: each is rejected as a whole, with a message.
 #include <catch2/catch.hpp>
 
 #include "sync/degradation/profile.h"

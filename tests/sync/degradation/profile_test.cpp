@@ -1,3 +1,4 @@
+// Tests of parsing degradation profiles.
 #include "sync/degradation/profile.h"
 
 #include <catch2/catch.hpp>

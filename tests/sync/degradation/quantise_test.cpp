@@ -1,3 +1,4 @@
+// Tests of linear and logarithmic quantisation and of the low-pass filter.
 #include "sync/degradation/quantise.h"
 
 #include <catch2/catch.hpp>

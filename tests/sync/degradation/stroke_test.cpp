@@ -1,4 +1,4 @@
-// What a Weber deadband saves on the motion of a tool.
+// Reduction of the message rate of tool motion by a Weber deadband.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -19,8 +19,8 @@ struct Stroke {
   std::vector<Eigen::Vector3d> position_m;
 };
 
-// A minimum-jerk stroke of 15 cm to and fro in 1.5 s with 0.1 mm of tremor at 9 Hz (Flash and Hogan 1985;
-// physiological tremor of the hand lies at 8 to 12 Hz), 1 kHz.
+// A minimum-jerk stroke of 15 cm back and forth in 1.5 s with 0.1 mm of tremor at 9 Hz (Flash and Hogan 1985; physiological tremor of the
+// hand lies at 8 to 12 Hz), 1 kHz.
 Stroke generated() {
   Stroke s{1000, {}};
   for (int i = 0; i < 6000; ++i) {
@@ -48,10 +48,10 @@ Stroke recorded(const std::filesystem::path& file) {
 
 struct Saved {
   double sent_share = 0;
-  double worst = 0;  // largest of what was held back, in bands
+  double worst = 0;  // largest change that was held back, in units of the band
 };
 
-// Of the velocity, as the profile "10% velocity floor=5mm/s" means it.
+// Deadband on velocity, as in the profile "10% velocity floor=5mm/s".
 Saved run(const Stroke& stroke, double fraction) {
   constexpr double kFloor_m_s = 0.005;
   Deadband deadband({.fraction = fraction, .quantity = Quantity::kVelocity, .floor = kFloor_m_s});
@@ -74,9 +74,8 @@ TEST_CASE(
     "A deadband of 10 % saves most messages of a stroke at 1 kHz, and nothing that it holds back is noticeable") {
   const Saved tenth = run(generated(), 0.1), fifth = run(generated(), 0.2);
   INFO("sent " << 100 * tenth.sent_share << " % at 10 %, " << 100 * fifth.sent_share << " % at 20 %");
-  // Each half stroke crosses levels a factor 1.1 apart twice between the floor and its peak of 1.875 * 0.15 m /
-  // 0.75 s (Flash and Hogan 1985), and the tremor of 5.7 mm/s crosses the floor 18 times a second at the most,
-  // each way.
+  // Each half stroke crosses levels a factor 1.1 apart twice between the floor and its peak of 1.875 * 0.15 m / 0.75 s (Flash and Hogan
+  // 1985). The tremor of 5.7 mm/s crosses the floor at most 18 times per second in each direction.
   const double levels = 2 * std::log(0.375 / 0.05) / std::log(1.1) + 2 * 0.05 / 0.005;
   CHECK(tenth.sent_share < (levels / 0.75 + 36) / 1000);
   CHECK(fifth.sent_share < tenth.sent_share);
@@ -86,7 +85,7 @@ TEST_CASE(
 
 TEST_CASE("A deadband of 10 % saves messages of recorded motions of a tool") {
   const char* data = std::getenv("TACTUS_DATA");
-  if (!data) return;  // the recordings are beside the project
+  if (!data) return;  // the recordings lie beside the source tree and may be absent
   for (const char* name : {"grating_a.csv", "grating_b.csv"}) {
     const Stroke stroke = recorded(std::filesystem::path(data) / "tool_motion" / name);
     REQUIRE(stroke.position_m.size() > 1000);

@@ -1,3 +1,4 @@
+// Tests of reading and replaying damaged logs.
 #include "tests/sync/support/damaged_log.h"
 
 #include <unistd.h>
@@ -23,7 +24,7 @@ struct TemporaryFile {
   }
 };
 
-// Those of `whole` that are not among the events that a scanner finds, with their bytes.
+// Events of `whole` that the scanner does not return with the same bytes.
 std::set<std::int64_t> missed(const DamagedLog& log) {
   std::set<std::int64_t> missing = log.whole;
   for (const LogEvent& e : read_all(log.bytes)) {
@@ -74,7 +75,7 @@ TEST_CASE("A log with damage anywhere is rendered to its end, with every message
         while (const auto m = healths.pop()) missing.erase(m->message.header.seq);
       }
       CHECK(feed.over(Nanoseconds(20'000'000)));
-      // Numbers and times of senders are damaged, too: so many messages contradict a wrong one before it is let go
+      // Sequence numbers and send times are damaged, too. kContradictions messages must contradict a wrong value before it is discarded
       // (sync/bus/sequence.h). A log is damaged in up to eight places.
       CHECK(missing.size() <= 8 * SequenceTracker::kContradictions);
       missed_in_all += missing.size();
@@ -83,7 +84,7 @@ TEST_CASE("A log with damage anywhere is rendered to its end, with every message
     }
   }
   CHECK(refused == 0);
-  CHECK(missed_in_all < 1000);  // of some 110,000
+  CHECK(missed_in_all < 1000);  // out of about 110,000
 }
 
 TEST_CASE("A log without its LOG_INFO says what it is by its messages, to a latency") {

@@ -1,3 +1,4 @@
+// Tests of the tables haptic.csv and thermal.csv exported from a log.
 #include "sync/log/export_csv.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Tests of the timestamps of log events, with wrong stamps.
 #include "sync/log/log_feed.h"
 
 #include <unistd.h>
@@ -29,7 +30,7 @@ struct Folder {
   std::string path;
 };
 
-// Says which run it is, then ten healths, 2.5 ms apart.
+// LOG_INFO, then ten NODE_HEALTH messages, 2.5 ms apart.
 std::string log_in(const Folder& folder) {
   const std::string path = folder.path + "/run.lcmlog";
   LogWriter writer(std::make_unique<FileSink>(path));
@@ -51,7 +52,7 @@ std::string log_in(const Folder& folder) {
   return path;
 }
 
-// The same with other stamps. later_us: of the i-th health, by so much.
+// The same log with other stamps. later_us: shift of the stamp of the i-th health, us.
 std::string misdated_log_in(const Folder& folder, const std::function<std::int64_t(int)>& later_us) {
   const std::string path = log_in(folder);
   std::vector<LogEvent> events;
@@ -65,7 +66,7 @@ std::string misdated_log_in(const Folder& folder, const std::function<std::int64
     const LogEvent& e = events[k];
     writer.write(e.timestamp_us, e.channel, e.data);
     writer.flush();
-    // Big-endian, after the sync word and the number.
+    // Big-endian, after the sync word and the event number.
     auto stamp = static_cast<std::uint64_t>(e.timestamp_us + (k > 0 ? later_us(static_cast<int>(k) - 1) : 0));
     std::array<char, 8> raw;
     for (std::size_t b = 8; b-- > 0; stamp >>= 8) raw[b] = static_cast<char>(stamp & 0xff);
@@ -118,9 +119,9 @@ TEST_CASE("Stamps that are damaged to another age make a run no longer, and lose
     CHECK(feed.over(Nanoseconds(5'000'000)));
     CHECK(heard == 10);
   };
-  // The last two confirm each other; they are handed over with the eighth.
+  // The last two confirm each other; they are delivered with the eighth.
   check([](int i) { return i >= 8 ? kTenYears_us + i : 0; }, 2, 17'500'000);
-  // Two in the middle, as far back, and beyond all numbers.
+  // Two wrong stamps in the middle, equally far back, and stamps out of range.
   check([](int i) { return i == 4 || i == 5 ? kTenYears_us : 0; }, 2, 22'500'000);
   check([](int i) { return i >= 8 ? -kTenYears_us : 0; }, 2, 17'500'000);
   check([](int i) { return i >= 8 ? std::int64_t{3} << 60 : 0; }, 2, 17'500'000);

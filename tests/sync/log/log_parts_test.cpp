@@ -1,3 +1,4 @@
+// Tests of logs in several parts: numbers, limits and order.
 #include "sync/log/log_parts.h"
 
 #include <unistd.h>

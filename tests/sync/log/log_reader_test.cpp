@@ -1,3 +1,4 @@
+// Tests of scanning a log: whole, cut off and damaged.
 #include "sync/log/log_reader.h"
 
 #include <catch2/catch.hpp>
@@ -11,7 +12,7 @@ using namespace tactus::sync;
 
 namespace {
 
-// 200 events of 0 .. 299 bytes; where each begins.
+// 200 events of 0 .. 299 bytes, and the offset of each.
 struct Log {
   std::shared_ptr<MemorySink::State> state = std::make_shared<MemorySink::State>();
   std::vector<std::size_t> begins;
@@ -61,8 +62,8 @@ TEST_CASE("A log that is cut off anywhere yields every event before the cut") {
     LogScanner scanner(bytes.first(cut));
     std::size_t found = 0;
     for (LogEvent e; scanner.next(e);) ++found;
-    // The last of those that begin before the cut is whole only when the cut lies at the beginning of the next.
-    const std::size_t expected = cut == 0 ? 0 : whole - 1;  // the last one that begins before the cut is not whole
+    // The last event that begins before the cut is whole only when the cut lies at the beginning of the next event.
+    const std::size_t expected = cut == 0 ? 0 : whole - 1;  // the last event that begins before the cut is not whole
     CHECK(found == expected);
     CHECK(scanner.damaged_regions() == (cut == 0 || log.begins[whole - 1] == cut ? 0 : 1));
   }
@@ -91,7 +92,7 @@ TEST_CASE("Every event outside of a damaged region is found, whatever lies in th
 TEST_CASE("A length that lies does not swallow the events behind it") {
   Log log(3);
   auto& bytes = log.state->bytes;
-  bytes[log.begins[50] + 26] = 0x20;  // data of event 50: 8 kB more than there are
+  bytes[log.begins[50] + 26] = 0x20;  // length field of event 50: 8 kB more than the data
   const auto events = read_all(bytes);
   CHECK(events.size() == 199);
   CHECK(events[50].number == 51);
@@ -129,7 +130,7 @@ TEST_CASE("What lies between two parts of a recording is no damage, and anything
   auto longer = two;
   longer.insert(longer.begin() + static_cast<std::ptrdiff_t>(border), 16, 0);
   CHECK(read(longer) == std::tuple<std::int64_t, std::int64_t, std::int64_t>(400, 1, between + 16));
-  // A tail of zeros is what a machine that lost power leaves.
+  // A machine that lost power leaves a tail of zeros.
   auto tail = part;
   tail.resize(border);
   CHECK(read(tail) == std::tuple<std::int64_t, std::int64_t, std::int64_t>(200, 1, between));

@@ -1,3 +1,4 @@
+// Tests of grouping the stamps of a log into time ranges.
 #include "sync/log/log_time_ranges.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@ using namespace tactus::sync;
 
 namespace {
 
-// What LogTimeRanges promises, by sorting all stamps: groups with gaps of more than kApart_us between them.
+// Oracle of LogTimeRanges, by sorting all stamps: groups with gaps of more than kApart_us between them.
 struct Oracle {
   std::vector<std::vector<std::int64_t>> ages;
   std::size_t fullest = 0;
@@ -32,7 +33,7 @@ TEST_CASE("Stamps near each other are of one age, in whatever order they come") 
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);
     std::vector<std::int64_t> stamps;
-    // From a few ages to as many as there are stamps.
+    // From a few ranges to one range per stamp.
     const std::int64_t span_us = LogTimeRanges::kApart_us * (1 + seed * 2);
     for (int i = 0; i < 300; ++i)
       stamps.push_back(static_cast<std::int64_t>(random()) * 4096 % span_us - (random() % 3 ? 0 : span_us * 2));

@@ -1,3 +1,4 @@
+// Tests of writing a log.
 #include "sync/log/log_writer.h"
 
 #include <catch2/catch.hpp>

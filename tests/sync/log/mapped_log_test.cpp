@@ -1,3 +1,4 @@
+// Tests of memory-mapped logs, also while they grow.
 #include "sync/log/mapped_log.h"
 
 #include <sys/wait.h>
@@ -51,11 +52,11 @@ TEST_CASE("A folder is read as one log of all its parts, in the order of their n
     std::mt19937 random(seed);
     const TemporaryFolder folder;
     LogParts parts(folder.path, {});
-    const int count = 1 + static_cast<int>(random() % 12);  // run.10 comes behind run.9
+    const int count = 1 + static_cast<int>(random() % 12);  // run.10 sorts after run.9
     int written = 0;
     for (int part = 0; part < count; ++part) {
       LogWriter writer(parts.open());
-      // One part may have nothing yet, and one may fill its room exactly.
+      // One part may be empty so far, and one may fill its space exactly.
       for (unsigned n = random() % 4 * 10; n > 0; --n, ++written)
         writer.write(1000 + written, "NUMBERED",
                      std::vector<std::uint8_t>(random() % 9000, static_cast<std::uint8_t>(written)));

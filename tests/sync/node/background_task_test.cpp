@@ -1,3 +1,4 @@
+// Tests of factories on a background thread.
 #include "sync/node/background_task.h"
 
 #include <catch2/catch.hpp>

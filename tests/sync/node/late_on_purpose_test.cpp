@@ -1,3 +1,4 @@
+// Tests of presentation deadlines for a modality with a commanded delay.
 #include <catch2/catch.hpp>
 #include <tactus/decision_t.hpp>
 #include <tactus/degraded_t.hpp>
@@ -28,7 +29,7 @@ TEST_CASE("A sense that is late on purpose is not called lost before it could pr
     m.entries = {{"audio", 3'000'000'000, 0, -1}};
     m.count = 1;
     f.matcher.observe(m, f.at(-70'000));
-    for (double ms = -70'000; ms < 1000; ms += 500) f.matcher.advance(f.at(ms));  // a minute to slew it in
+    for (double ms = -70'000; ms < 1000; ms += 500) f.matcher.advance(f.at(ms));  // a minute to slew to the delay
   }
   if (!by_policy) {
     degraded_t m{};
@@ -78,7 +79,7 @@ TEST_CASE("When a long delay is taken back, events are settled as soon as before
   };
   f.healths("audio_node", "audio", kHit, 0, 300'000);
   say(0, 20'000);
-  pass(0, 10'000);  // half a second of it by now
+  pass(0, 10'000);  // the report covers half a second by now
   say(10'000, 0);
   pass(10'000, 25'000);
   f.event(1, 25'000);

@@ -1,3 +1,4 @@
+// Tests of the endpoint of a modality on the bus.
 #include "sync/node/modality_endpoint.h"
 
 #include <catch2/catch.hpp>
@@ -36,7 +37,7 @@ TEST_CASE("What arrives while a turn is held up in its reading is not kept until
   auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 64);
   Identity sender = Identity::fresh("sim_node", 1);
   const HostTime turn = host_now();
-  // Sent before the turn, and while it was reading: sync/bus/bus.cpp stamps what it reads late with when that was.
+  // Sent before the tick, and during the reads: sync/bus/bus.cpp stamps a message with its time of arrival when it reads it late.
   for (const std::int64_t ms : {-1, 3, 7}) {
     const auto bytes = encode(frame(sender, 10 + ms, turn + ms * kMs));
     node.bus().hear(channels::kContacts, bytes, turn + ms * kMs + kMs / 10);

@@ -1,3 +1,4 @@
+// Tests of rendering a log offline: profiles, ticks, progress and output files.
 #include "sync/node/offline.h"
 
 #include <unistd.h>
@@ -38,7 +39,7 @@ std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// Two profiles and 0.1 s of nothing else.
+// A log of 0.1 s with two profiles and no other messages.
 std::string log_in(const Folder& folder) {
   LogWriter writer(std::make_unique<FileSink>(folder.file("run.lcmlog")));
   const auto write = [&](const char* channel, const auto& m, std::int64_t after_us) {
@@ -65,7 +66,7 @@ OfflineOptions of(const std::string& log) {
   return options;
 }
 
-// How many profiles a node with these options hears.
+// Number of profiles that a node with these options receives.
 int profiles_heard(const std::string& log, NodeOptions options, bool as_recorded = false) {
   OfflineOptions of_log = of(log);
   of_log.as_recorded = as_recorded;

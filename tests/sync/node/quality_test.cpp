@@ -1,3 +1,4 @@
+// Tests of the quality ladder under constant and changing load.
 #include "sync/node/quality.h"
 
 #include <catch2/catch.hpp>
@@ -13,9 +14,9 @@ namespace {
 constexpr Nanoseconds kBudget{10'000'000};
 constexpr int kSteps = 4;
 constexpr int kCalm = QualityLadder::kCalmTicks;
-constexpr int kWindow = QualityLadder::kWindow;  // what was is forgotten after so many ticks
+constexpr int kWindow = QualityLadder::kWindow;  // older ticks have no effect
 
-// Ticks that take `share_of_budget(step, tick)`; counts the changes of step.
+// Ticks with the load `share_of_budget(step, tick)`; counts the changes of step.
 struct Ticking {
   QualityLadder ladder{kSteps, kBudget};
   std::function<double(int step, int tick)> share_of_budget;
@@ -30,7 +31,7 @@ struct Ticking {
   }
 };
 
-// Each step costs so many times less than the one before.
+// Each step costs `ratio` times less than the one before.
 double share(double full, double ratio, int step) { return full / std::pow(ratio, step); }
 
 }  // namespace
@@ -63,7 +64,7 @@ TEST_CASE("A load that grows slowly never misses its budget while a cheaper step
 }
 
 TEST_CASE("When the load is gone the ladder returns to full quality, whenever it went") {
-  // Also in the very tick in which a step was left, when what the better one costs can only be learnt wrong.
+  // Also in the tick in which a step was left, when the cost of the better step can only be estimated wrong.
   const int gone_at = GENERATE(range(1, 60));
   Ticking t;
   t.share_of_budget = [&](int step, int tick) { return share(tick < gone_at ? 3.0 : 0.2, 1.5, step); };
@@ -94,9 +95,8 @@ TEST_CASE("A constant load makes no oscillation, at any ratio of costs: tries be
     t.run(100);
     t.changes = 0;
     t.run(60 * 600);  // ten minutes
-    // 8 s of spare time, then 16 s, ... make six tries in ten minutes, each there and back, after the first way
-    // down; where the load itself varies by a fifth from tick to tick, at the edge of fitting, fewer than one
-    // change in 20 s.
+    // Spare times of 8 s, then 16 s, ... allow six attempts in ten minutes, each up and down, after the first step down. Where the load
+    // itself varies by a fifth from tick to tick, at the limit of the budget: less than one change in 20 s.
     INFO("full " << full << " ratio " << ratio << " noise " << noise);
     CHECK(t.changes <= (noise > 0.1 ? 30 : 1 + 2 * 6));
   }
@@ -118,7 +118,7 @@ TEST_CASE("One outlier changes nothing, wherever it falls") {
 
 TEST_CASE("After an up-step was undone the next one waits twice as long, and a step that held forgets that") {
   Ticking t;
-  // Step 1 looks as if there were time to spare, step 0 never fits.
+  // Step 1 seems to leave spare time; step 0 never fits.
   t.share_of_budget = [&](int step, int) { return step == 0 ? 2.0 : 0.1; };
   std::vector<int> tries;
   for (int i = 0; i < 12'000; ++i) {
@@ -129,7 +129,7 @@ TEST_CASE("After an up-step was undone the next one waits twice as long, and a s
   REQUIRE(tries.size() >= 4);
   for (std::size_t i = 2; i < tries.size(); ++i)
     CHECK(tries[i] - tries[i - 1] == Approx(2 * (tries[i - 1] - tries[i - 2])).margin(30));
-  // The load goes; full quality holds for long; then a new load and its end are as on the first day.
+  // The load ends and full quality holds for long. A new load and its end then give the same times as the first one.
   t.share_of_budget = [](int, int) { return 0.1; };
   t.run(200'000);
   REQUIRE(t.ladder.step() == 0);

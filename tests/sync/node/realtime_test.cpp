@@ -1,3 +1,4 @@
+// Tests of the overrun guard of real-time loops.
 #include "sync/node/realtime.h"
 
 #include <catch2/catch.hpp>
@@ -7,7 +8,7 @@ using namespace tactus::sync;
 
 namespace {
 
-// Runs ticks of 1 ms that are busy for so long, for a second; how often the guard calls.
+// Runs ticks of 1 ms for 1 s, each busy for busy_share of its period. Returns the number of demotions by the guard.
 int demotions(double busy_share, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> wobble(0.9, 1.1);

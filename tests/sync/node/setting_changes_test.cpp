@@ -1,4 +1,4 @@
-// Changes of settings while a node runs: each once, answered each time.
+// Tests of setting changes at run time: each is applied once and answered each time.
 #include "sync/node/setting_changes.h"
 
 #include <catch2/catch.hpp>
@@ -71,6 +71,6 @@ TEST_CASE("A flood of changes is remembered within bounds") {
   for (int id = 1; id <= 1000; ++id) changes.take(change(id), apply);
   changes.take(change(1000), apply);  // remembered
   CHECK(done == 1000);
-  changes.take(change(1), apply);  // forgotten long ago: by then nobody repeats it
+  changes.take(change(1), apply);  // forgotten long ago: by then no program repeats it
   CHECK(done == 1001);
 }

@@ -1,4 +1,4 @@
-// Tagged variables that drive settings.
+// Tests of tagged variables that drive settings.
 #include "sync/node/setting_maps.h"
 
 #include <catch2/catch.hpp>
@@ -64,7 +64,7 @@ TEST_CASE(
   SettingMaps maps("visual_node");
   maps.set({map("haptic_node.force", "visual_node.exposure", 0.5, 1)});
   maps.push(values(0, {8}));
-  CHECK(maps.take(at_ms(0)).empty());  // nobody has said what that is
+  CHECK(maps.take(at_ms(0)).empty());  // no tag list has defined that variable yet
   maps.push(list("haptic_node"));
   maps.push(values(1, {7}));  // the speed
   CHECK(maps.take(at_ms(20)).empty());

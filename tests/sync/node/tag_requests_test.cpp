@@ -1,4 +1,4 @@
-// Who asks for which tagged variables, and for how long.
+// Tests of requests for tagged variables and of their expiry.
 #include "sync/node/tag_requests.h"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// Tagged variables: what is taken when, how it is sent, and what who hears it makes of it.
+// Tests of tagged variables: sampling, publishing and decoding at a receiver.
 #include "sync/node/tags.h"
 
 #include <catch2/catch.hpp>
@@ -32,7 +32,7 @@ struct Value {
   double value;
 };
 
-// A process whose messages somebody hears.
+// A node whose tag messages are received.
 struct Heard {
   Tags tags{"node", 7};
   TagTable table;
@@ -84,7 +84,7 @@ TEST_CASE("What is asked for is read at every tick, or at its rate, and comes wi
   }
   REQUIRE(h.values.size() == 2);
   const auto& xs = h.values.at("node.x m");
-  REQUIRE(xs.size() >= 1950);  // what was taken in the last 50 ms may still wait
+  REQUIRE(xs.size() >= 1950);  // values of the last 50 ms may still be queued
   for (std::size_t i = 0; i < xs.size(); ++i) {
     REQUIRE(xs[i].time_ns == static_cast<std::int64_t>(i) * 1'000'000);
     REQUIRE(xs[i].value == 0.5 * static_cast<double>(i));
@@ -92,7 +92,7 @@ TEST_CASE("What is asked for is read at every tick, or at its rate, and comes wi
   const auto& ns = h.values.at("node.n 1");
   REQUIRE(ns.size() >= 19);
   for (std::size_t i = 0; i < ns.size(); ++i) REQUIRE(ns[i].value == 100.0 * static_cast<double>(i));
-  CHECK(h.lists == 2);  // one a second
+  CHECK(h.lists == 2);  // one list per second
   CHECK(h.table.untold() == 0);
 }
 

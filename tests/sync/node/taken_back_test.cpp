@@ -1,4 +1,4 @@
-// What was said of bodies ahead and then taken back, over a wire that loses, repeats and reorders.
+// Tests of body samples that are published ahead and then withdrawn, over a wire that loses, repeats and reorders.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
@@ -33,7 +33,7 @@ world_state_t message(const Said& said) {
   for (const int body : said.bodies) {
     body_state_t b{};
     b.body = body;
-    b.position_m.x = static_cast<double>(said.seq);  // so that whose sample it is can be seen
+    b.position_m.x = static_cast<double>(said.seq);  // marks the sample with its sequence number
     b.orientation.w = 1;
     b.velocity_m_s.x = 1;
     m.bodies.push_back(b);
@@ -44,7 +44,7 @@ world_state_t message(const Said& said) {
 
 HostTime at(std::int64_t ms) { return host_time((ms + 1'000) * kMs); }
 
-// An honest simulation: bodies go ahead when a visual step begins, every 17 ms, and are taken back whenever.
+// A correct simulation: bodies are published ahead when a visual step begins, every 17 ms, and withdrawn at any time.
 std::vector<Said> tell(std::mt19937& random, int bodies, std::int64_t length_ms) {
   std::vector<Said> all;
   std::vector<char> ahead(static_cast<std::size_t>(bodies), 0);
@@ -73,7 +73,7 @@ std::vector<Said> tell(std::mt19937& random, int bodies, std::int64_t length_ms)
   return all;
 }
 
-// Of what came: the samples of each body that hold, by their time; the rule of world_state_t to the letter.
+// Valid samples of each body among those received, by their time; the rule of world_state_t to the letter.
 std::map<std::int64_t, Said> that_hold(const std::vector<Said>& came, int body) {
   std::map<std::int64_t, Said> out;
   const auto tells = [body](const Said& s) {
@@ -121,7 +121,7 @@ TEST_CASE("What was taken back never comes back, however pages overtake each oth
           REQUIRE(pose.value.position.x() == static_cast<double>(sample.seq));
           ++compared;
         }
-        // Nothing is there that does not hold.
+        // The history holds valid samples only.
         for (const Said& s : came) {
           if (hold.contains(s.time_ms)) continue;
           const auto status = history.pose(body, sim_time(s.time_ms * kMs)).status;
@@ -151,11 +151,11 @@ TEST_CASE("A body that is taken back goes on from where it is told, without a ju
   const double just_before = x(6 * kMs);
   push(6, 6, 2, world_state_t::PROMOTED, 0.006, 1);
   CHECK(x(6 * kMs) == Approx(just_before));
-  push(17, 17, 3, world_state_t::NOW, 0.006, -1);  // something stopped it and threw it back
+  push(17, 17, 3, world_state_t::NOW, 0.006, -1);  // a collision stopped it and threw it back
   CHECK(history.pose(3, sim_time(17 * kMs)).value.position.x() == Approx(0.006));
   double last = x(0);
   for (std::int64_t ns = 0; ns <= 30 * kMs; ns += 100'000) {
-    CHECK(std::abs(x(ns) - last) < 2.1e-4);  // 100 us at 2 m/s, the most between the two
+    CHECK(std::abs(x(ns) - last) < 2.1e-4);  // 100 us at 2 m/s, the larger of the two speeds
     last = x(ns);
   }
 }
@@ -169,7 +169,7 @@ TEST_CASE(
   CHECK(history.pose(0, sim_time(40 * kMs)).status == SampleStatus::kExact);
   history.push(message({0, 1'100, 2, world_state_t::AHEAD, {0}}), at(0));
   CHECK(history.refused() == 1);
-  // A forged number that no honest page reaches.
+  // A forged number beyond those of all honest pages.
   history.push(message({1, 1, std::int64_t{1} << 60, world_state_t::NOW, {0}}), at(1));
   for (std::int64_t ms = 17, seq = 3; ms < 2'000; ms += 17, ++seq)
     history.push(message({ms, ms + 17, seq, world_state_t::AHEAD, {0}}), at(ms));

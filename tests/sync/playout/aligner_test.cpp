@@ -1,3 +1,4 @@
+// Tests of the aligners that choose a playout delay.
 #include "sync/playout/aligner.h"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace {
 
 constexpr Nanoseconds kMs{1'000'000};
 
-// 20 ms and an exponential tail of 5 ms: a network with queues.
+// Delays of 20 ms with an exponential tail of 5 ms: a network with queues.
 std::vector<Nanoseconds> tailed(int n, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::exponential_distribution<double> tail(1 / 5.0);
@@ -20,7 +21,7 @@ std::vector<Nanoseconds> tailed(int n, unsigned seed = 1) {
   return needed;
 }
 
-// Share of events that came later than the delay that was in force for them, once the aligner has seen some.
+// Share of events with more delay than the aligner had set for them, after a warm-up.
 double late_share(Aligner& aligner, const std::vector<Nanoseconds>& trace, int learn = 200) {
   int late = 0, n = 0;
   for (const Nanoseconds needed : trace) {
@@ -48,16 +49,15 @@ TEST_CASE("A fixed aligner gives its delay, whatever is needed") {
 
 TEST_CASE("The quantile aligner is late for one event in twenty") {
   const auto aligner = make_aligner(AlignerKind::kQuantile, 0 * kMs);
-  // 20,000 events, but the quantile of 128 is itself uncertain: its rank has the mean 0.95 (order statistics:
-  // 122/129).
+  // 20,000 events, but the quantile of 128 is itself uncertain: its rank has the mean 0.95 (order statistics: 122/129).
   const double late = late_share(*aligner, tailed(20'000));
   CHECK(late > 0.040);
   CHECK(late < 0.066);
 }
 
 TEST_CASE("Mean and four deviations are late for less than 3 % of an exponential tail") {
-  // Mean 5, mean deviation 10/e = 3.68 ms of that tail: at 19.7 ms beyond its beginning lies exp(-19.7/5) = 1.9 %;
-  // the averages of 16 events waver.
+  // Mean 5, mean deviation 10/e = 3.68 ms of that tail: exp(-19.7/5) = 1.9 % lies 19.7 ms beyond its beginning. The averages of 16 events
+  // fluctuate.
   const auto aligner = make_aligner(AlignerKind::kMovingAverage, 0 * kMs);
   const double late = late_share(*aligner, tailed(20'000));
   CHECK(late > 0.005);
@@ -70,7 +70,7 @@ TEST_CASE("Virtual time follows a step up within a few events, and down slowly")
   for (int i = 0; i < 5; ++i) aligner->add(60 * kMs);
   CHECK(aligner->delay() >= 60 * kMs);
   const Nanoseconds up = aligner->delay();
-  for (int i = 0; i < 64; ++i) aligner->add(20 * kMs);  // two runs; in the first, one event had no room
+  for (int i = 0; i < 64; ++i) aligner->add(20 * kMs);  // two runs; in the first, one event did not fit
   CHECK(aligner->delay() < up);
   CHECK(aligner->delay() >= up - 2 * kMs);
   for (int i = 0; i < 2000; ++i) aligner->add(20 * kMs);

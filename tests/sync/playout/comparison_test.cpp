@@ -1,3 +1,4 @@
+// Tests of the comparison of aligners on a trace.
 #include "sync/playout/comparison.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of the playout coordinator: demands, policies and requests.
 #include "sync/playout/coordinator.h"
 
 #include <catch2/catch.hpp>
@@ -115,7 +116,7 @@ TEST_CASE(
     "silent") {
   PlayoutCoordinator low(3, plan()), high(7, plan());
   heard(low, "audio", 18), heard(high, "audio", 18);
-  REQUIRE(low.take(request_for(plan(Policy::kExperiment), 50)));  // heard by one only
+  REQUIRE(low.take(request_for(plan(Policy::kExperiment), 50)));  // received by one modality only
   int high_said = 0;
   for (int ms = 0; ms < 2000; ms += 10) {
     if (auto m = low.due(at(ms))) {

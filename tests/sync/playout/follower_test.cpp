@@ -1,3 +1,4 @@
+// Tests of the slew of a modality to its playout delay.
 #include "sync/playout/follower.h"
 
 #include <catch2/catch.hpp>
@@ -42,7 +43,7 @@ TEST_CASE("A delay that is told is slewed to, by a twentieth of the time at the 
     before = now;
   }
   CHECK(before == 45 * kMs);  // 25 ms take half a second
-  // A process that stood still for long steps by no more than one that ran for a second.
+  // After a long pause a process steps by at most the amount of 1 s.
   follower.take(told("audio", Nanoseconds(0)));
   CHECK(follower.step(at(60'000)) == 0 * kMs);
   follower.take(told("audio", 200 * kMs));

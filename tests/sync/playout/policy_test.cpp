@@ -1,3 +1,4 @@
+// Tests of the playout policies and the delays that they imply.
 #include "sync/playout/policy.h"
 
 #include <catch2/catch.hpp>

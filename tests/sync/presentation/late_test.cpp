@@ -1,3 +1,4 @@
+// Tests of the policies for late events.
 #include "sync/presentation/late.h"
 
 #include <catch2/catch.hpp>

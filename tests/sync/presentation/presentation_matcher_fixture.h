@@ -1,4 +1,4 @@
-// A cluster that is told by hand to a PresentationMatcher: times are ms since some host time.
+// Messages of a simulated cluster for tests of PresentationMatcher; times are ms since a fixed host time.
 #pragma once
 
 #include <string>
@@ -38,7 +38,7 @@ struct MatcherFixture {
               std::int8_t state = node_health_t::RUNNING, int tool = -1) {
     matcher.observe(health_message(node, modality, owes, ms, incarnation, state, tool), at(ms));
   }
-  // Ten times a second from .. to.
+  // Ten healths per second in from .. to.
   void healths(const std::string& node, const std::string& modality, int owes, double from, double to,
                std::int64_t incarnation = 1, std::int8_t state = node_health_t::RUNNING, int tool = -1) {
     for (double ms = from; ms <= to; ms += 100) health(node, modality, owes, ms, incarnation, state, tool);

@@ -1,3 +1,4 @@
+// Tests of matching presentations of hosts with different clocks.
 #include "sync/presentation/presentation_matcher.h"
 
 #include <catch2/catch.hpp>
@@ -70,7 +71,7 @@ TEST_CASE(
   CHECK(t.f.tally("audio").presented == 1);
   const auto& pair = t.f.matcher.pairs().at({"audio", "visual"});
   CHECK(static_cast<double>(pair.quantile(0.5).count()) * 1e-6 == Approx(-10).margin(0.1));
-  // 500 us of the picture, 100 us of the sound, 40 us of the map and what it gained in half a second.
+  // 500 us of the picture, 100 us of the sound, 40 us of the map and its drift in half a second.
   CHECK(pair.uncertainty() >= Nanoseconds(640'000));
   CHECK(pair.uncertainty() < Nanoseconds(660'000));
 }

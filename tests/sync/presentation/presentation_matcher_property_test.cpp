@@ -1,4 +1,4 @@
-// Properties of the matching over many random runs, against an oracle that knows what was delivered.
+// Properties of the matching over many random runs, against an oracle that has all delivered messages.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <functional>
@@ -33,7 +33,7 @@ TEST_CASE(
                                {"wall_2", "visual", kBoth},
                                {"smell_node", "smell", node_health_t::OWES_BEGIN}};
 
-    // Everything that is sent, with the time of its arrival.
+    // Every message with its time of arrival.
     struct Sent {
       double ms;
       std::function<void(HostTime)> deliver;
@@ -41,7 +41,7 @@ TEST_CASE(
     std::vector<Sent> sent;
     for (const Node& n : nodes)
       for (int ms = 0; ms <= 12000; ms += 100)
-        f.health(n.name, n.modality, n.owes, ms);  // intact: who was alive is not in question here
+        f.health(n.name, n.modality, n.owes, ms);  // no loss: liveness is not under test here
 
     std::map<std::string, DebtTally> expected;
     std::int64_t hits = 0, begins = 0;

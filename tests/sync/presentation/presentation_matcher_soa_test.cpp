@@ -1,3 +1,4 @@
+// Tests of the SOA statistics of the presentation matcher.
 #include "sync/presentation/presentation_matcher_soa.h"
 
 #include <algorithm>
@@ -18,8 +19,7 @@ TEST_CASE("Quantiles of asynchronies are those of the sorted list within one bin
     }
     std::sort(list.begin(), list.end());
     for (double q : {0.05, 0.5, 0.95}) {
-      // The histogram places the i-th of n values at i / n, the list at (i - 1) / (n - 1): one neighbour apart at
-      // most.
+      // The histogram places the i-th of n values at i / n, the list at (i - 1) / (n - 1): at most one neighbour apart.
       const auto i = static_cast<std::size_t>(q * 1000);
       const std::int64_t bin = SoaHistogram::kBin.count();
       CHECK(histogram.quantile(q).count() >= list[i > 0 ? i - 1 : 0] - bin);

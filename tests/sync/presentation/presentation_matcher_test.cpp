@@ -1,3 +1,4 @@
+// Tests of matching expected events to presentation reports, and of their outcomes.
 #include "sync/presentation/presentation_matcher.h"
 
 #include <algorithm>
@@ -70,7 +71,7 @@ TEST_CASE("A node owes what it declares") {
   CHECK(f.matcher.ends() == 1);
   CHECK(f.tally("audio").owed == 2);
   CHECK(f.tally("visual").owed == 3);
-  CHECK(f.tally("haptic").owed == 1);  // the right hand's hit
+  CHECK(f.tally("haptic").owed == 1);  // the hit of the right hand
   CHECK(f.matcher.modalities().size() == 3);
 }
 
@@ -106,12 +107,12 @@ TEST_CASE("A sense that was ready before the world began owes its first contact"
 TEST_CASE("A node that was stopped for two seconds and came back was stalled") {
   MatcherFixture f;
   f.healths("visual_node", "visual", kBoth, 0, 2000);
-  f.event(1, 1950);  // the stop may have come before it could be reported
+  f.event(1, 1950);  // the node may have stopped before it could report
   f.event(2, 2500);
   f.event(3, 3990);
-  f.event(4, 1800);  // no excuse
+  f.event(4, 1800);  // no exception applies
   f.matcher.advance(f.at(3600));
-  CHECK(f.tally("visual").dead == 2);  // so far it looks like that
+  CHECK(f.tally("visual").dead == 2);  // the apparent state so far
   CHECK(f.tally("visual").lost == 1);
   f.healths("visual_node", "visual", kBoth, 4000, 6000);
   f.event(5, 4001);
@@ -238,7 +239,7 @@ TEST_CASE("Events of a replayed run are owed at the time they arrive") {
   f.healths("audio_node", "audio", kHit, 0, 5000);
   contact_events_t m = f.event_message(1, 1000, contact_event_t::HIT, 100);
   m.header.run_id = 3;
-  m.header.publish_time_ns -= 500'000'000'000;  // that host's clock was elsewhere
+  m.header.publish_time_ns -= 500'000'000'000;  // the clock of that host had another offset
   m.clock.host_ns -= 500'000'000'000;
   f.matcher.observe(m, f.at(1001));
   f.matcher.advance(f.at(1990));
@@ -257,8 +258,8 @@ TEST_CASE("While a simulation of this run is there, what a log tells that is pla
   f.matcher.observe(old, f.at(1001));
   CHECK(f.matcher.foreign() == 1);
   f.matcher.advance(f.at(2100));
-  CHECK(f.tally("audio").owed == 1);  // its own
-  // A second later it has not been heard of again: the log is all there is.
+  CHECK(f.tally("audio").owed == 1);  // its own event
+  // The node is silent for the next second: the log is the only source.
   f.matcher.observe(old, f.at(2200));
   f.matcher.advance(f.at(4000));
   CHECK(f.tally("audio").owed == 2);
@@ -267,7 +268,7 @@ TEST_CASE("While a simulation of this run is there, what a log tells that is pla
 TEST_CASE("At the end of a log what cannot be decided is not owed") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 3000);
-  f.event(1, 2500);  // lost: it was there long enough after
+  f.event(1, 2500);  // lost: the node ran long enough afterwards
   f.event(2, 2950);  // it may have ended before it could report
   f.event(3, 2960);
   f.presented("audio_node", "audio", 3, 2980);
@@ -325,7 +326,7 @@ TEST_CASE("Asynchrony is the difference of what was really presented") {
     REQUIRE(it->second.count() == 1);
     return static_cast<double>(it->second.quantile(0.5).count()) * 1e-6;
   };
-  // Half of a bin of 0.1 ms; a hit is felt as its transient.
+  // Half a bin of 0.1 ms; touch presents a hit as its transient.
   CHECK(soa_ms("haptic", "audio") == Approx(19).margin(0.1));
   CHECK(soa_ms("haptic", "visual") == Approx(14).margin(0.1));
   CHECK(soa_ms("audio", "visual") == Approx(-5).margin(0.1));

@@ -1,3 +1,4 @@
+// Tests of publishing presentation reports.
 #include "sync/presentation/presentation_reporter.h"
 
 #include <catch2/catch.hpp>

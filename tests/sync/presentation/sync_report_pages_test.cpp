@@ -1,3 +1,4 @@
+// Tests of the pages of a sync report.
 #include "sync/presentation/sync_report_pages.h"
 
 #include <catch2/catch.hpp>
@@ -14,7 +15,7 @@ namespace {
 
 constexpr int kHit = node_health_t::OWES_HIT;
 
-// So many senses, each of which has presented one event.
+// `senses` modalities, each of which has presented one event.
 void fill(MatcherFixture& f, int senses, std::size_t name_length = 12) {
   for (int i = 0; i < senses; ++i) {
     std::string name = "sense" + std::to_string(i);

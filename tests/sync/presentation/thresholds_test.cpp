@@ -1,3 +1,4 @@
+// Tests of the published thresholds of asynchrony.
 #include "sync/presentation/thresholds.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of the distributions and the correlation of jitter.
 #include "sync/random/jitter.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ std::vector<double> draws(const JitterDef& def, int n) {
   return out;
 }
 
-// Largest distance of the empirical distribution from the wanted one (Kolmogorov and Smirnov).
+// Largest distance of the empirical distribution from the expected one (Kolmogorov and Smirnov).
 double distance(std::vector<double> x, const std::function<double(double)>& cdf) {
   std::sort(x.begin(), x.end());
   double worst = 0;
@@ -28,7 +29,7 @@ double distance(std::vector<double> x, const std::function<double(double)>& cdf)
   return worst;
 }
 
-// 1.95 / sqrt(n) is exceeded once in a thousand (Smirnov 1948); rounding to a nanosecond adds nothing that counts.
+// 1.95 / sqrt(n) is exceeded once in a thousand (Smirnov 1948); rounding to a nanosecond is negligible.
 double critical(int n) { return 1.95 / std::sqrt(n); }
 
 double correlation(const std::vector<double>& x) {
@@ -62,11 +63,11 @@ TEST_CASE("Correlated jitter keeps its distribution and follows itself") {
     const auto normal = draws({JitterShape::kNormal, 0.003, rho, {}}, kN);
     // The standard error of a correlation is at most 1/sqrt(n).
     CHECK(std::abs(correlation(normal) - rho) < 5 / std::sqrt(kN));
-    // Far fewer draws are independent: n (1 - rho) / (1 + rho).
+    // The number of independent draws is smaller: n (1 - rho) / (1 + rho).
     const double independent = kN * (1 - rho) / (1 + rho);
     CHECK(distance(normal, [](double x) { return normal_cdf(x / 0.003); }) <
           critical(static_cast<int>(independent)));
-    // Of uniforms over a Gaussian copula: 6/pi asin(rho/2) (Pearson 1907).
+    // Rank correlation of uniforms over a Gaussian copula: 6/pi asin(rho/2) (Pearson 1907).
     const auto uniforms = draws({JitterShape::kUniform, 0.003, rho, {}}, kN);
     CHECK(std::abs(correlation(uniforms) - 6 / M_PI * std::asin(rho / 2)) < 5 / std::sqrt(kN));
   }

@@ -1,3 +1,4 @@
+// Tests of independent and bursty losses.
 #include "sync/random/loss.h"
 
 #include <catch2/catch.hpp>
@@ -35,7 +36,7 @@ TEST_CASE("Independent loss loses its share") {
     const Observed o = run({share, 0}, kN, 3);
     // Binomial, five standard deviations.
     CHECK(std::abs(o.share - share) <= 5 * std::sqrt(share * (1 - share) / kN));
-    // Runs of independent losses are geometric: 1 / (1 - share) long.
+    // Runs of independent losses are geometric with mean 1 / (1 - share).
     if (share > 0.01 && share < 1) CHECK(o.mean_burst == Approx(1 / (1 - share)).epsilon(0.05));
   }
 }
@@ -46,10 +47,10 @@ TEST_CASE("Bursty loss has the share and the mean burst that it was given") {
     for (const double burst : {3.0, 10.0, 50.0}) {
       const Observed o = run({share, burst}, kN, 11);
       INFO(share << " in bursts of " << burst);
-      // Bursts are geometric with mean b: standard deviation sqrt(b (b - 1)), over the bursts seen.
+      // Bursts are geometric with mean b: standard deviation sqrt(b (b - 1)), over the bursts counted.
       CHECK(std::abs(o.mean_burst - burst) <= 5 * std::sqrt(burst * (burst - 1) / o.bursts));
-      // The share of a two-state chain: binomial, its variance enlarged by (1 + r) / (1 - r) with the chain's
-      // second eigenvalue r = 1 - p(good to bad) - p(bad to good).
+      // The share of a two-state chain: binomial, with the variance enlarged by (1 + r) / (1 - r), where r = 1 - p(good to bad) - p(bad to
+      // good) is the chain's second eigenvalue.
       const double r = 1 - share / (burst * (1 - share)) - 1 / burst;
       CHECK(std::abs(o.share - share) <= 5 * std::sqrt(share * (1 - share) / kN * (1 + r) / (1 - r)));
     }

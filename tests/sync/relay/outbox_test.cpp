@@ -1,3 +1,4 @@
+// Tests of the rate-limited outbox of a relay.
 #include "sync/relay/outbox.h"
 
 #include <catch2/catch.hpp>
@@ -16,7 +17,7 @@ std::vector<std::uint8_t> datagram(std::uint8_t first, std::size_t size = 1000) 
   return bytes;
 }
 
-// What goes in so long, a flush every 2 ms.
+// Flushes every 2 ms for `length`, and returns the flushed messages.
 std::vector<int> flushed(Outbox& outbox, HostTime from, Nanoseconds length) {
   std::vector<int> sent;
   for (HostTime t = from; t < from + length; t += 2ms)
@@ -51,14 +52,14 @@ TEST_CASE("What is urgent overtakes what is not") {
 }
 
 TEST_CASE("What did not go within 50 ms is given up and counted, but assets wait for a second") {
-  Outbox outbox(8 * 16'000);  // 16 kB a second
+  Outbox outbox(8 * 16'000);  // 16 kB per second
   for (int i = 0; i < 100; ++i) outbox.push(Urgency::kState, datagram(2), kBegin);
   outbox.push(Urgency::kBulk, datagram(3), kBegin);
   const auto sent = flushed(outbox, kBegin, 500ms);
-  // 15 of 1028 bytes in the burst; what is left of it and 50 ms more make one more.
+  // 15 of 1028 bytes in the burst; the rest of the burst and 50 ms give one more.
   CHECK(std::count(sent.begin(), sent.end(), 2) == 16);
   CHECK(outbox.counts().late == 84);
-  // Half of the burst is there again after 540 ms.
+  // Half of the burst is available again after 540 ms.
   CHECK(std::count(sent.begin(), sent.end(), 3) == 0);
   CHECK(flushed(outbox, kBegin + 500ms, 200ms) == std::vector<int>{3});
   outbox.push(Urgency::kBulk, datagram(3), kBegin + 700ms);

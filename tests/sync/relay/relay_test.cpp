@@ -1,3 +1,4 @@
+// Tests of relays between simulated sites.
 #include "sync/relay/relay.h"
 
 #include <catch2/catch.hpp>
@@ -52,10 +53,10 @@ world_state_t world(std::int64_t seq, HostTime at, double x_m, int page = 0, int
   return m;
 }
 
-// A site: its bus, its relay, and who lives there.
+// A site: its bus, its relay and its nodes.
 struct Site {
   Relay relay;
-  std::vector<std::vector<std::uint8_t>> bus{};  // all that was said there
+  std::vector<std::vector<std::uint8_t>> bus{};  // all messages published there
   template <class Message>
   void say(const char* channel, const Message& m, HostTime now, bool bulk = false) {
     const auto bytes = encode(m);
@@ -85,7 +86,7 @@ std::map<std::string, std::vector<std::vector<std::uint8_t>>> flushed(Relay& rel
   return lines;
 }
 
-// Carries what is on the lines of sites that all know each other, in order of their numbers, until nothing moves.
+// Carries datagrams between sites that are all linked with each other, in order of their numbers, until all lines are empty.
 void carry(std::deque<Site>& all, HostTime now) {
   for (int turn = 0; turn < 10; ++turn) {
     bool moved = false;
@@ -113,7 +114,7 @@ void carry(std::deque<Site>& all, HostTime now) {
 TEST_CASE("A datagram of a line is read as it was written") {
   const std::vector<std::uint8_t> data(channels::kMaxMessageBytes, 9);
   const auto bytes = line_datagram({"SCENE_MANIFEST", data}, true);
-  CHECK(bytes.size() <= 1472);  // of an Ethernet frame, less IP and UDP
+  CHECK(bytes.size() <= 1472);  // payload of an Ethernet frame, less IP and UDP
   const auto m = parse_line_datagram(bytes);
   REQUIRE(m);
   CHECK(m->message.channel == "SCENE_MANIFEST");
@@ -163,7 +164,7 @@ TEST_CASE("Only what a rule names crosses, in both directions, and only of this 
 
 TEST_CASE("What passes unthinned arrives byte for byte, and keeps its port") {
   Relay relay(rules("<pass channel='SCENE_MANIFEST'/>"), sites(1), kRun);
-  const auto bytes = encode(tool(41, kBegin));  // any message: its type is the reader's business
+  const auto bytes = encode(tool(41, kBegin));  // any message: only the reader checks the type
   relay.hear_bus({"SCENE_MANIFEST", bytes}, true, kBegin);
   const auto lines = flushed(relay, kBegin);
   const auto m = parse_line_datagram(lines.begin()->second.at(0));
@@ -247,13 +248,13 @@ TEST_CASE("What each of three sites says is heard once in every other, and never
 }
 
 TEST_CASE("Two relays in one site make no circles") {
-  // The bus of the first site is heard by two relays, each with a line to the second's.
+  // Two relays receive the bus of the first site, each with a line to the second site.
   const std::string pass = "<pass channel='TOOL_STATE'/>";
   Relay near_1(rules(pass), sites(1), kRun), near_2(rules(pass), sites(1), kRun), far(rules(pass), sites(2), kRun);
   const auto bytes = encode(tool(0, kBegin, "far_hand"));
   far.hear_bus({"TOOL_STATE", bytes}, false, kBegin);
   CHECK(flushed(far, kBegin).size() == 2);
-  // The line to the first is quicker: what it says on the bus reaches the second before the line does.
+  // The line to the first relay is faster: its copy on the bus reaches the second relay before the line does.
   REQUIRE(near_1.hear_line(0, {{"TOOL_STATE", bytes}, false}, kBegin));
   near_1.hear_bus({"TOOL_STATE", bytes}, false, kBegin);
   near_2.hear_bus({"TOOL_STATE", bytes}, false, kBegin);

@@ -1,3 +1,4 @@
+// Tests of parsing the rules of a relay.
 #include "sync/relay/rules.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of interpolating body poses.
 #include "sync/resampling/body_history.h"
 
 #include <catch2/catch.hpp>
@@ -38,8 +39,7 @@ HostTime at(std::int64_t sim_ns) { return host_time(sim_ns + 1'000 * kMs); }
 }  // namespace
 
 TEST_CASE("A thrown body is followed exactly between snapshots") {
-  // A cubic through both ends with both velocities holds any parabola: only float velocities differ (1e-7
-  // relative).
+  // A cubic through both ends with both velocities reproduces any parabola: only float velocities differ (1e-7 relative).
   const auto x = [](double t) { return Eigen::Vector3d(2 * t, 0, 3 * t - 4.9 * t * t); };
   const auto v = [](double t) { return Eigen::Vector3d(2, 0, 3 - 9.8 * t); };
   BodyHistory history(1);

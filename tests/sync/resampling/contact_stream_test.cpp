@@ -1,3 +1,4 @@
+// Tests of resampling contacts and contact events.
 #include "sync/resampling/contact_stream.h"
 
 #include <algorithm>
@@ -99,8 +100,7 @@ TEST_CASE("Events come out in order of their time, each once, whatever the wire 
     for (int i = 0; i < 60; ++i)
       truth.push_back(event(100 + i, i / 2, i % 2 ? contact_event_t::END : contact_event_t::BEGIN,
                             std::uniform_int_distribution<std::int64_t>(0, 200 * kMs)(random)));
-    // Every step repeats what is younger than 50 ms; 30 % of the messages are lost, some twice, and shuffled by 5
-    // ms.
+    // Every step repeats the events younger than 50 ms. 30 % of the messages are lost, some arrive twice, and all are shuffled by 5 ms.
     std::vector<std::pair<std::int64_t, contact_events_t>> wire;
     for (std::int64_t step = 0; step < 260; ++step) {
       std::vector<contact_event_t> young;
@@ -201,7 +201,7 @@ TEST_CASE("A log that begins anew is a new epoch of the same incarnation") {
 }
 
 TEST_CASE("Messages of another run are mapped to our clock by their arrival") {
-  ContactStream stream(kRun + 1);  // so that the messages above are foreign
+  ContactStream stream(kRun + 1);  // so that the messages above belong to another run
   // Their clock runs 1000 s behind ours; latency 1 ms, once 0.1 ms.
   const auto ours = [](std::int64_t theirs) { return host_time(theirs + 1'000'000 * kMs); };
   for (std::int64_t step = 0; step < 100; ++step) {
@@ -213,7 +213,7 @@ TEST_CASE("Messages of another run are mapped to our clock by their arrival") {
   const auto map = stream.map(now);
   REQUIRE(map);
   const Nanoseconds error = map->to_host(sim_time(99 * kMs)) - ours(1'099 * kMs);
-  // The bias is the smallest latency, and at 200 ppm another 10 us may be lost in the 50 ms since.
+  // The bias is the smallest latency, plus up to 10 us of drift at 200 ppm in the 50 ms since.
   CHECK(error >= Nanoseconds(100'000));
   CHECK(error <= Nanoseconds(100'000 + 12'000));
 }
@@ -365,7 +365,7 @@ TEST_CASE("A sense that presents seconds late still finds what was touched, howe
     if (begin < 0 || ms % 20 != 0) continue;
     const auto felt = stream.integral(sim_time(begin), sim_time(end), 0);
     REQUIRE((felt.status == SampleStatus::kExact || felt.status == SampleStatus::kInterpolated));
-    // Each snapshot holds for its millisecond: the mean of twenty.
+    // Each snapshot holds for its millisecond: the result is the mean of twenty.
     REQUIRE(felt.force_N == Approx(1e-3 * (static_cast<double>(begin / kMs) + 9.5)).epsilon(1e-5));
   }
 }

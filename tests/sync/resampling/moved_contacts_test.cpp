@@ -1,4 +1,4 @@
-// Contacts that move between the bodies of now and those that are computed ahead, over a wire that loses, repeats
+// Tests of contacts that move between the bodies at the present time and those that are computed ahead, over a wire that loses, repeats
 // and reorders.
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -44,7 +44,7 @@ contact_frame_t message(const Frame& f) {
     contact_t c{};
     c.contact_id = id;
     c.tool = -1;
-    c.normal_force_N = static_cast<float>(f.seq);  // whose it is
+    c.normal_force_N = static_cast<float>(f.seq);  // the sequence number of its frame
     m.contacts.push_back(c);
   }
   m.count = static_cast<int>(m.contacts.size());
@@ -62,7 +62,7 @@ contact_events_t begins(std::int64_t contacts) {
   return m;
 }
 
-// Of the snapshots that came, those around t: the newest of then or before, and the one after it.
+// Received snapshots around t: the newest at or before t, and the next one after it.
 using ByTime = std::map<std::int64_t, const Frame*>;
 const Frame* before(const ByTime& frames, std::int64_t t) {
   const auto after = frames.upper_bound(t);
@@ -106,7 +106,7 @@ TEST_CASE("A contact that moves between groups is there once, as it was told las
       stream.push(message(*frame), host_time(arrival + 1'000 * kMs));
       came[frame->group][frame->time_ms] = frame;
       for (const std::int64_t t : {frame->time_ms - 17, frame->time_ms - 3, frame->time_ms, frame->time_ms + 5}) {
-        std::map<std::int64_t, float> wanted;  // whose sample, when it is not mixed with a later one
+        std::map<std::int64_t, float> wanted;  // the source snapshot, where it is not interpolated with a later one
         for (std::int64_t id = 0; id < kContacts; ++id) {
           std::pair<int, std::int64_t> best{-1, -1};
           bool mixed = false;
@@ -154,7 +154,7 @@ TEST_CASE("What was foreseen and did not come true is no contact. What comes tru
   };
   stream.push(begins(1), host_time(1'000 * kMs));
   say(0, 17, {0});
-  say(17, 34, {0, 5});  // 5 begins at 25, unless something comes in between
+  say(17, 34, {0, 5});  // 5 begins at 25, unless an intermediate snapshot arrives
   CHECK(ids_at(20) == std::set<std::int64_t>{0});
   CHECK(ids_at(34) == std::set<std::int64_t>{0});
   SECTION("it did not") {

@@ -1,3 +1,4 @@
+// Tests of interpolating and predicting reported poses.
 #include "sync/resampling/pose_history.h"
 
 #include <catch2/catch.hpp>
@@ -15,7 +16,7 @@ namespace {
 constexpr std::int64_t kRun = 3;
 constexpr std::int64_t kMs = 1'000'000;
 
-// A head that goes along +x at 2 m/s and turns about z at 1 rad/s.
+// A head that moves along +x at 2 m/s and rotates about z at 1 rad/s.
 double angle_at(double s) { return 1.0 * s; }
 tool_state_t head_at(std::int64_t host_ns, std::int64_t incarnation = 9) {
   const double s = 1e-9 * static_cast<double>(host_ns);
@@ -33,7 +34,7 @@ tool_state_t head_at(std::int64_t host_ns, std::int64_t incarnation = 9) {
 
 struct Heard {
   PoseHistory history{kRun};
-  // A report every 4 ms, each 1 ms under way.
+  // A report every 4 ms, each with a latency of 1 ms.
   explicit Heard(std::int64_t until_ms = 400) {
     for (std::int64_t t = 0; t <= until_ms * kMs; t += 4 * kMs) history.push(head_at(t), host_time(t + kMs));
   }
@@ -78,7 +79,7 @@ TEST_CASE(
   CHECK(error_m(later, 420) < 1e-6);
   const auto lost = h.at(10'000);
   CHECK(lost.status == SampleStatus::kStale);
-  CHECK(error_m(lost, 400) < 1e-6);  // where it was last seen
+  CHECK(error_m(lost, 400) < 1e-6);  // the last known position
 }
 
 TEST_CASE("A second of the past is kept, and before it the oldest is held") {
@@ -103,7 +104,7 @@ TEST_CASE("What is forgotten is nowhere, and what is heard after that goes on fr
   CHECK(h.at(200).status == SampleStatus::kNone);
   h.history.push(head_at(404 * kMs), host_time(405 * kMs));
   CHECK(h.at(404).status == SampleStatus::kExact);
-  const auto before = h.at(402);  // between two reports, had the first of them not been forgotten
+  const auto before = h.at(402);  // between two reports, if the first of them were still in the history
   CHECK(before.status == SampleStatus::kHeld);
   CHECK(error_m(before, 404) < 1e-9);
 }

@@ -1,4 +1,4 @@
-// Contact streams and poses as a renderer resamples them, against all that could be known and against the truth.
+// Contact streams and poses as a renderer resamples them, against a reference of all received data and against the truth.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
@@ -19,7 +19,7 @@ namespace {
 
 enum class Clock { kSame, kMapped, kByArrival };
 
-// How many of each were compared, so that a test that compares nothing fails.
+// Number of comparisons of each kind, so that a test without comparisons fails.
 struct Tally {
   std::int64_t events = 0, states = 0, interpolated = 0, integrals = 0, true_integrals = 0, poses = 0,
                restarts = 0;
@@ -43,7 +43,7 @@ class Renderer {
     if (clock == Clock::kMapped) learn_map();
   }
 
-  // The first complaint, or nothing.
+  // The first error, or an empty string.
   std::string run(Random& random) {
     std::size_t next = 0;
     if (world_.packets.empty()) return "";
@@ -67,7 +67,7 @@ class Renderer {
     m.header.run_id = kRun, m.header.incarnation = 1, m.header.clock = kOurClock;
     m.of_clock = kTheirClock, m.to_clock = kOurClock;
     m.offset_ns = world_.clocks.offset_ns, m.drift = world_.clocks.drift;
-    // The line is exact wherever it is held; said of an instant nearby, so that its uncertainty is small there.
+    // The line is exact wherever it is anchored. A nearby anchor keeps its uncertainty small there.
     m.at_ns = world_.packets.empty() ? 0 : world_.packets.front().arrival_ns;
     m.offset_ns += std::llround(static_cast<double>(m.at_ns) * m.drift);
     m.uncertainty_ns = 1000;
@@ -108,7 +108,7 @@ class Renderer {
     if (poses_.heard()) check_poses(until);
   }
 
-  // By its own clock exactly, by a map to its uncertainty, by arrival late by no more than the smallest latency.
+  // By its own clock: exact. By a map: within its uncertainty. By arrival: late by at most the smallest latency.
   void check_map(SimTime told, std::int64_t now) {
     const std::int64_t life_begin = contacts_.life().begin_ns;
     const long double on_sender =
@@ -116,8 +116,8 @@ class Renderer {
             ? static_cast<long double>(now)
             : now * (1 + static_cast<long double>(world_.clocks.drift)) + world_.clocks.offset_ns;
     const auto ahead = static_cast<double>(to_ns(told) - (on_sender - life_begin));
-    // Since the newest message, 0.3 s ago at the most, the simulation's time is taken to run at the rate of the
-    // receiver's clock; by arrival the estimate besides relaxes by 200 ppm since its best, half a second ago.
+    // Since the newest message, at most 0.3 s ago, the simulation's time is assumed to run at the rate of the receiver's clock. By
+    // arrival, the estimate also relaxes by 200 ppm since its best, half a second ago.
     const double drifted = 100e-6 * 0.3e9;
     const double slack = clock_ == Clock::kByArrival ? drifted + 200e-6 * 0.5e9
                          : clock_ == Clock::kMapped  ? drifted + 1'100
@@ -194,7 +194,7 @@ class Renderer {
       const TrueBody& truth = poses_.life().bodies[static_cast<std::size_t>(body)];
       const auto got = bodies_.pose(body, t);
       const auto after = times.upper_bound(to_ns(t));
-      if (after == times.begin()) continue;  // before all that is known
+      if (after == times.begin()) continue;  // before all received samples
       const std::int64_t before_ns = *std::prev(after);
       const double s = static_cast<double>(to_ns(t)) * 1e-9;
       Eigen::Vector3d position = truth.position(s);

@@ -1,4 +1,4 @@
-// What a receiver may know, by brute force: of every packet that came only that it came, all else from the truth.
+// Brute-force reference of the data that a receiver can have: the set of received packets, all else from the truth.
 #pragma once
 
 #include <map>
@@ -17,23 +17,23 @@ namespace tactus::hostile {
 
 using sync::SampleStatus;
 
-// Of one life of the simulation: a new one knows nothing of the one before.
+// State for one incarnation of the simulation; a new incarnation starts empty.
 struct Known {
-  std::map<std::int64_t, contact_event_t> events;  // by id: all that came
+  std::map<std::int64_t, contact_event_t> events;  // all received events, by id
   std::set<std::int64_t> taken;
-  std::map<std::int64_t, std::set<int>> pages[3];  // by group, of contact snapshots, by their time
+  std::map<std::int64_t, std::set<int>> pages[3];  // by group, times of contact snapshots
   std::set<std::int64_t> complete[3];
-  std::map<int, std::set<std::int64_t>> bodies;  // times of the samples of each
+  std::map<int, std::set<std::int64_t>> bodies;  // times of the samples of each body
   std::optional<std::int64_t> newest_world_ns;
   std::int64_t least_latency_ns = INT64_MAX;
 };
 
-// Of the receiver of contacts, or of that of poses: each follows the simulation by what it hears itself.
+// Reference of the receiver of contacts or of that of poses: each tracks the simulation from its own messages.
 class Reference {
  public:
   explicit Reference(const World& world) : world_(world) {}
 
-  // The receiver was given this packet. Of an earlier life it is ignored, of a later one it ends all that was.
+  // Adds a received packet. A packet of an earlier incarnation is ignored; one of a later incarnation clears the state.
   void push(const Packet& p) {
     if (life_ && p.life < *life_) return;
     if (life_ != p.life) known_ = {};
@@ -45,7 +45,7 @@ class Reference {
   const Life& life() const { return world_.lives[*life_]; }
   bool heard() const { return life_.has_value(); }
 
-  // Ids of what is due before `until`, in order, each once.
+  // Ids of the events due before `until`, in order, each once.
   std::vector<std::int64_t> take_events(std::int64_t until_ns) {
     std::vector<std::pair<std::int64_t, std::int64_t>> due;
     for (const auto& [id, e] : known_.events)
@@ -56,7 +56,7 @@ class Reference {
     return ids;
   }
 
-  // When a contact began and ended, as far as the events that came tell.
+  // Begin or end of a contact, as far as received events contain it.
   std::optional<std::int64_t> told(const TrueContact& c, std::int8_t kind) const {
     for (const auto& [id, e] : known_.events)
       if (e.contact_id == c.shown.contact_id && e.kind == kind) return e.time_ns;
@@ -84,14 +84,14 @@ class Reference {
     return t - *before <= to_ns(sync::SimTime(sync::ContactStream::kStaleAfter)) ? SampleStatus::kHeld : SampleStatus::kStale;
   }
 
-  // What is told ahead may not come true: it counts once its begin or the snapshot before tell of it too.
+  // A contact that is published ahead may not happen: it counts once its begin event or an earlier snapshot also contains it.
   bool foreseen_only(const TrueContact& c, std::int64_t told_ns) const {
     if (c.group != contact_frame_t::AHEAD || told(c, contact_event_t::BEGIN)) return false;
     const auto earlier = snapshot_before(c.group, told_ns - 1);
     return !earlier || !c.alive(*earlier);
   }
 
-  // Force of each live contact at t.
+  // Normal force of each live contact at t, N.
   std::map<std::int64_t, float> state(std::int64_t t) const {
     std::map<std::int64_t, float> out;
     for (const TrueContact& c : life().contacts) {
@@ -108,11 +108,10 @@ class Reference {
     return out;
   }
 
-  // Over [t0, t1) of the simulated time, instant for instant: between two instants at which anything changes all
-  // is constant.
+  // Contacts over [t0, t1) of simulated time, integrated piecewise: between two instants of change all values are constant.
   sync::ContactIntegral integral(std::int64_t t0, std::int64_t t1, int tool) const;
-  // True when every begin and end of the tool's contacts that fall into [t0, t1) or before have come, and
-  // snapshots reach over it: then what is known is the truth.
+  // True when every begin and end of the tool's contacts in [t0, t1) or before have arrived, and snapshots reach over the span. The
+  // received data then equal the truth.
   bool knows_all(std::int64_t t0, std::int64_t t1, int tool) const;
   std::int64_t true_contact_time_ns(std::int64_t t0, std::int64_t t1, int tool) const;
 
@@ -141,8 +140,8 @@ namespace reference_detail {
 
 struct Touch {
   const TrueContact* contact;
-  std::optional<std::int64_t> begin, end;  // as told
-  std::int64_t shown_ns = 0;               // how long snapshots tell of it
+  std::optional<std::int64_t> begin, end;  // as received
+  std::int64_t shown_ns = 0;               // how long snapshots contain it
 };
 
 }  // namespace reference_detail
@@ -167,7 +166,7 @@ inline sync::ContactIntegral Reference::integral(std::int64_t t0, std::int64_t t
   sync::ContactIntegral sum;
   sum.status = status(0, t1 - 1);
   const auto length = static_cast<double>(t1 - t0);
-  std::set<std::int64_t> touched_from;  // pieces in which there is any contact
+  std::set<std::int64_t> touched_from;  // start times of the pieces with a contact
   for (auto a = cuts.begin(); std::next(a) != cuts.end(); ++a) {
     const std::int64_t from = *a, until = *std::next(a);
     const auto before = snapshot_before(0, from), after = snapshot_after(0, from);
@@ -184,7 +183,7 @@ inline sync::ContactIntegral Reference::integral(std::int64_t t0, std::int64_t t
       touched_from.insert(from);
     }
   }
-  // Those that no snapshot shows in this tick: by their events, with the momentum of their begin.
+  // Contacts that no snapshot shows in this tick: from their events, with the momentum of their begin.
   for (auto& t : touches) {
     if (t.shown_ns > 0 || !t.begin || !t.end || *t.begin >= t1 || *t.end <= t0) continue;
     for (auto a = cuts.begin(); std::next(a) != cuts.end(); ++a)
@@ -206,7 +205,7 @@ inline bool Reference::knows_all(std::int64_t t0, std::int64_t t1, int tool) con
     if (c.group != 0 || c.shown.tool != tool) continue;
     if (c.begin_ns < t1 && !told(c, contact_event_t::BEGIN)) return false;
     if (c.begin_ns < t1 && c.end_ns < t1 && !told(c, contact_event_t::END)) return false;
-    // It may be told of only by its end to come.
+    // Only its announced end may have arrived.
     if (c.begin_ns < t1 && c.end_ns >= t1 && !snapshot_after(0, c.begin_ns - 1)) return false;
     if (c.begin_ns < t1 && c.end_ns >= t1 && *snapshot_after(0, c.begin_ns - 1) >= c.end_ns &&
         !told(c, contact_event_t::END))
@@ -216,7 +215,7 @@ inline bool Reference::knows_all(std::int64_t t0, std::int64_t t1, int tool) con
 }
 
 inline std::int64_t Reference::true_contact_time_ns(std::int64_t t0, std::int64_t t1, int tool) const {
-  std::vector<std::pair<std::int64_t, int>> changes;  // of the number of contacts
+  std::vector<std::pair<std::int64_t, int>> changes;  // changes of the number of contacts
   for (const TrueContact& c : life().contacts) {
     const std::int64_t begin = std::max(t0, c.begin_ns), end = std::min(t1, c.end_ns);
     if (c.group != 0 || c.shown.tool != tool || begin >= end) continue;

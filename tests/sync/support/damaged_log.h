@@ -1,4 +1,4 @@
-// Logs that are damaged on purpose, and what is left whole in them.
+// Logs with random damage, and the list of the events that stay whole.
 #pragma once
 
 #include <random>
@@ -12,8 +12,7 @@
 
 namespace tactus::sync {
 
-// The bytes of a log; owner: which event each byte is of, -1 for none. Damage drops the events that it touches
-// from `whole`.
+// The bytes of a log; owner: the event of each byte, -1 for none. Damage removes the affected events from `whole`.
 struct DamagedLog {
   static constexpr std::int64_t kRun = 77, kBegin_ns = 5'000'000'000, kOffset_ns = 1'700'000'000'000'000'123;
   std::vector<std::uint8_t> bytes;
@@ -21,7 +20,7 @@ struct DamagedLog {
   std::set<std::int64_t> whole;
   std::vector<std::vector<std::uint8_t>> data;
 
-  // Which run it is, then `events` healths, 1 ms apart.
+  // LOG_INFO, then `events` healths, 1 ms apart.
   explicit DamagedLog(int events) {
     const auto state = std::make_shared<MemorySink::State>();
     LogWriter writer(std::make_unique<MemorySink>(state));
@@ -42,7 +41,7 @@ struct DamagedLog {
       m.header = header_of("some_node", 5, i, kBegin_ns + 1'000'000 * i - 50'000, kRun);
       m.header.clock = 4711;
       m.node = "some_node";
-      // Half of them are of one length, so that a length that lies may end where another event begins.
+      // Half of them have the same length, so that a forged length may end at the beginning of another event.
       m.note = std::string(static_cast<std::size_t>(i % 2 ? 40 : i * 37 % 300), 'x');
       write(channels::kNodeHealth, m, 1000 * i);
     }
@@ -68,7 +67,7 @@ struct DamagedLog {
     };
     erase(bytes), erase(owner);
   }
-  // Noise, zeros, sync words, or a piece of this log whose header promises what does not follow.
+  // Inserts noise, zeros, sync words, or a piece of this log whose header announces data that do not follow.
   void insert(std::mt19937& random) {
     const std::size_t at = random() % (bytes.size() + 1);
     std::vector<std::uint8_t> garbage(random() % 400);

@@ -1,5 +1,5 @@
-// A random world whose whole truth is known, told as sim_node tells it, over a wire that loses, repeats, reorders
-// and delays, to a host with another clock.
+// A random world with a known truth, published as sim_node does, over a wire that loses, repeats, reorders and delays, to a host with
+// another clock.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,7 +39,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-// From begin to just before end; its force grows or falls linearly, so that an interpolated one is the true one.
+// A contact from begin to just before end. Its force grows or falls linearly, so that linear interpolation is exact.
 struct TrueContact {
   contact_t shown{};
   int group = 0;
@@ -58,7 +58,7 @@ struct TrueContact {
   }
 };
 
-// On a cubic, which Hermite interpolation keeps, turning evenly about z.
+// A body on a cubic, which Hermite interpolation reproduces, with constant rotation about z.
 struct TrueBody {
   Eigen::Vector3d a[4];
   double turn_rad_s = 0;
@@ -67,7 +67,7 @@ struct TrueBody {
   Eigen::Vector3d velocity(double s) const { return a[1] + s * (2 * a[2] + 3 * s * a[3]); }
 };
 
-// One life of the simulation.
+// One incarnation of the simulation.
 struct Life {
   std::int64_t incarnation = 0;
   std::int64_t begin_ns = 0;  // simulated time 0, on the sender's clock
@@ -139,7 +139,7 @@ inline Life make_life(Random& random, std::size_t number, std::int64_t begin_ns)
     c.shown.point_count = 1;
     c.shown.points.resize(1);
     c.begin_ns = random.whole(0, life.length_ns);
-    // Some are over before any snapshot shows them, some outlive the simulation.
+    // Some contacts end before any snapshot shows them, some outlast the simulation.
     c.end_ns =
         c.begin_ns + (random.chance(0.4) ? random.whole(10'000, 5 * kMs) : random.whole(5 * kMs, 200 * kMs));
     c.force_N = random.real(1, 5);
@@ -162,7 +162,7 @@ inline Life make_life(Random& random, std::size_t number, std::int64_t begin_ns)
   return life;
 }
 
-// What sim_node says in one life, each message on its way or lost.
+// The messages of sim_node in one incarnation, each delivered or lost.
 class Teller {
  public:
   Teller(World& world, std::size_t life, Random& random)
@@ -175,8 +175,8 @@ class Teller {
       send_ns_ = life_.begin_ns + step_ns_ + random_.whole(0, 300'000);
       tell_events();
       tell_contacts(0, step_ns_);
-      // Visual step n begins at tick ceil(1000 n / 60) and is told one step ahead, with its time to come; so are the
-      // contacts of the group AHEAD.
+      // Visual step n begins at tick ceil(1000 n / 60) and is published one step ahead, with its time to come; so are the contacts of the
+      // group AHEAD.
       if (k != (1000 * frame + 59) / 60) continue;
       const std::int64_t next_ns = (1000 * (frame + 1) + 59) / 60 * kMs;
       if (frame == 0) tell_contacts(2, 0), tell_bodies(0);
@@ -201,7 +201,7 @@ class Teller {
     m.page = static_cast<std::int32_t>(page), m.pages = static_cast<std::int32_t>(pages);
     return m;
   }
-  // Pages of at most so many; at least one, which may be empty.
+  // Pages of at most the given number of elements; at least one page, which may be empty.
   template <class Thing, class Tell>
   void paged(const std::vector<Thing>& things, std::size_t most, const Tell& tell) {
     const std::size_t pages = std::max<std::size_t>(1, (things.size() + most - 1) / most);
@@ -258,7 +258,7 @@ class Teller {
     });
   }
 
-  // Lost in bursts: Gilbert's chain.
+  // Loss in bursts: Gilbert's chain.
   template <class Message>
   void send(Message m) {
     const Wire& w = world_.wire;

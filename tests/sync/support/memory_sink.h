@@ -1,4 +1,4 @@
-// A log in memory, and messages to put into it.
+// A log in memory, and messages for it.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace tactus::sync {
 
-// Refuses everything while `trouble` is not empty.
+// Refuses all writes while `trouble` is not empty.
 struct MemorySink : LogSink {
   struct State {
     std::vector<std::uint8_t> bytes;

@@ -1,3 +1,4 @@
+// Tests of reading CSV tables.
 #include "sync/text/csv.h"
 
 #include <catch2/catch.hpp>

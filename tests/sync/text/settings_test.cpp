@@ -1,3 +1,4 @@
+// Tests of settings: units, ranges and precedence.
 #include "sync/text/settings.h"
 
 #include <array>
@@ -169,7 +170,7 @@ TEST_CASE("What is live can be changed while the node runs, all else cannot, and
 
 TEST_CASE("A live change cannot loosen a safety limit beyond its default or beyond the command line, but can go back") {
   Example own;
-  own.hottest_degC = 40;  // the command line tightened one
+  own.hottest_degC = 40;  // the command line tightened one limit
   own.coldest_degC = 12;  // and loosened the other
   Example s = own;
   CHECK_THROWS_WITH(change_live(s, own, std::span(kTable), "hottest", "41"), Catch::Contains("command line"));

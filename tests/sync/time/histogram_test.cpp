@@ -1,3 +1,4 @@
+// Tests of the duration histogram.
 #include "sync/time/histogram.h"
 
 #include <algorithm>
@@ -13,7 +14,7 @@ using sync::Nanoseconds;
 
 namespace {
 
-// Values over six decades, as durations come.
+// Values over six decades, distributed like durations.
 std::vector<std::int64_t> durations(unsigned seed, int count) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> decade(2, 8.8);

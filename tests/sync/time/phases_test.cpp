@@ -1,4 +1,4 @@
-// Where the time of a tick goes, on a clock that is moved by hand.
+// Durations of the phases of a tick, on a manual clock.
 #include "sync/time/phases.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of time types and the map of simulated time.
 #include "sync/time/time.h"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// Tables of any channel, read back and held against the messages that they were made of.
+// Tables of any channel, read back and compared with their messages.
 #include "sync/tools/channel_table.h"
 
 #include <catch2/catch.hpp>
@@ -146,7 +146,7 @@ TEST_CASE("Text with commas, quotes and ends of lines stays one cell, and damage
   CHECK(csv_cells(csv_cell(std::string_view("a,\"b\""))) == std::vector<std::string>{"a,\"b\""});
   CHECK(csv_cell(std::string_view("plain")) == "plain");
   CHECK(csv_cell(Leaf(0.1)) == "0.1");
-  CHECK(csv_cell(Leaf(std::int64_t{-9'007'199'254'740'993})) == "-9007199254740993");  // no double holds it
+  CHECK(csv_cell(Leaf(std::int64_t{-9'007'199'254'740'993})) == "-9007199254740993");  // no double represents it
   Log log;
   Samples samples(23);
   tool_state_t m{};
@@ -183,7 +183,7 @@ TEST_CASE("Tagged values have the instant at which they were taken, and senders 
     const auto rows = cells_of(
         tag_rows(tags, log.context, log.event(channels::kTagValues, encode(values)), host_time(6'010'000'000)));
     REQUIRE(rows.size() == 3);
-    // Of another clock: as much before its arrival as before its sending.
+    // A message of another clock: its arrival has the same offset as its sending.
     CHECK(rows[0] ==
           std::vector<std::string>{clock == 77 ? "0.100000000" : "0.110000000", "haptic_node", "force", "N", "1"});
     CHECK(rows[2] == std::vector<std::string>{clock == 77 ? "0.200000000" : "0.210000000", "haptic_node", "speed",

@@ -1,3 +1,4 @@
+// Tests of the status table of all nodes in the terminal and as JSON.
 #include "sync/tools/watch_table.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// Tests of programs in virtual time.
 #include "sync/virtual_time/virtual_time.h"
 
 #include <catch2/catch.hpp>
@@ -16,7 +17,7 @@ namespace {
 
 using Trace = std::vector<std::pair<std::string, HostTime>>;
 
-// Two loops that sleep, as they note when they woke.
+// Two loops that sleep and record the time of each wake-up.
 Trace two_loops(std::uint64_t seed) {
   Trace trace;
   VirtualTime time({.seed = seed});
@@ -33,7 +34,7 @@ Trace two_loops(std::uint64_t seed) {
   return trace;
 }
 
-// Says when it is destroyed.
+// Sets a flag when it is destroyed.
 struct Flag {
   bool& raised;
   ~Flag() { raised = true; }
@@ -44,7 +45,7 @@ struct Flag {
 TEST_CASE("Programs wake at their deadlines and in the order of these, and a virtual hour takes no time") {
   const Trace trace = two_loops(3);
   CHECK(std::is_sorted(trace.begin(), trace.end(), [](auto& a, auto& b) { return a.second < b.second; }));
-  CHECK(std::count_if(trace.begin(), trace.end(), [](auto& row) { return row.first == "slow"; }) == 143);  // 1000 / 7, and the first
+  CHECK(std::count_if(trace.begin(), trace.end(), [](auto& row) { return row.first == "slow"; }) == 143);  // 1000 / 7, and the first one
 
   VirtualTime time;
   HostTime woke{};

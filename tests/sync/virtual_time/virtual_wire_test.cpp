@@ -1,3 +1,4 @@
+// Tests of the network in virtual time: latency, jitter and loss.
 #include "sync/virtual_time/virtual_wire.h"
 
 #include <catch2/catch.hpp>
@@ -12,7 +13,7 @@ namespace {
 
 constexpr HostTime kBegin{std::chrono::hours(1)};
 
-// Keeps the first byte of all that it is handed, and when.
+// Stores the first byte of each message and its time.
 class Ear : public InboxBase {
  public:
   using InboxBase::InboxBase;
@@ -46,7 +47,7 @@ TEST_CASE("What is sent arrives after the latency, at those who have subscribed 
   CHECK(a.heard == std::vector<std::pair<int, HostTime>>{{1, kBegin + 4ms}});
   CHECK(b.heard.empty());
   CHECK(bulk.heard.empty());
-  sender->drain(kBegin, 10);  // what a program sends itself crosses no wire
+  sender->drain(kBegin, 10);  // messages of a program to itself cross no wire
   CHECK(own.heard.size() == 1);
 }
 
@@ -69,7 +70,7 @@ TEST_CASE("Jitter delays, and neither overtakes nor arrives before it was sent")
     CHECK(took >= 0ns);
     late += took > 1100us;
   }
-  // A normal spread of 5 ms about 1 ms, and none overtakes: far more than half.
+  // Normal jitter of 5 ms about 1 ms without overtaking: far more than half are late.
   CHECK(late > kSent / 2);
 }
 

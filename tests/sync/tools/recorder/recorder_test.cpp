@@ -1,3 +1,4 @@
+// Tests of the recorder: order, buffering, assets and disk errors.
 #include "sync/tools/recorder/recorder.h"
 
 #include <catch2/catch.hpp>
@@ -39,7 +40,7 @@ struct Scene {
   }
 };
 
-// All but the pages of the message types.
+// All events except the pages of the message types.
 std::vector<LogEvent> read_but_types(std::span<const std::uint8_t> bytes) {
   std::vector<LogEvent> events = read_all(bytes);
   std::erase_if(events, [](const LogEvent& e) { return e.channel == kLogTypes; });
@@ -106,7 +107,7 @@ TEST_CASE("The head of a log comes before everything that was heard, evenly spac
   for (std::size_t i = 1; i < head; ++i) {
     if (events[i].channel == kLogTypes) continue;
     if (const auto m = decode<scene_manifest_t>(events[i].data.data(), events[i].data.size())) {
-      CHECK(received.empty());  // the manifest comes first, so that a receiver knows what the chunks are for
+      CHECK(received.empty());  // the manifest comes first, so that a receiver can assign the chunks
       CHECK(m->page == page++);
       refs.insert(refs.end(), m->assets.begin(), m->assets.end());
       continue;

@@ -1,3 +1,4 @@
+// Tests of replaying a log: speed, pause, seek, damage and new stamps.
 #include "sync/tools/replay/replay.h"
 
 #include <catch2/catch.hpp>
@@ -18,7 +19,7 @@ namespace {
 constexpr Nanoseconds kTick{1'000'000};
 const HostTime kNow = host_time(900'000'000'000);
 
-// 1,200 messages, 1 ms apart, and who plays them.
+// 1,200 messages, 1 ms apart, and their player.
 struct Player {
   DamagedLog log{1200};
   LogOrigin origin = origin_of(log.bytes);
@@ -205,8 +206,8 @@ TEST_CASE("1,000 damaged logs are played to their end, with every message that w
       });
     INFO("seed " << seed);
     CHECK(replay.over());
-    missing.erase(0);    // LOG_INFO is not of the live part
-    missing.erase(119);  // a damaged neighbour may hide when the log ends
+    missing.erase(0);    // LOG_INFO is not in the live part
+    missing.erase(119);  // a damaged neighbour may hide the end of the log
     CHECK(missing.size() <= 1);
   }
 }
@@ -218,8 +219,7 @@ TEST_CASE("A time in a log is found without reading it all, whatever damage lies
     if (seed % 2)
       for (int i = 0; i < 20; ++i) log.damage(random);
     if (seed % 5 == 0) {
-      // A hole, as a disk that was full or a copy that was broken off leaves it; longer than all that is in the
-      // log.
+      // A hole, as a full disk or an interrupted copy leaves it; longer than the whole log.
       log.bytes.insert(log.bytes.end(), 1'000'000, 0);
     }
     const std::int64_t begin_us = (DamagedLog::kBegin_ns + DamagedLog::kOffset_ns) / 1000;
@@ -253,7 +253,7 @@ TEST_CASE("Recorded messages are made messages of now, exactly, at any speed") {
   m.pages = 1;
   std::mt19937 random(2);
   for (int i = 0; i < 100; ++i) {
-    // Sent every 16 ms, up to 3 ms before it arrived; said with a clock pair up to 1 s old, at half speed.
+    // Sent every 16 ms, up to 3 ms before it arrived; with a clock pair up to 1 s old, at half speed.
     const std::int64_t sent = std::int64_t{1'000'000'000} + 16'000'000 * i,
                        arrived = sent + static_cast<std::int64_t>(random() % 3'000'000);
     m.header.publish_time_ns = sent;

@@ -1,4 +1,4 @@
-// Rate, bandwidth and jitter of a sender, against closed forms.
+// Tests of rate, bandwidth and jitter of a sender, against closed forms.
 #include "sync/tools/spy/arrivals.h"
 
 #include <catch2/catch.hpp>
@@ -35,8 +35,8 @@ TEST_CASE("Who falls silent fades and is nothing after two seconds") {
 }
 
 TEST_CASE("Jitter is the deviation of the time between messages from its middle one") {
-  // Each is moved by a uniform deviation of +-w: the difference of two is triangular within +-2w, whose absolute
-  // value has its median at 2w (1 - sqrt(1/2)) and its 99th percentile at 2w (1 - sqrt(1/100)).
+  // Each arrival is moved by a uniform deviation of +-w. The difference of two is triangular within +-2w; its absolute value has its
+  // median at 2w (1 - sqrt(1/2)) and its 99th percentile at 2w (1 - sqrt(1/100)).
   const double w_ms = 2;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> moved(-w_ms, w_ms);

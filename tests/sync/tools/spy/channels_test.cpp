@@ -1,4 +1,4 @@
-// What is known of each channel of a bus that is listened to.
+// Tests of the statistics of each channel of a bus.
 #include "sync/tools/spy/channels.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What the terminal shows of a bus, and what keys do.
+// Tests of the terminal screen of the spy and its keys.
 #include "sync/tools/spy/screen.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 HostTime at_ms(std::int64_t ms) { return host_time(ms * 1'000'000); }
 
-// Letters as a terminal counts them.
+// Number of characters that a terminal counts.
 std::size_t letters(const std::string& line) {
   return static_cast<std::size_t>(
       std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xc0) != 0x80; }));
@@ -50,7 +50,7 @@ struct Shown {
     for (const std::string& line : draw(columns, rows)) text += line + "\n";
     return text;
   }
-  // Presses a key and looks.
+  // Presses a key and draws the screen.
   void press(Key key) { screen.press(key), draw(120, 60); }
   std::int64_t seq = 0;
 };

@@ -1,4 +1,4 @@
-// A log of a run, written by hand.
+// A log of a run, built in a test.
 #pragma once
 
 #include <map>
@@ -18,12 +18,12 @@ namespace tactus::sync {
 
 inline constexpr std::int64_t kOffsetNs = 1'700'000'000'123'456'000;
 
-// A log of a run as the recorder would have written it; times are ms as in MatcherFixture.
+// A log of a run as the recorder writes it; times are ms as in MatcherFixture.
 struct RunLog {
   std::shared_ptr<MemorySink::State> state = std::make_shared<MemorySink::State>();
   LogWriter writer{std::make_unique<MemorySink>(state)};
   std::map<std::string, std::int64_t> seq;
-  std::string note = "SCHED_FIFO 60, memory locked";  // of every health
+  std::string note = "SCHED_FIFO 60, memory locked";  // in every health message
 
   explicit RunLog(bool with_info = true) {
     if (!with_info) return;

@@ -1,3 +1,4 @@
+// Tests of the summary of a run.
 #include "sync/tools/summary/summary.h"
 
 #include <catch2/catch.hpp>
@@ -169,7 +170,7 @@ TEST_CASE("Incarnations of a node are added up") {
   const NodeSummary& n = nodes.at("audio_node");
   CHECK(n.restarts == 1);
   CHECK(n.missed_ticks == 12);
-  CHECK(n.rate_Hz == Approx(1000));  // the waiting, at another rate, is not counted
+  CHECK(n.rate_Hz == Approx(1000));  // the wait at another rate is not counted
   CHECK(n.tick.count() == 2);
   CHECK(n.tick.max() == Nanoseconds(200'000));
   CHECK(n.alive_at_end);
@@ -257,7 +258,7 @@ TEST_CASE("The logs of a restarted recorder make one run") {
     for (LogEvent e; scanner.next(e);) s.add(e);
     s.end_of_log(0);
   }
-  // The same events again, within a run: nothing is owed twice.
+  // The same events again, within a run: no modality must present an event twice.
   CHECK(s.matcher().hits() <= 160);
   CHECK(s.failure().empty());
   CHECK(s.recorded_seconds() == Approx(20.0));
@@ -380,7 +381,7 @@ TEST_CASE("The summary tells how long each step of a quality ladder was in use, 
   }
   const Json j = Json::parse(to_json(log.summary()))["nodes"]["visual_node"];
   CHECK(j["quality"] == Json::array({0.75, 0, 0.25}));
-  // To a bin of the histogram, a quarter octave.
+  // Tolerance: a bin of the histogram, a quarter octave.
   CHECK(j["input_age_ms"]["WORLD_STATE"]["p50"].get<double>() == Approx(5).epsilon(0.19));
   CHECK(j["input_age_ms"]["WORLD_STATE"]["p99"].get<double>() == Approx(80).epsilon(0.19));
 }
