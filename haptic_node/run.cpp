@@ -3,13 +3,10 @@
 //   in   TOUCH_MODEL                   the surfaces near its tool, newest only
 //        CONTACT_EVENTS                begins and hits of its tool
 //        SCENE_MANIFEST, ASSET_CHUNK   the scene: tools, their paths, materials, pictures of relief and friction
-//        DEVICE_STATE                  of a device that another program drives
-//        DEVICE_FORCE                  of other nodes: a device that two nodes command is lost
-//        SETTING                       changes of its settings while it runs
-//   out  TOOL_STATE                    every tick
-//        DEVICE_FORCE                  to that program, every tick
-//        SETTING_REPLY                 to each change of a setting
-//        PRESENTED                     every begin and hit of its tool
+//        DEVICE_STATE, DEVICE_FORCE    of an external device; commands of other nodes to it: two commanders lose it
+//        SETTING                       changes of its settings during the run
+//   out  TOOL_STATE, DEVICE_FORCE      every tick; the force goes to an external device
+//        SETTING_REPLY, PRESENTED      each change of a setting; each begin and hit of its tool
 //
 // When TOUCH_MODEL or the device is lost, the force fades to zero and the health reports it. When CONTACT_EVENTS
 // is lost, the contact force remains and the hit transients are missing. The loop never waits for another node.

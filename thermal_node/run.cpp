@@ -3,8 +3,7 @@
 //   in   CONTACT_EVENTS, CONTACTS      contacts of the tool, their force and duration
 //        SCENE_MANIFEST, ASSET_CHUNK   the scene: tools and materials
 //        THERMAL_DEVICE                readings of the display, if it sends any
-//   out  THERMAL_STATE                 every tick
-//        THERMAL_DEVICE                every tick, of the simulated display
+//   out  THERMAL_STATE, THERMAL_DEVICE every tick; the latter of the simulated display
 //        PRESENTED                     every begin and hit of its tool
 //
 // When the readings of the display are lost, it is assumed to be at its command. When the contacts are lost, the

@@ -3,13 +3,12 @@
 //   in   WORLD_STATE, CONTACT_EVENTS, TOOL_STATE   bodies, contacts, tools; of a head, where the eye is
 //        SCENE, SETTING, QUESTION                  what is drawn, what changes, what a participant is asked
 //        PLAYOUT, FRAME_SHOWN                      of a room: its delay, and the frames that other walls have drawn
-//        CONTACTS, NODE_HEALTH                     while an overlay shows them, and whatever a plot names
+//        CONTACTS, NODE_HEALTH                     while an overlay shows them, and the channels that a plot names
 //   out  PRESENTED, MEDIA_CLOCK, FRAME_SHOWN       every begin and hit; which frame was out when
 //        SIM_COMMAND, DEVICE_STATE, ANSWER         keys, mouse and gamepad of a window
 //        PICTURE_CHUNK                             the picture, when streamed
 //
-// Losing WORLD_STATE carries bodies on for 50 ms, then holds them and marks the picture; the loop waits for nobody. With
-// --log it renders a recorded run instead of the bus into --video; the same log gives the same pixels.
+// When WORLD_STATE is lost, bodies are extrapolated for 50 ms, then held, and the picture is marked. With --log it renders a log into --video.
 #include "visual_node/run.h"
 
 #include <iostream>
