@@ -16,7 +16,7 @@ namespace {
 std::filesystem::path python_types(const Folder& folder) {
   const auto types = folder.path() / "types";
   const std::string command = "lcm-gen -p --ppath " + quoted(types.string()) + " " +
-                              quoted((repository() / "lcmtypes").string()) + "/*.lcm";
+                              quoted((repository() / "lcmtypes").string()) + "/types/*/*.lcm";
   REQUIRE(std::system(command.c_str()) == 0);
   return types;
 }
