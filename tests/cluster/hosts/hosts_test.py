@@ -130,7 +130,7 @@ class Hosts(unittest.TestCase):
 
     def test_13_the_doctor_finds_nothing_between_the_hosts_and_their_clocks_as_far_apart_as_they_are(self):
         figures, wrong = self.doctor()
-        between = [w for w in wrong if "hear" in w or "loses" in w]
+        between = [w for w in wrong if "receives nothing" in w or "loses" in w]
         self.assertEqual([], between)
         apart_s = lambda a, b: self.r.lab.hosts[b].ahead_s - self.r.lab.hosts[a].ahead_s
         for host, said in figures["pairs"].items():
@@ -179,7 +179,7 @@ class Hosts(unittest.TestCase):
         self.assertEqual(before, after)
 
     def test_21_what_cannot_be_moved_is_refused(self):
-        for node, host, word in (("recorder", "sound", "recording"), ("sync_node", "sound", "every host"), ("sim_node", "sound", "--anew"),
+        for node, host, word in (("recorder", "sound", "recording"), ("sync_node", "sound", "each host"), ("sim_node", "sound", "--anew"),
                                  ("audio_node", "sound", "already"), ("audio_node", "cellar", "no such host"), ("nose_node", "sound", "no such node")):
             with self.subTest(node), self.assertRaisesRegex(Refusal, word):
                 self.r.operator.move(node, host)

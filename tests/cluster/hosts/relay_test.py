@@ -202,7 +202,7 @@ class Sites(unittest.TestCase):
         self.assertEqual(before, after)
 
     def test_33_a_relay_is_not_moved(self):
-        with self.assertRaisesRegex(Refusal, "look for it"):
+        with self.assertRaisesRegex(Refusal, "expect it on this host"):
             self.r.operator.move("relay_near", "world")
 
     def test_34_who_is_no_relay_is_not_heard(self):
