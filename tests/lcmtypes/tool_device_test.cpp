@@ -39,7 +39,7 @@ TEST_CASE("An invalid device of a tool is reported in one sentence") {
   CHECK_THROWS_WITH(parse_tool_device("playback:x.csv,offset=1/2"), Contains("offset=X/Y/Z"));
   CHECK_THROWS_WITH(parse_tool_device("playback:x.csv,rate=0"), Contains("above 0"));
   CHECK_THROWS_WITH(parse_tool_device("virtual_hand:x.csv,scale=2"), Contains("no options"));
-  CHECK_THROWS_WITH(parse_tool_device("external"), Contains("give it the name"));
+  CHECK_THROWS_WITH(parse_tool_device("external"), Contains("give the name of its driver"));
   CHECK_THROWS_WITH(parse_tool_device("spidar"), Contains("name the frame"));
   CHECK_THROWS_WITH(parse_tool_device("spidar:cave,scale=2"), Contains("no option \"scale\"") && Contains("offset"));
 }
