@@ -151,7 +151,7 @@ void NodeRenderer::take_surfaces() {
   try {
     heard = opening_surfaces_->take();
   } catch (const std::exception& e) {
-    host().say(std::string("cannot read the maps of the scene (") + e.what() + "); what scrapes sounds without them");
+    host().say(std::string("cannot read the maps of the scene (") + e.what() + "); scraping contacts sound without them");
   }
   opening_surfaces_.reset();
   output_.hear(heard);
