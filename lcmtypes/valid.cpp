@@ -217,7 +217,7 @@ bool all_sane(const List& list) {
 // Common to a request and its answer.
 bool sane_policy(const auto& m) {
   return m.generation >= 0 && between(m.policy, playout_t::ASAP, playout_t::ITOUCH2005) &&
-         between(m.aligner, playout_t::FIXED, playout_t::VIRTUAL_TIME) && between(m.base_ns, 0, kMaxDelay_ns) &&
+         between(m.aligner, playout_t::FIXED, playout_t::QUANTILE) && between(m.base_ns, 0, kMaxDelay_ns) &&
          between(m.budget_ns, 0, kMaxDelay_ns) && all_sane(m.entries);
 }
 

@@ -10,7 +10,7 @@
 
 namespace tactus::sync {
 
-enum class AlignerKind : std::uint8_t { kFixed, kQuantile, kMovingAverage, kVirtualTime };
+enum class AlignerKind : std::uint8_t { kFixed, kQuantile };
 
 class Aligner {
  public:
@@ -24,7 +24,7 @@ class Aligner {
 // fixed: the delay of kFixed.
 std::unique_ptr<Aligner> make_aligner(AlignerKind kind, Nanoseconds fixed);
 
-// "fixed", "quantile", "average", "virtual-time". Throws std::invalid_argument with one sentence for any other word.
+// "fixed" or "quantile". Throws std::invalid_argument with one sentence for any other word.
 AlignerKind aligner_named(const std::string& word);
 const char* name_of(AlignerKind kind);
 

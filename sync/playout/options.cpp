@@ -10,7 +10,7 @@ void PlayoutOptions::add_to(CLI::App& app, bool named) {
                  "when each sense presents an event: asap, aligned, experiment, local_haptic_first or itouch2005");
   app.add_option(
       "--aligner", aligner,
-      "how the delay is found that a sense needs: fixed, quantile, average or virtual-time; default: quantile");
+      "method that estimates the delay of a modality: quantile (default) or fixed");
   app.add_option("--base", base, "common delay of experiment and of the aligner fixed; default: 150ms");
   app.add_option("--budget", budget, "senses that need more are not waited for; default: 60ms");
   app.add_option("--soa", soa, "of experiment: asynchrony of senses, e.g. audio=50ms,visual=-20ms");

@@ -236,7 +236,7 @@ class Samples {
   }
   void fill_policy(auto& m) {
     fill(m.header), m.generation = whole(0, 99), m.policy = static_cast<std::int8_t>(whole(0, 4));
-    m.aligner = static_cast<std::int8_t>(whole(0, 3)), m.base_ns = whole(0, 99), m.budget_ns = whole(0, 99);
+    m.aligner = static_cast<std::int8_t>(whole(0, 1)), m.base_ns = whole(0, 99), m.budget_ns = whole(0, 99);
     fill_list(m.count, m.entries, 0, 6);
   }
   void fill(playout_t& m) { fill_policy(m), m.lockstep_Hz = real(0, 60); }

@@ -33,15 +33,13 @@ double late_share(Aligner& aligner, const std::vector<Nanoseconds>& trace, int l
 
 }  // namespace
 
-TEST_CASE("Every aligner gives what a constant latency needs, and hardly more") {
-  const auto kind = GENERATE(AlignerKind::kQuantile, AlignerKind::kMovingAverage, AlignerKind::kVirtualTime);
-  const auto aligner = make_aligner(kind, 0 * kMs);
+TEST_CASE("The quantile aligner estimates a constant latency exactly") {
+  const auto aligner = make_aligner(AlignerKind::kQuantile, 0 * kMs);
   for (int i = 0; i < 500; ++i) aligner->add(30 * kMs);
-  CHECK(aligner->delay() >= 30 * kMs);
-  CHECK(aligner->delay() <= 32 * kMs);
+  CHECK(aligner->delay() == 30 * kMs);
 }
 
-TEST_CASE("A fixed aligner gives its delay, whatever is needed") {
+TEST_CASE("The fixed aligner returns its delay regardless of the measured need") {
   const auto aligner = make_aligner(AlignerKind::kFixed, 40 * kMs);
   aligner->add(90 * kMs);
   CHECK(aligner->delay() == 40 * kMs);
@@ -55,37 +53,16 @@ TEST_CASE("The quantile aligner is late for one event in twenty") {
   CHECK(late < 0.066);
 }
 
-TEST_CASE("Mean and four deviations are late for less than 3 % of an exponential tail") {
-  // Mean 5, mean deviation 10/e = 3.68 ms of that tail: exp(-19.7/5) = 1.9 % lies 19.7 ms beyond its beginning. The averages of 16 events
-  // fluctuate.
-  const auto aligner = make_aligner(AlignerKind::kMovingAverage, 0 * kMs);
-  const double late = late_share(*aligner, tailed(20'000));
-  CHECK(late > 0.005);
-  CHECK(late < 0.045);
-}
-
-TEST_CASE("Virtual time follows a step up within a few events, and down slowly") {
-  const auto aligner = make_aligner(AlignerKind::kVirtualTime, 0 * kMs);
-  for (int i = 0; i < 50; ++i) aligner->add(20 * kMs);
-  for (int i = 0; i < 5; ++i) aligner->add(60 * kMs);
-  CHECK(aligner->delay() >= 60 * kMs);
-  const Nanoseconds up = aligner->delay();
-  for (int i = 0; i < 64; ++i) aligner->add(20 * kMs);  // two runs; in the first, one event did not fit
-  CHECK(aligner->delay() < up);
-  CHECK(aligner->delay() >= up - 2 * kMs);
-  for (int i = 0; i < 2000; ++i) aligner->add(20 * kMs);
-  CHECK(aligner->delay() <= 23 * kMs);
-}
-
-TEST_CASE("One event that came very late moves the quantile by nothing") {
+TEST_CASE("One very late event does not change the quantile") {
   const auto aligner = make_aligner(AlignerKind::kQuantile, 0 * kMs);
   for (int i = 0; i < 100; ++i) aligner->add(20 * kMs);
   aligner->add(500 * kMs);
   CHECK(aligner->delay() == 20 * kMs);
 }
 
-TEST_CASE("Aligners are known by name, and no others") {
-  for (const char* name : {"fixed", "quantile", "average", "virtual-time"})
+TEST_CASE("An aligner is selected by its name; an unknown name is refused") {
+  for (const char* name : {"fixed", "quantile"})
     CHECK(name_of(aligner_named(name)) == std::string(name));
+  for (const char* name : {"average", "virtual-time"}) CHECK_THROWS_AS(aligner_named(name), std::invalid_argument);
   CHECK_THROWS_AS(aligner_named("median"), std::invalid_argument);
 }

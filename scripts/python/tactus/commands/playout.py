@@ -9,7 +9,7 @@ With a policy: applies it to all modalities at the same time; delays are slewed 
   --soa LIST       policy experiment: asynchrony of each modality relative to the common delay, e.g. audio=50ms,visual=-20ms
   --base TIME      the common delay; default: 150ms
   --budget TIME    maximum delay; a modality that needs more is late; default: 60ms
-  --aligner NAME   method that estimates the delay of a modality: quantile (default), average, virtual-time or fixed
+  --aligner NAME   method that estimates the delay of a modality: quantile (default) or fixed
   --in OUT_DIR     the cluster that writes to OUT_DIR; default: the cluster that was started last"""
 
 
