@@ -31,7 +31,7 @@
 #include "sim_node/scene/load_sdf.h"
 #include "sim_node/scene/scene_assets.h"
 #include "sync/node/node.h"
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/scene_sender.h"
 
 using namespace tactus;
 

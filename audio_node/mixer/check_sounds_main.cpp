@@ -8,7 +8,7 @@
 
 #include "audio_node/samples/database.h"
 #include "audio_node/mixer/library.h"
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 
 using namespace tactus;
 using namespace tactus::audio;

@@ -22,7 +22,7 @@
 #include "audio_node/samples/layers.h"
 #include "audio_node/mixer/voices.h"
 #include "lcmtypes/vectors.h"
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 
 using namespace tactus;
 using namespace tactus::audio;

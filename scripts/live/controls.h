@@ -22,7 +22,7 @@
 #include "scripts/live/hand.h"
 #include "sync/bus/bus.h"
 #include "sync/degradation/profile_exchange.h"
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/scene_receiver.h"
 #include "sync/clocks/sim_clock_tracker.h"
 
 namespace tactus::live {

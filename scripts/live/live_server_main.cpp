@@ -25,7 +25,8 @@
 #include "scripts/live/sliders.h"
 #include "scripts/live/page_session.h"
 #include "scripts/live/web_server.h"
-#include "sync/node/node.h"
+#include "sync/bus/bus.h"
+#include "sync/node/node_options.h"
 #include "sync/text/printable.h"
 
 using namespace tactus;

@@ -21,7 +21,7 @@
 #include "scripts/simulated_player/senses.h"
 #include "scripts/simulated_player/setup.h"
 #include "sync/node/node.h"
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/scene_receiver.h"
 
 using namespace tactus;
 

@@ -24,7 +24,7 @@
 #include "scripts/virtual_time/referee.h"
 #include "sim_node/run.h"
 #include "sim_node/scene/load_sdf.h"
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 #include "sync/tools/sync_node.h"
 #include "sync/virtual_time/virtual_time.h"
 #include "thermal_node/run.h"

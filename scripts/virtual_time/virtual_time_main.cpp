@@ -15,7 +15,7 @@
 #include "haptic_node/run.h"
 #include "scripts/simulated_player/run.h"
 #include "sim_node/run.h"
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 #include "sync/tools/recorder/recorder_node.h"
 #include "sync/tools/sync_node.h"
 #include "sync/virtual_time/virtual_time.h"

@@ -9,6 +9,7 @@
 
 #include "sim_node/publish/paging.h"
 #include "sim_node/publish/touch_pages.h"
+#include "sync/bus/bus.h"
 
 namespace tactus::sim {
 

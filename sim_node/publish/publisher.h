@@ -11,7 +11,11 @@
 #include "sim_node/game/game.h"
 #include "sim_node/publish/snapshots.h"
 #include "sim_node/publish/event_repeater.h"
-#include "sync/bus/bus.h"
+#include "sync/time/time.h"
+
+namespace tactus::sync {
+class Bus;
+}
 
 namespace tactus::sim {
 

@@ -1,6 +1,7 @@
 // An asset of a scene: the bytes of a mesh, a picture, a shader or the scene itself.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <tactus/asset_ref_t.hpp>
@@ -9,6 +10,9 @@
 namespace tactus::sync {
 
 using Bytes = std::vector<std::uint8_t>;
+
+// Bytes of an asset in one ASSET_CHUNK.
+inline constexpr std::size_t kChunkBytes = 1024;
 
 struct Asset {
   std::int8_t kind = asset_ref_t::SCENE;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <map>
 
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/scene_receiver.h"
 
 namespace tactus::sync {
 

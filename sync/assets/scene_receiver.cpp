@@ -1,3 +1,5 @@
+#include "sync/assets/scene_receiver.h"
+
 #include <algorithm>
 #include <iterator>
 #include <set>
@@ -9,7 +11,7 @@
 #include <tactus/scene_t.hpp>
 #include <utility>
 
-#include "sync/assets/scene_exchange.h"
+#include "sync/bus/bus.h"
 
 namespace tactus::sync {
 namespace {

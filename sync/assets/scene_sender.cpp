@@ -1,3 +1,5 @@
+#include "sync/assets/scene_sender.h"
+
 #include <algorithm>
 #include <stdexcept>
 #include <tactus/asset_chunk_t.hpp>
@@ -5,7 +7,8 @@
 #include <tactus/asset_request_t.hpp>
 #include <tactus/scene_manifest_t.hpp>
 
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/scene_receiver.h"
+#include "sync/bus/bus.h"
 
 namespace tactus::sync {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "sync/bus/bus.h"
+#include "sync/bus/bus_options.h"
 
 namespace tactus::sync {
 

@@ -1,6 +1,7 @@
 #include "sync/clocks/clock_maps.h"
 
 #include <cmath>
+#include <tactus/clock_map_t.hpp>
 #include <tactus/header_t.hpp>
 
 namespace tactus::sync {
@@ -45,15 +46,16 @@ void ClockMaps::observe(const clock_map_t& m, HostTime arrival) {
     return;
   }
   const std::pair key{m.of_clock, m.to_clock};
+  const Known now{ClockLine(m), m.header.source, m.header.incarnation, m.header.seq, arrival};
   const auto it = known_.find(key);
   if (it == known_.end()) {
-    if (known_.size() < kMax) known_.emplace(key, Known{m, arrival});
+    if (known_.size() < kMax) known_.emplace(key, now);
     return;
   }
-  const header_t& before = it->second.map.header;
-  const bool same = before.incarnation == m.header.incarnation && before.source == m.header.source;
-  if (same ? m.header.seq < before.seq : arrival - it->second.arrival < kSilence) return;
-  it->second = {m, arrival};
+  const Known& before = it->second;
+  const bool same = before.incarnation == now.incarnation && before.source == now.source;
+  if (same ? now.seq < before.seq : arrival - before.arrival < kSilence) return;
+  it->second = now;
 }
 
 std::optional<ClockReading> ClockMaps::read(HostTime time, std::int32_t of_clock, std::int32_t on_clock) const {
@@ -61,9 +63,9 @@ std::optional<ClockReading> ClockMaps::read(HostTime time, std::int32_t of_clock
   if (of_clock == on_clock) return ClockReading{time, Nanoseconds(0)};
   std::optional<ClockReading> out;
   if (const auto it = known_.find({of_clock, on_clock}); it != known_.end())
-    out = ClockLine(it->second.map).from_of(time);
+    out = it->second.line.from_of(time);
   else if (const auto back = known_.find({on_clock, of_clock}); back != known_.end())
-    out = ClockLine(back->second.map).to_of(time);
+    out = back->second.line.to_of(time);
   if (out && out->uncertainty > kMaxUncertain) out.reset();
   return out;
 }

@@ -4,10 +4,13 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <tactus/clock_map_t.hpp>
 #include <utility>
 
 #include "sync/time/time.h"
+
+namespace tactus {
+class clock_map_t;
+}
 
 namespace tactus::sync {
 
@@ -54,7 +57,9 @@ class ClockMaps {
 
  private:
   struct Known {
-    clock_map_t map;
+    ClockLine line;
+    std::int32_t source;  // the publisher, from the header of the newest message
+    std::int64_t incarnation, seq;
     HostTime arrival;
   };
   std::int64_t run_id_;

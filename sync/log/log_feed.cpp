@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "sync/bus/bus.h"
+
 namespace tactus::sync {
 
 // Reads the log three times: for its run and its damage, for its end, and for the inboxes.

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "sync/bus/bus.h"
+#include "sync/bus/bus_options.h"
 #include "sync/log/timestamped_events.h"
 #include "sync/log/log_time_ranges.h"
 #include "sync/log/log_origin.h"
@@ -16,6 +16,8 @@
 #include "sync/log/mapped_log.h"
 
 namespace tactus::sync {
+
+class Bus;
 
 class LogFeed {
  public:

@@ -48,6 +48,17 @@ std::string FileSink::append(std::span<const std::uint8_t> bytes) {
   return "";
 }
 
+void append_event(std::vector<std::uint8_t>& out, std::int64_t number, std::int64_t timestamp_us, std::string_view channel,
+                  std::span<const std::uint8_t> data) {
+  append_big_endian(out, kLogSync, 4);
+  append_big_endian(out, static_cast<std::uint64_t>(number), 8);
+  append_big_endian(out, static_cast<std::uint64_t>(timestamp_us), 8);
+  append_big_endian(out, channel.size(), 4);
+  append_big_endian(out, data.size(), 4);
+  out.insert(out.end(), channel.begin(), channel.end());
+  out.insert(out.end(), data.begin(), data.end());
+}
+
 LogWriter::LogWriter(std::unique_ptr<LogSink> sink, std::size_t max_waiting_bytes)
     : sink_(std::move(sink)), max_waiting_bytes_(max_waiting_bytes) {}
 
@@ -62,13 +73,7 @@ void LogWriter::write(std::int64_t timestamp_us, std::string_view channel, std::
   last_us_ = std::max(last_us_, timestamp_us);
   if (blocks_.empty() || blocks_.back().size() + size > kBlockBytes) blocks_.emplace_back();
   std::vector<std::uint8_t>& block = blocks_.back();
-  append_big_endian(block, kLogSync, 4);
-  append_big_endian(block, static_cast<std::uint64_t>(events_++), 8);
-  append_big_endian(block, static_cast<std::uint64_t>(last_us_), 8);
-  append_big_endian(block, channel.size(), 4);
-  append_big_endian(block, data.size(), 4);
-  block.insert(block.end(), channel.begin(), channel.end());
-  block.insert(block.end(), data.begin(), data.end());
+  append_event(block, events_++, last_us_, channel, data);
 }
 
 void LogWriter::flush() {

@@ -33,6 +33,10 @@ class FileSink : public LogSink {
   std::int64_t size_ = 0;
 };
 
+// Appends one event in the format of sync/log/log_reader.h.
+void append_event(std::vector<std::uint8_t>& out, std::int64_t number, std::int64_t timestamp_us, std::string_view channel,
+                  std::span<const std::uint8_t> data);
+
 class LogWriter {
  public:
   // Limit of the data that waits for a full or slow disk.

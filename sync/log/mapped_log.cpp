@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sync/log/log_contract.h"
 #include "sync/log/log_parts.h"
 #include "sync/log/log_reader.h"
 
@@ -68,7 +69,7 @@ std::size_t with_border(std::size_t bytes) { return (bytes + kLogPartBytes - 1) 
 
 }  // namespace
 
-MappedLog::MappedLog(const std::string& path) {
+MappedLog::MappedLog(const std::string& path, LogTypes types) {
   const std::vector<std::string> names = files_of(path);
   std::vector<File> files(names.size());
   std::size_t size = 0;
@@ -97,6 +98,7 @@ MappedLog::MappedLog(const std::string& path) {
   }
   madvise(start, size, MADV_SEQUENTIAL);
   tell_of_cuts(bytes_);
+  if (types == LogTypes::kCurrent) require_current_types(bytes_, path);
 }
 
 MappedLog::~MappedLog() {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "sync/log/log_feed.h"
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 #include "sync/text/atomic_file.h"
 
 namespace tactus::sync {

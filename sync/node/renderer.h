@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "sync/node/renderer_host.h"
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/scene_receiver.h"
 #include "sync/text/settings.h"
 #include "sync/time/time.h"
 

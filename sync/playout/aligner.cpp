@@ -55,7 +55,7 @@ std::unique_ptr<Aligner> make_aligner(AlignerKind kind, Nanoseconds fixed) {
 AlignerKind aligner_named(const std::string& word) {
   for (std::size_t i = 0; i < kNames.size(); ++i)
     if (word == kNames[i]) return static_cast<AlignerKind>(i);
-  throw std::invalid_argument("there is no aligner \"" + word + "\"; choose fixed or quantile"); choose fixed, quantile, average or virtual-time");
+  throw std::invalid_argument("there is no aligner \"" + word + "\"; choose fixed or quantile");
 }
 
 const char* name_of(AlignerKind kind) { return kNames[static_cast<std::size_t>(kind)]; }

@@ -1,5 +1,7 @@
 #include "sync/presentation/presentation_reporter.h"
 
+#include "sync/bus/bus.h"
+
 #include <tactus/presented_t.hpp>
 
 namespace tactus::sync {

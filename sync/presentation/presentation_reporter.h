@@ -7,9 +7,11 @@
 #include <string>
 #include <tactus/presentation_t.hpp>
 
-#include "sync/bus/bus.h"
+#include "sync/time/time.h"
 
 namespace tactus::sync {
+
+class Bus;
 
 class PresentationReporter {
  public:

@@ -12,7 +12,7 @@
 #include "sync/bus/bus_arguments.h"
 #include "sync/degradation/profile_exchange.h"
 #include "sync/bus/identity.h"
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 #include "sync/clocks/pacing.h"
 #include "sync/text/printable.h"
 #include "sync/clocks/sim_clock_tracker.h"

@@ -23,7 +23,7 @@
 #include "sync/log/export_events.h"
 #include "sync/log/log_reader.h"
 #include "sync/log/mapped_log.h"
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 
 using namespace tactus;
 

@@ -16,7 +16,7 @@
 #include "sync/log/timestamped_events.h"
 #include "sync/log/log_time_ranges.h"
 #include "sync/log/mapped_log.h"
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 #include "sync/text/printable.h"
 #include "sync/log/recorder_types.h"
 

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 #include "sync/log/recorder_types.h"
 
 using namespace tactus;

@@ -14,7 +14,7 @@
 #include "sync/bus/bus.h"
 #include "sync/bus/bus_arguments.h"
 #include "sync/bus/identity.h"
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 #include "sync/clocks/pacing.h"
 #include "sync/playout/exchange.h"
 #include "sync/playout/options.h"

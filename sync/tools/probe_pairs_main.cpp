@@ -18,7 +18,7 @@
 #include <system_error>
 
 #include "sync/bus/bus_arguments.h"
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 #include "sync/clocks/pacing.h"
 #include "sync/clock_sync/pair_probe.h"
 

@@ -20,6 +20,7 @@
 #include <tactus/scene_t.hpp>
 #include <tactus/tool_def_t.hpp>
 
+#include "sync/assets/scene_sender.h"
 #include "sync/log/mapped_log.h"
 #include "sync/node/node.h"
 #include "sync/text/printable.h"
@@ -141,7 +142,7 @@ int main(int argc, char** argv) try {
   play.speed = sync::speed_of(speed);
   if (play.speed < 0) throw std::runtime_error("--speed " + speed + ": give a number from 0.01 to 100, or max");
 
-  const sync::MappedLog file(log);
+  const sync::MappedLog file(log, wishes.verbatim ? sync::LogTypes::kAny : sync::LogTypes::kCurrent);
   const sync::LogOrigin origin = sync::origin_of(file.bytes());
   if (!origin.known && !wishes.verbatim && !only_describe)
     std::cerr << "replay: " << sync::printable(log) << " holds no message of Tactus; it is played as it is\n";

@@ -8,7 +8,7 @@
 
 #include "sync/bus/bus.h"
 #include "sync/bus/bus_arguments.h"
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 #include "sync/tools/picture_reader.h"
 
 using namespace tactus;

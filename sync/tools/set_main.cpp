@@ -7,7 +7,8 @@
 
 #include "sync/bus/request_reply.h"
 #include "sync/bus/bus_arguments.h"
-#include "sync/node/node.h"
+#include "sync/bus/bus.h"
+#include "sync/node/node_options.h"
 #include "sync/text/printable.h"
 
 using namespace tactus;

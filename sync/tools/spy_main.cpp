@@ -21,7 +21,8 @@
 
 #include "sync/bus/bus_arguments.h"
 #include "sync/bus/decode.h"
-#include "sync/node/node.h"
+#include "sync/bus/bus.h"
+#include "sync/node/node_options.h"
 #include "sync/tools/recorder/recorder_tap.h"
 #include "sync/tools/spy/screen.h"
 

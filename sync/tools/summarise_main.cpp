@@ -10,7 +10,7 @@
 
 #include "sync/log/log_reader.h"
 #include "sync/log/mapped_log.h"
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 #include "sync/tools/summary/summary.h"
 
 using namespace tactus;

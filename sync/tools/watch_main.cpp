@@ -15,7 +15,8 @@
 #include <tactus/sync_report_t.hpp>
 
 #include "sync/bus/bus_arguments.h"
-#include "sync/node/node.h"
+#include "sync/bus/bus.h"
+#include "sync/node/node_options.h"
 #include "sync/tools/watch_table.h"
 
 using namespace tactus;

@@ -13,7 +13,7 @@
 #include "sync/log/export_events.h"
 #include "sync/log/log_origin.h"
 #include "sync/tools/picture_reader.h"
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/scene_receiver.h"
 #include "sync/tools/spy/channels.h"
 #include "sync/tools/spy/screen.h"
 #include "sync/tools/summary/summary.h"

@@ -10,7 +10,7 @@
 #include <tactus/uniform_t.hpp>
 #include <vector>
 
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/scene_receiver.h"
 #include "visual_node/scene_view/raster.h"
 
 namespace tactus::visual {

@@ -1,7 +1,7 @@
 // Decodes the meshes of the visible shapes of a scene.
 #pragma once
 
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/scene_receiver.h"
 #include "visual_node/scene_view/scene_view.h"
 
 namespace tactus::visual {

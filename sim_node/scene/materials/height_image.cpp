@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "lcmtypes/height_map.h"
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/scene_receiver.h"
 
 namespace tactus::sim {
 

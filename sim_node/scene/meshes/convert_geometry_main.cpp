@@ -9,7 +9,7 @@
 #include "sim_node/scene/meshes/convert_geometry.h"
 #include "sim_node/scene/materials/materials.h"
 #include "sim_node/scene/meshes/mesh_reader.h"
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 
 using namespace tactus;
 using namespace tactus::sim;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/asset.h"
 
 namespace tactus::sim {
 

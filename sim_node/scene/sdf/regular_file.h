@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/asset.h"
 
 namespace tactus::sim {
 

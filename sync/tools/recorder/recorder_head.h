@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "sync/bus/identity.h"
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/asset.h"
+#include "sync/time/time.h"
 
 namespace tactus::sync {
 

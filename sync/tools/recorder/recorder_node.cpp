@@ -7,6 +7,7 @@
 // full, it reports that, stores as much as fits in memory, and continues. Received messages are passed to the kernel within
 // 20 ms: SIGKILL loses no more. After a power failure the data that the kernel had not written is missing, by Linux' defaults
 // up to the last 30 s.
+#include "sync/assets/scene_receiver.h"
 #include "sync/tools/recorder/recorder_node.h"
 
 #include <time.h>

@@ -9,7 +9,7 @@
 #include <optional>
 #include <thread>
 
-#include "sync/bus/bus.h"
+#include "sync/bus/bus_options.h"
 #include "sync/bus/message_batch.h"
 #include "sync/bus/udp_port.h"
 

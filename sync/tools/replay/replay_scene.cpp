@@ -2,6 +2,9 @@
 
 #include <tactus/asset_ref_t.hpp>
 
+#include "sync/assets/scene_receiver.h"
+#include "sync/bus/bus.h"
+
 namespace tactus::sync {
 
 std::vector<Asset> scene_of(std::span<const std::uint8_t> log, const LogOrigin& origin) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sync/log/log_origin.h"
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/asset.h"
 
 namespace tactus::sync {
 

@@ -17,7 +17,7 @@
 #include "audio_node/excitation/contact_patch.h"
 #include "sim_node/scene/load_sdf.h"
 #include "sim_node/scene/scene_assets.h"
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 #include "tests/audio_node/support/recorded_run.h"
 
 using namespace tactus;

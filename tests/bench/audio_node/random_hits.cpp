@@ -21,7 +21,7 @@
 
 #include "lcmtypes/vectors.h"
 #include "sync/node/node.h"
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/scene_sender.h"
 
 using namespace tactus;
 

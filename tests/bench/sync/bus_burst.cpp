@@ -6,7 +6,8 @@
 #include <iostream>
 #include <tactus/asset_chunk_t.hpp>
 
-#include "sync/node/node.h"
+#include "sync/bus/bus.h"
+#include "sync/node/node_options.h"
 
 using namespace tactus;
 

@@ -22,7 +22,7 @@
 #include "sync/bus/bus_arguments.h"
 #include "sync/bus/datagram.h"
 #include "sync/bus/decode.h"
-#include "sync/node/node.h"
+#include "sync/node/node_options.h"
 #include "sync/clocks/pacing.h"
 
 using namespace tactus;

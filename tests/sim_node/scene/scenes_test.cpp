@@ -8,7 +8,7 @@
 #include "lcmtypes/vectors.h"
 #include "tests/sim_node/support/scene_file.h"
 #include "sim_node/scene/scene_assets.h"
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/scene_receiver.h"
 #include "sync/bus/decode.h"
 
 using namespace tactus;

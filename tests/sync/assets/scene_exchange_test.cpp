@@ -1,5 +1,6 @@
 // Tests of the exchange of a scene manifest and its assets, with loss and forged chunks.
-#include "sync/assets/scene_exchange.h"
+#include "sync/assets/scene_receiver.h"
+#include "sync/assets/scene_sender.h"
 
 #include <catch2/catch.hpp>
 #include <tactus/asset_chunk_t.hpp>

@@ -29,6 +29,7 @@ GROUPS = {
     "Results of a run": (
         Command("export", "makes tables of a log", "tactus.commands.export"),
         Command("report", "makes one HTML page about one or several runs", "tactus.report.main"),
+        Command("log", "`log upgrade OLD NEW`: converts a log to the message types of this release", "tactus.commands.log"),
         Command("rerender", "renders a log again under other degradation profiles, and compares", "tactus.rerender.main"),
     ),
     "Studies": (

@@ -1,54 +1,27 @@
-// Transfers the scene and its assets over the bus: sim_node announces them once a second, and a node that lacks chunks
-// requests them. Everything is named by the hash of its content, so a restarted simulation with the same scene costs nothing.
+// Receives the scene and its assets from the bus: requests the chunks that are missing. sync/assets/scene_sender.h sends them.
 #pragma once
 
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <optional>
-#include <string>
 #include <tactus/asset_chunk_t.hpp>
 #include <tactus/asset_ref_t.hpp>
-#include <tactus/asset_request_t.hpp>
 #include <tactus/header_t.hpp>
 #include <tactus/scene_manifest_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <vector>
 
 #include "sync/assets/asset.h"
-#include "sync/bus/bus.h"
+#include "sync/bus/identity.h"
 #include "sync/bus/page_assembler.h"
+#include "sync/time/time.h"
 
 namespace tactus::sync {
 
-inline constexpr std::size_t kChunkBytes = 1024;
-
-// The sending side, in sim_node. Sends at most kChunksPerPoll chunks a call (bulk port), so that a late joiner never delays a
-// tick by more than a few microseconds.
-class SceneSender {
- public:
-  static constexpr int kChunksPerPoll = 4;
-  // Throws std::runtime_error with one sentence when the assets exceed the limits of the receivers.
-  SceneSender(Bus& bus, std::vector<Asset> assets);
-  // Call it once a tick: sends the manifest when due, then requested chunks.
-  void poll(HostTime now);
-  const std::vector<asset_ref_t>& manifest() const { return refs_; }
-
- private:
-  struct Outgoing {
-    Asset asset;
-    std::vector<bool> wanted;  // per chunk: requested and not yet sent
-  };
-  void announce();
-  void send_chunk(std::int64_t hash, const Outgoing& outgoing, std::size_t chunk);
-
-  Bus& bus_;
-  Queue<asset_request_t>& requests_;
-  std::map<std::int64_t, Outgoing> assets_;
-  std::vector<asset_ref_t> refs_;
-  HostTime next_manifest_{};
-  std::size_t wanted_ = 0;
-};
+class Bus;
+template <class Message>
+class Queue;
 
 // The receiving side, in every renderer and in the recorder. Listens on both ports (a replayed log has only one).
 //

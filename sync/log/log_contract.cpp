@@ -1,0 +1,108 @@
+#include "sync/log/log_contract.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "lcmtypes/fields.h"
+#include "sync/log/log_reader.h"
+#include "sync/log/recorder_types.h"
+
+namespace tactus::sync {
+namespace {
+
+// LOG_TYPES follows LOG_INFO at the start of each part of a recording. Design: room for other leading events.
+constexpr int kHeadEvents = 1024;
+
+struct RenamedField {
+  std::string_view type, before, now;
+};
+// Fields that were renamed since 0.1.0, each with its message type.
+constexpr std::array<RenamedField, 0> kRenamedFields{};
+
+std::string text_of(const Field& f) {
+  return std::string(f.type) + " " + std::string(f.name) + (f.count.empty() ? "" : "[" + std::string(f.count) + "]");
+}
+
+// The line of a field of a recorded type, with the name that the field has now.
+std::string with_new_name(const std::string& type, const std::string& line) {
+  const std::size_t begin = line.find(' ') + 1;
+  const std::size_t end = std::min(line.find('[', begin), line.size());
+  for (const RenamedField& r : kRenamedFields)
+    if (r.type == type && line.substr(begin, end - begin) == r.before)
+      return line.substr(0, begin) + std::string(r.now) + line.substr(end);
+  return line;
+}
+
+bool same_fields(const RecordedType& recorded, const MessageType& now) {
+  return std::equal(recorded.fields.begin(), recorded.fields.end(), now.fields.begin(), now.fields.end(),
+                    [&](const std::string& line, const Field& f) { return with_new_name(recorded.name, line) == text_of(f); });
+}
+
+// The text of all pages, without their titles; empty when one is missing.
+std::string all_pages(std::span<const std::uint8_t> log) {
+  LogScanner scanner(log);
+  LogEvent e;
+  std::string text;
+  int last = 0;
+  for (int n = 0; n < kHeadEvents && scanner.next(e); ++n) {
+    if (e.channel != kLogTypes) continue;
+    const std::string_view page(reinterpret_cast<const char*>(e.data.data()), e.data.size());
+    const std::size_t end_of_title = page.find('\n');
+    int number = 0, pages = 0;
+    if (end_of_title == page.npos ||
+        std::sscanf(std::string(page.substr(0, end_of_title)).c_str(), "tactus types, page %d of %d", &number, &pages) != 2 ||
+        number != ++last)
+      return {};
+    text += page.substr(end_of_title + 1);
+    if (number == pages) return text;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<RecordedType> recorded_types(std::span<const std::uint8_t> log) {
+  std::vector<RecordedType> types;
+  std::istringstream lines(all_pages(log));
+  for (std::string line; std::getline(lines, line);) {
+    std::array<char, 128> name{};
+    unsigned long long fingerprint = 0;
+    if (std::sscanf(line.c_str(), "struct %127s 0x%llx", name.data(), &fingerprint) == 2)
+      types.push_back({name.data(), static_cast<std::int64_t>(fingerprint), {}});
+    else if (line.starts_with("  ") && !types.empty())
+      types.back().fields.push_back(line.substr(2));
+  }
+  return types;
+}
+
+std::map<std::int64_t, std::int64_t> renamed_types(const std::vector<RecordedType>& recorded) {
+  std::map<std::int64_t, std::int64_t> renamed;
+  for (const RecordedType& type : recorded) {
+    const MessageType* now = message_type(type.name);
+    if (now && now->fingerprint == type.fingerprint) continue;
+    if (!now || !same_fields(type, *now))
+      throw std::runtime_error("has messages of the type " + type.name + " with other fields than this release; " +
+                               "use the release that LOG_INFO of the log names");
+    renamed[type.fingerprint] = now->fingerprint;
+  }
+  return renamed;
+}
+
+void require_current_types(std::span<const std::uint8_t> log, const std::string& path) {
+  const auto changed = [](const RecordedType& type) {
+    const MessageType* now = message_type(type.name);
+    return !now || now->fingerprint != type.fingerprint;
+  };
+  const std::vector<RecordedType> types = recorded_types(log);
+  const auto first = std::find_if(types.begin(), types.end(), changed);
+  if (first == types.end()) return;
+  throw std::runtime_error(path + " was recorded with an earlier form of the message type " + first->name +
+                           "; convert it: tactus log upgrade " + path + " NEW.lcmlog");
+}
+
+}  // namespace tactus::sync

@@ -1,0 +1,82 @@
+#include "sync/log/upgrade_log.h"
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sync/log/log_contract.h"
+#include "sync/log/log_reader.h"
+#include "sync/log/recorder_types.h"
+
+namespace tactus::sync {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+constexpr std::size_t kFingerprintBytes = 8;
+constexpr std::size_t kBlockBytes = 1 << 20;  // passed to the sink at once
+
+std::int64_t fingerprint_of(Bytes data) {  // big-endian
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < kFingerprintBytes; ++i) value = value << 8 | data[i];
+  return static_cast<std::int64_t>(value);
+}
+
+void set_fingerprint(std::vector<std::uint8_t>& data, std::int64_t fingerprint) {
+  for (std::size_t i = kFingerprintBytes; i-- > 0; fingerprint >>= 8) data[i] = static_cast<std::uint8_t>(fingerprint & 0xff);
+}
+
+// True for the first page of LOG_TYPES; each part of a recording has one.
+bool is_first_page(Bytes data) {
+  return std::string_view(reinterpret_cast<const char*>(data.data()), data.size()).starts_with("tactus types, page 1 of ");
+}
+
+// Numbers the events again, because LOG_TYPES can have another number of pages.
+class Output {
+ public:
+  explicit Output(std::unique_ptr<LogSink> sink) : sink_(std::move(sink)) {}
+  void write(const LogEvent& e, Bytes data) {
+    append_event(block_, events_++, e.timestamp_us, e.channel, data);
+    if (block_.size() >= kBlockBytes) flush();
+  }
+  void flush() {
+    const std::string reason = sink_->append(block_);
+    if (!reason.empty()) throw std::runtime_error("cannot be converted: " + reason);
+    block_.clear();
+  }
+  std::int64_t events() const { return events_; }
+
+ private:
+  std::unique_ptr<LogSink> sink_;
+  std::vector<std::uint8_t> block_;
+  std::int64_t events_ = 0;
+};
+
+}  // namespace
+
+UpgradeCounts upgrade_log(Bytes log, std::unique_ptr<LogSink> sink) {
+  const std::vector<RecordedType> types = recorded_types(log);
+  if (types.empty()) throw std::runtime_error("does not describe its message types (LOG_TYPES), so it cannot be converted");
+  const auto renamed = renamed_types(types);
+  UpgradeCounts counts;
+  Output out(std::move(sink));
+  LogScanner scanner(log);
+  std::vector<std::uint8_t> data;
+  for (LogEvent e; scanner.next(e);) {
+    if (e.channel == kLogTypes) {
+      if (!is_first_page(e.data)) continue;
+      for (const std::string& page : log_types()) out.write(e, {reinterpret_cast<const std::uint8_t*>(page.data()), page.size()});
+      continue;
+    }
+    data.assign(e.data.begin(), e.data.end());
+    const auto change = data.size() < kFingerprintBytes ? renamed.end() : renamed.find(fingerprint_of(data));
+    if (change != renamed.end()) set_fingerprint(data, change->second), ++counts.converted;
+    out.write(e, data);
+  }
+  out.flush();
+  counts.events = out.events();
+  counts.damaged_regions = scanner.damaged_regions();
+  return counts;
+}
+
+}  // namespace tactus::sync
