@@ -35,7 +35,7 @@ TEST_CASE("A mesh whose triangles point outside its vertices is refused") {
   CHECK_FALSE(sync::decode_asset<mesh_t>(sync::encode(m)));
 }
 
-TEST_CASE("No bytes are no message") {
+TEST_CASE("An empty buffer is not a valid message") {
   CHECK_FALSE(sync::decode<touch_model_t>(nullptr, 0));
   CHECK_FALSE(sync::decode_asset<scene_t>({}));
 }
