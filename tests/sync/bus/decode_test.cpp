@@ -27,7 +27,7 @@ TEST_CASE("An asset may be larger than a datagram") {
   CHECK(m->indices.size() == 30000);
 }
 
-TEST_CASE("A mesh whose triangles point outside its vertices is refused") {
+TEST_CASE("A mesh whose triangles point outside its vertices is rejected") {
   mesh_t m = triangles(1);
   m.indices[1] = 3;
   CHECK_FALSE(sync::decode_asset<mesh_t>(sync::encode(m)));

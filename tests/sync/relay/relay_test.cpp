@@ -106,7 +106,7 @@ void carry(std::deque<Site>& all, HostTime now) {
       }
     if (!moved) return;
   }
-  FAIL("messages go in circles");
+  FAIL("messages circulate between relays");
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ class Renderer {
     }
     check_events(SimTime::max(), "at the end");
     for (const auto& [id, e] : contacts_.known().events)
-      if (!got_.contains(id)) said_ << "event " << id << " never came out; ";
+      if (!got_.contains(id)) said_ << "event " << id << " was never delivered; ";
     return said_.str();
   }
 
@@ -185,7 +185,7 @@ class Renderer {
     ++tally_.true_integrals;
     const std::int64_t truth = contacts_.true_contact_time_ns(t0, t1, kTool);
     if (got.contact_time.count() != truth)
-      said_ << "over " << t0 << " .. " << t1 << " " << got.contact_time.count() << " ns instead of truly " << truth
+      said_ << "over " << t0 << " .. " << t1 << " " << got.contact_time.count() << " ns instead of the true " << truth
             << "; ";
   }
 
