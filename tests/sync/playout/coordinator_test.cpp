@@ -111,7 +111,7 @@ TEST_CASE("A newer request is applied, an older one is rejected") {
   CHECK_FALSE(c.take(request_for(asked, 200)));
 }
 
-TEST_CASE("The coordinator with the lower clock id publishes, and the other one replaces it when it falls silent") {
+TEST_CASE("The coordinator with the lower clock id publishes, the other one is its backup") {
   PlayoutCoordinator low(3, plan()), high(7, plan());
   heard(low, "audio", 18), heard(high, "audio", 18);
   REQUIRE(low.take(request_for(plan(Policy::kExperiment), 50)));  // received by one modality only

@@ -61,7 +61,7 @@ struct TwoHosts {
 
 }  // namespace
 
-TEST_CASE("Presentation times of another host are mapped, and the uncertainty of the map is part of the asynchrony") {
+TEST_CASE("Presentation times of another host are mapped with the uncertainty of the map") {
   TwoHosts t;
   t.map(500);
   t.run(0, 5000);

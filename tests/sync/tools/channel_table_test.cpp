@@ -114,7 +114,7 @@ TEMPLATE_TEST_CASE("Every number and text of a message has a row that parses to 
   }
 }
 
-TEMPLATE_TEST_CASE("A wide table has a column for each field outside lists and equal rows",
+TEMPLATE_TEST_CASE("A wide table has a column for each field outside lists, and rows of equal length",
                    "", EVERY_CHANNELS_TYPE) {
   Log log;
   Samples samples(22);

@@ -131,7 +131,7 @@ TEST_CASE_METHOD(Fixture, "Before the scene arrives a frame is dark and shows WA
   CHECK(frame(32'000'000).state == node_health_t::RUNNING);
 }
 
-TEST_CASE_METHOD(Fixture, "Without new state bodies are extrapolated, then held, then lost, and the frame shows it") {
+TEST_CASE_METHOD(Fixture, "Without new state bodies are extrapolated, then held, then shown as lost") {
   load();
   receive(0);
   frame(0);

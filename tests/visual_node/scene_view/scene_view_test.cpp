@@ -159,7 +159,7 @@ TEST_CASE("geometry=physics draws the collision shapes, each body in its own col
   CHECK(colours.size() == 3);
 }
 
-TEST_CASE("The spot factor is 1 inside the inner angle, 0 outside the outer one and linear in the cosine between") {
+TEST_CASE("The spot factor falls from 1 at the inner angle to 0 at the outer one, linear in the cosine") {
   const light_def_t lamp = test::spot({0, 0, 2}, 0.6, 1.0);
   const Light l = make_light(lamp);
   const auto inside = [&](double angle) { return std::cos(angle) * l.cone.x() + l.cone.y(); };
