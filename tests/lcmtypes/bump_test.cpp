@@ -11,7 +11,7 @@ using namespace tactus;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-TEST_CASE("The dominant axis of the normal chooses the projection, cyclically") {
+TEST_CASE("The dominant axis of the normal selects the projection cyclically") {
   const auto axes = [](const Vector3d& normal) {
     const BumpAxes a = bump_axes(normal);
     return std::array{a.across, a.u, a.v};
@@ -19,18 +19,18 @@ TEST_CASE("The dominant axis of the normal chooses the projection, cyclically") 
   CHECK(axes({0.1, -0.2, 0.9}) == std::array{2, 0, 1});
   CHECK(axes({0.9, 0.1, -0.2}) == std::array{0, 1, 2});
   CHECK(axes({0.1, 0.9, -0.2}) == std::array{1, 2, 0});
-  SECTION("for both signs of the normal") {
+  SECTION("the sign of the normal has no effect") {
     CHECK(axes({0, 0, -1}) == axes({0, 0, 1}));
     CHECK(axes({-1, 0, 0}) == axes({1, 0, 0}));
     CHECK(axes({0, -1, 0}) == axes({0, 1, 0}));
   }
-  SECTION("and ties prefer z over x over y") {
+  SECTION("ties prefer z over x over y") {
     CHECK(axes({1, 1, 1}) == axes({0, 0, 1}));
     CHECK(axes({1, 1, 0}) == axes({1, 0, 0}));
   }
 }
 
-TEST_CASE("A point lies in the map at its two coordinates, in repetitions") {
+TEST_CASE("Map coordinates are counted in repetitions of the map") {
   material_def_t material{};
   material.bump_size_u_m = 0.5, material.bump_size_v_m = 0.25;
   const Vector3d point(1, 2, 3);
@@ -39,7 +39,7 @@ TEST_CASE("A point lies in the map at its two coordinates, in repetitions") {
   CHECK(bump_at(material, bump_axes({0, -1, 0}), point) == Vector2d(6, 4));  // z, x
 }
 
-TEST_CASE("A relief out of range is rejected, a missing one may have any finite numbers") {
+TEST_CASE("A relief out of range is rejected, and without a map any finite numbers are valid") {
   test::Samples samples(1);
   scene_t scene{};
   samples.fill(scene);

@@ -81,7 +81,7 @@ double number_at(const std::vector<std::uint8_t>& bytes, const Spot& spot) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("Every number of a message is found by its path, in agreement with the independent reader", "",
+TEMPLATE_TEST_CASE("The path of every number finds it, in agreement with an independent parser", "",
                    EVERY_KIND) {
   const std::string type = TestType::getTypeName();
   REQUIRE(message_type(type));
@@ -178,7 +178,7 @@ TEMPLATE_TEST_CASE("All numbers and texts of a message are visited in order, eac
   }
 }
 
-TEST_CASE("A list of fixed length is read like one of counted length") {
+TEST_CASE("A list of fixed length is read like a counted list") {
   pass_t pass{};
   uniform_t u{};
   u.name = "weight", u.count = 3;

@@ -19,7 +19,7 @@ FrictionMap checkered(double size_u_m, double size_v_m, double black, double whi
 
 }  // namespace
 
-TEST_CASE("Friction at a place is that of the grey there, bilinear between pixel centres") {
+TEST_CASE("Friction follows the grey value, bilinear between pixel centres") {
   const FrictionMap map = checkered(0.4, 0.2, 0.5, 1.5);
   const Vector3d up(0, 0, 1);
   CHECK(map.factor(up, {0.1, 0.05, 0}) == Approx(0.5));  // the centre of the lower left pixel
@@ -28,17 +28,17 @@ TEST_CASE("Friction at a place is that of the grey there, bilinear between pixel
   CHECK(map.factor(up, {0.2, 0.05, 0}) == Approx(1.0));
   CHECK(map.factor(up, {0.15, 0.05, 0}) == Approx(0.75));
   CHECK(map.factor(up, {0.2, 0.1, 0}) == Approx(1.0));
-  SECTION("it repeats in all directions") {
+  SECTION("the map repeats in all directions") {
     CHECK(map.factor(up, {0.1 + 0.8, 0.05 - 0.6, 0}) == Approx(0.5));
     CHECK(map.factor(up, {0.0, 0.05, 0}) == Approx(1.0));
   }
-  SECTION("and lies on each side of a body like a relief") {
+  SECTION("the map is projected on each side of a body like a relief") {
     CHECK(map.factor({1, 0, 0}, {9, 0.3, 0.05}) == Approx(1.5));     // y, z
     CHECK(map.factor({0, -1, 0}, {0.05, 9, 0.15}) == Approx(0.75));  // z, x: a quarter of the way along u
   }
 }
 
-TEST_CASE("The factor of one surface of a pair counts with its square root, as in the geometric mean") {
+TEST_CASE("The factor of one surface enters the pair with its square root, as in the geometric mean") {
   const double tool = 0.8, surface = 0.3, factor = 0.2;
   CHECK(std::sqrt(tool * surface) * pair_factor(factor) == Approx(std::sqrt(tool * (surface * factor))));
 }

@@ -9,18 +9,18 @@
 using namespace tactus;
 using test::png_bytes;
 
-TEST_CASE("A grey picture has heights from 0 to 1, its lowest row first") {
+TEST_CASE("A grey image has heights from 0 to 1, its lowest row first") {
   const HeightMap map = read_height_map(png_bytes(3, 2, 8, {255, 0, 0, 0, 0, 51}));
   CHECK(map.columns == 3);
   CHECK(map.rows == 2);
   CHECK(map.at(0, 1) == 1);
   CHECK(map.at(2, 0) == Approx(0.2));
-  SECTION("and sixteen bits keep their resolution") {
+  SECTION("sixteen-bit samples keep their resolution") {
     CHECK(read_height_map(png_bytes(2, 2, 16, {0, 0, 0, 1, 0x80, 0, 0xff, 0xff})).at(1, 1) == Approx(1 / 65535.0));
   }
 }
 
-TEST_CASE("Data that is not a height map is rejected, wherever it is damaged") {
+TEST_CASE("Data that is not a height map is rejected, also if it is truncated") {
   CHECK_THROWS_WITH(read_height_map({}), Catch::Contains("no PNG"));
   CHECK_THROWS_WITH(read_height_map(png_bytes(2, 2, 8, std::vector<std::uint8_t>(12), PNG_COLOR_TYPE_RGB)),
                     Catch::Contains("grey"));

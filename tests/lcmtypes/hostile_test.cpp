@@ -223,7 +223,7 @@ TEMPLATE_TEST_CASE("An enumeration out of range is rejected", "", EVERY_MESSAGE)
   }
 }
 
-TEMPLATE_TEST_CASE("A page outside its pages is rejected", "", contact_events_t, contact_frame_t, world_state_t,
+TEMPLATE_TEST_CASE("A page number outside the page count is rejected", "", contact_events_t, contact_frame_t, world_state_t,
                    scene_manifest_t, sync_report_t) {
   Samples samples(7);
   const int wrong[][2] = {{0, 0}, {1, 1}, {-1, 1}, {5, 3}, {0, -1}, {std::numeric_limits<int>::max(), 2}};
@@ -237,7 +237,7 @@ TEMPLATE_TEST_CASE("A page outside its pages is rejected", "", contact_events_t,
   }
 }
 
-TEMPLATE_TEST_CASE("Noise is rejected, damage is rejected or harmless", "", EVERY_MESSAGE) {
+TEMPLATE_TEST_CASE("Random bytes are rejected, and damaged messages are rejected or harmless", "", EVERY_MESSAGE) {
   Samples samples(8);
   const auto byte = [&] { return static_cast<std::uint8_t>(samples.whole(0, 255)); };
   for (int i = 0; i < 2000; ++i) {

@@ -49,7 +49,7 @@ HeightMap waves(int columns, int rows) {
 
 }  // namespace
 
-TEST_CASE("The slopes of a sine are its derivative, and up in the picture is along v") {
+TEST_CASE("The slope of a sine map is its derivative, and the image points up along v") {
   const HeightMap map = waves(64, 128);
   const Relief relief = make_relief(map, rough(0.4, 0.2, 0.002));
   const double w = 2 * std::numbers::pi;
@@ -68,7 +68,7 @@ TEST_CASE("The slopes of a sine are its derivative, and up in the picture is alo
     }
 }
 
-TEST_CASE("A relief repeats, and its height and slope are continuous everywhere") {
+TEST_CASE("A relief is periodic, with continuous height and slope") {
   const Relief relief = make_relief(noise(16, 12, 3), rough(0.02, 0.03, 0.001));
   std::mt19937 random(7);
   std::uniform_real_distribution<double> anywhere(-3, 3);
@@ -83,7 +83,7 @@ TEST_CASE("A relief repeats, and its height and slope are continuous everywhere"
   }
 }
 
-TEST_CASE("For ridges the slope is the derivative of the height, along u and along v") {
+TEST_CASE("The slope of a ridge map is the derivative of its height along u and v") {
   const HeightMap along_u = ridges(24, 5, 11);
   HeightMap along_v{5, 24, 65535, {}};
   for (int r = 0; r < 24; ++r)
@@ -99,12 +99,12 @@ TEST_CASE("For ridges the slope is the derivative of the height, along u and alo
   }
 }
 
-TEST_CASE("The normal of a relief leans away from the rising side, in the plane of the surface") {
+TEST_CASE("The normal of a relief tilts away from the rising side") {
   CHECK(relief_normal({0, 0, 1}, {0, 0}) == Vector3d(0, 0, 1));
   CHECK((relief_normal({0, 0, 1}, {1, 0}) - Vector3d(-1, 0, 1).normalized()).norm() < 1e-12);
   CHECK((relief_normal({0, 0, -1}, {1, 0}) - Vector3d(-1, 0, -1).normalized()).norm() < 1e-12);
   CHECK((relief_normal({0, 1, 0}, {0.5, 0.25}) - Vector3d(-0.25, 1, -0.5).normalized()).norm() < 1e-12);
-  SECTION("with the tilt of the slope along it, also on an oblique surface") {
+  SECTION("the tilt equals the slope, also on an oblique surface") {
     const Vector3d n = Vector3d(0.3, -0.2, 0.8).normalized();
     const Vector3d m = relief_normal(n, {0.4, -0.7});
     Vector3d along(0.4, -0.7, 0);

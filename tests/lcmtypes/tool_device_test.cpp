@@ -6,7 +6,7 @@
 using namespace tactus;
 using Catch::Contains;
 
-TEST_CASE("The device of a tool is parsed completely, without access to its file") {
+TEST_CASE("A tool device is parsed completely without access to its file") {
   CHECK(parse_tool_device("virtual_hand").kind == ToolDevice::Kind::kVirtualHand);
   CHECK(parse_tool_device("virtual_hand").file.empty());
   CHECK(parse_tool_device("virtual_hand:a b.csv").file == "a b.csv");
@@ -26,7 +26,7 @@ TEST_CASE("The device of a tool is parsed completely, without access to its file
   CHECK(parse_tool_device("external:left arm,offset=0/0/1").name == "left arm");
 }
 
-TEST_CASE("An invalid device of a tool is reported in one sentence") {
+TEST_CASE("An invalid tool device is reported in one sentence") {
   for (const char* unknown : {"", "phantom", "evil:x.csv", "playback2:x.csv", "VIRTUAL_HAND"})
     CHECK_THROWS_WITH(parse_tool_device(unknown), Contains("unknown") && Contains("use virtual_hand"));
   CHECK_THROWS_WITH(parse_tool_device("playback"), Contains("name the file"));
@@ -44,7 +44,7 @@ TEST_CASE("An invalid device of a tool is reported in one sentence") {
   CHECK_THROWS_WITH(parse_tool_device("spidar:cave,scale=2"), Contains("no option \"scale\"") && Contains("offset"));
 }
 
-TEST_CASE("The motion file of a device is replaced, its options stay") {
+TEST_CASE("The motion file of a device is replaced and its options are kept") {
   CHECK(with_device_file("playback:x.csv,rate=2,scale=3", "/a/b.csv") == "playback:/a/b.csv,rate=2,scale=3");
   CHECK(with_device_file("virtual_hand:x.csv", "/a/b.csv") == "virtual_hand:/a/b.csv");
   CHECK_THROWS_WITH(with_device_file("playback:x.csv", "/a,b/x.csv"), Contains("comma"));

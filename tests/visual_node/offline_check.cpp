@@ -145,8 +145,7 @@ std::vector<std::vector<std::uint8_t>> frames_of(const Folder& folder, const std
 
 }  // namespace
 
-TEST_CASE(
-    "A log rendered twice gives the same pixels and file, and every event is in its due frame") {
+TEST_CASE("A log rendered twice gives identical files with every event in its frame") {
   const Folder folder;
   record(folder.file("run.lcmlog"));
   const Done first = render(folder, "run.lcmlog", "a.mp4", {"--frames", folder.file("frames.csv")}),
@@ -191,7 +190,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("Another log, and the same log with another setting, give other pixels") {
+TEST_CASE("Another log or another setting gives other pixels") {
   const Folder folder;
   record(folder.file("run.lcmlog"));
   const Done plain = render(folder, "run.lcmlog", "a.mp4");
@@ -201,7 +200,7 @@ TEST_CASE("Another log, and the same log with another setting, give other pixels
   CHECK(plain.after("pixels ") != coarse.after("pixels "));
 }
 
-TEST_CASE("The profile of a run is ignored unless the log is rendered as recorded") {
+TEST_CASE("The profile of a run applies only if the log is rendered as recorded") {
   const Folder folder;
   const std::string profile = R"(<profile name="slow"><degrade modality="visual" frame_rate="10Hz"/></profile>)";
   record(folder.file("plain.lcmlog"));
@@ -215,7 +214,7 @@ TEST_CASE("The profile of a run is ignored unless the log is rendered as recorde
   CHECK(render(folder, "plain.lcmlog", "d.mp4", {"--degrade", folder.file("slow.xml")}).after("pixels ") != plain);
 }
 
-TEST_CASE("An existing file is not overwritten, under any name") {
+TEST_CASE("An existing file is not overwritten under any name") {
   const Folder folder;
   record(folder.file("run.lcmlog"));
   std::ofstream(folder.file("old.mp4")) << "another film";
@@ -233,7 +232,7 @@ TEST_CASE("An existing file is not overwritten, under any name") {
   CHECK(bytes_of(folder.file("old.mp4")) == "another film");
 }
 
-TEST_CASE("A file that is not a log of a run is rejected in one sentence, and leaves no file") {
+TEST_CASE("A file that is not a log is rejected in one sentence without output files") {
   const Folder folder;
   const auto refusal = [&](const std::string& log) {
     const Done done = render(folder, log, "x.mp4");
@@ -267,7 +266,7 @@ TEST_CASE("A damaged log is rendered up to its damage, and the damage is counted
   CHECK(frames_of(folder, "a.mp4").size() > 160);
 }
 
-TEST_CASE("A snapshot of a log is written beside its video, and each wall of a room can be rendered from it") {
+TEST_CASE("A snapshot is written beside its video, and each wall of a room can be rendered") {
   const Folder folder;
   record(folder.file("run.lcmlog"));
   const Done left = render(folder, "run.lcmlog", "left.mp4",

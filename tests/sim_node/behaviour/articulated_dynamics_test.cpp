@@ -103,7 +103,7 @@ Eigen::VectorXd joined(ArticulatedSystem& s, int link, const Vector3d& p, const 
 
 }  // namespace
 
-TEST_CASE("Inverse dynamics by Newton-Euler returns the applied torques, in trees of every joint type") {
+TEST_CASE("Newton-Euler inverse dynamics returns the applied torques for every joint type") {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> u(-1, 1);
   for (int n = 0; n < 200; ++n) {
@@ -215,7 +215,7 @@ TEST_CASE("The response of one joint to an impulse along another is symmetric") 
   CHECK(inverse.ldlt().isPositive());
 }
 
-TEST_CASE("An impulse at the middle of a free rod leaves a joint at its centre of percussion at rest") {
+TEST_CASE("An impulse at the middle of a free rod leaves its centre of percussion at rest") {
   // A rod of length l struck at 2/3 l rotates about its end without a load on it. A hinge there gets no force, so the
   // free rod and the hinged one move equally.
   std::vector<LinkDef> hinged = {rod_link(-1, JointKind::kBall, {0, 0, 0})};
@@ -230,7 +230,7 @@ TEST_CASE("An impulse at the middle of a free rod leaves a joint at its centre o
   CHECK(ra[2] == Approx(blow.y() * struck.x() / (inertia + m * half * half)).epsilon(1e-12));
 }
 
-TEST_CASE("A tree without valid dynamics is rejected with the name of the link") {
+TEST_CASE("A tree without valid dynamics is rejected with the name of its link") {
   std::vector<LinkDef> links = horizontal_chain(2);
   links[1].mass_kg = 0;
   CHECK_THROWS_WITH(ArticulatedSystem(links), Catch::Contains("link 1"));

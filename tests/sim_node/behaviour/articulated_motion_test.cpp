@@ -59,7 +59,7 @@ struct PlanarChain {
 
 }  // namespace
 
-TEST_CASE("The chain of eleven universal joints released from horizontal keeps its energy within 1 % over 5 s") {
+TEST_CASE("A horizontal chain of eleven universal joints keeps its energy within 1 % over 5 s") {
   const double about_vertical = GENERATE(0.0, 0.5);
   const bool vertical_first = GENERATE(false, true);
   ArticulatedSystem s(vertical_first ? horizontal_chain(11, JointKind::kUniversal, {0, 0, 1}, {0, 1, 0})
@@ -99,7 +99,7 @@ TEST_CASE("A planar chain follows its Lagrangian equations") {
   CHECK(worst < 1e-5);
 }
 
-TEST_CASE("Small oscillations of a chain follow the modes of its stiffness and mass") {
+TEST_CASE("Small oscillations of a chain match its normal modes") {
   const int n = 5;
   std::vector<LinkDef> links;
   for (int i = 0; i < n; ++i) {
@@ -217,7 +217,7 @@ TEST_CASE("A free asymmetric top nutates with the period of Jacobi's elliptic fu
   CHECK((local - before).norm() < 1e-5);
 }
 
-TEST_CASE("A system continues from its saved state to the bit") {
+TEST_CASE("A saved system continues bit-identically") {
   ArticulatedSystem a(horizontal_chain(11)), b(horizontal_chain(11));
   for (int i = 0; i < 500; ++i) a.step(kH);
   b.set_state(a.state());

@@ -64,7 +64,7 @@ double from_surface_m(const Vector3d& in_body) {
 
 }  // namespace
 
-TEST_CASE("Impact positions lie on the shapes of the scene, for bodies with an offset centre of mass and for links") {
+TEST_CASE("Impact positions lie on the shapes, also for links and an offset centre of mass") {
   const Blow blow = GENERATE(falling_head_first(), swinging_on_a_hinge());
   Settings s;
   s.solver = GENERATE("impulse", "penalty");
@@ -84,7 +84,7 @@ TEST_CASE("Impact positions lie on the shapes of the scene, for bodies with an o
   CHECK(impacts > 0);
 }
 
-TEST_CASE("An impact on a displaced and rotated body is reported in the frame of that body") {
+TEST_CASE("An impact is reported in the frame of the displaced and rotated body") {
   WorldDef w = empty_world();
   const Eigen::Isometry3d turned = at(0.3, -0.2, 0.5) * Eigen::AngleAxisd(0.4, Vector3d(1, 2, 3).normalized());
   const int wall = add_body(w, "wall", 0, Eigen::Matrix3d::Identity(), turned);

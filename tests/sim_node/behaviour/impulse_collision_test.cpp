@@ -14,7 +14,7 @@ Eigen::Isometry3d at(double x, double y, double z) { return Eigen::Isometry3d(Ei
 
 }  // namespace
 
-TEST_CASE("Newton's cradle: the same number of balls leave as arrive, with touching and with separated balls") {
+TEST_CASE("In Newton's cradle as many balls leave as arrive, touching or separated") {
   const double apart = GENERATE(0.0, 1e-4);
   const int arriving = GENERATE(1, 2, 3);
   Toys toys;
@@ -37,7 +37,7 @@ TEST_CASE("Newton's cradle: the same number of balls leave as arrive, with touch
   CHECK(energy == Approx(arriving).margin(1e-12));
 }
 
-TEST_CASE("A ball bounces to e^2n of its height and at the matching times, at 1 kHz and at 60 Hz") {
+TEST_CASE("A ball bounces to e^2n of its height at the predicted times, at 1 kHz and 60 Hz") {
   const double e = GENERATE(0.5, 0.8, 1.0), h = GENERATE(0.001, 1.0 / 60);
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, 0.5, e);
@@ -129,7 +129,7 @@ TEST_CASE("A ball that strikes a hanging rod follows the impact formula of the c
   CHECK(std::abs(rates[0]) < 1e-12);
 }
 
-TEST_CASE("A ball that strikes a chain in free space shares its momentum with all of it") {
+TEST_CASE("A ball that strikes a free chain conserves momentum and gains no energy") {
   Toys toys;
   toys.gravity_m_s2.setZero();
   std::vector<articulated::LinkDef> links;
@@ -170,7 +170,7 @@ TEST_CASE("A ball that strikes a chain in free space shares its momentum with al
   CHECK((momentum() - before).norm() < 1e-7 * before.norm());
 }
 
-TEST_CASE("A fast body stops at the surface, also of thin walls") {
+TEST_CASE("A fast body stops at the surface of a wall, also of a thin one") {
   const double h = GENERATE(0.001, 1.0 / 60), speed = GENERATE(1.0, 5.0, 20.0), e = GENERATE(0.0, 0.4);
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, 0.5, e);

@@ -21,7 +21,7 @@ void run(Toys& toys, double seconds, double h = kH) {
 
 }  // namespace
 
-TEST_CASE("A box on an incline sticks above and slides below tan(theta), the same at every yaw") {
+TEST_CASE("A box on an incline sticks if mu exceeds tan(theta) and slides otherwise, at every yaw") {
   const double theta = 0.3;
   const double yaw = GENERATE(0.0, 0.2, 0.3927, 0.6, std::numbers::pi / 4, 1.1, 1.5);
   for (const double factor : {1.001, 0.999, 0.8, 0.3}) {
@@ -48,7 +48,7 @@ TEST_CASE("A box on an incline sticks above and slides below tan(theta), the sam
   }
 }
 
-TEST_CASE("A sliding box is braked by mu g in any direction and keeps its direction") {
+TEST_CASE("A sliding box decelerates by mu g and keeps its direction") {
   for (double heading = 0; heading < std::numbers::pi / 2; heading += std::numbers::pi / 16) {
     Toys toys;
     toys.plane({0, 0, 1}, {0, 0, 0}, 0.4);
@@ -64,7 +64,7 @@ TEST_CASE("A sliding box is braked by mu g in any direction and keeps its direct
   }
 }
 
-TEST_CASE("A sliding ball ends up rolling at 5/7 of its speed with any friction, at the predicted time") {
+TEST_CASE("A sliding ball rolls at 5/7 of its speed after the predicted time") {
   const double mu = GENERATE(0.1, 0.4, 0.9);
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, mu);
@@ -85,7 +85,7 @@ TEST_CASE("A sliding ball ends up rolling at 5/7 of its speed with any friction,
   CHECK(toys.motion(ball).spin_rad_s.y() == Approx(5.0 / 7 * v0 / r).epsilon(1e-9));
 }
 
-TEST_CASE("A block tips where friction holds it beyond width over height, and slides where it does not") {
+TEST_CASE("A block tips if friction exceeds width over height and slides otherwise") {
   const double width = 0.06, height = 0.2;
   const auto topples = [&](double slope, double mu) {
     const Eigen::Isometry3d tilt(Eigen::AngleAxisd(std::atan(slope), Vector3d::UnitY()));
@@ -115,7 +115,7 @@ TEST_CASE("Contacts carry the weight of resting bodies") {
   for (int i = 1; i <= 4; ++i) CHECK(toys.motion(i).centre_m.z() == Approx(0.05).margin(1e-9));
 }
 
-TEST_CASE("A resting body has constant weight in alternating steps of 16 and 17 ms and warm start converges at once") {
+TEST_CASE("The contact force at rest is constant for varying steps and needs one solver sweep") {
   const double mass = 0.5;
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0});
@@ -128,7 +128,7 @@ TEST_CASE("A resting body has constant weight in alternating steps of 16 and 17 
   }
 }
 
-TEST_CASE("Stacks of five and of ten boxes stand") {
+TEST_CASE("Stacks of five and ten boxes stand") {
   const int n = GENERATE(5, 10);
   const double h = 1.0 / 240;
   Toys toys;
@@ -144,7 +144,7 @@ TEST_CASE("Stacks of five and of ten boxes stand") {
   CHECK(toys.motion(n).velocity_m_s.norm() < 1e-4);
 }
 
-TEST_CASE("Painleve's rod has an impulse solution: with mu above 4/3 it jams and gains no energy") {
+TEST_CASE("Painleve's rod jams for mu above 4/3 without gaining energy") {
   const double mu = GENERATE(1.0, 1.4, 2.0, 5.0), angle = GENERATE(0.4, 0.8, 1.0, 1.2);
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, mu);
@@ -173,7 +173,7 @@ TEST_CASE("Painleve's rod has an impulse solution: with mu above 4/3 it jams and
   CHECK(least > -1e-4);
 }
 
-TEST_CASE("A ball rests in a corner of three planes, pushed into it") {
+TEST_CASE("A ball pushed into a corner of three planes rests") {
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, 0.3);
   toys.plane({1, 0, 0}, {0, 0, 0}, 0.3);
@@ -187,7 +187,7 @@ TEST_CASE("A ball rests in a corner of three planes, pushed into it") {
   CHECK(toys.motion(ball).spin_rad_s.norm() < 1e-6);
 }
 
-TEST_CASE("A free body follows the parabola, and an asymmetric one keeps its angular momentum exactly and its energy closely") {
+TEST_CASE("A free body follows the parabola and keeps its angular momentum") {
   Toys toys;
   const int box = toys.box(2, {0.1, 0.2, 0.4}, at(0, 0, 50));
   auto& b = toys.world.free_body(box);
@@ -211,7 +211,7 @@ TEST_CASE("A free body follows the parabola, and an asymmetric one keeps its ang
   CHECK(l.dot(b.spin_rad_s) == Approx(energy).epsilon(1e-9));
 }
 
-TEST_CASE("Two runs with the impulse world are the same to the bit") {
+TEST_CASE("Two runs of the impulse world are bit-identical") {
   const auto digest = [] {
     Toys toys;
     toys.plane({0, 0, 1}, {0, 0, 0}, 0.5, 0.3);

@@ -36,7 +36,7 @@ struct Wheel {
 
 }  // namespace
 
-TEST_CASE("A fan under constant torque approaches its equilibrium speed with drag and dry friction exponentially") {
+TEST_CASE("A driven fan approaches its equilibrium speed exponentially with drag and dry friction") {
   Wheel fan;
   fan.inertia = 1e-3;
   fan.axis.damping = 4e-3;
@@ -58,7 +58,7 @@ TEST_CASE("A fan under constant torque approaches its equilibrium speed with dra
   }
 }
 
-TEST_CASE("A motor reaches its speed with its torque, against friction, and keeps it") {
+TEST_CASE("A motor reaches and keeps its speed against friction") {
   Wheel w;
   w.axis.motor_velocity = 3;
   w.axis.motor_effort = 0.05;
@@ -82,9 +82,9 @@ TEST_CASE("A joint stop holds a driven joint on both sides") {
   CHECK(w.angle() == Approx(-0.5).margin(1e-6));
 }
 
-TEST_CASE("Springs and dampers of any stiffness settle at equilibrium, and soft ones oscillate with their period") {
+TEST_CASE("Springs settle at equilibrium for any stiffness and damping") {
   Wheel w;
-  SECTION("stiff ones gain no energy") {
+  SECTION("stiff springs gain no energy") {
     w.axis.stiffness = GENERATE(1e3, 1e5, 1e9);
     w.axis.damping = GENERATE(0.0, 1.0, 1e4);
     const bool stuck = w.axis.damping > w.axis.stiffness;  // takes longer than the test
@@ -98,7 +98,7 @@ TEST_CASE("Springs and dampers of any stiffness settle at equilibrium, and soft 
     CHECK(largest <= 0.1 + 1e-12);
     if (!stuck) CHECK(w.angle() == Approx(0.1).margin(2e-3));
   }
-  SECTION("a soft one") {
+  SECTION("a soft spring oscillates with its period") {
     w.axis.stiffness = 4;
     w.axis.reference = 0.1;
     w.build();
@@ -114,7 +114,7 @@ TEST_CASE("Springs and dampers of any stiffness settle at equilibrium, and soft 
   }
 }
 
-TEST_CASE("A chain that falls on the floor comes to rest there with its weight shared between floor and hook") {
+TEST_CASE("A chain that falls on the floor rests with its weight shared between floor and hook") {
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, 0.6);
   std::vector<articulated::LinkDef> links;
@@ -146,7 +146,7 @@ TEST_CASE("A chain that falls on the floor comes to rest there with its weight s
   CHECK(force < 8 * 0.05 * kToyG);
 }
 
-TEST_CASE("A box on a link and a link on a box carry each other's weight in one solve") {
+TEST_CASE("Boxes and links carry each other's weight in one solve") {
   SECTION("a lever with a ball on each arm balances") {
     Toys toys;
     articulated::LinkDef lever;

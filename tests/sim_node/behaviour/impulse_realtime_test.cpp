@@ -29,7 +29,7 @@ void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
 using namespace tactus::sim;
 using namespace tactus::sim::test;
 
-TEST_CASE("A step of free bodies, links and impacts allocates no memory once its lists have grown") {
+TEST_CASE("A step with bodies, links and impacts allocates no memory after warm-up") {
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0}, 0.5, 0.8);
   // A lever on which balls bounce, and a stack beside it.

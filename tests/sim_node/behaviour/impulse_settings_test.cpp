@@ -35,12 +35,12 @@ WorldDef hanging_rod(JointKind kind) {
 
 }  // namespace
 
-TEST_CASE("Solved by impulses, gravity, mass, pose, velocity and spin of free bodies may be set") {
+TEST_CASE("The impulse solver accepts new gravity, mass, pose, velocity and spin of free bodies") {
   WorldDef w = empty_world();
   const int ball = add_ball(w, 0.2, 0.03, {0, 0, 5});
   add_floor(w);
   Solver s(w, by_impulse());
-  SECTION("gravity holds from the next step on, and the motion continues on the new parabola") {
+  SECTION("gravity applies from the next step on") {
     run(s, 0.1);
     const double z = body(s, ball).centre_m.z(), v = -kG * 0.1;
     s.set_gravity({1, 0, -2});
@@ -59,21 +59,21 @@ TEST_CASE("Solved by impulses, gravity, mass, pose, velocity and spin of free bo
     CHECK(body(s, ball).centre_m.x() == Approx(0.5 * 0.5 * 0.01 * 1.01).epsilon(1e-9));
     CHECK(body(s, ball).inverse_mass_1_kg == Approx(1.25));
   }
-  SECTION("a pose takes effect at once, with its contacts") {
+  SECTION("a pose takes effect at once, also on contacts") {
     CHECK(s.contacts().empty());
     REQUIRE(s.set_pose(ball, at(1, 2, 0.03)));
     CHECK(body(s, ball).centre_m.x() == 1);
     REQUIRE(s.contacts().size() == 1);
     CHECK(s.contacts()[0].points[0].depth_m == Approx(0).margin(1e-9));
   }
-  SECTION("velocity and spin are the current ones") {
+  SECTION("velocity and spin take effect at once") {
     REQUIRE(s.set_velocity(ball, {1, 2, 3}));
     REQUIRE(s.set_spin(ball, {0, 0, 7}));
     run(s, 0.1);
     CHECK((body(s, ball).centre_m - Vector3d(0.1, 0.2, 5.3 - kG * 0.005)).norm() < 1e-9);
     CHECK(body(s, ball).spin_rad_s.z() == Approx(7));
   }
-  SECTION("a static body has none of these") {
+  SECTION("a static body rejects mass, pose, velocity and spin") {
     CHECK_FALSE(s.set_mass(ball + 1, 1));
     CHECK_FALSE(s.set_pose(ball + 1, at(0, 0, 0)));
     CHECK_FALSE(s.set_velocity(ball + 1, {1, 0, 0}));
@@ -81,7 +81,7 @@ TEST_CASE("Solved by impulses, gravity, mass, pose, velocity and spin of free bo
   }
 }
 
-TEST_CASE("Solved by impulses, friction and restitution may be set") {
+TEST_CASE("The impulse solver accepts new friction and restitution") {
   WorldDef w = empty_world();
   add_floor(w, 0.4, 1);
   const int box = add_box(w, 1, {0.1, 0.1, 0.1}, at(0, 0, 0.05 + 1e-5), 0.4, 0);
@@ -101,7 +101,7 @@ TEST_CASE("Solved by impulses, friction and restitution may be set") {
   CHECK(top == Approx(0.64 * 0.5).epsilon(1e-3));
 }
 
-TEST_CASE("Solved by impulses, setting the velocity of a link acts like an impulse of its momentum") {
+TEST_CASE("In the impulse solver a new velocity of a link acts like an impulse of its momentum") {
   const bool at_start = GENERATE(true, false);
   WorldDef w = hanging_rod(JointKind::kRevolute);
   if (at_start) w.bodies[0].velocity_m_s = {-2, 0.7, 0.3};
@@ -118,7 +118,7 @@ TEST_CASE("Solved by impulses, setting the velocity of a link acts like an impul
   CHECK(body(s, 0).spin_rad_s.y() == Approx(before + kAcross * 3 / kAtPivot).epsilon(1e-4));
 }
 
-TEST_CASE("Solved by impulses, motors and dry friction of joints may be set") {
+TEST_CASE("The impulse solver accepts new motors and dry friction of joints") {
   WorldDef w = hanging_rod(JointKind::kRevolute);
   Solver s(w, by_impulse());
   REQUIRE(s.set_motor("joint", 0, 0.2, 100));
@@ -135,7 +135,7 @@ TEST_CASE("Solved by impulses, motors and dry friction of joints may be set") {
   CHECK_FALSE(s.set_motor("no such", 0, 1, 1));
 }
 
-TEST_CASE("Solved by impulses, dry friction of a ball joint opposes rotation equally about every axis") {
+TEST_CASE("In the impulse solver dry friction of a ball joint is equal about every axis") {
   // Held at its centre, with equal inertia about all axes.
   WorldDef w = empty_world(0);
   const double inertia = 0.01;
@@ -153,7 +153,7 @@ TEST_CASE("Solved by impulses, dry friction of a ball joint opposes rotation equ
   CHECK(body(s, 0).spin_rad_s.norm() < 1e-6);
 }
 
-TEST_CASE("Solved by impulses, the effective mass at the tip of a hanging rod follows from its lever arm") {
+TEST_CASE("In the impulse solver the effective mass at the tip of a hanging rod follows from its lever arm") {
   WorldDef w = hanging_rod(JointKind::kRevolute);
   Solver s(w, by_impulse());
   CHECK(s.mobility(0, {0, 0, -kLength}, {1, 0, 0}) == Approx(kLength * kLength / kAtPivot));
@@ -161,7 +161,7 @@ TEST_CASE("Solved by impulses, the effective mass at the tip of a hanging rod fo
   CHECK(s.mobility(0, {0, 0, -kLength}, {0, 0, 1}) == Approx(0).margin(1e-12));
 }
 
-TEST_CASE("Solved by impulses, properties that were set are restored with a state") {
+TEST_CASE("The impulse solver restores changed properties with a state") {
   WorldDef w = hanging_rod(JointKind::kRevolute);
   const int ball = add_ball(w, 0.2, 0.03, {1, 0, 1});
   add_floor(w);

@@ -27,7 +27,7 @@ const BodyMotion& body(const Solver& s, int i) { return s.bodies()[static_cast<s
 
 }  // namespace
 
-TEST_CASE("Solved by impulses, angles and limits count as in SDF, from whichever side the joint is reached") {
+TEST_CASE("In the impulse solver joint angles and limits follow SDF, from either side of the joint") {
   // The world is connected to the child or to the parent. In the second case the tree runs against the joint.
   const bool reversed = GENERATE(false, true);
   const JointKind kind = GENERATE(JointKind::kRevolute, JointKind::kUniversal);
@@ -59,7 +59,7 @@ TEST_CASE("Solved by impulses, angles and limits count as in SDF, from whichever
   }
 }
 
-TEST_CASE("Solved by impulses, a chain keeps its energy where ODE loses it, and stays connected") {
+TEST_CASE("In the impulse solver a chain keeps its energy better than in ODE and stays connected") {
   WorldDef w = chain_world(11);
   // Horizontal: rotated about the hook.
   const Eigen::Isometry3d lie = at(0, 0, 2) * Eigen::AngleAxisd(-M_PI / 2, Vector3d::UnitY()) * at(0, 0, -2);
@@ -88,7 +88,7 @@ TEST_CASE("Solved by impulses, a chain keeps its energy where ODE loses it, and 
   CHECK(std::abs(last - start) < 0.03 * 2.968);
 }
 
-TEST_CASE("Solved by impulses, a box rests, a ball bounces and a stack stands, without solver failures") {
+TEST_CASE("In the impulse solver a box rests, a ball bounces and a stack stands") {
   WorldDef w = empty_world();
   add_floor(w, 0.5, 1);
   const int ball = add_ball(w, 0.2, 0.03, {1, 0, 0.53}, 0.5, 0.8);
@@ -117,13 +117,13 @@ TEST_CASE("Solved by impulses, a box rests, a ball bounces and a stack stands, w
   CHECK(s.solver_failures() == 0);
 }
 
-TEST_CASE("Solved by impulses, joints that close a loop are rejected by name") {
+TEST_CASE("The impulse solver rejects joints that close a loop by name") {
   WorldDef w = chain_world(3);
   add_joint(w, JointKind::kBall, -1, 2, {0, 0, 1.7}, {1, 0, 0}).name = "bite";
   CHECK_THROWS_WITH(Solver(w, by_impulse()), Catch::Contains("bite") && Catch::Contains("loop"));
 }
 
-TEST_CASE("Solved by impulses, the dark room runs the same twice, its fan turns and its balls stay on the table") {
+TEST_CASE("The impulse solver runs the dark room identically twice, with balls that stay on the table") {
   const auto run = [](std::uint64_t& digest, double& fan, double& lowest) {
     std::vector<std::string> warnings;
     const WorldDef world = load_sdf(TACTUS_SOURCE_DIR "/sim_node/scenes/dark_room.sdf", warnings);

@@ -44,7 +44,7 @@ TEST_CASE("A flying body follows the parabola for any step lengths", "[impulse]"
   }
 }
 
-TEST_CASE("An inactive unit stands still and does not affect the active ones", "[impulse]") {
+TEST_CASE("An inactive unit does not move and does not affect the active ones", "[impulse]") {
   World all = three(), some = three();
   const std::vector<int> second{1};
   CHECK(some.unit_of(2) == 1);
@@ -58,7 +58,7 @@ TEST_CASE("An inactive unit stands still and does not affect the active ones", "
   CHECK(std::vector<int>(some.active_bodies().begin(), some.active_bodies().end()) == std::vector<int>{2});
 }
 
-TEST_CASE("A unit that moves to another world continues there unchanged", "[impulse]") {
+TEST_CASE("A unit that moves to another world continues unchanged", "[impulse]") {
   // Alone, in 200 steps of 1 ms; then 100 of them in a world with other steps.
   World whole = three(), first = three(), second = three();
   for (int i = 0; i < 7; ++i) second.step({}, 0.004);

@@ -39,11 +39,11 @@ double angle_about(const Eigen::Quaterniond& q, const Vector3d& axis) { return 2
 
 }  // namespace
 
-TEST_CASE("Angles and limits count as in SDF: the child turns against the parent about the axis, positive by the right hand") {
+TEST_CASE("Joint angles and limits follow SDF: right-handed rotation of the child relative to the parent") {
   const bool to_body = GENERATE(false, true);
   const std::string solver = GENERATE("impulse", "quick");
   Jointed j(to_body, solver);
-  SECTION("revolute") {
+  SECTION("a revolute joint rotates about its axis within its limits") {
     JointDef& joint = add_joint(j.world, JointKind::kRevolute, j.parent, j.child, {0, 0, 0}, {0, 0, 1});
     joint.axes[0].lower = -0.2;
     joint.axes[0].upper = 0.6;
@@ -51,7 +51,7 @@ TEST_CASE("Angles and limits count as in SDF: the child turns against the parent
     CHECK(angle_about(j.turned({0, 0, -0.02}, 2), {0, 0, 1}) == Approx(-0.2).margin(0.005));
     CHECK(angle_about(j.turned({0.02, 0, 0}, 1), {1, 0, 0}) == Approx(0).margin(1e-4));
   }
-  SECTION("universal: the first axis is the parent's, the second the child's") {
+  SECTION("the first axis of a universal joint is fixed to the parent, the second to the child") {
     JointDef& joint = add_joint(j.world, JointKind::kUniversal, j.parent, j.child, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     joint.axes[0].lower = -0.1;
     joint.axes[0].upper = 0.5;
@@ -63,7 +63,7 @@ TEST_CASE("Angles and limits count as in SDF: the child turns against the parent
     CHECK(angle_about(j.turned({0, -0.02, 0}, 2), {0, 1, 0}) == Approx(-0.3).margin(0.005));
     CHECK(angle_about(j.turned({0, 0, 0.02}, 1), {0, 0, 1}) == Approx(0).margin(1e-4));
   }
-  SECTION("universal: each axis has its own spring") {
+  SECTION("each axis of a universal joint has its own spring") {
     JointDef& joint = add_joint(j.world, JointKind::kUniversal, j.parent, j.child, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     for (int axis = 0; axis < 2; ++axis) joint.axes[axis].damping = 0.1;
     joint.axes[0].stiffness = 1;
@@ -73,7 +73,7 @@ TEST_CASE("Angles and limits count as in SDF: the child turns against the parent
     CHECK(angle_about(q, {1, 0, 0}) == Approx(0.2).margin(1e-3));
     CHECK(angle_about(q, {0, 1, 0}) == Approx(0).margin(1e-3));
   }
-  SECTION("a ball joint rotates about every axis, a fixed joint about none, a damper brakes the ball joint") {
+  SECTION("a ball joint rotates about every axis and a fixed joint about none") {
     JointDef& joint = add_joint(j.world, JointKind::kBall, j.parent, j.child, {0, 0, 0}, {1, 0, 0});
     // alpha t^2 / 2; ODE's sum of the steps is alpha t (t + h) / 2.
     const double free = 0.5 * 2 * 0.5 * (solver == "quick" ? 0.501 : 0.5);
@@ -88,7 +88,7 @@ TEST_CASE("Angles and limits count as in SDF: the child turns against the parent
   }
 }
 
-TEST_CASE("A slider moves along its axis, up to its stop") {
+TEST_CASE("A slider moves along its axis up to its stop") {
   const bool to_body = GENERATE(false, true);
   Jointed j(to_body, GENERATE("impulse", "quick"));
   JointDef& joint = add_joint(j.world, JointKind::kPrismatic, j.parent, j.child, {0, 0, 0}, {0, 1, 0});
@@ -126,7 +126,7 @@ TEST_CASE("A driven damper turns at torque over damping for any inertia") {
   }
 }
 
-TEST_CASE("A passive force neither gains energy nor overshoots at any stiffness and damping") {
+TEST_CASE("A passive joint force neither gains energy nor overshoots for any stiffness and damping") {
   for (const double stiffness : {0.0, 1.0, 1e4, 1e9})
     for (const double damping : {0.0, 1e-3, 1.0, 1e6}) {
       const double inertia = 0.01;

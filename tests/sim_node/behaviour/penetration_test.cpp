@@ -38,7 +38,7 @@ double deepest(const HardScene& scene, double h, double seconds) {
 
 }  // namespace
 
-TEST_CASE("The penetration oracle gives the depth of an overlap") {
+TEST_CASE("The penetration oracle returns the depth of an overlap") {
   WorldDef w = empty_world();
   add_ball(w, 1, 0.1, {0, 0, 0.099});
   add_floor(w);
@@ -69,14 +69,14 @@ TEST_CASE("The penetration oracle gives the depth of an overlap") {
   CHECK(only({}) == 0);
 }
 
-TEST_CASE("No penetration: 20 m/s on a wall of 1 mm, at 1 ms and at 60 Hz") {
+TEST_CASE("Bodies at 20 m/s do not penetrate a wall of 1 mm, at 1 kHz and 60 Hz") {
   const double h = GENERATE(0.001, 1.0 / 60), e = GENERATE(0.0, 0.5);
   const bool boxes = GENERATE(false, true);
   INFO("step " << h << " restitution " << e << (boxes ? " boxes" : " balls"));
   CHECK(deepest(shot_at_wall(e, boxes), h, 0.1) <= kAllowed_m);
 }
 
-TEST_CASE("No penetration: spinning rods, a heap, balls in a row, a chain among bodies") {
+TEST_CASE("Spinning rods, a heap, a row of balls and a chain do not penetrate") {
   const double h = GENERATE(0.001, 1.0 / 60);
   INFO("step " << h);
   CHECK(deepest(rods(), h, 0.15) <= kAllowed_m);
@@ -85,11 +85,11 @@ TEST_CASE("No penetration: spinning rods, a heap, balls in a row, a chain among 
   CHECK(deepest(chain_and_post(), h, 0.6) <= kAllowed_m);
 }
 
-TEST_CASE("No penetration: lumpy meshes that fall on each other") {
+TEST_CASE("Irregular meshes that fall on each other do not penetrate") {
   CHECK(deepest(lumps(5), 0.001, 0.08) <= kAllowed_m);
 }
 
-TEST_CASE("The step is divided only where rotation would pass through a thin wall") {
+TEST_CASE("A step is subdivided only if rotation would pass through a thin wall") {
   WorldDef w = thin_wall(0);
   const int box = add_box(w, 0.2, {0.3, 0.02, 0.02}, at(0, 0, 0.03));
   Solver still(w, by_impulse(0.001));
@@ -105,7 +105,7 @@ TEST_CASE("The step is divided only where rotation would pass through a thin wal
   CHECK(turning.bodies()[static_cast<std::size_t>(box)].centre_m.z() > 0);
 }
 
-TEST_CASE("A body that an impact throws at a distant wall is stopped there") {
+TEST_CASE("A body that an impact accelerates towards a distant wall stops there") {
   WorldDef w = empty_world(0);
   add_box(w, 0, {0.001, 1, 1}, at(0.035, 0, 0), 0.5, 0);
   const int struck = add_ball(w, 0.01, 0.01, {0, 0, 0}, 0, 1);

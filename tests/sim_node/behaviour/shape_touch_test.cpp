@@ -50,7 +50,7 @@ double height(const touch_plane_t& p, const Vector3d& place, const Eigen::Quater
 
 }  // namespace
 
-TEST_CASE("A box over a floor has contacts at its lower corners, with stable ids as it moves and tips") {
+TEST_CASE("A box over a floor has contacts at its lower corners, with stable ids") {
   WorldDef w = empty_world();
   add_floor(w);
   const Vector3d size(0.04, 0.06, 0.02);
@@ -78,7 +78,7 @@ TEST_CASE("A box over a floor has contacts at its lower corners, with stable ids
   CHECK(ids.size() == 4);
 }
 
-TEST_CASE("A capsule and a box get planes of near surfaces on every side, and no plane cuts into them") {
+TEST_CASE("Planes of near surfaces touch a capsule and a box on every side and never cut into them") {
   WorldDef w = empty_world();
   add_floor(w);
   for (int i = 0; i < 10; ++i)
@@ -126,7 +126,7 @@ TEST_CASE("The contact of a corner begins when it touches the floor and ends whe
   CHECK(ends == 2);
 }
 
-TEST_CASE("A tool with more contacts than a touch model holds keeps the nearest 49, in order and repeatably") {
+TEST_CASE("A tool keeps its nearest 49 contacts in a repeatable order") {
   // Eighty balls under a box, each within the gap of a touch, with the nearest ones anywhere among them.
   constexpr int kBalls = 80;
   const auto gap_m = [](int ball) { return 1e-6 * (1 + ball * 37 % kBalls); };

@@ -46,7 +46,7 @@ TEST_CASE("A free body follows the parabola at every step") {
   CHECK(worst < 1.2e-11);
 }
 
-TEST_CASE("A body whose centre of mass is not its origin turns about its centre of mass") {
+TEST_CASE("A body rotates about its centre of mass, also if its origin is elsewhere") {
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world(0);
@@ -68,7 +68,7 @@ TEST_CASE("A body whose centre of mass is not its origin turns about its centre 
   CHECK(((body(solver, b).position_m - body(solver, b).centre_m).norm()) == Approx(0.3));
 }
 
-TEST_CASE("A box on an incline sticks above and slides below tan(theta), for any yaw") {
+TEST_CASE("A box on an incline sticks or slides as tan(theta) predicts, for any yaw") {
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
   const double theta = 0.3;
@@ -217,7 +217,7 @@ TEST_CASE("Joints obey limits, friction and dampers") {
     const Eigen::Quaterniond q = body(s, wheel).orientation;
     return 2 * std::atan2(q.z(), q.w());
   };
-  SECTION("a stop holds") {
+  SECTION("a stop limits the angle") {
     joint.axes[0].lower = -0.5;
     joint.axes[0].upper = 0.7;
     Solver solver(w, settings);
@@ -227,7 +227,7 @@ TEST_CASE("Joints obey limits, friction and dampers") {
     }
     CHECK(angle(solver) == Approx(0.7).margin(5e-3));
   }
-  SECTION("Coulomb friction holds a smaller torque and slows a larger one") {
+  SECTION("Coulomb friction holds a smaller torque and reduces a larger one") {
     joint.axes[0].friction = 0.1;
     Solver solver(w, settings);
     for (int i = 0; i < 500; ++i) {
@@ -242,7 +242,7 @@ TEST_CASE("Joints obey limits, friction and dampers") {
     // With impulses the spin is the mean over a step, which lags by half a step, and breakaway takes one step.
     CHECK(body(solver, wheel).spin_rad_s.z() == Approx(0.05 / 0.01 * 0.5).margin(0.05 / 0.01 * kStep));
   }
-  SECTION("a damper decays exponentially, in ODE with the rate of the implicit step") {
+  SECTION("a damper decays exponentially, in ODE at the rate of the implicit step") {
     joint.axes[0].damping = 0.02;
     Solver solver(w, settings);
     for (int i = 0; i < 100; ++i) {
@@ -266,7 +266,7 @@ TEST_CASE("Joints obey limits, friction and dampers") {
     run(solver, 2);
     CHECK(body(solver, wheel).spin_rad_s.z() == Approx(3).epsilon(1e-3));
   }
-  SECTION("a very stiff spring does not explode") {
+  SECTION("a very stiff spring stays stable") {
     joint.axes[0].stiffness = 1e7;
     joint.axes[0].reference = 0.1;
     Solver solver(w, settings);
@@ -275,7 +275,7 @@ TEST_CASE("Joints obey limits, friction and dampers") {
   }
 }
 
-TEST_CASE("Two runs of one world are the same to the bit") {
+TEST_CASE("Two runs of one world are bit-identical") {
   const auto digest = [] {
     WorldDef w = empty_world();
     add_floor(w, 0.5, 0.3);
@@ -295,7 +295,7 @@ TEST_CASE("Two runs of one world are the same to the bit") {
   CHECK(first == digest());
 }
 
-TEST_CASE("Two bodies that collide in free space keep their momentum") {
+TEST_CASE("Two bodies that collide in free space conserve momentum") {
   Settings settings;
   settings.solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world(0);
@@ -310,7 +310,7 @@ TEST_CASE("Two bodies that collide in free space keep their momentum") {
   CHECK(body(solver, a).velocity_m_s.x() < 0);
 }
 
-TEST_CASE("A body with an invalid mass is rejected in one sentence that names it") {
+TEST_CASE("A body with an invalid mass is rejected with its name") {
   WorldDef w = empty_world();
   add_body(w, "ghost", 1, -Eigen::Matrix3d::Identity(), at(0, 0, 0));
   CHECK_THROWS_WITH(Solver(w, {}), Catch::Contains("ghost"));

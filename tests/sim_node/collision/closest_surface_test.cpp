@@ -46,7 +46,7 @@ TriangleMesh box_mesh(const Vector3d& size, int n) {
 
 }  // namespace
 
-TEST_CASE("The plane of a primitive is at its nearest point, as found by a search over its surface") {
+TEST_CASE("The plane of a primitive is at its nearest point, as in an exhaustive search") {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> u(-1, 1);
   const Vector3d size(0.3, 0.2, 0.4);
@@ -72,7 +72,7 @@ TEST_CASE("The plane of a primitive is at its nearest point, as found by a searc
   }
 }
 
-TEST_CASE("A box of triangles of any resolution gives the planes of a box") {
+TEST_CASE("A box of triangles has the planes of a box at any resolution") {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> u(-1, 1);
   const Vector3d size(0.1, 0.08, 0.06);
@@ -112,7 +112,7 @@ TEST_CASE("Just inside a mesh the nearest face gives the plane") {
   CHECK(planes[0].normal.z() == Approx(1));
 }
 
-TEST_CASE("A concave edge of a mesh gives both its planes") {
+TEST_CASE("A concave edge of a mesh has both of its planes") {
   // A floor at z = 0 and a wall at x = 0, in one mesh, each of several triangles.
   TriangleMesh mesh;
   const auto square = [&](const Vector3d& o, const Vector3d& a, const Vector3d& b) {

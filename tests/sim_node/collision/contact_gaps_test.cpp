@@ -49,7 +49,7 @@ struct Watched {
 
 }  // namespace
 
-TEST_CASE("A bounce within one step begins, hits and ends at its time inside the step, at 1 kHz and at 60 Hz") {
+TEST_CASE("A bounce within one step has begin, hit and end at its times, at 1 kHz and 60 Hz") {
   const double h = GENERATE(0.001, 1.0 / 60), e = GENERATE(0.5, 0.9);
   WorldDef w = empty_world();
   add_floor(w, 0.5, 1);
@@ -75,7 +75,7 @@ TEST_CASE("A bounce within one step begins, hits and ends at its time inside the
   CHECK(t.tracker.live().empty());
 }
 
-TEST_CASE("A body without restitution hits once, with its approach speed, and stays in contact") {
+TEST_CASE("A body without restitution hits once with its approach speed and stays in contact") {
   const double h = GENERATE(0.001, 1.0 / 60), speed = GENERATE(0.5, 20.0);
   WorldDef w = empty_world(0);
   add_floor(w);
@@ -94,7 +94,7 @@ TEST_CASE("A body without restitution hits once, with its approach speed, and st
   CHECK(t.tracker.live()[0].touching);
 }
 
-TEST_CASE("A body that is only near has no contact") {
+TEST_CASE("A body that is only near another has no contact") {
   const double h = GENERATE(0.001, 1.0 / 60);
   WorldDef w = empty_world(0);
   add_floor(w);
@@ -126,7 +126,7 @@ TEST_CASE("A body that rests, rolls or slides for ten seconds begins its contact
   CHECK(t.tracker.live().size() == 4);
 }
 
-TEST_CASE("An impact reported within the step is a contact, whatever the gap at its end, and a gap alone is none") {
+TEST_CASE("An impact within the step is a contact for any final gap, a gap alone is not") {
   WorldDef w = empty_world(0);
   add_floor(w);
   add_ball(w, 0.1, 0.02, {0, 0, 0.02});
@@ -148,7 +148,7 @@ TEST_CASE("An impact reported within the step is a contact, whatever the gap at 
   update(0, 0.001, 1e-3, nullptr);
   update(1, 0.001, 1e-4, nullptr);
   CHECK(events.empty());
-  SECTION("begin, hit and end are at the times that the solver reports, in steps of any length") {
+  SECTION("begin, hit and end have the times that the solver reports") {
     Manifold met = m;
     met.impact.count = 2;
     met.impact.first_s = 0.002, met.impact.last_s = 0.011, met.impact.speed_m_s = 3,
@@ -165,7 +165,7 @@ TEST_CASE("An impact reported within the step is a contact, whatever the gap at 
     CHECK(events[2].time_ns == 12'000'000);
     CHECK(tracker.live().empty());
   }
-  SECTION("a gap below the residual is contact until it is clearly open") {
+  SECTION("a gap below the residual remains a contact until it clearly opens") {
     update(2, 0.001, 8e-6, nullptr);
     CHECK(events.size() == 1);
     for (int tick = 3; tick < 60; ++tick) update(tick, 0.001, tick % 2 ? 4e-5 : 0, nullptr);

@@ -40,7 +40,7 @@ const Vector3d kSize(0.1, 0.06, 0.12);
 
 }  // namespace
 
-TEST_CASE("A ball against each primitive: every detector that supports the pair gives the geometric distance") {
+TEST_CASE("Each detector returns the geometric distance of a ball to each supported primitive") {
   const double r = 0.03, reach = 0.004;
   const WorldDef world;
   for (auto& detector : built_in()) {
@@ -102,7 +102,7 @@ TEST_CASE("A ball against each primitive: every detector that supports the pair 
   }
 }
 
-TEST_CASE("Random boxes: the detectors that report gaps agree, as boxes, hulls or triangles") {
+TEST_CASE("Detectors that report gaps agree for random boxes, hulls and triangles") {
   const WorldDef world = world_of_meshes();
   auto ccd = make_detector("ccd"), layers = make_detector("layers");
   const ShapeDef one = shape(ShapeKind::kBox, {0.1, 0.08, 0.06}), hull = shape(ShapeKind::kMesh, {1, 1, 1}, 0);
@@ -137,7 +137,7 @@ TEST_CASE("Random boxes: the detectors that report gaps agree, as boxes, hulls o
   CHECK(compared > 50);
 }
 
-TEST_CASE("A detector rejects unsupported shapes at start-up and names an alternative") {
+TEST_CASE("A detector rejects unsupported shapes at start-up and suggests an alternative") {
   const WorldDef world = world_of_meshes();
   CHECK_THROWS_WITH(make_detector("opcode"), Catch::Contains("unknown"));
   for (auto& detector : built_in())
@@ -163,7 +163,7 @@ TEST_CASE("A detector rejects unsupported shapes at start-up and names an altern
                     Catch::Contains("hashed remover"));
 }
 
-TEST_CASE("A deterministic detector gives bit-identical results for a repeated query, with other queries between") {
+TEST_CASE("A deterministic detector repeats a query bit-identically, with other queries between") {
   const WorldDef world = world_of_meshes();
   for (auto& detector : built_in()) {
     if (!detector->abilities().deterministic) continue;

@@ -44,7 +44,7 @@ Isometry3d turned(Random& random, int i) {
 
 }  // namespace
 
-TEST_CASE("Separated convex shapes: witness points and a separating plane prove the least gap") {
+TEST_CASE("Witness points and a separating plane confirm the least gap of separated convex shapes") {
   const WorldDef world;
   for (const ShapeKind kind_a : kConvex)
     for (const ShapeKind kind_b : kConvex) {
@@ -89,7 +89,7 @@ TEST_CASE("Separated convex shapes: witness points and a separating plane prove 
     }
 }
 
-TEST_CASE("Overlapping convex shapes: the depth along the normal separates them, and hardly less does") {
+TEST_CASE("The penetration depth of overlapping convex shapes separates them and is minimal") {
   const WorldDef world;
   for (const ShapeKind kind_a : kConvex)
     for (const ShapeKind kind_b : kConvex) {

@@ -24,7 +24,7 @@ std::vector<PointPair> contact_of(const Triangle& a, const Triangle& b, const Re
 
 }  // namespace
 
-TEST_CASE("Vertices 11, 5 and 6 from a plane, with margin 2, give an edge-plan contact of the second and the third") {
+TEST_CASE("Vertices with gaps of 11, 5 and 6 and a margin of 2 are an edge-plane contact") {
   const Active active = active_vertices({11, 5, 6}, kExample);
   CHECK(active.count == 2);
   CHECK_FALSE(active.vertex[0]);
@@ -51,7 +51,7 @@ TEST_CASE("Vertices 11, 5 and 6 from a plane, with margin 2, give an edge-plan c
   }
 }
 
-TEST_CASE("A plan-plan contact is a surface, a single vertex is a point, and crossing edges give a point between them") {
+TEST_CASE("A plane-plane contact is a surface, a single vertex a point, crossing edges a point between them") {
   const Triangle floor = one({-100, -100, 0}, {100, -100, 0}, {0, 200, 0});
   const auto flat = contact_of(one({0, 20, 5}, {-10, 0, 5}, {10, 0, 6}), floor);
   REQUIRE(flat.size() == 3);
@@ -67,7 +67,7 @@ TEST_CASE("A plan-plan contact is a surface, a single vertex is a point, and cro
   CHECK(ridges[0].gap_m == Approx(4));
 }
 
-TEST_CASE("I-Touch's mode misses a piercing edge, as its authors state, and the complete mode reports it") {
+TEST_CASE("The I-Touch mode misses a piercing edge as its authors state, the complete mode reports it") {
   const Triangle floor = one({-100, -100, 0}, {100, -100, 0}, {0, 200, 0}),
                  spike = one({0, 0, -50}, {5, 0, 60}, {-5, 0, 60});
   CHECK(contact_of(spike, floor).empty());
@@ -76,7 +76,7 @@ TEST_CASE("I-Touch's mode misses a piercing edge, as its authors state, and the 
   CHECK(std::any_of(complete.begin(), complete.end(), [](const PointPair& p) { return p.pierced; }));
 }
 
-TEST_CASE("I-Touch's mode finds no false pair and most of the true ones") {
+TEST_CASE("The I-Touch mode finds no false pair and most true ones") {
   const Soup a = lumpy_sphere(4, 0.1, 1), b = lumpy_sphere(4, 0.1, 2);
   const ContactMesh ma(a.vertices, a.indices), mb(b.vertices, b.indices);
   MeshContact contact({.mode = ContactMode::kItouch2005});

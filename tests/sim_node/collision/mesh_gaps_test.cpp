@@ -55,7 +55,7 @@ Soup prism(double r, double length, int n) {
 
 }  // namespace
 
-TEST_CASE("A body near a mesh: the least gap is the least over all triangles, and no pair has less") {
+TEST_CASE("The gap of a body to a mesh is the least over all triangles") {
   struct Case {
     ShapeDef def;
     Soup soup;       // its core as triangles
@@ -110,7 +110,7 @@ TEST_CASE("A body near a mesh: the least gap is the least over all triangles, an
   }
 }
 
-TEST_CASE("A body that slides over a plane of triangles does not catch on internal edges") {
+TEST_CASE("A body that slides over triangles does not catch on internal edges") {
   const Soup plain = plate(1, 1, 40, 40);
   WorldDef world;
   world.meshes = {mesh_of(plain), mesh_of(box({0.1, 0.1, 0.1}))};
@@ -173,7 +173,7 @@ TEST_CASE("A body in the corner of a mesh touches floor and wall") {
   CHECK(on_wall == Approx(aside).margin(1e-8));
 }
 
-TEST_CASE("Intersecting meshes get a direction that separates them") {
+TEST_CASE("Intersecting meshes have a direction that separates them") {
   WorldDef world;
   world.meshes = {mesh_of(box({0.2, 0.2, 0.2})), mesh_of(lumpy_sphere(2, 0.1, 5))};
   auto gaps = make_detector("gaps");
@@ -187,10 +187,10 @@ TEST_CASE("Intersecting meshes get a direction that separates them") {
     CHECK(least(found).gap_m > -0.03);
     return;
   }
-  FAIL("they never met");
+  FAIL("the meshes never intersect");
 }
 
-TEST_CASE("A tilted body over a plane of triangles also has contacts at its far end") {
+TEST_CASE("A tilted body over triangles also has contacts at its far end") {
   const Soup plain = plate(1, 1, 40, 40);
   WorldDef world;
   world.meshes = {mesh_of(plain), mesh_of(box({0.1, 0.1, 0.1}))};

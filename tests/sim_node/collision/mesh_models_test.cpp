@@ -35,7 +35,7 @@ bool models_are_there() {
 
 }  // namespace
 
-TEST_CASE("Models of assimp's tests: every pair of triangles within the tolerance is covered, without false pairs") {
+TEST_CASE("Every near pair of triangles of the assimp models is covered without false pairs") {
   if (!models_are_there()) return;
   const auto other = lumpy_sphere(2, kRadius_m, 3);
   for (const char* name : kNames) {
@@ -63,7 +63,7 @@ TEST_CASE("Models of assimp's tests: every pair of triangles within the toleranc
   }
 }
 
-TEST_CASE("The contact of models does not depend on the order of the meshes, the frame, the winding or the order of triangles") {
+TEST_CASE("The contact of models does not depend on mesh order, frame, winding or triangle order") {
   if (!models_are_there()) return;
   const auto other = lumpy_sphere(2, kRadius_m, 3);
   for (const char* name : kNames) {

@@ -8,7 +8,7 @@
 using namespace tactus::sim;
 using namespace tactus::sim::test;
 
-TEST_CASE("The tree finds the same spheres within reach as an exhaustive search, and unbounded ones always") {
+TEST_CASE("The sphere tree finds the same spheres as an exhaustive search, and always the unbounded ones") {
   for (const int count : {0, 1, 2, 3, 500}) {
     Random random(3);
     std::vector<SphereTree::Sphere> all;

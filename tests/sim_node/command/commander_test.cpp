@@ -96,7 +96,7 @@ struct Bench {
 
 }  // namespace
 
-TEST_CASE("A world pauses, takes single steps, and resumes on command") {
+TEST_CASE("Commands pause, step and resume a world") {
   Bench b;
   for (int i = 0; i < 10; ++i) b.tick();
   CHECK(b.ask(command(sim_command_t::PAUSE)).paused == 1);
@@ -113,7 +113,7 @@ TEST_CASE("A world pauses, takes single steps, and resumes on command") {
   CHECK_THAT(b.refusal(step = command(sim_command_t::STEP)), Catch::Contains("pause it"));
 }
 
-TEST_CASE("A pause changes only the time at which the world continues") {
+TEST_CASE("A pause changes only the host time of the following steps") {
   Bench paused, straight;
   const sim_command_t spin = command(sim_command_t::SET, "ball", "velocity", {0.5, 0.2, 0});
   paused.ask(spin), straight.ask(spin);
@@ -127,7 +127,7 @@ TEST_CASE("A pause changes only the time at which the world continues") {
   }
 }
 
-TEST_CASE("A paused world has touch planes at the hand, is at rest, and takes no push from it") {
+TEST_CASE("A paused world has touch planes at the hand and receives no impulse from it") {
   Bench b;
   b.ask(command(sim_command_t::SET, "ball", "velocity", {0, 0, 2}));
   for (int i = 0; i < 20; ++i) b.tick();
@@ -157,7 +157,7 @@ TEST_CASE("A paused world has touch planes at the hand, is at rest, and takes no
   CHECK(b.simulation.bodies()[1].velocity_m_s.z() == Approx(2 - 9.81 * 0.022).margin(0.06));
 }
 
-TEST_CASE("A repeated command takes effect once and is replied to each time") {
+TEST_CASE("A repeated command takes effect once and is answered each time") {
   Bench b;
   const sim_command_t kick = push("ball", {2, 0, 0}, 0.01);
   for (int i = 0; i < 50; ++i) {
@@ -185,7 +185,7 @@ TEST_CASE("A push gives a free body the commanded impulse") {
   CHECK(b.ball().spin_rad_s.x() == Approx(0.001 * 0.025 / (0.4 * 0.2 * 0.05 * 0.05)));
 }
 
-TEST_CASE("Every property can be set and has its effect") {
+TEST_CASE("Every property can be set") {
   Bench b;
   CHECK(b.ask(command(sim_command_t::SET, "world", "gravity", {0, 0, -1.6})).done == 1);
   CHECK(b.ask(command(sim_command_t::SET, "ball", "pose", {0.2, 0.1, 1, 0, 0, 0})).done == 1);
@@ -217,7 +217,7 @@ TEST_CASE("Every property can be set and has its effect") {
   CHECK((b.ball().position_m - Vector3d(0, 0, 0.05)).norm() < 1e-12);
 }
 
-TEST_CASE("An impossible command is rejected with a sentence, and nothing changes") {
+TEST_CASE("An invalid command is rejected with a message and changes nothing") {
   Bench b;
   for (int i = 0; i < 5; ++i) b.tick();
   const auto set = [](const std::string& of, const std::string& property, std::vector<double> values) {
@@ -252,7 +252,7 @@ TEST_CASE("The number of active pushes is limited") {
   CHECK(b.ask(push("ball", {0.01, 0, 0}, 0.05)).done == 1);
 }
 
-TEST_CASE("A stored state is restored under its name, from memory and, by another process, from its file") {
+TEST_CASE("A stored state is restored by name from memory, and by another process from its file") {
   Bench b;
   b.ask(command(sim_command_t::SET, "ball", "velocity", {0.3, 0, 0}));
   for (int i = 0; i < 100; ++i) b.tick();
@@ -275,7 +275,7 @@ TEST_CASE("A stored state is restored under its name, from memory and, by anothe
   CHECK_THAT(b.refusal(command(sim_command_t::RESTORE, "broken")), Catch::Contains("not a saved state"));
 }
 
-TEST_CASE("The number of stored states is limited. A repeated name replaces the old state") {
+TEST_CASE("The number of stored states is limited, and a repeated name replaces the old state") {
   Bench b;
   for (std::size_t i = 0; i < StateStore::kMax; ++i)
     CHECK(b.ask(command(sim_command_t::SNAPSHOT, "s" + std::to_string(i))).done == 1);

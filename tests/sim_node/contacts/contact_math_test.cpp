@@ -18,14 +18,14 @@ Manifold through(std::initializer_list<Vector3d> points) {
 
 }  // namespace
 
-TEST_CASE("The points of a contact classify it as point, edge or surface") {
+TEST_CASE("The points of a contact determine its kind: point, edge or surface") {
   CHECK(kind_of(through({{0, 0, 0}})) == ContactKind::kPoint);
   CHECK(kind_of(through({{0, 0, 0}, {1, 0, 0}})) == ContactKind::kEdge);
   CHECK(kind_of(through({{0, 0, 0}, {1, 0, 0}, {0.5, 1e-4, 0}})) == ContactKind::kEdge);
   CHECK(kind_of(through({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) == ContactKind::kSurface);
 }
 
-TEST_CASE("The area of a patch is that of its hull, for any order of the points") {
+TEST_CASE("The area of a patch is that of its convex hull for any order of points") {
   std::array<Vector3d, 4> corners{Vector3d(0, 0, 0), Vector3d(2, 0, 0), Vector3d(2, 3, 0), Vector3d(0, 3, 0)};
   std::sort(corners.begin(), corners.end(), [](const Vector3d& a, const Vector3d& b) { return a.sum() < b.sum(); });
   std::array<int, 4> order{0, 1, 2, 3};
@@ -37,7 +37,7 @@ TEST_CASE("The area of a patch is that of its hull, for any order of the points"
   CHECK(contact_area(through({{0, 0, 0}, {2, 0, 0}, {0, 3, 0}}), ContactKind::kSurface, 1, 0, 1e-9) == Approx(3));
 }
 
-TEST_CASE("Hertz: area grows with force to the power 2/3 at a point and 1/2 along a line") {
+TEST_CASE("Hertzian area grows with force to the power 2/3 at a point and 1/2 along a line") {
   const double one = hertz_point_area(1, 50, 5e-9);
   CHECK(hertz_point_area(8, 50, 5e-9) == Approx(4 * one));
   // Johnson 1985: a = (3 F R / 4 E*)^(1/3).
@@ -52,7 +52,7 @@ TEST_CASE("Hertz: area grows with force to the power 2/3 at a point and 1/2 alon
   CHECK(hertz_point_area(1e6, 50, 1) == Approx(std::numbers::pi * 0.02 * 0.02));
 }
 
-TEST_CASE("The effective mass matches the textbook formula") {
+TEST_CASE("The effective mass matches the closed form") {
   BodyMotion wall, ball, rod;
   ball.inverse_mass_1_kg = 1 / 0.5;
   ball.inverse_inertia = Eigen::Matrix3d::Identity() * 1e3;
@@ -89,7 +89,7 @@ TEST_CASE("Curvature follows from the shape and the contact position") {
   CHECK(curvature(s[3], K::kPoint, {0, 0, 0.3}, -1) == Approx(10));
 }
 
-TEST_CASE("The triangles of a ball give the curvature of the ball") {
+TEST_CASE("The triangles of a ball have the curvature of the ball") {
   // An octahedron whose faces are divided in four, three times, and projected to the sphere.
   TriangleMesh mesh;
   mesh.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};

@@ -62,7 +62,7 @@ contact_t described(const Tracked& t, std::size_t i) {
 
 }  // namespace
 
-TEST_CASE("A falling ball begins and hits once, at the time of the parabola inside the step") {
+TEST_CASE("A falling ball begins and hits once at the time of the parabola") {
   const auto solver = GENERATE("impulse", "quick");
   for (const double height : {0.05, 0.3, 1.0, 2.37}) {
     WorldDef w = empty_world();
@@ -141,7 +141,7 @@ TEST_CASE("The contacts of a resting stack begin once and never hit") {
   CHECK(lowest.impulse_N_s == Approx(4 * 0.5 * kG * 3).epsilon(0.02));
 }
 
-TEST_CASE("A box that rocks onto its other edge hits again within the same contact") {
+TEST_CASE("A box that rocks onto its other edge hits again in the same contact") {
   const auto solver = GENERATE("impulse", "quick");
   WorldDef w = empty_world();
   add_floor(w, 1);
@@ -183,7 +183,7 @@ TEST_CASE("Sliding and rolling are distinguished") {
   CHECK(c.kind == contact_t::POINT);
 }
 
-TEST_CASE("Every contact of tumbling bodies begins once, hits in between and ends once") {
+TEST_CASE("Every contact of tumbling bodies begins once, then hits, and ends at most once") {
   const auto solver = GENERATE("impulse", "quick");
   std::mt19937 random(5);
   std::uniform_real_distribution<double> u(-1, 1);
@@ -239,7 +239,7 @@ TEST_CASE("Every contact of tumbling bodies begins once, hits in between and end
   }
 }
 
-TEST_CASE("Surfaces that chatter within the hysteresis keep one contact") {
+TEST_CASE("Surfaces that oscillate within the hysteresis keep one contact") {
   WorldDef w = empty_world(0);
   add_floor(w);
   add_ball(w, 0.1, 0.02, {0, 0, 0.02});
@@ -262,7 +262,7 @@ TEST_CASE("Surfaces that chatter within the hysteresis keep one contact") {
   for (int i = 0; i < 60; ++i) step(i, i % 6 < 3 ? -1e-5 : 2e-4, i % 6 < 3 ? -0.01 : 0.01);
   REQUIRE(events.size() == 1);
   CHECK(events[0].kind == contact_event_t::BEGIN);
-  SECTION("a fast return is a hit, but not more often than the interval allows") {
+  SECTION("a fast return is a hit, limited by the minimum interval") {
     for (int i = 60; i < 120; ++i) step(i, i % 2 ? -1e-5 : 1e-4, i % 2 ? -0.2 : 0.2);
     CHECK(events.size() >= 9);
     for (std::size_t i = 2; i < events.size(); ++i) {
@@ -270,7 +270,7 @@ TEST_CASE("Surfaces that chatter within the hysteresis keep one contact") {
       CHECK(events[i].time_ns - events[i - 1].time_ns >= 4'900'000);
     }
   }
-  SECTION("a gap that is too wide ends the contact, at the time when it opened") {
+  SECTION("a gap beyond the limit ends the contact at the time when it opened") {
     step(60, -1e-5, 0.0);
     step(61, 1e-3, 1.0);
     REQUIRE(events.size() == 2);

@@ -59,7 +59,7 @@ double slid(const WorldDef& w, const std::string& solver) {
 
 }  // namespace
 
-TEST_CASE("A box slides on the slippery half of a slope and stays on the rough half, with every contact law") {
+TEST_CASE("A box slides on the slippery half of a slope and sticks on the rough half, with every contact law") {
   const std::string solver = GENERATE("impulse", "penalty", "quick");
   // Friction of the pair: sqrt(0.4 * 0.4) times the root of the factor, 0.2 and 0.8. tan 20 degrees is 0.36.
   const double g = 9.81, after_s = 0.5;
@@ -67,7 +67,7 @@ TEST_CASE("A box slides on the slippery half of a slope and stays on the rough h
   CAPTURE(solver);
   CHECK(slid(slope(0.5), solver) == Approx(sliding).epsilon(0.05));
   CHECK(std::abs(slid(slope(1.5), solver)) < 0.02);
-  SECTION("equal to uniform friction with those coefficients") {
+  SECTION("uniform friction with the same coefficients gives the same motion") {
     WorldDef plain = slope(0.5);
     plain.materials[1].friction_asset = 0;
     CHECK(std::abs(slid(plain, solver)) < 0.02);  // 0.4: it sticks
@@ -76,7 +76,7 @@ TEST_CASE("A box slides on the slippery half of a slope and stays on the rough h
   }
 }
 
-TEST_CASE("Each of two mapped surfaces gives its factor at its own position, independent of the order") {
+TEST_CASE("Each of two mapped surfaces has a factor at its own position, in either order") {
   WorldDef w = slope(0.5);
   w.shapes[1].material = 1;
   const FrictionMaps maps(w);

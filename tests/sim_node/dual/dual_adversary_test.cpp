@@ -46,7 +46,7 @@ WorldDef tray(unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("Bodies of one group never touch those of the other, for any motion of the hand") {
+TEST_CASE("Bodies of the two groups never touch for any motion of the hand") {
   const double acceleration = GENERATE(10.0, 100.0, 300.0);
   const unsigned seed = GENERATE(1u, 2u);
   CAPTURE(acceleration, seed);
@@ -102,7 +102,7 @@ TEST_CASE("Bodies of one group never touch those of the other, for any motion of
     if (m.moves()) CHECK((m.centre_m.head<2>().cwiseAbs().maxCoeff() < 0.36 && m.centre_m.z() > kBall_m - 1e-5));
 }
 
-TEST_CASE("A late visual step holds its bodies, is counted, and delays no tick") {
+TEST_CASE("A late visual step holds its bodies, is counted and delays no tick") {
   WorldDef w = empty_world();
   const int ball = add_ball(w, 1, 0.05, {0, 0, 10});
   for (int i = 0; i < 60; ++i) add_ball(w, 1, 0.05, {1.0 + 0.2 * (i % 8), 0.2 * (i / 8), 10});
@@ -127,7 +127,7 @@ TEST_CASE("A late visual step holds its bodies, is counted, and delays no tick")
   CHECK(d.groups.step()->states.back()[0].body.centre_m.z() == Approx(10 - kG / 2 * fell_s * fell_s).margin(1e-9));
 }
 
-TEST_CASE("A push brings a body into the haptic group, and values set on it persist") {
+TEST_CASE("A push moves a body into the haptic group, and values set on it persist") {
   WorldDef w = empty_world(0);
   const int ball = add_ball(w, 0.2, 0.05, {0, 0, 1});
   Dual d(w);
@@ -155,7 +155,7 @@ TEST_CASE("A push brings a body into the haptic group, and values set on it pers
         Approx(before - 0.2).margin(0.04));
 }
 
-TEST_CASE("The visual group on its own thread exchanges bodies in contact and applies changes") {
+TEST_CASE("A visual group on its own thread exchanges bodies and applies changes") {
   WorldDef w = empty_world();
   add_floor(w, 0.5, 0.3);
   for (int i = 0; i < 24; ++i)

@@ -10,7 +10,7 @@ using namespace tactus::sim;
 using namespace tactus::sim::test;
 using Eigen::Vector3d;
 
-TEST_CASE("A body out of reach of all tools falls in visual steps, on the parabola") {
+TEST_CASE("A body out of reach of all tools follows the parabola in visual steps") {
   WorldDef w = empty_world();
   const int ball = add_ball(w, 1, 0.05, {0, 0, 10});
   Dual d(w);
@@ -25,7 +25,7 @@ TEST_CASE("A body out of reach of all tools falls in visual steps, on the parabo
   }
 }
 
-TEST_CASE("A ball that falls past the tool goes to the haptic group and back, and stays on its parabola") {
+TEST_CASE("A ball that falls past the tool changes groups twice and stays on its parabola") {
   WorldDef w = empty_world();
   const int ball = add_ball(w, 1, 0.05, {0, 0, 2});
   // Beside the trajectory of the ball, near enough for contact to be possible.
@@ -47,7 +47,7 @@ TEST_CASE("A ball that falls past the tool goes to the haptic group and back, an
         Approx(2 - kG / 2 * t * t).margin(1e-9));
 }
 
-TEST_CASE("A bounce within one visual step begins, hits and ends at the right instants") {
+TEST_CASE("A bounce within one visual step has begin, hit and end at the right times") {
   WorldDef w = empty_world();
   add_floor(w, 0.5, 1);
   add_ball(w, 1, 0.05, {0, 0, 0.55}, 0.5, 1);
@@ -103,7 +103,7 @@ TEST_CASE("Bodies at rest change groups without a begin or an end event") {
   CHECK(d.body(upper).centre_m.z() == Approx(0.15).margin(0.001));
 }
 
-TEST_CASE("The same ticks give the same world to the bit, for any motion of the tool") {
+TEST_CASE("The same ticks give a bit-identical world for any motion of the tool") {
   const auto run = [] {
     WorldDef w = empty_world();
     add_floor(w, 0.5, 0.3);
@@ -124,7 +124,7 @@ TEST_CASE("The same ticks give the same world to the bit, for any motion of the 
   CHECK(run() == run());
 }
 
-TEST_CASE("A restored state continues identically to the bit, regardless of the steps since") {
+TEST_CASE("A restored state continues bit-identically, independent of the steps since") {
   WorldDef w = empty_world();
   add_floor(w, 0.5, 0.3);
   for (int i = 0; i < 12; ++i) add_ball(w, 0.2, 0.03, {0.08 * (i % 4), 0.08 * (i / 4), 0.1 + 0.03 * i}, 0.4, 0.5);
@@ -161,7 +161,7 @@ TEST_CASE("A restored state continues identically to the bit, regardless of the 
   CHECK(go_on() == first);
 }
 
-TEST_CASE("The springs near a tool are evaluated at the end or at the start of a step, as the solver setting selects") {
+TEST_CASE("The solver setting selects evaluation of the springs near a tool at the start or end of a step") {
   // The ball sinks into its spring. Evaluated at the start of the step, the first force belongs to the previous
   // position.
   WorldDef w = empty_world();

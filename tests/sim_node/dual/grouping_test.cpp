@@ -37,7 +37,7 @@ struct Row {
 
 }  // namespace
 
-TEST_CASE("A body joins the group when the tool may reach it before the next visual step, and is reported as entered") {
+TEST_CASE("A body enters the haptic group when the tool may reach it before the next visual step") {
   Row r(3);
   Grouping g(r.bodies, r.limits);
   r.step(g, 0);
@@ -59,7 +59,7 @@ TEST_CASE("A body joins the group when the tool may reach it before the next vis
   CHECK(g.haptic().empty());
 }
 
-TEST_CASE("Trajectories that cross at different times do not group bodies. Capsules do") {
+TEST_CASE("Trajectories that cross at different times do not group bodies, capsules do") {
   Row r(1);
   r.limits.tool_acceleration_m_s2 = 0;
   r.limits.gravity_m_s2 = 0;
@@ -73,7 +73,7 @@ TEST_CASE("Trajectories that cross at different times do not group bodies. Capsu
   CHECK(Row::list(kim.haptic()) == Ints{0});
 }
 
-TEST_CASE("A system of joints enters as a whole, with the moving bodies that touch it. A static body does not enter") {
+TEST_CASE("A joint system enters as a whole with the moving bodies that touch it, but not with static ones") {
   Row r(6);
   r.bodies[0].system = r.bodies[2].system = r.bodies[3].system = 0;
   r.touching = {{3, 4}, {0, 5}};
@@ -84,7 +84,7 @@ TEST_CASE("A system of joints enters as a whole, with the moving bodies that tou
   CHECK(Row::list(g.haptic()) == Ints{0, 2, 3, 4});
 }
 
-TEST_CASE("A body that a struck body may strike is in the group, and a third body enters when the second is struck") {
+TEST_CASE("A body that a struck body may strike is in the group, a third one after the next impact") {
   Row r(3);
   r.motions[1].centre_m = {0.11, 0, 0};  // a centimetre from the first
   r.motions[2].centre_m = {0.22, 0, 0};
@@ -100,7 +100,7 @@ TEST_CASE("A body that a struck body may strike is in the group, and a third bod
   CHECK(Row::list(sound.entered()) == Ints{2});
 }
 
-TEST_CASE("A tool that leaves its straight line is detected in the same tick, and the group grows at once") {
+TEST_CASE("A tool that changes direction is detected in the same tick, and the group grows at once") {
   Row r(4);
   Grouping g(r.bodies, r.limits);
   r.step(g, 0);

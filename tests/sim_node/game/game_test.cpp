@@ -28,7 +28,7 @@ struct Table {
 
 }  // namespace
 
-TEST_CASE("A hole is filled when its ball has been below its rim for a while, and the game is won when all holes are filled") {
+TEST_CASE("A hole is filled after its ball stays below the rim, and the game is won when all are filled") {
   Table t;
   CHECK(t.after(10).holes[0].inside == -1);
   t.put(0, {0.01, 0, -0.05});
@@ -47,7 +47,7 @@ TEST_CASE("A hole is filled when its ball has been below its rim for a while, an
   CHECK(open.holes[1].inside == -1);
 }
 
-TEST_CASE("A ball in the hole of another ball is inside and fills nothing") {
+TEST_CASE("A ball in the hole of another ball is inside but does not fill it") {
   Table t;
   t.put(0, {1, 0, -0.05});
   const game_state_t m = t.after(200);
@@ -56,7 +56,7 @@ TEST_CASE("A ball in the hole of another ball is inside and fills nothing") {
   CHECK(m.holes[0].inside == -1);
 }
 
-TEST_CASE("A ball that rolls over a hole, bounces out of it or is beside or far below it is not in it") {
+TEST_CASE("A ball that crosses, leaves, or is beside or far below a hole is not in it") {
   Table t;
   for (const Eigen::Vector3d& place :
        {Eigen::Vector3d(0, 0, 0.025), Eigen::Vector3d(0.031, 0, -0.05), Eigen::Vector3d(0, 0, -0.11)}) {
@@ -82,7 +82,7 @@ TEST_CASE("Every change of a game is reported once") {
   CHECK(!t.game.take_change());
 }
 
-TEST_CASE("A scene without holes has no game to win") {
+TEST_CASE("A scene without holes has no game") {
   Game none{{}};
   none.step(sync::sim_time(0), {});
   CHECK(!none.any());

@@ -34,8 +34,7 @@ std::map<std::string, std::string> table() {
 
 }  // namespace
 
-TEST_CASE(
-    "Every scene ends in the state of the table (tests/measure/golden_hashes --write updates the table)") {
+TEST_CASE("Every scene ends in the state of the table (update: tests/measure/golden_hashes --write)") {
   const auto golden = table();
   std::size_t scenes = 0;
   for (const auto& scene : scenes_in(kScenes)) {
@@ -47,7 +46,7 @@ TEST_CASE(
   CHECK(golden.size() == scenes);
 }
 
-TEST_CASE("Every scene ends in the same state with every instruction set of the processor") {
+TEST_CASE("Every scene ends in the same state with every instruction set") {
   int compared = 0;
   for (const auto& scene : scenes_in(kScenes)) {
     constexpr int kSteps = 120;  // of all scenes; scenes that depend on the instructions take all steps below
@@ -73,7 +72,7 @@ TEST_CASE("Meshes in contact end in the same state with every instruction set") 
   if (best_isa() >= Isa::kAvx512) CHECK(with("avx512") == baseline);
 }
 
-TEST_CASE("A state hash distinguishes one bit of one body, and a scene one step later") {
+TEST_CASE("A state hash differs for one bit of one body and for one more step") {
   const auto scene = kScenes / "stack.sdf";
   const std::uint64_t once = state_hash(scene, {}, 60);
   CHECK(state_hash(scene, {}, 60) == once);

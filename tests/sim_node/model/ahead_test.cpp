@@ -140,7 +140,7 @@ void stamp(Message& m, std::int64_t now, std::int64_t& seq) {
 
 }  // namespace
 
-TEST_CASE("Rendered poses of bodies computed ahead match the bodies, also after revisions, for any order of pages") {
+TEST_CASE("Rendered poses of bodies computed ahead match the bodies, for any order of pages and revisions") {
   const std::size_t bodies = GENERATE(3, 60, 200);  // within the budget: with more bodies there are fewer snapshots
   const unsigned seed = GENERATE(1, 2, 3);
   Dual world(bodies, seed);
@@ -201,7 +201,7 @@ TEST_CASE("Rendered poses of bodies computed ahead match the bodies, also after 
   CHECK(pages < 1400 + 60);
 }
 
-TEST_CASE("A late visual step holds its bodies at rest, and their motion continues from there") {
+TEST_CASE("A late visual step holds its bodies, and their motion continues from there") {
   Snapshots snapshots(60, 2000, sync::Nanoseconds(kMs));
   sync::BodyHistory history(1);
   std::vector<BodyMotion> now(1), foreseen(1);
@@ -250,7 +250,7 @@ TEST_CASE("A late visual step holds its bodies at rest, and their motion continu
     CHECK(x(t) == Approx(0.017 + 1e-3 * static_cast<double>(t - 30)).margin(1e-6));
 }
 
-TEST_CASE("A contact that moves between the groups exists exactly once at any time") {
+TEST_CASE("A contact that moves between the groups always exists exactly once") {
   const unsigned seed = GENERATE(1, 2, 3, 4);
   Dual world(20, seed);
   world.touching = true;

@@ -48,13 +48,13 @@ Settings settings(const std::string& solver, const std::string& detector) {
 
 }  // namespace
 
-TEST_CASE("The setting accepts every model and no other") {
+TEST_CASE("The setting accepts every model and rejects other names") {
   for (const BehaviourModel& m : behaviour_models()) CHECK(behaviour_model(m.name).name == m.name);
   CHECK(behaviour_models().size() == 5);
   CHECK_THROWS_WITH(behaviour_model("jelly"), Contains("jelly") && Contains("choose quick, step"));
 }
 
-TEST_CASE("Impulse and penalty models reject a detector that reports overlap only and accept every other") {
+TEST_CASE("Impulse and penalty models reject only detectors that report overlap") {
   for (const std::string_view name : detector_names()) {
     const DetectorAbilities abilities = make_detector(name)->abilities();
     for (const BehaviourModel& m : behaviour_models()) {
@@ -70,7 +70,7 @@ TEST_CASE("Impulse and penalty models reject a detector that reports overlap onl
       CHECK_THROWS_WITH(Solver(ball_over_box(0.01), settings(solver, detector)), Contains("does not report"));
 }
 
-TEST_CASE("Two groups reject the same pairings as one group, without fallback") {
+TEST_CASE("Two groups reject the same combinations as one group") {
   Settings s = settings("impulse", GENERATE("ode", "ccd_mpr"));
   s.groups = "dual";
   s.visual_thread = "none";
@@ -83,7 +83,7 @@ TEST_CASE("Two groups reject the same pairings as one group, without fallback") 
   CHECK_NOTHROW(Simulation(ball_over_box(0.01), s));
 }
 
-TEST_CASE("Explicit penalty is rejected when it is unstable for step and mass, with the stable limit") {
+TEST_CASE("Explicit penalty that is unstable for step and mass is rejected with the stable limit") {
   // A mesh presses with up to four points: 4 m / (4 h^2) minus the damper's 2 d / h.
   Settings s = settings("penalty_explicit", "layers");
   const double most = kMass_kg / 1e-6 - 2 * s.penalty_damping_Ns_m / 1e-3;
@@ -105,7 +105,7 @@ TEST_CASE("Explicit penalty is rejected when it is unstable for step and mass, w
   CHECK(refusal(ball_over_box(0.01), s).empty());
 }
 
-TEST_CASE("A loop of joints is rejected by name by every model that needs trees") {
+TEST_CASE("Every model that needs trees rejects a loop of joints by name") {
   WorldDef w = chain_world(3);
   add_joint(w, JointKind::kBall, -1, 2, {0, 0, 1.7}, {1, 0, 0});
   for (const BehaviourModel& m : behaviour_models()) {
@@ -118,7 +118,7 @@ TEST_CASE("A loop of joints is rejected by name by every model that needs trees"
   }
 }
 
-TEST_CASE("A body of a scene rests in the shell where the spring carries its weight, without an impact on arrival") {
+TEST_CASE("A body of a scene rests in the penalty shell without an impact on arrival") {
   const std::string solver = GENERATE("penalty", "penalty_explicit");
   const Settings s = settings(solver, "layers");
   Solver sim(ball_over_box(0.001), s);

@@ -9,7 +9,7 @@
 
 using namespace tactus::sim;
 
-TEST_CASE("The kept points span the patch: the deepest and its corners") {
+TEST_CASE("The reduction keeps the deepest point and the corners of a patch") {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> u(0, 1);
   for (int round = 0; round < 50; ++round) {
@@ -31,7 +31,7 @@ TEST_CASE("The kept points span the patch: the deepest and its corners") {
   }
 }
 
-TEST_CASE("Duplicates count once, but two normals at one position are a corner") {
+TEST_CASE("The reduction merges duplicates but keeps two normals at one position") {
   Manifold m;
   reduce_points(std::vector<ManifoldPoint>(20, ManifoldPoint{{1, 2, 3}, {0, 0, 1}, 1e-3}), m);
   CHECK(m.count == 1);
@@ -41,7 +41,7 @@ TEST_CASE("Duplicates count once, but two normals at one position are a corner")
   CHECK(m.count == 0);
 }
 
-TEST_CASE("For points with gaps, the reduction keeps the near ones and one of every wall") {
+TEST_CASE("The reduction of points with gaps keeps the near ones and one of every wall") {
   const auto point = [](double x, double y, double gap, const Eigen::Vector3d& n) {
     ManifoldPoint p;
     p.point_m = {x, y, 0};

@@ -30,7 +30,7 @@ const material_def_t& material(const WorldDef& w, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("A material with measured modes has those of the table, ascending, and passes them on") {
+TEST_CASE("A material has the measured modes of its table in ascending order") {
   SceneFile file = scene(kTable);
   const WorldDef w = file.load();
   for (const char* name : {"bell", "dark"}) {
@@ -45,7 +45,7 @@ TEST_CASE("A material with measured modes has those of the table, ascending, and
   CHECK(material(w, "copper").mode_count == 0);
 }
 
-TEST_CASE("An invalid table of modes is rejected with the line of the scene and the row") {
+TEST_CASE("An invalid table of modes is rejected with the line of the scene and its row") {
   const auto refused = [](const std::string& table, const std::string& because) {
     SceneFile file = scene(table);
     CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:3: ") &&

@@ -47,7 +47,7 @@ TEST_CASE("The closest approach of two linear motions matches a fine sampling of
   }
 }
 
-TEST_CASE("The first contact time of two linear motions matches a fine sampling of time, or there is none") {
+TEST_CASE("The first contact time of two linear motions matches a fine sampling of time, if there is one") {
   Random c;
   int met = 0;
   for (int round = 0; round < 1000; ++round) {
@@ -66,8 +66,7 @@ TEST_CASE("The first contact time of two linear motions matches a fine sampling 
   CHECK(met > 20);
 }
 
-TEST_CASE(
-    "The distance of the axes of two capsules matches a fine sampling and is at most the distance of their motions in time") {
+TEST_CASE("The distance of two capsule axes matches a fine sampling and never exceeds that of the motions") {
   Random c;
   for (int round = 0; round < 100; ++round) {
     SweptSphere a = c.sphere(), b = c.sphere();
@@ -85,7 +84,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A grid finds exactly the boxes that overlap the query, for any sizes") {
+TEST_CASE("A grid finds exactly the boxes that overlap the query") {
   Random c;
   const double spread = GENERATE(0.5, 50.0, 1e7);
   std::vector<Bounds> boxes;

@@ -35,7 +35,7 @@ Run run(std::size_t world_pages, std::size_t contact_pages, int ticks, double bu
 
 }  // namespace
 
-TEST_CASE("Small states are sent 60 times a second, at ticks ceil(1000 n / 60), at once") {
+TEST_CASE("Small states are sent completely at the ticks ceil(1000 n / 60)") {
   const Run r = run(1, 1, 3000);
   REQUIRE(r.world_taken.size() == 180);
   for (std::size_t n = 0; n < r.world_taken.size(); ++n)
@@ -45,7 +45,7 @@ TEST_CASE("Small states are sent 60 times a second, at ticks ceil(1000 n / 60), 
   for (const std::int64_t tick : r.world_taken) CHECK(r.per_tick[static_cast<std::size_t>(tick)] == 2);
 }
 
-TEST_CASE("No second exceeds the budget, for any load, and no page is lost") {
+TEST_CASE("Every second stays within its budget under any load, and no page is lost") {
   const std::size_t world = GENERATE(0u, 1u, 5u, 33u, 158u, 1000u);
   const std::size_t contacts = GENERATE(1u, 20u, 500u);
   const double budget = GENERATE(100.0, 2000.0);
@@ -75,7 +75,7 @@ TEST_CASE("The published rate is the actual rate") {
   CHECK(run(158, 1000, 4000).world_rate == Approx(1000.0 / 158).epsilon(0.05));
 }
 
-TEST_CASE("A new receiver gets the whole world within 100 ms, under any load") {
+TEST_CASE("A new receiver gets the whole world within 100 ms under any load") {
   PageScheduler s(60, 2000, sync::Nanoseconds(1'000'000));
   std::size_t world = 0;
   int asked = -1, served = -1;

@@ -60,7 +60,7 @@ std::vector<BodyMotion> moving(std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("3,000 bodies and 2,000 contacts pass without a lost page, within the budget of datagrams") {
+TEST_CASE("3,000 bodies and 2,000 contacts are published without a lost page within the budget") {
   Wire wire;
   Publisher publisher(wire.bus, 60, 2000, 4, sync::Nanoseconds(1'000'000));
   const std::vector<BodyMotion> bodies = moving(3000);
@@ -137,7 +137,7 @@ TEST_CASE("3,000 bodies and 2,000 contacts pass without a lost page, within the 
             << whole_contacts / seconds << " Hz\n";
 }
 
-TEST_CASE("Each step publishes touch models, events, contacts of tools, and only then the slow state") {
+TEST_CASE("Each step publishes touch models, events and tool contacts before the slow state") {
   Wire wire;
   Publisher publisher(wire.bus, 60, 2000, 4, sync::Nanoseconds(1'000'000));
   const std::vector<BodyMotion> bodies = moving(3);
@@ -161,7 +161,7 @@ TEST_CASE("Each step publishes touch models, events, contacts of tools, and only
   CHECK(all == "touch touch events contacts world contacts ");
 }
 
-TEST_CASE("Every event is repeated in each step for 50 ms, and a storm loses none") {
+TEST_CASE("Every event is repeated for 50 ms, and many events at once lose none") {
   EventRepeater young(4);
   std::map<std::int64_t, int> sent;
   std::int64_t id = 0;
@@ -184,7 +184,7 @@ TEST_CASE("Every event is repeated in each step for 50 ms, and a storm loses non
     for (const auto& [event_id, times] : sent) CHECK(times == 50);
 }
 
-TEST_CASE("Moving bodies are published, coming to rest once, and all bodies once a second and for a new receiver") {
+TEST_CASE("Moving bodies are published at the rate, resting ones once a second and for a new receiver") {
   Snapshots snapshots(60, 2000, sync::Nanoseconds(1'000'000));
   std::vector<BodyMotion> bodies(40);
   bodies[7].velocity_m_s = {0.5, 0, 0};
@@ -235,7 +235,7 @@ TEST_CASE("Moving bodies are published, coming to rest once, and all bodies once
   CHECK(fulls == 2);
 }
 
-TEST_CASE("A paused world is published at the usual rate, and its events are not repeated endlessly") {
+TEST_CASE("A paused world is published at the usual rate without old events") {
   Wire wire;
   Publisher publisher(wire.bus, 60, 2000, 4, sync::Nanoseconds(1'000'000));
   const std::vector<BodyMotion> bodies(20);

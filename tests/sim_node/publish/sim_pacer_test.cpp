@@ -23,7 +23,7 @@ TEST_CASE("A loop without delays has an exact map") {
   CHECK(pacer.realtime_factor() == Approx(1));
 }
 
-TEST_CASE("A missed tick is a slew, not a jump") {
+TEST_CASE("A missed tick slews the map instead of stepping it") {
   SimPacer pacer;
   std::int64_t late = 0, last = 0;
   for (int i = 1; i < 500; ++i) {
@@ -37,7 +37,7 @@ TEST_CASE("A missed tick is a slew, not a jump") {
   CHECK(last == Approx(kStart + kMs).margin(10));
 }
 
-TEST_CASE("A simulation at half speed publishes its rate, and its map keeps up") {
+TEST_CASE("A simulation at half speed publishes its rate and an accurate map") {
   SimPacer pacer;
   sync::TimeMap map;
   for (int i = 1; i <= 3000; ++i) map = pacer.tick(sync::sim_time(i * kMs), sync::host_time(kStart + 2 * i * kMs));
@@ -47,7 +47,7 @@ TEST_CASE("A simulation at half speed publishes its rate, and its map keeps up")
   CHECK(std::abs(sync::to_ns(map.host) - (kStart + 6000 * kMs)) <= 20 * kMs);
 }
 
-TEST_CASE("The map never runs backwards, even over a stop") {
+TEST_CASE("The map is monotone, also across a stop") {
   SimPacer pacer;
   std::int64_t pause = 0, last = 0;
   for (int i = 1; i < 2000; ++i) {
@@ -59,7 +59,7 @@ TEST_CASE("The map never runs backwards, even over a stop") {
   }
 }
 
-TEST_CASE("A paused world has a constant map, and a new one after the pause") {
+TEST_CASE("A paused world has a constant map and a new one after the pause") {
   SimPacer pacer;
   sync::TimeMap map{};
   for (int i = 1; i < 100; ++i) map = pacer.tick(sync::sim_time(i * kMs), sync::host_time(kStart + i * kMs));
@@ -76,7 +76,7 @@ TEST_CASE("A paused world has a constant map, and a new one after the pause") {
   CHECK(sync::to_ns(map.host) == kStart + 5000 * kMs);
 }
 
-TEST_CASE("A world that is paused from the start has a map as well") {
+TEST_CASE("A world that starts paused has a map") {
   SimPacer pacer;
   CHECK(sync::to_ns(pacer.hold(sync::sim_time(5), sync::host_time(kStart)).host) == kStart);
   CHECK(pacer.hold(sync::sim_time(5), sync::host_time(kStart + kMs)).rate == 0);

@@ -10,7 +10,7 @@ const std::string kBall = collision("<sphere><radius>0.1</radius></sphere>");
 bool same(const Vector3d& a, const Vector3d& b) { return (a - b).norm() < 1e-9; }
 }  // namespace
 
-TEST_CASE("Poses of nested models and frames resolve as computed by hand") {
+TEST_CASE("Poses of nested models and frames are resolved correctly") {
   SceneFile file(world(R"(<model name="outer"><pose>1 0 0 0 0 1.5707963267948966</pose>
       <frame name="shelf"><pose>0 0 2 0 0 0</pose></frame>
       <link name="base"><pose relative_to="shelf">0.5 0 0 0 0 0</pose></link>
@@ -38,7 +38,7 @@ TEST_CASE("A static model and its nested models never move") {
   CHECK_FALSE(w.bodies[2].is_static);
 }
 
-TEST_CASE("Friction and restitution come from SDF, else from the material, else from SDF's defaults") {
+TEST_CASE("Friction and restitution come from SDF, then from the material, then from the defaults") {
   SceneFile file(link("<collision name='none'><geometry><sphere><radius>1</radius></sphere></geometry></collision>"
                       "<collision name='oak'><tactus:surface material='oak'/><geometry><sphere><radius>1</radius></sphere>"
                       "</geometry></collision><collision name='both'><tactus:surface material='oak'/><geometry><sphere>"
@@ -57,7 +57,7 @@ TEST_CASE("Friction and restitution come from SDF, else from the material, else 
   CHECK(w.shapes[2].restitution == 0.5);
 }
 
-TEST_CASE("The innermost surface setting applies: collision before link before model") {
+TEST_CASE("The innermost surface setting applies, from collision over link to model") {
   SceneFile file(model("<tactus:surface material='steel'/><link name='a'>" + kBall +
                        "</link><link name='b'><tactus:surface material='oak'/>" + kBall +
                        "<collision name='d'><tactus:surface material='glass'/><geometry><box><size>1 1 1</size></box>"
@@ -81,7 +81,7 @@ TEST_CASE("A body with visuals only gets the bounding box of its visuals") {
   CHECK(same(w.shapes[0].size_m, {3.5, 1, 1.6}));
 }
 
-TEST_CASE("Links of a model collide with each other only where the model or one of them allows it") {
+TEST_CASE("Links of a model collide with each other only if the model or a link allows it") {
   const auto pairs = [](const std::string& more, const std::string& in_b = "") {
     SceneFile file(model(more + "<link name='a'/><link name='b'>" + in_b + "</link><link name='c'/>"));
     return file.load().no_collision;
@@ -91,7 +91,7 @@ TEST_CASE("Links of a model collide with each other only where the model or one 
   CHECK(pairs("", "<self_collide>true</self_collide>") == std::vector<std::pair<int, int>>{{0, 2}});
 }
 
-TEST_CASE("Gravity of a link and its velocity decay are read") {
+TEST_CASE("Gravity and velocity decay of a link are read") {
   SceneFile file(link("<gravity>false</gravity><velocity_decay><linear>0.25</linear><angular>0.5</angular></velocity_decay>"));
   const WorldDef w = file.load();
   CHECK_FALSE(w.bodies[0].gravity);
@@ -99,7 +99,7 @@ TEST_CASE("Gravity of a link and its velocity decay are read") {
   CHECK(w.bodies[0].angular_damping_1_s == 0.5);
 }
 
-TEST_CASE("Old spellings load: SDF 1.4 as users wrote it") {
+TEST_CASE("An SDF 1.4 file with old spellings loads") {
   SceneFile file(world("<gravity>0 0 -3.7</gravity><model name='m'><pose>0 0 1 0 3.141592653589793 0</pose><link name='l'>" +
                            kBall + "</link></model>",
                        "1.4"));

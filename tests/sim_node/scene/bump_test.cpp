@@ -35,7 +35,7 @@ const material_def_t& material(const WorldDef& w, const std::string& name) {
 }
 }  // namespace
 
-TEST_CASE("A material with a height map names its picture by content, with its size and height") {
+TEST_CASE("A material refers to its height map by content hash, with size and height") {
   SceneFile file = scene("<tactus:material name='p' base='oak' " + kGood + "/><tactus:material name='q' base='p' density='900'/>");
   const WorldDef w = file.load();
   const material_def_t& p = material(w, "p");
@@ -45,7 +45,7 @@ TEST_CASE("A material with a height map names its picture by content, with its s
   CHECK(p.bump_size_v_m == Approx(0.2));
   CHECK(p.bump_height_m == Approx(0.001));
   CHECK(material(w, "oak").bump_asset == 0);
-  SECTION("and a material based on it inherits it") {
+  SECTION("a derived material inherits the height map") {
     const material_def_t& q = material(w, "q");
     CHECK(q.density_kg_m3 == 900);
     CHECK(q.bump_asset == p.bump_asset);
@@ -55,7 +55,7 @@ TEST_CASE("A material with a height map names its picture by content, with its s
   }
 }
 
-TEST_CASE("The picture of a height map is sent once, unchanged, for all materials that use it") {
+TEST_CASE("A height map is sent once, unchanged, for all materials that use it") {
   const sync::Bytes other = ramp(7);
   SceneFile file(world("<tactus:material name='p' base='oak' " + kGood + "/><tactus:material name='q' base='p'/>"
                        "<tactus:material name='r' base='oak' bump='copy.png' bump_size='1 1' bump_height='1mm'/>"
@@ -78,21 +78,21 @@ TEST_CASE("The picture of a height map is sent once, unchanged, for all material
   CHECK(rough == 4);
 }
 
-TEST_CASE("An invalid height map is refused with its line") {
+TEST_CASE("An invalid height map is rejected with its line") {
   SceneFile absent(world("\n<tactus:material name='p' base='oak' " + kGood + "/>"));
   CHECK_THAT(absent.refusal(), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("\"planks.png\", which is not found"));
   const auto refused = [](const std::string& attributes, const std::string& because) {
     CHECK_THAT(refusal(attributes), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains(because));
   };
   CHECK(refusal(kGood) == "");
-  SECTION("a picture without size or height, and these without a picture") {
+  SECTION("picture, size and height are required together") {
     refused("bump='planks.png' bump_height='1mm'", "lacks its attribute \"bump_size\"");
     refused("bump='planks.png' bump_size='1m 1m'", "lacks its attribute \"bump_height\"");
     refused("bump_size='1m 1m'", "bump_size without bump");
     refused("bump_height='1mm'", "bump_height without bump");
     refused("bump='' bump_size='1m 1m' bump_height='1mm'", "lacks its attribute \"bump\"");
   }
-  SECTION("invalid sizes and heights") {
+  SECTION("sizes and heights out of range are rejected") {
     const auto sized = [](const std::string& size, const std::string& height) {
       return "bump='planks.png' bump_size='" + size + "' bump_height='" + height + "'";
     };
@@ -107,7 +107,7 @@ TEST_CASE("An invalid height map is refused with its line") {
     refused(sized("1m 1m", "-1mm"), "between 1e-07 and 0.1 m");
     refused(sized("1m 1m", "2m"), "between 1e-07 and 0.1 m");
   }
-  SECTION("a picture that is not a height map") {
+  SECTION("a picture that is not a height map is rejected") {
     const auto unread = [](const sync::Bytes& picture, const std::string& because) {
       CHECK_THAT(refusal(kGood, picture), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("cannot be read: " + because));
     };

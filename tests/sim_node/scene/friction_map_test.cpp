@@ -25,7 +25,7 @@ SceneFile scene(const std::string& attributes, const sync::Bytes& picture = halv
 
 }  // namespace
 
-TEST_CASE("A material with a friction map names its picture by content, with its size and factors") {
+TEST_CASE("A material refers to its friction map by content hash, with size and factors") {
   SceneFile file = scene(kGood);
   const WorldDef w = file.load();
   const auto decoded = sync::decode_asset<scene_t>(make_assets(w)[0].bytes);
@@ -50,7 +50,7 @@ TEST_CASE("A material with a friction map names its picture by content, with its
   CHECK(mapped == 2);  // one inherits it
 }
 
-TEST_CASE("An invalid friction map is refused with its line") {
+TEST_CASE("An invalid friction map is rejected with its line") {
   const auto refused = [](const std::string& attributes, const std::string& because,
                           const sync::Bytes& picture = halves()) {
     SceneFile file = scene(attributes, picture);

@@ -18,7 +18,7 @@ std::string inertia(double x, double y, double z) {
 }
 }  // namespace
 
-TEST_CASE("Mass and inertia are taken as given, at their own pose") {
+TEST_CASE("Mass and inertia are used as given at their own pose") {
   const BodyDef b = body(inertial("<pose>0.1 0 0 0 0 1.5707963267948966</pose><mass>2</mass>" + inertia(1, 2, 2.5)) + kBall);
   CHECK(b.mass_kg == 2);
   CHECK((b.centre_of_mass_m - Vector3d(0.1, 0, 0)).norm() < 1e-12);
@@ -35,7 +35,7 @@ TEST_CASE("Missing values are computed from the shapes") {
   CHECK(body("").inertia_kg_m2(0, 0) == 1);
 }
 
-TEST_CASE("An impossible mass or inertia is refused with its line") {
+TEST_CASE("An impossible mass or inertia is rejected with its line") {
   const auto refusal = [](const std::string& inside) {
     SceneFile file(link(inside + kBall));
     return file.refusal();
@@ -49,12 +49,12 @@ TEST_CASE("An impossible mass or inertia is refused with its line") {
                                                                           Catch::Contains("not positive definite"));
 }
 
-TEST_CASE("A static model may have any mass, which is not used") {
+TEST_CASE("The mass of a static model is not validated") {
   SceneFile file(model("<static>true</static><link name='l'>" + inertial("<mass>0</mass>") + kBall + "</link>"));
   CHECK(file.load().bodies.front().mass_kg == 0);
 }
 
-TEST_CASE("An inertia that breaks the triangle inequality is used with a warning") {
+TEST_CASE("An inertia that violates the triangle inequality is used with a warning") {
   SceneFile file(link(inertial("<mass>1</mass>\n" + inertia(1, 1, 3)) + kBall));
   CHECK(file.load().bodies.front().inertia_kg_m2(2, 2) == 3);
   REQUIRE(file.warnings.size() == 1);

@@ -21,7 +21,7 @@ JointDef joint(const std::string& text) {
 }
 }  // namespace
 
-TEST_CASE("A revolute joint: anchor and axis in the world, limits, damping, friction, spring") {
+TEST_CASE("A revolute joint has anchor and axis in the world, limits, damping, friction and spring") {
   const JointDef j = joint(jointed("revolute", "<axis><xyz>1 0 0</xyz><limit><lower>-1</lower><upper>2</upper><effort>3</effort>"
                                    "</limit><dynamics><damping>0.1</damping><friction>0.2</friction><spring_stiffness>0.3"
                                    "</spring_stiffness><spring_reference>0.4</spring_reference></dynamics></axis>"));
@@ -40,7 +40,7 @@ TEST_CASE("A revolute joint: anchor and axis in the world, limits, damping, fric
   CHECK(j.axes[0].reference == 0.4);
 }
 
-TEST_CASE("Every supported type of joint") {
+TEST_CASE("Every supported joint type is read") {
   CHECK(joint(jointed("fixed", "")).kind == JointKind::kFixed);
   CHECK(joint(jointed("ball", "")).kind == JointKind::kBall);
   CHECK(joint(jointed("prismatic", kAxis)).kind == JointKind::kPrismatic);
@@ -54,7 +54,7 @@ TEST_CASE("Every supported type of joint") {
   CHECK((universal.axes[1].axis + Vector3d::UnitX()).norm() < 1e-9);
 }
 
-TEST_CASE("The pose of a joint is in its child frame, that of an axis in the frame that it is expressed in") {
+TEST_CASE("A joint pose is in the child frame, and an axis in the frame that expresses it") {
   const JointDef j = joint(jointed("revolute", "<pose>0 0 0.5 0 0 1.5707963267948966</pose><axis><xyz>1 0 0</xyz></axis>"));
   CHECK((j.anchor_m - Vector3d(0, 1, 2.5)).norm() < 1e-9);
   CHECK((j.axes[0].axis + Vector3d::UnitX()).norm() < 1e-9);  // two quarter turns
@@ -63,7 +63,7 @@ TEST_CASE("The pose of a joint is in its child frame, that of an axis in the fra
   CHECK((k.axes[0].axis - Vector3d::UnitY()).norm() < 1e-9);
 }
 
-TEST_CASE("A joint to the world, into a nested model, and the pairs that do not collide") {
+TEST_CASE("Joints to the world and into nested models are read, and connected pairs do not collide") {
   SceneFile file(model("<self_collide>true</self_collide><link name='a'/><model name='n'><link name='b'/></model>"
                        "<joint name='j' type='fixed'><parent>world</parent><child>a</child></joint>"
                        "<joint name='k' type='ball'><parent>a</parent><child>n::b</child></joint>"));
@@ -74,7 +74,7 @@ TEST_CASE("A joint to the world, into a nested model, and the pairs that do not 
   CHECK(w.no_collision == std::vector<std::pair<int, int>>{{0, 1}});
 }
 
-TEST_CASE("A motor turns an axis with a constant torque") {
+TEST_CASE("A motor applies a constant torque to an axis") {
   const JointDef j = joint(jointed("revolute", kAxis + "<tactus:motor torque='-0.5'/>"));
   CHECK(j.axes[0].motor_effort == 0.5);
   CHECK(j.axes[0].motor_velocity < -100);
@@ -86,7 +86,7 @@ TEST_CASE("A motor turns an axis with a constant torque") {
   CHECK(u.axes[1].motor_effort == 1);
 }
 
-TEST_CASE("An invalid joint is refused with its line") {
+TEST_CASE("An invalid joint is rejected with its line") {
   const auto refusal = [](const std::string& type, const std::string& inside) {
     SceneFile file(jointed(type, inside));
     return file.refusal();
@@ -103,7 +103,7 @@ TEST_CASE("An invalid joint is refused with its line") {
   CHECK_THAT(refusal("revolute", kAxis + "\n<tactus:motor torque='1' speed='2'/>"), Catch::Contains("no attribute \"speed\""));
 }
 
-TEST_CASE("An unsupported type of joint is omitted with one warning") {
+TEST_CASE("An unsupported joint type is omitted with one warning") {
   SceneFile file(jointed("screw", kAxis));
   CHECK(file.load().joints.empty());
   REQUIRE(file.warnings.size() == 1);

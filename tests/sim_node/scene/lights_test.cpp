@@ -9,7 +9,7 @@ using namespace tactus;
 using namespace tactus::sim;
 using Eigen::Vector3d;
 
-TEST_CASE("A spot light keeps its cone, colour, attenuation and direction") {
+TEST_CASE("A spot light has its cone, colour, attenuation and direction") {
   SceneFile file(world("<light name='s' type='spot'><pose>1 2 3 0 1.5707963267948966 0</pose><diffuse>1 0.5 0.25 1</diffuse>"
                        "<specular>0.1 0.2 0.3 1</specular><intensity>2</intensity><cast_shadows>true</cast_shadows><direction>"
                        "0 0 -2</direction><attenuation><range>7</range><constant>0.5</constant><linear>0.25</linear><quadratic>"
@@ -35,7 +35,7 @@ TEST_CASE("A spot light keeps its cone, colour, attenuation and direction") {
   CHECK(l.falloff == 2);
 }
 
-TEST_CASE("Point and directional lights, and a light on a static link") {
+TEST_CASE("Point and directional lights and a light on a static link are read") {
   SceneFile file(world("<light name='p' type='point'/><light name='d' type='directional'><direction>0 1 -1</direction></light>"
                        "<model name='m'><static>true</static><pose>0 0 1 0 0 0</pose><link name='l'><light name='q' type='point'>"
                        "<pose>0 0 1 0 0 0</pose></light></link></model>"));
@@ -47,12 +47,12 @@ TEST_CASE("Point and directional lights, and a light on a static link") {
   CHECK(file.warnings.empty());
 }
 
-TEST_CASE("A world without a light gets a sun") {
+TEST_CASE("A world without a light has a directional default light") {
   SceneFile file(world(""));
   CHECK(file.load().lights.size() == 1);
 }
 
-TEST_CASE("An invalid light is refused with its line") {
+TEST_CASE("An invalid light is rejected with its line") {
   SceneFile file(world("<light name='p' type='point'>\n<intensity>-1</intensity></light>"));
   CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("intensity"));
 }

@@ -31,7 +31,7 @@ bool inside(const ShapeDef& s, const Vector3d& p) {
 }
 }  // namespace
 
-TEST_CASE("Mass and inertia of the primitives match the textbook") {
+TEST_CASE("Mass and inertia of the primitives match their closed forms") {
   WorldDef w = world_of_density(1000);
   bool dense = false;
   const auto of = [&](const ShapeDef& s) { return mass_of(w, std::span(&s, 1), dense); };
@@ -44,7 +44,7 @@ TEST_CASE("Mass and inertia of the primitives match the textbook") {
   CHECK(ball.inertia_kg_m2(0, 0) == Approx(0.4 * ball.mass_kg * 0.01));
 }
 
-TEST_CASE("Inertia of cylinder and capsule agree with a sum over random points") {
+TEST_CASE("Inertia of cylinder and capsule matches a sum over random points") {
   WorldDef w = world_of_density(1);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> u(-1, 1);
@@ -68,7 +68,7 @@ TEST_CASE("Inertia of cylinder and capsule agree with a sum over random points")
   }
 }
 
-TEST_CASE("A box as a mesh has the mass of the box, for any position and orientation") {
+TEST_CASE("A mesh of a box has the mass of the box at any pose") {
   WorldDef w = world_of_density(700);
   TriangleMesh cube;
   for (int i = 0; i < 8; ++i) cube.vertices.emplace_back(i & 1 ? 0.3 : 0.1, i & 2 ? 0.5 : 0.1, i & 4 ? 0.2 : 0.1);
@@ -96,7 +96,7 @@ TEST_CASE("A body of two boxes equals one box of twice the length") {
   CHECK((a.inertia_kg_m2 - b.inertia_kg_m2).norm() < 1e-12);
 }
 
-TEST_CASE("A mesh that is open or inside out counts as its bounding box") {
+TEST_CASE("An open or inverted mesh has the mass of its bounding box") {
   WorldDef w = world_of_density(1000);
   TriangleMesh sheet;
   sheet.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

@@ -64,9 +64,7 @@ bool same_triangles(const MeshParts& a, const MeshParts& b) {
 
 }  // namespace
 
-TEST_CASE(
-    "An OBJ's material names its pictures by their place beside the file, and its unknown statements are "
-    "ignored") {
+TEST_CASE("An OBJ material refers to pictures beside the file, and unknown statements are ignored") {
   SceneFile file;
   file.write("square.obj", kObj);
   file.write("square.mtl", kMtl);
@@ -85,7 +83,7 @@ TEST_CASE(
     CHECK(mesh.parts[0].texcoords[i] * 2 == mesh.parts[0].positions_m[i].head<2>());
 }
 
-TEST_CASE("A file without materials has none, even if a library adds one") {
+TEST_CASE("A mesh file without materials has none") {
   SceneFile file;
   file.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   file.write("t.stl",
@@ -128,7 +126,7 @@ TEST_CASE("An unknown element of a DAE is ignored") {
   CHECK(same_triangles(read_mesh_parts(file.folder() / "plain.dae"), read_mesh_parts(file.folder() / "more.dae")));
 }
 
-TEST_CASE("Words after the facets of an STL, and unknown chunks of a 3DS, are ignored") {
+TEST_CASE("Text after the facets of an STL and unknown chunks of a 3DS are ignored") {
   SceneFile file;
   // Binary STL: 80 arbitrary bytes, a count, then 50 bytes per triangle, the last two of which have no meaning.
   const auto stl = [](char fill, std::uint16_t attribute) {
@@ -190,8 +188,7 @@ TEST_CASE("Unknown extras, extensions and attributes of a glTF are ignored") {
   CHECK_THAT(why(file.folder() / "needs.gltf"), Catch::Contains("requires the extension VENDOR_smell"));
 }
 
-TEST_CASE(
-    "A glTF is placed by its nodes, strips and fans are triangles, and a mirror keeps it right side out") {
+TEST_CASE("The nodes of a glTF place its meshes, strips and fans become triangles, and mirrors keep the winding") {
   SceneFile file;
   nlohmann::json document = document_of(square());
   document["nodes"][0]["translation"] = {0, 0, 5};
@@ -212,7 +209,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A glTF without normals gets smooth ones where it bends a little and split ones where it bends much") {
+TEST_CASE("A glTF without normals has smooth ones at small angles and split ones at large angles") {
   SceneFile file;
   for (const double bend_deg : {40.0, 60.0}) {
     MeshParts roof;
@@ -232,7 +229,7 @@ TEST_CASE("A glTF without normals gets smooth ones where it bends a little and s
   }
 }
 
-TEST_CASE("A glTF with invalid buffers, accessors, indices or nodes is refused with a clause") {
+TEST_CASE("A glTF with invalid buffers, accessors, indices or nodes is rejected with the reason") {
   SceneFile file;
   const auto refused = [&](auto change) {
     nlohmann::json document = document_of(square());
@@ -280,7 +277,7 @@ TEST_CASE("A glTF with invalid buffers, accessors, indices or nodes is refused w
   }
 }
 
-TEST_CASE("A .glb cut anywhere, or with any byte changed, is read or refused without side effects") {
+TEST_CASE("A truncated or corrupted .glb file is read or rejected without side effects") {
   SceneFile file;
   MeshParts mesh = square();
   make_tangents(mesh.parts[0]);
@@ -301,7 +298,7 @@ TEST_CASE("A .glb cut anywhere, or with any byte changed, is read or refused wit
   CHECK(refused > 0);
 }
 
-TEST_CASE("JSON that is deep or has millions of values is refused before it fills the memory") {
+TEST_CASE("Deep or very large JSON is rejected before it is stored") {
   SceneFile file;
   file.write("deep.gltf", std::string(1'000'000, '['));
   CHECK_THAT(why(file.folder() / "deep.gltf"), Catch::Contains("too deep"));
@@ -311,9 +308,7 @@ TEST_CASE("JSON that is deep or has millions of values is refused before it fill
   CHECK_THAT(why(file.folder() / "wide.gltf"), Catch::Contains("too many values"));
 }
 
-TEST_CASE(
-    "A PLY whose header declares billions of vertices, and an OBJ of millions of triangles, are "
-    "refused at once") {
+TEST_CASE("A PLY or OBJ with too many elements is rejected at once") {
   SceneFile file;
   for (const char* format : {"ascii", "binary_little_endian"}) {
     file.write("t.ply", std::string("ply\nformat ") + format +
@@ -326,7 +321,7 @@ TEST_CASE(
   CHECK_THAT(why(file.folder() / "t.obj"), Catch::Contains("more than 1000000 triangles"));
 }
 
-TEST_CASE("A file that is not a regular file or is too large is not read as a mesh") {
+TEST_CASE("A file that is not regular or is too large is rejected as a mesh") {
   SceneFile file;
   std::filesystem::create_directory(file.folder() / "folder.obj");
   REQUIRE(mkfifo((file.folder() / "pipe.glb").c_str(), 0600) == 0);
@@ -337,12 +332,12 @@ TEST_CASE("A file that is not a regular file or is too large is not read as a me
   for (const char* name : {"folder.obj", "pipe.glb", "zero.stl"})
     CHECK(why(file.folder() / name) == "it is not a regular file");
   CHECK(why(file.folder() / "sparse.ply") == "it is larger than 128 MiB");
-  SECTION("nor as a part of one") {
+  SECTION("it is ignored as a material file") {
     file.write("t.obj", "mtllib zero.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     std::filesystem::create_symlink("/dev/zero", file.folder() / "zero.mtl");
     CHECK(read_mesh_parts(file.folder() / "t.obj").parts.size() == 1);
   }
-  SECTION("and a scene that names one is refused with its line") {
+  SECTION("a scene that names it is rejected with the line") {
     for (const char* name : {"folder.obj", "pipe.glb", "zero.stl", "sparse.ply"}) {
       file.write("scene.sdf", link(collision(std::string("\n<mesh><uri>") + name + "</uri></mesh>")));
       CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:6: ") && Catch::Contains(name));
@@ -350,7 +345,7 @@ TEST_CASE("A file that is not a regular file or is too large is not read as a me
   }
 }
 
-TEST_CASE("Tangents follow u, their binormal follows v, and a mirrored picture splits the shared vertices") {
+TEST_CASE("Tangents follow u and binormals v, and a mirrored picture splits shared vertices") {
   MeshPart part = square().parts[0];
   make_tangents(part);
   REQUIRE(part.tangents.size() == 4);

@@ -70,7 +70,7 @@ TEST_CASE("The assets of a world decode to their sources") {
   CHECK(std::string(assets.back().bytes.begin(), assets.back().bytes.end()) == w.source_text);
 }
 
-TEST_CASE("The same world gives the same bytes, so renderers need not reload after a restart of the simulation") {
+TEST_CASE("The same world has identical assets, so that renderers do not reload after a restart") {
   std::vector<std::string> warnings;
   const auto a = make_assets(dark_room(warnings)), b = make_assets(dark_room(warnings));
   REQUIRE(a.size() == b.size());

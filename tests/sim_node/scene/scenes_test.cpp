@@ -43,14 +43,14 @@ TEST_CASE("The dark room loads without a warning and has its documented content"
   CHECK(body(w, "steel_ball::link").mass_kg == Approx(7850 * 4.0 / 3 * EIGEN_PI * 0.025 * 0.025 * 0.025));
 }
 
-TEST_CASE("The fan of the dark room settles where its friction balances its torque") {
+TEST_CASE("The fan of the dark room reaches the speed at which friction balances its torque") {
   std::vector<std::string> warnings;
   const WorldDef w = load_sdf(kRoom, warnings);
   for (const JointDef& j : w.joints)
     if (j.name == "fan::axle") CHECK((j.axes[0].motor_effort - j.axes[0].friction) / j.axes[0].damping == Approx(3.75));
 }
 
-TEST_CASE("The path of the hand ends where it begins, stays in the room, and every leg has a human speed") {
+TEST_CASE("The path of the hand is closed, stays in the room and has human speeds") {
   std::vector<std::string> warnings;
   const WorldDef w = load_sdf(kRoom, warnings);
   REQUIRE(w.tools.size() == 2);
@@ -69,7 +69,7 @@ TEST_CASE("The path of the hand ends where it begins, stays in the room, and eve
   CHECK(path.back().time_s < 25);
 }
 
-TEST_CASE("Every corner of the floor of the dark room is in the picture") {
+TEST_CASE("Every floor corner of the dark room is in the picture") {
   std::vector<std::string> warnings;
   const WorldDef w = load_sdf(kRoom, warnings);
   const double across = std::tan(w.camera_fov_rad / 2);
@@ -115,7 +115,7 @@ TEST_CASE("The assets of every world pass the validation of the bus") {
   }
 }
 
-TEST_CASE("A damaged file is refused or repaired, and never ends the process") {
+TEST_CASE("A damaged scene file is rejected or repaired and never ends the process") {
   const std::string whole = world(R"(<gravity>0 0 -9.8</gravity><light name="s" type="spot"><pose>0 0 1 0 0 0</pose></light>
 <tactus:camera pose="0 0 1 0 0 0"/><tactus:tool name="h"><tactus:waypoint time="1" position="0 0 0"/></tactus:tool>
 <model name="m"><pose>0 0 1 0 0 0</pose><link name="a"><inertial><mass>1</mass></inertial><collision name="c"><geometry><box>

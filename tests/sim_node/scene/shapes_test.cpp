@@ -54,7 +54,7 @@ TEST_CASE("Every kind of geometry becomes its shape") {
   CHECK(file.warnings.empty());
 }
 
-TEST_CASE("A size of zero or less is refused with its line") {
+TEST_CASE("A size of zero or less is rejected with its line") {
   SceneFile file;
   const auto refusal = [&](const std::string& geometry) {
     file.write("scene.sdf", link(collision("\n" + geometry)));
@@ -69,7 +69,7 @@ TEST_CASE("A size of zero or less is refused with its line") {
   CHECK_THAT(refusal("<plane><normal>0 0 0</normal><size>1 1</size></plane>"), Catch::Contains("scene.sdf:6"));
 }
 
-TEST_CASE("A mesh is found beside its file, scaled, and shared by equal references") {
+TEST_CASE("A mesh is found beside its file, scaled and shared by equal references") {
   SceneFile file(link("<collision name='a'><geometry><mesh><uri>cube.obj</uri><scale>2 1 1</scale></mesh></geometry>"
                       "</collision><visual name='b'><geometry><mesh><uri>model://cube.obj</uri><scale>2 1 1</scale></mesh>"
                       "</geometry></visual><visual name='c'><geometry><mesh><uri>file://cube.obj</uri></mesh></geometry></visual>"));
@@ -83,7 +83,7 @@ TEST_CASE("A mesh is found beside its file, scaled, and shared by equal referenc
   CHECK(w.meshes[0].normals.size() == w.meshes[0].vertices.size());
 }
 
-TEST_CASE("A mesh that cannot be read is refused with file, line and remedy") {
+TEST_CASE("An unreadable mesh is rejected with file, line and remedy") {
   SceneFile file(link("<collision name='a'><geometry>\n<mesh><uri>cube.obj</uri></mesh></geometry></collision>"));
   CHECK(file.refusal() == "scene.sdf:6: /sdf/world[@name=\"w\"]/model[@name=\"m\"]/link[@name=\"l\"]/collision[@name=\"a\"]/"
                           "geometry/mesh names \"cube.obj\", which is not found: put it beside the scene file");
@@ -95,7 +95,7 @@ TEST_CASE("A mesh that cannot be read is refused with file, line and remedy") {
   CHECK_THAT(file.refusal(), Catch::Contains("zero area"));
 }
 
-TEST_CASE("The bounding box of a rotated shape contains all its points and touches them") {
+TEST_CASE("The bounding box of a rotated shape is tight") {
   // Compared with points sampled on the surface: the largest of n on a circle is too small by at most r (1 -
   // cos(pi/n)).
   WorldDef w;

@@ -28,7 +28,7 @@ const material_def_t& material(const WorldDef& w, const std::string& name) {
 }
 }  // namespace
 
-TEST_CASE("The table of materials is complete, in range, and every figure has a source") {
+TEST_CASE("The table of materials is complete and in range, and every value has a source") {
   const auto materials = builtin_materials();
   CHECK(materials.size() >= 12);
   for (const char* name : {"steel", "aluminium", "copper", "glass", "granite", "ceramic", "oak", "abs", "rubber", "foam", "skin",
@@ -39,7 +39,7 @@ TEST_CASE("The table of materials is complete, in range, and every figure has a 
   for (const auto& m : materials) CHECK(m.friction_static >= m.friction_dynamic);
 }
 
-TEST_CASE("An invalid row of the table is refused with its number") {
+TEST_CASE("An invalid row of the table of materials is rejected with its number") {
   const std::string header =
       "name,youngs_modulus_Pa,poissons_ratio,density_kg_m3,rayleigh_alpha_1_s,rayleigh_beta_s,friction_static,friction_dynamic,"
       "restitution,conductivity_W_mK,specific_heat_J_kgK,temperature_degC,any_source\n";
@@ -49,7 +49,7 @@ TEST_CASE("An invalid row of the table is refused with its number") {
   CHECK_THROWS_WITH(parse_materials(header + "a,1e9\n"), Catch::Contains("cells"));
 }
 
-TEST_CASE("A scene changes a material, bases one on another, or defines a new one") {
+TEST_CASE("A scene can change, derive and define materials") {
   const WorldDef w = load("<tactus:material name='steel' temperature='45degC'/>"
                           "<tactus:material name='warm_oak' base='oak' temperature='40' density='900kg/m3'/>"
                           "<tactus:material name='new' youngs_modulus='3GPa' poissons_ratio='0.3' density='1200' rayleigh_alpha='1'"
@@ -64,7 +64,7 @@ TEST_CASE("A scene changes a material, bases one on another, or defines a new on
   CHECK(material(w, "new").rayleigh_beta_s == Approx(1e-6));
 }
 
-TEST_CASE("An invalid material is refused with its line") {
+TEST_CASE("An invalid material is rejected with its line") {
   CHECK_THAT(refusal("\n<tactus:material name='x' density='1200'/>"), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("lacks"));
   CHECK_THAT(refusal("<tactus:material name='x' base='y'/>"), Catch::Contains("no such material"));
   CHECK_THAT(refusal("<tactus:material density='1'/>"), Catch::Contains("\"name\""));
@@ -75,7 +75,7 @@ TEST_CASE("An invalid material is refused with its line") {
              Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("\"stel\"") && Catch::Contains("steel"));
 }
 
-TEST_CASE("A tool is a body after all others, at the first point of its path") {
+TEST_CASE("A tool is the last body and starts at the first point of its path") {
   SceneFile file(world(
       "<tactus:tool name='hand' radius='8mm' mass='120g' material='skin' device='playback:x.csv,rate=2' "
       "loop='true'>"
@@ -100,7 +100,7 @@ TEST_CASE("A tool is a body after all others, at the first point of its path") {
   CHECK(t.waypoints[1].position_m.z == 2);
 }
 
-TEST_CASE("A hole names the body that belongs into it, by its own name or that of its model") {
+TEST_CASE("A hole names the ball that fills it by body or model") {
   const std::string ball = "<model name='ball'><link name='l'/></model><model name='two'><link name='a'/><link name='b'/></model>"
                            "<model name='rock'><static>true</static><link name='l'/></model>";
   const WorldDef w = SceneFile(world(ball + "<tactus:hole name='h' position='1 2 3' radius='30mm' depth='10cm' ball='ball'/>"
@@ -156,7 +156,7 @@ TEST_CASE("A tool may have a shape, and has the inertia of a solid of that shape
   CHECK_THAT(said("shape='box' size='90cm 90cm 2m'"), Catch::Contains("size"));
 }
 
-TEST_CASE("An invalid tool is refused with its line") {
+TEST_CASE("An invalid tool is rejected with its line") {
   const std::string point = "<tactus:waypoint time='1' position='0 0 0'/>";
   CHECK_THAT(refusal("<tactus:tool name='h'/>"), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("waypoint"));
   CHECK_THAT(refusal("<tactus:tool name='h'>\n" + point + "\n" + point + "</tactus:tool>"),
@@ -169,7 +169,7 @@ TEST_CASE("An invalid tool is refused with its line") {
   CHECK_THAT(refusal("<tactus:tool>" + point + "</tactus:tool>"), Catch::Contains("\"name\""));
 }
 
-TEST_CASE("An invalid device is refused with its line, before anything starts") {
+TEST_CASE("An invalid device is rejected with its line before a node starts") {
   const auto said = [](const std::string& device) {
     SceneFile file(world("\n<tactus:tool name='h' device='" + device +
                          "'><tactus:waypoint time='1' position='0 0 0'/></tactus:tool>"));
@@ -197,7 +197,7 @@ TEST_CASE("An invalid device is refused with its line, before anything starts") 
   CHECK_THAT(said("playback:long.csv"), Catch::Contains("64 MiB"));
 }
 
-TEST_CASE("Settings of nodes are passed on as written, after their check") {
+TEST_CASE("Node settings are validated and passed on as written") {
   const WorldDef w = load("<tactus:audio_node presentation_delay='25ms' device='virtual'/>");
   REQUIRE(w.settings.size() == 2);
   CHECK(w.settings[0].node == "audio_node");
@@ -205,7 +205,7 @@ TEST_CASE("Settings of nodes are passed on as written, after their check") {
   CHECK(w.settings[0].value == "25ms");
 }
 
-TEST_CASE("A setting that is unknown or out of range is refused with its line") {
+TEST_CASE("A setting that is unknown or out of range is rejected with its line") {
   CHECK_THAT(refusal("\n<tactus:audio_node presentation_dely='25ms'/>"),
              Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("no setting \"presentation_dely\""));
   CHECK_THAT(refusal("<tactus:audio_node presentation_delay='25'/>"),
@@ -217,7 +217,7 @@ TEST_CASE("A setting that is unknown or out of range is refused with its line") 
   CHECK(refusal("<tactus:haptic_node force_limit='3 N'/>").empty());
 }
 
-TEST_CASE("Settings of a node that is not in this build are passed on with a warning, for modalities from elsewhere") {
+TEST_CASE("Settings of an unknown node are passed on with a warning") {
   SceneFile file(world("\n<tactus:smell_node strength='3'/>"));
   const WorldDef w = file.load();
   REQUIRE(w.settings.size() == 1);
@@ -226,7 +226,7 @@ TEST_CASE("Settings of a node that is not in this build are passed on with a war
   CHECK_THAT(file.short_warnings()[0], Catch::StartsWith("scene.sdf:4: /sdf/world[@name=\"w\"]/tactus:smell_node "));
 }
 
-TEST_CASE("A scene contains a degradation profile, and a wrong one is refused with its line") {
+TEST_CASE("A degradation profile in a scene is read, and an invalid one is rejected with its line") {
   const WorldDef w = load("<tactus:profile name='late &amp; sparse' seed='7'>\n"
                           "<tactus:degrade modality='audio' delay='40ms' jitter='3ms normal'/>\n"
                           "<tactus:degrade modality='visual' rate='5Hz'/></tactus:profile>");
@@ -247,7 +247,7 @@ TEST_CASE("A scene contains a degradation profile, and a wrong one is refused wi
   CHECK_THAT(refusal("<tactus:profile file='none.xml'/>"), Catch::Contains("none.xml"));
 }
 
-TEST_CASE("A scene names the file of its profile") {
+TEST_CASE("A scene can name the file of its profile") {
   SceneFile file(world("<tactus:profile file='late.xml'/>"));
   file.write("late.xml", "<profile name='late'><degrade modality='audio' delay='40ms'/></profile>");
   CHECK(sync::parse_profile(file.load().profile, "late.xml").name == "late");
@@ -255,7 +255,7 @@ TEST_CASE("A scene names the file of its profile") {
   CHECK_THAT(file.refusal(), Catch::Contains("late.xml:1"));
 }
 
-TEST_CASE("A scene whose profile names an unknown modality gets a warning with the line") {
+TEST_CASE("A profile in a scene with an unknown modality causes a warning with the line") {
   SceneFile file(world("\n<tactus:profile>\n<tactus:degrade modality='smell' delay='1ms'/>\n</tactus:profile>"));
   CHECK_FALSE(file.load().profile.empty());
   REQUIRE(file.warnings.size() == 1);
@@ -264,7 +264,7 @@ TEST_CASE("A scene whose profile names an unknown modality gets a warning with t
                                            Catch::Contains("another program may have it"));
 }
 
-TEST_CASE("A profile in a scene names materials and bodies of this scene, or the scene is refused with the line") {
+TEST_CASE("A profile in a scene that names an unknown material or body is rejected with the line") {
   const std::string ball =
       "<model name='ball'><link name='l'/></model><model name='floor'><link name='l'/></model>";
   const auto at = [&](const std::string& what) {
@@ -287,7 +287,7 @@ TEST_CASE("A profile in a scene names materials and bodies of this scene, or the
   CHECK_THAT(file.warnings[0], Catch::Contains("late.xml:3: there is no modality \"smell\""));
 }
 
-TEST_CASE("Text or elements within a scene's <tactus:degrade>, and text in its profile, are refused") {
+TEST_CASE("Text or elements inside <tactus:degrade> and text in its profile are rejected") {
   CHECK_THAT(refusal("<tactus:profile>\ndegrade modality='audio' off='true'</tactus:profile>"),
              Catch::Contains("has text in it"));
   CHECK_THAT(
@@ -299,7 +299,7 @@ TEST_CASE("Text or elements within a scene's <tactus:degrade>, and text in its p
              Catch::Contains("attributes alone"));
 }
 
-TEST_CASE("A map drives a number that can be changed, within its bounds, and does not exceed a safety limit") {
+TEST_CASE("A map can drive only a live number, within its range and safety limit") {
   const WorldDef w = load("<tactus:map from='haptic_node.force' to='visual_node.exposure' gain='2' offset='1' high='5'/>"
                           "<tactus:map from='sim_node.world.time' to='haptic_node_left.force_limit' low='500mN'/>");
   REQUIRE(w.maps.size() == 2);

@@ -12,7 +12,7 @@ std::vector<std::string> warnings(const std::string& inside) {
 }
 }  // namespace
 
-TEST_CASE("Each unsupported element gets one warning with its line and path, regardless of its content") {
+TEST_CASE("Each unsupported element causes one warning with its line and path") {
   const auto w = warnings(R"(<plugin name="p" filename="p.so"><a><b>1</b></a></plugin>
 <wind><linear_velocity>1 0 0</linear_velocity></wind>
 <model name="m">
@@ -45,7 +45,7 @@ TEST_CASE("A different step size or rate causes one warning") {
   CHECK_THAT(w[0], Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("max_step_size = 0.004"));
 }
 
-TEST_CASE("Elements with the fixed values cause no warning, nor do elements created as defaults") {
+TEST_CASE("Unsupported elements with their default values cause no warning") {
   CHECK(warnings("<model name='m'><allow_auto_disable>1</allow_auto_disable><link name='l'><enable_wind>false</enable_wind>"
                  "<kinematic>0</kinematic></link></model>")
             .empty());

@@ -19,7 +19,7 @@ const std::string kSensor =
     "<far>9</far></clip></camera></sensor></link></model>";
 }  // namespace
 
-TEST_CASE("The camera is that of Tactus, else that of the window, else a sensor's, else one that sees all") {
+TEST_CASE("The camera is that of Tactus, then of the window, then of a sensor, then a default") {
   const WorldDef ours = load("<tactus:camera pose='0 0 1 0 0 0' fov='90deg'/>" + kGui);
   CHECK(ours.camera.translation() == Vector3d(0, 0, 1));
   CHECK(ours.camera_fov_rad == Approx(EIGEN_PI / 2));
@@ -27,13 +27,13 @@ TEST_CASE("The camera is that of Tactus, else that of the window, else a sensor'
   CHECK(window.camera.translation() == Vector3d(1, 2, 3));
 }
 
-TEST_CASE("A camera sensor is used where there is no other camera, and then causes no warning") {
+TEST_CASE("A camera sensor is used without a warning if there is no other camera") {
   const WorldDef w = load(kSensor);
   CHECK((w.camera.translation() - Vector3d(5, 0, 1)).norm() < 1e-9);
   CHECK(w.camera_fov_rad == 0.75);
 }
 
-TEST_CASE("The default camera has every body in view") {
+TEST_CASE("The default camera shows every body") {
   const WorldDef w = load("<model name='a'><pose>3 4 0 0 0 0</pose><link name='l'>" + collision("<box><size>1 1 1</size></box>") +
                           "</link></model><model name='b'><pose>-1 0 2 0 0 0</pose><link name='l'>" +
                           collision("<sphere><radius>0.5</radius></sphere>") + "</link></model>");
@@ -47,7 +47,7 @@ TEST_CASE("The default camera has every body in view") {
   CHECK(w.camera.linear().determinant() == Approx(1));
 }
 
-TEST_CASE("A camera looks from one point at another, and the listener is there too unless placed") {
+TEST_CASE("A camera looks from one point at another, and the listener is at the camera unless placed") {
   const WorldDef w = load("<tactus:camera position='-1 0 1' look_at='0 0 0'/>");
   CHECK((w.camera.linear().col(0) - Vector3d(1, 0, -1).normalized()).norm() < 1e-9);
   CHECK(w.camera.linear().col(2).z() > 0);
@@ -55,7 +55,7 @@ TEST_CASE("A camera looks from one point at another, and the listener is there t
   CHECK(load("<tactus:listener pose='1 1 1 0 0 0'/>").listener.translation() == Vector3d(1, 1, 1));
 }
 
-TEST_CASE("Ambient light and background come from the scene, else from SDF's defaults") {
+TEST_CASE("Ambient light and background come from the scene, otherwise from the defaults of SDF") {
   CHECK(load("").ambient == Vector3d(0.4, 0.4, 0.4));
   CHECK(load("").background == Vector3d(0.7, 0.7, 0.7));
   const WorldDef w = load("<scene><ambient>0.25 0.5 0.75 1</ambient><background>0 0 0 1</background></scene>");
@@ -63,7 +63,7 @@ TEST_CASE("Ambient light and background come from the scene, else from SDF's def
   CHECK(w.background == Vector3d(0, 0, 0));
 }
 
-TEST_CASE("An invalid camera is refused with its line") {
+TEST_CASE("An invalid camera is rejected with its line") {
   const auto refusal = [](const std::string& element) {
     SceneFile file(world(element));
     return file.refusal();

@@ -70,7 +70,7 @@ struct Rig {
 
 }  // namespace
 
-TEST_CASE("A tool that pushes a free ball transfers exactly the impulse that it felt") {
+TEST_CASE("A tool that pushes a free ball transfers exactly the impulse on the tool") {
   const int pattern = GENERATE(0, 1, 2);
   Rig rig;
   std::mt19937 random(3);
@@ -95,7 +95,7 @@ TEST_CASE("A tool that pushes a free ball transfers exactly the impulse that it 
   CHECK(rig.applied().energy_J == Approx(rig.momentum().squaredNorm() / 0.4).epsilon(1e-5));
 }
 
-TEST_CASE("A steady force stays steady when its messages come in pairs") {
+TEST_CASE("A constant force stays constant when its messages arrive in pairs") {
   Rig rig;
   std::vector<tool_state_t> pending;
   for (int i = 0; i < 100; ++i) {
@@ -117,7 +117,7 @@ TEST_CASE("A haptic loop of 4 kHz applies the correct force") {
   CHECK(rig.momentum().z() == Approx(0.1).epsilon(1e-3));
 }
 
-TEST_CASE("Without messages the force is held for 5 ms and then fades within 5 ms") {
+TEST_CASE("Without messages the force is held for 5 ms and then fades in 5 ms") {
   Rig rig;
   for (int i = 0; i < 10; ++i) rig.step({rig.message({0, 0, -4})});
   for (int silent = 1; silent < 20; ++silent) {
@@ -125,7 +125,7 @@ TEST_CASE("Without messages the force is held for 5 ms and then fades within 5 m
     INFO("silent for " << silent << " ms");
     CHECK(force == Approx(4 * std::clamp(1 - (silent - 5) / 5.0, 0.0, 1.0)).margin(1e-6));
   }
-  SECTION("the impulse reported after a long silence is not applied as a blow") {
+  SECTION("an impulse after a long silence is not applied at once") {
     for (int i = 0; i < 80; ++i) rig.message({0, 0, -4});
     double largest = 0;
     for (int i = 0; i < 20; ++i) largest = std::max(largest, rig.step({rig.message({0, 0, -4})}).norm());
@@ -133,7 +133,7 @@ TEST_CASE("Without messages the force is held for 5 ms and then fades within 5 m
   }
 }
 
-TEST_CASE("A new haptic process counts from zero") {
+TEST_CASE("A new haptic process starts its impulses from zero") {
   Rig rig;
   for (int i = 0; i < 20; ++i) rig.step({rig.message({0, 0, -4})});
   tool_state_t old = rig.message({0, 0, -4});
@@ -154,9 +154,9 @@ TEST_CASE("A new haptic process counts from zero") {
   CHECK(rig.forces.back().z() == Approx(1).epsilon(1e-4));
 }
 
-TEST_CASE("Hostile messages have limited effect: too much force, a far lever, another's contact, an unknown body") {
+TEST_CASE("Hostile push messages have limited effect") {
   Rig rig;
-  SECTION("the size is limited, and the clipped part is not applied later beyond the limit") {
+  SECTION("the force is limited, and the excess is not applied later") {
     for (int i = 0; i < 20; ++i) CHECK(rig.step({rig.message({0, 0, -1e6})}).norm() <= rig.settings.tool_force_limit_N + 1e-9);
   }
   SECTION("the point is moved to the body") {
@@ -169,11 +169,11 @@ TEST_CASE("Hostile messages have limited effect: too much force, a far lever, an
     rig.contact = sync::prefixed_id(9, 0);
     CHECK(rig.step({rig.message({0, 0, -1})}).norm() == 0);
   }
-  SECTION("contacts that were never issued are ignored") {
+  SECTION("unknown contacts are ignored") {
     rig.contact += 10;
     CHECK(rig.step({rig.message({0, 0, -1})}).norm() == 0);
   }
-  SECTION("bodies that do not exist are ignored") {
+  SECTION("unknown bodies are ignored") {
     rig.ball = 17;
     CHECK(rig.step({rig.message({0, 0, -1})}).norm() == 0);
   }

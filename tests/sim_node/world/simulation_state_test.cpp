@@ -184,7 +184,7 @@ constexpr int kMore = 250;
 
 }  // namespace
 
-TEST_CASE("A restored state continues identically to the bit, in the same simulation and in another") {
+TEST_CASE("A restored state continues bit-identically in the same or another simulation") {
   for (const World& w : worlds()) {
     INFO(w.name);
     Simulation s(w.def, w.settings);
@@ -222,7 +222,7 @@ TEST_CASE("continues a state in a process of its own", "[.]") {
   std::ofstream(folder / "hash") << run(s, none, w.path, kMore);
 }
 
-TEST_CASE("Another process continues a state as this one does") {
+TEST_CASE("A restored state continues identically in another process") {
   const Folder folder;
   for (const char* name : {"a chain with springs, and a ball", "a motor and bouncing balls"}) {
     INFO(name);
@@ -252,7 +252,7 @@ TEST_CASE("Another process continues a state as this one does") {
   }
 }
 
-TEST_CASE("A damaged or foreign state is rejected with a sentence, and nothing changes") {
+TEST_CASE("A damaged or foreign state is rejected with a message and changes nothing") {
   const WorldDef w = stack();
   Simulation s(w, {});
   s.start(11);
@@ -288,7 +288,7 @@ TEST_CASE("A damaged or foreign state is rejected with a sentence, and nothing c
   CHECK(s.restore(earlier) == "");
 }
 
-TEST_CASE("A complete state with impossible values is rejected, and nothing changes") {
+TEST_CASE("A state with impossible values is rejected and changes nothing") {
   const WorldDef w = stack();
   Simulation s(w, {});
   s.start(11);
@@ -328,7 +328,7 @@ TEST_CASE("A world that is reset repeats its first run") {
   }
 }
 
-TEST_CASE("A world of a new incarnation renames its contacts, and drops the forces of the old incarnation") {
+TEST_CASE("A world of a new incarnation has new contact ids and no old forces") {
   WorldDef w = empty_world();
   add_floor(w);
   const int ball = add_ball(w, 0.2, 0.05, {0, 0, 0.05});

@@ -19,7 +19,7 @@ using namespace tactus::sim;
 using namespace tactus::sim::test;
 using Eigen::Vector3d;
 
-TEST_CASE("A tool that presses on the floor begins and hits at the instant of contact, and ends when it leaves") {
+TEST_CASE("A tool that presses on the floor has begin and hit at contact and an end when it leaves") {
   WorldDef w = empty_world();
   add_floor(w);
   add_tool(w, {0, 0, 0.05});
@@ -62,7 +62,7 @@ TEST_CASE("A tool that presses on the floor begins and hits at the instant of co
   CHECK(*std::max_element(forces.begin(), forces.end()) == Approx(1000 * (0.3 * speed - 0.04)).epsilon(0.05));
 }
 
-TEST_CASE("A push on a free ball equals the force on the hand. Momentum balances") {
+TEST_CASE("The push on a free ball equals the force on the hand, and momentum is conserved") {
   WorldDef w = empty_world(0);
   const int ball = add_ball(w, 0.3, 0.05, {0, 0, 0});
   add_tool(w, {-0.1, 0, 0});
@@ -85,7 +85,7 @@ TEST_CASE("A push on a free ball equals the force on the hand. Momentum balances
   CHECK((momentum + felt).norm() < 1e-3 * momentum.norm());
 }
 
-TEST_CASE("A corner has both its planes, each with a constant id") {
+TEST_CASE("A corner has two planes, each with a constant id") {
   WorldDef w = empty_world();
   add_floor(w);
   const int wall = add_body(w, "wall", 0, Eigen::Matrix3d::Identity(), at(0.1, 0, 0.5));
@@ -110,7 +110,7 @@ TEST_CASE("A corner has both its planes, each with a constant id") {
   CHECK(names.size() == 2);
 }
 
-TEST_CASE("A plane names the height map of its surface and the axis of the body along which the map is laid out, in the world") {
+TEST_CASE("A plane names the height map of its surface and its projection axis in the world") {
   WorldDef w = empty_world(0);
   material_def_t planks{};
   planks.youngs_modulus_Pa = 1e10, planks.poissons_ratio = 0.3, planks.friction_static = planks.friction_dynamic = 0.5;
@@ -134,12 +134,12 @@ TEST_CASE("A plane names the height map of its surface and the axis of the body 
   CHECK(plane().bump_asset == 77);
   const Vector3d u = pose.linear() * Vector3d::Unit((across + 1) % 3);
   CHECK((to_eigen(plane().bump_u) - u).norm() < 1e-6);
-  SECTION("also for a friction map alone") {
+  SECTION("a surface with only a friction map has one too") {
     w.materials[1].bump_asset = 0, w.materials[1].friction_asset = 78;
     CHECK(plane().bump_asset == 0);
     CHECK((to_eigen(plane().bump_u) - u).norm() < 1e-6);
   }
-  SECTION("a smooth surface names none") {
+  SECTION("a smooth surface has none") {
     w.shapes[shape].material = 0;
     CHECK(plane().bump_asset == 0);
     CHECK(to_eigen(plane().bump_u) == Vector3d(0, 0, 0));
@@ -148,7 +148,7 @@ TEST_CASE("A plane names the height map of its surface and the axis of the body 
   }
 }
 
-TEST_CASE("A tool in a crowd has the nearest 49 planes, in order") {
+TEST_CASE("A tool among many bodies has the nearest 49 planes in order") {
   WorldDef w = empty_world(0);
   for (int i = 0; i < 60; ++i) {
     const double phi = 0.7 * i, z = -0.9 + 0.03 * i, r = std::sqrt(1 - z * z);
@@ -169,7 +169,7 @@ TEST_CASE("A tool in a crowd has the nearest 49 planes, in order") {
   }
 }
 
-TEST_CASE("Bodies that rest at the start begin, and a silent tool touches nothing") {
+TEST_CASE("Bodies at rest at the start begin their contacts, and a silent tool touches nothing") {
   WorldDef w = empty_world();
   add_floor(w);
   add_ball(w, 0.2, 0.03, {0.5, 0, 0.0299});
@@ -192,7 +192,7 @@ TEST_CASE("Bodies that rest at the start begin, and a silent tool touches nothin
   CHECK(s.tool_contacts().empty());
 }
 
-TEST_CASE("The same messages give the same world, to the bit") {
+TEST_CASE("The same messages give a bit-identical world") {
   const auto digest = [] {
     WorldDef w = empty_world();
     add_floor(w);
@@ -219,7 +219,7 @@ TEST_CASE("The same messages give the same world, to the bit") {
   CHECK(digest() == digest());
 }
 
-TEST_CASE("A tool with the name of a spot light points through everything and touches nothing") {
+TEST_CASE("A tool with the name of a spot light touches nothing") {
   WorldDef w = empty_world();
   add_floor(w);
   add_tool(w, {0, 0, 0.05});

@@ -38,7 +38,7 @@ BusOptions in_memory() {
 
 }  // namespace
 
-TEST_CASE("A late joiner gets the whole scene, and a second poll says nothing new") {
+TEST_CASE("A late joiner receives the whole scene once") {
   Bus bus(Identity::fresh("test", 1), in_memory());
   SceneSender sender(bus, assets_of("room", 100'000));
   SceneReceiver receiver(bus);
@@ -57,7 +57,7 @@ TEST_CASE("A late joiner gets the whole scene, and a second poll says nothing ne
   CHECK(receiver.asset(12345) == nullptr);
 }
 
-TEST_CASE("The sender never sends more than its share of chunks at once") {
+TEST_CASE("The sender never sends more than kChunksPerPoll chunks at once") {
   Bus bus(Identity::fresh("test", 1), in_memory());
   SceneSender sender(bus, assets_of("room", 500'000));
   auto& chunks = bus.queue<asset_chunk_t>(channels::kAssetChunk, 10'000);
@@ -99,7 +99,7 @@ TEST_CASE("Forged chunks do not become an asset") {
   CHECK(receiver.asset(mesh.hash)->bytes == assets_of("room", 3'000)[1].bytes);
 }
 
-TEST_CASE("Another scene replaces the first, and what it does not name is forgotten") {
+TEST_CASE("A new scene replaces the old one and drops its assets") {
   Bus bus(Identity::fresh("test", 1), in_memory());
   SceneReceiver receiver(bus);
   HostTime now = host_time(1);
@@ -160,14 +160,14 @@ asset_ref_t ref_of(std::int64_t hash, std::int32_t size) {
 
 }  // namespace
 
-TEST_CASE("A manifest of more than any scene has takes no memory") {
+TEST_CASE("A manifest above the limits allocates no memory") {
   Exchange x;
-  SECTION("too many bytes") {
+  SECTION("too many bytes in total") {
     std::vector<asset_ref_t> refs;
     for (int i = 0; i < 10; ++i) refs.push_back(ref_of(i, 64 << 20));
     x.forge(99, refs);
   }
-  SECTION("one too large") { x.forge(99, {ref_of(1, (64 << 20) + 1)}); }
+  SECTION("one asset is too large") { x.forge(99, {ref_of(1, (64 << 20) + 1)}); }
   SECTION("too many assets") {
     for (int page = 0; page < 60; ++page) {
       std::vector<asset_ref_t> refs;
@@ -183,7 +183,7 @@ TEST_CASE("A manifest of more than any scene has takes no memory") {
   CHECK(x.receiver.bytes_held() == 0);
 }
 
-TEST_CASE("A scene of more than any receiver takes is refused where it is sent") {
+TEST_CASE("The sender rejects a scene with more assets than a receiver accepts") {
   Bus bus(Identity::fresh("test", 1), in_memory());
   std::vector<Asset> assets;
   for (std::size_t i = 0; i <= SceneReceiver::kMaxAssets; ++i)
@@ -191,7 +191,7 @@ TEST_CASE("A scene of more than any receiver takes is refused where it is sent")
   CHECK_THROWS_WITH(SceneSender(bus, assets), Catch::Contains("leave some out"));
 }
 
-TEST_CASE("What is announced takes memory only as it arrives, and is given up when it does not") {
+TEST_CASE("Memory is allocated as chunks arrive and released when an incomplete transfer times out") {
   Exchange x;
   x.forge(99, {ref_of(1, 64 << 20), ref_of(2, 64 << 20), ref_of(3, 64 << 20)});
   asset_chunk_t m{};
@@ -211,7 +211,7 @@ TEST_CASE("What is announced takes memory only as it arrives, and is given up wh
   CHECK(x.receiver.manifest().empty());
 }
 
-TEST_CASE("Another announcer displaces no scene while the one in use still speaks") {
+TEST_CASE("A second announcer does not replace the scene while the first one is active") {
   Exchange x;
   SceneSender sender(x.bus, assets_of("room", 10'000));
   const auto run = [&](int ms, bool announce) {
@@ -225,7 +225,7 @@ TEST_CASE("Another announcer displaces no scene while the one in use still speak
   };
   REQUIRE(run(3000, true) == 1);
   CHECK(x.receiver.manifest().size() == 2);
-  SECTION("when it is silent the other is listened to, and the scene stays until that one's is complete") {
+  SECTION("after the first falls silent, its scene stays until the scene of the second is complete") {
     CHECK(run(4000, false) == 0);
     CHECK(x.receiver.manifest().size() == 1);
     CHECK(x.receiver.scene()->name == "room");
@@ -233,7 +233,7 @@ TEST_CASE("Another announcer displaces no scene while the one in use still speak
   }
 }
 
-TEST_CASE("A large asset arrives whole, piece by piece") {
+TEST_CASE("A large asset is received completely in chunks") {
   Exchange x;
   SceneSender sender(x.bus, assets_of("room", 3'000'000));
   bool done = false;

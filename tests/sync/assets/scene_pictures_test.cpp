@@ -18,7 +18,7 @@ std::int64_t hash_of(const Bytes& bytes) { return fnv1a_64(bytes.data(), bytes.s
 
 }  // namespace
 
-TEST_CASE("The pictures of a scene are those that its materials name and that were sent, each once") {
+TEST_CASE("Each picture that a material names and that was sent is returned once") {
   const Bytes relief{1, 2, 3}, friction{4, 5}, unused{6};
   constexpr std::int64_t kNeverSent = 12345;
   scene_t scene{};

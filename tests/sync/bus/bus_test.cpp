@@ -32,7 +32,7 @@ asset_request_t request(int chunk) {
 
 }  // namespace
 
-TEST_CASE("What is published arrives once, stamped, in order") {
+TEST_CASE("Published messages arrive once, stamped and in order") {
   sync::Bus bus(me(), memory());
   auto& queue = bus.queue<asset_request_t>("A", 100);
   for (int i = 0; i < 10; ++i) {
@@ -58,7 +58,7 @@ TEST_CASE("What is published arrives once, stamped, in order") {
   CHECK(queue.count().sequence.gaps() == 0);
 }
 
-TEST_CASE("A process that begins anew is another incarnation to who hears it, not one that lost messages") {
+TEST_CASE("Receivers count a new incarnation as a restart and not as lost messages") {
   sync::Bus bus(me(), memory());
   auto& queue = bus.queue<asset_request_t>("A", 100);
   const std::int64_t before = bus.identity().incarnation;
@@ -78,7 +78,7 @@ TEST_CASE("A process that begins anew is another incarnation to who hears it, no
   CHECK(queue.count().sequence.gaps() == 0);
 }
 
-TEST_CASE("Channels are numbered apart, and a channel hears only its own") {
+TEST_CASE("Each channel has its own sequence numbers and subscribers") {
   sync::Bus bus(me(), memory());
   auto& a = bus.latest<asset_request_t>("A");
   auto& ab = bus.latest<asset_request_t>("AB");
@@ -92,7 +92,7 @@ TEST_CASE("Channels are numbered apart, and a channel hears only its own") {
   CHECK(a.count().sequence.messages() == 2);
 }
 
-TEST_CASE("Latest keeps the newest and gives it once") {
+TEST_CASE("Latest holds the newest message and take() returns it once") {
   sync::Bus bus(me(), memory());
   auto& latest = bus.latest<asset_request_t>("A");
   CHECK(latest.get() == nullptr);
@@ -108,7 +108,7 @@ TEST_CASE("Latest keeps the newest and gives it once") {
   CHECK(latest.get() != nullptr);
 }
 
-TEST_CASE("A full queue drops the oldest and counts it") {
+TEST_CASE("A full queue drops the oldest message and counts it") {
   sync::Bus bus(me(), memory());
   auto& queue = bus.queue<asset_request_t>("A", 4);
   for (int i = 0; i < 10; ++i) {
@@ -120,7 +120,7 @@ TEST_CASE("A full queue drops the oldest and counts it") {
   CHECK(queue.pop()->message.first_chunk == 6);
 }
 
-TEST_CASE("Nothing is lost in a burst of several thousand") {
+TEST_CASE("A burst of 8000 messages arrives without loss") {
   sync::Bus bus(me(), memory());
   auto& queue = bus.queue<asset_request_t>("A", 100000);
   for (int i = 0; i < 8000; ++i) {
@@ -150,7 +150,7 @@ TEST_CASE("A bad message is counted and dropped, and the next good one arrives")
   CHECK(latest.get()->first_chunk == 3);
 }
 
-TEST_CASE("A message above 1400 bytes is refused before it is sent") {
+TEST_CASE("A message above 1400 bytes is rejected before it is sent") {
   sync::Bus bus(me(), memory());
   auto& latest = bus.latest<world_state_t>("W");
   world_state_t m{};
@@ -164,7 +164,7 @@ TEST_CASE("A message above 1400 bytes is refused before it is sent") {
   CHECK(latest.count().bad == 0);
 }
 
-TEST_CASE("A subscription to both ports of one connection hears everything once") {
+TEST_CASE("A subscription to both ports receives each message once") {
   sync::Bus bus(me(), memory());
   auto& queue = bus.queue<asset_request_t>("A", 100, sync::Port::kBoth);
   asset_request_t m = request(0);
@@ -174,7 +174,7 @@ TEST_CASE("A subscription to both ports of one connection hears everything once"
   CHECK(queue.count().sequence.messages() == 2);
 }
 
-TEST_CASE("Waiting ends at once when something has arrived") {
+TEST_CASE("wait() returns at once when a message has arrived") {
   sync::Bus bus(me(), memory());
   auto& latest = bus.latest<asset_request_t>("A");
   asset_request_t m = request(0);
@@ -184,14 +184,14 @@ TEST_CASE("Waiting ends at once when something has arrived") {
   CHECK(latest.get() != nullptr);
 }
 
-TEST_CASE("The address says group, port and reach") {
+TEST_CASE("The LCM URL contains group, port and time to live") {
   sync::BusOptions options;
   options.ttl = 1;
   const std::string url = sync::lcm_url(options, 7000);
   CHECK(url == "udpm://239.255.76.67:7000?ttl=1");
 }
 
-TEST_CASE("An input is aged by the sender's clock where that can be read, else since it arrived") {
+TEST_CASE("The age of an input is measured on the sender's clock if it is mapped, otherwise since arrival") {
   using namespace tactus::sync;
   ClockMaps maps(7);
   clock_map_t m{};

@@ -28,7 +28,7 @@ Bytes fragment(char number, const std::string& rest) {
 
 }  // namespace
 
-TEST_CASE("A short message of LCM is its channel and its payload") {
+TEST_CASE("A short LCM message is parsed into channel and payload") {
   const Bytes bytes = short_message("CONTACTS", "abc");
   const auto m = parse_datagram(bytes);
   REQUIRE(m);
@@ -37,12 +37,12 @@ TEST_CASE("A short message of LCM is its channel and its payload") {
   CHECK(m->whole);
   CHECK(m->fits());
 
-  SECTION("which may be empty") {
+  SECTION("the payload may be empty") {
     const Bytes empty = short_message("A", "");
     REQUIRE(parse_datagram(empty));
     CHECK(parse_datagram(empty)->data.empty());
   }
-  SECTION("and does not fit the bus when it is longer than 1400 bytes") {
+  SECTION("a payload above 1400 bytes does not fit the bus") {
     const Bytes longest = short_message("A", std::string(channels::kMaxMessageBytes, 'x'));
     const Bytes longer = short_message("A", std::string(channels::kMaxMessageBytes + 1, 'x'));
     CHECK(parse_datagram(longest)->fits());
@@ -50,7 +50,7 @@ TEST_CASE("A short message of LCM is its channel and its payload") {
   }
 }
 
-TEST_CASE("The first fragment of a long message names its channel and does not fit. The others are nothing") {
+TEST_CASE("Only the first fragment of a long message is parsed, and it does not fit") {
   const Bytes first = fragment(0, std::string("BIG\0abc", 7));
   const auto m = parse_datagram(first);
   REQUIRE(m);
@@ -61,7 +61,7 @@ TEST_CASE("The first fragment of a long message names its channel and does not f
   CHECK_FALSE(parse_datagram(second));
 }
 
-TEST_CASE("What is not of LCM is nothing") {
+TEST_CASE("Datagrams that are not valid LCM are rejected") {
   const auto nothing = [](const Bytes& b) { return !parse_datagram(b); };
   CHECK(nothing({}));
   CHECK(nothing(bytes_of("LC02")));
@@ -73,7 +73,7 @@ TEST_CASE("What is not of LCM is nothing") {
   CHECK(nothing(bytes_of("LC04" + kNumber + std::string("A\0", 2))));
 }
 
-TEST_CASE("Whatever bytes come, what is parsed lies within them") {
+TEST_CASE("Parsed channel and payload lie within the datagram for random bytes") {
   std::mt19937 random(1);
   for (int round = 0; round < 20000; ++round) {
     Bytes bytes(random() % 64);

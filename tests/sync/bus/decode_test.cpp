@@ -27,7 +27,7 @@ TEST_CASE("An asset may be larger than a datagram") {
   CHECK(m->indices.size() == 30000);
 }
 
-TEST_CASE("A mesh whose triangles point outside its vertices is refused") {
+TEST_CASE("A mesh whose triangles point outside its vertices is rejected") {
   mesh_t m = triangles(1);
   m.indices[1] = 3;
   CHECK_FALSE(sync::decode_asset<mesh_t>(sync::encode(m)));
@@ -35,7 +35,7 @@ TEST_CASE("A mesh whose triangles point outside its vertices is refused") {
   CHECK_FALSE(sync::decode_asset<mesh_t>(sync::encode(m)));
 }
 
-TEST_CASE("No bytes are no message") {
+TEST_CASE("An empty buffer is not a valid message") {
   CHECK_FALSE(sync::decode<touch_model_t>(nullptr, 0));
   CHECK_FALSE(sync::decode_asset<scene_t>({}));
 }

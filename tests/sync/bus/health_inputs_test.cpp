@@ -30,7 +30,7 @@ node_health_t with_inputs(int n, std::size_t note) {
 
 }  // namespace
 
-TEST_CASE("A channel that a node hears in two ways is one line of its health, with the worst of what was lost") {
+TEST_CASE("Two subscriptions to one channel are one health input with the larger counts") {
   node_health_t m{};
   add_input(m, input("WORLD_STATE", 3, 0));
   add_input(m, input("TOOL_STATE"));
@@ -42,7 +42,7 @@ TEST_CASE("A channel that a node hears in two ways is one line of its health, wi
   CHECK(m.inputs[0].bad == 2);
 }
 
-TEST_CASE("However much a node hears and has to say, its health fits a datagram, the first inputs in it") {
+TEST_CASE("A health message with many inputs and a long note fits a datagram and keeps the first inputs") {
   for (int n = 0; n < 60; ++n)
     for (const std::size_t note : {0u, 70u, 140u}) {
       node_health_t m = with_inputs(n, note);

@@ -22,23 +22,23 @@ const char* const kTable =
     "0000000000000000 3\n";
 }
 
-TEST_CASE("Drops are summed over our own sockets only") {
+TEST_CASE("Kernel drops are summed over the sockets of this process only") {
   CHECK(sum_drops(kTable, {"20001", "20003"}) == 15);
   CHECK(sum_drops(kTable, {"20002"}) == 500);
   CHECK(sum_drops(kTable, {}) == 0);
 }
 
-TEST_CASE("A table that is empty or cut off counts what it shows") {
+TEST_CASE("An empty or truncated socket table counts zero drops") {
   CHECK(sum_drops("", {"20001"}) == 0);
   CHECK(sum_drops("headings\n 1: a b c\n\n", {"20001"}) == 0);
 }
 
-TEST_CASE("This process has dropped nothing, or it is not known") {
+TEST_CASE("Kernel drops of a new process are zero or unknown") {
   const std::int64_t drops = kernel_drops();
   CHECK((drops == 0 || drops == -1));
 }
 
-TEST_CASE("What finds no room at a socket counts, and what its own filter refuses does not") {
+TEST_CASE("Packets dropped for lack of buffer space are counted, packets rejected by a socket filter are not") {
   const int to = socket(AF_INET, SOCK_DGRAM, 0), from = socket(AF_INET, SOCK_DGRAM, 0);
   sockaddr_in at{};
   at.sin_family = AF_INET;

@@ -5,7 +5,7 @@
 
 using namespace tactus::sync;
 
-TEST_CASE("A batch refuses what exceeds its bound and keeps the rest in order") {
+TEST_CASE("A batch rejects messages beyond its limit and keeps the rest in order") {
   constexpr HostTime kStart{};
   const auto bytes = [](std::size_t n) { return std::vector<std::uint8_t>(n, 7); };
   // Overhead of a message beside its bytes.

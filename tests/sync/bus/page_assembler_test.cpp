@@ -36,7 +36,7 @@ using Assembler = PageAssembler<std::string, std::int64_t>;
 
 }  // namespace
 
-TEST_CASE("A message comes out with its last page, in the order of its pages, for any order of arrival") {
+TEST_CASE("A message is complete with its last page and has its pages in order, for any order of arrival") {
   std::mt19937 random(1);
   for (int round = 0; round < 300; ++round) {
     const int count = 1 + static_cast<int>(random() % 12);
@@ -53,7 +53,7 @@ TEST_CASE("A message comes out with its last page, in the order of its pages, fo
   }
 }
 
-TEST_CASE("Of pages that are lost, repeated and reordered, each message that is whole comes out once and no other does") {
+TEST_CASE("Each complete message is returned once when pages are lost, repeated and reordered") {
   const auto order = GENERATE(PageOrder::kFirstPage, PageOrder::kNewestPage, PageOrder::kKey);
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);
@@ -88,7 +88,7 @@ TEST_CASE("Of pages that are lost, repeated and reordered, each message that is 
   }
 }
 
-TEST_CASE("Forged pages never take more than the limits, and no page that cannot be is kept") {
+TEST_CASE("Forged pages never exceed the limits, and invalid page numbers are rejected") {
   std::mt19937 random(7);
   const PageLimits limits{.groups = 5, .pages = 16, .total = 40, .remembered = 3};
   Assembler pages(limits, GENERATE(PageOrder::kFirstPage, PageOrder::kNewestPage, PageOrder::kKey));
@@ -114,7 +114,7 @@ TEST_CASE("Forged pages never take more than the limits, and no page that cannot
   }
 }
 
-TEST_CASE("The incomplete message that is given up is the one that the order names") {
+TEST_CASE("The configured order selects the incomplete message to drop") {
   const auto [order, gone] = GENERATE(std::pair{PageOrder::kFirstPage, 8}, std::pair{PageOrder::kNewestPage, 3}, std::pair{PageOrder::kKey, 1});
   Assembler pages({.groups = 3}, order);
   std::vector<std::int64_t> dropped;
@@ -126,7 +126,7 @@ TEST_CASE("The incomplete message that is given up is the one that the order nam
   CHECK(dropped == std::vector<std::int64_t>{gone});
 }
 
-TEST_CASE("All incomplete messages together keep the limit of pages, and a single one may be larger") {
+TEST_CASE("All incomplete messages share the page limit, and a single message may exceed it") {
   Assembler pages({.groups = 10, .pages = 100, .total = 6});
   for (int i = 0; i < 20; ++i) pages.add(1, i, 100, "x");
   CHECK(pages.size() == 1);
@@ -136,7 +136,7 @@ TEST_CASE("All incomplete messages together keep the limit of pages, and a singl
   CHECK(pages.add(2, 3, 4, "x"));
 }
 
-TEST_CASE("A page that gives another count starts its message again, and a repeated page replaces the one before") {
+TEST_CASE("A page with another page count restarts its message, and a repeated page replaces the earlier one") {
   Assembler pages({});
   CHECK_FALSE(pages.add(1, 0, 3, "old "));
   CHECK_FALSE(pages.add(1, 0, 2, "a "));
@@ -146,7 +146,7 @@ TEST_CASE("A page that gives another count starts its message again, and a repea
   CHECK(text_of(*whole) == "b c");
 }
 
-TEST_CASE("Repeated pages of a message that is remembered as complete begin no new one") {
+TEST_CASE("Repeated pages of a remembered complete message do not start a new one") {
   Assembler pages({.remembered = 1});
   CHECK(pages.add(1, 0, 1, "x"));
   CHECK_FALSE(pages.add(1, 0, 1, "x"));
@@ -156,7 +156,7 @@ TEST_CASE("Repeated pages of a message that is remembered as complete begin no n
   CHECK(pages.add(1, 0, 1, "x"));
 }
 
-TEST_CASE("Dropping by key leaves the other incomplete messages as they are") {
+TEST_CASE("Dropping by key keeps the other incomplete messages") {
   Assembler pages({}, PageOrder::kKey);
   for (const std::int64_t key : {1, 2, 3}) pages.add(key, 0, 2, "x");
   pages.drop_if([](std::int64_t key) { return key < 3; });

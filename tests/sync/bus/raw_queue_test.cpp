@@ -26,7 +26,7 @@ void put(RawQueue& queue, int number, int ms = 0) {
 
 }  // namespace
 
-TEST_CASE("A raw queue hands out what arrived in order, and when full drops the oldest and counts it") {
+TEST_CASE("A raw queue returns messages in order and counts the oldest ones that it drops when full") {
   RawQueue queue("X", 3);
   CHECK(read_all(queue).empty());
   for (int i = 0; i < 5; ++i) put(queue, i, i);
@@ -37,7 +37,7 @@ TEST_CASE("A raw queue hands out what arrived in order, and when full drops the 
   CHECK(read_all(queue) == std::vector{7});
 }
 
-TEST_CASE("What is larger than any message, or not wanted, is not kept") {
+TEST_CASE("A raw queue rejects oversized messages and stores nothing while it is not wanted") {
   RawQueue queue("X", 3);
   const std::vector<std::uint8_t> large(channels::kMaxMessageBytes + 1);
   queue.accept(large.data(), large.size(), at_ms(0));
@@ -52,7 +52,7 @@ TEST_CASE("What is larger than any message, or not wanted, is not kept") {
   CHECK(read_all(queue) == std::vector{3});
 }
 
-TEST_CASE("A bus gives the bytes of a channel to who asks for them, also once it runs") {
+TEST_CASE("A raw queue can be opened while the bus runs") {
   Bus bus(Identity::fresh("raw_queue_test", 1), {.memory = true});
   bus.drain(at_ms(0));
   RawQueue& queue = bus.raw(channels::kMediaClock, 8);

@@ -8,7 +8,7 @@
 
 using namespace tactus::sync;
 
-TEST_CASE("The newest keys are known with their first values, and no others") {
+TEST_CASE("A recent map holds only the newest keys, each with its first value") {
   std::mt19937 random(3);
   for (const std::size_t max : {1u, 2u, 7u, 64u}) {
     RecentMap<int, int> recent(max);

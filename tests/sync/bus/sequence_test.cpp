@@ -25,7 +25,7 @@ header_t message(std::int64_t seq, std::int64_t publish_ms, std::int64_t incarna
 }
 }  // namespace
 
-TEST_CASE("What is missing in the numbering is counted") {
+TEST_CASE("Missing sequence numbers are counted as gaps") {
   SequenceTracker t;
   CHECK(t.observe(message(10, 0)) == Arrival::kNewIncarnation);  // joined late: no gap
   CHECK(t.observe(message(11, 1)) == Arrival::kNew);
@@ -34,14 +34,14 @@ TEST_CASE("What is missing in the numbering is counted") {
   CHECK(t.messages() == 3);
 }
 
-TEST_CASE("A late message closes the gap that it left, a repeated one does not") {
+TEST_CASE("A late message closes its gap, a repeated one does not") {
   SequenceTracker t;
   t.observe(message(0, 0));
   t.observe(message(3, 3));
   REQUIRE(t.gaps() == 2);
   CHECK(t.observe(message(1, 1)) == Arrival::kOld);
   CHECK(t.gaps() == 1);
-  SECTION("repeated") {
+  SECTION("repeated messages are old and change no gap") {
     CHECK(t.observe(message(1, 1)) == Arrival::kOld);
     CHECK(t.observe(message(0, 0)) == Arrival::kOld);
     CHECK(t.observe(message(3, 3)) == Arrival::kOld);
@@ -49,7 +49,7 @@ TEST_CASE("A late message closes the gap that it left, a repeated one does not")
   }
 }
 
-TEST_CASE("A restart is no gap") {
+TEST_CASE("A restart is not a gap") {
   SequenceTracker t;
   t.observe(message(1000, 0, 7));
   CHECK(t.observe(message(0, 1, 8)) == Arrival::kNewIncarnation);
@@ -57,7 +57,7 @@ TEST_CASE("A restart is no gap") {
   CHECK(t.gaps() == 0);
 }
 
-TEST_CASE("A clock that falls back by more than a second within an incarnation is a new epoch") {
+TEST_CASE("A clock that steps back by more than a second within an incarnation is a new epoch") {
   SequenceTracker t;
   t.observe(message(500, 60'000));
   CHECK(t.observe(message(499, 59'500)) == Arrival::kOld);
@@ -66,23 +66,23 @@ TEST_CASE("A clock that falls back by more than a second within an incarnation i
   CHECK(t.gaps() == 0);
 }
 
-TEST_CASE("One message with a number far ahead silences nobody") {
+TEST_CASE("A message with a sequence number far ahead does not block later messages") {
   SequenceTracker t;
   t.observe(message(10, 10));
-  SECTION("beyond the longest loss its followers are heard at once") {
+  SECTION("beyond the largest possible loss, the next message is accepted at once") {
     CHECK(t.observe(message(std::numeric_limits<std::int64_t>::max(), 11)) == Arrival::kNewEpoch);
     CHECK(t.observe(message(11, 11)) == Arrival::kNewEpoch);
     CHECK(t.observe(message(12, 12)) == Arrival::kNew);
     CHECK(t.gaps() == 0);
   }
-  SECTION("nearer they are heard when three of them contradict it") {
+  SECTION("within it, the third contradicting message is accepted") {
     CHECK(t.observe(message(1'000'000, 11)) == Arrival::kNew);
     CHECK(t.observe(message(11, 12)) == Arrival::kOld);
     CHECK(t.observe(message(12, 13)) == Arrival::kOld);
     CHECK(t.observe(message(13, 14)) == Arrival::kNewEpoch);
     CHECK(t.observe(message(14, 15)) == Arrival::kNew);
   }
-  SECTION("stamped ahead as well, within a second") {
+  SECTION("with a stamp up to a second ahead, messages are accepted after about 900") {
     CHECK(t.observe(message(1'000'000, 910)) == Arrival::kNew);
     int old = 0;
     for (int i = 1; i < 1100; ++i) old += t.observe(message(10 + i, 10 + i)) == Arrival::kOld;
@@ -90,14 +90,14 @@ TEST_CASE("One message with a number far ahead silences nobody") {
   }
 }
 
-TEST_CASE("A burst that the network repeats is old, however long it is") {
+TEST_CASE("A repeated burst is old, also if it is long") {
   SequenceTracker t;
   for (int i = 0; i < 500; ++i) t.observe(message(i, i));
   for (int i = 0; i < 500; ++i) REQUIRE(t.observe(message(i, i)) == Arrival::kOld);
   CHECK(t.observe(message(500, 500)) == Arrival::kNew);
 }
 
-TEST_CASE("Of too many senders the one not heard for longest is forgotten, and counted") {
+TEST_CASE("When there are too many senders, the one that was silent longest is forgotten and counted") {
   SequenceTracker t;
   t.observe(message(1, 1, 7, -1));
   for (std::int32_t source = 0; source < 300; ++source) {
@@ -109,7 +109,7 @@ TEST_CASE("Of too many senders the one not heard for longest is forgotten, and c
   CHECK(t.observe(message(2, 2, 7, 0)) == Arrival::kNewIncarnation);
 }
 
-TEST_CASE("Sources on one channel are numbered apart") {
+TEST_CASE("Each source on a channel has its own sequence numbers") {
   SequenceTracker t;
   for (int i = 0; i < 10; ++i)
     for (std::int32_t source = 1; source <= 3; ++source) t.observe(message(i, i, 7, source));
@@ -117,7 +117,7 @@ TEST_CASE("Sources on one channel are numbered apart") {
   CHECK(t.messages() == 30);
 }
 
-TEST_CASE("Whatever order and repetition the network chooses, gaps are what never came") {
+TEST_CASE("Gaps equal the lost messages for any reordering and repetition") {
   std::mt19937 random(3);
   for (int trial = 0; trial < 100; ++trial) {
     std::vector<std::int64_t> sent, arrived;

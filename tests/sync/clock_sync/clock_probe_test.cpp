@@ -58,7 +58,7 @@ struct Pair {
 
 }  // namespace
 
-TEST_CASE("A wave is eight probes 64 ms apart, every two seconds, and keeps the smallest round trip") {
+TEST_CASE("A wave is eight probes at 64 ms every two seconds and keeps the smallest round trip") {
   Pair p;
   const HostTime begin = p.prober.next();
   const auto waves = p.wave({{9000, 9000}, {500, 700}, {9000, 100}, {800, 800}, {-1, 0}, {-1, 0}, {50'000, 2}, {600, 601}});
@@ -68,7 +68,7 @@ TEST_CASE("A wave is eight probes 64 ms apart, every two seconds, and keeps the 
   CHECK(waves[0].replies == 6);
   CHECK(waves[0].sample.offset == Nanoseconds(kAhead - 100));
   CHECK(waves[0].sample.at == begin + ClockProber::kSpacing + Nanoseconds(1100));
-  SECTION("a new clock is asked again after one second, twice") {
+  SECTION("the first two waves of a new clock are one second apart") {
     CHECK(p.prober.next() == begin + ClockProber::kFirstPeriod);
     const std::vector<std::pair<std::int64_t, std::int64_t>> ways(8, {500, 500});
     p.wave(ways);
@@ -79,7 +79,7 @@ TEST_CASE("A wave is eight probes 64 ms apart, every two seconds, and keeps the 
   }
 }
 
-TEST_CASE("Of many clocks each is asked less often, so that all probes grow with the hosts and not with their square") {
+TEST_CASE("The wave period grows with the number of clocks, so that total traffic grows linearly with hosts") {
   for (const std::int32_t others : {1, 16, 31, 32, 63}) {
     Pair p;
     Nanoseconds last{0};
@@ -105,7 +105,7 @@ TEST_CASE("Of many clocks each is asked less often, so that all probes grow with
   }
 }
 
-TEST_CASE("One answer of eight is a wave, none is no wave, and the next wave comes all the same") {
+TEST_CASE("One reply of eight is enough for a wave, and a wave without replies is skipped") {
   Pair p;
   std::vector<std::pair<std::int64_t, std::int64_t>> ways(8, {-1, 0});
   CHECK(p.wave(ways).empty());
@@ -115,7 +115,7 @@ TEST_CASE("One answer of eight is a wave, none is no wave, and the next wave com
   CHECK(waves[0].replies == 1);
 }
 
-TEST_CASE("After a stall the probes keep their distance") {
+TEST_CASE("Probes keep their spacing after a stall") {
   Pair p;
   p.ask(host_time(0));
   const HostTime late = host_time(5'000 * kMs);
@@ -124,7 +124,7 @@ TEST_CASE("After a stall the probes keep their distance") {
   CHECK(p.prober.next() == late + ClockProber::kSpacing);
 }
 
-TEST_CASE("A request is answered by other clocks of the run and by nobody else") {
+TEST_CASE("Only other clocks of the same run answer a request") {
   Pair p;
   const clock_probe_t request = p.ask(host_time(0));
   CHECK(probe_answer(request, host(2), host_time(5)));
@@ -133,7 +133,7 @@ TEST_CASE("A request is answered by other clocks of the run and by nobody else")
   CHECK_FALSE(probe_answer(p.answer(request, 10, 20), host(3), host_time(5)));
 }
 
-TEST_CASE("A hostile reply is refused and changes nothing") {
+TEST_CASE("A forged reply is rejected and changes nothing") {
   Pair p;
   const clock_probe_t request = p.ask(host_time(0));
   const clock_probe_t good = p.answer(request, 1000, 2000);
@@ -158,7 +158,7 @@ TEST_CASE("A hostile reply is refused and changes nothing") {
   for (int i = 1; i < ClockProber::kProbes; ++i) p.ask(p.prober.next());
   CHECK(p.prober.finish(p.prober.next()).empty());
 
-  SECTION("as are those of more clocks than there can be hosts, and floods of them") {
+  SECTION("replies of more clocks than the maximum are rejected, also in floods") {
     const HostTime now = p.prober.next();
     const clock_probe_t asked = p.ask(now);
     for (int clock = 2; clock < 1000; ++clock) {
@@ -171,7 +171,7 @@ TEST_CASE("A hostile reply is refused and changes nothing") {
   }
 }
 
-TEST_CASE("A wave whose answers contradict each other is dropped and counted") {
+TEST_CASE("A wave with contradictory replies is dropped and counted") {
   Pair p;
   for (int i = 0; i < ClockProber::kProbes; ++i) {
     const HostTime now = p.prober.next();
@@ -183,7 +183,7 @@ TEST_CASE("A wave whose answers contradict each other is dropped and counted") {
   CHECK(p.prober.contradictory() == 1);
 }
 
-TEST_CASE("Every other clock has a valid map, until it has been silent for half a minute") {
+TEST_CASE("Every other clock has a valid map until it has been silent for 30 s") {
   ClockAgreement agreement(1);
   const auto heard = [&](std::int32_t clock, std::int64_t ms, std::int64_t offset) {
     return agreement.add({clock, {host_time(ms * kMs), Nanoseconds(offset), Nanoseconds(50'000)}, Nanoseconds(90'000), 8});

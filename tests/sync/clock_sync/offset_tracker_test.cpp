@@ -72,7 +72,7 @@ struct Course {
 
 }  // namespace
 
-TEST_CASE("The interval of a probe holds the true offset, whatever the two ways take") {
+TEST_CASE("The interval of a probe contains the true offset for any latency in either direction") {
   Network n;
   std::uniform_real_distribution<double> way(0, 20e6), drift(-200e-6, 200e-6);
   for (int i = 0; i < 20000; ++i) {
@@ -85,7 +85,7 @@ TEST_CASE("The interval of a probe holds the true offset, whatever the two ways 
   }
 }
 
-TEST_CASE("The uncertainty surely holds the true offset, at any drift, with lost waves, and nothing ever steps") {
+TEST_CASE("The uncertainty bounds the true offset at any drift and with lost waves, without steps") {
   for (const double ppm : {-200.0, -100.0, -20.0, 0.0, 1.0, 50.0, 200.0}) {
     for (unsigned seed = 1; seed < 6; ++seed) {
       Network n;
@@ -102,7 +102,7 @@ TEST_CASE("The uncertainty surely holds the true offset, at any drift, with lost
   }
 }
 
-TEST_CASE("On an idle network the offset is known to 200 us once the rate has been measured") {
+TEST_CASE("On an idle network the uncertainty is below 200 us once the rate has been measured") {
   Network n;
   n.offset = [](double t) { return 3 * kSecond + 80e-6 * t; };
   Course c;
@@ -110,7 +110,7 @@ TEST_CASE("On an idle network the offset is known to 200 us once the rate has be
   CHECK(c.last_uncertainty_ns < 200e3);
 }
 
-TEST_CASE("What one direction takes longer shows in the uncertainty") {
+TEST_CASE("An asymmetric latency increases the uncertainty") {
   Network n;
   n.back_ns += 2e6;
   Course c;
@@ -120,7 +120,7 @@ TEST_CASE("What one direction takes longer shows in the uncertainty") {
   CHECK(c.last_uncertainty_ns < 1.5e6);
 }
 
-TEST_CASE("A rate that changes is noticed, within the drift that clocks have") {
+TEST_CASE("A change of the clock rate is tracked without a new epoch") {
   Network n;
   n.offset = [](double t) { return 9 * kSecond + (t < 60 * kSecond ? 0 : 150e-6 * (t - 60 * kSecond)); };
   Course c;
@@ -132,7 +132,7 @@ TEST_CASE("A rate that changes is noticed, within the drift that clocks have") {
   CHECK(c.tracker.epoch() == 0);
 }
 
-TEST_CASE("A clock that jumps, by however little more than is known of it, is acquired anew with the next wave") {
+TEST_CASE("A clock that jumps by 2 ms or more is acquired again with the next wave") {
   for (const double jump : {-3600 * kSecond, -0.5 * kSecond, -2e6, 2e6, 0.5 * kSecond, 3600 * kSecond}) {
     Network n;
     Course c;
@@ -147,7 +147,7 @@ TEST_CASE("A clock that jumps, by however little more than is known of it, is ac
   }
 }
 
-TEST_CASE("When the probes are lost the uncertainty grows, and the next answer is believed again") {
+TEST_CASE("The uncertainty grows while probes are lost and recovers with the next replies") {
   Network n;
   n.offset = [](double t) { return kSecond + 30e-6 * t; };
   Course c;
@@ -162,7 +162,7 @@ TEST_CASE("When the probes are lost the uncertainty grows, and the next answer i
   CHECK(c.tracker.epoch() == 0);
 }
 
-TEST_CASE("An error is slewed away, not stepped: the map stays continuous and monotone") {
+TEST_CASE("An offset error is slewed, so that the map stays continuous and monotone") {
   OffsetTracker tracker;
   tracker.add({at(10 * kSecond), Nanoseconds(0), Nanoseconds(5'000'000)});
   CHECK(tracker.line(at(10 * kSecond)).offset == Nanoseconds(0));

@@ -21,7 +21,7 @@ PairDatagram answer(HostTime asked, Nanoseconds there, Nanoseconds worked, Nanos
 
 }  // namespace
 
-TEST_CASE("A datagram of a pair of hosts is read as it was written") {
+TEST_CASE("A datagram of a host pair is decoded as it was encoded") {
   const PairDatagram m{
       0xfedcba9876543210u, PairDatagram::kAnswer, 12345, "desk", "wall-left", 1, 1234567890123456789 / 2, 3};
   for (const std::size_t size : {PairDatagram::kShortest, PairDatagram::kLongest}) {
@@ -40,7 +40,7 @@ TEST_CASE("A datagram of a pair of hosts is read as it was written") {
   }
 }
 
-TEST_CASE("What is no datagram of a pair of hosts is refused, whatever it is") {
+TEST_CASE("Invalid datagrams of a host pair are rejected") {
   std::mt19937 random(5);
   const auto good = ask(3).encode(PairDatagram::kShortest);
   REQUIRE(PairDatagram::decode(good));
@@ -58,7 +58,7 @@ TEST_CASE("What is no datagram of a pair of hosts is refused, whatever it is") {
   }
 }
 
-TEST_CASE("The share of what was lost is that of the numbers that are missing, the last ones too") {
+TEST_CASE("The loss ratio counts missing sequence numbers, including the last ones") {
   PairRecord r;
   CHECK(r.lost() == 1);
   CHECK(!r.heard());
@@ -76,7 +76,7 @@ TEST_CASE("The share of what was lost is that of the numbers that are missing, t
   CHECK(r.ttl() == 1);
 }
 
-TEST_CASE("The offset of two clocks is within its stated uncertainty of the truth, however unlike the ways are") {
+TEST_CASE("The offset of two clocks is within its uncertainty for asymmetric latencies") {
   std::mt19937 random(11);
   std::uniform_int_distribution<std::int64_t> way(10'000, 5'000'000), clock(-3'600'000'000'000, 3'600'000'000'000);
   for (int trial = 0; trial < 500; ++trial) {
@@ -97,7 +97,7 @@ TEST_CASE("The offset of two clocks is within its stated uncertainty of the trut
   }
 }
 
-TEST_CASE("An answer that no clock could have given is forged, and changes nothing") {
+TEST_CASE("A reply with impossible times is rejected and changes nothing") {
   PairRecord r;
   const HostTime now = host_time(1'000'000'000);
   r.hear_answer(answer(now, Nanoseconds(1000), Nanoseconds(-50), Nanoseconds(0)), now + Nanoseconds(2000));

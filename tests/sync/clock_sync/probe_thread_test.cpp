@@ -6,7 +6,7 @@
 
 using namespace tactus::sync;
 
-TEST_CASE("What is handed over arrives in order, and what finds no room is refused") {
+TEST_CASE("Items leave the queue in order, and a full queue rejects the next one") {
   HandOver<int, 4> queue;
   CHECK_FALSE(queue.pop());
   for (int round = 0; round < 10; ++round) {
@@ -17,7 +17,7 @@ TEST_CASE("What is handed over arrives in order, and what finds no room is refus
   }
 }
 
-TEST_CASE("One thread hands over to another without loss") {
+TEST_CASE("Items pass from one thread to another without loss") {
   constexpr int kItems = 20000;
   HandOver<int, 16> queue;
   std::thread producer([&] {
@@ -37,7 +37,7 @@ TEST_CASE("One thread hands over to another without loss") {
   producer.join();
 }
 
-TEST_CASE("The emulated clock is the host's unless it is told to drift or jump") {
+TEST_CASE("The emulated clock follows the host clock unless drift or jump are set") {
   const HostTime t = host_time(10'000'000'000);
   CHECK(EmulatedClock{}.read(t) == t);
   const EmulatedClock clock{100e-6, Nanoseconds(-5), t, t + Nanoseconds(2'000'000)};

@@ -12,7 +12,7 @@ namespace {
 constexpr HostTime kStart = host_time(1'000'000'000);
 }
 
-TEST_CASE("Deadlines do not drift: after an hour they lie where they must, to a nanosecond") {
+TEST_CASE("Deadlines are exact to 1 ns after an hour") {
   for (const double rate : {50.0, 60.0, 59.94, 1000.0, 4000.0, 7.0}) {
     Deadlines d(rate, kStart);
     const std::int64_t ticks = std::llround(3600 * rate);
@@ -24,7 +24,7 @@ TEST_CASE("Deadlines do not drift: after an hour they lie where they must, to a 
   }
 }
 
-TEST_CASE("A loop that wakes a little late keeps its deadlines") {
+TEST_CASE("A loop that wakes late by less than a period keeps its deadlines") {
   std::mt19937 random(1);
   std::uniform_int_distribution<std::int64_t> late(0, 999'000);
   Deadlines d(1000, kStart);
@@ -34,7 +34,7 @@ TEST_CASE("A loop that wakes a little late keeps its deadlines") {
   }
 }
 
-TEST_CASE("A loop that fell behind skips whole periods and counts them. It never catches up in a burst") {
+TEST_CASE("A late loop skips whole periods, counts them and never catches up in a burst") {
   std::mt19937_64 random(2);
   for (const double rate : {60.0, 1000.0, 333.0}) {
     Deadlines d(rate, kStart);
@@ -60,13 +60,13 @@ TEST_CASE("A loop that fell behind skips whole periods and counts them. It never
   }
 }
 
-TEST_CASE("Waking early, by a signal, is a tick and no miss") {
+TEST_CASE("A tick that a signal wakes early is not a miss") {
   Deadlines d(100, kStart);
   CHECK(d.advance(kStart - Nanoseconds(5)) == 0);
   CHECK(d.next() == kStart + Nanoseconds(10'000'000));
 }
 
-TEST_CASE("A rate may change at any deadline and holds from there") {
+TEST_CASE("The rate may change at any deadline") {
   Deadlines d(1000, kStart);
   for (int i = 0; i < 7; ++i) d.advance(d.next());
   d.set_rate(50);
@@ -78,13 +78,13 @@ TEST_CASE("A rate may change at any deadline and holds from there") {
   CHECK(d.next() == changed + Nanoseconds(40'000'000));
 }
 
-TEST_CASE("An impossible rate is refused with a sentence") {
+TEST_CASE("An invalid rate is rejected") {
   for (const double rate : {0.0, -1.0, 10001.0, std::nan(""), HUGE_VAL})
     CHECK_THROWS_AS(Deadlines(rate, kStart), std::invalid_argument);
   CHECK_NOTHROW(Deadlines(10000, kStart));
 }
 
-TEST_CASE("The host clock never runs backwards") {
+TEST_CASE("The host clock is monotone") {
   HostTime before = host_now();
   for (int i = 0; i < 1000; ++i) {
     const HostTime now = host_now();
@@ -93,7 +93,7 @@ TEST_CASE("The host clock never runs backwards") {
   }
 }
 
-TEST_CASE("A loop that is given another phase counts its deadlines from there, and what is left out as missed") {
+TEST_CASE("Aligning a loop moves its deadlines and counts the skipped ticks as missed") {
   Deadlines d(60, kStart);
   d.advance(d.next());
   const HostTime elsewhere = kStart + Nanoseconds(90'000'000);

@@ -37,21 +37,21 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE("Nobody's clock is unknown, and maps to itself") {
+TEST_CASE("The clock of an unknown sender maps to itself") {
   Fixture f;
   CHECK_FALSE(f.clock.known());
   CHECK(f.clock.to_host(77, host_time(5)) == host_time(77));
   CHECK(f.clock.read(77, host_time(5)).source == SenderClock::ClockSource::kUnknown);
 }
 
-TEST_CASE("A sender of our own run and clock is read as it is") {
+TEST_CASE("Stamps of the own run and clock are used unchanged") {
   Fixture f;
   CHECK_FALSE(f.clock.observe(stamped(1000, kOurs), host_time(999'999)));
   CHECK(f.clock.to_host(1234, host_time(5'000'000)) == host_time(1234));
   CHECK(f.clock.read(1234, host_time(5'000'000)).uncertainty == Nanoseconds(0));
 }
 
-TEST_CASE("A sender of another clock is read through the map of it, with its uncertainty. Without one by arrival") {
+TEST_CASE("Stamps of another clock are mapped with their uncertainty, or by arrival if there is no map") {
   Fixture f;
   const HostTime now = host_time(100 * kSecond);
   f.clock.observe(stamped(to_ns(now) + kAhead - 3 * kMs, kTheirs), now);
@@ -65,7 +65,7 @@ TEST_CASE("A sender of another clock is read through the map of it, with its unc
   CHECK(mapped.uncertainty >= Nanoseconds(100'000));
   CHECK(mapped.uncertainty < Nanoseconds(101'000));
 
-  SECTION("a map that nobody renews grows less certain, and is given up for the arrivals") {
+  SECTION("without updates the uncertainty of a map grows until arrivals replace it") {
     const HostTime later = now + Nanoseconds(10 * kSecond);
     CHECK(f.clock.read(to_ns(later) + kAhead, later).uncertainty >= Nanoseconds(300'000));
     const HostTime much_later = now + Nanoseconds(2'000 * kSecond);
@@ -74,7 +74,7 @@ TEST_CASE("A sender of another clock is read through the map of it, with its unc
   }
 }
 
-TEST_CASE("A replayed log is read by arrival, though its clock is mapped, or ours") {
+TEST_CASE("A replayed log is read by arrival, also if its clock is mapped or the own one") {
   Fixture f;
   const HostTime now = host_time(100 * kSecond);
   f.maps.observe(map_of(kAhead, to_ns(now), 0), now);
@@ -86,13 +86,13 @@ TEST_CASE("A replayed log is read by arrival, though its clock is mapped, or our
   }
 }
 
-TEST_CASE("A map that the stamps contradict is not believed until the probes have noticed the jump") {
+TEST_CASE("A map that contradicts the stamps is ignored until the probes have measured the jump") {
   Fixture f;
   const HostTime now = host_time(100 * kSecond);
   f.maps.observe(map_of(kAhead, to_ns(now), 0), now);
   const auto sent = [&](HostTime t, std::int64_t jump) { return stamped(to_ns(t) + kAhead + jump - kMs, kTheirs); };
   REQUIRE_FALSE(f.clock.observe(sent(now, 0), now));
-  SECTION("forward: the first message after it has not been sent yet, says the map") {
+  SECTION("jump forward: stamps lie in the future of the map") {
     const std::int64_t jump = 50 * kMs;
     const HostTime t = now + Nanoseconds(kSecond);
     CHECK(f.clock.observe(sent(t, jump), t));
@@ -103,13 +103,13 @@ TEST_CASE("A map that the stamps contradict is not believed until the probes hav
     CHECK(f.clock.read(to_ns(later) + kAhead + jump, later).source == SenderClock::ClockSource::kMapped);
     CHECK(f.clock.to_host(to_ns(later) + kAhead + jump, later) == later);
   }
-  SECTION("but old messages that come late, as after a stall of ours, are no reason") {
+  SECTION("late messages after a stall do not invalidate the map") {
     const HostTime t = now + Nanoseconds(5 * kSecond);
     CHECK_FALSE(f.clock.observe(sent(now, 0), t));
     CHECK(f.clock.read(to_ns(t) + kAhead, t).source == SenderClock::ClockSource::kMapped);
     CHECK(f.clock.to_host(to_ns(t) + kAhead, t) == t);
   }
-  SECTION("back: it looks like latency until the map of the new epoch is there") {
+  SECTION("jump back: stamps appear delayed until the map of the new epoch arrives") {
     const std::int64_t jump = -500 * kMs;
     const HostTime t = now + Nanoseconds(3 * kSecond);
     CHECK_FALSE(f.clock.observe(sent(t, jump), t));

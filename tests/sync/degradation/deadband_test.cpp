@@ -26,7 +26,7 @@ double sent_share(const DeadbandDef& def, double speed_m_s = 0) {
 
 }  // namespace
 
-TEST_CASE("What is not sent differs from what was by no more than the band") {
+TEST_CASE("An unsent value differs from the last sent one by at most the deadband") {
   std::mt19937 random(2);
   std::normal_distribution<double> step(0, 0.01);
   for (const double k : {0.02, 0.1, 0.3}) {
@@ -48,7 +48,7 @@ TEST_CASE("What is not sent differs from what was by no more than the band") {
   }
 }
 
-TEST_CASE("A deadband of a tenth saves most messages of a stroke, and the more the wider it is") {
+TEST_CASE("A wider deadband sends fewer messages, and 10 % saves more than 80 % of a stroke") {
   // A sine of amplitude A crosses levels a factor 1.1 apart, or the floor: 4 ln(A/floor)/ln(1.1) crossings per period.
   const DeadbandDef tenth{.fraction = 0.1, .quantity = Quantity::kVelocity, .floor = 0.002};
   const double levels = 4 * (std::log(0.2 / 0.02) / std::log(1.1) + 10);
@@ -73,7 +73,7 @@ TEST_CASE("The adaptive deadband widens with speed") {
   CHECK(sent_share(adaptive, 0.4) == sent_share(wide));
 }
 
-TEST_CASE("A contact that comes or goes is always sent") {
+TEST_CASE("A contact that begins or ends is always sent") {
   Deadband deadband({.fraction = 10, .quantity = Quantity::kForce, .floor = 1e9});
   const Signal a{1, Quantity::kForce, {1, 0, 0}}, b{2, Quantity::kForce, {0, 0, 0}};
   const Signal both[] = {a, b};
@@ -86,7 +86,7 @@ TEST_CASE("A contact that comes or goes is always sent") {
   CHECK_FALSE(deadband.send(ms(6), {}, 0));
 }
 
-TEST_CASE("Noise above the stated low-pass does not send") {
+TEST_CASE("The low-pass of a deadband suppresses noise above its cutoff") {
   const DeadbandDef raw{.fraction = 0.1, .quantity = Quantity::kVelocity, .floor = 0.001};
   DeadbandDef smooth = raw;
   smooth.lowpass_Hz = 5;

@@ -83,7 +83,7 @@ contact_frame_t page_at(int ms, int page, int pages, std::int64_t seq) {
 
 }  // namespace
 
-TEST_CASE("Without a profile everything passes at once, as it is") {
+TEST_CASE("Without a profile every message passes at once and unchanged") {
   OperatorChain none;
   DegradedSnapshots<contact_frame_t> frames;
   DegradedEvents events;
@@ -98,7 +98,7 @@ TEST_CASE("Without a profile everything passes at once, as it is") {
   CHECK_FALSE(frames.pop(arrival(100)));
 }
 
-TEST_CASE("All pages of a snapshot share one fate, whatever lies between them") {
+TEST_CASE("All pages of a snapshot are kept or dropped together") {
   OperatorChain stack = stack_of("loss=\"50%\"");
   DegradedSnapshots<contact_frame_t> frames;
   Decisions decisions;
@@ -112,8 +112,7 @@ TEST_CASE("All pages of a snapshot share one fate, whatever lies between them") 
   CHECK(std::abs(static_cast<int>(pages.size()) - 100) < 5 * std::sqrt(50));
 }
 
-TEST_CASE(
-    "A profile that comes between the pages of a snapshot drops those that are still to come, and no others") {
+TEST_CASE("A profile change between the pages of a snapshot drops only its remaining pages") {
   OperatorChain stack;
   DegradedSnapshots<contact_frame_t> frames;
   for (int ms = 0; ms < 10; ++ms)
@@ -134,7 +133,7 @@ TEST_CASE(
   for (const auto& [ms, n] : pages) CHECK(n == (ms == 5 ? 1 : 3));
 }
 
-TEST_CASE("A profile that comes between the pages of two streams of one channel splits neither") {
+TEST_CASE("A profile change between the pages of two streams of a channel drops the remaining pages of both") {
   OperatorChain stack;
   DegradedSnapshots<contact_frame_t> frames;
   const auto push = [&](int ms, int page, std::int8_t group) {
@@ -163,9 +162,7 @@ TEST_CASE("A profile that comes between the pages of two streams of one channel 
   }
 }
 
-TEST_CASE(
-    "While the world stands still the same snapshot comes again, and the first whole one under another profile is "
-    "let through") {
+TEST_CASE("While the world is paused, the first complete snapshot after a profile change is delivered") {
   const bool between_pages = GENERATE(true, false);
   OperatorChain stack = stack_of("off=\"true\"");
   DegradedSnapshots<contact_frame_t> frames;
@@ -182,7 +179,7 @@ TEST_CASE(
   CHECK(came == (between_pages ? 4 : 5) * 3);
 }
 
-TEST_CASE("What a tool reports while the world stands still is late and lost each by itself") {
+TEST_CASE("While the world is paused, tool states are delayed and dropped one by one") {
   const bool late = GENERATE(true, false);
   OperatorChain stack = stack_of(late ? "delay=\"40ms network\"" : "loss=\"50%\"");
   DegradedSnapshots<tool_state_t> tools;
@@ -204,7 +201,7 @@ TEST_CASE("What a tool reports while the world stands still is late and lost eac
     CHECK(std::abs(came - 500) < 5 * std::sqrt(250));
 }
 
-TEST_CASE("An event is decided on once: what is lost is not brought back by its repetitions") {
+TEST_CASE("A dropped event is not restored by its repetitions") {
   OperatorChain stack = stack_of("loss=\"40%\"");
   DegradedEvents degraded;
   Decisions decisions;
@@ -224,7 +221,7 @@ TEST_CASE("An event is decided on once: what is lost is not brought back by its 
   CHECK(std::abs(static_cast<int>(dropped.size()) - 200) < 5 * std::sqrt(120));
 }
 
-TEST_CASE("A long network delay is no restart: all events come, once, later by just the delay") {
+TEST_CASE("A long network delay delivers all events once, later by the delay, without a restart") {
   const int delay_ms = GENERATE(40, 500, 3000);
   OperatorChain stack = stack_of("delay=\"" + std::to_string(delay_ms) + "ms network\"");
   DegradedEvents degraded;
@@ -252,7 +249,7 @@ TEST_CASE("A long network delay is no restart: all events come, once, later by j
   CHECK(stream.state_at(sim_time(990 * kMs)).value.at(0).normal_force_N == Approx(990));
 }
 
-TEST_CASE("A frozen stream that shows zero lets go of every contact") {
+TEST_CASE("A stream frozen to zero has no contacts") {
   OperatorChain stack = stack_of("freeze=\"zero\" from=\"10ms\" until=\"20ms\"");
   DegradedSnapshots<contact_frame_t> frames;
   for (int ms = 0; ms < 30; ++ms) frames.push(page_at(ms, 0, 1, ms), arrival(ms), stack, nullptr);
@@ -266,7 +263,7 @@ TEST_CASE("A frozen stream that shows zero lets go of every contact") {
   CHECK(n == 30);
 }
 
-TEST_CASE("A sense that is off is told of no pose, for there is no such thing as none") {
+TEST_CASE("A modality that is off receives no poses") {
   for (const char* what : {"off=\"true\"", "freeze=\"zero\"", "loss=\"100%\" conceal=\"zero\""}) {
     OperatorChain stack = stack_of(std::string(what) + " from=\"10ms\" until=\"20ms\"");
     DegradedSnapshots<world_state_t> poses;
@@ -287,7 +284,7 @@ TEST_CASE("A sense that is off is told of no pose, for there is no such thing as
   }
 }
 
-TEST_CASE("A log played anew brings its events again") {
+TEST_CASE("A log that is played again delivers its events again") {
   OperatorChain stack = stack_of("delay=\"10ms network\"");
   DegradedEvents degraded;
   int heard = 0;
@@ -300,7 +297,7 @@ TEST_CASE("A log played anew brings its events again") {
   CHECK(heard == 2);
 }
 
-TEST_CASE("Values are changed in each message, and stay valid") {
+TEST_CASE("Changed values are valid in every message") {
   OperatorChain stack = stack_of("gain=\"-2\"");
   DegradedSnapshots<contact_frame_t> frames;
   frames.push(page_at(3, 0, 1, 0), arrival(3), stack, nullptr);
@@ -314,7 +311,7 @@ TEST_CASE("Values are changed in each message, and stay valid") {
   CHECK(speed == 0.5f);
 }
 
-TEST_CASE("What is held back says nothing about the clock of who sent it") {
+TEST_CASE("A delayed message does not change the estimated clock of its sender") {
   // A sender whose clock is 7 s behind ours, mapped to 50 us; its messages take 300 us.
   constexpr std::int32_t kTheirs = 5, kOurs = 6;
   constexpr Nanoseconds kBehind{7'000'000'000}, kWay{300'000};

@@ -20,7 +20,7 @@ constexpr const char* kTable =
 
 }  // namespace
 
-TEST_CASE("Tables of modalities are read in the order of their places, with operators and pairs") {
+TEST_CASE("Modality tables are parsed in the order of their positions, with operators and pairs") {
   const auto modalities = parse_modalities(kTable);
   REQUIRE(modalities.size() == 2);
   CHECK(modalities[0].name == "wind");
@@ -34,14 +34,14 @@ TEST_CASE("Tables of modalities are read in the order of their places, with oper
   CHECK((swirl.pairs.front().initial == 3 && swirl.pairs.front().too_small == "it must be shorter than every="));
 }
 
-TEST_CASE("A wrong table of a modality is refused with its row") {
+TEST_CASE("An invalid modality table is rejected with its row") {
   CHECK_THROWS_WITH(parse_modalities("operator,swirl,sum,s,0.1,5,,\n"), Contains("is not valid here"));
   CHECK_THROWS_WITH(parse_modalities("modality,wind,local,,first,,,\n"), Contains("\"first\" is not a number"));
   CHECK_THROWS_WITH(parse_modalities("modality,wind,fast,,1,,,\n"), Contains("no kind \"fast\""));
   CHECK_THROWS_WITH(parse_modalities("modality,wind\n"), Contains("8 cells"));
 }
 
-TEST_CASE("The tables of the node folders are in order, and every operator has a range and a meaning") {
+TEST_CASE("In the tables of the node folders every operator has a range and a meaning") {
   REQUIRE_FALSE(known_modalities().empty());
   for (const KnownModality& m : known_modalities()) {
     INFO(m.name);
@@ -57,7 +57,7 @@ TEST_CASE("The tables of the node folders are in order, and every operator has a
   CHECK(output_operators_of("wind").empty());
 }
 
-TEST_CASE("Values of several rules are combined by the rule of their operator") {
+TEST_CASE("Values of several rules are combined as their operator specifies") {
   OutputValues sum, other;
   sum.set("rate", 20, Combine::kMin), other.set("rate", 10, Combine::kMin);
   sum.set("step", 1, Combine::kMax), other.set("step", 2, Combine::kMax);

@@ -61,7 +61,7 @@ std::map<int, std::vector<std::int64_t>> both_groups(OperatorChain& stack, doubl
 
 }  // namespace
 
-TEST_CASE("A rate thins each stream by itself: one that runs ahead takes nothing from the other") {
+TEST_CASE("A rate thins each stream independently") {
   OperatorChain stack = stack_of("rate=\"5Hz\"");
   auto kept = both_groups(stack, [](int, std::int64_t) { return 1.0; });
   REQUIRE(kept[contact_frame_t::TOOL].size() == 10);
@@ -69,14 +69,14 @@ TEST_CASE("A rate thins each stream by itself: one that runs ahead takes nothing
   CHECK(kept[contact_frame_t::OTHER].size() == 11);
 }
 
-TEST_CASE("A deadband compares each stream with itself: another between two of its snapshots is no change") {
+TEST_CASE("A deadband compares each stream only with itself") {
   OperatorChain stack = stack_of("deadband=\"10% force\"");
   auto kept = both_groups(stack, [](int group, std::int64_t ms) { return group == 0 && ms >= 1000 ? 2.0 : 1.0; });
   CHECK(kept[contact_frame_t::TOOL] == std::vector<std::int64_t>{0, 1000});
   CHECK(kept[contact_frame_t::OTHER].size() == 1);
 }
 
-TEST_CASE("A deadband compares all pages of a snapshot, in whatever order they come, and they share its fate") {
+TEST_CASE("A deadband compares all pages of a snapshot in any order and keeps or drops them together") {
   OperatorChain stack = stack_of("deadband=\"10% force\"");
   DegradedSnapshots<contact_frame_t> frames;
   Decisions decisions;
@@ -98,9 +98,7 @@ TEST_CASE("A deadband compares all pages of a snapshot, in whatever order they c
   CHECK(decisions.size() == 199);
 }
 
-TEST_CASE(
-    "Under a deadband a snapshot of which a page is lost is judged by what came of it, once newer ones have "
-    "overtaken it") {
+TEST_CASE("A deadband judges a snapshot with a lost page by its received pages after newer ones arrive") {
   OperatorChain stack = stack_of("deadband=\"10% force\"");
   DegradedSnapshots<contact_frame_t> frames;
   std::vector<std::int64_t> kept;
@@ -113,7 +111,7 @@ TEST_CASE(
   CHECK(kept == std::vector<std::int64_t>{0});  // the first; the others contain no change
 }
 
-TEST_CASE("Bursts of one stream are as long as asked for, whatever arrives in between") {
+TEST_CASE("The burst length of one stream does not depend on other streams") {
   OperatorChain stack = stack_of("loss=\"20% burst=5\"");
   DegradedSnapshots<contact_frame_t> frames;
   Decisions decisions;
@@ -135,7 +133,7 @@ TEST_CASE("Bursts of one stream are as long as asked for, whatever arrives in be
   CHECK(std::abs(static_cast<double>(lost) / bursts - 5) < 5 * std::sqrt(20.0 / bursts));
 }
 
-TEST_CASE("When the world begins anew, a rate goes on in it at once") {
+TEST_CASE("A rate continues at once when the world restarts") {
   const bool replayed = GENERATE(false, true);  // the same incarnation from its beginning, or a new one
   OperatorChain stack = stack_of("rate=\"5Hz\"");
   DegradedSnapshots<contact_frame_t> frames;
@@ -153,7 +151,7 @@ TEST_CASE("When the world begins anew, a rate goes on in it at once") {
   CHECK(kept == std::vector<std::int64_t>{0, 200, 400, 600, 800});
 }
 
-TEST_CASE("When the world begins anew, so do the times of a rule and its low-pass") {
+TEST_CASE("The times and the low-pass of a rule restart with the world") {
   OperatorChain stack = stack_of("off=\"true\" from=\"1s\" until=\"2s\"", sim_time(50'000 * kMs));
   const auto dropped = [&](std::int64_t ms, std::int64_t incarnation) {
     return stack.decide(event(1, ms, incarnation)).dropped();
@@ -174,7 +172,7 @@ TEST_CASE("When the world begins anew, so do the times of a rule and its low-pas
   CHECK(force(2, 100) == Approx(2 - std::exp(-2 * M_PI * 0.1)));
 }
 
-TEST_CASE("The longest delay that a profile may ask for holds a stream of 1 kHz without loss") {
+TEST_CASE("The longest possible delay holds a stream of 1 kHz without loss") {
   OperatorChain stack = stack_of("delay=\"60s network\"");
   DegradedSnapshots<contact_frame_t> frames;
   std::int64_t next = 0;

@@ -33,7 +33,7 @@ double held_s(const Decision& v, const StreamItem& i) { return to_seconds(v.rele
 
 }  // namespace
 
-TEST_CASE("A rule for another sense changes nothing") {
+TEST_CASE("A rule for another modality changes nothing") {
   const Profile p = parse_profile("<profile><degrade modality=\"visual\" off=\"true\"/></profile>", "p.xml");
   OperatorChain stack(p, "audio", {});
   CHECK(stack.empty());
@@ -44,7 +44,7 @@ TEST_CASE("A rule for another sense changes nothing") {
   CHECK(v.release == i.arrival);
 }
 
-TEST_CASE("A network delay holds news back. A presentation delay moves the whole sense") {
+TEST_CASE("A network delay holds messages, a presentation delay shifts the whole modality") {
   OperatorChain network = stack_of("delay=\"40ms network\"");
   const StreamItem i = snapshot(1);
   CHECK(held_s(network.decide(i), i) == Approx(0.040));
@@ -54,13 +54,13 @@ TEST_CASE("A network delay holds news back. A presentation delay moves the whole
   CHECK(presentation.presentation_delay(at(1)) == std::chrono::milliseconds(40));
 }
 
-TEST_CASE("Skew falls behind ever more") {
+TEST_CASE("The delay by skew grows with time") {
   OperatorChain stack = stack_of("skew=\"1000ppm\" from=\"2s\"");
   CHECK(stack.presentation_delay(at(1)).count() == 0);
   CHECK(to_seconds(stack.presentation_delay(at(12))) == Approx(0.010));
 }
 
-TEST_CASE("A rate lets one snapshot a period through, at its phase, and makes events wait for it") {
+TEST_CASE("A rate keeps one snapshot per period at its phase and delays events to the next one") {
   OperatorChain stack = stack_of("rate=\"5Hz phase=50ms\"");
   std::vector<double> kept;
   for (int ms = 0; ms < 2000; ++ms)
@@ -74,7 +74,7 @@ TEST_CASE("A rate lets one snapshot a period through, at its phase, and makes ev
   CHECK(held_s(stack.decide(exact), exact) == Approx(0).margin(1e-9));
 }
 
-TEST_CASE("Off and freeze drop everything within their time") {
+TEST_CASE("Off and freeze drop all messages within their time range") {
   for (const std::string op : {"off=\"true\"", "freeze=\"hold\""}) {
     OperatorChain stack = stack_of(op + " from=\"1s\" until=\"2s\"");
     CHECK_FALSE(stack.decide(event(1, 0.999)).dropped());
@@ -84,7 +84,7 @@ TEST_CASE("Off and freeze drop everything within their time") {
   }
 }
 
-TEST_CASE("The same seed decides the same, in whatever order and company things arrive") {
+TEST_CASE("The same seed gives the same decisions for any order of arrival") {
   constexpr int kN = 2000;
   const std::string ops = "loss=\"20%\" jitter=\"5ms normal order=free\" duplicate=\"10%\" reorder=\"10% by=7ms\"";
   std::vector<StreamItem> items;
@@ -113,7 +113,7 @@ TEST_CASE("The same seed decides the same, in whatever order and company things 
   CHECK(differ > 0.2 * kN);  // 2 * 0.2 * 0.8 for two independent seeds
 }
 
-TEST_CASE("Two rules and two senses draw different numbers") {
+TEST_CASE("Two rules or two modalities draw independent random numbers") {
   const Profile p = parse_profile(
       R"(<profile><degrade modality="a" loss="50%"/><degrade modality="b" loss="50%"/></profile>)", "p");
   OperatorChain a(p, "a", {}), b(p, "b", {});
@@ -123,7 +123,7 @@ TEST_CASE("Two rules and two senses draw different numbers") {
   CHECK(std::abs(same - 500) < 5 * std::sqrt(250));
 }
 
-TEST_CASE("Jitter that keeps the order lets nothing overtake. Reordering does") {
+TEST_CASE("Jitter with kept order prevents overtaking, reordering allows it") {
   OperatorChain kept = stack_of("jitter=\"20ms uniform\"");
   HostTime last{};
   for (int i = 0; i < 1000; ++i) {
@@ -143,7 +143,7 @@ TEST_CASE("Jitter that keeps the order lets nothing overtake. Reordering does") 
   CHECK(overtaken > 500);
 }
 
-TEST_CASE("A filtered rule concerns its pair or its material only") {
+TEST_CASE("A rule with a filter applies only to its pair of bodies or its material") {
   OperatorChain stack = stack_of("off=\"true\" material=\"steel\"");
   stack.set_scene({{"floor", "ball", "cup"}, {"oak", "steel"}});
   StreamItem e = event(1, 0);
@@ -162,7 +162,7 @@ TEST_CASE("A filtered rule concerns its pair or its material only") {
   CHECK(pair.presentation_delay(at(0)).count() == 0);
 }
 
-TEST_CASE("Rules of one sense act one after the other") {
+TEST_CASE("Rules of one modality apply one after the other") {
   const Profile p = parse_profile(R"(<profile>
     <degrade modality="audio" delay="10ms network"/><degrade modality="audio" delay="20ms network" gain="2"/>
     <degrade modality="audio" quantise="1N"/></profile>)",
@@ -179,7 +179,7 @@ TEST_CASE("Within a rule values are quantised first, then scaled") {
   CHECK(stack.changed(Quantity::kForce, 1, 0, 2.8, at(0), -1, -1, -1, -1) == Approx(1.5));
 }
 
-TEST_CASE("Loss on the wire is each message's own fate") {
+TEST_CASE("Loss on the wire is independent for each message") {
   OperatorChain stack = stack_of("wire_loss=\"30%\"");
   int lost = 0;
   for (std::uint64_t m = 0; m < 10'000; ++m) lost += stack.lost_on_wire(m, at(0));

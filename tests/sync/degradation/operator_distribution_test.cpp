@@ -68,7 +68,7 @@ std::uint64_t fingerprint(const std::vector<Decision>& all) {
 
 }  // namespace
 
-TEST_CASE("The quantiles of a jittered delay are those of its distribution, of events and of snapshots") {
+TEST_CASE("The quantiles of a jittered delay match its distribution for events and snapshots") {
   struct Shape {
     std::string words;
     std::function<double(double)> quantile_s;  // quantile function of the added delay
@@ -91,7 +91,7 @@ TEST_CASE("The quantiles of a jittered delay are those of its distribution, of e
   }
 }
 
-TEST_CASE("A constant delay is its value to the nanosecond, and jitter without one never makes news early") {
+TEST_CASE("A constant delay is exact to 1 ns, and jitter never makes a message early") {
   for (const double h : held_s(verdicts("delay=\"40ms network\"", true), true)) REQUIRE(h == 0.040);
   const auto held = held_s(verdicts("jitter=\"5ms normal order=free\"", true), true);
   CHECK(*std::min_element(held.begin(), held.end()) == 0);
@@ -99,7 +99,7 @@ TEST_CASE("A constant delay is its value to the nanosecond, and jitter without o
               0.5);  // one half would have been early
 }
 
-TEST_CASE("Correlated jitter of a sense follows itself as asked for") {
+TEST_CASE("Jitter has the specified autocorrelation") {
   const double rho = GENERATE(0.0, 0.5, 0.9);
   std::ostringstream words;
   words << "delay=\"30ms network\" jitter=\"3ms normal order=free correlation=" << rho << "\"";
@@ -113,7 +113,7 @@ TEST_CASE("Correlated jitter of a sense follows itself as asked for") {
   CHECK(std::abs(product / square - rho) < kSigmas * std::sqrt((1 - rho * rho) / kN));
 }
 
-TEST_CASE("What keeps its order leaves when the last before it has left, as in a queue") {
+TEST_CASE("Jitter with kept order releases each item no earlier than the one before") {
   const std::string jitter = "jitter=\"20ms pareto";
   const auto free = verdicts(jitter + " order=free\"", false), kept = verdicts(jitter + "\"", false);
   HostTime last{};
@@ -123,7 +123,7 @@ TEST_CASE("What keeps its order leaves when the last before it has left, as in a
   }
 }
 
-TEST_CASE("Independent and bursty loss have their share and their mean burst, of events and of snapshots") {
+TEST_CASE("Independent and bursty loss have the specified share and mean burst for events and snapshots") {
   const bool is_event = GENERATE(true, false);
   const double burst = GENERATE(0.0, 4.0, 20.0), share = GENERATE(0.01, 0.05, 0.4);
   std::ostringstream words;
@@ -145,7 +145,7 @@ TEST_CASE("Independent and bursty loss have their share and their mean burst, of
   CHECK(std::abs(lost - share * n) <= kSigmas * std::sqrt(share * (1 - share) * n * (1 + r) / (1 - r)));
 }
 
-TEST_CASE("Reordering holds its share back by just its time, and duplication doubles its share") {
+TEST_CASE("Reordering delays its share by the given time, and duplication doubles its share") {
   const auto all = verdicts("reorder=\"5% by=10ms\" duplicate=\"3%\"", true);
   const auto held = held_s(all, true);
   check_share(static_cast<double>(std::count(held.begin(), held.end(), 0.010)), 0.05);
@@ -154,7 +154,7 @@ TEST_CASE("Reordering holds its share back by just its time, and duplication dou
               0.03);
 }
 
-TEST_CASE("One seed decides the same to the byte, another seed otherwise") {
+TEST_CASE("One seed gives identical decisions, another seed gives others") {
   const std::string everything =
       "loss=\"5% burst=3\" delay=\"20ms network\" jitter=\"3ms pareto correlation=0.5\" reorder=\"5% by=10ms\" "
       "duplicate=\"1%\"";
@@ -167,7 +167,7 @@ TEST_CASE("One seed decides the same to the byte, another seed otherwise") {
         0xeb7f74d09e8e226eull);
 }
 
-TEST_CASE("Repetitions change no decision: told once or fifty times, the same is lost, late and doubled") {
+TEST_CASE("Repeated messages do not change any decision") {
   const std::string everything =
       "loss=\"20% burst=3\" delay=\"5ms network\" jitter=\"3ms normal correlation=0.5 order=free\" "
       "duplicate=\"10%\"";
@@ -198,7 +198,7 @@ TEST_CASE("Repetitions change no decision: told once or fifty times, the same is
   CHECK(fingerprint(once) == fingerprint(often));
 }
 
-TEST_CASE("Frozen at the last a touch goes on until it is stale. Frozen to nothing it ends at once") {
+TEST_CASE("A contact frozen with hold becomes stale, a contact frozen to zero ends at once") {
   const bool zero = GENERATE(true, false);
   OperatorChain stack = stack_of(std::string("freeze=\"") + (zero ? "zero" : "hold") + "\" from=\"100ms\"");
   DegradedSnapshots<contact_frame_t> frames;

@@ -57,8 +57,7 @@ struct Folder {
 
 }  // namespace
 
-TEST_CASE(
-    "A profile of many pages is put together in whatever order they come, and only a newer one replaces it") {
+TEST_CASE("A profile of many pages is assembled in any order, and only a newer one replaces it") {
   ProfileReceiver r;
   auto messages = pages(profile(100), 3);
   REQUIRE(messages.size() > 3);
@@ -74,7 +73,7 @@ TEST_CASE(
   CHECK(take_all(r, pages(profile(100), 4)));  // the same text, requested again
 }
 
-TEST_CASE("A wrong profile is refused whole and takes nobody's turn") {
+TEST_CASE("An invalid profile is rejected as a whole and does not block a valid one") {
   ProfileReceiver r;
   CHECK_FALSE(take_all(r, pages("<profile><degrade modality=\"audio\" delay=\"-40ms\"/></profile>", 7)));
   CHECK(r.generation() == -1);
@@ -83,7 +82,7 @@ TEST_CASE("A wrong profile is refused whole and takes nobody's turn") {
   CHECK(take_all(r, pages(profile(1), 5)));
 }
 
-TEST_CASE("A page of a profile that never becomes whole holds up no other") {
+TEST_CASE("A page of an incomplete profile does not block other profiles") {
   ProfileReceiver r;
   degradation_t forged = pages(profile(100), std::numeric_limits<std::int64_t>::max()).front();
   CHECK_FALSE(r.take(forged));
@@ -96,7 +95,7 @@ TEST_CASE("A page of a profile that never becomes whole holds up no other") {
   }
 }
 
-TEST_CASE("The profile in force is kept for the one that comes back, of the same run and undamaged") {
+TEST_CASE("The active profile is stored for a restart within the same run") {
   const Folder folder;
   CHECK_FALSE(kept_profile(folder.path, 4));
   const std::string text = profile(3);

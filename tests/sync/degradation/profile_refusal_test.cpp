@@ -24,7 +24,7 @@ std::string refusal_of(const std::string& attributes, const std::string& modalit
 
 }  // namespace
 
-TEST_CASE("Text where elements belong is refused with its line") {
+TEST_CASE("Text between elements is rejected with its line") {
   CHECK_THAT(refusal("<profile>\n\ndegrade modality=\"audio\" off=\"true\"\n</profile>"),
              StartsWith("p.xml:3: ") && Contains("no text"));
   CHECK_THAT(refusal("<profile>\n<degrade modality=\"audio\" off=\"true\"/>\n/>\n</profile>"),
@@ -38,7 +38,7 @@ TEST_CASE("Text where elements belong is refused with its line") {
             .empty());
 }
 
-TEST_CASE("Nothing but comments may stand beside the one <profile> of a file") {
+TEST_CASE("Only comments are allowed beside the one <profile> of a file") {
   const std::string profile = "<profile/>\n";
   CHECK_THAT(refusal(profile + profile), StartsWith("p.xml:2: ") && Contains("one <profile>"));
   CHECK_THAT(refusal(profile + "<sdf/>"), StartsWith("p.xml:2: "));
@@ -48,14 +48,14 @@ TEST_CASE("Nothing but comments may stand beside the one <profile> of a file") {
   CHECK(refusal("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + profile).empty());
 }
 
-TEST_CASE("A profile that says that it is not UTF-8 is refused") {
+TEST_CASE("A profile with an encoding other than UTF-8 is rejected") {
   for (const char* encoding : {"foo", "UTF-32", "utf-16", "ISO-8859-1"})
     CHECK_THAT(refusal(std::string("<?xml version=\"1.0\" encoding=\"") + encoding + "\"?>\n<profile/>"),
                StartsWith("p.xml:1: ") && Contains("UTF-8"));
   CHECK(refusal("<?xml version='1.0' encoding='utf-8'?><profile/>").empty());
 }
 
-TEST_CASE("A seed is a whole number that fits, or it is refused") {
+TEST_CASE("A seed that is not an unsigned 64-bit integer is rejected") {
   for (const char* seed : {"-1", "7abc", "1.5", "", " 7", "+7", "0x10", "18446744073709551616", "1e3"})
     CHECK_THAT(refusal(std::string("<profile\nseed=\"") + seed + "\"/>"),
                StartsWith("p.xml:1: seed=") && Contains("no whole number"));
@@ -63,7 +63,7 @@ TEST_CASE("A seed is a whole number that fits, or it is refused") {
   CHECK(parse_profile("<profile seed=\"0\"/>", "p.xml").seed == 0);
 }
 
-TEST_CASE("What is said twice is refused") {
+TEST_CASE("Duplicate options are rejected") {
   CHECK_THAT(refusal_of("loss=\"5% burst=3 burst=9\""),
              StartsWith("p.xml:2: loss=") && Contains("\"burst=\" stands there twice"));
   CHECK_THAT(refusal_of("loss=\"5% burst=3 burst=3\""), Contains("twice"));
@@ -71,7 +71,7 @@ TEST_CASE("What is said twice is refused") {
   CHECK_THAT(refusal_of("delay=\"40ms 40ms\""), Contains("twice"));
 }
 
-TEST_CASE("Words that contradict each other are refused") {
+TEST_CASE("Contradictory options are rejected") {
   CHECK_THAT(refusal_of("delay=\"40ms network presentation\""), Contains("contradict"));
   CHECK_THAT(refusal_of("jitter=\"1ms normal uniform\""), Contains("contradict"));
   CHECK_THAT(refusal_of("gain=\"2 force velocity\""), Contains("contradict"));
@@ -82,12 +82,12 @@ TEST_CASE("Words that contradict each other are refused") {
   CHECK_THAT(refusal_of("jitter=\"3ms trace=1ms\""), Contains("\"3ms\" means nothing here"));
 }
 
-TEST_CASE("A trace without delays is refused") {
+TEST_CASE("A trace without delays is rejected") {
   for (const char* trace : {"trace=", "3ms trace=", "trace=1ms,", "trace=,1ms", "trace=1ms,,2ms"})
     CHECK_THAT(refusal_of(std::string("jitter=\"") + trace + "\""), Contains("no number"));
 }
 
-TEST_CASE("What has a dimension needs its unit, unless it is 0") {
+TEST_CASE("A value with a dimension requires its unit, except 0") {
   for (const char* bare :
        {"delay=\"40\"", "jitter=\"3 normal\"", "jitter=\"trace=1ms,2\"", "rate=\"5\"", "rate=\"5Hz phase=1\"",
         "from=\"2\" off=\"true\"", "until=\"10\" off=\"true\"", "bias=\"0.1\"", "bias=\"-1e-1\"", "lowpass=\"20\"",
@@ -101,22 +101,22 @@ TEST_CASE("What has a dimension needs its unit, unless it is 0") {
     CHECK(refusal_of(fine) == "");
 }
 
-TEST_CASE("A profile with a NUL byte in it is refused with its line") {
+TEST_CASE("A profile with a NUL byte is rejected with its line") {
   const std::string cut{"<profile/>\n\0<!-- lost -->", 25};
   CHECK_THAT(refusal(cut), StartsWith("p.xml:2: ") && Contains("NUL"));
   CHECK_THAT(refusal("<profile/>" + std::string(1, '\0')), StartsWith("p.xml:1: ") && Contains("NUL"));
 }
 
-TEST_CASE("A material without a name is refused") {
+TEST_CASE("A material without a name is rejected") {
   CHECK_THAT(refusal_of("material=\"\" off=\"true\""), Contains("names none"));
 }
 
-TEST_CASE("A picture comes at least twice a second, or its events would be called lost") {
+TEST_CASE("A frame rate below 2 Hz is rejected") {
   CHECK_THAT(refusal_of("frame_rate=\"1.9Hz\"", "visual"), Contains("between 2 and 240 Hz"));
   CHECK(refusal_of("frame_rate=\"2Hz\"", "visual").empty());
 }
 
-TEST_CASE("What a known sense does not have is refused, and a sense of one's own may have anything") {
+TEST_CASE("Operators of another known modality are rejected, an unknown modality accepts any") {
   CHECK_THAT(refusal_of("frame_rate=\"20Hz\"", "audio"),
              StartsWith("p.xml:2: audio has no frame_rate, which only visual has"));
   CHECK_THAT(refusal_of("delay=\"1ms\" force_step=\"1N\"", "thermal"),

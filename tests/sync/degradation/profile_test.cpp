@@ -27,7 +27,7 @@ std::string refusal_of(const std::string& attributes) {
 
 }  // namespace
 
-TEST_CASE("A profile is read with its units") {
+TEST_CASE("A profile is parsed with its units") {
   const Profile p = parse_profile(R"(<profile name="late sound" seed="7">
     <degrade modality="audio" delay="40ms" jitter="3ms normal" loss="5% burst=3"/>
     <degrade modality="haptic" from="2s" until="1min" material="steel" gain="0.5 force"/>
@@ -54,7 +54,7 @@ TEST_CASE("A profile is read with its units") {
   CHECK((p.rules[2].off && p.rules[2].body_b == "floor"));
 }
 
-TEST_CASE("Every operator is read") {
+TEST_CASE("Every operator is parsed") {
   CHECK(rule_of(R"(delay="1ms network")").delay->kind == DelayKind::kNetwork);
   const Rule j = rule_of(R"(jitter="pareto 2ms order=free correlation=0.5")");
   CHECK((j.jitter->shape == JitterShape::kPareto && !j.jitter->keep_order && j.jitter->correlation == 0.5));
@@ -79,7 +79,7 @@ TEST_CASE("Every operator is read") {
   CHECK(rule_of(R"(response="2s")", "thermal").output.value("response") == 2);
 }
 
-TEST_CASE("A wrong profile is refused whole, with line and reason") {
+TEST_CASE("An invalid profile is rejected as a whole, with line and reason") {
   CHECK_THAT(refusal("no xml"), Catch::StartsWith("p.xml:"));
   CHECK_THAT(refusal("<profile>\n\n<degrade modality=\"audio\""), Catch::StartsWith("p.xml:"));
   CHECK_THAT(refusal("<sdf/>"), Catch::Contains("begins with <profile>"));
@@ -106,6 +106,6 @@ TEST_CASE("A wrong profile is refused whole, with line and reason") {
              Catch::Contains("no elements"));
 }
 
-TEST_CASE("A profile without rules degrades nothing") {
+TEST_CASE("A profile without rules changes nothing") {
   CHECK(parse_profile("<profile/>", "p.xml").rules.empty());
 }

@@ -7,7 +7,7 @@
 
 using namespace tactus::sync;
 
-TEST_CASE("Linear quantisation errs by half a step at most and gives few levels") {
+TEST_CASE("Linear quantisation has an error of at most half a step and few levels") {
   const QuantiseDef def{Quantity::kForce, 0.1, 0, 0};
   std::mt19937 random(3);
   std::uniform_real_distribution<double> value(-5, 5);
@@ -20,7 +20,7 @@ TEST_CASE("Linear quantisation errs by half a step at most and gives few levels"
   CHECK(quantised(def, 0.04) == 0);
 }
 
-TEST_CASE("Logarithmic quantisation errs by a share of the value") {
+TEST_CASE("Logarithmic quantisation has a bounded relative error") {
   const QuantiseDef def{Quantity::kForce, 0, 1.1, 0.01};
   std::mt19937 random(4);
   std::uniform_real_distribution<double> exponent(-2, 2);
@@ -34,7 +34,7 @@ TEST_CASE("Logarithmic quantisation errs by a share of the value") {
   CHECK(quantised(def, 0) == 0);
 }
 
-TEST_CASE("The low-pass answers a step with 1 - exp(-2 pi f t)") {
+TEST_CASE("The step response of the low-pass is 1 - exp(-2 pi f t)") {
   double y = 0;
   for (int i = 0; i < 100; ++i) y = lowpassed(y, 1, 5, 0.001);
   CHECK(y == Approx(1 - std::exp(-2 * M_PI * 5 * 0.1)).epsilon(1e-12));

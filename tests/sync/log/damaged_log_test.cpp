@@ -37,7 +37,7 @@ std::set<std::int64_t> missed(const DamagedLog& log) {
 
 }  // namespace
 
-TEST_CASE("In 1,000 logs with flipped bits, cuts and garbage every event that was not touched is found") {
+TEST_CASE("Every undamaged event is found in 1,000 logs with flipped bits, cuts and garbage") {
   const DamagedLog sound(120);
   std::size_t touched = 0;
   for (unsigned seed = 0; seed < 1000; ++seed) {
@@ -51,7 +51,7 @@ TEST_CASE("In 1,000 logs with flipped bits, cuts and garbage every event that wa
   CHECK(touched > 1000);
 }
 
-TEST_CASE("A log with damage anywhere is rendered to its end, with every message that was not touched") {
+TEST_CASE("A damaged log is rendered to its end, with its undamaged messages") {
   const TemporaryFile file;
   const DamagedLog sound(120);
   int refused = 0;
@@ -87,16 +87,16 @@ TEST_CASE("A log with damage anywhere is rendered to its end, with every message
   CHECK(missed_in_all < 1000);  // out of about 110,000
 }
 
-TEST_CASE("A log without its LOG_INFO says what it is by its messages, to a latency") {
+TEST_CASE("Run and clock of a log without a valid LOG_INFO are recovered from its messages") {
   const TemporaryFile file;
   DamagedLog log(120);
   std::size_t end = 0;
   while (log.owner[end] == 0) ++end;
-  SECTION("when it is cut away") {
+  SECTION("LOG_INFO is missing") {
     log.bytes.erase(log.bytes.begin(), log.bytes.begin() + static_cast<std::ptrdiff_t>(end));
   }
-  SECTION("when it cannot be read") { log.bytes[end - 30] ^= 0x40, log.bytes[40] ^= 0xff; }
-  SECTION("when its offset is a lie") {
+  SECTION("LOG_INFO is unreadable") { log.bytes[end - 30] ^= 0x40, log.bytes[40] ^= 0xff; }
+  SECTION("LOG_INFO has a wrong offset") {
     for (std::size_t i = 28; i + 8 < end; ++i) {
       std::int64_t value = 0;
       for (std::size_t b = 0; b < 8; ++b) value = value << 8 | log.bytes[i + b];
@@ -112,13 +112,13 @@ TEST_CASE("A log without its LOG_INFO says what it is by its messages, to a late
   CHECK(std::abs(to_ns(feed.end()) - (DamagedLog::kBegin_ns + 119'000'000 - 50'000)) <= 1000);
 }
 
-TEST_CASE("A log that nothing was wrong with says its run itself") {
+TEST_CASE("An undamaged log needs no recovery") {
   const TemporaryFile file;
   file.write(DamagedLog(120).bytes);
   CHECK(LogFeed(file.path, 1000).recovered().empty());
 }
 
-TEST_CASE("Empty logs, noise, and logs of other systems are refused in one sentence") {
+TEST_CASE("Empty logs, noise and logs of other systems are rejected with one sentence") {
   const TemporaryFile file;
   file.write({});
   CHECK_THROWS_WITH(LogFeed(file.path, 1000), Catch::Contains("no LCM log"));

@@ -29,7 +29,7 @@ std::string cell(const std::string& names, const std::string& row, const std::st
 
 }  // namespace
 
-TEST_CASE("A row of haptic.csv has a value under every name") {
+TEST_CASE("A row of haptic.csv has a value in every column") {
   tool_state_t m{};
   m.header.sim_time_ns = 1'234'567'891;
   m.header.publish_time_ns = 99'999'999'000'000'001;
@@ -65,7 +65,7 @@ TEST_CASE("A row of haptic.csv has a value under every name") {
   CHECK(cell(names, row, "touch_how") == "held");
 }
 
-TEST_CASE("A row of thermal.csv has a value under every name") {
+TEST_CASE("A row of thermal.csv has a value in every column") {
   thermal_state_t m{};
   m.header.sim_time_ns = -1;
   m.header.publish_time_ns = 5;

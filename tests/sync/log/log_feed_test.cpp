@@ -78,7 +78,7 @@ std::string misdated_log_in(const Folder& folder, const std::function<std::int64
 
 }  // namespace
 
-TEST_CASE("A log is handed over tick by tick, each message in the tick by which it had arrived") {
+TEST_CASE("A log feed delivers each message in the first tick after its arrival") {
   const Folder folder;
   LogFeed feed(log_in(folder), 1000);
   CHECK(feed.run_id() == 77);
@@ -102,7 +102,7 @@ TEST_CASE("A log is handed over tick by tick, each message in the tick by which 
   CHECK(feed.end() - feed.begin() == Nanoseconds(22'500'000));
 }
 
-TEST_CASE("Stamps that are damaged to another age make a run no longer, and lose none of its messages") {
+TEST_CASE("Wrong time stamps do not lengthen a run and lose no messages") {
   constexpr std::int64_t kTenYears_us = 315'000'000'000'000;
   const auto check = [](const std::function<std::int64_t(int)>& later_us, std::int64_t misdated, int last_ns) {
     const Folder folder;
@@ -127,7 +127,7 @@ TEST_CASE("Stamps that are damaged to another age make a run no longer, and lose
   check([](int i) { return i >= 8 ? std::int64_t{3} << 60 : 0; }, 2, 17'500'000);
 }
 
-TEST_CASE("A loop whose ticks are not even is handed what had arrived by each of them, and time never goes back") {
+TEST_CASE("A loop with uneven ticks receives all messages that arrived by each tick, in order of time") {
   const Folder folder;
   LogFeed feed(log_in(folder), 1000);
   Bus bus(Identity::fresh("listener", feed.run_id()), feed.bus());

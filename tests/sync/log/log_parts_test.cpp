@@ -12,7 +12,7 @@
 
 using namespace tactus::sync;
 
-TEST_CASE("Parts of a log are numbered on behind those that are there, and overwrite nothing") {
+TEST_CASE("New log parts are numbered after the existing ones and overwrite none") {
   const TemporaryFolder folder;
   std::ofstream(folder.path / "run.2.lcmlog") << "x";
   LogParts parts(folder.path, {});
@@ -21,7 +21,7 @@ TEST_CASE("Parts of a log are numbered on behind those that are there, and overw
   CHECK(std::filesystem::file_size(folder.path / "run.2.lcmlog") == 1);
 }
 
-TEST_CASE("Of many parts the newest stay, never more than asked for") {
+TEST_CASE("Only the newest parts are kept, up to the limit") {
   const TemporaryFolder folder;
   LogLimits limits;
   limits.keep = 2;
@@ -35,7 +35,7 @@ TEST_CASE("Of many parts the newest stay, never more than asked for") {
   CHECK(parts.removed() == 3);
 }
 
-TEST_CASE("Parts together never exceed the largest size, and the one that is written stays") {
+TEST_CASE("All parts together stay within the maximum size, and the current part is kept") {
   const TemporaryFolder folder;
   LogLimits limits;
   limits.max_bytes = 1000;
@@ -51,7 +51,7 @@ TEST_CASE("Parts together never exceed the largest size, and the one that is wri
   CHECK(folder.files() == std::set<std::string>{"run.10.lcmlog"});
 }
 
-TEST_CASE("The parts in a folder are those that a recorder names so, in the order of their numbers") {
+TEST_CASE("Only file names of the recorder are log parts, sorted by number") {
   const TemporaryFolder folder;
   for (const char* name : {"run.10.lcmlog", "run.9.lcmlog", "run.lcmlog", "run.2.lcmlog", "run.1.lcmlog",
                            "run.02.lcmlog", "run.2.lcmlog.part", "run.x.lcmlog", "run.-3.lcmlog",

@@ -53,7 +53,7 @@ TEST_CASE("An empty log has no events and no damage") {
   CHECK(scanner.damaged_regions() == 0);
 }
 
-TEST_CASE("A log that is cut off anywhere yields every event before the cut") {
+TEST_CASE("All events before the cut of a truncated log are read") {
   const Log log(2);
   const std::span<const std::uint8_t> bytes(log.state->bytes);
   for (std::size_t cut = 0; cut < bytes.size(); cut += 37) {
@@ -69,7 +69,7 @@ TEST_CASE("A log that is cut off anywhere yields every event before the cut") {
   }
 }
 
-TEST_CASE("Every event outside of a damaged region is found, whatever lies in the region") {
+TEST_CASE("Every event outside a damaged region is found") {
   for (unsigned seed = 0; seed < 200; ++seed) {
     Log log(seed);
     auto& bytes = log.state->bytes;
@@ -89,7 +89,7 @@ TEST_CASE("Every event outside of a damaged region is found, whatever lies in th
   }
 }
 
-TEST_CASE("A length that lies does not swallow the events behind it") {
+TEST_CASE("A wrong length field does not hide the following events") {
   Log log(3);
   auto& bytes = log.state->bytes;
   bytes[log.begins[50] + 26] = 0x20;  // length field of event 50: 8 kB more than the data
@@ -98,7 +98,7 @@ TEST_CASE("A length that lies does not swallow the events behind it") {
   CHECK(events[50].number == 51);
 }
 
-TEST_CASE("Any bytes at all are read to their end") {
+TEST_CASE("Random bytes are scanned to their end") {
   std::mt19937 random(4);
   for (int i = 0; i < 300; ++i) {
     std::vector<std::uint8_t> bytes(random() % 2000);
@@ -110,7 +110,7 @@ TEST_CASE("Any bytes at all are read to their end") {
   }
 }
 
-TEST_CASE("What lies between two parts of a recording is no damage, and anything else there is") {
+TEST_CASE("Padding between two log parts is not damage, other data there is") {
   const Log log(7);
   const auto part = log.state->bytes;
   const std::size_t border = (part.size() + kLogPartBytes - 1) / kLogPartBytes * kLogPartBytes;

@@ -29,7 +29,7 @@ struct Oracle {
 
 }  // namespace
 
-TEST_CASE("Stamps near each other are of one age, in whatever order they come") {
+TEST_CASE("Nearby time stamps form one range, for any order of arrival") {
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);
     std::vector<std::int64_t> stamps;
@@ -49,7 +49,7 @@ TEST_CASE("Stamps near each other are of one age, in whatever order they come") 
   }
 }
 
-TEST_CASE("A million stamps of noise take bounded memory, and a run among them is still known") {
+TEST_CASE("A million random time stamps need bounded memory, and the range of the run is found") {
   std::mt19937_64 random(1);
   LogTimeRanges ages;
   constexpr int kNoise = 1'000'000;

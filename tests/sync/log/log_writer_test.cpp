@@ -17,7 +17,7 @@ const std::vector<std::uint8_t> kData(100, 42);
 
 }  // namespace
 
-TEST_CASE("Time stamps in a log never fall back") {
+TEST_CASE("Time stamps in a log never decrease") {
   const auto state = std::make_shared<MemorySink::State>();
   LogWriter writer(std::make_unique<MemorySink>(state));
   for (int us : {5, 7, 6, 7, 9}) writer.write(us, "A", kData);
@@ -27,7 +27,7 @@ TEST_CASE("Time stamps in a log never fall back") {
   CHECK(stamps == std::vector<std::int64_t>{5, 7, 7, 7, 9});
 }
 
-TEST_CASE("What a full disk refuses waits up to a bound, beyond which it is counted") {
+TEST_CASE("Events wait up to a limit while the disk is full, further ones are counted as lost") {
   const auto state = std::make_shared<MemorySink::State>();
   LogWriter writer(std::make_unique<MemorySink>(state), 10 * (28 + 1 + kData.size()));
   writer.write(1, "A", kData);
@@ -52,7 +52,7 @@ TEST_CASE("What a full disk refuses waits up to a bound, beyond which it is coun
   CHECK(writer.events() == 12);
 }
 
-TEST_CASE("The stock reader reads what the writer wrote") {
+TEST_CASE("lcm::LogFile reads a log of LogWriter") {
   TemporaryFolder folder;
   const std::string path = folder.path / "run.lcmlog";
   {
@@ -76,7 +76,7 @@ TEST_CASE("The stock reader reads what the writer wrote") {
   CHECK(log.readNextEvent() == nullptr);
 }
 
-TEST_CASE("A file that is there is not overwritten") {
+TEST_CASE("An existing file is not overwritten") {
   TemporaryFolder folder;
   std::ofstream(folder.path / "run.lcmlog") << "x";
   CHECK_THROWS_WITH(FileSink((folder.path / "run.lcmlog").string()), Catch::Contains("run.lcmlog"));

@@ -16,12 +16,12 @@
 
 using namespace tactus::sync;
 
-TEST_CASE("A log that cannot be read is refused with its name") {
+TEST_CASE("The error for an unreadable log names its path") {
   CHECK_THROWS_WITH(MappedLog("/nowhere/run.lcmlog"), Catch::Contains("/nowhere/run.lcmlog"));
   CHECK_THROWS_WITH(MappedLog("/proc/self"), Catch::Contains("/proc/self") && Catch::Contains("no run.lcmlog"));
 }
 
-TEST_CASE("A log that is cut while it is read ends its reader with one sentence, and not by a signal") {
+TEST_CASE("A log that is truncated while it is read ends the program with an error message") {
   const std::filesystem::path path = std::filesystem::temp_directory_path() / ("cut_" + std::to_string(getpid()));
   std::ofstream(path) << std::string(1 << 20, 'x');
   int said[2];
@@ -47,7 +47,7 @@ TEST_CASE("A log that is cut while it is read ends its reader with one sentence,
   CHECK_THAT(text, Catch::Contains("cut while it was read"));
 }
 
-TEST_CASE("A folder is read as one log of all its parts, in the order of their numbers") {
+TEST_CASE("A folder is read as one log of all its parts, sorted by number") {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
     const TemporaryFolder folder;
@@ -74,7 +74,7 @@ TEST_CASE("A folder is read as one log of all its parts, in the order of their n
   }
 }
 
-TEST_CASE("A part that fills its room to the last byte is followed by the next at once") {
+TEST_CASE("A full part is followed by the next part without padding") {
   const TemporaryFolder folder;
   LogParts parts(folder.path, {});
   for (int part = 0; part < 2; ++part) {

@@ -16,7 +16,7 @@ void wait_for(const BackgroundTask<T>& opening) {
 
 }  // namespace
 
-TEST_CASE("What opens is handed over once it is done") {
+TEST_CASE("A background task returns its result when it is done") {
   BackgroundTask<int> opening([] { return std::make_unique<int>(7); });
   wait_for(opening);
   const auto made = opening.take();
@@ -24,13 +24,13 @@ TEST_CASE("What opens is handed over once it is done") {
   CHECK(*made == 7);
 }
 
-TEST_CASE("What cannot be opened says why") {
+TEST_CASE("take() throws the error of a failed background task") {
   BackgroundTask<int> opening([]() -> std::unique_ptr<int> { throw std::runtime_error("no card"); });
   wait_for(opening);
   CHECK_THROWS_WITH(opening.take(), "no card");
 }
 
-TEST_CASE("A card that never starts holds nobody, neither while it is waited for nor after that") {
+TEST_CASE("A background task that never ends blocks neither its owner nor the destructor") {
   std::promise<void> never, ended;
   std::shared_future<void> gate = never.get_future();
   {

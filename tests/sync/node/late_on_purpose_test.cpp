@@ -16,7 +16,7 @@ constexpr int kHit = node_health_t::OWES_HIT;
 constexpr int kBoth = int{node_health_t::OWES_BEGIN} | int{node_health_t::OWES_HIT};
 }  // namespace
 
-TEST_CASE("A sense that is late on purpose is not called lost before it could present") {
+TEST_CASE("An event with a deliberate delay is not lost before the delay has passed") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 9000);
   f.healths("visual_node", "visual", kBoth, 0, 9000);
@@ -43,7 +43,7 @@ TEST_CASE("A sense that is late on purpose is not called lost before it could pr
   }
   f.matcher.advance(f.at(3400));
   CHECK(f.tally("audio").owed == 0);
-  SECTION("it presents, and there is an asynchrony") {
+  SECTION("an event that is presented after the delay has an asynchrony") {
     f.presented("audio_node", "audio", 1, 4010);
     f.matcher.advance(f.at(5100));
     CHECK(f.tally("audio").presented == 1);
@@ -51,13 +51,13 @@ TEST_CASE("A sense that is late on purpose is not called lost before it could pr
     CHECK(f.matcher.late_reports() == 0);
     CHECK(f.matcher.pairs().at({"audio", "visual"}).count() == 1);
   }
-  SECTION("it says nothing, and is lost all the same") {
+  SECTION("an event that is never reported is lost after the delay") {
     f.matcher.advance(f.at(4900));
     CHECK(f.tally("audio").owed == 0);  // 1 s and 3 s have not passed
     f.matcher.advance(f.at(5100));
     CHECK(f.tally("audio").lost == 1);
   }
-  SECTION("the log ends before its time, and it owes nothing") {
+  SECTION("an event is not expected if the log ends before its time") {
     f.matcher.finish(f.at(3500));
     CHECK(f.tally("audio").owed == 0);
     CHECK(f.tally("visual").presented == 1);
@@ -65,7 +65,7 @@ TEST_CASE("A sense that is late on purpose is not called lost before it could pr
   CHECK(f.tally("visual").lost == 0);
 }
 
-TEST_CASE("When a long delay is taken back, events are settled as soon as before once it is out again") {
+TEST_CASE("After a long delay is removed, events are settled after the usual time again") {
   MatcherFixture f;
   const auto say = [&](double ms, double delay_ms) {
     playout_t m{};

@@ -30,7 +30,7 @@ contact_frame_t frame(Identity& sender, std::int64_t seq, HostTime at) {
 
 }  // namespace
 
-TEST_CASE("What arrives while a turn is held up in its reading is not kept until the next") {
+TEST_CASE("Messages that arrive while a tick reads its inputs are processed in that tick") {
   Node node({.name = "nose_node", .modality = "smell", .rate_Hz = 50, .fifo_priority = 0, .about = "For a test."},
             in_memory());
   ModalityEndpoint sense(node);

@@ -85,7 +85,7 @@ int profiles_heard(const std::string& log, NodeOptions options, bool as_recorded
 
 }  // namespace
 
-TEST_CASE("Of a log the profiles of the run hold only when they are asked for, and then no other does") {
+TEST_CASE("The profiles in a log apply only with --degrade logged, and then no other does") {
   const Folder folder;
   const std::string log = log_in(folder);
   NodeOptions none, own, logged;
@@ -95,7 +95,7 @@ TEST_CASE("Of a log the profiles of the run hold only when they are asked for, a
   CHECK(profiles_heard(log, logged) == 2);
   CHECK(profiles_heard(log, none, true) == 2);
 
-  SECTION("nor does that of the scene") {
+  SECTION("the profile of the scene does not apply either") {
     Offline offline(of(log), {}, kRate_Hz, HostTime{});
     offline.adapt(none);
     CHECK(none.profile.text == "<profile/>");
@@ -108,7 +108,7 @@ TEST_CASE("Of a log the profiles of the run hold only when they are asked for, a
   }
 }
 
-TEST_CASE("A rendering that is stopped before its log is over leaves no file, one that is not leaves them whole") {
+TEST_CASE("A rendering that stops early leaves no file, a complete one leaves complete files") {
   const Folder folder;
   OfflineOptions options = of(log_in(folder));
   options.presented = folder.file("p.csv");
@@ -130,7 +130,7 @@ TEST_CASE("A rendering that is stopped before its log is over leaves no file, on
   CHECK_THAT(text_of(options.presented), Contains("audio,4,whole,8,9,0,presented\n"));
 }
 
-TEST_CASE("Nothing is written where the log is, by whatever name, and ticks at another rate are refused") {
+TEST_CASE("An output path that is the log itself is rejected, also through a link, as is another tick rate") {
   const Folder folder;
   const std::string log = log_in(folder), before = text_of(log);
   std::filesystem::create_symlink(log, folder.file("link.csv"));
@@ -147,7 +147,7 @@ TEST_CASE("Nothing is written where the log is, by whatever name, and ticks at a
   CHECK_THROWS_WITH(offline.expect_rate(50), Contains("--set rate=50"));
 }
 
-TEST_CASE("How far a log is rendered is said once a second") {
+TEST_CASE("The progress of a rendering is reported once a second") {
   const Folder folder;
   Offline offline(of(log_in(folder)), {}, kRate_Hz, HostTime{});
   Bus bus(Identity::fresh("audio_node", 77), offline.feed().bus());
@@ -155,14 +155,14 @@ TEST_CASE("How far a log is rendered is said once a second") {
   for (int i = 0; i < 6; ++i) offline.next(bus);  // ticks at 0, 10, ... 50 ms
   CHECK(offline.progress(host_time(1'100'000'000)) == "50 % of the log");
   CHECK(offline.progress(host_time(1'200'000'000)) == std::nullopt);
-  SECTION("and what is over earlier ends there") {
+  SECTION("a rendering with an earlier end is complete there") {
     offline.end_at(offline.now());
     CHECK(offline.over());
     CHECK_NOTHROW(offline.finish(1, HostTime{}));
   }
 }
 
-TEST_CASE("A file bears its name only when it is whole") {
+TEST_CASE("A file gets its final name only when it is complete") {
   const Folder folder;
   const std::string path = folder.file("a.csv");
   {
@@ -180,7 +180,7 @@ TEST_CASE("A file bears its name only when it is whole") {
   CHECK((text_of(path) == "x,y\n" + much));
   CHECK_FALSE(std::filesystem::exists(path + ".part"));
 
-  SECTION("one that cannot be made says which option to choose anew, one that does not fit says so") {
+  SECTION("the error for a file names its option or asks for disk space") {
     CHECK_THROWS_WITH(AtomicFile(folder.file("no/b.csv"), "--trace"), Contains("choose another --trace"));
     AtomicFile full("/dev/full", "--trace");
     full.write("x");

@@ -36,7 +36,7 @@ double share(double full, double ratio, int step) { return full / std::pow(ratio
 
 }  // namespace
 
-TEST_CASE("A constant overload ends at the first step that fits, and does so within half a second") {
+TEST_CASE("A constant overload ends at the first fitting step within half a second") {
   const double full = GENERATE(0.3, 0.8, 0.9, 1.0, 1.3, 2.0, 3.5, 100.0);
   const double ratio = GENERATE(1.2, 1.5, 2.0, 4.0);
   int first_fit = 0;
@@ -50,7 +50,7 @@ TEST_CASE("A constant overload ends at the first step that fits, and does so wit
   CHECK(t.ladder.step() == first_fit);
 }
 
-TEST_CASE("A load that grows slowly never misses its budget while a cheaper step fits") {
+TEST_CASE("A slowly growing load stays within its budget while a cheaper step fits") {
   Ticking t;
   double worst = 0;
   t.share_of_budget = [&](int step, int tick) {
@@ -63,7 +63,7 @@ TEST_CASE("A load that grows slowly never misses its budget while a cheaper step
   CHECK(worst < 1);
 }
 
-TEST_CASE("When the load is gone the ladder returns to full quality, whenever it went") {
+TEST_CASE("The ladder returns to full quality when the load ends") {
   // Also in the tick in which a step was left, when the cost of the better step can only be estimated wrong.
   const int gone_at = GENERATE(range(1, 60));
   Ticking t;
@@ -73,7 +73,7 @@ TEST_CASE("When the load is gone the ladder returns to full quality, whenever it
   CHECK(t.ladder.step() == 0);
 }
 
-TEST_CASE("A step that was learnt while the load was there is left as soon as it has been calm for long") {
+TEST_CASE("A step that a load required is left after the calm time") {
   Ticking t;
   t.share_of_budget = [&](int step, int tick) { return share(tick < 600 ? 1.2 : 0.4, 1.6, step); };
   t.run(600);
@@ -84,7 +84,7 @@ TEST_CASE("A step that was learnt while the load was there is left as soon as it
   CHECK(t.ladder.step() == 0);
 }
 
-TEST_CASE("A constant load makes no oscillation, at any ratio of costs: tries become as rare as they fail") {
+TEST_CASE("A constant load causes no oscillation, as failed attempts become rarer") {
   const double ratio = GENERATE(1.0, 1.2, 1.5, 2.0, 3.0, 100.0);
   const double noise = GENERATE(0.0, 0.05, 0.2);
   for (double full = 0.3; full < 8; full *= 1.31) {
@@ -102,21 +102,21 @@ TEST_CASE("A constant load makes no oscillation, at any ratio of costs: tries be
   }
 }
 
-TEST_CASE("One outlier changes nothing, wherever it falls") {
+TEST_CASE("A single outlier changes no step") {
   const int at = GENERATE(0, 3, 7, 8, 12, 15, 16, 40, 300);
   const double rest = GENERATE(0.2, 0.69, 0.84);
   Ticking t;
   t.share_of_budget = [&](int, int tick) { return tick == at ? 200.0 : rest; };
   t.run(400);
   CHECK(t.changes == 0);
-  SECTION("nor does one every quarter of a second") {
+  SECTION("an outlier every quarter of a second changes no step") {
     t.share_of_budget = [&](int, int tick) { return tick % 15 == 0 ? 200.0 : rest; };
     t.run(4000);
     CHECK(t.changes == 0);
   }
 }
 
-TEST_CASE("After an up-step was undone the next one waits twice as long, and a step that held forgets that") {
+TEST_CASE("The waiting time doubles after each failed step up and resets after a successful one") {
   Ticking t;
   // Step 1 seems to leave spare time; step 0 never fits.
   t.share_of_budget = [&](int step, int) { return step == 0 ? 2.0 : 0.1; };
@@ -141,7 +141,7 @@ TEST_CASE("After an up-step was undone the next one waits twice as long, and a s
   CHECK(t.ladder.step() == 0);
 }
 
-TEST_CASE("A ladder of one step stays on it, and one of no sensible length is clamped") {
+TEST_CASE("A ladder with one step stays on it, and an invalid number of steps is clamped") {
   for (const int steps : {-3, 0, 1, 2, 100}) {
     QualityLadder ladder(steps, kBudget);
     for (int i = 0; i < 2000; ++i) ladder.add(3 * kBudget);

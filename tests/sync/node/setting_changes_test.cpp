@@ -22,7 +22,7 @@ setting_change_t change(std::int64_t id, const std::string& value = "1") {
 
 }  // namespace
 
-TEST_CASE("A change of a setting is carried out once, however often it is repeated, and answered each time") {
+TEST_CASE("A repeated change of a setting is applied once and answered each time") {
   sync::SettingChanges changes("haptic_node", 7);
   int done = 0;
   const auto apply = [&](const std::string& name, const std::string& value) {
@@ -42,7 +42,7 @@ TEST_CASE("A change of a setting is carried out once, however often it is repeat
   CHECK(changes.replies().empty());
 }
 
-TEST_CASE("A change that cannot be made is refused with the reason") {
+TEST_CASE("An invalid change is rejected with the reason") {
   sync::SettingChanges changes("haptic_node", 7);
   changes.take(change(4, "many"),
                [](const auto&, const auto&) { throw std::invalid_argument("many is no number"); });
@@ -52,7 +52,7 @@ TEST_CASE("A change that cannot be made is refused with the reason") {
   CHECK(replies[0].text == "haptic_node: many is no number");
 }
 
-TEST_CASE("Changes for other nodes and of other runs are not heeded") {
+TEST_CASE("Changes for other nodes and other runs are ignored") {
   sync::SettingChanges changes("haptic_node", 7);
   const auto never = [](const auto&, const auto&) { FAIL("carried out"); };
   setting_change_t other = change(5);
@@ -64,7 +64,7 @@ TEST_CASE("Changes for other nodes and of other runs are not heeded") {
   CHECK(changes.replies().empty());
 }
 
-TEST_CASE("A flood of changes is remembered within bounds") {
+TEST_CASE("Only a bounded number of changes is remembered") {
   sync::SettingChanges changes("haptic_node", 7);
   int done = 0;
   const auto apply = [&](const auto&, const auto&) { ++done; };

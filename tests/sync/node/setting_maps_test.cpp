@@ -38,7 +38,7 @@ tag_values_t values(std::int16_t column, std::vector<double> rows) {
 
 }  // namespace
 
-TEST_CASE("A setting is the offset and so many times the variable, and stays within its bounds") {
+TEST_CASE("A mapped setting is offset plus gain times variable, clamped to its range") {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> any(-10, 10);
   for (int i = 0; i < 1000; ++i) {
@@ -48,7 +48,7 @@ TEST_CASE("A setting is the offset and so many times the variable, and stays wit
   }
 }
 
-TEST_CASE("Only the maps of its own process are heeded, and what they need is asked for once") {
+TEST_CASE("Only maps to settings of this process are used, and each variable is requested once") {
   SettingMaps maps("visual_node");
   CHECK_FALSE(maps.any());
   maps.set({map("haptic_node.force", "visual_node.exposure"), map("haptic_node.force", "visual_node.display_gain"),
@@ -59,8 +59,7 @@ TEST_CASE("Only the maps of its own process are heeded, and what they need is as
   CHECK_FALSE(maps.any());
 }
 
-TEST_CASE(
-    "The newest value of the variable is handed out, when it is another and at most a hundred times a second") {
+TEST_CASE("Only a changed variable changes the setting, at most 100 times a second") {
   SettingMaps maps("visual_node");
   maps.set({map("haptic_node.force", "visual_node.exposure", 0.5, 1)});
   maps.push(values(0, {8}));
@@ -83,7 +82,7 @@ TEST_CASE(
   CHECK(changes[0].value == "3");
 }
 
-TEST_CASE("A process whose name begins as another's drives nothing of the other's") {
+TEST_CASE("A process whose name is a prefix of another name does not drive its settings") {
   SettingMaps maps("visual_node");
   maps.set({map("haptic_node_lamp.force", "visual_node.exposure")});
   maps.push(list("haptic_node"));
@@ -91,7 +90,7 @@ TEST_CASE("A process whose name begins as another's drives nothing of the other'
   CHECK(maps.take(at_ms(0)).empty());
 }
 
-TEST_CASE("A setting that cannot be changed is left alone after that") {
+TEST_CASE("A map to a setting that cannot be changed is disabled") {
   SettingMaps maps("visual_node");
   maps.set({map("haptic_node.force", "visual_node.width")});
   maps.push(list("haptic_node"));
@@ -101,7 +100,7 @@ TEST_CASE("A setting that cannot be changed is left alone after that") {
   CHECK_FALSE(maps.any());
 }
 
-TEST_CASE("A scene of many maps asks for no more than a request holds") {
+TEST_CASE("Many maps request one pattern instead of more than a request holds") {
   SettingMaps maps("visual_node");
   std::vector<map_def_t> many;
   for (int i = 0; i < 100; ++i) many.push_back(map("haptic_node.a" + std::to_string(i), "visual_node.exposure"));

@@ -21,7 +21,7 @@ HostTime at_ms(std::int64_t ms) { return host_time(ms * 1'000'000); }
 
 }  // namespace
 
-TEST_CASE("A star stands for any characters, as in a regular expression that is written otherwise") {
+TEST_CASE("A star in a pattern matches any characters") {
   std::mt19937 random(1);
   const auto text = [&](const char* letters, std::size_t kinds) {
     std::string t;
@@ -40,11 +40,11 @@ TEST_CASE("A star stands for any characters, as in a regular expression that is 
   CHECK(matched > 1000);
 }
 
-TEST_CASE("A pattern of many stars is answered at once") {
+TEST_CASE("A pattern with many stars is matched quickly") {
   CHECK_FALSE(matches("*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*ab", std::string(100, 'a')));
 }
 
-TEST_CASE("What is asked for holds for three seconds from the last time it was asked") {
+TEST_CASE("A request holds for three seconds") {
   TagRequests requests(7);
   CHECK(requests.take(request(1, {"sim_node.*"}), at_ms(0)));
   CHECK_FALSE(requests.take(request(1, {"sim_node.*"}), at_ms(1000)));
@@ -56,7 +56,7 @@ TEST_CASE("What is asked for holds for three seconds from the last time it was a
   CHECK_FALSE(requests.wants("sim_node.work"));
 }
 
-TEST_CASE("Everybody gets what they ask for, until each is gone") {
+TEST_CASE("Requests of several requesters are combined, and each expires on its own") {
   TagRequests requests(7);
   requests.take(request(1, {"a.*"}), at_ms(0));
   CHECK(requests.take(request(2, {"*.b"}), at_ms(2000)));
@@ -69,7 +69,7 @@ TEST_CASE("Everybody gets what they ask for, until each is gone") {
   CHECK_FALSE(requests.wants("c.b"));
 }
 
-TEST_CASE("A request of another run is not heeded, nor the sixty-fifth of one") {
+TEST_CASE("Requests of another run and of a 65th requester are ignored") {
   TagRequests requests(7);
   CHECK_FALSE(requests.take(request(1, {"*"}, 8), at_ms(0)));
   CHECK_FALSE(requests.any());

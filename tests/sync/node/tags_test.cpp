@@ -60,7 +60,7 @@ struct Heard {
 
 }  // namespace
 
-TEST_CASE("With nobody asking no variable is read and nothing is sent") {
+TEST_CASE("Without a request no variable is read and nothing is sent") {
   Heard h;
   int read = 0;
   h.tags.add("x", "m", [&] { return ++read, 1.0; });
@@ -70,7 +70,7 @@ TEST_CASE("With nobody asking no variable is read and nothing is sent") {
   CHECK_FALSE(h.tags.wanted());
 }
 
-TEST_CASE("What is asked for is read at every tick, or at its rate, and comes with its unit and its time") {
+TEST_CASE("A requested variable is read at every tick or at its rate, with unit and time") {
   Heard h;
   double x = 0;
   int n = 0;
@@ -96,7 +96,7 @@ TEST_CASE("What is asked for is read at every tick, or at its rate, and comes wi
   CHECK(h.table.untold() == 0);
 }
 
-TEST_CASE("It ends three seconds after the last request") {
+TEST_CASE("A variable is sent until three seconds after the last request") {
   Heard h;
   double x = 1;
   h.tags.add("x", "m", &x);
@@ -107,7 +107,7 @@ TEST_CASE("It ends three seconds after the last request") {
   CHECK_FALSE(h.tags.wanted());
 }
 
-TEST_CASE("However many are tagged, each message fits a datagram and every value arrives") {
+TEST_CASE("With many tags each message fits a datagram and every value arrives") {
   Heard h;
   std::vector<double> variables(1024);
   for (std::size_t i = 0; i < variables.size(); ++i)
@@ -128,7 +128,7 @@ TEST_CASE("However many are tagged, each message fits a datagram and every value
   }
 }
 
-TEST_CASE("What has no value is left out, and infinity is none") {
+TEST_CASE("Values that are not finite are left out") {
   Heard h;
   double x = 0;
   h.tags.add("x", "m", &x);
@@ -143,7 +143,7 @@ TEST_CASE("What has no value is left out, and infinity is none") {
   for (const Value& v : xs) REQUIRE(std::isfinite(v.value));
 }
 
-TEST_CASE("A tag that cannot be told apart, or without a unit, is refused in one sentence") {
+TEST_CASE("A tag with a duplicate or invalid name, or without a unit, is rejected with one sentence") {
   Tags tags("node", 7);
   double x = 0;
   tags.add("x", "m", &x);
@@ -156,7 +156,7 @@ TEST_CASE("A tag that cannot be told apart, or without a unit, is refused in one
   CHECK_THROWS_WITH(tags.add("y", "N", &x), Catch::Contains("1024"));
 }
 
-TEST_CASE("Values of a list that nobody has told are counted, and a flood of lists is forgotten") {
+TEST_CASE("Values without a tag list are counted, and the number of stored lists is bounded") {
   Heard h;
   double x = 0;
   h.tags.add("x", "m", &x);

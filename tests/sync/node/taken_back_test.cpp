@@ -93,7 +93,7 @@ std::map<std::int64_t, Said> that_hold(const std::vector<Said>& came, int body) 
 
 }  // namespace
 
-TEST_CASE("What was taken back never comes back, however pages overtake each other, get lost and are repeated") {
+TEST_CASE("A retracted pose never returns when pages are lost, repeated and reordered") {
   int voided = 0, compared = 0;
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);
@@ -136,7 +136,7 @@ TEST_CASE("What was taken back never comes back, however pages overtake each oth
   CHECK(voided > 1'000);
 }
 
-TEST_CASE("A body that is taken back goes on from where it is told, without a jump") {
+TEST_CASE("The path of a body is continuous after its poses ahead are retracted") {
   BodyHistory history(1);
   const auto push = [&](std::int64_t now, std::int64_t time, std::int64_t seq, std::int8_t group, double x,
                         float v) {
@@ -160,8 +160,7 @@ TEST_CASE("A body that is taken back goes on from where it is told, without a ju
   }
 }
 
-TEST_CASE(
-    "What is told 40 ms ahead is let in, what nobody can know is not, and no false page takes back for long") {
+TEST_CASE("Poses 40 ms ahead are accepted, and poses 1.1 s ahead are rejected") {
   BodyHistory history(1);
   history.push(message({0, 0, 0, world_state_t::NOW, {0}}), at(0));
   history.push(message({0, 40, 1, world_state_t::AHEAD, {0}}), at(0));
@@ -176,7 +175,7 @@ TEST_CASE(
   CHECK(history.pose(0, sim_time(1'700 * kMs)).status == SampleStatus::kExact);
 }
 
-TEST_CASE("A body that rested moves off within the last snapshot, however long it had rested") {
+TEST_CASE("A resting body starts to move within the last snapshot interval") {
   BodyHistory history(1);
   const auto push = [&](std::int64_t now, std::int64_t seq, double x, float v) {
     world_state_t m = message({now, now, seq, world_state_t::NOW, {0}});

@@ -45,7 +45,7 @@ TEST_CASE("The fixed aligner returns its delay regardless of the measured need")
   CHECK(aligner->delay() == 40 * kMs);
 }
 
-TEST_CASE("The quantile aligner is late for one event in twenty") {
+TEST_CASE("The quantile aligner is late for 5 % of the events") {
   const auto aligner = make_aligner(AlignerKind::kQuantile, 0 * kMs);
   // 20,000 events, but the quantile of 128 is itself uncertain: its rank has the mean 0.95 (order statistics: 122/129).
   const double late = late_share(*aligner, tailed(20'000));
@@ -60,7 +60,7 @@ TEST_CASE("One very late event does not change the quantile") {
   CHECK(aligner->delay() == 20 * kMs);
 }
 
-TEST_CASE("An aligner is selected by its name; an unknown name is refused") {
+TEST_CASE("An aligner is selected by its name, and an unknown name is rejected") {
   for (const char* name : {"fixed", "quantile"})
     CHECK(name_of(aligner_named(name)) == std::string(name));
   for (const char* name : {"average", "virtual-time"}) CHECK_THROWS_AS(aligner_named(name), std::invalid_argument);

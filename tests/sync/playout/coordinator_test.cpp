@@ -41,7 +41,7 @@ using Delays = std::map<std::string, std::int64_t>;
 
 }  // namespace
 
-TEST_CASE("A coordinator says ten times a second when each sense presents") {
+TEST_CASE("A coordinator publishes the delay of each modality ten times a second") {
   PlayoutCoordinator c(5, plan());
   heard(c, "audio", 18), heard(c, "visual", 33), heard(c, "haptic", 2);
   int said = 0;
@@ -53,7 +53,7 @@ TEST_CASE("A coordinator says ten times a second when each sense presents") {
   CHECK(said == 10);
 }
 
-TEST_CASE("Before anything was presented every sense keeps its own delay") {
+TEST_CASE("Each modality keeps its own delay until the first presentation") {
   PlayoutCoordinator c(5, plan());
   c.needs().know("audio");
   CHECK(delays_ms(c.due(at(0))).empty());
@@ -62,20 +62,20 @@ TEST_CASE("Before anything was presented every sense keeps its own delay") {
   CHECK(delays_ms(experiment.due(at(0))) == Delays{{"audio", 150}});
 }
 
-TEST_CASE("A sense that stalls, is far too slow or is dead moves no other sense") {
+TEST_CASE("A stalled, slow or dead modality does not change the delays of the others") {
   PlayoutCoordinator c(5, plan());
   heard(c, "audio", 18), heard(c, "thermal", 25), heard(c, "visual", 33);
   const auto before = delays_ms(c.due(at(0)));
-  SECTION("after a stall of 2 s all that waited comes at once") {
+  SECTION("all waiting events are presented at once after a stall of 2 s") {
     for (int i = 0; i < 12; ++i) c.needs().add("visual", (2000 - 80 * i) * kMs);
     heard(c, "visual", 33, 8);
     CHECK(delays_ms(c.due(at(200))) == before);
   }
-  SECTION("it says nothing any more") {
+  SECTION("the modality stops reporting") {
     heard(c, "audio", 18, 500);
     CHECK(delays_ms(c.due(at(200))) == before);
   }
-  SECTION("it needs more than the budget for good: nobody waits for it any more") {
+  SECTION("no modality waits for one that always exceeds the budget") {
     heard(c, "visual", 300, 200);
     const auto after = delays_ms(c.due(at(200)));
     CHECK(after.at("audio") == 25);
@@ -83,7 +83,7 @@ TEST_CASE("A sense that stalls, is far too slow or is dead moves no other sense"
   }
 }
 
-TEST_CASE("A delay rises as soon as it must and falls only by more than the slack") {
+TEST_CASE("A delay rises at once and falls only by more than the slack") {
   PlayoutCoordinator c(5, plan());
   heard(c, "audio", 30, 200);
   CHECK(delays_ms(c.due(at(0))).at("audio") == 30);
@@ -95,7 +95,7 @@ TEST_CASE("A delay rises as soon as it must and falls only by more than the slac
   CHECK(delays_ms(c.due(at(600))).at("audio") == 20);
 }
 
-TEST_CASE("A newer request is put in force and an older one is not") {
+TEST_CASE("A newer request is applied, an older one is rejected") {
   PlayoutCoordinator c(5, plan());
   PlayoutPlan asked = plan(Policy::kExperiment);
   asked.soa["visual"] = -50 * kMs;
@@ -111,9 +111,7 @@ TEST_CASE("A newer request is put in force and an older one is not") {
   CHECK_FALSE(c.take(request_for(asked, 200)));
 }
 
-TEST_CASE(
-    "Of two hosts the one with the lower clock speaks. The other knows all it said and goes on when it falls "
-    "silent") {
+TEST_CASE("The coordinator with the lower clock id publishes, the other one is its backup") {
   PlayoutCoordinator low(3, plan()), high(7, plan());
   heard(low, "audio", 18), heard(high, "audio", 18);
   REQUIRE(low.take(request_for(plan(Policy::kExperiment), 50)));  // received by one modality only
@@ -136,7 +134,7 @@ TEST_CASE(
   CHECK(alone >= 9);
 }
 
-TEST_CASE("A request is kept for a coordinator that comes back, and only for the same run") {
+TEST_CASE("A request is stored for a restarted coordinator of the same run") {
   const auto folder = std::filesystem::temp_directory_path() / "tactus_playout_test";
   std::filesystem::create_directories(folder);
   auto request = request_for(plan(Policy::kItouch2005), 77);
@@ -151,7 +149,7 @@ TEST_CASE("A request is kept for a coordinator that comes back, and only for the
   CHECK_FALSE(kept_request(folder, 12));
 }
 
-TEST_CASE("The turns of a lock-step are instants of the world, wherever the host clock stands") {
+TEST_CASE("Lock-step times are aligned to simulated time for any host clock") {
   const TimeMap map{sim_time(123'456'789), at(0), 1.0};
   const Lockstep loop{map, 12.5};
   for (int ms = -500; ms < 500; ms += 7) {
@@ -164,7 +162,7 @@ TEST_CASE("The turns of a lock-step are instants of the world, wherever the host
   }
 }
 
-TEST_CASE("However many senses there are, each finds its delay in a message that the bus carries") {
+TEST_CASE("Playout pages for any number of modalities fit the bus and hold all delays") {
   PlayoutCoordinator c(5, plan(Policy::kExperiment));
   const int senses = GENERATE(0, 1, 5, 64);
   playout_request_t request{};
@@ -191,7 +189,7 @@ TEST_CASE("However many senses there are, each finds its delay in a message that
   if (senses > 7) CHECK(plan_of(pages.front()).soa == wanted.soa);
 }
 
-TEST_CASE("Pages that come in any order, twice, beside those of older generations make the whole") {
+TEST_CASE("Playout pages are merged in any order, ignoring repetitions and older generations") {
   playout_t whole{};
   write_plan(whole, 7, plan(Policy::kExperiment));
   for (int i = 0; i < 64; ++i) {

@@ -22,7 +22,7 @@ playout_t told(const std::string& modality, Nanoseconds delay, std::int8_t polic
 
 }  // namespace
 
-TEST_CASE("A sense keeps its own delay until somebody says otherwise") {
+TEST_CASE("A modality keeps its own delay until it receives another one") {
   PlayoutFollower follower("audio");
   follower.set_own(20 * kMs);
   CHECK(follower.step(at(0)) == 20 * kMs);
@@ -30,7 +30,7 @@ TEST_CASE("A sense keeps its own delay until somebody says otherwise") {
   for (int ms = 1; ms < 1000; ++ms) CHECK(follower.step(at(ms)) == 20 * kMs);
 }
 
-TEST_CASE("A delay that is told is slewed to, by a twentieth of the time at the most, and then kept") {
+TEST_CASE("A received delay is approached at no more than 50 ms per second") {
   PlayoutFollower follower("audio");
   follower.set_own(20 * kMs);
   follower.step(at(0));
@@ -50,7 +50,7 @@ TEST_CASE("A delay that is told is slewed to, by a twentieth of the time at the 
   CHECK(follower.step(at(120'000)) == 50 * kMs);
 }
 
-TEST_CASE("As soon as possible is a policy of its own, and holds once it was told") {
+TEST_CASE("The follower adopts and leaves the policy asap as received") {
   PlayoutFollower follower("audio");
   CHECK_FALSE(follower.as_soon_as_possible());
   follower.take(told("audio", Nanoseconds(0), playout_t::ASAP));

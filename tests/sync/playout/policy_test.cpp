@@ -20,20 +20,20 @@ PlayoutPlan plan(Policy policy) {
 
 }  // namespace
 
-TEST_CASE("As soon as possible waits for nothing") {
+TEST_CASE("The policy asap has no delays") {
   for (const auto& [name, delay] : playout_delays(plan(Policy::kAsap), kNeeded)) CHECK(delay == 0 * kMs);
 }
 
-TEST_CASE("Aligned, all wait for the slowest") {
+TEST_CASE("The policy aligned delays all modalities to the slowest") {
   for (const auto& [name, delay] : playout_delays(plan(Policy::kAligned), kNeeded)) CHECK(delay == 35 * kMs);
 }
 
-TEST_CASE("Local haptic first, touch waits for nothing and the others for the slowest of them") {
+TEST_CASE("The policy local-haptic-first delays all modalities but touch to the slowest") {
   for (const auto& [name, delay] : playout_delays(plan(Policy::kLocalHapticFirst), kNeeded))
     CHECK(delay == (name == "haptic" ? 0 : 35) * kMs);
 }
 
-TEST_CASE("Nobody waits for a sense that needs more than the budget") {
+TEST_CASE("A modality that exceeds the budget delays no other") {
   auto needed = kNeeded;
   needed["visual"] = 400 * kMs;
   const auto delays = playout_delays(plan(Policy::kAligned), needed);
@@ -41,7 +41,7 @@ TEST_CASE("Nobody waits for a sense that needs more than the budget") {
   CHECK(delays.at("haptic") == 25 * kMs);
 }
 
-TEST_CASE("Nobody waits for a slow sense, which comes with the others all the same") {
+TEST_CASE("A slow modality delays no other but is delayed with them") {
   auto needed = kNeeded;
   needed["thermal"] = 50 * kMs;
   const auto delays = playout_delays(plan(Policy::kAligned), needed, {"thermal"});
@@ -49,9 +49,7 @@ TEST_CASE("Nobody waits for a slow sense, which comes with the others all the sa
   CHECK(delays.at("thermal") == 35 * kMs);
 }
 
-TEST_CASE(
-    "An experiment gives each sense its asynchrony against the base, negative ones too, whatever the senses "
-    "need") {
+TEST_CASE("The policy experiment gives each modality its SOA relative to the base") {
   PlayoutPlan p = plan(Policy::kExperiment);
   p.base = 150 * kMs;
   p.soa = parse_soa("audio=50ms,visual=-100ms,wind=-0.01s");
@@ -62,7 +60,7 @@ TEST_CASE(
   CHECK(delays.at("wind") == 140 * kMs);
 }
 
-TEST_CASE("In a serial loop each sense comes after the one before, and the loop takes as long as all of them") {
+TEST_CASE("The policy itouch2005 presents the modalities in series, and the loop takes the sum of their times") {
   const PlayoutPlan p = plan(Policy::kItouch2005);
   const auto delays = playout_delays(p, kNeeded);
   CHECK(delays.at("haptic") == 2 * kMs);
@@ -73,7 +71,7 @@ TEST_CASE("In a serial loop each sense comes after the one before, and the loop 
   CHECK(lockstep_rate_Hz(plan(Policy::kAligned), kNeeded) == 0);
 }
 
-TEST_CASE("A fixed delay is the base within the budget") {
+TEST_CASE("A fixed delay is the base, limited to the budget") {
   PlayoutPlan p = plan(Policy::kAligned);
   p.aligner = AlignerKind::kFixed;
   p.base = 40 * kMs;
@@ -82,7 +80,7 @@ TEST_CASE("A fixed delay is the base within the budget") {
   CHECK(playout_delays(p, kNeeded).at("audio") == p.budget);
 }
 
-TEST_CASE("What cannot be is refused with a remedy") {
+TEST_CASE("An invalid plan is rejected with a remedy") {
   PlayoutPlan p = plan(Policy::kExperiment);
   p.base = 50 * kMs;
   p.soa = parse_soa("audio=-80ms");

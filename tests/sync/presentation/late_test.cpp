@@ -16,7 +16,7 @@ LatePolicy of(Late rule) { return {rule, 10ms, 30ms}; }
 
 }  // namespace
 
-TEST_CASE("Whatever the rule, what is early or within the tolerance is presented as it should be") {
+TEST_CASE("Events that are early or within the tolerance are presented at full gain under any rule") {
   const Late rule = GENERATE(Late::kPlayWithFade, Late::kDrop, Late::kShowNewest, Late::kAlwaysApply);
   for (const Nanoseconds lateness : {Nanoseconds(-1h), Nanoseconds(0), Nanoseconds(10ms)}) {
     CHECK(of(rule).outcome(lateness) == kPresented);
@@ -24,13 +24,13 @@ TEST_CASE("Whatever the rule, what is early or within the tolerance is presented
   }
 }
 
-TEST_CASE("Between tolerance and limit all is presented and called late") {
+TEST_CASE("Events between tolerance and limit are presented late") {
   const Late rule = GENERATE(Late::kPlayWithFade, Late::kDrop, Late::kShowNewest, Late::kAlwaysApply);
   CHECK(of(rule).outcome(10ms + 1ns) == kLateOutcome);
   CHECK(of(rule).outcome(30ms) == kLateOutcome);
 }
 
-TEST_CASE("Beyond the limit all is dropped but what is always applied") {
+TEST_CASE("Events beyond the limit are dropped unless the rule is to apply always") {
   for (const Late rule : {Late::kPlayWithFade, Late::kDrop, Late::kShowNewest}) {
     CHECK(of(rule).outcome(30ms + 1ns) == kDropped);
     CHECK(of(rule).outcome(1h) == kDropped);
@@ -38,7 +38,7 @@ TEST_CASE("Beyond the limit all is dropped but what is always applied") {
   CHECK(of(Late::kAlwaysApply).outcome(1h) == kLateOutcome);
 }
 
-TEST_CASE("Only what plays with a fade is weaker when it is late, by a straight line to nothing at the limit") {
+TEST_CASE("Only play-with-fade reduces the gain, linearly to zero at the limit") {
   const LatePolicy fades = of(Late::kPlayWithFade);
   CHECK(fades.gain(15ms) == Approx(0.75));
   CHECK(fades.gain(20ms) == Approx(0.5));
@@ -47,7 +47,7 @@ TEST_CASE("Only what plays with a fade is weaker when it is late, by a straight 
   for (const Late rule : {Late::kDrop, Late::kShowNewest, Late::kAlwaysApply}) CHECK(of(rule).gain(20ms) == 1);
 }
 
-TEST_CASE("A limit that is the tolerance leaves nothing between on time and dropped") {
+TEST_CASE("If limit and tolerance are equal, an event is on time or dropped") {
   const LatePolicy sharp{Late::kPlayWithFade, 10ms, 10ms};
   CHECK(sharp.outcome(10ms) == kPresented);
   CHECK(sharp.gain(10ms) == 1);

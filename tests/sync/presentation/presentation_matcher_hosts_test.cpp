@@ -61,8 +61,7 @@ struct TwoHosts {
 
 }  // namespace
 
-TEST_CASE(
-    "What a sense on another host presented is put on our clock, and its uncertainty shows in the asynchrony") {
+TEST_CASE("Presentation times of another host are mapped with the uncertainty of the map") {
   TwoHosts t;
   t.map(500);
   t.run(0, 5000);
@@ -76,7 +75,7 @@ TEST_CASE(
   CHECK(pair.uncertainty() < Nanoseconds(660'000));
 }
 
-TEST_CASE("A sense on a host that nobody has mapped keeps its debts, and has no asynchrony") {
+TEST_CASE("Without a clock map of its host a modality has outcomes but no asynchronies") {
   TwoHosts t;
   t.run(0, 5000);
   t.both_present(1, 1000);

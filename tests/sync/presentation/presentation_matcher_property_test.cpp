@@ -17,8 +17,7 @@ constexpr int kHit = node_health_t::OWES_HIT;
 constexpr int kBoth = int{node_health_t::OWES_BEGIN} | int{node_health_t::OWES_HIT};
 }  // namespace
 
-TEST_CASE(
-    "However messages are lost, repeated and reordered, every debt has one outcome and nothing counts twice") {
+TEST_CASE("Every expected event has one outcome when messages are lost, repeated and reordered") {
   struct Node {
     std::string name, modality;
     int owes;
@@ -109,7 +108,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("However nodes die and stall, owed is the sum of the outcomes and a reported event is never lost") {
+TEST_CASE("The outcomes add up to the expected events when nodes die and stall, and no reported event is lost") {
   for (unsigned seed = 0; seed < 200; ++seed) {
     MatcherFixture f;
     std::mt19937 random(seed);

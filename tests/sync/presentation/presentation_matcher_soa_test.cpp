@@ -7,7 +7,7 @@
 
 using namespace tactus::sync;
 
-TEST_CASE("Quantiles of asynchronies are those of the sorted list within one bin") {
+TEST_CASE("Quantiles of the SOA histogram match the sorted list within one bin") {
   std::mt19937 random(1);
   for (int round = 0; round < 20; ++round) {
     SoaHistogram histogram;
@@ -28,7 +28,7 @@ TEST_CASE("Quantiles of asynchronies are those of the sorted list within one bin
   }
 }
 
-TEST_CASE("An empty list of asynchronies has no quantiles, and what is beyond the range counts at its edge") {
+TEST_CASE("An empty SOA histogram has zero quantiles, and values beyond the range count at its edge") {
   SoaHistogram histogram;
   CHECK(histogram.quantile(0.5) == Nanoseconds(0));
   histogram.add(Nanoseconds(-900'000'000'000), Nanoseconds(0));
@@ -38,7 +38,7 @@ TEST_CASE("An empty list of asynchronies has no quantiles, and what is beyond th
   CHECK(histogram.count() == 4);
 }
 
-TEST_CASE("Asynchronies of many seconds are told as what they are, to 10 ms") {
+TEST_CASE("Asynchronies of many seconds are accurate to 10 ms") {
   for (const std::int64_t ms : {-60'000, -3'026, -2'001, -1'999, 1'999, 2'001, 3'026, 60'000, 121'000}) {
     SoaHistogram histogram;
     for (int i = 0; i < 5; ++i) histogram.add(Nanoseconds(ms * 1'000'000), Nanoseconds(0));

@@ -19,7 +19,7 @@ constexpr int kHit = node_health_t::OWES_HIT;
 constexpr int kBoth = int{node_health_t::OWES_BEGIN} | int{node_health_t::OWES_HIT};
 }  // namespace
 
-TEST_CASE("A debt that was reported has the outcome of its report") {
+TEST_CASE("A reported event has the outcome of its report") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 5000);
   f.event(1, 1000);
@@ -30,14 +30,14 @@ TEST_CASE("A debt that was reported has the outcome of its report") {
     CHECK(sum(f.tally("audio")) == 1);
     return f.tally("audio");
   };
-  SECTION("presented") { CHECK(outcome(presentation_t::PRESENTED).presented == 1); }
-  SECTION("late") { CHECK(outcome(presentation_t::LATE).presented == 1); }
-  SECTION("inaudible") { CHECK(outcome(presentation_t::INAUDIBLE).presented == 1); }
-  SECTION("dropped late") { CHECK(outcome(presentation_t::DROPPED_LATE).dropped_late == 1); }
-  SECTION("dropped by profile") { CHECK(outcome(presentation_t::DROPPED_BY_PROFILE).dropped_by_profile == 1); }
+  SECTION("the outcome is presented") { CHECK(outcome(presentation_t::PRESENTED).presented == 1); }
+  SECTION("the outcome is late") { CHECK(outcome(presentation_t::LATE).presented == 1); }
+  SECTION("the outcome is inaudible") { CHECK(outcome(presentation_t::INAUDIBLE).presented == 1); }
+  SECTION("the outcome is dropped late") { CHECK(outcome(presentation_t::DROPPED_LATE).dropped_late == 1); }
+  SECTION("the outcome is dropped by profile") { CHECK(outcome(presentation_t::DROPPED_BY_PROFILE).dropped_by_profile == 1); }
 }
 
-TEST_CASE("A live node that reports nothing has lost the event, and that is known after one second") {
+TEST_CASE("An event that a running node does not report is lost after one second") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 5000);
   f.event(1, 1000);
@@ -47,14 +47,14 @@ TEST_CASE("A live node that reports nothing has lost the event, and that is know
   CHECK(f.tally("audio").owed == 1);
   CHECK(f.tally("audio").lost == 1);
 
-  SECTION("a report that comes later changes nothing and is counted") {
+  SECTION("a later report changes nothing and is counted") {
     f.presented("audio_node", "audio", 1, 2500);
     CHECK(f.tally("audio").lost == 1);
     CHECK(f.matcher.late_reports() == 1);
   }
 }
 
-TEST_CASE("A node owes what it declares") {
+TEST_CASE("A node must present the kinds of events that it declares") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 5000);
   f.healths("visual_node", "visual", kBoth, 0, 5000);
@@ -75,13 +75,13 @@ TEST_CASE("A node owes what it declares") {
   CHECK(f.matcher.modalities().size() == 3);
 }
 
-TEST_CASE("A sense that was never there owes nothing") {
+TEST_CASE("A modality that never ran has no expected events") {
   MatcherFixture f;
   f.event(1, 1000);
   f.matcher.advance(f.at(3000));
   CHECK(f.matcher.modalities().empty());
 
-  SECTION("nor does one that was still waiting, or had just begun to run") {
+  SECTION("a modality that waits or has just started has none either") {
     f.healths("audio_node", "audio", kHit, 3000, 4000, 1, node_health_t::WAITING);
     f.healths("audio_node", "audio", kHit, 4100, 9000);
     f.event(2, 3500);
@@ -94,7 +94,7 @@ TEST_CASE("A sense that was never there owes nothing") {
   }
 }
 
-TEST_CASE("A sense that was ready before the world began owes its first contact") {
+TEST_CASE("A modality that was ready before the simulation started must present its first contact") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 500, 900, 1, node_health_t::READY);
   f.healths("audio_node", "audio", kHit, 1000, 4000);
@@ -104,7 +104,7 @@ TEST_CASE("A sense that was ready before the world began owes its first contact"
   CHECK(f.tally("audio").lost == 1);
 }
 
-TEST_CASE("A node that was stopped for two seconds and came back was stalled") {
+TEST_CASE("Events during a stop of two seconds count as stalled") {
   MatcherFixture f;
   f.healths("visual_node", "visual", kBoth, 0, 2000);
   f.event(1, 1950);  // the node may have stopped before it could report
@@ -123,7 +123,7 @@ TEST_CASE("A node that was stopped for two seconds and came back was stalled") {
   CHECK(f.tally("visual").owed == 5);
 }
 
-TEST_CASE("A silence of 0.3 s is no excuse") {
+TEST_CASE("Events during a silence of 0.3 s count as lost") {
   MatcherFixture f;
   f.healths("visual_node", "visual", kBoth, 0, 2000);
   f.healths("visual_node", "visual", kBoth, 2300, 5000);
@@ -132,7 +132,7 @@ TEST_CASE("A silence of 0.3 s is no excuse") {
   CHECK(f.tally("visual").lost == 1);
 }
 
-TEST_CASE("A node that was killed is dead until its successor has run for a moment") {
+TEST_CASE("Events count as dead until the successor of a killed node has run for a short time") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 2000, 1);
   f.healths("audio_node", "audio", kHit, 2150, 2450, 2, node_health_t::WAITING);
@@ -147,7 +147,7 @@ TEST_CASE("A node that was killed is dead until its successor has run for a mome
   CHECK(f.tally("audio").dead == 4);
   CHECK(f.tally("audio").lost == 2);
 
-  SECTION("and what it presented all the same is presented") {
+  SECTION("events that it presents in that time count as presented") {
     f.event(7, 5500);
     f.healths("audio_node", "audio", kHit, 6050, 8000, 3);
     f.event(8, 6000);
@@ -158,7 +158,7 @@ TEST_CASE("A node that was killed is dead until its successor has run for a mome
   }
 }
 
-TEST_CASE("A node that never comes back is dead, and nothing waits for it") {
+TEST_CASE("Events of a node that never returns count as dead and delay nothing") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 2000);
   f.healths("visual_node", "visual", kHit, 0, 9000);
@@ -172,7 +172,7 @@ TEST_CASE("A node that never comes back is dead, and nothing waits for it") {
   CHECK(f.tally("visual").presented == 50);
 }
 
-TEST_CASE("A node that says it has no output presents nothing, and has not lost it") {
+TEST_CASE("Events of a node without an output count as dead and not as lost") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 1000);
   f.healths("audio_node", "audio", kHit, 1100, 5000, 1, node_health_t::OUTPUT_LOST);
@@ -183,7 +183,7 @@ TEST_CASE("A node that says it has no output presents nothing, and has not lost 
   CHECK(f.tally("audio").lost == 0);
 }
 
-TEST_CASE("A node whose input is stale still owes what happens") {
+TEST_CASE("A node with stale input must still present events") {
   MatcherFixture f;
   f.healths("haptic_node", "haptic", kHit, 0, 1000);
   f.healths("haptic_node", "haptic", kHit, 1100, 5000, 1, node_health_t::INPUT_LOST);
@@ -193,7 +193,7 @@ TEST_CASE("A node whose input is stale still owes what happens") {
   CHECK(f.tally("haptic").lost == 2);
 }
 
-TEST_CASE("A node whose input is stale from the first owes what happens while it is frozen") {
+TEST_CASE("A node whose input is stale from the start must present events while it is frozen") {
   MatcherFixture f;
   f.health("visual_node", "visual", kBoth, 0, 1, node_health_t::WAITING);
   f.healths("visual_node", "visual", kBoth, 100, 1000, 1, node_health_t::STALE);
@@ -204,7 +204,7 @@ TEST_CASE("A node whose input is stale from the first owes what happens while it
   CHECK(f.tally("visual").stalled == 1);
 }
 
-TEST_CASE("What the simulation could not repeat before it died is dead, unless it was presented") {
+TEST_CASE("Events that the simulation had no time to repeat before it died count as dead unless presented") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 6000);
   f.healths("sim_node", "", 0, 0, 2000, f.sim_incarnation);
@@ -219,7 +219,7 @@ TEST_CASE("What the simulation could not repeat before it died is dead, unless i
   CHECK(f.tally("audio").presented == 1);
 }
 
-TEST_CASE("Health and reports of another run are ignored and counted") {
+TEST_CASE("Health messages and reports of another run are ignored and counted") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 5000);
   node_health_t old = f.health_message("audio_node", "audio", kHit, 900, 55);
@@ -234,7 +234,7 @@ TEST_CASE("Health and reports of another run are ignored and counted") {
   CHECK(f.matcher.foreign() == 2);
 }
 
-TEST_CASE("Events of a replayed run are owed at the time they arrive") {
+TEST_CASE("Events of a replayed run are expected at their time of arrival") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 5000);
   contact_events_t m = f.event_message(1, 1000, contact_event_t::HIT, 100);
@@ -248,7 +248,7 @@ TEST_CASE("Events of a replayed run are owed at the time they arrive") {
   CHECK(f.tally("audio").owed == 1);
 }
 
-TEST_CASE("While a simulation of this run is there, what a log tells that is played beside it is owed by nobody") {
+TEST_CASE("Events of a replayed log are not expected while a simulation of this run is active") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 6000);
   contact_events_t old = f.event_message(1, 1000, contact_event_t::HIT, 50);
@@ -265,7 +265,7 @@ TEST_CASE("While a simulation of this run is there, what a log tells that is pla
   CHECK(f.tally("audio").owed == 2);
 }
 
-TEST_CASE("At the end of a log what cannot be decided is not owed") {
+TEST_CASE("Events that are undecided at the end of a log are not expected") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 3000);
   f.event(1, 2500);  // lost: the node ran long enough afterwards
@@ -280,7 +280,7 @@ TEST_CASE("At the end of a log what cannot be decided is not owed") {
   CHECK(f.tally("audio").owed == 2);
 }
 
-TEST_CASE("The end of a run is no death, though the log goes on for a while") {
+TEST_CASE("The end of a run is not a dead node, even if the log continues") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 3000);
   f.healths("visual_node", "visual", kHit, 0, 2900);
@@ -289,19 +289,19 @@ TEST_CASE("The end of a run is no death, though the log goes on for a while") {
   f.event(2, 2985);
   f.presented("visual_node", "visual", 2, 3000);
   f.matcher.advance(f.at(5500));
-  SECTION("as long as nobody speaks again") {
+  SECTION("no node publishes again") {
     f.matcher.finish(f.at(5500));
     CHECK(f.tally("audio").owed == 0);
     CHECK(f.tally("visual").owed == 1);
     CHECK(f.tally("visual").presented == 1);
   }
-  SECTION("but it was one when the simulation speaks again") {
+  SECTION("nodes count as dead if the simulation publishes again") {
     f.healths("sim_node", "", 0, 5600, 6000, f.sim_incarnation + 1);
     f.matcher.finish(f.at(6000));
     CHECK(f.tally("audio").dead == 2);
     CHECK(f.tally("visual").dead == 1);
   }
-  SECTION("and a stall when the sense does") {
+  SECTION("a modality counts as stalled if it publishes again") {
     f.healths("audio_node", "audio", kHit, 5600, 6000);
     f.matcher.finish(f.at(6000));
     CHECK(f.tally("audio").stalled == 2);
@@ -310,7 +310,7 @@ TEST_CASE("The end of a run is no death, though the log goes on for a while") {
   }
 }
 
-TEST_CASE("Asynchrony is the difference of what was really presented") {
+TEST_CASE("Asynchrony is the difference of the presented times") {
   MatcherFixture f;
   for (const char* node : {"haptic", "audio", "visual", "smell"}) f.healths(node, node, kBoth, 0, 9000);
   f.event(1, 1000, contact_event_t::HIT);
@@ -333,7 +333,7 @@ TEST_CASE("Asynchrony is the difference of what was really presented") {
   CHECK(soa_ms("visual", "smell") == Approx(485).margin(0.1));
   CHECK(f.matcher.pairs().size() == 6);
 
-  SECTION("a begin is felt as its constraint force, which no policy delays: a pair of its own") {
+  SECTION("the constraint force of a begin forms its own pair, because no policy delays it") {
     f.event(2, 3000, contact_event_t::BEGIN);
     f.presented("haptic", "haptic", 2, 2999, presentation_t::PRESENTED, presentation_t::CONSTRAINT);
     f.presented("visual", "visual", 2, 3029);
@@ -341,7 +341,7 @@ TEST_CASE("Asynchrony is the difference of what was really presented") {
     CHECK(f.matcher.pairs().at({"haptic", "visual"}).count() == 1);
     CHECK(soa_ms("haptic_push", "visual") == Approx(30).margin(0.1));
   }
-  SECTION("what was dropped has no onset") {
+  SECTION("a dropped event has no onset") {
     f.event(3, 3000, contact_event_t::HIT);
     f.presented("audio", "audio", 3, 3020);
     f.presented("visual", "visual", 3, 3020, presentation_t::DROPPED_BY_PROFILE);
@@ -350,13 +350,13 @@ TEST_CASE("Asynchrony is the difference of what was really presented") {
   }
 }
 
-TEST_CASE("The known senses are named from the quickest to the slowest, others after them") {
+TEST_CASE("Modalities are sorted by their known order, unknown ones last") {
   std::vector<std::string> names = {"wind", "thermal", "visual", "smell", "audio", "haptic"};
   std::sort(names.begin(), names.end(), named_before);
   CHECK(names == std::vector<std::string>{"haptic", "audio", "visual", "thermal", "smell", "wind"});
 }
 
-TEST_CASE("A flood of events takes bounded memory and is counted") {
+TEST_CASE("Many events take bounded memory, and the excess is counted") {
   MatcherFixture f;
   const int n = static_cast<int>(PresentationMatcher::kMaxEvents) + 1000;
   for (int i = 0; i < n; ++i) f.event(i, 1000);
@@ -366,9 +366,7 @@ TEST_CASE("A flood of events takes bounded memory and is counted") {
   CHECK(f.matcher.overflow() == 1000);
 }
 
-TEST_CASE(
-    "A flood of invented senses takes bounded memory, is counted, and leaves room in the report for the real "
-    "ones") {
+TEST_CASE("Many unknown modalities take bounded memory, are counted and do not displace real ones") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 3000);
   for (int i = 0; i < 200; ++i)

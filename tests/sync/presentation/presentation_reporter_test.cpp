@@ -9,7 +9,7 @@
 using namespace tactus;
 using namespace tactus::sync;
 
-TEST_CASE("Each report is sent twice, at least 20 ms apart, however many there are") {
+TEST_CASE("Each report is sent twice, at least 20 ms apart") {
   BusOptions memory;
   memory.memory = true;
   Bus bus(Identity::fresh("test", 1), memory);
@@ -36,7 +36,7 @@ TEST_CASE("Each report is sent twice, at least 20 ms apart, however many there a
   CHECK(bus.refused() == 0);
 }
 
-TEST_CASE("A reporter that is never sent stays bounded and counts what it drops") {
+TEST_CASE("The number of pending reports is bounded, and dropped ones are counted") {
   PresentationReporter reporter("audio");
   for (int i = 0; i < 3000; ++i)
     reporter.report(i, presentation_t::WHOLE, host_time(0), host_time(0), Nanoseconds(0), presentation_t::PRESENTED);

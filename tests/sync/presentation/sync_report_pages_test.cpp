@@ -35,7 +35,7 @@ std::vector<sync_report_t> published(const MatcherFixture& f, std::int64_t& seq)
 
 }  // namespace
 
-TEST_CASE("However many senses there are, every page fits a datagram and together they say everything") {
+TEST_CASE("Report pages for any number of modalities fit a datagram and are complete together") {
   const int senses = GENERATE(0, 1, 4, 6, 12, 22);
   MatcherFixture f;
   fill(f, senses);
@@ -56,7 +56,7 @@ TEST_CASE("However many senses there are, every page fits a datagram and togethe
   CHECK((senses <= 4) == (pages.size() == 1));
 }
 
-TEST_CASE("A name too long for a page is left out, and the others are not") {
+TEST_CASE("Only a name too long for a page is left out") {
   MatcherFixture f;
   fill(f, 2, 1500);
   f.healths("audio_node", "audio", kHit, 0, 3000);
@@ -68,7 +68,7 @@ TEST_CASE("A name too long for a page is left out, and the others are not") {
   CHECK(pages[0].modality_count == 1);
 }
 
-TEST_CASE("Pages of two reports are not mixed, also when one was lost or overtaken") {
+TEST_CASE("Pages of two reports are never mixed, also if pages are lost or overtaken") {
   MatcherFixture f;
   fill(f, 12);
   std::int64_t seq = 0;

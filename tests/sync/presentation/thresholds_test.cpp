@@ -19,14 +19,14 @@ TEST_CASE("Every published threshold has a pair, a time, a meaning, a situation 
   }
 }
 
-TEST_CASE("Thresholds are of a direction: touch before picture is noticed sooner than picture before touch") {
+TEST_CASE("Thresholds depend on the order: touch before vision has a lower one than vision before touch") {
   CHECK(thresholds_of("haptic", "visual")->least == 15 * kMs);
   CHECK(thresholds_of("visual", "haptic")->least == 45 * kMs);
   CHECK(thresholds_of("visual", "audio")->largest == 185 * kMs);
   CHECK_FALSE(thresholds_of("haptic", "thermal"));
 }
 
-TEST_CASE("Asynchronies are counted beyond the least and beyond every threshold of their direction") {
+TEST_CASE("Asynchronies beyond the lowest and beyond all thresholds of their direction are counted") {
   SoaHistogram soa;
   for (const int ms : {0, 10, 20, 60, 95, -10, -70, -130, -190}) soa.add(ms * kMs, Nanoseconds(0));
   // audio, then visual: 15 to 90 ms; visual, then audio: 60 to 185 ms
@@ -39,7 +39,7 @@ TEST_CASE("Asynchronies are counted beyond the least and beyond every threshold 
   CHECK(beyond_thresholds("haptic", "audio", soa).all == 0);
 }
 
-TEST_CASE("What is published of touch holds of its push too") {
+TEST_CASE("The thresholds of touch also apply to its constraint force") {
   SoaHistogram late;
   for (int i = 0; i < 4; ++i) late.add(Nanoseconds(900'000'000), Nanoseconds(0));
   const Beyond vibration = beyond_thresholds("haptic", "audio", late),

@@ -44,7 +44,7 @@ double correlation(const std::vector<double>& x) {
 
 }  // namespace
 
-TEST_CASE("Jitter has the distribution that it was given") {
+TEST_CASE("Jitter has the specified distribution") {
   constexpr int kN = 20'000;
   CHECK(distance(draws({JitterShape::kUniform, 0.010}, kN),
                  [](double x) { return std::clamp((x + 0.010) / 0.020, 0.0, 1.0); }) < critical(kN));
@@ -57,7 +57,7 @@ TEST_CASE("Jitter has the distribution that it was given") {
   CHECK(*std::min_element(pareto.begin(), pareto.end()) >= 0);
 }
 
-TEST_CASE("Correlated jitter keeps its distribution and follows itself") {
+TEST_CASE("Correlated jitter has the specified distribution and autocorrelation") {
   constexpr int kN = 100'000;
   for (const double rho : {0.5, 0.9}) {
     const auto normal = draws({JitterShape::kNormal, 0.003, rho, {}}, kN);
@@ -73,7 +73,7 @@ TEST_CASE("Correlated jitter keeps its distribution and follows itself") {
   }
 }
 
-TEST_CASE("A trace is played round and round") {
+TEST_CASE("A trace is repeated cyclically") {
   const auto x = draws({JitterShape::kTrace, 0, 0, {0.001, 0.005, 0.002}}, 7);
   CHECK(x == std::vector<double>{0.001, 0.005, 0.002, 0.001, 0.005, 0.002, 0.001});
   CHECK(draws({JitterShape::kTrace, 0, 0, {}}, 2) == std::vector<double>{0, 0});

@@ -7,7 +7,7 @@
 
 using namespace tactus::sync;
 
-TEST_CASE("The inverse of the normal distribution is its inverse") {
+TEST_CASE("normal_quantile() is the inverse of the normal distribution") {
   // The published accuracy is 1e-16 relative; the distribution itself, through erfc, is good to about 1e-15 of p.
   for (const double p : {1e-12, 1e-8, 1e-4, 0.01, 0.074, 0.0751, 0.3, 0.5, 0.7, 0.9249, 0.926, 0.99, 0.9999})
     CHECK(normal_cdf(normal_quantile(p)) == Approx(p).epsilon(1e-12));
@@ -16,7 +16,7 @@ TEST_CASE("The inverse of the normal distribution is its inverse") {
   CHECK(normal_quantile(0.975) == Approx(1.959963984540054).epsilon(1e-14));
 }
 
-TEST_CASE("A draw depends on seed and key alone and spreads evenly") {
+TEST_CASE("A draw depends only on seed and key and is uniformly distributed") {
   CHECK(uniform(7, 42) == uniform(7, 42));
   CHECK(uniform(7, 42) != uniform(8, 42));
   // Keys as in use: ids that count up. Chi-square over 100 cells: mean 99, standard deviation sqrt(198) = 14.1.

@@ -30,7 +30,7 @@ Observed run(const LossDef& def, int n, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("Independent loss loses its share") {
+TEST_CASE("Independent loss has the specified share") {
   constexpr int kN = 100'000;
   for (const double share : {0.0, 0.001, 0.05, 0.3, 0.9, 1.0}) {
     const Observed o = run({share, 0}, kN, 3);
@@ -41,7 +41,7 @@ TEST_CASE("Independent loss loses its share") {
   }
 }
 
-TEST_CASE("Bursty loss has the share and the mean burst that it was given") {
+TEST_CASE("Bursty loss has the specified share and mean burst") {
   constexpr int kN = 400'000;
   for (const double share : {0.01, 0.05, 0.3, 0.7})
     for (const double burst : {3.0, 10.0, 50.0}) {
@@ -56,7 +56,7 @@ TEST_CASE("Bursty loss has the share and the mean burst that it was given") {
     }
 }
 
-TEST_CASE("A loss that cannot be is refused") {
+TEST_CASE("An impossible loss is rejected") {
   CHECK_THROWS_WITH(Loss({1.5, 0}), Catch::Contains("0% to 100%"));
   CHECK_THROWS_WITH(Loss({-0.1, 0}), Catch::Contains("0% to 100%"));
   CHECK_THROWS_WITH(Loss({0.1, 0.5}), Catch::Contains("at least 1"));
@@ -64,7 +64,7 @@ TEST_CASE("A loss that cannot be is refused") {
   CHECK_NOTHROW(Loss({0.9, 9.001}));
 }
 
-TEST_CASE("Total loss loses all, with and without bursts") {
+TEST_CASE("Total loss drops all messages, with and without bursts") {
   CHECK(run({1, 0}, 1000, 1).share == 1);
   CHECK(run({1, 5}, 1000, 1).share == 1);
   CHECK(run({0, 5}, 1000, 1).share == 0);

@@ -30,7 +30,7 @@ std::vector<int> flushed(Outbox& outbox, HostTime from, Nanoseconds length) {
 
 }  // namespace
 
-TEST_CASE("An outbox without a bound sends at once, in order") {
+TEST_CASE("An outbox without a rate limit sends at once and in order") {
   Outbox outbox(0);
   for (std::uint8_t i = 0; i < 100; ++i) outbox.push(Urgency::kState, datagram(i), kBegin);
   const auto sent = flushed(outbox, kBegin, 1ns);
@@ -39,7 +39,7 @@ TEST_CASE("An outbox without a bound sends at once, in order") {
   CHECK(outbox.counts().bytes == 100'000);
 }
 
-TEST_CASE("What is urgent overtakes what is not") {
+TEST_CASE("Urgent messages are sent first") {
   Outbox outbox(1e6);
   for (int i = 0; i < 60; ++i) {
     outbox.push(Urgency::kBulk, datagram(3), kBegin);
@@ -51,7 +51,7 @@ TEST_CASE("What is urgent overtakes what is not") {
   CHECK(std::is_sorted(sent.begin(), sent.end()));
 }
 
-TEST_CASE("What did not go within 50 ms is given up and counted, but assets wait for a second") {
+TEST_CASE("A message that waits for 50 ms is dropped and counted, an asset after a second") {
   Outbox outbox(8 * 16'000);  // 16 kB per second
   for (int i = 0; i < 100; ++i) outbox.push(Urgency::kState, datagram(2), kBegin);
   outbox.push(Urgency::kBulk, datagram(3), kBegin);
@@ -68,7 +68,7 @@ TEST_CASE("What did not go within 50 ms is given up and counted, but assets wait
   CHECK(outbox.counts().late_bulk == 1);
 }
 
-TEST_CASE("Assets on their way leave room for what is said together") {
+TEST_CASE("Assets leave room for a group of state messages") {
   Outbox outbox(1e6);
   for (int i = 0; i < 200; ++i) outbox.push(Urgency::kBulk, datagram(3), kBegin);
   flushed(outbox, kBegin, 100ms);
@@ -76,7 +76,7 @@ TEST_CASE("Assets on their way leave room for what is said together") {
   CHECK(flushed(outbox, kBegin + 100ms, 1ns) == std::vector<int>(7, 2));
 }
 
-TEST_CASE("A line carries no more than its rate over any time, and a burst") {
+TEST_CASE("A line sends no more than its rate and one burst over any time") {
   std::mt19937 dice(5);
   const double rate = GENERATE(64e3, 1e6, 2e7);
   Outbox outbox(rate);
@@ -100,13 +100,13 @@ TEST_CASE("A line carries no more than its rate over any time, and a burst") {
   }
 }
 
-TEST_CASE("An outbox keeps a bounded number of bytes, whatever is pushed") {
+TEST_CASE("The number of bytes in an outbox is bounded") {
   Outbox outbox(16e3);
   for (int i = 0; i < 5000; ++i) outbox.push(Urgency::kFirst, datagram(1), kBegin);
   CHECK(outbox.counts().late >= 5000 - static_cast<std::int64_t>(Outbox::kMaxBytes / 1000));
 }
 
-TEST_CASE("What the network refuses is counted and not sent again") {
+TEST_CASE("A message that the network rejects is counted and not sent again") {
   Outbox outbox(0);
   outbox.push(Urgency::kFirst, datagram(1), kBegin);
   outbox.flush(kBegin, [](auto) { return false; });

@@ -106,12 +106,12 @@ void carry(std::deque<Site>& all, HostTime now) {
       }
     if (!moved) return;
   }
-  FAIL("messages go in circles");
+  FAIL("messages circulate between relays");
 }
 
 }  // namespace
 
-TEST_CASE("A datagram of a line is read as it was written") {
+TEST_CASE("A line datagram is parsed as it was written") {
   const std::vector<std::uint8_t> data(channels::kMaxMessageBytes, 9);
   const auto bytes = line_datagram({"SCENE_MANIFEST", data}, true);
   CHECK(bytes.size() <= 1472);  // payload of an Ethernet frame, less IP and UDP
@@ -122,7 +122,7 @@ TEST_CASE("A datagram of a line is read as it was written") {
   CHECK(std::equal(data.begin(), data.end(), m->message.data.begin(), m->message.data.end()));
 }
 
-TEST_CASE("What is no datagram of a line is refused") {
+TEST_CASE("An invalid line datagram is rejected") {
   auto bytes = line_datagram({"TOOL_STATE", {}}, false);
   REQUIRE(parse_line_datagram(bytes));
   for (std::size_t size = 0; size + 1 < bytes.size(); ++size)
@@ -134,7 +134,7 @@ TEST_CASE("What is no datagram of a line is refused") {
   CHECK_FALSE(parse_line_datagram(line_datagram({std::string(64, 'X'), {}}, false)));
 }
 
-TEST_CASE("The ends of a line are addresses, never names that would have to be asked for") {
+TEST_CASE("The ends of a line are numeric addresses, host names are rejected") {
   CHECK(parse_line_end("7700").address.sin_addr.s_addr == htonl(INADDR_ANY));
   CHECK(parse_other_site("10.0.0.1:7700,2000").bit_per_s == 2e6);
   CHECK(parse_other_site("10.0.0.1:7700").bit_per_s == 0);
@@ -146,7 +146,7 @@ TEST_CASE("The ends of a line are addresses, never names that would have to be a
     CHECK_THROWS_AS(parse_other_site(wrong), std::invalid_argument);
 }
 
-TEST_CASE("Only what a rule names crosses, in both directions, and only of this run") {
+TEST_CASE("Only channels with a rule and messages of this run pass, in both directions") {
   Relay relay(rules("<pass channel='TOOL_STATE'/>"), sites(1), kRun);
   relay.hear_bus({"CONTACTS", encode(tool(0, kBegin))}, false, kBegin);
   CHECK(flushed(relay, kBegin).empty());
@@ -162,7 +162,7 @@ TEST_CASE("Only what a rule names crosses, in both directions, and only of this 
   CHECK(relay.hear_line(0, {{"TOOL_STATE", far}, false}, kBegin));
 }
 
-TEST_CASE("What passes unthinned arrives byte for byte, and keeps its port") {
+TEST_CASE("A message of a rule without thinning arrives unchanged and on its port") {
   Relay relay(rules("<pass channel='SCENE_MANIFEST'/>"), sites(1), kRun);
   const auto bytes = encode(tool(41, kBegin));  // any message: only the reader checks the type
   relay.hear_bus({"SCENE_MANIFEST", bytes}, true, kBegin);
@@ -173,7 +173,7 @@ TEST_CASE("What passes unthinned arrives byte for byte, and keeps its port") {
   CHECK(std::equal(bytes.begin(), bytes.end(), m->message.data.begin(), m->message.data.end()));
 }
 
-TEST_CASE("A thinned channel keeps its rate and is numbered without gaps, each sender by itself") {
+TEST_CASE("A thinned channel keeps its rate, and each sender has its own sequence numbers without gaps") {
   Relay relay(rules("<pass channel='TOOL_STATE' rate='60Hz'/>"), sites(1), kRun);
   std::map<std::int32_t, std::vector<std::int64_t>> numbers;
   for (int i = 0; i < 2000; ++i) {
@@ -196,7 +196,7 @@ TEST_CASE("A thinned channel keeps its rate and is numbered without gaps, each s
   }
 }
 
-TEST_CASE("A sender at just its rate loses none to early and late sending") {
+TEST_CASE("A jittered sender at the permitted rate loses no message") {
   Relay relay(rules("<pass channel='NODE_HEALTH' rate='10Hz'/>"), sites(1), kRun);
   std::size_t passed = 0;
   for (int i = 0; i < 300; ++i) {
@@ -207,7 +207,7 @@ TEST_CASE("A sender at just its rate loses none to early and late sending") {
   CHECK(passed >= 298);
 }
 
-TEST_CASE("A deadband lets pass what moved by more than it, with all its pages, and nothing else") {
+TEST_CASE("A deadband passes all pages of a snapshot whose change exceeds it") {
   Relay relay(rules("<pass channel='WORLD_STATE' deadband='0% position floor=1mm'/>"), sites(1), kRun);
   std::vector<double> told;
   std::int64_t seq = 0, passed = 0;
@@ -232,7 +232,7 @@ TEST_CASE("A deadband lets pass what moved by more than it, with all its pages, 
   for (std::size_t i = 1; i < told.size(); ++i) CHECK(told[i] - told[i - 1] == Approx(0.0012));
 }
 
-TEST_CASE("What each of three sites says is heard once in every other, and never comes back") {
+TEST_CASE("Each message of three sites arrives once at the others and never returns") {
   std::deque<Site> all;
   for (int i = 0; i < 3; ++i) all.push_back({Relay(rules("<pass channel='TOOL_STATE'/>"), sites(2), kRun)});
   for (int i = 0; i < 50; ++i) {
@@ -247,7 +247,7 @@ TEST_CASE("What each of three sites says is heard once in every other, and never
   }
 }
 
-TEST_CASE("Two relays in one site make no circles") {
+TEST_CASE("Two relays in one site create no loop") {
   // Two relays receive the bus of the first site, each with a line to the second site.
   const std::string pass = "<pass channel='TOOL_STATE'/>";
   Relay near_1(rules(pass), sites(1), kRun), near_2(rules(pass), sites(1), kRun), far(rules(pass), sites(2), kRun);
@@ -265,7 +265,7 @@ TEST_CASE("Two relays in one site make no circles") {
   CHECK_FALSE(near_2.hear_line(0, {{"TOOL_STATE", bytes}, false}, kBegin));
 }
 
-TEST_CASE("A site whose line is slow is late and sparse, and the other is not") {
+TEST_CASE("A slow line delays and thins only its own site") {
   auto ends = sites(2);
   ends[0].bit_per_s = 100e3;
   Relay relay(rules("<pass channel='TOOL_STATE'/><pass channel='CONTACT_EVENTS' first='true'/>"), ends, kRun);
@@ -288,7 +288,7 @@ TEST_CASE("A site whose line is slow is late and sparse, and the other is not") 
   CHECK(relay.note(kBegin).find("too slow") != std::string::npos);
 }
 
-TEST_CASE("A sender that was silent for long may turn up in another site") {
+TEST_CASE("A sender may move to another site after a long silence") {
   Sides sides;
   const header_t h = header("audio_node", 0, kBegin);
   CHECK(sides.lives(h, 1, kBegin));
@@ -298,7 +298,7 @@ TEST_CASE("A sender that was silent for long may turn up in another site") {
   CHECK(sides.echoes() == 2);
 }
 
-TEST_CASE("What is remembered of senders is bounded") {
+TEST_CASE("The number of remembered senders is bounded") {
   Sides sides;
   for (std::int32_t i = 0; i < 10'000; ++i) {
     header_t h = header("a", 0, kBegin);

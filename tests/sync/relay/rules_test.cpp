@@ -21,7 +21,7 @@ std::string within(const std::string& pass) { return "<relay>\n" + pass + "\n</r
 
 }  // namespace
 
-TEST_CASE("Rules of a relay say what passes, how sparse, and what goes first") {
+TEST_CASE("Relay rules are parsed with channel, rate, deadband and priority") {
   const RelayRules rules = parse_relay_rules(R"(<?xml version="1.0"?>
 <!-- of a test -->
 <relay>
@@ -41,7 +41,7 @@ TEST_CASE("Rules of a relay say what passes, how sparse, and what goes first") {
   CHECK(rules.find("TOUCH_MODEL") == nullptr);
 }
 
-TEST_CASE("Rules of a relay that are wrong are refused with their line") {
+TEST_CASE("Invalid relay rules are rejected with their line") {
   CHECK(refusal("").find("rules.xml:1: this is no XML") == 0);
   CHECK(refusal("<relay><pass></relay>").find("rules.xml:1: this is no XML") == 0);
   CHECK(refusal("<profile/>") == "rules.xml:1: rules of a relay begin with <relay>");

@@ -38,7 +38,7 @@ HostTime at(std::int64_t sim_ns) { return host_time(sim_ns + 1'000 * kMs); }
 
 }  // namespace
 
-TEST_CASE("A thrown body is followed exactly between snapshots") {
+TEST_CASE("The path of a thrown body is interpolated exactly between snapshots") {
   // A cubic through both ends with both velocities reproduces any parabola: only float velocities differ (1e-7 relative).
   const auto x = [](double t) { return Eigen::Vector3d(2 * t, 0, 3 * t - 4.9 * t * t); };
   const auto v = [](double t) { return Eigen::Vector3d(2, 0, 3 - 9.8 * t); };
@@ -51,7 +51,7 @@ TEST_CASE("A thrown body is followed exactly between snapshots") {
   }
 }
 
-TEST_CASE("A turning body is interpolated along the short way round") {
+TEST_CASE("A rotation is interpolated along the shorter arc") {
   BodyHistory history(1);
   history.push(page(0, 0, {0, 0, 0}, {0, 0, 0}, 3.0), at(0));
   history.push(page(10 * kMs, 0, {0, 0, 0}, {0, 0, 0}, 3.4), at(10 * kMs));
@@ -60,7 +60,7 @@ TEST_CASE("A turning body is interpolated along the short way round") {
   CHECK(std::abs(std::remainder(angle - 3.2, 2 * M_PI)) < 1e-6);
 }
 
-TEST_CASE("Past the newest snapshot a body moves on for 50 ms, is then held, then stale") {
+TEST_CASE("After the newest snapshot a body is extrapolated for 50 ms, then held, then stale") {
   BodyHistory history(1);
   history.push(page(0, 0, {1, 0, 0}, {2, 0, 0}), at(0));
   CHECK(history.pose(0, sim_time(0)).status == SampleStatus::kExact);
@@ -73,7 +73,7 @@ TEST_CASE("Past the newest snapshot a body moves on for 50 ms, is then held, the
   CHECK(history.pose(0, sim_time(300 * kMs)).status == SampleStatus::kStale);
 }
 
-TEST_CASE("A body that newer snapshots leave out rests where it was") {
+TEST_CASE("A body that newer snapshots omit rests where it was") {
   BodyHistory history(1);
   history.push(page(0, 0, {1, 2, 3}, {0, 0, 0}), at(0));
   for (int i = 1; i < 50; ++i) history.push(page(i * 16 * kMs, 1, {0, 0, 0}, {0, 0, 0}), at(i * 16 * kMs));
@@ -82,7 +82,7 @@ TEST_CASE("A body that newer snapshots leave out rests where it was") {
   CHECK(s.status == SampleStatus::kInterpolated);
 }
 
-TEST_CASE("A moving body whose page was lost moves on, and is not called known because others are") {
+TEST_CASE("A moving body with a lost page is extrapolated, then held, then stale") {
   BodyHistory history(1);
   history.push(page(0, 0, {1, 2, 3}, {2, 0, 0}), at(0));
   for (int i = 1; i < 50; ++i) history.push(page(i * 16 * kMs, 1, {0, 0, 0}, {0, 0, 0}), at(i * 16 * kMs));
@@ -93,7 +93,7 @@ TEST_CASE("A moving body whose page was lost moves on, and is not called known b
   CHECK(history.pose(0, sim_time(300 * kMs)).status == SampleStatus::kStale);
 }
 
-TEST_CASE("A restarted simulation leaves no pose of the old one") {
+TEST_CASE("A restart of the simulation removes all old poses") {
   BodyHistory history(1);
   history.push(page(900 * kMs, 0, {1, 0, 0}, {0, 0, 0}), at(900 * kMs));
   history.push(page(0, 1, {0, 0, 0}, {0, 0, 0}, 0, 2), at(901 * kMs));
@@ -101,7 +101,7 @@ TEST_CASE("A restarted simulation leaves no pose of the old one") {
   CHECK(history.pose(1, sim_time(0)).status == SampleStatus::kExact);
 }
 
-TEST_CASE("A page far in the future is refused, and what comes after it is heard") {
+TEST_CASE("A page far in the future is rejected, and the next valid one is accepted") {
   BodyHistory history(1);
   history.push(page(0, 0, {1, 0, 0}, {0, 0, 0}), at(0));
   world_state_t forged = page(0, 0, {9, 9, 9}, {0, 0, 0});
@@ -113,7 +113,7 @@ TEST_CASE("A page far in the future is refused, and what comes after it is heard
   CHECK(history.status(sim_time(300 * kMs)) == SampleStatus::kStale);
 }
 
-TEST_CASE("What a false first page left is forgotten when the time turns out to be another") {
+TEST_CASE("A forged first page is discarded after contradicting pages") {
   BodyHistory history(1);
   world_state_t forged = page(3'600'000 * kMs, 0, {9, 9, 9}, {0, 0, 0});
   forged.header.publish_time_ns = forged.clock.host_ns = 1'000 * kMs;
@@ -123,14 +123,14 @@ TEST_CASE("What a false first page left is forgotten when the time turns out to 
   CHECK(history.status(sim_time(600 * kMs)) == SampleStatus::kStale);
 }
 
-TEST_CASE("Bodies beyond what any scene can tell of are refused") {
+TEST_CASE("A body id beyond the limit is rejected") {
   BodyHistory history(1);
   history.push(page(0, BodyHistory::kMaxBodies, {1, 0, 0}, {0, 0, 0}), at(0));
   CHECK(history.refused() == 1);
   CHECK(history.pose(BodyHistory::kMaxBodies, sim_time(0)).status == SampleStatus::kNone);
 }
 
-TEST_CASE("A sense that presents seconds late still finds where bodies were, however long") {
+TEST_CASE("Poses are kept for a modality that presents up to 20 s late") {
   BodyHistory history(1);
   const std::int64_t late = GENERATE(500, 5'000, 20'000) * kMs;
   for (std::int64_t i = 0; i < 60 * 30; ++i) {

@@ -80,7 +80,7 @@ HostTime at(std::int64_t sim_ns) { return host_time(sim_ns + 1'000 * kMs); }
 
 }  // namespace
 
-TEST_CASE("An event that is repeated in many messages is due once, in its tick") {
+TEST_CASE("A repeated event is delivered once, in its tick") {
   ContactStream stream(kRun);
   for (int i = 0; i < 50; ++i)
     stream.push(events((10 + i) * kMs, {event(1, 1, contact_event_t::BEGIN, 9'500'000)}), at((10 + i) * kMs));
@@ -92,7 +92,7 @@ TEST_CASE("An event that is repeated in many messages is due once, in its tick")
   CHECK(stream.duplicates() == 49);
 }
 
-TEST_CASE("Events come out in order of their time, each once, whatever the wire does to the messages") {
+TEST_CASE("Events are delivered once and in order of time when messages are lost, repeated and reordered") {
   std::mt19937 random(5);
   for (int round = 0; round < 50; ++round) {
     // The oracle: the plain list of events.
@@ -130,7 +130,7 @@ TEST_CASE("Events come out in order of their time, each once, whatever the wire 
   }
 }
 
-TEST_CASE("The state at a time says how it was obtained") {
+TEST_CASE("A sampled state has the status exact, interpolated, held, stale or none") {
   ContactStream stream(kRun);
   CHECK(stream.state_at(sim_time(0)).status == SampleStatus::kNone);
   stream.push(frame(10 * kMs, {contact(1, 2)}), at(10 * kMs));
@@ -144,7 +144,7 @@ TEST_CASE("The state at a time says how it was obtained") {
   CHECK(stream.state_at(sim_time(71 * kMs)).status == SampleStatus::kStale);
 }
 
-TEST_CASE("A snapshot counts only when all its pages have arrived, in any order") {
+TEST_CASE("A snapshot is used only when all its pages have arrived, in any order") {
   ContactStream stream(kRun);
   stream.push(frame(1 * kMs, {contact(1, 1), contact(2, 1)}), at(1 * kMs));
   stream.push(frame(2 * kMs, {contact(2, 1)}, 1, 2), at(2 * kMs));
@@ -155,7 +155,7 @@ TEST_CASE("A snapshot counts only when all its pages have arrived, in any order"
   CHECK(now.value[0].contact_id == 2);
 }
 
-TEST_CASE("A snapshot that was overtaken on its way becomes whole all the same, and many may be on their way") {
+TEST_CASE("Up to 40 incomplete snapshots are completed by late pages") {
   ContactStream stream(kRun);
   for (int ms = 0; ms < 40; ++ms) stream.push(frame(ms * kMs, {contact(1, static_cast<float>(ms * ms))}, 0, 2), at(ms * kMs));
   for (int ms = 39; ms >= 0; --ms) stream.push(frame(ms * kMs, {}, 1, 2), at((80 - ms) * kMs));
@@ -167,7 +167,7 @@ TEST_CASE("A snapshot that was overtaken on its way becomes whole all the same, 
   }
 }
 
-TEST_CASE("No state reaches across a begin or an end") {
+TEST_CASE("Interpolation does not cross a begin or an end") {
   ContactStream stream(kRun);
   stream.push(frame(10 * kMs, {}), at(10 * kMs));
   stream.push(events(20 * kMs, {event(1, 1, contact_event_t::BEGIN, 15 * kMs)}), at(20 * kMs));
@@ -179,7 +179,7 @@ TEST_CASE("No state reaches across a begin or an end") {
   CHECK(stream.state_at(sim_time(26 * kMs)).value.empty());
 }
 
-TEST_CASE("A restarted simulation ends all contacts of the old one, and the old one is not heard again") {
+TEST_CASE("A restart of the simulation ends all contacts, and messages of the old one are ignored") {
   ContactStream stream(kRun);
   stream.push(frame(10 * kMs, {contact(1, 2)}, 0, 1, 1), at(10 * kMs));
   stream.push(frame(1 * kMs, {}, 0, 1, 2), at(20 * kMs));
@@ -190,7 +190,7 @@ TEST_CASE("A restarted simulation ends all contacts of the old one, and the old 
   CHECK(stream.restarts() == 1);
 }
 
-TEST_CASE("A log that begins anew is a new epoch of the same incarnation") {
+TEST_CASE("A replayed log that restarts is a new epoch of the same incarnation") {
   ContactStream stream(kRun);
   stream.push(frame(5000 * kMs, {contact(1, 2)}), at(5000 * kMs));
   stream.push(events(5000 * kMs, {event(1, 1, contact_event_t::BEGIN, 4999 * kMs)}), at(5000 * kMs));
@@ -200,7 +200,7 @@ TEST_CASE("A log that begins anew is a new epoch of the same incarnation") {
   CHECK(stream.take_events(SimTime::max()).size() == 1);
 }
 
-TEST_CASE("Messages of another run are mapped to our clock by their arrival") {
+TEST_CASE("Messages of another run are mapped to the own clock by their arrival") {
   ContactStream stream(kRun + 1);  // so that the messages above belong to another run
   // Their clock runs 1000 s behind ours; latency 1 ms, once 0.1 ms.
   const auto ours = [](std::int64_t theirs) { return host_time(theirs + 1'000'000 * kMs); };
@@ -218,7 +218,7 @@ TEST_CASE("Messages of another run are mapped to our clock by their arrival") {
   CHECK(error <= Nanoseconds(100'000 + 12'000));
 }
 
-TEST_CASE("The integral over a tick is the time average of force and area while in contact") {
+TEST_CASE("The integral over a tick is the time average of force and area during contact") {
   ContactStream stream(kRun);
   for (std::int64_t step = 0; step <= 40; ++step)
     stream.push(frame(step * kMs, step >= 10 && step < 20 ? std::vector{contact(1, 3)} : std::vector<contact_t>{}),
@@ -236,7 +236,7 @@ TEST_CASE("The integral over a tick is the time average of force and area while 
   CHECK(stream.integral(sim_time(0), sim_time(20 * kMs), 5, 1).contact_time == Nanoseconds(0));
 }
 
-TEST_CASE("Of two bodies touched at once the integral tells what each had, and both add up to the whole") {
+TEST_CASE("The integral has a part for each touched body, and the parts add up to the total") {
   ContactStream stream(kRun);
   contact_t first = contact(1, 3), second = contact(2, 1), same = contact(3, 2);
   second.body_a = 7, second.material_a = 9;
@@ -259,7 +259,7 @@ TEST_CASE("Of two bodies touched at once the integral tells what each had, and b
   CHECK(tick.force_N == Approx(4.5));
 }
 
-TEST_CASE("A contact of 3 ms between two snapshots is integrated from its events alone") {
+TEST_CASE("A contact of 3 ms between two snapshots is integrated from its events") {
   ContactStream stream(kRun);
   stream.push(frame(0, {}), at(0));
   stream.push(frame(20 * kMs, {}), at(20 * kMs));
@@ -272,22 +272,22 @@ TEST_CASE("A contact of 3 ms between two snapshots is integrated from its events
   CHECK(tick.material == 3);
 }
 
-TEST_CASE("A snapshot far in the future is refused, and what comes after it is heard") {
+TEST_CASE("A snapshot far in the future is rejected, and the next valid one is accepted") {
   ContactStream stream(kRun);
   stream.push(frame(10 * kMs, {contact(1, 1)}), at(10 * kMs));
-  SECTION("with an honest clock") {
+  SECTION("the clock of the forged snapshot is correct") {
     contact_frame_t forged = frame(10 * kMs, {contact(9, 9)});
     forged.header.sim_time_ns = 3'600'000 * kMs;
     stream.push(forged, at(10 * kMs));
     CHECK(stream.refused() == 1);
   }
-  SECTION("with a clock that agrees with it") {
+  SECTION("the clock of the forged snapshot matches its false time") {
     contact_frame_t forged = frame(3'600'000 * kMs, {contact(9, 9)});
     forged.header.publish_time_ns = 1'010 * kMs;
     forged.clock.host_ns = 1'010 * kMs;
     stream.push(forged, at(10 * kMs));
   }
-  SECTION("within a second it is kept and silences nobody either") {
+  SECTION("a snapshot less than a second ahead is kept and blocks no later one") {
     contact_frame_t forged = frame(10 * kMs, {contact(9, 9)});
     forged.header.sim_time_ns = 900 * kMs;
     stream.push(forged, at(10 * kMs));
@@ -300,7 +300,7 @@ TEST_CASE("A snapshot far in the future is refused, and what comes after it is h
   CHECK(state.value[0].contact_id == 1);
 }
 
-TEST_CASE("What a false first message left is forgotten when the time turns out to be another") {
+TEST_CASE("A forged first message is discarded after contradicting messages") {
   ContactStream stream(kRun);
   contact_frame_t forged = frame(3'600'000 * kMs, {contact(9, 9)});
   forged.header.publish_time_ns = forged.clock.host_ns = 1'000 * kMs;
@@ -315,7 +315,7 @@ TEST_CASE("What a false first message left is forgotten when the time turns out 
   CHECK(stream.take_events(SimTime::max()).empty());
 }
 
-TEST_CASE("A snapshot published 20 ms ahead of its time is let in, at any speed of the simulation") {
+TEST_CASE("A snapshot published 20 ms ahead is accepted at any speed of the simulation") {
   for (const double rate : {0.01, 1.0, 5.0}) {
     ContactStream stream(kRun);
     for (int ms = 0; ms < 3000; ms += 16) {
@@ -330,7 +330,7 @@ TEST_CASE("A snapshot published 20 ms ahead of its time is let in, at any speed 
   }
 }
 
-TEST_CASE("Events of a future that nobody can know are refused, and those of now come through") {
+TEST_CASE("Events far in the future are rejected, current ones are delivered") {
   ContactStream stream(kRun);
   std::vector<contact_event_t> lies;
   for (int i = 0; i < 5000; ++i) lies.push_back(event(1000 + i, i, contact_event_t::HIT, 3'600'000 * kMs + i));
@@ -342,7 +342,7 @@ TEST_CASE("Events of a future that nobody can know are refused, and those of now
   CHECK(due[0].event_id == 1);
 }
 
-TEST_CASE("When too many events are pending the latest give way, and are counted") {
+TEST_CASE("When too many events are pending, the latest are dropped and counted") {
   ContactStream stream(kRun);
   std::vector<contact_event_t> early, late;
   for (int i = 0; i < 5000; ++i) late.push_back(event(10'000 + i, i, contact_event_t::HIT, 500 * kMs + i));
@@ -353,7 +353,7 @@ TEST_CASE("When too many events are pending the latest give way, and are counted
   CHECK(stream.take_events(sim_time(10 * kMs)).size() == 10);
 }
 
-TEST_CASE("A sense that presents seconds late still finds what was touched, however long") {
+TEST_CASE("Contacts are kept for a modality that presents up to 10 s late") {
   const std::int64_t late = GENERATE(150, 2'000, 10'000) * kMs;
   ContactStream stream(kRun);
   for (std::int64_t ms = 0; ms < 12'000; ++ms) {

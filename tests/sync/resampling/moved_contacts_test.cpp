@@ -75,7 +75,7 @@ const Frame* after(const ByTime& frames, std::int64_t t) {
 
 }  // namespace
 
-TEST_CASE("A contact that moves between groups is there once, as it was told last, whatever the wire does") {
+TEST_CASE("A contact that moves between groups has one state, the newest, for any loss and reordering") {
   int moved = 0, compared = 0;
   constexpr std::int64_t kContacts = 6;
   for (unsigned seed = 0; seed < 200; ++seed) {
@@ -140,7 +140,7 @@ TEST_CASE("A contact that moves between groups is there once, as it was told las
   CHECK(compared > 50'000);
 }
 
-TEST_CASE("What was foreseen and did not come true is no contact. What comes true is one from its begin on") {
+TEST_CASE("A predicted contact counts from its begin event on, and not without one") {
   ContactStream stream(1);
   std::int64_t seq = 0;
   const auto say = [&](std::int64_t now, std::int64_t time, std::set<std::int64_t> ids) {
@@ -157,12 +157,12 @@ TEST_CASE("What was foreseen and did not come true is no contact. What comes tru
   say(17, 34, {0, 5});  // 5 begins at 25, unless an intermediate snapshot arrives
   CHECK(ids_at(20) == std::set<std::int64_t>{0});
   CHECK(ids_at(34) == std::set<std::int64_t>{0});
-  SECTION("it did not") {
+  SECTION("the predicted contact does not happen") {
     say(34, 51, {0});
     CHECK(ids_at(40) == std::set<std::int64_t>{0});
     CHECK(ids_at(51) == std::set<std::int64_t>{0});
   }
-  SECTION("it did") {
+  SECTION("the predicted contact begins") {
     auto m = stamped<contact_events_t>(26, 26, 0);
     contact_event_t e{};
     e.event_id = 77, e.contact_id = 5, e.time_ns = 25 * kMs;
@@ -173,7 +173,7 @@ TEST_CASE("What was foreseen and did not come true is no contact. What comes tru
     CHECK(ids_at(25) == std::set<std::int64_t>{0, 5});
     CHECK(ids_at(34) == std::set<std::int64_t>{0, 5});
   }
-  SECTION("its begin was not heard, and it is told of again") {
+  SECTION("the begin event is lost, and a later snapshot repeats the contact") {
     say(34, 51, {0, 5});
     CHECK(ids_at(51) == std::set<std::int64_t>{0, 5});
   }

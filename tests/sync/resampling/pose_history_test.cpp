@@ -51,11 +51,11 @@ double error_rad(const Sample<BodyPose>& s, double ms) {
 
 }  // namespace
 
-TEST_CASE("Of what was never heard there is no pose") {
+TEST_CASE("An empty history has no pose") {
   CHECK(PoseHistory(kRun).at(host_time(kMs)).status == SampleStatus::kNone);
 }
 
-TEST_CASE("A pose is exact where it was reported, and between reports the even motion that it was") {
+TEST_CASE("A pose is exact at a report and interpolated between reports") {
   const Heard h;
   CHECK(h.at(200).status == SampleStatus::kExact);
   for (const double ms : {100.0, 101.0, 102.5, 399.9}) {
@@ -66,9 +66,7 @@ TEST_CASE("A pose is exact where it was reported, and between reports the even m
   CHECK(h.at(101).status == SampleStatus::kInterpolated);
 }
 
-TEST_CASE(
-    "Past the newest report it goes on as it went for 20 ms, stays there, and after 200 ms is stale but not "
-    "forgotten") {
+TEST_CASE("After the newest report a pose is extrapolated for 20 ms, then held, and stale after 200 ms") {
   const Heard h;
   const auto soon = h.at(415);
   CHECK(soon.status == SampleStatus::kExtrapolated);
@@ -82,13 +80,13 @@ TEST_CASE(
   CHECK(error_m(lost, 400) < 1e-6);  // the last known position
 }
 
-TEST_CASE("A second of the past is kept, and before it the oldest is held") {
+TEST_CASE("One second of history is kept, and the oldest pose is held before it") {
   const Heard h(3000);
   CHECK(error_m(h.at(2100), 2100) < 1e-9);
   CHECK(h.at(1000).status == SampleStatus::kHeld);
 }
 
-TEST_CASE("A report that is overtaken changes nothing, and another process that takes over ends what was") {
+TEST_CASE("A late report changes nothing, and a new process replaces the history") {
   Heard h;
   h.history.push(head_at(100 * kMs), host_time(402 * kMs));
   CHECK(h.at(400).status == SampleStatus::kExact);
@@ -97,7 +95,7 @@ TEST_CASE("A report that is overtaken changes nothing, and another process that 
   CHECK(h.at(404).status == SampleStatus::kExact);
 }
 
-TEST_CASE("What is forgotten is nowhere, and what is heard after that goes on from nothing before") {
+TEST_CASE("forget() removes all poses, and later poses are not interpolated with them") {
   Heard h;
   REQUIRE(h.at(200).status == SampleStatus::kExact);
   h.history.forget();
@@ -109,7 +107,7 @@ TEST_CASE("What is forgotten is nowhere, and what is heard after that goes on fr
   CHECK(error_m(before, 404) < 1e-9);
 }
 
-TEST_CASE("A log that is replayed speaks of another time: it is read by arrival") {
+TEST_CASE("A replayed log is read by arrival") {
   PoseHistory history(kRun);
   for (std::int64_t t = 0; t <= 200 * kMs; t += 4 * kMs) {
     tool_state_t m = head_at(t);

@@ -57,7 +57,7 @@ class Renderer {
     }
     check_events(SimTime::max(), "at the end");
     for (const auto& [id, e] : contacts_.known().events)
-      if (!got_.contains(id)) said_ << "event " << id << " never came out; ";
+      if (!got_.contains(id)) said_ << "event " << id << " was never delivered; ";
     return said_.str();
   }
 
@@ -185,7 +185,7 @@ class Renderer {
     ++tally_.true_integrals;
     const std::int64_t truth = contacts_.true_contact_time_ns(t0, t1, kTool);
     if (got.contact_time.count() != truth)
-      said_ << "over " << t0 << " .. " << t1 << " " << got.contact_time.count() << " ns instead of truly " << truth
+      said_ << "over " << t0 << " .. " << t1 << " " << got.contact_time.count() << " ns instead of the true " << truth
             << "; ";
   }
 
@@ -238,9 +238,7 @@ class Renderer {
 
 }  // namespace
 
-TEST_CASE(
-    "Whatever a hostile wire does, a tick gets each event once and in its tick, no state beyond begin and end, "
-    "and true integrals") {
+TEST_CASE("Events, states and integrals match the oracle for lost, repeated, reordered and forged messages") {
   Tally tally;
   for (std::uint64_t seed = 0; seed < 1500; ++seed) {
     Random random(seed);

@@ -9,30 +9,30 @@
 using namespace tactus::sync;
 using Cells = std::vector<std::string>;
 
-TEST_CASE("A line is cut at its commas, and an empty cell is one") {
+TEST_CASE("A line is split at its commas, and a cell may be empty") {
   CHECK(csv_cells("a,b,,c") == Cells{"a", "b", "", "c"});
   CHECK(csv_cells("") == Cells{""});
   CHECK(csv_cells(",") == Cells{"", ""});
 }
 
-TEST_CASE("A cell in double quotes holds commas and doubled quotes") {
+TEST_CASE("A quoted cell may contain commas and doubled quotes") {
   CHECK(csv_cells(R"("a, b",c)") == Cells{"a, b", "c"});
   CHECK(csv_cells(R"("say ""so""",2)") == Cells{R"(say "so")", "2"});
   CHECK(csv_cells(R"("")") == Cells{""});
 }
 
-TEST_CASE("What an office program puts around a line is no part of it") {
+TEST_CASE("The byte order mark and carriage return of a line are removed") {
   CHECK(csv_cells("\xef\xbb\xbfname,x_m\r") == Cells{"name", "x_m"});
 }
 
-TEST_CASE("A cell is a number only when it is finite and nothing else is in it") {
+TEST_CASE("A cell is a number only if all of it is one finite number") {
   CHECK(csv_number("1.5e-3") == 1.5e-3);
   CHECK(csv_number("-7") == -7);
   for (const char* none : {"", " 1", "1 ", "1,5", "0x", "nan", "inf", "1e999", "one"})
     CHECK_FALSE(csv_number(none));
 }
 
-TEST_CASE("A file is read whole or, when it is larger, no file or without an end, not at all") {
+TEST_CASE("A file is read completely, or not at all if it is too large, missing or endless") {
   const auto file = std::filesystem::temp_directory_path() / ("csv_test." + std::to_string(::getpid()));
   std::ofstream(file) << "four";
   CHECK(read_small_file(file, 4) == "four");

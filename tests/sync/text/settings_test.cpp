@@ -34,7 +34,7 @@ struct Entry {
 
 }  // namespace
 
-TEST_CASE("A quantity may carry any usual unit of its kind") {
+TEST_CASE("A quantity may have any common unit of its kind") {
   CHECK(parse_quantity("20ms", "s") == Approx(0.02));
   CHECK(parse_quantity(" 20 ms ", "s") == Approx(0.02));
   CHECK(parse_quantity("1.5 kHz", "Hz") == 1500);
@@ -45,7 +45,7 @@ TEST_CASE("A quantity may carry any usual unit of its kind") {
   CHECK(parse_quantity("5 m", "m") == 5);
 }
 
-TEST_CASE("What is no quantity of that kind is refused") {
+TEST_CASE("An invalid quantity is rejected") {
   for (const char* text :
        {"", " ", "ms", "fast", "1.2.3", "20 Hz", "0x10", "1e999", "nan", "inf", "-inf", "5e", "1,5", "--1"}) {
     INFO(text);
@@ -53,7 +53,7 @@ TEST_CASE("What is no quantity of that kind is refused") {
   }
 }
 
-TEST_CASE("Numbers survive being written and read") {
+TEST_CASE("Numbers are unchanged after writing and parsing") {
   std::mt19937_64 random(1);
   for (int i = 0; i < 1000; ++i) {
     const double x =
@@ -80,7 +80,7 @@ TEST_CASE("Settings are set by name") {
   CHECK(e.note == "anything = goes");
 }
 
-TEST_CASE("A value that does not fit is refused with a sentence that names setting, value and range") {
+TEST_CASE("The error for an invalid value names setting, value and range") {
   Example e;
   const auto refusal = [&](const char* name, const char* value) {
     try {
@@ -111,8 +111,7 @@ TEST_CASE("A value that does not fit is refused with a sentence that names setti
   CHECK(e.mode == "fast");
 }
 
-TEST_CASE(
-    "The command line overrides the scene. Entries of other nodes are not ours. The refused leave the rest") {
+TEST_CASE("The command line overrides the scene, entries of other nodes and invalid entries are ignored") {
   Example e;
   const std::vector<Entry> scene{
       {"me", "delay", "50ms"}, {"other", "voices", "3"}, {"me", "voices", "900"}, {"me", "mode", "slow"}};
@@ -126,12 +125,12 @@ TEST_CASE(
   CHECK(refused[1].starts_with("me: setting \"loud\""));
 }
 
-TEST_CASE("A scene may tighten a safety limit, and only the command line may loosen it") {
+TEST_CASE("A scene can tighten a safety limit, and only the command line can loosen it") {
   Example e;
   const auto apply = [&](const std::vector<Entry>& scene, const std::vector<std::string>& command_line) {
     return apply_settings<Example>(e, kTable, "me", scene, command_line);
   };
-  SECTION("tightened, or just as it is, by the scene") {
+  SECTION("the scene tightens or keeps the limit") {
     CHECK(apply({{"me", "hottest", "40"}, {"me", "coldest", "20"}}, {}).empty());
     CHECK(e.hottest_degC == 40);
     CHECK(e.coldest_degC == 20);
@@ -139,7 +138,7 @@ TEST_CASE("A scene may tighten a safety limit, and only the command line may loo
     CHECK(e.hottest_degC == 42);
     CHECK(e.coldest_degC == 15);
   }
-  SECTION("loosened by the scene: refused in a sentence with the remedy, also after it was tightened") {
+  SECTION("a scene that loosens the limit is rejected with a remedy, also after it tightened it") {
     const auto refused = apply({{"me", "hottest", "40"}, {"me", "hottest", "42.5"}, {"me", "coldest", "14"}}, {});
     CHECK(e.hottest_degC == 40);
     CHECK(e.coldest_degC == 15);
@@ -150,14 +149,14 @@ TEST_CASE("A scene may tighten a safety limit, and only the command line may loo
           "--set on the node's own command line");
     CHECK(refused[1].find("to 15 degC or more") != std::string::npos);
   }
-  SECTION("loosened by the command line, within its range") {
+  SECTION("the command line loosens the limit within its range") {
     CHECK(apply({{"me", "hottest", "43"}}, {"hottest=42.5", "coldest=12"}).size() == 1);
     CHECK(e.hottest_degC == 42.5);
     CHECK(e.coldest_degC == 12);
   }
 }
 
-TEST_CASE("What is live can be changed while the node runs, all else cannot, and a refused change changes nothing") {
+TEST_CASE("Only live settings change while the node runs, and a rejected change has no effect") {
   const Example own;
   Example s;
   change_live(s, own, std::span(kTable), "delay", "50ms");
@@ -168,7 +167,7 @@ TEST_CASE("What is live can be changed while the node runs, all else cannot, and
   CHECK((s.voices == 8 && s.delay_s == Approx(0.05)));
 }
 
-TEST_CASE("A live change cannot loosen a safety limit beyond its default or beyond the command line, but can go back") {
+TEST_CASE("A live change loosens no safety limit beyond the default or the command line") {
   Example own;
   own.hottest_degC = 40;  // the command line tightened one limit
   own.coldest_degC = 12;  // and loosened the other

@@ -31,7 +31,7 @@ Histogram of(const std::vector<std::int64_t>& values) {
 
 }  // namespace
 
-TEST_CASE("A quantile lies within one bin of the true one") {
+TEST_CASE("A quantile is within one bin of the true one") {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     std::vector<std::int64_t> values = durations(seed, 1000);
     const Histogram h = of(values);
@@ -47,7 +47,7 @@ TEST_CASE("A quantile lies within one bin of the true one") {
   }
 }
 
-TEST_CASE("Quantiles rise with q and never exceed the largest value") {
+TEST_CASE("Quantiles increase with q and never exceed the largest value") {
   const Histogram h = of(durations(5, 500));
   Nanoseconds before{0};
   for (double q = 0; q <= 1.0001; q += 0.01) {
@@ -59,13 +59,13 @@ TEST_CASE("Quantiles rise with q and never exceed the largest value") {
   CHECK(h.quantile(1) == h.max());
 }
 
-TEST_CASE("An empty histogram answers zero") {
+TEST_CASE("An empty histogram returns zero") {
   CHECK(Histogram().quantile(0.5) == Nanoseconds(0));
   CHECK(Histogram().count() == 0);
   CHECK(Histogram().to_message().bin_count == 0);
 }
 
-TEST_CASE("Zero, negative and enormous durations find a bin") {
+TEST_CASE("Zero, negative and very large durations have a bin") {
   Histogram h;
   for (const std::int64_t v :
        {std::int64_t{0}, std::int64_t{-5}, std::int64_t{999}, std::int64_t{1000}, std::int64_t{1} << 62})
@@ -74,7 +74,7 @@ TEST_CASE("Zero, negative and enormous durations find a bin") {
   CHECK(h.max() == Nanoseconds(std::int64_t{1} << 62));
 }
 
-TEST_CASE("Merging is the same as adding all values to one") {
+TEST_CASE("Merging histograms equals adding all values to one") {
   const auto a = durations(1, 300), b = durations(2, 400);
   Histogram merged = of(a);
   merged.merge(of(b));
@@ -84,13 +84,13 @@ TEST_CASE("Merging is the same as adding all values to one") {
   CHECK(merged.max() == of(both).max());
 }
 
-TEST_CASE("A histogram goes over the bus and back") {
+TEST_CASE("A histogram is unchanged after encoding as a message") {
   const Histogram h = of(durations(3, 300));
   const Histogram back = Histogram::from_message(h.to_message());
   CHECK(back.to_message().bins == h.to_message().bins);
   CHECK(back.max() == h.max());
   CHECK(back.count() == h.count());
-  SECTION("also when the sender has more bins than we") {
+  SECTION("a message with more bins than the receiver is accepted") {
     histogram_t m{};
     m.bins.assign(500, 1);
     m.bin_count = 500;

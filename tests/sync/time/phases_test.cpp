@@ -14,7 +14,7 @@ void pass_us(std::int64_t us) { now += Nanoseconds(1000 * us); }
 
 }  // namespace
 
-TEST_CASE("Each phase is told what was spent in it, what is inside another only once, and the rest is other") {
+TEST_CASE("Each phase has its own time without nested phases, and the rest counts as other") {
   Phases phases(by_hand);
   phases.begin(true);
   pass_us(5);
@@ -44,7 +44,7 @@ TEST_CASE("Each phase is told what was spent in it, what is inside another only 
   CHECK(phases.us(Phase::kSolve) == 0);
 }
 
-TEST_CASE("A tick that nobody measures reads no clock, nor does another thread of the process") {
+TEST_CASE("A phase timer reads no clock in an unmeasured tick or on another thread") {
   static int read = 0;
   Phases phases([] { return ++read, HostTime{}; });
   phases.begin(false);

@@ -22,7 +22,7 @@ TEST_CASE("Simulated and host time cannot be mixed") {
   STATIC_REQUIRE_FALSE(std::is_convertible_v<std::int64_t, HostTime>);
 }
 
-TEST_CASE("A map in real time is exact to the nanosecond in both directions, after years too") {
+TEST_CASE("A time map at rate 1 is exact to 1 ns in both directions, also after years") {
   std::mt19937_64 random(1);
   std::uniform_int_distribution<std::int64_t> ns(0, std::int64_t{1} << 60);
   for (int i = 0; i < 1000; ++i) {
@@ -33,7 +33,7 @@ TEST_CASE("A map in real time is exact to the nanosecond in both directions, aft
   }
 }
 
-TEST_CASE("At other speeds the two functions are inverse, within rounding") {
+TEST_CASE("A time map at other rates is inverted within rounding") {
   std::mt19937_64 random(2);
   std::uniform_int_distribution<std::int64_t> near(-1'000'000'000, 1'000'000'000);
   for (const double rate : {0.01, 0.3, 0.999, 1.7, 10.0}) {
@@ -47,7 +47,7 @@ TEST_CASE("At other speeds the two functions are inverse, within rounding") {
   }
 }
 
-TEST_CASE("A paused world stands at its instant whatever the host's time, and has no other host time") {
+TEST_CASE("A paused world has constant simulated time and one host time") {
   const TimeMap map{sim_time(42), host_time(1000), 0};
   CHECK(map.to_sim(host_time(0)) == sim_time(42));
   CHECK(map.to_sim(host_time(1'000'000'000)) == sim_time(42));
@@ -55,7 +55,7 @@ TEST_CASE("A paused world stands at its instant whatever the host's time, and ha
   CHECK(map.to_host(sim_time(7)) == host_time(1000));
 }
 
-TEST_CASE("Seconds and nanoseconds convert both ways") {
+TEST_CASE("Seconds and nanoseconds are converted in both directions") {
   CHECK(from_seconds(1.5) == 1500ms);
   CHECK(to_seconds(250ms) == Approx(0.25));
   CHECK(to_ns(host_time(-5)) == -5);

@@ -76,7 +76,7 @@ const Schema& schema() {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("Every number and text of a message is a row that reads back to the same", "",
+TEMPLATE_TEST_CASE("Every number and text of a message has a row that parses to the same value", "",
                    EVERY_CHANNELS_TYPE) {
   Log log;
   Samples samples(21);
@@ -114,7 +114,7 @@ TEMPLATE_TEST_CASE("Every number and text of a message is a row that reads back 
   }
 }
 
-TEMPLATE_TEST_CASE("A wide table has a column for each field that is in no list, and as many cells in every row",
+TEMPLATE_TEST_CASE("A wide table has a column for each field outside lists, and rows of equal length",
                    "", EVERY_CHANNELS_TYPE) {
   Log log;
   Samples samples(22);
@@ -142,7 +142,7 @@ TEMPLATE_TEST_CASE("A wide table has a column for each field that is in no list,
   }
 }
 
-TEST_CASE("Text with commas, quotes and ends of lines stays one cell, and damaged messages make no row") {
+TEST_CASE("Text with commas, quotes and line ends stays in one cell, and damaged messages have no row") {
   CHECK(csv_cells(csv_cell(std::string_view("a,\"b\""))) == std::vector<std::string>{"a,\"b\""});
   CHECK(csv_cell(std::string_view("plain")) == "plain");
   CHECK(csv_cell(Leaf(0.1)) == "0.1");
@@ -159,7 +159,7 @@ TEST_CASE("Text with commas, quotes and ends of lines stays one cell, and damage
   CHECK(WideColumns(type).row(log.context, log.event("X", bytes), {}).empty());
 }
 
-TEST_CASE("Tagged values have the instant at which they were taken, and senders their names") {
+TEST_CASE("Tagged values have their own time stamps, and senders have names") {
   Log log;
   tag_list_t list{};
   list.header.run_id = list.header.incarnation = 1, list.node = "haptic_node", list.list = 5,

@@ -29,7 +29,7 @@ node_health_t health(const std::string& node) {
 
 }  // namespace
 
-TEST_CASE("The table shows how a node fares") {
+TEST_CASE("The table shows state, ticks and input age of a node") {
   WatchTable table;
   table.observe(health("haptic_node"), kNow);
   const auto rows = table.rows(kNow + Nanoseconds(100'000'000));
@@ -38,23 +38,23 @@ TEST_CASE("The table shows how a node fares") {
   CHECK(rows[0].missed_ticks == 3);
   CHECK(rows[0].rendered == 17);
 
-  SECTION("the age is that of an input that should flow, not of events that did not happen") {
+  SECTION("the age is that of a continuous input and not of an event channel") {
     CHECK(rows[0].oldest_input == "TOUCH_MODEL");
     CHECK(rows[0].input_age == Nanoseconds(1'300'000));
   }
-  SECTION("a node that falls silent is lost, and shows no rate") {
+  SECTION("a silent node is lost and has no rate") {
     const auto later = table.rows(kNow + Nanoseconds(600'000'000));
     CHECK(later[0].state == "LOST");
     CHECK(later[0].rate_Hz == 0);
     CHECK(later[0].note == "silent for 600 ms");
   }
-  SECTION("and comes back") {
+  SECTION("a node that publishes again is running") {
     table.observe(health("haptic_node"), kNow + Nanoseconds(2'000'000'000));
     CHECK(table.rows(kNow + Nanoseconds(2'000'000'000))[0].state == "running");
   }
 }
 
-TEST_CASE("The table fits the terminal") {
+TEST_CASE("The table fits the width of the terminal") {
   WatchTable table;
   for (const char* name : {"audio_node", "haptic_node", "a_node_with_quite_a_long_name_indeed"})
     table.observe(health(name), kNow);
@@ -78,11 +78,11 @@ TEST_CASE("The table fits the terminal") {
   CHECK_THAT(text, Catch::Contains("haptic to audio -20 ms +-0.04 ms"));
 }
 
-TEST_CASE("Before the first report the table says so") {
+TEST_CASE("Without a report the table contains a message") {
   CHECK_THAT(WatchTable().to_text(kNow), Catch::Contains("no node has reported yet"));
 }
 
-TEST_CASE("What a node says is shown, not obeyed by the terminal") {
+TEST_CASE("Control characters from a node are escaped") {
   WatchTable table;
   node_health_t m = health("a\x1b[2J");
   m.note = "one\ntwo\x1b]0;title\a";
@@ -93,7 +93,7 @@ TEST_CASE("What a node says is shown, not obeyed by the terminal") {
   CHECK_THAT(text, Catch::Contains("\\x1b[2J") && Catch::Contains("one\\x0atwo"));
 }
 
-TEST_CASE("As JSON it is one line, whatever a note holds") {
+TEST_CASE("The JSON output is one line for any note") {
   WatchTable table;
   node_health_t m = health("audio_node");
   m.note = "line\nbreak \"quoted\" \xff";

@@ -42,7 +42,7 @@ struct Flag {
 
 }  // namespace
 
-TEST_CASE("Programs wake at their deadlines and in the order of these, and a virtual hour takes no time") {
+TEST_CASE("Programs wake in the order of their deadlines, and a virtual hour passes at once") {
   const Trace trace = two_loops(3);
   CHECK(std::is_sorted(trace.begin(), trace.end(), [](auto& a, auto& b) { return a.second < b.second; }));
   CHECK(std::count_if(trace.begin(), trace.end(), [](auto& row) { return row.first == "slow"; }) == 143);  // 1000 / 7, and the first one
@@ -66,12 +66,12 @@ TEST_CASE("Programs wake at their deadlines and in the order of these, and a vir
   CHECK(time.result("sleeper") == 5);
 }
 
-TEST_CASE("One seed gives one story, and another seed another") {
+TEST_CASE("The same seed gives the same trace, another seed gives another") {
   CHECK(two_loops(3) == two_loops(3));
   CHECK(two_loops(3) != two_loops(4));
 }
 
-TEST_CASE("A program that is asked to leave leaves, one that does not is unwound, and a killed one never wakes again") {
+TEST_CASE("A program ends on request, is unwound at the timeout, and never wakes after kill()") {
   VirtualTime time;
   bool polite = false, stubborn = false, killed = false;
   int woke = 0;
@@ -107,7 +107,7 @@ TEST_CASE("A program that is asked to leave leaves, one that does not is unwound
   CHECK_FALSE(time.any());
 }
 
-TEST_CASE("What a program throws comes out where the time is run, and the others go on") {
+TEST_CASE("run_for() rethrows an exception of a program, and the other programs continue") {
   VirtualTime time;
   int woke = 0;
   time.add("thrower", [] {
@@ -125,7 +125,7 @@ TEST_CASE("What a program throws comes out where the time is run, and the others
   time.end();
 }
 
-TEST_CASE("There is one virtual time at a time, and only its programs sleep in it") {
+TEST_CASE("Only one virtual time exists at once, and only its programs may sleep in it") {
   CHECK(VirtualTime::current() == nullptr);
   {
     VirtualTime time;
@@ -137,14 +137,14 @@ TEST_CASE("There is one virtual time at a time, and only its programs sleep in i
   CHECK(host_now() != VirtualTime::kBegin);
 }
 
-TEST_CASE("What is opened in virtual time is there at once") {
+TEST_CASE("A background task in virtual time is done at once") {
   VirtualTime time;
   BackgroundTask<int> opening([] { return std::make_unique<int>(4); });
   REQUIRE(opening.done());
   CHECK(*opening.take() == 4);
 }
 
-TEST_CASE("A node ticks on its deadlines in virtual time, misses none and reports itself ten times a second") {
+TEST_CASE("A node in virtual time ticks at its deadlines and reports ten times a second") {
   VirtualTime time({.seed = 9});
   std::vector<HostTime> ticks;
   node_health_t last{};

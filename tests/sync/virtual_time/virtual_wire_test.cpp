@@ -30,7 +30,7 @@ void send(VirtualWire& wire, const VirtualEnd& from, int what, HostTime at, cons
 
 }  // namespace
 
-TEST_CASE("What is sent arrives after the latency, at those who have subscribed to its channel on its port") {
+TEST_CASE("A message arrives after the latency at the subscribers of its channel and port") {
   VirtualWire wire({.latency = 3ms}, 1);
   const auto sender = wire.join(), receiver = wire.join();
   Ear a("A"), b("B"), bulk("A"), own("A");
@@ -51,7 +51,7 @@ TEST_CASE("What is sent arrives after the latency, at those who have subscribed 
   CHECK(own.heard.size() == 1);
 }
 
-TEST_CASE("Jitter delays, and neither overtakes nor arrives before it was sent") {
+TEST_CASE("Jitter keeps the order and never delivers before sending") {
   VirtualWire wire({.latency = 1ms, .jitter = {.shape = JitterShape::kNormal, .scale_s = 5e-3}}, 2);
   const auto sender = wire.join(), receiver = wire.join();
   Ear ear("A");
@@ -74,7 +74,7 @@ TEST_CASE("Jitter delays, and neither overtakes nor arrives before it was sent")
   CHECK(late > kSent / 2);
 }
 
-TEST_CASE("Each receiver loses the stated share, by itself") {
+TEST_CASE("Each receiver independently loses the specified share") {
   constexpr int kSent = 20000;
   VirtualWire wire({.loss = {.share = 0.1}}, 3);
   const auto sender = wire.join(), first = wire.join(), second = wire.join();
@@ -98,7 +98,7 @@ TEST_CASE("Each receiver loses the stated share, by itself") {
   CHECK(wire.lost() == 2 * kSent - static_cast<std::int64_t>(a.heard.size() + b.heard.size()));
 }
 
-TEST_CASE("A flood is handed over in turns, oldest first, and who has gone hears nothing") {
+TEST_CASE("Messages are delivered in batches, oldest first, and not to removed receivers") {
   VirtualWire wire({}, 4);
   const auto sender = wire.join();
   auto receiver = wire.join();
@@ -114,7 +114,7 @@ TEST_CASE("A flood is handed over in turns, oldest first, and who has gone hears
   CHECK(ear.heard.size() == 4);
 }
 
-TEST_CASE("A recorder is told of all that is sent, and an impossible loss is refused") {
+TEST_CASE("A recorder receives all sent messages, and an impossible loss is rejected") {
   VirtualWire wire({.loss = {.share = 1}}, 5);
   const auto sender = wire.join();
   int told = 0;

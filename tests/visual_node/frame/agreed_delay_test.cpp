@@ -11,7 +11,7 @@ namespace {
 constexpr RoomTime kBegin = room_time(10'000'000'000);
 }
 
-TEST_CASE("The delay slews to the requested value by 5 % of elapsed time and stays there") {
+TEST_CASE("The delay slews to its target by 5 % of the elapsed time") {
   AgreedDelay delay;
   CHECK(delay.at(kBegin, kBegin) == milliseconds(0));
   delay.request(kBegin, milliseconds(10));
@@ -24,8 +24,7 @@ TEST_CASE("The delay slews to the requested value by 5 % of elapsed time and sta
   CHECK(delay.at(kBegin + milliseconds(1000), kBegin + milliseconds(980)) == milliseconds(4));
 }
 
-TEST_CASE(
-    "Two walls that sample and receive at different times have the same delay at the same instant") {
+TEST_CASE("Two walls with different sampling times have the same delay at the same time") {
   std::mt19937 random(6);
   for (int trial = 0; trial < 50; ++trial) {
     AgreedDelay often, seldom;

@@ -11,7 +11,7 @@ TEST_CASE("At a gain of one the hand is drawn at its exact position") {
   for (int i = 0; i < 100; ++i) CHECK(gain.step(Vector3d(0.013 * i, 0, 1), 1, 1 / 60.) == Vector3d::Zero());
 }
 
-TEST_CASE("The drawn hand moves by the gain times the motion of the hand") {
+TEST_CASE("The drawn hand moves by the gain times the real motion") {
   const double g = GENERATE(0.25, 0.5, 2.0);
   DisplayGain gain;
   const Vector3d begin(0.1, 0.2, 0.3);
@@ -25,7 +25,7 @@ TEST_CASE("The drawn hand moves by the gain times the motion of the hand") {
   CHECK((drawn - begin - g * moved).norm() < 1e-12);
 }
 
-TEST_CASE("Back at a gain of one the offset decays with its time constant, and not while the gain is below one") {
+TEST_CASE("At a gain of one the offset decays with its time constant") {
   DisplayGain gain;
   gain.step(Vector3d::Zero(), 0.5, 0.01);
   const double off = gain.step(Vector3d(0.1, 0, 0), 0.5, 0.01).norm();
@@ -36,7 +36,7 @@ TEST_CASE("Back at a gain of one the offset decays with its time constant, and n
   CHECK(left == Approx(off * std::exp(-1)));
 }
 
-TEST_CASE("The offset of the drawn hand never exceeds a forearm") {
+TEST_CASE("The offset of the drawn hand is limited to the length of a forearm") {
   DisplayGain gain;
   for (int i = 0; i < 1000; ++i) CHECK(gain.step(Vector3d(0.1 * i, 0, 0), 10, 0.01).norm() <= DisplayGain::kMaxOffset_m * 1.000001);
   gain.reset();

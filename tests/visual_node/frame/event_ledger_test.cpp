@@ -22,7 +22,7 @@ contact_event_t event(std::int64_t id, int kind, std::int64_t time_ns) {
 }
 }  // namespace
 
-TEST_CASE("Every begin and hit yields exactly one report under any frame timing") {
+TEST_CASE("Every begin and hit has exactly one report under any frame timing") {
   const Settings settings;
   const sync::TimeMap map{sync::sim_time(0), sync::host_time(5'000'000'000), 1};
   std::mt19937 random(11);
@@ -81,8 +81,7 @@ TEST_CASE("The outcome of a late event follows the rule of the modality") {
   CHECK(outcome(sync::Late::kAlwaysApply, 5'000'000'000, 5'000'000'000) == presentation_t::LATE);
 }
 
-TEST_CASE(
-    "Drawing time is predicted by the median, so one stop within a frame does not change it") {
+TEST_CASE("The drawing time is predicted by its median and ignores a single stall") {
   RenderTime time;
   for (int i = 0; i < 9; ++i) time.add(milliseconds(5));
   CHECK(time.expected() == milliseconds(5));

@@ -118,8 +118,7 @@ TEST_CASE_METHOD(Fixture, "A frame shows the world at the instant at which it is
   CHECK(x_of(f) == Approx(2 + 1e-9 * static_cast<double>(t) + 0.004).margin(1e-6));  // 4 ms ahead at 1 m/s
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "Before the scene a frame is dark and shows WAITING, and a late joiner needs no restart") {
+TEST_CASE_METHOD(Fixture, "Before the scene arrives a frame is dark and shows WAITING") {
   Frame f = frame(0);
   CHECK(f.state == node_health_t::WAITING);
   CHECK(f.list.instances.empty());
@@ -132,9 +131,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK(frame(32'000'000).state == node_health_t::RUNNING);
 }
 
-TEST_CASE_METHOD(
-    Fixture,
-    "Without new state bodies extrapolate for a bounded time, then are held, then lost, and the frame shows it") {
+TEST_CASE_METHOD(Fixture, "Without new state bodies are extrapolated, then held, then shown as lost") {
   load();
   receive(0);
   frame(0);
@@ -149,7 +146,7 @@ TEST_CASE_METHOD(
   CHECK(frame(5'100'000'000).state == node_health_t::RUNNING);
 }
 
-TEST_CASE_METHOD(Fixture, "After a stop of two seconds one frame is stale and the next shows now") {
+TEST_CASE_METHOD(Fixture, "After a stop of two seconds one frame is stale and the next is current") {
   load();
   std::int64_t t = 0;
   for (int i = 0; i < 20; ++i, t += kFrame.count()) receive(t), frame(t);
@@ -162,8 +159,7 @@ TEST_CASE_METHOD(Fixture, "After a stop of two seconds one frame is stale and th
   CHECK(x_of(f) == Approx(2 + 1e-9 * static_cast<double>(t)).margin(0.01));
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "A contact flashes in the first frame presented at or after it, and is reported once") {
+TEST_CASE_METHOD(Fixture, "A contact flashes in the first frame at or after its time and is reported once") {
   load();
   for (int i = 0; i < 10; ++i) receive(i * kFrame.count()), frame(i * kFrame.count());
   const std::int64_t t = 10 * kFrame.count();
@@ -190,7 +186,7 @@ TEST_CASE_METHOD(Fixture, "An event that arrives while the surfaces are drawn fl
   CHECK_FALSE(f.list.glows.empty());
   REQUIRE(reports.count(71) == 1);
   CHECK(reports[71].presented_ns - reports[71].scheduled_ns == 3'000'000);
-  SECTION("and its flash is not older than the frame") {
+  SECTION("its flash is not older than the frame") {
     const Frame later = frame(t + kFrame.count());
     REQUIRE(later.list.glows.size() == f.list.glows.size());
     CHECK(f.list.glows[0].centre.w() == 0);
@@ -199,8 +195,7 @@ TEST_CASE_METHOD(Fixture, "An event that arrives while the surfaces are drawn fl
   }
 }
 
-TEST_CASE_METHOD(Fixture,
-                 "With a delay an event is shown in the frame nearest to its instant, at most half a frame off") {
+TEST_CASE_METHOD(Fixture, "A delayed event is shown in the nearest frame, at most half a frame off") {
   load();
   delay = milliseconds(GENERATE(9, 17, 30, 45));
   std::mt19937 random(7);
@@ -218,9 +213,7 @@ TEST_CASE_METHOD(Fixture,
     CHECK(std::abs(r.presented_ns - r.scheduled_ns) <= kFrame.count() / 2 + 1);
 }
 
-TEST_CASE_METHOD(
-    Fixture,
-    "At a low picture rate an event is shown in the first picture at or after its instant, and none is dropped") {
+TEST_CASE_METHOD(Fixture, "At a low picture rate an event is shown in the first picture at or after its time") {
   load();
   const int every = GENERATE(6, 30);  // ticks: 10 and 2 pictures a second
   delay = milliseconds(GENERATE(0, 40));
@@ -262,7 +255,7 @@ TEST_CASE_METHOD(Fixture, "The lateness settings of a new scene apply to its eve
   CHECK(outcomes == std::map<std::int64_t, int>{{1, presentation_t::LATE}, {2, presentation_t::DROPPED_LATE}});
 }
 
-TEST_CASE_METHOD(Fixture, "Events during a stall are shown late or dropped, each with a report") {
+TEST_CASE_METHOD(Fixture, "Events during a stall are shown late or dropped, and each is reported") {
   load();
   receive(0);
   frame(0);
@@ -278,7 +271,7 @@ TEST_CASE_METHOD(Fixture, "Events during a stall are shown late or dropped, each
   CHECK(outcomes[20] == presentation_t::PRESENTED);
 }
 
-TEST_CASE_METHOD(Fixture, "Without a scene an event waits, and is dropped when it is too late") {
+TEST_CASE_METHOD(Fixture, "An event without a scene waits, and is dropped when it is too late") {
   composer.push(event_at(0, 5), sync::host_time(kBegan_ns));
   frame(10'000'000);
   CHECK(outcomes.empty());

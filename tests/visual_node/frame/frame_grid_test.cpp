@@ -6,7 +6,7 @@
 using namespace tactus;
 using namespace tactus::visual;
 
-TEST_CASE("Frame k is due at k periods, to a nanosecond after a hundred days") {
+TEST_CASE("Frame k is due after k periods, exact to 1 ns after a hundred days") {
   for (const double rate_Hz : {60.0, 59.94, 120.0, 7.0}) {
     const FrameGrid grid(rate_Hz);
     INFO(rate_Hz);
@@ -18,7 +18,7 @@ TEST_CASE("Frame k is due at k periods, to a nanosecond after a hundred days") {
   }
 }
 
-TEST_CASE("The first frame due at or after an instant is due then, and the previous one is not") {
+TEST_CASE("The first frame at or after a time is due then, and the previous one is not") {
   std::mt19937_64 random(3);
   for (const double rate_Hz : {60.0, 59.94, 240.0, 1.0}) {
     const FrameGrid grid(rate_Hz);
@@ -32,7 +32,7 @@ TEST_CASE("The first frame due at or after an instant is due then, and the previ
   }
 }
 
-TEST_CASE("No frame is picked twice or after a later one when the readiness of a wall jitters") {
+TEST_CASE("Jitter of a wall neither repeats a frame nor moves back to an earlier one") {
   std::mt19937 random(4);
   for (int trial = 0; trial < 50; ++trial) {
     FrameGrid grid(60);
@@ -52,7 +52,7 @@ TEST_CASE("No frame is picked twice or after a later one when the readiness of a
   }
 }
 
-TEST_CASE("A clock that is put back by more than a few frames restarts the numbering") {
+TEST_CASE("A clock step back by more than a few frames restarts the numbering") {
   FrameGrid grid(60);
   const std::int64_t far = grid.pick(room_time(100'000'000'000));
   CHECK(grid.pick(grid.due(far - 2)) == far + 1);

@@ -171,7 +171,7 @@ Common common(const Wall& a, const Wall& b) {
 
 }  // namespace
 
-TEST_CASE("Walls on hosts with different clocks draw each frame with one instant and one head, and skip none") {
+TEST_CASE("Walls with different clocks draw each frame at one time with one head pose and skip none") {
   Room room;
   room.add(kSimClock, {}, milliseconds(5));
   room.add(2, std::chrono::hours(1), milliseconds(9));
@@ -187,7 +187,7 @@ TEST_CASE("Walls on hosts with different clocks draw each frame with one instant
   CHECK(room.held_ns < 4'000'000 + 16'700'000);
 }
 
-TEST_CASE("A wall that draws for 100 ms shows every sixth or seventh frame, with the instant of the others") {
+TEST_CASE("A wall that needs 100 ms shows every sixth or seventh frame at the time of the others") {
   Settings settings;
   settings.frame_lag_s = 0.12;  // longer than it draws: then the head is the same too
   Room room;
@@ -202,7 +202,7 @@ TEST_CASE("A wall that draws for 100 ms shows every sixth or seventh frame, with
   CHECK(room.walls[0]->seen.size() > 590);  // the fast wall misses no frame
 }
 
-TEST_CASE("With a lag shorter than its drawing time, the slow wall has the same instant and an older head, and reports it") {
+TEST_CASE("With a short lag a slow wall draws the same time with an older head pose and reports it") {
   Room room;
   room.add(kSimClock, {}, milliseconds(5));
   Wall& slow = room.add(2, std::chrono::hours(1), milliseconds(100));
@@ -215,7 +215,7 @@ TEST_CASE("With a lag shorter than its drawing time, the slow wall has the same 
   CHECK(room.walls[0]->lock.note(room.walls[0]->here(room.t)).empty());
 }
 
-TEST_CASE("While the simulation slows down, pauses and resumes, the walls stay together") {
+TEST_CASE("Walls stay together while the simulation slows down, pauses and resumes") {
   Room room;
   room.add(kSimClock, {}, milliseconds(4));
   room.add(2, milliseconds(777), milliseconds(11));
@@ -232,8 +232,7 @@ TEST_CASE("While the simulation slows down, pauses and resumes, the walls stay t
   CHECK(c.head == c.frames);
 }
 
-TEST_CASE(
-    "A changed presentation delay moves all walls alike, and moves the world but not the head") {
+TEST_CASE("A new presentation delay applies to all walls and moves the world but not the head") {
   Room room;
   Wall& a = room.add(kSimClock, {}, milliseconds(4));
   Wall& b = room.add(2, milliseconds(777), milliseconds(11));
@@ -252,7 +251,7 @@ TEST_CASE(
   CHECK(last.due_ns - last.head_ns < 26'000'000);
 }
 
-TEST_CASE("With one message in a hundred lost, 99 of 100 frames are the same") {
+TEST_CASE("With 1 % of the messages lost, 99 % of the frames match") {
   Room room;
   room.lost = 0.005;  // for each of the two walls
   room.add(kSimClock, {}, milliseconds(4));
@@ -266,7 +265,7 @@ TEST_CASE("With one message in a hundred lost, 99 of 100 frames are the same") {
   CHECK(c.head >= 0.981 * c.frames);
 }
 
-TEST_CASE("A slow wall delays no other wall") {
+TEST_CASE("A slow wall does not delay other walls") {
   Room alone, beside;
   alone.add(kSimClock, {}, milliseconds(5));
   beside.add(kSimClock, {}, milliseconds(5));
@@ -275,7 +274,7 @@ TEST_CASE("A slow wall delays no other wall") {
   CHECK(alone.walls[0]->seen.size() == beside.walls[0]->seen.size());
 }
 
-TEST_CASE("Without a room, with the lock off, and before the first message of sim_node, there is no lock") {
+TEST_CASE("There is no lock without a room, with the lock off, or before the first message of sim_node") {
   sync::ClockMaps maps(kRun);
   const auto locked = [&](const char* room, const char* mode, bool received) {
     FrameLock lock({kRun, kSimClock, &maps}, "visual", 1);
@@ -296,7 +295,7 @@ TEST_CASE("Without a room, with the lock off, and before the first message of si
   CHECK_FALSE(locked("cave4", "time", false));
 }
 
-TEST_CASE("FRAME_SHOWN gives the number, due time, instant and head of a frame") {
+TEST_CASE("FRAME_SHOWN contains number, due time, simulated time and head pose of a frame") {
   Room room;
   Wall& wall = room.add(kSimClock, {}, milliseconds(5));
   room.run(2);
@@ -310,7 +309,7 @@ TEST_CASE("FRAME_SHOWN gives the number, due time, instant and head of a frame")
   CHECK(m.stage == frame_shown_t::SHOWN);
 }
 
-TEST_CASE("After a stall a wall detects that the inputs of its next frame are missing") {
+TEST_CASE("After a stall a wall detects missing inputs of its next frame") {
   Room room;
   Wall& wall = room.add(2, std::chrono::hours(1), milliseconds(9));
   CHECK(wall.lock.inputs_complete(wall.here(room.t)));  // no lock before the first message

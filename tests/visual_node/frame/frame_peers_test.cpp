@@ -31,7 +31,7 @@ struct Room {
 
 }  // namespace
 
-TEST_CASE_METHOD(Room, "A single wall waits for no other wall, nor for its own messages") {
+TEST_CASE_METHOD(Room, "A single wall waits neither for other walls nor for its own messages") {
   CHECK(peers.ready(5, now));
   drawn(kOwn, 1);
   CHECK(peers.ready(5, now));
@@ -53,8 +53,7 @@ TEST_CASE_METHOD(Room, "A wall without messages for a second is absent") {
   CHECK(peers.present(now + milliseconds(1001)) == 0);
 }
 
-TEST_CASE_METHOD(
-    Room, "A wall that is always late is ignored after a quarter of a second and returns when it keeps up") {
+TEST_CASE_METHOD(Room, "A wall that is always late is ignored after 250 ms and returns when it keeps up") {
   std::int64_t k = 100;
   int waited = 0;
   for (int i = 0; i < 60; ++i, ++k) waited += !frame(k, kLeft, k - 3);
@@ -65,7 +64,7 @@ TEST_CASE_METHOD(
   CHECK_FALSE(frame(k, kLeft, k - 1));
 }
 
-TEST_CASE_METHOD(Room, "A wall at a sixth of the rate is ignored too, a wall that misses every third frame is not") {
+TEST_CASE_METHOD(Room, "A wall at a sixth of the rate is ignored, one that misses every third frame is not") {
   std::int64_t k = 100;
   for (int i = 0; i < 60; ++i, ++k) frame(k, kLeft, k / 6 * 6);
   CHECK(peers.ignored(now) == 1);
@@ -74,7 +73,7 @@ TEST_CASE_METHOD(Room, "A wall at a sixth of the rate is ignored too, a wall tha
   CHECK(peers.present(now) == 1);
 }
 
-TEST_CASE_METHOD(Room, "A flood of walls is bounded") {
+TEST_CASE_METHOD(Room, "The number of walls is limited") {
   for (std::int64_t wall = 10; wall < 10'000; ++wall) drawn(wall, 1);
   CHECK(peers.present(now) == static_cast<int>(FramePeers::kMax));
 }

@@ -24,7 +24,7 @@ tool_state_t head(std::int64_t publish_ns, double x_m, double speed_m_s = 0, dou
 
 }  // namespace
 
-TEST_CASE("The newest head sample that was published by a time is used, whatever came later") {
+TEST_CASE("The newest head sample published by a time is used, regardless of later ones") {
   HeadSamples samples;
   CHECK_FALSE(samples.published_by(kBegin));
   for (int i = 0; i < 100; ++i) samples.push(head(500 + i, i), kBegin + milliseconds(i));
@@ -34,7 +34,7 @@ TEST_CASE("The newest head sample that was published by a time is used, whatever
   CHECK(samples.published_by(kBegin + milliseconds(5000))->publish_ns == 599);
 }
 
-TEST_CASE("A sample is extrapolated with its velocity and spin, for a bounded time") {
+TEST_CASE("A head sample is extrapolated with its velocity and spin for a limited time") {
   HeadSamples samples;
   samples.push(head(1, 2, 0.5, 1.5), kBegin);
   const HeadSample s = *samples.published_by(kBegin);
@@ -49,7 +49,7 @@ TEST_CASE("A sample is extrapolated with its velocity and spin, for a bounded ti
   CHECK(extrapolate(s, kBegin + milliseconds(201)).status == sync::SampleStatus::kStale);
 }
 
-TEST_CASE("A new process for the head, or a clock put back, clears the samples, and memory is bounded") {
+TEST_CASE("A new head process or a clock step back clears the samples, and their number is limited") {
   HeadSamples samples;
   for (int i = 0; i < 10'000; ++i) samples.push(head(i, 0), kBegin + sync::Nanoseconds(i * 1000));
   CHECK_FALSE(

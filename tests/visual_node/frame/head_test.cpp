@@ -64,13 +64,13 @@ const Eigen::Vector3f kBall{0, 2, 1};
 
 }  // namespace
 
-TEST_CASE_METHOD(Seen, "Without a tracked head the view is the scene's, and the health says so") {
+TEST_CASE_METHOD(Seen, "Without a tracked head the view is that of the scene, and the health reports it") {
   const Frame f = frame();
   CHECK(seen_at(f, kBall).norm() < 1e-5f);
   CHECK(f.note.find("no head yet") != std::string::npos);
 }
 
-TEST_CASE_METHOD(Seen, "The eye is at the head, with the direction of the scene's camera turned by the head") {
+TEST_CASE_METHOD(Seen, "The eye is at the head, and the head rotates the camera of the scene") {
   hold({0, 0.5, 1}, 0);
   Frame f = frame();
   CHECK((f.list.camera.eye - Eigen::Vector3f(0, 0.5f, 1)).norm() < 1e-5f);
@@ -83,13 +83,13 @@ TEST_CASE_METHOD(Seen, "The eye is at the head, with the direction of the scene'
   CHECK(seen_at(frame(), kBall).x() > 0.05f);
 }
 
-TEST_CASE_METHOD(Seen, "The user's own head is not drawn, and its light and bodies are those of the scene") {
+TEST_CASE_METHOD(Seen, "The head of the user is not drawn") {
   const std::size_t before = frame().list.instances.size();
   hold({0, 0.5, 1}, 0);
   CHECK(frame().list.instances.size() == before);
 }
 
-TEST_CASE_METHOD(Seen, "A lost head keeps the view, and the health says so until it returns") {
+TEST_CASE_METHOD(Seen, "A lost head keeps the view, and the health reports it until the head returns") {
   hold({0, 0.5, 1}, 0.2);
   const Frame there = frame();
   now += milliseconds(100);
@@ -105,14 +105,14 @@ TEST_CASE_METHOD(Seen, "A lost head keeps the view, and the health says so until
   CHECK(frame().list.camera.eye.y() == Approx(0.6f));
 }
 
-TEST_CASE_METHOD(Seen, "A profile delays the view, a playout policy does not") {
+TEST_CASE_METHOD(Seen, "A profile delays the view, and a playout policy does not") {
   hold({0, 0, 1}, 0);
   hold({0, 1, 1}, 0, milliseconds(60));
   CHECK(frame(milliseconds(80)).list.camera.eye.y() == Approx(1).margin(1e-5));
   CHECK(frame(milliseconds(80), milliseconds(80)).list.camera.eye.y() == Approx(0).margin(1e-5));
 }
 
-TEST_CASE("The ear keeps its place beside the eye") {
+TEST_CASE("The listener keeps its place relative to the eye") {
   scene_t scene = scene_with_head();
   scene.listener = scene.camera;
   scene.listener.position_m.y += 0.1;  // 0.1 m ahead of the eye

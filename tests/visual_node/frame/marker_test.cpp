@@ -20,7 +20,7 @@ std::vector<std::uint8_t> paint(const std::vector<Rect>& overlay, int width, int
 }
 }  // namespace
 
-TEST_CASE("A marker is read back from the picture, also after compression noise") {
+TEST_CASE("A marker is decoded from the picture, also with compression noise") {
   std::mt19937 random(5);
   std::uniform_int_distribution<int> noise(-60, 60);
   for (int trial = 0; trial < 300; ++trial) {
@@ -56,7 +56,7 @@ TEST_CASE("A marker with any one or two inverted cells is rejected") {
     }
 }
 
-TEST_CASE("Every letter of the status words has a different glyph") {
+TEST_CASE("Every letter of the status words has its own glyph") {
   for (char a = '!'; a <= '~'; ++a)
     for (char b = '!'; b < a; ++b)
       if (glyph(a) && glyph(b)) CHECK_FALSE(std::equal(glyph(a), glyph(a) + kGlyphHeight, glyph(b)));

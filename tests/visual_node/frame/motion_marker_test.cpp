@@ -27,8 +27,7 @@ std::vector<std::uint8_t> paint(const std::vector<Rect>& overlay) {
 
 }  // namespace
 
-TEST_CASE(
-    "The samples of a frame are read back beside its events, also after compression noise") {
+TEST_CASE("The samples of a frame are decoded beside its events, also with compression noise") {
   std::mt19937 random(5);
   std::uniform_int_distribution<int> noise(-60, 60);
   for (int trial = 0; trial < 200; ++trial) {
@@ -55,7 +54,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A row of events is not read as a row of motion, nor the reverse") {
+TEST_CASE("Rows of events and rows of motion are not confused") {
   std::vector<Rect> overlay;
   append_marker(overlay, 5, std::vector<std::int64_t>(kMarkerRows + 4, 9), kHeight);
   auto luma = paint(overlay);

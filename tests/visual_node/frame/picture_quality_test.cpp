@@ -37,7 +37,7 @@ Quality step(std::size_t i) { return kQualities.at(i); }
 
 }  // namespace
 
-TEST_CASE("Every step shows the same picture, only coarser, and the last one without shadows") {
+TEST_CASE("Every quality step shows the same picture at lower resolution, the last one without shadows") {
   const scene_t scene = ball_over_floor();
   const auto floor_at = [](const Image& image, double x) {
     return image.at(kWidth / 2, kHeight / 2 - static_cast<int>(std::lround(x * scale_px(6)))).x();
@@ -60,7 +60,7 @@ TEST_CASE("Every step shows the same picture, only coarser, and the last one wit
   CHECK(different < kWidth * kHeight / 50);
 }
 
-TEST_CASE("Marker and text keep each of their pixels at every step and resolution") {
+TEST_CASE("Marker and text keep all their pixels at every step and resolution") {
   std::vector<Rect> overlay;
   append_marker(overlay, 4711, std::vector<std::int64_t>{17}, kHeight);
   const Image full = render(ball_over_floor(), {}, overlay);
@@ -72,7 +72,7 @@ TEST_CASE("Marker and text keep each of their pixels at every step and resolutio
   }
 }
 
-TEST_CASE("A flash is equally sharp in every step, and as coarse as the picture when a profile degrades it") {
+TEST_CASE("A flash has the same sharpness in every step, unless a profile degrades the picture") {
   display();
   Renderer renderer(kWidth, kHeight, 64);
   DrawList list;
@@ -84,7 +84,7 @@ TEST_CASE("A flash is equally sharp in every step, and as coarse as the picture 
     const Image image = draw(renderer, list, step(i));
     for (std::size_t k = 0; k < image.rgba.size(); ++k) REQUIRE(std::abs(image.rgba[k] - full.rgba[k]) <= 1);
   }
-  SECTION("in blocks of 4 pixels at a quarter of the resolution") {
+  SECTION("blocks of 4 pixels at a quarter of the resolution") {
     const Image image = draw(renderer, list, degraded(step(0), 0.25));
     int levels = 0;
     for (int y = 0; y < kHeight; y += 4)
@@ -96,7 +96,7 @@ TEST_CASE("A flash is equally sharp in every step, and as coarse as the picture 
   }
 }
 
-TEST_CASE("A scaled picture has its own light up to its last pixel, regardless of earlier content beside it") {
+TEST_CASE("A scaled picture has its own light up to its last pixel") {
   display();
   scene_t scene = floor_from_above(2);  // fills the picture, on a dark background
   scene.ambient = grey(1);
@@ -114,7 +114,7 @@ TEST_CASE("A scaled picture has its own light up to its last pixel, regardless o
   }
 }
 
-TEST_CASE("Warming up changes no picture") {
+TEST_CASE("Warming up does not change a picture") {
   display();
   const scene_t scene = ball_over_floor();
   const SceneView view(scene, {}, {});
@@ -128,7 +128,7 @@ TEST_CASE("Warming up changes no picture") {
   CHECK(draw(renderer, list, step(1)).rgba == before.rgba);
 }
 
-TEST_CASE("A resolution is a factor, and never improves a step") {
+TEST_CASE("A resolution is a factor and never improves a step") {
   CHECK(degraded(step(2), 0) == step(2));
   CHECK(degraded(step(2), 1) == step(2));
   CHECK(degraded(step(0), 0.25).scale == 0.25);

@@ -21,7 +21,7 @@ std::vector<std::int64_t> pictures(PictureRate& rate, double rate_Hz, double sec
 }
 }  // namespace
 
-TEST_CASE("A picture rate below that of the loop holds on average, each picture in the tick nearest to its time") {
+TEST_CASE("A picture rate below the tick rate holds on average, each picture in its nearest tick") {
   const double rate_Hz = GENERATE(0.7, 1.0, 5.0, 7.3, 15.0, 24.0, 30.0, 59.0);
   PictureRate rate;
   const auto shown = pictures(rate, rate_Hz, 20);
@@ -32,14 +32,14 @@ TEST_CASE("A picture rate below that of the loop holds on average, each picture 
           0.5 / 60 + 0.005);
 }
 
-TEST_CASE("Without a rate, or with one above that of the loop, each tick shows a picture and holds none") {
+TEST_CASE("Without a rate, or with a higher one than the ticks, each tick has a picture") {
   const double rate_Hz = GENERATE(0.0, 60.0, 200.0);
   PictureRate rate;
   CHECK(pictures(rate, rate_Hz, 1).size() == 60);
   CHECK(rate.held() == milliseconds(0));
 }
 
-TEST_CASE("After a stall one picture follows, and a higher rate or a new scene takes effect at once") {
+TEST_CASE("One picture follows a stall, and a higher rate or a new scene takes effect at once") {
   PictureRate rate;
   const auto at = [](int ms) { return sync::host_time(kBegin_ns + std::int64_t{ms} * 1'000'000); };
   CHECK(rate.due(at(0), 1, 60));

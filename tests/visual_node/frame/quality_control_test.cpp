@@ -6,7 +6,7 @@ using namespace tactus;
 using namespace tactus::visual;
 using std::chrono::milliseconds;
 
-TEST_CASE("Drawing above its time budget is reduced in quality, and this is reported once") {
+TEST_CASE("Drawing beyond the time budget lowers the quality and is reported once") {
   QualityControl control{Settings{}};  // a step is left at 12.75 ms of 16.7 ms
   CHECK(control.take_change().empty());
   for (int i = 0; i < 100; ++i) control.add(milliseconds(10));
@@ -21,7 +21,7 @@ TEST_CASE("Drawing above its time budget is reduced in quality, and this is repo
   CHECK_THAT(control.take_change(), Catch::Contains("step 0 of 0..3") && Catch::Contains("the whole picture"));
 }
 
-TEST_CASE("A pinned step stays whatever the drawing time is") {
+TEST_CASE("A fixed quality step does not depend on the drawing time") {
   Settings settings;
   settings.quality = std::string("2");
   QualityControl control(settings);

@@ -36,7 +36,7 @@ clock_map_t between(std::int32_t of, std::int32_t to, std::int64_t offset_ns, do
 
 }  // namespace
 
-TEST_CASE("On the host of sim_node the room's clock is the host clock") {
+TEST_CASE("On the host of sim_node the room clock is the host clock") {
   RoomClockReader reader({kRun, kSim});
   CHECK_FALSE(reader.known());
   reader.on_message(stamp(5'000'000'000), map_of(1, 5'000'000'000), sync::host_time(5'000'300'000));
@@ -46,7 +46,7 @@ TEST_CASE("On the host of sim_node the room's clock is the host clock") {
   CHECK(reader.here(room_time(123), now) == sync::host_time(123));
 }
 
-TEST_CASE("On another host the room's clock is read through the map of the clocks, both ways, to 3 ns") {
+TEST_CASE("On another host the room clock is mapped in both directions, exact to 3 ns") {
   std::mt19937_64 random(8);
   for (int trial = 0; trial < 200; ++trial) {
     const std::int64_t ahead = static_cast<std::int64_t>(random() % (2 * kHour_ns)) - kHour_ns;
@@ -68,7 +68,7 @@ TEST_CASE("On another host the room's clock is read through the map of the clock
   }
 }
 
-TEST_CASE("A clock without a map is read by arrival, and this is reported") {
+TEST_CASE("A clock without a map is read by arrival and reported") {
   RoomClockReader reader({kRun, kOwn});
   for (int i = 0; i < 100; ++i)
     reader.on_message(stamp(kHour_ns + i * 1'000'000), map_of(i, kHour_ns + i * 1'000'000),
@@ -79,7 +79,7 @@ TEST_CASE("A clock without a map is read by arrival, and this is reported") {
   CHECK(std::abs(sync::to_ns(reader.room(now, now)) - (kHour_ns + 100'000'000)) <= 200'000 + 100'000);
 }
 
-TEST_CASE("The map published by a time does not depend on later maps or on the order of arrival") {
+TEST_CASE("The map at a time does not depend on later maps or the order of arrival") {
   std::mt19937 random(5);
   std::vector<int> order(200);
   for (int i = 0; i < 200; ++i) order[static_cast<std::size_t>(i)] = i;
@@ -104,7 +104,7 @@ TEST_CASE("The map published by a time does not depend on later maps or on the o
   CHECK(straight.published_by(room_time(5)).sim_ns == 0);  // before the first map: the first one
 }
 
-TEST_CASE("A stamp of a third host is read through its map, otherwise by its arrival") {
+TEST_CASE("A stamp of a third host is mapped, or read by arrival without a map") {
   sync::ClockMaps maps(kRun);
   maps.observe(between(kSim, kOwn, kHour_ns), {});
   maps.observe(between(kThird, kSim, 5'000'000'000), {});
@@ -118,7 +118,7 @@ TEST_CASE("A stamp of a third host is read through its map, otherwise by its arr
         3);
 }
 
-TEST_CASE("Another simulation on the same host keeps the clock, one on another host changes it") {
+TEST_CASE("Another simulation on the same host keeps the clock, and one on another host changes it") {
   RoomClockReader reader({kRun, kSim});
   reader.on_message(stamp(1'000'000'000), map_of(1, 1'000'000'000), sync::host_time(1'000'000'000));
   CHECK(reader.clocks() == 1);
@@ -129,7 +129,7 @@ TEST_CASE("Another simulation on the same host keeps the clock, one on another h
   CHECK(reader.clocks() == 2);
 }
 
-TEST_CASE("A flood of maps is bounded") {
+TEST_CASE("The number of maps is limited") {
   RoomClockReader reader({kRun, kSim});
   for (int i = 0; i < 100'000; ++i)
     reader.on_message(stamp(1'000'000'000 + i * 1000), map_of(i, 1'000'000'000 + i * 1000),

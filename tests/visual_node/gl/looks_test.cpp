@@ -125,7 +125,7 @@ double as_direction(double byte) { return byte / 127.5 - 1; }
 
 }  // namespace
 
-TEST_CASE("Each kind of lamp on each kind of surface shades every pixel by Phong's formula") {
+TEST_CASE("Each kind of lamp shades each kind of surface by Phong's formula") {
   const int lamp = GENERATE(light_def_t::POINT, light_def_t::DIRECTIONAL, light_def_t::SPOT);
   const int shape = GENERATE(shape_def_t::SPHERE, shape_def_t::BOX, shape_def_t::PLANE, shape_def_t::CYLINDER);
   const scene_t scene = lit(shape, lamp);
@@ -133,7 +133,7 @@ TEST_CASE("Each kind of lamp on each kind of surface shades every pixel by Phong
           [&](const Hit& hit, const Vector3d& eye) { return phong(scene, scene.visuals[0], hit.point, eye); });
 }
 
-TEST_CASE("Eight lamps add up, and exposure scales all light before encoding") {
+TEST_CASE("Lamps are added, and exposure scales all light before encoding") {
   scene_t scene = lit(shape_def_t::SPHERE, light_def_t::POINT);
   scene.lights.clear();
   for (int i = 0; i < 8; ++i) {
@@ -169,7 +169,7 @@ TEST_CASE("Gouraud shades the corners of the triangles and interpolates between 
   if (lamp != light_def_t::SPOT) CHECK(largest > 0.02);
 }
 
-TEST_CASE("A colour map is a factor on returned light, but not on highlights or emitted light") {
+TEST_CASE("A colour map scales reflected light but neither highlights nor emitted light") {
   const int shape = GENERATE(shape_def_t::SPHERE, shape_def_t::BOX, shape_def_t::PLANE);
   scene_t scene = lit(shape, light_def_t::POINT);
   wear(scene, "textured", 7);
@@ -179,7 +179,7 @@ TEST_CASE("A colour map is a factor on returned light, but not on highlights or 
   });
 }
 
-TEST_CASE("A normal map turns normals along tangent and binormal") {
+TEST_CASE("A normal map rotates normals along tangent and binormal") {
   const int shape = GENERATE(shape_def_t::SPHERE, shape_def_t::BOX, shape_def_t::PLANE, shape_def_t::CYLINDER);
   scene_t scene = lit(shape, light_def_t::POINT);
   wear(scene, "normal_mapped", 0, 8);
@@ -224,8 +224,7 @@ Vector3d mirrored(const Point& p, const Vector3d& eye) {
 constexpr double kRounded = 1;
 }  // namespace
 
-TEST_CASE(
-    "A mirror shows the environment in the reflected direction, with Schlick's share at grazing angles") {
+TEST_CASE("A mirror shows the environment in the reflected direction, with Schlick's factor") {
   const int shape = GENERATE(shape_def_t::SPHERE, shape_def_t::BOX, shape_def_t::PLANE);
   const float reflectance = GENERATE(0.04f, 0.5f, 1.0f);
   scene_t scene = lit(shape, light_def_t::POINT);
@@ -242,7 +241,7 @@ TEST_CASE(
           });
 }
 
-TEST_CASE("A mirror with a normal map is a bumpy mirror") {
+TEST_CASE("A normal map also changes the reflection of a mirror") {
   scene_t scene = lit(shape_def_t::PLANE, light_def_t::POINT);
   scene.environment_asset = 9;
   wear(scene, "reflecting", 0, 8, 0.6f);
@@ -266,7 +265,7 @@ TEST_CASE("Without an environment picture a mirror shows the background colour")
   });
 }
 
-TEST_CASE("A translucent surface transmits the light that it neither returns nor mirrors, in linear light") {
+TEST_CASE("A translucent surface transmits the light that it does not reflect, in linear light") {
   const float alpha = GENERATE(0.1f, 0.5f, 0.9f);
   const float reflectance = GENERATE(0.0f, 0.04f);
   scene_t scene = lit(shape_def_t::SPHERE, light_def_t::POINT);
@@ -283,7 +282,7 @@ TEST_CASE("A translucent surface transmits the light that it neither returns nor
   });
 }
 
-TEST_CASE("The environment is visible behind everything, in its direction") {
+TEST_CASE("The environment is visible behind all surfaces, in its direction") {
   scene_t scene = lit(shape_def_t::SPHERE, light_def_t::POINT);
   scene.environment_asset = 9;
   scene.camera =

@@ -31,8 +31,7 @@ std::pair<std::set<int>, std::vector<std::string>> levels(int samples, const Qua
 
 }  // namespace
 
-TEST_CASE(
-    "With one sample a pixel an edge is black or white, with four it has the levels between, in linear light") {
+TEST_CASE("With four samples a pixel an edge has intermediate levels in linear light, with one it has none") {
   CHECK(levels(1).first == std::set<int>{0, 255});
   const auto [seen, messages] = levels(4);
   if (!messages.empty()) return;  // the device supports fewer samples and reports it
@@ -46,14 +45,14 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A number of samples above that of the device is reported and limited") {
+TEST_CASE("A number of samples above the limit of the device is reported and reduced") {
   const auto [seen, messages] = levels(64);
   REQUIRE(messages.size() == 1);
   CHECK_THAT(messages[0], Catch::Contains("anti_aliasing=64"));
   CHECK(seen.size() > 2);
 }
 
-TEST_CASE("Edges stay smooth when the picture is drawn smaller and scaled up") {
+TEST_CASE("Edges stay smooth in a smaller picture that is scaled up") {
   for (const Quality& q : kQualities) {
     const auto [seen, messages] = levels(4, q);
     CHECK(*seen.rbegin() == 255);

@@ -56,7 +56,7 @@ struct Fragile {
 
 }  // namespace
 
-TEST_CASE("A lost device is opened again and draws the loaded scene as before") {
+TEST_CASE("A lost device is opened again and draws the scene as before") {
   Fragile f;
   RenderOutput output(f.settings, false, f.make());
   output.load(f.view, f.list, f.settings);
@@ -72,7 +72,7 @@ TEST_CASE("A lost device is opened again and draws the loaded scene as before") 
   CHECK(output.recover(at_s(3), &f.view, f.list).empty());
 }
 
-TEST_CASE("A device that is lost before the first scene is opened again too") {
+TEST_CASE("A device that is lost before the first scene is opened again") {
   Fragile f;
   RenderOutput output(f.settings, false, f.make());
   f.trouble = "the graphics device was reset";
@@ -80,7 +80,7 @@ TEST_CASE("A device that is lost before the first scene is opened again too") {
   CHECK(output.picture().width() == f.settings.width);
 }
 
-TEST_CASE("A window without a display server is not opened again, and drawing continues without it") {
+TEST_CASE("A window without a display server is closed, and drawing continues without it") {
   Fragile f;
   RenderOutput output(f.settings, true, f.make());
   REQUIRE(output.display().has_screen());
@@ -90,8 +90,7 @@ TEST_CASE("A window without a display server is not opened again, and drawing co
   CHECK_FALSE(output.display().has_screen());
 }
 
-TEST_CASE(
-    "A device that is lost repeatedly ends with one sentence, one that is lost rarely does not") {
+TEST_CASE("A device that is lost more than three times in a minute ends the node with one sentence") {
   Fragile f;
   RenderOutput output(f.settings, false, f.make());
   double now_s = 0;
@@ -108,7 +107,7 @@ TEST_CASE(
   CHECK_THROWS_WITH(output.recover(at_s(now_s), nullptr, {}), Catch::Contains("4 times in a minute"));
 }
 
-TEST_CASE("A device that cannot be opened again ends the node with the reason and the attempts") {
+TEST_CASE("The error for a device that cannot be opened again has the reason and the attempts") {
   Fragile f;
   f.may_open = 1;
   RenderOutput output(f.settings, false, f.make());
@@ -118,7 +117,7 @@ TEST_CASE("A device that cannot be opened again ends the node with the reason an
                                                              Catch::Contains("tried nothing"));
 }
 
-TEST_CASE("A working context does not count as lost, also after an OpenGL error of its own") {
+TEST_CASE("An OpenGL error in a working context does not count as a lost device") {
   CHECK(display().lost().empty());
   Settings settings;
   Renderer renderer(64, 64, settings.shadow_size);

@@ -15,7 +15,7 @@ using namespace tactus;
 using namespace tactus::visual;
 using namespace tactus::test;
 
-TEST_CASE("The middle of a lit sphere has the colour of the formula") {
+TEST_CASE("The centre of a lit sphere has the colour of the formula") {
   scene_t scene = test::empty_scene();
   test::add_visual(scene, test::add_body(scene, {2, 0, 0}), shape_def_t::SPHERE, {0.5, 0, 0});
   visual_def_t& v = scene.visuals[0];
@@ -78,7 +78,7 @@ TEST_CASE("Lamps of every kind and number are drawn") {
   CHECK(image.at(x, kHeight / 2).x() == Approx(srgb(linear)).margin(kTolerance));
 }
 
-TEST_CASE("A ball under a spot casts its shadow at the computed place") {
+TEST_CASE("A ball under a spot casts its shadow at the computed position") {
   scene_t scene = floor_from_above(6);
   test::add_visual(scene, test::add_body(scene, {0.3, 0, 1}), shape_def_t::SPHERE, {0.2, 0, 0});
   scene.lights = {test::spot({-1, 0, 3}, 1.2, 1.4)};
@@ -91,7 +91,7 @@ TEST_CASE("A ball under a spot casts its shadow at the computed place") {
   CHECK(floor_at(with, 0.95) == 0);
   CHECK(floor_at(with, 0.95 + 0.6) > 20);
   CHECK(floor_at(with, -0.3) > 20);
-  SECTION("and none when shadows are switched off") {
+  SECTION("there is no shadow when shadows are off") {
     Settings settings;
     settings.shadows = false;
     CHECK(floor_at(render(scene, settings), 0.95) > 20);
@@ -107,7 +107,7 @@ TEST_CASE("A lit floor does not shadow itself") {
     for (const int y : {200, 240, 280}) CHECK(image.at(x, y).x() > 150);
 }
 
-TEST_CASE("The marker in a drawn picture is read back from it") {
+TEST_CASE("The marker is decoded from a drawn picture") {
   std::vector<Rect> overlay;
   const std::vector<std::int64_t> events{0x123456789abcdef0, 17};
   append_marker(overlay, 4711, events, kHeight);
@@ -223,7 +223,7 @@ TEST_CASE("A surface without relief looks the same in a scene with reliefs") {
             box_y = kHeight / 2 - static_cast<int>(0.6 * scale_px(3.6));
   for (int y = box_y - 20; y < box_y + 20; ++y)
     for (int x = box_x - 20; x < box_x + 20; ++x) REQUIRE(with.at(x, y) == without.at(x, y));
-  SECTION("and a relief without heights is smooth") {
+  SECTION("a relief without heights is smooth") {
     HeightMap flat = test::sine_map(16, 16);
     std::fill(flat.levels.begin(), flat.levels.end(), std::uint16_t{1234});
     scene.materials[0].bump_asset = 1;
@@ -233,8 +233,7 @@ TEST_CASE("A surface without relief looks the same in a scene with reliefs") {
   }
 }
 
-TEST_CASE(
-    "An error in a piece of a shader is named with its file and line, without warnings") {
+TEST_CASE("An error in a part of a shader is reported with its file and line") {
   display();
   const std::vector<ShaderPiece> vertex{{"a.vert", "void main() { gl_Position = vec4(0); }"}};
   const auto with = [&](const std::string& mine) {
@@ -255,7 +254,7 @@ TEST_CASE(
                     Catch::Contains("mine.frag:2") && !Catch::Contains("mine.frag:5") && Catch::EndsWith(" more"));
 }
 
-TEST_CASE("A shader that does not compile is named with file and line") {
+TEST_CASE("A shader that does not compile is reported with file and line") {
   display();
   const std::string good = "#version 330 core\nvoid main() { gl_Position = vec4(0); }\n";
   const std::string bad = "#version 330 core\nout vec4 colour;\nvoid main() {\n  colour = nothing;\n}\n";

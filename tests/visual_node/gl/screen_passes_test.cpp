@@ -77,7 +77,7 @@ void compare(const Image& seen, double tolerance, Expected expected) {
 
 }  // namespace
 
-TEST_CASE("Greyscale removes the given share of colour and keeps the luminance") {
+TEST_CASE("Greyscale removes the given share of colour and keeps luminance") {
   const float amount = GENERATE(1.0f, 0.4f, 0.0f);
   const Image before = drawn({});
   compare(drawn({pass("greyscale", "amount", amount)}), kTolerance, [&](int x, int y) -> Vector3d {
@@ -103,7 +103,7 @@ TEST_CASE("Blur is a Gaussian of its radius, in linear light") {
   });
 }
 
-TEST_CASE("Edges are the length of Sobel's gradient of the luminance") {
+TEST_CASE("Edges are the magnitude of Sobel's gradient of luminance") {
   const Image before = drawn({});
   // Rounding to eight bits errs by up to 0.004 in linear light, and eight values are added: dark edges are
   // accurate to that.
@@ -118,7 +118,7 @@ TEST_CASE("Edges are the length of Sobel's gradient of the luminance") {
     }
 }
 
-TEST_CASE("Passes follow one another in their order") {
+TEST_CASE("Passes are applied in their order") {
   const Image grey = drawn({pass("greyscale")}), edges = drawn({pass("edges")});
   CHECK(drawn({pass("greyscale", "amount", 0), pass("greyscale")}).rgba == grey.rgba);
   // Edges of the grey picture equal those of the coloured one except for rounding; a grey version of an edge
@@ -127,7 +127,7 @@ TEST_CASE("Passes follow one another in their order") {
   CHECK(drawn({pass("edges"), pass("blur")}).rgba != drawn({pass("blur"), pass("edges")}).rgba);
 }
 
-TEST_CASE("Text and marker over the picture are not processed by passes") {
+TEST_CASE("Passes do not change text and marker") {
   Rect rect;
   rect.x = 10, rect.y = 20, rect.width = 30, rect.height = 30, rect.red = 1, rect.green = 0.5f;
   const Image image = drawn({pass("greyscale"), pass("blur")}, {rect});

@@ -6,7 +6,7 @@
 
 using namespace tactus::visual;
 
-TEST_CASE("A shader of the folder precedes that of the scene, which precedes that of the node") {
+TEST_CASE("A shader of the folder precedes one of the scene, which precedes one of the node") {
   ShaderLibrary library({{.name = "stripes",
                           .fragment = "of the scene",
                           .vertex = "",
@@ -27,7 +27,7 @@ TEST_CASE("A shader of the folder precedes that of the scene, which precedes tha
   CHECK(library.fragment("phong")->text == shader_text("phong.frag"));
 }
 
-TEST_CASE("A file in the folder defines a look of its own name") {
+TEST_CASE("A file in the folder defines a look with its name") {
   ShaderLibrary library;
   CHECK_FALSE(library.fragment("wood"));
   library.set({{"wood.frag", "vec4 shade() { return base; }"}});
@@ -37,7 +37,7 @@ TEST_CASE("A file in the folder defines a look of its own name") {
   CHECK(library.vertex("wood"));
 }
 
-TEST_CASE("Every offered name exists, and a mere piece is not a look") {
+TEST_CASE("Every offered name exists, and a shader part is not a look") {
   const ShaderLibrary library;
   for (const char* name :
        {"phong", "gouraud", "normal_mapped", "textured", "reflecting", "greyscale", "blur", "edges"}) {

@@ -72,7 +72,7 @@ TEST_CASE("A shader of the scene draws its surface, and an edit is visible in th
   CHECK(stand.renderer.take_trouble().empty());
   CHECK(stand.middle() == kGreen);
 
-  SECTION("a shader that does not compile is reported with file and line, and the last good one stays") {
+  SECTION("a shader that does not compile is reported, and the last valid one stays") {
     stand.renderer.set_shader_folder({{"mine.frag", kBroken}});
     const auto messages = stand.renderer.take_trouble();
     REQUIRE(messages.size() == 1);
@@ -83,13 +83,13 @@ TEST_CASE("A shader of the scene draws its surface, and an edit is visible in th
     CHECK(stand.renderer.take_trouble().empty());
     CHECK(stand.middle() == kBlue);
   }
-  SECTION("without its file the scene's shader returns") {
+  SECTION("without its file the shader of the scene returns") {
     stand.renderer.set_shader_folder({});
     CHECK(stand.middle() == kRed);
   }
 }
 
-TEST_CASE("Every kind of invalid source is reported in one sentence and removes no picture") {
+TEST_CASE("Every kind of invalid source is reported in one sentence and keeps the picture") {
   const std::string nonsense = GENERATE(as<std::string>{}, "", "\0\xff\xfe", "#error no", "void main() {}",
                                         "vec4 shade() { return vec4(1) }", "vec4 other() { return vec4(1); }",
                                         "#version 450 core\nvec4 shade() { return vec4(1) + x; }",
@@ -100,7 +100,7 @@ TEST_CASE("Every kind of invalid source is reported in one sentence and removes 
   CHECK(stand.middle() == kRed);
 }
 
-TEST_CASE("A missing shader and one that never compiled are drawn as Phong and reported once") {
+TEST_CASE("A missing or invalid shader is drawn as Phong and reported once") {
   Stand phong("phong");
   const Image expected = phong.draw();
   Stand unknown("nowhere");
@@ -122,7 +122,7 @@ TEST_CASE("A missing shader and one that never compiled are drawn as Phong and r
   CHECK(broken.middle() == kBlue);
 }
 
-TEST_CASE("A shader of the node can be replaced too, including its lamps") {
+TEST_CASE("A shader of the node can be replaced, including its lamps") {
   Stand stand("phong");
   const Vector3d before = stand.middle();
   stand.renderer.set_shader_folder({{"phong.frag", plain("0, 1, 0")}});
@@ -148,7 +148,7 @@ TEST_CASE("A vertex shader moves its surface") {
   CHECK_THAT(raised.renderer.take_trouble().front(), Catch::Contains("mine.vert:1"));
 }
 
-TEST_CASE("A pass that does not compile keeps its previous version, and a missing one is left out") {
+TEST_CASE("An invalid pass keeps its previous version, and a missing one is omitted") {
   Stand stand("phong", own(plain("0, 0, 1")), {"mine", "nowhere"});
   const auto messages = stand.renderer.take_trouble();
   REQUIRE(messages.size() == 1);
@@ -162,32 +162,32 @@ TEST_CASE("A pass that does not compile keeps its previous version, and a missin
   CHECK(stand.middle() == kRed);
 }
 
-TEST_CASE("Uniforms set by name take effect, and an unsuitable one is reported") {
+TEST_CASE("Uniforms are set by name, and an unsuitable one is reported") {
   uniform_t tint{};
   tint.name = "tint", tint.count = 3, tint.values[1] = 1;
   const std::string tinted = "uniform vec3 tint;\nvec4 shade() { return vec4(tint, 1.0); }\n";
   Stand stand("mine", own(tinted), {}, {tint});
   CHECK(stand.renderer.take_trouble().empty());
   CHECK(stand.middle() == kGreen);
-  SECTION("because it has another type") {
+  SECTION("the uniform has another type") {
     stand.renderer.set_shader_folder(
         {{"mine.frag", "uniform float tint;\nvec4 shade() { return vec4(tint, 0.0, 1.0, 1.0); }\n"}});
     CHECK_THAT(stand.renderer.take_trouble().at(0),
                Catch::Contains("uniform tint") && Catch::Contains("not a vec3"));
     CHECK(stand.middle() == kBlue);
   }
-  SECTION("because it has another name") {
+  SECTION("the uniform has another name") {
     stand.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
     CHECK_THAT(stand.renderer.take_trouble().at(0), Catch::Contains("has no uniform tint"));
     CHECK(stand.middle() == kBlue);
   }
-  SECTION("but not when it only has no effect") {
+  SECTION("a uniform without effect is not reported") {
     stand.renderer.set_shader_folder({{"mine.frag", "uniform vec3 tint;\n" + plain("0, 0, 1")}});
     CHECK(stand.renderer.take_trouble().empty());
   }
 }
 
-TEST_CASE("Only the shaders of a folder are read, and not oversized ones, and a missing folder is empty") {
+TEST_CASE("Only shader files of limited size are read, and a missing folder is empty") {
   const auto folder = std::filesystem::temp_directory_path() / "tactus_shader_folder_test";
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder / "folder.frag");
@@ -204,7 +204,7 @@ TEST_CASE("Only the shaders of a folder are read, and not oversized ones, and a 
   std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("A watched folder is delivered once, and again when it changes") {
+TEST_CASE("A watched folder is read once, and again when it changes") {
   const auto folder = std::filesystem::temp_directory_path() / "tactus_shader_watch_test";
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);

@@ -146,7 +146,7 @@ TEST_CASE("The difference of two colours matches the published examples of CIEDE
   }
 }
 
-TEST_CASE("Bytes of sRGB convert to the correct lightness and colour") {
+TEST_CASE("sRGB bytes are converted to the correct lightness and colour") {
   const std::uint8_t white[]{255, 255, 255}, black[]{0, 0, 0}, red[]{255, 0, 0};
   CHECK((lab_of(white) - Eigen::Vector3d(100, 0, 0)).norm() < 0.03);
   CHECK(lab_of(black).norm() < 1e-9);
@@ -165,7 +165,7 @@ TEST_CASE("Shipped scenes match their stored pictures") {
   }
 }
 
-TEST_CASE("Every injected drawing error differs visibly") {
+TEST_CASE("Every injected drawing error is detected") {
   const auto lamp_by_5_cm = [](scene_t& s) { s.lights[0].pose.position_m.y += 0.05; };
   const auto turned_over = [](scene_t& s) {
     for (look_t& l : s.looks) l.normal_map = 0;
@@ -207,7 +207,7 @@ TEST_CASE("Every injected drawing error differs visibly") {
   }
 }
 
-TEST_CASE("The pictures are rewritten", "[.rewrite]") {
+TEST_CASE("The golden pictures are rewritten", "[.rewrite]") {
   for (const Frame& f : frames()) {
     const std::string file = kFolder + f.name + ".png";
     const Picture now = draw(f);

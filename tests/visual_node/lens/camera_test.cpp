@@ -21,7 +21,7 @@ TEST_CASE("An SDF camera looks along its x axis with z up and y to the left") {
   CHECK(ndc(c, {5, 1, 0}).x() < 0);
   CHECK(ndc(c, {5, 0, 1}).y() > 0);
 
-  SECTION("the edge of the horizontal field of view is the edge of the picture, and pixels are square") {
+  SECTION("the horizontal field of view spans the picture, and pixels are square") {
     CHECK(ndc(c, {5, -5, 0}).x() == Approx(1));
     CHECK(ndc(c, {5, 0, 3.75f}).y() == Approx(1));  // 5 tan(45 deg) * 480 / 640
     CHECK(c.focal_px == Approx(320));
@@ -32,7 +32,7 @@ TEST_CASE("An SDF camera looks along its x axis with z up and y to the left") {
   }
 }
 
-TEST_CASE("A camera at any pose sees the inversely moved world of a camera at the origin") {
+TEST_CASE("A camera at any pose sees the inverse motion of the world") {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> u(-1, 1);
   for (int i = 0; i < 100; ++i) {
@@ -46,7 +46,7 @@ TEST_CASE("A camera at any pose sees the inversely moved world of a camera at th
   }
 }
 
-TEST_CASE("The view of a lamp has its axis in the middle for every direction") {
+TEST_CASE("The view of a lamp is centred on its axis for every direction") {
   for (const Eigen::Vector3d& direction :
        {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(-1, 0, 0), Eigen::Vector3d(1, 2, -3)}) {
     const Eigen::Vector3d lamp(1, 2, 3);

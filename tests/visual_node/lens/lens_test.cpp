@@ -35,7 +35,7 @@ Eigen::Vector2f seen(const Camera& camera, const Vector3d& place) {
 
 }  // namespace
 
-TEST_CASE("A cave is level around the camera position, its front along the camera's heading") {
+TEST_CASE("A cave is level around the camera, and its front faces the heading of the camera") {
   const scene_t scene = looking_down();
   const Lens front(scene, room("cave4", "front"), 512, 512), floor(scene, room("cave4", "floor"), 512, 512);
   REQUIRE(front.trouble().empty());
@@ -49,7 +49,7 @@ TEST_CASE("A cave is level around the camera position, its front along the camer
   CHECK((seen(front.at(head), left_foot) - Eigen::Vector2f(-1, -1)).norm() < 1e-4f);
 }
 
-TEST_CASE("A screen on a desk is upright before the camera at any camera pose") {
+TEST_CASE("A desktop screen is upright before the camera at any camera pose") {
   const scene_t scene = looking_down();
   const Lens lens(scene, room("desk"), 640, 360);
   const Eigen::Isometry3d camera = to_eigen(scene.camera);
@@ -58,7 +58,7 @@ TEST_CASE("A screen on a desk is upright before the camera at any camera pose") 
   CHECK(seen(lens.at({}), camera * Vector3d(0.6, 0, 0.1494)).y() == Approx(1).margin(1e-4));
 }
 
-TEST_CASE("A missing room or wall is reported, and the scene's camera is used") {
+TEST_CASE("A missing room or wall is reported, and the camera of the scene is used") {
   const scene_t scene = looking_down();
   const Lens plain(scene, room("none"), 640, 480);
   const auto [name, wall, sentence] = GENERATE(
@@ -69,7 +69,7 @@ TEST_CASE("A missing room or wall is reported, and the scene's camera is used") 
   CHECK(lens.at({}).clip_from_world() == plain.at({}).clip_from_world());
 }
 
-TEST_CASE("Halves and colours show the views of both eyes, from one head pose") {
+TEST_CASE("Stereo halves and colours show both eyes for one head pose") {
   const scene_t scene = looking_down();
   Settings s = room(GENERATE("none", "cave4"), "first");
   const Eigen::Isometry3d head = to_eigen(scene.camera) * Eigen::Translation3d(0, 0.1, 0);

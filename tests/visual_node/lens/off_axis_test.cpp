@@ -58,7 +58,7 @@ TEST_CASE("The corners of a wall map to those of its picture for every head posi
     }
 }
 
-TEST_CASE("Points behind an edge of two walls lie on matching pixels of both") {
+TEST_CASE("Points behind an edge of two walls lie on matching pixels of both walls") {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> share(0, 1), far(1, 20);
   int edges = 0;
@@ -93,7 +93,7 @@ TEST_CASE("Points behind an edge of two walls lie on matching pixels of both") {
   CHECK(edges == 24);  // twelve, from either side
 }
 
-TEST_CASE("An eye in front of the middle of a wall has an ordinary perspective") {
+TEST_CASE("An eye in front of the centre of a wall has a symmetric perspective") {
   const Wall wall = *cave().named("front");
   const double away = 1.524, height = 1.524;
   const Camera off = off_axis(wall, {0, 0, height}, kWidth, 0.02, 100);
@@ -105,7 +105,7 @@ TEST_CASE("An eye in front of the middle of a wall has an ordinary perspective")
   CHECK(off.focal_px == Approx(plain.focal_px).epsilon(1e-5));
 }
 
-TEST_CASE("Both eyes see a point on the wall at one place, before it crossed, behind it uncrossed") {
+TEST_CASE("Both eyes see a point on the wall at one place, nearer points crossed, farther ones uncrossed") {
   const double apart = 0.064;
   const Wall wall = *cave().named("front");
   std::mt19937 random(7);
@@ -135,7 +135,7 @@ TEST_CASE("Both eyes see a point on the wall at one place, before it crossed, be
   CHECK(std::abs(parallax.y()) < 2 * kRounding);
 }
 
-TEST_CASE("An eye in the plane of a wall or behind it still gets a picture") {
+TEST_CASE("An eye in the plane of a wall or behind it has a valid picture") {
   const Wall wall = *cave().named("front");
   for (const double x : {1.524, 1.6, 50.0}) {
     const Camera camera = off_axis(wall, {x, 0.2, 1}, kWidth, 0.02, 100);

@@ -18,7 +18,7 @@ const std::string kHead =
 
 }  // namespace
 
-TEST_CASE("The walls of a cave face the user inside and meet edge on edge") {
+TEST_CASE("The walls of a cave face the user and share their edges") {
   const auto [name, walls, open_edges] =
       GENERATE(std::tuple("cave4", 4, 6), std::tuple("cave6", 6, 0), std::tuple("desk", 1, 4));
   const Room room = load_room(name);
@@ -46,7 +46,7 @@ TEST_CASE("The walls of a cave face the user inside and meet edge on edge") {
   CHECK(alone == open_edges);
 }
 
-TEST_CASE("A user's room is read from a file, and an invalid one is rejected with a sentence") {
+TEST_CASE("A custom room is read from a file, and an invalid one is rejected with a message") {
   const Room room = parse_room(kHead + "tilted,1,0.5,0,1,-0.5,0,1.6,0.5,0.8\r\n\n", "mine");
   REQUIRE(room.walls.size() == 1);
   CHECK(room.named("tilted") == &room.walls[0]);
@@ -72,7 +72,7 @@ TEST_CASE("A user's room is read from a file, and an invalid one is rejected wit
     CHECK_THROWS_WITH(load_room(path), Catch::Contains("cannot be read"));
 }
 
-TEST_CASE("A moved wall keeps its size and turns its normal") {
+TEST_CASE("A moved wall keeps its size and rotates its normal") {
   const Wall front = *load_room("cave4").named("front");
   const Eigen::Isometry3d by = Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitZ());
   const Wall there = moved(front, by);

@@ -47,7 +47,7 @@ bool meet(const Rect& a, const Rect& b) {
 
 }  // namespace
 
-TEST_CASE("In every combination of overlays, plates do not overlap and the marker stays free") {
+TEST_CASE("Overlays do not overlap in any combination and keep the marker free") {
   Laid c;
   REQUIRE(c.configure("all,help",
                       "graph TOOL_STATE.force_N.z; bar TOOL_STATE.fade; text TOOL_STATE.tool;"
@@ -75,7 +75,7 @@ TEST_CASE("In every combination of overlays, plates do not overlap and the marke
   }
 }
 
-TEST_CASE("An overlay that is off subscribes to nothing, and a key that switches it on subscribes") {
+TEST_CASE("An overlay subscribes to its channels when it is switched on") {
   Laid c;
   CHECK(c.configure("none").empty());
   CHECK(c.bus.inboxes().empty());
@@ -85,13 +85,13 @@ TEST_CASE("An overlay that is off subscribes to nothing, and a key that switches
   CHECK_FALSE(c.drawn(640, 480).empty());
   c.overlays.toggle(Overlay::kReport);
   CHECK(c.drawn(640, 480).empty());
-  // A configured plot is shown whatever overlays are on.
+  // A configured plot is shown with any set of overlays.
   CHECK(c.configure("none", "text TOOL_STATE.force_N.z").empty());
   CHECK(c.overlays.on().on(Overlay::kPlots));
   CHECK_FALSE(c.drawn(640, 480).empty());
 }
 
-TEST_CASE("An invalid change is rejected before anything has changed") {
+TEST_CASE("An invalid change is rejected and changes nothing") {
   Settings s;
   s.overlay = "report,plot";
   CHECK_THROWS_WITH(LiveOverlays::check(s), Catch::Contains("\"plot\"") && Catch::Contains("plots"));

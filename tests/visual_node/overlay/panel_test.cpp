@@ -25,7 +25,7 @@ node_health_t health(std::int64_t seq, const sync::Histogram& ticks, std::int64_
 
 }  // namespace
 
-TEST_CASE("The setting names overlays, and an unknown word is rejected with similar names") {
+TEST_CASE("The setting lists overlays, and an unknown word is rejected with similar names") {
   CHECK_FALSE(parse_overlays("none").any());
   CHECK_FALSE(parse_overlays("").any());
   const OverlaySet set = parse_overlays(" contacts,report tools ");
@@ -50,7 +50,7 @@ TEST_CASE("Every overlay has a key, and the help lists every key") {
   CHECK_FALSE(action_of('Q'));
 }
 
-TEST_CASE("The tick time is that of the last interval, not of all since the start") {
+TEST_CASE("The tick time is that of the last interval") {
   TickTimes times;
   sync::Histogram ticks;
   for (int i = 0; i < 1000; ++i) ticks.add(microseconds(100));
@@ -67,7 +67,7 @@ TEST_CASE("The tick time is that of the last interval, not of all since the star
   CHECK_FALSE(times.median());
 }
 
-TEST_CASE("An overlay that is off has no line, and one that is on shows its figures") {
+TEST_CASE("An overlay has lines with its figures only while it is on") {
   PanelFacts facts;
   facts.contacts = 12;
   facts.rendering = microseconds(8200), facts.period = microseconds(16667);
@@ -89,7 +89,7 @@ TEST_CASE("An overlay that is off has no line, and one that is on shows its figu
   CHECK(text(Overlay::kContacts).empty());
 }
 
-TEST_CASE("Every character that a line can hold is drawn within the picture") {
+TEST_CASE("Every character of a line is drawn within the picture") {
   for (char c = '!'; c <= '~'; ++c) CHECK(glyph(c));
   CHECK_FALSE(glyph(' '));
   std::vector<Rect> overlay;
@@ -107,7 +107,7 @@ TEST_CASE("Every character that a line can hold is drawn within the picture") {
   CHECK(none.empty());
 }
 
-TEST_CASE("A long line wraps, and letters get smaller before lines are left out") {
+TEST_CASE("A long line wraps, and the letters become smaller before lines are omitted") {
   const float wide = (kGlyphWidth + 1) * 2;
   const TextRoom room{0, 0, 20 * wide + 8, 480};  // 20 letters of size 2
   const auto lowest = [&](const std::vector<std::string>& lines, float bottom = 480) {

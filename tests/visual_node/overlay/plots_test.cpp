@@ -34,7 +34,7 @@ std::string sentence(const char* text) {
 
 }  // namespace
 
-TEST_CASE("A plot names a variable of a channel, optionally of one process and one tool") {
+TEST_CASE("A plot names a variable of a channel and optionally a process and a tool") {
   std::vector<std::string> trouble;
   const auto specs = parse_plots(
       "graph TOOL_STATE.force_N.z@tool=1; bar NODE_HEALTH.rate_Hz@audio_node;text SYNC_REPORT.hits;", trouble);
@@ -71,7 +71,7 @@ TEST_CASE("A plot with an unknown name is rejected in one sentence with similar 
   CHECK(trouble.size() == 1);
 }
 
-TEST_CASE("A course keeps the lowest and highest value of each time slice and drops slices beyond its span") {
+TEST_CASE("A plot keeps the lowest and highest value of each time slice within its span") {
   Course course(kSpan);
   for (int ms = 0; ms < 3000; ++ms) course.add(ms == 2005 ? 50 : ms == 2007 ? -7 : 1, at_ms(ms));
   const auto slices = course.slices(at_ms(2999));
@@ -85,7 +85,7 @@ TEST_CASE("A course keeps the lowest and highest value of each time slice and dr
   CHECK_FALSE(course.range(at_ms(9000)));
 }
 
-TEST_CASE("A course accepts late and invalid values without harm") {
+TEST_CASE("A plot accepts late and invalid values") {
   Course course(kSpan);
   course.add(1, at_ms(100));
   course.add(9, at_ms(50));  // late: added to the newest slice
@@ -95,7 +95,7 @@ TEST_CASE("A course accepts late and invalid values without harm") {
   CHECK(course.slices(at_ms(100)).front().highest == 9);
 }
 
-TEST_CASE("Numbers are labelled with useful precision") {
+TEST_CASE("Axis numbers have a useful precision") {
   CHECK(label(0) == "0");
   CHECK(label(1000) == "1000");
   CHECK(label(-12.3456) == "-12.35");
@@ -103,7 +103,7 @@ TEST_CASE("Numbers are labelled with useful precision") {
   CHECK(label(123456789) == "1.235e+08");
 }
 
-TEST_CASE("Plots stay within the picture, and each channel is listed once") {
+TEST_CASE("Plots stay within the picture, and each channel is subscribed once") {
   std::vector<std::string> trouble;
   Plots plots(
       parse_plots(
@@ -160,7 +160,7 @@ TEST_CASE("A bar has its value below it, and empty text differs from missing tex
         pixels(drawn("text NODE_HEALTH.note", "NODE_HEALTH", {})));
 }
 
-TEST_CASE("Values that are not finite, and those at the limits of a number, are drawn within their plot") {
+TEST_CASE("Values that are not finite or very large are drawn within their plot") {
   std::vector<std::string> trouble;
   const double values[] = {1,
                            -1e308,

@@ -34,7 +34,7 @@ struct Dialog {
 
 }  // namespace
 
-TEST_CASE("A choice is answered by its digit, once, timed from its presentation") {
+TEST_CASE("A choice is answered once by its digit, timed from its presentation") {
   Dialog d;
   d.ask(choice(11, {"yes", "no"}), 1000);
   REQUIRE(d.dialog.current(at_ms(1100)));
@@ -49,7 +49,7 @@ TEST_CASE("A choice is answered by its digit, once, timed from its presentation"
   CHECK_FALSE(d.dialog.take_answer());
 }
 
-TEST_CASE("An answer is sent again for each repetition of its question, which is not shown again") {
+TEST_CASE("An answer is repeated for each repetition of its question, which is not shown again") {
   Dialog d;
   d.ask(choice(11, {"yes", "no"}, 0), 1000);
   d.key('1', 1100);
@@ -72,7 +72,7 @@ TEST_CASE("An answer is sent again for each repetition of its question, which is
   CHECK_FALSE(d.dialog.take_answer());
 }
 
-TEST_CASE("A press before the presentation of a question does not answer it") {
+TEST_CASE("A key press before a question is shown does not answer it") {
   Dialog d;
   d.dialog.push(choice(1, {"yes", "no"}), at_ms(0));
   CHECK(d.key('1', 1));
@@ -82,7 +82,7 @@ TEST_CASE("A press before the presentation of a question does not answer it") {
   CHECK(d.sent().after_ns == 0);
 }
 
-TEST_CASE("A text to read is confirmed with Enter, space or A, and with no digit") {
+TEST_CASE("A text is confirmed with Enter, space or A, and not with a digit") {
   for (const int key : {kEnter, static_cast<int>(' ')}) {
     Dialog d;
     d.ask(question(5, question_t::READ), 0);
@@ -100,7 +100,7 @@ TEST_CASE("A text to read is confirmed with Enter, space or A, and with no digit
   CHECK(d.sent().by == "gamepad");
 }
 
-TEST_CASE("A number starts in the middle, and arrows move its mark by one step or a tenth up to its ends") {
+TEST_CASE("A number starts in the middle, and arrows move its mark by one step or a tenth") {
   Dialog d;
   d.ask(number(5, -1, 1, 0.05), 0);
   CHECK(d.dialog.number() == Approx(0).margin(1e-9));
@@ -121,7 +121,7 @@ TEST_CASE("A number starts in the middle, and arrows move its mark by one step o
   CHECK(d.dialog.number() == Approx(0).margin(1e-9));  // the next question starts in the middle
 }
 
-TEST_CASE("For every range of a number both ends can be answered and nothing beyond them") {
+TEST_CASE("Both ends of every number range can be answered and nothing beyond them") {
   for (const auto& [low, high, step] : std::vector<std::tuple<double, double, double>>{
            {0, 10, 1}, {0, 10, 3}, {1, 7, 6}, {-1e9, 1e9, 1e-300}, {0, 1e-9, 1e-9}, {20.5, 36, 0.25}}) {
     CAPTURE(low, high, step);
@@ -136,7 +136,7 @@ TEST_CASE("For every range of a number both ends can be answered and nothing bey
   }
 }
 
-TEST_CASE("A question disappears two seconds after its last message, and when no question is current") {
+TEST_CASE("A question disappears two seconds after its last message or when it ends") {
   Dialog d;
   d.ask(choice(1, {"yes", "no"}, 0), 0);
   CHECK(d.dialog.current(at_ms(2000)));
@@ -150,7 +150,7 @@ TEST_CASE("A question disappears two seconds after its last message, and when no
   CHECK_FALSE(d.dialog.take_answer());
 }
 
-TEST_CASE("The newest question of a trial runner holds, and another run or a second trial runner is ignored") {
+TEST_CASE("The newest question of a trial runner is shown, and other runs and trial runners are ignored") {
   Dialog d;
   d.ask(choice(1, {"yes", "no"}, 5), 0);
   d.dialog.push(choice(2, {"a", "b"}, 4), at_ms(10));  // an older message that arrived late
@@ -166,7 +166,7 @@ TEST_CASE("The newest question of a trial runner holds, and another run or a sec
   CHECK(d.dialog.current(at_ms(2100))->id == 3);
 }
 
-TEST_CASE("A question that replaces an unanswered one is timed from its own presentation") {
+TEST_CASE("A question that replaces another one is timed from its own presentation") {
   Dialog d;
   d.ask(choice(1, {"yes", "no"}, 0), 0);
   d.ask(choice(2, {"a", "b", "c"}, 1), 1000);
@@ -176,7 +176,7 @@ TEST_CASE("A question that replaces an unanswered one is timed from its own pres
   CHECK((a.id == 2 && a.choice == 2 && a.after_ns == 100'000'000));
 }
 
-TEST_CASE("Digits of both key blocks choose, and keys without meaning go to the window") {
+TEST_CASE("Digits of both key blocks are choices, and other keys go to the window") {
   for (int i = 0; i < 9; ++i) {
     CHECK(press_of('1' + i)->choice == i);
     CHECK(press_of(321 + i)->choice == i);

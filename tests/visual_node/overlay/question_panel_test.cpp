@@ -56,7 +56,7 @@ question_t longest() {
 
 }  // namespace
 
-TEST_CASE("Text wraps at a blank, and a long word breaks at the end of the line") {
+TEST_CASE("Text wraps at a blank, and a long word is split at the line end") {
   using Lines = std::vector<std::string>;
   CHECK(words_in_lines("", 10).empty());
   CHECK(words_in_lines("ten letter", 10) == Lines{"ten letter"});
@@ -76,8 +76,7 @@ TEST_CASE("A number has as many decimals as its step") {
   CHECK(number_text(1.0 / 3, 1.0 / 3) == "0.333333");
 }
 
-TEST_CASE(
-    "A question of usual length is in the lower two thirds, in large letters, with every letter") {
+TEST_CASE("A question of usual length is drawn completely in the lower two thirds in large letters") {
   question_t yes_no = choice(1, {"yes", "no"}), stiff = number(2, 0, 100, 1), read = question(3, question_t::READ);
   stiff.count = 2, stiff.choices = {"very soft", "very hard"};
   for (question_t* m : {&yes_no, &stiff, &read}) {
@@ -106,7 +105,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("The longest possible question is drawn whole, within the picture") {
+TEST_CASE("The longest possible question is drawn completely within the picture") {
   const question_t m = longest();
   for (const Picture& p : kPictures) {
     CAPTURE(p.width, p.height);
@@ -126,7 +125,7 @@ TEST_CASE("The longest possible question is drawn whole, within the picture") {
   }
 }
 
-TEST_CASE("The mark of a number is at its share of the slider, and never beyond it") {
+TEST_CASE("The mark of a number is at its position on the slider and never beyond it") {
   const question_t m = number(1, -1, 1, 0.1);
   const auto mark_x = [&](double at) {
     const auto rects = drawn(m, at, {640, 480});

@@ -46,7 +46,7 @@ struct SmallRoom {
 
 }  // namespace
 
-TEST_CASE("The mouse points at the surface visible under it") {
+TEST_CASE("The mouse points at the visible surface under it") {
   const SmallRoom room;
   const auto middle = room.hit(0.5f, 0.5f);
   REQUIRE(middle);
@@ -65,7 +65,7 @@ TEST_CASE("The mouse points at the surface visible under it") {
   CHECK_FALSE(room.hit(std::nanf(""), 0.5f));
 }
 
-TEST_CASE("A ball of any size at any place is hit up to its edge, and the floor beside it") {
+TEST_CASE("The mouse points at a ball up to its edge and at the floor beside it") {
   for (const double radius_m : {0.01, 0.03, 0.08})
     for (const double y_m : {-0.6, 0.0, 0.3}) {
       CAPTURE(radius_m, y_m);
@@ -100,7 +100,7 @@ TEST_CASE("In a stereo picture the mouse points within the half under it") {
   }
 }
 
-TEST_CASE("The pointer moves without a jump and is a valid device") {
+TEST_CASE("The pointer moves continuously and is a valid device") {
   MousePointer pointer;
   CHECK_FALSE(pointer.state(at_ms(0)));
   pointer.aim({1, 2, 0});
@@ -121,7 +121,7 @@ TEST_CASE("The pointer moves without a jump and is a valid device") {
   CHECK(ticks == 125);  // 10 m at 5 m/s, 16 ms each
 }
 
-TEST_CASE("A key press sends a command once, again until it is answered, and not for ever") {
+TEST_CASE("A key press sends one command and repeats it for a limited time until it is answered") {
   SimulationRequests requests;
   CHECK_FALSE(requests.step(at_ms(0)));
   requests.request(Act::kPauseOrResume, 7);
@@ -145,7 +145,7 @@ TEST_CASE("A key press sends a command once, again until it is answered, and not
   CHECK_FALSE(requests.step(at_ms(3600)));
 }
 
-TEST_CASE("Held keys do not fill memory, and each press sends its own command") {
+TEST_CASE("Each key press sends its own command, and held keys do not fill memory") {
   SimulationRequests requests;
   for (int i = 0; i < 1000; ++i) requests.request(i % 2 ? Act::kStep : Act::kReset, i + 1);
   std::size_t answered = 0;

@@ -39,7 +39,7 @@ int count_red(const Image& image) {
 
 }  // namespace
 
-TEST_CASE("A line joins the places of its ends, with the given width") {
+TEST_CASE("A line connects its ends with the given width") {
   std::vector<Stroke> strokes;
   append_line(strokes, {0, 0.3f, 0}, {0, -0.3f, 0}, kRed);
   const Image image = drawn(strokes);
@@ -54,7 +54,7 @@ TEST_CASE("A line joins the places of its ends, with the given width") {
   CHECK(wide == 4);
 }
 
-TEST_CASE("A line that begins behind the eye is clipped, one entirely behind it is not drawn") {
+TEST_CASE("A line is clipped at the eye and not drawn behind it") {
   std::vector<Stroke> strokes;
   append_line(strokes, {0, 0, 5}, {0.5f, 0, 0}, kRed);  // the eye is at 2 m and looks down; picture up is +x
   CHECK(red(drawn(strokes).at(kWidth / 2, kHeight / 2 - static_cast<int>(0.5 * scale_px(2)) - 4)));
@@ -74,7 +74,7 @@ TEST_CASE("Each eye sees a line in its own half of the picture") {
   CHECK(std::abs(left - right) <= left / 5);
 }
 
-TEST_CASE("An arrow ends at its tip, and is not drawn when it has no length or is not finite") {
+TEST_CASE("An arrow ends at its tip and is not drawn if it is empty or not finite") {
   std::vector<Stroke> strokes;
   append_arrow(strokes, {1, 2, 3}, {0, 0, 0.5f}, kRed);
   REQUIRE(strokes.size() == 5);
@@ -89,7 +89,7 @@ TEST_CASE("An arrow ends at its tip, and is not drawn when it has no length or i
   CHECK(strokes.empty());
 }
 
-TEST_CASE("A spring joins both ends without a gap") {
+TEST_CASE("A spring connects both ends without a gap") {
   std::vector<Stroke> strokes;
   append_spring(strokes, {0, 0, 0}, {1, 0, 0}, 0.1f, kRed);
   REQUIRE(strokes.size() == 2 * kSpringTurns + 1);

@@ -27,7 +27,7 @@ contact_t contact(int points, int tool) {
 
 }  // namespace
 
-TEST_CASE("A contact is a cross and a normal at each of its points, midway between the surfaces") {
+TEST_CASE("Each point of a contact has a cross and a normal midway between the surfaces") {
   std::vector<Stroke> strokes;
   append_contacts(strokes, std::vector{contact(2, -1)});
   REQUIRE(strokes.size() == 2 * 4);
@@ -39,7 +39,7 @@ TEST_CASE("A contact is a cross and a normal at each of its points, midway betwe
   CHECK(of_tool[0].colour != strokes[0].colour);
 }
 
-TEST_CASE("The arrow of a force is its newtons times the scale, from the middle of the contact") {
+TEST_CASE("A force arrow has a length of force times scale and starts at the middle of the contact") {
   std::vector<Stroke> strokes;
   append_contact_forces(strokes, std::vector{contact(3, -1)}, 0.02f);
   REQUIRE(!strokes.empty());
@@ -58,7 +58,7 @@ TEST_CASE("The arrow of a force is its newtons times the scale, from the middle 
   CHECK(strokes[0].to.head<3>().isApprox(Eigen::Vector3f(1, 1.96f, 3)));
 }
 
-TEST_CASE("A spring joins proxy and device when they are apart") {
+TEST_CASE("A spring is drawn between proxy and device when they are apart") {
   ToolPose pose;
   std::vector<Stroke> strokes;
   append_tool(strokes, pose);
@@ -72,7 +72,7 @@ TEST_CASE("A spring joins proxy and device when they are apart") {
   CHECK(strokes.size() == 6 + 2 * kSpringTurns + 1);
 }
 
-TEST_CASE("The number of lines is bounded for any number of contacts") {
+TEST_CASE("The number of lines is limited for any number of contacts") {
   std::vector<Stroke> strokes;
   append_contacts(strokes, std::vector(kMaxContactsDrawn + 500, contact(4, -1)));
   CHECK(strokes.size() == kMaxContactsDrawn * 16);

@@ -24,7 +24,7 @@ Camera camera() { return make_camera(Eigen::Isometry3d::Identity(), 1, 640, 480,
 
 }  // namespace
 
-TEST_CASE("A contact flashes for at least three frames and the set duration, at any frame rate") {
+TEST_CASE("A contact flashes for at least three frames and the set duration at any frame rate") {
   Settings settings;
   settings.flash_duration_s = 0.08;
   std::mt19937 random(3);
@@ -47,7 +47,7 @@ TEST_CASE("A contact flashes for at least three frames and the set duration, at 
   }
 }
 
-TEST_CASE("A flash grows and fades, is brighter for a faster hit, and has a minimum size in pixels") {
+TEST_CASE("A flash grows, fades, is brighter for a faster hit and has a minimum size") {
   const Settings settings;
   Flashes flashes(settings);
   const sync::HostTime t = sync::host_time(0);
@@ -57,14 +57,14 @@ TEST_CASE("A flash grows and fades, is brighter for a faster hit, and has a mini
   CHECK(old.u.norm() > young.u.norm());
   CHECK(old.colour.norm() < young.colour.norm());
 
-  SECTION("faster is brighter") {
+  SECTION("a faster hit is brighter") {
     Flashes slow(settings);
     contact_event_t e = hit(2);
     e.approach_speed_m_s = 0.3f;
     slow.add(e, t);
     CHECK(slow.frame(t, camera()).front().colour.norm() < young.colour.norm());
   }
-  SECTION("a distant one covers the minimum number of pixels when grown") {
+  SECTION("a distant flash covers the minimum number of pixels") {
     Flashes far(settings);
     far.add(hit(3, 50), t);
     const Glow glow = far.frame(t + sync::from_seconds(settings.flash_duration_s), camera()).front();

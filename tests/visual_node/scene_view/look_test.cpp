@@ -25,7 +25,7 @@ Raster dot(bool translucent) {
 }
 }  // namespace
 
-TEST_CASE("Look i of a scene is look i + 1 of its appearance, and the first is plain Phong") {
+TEST_CASE("Look i of a scene has index i + 1, and index 0 is plain Phong") {
   scene_t scene = test::empty_scene();
   scene.looks = {look("a", ""), look("b", "gouraud", 5), look("c", "normal_mapped", 5, 6), look("d", "phong", 7)};
   scene.environment_asset = 6;
@@ -35,7 +35,7 @@ TEST_CASE("Look i of a scene is look i + 1 of its appearance, and the first is p
   CHECK_FALSE(made.looks[0].mapped());
   CHECK(made.looks[1].shader == "phong");
   CHECK(made.looks[2].shader == "gouraud");
-  // A picture is stored once, whatever the number of looks that use it.
+  // A picture is stored once for any number of looks that use it.
   CHECK(made.pictures.size() == 2);
   CHECK(made.looks[2].colour_map == made.looks[3].colour_map);
   CHECK(made.environment == made.looks[3].normal_map);
@@ -88,7 +88,7 @@ TEST_CASE("Shaders and passes of a scene have their sources and names, and a mis
   CHECK(made.passes[0].shader == "greyscale");
 }
 
-TEST_CASE("A look index beyond the scene's looks is drawn without a look") {
+TEST_CASE("A look index out of range is drawn without a look") {
   scene_t scene = test::empty_scene();
   test::add_visual(scene, test::add_body(scene, {2, 0, 0}), shape_def_t::BOX, {0.1, 0.1, 0.1});
   scene.visuals[0].look = GENERATE(-1, -7, 0, 3, 2147483647);

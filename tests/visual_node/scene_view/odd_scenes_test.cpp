@@ -46,7 +46,7 @@ scene_t lit_floor() {
 
 }  // namespace
 
-TEST_CASE("An empty scene is a picture of its background") {
+TEST_CASE("An empty scene shows its background") {
   scene_t scene = empty_scene();
   scene.background = grey(0.25f);
   REQUIRE(valid(scene));
@@ -56,7 +56,7 @@ TEST_CASE("An empty scene is a picture of its background") {
     CHECK((image.at(x, y) - Eigen::Vector3d::Constant(srgb(0.25))).cwiseAbs().maxCoeff() <= kTolerance);
 }
 
-TEST_CASE("Three thousand bodies are all drawn in their places") {
+TEST_CASE("Three thousand bodies are drawn at their positions") {
   scene_t scene = floor_from_above(2);
   scene.visuals.clear();  // no floor: every lit pixel is a body
   scene.ambient = grey(1);
@@ -79,7 +79,7 @@ TEST_CASE("Three thousand bodies are all drawn in their places") {
   CHECK(missing == 0);
 }
 
-TEST_CASE("A body with an extreme pose is not visible and changes nothing else") {
+TEST_CASE("A body with an extreme pose is invisible and does not affect others") {
   scene_t with = lit_floor();
   const scene_t without = with;
   const int body = add_body(with, {0, 0, 0.2});
@@ -96,7 +96,7 @@ TEST_CASE("A body with an extreme pose is not visible and changes nothing else")
   }
 }
 
-TEST_CASE("Bodies of any size at any place do no harm to the renderer") {
+TEST_CASE("Bodies of any size and position are drawn without errors") {
   std::mt19937 random(7);
   const double sizes[] = {0, 1e-12, 1e-3, 1, 1e6, 1e9}, places[] = {0, -1e-9, 0.3, -5, 1e6, -1e9};
   const auto any = [&](const auto& list) { return list[random() % std::size(list)]; };
@@ -116,7 +116,7 @@ TEST_CASE("Bodies of any size at any place do no harm to the renderer") {
   CHECK(a.at(kWidth / 2, kHeight / 2).maxCoeff() > 20);
 }
 
-TEST_CASE("Numbers that are not finite are rejected at the border") {
+TEST_CASE("Poses and sizes that are not finite are rejected") {
   scene_t scene = lit_floor();
   scene.body_count = static_cast<int>(scene.bodies.size());
   scene.visual_count = static_cast<int>(scene.visuals.size());
@@ -149,7 +149,7 @@ TEST_CASE("Numbers that are not finite are rejected at the border") {
   }
 }
 
-TEST_CASE("The smallest and the largest picture size of the settings are drawn") {
+TEST_CASE("The smallest and largest picture sizes of the settings are drawn") {
   display();
   const scene_t scene = lit_floor();
   for (const auto& [width, height] : {std::pair(320, 240), std::pair(4096, 240), std::pair(320, 4096)}) {

@@ -70,7 +70,7 @@ void survives(const Bytes& bytes) {
 
 }  // namespace
 
-TEST_CASE("A PNG is read with its lowest row first, with its translucency") {
+TEST_CASE("A PNG is read with its lowest row first and its translucency") {
   const Raster r = read_raster(test::png_bytes(3, 2, 8, kColours, PNG_COLOR_TYPE_RGB));
   CHECK(r.width == 3);
   CHECK(r.height == 2);
@@ -83,7 +83,7 @@ TEST_CASE("A PNG is read with its lowest row first, with its translucency") {
   CHECK_FALSE(read_raster(test::png_bytes(1, 1, 8, {1, 2, 3, 255}, PNG_COLOR_TYPE_RGBA)).translucent);
 }
 
-TEST_CASE("Grey pictures are read too") {
+TEST_CASE("Grey pictures are read") {
   CHECK(read_raster(test::png_bytes(2, 1, 8, {7, 200})).rgba == Bytes{7, 7, 7, 255, 200, 200, 200, 255});
 }
 
@@ -102,13 +102,13 @@ TEST_CASE("A JPEG is read with its lowest row first") {
   CHECK(near(20, 27, 200, 40, 60));
 }
 
-TEST_CASE("Data that is not a picture is rejected with one clause") {
+TEST_CASE("Data that is not a picture is rejected with the reason") {
   CHECK_THROWS_WITH(read_raster({}), Catch::Contains("neither a PNG nor a JPEG"));
   const Bytes text{'h', 'e', 'l', 'l', 'o', ' ', 'w', 'o', 'r', 'l', 'd'};
   CHECK_THROWS_WITH(read_raster(text), Catch::Contains("neither a PNG nor a JPEG"));
 }
 
-TEST_CASE("A picture cut off at any byte is rejected, and a corrupted one is rejected or decoded") {
+TEST_CASE("A truncated picture is rejected, and a corrupted one is rejected or decoded") {
   const Bytes png = test::png_bytes(3, 2, 8, kColours, PNG_COLOR_TYPE_RGB), jpeg = jpeg_bytes(16, 16, halves(16));
   // Without the empty last chunk of a PNG or the end marker of a JPEG the picture may be complete.
   for (std::size_t length = 0; length < png.size() - 12; ++length) {
@@ -128,7 +128,7 @@ TEST_CASE("A picture cut off at any byte is rejected, and a corrupted one is rej
     }
 }
 
-TEST_CASE("A picture of too many pixels is rejected before memory is allocated") {
+TEST_CASE("A picture with too many pixels is rejected before memory is allocated") {
   // A row of 4097 pixels, and a header that claims 65,000 each way.
   CHECK_THROWS_WITH(read_raster(test::png_bytes(4097, 1, 8, Bytes(4097, 9))), Catch::Contains("4096"));
   CHECK(read_raster(test::png_bytes(4096, 1, 8, Bytes(4096, 9))).width == 4096);

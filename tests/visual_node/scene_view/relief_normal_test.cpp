@@ -162,7 +162,7 @@ HeightMap noise() {
 
 }  // namespace
 
-TEST_CASE("The normal of the haptic surface equals that of the picture within 1 degree over the whole map") {
+TEST_CASE("The normals of the haptic and the drawn surface agree within 1 degree over the whole map") {
   test::display();
   const ShaderLibrary library;
   const Program program({{"quad.vert", kQuad}},

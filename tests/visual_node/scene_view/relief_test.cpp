@@ -11,7 +11,7 @@
 using namespace tactus;
 using namespace tactus::visual;
 
-TEST_CASE("The slopes of a sine are its derivative") {
+TEST_CASE("The slope of a drawn sine relief is its derivative") {
   const HeightMap map = test::sine_map(64, 16);
   const material_def_t material = test::rough(1, 0.4, 0.1, 0.002);
   const Relief relief = make_relief(map, material);
@@ -30,14 +30,14 @@ TEST_CASE("The slopes of a sine are its derivative") {
     }
 }
 
-TEST_CASE("Up in the picture is along v") {
+TEST_CASE("The height map points up along v") {
   HeightMap map;
   map.columns = map.rows = 4, map.white = 255;
   map.levels = {0, 0, 0, 0, 51, 51, 51, 51, 102, 102, 102, 102, 153, 153, 153, 153};
   const Relief relief = make_relief(map, test::rough(1, 0.4, 0.4, 0.01));
   CHECK(relief.slopes[4].y() == Approx(0.02));  // 1/5 of 10 mm in 0.1 m
   CHECK(relief.slopes[4].x() == 0);
-  SECTION("and the lowest row is the neighbour of the highest") {
+  SECTION("the lowest row is next to the highest") {
     CHECK(relief.slopes[0].y() == Approx((51 - 153) / 255.0 * 0.01 / 0.2));
   }
 }

@@ -22,7 +22,7 @@ int instances(const std::vector<Batch>& batches) {
 }
 }  // namespace
 
-TEST_CASE("A scene becomes one instance for each visible shape, at its body") {
+TEST_CASE("A scene has one instance for each visible shape at its body") {
   scene_t scene = test::empty_scene();
   const int ball = test::add_body(scene, {1, 2, 3});
   test::add_visual(scene, ball, shape_def_t::SPHERE, {0.1, 0, 0});
@@ -34,13 +34,13 @@ TEST_CASE("A scene becomes one instance for each visible shape, at its body") {
   CHECK(list.instances[0].scale.head<3>().isApprox(Eigen::Vector3f(0.1f, 0.1f, 0.1f)));
   CHECK(instances(list.opaque) == 1);
 
-  SECTION("a shape with an offset in its body turns with it") {
+  SECTION("a shape with an offset rotates with its body") {
     scene.visuals[0].shape.pose.position_m.x = 1;
     poses[0].rotate(Eigen::AngleAxisd(std::acos(0.0), Eigen::Vector3d::UnitZ()));
     const DrawList turned = SceneView(scene, {}, Settings{}).draw(poses, {});
     CHECK(turned.instances[0].position.head<3>().isApprox(Eigen::Vector3f(4, 6, 6)));
   }
-  SECTION("the same kind of shape is one batch for any number of shapes") {
+  SECTION("all shapes of one kind are one batch") {
     for (int i = 0; i < 50; ++i) test::add_visual(scene, ball, shape_def_t::BOX, {1, 1, 1});
     const DrawList many = SceneView(scene, {}, Settings{}).draw(poses, {});
     CHECK(many.opaque.size() == 2);
@@ -68,7 +68,7 @@ TEST_CASE("Batches contain every instance exactly once and only existing geometr
   REQUIRE(named.size() == 40);
   for (int i = 0; i < 40; ++i) CHECK(named.count(i) == 1);
 
-  SECTION("translucent shapes come last and from far to near") {
+  SECTION("translucent shapes are last, from far to near") {
     float before = 1e9f;
     for (const Batch& b : list.translucent)
       for (int i = b.first; i < b.first + b.count; ++i) {
@@ -80,7 +80,7 @@ TEST_CASE("Batches contain every instance exactly once and only existing geometr
   }
 }
 
-TEST_CASE("A round shape has a number of edges that follows its size on the screen") {
+TEST_CASE("The number of edges of a round shape follows its size on the screen") {
   scene_t scene = test::empty_scene();
   test::add_visual(scene, test::add_body(scene, {0, 0, 0}), shape_def_t::SPHERE, {0.1, 0, 0});
   const SceneView view(scene, {}, Settings{});
@@ -109,7 +109,7 @@ TEST_CASE("A tool is drawn solid at its proxy and as a ghost at its device") {
   CHECK(list.instances[static_cast<std::size_t>(list.opaque[0].first)].scale.x() == Approx(0.02f));
   CHECK(list.instances[static_cast<std::size_t>(list.translucent[0].first)].position.z() == Approx(-0.1f));
 
-  SECTION("a tool without messages is drawn where the simulation holds it, without a ghost") {
+  SECTION("a tool without messages is drawn at its simulated pose without a ghost") {
     tool.known = false;
     list = view.draw(poses, std::span(&tool, 1));
     CHECK(instances(list.opaque) == 1);
@@ -118,7 +118,7 @@ TEST_CASE("A tool is drawn solid at its proxy and as a ghost at its device") {
   }
 }
 
-TEST_CASE("A shape whose mesh is missing is a magenta box in its place, counted and reported once") {
+TEST_CASE("A shape with a missing mesh is drawn as a magenta box, counted and reported once") {
   scene_t scene = test::empty_scene();
   test::add_visual(scene, test::add_body(scene, {0, 0, 0}), shape_def_t::MESH, {1, 1, 1});
   scene.visuals[0].shape.mesh_hash = 42;
@@ -159,8 +159,7 @@ TEST_CASE("geometry=physics draws the collision shapes, each body in its own col
   CHECK(colours.size() == 3);
 }
 
-TEST_CASE(
-    "The cone of a spot is 1 inside its inner angle, 0 outside its outer one and linear in the cosine between") {
+TEST_CASE("The spot factor falls from 1 at the inner angle to 0 at the outer one, linear in the cosine") {
   const light_def_t lamp = test::spot({0, 0, 2}, 0.6, 1.0);
   const Light l = make_light(lamp);
   const auto inside = [&](double angle) { return std::cos(angle) * l.cone.x() + l.cone.y(); };
@@ -169,8 +168,7 @@ TEST_CASE(
   CHECK(inside(std::acos((std::cos(0.3) + std::cos(0.5)) / 2)) == Approx(0.5).margin(1e-4));
 }
 
-TEST_CASE(
-    "A spot light with the name of a tool shines at the tool, with its shadow, and without a device as the scene defines") {
+TEST_CASE("A spot light with the name of a tool points at the tool, also with its shadow") {
   scene_t scene = test::empty_scene();
   scene.lights = {test::spot({5, 0, 2}, 0.6, 1.0), test::spot({0, 0, 2}, 0.6, 1.0)};
   scene.lights[0].casts_shadow = 0;
@@ -197,7 +195,7 @@ TEST_CASE(
   CHECK(view.draw(bodies, tools).lighting.lights[1].direction == unmoved.lighting.lights[1].direction);
 }
 
-TEST_CASE("The first spot that casts shadows gets the shadow map, and a map covers its cone") {
+TEST_CASE("The first spot that casts shadows has the shadow map, which covers its cone") {
   scene_t scene = test::empty_scene();
   light_def_t sun = test::spot({0, 0, 2}, 1, 1);
   sun.kind = light_def_t::DIRECTIONAL;
@@ -212,12 +210,12 @@ TEST_CASE("The first spot that casts shadows gets the shadow map, and a map cove
   CHECK(on_map(2 * std::tan(0.5)) < 1);  // the edge of the outer cone
   CHECK(on_map(2 * std::tan(0.53)) > 1);
 
-  SECTION("not when shadows are off") {
+  SECTION("there is no shadow map when shadows are off") {
     Settings settings;
     settings.shadows = false;
     CHECK(make_lighting(scene, settings).shadow_light == -1);
   }
-  SECTION("no more lamps than the shader supports") {
+  SECTION("the number of lamps is limited to that of the shader") {
     scene.lights.resize(20, sun);
     CHECK(make_lighting(scene, Settings{}).lights.size() == kMaxLights);
   }

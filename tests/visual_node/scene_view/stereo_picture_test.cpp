@@ -31,7 +31,7 @@ Eigen::Vector2d middle(const Image& image, int channel, int from, int to, int to
 
 }  // namespace
 
-TEST_CASE("Each eye's part of the picture has the ball where that eye sees it") {
+TEST_CASE("Each half of a stereo picture has the ball where its eye sees it") {
   visual::Settings settings;
   settings.event_marker = "off";
   // A point at infinity has the distance of the eyes on the window at 1 m; at 2 m half of that.
@@ -56,7 +56,7 @@ TEST_CASE("Each eye's part of the picture has the ball where that eye sees it") 
   CHECK(middle(above, 1, 0, kWidth, 0, kHeight / 2).y() == Approx(0.5 * red.y()).margin(0.5));
 }
 
-TEST_CASE("Coarser stereo pictures show the same, and flashes are where each eye sees them") {
+TEST_CASE("Smaller stereo pictures show the same, with flashes where each eye sees them") {
   visual::Settings settings;
   settings.stereo = "side_by_side";
   const Image fine = render(ball(), settings),

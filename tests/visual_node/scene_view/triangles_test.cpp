@@ -74,7 +74,7 @@ TEST_CASE("A plane faces +z and is also visible from below") {
   CHECK(t.two_sided);
 }
 
-TEST_CASE("Tangents lie in the surface along growing u, and binormals along growing v, on every shape") {
+TEST_CASE("Tangents follow u and binormals follow v on every shape") {
   // Around a ring of n segments, points between two corners differ by up to a turn / n from the tangent at either
   // corner, and by half of it from the tangent in the middle.
   for (const auto& [t, turn] :

@@ -70,7 +70,7 @@ sync::HostTime at_ms(int ms) { return sync::HostTime{std::chrono::milliseconds(m
 
 }  // namespace
 
-TEST_CASE("A picture becomes a JPEG file that shows the same, upright and smaller") {
+TEST_CASE("A picture is encoded as an upright, smaller JPEG file") {
   const Jpeg jpeg = encode_jpeg(picture(640, 480, 250, 40, 10), 640, 480, 320, 75);
   const Decoded d = decode(jpeg.bytes);
   CHECK(d.width == 320);
@@ -84,7 +84,7 @@ TEST_CASE("A picture becomes a JPEG file that shows the same, upright and smalle
   CHECK(at(160, 200, 0) <= 6);
 }
 
-TEST_CASE("Pictures are never enlarged, keep their aspect ratio, and absurd sizes give none") {
+TEST_CASE("Pictures are never enlarged, keep their aspect ratio and reject invalid sizes") {
   const Jpeg jpeg = encode_jpeg(picture(64, 32, 9, 9, 9), 64, 32, 4096, 75);
   CHECK(jpeg.width == 64);
   CHECK(jpeg.height == 32);
@@ -94,7 +94,7 @@ TEST_CASE("Pictures are never enlarged, keep their aspect ratio, and absurd size
   CHECK(encode_jpeg(picture(64, 2, 9, 9, 9), 64, 2, 16, 75).height == 1);
 }
 
-TEST_CASE("Pieces are valid messages, and a reader assembles them in any order") {
+TEST_CASE("Chunks of a picture are valid messages, and a receiver assembles them in any order") {
   for (const std::size_t bytes : {1u, 1024u, 1025u, 40000u}) {
     auto chunks = sent(bytes, 3);
     CHECK(chunks.size() == (bytes + 1023) / 1024);
@@ -115,7 +115,7 @@ TEST_CASE("Pieces are valid messages, and a reader assembles them in any order")
   }
 }
 
-TEST_CASE("A picture with a missing piece is skipped, and the next is complete") {
+TEST_CASE("A picture with a missing chunk is skipped, and the next one is complete") {
   sync::PictureReader reader;
   auto first = sent(5000, 0), second = sent(5000, 1);
   first.erase(first.begin() + 2);
@@ -127,7 +127,7 @@ TEST_CASE("A picture with a missing piece is skipped, and the next is complete")
   CHECK_FALSE(reader.take(sent(5000, 0)[2]));  // too late
 }
 
-TEST_CASE("Two walls stream in parallel, and a restarted node is read again") {
+TEST_CASE("Two walls stream in parallel, and a restarted node is received again") {
   sync::PictureReader reader;
   const auto a = sent(3000, 9, 1), b = sent(3000, 2, 2);
   int whole = 0;
@@ -139,7 +139,7 @@ TEST_CASE("Two walls stream in parallel, and a restarted node is read again") {
   CHECK(whole == 3);
 }
 
-TEST_CASE("Inconsistent pieces are rejected, and a flood of sources does not fill memory") {
+TEST_CASE("Inconsistent chunks are rejected, and the number of sources is limited") {
   sync::PictureReader reader;
   auto bad = sent(3000, 1);
   bad[0].chunks = 1 << 30;
@@ -157,7 +157,7 @@ TEST_CASE("Inconsistent pieces are rejected, and a flood of sources does not fil
   CHECK(whole == 1);
 }
 
-TEST_CASE("A stream sends a bounded number of pieces a tick, and drops pictures instead of waiting") {
+TEST_CASE("A stream sends a limited number of chunks per tick and drops pictures that do not fit") {
   Settings settings;
   settings.stream_Hz = 30;
   settings.stream_width = 640;
@@ -194,7 +194,7 @@ TEST_CASE("A stream sends a bounded number of pieces a tick, and drops pictures 
   CHECK(reads >= 2);
 }
 
-TEST_CASE("A stream reads no more pictures than requested, and none when it is off") {
+TEST_CASE("A stream reads no more pictures than requested and none while it is off") {
   Settings settings;
   PictureStream stream;
   int reads = 0;

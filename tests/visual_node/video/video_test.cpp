@@ -24,7 +24,7 @@ struct Folder {
 };
 }  // namespace
 
-TEST_CASE("A video has one picture per period from its first frame to its last, with a missed one repeated") {
+TEST_CASE("A video has one picture per period and repeats a missed one") {
   std::mt19937 random(17);
   for (int trial = 0; trial < 200; ++trial) {
     SlotFiller slots;
@@ -47,7 +47,7 @@ TEST_CASE("A video has one picture per period from its first frame to its last, 
   }
 }
 
-TEST_CASE("A filled slot is not filled again") {
+TEST_CASE("A filled period is not filled again") {
   SlotFiller slots;
   CHECK(slots.repeats_before(10) == 0);
   CHECK_FALSE(slots.repeats_before(10));
@@ -70,7 +70,7 @@ TEST_CASE("The clock of a video is published for every frame") {
   CHECK(missed.index == 12);
 }
 
-TEST_CASE("Colours become those of BT.709 and the lowest row becomes the last") {
+TEST_CASE("Colours are converted to BT.709, and the lowest row becomes the last") {
   // Left half red, right half white; upper half black. 4 x 4 pixels.
   std::vector<std::uint8_t> rgba(64, 0), planes(i420_bytes(4, 4));
   for (std::size_t i = 0; i < 8; ++i) {
@@ -90,7 +90,7 @@ TEST_CASE("Colours become those of BT.709 and the lowest row becomes the last") 
   CHECK(v[3] == Approx(128).margin(1.5));
 }
 
-TEST_CASE("A restarted node does not overwrite the previous video") {
+TEST_CASE("A restarted node does not overwrite an existing video") {
   const Folder folder;
   CHECK(next_video(folder.path.string()) == (folder.path / "video.mp4").string());
   std::ofstream(folder.path / "video.mp4") << "x";
@@ -99,7 +99,7 @@ TEST_CASE("A restarted node does not overwrite the previous video") {
   CHECK(next_video(folder.path.string()) == (folder.path / "video.3.mp4").string());
 }
 
-TEST_CASE("An encoder receives every byte and has finished when its owner is destroyed") {
+TEST_CASE("An encoder receives every byte and ends with its owner") {
   const Folder folder;
   const std::string file = (folder.path / "bytes").string();
   const std::vector<std::uint8_t> bytes(3'000'000, 7);
@@ -110,20 +110,20 @@ TEST_CASE("An encoder receives every byte and has finished when its owner is des
   }
   CHECK(std::filesystem::file_size(file) == 6'000'000);
 
-  SECTION("an encoder that dies is detected") {
+  SECTION("the end of an encoder is detected") {
     signal(SIGPIPE, SIG_IGN);  // as sync::Node does
     Encoder dead({"true"});
     bool written = true;
     for (int i = 0; i < 100 && written; ++i) written = dead.write(bytes);
     CHECK_FALSE(written);
   }
-  SECTION("an encoder that is not installed is named") {
+  SECTION("a missing encoder is reported by name") {
     CHECK_THROWS_WITH(Encoder({"no-such-encoder"}),
                       Catch::Contains("no-such-encoder") && Catch::Contains("install ffmpeg"));
   }
 }
 
-TEST_CASE("A video and a snapshot are written and end with their owner") {
+TEST_CASE("A video and a snapshot are complete when their owner ends") {
   const Folder folder;
   Settings settings;
   int reads = 0, pairs = 0;

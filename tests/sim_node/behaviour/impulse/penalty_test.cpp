@@ -50,7 +50,7 @@ double growth(double k, double d, bool is_explicit, double h, double g, int step
 
 }  // namespace
 
-TEST_CASE("A ball in the shell oscillates at the square root of k over m") {
+TEST_CASE("A ball in the penalty shell oscillates at the square root of k over m") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 1000, rest = kMass_kg * kToyG / k, first = 0.0003, omega = std::sqrt(k / kMass_kg);
   // Steps short enough that backward Euler loses little: its decay is h omega^2 / 2 = 0.05/s.
@@ -66,7 +66,7 @@ TEST_CASE("A ball in the shell oscillates at the square root of k over m") {
   CHECK(worst < first * (0.012 + h * omega));
 }
 
-TEST_CASE("A ball rests where the spring carries its weight, and a box at a quarter of that depth") {
+TEST_CASE("A ball rests where the spring carries its weight, a box at a quarter of that depth") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 2000, d = 5;
   Toys toys(law(k, d, is_explicit));
@@ -124,14 +124,14 @@ TEST_CASE("Explicit penalty is stable up to h^2 k + 2 h d = 4 m and unstable bey
   CHECK(growth(1.01 * limit, d, true, h, g, 2000) > 20);
 }
 
-TEST_CASE("Implicit penalty never exceeds its initial amplitude at any stiffness") {
+TEST_CASE("Implicit penalty never exceeds its initial amplitude for any stiffness") {
   const double times = GENERATE(1.0, 10.0, 1e3, 1e6);  // times the stiffest explicit one
   const double h = GENERATE(0.001, 1.0 / 60);
   const double k = times * impulse::stiffest_explicit(1 / kMass_kg, 0, h);
   CHECK(growth(k, GENERATE(0.0, 5.0), false, h, kToyG, 500) <= 1.0 + 1e-6);
 }
 
-TEST_CASE("The force of an arrival grows continuously from zero") {
+TEST_CASE("The penalty force of a new contact grows continuously from zero") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 4000, d = 5, speed = 0.25, h = 1e-4;
   Pressed p(k, d, is_explicit, -0.001, h);
@@ -155,7 +155,7 @@ TEST_CASE("The force of an arrival grows continuously from zero") {
   CHECK(most > 3);
 }
 
-TEST_CASE("A body too fast for the shell is stopped where the surfaces meet") {
+TEST_CASE("A body too fast for the penalty shell stops at the surface") {
   const bool is_explicit = GENERATE(true, false);
   const double h = GENERATE(0.001, 1.0 / 60);
   const double speed = GENERATE(1.0, 5.0, 20.0);
@@ -179,7 +179,7 @@ TEST_CASE("A body too fast for the shell is stopped where the surfaces meet") {
   CHECK(least > -1e-5);
 }
 
-TEST_CASE("Friction in the shell obeys the cone: a box on an incline sticks below its angle and slides above it") {
+TEST_CASE("Friction in the penalty shell obeys the friction cone") {
   const bool is_explicit = GENERATE(true, false);
   const double theta = 0.3, factor = GENERATE(1.01, 0.8, 0.3), mu = factor * std::tan(theta);
   const double yaw = GENERATE(0.0, 0.4, std::numbers::pi / 4);
@@ -204,7 +204,7 @@ TEST_CASE("Friction in the shell obeys the cone: a box on an incline sticks belo
     CHECK(gained == Approx(0.3 * kToyG * (std::sin(theta) - mu * std::cos(theta))).epsilon(0.005));
 }
 
-TEST_CASE("Two balls that meet in their shell without a damper swap their speeds and keep energy and momentum") {
+TEST_CASE("Two balls that collide in their shells without damping exchange their speeds") {
   Toys toys(law(1000, 0, true));
   toys.gravity_m_s2.setZero();
   const int a = toys.ball(kMass_kg, kRadius_m, {-0.03, 0, 0}), b = toys.ball(kMass_kg, kRadius_m, {0.03, 0, 0});
@@ -216,7 +216,7 @@ TEST_CASE("Two balls that meet in their shell without a damper swap their speeds
   CHECK((toys.motion(a).velocity_m_s + toys.motion(b).velocity_m_s - Vector3d(0.3, 0, 0)).norm() < 1e-12);
 }
 
-TEST_CASE("A link on a hinge lies on the shell with all of its weight where that is pressed at its centre") {
+TEST_CASE("A link on a hinge rests on the shell with all of its weight") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 2000;
   Toys toys(law(k, 5, is_explicit));
@@ -233,7 +233,7 @@ TEST_CASE("A link on a hinge lies on the shell with all of its weight where that
   CHECK(-toys.motion(body).centre_m.z() == Approx(weight / k).epsilon(1e-3));
 }
 
-TEST_CASE("A body that crosses the shell bounces with its restitution, and one stopped by the spring returns with its energy") {
+TEST_CASE("A body that crosses the shell rebounds with its restitution, a slower one keeps its speed") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 1e4, e = 0.6;
   impulse::Law in_shell = law(k, 0, is_explicit);
@@ -265,7 +265,7 @@ TEST_CASE("A body that crosses the shell bounces with its restitution, and one s
   }
 }
 
-TEST_CASE("A body that starts inside the shell is lifted out gently and rests where the spring carries its weight") {
+TEST_CASE("A body that starts inside the shell is pushed out gently and rests on the spring") {
   const bool is_explicit = GENERATE(true, false);
   const double rise = GENERATE(0.0, 0.02), k = 20000;
   impulse::Law in_shell = law(k, 5, is_explicit);
@@ -287,7 +287,7 @@ TEST_CASE("A body that starts inside the shell is lifted out gently and rests wh
     CHECK(fastest > 0.08);
 }
 
-TEST_CASE("A body that arrives from outside always meets the whole shell") {
+TEST_CASE("A body that arrives from outside always enters the whole shell") {
   const bool is_explicit = GENERATE(true, false);
   double force[2];
   for (const bool gentle : {false, true}) {

@@ -35,7 +35,7 @@ Settings with(const std::string& detector) {
 
 }  // namespace
 
-TEST_CASE("With the layers, a box of triangles comes to rest on a table of triangles without overlap") {
+TEST_CASE("With the layered detector a mesh box rests on a mesh table without overlap") {
   const int fineness = GENERATE(1, 6);
   const std::string mode = GENERATE("complete", "itouch2005");
   INFO(mode << ", fineness " << fineness);
@@ -71,7 +71,7 @@ TEST_CASE("With the layers, a box of triangles comes to rest on a table of trian
   CHECK(force == Approx(kG).margin(0.05));
 }
 
-TEST_CASE("A pair that the selected detector does not support stays with ODE, and an unsupported shape is an error at start-up") {
+TEST_CASE("ODE handles pairs that the selected detector does not support, and an unsupported shape is an error") {
   for (const std::string name : {"ode", "layers", "ccd", "ccd_mpr"}) {
     WorldDef w = empty_world();
     add_floor(w);

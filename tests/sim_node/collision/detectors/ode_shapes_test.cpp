@@ -41,7 +41,7 @@ TriangleMesh tetrahedron(double edge) {
 
 }  // namespace
 
-TEST_CASE("A heightfield has its nominal height for bodies and tools at every point") {
+TEST_CASE("A height field has its nominal height for bodies and tools") {
   WorldDef w = empty_world(0);
   const int ground = add_body(w, "ground", 0, Eigen::Matrix3d::Identity(), at(0.3, 0.4, -0.1));
   const int shape = add_shape(w, ground, ShapeKind::kHeightfield, {1, 1, 1});
@@ -71,7 +71,7 @@ TEST_CASE("A heightfield has its nominal height for bodies and tools at every po
     }
 }
 
-TEST_CASE("Every pair of shapes collides, with a unit normal from the first body to the second") {
+TEST_CASE("Every pair of shapes collides with a unit normal from the first body to the second") {
   std::vector<ShapeKind> kinds{ShapeKind::kBox, ShapeKind::kSphere, ShapeKind::kCylinder, ShapeKind::kCapsule, ShapeKind::kMesh};
   for (const ShapeKind lower : {ShapeKind::kBox, ShapeKind::kSphere, ShapeKind::kCylinder, ShapeKind::kCapsule, ShapeKind::kMesh,
                                 ShapeKind::kPlane, ShapeKind::kHeightfield})
@@ -113,7 +113,7 @@ TEST_CASE("Every pair of shapes collides, with a unit normal from the first body
       }
 }
 
-TEST_CASE("Excluded pairs of bodies do not collide, nor do tools or two static bodies") {
+TEST_CASE("Excluded pairs, tools and two static bodies do not collide") {
   WorldDef w = empty_world(0);
   add_floor(w);
   const int a = add_ball(w, 1, 0.1, {0, 0, 0.05}), b = add_ball(w, 1, 0.1, {0.05, 0, 0.05});
@@ -130,7 +130,7 @@ TEST_CASE("Excluded pairs of bodies do not collide, nor do tools or two static b
   CHECK(Solver(w, {}).contacts().size() == 1);
 }
 
-TEST_CASE("A body of several shapes has a contact of its own for each pair") {
+TEST_CASE("A body of several shapes has a separate contact for each pair") {
   WorldDef w = empty_world(0);
   add_floor(w);
   const int body = add_body(w, "feet", 1, Eigen::Matrix3d::Identity(), at(0, 0, 0.019));
@@ -147,7 +147,7 @@ TEST_CASE("A body of several shapes has a contact of its own for each pair") {
   CHECK(places == std::set<std::pair<double, double>>{{-0.2, -0.1}, {-0.2, 0.1}, {0.2, -0.1}, {0.2, 0.1}});
 }
 
-TEST_CASE("A moving plane is a plate") {
+TEST_CASE("A moving plane has the shape of a plate") {
   WorldDef w = empty_world(0);
   const int plate = add_body(w, "plate", 1, Eigen::Matrix3d::Identity(), at(0, 0, 1));
   add_shape(w, plate, ShapeKind::kPlane, {0.4, 0.4, 1});

@@ -97,7 +97,7 @@ ShapeDef mesh_shape(int mesh) {
 
 }  // namespace
 
-TEST_CASE("The nearest-first search over two meshes gives the contacts that a tool would keep, to within rounding") {
+TEST_CASE("The nearest-first search over two meshes finds the contacts that a tool keeps") {
   for (const Scene& s : scenes()) {
     WorldDef world;
     world.meshes = {{s.a.vertices, {}, s.a.indices}, {s.b.vertices, {}, s.b.indices}};
@@ -123,7 +123,7 @@ TEST_CASE("The nearest-first search over two meshes gives the contacts that a to
   }
 }
 
-TEST_CASE("The nearest-first search over two meshes is ordered, independent of the limit, and repeatable to the bit") {
+TEST_CASE("The nearest-first search is ordered, independent of the limit and bit-identical when repeated") {
   const Soup x = lumpy_sphere(3, 0.012, 1), y = lumpy_sphere(4, 0.05, 2);
   WorldDef world;
   world.meshes = {{x.vertices, {}, x.indices}, {y.vertices, {}, y.indices}};

@@ -24,7 +24,7 @@ bool same_points(const std::vector<PointPair>& x, const std::vector<PointPair>& 
 
 }  // namespace
 
-TEST_CASE("The hashed remover keeps the same pairs as brute force, also where duplicates lie in other cells") {
+TEST_CASE("The hashed remover keeps the same pairs as brute force, also across cells") {
   Random random(2);
   for (int round = 0; round < 20; ++round) {
     std::vector<PointPair> pairs;
@@ -75,7 +75,7 @@ TEST_CASE("All three removers agree on well-constructed meshes") {
   CHECK(removed > 100);
 }
 
-TEST_CASE("The adjacency remover rejects a mesh with wrong adjacency and names the fault") {
+TEST_CASE("The adjacency remover rejects a mesh with wrong adjacency with the reason") {
   const auto refused = [](const Soup& s, const std::string& why) {
     const Soup good = icosphere(1, 0.1);
     const ContactMesh bad(s.vertices, s.indices), fine(good.vertices, good.indices);

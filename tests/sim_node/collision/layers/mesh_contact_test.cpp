@@ -73,7 +73,7 @@ TEST_CASE("Every pair of triangles within the tolerance is covered, without fals
   }
 }
 
-TEST_CASE("Coincident meshes and plates face to face are covered") {
+TEST_CASE("Coincident meshes and opposite plates are covered") {
   for (const double gap : {0.0, 1e-12, 1e-4, 1e-3}) {
     const Soup lower = plate(0.1, 0.1, 4, 4), upper = t_junctions(0.08);
     Random random(3);
@@ -93,7 +93,7 @@ TEST_CASE("Coincident meshes and plates face to face are covered") {
   }
 }
 
-TEST_CASE("A mesh contact does not depend on the order of the meshes, the frame, the winding or the order of triangles") {
+TEST_CASE("A mesh contact does not depend on mesh order, frame, winding or triangle order") {
   for (const Case& c : cases()) {
     Random random(11);
     int compared = 0;
@@ -130,7 +130,7 @@ TEST_CASE("Every instruction set gives a bit-identical contact") {
   }
 }
 
-TEST_CASE("The distance of two meshes is the least over all pairs of triangles") {
+TEST_CASE("The distance of two meshes is the minimum over all pairs of triangles") {
   const Soup sa = lumpy_sphere(2, 0.1, 8), sb = comb(3, 0.1);
   const ContactMesh a = mesh(sa), b = mesh(sb);
   Random random(9);

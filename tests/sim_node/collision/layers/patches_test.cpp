@@ -26,7 +26,7 @@ std::vector<ContactPatch> patches_of(const std::vector<PointPair>& pairs, double
 
 }  // namespace
 
-TEST_CASE("The contact of two plates is one patch of four corners with one stiffness at any resolution") {
+TEST_CASE("Two plates have one patch of four corners with one stiffness at any resolution") {
   for (const int n : {1, 2, 5, 12}) {
     const Soup lower = plate(0.2, 0.2, n, n + 1), upper = plate(0.1, 0.06, n + 2, n);
     const auto pairs = touching(lower, upper, Isometry3d(Eigen::Translation3d(0.01, 0.02, 3e-4)));
@@ -49,7 +49,7 @@ TEST_CASE("The contact of two plates is one patch of four corners with one stiff
   }
 }
 
-TEST_CASE("An edge on a plate is an edge, a corner on it is a point, and a corner between two walls is two patches") {
+TEST_CASE("A cube on an edge, on a corner or between two walls has edge, point or surface patches") {
   const Soup floor = plate(0.2, 0.2, 4, 4), cube = box({0.04, 0.04, 0.04});
   const double half_diagonal = 0.02 * std::sqrt(2.0);
   Isometry3d on_edge(Eigen::Translation3d(0.003, 0.001, half_diagonal + 2e-4));
@@ -79,7 +79,7 @@ TEST_CASE("An edge on a plate is an edge, a corner on it is a point, and a corne
   CHECK(both[0].points[0].gap_m == Approx(2e-4));
 }
 
-TEST_CASE("Patches do not depend on the order of the pairs and cover every direction of the contact") {
+TEST_CASE("Patches do not depend on the order of pairs and cover every contact direction") {
   const Soup a = lumpy_sphere(3, 0.1, 1), b = lumpy_sphere(3, 0.1, 2);
   Random random(3);
   int compared = 0;

@@ -55,7 +55,7 @@ look_t look_of(const std::string& outside, const std::string& inside) {
 
 }  // namespace
 
-TEST_CASE("A visual defines its appearance: shader, pictures, reflectance and uniforms") {
+TEST_CASE("A visual defines its shader, pictures, reflectance and uniforms") {
   const look_t look =
       look_of("",
               "<tactus:look shader='reflecting' colour_map='a.png' normal_map='n.png' reflectance='0.3' "
@@ -72,7 +72,7 @@ TEST_CASE("A visual defines its appearance: shader, pictures, reflectance and un
   CHECK(look.uniforms[1].values[1] == 0.5f);
 }
 
-TEST_CASE("A look of the world is used by name, based on another, and changed by its user") {
+TEST_CASE("A look of the world can be used by name, derived and changed") {
   const std::string looks =
       "<tactus:look name='tiles' shader='textured' colour_map='a.png'/>"
       "<tactus:look name='wet' base='tiles' shader='reflecting' reflectance='0.1'/>";
@@ -102,7 +102,7 @@ TEST_CASE("A visual without attributes has no look, and equal attributes share o
   CHECK(w.looks.size() == 1);
 }
 
-TEST_CASE("Pictures of SDF's own <pbr> and its <shininess> count, and tactus:look has precedence") {
+TEST_CASE("Pictures and shininess of SDF are used, and tactus:look has precedence") {
   const std::string material =
       "<material><shininess>200</shininess><pbr><metal><albedo_map>a.png</albedo_map>"
       "<normal_map>n.png</normal_map></metal></pbr></material>";
@@ -126,8 +126,7 @@ TEST_CASE("Pictures of SDF's own <pbr> and its <shininess> count, and tactus:loo
   CHECK_THAT(gone.warnings[0], Catch::Contains("server/x.png") && Catch::Contains("drawn without it"));
 }
 
-TEST_CASE(
-    "Shaders, passes and the environment go to the renderers with the scene, texts and pictures as assets") {
+TEST_CASE("Shaders, passes and environment are sent to the renderers as assets of the scene") {
   SceneFile file = scene(
       "<tactus:environment picture='a.png'/><tactus:pass shader='blur' uniforms='radius 2'/><tactus:pass "
       "shader='own'/>"
@@ -159,9 +158,7 @@ TEST_CASE(
   CHECK(s->shaders[0].vertex_asset == s->shaders[0].fragment_asset);
 }
 
-TEST_CASE(
-    "A shader that belongs neither to the scene nor to visual_node causes a warning with the known names, once for each "
-    "line") {
+TEST_CASE("An unknown shader causes one warning per line with the known names") {
   SceneFile file = scene("<tactus:shader name='own' fragment='own.frag'/>", "<tactus:look shader='velvet'/>");
   file.load();
   REQUIRE(file.warnings.size() == 1);
@@ -169,7 +166,7 @@ TEST_CASE(
                                            Catch::Contains("normal_mapped") && Catch::Contains("own"));
 }
 
-TEST_CASE("An invalid look, shader, pass or picture is refused with its line") {
+TEST_CASE("An invalid look, shader, pass or picture is rejected with its line") {
   const auto worn = [](const std::string& attributes) { return refusal("", "<tactus:look " + attributes + "/>"); };
   CHECK_THAT(worn("name='wood'"),
              Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("there is none in this scene"));
@@ -211,7 +208,7 @@ TEST_CASE("An invalid look, shader, pass or picture is refused with its line") {
   CHECK_THAT(large.refusal(), Catch::Contains("larger than"));
 }
 
-TEST_CASE("Pictures are complete files of a bounded size, and JPEG only for colours") {
+TEST_CASE("Pictures are complete files of limited size, and JPEG is accepted only for colours") {
   const sync::Bytes png = picture(7);
   CHECK_NOTHROW(check_picture(png, PictureUse::kDirections));
   for (std::size_t size = 0; size < png.size(); ++size)
@@ -248,8 +245,7 @@ SceneFile two(const std::string& inside) {
 }
 }  // namespace
 
-TEST_CASE(
-    "A mesh of two materials is displayed as two parts, each with its colours and pictures, and collides as one") {
+TEST_CASE("A mesh with two materials is drawn as two parts and collides as one") {
   SceneFile file = two("");
   const WorldDef w = file.load();
   CHECK(file.warnings == std::vector<std::string>{});
@@ -288,7 +284,7 @@ TEST_CASE(
   CHECK(with_tangents == 2);
 }
 
-TEST_CASE("SDF has precedence over the mesh file: its colours, its look, an empty picture") {
+TEST_CASE("Colours, look and pictures of SDF have precedence over those of the mesh file") {
   SceneFile coloured =
       two("<material><diffuse>1 0 0 1</diffuse></material><tactus:look colour_map='' normal_map='' "
           "shader='gouraud'/>");
@@ -300,8 +296,7 @@ TEST_CASE("SDF has precedence over the mesh file: its colours, its look, an empt
   CHECK(w.images.empty());
 }
 
-TEST_CASE(
-    "A picture that a mesh file names and that does not exist causes a warning, and the mesh is drawn without it") {
+TEST_CASE("A missing picture of a mesh file causes a warning, and the mesh is drawn without it") {
   SceneFile file = two("");
   std::filesystem::remove(file.folder() / "b.png");
   const WorldDef w = file.load();
@@ -312,7 +307,7 @@ TEST_CASE(
   CHECK(w.looks.at(static_cast<std::size_t>(w.visuals[1].look)).normal_map == hash(picture(3)));
 }
 
-TEST_CASE("A visual may have a finer mesh than the collision, from its own file or by subdivision") {
+TEST_CASE("A visual may have a finer mesh than the collision") {
   SceneFile file = two("<tactus:display subdivide='2'/>");
   const WorldDef divided = file.load();
   CHECK(divided.meshes.at(static_cast<std::size_t>(divided.shapes.at(0).mesh)).indices.size() == 6);

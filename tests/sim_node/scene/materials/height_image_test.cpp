@@ -19,7 +19,7 @@ std::string heightmap(const std::string& more = "") {
 }
 }  // namespace
 
-TEST_CASE("A grey picture gives heights: white is the full height, the top row is at +y") {
+TEST_CASE("In a grey picture white is the full height, and the top row is at +y") {
   SceneFile file(heightmap());
   write_png(file, 3, 2, 8, PNG_COLOR_TYPE_GRAY, {255, 0, 0, 0, 0, 51});
   const WorldDef w = file.load();
@@ -40,7 +40,7 @@ TEST_CASE("A grey picture gives heights: white is the full height, the top row i
   CHECK((bounds(w, w.shapes[0]).max() - Vector3d(1, 0.5, 3.5)).norm() < 1e-9);
 }
 
-TEST_CASE("Sixteen bits keep their resolution") {
+TEST_CASE("Sixteen-bit pictures keep their resolution") {
   SceneFile file(heightmap());
   write_png(file, 2, 2, 16, PNG_COLOR_TYPE_GRAY, {0, 0, 0, 1, 0x80, 0, 0xff, 0xff});
   const WorldDef w = file.load();
@@ -49,7 +49,7 @@ TEST_CASE("Sixteen bits keep their resolution") {
   CHECK(w.heightfields[0].heights_m[0] == Approx(0.5 * 32768 / 65535));
 }
 
-TEST_CASE("A large height map is thinned for display, and keeps its edges") {
+TEST_CASE("A large height map is reduced for display and keeps its edges") {
   Heightfield h;
   h.columns = h.rows = 1000;
   h.size_m = {1, 1, 1};
@@ -59,7 +59,7 @@ TEST_CASE("A large height map is thinned for display, and keeps its edges") {
   CHECK((bounds(mesh, Eigen::Isometry3d::Identity()).sizes() - Vector3d(1, 1, 0)).norm() < 1e-12);
 }
 
-TEST_CASE("A picture that is not a height map is refused with its line") {
+TEST_CASE("A picture that is not a height map is rejected with its line") {
   SceneFile file(heightmap());
   CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("not found"));
   file.write("h.png", "no picture at all");

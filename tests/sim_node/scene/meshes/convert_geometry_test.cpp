@@ -98,7 +98,7 @@ MeshParts random_mesh(std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("A random mesh written as glTF is read back identically to the bit") {
+TEST_CASE("A random mesh written as glTF is read back bit-identically") {
   SceneFile file;
   std::mt19937 random(7);
   for (int i = 0; i < 200; ++i) {
@@ -108,7 +108,7 @@ TEST_CASE("A random mesh written as glTF is read back identically to the bit") {
   }
 }
 
-TEST_CASE("Every mesh of the project converts to glTF and back identically to the bit") {
+TEST_CASE("Every mesh of the project is converted to glTF and back bit-identically") {
   SceneFile file;
   int met = 0;
   for (const auto& entry : std::filesystem::directory_iterator(TACTUS_SOURCE_DIR "/sim_node/scenes")) {
@@ -145,7 +145,7 @@ TEST_CASE("Paths of pictures and properties are relative to the new file") {
   CHECK(moved.look.at("colour_map") == "../../from/d.png");
 }
 
-TEST_CASE("A scene takes material, height map, modes and look from the mesh file unless it defines them") {
+TEST_CASE("A material of a scene takes height map, modes and look from the mesh file unless it defines them") {
   const auto picture = test::png_bytes(2, 2, 8, {0, 10, 20, 30});
   SceneFile file("", {{"planks.png", picture}});
   file.write("box.modes.csv", "frequency_Hz,damping_1_s,amplitude\n440,3,1\n");
@@ -183,7 +183,7 @@ TEST_CASE("A scene takes material, height map, modes and look from the mesh file
   REQUIRE(w.visuals[0].look >= 0);
   CHECK(w.looks[static_cast<std::size_t>(w.visuals[0].look)].shader == "reflecting");
   CHECK(w.looks[static_cast<std::size_t>(w.visuals[0].look)].reflectance == 0.25f);
-  SECTION("the scene has precedence, attribute by attribute") {
+  SECTION("the scene has precedence for each attribute") {
     file.write("scene.sdf", scene("<tactus:surface material='steel'/>", "<tactus:look reflectance='0.5'/>"));
     const WorldDef own = file.load();
     CHECK(own.materials[static_cast<std::size_t>(own.shapes.at(0).material)].name == "steel");
@@ -196,7 +196,7 @@ TEST_CASE("A scene takes material, height map, modes and look from the mesh file
     const WorldDef plain = file.load();
     CHECK(plain.materials[static_cast<std::size_t>(plain.shapes.at(0).material)].name == "copper");
   }
-  SECTION("invalid properties are refused with the name of the file") {
+  SECTION("invalid properties are rejected with the name of the file") {
     mesh.material["base"] = "unobtainium";
     write();
     CHECK_THAT(file.refusal(), Catch::Contains("t.glb") && Catch::Contains("no such material"));
@@ -213,7 +213,7 @@ TEST_CASE("A scene takes material, height map, modes and look from the mesh file
   }
 }
 
-TEST_CASE("A file is written completely or not at all, and no other file remains") {
+TEST_CASE("A file is written completely or not at all, without other files") {
   SceneFile file;
   file.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const MeshParts mesh = read_mesh_parts(file.folder() / "t.obj");

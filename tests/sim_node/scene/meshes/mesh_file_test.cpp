@@ -30,7 +30,7 @@ const char* kGltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[
 const Vector3d kOne = Vector3d::Ones();
 }  // namespace
 
-TEST_CASE("OBJ, STL, PLY, DAE and glTF give the same triangle") {
+TEST_CASE("OBJ, STL, PLY, DAE and glTF files of a triangle give the same mesh") {
   SceneFile file;
   for (const auto& [name, text] : {std::pair{"t.stl", kStl}, {"t.ply", kPly}, {"t.dae", kDae}, {"t.gltf", kGltf}}) {
     INFO(name);
@@ -46,7 +46,7 @@ TEST_CASE("OBJ, STL, PLY, DAE and glTF give the same triangle") {
   }
 }
 
-TEST_CASE("A submesh alone, moved to its centre") {
+TEST_CASE("A submesh is loaded alone and moved to its centre") {
   SceneFile file;
   file.write("t.obj", kObj);
   CHECK(read_mesh(file.folder() / "t.obj", "", false, kOne).indices.size() == 6);
@@ -58,7 +58,7 @@ TEST_CASE("A submesh alone, moved to its centre") {
   CHECK_THROWS_WITH(read_mesh(file.folder() / "t.obj", "third", false, kOne), Catch::Contains("no submesh \"third\""));
 }
 
-TEST_CASE("A mirrored mesh stays right side out") {
+TEST_CASE("A mirrored mesh keeps its orientation") {
   SceneFile file;
   file.write("t.obj", kObj);
   const TriangleMesh m = read_mesh(file.folder() / "t.obj", "first", false, {-1, 1, 1});

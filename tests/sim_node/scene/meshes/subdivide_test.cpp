@@ -55,7 +55,7 @@ double loop_beta(int n) { return (5.0 / 8 - std::pow(3.0 / 8 + std::cos(2 * std:
 
 }  // namespace
 
-TEST_CASE("An icosahedron subdivided once has the points of Loop's masks") {
+TEST_CASE("An icosahedron subdivided once matches the masks of Loop") {
   const TriangleMesh m = subdivide(icosahedron(), 1);
   REQUIRE(m.vertices.size() == 42);
   REQUIRE(m.indices.size() == 3 * 80);
@@ -74,7 +74,7 @@ TEST_CASE("An icosahedron subdivided once has the points of Loop's masks") {
   CHECK(new_ones == 30);
 }
 
-TEST_CASE("Under repeated subdivision, the vertices of an icosahedron go to Loop's limit, and its surface to a round one") {
+TEST_CASE("A repeatedly subdivided icosahedron converges to the limit surface of Loop") {
   // Limit of a vertex of valence n: 1 - n c of itself and c of each neighbour, c = 1 / (3 / (8 beta) + n) (Loop 1987,
   // p. 41).
   const double c = 1 / (3 / (8 * loop_beta(5)) + 5), limit = 1 - 5 * c + std::sqrt(5.0) * c;
@@ -101,7 +101,7 @@ TEST_CASE("Under repeated subdivision, the vertices of an icosahedron go to Loop
   }
 }
 
-TEST_CASE("Sharp edges stay sharp: a cube stays the same cube") {
+TEST_CASE("A subdivided cube keeps its sharp edges") {
   const TriangleMesh m = subdivide(cube(), 3);
   CHECK(m.indices.size() == 3 * 12 * 64);
   const VolumeIntegral v = integrate(m);
@@ -115,7 +115,7 @@ TEST_CASE("Sharp edges stay sharp: a cube stays the same cube") {
   CHECK(v.volume_m3 == Approx(8).epsilon(1e-12));
 }
 
-TEST_CASE("A flat sheet stays flat, within its border, and keeps its texture coordinates") {
+TEST_CASE("A subdivided flat sheet keeps plane, border and texture coordinates") {
   TriangleMesh sheet;
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 4; ++x) {
@@ -152,7 +152,7 @@ TEST_CASE("A flat sheet stays flat, within its border, and keeps its texture coo
   CHECK(area > 9 - 4.0 / 12);
 }
 
-TEST_CASE("Vertices at one place are one point, even if a file repeats them") {
+TEST_CASE("Vertices at one position are one point") {
   const TriangleMesh shared = icosahedron();
   TriangleMesh soup;
   for (const int i : shared.indices) {
@@ -163,6 +163,6 @@ TEST_CASE("Vertices at one place are one point, even if a file repeats them") {
   CHECK(subdivide(soup, 2).vertices.size() == subdivide(shared, 2).vertices.size());
 }
 
-TEST_CASE("A mesh with too many triangles is refused before it is computed") {
+TEST_CASE("A mesh with too many triangles is rejected before subdivision") {
   CHECK_THROWS_WITH(subdivide(icosahedron(), 12), Catch::Contains("more than 1000000 triangles"));
 }

@@ -15,7 +15,7 @@ std::string ball(const std::string& name, const std::string& more = "") {
 }
 }  // namespace
 
-TEST_CASE("Includes are found beside the file, in its models folder, by name and by model.config") {
+TEST_CASE("Includes are found beside the file, in its models folder, by name and through model.config") {
   SceneFile file(world("<include><uri>ball.sdf</uri><name>a</name><pose>0 0 1 0 0 0</pose></include>"
                        "<include><uri>model://deep</uri><pose>0 0 2 0 0 0</pose></include>"
                        "<include><uri>model://deep</uri><name>again</name></include>"));
@@ -32,7 +32,7 @@ TEST_CASE("Includes are found beside the file, in its models folder, by name and
   CHECK(file.warnings.empty());
 }
 
-TEST_CASE("An include inside an included model, and its mesh, are searched beside that model") {
+TEST_CASE("Includes and meshes of an included model are searched beside that model") {
   SceneFile file(world("<include><uri>models/outer/model.sdf</uri></include>"));
   file.write("models/outer/model.sdf",
              "<sdf version='1.9'><model name='outer'><link name='l'><visual name='v'><geometry><mesh><uri>tri.obj</uri></mesh>"
@@ -45,7 +45,7 @@ TEST_CASE("An include inside an included model, and its mesh, are searched besid
   CHECK(w.meshes.size() == 1);
 }
 
-TEST_CASE("A warning inside an included file names that file and its line") {
+TEST_CASE("A warning in an included file names that file and its line") {
   SceneFile file(world("<include><uri>ball.sdf</uri></include>"));
   file.write("ball.sdf", ball("ball", "<plugin name='p' filename='p.so'/>\n<tactus:bogus/>"));
   file.load();
@@ -54,7 +54,7 @@ TEST_CASE("A warning inside an included file names that file and its line") {
   CHECK_THAT(file.short_warnings()[1], Catch::StartsWith("ball.sdf:4: "));
 }
 
-TEST_CASE("An include that is missing, empty, circular or invalid is refused with its line") {
+TEST_CASE("An include that is missing, empty, circular or invalid is rejected with its line") {
   SceneFile file(world("\n<include><uri>ball.sdf</uri></include>"));
   CHECK(file.refusal() == "scene.sdf:4: include of \"ball.sdf\" is not found: put it beside the file");
   file.write("ball.sdf", ball("ball", "<include><uri>ball.sdf</uri></include>"));
@@ -71,7 +71,7 @@ TEST_CASE("An include that is missing, empty, circular or invalid is refused wit
   CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:3: "));
 }
 
-TEST_CASE("Two files of one name in two folders are refused instead of mixed up") {
+TEST_CASE("Two files with one name in two folders are rejected") {
   SceneFile file(world("<include><uri>sub/outer.sdf</uri></include><include><uri>ball.sdf</uri></include>"));
   file.write("ball.sdf", ball("ball"));
   file.write("sub/ball.sdf", ball("other_ball"));
@@ -79,7 +79,7 @@ TEST_CASE("Two files of one name in two folders are refused instead of mixed up"
   CHECK_THAT(file.refusal(), Catch::StartsWith("sub/outer.sdf:1: ") && Catch::Contains("exists twice"));
 }
 
-TEST_CASE("The models of every Gazebo installation are built in, and nothing is downloaded") {
+TEST_CASE("Standard Gazebo models are built in, and nothing is downloaded") {
   SceneFile file(world("<include><uri>model://sun</uri></include><include><uri>model://ground_plane</uri></include>\n"
                        "<include><uri>https://fuel.example/box</uri></include>"));
   const WorldDef w = file.load();
@@ -91,7 +91,7 @@ TEST_CASE("The models of every Gazebo installation are built in, and nothing is 
   CHECK_THAT(file.short_warnings()[2], Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("nothing is downloaded"));
 }
 
-TEST_CASE("A file that is not a scene is refused in one sentence") {
+TEST_CASE("A file that is not a scene is rejected in one sentence") {
   SceneFile file;
   CHECK_THAT(file.refusal(), Catch::Contains("cannot be read"));
   file.write("scene.sdf", "");
@@ -112,7 +112,7 @@ TEST_CASE("A file that is not a scene is refused in one sentence") {
   CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf"));
 }
 
-TEST_CASE("libsdformat's own message comes with the line, and nothing is printed") {
+TEST_CASE("Messages of libsdformat are returned with their line, not printed") {
   std::ostringstream printed;
   std::streambuf* before = std::cerr.rdbuf(printed.rdbuf());
   SceneFile file(world("<model name='m'>\n<link name='a'/><link name='b'/>\n<joint name='j' type='revolute'><parent>a</parent>"
@@ -132,7 +132,7 @@ TEST_CASE("libsdformat's own message comes with the line, and nothing is printed
   CHECK(printed.str() == "");
 }
 
-TEST_CASE("A file that contains only a model is a world of one model") {
+TEST_CASE("A file with only a model is a world of that model") {
   SceneFile file(ball("ball"));
   const WorldDef w = file.load();
   CHECK(w.name == "ball");

@@ -76,7 +76,7 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE("The head of a log comes before everything that was heard, evenly spaced, and holds the whole scene") {
+TEST_CASE("The head of a log precedes all recorded messages, is evenly spaced and contains the scene") {
   Fixture f;
   const Scene scene(30);
   for (int i = 0; i < 100; ++i) f.hear(kStart + Nanoseconds(i * 1'000'000));
@@ -126,7 +126,7 @@ TEST_CASE("The head of a log comes before everything that was heard, evenly spac
   }
 }
 
-TEST_CASE("A log begins without the scene when that does not come") {
+TEST_CASE("A log begins without the scene after a timeout") {
   Fixture f;
   f.hear(kStart + Nanoseconds(5'000'000));
   f.recorder.poll(kStart + Recorder::kWaitForScene - Nanoseconds(1));
@@ -138,14 +138,14 @@ TEST_CASE("A log begins without the scene when that does not come") {
   CHECK(events[0].channel == channels::kLogInfo);
   CHECK(events[1].channel == "LIVE");
 
-  SECTION("and a scene that comes later changes nothing: its chunks crossed the bus") {
+  SECTION("a later scene adds nothing") {
     f.recorder.begin(Scene(3).assets, kStart + Nanoseconds(6'000'000'000));
     f.recorder.finish(kStart + Nanoseconds(7'000'000'000));
     CHECK(read_but_types(f.disk->bytes).size() == 2);
   }
 }
 
-TEST_CASE("A log begins at once when what waits for the scene grows too large, and nothing is lost") {
+TEST_CASE("A log begins without the scene when the buffer is full, and no message is lost") {
   Fixture f;
   asset_chunk_t m{};
   m.header = header_of("sim_node", 9, 0, 1);
@@ -164,14 +164,14 @@ TEST_CASE("A log begins at once when what waits for the scene grows too large, a
   CHECK(read_but_types(f.disk->bytes).size() == static_cast<std::size_t>(n) + 1);
 }
 
-TEST_CASE("Nothing that was heard is lost when the recorder ends before the scene comes") {
+TEST_CASE("Messages are written if the recorder ends before the scene arrives") {
   Fixture f;
   f.hear(kStart);
   f.recorder.finish(kStart + Nanoseconds(1));
   CHECK(read_but_types(f.disk->bytes).size() == 2);
 }
 
-TEST_CASE("Messages that are missing in their numbering are counted by channel") {
+TEST_CASE("Missing sequence numbers are counted per channel") {
   Fixture f;
   f.recorder.begin({}, kStart);
   f.hear(kStart + Nanoseconds(1));
@@ -181,7 +181,7 @@ TEST_CASE("Messages that are missing in their numbering are counted by channel")
   CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("gaps: LIVE 3"));
 }
 
-TEST_CASE("A full disk is said, retried once a second, and recording goes on") {
+TEST_CASE("A full disk is reported and retried once a second, and recording continues") {
   Fixture f;
   f.recorder.begin({}, kStart);
   f.disk->trouble = "No space left on device";
@@ -197,7 +197,7 @@ TEST_CASE("A full disk is said, retried once a second, and recording goes on") {
   CHECK(read_but_types(f.disk->bytes).size() == 2);
 }
 
-TEST_CASE("A message that is none of ours is recorded as it is") {
+TEST_CASE("An unknown message is recorded unchanged") {
   Fixture f;
   f.recorder.begin({}, kStart);
   f.batch.clear();
@@ -208,13 +208,13 @@ TEST_CASE("A message that is none of ours is recorded as it is") {
   CHECK(f.recorder.gaps() == 0);
 }
 
-TEST_CASE("What is larger than any message of the bus is left out, and is no loss for want of time") {
+TEST_CASE("An oversized message is counted separately and not as lost") {
   Fixture f;
   CHECK_THAT(f.recorder.note(0, 1), Catch::Contains("1 left out, larger than any message of ours"));
   CHECK_THAT(f.recorder.note(0, 1), !Catch::Contains("lost"));
 }
 
-TEST_CASE("A log says itself what its messages are, each type with the bytes that it begins with") {
+TEST_CASE("A log contains the description and fingerprint of each message type") {
   Fixture f;
   f.recorder.begin({}, kStart);
   f.recorder.finish(kStart);
@@ -238,13 +238,13 @@ TEST_CASE("A log says itself what its messages are, each type with the bytes tha
   CHECK(text.find("channel WORLD_STATE world_state_t\n") != std::string::npos);
 }
 
-TEST_CASE("Each part of a split log has the head, and together they hold every message once") {
+TEST_CASE("Each part of a split log has the head, and the parts contain every message once") {
   Fixture f;
   const Scene scene(5);
   std::vector<std::shared_ptr<MemorySink::State>> parts{f.disk};
   LogLimits limits;
-  SECTION("by size") { limits.split_bytes = 60'000; }
-  SECTION("by time") { limits.split_after = Nanoseconds(500'000'000); }
+  SECTION("the log is split by size") { limits.split_bytes = 60'000; }
+  SECTION("the log is split by time") { limits.split_after = Nanoseconds(500'000'000); }
   f.recorder.limit(
       limits,
       [&] {
@@ -281,7 +281,7 @@ TEST_CASE("Each part of a split log has the head, and together they hold every m
   CHECK(next == 2000);
 }
 
-TEST_CASE("A part that cannot be begun is said, and the one before it goes on") {
+TEST_CASE("If a new part cannot be created, the error is reported and the current part continues") {
   Fixture f;
   LogLimits limits;
   limits.split_after = Nanoseconds(100'000'000);
@@ -299,7 +299,7 @@ TEST_CASE("A part that cannot be begun is said, and the one before it goes on") 
   CHECK(read_but_types(f.disk->bytes).size() == 301);
 }
 
-TEST_CASE("A log of a largest size ends there, and what exceeds it is counted") {
+TEST_CASE("A log stops at its maximum size, and further messages are counted") {
   Fixture f;
   LogLimits limits;
   limits.max_bytes = 50'000;

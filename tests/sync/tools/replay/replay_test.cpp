@@ -47,7 +47,7 @@ LogEvent event_of(const std::string& channel, const std::vector<std::uint8_t>& d
 
 }  // namespace
 
-TEST_CASE("A log is played at its own pace, all of it and in order") {
+TEST_CASE("A log is replayed at its recorded pace, completely and in order") {
   Player p;
   p.play(Nanoseconds(1'250'000'000));
   REQUIRE(p.numbers.size() == 1200);
@@ -62,7 +62,7 @@ TEST_CASE("A log is played at its own pace, all of it and in order") {
   CHECK(p.replay.behind_s() == 0);
 }
 
-TEST_CASE("Faster, slower and as fast as allowed, each message is sent once") {
+TEST_CASE("Each message is sent once at any speed") {
   const auto speed = GENERATE(0.1, 0.5, 3.0, 10.0, 0.0);
   ReplayOptions o;
   o.speed = speed;
@@ -79,9 +79,7 @@ TEST_CASE("Faster, slower and as fast as allowed, each message is sent once") {
   }
 }
 
-TEST_CASE(
-    "However fast a log is played, no burst is longer than a receiver's queue, and no second fuller than "
-    "allowed") {
+TEST_CASE("Bursts and rate stay within their limits at any speed") {
   ReplayOptions o;
   o.speed = GENERATE(0.0, 100.0);
   o.most_per_s = 2000;
@@ -97,7 +95,7 @@ TEST_CASE(
   CHECK((p.replay.behind_s() > 0) == (o.speed > 0));
 }
 
-TEST_CASE("A replay that was held up for seconds goes on where it was, without a burst") {
+TEST_CASE("A replay that was blocked for seconds continues without a burst") {
   Player p;
   p.play(Nanoseconds(300'000'000));
   const std::size_t before = p.numbers.size();
@@ -109,7 +107,7 @@ TEST_CASE("A replay that was held up for seconds goes on where it was, without a
   CHECK(p.replay.behind_s() == Approx(5).margin(0.1));
 }
 
-TEST_CASE("A paused replay sends nothing, and goes on with what comes next") {
+TEST_CASE("A paused replay sends nothing and resumes with the next message") {
   Player p;
   p.play(Nanoseconds(200'000'000));
   p.replay.pause(p.now);
@@ -120,12 +118,12 @@ TEST_CASE("A paused replay sends nothing, and goes on with what comes next") {
   p.play(Nanoseconds(1'050'000'000));
   CHECK(p.numbers.size() == 1200);
   CHECK(std::is_sorted(p.numbers.begin(), p.numbers.end()));
-  SECTION("and a live time never falls back") {
+  SECTION("live times never decrease") {
     for (std::size_t i = 1; i < p.moments.size(); ++i) CHECK(p.moments[i].live >= p.moments[i - 1].live);
   }
 }
 
-TEST_CASE("A step plays as long as it says, and then it is paused") {
+TEST_CASE("A step replays its duration and then pauses") {
   ReplayOptions o;
   o.paused = true;
   Player p(o);
@@ -140,7 +138,7 @@ TEST_CASE("A step plays as long as it says, and then it is paused") {
   }
 }
 
-TEST_CASE("A replay goes to any time of its log, and what follows is what was recorded then") {
+TEST_CASE("A replay can seek to any time") {
   Player p;
   std::mt19937 random(3);
   for (int i = 0; i < 50; ++i) {
@@ -159,7 +157,7 @@ TEST_CASE("A replay goes to any time of its log, and what follows is what was re
   CHECK(p.replay.position_s() == p.replay.length_s());
 }
 
-TEST_CASE("A part of a log is played over and over, from its start to its end") {
+TEST_CASE("A range of a log is replayed in a loop") {
   ReplayOptions o;
   o.start_s = 0.2, o.end_s = 0.3, o.loop = true;
   Player p(o);
@@ -172,7 +170,7 @@ TEST_CASE("A part of a log is played over and over, from its start to its end") 
   CHECK(p.replay.over());
 }
 
-TEST_CASE("What cannot be played is refused in one sentence") {
+TEST_CASE("Invalid options are rejected with one sentence") {
   DamagedLog log(10);
   const LogOrigin origin = origin_of(log.bytes);
   const auto with = [&](double start, double end, double speed) {
@@ -186,7 +184,7 @@ TEST_CASE("What cannot be played is refused in one sentence") {
   CHECK_THROWS_WITH(Replay({}, origin, {}, kNow), Catch::Contains("no LCM log"));
 }
 
-TEST_CASE("1,000 damaged logs are played to their end, with every message that was not touched") {
+TEST_CASE("1,000 damaged logs are replayed to their end with their undamaged messages") {
   const DamagedLog sound(120);
   for (unsigned seed = 0; seed < 1000; ++seed) {
     std::mt19937 random(seed);
@@ -212,7 +210,7 @@ TEST_CASE("1,000 damaged logs are played to their end, with every message that w
   }
 }
 
-TEST_CASE("A time in a log is found without reading it all, whatever damage lies about") {
+TEST_CASE("seek_log() finds a time in a damaged log without reading all of it") {
   for (unsigned seed = 0; seed < 100; ++seed) {
     std::mt19937 random(seed);
     DamagedLog log(3000);
@@ -240,7 +238,7 @@ TEST_CASE("A time in a log is found without reading it all, whatever damage lies
   }
 }
 
-TEST_CASE("Recorded messages are made messages of now, exactly, at any speed") {
+TEST_CASE("Recorded stamps are mapped to live time within 3 ns at any speed") {
   const Identity live{"replay", 9, 1234, 5678, 4242};
   LogOrigin origin;
   origin.info.header.run_id = 77;
@@ -282,7 +280,7 @@ TEST_CASE("Recorded messages are made messages of now, exactly, at any speed") {
   }
 }
 
-TEST_CASE("After a jump senders are others, and the same ones otherwise") {
+TEST_CASE("Senders get a new incarnation after a jump and keep it otherwise") {
   const Identity live{"replay", 9, 1234, 5678, 4242};
   LogOrigin origin;
   origin.info.header.run_id = 77;
@@ -300,7 +298,7 @@ TEST_CASE("After a jump senders are others, and the same ones otherwise") {
   CHECK(incarnation(1, 5) != first);
 }
 
-TEST_CASE("Stamps of damaged messages overflow nothing, and what is none of ours is left as it is") {
+TEST_CASE("Damaged time stamps cause no overflow, and foreign messages are unchanged") {
   LogOrigin origin;
   origin.info.header.run_id = 77;
   ReplayStamps stamps(origin, Identity{"replay", 9, 1234, 5678, 4242});
@@ -323,7 +321,7 @@ TEST_CASE("Stamps of damaged messages overflow nothing, and what is none of ours
   CHECK(foreign == before);
 }
 
-TEST_CASE("What would be mistaken for the live run stays in the log, and what the world said goes out") {
+TEST_CASE("By default only channels of the world are replayed, not those of the nodes") {
   ReplayChoice choice({});
   for (const char* c :
        {"TOUCH_MODEL", "CONTACT_EVENTS", "CONTACTS", "WORLD_STATE", "GAME_STATE", "TOOL_STATE", "MY_OWN"})
@@ -337,7 +335,7 @@ TEST_CASE("What would be mistaken for the live run stays in the log, and what th
   CHECK(ReplayChoice({.also = "THERMAL_.*"}).channel_of(event_of("THERMAL_STATE", {})));
 }
 
-TEST_CASE("What a sense said then stays in the log when it is live, and goes out when it is not") {
+TEST_CASE("Messages of a node are not replayed while that node is live") {
   tool_state_t m{};
   m.header = header_of("haptic_node", 3, 1, 1000, 77);
   const auto bytes = encode(m);
@@ -346,7 +344,7 @@ TEST_CASE("What a sense said then stays in the log when it is live, and goes out
   CHECK_FALSE(ReplayChoice({.live = {"audio_node", "haptic_node"}}).channel_of(event_of("TOOL_STATE", bytes)));
 }
 
-TEST_CASE("Channels are chosen by expressions, and renamed") {
+TEST_CASE("Channels are selected by regular expressions and renamed") {
   ReplayChoice choice({.channels = "CONTACT.*|MY_OWN", .leave_out = "CONTACTS", .rename = {"MY_OWN=YOURS"}});
   CHECK(choice.channel_of(event_of("CONTACT_EVENTS", {})));
   CHECK_FALSE(choice.channel_of(event_of("CONTACTS", {})));
@@ -357,7 +355,7 @@ TEST_CASE("Channels are chosen by expressions, and renamed") {
   CHECK_THROWS_WITH(ReplayChoice({.rename = {"A=" + std::string(64, 'x')}}), Catch::Contains("FROM=TO"));
 }
 
-TEST_CASE("Orders are obeyed, and what is none says what is wrong") {
+TEST_CASE("Commands control a replay, and an invalid command is reported") {
   Player p;
   bool quit = false;
   const auto say = [&](const char* line) { return obey(p.replay, line, p.now, quit); };
@@ -384,7 +382,7 @@ TEST_CASE("Orders are obeyed, and what is none says what is wrong") {
   CHECK(quit);
 }
 
-TEST_CASE("Lines come whole out of a pipe, and one without end takes no memory") {
+TEST_CASE("Lines are read from a pipe in pieces, and an overlong line is skipped") {
   Lines lines;
   std::string line;
   lines.add("pau");

@@ -12,7 +12,7 @@ namespace {
 HostTime at_us(std::int64_t us) { return host_time(us * 1000); }
 }  // namespace
 
-TEST_CASE("What comes evenly has its rate and bandwidth and no jitter, however slow or fast") {
+TEST_CASE("Even arrivals have the exact rate and bandwidth and no jitter") {
   const double rate = GENERATE(0.9, 10.0, 60.0, 1000.0, 5000.0);
   Arrivals a;
   std::int64_t last = 0;
@@ -24,7 +24,7 @@ TEST_CASE("What comes evenly has its rate and bandwidth and no jitter, however s
   CHECK(a.jitter(now).p99_ms == Approx(0).margin(1e-9));
 }
 
-TEST_CASE("Who falls silent fades and is nothing after two seconds") {
+TEST_CASE("The rate falls to zero within two seconds after the last message") {
   Arrivals a;
   for (int i = 0; i <= 2000; ++i) a.add(at_us(1000 * i), 100);
   CHECK(a.rate_Hz(at_us(2'000'000)) == Approx(1000));
@@ -34,7 +34,7 @@ TEST_CASE("Who falls silent fades and is nothing after two seconds") {
   CHECK(a.bytes_per_s(at_us(4'001'000)) == 0);
 }
 
-TEST_CASE("Jitter is the deviation of the time between messages from its middle one") {
+TEST_CASE("Jitter is the deviation of the message interval from its median") {
   // Each arrival is moved by a uniform deviation of +-w. The difference of two is triangular within +-2w; its absolute value has its
   // median at 2w (1 - sqrt(1/2)) and its 99th percentile at 2w (1 - sqrt(1/100)).
   const double w_ms = 2;
@@ -48,7 +48,7 @@ TEST_CASE("Jitter is the deviation of the time between messages from its middle 
   CHECK(j.p99_ms == Approx(2 * w_ms * 0.9).epsilon(0.1));
 }
 
-TEST_CASE("A flood takes no more memory than two thousand messages, and its rate is that of the newest") {
+TEST_CASE("Memory is bounded at high rates, and the rate is that of the newest messages") {
   Arrivals a;
   for (int i = 0; i < 1'000'000; ++i) a.add(at_us(i), 100);
   CHECK(a.rate_Hz(at_us(999'999)) == Approx(1e6));

@@ -44,7 +44,7 @@ struct Heard {
 
 }  // namespace
 
-TEST_CASE("A channel tells its type, rate, losses and the age of what comes") {
+TEST_CASE("A channel has type, rate, losses and age") {
   Heard h;
   std::int64_t seq = 0;
   for (int ms = 8000; ms <= 10'000; ms += 10) {
@@ -64,7 +64,7 @@ TEST_CASE("A channel tells its type, rate, losses and the age of what comes") {
   CHECK(FieldPath(*type, "force_N.z").number(h.channels.newest("TOOL_STATE")) == static_cast<double>(seq - 1));
 }
 
-TEST_CASE("Several senders on one channel add up, and none makes jitter of another") {
+TEST_CASE("The rates of several senders on a channel add up, and their jitter is separate") {
   Heard h;
   for (int i = 0; i <= 200; ++i) {
     h.tool(i, at_ms(8000 + 10 * i), at_ms(8000 + 10 * i), 5);
@@ -77,7 +77,7 @@ TEST_CASE("Several senders on one channel add up, and none makes jitter of anoth
   CHECK(f.gaps == 0);
 }
 
-TEST_CASE("Messages of others are shown by their bytes, torn ones are counted") {
+TEST_CASE("Messages of unknown types are listed, and incomplete ones are counted") {
   Heard h;
   h.hear("CAMERA", {1, 2, 3, 4, 5, 6, 7, 8, 9}, at_ms(9000));
   h.hear("CAMERA", {1, 2}, at_ms(9001), false);
@@ -90,7 +90,7 @@ TEST_CASE("Messages of others are shown by their bytes, torn ones are counted") 
   CHECK(h.channels.newest("NOTHING").empty());
 }
 
-TEST_CASE("However many channels and senders are made up, so many are kept and the rest is counted") {
+TEST_CASE("The number of channels and senders is bounded, and the excess is counted") {
   Heard h;
   for (int i = 0; i < 2000; ++i) h.hear("NOISE_" + std::to_string(i), {1}, at_ms(9000));
   CHECK(h.channels.figures(at_ms(9000)).size() == Channels::kMax);

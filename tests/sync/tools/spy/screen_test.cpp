@@ -57,7 +57,7 @@ struct Shown {
 
 }  // namespace
 
-TEST_CASE("Keys of a terminal are read out of its bytes, also when a sequence comes in pieces") {
+TEST_CASE("Keys are parsed from terminal bytes, also if a sequence arrives in pieces") {
   std::string bytes = "j\x1b[A\x1b[Bkq\x1b[5~\x1bOA\r";
   CHECK(take_keys(bytes) == std::vector<Key>{Key::kDown, Key::kUp, Key::kDown, Key::kUp, Key::kQuit, Key::kPageUp,
                                              Key::kUp, Key::kEnter});
@@ -73,7 +73,7 @@ TEST_CASE("Keys of a terminal are read out of its bytes, also when a sequence co
   CHECK(bytes.empty());
 }
 
-TEST_CASE("A course is drawn from its lowest to its highest value, with blanks where nothing came") {
+TEST_CASE("A sparkline is scaled from its lowest to its highest value and blank without data") {
   Spark spark(Nanoseconds(1'000'000));
   for (int i = 0; i < 8; ++i) spark.add(i, at_ms(i));
   CHECK(spark.draw(at_ms(7), 8).text == "▁▂▃▄▅▆▇█");
@@ -85,7 +85,7 @@ TEST_CASE("A course is drawn from its lowest to its highest value, with blanks w
   CHECK(spark.draw(at_ms(8), 2).text == "▁ ");
 }
 
-TEST_CASE("At any size the screen has that many lines at most, none of them longer than it is wide") {
+TEST_CASE("The screen fits any terminal size") {
   Shown s;
   for (int i = 0; i < 100; ++i) s.hear("A_RATHER_LONG_CHANNEL_NAME_" + std::to_string(i), {1, 2, 3});
   for (int i = 0; i < 20; ++i) s.now += Nanoseconds(100'000'000), s.tool(i);
@@ -101,7 +101,7 @@ TEST_CASE("At any size the screen has that many lines at most, none of them long
   }
 }
 
-TEST_CASE("The cursor stays on its channel while others come, and enter shows the fields of what is marked") {
+TEST_CASE("The cursor stays on its channel, and enter opens the fields of its newest message") {
   Shown s;
   s.hear("B", {1});
   s.tool(2.5);
@@ -120,7 +120,7 @@ TEST_CASE("The cursor stays on its channel while others come, and enter shows th
   CHECK_THAT(s.all(), Catch::Contains("no type of ours"));
 }
 
-TEST_CASE("Under the marked field its course is drawn") {
+TEST_CASE("A sparkline of the selected field is drawn below it") {
   Shown s;
   s.tool(0);
   s.draw();
@@ -136,7 +136,7 @@ TEST_CASE("Under the marked field its course is drawn") {
   CHECK_THAT(s.draw(160, 120)[s.screen.marked() + 1], Catch::Contains("▂▃▄▅▆▇█") && Catch::Contains("7"));
 }
 
-TEST_CASE("Variables are shown with value, unit and course, and only then they are wanted") {
+TEST_CASE("Variables are shown with value and unit, and requested only while they are shown") {
   Shown s;
   CHECK_FALSE(s.screen.shows_tags());
   s.press(Key::kTags);
@@ -156,13 +156,13 @@ TEST_CASE("Variables are shown with value, unit and course, and only then they a
   CHECK_FALSE(s.screen.shows_tags());
 }
 
-TEST_CASE("Names that would be orders to a terminal are shown as what they are") {
+TEST_CASE("Control characters in channel names are escaped") {
   Shown s;
   s.hear("EVIL\x1b[2J", {1});
   for (const std::string& line : s.draw()) CHECK(line.find('\x1b') == std::string::npos);
 }
 
-TEST_CASE("Keys end and halt it") {
+TEST_CASE("Keys pause and quit the program") {
   Shown s;
   CHECK_FALSE(s.screen.over());
   s.press(Key::kPause);

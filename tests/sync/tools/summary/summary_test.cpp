@@ -19,7 +19,7 @@ using namespace tactus;
 using namespace tactus::sync;
 using Json = nlohmann::json;
 
-TEST_CASE("The summary of a run holds what the contract promises") {
+TEST_CASE("The summary of a run has all documented fields") {
   RunLog log;
   ordinary_run(log);
   const RunSummary s = log.summary({.scene = {},
@@ -62,7 +62,7 @@ TEST_CASE("The summary of a run holds what the contract promises") {
   CHECK_THAT(to_text(s), Catch::Contains("audio to visual"));
 }
 
-TEST_CASE("The summary says how the game of the scene stood last, and that a scene without has none") {
+TEST_CASE("The summary has the last state of the game, or null without a game") {
   const SummaryOptions as_logged;
   RunLog log;
   ordinary_run(log);
@@ -86,7 +86,7 @@ TEST_CASE("The summary says how the game of the scene stood last, and that a sce
   CHECK_THAT(to_text(won), Catch::Contains("all 2 holes filled, at 7.25 s"));
 }
 
-TEST_CASE("What the caller knows better replaces what the log says") {
+TEST_CASE("Options of the caller override the values in the log") {
   RunLog log;
   ordinary_run(log);
   const RunSummary s = log.summary({.scene = "other.sdf",
@@ -104,7 +104,7 @@ TEST_CASE("What the caller knows better replaces what the log says") {
   CHECK(j["nodes"]["audio_node"]["restarts"] == 4);
 }
 
-TEST_CASE("Senses that no node reported for are absent") {
+TEST_CASE("Modalities without a node are absent") {
   RunLog log;
   ordinary_run(log);
   const RunSummary s = log.summary();
@@ -112,7 +112,7 @@ TEST_CASE("Senses that no node reported for are absent") {
   CHECK_THAT(to_text(s), Catch::Contains("absent: haptic, thermal\n"));
 }
 
-TEST_CASE("What was missing where it ran is part of the summary") {
+TEST_CASE("Warnings of the run are part of the summary") {
   RunLog log;
   ordinary_run(log);
   SummaryOptions options;
@@ -122,7 +122,7 @@ TEST_CASE("What was missing where it ran is part of the summary") {
   CHECK_THAT(to_text(s), Catch::Contains("\nvisual_node: no ffmpeg\n"));
 }
 
-TEST_CASE("What is presented late is counted as presented, and named") {
+TEST_CASE("Late events count as presented and also as late") {
   RunLog log;
   ordinary_run(log);
   log.send(channels::kContactEvents, MatcherFixture::event_message(1, 8101, contact_event_t::HIT, 100), 10001);
@@ -135,7 +135,7 @@ TEST_CASE("What is presented late is counted as presented, and named") {
   CHECK(contacts["by_modality"]["audio"]["presented"] == 81);
 }
 
-TEST_CASE("The note of a node is its last while the simulation spoke: every run ends without one") {
+TEST_CASE("The summary uses the last note of a node before the simulation ended") {
   RunLog log;
   for (int ms = 0; ms <= 4000; ms += 100) {
     if (ms == 3000) log.note = "input lost";
@@ -150,7 +150,7 @@ TEST_CASE("The note of a node is its last while the simulation spoke: every run 
   CHECK(log.summary().nodes().at("haptic_node").scheduling == "SCHED_FIFO 60, memory locked");
 }
 
-TEST_CASE("The text of a summary is no order to a terminal") {
+TEST_CASE("Control characters are escaped in the text of a summary") {
   RunLog log;
   log.note = "a\x1b[2Jb\nc";
   ordinary_run(log);
@@ -159,7 +159,7 @@ TEST_CASE("The text of a summary is no order to a terminal") {
   CHECK_THAT(text, Catch::Contains("a\\x1b[2Jb\\x0ac"));
 }
 
-TEST_CASE("Incarnations of a node are added up") {
+TEST_CASE("The figures of all incarnations of a node are added") {
   RunLog log;
   for (int ms = 0; ms <= 4000; ms += 100)
     log.health("audio_node", "audio", ms, 1000, 1, node_health_t::RUNNING, 5);
@@ -176,7 +176,7 @@ TEST_CASE("Incarnations of a node are added up") {
   CHECK(n.alive_at_end);
 }
 
-TEST_CASE("A run with a loss, or without a node that must be there, is a failure that is named") {
+TEST_CASE("The failure of a run names lost events and missing nodes") {
   RunLog log;
   ordinary_run(log);
   log.send(channels::kContactEvents, MatcherFixture::event_message(1, 8100, contact_event_t::HIT, 100), 10001);
@@ -195,7 +195,7 @@ TEST_CASE("A run with a loss, or without a node that must be there, is a failure
   CHECK_THAT(why, Catch::Contains("audio lost 1 of 81 owed contact events"));
 }
 
-TEST_CASE("Missing messages are counted as gaps, and bytes that are no message as bad") {
+TEST_CASE("Missing messages count as gaps and undecodable ones as bad") {
   RunLog log;
   for (int ms = 0; ms <= 1000; ms += 100) {
     if (ms == 500) log.seq["NODE_HEALTH" + std::to_string(static_cast<std::int32_t>(fnv1a_32("a")))] += 3;
@@ -210,7 +210,7 @@ TEST_CASE("Missing messages are counted as gaps, and bytes that are no message a
   CHECK(bus.at("NODE_HEALTH").messages == 12);
 }
 
-TEST_CASE("A damaged log is summarised as far as it is intact") {
+TEST_CASE("A damaged log is summarised from its intact messages") {
   RunLog log;
   ordinary_run(log);
   auto& bytes = log.state->bytes;
@@ -221,7 +221,7 @@ TEST_CASE("A damaged log is summarised as far as it is intact") {
   CHECK(s.matcher().hits() >= 79);
   CHECK(s.nodes().at("visual_node").alive_at_end);
 
-  SECTION("and one damaged time stamp does not end the world") {
+  SECTION("a damaged time stamp does not end the run") {
     LogScanner scanner(log.state->bytes);
     RunSummary jumped({});
     int n = 0;
@@ -235,7 +235,7 @@ TEST_CASE("A damaged log is summarised as far as it is intact") {
   }
 }
 
-TEST_CASE("An empty log, and one without its head, can be summarised") {
+TEST_CASE("An empty log and a log without its head can be summarised") {
   RunSummary empty({});
   empty.end_of_log(0);
   CHECK(Json::parse(to_json(empty))["seconds"] == 0);
@@ -249,7 +249,7 @@ TEST_CASE("An empty log, and one without its head, can be summarised") {
   CHECK(s.seconds() == Approx(10.0));
 }
 
-TEST_CASE("The logs of a restarted recorder make one run") {
+TEST_CASE("The logs of a restarted recorder are summarised as one run") {
   RunLog whole;
   ordinary_run(whole);
   RunSummary s({});
@@ -264,7 +264,7 @@ TEST_CASE("The logs of a restarted recorder make one run") {
   CHECK(s.recorded_seconds() == Approx(20.0));
 }
 
-TEST_CASE("The head of another log that crossed the bus in a replay does not change the time") {
+TEST_CASE("A LOG_INFO message from a replay does not change the time base") {
   RunLog log;
   log_info_t other{};
   other.header = header_of("recorder", 99, 0, 5, 3);
@@ -278,9 +278,7 @@ TEST_CASE("The head of another log that crossed the bus in a replay does not cha
   CHECK(s.matcher().hits() == 80);
 }
 
-TEST_CASE(
-    "What was presented on another host is put on the recorder's clock by the maps in the log, and its "
-    "uncertainty told") {
+TEST_CASE("Presentation times of another host are mapped by the clock maps in the log, with their uncertainty") {
   constexpr std::int64_t kAhead = 3'600'000'000'000;
   const bool mapped = GENERATE(true, false);
   RunLog log;
@@ -323,13 +321,13 @@ TEST_CASE(
     CHECK(pair["uncertainty"].is_null());
   }
 }
-TEST_CASE("A recorder that was stopped leaves a hole, which is said and fails the run") {
+TEST_CASE("A stopped recorder leaves a hole in the log, which fails the run") {
   RunLog log;
   const auto speak = [&](int from_ms, int to_ms) {
     for (int ms = from_ms; ms <= to_ms; ms += 100) log.health("audio_node", "audio", ms, 750);
   };
   speak(0, 2000);
-  SECTION("with a jump in the numbering") {
+  SECTION("sequence numbers are missing after the pause") {
     for (auto& [sender, next] : log.seq) next += 30;
     speak(5000, 8000);
     const RunSummary s = log.summary();
@@ -338,25 +336,25 @@ TEST_CASE("A recorder that was stopped leaves a hole, which is said and fails th
     CHECK_THAT(to_text(s), Catch::Contains("the log has a hole of 3.0 s"));
     CHECK(Json::parse(to_json(s))["log_holes_seconds"] == Approx(3));
   }
-  SECTION("also when the kernel had kept what came first") {
+  SECTION("the kernel buffered the first messages after the pause") {
     speak(5000, 6500);
     for (auto& [sender, next] : log.seq) next += 30;
     speak(6600, 8000);
     CHECK(log.summary().holes_seconds() == Approx(3));
   }
-  SECTION("a silence of the nodes themselves is none") {
+  SECTION("a silence of the nodes is not a hole") {
     speak(5000, 8000);
     CHECK(log.summary().holes_seconds() == 0);
     CHECK(log.summary().failure().empty());
   }
-  SECTION("nor is a loss while the log goes on") {
+  SECTION("a loss without a pause is not a hole") {
     for (auto& [sender, next] : log.seq) next += 30;
     speak(2100, 5000);
     CHECK(log.summary().holes_seconds() == 0);
   }
 }
 
-TEST_CASE("A run with more events than can be matched is a failure that is named") {
+TEST_CASE("A run with too many events to match is reported as a failure") {
   RunLog log;
   ordinary_run(log);
   for (int i = 0; i < static_cast<int>(PresentationMatcher::kMaxEvents) + 10; ++i)
@@ -368,7 +366,7 @@ TEST_CASE("A run with more events than can be matched is a failure that is named
   CHECK_THAT(to_text(s), Catch::Contains("found no room"));
 }
 
-TEST_CASE("The summary tells how long each step of a quality ladder was in use, and how old the inputs were") {
+TEST_CASE("The summary has the share of each quality step and the age of the inputs") {
   RunLog log;
   log.qualities = 3;
   input_health_t input{};
