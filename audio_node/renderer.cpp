@@ -71,7 +71,7 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Off
       world_(host.sense().snapshots<world_state_t>(channels::kWorldState, 4096)),
       tools_(host.bus().queue<tool_state_t>(channels::kToolState, 512)),
       ear_(host.bus().clocks()),
-      contacts_(host.bus().clocks()),
+      contacts_(events_.inbox()),
       bodies_(host.bus().clocks()),
       output_(host.options().out, options.device, kCallbackPriority,
               log          ? log->open_card()
@@ -104,7 +104,6 @@ void NodeRenderer::configure(const Settings& settings) {
 sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
   scene_ = scenes.scene();
   ear_.set_scene(*scene_);
-  due_.clear([this](const contact_event_t& event, sync::HostTime scheduled) { drop(event, scheduled); });
   configure(settings);
   const auto extent = [&](std::int64_t hash) -> std::optional<Extent> {
     const sync::Asset* asset = scenes.asset(hash);
@@ -160,7 +159,6 @@ void NodeRenderer::take_surfaces() {
 }
 
 void NodeRenderer::receive() {
-  while (const auto m = events_.pop()) contacts_.push(m->message, m->arrival);
   while (const auto m = frames_.pop()) contacts_.push(m->message, m->arrival);
   while (const auto m = world_.pop()) bodies_.push(m->message, m->arrival);
   while (const auto m = tools_.pop()) ear_.push(m->message, m->arrival);
@@ -174,7 +172,6 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   output_.degrade({sense.output().value("dropout"), sense.output().value("dropout.every")});
   if (scene_) output_.hear_from(ear_.at(now + output_.latency()));
   receive();
-  collect_hits(now);
   strike_due(now);
   submit_lasting(now);
   publish();
@@ -182,29 +179,21 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   return status(now, plays);
 }
 
-void NodeRenderer::collect_hits(sync::HostTime now) {
-  const auto map = contacts_.map(now);
-  if (!map || !impacts_) return;
-  for (const contact_event_t& event : contacts_.take_events(map->to_sim(now + kEarly))) {
-    if (event.kind != contact_event_t::HIT) continue;
-    ++hits_;
-    const sync::HostTime scheduled =
-        host().sense().schedule(event.event_id, map->to_host(sync::sim_time(event.time_ns)));
-    if (!due_.push(event, scheduled)) drop(event, scheduled);
-  }
-}
-
 void NodeRenderer::strike_due(sync::HostTime now) {
-  if (!impacts_ || !sampler_) return;
+  const auto map = contacts_.map(now);
+  if (!map || !impacts_ || !sampler_) return;
   const sync::ScopedPhaseTimer rendering(sync::Phase::kRender);
   // A log is rendered as fast as possible, for any duration of a tick.
   const sync::HostTime begun = sync::host_now();
   const Settings& settings = output_.settings();
-  due_.handle(
-      now, late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s)),
-      [&] { return !real_time_ || sync::host_now() - begun < kStrikesFor; },
-      [&](const contact_event_t& event, sync::HostTime scheduled) { strike(event, scheduled); },
-      [&](const contact_event_t& event, sync::HostTime scheduled) { drop(event, scheduled); });
+  const auto schedule = [&](const contact_event_t& e) {
+    return host().sense().schedule(e.event_id, map->to_host(sync::sim_time(e.time_ns)));
+  };
+  hits_ += strike_due_hits(events_.inbox(), map->to_sim(now + kEarly), now,
+                           late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s)),
+                           HitActions{schedule, [&] { return !real_time_ || sync::host_now() - begun < kStrikesFor; },
+                                      [&](const contact_event_t& e, sync::HostTime scheduled) { strike(e, scheduled); },
+                                      [&](const contact_event_t& e, sync::HostTime scheduled) { drop(e, scheduled); }});
 }
 
 void NodeRenderer::strike(const contact_event_t& event, sync::HostTime scheduled) {

@@ -56,7 +56,6 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   void finish_reading();
   void take_surfaces();
   void receive();
-  void collect_hits(sync::HostTime now);
   void strike_due(sync::HostTime now);
   void strike(const contact_event_t& event, sync::HostTime scheduled);
   void drop(const contact_event_t& event, sync::HostTime scheduled) { output_.drop(event.event_id, scheduled); }
@@ -68,7 +67,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   Offline* log_;
   bool no_sound_;
   bool real_time_;  // false for a log or virtual time, which play into a file and wait for background reading
-  sync::ModalityEndpoint::Stream<contact_events_t>& events_;
+  sync::ModalityEndpoint::Events& events_;
   sync::ModalityEndpoint::Stream<contact_frame_t>& frames_;
   sync::ModalityEndpoint::Stream<world_state_t>& world_;
   // bypasses the profile, which delays or thins events; the position of the ear is not an event
@@ -82,7 +81,6 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   std::unique_ptr<Sliding> sliding_;
   std::unique_ptr<Sampler> sampler_;
   std::optional<sync::BackgroundTask<HeardSurfaces>> opening_surfaces_;
-  DueHits due_;
   sync::HostTime started_, slid_at_{}, submitted_at_{};
   std::int64_t scenes_ = 0, hits_ = 0, dropped_ = 0;
 };

@@ -110,8 +110,8 @@ void NodeRenderer::change(const Settings& settings, const std::string&) {
 void NodeRenderer::receive() {
   while (auto m = touch_.pop())
     if (session_) session_->push(std::move(m->message), m->arrival);
-  while (const auto m = events_.pop())
-    if (session_) session_->push(m->message, m->arrival);
+  // The simulation publishes events when they are due, so all received events are due.
+  if (const auto due = events_.inbox().take(sync::SimTime::max()); session_) session_->push(due);
   while (const auto m = device_states_.pop())
     if (session_) session_->push(m->message, m->arrival);
   // Commands of other nodes of this run; a replayed log commands no device.

@@ -56,7 +56,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   sync::Queue<device_state_t>& device_states_;
   sync::Queue<device_force_t>& device_forces_;
   sync::ModalityEndpoint::Stream<touch_model_t>& touch_;
-  sync::ModalityEndpoint::Stream<contact_events_t>& events_;
+  sync::ModalityEndpoint::Events& events_;
   Safety safety_;  // shared by all scenes
   NodeConfig choice_;
   Quality quality_;

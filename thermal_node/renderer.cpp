@@ -21,7 +21,7 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, std::string tool_name, Offl
       events_(host.sense().events()),
       frames_(host.sense().snapshots<contact_frame_t>(channels::kContacts, 4096)),
       answers_(host.bus().queue<thermal_device_t>(channels::kThermalDevice, 64)),
-      stream_(host.bus().clocks()),
+      stream_(events_.inbox()),
       quality_(Settings{}) {
   add_tags();
   host.node().set_state(node_health_t::WAITING, "waits for the scene");
@@ -62,7 +62,6 @@ void NodeRenderer::change(const Settings& settings, const std::string&) {
 
 void NodeRenderer::receive() {
   stream_.keep(host().sense().delay());
-  while (const auto m = events_.pop()) stream_.push(m->message, m->arrival);
   while (const auto m = frames_.pop()) stream_.push(m->message, m->arrival);
   while (const auto m = answers_.pop())
     // Ignores readings of a log that is replayed meanwhile: that plate is not under this finger.

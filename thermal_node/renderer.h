@@ -39,7 +39,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
 
   std::string tool_name_;
   Offline* log_;
-  sync::ModalityEndpoint::Stream<contact_events_t>& events_;
+  sync::ModalityEndpoint::Events& events_;
   sync::ModalityEndpoint::Stream<contact_frame_t>& frames_;
   sync::Queue<thermal_device_t>& answers_;
   sync::ContactStream stream_;

@@ -50,11 +50,11 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& stage, const 
       world_(host.sense().snapshots<world_state_t>(channels::kWorldState, 4096)),
       events_(host.sense().events()),
       tools_(host.sense().snapshots<tool_state_t>(channels::kToolState, 512)),
-      composer_(host.bus().clocks(), settings(), host.descriptor().late_policy),
+      composer_(host.bus().clocks(), settings(), host.descriptor().late_policy, &events_.inbox()),
       lock_(host.bus().clocks(), host.descriptor().modality, host.bus().identity().incarnation),
       walls_(host.node(), lock_),
       recording_(options.keep),
-      overlays_(host.bus()),
+      overlays_(host.bus(), events_.inbox()),
       desk_(host.bus()),
       questions_(host.bus()) {
   host.node().set_rate(settings().rate_Hz);
@@ -133,7 +133,6 @@ void NodeRenderer::receive(sync::HostTime now) {
 void NodeRenderer::take_messages() {
   while (const auto m = world_.pop())
     composer_.push(m->message, m->arrival), overlays_.push(m->message), desk_.push(m->message);
-  while (const auto m = events_.pop()) composer_.push(m->message, m->arrival), overlays_.push(m->message, m->arrival);
   while (const auto m = tools_.pop()) composer_.push(m->message, m->arrival), overlays_.push(m->message);
   walls_.receive();
 }

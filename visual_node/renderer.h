@@ -67,7 +67,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   RenderOutput& stage_;
   Offline* log_;
   sync::ModalityEndpoint::Stream<world_state_t>& world_;
-  sync::ModalityEndpoint::Stream<contact_events_t>& events_;
+  sync::ModalityEndpoint::Events& events_;
   sync::ModalityEndpoint::Stream<tool_state_t>& tools_;
   FrameComposer composer_;
   FrameLock lock_;

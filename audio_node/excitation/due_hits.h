@@ -1,56 +1,41 @@
-// Queue of hits that are not yet strikes. A tick processes only some of them, since each costs up to 0.3 ms
-// (peak.h); the others keep their scheduled time. Pure.
+// Strikes the hits of an event inbox that are due. A tick processes only some of them, since each costs up to 0.3 ms (peak.h);
+// the others stay in the inbox. Pure.
 #pragma once
 
-#include <cstddef>
-#include <map>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/presentation_t.hpp>
 #include <utility>
 
 #include "sync/presentation/late.h"
+#include "sync/resampling/event_inbox.h"
 #include "sync/time/time.h"
 
 namespace tactus::audio {
 
-class DueHits {
- public:
-  static constexpr std::size_t kMax = 1024;  // design: half a second of work, the upper bound
-
-  // False when the queue is full: the hit is not stored.
-  bool push(const contact_event_t& event, sync::HostTime scheduled) {
-    if (hits_.size() >= kMax) return false;
-    hits_.emplace(scheduled, event);
-    return true;
-  }
-
-  // Calls sound(event, scheduled) for hits in the order of their time: the first in any case, further ones while
-  // goes_on() is true. Calls drop(event, scheduled) for each hit that is so overdue that the policy drops it.
-  template <class GoesOn, class Sound, class Drop>
-  void handle(sync::HostTime now, const sync::LatePolicy& late, GoesOn goes_on, Sound sound, Drop drop) {
-    for (bool first = true; !hits_.empty();) {
-      const auto& [scheduled, event] = *hits_.begin();
-      if (late.outcome(now - scheduled) == presentation_t::DROPPED_LATE) {
-        drop(event, scheduled);
-      } else {
-        if (!std::exchange(first, false) && !goes_on()) return;
-        sound(event, scheduled);
-      }
-      hits_.erase(hits_.begin());
-    }
-  }
-
-  // For a scene that has ended: calls drop(event, scheduled) for each.
-  template <class Drop>
-  void clear(Drop drop) {
-    for (const auto& [scheduled, event] : hits_) drop(event, scheduled);
-    hits_.clear();
-  }
-
-  std::size_t size() const { return hits_.size(); }
-
- private:
-  std::multimap<sync::HostTime, contact_event_t> hits_;  // hits of equal time in their order of arrival
+// The functions of the renderer that strike_due_hits calls.
+template <class Schedule, class HasTime, class Strike, class Drop>
+struct HitActions {
+  Schedule schedule;  // HostTime(event): when it is to be heard
+  HasTime has_time;   // bool(): the tick has time for another strike
+  Strike strike;      // void(event, scheduled)
+  Drop drop;          // void(event, scheduled): the policy drops it because it is overdue
 };
+
+// Takes the events before `until`, in order of time: strikes the first hit in any case and further ones while the tick has
+// time; drops overdue ones. Returns the number of hits that were taken.
+template <class Schedule, class HasTime, class Strike, class Drop>
+int strike_due_hits(sync::EventInbox& events, sync::SimTime until, sync::HostTime now, const sync::LatePolicy& late,
+                    const HitActions<Schedule, HasTime, Strike, Drop>& actions) {
+  int hits = 0;
+  for (bool first = true; const contact_event_t* event = events.front(until); events.pop_front()) {
+    if (event->kind != contact_event_t::HIT) continue;
+    const sync::HostTime scheduled = actions.schedule(*event);
+    const bool overdue = late.outcome(now - scheduled) == presentation_t::DROPPED_LATE;
+    if (!overdue && !std::exchange(first, false) && !actions.has_time()) return hits;
+    overdue ? actions.drop(*event, scheduled) : actions.strike(*event, scheduled);
+    ++hits;
+  }
+  return hits;
+}
 
 }  // namespace tactus::audio

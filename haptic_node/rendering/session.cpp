@@ -30,8 +30,7 @@ Session::Session(const scene_t& scene, const NodeConfig& choice, std::unique_ptr
     : device_(std::move(device)),
       safety_(safety),
       renderer_(scene, choice.tool, choice.settings, safety),
-      touch_(choice.tool, own),
-      events_(own) {
+      touch_(choice.tool, own) {
   safety.set_limits(safety_limits(choice.settings));
 }
 
@@ -73,10 +72,9 @@ TickOutput& Session::step(sync::HostTime now, const Degraded& degraded, std::siz
   in.touch_delay = degraded.touch_delay;
   in.force_step_N = degraded.force_step_N;
   in.planes = planes;
-  // The simulation publishes events when they are due, so all received events are due.
-  std::vector<contact_event_t> due;
-  if (in.map) due = events_.take_events(sync::SimTime::max());
-  in.events = due;
+  rendered_.clear();
+  if (in.map) rendered_.swap(events_);
+  in.events = rendered_;
   TickOutput& out = renderer_.step(in);
   device_->write(Wrench{out.force_N, out.torque_N_m});
   return out;

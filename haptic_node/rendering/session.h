@@ -3,18 +3,18 @@
 
 #include <memory>
 #include <optional>
-#include <tactus/contact_events_t.hpp>
+#include <tactus/contact_event_t.hpp>
 #include <tactus/device_force_t.hpp>
 #include <tactus/device_state_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <tactus/touch_model_t.hpp>
 #include <utility>
+#include <vector>
 
 #include "haptic_node/devices/selection/node_config.h"
 #include "haptic_node/devices/selection/make_device.h"
 #include "haptic_node/rendering/renderer.h"
 #include "haptic_node/contact/touch_input.h"
-#include "sync/resampling/contact_stream.h"
 
 namespace tactus::haptic {
 
@@ -41,8 +41,9 @@ class Session {
   void push(touch_model_t page, sync::HostTime arrival) {
     if (!over_) touch_.push(std::move(page), arrival);
   }
-  void push(const contact_events_t& events, sync::HostTime arrival) {
-    if (!over_) events_.push(events, arrival);
+  // Events that are due, each once. They are rendered in the next tick that has a map of the time.
+  void push(const std::vector<contact_event_t>& due) {
+    if (!over_) events_.insert(events_.end(), due.begin(), due.end());
   }
 
   // Applies changed settings from the next tick on, as Renderer::change, and also the limits of safety.
@@ -75,7 +76,7 @@ class Session {
   Safety& safety_;
   Renderer renderer_;
   TouchInput touch_;
-  sync::ContactStream events_;
+  std::vector<contact_event_t> events_, rendered_;  // waiting; of this tick
   bool over_ = false;
   std::optional<sync::HostTime> since_;  // time of the first tick
   bool path_begun_ = false;

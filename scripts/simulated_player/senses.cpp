@@ -37,7 +37,7 @@ Senses::Senses(sync::Node& node, Rules rules, double frame_rate_Hz)
       world_(eyes_.snapshots<world_state_t>(channels::kWorldState, 4096)),
       events_(ears_.events()),
       bodies_(node.bus().clocks()),
-      contacts_(node.bus().clocks()),
+      contacts_(events_.inbox()),
       frame_rate_Hz_(frame_rate_Hz),
       seed_(sync::mixed(node.options().seed, kOfEars)),
       shown_(rules_.goals.size()) {}
@@ -51,7 +51,6 @@ Percept Senses::perceive(sync::HostTime now) {
   eyes_.step(now), ears_.step(now);
   bodies_.keep(eyes_.delay()), contacts_.keep(ears_.delay());
   while (const auto m = world_.pop()) bodies_.push(m->message, m->arrival);
-  while (const auto m = events_.pop()) contacts_.push(m->message, m->arrival);
   eyes_.publish(now), ears_.publish(now);
   while (const auto m = healths_.pop())
     if (!m->message.modality.empty()) heard_of_[m->message.modality] = m->arrival;

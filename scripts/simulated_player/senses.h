@@ -38,7 +38,7 @@ class Senses {
   sync::ModalityEndpoint eyes_, ears_;
   sync::Queue<node_health_t>& healths_;
   sync::ModalityEndpoint::Stream<world_state_t>& world_;
-  sync::ModalityEndpoint::Stream<contact_events_t>& events_;
+  sync::ModalityEndpoint::Events& events_;
   sync::BodyHistory bodies_;
   sync::ContactStream contacts_;
   double frame_rate_Hz_;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sync/degradation/operator_chain.h"
+#include "sync/random/keyed_random.h"
 
 namespace tactus::sync {
 
@@ -26,6 +27,13 @@ std::uint64_t stream_of(const contact_frame_t&);
 std::uint64_t stream_of(const world_state_t&);
 std::uint64_t stream_of(const touch_model_t&);
 std::uint64_t stream_of(const tool_state_t&);
+
+// A key of one message, also among repetitions and pages of the same content.
+template <class Message>
+std::uint64_t wire_key(const Message& m) {
+  return mixed(mixed(static_cast<std::uint64_t>(m.header.incarnation), static_cast<std::uint64_t>(m.header.seq)),
+               static_cast<std::uint64_t>(m.header.source));
+}
 
 // Forces and velocities by contact, body or plane, of one page.
 std::vector<Signal> signals_of(const contact_frame_t&);

@@ -136,16 +136,36 @@ void ModalityEndpoint::step(HostTime now) {
   for (const auto& stream : streams_) stream->step(*this, now, lets);
 }
 
+ModalityEndpoint::Events& ModalityEndpoint::events(std::size_t capacity) {
+  if (events_) return *events_;
+  auto slot = std::make_unique<EventSlot>(
+      Events(node_.bus().queue<contact_events_t>(channels::kContactEvents, capacity), node_.bus().clocks()));
+  events_ = &slot->events;
+  streams_.push_back(std::move(slot));
+  return *events_;
+}
+
+void ModalityEndpoint::EventSlot::step(ModalityEndpoint& endpoint, HostTime now, HostTime) {
+  HostTime received = now;  // a tick that is held up while it reads also accepts the messages that arrive meanwhile
+  while (const auto m = events.received_.pop()) {
+    received = std::max(received, m->arrival);
+    endpoint.simulation_.follow(m->message.header, m->message.clock, m->arrival);
+    events.inbox_.push(m->message, m->arrival, endpoint.stack_, &endpoint.decisions_);
+  }
+  endpoint.report_dropped(events.inbox_.take_dropped());
+  events.inbox_.release(received);
+}
+
 void ModalityEndpoint::log_in_flight_delays(HostTime now, SimTime sim_now) {
   const HostTime since = now - serial_delay_ - output_latency_ - kReportedWithin;
   if (!events_) return;
-  events_->memory().each_newest_first([&](std::int64_t id, const DegradedEvents::Known& known) {
-    if (known.arrival < since) return false;
+  events_->inbox_.each_newest_first([&](std::int64_t id, HostTime arrival) {
+    if (arrival < since) return false;
     DecisionRecord d;
     d.key = static_cast<std::uint64_t>(id);
     d.is_event = true;
-    d.time = sim_now - (now - known.arrival);
-    d.verdict.release = d.arrival = known.arrival;
+    d.time = sim_now - (now - arrival);
+    d.verdict.release = d.arrival = arrival;
     decisions_.push_back(d);
     return true;
   });
@@ -166,8 +186,7 @@ HostTime ModalityEndpoint::newest_arrival() const {
 }
 
 std::optional<HostTime> ModalityEndpoint::arrival_of(std::int64_t event_id) const {
-  const auto* known = events_ ? events_->memory().find(event_id) : nullptr;
-  return known ? std::optional(known->arrival) : std::nullopt;
+  return events_ ? events_->inbox_.arrival_of(event_id) : std::nullopt;
 }
 
 bool ModalityEndpoint::owes(const contact_event_t& e) const {

@@ -6,7 +6,7 @@
 //   while (node.running()) {
 //     const sync::HostTime now = node.wait();
 //     sense.step(now);                        // receives new messages, releases the due ones
-//     while (const auto m = events.pop()) ...
+//     for (const contact_event_t& e : events.inbox().take(...)) ...
 //     ... render the state of the world at now - sense.delay() ...
 //     sense.publish(now);
 //   }
@@ -25,7 +25,8 @@
 #include <tactus/scene_t.hpp>
 #include <vector>
 
-#include "sync/degradation/degraded_stream.h"
+#include "sync/degradation/degraded_snapshots.h"
+#include "sync/resampling/event_inbox.h"
 #include "sync/degradation/profile_exchange.h"
 #include "sync/node/node.h"
 #include "sync/playout/follower.h"
@@ -59,9 +60,22 @@ class ModalityEndpoint {
     friend class ModalityEndpoint;
     explicit Stream(Queue<Message>& inbox) : inbox_(inbox) {}
     Queue<Message>& inbox_;
-    std::conditional_t<std::is_same_v<Message, contact_events_t>, DegradedEvents, DegradedSnapshots<Message>> degraded_;
+    DegradedSnapshots<Message> degraded_;
     bool waits_ = false;
     HostTime now_{};
+  };
+
+  // The contact events of this modality.
+  class Events {
+   public:
+    EventInbox& inbox() { return inbox_; }
+    const InputCount& count() const { return received_.count(); }
+
+   private:
+    friend class ModalityEndpoint;
+    Events(Queue<contact_events_t>& received, OwnClock own) : received_(received), inbox_(own) {}
+    Queue<contact_events_t>& received_;
+    EventInbox inbox_;
   };
 
   // Reads the node's --degrade. Throws std::runtime_error with one sentence when the file is not a valid profile.
@@ -73,7 +87,7 @@ class ModalityEndpoint {
   ~ModalityEndpoint();
 
   // Create streams before the first step.
-  Stream<contact_events_t>& events(std::size_t capacity = 4096) { return add<contact_events_t>(channels::kContactEvents, capacity); }
+  Events& events(std::size_t capacity = 4096);
   template <class Message>
   Stream<Message>& snapshots(const char* channel, std::size_t capacity) {
     return add<Message>(channel, capacity);
@@ -128,19 +142,21 @@ class ModalityEndpoint {
   struct StreamSlot : AnyStream {
     explicit StreamSlot(Queue<Message>& inbox) : stream(inbox) {}
     void step(ModalityEndpoint& sense, HostTime now, HostTime lets) override;
-    // Each event has its own decision, so a new profile needs no reset here.
-    void change_profile() override {
-      if constexpr (!std::is_same_v<Message, contact_events_t>) stream.degraded_.change_profile();
-    }
+    void change_profile() override { stream.degraded_.change_profile(); }
     HostTime newest_arrival() const override { return stream.inbox_.count().newest_arrival; }
     Stream<Message> stream;
+  };
+  struct EventSlot : AnyStream {
+    explicit EventSlot(Events e) : events(std::move(e)) {}
+    void step(ModalityEndpoint& endpoint, HostTime now, HostTime lets) override;
+    void change_profile() override {}  // each event has its own decision
+    HostTime newest_arrival() const override { return events.count().newest_arrival; }
+    Events events;
   };
   template <class Message>
   Stream<Message>& add(const char* channel, std::size_t capacity) {
     auto held = std::make_unique<StreamSlot<Message>>(node_.bus().queue<Message>(channel, capacity));
     auto& stream = held->stream;
-    if constexpr (std::is_same_v<Message, contact_events_t>)
-      if (!events_) events_ = &stream.degraded_;
     streams_.push_back(std::move(held));
     return stream;
   }
@@ -177,7 +193,7 @@ class ModalityEndpoint {
   OutputValues output_;
   PresentationReporter reporter_;
   std::function<void(const presentation_t&)> tell_;
-  const DegradedEvents* events_ = nullptr;  // of the first stream of events; null: there is none
+  Events* events_ = nullptr;  // in streams_; null: the modality receives none
 };
 
 template <class Message>
@@ -187,16 +203,10 @@ void ModalityEndpoint::StreamSlot<Message>::step(ModalityEndpoint& sense, HostTi
   while (auto m = stream.inbox_.pop()) {
     heard = std::max(heard, m->arrival);
     if constexpr (requires { m->message.clock; }) sense.simulation_.follow(m->message.header, m->message.clock, m->arrival);
-    if constexpr (std::is_same_v<Message, contact_events_t>) {
-      stream.degraded_.push(m->message, m->arrival, sense.stack_, &sense.decisions_);
-    } else {
-      stream.degraded_.push(std::move(m->message), m->arrival, sense.stack_, &sense.decisions_);
-    }
+    stream.degraded_.push(std::move(m->message), m->arrival, sense.stack_, &sense.decisions_);
   }
-  if constexpr (std::is_same_v<Message, contact_events_t>) sense.report_dropped(stream.degraded_.take_dropped());
   // In lock-step the state of the world is the state at the start of the iteration; each event carries its own due time.
-  const bool is_state = !std::is_same_v<Message, contact_events_t>;
-  stream.now_ = (is_state && lets != now ? lets : heard) - (stream.waits_ ? sense.profile_delay_ : Nanoseconds(0));
+  stream.now_ = (lets != now ? lets : heard) - (stream.waits_ ? sense.profile_delay_ : Nanoseconds(0));
 }
 
 }  // namespace tactus::sync

@@ -7,7 +7,7 @@
 #include <tactus/world_state_t.hpp>
 
 #include "sync/bus/decode.h"
-#include "sync/degradation/degraded_stream.h"
+#include "sync/degradation/degraded_snapshots.h"
 
 namespace tactus::sync {
 namespace {

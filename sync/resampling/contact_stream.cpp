@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <iterator>
 #include <tactus/contact_event_t.hpp>
+#include <tactus/contact_frame_t.hpp>
 #include <tactus/contact_t.hpp>
-#include <tactus/header_t.hpp>
-#include <tactus/sim_clock_t.hpp>
 
 namespace tactus::sync {
 namespace {
@@ -34,29 +33,22 @@ Contacts::const_iterator find(const Contacts& list, std::int64_t id) {
 
 }  // namespace
 
-ContactStream::ContactStream(OwnClock own)
-    : follower_(own), partial_{Pages(kPartial, PageOrder::kKey), Pages(kPartial, PageOrder::kKey), Pages(kPartial, PageOrder::kKey)} {}
+ContactStream::ContactStream(EventInbox& events)
+    : events_(events), partial_{Pages(kPartial, PageOrder::kKey), Pages(kPartial, PageOrder::kKey), Pages(kPartial, PageOrder::kKey)} {}
 
-bool ContactStream::accept(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
-  const std::int64_t before = follower_.incarnation();
-  const TrackResult verdict = follower_.follow(header, clock, arrival);
-  if (verdict == TrackResult::kIgnore) return false;
-  if (verdict == TrackResult::kRestart) {
-    if (before != 0) ++restarts_;
-    pending_.clear();
-    received_.clear();
-    lives_.clear();
+ContactStream::ContactStream(OwnClock own)
+    : own_events_(std::make_unique<EventInbox>(own)),
+      events_(*own_events_),
+      partial_{Pages(kPartial, PageOrder::kKey), Pages(kPartial, PageOrder::kKey), Pages(kPartial, PageOrder::kKey)} {}
+
+void ContactStream::follow_events() {
+  if (epoch_ != events_.epoch()) {
+    epoch_ = events_.epoch();
     for (auto& group : partial_) group.clear();
     for (auto& group : snapshots_) group.clear();
     for (auto& kept : contacts_kept_) kept = 0;
   }
-  forget_after(follower_.latest_credible());
-  return true;
-}
-
-// Removes content after `latest`: it may have been accepted only because its corrupt message was the first one.
-void ContactStream::forget_after(SimTime latest) {
-  pending_.erase(pending_.upper_bound(latest), pending_.end());
+  const SimTime latest = events_.latest_credible();
   for (std::size_t group = 0; group < kGroups; ++group) {
     partial_[group].drop_if([&](SimTime t) { return t > latest; });
     auto& snapshots = snapshots_[group];
@@ -67,38 +59,12 @@ void ContactStream::forget_after(SimTime latest) {
   }
 }
 
-void ContactStream::push(const contact_events_t& m, HostTime arrival) {
-  if (!accept(m.header, m.clock, arrival)) return;
-  const SimTime latest = follower_.latest_credible();
-  for (const contact_event_t& event : m.events) {
-    if (sim_time(event.time_ns) > latest) {
-      ++refused_;
-      continue;
-    }
-    if (!received_.try_emplace(event.event_id).second) {
-      ++duplicates_;
-      continue;
-    }
-    note_event(event);
-    pending_.emplace(sim_time(event.time_ns), event);
-    if (pending_.size() > kMaxPendingEvents) {
-      pending_.erase(std::prev(pending_.end()));
-      ++overflow_;
-    }
-  }
-}
-
-void ContactStream::note_event(const contact_event_t& event) {
-  Life& life = lives_.try_emplace(event.contact_id).first;
-  if (event.kind == contact_event_t::BEGIN) life.begin = event;
-  if (event.kind == contact_event_t::END) life.end = sim_time(event.time_ns);
-}
-
 void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
-  if (!accept(m.header, m.clock, arrival)) return;
+  if (!events_.follow(m.header, m.clock, arrival)) return;
+  follow_events();
   const auto group = static_cast<std::size_t>(m.group);
   const SimTime time = sim_time(m.header.sim_time_ns);
-  if (time > follower_.latest_credible() || m.pages > kMaxPages || group >= kGroups) {
+  if (time > events_.latest_credible() || m.pages > kMaxPages || group >= kGroups) {
     ++refused_;
     return;
   }
@@ -132,18 +98,10 @@ void ContactStream::insert(std::size_t group, Snapshot snapshot) {
   }
 }
 
-std::vector<contact_event_t> ContactStream::take_events(SimTime until) {
-  std::vector<contact_event_t> due;
-  const auto end = pending_.lower_bound(until);
-  for (auto it = pending_.begin(); it != end; ++it) due.push_back(it->second);
-  pending_.erase(pending_.begin(), end);
-  return due;
-}
-
 bool ContactStream::alive(std::int64_t contact_id, SimTime t) const {
-  const Life* life = lives_.find(contact_id);
-  if (!life) return true;  // joined late: its begin was not received
-  return (!life->begin || sim_time(life->begin->time_ns) <= t) && (!life->end || *life->end > t);
+  const ContactSpan* span = events_.span_of(contact_id);
+  if (!span) return true;  // joined late: its begin was not received
+  return (!span->begin || sim_time(span->begin->time_ns) <= t) && (!span->end || *span->end > t);
 }
 
 SampleStatus ContactStream::status(const std::deque<Snapshot>& group, SimTime t) const {
@@ -157,8 +115,8 @@ SampleStatus ContactStream::status(const std::deque<Snapshot>& group, SimTime t)
 // True for a contact that is predicted only: neither the snapshot before nor a begin event contains it. It may never happen.
 bool ContactStream::foreseen_only(std::size_t group, std::deque<Snapshot>::const_iterator told, std::int64_t id) const {
   if (group != contact_frame_t::AHEAD) return false;
-  const Life* life = lives_.find(id);
-  if (life && life->begin) return false;
+  const ContactSpan* span = events_.span_of(id);
+  if (span && span->begin) return false;
   return told == snapshots_[group].begin() || find(std::prev(told)->contacts, id) == std::prev(told)->contacts.end();
 }
 
@@ -182,8 +140,8 @@ void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Cand
   // existed at t.
   for (std::size_t i = 0; i < after->contacts.size(); ++i) {
     const contact_t& c = after->contacts[i];
-    const Life* life = lives_.find(c.contact_id);
-    const bool begun = life && life->begin && sim_time(life->begin->time_ns) <= t;
+    const ContactSpan* span = events_.span_of(c.contact_id);
+    const bool begun = span && span->begin && sim_time(span->begin->time_ns) <= t;
     if (begun && alive(c.contact_id, t) && find(before->contacts, c.contact_id) == before->contacts.end())
       out.push_back({c, after->seqs[i], false});
   }
@@ -205,7 +163,8 @@ void ContactStream::keep_last_told(std::vector<Candidate>& list) {
   list.resize(kept);
 }
 
-Sample<Contacts> ContactStream::state_at(SimTime t) const {
+Sample<Contacts> ContactStream::state_at(SimTime t) {
+  follow_events();
   Sample<Contacts> state;
   std::vector<Candidate> found;
   for (std::size_t group = 0; group < kGroups; ++group) {

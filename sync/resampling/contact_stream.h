@@ -1,13 +1,14 @@
-// Converts the contact channels into the inputs of a renderer's tick: the due events, the contact state at an instant, and
-// the integrals over the tick. Pure: time and messages are arguments.
+// The contact state of a renderer's tick: at an instant, and integrated over the tick. Its events are in an EventInbox. Pure:
+// time and messages are arguments.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <memory>
 #include <optional>
-#include <set>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
@@ -17,8 +18,7 @@
 #include <vector>
 
 #include "sync/bus/page_assembler.h"
-#include "sync/bus/recent_map.h"
-#include "sync/clocks/sim_clock_tracker.h"
+#include "sync/resampling/event_inbox.h"
 #include "sync/resampling/sample_status.h"
 #include "sync/time/time.h"
 
@@ -51,7 +51,6 @@ class ContactStream {
   // After the newest snapshot the contact state is held for this time, because begin and end arrive as events; then it is
   // stale.
   static constexpr Nanoseconds kStaleAfter{50'000'000};
-  static constexpr std::size_t kMaxPendingEvents = 4096;
   // 2,000 contacts, three a page, need 700 pages.
   static constexpr int kMaxPages = 1024;
   // Of all snapshots of a group together: half a second of 2,000 contacts at 60 Hz.
@@ -60,38 +59,38 @@ class ContactStream {
   // Length of the stored past, limited by kMaxContacts; it limits the presentation delay of a modality.
   static constexpr Nanoseconds kSpan{1'000'000'000};
 
-  // own: times on another clock are converted by its map; times of another run by arrival.
+  // events: of the same simulation; it outlives this object.
+  explicit ContactStream(EventInbox& events);
+  // With events of its own, from push(), without a profile. own: as EventInbox.
   explicit ContactStream(OwnClock own);
 
   // Stores this time beyond kSpan, for a modality that presents with this delay.
   void keep(Nanoseconds delay) { span_ = kSpan + delay; }
-  void push(const contact_events_t&, HostTime arrival);
+  void push(const contact_events_t& m, HostTime arrival) { events_.push(m, arrival); }
   void push(const contact_frame_t&, HostTime arrival);
 
   // Map between simulated time and this host's clock, from the newest message. nullopt before the first.
-  std::optional<TimeMap> map(HostTime now) const { return follower_.map(now); }
+  std::optional<TimeMap> map(HostTime now) const { return events_.map(now); }
 
-  // Events before `until` that were not returned before, in order of time. Each event is returned once within an incarnation,
-  // regardless of repetitions and replays. A late event is returned at the next call.
-  std::vector<contact_event_t> take_events(SimTime until);
+  // As EventInbox::take.
+  std::vector<contact_event_t> take_events(SimTime until) { return events_.take(until); }
 
   // Contacts that exist at `t`, of all groups: the newest complete snapshot at or before t, with forces and depths
   // interpolated towards the next. `status` is the worst of the groups. Begin and end events take precedence: a contact that
   // begins after t or ends at or before t is left out. A contact that moved between OTHER and AHEAD is listed once, as
   // published last. A predicted contact is listed once its begin event has arrived or another snapshot contains it.
-  Sample<Contacts> state_at(SimTime t) const;
+  Sample<Contacts> state_at(SimTime t);
 
   // Contacts of `tool` over [t0, t1). Begin and end events bound the contact time exactly, so that a contact shorter than the
   // interval between snapshots counts. tool_body: the body id of the tool, which distinguishes it from the other body.
-  ContactIntegral integral(SimTime t0, SimTime t1, int tool, int tool_body = -1) const;
+  ContactIntegral integral(SimTime t0, SimTime t1, int tool, int tool_body = -1);
 
   // Number of new incarnations or epochs of the simulation, each of which ended all contacts.
-  std::int64_t restarts() const { return restarts_; }
-  std::int64_t duplicates() const { return duplicates_; }
+  std::int64_t restarts() const { return std::max<std::int64_t>(0, events_.epoch() - 1); }
+  std::int64_t duplicates() const { return events_.duplicates(); }
   // Rejected events and pages: more than 1 s ahead of their simulation's own time, or with too many pages.
-  std::int64_t refused() const { return refused_; }
-  // Dropped events: when too many are pending, the latest are dropped.
-  std::int64_t overflow() const { return overflow_; }
+  std::int64_t refused() const { return refused_ + events_.refused(); }
+  std::int64_t overflow() const { return events_.overflow(); }
 
  private:
   static constexpr std::size_t kGroups = 3;  // by contact_frame_t.group
@@ -104,15 +103,11 @@ class ContactStream {
     Contacts contacts;
     std::int64_t seq = 0;
   };
-  struct Life {  // of a contact, from its events
-    std::optional<contact_event_t> begin;
-    std::optional<SimTime> end;
-  };
 
-  bool accept(const header_t& header, const sim_clock_t& clock, HostTime arrival);
-  void forget_after(SimTime latest);
+  // Drops the snapshots of an ended simulation, and those after the latest credible time: they may have been accepted only
+  // because their corrupt message was the first one.
+  void follow_events();
   void insert(std::size_t group, Snapshot snapshot);
-  void note_event(const contact_event_t& event);
   bool alive(std::int64_t contact_id, SimTime t) const;
   SampleStatus status(const std::deque<Snapshot>& group, SimTime t) const;
   struct Candidate {  // for the state at an instant
@@ -124,18 +119,10 @@ class ContactStream {
   bool foreseen_only(std::size_t group, std::deque<Snapshot>::const_iterator told, std::int64_t id) const;
   static void keep_last_told(std::vector<Candidate>& list);
 
-  SimClockTracker follower_;
-  std::int64_t restarts_ = 0;
-  std::int64_t duplicates_ = 0;
+  std::unique_ptr<EventInbox> own_events_;  // null: the events are shared
+  EventInbox& events_;
+  std::int64_t epoch_ = 0;  // of events_, as of the snapshots
   std::int64_t refused_ = 0;
-  std::int64_t overflow_ = 0;
-
-  std::multimap<SimTime, contact_event_t> pending_;
-  // Repetitions end 50 ms after an event; 8192 ids are 80 ms of 100,000 events a second.
-  static constexpr std::size_t kRemembered = 8192;
-  struct Received {};
-  RecentMap<std::int64_t, Received> received_{kRemembered};  // by event id
-  RecentMap<std::int64_t, Life> lives_{kRemembered};         // by contact id
 
   using Pages = PageAssembler<Page, SimTime>;
   std::array<Pages, kGroups> partial_;

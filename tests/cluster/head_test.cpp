@@ -7,6 +7,7 @@
 #include <tactus/node_health_t.hpp>
 
 #include "lcmtypes/vectors.h"
+#include "sync/bus/bus.h"
 #include "tests/cluster/support/running.h"
 
 using namespace tactus;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <tactus/tool_state_t.hpp>
 
+#include "sync/bus/bus.h"
 #include "tests/cluster/support/running.h"
 
 using namespace tactus;

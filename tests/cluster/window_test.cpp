@@ -8,6 +8,7 @@
 #include <tactus/question_t.hpp>
 #include <tactus/world_state_t.hpp>
 
+#include "sync/bus/bus.h"
 #include "tests/cluster/support/seeing.h"
 
 using namespace tactus;

@@ -8,6 +8,7 @@
 #include <tactus/tag_values_t.hpp>
 
 #include "scripts/live/page_session.h"
+#include "sync/bus/bus.h"
 #include "sync/tools/channel_table.h"
 #include "sync/resampling/contact_stream.h"
 #include "sync/log/export_events.h"

@@ -47,13 +47,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Safety safety(safety_limits(choice.settings));
   sync::ClockMaps maps(kRun);
   Session session(scene, choice, std::make_unique<RecordedHand>(hand), {kRun, kClock, &maps}, safety);
+  sync::EventInbox events({kRun, kClock, &maps});
   sync::LogScanner scanner({data, size});
   sync::HostTime now = sync::host_time(1'000'000'000);
   for (sync::LogEvent e; scanner.next(e);) {
     if (e.channel == channels::kTouchModel)
       if (const auto m = sync::decode<touch_model_t>(e.data.data(), e.data.size())) session.push(*m, now);
     if (e.channel == channels::kContactEvents)
-      if (const auto m = sync::decode<contact_events_t>(e.data.data(), e.data.size())) session.push(*m, now);
+      if (const auto m = sync::decode<contact_events_t>(e.data.data(), e.data.size())) events.push(*m, now), session.push(events.take(sync::SimTime::max()));
     hand.position.z() = 0.01 * std::sin(sync::to_seconds(now.time_since_epoch()) * 100);
     const auto state = session.step(now += sync::Nanoseconds(1'000'000)).state;
     const double force_N = std::hypot(state.force_N.x, state.force_N.y, state.force_N.z);

@@ -102,7 +102,7 @@ std::string live(const std::string& log, const std::string& profile = "", double
     session.push(model, sync::host_time(model.header.publish_time_ns));
     if (ms == 200) {
       run.raw(t_s, channels::kContactEvents, sync::encode(hit_at(t_s)));
-      session.push(hit_at(t_s), sync::host_time(model.header.publish_time_ns));
+      session.push(hit_at(t_s).events);
     }
     hand = hand_at(tick_s);
     const header_t header = header_at(tick_s, seq, 44);

@@ -9,7 +9,7 @@
 #include <tactus/touch_plane_t.hpp>
 
 #include "haptic_node/contact/touch_input.h"
-#include "sync/degradation/degraded_stream.h"
+#include "sync/degradation/degraded_snapshots.h"
 #include "tests/haptic_node/support/paged_models.h"
 
 using namespace tactus;

@@ -9,6 +9,7 @@
 #include <tactus/tag_request_t.hpp>
 
 #include "lcmtypes/channels.h"
+#include "sync/bus/bus.h"
 #include "sync/degradation/profile.h"
 #include "sync/bus/identity.h"
 

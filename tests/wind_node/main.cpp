@@ -25,7 +25,6 @@ struct WindRenderer : sync::SettingsRenderer<wind::Settings> {
     return {.rate_Hz = s.rate_Hz, .output_latency = sync::from_seconds(1 / s.rate_Hz)};
   }
   std::optional<sync::Status> step(sync::HostTime now) override {
-    while (const auto m = events.pop()) contacts.push(m->message, m->arrival);
     while (const auto m = frames.pop()) contacts.push(m->message, m->arrival);
     const auto map = contacts.map(now);
     if (!map) return sync::Status{node_health_t::READY, "waits for contacts"};
@@ -39,9 +38,8 @@ struct WindRenderer : sync::SettingsRenderer<wind::Settings> {
     return sync::Status{};
   }
 
-  sync::ModalityEndpoint::Stream<contact_events_t>& events = host().sense().events();
   sync::ModalityEndpoint::Stream<contact_frame_t>& frames = host().sense().snapshots<contact_frame_t>(channels::kContacts, 4096);
-  sync::ContactStream contacts{host().bus().clocks()};
+  sync::ContactStream contacts{host().sense().events().inbox()};
   std::multimap<sync::HostTime, contact_event_t> due;
   wind::Fan fan;
   std::ofstream table{host().options().out + "/wind.csv"};

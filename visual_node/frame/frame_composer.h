@@ -46,8 +46,9 @@ class FrameComposer {
   static constexpr sync::Nanoseconds kFlashesTake{1'000'000};
 
   // own: messages of another clock are read through its map, those of another run by arrival. late: the outcome
-  // of an event that could not be shown in time.
-  FrameComposer(sync::OwnClock own, const Settings& settings, sync::Late late = sync::Late::kShowNewest);
+  // of an event that could not be shown in time. events: those of the node; null: its own, from push().
+  FrameComposer(sync::OwnClock own, const Settings& settings, sync::Late late = sync::Late::kShowNewest,
+                sync::EventInbox* events = nullptr);
 
   void set_schedule(Schedule schedule) { ledger_.set_schedule(std::move(schedule)); }
   // Sets the assumed times from tick to fence and from latch to fence until frames are measured. 0 for a log,

@@ -103,10 +103,7 @@ void LiveOverlays::append(Frame& frame, PanelFacts facts, sync::HostTime now, in
   if (!on_.any()) return;
   receive();
   sync::Sample<sync::Contacts> touching;
-  if (needs_contacts() && frame.instant) {
-    touching = contacts_.state_at(*frame.instant);
-    contacts_.take_events(*frame.instant);
-  }
+  if (needs_contacts() && frame.instant) touching = contacts_.state_at(*frame.instant);
   auto& strokes = frame.list.strokes;
   if (on_.on(Overlay::kContacts)) append_contacts(strokes, touching.value);
   if (on_.on(Overlay::kForces)) append_contact_forces(strokes, touching.value, force_scale_m_N_);

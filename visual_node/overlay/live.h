@@ -21,7 +21,8 @@ namespace tactus::visual {
 
 class LiveOverlays {
  public:
-  explicit LiveOverlays(sync::Bus& bus) : bus_(bus), contacts_(bus.clocks()) {}
+  // events: those of the node; it outlives this object.
+  LiveOverlays(sync::Bus& bus, sync::EventInbox& events) : bus_(bus), contacts_(events) {}
 
   // Throws std::invalid_argument with one sentence for an unknown overlay or plot; changes nothing.
   static void check(const Settings& settings);
@@ -33,9 +34,6 @@ class LiveOverlays {
   // Messages that the node receives anyway.
   void push(const world_state_t& m) {
     if (on_.on(Overlay::kGroups)) groups_.push(m);
-  }
-  void push(const contact_events_t& m, sync::HostTime arrival) {
-    if (needs_contacts()) contacts_.push(m, arrival);
   }
   void push(const tool_state_t& m) {
     if (on_.on(Overlay::kForces)) tools_[m.tool] = m;

@@ -1,7 +1,9 @@
+// Tests of the hits that are due in a tick.
 #include "audio_node/excitation/due_hits.h"
 
 #include <catch2/catch.hpp>
 #include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
 #include <vector>
 
 using namespace tactus;
@@ -14,70 +16,72 @@ const sync::LatePolicy kLate{sync::Late::kPlayWithFade, sync::Nanoseconds(50'000
 
 sync::HostTime at_ms(int ms) { return sync::host_time(1'000'000'000) + ms * kMs; }
 
-// A loop of ticks of 1 ms, each with time for some hits.
+// A loop of ticks of 1 ms, each with time for some hits. A hit is to be heard at its own time.
 struct Loop {
-  DueHits due;
-  std::vector<std::int64_t> sounded, dropped;
-  std::vector<sync::HostTime> for_when;
+  sync::EventInbox inbox{1};
+  std::int64_t seq = 0;
+  std::vector<std::int64_t> struck, dropped;
+  std::vector<sync::HostTime> scheduled;
 
-  void push(std::int64_t id, int due_ms) {
+  void push(std::int64_t id, int due_ms, std::int8_t kind = contact_event_t::HIT) {
+    contact_events_t m{};
+    m.header.run_id = m.header.incarnation = 1;
+    m.header.seq = seq++;
+    m.header.publish_time_ns = sync::to_ns(at_ms(0));
+    m.clock = {0, sync::to_ns(at_ms(0)), 1};
     contact_event_t e{};
     e.event_id = id;
-    due.push(e, at_ms(due_ms));
+    e.kind = kind;
+    e.time_ns = (due_ms * kMs).count();
+    m.events.push_back(e);
+    m.count = 1;
+    inbox.push(m, at_ms(0));
   }
-  void tick(int ms, int time_for) {
-    due.handle(
-        at_ms(ms), kLate, [&] { return --time_for > 0; },
-        [&](const contact_event_t& e, sync::HostTime t) { sounded.push_back(e.event_id), for_when.push_back(t); },
-        [&](const contact_event_t& e, sync::HostTime) { dropped.push_back(e.event_id); });
+  int tick(int ms, int time_for) {
+    return strike_due_hits(inbox, sync::SimTime::max(), at_ms(ms), kLate,
+                           HitActions{[](const contact_event_t& e) { return at_ms(0) + sync::Nanoseconds(e.time_ns); },
+                                      [&] { return --time_for > 0; },
+                                      [&](const contact_event_t& e, sync::HostTime t) { struck.push_back(e.event_id), scheduled.push_back(t); },
+                                      [&](const contact_event_t& e, sync::HostTime) { dropped.push_back(e.event_id); }});
   }
 };
 
 }  // namespace
 
-TEST_CASE("More hits than a tick has time for go on in the next ones, due first, each with its time") {
+TEST_CASE("Hits beyond the time of a tick are struck in the next ticks, in order of their time") {
   Loop loop;
   for (int i = 0; i < 10; ++i) loop.push(i, 20 - i);
-  loop.tick(0, 3);
-  CHECK(loop.sounded == std::vector<std::int64_t>{9, 8, 7});
-  CHECK(loop.due.size() == 7);
+  CHECK(loop.tick(0, 3) == 3);
+  CHECK(loop.struck == std::vector<std::int64_t>{9, 8, 7});
   for (int ms = 1; ms < 4; ++ms) loop.tick(ms, 3);
-  CHECK(loop.sounded == std::vector<std::int64_t>{9, 8, 7, 6, 5, 4, 3, 2, 1, 0});
-  CHECK(loop.for_when.back() == at_ms(20));
+  CHECK(loop.struck == std::vector<std::int64_t>{9, 8, 7, 6, 5, 4, 3, 2, 1, 0});
+  CHECK(loop.scheduled.back() == at_ms(20));
   CHECK(loop.dropped.empty());
 }
 
-TEST_CASE("A tick without time handles one hit all the same, and hits of one time keep their order") {
+TEST_CASE("A tick without time strikes one hit, and hits of one time keep their order") {
   Loop loop;
   for (int i = 0; i < 3; ++i) loop.push(i, 20);
-  for (int ms = 0; ms < 3; ++ms) loop.tick(ms, 0);
-  CHECK(loop.sounded == std::vector<std::int64_t>{0, 1, 2});
+  for (int ms = 0; ms < 3; ++ms) CHECK(loop.tick(ms, 0) == 1);
+  CHECK(loop.struck == std::vector<std::int64_t>{0, 1, 2});
 }
 
-TEST_CASE("A hit that the late policy drops while it waits is said to be, and costs no time") {
+TEST_CASE("Overdue hits are dropped by the policy and take no time of the tick") {
   Loop loop;
   for (int i = 0; i < 100; ++i) loop.push(i, 0);
   // Two per tick, up to 30 ms late: in 31 ticks. The others are dropped at once.
   for (int ms = 0; ms < 40; ++ms) loop.tick(ms, 2);
-  CHECK(loop.sounded.size() == 62);
+  CHECK(loop.struck.size() == 62);
   CHECK(loop.dropped.size() == 38);
-  CHECK(loop.due.size() == 0);
-
-  SECTION("and so is one whose scene is over") {
-    loop.push(200, 100);
-    std::vector<std::int64_t> over;
-    loop.due.clear([&](const contact_event_t& e, sync::HostTime) { over.push_back(e.event_id); });
-    CHECK(over == std::vector<std::int64_t>{200});
-    CHECK(loop.due.size() == 0);
-  }
+  CHECK(loop.inbox.front(sync::SimTime::max()) == nullptr);
 }
 
-TEST_CASE("No flood of hits waits without end: what is too many is not kept") {
-  DueHits due;
-  for (std::size_t i = 0; i < DueHits::kMax; ++i) REQUIRE(due.push({}, at_ms(0)));
-  CHECK_FALSE(due.push({}, at_ms(0)));
-  CHECK(due.size() == DueHits::kMax);
-  due.handle(
-      at_ms(0), kLate, [] { return false; }, [](const auto&, auto) {}, [](const auto&, auto) {});
-  CHECK(due.push({}, at_ms(0)));
+TEST_CASE("Begin and end events are taken without a strike") {
+  Loop loop;
+  loop.push(1, 0, contact_event_t::BEGIN);
+  loop.push(2, 1);
+  loop.push(3, 2, contact_event_t::END);
+  CHECK(loop.tick(0, 5) == 1);
+  CHECK(loop.struck == std::vector<std::int64_t>{2});
+  CHECK(loop.inbox.front(sync::SimTime::max()) == nullptr);
 }

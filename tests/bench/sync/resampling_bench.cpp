@@ -19,7 +19,7 @@
 #include "sync/resampling/body_history.h"
 #include "sync/resampling/contact_stream.h"
 #include "sync/bus/decode.h"
-#include "sync/degradation/degraded_stream.h"
+#include "sync/degradation/degraded_snapshots.h"
 
 using namespace tactus;
 using namespace tactus::sync;
@@ -141,9 +141,9 @@ struct ModalityEndpoint {
   OperatorChain stack;
   DegradedSnapshots<contact_frame_t> contacts;
   DegradedSnapshots<world_state_t> world;
-  DegradedEvents events;
+  EventInbox events{1};
   Decisions decisions;
-  ContactStream stream{1};
+  ContactStream stream{events};
   BodyHistory bodies{1};
 
   explicit ModalityEndpoint(bool degraded) : stack(stack_of(degraded)) {}
@@ -198,7 +198,9 @@ class Table : public benchmark::BenchmarkReporter {
 };
 
 void read_contacts(ModalityEndpoint& s, const Second& second, std::size_t ms, HostTime now) {
-  s.take<contact_events_t>(second.events[ms], now, s.events, s.stream);
+  for (const auto& bytes : second.events[ms])
+    s.events.push(*decode<contact_events_t>(bytes.data(), bytes.size()), now, s.stack, &s.decisions);
+  s.events.release(now);
   s.take<contact_frame_t>(second.contacts[ms], now, s.contacts, s.stream);
 }
 
@@ -215,7 +217,9 @@ void audio_node(benchmark::State& state) {
   sense(
       state, 3,
       [](ModalityEndpoint& s, const Second& second, std::size_t ms, HostTime now) {
-        s.take<contact_events_t>(second.events[ms], now, s.events, s.stream);
+        for (const auto& bytes : second.events[ms])
+    s.events.push(*decode<contact_events_t>(bytes.data(), bytes.size()), now, s.stack, &s.decisions);
+  s.events.release(now);
       },
       [](ModalityEndpoint& s, SimTime t, int) { benchmark::DoNotOptimize(s.stream.take_events(t)); });
 }
@@ -233,7 +237,9 @@ void visual_node(benchmark::State& state) {
   sense(
       state, 16,
       [](ModalityEndpoint& s, const Second& second, std::size_t ms, HostTime now) {
-        s.take<contact_events_t>(second.events[ms], now, s.events, s.stream);
+        for (const auto& bytes : second.events[ms])
+    s.events.push(*decode<contact_events_t>(bytes.data(), bytes.size()), now, s.stack, &s.decisions);
+  s.events.release(now);
         s.take<world_state_t>(second.bodies[ms], now, s.world, s.bodies);
       },
       [](ModalityEndpoint& s, SimTime t, int n) {

@@ -13,6 +13,7 @@
 #include <tactus/world_state_t.hpp>
 #include <unordered_map>
 
+#include "sync/bus/bus.h"
 #include "sync/resampling/contact_stream.h"
 
 using namespace tactus;

@@ -8,6 +8,7 @@
 #include <tactus/scene_manifest_t.hpp>
 #include <tactus/scene_t.hpp>
 
+#include "sync/bus/bus.h"
 #include "sync/bus/decode.h"
 
 using namespace tactus;

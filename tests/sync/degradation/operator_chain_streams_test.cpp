@@ -4,7 +4,7 @@
 #include <map>
 #include <tactus/contact_frame_t.hpp>
 
-#include "sync/degradation/degraded_stream.h"
+#include "sync/degradation/degraded_snapshots.h"
 
 using namespace tactus;
 using namespace tactus::sync;

@@ -9,8 +9,9 @@
 #include <tactus/contact_frame_t.hpp>
 
 #include "sync/resampling/contact_stream.h"
+#include "sync/resampling/event_inbox.h"
 #include "sync/random/keyed_random.h"
-#include "sync/degradation/degraded_stream.h"
+#include "sync/degradation/degraded_snapshots.h"
 #include "sync/bus/identity.h"
 
 using namespace tactus;
@@ -173,7 +174,7 @@ TEST_CASE("Repeated messages do not change any decision") {
       "duplicate=\"10%\"";
   const auto decided = [&](int repetitions) {
     OperatorChain stack = stack_of(everything, 5);
-    DegradedEvents events;
+    EventInbox events(1);
     Decisions decisions;
     for (int ms = 0; ms < 4000; ++ms) {
       contact_events_t m{};

@@ -1,4 +1,5 @@
 // Tests of reading and replaying damaged logs.
+#include "sync/bus/bus.h"
 #include "tests/sync/support/damaged_log.h"
 
 #include <unistd.h>

@@ -1,4 +1,5 @@
 // Tests of the timestamps of log events, with wrong stamps.
+#include "sync/bus/bus.h"
 #include "sync/log/log_feed.h"
 
 #include <unistd.h>

@@ -1,4 +1,5 @@
 // Tests of rendering a log offline: profiles, ticks, progress and output files.
+#include "sync/bus/bus.h"
 #include "sync/node/offline.h"
 
 #include <unistd.h>

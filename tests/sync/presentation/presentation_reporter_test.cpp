@@ -1,4 +1,5 @@
 // Tests of publishing presentation reports.
+#include "sync/bus/bus.h"
 #include "sync/presentation/presentation_reporter.h"
 
 #include <catch2/catch.hpp>

@@ -349,7 +349,7 @@ TEST_CASE("When too many events are pending, the latest are dropped and counted"
   for (int i = 0; i < 10; ++i) early.push_back(event(i, i, contact_event_t::HIT, 9 * kMs + i));
   stream.push(events(10 * kMs, late), at(10 * kMs));
   stream.push(events(10 * kMs, early), at(10 * kMs));
-  CHECK(stream.overflow() == 5010 - static_cast<std::int64_t>(ContactStream::kMaxPendingEvents));
+  CHECK(stream.overflow() == 5010 - static_cast<std::int64_t>(EventInbox::kMaxPending));
   CHECK(stream.take_events(sim_time(10 * kMs)).size() == 10);
 }
 

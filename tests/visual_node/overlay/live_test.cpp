@@ -1,4 +1,5 @@
 // All overlays together, on an in-process bus.
+#include "sync/bus/bus.h"
 #include "visual_node/overlay/live.h"
 
 #include <catch2/catch.hpp>
@@ -21,7 +22,8 @@ sync::HostTime at_ms(std::int64_t ms) { return sync::HostTime{std::chrono::milli
 
 struct Laid {
   sync::Bus bus{sync::Identity::fresh("visual_node", 7), memory()};
-  LiveOverlays overlays{bus};
+  sync::EventInbox events{bus.clocks()};
+  LiveOverlays overlays{bus, events};
 
   std::vector<std::string> configure(const std::string& overlay, const std::string& plots = "") {
     Settings s;

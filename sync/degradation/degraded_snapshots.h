@@ -1,5 +1,5 @@
-// Message streams between bus and renderer, with the operators of the modality's profile applied. Without a profile, messages
-// pass unchanged. Pure.
+// A stream of snapshots between bus and renderer, with the operators of the modality's profile applied. Without a profile,
+// messages pass unchanged. Pure.
 //
 // A delayed message carries the newest publication time and clock of its stream, and the arrival of the message that they
 // belong to. So it counts as old state of the world, not as a message from before a restart, and it does not affect the
@@ -11,30 +11,17 @@
 #include <deque>
 #include <map>
 #include <optional>
-#include <set>
-#include <tactus/contact_event_t.hpp>
-#include <tactus/contact_events_t.hpp>
 #include <tactus/sim_clock_t.hpp>
 #include <utility>
 #include <vector>
 
 #include "sync/bus/page_assembler.h"
 #include "sync/bus/recent_map.h"
+#include "sync/degradation/decision_record.h"
 #include "sync/degradation/operator_chain.h"
 #include "sync/degradation/snapshot.h"
-#include "sync/random/keyed_random.h"
 
 namespace tactus::sync {
-
-// One decision, for the log.
-struct DecisionRecord {
-  std::uint64_t key = 0;
-  bool is_event = false;
-  SimTime time{};
-  Decision verdict;
-  HostTime arrival{};
-};
-using Decisions = std::vector<DecisionRecord>;
 
 // Messages that wait for their release time, in the order of that time; equal times keep their order. Bounded: when it is
 // full, the oldest message is dropped and counted.
@@ -62,13 +49,6 @@ class DelayQueue {
   std::multimap<HostTime, std::pair<Message, HostTime>> waiting_;
   std::int64_t dropped_ = 0;
 };
-
-// A key of one message, also among repetitions and pages of the same content.
-template <class Message>
-std::uint64_t wire_key(const Message& m) {
-  return mixed(mixed(static_cast<std::uint64_t>(m.header.incarnation), static_cast<std::uint64_t>(m.header.seq)),
-               static_cast<std::uint64_t>(m.header.source));
-}
 
 // Snapshots. The profile decides once per snapshot, on its first page; the other pages share the decision. A deadband
 // compares all values of a snapshot: then the decision falls on the last page, and the other pages wait for it.
@@ -198,35 +178,6 @@ class DegradedSnapshots {
   std::int64_t incarnation_ = 0, newest_publish_ns_ = 0;
   HostTime newest_arrival_{};
   sim_clock_t newest_clock_{};
-};
-
-// Events. The profile decides once per event id, at its first arrival; repetitions change nothing.
-class DegradedEvents {
- public:
-  void push(const contact_events_t& m, HostTime arrival, OperatorChain& stack, Decisions* decisions);
-  // The next message that is released by now, and the arrival of its events. A message with only header and clock is released
-  // at once.
-  std::optional<std::pair<contact_events_t, HostTime>> pop(HostTime now);
-  // The first arrival of each event, by its id; also of events that the profile lost on the wire.
-  struct Known {
-    HostTime arrival{};
-    bool decided = false;  // in this incarnation of the simulation
-  };
-  using Memory = RecentMap<std::int64_t, Known>;
-  const Memory& memory() const { return memory_; }
-  // Events that the profile dropped since the last call; a modality that must present them reports them as dropped.
-  std::vector<contact_event_t> take_dropped() { return std::exchange(dropped_, {}); }
-
- private:
-  static constexpr std::size_t kRemembered = 8192;  // as sync/resampling/contact_stream.cpp
-  static constexpr std::size_t kMaxDropped = 4096;
-  bool decides(std::int64_t id);
-
-  DelayQueue<contact_events_t> waiting_;
-  contact_events_t newest_{};  // header and clock
-  HostTime newest_arrival_{};  // of newest_
-  Memory memory_{kRemembered};
-  std::vector<contact_event_t> dropped_;
 };
 
 }  // namespace tactus::sync

@@ -1,0 +1,20 @@
+// The decisions of a profile, for the log.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sync/degradation/operator_chain.h"
+
+namespace tactus::sync {
+
+struct DecisionRecord {
+  std::uint64_t key = 0;  // of an event its id, of a snapshot as snapshot_key
+  bool is_event = false;
+  SimTime time{};
+  Decision verdict;
+  HostTime arrival{};
+};
+using Decisions = std::vector<DecisionRecord>;
+
+}  // namespace tactus::sync

@@ -1,0 +1,145 @@
+#include "sync/resampling/event_inbox.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "sync/degradation/snapshot.h"
+
+namespace tactus::sync {
+namespace {
+
+// A publish_time_ns that falls back by more than this means that a log is replayed again.
+constexpr std::int64_t kEpoch_ns = 1'000'000'000;
+
+StreamItem item_of(const contact_event_t& e, std::int64_t incarnation, HostTime arrival) {
+  return {.key = static_cast<std::uint64_t>(e.event_id),
+          .is_event = true,
+          .incarnation = incarnation,
+          .time = sim_time(e.time_ns),
+          .arrival = arrival,
+          .signals = {},
+          .speed_m_s = e.approach_speed_m_s,
+          .body_a = e.body_a,
+          .body_b = e.body_b,
+          .material_a = e.material_a,
+          .material_b = e.material_b};
+}
+
+}  // namespace
+
+// True once for each event.
+bool EventInbox::decide_now(std::int64_t id) { return !std::exchange(memory_.try_emplace(id).first.decided, true); }
+
+void EventInbox::remember_newest(const contact_events_t& m, HostTime arrival) {
+  const header_t& before = newest_.header;
+  const bool replaced =
+      m.header.incarnation != before.incarnation || m.header.publish_time_ns < before.publish_time_ns - kEpoch_ns;
+  if (replaced)
+    for (auto& [id, known] : memory_) known.decided = false;  // a log that is played again contains the same ids
+  for (const contact_event_t& e : m.events) memory_.try_emplace(e.event_id, {arrival, false});
+  if (replaced || m.header.publish_time_ns >= before.publish_time_ns) newest_ = {m.header, m.clock, arrival};
+}
+
+void EventInbox::push(const contact_events_t& m, HostTime arrival, OperatorChain& chain, Decisions* decisions) {
+  remember_newest(m, arrival);
+  if (!chain.empty() && chain.lost_on_wire(wire_key(m), sim_time(m.header.sim_time_ns))) return;
+  heads_.push_back({m.header, m.clock, arrival});
+  for (const contact_event_t& received : m.events) {
+    if (!decide_now(received.event_id)) {
+      ++duplicates_;
+      continue;
+    }
+    if (chain.empty()) {
+      hold(received, m.header.incarnation, arrival);
+      continue;
+    }
+    const Decision v = chain.decide(item_of(received, m.header.incarnation, arrival));
+    const bool later = chain.presentation_delay(sim_time(received.time_ns)) > Nanoseconds(0);
+    if (decisions && (v.touched || later))
+      decisions->push_back({static_cast<std::uint64_t>(received.event_id), true, sim_time(received.time_ns), v, arrival});
+    if (v.dropped()) {
+      if (dropped_.size() < kMaxDropped) dropped_.push_back(received);
+      continue;
+    }
+    contact_event_t event = received;
+    if (chain.changes_values()) change_values(event, chain);
+    event.time_ns += v.shift.count();
+    if (v.twice) ++duplicates_;
+    hold(event, m.header.incarnation, v.release);
+  }
+}
+
+void EventInbox::hold(const contact_event_t& event, std::int64_t incarnation, HostTime release) {
+  held_.emplace(release, Held{event, incarnation});
+  if (held_.size() <= kMaxHeld) return;
+  held_.erase(std::prev(held_.end()));
+  ++overflow_;
+}
+
+void EventInbox::release(HostTime now) {
+  for (Head& head : heads_) {
+    // A tick follows the newest clock that it has received.
+    const bool current = head.header.incarnation == newest_.header.incarnation;
+    if (current) head.header.publish_time_ns = newest_.header.publish_time_ns;
+    follow(head.header, current ? newest_.clock : head.clock, current ? newest_.arrival : head.arrival);
+  }
+  heads_.clear();
+  while (!held_.empty() && held_.begin()->first <= now) {
+    release_one(held_.begin()->second);
+    held_.erase(held_.begin());
+  }
+}
+
+// Drops an event of a replaced simulation, or of an impossible future.
+void EventInbox::release_one(const Held& held) {
+  const contact_event_t& e = held.event;
+  if (held.incarnation != clock_.incarnation()) return;
+  if (sim_time(e.time_ns) > clock_.latest_credible()) {
+    ++refused_;
+    memory_.try_emplace(e.event_id).first.decided = false;  // a repetition may be credible
+    return;
+  }
+  ContactSpan& span = spans_.try_emplace(e.contact_id).first;
+  if (e.kind == contact_event_t::BEGIN) span.begin = e;
+  if (e.kind == contact_event_t::END) span.end = sim_time(e.time_ns);
+  pending_.emplace(sim_time(e.time_ns), e);
+  if (pending_.size() <= kMaxPending) return;
+  pending_.erase(std::prev(pending_.end()));
+  ++overflow_;
+}
+
+bool EventInbox::follow(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
+  const TrackResult result = clock_.follow(header, clock, arrival);
+  if (result == TrackResult::kIgnore) return false;
+  if (result == TrackResult::kRestart) {
+    ++epoch_;
+    spans_.clear();
+    pending_.clear();
+  }
+  // Removes events that were accepted only because their corrupt message was the first one.
+  pending_.erase(pending_.upper_bound(clock_.latest_credible()), pending_.end());
+  return true;
+}
+
+std::vector<contact_event_t> EventInbox::take(SimTime until) {
+  std::vector<contact_event_t> due;
+  const auto end = pending_.lower_bound(until);
+  for (auto at = pending_.begin(); at != end; ++at) due.push_back(at->second);
+  pending_.erase(pending_.begin(), end);
+  return due;
+}
+
+const contact_event_t* EventInbox::front(SimTime until) const {
+  return pending_.empty() || pending_.begin()->first >= until ? nullptr : &pending_.begin()->second;
+}
+
+void EventInbox::pop_front() {
+  if (!pending_.empty()) pending_.erase(pending_.begin());
+}
+
+std::optional<HostTime> EventInbox::arrival_of(std::int64_t event_id) const {
+  const Known* known = memory_.find(event_id);
+  return known ? std::optional(known->arrival) : std::nullopt;
+}
+
+}  // namespace tactus::sync
