@@ -8,9 +8,6 @@
 namespace tactus::sync {
 namespace {
 
-// A publish_time_ns that falls back by more than this means that a log is replayed again.
-constexpr std::int64_t kEpoch_ns = 1'000'000'000;
-
 StreamItem item_of(const contact_event_t& e, std::int64_t incarnation, HostTime arrival) {
   return {.key = static_cast<std::uint64_t>(e.event_id),
           .is_event = true,
@@ -30,20 +27,11 @@ StreamItem item_of(const contact_event_t& e, std::int64_t incarnation, HostTime 
 // True once for each event.
 bool EventInbox::decide_now(std::int64_t id) { return !std::exchange(memory_.try_emplace(id).first.decided, true); }
 
-void EventInbox::remember_newest(const contact_events_t& m, HostTime arrival) {
-  const header_t& before = newest_.header;
-  const bool replaced =
-      m.header.incarnation != before.incarnation || m.header.publish_time_ns < before.publish_time_ns - kEpoch_ns;
-  if (replaced)
-    for (auto& [id, known] : memory_) known.decided = false;  // a log that is played again contains the same ids
-  for (const contact_event_t& e : m.events) memory_.try_emplace(e.event_id, {arrival, false});
-  if (replaced || m.header.publish_time_ns >= before.publish_time_ns) newest_ = {m.header, m.clock, arrival};
-}
-
 void EventInbox::push(const contact_events_t& m, HostTime arrival, OperatorChain& chain, Decisions* decisions) {
-  remember_newest(m, arrival);
-  if (!chain.empty() && chain.lost_on_wire(wire_key(m), sim_time(m.header.sim_time_ns))) return;
-  heads_.push_back({m.header, m.clock, arrival});
+  const bool lost = !chain.empty() && chain.lost_on_wire(wire_key(m), sim_time(m.header.sim_time_ns));
+  if (!lost && !follow(m.header, m.clock, arrival)) return;
+  for (const contact_event_t& e : m.events) memory_.try_emplace(e.event_id, {arrival, false});
+  if (lost) return;
   for (const contact_event_t& received : m.events) {
     if (!decide_now(received.event_id)) {
       ++duplicates_;
@@ -77,13 +65,6 @@ void EventInbox::hold(const contact_event_t& event, std::int64_t incarnation, Ho
 }
 
 void EventInbox::release(HostTime now) {
-  for (Head& head : heads_) {
-    // A tick follows the newest clock that it has received.
-    const bool current = head.header.incarnation == newest_.header.incarnation;
-    if (current) head.header.publish_time_ns = newest_.header.publish_time_ns;
-    follow(head.header, current ? newest_.clock : head.clock, current ? newest_.arrival : head.arrival);
-  }
-  heads_.clear();
   while (!held_.empty() && held_.begin()->first <= now) {
     release_one(held_.begin()->second);
     held_.erase(held_.begin());
@@ -115,6 +96,7 @@ bool EventInbox::follow(const header_t& header, const sim_clock_t& clock, HostTi
     ++epoch_;
     spans_.clear();
     pending_.clear();
+    for (auto& [id, known] : memory_) known.decided = false;  // a log that is played again contains the same ids
   }
   // Removes events that were accepted only because their corrupt message was the first one.
   pending_.erase(pending_.upper_bound(clock_.latest_credible()), pending_.end());

@@ -94,15 +94,8 @@ class EventInbox {
     contact_event_t event;
     std::int64_t incarnation;
   };
-  // A received header, by which the clock is followed at the next release.
-  struct Head {
-    header_t header;
-    sim_clock_t clock;
-    HostTime arrival;
-  };
 
   bool decide_now(std::int64_t id);
-  void remember_newest(const contact_events_t& m, HostTime arrival);
   void hold(const contact_event_t& event, std::int64_t incarnation, HostTime release);
   void release_one(const Held& held);
 
@@ -111,8 +104,6 @@ class EventInbox {
   RecentMap<std::int64_t, ContactSpan> spans_{kRemembered};  // by contact id
   std::multimap<HostTime, Held> held_;                       // by the operators, until their release
   std::multimap<SimTime, contact_event_t> pending_;          // released, by the time of the event
-  Head newest_{};                                            // by publish time
-  std::vector<Head> heads_;                                  // since the last release
   std::vector<contact_event_t> dropped_;
   std::int64_t epoch_ = 0, duplicates_ = 0, refused_ = 0, overflow_ = 0;
 };

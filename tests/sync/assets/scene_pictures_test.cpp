@@ -6,6 +6,7 @@
 #include <tactus/material_def_t.hpp>
 #include <tactus/scene_t.hpp>
 
+#include "sync/assets/scene_sender.h"
 #include "sync/bus/bus.h"
 #include "sync/bus/decode.h"
 #include "sync/bus/identity.h"
