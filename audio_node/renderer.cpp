@@ -13,6 +13,7 @@
 
 #include "audio_node/devices/file_output.h"
 #include "audio_node/excitation/mesh_extent.h"
+#include "sync/clocks/pacing.h"
 #include "sync/time/phases.h"
 #include "sync/node/realtime.h"
 #include "sync/assets/scene_pictures.h"

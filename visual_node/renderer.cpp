@@ -10,6 +10,7 @@
 #include <tactus/world_state_t.hpp>
 #include <utility>
 
+#include "sync/clocks/pacing.h"
 #include "sync/time/phases.h"
 #include "sync/assets/scene_pictures.h"
 #include "visual_node/scene_view/meshes.h"

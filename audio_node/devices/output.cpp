@@ -7,6 +7,7 @@
 
 #include "audio_node/signal/sound_dose.h"
 #include "audio_node/spatial/space_of.h"
+#include "sync/clocks/pacing.h"
 
 namespace tactus::audio {
 namespace {

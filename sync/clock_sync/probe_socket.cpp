@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "sync/bus/decode.h"
+#include "sync/clocks/pacing.h"
 
 namespace tactus::sync {
 namespace {

@@ -3,6 +3,8 @@
 #include <random>
 #include <tactus/clock_probe_t.hpp>
 
+#include "sync/clocks/pacing.h"
+
 namespace tactus::sync {
 
 ProbeThread::ProbeThread(const BusOptions& options, const Identity& own, const EmulatedClock& clock)

@@ -6,6 +6,8 @@
 #include <tactus/tool_state_t.hpp>
 #include <tactus/world_state_t.hpp>
 
+#include "sync/clocks/pacing.h"
+
 namespace tactus::visual {
 namespace {
 

@@ -5,6 +5,8 @@
 #include <tactus/tool_def_t.hpp>
 #include <tactus/visual_def_t.hpp>
 
+#include "sync/bus/decode.h"
+
 namespace tactus::visual {
 
 Meshes meshes_of(const sync::SceneReceiver& scenes) {

@@ -1,4 +1,5 @@
 // Reception and bookkeeping of the subscriber of the cluster tests.
+#include "sync/clocks/pacing.h"
 #include "tests/cluster/support/ear.h"
 
 #include <cmath>
