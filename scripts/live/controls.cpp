@@ -102,7 +102,7 @@ void Controls::step(sync::HostTime now) {
   const auto ours = [&](const header_t& h) { return h.run_id == bus_.identity().run_id; };
   while (const auto m = frames_.pop()) {
     if (!ours(m->message.header)) continue;
-    simulation_.follow(m->message.header, m->message.clock, m->arrival);
+    simulation_.track(m->message.header, m->message.clock, m->arrival);
     clock_ = m->message.clock;
   }
   while (auto m = tools_.pop())

@@ -59,15 +59,15 @@ UdpPort::UdpPort(const std::string& group, int port) : socket_(socket(AF_INET, S
 
 UdpPort::~UdpPort() { close(socket_); }
 
-int UdpPort::receive(int wanted) {
+int UdpPort::receive(int requested) {
   std::array<iovec, kBatch> parts;
   std::array<mmsghdr, kBatch> messages{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(wanted); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(requested); ++i) {
     parts[i] = {buffers_[i].data(), kDatagramBytes};
     messages[i].msg_hdr.msg_iov = &parts[i];
     messages[i].msg_hdr.msg_iovlen = 1;
   }
-  const int got = recvmmsg(socket_, messages.data(), static_cast<unsigned>(wanted), MSG_DONTWAIT, nullptr);
+  const int got = recvmmsg(socket_, messages.data(), static_cast<unsigned>(requested), MSG_DONTWAIT, nullptr);
   for (int i = 0; i < got; ++i)
     sizes_[static_cast<std::size_t>(i)] = messages[static_cast<std::size_t>(i)].msg_len;
   return std::max(got, 0);

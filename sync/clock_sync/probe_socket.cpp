@@ -87,7 +87,7 @@ void ProbeSocket::wake() {
   [[maybe_unused]] const auto written = write(wake_, &one, sizeof one);
 }
 
-std::optional<ProbeSocket::Arrived> ProbeSocket::receive(HostTime until) {
+std::optional<ProbeSocket::Received> ProbeSocket::receive(HostTime until) {
   for (;;) {
     if (const auto probe = read_one()) return probe;
     const Nanoseconds left = until - host_now();
@@ -98,7 +98,7 @@ std::optional<ProbeSocket::Arrived> ProbeSocket::receive(HostTime until) {
   }
 }
 
-std::optional<ProbeSocket::Arrived> ProbeSocket::read_one() {
+std::optional<ProbeSocket::Received> ProbeSocket::read_one() {
   std::uint8_t bytes[2048];
   alignas(cmsghdr) char control[128];
   for (;;) {
@@ -113,8 +113,8 @@ std::optional<ProbeSocket::Arrived> ProbeSocket::read_one() {
     HostTime at = host_now();
     const Nanoseconds realtime(real.tv_sec * 1'000'000'000 + real.tv_nsec);
     const Nanoseconds ahead = realtime - at.time_since_epoch();
-    const Nanoseconds moved = ahead - realtime_ahead_;
-    realtime_ahead_ = ahead;
+    const Nanoseconds moved = ahead - realtime_minus_monotonic_;
+    realtime_minus_monotonic_ = ahead;
     for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
       if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SCM_TIMESTAMPNS) continue;
       timespec stamp{};
@@ -126,7 +126,7 @@ std::optional<ProbeSocket::Arrived> ProbeSocket::read_one() {
     std::uint32_t magic = 0;
     if (length >= kPrefix) std::memcpy(&magic, bytes, sizeof magic);
     if (ntohl(magic) != kMagic || std::memcmp(bytes + 8, channels::kClockProbe, kChannelBytes) != 0) continue;
-    if (const auto probe = decode<clock_probe_t>(bytes + kPrefix, length - kPrefix)) return Arrived{*probe, at};
+    if (const auto probe = decode<clock_probe_t>(bytes + kPrefix, length - kPrefix)) return Received{*probe, at};
     ++bad_;
   }
 }

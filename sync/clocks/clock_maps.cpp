@@ -10,8 +10,8 @@ Nanoseconds scaled(Nanoseconds d, double factor) {
   return Nanoseconds(std::llround(static_cast<double>(d.count()) * factor));
 }
 // Received times may have any value. Those of a map are range-checked on reception, other times here.
-constexpr std::int64_t kLatest = std::int64_t{1} << 60;
-bool representable(HostTime t) { return to_ns(t) >= 0 && to_ns(t) <= kLatest; }
+constexpr std::int64_t kMaxTime_ns = std::int64_t{1} << 60;
+bool representable(HostTime t) { return to_ns(t) >= 0 && to_ns(t) <= kMaxTime_ns; }
 
 }  // namespace
 
@@ -27,13 +27,13 @@ Nanoseconds ClockLine::uncertainty_at(Nanoseconds since) const {
   return uncertainty_ + scaled(since < Nanoseconds(0) ? -since : since, uncertainty_drift_) + Nanoseconds(2);
 }
 
-ClockReading ClockLine::from_of(HostTime of) const {
+ClockReading ClockLine::of_to_target(HostTime of) const {
   // of = to + offset + drift * (to - at), solved for to - at: the difference is small, so a double is precise enough.
   const Nanoseconds since = scaled(of - at_ - offset_, 1 / (1 + drift_));
   return {at_ + since, uncertainty_at(since)};
 }
 
-ClockReading ClockLine::to_of(HostTime to) const {
+ClockReading ClockLine::target_to_of(HostTime to) const {
   const Nanoseconds since = to - at_;
   return {to + offset_ + scaled(since, drift_), uncertainty_at(since)};
 }
@@ -52,7 +52,7 @@ void ClockMaps::observe(const clock_map_t& m, HostTime arrival) {
   }
   const header_t& before = it->second.map.header;
   const bool same = before.incarnation == m.header.incarnation && before.source == m.header.source;
-  if (same ? m.header.seq < before.seq : arrival - it->second.arrival < kSilence) return;
+  if (same ? m.header.seq < before.seq : arrival - it->second.arrival < kTimeout) return;
   it->second = {m, arrival};
 }
 
@@ -61,10 +61,10 @@ std::optional<ClockReading> ClockMaps::read(HostTime time, std::int32_t of_clock
   if (of_clock == on_clock) return ClockReading{time, Nanoseconds(0)};
   std::optional<ClockReading> out;
   if (const auto it = known_.find({of_clock, on_clock}); it != known_.end())
-    out = ClockLine(it->second.map).from_of(time);
+    out = ClockLine(it->second.map).of_to_target(time);
   else if (const auto back = known_.find({on_clock, of_clock}); back != known_.end())
-    out = ClockLine(back->second.map).to_of(time);
-  if (out && out->uncertainty > kMaxUncertain) out.reset();
+    out = ClockLine(back->second.map).target_to_of(time);
+  if (out && out->uncertainty > kMaxUncertainty) out.reset();
   return out;
 }
 

@@ -23,11 +23,11 @@ StreamItem item_of(const contact_event_t& e, std::int64_t incarnation, HostTime 
 }  // namespace
 
 // Returns true once for each event: the profile decides on it now.
-bool DegradedEvents::decides(std::int64_t id) {
+bool DegradedEvents::decide_once(std::int64_t id) {
   return !std::exchange(memory_.try_emplace(id).first.decided, true);
 }
 
-void DegradedEvents::push(const contact_events_t& m, HostTime arrival, OperatorChain& stack, Decisions* decisions) {
+void DegradedEvents::push(const contact_events_t& m, HostTime arrival, OperatorChain& operators, Decisions* decisions) {
   const bool replaced = m.header.incarnation != newest_.header.incarnation ||
                         m.header.publish_time_ns < newest_.header.publish_time_ns - 1'000'000'000;
   if (replaced)
@@ -39,31 +39,31 @@ void DegradedEvents::push(const contact_events_t& m, HostTime arrival, OperatorC
     newest_.clock = m.clock;
     newest_.pages = 1;
   }
-  if (stack.empty()) {
-    for (const contact_event_t& e : m.events) decides(e.event_id);
+  if (operators.empty()) {
+    for (const contact_event_t& e : m.events) decide_once(e.event_id);
     return waiting_.push(arrival, m, arrival);
   }
-  if (stack.lost_on_wire(wire_key(m), sim_time(m.header.sim_time_ns))) return;
+  if (operators.lost_on_wire(wire_key(m), sim_time(m.header.sim_time_ns))) return;
   waiting_.push(arrival, newest_, arrival);
-  for (const contact_event_t& heard : m.events) {
-    if (!decides(heard.event_id)) continue;
-    const Decision v = stack.decide(item_of(heard, m.header.incarnation, arrival));
-    const bool later = stack.presentation_delay(sim_time(heard.time_ns)) > Nanoseconds(0);
-    if (decisions && (v.touched || later))
+  for (const contact_event_t& received : m.events) {
+    if (!decide_once(received.event_id)) continue;
+    const Decision decision = operators.decide(item_of(received, m.header.incarnation, arrival));
+    const bool is_delayed = operators.presentation_delay(sim_time(received.time_ns)) > Nanoseconds(0);
+    if (decisions && (decision.evaluated || is_delayed))
       decisions->push_back(
-          {static_cast<std::uint64_t>(heard.event_id), true, sim_time(heard.time_ns), v, arrival});
-    if (v.dropped()) {
-      if (dropped_.size() < kMaxDropped) dropped_.push_back(heard);
+          {static_cast<std::uint64_t>(received.event_id), true, sim_time(received.time_ns), decision, arrival});
+    if (decision.dropped()) {
+      if (dropped_.size() < kMaxDropped) dropped_.push_back(received);
       continue;
     }
-    contact_events_t late = newest_;
-    late.events.push_back(heard);
-    late.count = 1;
-    contact_event_t& e = late.events.front();
-    if (stack.changes_values()) change_values(e, stack);
-    e.time_ns += v.shift.count();
-    if (v.twice) waiting_.push(v.release, late, arrival);
-    waiting_.push(v.release, std::move(late), arrival);
+    contact_events_t delayed = newest_;
+    delayed.events.push_back(received);
+    delayed.count = 1;
+    contact_event_t& e = delayed.events.front();
+    if (operators.changes_values()) change_values(e, operators);
+    e.time_ns += decision.shift.count();
+    if (decision.duplicated) waiting_.push(decision.release, delayed, arrival);
+    waiting_.push(decision.release, std::move(delayed), arrival);
   }
 }
 

@@ -35,10 +35,10 @@ class Words {
     while (in >> word) {
       const std::size_t equals = word.find('=');
       const std::string name = word.substr(0, equals);
-      const bool twice = equals == std::string::npos
+      const bool duplicated = equals == std::string::npos
                              ? std::find(words_.begin(), words_.end(), word) != words_.end()
                              : !pairs_.try_emplace(name, word.substr(equals + 1)).second;
-      if (twice)
+      if (duplicated)
         throw std::invalid_argument("\"" + (equals == std::string::npos ? name : name + "=") +
                                     "\" stands there twice; leave one away");
       if (equals == std::string::npos) words_.push_back(word);

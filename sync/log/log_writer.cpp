@@ -72,10 +72,10 @@ void LogWriter::write(std::int64_t timestamp_us, std::string_view channel, std::
 }
 
 void LogWriter::flush() {
-  trouble_.clear();
+  error_.clear();
   while (!blocks_.empty()) {
-    trouble_ = sink_->append(blocks_.front());
-    if (!trouble_.empty()) return;
+    error_ = sink_->append(blocks_.front());
+    if (!error_.empty()) return;
     waiting_bytes_ -= blocks_.front().size();
     blocks_.pop_front();
   }

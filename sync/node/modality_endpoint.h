@@ -60,7 +60,7 @@ class ModalityEndpoint {
     explicit Stream(Queue<Message>& inbox) : inbox_(inbox) {}
     Queue<Message>& inbox_;
     std::conditional_t<std::is_same_v<Message, contact_events_t>, DegradedEvents, DegradedSnapshots<Message>> degraded_;
-    bool waits_ = false;
+    bool delayed_ = false;
     HostTime now_{};
   };
 
@@ -69,7 +69,7 @@ class ModalityEndpoint {
   // Observes the modality of another process: the same streams, with the decisions of the same profile and the playout delay
   // of that process. Publishes nothing. An observer, such as the simulated player, so receives exactly the input of that
   // modality's renderer.
-  ModalityEndpoint(Node& node, NodeDescriptor of);
+  ModalityEndpoint(Node& node, NodeDescriptor observed);
   ~ModalityEndpoint();
 
   // Create streams before the first step.
@@ -80,9 +80,9 @@ class ModalityEndpoint {
   }
   // For a modality without a movable instant of presentation (a servo loop): its input messages are delayed instead.
   template <class Message>
-  Stream<Message>& held_snapshots(const char* channel, std::size_t capacity) {
+  Stream<Message>& delayed_snapshots(const char* channel, std::size_t capacity) {
     auto& stream = add<Message>(channel, capacity);
-    stream.waits_ = true;
+    stream.delayed_ = true;
     return stream;
   }
 
@@ -113,21 +113,21 @@ class ModalityEndpoint {
 
   void report(const presentation_t& report);
   // Sets a function that receives every report. Needed when a log is rendered: nothing reads the reports from the bus then.
-  void tell(std::function<void(const presentation_t&)> of_report) { tell_ = std::move(of_report); }
+  void set_report_listener(std::function<void(const presentation_t&)> listener) { report_listener_ = std::move(listener); }
   // Publishes reports, and the decisions of the profile.
   void publish(HostTime now);
 
  private:
   struct AnyStream {
     virtual ~AnyStream() = default;
-    virtual void step(ModalityEndpoint& sense, HostTime now, HostTime lets) = 0;
+    virtual void step(ModalityEndpoint& endpoint, HostTime now, HostTime state_time) = 0;
     virtual void change_profile() = 0;
     virtual HostTime newest_arrival() const = 0;
   };
   template <class Message>
   struct StreamSlot : AnyStream {
     explicit StreamSlot(Queue<Message>& inbox) : stream(inbox) {}
-    void step(ModalityEndpoint& sense, HostTime now, HostTime lets) override;
+    void step(ModalityEndpoint& endpoint, HostTime now, HostTime state_time) override;
     // Each event has its own decision, so a new profile needs no reset here.
     void change_profile() override {
       if constexpr (!std::is_same_v<Message, contact_events_t>) stream.degraded_.change_profile();
@@ -137,34 +137,34 @@ class ModalityEndpoint {
   };
   template <class Message>
   Stream<Message>& add(const char* channel, std::size_t capacity) {
-    auto held = std::make_unique<StreamSlot<Message>>(node_.bus().queue<Message>(channel, capacity));
-    auto& stream = held->stream;
+    auto slot = std::make_unique<StreamSlot<Message>>(node_.bus().queue<Message>(channel, capacity));
+    auto& stream = slot->stream;
     if constexpr (std::is_same_v<Message, contact_events_t>)
       if (!events_) events_ = &stream.degraded_;
-    streams_.push_back(std::move(held));
+    streams_.push_back(std::move(slot));
     return stream;
   }
 
   // Logs the delay of events that have arrived and are not presented yet, when a delay of a profile begins: it applies to
   // them, too.
   void log_in_flight_delays(HostTime now, SimTime sim_now);
-  void take_control(HostTime now);
-  void put_in_force(const ProfileInForce& profile);
+  void read_control_messages(HostTime now);
+  void apply_profile(const ProfileInForce& profile);
   // The first arrival of an event from the bus; nullopt: it has not arrived, or has been forgotten.
   std::optional<HostTime> arrival_of(std::int64_t event_id) const;
   void report_dropped(const std::vector<contact_event_t>& dropped);
-  bool owes(const contact_event_t& event) const;
+  bool expects(const contact_event_t& event) const;
   void publish_decisions();
 
   Node& node_;
   NodeDescriptor descriptor_;
-  bool listens_in_ = false;
+  bool observes_ = false;
   Queue<degradation_t>& degradations_;
   Queue<playout_t>& playouts_;
   ProfileReceiver receiver_;
   std::int64_t profile_hash_ = 0;
   std::string profile_name_;
-  OperatorChain stack_;
+  OperatorChain operators_;
   SceneNames names_;
   int tool_ = -1;
   Decisions decisions_;
@@ -176,27 +176,27 @@ class ModalityEndpoint {
   Nanoseconds delay_{0}, serial_delay_{0}, profile_delay_{0}, output_latency_{0};
   OutputValues output_;
   PresentationReporter reporter_;
-  std::function<void(const presentation_t&)> tell_;
+  std::function<void(const presentation_t&)> report_listener_;
   const DegradedEvents* events_ = nullptr;  // of the first stream of events; null: there is none
 };
 
 template <class Message>
-void ModalityEndpoint::StreamSlot<Message>::step(ModalityEndpoint& sense, HostTime now, HostTime lets) {
+void ModalityEndpoint::StreamSlot<Message>::step(ModalityEndpoint& endpoint, HostTime now, HostTime state_time) {
   // A tick that is held up while it reads also accepts the messages that arrive meanwhile.
-  HostTime heard = now;
+  HostTime newest_arrival = now;
   while (auto m = stream.inbox_.pop()) {
-    heard = std::max(heard, m->arrival);
-    if constexpr (requires { m->message.clock; }) sense.simulation_.follow(m->message.header, m->message.clock, m->arrival);
+    newest_arrival = std::max(newest_arrival, m->arrival);
+    if constexpr (requires { m->message.clock; }) endpoint.simulation_.track(m->message.header, m->message.clock, m->arrival);
     if constexpr (std::is_same_v<Message, contact_events_t>) {
-      stream.degraded_.push(m->message, m->arrival, sense.stack_, &sense.decisions_);
+      stream.degraded_.push(m->message, m->arrival, endpoint.operators_, &endpoint.decisions_);
     } else {
-      stream.degraded_.push(std::move(m->message), m->arrival, sense.stack_, &sense.decisions_);
+      stream.degraded_.push(std::move(m->message), m->arrival, endpoint.operators_, &endpoint.decisions_);
     }
   }
-  if constexpr (std::is_same_v<Message, contact_events_t>) sense.report_dropped(stream.degraded_.take_dropped());
+  if constexpr (std::is_same_v<Message, contact_events_t>) endpoint.report_dropped(stream.degraded_.take_dropped());
   // In lock-step the state of the world is the state at the start of the iteration; each event carries its own due time.
   const bool is_state = !std::is_same_v<Message, contact_events_t>;
-  stream.now_ = (is_state && lets != now ? lets : heard) - (stream.waits_ ? sense.profile_delay_ : Nanoseconds(0));
+  stream.now_ = (is_state && state_time != now ? state_time : newest_arrival) - (stream.delayed_ ? endpoint.profile_delay_ : Nanoseconds(0));
 }
 
 }  // namespace tactus::sync

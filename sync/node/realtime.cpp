@@ -56,7 +56,7 @@ bool OverrunGuard::tick(HostTime begin, HostTime end) {
   const Nanoseconds span = end - window_begin_;
   if (span < kWindow) return false;
   const bool too_busy = to_seconds(busy_) > kMaxBusy * to_seconds(span);
-  calm_ = too_busy ? Nanoseconds(0) : calm_ + span;
+  time_below_limit_ = too_busy ? Nanoseconds(0) : time_below_limit_ + span;
   window_begin_ = end;
   busy_ = Nanoseconds(0);
   return too_busy;

@@ -17,7 +17,7 @@ Nanoseconds quantile(std::vector<Nanoseconds>& values, double q) {
 
 }  // namespace
 
-AlignerResult through_aligner(const std::vector<TraceEvent>& trace, AlignerKind kind, Nanoseconds fixed,
+AlignerResult simulate_aligner(const std::vector<TraceEvent>& trace, AlignerKind kind, Nanoseconds fixed,
                               std::size_t learn) {
   std::map<std::string, std::unique_ptr<Aligner>> aligners;
   AlignerResult result;

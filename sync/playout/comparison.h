@@ -25,7 +25,7 @@ struct AlignerResult {
 
 // Every modality has its own aligner, and all wait for the slowest. fixed: the delay of kFixed. learn: number of leading
 // events that are not counted.
-AlignerResult through_aligner(const std::vector<TraceEvent>& trace, AlignerKind kind, Nanoseconds fixed,
+AlignerResult simulate_aligner(const std::vector<TraceEvent>& trace, AlignerKind kind, Nanoseconds fixed,
                               std::size_t learn = 32);
 
 }  // namespace tactus::sync

@@ -21,8 +21,8 @@ Loss::Loss(const LossDef& def) : share_(def.share) {
 
 bool Loss::lose(double u) {
   // Starts in the stationary distribution of the states, so that the share holds from the first item.
-  const double p = !begun_ ? share_ : bad_ ? stay_bad_ : to_bad_;
-  begun_ = true;
+  const double p = !started_ ? share_ : bad_ ? stay_bad_ : to_bad_;
+  started_ = true;
   return bad_ = u < p;
 }
 

@@ -64,9 +64,9 @@ ContactIntegral ContactStream::integral(SimTime t0, SimTime t1, int tool, int to
   Parts parts;
 
   const auto add = [&](const contact_t& c, SimTime begin, SimTime end) {
-    const Life* life = lives_.find(c.contact_id);
-    if (life && life->begin) begin = std::max(begin, sim_time(life->begin->time_ns));
-    if (life && life->end) end = std::min(end, *life->end);
+    const ContactInterval* interval = intervals_.find(c.contact_id);
+    if (interval && interval->begin) begin = std::max(begin, sim_time(interval->begin->time_ns));
+    if (interval && interval->end) end = std::min(end, *interval->end);
     begin = std::max(begin, t0);
     end = std::min(end, t1);
     if (c.tool != tool || end <= begin) return;
@@ -96,24 +96,24 @@ ContactIntegral ContactStream::integral(SimTime t0, SimTime t1, int tool, int to
     for (const contact_t& c : group[i + 1].contacts) {
       const auto& now = group[i].contacts;
       const bool was_there = std::any_of(now.begin(), now.end(), [&](const contact_t& x) { return x.contact_id == c.contact_id; });
-      const Life* life = lives_.find(c.contact_id);
-      if (!was_there && life && life->begin) add(c, group[i].time, group[i + 1].time);
+      const ContactInterval* interval = intervals_.find(c.contact_id);
+      if (!was_there && interval && interval->begin) add(c, group[i].time, group[i + 1].time);
     }
   }
 
   // Contacts that began and ended between two snapshots are known from their events alone. Their force follows from the
   // momentum that a plastic impact exchanges, m v, spread over the tick; their area is not known.
-  for (const auto& [id, life] : lives_) {
-    if (!life.begin || !life.end || life.begin->tool != tool || sums.contains(id)) continue;
-    const SimTime begin = std::max(t0, sim_time(life.begin->time_ns)), end = std::min(t1, *life.end);
+  for (const auto& [id, interval] : intervals_) {
+    if (!interval.begin || !interval.end || interval.begin->tool != tool || sums.contains(id)) continue;
+    const SimTime begin = std::max(t0, sim_time(interval.begin->time_ns)), end = std::min(t1, *interval.end);
     if (end <= begin) continue;
-    const bool began_here = sim_time(life.begin->time_ns) >= t0;
-    const double force_N = began_here ? life.begin->effective_mass_kg * life.begin->approach_speed_m_s / length_s : 0;
+    const bool began_in_tick = sim_time(interval.begin->time_ns) >= t0;
+    const double force_N = began_in_tick ? interval.begin->effective_mass_kg * interval.begin->approach_speed_m_s / length_s : 0;
     result.force_N += force_N;
     touching.push_back({begin, end});
     Sum& sum = sums[id];
     sum.time = end - begin;
-    std::tie(sum.body, sum.material) = other_side(*life.begin, tool_body);
+    std::tie(sum.body, sum.material) = other_side(*interval.begin, tool_body);
     PartSum& part = parts[{sum.body, sum.material}];
     part.force_N += force_N;
     part.touching.push_back({begin, end});

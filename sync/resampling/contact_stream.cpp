@@ -35,33 +35,33 @@ Contacts::const_iterator find(const Contacts& list, std::int64_t id) {
 }  // namespace
 
 ContactStream::ContactStream(OwnClock own)
-    : follower_(own), partial_{Pages(kPartial, PageOrder::kKey), Pages(kPartial, PageOrder::kKey), Pages(kPartial, PageOrder::kKey)} {}
+    : clock_tracker_(own), partial_{Pages(kPartial, PageOrder::kKey), Pages(kPartial, PageOrder::kKey), Pages(kPartial, PageOrder::kKey)} {}
 
 bool ContactStream::accept(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
-  const std::int64_t before = follower_.incarnation();
-  const TrackResult verdict = follower_.follow(header, clock, arrival);
-  if (verdict == TrackResult::kIgnore) return false;
-  if (verdict == TrackResult::kRestart) {
+  const std::int64_t before = clock_tracker_.incarnation();
+  const TrackResult result = clock_tracker_.track(header, clock, arrival);
+  if (result == TrackResult::kIgnore) return false;
+  if (result == TrackResult::kRestart) {
     if (before != 0) ++restarts_;
     pending_.clear();
     received_.clear();
-    lives_.clear();
+    intervals_.clear();
     for (auto& group : partial_) group.clear();
     for (auto& group : snapshots_) group.clear();
-    for (auto& kept : contacts_kept_) kept = 0;
+    for (auto& kept : contact_counts_) kept = 0;
   }
-  forget_after(follower_.latest_credible());
+  discard_after(clock_tracker_.latest_plausible());
   return true;
 }
 
 // Removes content after `latest`: it may have been accepted only because its corrupt message was the first one.
-void ContactStream::forget_after(SimTime latest) {
+void ContactStream::discard_after(SimTime latest) {
   pending_.erase(pending_.upper_bound(latest), pending_.end());
   for (std::size_t group = 0; group < kGroups; ++group) {
     partial_[group].drop_if([&](SimTime t) { return t > latest; });
     auto& snapshots = snapshots_[group];
     while (!snapshots.empty() && snapshots.back().time > latest) {
-      contacts_kept_[group] -= snapshots.back().contacts.size();
+      contact_counts_[group] -= snapshots.back().contacts.size();
       snapshots.pop_back();
     }
   }
@@ -69,7 +69,7 @@ void ContactStream::forget_after(SimTime latest) {
 
 void ContactStream::push(const contact_events_t& m, HostTime arrival) {
   if (!accept(m.header, m.clock, arrival)) return;
-  const SimTime latest = follower_.latest_credible();
+  const SimTime latest = clock_tracker_.latest_plausible();
   for (const contact_event_t& event : m.events) {
     if (sim_time(event.time_ns) > latest) {
       ++refused_;
@@ -79,7 +79,7 @@ void ContactStream::push(const contact_events_t& m, HostTime arrival) {
       ++duplicates_;
       continue;
     }
-    note_event(event);
+    record_event(event);
     pending_.emplace(sim_time(event.time_ns), event);
     if (pending_.size() > kMaxPendingEvents) {
       pending_.erase(std::prev(pending_.end()));
@@ -88,17 +88,17 @@ void ContactStream::push(const contact_events_t& m, HostTime arrival) {
   }
 }
 
-void ContactStream::note_event(const contact_event_t& event) {
-  Life& life = lives_.try_emplace(event.contact_id).first;
-  if (event.kind == contact_event_t::BEGIN) life.begin = event;
-  if (event.kind == contact_event_t::END) life.end = sim_time(event.time_ns);
+void ContactStream::record_event(const contact_event_t& event) {
+  ContactInterval& interval = intervals_.try_emplace(event.contact_id).first;
+  if (event.kind == contact_event_t::BEGIN) interval.begin = event;
+  if (event.kind == contact_event_t::END) interval.end = sim_time(event.time_ns);
 }
 
 void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
   if (!accept(m.header, m.clock, arrival)) return;
   const auto group = static_cast<std::size_t>(m.group);
   const SimTime time = sim_time(m.header.sim_time_ns);
-  if (time > follower_.latest_credible() || m.pages > kMaxPages || group >= kGroups) {
+  if (time > clock_tracker_.latest_plausible() || m.pages > kMaxPages || group >= kGroups) {
     ++refused_;
     return;
   }
@@ -122,12 +122,12 @@ void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
 // Inserts a snapshot in order of time. An overtaken snapshot is inserted, too: later snapshots do not make it useless.
 void ContactStream::insert(std::size_t group, Snapshot snapshot) {
   auto& snapshots = snapshots_[group];
-  contacts_kept_[group] += snapshot.contacts.size();
+  contact_counts_[group] += snapshot.contacts.size();
   const auto newer = [&](const Snapshot& s) { return s.time > snapshot.time; };
   snapshots.insert(std::find_if_not(snapshots.rbegin(), snapshots.rend(), newer).base(), std::move(snapshot));
   const auto too_old = [&] { return snapshots.size() > kSnapshots && snapshots.back().time - snapshots.front().time > span_; };
-  while (too_old() || (contacts_kept_[group] > kMaxContacts && snapshots.size() > 1)) {
-    contacts_kept_[group] -= snapshots.front().contacts.size();
+  while (too_old() || (contact_counts_[group] > kMaxContacts && snapshots.size() > 1)) {
+    contact_counts_[group] -= snapshots.front().contacts.size();
     snapshots.pop_front();
   }
 }
@@ -140,10 +140,10 @@ std::vector<contact_event_t> ContactStream::take_events(SimTime until) {
   return due;
 }
 
-bool ContactStream::alive(std::int64_t contact_id, SimTime t) const {
-  const Life* life = lives_.find(contact_id);
-  if (!life) return true;  // joined late: its begin was not received
-  return (!life->begin || sim_time(life->begin->time_ns) <= t) && (!life->end || *life->end > t);
+bool ContactStream::active(std::int64_t contact_id, SimTime t) const {
+  const ContactInterval* interval = intervals_.find(contact_id);
+  if (!interval) return true;  // joined late: its begin was not received
+  return (!interval->begin || sim_time(interval->begin->time_ns) <= t) && (!interval->end || *interval->end > t);
 }
 
 SampleStatus ContactStream::status(const std::deque<Snapshot>& group, SimTime t) const {
@@ -155,11 +155,11 @@ SampleStatus ContactStream::status(const std::deque<Snapshot>& group, SimTime t)
 }
 
 // True for a contact that is predicted only: neither the snapshot before nor a begin event contains it. It may never happen.
-bool ContactStream::foreseen_only(std::size_t group, std::deque<Snapshot>::const_iterator told, std::int64_t id) const {
+bool ContactStream::predicted_only(std::size_t group, std::deque<Snapshot>::const_iterator snapshot, std::int64_t id) const {
   if (group != contact_frame_t::AHEAD) return false;
-  const Life* life = lives_.find(id);
-  if (life && life->begin) return false;
-  return told == snapshots_[group].begin() || find(std::prev(told)->contacts, id) == std::prev(told)->contacts.end();
+  const ContactInterval* interval = intervals_.find(id);
+  if (interval && interval->begin) return false;
+  return snapshot == snapshots_[group].begin() || find(std::prev(snapshot)->contacts, id) == std::prev(snapshot)->contacts.end();
 }
 
 void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Candidate>& out) const {
@@ -170,7 +170,7 @@ void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Cand
   const auto before = std::prev(after);
   for (std::size_t i = 0; i < before->contacts.size(); ++i) {
     const contact_t& c = before->contacts[i];
-    if (!alive(c.contact_id, t) || foreseen_only(number, before, c.contact_id)) continue;
+    if (!active(c.contact_id, t) || predicted_only(number, before, c.contact_id)) continue;
     out.push_back({c, before->seqs[i], true});
     if (after == group.end()) continue;
     const auto next = find(after->contacts, c.contact_id);
@@ -182,16 +182,16 @@ void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Cand
   // existed at t.
   for (std::size_t i = 0; i < after->contacts.size(); ++i) {
     const contact_t& c = after->contacts[i];
-    const Life* life = lives_.find(c.contact_id);
-    const bool begun = life && life->begin && sim_time(life->begin->time_ns) <= t;
-    if (begun && alive(c.contact_id, t) && find(before->contacts, c.contact_id) == before->contacts.end())
+    const ContactInterval* interval = intervals_.find(c.contact_id);
+    const bool begun = interval && interval->begin && sim_time(interval->begin->time_ns) <= t;
+    if (begun && active(c.contact_id, t) && find(before->contacts, c.contact_id) == before->contacts.end())
       out.push_back({c, after->seqs[i], false});
   }
 }
 
 // Removes duplicates of a contact that moved between the groups of bodies: a snapshot at or before t takes precedence over a
 // later one, then the page that was published last.
-void ContactStream::keep_last_told(std::vector<Candidate>& list) {
+void ContactStream::keep_last_published(std::vector<Candidate>& list) {
   const auto better = [](const Candidate& a, const Candidate& b) { return std::pair(a.present, a.seq) > std::pair(b.present, b.seq); };
   std::map<std::int64_t, std::size_t> at;
   std::size_t kept = 0;
@@ -212,7 +212,7 @@ Sample<Contacts> ContactStream::state_at(SimTime t) const {
     state.status = std::max(state.status, status(snapshots_[group], t));
     append_state(group, t, found);
   }
-  keep_last_told(found);
+  keep_last_published(found);
   for (Candidate& c : found) state.value.push_back(std::move(c.contact));
   return state;
 }

@@ -64,12 +64,12 @@ class ContactStream {
   explicit ContactStream(OwnClock own);
 
   // Stores this time beyond kSpan, for a modality that presents with this delay.
-  void keep(Nanoseconds delay) { span_ = kSpan + delay; }
+  void extend_history(Nanoseconds delay) { span_ = kSpan + delay; }
   void push(const contact_events_t&, HostTime arrival);
   void push(const contact_frame_t&, HostTime arrival);
 
   // Map between simulated time and this host's clock, from the newest message. nullopt before the first.
-  std::optional<TimeMap> map(HostTime now) const { return follower_.map(now); }
+  std::optional<TimeMap> map(HostTime now) const { return clock_tracker_.map(now); }
 
   // Events before `until` that were not returned before, in order of time. Each event is returned once within an incarnation,
   // regardless of repetitions and replays. A late event is returned at the next call.
@@ -104,16 +104,16 @@ class ContactStream {
     Contacts contacts;
     std::int64_t seq = 0;
   };
-  struct Life {  // of a contact, from its events
+  struct ContactInterval {  // of a contact, from its events
     std::optional<contact_event_t> begin;
     std::optional<SimTime> end;
   };
 
   bool accept(const header_t& header, const sim_clock_t& clock, HostTime arrival);
-  void forget_after(SimTime latest);
+  void discard_after(SimTime latest);
   void insert(std::size_t group, Snapshot snapshot);
-  void note_event(const contact_event_t& event);
-  bool alive(std::int64_t contact_id, SimTime t) const;
+  void record_event(const contact_event_t& event);
+  bool active(std::int64_t contact_id, SimTime t) const;
   SampleStatus status(const std::deque<Snapshot>& group, SimTime t) const;
   struct Candidate {  // for the state at an instant
     contact_t contact;
@@ -121,10 +121,10 @@ class ContactStream {
     bool present = false;  // in a snapshot at or before that instant; else only in a later one
   };
   void append_state(std::size_t group, SimTime t, std::vector<Candidate>& out) const;
-  bool foreseen_only(std::size_t group, std::deque<Snapshot>::const_iterator told, std::int64_t id) const;
-  static void keep_last_told(std::vector<Candidate>& list);
+  bool predicted_only(std::size_t group, std::deque<Snapshot>::const_iterator snapshot, std::int64_t id) const;
+  static void keep_last_published(std::vector<Candidate>& list);
 
-  SimClockTracker follower_;
+  SimClockTracker clock_tracker_;
   std::int64_t restarts_ = 0;
   std::int64_t duplicates_ = 0;
   std::int64_t refused_ = 0;
@@ -135,12 +135,12 @@ class ContactStream {
   static constexpr std::size_t kRemembered = 8192;
   struct Received {};
   RecentMap<std::int64_t, Received> received_{kRemembered};  // by event id
-  RecentMap<std::int64_t, Life> lives_{kRemembered};         // by contact id
+  RecentMap<std::int64_t, ContactInterval> intervals_{kRemembered};         // by contact id
 
   using Pages = PageAssembler<Page, SimTime>;
   std::array<Pages, kGroups> partial_;
   std::deque<Snapshot> snapshots_[kGroups];  // in order of time
-  std::size_t contacts_kept_[kGroups] = {};
+  std::size_t contact_counts_[kGroups] = {};
   Nanoseconds span_ = kSpan;
 };
 

@@ -117,7 +117,7 @@ int main(int argc, char** argv) try {
               "async p95/ms", "added/ms", "delay/ms", "late/%", "ns/event");
   for (const auto kind : {sync::AlignerKind::kFixed, sync::AlignerKind::kQuantile,
                           sync::AlignerKind::kMovingAverage, sync::AlignerKind::kVirtualTime}) {
-    const sync::AlignerResult r = sync::through_aligner(trace, kind, fixed_delay);
+    const sync::AlignerResult r = sync::simulate_aligner(trace, kind, fixed_delay);
     const double cost = cost_ns(trace, kind, fixed_delay);
     std::printf("%-14s %12.2f %12.2f %10.2f %10.2f %8.2f %10.0f\n", name_of(kind), to_ms(r.asynchrony_p50),
                 to_ms(r.asynchrony_p95), to_ms(r.added_mean), to_ms(r.delay_last), 100 * r.late_share, cost);

@@ -22,7 +22,7 @@ using namespace tactus;
 namespace {
 
 constexpr sync::Nanoseconds kListen{500'000'000};      // health comes every 100 ms, the clock of the simulation every ms
-constexpr sync::Nanoseconds kPatience{2'000'000'000};  // health comes every 100 ms
+constexpr sync::Nanoseconds kTimeout{2'000'000'000};  // health comes every 100 ms
 constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
 
 std::int64_t realtime_ns() {
@@ -79,7 +79,7 @@ int main(int argc, char** argv) try {
   if (map) profile.start = std::max(sync::SimTime{}, map->to_sim(sync::host_now()));
 
   const sync::HostTime sent = sync::host_now();
-  for (sync::HostTime next = sent; sync::host_now() < sent + kPatience;) {
+  for (sync::HostTime next = sent; sync::host_now() < sent + kTimeout;) {
     if (sync::host_now() >= next) {
       sync::send_profile(bus, profile);
       next += kRepeat;

@@ -110,7 +110,7 @@ class Export {
       if (t >= wishes_.since_s && t <= wishes_.until_s) add(event, at, context, tags);
     }
     if (seen >= 100'000 && isatty(STDERR_FILENO)) std::cerr << "\r\033[K";
-    untold_ += tags.untold();
+    unlisted_ += tags.unlisted();
     damaged_ += events.scanner().damaged_regions();
     damaged_bytes_ += events.scanner().damaged_bytes();
   }
@@ -131,7 +131,7 @@ class Export {
     };
     count(foreign_, "messages of types that are not ours were left out");
     count(broken_, "messages were no whole message of their type and were left out");
-    count(untold_, "tagged values were left out: no list in the log says what they are");
+    count(unlisted_, "tagged values were left out: no list in the log says what they are");
     if (damaged_ > 0) std::cout << damaged_ << " damaged places, " << damaged_bytes_ << " bytes in all, were skipped\n";
     std::ofstream schema(wishes_.out + "/schema.json");
     schema << json{{"made_by", "Tactus export_log"}, {"logs", wishes_.logs}, {"files", files}, {"columns", columns()}, {"foreign_messages", foreign_}, {"broken_messages", broken_}, {"damaged_regions", damaged_}, {"damaged_bytes", damaged_bytes_}}.dump(1) << "\n";
@@ -190,7 +190,7 @@ class Export {
   std::regex wanted_;
   std::map<std::string, Channel> channels_;
   std::unique_ptr<Table> tags_;
-  std::int64_t foreign_ = 0, broken_ = 0, untold_ = 0, damaged_ = 0, damaged_bytes_ = 0;
+  std::int64_t foreign_ = 0, broken_ = 0, unlisted_ = 0, damaged_ = 0, damaged_bytes_ = 0;
 };
 
 }  // namespace

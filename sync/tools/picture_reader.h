@@ -35,7 +35,7 @@ class PictureReader {
 
  private:
   struct Partial {
-    std::int64_t incarnation = 0, picture = -1, heard = 0;
+    std::int64_t incarnation = 0, picture = -1, last_message = 0;
     // By incarnation and number of the picture.
     PageAssembler<std::vector<std::uint8_t>, std::pair<std::int64_t, std::int64_t>> chunks{
         {.groups = 1, .pages = kMaxChunks, .remembered = 1}};

@@ -71,7 +71,7 @@ class Socket {
       const std::int64_t left = (until - now).count();
       const timespec timeout{left / 1'000'000'000, left % 1'000'000'000};
       if (ppoll(&p, 1, &timeout, nullptr) <= 0) continue;
-      std::uint8_t bytes[sync::PairDatagram::kLongest + 1];
+      std::uint8_t bytes[sync::PairDatagram::kMaxBytes + 1];
       alignas(cmsghdr) char control[64];
       iovec data{bytes, sizeof bytes};
       msghdr message{};
@@ -132,15 +132,15 @@ int main(int argc, char** argv) try {
     }
     const auto other = others.find(m.from);
     if (other == others.end()) return;  // this host
-    if (m.kind == sync::PairDatagram::kAnswer) {
-      if (m.to == host) other->second.hear_answer(m, at);
+    if (m.kind == sync::PairDatagram::kReply) {
+      if (m.to == host) other->second.on_reply(m, at);
       return;
     }
-    other->second.hear(m, ttl);
-    if (m.kind != sync::PairDatagram::kAsk) return;
-    sync::PairDatagram answer{run, sync::PairDatagram::kAnswer, m.number, host, m.from, m.asked_ns, sync::to_ns(at), 0};
-    answer.answered_ns = sync::to_ns(sync::host_now());
-    refused += !socket.send(answer, sync::PairDatagram::kShortest);
+    other->second.on_message(m, ttl);
+    if (m.kind != sync::PairDatagram::kRequest) return;
+    sync::PairDatagram answer{run, sync::PairDatagram::kReply, m.number, host, m.from, m.sent_ns, sync::to_ns(at), 0};
+    answer.replied_ns = sync::to_ns(sync::host_now());
+    refused += !socket.send(answer, sync::PairDatagram::kMinBytes);
   };
   socket.listen(sync::host_now() + kLead, take);
   const sync::HostTime begin = sync::host_now(), end = begin + sync::from_seconds(seconds);
@@ -150,26 +150,26 @@ int main(int argc, char** argv) try {
   std::uint64_t asked = 0, burst = 0;
   for (sync::HostTime next = begin; next < end; next += kPeriod) {
     socket.listen(next, take);
-    sync::PairDatagram m{run, sync::PairDatagram::kAsk, asked, host, "", 0, 0, 0};
-    m.asked_ns = sync::to_ns(sync::host_now());
-    refused += !socket.send(m, asked % 2 == 0 ? sync::PairDatagram::kShortest : sync::PairDatagram::kLongest);
+    sync::PairDatagram m{run, sync::PairDatagram::kRequest, asked, host, "", 0, 0, 0};
+    m.sent_ns = sync::to_ns(sync::host_now());
+    refused += !socket.send(m, asked % 2 == 0 ? sync::PairDatagram::kMinBytes : sync::PairDatagram::kMaxBytes);
     ++asked;
     if (static_cast<int>(burst / kBurst) < kBursts &&
         sync::host_now() - begin > sync::from_seconds(seconds * (static_cast<double>(burst / kBurst) + share) / (kBursts + 1)))
       for (std::uint64_t i = 0; i < kBurst; ++i, ++burst)
-        refused += !socket.send({run, sync::PairDatagram::kBurst, burst, host, "", 0, 0, 0}, sync::PairDatagram::kLongest);
+        refused += !socket.send({run, sync::PairDatagram::kBurst, burst, host, "", 0, 0, 0}, sync::PairDatagram::kMaxBytes);
   }
   for (int i = 0; i < kEnds; ++i) {
-    socket.send({run, sync::PairDatagram::kEnd, asked, host, "", 0, 0, 0}, sync::PairDatagram::kShortest);
+    socket.send({run, sync::PairDatagram::kEnd, asked, host, "", 0, 0, 0}, sync::PairDatagram::kMinBytes);
     socket.listen(sync::host_now() + kPeriod * 5, take);
   }
 
   nlohmann::json said{{"host", host}, {"asked", asked}, {"burst", burst}, {"refused", refused}, {"strangers", strangers},
                       {"ttl", bus.ttl}, {"buffer_bytes", socket.buffer_bytes()}, {"others", nlohmann::json::object()}};
   for (const auto& [name, r] : others) {
-    nlohmann::json& o = said["others"][name] = {{"heard", r.heard()}, {"answered", r.answered()}, {"lost", r.lost()},
-                                                {"of_bursts", r.of_bursts()}, {"ttl", r.ttl()}};
-    if (r.answered())
+    nlohmann::json& o = said["others"][name] = {{"heard", r.received()}, {"answered", r.replied()}, {"lost", r.lost()},
+                                                {"of_bursts", r.burst_datagrams()}, {"ttl", r.ttl()}};
+    if (r.replied())
       o.update({{"round_trip_us", {{"least", us(r.round_trip(0))}, {"p50", us(r.round_trip(0.5))}, {"p99", us(r.round_trip(0.99))}}},
                 {"offset_us", us(r.offset())}, {"uncertainty_us", us(r.uncertainty())}});
   }

@@ -21,7 +21,7 @@ using namespace tactus;
 namespace {
 
 constexpr std::uintmax_t kMaxRulesBytes = 1 << 20;
-constexpr sync::Nanoseconds kNotePeriod{500'000'000};
+constexpr sync::Nanoseconds kStatusPeriod{500'000'000};
 
 std::string read_rules(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -76,19 +76,19 @@ int main(int argc, char** argv) try {
   node.tags().add("in", "1", [&] { return static_cast<double>(relay.counts().in); }, 1);
   node.tags().add("out", "1", [&] { return static_cast<double>(relay.counts().out); }, 1);
 
-  sync::HostTime next_note{};
+  sync::HostTime next_status{};
   while (node.running()) {
     const sync::HostTime now = node.wait();
     line.read(relay.sites(), [&](std::size_t site, const sync::LineMessage& m) {
-      if (relay.hear_line(site, m, now)) (m.bulk ? bulk : realtime).send(m.message.channel, m.message.data);
+      if (relay.on_line_message(site, m, now)) (m.bulk ? bulk : realtime).send(m.message.channel, m.message.data);
     });
-    reader.read(sync::Bus::kMaxDrain, [&](std::size_t side, const sync::ChannelBytes& m) { relay.hear_bus(m, side == 1, now); });
+    reader.read(sync::Bus::kMaxDrain, [&](std::size_t side, const sync::ChannelBytes& m) { relay.on_bus_message(m, side == 1, now); });
     relay.flush(now, [&](const sync::LineEnd& site, std::span<const std::uint8_t> datagram) { return line.send(site, datagram); });
-    if (now < next_note) continue;
-    next_note = now + kNotePeriod;
+    if (now < next_status) continue;
+    next_status = now + kStatusPeriod;
     bool silent = false;
     for (std::size_t i = 0; i < relay.sites().size(); ++i) silent |= relay.silent(i, now);
-    node.set_state(silent ? node_health_t::INPUT_LOST : node_health_t::RUNNING, relay.note(now));
+    node.set_state(silent ? node_health_t::INPUT_LOST : node_health_t::RUNNING, relay.status_text(now));
   }
   return 0;
 } catch (const std::exception& e) {

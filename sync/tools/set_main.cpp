@@ -14,7 +14,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr sync::Nanoseconds kPatience{3'000'000'000};  // every node handles requests once a tick
+constexpr sync::Nanoseconds kTimeout{3'000'000'000};  // every node handles requests once a tick
 
 setting_change_t change_of(const std::string& node, const std::string& text) {
   const std::size_t equals = text.find('=');
@@ -51,7 +51,7 @@ int main(int argc, char** argv) try {
   sync::Bus bus(sync::Identity::fresh("set", run_id), bus_options);
   auto& replies = bus.queue<setting_reply_t>(channels::kSettingReply, 64);
   for (setting_change_t& change : changes) {
-    const auto reply = sync::request(bus, channels::kSetting, change, replies, kPatience);
+    const auto reply = sync::request(bus, channels::kSetting, change, replies, kTimeout);
     if (!reply)
       throw std::runtime_error(
           "no \"" + sync::printable(node) +

@@ -14,7 +14,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr sync::Nanoseconds kPatience{
+constexpr sync::Nanoseconds kTimeout{
     3'000'000'000};                                // an answer comes with the next step; a file may take a while
 constexpr std::size_t kMaxValues = 6;
 
@@ -104,7 +104,7 @@ int main(int argc, char** argv) try {
 
   sync::Bus bus(sync::Identity::fresh("simulation", run_id), bus_options);
   auto& replies = bus.queue<sim_reply_t>(channels::kSimReply, 256);
-  const auto reply = sync::request(bus, channels::kSimCommand, command, replies, kPatience);
+  const auto reply = sync::request(bus, channels::kSimCommand, command, replies, kTimeout);
   if (!reply)
     throw std::runtime_error("no sim_node answers on this bus; run it inside the cluster: tactus simulation");
   if (!reply->done) throw std::runtime_error(sync::printable(reply->text));

@@ -31,7 +31,7 @@ using nlohmann::json;
 namespace {
 
 constexpr sync::Nanoseconds kDrawEvery{250'000'000};
-constexpr sync::Nanoseconds kAskEvery{1'000'000'000};
+constexpr sync::Nanoseconds kRequestPeriod{1'000'000'000};
 std::atomic<bool> stop{false};
 
 // Restores the terminal on any exit except SIGKILL.
@@ -53,10 +53,10 @@ class Terminal {
   Terminal& operator=(const Terminal&) = delete;
 
   // The typed bytes; waits at most this time.
-  static std::string typed(sync::Nanoseconds at_most) {
+  static std::string typed(sync::Nanoseconds max_wait) {
     pollfd fd{STDIN_FILENO, POLLIN, 0};
     char bytes[256];
-    if (poll(&fd, 1, static_cast<int>(at_most.count() / 1'000'000)) <= 0) return "";
+    if (poll(&fd, 1, static_cast<int>(max_wait.count() / 1'000'000)) <= 0) return "";
     const ssize_t n = read(STDIN_FILENO, bytes, sizeof bytes);
     if (n == 0) stop = true;  // the terminal is gone
     return n > 0 ? std::string(bytes, static_cast<std::size_t>(n)) : "";
@@ -106,7 +106,7 @@ int main(int argc, char** argv) try {
   for (int s : {SIGINT, SIGTERM, SIGHUP}) signal(s, [](int) { stop = true; });
 
   sync::Bus bus(sync::Identity::fresh("spy", run_id), bus_options);
-  bus.follow_clocks();
+  bus.track_clocks();
   if (once_s == 0 && (isatty(STDIN_FILENO) != 1 || isatty(STDOUT_FILENO) != 1))
     throw std::runtime_error("this is no terminal; give --once SECONDS for a table");
   auto& lists = bus.queue<tag_list_t>(channels::kTagList, 256);
@@ -136,7 +136,7 @@ int main(int argc, char** argv) try {
     if (!screen.paused())
       for (std::size_t i = 0; i < batch.size(); ++i) heard.push(batch[i]);
     if (screen.shows_tags() && now >= ask) {
-      ask = now + kAskEvery;
+      ask = now + kRequestPeriod;
       tag_request_t request{};
       request.header.sim_time_ns = -1;
       request.patterns = {"*"}, request.pattern_count = 1;
@@ -144,7 +144,7 @@ int main(int argc, char** argv) try {
     }
     if (terminal && now >= draw) {
       draw = now + kDrawEvery;
-      if (!screen.paused()) screen.look(heard, now);
+      if (!screen.paused()) screen.sample(heard, now);
       const auto [columns, rows] = terminal_size();
       const auto lines = screen.draw(heard, now, columns, rows);
       terminal->show(lines, screen.marked());

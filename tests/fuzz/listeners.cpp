@@ -63,7 +63,7 @@ struct Listeners {
     as<contact_events_t>(e, channels::kContactEvents, [&](const auto& m) { contacts.push(m, now); });
     as<contact_frame_t>(e, channels::kContacts, [&](const auto& m) { contacts.push(m, now); });
     as<picture_chunk_t>(e, channels::kPictureChunk, [&](const auto& m) { pictures.take(m); });
-    bus.hear(e.channel, e.data, now);
+    bus.on_message(e.channel, e.data, now);
     scene.poll(now);
     if (const auto map = contacts.map(now)) {
       contacts.take_events(map->to_sim(now));

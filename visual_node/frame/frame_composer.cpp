@@ -38,7 +38,7 @@ const char* word(const Frame& frame) {
 
 }  // namespace
 
-FrameComposer::FrameComposer(sync::OwnClock own, const Settings& settings, sync::Late late)
+FrameComposer::FrameComposer(sync::OwnClock own, const Settings& settings, sync::LateRule late)
     : settings_(settings), contacts_(own), bodies_(own), head_(own), flashes_(settings), ledger_(settings, late) {}
 
 const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes, const Settings& settings,
@@ -80,7 +80,7 @@ void FrameComposer::draw(Frame& frame, sync::HostTime now, sync::Nanoseconds del
                          sync::HostTime newest_arrival) {
   tick_ = now;
   frame.samples = newest_samples(now);
-  bodies_.keep(delay);
+  bodies_.extend_history(delay);
   frame.instant = instant;
   if (instant) frame.status = bodies_.status(*instant);
   assess_state(frame, now, newest_arrival);

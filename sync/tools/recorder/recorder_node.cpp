@@ -96,7 +96,7 @@ int tactus::sync::run_recorder(int argc, char** argv) try {
   if (limits.splits() && limits.max_bytes > 0 && limits.split_bytes * 2 > limits.max_bytes)
     throw std::runtime_error("--max-mb must be at least twice --split-mb, so that one file is whole while the next is written");
 
-  tag_request_t wanted = request_for(patterns);
+  tag_request_t tag_request = request_for(patterns);
   sync::Node node(descriptor, options);
   sync::RecorderTap tap(options.bus);
   sync::SceneReceiver scene(node.bus());
@@ -116,19 +116,19 @@ int tactus::sync::run_recorder(int argc, char** argv) try {
     recorder.push(batch);
     if (scene.poll(now)) recorder.begin(assets_of(scene), now);
     recorder.poll(now);
-    if (wanted.pattern_count > 0 && now >= next_request) {
-      node.bus().publish(channels::kTagRequest, wanted);
+    if (tag_request.pattern_count > 0 && now >= next_request) {
+      node.bus().publish(channels::kTagRequest, tag_request);
       next_request = now + kRequestPeriod;
     }
-    const bool trouble = recorder.failing() || recorder.lost() > 0 || recorder.beyond() > 0 || tap.overflow() > 0;
-    node.set_state(trouble ? node_health_t::OUTPUT_LOST : node_health_t::RUNNING,
-                   recorder.note(tap.overflow(), tap.oversized()));
+    const bool failing = recorder.failing() || recorder.lost() > 0 || recorder.beyond() > 0 || tap.overflow() > 0;
+    node.set_state(failing ? node_health_t::OUTPUT_LOST : node_health_t::RUNNING,
+                   recorder.status_text(tap.overflow(), tap.oversized()));
   }
   tap.stop();
   tap.take(batch);
   recorder.push(batch);
   recorder.finish(sync::host_now());
-  std::cerr << "recorder: " << path << ": " << recorder.note(tap.overflow(), tap.oversized()) << std::endl;
+  std::cerr << "recorder: " << path << ": " << recorder.status_text(tap.overflow(), tap.oversized()) << std::endl;
   if (recorder.failing()) throw std::runtime_error(path + " is incomplete; make room on its disk");
   return 0;
 } catch (const std::exception& e) {

@@ -32,10 +32,10 @@ std::string_view next_word(std::string_view& line) {
 double speed_of(std::string_view word) {
   if (word == "max") return 0;
   const auto value = number(word);
-  return value && *value >= Replay::kSlowest && *value <= Replay::kFastest ? *value : -1;
+  return value && *value >= Replay::kMinSpeed && *value <= Replay::kMaxSpeed ? *value : -1;
 }
 
-std::string obey(Replay& replay, std::string_view line, HostTime now, bool& quit) {
+std::string execute_command(Replay& replay, std::string_view line, HostTime now, bool& quit) {
   const std::string whole = printable(std::string(line));
   const std::string_view word = next_word(line), argument = next_word(line), rest = next_word(line);
   const auto wrong = [&](const char* remedy) { return "cannot obey '" + whole + "': " + remedy; };

@@ -100,10 +100,10 @@ void Screen::press(Key key) {
     marked_name_.clear();
   };
   switch (key) {
-    case Key::kUp: --wish_; break;
-    case Key::kDown: ++wish_; break;
-    case Key::kPageUp: wish_ -= 20; break;
-    case Key::kPageDown: wish_ += 20; break;
+    case Key::kUp: --pending_move_; break;
+    case Key::kDown: ++pending_move_; break;
+    case Key::kPageUp: pending_move_ -= 20; break;
+    case Key::kPageDown: pending_move_ += 20; break;
     case Key::kEnter:
       if (page_ == Page::kChannels && !marked_name_.empty()) {
         channel_ = channel_before_ = marked_name_;
@@ -135,17 +135,17 @@ void Screen::push(const tag_values_t& m, HostTime arrival) {
   });
 }
 
-void Screen::look(const Channels& channels, HostTime now) {
+void Screen::sample(const Channels& channels, HostTime now) {
   if (page_ != Page::kFields || marked_name_.empty()) return;
-  if (followed_ != channel_ + " " + marked_name_) {
-    followed_ = channel_ + " " + marked_name_;
-    course_ = Spark(kColumn);
+  if (graphed_path_ != channel_ + " " + marked_name_) {
+    graphed_path_ = channel_ + " " + marked_name_;
+    graph_ = Spark(kColumn);
   }
   const auto bytes = channels.newest(channel_);
   const MessageType* type = type_of(bytes);
   if (!type) return;
   try {
-    if (const auto value = FieldPath(*type, marked_name_).number(bytes)) course_.add(*value, now);
+    if (const auto value = FieldPath(*type, marked_name_).number(bytes)) graph_.add(*value, now);
   } catch (const std::invalid_argument&) {
     // The newest message is of another type than the one whose fields were shown.
   }
@@ -186,7 +186,7 @@ std::vector<Screen::Row> Screen::field_rows(const Channels& channels, HostTime n
     rows.push_back({path, cut(line, columns)});
     if (path != marked_name_ || std::holds_alternative<std::string>(value)) return;
     const std::size_t room = columns > 60 ? columns - 60 : 10;
-    const Spark::Drawn course = course_.draw(now, std::min(room, Spark::kMax));
+    const Spark::Drawn course = graph_.draw(now, std::min(room, Spark::kMax));
     rows.push_back({path + " ", "    " + course.text + format("  %.4g .. %.4g", course.lowest, course.highest)});
   });
   return rows;
@@ -207,11 +207,11 @@ void Screen::move(const std::vector<Row>& rows, std::size_t visible) {
   if (at != rows.end() && !marked_name_.empty()) cursor_ = static_cast<std::size_t>(at - rows.begin());
   const auto last = static_cast<std::int64_t>(rows.size()) - 1;
   cursor_ = static_cast<std::size_t>(
-      std::clamp<std::int64_t>(static_cast<std::int64_t>(cursor_) + wish_, 0, std::max<std::int64_t>(0, last)));
+      std::clamp<std::int64_t>(static_cast<std::int64_t>(cursor_) + pending_move_, 0, std::max<std::int64_t>(0, last)));
   // The cursor skips the graph below a field.
-  if (wish_ > 0 && cursor_ < rows.size() && rows[cursor_].name.ends_with(' ') && cursor_ + 1 < rows.size())
+  if (pending_move_ > 0 && cursor_ < rows.size() && rows[cursor_].name.ends_with(' ') && cursor_ + 1 < rows.size())
     ++cursor_;
-  wish_ = 0;
+  pending_move_ = 0;
   if (cursor_ < rows.size()) marked_name_ = rows[cursor_].name;
   if (marked_name_.ends_with(' ')) marked_name_.pop_back();
   top_ = std::clamp(top_, cursor_ + 1 > visible ? cursor_ + 1 - visible : 0, cursor_);

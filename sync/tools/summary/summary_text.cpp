@@ -55,7 +55,7 @@ std::string contacts(const PresentationMatcher& m) {
   for (const auto& [name, t] : m.modalities())
     out +=
         line("%-14s %9lld %9lld %10lld %7lld %7lld %7lld %10lld %12lld", name.c_str(),
-             static_cast<long long>(t.owed), static_cast<long long>(t.presented), static_cast<long long>(t.late),
+             static_cast<long long>(t.expected), static_cast<long long>(t.presented), static_cast<long long>(t.late),
              static_cast<long long>(t.lost), static_cast<long long>(t.stalled), static_cast<long long>(t.dead),
              static_cast<long long>(t.dropped_by_profile), static_cast<long long>(t.dropped_late));
   return out;
@@ -71,7 +71,7 @@ std::string asynchrony(const PresentationMatcher& m) {
   std::string out = line("%-22s %7s %8s %8s %8s %8s  %s", "asynchrony/ms", "n", "p05", "p50", "p95", "+-",
                          "beyond thresholds: least, all");
   for (const auto& [names, soa] : m.pairs()) {
-    const Beyond beyond = beyond_thresholds(names.first, names.second, soa);
+    const BeyondThresholds beyond = count_beyond_thresholds(names.first, names.second, soa);
     const auto count = [](std::int64_t n) { return n < 0 ? std::string("-") : std::to_string(n); };
     out += line("%-22s %7lld %8.2f %8.2f %8.2f %8.3f  %24s, %3s", (names.first + " to " + names.second).c_str(),
                 static_cast<long long>(soa.count()), ms(soa.quantile(0.05)), ms(soa.quantile(0.5)),

@@ -68,8 +68,8 @@ TEST_CASE("What is not of LCM is nothing") {
   CHECK(nothing(bytes_of("LC02" + kNumber)));
   CHECK(nothing(bytes_of("LC02" + kNumber + "NO_END")));
   CHECK(nothing(short_message("", "no channel")));
-  CHECK(nothing(short_message(std::string(kLongestChannel + 1, 'C'), "")));
-  CHECK_FALSE(nothing(short_message(std::string(kLongestChannel, 'C'), "")));
+  CHECK(nothing(short_message(std::string(kMaxChannelBytes + 1, 'C'), "")));
+  CHECK_FALSE(nothing(short_message(std::string(kMaxChannelBytes, 'C'), "")));
   CHECK(nothing(bytes_of("LC04" + kNumber + std::string("A\0", 2))));
 }
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 using namespace tactus;
-using sync::Arrival;
+using sync::SequenceStatus;
 using sync::SequenceTracker;
 
 namespace {
@@ -27,9 +27,9 @@ header_t message(std::int64_t seq, std::int64_t publish_ms, std::int64_t incarna
 
 TEST_CASE("What is missing in the numbering is counted") {
   SequenceTracker t;
-  CHECK(t.observe(message(10, 0)) == Arrival::kNewIncarnation);  // joined late: no gap
-  CHECK(t.observe(message(11, 1)) == Arrival::kNew);
-  CHECK(t.observe(message(15, 5)) == Arrival::kNew);
+  CHECK(t.observe(message(10, 0)) == SequenceStatus::kNewIncarnation);  // joined late: no gap
+  CHECK(t.observe(message(11, 1)) == SequenceStatus::kNew);
+  CHECK(t.observe(message(15, 5)) == SequenceStatus::kNew);
   CHECK(t.gaps() == 3);
   CHECK(t.messages() == 3);
 }
@@ -39,12 +39,12 @@ TEST_CASE("A late message closes the gap that it left, a repeated one does not")
   t.observe(message(0, 0));
   t.observe(message(3, 3));
   REQUIRE(t.gaps() == 2);
-  CHECK(t.observe(message(1, 1)) == Arrival::kOld);
+  CHECK(t.observe(message(1, 1)) == SequenceStatus::kOld);
   CHECK(t.gaps() == 1);
   SECTION("repeated") {
-    CHECK(t.observe(message(1, 1)) == Arrival::kOld);
-    CHECK(t.observe(message(0, 0)) == Arrival::kOld);
-    CHECK(t.observe(message(3, 3)) == Arrival::kOld);
+    CHECK(t.observe(message(1, 1)) == SequenceStatus::kOld);
+    CHECK(t.observe(message(0, 0)) == SequenceStatus::kOld);
+    CHECK(t.observe(message(3, 3)) == SequenceStatus::kOld);
     CHECK(t.gaps() == 1);
   }
 }
@@ -52,17 +52,17 @@ TEST_CASE("A late message closes the gap that it left, a repeated one does not")
 TEST_CASE("A restart is no gap") {
   SequenceTracker t;
   t.observe(message(1000, 0, 7));
-  CHECK(t.observe(message(0, 1, 8)) == Arrival::kNewIncarnation);
-  CHECK(t.observe(message(1, 2, 8)) == Arrival::kNew);
+  CHECK(t.observe(message(0, 1, 8)) == SequenceStatus::kNewIncarnation);
+  CHECK(t.observe(message(1, 2, 8)) == SequenceStatus::kNew);
   CHECK(t.gaps() == 0);
 }
 
 TEST_CASE("A clock that falls back by more than a second within an incarnation is a new epoch") {
   SequenceTracker t;
   t.observe(message(500, 60'000));
-  CHECK(t.observe(message(499, 59'500)) == Arrival::kOld);
-  CHECK(t.observe(message(3, 100)) == Arrival::kNewEpoch);
-  CHECK(t.observe(message(4, 101)) == Arrival::kNew);
+  CHECK(t.observe(message(499, 59'500)) == SequenceStatus::kOld);
+  CHECK(t.observe(message(3, 100)) == SequenceStatus::kNewEpoch);
+  CHECK(t.observe(message(4, 101)) == SequenceStatus::kNew);
   CHECK(t.gaps() == 0);
 }
 
@@ -70,22 +70,22 @@ TEST_CASE("One message with a number far ahead silences nobody") {
   SequenceTracker t;
   t.observe(message(10, 10));
   SECTION("beyond the longest loss its followers are heard at once") {
-    CHECK(t.observe(message(std::numeric_limits<std::int64_t>::max(), 11)) == Arrival::kNewEpoch);
-    CHECK(t.observe(message(11, 11)) == Arrival::kNewEpoch);
-    CHECK(t.observe(message(12, 12)) == Arrival::kNew);
+    CHECK(t.observe(message(std::numeric_limits<std::int64_t>::max(), 11)) == SequenceStatus::kNewEpoch);
+    CHECK(t.observe(message(11, 11)) == SequenceStatus::kNewEpoch);
+    CHECK(t.observe(message(12, 12)) == SequenceStatus::kNew);
     CHECK(t.gaps() == 0);
   }
   SECTION("nearer they are heard when three of them contradict it") {
-    CHECK(t.observe(message(1'000'000, 11)) == Arrival::kNew);
-    CHECK(t.observe(message(11, 12)) == Arrival::kOld);
-    CHECK(t.observe(message(12, 13)) == Arrival::kOld);
-    CHECK(t.observe(message(13, 14)) == Arrival::kNewEpoch);
-    CHECK(t.observe(message(14, 15)) == Arrival::kNew);
+    CHECK(t.observe(message(1'000'000, 11)) == SequenceStatus::kNew);
+    CHECK(t.observe(message(11, 12)) == SequenceStatus::kOld);
+    CHECK(t.observe(message(12, 13)) == SequenceStatus::kOld);
+    CHECK(t.observe(message(13, 14)) == SequenceStatus::kNewEpoch);
+    CHECK(t.observe(message(14, 15)) == SequenceStatus::kNew);
   }
   SECTION("stamped ahead as well, within a second") {
-    CHECK(t.observe(message(1'000'000, 910)) == Arrival::kNew);
+    CHECK(t.observe(message(1'000'000, 910)) == SequenceStatus::kNew);
     int old = 0;
-    for (int i = 1; i < 1100; ++i) old += t.observe(message(10 + i, 10 + i)) == Arrival::kOld;
+    for (int i = 1; i < 1100; ++i) old += t.observe(message(10 + i, 10 + i)) == SequenceStatus::kOld;
     CHECK(old <= 903);
   }
 }
@@ -93,8 +93,8 @@ TEST_CASE("One message with a number far ahead silences nobody") {
 TEST_CASE("A burst that the network repeats is old, however long it is") {
   SequenceTracker t;
   for (int i = 0; i < 500; ++i) t.observe(message(i, i));
-  for (int i = 0; i < 500; ++i) REQUIRE(t.observe(message(i, i)) == Arrival::kOld);
-  CHECK(t.observe(message(500, 500)) == Arrival::kNew);
+  for (int i = 0; i < 500; ++i) REQUIRE(t.observe(message(i, i)) == SequenceStatus::kOld);
+  CHECK(t.observe(message(500, 500)) == SequenceStatus::kNew);
 }
 
 TEST_CASE("Of too many senders the one not heard for longest is forgotten, and counted") {
@@ -105,8 +105,8 @@ TEST_CASE("Of too many senders the one not heard for longest is forgotten, and c
     if (source == 200) t.observe(message(2, 2, 7, -1));
   }
   CHECK(t.forgotten() == 45);
-  CHECK(t.observe(message(3, 3, 7, -1)) == Arrival::kNew);
-  CHECK(t.observe(message(2, 2, 7, 0)) == Arrival::kNewIncarnation);
+  CHECK(t.observe(message(3, 3, 7, -1)) == SequenceStatus::kNew);
+  CHECK(t.observe(message(2, 2, 7, 0)) == SequenceStatus::kNewIncarnation);
 }
 
 TEST_CASE("Sources on one channel are numbered apart") {

@@ -7,7 +7,7 @@
 using namespace tactus::sync;
 
 TEST_CASE("What is handed over arrives in order, and what finds no room is refused") {
-  HandOver<int, 4> queue;
+  SpscQueue<int, 4> queue;
   CHECK_FALSE(queue.pop());
   for (int round = 0; round < 10; ++round) {
     for (int i = 0; i < 3; ++i) CHECK(queue.push(3 * round + i));
@@ -19,7 +19,7 @@ TEST_CASE("What is handed over arrives in order, and what finds no room is refus
 
 TEST_CASE("One thread hands over to another without loss") {
   constexpr int kItems = 20000;
-  HandOver<int, 16> queue;
+  SpscQueue<int, 16> queue;
   std::thread producer([&] {
     for (int i = 0; i < kItems;)
       if (queue.push(i)) ++i;

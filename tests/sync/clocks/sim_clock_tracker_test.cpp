@@ -23,20 +23,20 @@ header_t header(std::int64_t incarnation, std::int64_t publish_ns, std::int64_t 
 TEST_CASE("The first simulation heard is followed, a new one replaces it, the old one is ignored") {
   SimClockTracker f(1);
   CHECK_FALSE(f.map(host_time(0)));
-  CHECK(f.follow(header(1, 0), {0, 0, 1}, host_time(0)) == TrackResult::kRestart);
-  CHECK(f.follow(header(1, kMs), {kMs, kMs, 1}, host_time(kMs)) == TrackResult::kSame);
-  CHECK(f.follow(header(2, 2 * kMs), {0, 2 * kMs, 1}, host_time(2 * kMs)) == TrackResult::kRestart);
-  CHECK(f.follow(header(1, 3 * kMs), {2 * kMs, 3 * kMs, 1}, host_time(3 * kMs)) == TrackResult::kIgnore);
+  CHECK(f.track(header(1, 0), {0, 0, 1}, host_time(0)) == TrackResult::kRestart);
+  CHECK(f.track(header(1, kMs), {kMs, kMs, 1}, host_time(kMs)) == TrackResult::kSame);
+  CHECK(f.track(header(2, 2 * kMs), {0, 2 * kMs, 1}, host_time(2 * kMs)) == TrackResult::kRestart);
+  CHECK(f.track(header(1, 3 * kMs), {2 * kMs, 3 * kMs, 1}, host_time(3 * kMs)) == TrackResult::kIgnore);
   SECTION("until its successor has been silent for 0.3 s") {
-    CHECK(f.follow(header(1, 400 * kMs), {0, 400 * kMs, 1}, host_time(400 * kMs)) == TrackResult::kRestart);
+    CHECK(f.track(header(1, 400 * kMs), {0, 400 * kMs, 1}, host_time(400 * kMs)) == TrackResult::kRestart);
     CHECK(f.incarnation() == 1);
   }
 }
 
 TEST_CASE("A message that was overtaken does not turn the map back") {
   SimClockTracker f(1);
-  f.follow(header(1, 10 * kMs), {5 * kMs, 10 * kMs, 1}, host_time(10 * kMs));
-  f.follow(header(1, 9 * kMs), {4 * kMs, 9 * kMs, 0.5}, host_time(11 * kMs));
+  f.track(header(1, 10 * kMs), {5 * kMs, 10 * kMs, 1}, host_time(10 * kMs));
+  f.track(header(1, 9 * kMs), {4 * kMs, 9 * kMs, 0.5}, host_time(11 * kMs));
   CHECK(f.map(host_time(11 * kMs))->sim == sim_time(5 * kMs));
   CHECK(f.map(host_time(11 * kMs))->rate == 1);
 }
@@ -44,7 +44,7 @@ TEST_CASE("A message that was overtaken does not turn the map back") {
 TEST_CASE("A forged clock moves nobody's time") {
   SimClockTracker f(1);
   const auto hear = [&](std::int64_t ms, sim_clock_t clock) {
-    return f.follow(header(1, ms * kMs), clock, host_time(ms * kMs));
+    return f.track(header(1, ms * kMs), clock, host_time(ms * kMs));
   };
   const auto honest = [](std::int64_t ms, double rate = 1) { return sim_clock_t{ms * kMs, ms * kMs, rate}; };
   for (int ms = 5000; ms < 5100; ++ms) REQUIRE(hear(ms, honest(ms)) != TrackResult::kIgnore);
@@ -70,8 +70,8 @@ TEST_CASE("A forged clock moves nobody's time") {
   }
   SECTION("and a lie that was there first is found out within 0.3 s") {
     SimClockTracker late(1);
-    late.follow(header(1, 0), {3'600'000 * kMs, 0, 1}, host_time(0));
-    for (int ms = 1; ms <= 301; ++ms) late.follow(header(1, ms * kMs), honest(ms), host_time(ms * kMs));
+    late.track(header(1, 0), {3'600'000 * kMs, 0, 1}, host_time(0));
+    for (int ms = 1; ms <= 301; ++ms) late.track(header(1, ms * kMs), honest(ms), host_time(ms * kMs));
     CHECK(late.map(host_time(301 * kMs))->to_sim(host_time(301 * kMs)) == sim_time(301 * kMs));
   }
 }

@@ -98,17 +98,17 @@ TEST_CASE("A page of a profile that never becomes whole holds up no other") {
 
 TEST_CASE("The profile in force is kept for the one that comes back, of the same run and undamaged") {
   const Folder folder;
-  CHECK_FALSE(kept_profile(folder.path, 4));
+  CHECK_FALSE(load_profile(folder.path, 4));
   const std::string text = profile(3);
   const ProfileInForce p{text, fnv1a_64(text.data(), text.size()), 12, sim_time(34), {}};
-  keep_profile(folder.path, p, 4);
-  const auto kept = kept_profile(folder.path, 4);
+  store_profile(folder.path, p, 4);
+  const auto kept = load_profile(folder.path, 4);
   REQUIRE(kept);
   CHECK(kept->text == text);
   CHECK(kept->hash == p.hash);
   CHECK(kept->generation == 12);
   CHECK(kept->start == sim_time(34));
-  CHECK_FALSE(kept_profile(folder.path, 5));
+  CHECK_FALSE(load_profile(folder.path, 5));
   std::ofstream(folder.path / "profile.in_force", std::ios::app) << " ";
-  CHECK_FALSE(kept_profile(folder.path, 4));
+  CHECK_FALSE(load_profile(folder.path, 4));
 }

@@ -97,7 +97,7 @@ TEST_CASE("A setting that cannot be changed is left alone after that") {
   maps.push(list("haptic_node"));
   maps.push(values(0, {4}));
   REQUIRE(maps.take(at_ms(0)).size() == 1);
-  maps.give_up("width");
+  maps.disable("width");
   CHECK_FALSE(maps.any());
 }
 

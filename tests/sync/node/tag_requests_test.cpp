@@ -46,37 +46,37 @@ TEST_CASE("A pattern of many stars is answered at once") {
 
 TEST_CASE("What is asked for holds for three seconds from the last time it was asked") {
   TagRequests requests(7);
-  CHECK(requests.take(request(1, {"sim_node.*"}), at_ms(0)));
-  CHECK_FALSE(requests.take(request(1, {"sim_node.*"}), at_ms(1000)));
+  CHECK(requests.push(request(1, {"sim_node.*"}), at_ms(0)));
+  CHECK_FALSE(requests.push(request(1, {"sim_node.*"}), at_ms(1000)));
   CHECK_FALSE(requests.expire(at_ms(4000)));
-  CHECK(requests.wants("sim_node.work"));
-  CHECK_FALSE(requests.wants("audio_node.work"));
+  CHECK(requests.is_requested("sim_node.work"));
+  CHECK_FALSE(requests.is_requested("audio_node.work"));
   CHECK(requests.expire(at_ms(4001)));
   CHECK_FALSE(requests.any());
-  CHECK_FALSE(requests.wants("sim_node.work"));
+  CHECK_FALSE(requests.is_requested("sim_node.work"));
 }
 
 TEST_CASE("Everybody gets what they ask for, until each is gone") {
   TagRequests requests(7);
-  requests.take(request(1, {"a.*"}), at_ms(0));
-  CHECK(requests.take(request(2, {"*.b"}), at_ms(2000)));
-  CHECK(requests.wants("a.c"));
-  CHECK(requests.wants("c.b"));
+  requests.push(request(1, {"a.*"}), at_ms(0));
+  CHECK(requests.push(request(2, {"*.b"}), at_ms(2000)));
+  CHECK(requests.is_requested("a.c"));
+  CHECK(requests.is_requested("c.b"));
   CHECK(requests.expire(at_ms(3500)));
-  CHECK_FALSE(requests.wants("a.c"));
-  CHECK(requests.wants("c.b"));
-  CHECK(requests.take(request(2, {"d"}), at_ms(3600)));
-  CHECK_FALSE(requests.wants("c.b"));
+  CHECK_FALSE(requests.is_requested("a.c"));
+  CHECK(requests.is_requested("c.b"));
+  CHECK(requests.push(request(2, {"d"}), at_ms(3600)));
+  CHECK_FALSE(requests.is_requested("c.b"));
 }
 
 TEST_CASE("A request of another run is not heeded, nor the sixty-fifth of one") {
   TagRequests requests(7);
-  CHECK_FALSE(requests.take(request(1, {"*"}, 8), at_ms(0)));
+  CHECK_FALSE(requests.push(request(1, {"*"}, 8), at_ms(0)));
   CHECK_FALSE(requests.any());
-  for (int i = 0; i < 64; ++i) CHECK(requests.take(request(100 + i, {"x"}), at_ms(0)));
-  CHECK_FALSE(requests.take(request(999, {"*"}), at_ms(1)));
-  CHECK_FALSE(requests.wants("y"));
+  for (int i = 0; i < 64; ++i) CHECK(requests.push(request(100 + i, {"x"}), at_ms(0)));
+  CHECK_FALSE(requests.push(request(999, {"*"}), at_ms(1)));
+  CHECK_FALSE(requests.is_requested("y"));
   requests.expire(at_ms(3500));
-  CHECK(requests.take(request(999, {"*"}), at_ms(3500)));
-  CHECK(requests.wants("y"));
+  CHECK(requests.push(request(999, {"*"}), at_ms(3500)));
+  CHECK(requests.is_requested("y"));
 }

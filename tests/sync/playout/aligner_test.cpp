@@ -86,6 +86,6 @@ TEST_CASE("One event that came very late moves the quantile by nothing") {
 
 TEST_CASE("Aligners are known by name, and no others") {
   for (const char* name : {"fixed", "quantile", "average", "virtual-time"})
-    CHECK(name_of(aligner_named(name)) == std::string(name));
-  CHECK_THROWS_AS(aligner_named("median"), std::invalid_argument);
+    CHECK(name_of(parse_aligner(name)) == std::string(name));
+  CHECK_THROWS_AS(parse_aligner("median"), std::invalid_argument);
 }

@@ -34,7 +34,7 @@ std::map<std::string, std::int64_t> delays_ms(const std::optional<playout_t>& m)
 }
 
 void heard(PlayoutCoordinator& c, const std::string& sense, int ms, int events = 40) {
-  for (int i = 0; i < events; ++i) c.needs().add(sense, ms * kMs);
+  for (int i = 0; i < events; ++i) c.latency_demand().add(sense, ms * kMs);
 }
 
 using Delays = std::map<std::string, std::int64_t>;
@@ -55,10 +55,10 @@ TEST_CASE("A coordinator says ten times a second when each sense presents") {
 
 TEST_CASE("Before anything was presented every sense keeps its own delay") {
   PlayoutCoordinator c(5, plan());
-  c.needs().know("audio");
+  c.latency_demand().add_modality("audio");
   CHECK(delays_ms(c.due(at(0))).empty());
   PlayoutCoordinator experiment(5, plan(Policy::kExperiment));
-  experiment.needs().know("audio");
+  experiment.latency_demand().add_modality("audio");
   CHECK(delays_ms(experiment.due(at(0))) == Delays{{"audio", 150}});
 }
 
@@ -67,7 +67,7 @@ TEST_CASE("A sense that stalls, is far too slow or is dead moves no other sense"
   heard(c, "audio", 18), heard(c, "thermal", 25), heard(c, "visual", 33);
   const auto before = delays_ms(c.due(at(0)));
   SECTION("after a stall of 2 s all that waited comes at once") {
-    for (int i = 0; i < 12; ++i) c.needs().add("visual", (2000 - 80 * i) * kMs);
+    for (int i = 0; i < 12; ++i) c.latency_demand().add("visual", (2000 - 80 * i) * kMs);
     heard(c, "visual", 33, 8);
     CHECK(delays_ms(c.due(at(200))) == before);
   }
@@ -141,14 +141,14 @@ TEST_CASE("A request is kept for a coordinator that comes back, and only for the
   std::filesystem::create_directories(folder);
   auto request = request_for(plan(Policy::kItouch2005), 77);
   request.header.run_id = 12, request.header.source = 1, request.header.incarnation = 1;
-  keep_request(folder, request);
-  REQUIRE(kept_request(folder, 12));
-  CHECK(kept_request(folder, 12)->policy == playout_t::ITOUCH2005);
-  CHECK_FALSE(kept_request(folder, 13));
+  store_request(folder, request);
+  REQUIRE(load_request(folder, 12));
+  CHECK(load_request(folder, 12)->policy == playout_t::ITOUCH2005);
+  CHECK_FALSE(load_request(folder, 13));
   std::ofstream(folder / "playout.request", std::ios::app) << "x";
-  CHECK_FALSE(kept_request(folder, 12));
+  CHECK_FALSE(load_request(folder, 12));
   std::filesystem::remove_all(folder);
-  CHECK_FALSE(kept_request(folder, 12));
+  CHECK_FALSE(load_request(folder, 12));
 }
 
 TEST_CASE("The turns of a lock-step are instants of the world, wherever the host clock stands") {
@@ -156,11 +156,11 @@ TEST_CASE("The turns of a lock-step are instants of the world, wherever the host
   const Lockstep loop{map, 12.5};
   for (int ms = -500; ms < 500; ms += 7) {
     const HostTime t = at(ms);
-    CHECK(loop.begin_of_turn(t) <= t);
-    CHECK(t - loop.begin_of_turn(t) < 80 * kMs);
-    CHECK(loop.next_turn(t) >= t);
-    CHECK(loop.next_turn(t) - t < 80 * kMs);
-    CHECK(map.to_sim(loop.next_turn(t)).time_since_epoch() % (80 * kMs) == Nanoseconds(0));
+    CHECK(loop.begin_of_iteration(t) <= t);
+    CHECK(t - loop.begin_of_iteration(t) < 80 * kMs);
+    CHECK(loop.next_iteration(t) >= t);
+    CHECK(loop.next_iteration(t) - t < 80 * kMs);
+    CHECK(map.to_sim(loop.next_iteration(t)).time_since_epoch() % (80 * kMs) == Nanoseconds(0));
   }
 }
 
@@ -175,7 +175,7 @@ TEST_CASE("However many senses there are, each finds its delay in a message that
   request.count = 1;
   REQUIRE(c.take(request));
   for (int i = 0; i < senses; ++i)
-    c.needs().know("z" + std::string(i < 10 ? "0" : "") + std::to_string(i) + std::string(60, 'z').substr(i == 7 ? 60 : 0));
+    c.latency_demand().add_modality("z" + std::string(i < 10 ? "0" : "") + std::to_string(i) + std::string(60, 'z').substr(i == 7 ? 60 : 0));
   const auto m = c.due(at(0));
   REQUIRE(m);
   Delays found;

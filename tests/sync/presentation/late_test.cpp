@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::int8_t kPresented = presentation_t::PRESENTED, kLateOutcome = presentation_t::LATE,
                       kDropped = presentation_t::DROPPED_LATE;
-LatePolicy of(Late rule) { return {rule, 10ms, 30ms}; }
+LatePolicy of(LateRule rule) { return {rule, 10ms, 30ms}; }
 
 }  // namespace
 
 TEST_CASE("Whatever the rule, what is early or within the tolerance is presented as it should be") {
-  const Late rule = GENERATE(Late::kPlayWithFade, Late::kDrop, Late::kShowNewest, Late::kAlwaysApply);
+  const LateRule rule = GENERATE(LateRule::kPlayWithFade, LateRule::kDrop, LateRule::kShowNewest, LateRule::kAlwaysApply);
   for (const Nanoseconds lateness : {Nanoseconds(-1h), Nanoseconds(0), Nanoseconds(10ms)}) {
     CHECK(of(rule).outcome(lateness) == kPresented);
     CHECK(of(rule).gain(lateness) == 1);
@@ -25,30 +25,30 @@ TEST_CASE("Whatever the rule, what is early or within the tolerance is presented
 }
 
 TEST_CASE("Between tolerance and limit all is presented and called late") {
-  const Late rule = GENERATE(Late::kPlayWithFade, Late::kDrop, Late::kShowNewest, Late::kAlwaysApply);
+  const LateRule rule = GENERATE(LateRule::kPlayWithFade, LateRule::kDrop, LateRule::kShowNewest, LateRule::kAlwaysApply);
   CHECK(of(rule).outcome(10ms + 1ns) == kLateOutcome);
   CHECK(of(rule).outcome(30ms) == kLateOutcome);
 }
 
 TEST_CASE("Beyond the limit all is dropped but what is always applied") {
-  for (const Late rule : {Late::kPlayWithFade, Late::kDrop, Late::kShowNewest}) {
+  for (const LateRule rule : {LateRule::kPlayWithFade, LateRule::kDrop, LateRule::kShowNewest}) {
     CHECK(of(rule).outcome(30ms + 1ns) == kDropped);
     CHECK(of(rule).outcome(1h) == kDropped);
   }
-  CHECK(of(Late::kAlwaysApply).outcome(1h) == kLateOutcome);
+  CHECK(of(LateRule::kAlwaysApply).outcome(1h) == kLateOutcome);
 }
 
 TEST_CASE("Only what plays with a fade is weaker when it is late, by a straight line to nothing at the limit") {
-  const LatePolicy fades = of(Late::kPlayWithFade);
+  const LatePolicy fades = of(LateRule::kPlayWithFade);
   CHECK(fades.gain(15ms) == Approx(0.75));
   CHECK(fades.gain(20ms) == Approx(0.5));
   CHECK(fades.gain(30ms) == 0);
   CHECK(fades.gain(1h) == 0);
-  for (const Late rule : {Late::kDrop, Late::kShowNewest, Late::kAlwaysApply}) CHECK(of(rule).gain(20ms) == 1);
+  for (const LateRule rule : {LateRule::kDrop, LateRule::kShowNewest, LateRule::kAlwaysApply}) CHECK(of(rule).gain(20ms) == 1);
 }
 
 TEST_CASE("A limit that is the tolerance leaves nothing between on time and dropped") {
-  const LatePolicy sharp{Late::kPlayWithFade, 10ms, 10ms};
+  const LatePolicy sharp{LateRule::kPlayWithFade, 10ms, 10ms};
   CHECK(sharp.outcome(10ms) == kPresented);
   CHECK(sharp.gain(10ms) == 1);
   CHECK(sharp.outcome(10ms + 1ns) == kDropped);

@@ -43,7 +43,7 @@ TEST_CASE(
       for (int ms = 0; ms <= 12000; ms += 100)
         f.health(n.name, n.modality, n.owes, ms);  // no loss: liveness is not under test here
 
-    std::map<std::string, DebtTally> expected;
+    std::map<std::string, OutcomeCounts> expected;
     std::int64_t hits = 0, begins = 0;
     for (int id = 0; id < 200; ++id) {
       const double time = 1000 + 40 * id + std::uniform_real_distribution<>(0, 40)(random);
@@ -75,7 +75,7 @@ TEST_CASE(
                             }});
         }
         if (!owed || !heard) continue;
-        DebtTally& t = expected[n.modality];
+        OutcomeCounts& t = expected[n.modality];
         ++t.owed;
         if (!reported)
           ++t.lost;
@@ -97,7 +97,7 @@ TEST_CASE(
     CHECK(f.matcher.hits() == hits);
     CHECK(f.matcher.begins() == begins);
     for (const auto& [modality, e] : expected) {
-      const DebtTally t = f.tally(modality);
+      const OutcomeCounts t = f.tally(modality);
       CAPTURE(seed, modality);
       CHECK(t.owed == e.owed);
       CHECK(t.presented == e.presented);
@@ -126,7 +126,7 @@ TEST_CASE("However nodes die and stall, owed is the sum of the outcomes and a re
         if (up && random() % 3 != 0) f.presented("audio_node", "audio", n, ms + 5), ++reported;
       }
       f.matcher.advance(f.at(ms));
-      const DebtTally t = f.tally("audio");
+      const OutcomeCounts t = f.tally("audio");
       REQUIRE(sum(t) == t.owed);
       REQUIRE(std::min({t.presented, t.lost, t.stalled, t.dead}) >= 0);
     }

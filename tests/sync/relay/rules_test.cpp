@@ -32,7 +32,7 @@ TEST_CASE("Rules of a relay say what passes, how sparse, and what goes first") {
   REQUIRE(rules.all().size() == 2);
   REQUIRE(rules.find("CONTACT_EVENTS"));
   CHECK(rules.find("CONTACT_EVENTS")->first);
-  CHECK_FALSE(rules.find("CONTACT_EVENTS")->thins());
+  CHECK_FALSE(rules.find("CONTACT_EVENTS")->decimates());
   const PassRule* tool = rules.find("TOOL_STATE");
   REQUIRE(tool);
   CHECK(tool->line == 5);

@@ -118,7 +118,7 @@ TEST_CASE("A recorder is told of all that is sent, and an impossible loss is ref
   VirtualWire wire({.loss = {.share = 1}}, 5);
   const auto sender = wire.join();
   int told = 0;
-  wire.tell([&](HostTime at, std::string_view channel, std::span<const std::uint8_t> data) {
+  wire.add_listener([&](HostTime at, std::string_view channel, std::span<const std::uint8_t> data) {
     told += at == kBegin && channel == "A" && data.size() == 1;
   });
   send(wire, *sender, 1, kBegin);

@@ -130,9 +130,9 @@ TEST_CASE("A log begins without the scene when that does not come") {
   Fixture f;
   f.hear(kStart + Nanoseconds(5'000'000));
   f.recorder.poll(kStart + Recorder::kWaitForScene - Nanoseconds(1));
-  CHECK_FALSE(f.recorder.begun());
+  CHECK_FALSE(f.recorder.started());
   f.recorder.poll(kStart + Recorder::kWaitForScene);
-  CHECK(f.recorder.begun());
+  CHECK(f.recorder.started());
   const auto events = read_but_types(f.disk->bytes);
   REQUIRE(events.size() == 2);
   CHECK(events[0].channel == channels::kLogInfo);
@@ -153,13 +153,13 @@ TEST_CASE("A log begins at once when what waits for the scene grows too large, a
   m.size = 1024;
   m.data.resize(1024);
   int n = 0;
-  for (; !f.recorder.begun(); ++n) {
+  for (; !f.recorder.started(); ++n) {
     f.batch.clear();
     m.header.seq = n;
     f.batch.add(kStart + Nanoseconds(n), {"LIVE", encode(m)}, 1 << 20);
     f.recorder.push(f.batch);
   }
-  CHECK(n < static_cast<int>(Recorder::kMaxHeldBytes / 1024) + 1);
+  CHECK(n < static_cast<int>(Recorder::kMaxPendingBytes / 1024) + 1);
   f.recorder.finish(kStart);
   CHECK(read_but_types(f.disk->bytes).size() == static_cast<std::size_t>(n) + 1);
 }
@@ -178,18 +178,18 @@ TEST_CASE("Messages that are missing in their numbering are counted by channel")
   f.hear(kStart + Nanoseconds(2), 3);
   f.hear(kStart + Nanoseconds(3));
   CHECK(f.recorder.gaps() == 3);
-  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("gaps: LIVE 3"));
+  CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("gaps: LIVE 3"));
 }
 
 TEST_CASE("A full disk is said, retried once a second, and recording goes on") {
   Fixture f;
   f.recorder.begin({}, kStart);
-  f.disk->trouble = "No space left on device";
+  f.disk->failing = "No space left on device";
   f.hear(kStart);
   f.recorder.poll(kStart);
   CHECK(f.recorder.failing());
-  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("No space left on device"));
-  f.disk->trouble.clear();
+  CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("No space left on device"));
+  f.disk->failing.clear();
   f.recorder.poll(kStart + Nanoseconds(500'000'000));
   CHECK(f.recorder.failing());
   f.recorder.poll(kStart + Nanoseconds(1'000'000'000));
@@ -210,8 +210,8 @@ TEST_CASE("A message that is none of ours is recorded as it is") {
 
 TEST_CASE("What is larger than any message of the bus is left out, and is no loss for want of time") {
   Fixture f;
-  CHECK_THAT(f.recorder.note(0, 1), Catch::Contains("1 left out, larger than any message of ours"));
-  CHECK_THAT(f.recorder.note(0, 1), !Catch::Contains("lost"));
+  CHECK_THAT(f.recorder.status_text(0, 1), Catch::Contains("1 left out, larger than any message of ours"));
+  CHECK_THAT(f.recorder.status_text(0, 1), !Catch::Contains("lost"));
 }
 
 TEST_CASE("A log says itself what its messages are, each type with the bytes that it begins with") {
@@ -260,7 +260,7 @@ TEST_CASE("Each part of a split log has the head, and together they hold every m
   f.recorder.finish(kStart + Nanoseconds(2'000'000'000));
   REQUIRE(parts.size() > 3);
   CHECK(f.recorder.parts() == static_cast<int>(parts.size()));
-  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("in " + std::to_string(parts.size()) + " parts"));
+  CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("in " + std::to_string(parts.size()) + " parts"));
   std::int64_t next = 0;
   for (const auto& part : parts) {
     const auto events = read_all(part->bytes);
@@ -294,7 +294,7 @@ TEST_CASE("A part that cannot be begun is said, and the one before it goes on") 
     f.recorder.poll(kStart + Nanoseconds(1'000'000) * i);
   }
   CHECK(f.recorder.failing());
-  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("cannot create run.2.lcmlog"));
+  CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("cannot create run.2.lcmlog"));
   f.recorder.finish(kStart + Nanoseconds(300'000'000));
   CHECK(read_but_types(f.disk->bytes).size() == 301);
 }
@@ -310,5 +310,5 @@ TEST_CASE("A log of a largest size ends there, and what exceeds it is counted") 
   CHECK(f.disk->bytes.size() <= 50'000 + channels::kMaxMessageBytes);
   CHECK(f.recorder.beyond() > 0);
   CHECK(static_cast<std::int64_t>(read_but_types(f.disk->bytes).size()) + f.recorder.beyond() == 2001);
-  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("beyond the largest size"));
+  CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("beyond the largest size"));
 }

@@ -8,7 +8,7 @@
 #include <tactus/world_state_t.hpp>
 
 #include "sync/log/log_header.h"
-#include "sync/tools/replay/replay_choice.h"
+#include "sync/tools/replay/replay_selection.h"
 #include "sync/tools/replay/replay_control.h"
 #include "tests/sync/support/damaged_log.h"
 
@@ -84,7 +84,7 @@ TEST_CASE(
     "allowed") {
   ReplayOptions o;
   o.speed = GENERATE(0.0, 100.0);
-  o.most_per_s = 2000;
+  o.max_per_s = 2000;
   Player p(o);
   std::size_t before = 0;
   for (int i = 0; i < 5000 && !p.replay.over(); ++i) {
@@ -195,7 +195,7 @@ TEST_CASE("1,000 damaged logs are played to their end, with every message that w
     const LogOrigin origin = origin_of(log.bytes);
     ReplayOptions o;
     o.speed = 0;
-    o.most_per_s = 1e6;
+    o.max_per_s = 1e6;
     Replay replay(log.bytes, origin, o, kNow);
     std::set<std::int64_t> missing = log.whole;
     HostTime now = kNow;
@@ -225,7 +225,7 @@ TEST_CASE("A time in a log is found without reading it all, whatever damage lies
     const std::int64_t begin_us = (DamagedLog::kBegin_ns + DamagedLog::kOffset_ns) / 1000;
     const std::int64_t wanted = static_cast<std::int64_t>(random() % 3000);
     LogScanner scanner(log.bytes);
-    scanner.start_at(seek_log(log.bytes, begin_us + 1000 * wanted));
+    scanner.seek(seek_log(log.bytes, begin_us + 1000 * wanted));
     std::set<std::int64_t> missing;
     for (const std::int64_t n : log.whole)
       if (n >= wanted) missing.insert(n);
@@ -324,43 +324,43 @@ TEST_CASE("Stamps of damaged messages overflow nothing, and what is none of ours
 }
 
 TEST_CASE("What would be mistaken for the live run stays in the log, and what the world said goes out") {
-  ReplayChoice choice({});
+  ReplaySelection selection({});
   for (const char* c :
        {"TOUCH_MODEL", "CONTACT_EVENTS", "CONTACTS", "WORLD_STATE", "GAME_STATE", "TOOL_STATE", "MY_OWN"})
-    CHECK(choice.channel_of(event_of(c, {})) == std::string_view(c));
+    CHECK(selection.channel_of(event_of(c, {})) == std::string_view(c));
   for (const char* c : {"NODE_HEALTH", "PRESENTED", "SYNC_REPORT", "CLOCK_MAP", "CLOCK_PROBE", "PLAYOUT",
                         "PLAYOUT_REQUEST", "DEGRADATION", "DEGRADED", "SETTING", "QUESTION", "ANSWER", "SIM_COMMAND", "DEVICE_FORCE",
                         "THERMAL_STATE", "MEDIA_CLOCK", "SCENE_MANIFEST", "LOG_INFO"})
-    CHECK_FALSE(choice.channel_of(event_of(c, {})));
-  CHECK(ReplayChoice({.as_recorded = true}).channel_of(event_of("DEGRADATION", {})));
-  CHECK(ReplayChoice({.verbatim = true}).channel_of(event_of("NODE_HEALTH", {})));
-  CHECK(ReplayChoice({.also = "THERMAL_.*"}).channel_of(event_of("THERMAL_STATE", {})));
+    CHECK_FALSE(selection.channel_of(event_of(c, {})));
+  CHECK(ReplaySelection({.as_recorded = true}).channel_of(event_of("DEGRADATION", {})));
+  CHECK(ReplaySelection({.verbatim = true}).channel_of(event_of("NODE_HEALTH", {})));
+  CHECK(ReplaySelection({.also = "THERMAL_.*"}).channel_of(event_of("THERMAL_STATE", {})));
 }
 
 TEST_CASE("What a sense said then stays in the log when it is live, and goes out when it is not") {
   tool_state_t m{};
   m.header = header_of("haptic_node", 3, 1, 1000, 77);
   const auto bytes = encode(m);
-  CHECK(ReplayChoice({}).channel_of(event_of("TOOL_STATE", bytes)));
-  CHECK(ReplayChoice({.live = {"audio_node"}}).channel_of(event_of("TOOL_STATE", bytes)));
-  CHECK_FALSE(ReplayChoice({.live = {"audio_node", "haptic_node"}}).channel_of(event_of("TOOL_STATE", bytes)));
+  CHECK(ReplaySelection({}).channel_of(event_of("TOOL_STATE", bytes)));
+  CHECK(ReplaySelection({.live = {"audio_node"}}).channel_of(event_of("TOOL_STATE", bytes)));
+  CHECK_FALSE(ReplaySelection({.live = {"audio_node", "haptic_node"}}).channel_of(event_of("TOOL_STATE", bytes)));
 }
 
 TEST_CASE("Channels are chosen by expressions, and renamed") {
-  ReplayChoice choice({.channels = "CONTACT.*|MY_OWN", .leave_out = "CONTACTS", .rename = {"MY_OWN=YOURS"}});
-  CHECK(choice.channel_of(event_of("CONTACT_EVENTS", {})));
-  CHECK_FALSE(choice.channel_of(event_of("CONTACTS", {})));
-  CHECK_FALSE(choice.channel_of(event_of("WORLD_STATE", {})));
-  CHECK(choice.channel_of(event_of("MY_OWN", {})) == std::string_view("YOURS"));
-  CHECK_THROWS_WITH(ReplayChoice({.channels = "(("}), Catch::Contains("regular expression"));
-  CHECK_THROWS_WITH(ReplayChoice({.rename = {"A"}}), Catch::Contains("FROM=TO"));
-  CHECK_THROWS_WITH(ReplayChoice({.rename = {"A=" + std::string(64, 'x')}}), Catch::Contains("FROM=TO"));
+  ReplaySelection selection({.channels = "CONTACT.*|MY_OWN", .leave_out = "CONTACTS", .rename = {"MY_OWN=YOURS"}});
+  CHECK(selection.channel_of(event_of("CONTACT_EVENTS", {})));
+  CHECK_FALSE(selection.channel_of(event_of("CONTACTS", {})));
+  CHECK_FALSE(selection.channel_of(event_of("WORLD_STATE", {})));
+  CHECK(selection.channel_of(event_of("MY_OWN", {})) == std::string_view("YOURS"));
+  CHECK_THROWS_WITH(ReplaySelection({.channels = "(("}), Catch::Contains("regular expression"));
+  CHECK_THROWS_WITH(ReplaySelection({.rename = {"A"}}), Catch::Contains("FROM=TO"));
+  CHECK_THROWS_WITH(ReplaySelection({.rename = {"A=" + std::string(64, 'x')}}), Catch::Contains("FROM=TO"));
 }
 
 TEST_CASE("Orders are obeyed, and what is none says what is wrong") {
   Player p;
   bool quit = false;
-  const auto say = [&](const char* line) { return obey(p.replay, line, p.now, quit); };
+  const auto say = [&](const char* line) { return execute_command(p.replay, line, p.now, quit); };
   CHECK(say("pause").empty());
   CHECK(p.replay.paused());
   CHECK(say("  seek   0.5 ").empty());

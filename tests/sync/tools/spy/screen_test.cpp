@@ -131,7 +131,7 @@ TEST_CASE("Under the marked field its course is drawn") {
   for (int i = 0; i < 8; ++i) {
     s.now += Screen::kColumn;
     s.tool(i);
-    s.screen.look(s.channels, s.now);
+    s.screen.sample(s.channels, s.now);
   }
   CHECK_THAT(s.draw(160, 120)[s.screen.marked() + 1], Catch::Contains("▂▃▄▅▆▇█") && Catch::Contains("7"));
 }
