@@ -109,7 +109,7 @@ void Controls::step(sync::HostTime now) {
     if (ours(m->message.header) && m->message.tool == 0) tool_ = std::move(m->message);
   while (const auto m = degradations_.pop())
     if (ours(m->message.header))
-      if (auto heard = profiles_.take(m->message);
+      if (auto heard = profiles_.push(m->message);
           heard && (!in_force_ || heard->generation >= in_force_->generation))
         in_force_ = std::move(heard);
   if (scene_.poll(now)) ++scenes_;

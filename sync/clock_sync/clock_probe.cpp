@@ -47,8 +47,8 @@ bool ClockProber::accepts(const clock_probe_t& r, HostTime returned) const {
 void ClockProber::reply(const clock_probe_t& r, HostTime returned) {
   if (r.kind == clock_probe_t::REPLY && r.asking_clock != own_.clock) return;  // addressed to another process
   const auto known = replies_.find(r.header.clock);
-  const bool accepted_count_left = known != replies_.end() ? known->second.wave.replies < 2 * kProbes : replies_.size() < kMaxClocks;
-  if (!accepts(r, returned) || !accepted_count_left) {
+  const bool has_room = known != replies_.end() ? known->second.wave.replies < 2 * kProbes : replies_.size() < kMaxClocks;
+  if (!accepts(r, returned) || !has_room) {
     ++refused_;
     return;
   }

@@ -155,7 +155,7 @@ class DegradedSnapshots {
     };
     // An incomplete snapshot that newer ones have overtaken is judged by its received pages: missing signals count as a
     // change.
-    if (auto* whole = incomplete_.add(key, number, count, {std::move(m), arrival}, decide_group)) decide_group(*complete);
+    if (auto* whole = incomplete_.add(key, number, count, {std::move(m), arrival}, decide_group)) decide_group(*whole);
   }
 
   Decision decide(const Message& m, HostTime arrival, const std::vector<Signal>& signals, OperatorChain& operators,

@@ -33,7 +33,7 @@ void send_profile(Bus& bus, const ProfileInForce& profile) {
   }
 }
 
-std::optional<ProfileInForce> ProfileReceiver::take(const degradation_t& page) {
+std::optional<ProfileInForce> ProfileReceiver::push(const degradation_t& page) {
   if (page.generation <= generation_) return std::nullopt;
   const auto* pages = pages_.add({page.generation, page.hash}, page.page, page.pages, page.text);
   if (!pages) return std::nullopt;

@@ -37,7 +37,7 @@ class ProfileReceiver {
 
   // Returns the profile when this page completes one that is newer than the previous one. A text that does not match its
   // hash, or that is no valid profile, is refused as a whole: nothing changes.
-  std::optional<ProfileInForce> take(const degradation_t& page);
+  std::optional<ProfileInForce> push(const degradation_t& page);
   // One sentence on the last profile with an invalid text; returned once, then empty.
   std::string take_refusal() { return std::exchange(refusal_, {}); }
   // The generation already in force, from a file or a scene: only newer ones are accepted.

@@ -115,11 +115,11 @@ void ModalityEndpoint::read_control_messages(HostTime) {
   while (const auto m = degradations_.pop())
     if (same_run(m->message.header))
       // The same text can come again: its times count from the moment that it comes into force.
-      if (const auto whole = receiver_.take(m->message)) apply_profile(*whole);
+      if (const auto whole = receiver_.push(m->message)) apply_profile(*whole);
   if (const std::string refusal = receiver_.take_refusal(); !refusal.empty())
     std::cerr << node_.descriptor().name << ": refused: " << refusal << std::endl;
   while (const auto m = playouts_.pop())
-    if (same_run(m->message.header)) playout_.take(m->message);
+    if (same_run(m->message.header)) playout_.push(m->message);
 }
 
 void ModalityEndpoint::step(HostTime now) {

@@ -30,7 +30,7 @@ void Relay::on_bus_message(const ChannelBytes& m, bool bulk, HostTime now) {
   // The relay also receives the messages that it sent itself.
   if (!sides_.belongs_to(*header, SenderSides::kHere, now)) return;
   const Urgency urgency = bulk ? Urgency::kBulk : rule->first ? Urgency::kFirst : Urgency::kState;
-  decimator(*rule).take(*header, m.data, now, [&](std::span<const std::uint8_t> passing) {
+  decimator(*rule).push(*header, m.data, now, [&](std::span<const std::uint8_t> passing) {
     ++counts_.out;
     const auto datagram = line_datagram({m.channel, passing}, bulk);
     for (Outbox& outbox : outboxes_) outbox.push(urgency, datagram, now);

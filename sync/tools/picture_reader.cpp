@@ -7,7 +7,7 @@ namespace {
 constexpr std::int32_t kChunkBytes = 1024;
 }
 
-std::optional<StreamedPicture> PictureReader::take(const picture_chunk_t& m) {
+std::optional<StreamedPicture> PictureReader::push(const picture_chunk_t& m) {
   const bool last = m.chunk == m.chunks - 1;
   if (m.chunks > kMaxChunks || m.chunk < 0 || m.chunk >= m.chunks ||
       m.size != static_cast<std::int32_t>(m.data.size()) || m.size < 1 || m.size > kChunkBytes ||

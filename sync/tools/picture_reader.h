@@ -29,7 +29,7 @@ class PictureReader {
   static constexpr std::size_t kMaxSources = 8;
 
   // Returns the picture that this piece completes.
-  std::optional<StreamedPicture> take(const picture_chunk_t& m);
+  std::optional<StreamedPicture> push(const picture_chunk_t& m);
   // Number of pictures that began and were never completed.
   std::int64_t skipped() const { return skipped_; }
 

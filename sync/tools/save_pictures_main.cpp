@@ -36,7 +36,7 @@ int main(int argc, char** argv) try {
     bus.wait(sync::from_seconds(0.1));
     bus.drain(sync::host_now());
     while (const auto m = chunks.pop()) {
-      const auto picture = saved < pictures ? reader.take(m->message) : std::nullopt;
+      const auto picture = saved < pictures ? reader.push(m->message) : std::nullopt;
       if (!picture) continue;
       char name[64];
       std::snprintf(name, sizeof name, "%08x_%06lld.jpg", static_cast<unsigned>(picture->source), static_cast<long long>(picture->picture));

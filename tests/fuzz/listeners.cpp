@@ -62,7 +62,7 @@ struct Listeners {
     as<tag_values_t>(e, channels::kTagValues, [&](const auto& m) { screen.push(m, now); });
     as<contact_events_t>(e, channels::kContactEvents, [&](const auto& m) { contacts.push(m, now); });
     as<contact_frame_t>(e, channels::kContacts, [&](const auto& m) { contacts.push(m, now); });
-    as<picture_chunk_t>(e, channels::kPictureChunk, [&](const auto& m) { pictures.take(m); });
+    as<picture_chunk_t>(e, channels::kPictureChunk, [&](const auto& m) { pictures.push(m); });
     bus.on_message(e.channel, e.data, now);
     scene.poll(now);
     if (const auto map = contacts.map(now)) {

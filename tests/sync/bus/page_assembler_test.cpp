@@ -40,13 +40,13 @@ TEST_CASE("A message comes out with its last page, in the order of its pages, fo
   std::mt19937 random(1);
   for (int round = 0; round < 300; ++round) {
     const int count = 1 + static_cast<int>(random() % 12);
-    std::vector<int> sequence_status(static_cast<std::size_t>(count));
-    for (int i = 0; i < count; ++i) sequence_status[static_cast<std::size_t>(i)] = i;
-    std::shuffle(sequence_status.begin(), sequence_status.end(), random);
+    std::vector<int> order(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) order[static_cast<std::size_t>(i)] = i;
+    std::shuffle(order.begin(), order.end(), random);
     Assembler pages({});
-    for (std::size_t i = 0; i < sequence_status.size(); ++i) {
-      const auto* whole = pages.add(round, sequence_status[i], count, text(Sent{round, sequence_status[i], count}));
-      REQUIRE((whole != nullptr) == (i + 1 == sequence_status.size()));
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const auto* whole = pages.add(round, order[i], count, text(Sent{round, order[i], count}));
+      REQUIRE((whole != nullptr) == (i + 1 == order.size()));
       if (whole) CHECK(text_of(*whole) == text(round, count));
     }
     CHECK(pages.size() == 0);
@@ -54,7 +54,7 @@ TEST_CASE("A message comes out with its last page, in the order of its pages, fo
 }
 
 TEST_CASE("Of pages that are lost, repeated and reordered, each message that is whole comes out once and no other does") {
-  const auto sequence_status = GENERATE(PageOrder::kFirstPage, PageOrder::kNewestPage, PageOrder::kKey);
+  const auto order = GENERATE(PageOrder::kFirstPage, PageOrder::kNewestPage, PageOrder::kKey);
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);
     const auto chance = [&](double p) { return std::uniform_real_distribution<>(0, 1)(random) < p; };
@@ -76,7 +76,7 @@ TEST_CASE("Of pages that are lost, repeated and reordered, each message that is 
     for (int round = 0; round < 5; ++round)
       for (std::size_t i = 0; i + 1 < wire.size(); ++i)
         if (chance(0.3)) std::swap(wire[i], wire[i + 1]);
-    Assembler pages({.groups = 60, .pages = 8, .remembered = 60}, sequence_status);
+    Assembler pages({.groups = 60, .pages = 8, .remembered = 60}, order);
     std::map<std::int64_t, int> came;
     for (const Sent& s : wire)
       if (const auto* whole = pages.add(s.key, s.number, s.count, text(s))) {
@@ -115,8 +115,8 @@ TEST_CASE("Forged pages never take more than the limits, and no page that cannot
 }
 
 TEST_CASE("The incomplete message that is given up is the one that the order names") {
-  const auto [sequence_status, gone] = GENERATE(std::pair{PageOrder::kFirstPage, 8}, std::pair{PageOrder::kNewestPage, 3}, std::pair{PageOrder::kKey, 1});
-  Assembler pages({.groups = 3}, sequence_status);
+  const auto [order, gone] = GENERATE(std::pair{PageOrder::kFirstPage, 8}, std::pair{PageOrder::kNewestPage, 3}, std::pair{PageOrder::kKey, 1});
+  Assembler pages({.groups = 3}, order);
   std::vector<std::int64_t> dropped;
   const auto drop = [&](Assembler::Group& g) { dropped.push_back(g.key); };
   for (const std::int64_t key : {8, 3, 1}) pages.add(key, 0, 3, "x", drop);

@@ -44,7 +44,7 @@ std::vector<degradation_t> pages(const std::string& text, std::int64_t generatio
 std::optional<ProfileInForce> take_all(ProfileReceiver& r, const std::vector<degradation_t>& messages) {
   std::optional<ProfileInForce> whole;
   for (const degradation_t& m : messages)
-    if (auto w = r.take(m)) whole = std::move(w);
+    if (auto w = r.push(m)) whole = std::move(w);
   return whole;
 }
 
@@ -86,13 +86,13 @@ TEST_CASE("A wrong profile is refused whole and takes nobody's turn") {
 TEST_CASE("A page of a profile that never becomes whole holds up no other") {
   ProfileReceiver r;
   degradation_t forged = pages(profile(100), std::numeric_limits<std::int64_t>::max()).front();
-  CHECK_FALSE(r.take(forged));
+  CHECK_FALSE(r.push(forged));
   auto messages = pages(profile(80), 9);
   for (std::size_t i = 0; i < messages.size(); ++i) {
-    const auto whole = r.take(messages[i]);
+    const auto whole = r.push(messages[i]);
     CHECK(whole.has_value() == (i + 1 == messages.size()));
     forged.hash += 1;
-    if (i % 2 == 0) CHECK_FALSE(r.take(forged));
+    if (i % 2 == 0) CHECK_FALSE(r.push(forged));
   }
 }
 

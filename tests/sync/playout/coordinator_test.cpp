@@ -46,7 +46,7 @@ TEST_CASE("A coordinator says ten times a second when each sense presents") {
   heard(c, "audio", 18), heard(c, "visual", 33), heard(c, "haptic", 2);
   int said = 0;
   for (int ms = 0; ms < 1000; ms += 5)
-    if (const auto m = c.due(at(ms))) {
+    if (const auto m = c.next_message(at(ms))) {
       ++said;
       CHECK(delays_ms(m) == Delays{{"audio", 33}, {"haptic", 0}, {"visual", 33}});
     }
@@ -56,28 +56,28 @@ TEST_CASE("A coordinator says ten times a second when each sense presents") {
 TEST_CASE("Before anything was presented every sense keeps its own delay") {
   PlayoutCoordinator c(5, plan());
   c.latency_demand().add_modality("audio");
-  CHECK(delays_ms(c.due(at(0))).empty());
+  CHECK(delays_ms(c.next_message(at(0))).empty());
   PlayoutCoordinator experiment(5, plan(Policy::kExperiment));
   experiment.latency_demand().add_modality("audio");
-  CHECK(delays_ms(experiment.due(at(0))) == Delays{{"audio", 150}});
+  CHECK(delays_ms(experiment.next_message(at(0))) == Delays{{"audio", 150}});
 }
 
 TEST_CASE("A sense that stalls, is far too slow or is dead moves no other sense") {
   PlayoutCoordinator c(5, plan());
   heard(c, "audio", 18), heard(c, "thermal", 25), heard(c, "visual", 33);
-  const auto before = delays_ms(c.due(at(0)));
+  const auto before = delays_ms(c.next_message(at(0)));
   SECTION("after a stall of 2 s all that waited comes at once") {
     for (int i = 0; i < 12; ++i) c.latency_demand().add("visual", (2000 - 80 * i) * kMs);
     heard(c, "visual", 33, 8);
-    CHECK(delays_ms(c.due(at(200))) == before);
+    CHECK(delays_ms(c.next_message(at(200))) == before);
   }
   SECTION("it says nothing any more") {
     heard(c, "audio", 18, 500);
-    CHECK(delays_ms(c.due(at(200))) == before);
+    CHECK(delays_ms(c.next_message(at(200))) == before);
   }
   SECTION("it needs more than the budget for good: nobody waits for it any more") {
     heard(c, "visual", 300, 200);
-    const auto after = delays_ms(c.due(at(200)));
+    const auto after = delays_ms(c.next_message(at(200)));
     CHECK(after.at("audio") == 25);
     CHECK(after.at("thermal") == 25);
   }
@@ -86,29 +86,29 @@ TEST_CASE("A sense that stalls, is far too slow or is dead moves no other sense"
 TEST_CASE("A delay rises as soon as it must and falls only by more than the slack") {
   PlayoutCoordinator c(5, plan());
   heard(c, "audio", 30, 200);
-  CHECK(delays_ms(c.due(at(0))).at("audio") == 30);
+  CHECK(delays_ms(c.next_message(at(0))).at("audio") == 30);
   heard(c, "audio", 28, 200);
-  CHECK(delays_ms(c.due(at(200))).at("audio") == 30);
+  CHECK(delays_ms(c.next_message(at(200))).at("audio") == 30);
   heard(c, "audio", 31, 200);
-  CHECK(delays_ms(c.due(at(400))).at("audio") == 31);
+  CHECK(delays_ms(c.next_message(at(400))).at("audio") == 31);
   heard(c, "audio", 20, 200);
-  CHECK(delays_ms(c.due(at(600))).at("audio") == 20);
+  CHECK(delays_ms(c.next_message(at(600))).at("audio") == 20);
 }
 
 TEST_CASE("A newer request is put in force and an older one is not") {
   PlayoutCoordinator c(5, plan());
   PlayoutPlan asked = plan(Policy::kExperiment);
   asked.soa["visual"] = -50 * kMs;
-  CHECK(c.take(request_for(asked, 100)));
+  CHECK(c.push(request_for(asked, 100)));
   heard(c, "audio", 18), heard(c, "visual", 33);
-  const auto m = c.due(at(0));
+  const auto m = c.next_message(at(0));
   REQUIRE(m);
   CHECK(m->generation == 100);
   CHECK(delays_ms(m) == Delays{{"audio", 150}, {"visual", 100}});
-  CHECK_FALSE(c.take(request_for(plan(Policy::kAsap), 99)));
+  CHECK_FALSE(c.push(request_for(plan(Policy::kAsap), 99)));
   CHECK(c.plan().policy == Policy::kExperiment);
   asked.soa["visual"] = -500 * kMs;  // before the event
-  CHECK_FALSE(c.take(request_for(asked, 200)));
+  CHECK_FALSE(c.push(request_for(asked, 200)));
 }
 
 TEST_CASE(
@@ -116,23 +116,23 @@ TEST_CASE(
     "silent") {
   PlayoutCoordinator low(3, plan()), high(7, plan());
   heard(low, "audio", 18), heard(high, "audio", 18);
-  REQUIRE(low.take(request_for(plan(Policy::kExperiment), 50)));  // received by one modality only
+  REQUIRE(low.push(request_for(plan(Policy::kExperiment), 50)));  // received by one modality only
   int high_said = 0;
   for (int ms = 0; ms < 2000; ms += 10) {
-    if (auto m = low.due(at(ms))) {
+    if (auto m = low.next_message(at(ms))) {
       m->header.clock = 3;
-      high.take(*m, at(ms));
+      high.push(*m, at(ms));
     }
-    if (auto m = high.due(at(ms))) {
+    if (auto m = high.next_message(at(ms))) {
       ++high_said;
       m->header.clock = 7;
-      low.take(*m, at(ms));
+      low.push(*m, at(ms));
     }
   }
   CHECK(high_said <= 1);
   CHECK(high.plan().policy == Policy::kExperiment);
   int alone = 0;
-  for (int ms = 2000; ms < 4000; ms += 10) alone += high.due(at(ms)).has_value();
+  for (int ms = 2000; ms < 4000; ms += 10) alone += high.next_message(at(ms)).has_value();
   CHECK(alone >= 9);
 }
 
@@ -173,10 +173,10 @@ TEST_CASE("However many senses there are, each finds its delay in a message that
   write_plan(request, 1, wanted);
   request.entries = request_for(wanted, 1).entries;
   request.count = 1;
-  REQUIRE(c.take(request));
+  REQUIRE(c.push(request));
   for (int i = 0; i < senses; ++i)
     c.latency_demand().add_modality("z" + std::string(i < 10 ? "0" : "") + std::to_string(i) + std::string(60, 'z').substr(i == 7 ? 60 : 0));
-  const auto m = c.due(at(0));
+  const auto m = c.next_message(at(0));
   REQUIRE(m);
   Delays found;
   const auto pages = pages_of(*m);

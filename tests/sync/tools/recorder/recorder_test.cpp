@@ -184,12 +184,12 @@ TEST_CASE("Messages that are missing in their numbering are counted by channel")
 TEST_CASE("A full disk is said, retried once a second, and recording goes on") {
   Fixture f;
   f.recorder.begin({}, kStart);
-  f.disk->failing = "No space left on device";
+  f.disk->trouble = "No space left on device";
   f.hear(kStart);
   f.recorder.poll(kStart);
   CHECK(f.recorder.failing());
   CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("No space left on device"));
-  f.disk->failing.clear();
+  f.disk->trouble.clear();
   f.recorder.poll(kStart + Nanoseconds(500'000'000));
   CHECK(f.recorder.failing());
   f.recorder.poll(kStart + Nanoseconds(1'000'000'000));
