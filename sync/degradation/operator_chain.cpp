@@ -161,7 +161,7 @@ OutputValues OperatorChain::output(SimTime now) const {
   return sum;
 }
 
-double OperatorChain::changed(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
+double OperatorChain::degraded_value(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
                       std::int32_t material_a, std::int32_t material_b, std::int32_t body_a, std::int32_t body_b) {
   for (Active& a : rules_) {
     const Rule& r = a.rule;

@@ -63,7 +63,7 @@ class OperatorChain {
   OutputValues output(SimTime now) const;
 
   // A value after quantise, gain, bias and low-pass. id: of the contact, body or plane; component: of its vectors.
-  double changed(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
+  double degraded_value(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
                  std::int32_t material_a, std::int32_t material_b, std::int32_t body_a, std::int32_t body_b);
   bool changes_values() const { return changes_values_; }
   // True when a rule compares the content of a snapshot, so that all of its pages are needed for a decision.

@@ -63,7 +63,7 @@ int main(int argc, char** argv) try {
   while (sync::host_now() < begin + kListen) {
     bus.wait(kRepeat);
     bus.drain(sync::host_now());
-    while (const auto m = frames.pop()) simulation.follow(m->message.header, m->message.clock, m->arrival);
+    while (const auto m = frames.pop()) simulation.track(m->message.header, m->message.clock, m->arrival);
     while (const auto m = healths.pop())
       if (m->message.header.run_id == run_id && !m->message.modality.empty()) modalities.insert(m->message.modality);
   }

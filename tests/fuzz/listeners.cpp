@@ -84,7 +84,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (LogEvent e; scanner.next(e);) all->hear(e, now += Nanoseconds(1'000'000));
   all->summary.end_of_log(scanner.damaged_regions());
   if (to_json(all->summary).empty() || to_text(all->summary).empty()) std::abort();
-  all->screen.look(all->channels, now);
+  all->screen.sample(all->channels, now);
   for (const spy::Key key : {spy::Key::kNone, spy::Key::kEnter, spy::Key::kDown, spy::Key::kTags}) {
     all->screen.press(key);
     if (all->screen.draw(all->channels, now, 80, 24).size() > 24) std::abort();

@@ -34,7 +34,7 @@ TEST_CASE("A short message of LCM is its channel and its payload") {
   REQUIRE(m);
   CHECK(m->channel == "CONTACTS");
   CHECK(Bytes(m->data.begin(), m->data.end()) == bytes_of("abc"));
-  CHECK(m->whole);
+  CHECK(m->complete);
   CHECK(m->fits());
 
   SECTION("which may be empty") {
@@ -55,7 +55,7 @@ TEST_CASE("The first fragment of a long message names its channel and does not f
   const auto m = parse_datagram(first);
   REQUIRE(m);
   CHECK(m->channel == "BIG");
-  CHECK_FALSE(m->whole);
+  CHECK_FALSE(m->complete);
   CHECK_FALSE(m->fits());
   const Bytes second = fragment(1, "BIG and more");
   CHECK_FALSE(parse_datagram(second));

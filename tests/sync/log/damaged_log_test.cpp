@@ -77,7 +77,7 @@ TEST_CASE("A log with damage anywhere is rendered to its end, with every message
       CHECK(feed.over(Nanoseconds(20'000'000)));
       // Sequence numbers and send times are damaged, too. kContradictions messages must contradict a wrong value before it is discarded
       // (sync/bus/sequence.h). A log is damaged in up to eight places.
-      CHECK(missing.size() <= 8 * SequenceTracker::kContradictions);
+      CHECK(missing.size() <= 8 * SequenceTracker::kMaxContradictions);
       missed_in_all += missing.size();
     } catch (const std::runtime_error&) {
       ++refused;

@@ -42,7 +42,7 @@ TEST_CASE("A sense that is late on purpose is not called lost before it could pr
     f.matcher.observe(m, f.at(1010));
   }
   f.matcher.advance(f.at(3400));
-  CHECK(f.tally("audio").owed == 0);
+  CHECK(f.tally("audio").expected == 0);
   SECTION("it presents, and there is an asynchrony") {
     f.presented("audio_node", "audio", 1, 4010);
     f.matcher.advance(f.at(5100));
@@ -53,13 +53,13 @@ TEST_CASE("A sense that is late on purpose is not called lost before it could pr
   }
   SECTION("it says nothing, and is lost all the same") {
     f.matcher.advance(f.at(4900));
-    CHECK(f.tally("audio").owed == 0);  // 1 s and 3 s have not passed
+    CHECK(f.tally("audio").expected == 0);  // 1 s and 3 s have not passed
     f.matcher.advance(f.at(5100));
     CHECK(f.tally("audio").lost == 1);
   }
   SECTION("the log ends before its time, and it owes nothing") {
     f.matcher.finish(f.at(3500));
-    CHECK(f.tally("audio").owed == 0);
+    CHECK(f.tally("audio").expected == 0);
     CHECK(f.tally("visual").presented == 1);
   }
   CHECK(f.tally("visual").lost == 0);
@@ -84,5 +84,5 @@ TEST_CASE("When a long delay is taken back, events are settled as soon as before
   pass(10'000, 25'000);
   f.event(1, 25'000);
   f.matcher.advance(f.at(26'100));
-  CHECK(f.tally("audio").owed == 1);
+  CHECK(f.tally("audio").expected == 1);
 }

@@ -76,7 +76,7 @@ TEST_CASE(
         }
         if (!owed || !heard) continue;
         OutcomeCounts& t = expected[n.modality];
-        ++t.owed;
+        ++t.expected;
         if (!reported)
           ++t.lost;
         else if (outcome == presentation_t::DROPPED_LATE)
@@ -99,12 +99,12 @@ TEST_CASE(
     for (const auto& [modality, e] : expected) {
       const OutcomeCounts t = f.tally(modality);
       CAPTURE(seed, modality);
-      CHECK(t.owed == e.owed);
+      CHECK(t.expected == e.expected);
       CHECK(t.presented == e.presented);
       CHECK(t.lost == e.lost);
       CHECK(t.dropped_by_profile == e.dropped_by_profile);
       CHECK(t.dropped_late == e.dropped_late);
-      CHECK(sum(t) == t.owed);
+      CHECK(sum(t) == t.expected);
     }
   }
 }
@@ -127,12 +127,12 @@ TEST_CASE("However nodes die and stall, owed is the sum of the outcomes and a re
       }
       f.matcher.advance(f.at(ms));
       const OutcomeCounts t = f.tally("audio");
-      REQUIRE(sum(t) == t.owed);
+      REQUIRE(sum(t) == t.expected);
       REQUIRE(std::min({t.presented, t.lost, t.stalled, t.dead}) >= 0);
     }
     f.matcher.finish(f.at(20000));
-    CHECK(sum(f.tally("audio")) == f.tally("audio").owed);
+    CHECK(sum(f.tally("audio")) == f.tally("audio").expected);
     CHECK(f.tally("audio").presented <= reported);
-    CHECK(f.tally("audio").owed <= n);
+    CHECK(f.tally("audio").expected <= n);
   }
 }
