@@ -136,7 +136,7 @@ void Bus::test_self(const std::string& url) {
     if (host_now() > end)
       throw std::runtime_error(
           cannot_join(identity_, url) +
-          "what is sent there does not come back; let the firewall pass UDP to its group, also "
+          "messages sent there do not return; let the firewall pass UDP to its group, also "
           "from this machine to itself");
     for (lcm::LCM* port : {c.realtime.get(), c.bulk.get()})
       port->publish(kSelfTestChannel, token.data(), static_cast<unsigned>(token.size()));

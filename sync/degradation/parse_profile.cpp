@@ -120,7 +120,7 @@ void refuse_more_than_root(const tinyxml2::XMLDocument& document, const tinyxml2
 }  // namespace
 
 Profile parse_profile(const std::string& xml, const std::string& file, const DeclaredOutput& own) {
-  // XML has none; what comes after it would be lost in silence.
+  // XML has none; the text after it would be ignored.
   if (const std::size_t nul = xml.find('\0'); nul != std::string::npos)
     refuse(file,
            1 + static_cast<int>(std::count(xml.begin(), xml.begin() + static_cast<std::ptrdiff_t>(nul), '\n')),

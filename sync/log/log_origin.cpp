@@ -70,7 +70,7 @@ std::int64_t LogClockDetector::messages_with_run() const {
   return sum;
 }
 
-LogClockDetector::Pairs::const_iterator LogClockDetector::most_likely() const {
+LogClockDetector::Pairs::const_iterator LogClockDetector::likeliest_pair() const {
   const auto more = [](const auto& a, const auto& b) {
     const bool of_a = a.second.of_recorder >= kMinRecorderMessages, of_b = b.second.of_recorder >= kMinRecorderMessages;
     return of_a != of_b ? of_b : a.second.events < b.second.events;
@@ -88,7 +88,7 @@ std::int64_t LogClockDetector::offset_ns(const Pair& pair) {
 
 LogOrigin LogClockDetector::find() const {
   LogOrigin origin;
-  const auto found = most_likely();
+  const auto found = likeliest_pair();
   if (log_info_) {
     origin.info = *log_info_;
     origin.known = true;

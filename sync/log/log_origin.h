@@ -57,7 +57,7 @@ class LogClockDetector {
     std::vector<std::int64_t> differences_ns;  // stamp minus publish_time_ns: the offset plus a latency
   };
   using Pairs = std::map<std::pair<std::int64_t, std::int32_t>, Pair>;
-  Pairs::const_iterator most_likely() const;
+  Pairs::const_iterator likeliest_pair() const;
   // The 5 % quantile of the differences: near the smallest, and robust against damaged stamps.
   static std::int64_t offset_ns(const Pair& pair);
 

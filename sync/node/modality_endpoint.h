@@ -106,7 +106,7 @@ class ModalityEndpoint {
   HostTime schedule(std::int64_t event_id, HostTime happened) const;
   // Output operators in force.
   const OutputValues& output() const { return output_; }
-  // What the profile in force calls itself, whether or not it concerns this sense; empty: none is.
+  // The name of the profile in force, whether or not it applies to this modality; empty: there is none.
   const std::string& profile_name() const { return profile_name_; }
   // The arrival of the newest message of any stream, before any delay of the profile.
   HostTime newest_arrival() const;

@@ -84,10 +84,10 @@ void NodeOptions::add_to(CLI::App& app, const NodeDescriptor& d) {
   app.add_option("--seed", seed, "seed of all random numbers")->capture_default_str();
   app.add_option("--set", set, "name=value of a setting, see docs/settings.md; may be repeated");
   if (!d.modality.empty() || d.name == "sync_node")
-    app.add_option("--degrade", degrade, "degradation profile (XML): what is wrong with each sense on purpose");
+    app.add_option("--degrade", degrade, "degradation profile (XML): the intended degradations of each sense");
   // For measurements only, hence not in --help: a renderer that uses up its core.
   app.add_option("--emulate-load", load)->envname("TACTUS_LOAD_" + d.name)->check(CLI::Range(0.0, 100.0))->group("");
-  app.add_flag("--check", check, "checks options and files, then leaves without joining the bus");
+  app.add_flag("--check", check, "checks options and files, then exits without joining the bus");
 }
 
 void parse_or_exit(CLI::App& app, const std::string& node, int argc, char** argv) {

@@ -15,9 +15,9 @@ namespace tactus::sync {
 
 void OfflineOptions::add_to(CLI::App& app, const std::string& does, const std::string& output) {
   app.add_option("--log", log,
-                 does + " instead of what is on the bus, as fast as it can; needs " + output +
+                 does + " instead of the messages on the bus, as fast as possible; needs " + output +
                      "; --degrade logged takes the profiles of the run");
-  app.add_option("--presented", presented, "file for a table of what became of each event of the log, CSV")
+  app.add_option("--presented", presented, "file for a table of the outcome of each event of the log, CSV")
       ->needs("--log");
 }
 
@@ -64,7 +64,7 @@ HostTime OfflineInput::next(Bus& bus) {
 void OfflineInput::require_rate(double rate_Hz) const {
   if (rate_Hz == rate_Hz_) return;
   std::ostringstream text;
-  text << "the scene of the log asks for " << rate_Hz << " ticks a second, not " << rate_Hz_
+  text << "the scene of the log requires " << rate_Hz << " ticks a second, not " << rate_Hz_
        << "; give --set rate=" << rate_Hz;
   throw std::runtime_error(text.str());
 }
@@ -82,7 +82,7 @@ std::optional<std::string> OfflineInput::progress(HostTime clock) {
 }
 
 std::string OfflineInput::finish(double rendered_s, HostTime clock) {
-  if (!over()) throw std::runtime_error("stopped before the log was over: nothing is kept");
+  if (!over()) throw std::runtime_error("stopped before the end of the log: no output is kept");
   if (presented_) presented_->finish();
   const double took_s = to_seconds(clock - started_);
   std::ostringstream text;
@@ -94,7 +94,7 @@ std::string OfflineInput::finish(double rendered_s, HostTime clock) {
   if (feed_.misdated() > 0)
     text << "\n"
          << feed_.misdated()
-         << " events bear damaged times, far from the others; they were taken with those before them";
+         << " events have damaged times, far from the others; they were processed with the preceding events";
   return text.str();
 }
 

@@ -31,7 +31,7 @@ bool is_local(const std::string& modality) {
   return known && known->kind == PlayoutKind::kLocal;
 }
 
-// What the one needs that takes longest of those that are waited for.
+// The longest need of the modalities that are waited for.
 Nanoseconds common_delay(const PlayoutPlan& plan, const std::map<std::string, Nanoseconds>& needed,
                          const std::set<std::string>& slow) {
   if (plan.aligner == AlignerKind::kFixed) return std::min(plan.base, plan.budget);
@@ -54,7 +54,7 @@ const char* name_of(Policy policy) { return kNames[static_cast<std::size_t>(poli
 
 void PlayoutPlan::check() const {
   if (policy != Policy::kExperiment && !soa.empty())
-    throw std::invalid_argument("asynchronies are for the policy experiment; say so, or leave them out");
+    throw std::invalid_argument("asynchronies need the policy experiment; choose it, or omit them");
   if (soa.size() > kMaxAsynchronies)
     throw std::invalid_argument("asynchronies are for at most " + std::to_string(kMaxAsynchronies) + " senses");
   for (const auto& [name, asynchrony] : soa)

@@ -15,7 +15,7 @@ Loss::Loss(const LossDef& def) : share_(def.share) {
   stay_bad_ = 1 - 1 / def.mean_burst;
   to_bad_ = def.share / (def.mean_burst * (1 - def.share));
   if (to_bad_ > 1)
-    throw std::invalid_argument("so many losses in such short bursts are impossible: a burst must last " +
+    throw std::invalid_argument("this share of losses in such short bursts is impossible: a burst must last " +
                                 std::to_string(def.share / (1 - def.share)) + " or longer");
 }
 

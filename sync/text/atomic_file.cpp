@@ -53,8 +53,8 @@ void AtomicFile::flush() {
     const ssize_t n = ::write(file_, buffer_.data() + done, buffer_.size() - done);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0)
-      throw std::runtime_error("cannot go on in " + path_ + " (" + std::strerror(n < 0 ? errno : ENOSPC) +
-                               "); free some disk or choose another " + option_);
+      throw std::runtime_error("cannot continue to write " + path_ + " (" + std::strerror(n < 0 ? errno : ENOSPC) +
+                               "); free disk space or choose another " + option_);
     done += static_cast<std::size_t>(n);
   }
   buffer_.clear();

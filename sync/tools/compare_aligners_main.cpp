@@ -97,11 +97,11 @@ double cost_ns(const std::vector<sync::TraceEvent>& trace, sync::AlignerKind kin
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Sends one trace of latencies through every aligner and shows what each would have given.");
+  CLI::App app("Applies every aligner to one trace of latencies and prints the results.");
   std::vector<std::string> logs;
   std::string json, fixed = "40ms";
   unsigned seed = 1;
-  app.add_option("LOG", logs, "logs of runs, or their folders; none: a made trace")->check(CLI::ExistingPath);
+  app.add_option("LOG", logs, "logs of runs, or their folders; none: a synthetic trace")->check(CLI::ExistingPath);
   app.add_option("--fixed", fixed, "delay of the fixed aligner")->capture_default_str();
   app.add_option("--seed", seed, "of the made trace")->capture_default_str();
   app.add_option("--json", json, "write the table here too");

@@ -96,14 +96,14 @@ int main(int argc, char** argv) try {
   std::set<std::string> taken, missing;
   for (const auto& [name, has] : senses) (has ? taken : missing).insert(name);
   if (senses.empty())
-    throw std::runtime_error("nothing is heard any more of " + joined(modalities) +
-                             " since it was sent; it may still take effect when they go on");
+    throw std::runtime_error("no health arrives any more from " + joined(modalities) +
+                             " since the profile was sent; it may still take effect when they continue");
   if (taken.empty())
     throw std::runtime_error(joined(missing) +
-                             " did not take it; it may not be what they can use, see their logs");
+                             " did not accept it; they may not support it, see their logs");
   std::cout << "in force since " << sync::to_seconds(profile.start - sync::SimTime{}) << " s of the world in "
             << joined(taken) << std::endl;
-  if (!missing.empty()) throw std::runtime_error(joined(missing) + " did not take it; see their logs");
+  if (!missing.empty()) throw std::runtime_error(joined(missing) + " did not accept it; see their logs");
   return 0;
 } catch (const std::exception& e) {
   return sync::fail("degrade", e);

@@ -129,9 +129,9 @@ class Export {
     const auto count = [](std::int64_t n, const char* what) {
       if (n > 0) std::cout << n << " " << what << "\n";
     };
-    count(foreign_, "messages of types that are not ours were left out");
-    count(broken_, "messages were no whole message of their type and were left out");
-    count(unlisted_, "tagged values were left out: no list in the log says what they are");
+    count(foreign_, "messages of other types than those of Tactus were left out");
+    count(broken_, "messages were incomplete or damaged and were left out");
+    count(unlisted_, "tagged values were left out: no list in the log names them");
     if (damaged_ > 0) std::cout << damaged_ << " damaged places, " << damaged_bytes_ << " bytes in all, were skipped\n";
     std::ofstream schema(wishes_.out + "/schema.json");
     schema << json{{"made_by", "Tactus export_log"}, {"logs", wishes_.logs}, {"files", files}, {"columns", columns()}, {"foreign_messages", foreign_}, {"broken_messages", broken_}, {"damaged_regions", damaged_}, {"damaged_bytes", damaged_bytes_}}.dump(1) << "\n";
@@ -142,7 +142,7 @@ class Export {
  private:
   static json columns() {
     return {{"log_s", "s since the live part of the log began: arrival at the recorder; of tags, the instant itself"},
-            {"world_s", "s since the world began: the instant that the message speaks of; empty: none"},
+            {"world_s", "s since the world began: the instant that the message describes; empty: none"},
             {"sender", "process that sent it"},
             {"seq", "number of the message among those of its sender on this channel"},
             {"field", "path of the field; a list's places are counted from 0"},

@@ -45,7 +45,7 @@ void print(const playout_t& m) {
       std::printf("%10s\n", "-");
     else
       std::printf("%10.1f%s\n", static_cast<double>(e.needs_ns) * 1e-6,
-                  e.needs_ns > e.delay_ns && e.delay_ns > 0 ? "  comes later than asked" : "");
+                  e.needs_ns > e.delay_ns && e.delay_ns > 0 ? "  later than requested" : "");
   }
 }
 
@@ -53,7 +53,7 @@ void print(const playout_t& m) {
 
 int main(int argc, char** argv) try {
   CLI::App app(
-      "Asks the running cluster for another policy of presentation, or with no argument says which is in force.");
+      "Requests another presentation policy from the running cluster, or prints the present one without arguments.");
   sync::BusOptions bus_options;
   std::int64_t run_id = 1;
   sync::PlayoutOptions options;
@@ -78,7 +78,7 @@ int main(int argc, char** argv) try {
   }
   for (const auto& [name, asynchrony] : plan.soa)
     if (!modalities.contains(name))
-      throw std::runtime_error("no sense \"" + sync::printable(name) + "\" is heard in this cluster; nothing was changed");
+      throw std::runtime_error("no sense \"" + sync::printable(name) + "\" runs in this cluster; no change was made");
   playout_request_t request = sync::request_for(plan, realtime_ns());
   std::optional<playout_t> answer;
   sync::HostTime until = sync::host_now() + kTimeout;
@@ -101,9 +101,9 @@ int main(int argc, char** argv) try {
   }
   if (!answer)
     throw std::runtime_error(changes_policy ? "no sync_node answers on this bus yet; the request may still take effect when "
-                                    "one goes on. Where there is "
+                                    "one continues. Where there is "
                                     "none, run it inside the cluster: tactus playout"
-                                  : "no sync_node speaks on this bus; run it inside the cluster: tactus playout");
+                                  : "no sync_node publishes on this bus; run it inside the cluster: tactus playout");
   print(*answer);
   return 0;
 } catch (const std::exception& e) {

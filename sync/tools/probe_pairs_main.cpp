@@ -105,7 +105,7 @@ double us(sync::Nanoseconds t) { return static_cast<double>(t.count()) * 1e-3; }
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Says what this host hears of others that run the same at the same time: who, how well, how late, and what their clocks say."};
+  CLI::App app{"Measures the network to other hosts that run this program at the same time: reachability, losses, round trips and clock offsets."};
   sync::BusOptions bus;
   std::string host;
   std::vector<std::string> expected;

@@ -49,15 +49,15 @@ int main(int argc, char** argv) try {
                                         .modality = "",
                                         .rate_Hz = 500,  // so it adds a millisecond on average
                                         .fifo_priority = 40,
-                                        .about = "Carries the bus between sites: what its rules name, thinned as they say, by one line to each other site."};
+                                        .about = "Carries the bus between sites: sends the channels of its rules, at the rates of its rules, over one line to each other site."};
   CLI::App app;
   sync::NodeOptions options;
   std::string listen, rules_file;
   std::vector<std::string> to;
   options.add_to(app, descriptor);
-  app.add_option("--listen", listen, "where other relays reach this one: [ADDRESS:]PORT");
-  app.add_option("--to", to, "where another site's relay listens, and what the line to it carries: ADDRESS:PORT[,KBIT]; once for each")->allow_extra_args(false);
-  app.add_option("--rules", rules_file, "file of what crosses, the same for all relays; scripts/python/tactus/cluster/relays/ has some");
+  app.add_option("--listen", listen, "address at which other relays reach this one: [ADDRESS:]PORT");
+  app.add_option("--to", to, "address of another site's relay, and the bit rate of the line to it: ADDRESS:PORT[,KBIT]; once for each")->allow_extra_args(false);
+  app.add_option("--rules", rules_file, "file of the channels to send, the same for all relays; scripts/python/tactus/cluster/relays/ has examples");
   sync::parse_or_exit(app, descriptor.name, argc, argv);
 
   std::optional<sync::LineEnd> here;

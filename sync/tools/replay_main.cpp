@@ -91,19 +91,19 @@ struct ReplayArguments {
     app.add_option("--speed", speed, "0.01 to 100 times as fast as it was, or max: as fast as --most lets it")->capture_default_str();
     app.add_option("--start", play.start_s, "s since the world began");
     app.add_option("--end", play.end_s, "likewise; default: the end of the log");
-    app.add_flag("--loop", play.loop, "begins anew at its end");
-    app.add_flag("--paused", play.paused, "waits for an order of --control");
+    app.add_flag("--loop", play.loop, "starts again at the end");
+    app.add_flag("--paused", play.paused, "waits for a command of --control");
     app.add_option("--most", play.max_per_s, "messages per second, at any speed")->check(CLI::Range(1.0, 1e6))->capture_default_str();
     app.add_option("--channels", selection_options.channels, "regular expression: only channels that match as a whole");
     app.add_option("--leave-out", selection_options.leave_out, "likewise: not these");
-    app.add_option("--also", selection_options.also, "likewise: these too, which would be left out");
+    app.add_option("--also", selection_options.also, "likewise: send these too, which are dropped by default");
     app.add_option("--rename", selection_options.rename, "FROM=TO, channels; may be repeated");
-    app.add_option("--live", selection_options.live, "a process that runs: what it said then stays in the log; may be repeated");
-    app.add_flag("--as-recorded", selection_options.as_recorded, "the degradation profiles of the log hold too");
+    app.add_option("--live", selection_options.live, "a running process, whose recorded messages are not sent; may be repeated");
+    app.add_flag("--as-recorded", selection_options.as_recorded, "applies the degradation profiles of the log");
     app.add_flag("--verbatim", selection_options.verbatim, "every message of every channel as it is, as the stock lcm-logplayer does");
-    app.add_option("--control", control, "named pipe to read orders from, or - for stdin");
-    app.add_flag("--stay", stay, "does not leave at the end of the log");
-    app.add_flag("--describe", only_describe, "says what is in the log, as JSON, and leaves");
+    app.add_option("--control", control, "named pipe to read commands from, or - for stdin");
+    app.add_flag("--stay", stay, "keeps running at the end of the log");
+    app.add_flag("--describe", only_describe, "prints the contents of the log as JSON and exits");
   }
 };
 
@@ -115,10 +115,10 @@ std::string position_text(const sync::Replay& replay, const sync::ReplayOptions&
   text << replay.position_s() << " of " << replay.length_s() << " s at ";
   replay.speed() == 0 ? text << "full speed" : text << replay.speed() << " x";
   text << (replay.over() ? ", over" : replay.paused() ? ", paused" : "") << ", " << replay.sent() << " messages";
-  if (replay.behind_s() > 0) text << ", " << replay.behind_s() << " s behind, for no more than " << play.max_per_s << " messages a second go out";
+  if (replay.behind_s() > 0) text << ", " << replay.behind_s() << " s behind, because at most " << play.max_per_s << " messages a second are sent";
   if (refused > 0) text << ", " << refused << " refused by the network";
   if (replay.scanner().damaged_regions() > 0)
-    text << ", " << replay.scanner().damaged_regions() << " damaged places (" << replay.scanner().damaged_bytes() << " bytes) passed over";
+    text << ", " << replay.scanner().damaged_regions() << " damaged places (" << replay.scanner().damaged_bytes() << " bytes) skipped";
   return text.str();
 }
 

@@ -92,15 +92,15 @@ json to_json(const sync::spy::ChannelFigures& f) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Shows everything that crosses the bus in a terminal: each channel's rate, bandwidth, gaps, jitter and age, the fields of "
+  CLI::App app{"Shows all messages on the bus in a terminal: each channel's rate, bandwidth, gaps, jitter and age, the fields of "
                "its newest message, and tagged variables."};
   sync::BusOptions bus_options;
   double once_s = 0;
   std::string json_file;
   std::int64_t run_id = 1;
   sync::add_bus_options(app, bus_options);
-  app.add_option("--run-id", run_id, "cluster run whose clocks and variables are heeded")->envname("TACTUS_RUN_ID")->check(CLI::PositiveNumber);
-  app.add_option("--once", once_s, "listens for so many seconds, prints the table and ends; status 1 when nothing was heard")->check(CLI::Range(0.1, 3600.0));
+  app.add_option("--run-id", run_id, "cluster run whose clocks and variables are used")->envname("TACTUS_RUN_ID")->check(CLI::PositiveNumber);
+  app.add_option("--once", once_s, "receives for this number of seconds, prints the table and ends; status 1 when no message was received")->check(CLI::Range(0.1, 3600.0));
   app.add_option("--json", json_file, "with --once: the same figures as JSON")->needs("--once");
   sync::parse_or_exit(app, "spy", argc, argv);
   for (int s : {SIGINT, SIGTERM, SIGHUP}) signal(s, [](int) { stop = true; });
@@ -153,7 +153,7 @@ int main(int argc, char** argv) try {
   if (once_s == 0) return 0;
   const sync::HostTime now = sync::host_now();
   if (heard.messages() == 0)
-    throw std::runtime_error("heard nothing on port " + std::to_string(bus_options.port) + "; start spy with tactus spy, or give its --port");
+    throw std::runtime_error("received no message on port " + std::to_string(bus_options.port) + "; start spy with tactus spy, or give its --port");
   auto lines = screen.draw(heard, now, 160, sync::spy::Channels::kMax + 8);
   lines.pop_back();  // the keys
   for (const std::string& line : lines) std::cout << line << "\n";

@@ -93,7 +93,7 @@ std::optional<sync::ProfileInForce> first_profile(const sync::NodeOptions& optio
     profiles.set_generation(0);
   }
   if (auto kept = sync::load_profile(options.out, options.run_id)) {
-    std::cerr << options.name << ": goes on with the profile that was put in force before" << std::endl;
+    std::cerr << options.name << ": continues with the profile that was in force before" << std::endl;
     profiles.set_generation(kept->generation);
     profile = std::move(kept);
   }
@@ -104,7 +104,7 @@ const sync::NodeDescriptor kSyncNode{.name = "sync_node",
                                      .modality = "",
                                      .rate_Hz = 50,  // at least: it wakes on messages
                                      .fifo_priority = 40,
-                                     .about = "Agrees on time with other hosts; matches contact events with what each sense reports."};
+                                     .about = "Synchronises clocks with other hosts; matches contact events with the reports of each sense."};
 
 }  // namespace
 
@@ -137,7 +137,7 @@ int tactus::sync::run_sync_node(int argc, char** argv) try {
   auto& requests = node.bus().queue<playout_request_t>(channels::kPlayoutRequest, kHealthQueue);
   sync::PlayoutCoordinator playout(node.bus().identity().clock, plan);
   if (const auto kept = sync::load_request(options.out, options.run_id); kept && playout.push(*kept))
-    std::cerr << options.name << ": goes on with what was asked for before: policy " << name_of(playout.plan().policy) << std::endl;
+    std::cerr << options.name << ": continues with the policy requested before: " << name_of(playout.plan().policy) << std::endl;
   auto& degradations = node.bus().queue<degradation_t>(channels::kDegradation, kReportsQueue);
   sync::ProfileReceiver profiles;
   std::optional<sync::ProfileInForce> profile = first_profile(node.options(), profiles);

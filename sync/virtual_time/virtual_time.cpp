@@ -41,7 +41,7 @@ VirtualTime* VirtualTime::current_ = nullptr;
 
 VirtualTime::VirtualTime(const VirtualPlan& plan)
     : seed_(mixed(plan.seed, kOfPrograms)), wire_(plan.wire, mixed(plan.seed, kOfWire)) {
-  if (current_) throw std::logic_error("this process lives in another virtual time already");
+  if (current_) throw std::logic_error("this process already runs in another virtual time");
   current_ = this;
 }
 

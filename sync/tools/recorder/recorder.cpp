@@ -120,11 +120,11 @@ std::string Recorder::status_text(std::int64_t tap_overflow, std::int64_t tap_ov
   if (failing()) text = "the disk refuses the log (" + writer_.error() + split_error_ + "); ";
   text += started_ ? std::to_string(events()) + " events" : "waits for the scene";
   if (parts_ > 1) text += " in " + std::to_string(parts_) + " parts";
-  if (beyond_ > 0) text += ", " + std::to_string(beyond_) + " left out, beyond the largest size of the log";
-  if (lost() > 0) text += ", " + std::to_string(lost()) + " lost for want of disk";
-  if (tap_overflow > 0) text += ", " + std::to_string(tap_overflow) + " lost for want of time";
+  if (beyond_ > 0) text += ", " + std::to_string(beyond_) + " dropped, beyond the maximum size of the log";
+  if (lost() > 0) text += ", " + std::to_string(lost()) + " lost because the disk is full or too slow";
+  if (tap_overflow > 0) text += ", " + std::to_string(tap_overflow) + " lost because the recorder was too slow";
   if (tap_oversized > 0)
-    text += ", " + std::to_string(tap_oversized) + " left out, larger than any message of ours";
+    text += ", " + std::to_string(tap_oversized) + " dropped, larger than any Tactus message";
   if (gaps() == 0) return text;
   text += ", gaps:";
   for (const auto& [channel, sequence] : sequences_)

@@ -172,7 +172,7 @@ std::vector<Screen::Row> Screen::field_rows(const Channels& channels, HostTime n
   const MessageType* type = type_of(bytes);
   if (!type) {
     rows.push_back(
-        {"", cut("no type of ours; its " + std::to_string(bytes.size()) + " bytes begin with:", columns)});
+        {"", cut("no Tactus type; its " + std::to_string(bytes.size()) + " bytes begin with:", columns)});
     for (std::size_t at = 0; at < bytes.size() && at < 512; at += 16) {
       std::string line = format("%04zx ", at);
       for (std::size_t i = at; i < std::min(bytes.size(), at + 16); ++i) line += format(" %02x", bytes[i]);
@@ -232,7 +232,7 @@ std::vector<std::string> Screen::draw(const Channels& channels, HostTime now, st
       break;
     case Page::kFields: head = printable(channel_) + ": the newest message"; break;
     case Page::kTags:
-      head = std::to_string(all.size()) + " variables" + (all.empty() ? ": asked for, none has come yet" : "");
+      head = std::to_string(all.size()) + " variables" + (all.empty() ? ": requested, none has arrived yet" : "");
       break;
   }
   if (paused_) head += "  (paused)";

@@ -217,12 +217,12 @@ std::string RunSummary::failure() const {
   for (const auto& [modality, tally] : matcher_.modalities())
     if (tally.lost > 0)
       also(modality + " lost " + std::to_string(tally.lost) + " of " + std::to_string(tally.expected) +
-           " owed contact events");
+           " expected contact events");
   if (holes_ > Nanoseconds(0))
     also("the log has a hole of " + std::to_string(std::llround(holes_seconds())) +
          " s: the recorder was stopped");
   if (matcher_.overflow() > 0)
-    also(std::to_string(matcher_.overflow()) + " events or senses found no room to be matched");
+    also(std::to_string(matcher_.overflow()) + " events or senses exceed the limits of the matching");
   return why;
 }
 

@@ -56,7 +56,7 @@ class RunSummary {
  public:
   // A node counts as alive at the end when it reported health within this time of it.
   static constexpr Nanoseconds kAliveWithin{3'000'000'000};
-  // So long without an event, and then the numbering of a sender goes on farther up: the recorder was stopped.
+  // After a gap of this length with a jump in the numbering of a sender, the recorder was stopped.
   static constexpr Nanoseconds kHole{1'000'000'000};
   // Time for the messages that the kernel had buffered meanwhile, which come first.
   static constexpr Nanoseconds kHoleDetectedWithin{2'000'000'000};

@@ -184,6 +184,6 @@ TEST_CASE("A file bears its name only when it is whole") {
     CHECK_THROWS_WITH(AtomicFile(folder.file("no/b.csv"), "--trace"), Contains("choose another --trace"));
     AtomicFile full("/dev/full", "--trace");
     full.write("x");
-    CHECK_THROWS_WITH(full.finish(), Contains("free some disk"));
+    CHECK_THROWS_WITH(full.finish(), Contains("free disk space"));
   }
 }

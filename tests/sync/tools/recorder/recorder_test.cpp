@@ -210,7 +210,7 @@ TEST_CASE("A message that is none of ours is recorded as it is") {
 
 TEST_CASE("What is larger than any message of the bus is left out, and is no loss for want of time") {
   Fixture f;
-  CHECK_THAT(f.recorder.status_text(0, 1), Catch::Contains("1 left out, larger than any message of ours"));
+  CHECK_THAT(f.recorder.status_text(0, 1), Catch::Contains("1 dropped, larger than any Tactus message"));
   CHECK_THAT(f.recorder.status_text(0, 1), !Catch::Contains("lost"));
 }
 
@@ -310,5 +310,5 @@ TEST_CASE("A log of a largest size ends there, and what exceeds it is counted") 
   CHECK(f.disk->bytes.size() <= 50'000 + channels::kMaxMessageBytes);
   CHECK(f.recorder.beyond() > 0);
   CHECK(static_cast<std::int64_t>(read_but_types(f.disk->bytes).size()) + f.recorder.beyond() == 2001);
-  CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("beyond the largest size"));
+  CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("beyond the maximum size"));
 }

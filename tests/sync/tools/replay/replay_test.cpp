@@ -378,7 +378,7 @@ TEST_CASE("Orders are obeyed, and what is none says what is wrong") {
   CHECK(say("").empty());
   for (const char* line : {"fly", "speed 0", "speed nan", "speed -1", "seek", "seek x", "seek inf", "step -1",
                            "loop maybe", "pause 3", "seek 1 2", "\x01\x02"})
-    CHECK_THAT(say(line), Catch::StartsWith("cannot obey"));
+    CHECK_THAT(say(line), Catch::StartsWith("cannot execute"));
   CHECK_FALSE(quit);
   say("quit");
   CHECK(quit);

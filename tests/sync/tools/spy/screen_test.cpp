@@ -117,7 +117,7 @@ TEST_CASE("The cursor stays on its channel while others come, and enter shows th
   CHECK_THAT(s.draw()[s.screen.marked()], Catch::StartsWith("TOOL_STATE"));
   s.press(Key::kUp);
   s.press(Key::kEnter);
-  CHECK_THAT(s.all(), Catch::Contains("no type of ours"));
+  CHECK_THAT(s.all(), Catch::Contains("no Tactus type"));
 }
 
 TEST_CASE("Under the marked field its course is drawn") {
@@ -141,7 +141,7 @@ TEST_CASE("Variables are shown with value, unit and course, and only then they a
   CHECK_FALSE(s.screen.shows_tags());
   s.press(Key::kTags);
   CHECK(s.screen.shows_tags());
-  CHECK_THAT(s.all(), Catch::Contains("asked for, none has come yet"));
+  CHECK_THAT(s.all(), Catch::Contains("requested, none has arrived yet"));
   tag_list_t list{};
   list.header.incarnation = 3, list.node = "haptic_node", list.list = 5, list.total = list.tag_count = 1,
   list.tags = {{"force", "N", 0}};

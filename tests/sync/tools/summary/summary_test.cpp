@@ -191,8 +191,8 @@ TEST_CASE("A run with a loss, or without a node that must be there, is a failure
   const std::string why = log.summary(options).failure();
   CHECK_THAT(why, Catch::Contains("haptic_node never reported"));
   CHECK_THAT(why, Catch::Contains("audio_node was not alive at the end"));
-  CHECK_THAT(why, Catch::Contains("visual lost 1 of 81 owed contact events"));
-  CHECK_THAT(why, Catch::Contains("audio lost 1 of 81 owed contact events"));
+  CHECK_THAT(why, Catch::Contains("visual lost 1 of 81 expected contact events"));
+  CHECK_THAT(why, Catch::Contains("audio lost 1 of 81 expected contact events"));
 }
 
 TEST_CASE("Missing messages are counted as gaps, and bytes that are no message as bad") {
