@@ -81,7 +81,7 @@ class PageAssembler {
   explicit PageAssembler(const PageLimits& limits, PageOrder order = PageOrder::kFirstPage) : limits_(limits), order_(order) {}
 
   // Stores a page. Returns the group when this page completes it, valid until the next call; else null. Calls
-  // given_up(Group&) for each incomplete group that is dropped to keep the limits.
+  // on_drop(Group&) for each incomplete group that is dropped to keep the limits.
   template <class OnDrop>
   Group* add(const Key& key, int number, int count, Page page, OnDrop&& on_drop) {
     repeated_ = std::find(done_.begin(), done_.end(), key) != done_.end();
@@ -102,7 +102,7 @@ class PageAssembler {
   bool repeated() const { return repeated_; }
   // Number of incomplete groups.
   std::size_t size() const { return groups_.size(); }
-  // Drops the incomplete groups for which which(key) is true.
+  // Drops the incomplete groups for which predicate(key) is true.
   template <class Predicate>
   void drop_if(Predicate&& predicate) {
     std::erase_if(groups_, [&](const Group& g) { return predicate(g.key); });

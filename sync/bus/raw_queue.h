@@ -41,7 +41,7 @@ class RawQueue : public InboxBase {
     std::copy(bytes, bytes + size, entry.bytes.begin());
   }
 
-  // Passes all stored messages to take(bytes, arrival), oldest first.
+  // Passes all stored messages to visit(bytes, arrival), oldest first.
   template <class Visit>
   void read(Visit&& visit) {
     for (; size_ > 0; --size_) {

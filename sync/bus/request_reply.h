@@ -13,7 +13,7 @@ namespace tactus::sync {
 // A random number > 0, different for each request. Throws std::runtime_error when the system has no random numbers.
 std::int64_t request_id();
 
-// The reply of this run to `question`; nullopt: no reply within `patience`. It blocks: for command-line programs only.
+// The reply of this run to `message`; nullopt: no reply within `timeout`. It blocks: for command-line programs only.
 template <class Request, class Reply>
 std::optional<Reply> request(Bus& bus, const char* channel, Request& message, Queue<Reply>& replies,
                          Nanoseconds timeout) {

@@ -24,7 +24,7 @@ class UdpReader {
   UdpReader(const UdpReader&) = delete;
   UdpReader& operator=(const UdpReader&) = delete;
 
-  // Calls hear(side, ChannelBytes) for the received messages, at most `at_most`, without waiting. side: 0 for the first port,
+  // Calls on_message(side, ChannelBytes) for the received messages, at most `max_messages`, without waiting. side: 0 for the first port,
   // 1 for the next. The order of each port is kept.
   template <class OnMessage>
   void read(int max_messages, OnMessage&& on_message) {

@@ -23,7 +23,7 @@ class Deadlines {
   // Call it after waking for next(). A loop that overslept skips whole periods and counts them; it never catches up in a
   // burst. Returns the number of skipped ticks.
   std::int64_t advance(HostTime now);
-  // Re-phases the loop: the next deadline is at `next`, and later ones count from there. The left_out ticks before it count
+  // Re-phases the loop: the next deadline is at `next`, and later ones count from there. The skipped ticks before it count
   // as missed.
   void align(HostTime next, std::int64_t skipped = 0);
 

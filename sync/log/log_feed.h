@@ -51,7 +51,7 @@ class LogFeed {
   std::int64_t events() const { return scan_.events(); }
   std::int64_t damaged_regions() const { return scan_.damaged_regions(); }
   std::int64_t damaged_bytes() const { return scan_.damaged_bytes(); }
-  // Events with damaged stamps: further than LogTimeRanges::kApart_us from the stamps of the run, and too few to be a later
+  // Events with damaged stamps: further than LogTimeRanges::kMaxGap_us from the stamps of the run, and too few to be a later
   // part of it. They are passed on with the event before them, and do not lengthen the run.
   std::int64_t misdated() const { return time_ranges_.misdated(); }
   // One sentence when the log does not state its run, or states it wrongly; empty otherwise.

@@ -12,7 +12,7 @@ class LogTimeRanges {
  public:
   // Design: fewer than 32 nearby stamps cannot be a run, because every node publishes its health at 10 Hz.
   static constexpr std::int64_t kMinRunEvents = 32;
-  // Stamps that are farther apart than this, with none between, belong to two ranges: SummaryClock::kLargestStep.
+  // Stamps that are farther apart than this, with none between, belong to two ranges: SummaryClock::kMaxStep.
   static constexpr std::int64_t kMaxGap_us = 60'000'000;
   // Limits the memory for a log with only random stamps. With more ranges, the half with the fewest events is removed.
   static constexpr std::size_t kMax = 65'536;
@@ -21,7 +21,7 @@ class LogTimeRanges {
   void add(std::int64_t stamp_us);
   // True for a stamp in a range with as many events as a run has, or in the range with the most events.
   bool in_run(std::int64_t stamp_us) const;
-  // Number of events for which of_the_run is false.
+  // Number of events for which in_run is false.
   std::int64_t misdated() const;
 
  private:

@@ -14,7 +14,7 @@ namespace tactus::sync {
 
 class TimestampedEvents {
  public:
-  // ages: the valid stamps of this log, if known; null: any. Both outlive this object.
+  // time_ranges: the valid stamps of this log, if known; null: any. Both outlive this object.
   TimestampedEvents(std::span<const std::uint8_t> bytes, const LogOrigin& origin, const LogTimeRanges* time_ranges = nullptr)
       : scanner_(bytes), origin_(origin), time_ranges_(time_ranges) {}
 

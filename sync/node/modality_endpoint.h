@@ -1,14 +1,14 @@
 // The endpoint of a modality on the bus: input streams, the operators of the degradation profile on them, playout delay, and
 // reports of presented events. Each rendering node has one.
 //
-//   sync::ModalityEndpoint sense(node);
-//   auto& events = sense.events();
+//   sync::ModalityEndpoint endpoint(node);
+//   auto& events = endpoint.events();
 //   while (node.running()) {
 //     const sync::HostTime now = node.wait();
-//     sense.step(now);                        // receives new messages, releases the due ones
+//     endpoint.step(now);                        // receives new messages, releases the due ones
 //     while (const auto m = events.pop()) ...
-//     ... render the state of the world at now - sense.delay() ...
-//     sense.publish(now);
+//     ... render the state of the world at now - endpoint.delay() ...
+//     endpoint.publish(now);
 //   }
 #pragma once
 

@@ -245,7 +245,7 @@ node_health_t Node::health_message(HostTime now) {
     in.channel = c.channel;
     const InputAge age = age_of(c, bus_.clocks(), now);
     in.age_ns = age.age.count();
-    in.uncertainty_ns = static_cast<std::int32_t>(age.uncertainty.count());  // at most ClockMaps::kMaxUncertain
+    in.uncertainty_ns = static_cast<std::int32_t>(age.uncertainty.count());  // at most ClockMaps::kMaxUncertainty
     in.messages = c.sequence.messages();
     in.gaps = saturated(c.sequence.gaps() + c.dropped);
     in.bad = saturated(c.bad);

@@ -80,7 +80,7 @@ class Node {
   const NodeOptions& options() const { return options_; }
   const NodeDescriptor& descriptor() const { return descriptor_; }
   void set_rate(double rate_Hz);
-  // Re-phases the loop to an external clock: the next tick is at next_tick; the left_out ticks before it count as missed.
+  // Re-phases the loop to an external clock: the next tick is at next_tick; the skipped ticks before it count as missed.
   void align(HostTime next_tick, std::int64_t skipped = 0) { loop_.align(next_tick, skipped); }
   // Ticks done and missed so far: their sum numbers the periods of the loop.
   const Deadlines& deadlines() const { return loop_.deadlines(); }

@@ -33,7 +33,7 @@ class OfflineInput {
     std::string path, option;
   };
 
-  // rings_on: time that is rendered after the end of the log. Throws std::runtime_error with one sentence when the log holds
+  // tail: time that is rendered after the end of the log. Throws std::runtime_error with one sentence when the log holds
   // no run, or when an output file would overwrite the log.
   OfflineInput(const OfflineOptions& options, std::vector<Written> written, double rate_Hz, HostTime clock,
           Nanoseconds tail = Nanoseconds(0));

@@ -26,7 +26,7 @@ class TagTable {
 
   void push(const tag_list_t& m);
 
-  // Calls take(const List&, const tag_def_t&, std::int64_t time_ns, double value) for each present value, row by row.
+  // Calls visit(const List&, const tag_def_t&, std::int64_t time_ns, double value) for each present value, row by row.
   // time_ns: CLOCK_MONOTONIC of the sender. Values without a list are counted.
   template <class Visit>
   void read(const tag_values_t& m, Visit&& visit) {

@@ -46,7 +46,7 @@ class LineSocket {
 
   // Returns false when the network refused it. Never waits.
   bool send(const LineEnd& to, std::span<const std::uint8_t> datagram);
-  // Calls hear(index of the site, LineMessage) for the datagrams received from these sites, at most kMax, without waiting.
+  // Calls on_message(index of the site, LineMessage) for the datagrams received from these sites, at most kMax, without waiting.
   template <class OnMessage>
   void read(std::span<const LineEnd> sites, OnMessage&& on_message) {
     for (int i = 0; i < kMax; ++i) {

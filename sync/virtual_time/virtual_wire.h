@@ -37,7 +37,7 @@ class VirtualEnd {
 
   // side: 0 the first port, 1 the next.
   void subscribe(std::size_t side, const std::string& channel, MessageReceiver* inbox) { subscribers_[side][channel].push_back(inbox); }
-  // Delivers the messages that have arrived by now, oldest first, at most at_most.
+  // Delivers the messages that have arrived by now, oldest first, at most max_messages.
   void drain(HostTime now, int max_messages);
   // Arrival of the next message; HostTime::max(): none is in flight.
   HostTime next_arrival() const { return in_flight_.empty() ? HostTime::max() : in_flight_.front().at; }
@@ -77,7 +77,7 @@ class VirtualWire {
 
   std::unique_ptr<VirtualEnd> join();
   void send(const VirtualEnd& from, std::size_t side, std::string_view channel, std::span<const std::uint8_t> data, HostTime now);
-  // Calls of_message for every sent message, at its sending: for a recorder without losses. The returned number ends it.
+  // Calls the listener for every message when it is sent: for a recorder without losses. Pass the returned number to remove_listener.
   using Listener = std::function<void(HostTime, std::string_view channel, std::span<const std::uint8_t> data)>;
   int add_listener(Listener listener);
   void remove_listener(int number) { listeners_.erase(number); }

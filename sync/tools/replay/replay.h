@@ -14,7 +14,7 @@
 namespace tactus::sync {
 
 struct ReplayOptions {
-  double speed = 1;    // recorded seconds per second; 0: as fast as most_per_s permits
+  double speed = 1;    // recorded seconds per second; 0: as fast as max_per_s permits
   double start_s = 0;  // since the log's live part began
   double end_s = -1;   // likewise; negative: at the end of the log
   bool loop = false;
