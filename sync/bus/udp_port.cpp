@@ -16,10 +16,10 @@ namespace {
 // 4 MB: a burst of 20,000 datagrams of 100 bytes. Without CAP_NET_ADMIN the kernel limits it to net.core.rmem_max.
 constexpr int kReceiveBufferBytes = 4 << 20;
 
-[[noreturn]] void fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
+[[noreturn]] void fail(const char* action) { throw std::system_error(errno, std::generic_category(), action); }
 
-void set(int socket, int level, int option, const void* value, socklen_t size, const char* what) {
-  if (setsockopt(socket, level, option, value, size) < 0) fail(what);
+void set(int socket, int level, int option, const void* value, socklen_t size, const char* action) {
+  if (setsockopt(socket, level, option, value, size) < 0) fail(action);
 }
 
 void prepare(int socket, const std::string& group, int port) {

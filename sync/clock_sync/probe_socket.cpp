@@ -46,8 +46,8 @@ void attach_filter(int fd) {
   setsockopt(fd, SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program);
 }
 
-std::runtime_error trouble(const BusOptions& o, const char* what) {
-  return std::runtime_error(std::string("cannot ") + what + " for clock probes at " + o.group + ":" + std::to_string(o.port) +
+std::runtime_error socket_error(const BusOptions& o, const char* action) {
+  return std::runtime_error(std::string("cannot ") + action + " for clock probes at " + o.group + ":" + std::to_string(o.port) +
                             " (" + std::strerror(errno) + "); choose another --port");
 }
 
@@ -57,7 +57,7 @@ ProbeSocket::ProbeSocket(const BusOptions& o) : port_(htons(static_cast<std::uin
   static_assert(kChannelBytes == 12);
   socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   wake_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  if (socket_ < 0 || wake_ < 0) throw trouble(o, "open a socket");
+  if (socket_ < 0 || wake_ < 0) throw socket_error(o, "open a socket");
   attach_filter(socket_);  // before any datagram can arrive
   const int on = 1;
   const auto ttl = static_cast<unsigned char>(o.ttl);
@@ -69,12 +69,12 @@ ProbeSocket::ProbeSocket(const BusOptions& o) : port_(htons(static_cast<std::uin
   here.sin_port = port_;
   inet_pton(AF_INET, o.group.c_str(), &here.sin_addr);
   address_ = here.sin_addr.s_addr;
-  if (bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here) != 0) throw trouble(o, "bind a socket");
+  if (bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here) != 0) throw socket_error(o, "bind a socket");
   ip_mreq group{};
   group.imr_multiaddr.s_addr = address_;
-  if (setsockopt(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group) != 0) throw trouble(o, "join the group");
+  if (setsockopt(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group) != 0) throw socket_error(o, "join the group");
   const int no = 0;  // on the interface of the route only, as sync/bus/udp_port.cpp
-  if (setsockopt(socket_, IPPROTO_IP, IP_MULTICAST_ALL, &no, sizeof no) != 0) throw trouble(o, "join the group on one interface");
+  if (setsockopt(socket_, IPPROTO_IP, IP_MULTICAST_ALL, &no, sizeof no) != 0) throw socket_error(o, "join the group on one interface");
 }
 
 ProbeSocket::~ProbeSocket() {

@@ -92,11 +92,11 @@ bool says_another_encoding(std::string declaration) {
 }
 
 // An element may contain only elements and comments.
-void refuse_other_than_elements(const tinyxml2::XMLNode& within, const std::string& what, int& line) {
+void refuse_other_than_elements(const tinyxml2::XMLNode& within, const std::string& message, int& line) {
   for (const tinyxml2::XMLNode* n = within.FirstChild(); n; n = n->NextSibling()) {
     if (n->ToElement() || n->ToComment()) continue;
     line = n->GetLineNum();
-    throw std::invalid_argument(what);
+    throw std::invalid_argument(message);
   }
 }
 
@@ -113,8 +113,8 @@ void refuse_more_than_root(const tinyxml2::XMLDocument& document, const tinyxml2
   }
 }
 
-[[noreturn]] void refuse(const std::string& file, int line, const std::string& why) {
-  throw std::invalid_argument(file + ":" + std::to_string(line) + ": " + why);
+[[noreturn]] void refuse(const std::string& file, int line, const std::string& reason) {
+  throw std::invalid_argument(file + ":" + std::to_string(line) + ": " + reason);
 }
 
 }  // namespace

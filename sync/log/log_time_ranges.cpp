@@ -33,16 +33,16 @@ void LogTimeRanges::remove_small_ranges() {
   for (const auto& [first, range] : ranges_) counts.push_back(range.events);
   const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
   std::nth_element(counts.begin(), middle, counts.end());
-  const std::int64_t most = std::min(*middle, kMinRunEvents - 1);
-  std::size_t spare = ranges_.size() / 2;
-  for (auto it = ranges_.begin(); it != ranges_.end() && spare > 0;) {
-    if (it->second.events > most || it->second.events == max_events_) {
+  const std::int64_t max_removed_events = std::min(*middle, kMinRunEvents - 1);
+  std::size_t to_remove = ranges_.size() / 2;
+  for (auto it = ranges_.begin(); it != ranges_.end() && to_remove > 0;) {
+    if (it->second.events > max_removed_events || it->second.events == max_events_) {
       ++it;
       continue;
     }
     removed_ += it->second.events;
     it = ranges_.erase(it);
-    --spare;
+    --to_remove;
   }
 }
 

@@ -37,10 +37,10 @@ std::string FileSink::append(std::span<const std::uint8_t> bytes) {
     const ssize_t n = ::write(fd_, bytes.data() + done, bytes.size() - done);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) {
-      const std::string why = n < 0 ? strerror(errno) : "nothing was written";
+      const std::string reason = n < 0 ? strerror(errno) : "nothing was written";
       // Removes the incomplete event, so that the file stays readable, also for tools that stop at the first damage.
       if (ftruncate(fd_, size_) != 0 || lseek(fd_, size_, SEEK_SET) < 0) size_ += static_cast<std::int64_t>(done);
-      return why;
+      return reason;
     }
     done += static_cast<std::size_t>(n);
   }

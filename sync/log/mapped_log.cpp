@@ -30,8 +30,8 @@ void say_cut(int, siginfo_t* info, void*) {
     return;
   }
   static constexpr char text[] = "another process truncated the log while it was read; give a copy that no process writes to\n";
-  const ssize_t said = write(STDERR_FILENO, text, sizeof text - 1);
-  _exit(said < 0 ? 2 : 1);
+  const ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
+  _exit(written < 0 ? 2 : 1);
 }
 
 void tell_of_cuts(std::span<const std::uint8_t> bytes) {

@@ -102,8 +102,8 @@ void parse_or_exit(CLI::App& app, const std::string& node, int argc, char** argv
 }
 
 int fail(const std::string& node, const std::exception& e) {
-  const std::string what = e.what();
-  std::cerr << (what.starts_with(node) ? "" : node + ": ") << printable(what) << "\n";
+  const std::string message = e.what();
+  std::cerr << (message.starts_with(node) ? "" : node + ": ") << printable(message) << "\n";
   return 1;
 }
 

@@ -38,8 +38,8 @@ void clear(tag_values_t& m) {
 }  // namespace
 
 void Tags::add(std::string name, std::string unit, Getter getter, double rate_Hz) {
-  const auto refuse = [&](const std::string& why) {
-    throw std::invalid_argument("cannot tag \"" + name + "\": " + why);
+  const auto refuse = [&](const std::string& reason) {
+    throw std::invalid_argument("cannot tag \"" + name + "\": " + reason);
   };
   if (!is_name(name)) refuse("a name has 1 to 48 letters, digits, '.', '_' and '-'");
   if (unit.empty() || unit.size() > 16) refuse("its unit has 1 to 16 characters; \"1\" for a plain number");

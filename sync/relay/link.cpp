@@ -86,9 +86,9 @@ LineSocket::LineSocket(const LineEnd& here)
   if (setsockopt(socket_, SOL_SOCKET, SO_RCVBUFFORCE, &kReceiveBufferBytes, sizeof kReceiveBufferBytes) < 0)
     setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &kReceiveBufferBytes, sizeof kReceiveBufferBytes);
   if (bind(socket_, reinterpret_cast<const sockaddr*>(&here.address), sizeof here.address) == 0) return;
-  const std::string why = std::strerror(errno);
+  const std::string reason = std::strerror(errno);
   if (socket_ >= 0) close(socket_);
-  throw std::runtime_error("cannot listen at " + here.name + " (" + why +
+  throw std::runtime_error("cannot listen at " + here.name + " (" + reason +
                            "); choose another --listen, an address of this host with a free port");
 }
 

@@ -86,11 +86,11 @@ PassRule parse_pass(const tinyxml2::XMLElement& e) {
 }
 
 // An element may contain only elements and comments.
-void refuse_text_in(const tinyxml2::XMLNode& within, const char* what, int& line) {
+void refuse_text_in(const tinyxml2::XMLNode& within, const char* message, int& line) {
   for (const tinyxml2::XMLNode* n = within.FirstChild(); n; n = n->NextSibling()) {
     if (n->ToElement() || n->ToComment() || (n->ToDeclaration() && within.ToDocument())) continue;
     line = n->GetLineNum();
-    throw std::invalid_argument(what);
+    throw std::invalid_argument(message);
   }
 }
 

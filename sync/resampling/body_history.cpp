@@ -72,8 +72,8 @@ void BodyHistory::push(const world_state_t& page, HostTime arrival) {
     if (!insert(samples, {time, page.header.seq, page.group == world_state_t::AHEAD, period, from_message(b)}))
       continue;
     if (samples.size() <= 2) continue;
-    const bool young = samples.size() <= kSamplesPerBody || samples.back().time - samples.front().time <= span_;
-    if (young && sample_count_ <= kMaxSamples) continue;
+    const bool recent = samples.size() <= kSamplesPerBody || samples.back().time - samples.front().time <= span_;
+    if (recent && sample_count_ <= kMaxSamples) continue;
     samples.pop_front();
     --sample_count_;
   }
@@ -96,8 +96,8 @@ bool BodyHistory::insert(Samples& samples, TimedPose sample) {
     at = std::find_if(samples.rbegin(), samples.rend(), later).base();
   }
   if (at != samples.begin() && std::prev(at)->time == sample.time) {
-    TimedPose& there = *std::prev(at);
-    if (there.ahead && !sample.ahead) there = sample;
+    TimedPose& previous = *std::prev(at);
+    if (previous.ahead && !sample.ahead) previous = sample;
     return false;
   }
   samples.insert(at, std::move(sample));

@@ -93,16 +93,16 @@ int main(int argc, char** argv) try {
     const bool all = std::all_of(senses.begin(), senses.end(), [](const auto& s) { return s.second; });
     if (!senses.empty() && all && sync::host_now() - sent > 3 * kRepeat) break;
   }
-  std::set<std::string> taken, missing;
-  for (const auto& [name, has] : senses) (has ? taken : missing).insert(name);
+  std::set<std::string> accepted, missing;
+  for (const auto& [name, has] : senses) (has ? accepted : missing).insert(name);
   if (senses.empty())
     throw std::runtime_error("no health arrives any more from " + joined(modalities) +
                              " since the profile was sent; it may still take effect when they continue");
-  if (taken.empty())
+  if (accepted.empty())
     throw std::runtime_error(joined(missing) +
                              " did not accept it; they may not support it, see their logs");
   std::cout << "in force since " << sync::to_seconds(profile.start - sync::SimTime{}) << " s of the world in "
-            << joined(taken) << std::endl;
+            << joined(accepted) << std::endl;
   if (!missing.empty()) throw std::runtime_error(joined(missing) + " did not accept it; see their logs");
   return 0;
 } catch (const std::exception& e) {

@@ -113,7 +113,7 @@ int main(int argc, char** argv) try {
   auto& values = bus.queue<tag_values_t>(channels::kTagValues, 4096);
   sync::RecorderTap tap(bus_options);
   sync::MessageBatch batch;
-  sync::spy::Channels heard(bus.clocks());
+  sync::spy::Channels channel_stats(bus.clocks());
   sync::spy::Screen screen;
   std::optional<Terminal> terminal;
   if (once_s == 0) terminal.emplace();
@@ -134,7 +134,7 @@ int main(int argc, char** argv) try {
     while (const auto m = values.pop())
       if (m->message.header.run_id == run_id && !screen.paused()) screen.push(m->message, m->arrival);
     if (!screen.paused())
-      for (std::size_t i = 0; i < batch.size(); ++i) heard.push(batch[i]);
+      for (std::size_t i = 0; i < batch.size(); ++i) channel_stats.push(batch[i]);
     if (screen.shows_tags() && now >= ask) {
       ask = now + kRequestPeriod;
       tag_request_t request{};
@@ -144,24 +144,24 @@ int main(int argc, char** argv) try {
     }
     if (terminal && now >= draw) {
       draw = now + kDrawEvery;
-      if (!screen.paused()) screen.sample(heard, now);
+      if (!screen.paused()) screen.sample(channel_stats, now);
       const auto [columns, rows] = terminal_size();
-      const auto lines = screen.draw(heard, now, columns, rows);
+      const auto lines = screen.draw(channel_stats, now, columns, rows);
       terminal->show(lines, screen.marked());
     }
   }
   if (once_s == 0) return 0;
   const sync::HostTime now = sync::host_now();
-  if (heard.messages() == 0)
+  if (channel_stats.messages() == 0)
     throw std::runtime_error("received no message on port " + std::to_string(bus_options.port) + "; start spy with tactus spy, or give its --port");
-  auto lines = screen.draw(heard, now, 160, sync::spy::Channels::kMax + 8);
+  auto lines = screen.draw(channel_stats, now, 160, sync::spy::Channels::kMax + 8);
   lines.pop_back();  // the keys
   for (const std::string& line : lines) std::cout << line << "\n";
   if (!json_file.empty()) {
     json all = json::array();
-    for (const auto& f : heard.figures(now)) all.push_back(to_json(f));
+    for (const auto& f : channel_stats.figures(now)) all.push_back(to_json(f));
     std::ofstream file(json_file);
-    file << json{{"seconds", once_s}, {"messages", heard.messages()}, {"lost_here", tap.overflow()}, {"channels", all}}.dump(1) << "\n";
+    file << json{{"seconds", once_s}, {"messages", channel_stats.messages()}, {"lost_here", tap.overflow()}, {"channels", all}}.dump(1) << "\n";
     if (!file.flush()) throw std::runtime_error("cannot write " + json_file + "; give --json a file that can be written");
   }
   return 0;

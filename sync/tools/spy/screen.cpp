@@ -14,9 +14,9 @@ constexpr std::size_t kNameColumns = 18, kLongestValue = 40;
 constexpr const char* kKeys = "up down  enter: fields  esc: back  t: variables  p: pause  q: quit";
 
 template <class... Values>
-std::string format(const char* how, Values... values) {
+std::string format(const char* pattern, Values... values) {
   char text[256];
-  std::snprintf(text, sizeof text, how, values...);
+  std::snprintf(text, sizeof text, pattern, values...);
   return text;
 }
 
@@ -186,8 +186,8 @@ std::vector<Screen::Row> Screen::field_rows(const Channels& channels, HostTime n
     rows.push_back({path, cut(line, columns)});
     if (path != marked_name_ || std::holds_alternative<std::string>(value)) return;
     const std::size_t room = columns > 60 ? columns - 60 : 10;
-    const Spark::Drawn course = graph_.draw(now, std::min(room, Spark::kMax));
-    rows.push_back({path + " ", "    " + course.text + format("  %.4g .. %.4g", course.lowest, course.highest)});
+    const Spark::Drawn graph = graph_.draw(now, std::min(room, Spark::kMax));
+    rows.push_back({path + " ", "    " + graph.text + format("  %.4g .. %.4g", graph.lowest, graph.highest)});
   });
   return rows;
 }

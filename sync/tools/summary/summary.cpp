@@ -204,8 +204,8 @@ std::map<std::string, ChannelSummary> RunSummary::channels() const {
 }
 
 std::string RunSummary::failure() const {
-  std::string why;
-  const auto also = [&](const std::string& text) { why += (why.empty() ? "" : "; ") + text; };
+  std::string reason;
+  const auto also = [&](const std::string& text) { reason += (reason.empty() ? "" : "; ") + text; };
   const auto present = nodes();
   for (const std::string& name : options_.nodes) {
     const auto it = present.find(name);
@@ -223,7 +223,7 @@ std::string RunSummary::failure() const {
          " s: the recorder was stopped");
   if (matcher_.overflow() > 0)
     also(std::to_string(matcher_.overflow()) + " events or senses exceed the limits of the matching");
-  return why;
+  return reason;
 }
 
 }  // namespace tactus::sync

@@ -43,30 +43,30 @@ TEST_CASE("A message that was overtaken does not turn the map back") {
 
 TEST_CASE("A forged clock moves nobody's time") {
   SimClockTracker f(1);
-  const auto hear = [&](std::int64_t ms, sim_clock_t clock) {
+  const auto receive = [&](std::int64_t ms, sim_clock_t clock) {
     return f.track(header(1, ms * kMs), clock, host_time(ms * kMs));
   };
   const auto honest = [](std::int64_t ms, double rate = 1) { return sim_clock_t{ms * kMs, ms * kMs, rate}; };
-  for (int ms = 5000; ms < 5100; ++ms) REQUIRE(hear(ms, honest(ms)) != TrackResult::kIgnore);
+  for (int ms = 5000; ms < 5100; ++ms) REQUIRE(receive(ms, honest(ms)) != TrackResult::kIgnore);
   SECTION("ahead or behind") {
-    CHECK(hear(5100, {3'600'000 * kMs, 5100 * kMs, 1}) == TrackResult::kIgnore);
-    CHECK(hear(5100, {0, 5100 * kMs, 1}) == TrackResult::kIgnore);
+    CHECK(receive(5100, {3'600'000 * kMs, 5100 * kMs, 1}) == TrackResult::kIgnore);
+    CHECK(receive(5100, {0, 5100 * kMs, 1}) == TrackResult::kIgnore);
     CHECK(f.map(host_time(5100 * kMs))->to_sim(host_time(5100 * kMs)) == sim_time(5100 * kMs));
   }
   SECTION("nor does a forged rate, for longer than until the next message") {
-    CHECK(hear(5100, {5100 * kMs, 5100 * kMs, 100}) == TrackResult::kSame);
-    CHECK(hear(5130, honest(5130)) == TrackResult::kSame);
+    CHECK(receive(5100, {5100 * kMs, 5100 * kMs, 100}) == TrackResult::kSame);
+    CHECK(receive(5130, honest(5130)) == TrackResult::kSame);
     CHECK(f.map(host_time(5130 * kMs))->rate == 1);
   }
   SECTION("but a simulation that was stopped for 5 s is believed when it speaks again") {
-    CHECK(hear(10100, {5100 * kMs, 10100 * kMs, 1}) == TrackResult::kSame);
+    CHECK(receive(10100, {5100 * kMs, 10100 * kMs, 1}) == TrackResult::kSame);
     CHECK(f.map(host_time(10100 * kMs))->to_sim(host_time(10100 * kMs)) == sim_time(5100 * kMs));
   }
   SECTION("and so is one that was paused, or slow") {
-    CHECK(hear(5100, {5100 * kMs, 5100 * kMs, 0}) == TrackResult::kSame);
-    CHECK(hear(5200, {5100 * kMs, 5200 * kMs, 0}) == TrackResult::kSame);
-    CHECK(hear(9000, {5100 * kMs, 9000 * kMs, 0.3}) == TrackResult::kSame);
-    CHECK(hear(9100, {5130 * kMs, 9100 * kMs, 0.3}) == TrackResult::kSame);
+    CHECK(receive(5100, {5100 * kMs, 5100 * kMs, 0}) == TrackResult::kSame);
+    CHECK(receive(5200, {5100 * kMs, 5200 * kMs, 0}) == TrackResult::kSame);
+    CHECK(receive(9000, {5100 * kMs, 9000 * kMs, 0.3}) == TrackResult::kSame);
+    CHECK(receive(9100, {5130 * kMs, 9100 * kMs, 0.3}) == TrackResult::kSame);
   }
   SECTION("and a lie that was there first is found out within 0.3 s") {
     SimClockTracker late(1);

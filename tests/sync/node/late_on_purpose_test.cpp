@@ -67,7 +67,7 @@ TEST_CASE("A sense that is late on purpose is not called lost before it could pr
 
 TEST_CASE("When a long delay is taken back, events are settled as soon as before once it is out again") {
   MatcherFixture f;
-  const auto say = [&](double ms, double delay_ms) {
+  const auto publish = [&](double ms, double delay_ms) {
     playout_t m{};
     m.header = MatcherFixture::health_message("sync_node", "", 0, ms).header;
     m.entries = {{"audio", static_cast<std::int64_t>(delay_ms * 1e6), 0, -1}};
@@ -78,9 +78,9 @@ TEST_CASE("When a long delay is taken back, events are settled as soon as before
     for (double ms = from; ms < to; ms += 100) f.matcher.advance(f.at(ms));
   };
   f.healths("audio_node", "audio", kHit, 0, 300'000);
-  say(0, 20'000);
+  publish(0, 20'000);
   pass(0, 10'000);  // the report covers half a second by now
-  say(10'000, 0);
+  publish(10'000, 0);
   pass(10'000, 25'000);
   f.event(1, 25'000);
   f.matcher.advance(f.at(26'100));

@@ -44,13 +44,13 @@ using Delays = std::map<std::string, std::int64_t>;
 TEST_CASE("A coordinator says ten times a second when each sense presents") {
   PlayoutCoordinator c(5, plan());
   heard(c, "audio", 18), heard(c, "visual", 33), heard(c, "haptic", 2);
-  int said = 0;
+  int published = 0;
   for (int ms = 0; ms < 1000; ms += 5)
     if (const auto m = c.next_message(at(ms))) {
-      ++said;
+      ++published;
       CHECK(delays_ms(m) == Delays{{"audio", 33}, {"haptic", 0}, {"visual", 33}});
     }
-  CHECK(said == 10);
+  CHECK(published == 10);
 }
 
 TEST_CASE("Before anything was presented every sense keeps its own delay") {
@@ -97,9 +97,9 @@ TEST_CASE("A delay rises as soon as it must and falls only by more than the slac
 
 TEST_CASE("A newer request is put in force and an older one is not") {
   PlayoutCoordinator c(5, plan());
-  PlayoutPlan asked = plan(Policy::kExperiment);
-  asked.soa["visual"] = -50 * kMs;
-  CHECK(c.push(request_for(asked, 100)));
+  PlayoutPlan requested = plan(Policy::kExperiment);
+  requested.soa["visual"] = -50 * kMs;
+  CHECK(c.push(request_for(requested, 100)));
   heard(c, "audio", 18), heard(c, "visual", 33);
   const auto m = c.next_message(at(0));
   REQUIRE(m);
@@ -107,8 +107,8 @@ TEST_CASE("A newer request is put in force and an older one is not") {
   CHECK(delays_ms(m) == Delays{{"audio", 150}, {"visual", 100}});
   CHECK_FALSE(c.push(request_for(plan(Policy::kAsap), 99)));
   CHECK(c.plan().policy == Policy::kExperiment);
-  asked.soa["visual"] = -500 * kMs;  // before the event
-  CHECK_FALSE(c.push(request_for(asked, 200)));
+  requested.soa["visual"] = -500 * kMs;  // before the event
+  CHECK_FALSE(c.push(request_for(requested, 200)));
 }
 
 TEST_CASE(

@@ -59,7 +59,7 @@ TEST_CASE(
       }
       if (heard) ++(kind == contact_event_t::HIT ? hits : begins), begins -= kind == contact_event_t::END;
       for (const Node& n : nodes) {
-        const bool owed =
+        const bool is_expected =
             kind == contact_event_t::BEGIN ? (n.owes & 1) != 0 : kind == contact_event_t::HIT && (n.owes & 2) != 0;
         const auto outcome = static_cast<std::int8_t>(random() % 5);
         const bool reports = chance(0.8);
@@ -74,7 +74,7 @@ TEST_CASE(
                               f.matcher.observe(f.presented_message(n.name, n.modality, id, time + 5, outcome), t);
                             }});
         }
-        if (!owed || !heard) continue;
+        if (!is_expected || !heard) continue;
         OutcomeCounts& t = expected[n.modality];
         ++t.expected;
         if (!reported)

@@ -58,11 +58,11 @@ struct Site {
   Relay relay;
   std::vector<std::vector<std::uint8_t>> bus{};  // all messages published there
   template <class Message>
-  void say(const char* channel, const Message& m, HostTime now, bool bulk = false) {
+  void publish(const char* channel, const Message& m, HostTime now, bool bulk = false) {
     const auto bytes = encode(m);
-    hear({channel, bytes}, bulk, now);
+    receive({channel, bytes}, bulk, now);
   }
-  void hear(const ChannelBytes& m, bool bulk, HostTime now) {
+  void receive(const ChannelBytes& m, bool bulk, HostTime now) {
     bus.emplace_back(m.data.begin(), m.data.end());
     relay.on_bus_message(m, bulk, now);
   }
@@ -101,7 +101,7 @@ void carry(std::deque<Site>& all, HostTime now) {
           REQUIRE(m);
           moved = true;
           const std::size_t side = from < to ? from : from - 1;
-          if (all[to].relay.on_line_message(side, *m, now)) all[to].hear(m->message, m->bulk, now);
+          if (all[to].relay.on_line_message(side, *m, now)) all[to].receive(m->message, m->bulk, now);
         }
       }
     if (!moved) return;
@@ -209,7 +209,7 @@ TEST_CASE("A sender at just its rate loses none to early and late sending") {
 
 TEST_CASE("A deadband lets pass what moved by more than it, with all its pages, and nothing else") {
   Relay relay(rules("<pass channel='WORLD_STATE' deadband='0% position floor=1mm'/>"), sites(1), kRun);
-  std::vector<double> told;
+  std::vector<double> positions;
   std::int64_t seq = 0, passed = 0;
   for (int i = 0; i < 600; ++i) {
     const HostTime t = kBegin + i * 16ms;
@@ -223,13 +223,13 @@ TEST_CASE("A deadband lets pass what moved by more than it, with all its pages, 
         const auto state = decode<world_state_t>(m->message.data.data(), m->message.data.size());
         REQUIRE(state);
         CHECK(state->header.seq == passed++);
-        if (state->page == 0) told.push_back(state->bodies[0].position_m.x);
+        if (state->page == 0) positions.push_back(state->bodies[0].position_m.x);
       }
     }
   }
   // Once at the beginning, then every third step of 0.4 mm.
-  CHECK(told.size() == Approx(1 + 300 / 3).margin(1));
-  for (std::size_t i = 1; i < told.size(); ++i) CHECK(told[i] - told[i - 1] == Approx(0.0012));
+  CHECK(positions.size() == Approx(1 + 300 / 3).margin(1));
+  for (std::size_t i = 1; i < positions.size(); ++i) CHECK(positions[i] - positions[i - 1] == Approx(0.0012));
 }
 
 TEST_CASE("What each of three sites says is heard once in every other, and never comes back") {
@@ -238,7 +238,7 @@ TEST_CASE("What each of three sites says is heard once in every other, and never
   for (int i = 0; i < 50; ++i) {
     const HostTime t = kBegin + i * 1ms;
     for (int site = 0; site < 3; ++site)
-      all[static_cast<std::size_t>(site)].say("TOOL_STATE", tool(i, t, "hand_" + std::to_string(site)), t);
+      all[static_cast<std::size_t>(site)].publish("TOOL_STATE", tool(i, t, "hand_" + std::to_string(site)), t);
     carry(all, t);
   }
   for (const Site& site : all) {

@@ -62,7 +62,7 @@ struct Fixture {
   }
   Fixture() : recorder(id, info(), LogWriter(std::make_unique<MemorySink>(disk)), kStart) {}
 
-  void hear(HostTime t, std::int64_t skip = 0) {
+  void receive(HostTime t, std::int64_t skip = 0) {
     asset_chunk_t m{};
     m.header = header_of("sim_node", 9, seq += skip, to_ns(t));
     m.chunks = m.size = 1;
@@ -79,7 +79,7 @@ struct Fixture {
 TEST_CASE("The head of a log comes before everything that was heard, evenly spaced, and holds the whole scene") {
   Fixture f;
   const Scene scene(30);
-  for (int i = 0; i < 100; ++i) f.hear(kStart + Nanoseconds(i * 1'000'000));
+  for (int i = 0; i < 100; ++i) f.receive(kStart + Nanoseconds(i * 1'000'000));
   f.recorder.poll(kStart + Nanoseconds(100'000'000));
   CHECK(f.disk->bytes.empty());
   f.recorder.begin(scene.assets, kStart + Nanoseconds(100'000'000));
@@ -128,7 +128,7 @@ TEST_CASE("The head of a log comes before everything that was heard, evenly spac
 
 TEST_CASE("A log begins without the scene when that does not come") {
   Fixture f;
-  f.hear(kStart + Nanoseconds(5'000'000));
+  f.receive(kStart + Nanoseconds(5'000'000));
   f.recorder.poll(kStart + Recorder::kWaitForScene - Nanoseconds(1));
   CHECK_FALSE(f.recorder.started());
   f.recorder.poll(kStart + Recorder::kWaitForScene);
@@ -166,7 +166,7 @@ TEST_CASE("A log begins at once when what waits for the scene grows too large, a
 
 TEST_CASE("Nothing that was heard is lost when the recorder ends before the scene comes") {
   Fixture f;
-  f.hear(kStart);
+  f.receive(kStart);
   f.recorder.finish(kStart + Nanoseconds(1));
   CHECK(read_but_types(f.disk->bytes).size() == 2);
 }
@@ -174,9 +174,9 @@ TEST_CASE("Nothing that was heard is lost when the recorder ends before the scen
 TEST_CASE("Messages that are missing in their numbering are counted by channel") {
   Fixture f;
   f.recorder.begin({}, kStart);
-  f.hear(kStart + Nanoseconds(1));
-  f.hear(kStart + Nanoseconds(2), 3);
-  f.hear(kStart + Nanoseconds(3));
+  f.receive(kStart + Nanoseconds(1));
+  f.receive(kStart + Nanoseconds(2), 3);
+  f.receive(kStart + Nanoseconds(3));
   CHECK(f.recorder.gaps() == 3);
   CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("gaps: LIVE 3"));
 }
@@ -185,7 +185,7 @@ TEST_CASE("A full disk is said, retried once a second, and recording goes on") {
   Fixture f;
   f.recorder.begin({}, kStart);
   f.disk->trouble = "No space left on device";
-  f.hear(kStart);
+  f.receive(kStart);
   f.recorder.poll(kStart);
   CHECK(f.recorder.failing());
   CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("No space left on device"));
@@ -254,7 +254,7 @@ TEST_CASE("Each part of a split log has the head, and together they hold every m
       nullptr);
   f.recorder.begin(scene.assets, kStart);
   for (int i = 0; i < 2000; ++i) {
-    f.hear(kStart + Nanoseconds(1'000'000) * i);
+    f.receive(kStart + Nanoseconds(1'000'000) * i);
     if (i % 20 == 0) f.recorder.poll(kStart + Nanoseconds(1'000'000) * i);
   }
   f.recorder.finish(kStart + Nanoseconds(2'000'000'000));
@@ -290,7 +290,7 @@ TEST_CASE("A part that cannot be begun is said, and the one before it goes on") 
       nullptr);
   f.recorder.begin({}, kStart);
   for (int i = 0; i < 300; ++i) {
-    f.hear(kStart + Nanoseconds(1'000'000) * i);
+    f.receive(kStart + Nanoseconds(1'000'000) * i);
     f.recorder.poll(kStart + Nanoseconds(1'000'000) * i);
   }
   CHECK(f.recorder.failing());
@@ -305,7 +305,7 @@ TEST_CASE("A log of a largest size ends there, and what exceeds it is counted") 
   limits.max_bytes = 50'000;
   f.recorder.limit(limits, nullptr, nullptr);
   f.recorder.begin({}, kStart);
-  for (int i = 0; i < 2000; ++i) f.hear(kStart + Nanoseconds(i));
+  for (int i = 0; i < 2000; ++i) f.receive(kStart + Nanoseconds(i));
   f.recorder.finish(kStart + Nanoseconds(5000));
   CHECK(f.disk->bytes.size() <= 50'000 + channels::kMaxMessageBytes);
   CHECK(f.recorder.beyond() > 0);

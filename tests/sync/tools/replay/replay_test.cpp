@@ -360,27 +360,27 @@ TEST_CASE("Channels are chosen by expressions, and renamed") {
 TEST_CASE("Orders are obeyed, and what is none says what is wrong") {
   Player p;
   bool quit = false;
-  const auto say = [&](const char* line) { return execute_command(p.replay, line, p.now, quit); };
-  CHECK(say("pause").empty());
+  const auto execute = [&](const char* line) { return execute_command(p.replay, line, p.now, quit); };
+  CHECK(execute("pause").empty());
   CHECK(p.replay.paused());
-  CHECK(say("  seek   0.5 ").empty());
+  CHECK(execute("  seek   0.5 ").empty());
   CHECK(p.replay.position_s() == Approx(0.5));
-  CHECK(say("seek -0.2").empty());
+  CHECK(execute("seek -0.2").empty());
   CHECK(p.replay.position_s() == Approx(0.3));
-  CHECK(say("speed 2").empty());
+  CHECK(execute("speed 2").empty());
   CHECK(p.replay.speed() == 2);
-  CHECK(say("speed max").empty());
+  CHECK(execute("speed max").empty());
   CHECK(p.replay.speed() == 0);
-  CHECK(say("loop on").empty());
+  CHECK(execute("loop on").empty());
   CHECK(p.replay.loop());
-  CHECK(say("toggle").empty());
+  CHECK(execute("toggle").empty());
   CHECK_FALSE(p.replay.paused());
-  CHECK(say("").empty());
+  CHECK(execute("").empty());
   for (const char* line : {"fly", "speed 0", "speed nan", "speed -1", "seek", "seek x", "seek inf", "step -1",
                            "loop maybe", "pause 3", "seek 1 2", "\x01\x02"})
-    CHECK_THAT(say(line), Catch::StartsWith("cannot execute"));
+    CHECK_THAT(execute(line), Catch::StartsWith("cannot execute"));
   CHECK_FALSE(quit);
-  say("quit");
+  execute("quit");
   CHECK(quit);
 }
 

@@ -30,7 +30,7 @@ struct Shown {
   Screen screen;
   HostTime now = at_ms(1000);
 
-  void hear(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
+  void receive(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
     MessageBatch batch;
     REQUIRE(batch.add(now, {channel, bytes}, 1 << 20));
     channels.push(batch[0]);
@@ -40,7 +40,7 @@ struct Shown {
     m.header.run_id = 7, m.header.clock = 1, m.header.incarnation = 9, m.header.source = 5, m.header.seq = seq++;
     m.header.publish_time_ns = to_ns(now);
     m.force_N.z = static_cast<float>(z);
-    hear("TOOL_STATE", encode(m));
+    receive("TOOL_STATE", encode(m));
   }
   std::vector<std::string> draw(std::size_t columns = 120, std::size_t rows = 20) {
     return screen.draw(channels, now, columns, rows);
@@ -87,7 +87,7 @@ TEST_CASE("A course is drawn from its lowest to its highest value, with blanks w
 
 TEST_CASE("At any size the screen has that many lines at most, none of them longer than it is wide") {
   Shown s;
-  for (int i = 0; i < 100; ++i) s.hear("A_RATHER_LONG_CHANNEL_NAME_" + std::to_string(i), {1, 2, 3});
+  for (int i = 0; i < 100; ++i) s.receive("A_RATHER_LONG_CHANNEL_NAME_" + std::to_string(i), {1, 2, 3});
   for (int i = 0; i < 20; ++i) s.now += Nanoseconds(100'000'000), s.tool(i);
   for (const Key page : {Key::kNone, Key::kEnter, Key::kTags}) {
     s.press(page);
@@ -103,11 +103,11 @@ TEST_CASE("At any size the screen has that many lines at most, none of them long
 
 TEST_CASE("The cursor stays on its channel while others come, and enter shows the fields of what is marked") {
   Shown s;
-  s.hear("B", {1});
+  s.receive("B", {1});
   s.tool(2.5);
   s.draw();
   s.press(Key::kDown);  // TOOL_STATE
-  s.hear("A", {1});
+  s.receive("A", {1});
   CHECK_THAT(s.draw()[s.screen.marked()], Catch::StartsWith("TOOL_STATE"));
   s.press(Key::kEnter);
   const std::string fields = s.all(160, 120);
@@ -158,7 +158,7 @@ TEST_CASE("Variables are shown with value, unit and course, and only then they a
 
 TEST_CASE("Names that would be orders to a terminal are shown as what they are") {
   Shown s;
-  s.hear("EVIL\x1b[2J", {1});
+  s.receive("EVIL\x1b[2J", {1});
   for (const std::string& line : s.draw()) CHECK(line.find('\x1b') == std::string::npos);
 }
 
