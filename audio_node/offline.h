@@ -29,7 +29,7 @@ class Offline {
   static std::unique_ptr<Offline> open(const OfflineOptions& options, double loop_rate_Hz, sync::HostTime clock);
 
   // The run, extended by a second after the end of the log, so that sounding bodies decay.
-  sync::Offline& run() { return run_; }
+  sync::OfflineInput& run() { return run_; }
   // Opens the file; may be called once. The card must not outlive this or the output that uses it.
   OpenCard open_card();
   // Renames the file to its final name and returns a summary in lines. Throws std::runtime_error with one sentence
@@ -39,7 +39,7 @@ class Offline {
  private:
   static constexpr sync::Nanoseconds kRingOn{1'000'000'000};  // design
 
-  sync::Offline run_;
+  sync::OfflineInput run_;
   std::string wav_;
   FileCard* card_ = nullptr;
 };

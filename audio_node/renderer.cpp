@@ -67,9 +67,9 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Off
       log_(log),
       no_sound_(options.no_sound),
       real_time_(in_real_time(host.live())),
-      events_(host.sense().events()),
-      frames_(host.sense().snapshots<contact_frame_t>(channels::kContacts, 4096)),
-      world_(host.sense().snapshots<world_state_t>(channels::kWorldState, 4096)),
+      events_(host.endpoint().events()),
+      frames_(host.endpoint().snapshots<contact_frame_t>(channels::kContacts, 4096)),
+      world_(host.endpoint().snapshots<world_state_t>(channels::kWorldState, 4096)),
       tools_(host.bus().queue<tool_state_t>(channels::kToolState, 512)),
       ear_(host.bus().clocks()),
       contacts_(events_.inbox()),
@@ -95,14 +95,14 @@ void NodeRenderer::add_tags() {
 
 void NodeRenderer::configure(const Settings& settings) {
   if (!instructions_named(settings.instructions))
-    host().say("this machine has no " + settings.instructions + " instructions; it computes with " +
+    host().print_status("this machine has no " + settings.instructions + " instructions; it computes with " +
                name(available_instructions().back()));
   output_.configure(settings);
-  host().sense().set_own_delay(sync::from_seconds(settings.presentation_delay_s));
-  host().sense().set_output_latency(output_.latency());
+  host().endpoint().set_own_delay(sync::from_seconds(settings.presentation_delay_s));
+  host().endpoint().set_output_latency(output_.latency());
 }
 
-sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
+sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
   scene_ = scenes.scene();
   ear_.set_scene(*scene_);
   configure(settings);
@@ -126,7 +126,7 @@ void NodeRenderer::begin_to_read(const sync::SceneReceiver& scenes) {
   });
 }
 
-void NodeRenderer::change(const Settings& settings, const std::string&) {
+void NodeRenderer::apply_setting(const Settings& settings, const std::string&) {
   output_.configure(settings);
   if (sampler_) sampler_->configure(output_.settings());
   if (impacts_) impacts_->set_gain(settings.gain);
@@ -151,7 +151,7 @@ void NodeRenderer::take_surfaces() {
   try {
     heard = opening_surfaces_->take();
   } catch (const std::exception& e) {
-    host().say(std::string("cannot read the maps of the scene (") + e.what() + "); scraping contacts sound without them");
+    host().print_status(std::string("cannot read the maps of the scene (") + e.what() + "); scraping contacts sound without them");
   }
   opening_surfaces_.reset();
   output_.hear(heard);
@@ -168,9 +168,9 @@ void NodeRenderer::receive() {
 std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   finish_reading();
   const bool plays = (impacts_ || (real_time_ && now - started_ > kOpenAnyway)) && output_.keep_open(now);
-  const sync::ModalityEndpoint& sense = host().sense();
-  output_.allow(sense.delay());
-  output_.degrade({sense.output().value("dropout"), sense.output().value("dropout.every")});
+  const sync::ModalityEndpoint& endpoint = host().endpoint();
+  output_.allow(endpoint.delay());
+  output_.degrade({endpoint.output().value("dropout"), endpoint.output().value("dropout.every")});
   if (scene_) output_.hear_from(ear_.at(now + output_.latency()));
   receive();
   strike_due(now);
@@ -220,10 +220,10 @@ void NodeRenderer::submit_lasting(sync::HostTime now) {
   const sync::HostTime heard_at = now + output_.latency() + kScrapeLead;
   if (sliding_) sliding_->hear_from(ear_.at(heard_at));
   sampler_->hear_from(ear_.at(heard_at));
-  const sync::Nanoseconds delay = host().sense().delay();
+  const sync::Nanoseconds delay = host().endpoint().delay();
   const sync::SimTime t = map->to_sim(std::min(now, heard_at - delay));
-  contacts_.keep(delay);
-  bodies_.keep(delay);
+  contacts_.extend_history(delay);
+  bodies_.extend_history(delay);
   // Without contact snapshots they would never end.
   const bool known = now - frames_.count().newest_arrival < kContactsLost;
   const sync::Contacts lasting = known ? contacts_.state_at(t).value : sync::Contacts{};
@@ -246,10 +246,10 @@ void NodeRenderer::publish() {
 }
 
 void NodeRenderer::print_news() {
-  for (const std::string& news : output_.library().news()) host().say(news);
+  for (const std::string& news : output_.library().news()) host().print_status(news);
   if (sampler_)
-    for (const std::string& news : sampler_->news()) host().say(news);
-  if (const auto news = output_.news()) host().say(*news);
+    for (const std::string& news : sampler_->news()) host().print_status(news);
+  if (const auto news = output_.news()) host().print_status(*news);
 }
 
 sync::Status NodeRenderer::status(sync::HostTime now, bool plays) {

@@ -48,8 +48,8 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   }
 
  private:
-  sync::Loaded load(const sync::SceneReceiver& scenes, const Settings& settings) override;
-  void change(const Settings& settings, const std::string& name) override;
+  sync::LoadedScene load(const sync::SceneReceiver& scenes, const Settings& settings) override;
+  void apply_setting(const Settings& settings, const std::string& name) override;
   void configure(const Settings& settings);
   void add_tags();
   void begin_to_read(const sync::SceneReceiver& scenes);

@@ -31,13 +31,13 @@ const sync::NodeDescriptor kAudio{.name = "audio_node",
                                   .about = "Sounds the hits of the scene through a sound card.",
                                   .inputs = {channels::kContactEvents, channels::kContacts, channels::kWorldState},
                                   .presentation_instant = "the DAC time of its first sample",
-                                  .late_policy = audio::kLate,
+                                  .late_rule = audio::kLate,
                                   .output_operators = sync::output_operators_of("audio"),
                                   .phases = {sync::Phase::kRender}};
 
 class Factory : public sync::RendererFactory {
   void add_options(CLI::App& app) override { options_.add_to(app); }
-  sync::Offline* prepare(const sync::NodeOptions& options) override {
+  sync::OfflineInput* prepare(const sync::NodeOptions& options) override {
     sync::settings_of(audio::setting_fields(), kAudio.name, options.set);
     options_.check();
     log_ = audio::Offline::open(options_.log, kAudio.rate_Hz, sync::host_now());

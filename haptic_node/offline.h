@@ -30,7 +30,7 @@ class Offline {
   // As the constructor when --log is given; otherwise null.
   static std::unique_ptr<Offline> open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
 
-  sync::Offline& run() { return run_; }
+  sync::OfflineInput& run() { return run_; }
   // After a scene is loaded: uses the ticks of this tool from now on; -1: no tool.
   void follow(int tool);
   std::unique_ptr<Device> device() const { return std::make_unique<RecordedHand>(tick_.device); }
@@ -45,7 +45,7 @@ class Offline {
  private:
   void schedule();
 
-  sync::Offline run_;
+  sync::OfflineInput run_;
   sync::AtomicFile trace_;
   ToolTrack track_;
   bool follows_ = false;

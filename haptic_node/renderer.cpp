@@ -36,21 +36,21 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Off
       log_(log),
       device_states_(host.bus().queue<device_state_t>(channels::kDeviceState, 64)),
       device_forces_(host.bus().queue<device_force_t>(channels::kDeviceForce, 64)),
-      touch_(host.sense().held_snapshots<touch_model_t>(channels::kTouchModel, 1024)),
-      events_(host.sense().events()),
+      touch_(host.endpoint().delayed_snapshots<touch_model_t>(channels::kTouchModel, 1024)),
+      events_(host.endpoint().events()),
       safety_(safety_limits(settings())),
       quality_(settings()) {
   tag(host.node().tags(), published_);
   host.node().set_state(node_health_t::WAITING, "waits for the scene");
 }
 
-sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
+sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
   scene_ = scenes.scene();
   choice_ = resolve_config(*scene_, settings, tool_name_);
   if (session_) session_->let_go();
   begin_to_open(scenes);
   if (log_) log_->follow(choice_.tool);
-  host().say(choice_.tool >= 0 ? limits_sentence(settings) : choice_.problem);
+  host().print_status(choice_.tool >= 0 ? limits_sentence(settings) : choice_.problem);
   const auto points = [&](const tool_def_t& tool) { return only_points(tool, scene_->lights); };
   points_ = choice_.tool >= 0 && points(scene_->tools[static_cast<std::size_t>(choice_.tool)]);
   no_touch_ = std::all_of(scene_->tools.begin(), scene_->tools.end(), points);
@@ -59,7 +59,7 @@ sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Setting
           .rate_Hz = settings.rate_Hz,
           .output_latency = sync::from_seconds(1 / settings.rate_Hz),
           .status = {.state = node_health_t::WAITING,
-                     .note = choice_.tool >= 0 ? "waits for its device" : choice_.problem}};
+                     .text = choice_.tool >= 0 ? "waits for its device" : choice_.problem}};
 }
 
 void NodeRenderer::begin_to_open(const sync::SceneReceiver& scenes) {
@@ -83,7 +83,7 @@ void NodeRenderer::finish_opening() {
   if (opening_maps_ && opening_maps_->done()) {
     maps_ = opening_maps_->take();
     opening_maps_.reset();
-    if (!maps_->trouble.empty()) host().say(maps_->trouble);
+    if (!maps_->trouble.empty()) host().print_status(maps_->trouble);
     if (session_ && !session_->over()) session_->set_maps(maps_);
   }
   if (opening_device_ && opening_device_->done()) take_device();
@@ -95,13 +95,13 @@ void NodeRenderer::take_device() {
     if (maps_) session_->set_maps(maps_);
     host().node().set_state(node_health_t::READY, "waits for a touch model");
   } catch (const std::exception& e) {
-    host().say(e.what());
+    host().print_status(e.what());
     host().node().set_state(node_health_t::WAITING, e.what());
   }
   opening_device_.reset();
 }
 
-void NodeRenderer::change(const Settings& settings, const std::string&) {
+void NodeRenderer::apply_setting(const Settings& settings, const std::string&) {
   if (!session_) throw std::invalid_argument("it has no scene yet: nothing of it can be changed");
   choice_.settings = settings;
   session_->change(settings);
@@ -136,11 +136,11 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
 
 TickOutput& NodeRenderer::render(sync::HostTime now) {
   const sync::ScopedPhaseTimer rendering(sync::Phase::kRender);
-  const sync::ModalityEndpoint& sense = host().sense();
+  const sync::ModalityEndpoint& endpoint = host().endpoint();
   return session_->step(now,
-                        {.delay = sense.delay(),
-                         .touch_delay = sense.profile_delay(),
-                         .force_step_N = sense.output().value("force_step"),
+                        {.delay = endpoint.delay(),
+                         .touch_delay = endpoint.profile_delay(),
+                         .force_step_N = endpoint.output().value("force_step"),
                          .touch_arrival = no_touch_ ? now : touch_.count().newest_arrival},
                         quality_.planes());
 }
@@ -156,17 +156,17 @@ sync::Status NodeRenderer::status() const {
   sync::Status s{.quality = quality_.step(), .qualities = Quality::steps()};
   if (session_->device_lost()) {
     s.state = node_health_t::OUTPUT_LOST;
-    s.note = "the device does not answer, or two hold it: the force is zero";
+    s.text = "the device does not answer, or two hold it: the force is zero";
   } else if (points_) {
-    s.note = "points, and does not touch";
+    s.text = "points, and does not touch";
   } else if (session_->heard() && session_->lost()) {
     s.state = node_health_t::INPUT_LOST;
-    s.note = "no touch model: the force is zero";
+    s.text = "no touch model: the force is zero";
   } else if (session_->heard()) {
-    s.note = maps_ ? maps_->trouble : "reads the maps of its surfaces";
+    s.text = maps_ ? maps_->trouble : "reads the maps of its surfaces";
   } else {
     s.state = node_health_t::READY;
-    s.note = "waits for a touch model";
+    s.text = "waits for a touch model";
   }
   return s;
 }

@@ -34,12 +34,12 @@ const sync::NodeDescriptor kHaptic{
     .about = "Renders the contact force on the hand.",
     .inputs = {channels::kTouchModel, channels::kContactEvents},
     .presentation_instant = "the tick whose force shows it",
-    .late_policy = haptic::kLate,
+    .late_rule = haptic::kLate,
     .output_operators = sync::output_operators_of("haptic")};
 
 class Factory : public sync::RendererFactory {
   void add_options(CLI::App& app) override { options_.add_to(app); }
-  sync::Offline* prepare(const sync::NodeOptions& options) override {
+  sync::OfflineInput* prepare(const sync::NodeOptions& options) override {
     sync::settings_of(haptic::setting_fields(), kHaptic.name, options.set);
     options_.parse_device();
     log_ = haptic::Offline::open(options_.log, kHaptic.rate_Hz, sync::host_now());

@@ -211,7 +211,7 @@ FieldPath::FieldPath(const MessageType& type, std::string_view path) : type_(&ty
     if (it == in->fields.end()) unknown(*in, name);
     if (it->count.empty() == index.has_value())
       throw std::invalid_argument(std::string(it->name) +
-                                  (index ? " is not a list; leave out []" : " is a list; say which, as in ") +
+                                  (index ? " is not a list; leave out []" : " is a list; give the index, as in ") +
                                   (index ? "" : std::string(it->name) + "[0]"));
     last_ = &*it;
     steps_.push_back({static_cast<std::size_t>(it - in->fields.begin()), index.value_or(0)});

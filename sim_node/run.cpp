@@ -127,7 +127,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* read_before) try {
     const sync::HostTime now = node.wait();
     news.clear();
     while (auto m = tool_states.pop())
-      if (m->order != sync::Arrival::kOld) news.push_back(std::move(m->message));
+      if (m->sequence_status != sync::SequenceStatus::kOld) news.push_back(std::move(m->message));
     while (const auto m = healths.pop()) {
       if (const auto rate_Hz = followed.hear(m->message)) {
         simulation.mechanics().set_visual_rate(*rate_Hz);

@@ -24,7 +24,7 @@ class Offline {
   // As the constructor when --log is given; otherwise null.
   static std::unique_ptr<Offline> open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
 
-  sync::Offline& run() { return run_; }
+  sync::OfflineInput& run() { return run_; }
   // Adds the state of this tick to the table.
   void add(const thermal_state_t& state);
   // Renames the table to its final name and returns a summary in lines. Throws std::runtime_error with one
@@ -32,7 +32,7 @@ class Offline {
   std::string result(const std::string& problem, sync::HostTime clock);
 
  private:
-  sync::Offline run_;
+  sync::OfflineInput run_;
   sync::AtomicFile trace_;
   double period_s_;
   std::int64_t rows_ = 0;

@@ -18,8 +18,8 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, std::string tool_name, Offl
     : SettingsRenderer(host, setting_fields()),
       tool_name_(std::move(tool_name)),
       log_(log),
-      events_(host.sense().events()),
-      frames_(host.sense().snapshots<contact_frame_t>(channels::kContacts, 4096)),
+      events_(host.endpoint().events()),
+      frames_(host.endpoint().snapshots<contact_frame_t>(channels::kContacts, 4096)),
       answers_(host.bus().queue<thermal_device_t>(channels::kThermalDevice, 64)),
       stream_(events_.inbox()),
       quality_(Settings{}) {
@@ -36,10 +36,10 @@ void NodeRenderer::add_tags() {
   tags.add("force", "N", &published_.force_N);
 }
 
-sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
+sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
   const scene_t& scene = *scenes.scene();
   choice_ = resolve_config(scene, settings, tool_name_);
-  if (log_) log_->run().expect_rate(settings.rate_Hz);
+  if (log_) log_->run().require_rate(settings.rate_Hz);
   quality_ = Quality(settings);
   if (renderer_) dwell_ = renderer_->dwell();
   renderer_.reset();
@@ -52,10 +52,10 @@ sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Setting
   return {.tool = choice_.tool,
           .rate_Hz = settings.rate_Hz,
           .output_latency = sync::from_seconds(1 / settings.rate_Hz) + Ticks::kSettle,
-          .status = {.state = node_health_t::WAITING, .note = choice_.problem}};
+          .status = {.state = node_health_t::WAITING, .text = choice_.problem}};
 }
 
-void NodeRenderer::change(const Settings& settings, const std::string&) {
+void NodeRenderer::apply_setting(const Settings& settings, const std::string&) {
   choice_.settings = settings;
   if (renderer_) renderer_->change(settings);
 }
@@ -78,12 +78,12 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
 }
 
 void NodeRenderer::render(sync::HostTime now) {
-  const sync::ModalityEndpoint& sense = host().sense();
-  const Tick tick = ticks_.next(stream_, now, sense.newest_arrival(), choice_.tool, choice_.tool_body, sense.delay());
+  const sync::ModalityEndpoint& endpoint = host().endpoint();
+  const Tick tick = ticks_.next(stream_, now, endpoint.newest_arrival(), choice_.tool, choice_.tool_body, endpoint.delay());
   std::optional<sync::ScopedPhaseTimer> rendering(sync::Phase::kRender);
   const double command_degC = element_degC_.value_or(choice_.settings.skin_rest_degC);
   const auto plate = device_ ? device_->step(command_degC, renderer_->load_W(), now) : std::nullopt;
-  thermal_state_t state = renderer_->step(tick, {.response_s = sense.output().value("response"),
+  thermal_state_t state = renderer_->step(tick, {.response_s = endpoint.output().value("response"),
                                                  .longest_substep_s = quality_.longest_substep_s(),
                                                  .plate = plate});
   rendering.reset();
@@ -101,14 +101,14 @@ void NodeRenderer::render(sync::HostTime now) {
 
 sync::Status NodeRenderer::status() const {
   sync::Status s{.quality = quality_.step(), .qualities = Quality::steps()};
-  if (host().sense().newest_arrival() == sync::HostTime{}) {
+  if (host().endpoint().newest_arrival() == sync::HostTime{}) {
     s.state = node_health_t::READY;
-    s.note = "waits for contacts";
+    s.text = "waits for contacts";
   } else if (renderer_->input_lost()) {
     s.state = node_health_t::INPUT_LOST;
-    s.note = "no contacts: the command returns to resting skin";
+    s.text = "no contacts: the command returns to resting skin";
   } else if (device_silent_) {
-    s.note = "the display is silent: taken to be as commanded";
+    s.text = "the display is silent: taken to be as commanded";
   }
   return s;
 }

@@ -30,8 +30,8 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   std::string finish_log(sync::HostTime clock) override { return log_->result(choice_.problem, clock); }
 
  private:
-  sync::Loaded load(const sync::SceneReceiver& scenes, const Settings& settings) override;
-  void change(const Settings& settings, const std::string& name) override;
+  sync::LoadedScene load(const sync::SceneReceiver& scenes, const Settings& settings) override;
+  void apply_setting(const Settings& settings, const std::string& name) override;
   void receive();
   void render(sync::HostTime now);
   sync::Status status() const;

@@ -30,7 +30,7 @@ const sync::NodeDescriptor kThermal{
     .about = "Renders the temperature of what a tool touches.",
     .inputs = {channels::kContacts, channels::kContactEvents},
     .presentation_instant = "the end of the tick whose heat holds it",
-    .late_policy = thermal::kLate,
+    .late_rule = thermal::kLate,
     .output_operators = sync::output_operators_of("thermal"),
     .phases = {sync::Phase::kRender}};
 
@@ -39,7 +39,7 @@ class Factory : public sync::RendererFactory {
     app.add_option("--tool", tool_, "tool whose touch is felt; default: the scene's choice, else its first");
     log_options_.add_to(app);
   }
-  sync::Offline* prepare(const sync::NodeOptions& options) override {
+  sync::OfflineInput* prepare(const sync::NodeOptions& options) override {
     const auto settings = sync::settings_of(thermal::setting_fields(), kThermal.name, options.set);
     log_ = thermal::Offline::open(log_options_, settings.rate_Hz, sync::host_now());
     return log_ ? &log_->run() : nullptr;

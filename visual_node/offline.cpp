@@ -13,8 +13,8 @@ namespace tactus::visual {
 namespace {
 
 // What may be there already.
-std::vector<sync::Offline::Written> written_anew(const OfflineOptions& options) {
-  std::vector<sync::Offline::Written> files;
+std::vector<sync::OfflineInput::Written> written_anew(const OfflineOptions& options) {
+  std::vector<sync::OfflineInput::Written> files;
   if (!options.snapshot.empty()) files.push_back({options.snapshot, "--snapshot"});
   if (!options.frames.empty()) files.push_back({options.frames, "--frames"});
   return files;
@@ -47,7 +47,7 @@ Offline::Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime c
 }
 
 void Offline::begin(int width, int height, const Settings& s) {
-  run_.expect_rate(s.rate_Hz);
+  run_.require_rate(s.rate_Hz);
   if (!video_) {
     video_ = std::make_unique<VideoFile>(options_.video, width, height, s);
     rgba_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);

@@ -33,7 +33,7 @@ class Offline {
   // The same where a log is asked for; else null.
   static std::unique_ptr<Offline> open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
 
-  sync::Offline& run() { return run_; }
+  sync::OfflineInput& run() { return run_; }
   sync::HostTime now() const { return run_.now(); }
   // A scene has come. Throws std::runtime_error with one sentence when its pictures do not fit the video.
   void begin(int width, int height, const Settings& settings);
@@ -47,7 +47,7 @@ class Offline {
  private:
   OfflineOptions options_;
   double rate_Hz_;
-  sync::Offline run_;
+  sync::OfflineInput run_;
   std::unique_ptr<VideoFile> video_;
   std::unique_ptr<sync::AtomicFile> frames_;
   std::vector<std::uint8_t> rgba_;

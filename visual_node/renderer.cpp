@@ -59,8 +59,8 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& stage, const 
       desk_(host.bus()),
       questions_(host.bus()) {
   host.node().set_rate(settings().rate_Hz);
-  composer_.set_schedule([&sense = host.sense()](std::int64_t event, sync::HostTime happened) {
-    return sense.schedule(event, happened);
+  composer_.set_schedule([&endpoint = host.endpoint()](std::int64_t event, sync::HostTime happened) {
+    return endpoint.schedule(event, happened);
   });
   if (log_) composer_.foresee({}, {});
   questions_.configure(settings());
@@ -76,10 +76,10 @@ void NodeRenderer::add_tags() {
 }
 
 void NodeRenderer::say(const std::vector<std::string>& sentences) const {
-  for (const std::string& sentence : sentences) host().say(sentence);
+  for (const std::string& sentence : sentences) host().print_status(sentence);
 }
 
-sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
+sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
   take_messages();
   loaded_ = true;
   scene_ = scenes.scene();
@@ -94,7 +94,7 @@ sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Setting
   say(trouble);
   lock_.load(*scene_, settings);
   const sync::Status preparing{node_health_t::WAITING, "prepares the pictures of the scene"};
-  host().node().set_state(preparing.state, preparing.note);
+  host().node().set_state(preparing.state, preparing.text);
   stage_.load(view, composer_.frame(host().clock(), 0).list, settings, [this] {
     if (!log_) host().node().heartbeat();
   });
@@ -112,7 +112,7 @@ void NodeRenderer::begin_outputs(const SceneView& view, const Settings& settings
   if (stage_.draws()) stream_.begin(view.width(), view.height(), settings);
 }
 
-void NodeRenderer::change(const Settings& settings, const std::string& name) {
+void NodeRenderer::apply_setting(const Settings& settings, const std::string& name) {
   take_messages();  // they came before the change
   LiveOverlays::check(settings);
   if (name.starts_with("stream")) {
@@ -127,7 +127,7 @@ void NodeRenderer::change(const Settings& settings, const std::string& name) {
 
 // For a wait within a tick: takes in what arrived meanwhile.
 void NodeRenderer::receive(sync::HostTime now) {
-  host().sense().step(now);
+  host().endpoint().step(now);
   take_messages();
 }
 
@@ -148,10 +148,10 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   if (host().live() && stage_.draws())
     desk_.step(now, stage_.display(), overlays_, questions_, frame_.list,
                view ? std::span(view->geometries()) : std::span<const Triangles>{},
-               [this](const std::string& sentence) { host().say(sentence); });
-  const bool fresh = stage_.due(now, host().sense().output());
+               [this](const std::string& sentence) { host().print_status(sentence); });
+  const bool fresh = stage_.due(now, host().endpoint().output());
   if (fresh) draw(agreed ? host().clock() : now, agreed);
-  host().sense().publish(host().clock());  // before the pixels are read back
+  host().endpoint().publish(host().clock());  // before the pixels are read back
   keep(now, fresh);
   if (log_) return std::nullopt;
   const sync::Status status = this->status(now, fresh);
@@ -160,7 +160,7 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
 }
 
 void NodeRenderer::recover(sync::HostTime now) {
-  if (const std::string lost = stage_.recover(now, composer_.view(), frame_.list); !lost.empty()) host().say(lost);
+  if (const std::string lost = stage_.recover(now, composer_.view(), frame_.list); !lost.empty()) host().print_status(lost);
   say(stage_.take_trouble());
 }
 
@@ -168,7 +168,7 @@ void NodeRenderer::recover(sync::HostTime now) {
 std::optional<AgreedFrame> NodeRenderer::begin_frame() {
   // A wall that is slow receives the pose of its head all the same.
   if (lock_.on() && host().live()) walls_.catch_up([this](sync::HostTime now) { receive(now); });
-  const auto agreed = lock_.begin(host().clock(), host().sense().profile_delay());
+  const auto agreed = lock_.begin(host().clock(), host().endpoint().profile_delay());
   const sync::Deadlines& deadlines = host().node().deadlines();
   const std::int64_t before = std::exchange(periods_, deadlines.ticks() + deadlines.missed());
   slot_ += log_ ? 1 : agreed ? 1 + agreed->skipped : periods_ - before;
@@ -177,20 +177,20 @@ std::optional<AgreedFrame> NodeRenderer::begin_frame() {
 
 void NodeRenderer::draw(sync::HostTime now, const std::optional<AgreedFrame>& agreed) {
   const sync::ScopedPhaseTimer rendering(sync::Phase::kRender);
-  const sync::ModalityEndpoint& sense = host().sense();
+  const sync::ModalityEndpoint& endpoint = host().endpoint();
   const auto meanwhile = [this](sync::HostTime t) { receive(t); };
-  output_ = sense.output();
+  output_ = endpoint.output();
   overlays_.tint(composer_, scene_ ? scene_->bodies.size() : 0);
   const sync::HostTime heard = world_.count().newest_arrival;
   frame_ = agreed ? composer_.frame(now, *agreed, heard)
-                  : composer_.frame(now, slot_, sense.delay(), heard, sense.profile_delay());
+                  : composer_.frame(now, slot_, endpoint.delay(), heard, endpoint.profile_delay());
   stage_.draw_scene(frame_.list, output_);
   const sync::HostTime drawn = host().clock();
   if (agreed && !log_) walls_.wait_for_latch(*agreed);
   // Late latch: what arrived while the surfaces were drawn still flashes in this frame.
   const sync::HostTime latched = log_ ? host().clock() : host().node().poll();
   if (!log_) receive(latched);
-  composer_.latch(frame_, latched, agreed ? agreed->delay : sense.delay(), stage_.held());
+  composer_.latch(frame_, latched, agreed ? agreed->delay : endpoint.delay(), stage_.held());
   draw_overlays(latched);
   const sync::HostTime ready = host().clock();
   if (agreed && !log_) lock_.drawn(drawn - now, ready - latched), walls_.hold(*agreed, meanwhile);
@@ -205,15 +205,15 @@ void NodeRenderer::draw(sync::HostTime now, const std::optional<AgreedFrame>& ag
 
 void NodeRenderer::draw_overlays(sync::HostTime latched) {
   if (overlays_.on().any() && stage_.draws()) {
-    const sync::ModalityEndpoint& sense = host().sense();
+    const sync::ModalityEndpoint& endpoint = host().endpoint();
     PanelFacts facts;
     facts.rendering = took_;
     facts.period = sync::from_seconds(1 / settings().rate_Hz);
     facts.quality = stage_.quality().step();
     facts.qualities = stage_.quality().steps();
-    facts.profile = sense.profile_name();
-    facts.delay = sense.delay();
-    facts.profile_delay = sense.profile_delay();
+    facts.profile = endpoint.profile_name();
+    facts.delay = endpoint.delay();
+    facts.profile_delay = endpoint.profile_delay();
     facts.output = output_;
     overlays_.append(frame_, facts, latched, stage_.picture().width(), stage_.picture().height());
   }
@@ -227,7 +227,7 @@ void NodeRenderer::present(sync::HostTime latched) {
   questions_.presented(shown);
   // An event that arrives just after the latch waits for that of the next frame; not for a picture that a profile holds.
   if (!output_.any())
-    host().sense().set_output_latency(shown - latched + sync::from_seconds(1 / settings().rate_Hz));
+    host().endpoint().set_output_latency(shown - latched + sync::from_seconds(1 / settings().rate_Hz));
   for (const presentation_t& report : composer_.presented(shown)) {
     const bool rendered = report.outcome != presentation_t::DROPPED_LATE;
     host().report(report, rendered);
@@ -250,21 +250,21 @@ void NodeRenderer::keep(sync::HostTime now, bool fresh) {
                 fence_ + sync::from_seconds(settings().display_latency_s), read);
   for (picture_chunk_t& chunk : stream_.take_chunks())
     host().bus().publish(channels::kPictureChunk, chunk, sync::Port::kBulk);
-  if (const std::string trouble = recording_.trouble(); trouble != said_) host().say(said_ = trouble);
+  if (const std::string trouble = recording_.trouble(); trouble != said_) host().print_status(said_ = trouble);
 }
 
 sync::Status NodeRenderer::status(sync::HostTime now, bool fresh) {
   const std::string walls = lock_.note(now), video = walls.empty() ? recording_.note() : walls;
   QualityControl& quality = stage_.quality();
   if (fresh && scene_) quality.add(sync::host_now() - now - waited_);
-  if (const std::string change = quality.take_change(); !change.empty()) host().say(change);
+  if (const std::string change = quality.take_change(); !change.empty()) host().print_status(change);
   return {frame_.state, frame_.note + (frame_.note.empty() || video.empty() ? "" : "; ") + video, quality.step(),
           quality.steps()};
 }
 
 void NodeRenderer::finish() {
-  if (closed()) host().say("the window was closed");
-  if (const std::string how = composer_.poses().text(); !how.empty()) host().say("poses of bodies in the pictures: " + how);
+  if (closed()) host().print_status("the window was closed");
+  if (const std::string how = composer_.poses().text(); !how.empty()) host().print_status("poses of bodies in the pictures: " + how);
 }
 
 }  // namespace tactus::visual

@@ -49,8 +49,8 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   void finish() override;
 
  private:
-  sync::Loaded load(const sync::SceneReceiver& scenes, const Settings& settings) override;
-  void change(const Settings& settings, const std::string& name) override;
+  sync::LoadedScene load(const sync::SceneReceiver& scenes, const Settings& settings) override;
+  void apply_setting(const Settings& settings, const std::string& name) override;
   void add_tags();
   void begin_outputs(const SceneView& view, const Settings& settings);
   void receive(sync::HostTime now);

@@ -30,13 +30,13 @@ const sync::NodeDescriptor kVisual{
     .about = "Draws the scene, its tools and a flash for every contact.",
     .inputs = {channels::kWorldState, channels::kContactEvents, channels::kToolState},
     .presentation_instant = "the fence after the frame that first shows it",
-    .late_policy = sync::Late::kShowNewest,
+    .late_rule = sync::LateRule::kShowNewest,
     .output_operators = sync::output_operators_of("visual"),
     .phases = {sync::Phase::kRender}};
 
 class Factory : public sync::RendererFactory {
   void add_options(CLI::App& app) override { options_.add_to(app); }
-  sync::Offline* prepare(const sync::NodeOptions& options) override {
+  sync::OfflineInput* prepare(const sync::NodeOptions& options) override {
     const auto settings = sync::settings_of(visual::setting_fields(), kVisual.name, options.set);
     options_.complete(kVisual.name, options);
     log_ = visual::Offline::open(options_.log, settings.rate_Hz, sync::host_now());

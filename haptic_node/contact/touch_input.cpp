@@ -6,13 +6,13 @@ namespace tactus::haptic {
 
 void TouchInput::push(touch_model_t page, sync::HostTime arrival) {
   if (page.tool != tool_) return;
-  const sync::TrackResult verdict = simulation_.follow(page.header, page.clock, arrival);
+  const sync::TrackResult verdict = simulation_.track(page.header, page.clock, arrival);
   if (verdict == sync::TrackResult::kIgnore) return;
   if (verdict == sync::TrackResult::kRestart) {
     pages_.clear();
     began_anew_ = true;
   }
-  const std::int64_t latest_ns = sync::to_ns(simulation_.latest_credible());
+  const std::int64_t latest_ns = sync::to_ns(simulation_.latest_plausible());
   if (page.header.sim_time_ns > latest_ns) return;
   // A false first model may lie so far ahead that no later one would replace it.
   const bool overtaken =

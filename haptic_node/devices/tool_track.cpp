@@ -34,7 +34,7 @@ std::optional<RecordedTick> ToolTrack::next(sync::HostTime after) {
   for (sync::HostTime arrival{}; events_ && events_->next(e, arrival);) {
     if (e.channel == channels::kTouchModel) {
       const auto m = sync::decode<touch_model_t>(e.data.data(), e.data.size());
-      if (m && m->tool == tool_) simulation_.follow(m->header, m->clock, arrival);
+      if (m && m->tool == tool_) simulation_.track(m->header, m->clock, arrival);
     }
     if (e.channel != channels::kToolState) continue;
     const auto m = sync::decode<tool_state_t>(e.data.data(), e.data.size());

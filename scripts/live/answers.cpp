@@ -35,7 +35,7 @@ const answer_t* Answers::answered(const question_t& m) const {
 }
 
 void Answers::answer(const AnswerThus& given, sync::HostTime now) {
-  const question_t* m = asked_.led(now);
+  const question_t* m = asked_.newest(now);
   if (!m || m->kind == question_t::NOTHING || given.question != name_of(*m))
     throw std::invalid_argument("that question is not asked any more; answer the one that is shown");
   if (answered(*m)) throw std::invalid_argument("that question has been answered; wait for the next");
@@ -53,7 +53,7 @@ void Answers::answer(const AnswerThus& given, sync::HostTime now) {
 }
 
 json Answers::told(sync::HostTime now) const {
-  const question_t* m = asked_.led(now);
+  const question_t* m = asked_.newest(now);
   if (!m) return nullptr;
   json choices = json::array();
   for (const std::string& c : m->choices) choices.push_back(sync::printable(c));
@@ -64,7 +64,7 @@ json Answers::told(sync::HostTime now) const {
 }
 
 std::optional<std::int32_t> Answers::leader(sync::HostTime now) const {
-  const question_t* m = asked_.led(now);
+  const question_t* m = asked_.newest(now);
   return m ? std::optional(m->header.source) : std::nullopt;
 }
 

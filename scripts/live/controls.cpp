@@ -102,14 +102,14 @@ void Controls::step(sync::HostTime now) {
   const auto ours = [&](const header_t& h) { return h.run_id == bus_.identity().run_id; };
   while (const auto m = frames_.pop()) {
     if (!ours(m->message.header)) continue;
-    simulation_.follow(m->message.header, m->message.clock, m->arrival);
+    simulation_.track(m->message.header, m->message.clock, m->arrival);
     clock_ = m->message.clock;
   }
   while (auto m = tools_.pop())
     if (ours(m->message.header) && m->message.tool == 0) tool_ = std::move(m->message);
   while (const auto m = degradations_.pop())
     if (ours(m->message.header))
-      if (auto heard = profiles_.take(m->message);
+      if (auto heard = profiles_.push(m->message);
           heard && (!in_force_ || heard->generation >= in_force_->generation))
         in_force_ = std::move(heard);
   if (scene_.poll(now)) ++scenes_;

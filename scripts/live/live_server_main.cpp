@@ -183,7 +183,7 @@ nlohmann::json scene_of(const scene_t& scene) {
 
 void show_cluster(const Options& o) {
   sync::Bus bus(sync::Identity::fresh("live_server", o.run_id), o.bus);
-  bus.follow_clocks();
+  bus.track_clocks();
   live::PageSession station(true, o.run_id, "live");
   Server server(o, station);
   live::Controls controls(bus, [&](const std::string& sentence, bool good) { server.tell(sentence, good); });
@@ -191,7 +191,7 @@ void show_cluster(const Options& o) {
   for (const Channel& c : channel_types()) {
     const std::size_t capacity = c.name == channels::kPictureChunk ? 1024 : 128;  // design: some iterations of each
     inputs.emplace_back(c.name, &bus.raw(std::string(c.name).c_str(), capacity));
-    inputs.back().second->set_wanted(false);
+    inputs.back().second->set_enabled(false);
   }
   bool streaming = false, looked_on = false;
   sync::HostTime opened{}, next_scene{};
@@ -209,7 +209,7 @@ void show_cluster(const Options& o) {
     const sync::HostTime now = sync::host_now();
     bus.drain(now);
     for (auto& [name, queue] : inputs) {
-      queue->set_wanted(station.wants(name));
+      queue->set_enabled(station.wants(name));
       queue->read([&, channel = std::string_view(name)](std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
         station.take(channel, bytes, arrival);
       });

@@ -58,7 +58,7 @@ void PageSession::take(std::string_view channel, std::span<const std::uint8_t> b
   } else if (channel == channels::kPictureChunk) {
     const auto m = sync::decode<picture_chunk_t>(bytes.data(), bytes.size());
     if (!m) return;
-    auto picture = pictures_.take(*m);
+    auto picture = pictures_.push(*m);
     if (!picture) return;
     // Of several walls the first, unless visual_node draws one.
     if (!wall_ || picture->source == static_cast<std::int32_t>(sync::fnv1a_32("visual_node"))) wall_ = picture->source;

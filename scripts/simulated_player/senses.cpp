@@ -49,7 +49,7 @@ void Senses::set_scene(const scene_t& scene) {
 
 Percept Senses::perceive(sync::HostTime now) {
   eyes_.step(now), ears_.step(now);
-  bodies_.keep(eyes_.delay()), contacts_.keep(ears_.delay());
+  bodies_.extend_history(eyes_.delay()), contacts_.extend_history(ears_.delay());
   while (const auto m = world_.pop()) bodies_.push(m->message, m->arrival);
   eyes_.publish(now), ears_.publish(now);
   while (const auto m = healths_.pop())

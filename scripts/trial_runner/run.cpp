@@ -191,7 +191,7 @@ class Conductor {
     while (const auto m = healths_.pop())
       if (ours(m->message.header)) enforcement_.push(m->message, m->arrival), remember(m->message, m->arrival);
     while (const auto m = frames_.pop())
-      if (ours(m->message.header)) simulation_.follow(m->message.header, m->message.clock, m->arrival);
+      if (ours(m->message.header)) simulation_.track(m->message.header, m->message.clock, m->arrival);
     while (const auto m = events_.pop())
       if (ours(m->message.header))
         for (const json& line : observations_.push(m->message)) say(line);

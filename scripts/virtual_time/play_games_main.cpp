@@ -79,7 +79,7 @@ GameVerdict play(const Loaded& loaded, const GameDef& game) {
   plan.wire = loaded.wire;
   sync::VirtualTime time(plan);
   Referee referee;
-  time.wire().tell([&](sync::HostTime, std::string_view channel, std::span<const std::uint8_t> data) {
+  time.wire().add_listener([&](sync::HostTime, std::string_view channel, std::span<const std::uint8_t> data) {
     referee.hear(channel, data);
   });
   const auto add = [&](const std::string& name, std::vector<std::string> line,

@@ -81,7 +81,7 @@ int run_program(const Words& given) {
 void end_in_order(sync::VirtualTime& time, const std::vector<Planned>& programs) {
   const auto ask = [&](auto&& concerns) {
     for (const Planned& program : programs)
-      if (concerns(program.words.front())) time.ask_to_leave(program.name);
+      if (concerns(program.words.front())) time.request_stop(program.name);
     time.run_for(kPresentTheLast);
   };
   ask([](const std::string& program) { return program == "sim_node"; });
@@ -115,7 +115,7 @@ int main(int argc, char** argv) try {
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop_asked = 1; });
   sync::VirtualTime time(plan);
   std::optional<sync::HostTime> world_began;
-  time.wire().tell([&](sync::HostTime now, std::string_view channel, std::span<const std::uint8_t>) {
+  time.wire().add_listener([&](sync::HostTime now, std::string_view channel, std::span<const std::uint8_t>) {
     if (!world_began && channel == channels::kWorldState) world_began = now;
   });
   for (const Planned& program : programs) time.add(program.name, [&] { return run_program(program.words); });

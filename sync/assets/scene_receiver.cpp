@@ -20,9 +20,9 @@ namespace {
 constexpr std::size_t kChunkQueue = 4096;
 constexpr std::size_t kManifestQueue = 128;
 constexpr int kMaxPages = 64;  // of twelve assets as filled by SceneSender
-constexpr Nanoseconds kAskAgainAfter{100'000'000};
+constexpr Nanoseconds kRetryAfter{100'000'000};
 constexpr int kMaxRequests = 16;  // per round of requests, and assets in transfer at a time
-constexpr int kLongestRun = 256;   // chunks per request: 64 ms of the sender's budget
+constexpr int kMaxRun = 256;   // chunks per request: 64 ms of the sender's budget
 // Of each asset in transfer: the chunks that a sender sends in 250 ms.
 constexpr std::size_t kWindow = 1024;
 
@@ -59,13 +59,13 @@ bool SceneReceiver::poll(HostTime now) {
   for (int left = kPagesPerPoll; left > 0; --left) {
     const auto page = manifests_.pop();
     if (!page) break;
-    if (follow(page->message.header, page->arrival)) take(page->message);
+    if (accept_sender(page->message.header, page->arrival)) process(page->message);
   }
-  if (pages_new_) expect();
+  if (pages_new_) prepare_incoming();
   for (int left = kChunksPerPoll; left > 0; --left) {
     auto chunk = chunks_.pop();
     if (!chunk) break;
-    take(std::move(chunk->message), now);
+    process(std::move(chunk->message), now);
   }
   hash_some();
   free_some();
@@ -73,27 +73,27 @@ bool SceneReceiver::poll(HostTime now) {
     progress_ = now;
     return complete();
   }
-  if (now - progress_ > kGiveUp)
-    give_up(now);
+  if (now - progress_ > kNoProgressTimeout)
+    ignore_sender(now);
   else if (now >= next_request_)
     request_missing(now);
   return false;
 }
 
-bool SceneReceiver::follow(const header_t& header, HostTime arrival) {
-  if (header.incarnation != followed_) {
-    if (followed_ != 0 && arrival - heard_ < kSilence) return false;
-    if (header.incarnation == given_up_ && arrival < given_up_until_) return false;
-    followed_ = header.incarnation;
+bool SceneReceiver::accept_sender(const header_t& header, HostTime arrival) {
+  if (header.incarnation != sender_) {
+    if (sender_ != 0 && arrival - last_message_ < kSilence) return false;
+    if (header.incarnation == ignored_sender_ && arrival < ignored_until_) return false;
+    sender_ = header.incarnation;
     progress_ = arrival;
     pages_.clear();
   }
-  heard_ = arrival;
+  last_message_ = arrival;
   return true;
 }
 
 // A manifest is the same for the whole incarnation of its sender, so pages of different repetitions complete each other.
-void SceneReceiver::take(const scene_manifest_t& page) {
+void SceneReceiver::process(const scene_manifest_t& page) {
   if (page.pages > kMaxPages) {
     ++refused_;
     return;
@@ -104,7 +104,7 @@ void SceneReceiver::take(const scene_manifest_t& page) {
   if (!pages_.complete()) pages_new_ = false;
 }
 
-void SceneReceiver::expect() {
+void SceneReceiver::prepare_incoming() {
   pages_new_ = false;
   std::vector<asset_ref_t> manifest;
   std::set<std::int64_t> named;
@@ -131,7 +131,7 @@ void SceneReceiver::expect() {
   }
 }
 
-void SceneReceiver::take(asset_chunk_t&& m, HostTime now) {
+void SceneReceiver::process(asset_chunk_t&& m, HostTime now) {
   const auto it = incoming_.find(m.hash);
   if (it == incoming_.end()) return;
   Incoming& in = it->second;
@@ -186,20 +186,20 @@ void SceneReceiver::free_some() {
 }
 
 // The announcing sender does not send the chunks.
-void SceneReceiver::give_up(HostTime now) {
+void SceneReceiver::ignore_sender(HostTime now) {
   for (auto& [hash, in] : incoming_) drop(in.chunks);
   incoming_.clear();
   refs_.clear();
   pages_.clear();
-  given_up_ = std::exchange(followed_, 0);
-  given_up_until_ = now + kGiveUp;
+  ignored_sender_ = std::exchange(sender_, 0);
+  ignored_until_ = now + kNoProgressTimeout;
 }
 
 void SceneReceiver::request_missing(HostTime now) {
-  next_request_ = now + kAskAgainAfter;
-  int left = kMaxRequests, under_way = 0;
+  next_request_ = now + kRetryAfter;
+  int left = kMaxRequests, in_progress = 0;
   for (const auto& [hash, in] : incoming_) {
-    if (left == 0 || ++under_way > kMaxRequests) break;
+    if (left == 0 || ++in_progress > kMaxRequests) break;
     const std::size_t end = std::min(in.chunk_count(), in.hashed + kWindow);
     for (std::size_t i = in.hashed; i < end && left > 0;) {
       if (in.has(i)) {
@@ -207,7 +207,7 @@ void SceneReceiver::request_missing(HostTime now) {
         continue;
       }
       const std::size_t first = i;
-      while (i < end && !in.has(i) && i - first < kLongestRun) ++i;
+      while (i < end && !in.has(i) && i - first < kMaxRun) ++i;
       asset_request_t m{};
       m.header.sim_time_ns = -1;
       m.hash = hash;

@@ -37,7 +37,7 @@ class SceneReceiver {
   // Only one sender of manifests is accepted, until it has been silent for two periods of its manifest or has sent no useful
   // chunk for kGiveUp; then it is ignored for the same time.
   static constexpr Nanoseconds kSilence{2'500'000'000};
-  static constexpr Nanoseconds kGiveUp{3'000'000'000};
+  static constexpr Nanoseconds kNoProgressTimeout{3'000'000'000};
 
   explicit SceneReceiver(Bus& bus);
 
@@ -68,14 +68,14 @@ class SceneReceiver {
     std::deque<Bytes> chunks;  // until they are joined
     Asset asset;
   };
-  bool follow(const header_t& header, HostTime arrival);
-  void take(const scene_manifest_t& page);
-  void take(asset_chunk_t&& chunk, HostTime now);
-  void expect();
+  bool accept_sender(const header_t& header, HostTime arrival);
+  void process(const scene_manifest_t& page);
+  void process(asset_chunk_t&& chunk, HostTime now);
+  void prepare_incoming();
   void hash_some();
   void free_some();
   void drop(std::deque<Bytes>& chunks);
-  void give_up(HostTime now);
+  void ignore_sender(HostTime now);
   void request_missing(HostTime now);
   bool complete();
 
@@ -85,10 +85,10 @@ class SceneReceiver {
   std::optional<scene_t> scene_;
   std::int64_t scene_hash_ = 0;
   std::int64_t refused_scene_ = 0;  // complete, but not decodable: not requested again
-  std::int64_t followed_ = 0;       // incarnation that the pages below come from
-  HostTime heard_{};                // newest message of it
-  std::int64_t given_up_ = 0;       // ignored incarnation
-  HostTime given_up_until_{};
+  std::int64_t sender_ = 0;       // incarnation that the pages below come from
+  HostTime last_message_{};                // newest message of it
+  std::int64_t ignored_sender_ = 0;       // ignored incarnation
+  HostTime ignored_until_{};
   PageGroup<std::vector<asset_ref_t>> pages_;
   bool pages_new_ = false;
   std::vector<asset_ref_t> refs_;

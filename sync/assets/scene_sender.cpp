@@ -15,7 +15,7 @@ namespace {
 
 constexpr Nanoseconds kManifestPeriod{1'000'000'000};
 constexpr std::size_t kRefsPerPage = 12;  // of at most 100 bytes each
-constexpr std::size_t kLongestName = 64;
+constexpr std::size_t kMaxName = 64;
 constexpr std::size_t kRequestQueue = 256;
 
 std::size_t chunk_count(std::size_t bytes) { return (bytes + kChunkBytes - 1) / kChunkBytes; }
@@ -31,7 +31,7 @@ SceneSender::SceneSender(Bus& bus, std::vector<Asset> assets)
     ref.hash = fnv1a_64(asset.bytes.data(), asset.bytes.size());
     ref.size = static_cast<std::int32_t>(asset.bytes.size());
     ref.kind = asset.kind;
-    ref.name = asset.name.substr(0, kLongestName);
+    ref.name = asset.name.substr(0, kMaxName);
     const std::vector<bool> none(chunk_count(asset.bytes.size()), false);
     if (!assets_.try_emplace(ref.hash, Outgoing{std::move(asset), none}).second) continue;
     refs_.push_back(ref);

@@ -52,31 +52,31 @@ class CapturedStderr {
 };
 
 // Below SenderClock::kTolerance, above the time that reading a batch takes.
-constexpr Nanoseconds kHeldUp{500'000};
+constexpr Nanoseconds kMaxStaleness{500'000};
 
-std::string joining(const Identity& id, const std::string& url) {
+std::string cannot_join(const Identity& id, const std::string& url) {
   return id.node + ": cannot join the bus at " + url + ": ";
 }
 
 // Opens a connection for sending. LCM binds no port for that and starts no thread.
 std::shared_ptr<lcm::LCM> open(const std::string& url, const Identity& id) {
-  const CapturedStderr lcm_says;
+  const CapturedStderr captured;
   auto connection = std::make_shared<lcm::LCM>(url);
   if (connection->good()) return connection;
   throw std::runtime_error(
-      joining(id, url) +
+      cannot_join(id, url) +
       "there is no multicast route; start it with scripts/run, or add one: " + "ip route add 224.0.0.0/4 dev lo");
 }
 
-std::unique_ptr<UdpReader> listen(const Identity& id, const BusOptions& options) try {
+std::unique_ptr<UdpReader> open_reader(const Identity& id, const BusOptions& options) try {
   return std::make_unique<UdpReader>(options.group, options.port);
 } catch (const std::system_error& e) {
   if (e.code().value() == EADDRINUSE)
     throw std::runtime_error(
-        joining(id, lcm_url(options, options.port)) + "port " + std::to_string(options.port) +
+        cannot_join(id, lcm_url(options, options.port)) + "port " + std::to_string(options.port) +
         " or the next is held by a program that does not share it; choose another --port, and " +
         "leave the one after it free too");
-  throw std::runtime_error(joining(id, lcm_url(options, options.port)) + e.what());
+  throw std::runtime_error(cannot_join(id, lcm_url(options, options.port)) + e.what());
 }
 
 }  // namespace
@@ -99,11 +99,11 @@ struct Bus::Connections {
   using Subscribers = std::map<std::string, std::vector<InboxBase*>, std::less<>>;
   std::array<Subscribers, 2> subscribers;  // of each port
 
-  void hear(std::size_t side, const ChannelBytes& m) {
+  void on_message(std::size_t side, const ChannelBytes& m) {
     const auto at = subscribers[side].find(m.channel);
     if (at == subscribers[side].end()) return;
     // A fragment of a long message is passed on as too long.
-    const std::size_t size = m.whole ? m.data.size() : channels::kMaxMessageBytes + 1;
+    const std::size_t size = m.complete ? m.data.size() : channels::kMaxMessageBytes + 1;
     for (InboxBase* inbox : at->second) inbox->accept(m.data.data(), size, now);
   }
 };
@@ -124,26 +124,26 @@ Bus::Bus(Identity identity, const BusOptions& options)
   c.realtime = c.bulk = open(lcm_url(options, options.port), identity_);
   if (options.memory) return;
   c.bulk = open(lcm_url(options, options.port + 1), identity_);
-  c.reader = listen(identity_, options);
+  c.reader = open_reader(identity_, options);
   test_self(lcm_url(options, options.port));
 }
 
 void Bus::test_self(const std::string& url) {
   Connections& c = *connections_;
   const std::string token = std::to_string(identity_.incarnation);
-  std::array<bool, 2> heard{};
-  for (const HostTime end = host_now() + kSelfTest; !(heard[0] && heard[1]);) {
+  std::array<bool, 2> received{};
+  for (const HostTime end = host_now() + kSelfTest; !(received[0] && received[1]);) {
     if (host_now() > end)
       throw std::runtime_error(
-          joining(identity_, url) +
-          "what is sent there does not come back; let the firewall pass UDP to its group, also "
+          cannot_join(identity_, url) +
+          "messages sent there do not return; let the firewall pass UDP to its group, also "
           "from this machine to itself");
     for (lcm::LCM* port : {c.realtime.get(), c.bulk.get()})
       port->publish(kSelfTestChannel, token.data(), static_cast<unsigned>(token.size()));
     c.reader->wait(kSelfTest / 20);
     c.reader->read(kMaxDrain, [&](std::size_t side, const ChannelBytes& m) {
       if (m.channel == kSelfTestChannel && std::equal(m.data.begin(), m.data.end(), token.begin(), token.end()))
-        heard[side] = true;
+        received[side] = true;
     });
   }
 }
@@ -184,7 +184,7 @@ class MapInbox : public InboxBase {
 };
 }  // namespace
 
-void Bus::follow_clocks() {
+void Bus::track_clocks() {
   map_inbox_ = std::make_unique<MapInbox>(maps_);
   subscribe(channels::kClockMap, map_inbox_.get(), Port::kRealtime);
 }
@@ -194,31 +194,31 @@ void Bus::drain(HostTime now) {
   if (c.end) return c.end->drain(now, kMaxDrain);
   c.now = now;
   if (c.reader) {
-    const auto hear = [&](std::size_t side, const ChannelBytes& m) {
+    const auto on_message = [&](std::size_t side, const ChannelBytes& m) {
       // The loop was held up since `now` was read: a newer arrival time keeps messages from appearing to arrive before they
       // were sent.
-      if (const HostTime later = host_now(); later - c.now > kHeldUp) c.now = later;
-      c.hear(side, m);
+      if (const HostTime later = host_now(); later - c.now > kMaxStaleness) c.now = later;
+      c.on_message(side, m);
     };
-    return c.reader->read(kMaxDrain, hear);
+    return c.reader->read(kMaxDrain, on_message);
   }
   int left = kMaxDrain;
   while (left > 0 && c.realtime->handleTimeout(0) > 0) --left;
 }
 
-void Bus::hear(std::string_view channel, std::span<const std::uint8_t> data, HostTime arrival) {
-  const auto hears = [&](InboxBase& inbox) {
+void Bus::on_message(std::string_view channel, std::span<const std::uint8_t> data, HostTime arrival) {
+  const auto deliver = [&](InboxBase& inbox) {
     if (inbox.count().channel == channel) inbox.accept(data.data(), data.size(), arrival);
   };
-  for (const auto& inbox : inboxes_) hears(*inbox);
-  if (map_inbox_) hears(*map_inbox_);
+  for (const auto& inbox : inboxes_) deliver(*inbox);
+  if (map_inbox_) deliver(*map_inbox_);
 }
 
-void Bus::wait(Nanoseconds at_most) {
-  if (connections_->end) return VirtualTime::current()->wait(*connections_->end, at_most);
-  if (connections_->reader) return connections_->reader->wait(at_most);
+void Bus::wait(Nanoseconds max_wait) {
+  if (connections_->end) return VirtualTime::current()->wait(*connections_->end, max_wait);
+  if (connections_->reader) return connections_->reader->wait(max_wait);
   pollfd fd{connections_->realtime->getFileno(), POLLIN, 0};
-  const std::int64_t ns = at_most.count();
+  const std::int64_t ns = max_wait.count();
   const timespec timeout{ns / 1'000'000'000, ns % 1'000'000'000};
   ppoll(&fd, 1, &timeout, nullptr);
 }

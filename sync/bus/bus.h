@@ -49,7 +49,7 @@ class Bus {
   void attach(InboxBase& inbox) { subscribe(inbox.count().channel.c_str(), &inbox, Port::kRealtime); }
 
   // Applies the clock maps of this run from now on. For processes that drain; call before the first drain.
-  void follow_clocks();
+  void track_clocks();
   // The clock of this process and the maps of others. Refers to this bus.
   OwnClock clocks() const { return {identity_.run_id, identity_.clock, &maps_}; }
 
@@ -57,9 +57,9 @@ class Bus {
   void drain(HostTime now);
   static constexpr int kMaxDrain = 8192;
   // Passes on a message that was received elsewhere, as by the recorder, to the inboxes of its channel.
-  void hear(std::string_view channel, std::span<const std::uint8_t> data, HostTime arrival);
+  void on_message(std::string_view channel, std::span<const std::uint8_t> data, HostTime arrival);
   // For event-driven processes: waits until a message arrives, at most this time.
-  void wait(Nanoseconds at_most);
+  void wait(Nanoseconds max_wait);
 
   // Stamps the header (all but sim_time_ns) and sends. Returns false when the message is too large or the network refused it.
   template <class Message>

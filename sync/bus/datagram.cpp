@@ -13,11 +13,11 @@ bool begins_with(std::span<const std::uint8_t> bytes, std::string_view magic) {
   return bytes.size() >= magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin());
 }
 
-std::optional<ChannelBytes> after_header(std::span<const std::uint8_t> bytes, bool whole) {
+std::optional<ChannelBytes> after_header(std::span<const std::uint8_t> bytes, bool complete) {
   const auto end = std::find(bytes.begin(), bytes.end(), std::uint8_t{0});
   const auto length = static_cast<std::size_t>(end - bytes.begin());
-  if (end == bytes.end() || length == 0 || length > kLongestChannel) return std::nullopt;
-  return ChannelBytes{{reinterpret_cast<const char*>(bytes.data()), length}, bytes.subspan(length + 1), whole};
+  if (end == bytes.end() || length == 0 || length > kMaxChannelBytes) return std::nullopt;
+  return ChannelBytes{{reinterpret_cast<const char*>(bytes.data()), length}, bytes.subspan(length + 1), complete};
 }
 
 }  // namespace

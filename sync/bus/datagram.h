@@ -14,15 +14,15 @@
 
 namespace tactus::sync {
 
-inline constexpr std::size_t kLongestChannel = 63;
+inline constexpr std::size_t kMaxChannelBytes = 63;
 
 struct ChannelBytes {
   std::string_view channel;
   std::span<const std::uint8_t> data;
-  bool whole = true;  // false: a fragment of a message longer than the bus allows
+  bool complete = true;  // false: a fragment of a message longer than the bus allows
 
   // True when it is a whole message within the size limit of the bus.
-  bool fits() const { return whole && data.size() <= channels::kMaxMessageBytes; }
+  bool fits() const { return complete && data.size() <= channels::kMaxMessageBytes; }
 };
 
 // nullopt when the bytes are no LCM datagram, or a later fragment, which has no channel. Refers to `bytes`.

@@ -39,7 +39,7 @@ template <class Message>
 struct Received {
   Message message;
   HostTime arrival;
-  Arrival order;
+  SequenceStatus sequence_status;
 };
 
 class InboxBase : public MessageReceiver {
@@ -51,15 +51,15 @@ class InboxBase : public MessageReceiver {
 
  protected:
   template <class Message>
-  Arrival note(const Message& m, HostTime arrival) {
-    const Arrival order = count_.sequence.observe(m.header);
-    if (order != Arrival::kOld) {
+  SequenceStatus record_arrival(const Message& m, HostTime arrival) {
+    const SequenceStatus sequence_status = count_.sequence.observe(m.header);
+    if (sequence_status != SequenceStatus::kOld) {
       count_.newest_publish_ns = m.header.publish_time_ns;
       count_.newest_run_id = m.header.run_id;
       count_.newest_clock = m.header.clock;
       count_.newest_arrival = arrival;
     }
-    return order;
+    return sequence_status;
   }
   InputCount count_;
 };
@@ -75,22 +75,22 @@ class Latest : public InboxBase {
       ++count_.bad;
       return;
     }
-    if (note(*m, arrival) == Arrival::kOld) return;
+    if (record_arrival(*m, arrival) == SequenceStatus::kOld) return;
     value_ = std::move(*m);
     arrival_ = arrival;
-    fresh_ = true;
+    is_new_ = true;
   }
 
   // Null until the first message.
   const Message* get() const { return value_ ? &*value_ : nullptr; }
   HostTime arrival() const { return arrival_; }
   // The newest message if it has not been taken yet, else null.
-  const Message* take() { return std::exchange(fresh_, false) ? get() : nullptr; }
+  const Message* take() { return std::exchange(is_new_, false) ? get() : nullptr; }
 
  private:
   std::optional<Message> value_;
   HostTime arrival_{};
-  bool fresh_ = false;
+  bool is_new_ = false;
 };
 
 // Stores messages in order of arrival; when it is full, the oldest is dropped and counted. Old and repeated messages are
@@ -105,12 +105,12 @@ class Queue : public InboxBase {
       ++count_.bad;
       return;
     }
-    const Arrival order = note(*m, arrival);
+    const SequenceStatus sequence_status = record_arrival(*m, arrival);
     if (queue_.size() >= capacity_) {
       queue_.pop_front();
       ++count_.dropped;
     }
-    queue_.push_back({std::move(*m), arrival, order});
+    queue_.push_back({std::move(*m), arrival, sequence_status});
   }
 
   std::optional<Received<Message>> pop() {

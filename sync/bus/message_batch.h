@@ -16,7 +16,7 @@ class MessageBatch {
     std::uint32_t channel_bytes;
     std::uint32_t data_bytes;
     std::size_t at;
-    bool whole;
+    bool complete;
   };
 
  public:

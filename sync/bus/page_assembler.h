@@ -81,16 +81,16 @@ class PageAssembler {
   explicit PageAssembler(const PageLimits& limits, PageOrder order = PageOrder::kFirstPage) : limits_(limits), order_(order) {}
 
   // Stores a page. Returns the group when this page completes it, valid until the next call; else null. Calls
-  // given_up(Group&) for each incomplete group that is dropped to keep the limits.
-  template <class GivenUp>
-  Group* add(const Key& key, int number, int count, Page page, GivenUp&& given_up) {
+  // on_drop(Group&) for each incomplete group that is dropped to keep the limits.
+  template <class OnDrop>
+  Group* add(const Key& key, int number, int count, Page page, OnDrop&& on_drop) {
     repeated_ = std::find(done_.begin(), done_.end(), key) != done_.end();
     if (repeated_ || count > limits_.pages || number < 0 || number >= count) return nullptr;
     const auto at = group_of(key);
     at->pages.put(number, count, std::move(page));
     if (at->pages.complete()) return finish(at);
     while (groups_.size() > limits_.groups || (groups_.size() > 1 && too_many_pages())) {
-      given_up(groups_.front());
+      on_drop(groups_.front());
       recycle(groups_.begin());
     }
     return nullptr;
@@ -102,17 +102,17 @@ class PageAssembler {
   bool repeated() const { return repeated_; }
   // Number of incomplete groups.
   std::size_t size() const { return groups_.size(); }
-  // Drops the incomplete groups for which which(key) is true.
-  template <class Which>
-  void drop_if(Which&& which) {
-    std::erase_if(groups_, [&](const Group& g) { return which(g.key); });
+  // Drops the incomplete groups for which predicate(key) is true.
+  template <class Predicate>
+  void drop_if(Predicate&& predicate) {
+    std::erase_if(groups_, [&](const Group& g) { return predicate(g.key); });
   }
   void clear() { groups_.clear(); }
 
  private:
-  using Place = typename std::vector<Group>::iterator;
+  using Iterator = typename std::vector<Group>::iterator;
 
-  Place group_of(const Key& key) {
+  Iterator group_of(const Key& key) {
     const auto known = std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) { return g.key == key; });
     if (known != groups_.end()) {
       if (order_ != PageOrder::kNewestPage) return known;
@@ -131,15 +131,15 @@ class PageAssembler {
     fresh.key = key;
     return groups_.insert(at, std::move(fresh));
   }
-  Group* finish(Place at) {
-    std::swap(whole_, *at);
+  Group* finish(Iterator at) {
+    std::swap(completed_, *at);
     recycle(at);
-    if (limits_.remembered == 0) return &whole_;
-    done_.push_back(whole_.key);
+    if (limits_.remembered == 0) return &completed_;
+    done_.push_back(completed_.key);
     if (done_.size() > limits_.remembered) done_.pop_front();
-    return &whole_;
+    return &completed_;
   }
-  void recycle(Place at) {
+  void recycle(Iterator at) {
     at->pages.clear();
     spare_.push_back(std::move(*at));
     groups_.erase(at);
@@ -154,7 +154,7 @@ class PageAssembler {
   PageLimits limits_;
   PageOrder order_;
   std::vector<Group> groups_, spare_;  // in the order in which they are dropped
-  Group whole_;
+  Group completed_;
   std::deque<Key> done_;
   bool repeated_ = false;
 };

@@ -17,37 +17,37 @@ class RawQueue : public InboxBase {
   RawQueue(std::string channel, std::size_t capacity)
       : InboxBase(std::move(channel)), ring_(std::max<std::size_t>(1, capacity)) {}
 
-  void set_wanted(bool wanted) {
-    wanted_ = wanted;
-    if (!wanted) count_in_ring_ = 0;
+  void set_enabled(bool enabled) {
+    enabled_ = enabled;
+    if (!enabled) size_ = 0;
   }
   // Allocates nothing.
   void accept(const void* data, std::size_t size, HostTime arrival) noexcept override {
-    if (!wanted_) return;
+    if (!enabled_) return;
     if (size > channels::kMaxMessageBytes) {
       ++count_.bad;
       return;
     }
     count_.newest_arrival = arrival;
-    if (count_in_ring_ == ring_.size()) {
+    if (size_ == ring_.size()) {
       first_ = (first_ + 1) % ring_.size();
-      --count_in_ring_;
+      --size_;
       ++count_.dropped;
     }
-    Entry& entry = ring_[(first_ + count_in_ring_++) % ring_.size()];
+    Entry& entry = ring_[(first_ + size_++) % ring_.size()];
     entry.arrival = arrival;
     entry.size = size;
     const auto* bytes = static_cast<const std::uint8_t*>(data);
     std::copy(bytes, bytes + size, entry.bytes.begin());
   }
 
-  // Passes all stored messages to take(bytes, arrival), oldest first.
-  template <class Take>
-  void read(Take&& take) {
-    for (; count_in_ring_ > 0; --count_in_ring_) {
+  // Passes all stored messages to visit(bytes, arrival), oldest first.
+  template <class Visit>
+  void read(Visit&& visit) {
+    for (; size_ > 0; --size_) {
       const Entry& entry = ring_[first_];
       first_ = (first_ + 1) % ring_.size();
-      take(std::span<const std::uint8_t>(entry.bytes.data(), entry.size), entry.arrival);
+      visit(std::span<const std::uint8_t>(entry.bytes.data(), entry.size), entry.arrival);
     }
   }
 
@@ -58,8 +58,8 @@ class RawQueue : public InboxBase {
     std::array<std::uint8_t, channels::kMaxMessageBytes> bytes{};
   };
   std::vector<Entry> ring_;
-  std::size_t first_ = 0, count_in_ring_ = 0;
-  bool wanted_ = true;
+  std::size_t first_ = 0, size_ = 0;
+  bool enabled_ = true;
 };
 
 }  // namespace tactus::sync

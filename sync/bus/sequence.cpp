@@ -14,30 +14,30 @@ SequenceTracker::Sender& SequenceTracker::find_or_add(std::int32_t source) {
   if (it != senders_.end()) return it->second;
   if (senders_.size() >= kMaxSenders) {
     senders_.erase(std::min_element(senders_.begin(), senders_.end(),
-                                    [](const auto& a, const auto& b) { return a.second.heard < b.second.heard; }));
+                                    [](const auto& a, const auto& b) { return a.second.last_message < b.second.last_message; }));
     ++forgotten_;
   }
   return senders_[source];
 }
 
-Arrival SequenceTracker::observe(const header_t& h) {
+SequenceStatus SequenceTracker::observe(const header_t& h) {
   Sender& s = find_or_add(h.source);
-  const bool first = s.heard == 0;
-  s.heard = ++messages_;
-  const auto begin_anew = [&](Arrival how) {
+  const bool first = s.last_message == 0;
+  s.last_message = ++messages_;
+  const auto restart = [&](SequenceStatus status) {
     s = {h.incarnation, h.seq, h.publish_time_ns, {}, 0, messages_};
-    return how;
+    return status;
   };
-  if (first || s.incarnation != h.incarnation) return begin_anew(Arrival::kNewIncarnation);
-  if (h.publish_time_ns < s.publish_ns - kEpochNs || std::abs(h.seq - s.seq) > kLongestGap)
-    return begin_anew(Arrival::kNewEpoch);
+  if (first || s.incarnation != h.incarnation) return restart(SequenceStatus::kNewIncarnation);
+  if (h.publish_time_ns < s.publish_ns - kEpochNs || std::abs(h.seq - s.seq) > kMaxGap)
+    return restart(SequenceStatus::kNewEpoch);
   if (h.seq <= s.seq) {
     if (h.publish_time_ns > s.publish_ns) {
-      if (++s.contradictions >= kContradictions) return begin_anew(Arrival::kNewEpoch);
+      if (++s.contradictions >= kMaxContradictions) return restart(SequenceStatus::kNewEpoch);
     } else {
       gaps_ -= static_cast<std::int64_t>(s.missing.erase(h.seq));
     }
-    return Arrival::kOld;
+    return SequenceStatus::kOld;
   }
   gaps_ += h.seq - s.seq - 1;
   for (std::int64_t seq = std::max(s.seq + 1, h.seq - kRemembered); seq < h.seq; ++seq) s.missing.insert(seq);
@@ -45,7 +45,7 @@ Arrival SequenceTracker::observe(const header_t& h) {
   s.seq = h.seq;
   s.publish_ns = h.publish_time_ns;
   s.contradictions = 0;
-  return Arrival::kNew;
+  return SequenceStatus::kNew;
 }
 
 }  // namespace tactus::sync

@@ -9,7 +9,7 @@
 
 namespace tactus::sync {
 
-enum class Arrival {
+enum class SequenceStatus {
   kNew,             // the next number, or after a gap that has been counted
   kOld,             // a repetition, or overtaken by a newer one
   kNewIncarnation,  // the sender was restarted, or is received for the first time
@@ -22,13 +22,13 @@ enum class Arrival {
 class SequenceTracker {
  public:
   // Larger than any loss: 1000 s at 1 kHz.
-  static constexpr std::int64_t kLongestGap = 1'000'000;
+  static constexpr std::int64_t kMaxGap = 1'000'000;
   // A sender numbers and stamps its messages in one order. When this number of messages in a row have an older number but a
   // newer stamp than the newest message, the number of that message was wrong.
-  static constexpr int kContradictions = 3;
+  static constexpr int kMaxContradictions = 3;
   static constexpr std::size_t kMaxSenders = 256;
 
-  Arrival observe(const header_t& header);
+  SequenceStatus observe(const header_t& header);
   std::int64_t gaps() const { return gaps_; }
   std::int64_t messages() const { return messages_; }
   // Removed senders: when there are too many, the one that is silent for longest is removed.
@@ -42,7 +42,7 @@ class SequenceTracker {
     std::set<std::int64_t>
         missing{};  // the newest kRemembered missing numbers; a late message removes its number
     int contradictions = 0;
-    std::int64_t heard = 0;  // messages_ at its newest message
+    std::int64_t last_message = 0;  // messages_ at its newest message
   };
   Sender& find_or_add(std::int32_t source);
   static constexpr std::int64_t kRemembered = 256;

@@ -16,10 +16,10 @@ namespace {
 // 4 MB: a burst of 20,000 datagrams of 100 bytes. Without CAP_NET_ADMIN the kernel limits it to net.core.rmem_max.
 constexpr int kReceiveBufferBytes = 4 << 20;
 
-[[noreturn]] void fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
+[[noreturn]] void fail(const char* action) { throw std::system_error(errno, std::generic_category(), action); }
 
-void set(int socket, int level, int option, const void* value, socklen_t size, const char* what) {
-  if (setsockopt(socket, level, option, value, size) < 0) fail(what);
+void set(int socket, int level, int option, const void* value, socklen_t size, const char* action) {
+  if (setsockopt(socket, level, option, value, size) < 0) fail(action);
 }
 
 void prepare(int socket, const std::string& group, int port) {
@@ -59,15 +59,15 @@ UdpPort::UdpPort(const std::string& group, int port) : socket_(socket(AF_INET, S
 
 UdpPort::~UdpPort() { close(socket_); }
 
-int UdpPort::receive(int wanted) {
+int UdpPort::receive(int requested) {
   std::array<iovec, kBatch> parts;
   std::array<mmsghdr, kBatch> messages{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(wanted); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(requested); ++i) {
     parts[i] = {buffers_[i].data(), kDatagramBytes};
     messages[i].msg_hdr.msg_iov = &parts[i];
     messages[i].msg_hdr.msg_iovlen = 1;
   }
-  const int got = recvmmsg(socket_, messages.data(), static_cast<unsigned>(wanted), MSG_DONTWAIT, nullptr);
+  const int got = recvmmsg(socket_, messages.data(), static_cast<unsigned>(requested), MSG_DONTWAIT, nullptr);
   for (int i = 0; i < got; ++i)
     sizes_[static_cast<std::size_t>(i)] = messages[static_cast<std::size_t>(i)].msg_len;
   return std::max(got, 0);

@@ -26,19 +26,19 @@ class UdpPort {
 
   int descriptor() const { return socket_; }
 
-  // Calls hear(ChannelBytes) for the received datagrams, at most `at_most`, oldest first, without waiting. Returns the number
-  // of datagrams read: fewer than `at_most` when none are left. A message that is too long for the bus is truncated, but
+  // Calls on_message(ChannelBytes) for the received datagrams, at most `max_messages`, oldest first, without waiting. Returns the number
+  // of datagrams read: fewer than `max_messages` when none are left. A message that is too long for the bus is truncated, but
   // stays longer than channels::kMaxMessageBytes. Realtime-safe: yes.
-  template <class Hear>
-  int read(int at_most, Hear&& hear) {
+  template <class OnMessage>
+  int read(int max_messages, OnMessage&& on_message) {
     int count = 0;
-    while (count < at_most) {
-      const int wanted = std::min(at_most - count, kBatch);
-      const int got = receive(wanted);
+    while (count < max_messages) {
+      const int requested = std::min(max_messages - count, kBatch);
+      const int got = receive(requested);
       for (int i = 0; i < got; ++i)
-        if (const auto message = parse_datagram(datagram(i))) hear(*message);
+        if (const auto message = parse_datagram(datagram(i))) on_message(*message);
       count += got;
-      if (got < wanted) break;
+      if (got < requested) break;
     }
     return count;
   }
@@ -48,8 +48,8 @@ class UdpPort {
   // The longest message with the longest channel name, plus a margin that makes a longer one detectable.
   static constexpr std::size_t kDatagramBytes = channels::kMaxMessageBytes + 136;
 
-  // Receives up to `wanted` datagrams into buffers_, at most kBatch. Returns their number.
-  int receive(int wanted);
+  // Receives up to `requested` datagrams into buffers_, at most kBatch. Returns their number.
+  int receive(int requested);
   std::span<const std::uint8_t> datagram(int i) const {
     return {buffers_[static_cast<std::size_t>(i)].data(), sizes_[static_cast<std::size_t>(i)]};
   }

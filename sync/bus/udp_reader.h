@@ -24,39 +24,39 @@ class UdpReader {
   UdpReader(const UdpReader&) = delete;
   UdpReader& operator=(const UdpReader&) = delete;
 
-  // Calls hear(side, ChannelBytes) for the received messages, at most `at_most`, without waiting. side: 0 for the first port,
+  // Calls on_message(side, ChannelBytes) for the received messages, at most `max_messages`, without waiting. side: 0 for the first port,
   // 1 for the next. The order of each port is kept.
-  template <class Hear>
-  void read(int at_most, Hear&& hear) {
+  template <class OnMessage>
+  void read(int max_messages, OnMessage&& on_message) {
     if (busy_.test_and_set(std::memory_order_acquire)) return;  // the thread is reading: read at the next call
-    for (std::size_t i = 0; i < sides_.size(); ++i) {
-      Side& side = sides_[i];
-      for (; side.next < side.kept.size() && at_most > 0; ++side.next, --at_most) hear(i, side.kept[side.next]);
-      if (side.next < side.kept.size()) continue;
-      side.kept.clear();
-      side.next = 0;
-      at_most -= side.port.read(at_most, [&](const ChannelBytes& m) { hear(i, m); });
+    for (std::size_t i = 0; i < ports_.size(); ++i) {
+      ReadPort& read_port = ports_[i];
+      for (; read_port.next < read_port.stored.size() && max_messages > 0; ++read_port.next, --max_messages) on_message(i, read_port.stored[read_port.next]);
+      if (read_port.next < read_port.stored.size()) continue;
+      read_port.stored.clear();
+      read_port.next = 0;
+      max_messages -= read_port.port.read(max_messages, [&](const ChannelBytes& m) { on_message(i, m); });
     }
-    attended();
+    record_loop_read();
     busy_.clear(std::memory_order_release);
   }
 
   // Waits until a message arrives, at most this time, and then a moment longer: messages that arrive together are handled
   // together, and a flood cannot wake the process more often.
-  void wait(Nanoseconds at_most);
+  void wait(Nanoseconds max_wait);
 
  private:
-  struct Side {
+  struct ReadPort {
     UdpPort port;
-    MessageBatch kept{};
+    MessageBatch stored{};
     std::size_t next = 0;
   };
-  void attended();
-  void relieve();
+  void record_loop_read();
+  void read_while_loop_is_late();
 
-  std::array<Side, 2> sides_;
+  std::array<ReadPort, 2> ports_;
   std::atomic_flag busy_;
-  std::atomic<HostTime> attended_;  // last read by the loop; far in the future while it waits for the sockets
+  std::atomic<HostTime> last_loop_read_;  // last read by the loop; far in the future while it waits for the sockets
   std::atomic<bool> stop_ = false;
   std::thread thread_;
 };

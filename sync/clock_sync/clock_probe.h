@@ -15,7 +15,7 @@ namespace tactus::sync {
 
 // The answer of `own` to a request that arrived at `arrived`; the sender sets reply_sent_ns and the header's numbering.
 // nullopt for a message that is no request, or is of another run or of our own clock.
-std::optional<clock_probe_t> probe_answer(const clock_probe_t& request, const Identity& own, HostTime arrived);
+std::optional<clock_probe_t> probe_reply(const clock_probe_t& request, const Identity& own, HostTime arrived);
 
 // The result of one wave of probes for one clock.
 struct ProbeWave {
@@ -36,7 +36,7 @@ class ClockProber {
   // A new clock is probed again sooner, so that its rate is known after two seconds instead of four (design).
   static constexpr int kFirstWaves = 3;
   static constexpr Nanoseconds kFirstPeriod{1'000'000'000};
-  static constexpr Nanoseconds kLongestTrip{128'000'000};
+  static constexpr Nanoseconds kMaxRoundTrip{128'000'000};
   // With more clocks than this, each is probed less often in proportion, so that the probes of a network grow with the number
   // of hosts and not with its square. 64 clocks are probed every 8 s, in which the 15 ppm uncertainty of a measured rate (RFC
   // 5905, PHI) amounts to 120 us.
@@ -51,7 +51,7 @@ class ClockProber {
   // The due request, if any. It is sent now, which is `stamp` on the clock that is compared; `nonce` is random.
   std::optional<clock_probe_t> request(HostTime now, HostTime stamp, std::int64_t nonce);
   // back: on the clock that is compared.
-  void reply(const clock_probe_t& reply, HostTime back);
+  void reply(const clock_probe_t& reply, HostTime returned);
   // Returns the results of a wave after its last possible answer, and starts the next wave.
   std::vector<ProbeWave> finish(HostTime now);
 
@@ -64,16 +64,16 @@ class ClockProber {
   struct Sent {
     std::int64_t nonce, sent_ns;
   };
-  struct Heard {
+  struct ClockReplies {
     ProbeWave wave;
-    Nanoseconds least, most;  // range of the offset that all answers of the wave allow
+    Nanoseconds min_offset, max_offset;  // range of the offset that all answers of the wave allow
   };
-  bool takes(const clock_probe_t& reply, HostTime back) const;
+  bool accepts(const clock_probe_t& reply, HostTime returned) const;
 
   Identity own_;
   HostTime wave_begin_;
   std::vector<Sent> sent_;  // of this wave
-  std::map<std::int32_t, Heard> heard_;
+  std::map<std::int32_t, ClockReplies> replies_;
   std::map<std::int32_t, int> waves_;  // received of each clock, up to kFirstWaves
   std::int64_t refused_ = 0, contradictory_ = 0;
 };

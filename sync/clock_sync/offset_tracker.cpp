@@ -8,14 +8,14 @@ namespace {
 double ns(Nanoseconds t) { return static_cast<double>(t.count()); }
 }  // namespace
 
-OffsetSample probe_sample(HostTime sent, HostTime arrived_there, HostTime replied_there, HostTime back) {
-  const Nanoseconds most = arrived_there - sent, least = replied_there - back;
-  const Nanoseconds round_trip = back - sent;
+OffsetSample probe_sample(HostTime sent, HostTime remote_arrival, HostTime remote_reply, HostTime returned) {
+  const Nanoseconds max_offset = remote_arrival - sent, min_offset = remote_reply - returned;
+  const Nanoseconds round_trip = returned - sent;
   OffsetSample s;
   s.at = sent + round_trip / 2;
-  s.offset = least + (most - least) / 2;
+  s.offset = min_offset + (max_offset - min_offset) / 2;
   // The two bounds belong to two instants, and the clocks drift in between. Halving rounds by 1 ns.
-  s.half_width = (most - least) / 2 + OffsetTracker::kGranularity +
+  s.half_width = (max_offset - min_offset) / 2 + OffsetTracker::kGranularity +
                  Nanoseconds(static_cast<std::int64_t>(ns(round_trip) * OffsetTracker::kMaxDrift) + 1);
   return s;
 }
@@ -31,7 +31,7 @@ OffsetTracker::Interval OffsetTracker::aged(HostTime t, Rate rate) const {
   return {interval_.low + since * rate.high, interval_.high + since * rate.low};
 }
 
-OffsetTracker::Rate OffsetTracker::tolerant() const {
+OffsetTracker::Rate OffsetTracker::widened_rate() const {
   return {std::max(rate_.low - kRateTolerance, -kMaxDrift), std::min(rate_.high + kRateTolerance, kMaxDrift)};
 }
 
@@ -48,24 +48,24 @@ void OffsetTracker::begin(const OffsetSample& s) {
 OffsetTracker::Outcome OffsetTracker::add(const OffsetSample& s) {
   if (!known_) return begin(s), Outcome::kFirst;
   const Interval measured = relative(s);
-  const auto met = [&](Rate rate) {
+  const auto intersection = [&](Rate rate) {
     const Interval before = aged(s.at, rate);
     return Interval{std::max(before.low, measured.low), std::min(before.high, measured.high)};
   };
   Outcome outcome = Outcome::kNarrowed;
-  Interval both = met(tolerant());
-  if (both.empty()) {
+  Interval agreed = intersection(widened_rate());
+  if (agreed.empty()) {
     outcome = Outcome::kRateChanged;
     rate_ = {};
     measured_.clear();
-    both = met(rate_);
+    agreed = intersection(rate_);
   }
-  if (both.empty()) {
+  if (agreed.empty()) {
     ++epoch_;
     return begin(s), Outcome::kJumped;
   }
   at_ = s.at;
-  interval_ = both;
+  interval_ = agreed;
   measured_.push_back({s.at, measured});
   if (measured_.size() > kRemembered) measured_.pop_front();
   measure_rate();
@@ -76,7 +76,7 @@ void OffsetTracker::measure_rate() {
   const Measured& newest = measured_.back();
   Rate rate;
   for (const Measured& m : measured_) {
-    if (newest.at - m.at < kShortestBase) continue;
+    if (newest.at - m.at < kMinBase) continue;
     const double base = ns(newest.at - m.at);
     rate.low = std::max(rate.low, (newest.interval.low - m.interval.high) / base);
     rate.high = std::min(rate.high, (newest.interval.high - m.interval.low) / base);
@@ -91,7 +91,7 @@ void OffsetTracker::measure_rate() {
 }
 
 OffsetLine OffsetTracker::line(HostTime now) {
-  const Rate rate = tolerant();
+  const Rate rate = widened_rate();
   const Interval interval = aged(now, rate);
   const double middle = (interval.low + interval.high) / 2;
   double value = middle;

@@ -21,7 +21,7 @@ struct OffsetSample {
 
 // From the four times of a two-way probe (RFC 5905, section 8): sent and returned on our clock, arrived and replied on
 // theirs. No message arrives before it was sent: offset <= arrived - sent there, >= replied - back here.
-OffsetSample probe_sample(HostTime sent, HostTime arrived_there, HostTime replied_there, HostTime back);
+OffsetSample probe_sample(HostTime sent, HostTime remote_arrival, HostTime remote_reply, HostTime returned);
 
 struct OffsetLine {
   HostTime at{};
@@ -41,7 +41,7 @@ class OffsetTracker {
   // A rate is measured over up to this number of waves, half a minute, between instants at least half a second apart: over
   // less, the uncertainty of both ends exceeds the rate.
   static constexpr std::size_t kRemembered = 16;
-  static constexpr Nanoseconds kShortestBase{500'000'000};
+  static constexpr Nanoseconds kMinBase{500'000'000};
   // The maximum slew of a clock by the kernel: 500 ppm, RFC 5905, section 11.3 and adjtimex(2).
   static constexpr double kMaxSlew = 500e-6;
   // Approximate time in which an error is slewed away, within kMaxSlew (design: one period of the maps' consumers).
@@ -76,7 +76,7 @@ class OffsetTracker {
   };
   Interval relative(const OffsetSample&) const;
   Interval aged(HostTime t, Rate rate) const;
-  Rate tolerant() const;
+  Rate widened_rate() const;
   void begin(const OffsetSample&);
   void measure_rate();
 

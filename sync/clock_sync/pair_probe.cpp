@@ -9,16 +9,16 @@ namespace {
 constexpr std::array<std::uint8_t, 4> kMagic{'T', 'P', 'P', '1'};
 // A round never has more: the limit keeps a forged number from filling the memory or spoiling a share.
 constexpr std::uint64_t kMaxNumbers = 1 << 20;
-constexpr std::int64_t kLatest = std::int64_t{1} << 60;
+constexpr std::int64_t kMaxTime_ns = std::int64_t{1} << 60;
 
 void put(std::vector<std::uint8_t>& out, std::uint64_t value, int bytes) {
   for (int i = bytes - 1; i >= 0; --i) out.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
 }
 
 void put(std::vector<std::uint8_t>& out, const std::string& name) {
-  const std::size_t size = std::min(name.size(), PairDatagram::kLongestName);
+  const std::size_t size = std::min(name.size(), PairDatagram::kMaxName);
   out.push_back(static_cast<std::uint8_t>(size));
-  for (std::size_t i = 0; i < PairDatagram::kLongestName; ++i)
+  for (std::size_t i = 0; i < PairDatagram::kMaxName; ++i)
     out.push_back(i < size ? static_cast<std::uint8_t>(name[i]) : 0);
 }
 
@@ -31,9 +31,9 @@ struct Reader {
     return value;
   }
   std::string name() {
-    const std::size_t size = std::min<std::size_t>(number(1), PairDatagram::kLongestName);
+    const std::size_t size = std::min<std::size_t>(number(1), PairDatagram::kMaxName);
     std::string text(reinterpret_cast<const char*>(data.data()), size);
-    data = data.subspan(PairDatagram::kLongestName);
+    data = data.subspan(PairDatagram::kMaxName);
     return text;
   }
 };
@@ -47,52 +47,52 @@ std::vector<std::uint8_t> PairDatagram::encode(std::size_t size) const {
   put(out, number, 8);
   put(out, from);
   put(out, to);
-  for (const std::int64_t t : {asked_ns, heard_ns, answered_ns}) put(out, static_cast<std::uint64_t>(t), 8);
-  out.resize(std::clamp(size, kShortest, kLongest));
+  for (const std::int64_t t : {sent_ns, received_ns, replied_ns}) put(out, static_cast<std::uint64_t>(t), 8);
+  out.resize(std::clamp(size, kMinBytes, kMaxBytes));
   return out;
 }
 
 std::optional<PairDatagram> PairDatagram::decode(std::span<const std::uint8_t> data) {
-  if (data.size() < kShortest || data.size() > kLongest) return std::nullopt;
+  if (data.size() < kMinBytes || data.size() > kMaxBytes) return std::nullopt;
   if (!std::equal(kMagic.begin(), kMagic.end(), data.begin())) return std::nullopt;
   Reader r{data.subspan(kMagic.size())};
   PairDatagram m;
   m.run = r.number(8);
   const std::uint64_t kind = r.number(1);
-  if (kind < kAsk || kind > kEnd) return std::nullopt;
+  if (kind < kRequest || kind > kEnd) return std::nullopt;
   m.kind = static_cast<Kind>(kind);
   m.number = r.number(8);
   m.from = r.name();
   m.to = r.name();
-  for (std::int64_t* t : {&m.asked_ns, &m.heard_ns, &m.answered_ns}) {
+  for (std::int64_t* t : {&m.sent_ns, &m.received_ns, &m.replied_ns}) {
     *t = static_cast<std::int64_t>(r.number(8));
-    if (*t < 0 || *t > kLatest) return std::nullopt;
+    if (*t < 0 || *t > kMaxTime_ns) return std::nullopt;
   }
   if (m.number >= kMaxNumbers) return std::nullopt;
   return m;
 }
 
-void PairRecord::hear(const PairDatagram& m, int ttl) {
+void PairRecord::on_message(const PairDatagram& m, int ttl) {
   if (ttl >= 0) ttl_ = ttl;
-  if (m.kind == PairDatagram::kAsk) asked_.insert(m.number), sent_ = std::max(sent_, m.number + 1);
+  if (m.kind == PairDatagram::kRequest) requests_.insert(m.number), sent_ = std::max(sent_, m.number + 1);
   if (m.kind == PairDatagram::kBurst) bursts_.insert(m.number);
   if (m.kind == PairDatagram::kEnd) sent_ = std::max(sent_, m.number);
 }
 
-void PairRecord::hear_answer(const PairDatagram& m, HostTime at) {
-  const std::int64_t there = m.answered_ns - m.heard_ns;
-  const std::int64_t round = to_ns(at) - m.asked_ns - there;
-  if (there < 0 || round < 0) return;  // negative durations are impossible: forged
-  round_trips_.push_back(Nanoseconds(round));
-  if (Nanoseconds(round) >= best_) return;
-  best_ = Nanoseconds(round);
+void PairRecord::on_reply(const PairDatagram& m, HostTime at) {
+  const std::int64_t remote_ns = m.replied_ns - m.received_ns;
+  const std::int64_t round_trip_ns = to_ns(at) - m.sent_ns - remote_ns;
+  if (remote_ns < 0 || round_trip_ns < 0) return;  // negative durations are impossible: forged
+  round_trips_.push_back(Nanoseconds(round_trip_ns));
+  if (Nanoseconds(round_trip_ns) >= min_round_trip_) return;
+  min_round_trip_ = Nanoseconds(round_trip_ns);
   // Cristian's and NTP's estimate (RFC 5905, section 8): accurate to half the round trip.
-  offset_ = Nanoseconds((m.heard_ns - m.asked_ns) / 2 + (m.answered_ns - to_ns(at)) / 2);
+  offset_ = Nanoseconds((m.received_ns - m.sent_ns) / 2 + (m.replied_ns - to_ns(at)) / 2);
 }
 
 double PairRecord::lost() const {
-  if (asked_.empty()) return 1.0;
-  return 1.0 - static_cast<double>(asked_.size()) / static_cast<double>(sent_ - *asked_.begin());
+  if (requests_.empty()) return 1.0;
+  return 1.0 - static_cast<double>(requests_.size()) / static_cast<double>(sent_ - *requests_.begin());
 }
 
 Nanoseconds PairRecord::round_trip(double share) const {

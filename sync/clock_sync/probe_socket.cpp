@@ -47,8 +47,8 @@ void attach_filter(int fd) {
   setsockopt(fd, SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program);
 }
 
-std::runtime_error trouble(const BusOptions& o, const char* what) {
-  return std::runtime_error(std::string("cannot ") + what + " for clock probes at " + o.group + ":" + std::to_string(o.port) +
+std::runtime_error socket_error(const BusOptions& o, const char* action) {
+  return std::runtime_error(std::string("cannot ") + action + " for clock probes at " + o.group + ":" + std::to_string(o.port) +
                             " (" + std::strerror(errno) + "); choose another --port");
 }
 
@@ -58,7 +58,7 @@ ProbeSocket::ProbeSocket(const BusOptions& o) : port_(htons(static_cast<std::uin
   static_assert(kChannelBytes == 12);
   socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   wake_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  if (socket_ < 0 || wake_ < 0) throw trouble(o, "open a socket");
+  if (socket_ < 0 || wake_ < 0) throw socket_error(o, "open a socket");
   attach_filter(socket_);  // before any datagram can arrive
   const int on = 1;
   const auto ttl = static_cast<unsigned char>(o.ttl);
@@ -70,12 +70,12 @@ ProbeSocket::ProbeSocket(const BusOptions& o) : port_(htons(static_cast<std::uin
   here.sin_port = port_;
   inet_pton(AF_INET, o.group.c_str(), &here.sin_addr);
   address_ = here.sin_addr.s_addr;
-  if (bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here) != 0) throw trouble(o, "bind a socket");
+  if (bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here) != 0) throw socket_error(o, "bind a socket");
   ip_mreq group{};
   group.imr_multiaddr.s_addr = address_;
-  if (setsockopt(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group) != 0) throw trouble(o, "join the group");
+  if (setsockopt(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group) != 0) throw socket_error(o, "join the group");
   const int no = 0;  // on the interface of the route only, as sync/bus/udp_port.cpp
-  if (setsockopt(socket_, IPPROTO_IP, IP_MULTICAST_ALL, &no, sizeof no) != 0) throw trouble(o, "join the group on one interface");
+  if (setsockopt(socket_, IPPROTO_IP, IP_MULTICAST_ALL, &no, sizeof no) != 0) throw socket_error(o, "join the group on one interface");
 }
 
 ProbeSocket::~ProbeSocket() {
@@ -88,7 +88,7 @@ void ProbeSocket::wake() {
   [[maybe_unused]] const auto written = write(wake_, &one, sizeof one);
 }
 
-std::optional<ProbeSocket::Arrived> ProbeSocket::receive(HostTime until) {
+std::optional<ProbeSocket::Received> ProbeSocket::receive(HostTime until) {
   for (;;) {
     if (const auto probe = read_one()) return probe;
     const Nanoseconds left = until - host_now();
@@ -99,7 +99,7 @@ std::optional<ProbeSocket::Arrived> ProbeSocket::receive(HostTime until) {
   }
 }
 
-std::optional<ProbeSocket::Arrived> ProbeSocket::read_one() {
+std::optional<ProbeSocket::Received> ProbeSocket::read_one() {
   std::uint8_t bytes[2048];
   alignas(cmsghdr) char control[128];
   for (;;) {
@@ -114,8 +114,8 @@ std::optional<ProbeSocket::Arrived> ProbeSocket::read_one() {
     HostTime at = host_now();
     const Nanoseconds realtime(real.tv_sec * 1'000'000'000 + real.tv_nsec);
     const Nanoseconds ahead = realtime - at.time_since_epoch();
-    const Nanoseconds moved = ahead - realtime_ahead_;
-    realtime_ahead_ = ahead;
+    const Nanoseconds moved = ahead - realtime_minus_monotonic_;
+    realtime_minus_monotonic_ = ahead;
     for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
       if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SCM_TIMESTAMPNS) continue;
       timespec stamp{};
@@ -127,7 +127,7 @@ std::optional<ProbeSocket::Arrived> ProbeSocket::read_one() {
     std::uint32_t magic = 0;
     if (length >= kPrefix) std::memcpy(&magic, bytes, sizeof magic);
     if (ntohl(magic) != kMagic || std::memcmp(bytes + 8, channels::kClockProbe, kChannelBytes) != 0) continue;
-    if (const auto probe = decode<clock_probe_t>(bytes + kPrefix, length - kPrefix)) return Arrived{*probe, at};
+    if (const auto probe = decode<clock_probe_t>(bytes + kPrefix, length - kPrefix)) return Received{*probe, at};
     ++bad_;
   }
 }

@@ -22,12 +22,12 @@ class ProbeSocket {
   ProbeSocket(const ProbeSocket&) = delete;
   ProbeSocket& operator=(const ProbeSocket&) = delete;
 
-  struct Arrived {
+  struct Received {
     clock_probe_t probe;
     HostTime at;  // never earlier than the true arrival
   };
   // The next valid message that arrives before `until`; nullopt at that time or after wake().
-  std::optional<Arrived> receive(HostTime until);
+  std::optional<Received> receive(HostTime until);
   bool send(const clock_probe_t& probe);
   // Ends a receive(). Thread-safe: yes.
   void wake();
@@ -35,12 +35,12 @@ class ProbeSocket {
   std::int64_t bad() const { return bad_; }
 
  private:
-  std::optional<Arrived> read_one();
+  std::optional<Received> read_one();
   int socket_ = -1, wake_ = -1;
   std::uint32_t address_ = 0;  // network order
   std::uint16_t port_ = 0;
   std::uint32_t next_number_ = 0;
-  Nanoseconds realtime_ahead_{0};  // of the monotonic clock, when last read
+  Nanoseconds realtime_minus_monotonic_{0};  // of the monotonic clock, when last read
   std::int64_t bad_ = 0;
 };
 

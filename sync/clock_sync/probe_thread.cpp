@@ -29,16 +29,16 @@ void ProbeThread::send(clock_probe_t probe) {
   socket_.send(probe);
 }
 
-void ProbeThread::take(const ProbeSocket::Arrived& arrived) {
-  const HostTime at = clock_.read(arrived.at);
-  if (arrived.probe.kind == clock_probe_t::REPLY) {
-    if (arrived.probe.header.run_id == own_.run_id) prober_.reply(arrived.probe, at);
+void ProbeThread::process(const ProbeSocket::Received& received) {
+  const HostTime at = clock_.read(received.at);
+  if (received.probe.kind == clock_probe_t::REPLY) {
+    if (received.probe.header.run_id == own_.run_id) prober_.reply(received.probe, at);
     return;
   }
-  if (answers_ >= kAnswersPerPeriod) return;
-  if (const auto answer = probe_answer(arrived.probe, own_, at)) {
-    ++answers_;
-    send(*answer);
+  if (replies_ >= kMaxRepliesPerPeriod) return;
+  if (const auto reply = probe_reply(received.probe, own_, at)) {
+    ++replies_;
+    send(*reply);
   }
 }
 
@@ -46,14 +46,14 @@ void ProbeThread::run() {
   std::random_device random;
   std::uniform_int_distribution<std::int64_t> nonces;
   while (!stop_) {
-    if (const auto arrived = socket_.receive(prober_.next())) take(*arrived);
+    if (const auto received = socket_.receive(prober_.next())) process(*received);
     const HostTime now = host_now();
     if (const auto request = prober_.request(now, clock_.read(now), nonces(random))) send(*request);
     const auto waves = prober_.finish(now);
     for (const ProbeWave& wave : waves) waves_.push(wave);
-    if (now - answers_since_ < ClockProber::kPeriod) continue;
-    answers_since_ = now;
-    answers_ = 0;
+    if (now - replies_since_ < ClockProber::kPeriod) continue;
+    replies_since_ = now;
+    replies_ = 0;
   }
 }
 

@@ -28,26 +28,26 @@ struct EmulatedClock {
 };
 
 // A queue for one producer and one consumer, by value. Realtime-safe: yes.
-template <class Item, std::size_t kRoom>
-class HandOver {
+template <class T, std::size_t kCapacity>
+class SpscQueue {
  public:
-  bool push(const Item& item) {
-    const std::size_t next = (head_.load(std::memory_order_relaxed) + 1) % kRoom;
+  bool push(const T& item) {
+    const std::size_t next = (head_.load(std::memory_order_relaxed) + 1) % kCapacity;
     if (next == tail_.load(std::memory_order_acquire)) return false;
     items_[head_.load(std::memory_order_relaxed)] = item;
     head_.store(next, std::memory_order_release);
     return true;
   }
-  std::optional<Item> pop() {
+  std::optional<T> pop() {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
     if (tail == head_.load(std::memory_order_acquire)) return std::nullopt;
-    const Item item = items_[tail];
-    tail_.store((tail + 1) % kRoom, std::memory_order_release);
+    const T item = items_[tail];
+    tail_.store((tail + 1) % kCapacity, std::memory_order_release);
     return item;
   }
 
  private:
-  std::array<Item, kRoom> items_{};
+  std::array<T, kCapacity> items_{};
   std::atomic<std::size_t> head_{0}, tail_{0};
 };
 
@@ -64,20 +64,20 @@ class ProbeThread {
 
  private:
   // Limit on answers, against a flood of requests: eight probes of 64 hosts in half a second, twice (design).
-  static constexpr int kAnswersPerPeriod = 1024;
+  static constexpr int kMaxRepliesPerPeriod = 1024;
 
   void run();
-  void take(const ProbeSocket::Arrived&);
+  void process(const ProbeSocket::Received&);
   void send(clock_probe_t probe);
 
   Identity own_;
   EmulatedClock clock_;
   ProbeSocket socket_;
   ClockProber prober_;
-  HandOver<ProbeWave, 256> waves_;  // a period of all the clocks that a prober tracks, four times
+  SpscQueue<ProbeWave, 256> waves_;  // a period of all the clocks that a prober tracks, four times
   std::int64_t seq_ = 0;
-  int answers_ = 0;  // in this period
-  HostTime answers_since_{};
+  int replies_ = 0;  // in this period
+  HostTime replies_since_{};
   std::atomic<bool> stop_{false};
   std::thread thread_;  // last: it uses all the others
 };

@@ -11,8 +11,8 @@ Nanoseconds scaled(Nanoseconds d, double factor) {
   return Nanoseconds(std::llround(static_cast<double>(d.count()) * factor));
 }
 // Received times may have any value. Those of a map are range-checked on reception, other times here.
-constexpr std::int64_t kLatest = std::int64_t{1} << 60;
-bool representable(HostTime t) { return to_ns(t) >= 0 && to_ns(t) <= kLatest; }
+constexpr std::int64_t kMaxTime_ns = std::int64_t{1} << 60;
+bool representable(HostTime t) { return to_ns(t) >= 0 && to_ns(t) <= kMaxTime_ns; }
 
 }  // namespace
 
@@ -28,13 +28,13 @@ Nanoseconds ClockLine::uncertainty_at(Nanoseconds since) const {
   return uncertainty_ + scaled(since < Nanoseconds(0) ? -since : since, uncertainty_drift_) + Nanoseconds(2);
 }
 
-ClockReading ClockLine::from_of(HostTime of) const {
+ClockReading ClockLine::of_to_target(HostTime of) const {
   // of = to + offset + drift * (to - at), solved for to - at: the difference is small, so a double is precise enough.
   const Nanoseconds since = scaled(of - at_ - offset_, 1 / (1 + drift_));
   return {at_ + since, uncertainty_at(since)};
 }
 
-ClockReading ClockLine::to_of(HostTime to) const {
+ClockReading ClockLine::target_to_of(HostTime to) const {
   const Nanoseconds since = to - at_;
   return {to + offset_ + scaled(since, drift_), uncertainty_at(since)};
 }

@@ -24,8 +24,8 @@ struct ClockReading {
 class ClockLine {
  public:
   explicit ClockLine(const clock_map_t& m);
-  ClockReading from_of(HostTime of) const;  // converts a time of of_clock to to_clock
-  ClockReading to_of(HostTime to) const;    // the inverse
+  ClockReading of_to_target(HostTime of) const;  // converts a time of of_clock to to_clock
+  ClockReading target_to_of(HostTime to) const;    // the inverse
 
  private:
   Nanoseconds uncertainty_at(Nanoseconds since) const;
@@ -40,9 +40,9 @@ class ClockMaps {
  public:
   // The uncertainty of a map grows until the map is renewed. Beyond this value the one-way estimate is no worse; its bias is
   // a latency (design: one frame at 60 Hz).
-  static constexpr Nanoseconds kMaxUncertain{16'000'000};
+  static constexpr Nanoseconds kMaxUncertainty{16'000'000};
   // Of two publishers of one map, the first is used until it has been silent for four of its periods.
-  static constexpr Nanoseconds kSilence{2'000'000'000};
+  static constexpr Nanoseconds kTimeout{2'000'000'000};
   // More clocks than a cluster has hosts: more maps can only come from an attack or a mistake.
   static constexpr std::size_t kMax = 1024;
 

@@ -21,7 +21,7 @@ class OneWayOffsetEstimator {
   // A bound that falls below the kept one by more than this is a clock jump, not latency.
   static constexpr Nanoseconds kJump{2'000'000'000};
   // Design: less than a perceptible haptic-visual asynchrony, more than the jitter of an idle network.
-  static constexpr Nanoseconds kNoticed{5'000'000};
+  static constexpr Nanoseconds kMinJump{5'000'000};
   static constexpr Nanoseconds kWindow{2'000'000'000};
   static constexpr int kWindowStamps = 4;  // design: fewer may all have been delayed by one cause
 
@@ -34,18 +34,18 @@ class OneWayOffsetEstimator {
 
  private:
   Nanoseconds offset_at(HostTime now) const;
-  void take(Nanoseconds bound, HostTime arrival);
+  void adopt(Nanoseconds bound, HostTime arrival);
   // True when all bounds of a whole window were too low.
-  bool low_for_long(Nanoseconds bound, HostTime arrival);
+  bool low_for_window(Nanoseconds bound, HostTime arrival);
 
   bool known_ = false;
   Nanoseconds offset_{0};  // sender - host when last improved
   HostTime improved_{};
   // The stamps since bounds are too low: their number, the first time, and the best bound.
-  int low_ = 0;
+  int low_count_ = 0;
   HostTime low_since_{};
-  Nanoseconds best_low_{0};
-  HostTime best_low_at_{};
+  Nanoseconds max_low_bound_{0};
+  HostTime max_low_bound_at_{};
 };
 
 }  // namespace tactus::sync

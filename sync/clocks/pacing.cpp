@@ -38,10 +38,10 @@ std::int64_t Deadlines::advance(HostTime now) {
   return skipped;
 }
 
-void Deadlines::align(HostTime next, std::int64_t left_out) {
+void Deadlines::align(HostTime next, std::int64_t skipped) {
   start_ = next_ = next;
   since_start_ = 0;
-  missed_ += left_out;
+  missed_ += skipped;
 }
 
 void sleep_until(HostTime t) {

@@ -23,9 +23,9 @@ class Deadlines {
   // Call it after waking for next(). A loop that overslept skips whole periods and counts them; it never catches up in a
   // burst. Returns the number of skipped ticks.
   std::int64_t advance(HostTime now);
-  // Re-phases the loop: the next deadline is at `next`, and later ones count from there. The left_out ticks before it count
+  // Re-phases the loop: the next deadline is at `next`, and later ones count from there. The skipped ticks before it count
   // as missed.
-  void align(HostTime next, std::int64_t left_out = 0);
+  void align(HostTime next, std::int64_t skipped = 0);
 
   std::int64_t ticks() const { return ticks_; }
   std::int64_t missed() const { return missed_; }
@@ -51,7 +51,7 @@ class Loop {
   // only sleeps).
   HostTime wait();
   void set_rate(double rate_Hz) { deadlines_.set_rate(rate_Hz); }
-  void align(HostTime next, std::int64_t left_out) { deadlines_.align(next, left_out); }
+  void align(HostTime next, std::int64_t skipped) { deadlines_.align(next, skipped); }
 
   // Lateness of the last wake-up.
   Nanoseconds wake_lateness() const { return lateness_; }

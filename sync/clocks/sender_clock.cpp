@@ -3,14 +3,14 @@
 namespace tactus::sync {
 
 bool SenderClock::observe(const header_t& h, HostTime arrival) {
-  if (heard_ && (h.clock != clock_ || h.run_id != run_id_)) {
+  if (known_ && (h.clock != clock_ || h.run_id != run_id_)) {
     one_way_ = OneWayOffsetEstimator{};
     distrust_until_ = HostTime{};
   }
-  heard_ = true;
+  known_ = true;
   run_id_ = h.run_id;
   clock_ = h.clock;
-  if (ours() && clock_ == own_.clock) return false;
+  if (same_run() && clock_ == own_.clock) return false;
   const bool jumped = one_way_.observe(h.publish_time_ns, arrival);
   const Reading reading = read(h.publish_time_ns, arrival);
   if (reading.source != ClockSource::kMapped) return jumped;
@@ -20,9 +20,9 @@ bool SenderClock::observe(const header_t& h, HostTime arrival) {
 }
 
 SenderClock::Reading SenderClock::read(std::int64_t sender_ns, HostTime now) const {
-  if (!heard_) return {host_time(sender_ns), ClockSource::kUnknown, Nanoseconds(-1)};
-  if (ours() && clock_ == own_.clock) return {host_time(sender_ns), ClockSource::kSame, Nanoseconds(0)};
-  if (ours() && own_.maps != nullptr && now >= distrust_until_)
+  if (!known_) return {host_time(sender_ns), ClockSource::kUnknown, Nanoseconds(-1)};
+  if (same_run() && clock_ == own_.clock) return {host_time(sender_ns), ClockSource::kSame, Nanoseconds(0)};
+  if (same_run() && own_.maps != nullptr && now >= distrust_until_)
     if (const auto mapped = own_.maps->read(host_time(sender_ns), clock_, own_.clock))
       return {mapped->time, ClockSource::kMapped, mapped->uncertainty};
   return {one_way_.to_host(sender_ns, now), ClockSource::kOneWay, Nanoseconds(-1)};

@@ -36,15 +36,15 @@ class SenderClock {
   // Returns true when a jump of the clock was detected.
   bool observe(const header_t& header, HostTime arrival);
 
-  bool known() const { return heard_; }
+  bool known() const { return known_; }
   Reading read(std::int64_t sender_ns, HostTime now) const;
   HostTime to_host(std::int64_t sender_ns, HostTime now) const { return read(sender_ns, now).time; }
 
  private:
-  bool ours() const { return run_id_ == own_.run_id; }
+  bool same_run() const { return run_id_ == own_.run_id; }
 
   OwnClock own_;
-  bool heard_ = false;
+  bool known_ = false;
   std::int64_t run_id_ = 0;
   std::int32_t clock_ = 0;
   HostTime distrust_until_{};

@@ -13,16 +13,16 @@ Nanoseconds distance(SimTime a, SimTime b) { return a < b ? b - a : a - b; }
 // Compares on the sender's clock. The rate may have changed at any instant since, so either rate is accepted.
 bool SimClockTracker::contradicts(const header_t& header, const sim_clock_t& clock) const {
   const HostTime t = host_time(header.publish_time_ns);
-  const TimeMap told{sim_time(clock.sim_ns), host_time(clock.host_ns), clock.rate};
-  const auto far = [&](double rate) {
+  const TimeMap published{sim_time(clock.sim_ns), host_time(clock.host_ns), clock.rate};
+  const auto deviates = [&](double rate) {
     const TimeMap known{sim_time(clock_.sim_ns), host_time(clock_.host_ns), rate};
-    return distance(known.to_sim(t), told.to_sim(t)) > kFar;
+    return distance(known.to_sim(t), published.to_sim(t)) > kMaxDeviation;
   };
-  return far(clock_.rate) && far(clock.rate);
+  return deviates(clock_.rate) && deviates(clock.rate);
 }
 
-TrackResult SimClockTracker::follow(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
-  TrackResult verdict = TrackResult::kSame;
+TrackResult SimClockTracker::track(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
+  TrackResult result = TrackResult::kSame;
   if (header.incarnation != incarnation_) {
     const bool replaced = std::find(replaced_.begin(), replaced_.end(), header.incarnation) != replaced_.end();
     if (replaced && arrival - last_arrival_ < kSilence) return TrackResult::kIgnore;
@@ -30,14 +30,14 @@ TrackResult SimClockTracker::follow(const header_t& header, const sim_clock_t& c
     std::erase(replaced_, header.incarnation);
     if (replaced_.size() > kRemembered) replaced_.pop_front();
     incarnation_ = header.incarnation;
-    verdict = TrackResult::kRestart;
-  } else if (header.publish_time_ns < newest_publish_ns_ - kEpoch.count()) {
-    verdict = TrackResult::kRestart;
+    result = TrackResult::kRestart;
+  } else if (header.publish_time_ns < newest_publish_ns_ - kMaxStepBack.count()) {
+    result = TrackResult::kRestart;
   } else if (contradicts(header, clock) && arrival - confirmed_ < kSilence) {
     return TrackResult::kIgnore;
   }
   confirmed_ = arrival;
-  if (verdict == TrackResult::kRestart) {
+  if (result == TrackResult::kRestart) {
     sender_ = SenderClock(own_);
     newest_publish_ns_ = 0;
   }
@@ -47,7 +47,7 @@ TrackResult SimClockTracker::follow(const header_t& header, const sim_clock_t& c
     newest_publish_ns_ = header.publish_time_ns;
     clock_ = clock;
   }
-  return verdict;
+  return result;
 }
 
 std::optional<TimeMap> SimClockTracker::map(HostTime now) const {

@@ -24,21 +24,21 @@ class SimClockTracker {
   // A replaced incarnation is accepted again only when its successor has been silent for this time.
   static constexpr Nanoseconds kSilence{300'000'000};
   // A publish_time_ns that falls back by more than this means that a log is replayed again.
-  static constexpr Nanoseconds kEpoch{1'000'000'000};
+  static constexpr Nanoseconds kMaxStepBack{1'000'000'000};
   // A clock that differs from the present one by more than this is accepted only when the present one has not been confirmed
   // for kSilence, so a forged message cannot shift the time.
-  static constexpr Nanoseconds kFar{1'000'000'000};
+  static constexpr Nanoseconds kMaxDeviation{1'000'000'000};
   static constexpr std::size_t kRemembered = 16;
 
   explicit SimClockTracker(OwnClock own) : own_(own) {}
 
-  TrackResult follow(const header_t& header, const sim_clock_t& clock, HostTime arrival);
+  TrackResult track(const header_t& header, const sim_clock_t& clock, HostTime arrival);
   // nullopt before the first message.
   std::optional<TimeMap> map(HostTime now) const;
   std::int64_t incarnation() const { return incarnation_; }
   // A simulation publishes at most about 20 ms ahead, so a time kFar ahead of the newest arrival is invalid. Call it after
   // follow.
-  SimTime latest_credible() const { return map(last_arrival_).value_or(TimeMap{}).to_sim(last_arrival_) + kFar; }
+  SimTime latest_plausible() const { return map(last_arrival_).value_or(TimeMap{}).to_sim(last_arrival_) + kMaxDeviation; }
 
  private:
   bool contradicts(const header_t& header, const sim_clock_t& clock) const;

@@ -42,12 +42,12 @@ class Deadband {
  private:
   struct Memory {
     Eigen::Vector3d filtered, sent;
-    bool heard;  // present in this snapshot
+    bool present;  // present in this snapshot
   };
   DeadbandDef def_;
   std::map<std::int64_t, Memory> memory_;
   SimTime last_{};
-  bool begun_ = false;
+  bool started_ = false;
 };
 
 }  // namespace tactus::sync

@@ -56,29 +56,29 @@ template <class Message>
 class DegradedSnapshots {
  public:
   // decisions: list to which decisions are appended; null: none.
-  void push(Message m, HostTime arrival, OperatorChain& stack, Decisions* decisions) {
-    note_newest(m, arrival);
+  void push(Message m, HostTime arrival, OperatorChain& operators, Decisions* decisions) {
+    record_newest(m, arrival);
     const SimTime time = sim_time(m.header.sim_time_ns);
     if constexpr (requires { m.pages; })
-      if (m.pages > 1 && of_two_profiles(m)) return;
-    if (stack.empty()) return waiting_.push(arrival, std::move(m), arrival);
-    if (stack.lost_on_wire(wire_key(m), time)) return;
+      if (m.pages > 1 && spans_profiles(m)) return;
+    if (operators.empty()) return waiting_.push(arrival, std::move(m), arrival);
+    if (operators.lost_on_wire(wire_key(m), time)) return;
     if constexpr (requires { m.pages; })
-      if (stack.compares() && m.pages > 1 && !verdicts_.find(snapshot_key(m)))
-        return gather(std::move(m), arrival, stack, decisions);
-    const Decision v = verdict_on(m, arrival, signals_of(m), stack, decisions);
-    put(std::move(m), arrival, v, stack);
+      if (operators.compares() && m.pages > 1 && !decided_.find(snapshot_key(m)))
+        return collect_page(std::move(m), arrival, operators, decisions);
+    const Decision decision = decide(m, arrival, signals_of(m), operators, decisions);
+    release(std::move(m), arrival, decision, operators);
   }
   // From now on a new profile decides. Snapshots whose pages are arriving began under the previous profile: their remaining
   // pages are dropped, so that no receiver combines pages of two profiles.
   void change_profile() {
-    for (auto& [stream, pages] : arriving_) pages.split = pages.arrived < pages.of;
-    gathering_.clear();
+    for (auto& [stream, pages] : newest_snapshots_) pages.split = pages.arrived < pages.of;
+    incomplete_.clear();
   }
   // The next message that is released by now, and its arrival.
   std::optional<std::pair<Message, HostTime>> pop(HostTime now) {
     auto next = waiting_.pop(now);
-    if (next) freshen(next->first, next->second);
+    if (next) update_header(next->first, next->second);
     return next;
   }
 
@@ -86,11 +86,11 @@ class DegradedSnapshots {
   static constexpr std::size_t kRemembered = 256;
   // Pages of a snapshot are sent before the next snapshot; up to four snapshots may be in flight at once. The largest has
   // 2,000 pages of 18 bodies.
-  static constexpr PageLimits kGathering{.groups = 4, .pages = 4096};
+  static constexpr PageLimits kPageLimits{.groups = 4, .pages = 4096};
   using Pages = PageAssembler<std::pair<Message, HostTime>, std::uint64_t>;  // by snapshot_key
 
   // The pages of the most recent snapshot of a stream.
-  struct Arriving {
+  struct NewestSnapshot {
     std::uint64_t key = 0;
     int arrived = 0, of = 0;
     bool split = false;
@@ -100,48 +100,48 @@ class DegradedSnapshots {
 
   // True when the page belongs to a snapshot that began under another profile. While the world stands still, the same
   // snapshot is repeated; it starts again with its first page.
-  bool of_two_profiles(const Message& m) {
-    if (arriving_.size() >= kStreams && !arriving_.contains(stream_of(m))) arriving_.clear();
-    Arriving& now = arriving_[stream_of(m)];
+  bool spans_profiles(const Message& m) {
+    if (newest_snapshots_.size() >= kStreams && !newest_snapshots_.contains(stream_of(m))) newest_snapshots_.clear();
+    NewestSnapshot& now = newest_snapshots_[stream_of(m)];
     const std::uint64_t key = snapshot_key(m);
     if (now.key != key || m.page == 0) now = {key, 0, m.pages, false};
     ++now.arrived;
     return now.split;
   }
 
-  void put(Message m, HostTime arrival, const Decision& v, OperatorChain& stack) {
-    if (v.dropped()) {
-      if (v.conceal != Conceal::kZero || !make_zero(m)) return;
-    } else if (stack.changes_values()) {
-      change_values(m, stack);
+  void release(Message m, HostTime arrival, const Decision& decision, OperatorChain& operators) {
+    if (decision.dropped()) {
+      if (decision.conceal != Conceal::kZero || !make_zero(m)) return;
+    } else if (operators.changes_values()) {
+      change_values(m, operators);
     }
     // Later pages of a delayed snapshot have the same delay as the first.
-    const HostTime release = std::max(v.release, arrival);
-    if (v.twice) waiting_.push(release, m, arrival);
+    const HostTime release = std::max(decision.release, arrival);
+    if (decision.duplicated) waiting_.push(release, m, arrival);
     waiting_.push(release, std::move(m), arrival);
   }
 
-  void gather(Message m, HostTime arrival, OperatorChain& stack, Decisions* decisions) {
+  void collect_page(Message m, HostTime arrival, OperatorChain& operators, Decisions* decisions) {
     const std::uint64_t key = snapshot_key(m);
     const int number = m.page, count = m.pages;
-    const auto judge = [&](typename Pages::Group& group) {
+    const auto decide_group = [&](typename Pages::Group& group) {
       std::vector<Signal> signals;
       for (const auto& [number, page] : group.pages) {
         const std::vector<Signal> more = signals_of(page.first);
         signals.insert(signals.end(), more.begin(), more.end());
       }
-      const Decision v = verdict_on(group.pages.begin()->page.first, arrival, signals, stack, decisions);
-      for (auto& [number, page] : group.pages) put(std::move(page.first), page.second, v, stack);
+      const Decision decision = decide(group.pages.begin()->page.first, arrival, signals, operators, decisions);
+      for (auto& [number, page] : group.pages) release(std::move(page.first), page.second, decision, operators);
     };
     // An incomplete snapshot that newer ones have overtaken is judged by its received pages: missing signals count as a
     // change.
-    if (auto* whole = gathering_.add(key, number, count, {std::move(m), arrival}, judge)) judge(*whole);
+    if (auto* whole = incomplete_.add(key, number, count, {std::move(m), arrival}, decide_group)) decide_group(*whole);
   }
 
-  Decision verdict_on(const Message& m, HostTime arrival, const std::vector<Signal>& signals, OperatorChain& stack,
+  Decision decide(const Message& m, HostTime arrival, const std::vector<Signal>& signals, OperatorChain& operators,
                      Decisions* decisions) {
     const std::uint64_t key = snapshot_key(m);
-    if (const Decision* known = verdicts_.find(key)) return *known;
+    if (const Decision* known = decided_.find(key)) return *known;
     StreamItem item{.key = key,
               .stream = stream_of(m),
               .incarnation = m.header.incarnation,
@@ -150,21 +150,21 @@ class DegradedSnapshots {
               .signals = signals};
     for (const Signal& s : signals)
       if (s.quantity == Quantity::kVelocity) item.speed_m_s = std::max(item.speed_m_s, s.value.norm());
-    const Decision v = stack.decide(item);
-    verdicts_.try_emplace(key, v);
-    if (decisions && v.touched) decisions->push_back({key, false, item.time, v, arrival});
-    return v;
+    const Decision decision = operators.decide(item);
+    decided_.try_emplace(key, decision);
+    if (decisions && decision.evaluated) decisions->push_back({key, false, item.time, decision, arrival});
+    return decision;
   }
-  void note_newest(const Message& m, HostTime arrival) {
+  void record_newest(const Message& m, HostTime arrival) {
     const bool same = m.header.incarnation == incarnation_;
-    if (same && m.header.publish_time_ns < newest_publish_ns_ && !epoch(m)) return;
+    if (same && m.header.publish_time_ns < newest_publish_ns_ && !is_restart(m)) return;
     incarnation_ = m.header.incarnation;
     newest_publish_ns_ = m.header.publish_time_ns;
     newest_arrival_ = arrival;
     if constexpr (requires { m.clock; }) newest_clock_ = m.clock;
   }
-  bool epoch(const Message& m) const { return m.header.publish_time_ns < newest_publish_ns_ - 1'000'000'000; }
-  void freshen(Message& m, HostTime& arrival) {
+  bool is_restart(const Message& m) const { return m.header.publish_time_ns < newest_publish_ns_ - 1'000'000'000; }
+  void update_header(Message& m, HostTime& arrival) {
     if (m.header.incarnation != incarnation_) return;
     m.header.publish_time_ns = newest_publish_ns_;
     arrival = newest_arrival_;
@@ -172,9 +172,9 @@ class DegradedSnapshots {
   }
 
   DelayQueue<Message> waiting_;
-  Pages gathering_{kGathering};
-  std::map<std::uint64_t, Arriving> arriving_;                // by stream
-  RecentMap<std::uint64_t, Decision> verdicts_{kRemembered};
+  Pages incomplete_{kPageLimits};
+  std::map<std::uint64_t, NewestSnapshot> newest_snapshots_;                // by stream
+  RecentMap<std::uint64_t, Decision> decided_{kRemembered};
   std::int64_t incarnation_ = 0, newest_publish_ns_ = 0;
   HostTime newest_arrival_{};
   sim_clock_t newest_clock_{};

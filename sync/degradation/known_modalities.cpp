@@ -81,14 +81,14 @@ const std::vector<KnownModality>& known_modalities() {
   return table;
 }
 
-std::size_t place_of_modality(const std::string& name) {
+std::size_t modality_index(const std::string& name) {
   const auto& all = known_modalities();
   return static_cast<std::size_t>(
       std::find_if(all.begin(), all.end(), [&](const KnownModality& m) { return m.name == name; }) - all.begin());
 }
 
 const KnownModality* known_modality(const std::string& name) {
-  const std::size_t place = place_of_modality(name);
+  const std::size_t place = modality_index(name);
   return place < known_modalities().size() ? &known_modalities()[place] : nullptr;
 }
 

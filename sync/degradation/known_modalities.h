@@ -29,7 +29,7 @@ const std::vector<KnownModality>& known_modalities();
 // Null: no table has it.
 const KnownModality* known_modality(const std::string& name);
 // Index in known_modalities(); its size for an unknown modality.
-std::size_t place_of_modality(const std::string& name);
+std::size_t modality_index(const std::string& name);
 
 // Output operators of a known modality; empty for an unknown one.
 std::vector<OutputOperator> output_operators_of(const std::string& modality);

@@ -16,7 +16,7 @@ enum Draw : std::uint64_t { kLossDraw = 1, kJitterDraw, kReorderDraw, kDuplicate
 constexpr std::size_t kRememberedValues = 4096;
 constexpr std::size_t kMaxStreams = 256;  // more channels, groups and tools than a modality reads
 // A larger fall of simulated time means that the world restarted, as in sync/clocks/sim_clock_tracker.h.
-constexpr Nanoseconds kAnew{1'000'000'000};
+constexpr Nanoseconds kMaxStepBack{1'000'000'000};
 
 double slot_s(const RateDef& rate, std::int64_t slot) {
   return static_cast<double>(slot) / rate.rate_Hz + rate.phase_s;
@@ -37,18 +37,18 @@ OperatorChain::OperatorChain(const Profile& profile, const std::string& modality
 }
 
 // Time since the profile came into force, or since a later restart of the world.
-double OperatorChain::elapsed_s(SimTime t) const { return to_seconds(start_ - t > kAnew ? t - SimTime{} : t - start_); }
+double OperatorChain::elapsed_s(SimTime t) const { return to_seconds(start_ - t > kMaxStepBack ? t - SimTime{} : t - start_); }
 
-bool OperatorChain::in_time(const Rule& rule, SimTime t) const {
+bool OperatorChain::active_at(const Rule& rule, SimTime t) const {
   const double s = elapsed_s(t);
   return s >= rule.from_s && (!rule.until_s || s < *rule.until_s);
 }
 
 OperatorChain::Chain& OperatorChain::chain_of(Active& a, const StreamItem& item) {
   if (a.chains.size() > kMaxStreams) a.chains.clear();
-  const auto [it, fresh] = a.chains.try_emplace(item.is_event ? 0 : item.stream);
+  const auto [it, is_new] = a.chains.try_emplace(item.is_event ? 0 : item.stream);
   Chain& chain = it->second;
-  if (fresh || chain.incarnation != item.incarnation || chain.newest - item.time > kAnew) {
+  if (is_new || chain.incarnation != item.incarnation || chain.newest - item.time > kMaxStepBack) {
     chain = {};
     chain.incarnation = item.incarnation;
     chain.newest = item.time;
@@ -60,7 +60,7 @@ OperatorChain::Chain& OperatorChain::chain_of(Active& a, const StreamItem& item)
   return chain;
 }
 
-bool OperatorChain::concerns(const Rule& rule, std::int32_t material_a, std::int32_t material_b, std::int32_t body_a,
+bool OperatorChain::applies_to(const Rule& rule, std::int32_t material_a, std::int32_t material_b, std::int32_t body_a,
                      std::int32_t body_b) const {
   const auto named = [](const std::vector<std::string>& names, std::int32_t i, const std::string& name) {
     return i >= 0 && i < static_cast<std::int32_t>(names.size()) && names[static_cast<std::size_t>(i)] == name;
@@ -75,11 +75,11 @@ bool OperatorChain::concerns(const Rule& rule, std::int32_t material_a, std::int
 }
 
 // Rate, deadband, loss, off, freeze: the operators that drop items. An event that a rate delays is not dropped.
-bool OperatorChain::dropped(Active& a, Chain& chain, const StreamItem& item, Decision& v) {
+bool OperatorChain::drops(Active& a, Chain& chain, const StreamItem& item, Decision& decision) {
   const Rule& rule = a.rule;
   const auto drop = [&](DropReason why, Conceal conceal) {
-    v.why = why;
-    v.conceal = conceal;
+    decision.why = why;
+    decision.conceal = conceal;
     return true;
   };
   if (rule.off) return drop(DropReason::kOff, Conceal::kZero);
@@ -97,49 +97,49 @@ bool OperatorChain::dropped(Active& a, Chain& chain, const StreamItem& item, Dec
   return false;
 }
 
-void OperatorChain::held(Active& a, Chain& chain, const StreamItem& item, Decision& v) {
+void OperatorChain::delay_item(Active& a, Chain& chain, const StreamItem& item, Decision& decision) {
   const Rule& rule = a.rule;
-  Nanoseconds hold{0};
+  Nanoseconds wait{0};
   if (rule.rate && item.is_event) {
     // The next instant at which the rate releases messages.
     const double t = elapsed_s(item.time);
     const auto slot = static_cast<std::int64_t>(std::ceil((t - rule.rate->phase_s) * rule.rate->rate_Hz));
-    hold += std::max(Nanoseconds(0), from_seconds(slot_s(*rule.rate, slot) - t));
+    wait += std::max(Nanoseconds(0), from_seconds(slot_s(*rule.rate, slot) - t));
   }
   if (rule.delay) {
     const Nanoseconds delay = from_seconds(rule.delay->delay_s);
     if (rule.delay->kind == DelayKind::kNetwork)
-      hold += delay;
+      wait += delay;
     else if (rule.filtered() && item.is_event)
-      v.shift += delay;
+      decision.shift += delay;
   }
-  if (chain.jitter) hold += chain.jitter->next(uniform(mixed(a.seed, kJitterDraw), item.key));
-  v.release += std::max(Nanoseconds(0), hold);
-  if (chain.jitter && chain.jitter->keeps_order()) v.release = std::max(v.release, chain.last_release);
-  chain.last_release = v.release;
+  if (chain.jitter) wait += chain.jitter->next(uniform(mixed(a.seed, kJitterDraw), item.key));
+  decision.release += std::max(Nanoseconds(0), wait);
+  if (chain.jitter && chain.jitter->keeps_order()) decision.release = std::max(decision.release, chain.last_release);
+  chain.last_release = decision.release;
   if (rule.reorder && uniform(mixed(a.seed, kReorderDraw), item.key) < rule.reorder->share)
-    v.release += from_seconds(rule.reorder->by_s);
-  if (rule.duplicate && uniform(mixed(a.seed, kDuplicateDraw), item.key) < *rule.duplicate) v.twice = true;
+    decision.release += from_seconds(rule.reorder->by_s);
+  if (rule.duplicate && uniform(mixed(a.seed, kDuplicateDraw), item.key) < *rule.duplicate) decision.duplicated = true;
 }
 
 Decision OperatorChain::decide(const StreamItem& item) {
-  Decision v;
-  v.release = item.arrival;
+  Decision decision;
+  decision.release = item.arrival;
   for (Active& a : rules_) {
     // A snapshot covers many bodies and contacts, so a filtered rule applies only to its values.
-    if (!in_time(a.rule, item.time) || (a.rule.filtered() && !item.is_event)) continue;
-    if (item.is_event && !concerns(a.rule, item.material_a, item.material_b, item.body_a, item.body_b)) continue;
+    if (!active_at(a.rule, item.time) || (a.rule.filtered() && !item.is_event)) continue;
+    if (item.is_event && !applies_to(a.rule, item.material_a, item.material_b, item.body_a, item.body_b)) continue;
     Chain& chain = chain_of(a, item);
-    v.touched = true;
-    if (dropped(a, chain, item, v)) return v;
-    held(a, chain, item, v);
+    decision.evaluated = true;
+    if (drops(a, chain, item, decision)) return decision;
+    delay_item(a, chain, item, decision);
   }
-  return v;
+  return decision;
 }
 
 bool OperatorChain::lost_on_wire(std::uint64_t message, SimTime now) {
   return std::any_of(rules_.begin(), rules_.end(), [&](const Active& a) {
-    return a.rule.wire_loss && in_time(a.rule, now) &&
+    return a.rule.wire_loss && active_at(a.rule, now) &&
            uniform(mixed(a.seed, kWireDraw), message) < *a.rule.wire_loss;
   });
 }
@@ -147,7 +147,7 @@ bool OperatorChain::lost_on_wire(std::uint64_t message, SimTime now) {
 Nanoseconds OperatorChain::presentation_delay(SimTime now) const {
   Nanoseconds sum{0};
   for (const Active& a : rules_) {
-    if (!in_time(a.rule, now) || a.rule.filtered()) continue;
+    if (!active_at(a.rule, now) || a.rule.filtered()) continue;
     if (a.rule.delay && a.rule.delay->kind == DelayKind::kPresentation) sum += from_seconds(a.rule.delay->delay_s);
     if (a.rule.skew) sum += from_seconds(*a.rule.skew * (elapsed_s(now) - a.rule.from_s));
   }
@@ -157,23 +157,23 @@ Nanoseconds OperatorChain::presentation_delay(SimTime now) const {
 OutputValues OperatorChain::output(SimTime now) const {
   OutputValues sum;
   for (const Active& a : rules_)
-    if (in_time(a.rule, now)) sum.add(a.rule.output);
+    if (active_at(a.rule, now)) sum.add(a.rule.output);
   return sum;
 }
 
-double OperatorChain::changed(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
+double OperatorChain::degraded_value(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
                       std::int32_t material_a, std::int32_t material_b, std::int32_t body_a, std::int32_t body_b) {
   for (Active& a : rules_) {
     const Rule& r = a.rule;
-    if (!in_time(r, t) || (r.filtered() && !concerns(r, material_a, material_b, body_a, body_b))) continue;
+    if (!active_at(r, t) || (r.filtered() && !applies_to(r, material_a, material_b, body_a, body_b))) continue;
     if (r.quantise && r.quantise->quantity == quantity) value = quantised(*r.quantise, value);
     if (r.gain && r.gain->quantity == quantity) value *= r.gain->value;
     if (r.bias && r.bias->quantity == quantity) value += r.bias->value;
     if (r.lowpass && r.lowpass->quantity == quantity) {
       if (a.lowpass.size() > kRememberedValues) a.lowpass.clear();
-      const auto [it, fresh] = a.lowpass.try_emplace({id, component}, Filtered{value, t});
-      if (it->second.time - t > kAnew) it->second = {value, t};
-      if (!fresh && t > it->second.time) {
+      const auto [it, is_new] = a.lowpass.try_emplace({id, component}, Filtered{value, t});
+      if (it->second.time - t > kMaxStepBack) it->second = {value, t};
+      if (!is_new && t > it->second.time) {
         it->second.value = lowpassed(it->second.value, value, r.lowpass->value, to_seconds(t - it->second.time));
         it->second.time = t;
       }

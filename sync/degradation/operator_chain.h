@@ -35,8 +35,8 @@ struct Decision {
   Conceal conceal = Conceal::kHold;  // replacement of a missing snapshot
   HostTime release{};                // time of release
   Nanoseconds shift{0};              // of an event: the presentation delay of a filtered rule that applies to it
-  bool twice = false;
-  bool touched = false;  // an operator was evaluated, so the decision is logged
+  bool duplicated = false;
+  bool evaluated = false;  // an operator was evaluated, so the decision is logged
   bool dropped() const { return why != DropReason::kKept; }
 };
 
@@ -63,7 +63,7 @@ class OperatorChain {
   OutputValues output(SimTime now) const;
 
   // A value after quantise, gain, bias and low-pass. id: of the contact, body or plane; component: of its vectors.
-  double changed(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
+  double degraded_value(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
                  std::int32_t material_a, std::int32_t material_b, std::int32_t body_a, std::int32_t body_b);
   bool changes_values() const { return changes_values_; }
   // True when a rule compares the content of a snapshot, so that all of its pages are needed for a decision.
@@ -93,12 +93,12 @@ class OperatorChain {
   };
 
   double elapsed_s(SimTime t) const;
-  bool in_time(const Rule& rule, SimTime t) const;
+  bool active_at(const Rule& rule, SimTime t) const;
   static Chain& chain_of(Active& a, const StreamItem& item);
-  bool concerns(const Rule& rule, std::int32_t material_a, std::int32_t material_b, std::int32_t body_a,
+  bool applies_to(const Rule& rule, std::int32_t material_a, std::int32_t material_b, std::int32_t body_a,
                 std::int32_t body_b) const;
-  bool dropped(Active& a, Chain& chain, const StreamItem& item, Decision& v);
-  void held(Active& a, Chain& chain, const StreamItem& item, Decision& v);
+  bool drops(Active& a, Chain& chain, const StreamItem& item, Decision& decision);
+  void delay_item(Active& a, Chain& chain, const StreamItem& item, Decision& decision);
 
   std::vector<Active> rules_;
   SceneNames names_;

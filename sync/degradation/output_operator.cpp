@@ -5,8 +5,8 @@
 namespace tactus::sync {
 namespace {
 
-double combined(Combine how, double a, double b) {
-  switch (how) {
+double combined(Combine combine, double a, double b) {
+  switch (combine) {
     case Combine::kMin: return std::min(a, b);
     case Combine::kMax: return std::max(a, b);
     case Combine::kSum: return a + b;

@@ -35,10 +35,10 @@ class Words {
     while (in >> word) {
       const std::size_t equals = word.find('=');
       const std::string name = word.substr(0, equals);
-      const bool twice = equals == std::string::npos
+      const bool duplicated = equals == std::string::npos
                              ? std::find(words_.begin(), words_.end(), word) != words_.end()
                              : !pairs_.try_emplace(name, word.substr(equals + 1)).second;
-      if (twice)
+      if (duplicated)
         throw std::invalid_argument("\"" + (equals == std::string::npos ? name : name + "=") +
                                     "\" stands there twice; leave one away");
       if (equals == std::string::npos) words_.push_back(word);
@@ -73,13 +73,13 @@ class Words {
   template <class Value>
   std::optional<Value> one_of(const std::map<std::string, Value>& choices) {
     std::optional<Value> chosen;
-    std::string said;
+    std::string given_name;
     for (const auto& [name, value] : choices) {
       if (!word(name)) continue;
       if (chosen)
-        throw std::invalid_argument("\"" + said + "\" and \"" + name + "\" contradict each other; leave one away");
+        throw std::invalid_argument("\"" + given_name + "\" and \"" + name + "\" contradict each other; leave one away");
       chosen = value;
-      said = name;
+      given_name = name;
     }
     return chosen;
   }
@@ -91,10 +91,10 @@ class Words {
  private:
   static double checked(double x, const std::string& text, std::string_view unit, double least, double most) {
     if (x < least || x > most) {
-      std::ostringstream why;
-      why << text << " must lie between " << least << " and " << most;
-      if (unit != "1") why << " " << unit;
-      throw std::invalid_argument(why.str());
+      std::ostringstream message;
+      message << text << " must lie between " << least << " and " << most;
+      if (unit != "1") message << " " << unit;
+      throw std::invalid_argument(message.str());
     }
     return x;
   }

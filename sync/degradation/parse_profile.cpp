@@ -92,11 +92,11 @@ bool says_another_encoding(std::string declaration) {
 }
 
 // An element may contain only elements and comments.
-void refuse_other_than_elements(const tinyxml2::XMLNode& within, const std::string& what, int& line) {
+void refuse_other_than_elements(const tinyxml2::XMLNode& within, const std::string& message, int& line) {
   for (const tinyxml2::XMLNode* n = within.FirstChild(); n; n = n->NextSibling()) {
     if (n->ToElement() || n->ToComment()) continue;
     line = n->GetLineNum();
-    throw std::invalid_argument(what);
+    throw std::invalid_argument(message);
   }
 }
 
@@ -113,14 +113,14 @@ void refuse_more_than_root(const tinyxml2::XMLDocument& document, const tinyxml2
   }
 }
 
-[[noreturn]] void refuse(const std::string& file, int line, const std::string& why) {
-  throw std::invalid_argument(file + ":" + std::to_string(line) + ": " + why);
+[[noreturn]] void refuse(const std::string& file, int line, const std::string& reason) {
+  throw std::invalid_argument(file + ":" + std::to_string(line) + ": " + reason);
 }
 
 }  // namespace
 
 Profile parse_profile(const std::string& xml, const std::string& file, const DeclaredOutput& own) {
-  // XML has none; what comes after it would be lost in silence.
+  // XML has none; the text after it would be ignored.
   if (const std::size_t nul = xml.find('\0'); nul != std::string::npos)
     refuse(file,
            1 + static_cast<int>(std::count(xml.begin(), xml.begin() + static_cast<std::ptrdiff_t>(nul), '\n')),

@@ -33,7 +33,7 @@ void send_profile(Bus& bus, const ProfileInForce& profile) {
   }
 }
 
-std::optional<ProfileInForce> ProfileReceiver::take(const degradation_t& page) {
+std::optional<ProfileInForce> ProfileReceiver::push(const degradation_t& page) {
   if (page.generation <= generation_) return std::nullopt;
   const auto* pages = pages_.add({page.generation, page.hash}, page.page, page.pages, page.text);
   if (!pages) return std::nullopt;
@@ -52,7 +52,7 @@ std::optional<ProfileInForce> ProfileReceiver::take(const degradation_t& page) {
   return whole;
 }
 
-void keep_profile(const std::filesystem::path& folder, const ProfileInForce& p, std::int64_t run_id) {
+void store_profile(const std::filesystem::path& folder, const ProfileInForce& p, std::int64_t run_id) {
   const std::filesystem::path file = folder / kFile, fresh = folder / kFreshFile;
   std::ofstream out(fresh, std::ios::binary | std::ios::trunc);
   out << run_id << " " << p.generation << " " << to_ns(p.start) << " " << p.hash << "\n" << p.text;
@@ -61,7 +61,7 @@ void keep_profile(const std::filesystem::path& folder, const ProfileInForce& p, 
   if (out) std::filesystem::rename(fresh, file, error);
 }
 
-std::optional<ProfileInForce> kept_profile(const std::filesystem::path& folder, std::int64_t run_id) {
+std::optional<ProfileInForce> load_profile(const std::filesystem::path& folder, std::int64_t run_id) {
   std::ifstream in(folder / kFile, std::ios::binary);
   std::int64_t run = 0, start_ns = 0;
   ProfileInForce p;

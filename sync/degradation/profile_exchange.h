@@ -23,21 +23,21 @@ inline constexpr std::size_t kMaxProfileBytes = 65536;
 void send_profile(Bus& bus, const ProfileInForce& profile);
 
 // Stores the profile in force in a file: a restarted sync_node reads it from there.
-void keep_profile(const std::filesystem::path& folder, const ProfileInForce& profile, std::int64_t run_id);
+void store_profile(const std::filesystem::path& folder, const ProfileInForce& profile, std::int64_t run_id);
 // nullopt when there is no file, or when it is damaged or belongs to another run.
-std::optional<ProfileInForce> kept_profile(const std::filesystem::path& folder, std::int64_t run_id);
+std::optional<ProfileInForce> load_profile(const std::filesystem::path& folder, std::int64_t run_id);
 
 // Assembles the pages. Pure.
 class ProfileReceiver {
  public:
   // Profiles that may be in flight at once; the one whose newest page is the oldest is discarded first.
-  static constexpr std::size_t kMaxOnTheirWay = 4;
+  static constexpr std::size_t kMaxInFlight = 4;
   // Of one profile.
   static constexpr int kMaxPages = 55;
 
   // Returns the profile when this page completes one that is newer than the previous one. A text that does not match its
   // hash, or that is no valid profile, is refused as a whole: nothing changes.
-  std::optional<ProfileInForce> take(const degradation_t& page);
+  std::optional<ProfileInForce> push(const degradation_t& page);
   // One sentence on the last profile with an invalid text; returned once, then empty.
   std::string take_refusal() { return std::exchange(refusal_, {}); }
   // The generation already in force, from a file or a scene: only newer ones are accepted.
@@ -48,7 +48,7 @@ class ProfileReceiver {
  private:
   std::int64_t generation_ = -1;
   // By generation and hash.
-  PageAssembler<std::string, std::pair<std::int64_t, std::int64_t>> pages_{{.groups = kMaxOnTheirWay, .pages = kMaxPages},
+  PageAssembler<std::string, std::pair<std::int64_t, std::int64_t>> pages_{{.groups = kMaxInFlight, .pages = kMaxPages},
                                                                            PageOrder::kNewestPage};
   std::string refusal_;
 };

@@ -33,7 +33,7 @@ class Changer {
   template <class Number>
   void operator()(Quantity q, Number& x, double least = -1e300) {
     x = static_cast<Number>(
-        std::max(least, stack_.changed(q, id_, component_++, x, t_, material_a_, material_b_, body_a_, body_b_)));
+        std::max(least, stack_.degraded_value(q, id_, component_++, x, t_, material_a_, material_b_, body_a_, body_b_)));
   }
   template <class Vector>
   void vector(Quantity q, Vector& v) {

@@ -31,7 +31,7 @@ class LogFeed {
   BusOptions bus() const;
 
   // Messages on this channel are left out from now on.
-  void leave_out(std::string channel) { left_out_.insert(std::move(channel)); }
+  void exclude(std::string channel) { excluded_.insert(std::move(channel)); }
   // The next tick: passes every message that had arrived by then to the inboxes. Returns its time, CLOCK_MONOTONIC of the
   // recorder.
   HostTime next(Bus& bus) { return next_at(bus, now_ + period_); }
@@ -42,28 +42,28 @@ class LogFeed {
 
   // All events again from the beginning, for look-ahead. Refers to this object.
   TimestampedEvents from_begin() const {
-    TimestampedEvents events(file_.bytes(), origin_, &ages_);
-    events.start_at(0, begin_);
+    TimestampedEvents events(file_.bytes(), origin_, &time_ranges_);
+    events.seek(0, begin_);
     return events;
   }
 
   HostTime begin() const { return begin_; }
   HostTime end() const { return end_; }
   // Of the whole log.
-  std::int64_t events() const { return whole_.events(); }
-  std::int64_t damaged_regions() const { return whole_.damaged_regions(); }
-  std::int64_t damaged_bytes() const { return whole_.damaged_bytes(); }
-  // Events with damaged stamps: further than LogTimeRanges::kApart_us from the stamps of the run, and too few to be a later
+  std::int64_t events() const { return scan_.events(); }
+  std::int64_t damaged_regions() const { return scan_.damaged_regions(); }
+  std::int64_t damaged_bytes() const { return scan_.damaged_bytes(); }
+  // Events with damaged stamps: further than LogTimeRanges::kMaxGap_us from the stamps of the run, and too few to be a later
   // part of it. They are passed on with the event before them, and do not lengthen the run.
-  std::int64_t misdated() const { return ages_.misdated(); }
+  std::int64_t misdated() const { return time_ranges_.misdated(); }
   // One sentence when the log does not state its run, or states it wrongly; empty otherwise.
   const std::string& recovered() const { return origin_.recovered; }
 
  private:
   MappedLog file_;
-  std::set<std::string, std::less<>> left_out_;
-  LogScanner whole_;
-  LogTimeRanges ages_;
+  std::set<std::string, std::less<>> excluded_;
+  LogScanner scan_;
+  LogTimeRanges time_ranges_;
   LogOrigin origin_;
   TimestampedEvents events_;
   LogEvent pending_;

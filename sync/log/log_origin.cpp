@@ -37,7 +37,7 @@ HostTime LogOrigin::time(std::int64_t timestamp_us) const {
 
 void LogClockDetector::observe(const LogEvent& event) {
   if (event.channel == channels::kLogInfo) {
-    if (!told_) told_ = decode<log_info_t>(event.data.data(), event.data.size());
+    if (!log_info_) log_info_ = decode<log_info_t>(event.data.data(), event.data.size());
     return;  // the head is stamped ahead of the run
   }
   const auto header = peek_header(event.data.data(), event.data.size());
@@ -64,15 +64,15 @@ void LogClockDetector::observe(const LogEvent& event) {
     pair.differences_ns.push_back(stamp_ns - header->publish_time_ns);
 }
 
-std::int64_t LogClockDetector::witnesses() const {
+std::int64_t LogClockDetector::messages_with_run() const {
   std::int64_t sum = 0;
   for (const auto& [key, pair] : pairs_) sum += pair.events;
   return sum;
 }
 
-LogClockDetector::Pairs::const_iterator LogClockDetector::likeliest() const {
+LogClockDetector::Pairs::const_iterator LogClockDetector::likeliest_pair() const {
   const auto more = [](const auto& a, const auto& b) {
-    const bool of_a = a.second.of_recorder >= kFewestOfRecorder, of_b = b.second.of_recorder >= kFewestOfRecorder;
+    const bool of_a = a.second.of_recorder >= kMinRecorderMessages, of_b = b.second.of_recorder >= kMinRecorderMessages;
     return of_a != of_b ? of_b : a.second.events < b.second.events;
   };
   return std::max_element(pairs_.begin(), pairs_.end(), more);
@@ -88,19 +88,19 @@ std::int64_t LogClockDetector::offset_ns(const Pair& pair) {
 
 LogOrigin LogClockDetector::find() const {
   LogOrigin origin;
-  const auto found = likeliest();
-  if (told_) {
-    origin.info = *told_;
+  const auto found = likeliest_pair();
+  if (log_info_) {
+    origin.info = *log_info_;
     origin.known = true;
     if (found == pairs_.end()) return origin;
-    const auto own = pairs_.find({told_->header.run_id, told_->header.clock});
+    const auto own = pairs_.find({log_info_->header.run_id, log_info_->header.clock});
     const bool of_this_run = std::any_of(pairs_.begin(), pairs_.end(),
-                                         [&](const auto& p) { return p.first.first == told_->header.run_id; });
-    const bool contradicted = found->second.of_recorder >= kFewestOfRecorder;
+                                         [&](const auto& p) { return p.first.first == log_info_->header.run_id; });
+    const bool contradicted = found->second.of_recorder >= kMinRecorderMessages;
     if (own == pairs_.end() && of_this_run && !contradicted) return origin;
     if (own != pairs_.end() && !own->second.differences_ns.empty()) {
       const std::int64_t estimate = offset_ns(own->second);
-      if (std::llabs(estimate / 1000 - told_->realtime_offset_ns / 1000) <= kContradiction_ns / 1000)
+      if (std::llabs(estimate / 1000 - log_info_->realtime_offset_ns / 1000) <= kContradiction_ns / 1000)
         return origin;
       origin.info.realtime_offset_ns = estimate;
       origin.recovered = "its LOG_INFO contradicts the times of its messages; theirs are taken, good to a latency";
@@ -112,7 +112,7 @@ LogOrigin LogClockDetector::find() const {
   origin.info.header.run_id = found->first.first;
   origin.info.header.clock = found->first.second;
   origin.info.realtime_offset_ns = offset_ns(found->second);
-  origin.recovered = std::string("its LOG_INFO is ") + (told_ ? "not of this run" : "missing or damaged") +
+  origin.recovered = std::string("its LOG_INFO is ") + (log_info_ ? "not of this run" : "missing or damaged") +
                      "; run and clock are taken from the headers of " + std::to_string(found->second.events) +
                      " messages, its times are good to a latency";
   return origin;
@@ -120,13 +120,13 @@ LogOrigin LogClockDetector::find() const {
 
 LogOrigin origin_of(std::span<const std::uint8_t> log) {
   // A second of a run; more than the largest scene at its head.
-  constexpr std::int64_t kWitnesses = 4096;
+  constexpr std::int64_t kEnoughMessages = 4096;
   constexpr std::size_t kMaxBytes = 320 << 20;
   LogScanner scanner(log);
-  LogClockDetector finder;
-  for (LogEvent e; finder.witnesses() < kWitnesses && scanner.at() < kMaxBytes && scanner.next(e);)
-    finder.observe(e);
-  return finder.find();
+  LogClockDetector detector;
+  for (LogEvent e; detector.messages_with_run() < kEnoughMessages && scanner.at() < kMaxBytes && scanner.next(e);)
+    detector.observe(e);
+  return detector.find();
 }
 
 }  // namespace tactus::sync

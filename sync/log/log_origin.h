@@ -43,12 +43,12 @@ class LogClockDetector {
   // LOG_INFO counts as damaged when stamps converted by it differ by more than this from the senders' times.
   static constexpr std::int64_t kContradiction_ns = 1'000'000'000;
   // Minimum number of the recorder's own messages for a run and clock; fewer may be noise.
-  static constexpr std::int64_t kFewestOfRecorder = 8;
+  static constexpr std::int64_t kMinRecorderMessages = 8;
 
   void observe(const LogEvent& event);
   LogOrigin find() const;
   // Number of messages that name their run.
-  std::int64_t witnesses() const;
+  std::int64_t messages_with_run() const;
 
  private:
   struct Pair {
@@ -57,11 +57,11 @@ class LogClockDetector {
     std::vector<std::int64_t> differences_ns;  // stamp minus publish_time_ns: the offset plus a latency
   };
   using Pairs = std::map<std::pair<std::int64_t, std::int32_t>, Pair>;
-  Pairs::const_iterator likeliest() const;
+  Pairs::const_iterator likeliest_pair() const;
   // The 5 % quantile of the differences: near the smallest, and robust against damaged stamps.
   static std::int64_t offset_ns(const Pair& pair);
 
-  std::optional<log_info_t> told_;
+  std::optional<log_info_t> log_info_;
   Pairs pairs_;
 };
 

@@ -43,8 +43,8 @@ std::vector<std::string> log_parts_in(const std::string& dir) {
 
 std::unique_ptr<LogSink> LogParts::open() {
   if (next_ == 0) {
-    const auto there = parts_by_number(dir_);
-    next_ = there.empty() ? 1 : there.rbegin()->first + 1;
+    const auto existing = parts_by_number(dir_);
+    next_ = existing.empty() ? 1 : existing.rbegin()->first + 1;
   }
   std::filesystem::path path;
   do path = std::filesystem::path(dir_) / name_of(next_);

@@ -68,19 +68,19 @@ void LogScanner::skip_to(std::size_t at) {
   at_ = at;
 }
 
-void LogScanner::start_at(std::size_t at) { at_ = next_event_after(std::min(at, bytes_.size()), bytes_.size()); }
+void LogScanner::seek(std::size_t at) { at_ = next_event_after(std::min(at, bytes_.size()), bytes_.size()); }
 
-void LogScanner::pass_border() {
-  const std::size_t border = (at_ + kLogPartBytes - 1) / kLogPartBytes * kLogPartBytes;
+void LogScanner::skip_padding() {
+  const std::size_t part_begin = (at_ + kLogPartBytes - 1) / kLogPartBytes * kLogPartBytes;
   LogEvent ignored;
-  if (border == at_ || !event_at(border, ignored)) return;
-  const auto between = bytes_.subspan(at_, border - at_);
-  if (std::all_of(between.begin(), between.end(), [](std::uint8_t b) { return b == 0; })) at_ = border;
+  if (part_begin == at_ || !event_at(part_begin, ignored)) return;
+  const auto between = bytes_.subspan(at_, part_begin - at_);
+  if (std::all_of(between.begin(), between.end(), [](std::uint8_t b) { return b == 0; })) at_ = part_begin;
 }
 
 bool LogScanner::next(LogEvent& event) {
   while (at_ < bytes_.size()) {
-    if (bytes_[at_] == 0) pass_border();
+    if (bytes_[at_] == 0) skip_padding();
     if (!event_at(at_, event)) {
       skip_to(next_event_after(at_ + 1, bytes_.size()));
       continue;

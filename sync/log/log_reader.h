@@ -33,7 +33,7 @@ class LogScanner {
   // False at the end.
   bool next(LogEvent& event);
   // Continues with the first event that begins at or after this byte; skipped bytes do not count as damage.
-  void start_at(std::size_t at);
+  void seek(std::size_t at);
   // The position of the next event, or the end.
   std::size_t at() const { return at_; }
 
@@ -51,7 +51,7 @@ class LogScanner {
   std::size_t next_event_after(std::size_t at, std::size_t until) const;
   void skip_to(std::size_t at);
   // Skips the zeros between two parts of a recording.
-  void pass_border();
+  void skip_padding();
 
   std::span<const std::uint8_t> bytes_;
   std::size_t at_ = 0;

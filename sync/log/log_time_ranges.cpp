@@ -6,57 +6,57 @@
 
 namespace tactus::sync {
 
-void LogTimeRanges::note(std::int64_t t) {
-  auto next = ages_.upper_bound(t);
-  auto at = next == ages_.begin() ? ages_.end() : std::prev(next);
-  if (at != ages_.end() && t <= at->second.last_us + kApart_us) {
+void LogTimeRanges::add(std::int64_t t) {
+  auto next = ranges_.upper_bound(t);
+  auto at = next == ranges_.begin() ? ranges_.end() : std::prev(next);
+  if (at != ranges_.end() && t <= at->second.last_us + kMaxGap_us) {
     at->second.last_us = std::max(at->second.last_us, t);
     ++at->second.events;
-  } else if (next != ages_.end() && next->first <= t + kApart_us) {
-    const Age age{next->second.last_us, next->second.events + 1};
-    at = ages_.insert_or_assign(ages_.erase(next), t, age);
+  } else if (next != ranges_.end() && next->first <= t + kMaxGap_us) {
+    const Range range{next->second.last_us, next->second.events + 1};
+    at = ranges_.insert_or_assign(ranges_.erase(next), t, range);
   } else {
-    at = ages_.insert_or_assign(next, t, Age{t, 1});
+    at = ranges_.insert_or_assign(next, t, Range{t, 1});
   }
   next = std::next(at);
-  if (next != ages_.end() && next->first <= at->second.last_us + kApart_us) {
+  if (next != ranges_.end() && next->first <= at->second.last_us + kMaxGap_us) {
     at->second.last_us = std::max(at->second.last_us, next->second.last_us);
     at->second.events += next->second.events;
-    ages_.erase(next);
+    ranges_.erase(next);
   }
-  fullest_ = std::max(fullest_, at->second.events);
-  if (ages_.size() > kMax) forget();
+  max_events_ = std::max(max_events_, at->second.events);
+  if (ranges_.size() > kMax) remove_small_ranges();
 }
 
-void LogTimeRanges::forget() {
+void LogTimeRanges::remove_small_ranges() {
   std::vector<std::int64_t> counts;
-  for (const auto& [first, age] : ages_) counts.push_back(age.events);
+  for (const auto& [first, range] : ranges_) counts.push_back(range.events);
   const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
   std::nth_element(counts.begin(), middle, counts.end());
-  const std::int64_t most = std::min(*middle, kFewestOfARun - 1);
-  std::size_t spare = ages_.size() / 2;
-  for (auto it = ages_.begin(); it != ages_.end() && spare > 0;) {
-    if (it->second.events > most || it->second.events == fullest_) {
+  const std::int64_t max_removed_events = std::min(*middle, kMinRunEvents - 1);
+  std::size_t to_remove = ranges_.size() / 2;
+  for (auto it = ranges_.begin(); it != ranges_.end() && to_remove > 0;) {
+    if (it->second.events > max_removed_events || it->second.events == max_events_) {
       ++it;
       continue;
     }
-    forgotten_ += it->second.events;
-    it = ages_.erase(it);
-    --spare;
+    removed_ += it->second.events;
+    it = ranges_.erase(it);
+    --to_remove;
   }
 }
 
-bool LogTimeRanges::of_the_run(std::int64_t t) const {
-  const auto next = ages_.upper_bound(t);
-  if (next == ages_.begin()) return false;
-  const Age& age = std::prev(next)->second;
-  return t <= age.last_us && good(age);
+bool LogTimeRanges::in_run(std::int64_t t) const {
+  const auto next = ranges_.upper_bound(t);
+  if (next == ranges_.begin()) return false;
+  const Range& range = std::prev(next)->second;
+  return t <= range.last_us && belongs_to_run(range);
 }
 
 std::int64_t LogTimeRanges::misdated() const {
-  std::int64_t events = forgotten_;
-  for (const auto& [first, age] : ages_)
-    if (!good(age)) events += age.events;
+  std::int64_t events = removed_;
+  for (const auto& [first, range] : ranges_)
+    if (!belongs_to_run(range)) events += range.events;
   return events;
 }
 

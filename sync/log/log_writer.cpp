@@ -37,10 +37,10 @@ std::string FileSink::append(std::span<const std::uint8_t> bytes) {
     const ssize_t n = ::write(fd_, bytes.data() + done, bytes.size() - done);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) {
-      const std::string why = n < 0 ? strerror(errno) : "nothing was written";
+      const std::string reason = n < 0 ? strerror(errno) : "nothing was written";
       // Removes the incomplete event, so that the file stays readable, also for tools that stop at the first damage.
       if (ftruncate(fd_, size_) != 0 || lseek(fd_, size_, SEEK_SET) < 0) size_ += static_cast<std::int64_t>(done);
-      return why;
+      return reason;
     }
     done += static_cast<std::size_t>(n);
   }
@@ -77,10 +77,10 @@ void LogWriter::write(std::int64_t timestamp_us, std::string_view channel, std::
 }
 
 void LogWriter::flush() {
-  trouble_.clear();
+  error_.clear();
   while (!blocks_.empty()) {
-    trouble_ = sink_->append(blocks_.front());
-    if (!trouble_.empty()) return;
+    error_ = sink_->append(blocks_.front());
+    if (!error_.empty()) return;
     waiting_bytes_ -= blocks_.front().size();
     blocks_.pop_front();
   }

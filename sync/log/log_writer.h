@@ -55,7 +55,7 @@ class LogWriter {
   // Number of dropped events.
   std::int64_t lost() const { return lost_; }
   // Reason of the last flush's failure; empty: it succeeded.
-  const std::string& trouble() const { return trouble_; }
+  const std::string& error() const { return error_; }
 
  private:
   std::unique_ptr<LogSink> sink_;
@@ -67,7 +67,7 @@ class LogWriter {
   std::int64_t events_ = 0;
   std::int64_t bytes_ = 0;
   std::int64_t lost_ = 0;
-  std::string trouble_;
+  std::string error_;
 };
 
 }  // namespace tactus::sync

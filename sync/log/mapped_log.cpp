@@ -30,9 +30,9 @@ void say_cut(int, siginfo_t* info, void*) {
     signal(SIGBUS, SIG_DFL);  // another cause: the signal is raised again with its default action
     return;
   }
-  static constexpr char text[] = "the log was cut while it was read; give a copy that nobody writes to\n";
-  const ssize_t said = write(STDERR_FILENO, text, sizeof text - 1);
-  _exit(said < 0 ? 2 : 1);
+  static constexpr char text[] = "another process truncated the log while it was read; give a copy that no process writes to\n";
+  const ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
+  _exit(written < 0 ? 2 : 1);
 }
 
 void tell_of_cuts(std::span<const std::uint8_t> bytes) {

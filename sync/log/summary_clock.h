@@ -10,21 +10,21 @@ namespace tactus::sync {
 class SummaryClock {
  public:
   // A larger step, or a step back, is accepted only when the next event confirms it.
-  static constexpr Nanoseconds kLargestStep{60'000'000'000};
+  static constexpr Nanoseconds kMaxStep{60'000'000'000};
 
   HostTime observe(HostTime stamp) {
-    if (!now_ || near(*now_, stamp) || (doubted_ && near(*doubted_, stamp))) {
+    if (!now_ || near(*now_, stamp) || (unconfirmed_ && near(*unconfirmed_, stamp))) {
       now_ = stamp;
-      doubted_.reset();
+      unconfirmed_.reset();
     } else {
-      doubted_ = stamp;
+      unconfirmed_ = stamp;
     }
     return *now_;
   }
 
  private:
-  static bool near(HostTime before, HostTime t) { return t >= before && t - before <= kLargestStep; }
-  std::optional<HostTime> now_, doubted_;
+  static bool near(HostTime before, HostTime t) { return t >= before && t - before <= kMaxStep; }
+  std::optional<HostTime> now_, unconfirmed_;
 };
 
 }  // namespace tactus::sync

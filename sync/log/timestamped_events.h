@@ -14,30 +14,30 @@ namespace tactus::sync {
 
 class TimestampedEvents {
  public:
-  // ages: the valid stamps of this log, if known; null: any. Both outlive this object.
-  TimestampedEvents(std::span<const std::uint8_t> bytes, const LogOrigin& origin, const LogTimeRanges* ages = nullptr)
-      : scanner_(bytes), origin_(origin), ages_(ages) {}
+  // time_ranges: the valid stamps of this log, if known; null: any. Both outlive this object.
+  TimestampedEvents(std::span<const std::uint8_t> bytes, const LogOrigin& origin, const LogTimeRanges* time_ranges = nullptr)
+      : scanner_(bytes), origin_(origin), time_ranges_(time_ranges) {}
 
   // Continues with the first event at or after this byte, as if no event had been read; no time is before `from`.
-  void start_at(std::size_t at, HostTime from);
+  void seek(std::size_t at, HostTime from);
   // False at the end.
   bool next(LogEvent& event, HostTime& time);
 
   const LogScanner& scanner() const { return scanner_; }
 
  private:
-  bool credible(const LogEvent& event) const {
-    return ages_ == nullptr || ages_->of_the_run(bounded_us(event.timestamp_us));
+  bool plausible(const LogEvent& event) const {
+    return time_ranges_ == nullptr || time_ranges_->in_run(bounded_us(event.timestamp_us));
   }
   HostTime time_of(const LogEvent& event);
 
   LogScanner scanner_;
   const LogOrigin& origin_;
-  const LogTimeRanges* ages_;
+  const LogTimeRanges* time_ranges_;
   SummaryClock clock_;
   std::optional<HostTime> before_;
-  std::optional<LogEvent> ahead_;
-  bool begun_ = false;
+  std::optional<LogEvent> lookahead_;
+  bool started_ = false;
 };
 
 }  // namespace tactus::sync

@@ -12,7 +12,7 @@ namespace tactus::sync {
 
 class CurrentQuestion {
  public:
-  static constexpr Nanoseconds kGone{2'000'000'000};  // question_t.lcm
+  static constexpr Nanoseconds kTimeout{2'000'000'000};  // question_t.lcm
 
   // run_id: questions of other runs are ignored; 0: questions of any run count, as in a log.
   explicit CurrentQuestion(std::int64_t run_id) : run_id_(run_id) {}
@@ -21,7 +21,7 @@ class CurrentQuestion {
   // or comes from a second sender while one leads.
   bool push(const question_t& m, HostTime arrival) {
     if (run_id_ != 0 && m.header.run_id != run_id_) return false;
-    if (led(arrival)) {
+    if (newest(arrival)) {
       if (m.header.source != newest_->header.source) return false;
       if (m.header.incarnation == newest_->header.incarnation && m.header.seq <= newest_->header.seq) return false;
     }
@@ -31,7 +31,7 @@ class CurrentQuestion {
   void clear() { newest_.reset(); }
 
   // The newest message, also one without a question; null: no process leads a study.
-  const question_t* led(HostTime now) const { return newest_ && now - arrival_ <= kGone ? &*newest_ : nullptr; }
+  const question_t* newest(HostTime now) const { return newest_ && now - arrival_ <= kTimeout ? &*newest_ : nullptr; }
 
  private:
   std::int64_t run_id_;

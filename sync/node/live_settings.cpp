@@ -11,31 +11,31 @@
 namespace tactus::sync {
 namespace {
 
-constexpr Nanoseconds kAskEvery{1'000'000'000};
+constexpr Nanoseconds kRequestPeriod{1'000'000'000};
 
 }  // namespace
 
 LiveSettings::LiveSettings(Node& node)
     : node_(node),
-      asked_(node.bus().queue<setting_change_t>(channels::kSetting, 64)),
+      requests_(node.bus().queue<setting_change_t>(channels::kSetting, 64)),
       lists_(node.bus().raw(channels::kTagList, 64, Port::kRealtime)),
       values_(node.bus().raw(channels::kTagValues, 256, Port::kRealtime)),
       changes_(node.options().name, node.options().run_id),
       maps_(node.options().name) {
-  lists_.set_wanted(false);
-  values_.set_wanted(false);
+  lists_.set_enabled(false);
+  values_.set_enabled(false);
 }
 
 std::vector<std::string> LiveSettings::step(HostTime now, const SettingChanges::Apply& apply) {
-  if (const auto m = asked_.pop()) changes_.take(m->message, apply);
+  if (const auto m = requests_.pop()) changes_.process(m->message, apply);
   for (setting_reply_t& reply : changes_.replies()) node_.bus().publish(channels::kSettingReply, reply);
 
-  std::vector<std::string> trouble;
-  lists_.set_wanted(maps_.any());
-  values_.set_wanted(maps_.any());
-  if (!maps_.any()) return trouble;
-  if (now >= ask_next_) {
-    ask_next_ = now + kAskEvery;
+  std::vector<std::string> problems;
+  lists_.set_enabled(maps_.any());
+  values_.set_enabled(maps_.any());
+  if (!maps_.any()) return problems;
+  if (now >= next_request_) {
+    next_request_ = now + kRequestPeriod;
     tag_request_t request = maps_.request();
     node_.bus().publish(channels::kTagRequest, request);
   }
@@ -49,13 +49,13 @@ std::vector<std::string> LiveSettings::step(HostTime now, const SettingChanges::
   values_.read([&](std::span<const std::uint8_t> bytes, HostTime) {
     push(decode<tag_values_t>(bytes.data(), bytes.size()));
   });
-  for (const SettingMaps::Change& change : maps_.take(now)) try {
+  for (const SettingMaps::Change& change : maps_.take_changes(now)) try {
       apply(change.name, change.value);
     } catch (const std::invalid_argument& e) {
-      trouble.push_back("a <tactus:map> cannot drive " + change.name + ": " + e.what());
-      maps_.give_up(change.name);
+      problems.push_back("a <tactus:map> cannot drive " + change.name + ": " + e.what());
+      maps_.disable(change.name);
     }
-  return trouble;
+  return problems;
 }
 
 }  // namespace tactus::sync

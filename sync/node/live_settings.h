@@ -26,12 +26,12 @@ class LiveSettings {
 
  private:
   Node& node_;
-  Queue<setting_change_t>& asked_;
+  Queue<setting_change_t>& requests_;
   RawQueue& lists_;
   RawQueue& values_;
   SettingChanges changes_;
   SettingMaps maps_;
-  HostTime ask_next_{};
+  HostTime next_request_{};
 };
 
 }  // namespace tactus::sync

@@ -27,7 +27,7 @@ constexpr Nanoseconds kDecisionPeriod{100'000'000};  // longest wait of decision
 constexpr Nanoseconds kReportedWithin{100'000'000};  // for presented events, as PresentationMatcher::kReportsWithin
 
 // Output operators of the profile that name this modality but that its node does not declare.
-std::vector<std::string> not_declared(const Profile& profile, const NodeDescriptor& d) {
+std::vector<std::string> undeclared_operators(const Profile& profile, const NodeDescriptor& d) {
   std::vector<std::string> missing;
   for (const Rule& rule : profile.rules) {
     if (rule.modality != d.modality) continue;
@@ -41,26 +41,26 @@ std::vector<std::string> not_declared(const Profile& profile, const NodeDescript
 
 // The parser of the process has no ranges for the operators of an unknown modality; its node parses the text with its own.
 // Throws std::invalid_argument with one sentence.
-std::shared_ptr<const Profile> parsed_for(const ProfileInForce& profile, const NodeDescriptor& d) {
+std::shared_ptr<const Profile> parse_for(const ProfileInForce& profile, const NodeDescriptor& d) {
   if (known_modality(d.modality)) return profile.parsed;
   return std::make_shared<const Profile>(parse_profile(profile.text, "profile", {d.modality, d.output_operators}));
 }
 
 }  // namespace
 
-ModalityEndpoint::ModalityEndpoint(Node& node) : ModalityEndpoint(node, node.descriptor()) { listens_in_ = false; }
+ModalityEndpoint::ModalityEndpoint(Node& node) : ModalityEndpoint(node, node.descriptor()) { observes_ = false; }
 
-ModalityEndpoint::ModalityEndpoint(Node& node, NodeDescriptor of)
+ModalityEndpoint::ModalityEndpoint(Node& node, NodeDescriptor observed)
     : node_(node),
-      descriptor_(std::move(of)),
-      listens_in_(true),
+      descriptor_(std::move(observed)),
+      observes_(true),
       degradations_(node.bus().queue<degradation_t>(channels::kDegradation, 256)),
       playouts_(node.bus().queue<playout_t>(channels::kPlayout, 64)),
       simulation_(node.bus().clocks()),
       playout_(descriptor_.modality),
       reporter_(descriptor_.modality) {
   if (node.options().profile.text.empty()) return;
-  put_in_force(node.options().profile);
+  apply_profile(node.options().profile);
   receiver_.set_generation(0);
 }
 
@@ -70,7 +70,7 @@ void ModalityEndpoint::set_scene(const scene_t& scene, int tool) {
   names_ = {};
   for (const body_def_t& b : scene.bodies) names_.bodies.push_back(b.name);
   for (const material_def_t& m : scene.materials) names_.materials.push_back(m.name);
-  stack_.set_scene(names_);
+  operators_.set_scene(names_);
   tool_ = tool;
   // A profile from the command line, or one received since then, takes precedence.
   if (!node_.options().profile.text.empty() || receiver_.generation() > 0) return;
@@ -80,60 +80,60 @@ void ModalityEndpoint::set_scene(const scene_t& scene, int tool) {
   const std::int64_t hash = fnv1a_64(text.data(), text.size());
   if (hash == profile_hash_) return;
   try {
-    put_in_force(read_profile(text, "profile"));
+    apply_profile(read_profile(text, "profile"));
   } catch (const std::invalid_argument& e) {
     std::cerr << node_.descriptor().name << ": refused: " << e.what() << std::endl;
   }
 }
 
-void ModalityEndpoint::put_in_force(const ProfileInForce& profile) {
+void ModalityEndpoint::apply_profile(const ProfileInForce& profile) {
   const NodeDescriptor& d = descriptor_;
   std::shared_ptr<const Profile> shared;
   try {
-    shared = parsed_for(profile, d);
+    shared = parse_for(profile, d);
   } catch (const std::invalid_argument& e) {
     std::cerr << d.name << ": refused: " << e.what() << std::endl;
     return;
   }
   const Profile& parsed = *shared;
-  stack_ = OperatorChain(parsed, d.modality, profile.start);
-  stack_.set_scene(names_);
+  operators_ = OperatorChain(parsed, d.modality, profile.start);
+  operators_.set_scene(names_);
   for (const auto& stream : streams_) stream->change_profile();
   profile_hash_ = profile.hash;
   profile_name_ = parsed.name;
   node_.set_profile(profile.hash);
   if (profile.generation > 0 || !parsed.rules.empty())
-    std::cerr << d.name << ": profile \"" << parsed.name << "\", " << (stack_.empty() ? "nothing" : "degrades this sense")
+    std::cerr << d.name << ": profile \"" << parsed.name << "\", " << (operators_.empty() ? "nothing" : "degrades this sense")
               << std::endl;
-  for (const std::string& name : not_declared(parsed, d))
+  for (const std::string& name : undeclared_operators(parsed, d))
     std::cerr << d.name << ": profile \"" << parsed.name << "\": this sense has no " << name << "; it is left out"
               << std::endl;
 }
 
-void ModalityEndpoint::take_control(HostTime) {
-  const auto ours = [&](const header_t& h) { return h.run_id == node_.options().run_id; };
+void ModalityEndpoint::read_control_messages(HostTime) {
+  const auto same_run = [&](const header_t& h) { return h.run_id == node_.options().run_id; };
   while (const auto m = degradations_.pop())
-    if (ours(m->message.header))
+    if (same_run(m->message.header))
       // The same text can come again: its times count from the moment that it comes into force.
-      if (const auto whole = receiver_.take(m->message)) put_in_force(*whole);
+      if (const auto whole = receiver_.push(m->message)) apply_profile(*whole);
   if (const std::string refusal = receiver_.take_refusal(); !refusal.empty())
     std::cerr << node_.descriptor().name << ": refused: " << refusal << std::endl;
   while (const auto m = playouts_.pop())
-    if (ours(m->message.header)) playout_.take(m->message);
+    if (same_run(m->message.header)) playout_.push(m->message);
 }
 
 void ModalityEndpoint::step(HostTime now) {
-  take_control(now);
+  read_control_messages(now);
   const auto map = simulation_.map(now);
   const SimTime sim_now = map ? map->to_sim(now) : SimTime{};
-  const Nanoseconds delay_before = std::exchange(profile_delay_, stack_.presentation_delay(sim_now));
+  const Nanoseconds delay_before = std::exchange(profile_delay_, operators_.presentation_delay(sim_now));
   if (profile_delay_ > delay_before) log_in_flight_delays(now, sim_now);
-  output_ = stack_.output(sim_now);
+  output_ = operators_.output(sim_now);
   lockstep_ = map && playout_.lockstep_Hz() > 0 ? std::optional(Lockstep{*map, playout_.lockstep_Hz()}) : std::nullopt;
   serial_delay_ = playout_.step(now) + profile_delay_;
-  delay_ = lockstep_ ? now - lockstep_->begin_of_turn(now - serial_delay_) : serial_delay_;
-  const HostTime lets = lockstep_ ? lockstep_->begin_of_turn(now) : now;
-  for (const auto& stream : streams_) stream->step(*this, now, lets);
+  delay_ = lockstep_ ? now - lockstep_->begin_of_iteration(now - serial_delay_) : serial_delay_;
+  const HostTime state_time = lockstep_ ? lockstep_->begin_of_iteration(now) : now;
+  for (const auto& stream : streams_) stream->step(*this, now, state_time);
 }
 
 ModalityEndpoint::Events& ModalityEndpoint::events(std::size_t capacity) {
@@ -172,7 +172,7 @@ void ModalityEndpoint::log_in_flight_delays(HostTime now, SimTime sim_now) {
 }
 
 HostTime ModalityEndpoint::schedule(std::int64_t event_id, HostTime happened) const {
-  if (lockstep_) return lockstep_->next_turn(happened) + serial_delay_;
+  if (lockstep_) return lockstep_->next_iteration(happened) + serial_delay_;
   if (!playout_.as_soon_as_possible()) return happened + serial_delay_;
   const auto arrived = arrival_of(event_id);
   const HostTime ready = arrived ? *arrived + output_latency_ : happened;
@@ -189,16 +189,16 @@ std::optional<HostTime> ModalityEndpoint::arrival_of(std::int64_t event_id) cons
   return events_ ? events_->inbox_.arrival_of(event_id) : std::nullopt;
 }
 
-bool ModalityEndpoint::owes(const contact_event_t& e) const {
-  const int owes = descriptor_.expected_events;
-  if ((owes & node_health_t::OWES_OWN_TOOL_ONLY) && (tool_ < 0 || e.tool != tool_)) return false;
-  return (e.kind == contact_event_t::BEGIN && (owes & node_health_t::OWES_BEGIN)) ||
-         (e.kind == contact_event_t::HIT && (owes & node_health_t::OWES_HIT));
+bool ModalityEndpoint::expects(const contact_event_t& e) const {
+  const int expected = descriptor_.expected_events;
+  if ((expected & node_health_t::OWES_OWN_TOOL_ONLY) && (tool_ < 0 || e.tool != tool_)) return false;
+  return (e.kind == contact_event_t::BEGIN && (expected & node_health_t::OWES_BEGIN)) ||
+         (e.kind == contact_event_t::HIT && (expected & node_health_t::OWES_HIT));
 }
 
 void ModalityEndpoint::report_dropped(const std::vector<contact_event_t>& dropped) {
   for (const contact_event_t& e : dropped) {
-    if (!owes(e)) continue;
+    if (!expects(e)) continue;
     presentation_t r{};
     r.event_id = e.event_id;
     r.part = presentation_t::WHOLE;
@@ -213,11 +213,11 @@ void ModalityEndpoint::report(const presentation_t& report) {
   const auto arrived = arrival_of(r.event_id);
   r.ready_ns = arrived ? to_ns(*arrived + output_latency_) : -1;
   reporter_.report(r);
-  if (tell_) tell_(r);
+  if (report_listener_) report_listener_(r);
 }
 
 void ModalityEndpoint::publish(HostTime now) {
-  if (listens_in_) return decisions_.clear();
+  if (observes_) return decisions_.clear();
   reporter_.publish(node_.bus(), now);
   if (decisions_.size() < kDecisionsPerMessage && now < next_decisions_) return;
   next_decisions_ = now + kDecisionPeriod;
@@ -236,10 +236,10 @@ void ModalityEndpoint::publish_decisions() {
     out.key = static_cast<std::int64_t>(d.key);
     out.is_event = d.is_event ? 1 : 0;
     out.time_ns = to_ns(d.time);
-    out.why = static_cast<std::int8_t>(d.verdict.why);
-    const Nanoseconds held = d.verdict.release - d.arrival + d.verdict.shift + (d.is_event ? profile_delay_ : Nanoseconds(0));
-    out.held_ns = d.verdict.dropped() ? 0 : held.count();
-    out.twice = d.verdict.twice ? 1 : 0;
+    out.why = static_cast<std::int8_t>(d.decision.why);
+    const Nanoseconds held = d.decision.release - d.arrival + d.decision.shift + (d.is_event ? profile_delay_ : Nanoseconds(0));
+    out.held_ns = d.decision.dropped() ? 0 : held.count();
+    out.twice = d.decision.duplicated ? 1 : 0;
     m.decisions.push_back(out);
     if (m.decisions.size() < kDecisionsPerMessage && i + 1 < decisions_.size()) continue;
     m.count = static_cast<std::int32_t>(m.decisions.size());

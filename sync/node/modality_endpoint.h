@@ -1,8 +1,8 @@
 // The endpoint of a modality on the bus: input streams, the operators of the degradation profile on them, playout delay, and
 // reports of presented events. Each rendering node has one.
 //
-//   sync::ModalityEndpoint sense(node);
-//   auto& events = sense.events();
+//   sync::ModalityEndpoint endpoint(node);
+//   auto& events = endpoint.events();
 //   while (node.running()) {
 //     const sync::HostTime now = node.wait();
 //     sense.step(now);                        // receives new messages, releases the due ones
@@ -83,7 +83,7 @@ class ModalityEndpoint {
   // Observes the modality of another process: the same streams, with the decisions of the same profile and the playout delay
   // of that process. Publishes nothing. An observer, such as the simulated player, so receives exactly the input of that
   // modality's renderer.
-  ModalityEndpoint(Node& node, NodeDescriptor of);
+  ModalityEndpoint(Node& node, NodeDescriptor observed);
   ~ModalityEndpoint();
 
   // Create streams before the first step.
@@ -94,9 +94,9 @@ class ModalityEndpoint {
   }
   // For a modality without a movable instant of presentation (a servo loop): its input messages are delayed instead.
   template <class Message>
-  Stream<Message>& held_snapshots(const char* channel, std::size_t capacity) {
+  Stream<Message>& delayed_snapshots(const char* channel, std::size_t capacity) {
     auto& stream = add<Message>(channel, capacity);
-    stream.waits_ = true;
+    stream.delayed_ = true;
     return stream;
   }
 
@@ -120,21 +120,21 @@ class ModalityEndpoint {
   HostTime schedule(std::int64_t event_id, HostTime happened) const;
   // Output operators in force.
   const OutputValues& output() const { return output_; }
-  // What the profile in force calls itself, whether or not it concerns this sense; empty: none is.
+  // The name of the profile in force, whether or not it applies to this modality; empty: there is none.
   const std::string& profile_name() const { return profile_name_; }
   // The arrival of the newest message of any stream, before any delay of the profile.
   HostTime newest_arrival() const;
 
   void report(const presentation_t& report);
   // Sets a function that receives every report. Needed when a log is rendered: nothing reads the reports from the bus then.
-  void tell(std::function<void(const presentation_t&)> of_report) { tell_ = std::move(of_report); }
+  void set_report_listener(std::function<void(const presentation_t&)> listener) { report_listener_ = std::move(listener); }
   // Publishes reports, and the decisions of the profile.
   void publish(HostTime now);
 
  private:
   struct AnyStream {
     virtual ~AnyStream() = default;
-    virtual void step(ModalityEndpoint& sense, HostTime now, HostTime lets) = 0;
+    virtual void step(ModalityEndpoint& endpoint, HostTime now, HostTime state_time) = 0;
     virtual void change_profile() = 0;
     virtual HostTime newest_arrival() const = 0;
   };
@@ -164,23 +164,23 @@ class ModalityEndpoint {
   // Logs the delay of events that have arrived and are not presented yet, when a delay of a profile begins: it applies to
   // them, too.
   void log_in_flight_delays(HostTime now, SimTime sim_now);
-  void take_control(HostTime now);
-  void put_in_force(const ProfileInForce& profile);
+  void read_control_messages(HostTime now);
+  void apply_profile(const ProfileInForce& profile);
   // The first arrival of an event from the bus; nullopt: it has not arrived, or has been forgotten.
   std::optional<HostTime> arrival_of(std::int64_t event_id) const;
   void report_dropped(const std::vector<contact_event_t>& dropped);
-  bool owes(const contact_event_t& event) const;
+  bool expects(const contact_event_t& event) const;
   void publish_decisions();
 
   Node& node_;
   NodeDescriptor descriptor_;
-  bool listens_in_ = false;
+  bool observes_ = false;
   Queue<degradation_t>& degradations_;
   Queue<playout_t>& playouts_;
   ProfileReceiver receiver_;
   std::int64_t profile_hash_ = 0;
   std::string profile_name_;
-  OperatorChain stack_;
+  OperatorChain operators_;
   SceneNames names_;
   int tool_ = -1;
   Decisions decisions_;
@@ -197,9 +197,9 @@ class ModalityEndpoint {
 };
 
 template <class Message>
-void ModalityEndpoint::StreamSlot<Message>::step(ModalityEndpoint& sense, HostTime now, HostTime lets) {
+void ModalityEndpoint::StreamSlot<Message>::step(ModalityEndpoint& endpoint, HostTime now, HostTime state_time) {
   // A tick that is held up while it reads also accepts the messages that arrive meanwhile.
-  HostTime heard = now;
+  HostTime newest_arrival = now;
   while (auto m = stream.inbox_.pop()) {
     heard = std::max(heard, m->arrival);
     if constexpr (requires { m->message.clock; }) sense.simulation_.follow(m->message.header, m->message.clock, m->arrival);

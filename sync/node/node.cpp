@@ -58,11 +58,11 @@ std::int32_t saturated(std::int64_t n) { return static_cast<std::int32_t>(std::m
 
 constexpr Nanoseconds kReportPeriod{100'000'000};
 // A demoted loop regains its priority after this time below 80 % load.
-constexpr Nanoseconds kForgiven{10'000'000'000};
+constexpr Nanoseconds kPromoteAfter{10'000'000'000};
 constexpr Nanoseconds kRateWindow{1'000'000'000};
 constexpr std::size_t kMaxTagRequests = 64;
 // A note may quote text from the bus; a report with a note of this length still fits a datagram.
-constexpr std::size_t kLongestNote = 140;
+constexpr std::size_t kMaxNote = 140;
 
 }  // namespace
 
@@ -84,10 +84,10 @@ void NodeOptions::add_to(CLI::App& app, const NodeDescriptor& d) {
   app.add_option("--seed", seed, "seed of all random numbers")->capture_default_str();
   app.add_option("--set", set, "name=value of a setting, see docs/settings.md; may be repeated");
   if (!d.modality.empty() || d.name == "sync_node")
-    app.add_option("--degrade", degrade, "degradation profile (XML): what is wrong with each sense on purpose");
+    app.add_option("--degrade", degrade, "degradation profile (XML): the intended degradations of each sense");
   // For measurements only, hence not in --help: a renderer that uses up its core.
   app.add_option("--emulate-load", load)->envname("TACTUS_LOAD_" + d.name)->check(CLI::Range(0.0, 100.0))->group("");
-  app.add_flag("--check", check, "checks options and files, then leaves without joining the bus");
+  app.add_flag("--check", check, "checks options and files, then exits without joining the bus");
 }
 
 void parse_or_exit(CLI::App& app, const std::string& node, int argc, char** argv) {
@@ -102,8 +102,8 @@ void parse_or_exit(CLI::App& app, const std::string& node, int argc, char** argv
 }
 
 int fail(const std::string& node, const std::exception& e) {
-  const std::string what = e.what();
-  std::cerr << (what.starts_with(node) ? "" : node + ": ") << printable(what) << "\n";
+  const std::string message = e.what();
+  std::cerr << (message.starts_with(node) ? "" : node + ": ") << printable(message) << "\n";
   return 1;
 }
 
@@ -115,7 +115,7 @@ Node::Node(NodeDescriptor descriptor, NodeOptions options)
       loop_(descriptor_.rate_Hz),
       tags_(options_.name, options_.run_id),
       tag_requests_(channels::kTagRequest, kMaxTagRequests) {
-  bus_.follow_clocks();
+  bus_.track_clocks();
   bus_.attach(tag_requests_);
   tag_work();
   health_.tool = -1;
@@ -129,7 +129,7 @@ Node::~Node() = default;
 
 bool Node::running() const {
   const VirtualTime* const time = VirtualTime::current();
-  return !stop_requested && !(time && time->asked_to_leave());
+  return !stop_requested && !(time && time->stop_requested());
 }
 
 void Node::set_rate(double rate_Hz) {
@@ -137,9 +137,9 @@ void Node::set_rate(double rate_Hz) {
   health_.nominal_rate_Hz = rate_Hz;
 }
 
-void Node::set_state(std::int8_t state, std::string note) {
+void Node::set_state(std::int8_t state, std::string status_text) {
   health_.state = state;
-  note_ = std::move(note);
+  status_text_ = std::move(status_text);
 }
 
 void Node::begin_incarnation() {
@@ -163,11 +163,11 @@ void Node::tag_work() {
   tags_.add("work", "us", &work_us_);
   std::vector<Phase> phases = descriptor_.phases;
   phases.insert(phases.end(), {Phase::kDecode, Phase::kOther});
-  for (const Phase phase : phases) tags_.add(std::string("work.") + name(phase), "us", phases_.told(phase));
+  for (const Phase phase : phases) tags_.add(std::string("work.") + name(phase), "us", phases_.us_pointer(phase));
 }
 
 void Node::serve_tags(HostTime now) {
-  while (const auto m = tag_requests_.pop()) tags_.take(m->message, now);
+  while (const auto m = tag_requests_.pop()) tags_.push(m->message, now);
   tags_.step(now);
   while (tag_list_t* m = tags_.next_list()) bus_.publish(channels::kTagList, *m);
   while (tag_values_t* m = tags_.next_values()) bus_.publish(channels::kTagValues, *m);
@@ -175,7 +175,7 @@ void Node::serve_tags(HostTime now) {
 
 void Node::begin_tick(HostTime now) {
   tick_begin_ = now;
-  phases_.begin(tags_.wanted());
+  phases_.begin(tags_.requested());
   const ScopedPhaseTimer decoding(Phase::kDecode);
   bus_.drain(now);
 }
@@ -193,7 +193,7 @@ void Node::end_tick(HostTime now) {
     demoted_ = true;
     scheduling_ = "demoted to normal scheduling: used more than 80 % of its time for 100 ms";
     std::cerr << options_.name << ": " << scheduling_ << std::endl;
-  } else if (demoted_ && guard_.calm() >= kForgiven) {
+  } else if (demoted_ && guard_.time_below_limit() >= kPromoteAfter) {
     demoted_ = false;
     scheduling_ = set_realtime(Realtime::kTry, descriptor_.fifo_priority) + " again, after a demotion";
     std::cerr << options_.name << ": " << scheduling_ << std::endl;
@@ -234,9 +234,9 @@ node_health_t Node::health_message(HostTime now) {
   m.header.sim_time_ns = -1;
   m.node = options_.name;
   m.modality = descriptor_.modality;
-  m.owes = descriptor_.expected_events | (descriptor_.late_policy == Late::kAlwaysApply ? node_health_t::NOT_WAITED_FOR : 0);
-  m.note = note_.empty() ? scheduling_ : note_ + "; " + scheduling_;
-  if (m.note.size() > kLongestNote) m.note.replace(kLongestNote - 3, std::string::npos, "...");
+  m.owes = descriptor_.expected_events | (descriptor_.late_rule == LateRule::kAlwaysApply ? node_health_t::NOT_WAITED_FOR : 0);
+  m.note = status_text_.empty() ? scheduling_ : status_text_ + "; " + scheduling_;
+  if (m.note.size() > kMaxNote) m.note.replace(kMaxNote - 3, std::string::npos, "...");
   m.tick = tick_.to_message();
   m.wake = wake_.to_message();
   std::int64_t forgotten = 0;
@@ -245,7 +245,7 @@ node_health_t Node::health_message(HostTime now) {
     in.channel = c.channel;
     const InputAge age = age_of(c, bus_.clocks(), now);
     in.age_ns = age.age.count();
-    in.uncertainty_ns = static_cast<std::int32_t>(age.uncertainty.count());  // at most ClockMaps::kMaxUncertain
+    in.uncertainty_ns = static_cast<std::int32_t>(age.uncertainty.count());  // at most ClockMaps::kMaxUncertainty
     in.messages = c.sequence.messages();
     in.gaps = saturated(c.sequence.gaps() + c.dropped);
     in.bad = saturated(c.bad);

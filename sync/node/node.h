@@ -52,8 +52,8 @@ class Node {
   const NodeOptions& options() const { return options_; }
   const NodeDescriptor& descriptor() const { return descriptor_; }
   void set_rate(double rate_Hz);
-  // Re-phases the loop to an external clock: the next tick is at next_tick; the left_out ticks before it count as missed.
-  void align(HostTime next_tick, std::int64_t left_out = 0) { loop_.align(next_tick, left_out); }
+  // Re-phases the loop to an external clock: the next tick is at next_tick; the skipped ticks before it count as missed.
+  void align(HostTime next_tick, std::int64_t skipped = 0) { loop_.align(next_tick, skipped); }
   // Ticks done and missed so far: their sum numbers the periods of the loop.
   const Deadlines& deadlines() const { return loop_.deadlines(); }
 
@@ -63,7 +63,7 @@ class Node {
   }
 
   // State and note of the next health report.
-  void set_state(std::int8_t state, std::string note = "");
+  void set_state(std::int8_t state, std::string status_text = "");
   void set_tool(int tool) { health_.tool = tool; }
   void count_rendered(std::int64_t events) { health_.contacts_rendered += events; }
   // Step of the node's quality ladder (0: full quality), and the number of steps.
@@ -98,7 +98,7 @@ class Node {
   double work_us_ = 0;
   Histogram tick_, wake_;
   node_health_t health_{};
-  std::string note_;
+  std::string status_text_;
   HostTime tick_begin_{};
   HostTime next_report_{};
   HostTime rate_since_{};

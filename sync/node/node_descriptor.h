@@ -23,7 +23,7 @@ struct NodeDescriptor {
   // Of a modality only.
   std::vector<std::string> inputs = {};    // channels that it reads and that its profile acts on
   std::string presentation_instant = {};   // the instant that PRESENTED reports
-  Late late_policy = Late::kShowNewest;    // what becomes of an event that comes too late
+  LateRule late_rule = LateRule::kShowNewest;    // treatment of late events
   std::vector<OutputOperator> output_operators = {};  // operators on its output that a profile can use
 
   std::vector<Phase> phases = {};  // tagged phases of its tick beside decoding and the rest: "work.render"

@@ -15,21 +15,21 @@ namespace tactus::sync {
 
 void OfflineOptions::add_to(CLI::App& app, const std::string& does, const std::string& output) {
   app.add_option("--log", log,
-                 does + " instead of what is on the bus, as fast as it can; needs " + output +
+                 does + " instead of the messages on the bus, as fast as possible; needs " + output +
                      "; --degrade logged takes the profiles of the run");
-  app.add_option("--presented", presented, "file for a table of what became of each event of the log, CSV")
+  app.add_option("--presented", presented, "file for a table of the outcome of each event of the log, CSV")
       ->needs("--log");
 }
 
-Offline::Offline(const OfflineOptions& options, std::vector<Written> written, double rate_Hz, HostTime clock,
-                 Nanoseconds rings_on)
+OfflineInput::OfflineInput(const OfflineOptions& options, std::vector<Written> written, double rate_Hz, HostTime clock,
+                 Nanoseconds tail)
     : feed_(options.log, rate_Hz),
       rate_Hz_(rate_Hz),
       as_recorded_(options.as_recorded),
-      end_(feed_.end() + rings_on),
+      end_(feed_.end() + tail),
       now_(feed_.begin()),
-      began_(clock),
-      said_(clock) {
+      started_(clock),
+      last_progress_(clock) {
   if (!options.presented.empty()) written.push_back({options.presented, "--presented"});
   // The same file may also be named by another path or a link.
   std::error_code none;
@@ -45,46 +45,46 @@ Offline::Offline(const OfflineOptions& options, std::vector<Written> written, do
   presented_->write(presented_csv_names());
 }
 
-void Offline::adapt(NodeOptions& options) {
+void OfflineInput::adapt(NodeOptions& options) {
   options.bus = feed_.bus();
   options.run_id = feed_.run_id();
   options.realtime = "off";
   if (options.degrade == "logged") as_recorded_ = true, options.degrade.clear();
   if (as_recorded_) return;
-  feed_.leave_out(channels::kDegradation);
+  feed_.exclude(channels::kDegradation);
   // A profile of the scene is a profile of the run, too.
   if (options.degrade.empty()) options.profile = read_profile("<profile/>", "profile");
 }
 
-HostTime Offline::next(Bus& bus) {
+HostTime OfflineInput::next(Bus& bus) {
   const std::optional<HostTime> at = std::exchange(next_tick_, std::nullopt);
   return now_ = at ? feed_.next_at(bus, *at) : feed_.next(bus);
 }
 
-void Offline::expect_rate(double rate_Hz) const {
+void OfflineInput::require_rate(double rate_Hz) const {
   if (rate_Hz == rate_Hz_) return;
   std::ostringstream text;
-  text << "the scene of the log asks for " << rate_Hz << " ticks a second, not " << rate_Hz_
+  text << "the scene of the log requires " << rate_Hz << " ticks a second, not " << rate_Hz_
        << "; give --set rate=" << rate_Hz;
   throw std::runtime_error(text.str());
 }
 
-void Offline::note(const std::string& modality, const presentation_t& report) {
+void OfflineInput::record_outcome(const std::string& modality, const presentation_t& report) {
   if (presented_) presented_->write(csv_row(modality, report));
 }
 
-std::optional<std::string> Offline::progress(HostTime clock) {
-  if (clock - said_ < from_seconds(1)) return std::nullopt;
-  said_ = clock;
+std::optional<std::string> OfflineInput::progress(HostTime clock) {
+  if (clock - last_progress_ < from_seconds(1)) return std::nullopt;
+  last_progress_ = clock;
   const double whole_s = to_seconds(end_ - feed_.begin());
   const double share = whole_s > 0 ? to_seconds(now_ - feed_.begin()) / whole_s : 1;
   return std::to_string(std::lround(100 * std::clamp(share, 0.0, 1.0))) + " % of the log";
 }
 
-std::string Offline::finish(double rendered_s, HostTime clock) {
-  if (!over()) throw std::runtime_error("stopped before the log was over: nothing is kept");
+std::string OfflineInput::finish(double rendered_s, HostTime clock) {
+  if (!over()) throw std::runtime_error("stopped before the end of the log: no output is kept");
   if (presented_) presented_->finish();
-  const double took_s = to_seconds(clock - began_);
+  const double took_s = to_seconds(clock - started_);
   std::ostringstream text;
   text << ", in " << took_s << " s (" << rendered_s / took_s << " times as fast as time)";
   if (!feed_.recovered().empty()) text << "\n" << feed_.recovered();
@@ -94,7 +94,7 @@ std::string Offline::finish(double rendered_s, HostTime clock) {
   if (feed_.misdated() > 0)
     text << "\n"
          << feed_.misdated()
-         << " events bear damaged times, far from the others; they were taken with those before them";
+         << " events have damaged times, far from the others; they were processed with the preceding events";
   return text.str();
 }
 

@@ -26,17 +26,17 @@ struct OfflineOptions {
   void add_to(CLI::App& app, const std::string& does, const std::string& output);
 };
 
-class Offline {
+class OfflineInput {
  public:
   // An output file and the option that names it, e.g. {"sound.wav", "--wav"}.
   struct Written {
     std::string path, option;
   };
 
-  // rings_on: time that is rendered after the end of the log. Throws std::runtime_error with one sentence when the log holds
+  // tail: time that is rendered after the end of the log. Throws std::runtime_error with one sentence when the log holds
   // no run, or when an output file would overwrite the log.
-  Offline(const OfflineOptions& options, std::vector<Written> written, double rate_Hz, HostTime clock,
-          Nanoseconds rings_on = Nanoseconds(0));
+  OfflineInput(const OfflineOptions& options, std::vector<Written> written, double rate_Hz, HostTime clock,
+          Nanoseconds tail = Nanoseconds(0));
 
   // Adapts the options of a node to the run of the log. `--degrade logged` uses the profiles of the run.
   void adapt(NodeOptions& options);
@@ -50,9 +50,9 @@ class Offline {
   // Ends the rendering at this time, because there is nothing more to do.
   void end_at(HostTime end) { end_ = end; }
   // Throws std::runtime_error with one sentence when the rate of the ticks differs from the rate that the scene requires.
-  void expect_rate(double rate_Hz) const;
+  void require_rate(double rate_Hz) const;
   // Adds the outcome of an event to the table of outcomes.
-  void note(const std::string& modality, const presentation_t& report);
+  void record_outcome(const std::string& modality, const presentation_t& report);
 
   // A progress line for the user, once a second.
   std::optional<std::string> progress(HostTime clock);
@@ -65,7 +65,7 @@ class Offline {
   double rate_Hz_;
   bool as_recorded_;
   std::unique_ptr<AtomicFile> presented_;
-  HostTime end_, now_, began_, said_;
+  HostTime end_, now_, started_, last_progress_;
   std::optional<HostTime> next_tick_;
 };
 

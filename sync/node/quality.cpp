@@ -16,20 +16,20 @@ void QualityLadder::add(Nanoseconds used) {
     doublings_ = std::max(doublings_ - 1, 0);
     on_trial_ = doublings_ > 0 ? 1 : 0;
   }
-  if (count_ < kLeastTicks) return;
-  if (count_ == kLeastTicks) learn();
+  if (count_ < kMinTicks) return;
+  if (count_ == kMinTicks) measure_cost();
   if (step_ + 1 < steps_ && overloaded()) {
     if (on_trial_ > 0) doublings_ = std::min(doublings_ + 1, kMaxDoublings);
     on_trial_ = 0;
     left_at_[static_cast<std::size_t>(step_)] = quartile(3);
-    go(step_ + 1);
+    switch_to(step_ + 1);
   } else if (step_ > 0) {
-    wait_for_better();
+    postpone_trial();
   }
 }
 
 // Stores the cost of the abandoned step relative to the cost of the present step.
-void QualityLadder::learn() {
+void QualityLadder::measure_cost() {
   if (step_ == 0) return;
   const auto better = static_cast<std::size_t>(step_ - 1);
   if (left_at_[better] <= Nanoseconds(0)) return;
@@ -37,17 +37,17 @@ void QualityLadder::learn() {
   left_at_[better] = Nanoseconds(0);
 }
 
-void QualityLadder::wait_for_better() {
+void QualityLadder::postpone_trial() {
   const double share = to_seconds(quartile(3)) / to_seconds(budget_);
   fits_ = share * ratio_[static_cast<std::size_t>(step_ - 1)] <= kLow ? fits_ + 1 : 0;
   spare_ = share <= kLow ? spare_ + 1 : 0;
   const int wait = calm_ticks_ << doublings_;
   if (fits_ < wait && spare_ < kTryAfter * wait) return;
-  go(step_ - 1);
+  switch_to(step_ - 1);
   on_trial_ = 1;
 }
 
-void QualityLadder::go(int to) {
+void QualityLadder::switch_to(int to) {
   step_ = to;
   count_ = 0;
   fits_ = spare_ = 0;

@@ -19,7 +19,7 @@ class QualityLadder {
   static constexpr std::size_t kWindow = 32;  // design: half a second of pictures
   // The ladder acts on a clear overload, of more than every second tick, after this number of ticks of a step; on a beginning
   // overload, of every fourth tick, after a window. One outlier is neither.
-  static constexpr std::size_t kLeastTicks = 8;
+  static constexpr std::size_t kMinTicks = 8;
   // Shares of the budget. Down: before the budget is missed. Up: with room for the expected extra cost of the better step.
   static constexpr double kHigh = 0.85, kLow = 0.7;  // design
   // design: two seconds of pictures
@@ -47,9 +47,9 @@ class QualityLadder {
   // The duration that this number of quarters of the ticks in the window did not exceed.
   Nanoseconds quartile(std::size_t quarters) const;
   bool overloaded() const;
-  void learn();
-  void go(int to);
-  void wait_for_better();
+  void measure_cost();
+  void switch_to(int to);
+  void postpone_trial();
 
   int steps_;
   Nanoseconds budget_;

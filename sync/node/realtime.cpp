@@ -32,11 +32,11 @@ std::string set_realtime(Realtime choice, int priority) {
   sched_param param{};
   param.sched_priority = priority;
   if (sched_setscheduler(0, SCHED_FIFO, &param) != 0) {
-    const std::string why = strerror(errno);
+    const std::string reason = strerror(errno);
     if (choice == Realtime::kRequire)
-      throw std::runtime_error("SCHED_FIFO " + std::to_string(priority) + " is refused (" + why +
+      throw std::runtime_error("SCHED_FIFO " + std::to_string(priority) + " is refused (" + reason +
                                "): " + remedy(priority));
-    return "normal scheduling (SCHED_FIFO refused: " + why + ")";
+    return "normal scheduling (SCHED_FIFO refused: " + reason + ")";
   }
   // A limited mlockall(MCL_FUTURE) makes later allocations fail, so it is only tried without a limit.
   const bool locked = may_lock_all() && lock_memory();
@@ -56,7 +56,7 @@ bool OverrunGuard::tick(HostTime begin, HostTime end) {
   const Nanoseconds span = end - window_begin_;
   if (span < kWindow) return false;
   const bool too_busy = to_seconds(busy_) > kMaxBusy * to_seconds(span);
-  calm_ = too_busy ? Nanoseconds(0) : calm_ + span;
+  time_below_limit_ = too_busy ? Nanoseconds(0) : time_below_limit_ + span;
   window_begin_ = end;
   busy_ = Nanoseconds(0);
   return too_busy;

@@ -25,14 +25,14 @@ class OverrunGuard {
   // One tick: its begin, its end, and the earliest begin of the next. Returns true when the loop must be demoted.
   bool tick(HostTime begin, HostTime end);
   // Time without a break below that load.
-  Nanoseconds calm() const { return calm_; }
+  Nanoseconds time_below_limit() const { return time_below_limit_; }
 
  private:
   static constexpr Nanoseconds kWindow{100'000'000};
   static constexpr double kMaxBusy = 0.8;
   HostTime window_begin_{};
   Nanoseconds busy_{0};
-  Nanoseconds calm_{0};
+  Nanoseconds time_below_limit_{0};
 };
 
 }  // namespace tactus::sync

@@ -22,12 +22,12 @@ namespace tactus::sync {
 // The status that NODE_HEALTH reports for a tick.
 struct Status {
   std::int8_t state = node_health_t::RUNNING;
-  std::string note = "";
+  std::string text = "";
   int quality = 0, qualities = 0;  // step of its quality ladder (0: full) and number of steps; 0 of 0: it has no ladder
 };
 
 // The properties of a loaded scene.
-struct Loaded {
+struct LoadedScene {
   int tool = -1;                  // index in scene_t.tools; -1: none
   double rate_Hz = 0;             // of its ticks from now on; 0: unchanged
   Nanoseconds output_latency{0};  // maximum time from the arrival of an event to its output
@@ -39,7 +39,7 @@ class Renderer {
   virtual ~Renderer() = default;
 
   // A scene is complete. Slow file reads run in a thread of their own (BackgroundTask); step() polls it.
-  virtual Loaded begin_scene(const SceneReceiver& scenes) = 0;
+  virtual LoadedScene begin_scene(const SceneReceiver& scenes) = 0;
   // Throws std::invalid_argument with one sentence; then no setting has changed.
   virtual void change_setting(const std::string& name, const std::string& value) = 0;
   // One tick: reads the received messages, renders, publishes, reports. nullopt: there is nothing to render yet.
@@ -71,19 +71,19 @@ class SettingsRenderer : public Renderer {
  public:
   using Fields = std::span<const SettingField<Settings>>;
 
-  Loaded begin_scene(const SceneReceiver& scenes) final {
+  LoadedScene begin_scene(const SceneReceiver& scenes) final {
     Settings settings;
     for (const std::string& refused : apply_settings(settings, fields_, host_.descriptor().name,
                                                      scenes.scene()->settings, host_.options().set))
       host_.print(refused);
-    settings_ = own_ = std::move(settings);
+    settings_ = configured_ = std::move(settings);
     return load(scenes, settings_);
   }
   // A request over the bus cannot exceed the safety limits of scene and command line.
   void change_setting(const std::string& name, const std::string& value) final {
     Settings changed = settings_;
-    change_live(changed, own_, fields_, name, value);
-    change(changed, name);
+    change_live(changed, configured_, fields_, name, value);
+    apply_setting(changed, name);
     settings_ = std::move(changed);
   }
 
@@ -91,10 +91,10 @@ class SettingsRenderer : public Renderer {
   // Throws std::runtime_error with one sentence when a setting of the command line is invalid.
   SettingsRenderer(RendererHost& host, Fields fields)
       : host_(host), fields_(fields), settings_(settings_of(fields, host.descriptor().name, host.options().set)),
-        own_(settings_) {}
-  virtual Loaded load(const SceneReceiver& scenes, const Settings& settings) = 0;
+        configured_(settings_) {}
+  virtual LoadedScene load(const SceneReceiver& scenes, const Settings& settings) = 0;
   // Applies the changed setting `name`. Throws std::invalid_argument with one sentence; then no setting has changed.
-  virtual void change(const Settings& /*settings*/, const std::string& /*name*/) {}
+  virtual void apply_setting(const Settings& /*settings*/, const std::string& /*name*/) {}
 
   RendererHost& host() const { return host_; }
   const Settings& settings() const { return settings_; }
@@ -102,7 +102,7 @@ class SettingsRenderer : public Renderer {
  private:
   RendererHost& host_;
   Fields fields_;
-  Settings settings_, own_;
+  Settings settings_, configured_;
 };
 
 }  // namespace tactus::sync

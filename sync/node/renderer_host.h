@@ -12,12 +12,12 @@ namespace tactus::sync {
 
 class RendererHost {
  public:
-  RendererHost(Node& node, ModalityEndpoint& sense, const TickSource& ticks) : node_(node), sense_(sense), ticks_(ticks) {}
+  RendererHost(Node& node, ModalityEndpoint& endpoint, const TickSource& ticks) : node_(node), endpoint_(endpoint), ticks_(ticks) {}
 
   Node& node() { return node_; }
   Bus& bus() { return node_.bus(); }
   // The input streams of the modality, its delay, and the effect of the profile on both.
-  ModalityEndpoint& sense() { return sense_; }
+  ModalityEndpoint& endpoint() { return endpoint_; }
   const NodeDescriptor& descriptor() const { return node_.descriptor(); }
   const NodeOptions& options() const { return node_.options(); }
 
@@ -28,16 +28,16 @@ class RendererHost {
 
   // Reports the outcome of an event. rendered: it counts as rendered in NODE_HEALTH.
   void report(const presentation_t& report, bool rendered = true) {
-    sense_.report(report);
+    endpoint_.report(report);
     if (rendered) node_.count_rendered(1);
   }
   // Prints a sentence for the user, after the name of the process.
-  void say(const std::string& sentence) const { print(options().name + ": " + sentence); }
+  void print_status(const std::string& sentence) const { print(options().name + ": " + sentence); }
   void print(const std::string& line) const;
 
  private:
   Node& node_;
-  ModalityEndpoint& sense_;
+  ModalityEndpoint& endpoint_;
   const TickSource& ticks_;
 };
 

@@ -12,55 +12,55 @@ namespace {
 // One run of a renderer.
 class RendererRun {
  public:
-  RendererRun(const NodeDescriptor& descriptor, const NodeOptions& options, RendererFactory& factory, Offline* log)
-      : log_(log), node_(descriptor, options), scenes_(node_.bus()), sense_(node_), ticks_(node_, log),
-        host_(node_, sense_, ticks_), renderer_(factory.make(host_)), live_(node_) {
-    if (log_) sense_.tell([this](const presentation_t& r) { log_->note(node_.descriptor().modality, r); });
+  RendererRun(const NodeDescriptor& descriptor, const NodeOptions& options, RendererFactory& factory, OfflineInput* log)
+      : log_(log), node_(descriptor, options), scenes_(node_.bus()), endpoint_(node_), ticks_(node_, log),
+        host_(node_, endpoint_, ticks_), renderer_(factory.make(host_)), live_(node_) {
+    if (log_) endpoint_.set_report_listener([this](const presentation_t& r) { log_->record_outcome(node_.descriptor().modality, r); });
   }
 
   void loop() {
     while (node_.running() && !ticks_.over() && !renderer_->closed()) {
       const HostTime now = ticks_.next();
-      sense_.step(now);
+      endpoint_.step(now);
       if (scenes_.poll(now)) load();
       change_settings(now);
       if (const std::optional<Status> status = renderer_->step(now)) {
-        sense_.publish(ticks_.now());
-        show(*status);
+        endpoint_.publish(ticks_.now());
+        report_status(*status);
       }
       show_progress();
     }
-    if (log_) host_.say(renderer_->finish_log(host_now()));
+    if (log_) host_.print_status(renderer_->finish_log(host_now()));
     renderer_->finish();
   }
 
  private:
   void load() {
     live_.set_scene(*scenes_.scene());
-    const Loaded loaded = renderer_->begin_scene(scenes_);
+    const LoadedScene loaded = renderer_->begin_scene(scenes_);
     if (loaded.rate_Hz > 0) node_.set_rate(loaded.rate_Hz);
     node_.set_tool(loaded.tool);
-    sense_.set_scene(*scenes_.scene(), loaded.tool);
-    sense_.set_output_latency(loaded.output_latency);
-    show(loaded.status);
+    endpoint_.set_scene(*scenes_.scene(), loaded.tool);
+    endpoint_.set_output_latency(loaded.output_latency);
+    report_status(loaded.status);
   }
   void change_settings(HostTime now) {
     const auto change = [this](const std::string& name, const std::string& value) { renderer_->change_setting(name, value); };
-    for (const std::string& refused : live_.step(now, change)) host_.say(refused);
+    for (const std::string& refused : live_.step(now, change)) host_.print_status(refused);
   }
-  void show(const Status& status) {
-    node_.set_state(status.state, status.note);
+  void report_status(const Status& status) {
+    node_.set_state(status.state, status.text);
     if (status.qualities > 0) node_.set_quality(status.quality, status.qualities);
   }
   void show_progress() {
     if (!log_) return;
-    if (const auto line = log_->progress(host_now())) host_.say(*line);
+    if (const auto line = log_->progress(host_now())) host_.print_status(*line);
   }
 
-  Offline* log_;
+  OfflineInput* log_;
   Node node_;
   SceneReceiver scenes_;
-  ModalityEndpoint sense_;
+  ModalityEndpoint endpoint_;
   TickSource ticks_;
   RendererHost host_;
   std::unique_ptr<Renderer> renderer_;
@@ -77,7 +77,7 @@ int run_renderer(const NodeDescriptor& descriptor, RendererFactory& factory, int
   options.add_to(app, descriptor);
   factory.add_options(app);
   parse_or_exit(app, descriptor.name, argc, argv);
-  Offline* const log = factory.prepare(options);
+  OfflineInput* const log = factory.prepare(options);
   if (log) log->adapt(options);
   RendererRun(descriptor, options, factory, log).loop();
   return 0;

@@ -30,7 +30,7 @@ class RendererFactory {
   // Called after the options are parsed and before the bus is joined. Checks the options and opens the resources that can
   // fail. Returns the log that is rendered instead of the bus, owned by this factory; null: live. Throws std::runtime_error
   // with one sentence.
-  virtual Offline* prepare(const NodeOptions& options) = 0;
+  virtual OfflineInput* prepare(const NodeOptions& options) = 0;
   // Subscribes to the inputs. host: outlives the renderer.
   virtual std::unique_ptr<Renderer> make(RendererHost& host) = 0;
 };
@@ -38,7 +38,7 @@ class RendererFactory {
 // For a renderer without options of its own that renders no log.
 template <class Made>
 class PlainFactory : public RendererFactory {
-  Offline* prepare(const NodeOptions&) override { return nullptr; }
+  OfflineInput* prepare(const NodeOptions&) override { return nullptr; }
   std::unique_ptr<Renderer> make(RendererHost& host) override { return std::make_unique<Made>(host); }
 };
 

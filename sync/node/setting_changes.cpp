@@ -5,7 +5,7 @@
 
 namespace tactus::sync {
 
-void SettingChanges::take(const setting_change_t& change, const Apply& apply) {
+void SettingChanges::process(const setting_change_t& change, const Apply& apply) {
   if (change.node != node_ || change.header.run_id != run_id_) return;
   const auto known =
       std::find_if(known_.begin(), known_.end(), [&](const setting_reply_t& r) { return r.id == change.id; });

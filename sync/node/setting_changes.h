@@ -24,7 +24,7 @@ class SettingChanges {
   // Changes the setting, or throws std::invalid_argument with one sentence; after an exception no setting may have changed.
   using Apply = std::function<void(const std::string& name, const std::string& value)>;
   // Processes a request for this node and run: carries it out once, and answers each repetition.
-  void take(const setting_change_t& change, const Apply& apply);
+  void process(const setting_change_t& change, const Apply& apply);
   // The replies to publish now; valid until the next take. The call empties the list.
   std::vector<setting_reply_t> replies() { return std::exchange(replies_, {}); }
 

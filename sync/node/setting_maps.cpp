@@ -17,7 +17,7 @@ void SettingMaps::set(const std::vector<map_def_t>& maps) {
   const std::string prefix = node_ + ".";
   for (const map_def_t& def : maps)
     if (def.setting.starts_with(prefix) && maps_.size() < kMax)
-      maps_.push_back({.def = def, .setting = def.setting.substr(prefix.size()), .said = {}});
+      maps_.push_back({.def = def, .setting = def.setting.substr(prefix.size()), .last_value = {}});
 }
 
 tag_request_t SettingMaps::request() const {
@@ -42,21 +42,21 @@ void SettingMaps::push(const tag_values_t& m) {
   });
 }
 
-std::vector<SettingMaps::Change> SettingMaps::take(HostTime now) {
+std::vector<SettingMaps::Change> SettingMaps::take_changes(HostTime now) {
   std::vector<Change> changes;
   if (now < next_) return changes;
-  next_ = now + kChangeEvery;
+  next_ = now + kMinInterval;
   for (Map& map : maps_) {
     if (!std::exchange(map.fresh, false)) continue;
     char text[32];
     std::snprintf(text, sizeof text, "%.9g", map.value);
-    if (map.said == text) continue;
-    changes.push_back({map.setting, map.said = text});
+    if (map.last_value == text) continue;
+    changes.push_back({map.setting, map.last_value = text});
   }
   return changes;
 }
 
-void SettingMaps::give_up(const std::string& name) {
+void SettingMaps::disable(const std::string& name) {
   std::erase_if(maps_, [&](const Map& map) { return map.setting == name; });
 }
 

@@ -22,7 +22,7 @@ double mapped(const map_def_t& map, double value);
 class SettingMaps {
  public:
   // Minimum interval between changes of a setting: settings are changed by name and as text.
-  static constexpr Nanoseconds kChangeEvery{10'000'000};
+  static constexpr Nanoseconds kMinInterval{10'000'000};
   static constexpr std::size_t kMax = 32;
   static constexpr std::size_t kMaxPatterns = 16;  // of a tag_request_t
 
@@ -42,9 +42,9 @@ class SettingMaps {
   };
   // The settings whose variable has changed since they were returned last. A variable without new values leaves its setting
   // unchanged.
-  std::vector<Change> take(HostTime now);
+  std::vector<Change> take_changes(HostTime now);
   // The setting cannot be changed: its maps are disabled until the next scene.
-  void give_up(const std::string& name);
+  void disable(const std::string& name);
 
  private:
   struct Map {
@@ -52,7 +52,7 @@ class SettingMaps {
     std::string setting;
     bool fresh = false;
     double value = 0;
-    std::string said;  // returned last
+    std::string last_value;  // returned last
   };
   std::string node_;
   std::vector<Map> maps_;

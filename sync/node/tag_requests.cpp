@@ -20,16 +20,16 @@ bool matches(std::string_view pattern, std::string_view text) {
   return pattern.find_first_not_of('*', p) == std::string_view::npos;
 }
 
-bool TagRequests::take(const tag_request_t& request, HostTime now) {
+bool TagRequests::push(const tag_request_t& request, HostTime now) {
   if (request.header.run_id != run_id_) return false;
   const auto known = std::find_if(requests_.begin(), requests_.end(),
                                   [&](const Request& r) { return r.incarnation == request.header.incarnation; });
   if (known == requests_.end()) {
     if (requests_.size() >= kMax) return false;
-    requests_.push_back({request.header.incarnation, request.patterns, now + kHolds});
+    requests_.push_back({request.header.incarnation, request.patterns, now + kValidFor});
     return true;
   }
-  known->until = now + kHolds;
+  known->until = now + kValidFor;
   if (known->patterns == request.patterns) return false;
   known->patterns = request.patterns;
   return true;
@@ -39,7 +39,7 @@ bool TagRequests::expire(HostTime now) {
   return std::erase_if(requests_, [&](const Request& r) { return r.until < now; }) > 0;
 }
 
-bool TagRequests::wants(std::string_view name) const {
+bool TagRequests::is_requested(std::string_view name) const {
   return std::any_of(requests_.begin(), requests_.end(), [&](const Request& r) {
     return std::any_of(r.patterns.begin(), r.patterns.end(),
                        [&](const std::string& pattern) { return matches(pattern, name); });

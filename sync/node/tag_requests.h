@@ -16,7 +16,7 @@ bool matches(std::string_view pattern, std::string_view text);
 
 class TagRequests {
  public:
-  static constexpr Nanoseconds kHolds{3'000'000'000};
+  static constexpr Nanoseconds kValidFor{3'000'000'000};
   // Design: a recorder, some viewers and maps. Requests beyond this number are ignored until another one expires.
   static constexpr std::size_t kMax = 64;
 
@@ -24,12 +24,12 @@ class TagRequests {
   explicit TagRequests(std::int64_t run_id) : run_id_(run_id) {}
 
   // Returns true when the set of requested variables may have changed.
-  bool take(const tag_request_t& request, HostTime now);
+  bool push(const tag_request_t& request, HostTime now);
   // Removes the requests that were not repeated in time. Returns true when the set of requested variables may have changed.
   bool expire(HostTime now);
   bool any() const { return !requests_.empty(); }
   // name: "node.tag".
-  bool wants(std::string_view name) const;
+  bool is_requested(std::string_view name) const;
 
  private:
   struct Request {

@@ -8,10 +8,10 @@ void TagTable::push(const tag_list_t& m) {
   const std::pair key{m.header.incarnation, m.list};
   if (!lists_.contains(key) && lists_.size() >= kMaxLists)
     lists_.erase(std::min_element(lists_.begin(), lists_.end(),
-                                  [](const auto& a, const auto& b) { return a.second.heard < b.second.heard; }));
+                                  [](const auto& a, const auto& b) { return a.second.received_order < b.second.received_order; }));
   List& list = lists_[key];
   list.node = m.node;
-  list.heard = ++heard_;
+  list.received_order = ++received_;
   list.tags.resize(static_cast<std::size_t>(m.total));
   std::copy(m.tags.begin(), m.tags.end(), list.tags.begin() + m.first);
 }

@@ -21,15 +21,15 @@ class TagTable {
   struct List {
     std::string node;
     std::vector<tag_def_t> tags;  // by number; an empty name: not received yet
-    std::int64_t heard = 0;       // increases with each received list
+    std::int64_t received_order = 0;       // increases with each received list
   };
 
   void push(const tag_list_t& m);
 
-  // Calls take(const List&, const tag_def_t&, std::int64_t time_ns, double value) for each present value, row by row.
+  // Calls visit(const List&, const tag_def_t&, std::int64_t time_ns, double value) for each present value, row by row.
   // time_ns: CLOCK_MONOTONIC of the sender. Values without a list are counted.
-  template <class Take>
-  void read(const tag_values_t& m, Take&& take) {
+  template <class Visit>
+  void read(const tag_values_t& m, Visit&& visit) {
     const auto known = lists_.find({m.header.incarnation, m.list});
     std::size_t i = 0;
     for (const std::int64_t time_ns : m.times_ns)
@@ -37,16 +37,16 @@ class TagTable {
         const double value = m.values[i++];
         const tag_def_t* def = known == lists_.end() ? nullptr : tag(known->second, column);
         if (def == nullptr)
-          ++untold_;
+          ++unlisted_;
         else if (value != tag_values_t::NONE)
-          take(known->second, *def, time_ns, value);
+          visit(known->second, *def, time_ns, value);
       }
   }
 
   // By the incarnation of the process and the number of the list.
   const std::map<std::pair<std::int64_t, std::int64_t>, List>& lists() const { return lists_; }
   // Number of values whose list has not been received.
-  std::int64_t untold() const { return untold_; }
+  std::int64_t unlisted() const { return unlisted_; }
 
  private:
   static const tag_def_t* tag(const List& list, std::int16_t number) {
@@ -55,8 +55,8 @@ class TagTable {
   }
 
   std::map<std::pair<std::int64_t, std::int64_t>, List> lists_;
-  std::int64_t heard_ = 0;
-  std::int64_t untold_ = 0;
+  std::int64_t received_ = 0;
+  std::int64_t unlisted_ = 0;
 };
 
 }  // namespace tactus::sync

@@ -38,8 +38,8 @@ void clear(tag_values_t& m) {
 }  // namespace
 
 void Tags::add(std::string name, std::string unit, Getter getter, double rate_Hz) {
-  const auto refuse = [&](const std::string& why) {
-    throw std::invalid_argument("cannot tag \"" + name + "\": " + why);
+  const auto refuse = [&](const std::string& reason) {
+    throw std::invalid_argument("cannot tag \"" + name + "\": " + reason);
   };
   if (!is_name(name)) refuse("a name has 1 to 48 letters, digits, '.', '_' and '-'");
   if (unit.empty() || unit.size() > 16) refuse("its unit has 1 to 16 characters; \"1\" for a plain number");
@@ -49,7 +49,7 @@ void Tags::add(std::string name, std::string unit, Getter getter, double rate_Hz
     if (tag.def.name == name) refuse("there is one of that name already");
   tags_.push_back({{std::move(name), std::move(unit), rate_Hz}, std::move(getter)});
   list_ = 0;
-  if (requests_.any()) arrange();
+  if (requests_.any()) build_blocks();
 }
 
 void Tags::page_list() {
@@ -79,18 +79,18 @@ void Tags::page_list() {
 }
 
 // Discards pending values; it runs only when a requester appears or disappears.
-void Tags::arrange() {
+void Tags::build_blocks() {
   if (list_ == 0) page_list();
   blocks_.clear();
   sent_ = 0;
   for (std::size_t i = 0; i < tags_.size(); ++i) {
     const tag_def_t& def = tags_[i].def;
-    if (!requests_.wants(node_ + "." + def.name)) continue;
+    if (!requests_.is_requested(node_ + "." + def.name)) continue;
     auto block = std::find_if(blocks_.begin(), blocks_.end(), [&](const Block& b) {
       return b.rate_Hz == def.rate_Hz && b.message.columns.size() < kMaxColumns;
     });
     if (block == blocks_.end()) {
-      block = blocks_.insert(blocks_.end(), Block{.rate_Hz = def.rate_Hz, .most_rows = 0, .message = {}});
+      block = blocks_.insert(blocks_.end(), Block{.rate_Hz = def.rate_Hz, .max_rows = 0, .message = {}});
       block->message.header.sim_time_ns = -1;
       block->message.node = node_, block->message.list = list_;
     }
@@ -98,23 +98,23 @@ void Tags::arrange() {
     ++block->message.column_count;
   }
   for (Block& block : blocks_) {
-    block.most_rows = rows_that_fit(block.message);
-    block.message.times_ns.reserve(block.most_rows);
-    block.message.values.reserve(block.most_rows * block.message.columns.size());
+    block.max_rows = rows_that_fit(block.message);
+    block.message.times_ns.reserve(block.max_rows);
+    block.message.values.reserve(block.max_rows * block.message.columns.size());
   }
 }
 
-void Tags::take(const tag_request_t& request, HostTime now) {
+void Tags::push(const tag_request_t& request, HostTime now) {
   const bool first = !requests_.any();
-  if (!requests_.take(request, now)) return;
-  arrange();
+  if (!requests_.push(request, now)) return;
+  build_blocks();
   if (first) list_due_ = now;
   next_page_ = 0;  // a new requester needs the names
 }
 
 void Tags::append_row(Block& block, HostTime now) {
   tag_values_t& m = block.message;
-  if (m.row_count == 0) block.begun = now;
+  if (m.row_count == 0) block.first_row = now;
   m.times_ns.push_back(to_ns(now));
   ++m.row_count;
   for (const std::int16_t column : m.columns) {
@@ -126,9 +126,9 @@ void Tags::append_row(Block& block, HostTime now) {
 
 void Tags::step(HostTime now) {
   if (!requests_.any()) return;
-  if (requests_.expire(now)) arrange();
+  if (requests_.expire(now)) build_blocks();
   if (now >= list_due_ && requests_.any()) {
-    list_due_ = now + kListEvery;
+    list_due_ = now + kListPeriod;
     next_page_ = 0;
   }
   for (Block& block : blocks_) {
@@ -139,8 +139,8 @@ void Tags::step(HostTime now) {
         block.next = block.next + period > now ? block.next + period : now + period;
       }
     }
-    block.full = static_cast<std::size_t>(block.message.row_count) >= block.most_rows ||
-                 (block.message.row_count > 0 && now - block.begun >= kSendEvery);
+    block.full = static_cast<std::size_t>(block.message.row_count) >= block.max_rows ||
+                 (block.message.row_count > 0 && now - block.first_row >= kSendPeriod);
   }
 }
 

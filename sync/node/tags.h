@@ -26,8 +26,8 @@ class Tags {
  public:
   static constexpr std::size_t kMax = 1024;
   // Longest time from sampling to sending (design: a viewer's picture at 20 Hz).
-  static constexpr Nanoseconds kSendEvery{50'000'000};
-  static constexpr Nanoseconds kListEvery{1'000'000'000};
+  static constexpr Nanoseconds kSendPeriod{50'000'000};
+  static constexpr Nanoseconds kListPeriod{1'000'000'000};
   using Getter = std::function<double()>;
 
   Tags(std::string node, std::int64_t run_id) : node_(std::move(node)), requests_(run_id) {}
@@ -43,8 +43,8 @@ class Tags {
   }
 
   // True while a process requests values. Variables that exist only to be tagged need to be computed only then.
-  bool wanted() const { return !blocks_.empty(); }
-  void take(const tag_request_t& request, HostTime now);
+  bool requested() const { return !blocks_.empty(); }
+  void push(const tag_request_t& request, HostTime now);
   // Once a tick: samples the due variables. Allocates nothing once a block has been filled.
   void step(HostTime now);
   // The next message to send now; null: none is left. Valid until the next call.
@@ -60,12 +60,12 @@ class Tags {
   struct Block {
     double rate_Hz;
     HostTime next{};   // when the next row is due
-    HostTime begun{};  // when the first row was sampled
-    std::size_t most_rows;
+    HostTime first_row{};  // when the first row was sampled
+    std::size_t max_rows;
     bool full = false;
     tag_values_t message{};
   };
-  void arrange();
+  void build_blocks();
   void page_list();
   void append_row(Block& block, HostTime now);
 

@@ -9,7 +9,7 @@ namespace tactus::sync {
 class TickSource {
  public:
   // log: rendered instead of the bus; null: live. Both outlive this object.
-  TickSource(Node& node, Offline* log) : node_(node), log_(log) {}
+  TickSource(Node& node, OfflineInput* log) : node_(node), log_(log) {}
 
   bool live() const { return log_ == nullptr; }
   // The log is over.
@@ -21,7 +21,7 @@ class TickSource {
 
  private:
   Node& node_;
-  Offline* log_;
+  OfflineInput* log_;
 };
 
 }  // namespace tactus::sync

@@ -52,7 +52,7 @@ std::unique_ptr<Aligner> make_aligner(AlignerKind kind, Nanoseconds fixed) {
   return std::make_unique<Quantile>();
 }
 
-AlignerKind aligner_named(const std::string& word) {
+AlignerKind parse_aligner(const std::string& word) {
   for (std::size_t i = 0; i < kNames.size(); ++i)
     if (word == kNames[i]) return static_cast<AlignerKind>(i);
   throw std::invalid_argument("there is no aligner \"" + word + "\"; choose fixed or quantile");

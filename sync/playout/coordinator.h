@@ -27,26 +27,26 @@ class PlayoutCoordinator {
   PlayoutCoordinator(std::int64_t own_clock, PlayoutPlan plan);
 
   // A request for another plan. Returns false when it is older than the plan in force, or invalid.
-  bool take(const playout_request_t& m);
+  bool push(const playout_request_t& m);
   // A message of another sync_node; its own messages are ignored.
-  void take(const playout_t& m, HostTime now);
-  LatencyDemand& needs() { return needs_; }
+  void push(const playout_t& m, HostTime now);
+  LatencyDemand& latency_demand() { return demand_; }
 
   // The message to publish now, ten times a second; nullopt while another coordinator publishes.
-  std::optional<playout_t> due(HostTime now);
+  std::optional<playout_t> next_message(HostTime now);
   const PlayoutPlan& plan() const { return plan_; }
 
  private:
-  void put_in_force(std::int64_t generation, PlayoutPlan plan);
-  Nanoseconds settled(const std::string& modality, Nanoseconds delay);
+  void apply_plan(std::int64_t generation, PlayoutPlan plan);
+  Nanoseconds with_hysteresis(const std::string& modality, Nanoseconds delay);
 
   std::int64_t own_clock_;
   PlayoutPlan plan_;
   std::int64_t generation_ = 0;
-  LatencyDemand needs_;
-  std::map<std::string, Nanoseconds> said_;
+  LatencyDemand demand_;
+  std::map<std::string, Nanoseconds> published_;
   double lockstep_Hz_ = 0;
-  std::optional<HostTime> heard_;  // from a lower clock
+  std::optional<HostTime> other_published_;  // from a lower clock
   HostTime next_{};
 };
 

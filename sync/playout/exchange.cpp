@@ -64,13 +64,13 @@ void add_page(playout_t& whole, const playout_t& page) {
   whole.count = static_cast<std::int32_t>(whole.entries.size());
 }
 
-void keep_request(const std::filesystem::path& folder, const playout_request_t& request) {
+void store_request(const std::filesystem::path& folder, const playout_request_t& request) {
   const std::vector<std::uint8_t> bytes = encode(request);
   std::ofstream(folder / kFile, std::ios::binary | std::ios::trunc)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
-std::optional<playout_request_t> kept_request(const std::filesystem::path& folder, std::int64_t run_id) {
+std::optional<playout_request_t> load_request(const std::filesystem::path& folder, std::int64_t run_id) {
   std::ifstream file(folder / kFile, std::ios::binary);
   const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
   const auto request = decode<playout_request_t>(bytes.data(), bytes.size());

@@ -45,8 +45,8 @@ PlayoutPlan plan_of(const Message& m) {
   return plan;
 }
 
-void keep_request(const std::filesystem::path& folder, const playout_request_t& request);
+void store_request(const std::filesystem::path& folder, const playout_request_t& request);
 // nullopt when there is no file, or when it is damaged or belongs to another run.
-std::optional<playout_request_t> kept_request(const std::filesystem::path& folder, std::int64_t run_id);
+std::optional<playout_request_t> load_request(const std::filesystem::path& folder, std::int64_t run_id);
 
 }  // namespace tactus::sync

@@ -5,18 +5,18 @@
 
 namespace tactus::sync {
 
-void PlayoutFollower::take(const playout_t& m) {
+void PlayoutFollower::push(const playout_t& m) {
   lockstep_Hz_ = m.lockstep_Hz;
   policy_ = m.policy;
   for (const playout_entry_t& e : m.entries)
-    if (e.modality == modality_) told_ = Nanoseconds(e.delay_ns);
+    if (e.modality == modality_) published_ = Nanoseconds(e.delay_ns);
 }
 
 Nanoseconds PlayoutFollower::step(HostTime now) {
   const double dt_s = last_ ? to_seconds(now - *last_) : 0;
   last_ = now;
-  const Nanoseconds most = from_seconds(std::clamp(dt_s, 0.0, 1.0) * kSlew);
-  delay_ += std::clamp(told_.value_or(own_) - delay_, -most, most);
+  const Nanoseconds max_step = from_seconds(std::clamp(dt_s, 0.0, 1.0) * kSlew);
+  delay_ += std::clamp(published_.value_or(own_) - delay_, -max_step, max_step);
   return delay_;
 }
 

@@ -20,22 +20,22 @@ class PlayoutFollower {
   // The delay to use while no PLAYOUT message sets one.
   void set_own(Nanoseconds delay) {
     own_ = delay;
-    if (!told_) delay_ = delay;
+    if (!published_) delay_ = delay;
   }
   // Takes the entry of this modality; other entries are ignored.
-  void take(const playout_t& m);
+  void push(const playout_t& m);
   // Once a tick. Returns the delay in force.
   Nanoseconds step(HostTime now);
   Nanoseconds delay() const { return delay_; }
   // True under the policy ASAP: the delay is 0, and a later presentation is intended.
-  bool as_soon_as_possible() const { return policy_ == playout_t::ASAP && told_; }
+  bool as_soon_as_possible() const { return policy_ == playout_t::ASAP && published_; }
   // Rate of the lock-step with the other modalities, Hz; 0: none.
   double lockstep_Hz() const { return lockstep_Hz_; }
 
  private:
   std::string modality_;
   Nanoseconds own_{0}, delay_{0};
-  std::optional<Nanoseconds> told_;
+  std::optional<Nanoseconds> published_;
   std::optional<HostTime> last_;
   double lockstep_Hz_ = 0;
   std::int8_t policy_ = playout_t::LOCAL_HAPTIC_FIRST;

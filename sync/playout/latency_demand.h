@@ -23,27 +23,27 @@ class LatencyDemand {
   // Repeats the estimate over the stored events with the new plan.
   void set_plan(const PlayoutPlan& plan);
   // Registers a running modality, whether or not it has presented an event. slow: no other modality waits for it.
-  void know(const std::string& modality, bool slow = false);
+  void add_modality(const std::string& modality, bool slow = false);
   void add(const std::string& modality, Nanoseconds needed);
   // The aligner's estimate; more than the budget when most recent needs exceeded it; nullopt before the first event.
   std::optional<Nanoseconds> needed(const std::string& modality) const;
   // Of all registered modalities, for playout_delays: 0 for those that have presented no event yet.
-  std::map<std::string, Nanoseconds> all() const;
+  std::map<std::string, Nanoseconds> latencies() const;
   const std::set<std::string>& slow() const { return slow_; }
 
  private:
-  static constexpr std::size_t kMaxSenses = 64;
+  static constexpr std::size_t kMaxModalities = 64;
   static constexpr std::size_t kRemembered = 128;  // events
-  static constexpr std::size_t kLately = 16;       // events
-  struct ModalityEndpoint {
+  static constexpr std::size_t kRecent = 16;       // events
+  struct Modality {
     std::unique_ptr<Aligner> aligner;
     std::deque<Nanoseconds> last;
   };
-  ModalityEndpoint* of(const std::string& modality);
-  bool counts(Nanoseconds needed) const;
+  Modality* find_or_add(const std::string& modality);
+  bool is_usable(Nanoseconds needed) const;
 
   PlayoutPlan plan_;
-  std::map<std::string, ModalityEndpoint> senses_;
+  std::map<std::string, Modality> modalities_;
   std::set<std::string> slow_;
 };
 

@@ -11,12 +11,12 @@ struct Lockstep {
   double rate_Hz = 0;  // > 0
 
   // Start of the iteration that contains the host time t.
-  HostTime begin_of_turn(HostTime t) const { return map.to_host(turn(map.to_sim(t), false)); }
+  HostTime begin_of_iteration(HostTime t) const { return map.to_host(iteration(map.to_sim(t), false)); }
   // Start of the first iteration at or after the host time t.
-  HostTime next_turn(HostTime t) const { return map.to_host(turn(map.to_sim(t), true)); }
+  HostTime next_iteration(HostTime t) const { return map.to_host(iteration(map.to_sim(t), true)); }
 
  private:
-  SimTime turn(SimTime t, bool up) const {
+  SimTime iteration(SimTime t, bool up) const {
     const Nanoseconds period = from_seconds(1 / rate_Hz);
     const auto since = t.time_since_epoch();
     auto n = since / period;

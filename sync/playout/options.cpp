@@ -19,10 +19,10 @@ void PlayoutOptions::add_to(CLI::App& app, bool named) {
 PlayoutPlan PlayoutOptions::plan() const {
   PlayoutPlan plan;
   if (!policy.empty())
-    plan.policy = policy_named(policy);
+    plan.policy = parse_policy(policy);
   else if (!soa.empty())
     plan.policy = Policy::kExperiment;
-  if (!aligner.empty()) plan.aligner = aligner_named(aligner);
+  if (!aligner.empty()) plan.aligner = parse_aligner(aligner);
   if (!base.empty()) plan.base = parse_duration(base);
   if (!budget.empty()) plan.budget = parse_duration(budget);
   if (!soa.empty()) plan.soa = parse_soa(soa);

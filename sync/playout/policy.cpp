@@ -15,13 +15,13 @@ namespace tactus::sync {
 namespace {
 
 constexpr std::array<const char*, 5> kNames{"asap", "aligned", "experiment", "local_haptic_first", "itouch2005"};
-constexpr double kLongest_s = 60;
+constexpr double kMax_s = 60;
 // Known modalities in the order of the loop of I-Touch (Pocheville 2005), which their tables give; then unknown ones by name.
 std::vector<std::string> serial_order(const std::map<std::string, Nanoseconds>& needed) {
   std::vector<std::string> order;
   for (const auto& [name, time] : needed) order.push_back(name);
   std::stable_sort(order.begin(), order.end(), [](const std::string& a, const std::string& b) {
-    return place_of_modality(a) < place_of_modality(b);
+    return modality_index(a) < modality_index(b);
   });
   return order;
 }
@@ -31,19 +31,19 @@ bool is_local(const std::string& modality) {
   return known && known->kind == PlayoutKind::kLocal;
 }
 
-// What the one needs that takes longest of those that are waited for.
+// The longest need of the modalities that are waited for.
 Nanoseconds common_delay(const PlayoutPlan& plan, const std::map<std::string, Nanoseconds>& needed,
                          const std::set<std::string>& slow) {
   if (plan.aligner == AlignerKind::kFixed) return std::min(plan.base, plan.budget);
-  Nanoseconds most{0};
+  Nanoseconds max_need{0};
   for (const auto& [name, time] : needed)
-    if (time <= plan.budget && !slow.contains(name)) most = std::max(most, time);
-  return most;
+    if (time <= plan.budget && !slow.contains(name)) max_need = std::max(max_need, time);
+  return max_need;
 }
 
 }  // namespace
 
-Policy policy_named(const std::string& word) {
+Policy parse_policy(const std::string& word) {
   for (std::size_t i = 0; i < kNames.size(); ++i)
     if (word == kNames[i]) return static_cast<Policy>(i);
   throw std::invalid_argument("there is no policy \"" + word +
@@ -54,7 +54,7 @@ const char* name_of(Policy policy) { return kNames[static_cast<std::size_t>(poli
 
 void PlayoutPlan::check() const {
   if (policy != Policy::kExperiment && !soa.empty())
-    throw std::invalid_argument("asynchronies are for the policy experiment; say so, or leave them out");
+    throw std::invalid_argument("asynchronies need the policy experiment; choose it, or omit them");
   if (soa.size() > kMaxAsynchronies)
     throw std::invalid_argument("asynchronies are for at most " + std::to_string(kMaxAsynchronies) + " senses");
   for (const auto& [name, asynchrony] : soa)
@@ -66,7 +66,7 @@ void PlayoutPlan::check() const {
 
 Nanoseconds parse_duration(const std::string& text) {
   const double s = parse_quantity(text, "s");
-  if (s < 0 || s > kLongest_s) throw std::invalid_argument("\"" + text + "\" does not lie between 0 and 60 s");
+  if (s < 0 || s > kMax_s) throw std::invalid_argument("\"" + text + "\" does not lie between 0 and 60 s");
   return from_seconds(s);
 }
 
@@ -78,7 +78,7 @@ std::map<std::string, Nanoseconds> parse_soa(const std::string& text) {
     if (equals == std::string::npos || equals == 0)
       throw std::invalid_argument("\"" + part + "\" is no asynchrony; write one as visual=-50ms");
     const double s = parse_quantity(part.substr(equals + 1), "s");
-    if (std::abs(s) > kLongest_s)
+    if (std::abs(s) > kMax_s)
       throw std::invalid_argument("the asynchrony \"" + part + "\" is longer than 60 s");
     // A number without a unit is refused: 50 would be read as seconds, but usually means milliseconds.
     if (s != 0 && std::isdigit(static_cast<unsigned char>(part.back())))
@@ -105,8 +105,8 @@ std::map<std::string, Nanoseconds> playout_delays(const PlayoutPlan& plan,
     case Policy::kExperiment:
       for (const auto& [name, asynchrony] : plan.soa) delays[name] = Nanoseconds(0);
       for (auto& [name, delay] : delays) {
-        const auto asked = plan.soa.find(name);
-        delay = std::max(Nanoseconds(0), plan.base + (asked == plan.soa.end() ? Nanoseconds(0) : asked->second));
+        const auto requested = plan.soa.find(name);
+        delay = std::max(Nanoseconds(0), plan.base + (requested == plan.soa.end() ? Nanoseconds(0) : requested->second));
       }
       break;
     case Policy::kItouch2005: {

@@ -22,7 +22,7 @@ enum class Policy : std::uint8_t {
 
 // "asap", "aligned", "experiment", "local_haptic_first", "itouch2005". Throws std::invalid_argument with one
 // sentence.
-Policy policy_named(const std::string& word);
+Policy parse_policy(const std::string& word);
 const char* name_of(Policy policy);
 
 struct PlayoutPlan {

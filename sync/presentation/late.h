@@ -18,22 +18,22 @@
 
 namespace tactus::sync {
 
-enum class Late : std::uint8_t { kPlayWithFade, kDrop, kShowNewest, kAlwaysApply };
+enum class LateRule : std::uint8_t { kPlayWithFade, kDrop, kShowNewest, kAlwaysApply };
 
 struct LatePolicy {
-  Late rule = Late::kShowNewest;
+  LateRule rule = LateRule::kShowNewest;
   Nanoseconds tolerance{0};   // an event with at most this lateness is on time
   Nanoseconds drop_after{0};  // not before tolerance; ignored by kAlwaysApply
 
   // Returns presentation_t::PRESENTED, LATE or DROPPED_LATE.
   std::int8_t outcome(Nanoseconds lateness) const {
     if (lateness <= tolerance) return presentation_t::PRESENTED;
-    return rule == Late::kAlwaysApply || lateness <= drop_after ? presentation_t::LATE
+    return rule == LateRule::kAlwaysApply || lateness <= drop_after ? presentation_t::LATE
                                                                 : presentation_t::DROPPED_LATE;
   }
   // Factor on the strength of an output with this lateness, 0 .. 1.
   double gain(Nanoseconds lateness) const {
-    if (rule != Late::kPlayWithFade || lateness <= tolerance) return 1;
+    if (rule != LateRule::kPlayWithFade || lateness <= tolerance) return 1;
     if (lateness >= drop_after) return 0;
     return 1 - to_seconds(lateness - tolerance) / to_seconds(drop_after - tolerance);
   }

@@ -20,9 +20,9 @@ constexpr std::size_t kMaxReportsPerEvent = 64;
 
 // Sorts the push of a modality before its other parts, and unknown modalities last, by name.
 constexpr std::string_view kPush = "_push";
-std::size_t place(const std::string& name) {
+std::size_t naming_order(const std::string& name) {
   const bool push = name.ends_with(kPush);
-  const std::size_t known = place_of_modality(push ? name.substr(0, name.size() - kPush.size()) : name);
+  const std::size_t known = modality_index(push ? name.substr(0, name.size() - kPush.size()) : name);
   return known < known_modalities().size() ? 2 * known + (push ? 0 : 1) : 2 * known;
 }
 
@@ -32,9 +32,9 @@ bool was_presented(std::int8_t outcome) {
 }
 
 // Bounds on reported durations, so that sums do not overflow.
-constexpr Nanoseconds kMaxHeld{
+constexpr Nanoseconds kMaxDelay{
     61'000'000'000};  // the delays of a profile are at most 60 s each; a longer one counts as dropped
-constexpr Nanoseconds kMaxUncertain{60'000'000'000};
+constexpr Nanoseconds kMaxUncertainty{60'000'000'000};
 
 // Touch presents a hit as the transient and a begin as the constraint force, whose onset may precede the event.
 bool is_onset(std::int8_t part, std::int8_t kind) {
@@ -43,14 +43,14 @@ bool is_onset(std::int8_t part, std::int8_t kind) {
 }
 
 template <class Map>
-bool has_room(const Map& map, const typename Map::key_type& key, std::size_t most) {
-  return map.size() < most || map.contains(key);
+bool has_room(const Map& map, const typename Map::key_type& key, std::size_t max_size) {
+  return map.size() < max_size || map.contains(key);
 }
 
 }  // namespace
 
 bool named_before(const std::string& a, const std::string& b) {
-  return std::pair(place(a), a) < std::pair(place(b), b);
+  return std::pair(naming_order(a), a) < std::pair(naming_order(b), b);
 }
 
 PresentationMatcher::Event* PresentationMatcher::find_or_add(std::int64_t id, HostTime arrival) {
@@ -63,7 +63,7 @@ PresentationMatcher::Event* PresentationMatcher::find_or_add(std::int64_t id, Ho
 
 SenderClock& PresentationMatcher::clock_of(const header_t& h, HostTime arrival) {
   // A removed clock is learnt again when its sender publishes again.
-  if (!has_room(clocks_, h.source, kMaxSenses)) clocks_.erase(clocks_.begin());
+  if (!has_room(clocks_, h.source, kMaxModalities)) clocks_.erase(clocks_.begin());
   SenderClock& clock = clocks_.try_emplace(h.source, own_).first->second;
   clock.observe(h, arrival);
   return clock;
@@ -72,8 +72,8 @@ SenderClock& PresentationMatcher::clock_of(const header_t& h, HostTime arrival) 
 void PresentationMatcher::observe(const contact_events_t& m, HostTime arrival) {
   const bool any_run = own_.run_id == 0;
   const bool ours = any_run || m.header.run_id == own_.run_id;
-  if (ours && has_room(simulations_, m.header.source, kMaxSenses)) simulations_.insert(m.header.source);
-  if (!ours && simulation_heard_ && arrival - *simulation_heard_ < kSettleAfter) {
+  if (ours && has_room(simulations_, m.header.source, kMaxModalities)) simulations_.insert(m.header.source);
+  if (!ours && simulation_last_seen_ && arrival - *simulation_last_seen_ < kSettleAfter) {
     ++foreign_;
     return;
   }
@@ -100,27 +100,27 @@ void PresentationMatcher::observe(const node_health_t& m, HostTime arrival) {
     ++foreign_;
     return;
   }
-  if (!has_room(renderers_, m.header.source, kMaxSenses) ||
-      (!m.modality.empty() && !has_room(tallies_, m.modality, kMaxSenses))) {
+  if (!has_room(renderers_, m.header.source, kMaxModalities) ||
+      (!m.modality.empty() && !has_room(tallies_, m.modality, kMaxModalities))) {
     ++overflow_;
     return;
   }
   Renderer& r = renderers_[m.header.source];
   r.modality = m.modality;
-  r.owes = m.owes;
+  r.expected_events = m.owes;
   r.tool = m.tool;
   const HostTime sent = clock_of(m.header, arrival).to_host(m.header.publish_time_ns, arrival);
-  if (simulations_.contains(m.header.source)) simulation_heard_ = arrival;
-  const bool returned = r.life.observe(m.header.incarnation, m.state, sent);
-  std::erase_if(last_debts_,
-                [&](const LastDebt& d) { return d.source == m.header.source || d.simulation == m.header.source; });
+  if (simulations_.contains(m.header.source)) simulation_last_seen_ = arrival;
+  const bool returned = r.activity.observe(m.header.incarnation, m.state, sent);
+  std::erase_if(final_expectations_,
+                [&](const FinalExpectation& d) { return d.source == m.header.source || d.simulation == m.header.source; });
   if (r.modality.empty()) return;
-  DebtTally& tally = tallies_[r.modality];
+  OutcomeCounts& tally = tallies_[r.modality];
   if (returned) {
-    tally.dead -= r.dead_unless_it_returns;
-    tally.stalled += r.dead_unless_it_returns;
+    tally.dead -= r.provisionally_dead;
+    tally.stalled += r.provisionally_dead;
   }
-  r.dead_unless_it_returns = 0;
+  r.provisionally_dead = 0;
 }
 
 void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
@@ -139,7 +139,7 @@ void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
       const SenderClock::Reading at = clock.read(p.presented_ns, arrival);
       if (at.uncertainty >= Nanoseconds(0)) {
         report.presented_ns = to_ns(at.time);
-        report.uncertainty = Nanoseconds(std::min(p.uncertainty_ns, kMaxUncertain.count())) + at.uncertainty;
+        report.uncertainty = Nanoseconds(std::min(p.uncertainty_ns, kMaxUncertainty.count())) + at.uncertainty;
       } else {
         ++unmapped_reports_;
       }
@@ -154,41 +154,41 @@ void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
   }
 }
 
-std::map<std::string, bool> PresentationMatcher::senses() const {
+std::map<std::string, bool> PresentationMatcher::running_modalities() const {
   std::map<std::string, bool> waited_for;
   for (const auto& [source, r] : renderers_)
-    if (!r.modality.empty()) waited_for[r.modality] = (r.owes & node_health_t::NOT_WAITED_FOR) == 0;
+    if (!r.modality.empty()) waited_for[r.modality] = (r.expected_events & node_health_t::NOT_WAITED_FOR) == 0;
   return waited_for;
 }
 
 void PresentationMatcher::observe(const playout_t& m, HostTime) {
   if (m.header.run_id != own_.run_id) return;
-  turn_ = m.lockstep_Hz > 0 ? from_seconds(1 / m.lockstep_Hz) : Nanoseconds(0);
+  lockstep_period_ = m.lockstep_Hz > 0 ? from_seconds(1 / m.lockstep_Hz) : Nanoseconds(0);
   for (const playout_entry_t& e : m.entries)
-    if (has_room(playout_, e.modality, kMaxSenses))
-      playout_.try_emplace(e.modality, e.modality).first->second.take(m);
+    if (has_room(playout_, e.modality, kMaxModalities))
+      playout_.try_emplace(e.modality, e.modality).first->second.push(m);
 }
 
 void PresentationMatcher::observe(const degraded_t& m, HostTime) {
   if (m.header.run_id != own_.run_id) return;
   for (const decision_t& d : m.decisions) {
     const auto it = d.is_event ? events_.find(d.key) : events_.end();
-    if (it == events_.end() || !has_room(it->second.held, m.modality, kMaxSenses)) continue;
-    it->second.held[m.modality] = std::clamp(Nanoseconds(d.held_ns), Nanoseconds(0), kMaxHeld);
+    if (it == events_.end() || !has_room(it->second.held, m.modality, kMaxModalities)) continue;
+    it->second.held[m.modality] = std::clamp(Nanoseconds(d.held_ns), Nanoseconds(0), kMaxDelay);
   }
 }
 
-Nanoseconds PresentationMatcher::on_purpose(const Event& e, const std::string& modality) const {
+Nanoseconds PresentationMatcher::intended_delay(const Event& e, const std::string& modality) const {
   const auto playout = playout_.find(modality);
   const auto held = e.held.find(modality);
-  return turn_ + (playout == playout_.end() ? Nanoseconds(0) : playout->second.delay()) +
+  return lockstep_period_ + (playout == playout_.end() ? Nanoseconds(0) : playout->second.delay()) +
          (held == e.held.end() ? Nanoseconds(0) : held->second);
 }
 
-Nanoseconds PresentationMatcher::longest_on_purpose(const Event& e) const {
-  Nanoseconds longest{0};
-  for (const auto& [modality, tally] : tallies_) longest = std::max(longest, on_purpose(e, modality));
-  return longest;
+Nanoseconds PresentationMatcher::max_intended_delay(const Event& e) const {
+  Nanoseconds max_delay{0};
+  for (const auto& [modality, tally] : tallies_) max_delay = std::max(max_delay, intended_delay(e, modality));
+  return max_delay;
 }
 
 void PresentationMatcher::advance(HostTime now) {
@@ -197,7 +197,7 @@ void PresentationMatcher::advance(HostTime now) {
     const std::int64_t id = due_.begin()->second;
     Event& event = events_.at(id);
     due_.erase(due_.begin());
-    const Nanoseconds later = longest_on_purpose(event);
+    const Nanoseconds later = max_intended_delay(event);
     const HostTime until = event.time + later + kSettleAfter;
     if (later > Nanoseconds(0) && until > now)
       due_.emplace(until, id);
@@ -221,33 +221,33 @@ void PresentationMatcher::finish(HostTime now) {
   for (const auto& [due, id] : due_) settle(events_.at(id), now, true);
   due_.clear();
   // At the end of a run all processes end before the log does; that is no failure.
-  for (const LastDebt& d : last_debts_) {
-    --tallies_[d.modality].owed;
+  for (const FinalExpectation& d : final_expectations_) {
+    --tallies_[d.modality].expected;
     --tallies_[d.modality].dead;
   }
-  last_debts_.clear();
+  final_expectations_.clear();
 }
 
-bool PresentationMatcher::owes(const Renderer& r, const Event& e) const {
+bool PresentationMatcher::expects(const Renderer& r, const Event& e) const {
   const int kind = e.kind == contact_event_t::BEGIN ? node_health_t::OWES_BEGIN
                    : e.kind == contact_event_t::HIT ? node_health_t::OWES_HIT
                                                     : 0;
-  if (r.modality.empty() || (r.owes & kind) == 0) return false;
-  return (r.owes & node_health_t::OWES_OWN_TOOL_ONLY) == 0 || (e.tool >= 0 && e.tool == r.tool);
+  if (r.modality.empty() || (r.expected_events & kind) == 0) return false;
+  return (r.expected_events & node_health_t::OWES_OWN_TOOL_ONLY) == 0 || (e.tool >= 0 && e.tool == r.tool);
 }
 
 void PresentationMatcher::settle(Event& e, HostTime now, bool last) {
   e.settled = true;
   for (auto& [source, renderer] : renderers_)
-    if (owes(renderer, e)) settle_debt(renderer, source, e, now, last);
+    if (expects(renderer, e)) settle_expected(renderer, source, e, now, last);
   count_asynchrony(e);
 }
 
-void PresentationMatcher::settle_debt(Renderer& r, std::int32_t source, const Event& e, HostTime now, bool last) {
-  const Nanoseconds later = on_purpose(e, r.modality);
-  const NodeLife::Answer life = r.life.during(e.time, e.time + later + kReportsWithin, now);
-  if (life.fate == NodeLife::Fate::kAbsent) return;
-  DebtTally& tally = tallies_[r.modality];
+void PresentationMatcher::settle_expected(Renderer& r, std::int32_t source, const Event& e, HostTime now, bool last) {
+  const Nanoseconds later = intended_delay(e, r.modality);
+  const NodeActivity::Result activity = r.activity.during(e.time, e.time + later + kReportsWithin, now);
+  if (activity.state == NodeActivity::State::kAbsent) return;
+  OutcomeCounts& tally = tallies_[r.modality];
   std::int64_t* outcome = nullptr;
   bool late = false;  // true when every presented part of it was late
   for (const Report& report : e.reports) {
@@ -266,20 +266,20 @@ void PresentationMatcher::settle_debt(Renderer& r, std::int32_t source, const Ev
     if (last && later > Nanoseconds(0) && now < e.time + later + kReportsWithin) return;
     const auto simulation = renderers_.find(e.source);
     const bool source_died = simulation != renderers_.end() &&
-                             simulation->second.life.died_before(e.incarnation, e.time + kRepeated, now);
-    if (last && (life.may_return || life.fate == NodeLife::Fate::kUndecided || source_died)) return;
-    if (life.fate == NodeLife::Fate::kStalled) {
+                             simulation->second.activity.died_before(e.incarnation, e.time + kRepeated, now);
+    if (last && (activity.may_return || activity.state == NodeActivity::State::kUndecided || source_died)) return;
+    if (activity.state == NodeActivity::State::kStalled) {
       outcome = &tally.stalled;
-    } else if (life.fate == NodeLife::Fate::kDead || source_died) {
+    } else if (activity.state == NodeActivity::State::kDead || source_died) {
       outcome = &tally.dead;
-      if (life.may_return) ++r.dead_unless_it_returns;
-      if (simulation != renderers_.end() && simulation->second.life.silent_since(e.time + kEndsWithin, now))
-        last_debts_.push_back({source, e.source, r.modality});
+      if (activity.may_return) ++r.provisionally_dead;
+      if (simulation != renderers_.end() && simulation->second.activity.silent_since(e.time + kEndsWithin, now))
+        final_expectations_.push_back({source, e.source, r.modality});
     } else {
       outcome = &tally.lost;
     }
   }
-  ++tally.owed;
+  ++tally.expected;
   ++*outcome;
   if (late) ++tally.late;
 }

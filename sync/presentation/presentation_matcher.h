@@ -31,15 +31,15 @@
 #include <vector>
 
 #include "sync/playout/follower.h"
-#include "sync/presentation/presentation_matcher_life.h"
+#include "sync/presentation/node_activity.h"
 #include "sync/presentation/presentation_matcher_soa.h"
 #include "sync/clocks/sender_clock.h"
 
 namespace tactus::sync {
 
 // Expected presentations of one modality by outcome.
-struct DebtTally {
-  std::int64_t owed = 0;
+struct OutcomeCounts {
+  std::int64_t expected = 0;
   std::int64_t presented = 0;
   std::int64_t late = 0;  // of those presented
   std::int64_t lost = 0;
@@ -75,7 +75,7 @@ class PresentationMatcher {
   // Older needs that were not taken are discarded.
   static constexpr std::size_t kMaxNeeds = 4096;
   // Limit of nodes, of modalities, and of simulations of other runs.
-  static constexpr std::size_t kMaxSenses = 64;
+  static constexpr std::size_t kMaxModalities = 64;
   // Each keeps a histogram of 160 kB.
   static constexpr std::size_t kMaxPairs = 256;
 
@@ -98,11 +98,11 @@ class PresentationMatcher {
   void finish(HostTime now);
 
   // The modalities whose nodes have published, and whether the others wait for them.
-  std::map<std::string, bool> senses() const;
+  std::map<std::string, bool> running_modalities() const;
   std::int64_t begins() const { return begins_; }
   std::int64_t hits() const { return hits_; }
   std::int64_t ends() const { return ends_; }
-  const std::map<std::string, DebtTally>& modalities() const { return tallies_; }
+  const std::map<std::string, OutcomeCounts>& modalities() const { return tallies_; }
   // soa(a, b) = t_present(b) - t_present(a), with a named before b. The push that answers a begin at once, under every
   // policy, is separate from the vibration that answers a hit when it is due: "haptic_push" beside "haptic".
   const std::map<std::pair<std::string, std::string>, SoaHistogram>& pairs() const { return pairs_; }
@@ -120,14 +120,14 @@ class PresentationMatcher {
  private:
   struct Renderer {
     std::string modality;  // empty: renders nothing
-    std::int32_t owes = 0;
+    std::int32_t expected_events = 0;
     std::int32_t tool = -1;
-    NodeLife life;
-    std::int64_t dead_unless_it_returns = 0;
+    NodeActivity activity;
+    std::int64_t provisionally_dead = 0;
   };
   // An expected presentation that counts as dead because both the node and the simulation stopped publishing: if neither
   // publishes again, the run had ended.
-  struct LastDebt {
+  struct FinalExpectation {
     std::int32_t source, simulation;
     std::string modality;
   };
@@ -152,13 +152,13 @@ class PresentationMatcher {
   };
 
   Event* find_or_add(std::int64_t id, HostTime arrival);
-  bool owes(const Renderer&, const Event&) const;
+  bool expects(const Renderer&, const Event&) const;
   // The intended delay of this modality for the event.
-  Nanoseconds on_purpose(const Event&, const std::string& modality) const;
-  Nanoseconds longest_on_purpose(const Event&) const;
+  Nanoseconds intended_delay(const Event&, const std::string& modality) const;
+  Nanoseconds max_intended_delay(const Event&) const;
   SenderClock& clock_of(const header_t&, HostTime arrival);
   void settle(Event&, HostTime now, bool last);
-  void settle_debt(Renderer&, std::int32_t source, const Event&, HostTime now, bool last);
+  void settle_expected(Renderer&, std::int32_t source, const Event&, HostTime now, bool last);
   void count_asynchrony(const Event&);
 
   OwnClock own_;
@@ -167,14 +167,14 @@ class PresentationMatcher {
   std::map<std::int64_t, Event> events_;
   std::multimap<HostTime, std::int64_t> due_;
   std::multimap<HostTime, std::int64_t> forget_;
-  std::vector<LastDebt> last_debts_;
+  std::vector<FinalExpectation> final_expectations_;
   std::vector<Need> needs_;
   std::map<std::string, PlayoutFollower> playout_;  // by modality: each follows as its node does
-  Nanoseconds turn_{0};                             // period of a lock-step
+  Nanoseconds lockstep_period_{0};                             // period of a lock-step
   // Simulations of this run that have published events, and the newest arrival from one.
   std::set<std::int32_t> simulations_;
-  std::optional<HostTime> simulation_heard_;
-  std::map<std::string, DebtTally> tallies_;
+  std::optional<HostTime> simulation_last_seen_;
+  std::map<std::string, OutcomeCounts> tallies_;
   std::map<std::pair<std::string, std::string>, SoaHistogram> pairs_;
   std::int64_t begins_ = 0, hits_ = 0, ends_ = 0;
   std::int64_t late_reports_ = 0, unknown_reports_ = 0, foreign_ = 0, overflow_ = 0, unmapped_reports_ = 0;

@@ -57,9 +57,9 @@ std::vector<sync_report_t> report_pages(const PresentationMatcher& matcher) {
   PageWriter writer(head);
   for (const auto& [name, t] : matcher.modalities())
     writer.add(&sync_report_t::modalities, &sync_report_t::modality_count,
-               modality_report_t{name, t.owed, t.presented, t.lost, t.stalled, t.dead, t.dropped_by_profile, t.dropped_late});
+               modality_report_t{name, t.expected, t.presented, t.lost, t.stalled, t.dead, t.dropped_by_profile, t.dropped_late});
   for (const auto& [names, soa] : matcher.pairs()) {
-    const Beyond beyond = beyond_thresholds(names.first, names.second, soa);
+    const BeyondThresholds beyond = count_beyond_thresholds(names.first, names.second, soa);
     writer.add(&sync_report_t::pairs, &sync_report_t::pair_count,
                pair_report_t{names.first, names.second, soa.count(), soa.quantile(0.05).count(), soa.quantile(0.5).count(),
                              soa.quantile(0.95).count(), soa.uncertainty().count(), beyond.least, beyond.all});
@@ -67,7 +67,7 @@ std::vector<sync_report_t> report_pages(const PresentationMatcher& matcher) {
   return writer.finish();
 }
 
-std::optional<sync_report_t> SyncReportReader::take(const sync_report_t& page) {
+std::optional<sync_report_t> SyncReportReader::push(const sync_report_t& page) {
   const std::int64_t first = page.header.seq - page.page;
   if (page.header.incarnation == incarnation_ && first < first_seq_) return std::nullopt;
   if (page.header.incarnation != incarnation_ || first != first_seq_) pages_.clear();

@@ -19,7 +19,7 @@ class SyncReportReader {
  public:
   // Returns the report as one page once its last page has arrived. Pages have consecutive numbers; pages of an older report
   // are dropped.
-  std::optional<sync_report_t> take(const sync_report_t& page);
+  std::optional<sync_report_t> push(const sync_report_t& page);
 
  private:
   std::int64_t incarnation_ = 0, first_seq_ = -1;

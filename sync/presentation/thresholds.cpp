@@ -53,10 +53,10 @@ std::optional<ThresholdRange> thresholds_of(const std::string& earlier, const st
   return range;
 }
 
-Beyond beyond_thresholds(const std::string& a, const std::string& b, const SoaHistogram& soa) {
+BeyondThresholds count_beyond_thresholds(const std::string& a, const std::string& b, const SoaHistogram& soa) {
   // The push and the vibration of touch belong to the same modality.
-  const auto sense = [](const std::string& name) { return name.substr(0, name.rfind("_push")); };
-  const auto after = thresholds_of(sense(a), sense(b)), before = thresholds_of(sense(b), sense(a));
+  const auto modality = [](const std::string& name) { return name.substr(0, name.rfind("_push")); };
+  const auto after = thresholds_of(modality(a), modality(b)), before = thresholds_of(modality(b), modality(a));
   if (!after && !before) return {};
   const auto count = [&](auto limit) {
     return soa.beyond(before ? limit(*before) : SoaHistogram::kWideRange,

@@ -27,9 +27,9 @@ struct ThresholdRange {
 std::optional<ThresholdRange> thresholds_of(const std::string& earlier, const std::string& later);
 
 // Number of asynchronies of a pair beyond them, to 0.1 ms; -1: no source for either direction.
-struct Beyond {
+struct BeyondThresholds {
   std::int64_t least = -1, all = -1;
 };
-Beyond beyond_thresholds(const std::string& a, const std::string& b, const SoaHistogram& soa);
+BeyondThresholds count_beyond_thresholds(const std::string& a, const std::string& b, const SoaHistogram& soa);
 
 }  // namespace tactus::sync

@@ -38,9 +38,9 @@ class Jitter {
 
  private:
   JitterDef def_;
-  bool begun_ = false;
+  bool started_ = false;
   double z_ = 0;  // of the process, standard normal
-  std::size_t turn_ = 0;
+  std::size_t trace_index_ = 0;
 };
 
 }  // namespace tactus::sync

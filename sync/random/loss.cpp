@@ -15,14 +15,14 @@ Loss::Loss(const LossDef& def) : share_(def.share) {
   stay_bad_ = 1 - 1 / def.mean_burst;
   to_bad_ = def.share / (def.mean_burst * (1 - def.share));
   if (to_bad_ > 1)
-    throw std::invalid_argument("so many losses in such short bursts are impossible: a burst must last " +
+    throw std::invalid_argument("this share of losses in such short bursts is impossible: a burst must last " +
                                 std::to_string(def.share / (1 - def.share)) + " or longer");
 }
 
 bool Loss::lose(double u) {
   // Starts in the stationary distribution of the states, so that the share holds from the first item.
-  const double p = !begun_ ? share_ : bad_ ? stay_bad_ : to_bad_;
-  begun_ = true;
+  const double p = !started_ ? share_ : bad_ ? stay_bad_ : to_bad_;
+  started_ = true;
   return bad_ = u < p;
 }
 

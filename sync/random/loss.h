@@ -26,7 +26,7 @@ class Loss {
  private:
   double to_bad_, stay_bad_;  // probabilities
   double share_;
-  bool begun_ = false;
+  bool started_ = false;
   bool bad_ = false;
 };
 

@@ -32,7 +32,7 @@ class Decimator::Compared : public Comparison {
  public:
   explicit Compared(const Rule& rule) : stack_({"", 1, {rule}}, rule.modality, SimTime{}) {}
 
-  bool take(std::span<const std::uint8_t> message, HostTime arrival,
+  bool push(std::span<const std::uint8_t> message, HostTime arrival,
             std::vector<std::vector<std::uint8_t>>& out) override {
     auto m = decode<Message>(message.data(), message.size());
     if (!m) return false;
@@ -71,8 +71,8 @@ bool Decimator::due(Sender& s, const header_t& h) const {
   return true;
 }
 
-void Decimator::take(const header_t& h, std::span<const std::uint8_t> message, HostTime arrival, const Out& out) {
-  if (!rule_.thins()) return out(message);
+void Decimator::push(const header_t& h, std::span<const std::uint8_t> message, HostTime arrival, const Out& out) {
+  if (!rule_.decimates()) return out(message);
   if (senders_.size() >= kMaxSenders && !senders_.contains(h.source)) senders_.clear();
   Sender& sender = senders_[h.source];
   if (sender.incarnation != h.incarnation) {
@@ -87,7 +87,7 @@ void Decimator::take(const header_t& h, std::span<const std::uint8_t> message, H
   passing_.clear();
   if (!sender.comparison)
     passing_.emplace_back(message.begin(), message.end());
-  else if (!sender.comparison->take(message, arrival, passing_)) {
+  else if (!sender.comparison->push(message, arrival, passing_)) {
     ++bad_;
     return;
   }

@@ -29,7 +29,7 @@ class Decimator {
   Decimator(Decimator&&) noexcept;
 
   // Calls out(message) for the messages that pass now: this one or none, or with the last page of a snapshot all its pages.
-  void take(const header_t& header, std::span<const std::uint8_t> message, HostTime arrival, const Out& out);
+  void push(const header_t& header, std::span<const std::uint8_t> message, HostTime arrival, const Out& out);
   std::int64_t left_out() const { return left_out_; }
   // Number of invalid messages.
   std::int64_t bad() const { return bad_; }
@@ -39,7 +39,7 @@ class Decimator {
   class Comparison {
    public:
     virtual ~Comparison() = default;
-    virtual bool take(std::span<const std::uint8_t> message, HostTime arrival,
+    virtual bool push(std::span<const std::uint8_t> message, HostTime arrival,
                       std::vector<std::vector<std::uint8_t>>& out) = 0;
   };
   template <class Message>

@@ -17,7 +17,7 @@ constexpr std::string_view kMagic = "TRL1";
 constexpr std::size_t kChannelAt = kMagic.size() + 1;  // after the port
 constexpr int kReceiveBufferBytes = 4 << 20;           // as sync/bus/udp_port.cpp
 // The limit of an unfragmented datagram on an Ethernet, plus a margin.
-static_assert(kChannelAt + kLongestChannel + 1 + channels::kMaxMessageBytes <= 2047);
+static_assert(kChannelAt + kMaxChannelBytes + 1 + channels::kMaxMessageBytes <= 2047);
 
 std::optional<double> number(std::string_view text, double least, double most) {
   double x = 0;
@@ -75,7 +75,7 @@ std::optional<LineMessage> parse_line_datagram(std::span<const std::uint8_t> byt
   const auto name = bytes.subspan(kChannelAt);
   const auto end = std::find(name.begin(), name.end(), std::uint8_t{0});
   const auto length = static_cast<std::size_t>(end - name.begin());
-  if (end == name.end() || length == 0 || length > kLongestChannel) return std::nullopt;
+  if (end == name.end() || length == 0 || length > kMaxChannelBytes) return std::nullopt;
   const ChannelBytes message{{reinterpret_cast<const char*>(name.data()), length}, name.subspan(length + 1)};
   if (!message.fits()) return std::nullopt;
   return LineMessage{message, bytes[kMagic.size()] == 1};
@@ -86,9 +86,9 @@ LineSocket::LineSocket(const LineEnd& here)
   if (setsockopt(socket_, SOL_SOCKET, SO_RCVBUFFORCE, &kReceiveBufferBytes, sizeof kReceiveBufferBytes) < 0)
     setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &kReceiveBufferBytes, sizeof kReceiveBufferBytes);
   if (bind(socket_, reinterpret_cast<const sockaddr*>(&here.address), sizeof here.address) == 0) return;
-  const std::string why = std::strerror(errno);
+  const std::string reason = std::strerror(errno);
   if (socket_ >= 0) close(socket_);
-  throw std::runtime_error("cannot listen at " + here.name + " (" + why +
+  throw std::runtime_error("cannot listen at " + here.name + " (" + reason +
                            "); choose another --listen, an address of this host with a free port");
 }
 
@@ -109,7 +109,7 @@ std::optional<LineSocket::Arrived> LineSocket::receive(std::span<const LineEnd> 
   for (std::size_t i = 0; i < sites.size(); ++i)
     if (sites[i].address.sin_addr.s_addr == from.sin_addr.s_addr && sites[i].address.sin_port == from.sin_port)
       return Arrived{static_cast<int>(i), {buffer_.data(), static_cast<std::size_t>(size)}};
-  ++strangers_;
+  ++unknown_senders_;
   return Arrived{-1, {}};
 }
 

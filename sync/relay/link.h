@@ -46,21 +46,21 @@ class LineSocket {
 
   // Returns false when the network refused it. Never waits.
   bool send(const LineEnd& to, std::span<const std::uint8_t> datagram);
-  // Calls hear(index of the site, LineMessage) for the datagrams received from these sites, at most kMax, without waiting.
-  template <class Hear>
-  void read(std::span<const LineEnd> sites, Hear&& hear) {
+  // Calls on_message(index of the site, LineMessage) for the datagrams received from these sites, at most kMax, without waiting.
+  template <class OnMessage>
+  void read(std::span<const LineEnd> sites, OnMessage&& on_message) {
     for (int i = 0; i < kMax; ++i) {
       const auto arrived = receive(sites);
       if (!arrived) return;
       if (arrived->site < 0) continue;
       if (const auto m = parse_line_datagram(arrived->bytes))
-        hear(static_cast<std::size_t>(arrived->site), *m);
+        on_message(static_cast<std::size_t>(arrived->site), *m);
       else
         ++bad_;
     }
   }
   // Datagrams from other addresses, and malformed ones.
-  std::int64_t strangers() const { return strangers_; }
+  std::int64_t unknown_senders() const { return unknown_senders_; }
   std::int64_t bad() const { return bad_; }
 
  private:
@@ -73,7 +73,7 @@ class LineSocket {
 
   int socket_;
   std::array<std::uint8_t, 2048> buffer_;
-  std::int64_t strangers_ = 0, bad_ = 0;
+  std::int64_t unknown_senders_ = 0, bad_ = 0;
 };
 
 }  // namespace tactus::sync

@@ -8,7 +8,7 @@ void Outbox::push(Urgency urgency, std::vector<std::uint8_t> datagram, HostTime 
   Queue& queue = queue_of(urgency);
   queue.bytes += datagram.size();
   queue.waiting.push_back({now, std::move(datagram)});
-  give_up(urgency, now);
+  drop_late(urgency, now);
 }
 
 void Outbox::refill(HostTime now) {
@@ -17,10 +17,10 @@ void Outbox::refill(HostTime now) {
   refilled_ = now;
 }
 
-void Outbox::give_up(Urgency urgency, HostTime now) {
+void Outbox::drop_late(Urgency urgency, HostTime now) {
   Queue& queue = queue_of(urgency);
   const bool bulk = urgency == Urgency::kBulk;
-  const HostTime oldest = now - (bulk ? kLatestBulk : kLatest);
+  const HostTime oldest = now - (bulk ? kMaxBulkAge : kMaxAge);
   while (!queue.waiting.empty() && (queue.waiting.front().since < oldest || queue.bytes > kMaxBytes)) {
     queue.bytes -= queue.waiting.front().datagram.size();
     queue.waiting.pop_front();

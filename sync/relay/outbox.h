@@ -30,7 +30,7 @@ class Outbox {
   static constexpr Nanoseconds kLatest{50'000'000}, kLatestBulk{1'000'000'000};
   // Burst size: ten of the longest datagrams. Half of it is reserved from assets, so that messages published together are
   // sent together while a scene is in transfer.
-  static constexpr double kBurstBytes = 16'000, kNotForBulkBytes = kBurstBytes / 2;
+  static constexpr double kBurstBytes = 16'000, kReservedBytes = kBurstBytes / 2;
   static constexpr std::size_t kMaxBytes = 1 << 20;  // of each urgency
   static constexpr std::size_t kHeaders = 28;         // IP and UDP (RFC 791, RFC 768), of each datagram
 
@@ -45,8 +45,8 @@ class Outbox {
     refill(now);
     for (const Urgency urgency : {Urgency::kFirst, Urgency::kState, Urgency::kBulk}) {
       Queue& queue = queue_of(urgency);
-      give_up(urgency, now);
-      while (!queue.waiting.empty() && affords(urgency, queue.waiting.front().datagram.size())) {
+      drop_late(urgency, now);
+      while (!queue.waiting.empty() && may_send(urgency, queue.waiting.front().datagram.size())) {
         const std::vector<std::uint8_t> datagram = take_first(queue);
         if (!send(std::span<const std::uint8_t>(datagram))) ++counts_.refused;
       }
@@ -56,20 +56,20 @@ class Outbox {
   const OutboxCounts& counts() const { return counts_; }
 
  private:
-  struct Waiting {
+  struct Pending {
     HostTime since;
     std::vector<std::uint8_t> datagram;
   };
   struct Queue {
-    std::deque<Waiting> waiting{};
+    std::deque<Pending> waiting{};
     std::size_t bytes = 0;
   };
   Queue& queue_of(Urgency urgency) { return queues_[static_cast<std::size_t>(urgency)]; }
   void refill(HostTime now);
   // Drops datagrams that have waited too long, or exceed the limit.
-  void give_up(Urgency urgency, HostTime now);
-  bool affords(Urgency urgency, std::size_t bytes) const {
-    const double kept = urgency == Urgency::kBulk ? kNotForBulkBytes : 0;
+  void drop_late(Urgency urgency, HostTime now);
+  bool may_send(Urgency urgency, std::size_t bytes) const {
+    const double kept = urgency == Urgency::kBulk ? kReservedBytes : 0;
     return bit_per_s_ <= 0 || tokens_ >= static_cast<double>(bytes + kHeaders) + kept;
   }
   std::vector<std::uint8_t> take_first(Queue& queue);

@@ -33,9 +33,9 @@ class Relay {
   Relay(RelayRules rules, std::vector<LineEnd> sites, std::int64_t run_id);
 
   // A message from the bus of this site.
-  void hear_bus(const ChannelBytes& message, bool bulk, HostTime now);
+  void on_bus_message(const ChannelBytes& message, bool bulk, HostTime now);
   // A message from the line of a site: returns true when it must be sent on the bus.
-  bool hear_line(std::size_t site, const LineMessage& message, HostTime now);
+  bool on_line_message(std::size_t site, const LineMessage& message, HostTime now);
   // Calls send(site, datagram) -> bool for the datagrams that may be sent by now.
   template <class Send>
   void flush(HostTime now, Send&& send) {
@@ -46,22 +46,22 @@ class Relay {
   const std::vector<LineEnd>& sites() const { return sites_; }
   const RelayCounts& counts() const { return counts_; }
   const OutboxCounts& line(std::size_t site) const { return outboxes_[site].counts(); }
-  bool silent(std::size_t site, HostTime now) const { return now - heard_[site] > kSilent; }
+  bool silent(std::size_t site, HostTime now) const { return now - last_received_[site] > kSilent; }
   // For the live table: the load and the losses of each line since the last call, and whether its other end is received.
-  std::string note(HostTime now);
+  std::string status_text(HostTime now);
 
  private:
-  Decimator& thinner(const PassRule& rule);
+  Decimator& decimator(const PassRule& rule);
 
   RelayRules rules_;
   std::vector<LineEnd> sites_;
   std::int64_t run_id_;
   std::vector<Outbox> outboxes_;
-  std::vector<HostTime> heard_;
-  std::vector<OutboxCounts> noted_counts_;
-  HostTime noted_{};
-  std::map<const PassRule*, Decimator> thinners_;
-  Sides sides_;
+  std::vector<HostTime> last_received_;
+  std::vector<OutboxCounts> reported_counts_;
+  HostTime reported_at_{};
+  std::map<const PassRule*, Decimator> decimators_;
+  SenderSides sides_;
   RelayCounts counts_;
 };
 

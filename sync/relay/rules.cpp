@@ -77,20 +77,20 @@ PassRule parse_pass(const tinyxml2::XMLElement& e) {
   if (rule.thinning.rate && !holds(kStates, rule.channel))
     throw std::invalid_argument(
         rule.channel +
-        " says each thing once, so that a rate would lose some; let it pass whole, or not at all (a rate have " +
+        " contains each item once, so a rate would lose some; pass all of it, or none (a rate have " +
         list(kStates) + ")");
   if (rule.thinning.deadband && !holds(kCompared, rule.channel))
-    throw std::invalid_argument("it is not known what of " + rule.channel + " to compare; a deadband have " +
+    throw std::invalid_argument("a deadband cannot compare messages of " + rule.channel + "; it can compare " +
                                 list(kCompared));
   return rule;
 }
 
 // An element may contain only elements and comments.
-void refuse_text_in(const tinyxml2::XMLNode& within, const char* what, int& line) {
+void refuse_text_in(const tinyxml2::XMLNode& within, const char* message, int& line) {
   for (const tinyxml2::XMLNode* n = within.FirstChild(); n; n = n->NextSibling()) {
     if (n->ToElement() || n->ToComment() || (n->ToDeclaration() && within.ToDocument())) continue;
     line = n->GetLineNum();
-    throw std::invalid_argument(what);
+    throw std::invalid_argument(message);
   }
 }
 
@@ -142,7 +142,7 @@ RelayRules parse_relay_rules(const std::string& xml, const std::string& file) {
     }
     if (rules.empty())
       throw std::invalid_argument(
-          "these rules let nothing pass; name a channel, for example <pass channel=\"CONTACT_EVENTS\"/>");
+          "these rules pass no channel; name one, for example <pass channel=\"CONTACT_EVENTS\"/>");
     return RelayRules(std::move(rules));
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(file + ":" + std::to_string(line) + ": " + e.what());

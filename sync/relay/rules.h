@@ -24,7 +24,7 @@ struct PassRule {
   Rule thinning;       // its rate and its deadband, if given
   int line = 0;
 
-  bool thins() const { return thinning.rate || thinning.deadband; }
+  bool decimates() const { return thinning.rate || thinning.deadband; }
 };
 
 class RelayRules {

@@ -4,14 +4,14 @@
 
 namespace tactus::sync {
 
-bool Sides::lives(const header_t& h, int side, HostTime now) {
+bool SenderSides::belongs_to(const header_t& h, int side, HostTime now) {
   const auto [at, fresh] = senders_.try_emplace({h.source, h.incarnation}, Sender{side, now});
   Sender& sender = at->second;
-  if (!fresh && sender.side != side && now - sender.heard < kForgotten) return ++echoes_, false;
+  if (!fresh && sender.side != side && now - sender.last_seen < kTimeout) return ++echoes_, false;
   sender = {side, now};
   if (senders_.size() > kMax)
     senders_.erase(std::min_element(senders_.begin(), senders_.end(),
-                                    [](const auto& a, const auto& b) { return a.second.heard < b.second.heard; }));
+                                    [](const auto& a, const auto& b) { return a.second.last_seen < b.second.last_seen; }));
   return true;
 }
 

@@ -1,7 +1,6 @@
-// The side of a relay on which each sender lives. Messages from a line are never sent over a line again, and returning
+// The side of a relay that each sender belongs to. Messages from a line are never sent over a line again, and returning
 // messages are rejected: several relays in one site, a duplicate line, or a network that carries both sites' multicast cause
 // no loops. Pure.
-// multicast make no circles. Pure.
 #pragma once
 
 #include <cstdint>
@@ -13,23 +12,23 @@
 
 namespace tactus::sync {
 
-class Sides {
+class SenderSides {
  public:
   static constexpr int kHere = 0;  // the bus of this site; other sites count from 1
   // After this silence a sender may appear on another side.
-  static constexpr Nanoseconds kForgotten{10'000'000'000};
+  static constexpr Nanoseconds kTimeout{10'000'000'000};
   // As sync/bus/sequence.h for one channel; more come only from corrupt messages, and those silent for longest are removed.
   static constexpr std::size_t kMax = 4096;
 
-  // True when this sender lives on that side: it lives where it was first received.
-  bool lives(const header_t& h, int side, HostTime now);
-  // Messages that arrived from a side where their sender does not live.
+  // True when this sender belongs to that side: the side where it was first received.
+  bool belongs_to(const header_t& h, int side, HostTime now);
+  // Messages that arrived from a side other than that of their sender.
   std::int64_t echoes() const { return echoes_; }
 
  private:
   struct Sender {
     int side;
-    HostTime heard;
+    HostTime last_seen;
   };
   std::map<std::pair<std::int32_t, std::int64_t>, Sender> senders_;  // by source and incarnation
   std::int64_t echoes_ = 0;

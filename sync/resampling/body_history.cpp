@@ -37,7 +37,7 @@ bool rests(const BodyPose& p) {
 }
 
 SampleStatus past(Nanoseconds newest) {
-  return newest <= BodyHistory::kExtrapolateAtMost ? SampleStatus::kExtrapolated
+  return newest <= BodyHistory::kMaxExtrapolation ? SampleStatus::kExtrapolated
          : newest <= BodyHistory::kStaleAfter      ? SampleStatus::kHeld
                                                    : SampleStatus::kStale;
 }
@@ -45,17 +45,17 @@ SampleStatus past(Nanoseconds newest) {
 }  // namespace
 
 void BodyHistory::push(const world_state_t& page, HostTime arrival) {
-  switch (follower_.follow(page.header, page.clock, arrival)) {
+  switch (clock_tracker_.track(page.header, page.clock, arrival)) {
     case TrackResult::kIgnore: return;
     case TrackResult::kRestart:
       bodies_.clear();
-      samples_kept_ = 0;
+      sample_count_ = 0;
       newest_.reset();
       break;
     case TrackResult::kSame: break;
   }
-  const SimTime time = sim_time(page.header.sim_time_ns), latest = follower_.latest_credible();
-  if (newest_ && *newest_ > latest) forget_after(latest);
+  const SimTime time = sim_time(page.header.sim_time_ns), latest = clock_tracker_.latest_plausible();
+  if (newest_ && *newest_ > latest) discard_after(latest);
   if (time > latest) {
     ++refused_;
     return;
@@ -69,60 +69,60 @@ void BodyHistory::push(const world_state_t& page, HostTime arrival) {
       continue;
     }
     Samples& samples = bodies_[b.body];
-    if (!place(samples, {time, page.header.seq, page.group == world_state_t::AHEAD, period, from_message(b)}))
+    if (!insert(samples, {time, page.header.seq, page.group == world_state_t::AHEAD, period, from_message(b)}))
       continue;
     if (samples.size() <= 2) continue;
-    const bool young = samples.size() <= kSamplesPerBody || samples.back().time - samples.front().time <= span_;
-    if (young && samples_kept_ <= kMaxSamples) continue;
+    const bool recent = samples.size() <= kSamplesPerBody || samples.back().time - samples.front().time <= span_;
+    if (recent && sample_count_ <= kMaxSamples) continue;
     samples.pop_front();
-    --samples_kept_;
+    --sample_count_;
   }
 }
 
 // Inserts a sample in order of time; pages may overtake each other. Returns true when it was inserted. Of several samples of
 // one instant the first stays, but a present sample replaces a predicted one.
-bool BodyHistory::place(Samples& samples, Stamped fresh) {
-  const auto later = [&](const Stamped& s) { return s.time <= fresh.time; };
+bool BodyHistory::insert(Samples& samples, TimedPose sample) {
+  const auto later = [&](const TimedPose& s) { return s.time <= sample.time; };
   auto at = std::find_if(samples.rbegin(), samples.rend(), later).base();
-  if (fresh.ahead) {
+  if (sample.ahead) {
     // A sample of the present that is published later and for an earlier instant revokes this prediction. Predictions are
     // published in order of their times, so samples before a valid prediction need no check.
     for (auto s = at; s != samples.begin();) {
-      if ((--s)->ahead && s->seq < fresh.seq && s->time < fresh.time) break;
-      if (!s->ahead && s->seq > fresh.seq && fresh.time - s->time <= SimClockTracker::kFar) return false;
+      if ((--s)->ahead && s->seq < sample.seq && s->time < sample.time) break;
+      if (!s->ahead && s->seq > sample.seq && sample.time - s->time <= SimClockTracker::kMaxDeviation) return false;
     }
   } else {
-    take_back(samples, fresh);
+    discard_predictions(samples, sample);
     at = std::find_if(samples.rbegin(), samples.rend(), later).base();
   }
-  if (at != samples.begin() && std::prev(at)->time == fresh.time) {
-    Stamped& there = *std::prev(at);
-    if (there.ahead && !fresh.ahead) there = fresh;
+  if (at != samples.begin() && std::prev(at)->time == sample.time) {
+    TimedPose& previous = *std::prev(at);
+    if (previous.ahead && !sample.ahead) previous = sample;
     return false;
   }
-  samples.insert(at, std::move(fresh));
-  ++samples_kept_;
+  samples.insert(at, std::move(sample));
+  ++sample_count_;
   return true;
 }
 
 // A present sample of a body revokes all earlier predictions of it. No prediction is valid beyond kFar, so a corrupt page
 // cannot revoke more.
-void BodyHistory::take_back(Samples& samples, const Stamped& now) {
+void BodyHistory::discard_predictions(Samples& samples, const TimedPose& now) {
   const auto end =
-      std::find_if(samples.rbegin(), samples.rend(), [&](const Stamped& s) { return s.time <= now.time; }).base();
-  const auto void_now = [&](const Stamped& s) {
-    return s.ahead && s.seq < now.seq && s.time - now.time <= SimClockTracker::kFar;
+      std::find_if(samples.rbegin(), samples.rend(), [&](const TimedPose& s) { return s.time <= now.time; }).base();
+  const auto void_now = [&](const TimedPose& s) {
+    return s.ahead && s.seq < now.seq && s.time - now.time <= SimClockTracker::kMaxDeviation;
   };
   const auto kept = std::remove_if(end, samples.end(), void_now);
-  samples_kept_ -= static_cast<std::size_t>(samples.end() - kept);
+  sample_count_ -= static_cast<std::size_t>(samples.end() - kept);
   samples.erase(kept, samples.end());
 }
 
 // Removes samples after `latest`: a sample may have been accepted only because its corrupt message was the first one.
-void BodyHistory::forget_after(SimTime latest) {
+void BodyHistory::discard_after(SimTime latest) {
   newest_.reset();
   for (auto& [body, samples] : bodies_) {
-    for (; !samples.empty() && samples.back().time > latest; --samples_kept_) samples.pop_back();
+    for (; !samples.empty() && samples.back().time > latest; --sample_count_) samples.pop_back();
     if (!samples.empty() && (!newest_ || samples.back().time > *newest_)) newest_ = samples.back().time;
   }
 }
@@ -136,9 +136,9 @@ Sample<BodyPose> BodyHistory::pose(int body, SimTime t) const {
   const auto it = bodies_.find(body);
   if (it == bodies_.end() || it->second.empty()) return {};
   const auto& samples = it->second;
-  const auto after = std::find_if(samples.begin(), samples.end(), [&](const Stamped& s) { return s.time > t; });
+  const auto after = std::find_if(samples.begin(), samples.end(), [&](const TimedPose& s) { return s.time > t; });
   if (after == samples.begin()) return {after->pose, SampleStatus::kHeld};  // older than all stored samples
-  const Stamped& before = *std::prev(after);
+  const TimedPose& before = *std::prev(after);
   if (before.time == t) return {before.pose, SampleStatus::kExact};
   if (after != samples.end()) {
     SimTime begin = before.time;
@@ -147,7 +147,7 @@ Sample<BodyPose> BodyHistory::pose(int body, SimTime t) const {
     const double span_s = to_seconds(after->time - begin), s = to_seconds(t - begin) / span_s;
     return {between(before.pose, after->pose, span_s, s), SampleStatus::kInterpolated};
   }
-  const double dt_s = to_seconds(std::min(t - before.time, Nanoseconds(kExtrapolateAtMost)));
+  const double dt_s = to_seconds(std::min(t - before.time, Nanoseconds(kMaxExtrapolation)));
   // A body at rest is left out of snapshots, so its pose is exact. A moving body without a sample is missing: its page was
   // lost.
   return {moved_on(before.pose, dt_s), rests(before.pose) ? status(t) : past(t - before.time)};

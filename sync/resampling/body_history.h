@@ -30,7 +30,7 @@ class BodyHistory {
  public:
   // Extrapolation: after its newest sample a body continues with its velocity for this time; then its pose is held, then
   // stale. Three snapshots at 60 Hz may be missing before the body stops.
-  static constexpr Nanoseconds kExtrapolateAtMost{50'000'000};
+  static constexpr Nanoseconds kMaxExtrapolation{50'000'000};
   static constexpr Nanoseconds kStaleAfter{200'000'000};
   // Minimum number of samples per body, of any age; and the length of the stored past, limited by kMaxSamples, which limits
   // the presentation delay of a modality.
@@ -41,10 +41,10 @@ class BodyHistory {
   // Of all bodies together, about 64 MB; with more bodies, each keeps fewer samples.
   static constexpr std::size_t kMaxSamples = 1 << 19;
 
-  explicit BodyHistory(OwnClock own) : follower_(own) {}
+  explicit BodyHistory(OwnClock own) : clock_tracker_(own) {}
 
   // Stores this time beyond kSpan, for a modality that presents with this delay.
-  void keep(Nanoseconds delay) { span_ = kSpan + delay; }
+  void extend_history(Nanoseconds delay) { span_ = kSpan + delay; }
   void push(const world_state_t& page, HostTime arrival);
   // Hermite interpolation in position, SLERP in orientation. A body at rest that a snapshot leaves out rests at its last
   // pose, and starts to move no earlier than between the last two snapshots. A moving body that a snapshot leaves out was in
@@ -52,26 +52,26 @@ class BodyHistory {
   Sample<BodyPose> pose(int body, SimTime t) const;
   // The relation of the newest snapshot as a whole to t; its instant may lie in the future.
   SampleStatus status(SimTime t) const;
-  std::optional<TimeMap> map(HostTime now) const { return follower_.map(now); }
+  std::optional<TimeMap> map(HostTime now) const { return clock_tracker_.map(now); }
   // Rejected pages more than 1 s ahead of their simulation's own time, and rejected bodies beyond kMaxBodies.
   std::int64_t refused() const { return refused_; }
 
  private:
-  void forget_after(SimTime latest);
+  void discard_after(SimTime latest);
 
-  struct Stamped {
+  struct TimedPose {
     SimTime time;
     std::int64_t seq = 0;  // of its page: the order of publication
     bool ahead = false;    // published for a future instant
     Nanoseconds period{};  // between snapshots at the time of publication; 0: not known
     BodyPose pose;
   };
-  using Samples = std::deque<Stamped>;  // in order of time, one per instant
-  bool place(Samples& samples, Stamped fresh);
-  void take_back(Samples& samples, const Stamped& now);
-  SimClockTracker follower_;
+  using Samples = std::deque<TimedPose>;  // in order of time, one per instant
+  bool insert(Samples& samples, TimedPose sample);
+  void discard_predictions(Samples& samples, const TimedPose& now);
+  SimClockTracker clock_tracker_;
   std::map<int, Samples> bodies_;
-  std::size_t samples_kept_ = 0;
+  std::size_t sample_count_ = 0;
   Nanoseconds span_ = kSpan;
   std::optional<SimTime> newest_;
   std::int64_t refused_ = 0;

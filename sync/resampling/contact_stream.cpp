@@ -46,14 +46,14 @@ void ContactStream::follow_events() {
     epoch_ = events_.epoch();
     for (auto& group : partial_) group.clear();
     for (auto& group : snapshots_) group.clear();
-    for (auto& kept : contacts_kept_) kept = 0;
+    for (auto& kept : contact_counts_) kept = 0;
   }
   const SimTime latest = events_.latest_credible();
   for (std::size_t group = 0; group < kGroups; ++group) {
     partial_[group].drop_if([&](SimTime t) { return t > latest; });
     auto& snapshots = snapshots_[group];
     while (!snapshots.empty() && snapshots.back().time > latest) {
-      contacts_kept_[group] -= snapshots.back().contacts.size();
+      contact_counts_[group] -= snapshots.back().contacts.size();
       snapshots.pop_back();
     }
   }
@@ -88,12 +88,12 @@ void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
 // Inserts a snapshot in order of time. An overtaken snapshot is inserted, too: later snapshots do not make it useless.
 void ContactStream::insert(std::size_t group, Snapshot snapshot) {
   auto& snapshots = snapshots_[group];
-  contacts_kept_[group] += snapshot.contacts.size();
+  contact_counts_[group] += snapshot.contacts.size();
   const auto newer = [&](const Snapshot& s) { return s.time > snapshot.time; };
   snapshots.insert(std::find_if_not(snapshots.rbegin(), snapshots.rend(), newer).base(), std::move(snapshot));
   const auto too_old = [&] { return snapshots.size() > kSnapshots && snapshots.back().time - snapshots.front().time > span_; };
-  while (too_old() || (contacts_kept_[group] > kMaxContacts && snapshots.size() > 1)) {
-    contacts_kept_[group] -= snapshots.front().contacts.size();
+  while (too_old() || (contact_counts_[group] > kMaxContacts && snapshots.size() > 1)) {
+    contact_counts_[group] -= snapshots.front().contacts.size();
     snapshots.pop_front();
   }
 }
@@ -113,7 +113,7 @@ SampleStatus ContactStream::status(const std::deque<Snapshot>& group, SimTime t)
 }
 
 // True for a contact that is predicted only: neither the snapshot before nor a begin event contains it. It may never happen.
-bool ContactStream::foreseen_only(std::size_t group, std::deque<Snapshot>::const_iterator told, std::int64_t id) const {
+bool ContactStream::predicted_only(std::size_t group, std::deque<Snapshot>::const_iterator snapshot, std::int64_t id) const {
   if (group != contact_frame_t::AHEAD) return false;
   const ContactSpan* span = events_.span_of(id);
   if (span && span->begin) return false;
@@ -128,7 +128,7 @@ void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Cand
   const auto before = std::prev(after);
   for (std::size_t i = 0; i < before->contacts.size(); ++i) {
     const contact_t& c = before->contacts[i];
-    if (!alive(c.contact_id, t) || foreseen_only(number, before, c.contact_id)) continue;
+    if (!active(c.contact_id, t) || predicted_only(number, before, c.contact_id)) continue;
     out.push_back({c, before->seqs[i], true});
     if (after == group.end()) continue;
     const auto next = find(after->contacts, c.contact_id);
@@ -149,7 +149,7 @@ void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Cand
 
 // Removes duplicates of a contact that moved between the groups of bodies: a snapshot at or before t takes precedence over a
 // later one, then the page that was published last.
-void ContactStream::keep_last_told(std::vector<Candidate>& list) {
+void ContactStream::keep_last_published(std::vector<Candidate>& list) {
   const auto better = [](const Candidate& a, const Candidate& b) { return std::pair(a.present, a.seq) > std::pair(b.present, b.seq); };
   std::map<std::int64_t, std::size_t> at;
   std::size_t kept = 0;
@@ -171,7 +171,7 @@ Sample<Contacts> ContactStream::state_at(SimTime t) {
     state.status = std::max(state.status, status(snapshots_[group], t));
     append_state(group, t, found);
   }
-  keep_last_told(found);
+  keep_last_published(found);
   for (Candidate& c : found) state.value.push_back(std::move(c.contact));
   return state;
 }

@@ -116,8 +116,8 @@ class ContactStream {
     bool present = false;  // in a snapshot at or before that instant; else only in a later one
   };
   void append_state(std::size_t group, SimTime t, std::vector<Candidate>& out) const;
-  bool foreseen_only(std::size_t group, std::deque<Snapshot>::const_iterator told, std::int64_t id) const;
-  static void keep_last_told(std::vector<Candidate>& list);
+  bool predicted_only(std::size_t group, std::deque<Snapshot>::const_iterator snapshot, std::int64_t id) const;
+  static void keep_last_published(std::vector<Candidate>& list);
 
   std::unique_ptr<EventInbox> own_events_;  // null: the events are shared
   EventInbox& events_;
@@ -127,7 +127,7 @@ class ContactStream {
   using Pages = PageAssembler<Page, SimTime>;
   std::array<Pages, kGroups> partial_;
   std::deque<Snapshot> snapshots_[kGroups];  // in order of time
-  std::size_t contacts_kept_[kGroups] = {};
+  std::size_t contact_counts_[kGroups] = {};
   Nanoseconds span_ = kSpan;
 };
 

@@ -7,7 +7,7 @@
 namespace tactus::sync {
 namespace {
 
-Eigen::Quaterniond turned(const Eigen::Quaterniond& from, const Eigen::Vector3d& spin_rad_s, double s) {
+Eigen::Quaterniond rotated(const Eigen::Quaterniond& from, const Eigen::Vector3d& spin_rad_s, double s) {
   const double angle = spin_rad_s.norm() * s;
   if (angle == 0) return from;
   return (Eigen::AngleAxisd(angle, spin_rad_s.normalized()) * from).normalized();
@@ -35,22 +35,22 @@ void PoseHistory::push(const tool_state_t& m, HostTime arrival) {
 
 Sample<BodyPose> PoseHistory::at(HostTime t) const {
   if (samples_.empty()) return {};
-  const Stamped& newest = samples_.back();
+  const TimedPose& newest = samples_.back();
   if (t >= newest.time) {
     BodyPose pose = newest.pose;
     const Nanoseconds past = t - newest.time;
     if (past > kStaleAfter) return {pose, SampleStatus::kStale};
-    const double s = to_seconds(std::min(past, kExtrapolateAtMost));
+    const double s = to_seconds(std::min(past, kMaxExtrapolation));
     pose.position += s * pose.velocity;
-    pose.orientation = turned(pose.orientation, pose.angular_velocity, s);
+    pose.orientation = rotated(pose.orientation, pose.angular_velocity, s);
     return {pose, past == Nanoseconds(0)      ? SampleStatus::kExact
-                  : past > kExtrapolateAtMost ? SampleStatus::kHeld
+                  : past > kMaxExtrapolation ? SampleStatus::kHeld
                                               : SampleStatus::kExtrapolated};
   }
   const auto after = std::upper_bound(samples_.begin(), samples_.end(), t,
-                                      [](HostTime time, const Stamped& s) { return time < s.time; });
+                                      [](HostTime time, const TimedPose& s) { return time < s.time; });
   if (after == samples_.begin()) return {samples_.front().pose, SampleStatus::kHeld};
-  const Stamped &a = *std::prev(after), &b = *after;
+  const TimedPose &a = *std::prev(after), &b = *after;
   if (a.time == t) return {a.pose, SampleStatus::kExact};
   const double s = to_seconds(t - a.time) / to_seconds(b.time - a.time);
   return {

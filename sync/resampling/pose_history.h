@@ -18,7 +18,7 @@ namespace tactus::sync {
 class PoseHistory {
  public:
   // design: a longer extrapolation of the eye overshoots visibly when the head stops
-  static constexpr Nanoseconds kExtrapolateAtMost{20'000'000};
+  static constexpr Nanoseconds kMaxExtrapolation{20'000'000};
   // design: as for the bodies of the world
   static constexpr Nanoseconds kStaleAfter{200'000'000};
   // Length of the stored past, for a modality with a presentation delay: 4096 reports at 4 kHz.
@@ -35,14 +35,14 @@ class PoseHistory {
   Sample<BodyPose> at(HostTime t) const;
 
  private:
-  struct Stamped {
+  struct TimedPose {
     HostTime time;
     BodyPose pose;
   };
   SenderClock sender_;
   OwnClock own_;
   std::int64_t incarnation_ = 0;
-  std::deque<Stamped> samples_;  // in order of time
+  std::deque<TimedPose> samples_;  // in order of time
 };
 
 }  // namespace tactus::sync

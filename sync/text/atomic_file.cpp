@@ -44,20 +44,20 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::write(std::string_view text) {
-  waiting_.append(text);
-  if (waiting_.size() >= kWaiting) flush();
+  buffer_.append(text);
+  if (buffer_.size() >= kWaiting) flush();
 }
 
 void AtomicFile::flush() {
-  for (std::size_t done = 0; done < waiting_.size();) {
-    const ssize_t n = ::write(file_, waiting_.data() + done, waiting_.size() - done);
+  for (std::size_t done = 0; done < buffer_.size();) {
+    const ssize_t n = ::write(file_, buffer_.data() + done, buffer_.size() - done);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0)
-      throw std::runtime_error("cannot go on in " + path_ + " (" + std::strerror(n < 0 ? errno : ENOSPC) +
-                               "); free some disk or choose another " + option_);
+      throw std::runtime_error("cannot continue to write " + path_ + " (" + std::strerror(n < 0 ? errno : ENOSPC) +
+                               "); free disk space or choose another " + option_);
     done += static_cast<std::size_t>(n);
   }
-  waiting_.clear();
+  buffer_.clear();
 }
 
 void AtomicFile::finish() {

@@ -24,7 +24,7 @@ class AtomicFile {
  private:
   void flush();
 
-  std::string path_, part_, option_, waiting_;
+  std::string path_, part_, option_, buffer_;
   int file_ = -1;
 };
 

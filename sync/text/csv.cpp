@@ -34,14 +34,14 @@ std::optional<double> csv_number(std::string_view cell) {
   return value;
 }
 
-std::optional<std::string> read_small_file(const std::filesystem::path& file, std::uintmax_t most_bytes) {
+std::optional<std::string> read_small_file(const std::filesystem::path& file, std::uintmax_t max_bytes) {
   std::error_code none;
-  if (!std::filesystem::is_regular_file(file, none) || std::filesystem::file_size(file, none) > most_bytes)
+  if (!std::filesystem::is_regular_file(file, none) || std::filesystem::file_size(file, none) > max_bytes)
     return std::nullopt;
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
-  if (!in || text.view().size() > most_bytes) return std::nullopt;
+  if (!in || text.view().size() > max_bytes) return std::nullopt;
   return std::move(text).str();
 }
 

@@ -19,6 +19,6 @@ std::optional<double> csv_number(std::string_view cell);
 
 // The text of a regular file of at most this number of bytes: endless files (a device, a pipe) are not read. nullopt when it
 // is no such file or cannot be read.
-std::optional<std::string> read_small_file(const std::filesystem::path& file, std::uintmax_t most_bytes);
+std::optional<std::string> read_small_file(const std::filesystem::path& file, std::uintmax_t max_bytes);
 
 }  // namespace tactus::sync

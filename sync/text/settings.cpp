@@ -62,12 +62,12 @@ double parse_quantity(std::string_view text, std::string_view unit) {
 }
 
 void check_setting(const SettingRow& row, std::string_view value) {
-  const std::string what = sentence_begin(row, value);
+  const std::string prefix = sentence_begin(row, value);
   const std::string_view unit = row.unit;
   if (unit == "text") return;
   if (unit == "bool") {
     if (value != "true" && value != "false" && value != "1" && value != "0")
-      throw std::invalid_argument(what + "must be true or false");
+      throw std::invalid_argument(prefix + "must be true or false");
     return;
   }
   if (is_choice(unit)) {
@@ -77,16 +77,16 @@ void check_setting(const SettingRow& row, std::string_view value) {
       if (rest.substr(0, bar) == value) return;
       rest = bar == std::string_view::npos ? "" : rest.substr(bar + 1);
     }
-    throw std::invalid_argument(what + "must be one of " + std::string(unit));
+    throw std::invalid_argument(prefix + "must be one of " + std::string(unit));
   }
   double number = 0;
   try {
     number = parse_quantity(value, unit == "count" ? "1" : unit);
   } catch (const std::invalid_argument& e) {
-    throw std::invalid_argument(what + e.what());
+    throw std::invalid_argument(prefix + e.what());
   }
   if (number < row.min || number > row.max || (unit == "count" && number != std::floor(number)))
-    throw std::invalid_argument(what + "must be between " + number_text(row.min) + " and " + number_text(row.max) +
+    throw std::invalid_argument(prefix + "must be between " + number_text(row.min) + " and " + number_text(row.max) +
                                 unit_text(unit) + (unit == "count" ? ", whole" : ""));
 }
 

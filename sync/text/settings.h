@@ -81,14 +81,14 @@ void change_live(Settings& settings, const Settings& own, std::span<const Settin
       const double past = changed.**limit - own.**limit;
       if (std::string_view(entry.row.safety) == "max" ? past > 0 : past < 0)
         throw std::invalid_argument("setting " + std::string(name) +
-                                    " protects a person: it may not be looser than its scene and its command line say");
+                                    " protects a person: it may not be looser than in the scene and on the command line");
     }
     settings = std::move(changed);
     return;
   }
   throw std::invalid_argument(
       live.empty() ? "none of its settings can be changed while it runs"
-                   : "setting \"" + std::string(name) + "\" cannot be changed while it runs; what can is " + live);
+                   : "setting \"" + std::string(name) + "\" cannot be changed while it runs; these settings can: " + live);
 }
 
 // Applies the settings of a scene for `node` (a list of {node, name, value}), then those of the command line ("name=value").

@@ -22,7 +22,7 @@ void Phases::end() {
   if (ScopedPhaseTimer::current != this) return;
   enter(Phase::kOther);
   ScopedPhaseTimer::current = nullptr;
-  for (std::size_t i = 0; i < kPhases; ++i) told_us_[i] = static_cast<double>(spent_[i].count()) / 1000;
+  for (std::size_t i = 0; i < kPhases; ++i) last_us_[i] = static_cast<double>(spent_[i].count()) / 1000;
 }
 
 Phase Phases::enter(Phase phase) {

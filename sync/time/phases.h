@@ -27,8 +27,8 @@ class Phases {
   void begin(bool measured);
   void end();
   // Of the last measured tick, us.
-  double us(Phase phase) const { return told_us_[static_cast<std::size_t>(phase)]; }
-  const double* told(Phase phase) const { return &told_us_[static_cast<std::size_t>(phase)]; }
+  double us(Phase phase) const { return last_us_[static_cast<std::size_t>(phase)]; }
+  const double* us_pointer(Phase phase) const { return &last_us_[static_cast<std::size_t>(phase)]; }
 
  private:
   friend class ScopedPhaseTimer;
@@ -36,7 +36,7 @@ class Phases {
 
   Clock clock_;
   std::array<Nanoseconds, kPhases> spent_{};
-  std::array<double, kPhases> told_us_{};
+  std::array<double, kPhases> last_us_{};
   Phase now_ = Phase::kOther;
   HostTime since_{};
 };

@@ -22,7 +22,7 @@ using namespace tactus;
 namespace {
 
 constexpr sync::Nanoseconds kListen{500'000'000};      // health comes every 100 ms, the clock of the simulation every ms
-constexpr sync::Nanoseconds kPatience{2'000'000'000};  // health comes every 100 ms
+constexpr sync::Nanoseconds kTimeout{2'000'000'000};  // health comes every 100 ms
 constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
 
 std::int64_t realtime_ns() {
@@ -63,7 +63,7 @@ int main(int argc, char** argv) try {
   while (sync::host_now() < begin + kListen) {
     bus.wait(kRepeat);
     bus.drain(sync::host_now());
-    while (const auto m = frames.pop()) simulation.follow(m->message.header, m->message.clock, m->arrival);
+    while (const auto m = frames.pop()) simulation.track(m->message.header, m->message.clock, m->arrival);
     while (const auto m = healths.pop())
       if (m->message.header.run_id == run_id && !m->message.modality.empty()) modalities.insert(m->message.modality);
   }
@@ -79,7 +79,7 @@ int main(int argc, char** argv) try {
   if (map) profile.start = std::max(sync::SimTime{}, map->to_sim(sync::host_now()));
 
   const sync::HostTime sent = sync::host_now();
-  for (sync::HostTime next = sent; sync::host_now() < sent + kPatience;) {
+  for (sync::HostTime next = sent; sync::host_now() < sent + kTimeout;) {
     if (sync::host_now() >= next) {
       sync::send_profile(bus, profile);
       next += kRepeat;
@@ -93,17 +93,17 @@ int main(int argc, char** argv) try {
     const bool all = std::all_of(senses.begin(), senses.end(), [](const auto& s) { return s.second; });
     if (!senses.empty() && all && sync::host_now() - sent > 3 * kRepeat) break;
   }
-  std::set<std::string> taken, missing;
-  for (const auto& [name, has] : senses) (has ? taken : missing).insert(name);
+  std::set<std::string> accepted, missing;
+  for (const auto& [name, has] : senses) (has ? accepted : missing).insert(name);
   if (senses.empty())
-    throw std::runtime_error("nothing is heard any more of " + joined(modalities) +
-                             " since it was sent; it may still take effect when they go on");
-  if (taken.empty())
+    throw std::runtime_error("no health arrives any more from " + joined(modalities) +
+                             " since the profile was sent; it may still take effect when they continue");
+  if (accepted.empty())
     throw std::runtime_error(joined(missing) +
-                             " did not take it; it may not be what they can use, see their logs");
+                             " did not accept it; they may not support it, see their logs");
   std::cout << "in force since " << sync::to_seconds(profile.start - sync::SimTime{}) << " s of the world in "
-            << joined(taken) << std::endl;
-  if (!missing.empty()) throw std::runtime_error(joined(missing) + " did not take it; see their logs");
+            << joined(accepted) << std::endl;
+  if (!missing.empty()) throw std::runtime_error(joined(missing) + " did not accept it; see their logs");
   return 0;
 } catch (const std::exception& e) {
   return sync::fail("degrade", e);

@@ -44,7 +44,7 @@ class Table {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Makes tables of what the hand and the skin felt from the log of a run."};
+  CLI::App app{"Writes tables of forces and skin temperatures from the log of a run."};
   std::vector<std::string> logs;
   std::string out = ".";
   app.add_option("LOG", logs, "logs of one run, in order, or its folder: all parts")->required()->check(CLI::ExistingPath);

@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::size_t kMaxFiles = 256;  // random bytes would create more channels than a user reads
 
-struct Wishes {
+struct ExportOptions {
   std::vector<std::string> logs;
   std::string out = ".", channels;
   double since_s = -1e18, until_s = 1e18;
@@ -88,8 +88,8 @@ json schema_of(const Channel& c, bool wide) {
 
 class Export {
  public:
-  explicit Export(const Wishes& wishes)
-      : wishes_(wishes), wanted_(wishes.channels.empty() ? ".*" : wishes.channels, std::regex::extended | std::regex::optimize) {}
+  explicit Export(const ExportOptions& export_options)
+      : options_(export_options), selected_(export_options.channels.empty() ? ".*" : export_options.channels, std::regex::extended | std::regex::optimize) {}
 
   void read(const std::string& path) {
     const sync::MappedLog file(path);
@@ -107,10 +107,10 @@ class Export {
     for (sync::HostTime at; events.next(event, at);) {
       if (++seen % 100'000 == 0 && isatty(STDERR_FILENO)) std::cerr << "\r" << seen << " events" << std::flush;
       const double t = context.log_s(at);
-      if (t >= wishes_.since_s && t <= wishes_.until_s) add(event, at, context, tags);
+      if (t >= options_.since_s && t <= options_.until_s) add(event, at, context, tags);
     }
     if (seen >= 100'000 && isatty(STDERR_FILENO)) std::cerr << "\r\033[K";
-    untold_ += tags.untold();
+    unlisted_ += tags.unlisted();
     damaged_ += events.scanner().damaged_regions();
     damaged_bytes_ += events.scanner().damaged_bytes();
   }
@@ -120,29 +120,29 @@ class Export {
     for (auto& [name, c] : channels_) {
       const std::int64_t rows = c.table->close();
       files[c.file] = schema_of(c, c.columns.has_value());
-      std::cout << wishes_.out << "/" << c.file << ": " << c.messages << " messages, " << rows << " rows\n";
+      std::cout << options_.out << "/" << c.file << ": " << c.messages << " messages, " << rows << " rows\n";
     }
     if (tags_) {
-      std::cout << wishes_.out << "/tags.csv: " << tags_->close() << " rows\n";
+      std::cout << options_.out << "/tags.csv: " << tags_->close() << " rows\n";
       files["tags.csv"] = {{"layout", "long"}, {"columns", {"log_s", "node", "tag", "unit", "value"}}};
     }
-    const auto count = [](std::int64_t n, const char* what) {
-      if (n > 0) std::cout << n << " " << what << "\n";
+    const auto count = [](std::int64_t n, const char* label) {
+      if (n > 0) std::cout << n << " " << label << "\n";
     };
-    count(foreign_, "messages of types that are not ours were left out");
-    count(broken_, "messages were no whole message of their type and were left out");
-    count(untold_, "tagged values were left out: no list in the log says what they are");
+    count(foreign_, "messages of other types than those of Tactus were left out");
+    count(broken_, "messages were incomplete or damaged and were left out");
+    count(unlisted_, "tagged values were left out: no list in the log names them");
     if (damaged_ > 0) std::cout << damaged_ << " damaged places, " << damaged_bytes_ << " bytes in all, were skipped\n";
-    std::ofstream schema(wishes_.out + "/schema.json");
-    schema << json{{"made_by", "Tactus export_log"}, {"logs", wishes_.logs}, {"files", files}, {"columns", columns()}, {"foreign_messages", foreign_}, {"broken_messages", broken_}, {"damaged_regions", damaged_}, {"damaged_bytes", damaged_bytes_}}.dump(1) << "\n";
+    std::ofstream schema(options_.out + "/schema.json");
+    schema << json{{"made_by", "Tactus export_log"}, {"logs", options_.logs}, {"files", files}, {"columns", columns()}, {"foreign_messages", foreign_}, {"broken_messages", broken_}, {"damaged_regions", damaged_}, {"damaged_bytes", damaged_bytes_}}.dump(1) << "\n";
     schema.close();
-    if (!schema) throw std::runtime_error("cannot write " + wishes_.out + "/schema.json; give --out a folder with room that can be written");
+    if (!schema) throw std::runtime_error("cannot write " + options_.out + "/schema.json; give --out a folder with room that can be written");
   }
 
  private:
   static json columns() {
     return {{"log_s", "s since the live part of the log began: arrival at the recorder; of tags, the instant itself"},
-            {"world_s", "s since the world began: the instant that the message speaks of; empty: none"},
+            {"world_s", "s since the world began: the instant that the message describes; empty: none"},
             {"sender", "process that sent it"},
             {"seq", "number of the message among those of its sender on this channel"},
             {"field", "path of the field; a list's places are counted from 0"},
@@ -159,9 +159,9 @@ class Export {
       ++foreign_;
       return;
     }
-    if (!std::regex_match(name, wanted_)) return;
+    if (!std::regex_match(name, selected_)) return;
     if (name == channels::kTagValues) {
-      if (!tags_) tags_ = std::make_unique<Table>(wishes_.out + "/tags.csv", sync::tag_names());
+      if (!tags_) tags_ = std::make_unique<Table>(options_.out + "/tags.csv", sync::tag_names());
       tags_->write(sync::tag_rows(tags, context, event, at));
       return;
     }
@@ -173,8 +173,8 @@ class Export {
       }
       it = channels_.emplace(name, Channel{.type = type, .columns = {}, .file = file_of(name), .table = {}}).first;
       Channel& c = it->second;
-      if (wishes_.wide) c.columns.emplace(*type);
-      c.table = std::make_unique<Table>(wishes_.out + "/" + c.file, c.columns ? c.columns->names() : sync::long_names());
+      if (options_.wide) c.columns.emplace(*type);
+      c.table = std::make_unique<Table>(options_.out + "/" + c.file, c.columns ? c.columns->names() : sync::long_names());
     }
     Channel& c = it->second;
     const std::string rows = c.type != type ? "" : c.columns ? c.columns->row(context, event, at) : sync::long_rows(context, *type, event, at);
@@ -186,31 +186,31 @@ class Export {
     ++c.messages;
   }
 
-  const Wishes& wishes_;
-  std::regex wanted_;
+  const ExportOptions& options_;
+  std::regex selected_;
   std::map<std::string, Channel> channels_;
   std::unique_ptr<Table> tags_;
-  std::int64_t foreign_ = 0, broken_ = 0, untold_ = 0, damaged_ = 0, damaged_bytes_ = 0;
+  std::int64_t foreign_ = 0, broken_ = 0, unlisted_ = 0, damaged_ = 0, damaged_bytes_ = 0;
 };
 
 }  // namespace
 
 int main(int argc, char** argv) try {
   CLI::App app{"Makes a table of every channel of a log, for pandas, R, MATLAB, PlotJuggler."};
-  Wishes wishes;
-  app.add_option("LOG", wishes.logs, "logs of one run, in order, or its folder: all parts")->required()->check(CLI::ExistingPath);
-  app.add_option("--out", wishes.out, "folder for the tables")->check(CLI::ExistingDirectory)->capture_default_str();
-  app.add_option("--channels", wishes.channels, "regular expression that the whole name of a channel matches; default: all");
-  app.add_option("--since", wishes.since_s, "from this second of the log on");
-  app.add_option("--until", wishes.until_s, "up to this second of the log");
-  app.add_flag("--wide", wishes.wide, "a row for each message and a column for each field, without lists, instead of a row for each value");
+  ExportOptions export_options;
+  app.add_option("LOG", export_options.logs, "logs of one run, in order, or its folder: all parts")->required()->check(CLI::ExistingPath);
+  app.add_option("--out", export_options.out, "folder for the tables")->check(CLI::ExistingDirectory)->capture_default_str();
+  app.add_option("--channels", export_options.channels, "regular expression that the whole name of a channel matches; default: all");
+  app.add_option("--since", export_options.since_s, "from this second of the log on");
+  app.add_option("--until", export_options.until_s, "up to this second of the log");
+  app.add_flag("--wide", export_options.wide, "a row for each message and a column for each field, without lists, instead of a row for each value");
   sync::parse_or_exit(app, "export_log", argc, argv);
   try {
-    Export all(wishes);
-    for (const std::string& path : wishes.logs) all.read(path);
+    Export all(export_options);
+    for (const std::string& path : export_options.logs) all.read(path);
     all.finish();
   } catch (const std::regex_error&) {
-    throw std::runtime_error("--channels " + sync::printable(wishes.channels) + ": is no regular expression; write for example 'TOOL_STATE|CONTACT.*'");
+    throw std::runtime_error("--channels " + sync::printable(export_options.channels) + ": is no regular expression; write for example 'TOOL_STATE|CONTACT.*'");
   }
   return 0;
 } catch (const std::exception& e) {

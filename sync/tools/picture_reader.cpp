@@ -7,7 +7,7 @@ namespace {
 constexpr std::int32_t kChunkBytes = 1024;
 }
 
-std::optional<StreamedPicture> PictureReader::take(const picture_chunk_t& m) {
+std::optional<StreamedPicture> PictureReader::push(const picture_chunk_t& m) {
   const bool last = m.chunk == m.chunks - 1;
   if (m.chunks > kMaxChunks || m.chunk < 0 || m.chunk >= m.chunks ||
       m.size != static_cast<std::int32_t>(m.data.size()) || m.size < 1 || m.size > kChunkBytes ||
@@ -15,10 +15,10 @@ std::optional<StreamedPicture> PictureReader::take(const picture_chunk_t& m) {
     return std::nullopt;
   if (!partials_.contains(m.header.source) && partials_.size() == kMaxSources)
     partials_.erase(std::min_element(partials_.begin(), partials_.end(), [](const auto& a, const auto& b) {
-      return a.second.heard < b.second.heard;
+      return a.second.last_message < b.second.last_message;
     }));
   Partial& p = partials_[m.header.source];
-  p.heard = ++messages_;
+  p.last_message = ++messages_;
   const bool another_life = p.incarnation != m.header.incarnation;
   if (!another_life && m.picture < p.picture) return std::nullopt;  // overtaken by the next picture
   if (another_life || m.picture > p.picture) {

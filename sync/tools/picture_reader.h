@@ -29,13 +29,13 @@ class PictureReader {
   static constexpr std::size_t kMaxSources = 8;
 
   // Returns the picture that this piece completes.
-  std::optional<StreamedPicture> take(const picture_chunk_t& m);
+  std::optional<StreamedPicture> push(const picture_chunk_t& m);
   // Number of pictures that began and were never completed.
   std::int64_t skipped() const { return skipped_; }
 
  private:
   struct Partial {
-    std::int64_t incarnation = 0, picture = -1, heard = 0;
+    std::int64_t incarnation = 0, picture = -1, last_message = 0;
     // By incarnation and number of the picture.
     PageAssembler<std::vector<std::uint8_t>, std::pair<std::int64_t, std::int64_t>> chunks{
         {.groups = 1, .pages = kMaxChunks, .remembered = 1}};

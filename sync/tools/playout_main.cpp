@@ -24,7 +24,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr sync::Nanoseconds kPatience{3'000'000'000};  // PLAYOUT comes every 100 ms
+constexpr sync::Nanoseconds kTimeout{3'000'000'000};  // PLAYOUT comes every 100 ms
 constexpr sync::Nanoseconds kListen{500'000'000};     // health comes every 100 ms
 constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
 constexpr sync::Nanoseconds kPages{300'000'000};       // a plan of many modalities comes in several messages, three times within this
@@ -45,7 +45,7 @@ void print(const playout_t& m) {
       std::printf("%10s\n", "-");
     else
       std::printf("%10.1f%s\n", static_cast<double>(e.needs_ns) * 1e-6,
-                  e.needs_ns > e.delay_ns && e.delay_ns > 0 ? "  comes later than asked" : "");
+                  e.needs_ns > e.delay_ns && e.delay_ns > 0 ? "  later than requested" : "");
   }
 }
 
@@ -53,7 +53,7 @@ void print(const playout_t& m) {
 
 int main(int argc, char** argv) try {
   CLI::App app(
-      "Asks the running cluster for another policy of presentation, or with no argument says which is in force.");
+      "Requests another presentation policy from the running cluster, or prints the present one without arguments.");
   sync::BusOptions bus_options;
   std::int64_t run_id = 1;
   sync::PlayoutOptions options;
@@ -62,35 +62,35 @@ int main(int argc, char** argv) try {
   app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
   sync::parse_or_exit(app, "playout", argc, argv);
   const sync::PlayoutPlan plan = options.plan();
-  const bool asks = !options.policy.empty() || !options.soa.empty();
-  if (!asks && argc > 1 && !(options.aligner + options.base + options.budget).empty())
+  const bool changes_policy = !options.policy.empty() || !options.soa.empty();
+  if (!changes_policy && argc > 1 && !(options.aligner + options.base + options.budget).empty())
     throw std::invalid_argument("name the policy too; see playout --help");
 
   sync::Bus bus(sync::Identity::fresh("playout", run_id), bus_options);
   auto& playouts = bus.queue<playout_t>(channels::kPlayout, 64);
   auto& healths = bus.queue<node_health_t>(channels::kNodeHealth, 1024);
-  std::set<std::string> senses;
+  std::set<std::string> modalities;
   for (const sync::HostTime begin = sync::host_now(); !plan.soa.empty() && sync::host_now() < begin + kListen;) {
     bus.wait(kRepeat);
     bus.drain(sync::host_now());
     while (const auto m = healths.pop())
-      if (m->message.header.run_id == run_id) senses.insert(m->message.modality);
+      if (m->message.header.run_id == run_id) modalities.insert(m->message.modality);
   }
   for (const auto& [name, asynchrony] : plan.soa)
-    if (!senses.contains(name))
-      throw std::runtime_error("no sense \"" + sync::printable(name) + "\" is heard in this cluster; nothing was changed");
+    if (!modalities.contains(name))
+      throw std::runtime_error("no sense \"" + sync::printable(name) + "\" runs in this cluster; no change was made");
   playout_request_t request = sync::request_for(plan, realtime_ns());
   std::optional<playout_t> answer;
-  sync::HostTime until = sync::host_now() + kPatience;
+  sync::HostTime until = sync::host_now() + kTimeout;
   for (sync::HostTime next = sync::host_now(); sync::host_now() < until;) {
-    if (asks && !answer && sync::host_now() >= next) {
+    if (changes_policy && !answer && sync::host_now() >= next) {
       bus.publish(channels::kPlayoutRequest, request);
       next += kRepeat;
     }
     bus.wait(kRepeat / 4);
     bus.drain(sync::host_now());
     while (const auto m = playouts.pop()) {
-      if (m->message.header.run_id != run_id || (asks && m->message.generation != request.generation)) continue;
+      if (m->message.header.run_id != run_id || (changes_policy && m->message.generation != request.generation)) continue;
       if (answer) {
         sync::add_page(*answer, m->message);
       } else {
@@ -100,10 +100,10 @@ int main(int argc, char** argv) try {
     }
   }
   if (!answer)
-    throw std::runtime_error(asks ? "no sync_node answers on this bus yet; the request may still take effect when "
-                                    "one goes on. Where there is "
+    throw std::runtime_error(changes_policy ? "no sync_node answers on this bus yet; the request may still take effect when "
+                                    "one continues. Where there is "
                                     "none, run it inside the cluster: tactus playout"
-                                  : "no sync_node speaks on this bus; run it inside the cluster: tactus playout");
+                                  : "no sync_node publishes on this bus; run it inside the cluster: tactus playout");
   print(*answer);
   return 0;
 } catch (const std::exception& e) {

@@ -65,13 +65,13 @@ class Socket {
   }
   // Calls take(datagram, ttl, at) for all datagrams that arrive until then.
   template <class Take>
-  void listen(sync::HostTime until, Take&& take) {
+  void listen(sync::HostTime until, Take&& process) {
     for (sync::HostTime now = sync::host_now(); now < until; now = sync::host_now()) {
       pollfd p{fd_, POLLIN, 0};
       const std::int64_t left = (until - now).count();
       const timespec timeout{left / 1'000'000'000, left % 1'000'000'000};
       if (ppoll(&p, 1, &timeout, nullptr) <= 0) continue;
-      std::uint8_t bytes[sync::PairDatagram::kLongest + 1];
+      std::uint8_t bytes[sync::PairDatagram::kMaxBytes + 1];
       alignas(cmsghdr) char control[64];
       iovec data{bytes, sizeof bytes};
       msghdr message{};
@@ -85,7 +85,7 @@ class Socket {
       int ttl = -1;
       for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c))
         if (c->cmsg_level == IPPROTO_IP && c->cmsg_type == IP_TTL) std::memcpy(&ttl, CMSG_DATA(c), sizeof ttl);
-      if (const auto m = sync::PairDatagram::decode({bytes, static_cast<std::size_t>(size)})) take(*m, ttl, at);
+      if (const auto m = sync::PairDatagram::decode({bytes, static_cast<std::size_t>(size)})) process(*m, ttl, at);
     }
   }
   int buffer_bytes() const {
@@ -105,7 +105,7 @@ double us(sync::Nanoseconds t) { return static_cast<double>(t.count()) * 1e-3; }
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Says what this host hears of others that run the same at the same time: who, how well, how late, and what their clocks say."};
+  CLI::App app{"Measures the network to other hosts that run this program at the same time: reachability, losses, round trips and clock offsets."};
   sync::BusOptions bus;
   std::string host;
   std::vector<std::string> expected;
@@ -125,55 +125,55 @@ int main(int argc, char** argv) try {
   for (const std::string& name : expected)
     if (name != host) others[name];
   std::int64_t strangers = 0, refused = 0;
-  const auto take = [&](const sync::PairDatagram& m, int ttl, sync::HostTime at) {
+  const auto process = [&](const sync::PairDatagram& m, int ttl, sync::HostTime at) {
     if (m.run != run) {
       ++strangers;
       return;
     }
     const auto other = others.find(m.from);
     if (other == others.end()) return;  // this host
-    if (m.kind == sync::PairDatagram::kAnswer) {
-      if (m.to == host) other->second.hear_answer(m, at);
+    if (m.kind == sync::PairDatagram::kReply) {
+      if (m.to == host) other->second.on_reply(m, at);
       return;
     }
-    other->second.hear(m, ttl);
-    if (m.kind != sync::PairDatagram::kAsk) return;
-    sync::PairDatagram answer{run, sync::PairDatagram::kAnswer, m.number, host, m.from, m.asked_ns, sync::to_ns(at), 0};
-    answer.answered_ns = sync::to_ns(sync::host_now());
-    refused += !socket.send(answer, sync::PairDatagram::kShortest);
+    other->second.on_message(m, ttl);
+    if (m.kind != sync::PairDatagram::kRequest) return;
+    sync::PairDatagram answer{run, sync::PairDatagram::kReply, m.number, host, m.from, m.sent_ns, sync::to_ns(at), 0};
+    answer.replied_ns = sync::to_ns(sync::host_now());
+    refused += !socket.send(answer, sync::PairDatagram::kMinBytes);
   };
-  socket.listen(sync::host_now() + kLead, take);
+  socket.listen(sync::host_now() + kLead, process);
   const sync::HostTime begin = sync::host_now(), end = begin + sync::from_seconds(seconds);
   // Bursts of different hosts at different times.
   const auto index = std::find(expected.begin(), expected.end(), host) - expected.begin();
   const double share = (1.0 + static_cast<double>(index)) / (2.0 + static_cast<double>(expected.size()));
   std::uint64_t asked = 0, burst = 0;
   for (sync::HostTime next = begin; next < end; next += kPeriod) {
-    socket.listen(next, take);
-    sync::PairDatagram m{run, sync::PairDatagram::kAsk, asked, host, "", 0, 0, 0};
-    m.asked_ns = sync::to_ns(sync::host_now());
-    refused += !socket.send(m, asked % 2 == 0 ? sync::PairDatagram::kShortest : sync::PairDatagram::kLongest);
+    socket.listen(next, process);
+    sync::PairDatagram m{run, sync::PairDatagram::kRequest, asked, host, "", 0, 0, 0};
+    m.sent_ns = sync::to_ns(sync::host_now());
+    refused += !socket.send(m, asked % 2 == 0 ? sync::PairDatagram::kMinBytes : sync::PairDatagram::kMaxBytes);
     ++asked;
     if (static_cast<int>(burst / kBurst) < kBursts &&
         sync::host_now() - begin > sync::from_seconds(seconds * (static_cast<double>(burst / kBurst) + share) / (kBursts + 1)))
       for (std::uint64_t i = 0; i < kBurst; ++i, ++burst)
-        refused += !socket.send({run, sync::PairDatagram::kBurst, burst, host, "", 0, 0, 0}, sync::PairDatagram::kLongest);
+        refused += !socket.send({run, sync::PairDatagram::kBurst, burst, host, "", 0, 0, 0}, sync::PairDatagram::kMaxBytes);
   }
   for (int i = 0; i < kEnds; ++i) {
-    socket.send({run, sync::PairDatagram::kEnd, asked, host, "", 0, 0, 0}, sync::PairDatagram::kShortest);
-    socket.listen(sync::host_now() + kPeriod * 5, take);
+    socket.send({run, sync::PairDatagram::kEnd, asked, host, "", 0, 0, 0}, sync::PairDatagram::kMinBytes);
+    socket.listen(sync::host_now() + kPeriod * 5, process);
   }
 
-  nlohmann::json said{{"host", host}, {"asked", asked}, {"burst", burst}, {"refused", refused}, {"strangers", strangers},
+  nlohmann::json result{{"host", host}, {"asked", asked}, {"burst", burst}, {"refused", refused}, {"strangers", strangers},
                       {"ttl", bus.ttl}, {"buffer_bytes", socket.buffer_bytes()}, {"others", nlohmann::json::object()}};
   for (const auto& [name, r] : others) {
-    nlohmann::json& o = said["others"][name] = {{"heard", r.heard()}, {"answered", r.answered()}, {"lost", r.lost()},
-                                                {"of_bursts", r.of_bursts()}, {"ttl", r.ttl()}};
-    if (r.answered())
+    nlohmann::json& o = result["others"][name] = {{"heard", r.received()}, {"answered", r.replied()}, {"lost", r.lost()},
+                                                {"of_bursts", r.burst_datagrams()}, {"ttl", r.ttl()}};
+    if (r.replied())
       o.update({{"round_trip_us", {{"least", us(r.round_trip(0))}, {"p50", us(r.round_trip(0.5))}, {"p99", us(r.round_trip(0.99))}}},
                 {"offset_us", us(r.offset())}, {"uncertainty_us", us(r.uncertainty())}});
   }
-  std::cout << said << std::endl;
+  std::cout << result << std::endl;
   return 0;
 } catch (const std::exception& e) {
   return tactus::sync::fail("probe_pairs", e);

@@ -21,7 +21,7 @@ using namespace tactus;
 namespace {
 
 constexpr std::uintmax_t kMaxRulesBytes = 1 << 20;
-constexpr sync::Nanoseconds kNotePeriod{500'000'000};
+constexpr sync::Nanoseconds kStatusPeriod{500'000'000};
 
 std::string read_rules(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -49,15 +49,15 @@ int main(int argc, char** argv) try {
                                         .modality = "",
                                         .rate_Hz = 500,  // so it adds a millisecond on average
                                         .fifo_priority = 40,
-                                        .about = "Carries the bus between sites: what its rules name, thinned as they say, by one line to each other site."};
+                                        .about = "Carries the bus between sites: sends the channels of its rules, at the rates of its rules, over one line to each other site."};
   CLI::App app;
   sync::NodeOptions options;
   std::string listen, rules_file;
   std::vector<std::string> to;
   options.add_to(app, descriptor);
-  app.add_option("--listen", listen, "where other relays reach this one: [ADDRESS:]PORT");
-  app.add_option("--to", to, "where another site's relay listens, and what the line to it carries: ADDRESS:PORT[,KBIT]; once for each")->allow_extra_args(false);
-  app.add_option("--rules", rules_file, "file of what crosses, the same for all relays; scripts/python/tactus/cluster/relays/ has some");
+  app.add_option("--listen", listen, "address at which other relays reach this one: [ADDRESS:]PORT");
+  app.add_option("--to", to, "address of another site's relay, and the bit rate of the line to it: ADDRESS:PORT[,KBIT]; once for each")->allow_extra_args(false);
+  app.add_option("--rules", rules_file, "file of the channels to send, the same for all relays; scripts/python/tactus/cluster/relays/ has examples");
   sync::parse_or_exit(app, descriptor.name, argc, argv);
 
   std::optional<sync::LineEnd> here;
@@ -76,19 +76,19 @@ int main(int argc, char** argv) try {
   node.tags().add("in", "1", [&] { return static_cast<double>(relay.counts().in); }, 1);
   node.tags().add("out", "1", [&] { return static_cast<double>(relay.counts().out); }, 1);
 
-  sync::HostTime next_note{};
+  sync::HostTime next_status{};
   while (node.running()) {
     const sync::HostTime now = node.wait();
     line.read(relay.sites(), [&](std::size_t site, const sync::LineMessage& m) {
-      if (relay.hear_line(site, m, now)) (m.bulk ? bulk : realtime).send(m.message.channel, m.message.data);
+      if (relay.on_line_message(site, m, now)) (m.bulk ? bulk : realtime).send(m.message.channel, m.message.data);
     });
-    reader.read(sync::Bus::kMaxDrain, [&](std::size_t side, const sync::ChannelBytes& m) { relay.hear_bus(m, side == 1, now); });
+    reader.read(sync::Bus::kMaxDrain, [&](std::size_t side, const sync::ChannelBytes& m) { relay.on_bus_message(m, side == 1, now); });
     relay.flush(now, [&](const sync::LineEnd& site, std::span<const std::uint8_t> datagram) { return line.send(site, datagram); });
-    if (now < next_note) continue;
-    next_note = now + kNotePeriod;
+    if (now < next_status) continue;
+    next_status = now + kStatusPeriod;
     bool silent = false;
     for (std::size_t i = 0; i < relay.sites().size(); ++i) silent |= relay.silent(i, now);
-    node.set_state(silent ? node_health_t::INPUT_LOST : node_health_t::RUNNING, relay.note(now));
+    node.set_state(silent ? node_health_t::INPUT_LOST : node_health_t::RUNNING, relay.status_text(now));
   }
   return 0;
 } catch (const std::exception& e) {

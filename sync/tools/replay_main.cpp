@@ -25,7 +25,7 @@
 #include "sync/node/node.h"
 #include "sync/text/printable.h"
 #include "sync/tools/replay/replay.h"
-#include "sync/tools/replay/replay_choice.h"
+#include "sync/tools/replay/replay_selection.h"
 #include "sync/tools/replay/replay_control.h"
 #include "sync/tools/replay/replay_port.h"
 #include "sync/tools/replay/replay_scene.h"
@@ -35,10 +35,10 @@ using namespace tactus;
 namespace {
 
 // Datagrams that the kernel dropped at the sockets of the running nodes, since their first health.
-class Drops {
+class KernelDrops {
  public:
-  explicit Drops(sync::Bus& bus) : run_id_(bus.identity().run_id), healths_(bus.queue<node_health_t>(channels::kNodeHealth, 64)) {}
-  void listen() {
+  explicit KernelDrops(sync::Bus& bus) : run_id_(bus.identity().run_id), healths_(bus.queue<node_health_t>(channels::kNodeHealth, 64)) {}
+  void update() {
     while (const auto m = healths_.pop()) {
       const header_t& h = m->message.header;
       if (h.run_id != run_id_ || m->message.kernel_drops < 0 || (nodes_.size() >= kMax && !nodes_.contains({h.source, h.incarnation}))) continue;
@@ -84,7 +84,7 @@ void describe(const sync::LogOrigin& origin, const std::vector<sync::Asset>& ass
 struct ReplayArguments {
   std::string log, speed = "1", control;
   sync::ReplayOptions play;
-  sync::ReplayWishes wishes;
+  sync::ReplaySelectionOptions selection_options;
   bool only_describe = false, stay = false;
 
   void add_to(CLI::App& app) {
@@ -92,19 +92,19 @@ struct ReplayArguments {
     app.add_option("--speed", speed, "0.01 to 100 times as fast as it was, or max: as fast as --most lets it")->capture_default_str();
     app.add_option("--start", play.start_s, "s since the world began");
     app.add_option("--end", play.end_s, "likewise; default: the end of the log");
-    app.add_flag("--loop", play.loop, "begins anew at its end");
-    app.add_flag("--paused", play.paused, "waits for an order of --control");
-    app.add_option("--most", play.most_per_s, "messages per second, at any speed")->check(CLI::Range(1.0, 1e6))->capture_default_str();
-    app.add_option("--channels", wishes.channels, "regular expression: only channels that match as a whole");
-    app.add_option("--leave-out", wishes.leave_out, "likewise: not these");
-    app.add_option("--also", wishes.also, "likewise: these too, which would be left out");
-    app.add_option("--rename", wishes.rename, "FROM=TO, channels; may be repeated");
-    app.add_option("--live", wishes.live, "a process that runs: what it said then stays in the log; may be repeated");
-    app.add_flag("--as-recorded", wishes.as_recorded, "the degradation profiles of the log hold too");
-    app.add_flag("--verbatim", wishes.verbatim, "every message of every channel as it is, as the stock lcm-logplayer does");
-    app.add_option("--control", control, "named pipe to read orders from, or - for stdin");
-    app.add_flag("--stay", stay, "does not leave at the end of the log");
-    app.add_flag("--describe", only_describe, "says what is in the log, as JSON, and leaves");
+    app.add_flag("--loop", play.loop, "starts again at the end");
+    app.add_flag("--paused", play.paused, "waits for a command of --control");
+    app.add_option("--most", play.max_per_s, "messages per second, at any speed")->check(CLI::Range(1.0, 1e6))->capture_default_str();
+    app.add_option("--channels", selection_options.channels, "regular expression: only channels that match as a whole");
+    app.add_option("--leave-out", selection_options.leave_out, "likewise: not these");
+    app.add_option("--also", selection_options.also, "likewise: send these too, which are dropped by default");
+    app.add_option("--rename", selection_options.rename, "FROM=TO, channels; may be repeated");
+    app.add_option("--live", selection_options.live, "a running process, whose recorded messages are not sent; may be repeated");
+    app.add_flag("--as-recorded", selection_options.as_recorded, "applies the degradation profiles of the log");
+    app.add_flag("--verbatim", selection_options.verbatim, "every message of every channel as it is, as the stock lcm-logplayer does");
+    app.add_option("--control", control, "named pipe to read commands from, or - for stdin");
+    app.add_flag("--stay", stay, "keeps running at the end of the log");
+    app.add_flag("--describe", only_describe, "prints the contents of the log as JSON and exits");
   }
 };
 
@@ -116,10 +116,10 @@ std::string position_text(const sync::Replay& replay, const sync::ReplayOptions&
   text << replay.position_s() << " of " << replay.length_s() << " s at ";
   replay.speed() == 0 ? text << "full speed" : text << replay.speed() << " x";
   text << (replay.over() ? ", over" : replay.paused() ? ", paused" : "") << ", " << replay.sent() << " messages";
-  if (replay.behind_s() > 0) text << ", " << replay.behind_s() << " s behind, for no more than " << play.most_per_s << " messages a second go out";
+  if (replay.behind_s() > 0) text << ", " << replay.behind_s() << " s behind, because at most " << play.max_per_s << " messages a second are sent";
   if (refused > 0) text << ", " << refused << " refused by the network";
   if (replay.scanner().damaged_regions() > 0)
-    text << ", " << replay.scanner().damaged_regions() << " damaged places (" << replay.scanner().damaged_bytes() << " bytes) passed over";
+    text << ", " << replay.scanner().damaged_regions() << " damaged places (" << replay.scanner().damaged_bytes() << " bytes) skipped";
   return text.str();
 }
 
@@ -135,79 +135,79 @@ int main(int argc, char** argv) try {
   CLI::App app;
   sync::NodeOptions options;
   options.add_to(app, kReplay);
-  ReplayArguments given;
-  given.add_to(app);
+  ReplayArguments arguments;
+  arguments.add_to(app);
   sync::parse_or_exit(app, kReplay.name, argc, argv);
-  auto& [log, speed, control, play, wishes, only_describe, stay] = given;
+  auto& [log, speed, control, play, selection_options, only_describe, stay] = arguments;
   play.speed = sync::speed_of(speed);
   if (play.speed < 0) throw std::runtime_error("--speed " + speed + ": give a number from 0.01 to 100, or max");
 
   const sync::MappedLog file(log, wishes.verbatim ? sync::LogTypes::kAny : sync::LogTypes::kCurrent);
   const sync::LogOrigin origin = sync::origin_of(file.bytes());
-  if (!origin.known && !wishes.verbatim && !only_describe)
+  if (!origin.known && !selection_options.verbatim && !only_describe)
     std::cerr << "replay: " << sync::printable(log) << " holds no message of Tactus; it is played as it is\n";
-  wishes.verbatim |= !origin.known;
-  play.from_head = wishes.verbatim;
-  sync::ReplayChoice choice(wishes);
+  selection_options.verbatim |= !origin.known;
+  play.from_head = selection_options.verbatim;
+  sync::ReplaySelection selection(selection_options);
   std::optional<sync::Replay> replay;
   try {
     replay.emplace(file.bytes(), origin, play, sync::host_now());
   } catch (const std::runtime_error& e) {
     throw std::runtime_error(sync::printable(log) + " " + e.what());
   }
-  const std::vector<sync::Asset> assets = wishes.verbatim ? std::vector<sync::Asset>() : sync::scene_of(file.bytes(), origin);
+  const std::vector<sync::Asset> assets = selection_options.verbatim ? std::vector<sync::Asset>() : sync::scene_of(file.bytes(), origin);
   if (only_describe) return describe(origin, assets, replay->length_s()), 0;
 
   sync::Node node(kReplay, options);
   if (!origin.recovered.empty()) std::cerr << "replay: " << sync::printable(log) << ": " << origin.recovered << "\n";
-  if (!wishes.verbatim && scene_asset(assets) == assets.end())
+  if (!selection_options.verbatim && scene_asset(assets) == assets.end())
     std::cerr << "replay: " << sync::printable(log) << " holds no whole scene; senses that have none stay idle\n";
   std::optional<sync::SceneSender> scene;
   if (!assets.empty()) scene.emplace(node.bus(), assets);
   sync::ReplayPort port(options.bus);
   sync::ReplayStamps stamps(origin, node.bus().identity());
   // A pipe without a writer, before or after one, is not at its end.
-  const int orders = control == "-" ? STDIN_FILENO : control.empty() ? -1 : open(control.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-  if (!control.empty() && orders < 0) throw std::runtime_error("--control " + control + " cannot be read; make it with mkfifo");
-  if (orders == STDIN_FILENO) fcntl(orders, F_SETFL, fcntl(orders, F_GETFL) | O_NONBLOCK);
-  Drops drops(node.bus());
+  const int control_fd = control == "-" ? STDIN_FILENO : control.empty() ? -1 : open(control.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  if (!control.empty() && control_fd < 0) throw std::runtime_error("--control " + control + " cannot be read; make it with mkfifo");
+  if (control_fd == STDIN_FILENO) fcntl(control_fd, F_SETFL, fcntl(control_fd, F_GETFL) | O_NONBLOCK);
+  KernelDrops drops(node.bus());
 
   sync::Lines lines;
   std::vector<std::uint8_t> message;
-  bool quit = false, told_over = false;
-  const auto note = [&] { return position_text(*replay, play, port.refused()); };
-  std::cerr << "replay: begins, " << note() << std::endl;
-  sync::HostTime next_note{};
+  bool quit = false, end_reported = false;
+  const auto status_text = [&] { return position_text(*replay, play, port.refused()); };
+  std::cerr << "replay: begins, " << status_text() << std::endl;
+  sync::HostTime next_status{};
   while (node.running() && !quit) {
     const sync::HostTime now = node.wait();
-    drops.listen();
+    drops.update();
     char bytes[512];
-    for (ssize_t n; orders >= 0 && (n = read(orders, bytes, sizeof bytes)) > 0;) lines.add({bytes, static_cast<std::size_t>(n)});
+    for (ssize_t n; control_fd >= 0 && (n = read(control_fd, bytes, sizeof bytes)) > 0;) lines.add({bytes, static_cast<std::size_t>(n)});
     for (std::string line; lines.take(line);) {
-      const std::string wrong = sync::obey(*replay, line, now, quit);
-      std::cerr << "replay: " << (wrong.empty() ? note() : wrong) << std::endl;
-      told_over = told_over && replay->over();
+      const std::string error = sync::execute_command(*replay, line, now, quit);
+      std::cerr << "replay: " << (error.empty() ? status_text() : error) << std::endl;
+      end_reported = end_reported && replay->over();
     }
     replay->poll(now, [&](const sync::LogEvent& event, const sync::ReplayMoment& moment) {
-      stamps.hear(event, moment);
-      const auto channel = choice.channel_of(event);
+      stamps.observe(event, moment);
+      const auto channel = selection.channel_of(event);
       if (!channel) return false;
       message.assign(event.data.begin(), event.data.end());
-      if (!choice.verbatim()) stamps.restamp(message, moment, now);
+      if (!selection.verbatim()) stamps.restamp(message, moment, now);
       port.send(*channel, message);
       return true;
     });
     if (scene) scene->poll(now);
-    if (now >= next_note) {
-      next_note = now + sync::from_seconds(0.1);
-      node.set_state(node_health_t::RUNNING, note());
+    if (now >= next_status) {
+      next_status = now + sync::from_seconds(0.1);
+      node.set_state(node_health_t::RUNNING, status_text());
     }
     if (!replay->over()) continue;
     if (!stay) break;
-    if (!told_over) std::cerr << "replay: over, " << note() << std::endl;
-    told_over = true;
+    if (!end_reported) std::cerr << "replay: over, " << status_text() << std::endl;
+    end_reported = true;
   }
-  std::cerr << "replay: ends, " << note() << "; " << drops.sum() << " dropped by the kernel at the nodes' sockets" << std::endl;
+  std::cerr << "replay: ends, " << status_text() << "; " << drops.sum() << " dropped by the kernel at the nodes' sockets" << std::endl;
   return 0;
 } catch (const std::exception& e) {
   return tactus::sync::fail("replay", e);

@@ -20,9 +20,9 @@ int main(int argc, char** argv) try {
   std::string folder;
   int pictures = 10;
   double seconds = 10;
-  app.add_option("FOLDER", folder, "made when it is not there")->required();
-  app.add_option("--pictures", pictures, "ends after so many")->check(CLI::Range(1, 100000))->capture_default_str();
-  app.add_option("--seconds", seconds, "ends when none has come for so long")->check(CLI::Range(0.1, 3600.0))->capture_default_str();
+  app.add_option("FOLDER", folder, "created when it does not exist")->required();
+  app.add_option("--pictures", pictures, "number of pictures after which it ends")->check(CLI::Range(1, 100000))->capture_default_str();
+  app.add_option("--seconds", seconds, "ends when no picture has arrived for this time")->check(CLI::Range(0.1, 3600.0))->capture_default_str();
   sync::add_bus_options(app, bus_options);
   app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
   sync::parse_or_exit(app, "save_pictures", argc, argv);
@@ -36,7 +36,7 @@ int main(int argc, char** argv) try {
     bus.wait(sync::from_seconds(0.1));
     bus.drain(sync::host_now());
     while (const auto m = chunks.pop()) {
-      const auto picture = saved < pictures ? reader.take(m->message) : std::nullopt;
+      const auto picture = saved < pictures ? reader.push(m->message) : std::nullopt;
       if (!picture) continue;
       char name[64];
       std::snprintf(name, sizeof name, "%08x_%06lld.jpg", static_cast<unsigned>(picture->source), static_cast<long long>(picture->picture));
@@ -47,8 +47,8 @@ int main(int argc, char** argv) try {
       newest = sync::host_now();
     }
   }
-  std::cout << saved << " pictures saved, " << reader.skipped() << " were not whole" << std::endl;
-  if (saved == 0) throw std::runtime_error("no picture came; start a visual_node on this bus with --set stream=10");
+  std::cout << saved << " pictures saved, " << reader.skipped() << " were incomplete" << std::endl;
+  if (saved == 0) throw std::runtime_error("no picture arrived; start a visual_node on this bus with --set stream=10");
   return 0;
 } catch (const std::exception& e) {
   return tactus::sync::fail("save_pictures", e);

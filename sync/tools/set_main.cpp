@@ -15,7 +15,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr sync::Nanoseconds kPatience{3'000'000'000};  // every node handles requests once a tick
+constexpr sync::Nanoseconds kTimeout{3'000'000'000};  // every node handles requests once a tick
 
 setting_change_t change_of(const std::string& node, const std::string& text) {
   const std::size_t equals = text.find('=');
@@ -29,22 +29,22 @@ setting_change_t change_of(const std::string& node, const std::string& text) {
   c.node = node;
   c.name = text.substr(0, equals);
   c.value = text.substr(equals + 1);
-  if (!valid(c)) throw std::invalid_argument("a name or a value is too long or holds what cannot be printed");
+  if (!valid(c)) throw std::invalid_argument("a name or a value is too long or has unprintable characters");
   return c;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Changes settings of a node of the running cluster, and says what became of it.");
+  CLI::App app("Changes settings of a node of the running cluster, and prints the result.");
   sync::BusOptions bus_options;
   std::int64_t run_id = 1;
   std::string node;
   std::vector<std::string> words;
   sync::add_bus_options(app, bus_options);
   app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
-  app.add_option("NODE", node, "as its health calls it: haptic_node, or what --name gave it")->required();
-  app.add_option("NAME=VALUE", words, "as in a scene; docs/settings.md says which may change")->required();
+  app.add_option("NODE", node, "name in its health: haptic_node, or its --name")->required();
+  app.add_option("NAME=VALUE", words, "as in a scene; docs/settings.md lists the settings that can change")->required();
   sync::parse_or_exit(app, "set", argc, argv);
   std::vector<setting_change_t> changes;  // all are parsed before the first is sent
   for (const std::string& word : words) changes.push_back(change_of(node, word));
@@ -52,11 +52,11 @@ int main(int argc, char** argv) try {
   sync::Bus bus(sync::Identity::fresh("set", run_id), bus_options);
   auto& replies = bus.queue<setting_reply_t>(channels::kSettingReply, 64);
   for (setting_change_t& change : changes) {
-    const auto reply = sync::request(bus, channels::kSetting, change, replies, kPatience);
+    const auto reply = sync::request(bus, channels::kSetting, change, replies, kTimeout);
     if (!reply)
       throw std::runtime_error(
           "no \"" + sync::printable(node) +
-          "\" that changes settings while it runs answers; docs/settings.md says which settings are live, "
+          "\" that changes settings while it runs answers; docs/settings.md lists the live settings, "
           "tactus attach watch which nodes there are");
     if (!reply->done) throw std::runtime_error(sync::printable(reply->text));
     std::cout << sync::printable(reply->text) << std::endl;

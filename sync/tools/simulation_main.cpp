@@ -15,7 +15,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr sync::Nanoseconds kPatience{
+constexpr sync::Nanoseconds kTimeout{
     3'000'000'000};                                // an answer comes with the next step; a file may take a while
 constexpr std::size_t kMaxValues = 6;
 
@@ -40,9 +40,9 @@ struct Words {
 void add_commands(CLI::App& app, Words& w) {
   app.require_subcommand(1);
   app.fallthrough();
-  app.add_subcommand("pause", "the world stands still; hands feel its surfaces, which do not yield");
-  app.add_subcommand("resume", "it goes on");
-  app.add_subcommand("step", "so many steps of 1 ms of a world that stands still")
+  app.add_subcommand("pause", "pauses the world; hands feel its surfaces, which do not yield");
+  app.add_subcommand("resume", "continues the simulation");
+  app.add_subcommand("step", "number of steps of 1 ms of a paused world")
       ->add_option("N", w.steps)
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
@@ -56,11 +56,11 @@ void add_commands(CLI::App& app, Words& w) {
   push->add_option("BODY", w.name)->required();
   push->add_option("FORCE", w.force_N, "FX FY FZ, N, along the axes of the world")->required()->expected(3);
   push->add_option("--torque", w.torque_N_m, "TX TY TZ, N m")->expected(3);
-  push->add_option("--seconds", w.seconds, "for so long")->check(CLI::Range(0.001, 10.0))->capture_default_str();
-  auto* snapshot = app.add_subcommand("snapshot", "keeps the state of the world under a name");
+  push->add_option("--seconds", w.seconds, "duration, s")->check(CLI::Range(0.001, 10.0))->capture_default_str();
+  auto* snapshot = app.add_subcommand("snapshot", "stores the state of the world under a name");
   snapshot->add_option("NAME", w.name)->required();
-  snapshot->add_flag("--to-file", w.to_file, "in a file of the run's folder too");
-  app.add_subcommand("restore", "puts a kept state back")->add_option("NAME", w.name)->required();
+  snapshot->add_flag("--to-file", w.to_file, "also in a file of the run's folder");
+  app.add_subcommand("restore", "restores a stored state")->add_option("NAME", w.name)->required();
 }
 
 sim_command_t command_of(const std::string& verb, const Words& w) {
@@ -86,14 +86,14 @@ sim_command_t command_of(const std::string& verb, const Words& w) {
   c.to_file = w.to_file ? 1 : 0;
   if (!valid(c))
     throw std::invalid_argument(
-        "a name is too long or holds what cannot be printed, or a number is beyond all measure");
+        "a name is too long or has unprintable characters, or a number is out of range");
   return c;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Asks the simulation of the running cluster for one thing, and says what became of it.");
+  CLI::App app("Sends one command to the simulation of the running cluster, and prints the result.");
   sync::BusOptions bus_options;
   std::int64_t run_id = 1;
   Words words;
@@ -105,7 +105,7 @@ int main(int argc, char** argv) try {
 
   sync::Bus bus(sync::Identity::fresh("simulation", run_id), bus_options);
   auto& replies = bus.queue<sim_reply_t>(channels::kSimReply, 256);
-  const auto reply = sync::request(bus, channels::kSimCommand, command, replies, kPatience);
+  const auto reply = sync::request(bus, channels::kSimCommand, command, replies, kTimeout);
   if (!reply)
     throw std::runtime_error("no sim_node answers on this bus; run it inside the cluster: tactus simulation");
   if (!reply->done) throw std::runtime_error(sync::printable(reply->text));

@@ -32,7 +32,7 @@ using nlohmann::json;
 namespace {
 
 constexpr sync::Nanoseconds kDrawEvery{250'000'000};
-constexpr sync::Nanoseconds kAskEvery{1'000'000'000};
+constexpr sync::Nanoseconds kRequestPeriod{1'000'000'000};
 std::atomic<bool> stop{false};
 
 // Restores the terminal on any exit except SIGKILL.
@@ -54,10 +54,10 @@ class Terminal {
   Terminal& operator=(const Terminal&) = delete;
 
   // The typed bytes; waits at most this time.
-  static std::string typed(sync::Nanoseconds at_most) {
+  static std::string typed(sync::Nanoseconds max_wait) {
     pollfd fd{STDIN_FILENO, POLLIN, 0};
     char bytes[256];
-    if (poll(&fd, 1, static_cast<int>(at_most.count() / 1'000'000)) <= 0) return "";
+    if (poll(&fd, 1, static_cast<int>(max_wait.count() / 1'000'000)) <= 0) return "";
     const ssize_t n = read(STDIN_FILENO, bytes, sizeof bytes);
     if (n == 0) stop = true;  // the terminal is gone
     return n > 0 ? std::string(bytes, static_cast<std::size_t>(n)) : "";
@@ -93,28 +93,28 @@ json to_json(const sync::spy::ChannelFigures& f) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Shows everything that crosses the bus in a terminal: each channel's rate, bandwidth, gaps, jitter and age, the fields of "
+  CLI::App app{"Shows all messages on the bus in a terminal: each channel's rate, bandwidth, gaps, jitter and age, the fields of "
                "its newest message, and tagged variables."};
   sync::BusOptions bus_options;
   double once_s = 0;
   std::string json_file;
   std::int64_t run_id = 1;
   sync::add_bus_options(app, bus_options);
-  app.add_option("--run-id", run_id, "cluster run whose clocks and variables are heeded")->envname("TACTUS_RUN_ID")->check(CLI::PositiveNumber);
-  app.add_option("--once", once_s, "listens for so many seconds, prints the table and ends; status 1 when nothing was heard")->check(CLI::Range(0.1, 3600.0));
+  app.add_option("--run-id", run_id, "cluster run whose clocks and variables are used")->envname("TACTUS_RUN_ID")->check(CLI::PositiveNumber);
+  app.add_option("--once", once_s, "receives for this number of seconds, prints the table and ends; status 1 when no message was received")->check(CLI::Range(0.1, 3600.0));
   app.add_option("--json", json_file, "with --once: the same figures as JSON")->needs("--once");
   sync::parse_or_exit(app, "spy", argc, argv);
   for (int s : {SIGINT, SIGTERM, SIGHUP}) signal(s, [](int) { stop = true; });
 
   sync::Bus bus(sync::Identity::fresh("spy", run_id), bus_options);
-  bus.follow_clocks();
+  bus.track_clocks();
   if (once_s == 0 && (isatty(STDIN_FILENO) != 1 || isatty(STDOUT_FILENO) != 1))
     throw std::runtime_error("this is no terminal; give --once SECONDS for a table");
   auto& lists = bus.queue<tag_list_t>(channels::kTagList, 256);
   auto& values = bus.queue<tag_values_t>(channels::kTagValues, 4096);
   sync::RecorderTap tap(bus_options);
   sync::MessageBatch batch;
-  sync::spy::Channels heard(bus.clocks());
+  sync::spy::Channels channel_stats(bus.clocks());
   sync::spy::Screen screen;
   std::optional<Terminal> terminal;
   if (once_s == 0) terminal.emplace();
@@ -135,9 +135,9 @@ int main(int argc, char** argv) try {
     while (const auto m = values.pop())
       if (m->message.header.run_id == run_id && !screen.paused()) screen.push(m->message, m->arrival);
     if (!screen.paused())
-      for (std::size_t i = 0; i < batch.size(); ++i) heard.push(batch[i]);
+      for (std::size_t i = 0; i < batch.size(); ++i) channel_stats.push(batch[i]);
     if (screen.shows_tags() && now >= ask) {
-      ask = now + kAskEvery;
+      ask = now + kRequestPeriod;
       tag_request_t request{};
       request.header.sim_time_ns = -1;
       request.patterns = {"*"}, request.pattern_count = 1;
@@ -145,24 +145,24 @@ int main(int argc, char** argv) try {
     }
     if (terminal && now >= draw) {
       draw = now + kDrawEvery;
-      if (!screen.paused()) screen.look(heard, now);
+      if (!screen.paused()) screen.sample(channel_stats, now);
       const auto [columns, rows] = terminal_size();
-      const auto lines = screen.draw(heard, now, columns, rows);
+      const auto lines = screen.draw(channel_stats, now, columns, rows);
       terminal->show(lines, screen.marked());
     }
   }
   if (once_s == 0) return 0;
   const sync::HostTime now = sync::host_now();
-  if (heard.messages() == 0)
-    throw std::runtime_error("heard nothing on port " + std::to_string(bus_options.port) + "; start spy with tactus spy, or give its --port");
-  auto lines = screen.draw(heard, now, 160, sync::spy::Channels::kMax + 8);
+  if (channel_stats.messages() == 0)
+    throw std::runtime_error("received no message on port " + std::to_string(bus_options.port) + "; start spy with tactus spy, or give its --port");
+  auto lines = screen.draw(channel_stats, now, 160, sync::spy::Channels::kMax + 8);
   lines.pop_back();  // the keys
   for (const std::string& line : lines) std::cout << line << "\n";
   if (!json_file.empty()) {
     json all = json::array();
-    for (const auto& f : heard.figures(now)) all.push_back(to_json(f));
+    for (const auto& f : channel_stats.figures(now)) all.push_back(to_json(f));
     std::ofstream file(json_file);
-    file << json{{"seconds", once_s}, {"messages", heard.messages()}, {"lost_here", tap.overflow()}, {"channels", all}}.dump(1) << "\n";
+    file << json{{"seconds", once_s}, {"messages", channel_stats.messages()}, {"lost_here", tap.overflow()}, {"channels", all}}.dump(1) << "\n";
     if (!file.flush()) throw std::runtime_error("cannot write " + json_file + "; give --json a file that can be written");
   }
   return 0;

@@ -38,7 +38,7 @@ void write_file(const std::string& path, const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Says from the log of a run what it was like."};
+  CLI::App app{"Summarises a run from its log."};
   sync::SummaryOptions options;
   std::vector<std::string> logs, restarts;
   std::string out;
@@ -49,8 +49,8 @@ int main(int argc, char** argv) try {
   app.add_option("--scene", options.scene, "scene of the run");
   app.add_option("--seed", options.seed, "seed of the run");
   app.add_option("--git", options.git, "commit of the run");
-  app.add_option("--restarts", restarts, "NODE=COUNT as the supervisor counted; may be repeated");
-  app.add_option("--warning", options.warnings, "sentence about what was missing; may be repeated");
+  app.add_option("--restarts", restarts, "NODE=COUNT of the supervisor; may be repeated");
+  app.add_option("--warning", options.warnings, "sentence about a missing resource; may be repeated");
   sync::parse_or_exit(app, "summarise", argc, argv);
   options.restarts = parse_restarts(restarts);
 

@@ -30,7 +30,7 @@
 #include <tactus/presented_t.hpp>
 #include <tactus/sync_report_t.hpp>
 
-#include "sync/clock_sync/clock_agreement.h"
+#include "sync/clock_sync/clock_map_estimator.h"
 #include "sync/clock_sync/clock_probe.h"
 #include "sync/degradation/profile_exchange.h"
 #include "sync/bus/identity.h"
@@ -62,7 +62,7 @@ void feed(sync::PresentationMatcher& matcher, sync::Queue<Message>& queue) {
 }
 
 // For the live table: the number of mapped clocks, and the largest uncertainty.
-std::string clocks_note(const std::vector<clock_map_t>& maps) {
+std::string clock_status_text(const std::vector<clock_map_t>& maps) {
   if (maps.empty()) return "";
   std::int64_t worst_ns = 0;
   for (const clock_map_t& m : maps) worst_ns = std::max(worst_ns, m.uncertainty_ns);
@@ -92,8 +92,8 @@ std::optional<sync::ProfileInForce> first_profile(const sync::NodeOptions& optio
     profile = options.profile;
     profiles.set_generation(0);
   }
-  if (auto kept = sync::kept_profile(options.out, options.run_id)) {
-    std::cerr << options.name << ": goes on with the profile that was put in force before" << std::endl;
+  if (auto kept = sync::load_profile(options.out, options.run_id)) {
+    std::cerr << options.name << ": continues with the profile that was in force before" << std::endl;
     profiles.set_generation(kept->generation);
     profile = std::move(kept);
   }
@@ -104,7 +104,7 @@ const sync::NodeDescriptor kSyncNode{.name = "sync_node",
                                      .modality = "",
                                      .rate_Hz = 50,  // at least: it wakes on messages
                                      .fifo_priority = 40,
-                                     .about = "Agrees on time with other hosts; matches contact events with what each sense reports."};
+                                     .about = "Synchronises clocks with other hosts; matches contact events with the reports of each sense."};
 
 }  // namespace
 
@@ -130,14 +130,14 @@ int tactus::sync::run_sync_node(int argc, char** argv) try {
   // In virtual time there is one clock, and no host to probe.
   std::optional<sync::ProbeThread> probes;
   if (!sync::VirtualTime::current()) probes.emplace(options.bus, node.bus().identity(), clock);
-  sync::ClockAgreement agreement(node.bus().identity().clock);
+  sync::ClockMapEstimator map_estimator(node.bus().identity().clock);
   sync::PresentationMatcher matcher(node.bus().clocks());
   auto& degraded = node.bus().queue<degraded_t>(channels::kDegraded, kReportsQueue);
   auto& playouts = node.bus().queue<playout_t>(channels::kPlayout, kHealthQueue);
   auto& requests = node.bus().queue<playout_request_t>(channels::kPlayoutRequest, kHealthQueue);
   sync::PlayoutCoordinator playout(node.bus().identity().clock, plan);
-  if (const auto kept = sync::kept_request(options.out, options.run_id); kept && playout.take(*kept))
-    std::cerr << options.name << ": goes on with what was asked for before: policy " << name_of(playout.plan().policy) << std::endl;
+  if (const auto kept = sync::load_request(options.out, options.run_id); kept && playout.push(*kept))
+    std::cerr << options.name << ": continues with the policy requested before: " << name_of(playout.plan().policy) << std::endl;
   auto& degradations = node.bus().queue<degradation_t>(channels::kDegradation, kReportsQueue);
   sync::ProfileReceiver profiles;
   std::optional<sync::ProfileInForce> profile = first_profile(node.options(), profiles);
@@ -146,14 +146,14 @@ int tactus::sync::run_sync_node(int argc, char** argv) try {
   sync::HostTime next_report = start + kReportPeriod, next_maps = start + kMapPeriod;
   while (node.running()) {
     const sync::HostTime now = node.wait_for_event();
-    while (const auto wave = probes ? probes->pop() : std::nullopt) agreement.add(*wave);
+    while (const auto wave = probes ? probes->pop() : std::nullopt) map_estimator.add(*wave);
     if (now >= next_maps) {
-      std::vector<clock_map_t> maps = agreement.maps(clock.read(now));
+      std::vector<clock_map_t> maps = map_estimator.maps(clock.read(now));
       // As for the probes: with many hosts, each map is published less often.
       const auto share = std::max<std::int64_t>(1, static_cast<std::int64_t>(maps.size() / sync::ClockProber::kFewClocks));
       next_maps = std::max(next_maps + kMapPeriod * share, now);
       for (clock_map_t& map : maps) node.bus().publish(channels::kClockMap, map);
-      node.set_state(node_health_t::RUNNING, clocks_note(maps));
+      node.set_state(node_health_t::RUNNING, clock_status_text(maps));
     }
     feed(matcher, health);
     feed(matcher, events);
@@ -161,18 +161,18 @@ int tactus::sync::run_sync_node(int argc, char** argv) try {
     feed(matcher, degraded);
     while (const auto m = degradations.pop())
       if (m->message.header.run_id == options.run_id)
-        if (auto newer = profiles.take(m->message)) {
-          sync::keep_profile(options.out, *newer, options.run_id);
+        if (auto newer = profiles.push(m->message)) {
+          sync::store_profile(options.out, *newer, options.run_id);
           profile = std::move(newer);
         }
     matcher.advance(now);
     while (const auto m = requests.pop())
-      if (m->message.header.run_id == options.run_id && playout.take(m->message)) sync::keep_request(options.out, m->message);
+      if (m->message.header.run_id == options.run_id && playout.push(m->message)) sync::store_request(options.out, m->message);
     while (const auto m = playouts.pop())
-      if (m->message.header.run_id == options.run_id) playout.take(m->message, now), matcher.observe(m->message, m->arrival);
-    for (const auto& [sense, waited_for] : matcher.senses()) playout.needs().know(sense, !waited_for);
-    for (const auto& need : matcher.take_needs()) playout.needs().add(need.modality, need.needed);
-    if (const auto m = playout.due(now))
+      if (m->message.header.run_id == options.run_id) playout.push(m->message, now), matcher.observe(m->message, m->arrival);
+    for (const auto& [modality, waited_for] : matcher.running_modalities()) playout.latency_demand().add_modality(modality, !waited_for);
+    for (const auto& need : matcher.take_needs()) playout.latency_demand().add(need.modality, need.needed);
+    if (const auto m = playout.next_message(now))
       for (playout_t& page : sync::pages_of(*m)) node.bus().publish(channels::kPlayout, page);
     if (now < next_report) continue;
     next_report = std::max(next_report + kReportPeriod, now);

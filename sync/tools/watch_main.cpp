@@ -41,16 +41,16 @@ void show(const sync::WatchTable& table, sync::HostTime now, bool json, bool in_
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Shows once a second how every node of the running cluster fares."};
+  CLI::App app{"Shows the state of every node of the running cluster once a second."};
   sync::BusOptions bus_options;
   bool once = false, json = false;
   std::int64_t run_id = 0;
   double period_s = 1;
   sync::add_bus_options(app, bus_options);
   app.add_option("--run-id", run_id, "only nodes of this cluster run; 0: of all")->envname("TACTUS_RUN_ID");
-  app.add_flag("--once", once, "show one table and end; status 1 when no node was heard");
+  app.add_flag("--once", once, "show one table and end; status 1 when no node was received");
   app.add_flag("--json", json, "one line of JSON each time instead of the table");
-  app.add_option("--period", period_s, "so many seconds from one table to the next; health comes ten times a second")
+  app.add_option("--period", period_s, "seconds from one table to the next; health is published ten times a second")
       ->check(CLI::Range(0.05, 3600.0))
       ->capture_default_str();
   sync::parse_or_exit(app, "watch", argc, argv);
@@ -75,7 +75,7 @@ int main(int argc, char** argv) try {
     next += period;
     show(table, now, json, in_place);
     if (once && table.empty())
-      throw std::runtime_error("heard no node on port " + std::to_string(bus_options.port) +
+      throw std::runtime_error("received no node on port " + std::to_string(bus_options.port) +
                                " in one second; start watch with tactus attach, or give its --port");
     if (once) break;
   }

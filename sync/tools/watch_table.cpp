@@ -60,7 +60,7 @@ std::string cut(const std::string& raw, std::size_t width) {
 }
 
 // Note for a modality that renders at reduced quality.
-std::string quality_note(const node_health_t& h) {
+std::string quality_text(const node_health_t& h) {
   return h.quality > 0 ? "quality step " + std::to_string(h.quality) + " of " + std::to_string(h.qualities - 1) + "; " : "";
 }
 
@@ -77,7 +77,7 @@ std::vector<WatchTable::Row> WatchTable::rows(HostTime now) const {
     const Nanoseconds silence = now - node.arrival;
     const bool lost = silence > kLostAfter;
     Row row{name, lost ? "LOST" : state_name(h.state), lost ? 0 : h.rate_Hz, h.missed_ticks, Nanoseconds(-1), "",
-            h.contacts_rendered, lost ? "silent for " + duration(silence) : quality_note(h) + h.note};
+            h.contacts_rendered, lost ? "silent for " + duration(silence) : quality_text(h) + h.note};
     for (const input_health_t& in : h.inputs) {
       if (!flows(in.channel) || Nanoseconds(in.age_ns) <= row.input_age) continue;
       row.input_age = Nanoseconds(in.age_ns);
@@ -97,7 +97,7 @@ std::string WatchTable::to_text(HostTime now, std::size_t width) const {
     const std::string age = duration(r.input_age) + (r.oldest_input.empty() ? "" : " " + r.oldest_input);
     std::snprintf(text, sizeof text, "%-14.14s %-11s %9.1f %8lld %-22.22s %8lld  %.150s", r.node.c_str(),
                   r.state.c_str(), r.rate_Hz, static_cast<long long>(r.missed_ticks), age.c_str(),
-                  static_cast<long long>(r.rendered), r.note.c_str());
+                  static_cast<long long>(r.rendered), r.status_text.c_str());
     out += cut(text, width);
   }
   if (nodes_.empty()) out += "no node has reported yet\n";
@@ -121,7 +121,7 @@ std::string WatchTable::to_json(HostTime now) const {
   for (const Row& r : rows(now))
     nodes[r.node] = {{"state", r.state}, {"rate_hz", r.rate_Hz}, {"missed_ticks", r.missed_ticks},
                      {"input_age_ms", r.input_age < Nanoseconds(0) ? Json() : Json(static_cast<double>(r.input_age.count()) * 1e-6)},
-                     {"oldest_input", r.oldest_input}, {"contacts_rendered", r.rendered}, {"note", r.note}};
+                     {"oldest_input", r.oldest_input}, {"contacts_rendered", r.rendered}, {"note", r.status_text}};
   Json out = {{"host_s", to_seconds(now.time_since_epoch())}, {"nodes", nodes}};
   if (report_) {
     for (const modality_report_t& m : report_->modalities)

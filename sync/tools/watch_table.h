@@ -20,7 +20,7 @@ class WatchTable {
   void observe(const node_health_t&, HostTime arrival);
   // A page of a report; the report is shown when all its pages have arrived.
   void observe(const sync_report_t& page) {
-    if (auto whole = pages_.take(page)) report_ = std::move(whole);
+    if (auto whole = pages_.push(page)) report_ = std::move(whole);
   }
 
   struct Row {
@@ -31,7 +31,7 @@ class WatchTable {
     Nanoseconds input_age{-1};  // of the oldest input with regular messages; -1: it has none
     std::string oldest_input;
     std::int64_t rendered = 0;
-    std::string note;
+    std::string status_text;
   };
   std::vector<Row> rows(HostTime now) const;
   bool empty() const { return nodes_.empty(); }

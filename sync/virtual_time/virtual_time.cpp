@@ -24,9 +24,9 @@ struct VirtualTime::Program {
   std::unique_ptr<StackSwitch> stack;
   HostTime wakes{};
   VirtualEnd* waits_for = nullptr;
-  bool asked_to_leave = false, killed = false, begun = false, over = false;
+  bool stop_requested = false, killed = false, begun = false, over = false;
   int result = -1;
-  std::exception_ptr trouble;
+  std::exception_ptr error;
 };
 
 namespace {
@@ -41,7 +41,7 @@ VirtualTime* VirtualTime::current_ = nullptr;
 
 VirtualTime::VirtualTime(const VirtualPlan& plan)
     : seed_(mixed(plan.seed, kOfPrograms)), wire_(plan.wire, mixed(plan.seed, kOfWire)) {
-  if (current_) throw std::logic_error("this process lives in another virtual time already");
+  if (current_) throw std::logic_error("this process already runs in another virtual time");
   current_ = this;
 }
 
@@ -51,7 +51,7 @@ VirtualTime::~VirtualTime() {
   current_ = nullptr;
 }
 
-std::uint64_t VirtualTime::random() { return mixed(seed_, ++drawn_); }
+std::uint64_t VirtualTime::random() { return mixed(seed_, ++draw_count_); }
 
 void VirtualTime::add(std::string name, std::function<int()> body) {
   auto program = std::make_unique<Program>();
@@ -62,7 +62,7 @@ void VirtualTime::add(std::string name, std::function<int()> body) {
       p->result = body();
     } catch (const Killed&) {
     } catch (...) {
-      p->trouble = std::current_exception();
+      p->error = std::current_exception();
     }
     p->over = true;
   });
@@ -92,7 +92,7 @@ void VirtualTime::resume(Program& program) {
   program.begun = true;
   program.stack->resume();
   running_ = before;
-  if (program.trouble) std::rethrow_exception(std::exchange(program.trouble, nullptr));
+  if (program.error) std::rethrow_exception(std::exchange(program.error, nullptr));
 }
 
 void VirtualTime::yield() {
@@ -107,9 +107,9 @@ void VirtualTime::sleep_until(HostTime t) {
   yield();
 }
 
-void VirtualTime::wait(VirtualEnd& end, Nanoseconds at_most) {
+void VirtualTime::wait(VirtualEnd& end, Nanoseconds max_wait) {
   if (!running_) throw std::logic_error("only a program of the virtual time may wait in it");
-  running_->wakes = now_ + at_most;
+  running_->wakes = now_ + max_wait;
   running_->waits_for = &end;
   yield();
 }
@@ -125,11 +125,11 @@ VirtualTime::Program* VirtualTime::find(std::string_view name) const {
   return at == programs_.end() ? nullptr : at->get();
 }
 
-bool VirtualTime::asked_to_leave() const { return running_ && running_->asked_to_leave; }
+bool VirtualTime::stop_requested() const { return running_ && running_->stop_requested; }
 
-bool VirtualTime::ask_to_leave(std::string_view name) {
+bool VirtualTime::request_stop(std::string_view name) {
   Program* program = find(name);
-  if (program) program->asked_to_leave = true;
+  if (program) program->stop_requested = true;
   return program != nullptr;
 }
 
@@ -150,9 +150,9 @@ bool VirtualTime::any() const {
   return std::any_of(programs_.begin(), programs_.end(), [](const auto& p) { return !p->over; });
 }
 
-void VirtualTime::end(Nanoseconds patience) {
-  for (const auto& program : programs_) program->asked_to_leave = true;
-  const HostTime until = now_ + patience;
+void VirtualTime::end(Nanoseconds timeout) {
+  for (const auto& program : programs_) program->stop_requested = true;
+  const HostTime until = now_ + timeout;
   while (any() && now_ < until) run_for(std::min<Nanoseconds>(until - now_, std::chrono::milliseconds(100)));
   for (const auto& program : programs_) unwind(*program);
 }

@@ -54,11 +54,11 @@ class VirtualTime {
   void run_until(HostTime until);
   // Asks that program to end, as SIGTERM does; or ends it at once, as SIGKILL does. False: there is none, or it is the
   // running one.
-  bool ask_to_leave(std::string_view name);
+  bool request_stop(std::string_view name);
   bool kill(std::string_view name);
   // Asks all programs to end and runs them until they have, at most for this time. Programs still running at the timeout are
   // unwound.
-  void end(Nanoseconds patience = std::chrono::seconds(5));
+  void end(Nanoseconds timeout = std::chrono::seconds(5));
   // The return value of a program that has ended; -1: it runs.
   int result(std::string_view name) const;
   bool any() const;
@@ -67,10 +67,10 @@ class VirtualTime {
   VirtualWire& wire() { return wire_; }
 
   // For the running program.
-  bool asked_to_leave() const;
+  bool stop_requested() const;
   void sleep_until(HostTime t);
   // Waits until a message arrives at that end, at most this time.
-  void wait(VirtualEnd& end, Nanoseconds at_most);
+  void wait(VirtualEnd& end, Nanoseconds max_wait);
   // The next random number of the seed, for identities.
   std::uint64_t random();
 
@@ -84,7 +84,7 @@ class VirtualTime {
 
   static VirtualTime* current_;
   HostTime now_ = kBegin;
-  std::uint64_t seed_, drawn_ = 0;
+  std::uint64_t seed_, draw_count_ = 0;
   VirtualWire wire_;
   std::vector<std::unique_ptr<Program>> programs_;
   Program* running_ = nullptr;

@@ -17,9 +17,9 @@ std::unique_ptr<VirtualEnd> VirtualWire::join() {
   return end;
 }
 
-int VirtualWire::tell(Tell of_message) {
-  tell_.emplace(++tells_, std::move(of_message));
-  return tells_;
+int VirtualWire::add_listener(Listener listener) {
+  listeners_.emplace(++listener_count_, std::move(listener));
+  return listener_count_;
 }
 
 VirtualEnd::~VirtualEnd() {
@@ -30,7 +30,7 @@ VirtualEnd::~VirtualEnd() {
 void VirtualWire::send(const VirtualEnd& from, std::size_t side, std::string_view channel, std::span<const std::uint8_t> data,
                        HostTime now) {
   ++sent_;
-  for (const auto& [number, tell] : tell_) tell(now, channel, data);
+  for (const auto& [number, listener] : listeners_) listener(now, channel, data);
   std::shared_ptr<const std::vector<std::uint8_t>> bytes;
   for (VirtualEnd* end : ends_) {
     const auto to = end->subscribers_[side].find(channel);
@@ -43,19 +43,19 @@ void VirtualWire::send(const VirtualEnd& from, std::size_t side, std::string_vie
       ++lost_;
       continue;
     }
-    const Nanoseconds late = own ? Nanoseconds(0) : plan_.latency + path.jitter.next(uniform(end->seed_, 2 * number + 1));
-    path.newest = std::max({path.newest, now, now + late});
+    const Nanoseconds delay = own ? Nanoseconds(0) : plan_.latency + path.jitter.next(uniform(end->seed_, 2 * number + 1));
+    path.newest = std::max({path.newest, now, now + delay});
     if (!bytes) bytes = std::make_shared<const std::vector<std::uint8_t>>(data.begin(), data.end());
-    end->under_way_.push_back({path.newest, end->numbered_++, &to->second, bytes});
-    std::push_heap(end->under_way_.begin(), end->under_way_.end(), VirtualEnd::later);
+    end->in_flight_.push_back({path.newest, end->next_number_++, &to->second, bytes});
+    std::push_heap(end->in_flight_.begin(), end->in_flight_.end(), VirtualEnd::later);
   }
 }
 
-void VirtualEnd::drain(HostTime now, int at_most) {
-  for (; at_most > 0 && next_arrival() <= now; --at_most) {
-    std::pop_heap(under_way_.begin(), under_way_.end(), later);
-    const Datagram m = std::move(under_way_.back());
-    under_way_.pop_back();
+void VirtualEnd::drain(HostTime now, int max_messages) {
+  for (; max_messages > 0 && next_arrival() <= now; --max_messages) {
+    std::pop_heap(in_flight_.begin(), in_flight_.end(), later);
+    const Datagram m = std::move(in_flight_.back());
+    in_flight_.pop_back();
     for (MessageReceiver* inbox : *m.to) inbox->accept(m.bytes->data(), m.bytes->size(), now);
   }
 }

@@ -37,10 +37,10 @@ class VirtualEnd {
 
   // side: 0 the first port, 1 the next.
   void subscribe(std::size_t side, const std::string& channel, MessageReceiver* inbox) { subscribers_[side][channel].push_back(inbox); }
-  // Delivers the messages that have arrived by now, oldest first, at most at_most.
-  void drain(HostTime now, int at_most);
+  // Delivers the messages that have arrived by now, oldest first, at most max_messages.
+  void drain(HostTime now, int max_messages);
   // Arrival of the next message; HostTime::max(): none is in flight.
-  HostTime next_arrival() const { return under_way_.empty() ? HostTime::max() : under_way_.front().at; }
+  HostTime next_arrival() const { return in_flight_.empty() ? HostTime::max() : in_flight_.front().at; }
 
  private:
   friend class VirtualWire;
@@ -65,8 +65,8 @@ class VirtualEnd {
   VirtualWire& wire_;
   std::uint64_t seed_;
   std::array<std::map<std::string, Inboxes, std::less<>>, 2> subscribers_;
-  std::vector<Datagram> under_way_;  // a heap, the next first
-  std::uint64_t numbered_ = 0;
+  std::vector<Datagram> in_flight_;  // a heap, the next first
+  std::uint64_t next_number_ = 0;
   std::map<const VirtualEnd*, Path> paths_;
 };
 
@@ -77,10 +77,10 @@ class VirtualWire {
 
   std::unique_ptr<VirtualEnd> join();
   void send(const VirtualEnd& from, std::size_t side, std::string_view channel, std::span<const std::uint8_t> data, HostTime now);
-  // Calls of_message for every sent message, at its sending: for a recorder without losses. The returned number ends it.
-  using Tell = std::function<void(HostTime, std::string_view channel, std::span<const std::uint8_t> data)>;
-  int tell(Tell of_message);
-  void tell_no_more(int number) { tell_.erase(number); }
+  // Calls the listener for every message when it is sent: for a recorder without losses. Pass the returned number to remove_listener.
+  using Listener = std::function<void(HostTime, std::string_view channel, std::span<const std::uint8_t> data)>;
+  int add_listener(Listener listener);
+  void remove_listener(int number) { listeners_.erase(number); }
 
   std::int64_t sent() const { return sent_; }
   std::int64_t lost() const { return lost_; }
@@ -91,8 +91,8 @@ class VirtualWire {
   std::uint64_t seed_;
   std::uint64_t joined_ = 0;
   std::vector<VirtualEnd*> ends_;
-  std::map<int, Tell> tell_;
-  int tells_ = 0;
+  std::map<int, Listener> listeners_;
+  int listener_count_ = 0;
   std::int64_t sent_ = 0, lost_ = 0;
 };
 

@@ -118,7 +118,7 @@ TEST_CASE("A running replay obeys what is written into its pipe") {
   CHECK_THAT(processes.said("replay"), Catch::Contains("1.00 of"));
   CHECK(heard(0.3).empty());
   order("fly");
-  CHECK(ear.wait_until([&] { return processes.said("replay").find("cannot obey 'fly'") != std::string::npos; },
+  CHECK(ear.wait_until([&] { return processes.said("replay").find("cannot execute 'fly'") != std::string::npos; },
                        kPatience_s));
   order("quit");
   CHECK(processes.wait_for_exit("replay", kPatience_s) == 0);

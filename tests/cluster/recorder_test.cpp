@@ -99,7 +99,7 @@ TEST_CASE("A recorder whose disk is full says so, and its file is whole up to th
     for (std::size_t i = 0; i < numbers.size(); ++i) CHECK(numbers[i] == static_cast<std::int64_t>(i));
     processes.signal("recorder", SIGTERM);
     CHECK(processes.wait_for_exit("recorder", kPatience_s) == 1);
-    CHECK_THAT(processes.said("recorder"), Catch::Contains("make room on its disk"));
+    CHECK_THAT(processes.said("recorder"), Catch::Contains("free space on its disk"));
   }
   umount(small.c_str());
 }

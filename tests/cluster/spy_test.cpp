@@ -83,5 +83,5 @@ TEST_CASE("Without a terminal or anything to hear, spy says so in one sentence",
   CHECK_THAT(c.processes.said("none"), Catch::Contains("--once"));
   c.processes.spawn("silent", {programs() / "spy", "--once", "0.5"});
   CHECK(c.processes.wait_for_exit("silent", 20) == 1);
-  CHECK_THAT(c.processes.said("silent"), Catch::Contains("heard nothing on port"));
+  CHECK_THAT(c.processes.said("silent"), Catch::Contains("received no message on port"));
 }

@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto m = parse_datagram({data, size});
   if (!m) return 0;
   const auto* channel = reinterpret_cast<const std::uint8_t*>(m->channel.data());
-  if (channel < data || channel + m->channel.size() > data + size || m->channel.size() > kLongestChannel)
+  if (channel < data || channel + m->channel.size() > data + size || m->channel.size() > kMaxChannelBytes)
     std::abort();
   if (!m->data.empty() && (m->data.data() < data || m->data.data() + m->data.size() > data + size)) std::abort();
   if (const auto header = peek_header(m->data.data(), m->data.size()); header && header->run_id <= 0) std::abort();

@@ -24,11 +24,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const HostTime begin = host_time(3'600'000'000'000);
   for (int i = 0; i < 3; ++i) {
     const HostTime now = begin + Nanoseconds(i * 20'000'000);
-    relay.hear_bus(m->message, m->bulk, now);
+    relay.on_bus_message(m->message, m->bulk, now);
     relay.flush(now, [&](const LineEnd&, std::span<const std::uint8_t> bytes) {
       const auto back = parse_line_datagram(bytes);
       if (!back || back->message.channel != m->message.channel || back->bulk != m->bulk) std::abort();
-      if (!other.hear_line(0, *back, now)) std::abort();  // the other relay accepts each datagram that a relay sends
+      if (!other.on_line_message(0, *back, now)) std::abort();  // the other relay accepts each datagram that a relay sends
       return true;
     });
   }

@@ -63,8 +63,8 @@ struct Listeners {
     as<tag_values_t>(e, channels::kTagValues, [&](const auto& m) { screen.push(m, now); });
     as<contact_events_t>(e, channels::kContactEvents, [&](const auto& m) { contacts.push(m, now); });
     as<contact_frame_t>(e, channels::kContacts, [&](const auto& m) { contacts.push(m, now); });
-    as<picture_chunk_t>(e, channels::kPictureChunk, [&](const auto& m) { pictures.take(m); });
-    bus.hear(e.channel, e.data, now);
+    as<picture_chunk_t>(e, channels::kPictureChunk, [&](const auto& m) { pictures.push(m); });
+    bus.on_message(e.channel, e.data, now);
     scene.poll(now);
     if (const auto map = contacts.map(now)) {
       contacts.take_events(map->to_sim(now));
@@ -85,7 +85,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (LogEvent e; scanner.next(e);) all->hear(e, now += Nanoseconds(1'000'000));
   all->summary.end_of_log(scanner.damaged_regions());
   if (to_json(all->summary).empty() || to_text(all->summary).empty()) std::abort();
-  all->screen.look(all->channels, now);
+  all->screen.sample(all->channels, now);
   for (const spy::Key key : {spy::Key::kNone, spy::Key::kEnter, spy::Key::kDown, spy::Key::kTags}) {
     all->screen.press(key);
     if (all->screen.draw(all->channels, now, 80, 24).size() > 24) std::abort();

@@ -22,7 +22,7 @@ std::int64_t scan(std::span<const std::uint8_t> log, LogClockDetector& finder, L
     if (scanner.at() <= at || scanner.at() > log.size()) std::abort();
     at = scanner.at();
     finder.observe(event);
-    ages.note(bounded_us(event.timestamp_us));
+    ages.add(bounded_us(event.timestamp_us));
   }
   if (scanner.damaged_bytes() < 0 || scanner.damaged_bytes() > static_cast<std::int64_t>(log.size())) std::abort();
   return scanner.events();
@@ -38,7 +38,7 @@ void play(std::span<const std::uint8_t> log, const LogOrigin& origin, std::int64
   std::vector<std::uint8_t> message;
   for (int i = 0; i < 100 && !replay.over(); ++i)
     replay.poll(now += Nanoseconds(10'000'000), [&](const LogEvent& event, const ReplayMoment& moment) {
-      stamps.hear(event, moment);
+      stamps.observe(event, moment);
       message.assign(event.data.begin(), event.data.end());
       stamps.restamp(message, moment, now);
       return true;

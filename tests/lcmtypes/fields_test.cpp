@@ -214,7 +214,7 @@ TEST_CASE("A path without a target is rejected with the nearest names") {
   CHECK_THAT(sentence("forse_N.z"), Catch::StartsWith("tool_state_t has no field \"forse_N\"; nearest: force_N"));
   CHECK_THAT(sentence("force_N"), Catch::Contains("is not a number; it has x, y, z"));
   CHECK_THAT(sentence("force_N.z.w"), Catch::Contains("has no fields"));
-  CHECK_THAT(sentence("constraints.body"), Catch::Contains("say which, as in constraints[0]"));
+  CHECK_THAT(sentence("constraints.body"), Catch::Contains("give the index, as in constraints[0]"));
   CHECK_THAT(sentence("tool[0]"), Catch::Contains("is not a list"));
   CHECK_THAT(sentence("constraints[-1].body"), Catch::Contains("as a number"));
   CHECK_THAT(sentence("constraints[].body"), Catch::Contains("as a number"));

@@ -15,7 +15,7 @@ struct Fan {
   }
   // Starts the gust of a hit in this tick, unless it is too late. Returns the report.
   presentation_t blow(const Settings& s, const contact_event_t& hit, sync::HostTime scheduled, sync::HostTime now) {
-    const sync::LatePolicy late{sync::Late::kShowNewest, sync::from_seconds(s.late_after_s),
+    const sync::LatePolicy late{sync::LateRule::kShowNewest, sync::from_seconds(s.late_after_s),
                                 sync::from_seconds(s.drop_after_s)};
     const std::int8_t outcome = late.outcome(now - scheduled);
     const bool blows = outcome != presentation_t::DROPPED_LATE;

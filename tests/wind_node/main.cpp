@@ -21,7 +21,7 @@ const sync::NodeDescriptor kWind{
 struct WindRenderer : sync::SettingsRenderer<wind::Settings> {
   explicit WindRenderer(sync::RendererHost& host)
       : SettingsRenderer(host, wind::setting_fields()) { table << "host_ns,gust,fan_share\n"; }
-  sync::Loaded load(const sync::SceneReceiver&, const wind::Settings& s) override {
+  sync::LoadedScene load(const sync::SceneReceiver&, const wind::Settings& s) override {
     return {.rate_Hz = s.rate_Hz, .output_latency = sync::from_seconds(1 / s.rate_Hz)};
   }
   std::optional<sync::Status> step(sync::HostTime now) override {
@@ -30,8 +30,8 @@ struct WindRenderer : sync::SettingsRenderer<wind::Settings> {
     if (!map) return sync::Status{node_health_t::READY, "waits for contacts"};
     for (const contact_event_t& e : contacts.take_events(sync::SimTime::max()))
       if (e.kind == contact_event_t::HIT)
-        due.emplace(host().sense().schedule(e.event_id, map->to_host(sync::sim_time(e.time_ns))), e);
-    fan.step(settings(), host().sense().output().value("response"));
+        due.emplace(host().endpoint().schedule(e.event_id, map->to_host(sync::sim_time(e.time_ns))), e);
+    fan.step(settings(), host().endpoint().output().value("response"));
     for (; !due.empty() && due.begin()->first <= now; due.erase(due.begin()))
       host().report(fan.blow(settings(), due.begin()->second, due.begin()->first, now));
     table << sync::to_ns(now) << "," << fan.gust << "," << fan.share << "\n";

@@ -23,7 +23,7 @@ using Schedule = std::function<sync::HostTime(std::int64_t event_id, sync::HostT
 class EventLedger {
  public:
   // rule: the outcome of an event that could not be shown in time.
-  explicit EventLedger(const Settings& settings, sync::Late rule = sync::Late::kShowNewest)
+  explicit EventLedger(const Settings& settings, sync::LateRule rule = sync::LateRule::kShowNewest)
       : policy_{.rule = rule} {
     set(settings);
   }

@@ -80,7 +80,7 @@ void FrameComposer::draw(Frame& frame, sync::HostTime now, sync::Nanoseconds del
                          sync::HostTime newest_arrival) {
   tick_ = now;
   frame.samples = newest_samples(now);
-  bodies_.keep(delay);
+  bodies_.extend_history(delay);
   frame.instant = instant;
   if (instant) frame.status = bodies_.status(*instant);
   assess_state(frame, now, newest_arrival);

@@ -84,7 +84,7 @@ void FrameLock::show_world(AgreedFrame& frame, RoomTime by, sync::Nanoseconds pr
   frame.delay = delay_.at(frame.due, by) + profile_delay;
   frame.world = map.to_sim(due - frame.delay);
   if (lockstep_Hz_ <= 0 || map.rate <= 0) return;
-  const sync::HostTime step_begin = sync::Lockstep{map, lockstep_Hz_}.begin_of_turn(due - frame.delay);
+  const sync::HostTime step_begin = sync::Lockstep{map, lockstep_Hz_}.begin_of_iteration(due - frame.delay);
   frame.delay = due - step_begin;
   frame.world = map.to_sim(step_begin);
 }

@@ -5,7 +5,7 @@
 namespace tactus::visual {
 
 void RoomClockReader::on_message(const header_t& header, const sim_clock_t& clock, sync::HostTime arrival) {
-  switch (tracker_.follow(header, clock, arrival)) {
+  switch (tracker_.track(header, clock, arrival)) {
     case sync::TrackResult::kIgnore: return;
     case sync::TrackResult::kRestart:
       maps_.clear();

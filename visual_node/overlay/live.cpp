@@ -56,7 +56,7 @@ void LiveOverlays::subscribe() {
   if (needs_contacts()) wanted.emplace_back(channels::kContacts);
   if (on_.on(Overlay::kReport)) wanted.emplace_back(channels::kNodeHealth);
   for (auto& [channel, queue] : queues_)
-    queue->set_wanted(std::find(wanted.begin(), wanted.end(), channel) != wanted.end());
+    queue->set_enabled(std::find(wanted.begin(), wanted.end(), channel) != wanted.end());
   for (const std::string& channel : wanted)
     if (!queues_.contains(channel)) queues_[channel] = &bus_.raw(channel.c_str(), kQueueLength);
   if (!on_.on(Overlay::kForces)) tools_.clear();

@@ -33,7 +33,7 @@ const answer_t* QuestionDialog::answered(const question_t& m) const {
 }
 
 const question_t* QuestionDialog::current(sync::HostTime now) const {
-  const question_t* m = current_.led(now);
+  const question_t* m = current_.newest(now);
   return m && m->kind != question_t::NOTHING && !answered(*m) ? m : nullptr;
 }
 

@@ -24,7 +24,7 @@ class QuestionDialog {
 
   void push(const question_t& m, sync::HostTime arrival);
   // True while a study is running, with or without a question.
-  bool study_running(sync::HostTime now) const { return current_.led(now) != nullptr; }
+  bool study_running(sync::HostTime now) const { return current_.newest(now) != nullptr; }
   // The question to show; null: none, or it has been answered.
   const question_t* current(sync::HostTime now) const;
   // The number at the mark.

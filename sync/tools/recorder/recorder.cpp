@@ -40,29 +40,29 @@ void Recorder::push(const MessageBatch& batch) {
         it = sequences_.emplace(m.channel, SequenceTracker()).first;
       if (it != sequences_.end()) it->second.observe(*header);
     }
-    if (begun_) {
+    if (started_) {
       write_live(m.arrival, m.channel, m.data);
       continue;
     }
-    held_.push_back({m.arrival, std::string(m.channel), Bytes(m.data.begin(), m.data.end())});
-    held_bytes_ += sizeof(Held) + m.channel.size() + m.data.size();
-    if (held_bytes_ > kMaxHeldBytes) begin({}, m.arrival);
+    pending_.push_back({m.arrival, std::string(m.channel), Bytes(m.data.begin(), m.data.end())});
+    pending_bytes_ += sizeof(PendingMessage) + m.channel.size() + m.data.size();
+    if (pending_bytes_ > kMaxPendingBytes) begin({}, m.arrival);
   }
 }
 
 void Recorder::begin(const std::vector<HeadAsset>& assets, HostTime now) {
-  if (begun_ && !limits_.splits()) return;
-  if (!begun_ || !assets.empty()) {
+  if (started_ && !limits_.splits()) return;
+  if (!started_ || !assets.empty()) {
     scene_refs_.clear(), scene_bytes_.clear();
     for (const HeadAsset& a : assets) scene_refs_.push_back(a.ref), scene_bytes_.push_back(*a.bytes);
   }
-  if (begun_) return;
-  begun_ = true;
+  if (started_) return;
+  started_ = true;
   part_began_ = now;
-  write_head(held_.empty() ? now : held_.front().arrival);
-  for (const Held& m : held_) write_live(m.arrival, m.channel, m.data);
-  held_.clear();
-  held_.shrink_to_fit();
+  write_head(pending_.empty() ? now : pending_.front().arrival);
+  for (const PendingMessage& m : pending_) write_live(m.arrival, m.channel, m.data);
+  pending_.clear();
+  pending_.shrink_to_fit();
   if (limits_.splits()) return;
   scene_refs_ = {}, scene_bytes_ = {};
 }
@@ -74,7 +74,7 @@ void Recorder::write_head(HostTime live_from) {
 }
 
 bool Recorder::due_to_split(HostTime now) const {
-  return begun_ && next_ && !failing() &&
+  return started_ && next_ && !failing() &&
          ((limits_.split_bytes > 0 && writer_.bytes() >= limits_.split_bytes) ||
           (limits_.split_after > Nanoseconds(0) && now - part_began_ >= limits_.split_after));
 }
@@ -87,11 +87,11 @@ void Recorder::split(HostTime now) {
     writer_ = LogWriter(std::move(sink));
     ++parts_;
   } catch (const std::exception& e) {
-    split_trouble_ = e.what();  // the present part continues
+    split_error_ = e.what();  // the present part continues
     next_flush_ = now + kRetryAfter;
   }
   part_began_ = now;
-  if (split_trouble_.empty()) write_head(now);
+  if (split_error_.empty()) write_head(now);
 }
 
 void Recorder::poll(HostTime now) {
@@ -99,7 +99,7 @@ void Recorder::poll(HostTime now) {
   if (now < next_flush_) return;
   writer_.flush();
   next_flush_ = failing() ? now + kRetryAfter : now;
-  split_trouble_.clear();
+  split_error_.clear();
   if (due_to_split(now)) split(now);
   if (prune_) bytes_before_ = prune_(writer_.bytes());
 }
@@ -115,16 +115,16 @@ std::int64_t Recorder::gaps() const {
   return sum;
 }
 
-std::string Recorder::note(std::int64_t tap_overflow, std::int64_t tap_oversized) const {
+std::string Recorder::status_text(std::int64_t tap_overflow, std::int64_t tap_oversized) const {
   std::string text;
-  if (failing()) text = "the disk refuses the log (" + writer_.trouble() + split_trouble_ + "); ";
-  text += begun_ ? std::to_string(events()) + " events" : "waits for the scene";
+  if (failing()) text = "the disk refuses the log (" + writer_.error() + split_error_ + "); ";
+  text += started_ ? std::to_string(events()) + " events" : "waits for the scene";
   if (parts_ > 1) text += " in " + std::to_string(parts_) + " parts";
-  if (beyond_ > 0) text += ", " + std::to_string(beyond_) + " left out, beyond the largest size of the log";
-  if (lost() > 0) text += ", " + std::to_string(lost()) + " lost for want of disk";
-  if (tap_overflow > 0) text += ", " + std::to_string(tap_overflow) + " lost for want of time";
+  if (beyond_ > 0) text += ", " + std::to_string(beyond_) + " dropped, beyond the maximum size of the log";
+  if (lost() > 0) text += ", " + std::to_string(lost()) + " lost because the disk is full or too slow";
+  if (tap_overflow > 0) text += ", " + std::to_string(tap_overflow) + " lost because the recorder was too slow";
   if (tap_oversized > 0)
-    text += ", " + std::to_string(tap_oversized) + " left out, larger than any message of ours";
+    text += ", " + std::to_string(tap_oversized) + " dropped, larger than any Tactus message";
   if (gaps() == 0) return text;
   text += ", gaps:";
   for (const auto& [channel, sequence] : sequences_)

@@ -22,7 +22,7 @@ class Recorder {
  public:
   // The log begins without a scene after this time, or when this amount of data waits.
   static constexpr Nanoseconds kWaitForScene{5'000'000'000};
-  static constexpr std::size_t kMaxHeldBytes = 32 << 20;
+  static constexpr std::size_t kMaxPendingBytes = 32 << 20;
   // Number of channels in which gaps are counted; other channels are recorded all the same.
   static constexpr std::size_t kMaxChannels = 256;
   // Interval between attempts after a write error.
@@ -44,8 +44,8 @@ class Recorder {
   // Begins the log if it has not begun, and writes all data.
   void finish(HostTime now);
 
-  bool begun() const { return begun_; }
-  bool failing() const { return !writer_.trouble().empty() || !split_trouble_.empty(); }
+  bool started() const { return started_; }
+  bool failing() const { return !writer_.error().empty() || !split_error_.empty(); }
   std::int64_t lost() const { return lost_before_ + writer_.lost(); }
   // Messages beyond the maximum size of the log.
   std::int64_t beyond() const { return beyond_; }
@@ -53,10 +53,10 @@ class Recorder {
   // Messages missing in the numbering of their sender, over all channels.
   std::int64_t gaps() const;
   // One line: written data, and missing messages by channel.
-  std::string note(std::int64_t tap_overflow, std::int64_t tap_oversized) const;
+  std::string status_text(std::int64_t tap_overflow, std::int64_t tap_oversized) const;
 
  private:
-  struct Held {
+  struct PendingMessage {
     HostTime arrival;
     std::string channel;
     Bytes data;
@@ -72,9 +72,9 @@ class Recorder {
   log_info_t info_;
   LogWriter writer_;
   HostTime start_;
-  bool begun_ = false;
-  std::vector<Held> held_;
-  std::size_t held_bytes_ = 0;
+  bool started_ = false;
+  std::vector<PendingMessage> pending_;
+  std::size_t pending_bytes_ = 0;
   HostTime next_flush_{};
   LogLimits limits_;
   Next next_;
@@ -83,7 +83,7 @@ class Recorder {
   std::vector<asset_ref_t> scene_refs_;
   std::vector<Bytes> scene_bytes_;
   HostTime part_began_{};
-  std::string split_trouble_;
+  std::string split_error_;
   std::int64_t bytes_before_ = 0, events_before_ = 0, lost_before_ = 0, beyond_ = 0;
   int parts_ = 1;
   std::map<std::string, SequenceTracker, std::less<>> sequences_;

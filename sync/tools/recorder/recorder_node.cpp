@@ -65,7 +65,7 @@ int tactus::sync::run_recorder(int argc, char** argv) try {
                                         .modality = "",
                                         .rate_Hz = 50,  // of writing to disk; a separate thread stamps messages on arrival
                                         .fifo_priority = 40,
-                                        .about = "Writes everything that crosses the bus to OUT/run.lcmlog."};
+                                        .about = "Writes all messages on the bus to OUT/run.lcmlog."};
   CLI::App app;
   sync::NodeOptions options;
   log_info_t info{};
@@ -77,9 +77,9 @@ int tactus::sync::run_recorder(int argc, char** argv) try {
   double split_mb = 0, split_minutes = 0, max_mb = 0;
   sync::LogLimits limits;
   app.add_option("--split-mb", split_mb, "begins another file, which replays alone, at this size")->check(CLI::Range(1.0, 1e6));
-  app.add_option("--split-minutes", split_minutes, "begins another file after so long")->check(CLI::Range(0.01, 1e5));
-  app.add_option("--keep", limits.keep, "of these files only the newest so many stay; needs a way to split")->check(CLI::Range(1, 100'000));
-  app.add_option("--max-mb", max_mb, "of all files: the oldest go; of a single one: what exceeds it is left out, and counted")
+  app.add_option("--split-minutes", split_minutes, "begins another file after this time")->check(CLI::Range(0.01, 1e5));
+  app.add_option("--keep", limits.keep, "number of the newest files to keep; needs --split-mb or --split-minutes")->check(CLI::Range(1, 100'000));
+  app.add_option("--max-mb", max_mb, "size limit of all files: the oldest are removed; messages that exceed it in a single file are dropped and counted")
       ->check(CLI::Range(1.0, 1e7));
   std::vector<std::string> patterns{"*"};
   app.add_option("--tags", patterns, "tagged variables to record, as node.tag with * for any letters, or none; may be repeated")
@@ -97,7 +97,7 @@ int tactus::sync::run_recorder(int argc, char** argv) try {
   if (limits.splits() && limits.max_bytes > 0 && limits.split_bytes * 2 > limits.max_bytes)
     throw std::runtime_error("--max-mb must be at least twice --split-mb, so that one file is whole while the next is written");
 
-  tag_request_t wanted = request_for(patterns);
+  tag_request_t tag_request = request_for(patterns);
   sync::Node node(descriptor, options);
   sync::RecorderTap tap(options.bus);
   sync::SceneReceiver scene(node.bus());
@@ -117,20 +117,20 @@ int tactus::sync::run_recorder(int argc, char** argv) try {
     recorder.push(batch);
     if (scene.poll(now)) recorder.begin(assets_of(scene), now);
     recorder.poll(now);
-    if (wanted.pattern_count > 0 && now >= next_request) {
-      node.bus().publish(channels::kTagRequest, wanted);
+    if (tag_request.pattern_count > 0 && now >= next_request) {
+      node.bus().publish(channels::kTagRequest, tag_request);
       next_request = now + kRequestPeriod;
     }
-    const bool trouble = recorder.failing() || recorder.lost() > 0 || recorder.beyond() > 0 || tap.overflow() > 0;
-    node.set_state(trouble ? node_health_t::OUTPUT_LOST : node_health_t::RUNNING,
-                   recorder.note(tap.overflow(), tap.oversized()));
+    const bool failing = recorder.failing() || recorder.lost() > 0 || recorder.beyond() > 0 || tap.overflow() > 0;
+    node.set_state(failing ? node_health_t::OUTPUT_LOST : node_health_t::RUNNING,
+                   recorder.status_text(tap.overflow(), tap.oversized()));
   }
   tap.stop();
   tap.take(batch);
   recorder.push(batch);
   recorder.finish(sync::host_now());
-  std::cerr << "recorder: " << path << ": " << recorder.note(tap.overflow(), tap.oversized()) << std::endl;
-  if (recorder.failing()) throw std::runtime_error(path + " is incomplete; make room on its disk");
+  std::cerr << "recorder: " << path << ": " << recorder.status_text(tap.overflow(), tap.oversized()) << std::endl;
+  if (recorder.failing()) throw std::runtime_error(path + " is incomplete; free space on its disk");
   return 0;
 } catch (const std::exception& e) {
   return tactus::sync::fail("recorder", e);

@@ -11,7 +11,7 @@ namespace {
 // Maximum time until the thread detects its stop, ms.
 constexpr int kPollMs = 50;
 // Messages read from one port before the other is read.
-constexpr int kTurn = 64;
+constexpr int kBatch = 64;
 
 }  // namespace
 
@@ -20,29 +20,29 @@ RecorderTap::Ports::Ports(const BusOptions& options)
 
 RecorderTap::RecorderTap(const BusOptions& options) {
   if (VirtualTime* time = VirtualTime::current()) {
-    told_ = time->wire().tell([this](HostTime, std::string_view channel, std::span<const std::uint8_t> data) { keep({channel, data}); });
+    listener_ = time->wire().add_listener([this](HostTime, std::string_view channel, std::span<const std::uint8_t> data) { store({channel, data}); });
     return;
   }
   ports_.emplace(options);
-  thread_ = std::thread([this] { listen(); });
+  thread_ = std::thread([this] { run(); });
 }
 
 RecorderTap::~RecorderTap() { stop(); }
 
 void RecorderTap::stop() {
-  if (!ports_) VirtualTime::current()->wire().tell_no_more(told_);
+  if (!ports_) VirtualTime::current()->wire().remove_listener(listener_);
   stop_ = true;
   if (thread_.joinable()) thread_.join();
 }
 
-void RecorderTap::keep(const ChannelBytes& m) {
+void RecorderTap::store(const ChannelBytes& m) {
   if (!m.fits())
     ++oversized_;
   else if (!arrived_.add(host_now(), m, kMaxBatchBytes))
     ++overflow_;
 }
 
-void RecorderTap::listen() {
+void RecorderTap::run() {
   pollfd fds[2] = {{ports_->both[0].descriptor(), POLLIN, 0}, {ports_->both[1].descriptor(), POLLIN, 0}};
   while (true) {
     const bool last = stop_;
@@ -52,7 +52,7 @@ void RecorderTap::listen() {
       more = false;
       for (UdpPort& port : ports_->both) {
         const std::lock_guard lock(mutex_);
-        more |= port.read(kTurn, [this](const ChannelBytes& m) { keep(m); }) > 0;
+        more |= port.read(kBatch, [this](const ChannelBytes& m) { store(m); }) > 0;
       }
     }
     if (last) return;

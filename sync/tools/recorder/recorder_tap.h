@@ -37,15 +37,15 @@ class RecorderTap {
   std::int64_t oversized() const { return oversized_; }
 
  private:
-  void listen();
-  void keep(const ChannelBytes& message);
+  void run();
+  void store(const ChannelBytes& message);
 
   struct Ports {
     explicit Ports(const BusOptions& options);
     std::array<UdpPort, 2> both;
   };
   std::optional<Ports> ports_;  // none in virtual time, where the wire delivers the messages
-  int told_ = 0;                // number of the wire's callback
+  int listener_ = 0;                // number of the wire's callback
   std::mutex mutex_;
   MessageBatch arrived_;
   std::atomic<std::int64_t> overflow_ = 0;

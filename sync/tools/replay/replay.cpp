@@ -21,7 +21,7 @@ Replay::Replay(std::span<const std::uint8_t> log, const LogOrigin& origin, const
     : log_(log),
       origin_(origin),
       speed_(o.speed),
-      most_per_s_(std::max(1.0, o.most_per_s)),
+      max_per_s_(std::max(1.0, o.max_per_s)),
       loop_(o.loop),
       paused_(o.paused) {
   const auto span = span_of_log(log);
@@ -35,7 +35,7 @@ Replay::Replay(std::span<const std::uint8_t> log, const LogOrigin& origin, const
   start_ = begin_ + bounded(o.start_s);
   if (start_ < begin_ || start_ > end_)
     throw std::runtime_error("has no time from --start to --end; it lasts " + std::to_string(length_s()) + " s");
-  if (speed_ != 0 && (speed_ < kSlowest || speed_ > kFastest || !std::isfinite(speed_)))
+  if (speed_ != 0 && (speed_ < kMinSpeed || speed_ > kMaxSpeed || !std::isfinite(speed_)))
     throw std::runtime_error("cannot be played at that speed; give one from 0.01 to 100, or max");
   polled_ = now;
   jump(start_, now);
@@ -46,7 +46,7 @@ void Replay::jump(HostTime to, HostTime now) {
   position_ = position_polled_ = std::clamp(to, begin_, end_);
   // Stamps are truncated to whole microseconds.
   const std::int64_t stamp_us = (to_ns(position_) + origin_.info.realtime_offset_ns) / 1000;
-  events_.start_at(seek_log(log_, stamp_us), position_);
+  events_.seek(seek_log(log_, stamp_us), position_);
   pending_.reset();
   over_ = false;
   ++pass_;
@@ -70,17 +70,17 @@ HostTime Replay::due(HostTime now) const {
 
 void Replay::poll(HostTime now, const Take& take) {
   const double passed_s = std::max(0.0, seconds(now - polled_));
-  budget_ = std::min<double>(kBurst, budget_ + passed_s * most_per_s_);
+  budget_ = std::min<double>(kBurst, budget_ + passed_s * max_per_s_);
   if (speed_ == 0 && passed_s > 0 && !paused_ && !over_) {
     const double s = seconds(position_ - position_polled_) / passed_s;
-    measured_speed_ = std::clamp(0.9 * measured_speed_ + 0.1 * s, kSlowest, kFastest);
+    measured_speed_ = std::clamp(0.9 * measured_speed_ + 0.1 * s, kMinSpeed, kMaxSpeed);
   }
   polled_ = now;
   position_polled_ = position_;
   if (paused_ || over_) return;
   const HostTime until = std::min(due(now), pause_at_.value_or(HostTime::max()));
   const double speed = speed_ == 0 ? measured_speed_ : speed_;
-  for (int looked = 0; looked < kMaxLooked; ++looked) {
+  for (int events_read = 0; events_read < kMaxEventsPerPoll; ++events_read) {
     if (!read() || pending_at_ > end_) {
       if (pause_at_ && *pause_at_ <= end_ && due(now) >= *pause_at_) return pause(now);
       if (due(now) < end_) return;  // the silence before the end is played, too
@@ -137,7 +137,7 @@ void Replay::step(double s, HostTime now) {
 void Replay::seek(double s, HostTime now) { jump(begin_ + bounded(s), now); }
 
 bool Replay::set_speed(double speed, HostTime now) {
-  if (!std::isfinite(speed) || (speed != 0 && (speed < kSlowest || speed > kFastest))) return false;
+  if (!std::isfinite(speed) || (speed != 0 && (speed < kMinSpeed || speed > kMaxSpeed))) return false;
   if (!paused_ && !over_) position_ = speed_ == 0 ? position_ : std::max(position_, due(now));
   anchor(now);
   speed_ = speed;

@@ -14,23 +14,23 @@
 namespace tactus::sync {
 
 struct ReplayOptions {
-  double speed = 1;    // recorded seconds per second; 0: as fast as most_per_s permits
+  double speed = 1;    // recorded seconds per second; 0: as fast as max_per_s permits
   double start_s = 0;  // since the log's live part began
   double end_s = -1;   // likewise; negative: at the end of the log
   bool loop = false;
   bool paused = false;
-  double most_per_s =
+  double max_per_s =
       16'000;  // messages; design: lcm-logger, whose receive buffer has LCM's default size, receives 20,000 a second without loss
   bool from_head = false;  // time counts from the first event, and the head is played, too
 };
 
 class Replay {
  public:
-  static constexpr double kSlowest = 0.01, kFastest = 100;
+  static constexpr double kMinSpeed = 0.01, kMaxSpeed = 100;
   // Maximum of one poll: LCM's own queue holds 30 messages, and its default receive buffer 90.
   static constexpr int kBurst = 20;
   // Events of the log read in one poll, sent or not.
-  static constexpr int kMaxLooked = 20'000;
+  static constexpr int kMaxEventsPerPoll = 20'000;
   // A replay that is this far behind its time does not catch up: it continues from its position, later by this, and counts
   // the delay.
   static constexpr Nanoseconds kMaxBehind{100'000'000};
@@ -79,7 +79,7 @@ class Replay {
   HostTime position_{};
   HostTime anchor_live_{}, anchor_recorded_{};
   double speed_;
-  double most_per_s_;
+  double max_per_s_;
   double budget_ = 0;
   HostTime polled_{};
   HostTime position_polled_{};

@@ -32,15 +32,15 @@ std::string_view next_word(std::string_view& line) {
 double speed_of(std::string_view word) {
   if (word == "max") return 0;
   const auto value = number(word);
-  return value && *value >= Replay::kSlowest && *value <= Replay::kFastest ? *value : -1;
+  return value && *value >= Replay::kMinSpeed && *value <= Replay::kMaxSpeed ? *value : -1;
 }
 
-std::string obey(Replay& replay, std::string_view line, HostTime now, bool& quit) {
+std::string execute_command(Replay& replay, std::string_view line, HostTime now, bool& quit) {
   const std::string whole = printable(std::string(line));
   const std::string_view word = next_word(line), argument = next_word(line), rest = next_word(line);
-  const auto wrong = [&](const char* remedy) { return "cannot obey '" + whole + "': " + remedy; };
+  const auto wrong = [&](const char* remedy) { return "cannot execute '" + whole + "': " + remedy; };
   if (word.empty()) return "";
-  if (!rest.empty()) return wrong("an order has one argument at the most");
+  if (!rest.empty()) return wrong("a command has at most one argument");
   const auto value = number(argument);
   if (word == "seek") {
     if (!value) return wrong("write it as seek SECONDS, or seek +SECONDS or seek -SECONDS from where it is");
@@ -57,7 +57,7 @@ std::string obey(Replay& replay, std::string_view line, HostTime now, bool& quit
     replay.step(value.value_or(kStep_s), now);
   } else if (!argument.empty()) {
     return wrong(
-        "it has no argument, or is no order; there are pause, resume, toggle, step, seek, speed, loop and quit");
+        "it takes no argument, or is no command; the commands are pause, resume, toggle, step, seek, speed, loop and quit");
   } else if (word == "pause") {
     replay.pause(now);
   } else if (word == "resume") {

@@ -15,7 +15,7 @@ namespace tactus::sync {
 inline constexpr double kStep_s = 1.0 / 60;
 
 // Carries out one line. Returns an error sentence; empty: no error. Sets quit on that command.
-std::string obey(Replay& replay, std::string_view line, HostTime now, bool& quit);
+std::string execute_command(Replay& replay, std::string_view line, HostTime now, bool& quit);
 
 // "1.5" or "max", which is 0. Negative: invalid.
 double speed_of(std::string_view word);
@@ -23,13 +23,13 @@ double speed_of(std::string_view word);
 // Splits the bytes from a pipe into lines. A longer line than this is no command and is ignored.
 class Lines {
  public:
-  static constexpr std::size_t kLongest = 200;
+  static constexpr std::size_t kMaxLine = 200;
   void add(std::string_view bytes) {
     for (const char c : bytes) {
       if (c != '\n') {
-        if (line_.size() <= kLongest) line_ += c;
+        if (line_.size() <= kMaxLine) line_ += c;
       } else {
-        if (line_.size() <= kLongest && ready_.size() < kMax) ready_.push_back(line_);
+        if (line_.size() <= kMaxLine && ready_.size() < kMax) ready_.push_back(line_);
         line_.clear();
       }
     }

@@ -25,7 +25,7 @@ std::vector<Asset> scene_of(std::span<const std::uint8_t> log, const LogOrigin& 
   for (LogEvent e; scanner.at() < kMaxSceneBytes && scanner.next(e);) {
     if (e.channel != channels::kSceneManifest && e.channel != channels::kAssetChunk) continue;
     now += Nanoseconds(1000);
-    bus.hear(e.channel, e.data, now);
+    bus.on_message(e.channel, e.data, now);
     if (receiver.poll(now)) return assets();
   }
   for (int i = 0; i < 10'000; ++i)

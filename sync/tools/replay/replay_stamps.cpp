@@ -61,7 +61,7 @@ void restamp_values(std::span<std::uint8_t> message, std::int64_t sent_ns, HostT
 ReplayStamps::ReplayStamps(const LogOrigin& origin, Identity live)
     : origin_(origin), live_(std::move(live)), maps_(origin.info.header.run_id) {}
 
-void ReplayStamps::hear(const LogEvent& event, const ReplayMoment& moment) {
+void ReplayStamps::observe(const LogEvent& event, const ReplayMoment& moment) {
   if (event.channel == channels::kClockMap)
     if (const auto map = decode<clock_map_t>(event.data.data(), event.data.size()))
       maps_.observe(*map, moment.recorded);

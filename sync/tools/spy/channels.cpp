@@ -26,7 +26,7 @@ void Channels::push(const MessageBatch::Message& m) {
   Channel& c = it->second;
   ++c.messages;
   c.newest = m.arrival;
-  c.torn += !m.whole;
+  c.torn += !m.complete;
   c.bytes.assign(m.data.begin(), m.data.end());
   c.type = type_of(m.data);
   const auto header = c.type ? peek_header(m.data.data(), m.data.size()) : std::nullopt;

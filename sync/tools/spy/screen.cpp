@@ -14,9 +14,9 @@ constexpr std::size_t kNameColumns = 18, kLongestValue = 40;
 constexpr const char* kKeys = "up down  enter: fields  esc: back  t: variables  p: pause  q: quit";
 
 template <class... Values>
-std::string format(const char* how, Values... values) {
+std::string format(const char* pattern, Values... values) {
   char text[256];
-  std::snprintf(text, sizeof text, how, values...);
+  std::snprintf(text, sizeof text, pattern, values...);
   return text;
 }
 
@@ -100,10 +100,10 @@ void Screen::press(Key key) {
     marked_name_.clear();
   };
   switch (key) {
-    case Key::kUp: --wish_; break;
-    case Key::kDown: ++wish_; break;
-    case Key::kPageUp: wish_ -= 20; break;
-    case Key::kPageDown: wish_ += 20; break;
+    case Key::kUp: --pending_move_; break;
+    case Key::kDown: ++pending_move_; break;
+    case Key::kPageUp: pending_move_ -= 20; break;
+    case Key::kPageDown: pending_move_ += 20; break;
     case Key::kEnter:
       if (page_ == Page::kChannels && !marked_name_.empty()) {
         channel_ = channel_before_ = marked_name_;
@@ -135,17 +135,17 @@ void Screen::push(const tag_values_t& m, HostTime arrival) {
   });
 }
 
-void Screen::look(const Channels& channels, HostTime now) {
+void Screen::sample(const Channels& channels, HostTime now) {
   if (page_ != Page::kFields || marked_name_.empty()) return;
-  if (followed_ != channel_ + " " + marked_name_) {
-    followed_ = channel_ + " " + marked_name_;
-    course_ = Spark(kColumn);
+  if (graphed_path_ != channel_ + " " + marked_name_) {
+    graphed_path_ = channel_ + " " + marked_name_;
+    graph_ = Spark(kColumn);
   }
   const auto bytes = channels.newest(channel_);
   const MessageType* type = type_of(bytes);
   if (!type) return;
   try {
-    if (const auto value = FieldPath(*type, marked_name_).number(bytes)) course_.add(*value, now);
+    if (const auto value = FieldPath(*type, marked_name_).number(bytes)) graph_.add(*value, now);
   } catch (const std::invalid_argument&) {
     // The newest message is of another type than the one whose fields were shown.
   }
@@ -172,7 +172,7 @@ std::vector<Screen::Row> Screen::field_rows(const Channels& channels, HostTime n
   const MessageType* type = type_of(bytes);
   if (!type) {
     rows.push_back(
-        {"", cut("no type of ours; its " + std::to_string(bytes.size()) + " bytes begin with:", columns)});
+        {"", cut("no Tactus type; its " + std::to_string(bytes.size()) + " bytes begin with:", columns)});
     for (std::size_t at = 0; at < bytes.size() && at < 512; at += 16) {
       std::string line = format("%04zx ", at);
       for (std::size_t i = at; i < std::min(bytes.size(), at + 16); ++i) line += format(" %02x", bytes[i]);
@@ -186,8 +186,8 @@ std::vector<Screen::Row> Screen::field_rows(const Channels& channels, HostTime n
     rows.push_back({path, cut(line, columns)});
     if (path != marked_name_ || std::holds_alternative<std::string>(value)) return;
     const std::size_t room = columns > 60 ? columns - 60 : 10;
-    const Spark::Drawn course = course_.draw(now, std::min(room, Spark::kMax));
-    rows.push_back({path + " ", "    " + course.text + format("  %.4g .. %.4g", course.lowest, course.highest)});
+    const Spark::Drawn graph = graph_.draw(now, std::min(room, Spark::kMax));
+    rows.push_back({path + " ", "    " + graph.text + format("  %.4g .. %.4g", graph.lowest, graph.highest)});
   });
   return rows;
 }
@@ -207,11 +207,11 @@ void Screen::move(const std::vector<Row>& rows, std::size_t visible) {
   if (at != rows.end() && !marked_name_.empty()) cursor_ = static_cast<std::size_t>(at - rows.begin());
   const auto last = static_cast<std::int64_t>(rows.size()) - 1;
   cursor_ = static_cast<std::size_t>(
-      std::clamp<std::int64_t>(static_cast<std::int64_t>(cursor_) + wish_, 0, std::max<std::int64_t>(0, last)));
+      std::clamp<std::int64_t>(static_cast<std::int64_t>(cursor_) + pending_move_, 0, std::max<std::int64_t>(0, last)));
   // The cursor skips the graph below a field.
-  if (wish_ > 0 && cursor_ < rows.size() && rows[cursor_].name.ends_with(' ') && cursor_ + 1 < rows.size())
+  if (pending_move_ > 0 && cursor_ < rows.size() && rows[cursor_].name.ends_with(' ') && cursor_ + 1 < rows.size())
     ++cursor_;
-  wish_ = 0;
+  pending_move_ = 0;
   if (cursor_ < rows.size()) marked_name_ = rows[cursor_].name;
   if (marked_name_.ends_with(' ')) marked_name_.pop_back();
   top_ = std::clamp(top_, cursor_ + 1 > visible ? cursor_ + 1 - visible : 0, cursor_);
@@ -232,7 +232,7 @@ std::vector<std::string> Screen::draw(const Channels& channels, HostTime now, st
       break;
     case Page::kFields: head = printable(channel_) + ": the newest message"; break;
     case Page::kTags:
-      head = std::to_string(all.size()) + " variables" + (all.empty() ? ": asked for, none has come yet" : "");
+      head = std::to_string(all.size()) + " variables" + (all.empty() ? ": requested, none has arrived yet" : "");
       break;
   }
   if (paused_) head += "  (paused)";

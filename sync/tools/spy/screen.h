@@ -32,7 +32,7 @@ class Screen {
   bool shows_tags() const { return page_ == Page::kTags; }
 
   // Samples the value of the marked field for its graph.
-  void look(const Channels& channels, HostTime now);
+  void sample(const Channels& channels, HostTime now);
   void push(const tag_list_t& m) { table_.push(m); }
   void push(const tag_values_t& m, HostTime arrival);
 
@@ -58,11 +58,11 @@ class Screen {
 
   Page page_ = Page::kChannels;
   bool over_ = false, paused_ = false;
-  int wish_ = 0;  // pending movement of the cursor, lines
+  int pending_move_ = 0;  // pending movement of the cursor, lines
   std::string marked_name_, channel_, channel_before_;
   std::size_t cursor_ = 0, top_ = 0, marked_row_ = 0;
-  std::string followed_;  // path of the marked field
-  Spark course_{kColumn};
+  std::string graphed_path_;  // path of the marked field
+  Spark graph_{kColumn};
   TagTable table_;
   std::map<std::string, Variable> tags_;
 };

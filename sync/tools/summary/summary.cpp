@@ -32,14 +32,14 @@ void RunSummary::observe(const log_info_t& m) {
 }
 
 void RunSummary::observe(const node_health_t& m, HostTime now) {
-  auto [it, first] = lives_[m.node].try_emplace(m.header.incarnation);
-  Life& life = it->second;
+  auto [it, first] = incarnations_[m.node].try_emplace(m.header.incarnation);
+  Incarnation& incarnation_health = it->second;
   // A node waits at another rate than it runs at: its rate is counted from the beginning of its present state.
-  const bool began_to_run = m.state == node_health_t::RUNNING && (life.first.state == node_health_t::WAITING ||
-                                                                  life.first.state == node_health_t::READY);
-  if (first || began_to_run || m.nominal_rate_Hz != life.first.nominal_rate_Hz) life.first = m;
-  life.last = m;
-  life.last_heard = now;
+  const bool began_to_run = m.state == node_health_t::RUNNING && (incarnation_health.first.state == node_health_t::WAITING ||
+                                                                  incarnation_health.first.state == node_health_t::READY);
+  if (first || began_to_run || m.nominal_rate_Hz != incarnation_health.first.nominal_rate_Hz) incarnation_health.first = m;
+  incarnation_health.last = m;
+  incarnation_health.last_received = now;
   if (m.qualities > 0) {
     auto& steps = quality_[m.node];
     steps.resize(std::max(steps.size(), static_cast<std::size_t>(std::max<int>(m.qualities, m.quality + 1))));
@@ -49,15 +49,15 @@ void RunSummary::observe(const node_health_t& m, HostTime now) {
   for (const input_health_t& input : m.inputs)
     if (input.age_ns >= 0 && (ages.contains(input.channel) || ages.size() < kMaxInputs))
       ages[input.channel].add(Nanoseconds(input.age_ns));
-  if (!courses_.contains(m.header.incarnation)) return;
-  for (auto& [name, lives] : lives_)
-    for (auto& [incarnation, other] : lives) other.note = other.last.note;
+  if (!sim_progress_.contains(m.header.incarnation)) return;
+  for (auto& [name, incarnations] : incarnations_)
+    for (auto& [incarnation, other] : incarnations) other.status_text = other.last.note;
 }
 
-void RunSummary::observe_course(const header_t& h) {
+void RunSummary::observe_sim_progress(const header_t& h) {
   if (h.sim_time_ns < 0) return;
-  const auto [it, first] = courses_.try_emplace(
-      h.incarnation, Course{h.sim_time_ns, h.publish_time_ns, h.sim_time_ns, h.publish_time_ns});
+  const auto [it, first] = sim_progress_.try_emplace(
+      h.incarnation, SimProgress{h.sim_time_ns, h.publish_time_ns, h.sim_time_ns, h.publish_time_ns});
   it->second.last_sim_ns = h.sim_time_ns;
   it->second.last_host_ns = h.publish_time_ns;
 }
@@ -69,7 +69,7 @@ void RunSummary::observe_silence(HostTime now) {
 }
 
 void RunSummary::observe_gap() {
-  if (now_ - silence_end_ <= kHoleShowsWithin) holes_ += silence_;
+  if (now_ - silence_end_ <= kHoleDetectedWithin) holes_ += silence_;
   silence_ = Nanoseconds(0);
 }
 
@@ -124,7 +124,7 @@ void RunSummary::add(const LogEvent& e) {
   });
   feed.template operator()<degraded_t>(channels::kDegraded, match);
   feed.template operator()<world_state_t>(channels::kWorldState, [&](const world_state_t& m) {
-    if (m.group == world_state_t::NOW) observe_course(m.header);  // predicted states have future times
+    if (m.group == world_state_t::NOW) observe_sim_progress(m.header);  // predicted states have future times
   });
   matcher_.advance(now);
 }
@@ -151,7 +151,7 @@ double RunSummary::seconds() const {
 
 double RunSummary::realtime_factor() const {
   std::int64_t sim_ns = 0, host_ns = 0;
-  for (const auto& [incarnation, c] : courses_) {
+  for (const auto& [incarnation, c] : sim_progress_) {
     sim_ns += c.last_sim_ns - c.first_sim_ns;
     host_ns += c.last_host_ns - c.first_host_ns;
   }
@@ -160,23 +160,23 @@ double RunSummary::realtime_factor() const {
 
 std::map<std::string, NodeSummary> RunSummary::nodes() const {
   std::map<std::string, NodeSummary> out;
-  for (const auto& [name, lives] : lives_) {
+  for (const auto& [name, incarnations] : incarnations_) {
     NodeSummary& node = out[name];
     std::int64_t ticks = 0, ns = 0;
     HostTime newest{};
-    for (const auto& [incarnation, life] : lives) {
-      node.ticks += life.last.ticks;
-      node.missed_ticks += life.last.missed_ticks;
-      node.stale_ticks += life.last.stale_ticks;
-      node.tick.merge(Histogram::from_message(life.last.tick));
-      node.wake.merge(Histogram::from_message(life.last.wake));
-      ticks += life.last.ticks - life.first.ticks;
-      ns += life.last.header.publish_time_ns - life.first.header.publish_time_ns;
-      if (life.last_heard >= newest) node.scheduling = life.note.empty() ? life.last.note : life.note;
-      newest = std::max(newest, life.last_heard);
+    for (const auto& [incarnation, incarnation_health] : incarnations) {
+      node.ticks += incarnation_health.last.ticks;
+      node.missed_ticks += incarnation_health.last.missed_ticks;
+      node.stale_ticks += incarnation_health.last.stale_ticks;
+      node.tick.merge(Histogram::from_message(incarnation_health.last.tick));
+      node.wake.merge(Histogram::from_message(incarnation_health.last.wake));
+      ticks += incarnation_health.last.ticks - incarnation_health.first.ticks;
+      ns += incarnation_health.last.header.publish_time_ns - incarnation_health.first.header.publish_time_ns;
+      if (incarnation_health.last_received >= newest) node.scheduling = incarnation_health.status_text.empty() ? incarnation_health.last.note : incarnation_health.status_text;
+      newest = std::max(newest, incarnation_health.last_received);
     }
     node.rate_Hz = ns > 0 ? static_cast<double>(ticks) / (static_cast<double>(ns) * 1e-9) : 0;
-    node.restarts = static_cast<std::int64_t>(lives.size()) - 1;
+    node.restarts = static_cast<std::int64_t>(incarnations.size()) - 1;
     if (const auto ages = input_age_.find(name); ages != input_age_.end()) node.input_age = ages->second;
     if (const auto steps = quality_.find(name); steps != quality_.end()) node.quality = steps->second;
     node.alive_at_end = now_ - newest <= kAliveWithin;
@@ -204,8 +204,8 @@ std::map<std::string, ChannelSummary> RunSummary::channels() const {
 }
 
 std::string RunSummary::failure() const {
-  std::string why;
-  const auto also = [&](const std::string& text) { why += (why.empty() ? "" : "; ") + text; };
+  std::string reason;
+  const auto also = [&](const std::string& text) { reason += (reason.empty() ? "" : "; ") + text; };
   const auto present = nodes();
   for (const std::string& name : options_.nodes) {
     const auto it = present.find(name);
@@ -216,14 +216,14 @@ std::string RunSummary::failure() const {
   }
   for (const auto& [modality, tally] : matcher_.modalities())
     if (tally.lost > 0)
-      also(modality + " lost " + std::to_string(tally.lost) + " of " + std::to_string(tally.owed) +
-           " owed contact events");
+      also(modality + " lost " + std::to_string(tally.lost) + " of " + std::to_string(tally.expected) +
+           " expected contact events");
   if (holes_ > Nanoseconds(0))
     also("the log has a hole of " + std::to_string(std::llround(holes_seconds())) +
          " s: the recorder was stopped");
   if (matcher_.overflow() > 0)
-    also(std::to_string(matcher_.overflow()) + " events or senses found no room to be matched");
-  return why;
+    also(std::to_string(matcher_.overflow()) + " events or senses exceed the limits of the matching");
+  return reason;
 }
 
 }  // namespace tactus::sync

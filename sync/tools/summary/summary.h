@@ -56,10 +56,10 @@ class RunSummary {
  public:
   // A node counts as alive at the end when it reported health within this time of it.
   static constexpr Nanoseconds kAliveWithin{3'000'000'000};
-  // So long without an event, and then the numbering of a sender goes on farther up: the recorder was stopped.
+  // After a gap of this length with a jump in the numbering of a sender, the recorder was stopped.
   static constexpr Nanoseconds kHole{1'000'000'000};
   // Time for the messages that the kernel had buffered meanwhile, which come first.
-  static constexpr Nanoseconds kHoleShowsWithin{2'000'000'000};
+  static constexpr Nanoseconds kHoleDetectedWithin{2'000'000'000};
 
   explicit RunSummary(SummaryOptions options) : options_(std::move(options)) {}
 
@@ -93,10 +93,10 @@ class RunSummary {
  private:
   // One incarnation of a node: its first health at its present rate, its last health, and its last note while a simulation
   // was present.
-  struct Life {
+  struct Incarnation {
     node_health_t first, last;
-    std::string note;
-    HostTime last_heard{};
+    std::string status_text;
+    HostTime last_received{};
   };
   static constexpr std::size_t kMaxInputs = 64;  // of one node
   struct Channel {
@@ -104,13 +104,13 @@ class RunSummary {
     SequenceTracker sequence;
   };
   // Simulated time against host time of one incarnation of the simulation.
-  struct Course {
+  struct SimProgress {
     std::int64_t first_sim_ns, first_host_ns, last_sim_ns, last_host_ns;
   };
 
   void observe(const log_info_t&);
   void observe(const node_health_t&, HostTime now);
-  void observe_course(const header_t&);
+  void observe_sim_progress(const header_t&);
   void observe_silence(HostTime now);
   void observe_gap();
 
@@ -123,11 +123,11 @@ class RunSummary {
   // Run 0: the run of the first message.
   std::unique_ptr<ClockMaps> maps_ = std::make_unique<ClockMaps>(0);
   PresentationMatcher matcher_{OwnClock(0, 0, maps_.get())};
-  std::map<std::string, std::map<std::int64_t, Life>> lives_;  // by node, by incarnation
+  std::map<std::string, std::map<std::int64_t, Incarnation>> incarnations_;  // by node, by incarnation
   std::map<std::string, std::map<std::string, Histogram>> input_age_;  // by node, by channel
   std::map<std::string, std::vector<std::int64_t>> quality_;           // by node
   std::map<std::string, Channel, std::less<>> channels_;
-  std::map<std::int64_t, Course> courses_;
+  std::map<std::int64_t, SimProgress> sim_progress_;
   std::optional<game_state_t> game_;
   std::optional<HostTime> begin_;
   HostTime now_{};

@@ -76,12 +76,12 @@ Json game(const RunSummary& s) {
 
 Json contacts(const PresentationMatcher& m) {
   Json presented = Json::object(), by_modality = Json::object();
-  DebtTally sum;
+  OutcomeCounts sum;
   for (const std::string& name : senses(m)) {
     const auto it = m.modalities().find(name);
-    const DebtTally t = it == m.modalities().end() ? DebtTally{} : it->second;
+    const OutcomeCounts t = it == m.modalities().end() ? OutcomeCounts{} : it->second;
     presented[name] = t.presented;
-    by_modality[name] = {{"owed", t.owed},
+    by_modality[name] = {{"owed", t.expected},
                          {"presented", t.presented},
                          {"late", t.late},
                          {"lost", t.lost},
@@ -120,7 +120,7 @@ Json asynchrony(const PresentationMatcher& m) {
     for (auto b = a + 1; b != known.end(); ++b)
       if (a->kind != PlayoutKind::kSlow && b->kind != PlayoutKind::kSlow) out[a->name + "_" + b->name] = none;
   for (const auto& [names, soa] : m.pairs()) {
-    const Beyond beyond = beyond_thresholds(names.first, names.second, soa);
+    const BeyondThresholds beyond = count_beyond_thresholds(names.first, names.second, soa);
     const auto count = [](std::int64_t n) { return n < 0 ? Json(nullptr) : Json(n); };
     out[names.first + "_" + names.second] = {{"n", soa.count()},
                                              {"p05", ms(soa.quantile(0.05))},

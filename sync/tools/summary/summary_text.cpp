@@ -48,14 +48,14 @@ std::string contacts(const PresentationMatcher& m) {
   std::string out = line("contacts: %lld begin, %lld hit, %lld end", static_cast<long long>(m.begins()),
                          static_cast<long long>(m.hits()), static_cast<long long>(m.ends()));
   if (m.overflow() > 0)
-    out += line("%lld events or senses found no room to be matched", static_cast<long long>(m.overflow()));
+    out += line("%lld events or senses exceed the limits of the matching", static_cast<long long>(m.overflow()));
   if (m.modalities().empty()) return out;
   out += line("%-14s %9s %9s %10s %7s %7s %7s %10s %12s", "sense", "owed", "presented", "of it late", "lost",
               "stalled", "dead", "by profile", "dropped late");
   for (const auto& [name, t] : m.modalities())
     out +=
         line("%-14s %9lld %9lld %10lld %7lld %7lld %7lld %10lld %12lld", name.c_str(),
-             static_cast<long long>(t.owed), static_cast<long long>(t.presented), static_cast<long long>(t.late),
+             static_cast<long long>(t.expected), static_cast<long long>(t.presented), static_cast<long long>(t.late),
              static_cast<long long>(t.lost), static_cast<long long>(t.stalled), static_cast<long long>(t.dead),
              static_cast<long long>(t.dropped_by_profile), static_cast<long long>(t.dropped_late));
   return out;
@@ -71,7 +71,7 @@ std::string asynchrony(const PresentationMatcher& m) {
   std::string out = line("%-22s %7s %8s %8s %8s %8s  %s", "asynchrony/ms", "n", "p05", "p50", "p95", "+-",
                          "beyond thresholds: least, all");
   for (const auto& [names, soa] : m.pairs()) {
-    const Beyond beyond = beyond_thresholds(names.first, names.second, soa);
+    const BeyondThresholds beyond = count_beyond_thresholds(names.first, names.second, soa);
     const auto count = [](std::int64_t n) { return n < 0 ? std::string("-") : std::to_string(n); };
     out += line("%-22s %7lld %8.2f %8.2f %8.2f %8.3f  %24s, %3s", (names.first + " to " + names.second).c_str(),
                 static_cast<long long>(soa.count()), ms(soa.quantile(0.05)), ms(soa.quantile(0.5)),
@@ -97,11 +97,11 @@ std::string to_text(const RunSummary& s) {
            s.scene().empty() ? "scene not said" : s.scene().c_str(), s.recorded_seconds(), s.realtime_factor(),
            static_cast<long long>(s.seed()), s.git().empty() ? "" : ", git ", s.git().c_str());
   if (s.damaged_regions() > 0)
-    out += line("the log is damaged in %lld places; what lies there is not counted",
+    out += line("the log is damaged in %lld places, which are not counted",
                 static_cast<long long>(s.damaged_regions()));
   if (s.holes_seconds() > 0)
     out +=
-        line("the log has a hole of %.1f s; who seems stalled or dead then may not have been", s.holes_seconds());
+        line("the log has a hole of %.1f s; nodes may falsely appear stalled or dead there", s.holes_seconds());
   for (const std::string& warning : s.warnings()) out += line("%.380s", warning.c_str());
   return out + "\n" + nodes(s) + "\n" + game(s) + contacts(s.matcher()) + absent(s) + "\n" + asynchrony(s.matcher()) + "\n" +
          bus(s);

@@ -12,7 +12,7 @@ using namespace tactus::audio;
 namespace {
 
 constexpr sync::Nanoseconds kMs{1'000'000};
-const sync::LatePolicy kLate{sync::Late::kPlayWithFade, sync::Nanoseconds(50'000), 30 * kMs};
+const sync::LatePolicy kLate{sync::LateRule::kPlayWithFade, sync::Nanoseconds(50'000), 30 * kMs};
 
 sync::HostTime at_ms(int ms) { return sync::host_time(1'000'000'000) + ms * kMs; }
 

@@ -86,7 +86,7 @@ class Subscriber {
  private:
   void take(std::size_t i, std::int64_t ahead) {
     const auto m = sync::parse_datagram({bytes_[i].data(), messages_[i].msg_len});
-    if (!m || !m->whole) return;
+    if (!m || !m->complete) return;
     std::int64_t arrived = 0;
     for (cmsghdr* c = CMSG_FIRSTHDR(&messages_[i].msg_hdr); c != nullptr; c = CMSG_NXTHDR(&messages_[i].msg_hdr, c))
       if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SCM_TIMESTAMPNS) {

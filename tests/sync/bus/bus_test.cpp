@@ -52,7 +52,7 @@ TEST_CASE("Published messages arrive once, stamped and in order") {
     CHECK(h.incarnation == bus.identity().incarnation);
     CHECK(h.publish_time_ns > 0);
     CHECK(h.sim_time_ns == -1);
-    CHECK(r->order == (i == 0 ? sync::Arrival::kNewIncarnation : sync::Arrival::kNew));
+    CHECK(r->sequence_status == (i == 0 ? sync::SequenceStatus::kNewIncarnation : sync::SequenceStatus::kNew));
   }
   CHECK_FALSE(queue.pop());
   CHECK(queue.count().sequence.gaps() == 0);
@@ -72,7 +72,7 @@ TEST_CASE("Receivers count a new incarnation as a restart and not as lost messag
     REQUIRE(r);
     CHECK(r->message.header.seq == (i < 5 ? i : i - 5));
     CHECK((r->message.header.incarnation == before) == (i < 5));
-    CHECK((r->order == sync::Arrival::kNewIncarnation) == (i == 0 || i == 5));
+    CHECK((r->sequence_status == sync::SequenceStatus::kNewIncarnation) == (i == 0 || i == 5));
   }
   CHECK(bus.identity().incarnation > 0);
   CHECK(queue.count().sequence.gaps() == 0);

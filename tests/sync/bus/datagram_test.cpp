@@ -34,7 +34,7 @@ TEST_CASE("A short LCM message is parsed into channel and payload") {
   REQUIRE(m);
   CHECK(m->channel == "CONTACTS");
   CHECK(Bytes(m->data.begin(), m->data.end()) == bytes_of("abc"));
-  CHECK(m->whole);
+  CHECK(m->complete);
   CHECK(m->fits());
 
   SECTION("the payload may be empty") {
@@ -55,7 +55,7 @@ TEST_CASE("Only the first fragment of a long message is parsed, and it does not 
   const auto m = parse_datagram(first);
   REQUIRE(m);
   CHECK(m->channel == "BIG");
-  CHECK_FALSE(m->whole);
+  CHECK_FALSE(m->complete);
   CHECK_FALSE(m->fits());
   const Bytes second = fragment(1, "BIG and more");
   CHECK_FALSE(parse_datagram(second));
@@ -68,8 +68,8 @@ TEST_CASE("Datagrams that are not valid LCM are rejected") {
   CHECK(nothing(bytes_of("LC02" + kNumber)));
   CHECK(nothing(bytes_of("LC02" + kNumber + "NO_END")));
   CHECK(nothing(short_message("", "no channel")));
-  CHECK(nothing(short_message(std::string(kLongestChannel + 1, 'C'), "")));
-  CHECK_FALSE(nothing(short_message(std::string(kLongestChannel, 'C'), "")));
+  CHECK(nothing(short_message(std::string(kMaxChannelBytes + 1, 'C'), "")));
+  CHECK_FALSE(nothing(short_message(std::string(kMaxChannelBytes, 'C'), "")));
   CHECK(nothing(bytes_of("LC04" + kNumber + std::string("A\0", 2))));
 }
 

@@ -20,9 +20,9 @@ input_health_t input(const std::string& channel, std::int32_t gaps = 0, std::int
   return i;
 }
 
-node_health_t with_inputs(int n, std::size_t note) {
+node_health_t with_inputs(int n, std::size_t note_bytes) {
   node_health_t m{};
-  m.node = "visual_node_front", m.modality = "visual", m.note = std::string(note, 'n');
+  m.node = "visual_node_front", m.modality = "visual", m.note = std::string(note_bytes, 'n');
   for (histogram_t* h : {&m.tick, &m.wake}) h->bins.resize(Histogram::kBins), h->bin_count = Histogram::kBins;
   for (int i = 0; i < n; ++i) add_input(m, input("CHANNEL_OF_A_NAME_" + std::to_string(i)));
   return m;
@@ -44,8 +44,8 @@ TEST_CASE("Two subscriptions to one channel are one health input with the larger
 
 TEST_CASE("A health message with many inputs and a long note fits a datagram and keeps the first inputs") {
   for (int n = 0; n < 60; ++n)
-    for (const std::size_t note : {0u, 70u, 140u}) {
-      node_health_t m = with_inputs(n, note);
+    for (const std::size_t note_bytes : {0u, 70u, 140u}) {
+      node_health_t m = with_inputs(n, note_bytes);
       const bool fits = static_cast<std::size_t>(m.getEncodedSize()) <= channels::kMaxMessageBytes;
       fit(m, channels::kMaxMessageBytes);
       REQUIRE(static_cast<std::size_t>(m.getEncodedSize()) <= channels::kMaxMessageBytes);

@@ -21,10 +21,10 @@ TEST_CASE("A batch rejects messages beyond its limit and keeps the rest in order
   CHECK(batch.bytes() == kMax);
   CHECK(batch[0].channel == "A");
   CHECK(batch[0].data.size() == 50);
-  CHECK(batch[0].whole);
+  CHECK(batch[0].complete);
   CHECK(batch[1].channel == "BB");
   CHECK(batch[1].data.size() == 47);
-  CHECK_FALSE(batch[1].whole);
+  CHECK_FALSE(batch[1].complete);
   CHECK(batch[1].arrival == kStart + Nanoseconds(1));
   batch.clear();
   CHECK(batch.size() == 0);

@@ -45,9 +45,9 @@ TEST_CASE("A raw queue rejects oversized messages and stores nothing while it is
   queue.accept(large.data(), channels::kMaxMessageBytes, at_ms(0));
   CHECK(read_all(queue).size() == 1);
   put(queue, 1);
-  queue.set_wanted(false);
+  queue.set_enabled(false);
   put(queue, 2);
-  queue.set_wanted(true);
+  queue.set_enabled(true);
   put(queue, 3);
   CHECK(read_all(queue) == std::vector{3});
 }

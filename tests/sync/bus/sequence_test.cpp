@@ -10,7 +10,7 @@
 #include <vector>
 
 using namespace tactus;
-using sync::Arrival;
+using sync::SequenceStatus;
 using sync::SequenceTracker;
 
 namespace {
@@ -27,9 +27,9 @@ header_t message(std::int64_t seq, std::int64_t publish_ms, std::int64_t incarna
 
 TEST_CASE("Missing sequence numbers are counted as gaps") {
   SequenceTracker t;
-  CHECK(t.observe(message(10, 0)) == Arrival::kNewIncarnation);  // joined late: no gap
-  CHECK(t.observe(message(11, 1)) == Arrival::kNew);
-  CHECK(t.observe(message(15, 5)) == Arrival::kNew);
+  CHECK(t.observe(message(10, 0)) == SequenceStatus::kNewIncarnation);  // joined late: no gap
+  CHECK(t.observe(message(11, 1)) == SequenceStatus::kNew);
+  CHECK(t.observe(message(15, 5)) == SequenceStatus::kNew);
   CHECK(t.gaps() == 3);
   CHECK(t.messages() == 3);
 }
@@ -39,7 +39,7 @@ TEST_CASE("A late message closes its gap, a repeated one does not") {
   t.observe(message(0, 0));
   t.observe(message(3, 3));
   REQUIRE(t.gaps() == 2);
-  CHECK(t.observe(message(1, 1)) == Arrival::kOld);
+  CHECK(t.observe(message(1, 1)) == SequenceStatus::kOld);
   CHECK(t.gaps() == 1);
   SECTION("repeated messages are old and change no gap") {
     CHECK(t.observe(message(1, 1)) == Arrival::kOld);
@@ -52,17 +52,17 @@ TEST_CASE("A late message closes its gap, a repeated one does not") {
 TEST_CASE("A restart is not a gap") {
   SequenceTracker t;
   t.observe(message(1000, 0, 7));
-  CHECK(t.observe(message(0, 1, 8)) == Arrival::kNewIncarnation);
-  CHECK(t.observe(message(1, 2, 8)) == Arrival::kNew);
+  CHECK(t.observe(message(0, 1, 8)) == SequenceStatus::kNewIncarnation);
+  CHECK(t.observe(message(1, 2, 8)) == SequenceStatus::kNew);
   CHECK(t.gaps() == 0);
 }
 
 TEST_CASE("A clock that steps back by more than a second within an incarnation is a new epoch") {
   SequenceTracker t;
   t.observe(message(500, 60'000));
-  CHECK(t.observe(message(499, 59'500)) == Arrival::kOld);
-  CHECK(t.observe(message(3, 100)) == Arrival::kNewEpoch);
-  CHECK(t.observe(message(4, 101)) == Arrival::kNew);
+  CHECK(t.observe(message(499, 59'500)) == SequenceStatus::kOld);
+  CHECK(t.observe(message(3, 100)) == SequenceStatus::kNewEpoch);
+  CHECK(t.observe(message(4, 101)) == SequenceStatus::kNew);
   CHECK(t.gaps() == 0);
 }
 
@@ -85,7 +85,7 @@ TEST_CASE("A message with a sequence number far ahead does not block later messa
   SECTION("with a stamp up to a second ahead, messages are accepted after about 900") {
     CHECK(t.observe(message(1'000'000, 910)) == Arrival::kNew);
     int old = 0;
-    for (int i = 1; i < 1100; ++i) old += t.observe(message(10 + i, 10 + i)) == Arrival::kOld;
+    for (int i = 1; i < 1100; ++i) old += t.observe(message(10 + i, 10 + i)) == SequenceStatus::kOld;
     CHECK(old <= 903);
   }
 }
@@ -93,8 +93,8 @@ TEST_CASE("A message with a sequence number far ahead does not block later messa
 TEST_CASE("A repeated burst is old, also if it is long") {
   SequenceTracker t;
   for (int i = 0; i < 500; ++i) t.observe(message(i, i));
-  for (int i = 0; i < 500; ++i) REQUIRE(t.observe(message(i, i)) == Arrival::kOld);
-  CHECK(t.observe(message(500, 500)) == Arrival::kNew);
+  for (int i = 0; i < 500; ++i) REQUIRE(t.observe(message(i, i)) == SequenceStatus::kOld);
+  CHECK(t.observe(message(500, 500)) == SequenceStatus::kNew);
 }
 
 TEST_CASE("When there are too many senders, the one that was silent longest is forgotten and counted") {
@@ -105,8 +105,8 @@ TEST_CASE("When there are too many senders, the one that was silent longest is f
     if (source == 200) t.observe(message(2, 2, 7, -1));
   }
   CHECK(t.forgotten() == 45);
-  CHECK(t.observe(message(3, 3, 7, -1)) == Arrival::kNew);
-  CHECK(t.observe(message(2, 2, 7, 0)) == Arrival::kNewIncarnation);
+  CHECK(t.observe(message(3, 3, 7, -1)) == SequenceStatus::kNew);
+  CHECK(t.observe(message(2, 2, 7, 0)) == SequenceStatus::kNewIncarnation);
 }
 
 TEST_CASE("Each source on a channel has its own sequence numbers") {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lcmtypes/valid.h"
-#include "sync/clock_sync/clock_agreement.h"
+#include "sync/clock_sync/clock_map_estimator.h"
 
 using namespace tactus;
 using namespace tactus::sync;
@@ -36,7 +36,7 @@ struct Pair {
   clock_probe_t ask(HostTime now) { return sent_by(a, *prober.request(now, now, nonce++), now); }
   // The answer of host b, whose clock is kAhead ahead.
   clock_probe_t answer(const clock_probe_t& request, std::int64_t arrived_ns, std::int64_t replied_ns) {
-    clock_probe_t m = *probe_answer(request, b, host_time(arrived_ns + kAhead));
+    clock_probe_t m = *probe_reply(request, b, host_time(arrived_ns + kAhead));
     m.reply_sent_ns = replied_ns + kAhead;
     return sent_by(b, m, host_time(replied_ns + kAhead));
   }
@@ -127,10 +127,10 @@ TEST_CASE("Probes keep their spacing after a stall") {
 TEST_CASE("Only other clocks of the same run answer a request") {
   Pair p;
   const clock_probe_t request = p.ask(host_time(0));
-  CHECK(probe_answer(request, host(2), host_time(5)));
-  CHECK_FALSE(probe_answer(request, host(1), host_time(5)));
-  CHECK_FALSE(probe_answer(request, host(2, 8), host_time(5)));
-  CHECK_FALSE(probe_answer(p.answer(request, 10, 20), host(3), host_time(5)));
+  CHECK(probe_reply(request, host(2), host_time(5)));
+  CHECK_FALSE(probe_reply(request, host(1), host_time(5)));
+  CHECK_FALSE(probe_reply(request, host(2, 8), host_time(5)));
+  CHECK_FALSE(probe_reply(p.answer(request, 10, 20), host(3), host_time(5)));
 }
 
 TEST_CASE("A forged reply is rejected and changes nothing") {
@@ -186,12 +186,12 @@ TEST_CASE("A wave with contradictory replies is dropped and counted") {
 TEST_CASE("Every other clock has a valid map until it has been silent for 30 s") {
   ClockAgreement agreement(1);
   const auto heard = [&](std::int32_t clock, std::int64_t ms, std::int64_t offset) {
-    return agreement.add({clock, {host_time(ms * kMs), Nanoseconds(offset), Nanoseconds(50'000)}, Nanoseconds(90'000), 8});
+    return map_estimator.add({clock, {host_time(ms * kMs), Nanoseconds(offset), Nanoseconds(50'000)}, Nanoseconds(90'000), 8});
   };
   heard(2, 1000, kAhead);
   heard(3, 1000, -5);
   heard(2, 3000, kAhead + 10);
-  auto maps = agreement.maps(host_time(3500 * kMs));
+  auto maps = map_estimator.maps(host_time(3500 * kMs));
   REQUIRE(maps.size() == 2);
   for (clock_map_t& m : maps) {
     m.header = {-1, 5, 1, 7, 1, 1, 0};
@@ -200,7 +200,7 @@ TEST_CASE("Every other clock has a valid map until it has been silent for 30 s")
     CHECK(m.replies == 8);
   }
   CHECK(heard(2, 5000, kAhead + 900 * kMs) == OffsetTracker::Outcome::kJumped);
-  CHECK(agreement.jumps() == 1);
-  CHECK(agreement.maps(host_time(32'000 * kMs)).size() == 1);
-  CHECK(agreement.maps(host_time(36'000 * kMs)).empty());
+  CHECK(map_estimator.jumps() == 1);
+  CHECK(map_estimator.maps(host_time(32'000 * kMs)).size() == 1);
+  CHECK(map_estimator.maps(host_time(36'000 * kMs)).empty());
 }

@@ -19,7 +19,7 @@ TEST_CASE("Items leave the queue in order, and a full queue rejects the next one
 
 TEST_CASE("Items pass from one thread to another without loss") {
   constexpr int kItems = 20000;
-  HandOver<int, 16> queue;
+  SpscQueue<int, 16> queue;
   std::thread producer([&] {
     for (int i = 0; i < kItems;)
       if (queue.push(i)) ++i;

@@ -31,9 +31,9 @@ TEST_CASE("A clock line and its inverse agree within 2 ns for any offset") {
     const auto at = static_cast<std::int64_t>(any(0, 1e17)), offset = static_cast<std::int64_t>(any(-1e17, 1e17));
     const ClockLine map(line(1, 2, at, offset, any(-0.002, 0.002)));
     const HostTime to = host_time(at + static_cast<std::int64_t>(any(-1e12, 1e12)));
-    const HostTime back = map.from_of(map.to_of(to).time).time;
+    const HostTime back = map.of_to_target(map.target_to_of(to).time).time;
     REQUIRE(std::abs((back - to).count()) <= 2);
-    REQUIRE(map.to_of(to).uncertainty > Nanoseconds(50'000));
+    REQUIRE(map.target_to_of(to).uncertainty > Nanoseconds(50'000));
   }
 }
 

@@ -35,16 +35,16 @@ TEST_CASE("The first simulation is tracked, a new one replaces it and the old on
 
 TEST_CASE("A late message does not move the map back") {
   SimClockTracker f(1);
-  f.follow(header(1, 10 * kMs), {5 * kMs, 10 * kMs, 1}, host_time(10 * kMs));
-  f.follow(header(1, 9 * kMs), {4 * kMs, 9 * kMs, 0.5}, host_time(11 * kMs));
+  f.track(header(1, 10 * kMs), {5 * kMs, 10 * kMs, 1}, host_time(10 * kMs));
+  f.track(header(1, 9 * kMs), {4 * kMs, 9 * kMs, 0.5}, host_time(11 * kMs));
   CHECK(f.map(host_time(11 * kMs))->sim == sim_time(5 * kMs));
   CHECK(f.map(host_time(11 * kMs))->rate == 1);
 }
 
 TEST_CASE("A forged simulation clock does not move the map") {
   SimClockTracker f(1);
-  const auto hear = [&](std::int64_t ms, sim_clock_t clock) {
-    return f.follow(header(1, ms * kMs), clock, host_time(ms * kMs));
+  const auto receive = [&](std::int64_t ms, sim_clock_t clock) {
+    return f.track(header(1, ms * kMs), clock, host_time(ms * kMs));
   };
   const auto honest = [](std::int64_t ms, double rate = 1) { return sim_clock_t{ms * kMs, ms * kMs, rate}; };
   for (int ms = 5000; ms < 5100; ++ms) REQUIRE(hear(ms, honest(ms)) != TrackResult::kIgnore);
@@ -70,8 +70,8 @@ TEST_CASE("A forged simulation clock does not move the map") {
   }
   SECTION("a forged first message is corrected within 0.3 s") {
     SimClockTracker late(1);
-    late.follow(header(1, 0), {3'600'000 * kMs, 0, 1}, host_time(0));
-    for (int ms = 1; ms <= 301; ++ms) late.follow(header(1, ms * kMs), honest(ms), host_time(ms * kMs));
+    late.track(header(1, 0), {3'600'000 * kMs, 0, 1}, host_time(0));
+    for (int ms = 1; ms <= 301; ++ms) late.track(header(1, ms * kMs), honest(ms), host_time(ms * kMs));
     CHECK(late.map(host_time(301 * kMs))->to_sim(host_time(301 * kMs)) == sim_time(301 * kMs));
   }
 }

@@ -330,10 +330,10 @@ TEST_CASE("A delayed message does not change the estimated clock of its sender")
   for (int ms = 0; ms < 500; ++ms) {
     const HostTime sent = host_time(kEpoch + ms * kMs) + kBehind, arrived = sent + kWay;
     contact_frame_t page = page_at(ms, 0, 1, ms);
-    contact_events_t told = events_at(ms, {event(1 + ms / 100, ms / 100 * 100)}, ms);
-    page.header.clock = told.header.clock = kTheirs;
+    contact_events_t message = events_at(ms, {event(1 + ms / 100, ms / 100 * 100)}, ms);
+    page.header.clock = message.header.clock = kTheirs;
     snapshots.push(page, arrived, stack, nullptr);
-    events.push(told, arrived, stack, nullptr);
+    events.push(message, arrived, stack, nullptr);
     const auto observe = [&](const header_t& h, HostTime at) {
       ++heard;
       CHECK_FALSE(clock.observe(h, at));

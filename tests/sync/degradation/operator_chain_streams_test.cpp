@@ -165,7 +165,7 @@ TEST_CASE("The times and the low-pass of a rule restart with the world") {
 
   OperatorChain smooth = stack_of("lowpass=\"1Hz\"");
   const auto force = [&](double value, std::int64_t ms) {
-    return smooth.changed(Quantity::kForce, 7, 0, value, sim_time(ms * kMs), -1, -1, -1, -1);
+    return smooth.degraded_value(Quantity::kForce, 7, 0, value, sim_time(ms * kMs), -1, -1, -1, -1);
   };
   CHECK(force(3, 10'000) == 3);
   CHECK(force(1, 0) == 1);

@@ -40,7 +40,7 @@ TEST_CASE("A rule for another modality changes nothing") {
   const StreamItem i = event(1, 0);
   const Decision v = stack.decide(i);
   CHECK_FALSE(v.dropped());
-  CHECK_FALSE(v.touched);
+  CHECK_FALSE(v.evaluated);
   CHECK(v.release == i.arrival);
 }
 
@@ -105,7 +105,7 @@ TEST_CASE("The same seed gives the same decisions for any order of arrival") {
   for (const auto& [key, v] : a) {
     CHECK(v.why == b.at(key).why);
     CHECK(v.release == b.at(key).release);
-    CHECK(v.twice == b.at(key).twice);
+    CHECK(v.duplicated == b.at(key).duplicated);
     differ += v.why != c.at(key).why;
     lost += v.dropped();
   }
@@ -170,13 +170,13 @@ TEST_CASE("Rules of one modality apply one after the other") {
   OperatorChain stack(p, "audio", {});
   const StreamItem i = event(1, 0);
   CHECK(held_s(stack.decide(i), i) == Approx(0.030));
-  CHECK(stack.changed(Quantity::kForce, 1, 0, 0.8, at(0), -1, -1, -1, -1) == Approx(2));  // 1.6, rounded
-  CHECK(stack.changed(Quantity::kVelocity, 1, 0, 0.8, at(0), -1, -1, -1, -1) == 0.8);
+  CHECK(stack.degraded_value(Quantity::kForce, 1, 0, 0.8, at(0), -1, -1, -1, -1) == Approx(2));  // 1.6, rounded
+  CHECK(stack.degraded_value(Quantity::kVelocity, 1, 0, 0.8, at(0), -1, -1, -1, -1) == 0.8);
 }
 
 TEST_CASE("Within a rule values are quantised first, then scaled") {
   OperatorChain stack = stack_of("quantise=\"1N\" gain=\"0.5\"");
-  CHECK(stack.changed(Quantity::kForce, 1, 0, 2.8, at(0), -1, -1, -1, -1) == Approx(1.5));
+  CHECK(stack.degraded_value(Quantity::kForce, 1, 0, 2.8, at(0), -1, -1, -1, -1) == Approx(1.5));
 }
 
 TEST_CASE("Loss on the wire is independent for each message") {

@@ -62,7 +62,7 @@ std::uint64_t fingerprint(const std::vector<Decision>& all) {
   std::uint64_t hash = 0xcbf29ce484222325ull;
   for (const Decision& v : all)
     for (const std::int64_t word :
-         {std::int64_t{static_cast<std::int8_t>(v.why)}, to_ns(v.release), v.shift.count(), std::int64_t{v.twice}})
+         {std::int64_t{static_cast<std::int8_t>(v.why)}, to_ns(v.release), v.shift.count(), std::int64_t{v.duplicated}})
       hash = fnv1a_64(hash, &word, sizeof word);
   return hash;
 }
@@ -151,7 +151,7 @@ TEST_CASE("Reordering delays its share by the given time, and duplication double
   const auto held = held_s(all, true);
   check_share(static_cast<double>(std::count(held.begin(), held.end(), 0.010)), 0.05);
   CHECK(std::count(held.begin(), held.end(), 0.010) + std::count(held.begin(), held.end(), 0.0) == kN);
-  check_share(static_cast<double>(std::count_if(all.begin(), all.end(), [](const Decision& v) { return v.twice; })),
+  check_share(static_cast<double>(std::count_if(all.begin(), all.end(), [](const Decision& v) { return v.duplicated; })),
               0.03);
 }
 
@@ -190,7 +190,7 @@ TEST_CASE("Repeated messages do not change any decision") {
       events.push(m, host_time(ms * 1'000'000ll), stack, &decisions);
     }
     std::vector<Decision> all;
-    for (const DecisionRecord& d : decisions) all.push_back(d.verdict);
+    for (const DecisionRecord& d : decisions) all.push_back(d.decision);
     return all;
   };
   const auto once = decided(1), often = decided(50);

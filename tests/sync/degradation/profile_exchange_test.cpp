@@ -44,7 +44,7 @@ std::vector<degradation_t> pages(const std::string& text, std::int64_t generatio
 std::optional<ProfileInForce> take_all(ProfileReceiver& r, const std::vector<degradation_t>& messages) {
   std::optional<ProfileInForce> whole;
   for (const degradation_t& m : messages)
-    if (auto w = r.take(m)) whole = std::move(w);
+    if (auto w = r.push(m)) whole = std::move(w);
   return whole;
 }
 
@@ -85,29 +85,29 @@ TEST_CASE("An invalid profile is rejected as a whole and does not block a valid 
 TEST_CASE("A page of an incomplete profile does not block other profiles") {
   ProfileReceiver r;
   degradation_t forged = pages(profile(100), std::numeric_limits<std::int64_t>::max()).front();
-  CHECK_FALSE(r.take(forged));
+  CHECK_FALSE(r.push(forged));
   auto messages = pages(profile(80), 9);
   for (std::size_t i = 0; i < messages.size(); ++i) {
-    const auto whole = r.take(messages[i]);
+    const auto whole = r.push(messages[i]);
     CHECK(whole.has_value() == (i + 1 == messages.size()));
     forged.hash += 1;
-    if (i % 2 == 0) CHECK_FALSE(r.take(forged));
+    if (i % 2 == 0) CHECK_FALSE(r.push(forged));
   }
 }
 
 TEST_CASE("The active profile is stored for a restart within the same run") {
   const Folder folder;
-  CHECK_FALSE(kept_profile(folder.path, 4));
+  CHECK_FALSE(load_profile(folder.path, 4));
   const std::string text = profile(3);
   const ProfileInForce p{text, fnv1a_64(text.data(), text.size()), 12, sim_time(34), {}};
-  keep_profile(folder.path, p, 4);
-  const auto kept = kept_profile(folder.path, 4);
+  store_profile(folder.path, p, 4);
+  const auto kept = load_profile(folder.path, 4);
   REQUIRE(kept);
   CHECK(kept->text == text);
   CHECK(kept->hash == p.hash);
   CHECK(kept->generation == 12);
   CHECK(kept->start == sim_time(34));
-  CHECK_FALSE(kept_profile(folder.path, 5));
+  CHECK_FALSE(load_profile(folder.path, 5));
   std::ofstream(folder.path / "profile.in_force", std::ios::app) << " ";
-  CHECK_FALSE(kept_profile(folder.path, 4));
+  CHECK_FALSE(load_profile(folder.path, 4));
 }

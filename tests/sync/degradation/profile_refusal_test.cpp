@@ -129,9 +129,9 @@ TEST_CASE("Operators of another known modality are rejected, an unknown modality
 TEST_CASE("A node parses the operators that it declares, and accepts others without a value") {
   const DeclaredOutput wind{"wind", {{"response", "s", 0.1, 5, ""}, {"swirl", "Hz", 1, 9, ""}}};
   const std::string rule = "<profile><degrade modality=\"wind\" swirl=\"2Hz\" hum=\"3\"/></profile>";
-  const OutputValues asked = parse_profile(rule, "p.xml", wind).rules.front().output;
-  CHECK(asked.value("swirl") == 2);
-  CHECK(asked.operators() == std::vector<std::string>{"swirl", "hum"});
+  const OutputValues output = parse_profile(rule, "p.xml", wind).rules.front().output;
+  CHECK(output.value("swirl") == 2);
+  CHECK(output.operators() == std::vector<std::string>{"swirl", "hum"});
   CHECK_NOTHROW(parse_profile(rule, "p.xml"));  // without the operators of the node, any name is accepted
   CHECK_THROWS_WITH(parse_profile("<profile><degrade modality=\"wind\" swirl=\"20Hz\"/></profile>", "p.xml", wind),
                     Contains("between 1 and 9 Hz"));

@@ -78,7 +78,7 @@ TEST_CASE("A damaged log is rendered to its end, with its undamaged messages") {
       CHECK(feed.over(Nanoseconds(20'000'000)));
       // Sequence numbers and send times are damaged, too. kContradictions messages must contradict a wrong value before it is discarded
       // (sync/bus/sequence.h). A log is damaged in up to eight places.
-      CHECK(missing.size() <= 8 * SequenceTracker::kContradictions);
+      CHECK(missing.size() <= 8 * SequenceTracker::kMaxContradictions);
       missed_in_all += missing.size();
     } catch (const std::runtime_error&) {
       ++refused;

@@ -37,7 +37,7 @@ TEST_CASE("Events wait up to a limit while the disk is full, further ones are co
     writer.write(2 + i, "A", kData);
     writer.flush();
   }
-  CHECK(writer.trouble() == "No space left on device");
+  CHECK(writer.error() == "No space left on device");
   CHECK(writer.lost() == 15);
   CHECK(read_all(state->bytes).size() == 1);
 
@@ -45,7 +45,7 @@ TEST_CASE("Events wait up to a limit while the disk is full, further ones are co
   writer.flush();
   writer.write(100, "A", kData);
   writer.flush();
-  CHECK(writer.trouble().empty());
+  CHECK(writer.error().empty());
   const auto events = read_all(state->bytes);
   REQUIRE(events.size() == 12);
   CHECK(events.back().number == 11);

@@ -24,23 +24,23 @@ TEST_CASE("The error for an unreadable log names its path") {
 TEST_CASE("A log that is truncated while it is read ends the program with an error message") {
   const std::filesystem::path path = std::filesystem::temp_directory_path() / ("cut_" + std::to_string(getpid()));
   std::ofstream(path) << std::string(1 << 20, 'x');
-  int said[2];
-  REQUIRE(pipe(said) == 0);
+  int output_pipe[2];
+  REQUIRE(pipe(output_pipe) == 0);
   const pid_t child = fork();
   if (child == 0) {
-    dup2(said[1], STDERR_FILENO);
+    dup2(output_pipe[1], STDERR_FILENO);
     const MappedLog file(path);
     std::filesystem::resize_file(path, 100);
     std::int64_t sum = 0;
     for (const std::uint8_t byte : file.bytes()) sum += byte;
     _exit(sum == 0 ? 42 : 43);
   }
-  close(said[1]);
+  close(output_pipe[1]);
   int status = 0;
   REQUIRE(waitpid(child, &status, 0) == child);
   char text[256] = {};
-  CHECK(read(said[0], text, sizeof text - 1) > 0);
-  close(said[0]);
+  CHECK(read(output_pipe[0], text, sizeof text - 1) > 0);
+  close(output_pipe[0]);
   std::filesystem::remove(path);
   CHECK(WIFEXITED(status));
   CHECK(WEXITSTATUS(status) == 1);

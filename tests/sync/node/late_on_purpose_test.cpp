@@ -53,13 +53,13 @@ TEST_CASE("An event with a deliberate delay is not lost before the delay has pas
   }
   SECTION("an event that is never reported is lost after the delay") {
     f.matcher.advance(f.at(4900));
-    CHECK(f.tally("audio").owed == 0);  // 1 s and 3 s have not passed
+    CHECK(f.tally("audio").expected == 0);  // 1 s and 3 s have not passed
     f.matcher.advance(f.at(5100));
     CHECK(f.tally("audio").lost == 1);
   }
   SECTION("an event is not expected if the log ends before its time") {
     f.matcher.finish(f.at(3500));
-    CHECK(f.tally("audio").owed == 0);
+    CHECK(f.tally("audio").expected == 0);
     CHECK(f.tally("visual").presented == 1);
   }
   CHECK(f.tally("visual").lost == 0);
@@ -67,7 +67,7 @@ TEST_CASE("An event with a deliberate delay is not lost before the delay has pas
 
 TEST_CASE("After a long delay is removed, events are settled after the usual time again") {
   MatcherFixture f;
-  const auto say = [&](double ms, double delay_ms) {
+  const auto publish = [&](double ms, double delay_ms) {
     playout_t m{};
     m.header = MatcherFixture::health_message("sync_node", "", 0, ms).header;
     m.entries = {{"audio", static_cast<std::int64_t>(delay_ms * 1e6), 0, -1}};
@@ -78,11 +78,11 @@ TEST_CASE("After a long delay is removed, events are settled after the usual tim
     for (double ms = from; ms < to; ms += 100) f.matcher.advance(f.at(ms));
   };
   f.healths("audio_node", "audio", kHit, 0, 300'000);
-  say(0, 20'000);
+  publish(0, 20'000);
   pass(0, 10'000);  // the report covers half a second by now
-  say(10'000, 0);
+  publish(10'000, 0);
   pass(10'000, 25'000);
   f.event(1, 25'000);
   f.matcher.advance(f.at(26'100));
-  CHECK(f.tally("audio").owed == 1);
+  CHECK(f.tally("audio").expected == 1);
 }

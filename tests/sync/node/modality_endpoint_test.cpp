@@ -40,7 +40,7 @@ TEST_CASE("Messages that arrive while a tick reads its inputs are processed in t
   // Sent before the tick, and during the reads: sync/bus/bus.cpp stamps a message with its time of arrival when it reads it late.
   for (const std::int64_t ms : {-1, 3, 7}) {
     const auto bytes = encode(frame(sender, 10 + ms, turn + ms * kMs));
-    node.bus().hear(channels::kContacts, bytes, turn + ms * kMs + kMs / 10);
+    node.bus().on_message(channels::kContacts, bytes, turn + ms * kMs + kMs / 10);
   }
   sense.step(turn);
   int heard = 0;

@@ -71,7 +71,7 @@ OfflineOptions of(const std::string& log) {
 int profiles_heard(const std::string& log, NodeOptions options, bool as_recorded = false) {
   OfflineOptions of_log = of(log);
   of_log.as_recorded = as_recorded;
-  Offline offline(of_log, {}, kRate_Hz, HostTime{});
+  OfflineInput offline(of_log, {}, kRate_Hz, HostTime{});
   offline.adapt(options);
   CHECK(options.run_id == 77);
   CHECK(options.bus.memory);
@@ -117,9 +117,9 @@ TEST_CASE("A rendering that stops early leaves no file, a complete one leaves co
   report.event_id = 4, report.presented_ns = 9, report.scheduled_ns = 8;
   for (const bool stopped : {true, false}) {
     {
-      Offline offline(options, {}, kRate_Hz, HostTime{});
+      OfflineInput offline(options, {}, kRate_Hz, HostTime{});
       Bus bus(Identity::fresh("audio_node", 77), offline.feed().bus());
-      offline.note("audio", report);
+      offline.record_outcome("audio", report);
       offline.next(bus);
       if (stopped) CHECK_THROWS_WITH(offline.finish(1, HostTime{}), Contains("stopped before"));
       while (!stopped && !offline.over()) offline.next(bus);
@@ -136,21 +136,21 @@ TEST_CASE("An output path that is the log itself is rejected, also through a lin
   const std::string log = log_in(folder), before = text_of(log);
   std::filesystem::create_symlink(log, folder.file("link.csv"));
   for (const std::string& path : {log, folder.file("link.csv")}) {
-    CHECK_THROWS_WITH(Offline(of(log), {{path, "--trace"}}, kRate_Hz, HostTime{}),
+    CHECK_THROWS_WITH(OfflineInput(of(log), {{path, "--trace"}}, kRate_Hz, HostTime{}),
                       Contains("is the log itself") && Contains("--trace"));
     OfflineOptions options = of(log);
     options.presented = path;
-    CHECK_THROWS_WITH(Offline(options, {}, kRate_Hz, HostTime{}), Contains("--presented"));
+    CHECK_THROWS_WITH(OfflineInput(options, {}, kRate_Hz, HostTime{}), Contains("--presented"));
   }
   CHECK(text_of(log) == before);
-  const Offline offline(of(log), {}, kRate_Hz, HostTime{});
-  CHECK_NOTHROW(offline.expect_rate(kRate_Hz));
-  CHECK_THROWS_WITH(offline.expect_rate(50), Contains("--set rate=50"));
+  const OfflineInput offline(of(log), {}, kRate_Hz, HostTime{});
+  CHECK_NOTHROW(offline.require_rate(kRate_Hz));
+  CHECK_THROWS_WITH(offline.require_rate(50), Contains("--set rate=50"));
 }
 
 TEST_CASE("The progress of a rendering is reported once a second") {
   const Folder folder;
-  Offline offline(of(log_in(folder)), {}, kRate_Hz, HostTime{});
+  OfflineInput offline(of(log_in(folder)), {}, kRate_Hz, HostTime{});
   Bus bus(Identity::fresh("audio_node", 77), offline.feed().bus());
   CHECK(offline.progress(host_time(900'000'000)) == std::nullopt);
   for (int i = 0; i < 6; ++i) offline.next(bus);  // ticks at 0, 10, ... 50 ms
@@ -185,6 +185,6 @@ TEST_CASE("A file gets its final name only when it is complete") {
     CHECK_THROWS_WITH(AtomicFile(folder.file("no/b.csv"), "--trace"), Contains("choose another --trace"));
     AtomicFile full("/dev/full", "--trace");
     full.write("x");
-    CHECK_THROWS_WITH(full.finish(), Contains("free some disk"));
+    CHECK_THROWS_WITH(full.finish(), Contains("free disk space"));
   }
 }

@@ -48,11 +48,11 @@ TEST_CASE("calm() is the time since the loop last exceeded its share") {
       guard.tick(now, now + Nanoseconds(busy_us * 1000));
   };
   run(5000, 300);
-  CHECK(guard.calm() > Nanoseconds(4'500'000'000));
+  CHECK(guard.time_below_limit() > Nanoseconds(4'500'000'000));
   run(250, 950);
-  CHECK(guard.calm() == Nanoseconds(0));
+  CHECK(guard.time_below_limit() == Nanoseconds(0));
   run(10'200, 300);
-  CHECK(guard.calm() >= Nanoseconds(10'000'000'000 - 200'000'000));
+  CHECK(guard.time_below_limit() >= Nanoseconds(10'000'000'000 - 200'000'000));
 }
 
 TEST_CASE("Normal scheduling is reported when real-time priority is off or zero") {

@@ -30,7 +30,7 @@ TEST_CASE("A repeated change of a setting is applied once and answered each time
     CHECK(value == "1");
     ++done;
   };
-  for (int i = 0; i < 5; ++i) changes.take(change(3), apply);
+  for (int i = 0; i < 5; ++i) changes.process(change(3), apply);
   CHECK(done == 1);
   const auto replies = changes.replies();
   REQUIRE(replies.size() == 5);
@@ -44,7 +44,7 @@ TEST_CASE("A repeated change of a setting is applied once and answered each time
 
 TEST_CASE("An invalid change is rejected with the reason") {
   sync::SettingChanges changes("haptic_node", 7);
-  changes.take(change(4, "many"),
+  changes.process(change(4, "many"),
                [](const auto&, const auto&) { throw std::invalid_argument("many is no number"); });
   const auto replies = changes.replies();
   REQUIRE(replies.size() == 1);
@@ -57,10 +57,10 @@ TEST_CASE("Changes for other nodes and other runs are ignored") {
   const auto never = [](const auto&, const auto&) { FAIL("carried out"); };
   setting_change_t other = change(5);
   other.node = "audio_node";
-  changes.take(other, never);
+  changes.process(other, never);
   other = change(6);
   other.header.run_id = 8;
-  changes.take(other, never);
+  changes.process(other, never);
   CHECK(changes.replies().empty());
 }
 
@@ -68,9 +68,9 @@ TEST_CASE("Only a bounded number of changes is remembered") {
   sync::SettingChanges changes("haptic_node", 7);
   int done = 0;
   const auto apply = [&](const auto&, const auto&) { ++done; };
-  for (int id = 1; id <= 1000; ++id) changes.take(change(id), apply);
-  changes.take(change(1000), apply);  // remembered
+  for (int id = 1; id <= 1000; ++id) changes.process(change(id), apply);
+  changes.process(change(1000), apply);  // remembered
   CHECK(done == 1000);
-  changes.take(change(1), apply);  // forgotten long ago: by then no program repeats it
+  changes.process(change(1), apply);  // forgotten long ago: by then no program repeats it
   CHECK(done == 1001);
 }

@@ -63,21 +63,21 @@ TEST_CASE("Only a changed variable changes the setting, at most 100 times a seco
   SettingMaps maps("visual_node");
   maps.set({map("haptic_node.force", "visual_node.exposure", 0.5, 1)});
   maps.push(values(0, {8}));
-  CHECK(maps.take(at_ms(0)).empty());  // no tag list has defined that variable yet
+  CHECK(maps.take_changes(at_ms(0)).empty());  // no tag list has defined that variable yet
   maps.push(list("haptic_node"));
   maps.push(values(1, {7}));  // the speed
-  CHECK(maps.take(at_ms(20)).empty());
+  CHECK(maps.take_changes(at_ms(20)).empty());
   maps.push(values(0, {1, 2, 3}));
-  auto changes = maps.take(at_ms(40));
+  auto changes = maps.take_changes(at_ms(40));
   REQUIRE(changes.size() == 1);
   CHECK(changes[0].name == "exposure");
   CHECK(changes[0].value == "2.5");
-  CHECK(maps.take(at_ms(60)).empty());
+  CHECK(maps.take_changes(at_ms(60)).empty());
   maps.push(values(0, {3}));
-  CHECK(maps.take(at_ms(80)).empty());
+  CHECK(maps.take_changes(at_ms(80)).empty());
   maps.push(values(0, {4}));
-  CHECK(maps.take(at_ms(81)).empty());  // too soon
-  changes = maps.take(at_ms(90));
+  CHECK(maps.take_changes(at_ms(81)).empty());  // too soon
+  changes = maps.take_changes(at_ms(90));
   REQUIRE(changes.size() == 1);
   CHECK(changes[0].value == "3");
 }
@@ -87,7 +87,7 @@ TEST_CASE("A process whose name is a prefix of another name does not drive its s
   maps.set({map("haptic_node_lamp.force", "visual_node.exposure")});
   maps.push(list("haptic_node"));
   maps.push(values(0, {4}));
-  CHECK(maps.take(at_ms(0)).empty());
+  CHECK(maps.take_changes(at_ms(0)).empty());
 }
 
 TEST_CASE("A map to a setting that cannot be changed is disabled") {
@@ -95,8 +95,8 @@ TEST_CASE("A map to a setting that cannot be changed is disabled") {
   maps.set({map("haptic_node.force", "visual_node.width")});
   maps.push(list("haptic_node"));
   maps.push(values(0, {4}));
-  REQUIRE(maps.take(at_ms(0)).size() == 1);
-  maps.give_up("width");
+  REQUIRE(maps.take_changes(at_ms(0)).size() == 1);
+  maps.disable("width");
   CHECK_FALSE(maps.any());
 }
 

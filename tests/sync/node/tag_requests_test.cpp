@@ -46,37 +46,37 @@ TEST_CASE("A pattern with many stars is matched quickly") {
 
 TEST_CASE("A request holds for three seconds") {
   TagRequests requests(7);
-  CHECK(requests.take(request(1, {"sim_node.*"}), at_ms(0)));
-  CHECK_FALSE(requests.take(request(1, {"sim_node.*"}), at_ms(1000)));
+  CHECK(requests.push(request(1, {"sim_node.*"}), at_ms(0)));
+  CHECK_FALSE(requests.push(request(1, {"sim_node.*"}), at_ms(1000)));
   CHECK_FALSE(requests.expire(at_ms(4000)));
-  CHECK(requests.wants("sim_node.work"));
-  CHECK_FALSE(requests.wants("audio_node.work"));
+  CHECK(requests.is_requested("sim_node.work"));
+  CHECK_FALSE(requests.is_requested("audio_node.work"));
   CHECK(requests.expire(at_ms(4001)));
   CHECK_FALSE(requests.any());
-  CHECK_FALSE(requests.wants("sim_node.work"));
+  CHECK_FALSE(requests.is_requested("sim_node.work"));
 }
 
 TEST_CASE("Requests of several requesters are combined, and each expires on its own") {
   TagRequests requests(7);
-  requests.take(request(1, {"a.*"}), at_ms(0));
-  CHECK(requests.take(request(2, {"*.b"}), at_ms(2000)));
-  CHECK(requests.wants("a.c"));
-  CHECK(requests.wants("c.b"));
+  requests.push(request(1, {"a.*"}), at_ms(0));
+  CHECK(requests.push(request(2, {"*.b"}), at_ms(2000)));
+  CHECK(requests.is_requested("a.c"));
+  CHECK(requests.is_requested("c.b"));
   CHECK(requests.expire(at_ms(3500)));
-  CHECK_FALSE(requests.wants("a.c"));
-  CHECK(requests.wants("c.b"));
-  CHECK(requests.take(request(2, {"d"}), at_ms(3600)));
-  CHECK_FALSE(requests.wants("c.b"));
+  CHECK_FALSE(requests.is_requested("a.c"));
+  CHECK(requests.is_requested("c.b"));
+  CHECK(requests.push(request(2, {"d"}), at_ms(3600)));
+  CHECK_FALSE(requests.is_requested("c.b"));
 }
 
 TEST_CASE("Requests of another run and of a 65th requester are ignored") {
   TagRequests requests(7);
-  CHECK_FALSE(requests.take(request(1, {"*"}, 8), at_ms(0)));
+  CHECK_FALSE(requests.push(request(1, {"*"}, 8), at_ms(0)));
   CHECK_FALSE(requests.any());
-  for (int i = 0; i < 64; ++i) CHECK(requests.take(request(100 + i, {"x"}), at_ms(0)));
-  CHECK_FALSE(requests.take(request(999, {"*"}), at_ms(1)));
-  CHECK_FALSE(requests.wants("y"));
+  for (int i = 0; i < 64; ++i) CHECK(requests.push(request(100 + i, {"x"}), at_ms(0)));
+  CHECK_FALSE(requests.push(request(999, {"*"}), at_ms(1)));
+  CHECK_FALSE(requests.is_requested("y"));
   requests.expire(at_ms(3500));
-  CHECK(requests.take(request(999, {"*"}), at_ms(3500)));
-  CHECK(requests.wants("y"));
+  CHECK(requests.push(request(999, {"*"}), at_ms(3500)));
+  CHECK(requests.is_requested("y"));
 }

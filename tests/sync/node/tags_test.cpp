@@ -67,7 +67,7 @@ TEST_CASE("Without a request no variable is read and nothing is sent") {
   for (int ms = 0; ms < 5000; ++ms) h.step(at_ms(ms));
   CHECK(read == 0);
   CHECK(h.lists + h.messages == 0);
-  CHECK_FALSE(h.tags.wanted());
+  CHECK_FALSE(h.tags.requested());
 }
 
 TEST_CASE("A requested variable is read at every tick or at its rate, with unit and time") {
@@ -77,7 +77,7 @@ TEST_CASE("A requested variable is read at every tick or at its rate, with unit 
   h.tags.add("x", "m", &x);
   h.tags.add("n", "1", &n, 10);
   h.tags.add("other", "N", [] { return 3.0; });
-  h.tags.take(request({"node.x", "node.n"}), at_ms(0));
+  h.tags.push(request({"node.x", "node.n"}), at_ms(0));
   for (int ms = 0; ms < 2000; ++ms) {
     x = 0.5 * ms, n = ms;
     h.step(at_ms(ms));
@@ -93,18 +93,18 @@ TEST_CASE("A requested variable is read at every tick or at its rate, with unit 
   REQUIRE(ns.size() >= 19);
   for (std::size_t i = 0; i < ns.size(); ++i) REQUIRE(ns[i].value == 100.0 * static_cast<double>(i));
   CHECK(h.lists == 2);  // one list per second
-  CHECK(h.table.untold() == 0);
+  CHECK(h.table.unlisted() == 0);
 }
 
 TEST_CASE("A variable is sent until three seconds after the last request") {
   Heard h;
   double x = 1;
   h.tags.add("x", "m", &x);
-  h.tags.take(request({"*"}), at_ms(0));
+  h.tags.push(request({"*"}), at_ms(0));
   for (int ms = 0; ms < 9000; ++ms) h.step(at_ms(ms));
   CHECK(h.values.at("node.x m").size() >= 2950);
   CHECK(h.values.at("node.x m").size() <= 3001);
-  CHECK_FALSE(h.tags.wanted());
+  CHECK_FALSE(h.tags.requested());
 }
 
 TEST_CASE("With many tags each message fits a datagram and every value arrives") {
@@ -113,7 +113,7 @@ TEST_CASE("With many tags each message fits a datagram and every value arrives")
   for (std::size_t i = 0; i < variables.size(); ++i)
     h.tags.add("a_rather_long_name_of_a_variable_" + std::to_string(i), "kg m2/s2", &variables[i],
                i % 3 ? 0 : 250);
-  h.tags.take(request({"*"}), at_ms(0));
+  h.tags.push(request({"*"}), at_ms(0));
   for (int ms = 0; ms < 300; ++ms) {
     for (std::size_t i = 0; i < variables.size(); ++i) variables[i] = static_cast<double>(i) + 1e-3 * ms;
     h.step(at_ms(ms));
@@ -132,7 +132,7 @@ TEST_CASE("Values that are not finite are left out") {
   Heard h;
   double x = 0;
   h.tags.add("x", "m", &x);
-  h.tags.take(request({"*"}), at_ms(0));
+  h.tags.push(request({"*"}), at_ms(0));
   const double none = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
   for (int ms = 0; ms < 400; ++ms) {
     x = ms % 4 == 0 ? none : ms % 4 == 1 ? infinite : ms;
@@ -160,7 +160,7 @@ TEST_CASE("Values without a tag list are counted, and the number of stored lists
   Heard h;
   double x = 0;
   h.tags.add("x", "m", &x);
-  h.tags.take(request({"*"}), at_ms(0));
+  h.tags.push(request({"*"}), at_ms(0));
   h.tags.step(at_ms(0));
   h.tags.step(at_ms(60));
   tag_values_t* values = h.tags.next_values();
@@ -171,7 +171,7 @@ TEST_CASE("Values without a tag list are counted, and the number of stored lists
   const auto take = [&](const auto&, const auto&, std::int64_t, double) { ++taken; };
   table.read(*values, take);
   CHECK(taken == 0);
-  CHECK(table.untold() == 2);
+  CHECK(table.unlisted() == 2);
   tag_list_t* list = h.tags.next_list();
   REQUIRE(list);
   for (int i = 0; i < 1000; ++i) {

@@ -15,25 +15,25 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-struct Said {
+struct PublishedPage {
   std::int64_t now_ms = 0, time_ms = 0, seq = 0;
   std::int8_t group = world_state_t::NOW;
   std::vector<int> bodies;
 };
 
-world_state_t message(const Said& said) {
+world_state_t message(const PublishedPage& published) {
   world_state_t m{};
-  m.header.sim_time_ns = said.time_ms * kMs;
-  m.header.publish_time_ns = (said.now_ms + 1'000) * kMs + said.seq;
+  m.header.sim_time_ns = published.time_ms * kMs;
+  m.header.publish_time_ns = (published.now_ms + 1'000) * kMs + published.seq;
   m.header.run_id = m.header.incarnation = 1;
-  m.header.seq = said.seq;
-  m.clock = {said.now_ms * kMs, (said.now_ms + 1'000) * kMs, 1};
-  m.group = said.group;
+  m.header.seq = published.seq;
+  m.clock = {published.now_ms * kMs, (published.now_ms + 1'000) * kMs, 1};
+  m.group = published.group;
   m.pages = 1;
-  for (const int body : said.bodies) {
+  for (const int body : published.bodies) {
     body_state_t b{};
     b.body = body;
-    b.position_m.x = static_cast<double>(said.seq);  // marks the sample with its sequence number
+    b.position_m.x = static_cast<double>(published.seq);  // marks the sample with its sequence number
     b.orientation.w = 1;
     b.velocity_m_s.x = 1;
     m.bodies.push_back(b);
@@ -45,8 +45,8 @@ world_state_t message(const Said& said) {
 HostTime at(std::int64_t ms) { return host_time((ms + 1'000) * kMs); }
 
 // A correct simulation: bodies are published ahead when a visual step begins, every 17 ms, and withdrawn at any time.
-std::vector<Said> tell(std::mt19937& random, int bodies, std::int64_t length_ms) {
-  std::vector<Said> all;
+std::vector<PublishedPage> publish_randomly(std::mt19937& random, int bodies, std::int64_t length_ms) {
+  std::vector<PublishedPage> all;
   std::vector<char> ahead(static_cast<std::size_t>(bodies), 0);
   const auto which = [&](bool wanted) {
     std::vector<int> list;
@@ -54,7 +54,7 @@ std::vector<Said> tell(std::mt19937& random, int bodies, std::int64_t length_ms)
       if ((ahead[static_cast<std::size_t>(b)] != 0) == wanted) list.push_back(b);
     return list;
   };
-  const auto say = [&](std::int64_t now, std::int64_t time, std::int8_t group, std::vector<int> list) {
+  const auto publish = [&](std::int64_t now, std::int64_t time, std::int8_t group, std::vector<int> list) {
     if (!list.empty()) all.push_back({now, time, static_cast<std::int64_t>(all.size()), group, std::move(list)});
   };
   for (std::int64_t now = 0; now < length_ms; ++now) {
@@ -62,29 +62,29 @@ std::vector<Said> tell(std::mt19937& random, int bodies, std::int64_t length_ms)
     for (const int b : which(true))
       if (random() % 25 == 0) promoted.push_back(b);
     for (const int b : promoted) ahead[static_cast<std::size_t>(b)] = 0;
-    say(now, now, world_state_t::PROMOTED, promoted);
+    publish(now, now, world_state_t::PROMOTED, promoted);
     if (now % 17 != 0) continue;
-    say(now, now, world_state_t::NOW, which(false));
+    publish(now, now, world_state_t::NOW, which(false));
     for (const int b : which(false))
       if (random() % 2 == 0 && std::find(promoted.begin(), promoted.end(), b) == promoted.end())
         ahead[static_cast<std::size_t>(b)] = 1;
-    say(now, now + 17, world_state_t::AHEAD, which(true));
+    publish(now, now + 17, world_state_t::AHEAD, which(true));
   }
   return all;
 }
 
 // Valid samples of each body among those received, by their time; the rule of world_state_t to the letter.
-std::map<std::int64_t, Said> that_hold(const std::vector<Said>& came, int body) {
-  std::map<std::int64_t, Said> out;
-  const auto tells = [body](const Said& s) {
+std::map<std::int64_t, PublishedPage> that_hold(const std::vector<PublishedPage>& arrived, int body) {
+  std::map<std::int64_t, PublishedPage> out;
+  const auto contains_body = [body](const PublishedPage& s) {
     return std::find(s.bodies.begin(), s.bodies.end(), body) != s.bodies.end();
   };
-  for (const Said& s : came) {
-    if (!tells(s)) continue;
+  for (const PublishedPage& s : arrived) {
+    if (!contains_body(s)) continue;
     const bool foreseen = s.group == world_state_t::AHEAD;
     const bool taken_back =
-        foreseen && std::any_of(came.begin(), came.end(), [&](const Said& n) {
-          return tells(n) && n.group != world_state_t::AHEAD && n.seq > s.seq && n.time_ms <= s.time_ms;
+        foreseen && std::any_of(arrived.begin(), arrived.end(), [&](const PublishedPage& n) {
+          return contains_body(n) && n.group != world_state_t::AHEAD && n.seq > s.seq && n.time_ms <= s.time_ms;
         });
     if (!taken_back) out.try_emplace(s.time_ms, s);
   }
@@ -98,23 +98,23 @@ TEST_CASE("A retracted pose never returns when pages are lost, repeated and reor
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);
     constexpr int kBodies = 5;
-    const std::vector<Said> said = tell(random, kBodies, 300);
+    const std::vector<PublishedPage> published = publish_randomly(random, kBodies, 300);
     const unsigned loss = random() % 40, jitter_ms = 1 + random() % 60;
-    std::vector<std::pair<std::int64_t, Said>> wire;
-    for (const Said& s : said) {
+    std::vector<std::pair<std::int64_t, PublishedPage>> wire;
+    for (const PublishedPage& s : published) {
       if (random() % 100 < loss) continue;
       for (int copies = random() % 4 == 0 ? 2 : 1; copies > 0; --copies)
         wire.emplace_back(s.now_ms * kMs + static_cast<std::int64_t>(random() % (jitter_ms * kMs)), s);
     }
     std::stable_sort(wire.begin(), wire.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     BodyHistory history(1);
-    std::vector<Said> came;
+    std::vector<PublishedPage> arrived;
     for (std::size_t i = 0; i < wire.size(); ++i) {
       history.push(message(wire[i].second), host_time(wire[i].first + 1'000 * kMs));
-      came.push_back(wire[i].second);
+      arrived.push_back(wire[i].second);
       if (i % 7 != 0 && i + 1 != wire.size()) continue;
       for (int body = 0; body < kBodies; ++body) {
-        const auto hold = that_hold(came, body);
+        const auto hold = that_hold(arrived, body);
         for (const auto& [time_ms, sample] : hold) {
           const auto pose = history.pose(body, sim_time(time_ms * kMs));
           REQUIRE(pose.status == SampleStatus::kExact);
@@ -122,7 +122,7 @@ TEST_CASE("A retracted pose never returns when pages are lost, repeated and reor
           ++compared;
         }
         // The history holds valid samples only.
-        for (const Said& s : came) {
+        for (const PublishedPage& s : arrived) {
           if (hold.contains(s.time_ms)) continue;
           const auto status = history.pose(body, sim_time(s.time_ms * kMs)).status;
           REQUIRE(status != SampleStatus::kExact);

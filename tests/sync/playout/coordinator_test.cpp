@@ -34,7 +34,7 @@ std::map<std::string, std::int64_t> delays_ms(const std::optional<playout_t>& m)
 }
 
 void heard(PlayoutCoordinator& c, const std::string& sense, int ms, int events = 40) {
-  for (int i = 0; i < events; ++i) c.needs().add(sense, ms * kMs);
+  for (int i = 0; i < events; ++i) c.latency_demand().add(sense, ms * kMs);
 }
 
 using Delays = std::map<std::string, std::int64_t>;
@@ -44,22 +44,22 @@ using Delays = std::map<std::string, std::int64_t>;
 TEST_CASE("A coordinator publishes the delay of each modality ten times a second") {
   PlayoutCoordinator c(5, plan());
   heard(c, "audio", 18), heard(c, "visual", 33), heard(c, "haptic", 2);
-  int said = 0;
+  int published = 0;
   for (int ms = 0; ms < 1000; ms += 5)
-    if (const auto m = c.due(at(ms))) {
-      ++said;
+    if (const auto m = c.next_message(at(ms))) {
+      ++published;
       CHECK(delays_ms(m) == Delays{{"audio", 33}, {"haptic", 0}, {"visual", 33}});
     }
-  CHECK(said == 10);
+  CHECK(published == 10);
 }
 
 TEST_CASE("Each modality keeps its own delay until the first presentation") {
   PlayoutCoordinator c(5, plan());
-  c.needs().know("audio");
-  CHECK(delays_ms(c.due(at(0))).empty());
+  c.latency_demand().add_modality("audio");
+  CHECK(delays_ms(c.next_message(at(0))).empty());
   PlayoutCoordinator experiment(5, plan(Policy::kExperiment));
-  experiment.needs().know("audio");
-  CHECK(delays_ms(experiment.due(at(0))) == Delays{{"audio", 150}});
+  experiment.latency_demand().add_modality("audio");
+  CHECK(delays_ms(experiment.next_message(at(0))) == Delays{{"audio", 150}});
 }
 
 TEST_CASE("A stalled, slow or dead modality does not change the delays of the others") {
@@ -69,15 +69,15 @@ TEST_CASE("A stalled, slow or dead modality does not change the delays of the ot
   SECTION("all waiting events are presented at once after a stall of 2 s") {
     for (int i = 0; i < 12; ++i) c.needs().add("visual", (2000 - 80 * i) * kMs);
     heard(c, "visual", 33, 8);
-    CHECK(delays_ms(c.due(at(200))) == before);
+    CHECK(delays_ms(c.next_message(at(200))) == before);
   }
   SECTION("the modality stops reporting") {
     heard(c, "audio", 18, 500);
-    CHECK(delays_ms(c.due(at(200))) == before);
+    CHECK(delays_ms(c.next_message(at(200))) == before);
   }
   SECTION("no modality waits for one that always exceeds the budget") {
     heard(c, "visual", 300, 200);
-    const auto after = delays_ms(c.due(at(200)));
+    const auto after = delays_ms(c.next_message(at(200)));
     CHECK(after.at("audio") == 25);
     CHECK(after.at("thermal") == 25);
   }
@@ -86,51 +86,51 @@ TEST_CASE("A stalled, slow or dead modality does not change the delays of the ot
 TEST_CASE("A delay rises at once and falls only by more than the slack") {
   PlayoutCoordinator c(5, plan());
   heard(c, "audio", 30, 200);
-  CHECK(delays_ms(c.due(at(0))).at("audio") == 30);
+  CHECK(delays_ms(c.next_message(at(0))).at("audio") == 30);
   heard(c, "audio", 28, 200);
-  CHECK(delays_ms(c.due(at(200))).at("audio") == 30);
+  CHECK(delays_ms(c.next_message(at(200))).at("audio") == 30);
   heard(c, "audio", 31, 200);
-  CHECK(delays_ms(c.due(at(400))).at("audio") == 31);
+  CHECK(delays_ms(c.next_message(at(400))).at("audio") == 31);
   heard(c, "audio", 20, 200);
-  CHECK(delays_ms(c.due(at(600))).at("audio") == 20);
+  CHECK(delays_ms(c.next_message(at(600))).at("audio") == 20);
 }
 
 TEST_CASE("A newer request is applied, an older one is rejected") {
   PlayoutCoordinator c(5, plan());
-  PlayoutPlan asked = plan(Policy::kExperiment);
-  asked.soa["visual"] = -50 * kMs;
-  CHECK(c.take(request_for(asked, 100)));
+  PlayoutPlan requested = plan(Policy::kExperiment);
+  requested.soa["visual"] = -50 * kMs;
+  CHECK(c.push(request_for(requested, 100)));
   heard(c, "audio", 18), heard(c, "visual", 33);
-  const auto m = c.due(at(0));
+  const auto m = c.next_message(at(0));
   REQUIRE(m);
   CHECK(m->generation == 100);
   CHECK(delays_ms(m) == Delays{{"audio", 150}, {"visual", 100}});
-  CHECK_FALSE(c.take(request_for(plan(Policy::kAsap), 99)));
+  CHECK_FALSE(c.push(request_for(plan(Policy::kAsap), 99)));
   CHECK(c.plan().policy == Policy::kExperiment);
-  asked.soa["visual"] = -500 * kMs;  // before the event
-  CHECK_FALSE(c.take(request_for(asked, 200)));
+  requested.soa["visual"] = -500 * kMs;  // before the event
+  CHECK_FALSE(c.push(request_for(requested, 200)));
 }
 
 TEST_CASE("The coordinator with the lower clock id publishes, the other one is its backup") {
   PlayoutCoordinator low(3, plan()), high(7, plan());
   heard(low, "audio", 18), heard(high, "audio", 18);
-  REQUIRE(low.take(request_for(plan(Policy::kExperiment), 50)));  // received by one modality only
+  REQUIRE(low.push(request_for(plan(Policy::kExperiment), 50)));  // received by one modality only
   int high_said = 0;
   for (int ms = 0; ms < 2000; ms += 10) {
-    if (auto m = low.due(at(ms))) {
+    if (auto m = low.next_message(at(ms))) {
       m->header.clock = 3;
-      high.take(*m, at(ms));
+      high.push(*m, at(ms));
     }
-    if (auto m = high.due(at(ms))) {
+    if (auto m = high.next_message(at(ms))) {
       ++high_said;
       m->header.clock = 7;
-      low.take(*m, at(ms));
+      low.push(*m, at(ms));
     }
   }
   CHECK(high_said <= 1);
   CHECK(high.plan().policy == Policy::kExperiment);
   int alone = 0;
-  for (int ms = 2000; ms < 4000; ms += 10) alone += high.due(at(ms)).has_value();
+  for (int ms = 2000; ms < 4000; ms += 10) alone += high.next_message(at(ms)).has_value();
   CHECK(alone >= 9);
 }
 
@@ -139,14 +139,14 @@ TEST_CASE("A request is stored for a restarted coordinator of the same run") {
   std::filesystem::create_directories(folder);
   auto request = request_for(plan(Policy::kItouch2005), 77);
   request.header.run_id = 12, request.header.source = 1, request.header.incarnation = 1;
-  keep_request(folder, request);
-  REQUIRE(kept_request(folder, 12));
-  CHECK(kept_request(folder, 12)->policy == playout_t::ITOUCH2005);
-  CHECK_FALSE(kept_request(folder, 13));
+  store_request(folder, request);
+  REQUIRE(load_request(folder, 12));
+  CHECK(load_request(folder, 12)->policy == playout_t::ITOUCH2005);
+  CHECK_FALSE(load_request(folder, 13));
   std::ofstream(folder / "playout.request", std::ios::app) << "x";
-  CHECK_FALSE(kept_request(folder, 12));
+  CHECK_FALSE(load_request(folder, 12));
   std::filesystem::remove_all(folder);
-  CHECK_FALSE(kept_request(folder, 12));
+  CHECK_FALSE(load_request(folder, 12));
 }
 
 TEST_CASE("Lock-step times are aligned to simulated time for any host clock") {
@@ -154,11 +154,11 @@ TEST_CASE("Lock-step times are aligned to simulated time for any host clock") {
   const Lockstep loop{map, 12.5};
   for (int ms = -500; ms < 500; ms += 7) {
     const HostTime t = at(ms);
-    CHECK(loop.begin_of_turn(t) <= t);
-    CHECK(t - loop.begin_of_turn(t) < 80 * kMs);
-    CHECK(loop.next_turn(t) >= t);
-    CHECK(loop.next_turn(t) - t < 80 * kMs);
-    CHECK(map.to_sim(loop.next_turn(t)).time_since_epoch() % (80 * kMs) == Nanoseconds(0));
+    CHECK(loop.begin_of_iteration(t) <= t);
+    CHECK(t - loop.begin_of_iteration(t) < 80 * kMs);
+    CHECK(loop.next_iteration(t) >= t);
+    CHECK(loop.next_iteration(t) - t < 80 * kMs);
+    CHECK(map.to_sim(loop.next_iteration(t)).time_since_epoch() % (80 * kMs) == Nanoseconds(0));
   }
 }
 
@@ -171,10 +171,10 @@ TEST_CASE("Playout pages for any number of modalities fit the bus and hold all d
   write_plan(request, 1, wanted);
   request.entries = request_for(wanted, 1).entries;
   request.count = 1;
-  REQUIRE(c.take(request));
+  REQUIRE(c.push(request));
   for (int i = 0; i < senses; ++i)
-    c.needs().know("z" + std::string(i < 10 ? "0" : "") + std::to_string(i) + std::string(60, 'z').substr(i == 7 ? 60 : 0));
-  const auto m = c.due(at(0));
+    c.latency_demand().add_modality("z" + std::string(i < 10 ? "0" : "") + std::to_string(i) + std::string(60, 'z').substr(i == 7 ? 60 : 0));
+  const auto m = c.next_message(at(0));
   REQUIRE(m);
   Delays found;
   const auto pages = pages_of(*m);

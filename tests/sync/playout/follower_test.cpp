@@ -12,7 +12,7 @@ namespace {
 constexpr Nanoseconds kMs{1'000'000};
 HostTime at(int ms) { return host_time(7'000'000'000 + std::int64_t{ms} * kMs.count()); }
 
-playout_t told(const std::string& modality, Nanoseconds delay, std::int8_t policy = playout_t::ALIGNED) {
+playout_t playout_message(const std::string& modality, Nanoseconds delay, std::int8_t policy = playout_t::ALIGNED) {
   playout_t m{};
   m.policy = policy;
   m.entries = {{modality, delay.count(), 0, -1}};
@@ -26,7 +26,7 @@ TEST_CASE("A modality keeps its own delay until it receives another one") {
   PlayoutFollower follower("audio");
   follower.set_own(20 * kMs);
   CHECK(follower.step(at(0)) == 20 * kMs);
-  follower.take(told("visual", 50 * kMs));
+  follower.push(playout_message("visual", 50 * kMs));
   for (int ms = 1; ms < 1000; ++ms) CHECK(follower.step(at(ms)) == 20 * kMs);
 }
 
@@ -34,7 +34,7 @@ TEST_CASE("A received delay is approached at no more than 50 ms per second") {
   PlayoutFollower follower("audio");
   follower.set_own(20 * kMs);
   follower.step(at(0));
-  follower.take(told("audio", 45 * kMs));
+  follower.push(playout_message("audio", 45 * kMs));
   Nanoseconds before = 20 * kMs;
   for (int ms = 1; ms <= 600; ++ms) {
     const Nanoseconds now = follower.step(at(ms));
@@ -44,17 +44,17 @@ TEST_CASE("A received delay is approached at no more than 50 ms per second") {
   }
   CHECK(before == 45 * kMs);  // 25 ms take half a second
   // After a long pause a process steps by at most the amount of 1 s.
-  follower.take(told("audio", Nanoseconds(0)));
+  follower.push(playout_message("audio", Nanoseconds(0)));
   CHECK(follower.step(at(60'000)) == 0 * kMs);
-  follower.take(told("audio", 200 * kMs));
+  follower.push(playout_message("audio", 200 * kMs));
   CHECK(follower.step(at(120'000)) == 50 * kMs);
 }
 
 TEST_CASE("The follower adopts and leaves the policy asap as received") {
   PlayoutFollower follower("audio");
   CHECK_FALSE(follower.as_soon_as_possible());
-  follower.take(told("audio", Nanoseconds(0), playout_t::ASAP));
+  follower.push(playout_message("audio", Nanoseconds(0), playout_t::ASAP));
   CHECK(follower.as_soon_as_possible());
-  follower.take(told("audio", 30 * kMs));
+  follower.push(playout_message("audio", 30 * kMs));
   CHECK_FALSE(follower.as_soon_as_possible());
 }

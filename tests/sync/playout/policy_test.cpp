@@ -91,7 +91,7 @@ TEST_CASE("An invalid plan is rejected with a remedy") {
   CHECK_NOTHROW(p.check());
   p.policy = Policy::kAligned;
   CHECK_THROWS_WITH(p.check(), Contains("experiment"));
-  CHECK_THROWS_WITH(policy_named("serial"), Contains("itouch2005"));
+  CHECK_THROWS_WITH(parse_policy("serial"), Contains("itouch2005"));
   for (const char* wrong : {"audio", "=5ms", "audio=5kg", "audio=100s", "audio=", "audio=50", "audio=5ms,visual=-0.05"})
     CHECK_THROWS_AS(parse_soa(wrong), std::invalid_argument);
   for (const char* wrong : {"-1ms", "61s", "x", ""}) CHECK_THROWS_AS(parse_duration(wrong), std::invalid_argument);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int8_t kPresented = presentation_t::PRESENTED, kLateOutcome = presentation_t::LATE,
                       kDropped = presentation_t::DROPPED_LATE;
-LatePolicy of(Late rule) { return {rule, 10ms, 30ms}; }
+LatePolicy of(LateRule rule) { return {rule, 10ms, 30ms}; }
 
 }  // namespace
 
@@ -35,7 +35,7 @@ TEST_CASE("Events beyond the limit are dropped unless the rule is to apply alway
     CHECK(of(rule).outcome(30ms + 1ns) == kDropped);
     CHECK(of(rule).outcome(1h) == kDropped);
   }
-  CHECK(of(Late::kAlwaysApply).outcome(1h) == kLateOutcome);
+  CHECK(of(LateRule::kAlwaysApply).outcome(1h) == kLateOutcome);
 }
 
 TEST_CASE("Only play-with-fade reduces the gain, linearly to zero at the limit") {
@@ -44,7 +44,7 @@ TEST_CASE("Only play-with-fade reduces the gain, linearly to zero at the limit")
   CHECK(fades.gain(20ms) == Approx(0.5));
   CHECK(fades.gain(30ms) == 0);
   CHECK(fades.gain(1h) == 0);
-  for (const Late rule : {Late::kDrop, Late::kShowNewest, Late::kAlwaysApply}) CHECK(of(rule).gain(20ms) == 1);
+  for (const LateRule rule : {LateRule::kDrop, LateRule::kShowNewest, LateRule::kAlwaysApply}) CHECK(of(rule).gain(20ms) == 1);
 }
 
 TEST_CASE("If limit and tolerance are equal, an event is on time or dropped") {

@@ -85,13 +85,13 @@ struct MatcherFixture {
     matcher.observe(presented_message(node, modality, id, presented_ms, outcome, part), at(presented_ms + 1));
   }
 
-  DebtTally tally(const std::string& modality) const {
+  OutcomeCounts tally(const std::string& modality) const {
     const auto it = matcher.modalities().find(modality);
-    return it == matcher.modalities().end() ? DebtTally{} : it->second;
+    return it == matcher.modalities().end() ? OutcomeCounts{} : it->second;
   }
 };
 
-inline std::int64_t sum(const DebtTally& t) {
+inline std::int64_t sum(const OutcomeCounts& t) {
   return t.presented + t.lost + t.stalled + t.dead + t.dropped_by_profile + t.dropped_late;
 }
 

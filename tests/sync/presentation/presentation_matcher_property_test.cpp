@@ -42,7 +42,7 @@ TEST_CASE("Every expected event has one outcome when messages are lost, repeated
       for (int ms = 0; ms <= 12000; ms += 100)
         f.health(n.name, n.modality, n.owes, ms);  // no loss: liveness is not under test here
 
-    std::map<std::string, DebtTally> expected;
+    std::map<std::string, OutcomeCounts> expected;
     std::int64_t hits = 0, begins = 0;
     for (int id = 0; id < 200; ++id) {
       const double time = 1000 + 40 * id + std::uniform_real_distribution<>(0, 40)(random);
@@ -58,7 +58,7 @@ TEST_CASE("Every expected event has one outcome when messages are lost, repeated
       }
       if (heard) ++(kind == contact_event_t::HIT ? hits : begins), begins -= kind == contact_event_t::END;
       for (const Node& n : nodes) {
-        const bool owed =
+        const bool is_expected =
             kind == contact_event_t::BEGIN ? (n.owes & 1) != 0 : kind == contact_event_t::HIT && (n.owes & 2) != 0;
         const auto outcome = static_cast<std::int8_t>(random() % 5);
         const bool reports = chance(0.8);
@@ -73,9 +73,9 @@ TEST_CASE("Every expected event has one outcome when messages are lost, repeated
                               f.matcher.observe(f.presented_message(n.name, n.modality, id, time + 5, outcome), t);
                             }});
         }
-        if (!owed || !heard) continue;
-        DebtTally& t = expected[n.modality];
-        ++t.owed;
+        if (!is_expected || !heard) continue;
+        OutcomeCounts& t = expected[n.modality];
+        ++t.expected;
         if (!reported)
           ++t.lost;
         else if (outcome == presentation_t::DROPPED_LATE)
@@ -96,14 +96,14 @@ TEST_CASE("Every expected event has one outcome when messages are lost, repeated
     CHECK(f.matcher.hits() == hits);
     CHECK(f.matcher.begins() == begins);
     for (const auto& [modality, e] : expected) {
-      const DebtTally t = f.tally(modality);
+      const OutcomeCounts t = f.tally(modality);
       CAPTURE(seed, modality);
-      CHECK(t.owed == e.owed);
+      CHECK(t.expected == e.expected);
       CHECK(t.presented == e.presented);
       CHECK(t.lost == e.lost);
       CHECK(t.dropped_by_profile == e.dropped_by_profile);
       CHECK(t.dropped_late == e.dropped_late);
-      CHECK(sum(t) == t.owed);
+      CHECK(sum(t) == t.expected);
     }
   }
 }
@@ -125,13 +125,13 @@ TEST_CASE("The outcomes add up to the expected events when nodes die and stall, 
         if (up && random() % 3 != 0) f.presented("audio_node", "audio", n, ms + 5), ++reported;
       }
       f.matcher.advance(f.at(ms));
-      const DebtTally t = f.tally("audio");
-      REQUIRE(sum(t) == t.owed);
+      const OutcomeCounts t = f.tally("audio");
+      REQUIRE(sum(t) == t.expected);
       REQUIRE(std::min({t.presented, t.lost, t.stalled, t.dead}) >= 0);
     }
     f.matcher.finish(f.at(20000));
-    CHECK(sum(f.tally("audio")) == f.tally("audio").owed);
+    CHECK(sum(f.tally("audio")) == f.tally("audio").expected);
     CHECK(f.tally("audio").presented <= reported);
-    CHECK(f.tally("audio").owed <= n);
+    CHECK(f.tally("audio").expected <= n);
   }
 }

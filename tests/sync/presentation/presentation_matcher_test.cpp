@@ -26,7 +26,7 @@ TEST_CASE("A reported event has the outcome of its report") {
   const auto outcome = [&](std::int8_t o) {
     f.presented("audio_node", "audio", 1, 1020, o);
     f.matcher.advance(f.at(2001));
-    CHECK(f.tally("audio").owed == 1);
+    CHECK(f.tally("audio").expected == 1);
     CHECK(sum(f.tally("audio")) == 1);
     return f.tally("audio");
   };
@@ -42,9 +42,9 @@ TEST_CASE("An event that a running node does not report is lost after one second
   f.healths("audio_node", "audio", kHit, 0, 5000);
   f.event(1, 1000);
   f.matcher.advance(f.at(1999));
-  CHECK(f.tally("audio").owed == 0);
+  CHECK(f.tally("audio").expected == 0);
   f.matcher.advance(f.at(2000));
-  CHECK(f.tally("audio").owed == 1);
+  CHECK(f.tally("audio").expected == 1);
   CHECK(f.tally("audio").lost == 1);
 
   SECTION("a later report changes nothing and is counted") {
@@ -69,9 +69,9 @@ TEST_CASE("A node must present the kinds of events that it declares") {
   CHECK(f.matcher.begins() == 1);
   CHECK(f.matcher.hits() == 2);
   CHECK(f.matcher.ends() == 1);
-  CHECK(f.tally("audio").owed == 2);
-  CHECK(f.tally("visual").owed == 3);
-  CHECK(f.tally("haptic").owed == 1);  // the hit of the right hand
+  CHECK(f.tally("audio").expected == 2);
+  CHECK(f.tally("visual").expected == 3);
+  CHECK(f.tally("haptic").expected == 1);  // the hit of the right hand
   CHECK(f.matcher.modalities().size() == 3);
 }
 
@@ -89,7 +89,7 @@ TEST_CASE("A modality that never ran has no expected events") {
     f.event(4, 4299);
     f.event(5, 4301);
     f.matcher.advance(f.at(7000));
-    CHECK(f.tally("audio").owed == 1);
+    CHECK(f.tally("audio").expected == 1);
     CHECK(f.tally("audio").lost == 1);
   }
 }
@@ -100,7 +100,7 @@ TEST_CASE("A modality that was ready before the simulation started must present 
   f.healths("audio_node", "audio", kHit, 1000, 4000);
   f.event(1, 950);
   f.matcher.advance(f.at(3000));
-  CHECK(f.tally("audio").owed == 1);
+  CHECK(f.tally("audio").expected == 1);
   CHECK(f.tally("audio").lost == 1);
 }
 
@@ -120,7 +120,7 @@ TEST_CASE("Events during a stop of two seconds count as stalled") {
   CHECK(f.tally("visual").dead == 0);
   CHECK(f.tally("visual").stalled == 3);
   CHECK(f.tally("visual").lost == 2);
-  CHECK(f.tally("visual").owed == 5);
+  CHECK(f.tally("visual").expected == 5);
 }
 
 TEST_CASE("Events during a silence of 0.3 s count as lost") {
@@ -200,7 +200,7 @@ TEST_CASE("A node whose input is stale from the start must present events while 
   f.event(1, 1500);
   f.healths("visual_node", "visual", kBoth, 3000, 4000, 1, node_health_t::STALE);
   f.matcher.advance(f.at(4000));
-  CHECK(f.tally("visual").owed == 1);
+  CHECK(f.tally("visual").expected == 1);
   CHECK(f.tally("visual").stalled == 1);
 }
 
@@ -243,9 +243,9 @@ TEST_CASE("Events of a replayed run are expected at their time of arrival") {
   m.clock.host_ns -= 500'000'000'000;
   f.matcher.observe(m, f.at(1001));
   f.matcher.advance(f.at(1990));
-  CHECK(f.tally("audio").owed == 0);
+  CHECK(f.tally("audio").expected == 0);
   f.matcher.advance(f.at(2001));
-  CHECK(f.tally("audio").owed == 1);
+  CHECK(f.tally("audio").expected == 1);
 }
 
 TEST_CASE("Events of a replayed log are not expected while a simulation of this run is active") {
@@ -258,11 +258,11 @@ TEST_CASE("Events of a replayed log are not expected while a simulation of this 
   f.matcher.observe(old, f.at(1001));
   CHECK(f.matcher.foreign() == 1);
   f.matcher.advance(f.at(2100));
-  CHECK(f.tally("audio").owed == 1);  // its own event
+  CHECK(f.tally("audio").expected == 1);  // its own event
   // The node is silent for the next second: the log is the only source.
   f.matcher.observe(old, f.at(2200));
   f.matcher.advance(f.at(4000));
-  CHECK(f.tally("audio").owed == 2);
+  CHECK(f.tally("audio").expected == 2);
 }
 
 TEST_CASE("Events that are undecided at the end of a log are not expected") {
@@ -273,11 +273,11 @@ TEST_CASE("Events that are undecided at the end of a log are not expected") {
   f.event(3, 2960);
   f.presented("audio_node", "audio", 3, 2980);
   f.matcher.finish(f.at(3100));
-  CHECK(f.tally("audio").owed == 2);
+  CHECK(f.tally("audio").expected == 2);
   CHECK(f.tally("audio").lost == 1);
   CHECK(f.tally("audio").presented == 1);
   f.matcher.finish(f.at(3100));
-  CHECK(f.tally("audio").owed == 2);
+  CHECK(f.tally("audio").expected == 2);
 }
 
 TEST_CASE("The end of a run is not a dead node, even if the log continues") {
@@ -291,8 +291,8 @@ TEST_CASE("The end of a run is not a dead node, even if the log continues") {
   f.matcher.advance(f.at(5500));
   SECTION("no node publishes again") {
     f.matcher.finish(f.at(5500));
-    CHECK(f.tally("audio").owed == 0);
-    CHECK(f.tally("visual").owed == 1);
+    CHECK(f.tally("audio").expected == 0);
+    CHECK(f.tally("visual").expected == 1);
     CHECK(f.tally("visual").presented == 1);
   }
   SECTION("nodes count as dead if the simulation publishes again") {
@@ -306,7 +306,7 @@ TEST_CASE("The end of a run is not a dead node, even if the log continues") {
     f.matcher.finish(f.at(6000));
     CHECK(f.tally("audio").stalled == 2);
     CHECK(f.tally("audio").dead == 0);
-    CHECK(f.tally("visual").owed == 1);
+    CHECK(f.tally("visual").expected == 1);
   }
 }
 
@@ -371,13 +371,13 @@ TEST_CASE("Many unknown modalities take bounded memory, are counted and do not d
   f.healths("audio_node", "audio", kHit, 0, 3000);
   for (int i = 0; i < 200; ++i)
     f.health("n" + std::to_string(i), "z" + std::to_string(i) + std::string(60, 'z'), kHit, 1000);
-  CHECK(f.matcher.modalities().size() == PresentationMatcher::kMaxSenses);
-  CHECK(f.matcher.overflow() == 201 - static_cast<std::int64_t>(PresentationMatcher::kMaxSenses));
+  CHECK(f.matcher.modalities().size() == PresentationMatcher::kMaxModalities);
+  CHECK(f.matcher.overflow() == 201 - static_cast<std::int64_t>(PresentationMatcher::kMaxModalities));
   for (int i = 0; i < 60; ++i) {
     f.event(i, 2000);
     for (int j = 0; j < 30; ++j) f.presented("p" + std::to_string(j), "s" + std::to_string(30 * i + j), i, 2010);
   }
   f.matcher.advance(f.at(4000));
   CHECK(f.matcher.pairs().size() == PresentationMatcher::kMaxPairs);
-  CHECK(f.tally("audio").owed == 60);
+  CHECK(f.tally("audio").expected == 60);
 }

@@ -48,7 +48,7 @@ TEST_CASE("Report pages for any number of modalities fit a datagram and are comp
     CHECK(valid(pages[i]));
     CHECK(pages[i].hits == 1);
     CHECK_FALSE(whole);
-    whole = reader.take(pages[i]);
+    whole = reader.push(pages[i]);
   }
   REQUIRE(whole);
   CHECK(whole->modality_count == senses);
@@ -75,8 +75,8 @@ TEST_CASE("Pages of two reports are never mixed, also if pages are lost or overt
   const auto first = published(f, seq), second = published(f, seq);
   REQUIRE(first.size() > 2);
   SyncReportReader reader;
-  CHECK_FALSE(reader.take(first[0]));
-  for (std::size_t i = 0; i + 1 < second.size(); ++i) CHECK_FALSE(reader.take(second[i]));
-  for (std::size_t i = 1; i < first.size(); ++i) CHECK_FALSE(reader.take(first[i]));
-  CHECK(reader.take(second.back()));
+  CHECK_FALSE(reader.push(first[0]));
+  for (std::size_t i = 0; i + 1 < second.size(); ++i) CHECK_FALSE(reader.push(second[i]));
+  for (std::size_t i = 1; i < first.size(); ++i) CHECK_FALSE(reader.push(first[i]));
+  CHECK(reader.push(second.back()));
 }

@@ -30,20 +30,20 @@ TEST_CASE("Asynchronies beyond the lowest and beyond all thresholds of their dir
   SoaHistogram soa;
   for (const int ms : {0, 10, 20, 60, 95, -10, -70, -130, -190}) soa.add(ms * kMs, Nanoseconds(0));
   // audio, then visual: 15 to 90 ms; visual, then audio: 60 to 185 ms
-  const Beyond beyond = beyond_thresholds("audio", "visual", soa);
+  const BeyondThresholds beyond = count_beyond_thresholds("audio", "visual", soa);
   CHECK(beyond.least == 3 + 3);
   CHECK(beyond.all == 1 + 1);
-  CHECK(beyond_thresholds("haptic", "thermal", soa).least == -1);
+  CHECK(count_beyond_thresholds("haptic", "thermal", soa).least == -1);
   // haptic, then audio: 24 to 100 ms; nothing is published for sound before touch
-  CHECK(beyond_thresholds("haptic", "audio", soa).least == 2);
-  CHECK(beyond_thresholds("haptic", "audio", soa).all == 0);
+  CHECK(count_beyond_thresholds("haptic", "audio", soa).least == 2);
+  CHECK(count_beyond_thresholds("haptic", "audio", soa).all == 0);
 }
 
 TEST_CASE("The thresholds of touch also apply to its constraint force") {
   SoaHistogram late;
   for (int i = 0; i < 4; ++i) late.add(Nanoseconds(900'000'000), Nanoseconds(0));
-  const Beyond vibration = beyond_thresholds("haptic", "audio", late),
-               push = beyond_thresholds("haptic_push", "audio", late);
+  const BeyondThresholds vibration = count_beyond_thresholds("haptic", "audio", late),
+               push = count_beyond_thresholds("haptic_push", "audio", late);
   CHECK(vibration.all == 4);
   CHECK(push.all == vibration.all);
   CHECK(push.least == vibration.least);

@@ -58,13 +58,13 @@ struct Site {
   Relay relay;
   std::vector<std::vector<std::uint8_t>> bus{};  // all messages published there
   template <class Message>
-  void say(const char* channel, const Message& m, HostTime now, bool bulk = false) {
+  void publish(const char* channel, const Message& m, HostTime now, bool bulk = false) {
     const auto bytes = encode(m);
-    hear({channel, bytes}, bulk, now);
+    receive({channel, bytes}, bulk, now);
   }
-  void hear(const ChannelBytes& m, bool bulk, HostTime now) {
+  void receive(const ChannelBytes& m, bool bulk, HostTime now) {
     bus.emplace_back(m.data.begin(), m.data.end());
-    relay.hear_bus(m, bulk, now);
+    relay.on_bus_message(m, bulk, now);
   }
 };
 
@@ -101,7 +101,7 @@ void carry(std::deque<Site>& all, HostTime now) {
           REQUIRE(m);
           moved = true;
           const std::size_t side = from < to ? from : from - 1;
-          if (all[to].relay.hear_line(side, *m, now)) all[to].hear(m->message, m->bulk, now);
+          if (all[to].relay.on_line_message(side, *m, now)) all[to].receive(m->message, m->bulk, now);
         }
       }
     if (!moved) return;
@@ -148,24 +148,24 @@ TEST_CASE("The ends of a line are numeric addresses, host names are rejected") {
 
 TEST_CASE("Only channels with a rule and messages of this run pass, in both directions") {
   Relay relay(rules("<pass channel='TOOL_STATE'/>"), sites(1), kRun);
-  relay.hear_bus({"CONTACTS", encode(tool(0, kBegin))}, false, kBegin);
+  relay.on_bus_message({"CONTACTS", encode(tool(0, kBegin))}, false, kBegin);
   CHECK(flushed(relay, kBegin).empty());
-  relay.hear_bus({"TOOL_STATE", encode(tool(0, kBegin, "haptic_node", kRun + 1))}, false, kBegin);
-  relay.hear_bus({"TOOL_STATE", std::vector<std::uint8_t>(20)}, false, kBegin);
+  relay.on_bus_message({"TOOL_STATE", encode(tool(0, kBegin, "haptic_node", kRun + 1))}, false, kBegin);
+  relay.on_bus_message({"TOOL_STATE", std::vector<std::uint8_t>(20)}, false, kBegin);
   CHECK(flushed(relay, kBegin).empty());
   CHECK(relay.counts().bad == 2);
-  relay.hear_bus({"TOOL_STATE", encode(tool(0, kBegin))}, false, kBegin);
+  relay.on_bus_message({"TOOL_STATE", encode(tool(0, kBegin))}, false, kBegin);
   CHECK(flushed(relay, kBegin).size() == 1);
   const auto far = encode(tool(0, kBegin, "haptic_node_2"));
-  CHECK_FALSE(relay.hear_line(0, {{"SIM_COMMAND", far}, false}, kBegin));
+  CHECK_FALSE(relay.on_line_message(0, {{"SIM_COMMAND", far}, false}, kBegin));
   CHECK(relay.counts().withheld == 1);
-  CHECK(relay.hear_line(0, {{"TOOL_STATE", far}, false}, kBegin));
+  CHECK(relay.on_line_message(0, {{"TOOL_STATE", far}, false}, kBegin));
 }
 
 TEST_CASE("A message of a rule without thinning arrives unchanged and on its port") {
   Relay relay(rules("<pass channel='SCENE_MANIFEST'/>"), sites(1), kRun);
   const auto bytes = encode(tool(41, kBegin));  // any message: only the reader checks the type
-  relay.hear_bus({"SCENE_MANIFEST", bytes}, true, kBegin);
+  relay.on_bus_message({"SCENE_MANIFEST", bytes}, true, kBegin);
   const auto lines = flushed(relay, kBegin);
   const auto m = parse_line_datagram(lines.begin()->second.at(0));
   REQUIRE(m);
@@ -178,8 +178,8 @@ TEST_CASE("A thinned channel keeps its rate, and each sender has its own sequenc
   std::map<std::int32_t, std::vector<std::int64_t>> numbers;
   for (int i = 0; i < 2000; ++i) {
     const HostTime t = kBegin + i * 1ms;
-    relay.hear_bus({"TOOL_STATE", encode(tool(i, t))}, false, t);
-    if (i % 2 == 0) relay.hear_bus({"TOOL_STATE", encode(tool(i / 2, t, "haptic_node_2"))}, false, t);
+    relay.on_bus_message({"TOOL_STATE", encode(tool(i, t))}, false, t);
+    if (i % 2 == 0) relay.on_bus_message({"TOOL_STATE", encode(tool(i / 2, t, "haptic_node_2"))}, false, t);
     for (const auto& [name, line] : flushed(relay, t))
       for (const auto& d : line) {
         const auto m = parse_line_datagram(d);
@@ -201,7 +201,7 @@ TEST_CASE("A jittered sender at the permitted rate loses no message") {
   std::size_t passed = 0;
   for (int i = 0; i < 300; ++i) {
     const HostTime t = kBegin + i * 100ms + (i % 3) * 7ms;
-    relay.hear_bus({"NODE_HEALTH", encode(tool(i, t))}, false, t);
+    relay.on_bus_message({"NODE_HEALTH", encode(tool(i, t))}, false, t);
     passed += flushed(relay, t).size();
   }
   CHECK(passed >= 298);
@@ -209,13 +209,13 @@ TEST_CASE("A jittered sender at the permitted rate loses no message") {
 
 TEST_CASE("A deadband passes all pages of a snapshot whose change exceeds it") {
   Relay relay(rules("<pass channel='WORLD_STATE' deadband='0% position floor=1mm'/>"), sites(1), kRun);
-  std::vector<double> told;
+  std::vector<double> positions;
   std::int64_t seq = 0, passed = 0;
   for (int i = 0; i < 600; ++i) {
     const HostTime t = kBegin + i * 16ms;
     const double x_m = i < 300 ? 0 : 0.0004 * (i - 300);  // rests, then 25 mm/s
     for (const int page : {0, 1})
-      relay.hear_bus({"WORLD_STATE", encode(world(seq++, t, page == 0 ? x_m : 1.0, page, 2))}, false, t);
+      relay.on_bus_message({"WORLD_STATE", encode(world(seq++, t, page == 0 ? x_m : 1.0, page, 2))}, false, t);
     for (const auto& [name, line] : flushed(relay, t)) {
       CHECK(line.size() == 2);
       for (const auto& d : line) {
@@ -223,13 +223,13 @@ TEST_CASE("A deadband passes all pages of a snapshot whose change exceeds it") {
         const auto state = decode<world_state_t>(m->message.data.data(), m->message.data.size());
         REQUIRE(state);
         CHECK(state->header.seq == passed++);
-        if (state->page == 0) told.push_back(state->bodies[0].position_m.x);
+        if (state->page == 0) positions.push_back(state->bodies[0].position_m.x);
       }
     }
   }
   // Once at the beginning, then every third step of 0.4 mm.
-  CHECK(told.size() == Approx(1 + 300 / 3).margin(1));
-  for (std::size_t i = 1; i < told.size(); ++i) CHECK(told[i] - told[i - 1] == Approx(0.0012));
+  CHECK(positions.size() == Approx(1 + 300 / 3).margin(1));
+  for (std::size_t i = 1; i < positions.size(); ++i) CHECK(positions[i] - positions[i - 1] == Approx(0.0012));
 }
 
 TEST_CASE("Each message of three sites arrives once at the others and never returns") {
@@ -238,7 +238,7 @@ TEST_CASE("Each message of three sites arrives once at the others and never retu
   for (int i = 0; i < 50; ++i) {
     const HostTime t = kBegin + i * 1ms;
     for (int site = 0; site < 3; ++site)
-      all[static_cast<std::size_t>(site)].say("TOOL_STATE", tool(i, t, "hand_" + std::to_string(site)), t);
+      all[static_cast<std::size_t>(site)].publish("TOOL_STATE", tool(i, t, "hand_" + std::to_string(site)), t);
     carry(all, t);
   }
   for (const Site& site : all) {
@@ -252,17 +252,17 @@ TEST_CASE("Two relays in one site create no loop") {
   const std::string pass = "<pass channel='TOOL_STATE'/>";
   Relay near_1(rules(pass), sites(1), kRun), near_2(rules(pass), sites(1), kRun), far(rules(pass), sites(2), kRun);
   const auto bytes = encode(tool(0, kBegin, "far_hand"));
-  far.hear_bus({"TOOL_STATE", bytes}, false, kBegin);
+  far.on_bus_message({"TOOL_STATE", bytes}, false, kBegin);
   CHECK(flushed(far, kBegin).size() == 2);
   // The line to the first relay is faster: its copy on the bus reaches the second relay before the line does.
-  REQUIRE(near_1.hear_line(0, {{"TOOL_STATE", bytes}, false}, kBegin));
-  near_1.hear_bus({"TOOL_STATE", bytes}, false, kBegin);
-  near_2.hear_bus({"TOOL_STATE", bytes}, false, kBegin);
+  REQUIRE(near_1.on_line_message(0, {{"TOOL_STATE", bytes}, false}, kBegin));
+  near_1.on_bus_message({"TOOL_STATE", bytes}, false, kBegin);
+  near_2.on_bus_message({"TOOL_STATE", bytes}, false, kBegin);
   CHECK(flushed(near_1, kBegin).empty());
   const auto back = flushed(near_2, kBegin);
   REQUIRE(back.size() == 1);
-  CHECK_FALSE(far.hear_line(1, *parse_line_datagram(back.begin()->second[0]), kBegin));
-  CHECK_FALSE(near_2.hear_line(0, {{"TOOL_STATE", bytes}, false}, kBegin));
+  CHECK_FALSE(far.on_line_message(1, *parse_line_datagram(back.begin()->second[0]), kBegin));
+  CHECK_FALSE(near_2.on_line_message(0, {{"TOOL_STATE", bytes}, false}, kBegin));
 }
 
 TEST_CASE("A slow line delays and thins only its own site") {
@@ -272,10 +272,10 @@ TEST_CASE("A slow line delays and thins only its own site") {
   std::map<std::string, std::map<std::string, int>> arrived;
   for (int i = 0; i < 2000; ++i) {
     const HostTime t = kBegin + i * 1ms;
-    relay.hear_bus({"TOOL_STATE", encode(tool(i, t))}, false, t);
+    relay.on_bus_message({"TOOL_STATE", encode(tool(i, t))}, false, t);
     contact_events_t events{};
     events.header = header("sim_node", i / 20, t);
-    if (i % 20 == 0) relay.hear_bus({"CONTACT_EVENTS", encode(events)}, false, t);
+    if (i % 20 == 0) relay.on_bus_message({"CONTACT_EVENTS", encode(events)}, false, t);
     for (const auto& [name, line] : flushed(relay, t))
       for (const auto& d : line) ++arrived[name][std::string(parse_line_datagram(d)->message.channel)];
   }
@@ -285,16 +285,16 @@ TEST_CASE("A slow line delays and thins only its own site") {
   CHECK(arrived[ends[0].name]["TOOL_STATE"] > 20);
   CHECK(relay.line(0).late > 1500);
   CHECK(relay.line(1).late == 0);
-  CHECK(relay.note(kBegin).find("too slow") != std::string::npos);
+  CHECK(relay.status_text(kBegin).find("too slow") != std::string::npos);
 }
 
 TEST_CASE("A sender may move to another site after a long silence") {
   Sides sides;
   const header_t h = header("audio_node", 0, kBegin);
-  CHECK(sides.lives(h, 1, kBegin));
-  CHECK_FALSE(sides.lives(h, Sides::kHere, kBegin + 5s));
-  CHECK(sides.lives(h, Sides::kHere, kBegin + 11s));
-  CHECK_FALSE(sides.lives(h, 1, kBegin + 12s));
+  CHECK(sides.belongs_to(h, 1, kBegin));
+  CHECK_FALSE(sides.belongs_to(h, SenderSides::kHere, kBegin + 5s));
+  CHECK(sides.belongs_to(h, SenderSides::kHere, kBegin + 11s));
+  CHECK_FALSE(sides.belongs_to(h, 1, kBegin + 12s));
   CHECK(sides.echoes() == 2);
 }
 
@@ -303,10 +303,10 @@ TEST_CASE("The number of remembered senders is bounded") {
   for (std::int32_t i = 0; i < 10'000; ++i) {
     header_t h = header("a", 0, kBegin);
     h.source = i;
-    CHECK(sides.lives(h, 1, kBegin + Nanoseconds(i)));
+    CHECK(sides.belongs_to(h, 1, kBegin + Nanoseconds(i)));
   }
   header_t oldest = header("a", 0, kBegin), newest = oldest;
   oldest.source = 0, newest.source = 9'999;
-  CHECK_FALSE(sides.lives(newest, 2, kBegin + 1ms));
-  CHECK(sides.lives(oldest, 2, kBegin + 1ms));
+  CHECK_FALSE(sides.belongs_to(newest, 2, kBegin + 1ms));
+  CHECK(sides.belongs_to(oldest, 2, kBegin + 1ms));
 }

@@ -32,7 +32,7 @@ TEST_CASE("Relay rules are parsed with channel, rate, deadband and priority") {
   REQUIRE(rules.all().size() == 2);
   REQUIRE(rules.find("CONTACT_EVENTS"));
   CHECK(rules.find("CONTACT_EVENTS")->first);
-  CHECK_FALSE(rules.find("CONTACT_EVENTS")->thins());
+  CHECK_FALSE(rules.find("CONTACT_EVENTS")->decimates());
   const PassRule* tool = rules.find("TOOL_STATE");
   REQUIRE(tool);
   CHECK(tool->line == 5);
@@ -45,15 +45,15 @@ TEST_CASE("Invalid relay rules are rejected with their line") {
   CHECK(refusal("").find("rules.xml:1: this is no XML") == 0);
   CHECK(refusal("<relay><pass></relay>").find("rules.xml:1: this is no XML") == 0);
   CHECK(refusal("<profile/>") == "rules.xml:1: rules of a relay begin with <relay>");
-  CHECK(refusal("<relay>\n</relay>").find("let nothing pass") != std::string::npos);
+  CHECK(refusal("<relay>\n</relay>").find("pass no channel") != std::string::npos);
   CHECK(refusal("<relay name='a'/>") == "rules.xml:1: <relay> has no name");
   CHECK(refusal(within("<pass/>")).find("rules.xml:2: a <pass> needs a channel") == 0);
   CHECK(refusal(within("<pass channel='CONTACT_EVENT'/>"))
             .find("there is no channel CONTACT_EVENT; did you mean CONTACT_EVENTS") != std::string::npos);
-  CHECK(refusal(within("<pass channel='PRESENTED' rate='5Hz'/>")).find("says each thing once") !=
+  CHECK(refusal(within("<pass channel='PRESENTED' rate='5Hz'/>")).find("contains each item once") !=
         std::string::npos);
   CHECK(refusal(within("<pass channel='NODE_HEALTH' deadband='10%'/>"))
-            .find("not known what of NODE_HEALTH to compare") != std::string::npos);
+            .find("cannot compare messages of NODE_HEALTH") != std::string::npos);
   CHECK(refusal(within("<pass channel='TOOL_STATE' rate='60'/>")).find("lacks its unit") != std::string::npos);
   CHECK(refusal(within("<pass channel='TOOL_STATE' delay='60ms'/>")).find("a <pass> has no delay") !=
         std::string::npos);

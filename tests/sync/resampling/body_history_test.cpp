@@ -135,7 +135,7 @@ TEST_CASE("Poses are kept for a modality that presents up to 20 s late") {
   const std::int64_t late = GENERATE(500, 5'000, 20'000) * kMs;
   for (std::int64_t i = 0; i < 60 * 30; ++i) {
     const std::int64_t now = i * 16 * kMs, then = now - late;
-    history.keep(Nanoseconds(late));
+    history.extend_history(Nanoseconds(late));
     history.push(page(now, 0, {1e-9 * static_cast<double>(now), 0, 0}, {1, 0, 0}), at(now));
     if (then < 0) continue;
     const auto s = history.pose(0, sim_time(then));

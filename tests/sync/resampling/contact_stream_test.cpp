@@ -357,7 +357,7 @@ TEST_CASE("Contacts are kept for a modality that presents up to 10 s late") {
   const std::int64_t late = GENERATE(150, 2'000, 10'000) * kMs;
   ContactStream stream(kRun);
   for (std::int64_t ms = 0; ms < 12'000; ++ms) {
-    stream.keep(Nanoseconds(late));
+    stream.extend_history(Nanoseconds(late));
     contact_t touched = contact(1, 1e-3f * static_cast<float>(ms));
     touched.tool = 0;
     stream.push(frame(ms * kMs, {touched}), at(ms * kMs));

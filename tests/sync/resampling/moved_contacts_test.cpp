@@ -81,7 +81,7 @@ TEST_CASE("A contact that moves between groups has one state, the newest, for an
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);
     std::set<std::int64_t> ahead;
-    std::vector<Frame> said;
+    std::vector<Frame> published;
     for (std::int64_t now = 0, seq = 1; now < 300; ++now) {
       for (std::int64_t id = 0; id < kContacts; ++id) moved += random() % 30 == 0 && ahead.erase(id) > 0;
       if (now % 17 != 0) continue;
@@ -90,13 +90,13 @@ TEST_CASE("A contact that moves between groups has one state, the newest, for an
       Frame other{now, now, seq + 1, contact_frame_t::OTHER, {}};
       for (std::int64_t id = 0; id < kContacts; ++id)
         if (!ahead.contains(id)) other.ids.insert(id);
-      said.push_back({now, now + 17, seq, contact_frame_t::AHEAD, ahead});
-      said.push_back(other);
+      published.push_back({now, now + 17, seq, contact_frame_t::AHEAD, ahead});
+      published.push_back(other);
       seq += 2;
     }
     const unsigned loss = random() % 40, jitter_ms = 1 + random() % 60;
     std::multimap<std::int64_t, const Frame*> wire;
-    for (const Frame& f : said)
+    for (const Frame& f : published)
       for (int copies = random() % 100 < loss ? 0 : random() % 4 == 0 ? 2 : 1; copies > 0; --copies)
         wire.emplace(f.now_ms * kMs + static_cast<std::int64_t>(random() % (jitter_ms * kMs)), &f);
     ContactStream stream(1);
@@ -143,7 +143,7 @@ TEST_CASE("A contact that moves between groups has one state, the newest, for an
 TEST_CASE("A predicted contact counts from its begin event on, and not without one") {
   ContactStream stream(1);
   std::int64_t seq = 0;
-  const auto say = [&](std::int64_t now, std::int64_t time, std::set<std::int64_t> ids) {
+  const auto publish = [&](std::int64_t now, std::int64_t time, std::set<std::int64_t> ids) {
     stream.push(message({now, time, seq++, contact_frame_t::AHEAD, std::move(ids)}),
                 host_time((now + 1'000) * kMs));
   };
@@ -153,8 +153,8 @@ TEST_CASE("A predicted contact counts from its begin event on, and not without o
     return ids;
   };
   stream.push(begins(1), host_time(1'000 * kMs));
-  say(0, 17, {0});
-  say(17, 34, {0, 5});  // 5 begins at 25, unless an intermediate snapshot arrives
+  publish(0, 17, {0});
+  publish(17, 34, {0, 5});  // 5 begins at 25, unless an intermediate snapshot arrives
   CHECK(ids_at(20) == std::set<std::int64_t>{0});
   CHECK(ids_at(34) == std::set<std::int64_t>{0});
   SECTION("the predicted contact does not happen") {

@@ -109,13 +109,13 @@ class Renderer {
   }
 
   // By its own clock: exact. By a map: within its uncertainty. By arrival: late by at most the smallest latency.
-  void check_map(SimTime told, std::int64_t now) {
+  void check_map(SimTime sim_now, std::int64_t now) {
     const std::int64_t life_begin = contacts_.life().begin_ns;
     const long double on_sender =
         clock_ == Clock::kSame
             ? static_cast<long double>(now)
             : now * (1 + static_cast<long double>(world_.clocks.drift)) + world_.clocks.offset_ns;
-    const auto ahead = static_cast<double>(to_ns(told) - (on_sender - life_begin));
+    const auto ahead = static_cast<double>(to_ns(sim_now) - (on_sender - life_begin));
     // Since the newest message, at most 0.3 s ago, the simulation's time is assumed to run at the rate of the receiver's clock. By
     // arrival, the estimate also relaxes by 200 ppm since its best, half a second ago.
     const double drifted = 100e-6 * 0.3e9;
@@ -245,9 +245,9 @@ TEST_CASE("Events, states and integrals match the oracle for lost, repeated, reo
     const auto clock = static_cast<Clock>(seed % 3);
     World world = make_world(random, clock != Clock::kSame);
     Renderer renderer(world, clock, random, tally);
-    const std::string said = renderer.run(random);
-    INFO("seed " << seed << ": " << said.substr(0, 1000));
-    REQUIRE(said.empty());
+    const std::string failures = renderer.run(random);
+    INFO("seed " << seed << ": " << failures.substr(0, 1000));
+    REQUIRE(failures.empty());
   }
   INFO(tally.events << " events, " << tally.states << " states, " << tally.interpolated << " interpolated, "
                     << tally.integrals << " integrals, " << tally.true_integrals << " true, " << tally.poses

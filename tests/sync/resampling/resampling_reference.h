@@ -39,7 +39,7 @@ class Reference {
     if (life_ != p.life) known_ = {};
     life_ = p.life;
     known_.least_latency_ns = std::min(known_.least_latency_ns, p.latency_ns);
-    std::visit([&](const auto& m) { note(m); }, p.message);
+    std::visit([&](const auto& m) { record(m); }, p.message);
   }
 
   const Life& life() const { return world_.lives[*life_]; }
@@ -57,13 +57,13 @@ class Reference {
   }
 
   // Begin or end of a contact, as far as received events contain it.
-  std::optional<std::int64_t> told(const TrueContact& c, std::int8_t kind) const {
+  std::optional<std::int64_t> event_time(const TrueContact& c, std::int8_t kind) const {
     for (const auto& [id, e] : known_.events)
       if (e.contact_id == c.shown.contact_id && e.kind == kind) return e.time_ns;
     return std::nullopt;
   }
   bool may_live(const TrueContact& c, std::int64_t t) const {
-    const auto begin = told(c, contact_event_t::BEGIN), end = told(c, contact_event_t::END);
+    const auto begin = event_time(c, contact_event_t::BEGIN), end = event_time(c, contact_event_t::END);
     return (!begin || *begin <= t) && (!end || t < *end);
   }
 
@@ -85,9 +85,9 @@ class Reference {
   }
 
   // A contact that is published ahead may not happen: it counts once its begin event or an earlier snapshot also contains it.
-  bool foreseen_only(const TrueContact& c, std::int64_t told_ns) const {
-    if (c.group != contact_frame_t::AHEAD || told(c, contact_event_t::BEGIN)) return false;
-    const auto earlier = snapshot_before(c.group, told_ns - 1);
+  bool predicted_only(const TrueContact& c, std::int64_t snapshot_ns) const {
+    if (c.group != contact_frame_t::AHEAD || event_time(c, contact_event_t::BEGIN)) return false;
+    const auto earlier = snapshot_before(c.group, snapshot_ns - 1);
     return !earlier || !c.alive(*earlier);
   }
 
@@ -97,12 +97,12 @@ class Reference {
     for (const TrueContact& c : life().contacts) {
       const auto before = snapshot_before(c.group, t), after = snapshot_after(c.group, t);
       if (!before || !may_live(c, t)) continue;
-      const bool in_before = c.alive(*before) && !foreseen_only(c, *before), in_after = after && c.alive(*after);
+      const bool in_before = c.alive(*before) && !predicted_only(c, *before), in_after = after && c.alive(*after);
       if (in_before && in_after)
         out[c.shown.contact_id] = c.force(t);
       else if (in_before)
         out[c.shown.contact_id] = c.force(*before);
-      else if (in_after && told(c, contact_event_t::BEGIN))
+      else if (in_after && event_time(c, contact_event_t::BEGIN))
         out[c.shown.contact_id] = c.force(*after);
     }
     return out;
@@ -118,15 +118,15 @@ class Reference {
   const Known& known() const { return known_; }
 
  private:
-  void note(const contact_events_t& m) {
+  void record(const contact_events_t& m) {
     for (const contact_event_t& e : m.events) known_.events.try_emplace(e.event_id, e);
   }
-  void note(const contact_frame_t& m) {
+  void record(const contact_frame_t& m) {
     auto& arrived = known_.pages[m.group][m.header.sim_time_ns];
     arrived.insert(m.page);
     if (static_cast<int>(arrived.size()) == m.pages) known_.complete[m.group].insert(m.header.sim_time_ns);
   }
-  void note(const world_state_t& m) {
+  void record(const world_state_t& m) {
     for (const body_state_t& b : m.bodies) known_.bodies[b.body].insert(m.header.sim_time_ns);
     known_.newest_world_ns = std::max(known_.newest_world_ns.value_or(0), m.header.sim_time_ns);
   }
@@ -156,7 +156,7 @@ inline sync::ContactIntegral Reference::integral(std::int64_t t0, std::int64_t t
   };
   for (const TrueContact& c : life().contacts) {
     if (c.group != 0 || c.shown.tool != tool) continue;
-    touches.push_back({&c, told(c, contact_event_t::BEGIN), told(c, contact_event_t::END)});
+    touches.push_back({&c, event_time(c, contact_event_t::BEGIN), event_time(c, contact_event_t::END)});
     if (touches.back().begin) cut(*touches.back().begin);
     if (touches.back().end) cut(*touches.back().end);
   }
@@ -203,12 +203,12 @@ inline bool Reference::knows_all(std::int64_t t0, std::int64_t t1, int tool) con
   if (!snapshot_before(0, t0) || *known_.complete[0].rbegin() + 50 * kMs < t1) return false;
   for (const TrueContact& c : life().contacts) {
     if (c.group != 0 || c.shown.tool != tool) continue;
-    if (c.begin_ns < t1 && !told(c, contact_event_t::BEGIN)) return false;
-    if (c.begin_ns < t1 && c.end_ns < t1 && !told(c, contact_event_t::END)) return false;
+    if (c.begin_ns < t1 && !event_time(c, contact_event_t::BEGIN)) return false;
+    if (c.begin_ns < t1 && c.end_ns < t1 && !event_time(c, contact_event_t::END)) return false;
     // Only its announced end may have arrived.
     if (c.begin_ns < t1 && c.end_ns >= t1 && !snapshot_after(0, c.begin_ns - 1)) return false;
     if (c.begin_ns < t1 && c.end_ns >= t1 && *snapshot_after(0, c.begin_ns - 1) >= c.end_ns &&
-        !told(c, contact_event_t::END))
+        !event_time(c, contact_event_t::END))
       return false;
   }
   return true;

@@ -29,10 +29,10 @@ inline constexpr int kTool = 0, kToolBody = 50;
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
-  std::int64_t whole(std::int64_t least, std::int64_t most) {
-    return std::uniform_int_distribution<std::int64_t>(least, most)(engine_);
+  std::int64_t whole(std::int64_t min, std::int64_t max) {
+    return std::uniform_int_distribution<std::int64_t>(min, max)(engine_);
   }
-  double real(double least, double most) { return std::uniform_real_distribution<double>(least, most)(engine_); }
+  double real(double min, double max) { return std::uniform_real_distribution<double>(min, max)(engine_); }
   bool chance(double p) { return real(0, 1) < p; }
 
  private:
@@ -163,26 +163,26 @@ inline Life make_life(Random& random, std::size_t number, std::int64_t begin_ns)
 }
 
 // The messages of sim_node in one incarnation, each delivered or lost.
-class Teller {
+class LifePublisher {
  public:
-  Teller(World& world, std::size_t life, Random& random)
+  LifePublisher(World& world, std::size_t life, Random& random)
       : world_(world), life_(world.lives[life]), number_(life), random_(random) {}
 
-  void tell() {
+  void publish() {
     std::int64_t frame = 0;
     for (std::int64_t k = 0; k * kMs <= life_.length_ns; ++k) {
       step_ns_ = k * kMs;
       send_ns_ = life_.begin_ns + step_ns_ + random_.whole(0, 300'000);
-      tell_events();
-      tell_contacts(0, step_ns_);
+      publish_events();
+      publish_contacts(0, step_ns_);
       // Visual step n begins at tick ceil(1000 n / 60) and is published one step ahead, with its time to come; so are the contacts of the
       // group AHEAD.
       if (k != (1000 * frame + 59) / 60) continue;
       const std::int64_t next_ns = (1000 * (frame + 1) + 59) / 60 * kMs;
-      if (frame == 0) tell_contacts(2, 0), tell_bodies(0);
-      tell_contacts(1, step_ns_);
-      tell_contacts(2, next_ns);
-      tell_bodies(next_ns);
+      if (frame == 0) publish_contacts(2, 0), publish_bodies(0);
+      publish_contacts(1, step_ns_);
+      publish_contacts(2, next_ns);
+      publish_bodies(next_ns);
       ++frame;
     }
   }
@@ -202,32 +202,32 @@ class Teller {
     return m;
   }
   // Pages of at most the given number of elements; at least one page, which may be empty.
-  template <class Thing, class Tell>
-  void paged(const std::vector<Thing>& things, std::size_t most, const Tell& tell) {
-    const std::size_t pages = std::max<std::size_t>(1, (things.size() + most - 1) / most);
+  template <class Element, class PublishPage>
+  void publish_in_pages(const std::vector<Element>& elements, std::size_t max_per_page, const PublishPage& publish_page) {
+    const std::size_t pages = std::max<std::size_t>(1, (elements.size() + max_per_page - 1) / max_per_page);
     for (std::size_t p = 0; p < pages; ++p)
-      tell(p, pages,
-           std::vector<Thing>(
-               things.begin() + static_cast<std::ptrdiff_t>(p * most),
-               things.begin() + static_cast<std::ptrdiff_t>(std::min(things.size(), (p + 1) * most))));
+      publish_page(p, pages,
+           std::vector<Element>(
+               elements.begin() + static_cast<std::ptrdiff_t>(p * max_per_page),
+               elements.begin() + static_cast<std::ptrdiff_t>(std::min(elements.size(), (p + 1) * max_per_page))));
   }
 
-  void tell_events() {
+  void publish_events() {
     std::vector<contact_event_t> young;
     for (const contact_event_t& e : life_.events)
       if (e.time_ns <= step_ns_ && e.time_ns > step_ns_ - 50 * kMs) young.push_back(e);
-    paged(young, 3, [&](std::size_t page, std::size_t pages, std::vector<contact_event_t> part) {
+    publish_in_pages(young, 3, [&](std::size_t page, std::size_t pages, std::vector<contact_event_t> part) {
       auto m = stamped<contact_events_t>(step_ns_, page, pages);
       m.count = static_cast<std::int32_t>(part.size());
       m.events = std::move(part);
       send(std::move(m));
     });
   }
-  void tell_contacts(int group, std::int64_t sim_ns) {
+  void publish_contacts(int group, std::int64_t sim_ns) {
     std::vector<contact_t> alive;
     for (const TrueContact& c : life_.contacts)
       if (c.group == group && c.alive(sim_ns)) alive.push_back(c.at(sim_ns));
-    paged(alive, 2, [&](std::size_t page, std::size_t pages, std::vector<contact_t> part) {
+    publish_in_pages(alive, 2, [&](std::size_t page, std::size_t pages, std::vector<contact_t> part) {
       auto m = stamped<contact_frame_t>(sim_ns, page, pages);
       m.group = static_cast<std::int8_t>(group);
       m.count = static_cast<std::int32_t>(part.size());
@@ -235,7 +235,7 @@ class Teller {
       send(std::move(m));
     });
   }
-  void tell_bodies(std::int64_t sim_ns) {
+  void publish_bodies(std::int64_t sim_ns) {
     const double s = static_cast<double>(sim_ns) * 1e-9;
     std::vector<body_state_t> bodies;
     for (std::size_t i = 0; i < life_.bodies.size(); ++i) {
@@ -249,7 +249,7 @@ class Teller {
       b.angular_velocity_rad_s.z = static_cast<float>(truth.turn_rad_s);
       bodies.push_back(b);
     }
-    paged(bodies, 2, [&](std::size_t page, std::size_t pages, std::vector<body_state_t> part) {
+    publish_in_pages(bodies, 2, [&](std::size_t page, std::size_t pages, std::vector<body_state_t> part) {
       auto m = stamped<world_state_t>(sim_ns, page, pages);
       m.group = sim_ns > step_ns_ ? world_state_t::AHEAD : world_state_t::NOW;
       m.count = static_cast<std::int32_t>(part.size());
@@ -293,7 +293,7 @@ inline World make_world(Random& random, bool other_clock) {
     w.lives.push_back(make_life(random, static_cast<std::size_t>(i), begin_ns));
     begin_ns += w.lives.back().length_ns + random.whole(2, 60) * kMs;
   }
-  for (std::size_t i = 0; i < w.lives.size(); ++i) Teller(w, i, random).tell();
+  for (std::size_t i = 0; i < w.lives.size(); ++i) LifePublisher(w, i, random).publish();
   std::stable_sort(w.packets.begin(), w.packets.end(),
                    [](const Packet& a, const Packet& b) { return a.arrival_ns < b.arrival_ns; });
   return w;

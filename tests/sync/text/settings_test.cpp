@@ -102,9 +102,9 @@ TEST_CASE("The error for an invalid value names setting, value and range") {
                                                {"mode", "", "fast|slow"},
                                                {"colour", "red", "no setting"}}) {
     INFO(name << " = " << value);
-    const std::string said = refusal(name, value);
-    CHECK(said.find(name) != std::string::npos);
-    CHECK(said.find(part) != std::string::npos);
+    const std::string message = refusal(name, value);
+    CHECK(message.find(name) != std::string::npos);
+    CHECK(message.find(part) != std::string::npos);
   }
   CHECK(e.delay_s == 0.02);
   CHECK(e.voices == 8);

@@ -46,7 +46,7 @@ TEST_CASE("The table shows state, ticks and input age of a node") {
     const auto later = table.rows(kNow + Nanoseconds(600'000'000));
     CHECK(later[0].state == "LOST");
     CHECK(later[0].rate_Hz == 0);
-    CHECK(later[0].note == "silent for 600 ms");
+    CHECK(later[0].status_text == "silent for 600 ms");
   }
   SECTION("a node that publishes again is running") {
     table.observe(health("haptic_node"), kNow + Nanoseconds(2'000'000'000));

@@ -23,7 +23,7 @@ Trace two_loops(std::uint64_t seed) {
   VirtualTime time({.seed = seed});
   const auto loop = [&](const char* name, Nanoseconds period) {
     return [&trace, &time, name, period] {
-      for (HostTime next = host_now(); !time.asked_to_leave(); sleep_until(next += period)) trace.emplace_back(name, host_now());
+      for (HostTime next = host_now(); !time.stop_requested(); sleep_until(next += period)) trace.emplace_back(name, host_now());
       return 0;
     };
   };
@@ -77,7 +77,7 @@ TEST_CASE("A program ends on request, is unwound at the timeout, and never wakes
   int woke = 0;
   time.add("polite", [&] {
     const Flag flag{polite};
-    while (!time.asked_to_leave()) sleep_until(host_now() + 1ms);
+    while (!time.stop_requested()) sleep_until(host_now() + 1ms);
     return 7;
   });
   time.add("stubborn", [&] {
@@ -97,7 +97,7 @@ TEST_CASE("A program ends on request, is unwound at the timeout, and never wakes
   CHECK_FALSE(time.kill("killed"));
   time.run_for(10ms);
   CHECK(woke == 10);
-  CHECK(time.ask_to_leave("polite"));
+  CHECK(time.request_stop("polite"));
   time.run_for(2ms);
   CHECK(time.result("polite") == 7);
   CHECK(polite);
@@ -116,7 +116,7 @@ TEST_CASE("run_for() rethrows an exception of a program, and the other programs 
     return 0;
   });
   time.add("other", [&] {
-    while (!time.asked_to_leave()) ++woke, sleep_until(host_now() + 1ms);
+    while (!time.stop_requested()) ++woke, sleep_until(host_now() + 1ms);
     return 0;
   });
   CHECK_THROWS_WITH(time.run_for(1s), "no more");
@@ -159,7 +159,7 @@ TEST_CASE("A node in virtual time ticks at its deadlines and reports ten times a
   time.add("listener", [&] {
     Bus bus(Identity::fresh("listener", 1), {});
     auto& healths = bus.queue<node_health_t>(channels::kNodeHealth, 64);
-    while (!time.asked_to_leave()) {
+    while (!time.stop_requested()) {
       bus.wait(1s);
       bus.drain(host_now());
       while (const auto m = healths.pop()) last = m->message, ++reports;

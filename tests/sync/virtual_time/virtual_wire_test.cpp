@@ -117,11 +117,11 @@ TEST_CASE("Messages are delivered in batches, oldest first, and not to removed r
 TEST_CASE("A recorder receives all sent messages, and an impossible loss is rejected") {
   VirtualWire wire({.loss = {.share = 1}}, 5);
   const auto sender = wire.join();
-  int told = 0;
-  wire.tell([&](HostTime at, std::string_view channel, std::span<const std::uint8_t> data) {
-    told += at == kBegin && channel == "A" && data.size() == 1;
+  int received = 0;
+  wire.add_listener([&](HostTime at, std::string_view channel, std::span<const std::uint8_t> data) {
+    received += at == kBegin && channel == "A" && data.size() == 1;
   });
   send(wire, *sender, 1, kBegin);
-  CHECK(told == 1);
+  CHECK(received == 1);
   CHECK_THROWS_AS(VirtualWire({.loss = {.share = 0.9, .mean_burst = 2}}, 1), std::invalid_argument);
 }

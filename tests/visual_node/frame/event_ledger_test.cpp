@@ -68,17 +68,17 @@ TEST_CASE("Every begin and hit has exactly one report under any frame timing") {
 
 TEST_CASE("The outcome of a late event follows the rule of the modality") {
   const sync::TimeMap map{sync::sim_time(0), sync::host_time(0), 1};
-  const auto outcome = [&](sync::Late rule, std::int64_t late_ns, std::int64_t foretold_ns) {
+  const auto outcome = [&](sync::LateRule rule, std::int64_t late_ns, std::int64_t foretold_ns) {
     EventLedger ledger(Settings{}, rule);
     ledger.take({event(1, contact_event_t::HIT, 0)}, map, sync::host_time(foretold_ns));
     return ledger.presented(sync::host_time(late_ns)).at(0).outcome;
   };
-  CHECK(outcome(sync::Late::kShowNewest, 50'000'000, 0) == presentation_t::PRESENTED);
-  CHECK(outcome(sync::Late::kShowNewest, 50'000'001, 0) == presentation_t::LATE);
-  CHECK(outcome(sync::Late::kShowNewest, 260'000'000, 250'000'001) == presentation_t::DROPPED_LATE);
+  CHECK(outcome(sync::LateRule::kShowNewest, 50'000'000, 0) == presentation_t::PRESENTED);
+  CHECK(outcome(sync::LateRule::kShowNewest, 50'000'001, 0) == presentation_t::LATE);
+  CHECK(outcome(sync::LateRule::kShowNewest, 260'000'000, 250'000'001) == presentation_t::DROPPED_LATE);
   // Predicted to be in time, and shown: late by any amount.
-  CHECK(outcome(sync::Late::kShowNewest, 900'000'000, 200'000'000) == presentation_t::LATE);
-  CHECK(outcome(sync::Late::kAlwaysApply, 5'000'000'000, 5'000'000'000) == presentation_t::LATE);
+  CHECK(outcome(sync::LateRule::kShowNewest, 900'000'000, 200'000'000) == presentation_t::LATE);
+  CHECK(outcome(sync::LateRule::kAlwaysApply, 5'000'000'000, 5'000'000'000) == presentation_t::LATE);
 }
 
 TEST_CASE("The drawing time is predicted by its median and ignores a single stall") {

@@ -104,14 +104,14 @@ TEST_CASE("Chunks of a picture are valid messages, and a receiver assembles them
     std::optional<sync::StreamedPicture> whole;
     for (const picture_chunk_t& c : chunks) {
       CHECK_FALSE(whole);
-      whole = reader.take(c);
+      whole = reader.push(c);
     }
     REQUIRE(whole);
     CHECK(whole->jpeg == some_jpeg(bytes).bytes);
     CHECK(whole->sim_time_ns == 77);
     CHECK(whole->presented_ns == 88);
     CHECK(whole->picture == 3);
-    for (const picture_chunk_t& c : chunks) CHECK_FALSE(reader.take(c));  // repeated
+    for (const picture_chunk_t& c : chunks) CHECK_FALSE(reader.push(c));  // repeated
   }
 }
 
@@ -119,12 +119,12 @@ TEST_CASE("A picture with a missing chunk is skipped, and the next one is comple
   sync::PictureReader reader;
   auto first = sent(5000, 0), second = sent(5000, 1);
   first.erase(first.begin() + 2);
-  for (const auto& c : first) CHECK_FALSE(reader.take(c));
+  for (const auto& c : first) CHECK_FALSE(reader.push(c));
   int whole = 0;
-  for (const auto& c : second) whole += reader.take(c).has_value();
+  for (const auto& c : second) whole += reader.push(c).has_value();
   CHECK(whole == 1);
   CHECK(reader.skipped() == 1);
-  CHECK_FALSE(reader.take(sent(5000, 0)[2]));  // too late
+  CHECK_FALSE(reader.push(sent(5000, 0)[2]));  // too late
 }
 
 TEST_CASE("Two walls stream in parallel, and a restarted node is received again") {
@@ -132,10 +132,10 @@ TEST_CASE("Two walls stream in parallel, and a restarted node is received again"
   const auto a = sent(3000, 9, 1), b = sent(3000, 2, 2);
   int whole = 0;
   for (std::size_t i = 0; i < a.size(); ++i)
-    whole += reader.take(a[i]).has_value() + reader.take(b[i]).has_value();
+    whole += reader.push(a[i]).has_value() + reader.push(b[i]).has_value();
   CHECK(whole == 2);
   auto again = sent(3000, 0, 1);
-  for (auto& c : again) c.header.incarnation = 6, whole += reader.take(c).has_value();
+  for (auto& c : again) c.header.incarnation = 6, whole += reader.push(c).has_value();
   CHECK(whole == 3);
 }
 
@@ -143,17 +143,17 @@ TEST_CASE("Inconsistent chunks are rejected, and the number of sources is limite
   sync::PictureReader reader;
   auto bad = sent(3000, 1);
   bad[0].chunks = 1 << 30;
-  CHECK_FALSE(reader.take(bad[0]));
+  CHECK_FALSE(reader.push(bad[0]));
   bad[1].chunk = -1;
-  CHECK_FALSE(reader.take(bad[1]));
+  CHECK_FALSE(reader.push(bad[1]));
   bad[2].size = 9;
-  CHECK_FALSE(reader.take(bad[2]));
+  CHECK_FALSE(reader.push(bad[2]));
   picture_chunk_t part = sent(3000, 1)[0];
   part.size = 10, part.data.resize(10);  // not the last, and not full
-  CHECK_FALSE(reader.take(part));
-  for (int source = 0; source < 1000; ++source) reader.take(sent(3000, 1, source)[0]);
+  CHECK_FALSE(reader.push(part));
+  for (int source = 0; source < 1000; ++source) reader.push(sent(3000, 1, source)[0]);
   int whole = 0;
-  for (const auto& c : sent(3000, 1, 5000)) whole += reader.take(c).has_value();
+  for (const auto& c : sent(3000, 1, 5000)) whole += reader.push(c).has_value();
   CHECK(whole == 1);
 }
 
@@ -182,7 +182,7 @@ TEST_CASE("A stream sends a limited number of chunks per tick and drops pictures
     REQUIRE(chunks.size() <= PictureStream::kMaxChunksATick);
     for (picture_chunk_t c : chunks) {
       c.header.incarnation = 1;
-      if (auto whole = reader.take(c)) got.push_back(std::move(*whole));
+      if (auto whole = reader.push(c)) got.push_back(std::move(*whole));
     }
     if (chunks.empty()) std::this_thread::yield();
   }

@@ -62,7 +62,7 @@ struct Fixture {
   }
   Fixture() : recorder(id, info(), LogWriter(std::make_unique<MemorySink>(disk)), kStart) {}
 
-  void hear(HostTime t, std::int64_t skip = 0) {
+  void receive(HostTime t, std::int64_t skip = 0) {
     asset_chunk_t m{};
     m.header = header_of("sim_node", 9, seq += skip, to_ns(t));
     m.chunks = m.size = 1;
@@ -79,7 +79,7 @@ struct Fixture {
 TEST_CASE("The head of a log precedes all recorded messages, is evenly spaced and contains the scene") {
   Fixture f;
   const Scene scene(30);
-  for (int i = 0; i < 100; ++i) f.hear(kStart + Nanoseconds(i * 1'000'000));
+  for (int i = 0; i < 100; ++i) f.receive(kStart + Nanoseconds(i * 1'000'000));
   f.recorder.poll(kStart + Nanoseconds(100'000'000));
   CHECK(f.disk->bytes.empty());
   f.recorder.begin(scene.assets, kStart + Nanoseconds(100'000'000));
@@ -128,11 +128,11 @@ TEST_CASE("The head of a log precedes all recorded messages, is evenly spaced an
 
 TEST_CASE("A log begins without the scene after a timeout") {
   Fixture f;
-  f.hear(kStart + Nanoseconds(5'000'000));
+  f.receive(kStart + Nanoseconds(5'000'000));
   f.recorder.poll(kStart + Recorder::kWaitForScene - Nanoseconds(1));
-  CHECK_FALSE(f.recorder.begun());
+  CHECK_FALSE(f.recorder.started());
   f.recorder.poll(kStart + Recorder::kWaitForScene);
-  CHECK(f.recorder.begun());
+  CHECK(f.recorder.started());
   const auto events = read_but_types(f.disk->bytes);
   REQUIRE(events.size() == 2);
   CHECK(events[0].channel == channels::kLogInfo);
@@ -153,20 +153,20 @@ TEST_CASE("A log begins without the scene when the buffer is full, and no messag
   m.size = 1024;
   m.data.resize(1024);
   int n = 0;
-  for (; !f.recorder.begun(); ++n) {
+  for (; !f.recorder.started(); ++n) {
     f.batch.clear();
     m.header.seq = n;
     f.batch.add(kStart + Nanoseconds(n), {"LIVE", encode(m)}, 1 << 20);
     f.recorder.push(f.batch);
   }
-  CHECK(n < static_cast<int>(Recorder::kMaxHeldBytes / 1024) + 1);
+  CHECK(n < static_cast<int>(Recorder::kMaxPendingBytes / 1024) + 1);
   f.recorder.finish(kStart);
   CHECK(read_but_types(f.disk->bytes).size() == static_cast<std::size_t>(n) + 1);
 }
 
 TEST_CASE("Messages are written if the recorder ends before the scene arrives") {
   Fixture f;
-  f.hear(kStart);
+  f.receive(kStart);
   f.recorder.finish(kStart + Nanoseconds(1));
   CHECK(read_but_types(f.disk->bytes).size() == 2);
 }
@@ -174,21 +174,21 @@ TEST_CASE("Messages are written if the recorder ends before the scene arrives") 
 TEST_CASE("Missing sequence numbers are counted per channel") {
   Fixture f;
   f.recorder.begin({}, kStart);
-  f.hear(kStart + Nanoseconds(1));
-  f.hear(kStart + Nanoseconds(2), 3);
-  f.hear(kStart + Nanoseconds(3));
+  f.receive(kStart + Nanoseconds(1));
+  f.receive(kStart + Nanoseconds(2), 3);
+  f.receive(kStart + Nanoseconds(3));
   CHECK(f.recorder.gaps() == 3);
-  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("gaps: LIVE 3"));
+  CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("gaps: LIVE 3"));
 }
 
 TEST_CASE("A full disk is reported and retried once a second, and recording continues") {
   Fixture f;
   f.recorder.begin({}, kStart);
   f.disk->trouble = "No space left on device";
-  f.hear(kStart);
+  f.receive(kStart);
   f.recorder.poll(kStart);
   CHECK(f.recorder.failing());
-  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("No space left on device"));
+  CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("No space left on device"));
   f.disk->trouble.clear();
   f.recorder.poll(kStart + Nanoseconds(500'000'000));
   CHECK(f.recorder.failing());
@@ -210,8 +210,8 @@ TEST_CASE("An unknown message is recorded unchanged") {
 
 TEST_CASE("An oversized message is counted separately and not as lost") {
   Fixture f;
-  CHECK_THAT(f.recorder.note(0, 1), Catch::Contains("1 left out, larger than any message of ours"));
-  CHECK_THAT(f.recorder.note(0, 1), !Catch::Contains("lost"));
+  CHECK_THAT(f.recorder.status_text(0, 1), Catch::Contains("1 dropped, larger than any Tactus message"));
+  CHECK_THAT(f.recorder.status_text(0, 1), !Catch::Contains("lost"));
 }
 
 TEST_CASE("A log contains the description and fingerprint of each message type") {
@@ -254,13 +254,13 @@ TEST_CASE("Each part of a split log has the head, and the parts contain every me
       nullptr);
   f.recorder.begin(scene.assets, kStart);
   for (int i = 0; i < 2000; ++i) {
-    f.hear(kStart + Nanoseconds(1'000'000) * i);
+    f.receive(kStart + Nanoseconds(1'000'000) * i);
     if (i % 20 == 0) f.recorder.poll(kStart + Nanoseconds(1'000'000) * i);
   }
   f.recorder.finish(kStart + Nanoseconds(2'000'000'000));
   REQUIRE(parts.size() > 3);
   CHECK(f.recorder.parts() == static_cast<int>(parts.size()));
-  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("in " + std::to_string(parts.size()) + " parts"));
+  CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("in " + std::to_string(parts.size()) + " parts"));
   std::int64_t next = 0;
   for (const auto& part : parts) {
     const auto events = read_all(part->bytes);
@@ -290,11 +290,11 @@ TEST_CASE("If a new part cannot be created, the error is reported and the curren
       nullptr);
   f.recorder.begin({}, kStart);
   for (int i = 0; i < 300; ++i) {
-    f.hear(kStart + Nanoseconds(1'000'000) * i);
+    f.receive(kStart + Nanoseconds(1'000'000) * i);
     f.recorder.poll(kStart + Nanoseconds(1'000'000) * i);
   }
   CHECK(f.recorder.failing());
-  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("cannot create run.2.lcmlog"));
+  CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("cannot create run.2.lcmlog"));
   f.recorder.finish(kStart + Nanoseconds(300'000'000));
   CHECK(read_but_types(f.disk->bytes).size() == 301);
 }
@@ -305,10 +305,10 @@ TEST_CASE("A log stops at its maximum size, and further messages are counted") {
   limits.max_bytes = 50'000;
   f.recorder.limit(limits, nullptr, nullptr);
   f.recorder.begin({}, kStart);
-  for (int i = 0; i < 2000; ++i) f.hear(kStart + Nanoseconds(i));
+  for (int i = 0; i < 2000; ++i) f.receive(kStart + Nanoseconds(i));
   f.recorder.finish(kStart + Nanoseconds(5000));
   CHECK(f.disk->bytes.size() <= 50'000 + channels::kMaxMessageBytes);
   CHECK(f.recorder.beyond() > 0);
   CHECK(static_cast<std::int64_t>(read_but_types(f.disk->bytes).size()) + f.recorder.beyond() == 2001);
-  CHECK_THAT(f.recorder.note(0, 0), Catch::Contains("beyond the largest size"));
+  CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("beyond the maximum size"));
 }

@@ -8,7 +8,7 @@
 #include <tactus/world_state_t.hpp>
 
 #include "sync/log/log_header.h"
-#include "sync/tools/replay/replay_choice.h"
+#include "sync/tools/replay/replay_selection.h"
 #include "sync/tools/replay/replay_control.h"
 #include "tests/sync/support/damaged_log.h"
 
@@ -82,7 +82,7 @@ TEST_CASE("Each message is sent once at any speed") {
 TEST_CASE("Bursts and rate stay within their limits at any speed") {
   ReplayOptions o;
   o.speed = GENERATE(0.0, 100.0);
-  o.most_per_s = 2000;
+  o.max_per_s = 2000;
   Player p(o);
   std::size_t before = 0;
   for (int i = 0; i < 5000 && !p.replay.over(); ++i) {
@@ -193,7 +193,7 @@ TEST_CASE("1,000 damaged logs are replayed to their end with their undamaged mes
     const LogOrigin origin = origin_of(log.bytes);
     ReplayOptions o;
     o.speed = 0;
-    o.most_per_s = 1e6;
+    o.max_per_s = 1e6;
     Replay replay(log.bytes, origin, o, kNow);
     std::set<std::int64_t> missing = log.whole;
     HostTime now = kNow;
@@ -223,7 +223,7 @@ TEST_CASE("seek_log() finds a time in a damaged log without reading all of it") 
     const std::int64_t begin_us = (DamagedLog::kBegin_ns + DamagedLog::kOffset_ns) / 1000;
     const std::int64_t wanted = static_cast<std::int64_t>(random() % 3000);
     LogScanner scanner(log.bytes);
-    scanner.start_at(seek_log(log.bytes, begin_us + 1000 * wanted));
+    scanner.seek(seek_log(log.bytes, begin_us + 1000 * wanted));
     std::set<std::int64_t> missing;
     for (const std::int64_t n : log.whole)
       if (n >= wanted) missing.insert(n);
@@ -325,23 +325,23 @@ TEST_CASE("By default only channels of the world are replayed, not those of the 
   ReplayChoice choice({});
   for (const char* c :
        {"TOUCH_MODEL", "CONTACT_EVENTS", "CONTACTS", "WORLD_STATE", "GAME_STATE", "TOOL_STATE", "MY_OWN"})
-    CHECK(choice.channel_of(event_of(c, {})) == std::string_view(c));
+    CHECK(selection.channel_of(event_of(c, {})) == std::string_view(c));
   for (const char* c : {"NODE_HEALTH", "PRESENTED", "SYNC_REPORT", "CLOCK_MAP", "CLOCK_PROBE", "PLAYOUT",
                         "PLAYOUT_REQUEST", "DEGRADATION", "DEGRADED", "SETTING", "QUESTION", "ANSWER", "SIM_COMMAND", "DEVICE_FORCE",
                         "THERMAL_STATE", "MEDIA_CLOCK", "SCENE_MANIFEST", "LOG_INFO"})
-    CHECK_FALSE(choice.channel_of(event_of(c, {})));
-  CHECK(ReplayChoice({.as_recorded = true}).channel_of(event_of("DEGRADATION", {})));
-  CHECK(ReplayChoice({.verbatim = true}).channel_of(event_of("NODE_HEALTH", {})));
-  CHECK(ReplayChoice({.also = "THERMAL_.*"}).channel_of(event_of("THERMAL_STATE", {})));
+    CHECK_FALSE(selection.channel_of(event_of(c, {})));
+  CHECK(ReplaySelection({.as_recorded = true}).channel_of(event_of("DEGRADATION", {})));
+  CHECK(ReplaySelection({.verbatim = true}).channel_of(event_of("NODE_HEALTH", {})));
+  CHECK(ReplaySelection({.also = "THERMAL_.*"}).channel_of(event_of("THERMAL_STATE", {})));
 }
 
 TEST_CASE("Messages of a node are not replayed while that node is live") {
   tool_state_t m{};
   m.header = header_of("haptic_node", 3, 1, 1000, 77);
   const auto bytes = encode(m);
-  CHECK(ReplayChoice({}).channel_of(event_of("TOOL_STATE", bytes)));
-  CHECK(ReplayChoice({.live = {"audio_node"}}).channel_of(event_of("TOOL_STATE", bytes)));
-  CHECK_FALSE(ReplayChoice({.live = {"audio_node", "haptic_node"}}).channel_of(event_of("TOOL_STATE", bytes)));
+  CHECK(ReplaySelection({}).channel_of(event_of("TOOL_STATE", bytes)));
+  CHECK(ReplaySelection({.live = {"audio_node"}}).channel_of(event_of("TOOL_STATE", bytes)));
+  CHECK_FALSE(ReplaySelection({.live = {"audio_node", "haptic_node"}}).channel_of(event_of("TOOL_STATE", bytes)));
 }
 
 TEST_CASE("Channels are selected by regular expressions and renamed") {
@@ -358,27 +358,27 @@ TEST_CASE("Channels are selected by regular expressions and renamed") {
 TEST_CASE("Commands control a replay, and an invalid command is reported") {
   Player p;
   bool quit = false;
-  const auto say = [&](const char* line) { return obey(p.replay, line, p.now, quit); };
-  CHECK(say("pause").empty());
+  const auto execute = [&](const char* line) { return execute_command(p.replay, line, p.now, quit); };
+  CHECK(execute("pause").empty());
   CHECK(p.replay.paused());
-  CHECK(say("  seek   0.5 ").empty());
+  CHECK(execute("  seek   0.5 ").empty());
   CHECK(p.replay.position_s() == Approx(0.5));
-  CHECK(say("seek -0.2").empty());
+  CHECK(execute("seek -0.2").empty());
   CHECK(p.replay.position_s() == Approx(0.3));
-  CHECK(say("speed 2").empty());
+  CHECK(execute("speed 2").empty());
   CHECK(p.replay.speed() == 2);
-  CHECK(say("speed max").empty());
+  CHECK(execute("speed max").empty());
   CHECK(p.replay.speed() == 0);
-  CHECK(say("loop on").empty());
+  CHECK(execute("loop on").empty());
   CHECK(p.replay.loop());
-  CHECK(say("toggle").empty());
+  CHECK(execute("toggle").empty());
   CHECK_FALSE(p.replay.paused());
-  CHECK(say("").empty());
+  CHECK(execute("").empty());
   for (const char* line : {"fly", "speed 0", "speed nan", "speed -1", "seek", "seek x", "seek inf", "step -1",
                            "loop maybe", "pause 3", "seek 1 2", "\x01\x02"})
-    CHECK_THAT(say(line), Catch::StartsWith("cannot obey"));
+    CHECK_THAT(execute(line), Catch::StartsWith("cannot execute"));
   CHECK_FALSE(quit);
-  say("quit");
+  execute("quit");
   CHECK(quit);
 }
 

@@ -19,7 +19,7 @@ struct Heard {
   ClockMaps maps{7};
   Channels channels{OwnClock{7, 1, &maps}};
 
-  void hear(const std::string& channel, const std::vector<std::uint8_t>& bytes, HostTime at, bool whole = true) {
+  void receive(const std::string& channel, const std::vector<std::uint8_t>& bytes, HostTime at, bool whole = true) {
     MessageBatch batch;
     REQUIRE(batch.add(at, {channel, bytes, whole}, 1 << 20));
     channels.push(batch[0]);
@@ -31,7 +31,7 @@ struct Heard {
     m.header.seq = seq;
     m.header.sim_time_ns = 0, m.header.publish_time_ns = to_ns(sent);
     m.force_N.z = static_cast<float>(seq);
-    hear(channel, encode(m), at);
+    receive(channel, encode(m), at);
   }
   const ChannelFigures& of(const std::string& name) {
     figures = channels.figures(at_ms(10'000));
@@ -79,9 +79,9 @@ TEST_CASE("The rates of several senders on a channel add up, and their jitter is
 
 TEST_CASE("Messages of unknown types are listed, and incomplete ones are counted") {
   Heard h;
-  h.hear("CAMERA", {1, 2, 3, 4, 5, 6, 7, 8, 9}, at_ms(9000));
-  h.hear("CAMERA", {1, 2}, at_ms(9001), false);
-  h.hear("EMPTY", {}, at_ms(9000));
+  h.receive("CAMERA", {1, 2, 3, 4, 5, 6, 7, 8, 9}, at_ms(9000));
+  h.receive("CAMERA", {1, 2}, at_ms(9001), false);
+  h.receive("EMPTY", {}, at_ms(9000));
   CHECK(h.of("CAMERA").type.empty());
   CHECK(h.of("CAMERA").messages == 2);
   CHECK(h.of("CAMERA").torn == 1);
@@ -92,7 +92,7 @@ TEST_CASE("Messages of unknown types are listed, and incomplete ones are counted
 
 TEST_CASE("The number of channels and senders is bounded, and the excess is counted") {
   Heard h;
-  for (int i = 0; i < 2000; ++i) h.hear("NOISE_" + std::to_string(i), {1}, at_ms(9000));
+  for (int i = 0; i < 2000; ++i) h.receive("NOISE_" + std::to_string(i), {1}, at_ms(9000));
   CHECK(h.channels.figures(at_ms(9000)).size() == Channels::kMax);
   CHECK(h.channels.beyond() == 2000 - static_cast<std::int64_t>(Channels::kMax));
   CHECK(h.channels.messages() == 2000);

@@ -30,7 +30,7 @@ struct Shown {
   Screen screen;
   HostTime now = at_ms(1000);
 
-  void hear(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
+  void receive(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
     MessageBatch batch;
     REQUIRE(batch.add(now, {channel, bytes}, 1 << 20));
     channels.push(batch[0]);
@@ -40,7 +40,7 @@ struct Shown {
     m.header.run_id = 7, m.header.clock = 1, m.header.incarnation = 9, m.header.source = 5, m.header.seq = seq++;
     m.header.publish_time_ns = to_ns(now);
     m.force_N.z = static_cast<float>(z);
-    hear("TOOL_STATE", encode(m));
+    receive("TOOL_STATE", encode(m));
   }
   std::vector<std::string> draw(std::size_t columns = 120, std::size_t rows = 20) {
     return screen.draw(channels, now, columns, rows);
@@ -87,7 +87,7 @@ TEST_CASE("A sparkline is scaled from its lowest to its highest value and blank 
 
 TEST_CASE("The screen fits any terminal size") {
   Shown s;
-  for (int i = 0; i < 100; ++i) s.hear("A_RATHER_LONG_CHANNEL_NAME_" + std::to_string(i), {1, 2, 3});
+  for (int i = 0; i < 100; ++i) s.receive("A_RATHER_LONG_CHANNEL_NAME_" + std::to_string(i), {1, 2, 3});
   for (int i = 0; i < 20; ++i) s.now += Nanoseconds(100'000'000), s.tool(i);
   for (const Key page : {Key::kNone, Key::kEnter, Key::kTags}) {
     s.press(page);
@@ -103,11 +103,11 @@ TEST_CASE("The screen fits any terminal size") {
 
 TEST_CASE("The cursor stays on its channel, and enter opens the fields of its newest message") {
   Shown s;
-  s.hear("B", {1});
+  s.receive("B", {1});
   s.tool(2.5);
   s.draw();
   s.press(Key::kDown);  // TOOL_STATE
-  s.hear("A", {1});
+  s.receive("A", {1});
   CHECK_THAT(s.draw()[s.screen.marked()], Catch::StartsWith("TOOL_STATE"));
   s.press(Key::kEnter);
   const std::string fields = s.all(160, 120);
@@ -117,7 +117,7 @@ TEST_CASE("The cursor stays on its channel, and enter opens the fields of its ne
   CHECK_THAT(s.draw()[s.screen.marked()], Catch::StartsWith("TOOL_STATE"));
   s.press(Key::kUp);
   s.press(Key::kEnter);
-  CHECK_THAT(s.all(), Catch::Contains("no type of ours"));
+  CHECK_THAT(s.all(), Catch::Contains("no Tactus type"));
 }
 
 TEST_CASE("A sparkline of the selected field is drawn below it") {
@@ -131,7 +131,7 @@ TEST_CASE("A sparkline of the selected field is drawn below it") {
   for (int i = 0; i < 8; ++i) {
     s.now += Screen::kColumn;
     s.tool(i);
-    s.screen.look(s.channels, s.now);
+    s.screen.sample(s.channels, s.now);
   }
   CHECK_THAT(s.draw(160, 120)[s.screen.marked() + 1], Catch::Contains("▂▃▄▅▆▇█") && Catch::Contains("7"));
 }
@@ -141,7 +141,7 @@ TEST_CASE("Variables are shown with value and unit, and requested only while the
   CHECK_FALSE(s.screen.shows_tags());
   s.press(Key::kTags);
   CHECK(s.screen.shows_tags());
-  CHECK_THAT(s.all(), Catch::Contains("asked for, none has come yet"));
+  CHECK_THAT(s.all(), Catch::Contains("requested, none has arrived yet"));
   tag_list_t list{};
   list.header.incarnation = 3, list.node = "haptic_node", list.list = 5, list.total = list.tag_count = 1,
   list.tags = {{"force", "N", 0}};
@@ -158,7 +158,7 @@ TEST_CASE("Variables are shown with value and unit, and requested only while the
 
 TEST_CASE("Control characters in channel names are escaped") {
   Shown s;
-  s.hear("EVIL\x1b[2J", {1});
+  s.receive("EVIL\x1b[2J", {1});
   for (const std::string& line : s.draw()) CHECK(line.find('\x1b') == std::string::npos);
 }
 

@@ -191,8 +191,8 @@ TEST_CASE("The failure of a run names lost events and missing nodes") {
   const std::string why = log.summary(options).failure();
   CHECK_THAT(why, Catch::Contains("haptic_node never reported"));
   CHECK_THAT(why, Catch::Contains("audio_node was not alive at the end"));
-  CHECK_THAT(why, Catch::Contains("visual lost 1 of 81 owed contact events"));
-  CHECK_THAT(why, Catch::Contains("audio lost 1 of 81 owed contact events"));
+  CHECK_THAT(why, Catch::Contains("visual lost 1 of 81 expected contact events"));
+  CHECK_THAT(why, Catch::Contains("audio lost 1 of 81 expected contact events"));
 }
 
 TEST_CASE("Missing messages count as gaps and undecodable ones as bad") {

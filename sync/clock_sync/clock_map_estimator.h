@@ -12,13 +12,13 @@
 
 namespace tactus::sync {
 
-class ClockAgreement {
+class ClockMapEstimator {
  public:
   // A host that has not answered for this time is gone, and its map is no longer published (design: 15 waves). Receivers
   // continue with the last map, which contains the growth of its uncertainty.
-  static constexpr Nanoseconds kGone{30'000'000'000};
+  static constexpr Nanoseconds kTimeout{30'000'000'000};
 
-  explicit ClockAgreement(std::int32_t own_clock) : own_clock_(own_clock) {}
+  explicit ClockMapEstimator(std::int32_t own_clock) : own_clock_(own_clock) {}
 
   OffsetTracker::Outcome add(const ProbeWave& wave);
   // One map of each clock, for this instant.
@@ -30,7 +30,7 @@ class ClockAgreement {
  private:
   struct Other {
     OffsetTracker tracker;
-    HostTime heard{};
+    HostTime last_wave{};
     Nanoseconds round_trip{0};
     std::int32_t replies = 0;
   };

@@ -23,7 +23,7 @@
 
 namespace tactus::sync {
 
-struct ReplayWishes {
+struct ReplaySelectionOptions {
   bool verbatim = false;                 // every message is sent, unchanged
   bool as_recorded = false;              // the profiles that were in force are sent, too
   std::string channels = {};             // regular expression that must match the whole name; empty: all
@@ -33,17 +33,17 @@ struct ReplayWishes {
   std::vector<std::string> live = {};    // running processes: their recorded messages are not sent
 };
 
-class ReplayChoice {
+class ReplaySelection {
  public:
   // Throws std::runtime_error with one sentence.
-  explicit ReplayChoice(const ReplayWishes& wishes);
+  explicit ReplaySelection(const ReplaySelectionOptions& selection_options);
   // The channel to send it on; nullopt: it is not sent.
   std::optional<std::string_view> channel_of(const LogEvent& event);
   bool verbatim() const { return verbatim_; }
 
  private:
   struct Channel {
-    bool goes = false;
+    bool sent = false;
     std::string name;
   };
   const Channel& decide(std::string_view recorded);

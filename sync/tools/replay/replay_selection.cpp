@@ -1,4 +1,4 @@
-#include "sync/tools/replay/replay_choice.h"
+#include "sync/tools/replay/replay_selection.h"
 
 #include <algorithm>
 #include <array>
@@ -34,7 +34,7 @@ std::optional<std::regex> expression(const char* option, const std::string& text
 
 }  // namespace
 
-ReplayChoice::ReplayChoice(const ReplayWishes& w)
+ReplaySelection::ReplaySelection(const ReplaySelectionOptions& w)
     : verbatim_(w.verbatim),
       as_recorded_(w.as_recorded),
       channels_(expression("--channels", w.channels)),
@@ -43,16 +43,16 @@ ReplayChoice::ReplayChoice(const ReplayWishes& w)
   for (const std::string& word : w.rename) {
     const std::size_t at = word.find('=');
     const std::string to = at == std::string::npos ? "" : word.substr(at + 1);
-    if (at == 0 || to.empty() || to.size() > kLongestChannel ||
+    if (at == 0 || to.empty() || to.size() > kMaxChannelBytes ||
         !std::all_of(to.begin(), to.end(), [](char c) { return c > ' ' && c <= '~'; }))
       throw std::runtime_error("--rename " + word + ": write it as FROM=TO, two names of channels of at most " +
-                               std::to_string(kLongestChannel) + " letters");
+                               std::to_string(kMaxChannelBytes) + " letters");
     rename_.emplace_back(word.substr(0, at), to);
   }
   for (const std::string& node : w.live) live_.insert(static_cast<std::int32_t>(fnv1a_32(node)));
 }
 
-const ReplayChoice::Channel& ReplayChoice::decide(std::string_view recorded) {
+const ReplaySelection::Channel& ReplaySelection::decide(std::string_view recorded) {
   if (const auto it = decided_.find(recorded); it != decided_.end()) return it->second;
   const std::string name(recorded);
   const auto matches = [&](const std::optional<std::regex>& e) { return e && std::regex_match(name, *e); };
@@ -60,19 +60,19 @@ const ReplayChoice::Channel& ReplayChoice::decide(std::string_view recorded) {
   if (!verbatim_ && !matches(also_)) {
     const bool withheld =
         std::any_of(kWithheld.begin(), kWithheld.end(), [&](const char* w) { return recorded == w; });
-    c.goes = !withheld || (as_recorded_ && recorded == kDegradation);
+    c.sent = !withheld || (as_recorded_ && recorded == kDegradation);
   }
-  if (channels_ && !matches(channels_)) c.goes = false;
-  if (matches(leave_out_)) c.goes = false;
+  if (channels_ && !matches(channels_)) c.sent = false;
+  if (matches(leave_out_)) c.sent = false;
   for (const auto& [from, to] : rename_)
     if (recorded == from) c.name = to;
   if (decided_.size() < kMaxDecided) return decided_.emplace(name, std::move(c)).first->second;
   return scratch_ = std::move(c);
 }
 
-std::optional<std::string_view> ReplayChoice::channel_of(const LogEvent& event) {
+std::optional<std::string_view> ReplaySelection::channel_of(const LogEvent& event) {
   const Channel& c = decide(event.channel);
-  if (!c.goes) return std::nullopt;
+  if (!c.sent) return std::nullopt;
   if (!verbatim_ && !live_.empty())
     if (const auto header = peek_header(event.data.data(), event.data.size());
         header && live_.contains(header->source))

@@ -9,7 +9,7 @@
 
 namespace tactus::sync {
 
-class NodeLife {
+class NodeActivity {
  public:
   // A silence of more than kStall within an incarnation is a stall; a silence of more than kDeath that has not ended is a
   // death.
@@ -21,7 +21,7 @@ class NodeLife {
   // Length of the stored history.
   static constexpr Nanoseconds kRemember{10'000'000'000};
 
-  enum class Fate {
+  enum class State {
     kAbsent,     // it did not run yet
     kAlive,      // it reported health throughout
     kStalled,    // it stopped publishing and resumed
@@ -29,8 +29,8 @@ class NodeLife {
     // Its last report is before the end of the interval, but not old enough for a death.
     kUndecided,
   };
-  struct Answer {
-    Fate fate = Fate::kAbsent;
+  struct Result {
+    State state = State::kAbsent;
     // It is silent now: kDead becomes kStalled if the same incarnation publishes again.
     bool may_return = false;
   };
@@ -38,7 +38,7 @@ class NodeLife {
   // sent: on our clock. Returns true when the same incarnation publishes again after a stall.
   bool observe(std::int64_t incarnation, std::int8_t state, HostTime sent);
 
-  Answer during(HostTime from, HostTime to, HostTime now) const;
+  Result during(HostTime from, HostTime to, HostTime now) const;
   // True when the last report of this incarnation is before `until` and none can follow: another incarnation has replaced it,
   // or it has been silent for too long.
   bool died_before(std::int64_t incarnation, HostTime until, HostTime now) const;
@@ -52,13 +52,13 @@ class NodeLife {
   // Uninterrupted health of one incarnation in one ability.
   struct Span {
     std::int64_t incarnation = 0;
-    bool able = false;  // neither waiting for its first input nor without output
-    HostTime owes_from = HostTime::max();
+    bool has_output = false;  // neither waiting for its first input nor without output
+    HostTime expected_from = HostTime::max();
     HostTime begin{};
     HostTime end{};
   };
   std::deque<Span> spans_;
-  HostTime first_owes_from_ = HostTime::max();
+  HostTime first_expected_from_ = HostTime::max();
 };
 
 }  // namespace tactus::sync

@@ -1,10 +1,10 @@
-#include "sync/clock_sync/clock_agreement.h"
+#include "sync/clock_sync/clock_map_estimator.h"
 
 namespace tactus::sync {
 
-OffsetTracker::Outcome ClockAgreement::add(const ProbeWave& wave) {
+OffsetTracker::Outcome ClockMapEstimator::add(const ProbeWave& wave) {
   Other& other = others_[wave.clock];
-  other.heard = wave.sample.at;
+  other.last_wave = wave.sample.at;
   other.round_trip = wave.round_trip;
   other.replies = wave.replies;
   const OffsetTracker::Outcome outcome = other.tracker.add(wave.sample);
@@ -13,8 +13,8 @@ OffsetTracker::Outcome ClockAgreement::add(const ProbeWave& wave) {
   return outcome;
 }
 
-std::vector<clock_map_t> ClockAgreement::maps(HostTime now) {
-  std::erase_if(others_, [&](const auto& entry) { return now - entry.second.heard > kGone; });
+std::vector<clock_map_t> ClockMapEstimator::maps(HostTime now) {
+  std::erase_if(others_, [&](const auto& entry) { return now - entry.second.last_wave > kTimeout; });
   std::vector<clock_map_t> out;
   for (auto& [clock, other] : others_) {
     const OffsetLine line = other.tracker.line(now);
