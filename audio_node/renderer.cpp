@@ -188,7 +188,7 @@ void NodeRenderer::strike_due(sync::HostTime now) {
   const sync::HostTime begun = sync::host_now();
   const Settings& settings = output_.settings();
   const auto schedule = [&](const contact_event_t& e) {
-    return host().sense().schedule(e.event_id, map->to_host(sync::sim_time(e.time_ns)));
+    return host().endpoint().schedule(e.event_id, map->to_host(sync::sim_time(e.time_ns)));
   };
   hits_ += strike_due_hits(events_.inbox(), map->to_sim(now + kEarly), now,
                            late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s)),

@@ -61,7 +61,7 @@ void NodeRenderer::apply_setting(const Settings& settings, const std::string&) {
 }
 
 void NodeRenderer::receive() {
-  stream_.keep(host().sense().delay());
+  stream_.extend_history(host().endpoint().delay());
   while (const auto m = frames_.pop()) stream_.push(m->message, m->arrival);
   while (const auto m = answers_.pop())
     // Ignores readings of a log that is replayed meanwhile: that plate is not under this finger.

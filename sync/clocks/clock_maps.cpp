@@ -54,7 +54,7 @@ void ClockMaps::observe(const clock_map_t& m, HostTime arrival) {
   }
   const Known& before = it->second;
   const bool same = before.incarnation == now.incarnation && before.source == now.source;
-  if (same ? now.seq < before.seq : arrival - before.arrival < kSilence) return;
+  if (same ? now.seq < before.seq : arrival - before.arrival < kTimeout) return;
   it->second = now;
 }
 
@@ -63,10 +63,10 @@ std::optional<ClockReading> ClockMaps::read(HostTime time, std::int32_t of_clock
   if (of_clock == on_clock) return ClockReading{time, Nanoseconds(0)};
   std::optional<ClockReading> out;
   if (const auto it = known_.find({of_clock, on_clock}); it != known_.end())
-    out = it->second.line.from_of(time);
+    out = it->second.line.of_to_target(time);
   else if (const auto back = known_.find({on_clock, of_clock}); back != known_.end())
-    out = back->second.line.to_of(time);
-  if (out && out->uncertainty > kMaxUncertain) out.reset();
+    out = back->second.line.target_to_of(time);
+  if (out && out->uncertainty > kMaxUncertainty) out.reset();
   return out;
 }
 

@@ -12,7 +12,7 @@ struct DecisionRecord {
   std::uint64_t key = 0;  // of an event its id, of a snapshot as snapshot_key
   bool is_event = false;
   SimTime time{};
-  Decision verdict;
+  Decision decision;
   HostTime arrival{};
 };
 using Decisions = std::vector<DecisionRecord>;

@@ -149,8 +149,8 @@ void ModalityEndpoint::EventSlot::step(ModalityEndpoint& endpoint, HostTime now,
   HostTime received = now;  // a tick that is held up while it reads also accepts the messages that arrive meanwhile
   while (const auto m = events.received_.pop()) {
     received = std::max(received, m->arrival);
-    endpoint.simulation_.follow(m->message.header, m->message.clock, m->arrival);
-    events.inbox_.push(m->message, m->arrival, endpoint.stack_, &endpoint.decisions_);
+    endpoint.simulation_.track(m->message.header, m->message.clock, m->arrival);
+    events.inbox_.push(m->message, m->arrival, endpoint.operators_, &endpoint.decisions_);
   }
   endpoint.report_dropped(events.inbox_.take_dropped());
   events.inbox_.release(received);
@@ -165,7 +165,7 @@ void ModalityEndpoint::log_in_flight_delays(HostTime now, SimTime sim_now) {
     d.key = static_cast<std::uint64_t>(id);
     d.is_event = true;
     d.time = sim_now - (now - arrival);
-    d.verdict.release = d.arrival = arrival;
+    d.decision.release = d.arrival = arrival;
     decisions_.push_back(d);
     return true;
   });

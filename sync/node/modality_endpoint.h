@@ -61,7 +61,7 @@ class ModalityEndpoint {
     explicit Stream(Queue<Message>& inbox) : inbox_(inbox) {}
     Queue<Message>& inbox_;
     DegradedSnapshots<Message> degraded_;
-    bool waits_ = false;
+    bool delayed_ = false;
     HostTime now_{};
   };
 
@@ -141,23 +141,23 @@ class ModalityEndpoint {
   template <class Message>
   struct StreamSlot : AnyStream {
     explicit StreamSlot(Queue<Message>& inbox) : stream(inbox) {}
-    void step(ModalityEndpoint& sense, HostTime now, HostTime lets) override;
+    void step(ModalityEndpoint& endpoint, HostTime now, HostTime state_time) override;
     void change_profile() override { stream.degraded_.change_profile(); }
     HostTime newest_arrival() const override { return stream.inbox_.count().newest_arrival; }
     Stream<Message> stream;
   };
   struct EventSlot : AnyStream {
     explicit EventSlot(Events e) : events(std::move(e)) {}
-    void step(ModalityEndpoint& endpoint, HostTime now, HostTime lets) override;
+    void step(ModalityEndpoint& endpoint, HostTime now, HostTime state_time) override;
     void change_profile() override {}  // each event has its own decision
     HostTime newest_arrival() const override { return events.count().newest_arrival; }
     Events events;
   };
   template <class Message>
   Stream<Message>& add(const char* channel, std::size_t capacity) {
-    auto held = std::make_unique<StreamSlot<Message>>(node_.bus().queue<Message>(channel, capacity));
-    auto& stream = held->stream;
-    streams_.push_back(std::move(held));
+    auto slot = std::make_unique<StreamSlot<Message>>(node_.bus().queue<Message>(channel, capacity));
+    auto& stream = slot->stream;
+    streams_.push_back(std::move(slot));
     return stream;
   }
 
@@ -192,7 +192,7 @@ class ModalityEndpoint {
   Nanoseconds delay_{0}, serial_delay_{0}, profile_delay_{0}, output_latency_{0};
   OutputValues output_;
   PresentationReporter reporter_;
-  std::function<void(const presentation_t&)> tell_;
+  std::function<void(const presentation_t&)> report_listener_;
   Events* events_ = nullptr;  // in streams_; null: the modality receives none
 };
 
@@ -201,12 +201,12 @@ void ModalityEndpoint::StreamSlot<Message>::step(ModalityEndpoint& endpoint, Hos
   // A tick that is held up while it reads also accepts the messages that arrive meanwhile.
   HostTime newest_arrival = now;
   while (auto m = stream.inbox_.pop()) {
-    heard = std::max(heard, m->arrival);
-    if constexpr (requires { m->message.clock; }) sense.simulation_.follow(m->message.header, m->message.clock, m->arrival);
-    stream.degraded_.push(std::move(m->message), m->arrival, sense.stack_, &sense.decisions_);
+    newest_arrival = std::max(newest_arrival, m->arrival);
+    if constexpr (requires { m->message.clock; }) endpoint.simulation_.track(m->message.header, m->message.clock, m->arrival);
+    stream.degraded_.push(std::move(m->message), m->arrival, endpoint.operators_, &endpoint.decisions_);
   }
   // In lock-step the state of the world is the state at the start of the iteration; each event carries its own due time.
-  stream.now_ = (lets != now ? lets : heard) - (stream.waits_ ? sense.profile_delay_ : Nanoseconds(0));
+  stream.now_ = (state_time != now ? state_time : newest_arrival) - (stream.delayed_ ? endpoint.profile_delay_ : Nanoseconds(0));
 }
 
 }  // namespace tactus::sync

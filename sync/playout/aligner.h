@@ -25,7 +25,7 @@ class Aligner {
 std::unique_ptr<Aligner> make_aligner(AlignerKind kind, Nanoseconds fixed);
 
 // "fixed" or "quantile". Throws std::invalid_argument with one sentence for any other word.
-AlignerKind aligner_named(const std::string& word);
+AlignerKind parse_aligner(const std::string& word);
 const char* name_of(AlignerKind kind);
 
 }  // namespace tactus::sync

@@ -27,7 +27,7 @@ class Outbox {
  public:
   // Maximum waiting time: of events, the time during which sim_node repeats them; assets are requested again after 100 ms
   // (sync/assets/scene_receiver.h), repeatedly.
-  static constexpr Nanoseconds kLatest{50'000'000}, kLatestBulk{1'000'000'000};
+  static constexpr Nanoseconds kMaxAge{50'000'000}, kMaxBulkAge{1'000'000'000};
   // Burst size: ten of the longest datagrams. Half of it is reserved from assets, so that messages published together are
   // sent together while a scene is in transfer.
   static constexpr double kBurstBytes = 16'000, kReservedBytes = kBurstBytes / 2;

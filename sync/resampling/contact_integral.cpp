@@ -108,8 +108,8 @@ ContactIntegral ContactStream::integral(SimTime t0, SimTime t1, int tool, int to
     if (!span.begin || !span.end || span.begin->tool != tool || sums.contains(id)) continue;
     const SimTime begin = std::max(t0, sim_time(span.begin->time_ns)), end = std::min(t1, *span.end);
     if (end <= begin) continue;
-    const bool began_here = sim_time(span.begin->time_ns) >= t0;
-    const double force_N = began_here ? span.begin->effective_mass_kg * span.begin->approach_speed_m_s / length_s : 0;
+    const bool began_in_tick = sim_time(span.begin->time_ns) >= t0;
+    const double force_N = began_in_tick ? span.begin->effective_mass_kg * span.begin->approach_speed_m_s / length_s : 0;
     result.force_N += force_N;
     touching.push_back({begin, end});
     Sum& sum = sums[id];

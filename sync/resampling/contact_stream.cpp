@@ -48,7 +48,7 @@ void ContactStream::follow_events() {
     for (auto& group : snapshots_) group.clear();
     for (auto& kept : contact_counts_) kept = 0;
   }
-  const SimTime latest = events_.latest_credible();
+  const SimTime latest = events_.latest_plausible();
   for (std::size_t group = 0; group < kGroups; ++group) {
     partial_[group].drop_if([&](SimTime t) { return t > latest; });
     auto& snapshots = snapshots_[group];
@@ -64,7 +64,7 @@ void ContactStream::push(const contact_frame_t& m, HostTime arrival) {
   follow_events();
   const auto group = static_cast<std::size_t>(m.group);
   const SimTime time = sim_time(m.header.sim_time_ns);
-  if (time > events_.latest_credible() || m.pages > kMaxPages || group >= kGroups) {
+  if (time > events_.latest_plausible() || m.pages > kMaxPages || group >= kGroups) {
     ++refused_;
     return;
   }
@@ -98,7 +98,7 @@ void ContactStream::insert(std::size_t group, Snapshot snapshot) {
   }
 }
 
-bool ContactStream::alive(std::int64_t contact_id, SimTime t) const {
+bool ContactStream::active(std::int64_t contact_id, SimTime t) const {
   const ContactSpan* span = events_.span_of(contact_id);
   if (!span) return true;  // joined late: its begin was not received
   return (!span->begin || sim_time(span->begin->time_ns) <= t) && (!span->end || *span->end > t);
@@ -117,7 +117,7 @@ bool ContactStream::predicted_only(std::size_t group, std::deque<Snapshot>::cons
   if (group != contact_frame_t::AHEAD) return false;
   const ContactSpan* span = events_.span_of(id);
   if (span && span->begin) return false;
-  return told == snapshots_[group].begin() || find(std::prev(told)->contacts, id) == std::prev(told)->contacts.end();
+  return snapshot == snapshots_[group].begin() || find(std::prev(snapshot)->contacts, id) == std::prev(snapshot)->contacts.end();
 }
 
 void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Candidate>& out) const {
@@ -142,7 +142,7 @@ void ContactStream::append_state(std::size_t number, SimTime t, std::vector<Cand
     const contact_t& c = after->contacts[i];
     const ContactSpan* span = events_.span_of(c.contact_id);
     const bool begun = span && span->begin && sim_time(span->begin->time_ns) <= t;
-    if (begun && alive(c.contact_id, t) && find(before->contacts, c.contact_id) == before->contacts.end())
+    if (begun && active(c.contact_id, t) && find(before->contacts, c.contact_id) == before->contacts.end())
       out.push_back({c, after->seqs[i], false});
   }
 }

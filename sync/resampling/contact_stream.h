@@ -65,7 +65,7 @@ class ContactStream {
   explicit ContactStream(OwnClock own);
 
   // Stores this time beyond kSpan, for a modality that presents with this delay.
-  void keep(Nanoseconds delay) { span_ = kSpan + delay; }
+  void extend_history(Nanoseconds delay) { span_ = kSpan + delay; }
   void push(const contact_events_t& m, HostTime arrival) { events_.push(m, arrival); }
   void push(const contact_frame_t&, HostTime arrival);
 
@@ -108,7 +108,7 @@ class ContactStream {
   // because their corrupt message was the first one.
   void follow_events();
   void insert(std::size_t group, Snapshot snapshot);
-  bool alive(std::int64_t contact_id, SimTime t) const;
+  bool active(std::int64_t contact_id, SimTime t) const;
   SampleStatus status(const std::deque<Snapshot>& group, SimTime t) const;
   struct Candidate {  // for the state at an instant
     contact_t contact;

@@ -75,7 +75,7 @@ void EventInbox::release(HostTime now) {
 void EventInbox::release_one(const Held& held) {
   const contact_event_t& e = held.event;
   if (held.incarnation != clock_.incarnation()) return;
-  if (sim_time(e.time_ns) > clock_.latest_credible()) {
+  if (sim_time(e.time_ns) > clock_.latest_plausible()) {
     ++refused_;
     memory_.try_emplace(e.event_id).first.decided = false;  // a repetition may be credible
     return;
@@ -99,7 +99,7 @@ bool EventInbox::follow(const header_t& header, const sim_clock_t& clock, HostTi
     for (auto& [id, known] : memory_) known.decided = false;  // a log that is played again contains the same ids
   }
   // Removes events that were accepted only because their corrupt message was the first one.
-  pending_.erase(pending_.upper_bound(clock_.latest_credible()), pending_.end());
+  pending_.erase(pending_.upper_bound(clock_.latest_plausible()), pending_.end());
   return true;
 }
 

@@ -61,7 +61,7 @@ class EventInbox {
 
   // Map between simulated time and this host's clock, from the newest message. nullopt before the first.
   std::optional<TimeMap> map(HostTime now) const { return clock_.map(now); }
-  SimTime latest_credible() const { return clock_.latest_credible(); }
+  SimTime latest_plausible() const { return clock_.latest_plausible(); }
   // The released begin and end of a contact; null: neither was received.
   const ContactSpan* span_of(std::int64_t contact_id) const { return spans_.find(contact_id); }
   const RecentMap<std::int64_t, ContactSpan>& spans() const { return spans_; }

@@ -142,7 +142,7 @@ int main(int argc, char** argv) try {
   play.speed = sync::speed_of(speed);
   if (play.speed < 0) throw std::runtime_error("--speed " + speed + ": give a number from 0.01 to 100, or max");
 
-  const sync::MappedLog file(log, wishes.verbatim ? sync::LogTypes::kAny : sync::LogTypes::kCurrent);
+  const sync::MappedLog file(log, selection_options.verbatim ? sync::LogTypes::kAny : sync::LogTypes::kCurrent);
   const sync::LogOrigin origin = sync::origin_of(file.bytes());
   if (!origin.known && !selection_options.verbatim && !only_describe)
     std::cerr << "replay: " << sync::printable(log) << " holds no message of Tactus; it is played as it is\n";

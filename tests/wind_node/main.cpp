@@ -38,8 +38,8 @@ struct WindRenderer : sync::SettingsRenderer<wind::Settings> {
     return sync::Status{};
   }
 
-  sync::ModalityEndpoint::Stream<contact_frame_t>& frames = host().sense().snapshots<contact_frame_t>(channels::kContacts, 4096);
-  sync::ContactStream contacts{host().sense().events().inbox()};
+  sync::ModalityEndpoint::Stream<contact_frame_t>& frames = host().endpoint().snapshots<contact_frame_t>(channels::kContacts, 4096);
+  sync::ContactStream contacts{host().endpoint().events().inbox()};
   std::multimap<sync::HostTime, contact_event_t> due;
   wind::Fan fan;
   std::ofstream table{host().options().out + "/wind.csv"};

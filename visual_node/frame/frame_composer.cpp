@@ -38,7 +38,7 @@ const char* word(const Frame& frame) {
 
 }  // namespace
 
-FrameComposer::FrameComposer(sync::OwnClock own, const Settings& settings, sync::Late late, sync::EventInbox* events)
+FrameComposer::FrameComposer(sync::OwnClock own, const Settings& settings, sync::LateRule late, sync::EventInbox* events)
     : settings_(settings), contacts_(events ? sync::ContactStream(*events) : sync::ContactStream(own)), bodies_(own), head_(own), flashes_(settings), ledger_(settings, late) {}
 
 const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes, const Settings& settings,

@@ -47,7 +47,7 @@ class FrameComposer {
 
   // own: messages of another clock are read through its map, those of another run by arrival. late: the outcome
   // of an event that could not be shown in time. events: those of the node; null: its own, from push().
-  FrameComposer(sync::OwnClock own, const Settings& settings, sync::Late late = sync::Late::kShowNewest,
+  FrameComposer(sync::OwnClock own, const Settings& settings, sync::LateRule late = sync::LateRule::kShowNewest,
                 sync::EventInbox* events = nullptr);
 
   void set_schedule(Schedule schedule) { ledger_.set_schedule(std::move(schedule)); }

@@ -8,6 +8,7 @@
 #include <tactus/touch_model_t.hpp>
 #include <tactus/touch_plane_t.hpp>
 
+#include "sync/resampling/event_inbox.h"
 #include "tests/haptic_node/support/world.h"
 
 using namespace tactus;

@@ -42,9 +42,9 @@ TEST_CASE("A late message closes its gap, a repeated one does not") {
   CHECK(t.observe(message(1, 1)) == SequenceStatus::kOld);
   CHECK(t.gaps() == 1);
   SECTION("repeated messages are old and change no gap") {
-    CHECK(t.observe(message(1, 1)) == Arrival::kOld);
-    CHECK(t.observe(message(0, 0)) == Arrival::kOld);
-    CHECK(t.observe(message(3, 3)) == Arrival::kOld);
+    CHECK(t.observe(message(1, 1)) == SequenceStatus::kOld);
+    CHECK(t.observe(message(0, 0)) == SequenceStatus::kOld);
+    CHECK(t.observe(message(3, 3)) == SequenceStatus::kOld);
     CHECK(t.gaps() == 1);
   }
 }
@@ -70,20 +70,20 @@ TEST_CASE("A message with a sequence number far ahead does not block later messa
   SequenceTracker t;
   t.observe(message(10, 10));
   SECTION("beyond the largest possible loss, the next message is accepted at once") {
-    CHECK(t.observe(message(std::numeric_limits<std::int64_t>::max(), 11)) == Arrival::kNewEpoch);
-    CHECK(t.observe(message(11, 11)) == Arrival::kNewEpoch);
-    CHECK(t.observe(message(12, 12)) == Arrival::kNew);
+    CHECK(t.observe(message(std::numeric_limits<std::int64_t>::max(), 11)) == SequenceStatus::kNewEpoch);
+    CHECK(t.observe(message(11, 11)) == SequenceStatus::kNewEpoch);
+    CHECK(t.observe(message(12, 12)) == SequenceStatus::kNew);
     CHECK(t.gaps() == 0);
   }
   SECTION("within it, the third contradicting message is accepted") {
-    CHECK(t.observe(message(1'000'000, 11)) == Arrival::kNew);
-    CHECK(t.observe(message(11, 12)) == Arrival::kOld);
-    CHECK(t.observe(message(12, 13)) == Arrival::kOld);
-    CHECK(t.observe(message(13, 14)) == Arrival::kNewEpoch);
-    CHECK(t.observe(message(14, 15)) == Arrival::kNew);
+    CHECK(t.observe(message(1'000'000, 11)) == SequenceStatus::kNew);
+    CHECK(t.observe(message(11, 12)) == SequenceStatus::kOld);
+    CHECK(t.observe(message(12, 13)) == SequenceStatus::kOld);
+    CHECK(t.observe(message(13, 14)) == SequenceStatus::kNewEpoch);
+    CHECK(t.observe(message(14, 15)) == SequenceStatus::kNew);
   }
   SECTION("with a stamp up to a second ahead, messages are accepted after about 900") {
-    CHECK(t.observe(message(1'000'000, 910)) == Arrival::kNew);
+    CHECK(t.observe(message(1'000'000, 910)) == SequenceStatus::kNew);
     int old = 0;
     for (int i = 1; i < 1100; ++i) old += t.observe(message(10 + i, 10 + i)) == SequenceStatus::kOld;
     CHECK(old <= 903);

@@ -184,7 +184,7 @@ TEST_CASE("A wave with contradictory replies is dropped and counted") {
 }
 
 TEST_CASE("Every other clock has a valid map until it has been silent for 30 s") {
-  ClockAgreement agreement(1);
+  ClockMapEstimator map_estimator(1);
   const auto heard = [&](std::int32_t clock, std::int64_t ms, std::int64_t offset) {
     return map_estimator.add({clock, {host_time(ms * kMs), Nanoseconds(offset), Nanoseconds(50'000)}, Nanoseconds(90'000), 8});
   };

@@ -7,7 +7,7 @@
 using namespace tactus::sync;
 
 TEST_CASE("Items leave the queue in order, and a full queue rejects the next one") {
-  HandOver<int, 4> queue;
+  SpscQueue<int, 4> queue;
   CHECK_FALSE(queue.pop());
   for (int round = 0; round < 10; ++round) {
     for (int i = 0; i < 3; ++i) CHECK(queue.push(3 * round + i));

@@ -23,12 +23,12 @@ header_t header(std::int64_t incarnation, std::int64_t publish_ns, std::int64_t 
 TEST_CASE("The first simulation is tracked, a new one replaces it and the old one is ignored") {
   SimClockTracker f(1);
   CHECK_FALSE(f.map(host_time(0)));
-  CHECK(f.follow(header(1, 0), {0, 0, 1}, host_time(0)) == TrackResult::kRestart);
-  CHECK(f.follow(header(1, kMs), {kMs, kMs, 1}, host_time(kMs)) == TrackResult::kSame);
-  CHECK(f.follow(header(2, 2 * kMs), {0, 2 * kMs, 1}, host_time(2 * kMs)) == TrackResult::kRestart);
-  CHECK(f.follow(header(1, 3 * kMs), {2 * kMs, 3 * kMs, 1}, host_time(3 * kMs)) == TrackResult::kIgnore);
+  CHECK(f.track(header(1, 0), {0, 0, 1}, host_time(0)) == TrackResult::kRestart);
+  CHECK(f.track(header(1, kMs), {kMs, kMs, 1}, host_time(kMs)) == TrackResult::kSame);
+  CHECK(f.track(header(2, 2 * kMs), {0, 2 * kMs, 1}, host_time(2 * kMs)) == TrackResult::kRestart);
+  CHECK(f.track(header(1, 3 * kMs), {2 * kMs, 3 * kMs, 1}, host_time(3 * kMs)) == TrackResult::kIgnore);
   SECTION("the old one is tracked again after its successor was silent for 0.3 s") {
-    CHECK(f.follow(header(1, 400 * kMs), {0, 400 * kMs, 1}, host_time(400 * kMs)) == TrackResult::kRestart);
+    CHECK(f.track(header(1, 400 * kMs), {0, 400 * kMs, 1}, host_time(400 * kMs)) == TrackResult::kRestart);
     CHECK(f.incarnation() == 1);
   }
 }
@@ -47,26 +47,26 @@ TEST_CASE("A forged simulation clock does not move the map") {
     return f.track(header(1, ms * kMs), clock, host_time(ms * kMs));
   };
   const auto honest = [](std::int64_t ms, double rate = 1) { return sim_clock_t{ms * kMs, ms * kMs, rate}; };
-  for (int ms = 5000; ms < 5100; ++ms) REQUIRE(hear(ms, honest(ms)) != TrackResult::kIgnore);
+  for (int ms = 5000; ms < 5100; ++ms) REQUIRE(receive(ms, honest(ms)) != TrackResult::kIgnore);
   SECTION("jump ahead or back") {
-    CHECK(hear(5100, {3'600'000 * kMs, 5100 * kMs, 1}) == TrackResult::kIgnore);
-    CHECK(hear(5100, {0, 5100 * kMs, 1}) == TrackResult::kIgnore);
+    CHECK(receive(5100, {3'600'000 * kMs, 5100 * kMs, 1}) == TrackResult::kIgnore);
+    CHECK(receive(5100, {0, 5100 * kMs, 1}) == TrackResult::kIgnore);
     CHECK(f.map(host_time(5100 * kMs))->to_sim(host_time(5100 * kMs)) == sim_time(5100 * kMs));
   }
   SECTION("a forged rate lasts until the next message only") {
-    CHECK(hear(5100, {5100 * kMs, 5100 * kMs, 100}) == TrackResult::kSame);
-    CHECK(hear(5130, honest(5130)) == TrackResult::kSame);
+    CHECK(receive(5100, {5100 * kMs, 5100 * kMs, 100}) == TrackResult::kSame);
+    CHECK(receive(5130, honest(5130)) == TrackResult::kSame);
     CHECK(f.map(host_time(5130 * kMs))->rate == 1);
   }
   SECTION("a simulation that resumes after a stop of 5 s is accepted") {
-    CHECK(hear(10100, {5100 * kMs, 10100 * kMs, 1}) == TrackResult::kSame);
+    CHECK(receive(10100, {5100 * kMs, 10100 * kMs, 1}) == TrackResult::kSame);
     CHECK(f.map(host_time(10100 * kMs))->to_sim(host_time(10100 * kMs)) == sim_time(5100 * kMs));
   }
   SECTION("a paused or slow simulation is accepted") {
-    CHECK(hear(5100, {5100 * kMs, 5100 * kMs, 0}) == TrackResult::kSame);
-    CHECK(hear(5200, {5100 * kMs, 5200 * kMs, 0}) == TrackResult::kSame);
-    CHECK(hear(9000, {5100 * kMs, 9000 * kMs, 0.3}) == TrackResult::kSame);
-    CHECK(hear(9100, {5130 * kMs, 9100 * kMs, 0.3}) == TrackResult::kSame);
+    CHECK(receive(5100, {5100 * kMs, 5100 * kMs, 0}) == TrackResult::kSame);
+    CHECK(receive(5200, {5100 * kMs, 5200 * kMs, 0}) == TrackResult::kSame);
+    CHECK(receive(9000, {5100 * kMs, 9000 * kMs, 0.3}) == TrackResult::kSame);
+    CHECK(receive(9100, {5130 * kMs, 9100 * kMs, 0.3}) == TrackResult::kSame);
   }
   SECTION("a forged first message is corrected within 0.3 s") {
     SimClockTracker late(1);

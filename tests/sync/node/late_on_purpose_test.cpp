@@ -42,7 +42,7 @@ TEST_CASE("An event with a deliberate delay is not lost before the delay has pas
     f.matcher.observe(m, f.at(1010));
   }
   f.matcher.advance(f.at(3400));
-  CHECK(f.tally("audio").owed == 0);
+  CHECK(f.tally("audio").expected == 0);
   SECTION("an event that is presented after the delay has an asynchrony") {
     f.presented("audio_node", "audio", 1, 4010);
     f.matcher.advance(f.at(5100));

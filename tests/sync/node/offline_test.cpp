@@ -97,7 +97,7 @@ TEST_CASE("The profiles in a log apply only with --degrade logged, and then no o
   CHECK(profiles_heard(log, none, true) == 2);
 
   SECTION("the profile of the scene does not apply either") {
-    Offline offline(of(log), {}, kRate_Hz, HostTime{});
+    OfflineInput offline(of(log), {}, kRate_Hz, HostTime{});
     offline.adapt(none);
     CHECK(none.profile.text == "<profile/>");
     offline.adapt(own);

@@ -62,7 +62,7 @@ TEST_CASE("One very late event does not change the quantile") {
 
 TEST_CASE("An aligner is selected by its name, and an unknown name is rejected") {
   for (const char* name : {"fixed", "quantile"})
-    CHECK(name_of(aligner_named(name)) == std::string(name));
-  for (const char* name : {"average", "virtual-time"}) CHECK_THROWS_AS(aligner_named(name), std::invalid_argument);
-  CHECK_THROWS_AS(aligner_named("median"), std::invalid_argument);
+    CHECK(name_of(parse_aligner(name)) == std::string(name));
+  for (const char* name : {"average", "virtual-time"}) CHECK_THROWS_AS(parse_aligner(name), std::invalid_argument);
+  CHECK_THROWS_AS(parse_aligner("median"), std::invalid_argument);
 }

@@ -65,9 +65,9 @@ TEST_CASE("Each modality keeps its own delay until the first presentation") {
 TEST_CASE("A stalled, slow or dead modality does not change the delays of the others") {
   PlayoutCoordinator c(5, plan());
   heard(c, "audio", 18), heard(c, "thermal", 25), heard(c, "visual", 33);
-  const auto before = delays_ms(c.due(at(0)));
+  const auto before = delays_ms(c.next_message(at(0)));
   SECTION("all waiting events are presented at once after a stall of 2 s") {
-    for (int i = 0; i < 12; ++i) c.needs().add("visual", (2000 - 80 * i) * kMs);
+    for (int i = 0; i < 12; ++i) c.latency_demand().add("visual", (2000 - 80 * i) * kMs);
     heard(c, "visual", 33, 8);
     CHECK(delays_ms(c.next_message(at(200))) == before);
   }

@@ -17,7 +17,7 @@ LatePolicy of(LateRule rule) { return {rule, 10ms, 30ms}; }
 }  // namespace
 
 TEST_CASE("Events that are early or within the tolerance are presented at full gain under any rule") {
-  const Late rule = GENERATE(Late::kPlayWithFade, Late::kDrop, Late::kShowNewest, Late::kAlwaysApply);
+  const LateRule rule = GENERATE(LateRule::kPlayWithFade, LateRule::kDrop, LateRule::kShowNewest, LateRule::kAlwaysApply);
   for (const Nanoseconds lateness : {Nanoseconds(-1h), Nanoseconds(0), Nanoseconds(10ms)}) {
     CHECK(of(rule).outcome(lateness) == kPresented);
     CHECK(of(rule).gain(lateness) == 1);
@@ -25,13 +25,13 @@ TEST_CASE("Events that are early or within the tolerance are presented at full g
 }
 
 TEST_CASE("Events between tolerance and limit are presented late") {
-  const Late rule = GENERATE(Late::kPlayWithFade, Late::kDrop, Late::kShowNewest, Late::kAlwaysApply);
+  const LateRule rule = GENERATE(LateRule::kPlayWithFade, LateRule::kDrop, LateRule::kShowNewest, LateRule::kAlwaysApply);
   CHECK(of(rule).outcome(10ms + 1ns) == kLateOutcome);
   CHECK(of(rule).outcome(30ms) == kLateOutcome);
 }
 
 TEST_CASE("Events beyond the limit are dropped unless the rule is to apply always") {
-  for (const Late rule : {Late::kPlayWithFade, Late::kDrop, Late::kShowNewest}) {
+  for (const LateRule rule : {LateRule::kPlayWithFade, LateRule::kDrop, LateRule::kShowNewest}) {
     CHECK(of(rule).outcome(30ms + 1ns) == kDropped);
     CHECK(of(rule).outcome(1h) == kDropped);
   }
@@ -39,7 +39,7 @@ TEST_CASE("Events beyond the limit are dropped unless the rule is to apply alway
 }
 
 TEST_CASE("Only play-with-fade reduces the gain, linearly to zero at the limit") {
-  const LatePolicy fades = of(Late::kPlayWithFade);
+  const LatePolicy fades = of(LateRule::kPlayWithFade);
   CHECK(fades.gain(15ms) == Approx(0.75));
   CHECK(fades.gain(20ms) == Approx(0.5));
   CHECK(fades.gain(30ms) == 0);
@@ -48,7 +48,7 @@ TEST_CASE("Only play-with-fade reduces the gain, linearly to zero at the limit")
 }
 
 TEST_CASE("If limit and tolerance are equal, an event is on time or dropped") {
-  const LatePolicy sharp{Late::kPlayWithFade, 10ms, 10ms};
+  const LatePolicy sharp{LateRule::kPlayWithFade, 10ms, 10ms};
   CHECK(sharp.outcome(10ms) == kPresented);
   CHECK(sharp.gain(10ms) == 1);
   CHECK(sharp.outcome(10ms + 1ns) == kDropped);

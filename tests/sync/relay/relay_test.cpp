@@ -289,7 +289,7 @@ TEST_CASE("A slow line delays and thins only its own site") {
 }
 
 TEST_CASE("A sender may move to another site after a long silence") {
-  Sides sides;
+  SenderSides sides;
   const header_t h = header("audio_node", 0, kBegin);
   CHECK(sides.belongs_to(h, 1, kBegin));
   CHECK_FALSE(sides.belongs_to(h, SenderSides::kHere, kBegin + 5s));
@@ -299,7 +299,7 @@ TEST_CASE("A sender may move to another site after a long silence") {
 }
 
 TEST_CASE("The number of remembered senders is bounded") {
-  Sides sides;
+  SenderSides sides;
   for (std::int32_t i = 0; i < 10'000; ++i) {
     header_t h = header("a", 0, kBegin);
     h.source = i;

@@ -158,7 +158,7 @@ TEST_CASE("A predicted contact counts from its begin event on, and not without o
   CHECK(ids_at(20) == std::set<std::int64_t>{0});
   CHECK(ids_at(34) == std::set<std::int64_t>{0});
   SECTION("the predicted contact does not happen") {
-    say(34, 51, {0});
+    publish(34, 51, {0});
     CHECK(ids_at(40) == std::set<std::int64_t>{0});
     CHECK(ids_at(51) == std::set<std::int64_t>{0});
   }
@@ -174,7 +174,7 @@ TEST_CASE("A predicted contact counts from its begin event on, and not without o
     CHECK(ids_at(34) == std::set<std::int64_t>{0, 5});
   }
   SECTION("the begin event is lost, and a later snapshot repeats the contact") {
-    say(34, 51, {0, 5});
+    publish(34, 51, {0, 5});
     CHECK(ids_at(51) == std::set<std::int64_t>{0, 5});
   }
 }

@@ -322,7 +322,7 @@ TEST_CASE("Damaged time stamps cause no overflow, and foreign messages are uncha
 }
 
 TEST_CASE("By default only channels of the world are replayed, not those of the nodes") {
-  ReplayChoice choice({});
+  ReplaySelection selection({});
   for (const char* c :
        {"TOUCH_MODEL", "CONTACT_EVENTS", "CONTACTS", "WORLD_STATE", "GAME_STATE", "TOOL_STATE", "MY_OWN"})
     CHECK(selection.channel_of(event_of(c, {})) == std::string_view(c));
@@ -345,14 +345,14 @@ TEST_CASE("Messages of a node are not replayed while that node is live") {
 }
 
 TEST_CASE("Channels are selected by regular expressions and renamed") {
-  ReplayChoice choice({.channels = "CONTACT.*|MY_OWN", .leave_out = "CONTACTS", .rename = {"MY_OWN=YOURS"}});
-  CHECK(choice.channel_of(event_of("CONTACT_EVENTS", {})));
-  CHECK_FALSE(choice.channel_of(event_of("CONTACTS", {})));
-  CHECK_FALSE(choice.channel_of(event_of("WORLD_STATE", {})));
-  CHECK(choice.channel_of(event_of("MY_OWN", {})) == std::string_view("YOURS"));
-  CHECK_THROWS_WITH(ReplayChoice({.channels = "(("}), Catch::Contains("regular expression"));
-  CHECK_THROWS_WITH(ReplayChoice({.rename = {"A"}}), Catch::Contains("FROM=TO"));
-  CHECK_THROWS_WITH(ReplayChoice({.rename = {"A=" + std::string(64, 'x')}}), Catch::Contains("FROM=TO"));
+  ReplaySelection selection({.channels = "CONTACT.*|MY_OWN", .leave_out = "CONTACTS", .rename = {"MY_OWN=YOURS"}});
+  CHECK(selection.channel_of(event_of("CONTACT_EVENTS", {})));
+  CHECK_FALSE(selection.channel_of(event_of("CONTACTS", {})));
+  CHECK_FALSE(selection.channel_of(event_of("WORLD_STATE", {})));
+  CHECK(selection.channel_of(event_of("MY_OWN", {})) == std::string_view("YOURS"));
+  CHECK_THROWS_WITH(ReplaySelection({.channels = "(("}), Catch::Contains("regular expression"));
+  CHECK_THROWS_WITH(ReplaySelection({.rename = {"A"}}), Catch::Contains("FROM=TO"));
+  CHECK_THROWS_WITH(ReplaySelection({.rename = {"A=" + std::string(64, 'x')}}), Catch::Contains("FROM=TO"));
 }
 
 TEST_CASE("Commands control a replay, and an invalid command is reported") {
