@@ -43,7 +43,7 @@ void EventInbox::push(const contact_events_t& m, HostTime arrival, OperatorChain
     }
     const Decision v = chain.decide(item_of(received, m.header.incarnation, arrival));
     const bool later = chain.presentation_delay(sim_time(received.time_ns)) > Nanoseconds(0);
-    if (decisions && (v.touched || later))
+    if (decisions && (v.evaluated || later))
       decisions->push_back({static_cast<std::uint64_t>(received.event_id), true, sim_time(received.time_ns), v, arrival});
     if (v.dropped()) {
       if (dropped_.size() < kMaxDropped) dropped_.push_back(received);
@@ -52,7 +52,7 @@ void EventInbox::push(const contact_events_t& m, HostTime arrival, OperatorChain
     contact_event_t event = received;
     if (chain.changes_values()) change_values(event, chain);
     event.time_ns += v.shift.count();
-    if (v.twice) ++duplicates_;
+    if (v.duplicated) ++duplicates_;
     hold(event, m.header.incarnation, v.release);
   }
 }
@@ -90,7 +90,7 @@ void EventInbox::release_one(const Held& held) {
 }
 
 bool EventInbox::follow(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
-  const TrackResult result = clock_.follow(header, clock, arrival);
+  const TrackResult result = clock_.track(header, clock, arrival);
   if (result == TrackResult::kIgnore) return false;
   if (result == TrackResult::kRestart) {
     ++epoch_;
