@@ -18,9 +18,10 @@ namespace tactus::haptic {
 
 void Options::add_to(CLI::App& app) {
   app.add_option("--tool", tool, "tool that the hand holds; default: the scene's first");
-  app.add_option("--device", device,
-                 "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R], "
-                 "spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z]; default: as the scene says");
+  app.add_option(
+      "--device", device,
+      "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R], "
+      "spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z]; default: the device of the scene");
   log.add_to(app);
   app.get_option("--trace")->excludes("--device");
 }
@@ -32,7 +33,7 @@ void Options::parse_device() {
 NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Offline* log)
     : SettingsRenderer(host, setting_fields()),
       tool_name_(options.tool),
-      device_given_(options.device_spec),
+      device_spec_(options.device_spec),
       log_(log),
       device_states_(host.bus().queue<device_state_t>(channels::kDeviceState, 64)),
       device_forces_(host.bus().queue<device_force_t>(channels::kDeviceForce, 64)),
@@ -46,64 +47,65 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Off
 
 sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
   scene_ = scenes.scene();
-  choice_ = resolve_config(*scene_, settings, tool_name_);
-  if (session_) session_->let_go();
-  begin_to_open(scenes);
-  if (log_) log_->follow(choice_.tool);
-  host().say(choice_.tool >= 0 ? limits_sentence(settings) : choice_.problem);
-  const auto points = [&](const tool_def_t& tool) { return only_points(tool, scene_->lights); };
-  points_ = choice_.tool >= 0 && points(scene_->tools[static_cast<std::size_t>(choice_.tool)]);
-  no_touch_ = std::all_of(scene_->tools.begin(), scene_->tools.end(), points);
+  config_ = resolve_config(*scene_, settings, tool_name_);
+  if (session_) session_->end();
+  start_loading(scenes);
+  if (log_) log_->follow(config_.tool);
+  host().say(config_.tool >= 0 ? limits_sentence(settings) : config_.problem);
+  const auto is_pointer = [&](const tool_def_t& tool) { return only_points(tool, scene_->lights); };
+  is_pointer_ = config_.tool >= 0 && is_pointer(scene_->tools[static_cast<std::size_t>(config_.tool)]);
+  only_pointers_ = std::all_of(scene_->tools.begin(), scene_->tools.end(), is_pointer);
   quality_ = Quality(settings);
-  return {.tool = choice_.tool,
+  return {.tool = config_.tool,
           .rate_Hz = settings.rate_Hz,
           .output_latency = sync::from_seconds(1 / settings.rate_Hz),
           .status = {.state = node_health_t::WAITING,
-                     .note = choice_.tool >= 0 ? "waits for its device" : choice_.problem}};
+                     .note = config_.tool >= 0 ? "waits for its device" : config_.problem}};
 }
 
-void NodeRenderer::begin_to_open(const sync::SceneReceiver& scenes) {
-  opening_device_.reset();
+void NodeRenderer::start_loading(const sync::SceneReceiver& scenes) {
+  device_task_.reset();
   maps_.reset();
-  opening_maps_.emplace([scene = *scene_, pictures = sync::pictures_of(scenes)] {
+  maps_task_.emplace([scene = *scene_, pictures = sync::pictures_of(scenes)] {
     sync::leave_realtime();
     return std::make_unique<SurfaceMaps>(read_maps(scene, pictures));
   });
-  if (choice_.tool < 0) return;
-  opening_device_.emplace([scene = *scene_, choice = choice_, given = device_given_, log = log_] {
+  if (config_.tool < 0) return;
+  device_task_.emplace([scene = *scene_, config = config_, spec = device_spec_, log = log_] {
     sync::leave_realtime();
-    return log ? log->device() : device_of(scene, choice, given.get());
+    return log ? log->device() : make_tool_device(scene, config, spec.get());
   });
 }
 
-void NodeRenderer::finish_opening() {
+void NodeRenderer::finish_loading() {
   // A log waits for both; the live loop never waits.
-  while (log_ && ((opening_maps_ && !opening_maps_->done()) || (opening_device_ && !opening_device_->done())))
+  while (log_ && ((maps_task_ && !maps_task_->done()) || (device_task_ && !device_task_->done())))
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  if (opening_maps_ && opening_maps_->done()) {
-    maps_ = opening_maps_->take();
-    opening_maps_.reset();
-    if (!maps_->trouble.empty()) host().say(maps_->trouble);
-    if (session_ && !session_->over()) session_->set_maps(maps_);
+  if (maps_task_ && maps_task_->done()) {
+    maps_ = maps_task_->take();
+    maps_task_.reset();
+    if (!maps_->error.empty()) host().say(maps_->error);
+    if (session_ && !session_->ended()) session_->set_maps(maps_);
   }
-  if (opening_device_ && opening_device_->done()) take_device();
+  if (device_task_ && device_task_->done()) start_session();
 }
 
-void NodeRenderer::take_device() {
+void NodeRenderer::start_session() {
   try {
-    session_.emplace(*scene_, choice_, opening_device_->take(), host().bus().clocks(), safety_);
+    session_.emplace(*scene_, config_, device_task_->take(), host().bus().clocks(), safety_);
     if (maps_) session_->set_maps(maps_);
     host().node().set_state(node_health_t::READY, "waits for a touch model");
   } catch (const std::exception& e) {
     host().say(e.what());
     host().node().set_state(node_health_t::WAITING, e.what());
   }
-  opening_device_.reset();
+  device_task_.reset();
 }
 
 void NodeRenderer::change(const Settings& settings, const std::string&) {
-  if (!session_) throw std::invalid_argument("it has no scene yet: nothing of it can be changed");
-  choice_.settings = settings;
+  if (!session_)
+    throw std::invalid_argument("it has no scene yet, so no setting can change; wait until it is ready");
+  config_.settings = settings;
   session_->change(settings);
 }
 
@@ -123,11 +125,11 @@ void NodeRenderer::receive() {
 
 std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   const bool in_tick = !log_ || log_->begin_tick(now);
-  finish_opening();
+  finish_loading();
   receive();
   if (!session_ || !in_tick) return std::nullopt;
   TickOutput& out = render(now);
-  if (session_->over()) return std::nullopt;
+  if (session_->ended()) return std::nullopt;
   publish(out);
   for (const presentation_t& report : out.reports) host().report(report);
   if (host().live()) quality_.add(host().clock() - now);
@@ -141,7 +143,7 @@ TickOutput& NodeRenderer::render(sync::HostTime now) {
                         {.delay = sense.delay(),
                          .touch_delay = sense.profile_delay(),
                          .force_step_N = sense.output().value("force_step"),
-                         .touch_arrival = no_touch_ ? now : touch_.count().newest_arrival},
+                         .touch_arrival = only_pointers_ ? now : touch_.count().newest_arrival},
                         quality_.planes());
 }
 
@@ -149,21 +151,21 @@ void NodeRenderer::publish(TickOutput& out) {
   if (log_) log_->add(out.state);
   host().bus().publish(channels::kToolState, out.state);
   if (host().node().tags().wanted()) published_ = out.state;
-  if (device_force_t* force = session_->tell()) host().bus().publish(channels::kDeviceForce, *force);
+  if (device_force_t* force = session_->force_message()) host().bus().publish(channels::kDeviceForce, *force);
 }
 
 sync::Status NodeRenderer::status() const {
   sync::Status s{.quality = quality_.step(), .qualities = Quality::steps()};
   if (session_->device_lost()) {
     s.state = node_health_t::OUTPUT_LOST;
-    s.note = "the device does not answer, or two hold it: the force is zero";
-  } else if (points_) {
-    s.note = "points, and does not touch";
-  } else if (session_->heard() && session_->lost()) {
+    s.note = "the device does not answer, or two processes command it: the force is zero";
+  } else if (is_pointer_) {
+    s.note = "the tool is a pointer and does not touch";
+  } else if (session_->has_touch_model() && session_->lost()) {
     s.state = node_health_t::INPUT_LOST;
     s.note = "no touch model: the force is zero";
-  } else if (session_->heard()) {
-    s.note = maps_ ? maps_->trouble : "reads the maps of its surfaces";
+  } else if (session_->has_touch_model()) {
+    s.note = maps_ ? maps_->error : "reads the maps of its surfaces";
   } else {
     s.state = node_health_t::READY;
     s.note = "waits for a touch model";

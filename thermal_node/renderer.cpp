@@ -20,7 +20,7 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, std::string tool_name, Offl
       log_(log),
       events_(host.sense().events()),
       frames_(host.sense().snapshots<contact_frame_t>(channels::kContacts, 4096)),
-      answers_(host.bus().queue<thermal_device_t>(channels::kThermalDevice, 64)),
+      device_messages_(host.bus().queue<thermal_device_t>(channels::kThermalDevice, 64)),
       stream_(host.bus().clocks()),
       quality_(Settings{}) {
   add_tags();
@@ -38,25 +38,25 @@ void NodeRenderer::add_tags() {
 
 sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
   const scene_t& scene = *scenes.scene();
-  choice_ = resolve_config(scene, settings, tool_name_);
+  config_ = resolve_config(scene, settings, tool_name_);
   if (log_) log_->run().expect_rate(settings.rate_Hz);
   quality_ = Quality(settings);
   if (renderer_) dwell_ = renderer_->dwell();
   renderer_.reset();
-  device_ = make_device(settings, choice_.tool, plate_degC_.value_or(settings.skin_rest_degC));
-  if (choice_.tool >= 0) {
-    renderer_.emplace(settings, scene.materials, choice_.tool, choice_.tool_body, element_degC_,
+  device_ = make_device(settings, config_.tool, plate_degC_.value_or(settings.skin_rest_degC));
+  if (config_.tool >= 0) {
+    renderer_.emplace(settings, scene.materials, config_.tool, config_.tool_body, command_degC_,
                       thickness_of_bodies(scene));
     renderer_->resume(dwell_);
   }
-  return {.tool = choice_.tool,
+  return {.tool = config_.tool,
           .rate_Hz = settings.rate_Hz,
           .output_latency = sync::from_seconds(1 / settings.rate_Hz) + Ticks::kSettle,
-          .status = {.state = node_health_t::WAITING, .note = choice_.problem}};
+          .status = {.state = node_health_t::WAITING, .note = config_.problem}};
 }
 
 void NodeRenderer::change(const Settings& settings, const std::string&) {
-  choice_.settings = settings;
+  config_.settings = settings;
   if (renderer_) renderer_->change(settings);
 }
 
@@ -64,7 +64,7 @@ void NodeRenderer::receive() {
   stream_.keep(host().sense().delay());
   while (const auto m = events_.pop()) stream_.push(m->message, m->arrival);
   while (const auto m = frames_.pop()) stream_.push(m->message, m->arrival);
-  while (const auto m = answers_.pop())
+  while (const auto m = device_messages_.pop())
     // Ignores readings of a log that is replayed meanwhile: that plate is not under this finger.
     if (device_ && m->message.header.run_id == host().options().run_id) device_->receive(m->message, m->arrival);
 }
@@ -80,23 +80,24 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
 
 void NodeRenderer::render(sync::HostTime now) {
   const sync::ModalityEndpoint& sense = host().sense();
-  const Tick tick = ticks_.next(stream_, now, sense.newest_arrival(), choice_.tool, choice_.tool_body, sense.delay());
+  const Tick tick =
+      ticks_.next(stream_, now, sense.newest_arrival(), config_.tool, config_.tool_body, sense.delay());
   std::optional<sync::ScopedPhaseTimer> rendering(sync::Phase::kRender);
-  const double command_degC = element_degC_.value_or(choice_.settings.skin_rest_degC);
+  const double command_degC = command_degC_.value_or(config_.settings.skin_rest_degC);
   const auto plate = device_ ? device_->step(command_degC, renderer_->load_W(), now) : std::nullopt;
   thermal_state_t state = renderer_->step(tick, {.response_s = sense.output().value("response"),
                                                  .longest_substep_s = quality_.longest_substep_s(),
                                                  .plate = plate});
   rendering.reset();
   published_ = state;
-  element_degC_ = state.commanded_degC;
+  command_degC_ = state.commanded_degC;
   device_silent_ = device_ && !plate;
   if (log_) log_->add(state);
   host().bus().publish(channels::kThermalState, state);
   if (plate) plate_degC_ = plate->plate_degC;
   if (plate && device_->simulated() && !log_) {
-    thermal_device_t answer = to_message(*plate, choice_.tool);
-    host().bus().publish(channels::kThermalDevice, answer);
+    thermal_device_t message = to_message(*plate, config_.tool);
+    host().bus().publish(channels::kThermalDevice, message);
   }
 }
 
@@ -109,7 +110,7 @@ sync::Status NodeRenderer::status() const {
     s.state = node_health_t::INPUT_LOST;
     s.note = "no contacts: the command returns to resting skin";
   } else if (device_silent_) {
-    s.note = "the display is silent: taken to be as commanded";
+    s.note = "the display is silent: the plate is assumed to be at its command";
   }
   return s;
 }

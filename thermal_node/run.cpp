@@ -22,21 +22,22 @@ using namespace tactus;
 
 namespace {
 
-const sync::NodeDescriptor kThermal{
-    .name = "thermal_node",
-    .modality = "thermal",
-    .expected_events = int{node_health_t::OWES_BEGIN} | node_health_t::OWES_HIT | node_health_t::OWES_OWN_TOOL_ONLY,
-    .rate_Hz = thermal::Settings{}.rate_Hz,
-    .about = "Renders the temperature of what a tool touches.",
-    .inputs = {channels::kContacts, channels::kContactEvents},
-    .presentation_instant = "the end of the tick whose heat holds it",
-    .late_policy = thermal::kLate,
-    .output_operators = sync::output_operators_of("thermal"),
-    .phases = {sync::Phase::kRender}};
+const sync::NodeDescriptor kThermal{.name = "thermal_node",
+                                    .modality = "thermal",
+                                    .expected_events = int{node_health_t::OWES_BEGIN} | node_health_t::OWES_HIT |
+                                                       node_health_t::OWES_OWN_TOOL_ONLY,
+                                    .rate_Hz = thermal::Settings{}.rate_Hz,
+                                    .about = "Renders the temperature of the objects that a tool touches.",
+                                    .inputs = {channels::kContacts, channels::kContactEvents},
+                                    .presentation_instant = "the end of the tick that applies it",
+                                    .late_policy = thermal::kLatePolicy,
+                                    .output_operators = sync::output_operators_of("thermal"),
+                                    .phases = {sync::Phase::kRender}};
 
 class Factory : public sync::RendererFactory {
   void add_options(CLI::App& app) override {
-    app.add_option("--tool", tool_, "tool whose touch is felt; default: the scene's choice, else its first");
+    app.add_option("--tool", tool_,
+                   "tool to render; default: the setting `tool`, else the first tool of the scene");
     log_options_.add_to(app);
   }
   sync::Offline* prepare(const sync::NodeOptions& options) override {

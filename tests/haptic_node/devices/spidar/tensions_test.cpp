@@ -90,7 +90,7 @@ GripPose far_pose(const StringFrame& f, std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("Tensions stay within their limits, wherever the grip is and whatever is wanted") {
+TEST_CASE("Tensions stay within their limits for any pose and wrench") {
   const std::string name = GENERATE("desktop", "desktop8", "cave", "cave8");
   const StringFrame f = *known_frame(name);
   std::mt19937 random(1);
@@ -108,7 +108,7 @@ TEST_CASE("Tensions stay within their limits, wherever the grip is and whatever 
   }
 }
 
-TEST_CASE("A force is exact wherever tensions for it exist, and else nearly the largest of its direction") {
+TEST_CASE("The force is exact where tensions exist, otherwise nearly the largest in its direction") {
   const std::string name = GENERATE("desktop", "desktop8", "cave", "cave8");
   const StringFrame f = *known_frame(name);
   std::mt19937 random(2);
@@ -139,7 +139,7 @@ TEST_CASE("A force is exact wherever tensions for it exist, and else nearly the 
   CHECK(some > 10);
 }
 
-TEST_CASE("Of all tensions that give a force none are closer to the least") {
+TEST_CASE("The tensions are the closest to the minimum that give the force") {
   const std::string name = GENERATE("desktop", "desktop8", "cave", "cave8");
   const StringFrame f = *known_frame(name);
   std::mt19937 random(3);
@@ -166,7 +166,7 @@ TEST_CASE("Of all tensions that give a force none are closer to the least") {
   }
 }
 
-TEST_CASE("Tensions change little where force and pose do, also where limits begin to bind") {
+TEST_CASE("Tensions are continuous in force and pose, also where limits begin to bind") {
   const std::string name = GENERATE("desktop", "desktop8", "cave", "cave8");
   const StringFrame f = *known_frame(name);
   std::mt19937 random(5);
@@ -193,7 +193,7 @@ TEST_CASE("Tensions change little where force and pose do, also where limits beg
   }
 }
 
-TEST_CASE("A singular pose renders nothing and says so") {
+TEST_CASE("A singular pose renders no force, and held is false") {
   StringFrame f = *known_frame("desktop");
   for (StringEnds& s : f.strings) s.anchor_m.z() = 0;  // all coplanar, with the grip in the plane
   const Tensions t = solve_tensions(f, {}, {Vector3d(0, 0, 1), Vector3d::Zero()});
