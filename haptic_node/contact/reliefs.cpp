@@ -17,7 +17,7 @@ constexpr int kMaxSteps = 8;
 constexpr double kMaxPixels = 64;
 // Faster over a surface than an exploring hand (as in force_method.cpp): another point of the tool or surface is
 // now the nearest, and no slope connects the two.
-constexpr double kFastestHand_m_s = 5;
+constexpr double kMaxHandSpeed_m_s = 5;
 
 // Position in a relief of a place in the body frame.
 Vector2d repetitions(const Relief& relief, const BumpAxes& axes, const Vector3d& place_body) {
@@ -73,7 +73,7 @@ void Reliefs::update_height(Surface& s, const Relief& relief, const ToolPose& to
   // along the surface; the height itself may move
   const double motion_m = (motion - motion.dot(m.normal_body) * m.normal_body).norm();
   m.last_lookup_body = place_body;
-  if (m.height_relief != (by_height ? &relief : nullptr) || m.jumped || motion_m > kFastestHand_m_s * dt) {
+  if (m.height_relief != (by_height ? &relief : nullptr) || m.jumped || motion_m > kMaxHandSpeed_m_s * dt) {
     m.height_relief = by_height ? &relief : nullptr;
     m.map_height_m = map_m;
     const double height_m = height_share_ * map_m;

@@ -27,8 +27,8 @@ Eigen::Vector3d ForceCrossfade::step(std::span<const Surface> surfaces, const Ei
   if (last_set_.empty() || !was_pressed || force_N.isZero(0)) {
     remainder_.setZero();
   } else {
-    const double gone = remaining_s_ > dt ? dt / remaining_s_ : 1;
-    remainder_ -= gone * remainder_;
+    const double fraction = remaining_s_ > dt ? dt / remaining_s_ : 1;
+    remainder_ -= fraction * remainder_;
     remaining_s_ = std::max(0.0, remaining_s_ - dt);
     if (changed) {
       const Eigen::Vector3d jump = force_N + remainder_ - last_;

@@ -10,7 +10,7 @@ namespace {
 
 // As in tool_touch.h of the simulation, which does not search further around a tool that reports a higher speed.
 // Design: faster than an exploring hand (a reach is 1 to 2 m/s).
-constexpr double kFastestHand_m_s = 5;
+constexpr double kMaxHandSpeed_m_s = 5;
 
 ForceMethod::Kind kind_of(const std::string& name, bool shaped) {
   if (name == "direct") return ForceMethod::Kind::kDirect;
@@ -53,7 +53,7 @@ void ForceMethod::reset(const DeviceState& device) {
 
 void ForceMethod::reset_reach(const DeviceState& device) {
   const double speed_m_s = device.velocity.norm() + bound_m_ * device.spin.norm();
-  remaining_reach_m_ = proxy_reach_m_ + proxy_reach_time_s_ * std::min(speed_m_s, kFastestHand_m_s);
+  remaining_reach_m_ = proxy_reach_m_ + proxy_reach_time_s_ * std::min(speed_m_s, kMaxHandSpeed_m_s);
 }
 
 void ForceMethod::solve(std::span<Surface> surfaces, const DeviceState& device, double dt) {

@@ -7,7 +7,7 @@
 namespace tactus::haptic {
 namespace {
 
-constexpr double kAnyStiffness = 1e12, kFixed_kg = 1e10;
+constexpr double kRigid_N_m = 1e12, kFixed_kg = 1e10;
 
 Eigen::Vector3d tangential(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) {
   return v - v.dot(normal) * normal;
@@ -38,7 +38,7 @@ double coupling_lever_m(const Settings& s) {
   const CouplingLimits turning{s.turn_stiffness_limit_Nm_rad, s.mass_factor, s.damping_ratio,
                                s.device_inertia_kgm2, s.device_turn_damping_Nms_rad};
   const auto stiffest = [&](const CouplingLimits& limits) {
-    return coupling_gains(kAnyStiffness, 0, kFixed_kg, period_s, period_s, limits).stiffness_N_m;
+    return coupling_gains(kRigid_N_m, 0, kFixed_kg, period_s, period_s, limits).stiffness_N_m;
   };
   return std::sqrt(stiffest(turning) / stiffest(moving));
 }
@@ -108,19 +108,19 @@ void share_wrench(const Wrench& felt, std::span<const Eigen::Vector3d> arms, std
   }
   // No torque is possible about an axis on which all contact points lie.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(inertia);
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+  Eigen::Vector3d couple = Eigen::Vector3d::Zero();
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3d axis = axes.eigenvectors().col(k);
     if (axes.eigenvalues()[k] > 1e-6 * lever_m * lever_m)
-      turn += axis * (axis.dot(torque) / axes.eigenvalues()[k]);
+      couple += axis * (axis.dot(torque) / axes.eigenvalues()[k]);
   }
   double largest_N = 0;
   for (std::size_t i = 0; i < forces.size(); ++i)
-    largest_N = std::max(largest_N, forces[i].norm() / sizes * turn.cross(arms[i] - middle).norm());
-  if (largest_N > max_couple_N) turn *= max_couple_N / largest_N;
+    largest_N = std::max(largest_N, forces[i].norm() / sizes * couple.cross(arms[i] - middle).norm());
+  if (largest_N > max_couple_N) couple *= max_couple_N / largest_N;
   for (std::size_t i = 0; i < forces.size(); ++i) {
     const double weight = forces[i].norm() / sizes;
-    forces[i] += weight * (force + turn.cross(arms[i] - middle));
+    forces[i] += weight * (force + couple.cross(arms[i] - middle));
   }
 }
 

@@ -24,7 +24,7 @@ constexpr double kRefill_W = 0.0002;
 // within a second, slower than any oscillation of hand or body, so that it drives no cycle itself.
 constexpr double kFall_1_s = 200, kRise_1_s = 1;
 // As in safety.cpp: faster than any hand. The device jumped, and no work is counted.
-constexpr double kFastest_m_s = 40, kFastest_rad_s = 100;
+constexpr double kMaxHandSpeed_m_s = 40, kMaxHandSpin_rad_s = 100;
 
 // Clamped as the surfaces are: a body that reports a higher speed gives no credit for it.
 Eigen::Vector3d clamp_speed(const Eigen::Vector3d& velocity, double max_m_s) {
@@ -126,8 +126,8 @@ void Passivity::remove_idle() {
 
 void Passivity::observe(const StoredEnergy& coupling, const Eigen::Vector3d& moved_m,
                         const Eigen::Vector3d& turned_rad, double age_s, double dt) {
-  const bool moved = moved_m.allFinite() && moved_m.norm() <= kFastest_m_s * dt;
-  const bool turned = turned_rad.allFinite() && turned_rad.norm() <= kFastest_rad_s * dt;
+  const bool moved = moved_m.allFinite() && moved_m.norm() <= kMaxHandSpeed_m_s * dt;
+  const bool turned = turned_rad.allFinite() && turned_rad.norm() <= kMaxHandSpin_rad_s * dt;
   const double window_s = std::max(0.0, age_s) + kRoundTrip_s;
   double bodies_J = 0, generated_W = 0;
   for (EnergyLedger& b : ledgers_) {

@@ -11,12 +11,12 @@ namespace {
 
 // Faster than any hand (that of a pitcher reaches 40 m/s): the device jumped, as a replayed motion may; no work is
 // counted.
-constexpr double kFastest_m_s = 40;
+constexpr double kMaxHandSpeed_m_s = 40;
 // The same for rotation: one revolution per tenth of a second (design: twice the speed of a wrist).
-constexpr double kFastest_rad_s = 63;
+constexpr double kMaxHandSpin_rad_s = 63;
 
 // A late tick must not cause a jump of the force: it counts as two ticks of 1 kHz at most.
-constexpr double kLongestSlew_s = 0.002;
+constexpr double kMaxSlewTime_s = 0.002;
 
 // Share of the workspace radius over which the force goes to zero. Design: 0.2 m of 2 m take 0.2 s at a hand speed
 // of 1 m/s.
@@ -53,7 +53,7 @@ void Safety::set_position(const Eigen::Vector3d& device_m) {
 }
 
 Eigen::Vector3d Safety::limit(const Eigen::Vector3d& wanted_N, const Eigen::Vector3d& moved_m, double dt) {
-  const bool jumped = !moved_m.allFinite() || moved_m.norm() > kFastest_m_s * dt;
+  const bool jumped = !moved_m.allFinite() || moved_m.norm() > kMaxHandSpeed_m_s * dt;
   const double work_J = (jumped ? 0 : last_.dot(moved_m)) + std::exchange(torque_work_J_, 0.0);
   energy_J_ += work_J;
   // A negative tank recovers within a second, so that one bad instant does not stop touch for long.
@@ -62,13 +62,13 @@ Eigen::Vector3d Safety::limit(const Eigen::Vector3d& wanted_N, const Eigen::Vect
   // Full force until half of the allowance is spent; the change is too slow to be felt as a step.
   const double remaining = std::clamp(2 * tank_J_ / limits_.energy_J, 0.0, 1.0);
   const Eigen::Vector3d allowed = workspace_factor_ * remaining * clamped(wanted, limits_.force_N);
-  last_ += clamped(allowed - last_, limits_.slew_N_s * std::min(dt, kLongestSlew_s));
+  last_ += clamped(allowed - last_, limits_.slew_N_s * std::min(dt, kMaxSlewTime_s));
   return last_;
 }
 
 Wrench Safety::limit(const Wrench& wanted, const Eigen::Vector3d& moved_m, const Eigen::Vector3d& turned_rad,
                      double dt) {
-  const bool jumped = !turned_rad.allFinite() || turned_rad.norm() > kFastest_rad_s * dt;
+  const bool jumped = !turned_rad.allFinite() || turned_rad.norm() > kMaxHandSpin_rad_s * dt;
   torque_work_J_ = jumped ? 0 : last_torque_.dot(turned_rad);
   Wrench w = wanted;
   if (!w.torque_N_m.allFinite()) w.torque_N_m.setZero();
@@ -79,7 +79,7 @@ Wrench Safety::limit(const Wrench& wanted, const Eigen::Vector3d& moved_m, const
   w.force_N = limit(w.force_N, moved_m, dt);
   const double remaining = std::clamp(2 * tank_J_ / limits_.energy_J, 0.0, 1.0);
   const Eigen::Vector3d allowed = workspace_factor_ * remaining * clamped(w.torque_N_m, limits_.torque_N_m);
-  last_torque_ += clamped(allowed - last_torque_, limits_.torque_slew_N_m_s * std::min(dt, kLongestSlew_s));
+  last_torque_ += clamped(allowed - last_torque_, limits_.torque_slew_N_m_s * std::min(dt, kMaxSlewTime_s));
   w.torque_N_m = last_torque_;
   return w;
 }

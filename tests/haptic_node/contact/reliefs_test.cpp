@@ -309,7 +309,7 @@ TEST_CASE("Harder pressure downhill than uphill gains at most the limits of ener
   const auto stroke = [](const Settings& s) {
     Bench bench(s);
     bench.renderer.set_maps(waves(12 * kHigh_m, 2 * kWave_m));
-    constexpr double kSpeed_m_s = 0.3, kTurn_m = 0.1, kPress_m_s = 0.3, kFastest_m_s = 0.5;
+    constexpr double kSpeed_m_s = 0.3, kTurn_m = 0.1, kPress_m_s = 0.3, kMaxHandSpeed_m_s = 0.5;
     Vector3d last_place(0, 0, kRadius_m), last_force = Vector3d::Zero();
     double given_J = 0, max_J = 0, x = 0, way = 1, press_m = 0;
     touch_model_t m;
@@ -331,7 +331,7 @@ TEST_CASE("Harder pressure downhill than uphill gains at most the limits of ener
       // additional.
       const double drawn_back_s = s.force_limit_N / s.slew_limit_N_s + 0.002;
       REQUIRE(given_J <= s.energy_limit_J + s.power_limit_W * (ms + 1) * 1e-3 +
-                             s.force_limit_N * kFastest_m_s * drawn_back_s);
+                             s.force_limit_N * kMaxHandSpeed_m_s * drawn_back_s);
     }
     return max_J;
   };

@@ -16,7 +16,7 @@ using namespace tactus::haptic::test;
 namespace {
 
 // Presses `depth` below z = 0 while it answers.
-struct Fickle : Device {
+struct UnreliableDevice : Device {
   DeviceState read(sync::HostTime) override {
     DeviceState s;
     s.position = at;
@@ -33,7 +33,7 @@ struct Fickle : Device {
 
 struct Rig {
   Rig() : config(resolve_config(world, "", {})), safety(safety_limits(config.settings)) {
-    auto made = std::make_unique<Fickle>();
+    auto made = std::make_unique<UnreliableDevice>();
     device = made.get();
     session.emplace(world, config, std::move(made), sync::OwnClock{1, 0, nullptr}, safety);
   }
@@ -49,7 +49,7 @@ struct Rig {
   scene_t world = scene();
   NodeConfig config;
   Safety safety;
-  Fickle* device;
+  UnreliableDevice* device;
   std::optional<Session> session;
   int ms = 1;
 };

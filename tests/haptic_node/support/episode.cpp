@@ -19,14 +19,14 @@ constexpr double kBodySpring_N_m = 500, kBodyDamper_Ns_m = 0.5;
 // Pushed along a table: friction of wood.
 constexpr double kTableFriction = 0.3, kGravity_m_s2 = 9.81;
 // The hand waits, so that the renderer has measured the network before the first touch.
-constexpr double kWaits_s = 1;
+constexpr double kWait_s = 1;
 constexpr int kHold_ms = 3800, kEnd_ms = 5000, kJudged_ms = 500, kApart_ms = 200;
 constexpr double kSwing_N = 0.03;
 constexpr int kFreeze_ms = 1700, kThaw_ms = 2200;
 
 Vector3d place(double z) { return {0, 0, z}; }
 
-struct Bursts {
+struct BurstLoss {
   std::mt19937 random;
   bool bad = false;
   bool lost() {
@@ -38,12 +38,12 @@ struct Bursts {
 
 MonotoneCubic path_of(Act act) {
   const double top = kTool_m + 0.01;
-  std::vector<double> times{0, kWaits_s};
+  std::vector<double> times{0, kWait_s};
   std::vector<Vector3d> places{place(top), place(top)};
-  const auto go = [&](double t, double z) { times.push_back(kWaits_s + t), places.push_back(place(z)); };
+  const auto go = [&](double t, double z) { times.push_back(kWait_s + t), places.push_back(place(z)); };
   if (act == Act::kPress) {
-    go(0.3, kTool_m - kPress_m), go(1e-3 * kHold_ms - kWaits_s, kTool_m - kPress_m),
-        go(1e-3 * kHold_ms - kWaits_s + 0.3, top);
+    go(0.3, kTool_m - kPress_m), go(1e-3 * kHold_ms - kWait_s, kTool_m - kPress_m),
+        go(1e-3 * kHold_ms - kWait_s + 0.3, top);
   } else if (act == Act::kTap) {
     for (int k = 0; k < 5; ++k)
       go(0.5 * k + 0.15, kTool_m - kTap_m), go(0.5 * k + 0.2, kTool_m - kTap_m), go(0.5 * k + 0.35, top),
@@ -125,7 +125,7 @@ EpisodeResult run_episode(const EpisodeDef& def, bool timed) {
   hand.begin(host_ms(0));
   Bench bench(def.settings);
   World world{def};
-  Bursts bursts{std::mt19937(def.seed)};
+  BurstLoss bursts{std::mt19937(def.seed)};
   std::deque<touch_model_t> in_transit;
   touch_model_t now_used;
   EpisodeResult r;

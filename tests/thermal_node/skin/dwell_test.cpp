@@ -10,7 +10,7 @@ using namespace tactus::thermal;
 namespace {
 constexpr TemperatureRange kWide{15, 42};
 // Seconds at degC until the range narrows; at most an hour.
-double lasts_s(double degC) {
+double allowed_s(double degC) {
   Dwell dwell({60, 20, 60});
   for (int i = 1; i <= 180'000; ++i) {
     const TemperatureRange range = dwell.step(degC, 0.02, kWide);
@@ -21,19 +21,19 @@ double lasts_s(double degC) {
 }  // namespace
 
 TEST_CASE("The allowed duration of warmth follows the dose") {
-  CHECK(lasts_s(43) == Approx(60).margin(0.05));
-  CHECK(lasts_s(42) == Approx(4 * 60).margin(0.05));
-  CHECK(lasts_s(41) == Approx(16 * 60).margin(0.1));
-  CHECK(lasts_s(44) == Approx(30).margin(0.05));
-  CHECK(lasts_s(45) == Approx(15).margin(0.05));
-  CHECK(std::isinf(lasts_s(39)));
-  CHECK(std::isinf(lasts_s(33)));
+  CHECK(allowed_s(43) == Approx(60).margin(0.05));
+  CHECK(allowed_s(42) == Approx(4 * 60).margin(0.05));
+  CHECK(allowed_s(41) == Approx(16 * 60).margin(0.1));
+  CHECK(allowed_s(44) == Approx(30).margin(0.05));
+  CHECK(allowed_s(45) == Approx(15).margin(0.05));
+  CHECK(std::isinf(allowed_s(39)));
+  CHECK(std::isinf(allowed_s(33)));
 }
 
 TEST_CASE("Cold is limited to a minute, cool temperatures are not limited") {
-  CHECK(lasts_s(19.9) == Approx(60).margin(0.05));
-  CHECK(lasts_s(15) == Approx(60).margin(0.05));
-  CHECK(std::isinf(lasts_s(20)));
+  CHECK(allowed_s(19.9) == Approx(60).margin(0.05));
+  CHECK(allowed_s(15) == Approx(60).margin(0.05));
+  CHECK(std::isinf(allowed_s(20)));
 }
 
 TEST_CASE("After too long an exposure the range is narrow until half of the exposure has decayed") {

@@ -82,7 +82,7 @@ Wrench random_wrench(const StringFrame& f, std::mt19937& random) {
 }
 
 // In the workspace, or up to twice as far out.
-GripPose far_pose(const StringFrame& f, std::mt19937& random) {
+GripPose pose_beyond_workspace(const StringFrame& f, std::mt19937& random) {
   GripPose p = random_pose(f, random);
   if (random() % 2 == 0) p.position_m *= 2;
   return p;
@@ -95,7 +95,7 @@ TEST_CASE("Tensions stay within their limits for any pose and wrench") {
   const StringFrame f = *known_frame(name);
   std::mt19937 random(1);
   for (int trial = 0; trial < 2000; ++trial) {
-    const GripPose pose = far_pose(f, random);
+    const GripPose pose = pose_beyond_workspace(f, random);
     const Wrench wanted = random_wrench(f, random);
     const Tensions t = solve_tensions(f, pose, wanted);
     REQUIRE(t.tensions_N.size() == f.size());
@@ -114,7 +114,7 @@ TEST_CASE("The force is exact where tensions exist, otherwise nearly the largest
   std::mt19937 random(2);
   int all = 0, some = 0, none = 0;
   for (int trial = 0; trial < (f.has_torque() ? 120 : 1000); ++trial) {
-    const GripPose pose = far_pose(f, random);
+    const GripPose pose = pose_beyond_workspace(f, random);
     const Wrench wanted = random_wrench(f, random);
     const Eigen::MatrixXd w = structure_matrix(f, pose);
     const auto truth = oracle_share(f, w, stacked(f, wanted));
