@@ -9,15 +9,15 @@
 namespace tactus::haptic {
 
 void OfflineOptions::add_to(CLI::App& app) {
-  sync::OfflineOptions::add_to(app, "feels this log of a run", "--trace");
-  app.add_option("--trace", trace, "file for what the hand feels in the log, CSV with the columns of haptic.csv")
+  sync::OfflineOptions::add_to(app, "renders this log of a run", "--trace");
+  app.add_option("--trace", trace, "file for the rendered force, CSV with the columns of haptic.csv")
       ->needs("--log");
 }
 
 std::unique_ptr<Offline> Offline::open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock) {
   if (options.log.empty()) return nullptr;
   if (options.trace.empty())
-    throw std::runtime_error("--log needs --trace FILE, which what the hand feels is written to");
+    throw std::runtime_error("--log needs --trace FILE for the table of the rendered force");
   return std::make_unique<Offline>(options, rate_Hz, clock);
 }
 
@@ -29,24 +29,24 @@ Offline::Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime c
 }
 
 void Offline::follow(int tool) {
-  follows_ = tool >= 0;
+  has_tool_ = tool >= 0;
   tick_ = {};
-  coming_.reset();
+  next_tick_.reset();
   track_.follow(tool);
-  if (follows_) schedule();
+  if (has_tool_) schedule();
 }
 
 void Offline::schedule() {
-  coming_ = track_.next(run_.now());
-  if (coming_)
-    run_.set_next_tick(coming_->at);
+  next_tick_ = track_.next(run_.now());
+  if (next_tick_)
+    run_.set_next_tick(next_tick_->at);
   else
     run_.end_at(run_.now());
 }
 
 bool Offline::begin_tick(sync::HostTime now) {
-  const bool recorded = coming_ && coming_->at == now;
-  tick_ = recorded ? *coming_ : RecordedTick{};
+  const bool recorded = next_tick_ && next_tick_->at == now;
+  tick_ = recorded ? *next_tick_ : RecordedTick{};
   if (recorded) schedule();
   return recorded;
 }
@@ -63,8 +63,8 @@ void Offline::add(const tool_state_t& state) {
 std::string Offline::result(const std::string& problem, sync::HostTime clock) {
   if (rows_ == 0)
     throw std::runtime_error(!problem.empty() ? problem
-                             : follows_
-                                 ? "the log tells nowhere of this tool: nobody held it; choose another --tool"
+                             : has_tool_
+                                 ? "the log has no TOOL_STATE of this tool; choose another --tool"
                                  : "the log has no scene; give one that scripts/run wrote from its beginning");
   const double felt_s = sync::to_seconds(run_.now() - *first_);
   const std::string rest = run_.finish(felt_s, clock);

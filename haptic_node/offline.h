@@ -48,9 +48,9 @@ class Offline {
   sync::OfflineInput run_;
   sync::AtomicFile trace_;
   ToolTrack track_;
-  bool follows_ = false;
+  bool has_tool_ = false;
   RecordedTick tick_;
-  std::optional<RecordedTick> coming_;
+  std::optional<RecordedTick> next_tick_;
   std::optional<sync::HostTime> first_;
   std::int64_t rows_ = 0;
 };

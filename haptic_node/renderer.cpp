@@ -18,9 +18,10 @@ namespace tactus::haptic {
 
 void Options::add_to(CLI::App& app) {
   app.add_option("--tool", tool, "tool that the hand holds; default: the scene's first");
-  app.add_option("--device", device,
-                 "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R], "
-                 "spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z]; default: as the scene says");
+  app.add_option(
+      "--device", device,
+      "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R], "
+      "spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z]; default: the device of the scene");
   log.add_to(app);
   app.get_option("--trace")->excludes("--device");
 }
@@ -32,7 +33,7 @@ void Options::parse_device() {
 NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Offline* log)
     : SettingsRenderer(host, setting_fields()),
       tool_name_(options.tool),
-      device_given_(options.device_spec),
+      device_spec_(options.device_spec),
       log_(log),
       device_states_(host.bus().queue<device_state_t>(channels::kDeviceState, 64)),
       device_forces_(host.bus().queue<device_force_t>(channels::kDeviceForce, 64)),
@@ -55,30 +56,30 @@ sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Se
   points_ = choice_.tool >= 0 && points(scene_->tools[static_cast<std::size_t>(choice_.tool)]);
   no_touch_ = std::all_of(scene_->tools.begin(), scene_->tools.end(), points);
   quality_ = Quality(settings);
-  return {.tool = choice_.tool,
+  return {.tool = config_.tool,
           .rate_Hz = settings.rate_Hz,
           .output_latency = sync::from_seconds(1 / settings.rate_Hz),
           .status = {.state = node_health_t::WAITING,
                      .text = choice_.tool >= 0 ? "waits for its device" : choice_.problem}};
 }
 
-void NodeRenderer::begin_to_open(const sync::SceneReceiver& scenes) {
-  opening_device_.reset();
+void NodeRenderer::start_loading(const sync::SceneReceiver& scenes) {
+  device_task_.reset();
   maps_.reset();
-  opening_maps_.emplace([scene = *scene_, pictures = sync::pictures_of(scenes)] {
+  maps_task_.emplace([scene = *scene_, pictures = sync::pictures_of(scenes)] {
     sync::leave_realtime();
     return std::make_unique<SurfaceMaps>(read_maps(scene, pictures));
   });
-  if (choice_.tool < 0) return;
-  opening_device_.emplace([scene = *scene_, choice = choice_, given = device_given_, log = log_] {
+  if (config_.tool < 0) return;
+  device_task_.emplace([scene = *scene_, config = config_, spec = device_spec_, log = log_] {
     sync::leave_realtime();
-    return log ? log->device() : device_of(scene, choice, given.get());
+    return log ? log->device() : make_tool_device(scene, config, spec.get());
   });
 }
 
-void NodeRenderer::finish_opening() {
+void NodeRenderer::finish_loading() {
   // A log waits for both; the live loop never waits.
-  while (log_ && ((opening_maps_ && !opening_maps_->done()) || (opening_device_ && !opening_device_->done())))
+  while (log_ && ((maps_task_ && !maps_task_->done()) || (device_task_ && !device_task_->done())))
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   if (opening_maps_ && opening_maps_->done()) {
     maps_ = opening_maps_->take();
@@ -86,19 +87,19 @@ void NodeRenderer::finish_opening() {
     if (!maps_->trouble.empty()) host().print_status(maps_->trouble);
     if (session_ && !session_->over()) session_->set_maps(maps_);
   }
-  if (opening_device_ && opening_device_->done()) take_device();
+  if (device_task_ && device_task_->done()) start_session();
 }
 
-void NodeRenderer::take_device() {
+void NodeRenderer::start_session() {
   try {
-    session_.emplace(*scene_, choice_, opening_device_->take(), host().bus().clocks(), safety_);
+    session_.emplace(*scene_, config_, device_task_->take(), host().bus().clocks(), safety_);
     if (maps_) session_->set_maps(maps_);
     host().node().set_state(node_health_t::READY, "waits for a touch model");
   } catch (const std::exception& e) {
     host().print_status(e.what());
     host().node().set_state(node_health_t::WAITING, e.what());
   }
-  opening_device_.reset();
+  device_task_.reset();
 }
 
 void NodeRenderer::apply_setting(const Settings& settings, const std::string&) {
@@ -123,11 +124,11 @@ void NodeRenderer::receive() {
 
 std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   const bool in_tick = !log_ || log_->begin_tick(now);
-  finish_opening();
+  finish_loading();
   receive();
   if (!session_ || !in_tick) return std::nullopt;
   TickOutput& out = render(now);
-  if (session_->over()) return std::nullopt;
+  if (session_->ended()) return std::nullopt;
   publish(out);
   for (const presentation_t& report : out.reports) host().report(report);
   if (host().live()) quality_.add(host().clock() - now);
@@ -149,7 +150,7 @@ void NodeRenderer::publish(TickOutput& out) {
   if (log_) log_->add(out.state);
   host().bus().publish(channels::kToolState, out.state);
   if (host().node().tags().wanted()) published_ = out.state;
-  if (device_force_t* force = session_->tell()) host().bus().publish(channels::kDeviceForce, *force);
+  if (device_force_t* force = session_->force_message()) host().bus().publish(channels::kDeviceForce, *force);
 }
 
 sync::Status NodeRenderer::status() const {

@@ -37,7 +37,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   NodeRenderer(sync::RendererHost& host, const Options& options, Offline* log);
 
   std::optional<sync::Status> step(sync::HostTime now) override;
-  std::string finish_log(sync::HostTime clock) override { return log_->result(choice_.problem, clock); }
+  std::string finish_log(sync::HostTime clock) override { return log_->result(config_.problem, clock); }
 
  private:
   sync::LoadedScene load(const sync::SceneReceiver& scenes, const Settings& settings) override;
@@ -51,23 +51,23 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   sync::Status status() const;
 
   std::string tool_name_;
-  std::shared_ptr<const DeviceSpec> device_given_;
+  std::shared_ptr<const DeviceSpec> device_spec_;
   Offline* log_;
   sync::Queue<device_state_t>& device_states_;
   sync::Queue<device_force_t>& device_forces_;
   sync::ModalityEndpoint::Stream<touch_model_t>& touch_;
   sync::ModalityEndpoint::Events& events_;
   Safety safety_;  // shared by all scenes
-  NodeConfig choice_;
+  NodeConfig config_;
   Quality quality_;
   const scene_t* scene_ = nullptr;
   // Opened on background threads. The surfaces are smooth until the maps are ready.
-  std::optional<sync::BackgroundTask<Device>> opening_device_;
-  std::optional<sync::BackgroundTask<SurfaceMaps>> opening_maps_;
+  std::optional<sync::BackgroundTask<Device>> device_task_;
+  std::optional<sync::BackgroundTask<SurfaceMaps>> maps_task_;
   std::shared_ptr<const SurfaceMaps> maps_;
   std::optional<Session> session_;
-  bool points_ = false;    // the tool is a pointer or the head, and needs no touch model
-  bool no_touch_ = false;  // all tools of the scene are such: no touch model marks the start of the path
+  bool is_pointer_ = false;     // the tool is a pointer or the head, and needs no touch model
+  bool only_pointers_ = false;  // all tools of the scene are such: no touch model marks the start of the path
   tool_state_t published_{};  // the latest published state, for the tags
 };
 

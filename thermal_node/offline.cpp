@@ -9,15 +9,15 @@
 namespace tactus::thermal {
 
 void OfflineOptions::add_to(CLI::App& app) {
-  sync::OfflineOptions::add_to(app, "feels this log of a run", "--trace");
-  app.add_option("--trace", trace, "file for what the skin feels in the log, CSV with the columns of thermal.csv")
+  sync::OfflineOptions::add_to(app, "renders this log of a run", "--trace");
+  app.add_option("--trace", trace, "file for the rendered temperature, CSV with the columns of thermal.csv")
       ->needs("--log");
 }
 
 std::unique_ptr<Offline> Offline::open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock) {
   if (options.log.empty()) return nullptr;
   if (options.trace.empty())
-    throw std::runtime_error("--log needs --trace FILE, which what the skin feels is written to");
+    throw std::runtime_error("--log needs --trace FILE for the table of the rendered temperature");
   return std::make_unique<Offline>(options, rate_Hz, clock);
 }
 

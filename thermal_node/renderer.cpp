@@ -43,13 +43,13 @@ sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Se
   quality_ = Quality(settings);
   if (renderer_) dwell_ = renderer_->dwell();
   renderer_.reset();
-  device_ = make_device(settings, choice_.tool, plate_degC_.value_or(settings.skin_rest_degC));
-  if (choice_.tool >= 0) {
-    renderer_.emplace(settings, scene.materials, choice_.tool, choice_.tool_body, element_degC_,
+  device_ = make_device(settings, config_.tool, plate_degC_.value_or(settings.skin_rest_degC));
+  if (config_.tool >= 0) {
+    renderer_.emplace(settings, scene.materials, config_.tool, config_.tool_body, command_degC_,
                       thickness_of_bodies(scene));
     renderer_->resume(dwell_);
   }
-  return {.tool = choice_.tool,
+  return {.tool = config_.tool,
           .rate_Hz = settings.rate_Hz,
           .output_latency = sync::from_seconds(1 / settings.rate_Hz) + Ticks::kSettle,
           .status = {.state = node_health_t::WAITING, .text = choice_.problem}};
@@ -63,7 +63,7 @@ void NodeRenderer::apply_setting(const Settings& settings, const std::string&) {
 void NodeRenderer::receive() {
   stream_.extend_history(host().endpoint().delay());
   while (const auto m = frames_.pop()) stream_.push(m->message, m->arrival);
-  while (const auto m = answers_.pop())
+  while (const auto m = device_messages_.pop())
     // Ignores readings of a log that is replayed meanwhile: that plate is not under this finger.
     if (device_ && m->message.header.run_id == host().options().run_id) device_->receive(m->message, m->arrival);
 }
@@ -81,21 +81,21 @@ void NodeRenderer::render(sync::HostTime now) {
   const sync::ModalityEndpoint& endpoint = host().endpoint();
   const Tick tick = ticks_.next(stream_, now, endpoint.newest_arrival(), choice_.tool, choice_.tool_body, endpoint.delay());
   std::optional<sync::ScopedPhaseTimer> rendering(sync::Phase::kRender);
-  const double command_degC = element_degC_.value_or(choice_.settings.skin_rest_degC);
+  const double command_degC = command_degC_.value_or(config_.settings.skin_rest_degC);
   const auto plate = device_ ? device_->step(command_degC, renderer_->load_W(), now) : std::nullopt;
   thermal_state_t state = renderer_->step(tick, {.response_s = endpoint.output().value("response"),
                                                  .longest_substep_s = quality_.longest_substep_s(),
                                                  .plate = plate});
   rendering.reset();
   published_ = state;
-  element_degC_ = state.commanded_degC;
+  command_degC_ = state.commanded_degC;
   device_silent_ = device_ && !plate;
   if (log_) log_->add(state);
   host().bus().publish(channels::kThermalState, state);
   if (plate) plate_degC_ = plate->plate_degC;
   if (plate && device_->simulated() && !log_) {
-    thermal_device_t answer = to_message(*plate, choice_.tool);
-    host().bus().publish(channels::kThermalDevice, answer);
+    thermal_device_t message = to_message(*plate, config_.tool);
+    host().bus().publish(channels::kThermalDevice, message);
   }
 }
 

@@ -27,7 +27,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   NodeRenderer(sync::RendererHost& host, std::string tool_name, Offline* log);
 
   std::optional<sync::Status> step(sync::HostTime now) override;
-  std::string finish_log(sync::HostTime clock) override { return log_->result(choice_.problem, clock); }
+  std::string finish_log(sync::HostTime clock) override { return log_->result(config_.problem, clock); }
 
  private:
   sync::LoadedScene load(const sync::SceneReceiver& scenes, const Settings& settings) override;
@@ -41,15 +41,15 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   Offline* log_;
   sync::ModalityEndpoint::Events& events_;
   sync::ModalityEndpoint::Stream<contact_frame_t>& frames_;
-  sync::Queue<thermal_device_t>& answers_;
+  sync::Queue<thermal_device_t>& device_messages_;
   sync::ContactStream stream_;
-  NodeConfig choice_;
+  NodeConfig config_;
   Ticks ticks_;
   Quality quality_;
   std::optional<thermal::Renderer> renderer_;
   Dwell dwell_{DwellLimits{}};  // of the skin, kept across scenes
   std::unique_ptr<Device> device_;
-  std::optional<double> element_degC_;  // last command, kept across scenes
+  std::optional<double> command_degC_;  // last command, kept across scenes
   std::optional<double> plate_degC_;    // last measurement
   bool device_silent_ = false;
   thermal_state_t published_{};  // the latest published state, for the tags

@@ -36,7 +36,8 @@ const sync::NodeDescriptor kThermal{
 
 class Factory : public sync::RendererFactory {
   void add_options(CLI::App& app) override {
-    app.add_option("--tool", tool_, "tool whose touch is felt; default: the scene's choice, else its first");
+    app.add_option("--tool", tool_,
+                   "tool to render; default: the setting `tool`, else the first tool of the scene");
     log_options_.add_to(app);
   }
   sync::OfflineInput* prepare(const sync::NodeOptions& options) override {

@@ -83,7 +83,7 @@ bool try_all_sets(const Candidates& c, Basis& out) {
   return false;
 }
 
-std::size_t most_violated(const Region& region, const Eigen::Vector3d& x) {
+std::size_t max_violation_index(const Region& region, const Eigen::Vector3d& x) {
   std::size_t worst = region.size;
   double violation = kTolerance_m;
   for (std::size_t i = 0; i < region.size; ++i) {
@@ -98,8 +98,8 @@ bool exchange(const Region& region, ClosestPoint& out) {
   constexpr std::size_t kMaxExchanges = 2 * kMaxHalfSpaces;
   Basis basis;
   double violation = 0;
-  for (std::size_t turn = 0; turn < kMaxExchanges; ++turn) {
-    const std::size_t worst = most_violated(region, basis.x);
+  for (std::size_t iteration = 0; iteration < kMaxExchanges; ++iteration) {
+    const std::size_t worst = max_violation_index(region, basis.x);
     violation = worst < region.size ? region.deficit[worst] - region.normal[worst].dot(basis.x) : 0;
     if (violation <= 0) break;
     std::array<std::size_t, 4> number{};
@@ -125,7 +125,7 @@ bool exchange(const Region& region, ClosestPoint& out) {
 // Newton's method with halved steps finds it in a few iterations, exactly (Mangasarian 2002, for such functions).
 void compromise(const Region& region, ClosestPoint& out) {
   constexpr double kSoftness = 0.02;
-  constexpr int kTurns = 30, kHalvings = 20;
+  constexpr int kMaxIterations = 30, kHalvings = 20;
   const auto value = [&](const Eigen::Vector3d& x) {
     double sum = x.squaredNorm();
     for (std::size_t i = 0; i < region.size; ++i) {
@@ -136,7 +136,7 @@ void compromise(const Region& region, ClosestPoint& out) {
   };
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   double cost = value(x);
-  for (int turn = 0; turn < kTurns; ++turn) {
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     Eigen::Matrix3d slope = kSoftness * Eigen::Matrix3d::Identity();
     Eigen::Vector3d pull = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < region.size; ++i) {

@@ -8,7 +8,7 @@ namespace tactus::haptic {
 
 ContactImpulses::Entry& ContactImpulses::entry(std::int64_t contact_id, sync::HostTime now) {
   const auto known = std::find_if(contacts_.begin(), contacts_.end(),
-                                  [&](const Entry& e) { return e.felt.contact_id == contact_id; });
+                                  [&](const Entry& e) { return e.force.contact_id == contact_id; });
   if (known != contacts_.end()) return *known;
   if (contacts_.size() >= kMaxContacts)
     contacts_.erase(std::min_element(contacts_.begin(), contacts_.end(),
@@ -18,36 +18,36 @@ ContactImpulses::Entry& ContactImpulses::entry(std::int64_t contact_id, sync::Ho
   return e;
 }
 
-void ContactImpulses::step(sync::HostTime now, double dt, std::span<const FeltForce> forces) {
+void ContactImpulses::step(sync::HostTime now, double dt, std::span<const ContactForce> forces) {
   for (Entry& e : contacts_) {
-    e.impulse_N_s += dt * e.felt.force_N;
-    e.felt.force_N.setZero();
+    e.impulse_N_s += dt * e.force.force_N;
+    e.force.force_N.setZero();
   }
-  for (const FeltForce& f : forces) {
+  for (const ContactForce& f : forces) {
     if (f.force_N.isZero(0)) continue;
     Entry& e = entry(f.contact_id, now);
-    if (now - e.last > kToldAfter) e.first = now;  // a new first force
-    e.felt = f;
+    if (now - e.last > kPublishAfter) e.first = now;  // a new first force
+    e.force = f;
     e.last = now;
   }
 }
 
-std::optional<sync::HostTime> ContactImpulses::first_felt(std::int64_t contact_id) const {
+std::optional<sync::HostTime> ContactImpulses::first_force_time(std::int64_t contact_id) const {
   for (const Entry& e : contacts_)
-    if (e.felt.contact_id == contact_id) return e.first;
+    if (e.force.contact_id == contact_id) return e.first;
   return std::nullopt;
 }
 
-void ContactImpulses::tell(sync::HostTime now, std::vector<tool_constraint_t>& out) const {
+void ContactImpulses::write_constraints(sync::HostTime now, std::vector<tool_constraint_t>& out) const {
   out.clear();
   const auto add = [&](bool acting) {
     for (const Entry& e : contacts_) {
-      if ((e.last == now) != acting || now - e.last > kToldAfter || out.size() >= kMaxTold) continue;
+      if ((e.last == now) != acting || now - e.last > kPublishAfter || out.size() >= kMaxPublished) continue;
       tool_constraint_t c{};
-      c.contact_id = e.felt.contact_id;
-      c.body = e.felt.body;
-      c.point_m = to_vec3f(e.felt.point);
-      c.force_N = to_vec3f(e.felt.force_N);
+      c.contact_id = e.force.contact_id;
+      c.body = e.force.body;
+      c.point_m = to_vec3f(e.force.point);
+      c.force_N = to_vec3f(e.force.force_N);
       c.impulse_N_s = to_vec3f(e.impulse_N_s);
       out.push_back(c);
     }

@@ -14,7 +14,7 @@
 
 namespace tactus::haptic {
 
-struct FeltForce {
+struct ContactForce {
   std::int64_t contact_id = 0;
   std::int32_t body = -1;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();    // m, world
@@ -24,23 +24,23 @@ struct FeltForce {
 class ContactImpulses {
  public:
   static constexpr std::size_t kMaxContacts = 128;  // stored; the least recently felt is removed
-  static constexpr std::size_t kMaxTold = 12;       // in one message
+  static constexpr std::size_t kMaxPublished = 12;  // in one message
   // time after the end of the force during which a contact is still published
-  static constexpr sync::Nanoseconds kToldAfter{50'000'000};
+  static constexpr sync::Nanoseconds kPublishAfter{50'000'000};
 
   ContactImpulses() { contacts_.reserve(kMaxContacts); }
 
   // One tick: adds the impulse of the forces of the last tick, then stores the forces that act from now on.
-  void step(sync::HostTime now, double dt, std::span<const FeltForce> forces);
-  // Time of the first force on that contact, since it was last without force for longer than kToldAfter.
-  std::optional<sync::HostTime> first_felt(std::int64_t contact_id) const;
+  void step(sync::HostTime now, double dt, std::span<const ContactForce> forces);
+  // Time of the first force on that contact, since it was last without force for longer than kPublishAfter.
+  std::optional<sync::HostTime> first_force_time(std::int64_t contact_id) const;
   // Writes the contacts that act or recently acted, acting ones first. Realtime-safe once `out` has room for
-  // kMaxTold.
-  void tell(sync::HostTime now, std::vector<tool_constraint_t>& out) const;
+  // kMaxPublished.
+  void write_constraints(sync::HostTime now, std::vector<tool_constraint_t>& out) const;
 
  private:
   struct Entry {
-    FeltForce felt;
+    ContactForce force;
     Eigen::Vector3d impulse_N_s = Eigen::Vector3d::Zero();
     sync::HostTime first, last;
   };

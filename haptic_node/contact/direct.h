@@ -15,7 +15,7 @@ struct DevicePose;
 // Sets depth_m of every surface: the depth of the tool of the device under it. Surfaces that push in the same
 // direction share the load: together they are as stiff as one. Clears all friction. placed: the pose for which the
 // offsets of the surfaces hold. lever_m: as in RigidProxy. Realtime-safe: yes.
-void press_directly(std::span<Surface> surfaces, const DevicePose& placed, const DevicePose& device,
-                    double lever_m, double tool_radius_m);
+void compute_direct_depths(std::span<Surface> surfaces, const DevicePose& placed, const DevicePose& device,
+                           double lever_m, double tool_radius_m);
 
 }  // namespace tactus::haptic

@@ -16,24 +16,24 @@ struct MappedPlace {
   std::int32_t material = -1;  // -1: no map
   // A point of the surface and its outward normal, in the frame of the body.
   Eigen::Vector3d point_body = Eigen::Vector3d::Zero(), normal_body = Eigen::Vector3d::UnitZ();
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // current rotation, body to world
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // current rotation, body to world
   double friction_static = 0, friction_dynamic = 0;    // of the material pair, without a map
 
   // Map values in use, kept between ticks; set by Reliefs.
-  bool known = false, jumped = false;
+  bool initialised = false, jumped = false;
   BumpAxes axes;
-  Eigen::Vector2d at{0, 0};                                  // in repetitions of the relief
-  const Relief* raised_by = nullptr;                         // relief whose height is in use
-  Eigen::Vector3d looked_at_body = Eigen::Vector3d::Zero();  // place of the last lookup, m
+  Eigen::Vector2d relief_uv{0, 0};                             // in repetitions of the relief
+  const Relief* height_relief = nullptr;                       // relief whose height is in use
+  Eigen::Vector3d last_lookup_body = Eigen::Vector3d::Zero();  // place of the last lookup, m
   double map_height_m = 0;                                   // height there, limited in slope
   double height_m = 0;                                       // as rendered
-  Eigen::Vector3d lean = Eigen::Vector3d::Zero();            // world: direction of the force minus the normal
+  Eigen::Vector3d force_tilt = Eigen::Vector3d::Zero();      // world: direction of the force minus the normal
   double height_lag_m = 0;                                   // remaining part of a jump; decays to zero
   double height_lag_speed_m_s = 0;                           // speed of the decay
-  Eigen::Vector3d lean_lag = Eigen::Vector3d::Zero();
+  Eigen::Vector3d force_tilt_lag = Eigen::Vector3d::Zero();
 
   // Reads a plane that has just arrived; normal: as received, world, unit.
-  void take(const touch_plane_t& plane, const Eigen::Vector3d& normal) {
+  void set_plane(const touch_plane_t& plane, const Eigen::Vector3d& normal) {
     const Eigen::Vector3d u = to_eigen(plane.bump_u), n = to_eigen(plane.normal_body);
     const Eigen::Vector3d across = u - u.dot(normal) * normal;
     // The plane belongs to no body if its normal has no direction or the axis is parallel to it: the surface is
@@ -47,11 +47,11 @@ struct MappedPlace {
     normal_body = n.normalized();
     friction_static = static_cast<double>(plane.friction_static);
     friction_dynamic = static_cast<double>(std::min(plane.friction_dynamic, plane.friction_static));
-    told_ =
+    published_rotation_ =
         frame(normal, across) * frame(normal_body, Eigen::Vector3d::Unit(bump_axes(normal_body).u)).transpose();
   }
   // turned: rotation of the body since then.
-  void move(const Eigen::Matrix3d& turned) { turn = turned * told_; }
+  void rotate(const Eigen::Matrix3d& by) { rotation = by * published_rotation_; }
 
  private:
   // Frame of the normal, the tangent direction and their cross product.
@@ -61,7 +61,7 @@ struct MappedPlace {
     m << x, normal.cross(x), normal;
     return m;
   }
-  Eigen::Matrix3d told_ = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d published_rotation_ = Eigen::Matrix3d::Identity();
 };
 
 }  // namespace tactus::haptic

@@ -19,18 +19,18 @@ presentation_t report_of(std::int64_t event_id, sync::HostTime scheduled, std::i
 
 void PendingOnsets::add(std::int64_t event_id, std::int64_t contact_id, sync::HostTime scheduled, sync::HostTime now,
                      bool surface_known, std::vector<presentation_t>& reports) {
-  if (waiting_.size() < kMaxWaiting)
-    waiting_.push_back({event_id, contact_id, scheduled, now, surface_known});
+  if (pending_.size() < kMaxPending)
+    pending_.push_back({event_id, contact_id, scheduled, now, surface_known});
   else
     reports.push_back(report_of(event_id, scheduled, -1, sync::Nanoseconds(0)));
 }
 
-void PendingOnsets::step(sync::HostTime now, const ContactImpulses& book, sync::Nanoseconds uncertainty,
-                      std::vector<presentation_t>& reports) {
-  std::erase_if(waiting_, [&](const Waiting& w) {
-    const auto felt = book.first_felt(w.contact_id);
-    if (!felt && now - w.taken < kPatience) return false;
-    const std::int64_t presented = felt ? sync::to_ns(*felt) : w.surface_known ? sync::to_ns(w.taken) : -1;
+void PendingOnsets::step(sync::HostTime now, const ContactImpulses& impulses, sync::Nanoseconds uncertainty,
+                         std::vector<presentation_t>& reports) {
+  std::erase_if(pending_, [&](const PendingBegin& w) {
+    const auto felt = impulses.first_force_time(w.contact_id);
+    if (!felt && now - w.received < kMaxWait) return false;
+    const std::int64_t presented = felt ? sync::to_ns(*felt) : w.surface_known ? sync::to_ns(w.received) : -1;
     reports.push_back(report_of(w.event_id, w.scheduled, presented, uncertainty));
     return true;
   });

@@ -20,7 +20,7 @@ struct Problem {
   std::array<double, kMaxHalfSpaces> deficit;
   std::size_t size = 0;
 
-  std::size_t most_violated(const Vector6& x) const {
+  std::size_t max_violation_index(const Vector6& x) const {
     std::size_t worst = size;
     double violation = kTolerance_m;
     for (std::size_t i = 0; i < size; ++i) {
@@ -43,9 +43,9 @@ struct State {
 };
 
 // Adds half space p and drops blocking ones; false: it and the binding ones have no common pose.
-bool take_in(const Problem& problem, std::size_t p, State& s) {
+bool add_constraint(const Problem& problem, std::size_t p, State& s) {
   double own = 0;  // its multiplier
-  for (int turn = 0; turn <= 6; ++turn) {
+  for (int iteration = 0; iteration <= 6; ++iteration) {
     const Vector6& n = problem.normal[p];
     const std::array<double, 6> r = s.set.coefficients(n);
     const Vector6 z = s.set.free_part(n);
@@ -74,20 +74,20 @@ bool take_in(const Problem& problem, std::size_t p, State& s) {
 
 bool solve(const Problem& problem, State& s) {
   // More than this number is a cycle caused by rounding.
-  constexpr std::size_t kMaxTurns = 3 * kMaxHalfSpaces;
-  for (std::size_t turn = 0; turn < kMaxTurns; ++turn) {
-    const std::size_t worst = problem.most_violated(s.x);
+  constexpr std::size_t kMaxIterations = 3 * kMaxHalfSpaces;
+  for (std::size_t iteration = 0; iteration < kMaxIterations; ++iteration) {
+    const std::size_t worst = problem.max_violation_index(s.x);
     if (worst == problem.size) return true;
-    if (!take_in(problem, worst, s)) break;
+    if (!add_constraint(problem, worst, s)) break;
   }
-  const std::size_t worst = problem.most_violated(s.x);
+  const std::size_t worst = problem.max_violation_index(s.x);
   return worst == problem.size || problem.deficit[worst] - problem.normal[worst].dot(s.x) <= kNegligible_m;
 }
 
 // No common pose: every half space yields as a spring does (closest_point.cpp).
 Vector6 compromise(const Problem& problem) {
   constexpr double kSoftness = 0.02;
-  constexpr int kTurns = 30, kHalvings = 20;
+  constexpr int kMaxIterations = 30, kHalvings = 20;
   const auto value = [&](const Vector6& x) {
     double sum = x.squaredNorm();
     for (std::size_t i = 0; i < problem.size; ++i) {
@@ -98,7 +98,7 @@ Vector6 compromise(const Problem& problem) {
   };
   Vector6 x = Vector6::Zero();
   double cost = value(x);
-  for (int turn = 0; turn < kTurns; ++turn) {
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     Eigen::Matrix<double, 6, 6> slope = kSoftness * Eigen::Matrix<double, 6, 6>::Identity();
     Vector6 pull = Vector6::Zero();
     for (std::size_t i = 0; i < problem.size; ++i) {
@@ -175,14 +175,14 @@ void BindingSet::drop(std::size_t k) {
   }
 }
 
-bool spread(std::span<const PoseHalfSpace> region, std::span<const double> weights, const Vector6& sum,
-            std::span<double> shares) {
-  constexpr int kTurns = 8;
+bool distribute(std::span<const PoseHalfSpace> region, std::span<const double> weights, const Vector6& sum,
+                std::span<double> shares) {
+  constexpr int kMaxIterations = 8;
   constexpr double kRounding = 1e-11, kExact = 1e-6;
   const std::size_t n = std::min({region.size(), weights.size(), shares.size(), kMaxHalfSpaces});
   std::array<double, kMaxHalfSpaces> weight{}, found{};
   std::copy_n(weights.begin(), n, weight.begin());
-  for (int turn = 0; turn < kTurns; ++turn) {
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
     for (std::size_t i = 0; i < n; ++i)
       if (weight[i] > 0) gram += weight[i] * region[i].normal * region[i].normal.transpose();

@@ -63,8 +63,8 @@ struct ClosestPose {
 // weight_i and shares that are not negative. The programme itself does not determine the shares where more half
 // spaces bind than necessary, for example at the four feet of a table. Normals of weight 0 get no share. False:
 // there is no such distribution, and `shares` is unchanged. Realtime-safe: yes.
-bool spread(std::span<const PoseHalfSpace> region, std::span<const double> weights, const Vector6& sum,
-            std::span<double> shares);
+bool distribute(std::span<const PoseHalfSpace> region, std::span<const double> weights, const Vector6& sum,
+                std::span<double> shares);
 
 // At most kMaxHalfSpaces; more are ignored. Realtime-safe: yes.
 ClosestPose closest_pose(std::span<const PoseHalfSpace> region, const Vector6& goal);

@@ -6,7 +6,7 @@ namespace tactus::haptic {
 namespace {
 
 // Longer than any arm: a valid scene never displaces the coupling that far.
-constexpr double kLongestStretch_m = 2;
+constexpr double kMaxStretch_m = 2;
 
 // v without its component along the total normal force of all surfaces. It does not remove the component along
 // every binding normal: for two facets that meet in a shallow groove that would remove the friction across it at
@@ -83,7 +83,7 @@ void Proxy::step(std::span<Surface> surfaces, const Eigen::Vector3d& device, dou
   if (!touching_) slipping_ = false;
   // Invalid input, for example two nearly parallel planes far away, must not move the tool out of the world.
   const Eigen::Vector3d stretch = closest.point - device;
-  if (stretch.norm() > kLongestStretch_m) closest.point = device + stretch * (kLongestStretch_m / stretch.norm());
+  if (stretch.norm() > kMaxStretch_m) closest.point = device + stretch * (kMaxStretch_m / stretch.norm());
   velocity_ = dt > 0 ? Eigen::Vector3d((closest.point - position_) / dt) : Eigen::Vector3d::Zero();
   position_ = closest.point;
   shift_ = shift;

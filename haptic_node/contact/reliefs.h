@@ -42,22 +42,22 @@ class Reliefs {
 
   // Call before the proxy moves: sets the height and the friction of each surface from its maps at the touched
   // place. Realtime-safe: yes.
-  void look(std::span<Surface> surfaces, const ToolPlace& tool, double dt);
+  void apply_heights(std::span<Surface> surfaces, const ToolPose& tool, double dt);
   // Call after the proxy has moved: turns the normal part of each force by the map at the place of the tool.
   // Realtime-safe: yes.
-  void lean(std::span<Surface> surfaces, const ToolPlace& tool, std::span<Eigen::Vector3d> forces_N) const;
+  void tilt_forces(std::span<Surface> surfaces, const ToolPose& tool, std::span<Eigen::Vector3d> forces_N) const;
 
  private:
   // The touched place in the frame of the body, m.
-  static Eigen::Vector3d place(const Surface& s, const ToolPlace& tool);
-  void raise(Surface& s, const Relief& relief, const ToolPlace& tool, const Eigen::Vector3d& place_body,
-             double dt) const;
-  void tilt(MappedPlace& m, const Relief& relief, const Eigen::Vector3d& place_body, double kept) const;
+  static Eigen::Vector3d place_in_body(const Surface& s, const ToolPose& tool);
+  void update_height(Surface& s, const Relief& relief, const ToolPose& tool, const Eigen::Vector3d& place_body,
+                     double dt) const;
+  void update_tilt(MappedPlace& m, const Relief& relief, const Eigen::Vector3d& place_body, double decay) const;
   Eigen::Vector2d slope(const Relief& relief, const MappedPlace& before, const Eigen::Vector2d& at) const;
 
   ReliefDef def_;
   std::shared_ptr<const SurfaceMaps> maps_;
-  double kept_ = 0;                     // share of a jump that remains from tick to tick
+  double jump_decay_ = 0;               // share of a jump that remains from tick to tick
   double height_share_, normal_share_;  // of each method; follow the setting
 };
 

@@ -57,9 +57,9 @@ class RigidProxy {
  private:
   struct Rows;
   void linearise(std::span<const Surface> surfaces, const DevicePose& start, Rows& rows) const;
-  void hold(std::span<Surface> surfaces, const DevicePose& start, const Rows& rows, const ClosestPose& closest,
-            double dt);
-  static void press(std::span<Surface> surfaces, const Rows& rows, const Vector6& goal, ClosestPose& closest);
+  void solve_friction(std::span<Surface> surfaces, const DevicePose& start, const Rows& rows,
+                      const ClosestPose& closest, double dt);
+  static void set_depths(std::span<Surface> surfaces, const Rows& rows, const Vector6& goal, ClosestPose& closest);
   double move(const DevicePose& start, const Vector6& motion, double may_move_m);
 
   double lever_m_, bound_m_, tool_radius_m_;

@@ -15,15 +15,15 @@ inline Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
 }
 
 // Rotation from `from` to `to`, in world axes, rad.
-inline Eigen::Vector3d turn_between(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
+inline Eigen::Vector3d rotation_between(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
   return rotation_vector(to * from.conjugate());
 }
 
 // Rotates `q` in world axes.
-inline Eigen::Quaterniond turned_by(const Eigen::Vector3d& turn_rad, const Eigen::Quaterniond& q) {
-  const double angle = turn_rad.norm();
+inline Eigen::Quaterniond rotated_by(const Eigen::Vector3d& rotation_rad, const Eigen::Quaterniond& q) {
+  const double angle = rotation_rad.norm();
   if (angle < 1e-300) return q;
-  return (Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn_rad / angle)) * q).normalized();
+  return (Eigen::Quaterniond(Eigen::AngleAxisd(angle, rotation_rad / angle)) * q).normalized();
 }
 
 }  // namespace tactus::haptic

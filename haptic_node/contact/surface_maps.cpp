@@ -19,9 +19,9 @@ SurfaceMaps read_maps(const scene_t& scene, const sync::Pictures& pictures) {
       if (picture == pictures.end()) throw std::runtime_error("it was not sent");
       return &read.emplace(hash, read_height_map(picture->second)).first->second;
     } catch (const std::exception& e) {
-      if (maps.trouble.empty())
-        maps.trouble = std::string("the ") + what + " of material " + material + " cannot be read: " + e.what() +
-                       "; it is not felt";
+      if (maps.error.empty())
+        maps.error = std::string("the ") + what + " of material " + material + " cannot be read: " + e.what() +
+                     "; the surface is rendered without it";
       return nullptr;
     }
   };

@@ -22,9 +22,9 @@ struct MaterialMaps {
 
 struct SurfaceMaps {
   std::vector<MaterialMaps> by_material;
-  std::string trouble;  // one sentence on the first map that cannot be read; empty: all were read
+  std::string error;  // one sentence on the first map that cannot be read; empty: all were read
 
-  const MaterialMaps* of(std::int32_t material) const {
+  const MaterialMaps* find(std::int32_t material) const {
     const auto i = static_cast<std::size_t>(material);
     return material >= 0 && i < by_material.size() ? &by_material[i] : nullptr;
   }

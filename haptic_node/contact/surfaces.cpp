@@ -20,21 +20,21 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 // True when the angle between them is certainly no larger, by the chord: its square is 2 - 2 cos x >= x^2 - x^4 /
 // 12. Nearly all surfaces turn less, and need no arctangent.
-bool within(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double angle_rad) {
+bool angle_within(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double angle_rad) {
   const double square = angle_rad * angle_rad;
   return (a - b).squaredNorm() <= square - square * square / 12;
 }
 
-// Rotates `from` towards `to` by at most at_most_rad.
-Eigen::Vector3d turned(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double at_most_rad) {
-  if (within(from, to, at_most_rad) || angle_between(from, to) <= at_most_rad) return to;
+// Rotates `from` towards `to` by at most max_angle_rad.
+Eigen::Vector3d rotate_towards(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double max_angle_rad) {
+  if (angle_within(from, to, max_angle_rad) || angle_between(from, to) <= max_angle_rad) return to;
   Eigen::Vector3d axis = from.cross(to);
   if (axis.norm() < 1e-9) axis = from.unitOrthogonal();  // opposite: all directions are equally short
-  return (Eigen::AngleAxisd(at_most_rad, axis.normalized()) * from).normalized();
+  return (Eigen::AngleAxisd(max_angle_rad, axis.normalized()) * from).normalized();
 }
 
 // The message validation rejects other planes; one that arrives by another way is left out.
-bool makes_sense(const touch_plane_t& p) {
+bool valid_plane(const touch_plane_t& p) {
   const double square = to_eigen(p.normal).squaredNorm();
   return square > 0 && std::isfinite(square) && to_eigen(p.point_m).allFinite() &&
          to_eigen(p.velocity_m_s).allFinite() && to_eigen(p.angular_velocity_rad_s).allFinite() &&
@@ -43,7 +43,7 @@ bool makes_sense(const touch_plane_t& p) {
 }
 
 // Above any apparent rotation of a body for a hand: one radian in 10 ms.
-constexpr double kLargestSpin_rad_s = 100;
+constexpr double kMaxSpin_rad_s = 100;
 
 }  // namespace
 
@@ -54,31 +54,32 @@ const Surface* Surfaces::find(std::int64_t contact_id, std::size_t expected) con
   return nullptr;
 }
 
-Surfaces::Told Surfaces::predict(const Surface& s) const {
-  if (!now_) return {s.told_point_, s.told_normal_, Eigen::Quaterniond::Identity()};
-  const double age = std::clamp(sync::to_seconds(*now_ - s.at_), 0.0, limits_.extrapolate_at_most_s);
+Surfaces::PredictedPlane Surfaces::predict(const Surface& s) const {
+  if (!now_) return {s.published_point_, s.published_normal_, Eigen::Quaterniond::Identity()};
+  const double age = std::clamp(sync::to_seconds(*now_ - s.at_), 0.0, limits_.max_extrapolation_s);
   const double spin = s.angular_velocity.norm();
-  Told told{s.told_point_ + age * s.velocity, s.told_normal_, Eigen::Quaterniond::Identity()};
-  if (spin == 0 || age == 0) return told;
+  PredictedPlane predicted{s.published_point_ + age * s.velocity, s.published_normal_,
+                           Eigen::Quaterniond::Identity()};
+  if (spin == 0 || age == 0) return predicted;
   // Rodrigues' formula; the full rotation only for a surface with a map.
-  const Eigen::Vector3d axis = s.angular_velocity / spin, across = axis.cross(told.normal);
+  const Eigen::Vector3d axis = s.angular_velocity / spin, across = axis.cross(predicted.normal);
   const double sine = std::sin(spin * age), cosine = std::cos(spin * age);
-  told.normal = (told.normal + sine * across + (1 - cosine) * axis.cross(across)).normalized();
-  if (s.mapped.material >= 0) told.turned = Eigen::AngleAxisd(spin * age, axis);
-  return told;
+  predicted.normal = (predicted.normal + sine * across + (1 - cosine) * axis.cross(across)).normalized();
+  if (s.mapped.material >= 0) predicted.rotation = Eigen::AngleAxisd(spin * age, axis);
+  return predicted;
 }
 
-double Surfaces::true_height(const Told& told, const Eigen::Vector3d& place) const {
-  return told.normal.dot(place - told.point) - radius_m_;
+double Surfaces::true_height(const PredictedPlane& predicted, const Eigen::Vector3d& place) const {
+  return predicted.normal.dot(place - predicted.point) - radius_m_;
 }
 
-void Surfaces::take(const touch_plane_t& plane, sync::SimTime at, const Eigen::Vector3d& proxy,
-                    std::size_t expected) {
+void Surfaces::update(const touch_plane_t& plane, sync::SimTime at, const Eigen::Vector3d& proxy,
+                      std::size_t expected) {
   Surface* const known = const_cast<Surface*>(find(plane.contact_id, expected));
-  const bool is_new = known == nullptr;
-  Surface& s = is_new ? list_.emplace_back() : *known;
+  const bool added = known == nullptr;
+  Surface& s = added ? list_.emplace_back() : *known;
   // Height of the proxy above the plane as rendered so far, predicted to now.
-  const double rendered = is_new ? 0 : true_height(predict(s), place_of(s.tool_point, proxy)) + s.lag_m_;
+  const double rendered = added ? 0 : true_height(predict(s), tool_point_at(s.tool_point, proxy)) + s.lag_m_;
   s.contact_id = plane.contact_id;
   s.body = plane.body;
   s.effective_mass_kg = plane.effective_mass_kg;
@@ -87,37 +88,39 @@ void Surfaces::take(const touch_plane_t& plane, sync::SimTime at, const Eigen::V
   s.friction_static = plane.friction_static;
   s.friction_dynamic = std::min(plane.friction_dynamic, plane.friction_static);
   s.velocity = clamped(to_eigen(plane.velocity_m_s), limits_.surface_speed_limit_m_s);
-  s.angular_velocity = clamped(to_eigen(plane.angular_velocity_rad_s), kLargestSpin_rad_s);
+  s.angular_velocity = clamped(to_eigen(plane.angular_velocity_rad_s), kMaxSpin_rad_s);
   s.tool_point = to_eigen(plane.tool_point_m);
-  s.told_point_ = to_eigen(plane.point_m);
-  s.told_normal_ = to_eigen(plane.normal).normalized();
-  s.mapped.take(plane, s.told_normal_);
+  s.published_point_ = to_eigen(plane.point_m);
+  s.published_normal_ = to_eigen(plane.normal).normalized();
+  s.mapped.set_plane(plane, s.published_normal_);
   s.at_ = at;
-  s.leaves_in_s_ = -1;
-  s.taken_ = true;
-  const Told told = predict(s);
-  if (is_new) s.normal = told.normal;
+  s.remaining_s_ = -1;
+  s.in_model_ = true;
+  const PredictedPlane predicted = predict(s);
+  if (added) s.normal = predicted.normal;
   // Under pressure every jump is smoothed; otherwise only one that would push the proxy.
-  const double height = true_height(told, place_of(s.tool_point, proxy));
+  const double height = true_height(predicted, tool_point_at(s.tool_point, proxy));
   // A lag in progress continues, also in front of the hand, between walls that leave it no room.
   const double pushes = std::max(0.0, -height);
-  s.lag_m_ = s.depth_m > 0 ? rendered - height : is_new ? pushes : std::clamp(rendered - height, 0.0, pushes);
+  s.lag_m_ = s.depth_m > 0 ? rendered - height : added ? pushes : std::clamp(rendered - height, 0.0, pushes);
   s.lag_speed_m_s_ = std::max(limits_.recovery_speed_m_s, std::abs(s.lag_m_) / limits_.recovery_time_s);
-  if (s.depth_m <= 0) s.normal = told.normal;
-  s.turn_rad_s_ = limits_.recovery_turn_rad_s;
-  if (!within(s.normal, told.normal, limits_.recovery_turn_rad_s * limits_.recovery_time_s))
-    s.turn_rad_s_ = std::max(s.turn_rad_s_, angle_between(s.normal, told.normal) / limits_.recovery_time_s);
+  if (s.depth_m <= 0) s.normal = predicted.normal;
+  s.normal_rate_rad_s_ = limits_.recovery_turn_rad_s;
+  if (!angle_within(s.normal, predicted.normal, limits_.recovery_turn_rad_s * limits_.recovery_time_s))
+    s.normal_rate_rad_s_ =
+        std::max(s.normal_rate_rad_s_, angle_between(s.normal, predicted.normal) / limits_.recovery_time_s);
 }
 
-void Surfaces::leave(Surface& s) {
-  if (s.leaves_in_s_ < 0) s.leaves_in_s_ = limits_.recovery_time_s;
+void Surfaces::start_removal(Surface& s) {
+  if (s.remaining_s_ < 0) s.remaining_s_ = limits_.recovery_time_s;
 }
 
-std::bitset<Surfaces::kMaxOffered> Surfaces::choose(const TouchModelView& model, const Eigen::Vector3d& proxy,
-                                                    std::size_t at_most) const {
+std::bitset<Surfaces::kMaxOffered> Surfaces::select_planes(const TouchModelView& model,
+                                                           const Eigen::Vector3d& proxy,
+                                                           std::size_t max_planes) const {
   const std::size_t offered = std::min(model.plane_count(), kMaxOffered);
   std::bitset<kMaxOffered> chosen;
-  if (offered <= std::min(at_most, kMaxPresent)) {  // the usual case: no selection
+  if (offered <= std::min(max_planes, kMaxPresent)) {  // the usual case: no selection
     for (std::size_t i = 0; i < offered; ++i) chosen.set(i);
     return chosen;
   }
@@ -137,31 +140,32 @@ std::bitset<Surfaces::kMaxOffered> Surfaces::choose(const TouchModelView& model,
     ranks[i] = {!pressed,
                 pressed ? -known->depth_m
                         : true_height({to_eigen(p.point_m), to_eigen(p.normal).normalized()},
-                                      place_of(to_eigen(p.tool_point_m), proxy)),
+                                      tool_point_at(to_eigen(p.tool_point_m), proxy)),
                 i};
   }
-  const std::size_t count = std::min({offered, at_most, kMaxPresent});
+  const std::size_t count = std::min({offered, max_planes, kMaxPresent});
   std::partial_sort(ranks.begin(), ranks.begin() + count, ranks.begin() + offered);
   for (std::size_t i = 0; i < count; ++i) chosen.set(ranks[i].index);
   return chosen;
 }
 
-void Surfaces::take(const TouchModelView& model, const Eigen::Vector3d& proxy, std::size_t at_most) {
-  const auto chosen = choose(model, proxy, at_most);
-  for (Surface& s : list_) s.taken_ = false;
+void Surfaces::update(const TouchModelView& model, const Eigen::Vector3d& proxy, std::size_t max_planes) {
+  const auto chosen = select_planes(model, proxy, max_planes);
+  for (Surface& s : list_) s.in_model_ = false;
   // The list usually has the order of the planes, so each search starts at its own index.
   for (std::size_t i = 0; i < kMaxOffered; ++i)
-    if (chosen[i] && makes_sense(model.plane(i))) take(model.plane(i), sync::sim_time(model.header().sim_time_ns), proxy, i);
+    if (chosen[i] && valid_plane(model.plane(i)))
+      update(model.plane(i), sync::sim_time(model.header().sim_time_ns), proxy, i);
   for (Surface& s : list_)
-    if (!s.taken_) leave(s);
+    if (!s.in_model_) start_removal(s);
 }
 
-void Surfaces::forget_the_gone() {
+void Surfaces::remove_expired() {
   std::erase_if(list_,
-                [](const Surface& s) { return s.leaves_in_s_ == 0 || (s.leaves_in_s_ > 0 && s.depth_m <= 0); });
+                [](const Surface& s) { return s.remaining_s_ == 0 || (s.remaining_s_ > 0 && s.depth_m <= 0); });
   // Surfaces that leave have the last places; the one nearest its end goes first. The order is nearly always
   // already right. Insertion sort: std::stable_sort would allocate memory, and the list is nearly sorted.
-  const auto rank = [](const Surface& s) { return s.leaves_in_s_ < 0 ? 1e9 : s.leaves_in_s_; };
+  const auto rank = [](const Surface& s) { return s.remaining_s_ < 0 ? 1e9 : s.remaining_s_; };
   const auto before = [&](const Surface& x, const Surface& y) { return rank(x) > rank(y); };
   if (!std::is_sorted(list_.begin(), list_.end(), before))
     for (auto next = list_.begin(); next != list_.end(); ++next)
@@ -170,28 +174,28 @@ void Surfaces::forget_the_gone() {
 }
 
 void Surfaces::render(Surface& s, const Eigen::Vector3d& proxy, double dt) const {
-  const Told told = predict(s);
-  if (s.leaves_in_s_ > 0) {
+  const PredictedPlane predicted = predict(s);
+  if (s.remaining_s_ > 0) {
     // Retracts so that the depth is zero when the time is over.
-    s.lag_m_ += s.depth_m * std::min(1.0, dt / s.leaves_in_s_);
-    s.leaves_in_s_ = std::max(0.0, s.leaves_in_s_ - dt);
+    s.lag_m_ += s.depth_m * std::min(1.0, dt / s.remaining_s_);
+    s.remaining_s_ = std::max(0.0, s.remaining_s_ - dt);
   } else {
     const double step = s.lag_speed_m_s_ * dt;
     s.lag_m_ = s.lag_m_ > 0 ? std::max(0.0, s.lag_m_ - step) : std::min(0.0, s.lag_m_ + step);
   }
-  s.normal = turned(s.normal, told.normal, s.turn_rad_s_ * dt);
+  s.normal = rotate_towards(s.normal, predicted.normal, s.normal_rate_rad_s_ * dt);
   // While it turns it pivots about the place under the proxy, where the height is correct.
-  s.offset_m = s.normal.dot(proxy) - (true_height(told, place_of(s.tool_point, proxy)) + s.lag_m_);
-  s.point = told.point;
-  if (s.mapped.material >= 0) s.mapped.move(told.turned.toRotationMatrix());
+  s.offset_m = s.normal.dot(proxy) - (true_height(predicted, tool_point_at(s.tool_point, proxy)) + s.lag_m_);
+  s.point = predicted.point;
+  if (s.mapped.material >= 0) s.mapped.rotate(predicted.rotation.toRotationMatrix());
 }
 
 void Surfaces::step(const TouchModelView& fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy,
-                    double dt, std::size_t at_most) {
+                    double dt, std::size_t max_planes) {
   now_ = now;
-  forget_the_gone();
-  if (fresh) take(fresh, proxy, at_most);
-  forget_the_gone();
+  remove_expired();
+  if (fresh) update(fresh, proxy, max_planes);
+  remove_expired();
   for (Surface& s : list_) render(s, proxy, dt);
 }
 

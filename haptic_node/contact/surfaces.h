@@ -23,7 +23,7 @@ struct SurfaceLimits {
   double recovery_time_s = 0.015;
   double recovery_speed_m_s = 0.1;
   double recovery_turn_rad_s = 30;
-  double extrapolate_at_most_s = 0.02;
+  double max_extrapolation_s = 0.02;
   double surface_speed_limit_m_s = 10;
 };
 
@@ -45,13 +45,13 @@ struct Surface {
   MappedPlace mapped;  // in the maps of its material
   // Friction state for a rigid tool, kept between ticks: the displacement of friction, m; the remaining correction
   // of a contact that holds, m; whether it slips.
-  Eigen::Vector3d grip = Eigen::Vector3d::Zero(), owed = Eigen::Vector3d::Zero();
-  bool slips = false;
+  Eigen::Vector3d grip = Eigen::Vector3d::Zero(), stick_error = Eigen::Vector3d::Zero();
+  bool slipping = false;
   // Gains of the coupling, kept with the surface so that they change smoothly; set by the renderer.
   double coupling_stiffness_N_m = -1, coupling_damping_N_s_m = 0;
 
   // True when a push moves the body.
-  bool moves() const { return effective_mass_kg < 1e9; }
+  bool movable() const { return effective_mass_kg < 1e9; }
   // Velocity of its material at a place, m/s.
   Eigen::Vector3d velocity_at(const Eigen::Vector3d& place) const {
     return velocity + angular_velocity.cross(place - point);
@@ -60,23 +60,23 @@ struct Surface {
  private:
   friend class Surfaces;
   // As in the newest message, at the instant `at`.
-  Eigen::Vector3d told_point_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d told_normal_ = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d published_point_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d published_normal_ = Eigen::Vector3d::UnitZ();
   sync::SimTime at_{};
   double lag_m_ = 0;          // rendered height of the proxy over it, minus the true height
   double lag_speed_m_s_ = 0;  // speed at which the lag goes to zero
-  double turn_rad_s_ = 0;     // rate at which the rendered normal follows
-  bool taken_ = false;        // in the newest model
-  double leaves_in_s_ = -1;   // remaining time of a surface that the model no longer contains; negative: present
+  double normal_rate_rad_s_ = 0;  // rate at which the rendered normal follows
+  bool in_model_ = false;         // in the newest model
+  double remaining_s_ = -1;  // remaining time of a surface that the model no longer contains; negative: present
 };
 
 // Pose of the tool. A surface meets one of its points, or its centre at the distance skin_m.
-struct ToolPlace {
+struct ToolPose {
   Eigen::Vector3d position;  // m, world
   Eigen::Quaterniond orientation;
   double skin_m;
   // Contact point with a surface, m, world.
-  Eigen::Vector3d touched(const Surface& s) const {
+  Eigen::Vector3d contact_point(const Surface& s) const {
     return position + orientation * s.tool_point - skin_m * s.normal;
   }
 };
@@ -92,13 +92,13 @@ class Surfaces {
   }
 
   // One tick. fresh: a touch model that has just arrived, or none. now: the simulated instant, nothing when the
-  // map is not known. proxy: where the tool's centre is. at_most: so many planes are taken, those under pressure,
-  // deepest first, then the nearest; the others count as left out. Realtime-safe: yes.
+  // map is not known. proxy: centre of the tool. max_planes: number of planes that are used: those under pressure,
+  // deepest first, then the nearest; the others are omitted. Realtime-safe: yes.
   void step(const TouchModelView& fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy, double dt,
-            std::size_t at_most = kMaxPresent);
+            std::size_t max_planes = kMaxPresent);
   void clear() { list_.clear(); }
   // Sets the orientation of the tool from now on; initially the identity.
-  void turn(const Eigen::Quaterniond& orientation) { turned_ = orientation.toRotationMatrix(); }
+  void set_orientation(const Eigen::Quaterniond& orientation) { rotation_ = orientation.toRotationMatrix(); }
 
   // At most kMaxHalfSpaces.
   std::span<Surface> list() { return list_; }
@@ -107,27 +107,27 @@ class Surfaces {
   const Surface* find(std::int64_t contact_id, std::size_t expected = 0) const;
 
  private:
-  struct Told {
+  struct PredictedPlane {
     Eigen::Vector3d point, normal;
-    Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  // rotation since the message
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // rotation since the message
   };
-  Told predict(const Surface& s) const;
+  PredictedPlane predict(const Surface& s) const;
   // place: the tool point that meets the surface, or the centre of a ball, which stays skin_m away.
-  double true_height(const Told& told, const Eigen::Vector3d& place) const;
-  Eigen::Vector3d place_of(const Eigen::Vector3d& tool_point, const Eigen::Vector3d& proxy) const {
-    return proxy + turned_ * tool_point;
+  double true_height(const PredictedPlane& predicted, const Eigen::Vector3d& place) const;
+  Eigen::Vector3d tool_point_at(const Eigen::Vector3d& tool_point, const Eigen::Vector3d& proxy) const {
+    return proxy + rotation_ * tool_point;
   }
-  std::bitset<kMaxOffered> choose(const TouchModelView& model, const Eigen::Vector3d& proxy,
-                                  std::size_t at_most) const;
-  void take(const TouchModelView& model, const Eigen::Vector3d& proxy, std::size_t at_most);
-  void take(const touch_plane_t& plane, sync::SimTime at, const Eigen::Vector3d& proxy, std::size_t expected);
-  void leave(Surface& s);
-  void forget_the_gone();
+  std::bitset<kMaxOffered> select_planes(const TouchModelView& model, const Eigen::Vector3d& proxy,
+                                         std::size_t max_planes) const;
+  void update(const TouchModelView& model, const Eigen::Vector3d& proxy, std::size_t max_planes);
+  void update(const touch_plane_t& plane, sync::SimTime at, const Eigen::Vector3d& proxy, std::size_t expected);
+  void start_removal(Surface& s);
+  void remove_expired();
   void render(Surface& s, const Eigen::Vector3d& proxy, double dt) const;
 
   double radius_m_;
   SurfaceLimits limits_;
-  Eigen::Matrix3d turned_ = Eigen::Matrix3d::Identity();  // of the tool, from its frame to the world
+  Eigen::Matrix3d rotation_ = Eigen::Matrix3d::Identity();  // of the tool, from its frame to the world
   std::optional<sync::SimTime> now_;
   std::vector<Surface> list_;
 };

@@ -10,14 +10,14 @@ void TouchInput::push(touch_model_t page, sync::HostTime arrival) {
   if (verdict == sync::TrackResult::kIgnore) return;
   if (verdict == sync::TrackResult::kRestart) {
     pages_.clear();
-    began_anew_ = true;
+    restarted_ = true;
   }
   const std::int64_t latest_ns = sync::to_ns(simulation_.latest_plausible());
   if (page.header.sim_time_ns > latest_ns) return;
   // A false first model may lie so far ahead that no later one would replace it.
   const bool overtaken =
       newest_ && page.header.sim_time_ns < newest_.header().sim_time_ns && newest_.header().sim_time_ns <= latest_ns;
-  if (!began_anew_ && overtaken) return;
+  if (!restarted_ && overtaken) return;
   const TouchModelView whole = pages_.add(std::move(page));
   if (!whole) {
     if (!unfinished_since_ && !pages_.repeated()) unfinished_since_ = arrival;
@@ -27,7 +27,7 @@ void TouchInput::push(touch_model_t page, sync::HostTime arrival) {
   arrival_ = arrival;
   unfinished_since_.reset();
   fresh_ = true;
-  began_anew_ = false;
+  restarted_ = false;
 }
 
 }  // namespace tactus::haptic

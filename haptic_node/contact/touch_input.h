@@ -18,11 +18,11 @@ class TouchInput {
   // own: messages of another clock are converted through its map; those of another run by arrival.
   TouchInput(int tool, sync::OwnClock own) : tool_(tool), simulation_(own) {}
 
-  // A page. Those of other tools, of a simulation that has been replaced, older ones, and those of a future that
-  // nobody can know are ignored.
+  // A page. Ignores pages of other tools, of a replaced simulation, older pages, and pages of an impossible future
+  // time.
   void push(touch_model_t page, sync::HostTime arrival);
-  // The newest if it has not been taken yet, else none. Valid until the next push.
-  TouchModelView take() { return std::exchange(fresh_, false) ? newest_ : TouchModelView{}; }
+  // The newest model, once; otherwise none. Valid until the next push.
+  TouchModelView pop() { return std::exchange(fresh_, false) ? newest_ : TouchModelView{}; }
   // When the newest arrived, with its last page; nothing: none yet.
   std::optional<sync::HostTime> arrival() const { return arrival_; }
   // Time since which newer pages have arrived without completing a model; empty: the newest page completed one. A
@@ -37,7 +37,7 @@ class TouchInput {
   TouchModelView newest_;
   std::optional<sync::HostTime> arrival_, unfinished_since_;
   bool fresh_ = false;
-  bool began_anew_ = false;  // no model of the new incarnation is complete yet: older instants then count as newer
+  bool restarted_ = false;  // no model of the new incarnation is complete yet: older instants then count as newer
 };
 
 }  // namespace tactus::haptic

@@ -1,4 +1,4 @@
-// A whole touch model as it arrived: the planes and books of all its pages, in their order. Nothing is copied. Pure.
+// A complete touch model: the planes and applied impulses of all its pages, in their order, without a copy. Pure.
 #pragma once
 
 #include <array>
@@ -14,17 +14,17 @@ class TouchModelView {
  public:
   static constexpr std::size_t kMaxPages = 16;  // design: twice what a tool has, 49 planes of 7 a page
 
-  TouchModelView() = default;  // of none
+  TouchModelView() = default;  // empty
   TouchModelView(const touch_model_t* whole) : pages_{whole}, count_(whole ? 1 : 0) {}
   TouchModelView(const touch_model_t& whole) : TouchModelView(&whole) {}
 
-  // One page more, which outlives the view; beyond kMaxPages it is left out.
+  // Adds a page, which outlives the view; ignored beyond kMaxPages.
   void add(const touch_model_t& page) {
     if (count_ < kMaxPages) pages_[count_++] = &page;
   }
   explicit operator bool() const { return count_ > 0; }
 
-  // The rest needs a model.
+  // The following functions require a model.
   const header_t& header() const { return pages_[0]->header; }
   std::size_t plane_count() const {
     std::size_t sum = 0;
@@ -37,10 +37,10 @@ class TouchModelView {
     for (; i >= pages_[page]->planes.size(); ++page) i -= pages_[page]->planes.size();
     return pages_[page]->planes[i];
   }
-  template <class Use>
-  void each_book(Use use) const {
+  template <class Visit>
+  void for_each_applied(Visit visit) const {
     for (std::size_t i = 0; i < count_; ++i)
-      for (const touch_applied_t& book : pages_[i]->applied) use(book);
+      for (const touch_applied_t& applied : pages_[i]->applied) visit(applied);
   }
 
  private:

@@ -1,5 +1,5 @@
-// Reassembles touch models. Only a whole model counts: pages of two steps are never mixed, a model that lacks a page is
-// given up for a newer one that is whole, and until then the hand keeps the one before. Pure.
+// Reassembles touch models from pages. Only complete models are returned: pages of two steps are never mixed, and
+// a newer complete model replaces an incomplete one. Pure.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@ namespace tactus::haptic {
 
 class TouchPages {
  public:
-  // Models that may be on their way at once, since pages of one step and the next may overtake each other; of more
-  // the oldest is given up. Design: two steps, and two more of a reordering profile.
-  static constexpr std::size_t kGathering = 4;
+  // Number of incomplete models, since pages of one step and the next may overtake each other; the oldest is
+  // dropped beyond that. Design: two steps, and two more of a reordering profile.
+  static constexpr std::size_t kMaxPartialModels = 4;
   // Larger models are ignored.
   static constexpr int kMaxPages = TouchModelView::kMaxPages;
 
@@ -22,25 +22,25 @@ class TouchPages {
   TouchPages(const TouchPages&) = delete;  // views point into it
   TouchPages& operator=(const TouchPages&) = delete;
 
-  // Takes a page. When it is the last that its model lacked, the whole model, valid until the next whole one. Else none.
-  // Repeated pages change nothing. Realtime-safe once the lists have grown.
+  // Adds a page. Returns the model that it completes, valid until the next complete one; otherwise none. Repeated
+  // pages change nothing. Realtime-safe once the lists have grown.
   TouchModelView add(touch_model_t page);
-  // Whether the page given last was of a model that was whole already.
+  // True when the last page belonged to a model that was complete already.
   bool repeated() const { return repeated_; }
-  // Forgets all that are not whole.
+  // Drops all incomplete models.
   void clear() { pages_.clear(); }
 
  private:
-  // A page's number and place give the number of its model's first page: also while the world stands still, when all
-  // models are of one instant.
+  // Sequence number minus page index is the sequence number of the first page. It distinguishes models of one
+  // instant while the simulation is paused.
   struct Key {
     std::int64_t incarnation = 0, sim_time_ns = 0, first_seq = 0;
     int pages = 0;
     bool operator==(const Key&) const = default;
   };
   sync::PageAssembler<touch_model_t, Key> pages_{
-      {.groups = kGathering, .pages = kMaxPages, .remembered = kGathering}};
-  touch_model_t single_{};  // the newest whole one, if it has one page
+      {.groups = kMaxPartialModels, .pages = kMaxPages, .remembered = kMaxPartialModels}};
+  touch_model_t single_{};  // the newest complete model, if it has one page
   bool repeated_ = false;
 };
 

@@ -35,8 +35,8 @@ class Device {
   static constexpr sync::Nanoseconds kWatchdog{20'000'000};
 
   virtual ~Device() = default;
-  // Called when the world begins: a device that follows a path starts it at this instant, and stays at its first
-  // point before.
+  // Called when the simulation begins: a device that follows a path starts it at this instant, and stays at its
+  // first point before.
   virtual void begin(sync::HostTime) {}
   // State of the hand at `now`. Call once per tick, before write.
   virtual DeviceState read(sync::HostTime now) = 0;
@@ -45,11 +45,11 @@ class Device {
   void write(const Eigen::Vector3d& force_N) { write(Wrench{force_N, Eigen::Vector3d::Zero()}); }
 
   // State of a device that another program drives; implementations accept their own name only.
-  virtual void hear(const device_state_t&, sync::HostTime /*arrival*/) {}
+  virtual void on_message(const device_state_t&, sync::HostTime /*arrival*/) {}
   // Force commands of other processes to such programs: only one process may hold a device.
-  virtual void hear(const device_force_t&, sync::HostTime /*arrival*/) {}
+  virtual void on_message(const device_force_t&, sync::HostTime /*arrival*/) {}
   // Message for such a program after each write; null: none. Valid until the next call of this object.
-  virtual device_force_t* tell() { return nullptr; }
+  virtual device_force_t* force_message() { return nullptr; }
 };
 
 }  // namespace tactus::haptic

@@ -16,7 +16,7 @@ class External : public Device {
  public:
   // Faster than any hand: a pose that jumps faster contradicts the previous one (design: twice the highest speed
   // of a hand in a device).
-  static constexpr double kFastest_m_s = 20;
+  static constexpr double kMaxSpeed_m_s = 20;
 
   // offset_m: of the frame of the device in the world. stale_after_s: silence after which it is lost, and duration
   // of valid messages before it is accepted again.
@@ -24,14 +24,14 @@ class External : public Device {
 
   // Of the states of this name, the newest of one program counts. Two programs that send at once, or a pose that
   // jumps, are contradictions.
-  void hear(const device_state_t& state, sync::HostTime arrival) override;
+  void on_message(const device_state_t& state, sync::HostTime arrival) override;
   // Force command of another process. Two processes that hold one device would shake it between their forces: the
   // device is lost for both while this lasts.
-  void hear(const device_force_t& others, sync::HostTime arrival) override;
+  void on_message(const device_force_t& others, sync::HostTime arrival) override;
   DeviceState read(sync::HostTime now) override;
   using Device::write;
   void write(const Wrench& wrench) override;
-  device_force_t* tell() override { return &force_; }
+  device_force_t* force_message() override { return &force_; }
 
  private:
   bool lost(sync::HostTime now) const;
@@ -40,9 +40,9 @@ class External : public Device {
   Eigen::Vector3d offset_m_;
   sync::Nanoseconds stale_after_;
   std::optional<device_state_t> newest_;
-  sync::HostTime heard_{};                      // its arrival
-  std::optional<sync::HostTime> contradicted_;  // time of the last contradiction
-  DeviceState believed_;
+  sync::HostTime newest_arrival_{};                   // its arrival
+  std::optional<sync::HostTime> last_contradiction_;  // time of the last contradiction
+  DeviceState accepted_;
   device_force_t force_{};
 };
 

@@ -15,11 +15,11 @@ namespace {
 
 // Covers days of seconds and any place on a site; a larger number has another unit.
 constexpr double kLargest = 1e6;
-constexpr std::size_t kLongestLine = 1000;
+constexpr std::size_t kMaxLineLength = 1000;
 constexpr std::string_view kHeader = "time_s,x_m,y_m,z_m";
 constexpr std::string_view kHeaderWithPose = "time_s,x_m,y_m,z_m,qw,qx,qy,qz";
 
-[[noreturn]] void refuse(const std::string& name, std::size_t line, const std::string& what) {
+[[noreturn]] void reject(const std::string& name, std::size_t line, const std::string& what) {
   throw std::runtime_error("motion file " + name + ", line " + std::to_string(line) + ": " + what);
 }
 
@@ -28,7 +28,7 @@ double number(std::string_view field, const std::string& name, std::size_t line)
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (error != std::errc{} || end != field.data() + field.size() || !std::isfinite(value) ||
       std::abs(value) > kLargest)
-    refuse(name, line, "\"" + std::string(field) + "\" is no usable number; write plain seconds and metres");
+    reject(name, line, "\"" + std::string(field) + "\" is no usable number; write plain seconds and metres");
   return value;
 }
 
@@ -44,12 +44,12 @@ std::vector<double> numbers(std::string_view text, const std::string& name, std:
 
 void append(Motion& motion, const std::vector<double>& row, const std::string& name, std::size_t line) {
   if (!motion.times_s.empty() && row[0] <= motion.times_s.back())
-    refuse(name, line, "the time does not increase; sort the rows and remove repeated times");
+    reject(name, line, "the time does not increase; sort the rows and remove repeated times");
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
   if (row.size() == 8) {
     q = Eigen::Quaterniond(row[4], row[5], row[6], row[7]);
     if (std::abs(q.norm() - 1) > 1e-2)
-      refuse(name, line, "the quaternion is not of unit length; normalise qw,qx,qy,qz");
+      reject(name, line, "the quaternion is not of unit length; normalise qw,qx,qy,qz");
     q.normalize();
     if (!motion.orientations.empty() && motion.orientations.back().dot(q) < 0) q.coeffs() *= -1;
   }
@@ -61,7 +61,7 @@ void append(Motion& motion, const std::vector<double>& row, const std::string& n
 }  // namespace
 
 Motion read_motion(std::istream& in, const std::string& name) {
-  std::array<char, kLongestLine + 1> buffer{};  // with the end of the string
+  std::array<char, kMaxLineLength + 1> buffer{};  // with the end of the string
   std::uintmax_t bytes = 0;
   std::size_t line = 0;
   const auto next = [&](std::string_view& text) {
@@ -70,9 +70,10 @@ Motion read_motion(std::istream& in, const std::string& name) {
     const auto count = static_cast<std::size_t>(in.gcount());
     if (count == 0) return false;
     if (in.fail())
-      refuse(name, line, "it is longer than " + std::to_string(kLongestLine) + " characters; this is no motion");
+      reject(name, line,
+             "it is longer than " + std::to_string(kMaxLineLength) + " characters; name a motion file");
     if ((bytes += count) > kMaxMotionFileBytes)
-      refuse(name, line,
+      reject(name, line,
              "the file is larger than " + std::to_string(kMaxMotionFileBytes >> 20) + " MiB; shorten it");
     text = buffer.data();
     if (text.ends_with('\r')) text.remove_suffix(1);
@@ -82,17 +83,17 @@ Motion read_motion(std::istream& in, const std::string& name) {
   next(text);
   const bool with_pose = text == kHeaderWithPose;
   if (!with_pose && text != kHeader)
-    refuse(name, 1, "the header must be " + std::string(kHeader) + " or " + std::string(kHeaderWithPose));
+    reject(name, 1, "the header must be " + std::string(kHeader) + " or " + std::string(kHeaderWithPose));
   Motion motion;
   const std::size_t columns = with_pose ? 8 : 4;
   while (next(text)) {
     if (text.empty()) continue;
     const auto row = numbers(text, name, line);
     if (row.size() != columns)
-      refuse(name, line, std::to_string(row.size()) + " columns where the header has " + std::to_string(columns));
+      reject(name, line, std::to_string(row.size()) + " columns where the header has " + std::to_string(columns));
     append(motion, row, name, line);
   }
-  if (motion.times_s.empty()) refuse(name, 2, "there is no row; add at least one");
+  if (motion.times_s.empty()) reject(name, 2, "there is no row; add at least one");
   return motion;
 }
 
@@ -101,7 +102,7 @@ Motion read_motion(const std::string& path) {
   const auto kind = std::filesystem::status(path, error).type();
   // Reading a pipe or a device may never end, or never begin.
   if (kind != std::filesystem::file_type::regular && kind != std::filesystem::file_type::not_found)
-    throw std::runtime_error("motion file " + path + " is no regular file that can be read; name a CSV file");
+    throw std::runtime_error("motion file " + path + " is no regular file; name a CSV file");
   std::ifstream in(path);
   if (!in) throw std::runtime_error("motion file " + path + " cannot be read; check the path and its permissions");
   return read_motion(in, path);

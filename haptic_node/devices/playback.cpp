@@ -19,7 +19,7 @@ DeviceState Playback::read(sync::HostTime now) {
   state.orientation =
       i + 1 < orientations_.size() ? orientations_[i].slerp(s, orientations_[i + 1]) : orientations_[i];
   if (last_ && now > last_->first)
-    spin_ = turn_between(last_->second, state.orientation) / sync::to_seconds(now - last_->first);
+    spin_ = rotation_between(last_->second, state.orientation) / sync::to_seconds(now - last_->first);
   if (!last_ || now > last_->first) last_.emplace(now, state.orientation);
   state.spin = spin_;
   return state;

@@ -10,7 +10,7 @@
 namespace tactus::haptic {
 namespace {
 
-DeviceState device_of(const tool_state_t& m) {
+DeviceState device_state_of(const tool_state_t& m) {
   DeviceState d;
   d.position = to_eigen(m.device.position_m);
   d.orientation = to_eigen(m.device.orientation).normalized();
@@ -48,24 +48,24 @@ std::optional<RecordedTick> ToolTrack::tick_of(const tool_state_t& m, sync::Host
   RecordedTick tick;
   tick.published_ns = m.header.publish_time_ns;
   tick.seq = m.header.seq;
-  tick.at = m.header.clock == feed_.clock() ? began(m.header) : arrival;
-  if (tick.at < arrival - kMaxUnderWay || tick.at > arrival + kMaxUnderWay) return std::nullopt;
-  if (m.header.incarnation != incarnation_ && incarnation_ != 0 && arrival - heard_ < kSilence)
+  tick.at = m.header.clock == feed_.clock() ? tick_start(m.header) : arrival;
+  if (tick.at < arrival - kMaxTransit || tick.at > arrival + kMaxTransit) return std::nullopt;
+  if (m.header.incarnation != incarnation_ && incarnation_ != 0 && arrival - last_arrival_ < kSilence)
     return std::nullopt;
   incarnation_ = m.header.incarnation;
-  heard_ = arrival;
-  tick.device = device_of(m);
+  last_arrival_ = arrival;
+  tick.device = device_state_of(m);
   return tick;
 }
 
 // A TOOL_STATE states the simulated instant of the beginning of its tick, by the clock of the touch models.
 // Messages that arrived during the tick were not used in it.
-sync::HostTime ToolTrack::began(const header_t& header) const {
-  const sync::HostTime told = sync::host_time(header.publish_time_ns);
-  const auto map = simulation_.map(told);
-  if (!map || header.sim_time_ns <= 0) return told;
+sync::HostTime ToolTrack::tick_start(const header_t& header) const {
+  const sync::HostTime published = sync::host_time(header.publish_time_ns);
+  const auto map = simulation_.map(published);
+  if (!map || header.sim_time_ns <= 0) return published;
   const sync::HostTime at = map->to_host(sync::sim_time(header.sim_time_ns));
-  return at <= told && told - at <= kLongestTick ? at : told;
+  return at <= published && published - at <= kMaxTickDuration ? at : published;
 }
 
 }  // namespace tactus::haptic

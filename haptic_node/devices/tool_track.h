@@ -24,10 +24,10 @@ class ToolTrack {
   // Another process of the same tool is accepted only after the previous one has been silent for this time.
   static constexpr sync::Nanoseconds kSilence{300'000'000};
   // A TOOL_STATE that arrived at the recorder further than this before or after its publish time is invalid.
-  static constexpr sync::Nanoseconds kMaxUnderWay{1'000'000'000};
+  static constexpr sync::Nanoseconds kMaxTransit{1'000'000'000};
 
   // Maximum duration of a tick: an earlier beginning is not plausible.
-  static constexpr sync::Nanoseconds kLongestTick{1'000'000};
+  static constexpr sync::Nanoseconds kMaxTickDuration{1'000'000};
 
   // Ticks of a sender with another clock than that of the recorder are read by arrival. feed: outlives this.
   explicit ToolTrack(const sync::LogFeed& feed) : feed_(feed) {}
@@ -39,7 +39,7 @@ class ToolTrack {
 
  private:
   std::optional<RecordedTick> tick_of(const tool_state_t& m, sync::HostTime arrival);
-  sync::HostTime began(const header_t& header) const;
+  sync::HostTime tick_start(const header_t& header) const;
 
   sync::OwnClock own() const { return {feed_.run_id(), feed_.clock(), nullptr}; }
 
@@ -48,7 +48,7 @@ class ToolTrack {
   int tool_ = -1;
   sync::SimClockTracker simulation_{own()};
   std::int64_t incarnation_ = 0;
-  sync::HostTime heard_{};  // last arrival of that incarnation
+  sync::HostTime last_arrival_{};  // last arrival of that incarnation
 };
 
 }  // namespace tactus::haptic

@@ -54,7 +54,7 @@ void VirtualHand::advance(const MonotoneCubic::At& to, double dt) {
   haptic::advance({hand_.mass_kg, hand_.damping_N_s_m, hand_.stiffness_N_m}, target_.position, to.position,
                   felt_.force_N, dt, position_, velocity_);
   haptic::advance({hand_.inertia_kg_m2, hand_.turn_damping_N_m_s, hand_.turn_stiffness_N_m},
-                  Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), felt_.torque_N_m, dt, turn_, spin_);
+                  Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), felt_.torque_N_m, dt, rotation_, spin_);
   target_ = to;
 }
 
@@ -78,7 +78,7 @@ DeviceState VirtualHand::read(sync::HostTime now) {
   DeviceState state;
   state.position = position_;
   state.velocity = velocity_;
-  state.orientation = turned_by(turn_, rest_);
+  state.orientation = rotated_by(rotation_, rest_);
   state.spin = spin_;
   return state;
 }

@@ -46,7 +46,7 @@ class VirtualHand : public Device {
   // Rotation from rest_ as a rotation vector: exact for rotations about one axis, accurate enough for those of a
   // wrist.
   Eigen::Quaterniond rest_;
-  Eigen::Vector3d turn_ = Eigen::Vector3d::Zero(), spin_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rotation_ = Eigen::Vector3d::Zero(), spin_ = Eigen::Vector3d::Zero();
   Wrench felt_;
 };
 

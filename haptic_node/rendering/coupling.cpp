@@ -18,7 +18,7 @@ constexpr double kMaxLead = 3;
 constexpr double kUndisturbed_s = 0.004;
 // From this delay on, the delay is a large part of a period of the pressing hand (10 Hz), and the coupling is
 // reduced further. Design.
-constexpr double kLate_s = 0.1;
+constexpr double kLongDelay_s = 0.1;
 // The damping increases with the depth up to this value: 0.1 N per tick at 0.1 m/s, 5 N s/m and 1 kHz. Design.
 constexpr double kSoftDepth_m = 0.0005;
 
@@ -31,45 +31,45 @@ Gains coupling_gains(double surface_stiffness_N_m, double surface_damping_N_s_m,
   const bool fixed = body_mass_kg >= kFixed_kg;
   const double rho = fixed ? 1 : body_mass_kg / (body_mass_kg + limits.device_mass_kg);
   const double reduced_kg = rho * limits.device_mass_kg;
-  const double b = limits.device_damping_N_s_m, most_damping = b / 2;
+  const double b = limits.device_damping_N_s_m, max_damping = b / 2;
   const double of_device = b * rho * rho;
 
   Gains g;
   g.stiffness_N_m =
-      std::min({surface_stiffness_N_m, limits.stiffness_limit_N_m, 2 * (b - most_damping) / period_s});
+      std::min({surface_stiffness_N_m, limits.stiffness_limit_N_m, 2 * (b - max_damping) / period_s});
   // Large damping would drag a light body faster than the loop can measure.
-  double most = most_damping;
+  double damping_limit = max_damping;
   if (!fixed) {
-    most = std::min(most, kMaxLead * limits.mass_factor * body_mass_kg / loop_delay_s);
+    damping_limit = std::min(damping_limit, kMaxLead * limits.mass_factor * body_mass_kg / loop_delay_s);
     g.stiffness_N_m =
         std::min(g.stiffness_N_m, limits.mass_factor * body_mass_kg /
-                                      (squared(loop_delay_s) * (1 + squared(loop_delay_s / kLate_s))));
+                                      (squared(loop_delay_s) * (1 + squared(loop_delay_s / kLongDelay_s))));
     const double disturbed_s = loop_delay_s - kUndisturbed_s;
-    if (disturbed_s > 0) g.stiffness_N_m = std::min(g.stiffness_N_m, most / (2 * kLead * disturbed_s));
+    if (disturbed_s > 0) g.stiffness_N_m = std::min(g.stiffness_N_m, damping_limit / (2 * kLead * disturbed_s));
   }
-  const double critical = (most_damping + of_device) / (2 * limits.damping_ratio);
+  const double critical = (max_damping + of_device) / (2 * limits.damping_ratio);
   g.stiffness_N_m = std::min(g.stiffness_N_m, critical * critical / reduced_kg);
   const double needed = 2 * limits.damping_ratio * std::sqrt(g.stiffness_N_m * reduced_kg) - of_device;
-  most = std::max(most, std::min(most_damping, needed));
+  damping_limit = std::max(damping_limit, std::min(max_damping, needed));
   const double lead = fixed ? 0.0 : kLead * g.stiffness_N_m * loop_delay_s;
-  g.damping_N_s_m = std::clamp(std::max({needed, lead, surface_damping_N_s_m}), 0.0, most);
+  g.damping_N_s_m = std::clamp(std::max({needed, lead, surface_damping_N_s_m}), 0.0, damping_limit);
   return g;
 }
 
-void LoopDelay::pass(double age_s, double dt) {
-  peak_s_ *= std::exp(-dt / kForget_s);
-  const double counted_s = std::clamp(age_s, 0.0, std::min(kLongest_s, 2 * mean_s_ + kShortGap_s));
+void LoopDelay::advance(double age_s, double dt) {
+  peak_s_ *= std::exp(-dt / kPeakDecay_s);
+  const double counted_s = std::clamp(age_s, 0.0, std::min(kMaxAge_s, 2 * mean_s_ + kShortGap_s));
   mean_s_ += (1 - std::exp(-dt / kMean_s)) * (counted_s - mean_s_);
-  held_s_ = std::max(mean_s_, held_s_ * std::exp(-dt / kHold_s));
+  held_s_ = std::max(mean_s_, held_s_ * std::exp(-dt / kHeldDecay_s));
 }
 
-void LoopDelay::relieve(double by_s) {
+void LoopDelay::reduce(double by_s) {
   for (double* s : {&peak_s_, &mean_s_, &held_s_}) *s = std::max(0.0, *s - by_s);
 }
 
-Gains felt_gains(const Surface& s, double factor, double pressed_m) {
+Gains rendered_gains(const Surface& s, double factor, double pressed_m) {
   // Keeps the damping ratio when the stiffness is lowered.
-  const double share = s.moves() ? factor : 1;
+  const double share = s.movable() ? factor : 1;
   return {share * s.coupling_stiffness_N_m,
           std::sqrt(share) * std::min(1.0, pressed_m / kSoftDepth_m) * s.coupling_damping_N_s_m};
 }
@@ -82,7 +82,7 @@ void coupling_forces(std::span<const Surface> surfaces, const Eigen::Vector3d& s
   for (const Surface& s : surfaces) cone_m += s.depth_m * friction(s);
   for (std::size_t i = 0; i < surfaces.size() && i < forces.size(); ++i) {
     const Surface& s = surfaces[i];
-    const auto [K, B] = felt_gains(s, factor, s.depth_m);
+    const auto [K, B] = rendered_gains(s, factor, s.depth_m);
     forces[i].setZero();
     if (s.depth_m <= 0) continue;
     const Eigen::Vector3d relative = device_velocity - s.velocity_at(s.point);
@@ -93,8 +93,8 @@ void coupling_forces(std::span<const Surface> surfaces, const Eigen::Vector3d& s
     const double share = s.depth_m * friction(s) / cone_m;
     Eigen::Vector3d tangential = share * K * shift_m;
     if (!slipping) tangential -= share * B * (relative - normal_speed * s.normal);
-    const double most = friction(s) * normal_force, size = tangential.norm();
-    if (size > most) tangential *= most / size;
+    const double limit = friction(s) * normal_force, size = tangential.norm();
+    if (size > limit) tangential *= limit / size;
     forces[i] += tangential;
   }
 }

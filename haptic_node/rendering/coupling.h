@@ -49,19 +49,20 @@ Gains coupling_gains(double surface_stiffness_N_m, double surface_damping_N_s_m,
 class LoopDelay {
  public:
   // Age of a touch model that is used now, s.
-  void observe(double age_s) { peak_s_ = std::max(peak_s_, std::min(age_s, kLongest_s)); }
+  void observe(double age_s) { peak_s_ = std::max(peak_s_, std::min(age_s, kMaxAge_s)); }
   // Call once per tick with the age of the model in use, s. The peak decays slowly, so that the stiffness does not
   // flicker.
-  void pass(double age_s, double dt);
+  void advance(double age_s, double dt);
   // An intended delay of the models is now shorter by by_s: subtracts it from the estimate at once.
-  void relieve(double by_s);
+  void reduce(double by_s);
   double value_s(double step_s, double period_s) const { return std::max(peak_s_, held_s_) + step_s + period_s; }
 
  private:
-  static constexpr double kForget_s = 1;     // time constant
-  static constexpr double kLongest_s = 0.1;  // the touch model counts as lost beyond this
+  static constexpr double kPeakDecay_s = 1;  // time constant
+  static constexpr double kMaxAge_s = 0.1;   // the touch model counts as lost beyond this
   static constexpr double kMean_s = 0.5;     // time constant of the mean; design: many models at 30 Hz
-  static constexpr double kHold_s = 5;  // time constant of its decay, so that losses do not modulate the stiffness
+  static constexpr double kHeldDecay_s =
+      5;  // time constant of its decay, so that losses do not modulate the stiffness
   static constexpr double kShortGap_s = 0.004;
   double peak_s_ = 0, mean_s_ = 0, held_s_ = 0;
 };
@@ -69,7 +70,7 @@ class LoopDelay {
 // The gains of a surface as rendered. The damping increases with the depth of the tool (after Hunt and Crossley
 // 1975) up to half a millimetre, where it reaches its full value, so the force begins and ends at zero at any
 // speed of the hand. factor: on the stiffness to moving bodies; its square root applies to the damping.
-Gains felt_gains(const Surface& s, double factor, double pressed_m);
+Gains rendered_gains(const Surface& s, double factor, double pressed_m);
 
 // Computes the force of each surface on the hand, N, into `forces`. The normal part never pulls. The tangential
 // part acts along the shift of the proxy and, while it sticks, against the motion over the surface; it stays

@@ -5,7 +5,7 @@
 namespace tactus::haptic {
 
 // True when the binding surfaces differ from those of the last tick; stores the current ones.
-bool ForceCrossfade::changed(std::span<const Surface> surfaces) {
+bool ForceCrossfade::binding_set_changed(std::span<const Surface> surfaces) {
   std::size_t bound = 0;
   bool same = true;
   for (const Surface& s : surfaces) {
@@ -22,20 +22,20 @@ bool ForceCrossfade::changed(std::span<const Surface> surfaces) {
 
 Eigen::Vector3d ForceCrossfade::step(std::span<const Surface> surfaces, const Eigen::Vector3d& force_N, double dt) {
   const bool was_pressed = !last_set_.empty() && !last_.isZero(0);
-  const bool other = changed(surfaces) || renewed_;
-  renewed_ = false;
+  const bool changed = binding_set_changed(surfaces) || restart_pending_;
+  restart_pending_ = false;
   if (last_set_.empty() || !was_pressed || force_N.isZero(0)) {
     remainder_.setZero();
   } else {
-    const double gone = left_s_ > dt ? dt / left_s_ : 1;
-    remainder_ -= gone * remainder_;
-    left_s_ = std::max(0.0, left_s_ - dt);
-    if (other) {
+    const double fraction = remaining_s_ > dt ? dt / remaining_s_ : 1;
+    remainder_ -= fraction * remainder_;
+    remaining_s_ = std::max(0.0, remaining_s_ - dt);
+    if (changed) {
       const Eigen::Vector3d jump = force_N + remainder_ - last_;
       const double size = jump.norm(), at_once = step_N_s_ * dt;
       if (size > at_once) {
         remainder_ -= jump * (1 - at_once / size);
-        left_s_ = time_s_;
+        remaining_s_ = time_s_;
       }
     }
   }

@@ -23,17 +23,17 @@ class ForceCrossfade {
   // yes.
   Eigen::Vector3d step(std::span<const Surface> surfaces, const Eigen::Vector3d& force_N, double dt);
   // Treats the next step as a change of the binding surfaces, because the rendering method has changed.
-  void renew() { renewed_ = true; }
+  void restart() { restart_pending_ = true; }
 
  private:
-  bool changed(std::span<const Surface> surfaces);
+  bool binding_set_changed(std::span<const Surface> surfaces);
 
   double time_s_, step_N_s_;
   std::vector<std::int64_t> last_set_;                   // contacts that bound in the last tick, in list order
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero();       // rendered, N
   Eigen::Vector3d remainder_ = Eigen::Vector3d::Zero();  // remaining part of the force of the old set, N
-  double left_s_ = 0;                                    // time until it is zero
-  bool renewed_ = false;
+  double remaining_s_ = 0;                               // time until it is zero
+  bool restart_pending_ = false;
 };
 
 }  // namespace tactus::haptic

@@ -18,13 +18,13 @@ constexpr double kCalm_s = 2;  // design: spare time required before a better st
 
 Quality::Quality(const Settings& s)
     : ladder_(steps(), sync::from_seconds(kBudget / s.rate_Hz), static_cast<int>(kCalm_s * kMeans_Hz)),
-      together_(std::max(1, static_cast<int>(std::lround(s.rate_Hz / kMeans_Hz)))),
-      held_(s.quality == "auto" ? -1 : std::stoi(s.quality)) {}
+      ticks_per_mean_(std::max(1, static_cast<int>(std::lround(s.rate_Hz / kMeans_Hz)))),
+      fixed_step_(s.quality == "auto" ? -1 : std::stoi(s.quality)) {}
 
 void Quality::add(sync::Nanoseconds used) {
-  if (held_ >= 0) return;
+  if (fixed_step_ >= 0) return;
   used_ += used;
-  if (++ticks_ < together_) return;
+  if (++ticks_ < ticks_per_mean_) return;
   ladder_.add(used_ / ticks_);
   ticks_ = 0;
   used_ = sync::Nanoseconds(0);

@@ -20,16 +20,16 @@ class Quality {
 
   // Call once per tick with its duration.
   void add(sync::Nanoseconds used);
-  int step() const { return held_ < 0 ? ladder_.step() : held_; }
+  int step() const { return fixed_step_ < 0 ? ladder_.step() : fixed_step_; }
   static constexpr int steps() { return static_cast<int>(kPlanes.size()); }
   std::size_t planes() const { return kPlanes[static_cast<std::size_t>(step())]; }
 
  private:
   sync::QualityLadder ladder_;
-  int together_;  // ticks per mean that the ladder receives
+  int ticks_per_mean_;  // ticks per mean that the ladder receives
   int ticks_ = 0;
   sync::Nanoseconds used_{0};
-  int held_;  // step fixed by the setting; -1: chosen from the tick times
+  int fixed_step_;  // step fixed by the setting; -1: chosen from the tick times
 };
 
 }  // namespace tactus::haptic

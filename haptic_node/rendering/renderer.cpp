@@ -14,7 +14,7 @@ namespace tactus::haptic {
 namespace {
 
 // Quantises the magnitude of the force to multiples of `step_N`; 0: returns it unchanged.
-Eigen::Vector3d stepped(const Eigen::Vector3d& force_N, double step_N) {
+Eigen::Vector3d quantised(const Eigen::Vector3d& force_N, double step_N) {
   const double size = force_N.norm();
   if (!(step_N > 0) || !(size > 0)) return force_N;
   return force_N * (std::round(size / step_N) * step_N / size);
@@ -39,21 +39,21 @@ TransientShape transient_shape(const Settings& s) {
           s.transient_soft_frequency_Hz,
           s.transient_hard_frequency_Hz,
           s.transient_decay_1_s,
-          {kLate, sync::from_seconds(s.late_tolerance_s),
+          {kLatePolicy, sync::from_seconds(s.late_tolerance_s),
            sync::from_seconds(std::max(s.late_tolerance_s, s.drop_after_s))}};
 }
 
 // Keeps the largest forces, up to the number that a message holds; the shares of the others go to these.
 void keep_largest(std::span<Eigen::Vector3d> forces) {
-  if (forces.size() <= ContactImpulses::kMaxTold || forces.size() > kMaxHalfSpaces) return;
+  if (forces.size() <= ContactImpulses::kMaxPublished || forces.size() > kMaxHalfSpaces) return;
   std::array<double, kMaxHalfSpaces> sizes;
   for (std::size_t i = 0; i < forces.size(); ++i) sizes[i] = forces[i].squaredNorm();
-  const auto last = sizes.begin() + ContactImpulses::kMaxTold - 1;
+  const auto last = sizes.begin() + ContactImpulses::kMaxPublished - 1;
   std::nth_element(sizes.begin(), last, sizes.begin() + static_cast<std::ptrdiff_t>(forces.size()),
                    std::greater<>());
   std::size_t kept = 0;
   for (Eigen::Vector3d& f : forces)
-    if (f.squaredNorm() < *last || (!f.isZero(0) && ++kept > ContactImpulses::kMaxTold)) f.setZero();
+    if (f.squaredNorm() < *last || (!f.isZero(0) && ++kept > ContactImpulses::kMaxPublished)) f.setZero();
 }
 
 }  // namespace
@@ -67,10 +67,10 @@ Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Saf
       step_s_(static_cast<double>(scene.step_ns) * 1e-9),
       surfaces_(skin_m(scene.tools[static_cast<std::size_t>(tool)]), surface_limits(settings)),
       reliefs_(reliefs_of(settings)),
-      rendering_(scene.tools[static_cast<std::size_t>(tool)], settings),
-      handover_(settings.recovery_time_s, settings.recovery_speed_m_s * settings.stiffness_limit_N_m),
-      torque_handover_(settings.recovery_time_s,
-                       settings.recovery_speed_m_s * settings.stiffness_limit_N_m * rendering_.lever_m()),
+      force_method_(scene.tools[static_cast<std::size_t>(tool)], settings),
+      force_crossfade_(settings.recovery_time_s, settings.recovery_speed_m_s * settings.stiffness_limit_N_m),
+      torque_crossfade_(settings.recovery_time_s,
+                        settings.recovery_speed_m_s * settings.stiffness_limit_N_m * force_method_.lever_m()),
       passivity_(passivity_limits(settings)),
       transients_(transient_shape(settings)),
       safety_(safety),
@@ -80,21 +80,21 @@ Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Saf
   felt_.reserve(kMaxHalfSpaces);
   out_.reports.reserve(256);
   out_.state.tool = tool;
-  out_.state.constraints.reserve(ContactImpulses::kMaxTold);
+  out_.state.constraints.reserve(ContactImpulses::kMaxPublished);
 }
 
 void Renderer::change(const Settings& settings) {
   settings_ = settings;
   transients_.change(transient_shape(settings));
   reliefs_.change(reliefs_of(settings));
-  if (rendering_.change(settings)) {
+  if (force_method_.change(settings)) {
     for (Surface& s : surfaces_.list()) {
       s.grip.setZero();
-      s.owed.setZero();
-      s.slips = false;
+      s.stick_error.setZero();
+      s.slipping = false;
     }
-    handover_.renew();
-    torque_handover_.renew();
+    force_crossfade_.restart();
+    torque_crossfade_.restart();
   }
   passivity_.change(passivity_limits(settings));
 }
@@ -103,7 +103,7 @@ sync::Nanoseconds Renderer::uncertainty() const {
   return sync::from_seconds(period_s_ / 2 + settings_.device_uncertainty_s);
 }
 
-void Renderer::take_device(const TickInput& in) {
+void Renderer::update_device(const TickInput& in) {
   DeviceState device = in.device;
   if (!device.position.allFinite() || !device.velocity.allFinite() || !device.orientation.coeffs().allFinite() ||
       !device.spin.allFinite()) {
@@ -111,23 +111,23 @@ void Renderer::take_device(const TickInput& in) {
     device.velocity.setZero();
     device.spin.setZero();
   }
-  if (!begun_) {
-    begun_ = true;
+  if (!started_) {
+    started_ = true;
     last_ = in.now - sync::from_seconds(period_s_);
     device_ = device;
     device_share_ = device.lost ? 0 : 1;
-    rendering_.reset(device);
+    force_method_.reset(device);
   }
   if (device.lost) {
     device.velocity.setZero();
     device.spin.setZero();
   }
-  moved_ = device.position - device_.position;
-  turned_ = turn_between(device_.orientation, device.orientation);
+  motion_m_ = device.position - device_.position;
+  rotation_rad_ = rotation_between(device_.orientation, device.orientation);
   device_ = device;
 }
 
-void Renderer::take_touch(const TickInput& in, double dt) {
+void Renderer::update_surfaces(const TickInput& in, double dt) {
   // A lost device may return anywhere: touch restarts there.
   const bool away = device_share_ <= 0;
   device_share_ = std::clamp(device_share_ + (device_.lost ? -1 : 1) * dt / settings_.fade_s, 0.0, 1.0);
@@ -135,23 +135,23 @@ void Renderer::take_touch(const TickInput& in, double dt) {
   if (silent) {
     // Surfaces that arrive after the loss are new.
     surfaces_.clear();
-    rendering_.reset(device_);
+    force_method_.reset(device_);
   }
   if (in.fresh) model_time_ = sync::sim_time(in.fresh.header().sim_time_ns);
   const double age_s = model_time_ && in.map ? sync::to_seconds(in.map->to_sim(in.now) - *model_time_) : 0;
   model_age_s_ = age_s;
   // Otherwise the loop delay would contain, for seconds, a delay that the profile has already removed.
   const auto before = std::exchange(touch_delay_, in.touch_delay);
-  if (in.touch_delay < before) loop_delay_.relieve(sync::to_seconds(before - in.touch_delay));
-  loop_delay_.pass(age_s, dt);
+  if (in.touch_delay < before) loop_delay_.reduce(sync::to_seconds(before - in.touch_delay));
+  loop_delay_.advance(age_s, dt);
   if (in.fresh) {
     loop_delay_.observe(age_s);
-    passivity_.hear(in.fresh);
+    passivity_.on_message(in.fresh);
   }
   const auto sim_now = in.map ? std::optional(in.map->to_sim(in.now - in.touch_delay)) : std::nullopt;
-  if (in.fresh) rendering_.renew(device_);
-  surfaces_.turn(rendering_.turned(device_));
-  surfaces_.step(in.fresh, sim_now, rendering_.position(), dt, rendering_.planes(in.planes));
+  if (in.fresh) force_method_.reset_reach(device_);
+  surfaces_.set_orientation(force_method_.tool_orientation(device_));
+  surfaces_.step(in.fresh, sim_now, force_method_.position(), dt, force_method_.planes(in.planes));
 }
 
 Wrench Renderer::constraint_wrench(double dt) {
@@ -165,14 +165,14 @@ Wrench Renderer::constraint_wrench(double dt) {
     s.coupling_damping_N_s_m = g.damping_N_s_m;
   }
   forces_.assign(surfaces_.list().size(), Eigen::Vector3d::Zero());
-  reliefs_.look(surfaces_.list(), rendering_.place(), dt);
-  rendering_.solve(surfaces_.list(), device_, dt);
-  passivity_.observe(rendering_.stored(surfaces_.list()), moved_, turned_, model_age_s_, dt);
-  rendering_.press(surfaces_.list(), device_, passivity_.factor(), forces_);
-  reliefs_.lean(surfaces_.list(), rendering_.place(), forces_);
-  const Wrench sum = rendering_.sum(surfaces_.list(), forces_);
-  return {handover_.step(surfaces_.list(), sum.force_N, dt),
-          torque_handover_.step(surfaces_.list(), sum.torque_N_m, dt)};
+  reliefs_.apply_heights(surfaces_.list(), force_method_.tool_pose(), dt);
+  force_method_.solve(surfaces_.list(), device_, dt);
+  passivity_.observe(force_method_.stored_energy(surfaces_.list()), motion_m_, rotation_rad_, model_age_s_, dt);
+  force_method_.compute_forces(surfaces_.list(), device_, passivity_.factor(), forces_);
+  reliefs_.tilt_forces(surfaces_.list(), force_method_.tool_pose(), forces_);
+  const Wrench sum = force_method_.sum(surfaces_.list(), forces_);
+  return {force_crossfade_.step(surfaces_.list(), sum.force_N, dt),
+          torque_crossfade_.step(surfaces_.list(), sum.torque_N_m, dt)};
 }
 
 Hit Renderer::hit_of(const contact_event_t& e, sync::HostTime scheduled) const {
@@ -189,7 +189,7 @@ Hit Renderer::hit_of(const contact_event_t& e, sync::HostTime scheduled) const {
   return hit;
 }
 
-void Renderer::take_events(const TickInput& in) {
+void Renderer::handle_events(const TickInput& in) {
   if (!in.map) return;
   for (const contact_event_t& e : in.events) {
     if (e.tool != tool_) continue;
@@ -199,22 +199,23 @@ void Renderer::take_events(const TickInput& in) {
           hit_of(e, happened + sync::from_seconds(settings_.presentation_delay_s) + in.transient_delay),
           out_.reports);
     if (e.kind == contact_event_t::BEGIN)
-      owed_.add(e.event_id, e.contact_id, happened, in.now, surfaces_.find(e.contact_id) != nullptr, out_.reports);
+      pending_onsets_.add(e.event_id, e.contact_id, happened, in.now, surfaces_.find(e.contact_id) != nullptr,
+                          out_.reports);
   }
 }
 
 // Splits the constraint force that remains after all limits over the surfaces, so that the bodies feel exactly the
 // force that the hand feels.
-void Renderer::split(const Wrench& felt_constraint) {
+void Renderer::distribute(const Wrench& felt_constraint) {
   const auto list = surfaces_.list();
   const bool any = std::any_of(forces_.begin(), forces_.end(), [](const auto& f) { return f.norm() > 0; });
   felt_.clear();
   if (!any) return;
   keep_largest(forces_);
-  rendering_.share(felt_constraint, list, forces_);
+  force_method_.distribute(felt_constraint, list, forces_);
   for (std::size_t i = 0; i < list.size(); ++i) {
     felt_.push_back({list[i].contact_id, list[i].body, Eigen::Vector3d::Zero(), forces_[i]});
-    if (!forces_[i].isZero(0)) felt_.back().point = rendering_.place().touched(list[i]);
+    if (!forces_[i].isZero(0)) felt_.back().point = force_method_.tool_pose().contact_point(list[i]);
   }
 }
 
@@ -232,12 +233,12 @@ void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_
   m.header.sim_time_ns = in.map ? std::max<std::int64_t>(0, sync::to_ns(in.map->to_sim(in.now))) : -1;
   m.device.position_m = to_vec3(device_.position);
   m.device.orientation = to_quat(device_.orientation);
-  m.proxy.orientation = to_quat(rendering_.orientation());
-  m.proxy.position_m = to_vec3(rendering_.position());
+  m.proxy.orientation = to_quat(force_method_.orientation());
+  m.proxy.position_m = to_vec3(force_method_.position());
   m.device_velocity_m_s = to_vec3f(device_.velocity);
-  m.proxy_velocity_m_s = to_vec3f(rendering_.velocity());
+  m.proxy_velocity_m_s = to_vec3f(force_method_.velocity());
   m.device_spin_rad_s = to_vec3f(device_.spin);
-  m.proxy_spin_rad_s = to_vec3f(rendering_.spin());
+  m.proxy_spin_rad_s = to_vec3f(force_method_.spin());
   m.force_N = to_vec3f(out_.force_N);
   m.torque_N_m = to_vec3f(out_.torque_N_m);
   m.transient_N = to_vec3f(transient_N);
@@ -245,37 +246,38 @@ void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_
   m.generated_J = static_cast<float>(passivity_.generated_J());
   m.coupling = static_cast<float>(passivity_.factor());
   m.touch_how = static_cast<std::int8_t>(status(in));
-  m.fade = static_cast<float>(share());
+  m.fade = static_cast<float>(force_scale());
   m.buttons = device_.buttons;
-  book_.tell(in.now, m.constraints);
+  impulses_.write_constraints(in.now, m.constraints);
   m.constraint_count = static_cast<std::int32_t>(m.constraints.size());
 }
 
 TickOutput& Renderer::step(const TickInput& in) {
   out_.reports.clear();
-  take_device(in);
+  update_device(in);
   // Beyond the watchdog time no force was applied.
   const double dt = sync::to_seconds(std::clamp(in.now - last_, sync::Nanoseconds(1000), Device::kWatchdog));
   safety_.begin_tick(in.now);
   last_ = in.now;
 
-  take_touch(in, dt);
-  take_events(in);
+  update_surfaces(in, dt);
+  handle_events(in);
   const Wrench constraint = constraint_wrench(dt);
-  const bool felt = share() > 0;
+  const bool felt = force_scale() > 0;
   const Eigen::Vector3d transient = transients_.step(in.now, period_s_, felt, uncertainty(), out_.reports);
-  const Eigen::Vector3d wanted = stepped(share() * (constraint.force_N + transient), in.force_step_N);
-  if (!device_.lost) safety_.at(device_.position);
-  const Wrench limited = safety_.limit(Wrench{wanted, share() * constraint.torque_N_m}, moved_, turned_, dt);
+  const Eigen::Vector3d wanted = quantised(force_scale() * (constraint.force_N + transient), in.force_step_N);
+  if (!device_.lost) safety_.set_position(device_.position);
+  const Wrench limited =
+      safety_.limit(Wrench{wanted, force_scale() * constraint.torque_N_m}, motion_m_, rotation_rad_, dt);
   out_.force_N = limited.force_N;
   out_.torque_N_m = limited.torque_N_m;
   // The limits reduce the transient in proportion.
   const double left = wanted.norm() > 0 ? std::min(1.0, out_.force_N.norm() / wanted.norm()) : 0.0;
-  const Eigen::Vector3d felt_transient = left * share() * transient;
-  split({out_.force_N - felt_transient, out_.torque_N_m});
-  book_.step(in.now, dt, felt_);
-  passivity_.note(felt_, surfaces_.list(), rendering_.turns() ? &rendering_.position() : nullptr);
-  owed_.step(in.now, book_, uncertainty(), out_.reports);
+  const Eigen::Vector3d felt_transient = left * force_scale() * transient;
+  distribute({out_.force_N - felt_transient, out_.torque_N_m});
+  impulses_.step(in.now, dt, felt_);
+  passivity_.record(felt_, surfaces_.list(), force_method_.renders_torque() ? &force_method_.position() : nullptr);
+  pending_onsets_.step(in.now, impulses_, uncertainty(), out_.reports);
   fill_state(in, felt_transient);
   return out_;
 }

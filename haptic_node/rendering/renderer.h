@@ -11,18 +11,18 @@
 #include <vector>
 
 #include "haptic_node/contact/contact_impulses.h"
-#include "haptic_node/rendering/coupling.h"
-#include "haptic_node/devices/device.h"
-#include "haptic_node/rendering/force_crossfade.h"
 #include "haptic_node/contact/pending_onsets.h"
-#include "haptic_node/safety/passivity.h"
 #include "haptic_node/contact/reliefs.h"
-#include "haptic_node/rendering/rendering.h"
-#include "haptic_node/safety/safety.h"
-#include "haptic_node/settings.gen.h"
 #include "haptic_node/contact/surfaces.h"
 #include "haptic_node/contact/touch_model_view.h"
+#include "haptic_node/devices/device.h"
+#include "haptic_node/rendering/coupling.h"
+#include "haptic_node/rendering/force_crossfade.h"
+#include "haptic_node/rendering/force_method.h"
 #include "haptic_node/rendering/transient.h"
+#include "haptic_node/safety/passivity.h"
+#include "haptic_node/safety/safety.h"
+#include "haptic_node/settings.gen.h"
 #include "sync/resampling/sample_status.h"
 #include "sync/time/time.h"
 
@@ -79,13 +79,13 @@ class Renderer {
 
  private:
   // Factor on the wanted force: below 1 while the touch model or the device is lost or has just returned.
-  double share() const { return fade_.value() * device_share_; }
-  void take_device(const TickInput& in);
-  void take_touch(const TickInput& in, double dt);
-  void take_events(const TickInput& in);
+  double force_scale() const { return fade_.value() * device_share_; }
+  void update_device(const TickInput& in);
+  void update_surfaces(const TickInput& in, double dt);
+  void handle_events(const TickInput& in);
   Hit hit_of(const contact_event_t& e, sync::HostTime scheduled) const;
   Wrench constraint_wrench(double dt);
-  void split(const Wrench& felt_constraint);
+  void distribute(const Wrench& felt_constraint);
   void fill_state(const TickInput& in, const Eigen::Vector3d& transient_N);
   sync::SampleStatus status(const TickInput& in) const;
   sync::Nanoseconds uncertainty() const;
@@ -99,27 +99,27 @@ class Renderer {
 
   Surfaces surfaces_;
   Reliefs reliefs_;
-  Rendering rendering_;
-  ForceCrossfade handover_, torque_handover_;
+  ForceMethod force_method_;
+  ForceCrossfade force_crossfade_, torque_crossfade_;
   LoopDelay loop_delay_;
   sync::Nanoseconds touch_delay_{0};  // of the previous tick
   Passivity passivity_;
   Transients transients_;
   Safety& safety_;
   Fade fade_;
-  ContactImpulses book_;
-  PendingOnsets owed_;
+  ContactImpulses impulses_;
+  PendingOnsets pending_onsets_;
 
-  bool begun_ = false;
+  bool started_ = false;
   sync::HostTime last_{};
   DeviceState device_;
   double device_share_ = 1;
   // motion of the device since the last tick
-  Eigen::Vector3d moved_ = Eigen::Vector3d::Zero(), turned_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d motion_m_ = Eigen::Vector3d::Zero(), rotation_rad_ = Eigen::Vector3d::Zero();
   std::optional<sync::SimTime> model_time_;
   double model_age_s_ = 0;
   std::vector<Eigen::Vector3d> forces_;  // of each surface, before the limits
-  std::vector<FeltForce> felt_;          // of each surface, as commanded
+  std::vector<ContactForce> felt_;       // of each surface, as commanded
   TickOutput out_;
 };
 

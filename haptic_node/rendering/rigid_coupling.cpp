@@ -7,25 +7,25 @@
 namespace tactus::haptic {
 namespace {
 
-constexpr double kAnyStiffness = 1e12, kFixed_kg = 1e10;
+constexpr double kRigid_N_m = 1e12, kFixed_kg = 1e10;
 
-Eigen::Vector3d flat(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) {
+Eigen::Vector3d tangential(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) {
   return v - v.dot(normal) * normal;
 }
 
-Eigen::Vector3d within(const Eigen::Vector3d& v, double most) {
+Eigen::Vector3d clamped(const Eigen::Vector3d& v, double max_norm) {
   const double size = v.norm();
-  return size > most ? Eigen::Vector3d(v * (most / size)) : v;
+  return size > max_norm ? Eigen::Vector3d(v * (max_norm / size)) : v;
 }
 
 // Velocity of the tool of the device over a surface at the contact point, m/s.
-Eigen::Vector3d past(const Surface& s, const DeviceState& device, const Eigen::Vector3d& arm) {
+Eigen::Vector3d relative_velocity(const Surface& s, const DeviceState& device, const Eigen::Vector3d& arm) {
   return device.velocity + device.spin.cross(arm) - s.velocity_at(s.point);
 }
 
 // normal, moment / lever|^2: a contact off the centre is less stiff in translation by this factor; the rest is
 // rotation.
-double off_centre(const Surface& s, const Eigen::Vector3d& arm, double lever_m) {
+double off_centre_factor(const Surface& s, const Eigen::Vector3d& arm, double lever_m) {
   return 1 + (arm.cross(s.normal) / lever_m).squaredNorm();
 }
 
@@ -38,7 +38,7 @@ double coupling_lever_m(const Settings& s) {
   const CouplingLimits turning{s.turn_stiffness_limit_Nm_rad, s.mass_factor, s.damping_ratio,
                                s.device_inertia_kgm2, s.device_turn_damping_Nms_rad};
   const auto stiffest = [&](const CouplingLimits& limits) {
-    return coupling_gains(kAnyStiffness, 0, kFixed_kg, period_s, period_s, limits).stiffness_N_m;
+    return coupling_gains(kRigid_N_m, 0, kFixed_kg, period_s, period_s, limits).stiffness_N_m;
   };
   return std::sqrt(stiffest(turning) / stiffest(moving));
 }
@@ -55,15 +55,16 @@ void rigid_forces(std::span<const Surface> surfaces, const RigidProxy& proxy, co
     forces[i].setZero();
     if (s.depth_m <= 0) continue;
     const Eigen::Vector3d arm = proxy.arm(s);
-    const Eigen::Vector3d over = flat(past(s, device, arm), s.normal);
+    const Eigen::Vector3d slip_velocity = tangential(relative_velocity(s, device, arm), s.normal);
     const double share = s.depth_m / pressed;
     if (!proxy.feasible())
-      rate[i] = -share * past(s, device, arm).dot(s.normal) / off_centre(s, arm, proxy.lever_m());
-    const auto [K, B] = felt_gains(s, factor, pressed);
+      rate[i] =
+          -share * relative_velocity(s, device, arm).dot(s.normal) / off_centre_factor(s, arm, proxy.lever_m());
+    const auto [K, B] = rendered_gains(s, factor, pressed);
     const double normal = std::max(0.0, K * s.depth_m + B * rate[i]);
     Eigen::Vector3d along = K * s.grip;
-    if (!s.slips) along -= share * B / off_centre(s, arm, proxy.lever_m()) * over;
-    forces[i] = normal * s.normal + within(along, normal * (s.slips ? s.friction_dynamic : s.friction_static));
+    if (!s.slipping) along -= share * B / off_centre_factor(s, arm, proxy.lever_m()) * slip_velocity;
+    forces[i] = normal * s.normal + clamped(along, normal * (s.slipping ? s.friction_dynamic : s.friction_static));
   }
 }
 
@@ -76,16 +77,16 @@ void direct_forces(std::span<const Surface> surfaces, const DeviceState& device,
     forces[i].setZero();
     if (s.depth_m <= 0) continue;
     const Eigen::Vector3d arm = device.orientation * s.tool_point - tool_radius_m * s.normal;
-    const Eigen::Vector3d speed = past(s, device, arm);
-    const auto [K, B] = felt_gains(s, factor, pressed);
-    const double damping = s.depth_m / pressed * B / off_centre(s, arm, lever_m);
+    const Eigen::Vector3d speed = relative_velocity(s, device, arm);
+    const auto [K, B] = rendered_gains(s, factor, pressed);
+    const double damping = s.depth_m / pressed * B / off_centre_factor(s, arm, lever_m);
     const double normal = std::max(0.0, K * s.depth_m - damping * speed.dot(s.normal));
-    forces[i] = normal * s.normal + within(-damping * flat(speed, s.normal), normal * s.friction_dynamic);
+    forces[i] = normal * s.normal + clamped(-damping * tangential(speed, s.normal), normal * s.friction_dynamic);
   }
 }
 
 void share_wrench(const Wrench& felt, std::span<const Eigen::Vector3d> arms, std::span<Eigen::Vector3d> forces,
-                  double most_N) {
+                  double max_couple_N) {
   double sizes = 0, lever_m = 0;
   for (const Eigen::Vector3d& f : forces) sizes += f.norm();
   if (!(sizes > 0)) return;
@@ -100,26 +101,26 @@ void share_wrench(const Wrench& felt, std::span<const Eigen::Vector3d> arms, std
     torque -= arms[i].cross(forces[i]);
   }
   torque -= middle.cross(force);
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < forces.size(); ++i) {
     const Eigen::Vector3d r = arms[i] - middle;
-    spread += forces[i].norm() / sizes * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
+    inertia += forces[i].norm() / sizes * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
   }
   // No torque is possible about an axis on which all contact points lie.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(inertia);
+  Eigen::Vector3d couple = Eigen::Vector3d::Zero();
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3d axis = axes.eigenvectors().col(k);
     if (axes.eigenvalues()[k] > 1e-6 * lever_m * lever_m)
-      turn += axis * (axis.dot(torque) / axes.eigenvalues()[k]);
+      couple += axis * (axis.dot(torque) / axes.eigenvalues()[k]);
   }
   double largest_N = 0;
   for (std::size_t i = 0; i < forces.size(); ++i)
-    largest_N = std::max(largest_N, forces[i].norm() / sizes * turn.cross(arms[i] - middle).norm());
-  if (largest_N > most_N) turn *= most_N / largest_N;
+    largest_N = std::max(largest_N, forces[i].norm() / sizes * couple.cross(arms[i] - middle).norm());
+  if (largest_N > max_couple_N) couple *= max_couple_N / largest_N;
   for (std::size_t i = 0; i < forces.size(); ++i) {
     const double weight = forces[i].norm() / sizes;
-    forces[i] += weight * (force + turn.cross(arms[i] - middle));
+    forces[i] += weight * (force + couple.cross(arms[i] - middle));
   }
 }
 

@@ -30,6 +30,6 @@ void direct_forces(std::span<const Surface> surfaces, const DeviceState& device,
 // force is exact. The torque is exact as far as the contact points allow without force couples larger than most_N;
 // points that lie almost on a line would need larger ones.
 void share_wrench(const Wrench& felt, std::span<const Eigen::Vector3d> arms, std::span<Eigen::Vector3d> forces,
-                  double most_N);
+                  double max_couple_N);
 
 }  // namespace tactus::haptic

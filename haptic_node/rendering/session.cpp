@@ -13,20 +13,20 @@ namespace {
 
 // Maximum time from a simulation step to the tick that uses its touch model: a few steps and ticks. A larger value
 // means a wrong clock.
-constexpr sync::Nanoseconds kLongestWay{10'000'000};
+constexpr sync::Nanoseconds kMaxModelDelay{10'000'000};
 
 }  // namespace
 
-std::unique_ptr<Device> device_of(const scene_t& scene, const NodeConfig& choice, const DeviceSpec* given) {
-  const tool_def_t& tool = scene.tools[static_cast<std::size_t>(choice.tool)];
+std::unique_ptr<Device> make_tool_device(const scene_t& scene, const NodeConfig& config, const DeviceSpec* given) {
+  const tool_def_t& tool = scene.tools[static_cast<std::size_t>(config.tool)];
   const auto& body = scene.bodies[static_cast<std::size_t>(tool.body)];
   const DeviceSpec spec = given ? *given : tool.device.empty() ? DeviceSpec{} : parse_device_spec(tool.device);
-  return make_device(spec, tool, to_eigen(body.pose.position_m), choice.settings,
+  return make_device(spec, tool, to_eigen(body.pose.position_m), config.settings,
                      to_eigen(body.pose.orientation).normalized());
 }
 
-Session::Session(const scene_t& scene, const NodeConfig& choice, std::unique_ptr<Device> device, sync::OwnClock own,
-                 Safety& safety)
+Session::Session(const scene_t& scene, const NodeConfig& config, std::unique_ptr<Device> device,
+                 sync::OwnClock own, Safety& safety)
     : device_(std::move(device)),
       safety_(safety),
       renderer_(scene, choice.tool, choice.settings, safety),
@@ -39,25 +39,24 @@ void Session::change(const Settings& settings) {
   renderer_.change(settings);
 }
 
-// The path of the device begins with the world: at the instant of the first touch model, to which simulated time
-// gives the same place in every run. One that is held back on purpose is not seen yet; then it is the arrival that
-// counts.
-void Session::begin_path(sync::HostTime now, const TouchModelView& fresh, const Degraded& degraded) {
-  if (!since_) since_ = now;
-  const bool arrived = degraded.touch_arrival && *degraded.touch_arrival >= *since_;
-  if (path_begun_ || (!fresh && !arrived)) return;
-  path_begun_ = true;
+// The path of the device begins at the simulated instant of the first touch model, so that it is equal in every
+// run. With an intended delay that model is not available yet; the path then begins at its arrival.
+void Session::start_path(sync::HostTime now, const TouchModelView& fresh, const Degraded& degraded) {
+  if (!first_tick_) first_tick_ = now;
+  const bool arrived = degraded.touch_arrival && *degraded.touch_arrival >= *first_tick_;
+  if (path_started_ || (!fresh && !arrived)) return;
+  path_started_ = true;
   const auto map = touch_.map(now);
   const sync::HostTime at = fresh && map ? map->to_host(sync::sim_time(fresh.header().sim_time_ns)) : now;
-  device_->begin(std::clamp(at, now - kLongestWay, now));
+  device_->begin(std::clamp(at, now - kMaxModelDelay, now));
 }
 
 TickOutput& Session::step(sync::HostTime now, const Degraded& degraded, std::size_t planes) {
   TickInput in;
   in.now = now;
-  if (!over_) {
-    in.fresh = touch_.take();
-    begin_path(now, in.fresh, degraded);
+  if (!ended_) {
+    in.fresh = touch_.pop();
+    start_path(now, in.fresh, degraded);
     // An intended gap is not a loss.
     in.touch_arrival = touch_.arrival();
     if (in.touch_arrival && degraded.touch_arrival)

@@ -29,17 +29,18 @@ struct Degraded {
 
 // Makes the device of the selected tool. given: from the command line; null: the device of the scene. It may read
 // a file, so do not call it in a loop. Throws std::runtime_error with one sentence when there is no such device.
-std::unique_ptr<Device> device_of(const scene_t& scene, const NodeConfig& choice, const DeviceSpec* given = nullptr);
+std::unique_ptr<Device> make_tool_device(const scene_t& scene, const NodeConfig& config,
+                                         const DeviceSpec* given = nullptr);
 
 class Session {
  public:
-  // choice.tool must be a tool of the scene. safety: belongs to the process and outlives this; it takes the limits
-  // of this scene.
-  Session(const scene_t& scene, const NodeConfig& choice, std::unique_ptr<Device> device, sync::OwnClock own,
+  // config.tool must be a tool of the scene. safety: belongs to the process and outlives this; it receives the
+  // limits of this scene.
+  Session(const scene_t& scene, const NodeConfig& config, std::unique_ptr<Device> device, sync::OwnClock own,
           Safety& safety);
 
   void push(touch_model_t page, sync::HostTime arrival) {
-    if (!over_) touch_.push(std::move(page), arrival);
+    if (!ended_) touch_.push(std::move(page), arrival);
   }
   // Events that are due, each once. They are rendered in the next tick that has a map of the time.
   void push(const std::vector<contact_event_t>& due) {
@@ -52,25 +53,25 @@ class Session {
   // The maps of this scene, once they are loaded; until then its surfaces are smooth.
   void set_maps(std::shared_ptr<const SurfaceMaps> maps) { renderer_.set_maps(std::move(maps)); }
 
-  void push(const device_state_t& state, sync::HostTime arrival) { device_->hear(state, arrival); }
-  void push(const device_force_t& others, sync::HostTime arrival) { device_->hear(others, arrival); }
+  void push(const device_state_t& state, sync::HostTime arrival) { device_->on_message(state, arrival); }
+  void push(const device_force_t& others, sync::HostTime arrival) { device_->on_message(others, arrival); }
   // After a step: the message for the program that drives the device; null: none.
-  device_force_t* tell() { return device_->tell(); }
+  device_force_t* force_message() { return device_->force_message(); }
 
   // Call once per tick: reads the device, renders and commands the device. planes: number of planes to consider.
   // The output is valid, and may be stamped, until the next call.
   TickOutput& step(sync::HostTime now, const Degraded& degraded = {}, std::size_t planes = Surfaces::kMaxPresent);
 
   // Ends the scene: later messages are ignored, and the force goes to zero as fast as the limits allow.
-  void let_go() { over_ = true; }
-  bool over() const { return over_; }
+  void end() { ended_ = true; }
+  bool ended() const { return ended_; }
 
-  bool heard() const { return touch_.arrival().has_value(); }  // a touch model has arrived
+  bool has_touch_model() const { return touch_.arrival().has_value(); }  // a touch model has arrived
   bool lost() const { return renderer_.lost(); }
   bool device_lost() const { return renderer_.device_lost(); }
 
  private:
-  void begin_path(sync::HostTime now, const TouchModelView& fresh, const Degraded& degraded);
+  void start_path(sync::HostTime now, const TouchModelView& fresh, const Degraded& degraded);
 
   std::unique_ptr<Device> device_;
   Safety& safety_;

@@ -41,21 +41,21 @@ double transient_amplitude_N(const Hit& hit, const TransientShape& shape) {
 }
 
 void Transients::schedule(const Hit& hit, std::vector<presentation_t>& reports) {
-  if (waiting_.size() < kMaxWaiting)
-    waiting_.push_back(hit);
+  if (pending_.size() < kMaxPending)
+    pending_.push_back(hit);
   else
     reports.push_back(report_of(hit, -1, sync::Nanoseconds(0), presentation_t::DROPPED_LATE));
 }
 
 void Transients::begin(const Hit& hit, sync::HostTime now) {
-  if (sounding_.size() >= kMaxSounding) sounding_.erase(sounding_.begin());  // the oldest has decayed most
-  sounding_.push_back({hit.direction, transient_amplitude_N(hit, shape_),
-                       transient_frequency_Hz(hit.youngs_modulus_Pa, shape_), now});
+  if (active_.size() >= kMaxActive) active_.erase(active_.begin());  // the oldest has decayed most
+  active_.push_back({hit.direction, transient_amplitude_N(hit, shape_),
+                     transient_frequency_Hz(hit.youngs_modulus_Pa, shape_), now});
 }
 
 Eigen::Vector3d Transients::step(sync::HostTime now, double dt, bool felt, sync::Nanoseconds uncertainty,
                                  std::vector<presentation_t>& reports) {
-  std::erase_if(waiting_, [&](const Hit& hit) {
+  std::erase_if(pending_, [&](const Hit& hit) {
     if (hit.scheduled > now) return false;
     const std::int8_t outcome = shape_.late.outcome(now - hit.scheduled);
     if (!felt || outcome == presentation_t::DROPPED_LATE) {
@@ -67,7 +67,7 @@ Eigen::Vector3d Transients::step(sync::HostTime now, double dt, bool felt, sync:
     return true;
   });
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  std::erase_if(sounding_, [&](const Ringing& r) {
+  std::erase_if(active_, [&](const ActiveTransient& r) {
     const double t = sync::to_seconds(now - r.start) + dt / 2;
     const double envelope = r.amplitude_N * std::exp(-shape_.decay_1_s * t);
     if (envelope < kSilent_N) return true;

@@ -22,7 +22,7 @@ struct TransientShape {
   double soft_frequency_Hz = 30;
   double hard_frequency_Hz = 300;
   double decay_1_s = 80;
-  sync::LatePolicy late{kLate, sync::Nanoseconds(7'500'000), sync::Nanoseconds(15'000'000)};
+  sync::LatePolicy late{kLatePolicy, sync::Nanoseconds(7'500'000), sync::Nanoseconds(15'000'000)};
 };
 
 struct Hit {
@@ -40,11 +40,11 @@ double transient_amplitude_N(const Hit& hit, const TransientShape& shape);
 
 class Transients {
  public:
-  static constexpr std::size_t kMaxWaiting = 64, kMaxSounding = 16;
+  static constexpr std::size_t kMaxPending = 64, kMaxActive = 16;
 
   explicit Transients(const TransientShape& shape) : shape_(shape) {
-    waiting_.reserve(kMaxWaiting);
-    sounding_.reserve(kMaxSounding);
+    pending_.reserve(kMaxPending);
+    active_.reserve(kMaxActive);
   }
 
   // Applies to transients that begin from now on.
@@ -58,7 +58,7 @@ class Transients {
                        std::vector<presentation_t>& reports);
 
  private:
-  struct Ringing {
+  struct ActiveTransient {
     Eigen::Vector3d direction;
     double amplitude_N, frequency_Hz;
     sync::HostTime start;
@@ -66,8 +66,8 @@ class Transients {
   void begin(const Hit& hit, sync::HostTime now);
 
   TransientShape shape_;
-  std::vector<Hit> waiting_;
-  std::vector<Ringing> sounding_;
+  std::vector<Hit> pending_;
+  std::vector<ActiveTransient> active_;
 };
 
 }  // namespace tactus::haptic

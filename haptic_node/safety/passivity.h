@@ -34,7 +34,7 @@ struct PassivityLimits {
 };
 
 // Energy in the springs of the coupling to moving bodies, at full stiffness.
-struct Stored {
+struct StoredEnergy {
   double energy_J = 0;
   bool pressed = false;  // true when any of them is pressed
 };
@@ -42,55 +42,54 @@ struct Stored {
 class Passivity {
  public:
   explicit Passivity(const PassivityLimits& limits) : limits_(limits) {
-    books_.reserve(ContactImpulses::kMaxContacts);
+    ledgers_.reserve(ContactImpulses::kMaxContacts);
   }
 
   void change(const PassivityLimits& limits) { limits_ = limits; }
 
-  // What the simulation did and how the bodies move, from a touch model that has just arrived. Numbers that are
-  // not finite are ignored.
-  void hear(const TouchModelView& fresh);
-  // One tick, once the coupling knows how far it is stretched. moved_m, turned_rad: how far the device moved and
-  // turned under the forces that were noted last; age_s: of the touch model in use. Realtime-safe: yes.
-  void observe(const Stored& coupling, const Eigen::Vector3d& moved_m, const Eigen::Vector3d& turned_rad,
+  // Stores the energy and the motion of the bodies from a new touch model. Ignores numbers that are not finite.
+  void on_message(const TouchModelView& fresh);
+  // One tick, after the depths are solved. moved_m, turned_rad: translation and rotation of the device under the
+  // forces that were recorded last; age_s: of the touch model in use. Realtime-safe: yes.
+  void observe(const StoredEnergy& coupling, const Eigen::Vector3d& moved_m, const Eigen::Vector3d& turned_rad,
                double age_s, double dt);
   // Stores the forces on the hand that act from now on, of these surfaces. about_m: the reference point of the
   // rendered torque; null: no torque is rendered. Realtime-safe: yes.
-  void note(std::span<const FeltForce> forces, std::span<const Surface> surfaces,
-            const Eigen::Vector3d* about_m = nullptr);
+  void record(std::span<const ContactForce> forces, std::span<const Surface> surfaces,
+              const Eigen::Vector3d* about_m = nullptr);
 
   // Factor on the stiffness of the coupling to moving bodies, 0 .. 1.
   double factor() const { return factor_; }
-  // Energy that the channel has generated since the contact episode began, J. Within 0 .. kMaxTold_J, the range of
-  // the message, even if the simulation reports invalid values.
-  double generated_J() const { return std::clamp(-credit_J_, 0.0, kMaxTold_J); }
+  // Energy that the channel has generated since the contact episode began, J. Within 0 .. kMaxReported_J, the
+  // range of the message, even if the simulation reports invalid values.
+  double generated_J() const { return std::clamp(-credit_J_, 0.0, kMaxReported_J); }
 
  private:
-  void hear(const touch_applied_t& book, const TouchModelView& fresh);
-  static constexpr double kMaxTold_J = 1e6;
-  struct Book {
+  void on_message(const touch_applied_t& applied, const TouchModelView& fresh);
+  static constexpr double kMaxReported_J = 1e6;
+  struct EnergyLedger {
     std::int64_t contact_id = 0;
     Eigen::Vector3d force_N = Eigen::Vector3d::Zero();     // on the body, now
     Eigen::Vector3d torque_N_m = Eigen::Vector3d::Zero();  // reaction to the rendered torque of this contact
-    PendingEnergyEstimator unseen;
-    // energy_J: as reported; before_J: the part from before the episode or before the first report
-    double energy_J = 0, before_J = 0;
+    PendingEnergyEstimator pending;
+    // energy_J: as reported; baseline_J: the part from before the episode or before the first report
+    double energy_J = 0, baseline_J = 0;
     double idle_s = 0;  // time without a force
-    bool told = false;
+    bool reported = false;
   };
-  Book* find(std::int64_t contact_id);
-  Book& add(std::int64_t contact_id);
-  void forget_the_idle();
+  EnergyLedger* find(std::int64_t contact_id);
+  EnergyLedger& add(std::int64_t contact_id);
+  void remove_idle();
   void begin_episode();
 
   PassivityLimits limits_;
-  std::vector<Book> books_;
+  std::vector<EnergyLedger> ledgers_;
   double hand_J_ = 0;     // given to the hand in this episode
-  double settled_J_ = 0;  // given in this episode to bodies whose entries are closed
-  double wasted_J_ = 0;   // credit beyond the maximum, minus the refill of the allowance
+  double closed_J_ = 0;   // given in this episode to bodies whose entries are closed
+  double discarded_J_ = 0;  // credit beyond the maximum, minus the refill of the allowance
   double credit_J_ = 0;
   double factor_ = 1;
-  double apart_s_ = 0;  // time since the last contact
+  double no_contact_s_ = 0;  // time since the last contact
 };
 
 }  // namespace tactus::haptic

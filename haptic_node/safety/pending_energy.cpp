@@ -10,39 +10,40 @@ namespace {
 constexpr double kPush_s = 0.00099;
 // Time constant of the holding-force estimate: it does not average several models at 30 Hz, and does not follow
 // the noise of one step.
-constexpr double kHeld_s = 0.02;
+constexpr double kHoldingFilter_s = 0.02;
 // Time for which the holding force is assumed to persist; after it the body counts as free. Longer than a period
 // of 30 Hz, shorter than the 50 ms after which a touch model is lost.
-constexpr double kTrust_s = 0.04;
+constexpr double kHoldingTime_s = 0.04;
 
 }  // namespace
 
-void PendingEnergyEstimator::tell(const Told& told, double most_N) {
-  if (told_.sim_ns >= 0 && told.sim_ns > told_.sim_ns) {
+void PendingEnergyEstimator::on_report(const BodyReport& report, double max_force_N) {
+  if (report_.sim_ns >= 0 && report.sim_ns > report_.sim_ns) {
     // Newton: the change of momentum minus the push is the impulse of other bodies.
-    const double dt = 1e-9 * static_cast<double>(told.sim_ns - told_.sim_ns);
-    const double others_N_s =
-        told.normal.dot(told.mass_kg * (told.velocity - told_.velocity) - (told.impulse_N_s - told_.impulse_N_s));
-    held_N_ += (1 - std::exp(-dt / kHeld_s)) * (std::clamp(others_N_s / dt, -most_N, most_N) - held_N_);
+    const double dt = 1e-9 * static_cast<double>(report.sim_ns - report_.sim_ns);
+    const double others_N_s = report.normal.dot(report.mass_kg * (report.velocity - report_.velocity) -
+                                                (report.impulse_N_s - report_.impulse_N_s));
+    holding_N_ += (1 - std::exp(-dt / kHoldingFilter_s)) *
+                  (std::clamp(others_N_s / dt, -max_force_N, max_force_N) - holding_N_);
   }
-  told_ = told;
+  report_ = report;
   fresh_ = true;
 }
 
-void PendingEnergyEstimator::tell(const Eigen::Vector3d& impulse_N_s) {
-  told_.impulse_N_s = impulse_N_s;
+void PendingEnergyEstimator::on_report(const Eigen::Vector3d& impulse_N_s) {
+  report_.impulse_N_s = impulse_N_s;
   fresh_ = true;
 }
 
-void PendingEnergyEstimator::settle(const Eigen::Vector3d& impulse_N_s) {
-  given_N_s_ = told_.impulse_N_s = impulse_N_s;
+void PendingEnergyEstimator::reset(const Eigen::Vector3d& impulse_N_s) {
+  total_impulse_N_s_ = report_.impulse_N_s = impulse_N_s;
   count_ = 0;
   work_J_ = 0;
 }
 
-void PendingEnergyEstimator::give(const Eigen::Vector3d& force_N, double dt) {
-  given_N_s_ += dt * force_N;
-  const double push_N = std::max(0.0, -force_N.dot(told_.normal));
+void PendingEnergyEstimator::add_push(const Eigen::Vector3d& force_N, double dt) {
+  total_impulse_N_s_ += dt * force_N;
+  const double push_N = std::max(0.0, -force_N.dot(report_.normal));
   if (count_ == 0 || pushes_[newest_].dt >= kPush_s) {
     newest_ = (newest_ + 1) % pushes_.size();
     count_ = std::min(count_ + 1, pushes_.size());
@@ -50,57 +51,59 @@ void PendingEnergyEstimator::give(const Eigen::Vector3d& force_N, double dt) {
   }
   pushes_[newest_].impulse_N_s += push_N * dt;
   pushes_[newest_].dt += dt;
-  if (told_.sim_ns >= 0) advance(push_N, dt);
+  if (report_.sim_ns >= 0) advance(push_N, dt);
 }
 
 void PendingEnergyEstimator::advance(double push_N, double dt) {
-  const bool trusted = since_s_ < kTrust_s;
-  double held_N = trusted ? held_N_ : std::min(held_N_, 0.0);
-  since_s_ += dt;
-  if (trusted && since_s_ >= kTrust_s) speed_m_s_ += on_its_way_back_m_s();
-  if (speed_m_s_ < 0) held_N = std::min(held_N, 0.0);
-  double next = speed_m_s_ + (push_N - held_N) / told_.mass_kg * dt;
+  const bool trusted = since_report_s_ < kHoldingTime_s;
+  double holding_N = trusted ? holding_N_ : std::min(holding_N_, 0.0);
+  since_report_s_ += dt;
+  if (trusted && since_report_s_ >= kHoldingTime_s) speed_m_s_ += swing_back_m_s();
+  if (speed_m_s_ < 0) holding_N = std::min(holding_N, 0.0);
+  double next = speed_m_s_ + (push_N - holding_N) / report_.mass_kg * dt;
   if (speed_m_s_ >= 0) next = std::max(0.0, next);
   work_J_ += push_N * dt * 0.5 * (speed_m_s_ + next);
   speed_m_s_ = next;
 }
 
 // A body that came towards the hand may have swung back: the speed that this adds along the push.
-double PendingEnergyEstimator::on_its_way_back_m_s() const { return 2 * std::max(0.0, told_.normal.dot(told_.velocity)); }
+double PendingEnergyEstimator::swing_back_m_s() const {
+  return 2 * std::max(0.0, report_.normal.dot(report_.velocity));
+}
 
 // Replays the pushes of the last window_s, as far back as they add up to the unreported impulse; the missing part
 // came before them.
-void PendingEnergyEstimator::play(double window_s, double unseen_N_s) {
+void PendingEnergyEstimator::replay(double window_s, double pending_N_s) {
   const auto push = [&](std::size_t back) { return pushes_[(newest_ + pushes_.size() - back) % pushes_.size()]; };
   std::size_t first = 0;
   // share of the first push, which may be unreported in part
-  double time_s = 0, missing_N_s = unseen_N_s, share = 1;
+  double time_s = 0, remaining_N_s = pending_N_s, share = 1;
   while (first < count_ && time_s < window_s && share == 1) {
     const Push p = push(first++);
-    if (p.impulse_N_s > missing_N_s) share = missing_N_s / p.impulse_N_s;
+    if (p.impulse_N_s > remaining_N_s) share = remaining_N_s / p.impulse_N_s;
     time_s += share * p.dt;
-    missing_N_s = share < 1 ? 0 : missing_N_s - p.impulse_N_s;
+    remaining_N_s = share < 1 ? 0 : remaining_N_s - p.impulse_N_s;
   }
-  since_s_ = std::max(0.0, window_s - time_s);
-  speed_m_s_ = -told_.normal.dot(told_.velocity);
-  if (since_s_ >= kTrust_s) speed_m_s_ += on_its_way_back_m_s();
-  work_J_ = missing_N_s * (speed_m_s_ + 0.5 * missing_N_s / told_.mass_kg);
-  speed_m_s_ += missing_N_s / told_.mass_kg;
+  since_report_s_ = std::max(0.0, window_s - time_s);
+  speed_m_s_ = -report_.normal.dot(report_.velocity);
+  if (since_report_s_ >= kHoldingTime_s) speed_m_s_ += swing_back_m_s();
+  work_J_ = remaining_N_s * (speed_m_s_ + 0.5 * remaining_N_s / report_.mass_kg);
+  speed_m_s_ += remaining_N_s / report_.mass_kg;
   for (std::size_t back = first; back-- > 0;) {
     const Push p = push(back);
     if (p.dt > 0) advance(p.impulse_N_s / p.dt, (back + 1 == first ? share : 1) * p.dt);
   }
 }
 
-double PendingEnergyEstimator::energy_J(double window_s, double most_N) {
-  if (told_.sim_ns < 0) return 0;
-  Eigen::Vector3d unseen_N_s = given_N_s_ - told_.impulse_N_s;
-  const double size = unseen_N_s.norm(), most_N_s = most_N * window_s;
-  if (size > most_N_s) unseen_N_s *= most_N_s / size;  // a part was never applied
-  const double along_normal = unseen_N_s.dot(told_.normal);
-  if (fresh_) play(window_s, std::max(0.0, -along_normal));
+double PendingEnergyEstimator::energy_J(double window_s, double max_force_N) {
+  if (report_.sim_ns < 0) return 0;
+  Eigen::Vector3d pending_N_s = total_impulse_N_s_ - report_.impulse_N_s;
+  const double size = pending_N_s.norm(), max_impulse_N_s = max_force_N * window_s;
+  if (size > max_impulse_N_s) pending_N_s *= max_impulse_N_s / size;  // a part was never applied
+  const double along_normal = pending_N_s.dot(report_.normal);
+  if (fresh_) replay(window_s, std::max(0.0, -along_normal));
   fresh_ = false;
-  return work_J_ + (unseen_N_s - along_normal * told_.normal).dot(told_.velocity);
+  return work_J_ + (pending_N_s - along_normal * report_.normal).dot(report_.velocity);
 }
 
 }  // namespace tactus::haptic

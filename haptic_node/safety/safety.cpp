@@ -11,12 +11,12 @@ namespace {
 
 // Faster than any hand (that of a pitcher reaches 40 m/s): the device jumped, as a replayed motion may; no work is
 // counted.
-constexpr double kFastest_m_s = 40;
+constexpr double kMaxHandSpeed_m_s = 40;
 // The same for rotation: one revolution per tenth of a second (design: twice the speed of a wrist).
-constexpr double kFastest_rad_s = 63;
+constexpr double kMaxHandSpin_rad_s = 63;
 
 // A late tick must not cause a jump of the force: it counts as two ticks of 1 kHz at most.
-constexpr double kLongestSlew_s = 0.002;
+constexpr double kMaxSlewTime_s = 0.002;
 
 // Share of the workspace radius over which the force goes to zero. Design: 0.2 m of 2 m take 0.2 s at a hand speed
 // of 1 m/s.
@@ -35,41 +35,41 @@ SafetyLimits safety_limits(const Settings& s) {
 }
 
 void Safety::begin_tick(sync::HostTime now) {
-  if (now - renewed_ > Device::kWatchdog) {
+  if (now - last_tick_ > Device::kWatchdog) {
     last_.setZero();
     last_torque_.setZero();
   }
-  renewed_ = now;
+  last_tick_ = now;
 }
 
-void Safety::at(const Eigen::Vector3d& device_m) {
+void Safety::set_position(const Eigen::Vector3d& device_m) {
   if (!device_m.allFinite()) {
-    inside_ = 0;
+    workspace_factor_ = 0;
     return;
   }
   if (!centre_m_) centre_m_ = device_m;
-  const double left = 1 - (device_m - *centre_m_).norm() / limits_.workspace_m;
-  inside_ = std::clamp(left / kWorkspaceEdge, 0.0, 1.0);
+  const double remaining = 1 - (device_m - *centre_m_).norm() / limits_.workspace_m;
+  workspace_factor_ = std::clamp(remaining / kWorkspaceEdge, 0.0, 1.0);
 }
 
 Eigen::Vector3d Safety::limit(const Eigen::Vector3d& wanted_N, const Eigen::Vector3d& moved_m, double dt) {
-  const bool leaps = !moved_m.allFinite() || moved_m.norm() > kFastest_m_s * dt;
-  const double work_J = (leaps ? 0 : last_.dot(moved_m)) + std::exchange(turn_work_J_, 0.0);
+  const bool jumped = !moved_m.allFinite() || moved_m.norm() > kMaxHandSpeed_m_s * dt;
+  const double work_J = (jumped ? 0 : last_.dot(moved_m)) + std::exchange(torque_work_J_, 0.0);
   energy_J_ += work_J;
   // A negative tank recovers within a second, so that one bad instant does not stop touch for long.
   tank_J_ = std::clamp(tank_J_ - work_J + limits_.power_W * dt, -limits_.power_W, limits_.energy_J);
   const Eigen::Vector3d wanted = wanted_N.allFinite() ? wanted_N : Eigen::Vector3d(Eigen::Vector3d::Zero());
   // Full force until half of the allowance is spent; the change is too slow to be felt as a step.
-  const double left = std::clamp(2 * tank_J_ / limits_.energy_J, 0.0, 1.0);
-  const Eigen::Vector3d allowed = inside_ * left * clamped(wanted, limits_.force_N);
-  last_ += clamped(allowed - last_, limits_.slew_N_s * std::min(dt, kLongestSlew_s));
+  const double remaining = std::clamp(2 * tank_J_ / limits_.energy_J, 0.0, 1.0);
+  const Eigen::Vector3d allowed = workspace_factor_ * remaining * clamped(wanted, limits_.force_N);
+  last_ += clamped(allowed - last_, limits_.slew_N_s * std::min(dt, kMaxSlewTime_s));
   return last_;
 }
 
 Wrench Safety::limit(const Wrench& wanted, const Eigen::Vector3d& moved_m, const Eigen::Vector3d& turned_rad,
                      double dt) {
-  const bool leaps = !turned_rad.allFinite() || turned_rad.norm() > kFastest_rad_s * dt;
-  turn_work_J_ = leaps ? 0 : last_torque_.dot(turned_rad);
+  const bool jumped = !turned_rad.allFinite() || turned_rad.norm() > kMaxHandSpin_rad_s * dt;
+  torque_work_J_ = jumped ? 0 : last_torque_.dot(turned_rad);
   Wrench w = wanted;
   if (!w.torque_N_m.allFinite()) w.torque_N_m.setZero();
   if (!w.force_N.allFinite()) w = {};
@@ -77,9 +77,9 @@ Wrench Safety::limit(const Wrench& wanted, const Eigen::Vector3d& moved_m, const
   if (force > limits_.force_N) w.torque_N_m *= limits_.force_N / force;
   if (torque > limits_.torque_N_m) w.force_N *= limits_.torque_N_m / torque;
   w.force_N = limit(w.force_N, moved_m, dt);
-  const double left = std::clamp(2 * tank_J_ / limits_.energy_J, 0.0, 1.0);
-  const Eigen::Vector3d allowed = inside_ * left * clamped(w.torque_N_m, limits_.torque_N_m);
-  last_torque_ += clamped(allowed - last_torque_, limits_.torque_slew_N_m_s * std::min(dt, kLongestSlew_s));
+  const double remaining = std::clamp(2 * tank_J_ / limits_.energy_J, 0.0, 1.0);
+  const Eigen::Vector3d allowed = workspace_factor_ * remaining * clamped(w.torque_N_m, limits_.torque_N_m);
+  last_torque_ += clamped(allowed - last_torque_, limits_.torque_slew_N_m_s * std::min(dt, kMaxSlewTime_s));
   w.torque_N_m = last_torque_;
   return w;
 }

@@ -38,7 +38,7 @@ class Safety {
 
   // Sets the position of the device; call before limit(). The workspace is a ball about the first position. The
   // force goes to zero over its outermost tenth and is zero outside. A position that is not finite is outside.
-  void at(const Eigen::Vector3d& device_m);
+  void set_position(const Eigen::Vector3d& device_m);
 
   // One tick: returns the force to command now, N. moved_m: motion of the device since the last call, under the
   // force returned then. A wanted force that is not finite counts as zero. Realtime-safe: yes.
@@ -58,10 +58,10 @@ class Safety {
   double tank_J_;
   double energy_J_ = 0;
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero(), last_torque_ = Eigen::Vector3d::Zero();
-  double turn_work_J_ = 0;  // of the torque, since the last tick
-  sync::HostTime renewed_{};
+  double torque_work_J_ = 0;  // of the torque, since the last tick
+  sync::HostTime last_tick_{};
   std::optional<Eigen::Vector3d> centre_m_;
-  double inside_ = 1;  // factor of the workspace
+  double workspace_factor_ = 1;  // factor of the workspace
 };
 
 // Factor on the force: 1 while touch models arrive. It goes to 0 within `fade` once the newest is older than

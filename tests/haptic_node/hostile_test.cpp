@@ -20,7 +20,7 @@ using namespace tactus::haptic::test;
 namespace {
 
 // A source of false models: every number may be as large, small or wrong as a number can be.
-struct Liar {
+struct FalseModels {
   std::mt19937 random;
   bool finite;                              // only values that may pass the validation
   std::map<std::int64_t, bool> moves = {};  // whether a surface moved in the last message
@@ -28,13 +28,13 @@ struct Liar {
   int below(int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); }
   double number() {
     static constexpr double kFinite[] = {0, -1, 1e-30, 1e-9, 1, 1e6, 9e8, -9e8};
-    static constexpr double kWild[] = {std::numeric_limits<double>::quiet_NaN(),
-                                       std::numeric_limits<double>::infinity(),
-                                       -std::numeric_limits<double>::infinity(),
-                                       1e38,
-                                       -1e38,
-                                       1e-45};
-    if (!finite && below(4) == 0) return kWild[below(6)];
+    static constexpr double kInvalid[] = {std::numeric_limits<double>::quiet_NaN(),
+                                          std::numeric_limits<double>::infinity(),
+                                          -std::numeric_limits<double>::infinity(),
+                                          1e38,
+                                          -1e38,
+                                          1e-45};
+    if (!finite && below(4) == 0) return kInvalid[below(6)];
     return below(2) ? kFinite[below(8)] : std::normal_distribution<double>(0, 1)(random);
   }
   Vector3d vector() { return {number(), number(), number()}; }
@@ -45,7 +45,7 @@ struct Liar {
     return Vector3d(normal(random), normal(random), normal(random)).normalized();
   }
 
-  touch_plane_t lying_plane(int tick) {
+  touch_plane_t false_plane(int tick) {
     const int kind = below(6);
     const Vector3d normal = kind == 0   ? Vector3d(0, 0, tick % 2 ? 1 : -1)  // facing each other, and alternating
                             : kind == 1 ? (finite ? unit() : Vector3d::Zero())
@@ -73,9 +73,9 @@ struct Liar {
     return p;
   }
 
-  touch_model_t lying_model(int tick, double ms) {
+  touch_model_t false_model(int tick, double ms) {
     std::vector<touch_plane_t> planes;
-    for (int i = below(8); i > 0; --i) planes.push_back(lying_plane(tick));
+    for (int i = below(8); i > 0; --i) planes.push_back(false_plane(tick));
     // twice in one message
     if (planes.size() > 1 && below(3) == 0) planes.back().contact_id = planes.front().contact_id;
     // Time stands still, goes back, or belongs to another run.
@@ -96,7 +96,7 @@ struct Liar {
 
 }  // namespace
 
-TEST_CASE("Touch models that lie keep the force inside its limits of size, slew, energy and workspace") {
+TEST_CASE("False touch models keep the force within its limits of magnitude, slew, energy and workspace") {
   const double rate_Hz = GENERATE(1000, 2000, 4000);
   const bool finite = GENERATE(true, false);
   const unsigned seed = GENERATE(1u, 2u, 3u);
@@ -105,19 +105,19 @@ TEST_CASE("Touch models that lie keep the force inside its limits of size, slew,
   settings.rate_Hz = rate_Hz;
   settings.workspace_m = 0.05;
   Bench bench(settings);
-  Liar liar{std::mt19937(seed), finite};
+  FalseModels source{std::mt19937(seed), finite};
   // A hand that leaves its workspace and returns.
   std::vector<double> times;
   std::vector<Vector3d> places;
   for (int k = 0; k < 20; ++k)
-    times.push_back(0.1 * k), places.emplace_back((k % 5 == 3 ? 0.08 : 0.01) * liar.unit());
+    times.push_back(0.1 * k), places.emplace_back((k % 5 == 3 ? 0.08 : 0.01) * source.unit());
   places[0].setZero();
   VirtualHand hand(MonotoneCubic(times, places, MonotoneCubic::Ends::kRest), false,
                    {settings.hand_mass_kg, settings.hand_damping_Ns_m, settings.hand_stiffness_N_m});
   hand.begin(host_ms(0));
   Vector3d last_force = Vector3d::Zero(), last = Vector3d::Zero();
   double given_J = 0, fastest_m_s = 0;
-  int pressed = 0, on_moving = 0, let_in = 0, outside = 0;
+  int pressed = 0, on_moving = 0, accepted = 0, outside = 0;
   const int ticks = static_cast<int>(2 * rate_Hz);
   for (int i = 0; i < ticks; ++i) {
     const double ms = 1e3 * i / rate_Hz;
@@ -126,12 +126,12 @@ TEST_CASE("Touch models that lie keep the force inside its limits of size, slew,
     last = state.position;
     given_J += last_force.dot(moved);
     fastest_m_s = std::max(fastest_m_s, moved.norm() * rate_Hz);
-    touch_model_t m = liar.lying_model(i, ms);
+    touch_model_t m = source.false_model(i, ms);
     if (finite) {
       if (!valid(m)) continue;
-      ++let_in;
+      ++accepted;
     }
-    const TickOutput& out = bench.tick(ms, state.position, liar.below(3) ? &m : nullptr);
+    const TickOutput& out = bench.tick(ms, state.position, source.below(3) ? &m : nullptr);
     hand.write(out.force_N);
     REQUIRE(out.force_N.allFinite());
     REQUIRE(out.force_N.norm() <= settings.force_limit_N + 1e-9);
@@ -149,27 +149,28 @@ TEST_CASE("Touch models that lie keep the force inside its limits of size, slew,
     REQUIRE(out.state.coupling <= 1);
     REQUIRE(std::isfinite(out.state.generated_J));
     pressed += out.force_N.norm() > 0.1;
-    on_moving += std::any_of(
-        out.state.constraints.begin(), out.state.constraints.end(),
-        [&](const tool_constraint_t& c) { return to_eigen(c.force_N).norm() > 0.1 && liar.moves[c.contact_id]; });
+    on_moving +=
+        std::any_of(out.state.constraints.begin(), out.state.constraints.end(), [&](const tool_constraint_t& c) {
+          return to_eigen(c.force_N).norm() > 0.1 && source.moves[c.contact_id];
+        });
     last_force = out.force_N;
   }
   // Shows that surfaces were pressed, moving ones too, and that false values passed the validation.
   CHECK(pressed > ticks / 50);
   CHECK(on_moving > ticks / 50);
-  if (finite) CHECK(let_in > ticks / 20);
+  if (finite) CHECK(accepted > ticks / 20);
 }
 
-TEST_CASE("Outside its workspace there is no force, and none at once at its edge") {
+TEST_CASE("The force fades to zero at the edge of the workspace") {
   SafetyLimits limits;
   limits.workspace_m = 0.1;
   Safety safety(limits);
   const Vector3d begin(1, 2, 3);
   double last = 0, most = 0;
-  safety.at(begin);
+  safety.set_position(begin);
   for (int k = 0; k <= 1500; ++k) {
     const double far = 1e-4 * k;
-    safety.at(begin + Vector3d(far, 0, 0));
+    safety.set_position(begin + Vector3d(far, 0, 0));
     const double force = safety.limit({0, 5, 0}, Vector3d::Zero(), 1e-3).norm();
     if (k > 3) most = std::max(most, std::abs(force - last));
     if (far < 0.0899 && k > 3) CHECK(force == Approx(5));
@@ -177,21 +178,21 @@ TEST_CASE("Outside its workspace there is no force, and none at once at its edge
     last = force;
   }
   CHECK(most < 0.1);  // 5 N over 10 mm, at 0.1 mm a tick: 0.05 N
-  safety.at({std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  safety.set_position({std::numeric_limits<double>::quiet_NaN(), 0, 0});
   for (int k = 0; k < 10; ++k) last = safety.limit({0, 5, 0}, Vector3d::Zero(), 1e-3).norm();
   CHECK(last == 0);
 }
 
-TEST_CASE("The other scene's wider workspace does not move its centre") {
+TEST_CASE("A wider workspace of the next scene does not move its centre") {
   SafetyLimits limits;
   limits.workspace_m = 0.1;
   Safety safety(limits);
-  safety.at({0, 0, 0});
+  safety.set_position({0, 0, 0});
   limits.workspace_m = 0.2;
   safety.set_limits(limits);
-  safety.at({0.15, 0, 0});
+  safety.set_position({0.15, 0, 0});
   CHECK(safety.limit({1, 0, 0}, Vector3d::Zero(), 1e-3).norm() > 0.5);
-  safety.at({0.21, 0, 0});
+  safety.set_position({0.21, 0, 0});
   for (int k = 0; k < 5; ++k) safety.limit({1, 0, 0}, Vector3d::Zero(), 1e-3);
   CHECK(safety.limit({1, 0, 0}, Vector3d::Zero(), 1e-3).norm() == 0);
 }

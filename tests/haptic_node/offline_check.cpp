@@ -85,11 +85,11 @@ std::string live(const std::string& log, const std::string& profile = "", double
   const scene_t scene = floor_and_stylus();
   RecordedRun run(std::make_unique<sync::FileSink>(log), scene);
   if (!profile.empty()) run.raw(0.01, channels::kDegradation, in_force(profile, header_at(0.01, 0, 33)));
-  const NodeConfig choice = resolve_config(scene, "", {});
+  const NodeConfig config = resolve_config(scene, "", {});
   DeviceState hand;
-  Safety safety(safety_limits(choice.settings));
+  Safety safety(safety_limits(config.settings));
   sync::ClockMaps maps(kRun);
-  Session session(scene, choice, std::make_unique<RecordedHand>(hand), {kRun, kClock, &maps}, safety);
+  Session session(scene, config, std::make_unique<RecordedHand>(hand), {kRun, kClock, &maps}, safety);
   session.set_maps(std::make_shared<SurfaceMaps>(read_maps(scene, {})));
   std::string table = sync::haptic_csv_names();
   std::mt19937 random(5);
@@ -127,7 +127,7 @@ constexpr const char* kOff = R"(<profile name="numb"><degrade modality="haptic" 
 
 }  // namespace
 
-TEST_CASE("What the hand felt is felt again from the log, tick by tick to the last digit, as often as one likes") {
+TEST_CASE("A log renders to the recorded forces, bit for bit, each time") {
   const RenderedLog of("haptic_node");
   const std::string felt = live(of.file("run.lcmlog"));
   CHECK(largest_force_N(felt) > 2);
@@ -137,7 +137,7 @@ TEST_CASE("What the hand felt is felt again from the log, tick by tick to the la
   CHECK((of.trace() == again));
 }
 
-TEST_CASE("A profile degrades what is felt of a log, and that of the run holds only when it is asked for") {
+TEST_CASE("A profile degrades the rendered log, and the recorded profile applies only on request") {
   const RenderedLog of("haptic_node");
   const std::string felt = live(of.file("run.lcmlog"));
   live(of.file("numb.lcmlog"), kOff);
@@ -147,7 +147,7 @@ TEST_CASE("A profile degrades what is felt of a log, and that of the run holds o
   CHECK((of.trace({}, "numb.lcmlog") == felt));
   CHECK((of.trace({"--degrade", "logged"}, "numb.lcmlog") == off));
 
-  SECTION("touch models that are held back by 20 ms are felt 20 ticks later, and events are told as late") {
+  SECTION("A delay of 20 ms delays the touch models by 20 ticks and the reported times of the events") {
     const std::string late = R"(<profile name="late"><degrade modality="haptic" delay="20ms"/></profile>)";
     const auto table =
         cells_of(of.trace({"--degrade", of.write("late.xml", late), "--presented", of.file("p.csv")}));
@@ -163,7 +163,7 @@ TEST_CASE("A profile degrades what is felt of a log, and that of the run holds o
   }
 }
 
-TEST_CASE("Ticks that were never recorded are not felt, and those before and after the gap are") {
+TEST_CASE("Ticks before and after a gap in the recording are rendered, missing ticks are not") {
   const RenderedLog of("haptic_node");
   live(of.file("whole.lcmlog"));
   std::string bytes = RenderedLog::bytes(of.file("whole.lcmlog"));
@@ -177,7 +177,7 @@ TEST_CASE("Ticks that were never recorded are not felt, and those before and aft
   CHECK(std::stoll(rows.back().at(24)) == 1999);
 }
 
-TEST_CASE("A log that lost its first event, LOG_INFO, is felt again, too, and says that it is without it") {
+TEST_CASE("A log without LOG_INFO is rendered with a warning") {
   const RenderedLog of("haptic_node");
   const std::string felt = live(of.file("whole.lcmlog"));
   std::string bytes = RenderedLog::bytes(of.file("whole.lcmlog"));
@@ -200,7 +200,7 @@ TEST_CASE("A log that lost its first event, LOG_INFO, is felt again, too, and sa
   }
 }
 
-TEST_CASE("A recording in parts is felt again from its folder as if it were one file") {
+TEST_CASE("A recording in parts renders like a single file") {
   const RenderedLog of("haptic_node");
   const std::string felt = live(of.file("whole.lcmlog"));
   const std::string bytes = RenderedLog::bytes(of.file("whole.lcmlog"));
@@ -221,8 +221,7 @@ TEST_CASE("A recording in parts is felt again from its folder as if it were one 
   CHECK_THAT(over.said, Catch::Contains("is the log itself"));
 }
 
-TEST_CASE(
-    "A log that nobody's hand is in, a tool that there is not and a log of no run are refused in one sentence") {
+TEST_CASE("A log without the tool, an unknown tool and a log without a run are rejected in one sentence") {
   const RenderedLog of("haptic_node");
   const auto refusal = [&](std::vector<std::string> words) {
     words.insert(words.end(), {"--trace", of.file("x.csv")});
@@ -235,7 +234,7 @@ TEST_CASE(
   };
   live(of.file("run.lcmlog"), "", 0.3);
   live(of.file("empty.lcmlog"), "", kFrom_s);
-  CHECK_THAT(refusal({"--log", of.file("empty.lcmlog")}), Catch::Contains("nobody held it"));
+  CHECK_THAT(refusal({"--log", of.file("empty.lcmlog")}), Catch::Contains("no TOOL_STATE of this tool"));
   CHECK_THAT(refusal({"--log", of.file("run.lcmlog"), "--tool", "toe"}), Catch::Contains("\"toe\""));
   RecordedRun(std::make_unique<sync::FileSink>(of.file("bare.lcmlog")), std::vector<sync::Asset>{}).finish();
   CHECK_THAT(refusal({"--log", of.file("bare.lcmlog")}), Catch::Contains("no scene"));

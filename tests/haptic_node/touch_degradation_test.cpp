@@ -18,9 +18,9 @@ using namespace tactus::haptic::test;
 
 namespace {
 
-constexpr std::size_t kPlanes = 20, kBooks = 3;  // three pages
+constexpr std::size_t kPlanes = 20, kApplied = 3;  // three pages
 
-sync::OperatorChain stack_of(const std::string& attributes) {
+sync::OperatorChain operators_of(const std::string& attributes) {
   return {sync::parse_profile("<profile><degrade modality=\"haptic\" " + attributes + "/></profile>", "p.xml"),
           "haptic",
           {}};
@@ -28,30 +28,30 @@ sync::OperatorChain stack_of(const std::string& attributes) {
 
 // The path of the touch models as in the loop of the node. A tick comes between the pages of each model: the last
 // of them arrive a tick later.
-struct TouchWay {
-  sync::OperatorChain stack;
+struct TouchPath {
+  sync::OperatorChain operators;
   sync::DegradedSnapshots<touch_model_t> degraded;
   TouchInput input{0, 1};
   std::vector<touch_model_t> late;  // pages that arrive with the next tick
   std::int64_t seq = 0;
 
-  // One tick; what the hand gets new, or none.
-  TouchModelView tick(std::int64_t ms, const touch_model_t& said) {
+  // One tick. Returns the new model of the hand, or none.
+  TouchModelView tick(std::int64_t ms, const touch_model_t& model) {
     const sync::HostTime now = sync::host_time(ms * kMs);
-    const auto arrive = [&](touch_model_t page) { degraded.push(std::move(page), now, stack, nullptr); };
+    const auto arrive = [&](touch_model_t page) { degraded.push(std::move(page), now, operators, nullptr); };
     for (const touch_model_t& page : late) arrive(page);
-    late = pages_of(said, seq);
+    late = pages_of(model, seq);
     arrive(late.front());
     late.erase(late.begin());
     // As in ModalityEndpoint for a servo loop, where new messages wait.
-    const sync::HostTime lets = now - stack.presentation_delay(sync::sim_time(ms * kMs));
-    while (const auto m = degraded.pop(lets)) input.push(m->first, m->second);
-    return input.take();
+    const sync::HostTime release_time = now - operators.presentation_delay(sync::sim_time(ms * kMs));
+    while (const auto m = degraded.pop(release_time)) input.push(m->first, m->second);
+    return input.pop();
   }
 };
 
 touch_model_t model_at(std::int64_t ms) {
-  touch_model_t m = whole_model(ms, kPlanes, kBooks);
+  touch_model_t m = whole_model(ms, kPlanes, kApplied);
   for (std::size_t i = 0; i < m.planes.size(); ++i) {
     m.planes[i].stiffness_N_m = 1000;
     // For a deadband: one plane, of another page each time, moves every 10 ms.
@@ -68,23 +68,23 @@ bool whole(const TouchModelView& m, bool zero) {
   bool good = m.plane_count() == planes;
   for (std::size_t i = 0; good && i < planes; ++i)
     good = m.plane(i).contact_id == static_cast<std::int64_t>(i) && m.plane(i).stiffness_N_m == m.plane(0).stiffness_N_m;
-  std::size_t book = 0;
-  m.each_book([&](const touch_applied_t& a) {
-    good = good && a.contact_id == m.header().sim_time_ns / kMs * 1000 + static_cast<std::int64_t>(book++);
+  std::size_t index = 0;
+  m.for_each_applied([&](const touch_applied_t& a) {
+    good = good && a.contact_id == m.header().sim_time_ns / kMs * 1000 + static_cast<std::int64_t>(index++);
   });
-  return good && book == kBooks;
+  return good && index == kApplied;
 }
 
 struct Case {
   std::string profile;
   double share, tolerance;  // of the models that pass
-  int least_ms, most_ms;    // delay
+  int min_ms, max_ms;       // delay
   double stiffness_N_m = 1000;
 };
 
 }  // namespace
 
-TEST_CASE("Whatever a profile does to touch models of several pages, the hand gets whole ones, newer and newer") {
+TEST_CASE("Under any profile the hand receives complete touch models in increasing order") {
   // Without a profile a model is complete one tick after it was sent. Shares to five standard deviations of 2000
   // draws. Where newer models overtake (jitter, and a deadband beside losses) the shares are those of the first
   // measurement.
@@ -103,35 +103,36 @@ TEST_CASE("Whatever a profile does to touch models of several pages, the hand ge
       Case{"gain=\"0.5 force\" delay=\"7ms\"", 1, 0, 8, 8, 500},
       Case{"conceal=\"zero\" loss=\"30%\"", 1, 0, 1, 1});
   CAPTURE(c.profile);
-  TouchWay way;
-  way.stack = stack_of(c.profile);
+  TouchPath path;
+  path.operators = operators_of(c.profile);
   std::int64_t newest_ns = -1;
-  int came = 0;
+  int passed = 0;
   constexpr int kTicks = 2000;
   for (std::int64_t ms = 0; ms < kTicks; ++ms) {
-    const TouchModelView m = way.tick(ms, model_at(ms));
+    const TouchModelView m = path.tick(ms, model_at(ms));
     if (!m) continue;
     const std::int64_t late_ms = ms - m.header().sim_time_ns / kMs;
     CAPTURE(ms, late_ms, m.plane_count());
     REQUIRE((whole(m, false) || (c.profile.starts_with("conceal") && whole(m, true))));
     for (std::size_t i = 0; i < m.plane_count(); ++i) REQUIRE(m.plane(i).stiffness_N_m == Approx(c.stiffness_N_m));
     REQUIRE(m.header().sim_time_ns > newest_ns);
-    REQUIRE(late_ms >= c.least_ms);
-    REQUIRE(late_ms <= c.most_ms);
+    REQUIRE(late_ms >= c.min_ms);
+    REQUIRE(late_ms <= c.max_ms);
     newest_ns = m.header().sim_time_ns;
-    ++came;
+    ++passed;
   }
-  CHECK(came > 0);
-  CHECK(std::abs(static_cast<double>(came) / (kTicks - c.least_ms) - c.share) <= c.tolerance);
+  CHECK(passed > 0);
+  CHECK(std::abs(static_cast<double>(passed) / (kTicks - c.min_ms) - c.share) <= c.tolerance);
 }
 
-TEST_CASE("A freeze begins and ends with a whole model, and its zero is one without planes") {
+TEST_CASE("A freeze begins and ends with a complete model, and its zero model has no planes") {
   const bool zero = GENERATE(false, true);
-  TouchWay way;
-  way.stack = stack_of(std::string("from=\"100ms\" until=\"200ms\" freeze=\"") + (zero ? "zero\"" : "hold\""));
+  TouchPath path;
+  path.operators =
+      operators_of(std::string("from=\"100ms\" until=\"200ms\" freeze=\"") + (zero ? "zero\"" : "hold\""));
   for (std::int64_t ms = 0; ms < 300; ++ms) {
     const bool frozen = ms - 1 >= 100 && ms - 1 < 200;
-    const TouchModelView m = way.tick(ms, model_at(ms));
+    const TouchModelView m = path.tick(ms, model_at(ms));
     CAPTURE(ms, zero);
     REQUIRE(static_cast<bool>(m) == (ms >= 1 && (zero || !frozen)));
     if (!m) continue;
@@ -140,61 +141,61 @@ TEST_CASE("A freeze begins and ends with a whole model, and its zero is one with
   }
 }
 
-TEST_CASE("A profile that comes between the pages of a model splits none: that model is dropped") {
+TEST_CASE("A profile change between the pages of a model drops that model") {
   const std::string before =
       GENERATE("", "gain=\"0.25 force\"", "delay=\"5ms network\"", "deadband=\"10% velocity\"");
   const std::string after =
       GENERATE("", "gain=\"0.5 force\"", "freeze=\"zero\"", "off=\"true\"", "delay=\"3ms network\"");
   CAPTURE(before, after);
-  TouchWay way;
-  if (!before.empty()) way.stack = stack_of(before);
+  TouchPath path;
+  if (!before.empty()) path.operators = operators_of(before);
   bool zero = false;
-  int came = 0;
+  int passed = 0;
   for (std::int64_t ms = 0; ms < 60; ++ms) {
     if (ms == 30) {
-      way.stack = after.empty() ? sync::OperatorChain() : stack_of(after);
-      way.degraded.change_profile();
+      path.operators = after.empty() ? sync::OperatorChain() : operators_of(after);
+      path.degraded.change_profile();
     }
-    const TouchModelView m = way.tick(ms, model_at(ms));
+    const TouchModelView m = path.tick(ms, model_at(ms));
     if (!m) continue;
     CAPTURE(ms);
     CHECK(m.header().sim_time_ns != 29 * kMs);
     zero = m.plane_count() == 0;
     REQUIRE(whole(m, zero));
-    ++came;
+    ++passed;
   }
-  CHECK(came > 30);  // also behind a deadband, which passes 6 of 30
+  CHECK(passed > 30);  // also behind a deadband, which passes 6 of 30
   CHECK(zero == (after == "freeze=\"zero\"" || after == "off=\"true\""));
 }
 
-TEST_CASE("While the world stands still each look of the hand at it is decided on by itself") {
+TEST_CASE("Each touch model is degraded independently while the simulation is paused") {
   constexpr std::int64_t kStands_ms = 100;
-  TouchWay way;
-  SECTION("a network delay makes each as late as before") {
-    way.stack = stack_of("delay=\"40ms network\"");
+  TouchPath path;
+  SECTION("A network delay applies to each model") {
+    path.operators = operators_of("delay=\"40ms network\"");
     for (std::int64_t ms = 0; ms < 500; ++ms) {
-      touch_model_t said = model_at(std::min(ms, kStands_ms));
-      said.header.publish_time_ns = ms * kMs, said.clock.host_ns = ms * kMs;
-      for (touch_plane_t& p : said.planes) p.body = static_cast<std::int32_t>(ms);  // the hand goes on
-      const TouchModelView m = way.tick(ms, said);
+      touch_model_t model = model_at(std::min(ms, kStands_ms));
+      model.header.publish_time_ns = ms * kMs, model.clock.host_ns = ms * kMs;
+      for (touch_plane_t& p : model.planes) p.body = static_cast<std::int32_t>(ms);  // the hand keeps moving
+      const TouchModelView m = path.tick(ms, model);
       CAPTURE(ms);
       REQUIRE(static_cast<bool>(m) == (ms >= 40));
       if (!m) continue;
       for (std::size_t i = 0; i < m.plane_count(); ++i) REQUIRE(m.plane(i).body == ms - 40);
     }
   }
-  SECTION("a loss takes its share of them, and of each all pages") {
-    way.stack = stack_of("loss=\"50%\"");
-    int came = 0;
+  SECTION("A loss drops its share of the models, with all pages") {
+    path.operators = operators_of("loss=\"50%\"");
+    int passed = 0;
     for (std::int64_t ms = 0; ms < 1100; ++ms) {
-      touch_model_t said = model_at(std::min(ms, kStands_ms));
-      said.header.publish_time_ns = ms * kMs, said.clock.host_ns = ms * kMs;
-      for (touch_plane_t& p : said.planes) p.body = static_cast<std::int32_t>(ms);
-      const TouchModelView m = way.tick(ms, said);
+      touch_model_t model = model_at(std::min(ms, kStands_ms));
+      model.header.publish_time_ns = ms * kMs, model.clock.host_ns = ms * kMs;
+      for (touch_plane_t& p : model.planes) p.body = static_cast<std::int32_t>(ms);
+      const TouchModelView m = path.tick(ms, model);
       if (!m) continue;
       for (std::size_t i = 0; i < m.plane_count(); ++i) REQUIRE(m.plane(i).body == ms - 1);
-      if (ms > kStands_ms) ++came;
+      if (ms > kStands_ms) ++passed;
     }
-    CHECK(std::abs(came - 500) < 5 * std::sqrt(250));
+    CHECK(std::abs(passed - 500) < 5 * std::sqrt(250));
   }
 }

@@ -73,7 +73,7 @@ constexpr const char* kLate = R"(<profile name="late"><degrade modality="thermal
 
 }  // namespace
 
-TEST_CASE("The skin cools on copper and warms again, from one log to the same digits each time") {
+TEST_CASE("The skin cools on copper and warms again, with identical results from one log") {
   const RenderedLog of("thermal_node");
   record(of.file("run.lcmlog"));
   const std::string trace = of.trace();
@@ -86,7 +86,7 @@ TEST_CASE("The skin cools on copper and warms again, from one log to the same di
   CHECK(degC(at(3.9), kSkin) > degC(at(2.4), kSkin) + 1);
 }
 
-TEST_CASE("Warmth that is delayed by 200 ms is the same ten ticks later, and the profile of the run holds only when asked for") {
+TEST_CASE("A delay of 200 ms shifts the result by ten ticks, and the recorded profile applies only on request") {
   const RenderedLog of("thermal_node");
   record(of.file("run.lcmlog"));
   record(of.file("late.lcmlog"), kLate);
@@ -105,7 +105,7 @@ TEST_CASE("Warmth that is delayed by 200 ms is the same ten ticks later, and the
   for (std::size_t i = 20; i < late.size(); ++i) CHECK(logged.at(i) == late.at(i));
 }
 
-TEST_CASE("A log without a tool or a table to write is refused in one sentence, and leaves no file") {
+TEST_CASE("A log without a tool and an unwritable table are rejected in one sentence without a file") {
   const RenderedLog of("thermal_node");
   RecordedRun(std::make_unique<sync::FileSink>(of.file("struck.lcmlog"))).finish();
   const test::Rendered done = of.render({"--log", of.file("struck.lcmlog"), "--trace", of.file("x.csv")});

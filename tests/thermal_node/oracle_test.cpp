@@ -66,7 +66,7 @@ TEST_CASE("Half-spaces with blood and air are within 10 mK of the oracle") {
   }
 }
 
-TEST_CASE("Living layers on things of any thickness are within 10 mK of the oracle") {
+TEST_CASE("Tissue layers on objects of any thickness are within 10 mK of the oracle") {
   const char* site = GENERATE("finger", "palm");
   const double thickness = GENERATE(0.0005, 0.01, 1e9);
   const Tissue tissue{layers_of(site), 33, 23, 0.0025, 8};

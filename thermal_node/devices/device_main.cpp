@@ -36,9 +36,9 @@ int main(int argc, char** argv) try {
   int tool = 0;
   app.add_option("--tool", tool, "index of the tool that carries the display")->check(CLI::Range(0, 1000));
   sync::parse_or_exit(app, descriptor.name, argc, argv);
-  const thermal::NodeConfig choice = thermal::resolve_config(scene_t{}, "", options.set);
-  if (!choice.refused.empty()) throw std::runtime_error(choice.refused.front());
-  const thermal::Settings& settings = choice.settings;
+  const thermal::NodeConfig config = thermal::resolve_config(scene_t{}, "", options.set);
+  if (!config.rejected.empty()) throw std::runtime_error(config.rejected.front());
+  const thermal::Settings& settings = config.settings;
 
   sync::Node node(descriptor, options);
   auto& commands = node.bus().queue<thermal_state_t>(channels::kThermalState, 64);
@@ -46,22 +46,22 @@ int main(int argc, char** argv) try {
   thermal::SimulatedPeltier plate({}, {}, neutral_degC);
   thermal_state_t command{};
   command.commanded_degC = static_cast<float>(neutral_degC);
-  sync::HostTime heard{};
+  sync::HostTime last_arrival{};
   node.set_state(node_health_t::WAITING, "waits for THERMAL_STATE");
 
   while (node.running()) {
     const sync::HostTime now = node.wait();
     while (const auto m = commands.pop())
-      if (m->message.tool == tool) command = m->message, heard = m->arrival;
-    const bool silent = now - heard > thermal::Device::kSilence;
+      if (m->message.tool == tool) command = m->message, last_arrival = m->arrival;
+    const bool silent = now - last_arrival > thermal::Device::kSilence;
     const double load_W = silent ? 0 : command.heat_flux_W_m2 * settings.reference_area_m2;
     const auto reading = plate.step(silent ? neutral_degC : command.commanded_degC, load_W, now);
-    if (heard != sync::HostTime{})
+    if (last_arrival != sync::HostTime{})
       node.set_state(silent ? node_health_t::INPUT_LOST : node_health_t::RUNNING,
                      silent ? "no THERMAL_STATE: the plate is neutral" : "");
     if (!reading) continue;
-    thermal_device_t answer = thermal::to_message(*reading, tool);
-    node.bus().publish(channels::kThermalDevice, answer);
+    thermal_device_t message = thermal::to_message(*reading, tool);
+    node.bus().publish(channels::kThermalDevice, message);
   }
   return 0;
 } catch (const std::exception& e) {

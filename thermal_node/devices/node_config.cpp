@@ -7,29 +7,29 @@ namespace tactus::thermal {
 
 NodeConfig resolve_config(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set) {
   Settings settings;
-  std::vector<std::string> refused =
+  std::vector<std::string> rejected =
       sync::apply_settings(settings, setting_fields(), "thermal_node", scene.settings, set);
-  NodeConfig choice = resolve_config(scene, settings, tool_name);
-  choice.refused = std::move(refused);
-  return choice;
+  NodeConfig config = resolve_config(scene, settings, tool_name);
+  config.rejected = std::move(rejected);
+  return config;
 }
 
 NodeConfig resolve_config(const scene_t& scene, const Settings& settings, const std::string& tool_name) {
-  NodeConfig choice;
-  choice.settings = settings;
-  const std::string& wanted = tool_name.empty() ? choice.settings.tool : tool_name;
+  NodeConfig config;
+  config.settings = settings;
+  const std::string& wanted = tool_name.empty() ? config.settings.tool : tool_name;
   std::string names;
   for (int i = 0; i < scene.tool_count; ++i) {
     const tool_def_t& tool = scene.tools[static_cast<std::size_t>(i)];
     names += (names.empty() ? "" : ", ") + tool.name;
-    if (choice.tool >= 0 || (!wanted.empty() && tool.name != wanted)) continue;
-    choice.tool = i;
-    choice.tool_body = tool.body;
+    if (config.tool >= 0 || (!wanted.empty() && tool.name != wanted)) continue;
+    config.tool = i;
+    config.tool_body = tool.body;
   }
-  if (choice.tool < 0)
-    choice.problem = scene.tool_count == 0 ? "the scene has no tool, so there is nothing to feel with"
+  if (config.tool < 0)
+    config.problem = scene.tool_count == 0 ? "the scene has no tool; add a <tactus:tool>"
                                            : "the scene has no tool \"" + wanted + "\"; choose one of: " + names;
-  return choice;
+  return config;
 }
 
 }  // namespace tactus::thermal

@@ -14,7 +14,7 @@ struct NodeConfig {
   int tool = -1;  // index in scene.tools; -1: none
   int tool_body = -1;
   std::string problem;               // reason why there is no tool, one sentence; otherwise empty
-  std::vector<std::string> refused;  // invalid settings, one sentence each
+  std::vector<std::string> rejected;  // invalid settings, one sentence each
 };
 
 // tool_name: from the command line; empty: the setting, otherwise the first tool of the scene.

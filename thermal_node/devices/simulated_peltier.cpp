@@ -8,12 +8,12 @@ namespace {
 
 constexpr double kStep_s = 0.001;
 // Upper bound of one step, also after a long stop of the process.
-constexpr double kLongest_s = 1;
+constexpr double kMaxTime_s = 1;
 
 }  // namespace
 
 std::optional<PlateReading> SimulatedPeltier::step(double command_degC, double load_W, sync::HostTime now) {
-  const double dt_s = std::clamp(sync::to_seconds(now - now_.value_or(now)), 0.0, kLongest_s);
+  const double dt_s = std::clamp(sync::to_seconds(now - now_.value_or(now)), 0.0, kMaxTime_s);
   now_ = now;
   const int steps = static_cast<int>(std::ceil(dt_s / kStep_s));
   const double load = std::isfinite(load_W) ? load_W : 0;

@@ -11,8 +11,8 @@ Controller::Controller(const ControllerLimits& limits, double start_degC)
 Command Controller::step(double wanted_degC, double dt_s) {
   if (std::isnan(wanted_degC)) wanted_degC = command_degC_;
   const double target = std::clamp(wanted_degC, limits_.min_degC, limits_.max_degC);
-  const double most = dt_s > 0 ? limits_.slew_K_s * dt_s : 0;
-  const double stepped = command_degC_ + std::clamp(target - command_degC_, -most, most);
+  const double max_step = dt_s > 0 ? limits_.slew_K_s * dt_s : 0;
+  const double stepped = command_degC_ + std::clamp(target - command_degC_, -max_step, max_step);
   command_degC_ = std::clamp(stepped, limits_.min_degC, limits_.max_degC);
   return {command_degC_, target != wanted_degC};
 }

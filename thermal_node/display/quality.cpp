@@ -13,6 +13,6 @@ constexpr double kCalm_s = 2;  // design: spare time required before a better st
 
 Quality::Quality(const Settings& s)
     : ladder_(steps(), sync::from_seconds(kBudget / s.rate_Hz), static_cast<int>(kCalm_s * s.rate_Hz)),
-      held_(s.quality == "auto" ? -1 : std::stoi(s.quality)) {}
+      fixed_step_(s.quality == "auto" ? -1 : std::stoi(s.quality)) {}
 
 }  // namespace tactus::thermal

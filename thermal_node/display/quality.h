@@ -20,15 +20,15 @@ class Quality {
 
   // Call once per tick with its duration.
   void add(sync::Nanoseconds used) {
-    if (held_ < 0) ladder_.add(used);
+    if (fixed_step_ < 0) ladder_.add(used);
   }
-  int step() const { return held_ < 0 ? ladder_.step() : held_; }
+  int step() const { return fixed_step_ < 0 ? ladder_.step() : fixed_step_; }
   static constexpr int steps() { return static_cast<int>(kLongestSubsteps_s.size()); }
   double longest_substep_s() const { return kLongestSubsteps_s[static_cast<std::size_t>(step())]; }
 
  private:
   sync::QualityLadder ladder_;
-  int held_;  // step fixed by the setting; -1: chosen from the tick times
+  int fixed_step_;  // step fixed by the setting; -1: chosen from the tick times
 };
 
 }  // namespace tactus::thermal

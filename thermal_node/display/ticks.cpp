@@ -22,8 +22,8 @@ Tick Ticks::next(sync::ContactStream& stream, sync::HostTime now, sync::HostTime
   if (!sim_end_) sim_end_ = map->to_sim(tick.begin - ago);
   // The map slews; an interval that it returns for a moment has already been rendered. A larger step back is a new
   // start.
-  const bool fell_back = *sim_end_ - tick.sim_end > kLongest;
-  tick.sim_begin = fell_back ? tick.sim_end : std::max(*sim_end_, tick.sim_end - kLongest);
+  const bool fell_back = *sim_end_ - tick.sim_end > kMaxInterval;
+  tick.sim_begin = fell_back ? tick.sim_end : std::max(*sim_end_, tick.sim_end - kMaxInterval);
   tick.sim_end = std::max(tick.sim_end, tick.sim_begin);
   sim_end_ = tick.sim_end;
 

@@ -30,7 +30,7 @@ class Ticks {
   // 0.4 s to the brain), so the interval ends this much before now and no part of a touch falls between two ticks.
   static constexpr sync::Nanoseconds kSettle{5'000'000};
   // A tick integrates at most this much simulated time, also after a long stop of the process.
-  static constexpr sync::Nanoseconds kLongest{2'000'000'000};
+  static constexpr sync::Nanoseconds kMaxInterval{2'000'000'000};
 
   // now: the clock; newest_arrival: actual arrival of the newest contact message; delay: of presentation. A gap in
   // the stream while messages arrive is intended: the last contact is held.

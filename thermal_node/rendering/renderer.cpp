@@ -47,7 +47,7 @@ Renderer::Renderer(const Settings& settings, std::vector<material_def_t> materia
       thickness_m_(std::move(thickness_m)),
       tool_(tool),
       tool_body_(tool_body),
-      late_{kLate, sync::from_seconds(settings.late_after_s), sync::from_seconds(settings.late_after_s)},
+      late_{kLatePolicy, sync::from_seconds(settings.late_after_s), sync::from_seconds(settings.late_after_s)},
       skin_(make_skin(settings)),
       lag_(element_degC.value_or(settings.skin_rest_degC)),
       flux_lag_(0),
@@ -70,23 +70,25 @@ ObjectProperties Renderer::object(const material_def_t& m, int body) const {
 }
 
 // Index of the object in the skin model, which keeps its heat; a new object replaces the one touched longest ago.
-std::size_t Renderer::thing_of(int body, int material) {
-  const auto same = [&](const Thing& t) { return t.body == body && t.material == material && t.touched >= 0; };
-  auto found = std::find_if(things_.begin(), things_.end(), same);
-  if (found == things_.end()) {
-    found = std::min_element(things_.begin(), things_.end(),
-                             [](const Thing& a, const Thing& b) { return a.touched < b.touched; });
+std::size_t Renderer::object_index(int body, int material) {
+  const auto same = [&](const TouchedObject& t) {
+    return t.body == body && t.material == material && t.touched >= 0;
+  };
+  auto found = std::find_if(touched_objects_.begin(), touched_objects_.end(), same);
+  if (found == touched_objects_.end()) {
+    found = std::min_element(touched_objects_.begin(), touched_objects_.end(),
+                             [](const TouchedObject& a, const TouchedObject& b) { return a.touched < b.touched; });
     *found = {material, body, tick_};
     skin_->set_object(object(materials_[static_cast<std::size_t>(material)], body),
-                      static_cast<std::size_t>(found - things_.begin()));
+                      static_cast<std::size_t>(found - touched_objects_.begin()));
   }
   found->touched = tick_;
-  return static_cast<std::size_t>(found - things_.begin());
+  return static_cast<std::size_t>(found - touched_objects_.begin());
 }
 
 // Means over the tick hide that the tool may touch only for a part of it, with more force. The conductance is
 // therefore taken at the force and area of the touch itself and then weighted with its time.
-void Renderer::add(Exchange& sum, const sync::ContactPart& c, double interval_s) {
+void Renderer::add(HeatExchange& sum, const sync::ContactPart& c, double interval_s) {
   const double contact_s = sync::to_seconds(c.contact_time);
   if (!(contact_s > 0) || !(interval_s > 0) || c.material < 0 || c.material >= static_cast<int>(materials_.size()))
     return;
@@ -98,14 +100,14 @@ void Renderer::add(Exchange& sum, const sync::ContactPart& c, double interval_s)
       time_share * contact_share(c.force_N / time_share, c.area_m2 / time_share, press), 1 - sum.pressed_share);
   sum.pressed_share += pressed;
   const double covered = c.area_m2 > 0 ? std::min(1.0, c.area_m2 / time_share / settings_.reference_area_m2) : 0;
-  sum.conductance_W_m2K[thing_of(c.body, c.material)] += conductance * pressed;
+  sum.conductance_W_m2K[object_index(c.body, c.material)] += conductance * pressed;
   sum.touched_share = std::min(1.0, sum.touched_share + covered * time_share);
 }
 
 // Adds touches that ended before the interval of this tick but arrive only now, so that their heat is not lost.
 // The force follows from the momentum of a plastic impact, m v, over the time of touch, as in
 // sync/resampling/contact_integral.cpp.
-void Renderer::add_missed_touches(Exchange& sum, const Tick& tick, double interval_s) {
+void Renderer::add_missed_touches(HeatExchange& sum, const Tick& tick, double interval_s) {
   for (const contact_event_t& end : tick.events) {
     if (end.kind != contact_event_t::END || end.tool != tool_ || sync::sim_time(end.time_ns) > tick.sim_begin)
       continue;
@@ -142,20 +144,21 @@ double Renderer::load_W() const { return display_.finger_flux_W_m2() * settings_
 
 // From the wanted skin state to the plate command: lag, then the required plate temperature, then the limits, the
 // tightest last. A plate whose sensor is out of its range or that reports a fault is commanded to rest.
-Command Renderer::command(const Rendering& rendering, double interval_s) {
-  const bool measured = rendering.plate && rendering.plate->plate_degC > kColdestPlate_degC &&
-                        rendering.plate->plate_degC < kHottestPlate_degC;
-  const double plate_degC = measured ? rendering.plate->plate_degC : commanded_degC_;
+Command Renderer::command(const TickOptions& options, double interval_s) {
+  const bool measured = options.plate && options.plate->plate_degC > kColdestPlate_degC &&
+                        options.plate->plate_degC < kHottestPlate_degC;
+  const double plate_degC = measured ? options.plate->plate_degC : commanded_degC_;
   const TemperatureRange wide{settings_.temperature_min_degC, settings_.temperature_max_degC};
   const TemperatureRange range = dwell_.step(plate_degC, interval_s, wide);
   const bool runaway =
-      rendering.plate && (!measured || rendering.plate->fault || plate_degC < wide.min_degC - kRunaway_K ||
-                          plate_degC > wide.max_degC + kRunaway_K);
+      options.plate && (!measured || options.plate->fault || plate_degC < wide.min_degC - kRunaway_K ||
+                        plate_degC > wide.max_degC + kRunaway_K);
 
-  const double skin_degC = lag_.step(skin_->surface_degC(), interval_s, rendering.response_s);
-  const double flux_W_m2 = flux_lag_.step(skin_->heat_flux_W_m2(), interval_s, rendering.response_s);
-  const double aim = display_.step(skin_degC, flux_W_m2, plate_degC, interval_s, rendering.longest_substep_s);
-  double wanted = settings_.display == "flux" ? aim : skin_degC;
+  const double skin_degC = lag_.step(skin_->surface_degC(), interval_s, options.response_s);
+  const double flux_W_m2 = flux_lag_.step(skin_->heat_flux_W_m2(), interval_s, options.response_s);
+  const double plate_target =
+      display_.step(skin_degC, flux_W_m2, plate_degC, interval_s, options.longest_substep_s);
+  double wanted = settings_.display == "flux" ? plate_target : skin_degC;
   if (input_lost_ || runaway) wanted = settings_.skin_rest_degC;
 
   const double allowed = std::clamp(wanted, range.min_degC, range.max_degC);
@@ -169,14 +172,14 @@ Command Renderer::command(const Rendering& rendering, double interval_s) {
   return command;
 }
 
-thermal_state_t Renderer::step(const Tick& tick, const Rendering& rendering) {
+thermal_state_t Renderer::step(const Tick& tick, const TickOptions& options) {
   reports_.clear();
   for (const contact_event_t& event : tick.events) report(event, tick);
 
   const double interval_s = std::max(0.0, sync::to_seconds(tick.end - tick.begin));
   const bool lost = input_lost_ = !usable(tick.contact.status);
   ++tick_;
-  Exchange e;
+  HeatExchange e;
   if (interval_s > 0) add_missed_touches(e, tick, interval_s);
   e.pressed_share = 0;  // each missed touch had the whole pad
   if (!lost) {
@@ -184,17 +187,18 @@ thermal_state_t Renderer::step(const Tick& tick, const Rendering& rendering) {
     std::vector<sync::ContactPart> parts = tick.contact.parts;
     std::stable_sort(parts.begin(), parts.end(),
                      [](const auto& a, const auto& b) { return a.force_N > b.force_N; });
-    parts.resize(std::min(parts.size(), Skin::kThings));
+    parts.resize(std::min(parts.size(), Skin::kMaxObjects));
     for (const sync::ContactPart& part : parts) add(e, part, tick.contact_interval_s());
   }
-  skin_->step(interval_s, e.conductance_W_m2K, e.touched_share, rendering.longest_substep_s);
-  const Command command = this->command(rendering, interval_s);
+  skin_->step(interval_s, e.conductance_W_m2K, e.touched_share, options.longest_substep_s);
+  const Command command = this->command(options, interval_s);
 
   thermal_state_t out{};
   out.header.sim_time_ns = std::max<std::int64_t>(-1, sync::to_ns(tick.sim_end));
   out.tool = tool_;
   const auto most = std::max_element(e.conductance_W_m2K.begin(), e.conductance_W_m2K.end());
-  out.material = *most > 0 ? things_[static_cast<std::size_t>(most - e.conductance_W_m2K.begin())].material : -1;
+  out.material =
+      *most > 0 ? touched_objects_[static_cast<std::size_t>(most - e.conductance_W_m2K.begin())].material : -1;
   out.force_N = lost ? 0 : reading(tick.contact.force_N);
   out.area_m2 = lost ? 0 : reading(tick.contact.area_m2);
   out.heat_flux_W_m2 = static_cast<float>(skin_->heat_flux_W_m2());

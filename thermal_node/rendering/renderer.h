@@ -28,7 +28,7 @@ namespace tactus::thermal {
 inline constexpr sync::LateRule kLate = sync::LateRule::kAlwaysApply;
 
 // Quality of a tick.
-struct Rendering {
+struct TickOptions {
   double response_s = 0;  // time constant of a display that is slow on purpose; 0: none
   double longest_substep_s = Skin::kLongestSubstep_s;
   std::optional<PlateReading>
@@ -46,7 +46,7 @@ class Renderer {
   // The state to publish at tick.end; of the header only the simulated instant is filled. Stale or missing input
   // counts as no contact; the command then returns to the resting temperature, independent of skin model and
   // quality.
-  thermal_state_t step(const Tick& tick, const Rendering& rendering = {});
+  thermal_state_t step(const Tick& tick, const TickOptions& options = {});
 
   // Applies changed settings from the next step on, as far as they can change while it runs.
   void change(const Settings& settings) {
@@ -70,22 +70,22 @@ class Renderer {
 
  private:
   // Means over the tick.
-  struct Exchange {
-    std::array<double, Skin::kThings> conductance_W_m2K{};  // to each object under the skin
+  struct HeatExchange {
+    std::array<double, Skin::kMaxObjects> conductance_W_m2K{};  // to each object under the skin
     double touched_share = 0;                               // of the pad and of the time
     double pressed_share = 0;  // share of the conductance of the whole pad, firmly pressed: at most 1
   };
   // An object that the models hold under the skin.
-  struct Thing {
+  struct TouchedObject {
     int material = -1, body = -1;
     std::int64_t touched = -1;  // last tick in which it was touched
   };
-  void add(Exchange& sum, const sync::ContactPart& part, double interval_s);
-  void add_missed_touches(Exchange& sum, const Tick& tick, double interval_s);
-  std::size_t thing_of(int body, int material);
+  void add(HeatExchange& sum, const sync::ContactPart& part, double interval_s);
+  void add_missed_touches(HeatExchange& sum, const Tick& tick, double interval_s);
+  std::size_t object_index(int body, int material);
   ObjectProperties object(const material_def_t& material, int body) const;
   void report(const contact_event_t& event, const Tick& tick);
-  Command command(const Rendering& rendering, double interval_s);
+  Command command(const TickOptions& options, double interval_s);
 
   Settings settings_;
   std::vector<material_def_t> materials_;
@@ -99,7 +99,7 @@ class Renderer {
   Dwell dwell_;
   Controller controller_;
   double commanded_degC_;
-  std::array<Thing, Skin::kThings> things_{};
+  std::array<TouchedObject, Skin::kMaxObjects> touched_objects_{};
   std::int64_t tick_ = 0;
   bool input_lost_ = true;
   std::vector<presentation_t> reports_;

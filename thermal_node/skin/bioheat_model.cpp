@@ -8,7 +8,7 @@ namespace tactus::thermal {
 namespace {
 
 // Heat crosses this length, in s^0.5, in about (95/2)^2 s = 2000 s: a thicker object is infinite.
-constexpr double kFarthest = 95;
+constexpr double kMaxDepth = 95;
 // Bound for the thinnest cells that a caller may request.
 constexpr std::size_t kMaxCells = 1000;
 
@@ -46,9 +46,9 @@ BioheatModel::BioheatModel(const Tissue& tissue, const Mesh& mesh, Grid grid)
     : tissue_(tissue),
       mesh_(mesh),
       width_m_(std::move(grid.width_m)),
-      columns_(std::move(grid.cells), kThings, kMaxCells),
-      thing_width_m_(kMaxCells),
-      thing_cells_(kMaxCells) {
+      columns_(std::move(grid.cells), kMaxObjects, kMaxCells),
+      object_width_m_(kMaxCells),
+      object_cells_(kMaxCells) {
   reset();
 }
 
@@ -72,26 +72,26 @@ void BioheatModel::reset() {
     columns_.set_blood(tissue_.rest_degC);
     columns_.set_skin(tissue_.rest_degC);
   }
-  for (std::size_t i = 0; i < kThings; ++i) set_object(objects_[i], i);
+  for (std::size_t i = 0; i < kMaxObjects; ++i) set_object(objects_[i], i);
 }
 
-void BioheatModel::set_object(const ObjectProperties& object, std::size_t thing) {
-  objects_[thing] = object;
+void BioheatModel::set_object(const ObjectProperties& object, std::size_t index) {
+  objects_[index] = object;
   const double k = object.conductivity_W_mK, c = object.heat_capacity_J_m3K;
   std::size_t count = 0;
   double back_W_m2K = 0;
   if (conducts(k, c)) {
-    const double root = std::sqrt(k / c), far_m = kFarthest * root;
-    const bool ends = object.thickness_m > 0 && object.thickness_m < far_m;
-    count =
-        growing_widths(ends ? object.thickness_m : far_m, mesh_.first_cell * root, mesh_.growth, thing_width_m_);
+    const double root = std::sqrt(k / c), max_depth_m = kMaxDepth * root;
+    const bool ends = object.thickness_m > 0 && object.thickness_m < max_depth_m;
+    count = growing_widths(ends ? object.thickness_m : max_depth_m, mesh_.first_cell * root, mesh_.growth,
+                           object_width_m_);
     for (std::size_t i = 0; i < count; ++i)
-      thing_cells_[i] = {thing_width_m_[i] * c, 2 * k / thing_width_m_[i], 0};
+      object_cells_[i] = {object_width_m_[i] * c, 2 * k / object_width_m_[i], 0};
     // A finite object loses heat at its back; an infinite one has no back.
     if (ends && count > 0 && tissue_.air_conductance_W_m2K > 0)
-      back_W_m2K = 1 / (1 / tissue_.air_conductance_W_m2K + 1 / thing_cells_[count - 1].half);
+      back_W_m2K = 1 / (1 / tissue_.air_conductance_W_m2K + 1 / object_cells_[count - 1].half);
   }
-  columns_.set_thing(thing, std::span<const HeatCell>(thing_cells_).first(count), back_W_m2K, object.rest_degC);
+  columns_.set_object(index, std::span<const HeatCell>(object_cells_).first(count), back_W_m2K, object.rest_degC);
 }
 
 void BioheatModel::step(double dt_s, std::span<const double> conductance_W_m2K, double touched_share,

@@ -34,7 +34,7 @@ class BioheatModel final : public Skin {
   void reset() override;
   // An object without conductivity or heat capacity, or with values beyond any material, takes no heat. A
   // thickness that is not positive counts as infinite.
-  void set_object(const ObjectProperties& object, std::size_t thing = 0) override;
+  void set_object(const ObjectProperties& object, std::size_t index = 0) override;
   void step(double dt_s, std::span<const double> conductance_W_m2K, double touched_share,
             double longest_substep_s = kLongestSubstep_s) override;
   double surface_degC() const override { return columns_.surface(); }
@@ -57,10 +57,10 @@ class BioheatModel final : public Skin {
   Tissue tissue_;
   Mesh mesh_;
   std::vector<double> width_m_;  // of the cells of skin, surface first
-  std::array<ObjectProperties, kThings> objects_{};
+  std::array<ObjectProperties, kMaxObjects> objects_{};
   HeatColumns columns_;
-  std::vector<double> thing_width_m_;  // scratch for set_object
-  std::vector<HeatCell> thing_cells_;
+  std::vector<double> object_width_m_;  // scratch for set_object
+  std::vector<HeatCell> object_cells_;
   double blood_degC_ = 0;
 };
 

@@ -7,7 +7,7 @@
 
 namespace tactus::thermal {
 namespace {
-constexpr double kSmallestPatch_m2 = 1e-6;
+constexpr double kMinPatch_m2 = 1e-6;
 }
 
 double effusivity(double conductivity_W_mK, double density_kg_m3, double specific_heat_J_kgK) {
@@ -19,7 +19,7 @@ double contact_conductance_W_m2K(double k) { return k > 0 && std::isfinite(k) ? 
 
 double contact_share(double force_N, double area_m2, const Press& p) {
   if (!(force_N > 0) || !std::isfinite(force_N) || !std::isfinite(area_m2)) return 0;
-  const double area = std::max(area_m2, kSmallestPatch_m2);
+  const double area = std::max(area_m2, kMinPatch_m2);
   const double pressure_ratio = (force_N / area) / (p.reference_force_N / p.reference_area_m2);
   return std::min(1.0, area / p.reference_area_m2 * std::pow(pressure_ratio, p.pressure_exponent));
 }

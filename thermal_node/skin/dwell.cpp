@@ -24,25 +24,25 @@ TemperatureRange Dwell::step(double degC, double dt_s, const TemperatureRange& w
   if (warmest > kWarm_degC)
     dose_s_ += dose_rate(warmest) * dt_s;
   else
-    dose_s_ *= std::exp(-dt_s / kForgets_s);
+    dose_s_ *= std::exp(-dt_s / kDecay_s);
   cold_s_ = std::max(0.0, cold_s_ + (coldest < limits_.cold_degC ? dt_s : -dt_s));
   // Bounds the recovery time.
   dose_s_ = std::min(dose_s_, 2 * limits_.dose_max_s);
   cold_s_ = std::min(cold_s_, 2 * limits_.cold_max_s);
 
-  if (dose_s_ >= limits_.dose_max_s) warm_enough_ = true;
-  if (dose_s_ <= limits_.dose_max_s / 2) warm_enough_ = false;
-  if (cold_s_ >= limits_.cold_max_s) cold_enough_ = true;
-  if (cold_s_ <= limits_.cold_max_s / 2) cold_enough_ = false;
-  return {cold_enough_ ? std::max(wide.min_degC, limits_.cold_degC) : wide.min_degC,
-          warm_enough_ ? std::min(wide.max_degC, kWarm_degC) : wide.max_degC};
+  if (dose_s_ >= limits_.dose_max_s) warm_limited_ = true;
+  if (dose_s_ <= limits_.dose_max_s / 2) warm_limited_ = false;
+  if (cold_s_ >= limits_.cold_max_s) cold_limited_ = true;
+  if (cold_s_ <= limits_.cold_max_s / 2) cold_limited_ = false;
+  return {cold_limited_ ? std::max(wide.min_degC, limits_.cold_degC) : wide.min_degC,
+          warm_limited_ ? std::min(wide.max_degC, kWarm_degC) : wide.max_degC};
 }
 
 void Dwell::resume(const Dwell& before) {
   dose_s_ = before.dose_s_;
   cold_s_ = before.cold_s_;
-  warm_enough_ = before.warm_enough_;
-  cold_enough_ = before.cold_enough_;
+  warm_limited_ = before.warm_limited_;
+  cold_limited_ = before.cold_limited_;
 }
 
 }  // namespace tactus::thermal

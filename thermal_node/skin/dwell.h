@@ -41,12 +41,12 @@ class Dwell {
   static constexpr double kWarm_degC = 39;
   // Time constant of the decay of the dose below that temperature: design, the minutes in which skin returns to
   // rest.
-  static constexpr double kForgets_s = 300;
+  static constexpr double kDecay_s = 300;
 
  private:
   DwellLimits limits_;
   double dose_s_ = 0, cold_s_ = 0;
-  bool warm_enough_ = false, cold_enough_ = false;  // until half of the sum has decayed
+  bool warm_limited_ = false, cold_limited_ = false;  // until half of the sum has decayed
 };
 
 }  // namespace tactus::thermal

@@ -11,20 +11,20 @@ constexpr double kMaxSubsteps = 2000;
 // Alexander 1977, two stages: gamma = 1 - 1/sqrt(2).
 constexpr double kGamma = 0.29289321881345254;
 // Minimum number of cells of a layer or object.
-constexpr std::size_t kFewestCells = 4;
+constexpr std::size_t kMinCells = 4;
 
 double in_series(double a, double b) { return a > 0 && b > 0 ? 1 / (1 / a + 1 / b) : 0; }
 
 }  // namespace
 
-HeatColumns::HeatColumns(std::vector<HeatCell> skin, std::size_t things, std::size_t most_cells)
-    : columns_(1 + things) {
+HeatColumns::HeatColumns(std::vector<HeatCell> skin, std::size_t object_count, std::size_t max_cells)
+    : columns_(1 + object_count) {
   columns_[0].cells = std::move(skin);
   for (std::size_t k = 0; k < columns_.size(); ++k) {
     Column& c = columns_[k];
-    const std::size_t most = k == 0 ? c.cells.size() : most_cells;
-    c.cells.reserve(most);
-    for (auto* values : {&c.link, &c.u, &c.stage, &c.right, &c.inverse, &c.share}) values->resize(most);
+    const std::size_t cell_count = k == 0 ? c.cells.size() : max_cells;
+    c.cells.reserve(cell_count);
+    for (auto* values : {&c.link, &c.u, &c.stage, &c.right, &c.inverse, &c.share}) values->resize(cell_count);
   }
   join(columns_[0]);
 }
@@ -40,8 +40,8 @@ void HeatColumns::set_skin(double degC) {
   flows_ = {};
 }
 
-void HeatColumns::set_thing(std::size_t thing, std::span<const HeatCell> cells, double back_W_m2K, double degC) {
-  Column& c = columns_[1 + thing];
+void HeatColumns::set_object(std::size_t index, std::span<const HeatCell> cells, double back_W_m2K, double degC) {
+  Column& c = columns_[1 + index];
   c.cells.assign(cells.begin(), cells.end());
   c.back = back_W_m2K;
   join(c);
@@ -102,7 +102,7 @@ double HeatColumns::surface_of(bool of_stage) const {
   return into / all;
 }
 
-double HeatColumns::things_flux(bool of_stage) const {
+double HeatColumns::objects_flux(bool of_stage) const {
   const double surface = surface_of(of_stage);
   double flux = 0;
   for (std::size_t k = 1; k < columns_.size(); ++k) {
@@ -112,8 +112,8 @@ double HeatColumns::things_flux(bool of_stage) const {
   return flux;
 }
 
-void HeatColumns::account(double weight_s, bool of_stage) {
-  flows_.skin_to_things += weight_s * things_flux(of_stage);
+void HeatColumns::add_flows(double weight_s, bool of_stage) {
+  flows_.skin_to_objects += weight_s * objects_flux(of_stage);
   flows_.skin_to_room += weight_s * room_ * (surface_of(of_stage) - room_degC_);
   const Column& skin = columns_[0];
   const std::vector<double>& u = of_stage ? skin.stage : skin.u;
@@ -122,7 +122,7 @@ void HeatColumns::account(double weight_s, bool of_stage) {
   for (std::size_t k = 1; k < columns_.size(); ++k) {
     const Column& c = columns_[k];
     if (!c.cells.empty())
-      flows_.things_to_room += weight_s * c.back * ((of_stage ? c.stage : c.u)[c.cells.size() - 1] - room_degC_);
+      flows_.objects_to_room += weight_s * c.back * ((of_stage ? c.stage : c.u)[c.cells.size() - 1] - room_degC_);
   }
 }
 
@@ -141,14 +141,14 @@ void HeatColumns::step(double dt_s, std::span<const double> contact_W_m2K, doubl
     factor(1, kGamma * h_s);
     for (int i = 0; i < static_cast<int>(count); ++i) {
       solve(false);
-      account((1 - kGamma) * h_s, true);
-      flux_ = (1 - kGamma) * things_flux(true);
+      add_flows((1 - kGamma) * h_s, true);
+      flux_ = (1 - kGamma) * objects_flux(true);
       for (Column& c : columns_)
         for (std::size_t j = 0; j < c.cells.size(); ++j)
           c.stage[j] = c.u[j] + (1 - kGamma) / kGamma * (c.stage[j] - c.u[j]);
       solve(true);
-      account(kGamma * h_s, false);
-      flux_ += kGamma * things_flux(false);
+      add_flows(kGamma * h_s, false);
+      flux_ += kGamma * objects_flux(false);
     }
   }
   surface_ = surface_of(false);
@@ -176,18 +176,18 @@ double HeatColumns::energy(const Column& c) {
   return sum;
 }
 
-double HeatColumns::things_energy() const {
+double HeatColumns::objects_energy() const {
   double sum = 0;
   for (std::size_t k = 1; k < columns_.size(); ++k) sum += energy(columns_[k]);
   return sum;
 }
 
 std::size_t growing_widths(double thickness, double first, double growth, std::span<double> widths) {
-  first = std::min(first, thickness / kFewestCells);
+  first = std::min(first, thickness / kMinCells);
   if (!(first > 0) || !(thickness > 0)) return 0;
   double sum = 0;
   std::size_t count = 0;
-  for (double w = first; sum < thickness * (1 - 1e-12) || count < kFewestCells; w *= growth) {
+  for (double w = first; sum < thickness * (1 - 1e-12) || count < kMinCells; w *= growth) {
     if (count == widths.size()) return 0;
     widths[count++] = w;
     sum += w;

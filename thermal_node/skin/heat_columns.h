@@ -26,9 +26,9 @@ struct HeatCell {
 // Realtime-safe: yes, except the constructor. Not thread-safe.
 class HeatColumns {
  public:
-  // skin: surface first, insulated at the deep end. things: number of objects that can touch it at once, each of
-  // at most most_cells cells.
-  HeatColumns(std::vector<HeatCell> skin, std::size_t things, std::size_t most_cells);
+  // skin: surface first, insulated at the deep end. object_count: number of objects that can touch it at once,
+  // each of at most max_cells cells.
+  HeatColumns(std::vector<HeatCell> skin, std::size_t object_count, std::size_t max_cells);
 
   // Temperatures of the surroundings. Any temperature scale is valid if it is the same everywhere.
   void set_blood(double degC) { blood_degC_ = degC; }
@@ -39,9 +39,9 @@ class HeatColumns {
   // all objects.
   void settle_skin(double room_W_m2K);
 
-  // Sets an object, surface first, at one temperature; its back loses heat to the room. At most most_cells cells;
+  // Sets an object, surface first, at one temperature; its back loses heat to the room. At most max_cells cells;
   // none: it takes no heat.
-  void set_thing(std::size_t thing, std::span<const HeatCell> cells, double back_W_m2K, double degC);
+  void set_object(std::size_t index, std::span<const HeatCell> cells, double back_W_m2K, double degC);
 
   // Advances by dt in substeps of at most longest_substep_s. contact_W_m2K: conductance to each object, W/(m^2 K);
   // objects beyond its end are not touched. room_W_m2K: conductance to the room.
@@ -55,12 +55,12 @@ class HeatColumns {
 
   // Heat flows of the last step, J/m^2, each by the quadrature of the step itself.
   struct Flows {
-    double skin_to_things = 0, blood_to_skin = 0, skin_to_room = 0, things_to_room = 0;
+    double skin_to_objects = 0, blood_to_skin = 0, skin_to_room = 0, objects_to_room = 0;
   };
   const Flows& flows() const { return flows_; }
   // J/m^2, relative to the zero of the temperature scale.
   double skin_energy() const { return energy(columns_[0]); }
-  double things_energy() const;
+  double objects_energy() const;
 
  private:
   struct Column {
@@ -78,8 +78,8 @@ class HeatColumns {
   void factor(double capacity_share, double weight_s);
   void solve(bool from_stage);
   double surface_of(bool of_stage) const;
-  void account(double weight_s, bool of_stage);
-  double things_flux(bool of_stage) const;
+  void add_flows(double weight_s, bool of_stage);
+  double objects_flux(bool of_stage) const;
 
   std::vector<Column> columns_;                                 // skin first
   double room_ = 0;                                             // W/(m^2 K)

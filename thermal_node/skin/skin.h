@@ -28,9 +28,9 @@ class Skin {
   // Returns skin and objects to rest.
   virtual void reset() = 0;
   // Number of objects that can touch the skin at once.
-  static constexpr std::size_t kThings = 4;
+  static constexpr std::size_t kMaxObjects = 4;
   // Puts another object, uniformly at its own temperature, under the skin.
-  virtual void set_object(const ObjectProperties& object, std::size_t thing = 0) = 0;
+  virtual void set_object(const ObjectProperties& object, std::size_t index = 0) = 0;
 
   // Advances by dt seconds. conductance_W_m2K: to each object, W/(m^2 K), mean over dt and pad; objects beyond its
   // end are not touched. touched_share: share of dt and area in contact; the rest exchanges heat with the room.

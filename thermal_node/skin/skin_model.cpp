@@ -26,20 +26,20 @@ std::vector<HeatCell> as_vector(const std::array<HeatCell, kCells>& cells) { ret
 }  // namespace
 
 SkinModel::SkinModel(const SkinProperties& skin)
-    : skin_(skin), columns_(as_vector(half_space(skin.effusivity, skin.perfusion_1_s)), kThings, kCells) {
+    : skin_(skin), columns_(as_vector(half_space(skin.effusivity, skin.perfusion_1_s)), kMaxObjects, kCells) {
   reset();
 }
 
 void SkinModel::reset() {
   columns_.set_skin(0);
-  for (std::size_t i = 0; i < kThings; ++i) set_object(objects_[i], i);
+  for (std::size_t i = 0; i < kMaxObjects; ++i) set_object(objects_[i], i);
 }
 
-void SkinModel::set_object(const ObjectProperties& object, std::size_t thing) {
-  objects_[thing] = object;
+void SkinModel::set_object(const ObjectProperties& object, std::size_t index) {
+  objects_[index] = object;
   const auto cells = half_space(object.effusivity, 0);
   const bool conducts = object.effusivity > 0;
-  columns_.set_thing(thing, std::span(cells).first(conducts ? kCells : 0), 0, object.rest_degC - skin_.rest_degC);
+  columns_.set_object(index, std::span(cells).first(conducts ? kCells : 0), 0, object.rest_degC - skin_.rest_degC);
 }
 
 void SkinModel::step(double dt_s, std::span<const double> conductance_W_m2K, double touched_share,

@@ -28,7 +28,7 @@ class SkinModel final : public Skin {
 
   using Skin::step;
   void reset() override;
-  void set_object(const ObjectProperties& object, std::size_t thing = 0) override;
+  void set_object(const ObjectProperties& object, std::size_t index = 0) override;
   void step(double dt_s, std::span<const double> conductance_W_m2K, double touched_share,
             double longest_substep_s = kLongestSubstep_s) override;
   double surface_degC() const override { return skin_.rest_degC + columns_.surface(); }
@@ -36,7 +36,7 @@ class SkinModel final : public Skin {
 
  private:
   SkinProperties skin_;
-  std::array<ObjectProperties, kThings> objects_{};
+  std::array<ObjectProperties, kMaxObjects> objects_{};
   HeatColumns columns_;  // K above the skin at rest
 };
 

@@ -13,7 +13,7 @@ struct NodeConfig {
   int tool = -1;        // index in scene.tools; -1: none, see `problem`
   std::string problem;  // one sentence
   Settings settings;
-  std::vector<std::string> refused;  // one sentence per invalid setting
+  std::vector<std::string> rejected;  // one sentence per invalid setting
 };
 
 // tool_name: empty selects the first tool.

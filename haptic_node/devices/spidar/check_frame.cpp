@@ -7,34 +7,35 @@
 namespace tactus::haptic {
 namespace {
 
-[[noreturn]] void refuse(const StringFrame& f, const std::string& what) {
+[[noreturn]] void reject(const StringFrame& f, const std::string& what) {
   throw std::runtime_error("string frame \"" + f.name + "\": " + what);
 }
 
-void check_number(const StringFrame& f, const char* what, double value, double least, double most) {
-  if (value >= least && value <= most) return;
+void check_number(const StringFrame& f, const char* what, double value, double min, double max) {
+  if (value >= min && value <= max) return;
   std::ostringstream out;
-  out << what << " is " << value << "; it must be from " << least << " to " << most;
-  refuse(f, out.str());
+  out << what << " is " << value << "; it must be from " << min << " to " << max;
+  reject(f, out.str());
 }
 
 void check_strings(const StringFrame& f) {
   if (f.size() != 4 && f.size() != 8)
-    refuse(f, "it has " + std::to_string(f.size()) + " strings; use four on one point or eight on a grip");
+    reject(f, "it has " + std::to_string(f.size()) + " strings; use four on one point or eight on a grip");
   for (std::size_t i = 0; i < f.strings.size(); ++i) {
     const StringEnds& s = f.strings[i];
     const std::string which = "string " + std::to_string(i + 1);
     // Limits: a room for anchors, a two-handed grip for knots.
     if (!s.anchor_m.allFinite() || s.anchor_m.norm() > 20)
-      refuse(f, which + ": its anchor is no place within 20 m");
-    if (!s.knot_m.allFinite() || s.knot_m.norm() > 1) refuse(f, which + ": its knot is no place within 1 m");
+      reject(f, which + ": its anchor is not within 20 m; write it in metres");
+    if (!s.knot_m.allFinite() || s.knot_m.norm() > 1)
+      reject(f, which + ": its knot is not within 1 m; write it in metres");
     if (!f.has_torque() && !s.knot_m.isZero())
-      refuse(f, which + " is not tied to the one point; with four strings leave the knots out");
+      reject(f, which + " does not end at the one point of the grip; omit knot_m with four strings");
     for (std::size_t j = 0; j < i; ++j)
       if ((f.strings[j].anchor_m - s.anchor_m).norm() < 1e-3)
-        refuse(f, which + " and string " + std::to_string(j + 1) + " leave from one place; move an anchor");
+        reject(f, which + " and string " + std::to_string(j + 1) + " have one anchor; move an anchor");
     if (s.anchor_m.norm() < f.workspace_radius_m + s.knot_m.norm())
-      refuse(f, which + ": its anchor lies inside the workspace; make workspace_radius_m smaller");
+      reject(f, which + ": its anchor lies inside the workspace; make workspace_radius_m smaller");
   }
 }
 
@@ -46,11 +47,11 @@ void check_workspace(const StringFrame& f) {
     if (solve_tensions(f, pose, {}).held) return;
     std::ostringstream out;
     if (at.isZero() && turn.isZero())
-      out << "the strings cannot keep the grip in its middle: they leave a direction free; move the anchors";
+      out << "the strings cannot hold the grip in the middle: they leave a direction free; move the anchors";
     else
       out << "at (" << at.x() << ", " << at.y() << ", " << at.z() << ") m, tilted by " << turn.norm()
-          << " rad, strings that only pull do not keep the grip; make the workspace smaller or move the anchors";
-    refuse(f, out.str());
+          << " rad, strings that only pull cannot hold the grip; make the workspace smaller or move the anchors";
+    reject(f, out.str());
   };
   check(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
   for (int i = 0; i < 27; ++i) {

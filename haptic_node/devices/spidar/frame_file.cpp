@@ -13,25 +13,25 @@ namespace {
 using nlohmann::json;
 constexpr std::uintmax_t kMaxBytes = 64 << 10;
 
-[[noreturn]] void refuse(const std::string& name, const std::string& what) {
+[[noreturn]] void reject(const std::string& name, const std::string& what) {
   throw std::runtime_error("string frame " + name + ": " + what);
 }
 
 Eigen::Vector3d place(const json& value, const std::string& field, const std::string& name) {
   if (!value.is_array() || value.size() != 3 || !value[0].is_number() || !value[1].is_number() ||
       !value[2].is_number())
-    refuse(name, "write \"" + field + "\" as [x, y, z] in metres");
+    reject(name, "write \"" + field + "\" as [x, y, z] in metres");
   return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
 }
 
 StringEnds string_ends(const json& value, const std::string& name) {
-  if (!value.is_object() || !value.contains("anchor_m")) refuse(name, "every string needs its \"anchor_m\"");
+  if (!value.is_object() || !value.contains("anchor_m")) reject(name, "every string needs its \"anchor_m\"");
   StringEnds ends{place(value["anchor_m"], "anchor_m", name), Eigen::Vector3d::Zero()};
   for (const auto& [field, content] : value.items()) {
     if (field == "knot_m")
       ends.knot_m = place(content, field, name);
     else if (field != "anchor_m")
-      refuse(name, "a string has no \"" + field + "\"; there are anchor_m and knot_m");
+      reject(name, "a string has no \"" + field + "\"; use anchor_m and knot_m");
   }
   return ends;
 }
@@ -40,7 +40,7 @@ StringEnds string_ends(const json& value, const std::string& name) {
 
 StringFrame parse_frame(const std::string& text, const std::string& name) {
   const json file = json::parse(text, nullptr, false);
-  if (!file.is_object()) refuse(name, "it is no JSON object; see haptic_node/devices/README.md for one");
+  if (!file.is_object()) reject(name, "it is no JSON object; see haptic_node/devices/README.md for one");
   StringFrame f;
   f.name = name;
   std::map<std::string, double*> wanted = {
@@ -51,18 +51,18 @@ StringFrame parse_frame(const std::string& text, const std::string& name) {
   for (const auto& [field, content] : file.items()) {
     if (field == "strings") {
       if (!content.is_array() || content.size() > kMaxStrings)
-        refuse(name, "\"strings\" is no list of four or eight");
+        reject(name, "\"strings\" is no list of four or eight");
       for (const json& s : content) f.strings.push_back(string_ends(s, name));
       continue;
     }
     const auto number = wanted.find(field);
-    if (number == wanted.end()) refuse(name, "there is no field \"" + field + "\"");
-    if (!content.is_number()) refuse(name, "\"" + field + "\" is no number");
+    if (number == wanted.end()) reject(name, "there is no field \"" + field + "\"");
+    if (!content.is_number()) reject(name, "\"" + field + "\" is no number");
     *number->second = content.get<double>();
     wanted.erase(number);
   }
   if (f.strings.size() != 8) wanted.erase("workspace_tilt_rad");
-  if (!wanted.empty()) refuse(name, "it lacks \"" + wanted.begin()->first + "\"");
+  if (!wanted.empty()) reject(name, "it lacks \"" + wanted.begin()->first + "\"");
   check_frame(f);
   return f;
 }
@@ -70,10 +70,10 @@ StringFrame parse_frame(const std::string& text, const std::string& name) {
 StringFrame read_frame(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) > kMaxBytes)
-    refuse(path, "it is no regular file of at most 64 kB; name a JSON file");
+    reject(path, "it is no regular file of at most 64 kB; name a JSON file");
   std::ifstream in(path);
   std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) refuse(path, "it cannot be read; check the path and its permissions");
+  if (!in || !(text << in.rdbuf())) reject(path, "it cannot be read; check the path and its permissions");
   return parse_frame(text.str(), path);
 }
 

@@ -12,7 +12,7 @@ namespace {
 // known frame (tests/bench/spidar_table).
 constexpr double kPoseCounts = 1.6;
 // For a grip with a single knot, which does not rotate.
-constexpr double kLeastLever_m = 0.001;
+constexpr double kMinLever_m = 0.001;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ Spidar::Spidar(StringFrame frame, const Eigen::Vector3d& origin_m, std::unique_p
       motors_(std::move(motors)),
       middle_m_(string_lengths(frame_, {})),
       velocity_(kPoseCounts * frame_.encoder_step_m),
-      spin_(kPoseCounts * frame_.encoder_step_m / std::max(frame_.lever_m(), kLeastLever_m)) {
+      spin_(kPoseCounts * frame_.encoder_step_m / std::max(frame_.lever_m(), kMinLever_m)) {
   check_frame(frame_);
   tensions_.tensions_N.setConstant(frame_.size(), frame_.min_tension_N);
 }
@@ -38,7 +38,7 @@ DeviceState Spidar::read(sync::HostTime now) {
   }
   lost_ = lost;
   if (!lost) {
-    turned_rad_ += turn_between(pose_.orientation, solved_.pose.orientation);
+    turned_rad_ += rotation_between(pose_.orientation, solved_.pose.orientation);
     pose_ = solved_.pose;
   }
 
@@ -53,16 +53,16 @@ DeviceState Spidar::read(sync::HostTime now) {
   return state;
 }
 
-double Spidar::inside() const {
+double Spidar::workspace_factor() const {
   const double r = frame_.workspace_radius_m;
   return std::clamp(1 - (pose_.position_m.norm() - r) / (kEdgeShare * r), 0.0, 1.0);
 }
 
 void Spidar::write(const Wrench& wanted) {
-  const double inside = lost_ ? 0 : this->inside();
-  tensions_ = solve_tensions(frame_, pose_, {inside * wanted.force_N, inside * wanted.torque_N_m});
-  const PerString least = PerString::Constant(frame_.size(), frame_.min_tension_N);
-  motors_->write(least + inside * (tensions_.tensions_N - least));
+  const double factor = lost_ ? 0 : workspace_factor();
+  tensions_ = solve_tensions(frame_, pose_, {factor * wanted.force_N, factor * wanted.torque_N_m});
+  const PerString min_N = PerString::Constant(frame_.size(), frame_.min_tension_N);
+  motors_->write(min_N + factor * (tensions_.tensions_N - min_N));
 }
 
 }  // namespace tactus::haptic

@@ -37,7 +37,7 @@ class Spidar : public Device {
   // Tensions of the last written force, its error and the reason.
   const Tensions& tensions() const { return tensions_; }
   // 1 inside the workspace, 0 beyond its edge.
-  double inside() const;
+  double workspace_factor() const;
 
  private:
   StringFrame frame_;

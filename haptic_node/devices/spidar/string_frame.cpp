@@ -16,10 +16,10 @@ constexpr double kWinding_m_s = 4;
 // design: the current loop of a servo amplifier follows within half a millisecond.
 constexpr double kTensionTime_s = 0.5e-3;
 
-StringFrame motors(const char* name, double least_N, double count_m) {
+StringFrame motors(const char* name, double min_tension_N, double count_m) {
   StringFrame f;
   f.name = name;
-  f.min_tension_N = least_N;
+  f.min_tension_N = min_tension_N;
   f.max_tension_N = 20;
   f.encoder_step_m = count_m;
   f.winding_speed_m_s = kWinding_m_s;

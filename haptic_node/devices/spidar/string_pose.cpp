@@ -9,7 +9,7 @@ namespace {
 constexpr int kMaxSteps = 30;
 // Damping relative to the diagonal (Marquardt 1963): almost zero at first, since the iteration starts from the
 // last pose.
-constexpr double kLeastDamping = 1e-12, kFirstDamping = 1e-9, kMaxDamping = 1e6;
+constexpr double kMinDamping = 1e-12, kFirstDamping = 1e-9, kMaxDamping = 1e6;
 
 // Applies a translation and a rotation in units of lever_m, so that both are lengths.
 GripPose moved(const GripPose& pose, const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>& by, double lever_m) {
@@ -52,7 +52,7 @@ SolvedPose solve_pose(const StringFrame& frame, const PerString& lengths_m, cons
       if (better) {
         out.pose = next;
         error = next_error;
-        damping = std::max(damping / 10, kLeastDamping);
+        damping = std::max(damping / 10, kMinDamping);
       }
       if (!std::isfinite(step.norm()) || step.norm() < done_m) {
         out.converged = std::isfinite(step.norm());

@@ -16,7 +16,7 @@ constexpr double kSlack_N = 1e-9;
 
 // A reduced force is lowered by up to this additional share, so that the tensions have room and do not jump
 // between corners of the allowed region (design: one fiftieth, below the discrimination threshold of a hand).
-constexpr double kRoom = 0.02;
+constexpr double kMargin = 0.02;
 
 // The tensions that give share * w are particular * share + null * z: a plane (with four strings a line). The
 // limits of every string cut it to a convex polygon.
@@ -24,7 +24,7 @@ struct Solutions {
   PerString particular;
   Eigen::Matrix<double, Eigen::Dynamic, 2, 0, kMaxStrings, 2>
       null;  // orthonormal columns; with four strings one is 0
-  double least, most;
+  double min_N, max_N;
 };
 
 // At most four corners and one more per cut.
@@ -49,7 +49,7 @@ void cut(Polygon& p, const Vector2& normal, double bound) {
 
 Polygon allowed(const Solutions& s, double share) {
   // z| = |tensions - their part in the row space|, so no z outside this square is within the limits.
-  const double reach = 2 * s.most * kMaxStrings + share * s.particular.norm();
+  const double reach = 2 * s.max_N * kMaxStrings + share * s.particular.norm();
   Polygon p;
   p.corner[0] = {-reach, -reach}, p.corner[1] = {reach, -reach}, p.corner[2] = {reach, reach},
   p.corner[3] = {-reach, reach};
@@ -58,11 +58,11 @@ Polygon allowed(const Solutions& s, double share) {
     const Vector2 n = s.null.row(i).transpose();
     const double t = share * s.particular(i);
     if (n.norm() < 1e-12) {
-      if (t < s.least - kSlack_N || t > s.most + kSlack_N) p.size = 0;
+      if (t < s.min_N - kSlack_N || t > s.max_N + kSlack_N) p.size = 0;
       continue;
     }
-    cut(p, n, s.most + kSlack_N - t);
-    cut(p, -n, t - s.least + kSlack_N);
+    cut(p, n, s.max_N + kSlack_N - t);
+    cut(p, -n, t - s.min_N + kSlack_N);
   }
   return p;
 }
@@ -107,7 +107,7 @@ double given_share(const Solutions& s) {
     const double middle = (low + high) / 2;
     (allowed(s, middle).size > 0 ? low : high) = middle;
   }
-  return low * (1 - std::min(kRoom, 10 * kRoom * (1 - low)));
+  return low * (1 - std::min(kMargin, 10 * kMargin * (1 - low)));
 }
 
 }  // namespace
@@ -116,25 +116,25 @@ Tensions solve_tensions(const StringFrame& frame, const GripPose& pose, const Wr
   const StructureMatrix w = structure_matrix(frame, pose);
   const double lever_m = frame.lever_m();
   Solutions s;
-  s.least = frame.min_tension_N;
-  s.most = frame.max_tension_N;
+  s.min_N = frame.min_tension_N;
+  s.max_N = frame.max_tension_N;
   Eigen::Matrix<double, 6, 1> goal;
   goal << wanted.force_N, wanted.torque_N_m / lever_m;
   const bool regular = frame.has_torque() ? decompose<6, 8>(w, goal, s) : decompose<3, 4>(w, goal.head<3>(), s);
 
   Tensions out;
-  out.tensions_N.setConstant(frame.size(), s.least);
+  out.tensions_N.setConstant(frame.size(), s.min_N);
   const double share = regular ? given_share(s) : -1;
   if (share >= 0) {
     out.held = true;
     out.share = share;
     // Closest to the minimum tension of every string; the particular solution has no part in the null space.
     const Vector2 z = closest(allowed(s, share), s.null.transpose() * out.tensions_N);
-    out.tensions_N = (share * s.particular + s.null * z).cwiseMax(s.least).cwiseMin(s.most);
+    out.tensions_N = (share * s.particular + s.null * z).cwiseMax(s.min_N).cwiseMin(s.max_N);
   }
-  const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> got = w * out.tensions_N;
-  out.realised.force_N = got.head<3>();
-  if (frame.has_torque()) out.realised.torque_N_m = lever_m * got.tail<3>();
+  const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> realised = w * out.tensions_N;
+  out.realised.force_N = realised.head<3>();
+  if (frame.has_torque()) out.realised.torque_N_m = lever_m * realised.tail<3>();
   out.force_error_N = (out.realised.force_N - wanted.force_N).norm();
   out.torque_error_N_m = (out.realised.torque_N_m - wanted.torque_N_m).norm();
   return out;

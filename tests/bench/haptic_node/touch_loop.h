@@ -46,7 +46,7 @@ class TouchLoop {
     device.orientation = orientation;
     if (last_) {
       device.velocity = (position - last_->first) * settings_.rate_Hz;
-      device.spin = haptic::turn_between(last_->second, orientation) * settings_.rate_Hz;
+      device.spin = haptic::rotation_between(last_->second, orientation) * settings_.rate_Hz;
     }
     last_.emplace(position, orientation);
     return tick(device);

@@ -39,7 +39,7 @@ OfflineWorld::OfflineWorld(const sim::WorldDef& world, const sim::Settings& sett
   for (std::size_t i = 0; i < hand_forces_N_.size(); ++i) {
     const haptic::NodeConfig choice = haptic::resolve_config(scene_, scene_.tools[i].name, {});
     auto hand = std::make_unique<Hand>(Hand{haptic::Safety(haptic::safety_limits(choice.settings)), nullptr});
-    hand->session = std::make_unique<haptic::Session>(scene_, choice, haptic::device_of(scene_, choice),
+    hand->session = std::make_unique<haptic::Session>(scene_, choice, haptic::make_tool_device(scene_, choice),
                                                       sync::OwnClock(kRun, kClock), hand->safety);
     hands_.push_back(std::move(hand));
   }

@@ -61,7 +61,7 @@ TEST_CASE("The closest point satisfies the Karush-Kuhn-Tucker conditions of up t
   }
 }
 
-TEST_CASE("The closest point is that of alternating projections") {
+TEST_CASE("The closest point equals the result of alternating projections") {
   std::mt19937 random(12);
   std::uniform_real_distribution<double> place(-0.03, 0.03);
   for (int round = 0; round < 60; ++round) {
@@ -87,7 +87,7 @@ TEST_CASE("The closest point moves no farther than its goal") {
   }
 }
 
-TEST_CASE("Equal, parallel and nearly parallel half spaces are no trouble") {
+TEST_CASE("Equal, parallel and nearly parallel half spaces are solved") {
   const std::vector<HalfSpace> region{{Vector3d::UnitZ(), 0},
                                       {Vector3d::UnitZ(), 0},
                                       {Vector3d::UnitZ(), -0.001},
@@ -101,7 +101,7 @@ TEST_CASE("Equal, parallel and nearly parallel half spaces are no trouble") {
   CHECK(total == Approx(0.002).epsilon(1e-3));
 }
 
-TEST_CASE("Between walls that leave no room the point is in the middle, and each wall presses by its own depth") {
+TEST_CASE("Between walls without room the point is in the middle, and each wall has its own depth") {
   const std::vector<HalfSpace> region{{Vector3d::UnitX(), 0.001}, {-Vector3d::UnitX(), 0.001}};
   const ClosestPoint c = closest_point(region, {0.0002, 0.5, 0});
   CHECK_FALSE(c.feasible);
@@ -111,7 +111,7 @@ TEST_CASE("Between walls that leave no room the point is in the middle, and each
   CHECK(c.multiplier[1] == Approx(0.0012));
 }
 
-TEST_CASE("The facets around a place on a fine mesh, nearly parallel and nearly through one point, are no trouble") {
+TEST_CASE("The facets around a point of a fine mesh, nearly parallel and nearly through one point, are solved") {
   std::mt19937 random(14);
   std::uniform_real_distribution<double> place(-1, 1);
   for (int round = 0; round < 3000; ++round) {
@@ -137,7 +137,7 @@ TEST_CASE("The facets around a place on a fine mesh, nearly parallel and nearly 
   }
 }
 
-TEST_CASE("Between fifty walls that leave no room no small move of the point makes the compromise better") {
+TEST_CASE("No small motion of the point improves the compromise between fifty walls without room") {
   std::mt19937 random(15);
   std::uniform_real_distribution<double> pinch(0, 0.003);
   for (int round = 0; round < 300; ++round) {

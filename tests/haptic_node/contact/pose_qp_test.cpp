@@ -53,9 +53,9 @@ PoseHalfSpace contact(std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("The closest pose is that of the best of all sets that might bind") {
+TEST_CASE("The closest pose equals the best pose over all binding sets") {
   std::mt19937 random(11);
-  int feasible = 0, most_binding = 0;
+  int feasible = 0, max_binding = 0;
   for (int trial = 0; trial < 3000; ++trial) {
     std::vector<PoseHalfSpace> region(1 + random() % 11);
     for (PoseHalfSpace& h : region) h = contact(random);
@@ -80,13 +80,13 @@ TEST_CASE("The closest pose is that of the best of all sets that might bind") {
       binding += found.multiplier[i] > 0;
     }
     CHECK((sum - found.pose).norm() < 1e-12);
-    most_binding = std::max(most_binding, binding);
+    max_binding = std::max(max_binding, binding);
   }
   CHECK(feasible > 1000);
-  CHECK(most_binding >= 5);
+  CHECK(max_binding >= 5);
 }
 
-TEST_CASE("A box that lies flat is held by fewer corners than it has, and they carry it") {
+TEST_CASE("Three of four corners carry a flat box") {
   // Four corners over a floor: the fourth depends on three.
   std::vector<PoseHalfSpace> region(4);
   const double x[] = {1, 1, -1, -1}, y[] = {1, -1, 1, -1};
@@ -104,7 +104,7 @@ TEST_CASE("A box that lies flat is held by fewer corners than it has, and they c
   CHECK(sum == Approx(0.003));
 }
 
-TEST_CASE("Half spaces that leave no pose are a compromise between them, and say so") {
+TEST_CASE("Half spaces without a common pose yield a compromise and feasible is false") {
   std::vector<PoseHalfSpace> region(2);
   region[0].normal << 0, 0, 1, 0, 0, 0;
   region[1].normal << 0, 0, -1, 0, 0, 0;
@@ -116,7 +116,7 @@ TEST_CASE("Half spaces that leave no pose are a compromise between them, and say
   CHECK(between.pose[0] == Approx(0.01));
 }
 
-TEST_CASE("A motion into all that binds is shared so that each sees its own rate") {
+TEST_CASE("The shares of a motion into all binding half spaces give each its own rate") {
   std::mt19937 random(3);
   for (int trial = 0; trial < 200; ++trial) {
     BindingSet set;

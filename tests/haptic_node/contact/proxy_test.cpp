@@ -34,7 +34,7 @@ TEST_CASE("In free space the proxy is at the device") {
   CHECK_FALSE(proxy.touching());
 }
 
-TEST_CASE("The proxy never passes a surface, wherever the device goes, with and without friction") {
+TEST_CASE("The proxy never passes a surface at any device position, with and without friction") {
   std::mt19937 random(5);
   std::normal_distribution<double> normal(0, 1);
   std::uniform_real_distribution<double> friction(0, 1.5);
@@ -63,7 +63,8 @@ TEST_CASE("The proxy never passes a surface, wherever the device goes, with and 
   }
 }
 
-TEST_CASE("On one plane the proxy sticks up to the static angle of friction and slips at the dynamic one") {
+TEST_CASE(
+    "On one plane the proxy sticks up to the static friction angle and slips at the dynamic friction angle") {
   constexpr double kStatic = 0.6, kDynamic = 0.4, kDepth = 0.002;
   std::vector<Surface> floor{surface(Vector3d::UnitZ(), 0, kStatic, kDynamic)};
   Proxy proxy;
@@ -84,21 +85,21 @@ TEST_CASE("On one plane the proxy sticks up to the static angle of friction and 
   CHECK(proxy.slipping());
   CHECK(proxy.shift().norm() / kDepth == Approx(kDynamic));
   CHECK(proxy.shift().x() < 0);  // against the motion
-  SECTION("turning back it sticks again") {
+  SECTION("The proxy sticks again when the motion reverses") {
     const Vector3d stuck = proxy.position();
     proxy.step(floor, {x - 1e-5, 0, -kDepth}, kDt);
     proxy.step(floor, {x - 2e-5, 0, -kDepth}, kDt);
     CHECK_FALSE(proxy.slipping());
     CHECK((proxy.position() - stuck).norm() < 1e-12);
   }
-  SECTION("lifted off it lets go") {
+  SECTION("The proxy returns to the device when it is lifted off") {
     proxy.step(floor, {x, 0, 0.001}, kDt);
     CHECK(proxy.position() == Vector3d(x, 0, 0.001));
     CHECK(proxy.shift().norm() == 0);
   }
 }
 
-TEST_CASE("Friction between two walls slows the way along their edge by both normal depths") {
+TEST_CASE("Friction along the edge of two walls depends on both normal depths") {
   std::vector<Surface> corner{surface(Vector3d::UnitX(), 0, 0.5, 0.5), surface(Vector3d::UnitY(), 0, 0.5, 0.5)};
   Proxy proxy;
   proxy.reset({0.001, 0.001, 0});
@@ -107,7 +108,7 @@ TEST_CASE("Friction between two walls slows the way along their edge by both nor
   CHECK(proxy.shift().z() < 0);
 }
 
-TEST_CASE("A surface that moves carries the proxy along") {
+TEST_CASE("A moving surface carries the proxy") {
   std::vector<Surface> belt{surface(Vector3d::UnitZ(), 0, 1, 1)};
   belt[0].velocity = {0.1, 0, 0};
   Proxy proxy;

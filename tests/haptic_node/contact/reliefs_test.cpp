@@ -75,7 +75,7 @@ Vector3d force_at(Bench& bench, const Vector3d& place, std::vector<touch_plane_t
 
 }  // namespace
 
-TEST_CASE("By heights the surface is as high as its map, and the force keeps its direction") {
+TEST_CASE("With the height method the surface has the height of its map, and the force keeps its direction") {
   Bench bench(settled("height"));
   bench.renderer.set_maps(waves());
   double ms = 0;
@@ -87,7 +87,8 @@ TEST_CASE("By heights the surface is as high as its map, and the force keeps its
   }
 }
 
-TEST_CASE("By normals the surface stays flat, and the force keeps its size and leans as the slope says") {
+TEST_CASE(
+    "With the normal method the surface stays flat, and the force keeps its magnitude and tilts with the slope") {
   Bench bench(settled("normal"));
   bench.renderer.set_maps(waves());
   double ms = 0, proxy_z = 0;
@@ -100,7 +101,7 @@ TEST_CASE("By normals the surface stays flat, and the force keeps its size and l
   }
 }
 
-TEST_CASE("The map goes with its body, wherever that is and however it is turned") {
+TEST_CASE("The map moves and rotates with its body") {
   const double turned = GENERATE(0.0, 0.7, 2.5, -1.9);
   const Vector3d origin(0.31, -0.2, 0);
   Bench bench(settled("normal"));
@@ -114,7 +115,7 @@ TEST_CASE("The map goes with its body, wherever that is and however it is turned
   CHECK(std::abs(f.cross(u).z()) < 1e-6);
 }
 
-TEST_CASE("Every plane that is touched has its own relief, up to many at once") {
+TEST_CASE("Every touched plane has its own relief") {
   // Five floors at one height touched at once carry a fifth each, or a single one carries all: the force is the
   // same.
   Bench bench(settled("normal"));
@@ -124,7 +125,7 @@ TEST_CASE("Every plane that is touched has its own relief, up to many at once") 
   for (int i = 0; i < 5; ++i) planes.push_back(mapped(7 + i, {0.004, 0, 0}));
   const Vector3d f = force_at(bench, {0.004, 0, 0}, planes, ms);
   CHECK(-f.x() / f.z() == Approx(slope(0.004)).margin(0.16 * 0.005));
-  SECTION("also in a corner, where a floor and a wall bind together") {
+  SECTION("A floor and a wall bind together in a corner") {
     Bench corner(settled("normal"));
     corner.renderer.set_maps(waves());
     touch_plane_t wall = plane(20, {0.02, 0, 0}, -Vector3d::UnitX());
@@ -149,7 +150,7 @@ TEST_CASE("Every plane that is touched has its own relief, up to many at once") 
   }
 }
 
-TEST_CASE("Methods change while the hand is pressed, without a kick") {
+TEST_CASE("A change of the method under pressure causes no jump of the force") {
   Settings s = settled("none");
   Bench bench(s);
   bench.renderer.set_maps(waves());
@@ -179,7 +180,7 @@ TEST_CASE("Methods change while the hand is pressed, without a kick") {
   CHECK(worst < 2 * (1 + 0.3) / 15);
 }
 
-TEST_CASE("A map that comes late sets in without a kick") {
+TEST_CASE("A map that is loaded late causes no jump of the force") {
   Bench bench(settled("both"));
   double ms = 0, worst = 0;
   const Vector3d place(0.004, 0, 0);
@@ -197,7 +198,7 @@ TEST_CASE("A map that comes late sets in without a kick") {
   CHECK(worst < 2 * (1 + 0.3) / 15);
 }
 
-TEST_CASE("However steep a map, the force leans by no more than the steepest slope allows, and its limits hold") {
+TEST_CASE("The force tilts by at most the steepest rendered slope, and its limits hold") {
   HeightMap map{64, 64, 1, {}};
   for (int i = 0; i < 64 * 64; ++i) map.levels.push_back((i * 7919 / 64 + i) % 3 == 0);
   material_def_t m{};
@@ -210,11 +211,11 @@ TEST_CASE("However steep a map, the force leans by no more than the steepest slo
   Bench bench(s);
   bench.renderer.set_maps(maps);
   Vector3d last = Vector3d::Zero();
-  touch_model_t told;
+  touch_model_t m_sent;
   for (int ms = 0; ms < 500; ++ms) {
     const Vector3d place(0.5e-3 * ms, 0.21e-3 * ms, 0);
-    told = model(ms, {mapped(7, place)});
-    const Vector3d f = bench.tick(ms, place + Vector3d(0, 0, kRadius_m - 0.002), &told).force_N;
+    m_sent = model(ms, {mapped(7, place)});
+    const Vector3d f = bench.tick(ms, place + Vector3d(0, 0, kRadius_m - 0.002), &m_sent).force_N;
     REQUIRE(f.norm() <= s.force_limit_N + 1e-9);
     REQUIRE((f - last).norm() <= s.slew_limit_N_s * 1e-3 + 1e-9);
     // The slew limit delays the force; for a force below it:
@@ -223,20 +224,20 @@ TEST_CASE("However steep a map, the force leans by no more than the steepest slo
   }
 }
 
-TEST_CASE("A surface that is first told of when its relief stands over the proxy yields, and nothing else does") {
+TEST_CASE("A new surface yields only when its relief is above the proxy") {
   const Vector3d place(0.005, 0, 0);  // the top of a wave, 1 mm high
   Settings s = settled("height");
   Bench bench(s);
   bench.renderer.set_maps(waves());
   touch_model_t m;
-  const auto tick = [&](int ms, double under_m, bool told) {
+  const auto tick = [&](int ms, double under_m, bool with_relief) {
     // A distant wall keeps the touch model from being lost.
     m = model(ms, {plane(3, {-1, 0, 0}, Vector3d::UnitX())});
-    if (told) m.planes.push_back(mapped(7, place)), m.plane_count = 2;
+    if (with_relief) m.planes.push_back(mapped(7, place)), m.plane_count = 2;
     return bench.tick(ms, place + Vector3d(0, 0, kRadius_m - under_m), &m).force_N.z();
   };
   int ms = 0;
-  SECTION("where the tool is above the smooth surface and under the relief") {
+  SECTION("The tool is above the smooth surface and below the relief") {
     for (; ms < 100; ++ms) CHECK(tick(ms, -0.0003, false) == 0);
     double last = 0, worst = 0;
     for (; ms < 116; ++ms) {
@@ -249,7 +250,7 @@ TEST_CASE("A surface that is first told of when its relief stands over the proxy
     CHECK(worst < 0.7 / 5);
     CHECK(last == Approx(0.7).margin(0.003));
   }
-  SECTION("where the hand comes from outside, it is felt as it is from the first tick on") {
+  SECTION("A hand from outside feels the full relief from the first tick") {
     // The same force as on a smooth surface at that height.
     Bench smooth(s);
     touch_plane_t high = plane(7, {place.x(), 0, height(place.x())}, Vector3d::UnitZ());
@@ -266,8 +267,7 @@ TEST_CASE("A surface that is first told of when its relief stands over the proxy
   }
 }
 
-TEST_CASE(
-    "By heights the force changes no faster than the steepest slope that is felt lets it, and to the same end") {
+TEST_CASE("With the height method the steepest rendered slope limits the rate of the force, not its final value") {
   // 6 mm high on waves of 20 mm: the slope is up to 0.94, of which 0.5 are rendered.
   Settings s = settled("height");
   s.bump_steepest = 0.5;
@@ -303,15 +303,15 @@ TEST_CASE(
   CHECK(last == Approx(1000 * (0.002 + 6 * height(at.x()))).margin(0.02));
 }
 
-TEST_CASE("Who presses harder downhill than uphill is given no more than the limits of energy and power") {
+TEST_CASE("Harder pressure downhill than uphill gains at most the limits of energy and power") {
   // With `normal` the surface stores no energy: pressing 3 mm deeper over 12 mm of descent, wave after wave, would
   // give energy for ever.
   const auto stroke = [](const Settings& s) {
     Bench bench(s);
     bench.renderer.set_maps(waves(12 * kHigh_m, 2 * kWave_m));
-    constexpr double kSpeed_m_s = 0.3, kTurn_m = 0.1, kPress_m_s = 0.3, kFastest_m_s = 0.5;
+    constexpr double kSpeed_m_s = 0.3, kTurn_m = 0.1, kPress_m_s = 0.3, kMaxHandSpeed_m_s = 0.5;
     Vector3d last_place(0, 0, kRadius_m), last_force = Vector3d::Zero();
-    double given_J = 0, most_J = 0, x = 0, way = 1, press_m = 0;
+    double given_J = 0, max_J = 0, x = 0, way = 1, press_m = 0;
     touch_model_t m;
     for (int ms = 0; ms < 4000; ++ms) {
       if (std::abs(x) > kTurn_m) way = x > 0 ? -1 : 1;
@@ -320,7 +320,7 @@ TEST_CASE("Who presses harder downhill than uphill is given no more than the lim
       press_m += std::clamp((downhill ? 0.005 : 0.002) - press_m, -kPress_m_s * 1e-3, kPress_m_s * 1e-3);
       const Vector3d place(x, 0, kRadius_m - press_m);
       given_J += last_force.dot(place - last_place);
-      most_J = std::max(most_J, given_J);
+      max_J = std::max(max_J, given_J);
       last_place = place;
       m = model(ms, {mapped(7, {x, 0, 0})});
       const Vector3d f = bench.tick(ms, place, &m).force_N;
@@ -331,9 +331,9 @@ TEST_CASE("Who presses harder downhill than uphill is given no more than the lim
       // additional.
       const double drawn_back_s = s.force_limit_N / s.slew_limit_N_s + 0.002;
       REQUIRE(given_J <= s.energy_limit_J + s.power_limit_W * (ms + 1) * 1e-3 +
-                             s.force_limit_N * kFastest_m_s * drawn_back_s);
+                             s.force_limit_N * kMaxHandSpeed_m_s * drawn_back_s);
     }
-    return most_J;
+    return max_J;
   };
   Settings s = settled("normal");
   s.energy_limit_J = 0.05, s.power_limit_W = 0.01;
@@ -345,7 +345,7 @@ TEST_CASE("Who presses harder downhill than uphill is given no more than the lim
   CHECK(stroke(s) > 5 * 0.09);
 }
 
-TEST_CASE("A friction map multiplies the friction of its surface where it is touched") {
+TEST_CASE("A friction map scales the friction at the touched place") {
   const double x = GENERATE(0.025, 0.075);  // the middles of black and white
   Bench bench(settled("none"));
   bench.renderer.set_maps(waves(0, kWave_m, true));
@@ -361,7 +361,7 @@ TEST_CASE("A friction map multiplies the friction of its surface where it is tou
   CHECK(-f.x() / f.z() == Approx(0.2 * factor).epsilon(1e-3));
 }
 
-TEST_CASE("A plane that names no axis, an absurd one or no material is smooth") {
+TEST_CASE("A plane with an invalid axis or without a material is smooth") {
   Bench bench(settled("both"));
   bench.renderer.set_maps(waves());
   touch_plane_t p = mapped(7, {0.004, 0, 0});
@@ -375,7 +375,7 @@ TEST_CASE("A plane that names no axis, an absurd one or no material is smooth") 
   CHECK((force_at(bench, {0.004, 0, 0}, {p}, ms) - Vector3d(0, 0, 2)).norm() < 1e-6);
 }
 
-TEST_CASE("Maps are read from the pictures of the scene. What cannot be is said, and smooth") {
+TEST_CASE("Maps are read from the pictures of the scene, and unreadable maps are reported") {
   scene_t s{};
   const std::vector<std::uint8_t> good = tactus::test::png_bytes(2, 2, 8, {0, 10, 20, 255}), bad{'x'};
   for (const auto& [bump, friction] : {std::pair<std::int64_t, std::int64_t>{1, 0}, {0, 1}, {1, 2}, {3, 0}}) {
@@ -393,7 +393,8 @@ TEST_CASE("Maps are read from the pictures of the scene. What cannot be is said,
   CHECK(maps.by_material[1].friction);
   CHECK_FALSE(maps.by_material[2].friction);
   CHECK_FALSE(maps.by_material[3].relief);
-  CHECK(maps.trouble == "the friction map of material m2 cannot be read: it is no PNG file; it is not felt");
-  CHECK(maps.of(-1) == nullptr);
-  CHECK(maps.of(4) == nullptr);
+  CHECK(maps.error ==
+        "the friction map of material m2 cannot be read: it is no PNG file; the surface is rendered without it");
+  CHECK(maps.find(-1) == nullptr);
+  CHECK(maps.find(4) == nullptr);
 }

@@ -77,14 +77,14 @@ World box_on_floor(const Vector3d& half, double friction = 0) {
 
 double energy(const DevicePose& at, const DevicePose& device) {
   return (at.position - device.position).squaredNorm() +
-         kLever_m * kLever_m * turn_between(at.orientation, device.orientation).squaredNorm();
+         kLever_m * kLever_m * rotation_between(at.orientation, device.orientation).squaredNorm();
 }
 
 Quaterniond about(const Vector3d& axis, double rad) { return Quaterniond(Eigen::AngleAxisd(rad, axis)); }
 
 }  // namespace
 
-TEST_CASE("A box pressed flat on a floor gives the spring's force, and its torque until it tips") {
+TEST_CASE("A box pressed flat on a floor has the force of the spring, and its torque until it tips") {
   const Vector3d half(0.02, 0.03, 0.01);
   World w = box_on_floor(half);
   const double depth = 0.003;
@@ -95,14 +95,14 @@ TEST_CASE("A box pressed flat on a floor gives the spring's force, and its torqu
     for (int i = 0; i < 5; ++i) w.tick(device);
     const Wrench felt = w.wrench(device);
     CHECK(w.proxy.position().z() == Approx(half.z()).margin(1e-8));
-    CHECK(turn_between(w.proxy.orientation(), Quaterniond::Identity()).norm() < 1e-7);
+    CHECK(rotation_between(w.proxy.orientation(), Quaterniond::Identity()).norm() < 1e-7);
     CHECK(felt.force_N.z() == Approx(kStiffness * depth).epsilon(1e-6));
     CHECK(felt.torque_N_m.y() == Approx(-kStiffness * kLever_m * kLever_m * part * tips).margin(1e-8));
     CHECK(felt.torque_N_m.x() == Approx(0).margin(1e-8));
   }
   const DevicePose far{{0, 0, half.z() - depth}, about(Vector3d::UnitY(), 2 * tips)};
   for (int i = 0; i < 20; ++i) w.tick(far);
-  CHECK(turn_between(w.proxy.orientation(), Quaterniond::Identity()).norm() > 0.01);  // it has tipped
+  CHECK(rotation_between(w.proxy.orientation(), Quaterniond::Identity()).norm() > 0.01);  // it has tipped
   CHECK(w.worst_gap() > -1e-8);
   // On an edge the wrench is that of one force at the edge: torque over force is its distance.
   const Wrench felt = w.wrench(far);
@@ -122,7 +122,7 @@ TEST_CASE("No allowed pose near the proxy has less coupling energy") {
       const Vector3d n = vector(1).normalized(), p = vector(0.02);
       w.walls.push_back({n, p - std::abs(0.002 * g(random)) * n, p});
     }
-    const DevicePose device{vector(0.005), turned_by(vector(0.1), Quaterniond::Identity())};
+    const DevicePose device{vector(0.005), rotated_by(vector(0.1), Quaterniond::Identity())};
     for (int i = 0; i < 10; ++i) w.tick(device);
     REQUIRE(w.proxy.feasible());
     CHECK(w.worst_gap() > -1e-7);
@@ -131,7 +131,7 @@ TEST_CASE("No allowed pose near the proxy has less coupling energy") {
     pressed += least > 1e-12;
     for (int k = 0; k < 400; ++k) {
       const double size = std::pow(10, -2 - 3.0 * (k % 4) / 3);
-      DevicePose other{found.position + vector(size * kLever_m), turned_by(vector(size), found.orientation)};
+      DevicePose other{found.position + vector(size * kLever_m), rotated_by(vector(size), found.orientation)};
       bool allowed = true;
       for (const Wall& wall : w.walls)
         allowed =
@@ -142,13 +142,13 @@ TEST_CASE("No allowed pose near the proxy has less coupling energy") {
   CHECK(pressed > 100);
 }
 
-TEST_CASE("A box that is pressed holds sideways and in its turn until friction ends, and does not creep") {
+TEST_CASE("A pressed box holds in translation and rotation up to the friction limit and does not creep") {
   const Vector3d half(0.02, 0.02, 0.01);
   const double mu = 0.5, depth = 0.004;
   World w = box_on_floor(half, mu);
   DevicePose device{{0, 0, half.z() - depth}, Quaterniond::Identity()};
   for (int i = 0; i < 10; ++i) w.tick(device);
-  SECTION("sideways") {
+  SECTION("The box holds in translation") {
     device.position.x() = 0.8 * mu * depth;
     w.tick(device);
     const Vector3d first = w.proxy.position();
@@ -157,7 +157,7 @@ TEST_CASE("A box that is pressed holds sideways and in its turn until friction e
     CHECK(std::abs(w.proxy.position().x()) < 2e-5);
     CHECK(w.wrench(device).force_N.x() == Approx(-kStiffness * 0.8 * mu * depth).epsilon(0.02));
   }
-  SECTION("beyond its cone it slides, with the cone's force") {
+  SECTION("Beyond the friction cone the box slides with the force of the cone") {
     for (int i = 0; i < 400; ++i) {
       device.position.x() += 1e-4;
       w.tick(device);
@@ -167,24 +167,24 @@ TEST_CASE("A box that is pressed holds sideways and in its turn until friction e
     CHECK(felt.force_N.x() == Approx(-mu * felt.force_N.z()).epsilon(0.01));
     CHECK(felt.force_N.z() == Approx(kStiffness * depth).epsilon(0.01));
   }
-  SECTION("twisted") {
+  SECTION("The box holds in rotation") {
     // Four corners at a distance r hold a twist up to about mu F r.
     const double most = mu * depth * half.head<2>().norm() / (kLever_m * kLever_m);
     device.orientation = about(Vector3d::UnitZ(), 0.6 * most);
     w.tick(device);
     const Quaterniond first = w.proxy.orientation();
     for (int i = 0; i < 2000; ++i) w.tick(device);
-    CHECK(turn_between(first, w.proxy.orientation()).norm() < 1e-4);
+    CHECK(rotation_between(first, w.proxy.orientation()).norm() < 1e-4);
     CHECK(w.wrench(device).torque_N_m.z() == Approx(-kStiffness * kLever_m * kLever_m * 0.6 * most).epsilon(0.05));
     device.orientation = about(Vector3d::UnitZ(), 3 * most);
     for (int i = 0; i < 2000; ++i) w.tick(device);
-    CHECK(turn_between(first, w.proxy.orientation()).norm() > most);  // slipped
+    CHECK(rotation_between(first, w.proxy.orientation()).norm() > most);  // slipped
     CHECK(std::abs(w.wrench(device).torque_N_m.z()) <
           1.01 * mu * w.wrench(device).force_N.z() * half.head<2>().norm());
   }
 }
 
-TEST_CASE("A belt carries a box that is pressed on it, at its speed, until the spring holds it back") {
+TEST_CASE("A belt carries a pressed box at its speed until the spring stops it") {
   World w = box_on_floor({0.02, 0.02, 0.01}, 0.6);
   for (Wall& wall : w.walls) wall.velocity = {0.1, 0, 0};
   const DevicePose device{{0, 0, 0.006}, Quaterniond::Identity()};
@@ -197,16 +197,17 @@ TEST_CASE("A belt carries a box that is pressed on it, at its speed, until the s
   CHECK(felt.force_N.x() == Approx(0.6 * felt.force_N.z()).epsilon(0.01));
 }
 
-TEST_CASE("No point of the tool goes further in a tick than it may") {
+TEST_CASE("No point of the tool moves further in a tick than the allowed distance") {
   World w;
   w.proxy.reset({Vector3d::Zero(), Quaterniond::Identity()});
   w.tick({{1, 0, 0}, about(Vector3d::UnitX(), 3)}, 0.004);
-  CHECK(w.proxy.position().norm() + 0.05 * turn_between(w.proxy.orientation(), Quaterniond::Identity()).norm() <=
+  CHECK(w.proxy.position().norm() +
+            0.05 * rotation_between(w.proxy.orientation(), Quaterniond::Identity()).norm() <=
         0.0041);
   CHECK(w.proxy.moved_m() > 0.003);
 }
 
-TEST_CASE("Between walls that leave no room the hand feels no more than how deep it is") {
+TEST_CASE("Between walls without room the force does not exceed that of the depth") {
   World w;
   w.walls = {{Vector3d::UnitZ(), {0, 0, 0.001}, Vector3d::Zero()},
              {-Vector3d::UnitZ(), {0, 0, -0.001}, Vector3d::Zero()}};
@@ -217,7 +218,7 @@ TEST_CASE("Between walls that leave no room the hand feels no more than how deep
   CHECK(w.wrench(device).force_N.norm() < kStiffness * 0.002);
 }
 
-TEST_CASE("Forces that are to be another wrench are, as far as their places allow") {
+TEST_CASE("Forces are adjusted to a wanted wrench as far as the contact points allow") {
   std::mt19937 random(8);
   std::normal_distribution<> g;
   const auto vector = [&](double size) { return Vector3d(size * g(random), size * g(random), size * g(random)); };
@@ -242,7 +243,7 @@ TEST_CASE("Forces that are to be another wrench are, as far as their places allo
   }
 }
 
-TEST_CASE("Places nearly on a line are not torn apart by a torque about it") {
+TEST_CASE("A torque about nearly collinear contact points does not cause large forces") {
   const std::vector<Vector3d> arms{{-0.02, 0, -0.01}, {0, 0.0001, -0.01}, {0.02, 0, -0.01}};
   std::vector<Vector3d> forces(3, Vector3d(0, 0, 1));
   const Wrench felt{{0, 0, 3}, {0.01, 0, 0}};

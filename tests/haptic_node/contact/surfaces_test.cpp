@@ -38,7 +38,7 @@ TEST_CASE("A plane keeps the centre of the tool a radius away") {
   CHECK(touch.proxy.position().z() == Approx(1.005));
 }
 
-TEST_CASE("Between messages a plane moves on with its velocity, but not for ever") {
+TEST_CASE("Between messages a plane is extrapolated with its velocity for a limited time") {
   Surfaces surfaces(0, SurfaceLimits{});
   auto p = plane(7, Vector3d::Zero(), Vector3d::UnitZ());
   p.velocity_m_s = to_vec3f(Vector3d(0, 0, -0.2));
@@ -51,7 +51,7 @@ TEST_CASE("Between messages a plane moves on with its velocity, but not for ever
   CHECK(surfaces.list()[0].offset_m == Approx(-0.2 * 0.02).epsilon(1e-6));
 }
 
-TEST_CASE("Between messages a plane turns with its body") {
+TEST_CASE("Between messages a plane rotates with its body") {
   Surfaces surfaces(0, SurfaceLimits{});
   auto p = plane(7, Vector3d::Zero(), Vector3d::UnitZ());
   p.angular_velocity_rad_s = to_vec3f(Vector3d(0, 2, 0));
@@ -82,7 +82,7 @@ TEST_CASE("A jump of a pressed surface is spread over the recovery time") {
   CHECK(last == Approx(jump).margin(1e-9));
 }
 
-TEST_CASE("A surface that changes slowly is followed without a lag") {
+TEST_CASE("A slowly changing surface is followed without a lag") {
   Touch touch;
   for (int ms = 0; ms < 100; ++ms) {
     const double z = 0.00009 * ms;  // 0.09 m/s, not in the message
@@ -92,7 +92,7 @@ TEST_CASE("A surface that changes slowly is followed without a lag") {
   }
 }
 
-TEST_CASE("A surface that is left out while it is pressed lets the hand down within the recovery time") {
+TEST_CASE("A pressed surface that the model omits retracts within the recovery time") {
   Touch touch;
   const Vector3d device(0, 0, -0.003);
   const auto with = model(0, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())});
@@ -110,7 +110,7 @@ TEST_CASE("A surface that is left out while it is pressed lets the hand down wit
   CHECK(touch.surfaces.list().empty());
 }
 
-TEST_CASE("A surface that appears over the proxy lifts it gently") {
+TEST_CASE("A surface that appears over the proxy lifts it within the recovery time") {
   Touch touch;
   const Vector3d device(0, 0, 0);
   touch.tick(0, device, nullptr);
@@ -124,7 +124,7 @@ TEST_CASE("A surface that appears over the proxy lifts it gently") {
   CHECK(last == Approx(0.015));
 }
 
-TEST_CASE("A pressed surface that turns sharply turns within the recovery time, about the proxy") {
+TEST_CASE("A jump of the normal of a pressed surface is spread over the recovery time, about the proxy") {
   Touch touch;
   const auto flat = model(0, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())});
   touch.tick(0, {0, 0, 0.01}, &flat);
@@ -142,7 +142,7 @@ TEST_CASE("A pressed surface that turns sharply turns within the recovery time, 
   CHECK((last - Vector3d::UnitX()).norm() < 1e-6);
 }
 
-TEST_CASE("No more surfaces are kept than can be solved for, however fast they change") {
+TEST_CASE("The number of surfaces never exceeds the capacity of the solver") {
   Touch touch;
   for (int ms = 0; ms < 100; ++ms) {
     std::vector<touch_plane_t> planes;

@@ -16,24 +16,24 @@ using namespace tactus;
 using namespace tactus::haptic;
 using namespace tactus::haptic::test;
 
-TEST_CASE("Every page of a touch model fits a datagram, and together they are the model") {
+TEST_CASE("Every page of a touch model fits a datagram, and all pages together form the model") {
   std::int64_t seq = 3;
   for (const std::size_t planes : {0u, 1u, 7u, 8u, 49u})
-    for (const std::size_t books : {0u, 7u, 14u}) {
-      const touch_model_t whole = whole_model(9, planes, books);
-      TouchPages gatherer;
+    for (const std::size_t applied_count : {0u, 7u, 14u}) {
+      const touch_model_t whole = whole_model(9, planes, applied_count);
+      TouchPages assembler;
       TouchModelView out;
       for (const touch_model_t& page : pages_of(whole, seq)) {
         CHECK(sync::encode(page).size() <= 1400);
         CHECK_FALSE(out);
-        out = gatherer.add(page);
+        out = assembler.add(page);
       }
       REQUIRE(out);
-      CHECK(is_whole(out, 9, planes, books));
+      CHECK(is_whole(out, 9, planes, applied_count));
     }
 }
 
-TEST_CASE("Whatever the wire does to pages, each whole model comes out once and nothing else does") {
+TEST_CASE("Loss, repetition and reordering of pages yield each complete model once and no other model") {
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);
     const auto chance = [&](double p) { return std::uniform_real_distribution<>(0, 1)(random) < p; };
@@ -63,41 +63,41 @@ TEST_CASE("Whatever the wire does to pages, each whole model comes out once and 
     for (int round = 0; round < 5; ++round)
       for (std::size_t i = 0; i + 1 < wire.size(); ++i)
         if (chance(0.3)) std::swap(wire[i], wire[i + 1]);
-    TouchPages gatherer;
-    std::vector<int> came(40, 0);
+    TouchPages assembler;
+    std::vector<int> received(40, 0);
     for (const Sent& s : wire) {
-      const TouchModelView out = gatherer.add(s.page);
+      const TouchModelView out = assembler.add(s.page);
       if (!out) continue;
       const std::int64_t step = out.header().sim_time_ns / kMs;
       REQUIRE(is_whole(out, step, planes[static_cast<std::size_t>(step)], 3));
-      ++came[static_cast<std::size_t>(step)];
+      ++received[static_cast<std::size_t>(step)];
     }
     for (std::size_t step = 0; step < 40; ++step) {
       CAPTURE(seed, step, planes[step]);
       if (complete[step])
-        CHECK(came[step] >= 1);
+        CHECK(received[step] >= 1);
       else
-        CHECK(came[step] == 0);
-      if (planes[step] > 7) CHECK(came[step] <= 1);
+        CHECK(received[step] == 0);
+      if (planes[step] > 7) CHECK(received[step] <= 1);
     }
   }
 }
 
-TEST_CASE("While the world stands still, pages of two looks at the same instant are not mixed") {
+TEST_CASE("Pages of two models of the same instant are not mixed while the simulation is paused") {
   std::int64_t seq = 0;
   touch_model_t first = whole_model(7, 20, 0), second = whole_model(7, 20, 0);
   for (touch_plane_t& p : second.planes) p.body = 1;
   auto a = pages_of(first, seq), b = pages_of(second, seq);
-  TouchPages gatherer;
-  CHECK_FALSE(gatherer.add(a[0]));
-  CHECK_FALSE(gatherer.add(b[1]));
-  CHECK_FALSE(gatherer.add(b[2]));
-  const TouchModelView out = gatherer.add(b[0]);
+  TouchPages assembler;
+  CHECK_FALSE(assembler.add(a[0]));
+  CHECK_FALSE(assembler.add(b[1]));
+  CHECK_FALSE(assembler.add(b[2]));
+  const TouchModelView out = assembler.add(b[0]);
   REQUIRE(out);
   for (std::size_t i = 0; i < out.plane_count(); ++i) CHECK(out.plane(i).body == 1);
 }
 
-TEST_CASE("An older set that becomes whole after a newer one is not taken") {
+TEST_CASE("An older model that becomes complete after a newer model is ignored") {
   std::int64_t seq = 0;
   const auto old_pages = pages_of(whole_model(1, 20, 0), seq), new_pages = pages_of(whole_model(2, 20, 0), seq);
   TouchInput input(0, 1);
@@ -105,14 +105,14 @@ TEST_CASE("An older set that becomes whole after a newer one is not taken") {
   input.push(old_pages[0], now);
   input.push(old_pages[1], now);
   for (const touch_model_t& page : new_pages) input.push(page, now);
-  const TouchModelView taken = input.take();
+  const TouchModelView taken = input.pop();
   REQUIRE(taken);
   CHECK(taken.header().sim_time_ns == 2 * kMs);
   input.push(old_pages[2], now);
-  CHECK_FALSE(input.take());
+  CHECK_FALSE(input.pop());
 }
 
-TEST_CASE("A page that never comes through counts as a loss, though others arrive") {
+TEST_CASE("A page that never arrives counts as a loss even when other pages arrive") {
   TouchInput input(0, 1);
   std::int64_t seq = 0;
   for (const touch_model_t& page : pages_of(whole_model(1, 20, 0), seq)) input.push(page, sync::host_time(kMs));

@@ -16,7 +16,7 @@ using namespace tactus::haptic::test;
 namespace {
 
 // Presses `depth` below z = 0 while it answers.
-struct Fickle : Device {
+struct UnreliableDevice : Device {
   DeviceState read(sync::HostTime) override {
     DeviceState s;
     s.position = at;
@@ -32,10 +32,10 @@ struct Fickle : Device {
 };
 
 struct Rig {
-  Rig() : choice(resolve_config(world, "", {})), safety(safety_limits(choice.settings)) {
-    auto made = std::make_unique<Fickle>();
+  Rig() : config(resolve_config(world, "", {})), safety(safety_limits(config.settings)) {
+    auto made = std::make_unique<UnreliableDevice>();
     device = made.get();
-    session.emplace(world, choice, std::move(made), sync::OwnClock{1, 0, nullptr}, safety);
+    session.emplace(world, config, std::move(made), sync::OwnClock{1, 0, nullptr}, safety);
   }
   // One tick of 1 ms with a new touch model of a floor.
   tool_state_t& tick() {
@@ -47,16 +47,16 @@ struct Rig {
   double push() { return device->force.norm(); }
 
   scene_t world = scene();
-  NodeConfig choice;
+  NodeConfig config;
   Safety safety;
-  Fickle* device;
+  UnreliableDevice* device;
   std::optional<Session> session;
   int ms = 1;
 };
 
 }  // namespace
 
-TEST_CASE("A device that stops answering is pushed no more, within the fade, and is told so") {
+TEST_CASE("The force on a lost device fades to zero, and the state reports it") {
   Rig r;
   for (int i = 0; i < 200; ++i) r.tick();
   const double before = r.push();
@@ -79,14 +79,14 @@ TEST_CASE("A device that stops answering is pushed no more, within the fade, and
   CHECK_FALSE(r.session->lost());  // the touch model is not lost
 }
 
-TEST_CASE("A device that answers again is felt again, as slowly, wherever it has come back") {
+TEST_CASE("The force of a device that returns fades in at any position") {
   Rig r;
   for (int i = 0; i < 200; ++i) r.tick();
   const double before = r.push();
   r.device->lost = true;
   for (int i = 0; i < 100; ++i) r.tick();
   r.device->lost = false;
-  SECTION("in the wall where it was") {
+  SECTION("The device returns inside the wall at its old position") {
     double last = 0;
     for (int i = 0; i < 300; ++i) {
       r.tick();
@@ -97,14 +97,14 @@ TEST_CASE("A device that answers again is felt again, as slowly, wherever it has
     CHECK(r.session->device_lost() == false);
     CHECK(r.push() == Approx(before).epsilon(0.05));
   }
-  SECTION("elsewhere, in the air: without a blow") {
+  SECTION("The device returns in free space: the force is zero") {
     r.device->at = Vector3d(0.5, 0.2, 0.3);
     for (int i = 0; i < 300; ++i) {
       r.tick();
       CHECK(r.push() < 1e-9);
     }
   }
-  SECTION("through the floor: it is where it is") {
+  SECTION("The device returns below the floor: the force stays within its limit") {
     r.device->at = Vector3d(0.5, 0.2, -0.3);
     for (int i = 0; i < 300; ++i) {
       r.tick();
@@ -113,7 +113,7 @@ TEST_CASE("A device that answers again is felt again, as slowly, wherever it has
   }
 }
 
-TEST_CASE("A device that never answered is not pushed until it does") {
+TEST_CASE("A device that never answered has no force until it answers") {
   Rig r;
   r.device->lost = true;
   for (int i = 0; i < 200; ++i) {
@@ -125,7 +125,7 @@ TEST_CASE("A device that never answered is not pushed until it does") {
   CHECK(r.push() > 0.5);
 }
 
-TEST_CASE("A device that comes and goes with every tick never gets a blow") {
+TEST_CASE("A device that is lost every second tick has no jump of the force") {
   Rig r;
   for (int i = 0; i < 200; ++i) r.tick();
   double last = r.push();

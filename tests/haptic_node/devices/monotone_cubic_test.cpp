@@ -6,8 +6,7 @@
 using namespace tactus::haptic;
 using Eigen::Vector3d;
 
-TEST_CASE(
-    "A monotone cubic passes its points, never leaves the box of two neighbours and has no jump in velocity") {
+TEST_CASE("A monotone cubic passes its points without overshoot and with continuous velocity") {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(-1, 1), wait(0.05, 0.5);
   std::vector<double> times;
@@ -31,7 +30,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A monotone cubic of evenly moving samples is the even movement") {
+TEST_CASE("A monotone cubic through samples of uniform motion is the uniform motion") {
   std::vector<double> times;
   std::vector<Vector3d> points;
   for (int i = 0; i < 20; ++i) {
@@ -45,7 +44,7 @@ TEST_CASE("A monotone cubic of evenly moving samples is the even movement") {
   }
 }
 
-TEST_CASE("Outside its points a curve rests") {
+TEST_CASE("A curve is constant outside its points") {
   const MonotoneCubic curve({1, 2}, {Vector3d::Zero(), Vector3d::UnitX()}, MonotoneCubic::Ends::kMoving);
   CHECK(curve.at(0).position == Vector3d::Zero());
   CHECK(curve.at(0).velocity == Vector3d::Zero());

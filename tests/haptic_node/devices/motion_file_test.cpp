@@ -30,7 +30,7 @@ TEST_CASE("A motion file is read with or without orientation") {
   CHECK(posed.orientations[1].w() == Approx(0.8));  // in the same half space as its neighbour
 }
 
-TEST_CASE("What is wrong with a motion file is said with its line") {
+TEST_CASE("An error in a motion file is reported with its line") {
   CHECK_THROWS_WITH(read(""), Contains("stroke.csv, line 1") && Contains("time_s,x_m,y_m,z_m"));
   CHECK_THROWS_WITH(read("t,x,y,z\n"), Contains("line 1"));
   CHECK_THROWS_WITH(read("time_s,x_m,y_m,z_m\n"), Contains("no row"));
@@ -43,7 +43,7 @@ TEST_CASE("What is wrong with a motion file is said with its line") {
   CHECK_THROWS_WITH(read_motion("/no/such/file.csv"), Contains("/no/such/file.csv") && Contains("cannot be read"));
 }
 
-TEST_CASE("A motion is of a regular file, with an end and lines of a size") {
+TEST_CASE("A motion file must be a regular file of limited size and line length") {
   for (const char* path : {"/dev/zero", "/dev/null", "/"})
     CHECK_THROWS_WITH(read_motion(path), Contains(path) && Contains("no regular file"));
   CHECK_THROWS_WITH(read(std::string(1001, 't')), Contains("line 1") && Contains("longer than 1000"));
@@ -55,7 +55,7 @@ TEST_CASE("A motion is of a regular file, with an end and lines of a size") {
   CHECK(read("time_s,x_m,y_m,z_m\n0,0,0,1." + std::string(900, '0') + "\n").positions_m[0].z() == 1);
 }
 
-TEST_CASE("A playback passes every sample, scaled, moved and at its own rate, and rests at the last") {
+TEST_CASE("A playback passes every sample with its scale, offset and rate, and rests at the last sample") {
   const Motion motion = read("time_s,x_m,y_m,z_m\n10,0,0,0\n10.1,0.1,0,0\n10.2,0.2,0,0\n10.4,0.2,0.3,0\n");
   Playback device(motion, Placement{2, {1, 0, 0}, 0.5});
   CHECK(device.read(at_s(-3)).position == Vector3d(1, 0, 0));
@@ -71,14 +71,14 @@ TEST_CASE("A playback passes every sample, scaled, moved and at its own rate, an
   CHECK(device.read(at_s(9)).velocity.norm() == 0);
 }
 
-TEST_CASE("A playback turns evenly between two orientations") {
+TEST_CASE("A playback rotates uniformly between two orientations") {
   Playback device(read("time_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,0,0,0.7071068,0,0,0.7071068\n"), {});
   device.begin(at_s(0));
   const Eigen::AngleAxisd half(device.read(at_s(0.5)).orientation);
   CHECK(half.angle() == Approx(M_PI / 4).epsilon(1e-6));
 }
 
-TEST_CASE("Recorded strokes play as they were recorded") {
+TEST_CASE("A playback reproduces recorded strokes") {
   const char* data = std::getenv("TACTUS_DATA");
   if (!data) {
     WARN("TACTUS_DATA is not set: recorded strokes are not played");

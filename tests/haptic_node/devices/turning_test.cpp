@@ -21,10 +21,10 @@ sync::HostTime ms(double t) { return sync::host_time(static_cast<std::int64_t>(t
 
 }  // namespace
 
-TEST_CASE("A virtual hand yields to a torque as its spring says, and comes back") {
+TEST_CASE("A virtual hand rotates by torque over stiffness and returns") {
   const Quaterniond rest(Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()));
   VirtualHand hand(MonotoneCubic({0}, {Vector3d::Zero()}, MonotoneCubic::Ends::kRest), false, {}, rest);
-  CHECK(turn_between(hand.read(ms(0)).orientation, rest).norm() < 1e-12);
+  CHECK(rotation_between(hand.read(ms(0)).orientation, rest).norm() < 1e-12);
   const Vector3d torque(0, 0.05, 0.02);
   DeviceState state;
   Vector3d turned = Vector3d::Zero();
@@ -34,8 +34,9 @@ TEST_CASE("A virtual hand yields to a torque as its spring says, and comes back"
     state = hand.read(ms(i));
     // Spin is the rotation rate.
     if (i > 2)
-      CHECK((turn_between(before, state.orientation) / 1e-3 - state.spin).norm() < 0.05 * (1 + state.spin.norm()));
-    turned = turn_between(rest, state.orientation);
+      CHECK((rotation_between(before, state.orientation) / 1e-3 - state.spin).norm() <
+            0.05 * (1 + state.spin.norm()));
+    turned = rotation_between(rest, state.orientation);
   }
   CHECK((turned - torque / HandImpedance{}.turn_stiffness_N_m).norm() < 1e-4);
   CHECK(state.position.norm() < 1e-12);
@@ -43,10 +44,10 @@ TEST_CASE("A virtual hand yields to a torque as its spring says, and comes back"
     hand.write(Wrench{});
     state = hand.read(ms(i));
   }
-  CHECK(turn_between(rest, state.orientation).norm() < 1e-6);
+  CHECK(rotation_between(rest, state.orientation).norm() < 1e-6);
 }
 
-TEST_CASE("A recorded motion turns, and its spin is how fast") {
+TEST_CASE("The spin of a recorded motion is its rotation rate") {
   Motion motion;
   motion.times_s = {0, 1};
   motion.positions_m = {Vector3d::Zero(), Vector3d::Zero()};
@@ -59,7 +60,7 @@ TEST_CASE("A recorded motion turns, and its spin is how fast") {
   }
 }
 
-TEST_CASE("A program that drives a device is told the torque and says its spin") {
+TEST_CASE("An external device receives the torque and publishes its spin") {
   External device("stylus", Vector3d::Zero(), 0.05);
   device_state_t m{};
   m.device = "stylus";
@@ -67,23 +68,23 @@ TEST_CASE("A program that drives a device is told the torque and says its spin")
   m.header.publish_time_ns = 1;
   m.pose.orientation.w = 1;
   m.spin_rad_s = to_vec3f(Vector3d(0, 0, 2));
-  device.hear(m, ms(0));
+  device.on_message(m, ms(0));
   CHECK((device.read(ms(1)).spin - Vector3d(0, 0, 2)).norm() < 1e-6);
   device.write(Wrench{{1, 2, 3}, {0.1, 0.2, 0.3}});
-  CHECK((to_eigen(device.tell()->torque_N_m) - Vector3d(0.1, 0.2, 0.3)).norm() < 1e-6);
-  CHECK((to_eigen(device.tell()->force_N) - Vector3d(1, 2, 3)).norm() < 1e-6);
+  CHECK((to_eigen(device.force_message()->torque_N_m) - Vector3d(0.1, 0.2, 0.3)).norm() < 1e-6);
+  CHECK((to_eigen(device.force_message()->force_N) - Vector3d(1, 2, 3)).norm() < 1e-6);
   CHECK(device.read(ms(100)).spin.norm() == 0);  // lost
 }
 
-TEST_CASE("Turns are put together and taken apart without loss") {
+TEST_CASE("Composing and decomposing rotations is lossless") {
   for (const double angle : {0.0, 1e-9, 0.3, 3.1}) {
     const Vector3d turn = angle * Vector3d(2, -1, 0.5).normalized();
     const Quaterniond from(Eigen::AngleAxisd(1, Vector3d::UnitX()));
-    CHECK((turn_between(from, turned_by(turn, from)) - turn).norm() < 1e-9);
+    CHECK((rotation_between(from, rotated_by(turn, from)) - turn).norm() < 1e-9);
   }
 }
 
-TEST_CASE("Eight strings turn the hand that holds their grip, and tell its spin. Four leave torque out") {
+TEST_CASE("Eight strings render torque and measure the spin, four strings ignore torque") {
   for (const std::string name : {"desktop8", "desktop"}) {
     const StringFrame frame = *known_frame(name);
     auto hand = std::make_unique<VirtualHand>(MonotoneCubic({0}, {Vector3d::Zero()}, MonotoneCubic::Ends::kRest),
@@ -97,7 +98,7 @@ TEST_CASE("Eight strings turn the hand that holds their grip, and tell its spin.
       device.write(Wrench{Vector3d::Zero(), i < 100 ? Vector3d(0, 0, 0) : Vector3d(0, 0, 0.03)});
       fastest = std::max(fastest, state.spin.z());
     }
-    const Vector3d turned = turn_between(Quaterniond::Identity(), state.orientation);
+    const Vector3d turned = rotation_between(Quaterniond::Identity(), state.orientation);
     CAPTURE(name, turned.transpose(), fastest);
     if (frame.has_torque()) {
       CHECK(turned.z() == Approx(0.03 / HandImpedance{}.turn_stiffness_N_m).epsilon(0.1));

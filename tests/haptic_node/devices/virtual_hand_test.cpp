@@ -15,7 +15,7 @@ sync::HostTime at_ms(double ms) { return sync::host_time(1'000'000'000 + static_
 
 }  // namespace
 
-TEST_CASE("A hand that is pushed evenly rests at force over stiffness from its path") {
+TEST_CASE("A hand under a constant force rests at force over stiffness from its path") {
   VirtualHand hand(still({0.1, 0.2, 0.3}), false, kHand);
   DeviceState state;
   for (int ms = 0; ms < 2000; ++ms) {
@@ -27,7 +27,7 @@ TEST_CASE("A hand that is pushed evenly rests at force over stiffness from its p
   CHECK(state.velocity.norm() < 1e-12);
 }
 
-TEST_CASE("A hand is integrated exactly, whatever the step") {
+TEST_CASE("A hand is integrated exactly at any step size") {
   // m x'' + b x' + k x = F from rest: x(t) of an overdamped, an underdamped and a critical hand.
   for (const HandImpedance& h :
        {HandImpedance{0.1, 30, 300}, HandImpedance{0.1, 2, 300}, HandImpedance{0.1, 10, 250}}) {
@@ -50,7 +50,7 @@ TEST_CASE("A hand is integrated exactly, whatever the step") {
   }
 }
 
-TEST_CASE("A hand follows its path and begins again, without a jump") {
+TEST_CASE("A hand follows its path and repeats it without a jump") {
   const MonotoneCubic path({0, 0.5, 1}, {Vector3d::Zero(), {0.1, 0, 0}, Vector3d::Zero()},
                            MonotoneCubic::Ends::kRest);
   VirtualHand hand(path, true, kHand);
@@ -68,17 +68,17 @@ TEST_CASE("A hand follows its path and begins again, without a jump") {
   CHECK((hand.read(at_ms(5500)).position - Vector3d(0.1, 0, 0)).norm() < 0.0008);
 }
 
-TEST_CASE("A hand rests at the first point of its path until the path begins, and may be pushed there") {
+TEST_CASE("A hand rests at the first point until the path begins, and a force displaces it") {
   const MonotoneCubic path({0, 0.5}, {{0.1, 0, 0}, {0.2, 0, 0}}, MonotoneCubic::Ends::kRest);
   VirtualHand hand(path, false, kHand);
   for (int ms = 0; ms < 700; ++ms) CHECK(hand.read(at_ms(ms)).position == Vector3d(0.1, 0, 0));
-  SECTION("which takes as long as it is") {
+  SECTION("The path begins and has its full duration") {
     hand.begin(at_ms(699.5));
     for (int ms = 700; ms <= 949; ++ms) hand.read(at_ms(ms));
     CHECK(hand.read(at_ms(949.5)).position.x() == Approx(0.15).margin(2e-4));  // except for the lag of the hand
     CHECK(hand.read(at_ms(1600)).position.x() == Approx(0.2).epsilon(1e-6));
   }
-  SECTION("by a force") {
+  SECTION("A force displaces the hand") {
     for (int ms = 700; ms < 1700; ++ms) {
       hand.write({0, 0, 3});
       hand.read(at_ms(ms));

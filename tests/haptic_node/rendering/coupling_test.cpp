@@ -8,7 +8,7 @@
 using namespace tactus::haptic;
 using Eigen::Vector3d;
 
-TEST_CASE("The gains keep all four rules for every mass, delay and device") {
+TEST_CASE("The gains satisfy all four stability conditions for every mass, delay and device") {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> u(0, 1);
   const auto log_between = [&](double low, double high) { return low * std::pow(high / low, u(random)); };
@@ -34,7 +34,7 @@ TEST_CASE("The gains keep all four rules for every mass, delay and device") {
   }
 }
 
-TEST_CASE("A light body is coupled softly, and more so the later it answers") {
+TEST_CASE("The coupling to a light body is soft, and softer with a longer delay") {
   const CouplingLimits limits;
   const double soft = coupling_gains(1e6, 0, 0.01, 0.003, 1e-3, limits).stiffness_N_m;
   CHECK(soft == Approx(0.1 * 0.01 / 9e-6).epsilon(0.002));
@@ -42,45 +42,45 @@ TEST_CASE("A light body is coupled softly, and more so the later it answers") {
   CHECK(coupling_gains(1e6, 0, 1e9, 0.006, 1e-3, limits).stiffness_N_m > 5 * soft);
 }
 
-TEST_CASE("The loop delay is the worst age lately, and forgets it slowly") {
+TEST_CASE("The loop delay is the recent peak of the age and decays slowly") {
   LoopDelay delay;
   CHECK(delay.value_s(0.001, 0.001) == Approx(0.002));
   delay.observe(0.004);
   delay.observe(0.001);
   CHECK(delay.value_s(0.001, 0.001) == Approx(0.006));
-  for (int k = 0; k < 1000; ++k) delay.pass(0, 1e-3);
+  for (int k = 0; k < 1000; ++k) delay.advance(0, 1e-3);
   CHECK(delay.value_s(0, 0) == Approx(0.004 * std::exp(-1)));
   delay.observe(1e9);
   CHECK(delay.value_s(0, 0) == Approx(0.1));
 }
 
-TEST_CASE("What models are held back less is forgotten at once, and what else was learnt of the way stays") {
+TEST_CASE("A shorter intended delay reduces the loop delay at once and keeps the rest") {
   LoopDelay delay;
   delay.observe(0.043);
-  constexpr double kLearnt_s = 1e-5;  // accuracy of the mean after ten of its time constants
-  for (int k = 0; k < 5000; ++k) delay.pass(0.043, 1e-3);
-  CHECK(delay.value_s(0, 0) == Approx(0.043).margin(kLearnt_s));
-  delay.relieve(0.04);
-  CHECK(delay.value_s(0, 0) == Approx(0.003).margin(kLearnt_s));
-  delay.relieve(0.04);
+  constexpr double kTolerance_s = 1e-5;  // accuracy of the mean after ten of its time constants
+  for (int k = 0; k < 5000; ++k) delay.advance(0.043, 1e-3);
+  CHECK(delay.value_s(0, 0) == Approx(0.043).margin(kTolerance_s));
+  delay.reduce(0.04);
+  CHECK(delay.value_s(0, 0) == Approx(0.003).margin(kTolerance_s));
+  delay.reduce(0.04);
   CHECK(delay.value_s(0, 0) == 0);
-  for (int k = 0; k < 5000; ++k) delay.pass(0.002, 1e-3);
-  CHECK(delay.value_s(0, 0) == Approx(0.002).margin(kLearnt_s));
+  for (int k = 0; k < 5000; ++k) delay.advance(0.002, 1e-3);
+  CHECK(delay.value_s(0, 0) == Approx(0.002).margin(kTolerance_s));
 }
 
-TEST_CASE("A touch model that is held for a while counts as late by half of that") {
+TEST_CASE("A held touch model counts as late by half of the hold time") {
   LoopDelay delay;
   const int held_ms = GENERATE(10, 33, 50);
   double mean = 0;
   for (int ms = 0; ms < 400 * held_ms; ++ms) {
     if (ms % held_ms == 0) delay.observe(0);
-    delay.pass(1e-3 * (ms % held_ms), 1e-3);
+    delay.advance(1e-3 * (ms % held_ms), 1e-3);
     if (ms >= 399 * held_ms) mean += delay.value_s(0, 0) / held_ms;
   }
   CHECK(mean == Approx(0.5e-3 * (held_ms - 1)).epsilon(0.1));
 }
 
-TEST_CASE("Forces push, never pull, and stay in the cone of friction") {
+TEST_CASE("Forces never pull and stay within the friction cone") {
   std::mt19937 random(6);
   std::normal_distribution<double> normal(0, 1);
   for (int round = 0; round < 2000; ++round) {
@@ -104,7 +104,7 @@ TEST_CASE("Forces push, never pull, and stay in the cone of friction") {
   }
 }
 
-TEST_CASE("The force of one wall is stiffness times depth, less damping times the speed away from it") {
+TEST_CASE("The force of one wall is stiffness times depth minus damping times the speed away from it") {
   std::vector<Surface> wall(1);
   wall[0].depth_m = 0.002;
   wall[0].coupling_stiffness_N_m = 1000;

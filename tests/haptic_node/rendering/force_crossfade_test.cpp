@@ -21,50 +21,50 @@ Surface bound(std::int64_t id, double depth_m = 0.001) {
 
 }  // namespace
 
-TEST_CASE("The force of the surfaces goes over to that of others within the recovery time, in even steps") {
+TEST_CASE("The force moves to that of other surfaces in even steps within the recovery time") {
   const double dt = GENERATE(1e-3, 0.5e-3, 0.25e-3);
-  ForceCrossfade handover(kRecovery_s, kAtOnce_N_s);
+  ForceCrossfade crossfade(kRecovery_s, kAtOnce_N_s);
   const std::vector<Surface> before{bound(1), bound(2, 0)}, after{bound(1, 0), bound(2)};
   const Vector3d old(0, 0, 3), next(2, 0, 3);
-  for (int i = 0; i < 5; ++i) CHECK(handover.step(before, old, dt) == old);
+  for (int i = 0; i < 5; ++i) CHECK(crossfade.step(before, old, dt) == old);
   Vector3d last = old;
   double t = 0;
   for (; t < kRecovery_s - 1e-9; t += dt) {
-    const Vector3d force = handover.step(after, next, dt);
+    const Vector3d force = crossfade.step(after, next, dt);
     // Its share, plus the change that passes in the tick of the transition.
     CHECK((force - last).norm() <= std::max(kAtOnce_N_s * dt, 2 * dt / kRecovery_s) + 1e-12);
     CHECK((force - old).norm() > (last - old).norm() - 1e-12);
     last = force;
   }
-  handover.step(after, next, dt);
-  CHECK((handover.step(after, next, dt) - next).norm() < 1e-12);
+  crossfade.step(after, next, dt);
+  CHECK((crossfade.step(after, next, dt) - next).norm() < 1e-12);
 }
 
-TEST_CASE("The first touch, the release and all that happens on the same surfaces pass as they are") {
-  ForceCrossfade handover(kRecovery_s, kAtOnce_N_s);
+TEST_CASE("The first touch, the release and changes on the same surfaces pass unchanged") {
+  ForceCrossfade crossfade(kRecovery_s, kAtOnce_N_s);
   const std::vector<Surface> free{bound(1, 0)}, one{bound(1)};
-  CHECK(handover.step(free, Vector3d::Zero(), kDt) == Vector3d::Zero());
-  CHECK(handover.step(one, {0, 0, 4}, kDt) == Vector3d(0, 0, 4));
-  CHECK(handover.step(one, {0, 3, 1}, kDt) == Vector3d(0, 3, 1));
-  CHECK(handover.step(free, Vector3d::Zero(), kDt) == Vector3d::Zero());
-  CHECK(handover.step(one, {5, 0, 0}, kDt) == Vector3d(5, 0, 0));
+  CHECK(crossfade.step(free, Vector3d::Zero(), kDt) == Vector3d::Zero());
+  CHECK(crossfade.step(one, {0, 0, 4}, kDt) == Vector3d(0, 0, 4));
+  CHECK(crossfade.step(one, {0, 3, 1}, kDt) == Vector3d(0, 3, 1));
+  CHECK(crossfade.step(free, Vector3d::Zero(), kDt) == Vector3d::Zero());
+  CHECK(crossfade.step(one, {5, 0, 0}, kDt) == Vector3d(5, 0, 0));
 }
 
-TEST_CASE("What is left of the old surfaces does not hold a hand that has left them all") {
-  ForceCrossfade handover(kRecovery_s, kAtOnce_N_s);
-  handover.step(std::vector{bound(1)}, {0, 0, 3}, kDt);
-  handover.step(std::vector{bound(2)}, {3, 0, 0}, kDt);
-  CHECK(handover.step(std::vector{bound(2, 0)}, Vector3d::Zero(), kDt) == Vector3d::Zero());
-  CHECK(handover.step(std::vector{bound(2)}, {1, 0, 0}, kDt) == Vector3d(1, 0, 0));
+TEST_CASE("The remaining force of old surfaces is zero when the hand leaves all surfaces") {
+  ForceCrossfade crossfade(kRecovery_s, kAtOnce_N_s);
+  crossfade.step(std::vector{bound(1)}, {0, 0, 3}, kDt);
+  crossfade.step(std::vector{bound(2)}, {3, 0, 0}, kDt);
+  CHECK(crossfade.step(std::vector{bound(2, 0)}, Vector3d::Zero(), kDt) == Vector3d::Zero());
+  CHECK(crossfade.step(std::vector{bound(2)}, {1, 0, 0}, kDt) == Vector3d(1, 0, 0));
 }
 
-TEST_CASE("A small change of the surfaces passes at once") {
-  ForceCrossfade handover(kRecovery_s, kAtOnce_N_s);
-  handover.step(std::vector{bound(1)}, {0, 0, 3}, kDt);
-  CHECK(handover.step(std::vector{bound(1), bound(2)}, {0.1, 0, 3}, kDt) == Vector3d(0.1, 0, 3));
+TEST_CASE("A small change of the force passes at once") {
+  ForceCrossfade crossfade(kRecovery_s, kAtOnce_N_s);
+  crossfade.step(std::vector{bound(1)}, {0, 0, 3}, kDt);
+  CHECK(crossfade.step(std::vector{bound(1), bound(2)}, {0.1, 0, 3}, kDt) == Vector3d(0.1, 0, 3));
 }
 
-TEST_CASE("Sliding from one facet over a shallow groove onto the next, friction does not break off") {
+TEST_CASE("Friction persists when the tool slides over a shallow groove between two facets") {
   // Facets that meet at 10 degrees in x = 0; the hand crosses them at 0.1 m/s, 3 mm deep.
   const double lean = 5 * M_PI / 180, speed = 0.1;
   std::vector<Surface> groove(2);

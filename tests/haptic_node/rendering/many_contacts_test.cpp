@@ -12,8 +12,7 @@ using namespace tactus;
 using namespace tactus::haptic;
 using namespace tactus::haptic::test;
 
-TEST_CASE(
-    "Of more contacts than a message tells of the largest bear all, so that bodies get what the hand feels") {
+TEST_CASE("The largest contacts carry the whole force when there are more contacts than a message holds") {
   scene_t box = scene();
   box.tools[0].shape = tool_def_t::BOX;
   box.tools[0].radius_m = 0.04;
@@ -34,19 +33,19 @@ TEST_CASE(
     const touch_model_t m = model(ms, planes);
     const double down = 0.003 * std::min(1.0, ms / 100.0);
     const TickOutput& out = bench.tick(ms, {0.0003, 0.0001, 0.01 - down}, &m);
-    Vector3d told = Vector3d::Zero(), moment = Vector3d::Zero();
+    Vector3d sum = Vector3d::Zero(), moment = Vector3d::Zero();
     std::size_t acting = 0;
     for (const tool_constraint_t& c : out.state.constraints) {
       const Vector3d f = to_eigen(c.force_N);
-      told += f;
+      sum += f;
       moment += (to_eigen(c.point_m) - to_eigen(out.state.proxy.position_m)).cross(f);
       acting += !f.isZero(0);
     }
     most = std::max(most, acting);
-    CHECK((told - out.force_N).norm() < 1e-5);
+    CHECK((sum - out.force_N).norm() < 1e-5);
     CHECK((moment - out.torque_N_m).norm() < 1e-4);
   }
   CHECK(bench.tick(200, {0.0003, 0.0001, 0.007}).force_N.z() > 1);
-  CHECK(most <= ContactImpulses::kMaxTold);
+  CHECK(most <= ContactImpulses::kMaxPublished);
   CHECK(most > 2);
 }

@@ -61,7 +61,7 @@ struct Pressing {
 
 }  // namespace
 
-TEST_CASE("Touch considers fewer planes when ticks take half of their time, and all again when they long do not") {
+TEST_CASE("The number of planes falls when ticks take half of their period and recovers later") {
   Quality quality(Settings{});
   CHECK(run(quality, 0.4, 4000) == 0);
   CHECK(quality.planes() == 50);
@@ -73,7 +73,7 @@ TEST_CASE("Touch considers fewer planes when ticks take half of their time, and 
   CHECK(run(quality, 0.3, 30000) == 0);
 }
 
-TEST_CASE("A moment in which another process has the processor costs no quality") {
+TEST_CASE("A short preemption by another process does not reduce the quality") {
   Quality quality(Settings{});
   for (int i = 0; i < 10000; ++i) {
     // 30 ms of each 200 ms.
@@ -82,7 +82,7 @@ TEST_CASE("A moment in which another process has the processor costs no quality"
   }
 }
 
-TEST_CASE("Touch whose quality is held does not heed the time") {
+TEST_CASE("A fixed quality ignores the tick time") {
   Quality quality(held("1"));
   CHECK(run(quality, 5, 1000) == 1);
   CHECK(quality.planes() == 5);
@@ -90,7 +90,7 @@ TEST_CASE("Touch whose quality is held does not heed the time") {
   CHECK(run(cheapest, 0.01, 30000) == 2);
 }
 
-TEST_CASE("Of many planes those under pressure are considered, deepest first, then the nearest") {
+TEST_CASE("Pressed planes are selected first, deepest first, then the nearest planes") {
   Surfaces surfaces(0, SurfaceLimits{});
   Proxy proxy;
   proxy.reset({0, 0, 0.001});
@@ -98,9 +98,9 @@ TEST_CASE("Of many planes those under pressure are considered, deepest first, th
   std::vector<touch_plane_t> planes;
   for (int i = 0; i < 6; ++i) planes.push_back(plane(i, {0, 0, -0.01 * (6 - i)}, Vector3d::UnitZ()));
   planes.push_back(plane(7, Vector3d::Zero(), Vector3d::UnitZ()));
-  const auto tick = [&](int ms, std::size_t at_most) {
+  const auto tick = [&](int ms, std::size_t max_planes) {
     const auto m = model(ms, planes);
-    surfaces.step(&m, sync::sim_time(ms * kMs), proxy.position(), 1e-3, at_most);
+    surfaces.step(&m, sync::sim_time(ms * kMs), proxy.position(), 1e-3, max_planes);
     proxy.step(surfaces.list(), {0, 0, -0.001}, 1e-3);
     std::vector<std::int64_t> ids;
     for (const Surface& s : surfaces.list()) ids.push_back(s.contact_id);
@@ -113,7 +113,7 @@ TEST_CASE("Of many planes those under pressure are considered, deepest first, th
   CHECK(proxy.position().z() == Approx(0).margin(1e-12));
 }
 
-TEST_CASE("In a corner the force is the same at each step of quality") {
+TEST_CASE("The force in a corner is equal at each quality step") {
   Pressing pressing{.lean = 0.1};
   const Vector3d device(0.001, 0.001, 0.003);  // in contact with the floor and two walls, for a tool of 5 mm
   const Vector3d full = pressing.press(0, 200, device, 8);
@@ -125,7 +125,7 @@ TEST_CASE("In a corner the force is the same at each step of quality") {
   CHECK(pressing.largest_step_N < 1e-9);
 }
 
-TEST_CASE("Where more planes press than are considered, the force goes over within the recovery time") {
+TEST_CASE("The force changes within the recovery time when pressed planes are omitted") {
   Pressing pressing{.lean = 0};
   // Wedged: the pit is narrower than the tool, so all five planes are pressed.
   const Vector3d device(0.0005, 0.0003, 0.003);

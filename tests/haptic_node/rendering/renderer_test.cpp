@@ -41,7 +41,7 @@ double wall_stiffness(const Settings& s) {
 
 }  // namespace
 
-TEST_CASE("A hand that presses on a wall rests where its spring and the coupling balance") {
+TEST_CASE("A hand on a wall rests where its spring and the coupling balance") {
   const Settings settings;
   const HandImpedance impedance{settings.hand_mass_kg, settings.hand_damping_Ns_m, settings.hand_stiffness_N_m};
   // The path ends 1 cm below the height at which the tool of 5 mm touches.
@@ -91,7 +91,7 @@ TEST_CASE("The impulse of a contact is the sum of its forces over time") {
   CHECK(sum_z > 0.005);
 }
 
-TEST_CASE("Friction drags against the motion, at its coefficient") {
+TEST_CASE("Friction opposes the motion at its coefficient") {
   Bench bench;
   TickOutput* out = nullptr;
   for (int ms = 0; ms < 400; ++ms) {
@@ -102,7 +102,7 @@ TEST_CASE("Friction drags against the motion, at its coefficient") {
   CHECK(out->force_N.z() == Approx(wall_stiffness({}) * 0.002).epsilon(1e-6));
 }
 
-TEST_CASE("A lost touch model fades to no force from 50 to 70 ms after its last arrival, and returns smoothly") {
+TEST_CASE("The force fades from 50 to 70 ms after the last touch model and returns smoothly") {
   Bench bench;
   const Vector3d device(0, 0, 0.003);  // 2 mm deep
   double full = 0;
@@ -129,7 +129,7 @@ TEST_CASE("A lost touch model fades to no force from 50 to 70 ms after its last 
   CHECK(last == Approx(full).epsilon(1e-6));
 }
 
-TEST_CASE("How the touch model was obtained is said") {
+TEST_CASE("The state reports the sample status of the touch model") {
   Bench bench;
   const auto status = [](const TickOutput& out) { return static_cast<sync::SampleStatus>(out.state.touch_how); };
   CHECK(status(bench.tick(0, Vector3d::Zero())) == sync::SampleStatus::kNone);
@@ -142,7 +142,7 @@ TEST_CASE("How the touch model was obtained is said") {
   CHECK(status(bench.tick(60, Vector3d::Zero())) == sync::SampleStatus::kStale);
 }
 
-TEST_CASE("Every begin and hit of the own tool has exactly one report, of the right part") {
+TEST_CASE("Every begin and hit of the own tool has exactly one report with the correct part") {
   Bench bench;
   std::map<std::int64_t, int> begins, hits;
   std::mt19937 random(2);
@@ -172,7 +172,7 @@ TEST_CASE("Every begin and hit of the own tool has exactly one report, of the ri
   for (const auto& [event_id, reports] : hits) CHECK(reports == 1);
 }
 
-TEST_CASE("A hit pushes the hand away from what it hit, whichever body is which") {
+TEST_CASE("A hit pushes the hand away from the hit body, in both body orders") {
   const bool tool_is_b = GENERATE(true, false);
   Bench bench;
   Vector3d first = Vector3d::Zero();
@@ -196,7 +196,7 @@ TEST_CASE("A hit pushes the hand away from what it hit, whichever body is which"
   CHECK(first.z() == Approx(0.9608 * 0.8090 * M_PI * 300 * 0.002).epsilon(1e-3));
 }
 
-TEST_CASE("The worst possible messages keep force, slew and energy within their limits") {
+TEST_CASE("Extreme messages keep force, slew and energy within their limits") {
   std::mt19937 random(77);
   std::normal_distribution<double> normal(0, 1);
   const Settings settings;
@@ -250,7 +250,7 @@ TEST_CASE("The worst possible messages keep force, slew and energy within their 
   }
 }
 
-TEST_CASE("A device that reports nonsense is held where it was") {
+TEST_CASE("A device with invalid values keeps its last valid position") {
   Bench bench;
   const auto m = model(0, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())});
   bench.tick(0, {0, 0, 0.003}, &m);
@@ -260,7 +260,7 @@ TEST_CASE("A device that reports nonsense is held where it was") {
   CHECK(out.state.device.position_m.z == 0.003);
 }
 
-TEST_CASE("A force in steps, as a profile asks for, keeps its direction and is passed on to what is touched") {
+TEST_CASE("A quantised force keeps its direction and equals the force on the bodies") {
   constexpr double kStep_N = 0.5;
   Bench bench;
   TickInput in;
@@ -279,7 +279,7 @@ TEST_CASE("A force in steps, as a profile asks for, keeps its direction and is p
   CHECK(levels == std::set<long>{0, 1, 2, 3, 4});
 }
 
-TEST_CASE("What moves is coupled softly while touch is held back on purpose, and as before within a tenth of a second after") {
+TEST_CASE("An intended delay softens the coupling to movable bodies, and it recovers within 0.1 s") {
   constexpr int kDelay_ms = 40, kPhase_ms = 3000;
   Bench bench;
   const auto pressed = [&](int begin_ms, int for_ms, int delay_ms) {
@@ -300,7 +300,7 @@ TEST_CASE("What moves is coupled softly while touch is held back on purpose, and
   CHECK(pressed(100 + 2 * kPhase_ms, 100, 0) == Approx(fresh_N).epsilon(0.03));
 }
 
-TEST_CASE("A force in steps has passed the limits of force and slew, whatever the step") {
+TEST_CASE("A quantised force obeys the limits of force and slew at any step") {
   const Settings settings;
   const double step_N = GENERATE(1e-6, 0.1, 3.0, 5.0, 100.0);
   Bench bench(settings);
@@ -319,7 +319,7 @@ TEST_CASE("A force in steps has passed the limits of force and slew, whatever th
   CHECK(largest_N == Approx(settings.force_limit_N));
 }
 
-TEST_CASE("A lost touch model fades to no force however large the steps of force are") {
+TEST_CASE("A quantised force fades to zero after the touch model is lost") {
   Bench bench;
   TickInput in;
   in.force_step_N = GENERATE(0.5, 3.0);

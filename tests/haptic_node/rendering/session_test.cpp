@@ -36,7 +36,7 @@ contact_events_t events_of(double sim_ms, std::vector<contact_event_t> list) {
   return m;
 }
 
-NodeConfig choice_of(const scene_t& s) { return resolve_config(s, "", {}); }
+NodeConfig config_of(const scene_t& s) { return resolve_config(s, "", {}); }
 
 // The tool is 2 mm under the floor of z = 0.005 + ...: see the poses of the bodies.
 scene_t pressing_scene() {
@@ -48,7 +48,7 @@ scene_t pressing_scene() {
 
 }  // namespace
 
-TEST_CASE("The tool and its settings are chosen by name, and what does not fit is said") {
+TEST_CASE("Tool and settings are selected by name, and unknown names are reported") {
   scene_t s = scene();
   s.tools.push_back(s.tools[0]);
   s.tools[1].name = "finger";
@@ -67,11 +67,11 @@ TEST_CASE("The tool and its settings are chosen by name, and what does not fit i
   CHECK(resolve_config(s, "toe", {}).tool == -1);
   CHECK_THAT(resolve_config(s, "toe", {}).problem, Contains("toe"));
   CHECK_THAT(resolve_config(scene_t{}, "", {}).problem, Contains("no tool"));
-  CHECK(resolve_config(s, "", {"force=2"}).refused.size() == 1);
+  CHECK(resolve_config(s, "", {"force=2"}).rejected.size() == 1);
   CHECK_THAT(limits_sentence(resolve_config(s, "", {}).settings), Contains("3 N") && Contains("0.49 J"));
 }
 
-TEST_CASE("A scene cannot loosen what protects the hand. The command line can") {
+TEST_CASE("A scene cannot widen a safety limit, the command line can") {
   scene_t s = scene();
   const Settings safe;
   for (const auto& [name, value] : std::vector<std::pair<std::string, std::string>>{{"force_limit", "30"},
@@ -90,40 +90,40 @@ TEST_CASE("A scene cannot loosen what protects the hand. The command line can") 
     s.settings[0].node = "haptic_node";
     s.settings[0].name = name;
     s.settings[0].value = value;
-    const NodeConfig refused = resolve_config(s, "", {});
-    REQUIRE(refused.refused.size() == 1);
-    CHECK_THAT(refused.refused[0], Contains(name) && Contains("only tighten") && Contains("--set"));
-    CHECK(limits_sentence(refused.settings) == limits_sentence(safe));
-    CHECK(resolve_config(scene(), "", {name + "=" + value}).refused.empty());
+    const NodeConfig rejected = resolve_config(s, "", {});
+    REQUIRE(rejected.rejected.size() == 1);
+    CHECK_THAT(rejected.rejected[0], Contains(name) && Contains("only tighten") && Contains("--set"));
+    CHECK(limits_sentence(rejected.settings) == limits_sentence(safe));
+    CHECK(resolve_config(scene(), "", {name + "=" + value}).rejected.empty());
   }
   CHECK(resolve_config(s, "", {"force_limit=12"}).settings.force_limit_N == 12);
 }
 
-TEST_CASE("A session touches what its own tool is told of, and nothing else") {
+TEST_CASE("A session renders only the touch models of its own tool") {
   const scene_t s = pressing_scene();
   Safety safety{SafetyLimits{}};
-  Session session(s, choice_of(s), device_of(s, choice_of(s)), 1, safety);
+  Session session(s, config_of(s), make_tool_device(s, config_of(s)), 1, safety);
   const auto floor = plane(7, Vector3d::Zero(), Vector3d::UnitZ());
-  CHECK_FALSE(session.heard());
+  CHECK_FALSE(session.has_touch_model());
   for (int ms = 0; ms < 100; ++ms) {
     session.push(sent(ms, {floor}, 1), host_ms(ms));
     CHECK(session.step(host_ms(ms)).force_N.norm() == 0);
   }
-  CHECK_FALSE(session.heard());
+  CHECK_FALSE(session.has_touch_model());
   TickOutput* out = nullptr;
   for (int ms = 100; ms < 400; ++ms) {
     session.push(sent(ms, {floor}), host_ms(ms));
     session.push(sent(ms, {}, 1), host_ms(ms));
     out = &session.step(host_ms(ms));
   }
-  CHECK(session.heard());
+  CHECK(session.has_touch_model());
   CHECK_FALSE(session.lost());
   CHECK(out->force_N.z() > 0.3);
   CHECK(out->state.tool == 0);
   CHECK(out->state.header.sim_time_ns == 399 * kMs);
 }
 
-TEST_CASE("Events that are repeated, as they are on the bus, are rendered once") {
+TEST_CASE("Repeated events are rendered once") {
   const scene_t s = pressing_scene();
   Safety safety{SafetyLimits{}};
   Session session(s, choice_of(s), device_of(s, choice_of(s)), 1, safety);
@@ -146,10 +146,10 @@ TEST_CASE("Events that are repeated, as they are on the bus, are rendered once")
   CHECK(hits == 1);
 }
 
-TEST_CASE("A restarted simulation is followed, its first touch model comes without a kick") {
+TEST_CASE("The first touch model of a restarted simulation causes no jump of the force") {
   const scene_t s = pressing_scene();
   Safety safety{SafetyLimits{}};
-  Session session(s, choice_of(s), device_of(s, choice_of(s)), 1, safety);
+  Session session(s, config_of(s), make_tool_device(s, config_of(s)), 1, safety);
   double last = 0;
   for (int ms = 0; ms < 1000; ++ms) {
     // Stopped at 200 ms, restarted at 500 ms with its time beginning at 0.
@@ -168,19 +168,19 @@ TEST_CASE("A restarted simulation is followed, its first touch model comes witho
   CHECK(last > 0.3);
 }
 
-TEST_CASE("The path of the hand begins with the world, not with the process") {
+TEST_CASE("The path of the hand begins with the first touch model") {
   scene_t s = scene();
   s.tools[0].waypoints.resize(2);
   s.tools[0].waypoints[1].time_s = 0.5;
   s.tools[0].waypoints[1].position_m.x = 0.1;
   s.tools[0].waypoint_count = 2;
   Safety safety{SafetyLimits{}};
-  Session session(s, choice_of(s), device_of(s, choice_of(s)), 1, safety);
+  Session session(s, config_of(s), make_tool_device(s, config_of(s)), 1, safety);
   const auto x = [](const TickOutput& out) { return out.state.device.position_m.x; };
   // The scene arrives half a second before its time begins; the ticks fall anywhere between its steps.
   const double tick_ms = GENERATE(0.0, 0.3, 0.9);
   for (int ms = -500; ms < 0; ++ms) CHECK(x(session.step(host_ms(ms + tick_ms))) == 0);
-  SECTION("at the simulated instant of its first touch model") {
+  SECTION("The path begins at the simulated instant of the first touch model") {
     double at_250 = 0;
     for (int ms = 0; ms < 1000; ++ms) {
       session.push(sent(ms, {}), host_ms(ms));
@@ -190,7 +190,7 @@ TEST_CASE("The path of the hand begins with the world, not with the process") {
     CHECK(at_250 == Approx(0.05 + 0.3e-3 * tick_ms).margin(2e-4));  // halfway, at 0.3 m/s
     CHECK(x(session.step(host_ms(1000))) == Approx(0.1).epsilon(1e-6));
   }
-  SECTION("also when touch models are held back on purpose: then as the first one arrives") {
+  SECTION("With an intended delay the path begins when the first touch model arrives") {
     double held = 0;
     for (int ms = 0; ms < 300; ++ms) {
       if (ms >= 200) session.push(sent(ms - 200, {}), host_ms(ms));
@@ -198,17 +198,17 @@ TEST_CASE("The path of the hand begins with the world, not with the process") {
     }
     CHECK(held > 0.05);
   }
-  SECTION("and not with the arrivals of the world before it") {
+  SECTION("Arrivals of an earlier simulation do not begin the path") {
     for (int ms = 0; ms < 300; ++ms) CHECK(x(session.step(host_ms(ms), {.touch_arrival = host_ms(-501)})) == 0);
   }
 }
 
-TEST_CASE("When the scene changes the force goes on from where it is, through the limits") {
+TEST_CASE("The force continues from its value within the limits when the scene changes") {
   const scene_t s = pressing_scene();
   // So slow that the way from 0.4 N takes 40 ms.
   const NodeConfig slow = resolve_config(s, "", {"slew_limit=10", "energy_limit=0.4"});
   Safety safety{safety_limits(slow.settings)};
-  std::optional<Session> session(std::in_place, s, slow, device_of(s, slow), 1, safety);
+  std::optional<Session> session(std::in_place, s, slow, make_tool_device(s, slow), 1, safety);
   Vector3d last = Vector3d::Zero();
   const auto tick = [&](int ms) {
     const Vector3d force = session->step(host_ms(ms)).force_N;
@@ -220,18 +220,18 @@ TEST_CASE("When the scene changes the force goes on from where it is, through th
     tick(ms);
   }
   REQUIRE(last.z() > 0.3);
-  SECTION("of a scene that follows") {
+  SECTION("The next scene has the tool") {
     const double given_J = safety.energy_J();
-    session.emplace(s, slow, device_of(s, slow), 1, safety);
+    session.emplace(s, slow, make_tool_device(s, slow), 1, safety);
     tick(300);
     CHECK(last.z() > 0.3);
     CHECK(safety.energy_J() == given_J);  // a new hand at another place: no work
     for (int ms = 301; ms < 330; ++ms) tick(ms);
     CHECK(last.z() > 0);
   }
-  SECTION("and of one without this tool, whose touch models are ignored") {
-    session->let_go();
-    CHECK(session->over());
+  SECTION("The next scene has no such tool, and its touch models are ignored") {
+    session->end();
+    CHECK(session->ended());
     for (int ms = 300; ms < 330; ++ms) {
       session->push(sent(ms, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())}), host_ms(ms));
       tick(ms);
@@ -242,12 +242,12 @@ TEST_CASE("When the scene changes the force goes on from where it is, through th
   CHECK(last.norm() == 0);
 }
 
-TEST_CASE("A device that the scene names but nobody can make is refused in one sentence") {
+TEST_CASE("An unknown device of the scene is rejected in one sentence") {
   scene_t s = scene();
   for (const std::string device : {"phantom", "playback:/no/such.csv", "playback:/dev/zero"}) {
     s.tools[0].device = device;
-    CHECK_THROWS_WITH(device_of(s, choice_of(s)), Contains(device.substr(device.find(':') + 1)));
+    CHECK_THROWS_WITH(make_tool_device(s, config_of(s)), Contains(device.substr(device.find(':') + 1)));
     const DeviceSpec given;
-    CHECK(device_of(s, choice_of(s), &given));  // the command line overrides the scene
+    CHECK(make_tool_device(s, config_of(s), &given));  // the command line overrides the scene
   }
 }

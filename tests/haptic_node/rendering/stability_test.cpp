@@ -26,7 +26,7 @@ struct Body {
 
 struct Run {
   double force_N = 0;          // at the end
-  double most_motion_m_s = 0;  // of hand or body in the last half second
+  double max_motion_m_s = 0;   // of hand or body in the last half second
   int force_reversals = 0;     // changes between increase and decrease by more than 0.05 N, in total
   double energy_J = 0;         // given to the hand
 };
@@ -40,23 +40,23 @@ Run press(std::optional<Body> body, double delay_ms, int every_ms = 1) {
       {settings.hand_mass_kg, settings.hand_damping_Ns_m, settings.hand_stiffness_N_m});
   hand.begin(host_ms(0));
   Bench bench(settings);
-  std::deque<touch_model_t> on_the_way;
-  double impulse = 0, told_impulse = 0, extreme = 0;
+  std::deque<touch_model_t> in_transit;
+  double impulse = 0, applied_impulse = 0, extreme = 0;
   bool growing = true;
   Run run;
   for (int ms = 0; ms < 3000; ++ms) {
-    if (body) body->step(-(impulse - told_impulse) / 1e-3, 1e-3);
-    told_impulse = impulse;
+    if (body) body->step(-(impulse - applied_impulse) / 1e-3, 1e-3);
+    applied_impulse = impulse;
     auto p = plane(7, {0, 0, body ? body->z : 0}, Vector3d::UnitZ());
     if (body) p.effective_mass_kg = static_cast<float>(body->mass_kg);
     if (body) p.velocity_m_s = to_vec3f(Vector3d(0, 0, body->v));
-    on_the_way.push_back(model(ms, {p}));
+    in_transit.push_back(model(ms, {p}));
     const DeviceState state = hand.read(host_ms(ms));
-    const bool due = on_the_way.size() > static_cast<std::size_t>(delay_ms);
-    const touch_model_t* fresh = due && ms % every_ms == 0 ? &on_the_way.front() : nullptr;
+    const bool due = in_transit.size() > static_cast<std::size_t>(delay_ms);
+    const touch_model_t* fresh = due && ms % every_ms == 0 ? &in_transit.front() : nullptr;
     bench.arrival = host_ms(ms);  // an intended low rate does not count as a loss
     const auto& out = bench.tick(ms, state.position, fresh);
-    if (due) on_the_way.pop_front();
+    if (due) in_transit.pop_front();
     hand.write(out.force_N);
     if (!out.state.constraints.empty()) impulse = out.state.constraints[0].impulse_N_s.z;
     run.force_N = out.force_N.z();
@@ -68,23 +68,23 @@ Run press(std::optional<Body> body, double delay_ms, int every_ms = 1) {
     }
     extreme = growing ? std::max(extreme, run.force_N) : std::min(extreme, run.force_N);
     if (ms >= 2500)
-      run.most_motion_m_s = std::max({run.most_motion_m_s, state.velocity.norm(), body ? std::abs(body->v) : 0});
+      run.max_motion_m_s = std::max({run.max_motion_m_s, state.velocity.norm(), body ? std::abs(body->v) : 0});
   }
   return run;
 }
 
 }  // namespace
 
-TEST_CASE("A hand on a stiff wall comes to rest with a touch model that is 1 to 3 ms late") {
+TEST_CASE("A hand on a stiff wall comes to rest with touch models that are 1 to 3 ms late") {
   const double delay_ms = GENERATE(1, 2, 3);
   const Run run = press(std::nullopt, delay_ms);
-  CHECK(run.most_motion_m_s < 1e-9);
+  CHECK(run.max_motion_m_s < 1e-9);
   CHECK(run.force_reversals <= 2);  // at most one overshoot
   // The hand received no energy: it spent the work of its 1 cm against the wall.
   CHECK(run.energy_J < -0.5 * run.force_N * run.force_N / 1000 * 0.99);
 }
 
-TEST_CASE("A hand on a body of any mass comes to rest with a touch model that is 1 to 3 ms late") {
+TEST_CASE("A hand on a body of any mass comes to rest with touch models that are 1 to 3 ms late") {
   const double delay_ms = GENERATE(1, 2, 3);
   const double mass_kg = GENERATE(0.002, 0.01, 0.05, 0.2, 1.0, 5.0);
   CAPTURE(delay_ms, mass_kg);
@@ -93,12 +93,12 @@ TEST_CASE("A hand on a body of any mass comes to rest with a touch model that is
   const double stiffness_N_m = std::min(500.0, 1e4 * mass_kg);
   const Run run = press(Body{mass_kg, stiffness_N_m, 0.1 * std::sqrt(stiffness_N_m * mass_kg)}, delay_ms);
   // The heaviest rings by itself, at 10 rad/s and 0.5 1/s: after 2.2 s still with a third of its first speed.
-  CHECK(run.most_motion_m_s < 0.005);
+  CHECK(run.max_motion_m_s < 0.005);
   CHECK(run.energy_J < 0.02);
   CHECK(run.force_N > 0.02);
 }
 
-TEST_CASE("A free light body that is pushed along gains no energy from the delays") {
+TEST_CASE("A pushed light body gains no energy from the delays") {
   // No spring holds it: pushed down by the hand it leaves once, at about the speed of the hand.
   const double delay_ms = GENERATE(1, 2, 3);
   const Run run = press(Body{0.02, 0, 0}, delay_ms);
@@ -107,11 +107,11 @@ TEST_CASE("A free light body that is pushed along gains no energy from the delay
   CHECK(run.energy_J < 1e-4);
 }
 
-TEST_CASE("A hand on a body of any mass comes to rest with touch models that come 30 times a second") {
+TEST_CASE("A hand on a body of any mass comes to rest with touch models at 30 Hz") {
   const double mass_kg = GENERATE(0.05, 0.1, 0.2);
   CAPTURE(mass_kg);
   const Run run = press(Body{mass_kg, 500, 0.1 * std::sqrt(500 * mass_kg)}, 1, 33);
-  CHECK(run.most_motion_m_s < 0.005);
+  CHECK(run.max_motion_m_s < 0.005);
   CHECK(run.energy_J < 0.001);
   CHECK(run.force_N > 0.02);
 }

@@ -27,7 +27,7 @@ touch_plane_t facet_under(const Vector3d& place) {
 
 }  // namespace
 
-TEST_CASE("A stroke over the facets of a bumpy sphere has no kick") {
+TEST_CASE("A stroke over the facets of a bumpy sphere has no jump of the force") {
   const Settings settings;
   Bench bench(settings);
   const double tool = 0.005, depth = 0.003, speed = GENERATE(0.02, 0.1, 0.3);

@@ -26,7 +26,7 @@ Hit hit(std::int64_t id, double ms) {
 
 }  // namespace
 
-TEST_CASE("A harder material rings higher, between rubber and aluminium") {
+TEST_CASE("A harder material rings at a higher frequency, between rubber and aluminium") {
   const TransientShape shape;
   CHECK(transient_frequency_Hz(1e7, shape) == Approx(30));
   CHECK(transient_frequency_Hz(70e9, shape) == Approx(300));
@@ -47,7 +47,7 @@ TEST_CASE("The first half wave carries the momentum of the hit, up to the limit"
   CHECK(transient_amplitude_N(h, shape) == 3);
 }
 
-TEST_CASE("A transient is the decaying sinusoid that it should be, and ends") {
+TEST_CASE("A transient is a decaying sinusoid and ends") {
   TransientShape shape;
   Transients transients(shape);
   std::vector<presentation_t> reports;
@@ -75,7 +75,7 @@ TEST_CASE("A transient is the decaying sinusoid that it should be, and ends") {
   CHECK(reports[0].part == presentation_t::TRANSIENT);
 }
 
-TEST_CASE("Every hit has one report: in time, late, or dropped when too late") {
+TEST_CASE("Every hit has one report: presented, late or dropped") {
   Transients transients(TransientShape{});
   std::vector<presentation_t> reports;
   transients.schedule(hit(1, 100), reports);
@@ -94,7 +94,7 @@ TEST_CASE("Every hit has one report: in time, late, or dropped when too late") {
   CHECK(reports.size() == 4);
 }
 
-TEST_CASE("A thousand hits at once are all reported and stay within the limit") {
+TEST_CASE("A thousand simultaneous hits are all reported and stay within the force limit") {
   Transients transients(TransientShape{});
   std::vector<presentation_t> reports;
   for (int i = 0; i < 1000; ++i) transients.schedule(hit(i, 5), reports);
@@ -103,7 +103,7 @@ TEST_CASE("A thousand hits at once are all reported and stay within the limit") 
   CHECK(reports.size() == 1000);
 }
 
-TEST_CASE("A transient that no hand would feel is not called presented") {
+TEST_CASE("A transient without force on the hand is reported as dropped") {
   Transients transients(TransientShape{});
   std::vector<presentation_t> reports;
   transients.schedule(hit(1, 5), reports);
@@ -112,7 +112,7 @@ TEST_CASE("A transient that no hand would feel is not called presented") {
   CHECK(reports[0].outcome == presentation_t::DROPPED_LATE);
 }
 
-TEST_CASE("Of the sense's row of late rules: a late transient is as strong as it should be, or not at all") {
+TEST_CASE("A late transient has its full amplitude or is dropped") {
   // On time up to 7.5 ms, dropped after 15 ms.
   const auto felt = [](double lateness_ms) {
     Transients transients(TransientShape{});

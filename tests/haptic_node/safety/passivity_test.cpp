@@ -23,11 +23,11 @@ struct Ports {
 
   // The hand is `in` under the surface of the body. Since the last tick it moved by moved_m (up: positive) and the
   // body by body_m.
-  double tick(double in, double moved_m, double body_m, bool told = true) {
+  double tick(double in, double moved_m, double body_m, bool reported = true) {
     given_J += -force * body_m;
     impulse -= force * kDt;
-    age_s = told ? 0 : age_s + kDt;
-    if (told) {
+    age_s = reported ? 0 : age_s + kDt;
+    if (reported) {
       auto p = plane(7, Vector3d::Zero(), Vector3d::UnitZ());
       p.effective_mass_kg = static_cast<float>(mass_kg);
       p.velocity_m_s = to_vec3f(Vector3d(0, 0, body_m / kDt));
@@ -37,7 +37,7 @@ struct Ports {
       a.energy_J = static_cast<float>(given_J);
       a.impulse_N_s = to_vec3f(Vector3d(0, 0, impulse));
       m.applied = {a};
-      passivity.hear(m);
+      passivity.on_message(m);
     }
     ++ms;
     std::vector<Surface> surfaces(1);
@@ -46,15 +46,15 @@ struct Ports {
     surfaces[0].depth_m = std::max(0.0, in);
     surfaces[0].coupling_stiffness_N_m = stiffness_N_m;
     const double deep = std::max(0.0, in);
-    const Stored stored{0.5 * stiffness_N_m * deep * deep, deep > 0};
+    const StoredEnergy stored{0.5 * stiffness_N_m * deep * deep, deep > 0};
     if (lever_m > 0)
       passivity.observe(stored, Vector3d::Zero(), {0, -moved_m / lever_m, 0}, age_s, kDt);
     else
       passivity.observe(stored, {0, 0, moved_m}, Vector3d::Zero(), age_s, kDt);
     force = passivity.factor() * stiffness_N_m * std::max(0.0, in);
-    const std::vector<FeltForce> felt{{7, 0, {lever_m, 0, 0}, {0, 0, force}}};
+    const std::vector<ContactForce> felt{{7, 0, {lever_m, 0, 0}, {0, 0, force}}};
     const Vector3d about = Vector3d::Zero();
-    passivity.note(felt, surfaces, lever_m > 0 ? &about : nullptr);
+    passivity.record(felt, surfaces, lever_m > 0 ? &about : nullptr);
     return force;
   }
 
@@ -76,9 +76,7 @@ constexpr Network kHard[] = {{"10 ms late", 10},
 
 }  // namespace
 
-TEST_CASE(
-    "A spring that is pressed and let go generates what the hold of a tick does, and its coupling stays nearly "
-    "whole") {
+TEST_CASE("A pressed and released spring generates only the energy of the hold over a tick") {
   Ports ports(1);
   double in = 0;
   for (int k = 0; k < 200; ++k) {
@@ -92,7 +90,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("Force that comes from nowhere is generated, and the coupling gives no more of it than the allowance") {
+TEST_CASE("A force without a source counts as generated and gives at most the allowance") {
   Ports ports(1);
   // The surface is suddenly 5 mm above the hand and retreats at 0.1 m/s: 12.5 mJ.
   double hand_J = 0;
@@ -105,7 +103,7 @@ TEST_CASE("Force that comes from nowhere is generated, and the coupling gives no
   CHECK(ports.passivity.generated_J() == Approx(hand_J).margin(0.0004));
 }
 
-TEST_CASE("A hand that pushes with a lever is judged as one that pushes straight") {
+TEST_CASE("Work by rotation counts like work by translation") {
   Ports straight(1), lever(1);
   lever.lever_m = 0.1;
   // Pushed along at 0.5 m/s, and 5 mm deep within one tick: more than the allowance, although the path alone
@@ -121,13 +119,13 @@ TEST_CASE("A hand that pushes with a lever is judged as one that pushes straight
   CHECK(straight.passivity.factor() < 1);
 }
 
-TEST_CASE("A body that is told of twice counts as told last, and none comes faster than a body can") {
+TEST_CASE("The last of two reports of a body counts, and its speed is clamped") {
   const bool twice = GENERATE(true, false);
   // Suddenly pressed by 10 mm, without energy from hand or body, on 0.05 kg.
-  const auto factor = [&](bool lies) {
+  const auto factor = [&](bool wrong_report) {
     Ports ports(0.05);
     for (int k = 0; k < 3; ++k) ports.tick(0.0005, 0, 0);
-    if (lies) {
+    if (wrong_report) {
       auto p = plane(7, Vector3d::Zero(), Vector3d::UnitZ());
       auto first = p;
       p.effective_mass_kg = 0.05f;
@@ -139,7 +137,7 @@ TEST_CASE("A body that is told of twice counts as told last, and none comes fast
       a.energy_J = static_cast<float>(ports.given_J);
       a.impulse_N_s = to_vec3f(Vector3d(0, 0, ports.impulse));
       m.applied = {a};
-      ports.passivity.hear(m);
+      ports.passivity.on_message(m);
     }
     for (int k = 0; k < 20; ++k) ports.tick(0.01, 0, 0, false);
     return ports.passivity.factor();
@@ -149,7 +147,7 @@ TEST_CASE("A body that is told of twice counts as told last, and none comes fast
   if (!twice) CHECK(factor(true) < 1);
 }
 
-TEST_CASE("What a body really gives the hand is not taken for generated") {
+TEST_CASE("Energy from a body does not count as generated") {
   // A falling ball of 1 kg at 0.5 m/s pushes the hand away at the same speed, pressed 3 mm in: 1.5 W for 0.2 s.
   Ports ports(1);
   for (int k = 0; k < 30; ++k) ports.tick(1e-4 * k, -1e-4, 0);  // the hand presses first
@@ -158,8 +156,7 @@ TEST_CASE("What a body really gives the hand is not taken for generated") {
   CHECK(ports.passivity.generated_J() < 1e-4);
 }
 
-TEST_CASE(
-    "A light body that nobody tells of any more is not pushed on for long, a held one longer than a free one") {
+TEST_CASE("Without reports the push on a light body ends soon, for a held body later than for a free body") {
   const bool held = GENERATE(false, true);
   Ports ports(0.1);
   double v = 0;
@@ -175,7 +172,7 @@ TEST_CASE(
   CHECK(until < (held ? 150 : 30));
 }
 
-TEST_CASE("After a while apart an episode begins anew, and what the simulation knows from before is not counted") {
+TEST_CASE("An episode restarts after a time without contact, and earlier energy does not count") {
   Ports ports(1);
   for (int k = 0; k < 30; ++k) ports.tick(1e-4 * k, -1e-4, 0);
   for (int k = 0; k < 100; ++k) ports.tick(0.003, -5e-4, -5e-4);  // pushed along: the body has received 150 mJ
@@ -185,7 +182,7 @@ TEST_CASE("After a while apart an episode begins anew, and what the simulation k
   CHECK(ports.passivity.generated_J() < 1e-4);
 }
 
-TEST_CASE("Numbers that are none do not reach the factor") {
+TEST_CASE("Values that are not finite do not change the factor") {
   Passivity passivity{PassivityLimits{}};
   const float nan = std::numeric_limits<float>::quiet_NaN();
   touch_model_t m = model(0, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())});
@@ -193,16 +190,16 @@ TEST_CASE("Numbers that are none do not reach the factor") {
   a.contact_id = 7;
   a.energy_J = nan;
   m.applied = {a};
-  passivity.hear(m);
+  passivity.on_message(m);
   m.applied[0].energy_J = 0;
   m.planes[0].velocity_m_s.z = nan;
-  passivity.hear(m);
+  passivity.on_message(m);
   passivity.observe({}, {nan, 0, 0}, Vector3d::Zero(), 0, kDt);
   CHECK(passivity.factor() == 1);
   CHECK(passivity.generated_J() == 0);
 }
 
-TEST_CASE("Touch that is degraded gives a hand and a body at most 1 mJ that nobody gave, and does not cycle") {
+TEST_CASE("Degraded touch generates at most 1 mJ and does not oscillate") {
   // passivity_table has the whole grid; here a random part of it.
   std::mt19937 random(11);
   const auto pick = [&](const auto& from) { return from[random() % std::size(from)]; };
@@ -221,7 +218,7 @@ TEST_CASE("Touch that is degraded gives a hand and a body at most 1 mJ that nobo
   }
 }
 
-TEST_CASE("Long losses while a body swings, or runs away from the hand, neither make energy nor end touch") {
+TEST_CASE("Long losses at a moving body neither generate energy nor end the contact") {
   // Each of these cases once generated more than 1 mJ, kept oscillating, or left no force.
   const auto run = [](Act act, double mass_kg, std::size_t hand, unsigned seed) {
     EpisodeDef def;
@@ -237,7 +234,7 @@ TEST_CASE("Long losses while a body swings, or runs away from the hand, neither 
   CHECK(run(Act::kPush, 0.05, kArm, 8).pushed_m > 0.5 * kPush_m);
 }
 
-TEST_CASE("Without a disturbance the controller leaves the coupling as it is") {
+TEST_CASE("Without a disturbance the controller does not change the coupling") {
   for (const double mass_kg : {0.0, 0.05, 0.2, 1.0})
     for (const HandKind& hand : hand_kinds()) {
       EpisodeDef def;

@@ -19,18 +19,18 @@ struct Pushed {
   double mass_kg;
   std::function<double(double t_s, double down_m_s)> others_N;  // upwards
   std::size_t late_ms = 0;
-  int told_until_ms = 1'000'000;
+  int reported_until_ms = 1'000'000;
   double down_m_s = 0;
 
   double work_J = 0, impulse_N_s = 0;
   int ms = 0, age_ms = 0;
-  PendingEnergyEstimator unseen{};
-  struct News {
-    PendingEnergyEstimator::Told told;
+  PendingEnergyEstimator estimator{};
+  struct Report {
+    PendingEnergyEstimator::BodyReport report;
     double work_J;
   };
-  std::deque<News> on_the_way{};
-  double told_J = 0;
+  std::deque<Report> in_transit{};
+  double reported_J = 0;
 
   // Estimated minus true energy since the last report, J.
   double step(double push_N) {
@@ -40,20 +40,20 @@ struct Pushed {
     down_m_s = next;
     work_J += push_N * 0.5 * (before + next) * kDt;
     impulse_N_s += push_N * kDt;
-    unseen.give({0, 0, -push_N}, kDt);
+    estimator.add_push({0, 0, -push_N}, kDt);
     ++ms;
-    on_the_way.push_back(
+    in_transit.push_back(
         {{ms * 1'000'000, mass_kg, Vector3d::UnitZ(), {0, 0, -down_m_s}, {0, 0, -impulse_N_s}}, work_J});
     ++age_ms;
-    if (on_the_way.size() > late_ms) {
-      if (ms <= told_until_ms) {
-        unseen.tell(on_the_way.front().told, kMax_N);
-        told_J = on_the_way.front().work_J;
+    if (in_transit.size() > late_ms) {
+      if (ms <= reported_until_ms) {
+        estimator.on_report(in_transit.front().report, kMax_N);
+        reported_J = in_transit.front().work_J;
         age_ms = static_cast<int>(late_ms);
       }
-      on_the_way.pop_front();
+      in_transit.pop_front();
     }
-    return unseen.energy_J(1e-3 * age_ms, kMax_N) - (work_J - told_J);
+    return estimator.energy_J(1e-3 * age_ms, kMax_N) - (work_J - reported_J);
   }
   bool stops = false;  // as friction does
 };
@@ -62,7 +62,7 @@ double nothing(double, double) { return 0; }
 
 }  // namespace
 
-TEST_CASE("Of a free body the estimate is exact, however late it is told of and however the push goes") {
+TEST_CASE("The estimate is exact for a free body at any report delay and push") {
   const std::size_t late_ms = GENERATE(1, 5, 25, 38);
   const double first_m_s = GENERATE(0.0, 0.2, -0.2);
   Pushed body{0.2, nothing, late_ms};
@@ -74,7 +74,7 @@ TEST_CASE("Of a free body the estimate is exact, however late it is told of and 
   }
 }
 
-TEST_CASE("What holds a body is learnt, and counts for a while after it was told of last") {
+TEST_CASE("The holding force is estimated and used for a while after the last report") {
   // A slider with a friction of 0.5 N is pushed along with 0.6 N.
   Pushed body{0.05, [](double, double) { return 0.5; }, 2, 300};
   body.stops = true;
@@ -83,7 +83,7 @@ TEST_CASE("What holds a body is learnt, and counts for a while after it was told
     off_J = body.step(0.6);
     if (ms > 100) CHECK(std::abs(off_J) < 0.05 * 0.6 * body.down_m_s * 0.04);
   }
-  SECTION("then it counts as free: too much is taken for given, never too little") {
+  SECTION("Later the body counts as free, and the estimate is never too low") {
     for (int ms = 0; ms < 60; ++ms) {
       const double next_J = body.step(0.6);
       CHECK(next_J >= off_J - 1e-9);
@@ -93,7 +93,7 @@ TEST_CASE("What holds a body is learnt, and counts for a while after it was told
   }
 }
 
-TEST_CASE("A push that fades finds the body as fast as the pushes before have made it") {
+TEST_CASE("A fading push acts on the speed that earlier pushes caused") {
   // Half of its impulse has passed when the holding force has done a quarter of its work: assuming halves of both
   // would give too low a value.
   for (const double held_N : {0.5, 1.0, 2.0}) {
@@ -108,7 +108,7 @@ TEST_CASE("A push that fades finds the body as fast as the pushes before have ma
   }
 }
 
-TEST_CASE("Who is drawn away from the hand while it pushes is given more than a free body") {
+TEST_CASE("A body that is pulled away receives more energy than a free body") {
   // A swing on its way back: 2 N pull it down.
   Pushed body{1, [](double, double) { return -2.0; }, 2, 200};
   for (int ms = 0; ms < 200; ++ms) body.step(0.5);
@@ -117,7 +117,7 @@ TEST_CASE("Who is drawn away from the hand while it pushes is given more than a 
   for (int ms = 38; ms < 70; ++ms) CHECK(body.step(2) > -2e-5);
 }
 
-TEST_CASE("A body that comes gives no more than its motion") {
+TEST_CASE("An approaching body gives at most its kinetic energy") {
   // A spring drives it towards the hand; the estimate must not assume that this continues.
   Pushed body{0.5, [](double, double) { return 3.0; }, 2, 200};
   body.down_m_s = 0;
@@ -127,11 +127,11 @@ TEST_CASE("A body that comes gives no more than its motion") {
   for (int ms = 0; ms < 100; ++ms) {
     const double off_J = body.step(2);
     CHECK(off_J >= 0);
-    CHECK(body.unseen.energy_J(1e-3 * body.age_ms, kMax_N) >= -motion_J);
+    CHECK(body.estimator.energy_J(1e-3 * body.age_ms, kMax_N) >= -motion_J);
   }
 }
 
-TEST_CASE("One that came may swing, and counts as on its way back when nothing was told of it for a while") {
+TEST_CASE("An approaching body counts as swinging back after a time without reports") {
   Pushed body{0.2, nothing, 1, 3};
   body.down_m_s = -0.2;
   double off_J = 0;
@@ -143,10 +143,10 @@ TEST_CASE("One that came may swing, and counts as on its way back when nothing w
   CHECK(off_J > 0.004);
 }
 
-TEST_CASE("A push that was never applied does not stay unseen for ever") {
+TEST_CASE("A push that was never applied does not remain pending") {
   Pushed body{0.2, nothing, 2};
   for (int ms = 0; ms < 100; ++ms) body.step(1);
   body.impulse_N_s -= 0.5;  // from now on the simulation reports less
   for (int ms = 0; ms < 100; ++ms) body.step(0);
-  CHECK(body.unseen.energy_J(0.002, kMax_N) < 0.02 * 0.02 / (2 * 0.2) + 0.02 * 0.5 + 1e-9);
+  CHECK(body.estimator.energy_J(0.002, kMax_N) < 0.02 * 0.02 / (2 * 0.2) + 0.02 * 0.5 + 1e-9);
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr double kDt = 1e-3;
 }
 
-TEST_CASE("Whatever is wanted, the force keeps its size and its slew") {
+TEST_CASE("The force obeys its limits of magnitude and slew for any wanted force") {
   std::mt19937 random(9);
   std::normal_distribution<double> normal(0, 1);
   const SafetyLimits limits;
@@ -33,12 +33,12 @@ TEST_CASE("Whatever is wanted, the force keeps its size and its slew") {
   }
 }
 
-TEST_CASE("The slew of a late tick is not paid back by a jump") {
+TEST_CASE("A late tick does not cause a jump of the force") {
   Safety safety(SafetyLimits{});
   CHECK(safety.limit({100, 0, 0}, Vector3d::Zero(), 0.02).norm() == Approx(4));  // 2 N/ms for 2 ms
 }
 
-TEST_CASE("A force that follows the hand gives it no more than the allowance and the small power") {
+TEST_CASE("A force along the motion gives the hand at most the energy allowance and the constant power") {
   const SafetyLimits limits;
   Safety safety(limits);
   Vector3d moved = Vector3d::Zero();
@@ -55,7 +55,7 @@ TEST_CASE("A force that follows the hand gives it no more than the allowance and
   CHECK(force.norm() == Approx(limits.power_W / 1.0).epsilon(0.01));  // continuous 1 W at 1 m/s: 1 N
 }
 
-TEST_CASE("A wall that only takes what it was given is not limited") {
+TEST_CASE("A passive wall is not limited") {
   Safety safety(SafetyLimits{});
   double x = 0;
   for (int k = 0; k < 20000; ++k) {
@@ -75,7 +75,7 @@ TEST_CASE("A device that jumps does no work") {
   CHECK(safety.energy_J() == 0);
 }
 
-TEST_CASE("Limits that are exchanged again and again give the hand no more than the wider ones do") {
+TEST_CASE("Alternating limits give the hand no more energy than the wider limits") {
   const SafetyLimits wide, narrow{3, 500, 0.05, 0.1};
   Safety safety(wide);
   Vector3d moved = Vector3d::Zero(), force = Vector3d::Zero();
@@ -91,7 +91,7 @@ TEST_CASE("Limits that are exchanged again and again give the hand no more than 
   }
 }
 
-TEST_CASE("After the watchdog of the device has let go the force begins at none") {
+TEST_CASE("The force starts at zero after the watchdog time of the device") {
   Safety safety(SafetyLimits{});
   const auto press = [&](double ms) {
     safety.begin_tick(host_ms(ms));
@@ -103,7 +103,7 @@ TEST_CASE("After the watchdog of the device has let go the force begins at none"
   CHECK(press(42) == Approx(2));
 }
 
-TEST_CASE("The force of a lost touch model fades from 50 to 70 ms after the last one, and comes back in 20 ms") {
+TEST_CASE("The fade goes to 0 from 50 to 70 ms after the last touch model and returns within 20 ms") {
   Fade fade(0.05, 0.02);
   CHECK(fade.step(host_ms(0), std::nullopt, kDt) == 0);
   CHECK(fade.lost());

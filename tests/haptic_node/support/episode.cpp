@@ -19,14 +19,14 @@ constexpr double kBodySpring_N_m = 500, kBodyDamper_Ns_m = 0.5;
 // Pushed along a table: friction of wood.
 constexpr double kTableFriction = 0.3, kGravity_m_s2 = 9.81;
 // The hand waits, so that the renderer has measured the network before the first touch.
-constexpr double kWaits_s = 1;
+constexpr double kWait_s = 1;
 constexpr int kHold_ms = 3800, kEnd_ms = 5000, kJudged_ms = 500, kApart_ms = 200;
 constexpr double kSwing_N = 0.03;
 constexpr int kFreeze_ms = 1700, kThaw_ms = 2200;
 
 Vector3d place(double z) { return {0, 0, z}; }
 
-struct Bursts {
+struct BurstLoss {
   std::mt19937 random;
   bool bad = false;
   bool lost() {
@@ -38,12 +38,12 @@ struct Bursts {
 
 MonotoneCubic path_of(Act act) {
   const double top = kTool_m + 0.01;
-  std::vector<double> times{0, kWaits_s};
+  std::vector<double> times{0, kWait_s};
   std::vector<Vector3d> places{place(top), place(top)};
-  const auto go = [&](double t, double z) { times.push_back(kWaits_s + t), places.push_back(place(z)); };
+  const auto go = [&](double t, double z) { times.push_back(kWait_s + t), places.push_back(place(z)); };
   if (act == Act::kPress) {
-    go(0.3, kTool_m - kPress_m), go(1e-3 * kHold_ms - kWaits_s, kTool_m - kPress_m),
-        go(1e-3 * kHold_ms - kWaits_s + 0.3, top);
+    go(0.3, kTool_m - kPress_m), go(1e-3 * kHold_ms - kWait_s, kTool_m - kPress_m),
+        go(1e-3 * kHold_ms - kWait_s + 0.3, top);
   } else if (act == Act::kTap) {
     for (int k = 0; k < 5; ++k)
       go(0.5 * k + 0.15, kTool_m - kTap_m), go(0.5 * k + 0.2, kTool_m - kTap_m), go(0.5 * k + 0.35, top),
@@ -77,11 +77,11 @@ struct World {
     if (def.mass_kg > 0) p.effective_mass_kg = static_cast<float>(def.mass_kg);
     p.velocity_m_s = to_vec3f(place(v));
     touch_model_t m = model(ms, {p});
-    touch_applied_t book{};
-    book.contact_id = 7;
-    book.impulse_N_s = to_vec3f(place(impulse));
-    book.energy_J = static_cast<float>(energy_J);
-    m.applied.push_back(book);
+    touch_applied_t a{};
+    a.contact_id = 7;
+    a.impulse_N_s = to_vec3f(place(impulse));
+    a.energy_J = static_cast<float>(energy_J);
+    m.applied.push_back(a);
     m.applied_count = 1;
     return m;
   }
@@ -125,13 +125,13 @@ EpisodeResult run_episode(const EpisodeDef& def, bool timed) {
   hand.begin(host_ms(0));
   Bench bench(def.settings);
   World world{def};
-  Bursts bursts{std::mt19937(def.seed)};
-  std::deque<touch_model_t> on_the_way;
+  BurstLoss bursts{std::mt19937(def.seed)};
+  std::deque<touch_model_t> in_transit;
   touch_model_t now_used;
   EpisodeResult r;
   r.ideal_N = ideal_N(def);
   const int per_ms = static_cast<int>(def.settings.rate_Hz / 1000);
-  double felt = 0, told = 0, taken_J = 0, booked_J = 0, last_force = 0, last_z = 0, sum = 0, depth = 0;
+  double felt = 0, applied = 0, hand_J = 0, baseline_J = 0, last_force = 0, last_z = 0, sum = 0, depth = 0;
   std::vector<double> held_N, before_N, earlier_N;
   double last_sent_ms = -1e9, last_felt_ms = 0;
   int judged = 0;
@@ -142,26 +142,26 @@ EpisodeResult run_episode(const EpisodeDef& def, bool timed) {
     const touch_model_t* fresh = nullptr;
     if (i % per_ms == 0) {
       // The reported force of the hand reaches the body a step later, as the mean force of that step.
-      world.step(-(felt - told) / kDt);
-      told = felt;
+      world.step(-(felt - applied) / kDt);
+      applied = felt;
       const bool lost = def.network.bursts && bursts.lost();
       const bool frozen = def.network.freezes && ms >= kFreeze_ms && ms < kThaw_ms;
       if (!lost && !frozen && ms - last_sent_ms >= 1000 / def.network.rate_Hz - 1e-9)
-        on_the_way.push_back(world.model_at(static_cast<int>(ms))), last_sent_ms = ms;
-      while (!on_the_way.empty() &&
-             on_the_way.front().header.sim_time_ns <= (static_cast<int>(ms) - def.network.delay_ms) * kMs) {
-        now_used = on_the_way.front();
-        on_the_way.pop_front();
+        in_transit.push_back(world.model_at(static_cast<int>(ms))), last_sent_ms = ms;
+      while (!in_transit.empty() &&
+             in_transit.front().header.sim_time_ns <= (static_cast<int>(ms) - def.network.delay_ms) * kMs) {
+        now_used = in_transit.front();
+        in_transit.pop_front();
         fresh = &now_used;
       }
     }
     const DeviceState state = hand.read(host_ms(ms));
-    if (begun) taken_J -= last_force * (state.position.z() - last_z);
+    if (begun) hand_J -= last_force * (state.position.z() - last_z);
     begun = true;
     last_z = state.position.z();
-    const double out_J = world.energy_J - booked_J - taken_J;
+    const double out_J = world.energy_J - baseline_J - hand_J;
     r.generated_mJ = std::max(r.generated_mJ, 1e3 * out_J);
-    if (ms - last_felt_ms > kApart_ms) taken_J = 0, booked_J = world.energy_J;
+    if (ms - last_felt_ms > kApart_ms) hand_J = 0, baseline_J = world.energy_J;
     TickInput in;
     in.touch_delay = sync::Nanoseconds(def.network.delay_ms * kMs);
     bench.arrival = host_ms(ms);  // an intended degradation: the messages themselves keep arriving

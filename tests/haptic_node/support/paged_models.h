@@ -15,7 +15,7 @@ namespace tactus::haptic::test {
 inline constexpr std::int64_t kMs = 1'000'000;
 
 // A model in which every plane and every applied impulse identifies its step.
-inline touch_model_t whole_model(std::int64_t step, std::size_t planes, std::size_t books) {
+inline touch_model_t whole_model(std::int64_t step, std::size_t planes, std::size_t applied_count) {
   touch_model_t m{};
   m.header.incarnation = 5;
   m.header.run_id = 1;
@@ -26,7 +26,7 @@ inline touch_model_t whole_model(std::int64_t step, std::size_t planes, std::siz
     p.contact_id = step * 1000 + static_cast<std::int64_t>(i);
     m.planes.push_back(p);
   }
-  for (std::size_t i = 0; i < books; ++i) {
+  for (std::size_t i = 0; i < applied_count; ++i) {
     touch_applied_t a{};
     a.contact_id = step * 1000 + static_cast<std::int64_t>(i);
     m.applied.push_back(a);
@@ -45,13 +45,15 @@ inline std::vector<touch_model_t> pages_of(touch_model_t whole, std::int64_t& se
   return out;
 }
 
-inline bool is_whole(const TouchModelView& m, std::int64_t step, std::size_t planes, std::size_t books) {
+inline bool is_whole(const TouchModelView& m, std::int64_t step, std::size_t planes, std::size_t applied_count) {
   bool good = m.plane_count() == planes;
   for (std::size_t i = 0; good && i < planes; ++i)
     good = m.plane(i).contact_id == step * 1000 + static_cast<std::int64_t>(i);
-  std::size_t book = 0;
-  m.each_book([&](const touch_applied_t& a) { good = good && a.contact_id == step * 1000 + static_cast<std::int64_t>(book++); });
-  return good && book == books;
+  std::size_t index = 0;
+  m.for_each_applied([&](const touch_applied_t& a) {
+    good = good && a.contact_id == step * 1000 + static_cast<std::int64_t>(index++);
+  });
+  return good && index == applied_count;
 }
 
 }  // namespace tactus::haptic::test

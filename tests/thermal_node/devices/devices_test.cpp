@@ -16,7 +16,7 @@ namespace {
 sync::HostTime at(std::int64_t ms) { return sync::host_time(1'000'000'000 + ms * 1'000'000); }
 }  // namespace
 
-TEST_CASE("The simulated display follows its command and says where it is") {
+TEST_CASE("The simulated display follows its command and reports its state") {
   thermal::SimulatedPeltier device({}, {}, 33);
   PlateReading r;
   for (int i = 0; i <= 200; ++i) r = *device.step(23, 0.5, at(20 * i));
@@ -28,7 +28,7 @@ TEST_CASE("The simulated display follows its command and says where it is") {
   CHECK(r.plate_degC == Approx(40).margin(0.05));
 }
 
-TEST_CASE("Nonsense for a command or a load leaves the simulated display without current, not without sense") {
+TEST_CASE("Invalid commands and loads keep the simulated display within its limits") {
   thermal::SimulatedPeltier device({}, {}, 33);
   const double inf = std::numeric_limits<double>::infinity();
   int tick = 0;
@@ -44,7 +44,7 @@ TEST_CASE("Nonsense for a command or a load leaves the simulated display without
   CHECK(std::isfinite(device.step(30, 0, at(500'000'000))->plate_degC));
 }
 
-TEST_CASE("What another program says of its display is believed for as long as it goes on saying it") {
+TEST_CASE("The readings of an external display are used until they stop") {
   thermal::External device(2);
   CHECK_FALSE(device.step(30, 0, at(0)));
   thermal_device_t m = thermal::to_message({25, 31, 1.5, 2, true, false}, 2);
@@ -54,14 +54,14 @@ TEST_CASE("What another program says of its display is believed for as long as i
   CHECK(device.step(30, 0, at(120))->limited);
   CHECK(device.step(30, 0, at(400)));
   CHECK_FALSE(device.step(30, 0, at(401)));
-  SECTION("and of another tool not at all") {
+  SECTION("Readings of another tool are ignored") {
     m.tool = 1;
     device.receive(m, at(450));
     CHECK_FALSE(device.step(30, 0, at(451)));
   }
 }
 
-TEST_CASE("A reading survives its message, and the message is valid") {
+TEST_CASE("A reading converts to a valid message and back") {
   for (const PlateReading& r :
        {PlateReading{25.5, 40.25, -2.5, 1.5, false, false}, PlateReading{33, 33, 0, 0, true, false},
         PlateReading{10, 12, 6, -3, false, true}}) {
@@ -78,7 +78,7 @@ TEST_CASE("A reading survives its message, and the message is valid") {
   }
 }
 
-TEST_CASE("The settings choose the display") {
+TEST_CASE("The settings select the display") {
   thermal::Settings settings;
   const auto made = [&](const char* name) {
     settings.device = name;

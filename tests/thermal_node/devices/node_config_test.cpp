@@ -21,12 +21,12 @@ scene_t scene_with(std::vector<std::string> tools) {
 }
 }  // namespace
 
-TEST_CASE("The first tool is felt unless another is named") {
+TEST_CASE("The first tool is selected unless another is named") {
   scene_t scene = scene_with({"hand", "foot"});
   CHECK(thermal::resolve_config(scene, "", {}).tool == 0);
   CHECK(thermal::resolve_config(scene, "foot", {}).tool == 1);
   CHECK(thermal::resolve_config(scene, "foot", {}).tool_body == 11);
-  SECTION("by the scene, and over it by the command line") {
+  SECTION("The command line overrides the tool of the scene") {
     setting_t s{};
     s.node = "thermal_node", s.name = "tool", s.value = "foot";
     scene.settings = {s};
@@ -35,7 +35,7 @@ TEST_CASE("The first tool is felt unless another is named") {
   }
 }
 
-TEST_CASE("A tool that is not there is a problem with a remedy, no crash") {
+TEST_CASE("An unknown tool is reported with a remedy") {
   const auto none = thermal::resolve_config(scene_with({}), "", {});
   CHECK(none.tool == -1);
   CHECK_FALSE(none.problem.empty());
@@ -44,7 +44,7 @@ TEST_CASE("A tool that is not there is a problem with a remedy, no crash") {
   CHECK(other.problem.find("hand, foot") != std::string::npos);
 }
 
-TEST_CASE("A scene cannot widen the skin-safe range nor hasten the element. The command line can") {
+TEST_CASE("A scene cannot widen the skin-safe range or the slew limit, the command line can") {
   for (const auto& [name, value] : std::vector<std::pair<std::string, std::string>>{
            {"temperature_min", "10"}, {"temperature_max", "43"}, {"slew_max", "300"}}) {
     INFO(name);
@@ -52,17 +52,17 @@ TEST_CASE("A scene cannot widen the skin-safe range nor hasten the element. The 
     setting_t s{};
     s.node = "thermal_node", s.name = name, s.value = value;
     scene.settings = {s};
-    const auto choice = thermal::resolve_config(scene, "", {});
-    REQUIRE(choice.refused.size() == 1);
-    CHECK(choice.refused[0].find("only tighten") != std::string::npos);
-    CHECK(choice.settings.temperature_min_degC == 15);
-    CHECK(choice.settings.temperature_max_degC == 42);
-    CHECK(choice.settings.slew_max_K_s == 20);
-    CHECK(thermal::resolve_config(scene_with({"hand"}), "", {name + "=" + value}).refused.empty());
+    const auto config = thermal::resolve_config(scene, "", {});
+    REQUIRE(config.rejected.size() == 1);
+    CHECK(config.rejected[0].find("only tighten") != std::string::npos);
+    CHECK(config.settings.temperature_min_degC == 15);
+    CHECK(config.settings.temperature_max_degC == 42);
+    CHECK(config.settings.slew_max_K_s == 20);
+    CHECK(thermal::resolve_config(scene_with({"hand"}), "", {name + "=" + value}).rejected.empty());
   }
 }
 
-TEST_CASE("Settings are taken from the scene and the command line, and refused with a sentence") {
+TEST_CASE("Settings come from the scene and the command line, and invalid ones are rejected with a sentence") {
   scene_t scene = scene_with({"hand"});
   setting_t s{};
   s.node = "thermal_node", s.name = "rate", s.value = "100 Hz";
@@ -70,10 +70,10 @@ TEST_CASE("Settings are taken from the scene and the command line, and refused w
   CHECK(thermal::resolve_config(scene, "", {}).settings.rate_Hz == 100);
   CHECK(thermal::resolve_config(scene, "", {"rate=20"}).settings.rate_Hz == 20);
   for (const char* wrong : {"rate=5000", "rate=fast", "colour=red", "temperature_max=60", "temperature_min=-5"}) {
-    const auto choice = thermal::resolve_config(scene, "", {wrong});
+    const auto config = thermal::resolve_config(scene, "", {wrong});
     INFO(wrong);
-    CHECK(choice.refused.size() == 1);
-    CHECK(choice.settings.rate_Hz == 100);
-    CHECK(choice.settings.temperature_max_degC == 42);
+    CHECK(config.rejected.size() == 1);
+    CHECK(config.settings.rate_Hz == 100);
+    CHECK(config.settings.temperature_max_degC == 42);
   }
 }

@@ -13,7 +13,7 @@ constexpr ControllerLimits kLimits{15, 42, 20};
 constexpr double kInf = std::numeric_limits<double>::infinity();
 }  // namespace
 
-TEST_CASE("A command follows the wish no faster than the element can") {
+TEST_CASE("The command follows the target within the slew limit") {
   Controller controller(kLimits, 33);
   CHECK(controller.step(30, 0.02).command_degC == Approx(32.6));
   CHECK(controller.step(30, 0.02).command_degC == Approx(32.2));
@@ -22,7 +22,7 @@ TEST_CASE("A command follows the wish no faster than the element can") {
   CHECK_FALSE(controller.step(30, 0.02).limited);
 }
 
-TEST_CASE("A command beyond what skin bears is cut, and says so") {
+TEST_CASE("A target outside the skin-safe range is clamped and reported as limited") {
   Controller controller(kLimits, 33);
   Command command;
   for (int i = 0; i < 100; ++i) command = controller.step(1000, 0.02);
@@ -33,7 +33,7 @@ TEST_CASE("A command beyond what skin bears is cut, and says so") {
   CHECK(command.limited);
 }
 
-TEST_CASE("Whatever is asked, the command stays inside the range and within the slew limit") {
+TEST_CASE("The command stays within the range and the slew limit for any target") {
   std::mt19937_64 random(1);
   for (int trial = 0; trial < 200; ++trial) {
     double before = 33;
@@ -53,14 +53,14 @@ TEST_CASE("Whatever is asked, the command stays inside the range and within the 
   }
 }
 
-TEST_CASE("A wish that is no number keeps the command") {
+TEST_CASE("A target of NaN keeps the command") {
   Controller controller(kLimits, 30);
   const Command command = controller.step(std::nan(""), 0.02);
   CHECK(command.command_degC == 30);
   CHECK_FALSE(command.limited);
 }
 
-TEST_CASE("Time that stands still or is no number moves nothing") {
+TEST_CASE("A time step that is zero, negative or NaN keeps the command") {
   Controller controller(kLimits, 30);
   CHECK(controller.step(20, 0).command_degC == 30);
   CHECK(controller.step(20, -1).command_degC == 30);
@@ -68,10 +68,12 @@ TEST_CASE("Time that stands still or is no number moves nothing") {
   CHECK(controller.step(20, kInf).command_degC == 20);
 }
 
-TEST_CASE("A narrower range holds at once") {
+TEST_CASE("A narrower range applies at once") {
   Controller controller(kLimits, 40);
   controller.set_limits({20, 36, 1});
   CHECK(controller.step(40, 0.02).command_degC == 36);
 }
 
-TEST_CASE("A start outside the range is cut") { CHECK(Controller(kLimits, 900).step(900, 0).command_degC == 42); }
+TEST_CASE("A start outside the range is clamped") {
+  CHECK(Controller(kLimits, 900).step(900, 0).command_degC == 42);
+}

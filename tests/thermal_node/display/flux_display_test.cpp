@@ -40,12 +40,12 @@ struct Felt {
 
 }  // namespace
 
-TEST_CASE("At rest the plate is wanted at rest") {
+TEST_CASE("At rest the target of the plate is the resting temperature") {
   FluxDisplay display({kPlate}, finger());
   for (int i = 0; i < 100; ++i) CHECK(display.step(33, 0, 33, 0.02, 0.005) == Approx(33).margin(1e-9));
 }
 
-TEST_CASE("A plate without limits makes the finger lose what it would lose to the thing") {
+TEST_CASE("With an ideal plate the finger loses the same heat as to the object") {
   // The command lags the touch by one tick; after the first ten ticks the finger is within 3 % of the change,
   // after a second within 1 %.
   const bool copper = GENERATE(true, false);
@@ -58,7 +58,7 @@ TEST_CASE("A plate without limits makes the finger lose what it would lose to th
   }
 }
 
-TEST_CASE("What a slow plate owes of the first moment it makes up for, faster than without feedback") {
+TEST_CASE("Feedback compensates the delay of a slow plate at the first moment of a touch") {
   // In the first second the plate limits the change, ten kelvin at 10 K/s; the finger is still warm then.
   const auto error = [](double feedback) {
     Felt felt(feedback, 401, 37137, 10);
@@ -73,7 +73,7 @@ TEST_CASE("What a slow plate owes of the first moment it makes up for, faster th
   CHECK(error(3) < error(1));
 }
 
-TEST_CASE("Feedback does not ring") {
+TEST_CASE("Feedback does not oscillate") {
   // The finger responds to a step of the plate within one tick by 1 - erfcx(beta sqrt(t)) = 0.21: a gain of 3 is a
   // loop gain of 0.6. After the touch has settled the target changes in one direction only.
   Felt felt(3, 401, 37137, 20);
@@ -86,7 +86,7 @@ TEST_CASE("Feedback does not ring") {
   }
 }
 
-TEST_CASE("After the touch the finger comes back with the touched skin") {
+TEST_CASE("After the touch the finger recovers with the touched skin") {
   Felt felt(3, 401, 37137, 20);
   for (int i = 0; i < 100; ++i) felt.tick(true);
   for (int i = 0; i < 250; ++i) {
@@ -95,7 +95,7 @@ TEST_CASE("After the touch the finger comes back with the touched skin") {
   }
 }
 
-TEST_CASE("A measurement that is no number leaves the finger as it is") {
+TEST_CASE("A measurement that is not finite does not change the finger") {
   FluxDisplay display({kPlate}, finger());
   for (int i = 0; i < 10; ++i) display.step(30, 1000, 25, 0.02, 0.005);
   const double before = display.finger_degC();

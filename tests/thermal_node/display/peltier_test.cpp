@@ -10,7 +10,7 @@ namespace {
 const PeltierModule kModule = PeltierModule::from(kTm31_14_85);
 }
 
-TEST_CASE("The module does what its data sheet says, also what it was not made from") {
+TEST_CASE("The module reproduces its data sheet, including values that were not used to fit it") {
   const PeltierState farthest{27 - 70, 27};
   CHECK(pumped_W(kModule, farthest, 8.5) == Approx(0).margin(1e-9));
   CHECK(voltage_V(kModule, farthest, 8.5) == Approx(3.8));
@@ -23,7 +23,7 @@ TEST_CASE("The module does what its data sheet says, also what it was not made f
   CHECK(pumped_W(kModule, {27, 27}, 8.5) == Approx(18.8).epsilon(0.1));
 }
 
-TEST_CASE("The current for a heat pumps that heat, and asked for too much the most there is") {
+TEST_CASE("The current for a heat flow pumps that heat flow or the maximum") {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int i = 0; i < 1000; ++i) {
@@ -36,7 +36,7 @@ TEST_CASE("The current for a heat pumps that heat, and asked for too much the mo
   }
 }
 
-TEST_CASE("What the supply and the skin give is found in plate, sink and room") {
+TEST_CASE("Heat from the supply and the skin is conserved in plate, sink and room") {
   PeltierPlant plant;
   PeltierState s;
   double balance_J = 0;
@@ -55,7 +55,7 @@ TEST_CASE("What the supply and the skin give is found in plate, sink and room") 
   CHECK(stored() - before_J == Approx(balance_J).margin(1e-4));
 }
 
-TEST_CASE("Without current plate and sink come to the room, the plate through the module") {
+TEST_CASE("Without current plate and sink reach the room temperature") {
   PeltierPlant plant;
   PeltierState s{43, 23};
   s = step(plant, s, 0, 0, 0.001);
@@ -66,7 +66,7 @@ TEST_CASE("Without current plate and sink come to the room, the plate through th
   CHECK(s.sink_degC == Approx(23).margin(0.01));
 }
 
-TEST_CASE("Cooling heats the sink by what it takes and what it wastes") {
+TEST_CASE("Cooling heats the sink by the pumped heat plus the electric power") {
   PeltierPlant plant;
   PeltierState s{33, 23};
   for (int i = 0; i < 600'000; ++i) s = step(plant, s, 2, 0.5, 0.001);

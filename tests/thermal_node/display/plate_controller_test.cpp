@@ -19,9 +19,9 @@ struct Plate {
   PeltierState state{33, 23};
   PlateDrive drive;
 
-  void follow(double wanted_degC, double load_W, double seconds, double told_W) {
+  void follow(double wanted_degC, double load_W, double seconds, double known_load_W) {
     for (int i = 0; i < static_cast<int>(seconds / kDt); ++i) {
-      drive = controller.step(state, wanted_degC, told_W, kDt);
+      drive = controller.step(state, wanted_degC, known_load_W, kDt);
       state = step(plant, state, drive.current_A, load_W, kDt);
     }
   }
@@ -29,11 +29,11 @@ struct Plate {
 
 }  // namespace
 
-TEST_CASE("The plate goes where it is wanted and stays there, whether the load is known or not") {
-  const double told = GENERATE(1.0, 0.0, -0.5);
+TEST_CASE("The plate reaches and holds its target with a known or unknown load") {
+  const double known_load_W = GENERATE(1.0, 0.0, -0.5);
   Plate plate;
   for (const double wanted : {23.0, 33.0, 40.0, 18.0, 33.0}) {
-    plate.follow(wanted, 1.0, 4, told);
+    plate.follow(wanted, 1.0, 4, known_load_W);
     INFO(wanted);
     CHECK(plate.state.plate_degC == Approx(wanted).margin(0.02));
     CHECK_FALSE(plate.drive.limited);
@@ -41,7 +41,7 @@ TEST_CASE("The plate goes where it is wanted and stays there, whether the load i
   }
 }
 
-TEST_CASE("Ten kelvin down take about half a second and do not overshoot") {
+TEST_CASE("Cooling by ten kelvin takes about half a second without overshoot") {
   Plate plate;
   plate.follow(33, 0, 2, 0);
   double lowest = 100;
@@ -58,7 +58,7 @@ TEST_CASE("Ten kelvin down take about half a second and do not overshoot") {
   CHECK(lowest > 22.8);
 }
 
-TEST_CASE("Whatever is wanted, measured or told, current and voltage stay within their limits") {
+TEST_CASE("Current and voltage stay within their limits for any input") {
   std::mt19937_64 random(9);
   const auto any = [&] {
     const std::uint64_t bits = random();
@@ -80,7 +80,7 @@ TEST_CASE("Whatever is wanted, measured or told, current and voltage stay within
   }
 }
 
-TEST_CASE("Whatever is wanted, the plate itself stays within its range and rate") {
+TEST_CASE("The plate stays within its range and rate for any target") {
   std::mt19937_64 random(10);
   Plate plate;
   const PlateLimits limits;
@@ -99,7 +99,7 @@ TEST_CASE("Whatever is wanted, the plate itself stays within its range and rate"
   }
 }
 
-TEST_CASE("A sensor that fails, a wish that is no number and a hot sink switch the current off") {
+TEST_CASE("A failed sensor, an invalid target and a hot sink switch the current off") {
   const double nan = std::nan("");
   PlateController c(PeltierPlant{}, PlateLimits{});
   for (const PlateDrive& d : {c.step({nan, 23}, 30, 0, kDt), c.step({33, nan}, 30, 0, kDt),

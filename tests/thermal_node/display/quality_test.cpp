@@ -27,7 +27,7 @@ SkinModel touching_copper() {
 
 }  // namespace
 
-TEST_CASE("Warmth gets cheaper when its ticks take half of their time, and full again when they long do not") {
+TEST_CASE("The substeps grow when ticks take half of their period and shrink again later") {
   Quality quality(Settings{});
   CHECK(run(quality, 8, 500) == 0);
   CHECK(quality.longest_substep_s() == 0.005);
@@ -38,14 +38,14 @@ TEST_CASE("Warmth gets cheaper when its ticks take half of their time, and full 
   CHECK(run(quality, 4, 2000) == 0);
 }
 
-TEST_CASE("Warmth whose quality is held does not heed the time") {
+TEST_CASE("A fixed quality ignores the tick time") {
   Settings settings;
   settings.quality = "2";
   Quality quality(settings);
   CHECK(run(quality, 0.01, 5000) == 2);
 }
 
-TEST_CASE("Also the cheapest step follows the closed form") {
+TEST_CASE("Every quality step follows the closed form") {
   // In space as in the test of the skin model; in time (20 ms/tau)^2/10 = 0.4 % with tau >= 0.1 s: together below
   // 1 % of the change. In the tick of the touch itself the change follows the root of time, and one substep has an
   // error of 7 % of it, 0.15 K.
@@ -62,7 +62,7 @@ TEST_CASE("Also the cheapest step follows the closed form") {
   }
 }
 
-TEST_CASE("The temperature goes on where it was when the step of quality changes") {
+TEST_CASE("The temperature is continuous when the quality step changes") {
   const double h = contact_conductance_W_m2K(401);
   SkinModel steady = touching_copper(), changing = touching_copper();
   double most = 0;

@@ -92,7 +92,7 @@ TEST_CASE("Before the first message a tick is empty") {
   CHECK(tick.events.empty());
 }
 
-TEST_CASE("Ticks cut the world's time without a gap or an overlap") {
+TEST_CASE("Ticks divide simulated time without a gap or an overlap") {
   World world;
   world.run(100);
   Ticks ticks;
@@ -107,7 +107,7 @@ TEST_CASE("Ticks cut the world's time without a gap or an overlap") {
   }
 }
 
-TEST_CASE("Every part of a touch is felt in one tick, however its events fall on their borders") {
+TEST_CASE("Every part of a touch belongs to exactly one tick") {
   // A touch of 7 ms, begun at each millisecond of a tick: the contact times of all ticks add up to 7 ms.
   for (int begin = 100; begin < 120; ++begin) {
     World world;
@@ -134,7 +134,7 @@ TEST_CASE("Every part of a touch is felt in one tick, however its events fall on
   }
 }
 
-TEST_CASE("A silent simulation turns stale after 50 ms") {
+TEST_CASE("The contact of a silent simulation is stale after 50 ms") {
   World world;
   Ticks ticks;
   world.contacts = {touch(4, 1)};
@@ -146,7 +146,7 @@ TEST_CASE("A silent simulation turns stale after 50 ms") {
   CHECK(ticks.next(world.stream, world.now(), world.now() - 60ms, 0, 9).contact.status == sync::SampleStatus::kStale);
 }
 
-TEST_CASE("While the world is paused its contact is held, and it turns stale when the simulation dies") {
+TEST_CASE("A paused contact is held and is stale when the simulation stops") {
   World world;
   Ticks ticks;
   world.contacts = {touch(4, 1)};
@@ -180,7 +180,7 @@ TEST_CASE("A restarted simulation begins a new interval") {
   CHECK(tick.sim_end - tick.sim_begin == 20ms);
 }
 
-TEST_CASE("A process that was stopped for a minute integrates no more than two seconds") {
+TEST_CASE("A process that was stopped for a minute integrates at most two seconds") {
   World world;
   Ticks ticks;
   world.run(100);
@@ -188,6 +188,6 @@ TEST_CASE("A process that was stopped for a minute integrates no more than two s
   world.host_ms += 60'000;
   world.run(1);
   const Tick tick = world.tick(ticks);
-  CHECK(tick.sim_end - tick.sim_begin == Ticks::kLongest);
+  CHECK(tick.sim_end - tick.sim_begin == Ticks::kMaxInterval);
   CHECK(tick.end - tick.begin == 60'001ms);
 }

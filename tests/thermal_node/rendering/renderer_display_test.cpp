@@ -33,7 +33,7 @@ struct Displayed {
 
 }  // namespace
 
-TEST_CASE("The plate under a touch of copper is colder than the skin, by what its resistance needs for the heat") {
+TEST_CASE("The plate is colder than the skin by heat flux times contact resistance") {
   Displayed d(with_model(GENERATE("half_space", "bioheat")));
   thermal_state_t state{};
   for (int i = 0; i < 150; ++i) state = d.tick(kCopper, 1);
@@ -46,7 +46,7 @@ TEST_CASE("The plate under a touch of copper is colder than the skin, by what it
   CHECK(d.reading.plate_degC == Approx(state.skin_degC).margin(0.1));
 }
 
-TEST_CASE("Held on a furnace or on ice the display gives in before it hurts, and stays in its range") {
+TEST_CASE("Long contact with a furnace or ice narrows the command before it hurts") {
   const bool furnace = GENERATE(true, false);
   auto materials = kMaterials;
   materials.push_back(material(401, 8960, 385, -100));
@@ -69,7 +69,7 @@ TEST_CASE("Held on a furnace or on ice the display gives in before it hurts, and
   CHECK(warm_s + cold_s > 60);
 }
 
-TEST_CASE("Whatever a display says of itself, the command stays in its range and its slew") {
+TEST_CASE("The command stays within its range and slew for any reading of the display") {
   const double inf = std::numeric_limits<double>::infinity();
   const double values[] = {std::nan(""), inf, -inf, -300, -20, 0, 15, 33, 42, 43.9, 100, 1e9, 1e300};
   std::mt19937 random(8);
@@ -90,7 +90,7 @@ TEST_CASE("Whatever a display says of itself, the command stays in its range and
   }
 }
 
-TEST_CASE("A plate that ran away or reports a fault is called back to rest, and says that it is limited") {
+TEST_CASE("A plate out of range or with a fault is commanded to rest and reported as limited") {
   for (const PlateReading& bad : {PlateReading{50}, PlateReading{5}, PlateReading{1e9}, PlateReading{std::nan("")},
                                   PlateReading{30, 30, 0, 0, false, true}}) {
     Hand hand;

@@ -43,7 +43,7 @@ TEST_CASE("Untouched skin stays at rest") {
   CHECK(state.limited == 0);
 }
 
-TEST_CASE("Firmly pressed copper cools the skin as the closed form says, plastic less") {
+TEST_CASE("Firmly pressed copper cools the skin by the closed form, plastic cools it less") {
   thermal::Settings dry = bare();
   dry.perfusion_1_s = 0;
   Hand copper(kMaterials, dry), plastic(kMaterials, dry);
@@ -70,7 +70,7 @@ TEST_CASE("A lighter touch cools less, and so does a shorter one") {
   CHECK(by_brief < 33);
 }
 
-TEST_CASE("A touch of 3 ms is felt though it is shorter than a tick") {
+TEST_CASE("A touch of 3 ms cools the skin although it is shorter than a tick") {
   Hand hand;
   CHECK(hand.press(kCopper, 1, 1, 3ms).skin_degC < 33 - 0.05);
 }
@@ -83,9 +83,9 @@ TEST_CASE("After the touch skin and command return to rest") {
   CHECK(hand.rest_long(3600).skin_degC == Approx(33).margin(0.01));
 }
 
-TEST_CASE("The worst possible object does not drive the command out of the skin-safe range") {
+TEST_CASE("No object moves the command out of the skin-safe range") {
   const auto settings = with_model(GENERATE("half_space", "bioheat"));
-  SECTION("copper at 1000 degrees") {
+  SECTION("Copper at 1000 degrees") {
     Hand hand(kMaterials, settings);
     float before = 33;
     for (int i = 0; i < 500; ++i) {
@@ -97,7 +97,7 @@ TEST_CASE("The worst possible object does not drive the command out of the skin-
     CHECK(hand.press(kFurnace, 20).limited == 1);
     CHECK(before == 42);
   }
-  SECTION("any material and contact that numbers can express") {
+  SECTION("Any values of material and contact") {
     const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
     const double values[] = {nan, inf, -inf, -1, 0, 1e-300, 1e-3, 1, 23, 1e9, 1e300};
     std::mt19937 random(3);
@@ -125,7 +125,7 @@ TEST_CASE("The worst possible object does not drive the command out of the skin-
   }
 }
 
-TEST_CASE("Input that is stale or absent returns the command to resting skin, no faster than the element") {
+TEST_CASE("Stale or missing input returns the command to resting skin within the slew limit") {
   for (const sync::SampleStatus status : {sync::SampleStatus::kStale, sync::SampleStatus::kNone}) {
     Hand hand;
     float before = hand.press(kCopper, 1, 250).commanded_degC;
@@ -168,7 +168,7 @@ TEST_CASE("Every begin and hit of the own tool is reported once, at the tick tha
   CHECK(hand.renderer.reports().empty());
 }
 
-TEST_CASE("An event of more than half a second ago is late, yet applied") {
+TEST_CASE("An event older than half a second is applied and reported as late") {
   Hand hand;
   hand.rest(100);
   Tick tick = hand.next();
@@ -183,7 +183,7 @@ TEST_CASE("An event of more than half a second ago is late, yet applied") {
   CHECK(state.material == kCopper);
 }
 
-TEST_CASE("The same contacts give the same command to the bit") {
+TEST_CASE("The same contacts give bit-identical commands") {
   const auto settings = with_model(GENERATE("half_space", "bioheat"));
   const auto run = [&] {
     Hand hand(kMaterials, settings);
@@ -196,7 +196,7 @@ TEST_CASE("The same contacts give the same command to the bit") {
   CHECK(run() == run());
 }
 
-TEST_CASE("Two things at once cool by what each takes") {
+TEST_CASE("Two simultaneous objects cool by the sum of their heat flows") {
   const auto settings = with_model(GENERATE("half_space", "bioheat"));
   const auto after_a_second = [&](double on_copper_N, double on_plastic_N) {
     Hand hand(kMaterials, settings);
@@ -218,7 +218,7 @@ TEST_CASE("Two things at once cool by what each takes") {
   CHECK(plastic.material == kPlastic);
 }
 
-TEST_CASE("More than the whole pad does not conduct, however many things press it") {
+TEST_CASE("The total conductance is limited to that of the whole pad for any number of objects") {
   Hand one, many;
   thermal_state_t a{}, b{};
   for (int i = 0; i < 50; ++i) {
@@ -230,7 +230,7 @@ TEST_CASE("More than the whole pad does not conduct, however many things press i
   CHECK(b.skin_degC == Approx(a.skin_degC).margin(0.01));
 }
 
-TEST_CASE("A thing touched again is still as cold or as warm as the touch has left it") {
+TEST_CASE("An object keeps its heat until the next touch") {
   // Plastic that a finger has warmed cools it less the second time, although copper was touched in between;
   // another piece of the same plastic cools it as the first time.
   Hand warmed, fresh;
@@ -245,7 +245,7 @@ TEST_CASE("A thing touched again is still as cold or as warm as the touch has le
   CHECK(flux(warmed, kPlastic) < 0.8 * flux(fresh, 77));
 }
 
-TEST_CASE("With layers of tissue a sheet warms through and a block does not") {
+TEST_CASE("With the bioheat model a sheet warms through and a block does not") {
   const auto after_ten_seconds = [](const char* model, double thickness_m) {
     Hand hand;
     hand.renderer = Renderer(with_model(model), kMaterials, 0, 9, std::nullopt, {thickness_m});
@@ -255,7 +255,7 @@ TEST_CASE("With layers of tissue a sheet warms through and a block does not") {
   CHECK(after_ten_seconds("half_space", 0.001) == after_ten_seconds("half_space", 0.1));
 }
 
-TEST_CASE("When the scene brings another model the command goes on from where the element stands") {
+TEST_CASE("The command continues from its value when the scene selects another model") {
   Hand hand;
   double before = hand.press(kCopper, 1, 200).commanded_degC;
   REQUIRE(before < 28);
@@ -270,7 +270,7 @@ TEST_CASE("When the scene brings another model the command goes on from where th
   }
 }
 
-TEST_CASE("When the scene changes the command goes on from where the element stands, no faster than it may") {
+TEST_CASE("The command continues within the slew limit when the scene changes") {
   const thermal::Settings settings = bare();
   Hand hand(kMaterials, settings);
   const double stands = hand.press(kCopper, 5, 100).commanded_degC;
@@ -286,7 +286,7 @@ TEST_CASE("When the scene changes the command goes on from where the element sta
   CHECK(last == Approx(settings.skin_rest_degC).margin(0.01));
 }
 
-TEST_CASE("A display that is slow on purpose approaches the skin by the closed form") {
+TEST_CASE("The operator response approaches the skin temperature by the closed form") {
   // From the temperature of the previous scene, 20 degrees, to resting skin: 13 K/s at first, below the limit of
   // the element.
   const thermal::Settings settings = bare();
@@ -299,7 +299,7 @@ TEST_CASE("A display that is slow on purpose approaches the skin by the closed f
   }
 }
 
-TEST_CASE("A slow display is later than the skin, and switching it on and off is no jump") {
+TEST_CASE("The operator response lags the skin, and switching it causes no jump") {
   const thermal::Settings settings = bare();
   Hand hand(kMaterials, settings);
   float before = hand.press(kCopper, 1, 10).commanded_degC;
@@ -317,7 +317,7 @@ TEST_CASE("A slow display is later than the skin, and switching it on and off is
   }
 }
 
-TEST_CASE("However slow a display is on purpose, it is in the safe range, and lost input returns it to rest") {
+TEST_CASE("With any response the command stays in the safe range and returns to rest when input is lost") {
   Hand hand(kMaterials, bare());
   for (int i = 0; i < 200; ++i) {
     Tick tick = hand.next();
@@ -336,7 +336,7 @@ TEST_CASE("However slow a display is on purpose, it is in the safe range, and lo
   CHECK(state.commanded_degC == Approx(33).margin(0.1));
 }
 
-TEST_CASE("Of the sense's row of late rules: what is late is applied and called late, however late") {
+TEST_CASE("A late event is applied and reported as late at any age") {
   const auto felt = [](std::int64_t lateness_ms) {
     Hand hand;
     hand.rest(400);

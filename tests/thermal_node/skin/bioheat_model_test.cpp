@@ -70,7 +70,7 @@ TEST_CASE("Deep plain skin on a deep object follows the closed form of two half-
   }
 }
 
-TEST_CASE("Skin of finite depth cools as the series for a slab says") {
+TEST_CASE("Skin of finite depth cools by the series for a slab") {
   // Against an object that skin cannot warm, through 1000 W/(m^2 K). Grid and time as above: 0.5 % of the change.
   const double depth = 0.004, h = 1000, diffusivity = 0.37 / (1000.0 * 3770);
   BioheatModel skin(plain(depth));
@@ -85,7 +85,7 @@ TEST_CASE("Skin of finite depth cools as the series for a slab says") {
   }
 }
 
-TEST_CASE("Skin and a finite object without losses end at the temperature that their heat makes") {
+TEST_CASE("Skin and a finite object without losses reach the mean temperature weighted by heat capacity") {
   Material m = GENERATE(kCopper, kGlass, kFoam);
   const double thickness = 0.003, depth = 0.004;
   BioheatModel skin(plain(depth));
@@ -111,7 +111,7 @@ TEST_CASE("The profile of resting skin is the steady solution of Pennes' equatio
   }
 }
 
-TEST_CASE("Untouched skin stays at rest, and comes back to it") {
+TEST_CASE("Untouched skin stays at rest and returns to it") {
   const char* site = GENERATE("finger", "palm");
   BioheatModel skin(living(site));
   // The hand is cooler than the core, and so is its blood (Pennes 1948 measured arteries of the arm below 37
@@ -130,31 +130,31 @@ TEST_CASE("Untouched skin stays at rest, and comes back to it") {
   CHECK(skin.surface_degC() == Approx(33).margin(1e-9));
 }
 
-TEST_CASE("No heat is lost: what the skin loses is found in the object, the blood and the room") {
+TEST_CASE("Heat is conserved between skin, object, blood and room") {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> uniform(0, 1);
   for (int trial = 0; trial < 20; ++trial) {
     BioheatModel skin(living(trial % 2 ? "finger" : "palm"));
     skin.set_object({-20 + 100 * uniform(random), 0, std::pow(10, -2 + 5 * uniform(random)),
                      std::pow(10, 4 + 3 * uniform(random)), std::pow(10, -5 + 6 * uniform(random))});
-    double skin_J = skin.columns().skin_energy(), object_J = skin.columns().things_energy(), moved = 0;
+    double skin_J = skin.columns().skin_energy(), object_J = skin.columns().objects_energy(), moved = 0;
     const double all = std::abs(skin_J) + std::abs(object_J);
     for (int i = 0; i < 100; ++i) {
       skin.step(std::pow(10, -4 + 5 * uniform(random)), uniform(random) < 0.3 ? 0 : 3000 * uniform(random),
                 uniform(random));
       const auto& f = skin.columns().flows();
-      skin_J += f.blood_to_skin - f.skin_to_things - f.skin_to_room;
-      object_J += f.skin_to_things - f.things_to_room;
-      moved += std::abs(f.skin_to_things);
+      skin_J += f.blood_to_skin - f.skin_to_objects - f.skin_to_room;
+      object_J += f.skin_to_objects - f.objects_to_room;
+      moved += std::abs(f.skin_to_objects);
     }
     REQUIRE(moved > 0);
     // Rounding of sums of about 1e7 J/m^2 over at most 1e5 substeps.
     CHECK(skin.columns().skin_energy() == Approx(skin_J).margin(1e-9 * all));
-    CHECK(skin.columns().things_energy() == Approx(object_J).margin(1e-9 * all));
+    CHECK(skin.columns().objects_energy() == Approx(object_J).margin(1e-9 * all));
   }
 }
 
-TEST_CASE("The error falls with the square of the substep") {
+TEST_CASE("The error is of second order in the substep") {
   // After a smooth beginning: from 0.1 s after the touch on.
   const auto after = [](double substep_s) {
     BioheatModel skin(living("finger"));
@@ -169,7 +169,7 @@ TEST_CASE("The error falls with the square of the substep") {
   CHECK(std::log2(fine / std::abs(after(0.025) - exact)) > 1.7);
 }
 
-TEST_CASE("The error falls with the square of the grid") {
+TEST_CASE("The error is of second order in the grid") {
   const double h = contact_conductance_W_m2K(1.4);
   const SteadyContact exact{kSkinEffusivity, kGlass.object(23).effusivity, h, 33, 23};
   const auto error = [&](const Mesh& mesh) {
@@ -183,7 +183,7 @@ TEST_CASE("The error falls with the square of the grid") {
   CHECK(std::log2(coarse / fine) > 1.7);
 }
 
-TEST_CASE("The skin never leaves the range between what it is, its blood, the room and what it touches") {
+TEST_CASE("The skin stays within the range of its initial, blood, room and object temperatures") {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(0, 1);
   for (int trial = 0; trial < 50; ++trial) {
@@ -219,7 +219,7 @@ TEST_CASE("Foil cools less than a sheet and a sheet less than a block of the sam
   CHECK(after_ten_seconds(10) == Approx(after_ten_seconds(0.1)).margin(0.1));
 }
 
-TEST_CASE("The order of materials is that of their effusivity, as of bare half-spaces") {
+TEST_CASE("Materials are ordered by effusivity, as with half-spaces") {
   double before = 0;
   for (const Material& m : {kCopper, kSteel, kGlass, kOak, kFoam}) {
     BioheatModel skin(living("finger"));
@@ -230,7 +230,7 @@ TEST_CASE("The order of materials is that of their effusivity, as of bare half-s
   }
 }
 
-TEST_CASE("An object without properties takes no heat, and one of no thickness is taken as infinite") {
+TEST_CASE("An object without properties takes no heat, and one without thickness is infinite") {
   BioheatModel skin(living("finger"));
   for (const ObjectProperties& none :
        {ObjectProperties{1000, 0}, ObjectProperties{1000, 1, NAN, 1e6}, ObjectProperties{1000, 1, 1, INFINITY},

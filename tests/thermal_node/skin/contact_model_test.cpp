@@ -46,7 +46,7 @@ TEST_CASE("Contact resistance of Ho and Jones: 5.4e-4 for metals, 1.6e-3 for pla
   CHECK(contact_conductance_W_m2K(std::nan("")) == 0);
 }
 
-TEST_CASE("Materials from copper to foam cool the skin as tabulated") {
+TEST_CASE("Materials from copper to foam cool the skin by the tabulated values") {
   for (const Row& row : kTable) {
     const SteadyContact c = contact(row.effusivity, contact_conductance_W_m2K(row.conductivity));
     INFO(row.name);
@@ -92,23 +92,24 @@ TEST_CASE("Heat flux out of the skin is that of its surface temperature by Duham
   }
 }
 
-TEST_CASE("A contact conducts in proportion to its force, hardly to its area, and no better than the whole pad") {
+TEST_CASE(
+    "The conductance of a contact is nearly proportional to its force and limited to that of the whole pad") {
   const Press press;
   CHECK(contact_share(1, 1e-4, press) == Approx(1));
   CHECK(contact_share(100, 1e-4, press) == 1);
   CHECK(contact_share(0.1, 1e-4, press) == Approx(std::pow(0.1, 0.95)));
   CHECK(contact_share(0.1, 1e-5, press) == Approx(std::pow(0.1, 0.95) * std::pow(0.1, 0.05)));
-  SECTION("a point counts as a square millimetre") {
+  SECTION("A point contact counts as a square millimetre") {
     CHECK(contact_share(0.5, 0, press) == contact_share(0.5, 1e-6, press));
   }
-  SECTION("nothing conducts without force, nor what is no number") {
+  SECTION("The conductance is zero without force and for values that are not finite") {
     CHECK(contact_share(0, 1e-4, press) == 0);
     CHECK(contact_share(-1, 1e-4, press) == 0);
     CHECK(contact_share(std::nan(""), 1e-4, press) == 0);
     CHECK(contact_share(1, std::nan(""), press) == 0);
     CHECK(contact_share(std::numeric_limits<double>::infinity(), 1e-4, press) == 0);
   }
-  SECTION("it never falls with force") {
+  SECTION("The conductance never decreases with force") {
     double before = 0;
     for (double f = 1e-3; f < 100; f *= 1.2) {
       const double here = contact_share(f, 2e-5, press);

@@ -10,7 +10,7 @@ using namespace tactus::thermal;
 namespace {
 constexpr TemperatureRange kWide{15, 42};
 // Seconds at degC until the range narrows; at most an hour.
-double lasts_s(double degC) {
+double allowed_s(double degC) {
   Dwell dwell({60, 20, 60});
   for (int i = 1; i <= 180'000; ++i) {
     const TemperatureRange range = dwell.step(degC, 0.02, kWide);
@@ -20,30 +20,30 @@ double lasts_s(double degC) {
 }
 }  // namespace
 
-TEST_CASE("Warmth may last the shorter the warmer, as the dose says") {
-  CHECK(lasts_s(43) == Approx(60).margin(0.05));
-  CHECK(lasts_s(42) == Approx(4 * 60).margin(0.05));
-  CHECK(lasts_s(41) == Approx(16 * 60).margin(0.1));
-  CHECK(lasts_s(44) == Approx(30).margin(0.05));
-  CHECK(lasts_s(45) == Approx(15).margin(0.05));
-  CHECK(std::isinf(lasts_s(39)));
-  CHECK(std::isinf(lasts_s(33)));
+TEST_CASE("The allowed duration of warmth follows the dose") {
+  CHECK(allowed_s(43) == Approx(60).margin(0.05));
+  CHECK(allowed_s(42) == Approx(4 * 60).margin(0.05));
+  CHECK(allowed_s(41) == Approx(16 * 60).margin(0.1));
+  CHECK(allowed_s(44) == Approx(30).margin(0.05));
+  CHECK(allowed_s(45) == Approx(15).margin(0.05));
+  CHECK(std::isinf(allowed_s(39)));
+  CHECK(std::isinf(allowed_s(33)));
 }
 
-TEST_CASE("Cold may last a minute, and what is cool forever") {
-  CHECK(lasts_s(19.9) == Approx(60).margin(0.05));
-  CHECK(lasts_s(15) == Approx(60).margin(0.05));
-  CHECK(std::isinf(lasts_s(20)));
+TEST_CASE("Cold is limited to a minute, cool temperatures are not limited") {
+  CHECK(allowed_s(19.9) == Approx(60).margin(0.05));
+  CHECK(allowed_s(15) == Approx(60).margin(0.05));
+  CHECK(std::isinf(allowed_s(20)));
 }
 
-TEST_CASE("What was too warm or too cold for too long is mild until half of it is made good") {
+TEST_CASE("After too long an exposure the range is narrow until half of the exposure has decayed") {
   Dwell dwell({60, 20, 60});
   for (int i = 0; i < 61 * 50; ++i) dwell.step(43, 0.02, kWide);
   CHECK(dwell.step(43, 0.02, kWide).max_degC == Dwell::kWarm_degC);
   CHECK(dwell.step(43, 0.02, kWide).min_degC == 15);
   int ticks = 0;
   while (dwell.step(33, 0.02, kWide).max_degC < 42 && ticks < 100'000) ++ticks;
-  CHECK(ticks * 0.02 == Approx(Dwell::kForgets_s * std::log(2)).epsilon(0.05));
+  CHECK(ticks * 0.02 == Approx(Dwell::kDecay_s * std::log(2)).epsilon(0.05));
 
   Dwell cold({60, 20, 60});
   for (int i = 0; i < 61 * 50; ++i) cold.step(16, 0.02, kWide);
@@ -52,7 +52,7 @@ TEST_CASE("What was too warm or too cold for too long is mild until half of it i
   CHECK(ticks * 0.02 == Approx(31).margin(0.2));
 }
 
-TEST_CASE("A narrower range of others stays narrow") {
+TEST_CASE("A narrower input range stays narrow") {
   Dwell dwell({60, 20, 60});
   for (int i = 0; i < 61 * 50; ++i) dwell.step(43, 0.02, {25, 36});
   const TemperatureRange range = dwell.step(43, 0.02, {25, 36});
@@ -60,7 +60,7 @@ TEST_CASE("A narrower range of others stays narrow") {
   CHECK(range.max_degC == 36);
 }
 
-TEST_CASE("A new scene does not undo what the skin has had") {
+TEST_CASE("The exposure persists across scenes") {
   Dwell before({60, 20, 60});
   for (int i = 0; i < 61 * 50; ++i) before.step(43, 0.02, kWide);
   Dwell after({60, 20, 60});
@@ -68,7 +68,7 @@ TEST_CASE("A new scene does not undo what the skin has had") {
   CHECK(after.step(43, 0.02, kWide).max_degC == Dwell::kWarm_degC);
 }
 
-TEST_CASE("A temperature that is no number counts as the worst, time that stands still as nothing") {
+TEST_CASE("A temperature of NaN counts as the worst, and a zero or negative time step is ignored") {
   Dwell dwell({60, 20, 60});
   for (int i = 0; i < 61 * 50; ++i)
     dwell.step(33, NAN, kWide), dwell.step(43, -1, kWide), dwell.step(43, 0, kWide);
@@ -78,7 +78,7 @@ TEST_CASE("A temperature that is no number counts as the worst, time that stands
   CHECK(dwell.step(NAN, 0.02, kWide).min_degC == 20);
 }
 
-TEST_CASE("Whatever comes, the range is one, within the wide one, and a dose is a number") {
+TEST_CASE("The range is valid and the dose is finite for any input") {
   std::mt19937_64 random(3);
   Dwell dwell({60, 20, 60});
   for (int i = 0; i < 200'000; ++i) {

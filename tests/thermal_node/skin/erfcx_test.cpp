@@ -36,7 +36,7 @@ TEST_CASE("erfcx agrees with 40-digit values to 1e-14") {
   }
 }
 
-TEST_CASE("erfcx falls steadily, also where its two formulas meet") {
+TEST_CASE("erfcx decreases monotonically, also where its two formulas meet") {
   double before = erfcx(0);
   CHECK(before == 1);
   for (double x = 0.001; x < 50; x += 0.001) {
@@ -46,7 +46,7 @@ TEST_CASE("erfcx falls steadily, also where its two formulas meet") {
   }
 }
 
-TEST_CASE("erfcx stays between the classical bounds for every size of argument") {
+TEST_CASE("erfcx stays between the classical bounds for any argument") {
   // Abramowitz and Stegun 7.1.13: 2/(x + sqrt(x^2 + 2)) < sqrt(pi) erfcx(x) <= 2/(x + sqrt(x^2 + 4/pi)).
   for (double x = 1e-6; x < 1e6; x *= 1.1) {
     const double scaled = std::sqrt(M_PI) * erfcx(x);
@@ -55,7 +55,7 @@ TEST_CASE("erfcx stays between the classical bounds for every size of argument")
   }
 }
 
-TEST_CASE("erfcx of infinity is zero and of no number no number") {
+TEST_CASE("erfcx of infinity is zero, and erfcx of NaN is NaN") {
   CHECK(erfcx(std::numeric_limits<double>::infinity()) == 0);
   CHECK(std::isnan(erfcx(std::nan(""))));
 }

@@ -11,7 +11,7 @@
 
 using namespace tactus::thermal;
 
-TEST_CASE("Widths grow and fill a thickness exactly") {
+TEST_CASE("Cell widths grow and fill a thickness exactly") {
   std::array<double, 200> widths;
   for (const double thickness : {1e-6, 0.001, 0.05, 3.0})
     for (const double first : {1e-5, 1e-3}) {
@@ -28,7 +28,7 @@ TEST_CASE("Widths grow and fill a thickness exactly") {
   CHECK(growing_widths(std::nan(""), 1e-3, 1.12, widths) == 0);
 }
 
-TEST_CASE("Two halves of a pad on the same thing are a whole pad on it") {
+TEST_CASE("Two halves of a pad on one object equal the whole pad on it") {
   const bool layers = GENERATE(true, false);
   const auto skin = [&]() -> std::unique_ptr<Skin> {
     if (layers) return std::make_unique<BioheatModel>(Tissue{layers_of("finger"), 33, 23, 0.0025, 8});
@@ -47,27 +47,27 @@ TEST_CASE("Two halves of a pad on the same thing are a whole pad on it") {
   }
 }
 
-TEST_CASE("Heat goes from a warm thing through the skin into a cold one, and none is lost") {
+TEST_CASE("Heat flows from a warm object through the skin into a cold object and is conserved") {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> uniform(0, 1);
   BioheatModel skin({layers_of("finger"), 33, 23, 0.0025, 8});
-  for (std::size_t i = 0; i < Skin::kThings; ++i)
+  for (std::size_t i = 0; i < Skin::kMaxObjects; ++i)
     skin.set_object({10 + 30.0 * static_cast<double>(i), 0, std::pow(10, -1 + 3 * uniform(random)), 2e6, 0.01}, i);
-  double skin_J = skin.columns().skin_energy(), things_J = skin.columns().things_energy();
-  const double all_J = skin_J + things_J;
+  double skin_J = skin.columns().skin_energy(), objects_J = skin.columns().objects_energy();
+  const double all_J = skin_J + objects_J;
   for (int tick = 0; tick < 500; ++tick) {
-    std::array<double, Skin::kThings> h;
+    std::array<double, Skin::kMaxObjects> h;
     for (double& x : h) x = uniform(random) < 0.4 ? 0 : 2000 * uniform(random);
     skin.step(0.05, h, uniform(random));
     const auto& f = skin.columns().flows();
-    skin_J += f.blood_to_skin - f.skin_to_things - f.skin_to_room;
-    things_J += f.skin_to_things - f.things_to_room;
+    skin_J += f.blood_to_skin - f.skin_to_objects - f.skin_to_room;
+    objects_J += f.skin_to_objects - f.objects_to_room;
   }
   CHECK(skin.columns().skin_energy() == Approx(skin_J).margin(1e-9 * all_J));
-  CHECK(skin.columns().things_energy() == Approx(things_J).margin(1e-9 * all_J));
+  CHECK(skin.columns().objects_energy() == Approx(objects_J).margin(1e-9 * all_J));
 }
 
-TEST_CASE("Of a warm and a cold thing, equal and equally pressed, skin between them feels the mean") {
+TEST_CASE("Skin between an equally pressed warm and cold object has the mean temperature") {
   SkinModel skin({33, 1181, 0, 0});
   skin.set_object({23, 1500}, 0);
   skin.set_object({43, 1500}, 3);

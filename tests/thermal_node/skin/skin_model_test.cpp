@@ -19,7 +19,7 @@ const Material kMaterials[] = {{"copper", 37137, 401}, {"steel", 7493, 14.9}, {"
                                {"glass", 1620, 1.4},   {"ABS", 514, 0.18},    {"foam", 48, 0.03}};
 }  // namespace
 
-TEST_CASE("The numeric skin follows the closed form from 20 ms to 100 s, for every material") {
+TEST_CASE("The numeric skin model follows the closed form from 20 ms to 100 s for every material") {
   // Space: neighbouring cells grow by g - 1 = 12 %, and the centred difference errs by about (g - 1)^2/12 = 0.12 %
   // of the change; the surface cell adds its own width over the depth reached, (0.02)^2/(12 t) < 0.2 % at 20 ms.
   // Time: second order, (5 ms/tau)^2/10 < 0.1 % with tau >= 0.1 s. Together below 0.5 % of the change.
@@ -39,7 +39,7 @@ TEST_CASE("The numeric skin follows the closed form from 20 ms to 100 s, for eve
   }
 }
 
-TEST_CASE("The result hardly depends on the tick") {
+TEST_CASE("The result is nearly independent of the tick length") {
   const auto after_one_second = [](int ticks) {
     SkinModel skin(SkinProperties{});
     skin.set_object({23, 2385});
@@ -50,7 +50,7 @@ TEST_CASE("The result hardly depends on the tick") {
   for (const int ticks : {1, 10, 50, 100}) CHECK(after_one_second(ticks) == Approx(fine).margin(0.005));
 }
 
-TEST_CASE("A touch warms by the heat that it brings, however it lies in the tick") {
+TEST_CASE("The heat of a touch is independent of its place in the tick") {
   // Mean conductance over the tick against the resolved touch: the heat of 5 ms in a tick of 20 ms. Both are
   // linear in a small touch; they differ by the curvature of the flux over the tick, beta sqrt(t) ~ 0.3: below 15
   // %.
@@ -68,7 +68,7 @@ TEST_CASE("A touch warms by the heat that it brings, however it lies in the tick
 }
 
 TEST_CASE("After the touch the skin returns to rest") {
-  SECTION("by conduction alone as the square root of time: half of it is back soon, the rest late") {
+  SECTION("By conduction alone the skin returns with the square root of time") {
     // Long after a short touch that took the heat Q, a half-space has cooled at its surface by Q/(e sqrt(pi t)).
     SkinModel skin(kDry);
     skin.set_object({23, 37137});
@@ -82,7 +82,7 @@ TEST_CASE("After the touch the skin returns to rest") {
     // and this correction.
     CHECK(33 - skin.surface_degC() == Approx(heat / (kSkin * std::sqrt(M_PI * 10))).epsilon(0.01));
   }
-  SECTION("with blood and air faster, and then wholly") {
+  SECTION("With blood and air the skin returns faster and completely") {
     SkinModel dry(kDry), living(SkinProperties{});
     for (SkinModel* skin : {&dry, &living}) {
       skin->set_object({23, 37137});
@@ -112,7 +112,7 @@ TEST_CASE("Energy is conserved between skin and object") {
   }
 }
 
-TEST_CASE("The skin never leaves the range between itself and what it touches, whatever comes") {
+TEST_CASE("The skin stays between its own and the object temperature for any input") {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(0, 1);
   for (int trial = 0; trial < 50; ++trial) {

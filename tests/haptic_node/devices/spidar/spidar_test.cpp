@@ -53,7 +53,7 @@ struct Rig {
 
 }  // namespace
 
-TEST_CASE("A string device knows where its grip is, to its encoders, wherever the frame stands") {
+TEST_CASE("A string device measures the pose of its grip to encoder resolution at any origin") {
   const std::string name = GENERATE("desktop", "desktop8", "cave", "cave8");
   const Vector3d origin(0.3, -0.2, 1);
   const StringFrame f = *known_frame(name);
@@ -110,7 +110,7 @@ TEST_CASE("A hand on strings feels the force that is written, a few time constan
   }
 }
 
-TEST_CASE("Beyond the workspace force fades to nothing, and comes back") {
+TEST_CASE("The force fades to zero beyond the workspace and returns") {
   Rig rig("desktop", [](double ms) {
     return GripPose{Vector3d(0, 0, 0.16 - 0.00016 * std::abs(ms - 1000)), Eigen::Quaterniond::Identity()};
   });
@@ -131,7 +131,7 @@ TEST_CASE("Beyond the workspace force fades to nothing, and comes back") {
   }
 }
 
-TEST_CASE("A string that hangs through while the hand is snatched away is no blow") {
+TEST_CASE("A slack string during a fast motion causes no jump of the pose") {
   // 9 m/s along the edge: strings at 55 degrees to it shorten at 5 m/s, faster than a motor winds.
   Rig rig("desktop", [](double ms) {
     return GripPose{Vector3d(ms < 20 ? -0.03 : std::min(0.03, -0.03 + (ms - 20) * 9e-3), 0, 0),
@@ -166,7 +166,7 @@ struct BrokenString : StringMotors {
 
 }  // namespace
 
-TEST_CASE("A broken string loses the device and lets go of all others, until it is mended") {
+TEST_CASE("A broken string loses the device and releases all other strings until it is repaired") {
   auto motors = std::make_unique<BrokenString>();
   BrokenString& strings = *motors;
   Spidar device(*known_frame("desktop"), Vector3d::Zero(), std::move(motors));
@@ -180,7 +180,7 @@ TEST_CASE("A broken string loses the device and lets go of all others, until it 
   }
 }
 
-TEST_CASE("A string device is made by name, holds the path of its tool and is pushed back by a force") {
+TEST_CASE("A string device is made by name, follows the path of its tool and yields to a force") {
   tool_def_t tool{};
   tool.name = "stylus";
   for (const double t : {0.0, 1.0}) {

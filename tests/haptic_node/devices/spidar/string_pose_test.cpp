@@ -49,7 +49,7 @@ TEST_CASE("The structure matrix is minus the derivative of the string lengths, b
   }
 }
 
-TEST_CASE("A pose is found from the exact lengths of its strings, starting in the middle of the frame") {
+TEST_CASE("The pose is solved from exact string lengths, starting in the middle of the frame") {
   const std::string name = GENERATE("desktop", "desktop8", "cave", "cave8");
   const StringFrame f = *known_frame(name);
   std::mt19937 random(1);
@@ -63,7 +63,7 @@ TEST_CASE("A pose is found from the exact lengths of its strings, starting in th
   }
 }
 
-TEST_CASE("Counting strings in steps moves a pose by no more than the worst rounding can") {
+TEST_CASE("Encoder quantisation moves the pose by at most the bound of the rounding") {
   const std::string name = GENERATE("desktop", "desktop8", "cave", "cave8");
   const StringFrame f = *known_frame(name);
   std::mt19937 random(2);
@@ -83,7 +83,7 @@ TEST_CASE("Counting strings in steps moves a pose by no more than the worst roun
   }
 }
 
-TEST_CASE("From one tick to the next a pose takes a step or two") {
+TEST_CASE("The pose converges in a few steps from the last tick") {
   const std::string name = GENERATE("desktop", "desktop8", "cave", "cave8");
   const StringFrame f = *known_frame(name);
   std::mt19937 random(3);
@@ -96,7 +96,7 @@ TEST_CASE("From one tick to the next a pose takes a step or two") {
   }
 }
 
-TEST_CASE("Lengths that no pose has are told by their residual") {
+TEST_CASE("Inconsistent string lengths have a large residual") {
   const StringFrame f = *known_frame("desktop");
   PerString lengths = string_lengths(f, {});
   lengths(2) += 0.1;  // a slack string

@@ -82,7 +82,7 @@ Wrench random_wrench(const StringFrame& f, std::mt19937& random) {
 }
 
 // In the workspace, or up to twice as far out.
-GripPose far_pose(const StringFrame& f, std::mt19937& random) {
+GripPose pose_beyond_workspace(const StringFrame& f, std::mt19937& random) {
   GripPose p = random_pose(f, random);
   if (random() % 2 == 0) p.position_m *= 2;
   return p;
@@ -90,12 +90,12 @@ GripPose far_pose(const StringFrame& f, std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("Tensions stay within their limits, wherever the grip is and whatever is wanted") {
+TEST_CASE("Tensions stay within their limits for any pose and wrench") {
   const std::string name = GENERATE("desktop", "desktop8", "cave", "cave8");
   const StringFrame f = *known_frame(name);
   std::mt19937 random(1);
   for (int trial = 0; trial < 2000; ++trial) {
-    const GripPose pose = far_pose(f, random);
+    const GripPose pose = pose_beyond_workspace(f, random);
     const Wrench wanted = random_wrench(f, random);
     const Tensions t = solve_tensions(f, pose, wanted);
     REQUIRE(t.tensions_N.size() == f.size());
@@ -108,13 +108,13 @@ TEST_CASE("Tensions stay within their limits, wherever the grip is and whatever 
   }
 }
 
-TEST_CASE("A force is exact wherever tensions for it exist, and else nearly the largest of its direction") {
+TEST_CASE("The force is exact where tensions exist, otherwise nearly the largest in its direction") {
   const std::string name = GENERATE("desktop", "desktop8", "cave", "cave8");
   const StringFrame f = *known_frame(name);
   std::mt19937 random(2);
   int all = 0, some = 0, none = 0;
   for (int trial = 0; trial < (f.has_torque() ? 120 : 1000); ++trial) {
-    const GripPose pose = far_pose(f, random);
+    const GripPose pose = pose_beyond_workspace(f, random);
     const Wrench wanted = random_wrench(f, random);
     const Eigen::MatrixXd w = structure_matrix(f, pose);
     const auto truth = oracle_share(f, w, stacked(f, wanted));
@@ -139,7 +139,7 @@ TEST_CASE("A force is exact wherever tensions for it exist, and else nearly the 
   CHECK(some > 10);
 }
 
-TEST_CASE("Of all tensions that give a force none are closer to the least") {
+TEST_CASE("The tensions are the closest to the minimum that give the force") {
   const std::string name = GENERATE("desktop", "desktop8", "cave", "cave8");
   const StringFrame f = *known_frame(name);
   std::mt19937 random(3);
@@ -166,7 +166,7 @@ TEST_CASE("Of all tensions that give a force none are closer to the least") {
   }
 }
 
-TEST_CASE("Tensions change little where force and pose do, also where limits begin to bind") {
+TEST_CASE("Tensions are continuous in force and pose, also where limits begin to bind") {
   const std::string name = GENERATE("desktop", "desktop8", "cave", "cave8");
   const StringFrame f = *known_frame(name);
   std::mt19937 random(5);
@@ -193,7 +193,7 @@ TEST_CASE("Tensions change little where force and pose do, also where limits beg
   }
 }
 
-TEST_CASE("A singular pose renders nothing and says so") {
+TEST_CASE("A singular pose renders no force, and held is false") {
   StringFrame f = *known_frame("desktop");
   for (StringEnds& s : f.strings) s.anchor_m.z() = 0;  // all coplanar, with the grip in the plane
   const Tensions t = solve_tensions(f, {}, {Vector3d(0, 0, 1), Vector3d::Zero()});

@@ -1,4 +1,4 @@
-#include "haptic_node/rendering/rendering.h"
+#include "haptic_node/rendering/force_method.h"
 
 #include "haptic_node/rendering/coupling.h"
 #include "haptic_node/contact/direct.h"
@@ -10,32 +10,32 @@ namespace {
 
 // As in tool_touch.h of the simulation, which does not search further around a tool that reports a higher speed.
 // Design: faster than an exploring hand (a reach is 1 to 2 m/s).
-constexpr double kFastestHand_m_s = 5;
+constexpr double kMaxHandSpeed_m_s = 5;
 
-Rendering::Kind kind_of(const std::string& name, bool shaped) {
-  if (name == "direct") return Rendering::Kind::kDirect;
-  if (name == "proxy") return Rendering::Kind::kProxy;
-  if (name == "rigid") return Rendering::Kind::kRigid;
-  return shaped ? Rendering::Kind::kRigid : Rendering::Kind::kProxy;
+ForceMethod::Kind kind_of(const std::string& name, bool shaped) {
+  if (name == "direct") return ForceMethod::Kind::kDirect;
+  if (name == "proxy") return ForceMethod::Kind::kProxy;
+  if (name == "rigid") return ForceMethod::Kind::kRigid;
+  return shaped ? ForceMethod::Kind::kRigid : ForceMethod::Kind::kProxy;
 }
 
 DevicePose pose_of(const DeviceState& device) { return {device.position, device.orientation}; }
 
 }  // namespace
 
-Rendering::Rendering(const tool_def_t& tool, const Settings& settings)
+ForceMethod::ForceMethod(const tool_def_t& tool, const Settings& settings)
     : shaped_(tool.shape != tool_def_t::BALL),
       radius_m_(skin_m(tool)),
       bound_m_(tool.radius_m),
       kind_(kind_of(settings.rendering, shaped_)),
-      reach_m_(settings.proxy_reach_m),
-      reach_time_s_(settings.proxy_reach_time_s),
+      proxy_reach_m_(settings.proxy_reach_m),
+      proxy_reach_time_s_(settings.proxy_reach_time_s),
       force_limit_N_(settings.force_limit_N),
       rigid_(coupling_lever_m(settings), bound_m_, radius_m_) {
   arms_.reserve(kMaxHalfSpaces);
 }
 
-bool Rendering::change(const Settings& settings) {
+bool ForceMethod::change(const Settings& settings) {
   const Kind wanted = kind_of(settings.rendering, shaped_);
   if (wanted == kind_) return false;
   kind_ = wanted;
@@ -44,20 +44,20 @@ bool Rendering::change(const Settings& settings) {
   return true;
 }
 
-void Rendering::reset(const DeviceState& device) {
+void ForceMethod::reset(const DeviceState& device) {
   pose_ = pose_of(device);
   proxy_.reset(device.position);
   rigid_.reset(pose_);
-  renew(device);
+  reset_reach(device);
 }
 
-void Rendering::renew(const DeviceState& device) {
+void ForceMethod::reset_reach(const DeviceState& device) {
   const double speed_m_s = device.velocity.norm() + bound_m_ * device.spin.norm();
-  left_m_ = reach_m_ + reach_time_s_ * std::min(speed_m_s, kFastestHand_m_s);
+  remaining_reach_m_ = proxy_reach_m_ + proxy_reach_time_s_ * std::min(speed_m_s, kMaxHandSpeed_m_s);
 }
 
-void Rendering::solve(std::span<Surface> surfaces, const DeviceState& device, double dt) {
-  const DevicePose placed{pose_.position, turned(device)};
+void ForceMethod::solve(std::span<Surface> surfaces, const DeviceState& device, double dt) {
+  const DevicePose placed{pose_.position, tool_orientation(device)};
   switch (kind_) {
     case Kind::kProxy:
       proxy_.step(surfaces, device.position, dt);
@@ -66,14 +66,14 @@ void Rendering::solve(std::span<Surface> surfaces, const DeviceState& device, do
       spin_ = device.spin;
       break;
     case Kind::kRigid:
-      rigid_.step(surfaces, pose_of(device), dt, left_m_);
-      left_m_ = std::max(0.0, left_m_ - rigid_.moved_m());
+      rigid_.step(surfaces, pose_of(device), dt, remaining_reach_m_);
+      remaining_reach_m_ = std::max(0.0, remaining_reach_m_ - rigid_.moved_m());
       pose_ = {rigid_.position(), rigid_.orientation()};
       velocity_ = rigid_.velocity();
       spin_ = rigid_.spin();
       break;
     case Kind::kDirect:
-      press_directly(surfaces, placed, pose_of(device), rigid_.lever_m(), radius_m_);
+      compute_direct_depths(surfaces, placed, pose_of(device), rigid_.lever_m(), radius_m_);
       pose_ = pose_of(device);
       velocity_ = device.velocity;
       spin_ = device.spin;
@@ -81,8 +81,8 @@ void Rendering::solve(std::span<Surface> surfaces, const DeviceState& device, do
   }
 }
 
-void Rendering::press(std::span<const Surface> surfaces, const DeviceState& device, double factor,
-                      std::span<Eigen::Vector3d> forces) const {
+void ForceMethod::compute_forces(std::span<const Surface> surfaces, const DeviceState& device, double factor,
+                                 std::span<Eigen::Vector3d> forces) const {
   switch (kind_) {
     case Kind::kProxy:
       coupling_forces(surfaces, proxy_.shift(), device.velocity, proxy_.slipping(), forces, factor);
@@ -92,56 +92,57 @@ void Rendering::press(std::span<const Surface> surfaces, const DeviceState& devi
   }
 }
 
-Stored Rendering::stored(std::span<const Surface> surfaces) const {
-  Stored all;
+StoredEnergy ForceMethod::stored_energy(std::span<const Surface> surfaces) const {
+  StoredEnergy all;
   Eigen::Vector3d push_N = Eigen::Vector3d::Zero(), depth_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d twist_N = Eigen::Vector3d::Zero(), turn_m = Eigen::Vector3d::Zero();
-  double stiffest_N_m = 0, grips_J = 0, each_J = 0;
+  Eigen::Vector3d moment_N = Eigen::Vector3d::Zero(), turn_m = Eigen::Vector3d::Zero();
+  double stiffest_N_m = 0, friction_J = 0, each_J = 0;
   for (const Surface& s : surfaces) {
-    if (s.depth_m <= 0 || !s.moves()) continue;
+    if (s.depth_m <= 0 || !s.movable()) continue;
     all.pressed = true;
     const double K = s.coupling_stiffness_N_m;
     push_N += K * s.depth_m * s.normal;
     depth_m += s.depth_m * s.normal;
     stiffest_N_m = std::max(stiffest_N_m, K);
     each_J += 0.5 * K * s.depth_m * s.depth_m;
-    if (!turns()) continue;
+    if (!renders_torque()) continue;
     const Eigen::Vector3d moment = arm(s).cross(s.normal) / lever_m();
-    twist_N += K * s.depth_m * moment;
+    moment_N += K * s.depth_m * moment;
     turn_m += s.depth_m * moment;
-    grips_J += 0.5 * K * s.grip.squaredNorm();
+    friction_J += 0.5 * K * s.grip.squaredNorm();
   }
-  if (kind_ == Kind::kProxy) grips_J = 0.5 * stiffest_N_m * proxy_.shift().squaredNorm();
+  if (kind_ == Kind::kProxy) friction_J = 0.5 * stiffest_N_m * proxy_.shift().squaredNorm();
   // Where the surfaces leave no feasible pose, or each is a spring at the device, their energies do not combine
   // into one displacement.
   const bool one = kind_ == Kind::kProxy ? proxy_.feasible() : kind_ == Kind::kRigid && rigid_.feasible();
-  all.energy_J = grips_J + (one ? 0.5 * push_N.dot(depth_m) + 0.5 * twist_N.dot(turn_m) : each_J);
+  all.energy_J = friction_J + (one ? 0.5 * push_N.dot(depth_m) + 0.5 * moment_N.dot(turn_m) : each_J);
   return all;
 }
 
-Wrench Rendering::sum(std::span<const Surface> surfaces, std::span<const Eigen::Vector3d> forces) const {
+Wrench ForceMethod::sum(std::span<const Surface> surfaces, std::span<const Eigen::Vector3d> forces) const {
   Wrench w;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     w.force_N += forces[i];
-    if (turns()) w.torque_N_m += arm(surfaces[i]).cross(forces[i]);
+    if (renders_torque()) w.torque_N_m += arm(surfaces[i]).cross(forces[i]);
   }
   return w;
 }
 
-void Rendering::share(const Wrench& felt, std::span<const Surface> surfaces, std::span<Eigen::Vector3d> forces) {
+void ForceMethod::distribute(const Wrench& felt, std::span<const Surface> surfaces,
+                             std::span<Eigen::Vector3d> forces) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double sizes = 0;
+  double total_N = 0;
   for (const Eigen::Vector3d& f : forces) {
     sum += f;
-    sizes += f.norm();
+    total_N += f.norm();
   }
-  if (sizes <= 0) return;
+  if (total_N <= 0) return;
   // Each force keeps its direction as far as the sum does; the rest is shared by magnitude.
   const double square = sum.squaredNorm();
   const double kept = square > 0 ? std::clamp(felt.force_N.dot(sum) / square, 0.0, 1.0) : 0.0;
   const Eigen::Vector3d rest = felt.force_N - kept * sum;
-  for (Eigen::Vector3d& f : forces) f = kept * f + f.norm() / sizes * rest;
-  if (!turns()) return;
+  for (Eigen::Vector3d& f : forces) f = kept * f + f.norm() / total_N * rest;
+  if (!renders_torque()) return;
   arms_.clear();
   for (const Surface& s : surfaces) arms_.push_back(arm(s));
   share_wrench(felt, arms_, forces, force_limit_N_);

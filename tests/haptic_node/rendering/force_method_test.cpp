@@ -1,5 +1,5 @@
 // The three rendering methods: each by itself, and switched while the hand is pressed.
-#include "haptic_node/rendering/rendering.h"
+#include "haptic_node/rendering/force_method.h"
 
 #include <catch2/catch.hpp>
 #include <tactus/scene_t.hpp>
@@ -57,14 +57,14 @@ Quaterniond about_y(double rad) { return Quaterniond(Eigen::AngleAxisd(rad, Vect
 
 }  // namespace
 
-TEST_CASE("A box is rendered rigid, a ball by its point, unless something else is asked for") {
-  CHECK(Rendering(box_scene().tools[0], {}).kind() == Rendering::Kind::kRigid);
-  CHECK(Rendering(scene().tools[0], {}).kind() == Rendering::Kind::kProxy);
-  CHECK(Rendering(scene().tools[0], with("rigid")).kind() == Rendering::Kind::kRigid);
-  CHECK(Rendering(box_scene().tools[0], with("direct")).kind() == Rendering::Kind::kDirect);
+TEST_CASE("The default method is rigid for a box and proxy for a ball") {
+  CHECK(ForceMethod(box_scene().tools[0], {}).kind() == ForceMethod::Kind::kRigid);
+  CHECK(ForceMethod(scene().tools[0], {}).kind() == ForceMethod::Kind::kProxy);
+  CHECK(ForceMethod(scene().tools[0], with("rigid")).kind() == ForceMethod::Kind::kRigid);
+  CHECK(ForceMethod(box_scene().tools[0], with("direct")).kind() == ForceMethod::Kind::kDirect);
 }
 
-TEST_CASE("The bodies feel exactly what the hand feels, force and torque") {
+TEST_CASE("Force and torque on the bodies equal those on the hand") {
   BoxBench bench;
   for (int ms = 0; ms < 300; ++ms) {
     const double in = std::min(1.0, ms / 100.0);
@@ -85,7 +85,7 @@ TEST_CASE("The bodies feel exactly what the hand feels, force and torque") {
   }
 }
 
-TEST_CASE("Renderings change while the hand is pressed: within the slew, and settled after the recovery time") {
+TEST_CASE("A change of the method under pressure obeys the slew and settles within the recovery time") {
   const double depth = 0.002;
   for (const std::string from : {"direct", "proxy", "rigid"})
     for (const std::string to : {"direct", "proxy", "rigid"}) {
@@ -93,7 +93,7 @@ TEST_CASE("Renderings change while the hand is pressed: within the slew, and set
       Settings settings = with(from);
       BoxBench bench(settings);
       Vector3d last = Vector3d::Zero(), last_torque = Vector3d::Zero();
-      double most = 0, most_torque = 0, settled_N = 0;
+      double most = 0, max_torque = 0, settled_N = 0;
       for (int ms = 0; ms < 400; ++ms) {
         if (ms == 200) {
           settings.rendering = to;
@@ -103,7 +103,7 @@ TEST_CASE("Renderings change while the hand is pressed: within the slew, and set
         TickOutput& out = bench.press(ms, {0, 0, 0.011 - in * (0.001 + depth)}, about_y(0.004 * in), 0.3);
         if (ms >= 200) {
           most = std::max(most, (out.force_N - last).norm());
-          most_torque = std::max(most_torque, (out.torque_N_m - last_torque).norm());
+          max_torque = std::max(max_torque, (out.torque_N_m - last_torque).norm());
         }
         last = out.force_N, last_torque = out.torque_N_m;
         if (ms == 199) settled_N = out.force_N.z();
@@ -112,13 +112,13 @@ TEST_CASE("Renderings change while the hand is pressed: within the slew, and set
       CHECK(settled_N > 1);
       CHECK(last.z() > 1);
       CHECK(most <= 0.5);  // far below the slew limit of 2 N a tick
-      CHECK(most_torque <= 0.075);
+      CHECK(max_torque <= 0.075);
       if (to == "proxy") CHECK(last_torque.norm() < 1e-9);
       if (to == "rigid") CHECK(last_torque.norm() > 0.005);
     }
 }
 
-TEST_CASE("On one plane a ball feels the same in every rendering") {
+TEST_CASE("All methods give equal forces for a ball on one plane") {
   double force[3];
   int k = 0;
   for (const std::string name : {"direct", "proxy", "rigid"}) {
@@ -134,7 +134,7 @@ TEST_CASE("On one plane a ball feels the same in every rendering") {
   CHECK(force[2] == Approx(force[0]).epsilon(1e-3));
 }
 
-TEST_CASE("Torque keeps its limits whatever is wanted") {
+TEST_CASE("The torque obeys its limits for any wanted torque") {
   Safety safety(SafetyLimits{});
   Vector3d last = Vector3d::Zero();
   for (int i = 0; i < 200; ++i) {
@@ -150,7 +150,7 @@ TEST_CASE("Torque keeps its limits whatever is wanted") {
   }
 }
 
-TEST_CASE("What a torque does to a turning hand is counted, and ends when the allowance does") {
+TEST_CASE("The work of a torque on a rotating hand counts towards the energy limit") {
   SafetyLimits limits;
   limits.power_W = 0;
   Safety safety(limits);
@@ -167,7 +167,7 @@ TEST_CASE("What a torque does to a turning hand is counted, and ends when the al
   CHECK(given_J > 0.5 * limits.energy_J);
 }
 
-TEST_CASE("The coupling against turning is as stiff as servo rate and damping allow") {
+TEST_CASE("Rotational stiffness follows the servo rate and the damping") {
   Settings s;
   const double usual = coupling_lever_m(s);
   CHECK(usual > 0.01);
@@ -176,7 +176,7 @@ TEST_CASE("The coupling against turning is as stiff as servo rate and damping al
   CHECK(coupling_lever_m(s) < usual);
 }
 
-TEST_CASE("Nonsense about a rigid tool leaves the limits where they are") {
+TEST_CASE("Contradictory planes of a rigid tool keep force and torque within their limits") {
   BoxBench bench;
   Vector3d last = Vector3d::Zero(), last_torque = Vector3d::Zero();
   for (int ms = 0; ms < 300; ++ms) {
