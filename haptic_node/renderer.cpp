@@ -48,7 +48,7 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Off
 sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
   scene_ = scenes.scene();
   choice_ = resolve_config(*scene_, settings, tool_name_);
-  if (session_) session_->let_go();
+  if (session_) session_->end();
   begin_to_open(scenes);
   if (log_) log_->follow(choice_.tool);
   host().print_status(choice_.tool >= 0 ? limits_sentence(settings) : choice_.problem);
@@ -85,7 +85,7 @@ void NodeRenderer::finish_loading() {
     maps_ = opening_maps_->take();
     opening_maps_.reset();
     if (!maps_->trouble.empty()) host().print_status(maps_->trouble);
-    if (session_ && !session_->over()) session_->set_maps(maps_);
+    if (session_ && !session_->ended()) session_->set_maps(maps_);
   }
   if (device_task_ && device_task_->done()) start_session();
 }
@@ -160,10 +160,10 @@ sync::Status NodeRenderer::status() const {
     s.text = "the device does not answer, or two hold it: the force is zero";
   } else if (points_) {
     s.text = "points, and does not touch";
-  } else if (session_->heard() && session_->lost()) {
+  } else if (session_->has_touch_model() && session_->lost()) {
     s.state = node_health_t::INPUT_LOST;
     s.text = "no touch model: the force is zero";
-  } else if (session_->heard()) {
+  } else if (session_->has_touch_model()) {
     s.text = maps_ ? maps_->trouble : "reads the maps of its surfaces";
   } else {
     s.state = node_health_t::READY;

@@ -75,7 +75,9 @@ void OfflineWorld::publish() {
     for (auto& hand : hands_) hand->session->push(m, now);
   };
   collect(channels::kTouchModel, touch_, to_hands);
-  collect(channels::kContactEvents, events_, to_hands);
+  collect(channels::kContactEvents, events_, [&](const contact_events_t& m) {
+    for (auto& hand : hands_) hand->events.push(m, now), hand->session->push(hand->events.take(sync::SimTime::max()));
+  });
   collect(channels::kContacts, contacts_, [](const auto&) {});
   collect(channels::kWorldState, bodies_, [](const auto&) {});
 }

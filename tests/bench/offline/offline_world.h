@@ -51,6 +51,7 @@ class OfflineWorld {
 
  private:
   struct Hand {
+    sync::EventInbox events{kRun};
     haptic::Safety safety;
     std::unique_ptr<haptic::Session> session;
     std::int64_t seq = 0;
