@@ -21,7 +21,7 @@ std::unique_ptr<Offline> Offline::open(const OfflineOptions& options, double loo
 }
 
 Offline::Offline(const OfflineOptions& options, double loop_rate_Hz, sync::HostTime clock)
-    : run_(options, {{options.wav, "--wav"}}, loop_rate_Hz, clock, kRingOn), wav_(options.wav) {}
+    : run_(options, {{options.wav, "--wav"}}, loop_rate_Hz, clock, kDecayTime), wav_(options.wav) {}
 
 OpenCard Offline::open_card() {
   return [this](const StreamOptions& options, Card::Render render) {

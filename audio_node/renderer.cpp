@@ -22,12 +22,12 @@ namespace tactus::audio {
 namespace {
 
 constexpr int kCallbackPriority = 70;
-constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may select the card, but may be missing
-constexpr sync::Nanoseconds kInputLost{300'000'000};     // contact snapshots arrive at 60 Hz
-constexpr sync::Nanoseconds kContactsLost{100'000'000};  // six snapshots
+constexpr sync::Nanoseconds kSceneTimeout{2'000'000'000};  // the scene may select the card, but may be missing
+constexpr sync::Nanoseconds kInputTimeout{300'000'000};     // contact snapshots arrive at 60 Hz
+constexpr sync::Nanoseconds kContactsTimeout{100'000'000};  // six snapshots
 constexpr sync::Nanoseconds kScrapeLead{2'000'000};      // before the callback needs it: two ticks
 // Design: half a tick; a blow takes up to 0.3 ms to prepare. Simultaneous blows wait for the next ticks.
-constexpr sync::Nanoseconds kStrikesFor{500'000};
+constexpr sync::Nanoseconds kStrikeBudget{500'000};
 constexpr sync::Nanoseconds kEarly{20'000'000};  // accepts events of the near future, in case a map lags
 
 void publish_pair(sync::Bus& bus, const std::string& medium, const MediaPair& pair) {
@@ -42,7 +42,7 @@ void publish_pair(sync::Bus& bus, const std::string& medium, const MediaPair& pa
 
 // Freeing tables of 200 MB takes 20 ms, too long for the loop.
 template <class Unread>
-void free_elsewhere(Unread unread) {
+void free_in_background(Unread unread) {
   if (!unread.empty()) std::thread([gone = std::move(unread)] { sync::leave_realtime(); }).detach();
 }
 
@@ -93,7 +93,7 @@ void NodeRenderer::add_tags() {
 }
 
 void NodeRenderer::configure(const Settings& settings) {
-  if (!instructions_named(settings.instructions))
+  if (!find_instructions(settings.instructions))
     host().say("this machine has no " + settings.instructions + " instructions; it computes with " +
                name(available_instructions().back()));
   output_.configure(settings);
@@ -113,16 +113,16 @@ sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Setting
   };
   impacts_ = std::make_unique<Impacts>(*scene_, extent, output_.settings(), output_.settings().sample_rate_Hz, ++scenes_);
   sampler_ = std::make_unique<Sampler>(*scene_, output_.settings());
-  begin_to_read(scenes);
+  start_loading_surfaces(scenes);
   return {.output_latency = output_.latency()};
 }
 
-void NodeRenderer::begin_to_read(const sync::SceneReceiver& scenes) {
+void NodeRenderer::start_loading_surfaces(const sync::SceneReceiver& scenes) {
   sliding_.reset();
   output_.hear(nullptr);
-  opening_surfaces_.emplace([of = *scene_, pictures = sync::pictures_of(scenes)] {
+  loading_surfaces_.emplace([of = *scene_, pictures = sync::pictures_of(scenes)] {
     sync::leave_realtime();
-    return read_surfaces(of, pictures);
+    return load_surfaces(of, pictures);
   });
 }
 
@@ -133,12 +133,12 @@ void NodeRenderer::change(const Settings& settings, const std::string&) {
   if (sliding_) sliding_->set_gain(settings.gain);
 }
 
-void NodeRenderer::finish_reading() {
-  while (!real_time_ && opening_surfaces_ && !opening_surfaces_->done())
+void NodeRenderer::poll_loading() {
+  while (!real_time_ && loading_surfaces_ && !loading_surfaces_->done())
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  if (opening_surfaces_ && opening_surfaces_->done()) take_surfaces();
-  free_elsewhere(output_.take_unread());
-  free_elsewhere(output_.step_library());
+  if (loading_surfaces_ && loading_surfaces_->done()) take_surfaces();
+  free_in_background(output_.take_released());
+  free_in_background(output_.step_library());
   while (!real_time_ && output_.library().reading()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     output_.step_library();
@@ -147,13 +147,13 @@ void NodeRenderer::finish_reading() {
 }
 
 void NodeRenderer::take_surfaces() {
-  auto heard = std::make_shared<const HeardSurfaces>();
+  auto heard = std::make_shared<const AudioSurfaces>();
   try {
-    heard = opening_surfaces_->take();
+    heard = loading_surfaces_->take();
   } catch (const std::exception& e) {
     host().say(std::string("cannot read the maps of the scene (") + e.what() + "); scraping contacts sound without them");
   }
-  opening_surfaces_.reset();
+  loading_surfaces_.reset();
   output_.hear(heard);
   sliding_ = std::make_unique<Sliding>(*scene_, heard, bodies_, *impacts_, output_.settings(),
                                        output_.settings().sample_rate_Hz);
@@ -167,18 +167,18 @@ void NodeRenderer::receive() {
 }
 
 std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
-  finish_reading();
-  const bool plays = (impacts_ || (real_time_ && now - started_ > kOpenAnyway)) && output_.keep_open(now);
+  poll_loading();
+  const bool plays = (impacts_ || (real_time_ && now - started_ > kSceneTimeout)) && output_.keep_open(now);
   const sync::ModalityEndpoint& sense = host().sense();
   output_.allow(sense.delay());
   output_.degrade({sense.output().value("dropout"), sense.output().value("dropout.every")});
-  if (scene_) output_.hear_from(ear_.at(now + output_.latency()));
+  if (scene_) output_.set_listener(ear_.at(now + output_.latency()));
   receive();
   collect_hits(now);
-  strike_due(now);
-  submit_lasting(now);
+  process_due_hits(now);
+  submit_contacts(now);
   publish();
-  print_news();
+  print_messages();
   return status(now, plays);
 }
 
@@ -194,7 +194,7 @@ void NodeRenderer::collect_hits(sync::HostTime now) {
   }
 }
 
-void NodeRenderer::strike_due(sync::HostTime now) {
+void NodeRenderer::process_due_hits(sync::HostTime now) {
   if (!impacts_ || !sampler_) return;
   const sync::ScopedPhaseTimer rendering(sync::Phase::kRender);
   // A log is rendered as fast as possible, for any duration of a tick.
@@ -202,13 +202,13 @@ void NodeRenderer::strike_due(sync::HostTime now) {
   const Settings& settings = output_.settings();
   due_.handle(
       now, late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s)),
-      [&] { return !real_time_ || sync::host_now() - begun < kStrikesFor; },
+      [&] { return !real_time_ || sync::host_now() - begun < kStrikeBudget; },
       [&](const contact_event_t& event, sync::HostTime scheduled) { strike(event, scheduled); },
       [&](const contact_event_t& event, sync::HostTime scheduled) { drop(event, scheduled); });
 }
 
 void NodeRenderer::strike(const contact_event_t& event, sync::HostTime scheduled) {
-  impacts_->hear_from(ear_.at(scheduled));
+  impacts_->set_listener(ear_.at(scheduled));
   Strike strike = impacts_->strike(event, scheduled, [&](int body) -> std::optional<Eigen::Isometry3d> {
     const auto pose = bodies_.pose(body, sync::sim_time(event.time_ns));
     if (pose.status == sync::SampleStatus::kNone) return std::nullopt;
@@ -218,33 +218,33 @@ void NodeRenderer::strike(const contact_event_t& event, sync::HostTime scheduled
   output_.submit(strike, impacts_->table());
 }
 
-void NodeRenderer::submit_lasting(sync::HostTime now) {
+void NodeRenderer::submit_contacts(sync::HostTime now) {
   const sync::Nanoseconds every = output_.tell_every(kScrapeLead);
   const bool due = !no_sound_ && now - submitted_at_ >= every;
   if (sliding_) sliding_->tell_every(sync::to_seconds(every));
-  const bool slides = due && sliding_ && sync::to_seconds(now - slid_at_) >= sliding_->period_s();
+  const bool slides = due && sliding_ && sync::to_seconds(now - scraped_at_) >= sliding_->period_s();
   const auto map = contacts_.map(now);
   if (!map || !sampler_ || !due || !(slides || sampler_->plays())) return;
   submitted_at_ = now;
   sampler_->tell_every(sync::to_seconds(every));
   const sync::HostTime heard_at = now + output_.latency() + kScrapeLead;
-  if (sliding_) sliding_->hear_from(ear_.at(heard_at));
-  sampler_->hear_from(ear_.at(heard_at));
+  if (sliding_) sliding_->set_listener(ear_.at(heard_at));
+  sampler_->set_listener(ear_.at(heard_at));
   const sync::Nanoseconds delay = host().sense().delay();
   const sync::SimTime t = map->to_sim(std::min(now, heard_at - delay));
   contacts_.keep(delay);
   bodies_.keep(delay);
   // Without contact snapshots they would never end.
-  const bool known = now - frames_.count().newest_arrival < kContactsLost;
+  const bool known = now - frames_.count().newest_arrival < kContactsTimeout;
   const sync::Contacts lasting = known ? contacts_.state_at(t).value : sync::Contacts{};
   for (const RecordedContact& rub : sampler_->rubs(lasting, heard_at)) output_.submit(rub);
   if (!slides) return;
-  for (Scrape scrape : sliding_->scrapes(lasting, t, heard_at, sync::to_seconds(now - slid_at_))) {
-    scrape.slide *= sampler_->modal_of(scrape.id, Interaction::kScrape);
-    scrape.roll *= sampler_->modal_of(scrape.id, Interaction::kRoll);
+  for (Scrape scrape : sliding_->scrapes(lasting, t, heard_at, sync::to_seconds(now - scraped_at_))) {
+    scrape.slide *= sampler_->modal_gain(scrape.id, Interaction::kScrape);
+    scrape.roll *= sampler_->modal_gain(scrape.id, Interaction::kRoll);
     output_.submit(scrape);
   }
-  slid_at_ = now;
+  scraped_at_ = now;
 }
 
 void NodeRenderer::publish() {
@@ -255,7 +255,7 @@ void NodeRenderer::publish() {
   while (const auto pair = output_.next_pair()) publish_pair(host().bus(), output_.medium(), *pair);
 }
 
-void NodeRenderer::print_news() {
+void NodeRenderer::print_messages() {
   for (const std::string& news : output_.library().news()) host().say(news);
   if (sampler_)
     for (const std::string& news : sampler_->news()) host().say(news);
@@ -268,7 +268,7 @@ sync::Status NodeRenderer::status(sync::HostTime now, bool plays) {
   const std::int8_t state = !impacts_                   ? node_health_t::WAITING
                             : !plays                    ? node_health_t::OUTPUT_LOST
                             : heard == sync::HostTime{} ? node_health_t::READY
-                            : now - heard > kInputLost  ? node_health_t::INPUT_LOST
+                            : now - heard > kInputTimeout  ? node_health_t::INPUT_LOST
                                                         : node_health_t::RUNNING;
   return {state, output_.note(), output_.quality(), static_cast<int>(kQualities.size())};
 }

@@ -52,17 +52,17 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   void change(const Settings& settings, const std::string& name) override;
   void configure(const Settings& settings);
   void add_tags();
-  void begin_to_read(const sync::SceneReceiver& scenes);
-  void finish_reading();
+  void start_loading_surfaces(const sync::SceneReceiver& scenes);
+  void poll_loading();
   void take_surfaces();
   void receive();
   void collect_hits(sync::HostTime now);
-  void strike_due(sync::HostTime now);
+  void process_due_hits(sync::HostTime now);
   void strike(const contact_event_t& event, sync::HostTime scheduled);
   void drop(const contact_event_t& event, sync::HostTime scheduled) { output_.drop(event.event_id, scheduled); }
-  void submit_lasting(sync::HostTime now);
+  void submit_contacts(sync::HostTime now);
   void publish();
-  void print_news();
+  void print_messages();
   sync::Status status(sync::HostTime now, bool plays);
 
   Offline* log_;
@@ -81,9 +81,9 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   std::unique_ptr<Impacts> impacts_;
   std::unique_ptr<Sliding> sliding_;
   std::unique_ptr<Sampler> sampler_;
-  std::optional<sync::BackgroundTask<HeardSurfaces>> opening_surfaces_;
+  std::optional<sync::BackgroundTask<AudioSurfaces>> loading_surfaces_;
   DueHits due_;
-  sync::HostTime started_, slid_at_{}, submitted_at_{};
+  sync::HostTime started_, scraped_at_{}, submitted_at_{};
   std::int64_t scenes_ = 0, hits_ = 0, dropped_ = 0;
 };
 

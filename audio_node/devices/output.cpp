@@ -12,11 +12,11 @@ namespace tactus::audio {
 namespace {
 
 // A card that has not started by then is reported; USB cards take about a second.
-constexpr sync::Nanoseconds kPatience{5'000'000'000};
+constexpr sync::Nanoseconds kStartTimeout{5'000'000'000};
 
 // One until the next callback, one more for a card of normal priority.
 constexpr int kCallbackPeriods = 2;
-constexpr std::size_t kMaxUnsounded = 1024;
+constexpr std::size_t kMaxDroppedReports = 1024;
 
 bool same_stream(const Settings& a, const Settings& b) {
   return a.device == b.device && a.sample_rate_Hz == b.sample_rate_Hz && a.period_frames == b.period_frames &&
@@ -28,7 +28,7 @@ bool same_stream(const Settings& a, const Settings& b) {
 
 // Instructions that this machine lacks are reported by the caller; the widest are used instead.
 Instructions instructions_of(const Settings& settings) {
-  return instructions_named(settings.instructions).value_or(available_instructions().back());
+  return find_instructions(settings.instructions).value_or(available_instructions().back());
 }
 
 }  // namespace
@@ -37,11 +37,11 @@ Output::Output(std::string folder, std::string device, int fifo_priority, OpenCa
     : folder_(std::move(folder)),
       device_(std::move(device)),
       fifo_priority_(fifo_priority),
-      crossing_(std::make_shared<CallbackQueues>()),
-      strikes_(*crossing_),
-      scrapes_(*crossing_),
-      rubs_(crossing_->recorded.rubs),
-      library_(crossing_->recorded),
+      queues_(std::make_shared<CallbackQueues>()),
+      strikes_(*queues_),
+      scrapes_(*queues_),
+      rubs_(queues_->recorded.rubs),
+      library_(queues_->recorded),
       open_(std::move(open)),
       silent_(silent) {}
 
@@ -54,10 +54,10 @@ void Output::configure(Settings settings) {
 }
 
 bool Output::keep_open(sync::HostTime now) {
-  strikes_.free_unread();
+  strikes_.free_released();
   if (stream_ && stream_->alive(now)) {
-    scrapes_.tell_ends();
-    rubs_.tell_ends();
+    scrapes_.send_ends();
+    rubs_.send_ends();
     stream_->play_until(now);
     return true;
   }
@@ -66,25 +66,25 @@ bool Output::keep_open(sync::HostTime now) {
     close();
   }
   if (opening_)
-    end_opening(now);
+    finish_opening(now);
   else if (now >= retry_at_)
-    begin_to_open(now);
+    start_opening(now);
   return stream_ != nullptr;
 }
 
-void Output::begin_to_open(sync::HostTime now) {
+void Output::start_opening(sync::HostTime now) {
   opening_since_ = now;
   opened_with_ = settings_;
   ordered_.reset();
   heard_from_.reset();
-  if (open_) return take(*open(settings_, folder_, fifo_priority_, crossing_, open_, silent_));
-  opening_.emplace([settings = settings_, folder = folder_, priority = fifo_priority_, crossing = crossing_, silent = silent_] {
-    return open(settings, folder, priority, crossing, {}, silent);
+  if (open_) return take(*open(settings_, folder_, fifo_priority_, queues_, open_, silent_));
+  opening_.emplace([settings = settings_, folder = folder_, priority = fifo_priority_, queues = queues_, silent = silent_] {
+    return open(settings, folder, priority, queues, {}, silent);
   });
 }
 
 std::unique_ptr<Output::Opened> Output::open(const Settings& settings, const std::string& folder, int priority,
-                                             const std::shared_ptr<CallbackQueues>& crossing, const OpenCard& open, bool silent) {
+                                             const std::shared_ptr<CallbackQueues>& queues, const OpenCard& open, bool silent) {
   RendererDef def;
   def.rate_Hz = settings.sample_rate_Hz;
   def.period_frames = settings.period_frames;
@@ -96,7 +96,7 @@ std::unique_ptr<Output::Opened> Output::open(const Settings& settings, const std
   if (!silent) def.space = space_of(settings, settings.sample_rate_Hz);
   def.silent = silent;
   def.clock_ns = [] { return sync::to_ns(sync::host_now()); };
-  const auto renderer = std::make_shared<Renderer>(*crossing, def);
+  const auto renderer = std::make_shared<Renderer>(*queues, def);
   const StreamOptions options{settings.device,
                               static_cast<int>(settings.sample_rate_Hz),
                               settings.period_frames,
@@ -104,7 +104,7 @@ std::unique_ptr<Output::Opened> Output::open(const Settings& settings, const std
                               folder,
                               priority,
                               renderer->channels()};
-  const Card::Render render = [crossing, renderer](float* out, int frames, const BlockTime& time) {
+  const Card::Render render = [queues, renderer](float* out, int frames, const BlockTime& time) {
     renderer->render(out, frames, time);
   };
   auto card = open ? open(options, render) : std::make_unique<Stream>(options, render);
@@ -118,9 +118,9 @@ void Output::take(Opened& opened) {
   trouble_.clear();
 }
 
-void Output::end_opening(sync::HostTime now) {
+void Output::finish_opening(sync::HostTime now) {
   if (!opening_->done()) {
-    if (now - opening_since_ > kPatience)
+    if (now - opening_since_ > kStartTimeout)
       trouble_ = "the sound card \"" + opened_with_.device +
                  "\" does not start; choose another --audio-device or \"virtual\"";
     return;
@@ -145,20 +145,20 @@ void Output::close() {
 
 void Output::degrade(const DropoutDef& dropout) {
   const RenderCommand orders{dropout, settings_.quality == "auto" ? -1 : std::stoi(settings_.quality)};
-  if (ordered_ != orders && crossing_->orders.push(orders)) ordered_ = orders;
+  if (ordered_ != orders && queues_->orders.push(orders)) ordered_ = orders;
 }
 
-void Output::hear_from(const Eigen::Isometry3d& listener) {
+void Output::set_listener(const Eigen::Isometry3d& listener) {
   const Listener now{listener.cast<float>(), static_cast<float>(settings_.nearest_m)};
-  if (stream_ && heard_from_ != now && crossing_->listeners.push(now)) heard_from_ = now;
+  if (stream_ && heard_from_ != now && queues_->listeners.push(now)) heard_from_ = now;
 }
 
-void Output::submit(const Strike& strike, const StrikeLine::Table& table) {
+void Output::submit(const Strike& strike, const StrikeQueue::Table& table) {
   if (!stream_ || !strikes_.submit(strike, table)) drop(strike.event_id, strike.scheduled);
 }
 
 void Output::drop(std::int64_t event_id, sync::HostTime scheduled) {
-  if (unsounded_.size() >= kMaxUnsounded) {
+  if (dropped_reports_.size() >= kMaxDroppedReports) {
     ++reports_lost_;
     return;
   }
@@ -168,7 +168,7 @@ void Output::drop(std::int64_t event_id, sync::HostTime scheduled) {
   report.scheduled_ns = sync::to_ns(scheduled);
   report.presented_ns = -1;
   report.outcome = presentation_t::DROPPED_LATE;
-  unsounded_.push_back(report);
+  dropped_reports_.push_back(report);
 }
 
 sync::Nanoseconds Output::latency() const {
@@ -182,17 +182,17 @@ sync::Nanoseconds Output::latency() const {
 // at uneven intervals.
 sync::Nanoseconds Output::tell_every(sync::Nanoseconds lead) const {
   const auto period = sync::from_seconds(settings_.period_frames / settings_.sample_rate_Hz);
-  return (latency() + lead + period) / (kTellings - 2);
+  return (latency() + lead + period) / (kMaxQueuedUpdates - 2);
 }
 
 std::optional<presentation_t> Output::next_report() {
   presentation_t report;
-  if (!unsounded_.empty()) {
-    report = unsounded_.front();
-    unsounded_.pop_front();
+  if (!dropped_reports_.empty()) {
+    report = dropped_reports_.front();
+    dropped_reports_.pop_front();
     return report;
   }
-  if (!crossing_->reports.pop(report)) return std::nullopt;
+  if (!queues_->reports.pop(report)) return std::nullopt;
   return report;
 }
 
@@ -219,17 +219,17 @@ std::string Output::losses() const {
   std::string text;
   if (const std::int64_t states = scrapes_.lost() + rubs_.lost(); states > 0)
     text += ", " + std::to_string(states) + " states of contacts lost";
-  const std::int64_t reports = reports_lost_ + crossing_->reports_lost.load(std::memory_order_relaxed);
+  const std::int64_t reports = reports_lost_ + queues_->reports_lost.load(std::memory_order_relaxed);
   if (reports > 0) text += ", " + std::to_string(reports) + " reports of hits lost";
   return text;
 }
 
 std::string Output::costs() const {
   std::string text;
-  for (std::size_t i = 0; i < crossing_->costs.size(); ++i) {
-    const std::int64_t contacts = crossing_->costs[i].contacts.load(std::memory_order_relaxed);
+  for (std::size_t i = 0; i < queues_->costs.size(); ++i) {
+    const std::int64_t contacts = queues_->costs[i].contacts.load(std::memory_order_relaxed);
     if (contacts == 0) continue;
-    const double us = 1e-3 * static_cast<double>(crossing_->costs[i].ns.load(std::memory_order_relaxed)) /
+    const double us = 1e-3 * static_cast<double>(queues_->costs[i].ns.load(std::memory_order_relaxed)) /
                       static_cast<double>(contacts);
     text +=
         std::string(", ") + (i == 0 ? "modal " : "samples ") + std::to_string(std::lround(us)) + " us a contact";
@@ -238,9 +238,9 @@ std::string Output::costs() const {
 }
 
 std::string Output::hearing() const {
-  const ExposureMeter& heard = crossing_->heard;
+  const ExposureMeter& heard = queues_->heard;
   const double exposure = heard.exposure_Pa2_s.load(std::memory_order_relaxed);
-  std::string text = dose_in_words(days_of_sound(exposure, settings_.weekly_level_dB));
+  std::string text = dose_text(sound_dose_days(exposure, settings_.weekly_level_dB));
   const long down_dB = std::lround(-20 * std::log10(heard.gain.load(std::memory_order_relaxed)));
   if (down_dB > 0) text += ", turned down by " + std::to_string(down_dB) + " dB for the ears";
   return text;

@@ -9,9 +9,9 @@
 
 #include "audio_node/devices/stream.h"
 #include "audio_node/mixer/library.h"
-#include "audio_node/samples/rub_line.h"
-#include "audio_node/mixer/scrape_line.h"
-#include "audio_node/mixer/strike_line.h"
+#include "audio_node/samples/recorded_contact_queue.h"
+#include "audio_node/mixer/scrape_queue.h"
+#include "audio_node/mixer/strike_queue.h"
 #include "audio_node/settings.gen.h"
 #include "sync/node/background_task.h"
 
@@ -37,17 +37,17 @@ class Output {
 
   // When nothing plays or the queue is full the strike will never sound, and is reported as dropped. table: what it refers
   // to; it is kept as long as the callback may read it.
-  void submit(const Strike& strike, const StrikeLine::Table& table = nullptr);
+  void submit(const Strike& strike, const StrikeQueue::Table& table = nullptr);
   // One that is never made: it is reported as dropped.
   void drop(std::int64_t event_id, sync::HostTime scheduled);
   // Later scrapes are of these surfaces; null: none. The previous surfaces are kept while the callback may read
   // them.
-  void hear(std::shared_ptr<const HeardSurfaces> surfaces) { scrapes_.change(std::move(surfaces)); }
+  void hear(std::shared_ptr<const AudioSurfaces> surfaces) { scrapes_.change(std::move(surfaces)); }
   // Returns surfaces that are no longer needed. Freeing them may take milliseconds, so do not free them in the
   // loop.
-  std::vector<std::shared_ptr<const HeardSurfaces>> take_unread() { return scrapes_.take_unread(); }
+  std::vector<std::shared_ptr<const AudioSurfaces>> take_released() { return scrapes_.take_released(); }
   // Pose of the listener from now on; sources count as at least nearest_m away.
-  void hear_from(const Eigen::Isometry3d& listener);
+  void set_listener(const Eigen::Isometry3d& listener);
   // A state that does not fit is skipped until the next one, and note() counts it. An end is sent later.
   void submit(const Scrape& scrape) {
     if (stream_ && !silent_) scrapes_.submit(scrape);
@@ -87,11 +87,11 @@ class Output {
   // Lost updates and reports, in words; empty if none.
   std::string losses() const;
   // Step of the quality ladder in use.
-  int quality() const { return crossing_->quality.load(std::memory_order_relaxed); }
+  int quality() const { return queues_->quality.load(std::memory_order_relaxed); }
 
  private:
-  void begin_to_open(sync::HostTime now);
-  void end_opening(sync::HostTime now);
+  void start_opening(sync::HostTime now);
+  void finish_opening(sync::HostTime now);
   void close();
 
   std::string folder_, device_;
@@ -102,11 +102,11 @@ class Output {
   sync::HostTime retry_at_{}, opening_since_{};
   std::int64_t past_callbacks_ = 0, past_underflows_ = 0;
   // The callback of the stream shares the ownership of both.
-  std::shared_ptr<CallbackQueues> crossing_;
+  std::shared_ptr<CallbackQueues> queues_;
   std::shared_ptr<Renderer> renderer_;
-  StrikeLine strikes_;  // goes after the stream, whose callback reads what it keeps; so do the next three
-  ScrapeLine scrapes_;
-  RubLine rubs_;
+  StrikeQueue strikes_;  // goes after the stream, whose callback reads what it keeps; so do the next three
+  ScrapeQueue scrapes_;
+  RecordedContactQueue rubs_;
   Library library_;
   std::optional<RenderCommand> ordered_;       // what the renderer has been told; nothing: it is new
   std::optional<Listener> heard_from_;  // likewise
@@ -118,11 +118,11 @@ class Output {
     std::unique_ptr<Card> card;
   };
   static std::unique_ptr<Opened> open(const Settings& settings, const std::string& folder, int priority,
-                                      const std::shared_ptr<CallbackQueues>& crossing, const OpenCard& open, bool silent);
+                                      const std::shared_ptr<CallbackQueues>& queues, const OpenCard& open, bool silent);
   void take(Opened& opened);
   std::optional<sync::BackgroundTask<Opened>> opening_;
   std::unique_ptr<Card> stream_;
-  std::deque<presentation_t> unsounded_;
+  std::deque<presentation_t> dropped_reports_;
   std::int64_t reports_lost_ = 0;
 };
 

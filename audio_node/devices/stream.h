@@ -39,7 +39,7 @@ class Stream : public Card {
                       unsigned long flags, void* self);
   void block(float* out, int frames, const PaStreamCallbackTimeInfo& time, bool underflow);
   void tee(const float* out, int frames, const BlockTime& time, bool underflow);
-  void enter_thread();
+  void configure_thread();
 
   Render render_;
   int rate_Hz_;

@@ -24,12 +24,12 @@ using std::numbers::pi;
 constexpr double kAirDensity_kg_m3 = 1.21;
 constexpr double kSoundSpeed_m_s = 343;
 // Bounds of plausible input; values beyond them are clamped.
-constexpr double kMaxMass_kg = 1e3, kMaxSpeed_m_s = 50, kLeastSpeed_m_s = 1e-4, kLeastCurvature_1_m = 1;
+constexpr double kMaxMass_kg = 1e3, kMaxSpeed_m_s = 50, kMinSpeed_m_s = 1e-4, kMinCurvature_1_m = 1;
 // FoleyAutomatic, section 3: impulses at the first four modal frequencies, within 15 ms.
 constexpr std::size_t kMicroCollisions = 4;
 constexpr double kMicroWithin_s = 0.015;
 // For a strike that is inaudible at any strength.
-constexpr float kNeverHeard = 2;
+constexpr float kInaudible = 2;
 
 // Radiation of an oscillating ball of radius a: pressure at 1 m ahead over rho c v is a (ka)^2 / sqrt(4 + (ka)^4)
 // (the dipole field with the velocity of the ball as boundary condition; Pierce, Acoustics, 1981, section 4.2).
@@ -100,7 +100,7 @@ Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>
     Voice v{body_sound(body, shape, material(material_index), extent, settings), table->size(), {}, {}};
     Resonators& resonators = table->emplace_back();
     if (material_index >= 0 && static_cast<std::size_t>(material_index) < scene.materials.size())
-      sound_as_measured(v.sound, scene.materials[static_cast<std::size_t>(material_index)], settings);
+      apply_measured_modes(v.sound, scene.materials[static_cast<std::size_t>(material_index)], settings);
     if (body.is_static) v.stands = to_eigen(body.pose);
     // Close to half the sample rate a resonator would sound at another frequency.
     std::erase_if(v.sound.modes, [&](const Mode& m) { return m.frequency_Hz > 0.45 * rate_Hz; });
@@ -112,7 +112,7 @@ Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>
       resonators.add(step);
       v.radiated.push_back(static_cast<double>(step.unit_gain) / v.sound.mass_kg * kAirDensity_kg_m3 *
                            kSoundSpeed_m_s *
-                           radiation_m(v.sound.radiates_as_Hz.value_or(mode.frequency_Hz), v.sound.radius_m));
+                           radiation_m(v.sound.radiation_frequency_Hz.value_or(mode.frequency_Hz), v.sound.radius_m));
     }
     return v;
   };
@@ -201,11 +201,11 @@ Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, c
   Strike strike;
   strike.event_id = event.event_id;
   strike.scheduled = scheduled;
-  strike.heard_from = kNeverHeard;
+  strike.heard_from = kInaudible;
   if (!plausible(event)) return strike;
   const double mass = std::clamp<double>(event.effective_mass_kg, 1e-6, kMaxMass_kg);
-  const double speed = std::clamp<double>(event.approach_speed_m_s, kLeastSpeed_m_s, kMaxSpeed_m_s);
-  const double curvature = std::max<double>(event.curvature_1_m, kLeastCurvature_1_m);
+  const double speed = std::clamp<double>(event.approach_speed_m_s, kMinSpeed_m_s, kMaxSpeed_m_s);
+  const double curvature = std::max<double>(event.curvature_1_m, kMinCurvature_1_m);
   const std::array<const Voice*, 2> bodies{&voice(event.body_a), &voice(event.body_b)};
   const std::array<int, 2> ids{event.body_a, event.body_b}, surfaces{event.material_a, event.material_b};
   const auto surface = [&](std::size_t i) {

@@ -38,7 +38,7 @@ class Impacts {
   // Factor on all strikes from the next one on.
   void set_gain(double gain) { settings_.gain = gain; }
   // T_world_listener from the next strike on; initially that of the scene.
-  void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
+  void set_listener(const Eigen::Isometry3d& listener) { listener_ = listener; }
 
   // An implausible event gives an inaudible strike (plausible.h). Bodies or materials that the scene lacks sound
   // as small wooden ones. A body of unknown pose sounds as if struck at an average place.

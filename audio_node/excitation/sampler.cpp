@@ -16,10 +16,10 @@ namespace {
 // Of a blow: at most 12 dB above its recording, as for computed blows above the reference (design).
 constexpr double kMaxLevel = 4;
 // An octave either way; beyond it a recording suggests another material (design).
-constexpr double kLeastPitch = 0.5, kMaxPitch = 2;
+constexpr double kMinPitch = 0.5, kMaxPitch = 2;
 // As for scrapes: below the minimum there is no sliding or rolling; above the maximum loudness and speed are
 // clamped (design).
-constexpr double kLeastSpeed_m_s = 1e-3, kMaxSpeed_m_s = 5, kMaxForce_N = 50;
+constexpr double kMinSpeed_m_s = 1e-3, kMaxSpeed_m_s = 5, kMaxForce_N = 50;
 // Between two updates of contacts; a longer interval is a gap (design).
 constexpr double kMaxStep_s = 0.1;
 constexpr float kHalfPower = std::numbers::sqrt2_v<float> / 2;
@@ -45,7 +45,7 @@ double level_of(double impulse_N_s, const Settings& s) {
 }
 
 double pitch_of(double size_m, double recorded_size_m) {
-  return std::clamp(recorded_size_m / std::max(size_m, 1e-6), kLeastPitch, kMaxPitch);
+  return std::clamp(recorded_size_m / std::max(size_m, 1e-6), kMinPitch, kMaxPitch);
 }
 
 Sampler::Sampler(const scene_t& scene, const Settings& settings)
@@ -130,7 +130,7 @@ void Sampler::rub(const contact_t& c, Interaction interaction, double speed_m_s,
     r.part = static_cast<std::int32_t>(2 * static_cast<std::size_t>(interaction) + (i == 2));
     r.database = number_;
     r.at = at;
-    r.over_s = std::max(r.over_s, period_s_);
+    r.update_interval_s = std::max(r.update_interval_s, period_s_);
     r.layers = all[i];
     r.speed_m_s = speed_m_s;
     r.level = each * gains_of(settings_).recorded *
@@ -191,10 +191,10 @@ const std::vector<RecordedContact>& Sampler::rubs(const sync::Contacts& contacts
     // Proportional to the root of the friction power (van den Doel, Kry and Pai 2001, section 4.2).
     const double friction = std::min(std::sqrt(mu(c.material_a) * mu(c.material_b)), kMaxFriction);
     const double power_W = friction * force_N * slides;
-    const double scraping = slides >= kLeastSpeed_m_s ? moves.slides.moving() : 0;
+    const double scraping = slides >= kMinSpeed_m_s ? moves.slides.moving() : 0;
     rub(c, Interaction::kScrape, slides, scraping * settings_.recorded_scrape_level * std::sqrt(power_W), at);
     // The contact point of a sliding body moves too; this is not rolling.
-    const double rolling = rolls >= kLeastSpeed_m_s && rolls > slides ? moves.rolls.moving() : 0;
+    const double rolling = rolls >= kMinSpeed_m_s && rolls > slides ? moves.rolls.moving() : 0;
     rub(c, Interaction::kRoll, rolls, rolling * settings_.recorded_roll_level * std::sqrt(force_N * rolls), at);
   }
   std::erase_if(moves_, [](const auto& m) { return !m.second.seen; });
@@ -203,7 +203,7 @@ const std::vector<RecordedContact>& Sampler::rubs(const sync::Contacts& contacts
   return rubs_;
 }
 
-float Sampler::modal_of(std::int64_t contact, Interaction interaction) const {
+float Sampler::modal_gain(std::int64_t contact, Interaction interaction) const {
   return recorded_.contains({contact, interaction}) ? gains_of(settings_).modal : 1;
 }
 

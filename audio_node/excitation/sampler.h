@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "audio_node/excitation/contact_way.h"
+#include "audio_node/excitation/contact_motion.h"
 #include "audio_node/excitation/impact.h"
 #include "audio_node/samples/database.h"
 #include "audio_node/samples/shot.h"
@@ -39,7 +39,7 @@ class Sampler {
 
   void configure(const Settings& settings) { settings_ = settings; }
   // T_world_listener from the next contacts on; initially that of the scene.
-  void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
+  void set_listener(const Eigen::Isometry3d& listener) { listener_ = listener; }
   // Interval between updates of contacts.
   void tell_every(double period_s) { period_s_ = period_s; }
   // Sets the database in use; null: none. It must outlive all calls until the next call of this.
@@ -56,7 +56,7 @@ class Sampler {
   // the method changes they fade out by themselves.
   const std::vector<RecordedContact>& rubs(const sync::Contacts& contacts, sync::HostTime at);
   // Factor on the computed scraping or rolling of a contact, as of the last rubs().
-  float modal_of(std::int64_t contact, Interaction interaction) const;
+  float modal_gain(std::int64_t contact, Interaction interaction) const;
 
   // Returns one sentence for each pair and interaction without its own recording, once.
   std::vector<std::string> news() { return std::exchange(news_, {}); }

@@ -23,16 +23,16 @@ constexpr double kMaxSpeed_m_s = 5, kMaxForce_N = 50;
 constexpr double kEdge_1_m = 1000;  // fallback: a corner rounded by 1 mm (design)
 // Gains depend on the place: they are recomputed after this distance or time. Design: below a tenth of the bending
 // waves of a floor board with 64 modes.
-constexpr double kNear_m = 0.002, kGainsFor_s = 0.05;
+constexpr double kGainsValid_m = 0.002, kGainsValid_s = 0.05;
 // Above this number, contacts are processed only at the rate of their snapshots. Design: 0.1 ms.
-constexpr std::size_t kMany = 50;
+constexpr std::size_t kManyContacts = 50;
 // An audible contact is replaced only by one that is stronger by this factor. Design.
-constexpr double kGivesWay = 2;
+constexpr double kReplacementFactor = 2;
 // Reference for the law of level: 1 N at 0.1 m/s, with friction 0.5, W^(1/2) (design).
 constexpr double kReferenceForce_N = 1, kReferenceSpeed_m_s = 0.1, kReferenceStrength = 0.22360679774997896;
 // Of noise, peak over rms (design).
 constexpr double kCrest = 3;
-constexpr double kHearing_Pa = 20e-6;  // threshold at 1 kHz (ISO 226): weaker sounds are not raised further
+constexpr double kHearingThreshold_Pa = 20e-6;  // threshold at 1 kHz (ISO 226): weaker sounds are not raised further
 // The heavier side of a rolling body. Design: not an axis of a box.
 const Vector3d kHeavySide = Vector3d(2, -1, 2) / 3;
 
@@ -44,7 +44,7 @@ double sliding_strength(double friction, double force_N, double speed_m_s) {
   return std::sqrt(friction * force_N * speed_m_s);
 }
 
-Sliding::Sliding(const scene_t& scene, std::shared_ptr<const HeardSurfaces> surfaces,
+Sliding::Sliding(const scene_t& scene, std::shared_ptr<const AudioSurfaces> surfaces,
                  const sync::BodyHistory& bodies, const Impacts& impacts, const Settings& settings, double rate_Hz)
     : settings_(settings),
       rate_Hz_(rate_Hz),
@@ -134,7 +134,7 @@ std::optional<Sliding::Candidate> Sliding::candidate(const contact_t& c, sync::S
   if (!k.grounds[best].to_body) return std::nullopt;
   k.live = &live_[c.contact_id];
   k.live->seen = true;
-  ContactWay& way = k.live->way;
+  ContactMotion& way = k.live->way;
   way.step(c, {k.grounds[0].to_body, k.grounds[1].to_body}, best, past, dt_s);
   const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMaxForce_N);
   double mu = 1;  // without a material, that of the other counts
@@ -154,12 +154,12 @@ std::optional<Sliding::Candidate> Sliding::candidate(const contact_t& c, sync::S
   return k;
 }
 
-void Sliding::find_gains(const Candidate& k, sync::SimTime t, double dt_s) const {
+void Sliding::update_gains(const Candidate& k, sync::SimTime t, double dt_s) const {
   Live& live = *k.live;
   const contact_t& c = *k.contact;
   const Vector3d point = to_eigen(c.points[live.way.point()].a_world_m), normal = to_eigen(c.normal);
   live.since_s += dt_s;
-  if (live.struck_m && (*live.struck_m - point).norm() < kNear_m && live.since_s < kGainsFor_s) return;
+  if (live.struck_m && (*live.struck_m - point).norm() < kGainsValid_m && live.since_s < kGainsValid_s) return;
   const bool first = !live.struck_m;
   live.struck_m = point, live.since_s = 0;
   const PoseOf pose = [&](int body) -> std::optional<Eigen::Isometry3d> {
@@ -170,12 +170,12 @@ void Sliding::find_gains(const Candidate& k, sync::SimTime t, double dt_s) const
   for (std::size_t i = 0; i < 2; ++i) {
     const int body = k.grounds[i].body;
     live.gains[i] = impacts_.gains(body, impacts_.on_body(body, point, i == 0 ? Vector3d(-normal) : normal, pose));
-    if (first) find_loudness(k, i);
+    if (first) estimate_loudness(k, i);
   }
 }
 
 // Uses the gains at an average place: on a nodal line the contact must be quiet.
-void Sliding::find_loudness(const Candidate& k, std::size_t side) const {
+void Sliding::estimate_loudness(const Candidate& k, std::size_t side) const {
   const int body = k.grounds[side].body;
   const PerMode gains = impacts_.gains(body, std::nullopt);
   const Resonators& r = impacts_.resonators(body);
@@ -196,13 +196,13 @@ void Sliding::find_loudness(const Candidate& k, std::size_t side) const {
   // Rayleigh). All modes above the highest rendered one together have the variance of `count` modes such as it, of
   // which a quarter was added up. They decay before they are distinguishable. A measured body has only its
   // recorded modes.
-  const bool measured = impacts_.body(body).radiates_as_Hz.has_value();
+  const bool measured = impacts_.body(body).radiation_frequency_Hz.has_value();
   const bool cut = !measured && count > 0 && r.count >= std::min(settings_.max_modes, kMaxModes);
   const double beyond = cut ? 4 * last : 0;
-  k.live->heard_Pa_N[side] = std::sqrt(all + beyond) / rate_Hz_;
-  k.live->beyond_Pa_N[side] = std::sqrt(beyond) / rate_Hz_;
+  k.live->sliding_Pa_N[side] = std::sqrt(all + beyond) / rate_Hz_;
+  k.live->residual_Pa_N[side] = std::sqrt(beyond) / rate_Hz_;
   if (beyond > 0) rolled += beyond * passes(impacts_.body(body).modes.back().frequency_Hz);
-  k.live->rolled_Pa_N[side] = std::sqrt(rolled) / rate_Hz_;
+  k.live->rolling_Pa_N[side] = std::sqrt(rolled) / rate_Hz_;
 }
 
 ScrapeSide Sliding::side(const Candidate& k, std::size_t i) const {
@@ -212,10 +212,10 @@ ScrapeSide Sliding::side(const Candidate& k, std::size_t i) const {
   s.voice = impacts_.voice_id(g.body);
   s.resonators = impacts_.resonators(g.body);
   s.gains = k.live->gains[i];
-  if (k.live->beyond_Pa_N[i] > 0) {
+  if (k.live->residual_Pa_N[i] > 0) {
     // Per N s a sample, as the gains.
-    s.beyond = static_cast<float>(k.live->beyond_Pa_N[i] * rate_Hz_);
-    s.beyond_Hz = impacts_.body(g.body).modes.back().frequency_Hz;
+    s.beyond = static_cast<float>(k.live->residual_Pa_N[i] * rate_Hz_);
+    s.residual_Hz = impacts_.body(g.body).modes.back().frequency_Hz;
   }
   if (!g.to_body) return s;
   s.known = true;
@@ -232,18 +232,18 @@ ScrapeSide Sliding::side(const Candidate& k, std::size_t i) const {
 }
 
 Scrape Sliding::scrape(const Candidate& k, sync::SimTime t, sync::HostTime at, double dt_s) {
-  find_gains(k, t, dt_s);
+  update_gains(k, t, dt_s);
   const contact_t& c = *k.contact;
   Scrape s;
   s.id = c.contact_id;
   s.at = at;
-  s.over_s = period_s();
+  s.update_interval_s = period_s();
   s.cutoff_Hz = k.cutoff_Hz;
-  double slid = 0, slid_Pa_N = 0, rolled_Pa_N = 0;
+  double slid = 0, slid_Pa_N = 0, rolling_Pa_N = 0;
   for (std::size_t i = 0; i < 2; ++i) {
     ScrapeSide& side = s.sides[i] = this->side(k, i);
-    slid_Pa_N += k.live->heard_Pa_N[i] * k.live->heard_Pa_N[i];
-    rolled_Pa_N += k.live->rolled_Pa_N[i] * k.live->rolled_Pa_N[i];
+    slid_Pa_N += k.live->sliding_Pa_N[i] * k.live->sliding_Pa_N[i];
+    rolling_Pa_N += k.live->rolling_Pa_N[i] * k.live->rolling_Pa_N[i];
     // Without the map: a map makes it louder, but does not reduce its roughness.
     if (side.known)
       slid += static_cast<double>(side.slides.squaredNorm()) * mean_square_slope({side.roughness.height_m, 0});
@@ -252,7 +252,7 @@ Scrape Sliding::scrape(const Candidate& k, sync::SimTime t, sync::HostTime at, d
   // contacts scale by their force. Friction is that of the surfaces without their maps, which the callback reads
   // along the path.
   const auto scale = [&](double force_N, double slope, double Pa_N) {
-    const double expected = std::max(kHearing_Pa, kCrest * force_N * slope * std::sqrt(Pa_N));
+    const double expected = std::max(kHearingThreshold_Pa, kCrest * force_N * slope * std::sqrt(Pa_N));
     return settings_.gain * level_of(expected, settings_) / expected / rate_Hz_;
   };
   if (k.slide > 0)
@@ -261,7 +261,7 @@ Scrape Sliding::scrape(const Candidate& k, sync::SimTime t, sync::HostTime at, d
   if (k.roll > 0) {
     const double steep = rms_slope(k.grounds);
     const Patch reference = patch(c, kReferenceForce_N, kReferenceSpeed_m_s, steep);
-    s.roll = static_cast<float>(k.roll * scale(reference.force_N, steep, rolled_Pa_N));
+    s.roll = static_cast<float>(k.roll * scale(reference.force_N, steep, rolling_Pa_N));
   }
   s.place = place_of(listener_, to_eigen(c.points[k.live->way.point()].a_world_m), settings_.nearest_m);
   return s;
@@ -272,13 +272,13 @@ const std::vector<Scrape>& Sliding::scrapes(const sync::Contacts& contacts, sync
   out_.clear();
   candidates_.clear();
   dt_s = std::clamp(dt_s, 0.0, 0.1);
-  many_ = contacts.size() > kMany;
+  many_contacts_ = contacts.size() > kManyContacts;
   for (auto& [id, live] : live_) live.seen = false;
   for (const contact_t& c : contacts)
     if (plausible(c))
       if (auto found = candidate(c, t, dt_s)) candidates_.push_back(*found);
   const auto most = std::min<std::size_t>(candidates_.size(), kMaxScrapes);
-  const auto kept = [](const Candidate& k) { return k.strength() * (k.live->heard ? kGivesWay : 1); };
+  const auto kept = [](const Candidate& k) { return k.strength() * (k.live->heard ? kReplacementFactor : 1); };
   std::partial_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(most),
                     candidates_.end(), [&](const Candidate& a, const Candidate& b) { return kept(a) > kept(b); });
   candidates_.resize(most);

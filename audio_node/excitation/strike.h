@@ -1,4 +1,4 @@
-// What crosses into the audio callback: one impact, by value. It refers to the modes of its bodies (mixer/strike_line.h).
+// What crosses into the audio callback: one impact, by value. It refers to the modes of its bodies (mixer/strike_queue.h).
 #pragma once
 
 #include <array>

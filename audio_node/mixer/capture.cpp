@@ -44,19 +44,19 @@ Capture::~Capture() {
 
 void Capture::append(const float* interleaved, std::size_t frames) {
   frames_ += static_cast<std::int64_t>(frames);
-  if (pay_silence() && samples_.push(interleaved, frames * static_cast<std::size_t>(channels_))) return;
-  owed_silence_ += static_cast<std::int64_t>(frames);
+  if (write_pending_silence() && samples_.push(interleaved, frames * static_cast<std::size_t>(channels_))) return;
+  pending_silence_ += static_cast<std::int64_t>(frames);
   lost_.fetch_add(static_cast<std::int64_t>(frames), std::memory_order_relaxed);
 }
 
 // Replaces lost frames by silence. True when none remain.
-bool Capture::pay_silence() {
+bool Capture::write_pending_silence() {
   static constexpr std::array<float, 1024> kZeros{};
-  while (owed_silence_ > 0) {
+  while (pending_silence_ > 0) {
     const std::int64_t frames =
-        std::min<std::int64_t>(owed_silence_, static_cast<std::int64_t>(kZeros.size()) / channels_);
+        std::min<std::int64_t>(pending_silence_, static_cast<std::int64_t>(kZeros.size()) / channels_);
     if (!samples_.push(kZeros.data(), static_cast<std::size_t>(frames * channels_))) return false;
-    owed_silence_ -= frames;
+    pending_silence_ -= frames;
   }
   return true;
 }

@@ -8,7 +8,7 @@
 namespace tactus::audio {
 namespace {
 
-constexpr std::size_t kMaxSaid = 5;  // faults of one database
+constexpr std::size_t kMaxReportedFaults = 5;  // faults of one database
 // Number of previous databases kept while a stopped callback might play them; newer ones wait. Design: each may
 // take hundreds of MB.
 constexpr std::size_t kMaxKept = 2;
@@ -33,7 +33,7 @@ void Library::use(Shared database) {
       "recordings of " + std::to_string(database->sounds.size()) + " sounds from " + reading_->folder;
   news_.push_back(what);
   for (std::size_t i = 0; i < database->faults.size(); ++i) {
-    if (i == kMaxSaid) {
+    if (i == kMaxReportedFaults) {
       news_.push_back("and " + std::to_string(database->faults.size() - i) +
                       " faults more; tactus check-sounds names them all");
       break;
@@ -64,7 +64,7 @@ void Library::take_read(std::vector<Shared>& unread) {
 
 // While the callback cannot be notified, the previous database stays in use.
 bool Library::tell(Shared next) {
-  if (kept_.size() >= kMaxKept || !crossing_.databases.push(told_ + 1)) return false;
+  if (kept_.size() >= kMaxKept || !queues_.databases.push(told_ + 1)) return false;
   if (now_) kept_.push_back({told_, std::move(now_)});
   now_ = std::move(next);
   ++told_;
@@ -87,8 +87,8 @@ std::vector<Library::Shared> Library::step(bool heard) {
     if (now_) tell(nullptr);
   }
   if (next_ && tell(next_)) next_.reset();
-  if (!heard) let_go_unheard(crossing_);
-  const std::int64_t let_go = crossing_.let_go.load(std::memory_order_acquire);
+  if (!heard) release_unused(queues_);
+  const std::int64_t let_go = queues_.let_go.load(std::memory_order_acquire);
   while (!kept_.empty() && kept_.front().number < let_go) {
     unread.push_back(std::move(kept_.front().database));
     kept_.pop_front();

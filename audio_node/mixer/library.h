@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "audio_node/samples/database.h"
-#include "audio_node/mixer/recorded.h"
+#include "audio_node/mixer/recording_player.h"
 #include "audio_node/settings.gen.h"
 #include "sync/node/background_task.h"
 
@@ -23,7 +23,7 @@ class Library {
  public:
   using Shared = std::shared_ptr<const Database>;
 
-  explicit Library(RecordedQueues& crossing) : crossing_(crossing) {}
+  explicit Library(RecordedQueues& queues) : queues_(queues) {}
 
   // Begins to read when the method needs recordings and folder, rate or size have changed. A method without
   // recordings releases the database.
@@ -55,7 +55,7 @@ class Library {
   void use(Shared database);
   bool tell(Shared next);
 
-  RecordedQueues& crossing_;
+  RecordedQueues& queues_;
   std::optional<Source> wanted_, reading_, read_;
   std::optional<sync::BackgroundTask<Database>> opening_;
   Shared now_, next_;

@@ -39,8 +39,8 @@ constexpr double kCalm_s = 2;  // design: spare time required before a better st
 // The onset of a sound is lost when a drop-out removes more than half of its amplitude.
 constexpr float kSilenced = 0.5f;
 
-HearingDef hearing_of(const RendererDef& def) {
-  HearingDef hearing = def.hearing;
+LevelLimiterDef level_limiter_def(const RendererDef& def) {
+  LevelLimiterDef hearing = def.hearing;
   hearing.ears = def.space.hrtf != nullptr;
   return hearing;
 }
@@ -52,35 +52,35 @@ sync::LatePolicy late_policy(double rate_Hz, sync::Nanoseconds limit) {
   return {kLate, slack, std::max(slack, limit)};
 }
 
-Renderer::Renderer(CallbackQueues& crossing, const RendererDef& def)
-    : crossing_(crossing),
+Renderer::Renderer(CallbackQueues& queues, const RendererDef& def)
+    : queues_(queues),
       rate_Hz_(def.rate_Hz),
       channels_(def.space.channels()),
       delay_(def.space.latency() + Limiter::kDelay),
       silent_(def.silent),
       late_(def.late),
-      newest_scene_(crossing.strikes_let_go.load(std::memory_order_relaxed)),
+      newest_scene_(queues.oldest_held_scene.load(std::memory_order_relaxed)),
       voices_(kQualities[0].voices, def.rate_Hz, ring(def.instructions), def.space, def.instructions),
       scrapes_(def.rate_Hz),
-      recorded_(crossing.recorded, def.rate_Hz, def.space, def.instructions),
+      recorded_(queues.recorded, def.rate_Hz, def.space, def.instructions),
       clock_ns_(def.clock_ns),
-      scrapes_taken_(crossing.scrapes_let_go.load(std::memory_order_relaxed)),
+      scrapes_taken_(queues.oldest_held_scrape.load(std::memory_order_relaxed)),
       dropout_(def.rate_Hz),
       limiter_(def.ceiling, def.rate_Hz, channels_),
-      level_limiter_(hearing_of(def), def.rate_Hz, channels_),
+      level_limiter_(level_limiter_def(def), def.rate_Hz, channels_),
       ladder_(static_cast<int>(kQualities.size()), sync::from_seconds(kBudget),
               static_cast<int>(kCalm_s * std::min(kMeans_Hz, def.rate_Hz / def.period_frames))) {}
 
-void Renderer::take_orders() {
+void Renderer::receive_commands() {
   RenderCommand orders;
-  while (crossing_.orders.pop(orders)) {
+  while (queues_.orders.pop(orders)) {
     dropout_.set(orders.dropout);
     pinned_ = std::min(orders.quality, static_cast<int>(kQualities.size()) - 1);
   }
   Listener listener;
   bool moved = false;
-  while (crossing_.listeners.pop(listener)) moved = true;
-  if (moved) voices_.hear_from(listener), recorded_.hear_from(listener);
+  while (queues_.listeners.pop(listener)) moved = true;
+  if (moved) voices_.set_listener(listener), recorded_.set_listener(listener);
 }
 
 // The ladder receives the time per second of sound, since blocks may differ in length.
@@ -93,7 +93,7 @@ void Renderer::adapt(int frames, sync::Nanoseconds used) {
   }
   const int step = pinned_ < 0 ? ladder_.step() : pinned_;
   voices_.set_limits(kQualities[static_cast<std::size_t>(step)]);
-  crossing_.quality.store(step, std::memory_order_relaxed);
+  queues_.quality.store(step, std::memory_order_relaxed);
 }
 
 sync::Nanoseconds Renderer::samples(int count) const {
@@ -109,16 +109,16 @@ void Renderer::report(const Strike& strike, std::int8_t outcome, std::int64_t pr
   r.presented_ns = presented_ns;
   r.uncertainty_ns = uncertainty.count();
   r.outcome = outcome;
-  if (!crossing_.reports.push(r)) crossing_.reports_lost.fetch_add(1, std::memory_order_relaxed);
+  if (!queues_.reports.push(r)) queues_.reports_lost.fetch_add(1, std::memory_order_relaxed);
 }
 
 void Renderer::render(float* out, int frames, const BlockTime& time) {
   const FlushToZero guard;
-  take_orders();
-  recorded_.take_databases();
+  receive_commands();
+  recorded_.receive_databases();
   adapt(frames, time.used);
   Strike strike;
-  while (crossing_.strikes.pop(strike)) {
+  while (queues_.strikes.pop(strike)) {
     newest_scene_ = std::max(newest_scene_, strike.scene);
     if (!scheduler_.push(strike)) report(strike, presentation_t::DROPPED_LATE, -1, sync::Nanoseconds(0));
   }
@@ -127,23 +127,23 @@ void Renderer::render(float* out, int frames, const BlockTime& time) {
     render_some(out + channels_ * done, some, {time.first_sample + samples(done), time.uncertainty, {}});
     done += some;
   }
-  let_go_of_strikes();
-  let_go_of_scrapes();
+  release_strikes();
+  release_scrapes();
   recorded_.let_go(scheduler_);
 }
 
 void Renderer::abandon() {
   const auto drop = [&](const Strike& s) { report(s, presentation_t::DROPPED_LATE, -1, sync::Nanoseconds(0)); };
-  for (Strike strike; crossing_.strikes.pop(strike);) {
+  for (Strike strike; queues_.strikes.pop(strike);) {
     newest_scene_ = std::max(newest_scene_, strike.scene);
     drop(strike);
   }
   while (const Strike* strike = scheduler_.pop_before(sync::HostTime::max())) drop(*strike);
-  for (Scrape s; crossing_.scrapes.pop(s);) scrapes_taken_ = s.number + 1;
-  let_go_of_strikes();
+  for (Scrape s; queues_.scrapes.pop(s);) scrapes_taken_ = s.number + 1;
+  release_strikes();
   next_scrape_.reset();
   scrapes_.clear();
-  let_go_of_scrapes();
+  release_scrapes();
   recorded_.abandon(scheduler_);
 }
 
@@ -161,16 +161,16 @@ void Renderer::render_some(float* out, int frames, const BlockTime& time) {
 void Renderer::sound_some(float* out, int frames, sync::HostTime leaving) {
   const std::int64_t begun = clock();
   const int scraping = scrapes_.active();
-  take_scrapes(leaving);
-  crossing_.costs[0].contacts.fetch_add(scrapes_.active() - scraping, std::memory_order_relaxed);
+  receive_scrapes(leaving);
+  queues_.costs[0].contacts.fetch_add(scrapes_.active() - scraping, std::memory_order_relaxed);
   scrapes_.drive(voices_, frames, leaving);
   voices_.render(out, frames);
   const std::int64_t computed = clock();
   const int rubs = recorded_.render(out, frames, leaving);
-  crossing_.costs[1].contacts.fetch_add(rubs, std::memory_order_relaxed);
+  queues_.costs[1].contacts.fetch_add(rubs, std::memory_order_relaxed);
   // A block without sound counts for no contact.
-  if (voices_.active() > 0) crossing_.costs[0].ns.fetch_add(computed - begun, std::memory_order_relaxed);
-  if (recorded_.active() > 0) crossing_.costs[1].ns.fetch_add(clock() - computed, std::memory_order_relaxed);
+  if (voices_.active() > 0) queues_.costs[0].ns.fetch_add(computed - begun, std::memory_order_relaxed);
+  if (recorded_.active() > 0) queues_.costs[1].ns.fetch_add(clock() - computed, std::memory_order_relaxed);
   for (int n = 0; n < frames; ++n)
     for (int c = 0; c < channels_; ++c) out[channels_ * n + c] *= open_[static_cast<std::size_t>(n)];
   limit(out, frames);
@@ -181,14 +181,14 @@ void Renderer::limit(float* out, int frames) {
   limiter_.process(out, frames);
   level_limiter_.process(out, frames);
   // no other thread writes it
-  const double exposure = crossing_.heard.exposure_Pa2_s.load(std::memory_order_relaxed);
-  crossing_.heard.exposure_Pa2_s.store(exposure + level_limiter_.take_exposure_Pa2_s(), std::memory_order_relaxed);
-  crossing_.heard.gain.store(level_limiter_.gain(), std::memory_order_relaxed);
+  const double exposure = queues_.heard.exposure_Pa2_s.load(std::memory_order_relaxed);
+  queues_.heard.exposure_Pa2_s.store(exposure + level_limiter_.take_exposure_Pa2_s(), std::memory_order_relaxed);
+  queues_.heard.gain.store(level_limiter_.gain(), std::memory_order_relaxed);
 }
 
 // They are queued in the order of presentation; an early one waits.
-void Renderer::take_scrapes(sync::HostTime until) {
-  for (Scrape s; next_scrape_ || crossing_.scrapes.pop(s);) {
+void Renderer::receive_scrapes(sync::HostTime until) {
+  for (Scrape s; next_scrape_ || queues_.scrapes.pop(s);) {
     if (next_scrape_) s = *std::exchange(next_scrape_, std::nullopt);
     scrapes_taken_ = s.number + 1;
     if (s.at > until) {
@@ -200,19 +200,19 @@ void Renderer::take_scrapes(sync::HostTime until) {
 }
 
 // Strikes that are still in the queue are of the newest scene or of a later one. Voices keep a copy of their modes.
-void Renderer::let_go_of_strikes() {
-  if (crossing_.strikes_let_go.load(std::memory_order_relaxed) == newest_scene_) return;
+void Renderer::release_strikes() {
+  if (queues_.oldest_held_scene.load(std::memory_order_relaxed) == newest_scene_) return;
   std::int64_t held = newest_scene_;
   scheduler_.for_each([&](const Strike& s) { held = std::min(held, s.scene); });
-  crossing_.strikes_let_go.store(held, std::memory_order_release);
+  queues_.oldest_held_scene.store(held, std::memory_order_release);
 }
 
 // What is still in the queue has larger numbers than all that were taken out of it.
-void Renderer::let_go_of_scrapes() {
+void Renderer::release_scrapes() {
   std::int64_t held = scrapes_taken_;
   if (next_scrape_) held = std::min(held, next_scrape_->number);
   if (const auto oldest = scrapes_.oldest()) held = std::min(held, *oldest);
-  crossing_.scrapes_let_go.store(held, std::memory_order_release);
+  queues_.oldest_held_scrape.store(held, std::memory_order_release);
 }
 
 void Renderer::begin(const Strike& strike, int frames, const BlockTime& leaving) {
@@ -227,8 +227,8 @@ void Renderer::begin(const Strike& strike, int frames, const BlockTime& leaving)
     recorded_.begin(strike, gain, offset);
   }
   const bool computed = strike.sides[0].voice >= 0 || strike.sides[1].voice >= 0;
-  crossing_.costs[0].contacts.fetch_add(computed ? 1 : 0, std::memory_order_relaxed);
-  crossing_.costs[1].contacts.fetch_add(strike.recorded.database > 0 ? 1 : 0, std::memory_order_relaxed);
+  queues_.costs[0].contacts.fetch_add(computed ? 1 : 0, std::memory_order_relaxed);
+  queues_.costs[1].contacts.fetch_add(strike.recorded.database > 0 ? 1 : 0, std::memory_order_relaxed);
   // The bodies keep ringing during the silence.
   if (open_[static_cast<std::size_t>(offset)] < kSilenced)
     return report(strike, presentation_t::DROPPED_BY_PROFILE, -1, sync::Nanoseconds(0));

@@ -10,7 +10,7 @@
 #include "audio_node/signal/dropout.h"
 #include "audio_node/signal/level_limiter.h"
 #include "audio_node/signal/limiter.h"
-#include "audio_node/mixer/recorded.h"
+#include "audio_node/mixer/recording_player.h"
 #include "audio_node/mixer/scheduler.h"
 #include "audio_node/mixer/scrapes.h"
 #include "audio_node/signal/spsc.h"
@@ -55,13 +55,13 @@ struct ExposureMeter {
 struct CallbackQueues {
   Spsc<Strike> strikes{512};
   // The callback holds no strike of a scene of a number below this, and will never again: its table may go.
-  std::atomic<std::int64_t> strikes_let_go{0};
+  std::atomic<std::int64_t> oldest_held_scene{0};
   Spsc<RenderCommand> orders{16};
   Spsc<Listener> listeners{64};  // the newest applies
-  Spsc<Scrape> scrapes{kTellings * 2 * Scrapes::kMax};
+  Spsc<Scrape> scrapes{kMaxQueuedUpdates * 2 * Scrapes::kMax};
   // The callback holds no scrape with a number below this, and never will again: the data of those scrapes may be
   // freed.
-  std::atomic<std::int64_t> scrapes_let_go{0};
+  std::atomic<std::int64_t> oldest_held_scrape{0};
   static_assert(std::atomic<std::int64_t>::is_always_lock_free);
   RecordedQueues recorded;
   Spsc<presentation_t> reports{4096};
@@ -80,7 +80,7 @@ struct RendererDef {
   double rate_Hz = 48000;
   int period_frames = 128;  // usual length of one call
   double ceiling = 0.9;
-  HearingDef hearing = {};  // the space determines whether channels are ears
+  LevelLimiterDef hearing = {};  // the space determines whether channels are ears
   sync::LatePolicy late = late_policy(48000, sync::Nanoseconds(30'000'000));
   Instructions instructions = available_instructions().back();
   Space space = {};
@@ -95,7 +95,7 @@ constexpr int next_block(int frames_left) { return frames_left / ((frames_left +
 // Same strikes, same blocks and same times give the same samples to the bit.
 class Renderer {
  public:
-  Renderer(CallbackQueues& crossing, const RendererDef& def);
+  Renderer(CallbackQueues& queues, const RendererDef& def);
 
   // Channels of the interleaved samples.
   int channels() const { return channels_; }
@@ -113,20 +113,20 @@ class Renderer {
   int recorded() const { return recorded_.active(); }
 
  private:
-  void take_orders();
+  void receive_commands();
   void adapt(int frames, sync::Nanoseconds used);
   void render_some(float* out, int frames, const BlockTime& time);
   void sound_some(float* out, int frames, sync::HostTime leaving);
-  void take_scrapes(sync::HostTime until);
-  void let_go_of_strikes();
-  void let_go_of_scrapes();
+  void receive_scrapes(sync::HostTime until);
+  void release_strikes();
+  void release_scrapes();
   void limit(float* out, int frames);
   void begin(const Strike& strike, int frames, const BlockTime& time);
   void report(const Strike& strike, std::int8_t outcome, std::int64_t presented_ns, sync::Nanoseconds uncertainty);
   sync::Nanoseconds samples(int count) const;
   std::int64_t clock() const { return clock_ns_ ? clock_ns_() : 0; }
 
-  CallbackQueues& crossing_;
+  CallbackQueues& queues_;
   double rate_Hz_;
   int channels_;
   int delay_;  // frames between rendering and output

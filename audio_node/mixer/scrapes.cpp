@@ -15,10 +15,10 @@ constexpr double kLeap_m = 0.005;  // design
 constexpr double kStrength_s = 0.002;
 // A contact without updates and without an end fades out.
 constexpr sync::Nanoseconds kSilence{30'000'000};  // design: a few lost messages are not a gap
-constexpr double kMaxOver_s = 0.5;                 // design: or twice the update interval, but at most this
+constexpr double kMaxSilence_s = 0.5;                 // design: or twice the update interval, but at most this
 
 // Plausible range. Design: far beyond any scene, so that no number overflows.
-constexpr double kMaxPlace_m = 1e5, kMaxSpeed_m_s = 1e3, kMaxWay = 10, kMaxStrength = 10;
+constexpr double kMaxPlace_m = 1e5, kMaxSpeed_m_s = 1e3, kMaxMotion = 10, kMaxStrength = 10;
 
 // False for NaN and infinity.
 bool within(const Eigen::Vector3d& v, double most) { return v.allFinite() && v.cwiseAbs().maxCoeff() <= most; }
@@ -27,10 +27,10 @@ bool sane(const Scrape& s) {
   bool all = std::abs(s.slide) <= kMaxStrength && std::abs(s.roll) <= kMaxStrength && std::isfinite(s.cutoff_Hz);
   for (const ScrapeSide& side : s.sides)
     all = all && within(side.place_m, kMaxPlace_m) && within(side.velocity_m_s, kMaxSpeed_m_s) &&
-          within(side.slides.cast<double>(), kMaxWay) && within(side.rolls.cast<double>(), kMaxWay) &&
-          std::isfinite(side.beyond) && std::isfinite(side.beyond_Hz) &&
+          within(side.slides.cast<double>(), kMaxMotion) && within(side.rolls.cast<double>(), kMaxMotion) &&
+          std::isfinite(side.beyond) && std::isfinite(side.residual_Hz) &&
           std::all_of(side.gains.begin(), side.gains.end(), [](float g) { return std::isfinite(g); });
-  return all && std::isfinite(s.over_s) && s.place.distance_m > 0;
+  return all && std::isfinite(s.update_interval_s) && s.place.distance_m > 0;
 }
 
 // Slope limit for a step in a map: 76 degrees (design).
@@ -79,7 +79,7 @@ void Scrapes::begin(Contact& c, const Scrape& scrape) const {
     c.sides[i].gains[0] = scrape.sides[i].gains;
     c.sides[i].changed = false;
     c.sides[i].beyond = {};
-    c.sides[i].beyond.set(scrape.sides[i].beyond_Hz, rate_Hz_);
+    c.sides[i].beyond.set(scrape.sides[i].residual_Hz, rate_Hz_);
   }
 }
 
@@ -92,7 +92,7 @@ void Scrapes::take(const Scrape& scrape) {
     if (c.on && c.now.id == scrape.id) known = &c;
     if (!c.on && !free) free = &c;
   }
-  const int within = std::max(1, static_cast<int>(std::max(kStrength_s, scrape.over_s) * rate_Hz_));
+  const int within = std::max(1, static_cast<int>(std::max(kStrength_s, scrape.update_interval_s) * rate_Hz_));
   if (scrape.ends) {
     if (known) known->slide.go(0, within), known->roll.go(0, within);
     return;
@@ -126,7 +126,7 @@ Track Scrapes::follow(const ScrapeSide& told, Side& side, double since_s, bool f
 
 void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
   const Scrape& s = c.now;
-  if (first - c.heard >= std::max(kSilence, sync::from_seconds(std::min(2 * s.over_s, kMaxOver_s))) &&
+  if (first - c.heard >= std::max(kSilence, sync::from_seconds(std::min(2 * s.update_interval_s, kMaxSilence_s))) &&
       (c.slide.target != 0 || c.roll.target != 0))
     c.slide.go(0, static_cast<int>(kStrength_s * rate_Hz_)),
         c.roll.go(0, static_cast<int>(kStrength_s * rate_Hz_));

@@ -12,7 +12,7 @@ constexpr float kOver = 1e-5f;
 
 // A voice that is weaker than the next blow by this factor jumps to the place of the blow: its crossfade within a
 // block, a distortion of about 1/16 of it (spatialiser_test), is 60 dB below the blow. Design.
-constexpr float kDrowned = 1.f / 64;
+constexpr float kMaskedShare = 1.f / 64;
 
 // Squared amplitude of a mode: it decays by the damping with each sample, at any phase.
 float squared_amplitude(float c, float k, float v, float u) {
@@ -51,7 +51,7 @@ Voices::Voice* Voices::sounding(std::int64_t id) {
 
 // The weakest voices fade until at most at_most sound. A voice that a contact drives counts as stronger, at any
 // level: otherwise it would restart in each block.
-void Voices::leave_room(int at_most) {
+void Voices::fade_weakest(int at_most) {
   const auto sounds = [](const Voice& v) { return v.id >= 0 && !v.whole.on; };
   auto count = std::count_if(voices_.begin(), voices_.end(), sounds);
   for (; count > at_most; --count) {
@@ -94,16 +94,16 @@ void Voices::take(Voice& v, std::int64_t id, const Resonators& resonators, const
   v.expected = v.level = 0;
 }
 
-Voices::Voice& Voices::voice_of(std::int64_t id, const Resonators& resonators, const SourcePosition& place) {
+Voices::Voice& Voices::voice_for(std::int64_t id, const Resonators& resonators, const SourcePosition& place) {
   if (Voice* known = sounding(id)) return *known;
-  leave_room(limits_.voices - 1);
+  fade_weakest(limits_.voices - 1);
   Voice& fresh = free_voice();
   take(fresh, id, resonators, place);
   return fresh;
 }
 
 // Modes that were cut return at rest, before a force begins: within a force they would jump.
-void Voices::bring_back(Voice& v) const {
+void Voices::restore_modes(Voice& v) const {
   const auto pushes = [](const Pulse& p) { return p.on; };
   if (!v.cut.on && v.rendered < allowed(v) && v.driven == 0 &&
       std::none_of(v.pulses.begin(), v.pulses.end(), pushes))
@@ -127,9 +127,9 @@ void Voices::join(Voice& v, const Pulse& blow) {
 
 void Voices::strike(const StrikeSide& side, float gain, const ForcePulse& pulse, int offset) {
   if (side.voice < 0) return;
-  Voice& v = voice_of(side.voice, *side.resonators, side.place);
+  Voice& v = voice_for(side.voice, *side.resonators, side.place);
   v.place = side.place;
-  bring_back(v);
+  restore_modes(v);
   const auto free = std::find_if_not(v.pulses.begin(), v.pulses.end(), [](const Pulse& p) { return p.on; });
   const Pulse blow{true, offset, length_of(pulse), pulse, gain * side.impulse, gain * side.click, 0, side.gains};
   if (free != v.pulses.end())
@@ -139,16 +139,16 @@ void Voices::strike(const StrikeSide& side, float gain, const ForcePulse& pulse,
   float response = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(v.rendered); ++i) response += std::abs(side.gains[i]);
   v.expected = gain * (std::abs(side.impulse) * response + std::abs(side.click));
-  if (v.level * side.place.distance_m < kDrowned * v.expected) v.heard = side.place;
+  if (v.level * side.place.distance_m < kMaskedShare * v.expected) v.heard = side.place;
   v.level += v.expected;
 }
 
 void Voices::drive(const Drive& drive) {
   if (drive.voice < 0) return;
-  Voice& v = voice_of(drive.voice, *drive.resonators, drive.place);
+  Voice& v = voice_for(drive.voice, *drive.resonators, drive.place);
   v.place = drive.place;
   if (v.driven == kDrives) return;
-  bring_back(v);
+  restore_modes(v);
   v.directs[static_cast<std::size_t>(v.driven)] = drive.direct;
   v.drives[static_cast<std::size_t>(v.driven++)] = {drive.gains->data(), drive.force};
 }
@@ -230,7 +230,7 @@ void Voices::render(Voice& v, int frames) {
   if (!numbers) out.fill(0);
   const Eigen::Vector3f ear_m = listener_.value_or(Listener{}).T_W_listener.translation();
   v.heard = glide(v.heard, v.place, ear_m, glide_step_rad_ * static_cast<float>(frames));
-  const SourcePosition place = listener_ ? heard_by(*listener_, v.heard) : v.heard;
+  const SourcePosition place = listener_ ? relative_to_listener(*listener_, v.heard) : v.heard;
   spatialiser_.add(static_cast<int>(&v - voices_.data()), place, out.data(), frames);
   v.level = over_modes(v, [](float a2) { return std::sqrt(a2); }) / place.distance_m * v.whole.gain;
   const bool pushed = pushes.count > 0;
@@ -242,7 +242,7 @@ void Voices::render(Voice& v, int frames) {
 }
 
 void Voices::render(float* mix, int frames) {
-  leave_room(limits_.voices);
+  fade_weakest(limits_.voices);
   for (Voice& v : voices_)
     if (v.id >= 0) render(v, frames);
   spatialiser_.mix(mix, frames);

@@ -49,7 +49,7 @@ class Voices {
   // Call before each render() during the contact. Of one body at most kDrives are rendered at a time.
   void drive(const Drive& drive);
   // Bodies keep their place in the world, including those that ring already.
-  void hear_from(const Listener& listener) { listener_ = listener; }
+  void set_listener(const Listener& listener) { listener_ = listener; }
   // Adds `frames` <= kMaxBlock frames, channels interleaved.
   void render(float* mix, int frames);
 
@@ -109,10 +109,10 @@ class Voices {
 
   Voice* sounding(std::int64_t id);
   Voice& free_voice();
-  Voice& voice_of(std::int64_t id, const Resonators& resonators, const SourcePosition& place);
-  void leave_room(int at_most);
+  Voice& voice_for(std::int64_t id, const Resonators& resonators, const SourcePosition& place);
+  void fade_weakest(int at_most);
   void take(Voice& voice, std::int64_t id, const Resonators& resonators, const SourcePosition& place);
-  void bring_back(Voice& voice) const;
+  void restore_modes(Voice& voice) const;
   void cut(Voice& voice) const;
   int allowed(const Voice& voice) const;
   void end_cut(Voice& voice) const;

@@ -78,7 +78,7 @@ BodySound body_sound(const body_def_t& body, const shape_def_t* shape, const Ela
   for (const SolidMode& m : solid.modes)
     if (m.frequency_Hz >= settings.lowest_frequency_Hz)
       sound.modes.push_back(
-          {m.frequency_Hz, std::max(kLeastDamping_1_s, damping_1_s(material, m.frequency_Hz)), m.gain, m.shape});
+          {m.frequency_Hz, std::max(kMinDamping_1_s, damping_1_s(material, m.frequency_Hz)), m.gain, m.shape});
   // An overdamped mode does not sound.
   std::erase_if(sound.modes, [](const Mode& m) { return m.damping_1_s >= 2 * pi * m.frequency_Hz; });
   std::stable_sort(sound.modes.begin(), sound.modes.end(),

@@ -13,10 +13,10 @@ namespace {
 constexpr double kLevel_s = 0.005;
 // A contact without updates fades out. Design, as for scrapes: a few lost messages are not a gap.
 constexpr sync::Nanoseconds kSilence{30'000'000};
-constexpr double kMaxOver_s = 0.5;  // design: or twice the update interval, but at most this
+constexpr double kMaxSilence_s = 0.5;  // design: or twice the update interval, but at most this
 constexpr float kOver = 1e-6f;
 // An octave either way; beyond it a recording suggests another material (design).
-constexpr double kLeastStep = 0.5, kMaxStep = 2;
+constexpr double kMinStep = 0.5, kMaxStep = 2;
 
 }  // namespace
 
@@ -92,7 +92,7 @@ void Loops::add(Playing& p, double step, float wanted, int ends_in, float* out, 
 void Loops::render(Voice& v, int frames, sync::HostTime first) {
   const bool told =
       v.ends_in < 0 &&
-      first - v.now.at < std::max(kSilence, sync::from_seconds(std::min(2 * v.now.over_s, kMaxOver_s)));
+      first - v.now.at < std::max(kSilence, sync::from_seconds(std::min(2 * v.now.update_interval_s, kMaxSilence_s)));
   const LayerMix mixed = mix_of(*v.now.layers, v.now.speed_m_s);
   std::array<float, kMaxBlock> out{};
   float level = 0;
@@ -107,12 +107,12 @@ void Loops::render(Voice& v, int frames, sync::HostTime first) {
       p.level = 0;
       continue;
     }
-    add(p, std::clamp(v.now.speed_m_s / layer.speed_m_s, kLeastStep, kMaxStep), wanted, v.ends_in, out.data(),
+    add(p, std::clamp(v.now.speed_m_s / layer.speed_m_s, kMinStep, kMaxStep), wanted, v.ends_in, out.data(),
         frames);
     level = std::max(level, p.level);
   }
   spatialiser_.add(static_cast<int>(&v - voices_.data()),
-                   listener_ ? heard_by(*listener_, v.now.place) : v.now.place, out.data(), frames);
+                   listener_ ? relative_to_listener(*listener_, v.now.place) : v.now.place, out.data(), frames);
   v.ends_in = v.ends_in < 0 ? -1 : std::max(0, v.ends_in - frames);
   // The comparison also ends a level that is NaN.
   const bool over = !told && !(level > kOver);

@@ -13,7 +13,7 @@ Shots::Shots(double rate_Hz, const Space& space, Instructions instructions)
       voices_(static_cast<std::size_t>(kMax + kFading)),
       spatialiser_(space, kMax + kFading, rate_Hz, instructions) {}
 
-void Shots::leave_room() {
+void Shots::fade_weakest() {
   const auto sounds = [](const Voice& v) { return v.on && !v.fades; };
   if (std::count_if(voices_.begin(), voices_.end(), sounds) < kMax) return;
   Voice* quietest = nullptr;
@@ -37,7 +37,7 @@ void Shots::take(const RecordedStrike& strike, float gain, int offset) {
   for (const Shot& s : strike.shots)
     if (s.recording) level += s.gain * gain * s.recording->peak;
   if (strike.database == 0 || !(level > 0)) return;
-  leave_room();
+  fade_weakest();
   Voice& v = free_voice();
   v = Voice{};
   spatialiser_.begin(static_cast<int>(&v - voices_.data()));
@@ -91,7 +91,7 @@ void Shots::render(Voice& v, int frames) {
     if (v.fades) s *= v.fade = std::max(0.f, v.fade - fade_step_);
     most = std::max(most, std::abs(s));
   }
-  const SourcePosition place = listener_ ? heard_by(*listener_, v.place) : v.place;
+  const SourcePosition place = listener_ ? relative_to_listener(*listener_, v.place) : v.place;
   spatialiser_.add(static_cast<int>(&v - voices_.data()), place, out.data(), frames);
   if (begin < frames) v.level = most / place.distance_m;
   const bool over = !sounds || v.fade <= 0;

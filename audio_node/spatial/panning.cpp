@@ -38,13 +38,13 @@ Panning::Panning(const Layout& layout) : channels_(static_cast<int>(layout.size(
   flat_ = std::all_of(directions.begin(), directions.end(),
                       [](const Vector3d& d) { return std::abs(d.z()) < kLevel; });
   if (flat_)
-    take_pairs(std::move(directions));
+    build_pairs(std::move(directions));
   else
-    take_triangles(std::move(directions));
+    build_triangles(std::move(directions));
 }
 
 // Neighbours around the listener; a virtual loudspeaker is placed in the middle of a gap.
-void Panning::take_pairs(std::vector<Vector3d> level) {
+void Panning::build_pairs(std::vector<Vector3d> level) {
   const auto azimuth = [&](int i) {
     const Vector3d& d = level[static_cast<std::size_t>(i)];
     return std::atan2(d.y(), d.x());
@@ -80,7 +80,7 @@ void Panning::take_pairs(std::vector<Vector3d> level) {
 }
 
 // Adds virtual loudspeakers, above or below a ring, until the listener is well within the hull.
-void Panning::take_triangles(std::vector<Vector3d> directions) {
+void Panning::build_triangles(std::vector<Vector3d> directions) {
   const auto normal_of = [&](const Triangle& t) {
     const auto at = [&](std::size_t i) { return directions[static_cast<std::size_t>(t[i])]; };
     return Vector3d((at(1) - at(0)).cross(at(2) - at(0)).normalized());

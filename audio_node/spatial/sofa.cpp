@@ -11,7 +11,7 @@ namespace tactus::audio {
 namespace {
 
 constexpr double kSameDistance_m = 0.01;
-constexpr unsigned kLeastDirections = 4;  // minimum to surround a head
+constexpr unsigned kMinDirections = 4;  // minimum to surround a head
 
 struct Free {
   void operator()(MYSOFA_HRTF* file) const { mysofa_free(file); }
@@ -32,7 +32,7 @@ MeasuredHrtf load_sofa(const std::string& path) {
   int error = 0;
   const std::unique_ptr<MYSOFA_HRTF, Free> file(mysofa_load(path.c_str(), &error));
   if (!file) refuse(path, error == MYSOFA_READ_ERROR ? "cannot be read" : "is no SOFA file of impulse responses");
-  if (mysofa_check(file.get()) != MYSOFA_OK || file->R != 2 || file->M < kLeastDirections ||
+  if (mysofa_check(file.get()) != MYSOFA_OK || file->R != 2 || file->M < kMinDirections ||
       !(file->DataSamplingRate.values[0] > 0))
     refuse(path, "holds no impulse responses of two ears in the free field");
   mysofa_tocartesian(file.get());

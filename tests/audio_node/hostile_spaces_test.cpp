@@ -59,24 +59,24 @@ Database database() {
 struct Stage {
   Stage(const std::string& spatial, const std::string& method) : settings(with(spatial, method)) {
     def.space = space_of(settings, kRate);
-    renderer = std::make_unique<Renderer>(crossing, def);
-    crossing.recorded.databases.push(1);
+    renderer = std::make_unique<Renderer>(queues, def);
+    queues.recorded.databases.push(1);
     sampler.play(&data, 1);
   }
   sync::HostTime now() const { return sync::host_time(kStart_ns + std::llround(frames * 1e9 / kRate)); }
   void hit(const contact_event_t& e) {
     Strike s = impacts.strike(e, now() + sync::from_seconds(0.01));
     sampler.record(s, e, impacts);
-    crossing.strikes.push(s);
+    queues.strikes.push(s);
   }
   void rub(const sync::Contacts& contacts) {
     const sync::HostTime at = now() + sync::from_seconds(0.01);
-    for (const RecordedContact& r : sampler.rubs(contacts, at)) crossing.recorded.rubs.push(r);
+    for (const RecordedContact& r : sampler.rubs(contacts, at)) queues.recorded.rubs.push(r);
     for (Scrape s : sliding.scrapes(contacts, sync::SimTime{}, at, 128 / kRate)) {
-      s.slide *= sampler.modal_of(s.id, Interaction::kScrape),
-          s.roll *= sampler.modal_of(s.id, Interaction::kRoll);
+      s.slide *= sampler.modal_gain(s.id, Interaction::kScrape),
+          s.roll *= sampler.modal_gain(s.id, Interaction::kRoll);
       s.number = number++;
-      crossing.scrapes.push(s);
+      queues.scrapes.push(s);
     }
   }
   void play() {
@@ -84,7 +84,7 @@ struct Stage {
     renderer->render(block.data(), 128, {now(), sync::Nanoseconds(0), sync::Nanoseconds(0)});
     out.insert(out.end(), block.begin(), block.end());
     frames += 128;
-    for (presentation_t r; crossing.reports.pop(r);) continue;
+    for (presentation_t r; queues.reports.pop(r);) continue;
   }
 
   Settings settings;
@@ -94,7 +94,7 @@ struct Stage {
   sync::BodyHistory bodies{1};
   Sliding sliding{scene, wavy_surfaces(), bodies, impacts, settings, kRate};
   Sampler sampler{scene, settings};
-  CallbackQueues crossing;
+  CallbackQueues queues;
   RendererDef def;
   std::unique_ptr<Renderer> renderer;
   std::vector<float> out;
@@ -172,17 +172,17 @@ TEST_CASE(
   for (int block = 0; block < 200; ++block) {
     for (int i = 0; i < 8; ++i) {
       contact_event_t e = blow(++id, 1 + static_cast<int>(random() % 2));
-      e.approach_speed_m_s = static_cast<float>(kMaxSpeedOfWorld_m_s);
-      e.effective_mass_kg = static_cast<float>(random() % 2 ? kMaxMassOfWorld_kg : 1e-6);
-      e.curvature_1_m = static_cast<float>(random() % 2 ? kMaxCurvatureOfWorld_1_m : 0);
-      if (random() % 4 == 0) e.point_m.x = static_cast<float>(kMaxWayOfWorld_m);
+      e.approach_speed_m_s = static_cast<float>(kMaxPlausibleSpeed_m_s);
+      e.effective_mass_kg = static_cast<float>(random() % 2 ? kMaxPlausibleMass_kg : 1e-6);
+      e.curvature_1_m = static_cast<float>(random() % 2 ? kMaxPlausibleCurvature_1_m : 0);
+      if (random() % 4 == 0) e.point_m.x = static_cast<float>(kMaxPlausiblePosition_m);
       REQUIRE(plausible(e));
       stage->hit(e);
     }
     sync::Contacts contacts;
     for (int i = 0; i < 30; ++i) {
-      contact_t c = stroke(i, static_cast<float>(kMaxSpeedOfWorld_m_s), static_cast<float>(kMaxForceOfWorld_N));
-      c.rolling_velocity_m_s.y = static_cast<float>(random() % 2 ? kMaxSpeedOfWorld_m_s : 0);
+      contact_t c = stroke(i, static_cast<float>(kMaxPlausibleSpeed_m_s), static_cast<float>(kMaxPlausibleForce_N));
+      c.rolling_velocity_m_s.y = static_cast<float>(random() % 2 ? kMaxPlausibleSpeed_m_s : 0);
       REQUIRE(plausible(c));
       contacts.push_back(c);
     }

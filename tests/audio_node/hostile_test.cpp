@@ -96,16 +96,16 @@ std::vector<float> play(int wild, unsigned seed) {
   std::int64_t id = 0, wild_id = 1'000'000, number = 0;
   while (bench->left.size() < 2 * kRate) {
     const sync::HostTime at = sync::host_time(bench->time_ns(bench->left.size() + 200));
-    if (random() % 40 == 0) bench->crossing.strikes.push(impacts.strike(RecordedRun::hit(++id, 0, 0, 1), at));
+    if (random() % 40 == 0) bench->queues.strikes.push(impacts.strike(RecordedRun::hit(++id, 0, 0, 1), at));
     for (int i = 0; i < wild; ++i)
-      bench->crossing.strikes.push(impacts.strike(wild_event(++wild_id, wild_random), at));
+      bench->queues.strikes.push(impacts.strike(wild_event(++wild_id, wild_random), at));
     sync::Contacts contacts{slide(7, 0.1f, 2)};
     for (int i = 0; i < wild; ++i)
       // Also for the existing contact: a contradiction.
       contacts.push_back(wild_slide(wild_random() % 2 ? 7 : static_cast<std::int64_t>(++wild_id), wild_random));
     for (Scrape s : sliding.scrapes(contacts, sync::SimTime{}, at, 128 / kRate)) {
       s.number = number++;
-      bench->crossing.scrapes.push(s);
+      bench->queues.scrapes.push(s);
     }
     bench->play(128);
   }
@@ -160,7 +160,7 @@ TEST_CASE("Whatever is said, possible or not, what is heard are numbers below th
       if (random() % 3 == 0) e.point_m = {any(), any(), any()};
       if (random() % 3 == 0) e.normal = {any(), any(), any()};
       e.material_a = static_cast<int>(random() % 9) - 4;
-      REQUIRE(bench->crossing.strikes.push(impacts.strike(e, at)));
+      REQUIRE(bench->queues.strikes.push(impacts.strike(e, at)));
     }
     sync::Contacts contacts;
     for (int i = 0; i < 4; ++i) {
@@ -171,7 +171,7 @@ TEST_CASE("Whatever is said, possible or not, what is heard are numbers below th
     }
     for (Scrape s : sliding.scrapes(contacts, sync::SimTime{}, at, static_cast<double>(any()))) {
       s.number = number++;
-      bench->crossing.scrapes.push(s);
+      bench->queues.scrapes.push(s);
     }
     bench->play(128);
   }

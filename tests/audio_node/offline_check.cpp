@@ -117,7 +117,7 @@ double onset_after(const std::vector<float>& wav, const std::string& said, doubl
   const double due = (t + kDelay_s - start_s) * kRate;
   const auto begin = static_cast<std::size_t>(due - 0.02 * kRate),
              end = static_cast<std::size_t>(due + 0.02 * kRate);
-  const std::size_t n = begin + audio::first_heard(std::span(wav).subspan(begin, end - begin));
+  const std::size_t n = begin + audio::first_audible(std::span(wav).subspan(begin, end - begin));
   float before = 0, most = 0;
   for (std::size_t k = begin; k < n - 16; ++k) before = std::max(before, std::abs(wav[k]));
   for (std::size_t k = n; k < end; ++k) most = std::max(most, std::abs(wav[k]));

@@ -48,10 +48,10 @@ struct Sounding {
 int run(Bench& bench, double share, int blocks) {
   for (int b = 0; b < blocks; ++b) {
     const double time_s = kPeriod / kRate;
-    bench.used = sync::from_seconds(share * time_s / std::pow(2, bench.crossing.quality.load()));
+    bench.used = sync::from_seconds(share * time_s / std::pow(2, bench.queues.quality.load()));
     bench.play(kPeriod);
   }
-  return bench.crossing.quality.load();
+  return bench.queues.quality.load();
 }
 
 constexpr int kTwoSeconds = static_cast<int>(2 * kRate) / kPeriod;
@@ -69,12 +69,12 @@ TEST_CASE("Sound gets cheaper when its blocks take half of their time, and full 
 
 TEST_CASE("Sound whose quality is held does not heed the time") {
   auto bench = std::make_unique<Bench>();
-  REQUIRE(bench->crossing.orders.push(RenderCommand{{}, 1}));
+  REQUIRE(bench->queues.orders.push(RenderCommand{{}, 1}));
   CHECK(run(*bench, 3, 100) == 1);
   CHECK(run(*bench, 0.01, 10 * kTwoSeconds) == 1);
-  REQUIRE(bench->crossing.orders.push(RenderCommand{{}, -1}));
+  REQUIRE(bench->queues.orders.push(RenderCommand{{}, -1}));
   run(*bench, 0.3, 1);
-  CHECK(bench->crossing.quality.load() == 0);
+  CHECK(bench->queues.quality.load() == 0);
 }
 
 TEST_CASE("With fewer modes the lowest stay as they were, and the others fade") {

@@ -44,7 +44,7 @@ const char* name(Instructions instructions) {
   }
 }
 
-std::optional<Instructions> instructions_named(std::string_view wanted) {
+std::optional<Instructions> find_instructions(std::string_view wanted) {
   const auto all = available_instructions();
   if (wanted == "auto") return all.back();
   const auto found = std::find_if(all.begin(), all.end(), [&](Instructions i) { return name(i) == wanted; });

@@ -64,7 +64,7 @@ struct Folder {
   std::string path;
 };
 
-Scrape scrape(std::int64_t number, std::mt19937& random, const HeardSurface* surface, const Strike& of) {
+Scrape scrape(std::int64_t number, std::mt19937& random, const AudioSurface* surface, const Strike& of) {
   Scrape s;
   s.number = number;
   s.id = static_cast<std::int64_t>(random() % 24);  // more than are audible at a time
@@ -74,7 +74,7 @@ Scrape scrape(std::int64_t number, std::mt19937& random, const HeardSurface* sur
   ScrapeSide& side = s.sides[0];
   side.voice = of.sides[1].voice, side.resonators = *of.sides[1].resonators, side.gains = of.sides[1].gains;
   side.known = true;
-  side.beyond = 0.1f, side.beyond_Hz = 5000;
+  side.beyond = 0.1f, side.residual_Hz = 5000;
   if (surface) side.relief = surface->relief.get(), side.friction = surface->friction.get();
   side.roughness = {1e-6, 0};
   side.velocity_m_s.x() = 0.1, side.slides.x() = 1, side.rolls.y() = 1;
@@ -258,11 +258,11 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatev
   const auto [period, spatial] =
       GENERATE(std::pair(64, "hrtf"), std::pair(256, "loudspeakers"), std::pair(128, "stereo"));
   CAPTURE(period, spatial);
-  CallbackQueues crossing;
+  CallbackQueues queues;
   RendererDef def;
   def.period_frames = period, def.space = space_for(spatial);
   def.clock_ns = [] { return sync::to_ns(sync::host_now()); };
-  Renderer renderer(crossing, def);
+  Renderer renderer(queues, def);
   std::mt19937 random(3);
   int reported = 0, steps = 0, struck = 0;
   std::int64_t database = 0;
@@ -281,20 +281,20 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatev
                                   sync::host_now() + sync::from_seconds(early_s));
         s.sides[1].voice += static_cast<std::int64_t>(random() % 100);
         if (k == 0) recordings.add_to(s, database);
-        crossing.strikes.push(s);
+        queues.strikes.push(s);
         if (k == 1)
-          crossing.scrapes.push(scrape(i, random, random() % 3 ? &surfaces->by_material[0] : nullptr, s));
+          queues.scrapes.push(scrape(i, random, random() % 3 ? &surfaces->by_material[0] : nullptr, s));
       }
       // The head turns, and the database changes from time to time.
       Listener listener;
       listener.T_W_listener.rotate(Eigen::AngleAxisf(0.1f * static_cast<float>(i), Eigen::Vector3f::UnitZ()));
       listener.nearest_m = 0.3f;
-      crossing.listeners.push(listener);
-      if (i % 50 == 0) crossing.recorded.databases.push(++database);
-      crossing.recorded.rubs.push(recordings.rub(database, random));
+      queues.listeners.push(listener);
+      if (i % 50 == 0) queues.recorded.databases.push(++database);
+      queues.recorded.rubs.push(recordings.rub(database, random));
       if (i % 10 == 0)
-        crossing.orders.push({{i % 40 < 20 ? 0.01 : 0.0, 0.05}, static_cast<int>(random() % 4) - 1}), ++steps;
-      for (presentation_t r; crossing.reports.pop(r);) ++reported;
+        queues.orders.push({{i % 40 < 20 ? 0.01 : 0.0, 0.05}, static_cast<int>(random() % 4) - 1}), ++steps;
+      for (presentation_t r; queues.reports.pop(r);) ++reported;
       while (stream.next_pair()) continue;
       std::this_thread::sleep_for(std::chrono::milliseconds(3));
     }
@@ -302,7 +302,7 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatev
     CHECK(stream.callbacks() > 100);
   }
   renderer.abandon();
-  for (presentation_t r; crossing.reports.pop(r);) ++reported;
+  for (presentation_t r; queues.reports.pop(r);) ++reported;
   CHECK(reported == struck);  // shows that all of it was rendered
   CHECK(steps == 40);
   CAPTURE(first_trapped());

@@ -65,8 +65,8 @@ TEST_CASE("Through PortAudio and the virtual card sound is out when it was to be
   std::vector<MediaPair> pairs;
   std::vector<presentation_t> reports;
   std::vector<std::int64_t> scheduled_ns;
-  CallbackQueues crossing;
-  Renderer renderer(crossing, {.rate_Hz = kRate});
+  CallbackQueues queues;
+  Renderer renderer(queues, {.rate_Hz = kRate});
   std::int64_t callbacks = 0;
   {
     StreamOptions options;
@@ -78,7 +78,7 @@ TEST_CASE("Through PortAudio and the virtual card sound is out when it was to be
     for (int i = 0; i < 24; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(97));
       const auto at = sync::host_now() + sync::Nanoseconds(60'000'000);
-      REQUIRE(crossing.strikes.push(impulse(i, at)));
+      REQUIRE(queues.strikes.push(impulse(i, at)));
       scheduled_ns.push_back(sync::to_ns(at));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(400));
@@ -87,7 +87,7 @@ TEST_CASE("Through PortAudio and the virtual card sound is out when it was to be
     while (const auto pair = stream.next_pair()) pairs.push_back(*pair);
     WARN("underflows " << stream.underflows());
   }
-  for (presentation_t r; crossing.reports.pop(r);) reports.push_back(r);
+  for (presentation_t r; queues.reports.pop(r);) reports.push_back(r);
 
   CHECK(callbacks > 100);
   REQUIRE_FALSE(pairs.empty());

@@ -123,11 +123,11 @@ TEST_CASE(
   CHECK(place().direction.isApprox(Eigen::Vector3f::UnitX()));
   Eigen::Isometry3d ear = Eigen::Isometry3d::Identity();
   ear.rotate(Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitZ()));  // faces +y: the hit is to the right
-  all.hear_from(ear);
+  all.set_listener(ear);
   CHECK(place().direction.isApprox(-Eigen::Vector3f::UnitY()));
   CHECK(place().distance_m == Approx(1));
   ear.translation().x() = -1;  // twice the distance
-  all.hear_from(ear);
+  all.set_listener(ear);
   CHECK(place().distance_m == Approx(2));
 }
 
@@ -167,9 +167,9 @@ TEST_CASE("Bodies sound by their shape, size, mass and material") {
 TEST_CASE("An impact's level follows pressure to the power 0.6, and says when it cannot be heard") {
   const Impacts all = impacts();
   const auto rendered_peak = [&](const contact_event_t& e) {
-    auto crossing = std::make_unique<CallbackQueues>();
-    auto renderer = std::make_unique<Renderer>(*crossing, RendererDef{});
-    crossing->strikes.push(all.strike(e, sync::host_time(10'000'000)));
+    auto queues = std::make_unique<CallbackQueues>();
+    auto renderer = std::make_unique<Renderer>(*queues, RendererDef{});
+    queues->strikes.push(all.strike(e, sync::host_time(10'000'000)));
     std::vector<float> x(2 * 4800);
     renderer->render(x.data(), 4800, {});
     float peak = 0;

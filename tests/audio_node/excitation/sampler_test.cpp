@@ -95,7 +95,7 @@ struct World {
 double rms_of(Strike s) {
   auto bench = std::make_unique<Bench>();
   s.scheduled = sync::host_time(kStart_ns + 1'000'000);
-  bench->crossing.strikes.push(s);
+  bench->queues.strikes.push(s);
   for (int i = 0; i < 20; ++i) bench->play(480);
   double sum = 0;
   for (const float x : bench->left) sum += static_cast<double>(x) * static_cast<double>(x);
@@ -122,7 +122,7 @@ std::vector<float> blows_by(const std::vector<std::string>& methods) {
     if (method != "none") {
       Strike s = w.strike(hit(1, 0.1));
       s.scheduled = sync::host_time(at);
-      REQUIRE(bench->crossing.strikes.push(s));
+      REQUIRE(bench->queues.strikes.push(s));
     }
     at += 20'000'000;
     for (int i = 0; i < 15; ++i) bench->play(64);
@@ -209,14 +209,14 @@ TEST_CASE(
   // The root of the friction power: 0.5 * 4 N * 0.2 m/s.
   CHECK(static_cast<double>(rubs[0].level) ==
         Approx(Settings{}.recorded_scrape_level * std::sqrt(0.4)).epsilon(1e-6));
-  CHECK(w.sampler.modal_of(11, Interaction::kScrape) == 0);
-  CHECK(w.sampler.modal_of(12, Interaction::kScrape) == 1);
+  CHECK(w.sampler.modal_gain(11, Interaction::kScrape) == 0);
+  CHECK(w.sampler.modal_gain(12, Interaction::kScrape) == 1);
   // No recording of rolling: it is computed.
   CHECK(lasting(sliding(0, 0.3, 4)).empty());
-  CHECK(w.sampler.modal_of(11, Interaction::kRoll) == 1);
+  CHECK(w.sampler.modal_gain(11, Interaction::kRoll) == 1);
   w.sampler.configure(with("modal"));
   CHECK(lasting(sliding(0.2, 0, 4)).empty());
-  CHECK(w.sampler.modal_of(11, Interaction::kScrape) == 1);
+  CHECK(w.sampler.modal_gain(11, Interaction::kScrape) == 1);
 }
 
 TEST_CASE("What rests under load and jitters does not scrape, neither as recorded nor as computed") {
@@ -226,7 +226,7 @@ TEST_CASE("What rests under load and jitters does not scrape, neither as recorde
     const auto& rubs =
         w.sampler.rubs({sliding(ms / 10 % 2 ? 0.002 : -0.002, 0, 50)}, sync::host_time(1'000'000 * ms));
     REQUIRE(rubs.empty());
-    REQUIRE(w.sampler.modal_of(11, Interaction::kScrape) == 0);
+    REQUIRE(w.sampler.modal_gain(11, Interaction::kScrape) == 0);
   }
 }
 
@@ -267,8 +267,8 @@ TEST_CASE("Of more contacts than can be heard at a time the loudest are played, 
   }
   REQUIRE(rubs.size() == Loops::kMax);
   for (const RecordedContact& r : rubs) CHECK(r.contact >= Loops::kMax);
-  CHECK(w.sampler.modal_of(0, Interaction::kScrape) == 1);
-  CHECK(w.sampler.modal_of(2 * Loops::kMax - 1, Interaction::kScrape) == 0);
+  CHECK(w.sampler.modal_gain(0, Interaction::kScrape) == 1);
+  CHECK(w.sampler.modal_gain(2 * Loops::kMax - 1, Interaction::kScrape) == 0);
 }
 
 TEST_CASE("Absurd events and contacts play finite sound") {
@@ -313,7 +313,7 @@ TEST_CASE("A contact that scrapes while the method changes fades from one way to
   for (int i = 0; i < 1000; ++i) {
     w.sampler.configure(with(i / 100 % 2 ? "modal" : "samples"));
     for (const RecordedContact& r : w.sampler.rubs({sliding(1, 0, 8)}, sync::host_time(bench->time_ns(bench->left.size()))))
-      bench->crossing.recorded.rubs.push(r);
+      bench->queues.recorded.rubs.push(r);
     bench->play(48);
   }
   float steepest = 0, most = 0;

@@ -68,7 +68,7 @@ sync::SimTime sim_ms(std::int64_t ms) { return sync::sim_time(ms * kMs); }
 
 // With the bodies of a scene, which sound, and a clock that advances by 1 ms with each update.
 struct Heard {
-  explicit Heard(const scene_t& of, std::shared_ptr<const HeardSurfaces> surfaces = wavy_surfaces(),
+  explicit Heard(const scene_t& of, std::shared_ptr<const AudioSurfaces> surfaces = wavy_surfaces(),
                  const Settings& settings = {})
       : scene(of),
         impacts(
@@ -161,7 +161,7 @@ TEST_CASE("What rests under load is silent, however it jitters, and what begins 
 }
 
 TEST_CASE("Surfaces without a map scrape by the roughness of their materials") {
-  Heard h(board(true), std::make_shared<HeardSurfaces>());
+  Heard h(board(true), std::make_shared<AudioSurfaces>());
   const Scrape s = h.look(sliding({0, 0.1, 0}, 2, {0.005, 0.003, 0})).at(0);
   CHECK(s.sides[0].relief == nullptr);
   CHECK(s.sides[0].roughness.height_m > 0);
@@ -264,7 +264,7 @@ TEST_CASE(
   scene.shapes[1].kind = shape_def_t::SPHERE, scene.shapes[1].size_m.x = radius_m;
   Settings settings;
   settings.turn_depth = 0.5;
-  Heard h(scene, std::make_shared<HeardSurfaces>(), settings);
+  Heard h(scene, std::make_shared<AudioSurfaces>(), settings);
   h.now_ms = -1;
   std::vector<double> strong;
   std::vector<Vector3d> places;
@@ -315,7 +315,7 @@ TEST_CASE("What rolls is as strong as its inertia makes it while it is slow, and
   scene_t scene = board(true);
   scene.shapes[1].kind = shape_def_t::SPHERE, scene.shapes[1].size_m.x = 0.02;
   const auto rolls = [&](double force_N, double speed_m_s) {
-    Heard h(scene, std::make_shared<HeardSurfaces>());
+    Heard h(scene, std::make_shared<AudioSurfaces>());
     contact_t c = sliding(Vector3d::Zero(), force_N, Vector3d::Zero());
     c.tool = -1;
     c.rolling_velocity_m_s = to_vec3f(Vector3d(speed_m_s, 0, 0));

@@ -29,7 +29,7 @@ TEST_CASE("Sound starts on the sample nearest to its time, for any time and any 
   for (int trial = 0; trial < 200; ++trial) {
     auto bench = std::make_unique<Bench>();
     const std::int64_t at = kStart_ns + 5'000'000 + static_cast<std::int64_t>(random() % 40'000'000);
-    REQUIRE(bench->crossing.strikes.push(strike_of(7, 1, 500, 20, at)));
+    REQUIRE(bench->queues.strikes.push(strike_of(7, 1, 500, 20, at)));
     while (bench->left.size() < 3000) bench->play(1 + static_cast<int>(random() % 300));
     const std::size_t onset = first_sound(bench->left);
     CAPTURE(trial, at, onset);
@@ -46,8 +46,8 @@ TEST_CASE("Sound starts on the sample nearest to its time, for any time and any 
 TEST_CASE("A late strike is played at once, a very late one is dropped, and both are said") {
   auto bench = std::make_unique<Bench>();
   bench->play(480);
-  REQUIRE(bench->crossing.strikes.push(strike_of(1, 1, 500, 20, bench->time_ns(480) - 10'000'000)));
-  REQUIRE(bench->crossing.strikes.push(strike_of(2, 2, 500, 20, bench->time_ns(480) - 40'000'000)));
+  REQUIRE(bench->queues.strikes.push(strike_of(1, 1, 500, 20, bench->time_ns(480) - 10'000'000)));
+  REQUIRE(bench->queues.strikes.push(strike_of(2, 2, 500, 20, bench->time_ns(480) - 40'000'000)));
   bench->play(480);
   REQUIRE(bench->reports.size() == 2);
   CHECK(bench->reports[0].outcome == presentation_t::DROPPED_LATE);
@@ -65,7 +65,7 @@ TEST_CASE("Of the sense's row of late rules: on time within its slack, then the 
     bench->play(480);
     const double first = 480 + Limiter::kDelay;  // the earliest sample that can still be changed
     const auto at = kStart_ns + std::llround((first / kRate - late_s) * 1e9);
-    REQUIRE(bench->crossing.strikes.push(strike_of(1, 1, 500, 0, at)));
+    REQUIRE(bench->queues.strikes.push(strike_of(1, 1, 500, 0, at)));
     for (int i = 0; i < 4; ++i) bench->play(480);
     REQUIRE(bench->reports.size() == 1);
     const double level = *std::max_element(bench->left.begin(), bench->left.end());
@@ -92,7 +92,7 @@ TEST_CASE("What is too late to be strong enough is called inaudible") {
   bench->play(480);
   Strike s = strike_of(1, 1, 500, 20, bench->time_ns(480) - 20'000'000);
   s.heard_from = 0.5f;
-  REQUIRE(bench->crossing.strikes.push(s));
+  REQUIRE(bench->queues.strikes.push(s));
   bench->play(480);
   REQUIRE(bench->reports.size() == 1);
   CHECK(bench->reports[0].outcome == presentation_t::INAUDIBLE);
@@ -102,7 +102,7 @@ TEST_CASE("What is too late to be strong enough is called inaudible") {
 TEST_CASE("A struck voice rings at its frequency and decays at its rate") {
   auto bench = std::make_unique<Bench>();
   const double f = 440, d = 12;
-  REQUIRE(bench->crossing.strikes.push(strike_of(1, 1, f, d, bench->time_ns(1000))));
+  REQUIRE(bench->queues.strikes.push(strike_of(1, 1, f, d, bench->time_ns(1000))));
   while (bench->left.size() < 30000) bench->play(128);
   // A mass on a spring and a damper, struck: its velocity is exp(-d t) (cos w t - d/w sin w t), here in the middle
   // of each sample from 1000 on. Single-precision poles have an error of 6e-8 a sample: 2e-3 over 29000 of them.
@@ -118,7 +118,7 @@ TEST_CASE("A struck voice rings at its frequency and decays at its rate") {
 TEST_CASE("Striking a voice that sounds adds to it and leaves its state alone") {
   const auto play = [](std::vector<std::size_t> strikes) {
     auto bench = std::make_unique<Bench>();
-    for (const std::size_t s : strikes) bench->crossing.strikes.push(strike_of(1, 1, 300, 5, bench->time_ns(s)));
+    for (const std::size_t s : strikes) bench->queues.strikes.push(strike_of(1, 1, 300, 5, bench->time_ns(s)));
     while (bench->left.size() < 9000) bench->play(100);
     return bench->left;
   };
@@ -173,7 +173,7 @@ TEST_CASE("The same strikes in the same blocks give the same samples to the bit"
       Strike s = strike_of(i, static_cast<std::int64_t>(random() % 90), 100 + random() % 9000, 1 + random() % 90,
                            bench->time_ns(random() % 40000), 0.3f);
       s.pulse = one_hump(1 + static_cast<int>(random() % 60));
-      bench->crossing.strikes.push(s);
+      bench->queues.strikes.push(s);
     }
     while (bench->left.size() < 48000) bench->play(1 + static_cast<int>(random() % 256));
     return bench->left;
@@ -185,9 +185,9 @@ TEST_CASE("The same strikes in the same blocks give the same samples to the bit"
 
 TEST_CASE("What never sounds is reported when the stream is given up") {
   auto bench = std::make_unique<Bench>();
-  bench->crossing.strikes.push(strike_of(1, 1, 300, 5, bench->time_ns(90000)));
+  bench->queues.strikes.push(strike_of(1, 1, 300, 5, bench->time_ns(90000)));
   bench->play(64);
-  bench->crossing.strikes.push(strike_of(2, 1, 300, 5, bench->time_ns(90000)));
+  bench->queues.strikes.push(strike_of(2, 1, 300, 5, bench->time_ns(90000)));
   bench->renderer.abandon();
   bench->play(0);
   REQUIRE(bench->reports.size() == 2);
@@ -196,11 +196,11 @@ TEST_CASE("What never sounds is reported when the stream is given up") {
 
 TEST_CASE("A report that does not fit is counted") {
   auto bench = std::make_unique<Bench>();
-  while (bench->crossing.reports.push({})) continue;
-  REQUIRE(bench->crossing.strikes.push(strike_of(1, 1, 500, 20, kStart_ns + 1'000'000)));
+  while (bench->queues.reports.push({})) continue;
+  REQUIRE(bench->queues.strikes.push(strike_of(1, 1, 500, 20, kStart_ns + 1'000'000)));
   std::vector<float> block(2 * 480);
   bench->renderer.render(block.data(), 480, {sync::host_time(kStart_ns), {}, {}});
-  CHECK(bench->crossing.reports_lost == 1);
+  CHECK(bench->queues.reports_lost == 1);
 }
 
 TEST_CASE("A callback of more than half a block is cut into blocks of half of the most at least") {
@@ -224,7 +224,7 @@ TEST_CASE("A callback of any length has no block so short that a sound leaps to 
   CAPTURE(frames);
   const double f = 440, w = 2 * pi * f / kRate;
   auto bench = std::make_unique<Bench>();
-  REQUIRE(bench->crossing.strikes.push(strike_of(1, 1, f, 0, kStart_ns + 5'000'000)));
+  REQUIRE(bench->queues.strikes.push(strike_of(1, 1, f, 0, kStart_ns + 5'000'000)));
   while (bench->left.size() < 2000) bench->play(frames);
   const std::size_t from = bench->left.size();
   const double gain = *std::max_element(bench->left.begin(), bench->left.end());
@@ -233,7 +233,7 @@ TEST_CASE("A callback of any length has no block so short that a sound leaps to 
     const std::size_t last = bench->left.size() + static_cast<std::size_t>(frames + Limiter::kDelay) - 1;
     Strike turned = strike_of(2 + i, 1, f, 0, bench->time_ns(last), 0);
     if (i % 2 == 0) turned.sides[0].place.direction = -Eigen::Vector3f::UnitY();
-    REQUIRE(bench->crossing.strikes.push(turned));
+    REQUIRE(bench->queues.strikes.push(turned));
     bench->play(frames);
   }
   bench->play(frames);

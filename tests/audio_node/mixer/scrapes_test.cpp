@@ -6,7 +6,7 @@
 #include <limits>
 #include <tactus/material_def_t.hpp>
 
-#include "tests/audio_node/support/rub.h"
+#include "tests/audio_node/support/scrape_run.h"
 
 using namespace tactus;
 using namespace tactus::audio;
@@ -141,17 +141,17 @@ TEST_CASE("What rolls feels the profile through a low-pass at the speed over the
 }
 
 TEST_CASE("What a body sounds beyond its modes follows the force at once, above the highest of them") {
-  const double beyond_Hz = 400, tone_Hz = GENERATE(100.0, 400.0, 1600.0);
+  const double residual_Hz = 400, tone_Hz = GENERATE(100.0, 400.0, 1600.0);
   const auto r = rub(
       [&](double ms) {
         Scrape s = along_x(&wavy(), tone_Hz * kWave_m, ms);
         give_mode(s.sides[0], 400, 60, 0);
-        s.sides[0].beyond = 0.5f, s.sides[0].beyond_Hz = beyond_Hz;
+        s.sides[0].beyond = 0.5f, s.sides[0].residual_Hz = residual_Hz;
         return s;
       },
       400, 400);
   // Butterworth of second order.
-  const double ratio = std::pow(tone_Hz / beyond_Hz, 2), high = ratio / std::sqrt(1 + ratio * ratio);
+  const double ratio = std::pow(tone_Hz / residual_Hz, 2), high = ratio / std::sqrt(1 + ratio * ratio);
   CHECK(amplitude(r.sound, tone_Hz, 0.1, 0.4) ==
         Approx(0.5 * high * amplitude(r.force, tone_Hz, 0.1, 0.4)).epsilon(0.01));
 }
@@ -266,7 +266,7 @@ TEST_CASE("One that is told of rarely goes on until it is told anew") {
   const ReliefLevels relief(make_relief(waves(), rough()));
   const auto tell = [&](double ms) {
     Scrape s = along_x(&relief, 0.1, ms);
-    s.over_s = 0.088;
+    s.update_interval_s = 0.088;
     return s;
   };
   const Rubbed r = rub(tell, 900, 900, 88);

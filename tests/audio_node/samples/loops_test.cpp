@@ -186,7 +186,7 @@ TEST_CASE("A loop that is told of rarely goes on until it is told anew") {
   const Layers l = layers({{1, 400}});
   Sliding s;
   for (int i = 0; i < 10; ++i) {
-    const auto tell = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1, r.over_s = 0.088; };
+    const auto tell = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1, r.update_interval_s = 0.088; };
     s.play(1, tell);
     s.play(65, nullptr);  // 88 ms in total
   }

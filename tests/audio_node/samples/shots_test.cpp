@@ -97,7 +97,7 @@ TEST_CASE("A strike with a recording starts on the sample nearest to its time") 
     s.event_id = 9;
     s.scheduled = sync::host_time(kStart_ns + after_ns);
     s.recorded = shot(r);
-    REQUIRE(bench->crossing.strikes.push(s));
+    REQUIRE(bench->queues.strikes.push(s));
     while (bench->left.size() < 2000) bench->play(100);
     const auto first = std::find_if(bench->left.begin(), bench->left.end(), [](float x) { return x != 0; });
     const auto onset = static_cast<std::size_t>(first - bench->left.begin());
@@ -106,8 +106,8 @@ TEST_CASE("A strike with a recording starts on the sample nearest to its time") 
     REQUIRE(bench->reports.size() == 1);
     CHECK(bench->reports[0].outcome == presentation_t::PRESENTED);
     CHECK(std::abs(bench->reports[0].presented_ns - bench->time_ns(onset)) <= 2);
-    CHECK(bench->crossing.costs[0].contacts == 0);
-    CHECK(bench->crossing.costs[1].contacts == 1);
+    CHECK(bench->queues.costs[0].contacts == 0);
+    CHECK(bench->queues.costs[1].contacts == 1);
   }
 }
 

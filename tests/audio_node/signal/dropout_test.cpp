@@ -34,7 +34,7 @@ float largest_step(const std::vector<float>& x) {
 // A lasting tone, with or without drop-outs.
 struct Tone {
   explicit Tone(const DropoutDef& dropout) { order(dropout); }
-  void order(const DropoutDef& dropout) { REQUIRE(bench->crossing.orders.push(RenderCommand{dropout, 0})); }
+  void order(const DropoutDef& dropout) { REQUIRE(bench->queues.orders.push(RenderCommand{dropout, 0})); }
   void play_until(std::size_t samples) {
     while (bench->left.size() < samples) bench->play(128);
   }
@@ -93,7 +93,7 @@ TEST_CASE("Drop-outs are switched on and off without a click, and keep their pla
 TEST_CASE("Sound that drops out is the sound without, times the silence, to the bit outside of it") {
   Tone plain({}), poor(kTwenty_ms);
   for (Tone* t : {&plain, &poor}) {
-    REQUIRE(t->bench->crossing.strikes.push(strike_of(1, 1, 440, 0.5, t->bench->time_ns(3000))));
+    REQUIRE(t->bench->queues.strikes.push(strike_of(1, 1, 440, 0.5, t->bench->time_ns(3000))));
     t->play_until(2 * kSecond);
   }
   Dropout dropout(kRate);
@@ -115,7 +115,7 @@ TEST_CASE("A strike whose onset is silenced was dropped by the profile, one befo
     Tone tone(kTwenty_ms);
     tone.play_until(kSecond / 2);
     const auto at = tone.bench->time_ns(kSecond + counted + Limiter::kDelay);
-    REQUIRE(tone.bench->crossing.strikes.push(strike_of(1, 1, 440, 0.5, at)));
+    REQUIRE(tone.bench->queues.strikes.push(strike_of(1, 1, 440, 0.5, at)));
     tone.play_until(kSecond + kSecond / 2);
     REQUIRE(tone.bench->reports.size() == 1);
     const auto& left = tone.bench->left;
@@ -135,7 +135,7 @@ TEST_CASE("A strike whose onset is silenced was dropped by the profile, one befo
 
 TEST_CASE("Drop-outs are ordered and ended while the sound is on") {
   Tone tone({});
-  REQUIRE(tone.bench->crossing.strikes.push(strike_of(1, 1, 440, 0.5, tone.bench->time_ns(3000))));
+  REQUIRE(tone.bench->queues.strikes.push(strike_of(1, 1, 440, 0.5, tone.bench->time_ns(3000))));
   tone.play_until(kSecond / 2);
   tone.order({0.02, 0.1});
   tone.play_until(kSecond);

@@ -157,10 +157,10 @@ TEST_CASE("A body that rings stays where it is while the listener turns") {
   CHECK(louder_left() > 6);
   Listener listener;
   listener.T_W_listener = Eigen::AngleAxisf(std::numbers::pi_v<float>, Eigen::Vector3f::UnitZ());
-  voices.hear_from(listener);
+  voices.set_listener(listener);
   CHECK(louder_left() < -6);
   listener.T_W_listener = Eigen::Translation3f(0, 4, 0) * listener.T_W_listener;  // it has walked past the source
-  voices.hear_from(listener);
+  voices.set_listener(listener);
   CHECK(louder_left() > 6);
 }
 
@@ -192,18 +192,18 @@ namespace {
 double first_heard_blow(const Space& space, const Eigen::Vector3f& from) {
   RendererDef def;
   def.space = space;
-  CallbackQueues crossing;
-  Renderer renderer(crossing, def);
+  CallbackQueues queues;
+  Renderer renderer(queues, def);
   Strike strike = strike_of(1, 1, 6000, 3000, kStart_ns + 20'000'000);
   strike.sides[0].place.direction = from;
-  REQUIRE(crossing.strikes.push(strike));
+  REQUIRE(queues.strikes.push(strike));
   std::vector<float> both;
   for (std::int64_t frame = 0; frame < 2048; frame += kMaxBlock) {
     std::vector<float> out(2 * kMaxBlock);
     renderer.render(out.data(), kMaxBlock, {sync::host_time(kStart_ns + frame * 1'000'000'000 / 48000), {}, {}});
     for (std::size_t n = 0; n < kMaxBlock; ++n) both.push_back(out[2 * n] + out[2 * n + 1]);
   }
-  return static_cast<double>(first_heard(both));
+  return static_cast<double>(first_audible(both));
 }
 
 }  // namespace
@@ -279,7 +279,7 @@ TEST_CASE("A body that rings and is struck elsewhere goes there without a click"
   const bool in_world = GENERATE(false, true);
   const float distance_m = GENERATE(1.f, 3.f);
   Restruck body(space);
-  if (in_world) body.voices.hear_from({});
+  if (in_world) body.voices.set_listener({});
   body.strike(towards(80), 1, 0.1f);
   body.play(20);
   CHECK(body.left_over_right() > 1.5);

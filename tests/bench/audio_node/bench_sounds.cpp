@@ -46,7 +46,7 @@ double patch_m2(const scene_t& scene, int material) {
   return M_PI * radius_m * radius_m;
 }
 
-// A contact as the simulation publishes it (audio_node/excitation/contact_way.h): it moves over the bar. A sliding tip keeps its contact
+// A contact as the simulation publishes it (audio_node/excitation/contact_motion.h): it moves over the bar. A sliding tip keeps its contact
 // point, a rolling one moves over both surfaces.
 contact_t contact(const scene_t& scene, int bar, int material, double went_m, bool rolls) {
   const Eigen::Isometry3d lies = to_eigen(scene.bodies[static_cast<std::size_t>(bar)].pose);

@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
 
   std::printf("%-34s %9s %12s %12s\n", "loop, tick of 1 ms", "contacts", "median us", "p99 us");
   for (const int count : {1, 16, 50}) {
-    auto surfaces = std::make_shared<HeardSurfaces>();
+    auto surfaces = std::make_shared<AudioSurfaces>();
     const sync::BodyHistory bodies(1);
     Sliding sliding(scene, surfaces, bodies, impacts, Settings{}, kRate_Hz);
     std::vector<double> took_us;

@@ -154,10 +154,10 @@ TEST_CASE("A mode that is not pushed never grows") {
 
 TEST_CASE("Instructions are chosen by name, and one that the machine lacks is not taken for another") {
   const auto all = available_instructions();
-  CHECK(instructions_named("auto") == all.back());
-  CHECK(instructions_named("sse2") == Instructions::kSse2);
-  CHECK_FALSE(instructions_named("mmx"));
-  CHECK_FALSE(instructions_named(""));
+  CHECK(find_instructions("auto") == all.back());
+  CHECK(find_instructions("sse2") == Instructions::kSse2);
+  CHECK_FALSE(find_instructions("mmx"));
+  CHECK_FALSE(find_instructions(""));
   for (const Instructions i : {Instructions::kAvx2, Instructions::kAvx512})
-    CHECK(instructions_named(name(i)).has_value() == (std::find(all.begin(), all.end(), i) != all.end()));
+    CHECK(find_instructions(name(i)).has_value() == (std::find(all.begin(), all.end(), i) != all.end()));
 }

@@ -11,16 +11,16 @@
 namespace tactus::audio {
 
 // Of the loop's thread. The callback never waits for it, and frees nothing.
-class StrikeLine {
+class StrikeQueue {
  public:
   using Table = std::shared_ptr<const ResonatorTable>;
 
-  explicit StrikeLine(CallbackQueues& crossing) : crossing_(crossing) {}
+  explicit StrikeQueue(CallbackQueues& queues) : queues_(queues) {}
 
   // table: the sides of the strike refer to it; null: to none that is ever freed. False when the queue is full.
   bool submit(Strike strike, const Table& table);
   // Once a tick: frees the tables of earlier scenes that the callback reads no more.
-  void free_unread();
+  void free_released();
   // Tables of earlier scenes that are kept; at most one for each strike that the callback holds.
   std::size_t kept() const { return kept_.size(); }
 
@@ -30,7 +30,7 @@ class StrikeLine {
     Table table;
   };
 
-  CallbackQueues& crossing_;
+  CallbackQueues& queues_;
   std::int64_t scene_ = 0;  // number of the newest that a strike crossed of
   Table now_;
   std::deque<Kept> kept_;

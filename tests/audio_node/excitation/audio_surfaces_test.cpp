@@ -1,4 +1,4 @@
-#include "audio_node/excitation/heard_surfaces.h"
+#include "audio_node/excitation/audio_surfaces.h"
 
 #include <catch2/catch.hpp>
 #include <tactus/material_def_t.hpp>
@@ -22,7 +22,7 @@ TEST_CASE(
     m.friction_asset = friction, m.friction_size_u_m = m.friction_size_v_m = 0.1, m.friction_white = 1;
     scene.materials.push_back(m);
   }
-  const auto surfaces = read_surfaces(scene, {{kGood, good}, {kBad, bad}});
+  const auto surfaces = load_surfaces(scene, {{kGood, good}, {kBad, bad}});
   REQUIRE(surfaces->by_material.size() == 4);
   REQUIRE(surfaces->of(0));
   CHECK(surfaces->of(0)->relief);
@@ -34,5 +34,5 @@ TEST_CASE(
   CHECK(surfaces->of(2)->relief == surfaces->of(0)->relief);  // shared
   CHECK_FALSE(surfaces->of(2)->friction);
   for (const int material : {-1, 3, 4}) CHECK_FALSE(surfaces->of(material));
-  CHECK_FALSE(read_surfaces(scene, {})->of(0));
+  CHECK_FALSE(load_surfaces(scene, {})->of(0));
 }

@@ -14,11 +14,11 @@ namespace tactus::audio {
 
 // Maximum number of contact updates that wait for their sample at a time; in each, all audible contacts may begin
 // and the same number end (Output::tell_every).
-inline constexpr int kTellings = 64;
+inline constexpr int kMaxQueuedUpdates = 64;
 
 // Queues between the loop of the node and the callback, besides strikes.
 struct RecordedQueues {
-  Spsc<RecordedContact> rubs{kTellings * 2 * Loops::kMax};
+  Spsc<RecordedContact> rubs{kMaxQueuedUpdates * 2 * Loops::kMax};
   // Strikes and contacts queued after an entry belong to the database of that number.
   Spsc<std::int64_t> databases{16};
   // The callback holds nothing of a database with a number below this, and never will again: it may be freed.
@@ -27,23 +27,23 @@ struct RecordedQueues {
 };
 
 // Call on the loop thread while there is no callback and none is being made: releases all but the newest database.
-void let_go_unheard(RecordedQueues& crossing);
+void release_unused(RecordedQueues& queues);
 
 // Realtime-safe: yes, except the constructor.
 class Recorded {
  public:
-  Recorded(RecordedQueues& crossing, double rate_Hz, const Space& space = {},
+  Recorded(RecordedQueues& queues, double rate_Hz, const Space& space = {},
            Instructions instructions = Instructions::kSse2)
-      : crossing_(crossing),
+      : queues_(queues),
         shots_(rate_Hz, space, instructions),
         loops_(rate_Hz, space, instructions),
-        database_(crossing.let_go.load()) {}
+        database_(queues.let_go.load()) {}
 
   // Sounding recordings keep their place in the world.
-  void hear_from(const Listener& listener) { shots_.hear_from(listener), loops_.hear_from(listener); }
+  void set_listener(const Listener& listener) { shots_.set_listener(listener), loops_.set_listener(listener); }
 
   // Call at the beginning of a block, before strikes are taken.
-  void take_databases();
+  void receive_databases();
   void begin(const Strike& strike, float gain, int offset) { shots_.take(strike.recorded, gain, offset); }
   // Adds `frames` frames, channels interleaved, the first of which is presented at `first`. Returns the number of
   // contacts that began to scrape or roll.
@@ -56,9 +56,9 @@ class Recorded {
   int active() const { return shots_.active() + loops_.active(); }
 
  private:
-  int take_rubs(sync::HostTime until);
+  int receive_contacts(sync::HostTime until);
 
-  RecordedQueues& crossing_;
+  RecordedQueues& queues_;
   Shots shots_;
   Loops loops_;
   std::optional<RecordedContact> next_;  // taken from the queue, not yet due

@@ -1,4 +1,4 @@
-#include "audio_node/mixer/recorded.h"
+#include "audio_node/mixer/recording_player.h"
 
 #include <catch2/catch.hpp>
 #include <memory>
@@ -28,18 +28,18 @@ Strike strike_with(const Recording& r, std::int64_t database, std::int64_t at_ns
 TEST_CASE("A database is kept while a strike of it waits or sounds, and let go of when none does any more") {
   const Recording r{tone(300, 0.1), 0.5f, 0.35f};
   auto bench = std::make_unique<Bench>();
-  RecordedQueues& crossing = bench->crossing.recorded;
-  REQUIRE(crossing.databases.push(1));
+  RecordedQueues& queues = bench->queues.recorded;
+  REQUIRE(queues.databases.push(1));
   bench->play(64);
-  CHECK(crossing.let_go == 1);
-  REQUIRE(bench->crossing.strikes.push(strike_with(r, 1, kStart_ns + 20'000'000)));
-  REQUIRE(crossing.databases.push(2));
+  CHECK(queues.let_go == 1);
+  REQUIRE(bench->queues.strikes.push(strike_with(r, 1, kStart_ns + 20'000'000)));
+  REQUIRE(queues.databases.push(2));
   bench->play(64);
-  CHECK(crossing.let_go == 1);  // it waits
+  CHECK(queues.let_go == 1);  // it waits
   bench->play(2400);
-  CHECK(crossing.let_go == 1);  // it sounds
+  CHECK(queues.let_go == 1);  // it sounds
   bench->play(4800);
-  CHECK(crossing.let_go == 2);
+  CHECK(queues.let_go == 2);
 }
 
 TEST_CASE(
@@ -47,35 +47,35 @@ TEST_CASE(
   Layers l;
   l.by_speed.push_back({1, 1, {{tone(400, 0.5), 0.5f, 0.35f}}});
   auto bench = std::make_unique<Bench>();
-  RecordedQueues& crossing = bench->crossing.recorded;
-  REQUIRE(crossing.databases.push(1));
+  RecordedQueues& queues = bench->queues.recorded;
+  REQUIRE(queues.databases.push(1));
   RecordedContact rub;
   rub.contact = 3, rub.database = 1, rub.layers = &l, rub.speed_m_s = 1, rub.level = 0.1f;
   rub.at = sync::host_time(kStart_ns);
-  REQUIRE(crossing.rubs.push(rub));
+  REQUIRE(queues.rubs.push(rub));
   bench->play(480);
   CHECK(bench->renderer.recorded() == 1);
   rub.at = sync::host_time(kStart_ns + 1'000'000'000);  // still in the queue when the next database arrives
-  REQUIRE(crossing.rubs.push(rub));
-  REQUIRE(crossing.databases.push(2));
+  REQUIRE(queues.rubs.push(rub));
+  REQUIRE(queues.databases.push(2));
   bench->play(480);
-  CHECK(crossing.let_go == 1);
+  CHECK(queues.let_go == 1);
   for (int i = 0; i < 30; ++i) bench->play(480);
   CHECK(bench->renderer.recorded() == 0);
-  CHECK(crossing.let_go == 2);
+  CHECK(queues.let_go == 2);
 }
 
 TEST_CASE("A renderer that ends lets go of all") {
   const Recording r{tone(300, 1), 0.5f, 0.35f};
   auto bench = std::make_unique<Bench>();
-  RecordedQueues& crossing = bench->crossing.recorded;
-  REQUIRE(crossing.databases.push(1));
-  REQUIRE(bench->crossing.strikes.push(strike_with(r, 1, kStart_ns)));
+  RecordedQueues& queues = bench->queues.recorded;
+  REQUIRE(queues.databases.push(1));
+  REQUIRE(bench->queues.strikes.push(strike_with(r, 1, kStart_ns)));
   bench->play(480);
-  REQUIRE(crossing.databases.push(2));
-  REQUIRE(bench->crossing.strikes.push(strike_with(r, 1, kStart_ns + 500'000'000)));
+  REQUIRE(queues.databases.push(2));
+  REQUIRE(bench->queues.strikes.push(strike_with(r, 1, kStart_ns + 500'000'000)));
   bench->renderer.abandon();
-  CHECK(crossing.let_go == 2);
+  CHECK(queues.let_go == 2);
   CHECK(bench->renderer.recorded() == 0);
 }
 
@@ -83,10 +83,10 @@ TEST_CASE("The library reads what the settings ask for, once, and gives back wha
   const SoundFolder one, two;
   one.write("oak/impact/1.wav", tone(300, 0.1));
   two.write("steel/impact/1.wav", tone(300, 0.1));
-  RecordedQueues crossing;
-  Recorded callback(crossing, 48000);
+  RecordedQueues queues;
+  Recorded callback(queues, 48000);
   const Scheduler none(1);
-  Library library(crossing);
+  Library library(queues);
   Settings settings;
   settings.sounds = one.path();
   library.configure(settings);
@@ -107,14 +107,14 @@ TEST_CASE("The library reads what the settings ask for, once, and gives back wha
   CHECK(library.database()->find("oak", "oak", Interaction::kImpact).any());
   CHECK(library.news().size() == 1);
   CHECK(library.news().empty());
-  callback.take_databases();
+  callback.receive_databases();
   callback.let_go(none);
   settings.sounds = two.path();
   library.configure(settings);
   for (std::int64_t spins = 0; library.number() < 2 && spins < 200'000'000; ++spins) read(2);
   CHECK(library.database()->find("steel", "steel", Interaction::kImpact).any());
   CHECK(library.step().empty());  // the callback has not been notified yet
-  callback.take_databases();
+  callback.receive_databases();
   callback.let_go(none);
   CHECK(library.step().size() == 1);
 }
@@ -124,10 +124,10 @@ namespace {
 // A library and a manually called callback, with one folder of recordings, or two in alternation.
 struct Lent {
   SoundFolder one, two;
-  RecordedQueues crossing;
-  Recorded callback{crossing, 48000};
+  RecordedQueues queues;
+  Recorded callback{queues, 48000};
   Scheduler none{1};
-  Library library{crossing};
+  Library library{queues};
   std::size_t given_back = 0;
   Lent() {
     one.write("oak/impact/1.wav", tone(300, 0.1));
@@ -148,7 +148,7 @@ struct Lent {
     library.configure(settings);
   }
   void call() {
-    callback.take_databases();
+    callback.receive_databases();
     callback.let_go(none);
   }
 };
@@ -194,12 +194,12 @@ TEST_CASE("Without a card recordings are given back as soon as others replace th
     CHECK(l.given_back == i);
   }
   // A later callback plays the newest.
-  Recorded callback(l.crossing, 48000);
-  callback.take_databases();
+  Recorded callback(l.queues, 48000);
+  callback.receive_databases();
   callback.let_go(l.none);
   l.want("modal", l.one);
   l.library.step();
-  callback.take_databases();
+  callback.receive_databases();
   callback.let_go(l.none);
   CHECK(l.library.step().size() == 1);
 }

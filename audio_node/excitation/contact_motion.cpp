@@ -1,4 +1,4 @@
-#include "audio_node/excitation/contact_way.h"
+#include "audio_node/excitation/contact_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector3d;
 
 // Time over which the motion of a place over a surface is observed: three snapshots at 60 Hz. Design.
-constexpr double kLook_s = 0.05;
+constexpr double kObservation_s = 0.05;
 constexpr double kLeap = 3;        // times the distance that the contact moved (design)
 constexpr double kLeap_m = 0.002;  // and not below this distance (design)
 // Time constant with which a place follows the received one: slightly more than a snapshot interval. Design.
@@ -52,20 +52,20 @@ double Presliding::moving() const {
 
 // Share of the sliding that is motion over this surface: 1 under a fingertip, 0 under an edge of the body itself,
 // which stays in place.
-double ContactWay::share(const Vector3d& place, const Vector3d& along) {
+double ContactMotion::share(const Vector3d& place, const Vector3d& along) {
   // A place repeats unchanged between two snapshots.
-  const bool again = looked_at_m_ && place == *looked_at_m_ && looked_s_ < kLook_s;
-  if (again || !(looked_way_m_ > 0)) return std::clamp(share_, 0.0, 1.0);
-  const double went_m = looked_at_m_ ? (place - *looked_at_m_).dot(along) : looked_way_m_;
+  const bool again = observed_at_m_ && place == *observed_at_m_ && observed_s_ < kObservation_s;
+  if (again || !(observed_distance_m_ > 0)) return std::clamp(share_, 0.0, 1.0);
+  const double went_m = observed_at_m_ ? (place - *observed_at_m_).dot(along) : observed_distance_m_;
   // A larger jump means another corner, or a repositioned body.
-  if (std::abs(went_m) < kLeap * looked_way_m_)
-    share_ += (1 - std::exp(-looked_s_ / kLook_s)) * (went_m / looked_way_m_ - share_);
-  looked_at_m_ = place;
-  looked_way_m_ = looked_s_ = 0;
+  if (std::abs(went_m) < kLeap * observed_distance_m_)
+    share_ += (1 - std::exp(-observed_s_ / kObservation_s)) * (went_m / observed_distance_m_ - share_);
+  observed_at_m_ = place;
+  observed_distance_m_ = observed_s_ = 0;
   return std::clamp(share_, 0.0, 1.0);
 }
 
-void ContactWay::follow(Side& s, const Vector3d& told_m, const Vector3d& step_m, double dt_s) {
+void ContactMotion::follow(Side& s, const Vector3d& told_m, const Vector3d& step_m, double dt_s) {
   s.since_s += dt_s;
   if (!s.told_m) {
     s.place_m = told_m;
@@ -75,7 +75,7 @@ void ContactWay::follow(Side& s, const Vector3d& told_m, const Vector3d& step_m,
       const Vector3d off = told_m - s.place_m;
       const double leap = std::max(kLeap_m, kLeap * step_m.norm() / std::max(dt_s, 1e-9) * s.since_s);
       s.place_m += off.norm() > leap ? off : Vector3d((1 - std::exp(-s.since_s / kFollow_s)) * off);
-    } else if (s.since_s > kLook_s) {
+    } else if (s.since_s > kObservation_s) {
       // The received place does not change: stays there.
       s.place_m += (1 - std::exp(-dt_s / kFollow_s)) * (told_m - s.place_m);
       return;
@@ -87,12 +87,12 @@ void ContactWay::follow(Side& s, const Vector3d& told_m, const Vector3d& step_m,
   s.since_s = 0;
 }
 
-void ContactWay::step(const contact_t& c, const std::array<std::optional<Eigen::Quaterniond>, 2>& to_body,
+void ContactMotion::step(const contact_t& c, const std::array<std::optional<Eigen::Quaterniond>, 2>& to_body,
                       std::size_t surest, const Vector3d& past, double dt_s) {
   point_ = same_point(c, surest, sides_[surest].told_m);
   const contact_point_t& point = c.points[point_];
   const std::array<Vector3d, 2> told{to_eigen(point.a_body_m), to_eigen(point.b_body_m)};
-  looked_way_m_ += past.norm() * dt_s, looked_s_ += dt_s;
+  observed_distance_m_ += past.norm() * dt_s, observed_s_ += dt_s;
   if (c.tool < 0 && c.kind != contact_t::SURFACE) {
     // The simulation reports the motion of the contact relative to the mean of both surfaces.
     const Vector3d rolling = to_eigen(c.rolling_velocity_m_s);

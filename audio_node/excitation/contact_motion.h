@@ -33,7 +33,7 @@ class Presliding {
 };
 
 // Of one contact, over its whole duration.
-class ContactWay {
+class ContactMotion {
  public:
   // to_body: rotations from world to body, where known; at least one is known, and `surest` is the index of a
   // known one. past_m_s: velocity of the surface of b relative to that of a, bounded.
@@ -63,8 +63,8 @@ class ContactWay {
   std::size_t point_ = 0;
   Presliding slid_, rolled_;
   // Share of recent sliding that was motion over the surest surface.
-  std::optional<Eigen::Vector3d> looked_at_m_;
-  double looked_way_m_ = 0, looked_s_ = 0, share_ = 1;
+  std::optional<Eigen::Vector3d> observed_at_m_;
+  double observed_distance_m_ = 0, observed_s_ = 0, share_ = 1;
 };
 
 }  // namespace tactus::audio

@@ -1,24 +1,24 @@
-#include "audio_node/mixer/recorded.h"
+#include "audio_node/mixer/recording_player.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace tactus::audio {
 
-void let_go_unheard(RecordedQueues& crossing) {
-  for (RecordedContact r; crossing.rubs.pop(r);) continue;
-  for (std::int64_t number; crossing.databases.pop(number);)
-    crossing.let_go.store(number, std::memory_order_release);
+void release_unused(RecordedQueues& queues) {
+  for (RecordedContact r; queues.rubs.pop(r);) continue;
+  for (std::int64_t number; queues.databases.pop(number);)
+    queues.let_go.store(number, std::memory_order_release);
 }
 
-void Recorded::take_databases() {
+void Recorded::receive_databases() {
   const std::int64_t before = database_;
-  for (std::int64_t number; crossing_.databases.pop(number);) database_ = number;
+  for (std::int64_t number; queues_.databases.pop(number);) database_ = number;
   if (database_ == before) return;
   // Contacts of previous databases were queued before; those of the newest follow in a tick.
   if (next_ && next_->database >= database_) return;
   next_.reset();
-  for (RecordedContact r; crossing_.rubs.pop(r);) {
+  for (RecordedContact r; queues_.rubs.pop(r);) {
     if (r.database < database_) continue;
     next_ = r;
     return;
@@ -26,9 +26,9 @@ void Recorded::take_databases() {
 }
 
 // They are queued in the order of presentation; an early one waits.
-int Recorded::take_rubs(sync::HostTime until) {
+int Recorded::receive_contacts(sync::HostTime until) {
   int begun = 0;
-  for (RecordedContact r; next_ || crossing_.rubs.pop(r);) {
+  for (RecordedContact r; next_ || queues_.rubs.pop(r);) {
     if (next_) r = *std::exchange(next_, std::nullopt);
     if (r.at > until) {
       next_ = r;
@@ -40,25 +40,25 @@ int Recorded::take_rubs(sync::HostTime until) {
 }
 
 int Recorded::render(float* mix, int frames, sync::HostTime first) {
-  const int begun = take_rubs(first);
+  const int begun = receive_contacts(first);
   shots_.render(mix, frames);
   loops_.render(mix, frames, first);
   return begun;
 }
 
 void Recorded::let_go(const Scheduler& waiting) {
-  if (crossing_.let_go.load(std::memory_order_relaxed) == database_) return;
+  if (queues_.let_go.load(std::memory_order_relaxed) == database_) return;
   std::int64_t held = loops_.oldest(shots_.oldest(database_));
   if (next_) held = std::min(held, next_->database);
   waiting.for_each([&](const Strike& s) {
     if (s.recorded.database > 0) held = std::min(held, s.recorded.database);
   });
-  crossing_.let_go.store(held, std::memory_order_release);
+  queues_.let_go.store(held, std::memory_order_release);
 }
 
 void Recorded::abandon(const Scheduler& waiting) {
-  take_databases();
-  for (RecordedContact r; crossing_.rubs.pop(r);) continue;
+  receive_databases();
+  for (RecordedContact r; queues_.rubs.pop(r);) continue;
   next_.reset();
   shots_.clear();
   loops_.clear();

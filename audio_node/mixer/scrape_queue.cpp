@@ -1,4 +1,4 @@
-#include "audio_node/mixer/scrape_line.h"
+#include "audio_node/mixer/scrape_queue.h"
 
 #include <utility>
 
@@ -6,46 +6,46 @@ namespace tactus::audio {
 namespace {
 
 // Maximum number of unsent ends. Design: four times the audible contacts; older ones have faded by themselves.
-constexpr std::size_t kMaxOwed = 4 * Scrapes::kMax;
+constexpr std::size_t kMaxPendingEnds = 4 * Scrapes::kMax;
 
 }  // namespace
 
-void ScrapeLine::change(Surfaces next) {
+void ScrapeQueue::change(Surfaces next) {
   // Surfaces that no scrape points to may be freed at once, regardless of the callback.
   if (now_) kept_.push_back({submitted_ > first_ ? submitted_ : 0, std::move(now_)});
   now_ = std::move(next);
   first_ = submitted_;
 }
 
-bool ScrapeLine::submit(Scrape scrape) {
-  std::erase(owed_, scrape.id);
-  tell_ends();
+bool ScrapeQueue::submit(Scrape scrape) {
+  std::erase(pending_ends_, scrape.id);
+  send_ends();
   if (push(scrape)) return true;
   if (!scrape.ends) return ++lost_, false;
-  owed_.push_back(scrape.id);
-  if (owed_.size() > kMaxOwed) owed_.pop_front(), ++lost_;
+  pending_ends_.push_back(scrape.id);
+  if (pending_ends_.size() > kMaxPendingEnds) pending_ends_.pop_front(), ++lost_;
   return false;
 }
 
-void ScrapeLine::tell_ends() {
-  for (; !owed_.empty(); owed_.pop_front()) {
+void ScrapeQueue::send_ends() {
+  for (; !pending_ends_.empty(); pending_ends_.pop_front()) {
     Scrape end;
-    end.id = owed_.front(), end.ends = true;
+    end.id = pending_ends_.front(), end.ends = true;
     if (!push(end)) return;
   }
 }
 
-bool ScrapeLine::push(Scrape& scrape) {
+bool ScrapeQueue::push(Scrape& scrape) {
   scrape.number = submitted_;
-  if (!crossing_.scrapes.push(scrape)) return false;
+  if (!queues_.scrapes.push(scrape)) return false;
   ++submitted_;
   return true;
 }
 
-std::vector<ScrapeLine::Surfaces> ScrapeLine::take_unread() {
+std::vector<ScrapeQueue::Surfaces> ScrapeQueue::take_released() {
   std::vector<Surfaces> unread;
   if (kept_.empty()) return unread;
-  const std::int64_t let_go = crossing_.scrapes_let_go.load(std::memory_order_acquire);
+  const std::int64_t let_go = queues_.oldest_held_scrape.load(std::memory_order_acquire);
   std::erase_if(kept_, [&](Kept& k) {
     if (k.end > let_go) return false;
     unread.push_back(std::move(k.surfaces));

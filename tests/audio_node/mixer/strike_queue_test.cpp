@@ -1,5 +1,5 @@
 // The modes that strikes refer to stay as long as the callback may read them, over changes of the scene, and no longer.
-#include "audio_node/mixer/strike_line.h"
+#include "audio_node/mixer/strike_queue.h"
 
 #include <catch2/catch.hpp>
 #include <random>
@@ -13,7 +13,7 @@ using namespace tactus::audio::test;
 namespace {
 
 // Whose values are spoilt when it goes, so that a late reader is heard.
-StrikeLine::Table table(double frequency_Hz) {
+StrikeQueue::Table table(double frequency_Hz) {
   auto* const all = new ResonatorTable(1);
   all->front().add(mode_step(frequency_Hz, 20, kRate));
   return {all, [](const ResonatorTable* gone) {
@@ -26,16 +26,16 @@ StrikeLine::Table table(double frequency_Hz) {
 // A loop and a callback in one thread, by turns.
 struct Line {
   std::unique_ptr<Bench> bench = std::make_unique<Bench>();
-  StrikeLine line{bench->crossing};
+  StrikeQueue line{bench->queues};
 
-  bool strike(const StrikeLine::Table& of, int later_samples, std::int64_t id = 1) {
+  bool strike(const StrikeQueue::Table& of, int later_samples, std::int64_t id = 1) {
     Strike s = strike_of(id, id, 500, 20, bench->time_ns(bench->left.size() + static_cast<std::size_t>(later_samples)));
     if (of) s.sides[0].resonators = &of->front();
     return line.submit(s, of);
   }
   void play(int frames) {
     bench->play(frames);
-    line.free_unread();
+    line.free_released();
   }
 };
 
@@ -75,9 +75,9 @@ TEST_CASE("When the callback has ended, nothing but the newest table is kept") {
   Line l;
   for (int i = 0; i < 10; ++i) REQUIRE(l.strike(table(500), 48000, i));
   l.bench->renderer.abandon();
-  l.line.free_unread();
+  l.line.free_released();
   CHECK(l.line.kept() == 0);
-  CHECK(l.bench->crossing.reports.room() + 10 == l.bench->crossing.reports.capacity());
+  CHECK(l.bench->queues.reports.room() + 10 == l.bench->queues.reports.capacity());
 }
 
 TEST_CASE("No strike sounds with modes that have gone, over any order of strikes and scenes") {

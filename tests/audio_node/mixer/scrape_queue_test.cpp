@@ -1,6 +1,6 @@
 // Surfaces of previous scenes and a callback that may still read them: they are freed once it has released them,
 // and never before.
-#include "audio_node/mixer/scrape_line.h"
+#include "audio_node/mixer/scrape_queue.h"
 
 #include <algorithm>
 #include <atomic>
@@ -22,12 +22,12 @@ namespace {
 constexpr float kLoudest = 0.1f;
 
 // As the surfaces of a scene; once freed they become so steep that a callback that reads them is audible.
-ScrapeLine::Surfaces poisoned_when_freed() {
-  auto* surfaces = new HeardSurfaces;
+ScrapeQueue::Surfaces poisoned_when_freed() {
+  auto* surfaces = new AudioSurfaces;
   auto relief = std::make_shared<ReliefLevels>(make_relief(waves(), rough()));
   surfaces->by_material.push_back({relief, nullptr});
   static std::vector<std::shared_ptr<ReliefLevels>> graveyard;  // memory that is never reused
-  return {surfaces, [relief](const HeardSurfaces* gone) {
+  return {surfaces, [relief](const AudioSurfaces* gone) {
             for (Eigen::Vector2f& slope : const_cast<Relief&>(relief->finest()).slopes) slope.setConstant(1e6f);
             graveyard.push_back(relief);
             delete gone;
@@ -54,10 +54,10 @@ Scrape over(const ReliefLevels* relief, std::int64_t id, std::int64_t at_ns, flo
 // A loop and a callback in one thread, in alternation.
 struct Line {
   std::unique_ptr<Bench> bench = std::make_unique<Bench>();
-  ScrapeLine line{bench->crossing};
+  ScrapeQueue line{bench->queues};
 
   // Of the contact `id`, presented now or later_samples later.
-  bool scrape(const ScrapeLine::Surfaces& surfaces, std::int64_t id = 1, int later_samples = 0) {
+  bool scrape(const ScrapeQueue::Surfaces& surfaces, std::int64_t id = 1, int later_samples = 0) {
     return line.submit(over(surfaces->by_material[0].relief.get(), id,
                             bench->time_ns(bench->left.size() + static_cast<std::size_t>(later_samples)), 1e-4f));
   }
@@ -76,7 +76,7 @@ constexpr int kBlock = 128;
 TEST_CASE("Surfaces of a scene that is over go when their last scrape has died away, and not before") {
   Line l;
   auto first = poisoned_when_freed();
-  const std::weak_ptr<const HeardSurfaces> watched = first;
+  const std::weak_ptr<const AudioSurfaces> watched = first;
   l.line.change(first);
   REQUIRE(l.scrape(first));
   first.reset();
@@ -84,12 +84,12 @@ TEST_CASE("Surfaces of a scene that is over go when their last scrape has died a
   l.line.change(nullptr);
   int blocks = 0;
   while (l.bench->renderer.scraping() && blocks++ < 1000) {
-    CHECK(l.line.take_unread().empty());
+    CHECK(l.line.take_released().empty());
     REQUIRE_FALSE(watched.expired());
     l.bench->play(kBlock);
   }
   CHECK(blocks > 10);  // it sounded for at least 30 ms
-  CHECK(l.line.take_unread().size() == 1);
+  CHECK(l.line.take_released().size() == 1);
   CHECK(watched.expired());
   CHECK(l.sound());
 }
@@ -104,10 +104,10 @@ TEST_CASE("They stay while a scrape of theirs waits in the queue or for its time
   l.line.change(nullptr);
   for (int n = 0; n < 4800; n += kBlock) {
     l.bench->play(kBlock);
-    REQUIRE(l.line.take_unread().empty());
+    REQUIRE(l.line.take_released().empty());
   }
   for (int n = 0; n < 9600; n += kBlock) l.bench->play(kBlock);
-  CHECK(l.line.take_unread().size() == 2);
+  CHECK(l.line.take_released().size() == 2);
   CHECK(l.sound());
 }
 
@@ -119,13 +119,13 @@ TEST_CASE("Of two scenes in quick succession the one that nobody heard goes at o
   l.bench->play(kBlock);
   l.line.change(second);
   l.line.change(third);
-  const auto unread = l.line.take_unread();
+  const auto unread = l.line.take_released();
   REQUIRE(unread.size() == 1);
   CHECK(unread[0] == second);
   // The same contact continues in the new scene: its voice then reads only the new surfaces.
   REQUIRE(l.scrape(third));
   l.bench->play(kBlock);
-  const auto later = l.line.take_unread();
+  const auto later = l.line.take_released();
   REQUIRE(later.size() == 1);
   CHECK(later[0] == first);
 }
@@ -142,32 +142,32 @@ TEST_CASE(
     auto next = poisoned_when_freed();
     l.line.change(next);
     l.scrape(next, scene);
-    freed += l.line.take_unread().size();
+    freed += l.line.take_released().size();
   }
   // All except those with a scrape in the queue, the sounding one and the present one.
-  CHECK(freed == 3000 + 1 - l.bench->crossing.scrapes.capacity() - 1 - 1);
+  CHECK(freed == 3000 + 1 - l.bench->queues.scrapes.capacity() - 1 - 1);
   SECTION("until it goes on") {
     l.line.change(nullptr);
     for (int n = 0; n < 9600; n += kBlock) l.bench->play(kBlock);
-    freed += l.line.take_unread().size();
+    freed += l.line.take_released().size();
     CHECK(freed == 3001);
     CHECK(l.sound());
   }
   SECTION("or its stream is given up, and another goes on where it was") {
     l.line.change(nullptr);
     l.bench->renderer.abandon();
-    freed += l.line.take_unread().size();
+    freed += l.line.take_released().size();
     CHECK(freed == 3001);
     const auto fresh = poisoned_when_freed();
     l.line.change(fresh);
     REQUIRE(l.scrape(fresh));
     l.line.change(nullptr);
-    auto another = std::make_unique<Renderer>(l.bench->crossing, RendererDef{});
+    auto another = std::make_unique<Renderer>(l.bench->queues, RendererDef{});
     std::vector<float> block(2 * kBlock);
     another->render(block.data(), kBlock, {sync::host_time(l.bench->time_ns(l.bench->left.size())), {}, {}});
-    CHECK(l.line.take_unread().empty());
+    CHECK(l.line.take_released().empty());
     another->abandon();
-    CHECK(l.line.take_unread().size() == 1);
+    CHECK(l.line.take_released().size() == 1);
   }
 }
 
@@ -197,7 +197,7 @@ TEST_CASE(
     for (int i = 0; i < 50; ++i) {
       const auto id = static_cast<std::int64_t>(random() % 5);
       l.line.submit(over(relief, id, l.bench->time_ns(played + random() % 1000), 1e-4f));
-      freed += l.line.take_unread().size();
+      freed += l.line.take_released().size();
       std::this_thread::yield();
     }
   }
@@ -206,14 +206,14 @@ TEST_CASE(
   callback.join();
   CHECK(loudest > 0);
   CHECK(loudest < kLoudest);
-  CHECK(freed + l.line.take_unread().size() == kScenes);
+  CHECK(freed + l.line.take_released().size() == kScenes);
 }
 
 TEST_CASE(
     "An end for which there was no room is told when there is, unless its contact goes on. Lost states are "
     "counted") {
-  auto crossing = std::make_unique<CallbackQueues>();
-  ScrapeLine line(*crossing);
+  auto queues = std::make_unique<CallbackQueues>();
+  ScrapeQueue line(*queues);
   const auto tell = [&](std::int64_t id, bool ends) {
     Scrape s;
     s.id = id, s.ends = ends;
@@ -225,15 +225,15 @@ TEST_CASE(
   CHECK_FALSE(tell(2, true));
   CHECK_FALSE(tell(2, false));  // it continues
   CHECK(line.lost() == 2);
-  line.tell_ends();  // there is no room yet
+  line.send_ends();  // there is no room yet
   std::int64_t next = 0;
-  for (Scrape s; crossing->scrapes.pop(s);) CHECK(s.number == next++);
-  line.tell_ends();
-  line.tell_ends();
+  for (Scrape s; queues->scrapes.pop(s);) CHECK(s.number == next++);
+  line.send_ends();
+  line.send_ends();
   Scrape end;
-  REQUIRE(crossing->scrapes.pop(end));
+  REQUIRE(queues->scrapes.pop(end));
   CHECK(end.ends);
   CHECK(end.id == 1);
   CHECK(end.number == next);
-  CHECK_FALSE(crossing->scrapes.pop(end));
+  CHECK_FALSE(queues->scrapes.pop(end));
 }

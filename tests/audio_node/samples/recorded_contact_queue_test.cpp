@@ -1,4 +1,4 @@
-#include "audio_node/samples/rub_line.h"
+#include "audio_node/samples/recorded_contact_queue.h"
 
 #include <catch2/catch.hpp>
 
@@ -7,7 +7,7 @@ using namespace tactus::audio;
 
 TEST_CASE("The end of a recorded contact waits for room, unless the contact goes on. Lost states are counted") {
   Spsc<RecordedContact> queue(4);
-  RubLine line(queue);
+  RecordedContactQueue line(queue);
   const auto tell = [&](std::int64_t contact, std::int32_t part, bool ends) {
     RecordedContact r;
     r.contact = contact, r.part = part, r.ends = ends;
@@ -21,8 +21,8 @@ TEST_CASE("The end of a recorded contact waits for room, unless the contact goes
   CHECK_FALSE(tell(1, 1, false));  // that part continues
   CHECK(line.lost() == 2);
   for (RecordedContact r; queue.pop(r);) CHECK_FALSE(r.ends);
-  line.tell_ends();
-  line.tell_ends();
+  line.send_ends();
+  line.send_ends();
   RecordedContact end;
   REQUIRE(queue.pop(end));
   CHECK(end.ends);

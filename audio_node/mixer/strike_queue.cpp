@@ -1,14 +1,14 @@
-#include "audio_node/mixer/strike_line.h"
+#include "audio_node/mixer/strike_queue.h"
 
 #include <utility>
 
 namespace tactus::audio {
 
 // A scene whose strikes do not fit keeps nothing, so that the tables that are kept are no more than the strikes that are held.
-bool StrikeLine::submit(Strike strike, const Table& table) {
+bool StrikeQueue::submit(Strike strike, const Table& table) {
   const bool another = table != now_;
   strike.scene = another ? scene_ + 1 : scene_;
-  if (!crossing_.strikes.push(strike)) return false;
+  if (!queues_.strikes.push(strike)) return false;
   if (!another) return true;
   if (now_) kept_.push_back({scene_, std::move(now_)});
   now_ = table;
@@ -16,8 +16,8 @@ bool StrikeLine::submit(Strike strike, const Table& table) {
   return true;
 }
 
-void StrikeLine::free_unread() {
-  const std::int64_t let_go = crossing_.strikes_let_go.load(std::memory_order_acquire);
+void StrikeQueue::free_released() {
+  const std::int64_t let_go = queues_.oldest_held_scene.load(std::memory_order_acquire);
   while (!kept_.empty() && kept_.front().scene < let_go) kept_.pop_front();
 }
 
