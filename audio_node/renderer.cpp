@@ -28,7 +28,7 @@ constexpr sync::Nanoseconds kContactsTimeout{100'000'000};  // six snapshots
 constexpr sync::Nanoseconds kScrapeLead{2'000'000};      // before the callback needs it: two ticks
 // Design: half a tick; a blow takes up to 0.3 ms to prepare. Simultaneous blows wait for the next ticks.
 constexpr sync::Nanoseconds kStrikeBudget{500'000};
-constexpr sync::Nanoseconds kEarly{20'000'000};  // accepts events of the near future, in case a map lags
+constexpr sync::Nanoseconds kEarlyWindow{20'000'000};  // accepts events of the near future, in case a map lags
 
 void publish_pair(sync::Bus& bus, const std::string& medium, const MediaPair& pair) {
   media_clock_t m{};
@@ -41,9 +41,9 @@ void publish_pair(sync::Bus& bus, const std::string& medium, const MediaPair& pa
 }
 
 // Freeing tables of 200 MB takes 20 ms, too long for the loop.
-template <class Unread>
-void free_in_background(Unread unread) {
-  if (!unread.empty()) std::thread([gone = std::move(unread)] { sync::leave_realtime(); }).detach();
+template <class Released>
+void free_in_background(Released released) {
+  if (!released.empty()) std::thread([gone = std::move(released)] { sync::leave_realtime(); }).detach();
 }
 
 bool in_real_time(bool live) { return live && !sync::VirtualTime::current(); }
@@ -70,7 +70,7 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Off
       frames_(host.sense().snapshots<contact_frame_t>(channels::kContacts, 4096)),
       world_(host.sense().snapshots<world_state_t>(channels::kWorldState, 4096)),
       tools_(host.bus().queue<tool_state_t>(channels::kToolState, 512)),
-      ear_(host.bus().clocks()),
+      listener_(host.bus().clocks()),
       contacts_(host.bus().clocks()),
       bodies_(host.bus().clocks()),
       output_(host.options().out, options.device, kCallbackPriority,
@@ -103,7 +103,7 @@ void NodeRenderer::configure(const Settings& settings) {
 
 sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
   scene_ = scenes.scene();
-  ear_.set_scene(*scene_);
+  listener_.set_scene(*scene_);
   due_.clear([this](const contact_event_t& event, sync::HostTime scheduled) { drop(event, scheduled); });
   configure(settings);
   const auto extent = [&](std::int64_t hash) -> std::optional<Extent> {
@@ -119,7 +119,7 @@ sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Setting
 
 void NodeRenderer::start_loading_surfaces(const sync::SceneReceiver& scenes) {
   sliding_.reset();
-  output_.hear(nullptr);
+  output_.set_surfaces(nullptr);
   loading_surfaces_.emplace([of = *scene_, pictures = sync::pictures_of(scenes)] {
     sync::leave_realtime();
     return load_surfaces(of, pictures);
@@ -143,19 +143,19 @@ void NodeRenderer::poll_loading() {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     output_.step_library();
   }
-  if (sampler_) sampler_->play(output_.library().database(), output_.library().number());
+  if (sampler_) sampler_->set_database(output_.library().database(), output_.library().number());
 }
 
 void NodeRenderer::take_surfaces() {
-  auto heard = std::make_shared<const AudioSurfaces>();
+  auto surfaces = std::make_shared<const AudioSurfaces>();
   try {
-    heard = loading_surfaces_->take();
+    surfaces = loading_surfaces_->take();
   } catch (const std::exception& e) {
     host().say(std::string("cannot read the maps of the scene (") + e.what() + "); scraping contacts sound without them");
   }
   loading_surfaces_.reset();
-  output_.hear(heard);
-  sliding_ = std::make_unique<Sliding>(*scene_, heard, bodies_, *impacts_, output_.settings(),
+  output_.set_surfaces(surfaces);
+  sliding_ = std::make_unique<Sliding>(*scene_, surfaces, bodies_, *impacts_, output_.settings(),
                                        output_.settings().sample_rate_Hz);
 }
 
@@ -163,16 +163,16 @@ void NodeRenderer::receive() {
   while (const auto m = events_.pop()) contacts_.push(m->message, m->arrival);
   while (const auto m = frames_.pop()) contacts_.push(m->message, m->arrival);
   while (const auto m = world_.pop()) bodies_.push(m->message, m->arrival);
-  while (const auto m = tools_.pop()) ear_.push(m->message, m->arrival);
+  while (const auto m = tools_.pop()) listener_.push(m->message, m->arrival);
 }
 
 std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   poll_loading();
   const bool plays = (impacts_ || (real_time_ && now - started_ > kSceneTimeout)) && output_.keep_open(now);
   const sync::ModalityEndpoint& sense = host().sense();
-  output_.allow(sense.delay());
+  output_.set_presentation_delay(sense.delay());
   output_.degrade({sense.output().value("dropout"), sense.output().value("dropout.every")});
-  if (scene_) output_.set_listener(ear_.at(now + output_.latency()));
+  if (scene_) output_.set_listener(listener_.at(now + output_.latency()));
   receive();
   collect_hits(now);
   process_due_hits(now);
@@ -185,7 +185,7 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
 void NodeRenderer::collect_hits(sync::HostTime now) {
   const auto map = contacts_.map(now);
   if (!map || !impacts_) return;
-  for (const contact_event_t& event : contacts_.take_events(map->to_sim(now + kEarly))) {
+  for (const contact_event_t& event : contacts_.take_events(map->to_sim(now + kEarlyWindow))) {
     if (event.kind != contact_event_t::HIT) continue;
     ++hits_;
     const sync::HostTime scheduled =
@@ -200,7 +200,7 @@ void NodeRenderer::process_due_hits(sync::HostTime now) {
   // A log is rendered as fast as possible, for any duration of a tick.
   const sync::HostTime begun = sync::host_now();
   const Settings& settings = output_.settings();
-  due_.handle(
+  due_.process(
       now, late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s)),
       [&] { return !real_time_ || sync::host_now() - begun < kStrikeBudget; },
       [&](const contact_event_t& event, sync::HostTime scheduled) { strike(event, scheduled); },
@@ -208,38 +208,38 @@ void NodeRenderer::process_due_hits(sync::HostTime now) {
 }
 
 void NodeRenderer::strike(const contact_event_t& event, sync::HostTime scheduled) {
-  impacts_->set_listener(ear_.at(scheduled));
+  impacts_->set_listener(listener_.at(scheduled));
   Strike strike = impacts_->strike(event, scheduled, [&](int body) -> std::optional<Eigen::Isometry3d> {
     const auto pose = bodies_.pose(body, sync::sim_time(event.time_ns));
     if (pose.status == sync::SampleStatus::kNone) return std::nullopt;
     return Eigen::Translation3d(pose.value.position) * pose.value.orientation;
   });
-  sampler_->record(strike, event, *impacts_);
+  sampler_->add_recordings(strike, event, *impacts_);
   output_.submit(strike, impacts_->table());
 }
 
 void NodeRenderer::submit_contacts(sync::HostTime now) {
-  const sync::Nanoseconds every = output_.tell_every(kScrapeLead);
+  const sync::Nanoseconds every = output_.update_interval(kScrapeLead);
   const bool due = !no_sound_ && now - submitted_at_ >= every;
-  if (sliding_) sliding_->tell_every(sync::to_seconds(every));
+  if (sliding_) sliding_->set_update_interval(sync::to_seconds(every));
   const bool slides = due && sliding_ && sync::to_seconds(now - scraped_at_) >= sliding_->period_s();
   const auto map = contacts_.map(now);
-  if (!map || !sampler_ || !due || !(slides || sampler_->plays())) return;
+  if (!map || !sampler_ || !due || !(slides || sampler_->enabled())) return;
   submitted_at_ = now;
-  sampler_->tell_every(sync::to_seconds(every));
-  const sync::HostTime heard_at = now + output_.latency() + kScrapeLead;
-  if (sliding_) sliding_->set_listener(ear_.at(heard_at));
-  sampler_->set_listener(ear_.at(heard_at));
+  sampler_->set_update_interval(sync::to_seconds(every));
+  const sync::HostTime presented_at = now + output_.latency() + kScrapeLead;
+  if (sliding_) sliding_->set_listener(listener_.at(presented_at));
+  sampler_->set_listener(listener_.at(presented_at));
   const sync::Nanoseconds delay = host().sense().delay();
-  const sync::SimTime t = map->to_sim(std::min(now, heard_at - delay));
+  const sync::SimTime t = map->to_sim(std::min(now, presented_at - delay));
   contacts_.keep(delay);
   bodies_.keep(delay);
   // Without contact snapshots they would never end.
   const bool known = now - frames_.count().newest_arrival < kContactsTimeout;
   const sync::Contacts lasting = known ? contacts_.state_at(t).value : sync::Contacts{};
-  for (const RecordedContact& rub : sampler_->rubs(lasting, heard_at)) output_.submit(rub);
+  for (const RecordedContact& contact : sampler_->recorded_contacts(lasting, presented_at)) output_.submit(contact);
   if (!slides) return;
-  for (Scrape scrape : sliding_->scrapes(lasting, t, heard_at, sync::to_seconds(now - scraped_at_))) {
+  for (Scrape scrape : sliding_->scrapes(lasting, t, presented_at, sync::to_seconds(now - scraped_at_))) {
     scrape.slide *= sampler_->modal_gain(scrape.id, Interaction::kScrape);
     scrape.roll *= sampler_->modal_gain(scrape.id, Interaction::kRoll);
     output_.submit(scrape);
@@ -256,21 +256,21 @@ void NodeRenderer::publish() {
 }
 
 void NodeRenderer::print_messages() {
-  for (const std::string& news : output_.library().news()) host().say(news);
+  for (const std::string& message : output_.library().take_messages()) host().say(message);
   if (sampler_)
-    for (const std::string& news : sampler_->news()) host().say(news);
-  if (const auto news = output_.news()) host().say(*news);
+    for (const std::string& message : sampler_->take_messages()) host().say(message);
+  if (const auto message = output_.take_status_change()) host().say(*message);
 }
 
 sync::Status NodeRenderer::status(sync::HostTime now, bool plays) {
   host().node().override_ticks(output_.callbacks(), output_.underflows(), output_.callback_rate_Hz());
-  const sync::HostTime heard = std::max(events_.count().newest_arrival, frames_.count().newest_arrival);
+  const sync::HostTime newest_input = std::max(events_.count().newest_arrival, frames_.count().newest_arrival);
   const std::int8_t state = !impacts_                   ? node_health_t::WAITING
                             : !plays                    ? node_health_t::OUTPUT_LOST
-                            : heard == sync::HostTime{} ? node_health_t::READY
-                            : now - heard > kInputTimeout  ? node_health_t::INPUT_LOST
+                            : newest_input == sync::HostTime{} ? node_health_t::READY
+                            : now - newest_input > kInputTimeout  ? node_health_t::INPUT_LOST
                                                         : node_health_t::RUNNING;
-  return {state, output_.note(), output_.quality(), static_cast<int>(kQualities.size())};
+  return {state, output_.status_text(), output_.quality(), static_cast<int>(kQualities.size())};
 }
 
 }  // namespace tactus::audio

@@ -73,7 +73,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   sync::ModalityEndpoint::Stream<world_state_t>& world_;
   // bypasses the profile, which delays or thins events; the position of the ear is not an event
   sync::Queue<tool_state_t>& tools_;
-  Ear ear_;
+  Ear listener_;
   sync::ContactStream contacts_;
   sync::BodyHistory bodies_;
   Output output_;

@@ -40,7 +40,7 @@ Output::Output(std::string folder, std::string device, int fifo_priority, OpenCa
       queues_(std::make_shared<CallbackQueues>()),
       strikes_(*queues_),
       scrapes_(*queues_),
-      rubs_(queues_->recorded.rubs),
+      recorded_contacts_(queues_->recorded.contacts),
       library_(queues_->recorded),
       open_(std::move(open)),
       silent_(silent) {}
@@ -57,12 +57,12 @@ bool Output::keep_open(sync::HostTime now) {
   strikes_.free_released();
   if (stream_ && stream_->alive(now)) {
     scrapes_.send_ends();
-    rubs_.send_ends();
+    recorded_contacts_.send_ends();
     stream_->play_until(now);
     return true;
   }
   if (stream_) {
-    trouble_ = "the sound card \"" + stream_->card() + "\" has gone";
+    error_text_ = "the sound card \"" + stream_->card() + "\" has gone";
     close();
   }
   if (opening_)
@@ -75,9 +75,9 @@ bool Output::keep_open(sync::HostTime now) {
 void Output::start_opening(sync::HostTime now) {
   opening_since_ = now;
   opened_with_ = settings_;
-  ordered_.reset();
-  heard_from_.reset();
-  if (open_) return take(*open(settings_, folder_, fifo_priority_, queues_, open_, silent_));
+  sent_command_.reset();
+  sent_listener_.reset();
+  if (open_) return use_stream(*open(settings_, folder_, fifo_priority_, queues_, open_, silent_));
   opening_.emplace([settings = settings_, folder = folder_, priority = fifo_priority_, queues = queues_, silent = silent_] {
     return open(settings, folder, priority, queues, {}, silent);
   });
@@ -89,7 +89,7 @@ std::unique_ptr<Output::Opened> Output::open(const Settings& settings, const std
   def.rate_Hz = settings.sample_rate_Hz;
   def.period_frames = settings.period_frames;
   def.ceiling = settings.limiter_ceiling;
-  def.hearing = {.full_scale_dB = settings.full_scale_level_dB, .limit_dB = settings.level_limit_dB};
+  def.level_limit = {.full_scale_dB = settings.full_scale_level_dB, .limit_dB = settings.level_limit_dB};
   def.late = late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s));
   def.instructions = instructions_of(settings);
   // reading an HRTF takes a third of a second
@@ -111,26 +111,26 @@ std::unique_ptr<Output::Opened> Output::open(const Settings& settings, const std
   return std::make_unique<Opened>(Opened{renderer, std::move(card)});
 }
 
-void Output::take(Opened& opened) {
+void Output::use_stream(Opened& opened) {
   renderer_ = std::move(opened.renderer);
   stream_ = std::move(opened.card);
   medium_ = stream_->medium();
-  trouble_.clear();
+  error_text_.clear();
 }
 
 void Output::finish_opening(sync::HostTime now) {
   if (!opening_->done()) {
     if (now - opening_since_ > kStartTimeout)
-      trouble_ = "the sound card \"" + opened_with_.device +
+      error_text_ = "the sound card \"" + opened_with_.device +
                  "\" does not start; choose another --audio-device or \"virtual\"";
     return;
   }
   try {
-    take(*opening_->take());
+    use_stream(*opening_->take());
     // The scene may have selected another card meanwhile.
     if (!same_stream(opened_with_, settings_)) close();
   } catch (const std::exception& e) {
-    trouble_ = e.what();
+    error_text_ = e.what();
     retry_at_ = now + sync::from_seconds(settings_.retry_after_s);
   }
   opening_.reset();
@@ -144,13 +144,13 @@ void Output::close() {
 }
 
 void Output::degrade(const DropoutDef& dropout) {
-  const RenderCommand orders{dropout, settings_.quality == "auto" ? -1 : std::stoi(settings_.quality)};
-  if (ordered_ != orders && queues_->orders.push(orders)) ordered_ = orders;
+  const RenderCommand command{dropout, settings_.quality == "auto" ? -1 : std::stoi(settings_.quality)};
+  if (sent_command_ != command && queues_->commands.push(command)) sent_command_ = command;
 }
 
 void Output::set_listener(const Eigen::Isometry3d& listener) {
   const Listener now{listener.cast<float>(), static_cast<float>(settings_.nearest_m)};
-  if (stream_ && heard_from_ != now && queues_->listeners.push(now)) heard_from_ = now;
+  if (stream_ && sent_listener_ != now && queues_->listeners.push(now)) sent_listener_ = now;
 }
 
 void Output::submit(const Strike& strike, const StrikeQueue::Table& table) {
@@ -180,7 +180,7 @@ sync::Nanoseconds Output::latency() const {
 
 // An update waits until the first callback after its sample has been reached. Two of the updates allow for ticks
 // at uneven intervals.
-sync::Nanoseconds Output::tell_every(sync::Nanoseconds lead) const {
+sync::Nanoseconds Output::update_interval(sync::Nanoseconds lead) const {
   const auto period = sync::from_seconds(settings_.period_frames / settings_.sample_rate_Hz);
   return (latency() + lead + period) / (kMaxQueuedUpdates - 2);
 }
@@ -196,35 +196,35 @@ std::optional<presentation_t> Output::next_report() {
   return report;
 }
 
-std::optional<std::string> Output::news() {
-  std::string now = stream_ ? "plays on " + stream_->card() + " into " + medium_ + too_slow() : trouble_;
-  if (now == told_) return std::nullopt;
-  return told_ = std::move(now);
+std::optional<std::string> Output::take_status_change() {
+  std::string now = stream_ ? "plays on " + stream_->card() + " into " + medium_ + latency_warning() : error_text_;
+  if (now == reported_status_) return std::nullopt;
+  return reported_status_ = std::move(now);
 }
 
-std::string Output::note() const {
-  if (!stream_) return (trouble_.empty() ? "sound card not opened yet" : trouble_) + losses();
+std::string Output::status_text() const {
+  if (!stream_) return (error_text_.empty() ? "sound card not opened yet" : error_text_) + loss_text();
   return stream_->card() + " at " + std::to_string(static_cast<int>(settings_.sample_rate_Hz)) + " Hz, " +
          std::to_string(settings_.period_frames) + " frames, " + std::to_string(stream_->underflows()) +
-         " underflows" + costs() + hearing() + losses() + too_slow();
+         " underflows" + cost_text() + exposure_text() + loss_text() + latency_warning();
 }
 
-std::string Output::too_slow() const {
+std::string Output::latency_warning() const {
   if (!delay_ || latency() <= *delay_ + sync::from_seconds(settings_.late_limit_s)) return "";
   return ", too slowly for the delay of sound: most blows come too late to be heard; make period_frames or "
          "latency_periods smaller, or the delay longer";
 }
 
-std::string Output::losses() const {
+std::string Output::loss_text() const {
   std::string text;
-  if (const std::int64_t states = scrapes_.lost() + rubs_.lost(); states > 0)
+  if (const std::int64_t states = scrapes_.lost() + recorded_contacts_.lost(); states > 0)
     text += ", " + std::to_string(states) + " states of contacts lost";
   const std::int64_t reports = reports_lost_ + queues_->reports_lost.load(std::memory_order_relaxed);
   if (reports > 0) text += ", " + std::to_string(reports) + " reports of hits lost";
   return text;
 }
 
-std::string Output::costs() const {
+std::string Output::cost_text() const {
   std::string text;
   for (std::size_t i = 0; i < queues_->costs.size(); ++i) {
     const std::int64_t contacts = queues_->costs[i].contacts.load(std::memory_order_relaxed);
@@ -237,11 +237,11 @@ std::string Output::costs() const {
   return text;
 }
 
-std::string Output::hearing() const {
-  const ExposureMeter& heard = queues_->heard;
-  const double exposure = heard.exposure_Pa2_s.load(std::memory_order_relaxed);
+std::string Output::exposure_text() const {
+  const ExposureMeter& meter = queues_->exposure;
+  const double exposure = meter.exposure_Pa2_s.load(std::memory_order_relaxed);
   std::string text = dose_text(sound_dose_days(exposure, settings_.weekly_level_dB));
-  const long down_dB = std::lround(-20 * std::log10(heard.gain.load(std::memory_order_relaxed)));
+  const long down_dB = std::lround(-20 * std::log10(meter.gain.load(std::memory_order_relaxed)));
   if (down_dB > 0) text += ", turned down by " + std::to_string(down_dB) + " dB for the ears";
   return text;
 }

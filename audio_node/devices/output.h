@@ -31,7 +31,7 @@ class Output {
 
   // Call once per tick with the delay of sound after its event. note() and news() report a card whose latency is
   // so much longer that every blow would be dropped.
-  void allow(sync::Nanoseconds delay) { delay_ = delay; }
+  void set_presentation_delay(sync::Nanoseconds delay) { delay_ = delay; }
   // Call once per tick with the degradation of the output by a profile.
   void degrade(const DropoutDef& dropout);
 
@@ -42,7 +42,7 @@ class Output {
   void drop(std::int64_t event_id, sync::HostTime scheduled);
   // Later scrapes are of these surfaces; null: none. The previous surfaces are kept while the callback may read
   // them.
-  void hear(std::shared_ptr<const AudioSurfaces> surfaces) { scrapes_.change(std::move(surfaces)); }
+  void set_surfaces(std::shared_ptr<const AudioSurfaces> surfaces) { scrapes_.set_surfaces(std::move(surfaces)); }
   // Returns surfaces that are no longer needed. Freeing them may take milliseconds, so do not free them in the
   // loop.
   std::vector<std::shared_ptr<const AudioSurfaces>> take_released() { return scrapes_.take_released(); }
@@ -52,12 +52,12 @@ class Output {
   void submit(const Scrape& scrape) {
     if (stream_ && !silent_) scrapes_.submit(scrape);
   }
-  void submit(const RecordedContact& rub) {
-    if (stream_ && !silent_) rubs_.submit(rub);
+  void submit(const RecordedContact& contact) {
+    if (stream_ && !silent_) recorded_contacts_.submit(contact);
   }
   // Interval of contact updates at which all that wait for their sample fit into the queue; they wait for
   // latency() and `lead`.
-  sync::Nanoseconds tell_every(sync::Nanoseconds lead) const;
+  sync::Nanoseconds update_interval(sync::Nanoseconds lead) const;
   // The recordings in use. Queued commands must refer to its newest database.
   Library& library() { return library_; }
   // Call once per tick: Library::step(), with the information whether a callback may play recordings.
@@ -66,9 +66,9 @@ class Output {
   std::optional<MediaPair> next_pair() { return stream_ ? stream_->next_pair() : std::nullopt; }
 
   // One line of status: the card in use, or the reason why nothing plays.
-  std::string note() const;
+  std::string status_text() const;
   // The same once, whenever the card or the reason changes.
-  std::optional<std::string> news();
+  std::optional<std::string> take_status_change();
   const std::string& medium() const { return medium_; }
   // Since the start, over all streams.
   std::int64_t callbacks() const { return past_callbacks_ + (stream_ ? stream_->callbacks() : 0); }
@@ -79,13 +79,13 @@ class Output {
   double callback_rate_Hz() const { return settings_.sample_rate_Hz / settings_.period_frames; }
   const Settings& settings() const { return settings_; }
   // Cost of each method per contact, in words; empty while nothing has sounded.
-  std::string costs() const;
+  std::string cost_text() const;
   // Sound dose and current gain reduction, in words; empty while nothing has sounded.
-  std::string hearing() const;
+  std::string exposure_text() const;
   // For a card that is too slow for its delay, in words; otherwise empty.
-  std::string too_slow() const;
+  std::string latency_warning() const;
   // Lost updates and reports, in words; empty if none.
-  std::string losses() const;
+  std::string loss_text() const;
   // Step of the quality ladder in use.
   int quality() const { return queues_->quality.load(std::memory_order_relaxed); }
 
@@ -97,7 +97,7 @@ class Output {
   std::string folder_, device_;
   int fifo_priority_;
   Settings settings_, opened_with_;
-  std::string trouble_, medium_, told_;
+  std::string error_text_, medium_, reported_status_;
   std::optional<sync::Nanoseconds> delay_;
   sync::HostTime retry_at_{}, opening_since_{};
   std::int64_t past_callbacks_ = 0, past_underflows_ = 0;
@@ -106,10 +106,10 @@ class Output {
   std::shared_ptr<Renderer> renderer_;
   StrikeQueue strikes_;  // goes after the stream, whose callback reads what it keeps; so do the next three
   ScrapeQueue scrapes_;
-  RecordedContactQueue rubs_;
+  RecordedContactQueue recorded_contacts_;
   Library library_;
-  std::optional<RenderCommand> ordered_;       // what the renderer has been told; nothing: it is new
-  std::optional<Listener> heard_from_;  // likewise
+  std::optional<RenderCommand> sent_command_;       // what the renderer has been told; nothing: it is new
+  std::optional<Listener> sent_listener_;  // likewise
   OpenCard open_;                       // none: a Stream
   bool silent_;
   // A card and its renderer.
@@ -119,7 +119,7 @@ class Output {
   };
   static std::unique_ptr<Opened> open(const Settings& settings, const std::string& folder, int priority,
                                       const std::shared_ptr<CallbackQueues>& queues, const OpenCard& open, bool silent);
-  void take(Opened& opened);
+  void use_stream(Opened& opened);
   std::optional<sync::BackgroundTask<Opened>> opening_;
   std::unique_ptr<Card> stream_;
   std::deque<presentation_t> dropped_reports_;

@@ -180,7 +180,7 @@ int Stream::on_block(const void*, void* out, unsigned long frames, const PaStrea
 // The callback thread inherits the priority of the thread that opened the stream; this raises it to that of the
 // callback.
 void Stream::configure_thread() {
-  entered_ = true;
+  thread_configured_ = true;
   if (!sync::is_realtime()) return request_short_slice();
   if (fifo_priority_ <= 0) return;
   sched_param param{};
@@ -189,18 +189,18 @@ void Stream::configure_thread() {
 }
 
 void Stream::block(float* out, int frames, const PaStreamCallbackTimeInfo& time, bool underflow) {
-  if (!entered_) configure_thread();
+  if (!thread_configured_) configure_thread();
   const sync::HostTime now = sync::host_now();
   const auto estimate =
       dac_.block(frames, {time.currentTime, time.outputBufferDacTime, now, underflow}, latency_s_);
-  const BlockTime block_time{estimate.first_sample, estimate.uncertainty, used_};
+  const BlockTime block_time{estimate.first_sample, estimate.uncertainty, render_time_};
   render_(out, frames, block_time);
   if (tee_) tee(out, frames, block_time, underflow);
   callbacks_.fetch_add(1, std::memory_order_relaxed);
   if (underflow) underflows_.fetch_add(1, std::memory_order_relaxed);
   last_ns_.store(sync::to_ns(now), std::memory_order_relaxed);
   const sync::HostTime done = sync::host_now();
-  used_ = done - now;
+  render_time_ = done - now;
   if (sync::is_realtime() && guard_.tick(now, done)) sync::leave_realtime();
 }
 

@@ -56,9 +56,9 @@ class Stream : public Card {
   // Used on the callback thread only.
   DacClock dac_;
   sync::OverrunGuard guard_;
-  bool entered_ = false;
+  bool thread_configured_ = false;
   std::int64_t next_pair_frame_ = 0;
-  sync::Nanoseconds used_{0};  // by the previous block
+  sync::Nanoseconds render_time_{0};  // by the previous block
 };
 
 // "audio.wav", or "audio.2.wav" and so on where that exists: a restarted node overwrites nothing.

@@ -17,7 +17,7 @@ namespace tactus::audio {
 struct AudioSurface {
   std::shared_ptr<const ReliefLevels> relief;
   std::shared_ptr<const FrictionMap> friction;
-  bool heard() const { return relief || friction; }
+  bool has_maps() const { return relief || friction; }
 };
 
 struct AudioSurfaces {
@@ -25,7 +25,7 @@ struct AudioSurfaces {
 
   const AudioSurface* of(std::int32_t material) const {
     const auto i = static_cast<std::size_t>(material);
-    return material >= 0 && i < by_material.size() && by_material[i].heard() ? &by_material[i] : nullptr;
+    return material >= 0 && i < by_material.size() && by_material[i].has_maps() ? &by_material[i] : nullptr;
   }
 };
 

@@ -26,14 +26,14 @@ class DueHits {
 
   // Calls sound(event, scheduled) for hits in the order of their time: the first in any case, further ones while
   // goes_on() is true. Calls drop(event, scheduled) for each hit that is so overdue that the policy drops it.
-  template <class GoesOn, class Sound, class Drop>
-  void handle(sync::HostTime now, const sync::LatePolicy& late, GoesOn goes_on, Sound sound, Drop drop) {
+  template <class HasTime, class Sound, class Drop>
+  void process(sync::HostTime now, const sync::LatePolicy& late, HasTime has_time, Sound sound, Drop drop) {
     for (bool first = true; !hits_.empty();) {
       const auto& [scheduled, event] = *hits_.begin();
       if (late.outcome(now - scheduled) == presentation_t::DROPPED_LATE) {
         drop(event, scheduled);
       } else {
-        if (!std::exchange(first, false) && !goes_on()) return;
+        if (!std::exchange(first, false) && !has_time()) return;
         sound(event, scheduled);
       }
       hits_.erase(hits_.begin());

@@ -52,7 +52,7 @@ class Impacts {
   // Pressure at 1 m per impulse of each mode, Pa / (N s), for a force at that place; nothing: anywhere.
   PerMode gains(int body, const std::optional<BodyPlace>& place) const;
   // Converts a world point and direction to the frame of a body: by `pose`, or by the scene for a static body.
-  std::optional<BodyPlace> on_body(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& direction,
+  std::optional<BodyPlace> place_on_body(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& direction,
                                    const PoseOf& pose) const;
 
  private:
@@ -60,7 +60,7 @@ class Impacts {
     BodySound sound;
     std::size_t number = 0;  // in the table of resonators
     std::vector<double> radiated;             // of each mode: pressure at 1 m per impulse and Mode::gain
-    std::optional<Eigen::Isometry3d> stands;  // T_world_body of a static body
+    std::optional<Eigen::Isometry3d> static_pose;  // T_world_body of a static body
   };
   const Voice& voice(int id) const;
   Elastic material(int index) const;

@@ -23,7 +23,7 @@ struct ScrapeSide {
   PerMode gains{};  // of each mode at the place of the contact, Pa at 1 m per N s
   // The modes above `residual_Hz` are too numerous to render one by one. Together they follow a force at once:
   // pressure at 1 m, Pa per N s a sample.
-  float beyond = 0;
+  float residual_gain = 0;
   double residual_Hz = 0;
   // False: the place of the contact on it is not known, and its surface adds nothing.
   bool known = false;
@@ -35,7 +35,7 @@ struct ScrapeSide {
   Roughness roughness;
   Eigen::Vector3d place_m = Eigen::Vector3d::Zero(), velocity_m_s = Eigen::Vector3d::Zero();
   // Motion of the contact over this surface per unit of sliding, and of rolling: 0 .. 1 in size.
-  Eigen::Vector3f slides = Eigen::Vector3f::Zero(), rolls = Eigen::Vector3f::Zero();
+  Eigen::Vector3f slide_vector = Eigen::Vector3f::Zero(), roll_vector = Eigen::Vector3f::Zero();
 };
 
 // State at one instant, sent every tick; between ticks the places continue with their velocities.

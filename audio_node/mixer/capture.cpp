@@ -33,7 +33,7 @@ Capture::Capture(const std::string& path, int rate_Hz, int channels, int pairs_f
   // The peak chunk holds the time of day, which would make two equal runs differ.
   sf_command(file_, SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);
   sf_command(file_, SFC_UPDATE_HEADER_NOW, nullptr, 0);
-  writer_ = std::thread([this] { write_on(); });
+  writer_ = std::thread([this] { run_writer(); });
 }
 
 Capture::~Capture() {
@@ -61,7 +61,7 @@ bool Capture::write_pending_silence() {
   return true;
 }
 
-void Capture::write_on() {
+void Capture::run_writer() {
   // The thread that opens a card may be a real-time one; this one must not be.
   const sched_param normal{};
   pthread_setschedparam(pthread_self(), SCHED_OTHER, &normal);

@@ -43,7 +43,7 @@ class Capture {
   std::int64_t lost_frames() const { return lost_.load(std::memory_order_relaxed); }
 
  private:
-  void write_on();
+  void run_writer();
   void write_all();
   bool write_pending_silence();
 

@@ -18,11 +18,11 @@ inline constexpr int kMaxQueuedUpdates = 64;
 
 // Queues between the loop of the node and the callback, besides strikes.
 struct RecordedQueues {
-  Spsc<RecordedContact> rubs{kMaxQueuedUpdates * 2 * Loops::kMax};
+  Spsc<RecordedContact> contacts{kMaxQueuedUpdates * 2 * Loops::kMax};
   // Strikes and contacts queued after an entry belong to the database of that number.
   Spsc<std::int64_t> databases{16};
   // The callback holds nothing of a database with a number below this, and never will again: it may be freed.
-  std::atomic<std::int64_t> let_go{0};
+  std::atomic<std::int64_t> oldest_held{0};
   static_assert(std::atomic<std::int64_t>::is_always_lock_free);
 };
 
@@ -30,26 +30,26 @@ struct RecordedQueues {
 void release_unused(RecordedQueues& queues);
 
 // Realtime-safe: yes, except the constructor.
-class Recorded {
+class RecordingPlayer {
  public:
-  Recorded(RecordedQueues& queues, double rate_Hz, const Space& space = {},
+  RecordingPlayer(RecordedQueues& queues, double rate_Hz, const Space& space = {},
            Instructions instructions = Instructions::kSse2)
       : queues_(queues),
         shots_(rate_Hz, space, instructions),
         loops_(rate_Hz, space, instructions),
-        database_(queues.let_go.load()) {}
+        database_(queues.oldest_held.load()) {}
 
   // Sounding recordings keep their place in the world.
   void set_listener(const Listener& listener) { shots_.set_listener(listener), loops_.set_listener(listener); }
 
   // Call at the beginning of a block, before strikes are taken.
   void receive_databases();
-  void begin(const Strike& strike, float gain, int offset) { shots_.take(strike.recorded, gain, offset); }
+  void begin(const Strike& strike, float gain, int offset) { shots_.start(strike.recorded, gain, offset); }
   // Adds `frames` frames, channels interleaved, the first of which is presented at `first`. Returns the number of
   // contacts that began to scrape or roll.
   int render(float* mix, int frames, sync::HostTime first);
   // Call at the end of a block. waiting: strikes that have not begun.
-  void let_go(const Scheduler& waiting);
+  void release(const Scheduler& waiting);
   // Stops all recordings; no strike waits.
   void abandon(const Scheduler& waiting);
 

@@ -62,7 +62,7 @@ Renderer::Renderer(CallbackQueues& queues, const RendererDef& def)
       newest_scene_(queues.oldest_held_scene.load(std::memory_order_relaxed)),
       voices_(kQualities[0].voices, def.rate_Hz, ring(def.instructions), def.space, def.instructions),
       scrapes_(def.rate_Hz),
-      recorded_(queues.recorded, def.rate_Hz, def.space, def.instructions),
+      recordings_(queues.recorded, def.rate_Hz, def.space, def.instructions),
       clock_ns_(def.clock_ns),
       scrapes_taken_(queues.oldest_held_scrape.load(std::memory_order_relaxed)),
       dropout_(def.rate_Hz),
@@ -72,24 +72,24 @@ Renderer::Renderer(CallbackQueues& queues, const RendererDef& def)
               static_cast<int>(kCalm_s * std::min(kMeans_Hz, def.rate_Hz / def.period_frames))) {}
 
 void Renderer::receive_commands() {
-  RenderCommand orders;
-  while (queues_.orders.pop(orders)) {
-    dropout_.set(orders.dropout);
-    pinned_ = std::min(orders.quality, static_cast<int>(kQualities.size()) - 1);
+  RenderCommand command;
+  while (queues_.commands.pop(command)) {
+    dropout_.set(command.dropout);
+    pinned_ = std::min(command.quality, static_cast<int>(kQualities.size()) - 1);
   }
   Listener listener;
   bool moved = false;
   while (queues_.listeners.pop(listener)) moved = true;
-  if (moved) voices_.set_listener(listener), recorded_.set_listener(listener);
+  if (moved) voices_.set_listener(listener), recordings_.set_listener(listener);
 }
 
 // The ladder receives the time per second of sound, since blocks may differ in length.
-void Renderer::adapt(int frames, sync::Nanoseconds used) {
-  if (pinned_ < 0 && used > sync::Nanoseconds(0)) frames_ += last_frames_, used_ += used;
+void Renderer::adapt(int frames, sync::Nanoseconds render_time) {
+  if (pinned_ < 0 && render_time > sync::Nanoseconds(0)) frames_ += last_frames_, render_time_ += render_time;
   last_frames_ = frames;
   if (frames_ > 0 && frames_ >= rate_Hz_ / kMeans_Hz) {
-    ladder_.add(sync::from_seconds(sync::to_seconds(used_) * rate_Hz_ / frames_));
-    frames_ = 0, used_ = {};
+    ladder_.add(sync::from_seconds(sync::to_seconds(render_time_) * rate_Hz_ / frames_));
+    frames_ = 0, render_time_ = {};
   }
   const int step = pinned_ < 0 ? ladder_.step() : pinned_;
   voices_.set_limits(kQualities[static_cast<std::size_t>(step)]);
@@ -115,8 +115,8 @@ void Renderer::report(const Strike& strike, std::int8_t outcome, std::int64_t pr
 void Renderer::render(float* out, int frames, const BlockTime& time) {
   const FlushToZero guard;
   receive_commands();
-  recorded_.receive_databases();
-  adapt(frames, time.used);
+  recordings_.receive_databases();
+  adapt(frames, time.render_time);
   Strike strike;
   while (queues_.strikes.pop(strike)) {
     newest_scene_ = std::max(newest_scene_, strike.scene);
@@ -129,7 +129,7 @@ void Renderer::render(float* out, int frames, const BlockTime& time) {
   }
   release_strikes();
   release_scrapes();
-  recorded_.let_go(scheduler_);
+  recordings_.release(scheduler_);
 }
 
 void Renderer::abandon() {
@@ -144,7 +144,7 @@ void Renderer::abandon() {
   next_scrape_.reset();
   scrapes_.clear();
   release_scrapes();
-  recorded_.abandon(scheduler_);
+  recordings_.abandon(scheduler_);
 }
 
 // The frames of the block are rendered now, pass the spatialiser and leave the limiter kDelay frames later.
@@ -166,11 +166,11 @@ void Renderer::sound_some(float* out, int frames, sync::HostTime leaving) {
   scrapes_.drive(voices_, frames, leaving);
   voices_.render(out, frames);
   const std::int64_t computed = clock();
-  const int rubs = recorded_.render(out, frames, leaving);
-  queues_.costs[1].contacts.fetch_add(rubs, std::memory_order_relaxed);
+  const int contacts = recordings_.render(out, frames, leaving);
+  queues_.costs[1].contacts.fetch_add(contacts, std::memory_order_relaxed);
   // A block without sound counts for no contact.
   if (voices_.active() > 0) queues_.costs[0].ns.fetch_add(computed - begun, std::memory_order_relaxed);
-  if (recorded_.active() > 0) queues_.costs[1].ns.fetch_add(clock() - computed, std::memory_order_relaxed);
+  if (recordings_.active() > 0) queues_.costs[1].ns.fetch_add(clock() - computed, std::memory_order_relaxed);
   for (int n = 0; n < frames; ++n)
     for (int c = 0; c < channels_; ++c) out[channels_ * n + c] *= open_[static_cast<std::size_t>(n)];
   limit(out, frames);
@@ -181,9 +181,9 @@ void Renderer::limit(float* out, int frames) {
   limiter_.process(out, frames);
   level_limiter_.process(out, frames);
   // no other thread writes it
-  const double exposure = queues_.heard.exposure_Pa2_s.load(std::memory_order_relaxed);
-  queues_.heard.exposure_Pa2_s.store(exposure + level_limiter_.take_exposure_Pa2_s(), std::memory_order_relaxed);
-  queues_.heard.gain.store(level_limiter_.gain(), std::memory_order_relaxed);
+  const double exposure = queues_.exposure.exposure_Pa2_s.load(std::memory_order_relaxed);
+  queues_.exposure.exposure_Pa2_s.store(exposure + level_limiter_.take_exposure_Pa2_s(), std::memory_order_relaxed);
+  queues_.exposure.gain.store(level_limiter_.gain(), std::memory_order_relaxed);
 }
 
 // They are queued in the order of presentation; an early one waits.
@@ -195,7 +195,7 @@ void Renderer::receive_scrapes(sync::HostTime until) {
       next_scrape_ = s;
       return;
     }
-    scrapes_.take(s);
+    scrapes_.update(s);
   }
 }
 
@@ -224,7 +224,7 @@ void Renderer::begin(const Strike& strike, int frames, const BlockTime& leaving)
   const int offset = static_cast<int>(std::clamp<long>(nearest, 0, frames - 1));
   if (!silent_) {
     for (const StrikeSide& side : strike.sides) voices_.strike(side, gain, strike.pulse, offset);
-    recorded_.begin(strike, gain, offset);
+    recordings_.begin(strike, gain, offset);
   }
   const bool computed = strike.sides[0].voice >= 0 || strike.sides[1].voice >= 0;
   queues_.costs[0].contacts.fetch_add(computed ? 1 : 0, std::memory_order_relaxed);
@@ -233,7 +233,7 @@ void Renderer::begin(const Strike& strike, int frames, const BlockTime& leaving)
   if (open_[static_cast<std::size_t>(offset)] < kSilenced)
     return report(strike, presentation_t::DROPPED_BY_PROFILE, -1, sync::Nanoseconds(0));
   const sync::Nanoseconds half_sample = samples(1) / 2;
-  const bool heard = gain >= strike.heard_from;
+  const bool heard = gain >= strike.min_audible_gain;
   report(strike, heard ? outcome : presentation_t::INAUDIBLE, sync::to_ns(leaving.first_sample + samples(offset)),
          leaving.uncertainty + half_sample);
 }

@@ -10,7 +10,7 @@ constexpr std::size_t kMaxPendingEnds = 4 * Scrapes::kMax;
 
 }  // namespace
 
-void ScrapeQueue::change(Surfaces next) {
+void ScrapeQueue::set_surfaces(Surfaces next) {
   // Surfaces that no scrape points to may be freed at once, regardless of the callback.
   if (now_) kept_.push_back({submitted_ > first_ ? submitted_ : 0, std::move(now_)});
   now_ = std::move(next);
@@ -43,15 +43,15 @@ bool ScrapeQueue::push(Scrape& scrape) {
 }
 
 std::vector<ScrapeQueue::Surfaces> ScrapeQueue::take_released() {
-  std::vector<Surfaces> unread;
-  if (kept_.empty()) return unread;
-  const std::int64_t let_go = queues_.oldest_held_scrape.load(std::memory_order_acquire);
+  std::vector<Surfaces> released;
+  if (kept_.empty()) return released;
+  const std::int64_t oldest_held = queues_.oldest_held_scrape.load(std::memory_order_acquire);
   std::erase_if(kept_, [&](Kept& k) {
-    if (k.end > let_go) return false;
-    unread.push_back(std::move(k.surfaces));
+    if (k.end > oldest_held) return false;
+    released.push_back(std::move(k.surfaces));
     return true;
   });
-  return unread;
+  return released;
 }
 
 }  // namespace tactus::audio

@@ -21,7 +21,7 @@ class ScrapeQueue {
 
   // Later scrapes point to these surfaces; null: none. The previous surfaces are kept while the callback may read
   // them. While the callback is stopped, at most one queue of scrapes holds them.
-  void change(Surfaces next);
+  void set_surfaces(Surfaces next);
   // False when the queue is full: a state is skipped and counted as lost; an end is sent as soon as there is room,
   // unless its contact continues.
   bool submit(Scrape scrape);

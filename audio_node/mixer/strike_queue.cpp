@@ -17,8 +17,8 @@ bool StrikeQueue::submit(Strike strike, const Table& table) {
 }
 
 void StrikeQueue::free_released() {
-  const std::int64_t let_go = queues_.oldest_held_scene.load(std::memory_order_acquire);
-  while (!kept_.empty() && kept_.front().scene < let_go) kept_.pop_front();
+  const std::int64_t oldest_held = queues_.oldest_held_scene.load(std::memory_order_acquire);
+  while (!kept_.empty() && kept_.front().scene < oldest_held) kept_.pop_front();
 }
 
 }  // namespace tactus::audio

@@ -53,10 +53,10 @@ constexpr float kMaxGain = 100;
 
 void even_out(Layers& layers, Interaction interaction) {
   const auto loudness = [&](const Layer& layer) {
-    float most = 0;
+    float loudest = 0;
     for (const Recording& r : layer.takes)
-      most = std::max(most, interaction == Interaction::kImpact ? r.peak : r.rms);
-    return most;
+      loudest = std::max(loudest, interaction == Interaction::kImpact ? r.peak : r.rms);
+    return loudest;
   };
   const float fastest = loudness(layers.by_speed.back());
   for (Layer& layer : layers.by_speed) layer.gain = std::min(kMaxGain, fastest / loudness(layer));

@@ -25,7 +25,7 @@ class Loops {
   void set_listener(const Listener& listener) { listener_ = listener; }
 
   // Takes a contact that is due. True when it begins. One that ends is silent after kEnd_s.
-  bool take(const RecordedContact& rub);
+  bool update(const RecordedContact& contact);
   // Adds `frames` <= kMaxBlock frames, channels interleaved, the first of which is presented at `first`.
   void render(float* mix, int frames, sync::HostTime first);
 

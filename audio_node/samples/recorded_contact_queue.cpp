@@ -10,12 +10,12 @@ constexpr std::size_t kMaxPendingEnds = 4 * Loops::kMax;
 
 }  // namespace
 
-bool RecordedContactQueue::submit(const RecordedContact& rub) {
-  std::erase_if(pending_ends_, [&](const RecordedContact& end) { return end.contact == rub.contact && end.part == rub.part; });
+bool RecordedContactQueue::submit(const RecordedContact& contact) {
+  std::erase_if(pending_ends_, [&](const RecordedContact& end) { return end.contact == contact.contact && end.part == contact.part; });
   send_ends();
-  if (queue_.push(rub)) return true;
-  if (!rub.ends) return ++lost_, false;
-  pending_ends_.push_back(rub);
+  if (queue_.push(contact)) return true;
+  if (!contact.ends) return ++lost_, false;
+  pending_ends_.push_back(contact);
   if (pending_ends_.size() > kMaxPendingEnds) pending_ends_.pop_front(), ++lost_;
   return false;
 }

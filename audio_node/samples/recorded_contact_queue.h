@@ -16,7 +16,7 @@ class RecordedContactQueue {
 
   // False when the queue is full: a state is skipped and counted as lost; an end is sent as soon as there is room,
   // unless its contact continues.
-  bool submit(const RecordedContact& rub);
+  bool submit(const RecordedContact& contact);
   // Call once per tick.
   void send_ends();
   std::int64_t lost() const { return lost_; }

@@ -77,11 +77,11 @@ std::optional<Recording> read_recording(const std::string& path, Interaction int
     return refuse("has " + std::to_string(info.channels) + " channels; give one or two");
   if (info.samplerate < 8000 || info.samplerate > 192000)
     return refuse("has " + std::to_string(info.samplerate) + " samples a second; give 8000 to 192000");
-  const auto most = static_cast<sf_count_t>(kLongest_s * info.samplerate);
-  if (info.frames > most) faults.push_back({path, "is longer than 20 s and is played no further; cut it", false});
+  const auto max_frames = static_cast<sf_count_t>(kLongest_s * info.samplerate);
+  if (info.frames > max_frames) faults.push_back({path, "is longer than 20 s and is played no further; cut it", false});
   // Counts the frames that are read: a header may state any number.
   std::vector<float> x, block(4096 * static_cast<std::size_t>(info.channels));
-  while (static_cast<sf_count_t>(x.size()) < most) {
+  while (static_cast<sf_count_t>(x.size()) < max_frames) {
     const sf_count_t got = sf_readf_float(file.get(), block.data(), 4096);
     if (got <= 0) break;
     for (sf_count_t n = 0; n < got; ++n) {

@@ -21,7 +21,7 @@ class Shots {
   void set_listener(const Listener& listener) { listener_ = listener; }
 
   // From the frame `offset` of the next render() on, scaled by `gain`.
-  void take(const RecordedStrike& strike, float gain, int offset);
+  void start(const RecordedStrike& strike, float gain, int offset);
   // Adds `frames` <= kMaxBlock frames, channels interleaved.
   void render(float* mix, int frames);
 

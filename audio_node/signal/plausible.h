@@ -22,8 +22,8 @@ inline constexpr double kMaxFriction = 2;
 
 // False for NaN: every comparison with a NaN is false.
 template <class V>
-bool within(const V& v, double most) {
-  return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;
+bool within(const V& v, double max) {
+  return std::abs(v.x) <= max && std::abs(v.y) <= max && std::abs(v.z) <= max;
 }
 
 // A unit vector or zero, with a wide margin: the message validation requires 1 within 1e-2.

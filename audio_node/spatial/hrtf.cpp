@@ -151,7 +151,7 @@ Hrtf::Hrtf(const MeasuredHrtf& m, double rate_Hz)
   for (std::size_t i = 0; i < 2 * n; ++i) energy += static_cast<double>(ahead[i]) * static_cast<double>(ahead[i]);
   if (!(energy > 0)) throw std::runtime_error("the HRTF file is silent straight ahead; choose another hrtf_file");
   for (float& x : filters_) x *= static_cast<float>(1 / std::sqrt(energy));
-  begins_ = mean_onset();
+  onset_samples_ = mean_onset();
 }
 
 // Each node is weighted by its part of the sphere, the cosine of its elevation.

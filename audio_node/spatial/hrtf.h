@@ -25,7 +25,7 @@ class Hrtf {
   int taps() const { return taps_; }
   // Frames from the beginning of the filters to the first audible sample at the nearer ear (onset.h), mean over
   // all directions: the latency of the filters.
-  int begins() const { return begins_; }
+  int onset_samples() const { return onset_samples_; }
   // Upper bound of the interaural delay, samples.
   float max_delay() const { return max_delay_; }
 
@@ -47,7 +47,7 @@ class Hrtf {
   std::vector<float> filters_;  // of each node: left, right
   std::vector<float> delays_;   // of each node: left after right, samples
   float max_delay_ = 0;
-  int begins_ = 0;
+  int onset_samples_ = 0;
 };
 
 }  // namespace tactus::audio

@@ -10,7 +10,7 @@ namespace {
 
 // A source that has turned by less keeps its filters: a tenth of a degree, the resolution of hearing at best
 // (Mills, J. Acoust. Soc. Am. 30, 1958), so that tremor of a tracked head does not cost new filters in each block.
-constexpr float kMinTurn = 0.00175f;
+constexpr float kMinTurn_rad = 0.00175f;
 
 // A place that is not finite counts as straight ahead.
 const SourcePosition kStraightAhead;
@@ -42,14 +42,14 @@ void Spatialiser::begin(int source) {
   for (auto* past : {&s.input, &s.filtered_left, &s.filtered_right}) std::fill(past->begin(), past->end(), 0.f);
 }
 
-void Spatialiser::add(int source, const SourcePosition& told, const float* mono, int frames) {
-  const bool is_place = told.direction.allFinite() && told.distance_m > 0 && std::isfinite(told.distance_m);
-  const SourcePosition& place = is_place ? told : kStraightAhead;
+void Spatialiser::add(int source, const SourcePosition& requested, const float* mono, int frames) {
+  const bool is_place = requested.direction.allFinite() && requested.distance_m > 0 && std::isfinite(requested.distance_m);
+  const SourcePosition& place = is_place ? requested : kStraightAhead;
   Source& s = sources_[static_cast<std::size_t>(source)];
   std::array<float, kMaxBlock> sound;
   s.distance.apply(mono, place.distance_m, frames, sound.data());
   // At most in every second block: new filters double the cost.
-  const bool moved = (place.direction - s.direction).squaredNorm() > kMinTurn * kMinTurn;
+  const bool moved = (place.direction - s.direction).squaredNorm() > kMinTurn_rad * kMinTurn_rad;
   const bool turned = s.fresh || (moved && s.rested);
   s.rested = !turned;
   if (turned) s.direction = place.direction;
@@ -67,14 +67,14 @@ void Spatialiser::add_by_ears(Source& s, const float* sound, int frames, bool tu
   std::copy(sound, sound + frames, input);
   float* const left = s.filtered_left.data() + past_;
   float* const right = s.filtered_right.data() + past_;
-  const float later = s.interaural_delay;
+  const float delay_before = s.interaural_delay;
   if (turned) s.interaural_delay = space_.hrtf->at(s.direction, next_left_.data(), next_right_.data());
   if (s.fresh) std::swap(s.left, next_left_), std::swap(s.right, next_right_);
   std::array<float, kMaxBlock> new_left, new_right;
   const float* const filters[] = {s.left.data(), s.right.data(), next_left_.data(), next_right_.data()};
-  float* const heard[] = {left, right, new_left.data(), new_right.data()};
+  float* const filtered[] = {left, right, new_left.data(), new_right.data()};
   const bool crossfades = turned && !s.fresh;
-  fir_(input, filters, crossfades ? 4 : 2, taps_, heard);
+  fir_(input, filters, crossfades ? 4 : 2, taps_, filtered);
   if (crossfades) {
     for (int n = 0; n < frames; ++n) {
       const auto i = static_cast<std::size_t>(n);
@@ -85,10 +85,10 @@ void Spatialiser::add_by_ears(Source& s, const float* sound, int frames, bool tu
     std::swap(s.left, next_left_), std::swap(s.right, next_right_);
   }
   // The nearer ear has no additional delay.
-  const auto late = [](float by) { return static_cast<float>(kMinDelay) + std::max(0.f, by); };
-  const float from = s.fresh ? s.interaural_delay : later;
-  add_delayed(left, late(from), late(s.interaural_delay), frames, bus(0));
-  add_delayed(right, late(-from), late(-s.interaural_delay), frames, bus(1));
+  const auto delay = [](float by) { return static_cast<float>(kMinDelay) + std::max(0.f, by); };
+  const float from = s.fresh ? s.interaural_delay : delay_before;
+  add_delayed(left, delay(from), delay(s.interaural_delay), frames, bus(0));
+  add_delayed(right, delay(-from), delay(-s.interaural_delay), frames, bus(1));
   std::copy(input + frames - taps_, input + frames, s.input.begin());
   std::copy(left + frames - past_, left + frames, s.filtered_left.begin());
   std::copy(right + frames - past_, right + frames, s.filtered_right.begin());

@@ -25,7 +25,7 @@ struct Space {
 
   int channels() const { return panning && !hrtf ? panning->channels() : 2; }
   // Latency from input to output, frames, for any direction; the further ear has an additional delay.
-  int latency() const { return hrtf ? hrtf->begins() + kMinDelay : 0; }
+  int latency() const { return hrtf ? hrtf->onset_samples() + kMinDelay : 0; }
 };
 
 // A fixed number of sources, each one mono signal. Directions and distances change within a block, without a

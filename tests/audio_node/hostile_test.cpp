@@ -147,13 +147,13 @@ TEST_CASE("Whatever is said, possible or not, what is heard are numbers below th
     std::memcpy(&x, &bits, sizeof x);
     return random() % 2 ? x : std::abs(std::fmod(std::isfinite(x) ? x : 1.f, 50.f));
   };
-  int owed = 0;
+  int expected_reports = 0;
   std::int64_t number = 0;
   while (bench->left.size() < 2 * kRate) {
     const sync::HostTime at = sync::host_time(bench->time_ns(bench->left.size() + 100));
-    for (int i = 0; i < 4; ++i, ++owed) {
+    for (int i = 0; i < 4; ++i, ++expected_reports) {
       contact_event_t e =
-          RecordedRun::hit(owed, 0, static_cast<int>(random() % 5) - 1, static_cast<int>(random() % 5));
+          RecordedRun::hit(expected_reports, 0, static_cast<int>(random() % 5) - 1, static_cast<int>(random() % 5));
       if (random() % 2) e.approach_speed_m_s = any();
       if (random() % 2) e.effective_mass_kg = any();
       if (random() % 2) e.curvature_1_m = any();
@@ -180,7 +180,7 @@ TEST_CASE("Whatever is said, possible or not, what is heard are numbers below th
   CHECK(below);
   SECTION("each blow is reported, heard or not") {
     bench->play(4800);
-    CHECK(static_cast<int>(bench->reports.size()) == owed);
+    CHECK(static_cast<int>(bench->reports.size()) == expected_reports);
   }
 }
 

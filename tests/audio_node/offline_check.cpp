@@ -83,7 +83,7 @@ std::vector<float> mono_of(const std::string& path) {
 std::vector<double> record(const std::string& path, const std::string& profile = "") {
   RecordedRun run(std::make_unique<sync::FileSink>(path));
   if (!profile.empty())
-    run.raw(0.01, channels::kDegradation,
+    run.write_raw(0.01, channels::kDegradation,
             tactus::test::in_force(profile, {10'000'000, kLogBegins_ns + 10'000'000, 4711, 7, 9, 33, 0}));
   std::mt19937 random(11);
   std::uniform_real_distribution<double> gap(0.25, 0.4);
@@ -94,11 +94,11 @@ std::vector<double> record(const std::string& path, const std::string& profile =
     if (static_cast<int>(times.size()) < kHits && now >= next) {
       const auto n = static_cast<int>(times.size());
       // The glass ball on the board rings for less than the gap.
-      run.hear(now, {RecordedRun::hit(1000 + n, next, 0, 2)});
+      run.write_events(now, {RecordedRun::hit(1000 + n, next, 0, 2)});
       times.push_back(next);
       next += gap(random);
     }
-    if (ms % 17 == 0) run.snapshot(now, {});
+    if (ms % 17 == 0) run.write_contacts(now, {});
   }
   run.finish();
   return times;

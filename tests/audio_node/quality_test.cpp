@@ -69,10 +69,10 @@ TEST_CASE("Sound gets cheaper when its blocks take half of their time, and full 
 
 TEST_CASE("Sound whose quality is held does not heed the time") {
   auto bench = std::make_unique<Bench>();
-  REQUIRE(bench->queues.orders.push(RenderCommand{{}, 1}));
+  REQUIRE(bench->queues.commands.push(RenderCommand{{}, 1}));
   CHECK(run(*bench, 3, 100) == 1);
   CHECK(run(*bench, 0.01, 10 * kTwoSeconds) == 1);
-  REQUIRE(bench->queues.orders.push(RenderCommand{{}, -1}));
+  REQUIRE(bench->queues.commands.push(RenderCommand{{}, -1}));
   run(*bench, 0.3, 1);
   CHECK(bench->queues.quality.load() == 0);
 }

@@ -74,10 +74,10 @@ Scrape scrape(std::int64_t number, std::mt19937& random, const AudioSurface* sur
   ScrapeSide& side = s.sides[0];
   side.voice = of.sides[1].voice, side.resonators = *of.sides[1].resonators, side.gains = of.sides[1].gains;
   side.known = true;
-  side.beyond = 0.1f, side.residual_Hz = 5000;
+  side.residual_gain = 0.1f, side.residual_Hz = 5000;
   if (surface) side.relief = surface->relief.get(), side.friction = surface->friction.get();
   side.roughness = {1e-6, 0};
-  side.velocity_m_s.x() = 0.1, side.slides.x() = 1, side.rolls.y() = 1;
+  side.velocity_m_s.x() = 0.1, side.slide_vector.x() = 1, side.roll_vector.y() = 1;
   return s;
 }
 
@@ -96,7 +96,7 @@ struct Recordings {
     strike.recorded.shots[0] = {&blow.by_speed[0].takes[0], 0.1f, 1.3f};
     strike.recorded.place = strike.sides[0].place;
   }
-  RecordedContact rub(std::int64_t database, std::mt19937& random) const {
+  RecordedContact contact(std::int64_t database, std::mt19937& random) const {
     RecordedContact r;
     r.contact = static_cast<std::int64_t>(random() % 40);
     r.database = database, r.at = sync::host_now(), r.layers = &loop;
@@ -125,7 +125,7 @@ extern "C" PaError Pa_OpenStream(PaStream** stream, const PaStreamParameters* in
 
 TEST_CASE("The trap catches what allocates, locks, waits and writes, and nothing of what happens outside of it") {
   const auto caught = [](auto f) {
-    forget_trapped();
+    reset_trapped();
     {
       const Trap trap;
       f();
@@ -148,7 +148,7 @@ TEST_CASE("The trap catches what allocates, locks, waits and writes, and nothing
   CHECK(caught([] { (void)sync::host_now(); }).empty());  // the clock is read without a system call
   // Another thread may do so at the same time.
   CHECK(caught([] {}).empty());
-  forget_trapped();
+  reset_trapped();
   std::vector<int> outside(1000, 1);
   CHECK(trapped() == 0);
 }
@@ -189,7 +189,7 @@ TEST_CASE(
       pthread_cond_signal(&condition);
       pthread_mutex_unlock(&mutex);
     });
-    forget_trapped();
+    reset_trapped();
     {
       const Trap trap;
       while (!woken) pthread_cond_wait(&condition, &mutex);
@@ -226,7 +226,7 @@ TEST_CASE(
       {"fread", [&] { return fread(&byte, 1, 1, file) == 0; }}};
   for (const Call& call : calls) {
     CAPTURE(call.name);
-    forget_trapped();
+    reset_trapped();
     bool right = false;
     {
       const Trap trap;
@@ -241,7 +241,7 @@ TEST_CASE(
   sem_destroy(&semaphore);
   fclose(file);
   for (const int open_fd : {events, in, out}) ::close(open_fd);
-  forget_trapped();
+  reset_trapped();
 }
 
 TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatever is asked of it") {
@@ -266,7 +266,7 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatev
   std::mt19937 random(3);
   int reported = 0, steps = 0, struck = 0;
   std::int64_t database = 0;
-  forget_trapped();
+  reset_trapped();
   {
     StreamOptions options;
     options.device = "virtual", options.folder = folder.path, options.period_frames = period;
@@ -291,9 +291,9 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatev
       listener.nearest_m = 0.3f;
       queues.listeners.push(listener);
       if (i % 50 == 0) queues.recorded.databases.push(++database);
-      queues.recorded.rubs.push(recordings.rub(database, random));
+      queues.recorded.contacts.push(recordings.contact(database, random));
       if (i % 10 == 0)
-        queues.orders.push({{i % 40 < 20 ? 0.01 : 0.0, 0.05}, static_cast<int>(random() % 4) - 1}), ++steps;
+        queues.commands.push({{i % 40 < 20 ? 0.01 : 0.0, 0.05}, static_cast<int>(random() % 4) - 1}), ++steps;
       for (presentation_t r; queues.reports.pop(r);) ++reported;
       while (stream.next_pair()) continue;
       std::this_thread::sleep_for(std::chrono::milliseconds(3));
@@ -315,7 +315,7 @@ TEST_CASE("One allocation in one block of the real callback is caught") {
     return;
   }
   const Folder folder;
-  forget_trapped();
+  reset_trapped();
   int blocks = 0;
   {
     StreamOptions options;
@@ -339,7 +339,7 @@ TEST_CASE("Neither does what keeps the samples of a real card") {
   const Folder folder;
   Capture capture(folder.path + "/x.wav", 48000, 2, -1);
   const std::vector<float> block(2 * 128);
-  forget_trapped();
+  reset_trapped();
   {
     const Trap trap;
     // Longer than the ring: the disk cannot follow, and silence is pending.

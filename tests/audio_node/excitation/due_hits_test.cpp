@@ -26,7 +26,7 @@ struct Loop {
     due.push(e, at_ms(due_ms));
   }
   void tick(int ms, int time_for) {
-    due.handle(
+    due.process(
         at_ms(ms), kLate, [&] { return --time_for > 0; },
         [&](const contact_event_t& e, sync::HostTime t) { sounded.push_back(e.event_id), for_when.push_back(t); },
         [&](const contact_event_t& e, sync::HostTime) { dropped.push_back(e.event_id); });
@@ -77,7 +77,7 @@ TEST_CASE("No flood of hits waits without end: what is too many is not kept") {
   for (std::size_t i = 0; i < DueHits::kMax; ++i) REQUIRE(due.push({}, at_ms(0)));
   CHECK_FALSE(due.push({}, at_ms(0)));
   CHECK(due.size() == DueHits::kMax);
-  due.handle(
+  due.process(
       at_ms(0), kLate, [] { return false; }, [](const auto&, auto) {}, [](const auto&, auto) {});
   CHECK(due.push({}, at_ms(0)));
 }

@@ -180,8 +180,8 @@ TEST_CASE("An impact's level follows pressure to the power 0.6, and says when it
   // the pressure is 64 times as large, the level 64^0.6 = 12.1 times.
   const double weak = rendered_peak(hit(0, 1, 0.02f, 0.001f)), strong = rendered_peak(hit(0, 1, 0.32f, 0.004f));
   CHECK(strong / weak == Approx(std::pow(64, 0.6)).epsilon(0.02));
-  CHECK(all.strike(hit(0, 1, 0.0001f, 1e-6f), {}).heard_from > 1);
-  CHECK_FALSE(all.strike(hit(0, 1, 0.5f, 0.1f), {}).heard_from > 1);
+  CHECK(all.strike(hit(0, 1, 0.0001f, 1e-6f), {}).min_audible_gain > 1);
+  CHECK_FALSE(all.strike(hit(0, 1, 0.5f, 0.1f), {}).min_audible_gain > 1);
   SECTION("impacts of hard bodies at 0.5 m/s, heard from 1 m, peak between -26 and -3 dBFS (a shell)") {
     for (const int id : {1, 2, 4}) {
       const double peak = rendered_peak(hit(0, id, 0.5f, static_cast<float>(all.body(id).mass_kg), 100));

@@ -91,7 +91,7 @@ TEST_CASE("What is too late to be strong enough is called inaudible") {
   auto bench = std::make_unique<Bench>();
   bench->play(480);
   Strike s = strike_of(1, 1, 500, 20, bench->time_ns(480) - 20'000'000);
-  s.heard_from = 0.5f;
+  s.min_audible_gain = 0.5f;
   REQUIRE(bench->queues.strikes.push(s));
   bench->play(480);
   REQUIRE(bench->reports.size() == 1);

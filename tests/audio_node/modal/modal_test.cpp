@@ -63,7 +63,7 @@ TEST_CASE("A supported plate has the frequencies of Navier's double sine") {
   CHECK(f[0].frequency_Hz == Approx(pi / 2 * std::sqrt(D / (7850 * h)) * (1 / (a * a) + 1 / (b * b))));
   CHECK(f[1].frequency_Hz == Approx(pi / 2 * std::sqrt(D / (7850 * h)) * (4 / (a * a) + 1 / (b * b))));
   CHECK(std::is_sorted(f.begin(), f.end(),
-                       [](const Natural& x, const Natural& y) { return x.frequency_Hz < y.frequency_Hz; }));
+                       [](const NaturalFrequency& x, const NaturalFrequency& y) { return x.frequency_Hz < y.frequency_Hz; }));
 }
 
 TEST_CASE("A free square plate agrees with Leissa's exact values as well as Warburton's method allows") {

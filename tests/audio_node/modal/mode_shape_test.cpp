@@ -95,7 +95,7 @@ TEST_CASE("A plate is silent in a mode on its nodal lines, and its corners drive
 TEST_CASE("A disc's modes lose no momentum, and their circles lie where Leissa prints them") {
   const double R = 0.1;
   const auto at = [&](int n, int s, double x) { return free_disc_shape(n, s, R)({x * R, 0, 0}, kUp); };
-  for (const Natural& m : free_disc({}, R, 0.001, {1e6, 32})) {
+  for (const NaturalFrequency& m : free_disc({}, R, 0.001, {1e6, 32})) {
     CAPTURE(m.i, m.k);
     const double share = m.i > 0 ? 2 : 1;  // of two degenerate modes
     CHECK(2 * mean([&](double x) { return std::pow(at(m.i, m.k, x), 2) * x; }) == Approx(share).epsilon(1e-4));

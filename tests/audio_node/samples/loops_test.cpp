@@ -34,18 +34,18 @@ Layers layers(std::vector<std::pair<double, double>> speed_and_frequency) {
 sync::HostTime at(double samples) { return sync::host_time(kStart_ns + std::llround(samples * 1e9 / kRate)); }
 
 // Updated once a block of kMaxBlock by `tell` (null: no update), left channel at 1 m.
-struct Sliding {
+struct LoopBench {
   Loops loops{kRate};
   std::vector<float> left;
-  void play(int blocks, const std::function<void(RecordedContact&)>& tell) {
+  void play(int blocks, const std::function<void(RecordedContact&)>& set_contact) {
     for (int b = 0; b < blocks; ++b) {
       const sync::HostTime first = at(static_cast<double>(left.size()));
-      if (tell) {
+      if (set_contact) {
         RecordedContact r;
         r.contact = 4, r.database = 1, r.at = first, r.level = 0.1f;
         r.place.direction = Eigen::Vector3f::UnitY();
-        tell(r);
-        loops.take(r);
+        set_contact(r);
+        loops.update(r);
       }
       std::vector<float> mix(2 * kMaxBlock);
       loops.render(mix.data(), kMaxBlock, first);
@@ -82,9 +82,9 @@ constexpr int kSecond = 48000 / kMaxBlock;
 
 TEST_CASE("A loop sounds as long as its contact, at its level, over its seam, and is silent after") {
   const Layers l = layers({{1, 400}});
-  Sliding s;
-  const auto tell = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1; };
-  s.play(2 * kSecond, tell);
+  LoopBench s;
+  const auto set_contact = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1; };
+  s.play(2 * kSecond, set_contact);
   CHECK(s.loops.active() == 1);
   CHECK(s.most(24000, 96000) == Approx(0.1).epsilon(1e-3));
   // A sine of that level, over four passes of the loop: no step is above its slope; at the beginning the slope of
@@ -103,7 +103,7 @@ TEST_CASE("Twice the speed is an octave, and beyond an octave the pitch stays") 
   const Layers l = layers({{1, 400}});
   for (const auto& [speed, ratio] :
        std::vector<std::pair<double, double>>{{1, 1}, {0.6, 0.6}, {2, 2}, {9, 2}, {0.01, 0.5}}) {
-    Sliding s;
+    LoopBench s;
     s.play(kSecond, [&, v = speed](RecordedContact& r) { r.layers = &l, r.speed_m_s = v; });
     CAPTURE(speed);
     // One sample in the whole second.
@@ -113,7 +113,7 @@ TEST_CASE("Twice the speed is an octave, and beyond an octave the pitch stays") 
 
 TEST_CASE("Layers go over into each other while the speed changes, without a click") {
   const Layers l = layers({{0.5, 300}, {2, 300}});
-  Sliding s;
+  LoopBench s;
   double v = 0.3;
   s.play(2 * kSecond, [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = v *= 1.002; });
   // Two sines whose powers add up to that of one, at most an octave up, and the slope of the levels.
@@ -123,7 +123,7 @@ TEST_CASE("Layers go over into each other while the speed changes, without a cli
 
 TEST_CASE("Level and place that jump are followed without a click, and no number ends") {
   const Layers l = layers({{1, 100}});
-  Sliding s;
+  LoopBench s;
   int i = 0;
   s.play(2 * kSecond, [&](RecordedContact& r) {
     r.layers = &l, r.speed_m_s = 1, r.level = (i / 50) % 2 ? 0.1f : 0.f;
@@ -136,7 +136,7 @@ TEST_CASE("Level and place that jump are followed without a click, and no number
 
 TEST_CASE("What is of another database is another sound, and the one before fades") {
   const Layers first = layers({{1, 400}}), second = layers({{1, 900}});
-  Sliding s;
+  LoopBench s;
   s.play(kSecond, [&](RecordedContact& r) { r.layers = &first, r.speed_m_s = 1; });
   s.play(kSecond, [&](RecordedContact& r) { r.layers = &second, r.speed_m_s = 1, r.database = 2; });
   CHECK(s.loops.active() == 1);
@@ -151,16 +151,16 @@ TEST_CASE("More contacts than there is room for are not heard, and nothing break
   for (std::int64_t id = 0; id < 100; ++id) {
     RecordedContact r;
     r.contact = id, r.database = 1, r.at = at(0), r.layers = &l, r.level = 0.01f, r.speed_m_s = 1;
-    CHECK(loops.take(r) == (id < Loops::kMax));
+    CHECK(loops.update(r) == (id < Loops::kMax));
   }
   CHECK(loops.active() == Loops::kMax);
 }
 
 TEST_CASE("A loop whose contact is told to end is silent 2 ms later, to the bit and without a click") {
   const Layers l = layers({{1, 400}});
-  Sliding s;
-  const auto tell = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1; };
-  s.play(kSecond, tell);
+  LoopBench s;
+  const auto set_contact = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1; };
+  s.play(kSecond, set_contact);
   const std::size_t ended = s.left.size();
   const auto end = [](RecordedContact& r) { r.ends = true; };
   s.play(2, end);  // a repeated end does not delay it
@@ -173,10 +173,10 @@ TEST_CASE("A loop whose contact is told to end is silent 2 ms later, to the bit 
   CHECK(s.steepest(ended) <= 0.1 * (2 * pi * 400 / kRate + 1.0 / 96) * 1.001);
 
   SECTION("and one that begins again before it was silent goes on from where it is") {
-    Sliding again;
-    again.play(kSecond, tell);
+    LoopBench again;
+    again.play(kSecond, set_contact);
     again.play(1, end);
-    again.play(kSecond, tell);
+    again.play(kSecond, set_contact);
     CHECK(again.steepest() <= 0.1 * (2 * pi * 400 / kRate + 1.0 / 96) * 1.001);
     CHECK(again.most(again.left.size() - 4800, again.left.size()) == Approx(0.1).epsilon(1e-3));
   }
@@ -184,10 +184,10 @@ TEST_CASE("A loop whose contact is told to end is silent 2 ms later, to the bit 
 
 TEST_CASE("A loop that is told of rarely goes on until it is told anew") {
   const Layers l = layers({{1, 400}});
-  Sliding s;
+  LoopBench s;
   for (int i = 0; i < 10; ++i) {
-    const auto tell = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1, r.update_interval_s = 0.088; };
-    s.play(1, tell);
+    const auto set_contact = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1, r.update_interval_s = 0.088; };
+    s.play(1, set_contact);
     s.play(65, nullptr);  // 88 ms in total
   }
   for (std::size_t n = 24000; n + 480 < s.left.size(); n += 480) CHECK(s.most(n, n + 480) > 0.09f);

@@ -6,26 +6,26 @@ using namespace tactus;
 using namespace tactus::audio;
 
 TEST_CASE("The end of a recorded contact waits for room, unless the contact goes on. Lost states are counted") {
-  Spsc<RecordedContact> queue(4);
-  RecordedContactQueue line(queue);
-  const auto tell = [&](std::int64_t contact, std::int32_t part, bool ends) {
+  Spsc<RecordedContact> ring(4);
+  RecordedContactQueue queue(ring);
+  const auto submit = [&](std::int64_t contact, std::int32_t part, bool ends) {
     RecordedContact r;
     r.contact = contact, r.part = part, r.ends = ends;
-    return line.submit(r);
+    return queue.submit(r);
   };
-  for (int i = 0; i < 4; ++i) REQUIRE(tell(1, 0, false));
-  CHECK_FALSE(tell(1, 0, false));
-  CHECK(line.lost() == 1);
-  CHECK_FALSE(tell(1, 0, true));
-  CHECK_FALSE(tell(1, 1, true));
-  CHECK_FALSE(tell(1, 1, false));  // that part continues
-  CHECK(line.lost() == 2);
-  for (RecordedContact r; queue.pop(r);) CHECK_FALSE(r.ends);
-  line.send_ends();
-  line.send_ends();
+  for (int i = 0; i < 4; ++i) REQUIRE(submit(1, 0, false));
+  CHECK_FALSE(submit(1, 0, false));
+  CHECK(queue.lost() == 1);
+  CHECK_FALSE(submit(1, 0, true));
+  CHECK_FALSE(submit(1, 1, true));
+  CHECK_FALSE(submit(1, 1, false));  // that part continues
+  CHECK(queue.lost() == 2);
+  for (RecordedContact r; ring.pop(r);) CHECK_FALSE(r.ends);
+  queue.send_ends();
+  queue.send_ends();
   RecordedContact end;
-  REQUIRE(queue.pop(end));
+  REQUIRE(ring.pop(end));
   CHECK(end.ends);
   CHECK(end.part == 0);
-  CHECK_FALSE(queue.pop(end));
+  CHECK_FALSE(ring.pop(end));
 }

@@ -33,8 +33,8 @@ float largest_step(const std::vector<float>& x) {
 
 // A lasting tone, with or without drop-outs.
 struct Tone {
-  explicit Tone(const DropoutDef& dropout) { order(dropout); }
-  void order(const DropoutDef& dropout) { REQUIRE(bench->queues.orders.push(RenderCommand{dropout, 0})); }
+  explicit Tone(const DropoutDef& dropout) { set_dropout(dropout); }
+  void set_dropout(const DropoutDef& dropout) { REQUIRE(bench->queues.commands.push(RenderCommand{dropout, 0})); }
   void play_until(std::size_t samples) {
     while (bench->left.size() < samples) bench->play(128);
   }
@@ -137,9 +137,9 @@ TEST_CASE("Drop-outs are ordered and ended while the sound is on") {
   Tone tone({});
   REQUIRE(tone.bench->queues.strikes.push(strike_of(1, 1, 440, 0.5, tone.bench->time_ns(3000))));
   tone.play_until(kSecond / 2);
-  tone.order({0.02, 0.1});
+  tone.set_dropout({0.02, 0.1});
   tone.play_until(kSecond);
-  tone.order({});
+  tone.set_dropout({});
   tone.play_until(2 * kSecond);
   const auto silent = [&](std::size_t from, std::size_t to) {
     long run = 0, longest = 0;

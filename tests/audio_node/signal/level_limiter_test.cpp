@@ -178,8 +178,8 @@ TEST_CASE("A roar of 128 bodies is played within the limit, and its dose is told
   // Beats modulate its power within the slow mean, which may differ by 0.5 dB from the mean of a whole second.
   CHECK(level < kDef.limit_dB + 0.5);
   CHECK(level > kDef.limit_dB - 1);
-  CHECK(bench->queues.heard.gain.load() < 0.5);
-  const double exposure = bench->queues.heard.exposure_Pa2_s.load();
+  CHECK(bench->queues.exposure.gain.load() < 0.5);
+  const double exposure = bench->queues.exposure.exposure_Pa2_s.load();
   CHECK(exposure > 7 * 0.1265 / 2);  // 85 dBA are 0.1265 Pa^2
   CHECK(exposure < 2 * 8 * 0.1265);
 }

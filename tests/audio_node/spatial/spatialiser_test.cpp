@@ -14,16 +14,16 @@ using namespace tactus::audio::test;
 
 namespace {
 
-struct Heard {
+struct StereoOutput {
   std::vector<double> left, right;
 };
 
 // A tone of amplitude 1 at place(block) at the end of each block.
 template <class PlaceAt>
-Heard tone(const Space& space, double frequency_Hz, int blocks, PlaceAt place) {
+StereoOutput tone(const Space& space, double frequency_Hz, int blocks, PlaceAt place) {
   Spatialiser spatialiser(space, 1, kRate, available_instructions().back());
   spatialiser.begin(0);
-  Heard heard;
+  StereoOutput heard;
   for (int b = 0; b < blocks; ++b) {
     std::vector<float> in, out(2 * kMaxBlock);
     for (int n = 0; n < kMaxBlock; ++n)
@@ -165,7 +165,7 @@ TEST_CASE("A body that rings stays where it is while the listener turns") {
 }
 
 TEST_CASE("A voice that has ended leaves nothing to the next on its source") {
-  const auto hear = [](Voices& voices, int blocks) {
+  const auto render = [](Voices& voices, int blocks) {
     std::vector<float> all;
     for (int b = 0; b < blocks; ++b) {
       std::vector<float> out(2 * kMaxBlock);
@@ -178,12 +178,12 @@ TEST_CASE("A voice that has ended leaves nothing to the next on its source") {
   Voices used(1, kRate, kRing, space), fresh(1, kRate, kRing, space);
   const Strike first = strike_of(1, 1, 3000, 500, 0), second = strike_of(2, 2, 500, 500, 0);
   used.strike(first.sides[0], 1, first.pulse, 0);
-  hear(used, 200);
+  render(used, 200);
   REQUIRE(used.active() == 0);
-  for (const float x : hear(used, 10)) CHECK(x == 0);
+  for (const float x : render(used, 10)) CHECK(x == 0);
   used.strike(second.sides[0], 1, second.pulse, 0);
   fresh.strike(second.sides[0], 1, second.pulse, 0);
-  CHECK(hear(used, 50) == hear(fresh, 50));
+  CHECK(render(used, 50) == render(fresh, 50));
 }
 
 namespace {
@@ -245,7 +245,7 @@ namespace {
 // A body that rings at 440 Hz without damping and is struck from the left, then from elsewhere.
 struct Restruck {
   Voices voices;
-  Heard heard;
+  StereoOutput heard;
 
   explicit Restruck(const Space& space) : voices(4, kRate, kRing, space, available_instructions().back()) {}
   void strike(const Eigen::Vector3f& from, float distance_m, float impulse) {

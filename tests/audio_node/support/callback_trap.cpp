@@ -65,7 +65,7 @@ std::string first_trapped() {
   const char* name = first;
   return name ? name : "";
 }
-void forget_trapped() { count = 0, first = nullptr; }
+void reset_trapped() { count = 0, first = nullptr; }
 
 bool traps_allocation() {
 #if defined(TACTUS_SANITIZED)

@@ -108,7 +108,7 @@ int main(int argc, char** argv) try {
       e.material_a = where.material_a, e.material_b = where.material_b;
       e.effective_mass_kg = 0.02f, e.curvature_1_m = static_cast<float>(kTip_1_m);  // a light hammer
       e.point_m = where.points[0].a_world_m, e.normal = where.normal;
-      run.hear(now, {e});
+      run.write_events(now, {e});
     }
     if (now < next_snapshot) continue;
     next_snapshot += kStep_s;
@@ -116,7 +116,7 @@ int main(int argc, char** argv) try {
     for (const double begin : {kScrape_s, kRoll_s})
       if (now >= kFirst_s && since >= begin && since < begin + kLasts_s)
         contacts.push_back(contact(scene, bar, material, kSpeed_m_s * (since - begin), begin == kRoll_s));
-    run.snapshot(now, contacts);
+    run.write_contacts(now, contacts);
   }
   run.finish();
   return 0;

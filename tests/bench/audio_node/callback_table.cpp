@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
       auto renderer = std::make_unique<Renderer>(*queues, def);
       RenderCommand all;
       all.quality = 0;
-      queues->orders.push(all);
+      queues->commands.push(all);
       std::vector<float> stereo(2 * static_cast<std::size_t>(frames));
       std::vector<double> shares;
       const auto blocks = static_cast<int>(seconds / period_s);

@@ -69,7 +69,7 @@ class Rehearsal {
  public:
   Rehearsal(const Database& database, const std::string& method) : scene_(plates()), impacts_(make(method)) {
     sampler_ = std::make_unique<Sampler>(scene_, settings_);
-    sampler_->play(&database, 1);
+    sampler_->set_database(&database, 1);
   }
 
   Cost impacts(int seconds) {
@@ -87,7 +87,7 @@ class Rehearsal {
         e.normal.z = 1, e.effective_mass_kg = 0.1f, e.curvature_1_m = 50;
         e.approach_speed_m_s = 0.05f + 1e-4f * static_cast<float>(random() % 10000);
         Strike s = impacts_.strike(e, at, [](int) { return Eigen::Isometry3d::Identity(); });
-        sampler_->record(s, e, impacts_);
+        sampler_->add_recordings(s, e, impacts_);
         queues_->strikes.push(s);
       }
     });
@@ -103,7 +103,7 @@ class Rehearsal {
       contacts.push_back(c);
     }
     return run(seconds, kSliding * seconds, [&](double now_s, sync::HostTime at) {
-      for (const RecordedContact& r : sampler_->rubs(contacts, at)) queues_->recorded.rubs.push(r);
+      for (const RecordedContact& r : sampler_->recorded_contacts(contacts, at)) queues_->recorded.contacts.push(r);
       for (const contact_t& c : contacts) {
         const float share = sampler_->modal_gain(c.contact_id, Interaction::kScrape);
         if (share > 0) queues_->scrapes.push(scrape(c, share, now_s, at));
@@ -133,7 +133,7 @@ class Rehearsal {
     }
     const double speed_m_s = static_cast<double>(c.sliding_velocity_m_s.x);
     s.sides[1].place_m.x() = speed_m_s * now_s, s.sides[1].velocity_m_s.x() = speed_m_s;
-    s.sides[1].slides.x() = 1;
+    s.sides[1].slide_vector.x() = 1;
     return s;
   }
 
