@@ -58,7 +58,7 @@ void Options::add_to(CLI::App& app) {
 
 void Options::check() const {
   if (no_sound && !sync::VirtualTime::current())
-    throw std::runtime_error("--no-sound is for virtual time; live, --audio-device virtual plays into a file and leaves the room quiet");
+    throw std::runtime_error("--no-sound is for virtual time; for a quiet run in real time choose --audio-device virtual, which plays into a file");
 }
 
 NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Offline* log)

@@ -63,7 +63,7 @@ void FileCard::finish() {
   if (closed && part_ != wav_) std::filesystem::rename(part_, wav_, error);
   if (closed && !error) return;
   finished_ = false;
-  throw std::runtime_error("cannot finish " + wav_ + " (" + (closed ? error.message() : "it does not close") +
+  throw std::runtime_error("cannot finish " + wav_ + " (" + (closed ? error.message() : "the file cannot be closed") +
                            "); free some disk or choose another --wav");
 }
 
@@ -84,7 +84,7 @@ void FileCard::play_until(sync::HostTime now) {
     // setting.
     render_(block_.data(), period_frames_, {first, sync::Nanoseconds(0), sync::Nanoseconds(0)});
     if (sf_writef_float(file_.get(), block_.data(), period_frames_) != period_frames_)
-      throw std::runtime_error("cannot go on in " + wav_ + " (" + sf_strerror(file_.get()) +
+      throw std::runtime_error("cannot continue to write " + wav_ + " (" + sf_strerror(file_.get()) +
                                "); free some disk or choose another --wav");
     ++blocks_;
   }

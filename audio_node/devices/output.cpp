@@ -62,7 +62,7 @@ bool Output::keep_open(sync::HostTime now) {
     return true;
   }
   if (stream_) {
-    error_text_ = "the sound card \"" + stream_->card() + "\" has gone";
+    error_text_ = "the sound card \"" + stream_->card() + "\" is lost";
     close();
   }
   if (opening_)
@@ -211,14 +211,14 @@ std::string Output::status_text() const {
 
 std::string Output::latency_warning() const {
   if (!delay_ || latency() <= *delay_ + sync::from_seconds(settings_.late_limit_s)) return "";
-  return ", too slowly for the delay of sound: most blows come too late to be heard; make period_frames or "
-         "latency_periods smaller, or the delay longer";
+  return ", too slowly for the delay of sound: most impacts are dropped as late; decrease period_frames or "
+         "latency_periods, or increase the delay";
 }
 
 std::string Output::loss_text() const {
   std::string text;
   if (const std::int64_t states = scrapes_.lost() + recorded_contacts_.lost(); states > 0)
-    text += ", " + std::to_string(states) + " states of contacts lost";
+    text += ", " + std::to_string(states) + " contact updates lost";
   const std::int64_t reports = reports_lost_ + queues_->reports_lost.load(std::memory_order_relaxed);
   if (reports > 0) text += ", " + std::to_string(reports) + " reports of hits lost";
   return text;
@@ -242,7 +242,7 @@ std::string Output::exposure_text() const {
   const double exposure = meter.exposure_Pa2_s.load(std::memory_order_relaxed);
   std::string text = dose_text(sound_dose_days(exposure, settings_.weekly_level_dB));
   const long down_dB = std::lround(-20 * std::log10(meter.gain.load(std::memory_order_relaxed)));
-  if (down_dB > 0) text += ", turned down by " + std::to_string(down_dB) + " dB for the ears";
+  if (down_dB > 0) text += ", reduced by " + std::to_string(down_dB) + " dB to limit the level";
   return text;
 }
 

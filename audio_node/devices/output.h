@@ -29,16 +29,16 @@ class Output {
   // it is dead. True when it plays.
   bool keep_open(sync::HostTime now);
 
-  // Call once per tick with the delay of sound after its event. note() and news() report a card whose latency is
-  // so much longer that every blow would be dropped.
+  // Call once per tick with the delay of sound after its event. status_text() and
+  // take_status_change() report a card whose latency is so much longer that every impact would be dropped.
   void set_presentation_delay(sync::Nanoseconds delay) { delay_ = delay; }
   // Call once per tick with the degradation of the output by a profile.
   void degrade(const DropoutDef& dropout);
 
-  // When nothing plays or the queue is full the strike will never sound, and is reported as dropped. table: what it refers
-  // to; it is kept as long as the callback may read it.
+  // When nothing plays or the queue is full the strike is reported as dropped. table: the modes that the strike refers to;
+  // they are kept as long as the callback may read them.
   void submit(const Strike& strike, const StrikeQueue::Table& table = nullptr);
-  // One that is never made: it is reported as dropped.
+  // Reports a hit as dropped without a strike.
   void drop(std::int64_t event_id, sync::HostTime scheduled);
   // Later scrapes are of these surfaces; null: none. The previous surfaces are kept while the callback may read
   // them.
@@ -48,15 +48,15 @@ class Output {
   std::vector<std::shared_ptr<const AudioSurfaces>> take_released() { return scrapes_.take_released(); }
   // Pose of the listener from now on; sources count as at least nearest_m away.
   void set_listener(const Eigen::Isometry3d& listener);
-  // A state that does not fit is skipped until the next one, and note() counts it. An end is sent later.
+  // A state that does not fit is skipped until the next one, and status_text() counts it. An end is sent later.
   void submit(const Scrape& scrape) {
     if (stream_ && !silent_) scrapes_.submit(scrape);
   }
   void submit(const RecordedContact& contact) {
     if (stream_ && !silent_) recorded_contacts_.submit(contact);
   }
-  // Interval of contact updates at which all that wait for their sample fit into the queue; they wait for
-  // latency() and `lead`.
+  // Shortest interval of contact updates at which all waiting updates fit into the queue; each waits for latency()
+  // and `lead`.
   sync::Nanoseconds update_interval(sync::Nanoseconds lead) const;
   // The recordings in use. Queued commands must refer to its newest database.
   Library& library() { return library_; }
@@ -67,7 +67,7 @@ class Output {
 
   // One line of status: the card in use, or the reason why nothing plays.
   std::string status_text() const;
-  // The same once, whenever the card or the reason changes.
+  // The same line once after each change of the card or the reason.
   std::optional<std::string> take_status_change();
   const std::string& medium() const { return medium_; }
   // Since the start, over all streams.
@@ -104,12 +104,12 @@ class Output {
   // The callback of the stream shares the ownership of both.
   std::shared_ptr<CallbackQueues> queues_;
   std::shared_ptr<Renderer> renderer_;
-  StrikeQueue strikes_;  // goes after the stream, whose callback reads what it keeps; so do the next three
+  StrikeQueue strikes_;  // outlives the stream, whose callback reads its data; so do the next three
   ScrapeQueue scrapes_;
   RecordedContactQueue recorded_contacts_;
   Library library_;
-  std::optional<RenderCommand> sent_command_;       // what the renderer has been told; nothing: it is new
-  std::optional<Listener> sent_listener_;  // likewise
+  std::optional<RenderCommand> sent_command_;       // last command in the queue; empty: new renderer
+  std::optional<Listener> sent_listener_;  // last listener in the queue
   OpenCard open_;                       // none: a Stream
   bool silent_;
   // A card and its renderer.

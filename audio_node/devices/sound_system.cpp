@@ -67,7 +67,7 @@ VirtualCard::VirtualCard(const std::string& wav_path, int rate_Hz, int channels,
                            kName + "\n";  // PortAudio 19.6 aborts where there is no default
   config_fd_ = memfd_create("asound.conf", MFD_CLOEXEC);
   if (config_fd_ < 0 || ::write(config_fd_, text.data(), text.size()) != static_cast<ssize_t>(text.size()))
-    throw std::runtime_error("the configuration of the virtual sound card cannot be kept in memory; free some");
+    throw std::runtime_error("cannot keep the configuration of the virtual sound card in memory; free some memory");
   use_config(("/proc/self/fd/" + std::to_string(config_fd_)).c_str());
 }
 

@@ -99,7 +99,7 @@ Stream::Stream(const StreamOptions& options, Render render)
   silence_sound_libraries();
   medium_ = free_wav_name(options.folder);
   const std::string wav = std::filesystem::path(options.folder) / medium_;
-  if (pipe2(pairs_, O_CLOEXEC | O_NONBLOCK) != 0) throw std::runtime_error("no pipe can be had; close some files");
+  if (pipe2(pairs_, O_CLOEXEC | O_NONBLOCK) != 0) throw std::runtime_error("cannot create a pipe; close some files");
   try {
     open(options, wav);
   } catch (...) {

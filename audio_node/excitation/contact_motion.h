@@ -32,11 +32,11 @@ class Presliding {
   Eigen::Vector3d displacement_m_ = Eigen::Vector3d::Zero();  // recent displacement
 };
 
-// Of one contact, over its whole duration.
+// Motion of one contact, over its whole duration.
 class ContactMotion {
  public:
-  // to_body: rotations from world to body, where known; at least one is known, and `surest` is the index of a
-  // known one. past_m_s: velocity of the surface of b relative to that of a, bounded.
+  // to_body: rotations from world to body, where known; at least one is known, and `reference_side` is the index
+  // of a known one. sliding_m_s: velocity of the surface of b relative to that of a, bounded.
   void step(const contact_t& contact, const std::array<std::optional<Eigen::Quaterniond>, 2>& to_body,
             std::size_t reference_side, const Eigen::Vector3d& sliding_m_s, double dt_s);
 
@@ -62,7 +62,7 @@ class ContactMotion {
   ContactVelocity velocity_;
   std::size_t point_ = 0;
   Presliding sliding_detector_, rolling_detector_;
-  // Share of recent sliding that was motion over the surest surface.
+  // Share of recent sliding that was motion over the reference surface.
   std::optional<Eigen::Vector3d> observed_at_m_;
   double observed_distance_m_ = 0, observed_s_ = 0, motion_share_ = 1;
 };

@@ -47,7 +47,7 @@ class Impacts {
   const BodySound& body(int id) const { return voice(id).sound; }
   std::int64_t voice_id(int body) const { return generation_ << 32 | static_cast<std::uint32_t>(body); }
   const Resonators& resonators(int body) const { return (*resonators_)[voice(body).number]; }
-  // What the sides of strikes refer to.
+  // Modes of all bodies; the sides of strikes point into it.
   const std::shared_ptr<const ResonatorTable>& table() const { return resonators_; }
   // Pressure at 1 m per impulse of each mode, Pa / (N s), for a force at that place; nothing: anywhere.
   PerMode gains(int body, const std::optional<BodyPlace>& place) const;

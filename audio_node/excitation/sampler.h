@@ -55,7 +55,7 @@ class Sampler {
   // Recorded parts of these contacts that are audible at `at`; each part that is no longer audible ends once. When
   // the method changes they fade out by themselves.
   const std::vector<RecordedContact>& recorded_contacts(const sync::Contacts& contacts, sync::HostTime at);
-  // Factor on the computed scraping or rolling of a contact, as of the last rubs().
+  // Factor on the computed scraping or rolling of a contact, as of the last recorded_contacts().
   float modal_gain(std::int64_t contact, Interaction interaction) const;
 
   // Returns one sentence for each pair and interaction without its own recording, once.
@@ -77,14 +77,14 @@ class Sampler {
   std::int64_t database_number_ = 0;
   double period_s_ = 0;
   std::vector<RecordedContact> contacts_;
-  std::set<std::pair<std::int64_t, std::int32_t>> playing_;  // contacts and parts of the last rubs()
-  sync::HostTime updated_at_{};                                // presentation time of the last rubs()
+  std::set<std::pair<std::int64_t, std::int32_t>> playing_;  // contacts and parts of the last recorded_contacts()
+  sync::HostTime updated_at_{};                                // presentation time of the last recorded_contacts()
   struct Motion {
     Presliding slides, rolls;
     bool present = true;
   };
   std::map<std::int64_t, Motion> motions_;                      // of each contact
-  std::set<std::pair<std::int64_t, Interaction>> recorded_;  // contacts of the last rubs()
+  std::set<std::pair<std::int64_t, Interaction>> recorded_;  // contacts of the last recorded_contacts()
   std::set<Database::Key> reported_missing_;
   std::vector<std::string> messages_;
 };

@@ -37,7 +37,7 @@ class Sliding {
   void set_listener(const Eigen::Isometry3d& listener) { listener_ = listener; }
 
   // Interval between updates: every tick, or the snapshot interval when there are many contacts, and at least the
-  // interval of set messages.
+  // interval of set_update_interval().
   double period_s() const { return std::max(period_s_, many_contacts_ ? kSnapshot_s : 0); }
   void set_update_interval(double period_s) { period_s_ = period_s; }
   // Scrapes of the contacts at instant t that are audible at `at`; each scrape that is no longer audible ends

@@ -1,4 +1,4 @@
-// What crosses into the audio callback: one impact, by value. It refers to the modes of its bodies (mixer/strike_queue.h).
+// Message to the audio callback about one impact. It points to the modes of its bodies (mixer/strike_queue.h).
 #pragma once
 
 #include <array>

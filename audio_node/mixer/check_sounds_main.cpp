@@ -54,7 +54,7 @@ void print(const nlohmann::json& report) {
       std::printf(" %g (%d)", layer["speed_m_s"].get<double>(), layer["takes"].get<int>());
     std::printf("\n");
   }
-  if (!report["pairs"].empty()) std::printf("\nWhat meets in the scene, and what is played:\n");
+  if (!report["pairs"].empty()) std::printf("\nPairs of the materials of the scene, and the source of their sound:\n");
   std::string last;
   for (const auto& row : report["pairs"]) {
     const auto pair = row["materials"].get<std::string>();
@@ -76,10 +76,10 @@ int main(int argc, char** argv) try {
   std::vector<std::string> materials;
   bool json = false;
   double rate_Hz = 48000;
-  CLI::App app{"What a folder of recordings holds, what of it is broken, and what is missing."};
-  app.add_option("folder", folder, "of recordings; default: the set beside this program");
-  app.add_option("--materials", materials, "of which every pair is looked up")->delimiter(',');
-  app.add_option("--rate", rate_Hz, "of the sound card, Hz")->check(CLI::Range(8000.0, 192000.0));
+  CLI::App app{"Lists the contents of a folder of recordings, its faults, and its gaps."};
+  app.add_option("folder", folder, "folder of recordings; default: the set beside this program");
+  app.add_option("--materials", materials, "materials; prints the source of sound of each pair")->delimiter(',');
+  app.add_option("--rate", rate_Hz, "sample rate of the sound card, Hz")->check(CLI::Range(8000.0, 192000.0));
   app.add_flag("--json", json, "print it as JSON");
   sync::parse_or_exit(app, "check_sounds", argc, argv);
   std::sort(materials.begin(), materials.end());

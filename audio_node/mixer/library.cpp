@@ -35,7 +35,7 @@ void Library::set_next(Shared database) {
   for (std::size_t i = 0; i < database->faults.size(); ++i) {
     if (i == kMaxReportedFaults) {
       messages_.push_back("and " + std::to_string(database->faults.size() - i) +
-                      " faults more; tactus check-sounds names them all");
+                      " more faults; tactus check-sounds lists all of them");
       break;
     }
     messages_.push_back(database->faults[i].path + " " + database->faults[i].what);
@@ -62,7 +62,7 @@ void Library::receive_database(std::vector<Shared>& released) {
   read_ = reading_;
 }
 
-// While the callback cannot be notified, the previous database stays in use.
+// While the queue to the callback is full, the previous database stays in use.
 bool Library::publish_database(Shared next) {
   if (kept_.size() >= kMaxKept || !queues_.databases.push(number_ + 1)) return false;
   if (now_) kept_.push_back({number_, std::move(now_)});

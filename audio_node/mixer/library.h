@@ -29,7 +29,8 @@ class Library {
   // recordings releases the database.
   void configure(const Settings& settings);
   // Call once per tick. Returns previous databases that are no longer in use: freeing them may take milliseconds,
-  // so do not free them in the loop. heard: there is a callback, or one is being made; false: none is played.
+  // so do not free them in the loop. has_callback: a callback exists or is being opened; false: no database
+  // is in use.
   std::vector<Shared> step(bool has_callback = true);
 
   // Null: none has been read yet, and none is needed or it is being read.

@@ -210,9 +210,9 @@ class Set {
 int main(int argc, char** argv) try {
   std::string folder, materials, readme;
   CLI::App app{"Renders the default set of recordings from modal models."};
-  app.add_option("folder", folder, "where to");
+  app.add_option("folder", folder, "output folder");
   app.add_option("--materials", materials, "table of materials");
-  app.add_option("--readme", readme, "goes beside them");
+  app.add_option("--readme", readme, "README that is copied into the folder");
   sync::parse_or_exit(app, "make_sounds", argc, argv);
   if (folder.empty() || materials.empty())
     throw std::runtime_error("give a folder and --materials; see make_sounds --help");
@@ -220,7 +220,7 @@ int main(int argc, char** argv) try {
   // It replaces only a set that it made itself, never another folder.
   const auto mark = std::filesystem::path(folder) / ".rendered";
   if (std::filesystem::exists(folder) && !std::filesystem::is_empty(folder) && !std::filesystem::exists(mark))
-    throw std::runtime_error(folder + " is there and no set of this program; give a new folder");
+    throw std::runtime_error(folder + " exists and was not written by make_sounds; give a new folder");
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   std::ofstream(mark) << "by make_sounds\n";

@@ -16,7 +16,7 @@ namespace tactus::audio {
 // and the same number end (Output::tell_every).
 inline constexpr int kMaxQueuedUpdates = 64;
 
-// Queues between the loop of the node and the callback, besides strikes.
+// Queues between the loop of the node and the callback, in addition to strikes.
 struct RecordedQueues {
   Spsc<RecordedContact> contacts{kMaxQueuedUpdates * 2 * Loops::kMax};
   // Strikes and contacts queued after an entry belong to the database of that number.

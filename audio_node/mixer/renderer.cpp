@@ -207,7 +207,7 @@ void Renderer::release_strikes() {
   queues_.oldest_held_scene.store(held, std::memory_order_release);
 }
 
-// What is still in the queue has larger numbers than all that were taken out of it.
+// Scrapes that are still in the queue have larger numbers than all received ones.
 void Renderer::release_scrapes() {
   std::int64_t held = scrapes_taken_;
   if (next_scrape_) held = std::min(held, next_scrape_->number);

@@ -54,7 +54,7 @@ struct ExposureMeter {
 // Queues and counters between the loop of the node and the callback.
 struct CallbackQueues {
   Spsc<Strike> strikes{512};
-  // The callback holds no strike of a scene of a number below this, and will never again: its table may go.
+  // The callback holds no strike of a scene of a number below this, and will never again: its table may be freed.
   std::atomic<std::int64_t> oldest_held_scene{0};
   Spsc<RenderCommand> commands{16};
   Spsc<Listener> listeners{64};  // the newest applies

@@ -42,7 +42,7 @@ class ScrapeQueue {
   CallbackQueues& queues_;
   std::deque<std::int64_t> pending_ends_;  // contacts whose end has not been sent
   std::int64_t lost_ = 0;
-  std::int64_t submitted_ = 0, first_ = 0;  // number of scrapes; number of the first one into `now_`
+  std::int64_t submitted_ = 0, first_ = 0;  // number of scrapes; number of the first one of `now_`
   Surfaces now_;
   std::deque<Kept> kept_;
 };

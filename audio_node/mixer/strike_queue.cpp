@@ -4,7 +4,7 @@
 
 namespace tactus::audio {
 
-// A scene whose strikes do not fit keeps nothing, so that the tables that are kept are no more than the strikes that are held.
+// A strike that does not fit keeps no table, so there are at most as many tables as strikes in the callback.
 bool StrikeQueue::submit(Strike strike, const Table& table) {
   const bool another = table != now_;
   strike.scene = another ? scene_ + 1 : scene_;

@@ -1,5 +1,5 @@
-// The loop's end of the queue of strikes into the callback: it numbers the scenes that they are of, and keeps the modes of
-// the bodies of a scene until the callback holds no strike of that scene any more. Pure.
+// The loop side of the queue of strikes to the callback. It numbers the scenes, and keeps the modes of the bodies of
+// a scene until the callback has released all strikes of that scene. Pure.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,19 @@
 
 namespace tactus::audio {
 
-// Of the loop's thread. The callback never waits for it, and frees nothing.
+// Used on the loop thread. The callback never waits for it, and frees nothing.
 class StrikeQueue {
  public:
   using Table = std::shared_ptr<const ResonatorTable>;
 
   explicit StrikeQueue(CallbackQueues& queues) : queues_(queues) {}
 
-  // table: the sides of the strike refer to it; null: to none that is ever freed. False when the queue is full.
+  // table: the sides of the strike point into it; null: they point to modes that are never freed. False when the
+  // queue is full.
   bool submit(Strike strike, const Table& table);
-  // Once a tick: frees the tables of earlier scenes that the callback reads no more.
+  // Call once per tick: frees the tables of earlier scenes that the callback no longer reads.
   void free_released();
-  // Tables of earlier scenes that are kept; at most one for each strike that the callback holds.
+  // Number of tables of earlier scenes; at most one for each strike that the callback holds.
   std::size_t kept() const { return kept_.size(); }
 
  private:
@@ -31,7 +32,7 @@ class StrikeQueue {
   };
 
   CallbackQueues& queues_;
-  std::int64_t scene_ = 0;  // number of the newest that a strike crossed of
+  std::int64_t scene_ = 0;  // number of the scene of the newest strike
   Table now_;
   std::deque<Kept> kept_;
 };

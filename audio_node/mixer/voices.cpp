@@ -49,7 +49,7 @@ Voices::Voice* Voices::find_sounding(std::int64_t id) {
   return nullptr;
 }
 
-// The weakest voices fade until at most at_most sound. A voice that a contact drives counts as stronger, at any
+// The weakest voices fade until at most max_voices sound. A voice that a contact drives counts as stronger, at any
 // level: otherwise it would restart in each block.
 void Voices::fade_weakest(int max_voices) {
   const auto sounds = [](const Voice& v) { return v.id >= 0 && !v.ending.on; };

@@ -93,8 +93,8 @@ class Voices {
     std::array<Push, kDrives> drives;
     std::array<const float*, kDrives> direct_sounds;
     int driven = 0;
-    SourcePosition place;         // of the newest contact
-    SourcePosition current_place;         // on its way there
+    SourcePosition place;         // position of the newest contact
+    SourcePosition current_place;         // moves smoothly to `place`
     int silent = 0;      // frames since the last input
     float expected = 0;  // expected level of the last pulse
     float level = 0;  // largest sum of amplitudes of the last block, plus the expected level while a pulse is on

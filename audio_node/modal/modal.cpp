@@ -146,7 +146,7 @@ double free_disc_lambda2(int diameters, int circles) {
   const auto found = std::find_if(kDisc.begin(), kDisc.end(), [&](const DiscMode& l) {
     return l.diameters == diameters && l.circles == circles;
   });
-  if (found == kDisc.end()) throw std::logic_error("a mode of a disc that is not listed");
+  if (found == kDisc.end()) throw std::logic_error("the list has no such mode of a disc");
   return found->lambda2;
 }
 

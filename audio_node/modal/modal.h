@@ -28,7 +28,7 @@ struct NaturalFrequency {
   int i = 0, k = 0;
 };
 
-// All lists ascend and end at `below_Hz` or after `at_most` modes.
+// All lists ascend and end at `below_Hz` or after `max_modes` modes.
 struct ModeRange {
   double below_Hz = 16000;
   int max_modes = 32;

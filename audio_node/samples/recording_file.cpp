@@ -78,7 +78,7 @@ std::optional<Recording> read_recording(const std::string& path, Interaction int
   if (info.samplerate < 8000 || info.samplerate > 192000)
     return refuse("has " + std::to_string(info.samplerate) + " samples a second; give 8000 to 192000");
   const auto max_frames = static_cast<sf_count_t>(kLongest_s * info.samplerate);
-  if (info.frames > max_frames) faults.push_back({path, "is longer than 20 s and is played no further; cut it", false});
+  if (info.frames > max_frames) faults.push_back({path, "is longer than 20 s; only the first 20 s are played; cut it", false});
   // Counts the frames that are read: a header may state any number.
   std::vector<float> x, block(4096 * static_cast<std::size_t>(info.channels));
   while (static_cast<sf_count_t>(x.size()) < max_frames) {
@@ -90,12 +90,12 @@ std::optional<Recording> read_recording(const std::string& path, Interaction int
     }
   }
   if (!std::all_of(x.begin(), x.end(), [](float s) { return std::abs(s) <= kLoudest; }))
-    return refuse("holds samples that are no sound (no number, or far beyond full scale); record it anew");
-  if (peak_of(x) < kSilent) return refuse("is silent; record it louder or take it away");
+    return refuse("has invalid samples (NaN, infinite, or far beyond full scale); record it again");
+  if (peak_of(x) < kSilent) return refuse("is silent; record it louder or remove it");
   if (clipped(x)) faults.push_back({path, "is clipped; record it with less gain", false});
   const bool blow = interaction == Interaction::kImpact;
   x = resample(x, info.samplerate, rate_Hz);
-  if (peak_of(x) < kSilent) return refuse("holds nothing that can be heard; record it anew or take it away");
+  if (peak_of(x) < kSilent) return refuse("has no audible sound at the rate of the card; record it again or remove it");
   x = blow ? cut_blow(std::move(x), rate_Hz) : std::move(x);
   const double length_s = static_cast<double>(x.size()) / rate_Hz;
   if (blow && length_s < kShortestBlow_s) return refuse("is shorter than 10 ms; give the whole sound of the blow");

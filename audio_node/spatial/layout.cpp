@@ -51,14 +51,14 @@ Layout parse_layout(const std::string& csv, const std::string& name) {
     const std::vector<std::string> row = sync::csv_cells(line);
     if (row.size() == 1 && row[0].empty()) continue;
     const std::string which = "row " + std::to_string(layout.size() + 1);
-    if (row.size() != 3) refuse(name, "has in its " + which + " not three columns");
+    if (row.size() != 3) refuse(name, "needs three columns in " + which);
     if (row[1].empty() && row[2].empty()) {
       layout.push_back(std::nullopt);
       continue;
     }
     const auto azimuth = sync::csv_number(row[1]), elevation = sync::csv_number(row[2]);
     if (!azimuth || !elevation || std::abs(*azimuth) > 360 || std::abs(*elevation) > 90)
-      refuse(name, "has in its " + which + " no azimuth of -360 to 360 and elevation of -90 to 90 degrees");
+      refuse(name, "needs an azimuth of -360 to 360 and an elevation of -90 to 90 degrees in " + which);
     const double a = *azimuth * std::numbers::pi / 180, e = *elevation * std::numbers::pi / 180;
     layout.push_back(Eigen::Vector3d(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)));
     any = true;

@@ -280,5 +280,5 @@ TEST_CASE("A card that is too slow for its delay is said, with the blows that no
   CAPTURE(done.said);
   CHECK(done.status == 0);
   CHECK_THAT(done.said, Catch::Contains("too slowly for the delay of sound"));
-  CHECK_THAT(done.said, Catch::Contains("40 hits (40 of them not heard"));
+  CHECK_THAT(done.said, Catch::Contains("40 hits (40 of them dropped"));
 }

@@ -93,12 +93,12 @@ TEST_CASE("What is wrong with a folder is named, and the rest is played") {
   CHECK(named("oak/impact/2.wav", "cannot be read"));
   CHECK(named("oak/impact/notes.doc", "neither WAV nor FLAC"));
   CHECK(named("oak/bounce", "impact, scrape and roll"));
-  CHECK(named("a-b-c", "no material"));
+  CHECK(named("a-b-c", "not named after a material"));
   CHECK(named("steel-oak/impact", "twice"));
-  CHECK(named("lost.wav", "beside"));
+  CHECK(named("lost.wav", "outside"));
   CHECK(named("oak/size.txt", "no size"));
   CHECK(named("oak/roll", "empty"));
-  CHECK(named("oak/impact/4.wav", "no file"));
+  CHECK(named("oak/impact/4.wav", "not a file"));
   CHECK(d.faults.size() == 10);
 }
 
@@ -122,9 +122,9 @@ TEST_CASE("More speeds than can be played are named, and a faint layer is not ma
 TEST_CASE("An empty folder, and one that is not there, is said") {
   const SoundFolder folder;
   REQUIRE(read(folder).faults.size() == 1);
-  CHECK_THAT(read(folder).faults[0].what, Catch::Contains("no recording"));
+  CHECK_THAT(read(folder).faults[0].what, Catch::Contains("no playable recording"));
   const Database none = read_database(folder.path() + "/none", 48000, 0.05);
   REQUIRE(none.faults.size() == 1);
-  CHECK_THAT(none.faults[0].what, Catch::Contains("no folder"));
+  CHECK_THAT(none.faults[0].what, Catch::Contains("not a folder"));
   CHECK_FALSE(none.find("oak", "oak", Interaction::kImpact).any());
 }

@@ -33,7 +33,7 @@ Layers layers(std::vector<std::pair<double, double>> speed_and_frequency) {
 
 sync::HostTime at(double samples) { return sync::host_time(kStart_ns + std::llround(samples * 1e9 / kRate)); }
 
-// Updated once a block of kMaxBlock by `tell` (null: no update), left channel at 1 m.
+// Updated once a block of kMaxBlock by `set_contact` (null: no update), left channel at 1 m.
 struct LoopBench {
   Loops loops{kRate};
   std::vector<float> left;

@@ -106,8 +106,8 @@ TEST_CASE("What cannot be played is refused with a sentence that says what to do
   CHECK_THAT(said(at("silent.wav"), Interaction::kImpact), Contains("silent"));
   CHECK_THAT(said(at("click.wav"), Interaction::kImpact), Contains("10 ms"));
   CHECK_THAT(said(at("short.wav"), Interaction::kScrape), Contains("too short for a loop"));
-  CHECK_THAT(said(at("nan.wav"), Interaction::kRoll), Contains("no number"));
-  CHECK_THAT(said(at("inf.wav"), Interaction::kRoll), Contains("no number"));
+  CHECK_THAT(said(at("nan.wav"), Interaction::kRoll), Contains("invalid samples"));
+  CHECK_THAT(said(at("inf.wav"), Interaction::kRoll), Contains("invalid samples"));
   for (const char* file : {"empty.wav", "text.wav", "ten.wav", "slow.wav", "silent.wav", "nan.wav"}) {
     bool read = true;
     said(at(file), Interaction::kImpact, &read);

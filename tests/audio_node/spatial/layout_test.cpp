@@ -33,10 +33,10 @@ TEST_CASE("A layout that cannot be used is refused with a sentence that says why
                     Contains("begin with the line channel,azimuth_deg,elevation_deg"));
   CHECK_THROWS_WITH(parse_layout(kHead, "room.csv"), Contains("has no loudspeaker"));
   CHECK_THROWS_WITH(parse_layout(kHead + "low,,\n", "room.csv"), Contains("has no loudspeaker"));
-  CHECK_THROWS_WITH(parse_layout(kHead + "left,90\n", "room.csv"), Contains("row 1 not three columns"));
-  CHECK_THROWS_WITH(parse_layout(kHead + "left,90,0\nright,x,0\n", "room.csv"), Contains("row 2 no azimuth"));
-  CHECK_THROWS_WITH(parse_layout(kHead + "left,90,91\n", "room.csv"), Contains("row 1 no azimuth"));
-  CHECK_THROWS_WITH(parse_layout(kHead + "left,nan,0\n", "room.csv"), Contains("row 1 no azimuth"));
+  CHECK_THROWS_WITH(parse_layout(kHead + "left,90\n", "room.csv"), Contains("needs three columns in row 1"));
+  CHECK_THROWS_WITH(parse_layout(kHead + "left,90,0\nright,x,0\n", "room.csv"), Contains("degrees in row 2"));
+  CHECK_THROWS_WITH(parse_layout(kHead + "left,90,91\n", "room.csv"), Contains("degrees in row 1"));
+  CHECK_THROWS_WITH(parse_layout(kHead + "left,nan,0\n", "room.csv"), Contains("degrees in row 1"));
   std::string many = kHead;
   for (int i = 0; i < 33; ++i) many += "x,0,0\n";
   CHECK_THROWS_WITH(parse_layout(many, "room.csv"), Contains("more than 32 channels"));

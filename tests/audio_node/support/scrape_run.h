@@ -38,7 +38,7 @@ struct ScrapeRun {
   std::vector<float> force, sound;
 };
 
-// Updated by `tell` every `every_ms` for told_ms; then it ends, and the rest is the decay.
+// Updated by `scrape_at` every `every_ms` for updated_ms; then it ends, and the rest is the decay.
 inline ScrapeRun run_scrape(const std::function<Scrape(double ms)>& scrape_at, int updated_ms, int whole_ms, int every_ms = 1) {
   auto scrapes = std::make_unique<Scrapes>(kRate);
   auto voices = std::make_unique<Voices>(4, kRate, kRing);
