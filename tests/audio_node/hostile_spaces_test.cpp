@@ -160,9 +160,7 @@ std::vector<float> play(const std::string& spatial, const std::string& method, i
 
 }  // namespace
 
-TEST_CASE(
-    "The worst that a world can do, much of it at once, is heard as numbers below the ceiling, in any space by "
-    "any method") {
+TEST_CASE("Many extreme contacts at once give samples below the ceiling in any space by any method") {
   const std::string spatial = GENERATE("hrtf", "stereo", "loudspeakers"),
                     method = GENERATE("modal", "samples", "both");
   CAPTURE(spatial, method);
@@ -199,7 +197,7 @@ TEST_CASE(
   CHECK(extremes_of(bench->out).finite);
 }
 
-TEST_CASE("What no world does makes no click in measured ears either, computed, recorded or both") {
+TEST_CASE("Impossible contacts make no click through ears or loudspeakers by any method") {
   const std::string spatial = GENERATE("hrtf", "loudspeakers"), method = GENERATE("modal", "samples", "both");
   const std::vector<float> without = play(spatial, method, 0), with = play(spatial, method, 3);
   REQUIRE(with.size() == without.size());

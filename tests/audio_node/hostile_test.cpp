@@ -114,7 +114,7 @@ std::vector<float> play(int wild, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("What no world does makes no click, and changes nothing of what sounds besides") {
+TEST_CASE("Impossible contacts make no click and leave other sounds unchanged") {
   for (const unsigned seed : {1u, 2u, 3u}) {
     const std::vector<float> without = play(0, seed), with = play(3, seed);
     REQUIRE(with.size() == without.size());
@@ -133,7 +133,7 @@ TEST_CASE("What no world does makes no click, and changes nothing of what sounds
   }
 }
 
-TEST_CASE("Whatever is said, possible or not, what is heard are numbers below the ceiling") {
+TEST_CASE("Random contacts, valid or not, give samples below the ceiling") {
   const scene_t scene = rough_scene();
   const Impacts impacts(scene, no_mesh, Settings{}, kRate, 1);
   const sync::BodyHistory bodies(1);
@@ -178,13 +178,13 @@ TEST_CASE("Whatever is said, possible or not, what is heard are numbers below th
   bool below = true;
   for (const float x : bench->left) below &= std::abs(x) <= static_cast<float>(kCeiling);  // false for NaN
   CHECK(below);
-  SECTION("each blow is reported, heard or not") {
+  SECTION("each strike is reported") {
     bench->play(4800);
     CHECK(static_cast<int>(bench->reports.size()) == expected_reports);
   }
 }
 
-TEST_CASE("A contact event that holds no number is refused at the border, once, and counted") {
+TEST_CASE("A contact event with a value that is not finite is rejected on receipt and counted") {
   sync::Queue<contact_events_t> inbox(channels::kContactEvents, 16);
   const auto arrive = [&](const contact_event_t& e) {
     contact_events_t m{};

@@ -128,7 +128,7 @@ double onset_after(const std::vector<float>& wav, const std::string& said, doubl
 
 }  // namespace
 
-TEST_CASE("A log rendered twice gives the same bytes, and each hit its onset at its time plus the delay") {
+TEST_CASE("A log rendered twice gives the same bytes, and each hit starts at its time plus the delay") {
   const Folder folder;
   const std::vector<double> times = record(folder.file("run.lcmlog"));
   const auto words = [&](const char* wav) {
@@ -159,7 +159,7 @@ TEST_CASE("A log rendered twice gives the same bytes, and each hit its onset at 
     CHECK(std::abs(onset_after(wav, first.said, t) - late) <= 8);
   }
 
-  SECTION("and other instructions give the same sound to a thousandth, though not the same bits") {
+  SECTION("other instructions give the same sound to a thousandth, but not the same bits") {
     auto other = words("c.wav");
     other.back() = "instructions=auto";
     REQUIRE(render(folder, other).status == 0);
@@ -176,7 +176,7 @@ TEST_CASE("A log rendered twice gives the same bytes, and each hit its onset at 
   }
 }
 
-TEST_CASE("A profile is laid on the raw log, whatever the run was degraded by, which holds only when it is asked for") {
+TEST_CASE("A profile is applied to the raw log, and the logged profile only on request") {
   const Folder folder;
   const std::string muted = R"(<profile name="muted"><degrade modality="audio" off="true"/></profile>)";
   const std::string late = R"(<profile name="late"><degrade modality="audio" delay="40ms" loss="50%"/></profile>)";
@@ -220,7 +220,7 @@ TEST_CASE("A profile is laid on the raw log, whatever the run was degraded by, w
   }
 }
 
-TEST_CASE("What is no log of a run is refused in one sentence that says what to give") {
+TEST_CASE("A file that is not a log of a run is rejected with a sentence that names the remedy") {
   const Folder folder;
   const auto refusal = [&](const std::string& log) {
     const Done done = render(folder, {"--log", log, "--wav", folder.file("x.wav")});
@@ -259,7 +259,7 @@ TEST_CASE("A damaged log is rendered as far as it is intact, and the damage is c
   CHECK(mono_of(folder.file("a.wav")).size() > 14 * kRate);
 }
 
-TEST_CASE("A log is not written over by its own sound, by whatever name") {
+TEST_CASE("A log is not overwritten by its own sound under any name") {
   const Folder folder;
   record(folder.file("run.lcmlog"));
   std::filesystem::create_symlink(folder.file("run.lcmlog"), folder.file("sound.wav"));
@@ -272,7 +272,7 @@ TEST_CASE("A log is not written over by its own sound, by whatever name") {
   CHECK(bytes_of(folder.file("run.lcmlog")) == before);
 }
 
-TEST_CASE("A card that is too slow for its delay is said, with the blows that nobody hears") {
+TEST_CASE("A card that is too slow for its delay is reported with the number of dropped hits") {
   const Folder folder;
   record(folder.file("run.lcmlog"));
   const Done done = render(

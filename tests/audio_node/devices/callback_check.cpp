@@ -123,7 +123,7 @@ extern "C" PaError Pa_OpenStream(PaStream** stream, const PaStreamParameters* in
   return real(stream, in, out, rate, frames, flags, call_trapped, user);
 }
 
-TEST_CASE("The trap catches what allocates, locks, waits and writes, and nothing of what happens outside of it") {
+TEST_CASE("The trap counts allocations, locks, waits and I/O, and only while it is armed") {
   const auto caught = [](auto f) {
     reset_trapped();
     {
@@ -153,8 +153,7 @@ TEST_CASE("The trap catches what allocates, locks, waits and writes, and nothing
   CHECK(trapped() == 0);
 }
 
-TEST_CASE(
-    "Each call that waits, maps, or reads and writes a file or a device is caught, and does what it always does") {
+TEST_CASE("The trap counts each call that waits, maps memory or does I/O, and passes the call on") {
   if (!traps_allocation()) {
     WARN("a sanitizer answers the allocator's calls: nothing is trapped");
     return;
@@ -244,7 +243,7 @@ TEST_CASE(
   reset_trapped();
 }
 
-TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatever is asked of it") {
+TEST_CASE("The callback allocates nothing, takes no lock and does no I/O for any input") {
   if (!traps_allocation()) {
     WARN("a sanitizer answers the allocator's calls: nothing is trapped");
     return;
@@ -309,7 +308,7 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatev
   CHECK(trapped() == 0);
 }
 
-TEST_CASE("One allocation in one block of the real callback is caught") {
+TEST_CASE("The trap counts a single allocation in one block of the stream callback") {
   if (!traps_allocation()) {
     WARN("a sanitizer answers the allocator's calls: nothing is trapped");
     return;
@@ -331,7 +330,7 @@ TEST_CASE("One allocation in one block of the real callback is caught") {
   CHECK(first_trapped() == "malloc");
 }
 
-TEST_CASE("Neither does what keeps the samples of a real card") {
+TEST_CASE("The capture of a real card allocates nothing, takes no lock and does no I/O") {
   if (!traps_allocation()) {
     WARN("a sanitizer answers the allocator's calls: nothing is trapped");
     return;

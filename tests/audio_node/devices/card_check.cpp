@@ -60,7 +60,7 @@ std::int64_t out_at_ns(const std::vector<MediaPair>& pairs, std::int64_t index) 
 
 }  // namespace
 
-TEST_CASE("Through PortAudio and the virtual card sound is out when it was to be, as the WAV and its pairs show") {
+TEST_CASE("A strike is out at its scheduled time, as the WAV file and its clock pairs show") {
   const Folder folder;
   std::vector<MediaPair> pairs;
   std::vector<presentation_t> reports;
@@ -131,7 +131,7 @@ TEST_CASE("A restarted stream overwrites no recording") {
   }
 }
 
-TEST_CASE("The virtual card has as many channels as there are loudspeakers, and each is recorded in its own") {
+TEST_CASE("The virtual card has one channel per loudspeaker and records each in its own channel") {
   const Folder folder;
   {
     StreamOptions options;
@@ -156,7 +156,7 @@ TEST_CASE("The virtual card has as many channels as there are loudspeakers, and 
   for (std::size_t i = first; i < first + 64; ++i) CHECK(samples[i] == static_cast<float>(i % 8) / 16);
 }
 
-TEST_CASE("A card that does not exist is refused in one sentence that names it") {
+TEST_CASE("A sound card that does not exist is rejected with a sentence that names it") {
   const Folder folder;
   StreamOptions options;
   options.device = "no such card", options.folder = folder.path;

@@ -83,7 +83,7 @@ sync::HostTime at_block(int n) { return sync::host_time(kStart_ns + std::llround
 
 }  // namespace
 
-TEST_CASE("A card that is pulled out is a lost output, and when it is back the next blow sounds") {
+TEST_CASE("An unplugged card is reported as lost, and hits sound again after its return") {
   const auto plug = std::make_shared<FakeCard::Plug>();
   FakeCard* card = nullptr;
   Output output(".", "", 0, [&](const StreamOptions&, Card::Render render) {
@@ -131,7 +131,7 @@ TEST_CASE("A card that is pulled out is a lost output, and when it is back the n
   CHECK(output.callbacks() > played + 15);  // counted over both
 }
 
-TEST_CASE("However long the card's periods are, no contact that is told of is lost on the way to the callback") {
+TEST_CASE("No contact update is lost on the way to the callback, for any period of the card") {
   Settings settings;
   settings.spatial = "stereo";
   for (const auto& [rate_Hz, period_frames, latency_periods] : {std::tuple{48000., 128, 2.},
@@ -149,7 +149,7 @@ TEST_CASE("However long the card's periods are, no contact that is told of is lo
   CHECK_THAT(status_after_updates(settings, sync::Nanoseconds(0)), Catch::Contains(" contact updates lost"));
 }
 
-TEST_CASE("Reports that nobody takes are counted when there is no room for more") {
+TEST_CASE("Reports that do not fit into the queue are counted") {
   Output output(".", "", 0, [](const StreamOptions&, Card::Render) -> std::unique_ptr<Card> { return {}; });
   for (std::int64_t id = 0; id < 1030; ++id) output.drop(id, {});
   CHECK_THAT(output.status_text(), Catch::Contains("6 reports of hits lost"));

@@ -10,8 +10,7 @@
 using namespace tactus;
 using namespace tactus::audio;
 
-TEST_CASE(
-    "Surfaces are read from the pictures of the scene. What cannot be read is smooth, and leaves the others") {
+TEST_CASE("Surfaces are read from the pictures of the scene, and an unreadable picture gives a smooth surface") {
   scene_t scene{};
   const sync::Bytes good = tactus::test::png_bytes(2, 2, 8, {0, 10, 20, 255}), bad{'x'};
   constexpr std::int64_t kGood = 1, kBad = 2, kNotSent = 3;

@@ -35,7 +35,7 @@ struct Loop {
 
 }  // namespace
 
-TEST_CASE("More hits than a tick has time for go on in the next ones, due first, each with its time") {
+TEST_CASE("Hits that exceed the time of a tick are processed in the next ticks, earliest first") {
   Loop loop;
   for (int i = 0; i < 10; ++i) loop.push(i, 20 - i);
   loop.tick(0, 3);
@@ -47,14 +47,14 @@ TEST_CASE("More hits than a tick has time for go on in the next ones, due first,
   CHECK(loop.dropped.empty());
 }
 
-TEST_CASE("A tick without time handles one hit all the same, and hits of one time keep their order") {
+TEST_CASE("A tick without time processes one hit, and hits of equal time keep their order") {
   Loop loop;
   for (int i = 0; i < 3; ++i) loop.push(i, 20);
   for (int ms = 0; ms < 3; ++ms) loop.tick(ms, 0);
   CHECK(loop.sounded == std::vector<std::int64_t>{0, 1, 2});
 }
 
-TEST_CASE("A hit that the late policy drops while it waits is said to be, and costs no time") {
+TEST_CASE("A waiting hit that the late policy drops is reported as dropped and takes no time") {
   Loop loop;
   for (int i = 0; i < 100; ++i) loop.push(i, 0);
   // Two per tick, up to 30 ms late: in 31 ticks. The others are dropped at once.
@@ -63,7 +63,7 @@ TEST_CASE("A hit that the late policy drops while it waits is said to be, and co
   CHECK(loop.dropped.size() == 38);
   CHECK(loop.due.size() == 0);
 
-  SECTION("and so is one whose scene is over") {
+  SECTION("hits of an ended scene are reported as dropped") {
     loop.push(200, 100);
     std::vector<std::int64_t> over;
     loop.due.clear([&](const contact_event_t& e, sync::HostTime) { over.push_back(e.event_id); });
@@ -72,7 +72,7 @@ TEST_CASE("A hit that the late policy drops while it waits is said to be, and co
   }
 }
 
-TEST_CASE("No flood of hits waits without end: what is too many is not kept") {
+TEST_CASE("A full queue of hits rejects further hits") {
   DueHits due;
   for (std::size_t i = 0; i < DueHits::kMax; ++i) REQUIRE(due.push({}, at_ms(0)));
   CHECK_FALSE(due.push({}, at_ms(0)));

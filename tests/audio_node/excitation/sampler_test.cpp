@@ -133,7 +133,7 @@ std::vector<float> blows_by(const std::vector<std::string>& methods) {
 
 }  // namespace
 
-TEST_CASE("The method says what sounds: modes, recordings, or both with the same power") {
+TEST_CASE("The method selects modes, recordings, or both with the same total power") {
   World modal(with("modal")), samples(with("samples")), both(with("both", 0.25));
   const Strike m = modal.strike(hit(1)), s = samples.strike(hit(1)), b = both.strike(hit(1));
   CHECK(m.recorded.database == 0);
@@ -148,7 +148,7 @@ TEST_CASE("The method says what sounds: modes, recordings, or both with the same
   CHECK(recordings == Approx(std::sin(0.25 * M_PI / 2)).epsilon(1e-5));
 }
 
-TEST_CASE("What a recorded blow sounds like in the air grows as its impulse to the power 0.6") {
+TEST_CASE("The level of a recorded blow follows its impulse to the power 0.6") {
   World w(with("samples"));
   const double once = rms_of(w.strike(hit(1, 0.5)));
   REQUIRE(once > 0);
@@ -160,7 +160,7 @@ TEST_CASE("What a recorded blow sounds like in the air grows as its impulse to t
   CHECK(recorded_blow_level(-1, w.settings) == 0);
 }
 
-TEST_CASE("A body half as large sounds an octave higher, and no more than that") {
+TEST_CASE("A body of half the size sounds an octave higher, which is the maximum shift") {
   for (const auto& [radius, pitch] :
        std::vector<std::pair<double, double>>{{0.05, 1}, {0.04, 1.25}, {0.025, 2}, {0.01, 2}, {0.5, 0.5}}) {
     World w(with("samples"), radius);
@@ -169,7 +169,7 @@ TEST_CASE("A body half as large sounds an octave higher, and no more than that")
   }
 }
 
-TEST_CASE("What has no recording of its pair falls back to its materials, then to its modes, and says so once") {
+TEST_CASE("A missing recording of a pair is replaced by those of its materials or by modes, and reported once") {
   World w(with("samples"));
   w.strike(hit(1));
   CHECK(w.sampler.take_messages().empty());
@@ -193,9 +193,7 @@ TEST_CASE("What has no recording of its pair falls back to its materials, then t
   CHECK_THAT(messages[0], Catch::Contains("it is computed"));
 }
 
-TEST_CASE(
-    "Contacts that slide scrape by their recording, those that roll do not slide, and what is computed gives "
-    "way") {
+TEST_CASE("Sliding contacts play their scrape recording, and the computed sound is reduced") {
   World w(with("samples"));
   auto lasting = [&, ms = 0](const contact_t& c) mutable {
     std::vector<RecordedContact> contacts;
@@ -219,7 +217,7 @@ TEST_CASE(
   CHECK(w.sampler.modal_gain(11, Interaction::kScrape) == 1);
 }
 
-TEST_CASE("What rests under load and jitters does not scrape, neither as recorded nor as computed") {
+TEST_CASE("A contact that rests under load and jitters does not scrape, recorded or computed") {
   World w(with("samples"));
   for (int ms = 1; ms < 2000; ++ms) {
     // 2 mm/s back and forth, 50 times a second: it never moves 20 um away.
@@ -253,7 +251,7 @@ TEST_CASE("A recorded contact that ends or comes to rest ends once") {
   ends_in({sliding(0, 0, 4)});
 }
 
-TEST_CASE("Of more contacts than can be heard at a time the loudest are played, and the others computed") {
+TEST_CASE("The loudest contacts are played, and contacts beyond the maximum number are computed") {
   World w(with("samples"));
   std::vector<RecordedContact> contacts;
   for (int ms = 1; ms < 100; ++ms) {
@@ -271,7 +269,7 @@ TEST_CASE("Of more contacts than can be heard at a time the loudest are played, 
   CHECK(w.sampler.modal_gain(2 * Loops::kMax - 1, Interaction::kScrape) == 0);
 }
 
-TEST_CASE("Absurd events and contacts play finite sound") {
+TEST_CASE("Invalid events and contacts play finite sound") {
   World w(with("samples"));
   for (const float v :
        {0.f, 1e30f, -1e30f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
@@ -285,7 +283,7 @@ TEST_CASE("Absurd events and contacts play finite sound") {
   }
 }
 
-TEST_CASE("Changing the method while bodies sound is not heard as a click: what sounds goes on as it would have") {
+TEST_CASE("A change of the method leaves sounding bodies unchanged and makes no click") {
   const auto together = blows_by({"modal", "samples", "both", "modal"});
   const auto first = blows_by({"modal", "none", "none", "none"}),
              second = blows_by({"none", "samples", "none", "none"});
@@ -301,7 +299,7 @@ TEST_CASE("Changing the method while bodies sound is not heard as a click: what 
   CHECK(most < 0.9f);
 }
 
-TEST_CASE("A contact that scrapes while the method changes fades from one way to the other") {
+TEST_CASE("A scraping contact crossfades when the method changes") {
   World w(with("samples"));
   Layers smooth;
   Recording wave{{}, 0.5f, 0.35f};

@@ -91,8 +91,7 @@ Eigen::Quaterniond turn(double rad, const Vector3d& axis = Vector3d::UnitZ()) {
 
 }  // namespace
 
-TEST_CASE(
-    "Contacts that slide are told with their place on both bodies, and stronger with the power of friction") {
+TEST_CASE("A scrape has its place on both bodies, its velocity and its strength") {
   SlidingBench h(board(true));
   const Vector3d place(0.005, 0.003, 0), velocity(0, 0.1, 0);
   const auto all = h.step(sliding(velocity, 2, place));
@@ -114,7 +113,7 @@ TEST_CASE(
   CHECK(s.roll == 0);
 }
 
-TEST_CASE("What slides is as strong as the root of the power that friction takes") {
+TEST_CASE("The strength of sliding is the root of the friction power") {
   // Strength goes with the root of friction, force and speed (FoleyAutomatic, section 4.2), level with its power
   // 0.6.
   CHECK(sliding_strength(0.5, 2, 0.1) == Approx(std::sqrt(0.1)));
@@ -128,7 +127,7 @@ TEST_CASE("What slides is as strong as the root of the power that friction takes
   CHECK(other / one == Approx(std::sqrt(force_N * speed_m_s / 0.2)).epsilon(1e-4));
 }
 
-TEST_CASE("The reference stroke is as loud over one pair of bodies as a blow that makes them as loud") {
+TEST_CASE("The level of the reference stroke follows its expected pressure to the power 0.6") {
   // Twice the force per slope, and so twice the expected pressure: the law of level takes a power of 0.6.
   const auto strength_at = [](double force_N) {
     Settings settings;
@@ -139,14 +138,14 @@ TEST_CASE("The reference stroke is as loud over one pair of bodies as a blow tha
   CHECK(strength_at(80) / strength_at(40) == Approx(std::pow(2, 0.6)).epsilon(1e-4));
 }
 
-TEST_CASE("What rests under load is silent, however it jitters, and what begins to slide is heard at once") {
+TEST_CASE("A contact that rests under load is silent although it jitters, and sliding is audible at once") {
   SlidingBench h(board(true));
   const Vector3d place(0.005, 0.003, 0);
   CHECK(h.step(sliding(Vector3d::Zero(), 10, place)).empty());
   for (int ms = 0; ms < 200; ++ms) REQUIRE(h.step(sliding({0, ms % 2 ? 0.01 : -0.01, 0}, 10, place)).empty());
   for (int ms = 0; ms < 200; ++ms) REQUIRE(h.step(sliding({0, 0.0009, 0}, 10, place)).empty());  // creeps
   CHECK(h.step(sliding({0, 0.1, 0}, 10, place)).at(0).slide > 0);
-  SECTION("and ends once, when it rests again or has gone") {
+  SECTION("a contact ends once when it comes to rest or is removed") {
     const bool rests = GENERATE(true, false);
     int ends = 0, later = 0;
     for (int ms = 0; ms < 100; ++ms) {
@@ -168,14 +167,14 @@ TEST_CASE("Surfaces without a map scrape by the roughness of their materials") {
   CHECK(s.slide > 0);
 }
 
-TEST_CASE("A body that moves scrapes as it is turned just then, and is silent until that is known") {
+TEST_CASE("A moving body scrapes by its current orientation and is silent until that is known") {
   SlidingBench h(board(false));
   const contact_t along_y = sliding({0, 0.1, 0}, 2, {0.005, 0.003, 0});
   CHECK(h.step(along_y).empty());
-  SECTION("about the normal") {
+  SECTION("rotated about the normal") {
     h.bodies.push(published_pose(500, turn(M_PI / 2)), at_ms(500));
     CHECK(h.step(along_y).at(0).sides[0].slide_vector.x() == Approx(1).margin(1e-3));
-    SECTION("and when it has turned on, the way over the map has another direction") {
+    SECTION("after a further rotation the path over the map has another direction") {
       h.bodies.push(published_pose(600, turn(M_PI)), at_ms(600));
       h.now_ms = 600;
       const ScrapeSide side = h.step(along_y).at(0).sides[0];
@@ -183,7 +182,7 @@ TEST_CASE("A body that moves scrapes as it is turned just then, and is silent un
       CHECK(side.slide_vector.y() == Approx(-1).epsilon(1e-3));
     }
   }
-  SECTION("onto another side, whose map has other axes") {
+  SECTION("rotated onto another side, whose map has other axes") {
     // +y of the body is up, so u grows along its z, and its z is along -y of the world.
     h.bodies.push(published_pose(500, turn(M_PI / 2, Vector3d::UnitX())), at_ms(500));
     const ScrapeSide side = h.step(sliding({0, 0.1, 0}, 2, {0.003, 0.01, 0.005})).at(0).sides[0];
@@ -191,7 +190,7 @@ TEST_CASE("A body that moves scrapes as it is turned just then, and is silent un
     CHECK(side.axes.u == 2);
     CHECK(side.slide_vector.z() == Approx(-1));
   }
-  SECTION("or is the second of the two") {
+  SECTION("the moving body is the second of the two") {
     h.bodies.push(published_pose(500, turn(M_PI / 2)), at_ms(500));
     contact_t c = along_y;
     std::swap(c.body_a, c.body_b), std::swap(c.material_a, c.material_b);
@@ -202,7 +201,7 @@ TEST_CASE("A body that moves scrapes as it is turned just then, and is silent un
   }
 }
 
-TEST_CASE("A finger on a turning board goes over its map as fast as the places that are told") {
+TEST_CASE("A finger on a rotating board moves over the map at the speed of the received places") {
   // Two thirds of a revolution a second under a finger that stays; the board is published at 60 Hz, the finger at
   // 1 kHz.
   const double spin_rad_s = 4, radius_m = 0.03;
@@ -222,7 +221,8 @@ TEST_CASE("A finger on a turning board goes over its map as fast as the places t
   }
 }
 
-TEST_CASE("Over a map that is told of at 60 Hz the way is steady, and a body's own edge goes over none") {
+TEST_CASE(
+    "The path over a map is steady with updates at 60 Hz, and has no length under an edge of the mapped body") {
   SlidingBench h(board(false));
   h.bodies.push(published_pose(0, turn(0)), sync::host_time(0));
   h.now_ms = -1;
@@ -255,8 +255,7 @@ TEST_CASE("Over a map that is told of at 60 Hz the way is steady, and a body's o
 }
 
 TEST_CASE(
-    "A ball that rolls is heard of its own circumference, once a turn louder, through the patch that it rests "
-    "on") {
+    "A rolling ball repeats the sound of its circumference, once per revolution louder, and low-passed by its patch") {
   // Of 20 mm, on a floor, 1.6 revolutions a second.
   const double radius_m = 0.02, spin_rad_s = 10, speed_m_s = radius_m * spin_rad_s, force_N = 0.5;
   scene_t scene = board(true);
@@ -311,7 +310,7 @@ TEST_CASE(
     REQUIRE(strong[ms + turn_ms] == Approx(strong[ms]).epsilon(0.01));
 }
 
-TEST_CASE("What rolls is as strong as its inertia makes it while it is slow, and no stronger than its load") {
+TEST_CASE("The strength of rolling is limited by inertia at low speed and by the load") {
   scene_t scene = board(true);
   scene.shapes[1].kind = shape_def_t::SPHERE, scene.shapes[1].size_m.x = 0.02;
   const auto rolls = [&](double force_N, double speed_m_s) {
@@ -334,7 +333,7 @@ TEST_CASE("What rolls is as strong as its inertia makes it while it is slow, and
   CHECK(rolls(2, 1) == Approx(2 * rolls(1, 1)).epsilon(1e-4));
 }
 
-TEST_CASE("From sliding to rolling nothing jumps") {
+TEST_CASE("The transition from sliding to rolling has no jump") {
   // A ball whose contact slips less and less: c_b goes from 0 to c_a.
   SlidingBench h(board(true));
   double slide = -1, roll = -1;
@@ -362,7 +361,7 @@ TEST_CASE("From sliding to rolling nothing jumps") {
   }
 }
 
-TEST_CASE("Contacts that contradict themselves give no number that is none") {
+TEST_CASE("Contradictory contacts give finite sound") {
   SlidingBench h(board(true));
   const double bad = GENERATE(1e30, -1e30, std::numeric_limits<double>::quiet_NaN());
   const int where = GENERATE(0, 1, 2, 3, 4);
@@ -385,7 +384,7 @@ TEST_CASE("Contacts that contradict themselves give no number that is none") {
   }
 }
 
-TEST_CASE("Of very many contacts the strongest are heard, and they are looked at as often as they are told") {
+TEST_CASE("With many contacts the strongest are audible, and all are processed at the snapshot rate") {
   SlidingBench h(board(true));
   CHECK(h.slides.period_s() == 0);
   sync::Contacts many;

@@ -25,7 +25,7 @@ Strike strike_with(const Recording& r, std::int64_t database, std::int64_t at_ns
 
 }  // namespace
 
-TEST_CASE("A database is kept while a strike of it waits or sounds, and let go of when none does any more") {
+TEST_CASE("A database is kept while a strike of it waits or sounds, and is then released") {
   const Recording r{tone(300, 0.1), 0.5f, 0.35f};
   auto bench = std::make_unique<Bench>();
   RecordedQueues& queues = bench->queues.recorded;
@@ -42,8 +42,7 @@ TEST_CASE("A database is kept while a strike of it waits or sounds, and let go o
   CHECK(queues.oldest_held == 2);
 }
 
-TEST_CASE(
-    "A database is kept while a contact scrapes with it. One that is told later of the old one is not heard") {
+TEST_CASE("A database is kept while a contact scrapes with it, and later updates of an older database are ignored") {
   Layers l;
   l.by_speed.push_back({1, 1, {{tone(400, 0.5), 0.5f, 0.35f}}});
   auto bench = std::make_unique<Bench>();
@@ -65,7 +64,7 @@ TEST_CASE(
   CHECK(queues.oldest_held == 2);
 }
 
-TEST_CASE("A renderer that ends lets go of all") {
+TEST_CASE("A renderer that ends releases all databases") {
   const Recording r{tone(300, 1), 0.5f, 0.35f};
   auto bench = std::make_unique<Bench>();
   RecordedQueues& queues = bench->queues.recorded;
@@ -79,7 +78,7 @@ TEST_CASE("A renderer that ends lets go of all") {
   CHECK(bench->renderer.recorded() == 0);
 }
 
-TEST_CASE("The library reads what the settings ask for, once, and gives back what nobody plays any more") {
+TEST_CASE("The library reads the selected recordings once and returns released databases") {
   const SoundFolder one, two;
   one.write("oak/impact/1.wav", tone(300, 0.1));
   two.write("steel/impact/1.wav", tone(300, 0.1));
@@ -155,7 +154,7 @@ struct LibraryFixture {
 
 }  // namespace
 
-TEST_CASE("When contacts are computed again the recordings are given back, and read again when they are wanted") {
+TEST_CASE("Recordings are released when contacts are computed again, and read again on request") {
   LibraryFixture l;
   l.select("samples", l.one);
   l.read();
@@ -170,7 +169,7 @@ TEST_CASE("When contacts are computed again the recordings are given back, and r
   l.read();
   CHECK(l.library.database());
 
-  SECTION("and so are some that are still being read then") {
+  SECTION("recordings that are still being read are released too") {
     l.select("both", l.two);
     l.library.step();
     l.select("modal", l.two);
@@ -185,7 +184,7 @@ TEST_CASE("When contacts are computed again the recordings are given back, and r
   }
 }
 
-TEST_CASE("Without a card recordings are given back as soon as others replace them") {
+TEST_CASE("Without a card replaced recordings are released at once") {
   LibraryFixture l;
   for (std::size_t i = 0; i < 40; ++i) {
     l.select("samples", i % 2 ? l.two : l.one);
@@ -204,7 +203,7 @@ TEST_CASE("Without a card recordings are given back as soon as others replace th
   CHECK(l.library.step().size() == 1);
 }
 
-TEST_CASE("A callback that stands still makes no more than four databases wait") {
+TEST_CASE("A stopped callback makes at most four databases wait") {
   LibraryFixture l;
   for (std::size_t i = 0; i < 20; ++i) {
     l.select("samples", i % 2 ? l.two : l.one);

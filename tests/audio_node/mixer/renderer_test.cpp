@@ -43,7 +43,7 @@ TEST_CASE("Sound starts on the sample nearest to its time, for any time and any 
   }
 }
 
-TEST_CASE("A late strike is played at once, a very late one is dropped, and both are said") {
+TEST_CASE("A late strike is played at once, a very late strike is dropped, and both are reported") {
   auto bench = std::make_unique<Bench>();
   bench->play(480);
   REQUIRE(bench->queues.strikes.push(strike_of(1, 1, 500, 20, bench->time_ns(480) - 10'000'000)));
@@ -58,7 +58,7 @@ TEST_CASE("A late strike is played at once, a very late one is dropped, and both
   CHECK(std::abs(bench->reports[1].presented_ns - bench->time_ns(480 + Limiter::kDelay)) <= 2);
 }
 
-TEST_CASE("Of the sense's row of late rules: on time within its slack, then the weaker the later, then dropped") {
+TEST_CASE("A strike is on time within the slack, then weaker with its lateness, then dropped") {
   // Without damping, so that the level after the onset is the strength.
   const auto played = [](double late_s) {
     auto bench = std::make_unique<Bench>();
@@ -87,7 +87,7 @@ TEST_CASE("Of the sense's row of late rules: on time within its slack, then the 
   CHECK(nothing == 0);
 }
 
-TEST_CASE("What is too late to be strong enough is called inaudible") {
+TEST_CASE("A strike that its lateness makes too weak is reported as inaudible") {
   auto bench = std::make_unique<Bench>();
   bench->play(480);
   Strike s = strike_of(1, 1, 500, 20, bench->time_ns(480) - 20'000'000);
@@ -115,7 +115,7 @@ TEST_CASE("A struck voice rings at its frequency and decays at its rate") {
   CHECK(worst < 0.1 * 2e-3);
 }
 
-TEST_CASE("Striking a voice that sounds adds to it and leaves its state alone") {
+TEST_CASE("A strike on a sounding voice adds to it and keeps its state") {
   const auto play = [](std::vector<std::size_t> strikes) {
     auto bench = std::make_unique<Bench>();
     for (const std::size_t s : strikes) bench->queues.strikes.push(strike_of(1, 1, 300, 5, bench->time_ns(s)));
@@ -126,7 +126,7 @@ TEST_CASE("Striking a voice that sounds adds to it and leaves its state alone") 
   for (std::size_t n = 0; n < 9000; ++n) CHECK(both[n] == Approx(first[n] + second[n]).margin(1e-5));
 }
 
-TEST_CASE("Energy decays once nothing strikes, down to silence and a free voice") {
+TEST_CASE("The energy of a struck voice decays to silence, and the voice becomes free") {
   Voices voices(4, kRate, kRing);
   const Strike s = strike_of(1, 1, 700, 60, 0);
   voices.strike(s.sides[0], 1, one_hump(20), 3);
@@ -149,7 +149,7 @@ TEST_CASE("Energy decays once nothing strikes, down to silence and a free voice"
   CHECK(voices.active() == 0);
 }
 
-TEST_CASE("A force pulse carries its impulse whatever its length, and spares what is faster than it") {
+TEST_CASE("A force pulse of any length carries its impulse and leaves modes above its spectrum at rest") {
   // At low frequency only the impulse counts; above the first zero of its spectrum, 2 / T, little remains.
   for (const int length : {1, 2, 10, 48, 200}) {
     Voices voices(2, kRate, kRing);
@@ -183,7 +183,7 @@ TEST_CASE("The same strikes in the same blocks give the same samples to the bit"
   CHECK(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
 }
 
-TEST_CASE("What never sounds is reported when the stream is given up") {
+TEST_CASE("Waiting strikes are reported as dropped when the stream is closed") {
   auto bench = std::make_unique<Bench>();
   bench->queues.strikes.push(strike_of(1, 1, 300, 5, bench->time_ns(90000)));
   bench->play(64);
@@ -203,7 +203,7 @@ TEST_CASE("A report that does not fit is counted") {
   CHECK(bench->queues.reports_lost == 1);
 }
 
-TEST_CASE("A callback of more than half a block is cut into blocks of half of the most at least") {
+TEST_CASE("A callback longer than half a block is divided into blocks of at least half of the maximum") {
   for (int frames = 1; frames <= 4096; ++frames) {
     CAPTURE(frames);
     int left = frames, least = kMaxBlock, most = 0;
@@ -219,7 +219,7 @@ TEST_CASE("A callback of more than half a block is cut into blocks of half of th
   }
 }
 
-TEST_CASE("A callback of any length has no block so short that a sound leaps to its new side") {
+TEST_CASE("A callback of any length has no block that is too short for a crossfade") {
   const int frames = GENERATE(33, 63, 65, 67, 129, 191, 193, 257, 1000, 1025, 2049, 4095);
   CAPTURE(frames);
   const double f = 440, w = 2 * pi * f / kRate;

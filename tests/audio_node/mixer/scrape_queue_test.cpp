@@ -73,7 +73,7 @@ constexpr int kBlock = 128;
 
 }  // namespace
 
-TEST_CASE("Surfaces of a scene that is over go when their last scrape has died away, and not before") {
+TEST_CASE("The surfaces of an ended scene are released when its last scrape has decayed, and not before") {
   QueueFixture l;
   auto first = surfaces_spoiled_on_free();
   const std::weak_ptr<const AudioSurfaces> watched = first;
@@ -94,7 +94,7 @@ TEST_CASE("Surfaces of a scene that is over go when their last scrape has died a
   CHECK(l.sound());
 }
 
-TEST_CASE("They stay while a scrape of theirs waits in the queue or for its time") {
+TEST_CASE("Surfaces are kept while one of their scrapes waits in the queue or for its time") {
   QueueFixture l;
   const auto first = surfaces_spoiled_on_free(), second = surfaces_spoiled_on_free();
   l.queue.set_surfaces(first);
@@ -111,7 +111,7 @@ TEST_CASE("They stay while a scrape of theirs waits in the queue or for its time
   CHECK(l.sound());
 }
 
-TEST_CASE("Of two scenes in quick succession the one that nobody heard goes at once, the one before it later") {
+TEST_CASE("Of two scenes in quick succession the one without a scrape is released at once, the earlier one later") {
   QueueFixture l;
   const auto first = surfaces_spoiled_on_free(), second = surfaces_spoiled_on_free(), third = surfaces_spoiled_on_free();
   l.queue.set_surfaces(first);
@@ -130,8 +130,7 @@ TEST_CASE("Of two scenes in quick succession the one that nobody heard goes at o
   CHECK(later[0] == first);
 }
 
-TEST_CASE(
-    "While the callback stands still nothing that it may read goes, and what waits is bounded by the queue") {
+TEST_CASE("A stopped callback releases no surfaces that it may read, and the queue bounds their number") {
   QueueFixture l;
   const auto heard = surfaces_spoiled_on_free();
   l.queue.set_surfaces(heard);
@@ -146,14 +145,14 @@ TEST_CASE(
   }
   // All except those with a scrape in the queue, the sounding one and the present one.
   CHECK(freed == 3000 + 1 - l.bench->queues.scrapes.capacity() - 1 - 1);
-  SECTION("until it goes on") {
+  SECTION("the resumed callback releases all surfaces") {
     l.queue.set_surfaces(nullptr);
     for (int n = 0; n < 9600; n += kBlock) l.bench->play(kBlock);
     freed += l.queue.take_released().size();
     CHECK(freed == 3001);
     CHECK(l.sound());
   }
-  SECTION("or its stream is given up, and another goes on where it was") {
+  SECTION("the next stream continues with the surfaces of the closed one") {
     l.queue.set_surfaces(nullptr);
     l.bench->renderer.abandon();
     freed += l.queue.take_released().size();
@@ -171,8 +170,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "Whatever loop and callback do, in two threads, nothing that is freed is heard, and all is freed in the end") {
+TEST_CASE("With the loop and the callback in two threads no freed surface is audible, and all are freed in the end") {
   QueueFixture l;
   std::atomic<bool> done{false};
   std::atomic<std::size_t> played{0};
@@ -210,8 +208,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "An end for which there was no room is told when there is, unless its contact goes on. Lost states are "
-    "counted") {
+    "An end of a scrape that does not fit is sent later unless its contact continues, and lost updates are counted") {
   auto queues = std::make_unique<CallbackQueues>();
   ScrapeQueue queue(*queues);
   const auto submit = [&](std::int64_t id, bool ends) {

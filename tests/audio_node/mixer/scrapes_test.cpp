@@ -31,7 +31,7 @@ double driven(double frequency_Hz, double natural_Hz, double damping_1_s) {
 
 }  // namespace
 
-TEST_CASE("What slides pushes with the slope of the relief under it, as often a second as it passes a wave") {
+TEST_CASE("The force of a sliding contact follows the slope of the relief at the rate of its waves") {
   const double speed = GENERATE(0.05, 0.2, 0.5);
   const auto r = run_scrape(
       [&](double ms) {
@@ -46,7 +46,7 @@ TEST_CASE("What slides pushes with the slope of the relief under it, as often a 
   CHECK(amplitude(r.force, 1.4 * tone_Hz, 0.2, 0.8) < 0.02 * should_be);
 }
 
-TEST_CASE("Told at 60 Hz a slide is as steady as told at 1 kHz") {
+TEST_CASE("A slide with updates at 60 Hz is as steady as one with updates at 1 kHz") {
   const auto scrape_at = [](double ms) { return along_x(&wavy(), 0.2, ms); };
   const auto rare = run_scrape(scrape_at, 500, 500, 16).force, often = run_scrape(scrape_at, 500, 500, 1).force;
   float off = 0;
@@ -55,7 +55,7 @@ TEST_CASE("Told at 60 Hz a slide is as steady as told at 1 kHz") {
   CHECK(off < 1e-5f * kForce);
 }
 
-TEST_CASE("A mode rings as a driven oscillator does, loudest where the waves pass at its frequency") {
+TEST_CASE("A mode responds as a driven oscillator, loudest where the waves pass at its frequency") {
   const double natural_Hz = 500, damping_1_s = 30;
   const double tone_Hz = GENERATE(250.0, 480.0, 500.0, 520.0, 1000.0);
   const auto r = run_scrape(
@@ -93,7 +93,7 @@ TEST_CASE("Roughness without a map sounds the same at the same place, and an oct
   CHECK(off < 1e-4 * rms(slow, 0.1, 0.3));
 }
 
-TEST_CASE("Waves too short for a sample do not fold back, neither of a map nor of roughness") {
+TEST_CASE("Waves too short for a sample do not alias, neither of a map nor of roughness") {
   material_def_t m = rough();
   m.bump_size_u_m = m.bump_size_v_m = 1e-4;
   m.bump_height_m = 1e-5;
@@ -125,7 +125,7 @@ TEST_CASE("Waves too short for a sample do not fold back, neither of a map nor o
   CHECK(level(22500) < 0.1 * level(5500));
 }
 
-TEST_CASE("What rolls feels the profile through a low-pass at the speed over the width of the patch") {
+TEST_CASE("Rolling filters the profile by a low-pass at the speed over the width of the patch") {
   const double cutoff_Hz = 200, of_cutoff = GENERATE(0.25, 1.0, 2.0, 4.0);
   const double tone_Hz = of_cutoff * cutoff_Hz;
   const auto r = run_scrape(
@@ -140,7 +140,7 @@ TEST_CASE("What rolls feels the profile through a low-pass at the speed over the
         Approx(static_cast<double>(kForce) * kSlope / std::sqrt(1 + std::pow(of_cutoff, 4))).epsilon(0.03));
 }
 
-TEST_CASE("What a body sounds beyond its modes follows the force at once, above the highest of them") {
+TEST_CASE("The residual modes of a body follow the force at once, above the highest rendered mode") {
   const double residual_Hz = 400, tone_Hz = GENERATE(100.0, 400.0, 1600.0);
   const auto r = run_scrape(
       [&](double ms) {
@@ -156,7 +156,7 @@ TEST_CASE("What a body sounds beyond its modes follows the force at once, above 
         Approx(0.5 * high * amplitude(r.force, tone_Hz, 0.1, 0.4)).epsilon(0.01));
 }
 
-TEST_CASE("Friction that changes on the map changes the strength at that place") {
+TEST_CASE("A friction map changes the strength by the place") {
   material_def_t m{};
   m.friction_size_u_m = m.friction_size_v_m = 0.4, m.friction_black = 0.25, m.friction_white = 4;
   const FrictionMap map(HeightMap{2, 2, 255, {0, 255, 0, 255}}, m);
@@ -176,7 +176,7 @@ TEST_CASE("Friction that changes on the map changes the strength at that place")
   CHECK(loud(0.295, false) == Approx(loud(0.095, false)).epsilon(0.01));
 }
 
-TEST_CASE("A contact that ends is silent 2 ms later, its bodies when they have rung out, and neither end clicks") {
+TEST_CASE("A contact that ends is silent 2 ms later without a click, and its bodies ring out") {
   const auto scrape_at = [](double ms) {
     Scrape s = along_x(&wavy(), 0.1, ms);
     s.sides[0].place_m.x() += kWave_m / 4;  // where it is steepest
@@ -200,7 +200,7 @@ TEST_CASE("A contact that ends is silent 2 ms later, its bodies when they have r
   for (std::size_t n = 24000 + 14400; n < r.sound.size(); ++n) REQUIRE(r.sound[n] == 0);
 }
 
-TEST_CASE("One that is told of no more, not even that it ended, is silent after 32 ms") {
+TEST_CASE("A contact without further updates and without an end is silent after 32 ms") {
   auto scrapes = std::make_unique<Scrapes>(kRate);
   auto voices = std::make_unique<Voices>(4, kRate, kRing);
   scrapes->update(along_x(&wavy(), 0.1, 0));
@@ -210,7 +210,7 @@ TEST_CASE("One that is told of no more, not even that it ended, is silent after 
   }
 }
 
-TEST_CASE("Where on a body it is struck changes without a click") {
+TEST_CASE("A change of the place on a body makes no click") {
   // A mode of such a high frequency and damping that it follows the force: its jumps would be audible.
   const double mode_Hz = 9000;
   const auto scrape_at = [&](double ms) {
@@ -229,7 +229,7 @@ TEST_CASE("Where on a body it is struck changes without a click") {
         (1 + 2 * kSlope * kSlope) * static_cast<double>(kForce) * kSlope * step * kRate / (2 * M_PI * mode_Hz));
 }
 
-TEST_CASE("What is no number, or beyond all measure, is not heard as such") {
+TEST_CASE("Scrapes with values that are not finite or implausible are ignored") {
   const double bad =
       GENERATE(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300, -1e12);
   const int where = GENERATE(0, 1, 2, 3, 4);
@@ -251,7 +251,7 @@ TEST_CASE("What is no number, or beyond all measure, is not heard as such") {
   for (const float x : r.sound) REQUIRE(std::abs(x) < 1);
 }
 
-TEST_CASE("More contacts than there is room for leave those that are heard alone") {
+TEST_CASE("Contacts beyond the maximum number leave the sounding ones unchanged") {
   auto scrapes = std::make_unique<Scrapes>(kRate);
   for (int i = 0; i < 3 * Scrapes::kMax; ++i) {
     Scrape s = along_x(&wavy(), 0.1, 0);
@@ -262,7 +262,7 @@ TEST_CASE("More contacts than there is room for leave those that are heard alone
   CHECK(scrapes->force(0) != nullptr);
 }
 
-TEST_CASE("One that is told of rarely goes on until it is told anew") {
+TEST_CASE("A scrape with rare updates continues until its next update") {
   const ReliefLevels relief(make_relief(waves(), rough()));
   const auto scrape_at = [&](double ms) {
     Scrape s = along_x(&relief, 0.1, ms);

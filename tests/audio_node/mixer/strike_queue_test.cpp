@@ -41,7 +41,7 @@ struct QueueFixture {
 
 }  // namespace
 
-TEST_CASE("A table is kept while a strike of it waits, and goes once strikes of the next scene alone are held") {
+TEST_CASE("A table is kept while a strike of it waits, and is freed once only later scenes have strikes") {
   QueueFixture l;
   auto first = table(500), second = table(700);
   const std::weak_ptr<const ResonatorTable> old = first;
@@ -61,7 +61,7 @@ TEST_CASE("A table is kept while a strike of it waits, and goes once strikes of 
   CHECK(l.bench->reports.size() == 1);
 }
 
-TEST_CASE("Scenes that change while the callback stands still keep no more tables than there are strikes in the queue") {
+TEST_CASE("With a stopped callback at most one table per strike in the queue is kept") {
   QueueFixture l;
   int submitted = 0;
   for (int i = 0; i < 2000; ++i) submitted += l.strike(table(500), 0, i) ? 1 : 0;
@@ -71,7 +71,7 @@ TEST_CASE("Scenes that change while the callback stands still keep no more table
   CHECK(l.queue.kept() == 0);
 }
 
-TEST_CASE("When the callback has ended, nothing but the newest table is kept") {
+TEST_CASE("A closed renderer releases all tables except the newest") {
   QueueFixture l;
   for (int i = 0; i < 10; ++i) REQUIRE(l.strike(table(500), 48000, i));
   l.bench->renderer.abandon();
@@ -80,7 +80,7 @@ TEST_CASE("When the callback has ended, nothing but the newest table is kept") {
   CHECK(l.bench->queues.reports.room() + 10 == l.bench->queues.reports.capacity());
 }
 
-TEST_CASE("No strike sounds with modes that have gone, over any order of strikes and scenes") {
+TEST_CASE("No strike sounds with freed modes, for any order of strikes and scenes") {
   std::mt19937 random(4);
   QueueFixture l;
   auto of = table(300);

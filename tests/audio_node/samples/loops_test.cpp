@@ -80,7 +80,7 @@ constexpr int kSecond = 48000 / kMaxBlock;
 
 }  // namespace
 
-TEST_CASE("A loop sounds as long as its contact, at its level, over its seam, and is silent after") {
+TEST_CASE("A loop plays over its seam for the duration of its contact, and is then silent") {
   const Layers l = layers({{1, 400}});
   LoopBench s;
   const auto set_contact = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1; };
@@ -99,7 +99,7 @@ TEST_CASE("A loop sounds as long as its contact, at its level, over its seam, an
   CHECK(s.steepest() <= 0.1 * (2 * pi * 400 / kRate + 1.0 / 240) * 1.001);
 }
 
-TEST_CASE("Twice the speed is an octave, and beyond an octave the pitch stays") {
+TEST_CASE("Twice the speed is an octave, which is the maximum shift of a loop") {
   const Layers l = layers({{1, 400}});
   for (const auto& [speed, ratio] :
        std::vector<std::pair<double, double>>{{1, 1}, {0.6, 0.6}, {2, 2}, {9, 2}, {0.01, 0.5}}) {
@@ -111,7 +111,7 @@ TEST_CASE("Twice the speed is an octave, and beyond an octave the pitch stays") 
   }
 }
 
-TEST_CASE("Layers go over into each other while the speed changes, without a click") {
+TEST_CASE("Layers crossfade without a click while the speed changes") {
   const Layers l = layers({{0.5, 300}, {2, 300}});
   LoopBench s;
   double v = 0.3;
@@ -121,7 +121,7 @@ TEST_CASE("Layers go over into each other while the speed changes, without a cli
   for (std::size_t n = 4800; n + 4800 < s.left.size(); n += 4800) CHECK(s.most(n, n + 4800) > 0.01);
 }
 
-TEST_CASE("Level and place that jump are followed without a click, and no number ends") {
+TEST_CASE("Jumps of the level make no click") {
   const Layers l = layers({{1, 100}});
   LoopBench s;
   int i = 0;
@@ -134,7 +134,7 @@ TEST_CASE("Level and place that jump are followed without a click, and no number
     CHECK(s.most(static_cast<std::size_t>(k) * 4800, static_cast<std::size_t>(k) * 4800 + 4800) <= 0.1001f);
 }
 
-TEST_CASE("What is of another database is another sound, and the one before fades") {
+TEST_CASE("A contact of another database is a new sound, and the previous one fades") {
   const Layers first = layers({{1, 400}}), second = layers({{1, 900}});
   LoopBench s;
   s.play(kSecond, [&](RecordedContact& r) { r.layers = &first, r.speed_m_s = 1; });
@@ -145,7 +145,7 @@ TEST_CASE("What is of another database is another sound, and the one before fade
   CHECK(s.steepest() <= 0.2 * (2 * pi * 900 / kRate + 1.0 / 240) * 1.001);
 }
 
-TEST_CASE("More contacts than there is room for are not heard, and nothing breaks") {
+TEST_CASE("Recorded contacts beyond the maximum number are silent") {
   const Layers l = layers({{1, 400}});
   Loops loops(kRate);
   for (std::int64_t id = 0; id < 100; ++id) {
@@ -156,7 +156,7 @@ TEST_CASE("More contacts than there is room for are not heard, and nothing break
   CHECK(loops.active() == Loops::kMax);
 }
 
-TEST_CASE("A loop whose contact is told to end is silent 2 ms later, to the bit and without a click") {
+TEST_CASE("A loop whose contact ends is silent 2 ms later, to the bit and without a click") {
   const Layers l = layers({{1, 400}});
   LoopBench s;
   const auto set_contact = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1; };
@@ -172,7 +172,7 @@ TEST_CASE("A loop whose contact is told to end is silent 2 ms later, to the bit 
   // The slope of the wave, and that of a level that falls from 0.1 within 96 samples.
   CHECK(s.steepest(ended) <= 0.1 * (2 * pi * 400 / kRate + 1.0 / 96) * 1.001);
 
-  SECTION("and one that begins again before it was silent goes on from where it is") {
+  SECTION("a contact that resumes before its silence continues at its level") {
     LoopBench again;
     again.play(kSecond, set_contact);
     again.play(1, end);
@@ -182,7 +182,7 @@ TEST_CASE("A loop whose contact is told to end is silent 2 ms later, to the bit 
   }
 }
 
-TEST_CASE("A loop that is told of rarely goes on until it is told anew") {
+TEST_CASE("A loop with rare updates continues until its next update") {
   const Layers l = layers({{1, 400}});
   LoopBench s;
   for (int i = 0; i < 10; ++i) {

@@ -5,7 +5,7 @@
 using namespace tactus;
 using namespace tactus::audio;
 
-TEST_CASE("The end of a recorded contact waits for room, unless the contact goes on. Lost states are counted") {
+TEST_CASE("An end of a recorded contact that does not fit is sent later unless its contact continues") {
   Spsc<RecordedContact> ring(4);
   RecordedContactQueue queue(ring);
   const auto submit = [&](std::int64_t contact, std::int32_t part, bool ends) {

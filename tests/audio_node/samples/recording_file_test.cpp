@@ -28,7 +28,7 @@ std::string said(const std::string& path, Interaction interaction, bool* read = 
 
 }  // namespace
 
-TEST_CASE("WAV and FLAC are read, of one channel or two, at any rate") {
+TEST_CASE("WAV and FLAC files with one or two channels are read at any rate") {
   const SoundFolder folder;
   for (const std::string ending : {".wav", ".flac"})
     for (const int rate : {22050, 44100, 48000, 96000}) {
@@ -47,7 +47,7 @@ TEST_CASE("WAV and FLAC are read, of one channel or two, at any rate") {
     }
 }
 
-TEST_CASE("A blow begins with its first sample, whatever silence was recorded before it") {
+TEST_CASE("A recorded blow begins with its first sample, without the silence before it") {
   const SoundFolder folder;
   std::vector<float> x(5000, 1e-5f);
   const auto ring = tone(500, 0.2, 0.5, 48000, 20);
@@ -62,7 +62,7 @@ TEST_CASE("A blow begins with its first sample, whatever silence was recorded be
   CHECK(std::abs(r->samples.back()) < 1e-6f);  // it fades
 }
 
-TEST_CASE("A loop goes on over its seam as it goes on elsewhere") {
+TEST_CASE("A loop is continuous over its seam") {
   std::mt19937 random(3);
   std::normal_distribution<float> normal(0, 0.2f);
   std::vector<float> x(48000);
@@ -82,7 +82,7 @@ TEST_CASE("A loop goes on over its seam as it goes on elsewhere") {
   for (std::size_t n = 1; n < loop.size(); ++n) REQUIRE(std::abs(loop[n] - loop[n - 1]) <= bound);
 }
 
-TEST_CASE("What cannot be played is refused with a sentence that says what to do") {
+TEST_CASE("A recording that cannot be played is rejected with a sentence that names the remedy") {
   const SoundFolder folder;
   const auto at = [&](const char* file) { return folder.path() + "/" + file; };
   folder.text("empty.wav", "");
@@ -115,7 +115,7 @@ TEST_CASE("What cannot be played is refused with a sentence that says what to do
   }
 }
 
-TEST_CASE("What is clipped is played all the same, and said") {
+TEST_CASE("A clipped recording is played and reported") {
   const SoundFolder folder;
   auto x = tone(200, 0.5, 1.5);
   for (float& s : x) s = std::clamp(s, -1.f, 1.f);
@@ -125,7 +125,7 @@ TEST_CASE("What is clipped is played all the same, and said") {
   CHECK(read);
 }
 
-TEST_CASE("A file that was cut off is read as far as it goes") {
+TEST_CASE("A truncated recording is read as far as possible") {
   const SoundFolder folder;
   folder.write("a.wav", tone(200, 1));
   std::filesystem::resize_file(folder.path() + "/a.wav", 100000);

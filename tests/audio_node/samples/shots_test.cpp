@@ -59,7 +59,7 @@ double centroid_Hz(const std::vector<float>& x) {
 
 }  // namespace
 
-TEST_CASE("At its own pitch a recording is heard to the sample, from the frame that it is given") {
+TEST_CASE("At its own pitch a recording is played to the sample from the given frame on") {
   const Recording r = recording(tone(700, 0.05, 0.5));
   for (const int offset : {0, 1, 37, kMaxBlock - 1}) {
     Shots shots(kRate);
@@ -74,7 +74,7 @@ TEST_CASE("At its own pitch a recording is heard to the sample, from the frame t
   }
 }
 
-TEST_CASE("The centre of the spectrum moves as the pitch") {
+TEST_CASE("The centroid of the spectrum moves with the pitch") {
   const Recording r = recording(tone(1000, 0.5, 0.5, 48000, 60));
   double whole = 0;
   for (const float step : {1.f, 0.5f, 0.75f, 1.5f, 2.f}) {
@@ -111,7 +111,7 @@ TEST_CASE("A strike with a recording starts on the sample nearest to its time") 
   }
 }
 
-TEST_CASE("When all are in use the quietest gives way, and fades without a click") {
+TEST_CASE("When all voices of recordings are in use the quietest fades without a click") {
   const Recording r = recording(tone(200, 2, 0.5));
   Shots shots(kRate);
   for (int i = 0; i < Shots::kMax; ++i) shots.start(shot(r, i == 20 ? 1e-3f : 1e-2f), 1, 0);
@@ -133,7 +133,7 @@ TEST_CASE("When all are in use the quietest gives way, and fades without a click
   CHECK(shots.active() == Shots::kMax);
 }
 
-TEST_CASE("A recording of silence or of nothing is over at once, and no strength plays nothing") {
+TEST_CASE("A recording of one sample ends at once, and one of zero strength is not played") {
   const Recording one = recording({0.5f});
   Shots shots(kRate);
   shots.start(shot(one), 1, 3);

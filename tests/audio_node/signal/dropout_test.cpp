@@ -43,7 +43,7 @@ struct Tone {
 
 }  // namespace
 
-TEST_CASE("A drop-out is silence of its length, so often, with edges of a millisecond") {
+TEST_CASE("A drop-out is silent for its length at its period, with edges of a millisecond") {
   Dropout dropout(kRate);
   dropout.set(kTwenty_ms);
   const auto gains = next(dropout, 10 * kSecond);
@@ -59,7 +59,7 @@ TEST_CASE("A drop-out is silence of its length, so often, with edges of a millis
   CHECK(largest_step(gains) <= kSteepest);
 }
 
-TEST_CASE("Drop-outs depend on the number of the sample only, not on how samples are cut into blocks") {
+TEST_CASE("Drop-outs depend on the sample number only, not on the block sizes") {
   Dropout whole(kRate), cut(kRate);
   whole.set(kTwenty_ms), cut.set(kTwenty_ms);
   std::vector<float> parts;
@@ -68,7 +68,7 @@ TEST_CASE("Drop-outs depend on the number of the sample only, not on how samples
   CHECK(parts == next(whole, parts.size()));
 }
 
-TEST_CASE("Drop-outs are switched on and off without a click, and keep their places") {
+TEST_CASE("Drop-outs are switched on and off without a click and keep their positions") {
   Dropout dropout(kRate), always(kRate);
   always.set(kTwenty_ms);
   std::vector<float> gains;
@@ -90,7 +90,7 @@ TEST_CASE("Drop-outs are switched on and off without a click, and keep their pla
   CHECK(std::equal(gains.begin() + 1600, gains.end(), reference.begin() + 1600));
 }
 
-TEST_CASE("Sound that drops out is the sound without, times the silence, to the bit outside of it") {
+TEST_CASE("Sound with drop-outs equals the sound without, times the drop-out gains, to the bit") {
   Tone plain({}), poor(kTwenty_ms);
   for (Tone* t : {&plain, &poor}) {
     REQUIRE(t->bench->queues.strikes.push(strike_of(1, 1, 440, 0.5, t->bench->time_ns(3000))));
@@ -109,7 +109,7 @@ TEST_CASE("Sound that drops out is the sound without, times the silence, to the 
   CHECK(loudest > 0.05);
 }
 
-TEST_CASE("A strike whose onset is silenced was dropped by the profile, one before or after it was presented") {
+TEST_CASE("A strike whose onset is in a drop-out is reported as dropped by the profile") {
   // Frames leave the limiter kDelay samples after they were counted.
   const auto struck_at = [](std::size_t counted) {
     Tone tone(kTwenty_ms);
@@ -133,7 +133,7 @@ TEST_CASE("A strike whose onset is silenced was dropped by the profile, one befo
   CHECK(struck_at(kLength + kEdge).outcome == presentation_t::PRESENTED);
 }
 
-TEST_CASE("Drop-outs are ordered and ended while the sound is on") {
+TEST_CASE("Drop-outs can start and end while a sound plays") {
   Tone tone({});
   REQUIRE(tone.bench->queues.strikes.push(strike_of(1, 1, 440, 0.5, tone.bench->time_ns(3000))));
   tone.play_until(kSecond / 2);

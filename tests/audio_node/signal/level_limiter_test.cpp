@@ -64,7 +64,7 @@ double steepest_dB(const std::vector<float>& in, const std::vector<float>& out) 
 
 }  // namespace
 
-TEST_CASE("A full-scale tone ends at the limit, at any frequency, through a gain that moves without a click") {
+TEST_CASE("A full-scale tone settles at the limit at any frequency, without a click") {
   LevelLimiterDef ears = kDef;
   ears.ears = true;
   for (const double frequency_Hz : {200., 1000., 4000.}) {
@@ -79,7 +79,7 @@ TEST_CASE("A full-scale tone ends at the limit, at any frequency, through a gain
   }
 }
 
-TEST_CASE("Below the limit the level limiter changes no bit, not even of numbers that it has just turned down") {
+TEST_CASE("Below the limit the level limiter changes no bit, also after an excess") {
   // 15 dB below full scale is at the limit.
   LevelLimiterDef ears = kDef;
   ears.ears = true;
@@ -97,7 +97,7 @@ TEST_CASE("Below the limit the level limiter changes no bit, not even of numbers
   CHECK(std::equal(out.end() - 4 * 96000, out.end(), both.end() - 4 * 96000));
 }
 
-TEST_CASE("One strike at -12 dBFS that rings for a second is played to the bit") {
+TEST_CASE("A strike at -12 dBFS that rings for a second is unchanged by the level limiter") {
   auto strike = tone(1000, 0.25, 3 * kSecond);
   for (std::size_t i = 0; i < strike.size(); ++i)
     strike[i] *= static_cast<float>(std::exp(-6.9 * static_cast<double>(i / 2) / kRate));
@@ -105,7 +105,7 @@ TEST_CASE("One strike at -12 dBFS that rings for a second is played to the bit")
   CHECK(same);
 }
 
-TEST_CASE("The louder ear counts. Loudspeakers add up") {
+TEST_CASE("The louder ear counts, and the powers of loudspeakers add up") {
   const auto settled = [](bool ears, bool both) {
     LevelLimiterDef def = kDef;
     def.ears = ears;
@@ -119,7 +119,7 @@ TEST_CASE("The louder ear counts. Loudspeakers add up") {
   CHECK(settled(false, true) == Approx(kDef.limit_dB - 10 * std::log10(2)).margin(0.1));
 }
 
-TEST_CASE("What is no number, or beyond all numbers, is silence or full scale at once, and forgotten soon") {
+TEST_CASE("Samples that are not finite become silence, larger ones full scale, and the state recovers") {
   for (const float bad :
        {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e38f}) {
     LevelLimiter limiter(kDef, kRate, 2);
@@ -135,7 +135,7 @@ TEST_CASE("What is no number, or beyond all numbers, is silence or full scale at
   }
 }
 
-TEST_CASE("The dose is that of the level: 80 dBA for 40 hours are a week's, and 3 dB more take half of the time") {
+TEST_CASE("The weekly dose is 80 dBA for 40 hours, and 3 dB more halve the time") {
   const auto exposure = [](double level_dB, std::size_t seconds) {
     LevelLimiter limiter(kDef, kRate, 1);
     // One channel, unchanged.
@@ -157,14 +157,14 @@ TEST_CASE("The dose is that of the level: 80 dBA for 40 hours are a week's, and 
   CHECK(exposure(100, 8) < 4 * exposure(85, 8));
 }
 
-TEST_CASE("The dose is told in per cent of a day's, and not before there is one") {
+TEST_CASE("The sound dose is reported in per cent of the daily allowance") {
   CHECK(dose_text(0).empty());
   CHECK(dose_text(0.001) == ", sound dose of this run below 1 % of a day's");
   CHECK(dose_text(0.034) == ", sound dose of this run 3 % of a day's");
   CHECK(dose_text(2.5) == ", sound dose of this run 250 % of a day's");
 }
 
-TEST_CASE("A roar of 128 bodies is played within the limit, and its dose is told") {
+TEST_CASE("The sound of 128 bodies stays within the limit, and its exposure is measured") {
   auto bench = std::make_unique<Bench>();
   std::mt19937 random(5);
   for (int i = 0; i < 128; ++i)
@@ -184,7 +184,7 @@ TEST_CASE("A roar of 128 bodies is played within the limit, and its dose is told
   CHECK(exposure < 2 * 8 * 0.1265);
 }
 
-TEST_CASE("A row of strikes of -12 dBFS is played as if no level were limited") {
+TEST_CASE("A series of strikes at -12 dBFS is unchanged by the level limiter") {
   const auto play = [](double limit_dB) {
     RendererDef def;
     def.hearing.limit_dB = limit_dB;

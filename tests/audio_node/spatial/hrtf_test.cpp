@@ -9,7 +9,7 @@ using namespace tactus::audio::test;
 
 // 10 us is the smallest audible interaural time difference (Klumpp and Eady 1956), 1 dB the smallest level
 // difference (Mills 1960).
-TEST_CASE("A source on a circle has the time difference between the ears that the measured responses have") {
+TEST_CASE("A source on a circle has the interaural time difference of the measured responses") {
   for (int azimuth = 0; azimuth < 360; azimuth += 5) {
     INFO("azimuth " << azimuth);
     const double ours = time_difference_us(rendered_response(towards(azimuth)), 48000);
@@ -21,7 +21,7 @@ TEST_CASE("A source on a circle has the time difference between the ears that th
   }
 }
 
-TEST_CASE("A source on a circle has the level difference between the ears that the measured responses have") {
+TEST_CASE("A source on a circle has the interaural level difference of the measured responses") {
   const double from_Hz = GENERATE(177, 354, 707, 1414, 2828, 5657);  // octaves around 250 Hz to 8 kHz
   for (int azimuth = 0; azimuth < 360; azimuth += 5) {
     INFO("azimuth " << azimuth << ", octave from " << from_Hz);
@@ -33,7 +33,7 @@ TEST_CASE("A source on a circle has the level difference between the ears that t
   }
 }
 
-TEST_CASE("Ears that were measured from one side only are refused instead of being made up") {
+TEST_CASE("Ears that were measured from one side only are rejected") {
   MeasuredHrtf half = kemar();
   const MeasuredHrtf whole = half;
   half.directions.clear(), half.responses.clear(), half.delays.clear();

@@ -64,7 +64,7 @@ constexpr std::size_t kSettled = 256;  // longer than any filter and delay
 
 }  // namespace
 
-TEST_CASE("A source that circles the head once a second is heard without a click") {
+TEST_CASE("A source that circles the head once a second makes no click") {
   const Space space = GENERATE(Space{ears(), nullptr}, Space{},
                                Space{nullptr, std::make_shared<const Panning>(load_layout("stereo"))});
   const double f = 440, w = 2 * std::numbers::pi * f / kRate;
@@ -80,7 +80,7 @@ TEST_CASE("A source that circles the head once a second is heard without a click
   CHECK(std::max(largest_bend(swept.left, kSettled), largest_bend(swept.right, kSettled)) < 1.25 * w * w * gain);
 }
 
-TEST_CASE("A source that leaps to the other side goes over within a block") {
+TEST_CASE("A source that jumps to the other side crossfades within a block") {
   const double f = 440, w = 2 * std::numbers::pi * f / kRate;
   const auto leapt = tone({ears(), nullptr}, f, 40, [](int b) { return at(b < 20 ? 90 : -90); });
   const double gain = std::max(largest(leapt.left, kSettled), largest(leapt.right, kSettled));
@@ -90,7 +90,7 @@ TEST_CASE("A source that leaps to the other side goes over within a block") {
         (2.2 * w * w + 0.5 * w + 2.0 / 64) * gain);
 }
 
-TEST_CASE("What sounds on a source next is not heard through what the last sound left") {
+TEST_CASE("The next sound on a source starts without the filters and delays of the last one") {
   const Space space = GENERATE(Space{ears(), nullptr}, Space{});
   Spatialiser spatialiser(space, 1, kRate, Instructions::kSse2);
   std::vector<float> loud(kMaxBlock, 1.f), none(kMaxBlock), out(2 * kMaxBlock);
@@ -104,7 +104,7 @@ TEST_CASE("What sounds on a source next is not heard through what the last sound
   CHECK(std::all_of(out.begin(), out.end(), [](float x) { return x == 0; }));
 }
 
-TEST_CASE("After the tail nothing of a source is left to be heard") {
+TEST_CASE("After its tail a source is silent") {
   Spatialiser spatialiser({ears(), nullptr}, 1, kRate, Instructions::kSse2);
   spatialiser.begin(0);
   std::vector<float> in(kMaxBlock);
@@ -123,7 +123,7 @@ TEST_CASE("After the tail nothing of a source is left to be heard") {
   CHECK(std::any_of(after - spatialiser.tail() / 2, after, [](float x) { return x != 0; }));
 }
 
-TEST_CASE("Pressure falls as the distance grows, and the air takes the high notes") {
+TEST_CASE("The pressure falls with the distance, and the air absorbs high frequencies") {
   const double f = GENERATE(500.0, 8000.0);
   const float distance_m = GENERATE(0.5f, 2.f, 20.f);
   const auto near = tone({}, f, 60, [](int) { return at(0, 1); });
@@ -135,7 +135,7 @@ TEST_CASE("Pressure falls as the distance grows, and the air takes the high note
   CHECK(rms(far.left, 2000) == Approx(expected).epsilon(0.006));
 }
 
-TEST_CASE("A body that rings stays where it is while the listener turns") {
+TEST_CASE("A ringing body stays in place while the listener turns") {
   Voices voices(4, kRate, kRing, {ears(), nullptr});
   Strike strike = strike_of(1, 1, 2000, 5, 0);
   SourcePosition& place = strike.sides[0].place;
@@ -164,7 +164,7 @@ TEST_CASE("A body that rings stays where it is while the listener turns") {
   CHECK(louder_left() > 6);
 }
 
-TEST_CASE("A voice that has ended leaves nothing to the next on its source") {
+TEST_CASE("A voice that has ended leaves no state to the next one on its source") {
   const auto render = [](Voices& voices, int blocks) {
     std::vector<float> all;
     for (int b = 0; b < blocks; ++b) {
@@ -208,7 +208,7 @@ double first_heard_blow(const Space& space, const Eigen::Vector3f& from) {
 
 }  // namespace
 
-TEST_CASE("A blow from any side is first heard when it is without ears, in the mean to 0.1 ms") {
+TEST_CASE("The first audible sample of a blow from any side is on time, in the mean to 0.1 ms") {
   const Space by_ears{ears(), nullptr};
   double sum = 0, weights = 0;
   for (int elevation = -60; elevation <= 60; elevation += 30)
@@ -227,7 +227,7 @@ TEST_CASE("A blow from any side is first heard when it is without ears, in the m
   CHECK(std::abs(sum / weights) <= 4);
 }
 
-TEST_CASE("A place that is no number is heard from ahead") {
+TEST_CASE("A source position that is not finite counts as straight ahead") {
   const Space space = GENERATE(Space{ears(), nullptr}, Space{},
                                Space{nullptr, std::make_shared<const Panning>(load_layout("stereo"))});
   const float none = GENERATE(std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity());
@@ -273,7 +273,7 @@ struct Restruck {
 
 }  // namespace
 
-TEST_CASE("A body that rings and is struck elsewhere goes there without a click") {
+TEST_CASE("A ringing body that is struck elsewhere moves there without a click") {
   const Space space = GENERATE(Space{ears(), nullptr}, Space{},
                                Space{nullptr, std::make_shared<const Panning>(load_layout("stereo"))});
   const bool in_world = GENERATE(false, true);
@@ -299,7 +299,7 @@ TEST_CASE("A body that rings and is struck elsewhere goes there without a click"
         Approx(largest(there.heard.right, 25120)).epsilon(0.01));
 }
 
-TEST_CASE("A blow that drowns what rings is heard from its own place at once") {
+TEST_CASE("A blow that masks the ringing sounds from its own place at once") {
   const Space space = GENERATE(Space{ears(), nullptr}, Space{});
   Restruck body(space);
   body.strike(towards(80), 1, 0.001f);
