@@ -40,9 +40,9 @@ constexpr double kCalm_s = 2;  // design: spare time required before a better st
 constexpr float kSilenced = 0.5f;
 
 LevelLimiterDef level_limiter_def(const RendererDef& def) {
-  LevelLimiterDef hearing = def.hearing;
-  hearing.ears = def.space.hrtf != nullptr;
-  return hearing;
+  LevelLimiterDef limiter = def.level_limit;
+  limiter.ears = def.space.hrtf != nullptr;
+  return limiter;
 }
 
 }  // namespace

@@ -235,15 +235,15 @@ TEST_CASE("A recorded contact that ends or comes to rest ends once") {
     return w.sampler.recorded_contacts(all, sync::host_time(1'000'000 * ++ms));
   };
   const auto scrape = [&] {
-    for (int i = 0; i < 100; ++i) contacts({sliding(0.2, 0, 4)});
+    for (int i = 0; i < 100; ++i) update({sliding(0.2, 0, 4)});
   };
   const auto ends_in = [&](const sync::Contacts& all) {
-    const auto ended = contacts(all);
+    const auto ended = update(all);
     REQUIRE(ended.size() == 1);
     CHECK(ended[0].ends);
     CHECK(ended[0].contact == 11);
     CHECK(ended[0].database == 5);
-    CHECK(contacts(all).empty());
+    CHECK(update(all).empty());
   };
   scrape();
   ends_in({});

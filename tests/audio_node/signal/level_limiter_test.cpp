@@ -187,7 +187,7 @@ TEST_CASE("The sound of 128 bodies stays within the limit, and its exposure is m
 TEST_CASE("A series of strikes at -12 dBFS is unchanged by the level limiter") {
   const auto play = [](double limit_dB) {
     RendererDef def;
-    def.hearing.limit_dB = limit_dB;
+    def.level_limit.limit_dB = limit_dB;
     auto queues = std::make_unique<CallbackQueues>();
     auto renderer = std::make_unique<Renderer>(*queues, def);
     for (int i = 0; i < 12; ++i)
