@@ -31,7 +31,7 @@ void check(PaError error, const std::string& what) {
 
 constexpr int kMinChannels = 2;  // of a card that is listed by name
 
-[[noreturn]] void refuse_channels(const PaDeviceInfo& card, int channels) {
+[[noreturn]] void reject_channels(const PaDeviceInfo& card, int channels) {
   throw std::runtime_error("the sound card \"" + std::string(card.name) + "\" has " +
                            std::to_string(card.maxOutputChannels) + " channels, but the loudspeakers need " +
                            std::to_string(channels) + "; choose another layout_file or --audio-device");
@@ -55,7 +55,7 @@ PaDeviceIndex find_device(const std::string& wanted, int channels) {
     }
     known += std::string(known.empty() ? "" : ", ") + info->name;
   }
-  if (few) refuse_channels(*few, channels);
+  if (few) reject_channels(*few, channels);
   throw std::runtime_error("there is no sound card \"" + wanted + "\"; choose default, virtual" +
                            (known.empty() ? "" : " or one of: " + known));
 }
@@ -126,7 +126,7 @@ void Stream::open(const StreamOptions& options, const std::string& wav) {
     device = find_device(VirtualCard::kName, options.channels);
   }
   if (const PaDeviceInfo* info = Pa_GetDeviceInfo(device); info->maxOutputChannels < options.channels)
-    refuse_channels(*info, options.channels);
+    reject_channels(*info, options.channels);
   card_ = virtual_card_ ? "virtual card" : Pa_GetDeviceInfo(device)->name;
 
   PaStreamParameters parameters{};

@@ -25,7 +25,7 @@ class DueHits {
   }
 
   // Calls sound(event, scheduled) for hits in the order of their time: the first in any case, further ones while
-  // goes_on() is true. Calls drop(event, scheduled) for each hit that is so overdue that the policy drops it.
+  // has_time() is true. Calls drop(event, scheduled) for each hit that the late policy drops.
   template <class HasTime, class Sound, class Drop>
   void process(sync::HostTime now, const sync::LatePolicy& late, HasTime has_time, Sound sound, Drop drop) {
     for (bool first = true; !hits_.empty();) {

@@ -92,7 +92,7 @@ void Sampler::add_recordings(Strike& strike, const contact_event_t& event, const
     for (std::size_t k = 0; k < 2; ++k) {
       if (mix.layer[k] < 0) continue;
       const Layer& layer = layers.by_speed[static_cast<std::size_t>(mix.layer[k])];
-      const Recording& take = take_of(layer, event.event_id);
+      const Recording& take = select_take(layer, event.event_id);
       const float gain = static_cast<float>(level) * share * layer.gain * mix.gain[k] * method.recorded;
       strike.recorded.shots[next++] = {&take, gain, static_cast<float>(pitch_of(size_m, layers.size_m))};
       peak += gain * take.peak;

@@ -15,13 +15,13 @@ using namespace tactus::audio;
 
 namespace {
 
-std::string words(const MaterialPair& m) { return m.first.empty() ? m.second : m.first + "-" + m.second; }
+std::string pair_name(const MaterialPair& m) { return m.first.empty() ? m.second : m.first + "-" + m.second; }
 
 nlohmann::json contents(const Database& database) {
   nlohmann::json all = nlohmann::json::array();
   for (const auto& [key, layers] : database.sounds) {
     nlohmann::json row{
-        {"materials", words(key.materials)}, {"interaction", name(key.interaction)}, {"size_m", layers.size_m}};
+        {"materials", pair_name(key.materials)}, {"interaction", name(key.interaction)}, {"size_m", layers.size_m}};
     for (const Layer& layer : layers.by_speed)
       row["layers"].push_back({{"speed_m_s", layer.speed_m_s}, {"takes", layer.takes.size()}});
     all.push_back(row);
@@ -38,7 +38,7 @@ nlohmann::json coverage(const Database& database, const std::vector<std::string>
         const auto found = database.find(materials[i], materials[k], interaction);
         std::string plays = found.pair ? "pair" : found.alone[0] ? materials[i] : "";
         if (found.alone[1]) plays += (plays.empty() ? "" : " and ") + materials[k];
-        all.push_back({{"materials", words(pair_of(materials[i], materials[k]))},
+        all.push_back({{"materials", pair_name(pair_of(materials[i], materials[k]))},
                        {"interaction", name(interaction)},
                        {"plays", plays.empty() ? "modal" : plays}});
       }

@@ -75,7 +75,7 @@ void Renderer::receive_commands() {
   RenderCommand command;
   while (queues_.commands.pop(command)) {
     dropout_.set(command.dropout);
-    pinned_ = std::min(command.quality, static_cast<int>(kQualities.size()) - 1);
+    fixed_quality_ = std::min(command.quality, static_cast<int>(kQualities.size()) - 1);
   }
   Listener listener;
   bool moved = false;
@@ -85,13 +85,13 @@ void Renderer::receive_commands() {
 
 // The ladder receives the time per second of sound, since blocks may differ in length.
 void Renderer::adapt(int frames, sync::Nanoseconds render_time) {
-  if (pinned_ < 0 && render_time > sync::Nanoseconds(0)) frames_ += last_frames_, render_time_ += render_time;
+  if (fixed_quality_ < 0 && render_time > sync::Nanoseconds(0)) frames_ += last_frames_, render_time_ += render_time;
   last_frames_ = frames;
   if (frames_ > 0 && frames_ >= rate_Hz_ / kMeans_Hz) {
     ladder_.add(sync::from_seconds(sync::to_seconds(render_time_) * rate_Hz_ / frames_));
     frames_ = 0, render_time_ = {};
   }
-  const int step = pinned_ < 0 ? ladder_.step() : pinned_;
+  const int step = fixed_quality_ < 0 ? ladder_.step() : fixed_quality_;
   voices_.set_limits(kQualities[static_cast<std::size_t>(step)]);
   queues_.quality.store(step, std::memory_order_relaxed);
 }
@@ -124,7 +124,7 @@ void Renderer::render(float* out, int frames, const BlockTime& time) {
   }
   for (int done = 0; done < frames;) {
     const int some = next_block(frames - done);
-    render_some(out + channels_ * done, some, {time.first_sample + samples(done), time.uncertainty, {}});
+    render_block(out + channels_ * done, some, {time.first_sample + samples(done), time.uncertainty, {}});
     done += some;
   }
   release_strikes();
@@ -148,17 +148,17 @@ void Renderer::abandon() {
 }
 
 // The frames of the block are rendered now, pass the spatialiser and leave the limiter kDelay frames later.
-void Renderer::render_some(float* out, int frames, const BlockTime& time) {
+void Renderer::render_block(float* out, int frames, const BlockTime& time) {
   const BlockTime leaving{time.first_sample + samples(delay_), time.uncertainty, {}};
   const sync::HostTime end =
       leaving.first_sample + sync::Nanoseconds(std::llround((frames - 0.5) * 1e9 / rate_Hz_));
   dropout_.next({open_.data(), static_cast<std::size_t>(frames)});
   while (const Strike* strike = scheduler_.pop_before(end)) begin(*strike, frames, leaving);
   std::fill(out, out + channels_ * frames, 0.f);
-  if (!silent_) sound_some(out, frames, leaving.first_sample);
+  if (!silent_) render_sound(out, frames, leaving.first_sample);
 }
 
-void Renderer::sound_some(float* out, int frames, sync::HostTime leaving) {
+void Renderer::render_sound(float* out, int frames, sync::HostTime leaving) {
   const std::int64_t begun = clock();
   const int scraping = scrapes_.active();
   receive_scrapes(leaving);
@@ -233,8 +233,8 @@ void Renderer::begin(const Strike& strike, int frames, const BlockTime& leaving)
   if (open_[static_cast<std::size_t>(offset)] < kSilenced)
     return report(strike, presentation_t::DROPPED_BY_PROFILE, -1, sync::Nanoseconds(0));
   const sync::Nanoseconds half_sample = samples(1) / 2;
-  const bool heard = gain >= strike.min_audible_gain;
-  report(strike, heard ? outcome : presentation_t::INAUDIBLE, sync::to_ns(leaving.first_sample + samples(offset)),
+  const bool audible = gain >= strike.min_audible_gain;
+  report(strike, audible ? outcome : presentation_t::INAUDIBLE, sync::to_ns(leaving.first_sample + samples(offset)),
          leaving.uncertainty + half_sample);
 }
 

@@ -115,8 +115,8 @@ class Renderer {
  private:
   void receive_commands();
   void adapt(int frames, sync::Nanoseconds render_time);
-  void render_some(float* out, int frames, const BlockTime& time);
-  void sound_some(float* out, int frames, sync::HostTime leaving);
+  void render_block(float* out, int frames, const BlockTime& time);
+  void render_sound(float* out, int frames, sync::HostTime leaving);
   void receive_scrapes(sync::HostTime until);
   void release_strikes();
   void release_scrapes();
@@ -145,7 +145,7 @@ class Renderer {
   Limiter limiter_;
   LevelLimiter level_limiter_;
   sync::QualityLadder ladder_;
-  int pinned_ = -1;
+  int fixed_quality_ = -1;
   int last_frames_ = 0;        // of the previous block
   int frames_ = 0;             // rendered frames that the ladder has not received,
   sync::Nanoseconds render_time_{0};  // and their rendering time

@@ -12,7 +12,7 @@ constexpr double kCorrection_s = 0.01;
 // A larger difference means that it was repositioned.
 constexpr double kMaxCorrection_m = 0.005;  // design
 // Minimum ramp time of a strength at begin, change and end. Design: shorter is audible as a click.
-constexpr double kStrength_s = 0.002;
+constexpr double kMinRamp_s = 0.002;
 // A contact without updates and without an end fades out.
 constexpr sync::Nanoseconds kUpdateTimeout{30'000'000};  // design: a few lost messages are not a gap
 constexpr double kMaxTimeout_s = 0.5;                 // design: or twice the update interval, but at most this
@@ -34,7 +34,7 @@ bool is_plausible(const Scrape& s) {
 }
 
 // Slope limit for a step in a map: 76 degrees (design).
-constexpr float kSteepest = 4;
+constexpr float kMaxSlope = 4;
 
 bool moves_over(const ScrapeSide& side) { return !side.slide_vector.isZero(0) || !side.roll_vector.isZero(0); }
 
@@ -92,7 +92,7 @@ void Scrapes::update(const Scrape& scrape) {
     if (c.on && c.now.id == scrape.id) known = &c;
     if (!c.on && !free) free = &c;
   }
-  const int within = std::max(1, static_cast<int>(std::max(kStrength_s, scrape.update_interval_s) * rate_Hz_));
+  const int within = std::max(1, static_cast<int>(std::max(kMinRamp_s, scrape.update_interval_s) * rate_Hz_));
   if (scrape.ends) {
     if (known) known->slide.set_target(0, within), known->roll.set_target(0, within);
     return;
@@ -128,8 +128,8 @@ void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
   const Scrape& s = c.now;
   if (first - c.updated_at >= std::max(kUpdateTimeout, sync::from_seconds(std::min(2 * s.update_interval_s, kMaxTimeout_s))) &&
       (c.slide.target != 0 || c.roll.target != 0))
-    c.slide.set_target(0, static_cast<int>(kStrength_s * rate_Hz_)),
-        c.roll.set_target(0, static_cast<int>(kStrength_s * rate_Hz_));
+    c.slide.set_target(0, static_cast<int>(kMinRamp_s * rate_Hz_)),
+        c.roll.set_target(0, static_cast<int>(kMinRamp_s * rate_Hz_));
   const double since_s = sync::to_seconds(first - s.at);
   Block slope{}, rolling{}, friction, steep;
   friction.fill(1);
@@ -147,7 +147,7 @@ void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
   // product.
   for (int n = 0; n < frames; ++n) {
     const auto k = static_cast<std::size_t>(n);
-    steep[k] = std::sqrt(1 + std::min(slope[k] * slope[k], kSteepest * kSteepest));
+    steep[k] = std::sqrt(1 + std::min(slope[k] * slope[k], kMaxSlope * kMaxSlope));
   }
   for (std::size_t i = 0; i < 2; ++i)
     if (const ScrapeSide& side = s.sides[i]; side.known && moves_over(side))
@@ -156,7 +156,7 @@ void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
   c.patch.set(s.cutoff_Hz, rate_Hz_);
   for (int n = 0; n < frames; ++n) {
     const auto k = static_cast<std::size_t>(n);
-    // The factor of a pair is the root of the product, and the strength goes with the root of the power.
+    // The factor of a pair is the root of the product, and the strength is proportional to the root of the power.
     const float friction_gain = mapped ? std::sqrt(static_cast<float>(pair_factor(static_cast<double>(friction[k])))) : 1;
     c.force[k] = c.slide.next() * friction_gain * steep[k] * slope[k] + c.roll.next() * c.patch.next(rolling[k]).low;
   }

@@ -45,7 +45,7 @@ bool Loops::update(const RecordedContact& contact) {
   free->now = contact;
   const auto count = std::min(contact.layers->by_speed.size(), static_cast<std::size_t>(kMaxLayers));
   for (std::size_t i = 0; i < count; ++i) {
-    const Recording& r = take_of(contact.layers->by_speed[i], contact.contact);
+    const Recording& r = select_take(contact.layers->by_speed[i], contact.contact);
     // Each contact begins at another place of the loop, so that contacts that begin together remain distinct.
     const auto begin = static_cast<std::uint64_t>(contact.contact + 1) * 0x9E3779B97F4A7C15u % r.samples.size();
     free->layers[i] = {&r, static_cast<double>(begin), 0};

@@ -67,7 +67,7 @@ TEST_CASE("The DAC clock restarts at once after an underflow") {
   card.start_s += 0.06;  // a stall
   const double truth = card.out_s();
   const auto e = clock.block(128, card.next(128, true), 0.008);
-  // One reading and one calibration: its noise, and the lateness of that one callback (about 30 us, seldom 200).
+  // One reading and one calibration: its noise, and the lateness of that one callback (about 30 us, rarely 200).
   CHECK(std::abs(static_cast<double>(sync::to_ns(e.first_sample)) * 1e-9 - truth) < 300e-6);
 }
 
@@ -146,7 +146,7 @@ TEST_CASE("The time of a sample stays accurate when the clock of PortAudio steps
     covered &= std::abs(error) <= sync::to_seconds(e.uncertainty) + kSample_s / 2;
   }
   // One callback calibrates a step beyond a second, the earliest of eight a smaller one: 30 us each on average,
-  // 0.2 ms seldom, of which the loop passes on a few per cent until the minimum is found again.
+  // rarely 0.2 ms, of which the loop passes on a few per cent until the minimum is found again.
   CHECK(worst < 2 * kSample_s);
   CHECK(covered);
 }

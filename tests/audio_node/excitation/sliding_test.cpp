@@ -114,7 +114,7 @@ TEST_CASE("A scrape has its place on both bodies, its velocity and its strength"
 }
 
 TEST_CASE("The strength of sliding is the root of the friction power") {
-  // Strength goes with the root of friction, force and speed (FoleyAutomatic, section 4.2), level with its power
+  // Strength is proportional to the root of friction, force and speed (FoleyAutomatic, section 4.2), and level to its power
   // 0.6.
   CHECK(sliding_strength(0.5, 2, 0.1) == Approx(std::sqrt(0.1)));
   const double force_N = GENERATE(0.5, 8.0), speed_m_s = GENERATE(0.05, 0.4);
@@ -350,8 +350,8 @@ TEST_CASE("The transition from sliding to rolling has no jump") {
       CHECK(slides == 0);
       CHECK(rolls > 0);
     }
-    // Sliding goes with a root, which is steepest where it ends: a hundredth of the whole path changes it by a
-    // tenth. Rolling goes with the square of the speed: its last hundredth changes it by 2 %; the gate adds at
+    // Sliding follows a root, which is steepest where it ends: a hundredth of the whole path changes it by a
+    // tenth. Rolling follows the square of the speed: its last hundredth changes it by 2 %; the gate adds at
     // most the opening over 20 um.
     if (ms > 1) {
       REQUIRE(std::abs(slides - slide) < 0.2 * 1e-3);

@@ -1,4 +1,4 @@
-// The modes that strikes refer to stay as long as the callback may read them, over changes of the scene, and no longer.
+// The modes of strikes are kept while the callback may read them, also when the scene changes, and are then freed.
 #include "audio_node/mixer/strike_queue.h"
 
 #include <catch2/catch.hpp>
@@ -12,7 +12,7 @@ using namespace tactus::audio::test;
 
 namespace {
 
-// Whose values are spoilt when it goes, so that a late reader is heard.
+// Its deleter makes the values audible, so that a read after the release fails the test.
 StrikeQueue::Table table(double frequency_Hz) {
   auto* const all = new ResonatorTable(1);
   all->front().add(mode_step(frequency_Hz, 20, kRate));
@@ -23,7 +23,7 @@ StrikeQueue::Table table(double frequency_Hz) {
           }};
 }
 
-// A loop and a callback in one thread, by turns.
+// A loop and a callback in one thread, in alternation.
 struct QueueFixture {
   std::unique_ptr<Bench> bench = std::make_unique<Bench>();
   StrikeQueue queue{bench->queues};

@@ -41,8 +41,8 @@ TEST_CASE("Takes are selected by the number of the event, reproducibly and evenl
   layer.takes.resize(4);
   std::array<int, 4> count{};
   for (std::int64_t id = 0; id < 4000; ++id) {
-    const auto i = &take_of(layer, id) - layer.takes.data();
-    CHECK(&take_of(layer, id) == &layer.takes[static_cast<std::size_t>(i)]);
+    const auto i = &select_take(layer, id) - layer.takes.data();
+    CHECK(&select_take(layer, id) == &layer.takes[static_cast<std::size_t>(i)]);
     ++count[static_cast<std::size_t>(i)];
   }
   // The standard deviation of 4000 draws of 1/4 is 27: within 5 of them.
