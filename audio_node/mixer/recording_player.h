@@ -13,7 +13,7 @@
 namespace tactus::audio {
 
 // Maximum number of contact updates that wait for their sample at a time; in each, all audible contacts may begin
-// and the same number end (Output::tell_every).
+// and the same number end (Output::update_interval).
 inline constexpr int kMaxQueuedUpdates = 64;
 
 // Queues between the loop of the node and the callback, in addition to strikes.

@@ -99,8 +99,8 @@ TEST_CASE("The spectrum of the pulse is that of a raised cosine") {
 
 TEST_CASE("A source is panned to its direction with the level of its distance") {
   Eigen::Isometry3d listener = Eigen::Isometry3d::Identity();  // faces +x
-  const auto heard = [&](const Eigen::Vector3d& source) { return pan(place_of(listener, source, 0.3)); };
-  const auto left = heard({0, 2, 0}), right = heard({0, -2, 0}), ahead = heard({2, 0, 0}), far = heard({4, 0, 1});
+  const auto stereo_gain = [&](const Eigen::Vector3d& source) { return pan(place_of(listener, source, 0.3)); };
+  const auto left = stereo_gain({0, 2, 0}), right = stereo_gain({0, -2, 0}), ahead = stereo_gain({2, 0, 0}), far = stereo_gain({4, 0, 1});
   CHECK(left.left == Approx(0.5));
   CHECK(left.right == Approx(0).margin(1e-7));
   CHECK(right.right == Approx(0.5));
@@ -109,9 +109,9 @@ TEST_CASE("A source is panned to its direction with the level of its distance") 
   CHECK(place_of(listener, {4, 0, 1}, 0.3).distance_m == Approx(std::sqrt(17.0)));
   SECTION("a rotation of the listener rotates the source") {
     listener.rotate(Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitZ()));  // faces +y
-    CHECK(heard({2, 0, 0}).right == Approx(0.5));
+    CHECK(stereo_gain({2, 0, 0}).right == Approx(0.5));
   }
-  SECTION("a source at the listener has a finite level") { CHECK(heard({0, 0, 0}).left < 4); }
+  SECTION("a source at the listener has a finite level") { CHECK(stereo_gain({0, 0, 0}).left < 4); }
 }
 
 TEST_CASE("The place of a strike is relative to the last set listener, initially that of the scene") {

@@ -132,9 +132,9 @@ TEST_CASE("Of two scenes in quick succession the one without a scrape is release
 
 TEST_CASE("A stopped callback releases no surfaces that it may read, and the queue bounds their number") {
   QueueFixture l;
-  const auto heard = surfaces_spoiled_on_free();
-  l.queue.set_surfaces(heard);
-  REQUIRE(l.scrape(heard));
+  const auto sounding = surfaces_spoiled_on_free();
+  l.queue.set_surfaces(sounding);
+  REQUIRE(l.scrape(sounding));
   l.bench->play(kBlock);
   std::size_t freed = 0;
   for (int scene = 0; scene < 3000; ++scene) {

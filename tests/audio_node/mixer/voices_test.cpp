@@ -146,10 +146,10 @@ TEST_CASE("Eighty simultaneous blows on one body act as eighty single blows") {
       one.strike(blow(0, i), 1, one_hump(1500), 11 * i - block * kMaxBlock);
       if (i < 80) many.strike(blow(i / 16, i), 1, one_hump(1500), 11 * i - block * kMaxBlock);
     }
-    for (auto [voices, heard] : {std::pair(&one, &of_one), std::pair(&many, &of_many)}) {
+    for (auto [voices, output] : {std::pair(&one, &of_one), std::pair(&many, &of_many)}) {
       std::vector<float> mix(2 * kMaxBlock);
       voices->render(mix.data(), kMaxBlock);
-      for (std::size_t n = 0; n < kMaxBlock; ++n) heard->push_back(mix[2 * n]);
+      for (std::size_t n = 0; n < kMaxBlock; ++n) output->push_back(mix[2 * n]);
     }
   }
   float most = 0, off = 0;

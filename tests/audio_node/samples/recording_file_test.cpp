@@ -14,7 +14,7 @@ using namespace tactus::audio::test;
 namespace {
 
 // The faults of a file; empty: none.
-std::string said(const std::string& path, Interaction interaction, bool* read = nullptr) {
+std::string faults_of(const std::string& path, Interaction interaction, bool* read = nullptr) {
   std::vector<SoundFault> faults;
   const auto r = read_recording(path, interaction, 48000, faults);
   if (read) *read = r.has_value();
@@ -98,19 +98,19 @@ TEST_CASE("A recording that cannot be played is rejected with a sentence that na
   nan[100] = std::numeric_limits<float>::infinity();
   folder.write("inf.wav", nan);
   using Catch::Contains;
-  CHECK_THAT(said(at("missing.wav"), Interaction::kImpact), Contains("cannot be read"));
-  CHECK_THAT(said(at("empty.wav"), Interaction::kImpact), Contains("cannot be read"));
-  CHECK_THAT(said(at("text.wav"), Interaction::kImpact), Contains("cannot be read"));
-  CHECK_THAT(said(at("ten.wav"), Interaction::kImpact), Contains("10 channels"));
-  CHECK_THAT(said(at("slow.wav"), Interaction::kImpact), Contains("4000 samples a second"));
-  CHECK_THAT(said(at("silent.wav"), Interaction::kImpact), Contains("silent"));
-  CHECK_THAT(said(at("click.wav"), Interaction::kImpact), Contains("10 ms"));
-  CHECK_THAT(said(at("short.wav"), Interaction::kScrape), Contains("too short for a loop"));
-  CHECK_THAT(said(at("nan.wav"), Interaction::kRoll), Contains("invalid samples"));
-  CHECK_THAT(said(at("inf.wav"), Interaction::kRoll), Contains("invalid samples"));
+  CHECK_THAT(faults_of(at("missing.wav"), Interaction::kImpact), Contains("cannot be read"));
+  CHECK_THAT(faults_of(at("empty.wav"), Interaction::kImpact), Contains("cannot be read"));
+  CHECK_THAT(faults_of(at("text.wav"), Interaction::kImpact), Contains("cannot be read"));
+  CHECK_THAT(faults_of(at("ten.wav"), Interaction::kImpact), Contains("10 channels"));
+  CHECK_THAT(faults_of(at("slow.wav"), Interaction::kImpact), Contains("4000 samples a second"));
+  CHECK_THAT(faults_of(at("silent.wav"), Interaction::kImpact), Contains("silent"));
+  CHECK_THAT(faults_of(at("click.wav"), Interaction::kImpact), Contains("10 ms"));
+  CHECK_THAT(faults_of(at("short.wav"), Interaction::kScrape), Contains("too short for a loop"));
+  CHECK_THAT(faults_of(at("nan.wav"), Interaction::kRoll), Contains("invalid samples"));
+  CHECK_THAT(faults_of(at("inf.wav"), Interaction::kRoll), Contains("invalid samples"));
   for (const char* file : {"empty.wav", "text.wav", "ten.wav", "slow.wav", "silent.wav", "nan.wav"}) {
     bool read = true;
-    said(at(file), Interaction::kImpact, &read);
+    faults_of(at(file), Interaction::kImpact, &read);
     CHECK_FALSE(read);
   }
 }
@@ -121,7 +121,7 @@ TEST_CASE("A clipped recording is played and reported") {
   for (float& s : x) s = std::clamp(s, -1.f, 1.f);
   folder.write("a.wav", x);
   bool read = false;
-  CHECK_THAT(said(folder.path() + "/a.wav", Interaction::kImpact, &read), Catch::Contains("clipped"));
+  CHECK_THAT(faults_of(folder.path() + "/a.wav", Interaction::kImpact, &read), Catch::Contains("clipped"));
   CHECK(read);
 }
 
@@ -130,6 +130,6 @@ TEST_CASE("A truncated recording is read as far as possible") {
   folder.write("a.wav", tone(200, 1));
   std::filesystem::resize_file(folder.path() + "/a.wav", 100000);
   bool read = false;
-  said(folder.path() + "/a.wav", Interaction::kImpact, &read);
+  faults_of(folder.path() + "/a.wav", Interaction::kImpact, &read);
   CHECK(read);
 }

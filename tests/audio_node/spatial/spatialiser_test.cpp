@@ -23,7 +23,7 @@ template <class PlaceAt>
 StereoOutput tone(const Space& space, double frequency_Hz, int blocks, PlaceAt place) {
   Spatialiser spatialiser(space, 1, kRate, available_instructions().back());
   spatialiser.begin(0);
-  StereoOutput heard;
+  StereoOutput output;
   for (int b = 0; b < blocks; ++b) {
     std::vector<float> in, out(2 * kMaxBlock);
     for (int n = 0; n < kMaxBlock; ++n)
@@ -32,11 +32,11 @@ StereoOutput tone(const Space& space, double frequency_Hz, int blocks, PlaceAt p
     spatialiser.add(0, place(b), in.data(), kMaxBlock);
     spatialiser.mix(out.data(), kMaxBlock);
     for (std::size_t n = 0; n < kMaxBlock; ++n) {
-      heard.left.push_back(static_cast<double>(out[2 * n]));
-      heard.right.push_back(static_cast<double>(out[2 * n + 1]));
+      output.left.push_back(static_cast<double>(out[2 * n]));
+      output.right.push_back(static_cast<double>(out[2 * n + 1]));
     }
   }
-  return heard;
+  return output;
 }
 
 double largest(const std::vector<double>& x, std::size_t from) {
@@ -109,16 +109,16 @@ TEST_CASE("After its tail a source is silent") {
   spatialiser.begin(0);
   std::vector<float> in(kMaxBlock);
   in.back() = 1;
-  std::vector<float> heard;
+  std::vector<float> output;
   for (int b = 0; b < 8; ++b) {
     std::vector<float> out(2 * kMaxBlock);
     spatialiser.add(0, at(90), in.data(), kMaxBlock);
     spatialiser.mix(out.data(), kMaxBlock);
     in.assign(kMaxBlock, 0.f);
-    heard.insert(heard.end(), out.begin(), out.end());
+    output.insert(output.end(), out.begin(), out.end());
   }
-  const auto after = heard.begin() + 2 * (kMaxBlock + spatialiser.tail());
-  CHECK(std::all_of(after, heard.end(), [](float x) { return x == 0; }));
+  const auto after = output.begin() + 2 * (kMaxBlock + spatialiser.tail());
+  CHECK(std::all_of(after, output.end(), [](float x) { return x == 0; }));
   // The far ear still has output in the last quarter.
   CHECK(std::any_of(after - spatialiser.tail() / 2, after, [](float x) { return x != 0; }));
 }
@@ -233,11 +233,11 @@ TEST_CASE("A source position that is not finite counts as straight ahead") {
   const float none = GENERATE(std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity());
   const auto ahead = tone(space, 440, 4, [](int) { return at(0); });
   const bool direction = GENERATE(true, false);
-  const auto heard = tone(space, 440, 4, [&](int) {
+  const auto output = tone(space, 440, 4, [&](int) {
     return direction ? SourcePosition{Eigen::Vector3f(none, 0, 0), 1} : SourcePosition{Eigen::Vector3f::UnitX(), none};
   });
-  CHECK(heard.left == ahead.left);
-  CHECK(heard.right == ahead.right);
+  CHECK(output.left == ahead.left);
+  CHECK(output.right == ahead.right);
 }
 
 namespace {
@@ -245,7 +245,7 @@ namespace {
 // A body that rings at 440 Hz without damping and is struck from the left, then from elsewhere.
 struct Restruck {
   Voices voices;
-  StereoOutput heard;
+  StereoOutput output;
 
   explicit Restruck(const Space& space) : voices(4, kRate, kRing, space, available_instructions().back()) {}
   void strike(const Eigen::Vector3f& from, float distance_m, float impulse) {
@@ -259,15 +259,15 @@ struct Restruck {
       std::vector<float> out(2 * kMaxBlock);
       voices.render(out.data(), kMaxBlock);
       for (std::size_t n = 0; n < kMaxBlock; ++n) {
-        heard.left.push_back(static_cast<double>(out[2 * n]));
-        heard.right.push_back(static_cast<double>(out[2 * n + 1]));
+        output.left.push_back(static_cast<double>(out[2 * n]));
+        output.right.push_back(static_cast<double>(out[2 * n + 1]));
       }
     }
   }
   // Over the last 10 ms.
   double left_over_right() const {
-    const std::size_t from = heard.left.size() - 480;
-    return largest(heard.left, from) / largest(heard.right, from);
+    const std::size_t from = output.left.size() - 480;
+    return largest(output.left, from) / largest(output.right, from);
   }
 };
 
@@ -287,16 +287,16 @@ TEST_CASE("A ringing body that is struck elsewhere moves there without a click")
   body.strike(towards(-80), distance_m, 0);
   body.play(400);  // 0.53 s: half a revolution takes 0.5 s
   const double w = 2 * std::numbers::pi * 440 / kRate;
-  const double gain = std::max(largest(body.heard.left, kSettled), largest(body.heard.right, kSettled));
-  CHECK(std::max(largest_bend(body.heard.left, kSettled), largest_bend(body.heard.right, kSettled)) <
+  const double gain = std::max(largest(body.output.left, kSettled), largest(body.output.right, kSettled));
+  CHECK(std::max(largest_bend(body.output.left, kSettled), largest_bend(body.output.right, kSettled)) <
         (w * w + 1e-3) * gain);
   CHECK(body.left_over_right() < 1 / 1.5);
   Restruck there(space);
   there.strike(towards(-80), distance_m, 0.1f);
   there.play(400);
   // Over the last 10 ms, 4.4 periods, in which its phase may differ.
-  CHECK(largest(body.heard.right, 20 * kMaxBlock + 25120) ==
-        Approx(largest(there.heard.right, 25120)).epsilon(0.01));
+  CHECK(largest(body.output.right, 20 * kMaxBlock + 25120) ==
+        Approx(largest(there.output.right, 25120)).epsilon(0.01));
 }
 
 TEST_CASE("A blow that masks the ringing sounds from its own place at once") {

@@ -48,17 +48,17 @@ inline BinauralResponse rendered_response(const Eigen::Vector3f& direction, int 
   static const auto hrtf = ears();
   Spatialiser spatialiser({hrtf, nullptr}, 1, 48000, Instructions::kSse2);
   spatialiser.begin(0);
-  BinauralResponse heard;
+  BinauralResponse output;
   for (int b = 0; b < blocks; ++b) {
     std::vector<float> in(kMaxBlock), out(2 * kMaxBlock);
     if (b == 0) in[0] = 1;
     spatialiser.add(0, {direction, 1}, in.data(), kMaxBlock);
     spatialiser.mix(out.data(), kMaxBlock);
     for (std::size_t n = 0; n < kMaxBlock; ++n)
-      heard.left.push_back(static_cast<double>(out[2 * n])),
-          heard.right.push_back(static_cast<double>(out[2 * n + 1]));
+      output.left.push_back(static_cast<double>(out[2 * n])),
+          output.right.push_back(static_cast<double>(out[2 * n + 1]));
   }
-  return heard;
+  return output;
 }
 
 inline std::complex<double> spectrum_at(const std::vector<double>& x, double frequency_Hz, double rate_Hz) {
