@@ -19,7 +19,8 @@ inline void store(float* to, Lanes x) { *reinterpret_cast<UnalignedLanes*>(to) =
 
 template <int kFilters>
 void filter_block(const float* input, const float* const* filters, int taps, float* const* out) {
-  constexpr int kVectorsPerBlock = kMaxBlock / kWidth, kMaxVectors = kSums / kFilters, kVectorsAtOnce = kMaxVectors < kVectorsPerBlock ? kMaxVectors : kVectorsPerBlock;
+  constexpr int kVectorsPerBlock = kMaxBlock / kWidth, kMaxVectors = kSums / kFilters,
+                kVectorsAtOnce = kMaxVectors < kVectorsPerBlock ? kMaxVectors : kVectorsPerBlock;
   static_assert(kMaxBlock % (kVectorsAtOnce * kWidth) == 0);
   for (int n = 0; n < kMaxBlock; n += kVectorsAtOnce * kWidth) {
     Lanes sum[kFilters][kVectorsAtOnce] = {};
