@@ -16,18 +16,18 @@ void OfflineOptions::add_to(CLI::App& app) {
 
 std::unique_ptr<Offline> Offline::open(const OfflineOptions& options, double loop_rate_Hz, sync::HostTime clock) {
   if (options.log.empty()) return nullptr;
-  if (options.wav.empty()) throw std::runtime_error("--log needs --wav FILE, which the sound is written to");
+  if (options.wav.empty()) throw std::runtime_error("--log needs --wav FILE, the file for the sound");
   return std::make_unique<Offline>(options, loop_rate_Hz, clock);
 }
 
 Offline::Offline(const OfflineOptions& options, double loop_rate_Hz, sync::HostTime clock)
-    : run_(options, {{options.wav, "--wav"}}, loop_rate_Hz, clock, kRingOn), wav_(options.wav) {}
+    : run_(options, {{options.wav, "--wav"}}, loop_rate_Hz, clock, kDecayTime), wav_(options.wav) {}
 
 OpenCard Offline::open_card() {
   return [this](const StreamOptions& options, Card::Render render) {
     if (card_)
       throw std::runtime_error(
-          "the log changes rate, period, ceiling, ears or instructions midway; give them with --set");
+          "the log changes the rate, period, ceiling, ears or instructions midway; set them with --set");
     auto made = std::make_unique<FileCard>(options, wav_, std::move(render));
     card_ = made.get();
     return made;
@@ -36,13 +36,13 @@ OpenCard Offline::open_card() {
 
 std::string Offline::result(double rate_Hz, std::int64_t hits, std::int64_t dropped, sync::HostTime clock) {
   if (!card_ || !card_->start())
-    throw std::runtime_error("the log has no scene; give one that scripts/run wrote from its beginning");
+    throw std::runtime_error("the log has no scene; give a log that scripts/run wrote from the start of the run");
   const double sound_s = static_cast<double>(card_->frames()) / rate_Hz;
   const std::string rest = run_.finish(sound_s, clock);
   card_->finish();
   std::ostringstream text;
   text << wav_ << ": " << sound_s << " s of sound, " << hits << " hits";
-  if (dropped > 0) text << " (" << dropped << " of them not heard: too late, or silenced by a profile)";
+  if (dropped > 0) text << " (" << dropped << " of them dropped: too late, or silenced by a profile)";
   text << "; its first sample was out at " << sync::to_ns(*card_->start()) << " ns" << rest;
   return text.str();
 }

@@ -37,7 +37,7 @@ class Offline {
   std::string result(double rate_Hz, std::int64_t hits, std::int64_t dropped, sync::HostTime clock);
 
  private:
-  static constexpr sync::Nanoseconds kRingOn{1'000'000'000};  // design
+  static constexpr sync::Nanoseconds kDecayTime{1'000'000'000};  // design
 
   sync::OfflineInput run_;
   std::string wav_;

@@ -23,13 +23,13 @@ namespace tactus::audio {
 namespace {
 
 constexpr int kCallbackPriority = 70;
-constexpr sync::Nanoseconds kOpenAnyway{2'000'000'000};  // the scene may select the card, but may be missing
-constexpr sync::Nanoseconds kInputLost{300'000'000};     // contact snapshots arrive at 60 Hz
-constexpr sync::Nanoseconds kContactsLost{100'000'000};  // six snapshots
+constexpr sync::Nanoseconds kSceneTimeout{2'000'000'000};  // the scene may select the card, but may be missing
+constexpr sync::Nanoseconds kInputTimeout{300'000'000};     // contact snapshots arrive at 60 Hz
+constexpr sync::Nanoseconds kContactsTimeout{100'000'000};  // six snapshots
 constexpr sync::Nanoseconds kScrapeLead{2'000'000};      // before the callback needs it: two ticks
 // Design: half a tick; a blow takes up to 0.3 ms to prepare. Simultaneous blows wait for the next ticks.
-constexpr sync::Nanoseconds kStrikesFor{500'000};
-constexpr sync::Nanoseconds kEarly{20'000'000};  // accepts events of the near future, in case a map lags
+constexpr sync::Nanoseconds kStrikeBudget{500'000};
+constexpr sync::Nanoseconds kEarlyWindow{20'000'000};  // accepts events of the near future, in case a map lags
 
 void publish_pair(sync::Bus& bus, const std::string& medium, const MediaPair& pair) {
   media_clock_t m{};
@@ -42,9 +42,9 @@ void publish_pair(sync::Bus& bus, const std::string& medium, const MediaPair& pa
 }
 
 // Freeing tables of 200 MB takes 20 ms, too long for the loop.
-template <class Unread>
-void free_elsewhere(Unread unread) {
-  if (!unread.empty()) std::thread([gone = std::move(unread)] { sync::leave_realtime(); }).detach();
+template <class Released>
+void free_in_background(Released released) {
+  if (!released.empty()) std::thread([gone = std::move(released)] { sync::leave_realtime(); }).detach();
 }
 
 bool in_real_time(bool live) { return live && !sync::VirtualTime::current(); }
@@ -59,7 +59,7 @@ void Options::add_to(CLI::App& app) {
 
 void Options::check() const {
   if (no_sound && !sync::VirtualTime::current())
-    throw std::runtime_error("--no-sound is for virtual time; live, --audio-device virtual plays into a file and leaves the room quiet");
+    throw std::runtime_error("--no-sound is for virtual time; for a quiet run in real time choose --audio-device virtual, which plays into a file");
 }
 
 NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Offline* log)
@@ -113,16 +113,16 @@ sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Se
   };
   impacts_ = std::make_unique<Impacts>(*scene_, extent, output_.settings(), output_.settings().sample_rate_Hz, ++scenes_);
   sampler_ = std::make_unique<Sampler>(*scene_, output_.settings());
-  begin_to_read(scenes);
+  start_loading_surfaces(scenes);
   return {.output_latency = output_.latency()};
 }
 
-void NodeRenderer::begin_to_read(const sync::SceneReceiver& scenes) {
+void NodeRenderer::start_loading_surfaces(const sync::SceneReceiver& scenes) {
   sliding_.reset();
-  output_.hear(nullptr);
-  opening_surfaces_.emplace([of = *scene_, pictures = sync::pictures_of(scenes)] {
+  output_.set_surfaces(nullptr);
+  loading_surfaces_.emplace([of = *scene_, pictures = sync::pictures_of(scenes)] {
     sync::leave_realtime();
-    return read_surfaces(of, pictures);
+    return load_surfaces(of, pictures);
   });
 }
 
@@ -133,36 +133,36 @@ void NodeRenderer::apply_setting(const Settings& settings, const std::string&) {
   if (sliding_) sliding_->set_gain(settings.gain);
 }
 
-void NodeRenderer::finish_reading() {
-  while (!real_time_ && opening_surfaces_ && !opening_surfaces_->done())
+void NodeRenderer::poll_loading() {
+  while (!real_time_ && loading_surfaces_ && !loading_surfaces_->done())
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  if (opening_surfaces_ && opening_surfaces_->done()) take_surfaces();
-  free_elsewhere(output_.take_unread());
-  free_elsewhere(output_.step_library());
+  if (loading_surfaces_ && loading_surfaces_->done()) take_surfaces();
+  free_in_background(output_.take_released());
+  free_in_background(output_.step_library());
   while (!real_time_ && output_.library().reading()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     output_.step_library();
   }
-  if (sampler_) sampler_->play(output_.library().database(), output_.library().number());
+  if (sampler_) sampler_->set_database(output_.library().database(), output_.library().number());
 }
 
 void NodeRenderer::take_surfaces() {
-  auto heard = std::make_shared<const HeardSurfaces>();
+  auto surfaces = std::make_shared<const AudioSurfaces>();
   try {
-    heard = opening_surfaces_->take();
+    surfaces = loading_surfaces_->take();
   } catch (const std::exception& e) {
     host().print_status(std::string("cannot read the maps of the scene (") + e.what() + "); scraping contacts sound without them");
   }
-  opening_surfaces_.reset();
-  output_.hear(heard);
-  sliding_ = std::make_unique<Sliding>(*scene_, heard, bodies_, *impacts_, output_.settings(),
+  loading_surfaces_.reset();
+  output_.set_surfaces(surfaces);
+  sliding_ = std::make_unique<Sliding>(*scene_, surfaces, bodies_, *impacts_, output_.settings(),
                                        output_.settings().sample_rate_Hz);
 }
 
 void NodeRenderer::receive() {
   while (const auto m = frames_.pop()) contacts_.push(m->message, m->arrival);
   while (const auto m = world_.pop()) bodies_.push(m->message, m->arrival);
-  while (const auto m = tools_.pop()) ear_.push(m->message, m->arrival);
+  while (const auto m = tools_.pop()) listener_.push(m->message, m->arrival);
 }
 
 std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
@@ -176,7 +176,7 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   strike_due(now);
   submit_lasting(now);
   publish();
-  print_news();
+  print_messages();
   return status(now, plays);
 }
 
@@ -198,23 +198,23 @@ void NodeRenderer::strike_due(sync::HostTime now) {
 }
 
 void NodeRenderer::strike(const contact_event_t& event, sync::HostTime scheduled) {
-  impacts_->hear_from(ear_.at(scheduled));
+  impacts_->set_listener(listener_.at(scheduled));
   Strike strike = impacts_->strike(event, scheduled, [&](int body) -> std::optional<Eigen::Isometry3d> {
     const auto pose = bodies_.pose(body, sync::sim_time(event.time_ns));
     if (pose.status == sync::SampleStatus::kNone) return std::nullopt;
     return Eigen::Translation3d(pose.value.position) * pose.value.orientation;
   });
-  sampler_->record(strike, event, *impacts_);
+  sampler_->add_recordings(strike, event, *impacts_);
   output_.submit(strike, impacts_->table());
 }
 
-void NodeRenderer::submit_lasting(sync::HostTime now) {
-  const sync::Nanoseconds every = output_.tell_every(kScrapeLead);
+void NodeRenderer::submit_contacts(sync::HostTime now) {
+  const sync::Nanoseconds every = output_.update_interval(kScrapeLead);
   const bool due = !no_sound_ && now - submitted_at_ >= every;
-  if (sliding_) sliding_->tell_every(sync::to_seconds(every));
-  const bool slides = due && sliding_ && sync::to_seconds(now - slid_at_) >= sliding_->period_s();
+  if (sliding_) sliding_->set_update_interval(sync::to_seconds(every));
+  const bool slides = due && sliding_ && sync::to_seconds(now - scraped_at_) >= sliding_->period_s();
   const auto map = contacts_.map(now);
-  if (!map || !sampler_ || !due || !(slides || sampler_->plays())) return;
+  if (!map || !sampler_ || !due || !(slides || sampler_->enabled())) return;
   submitted_at_ = now;
   sampler_->tell_every(sync::to_seconds(every));
   const sync::HostTime heard_at = now + output_.latency() + kScrapeLead;
@@ -225,16 +225,16 @@ void NodeRenderer::submit_lasting(sync::HostTime now) {
   contacts_.extend_history(delay);
   bodies_.extend_history(delay);
   // Without contact snapshots they would never end.
-  const bool known = now - frames_.count().newest_arrival < kContactsLost;
+  const bool known = now - frames_.count().newest_arrival < kContactsTimeout;
   const sync::Contacts lasting = known ? contacts_.state_at(t).value : sync::Contacts{};
-  for (const RecordedContact& rub : sampler_->rubs(lasting, heard_at)) output_.submit(rub);
+  for (const RecordedContact& contact : sampler_->recorded_contacts(lasting, presented_at)) output_.submit(contact);
   if (!slides) return;
-  for (Scrape scrape : sliding_->scrapes(lasting, t, heard_at, sync::to_seconds(now - slid_at_))) {
-    scrape.slide *= sampler_->modal_of(scrape.id, Interaction::kScrape);
-    scrape.roll *= sampler_->modal_of(scrape.id, Interaction::kRoll);
+  for (Scrape scrape : sliding_->scrapes(lasting, t, presented_at, sync::to_seconds(now - scraped_at_))) {
+    scrape.slide *= sampler_->modal_gain(scrape.id, Interaction::kScrape);
+    scrape.roll *= sampler_->modal_gain(scrape.id, Interaction::kRoll);
     output_.submit(scrape);
   }
-  slid_at_ = now;
+  scraped_at_ = now;
 }
 
 void NodeRenderer::publish() {
@@ -254,13 +254,13 @@ void NodeRenderer::print_news() {
 
 sync::Status NodeRenderer::status(sync::HostTime now, bool plays) {
   host().node().override_ticks(output_.callbacks(), output_.underflows(), output_.callback_rate_Hz());
-  const sync::HostTime heard = std::max(events_.count().newest_arrival, frames_.count().newest_arrival);
+  const sync::HostTime newest_input = std::max(events_.count().newest_arrival, frames_.count().newest_arrival);
   const std::int8_t state = !impacts_                   ? node_health_t::WAITING
                             : !plays                    ? node_health_t::OUTPUT_LOST
-                            : heard == sync::HostTime{} ? node_health_t::READY
-                            : now - heard > kInputLost  ? node_health_t::INPUT_LOST
+                            : newest_input == sync::HostTime{} ? node_health_t::READY
+                            : now - newest_input > kInputTimeout  ? node_health_t::INPUT_LOST
                                                         : node_health_t::RUNNING;
-  return {state, output_.note(), output_.quality(), static_cast<int>(kQualities.size())};
+  return {state, output_.status_text(), output_.quality(), static_cast<int>(kQualities.size())};
 }
 
 }  // namespace tactus::audio

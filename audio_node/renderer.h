@@ -52,16 +52,16 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   void apply_setting(const Settings& settings, const std::string& name) override;
   void configure(const Settings& settings);
   void add_tags();
-  void begin_to_read(const sync::SceneReceiver& scenes);
-  void finish_reading();
+  void start_loading_surfaces(const sync::SceneReceiver& scenes);
+  void poll_loading();
   void take_surfaces();
   void receive();
   void strike_due(sync::HostTime now);
   void strike(const contact_event_t& event, sync::HostTime scheduled);
   void drop(const contact_event_t& event, sync::HostTime scheduled) { output_.drop(event.event_id, scheduled); }
-  void submit_lasting(sync::HostTime now);
+  void submit_contacts(sync::HostTime now);
   void publish();
-  void print_news();
+  void print_messages();
   sync::Status status(sync::HostTime now, bool plays);
 
   Offline* log_;
@@ -72,7 +72,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   sync::ModalityEndpoint::Stream<world_state_t>& world_;
   // bypasses the profile, which delays or thins events; the position of the ear is not an event
   sync::Queue<tool_state_t>& tools_;
-  Ear ear_;
+  Ear listener_;
   sync::ContactStream contacts_;
   sync::BodyHistory bodies_;
   Output output_;

@@ -13,7 +13,7 @@ namespace tactus::audio {
 namespace {
 
 // An existing path that is not a regular file, such as /dev/null, is written directly.
-std::string part_of(const std::string& wav) {
+std::string part_path(const std::string& wav) {
   std::error_code ignored;
   const bool plain = !std::filesystem::exists(wav, ignored) || std::filesystem::is_regular_file(wav, ignored);
   return plain ? wav + ".part" : wav;
@@ -23,11 +23,11 @@ std::string part_of(const std::string& wav) {
 
 FileCard::FileCard(const StreamOptions& options, const std::string& wav, Render render)
     : wav_(wav),
-      part_(part_of(wav)),
+      part_(part_path(wav)),
       render_(std::move(render)),
       rate_Hz_(options.rate_Hz),
       period_frames_(options.period_frames),
-      ahead_(sync::from_seconds(options.latency_periods * options.period_frames / options.rate_Hz)),
+      latency_(sync::from_seconds(options.latency_periods * options.period_frames / options.rate_Hz)),
       block_(static_cast<std::size_t>(options.period_frames * options.channels)),
       file_(nullptr, sf_close) {
   // Of two programs that render into one file the second is rejected; the lock ends with its process.
@@ -63,19 +63,19 @@ void FileCard::finish() {
   if (closed && part_ != wav_) std::filesystem::rename(part_, wav_, error);
   if (closed && !error) return;
   finished_ = false;
-  throw std::runtime_error("cannot finish " + wav_ + " (" + (closed ? error.message() : "it does not close") +
+  throw std::runtime_error("cannot finish " + wav_ + " (" + (closed ? error.message() : "the file cannot be closed") +
                            "); free some disk or choose another --wav");
 }
 
-sync::HostTime FileCard::out_at(std::int64_t frame) const {
+sync::HostTime FileCard::presentation_time(std::int64_t frame) const {
   const std::int64_t seconds = frame / rate_Hz_, rest = frame % rate_Hz_;
   return *start_ + sync::Nanoseconds(seconds * 1'000'000'000 + rest * 1'000'000'000 / rate_Hz_);
 }
 
 void FileCard::play_until(sync::HostTime now) {
   if (!start_) start_ = now;
-  while (out_at(frames()) <= now + ahead_) {
-    const sync::HostTime first = out_at(frames());
+  while (presentation_time(frames()) <= now + latency_) {
+    const sync::HostTime first = presentation_time(frames());
     if (frames() >= next_pair_frame_) {
       pair_ = {frames(), sync::to_ns(first), frames() == 0 ? MediaPair::kStart : MediaPair::kPeriodic, 0};
       next_pair_frame_ += rate_Hz_;
@@ -84,7 +84,7 @@ void FileCard::play_until(sync::HostTime now) {
     // setting.
     render_(block_.data(), period_frames_, {first, sync::Nanoseconds(0), sync::Nanoseconds(0)});
     if (sf_writef_float(file_.get(), block_.data(), period_frames_) != period_frames_)
-      throw std::runtime_error("cannot go on in " + wav_ + " (" + sf_strerror(file_.get()) +
+      throw std::runtime_error("cannot continue to write " + wav_ + " (" + sf_strerror(file_.get()) +
                                "); free some disk or choose another --wav");
     ++blocks_;
   }

@@ -40,14 +40,14 @@ class FileCard : public Card {
   std::int64_t frames() const { return blocks_ * period_frames_; }
 
  private:
-  sync::HostTime out_at(std::int64_t frame) const;
+  sync::HostTime presentation_time(std::int64_t frame) const;
 
   std::string wav_, part_, card_ = "file";
   bool finished_ = false;
   int lock_ = -1;
   Render render_;
   int rate_Hz_, period_frames_;
-  sync::Nanoseconds ahead_;
+  sync::Nanoseconds latency_;
   std::vector<float> block_;
   std::unique_ptr<sf_private_tag, int (*)(sf_private_tag*)> file_;
   std::optional<sync::HostTime> start_;

@@ -13,11 +13,11 @@ namespace tactus::audio {
 namespace {
 
 // A card that has not started by then is reported; USB cards take about a second.
-constexpr sync::Nanoseconds kPatience{5'000'000'000};
+constexpr sync::Nanoseconds kStartTimeout{5'000'000'000};
 
 // One until the next callback, one more for a card of normal priority.
 constexpr int kCallbackPeriods = 2;
-constexpr std::size_t kMaxUnsounded = 1024;
+constexpr std::size_t kMaxDroppedReports = 1024;
 
 bool same_stream(const Settings& a, const Settings& b) {
   return a.device == b.device && a.sample_rate_Hz == b.sample_rate_Hz && a.period_frames == b.period_frames &&
@@ -29,7 +29,7 @@ bool same_stream(const Settings& a, const Settings& b) {
 
 // Instructions that this machine lacks are reported by the caller; the widest are used instead.
 Instructions instructions_of(const Settings& settings) {
-  return instructions_named(settings.instructions).value_or(available_instructions().back());
+  return find_instructions(settings.instructions).value_or(available_instructions().back());
 }
 
 }  // namespace
@@ -38,11 +38,11 @@ Output::Output(std::string folder, std::string device, int fifo_priority, OpenCa
     : folder_(std::move(folder)),
       device_(std::move(device)),
       fifo_priority_(fifo_priority),
-      crossing_(std::make_shared<CallbackQueues>()),
-      strikes_(*crossing_),
-      scrapes_(*crossing_),
-      rubs_(crossing_->recorded.rubs),
-      library_(crossing_->recorded),
+      queues_(std::make_shared<CallbackQueues>()),
+      strikes_(*queues_),
+      scrapes_(*queues_),
+      recorded_contacts_(queues_->recorded.contacts),
+      library_(queues_->recorded),
       open_(std::move(open)),
       silent_(silent) {}
 
@@ -55,49 +55,49 @@ void Output::configure(Settings settings) {
 }
 
 bool Output::keep_open(sync::HostTime now) {
-  strikes_.free_unread();
+  strikes_.free_released();
   if (stream_ && stream_->alive(now)) {
-    scrapes_.tell_ends();
-    rubs_.tell_ends();
+    scrapes_.send_ends();
+    recorded_contacts_.send_ends();
     stream_->play_until(now);
     return true;
   }
   if (stream_) {
-    trouble_ = "the sound card \"" + stream_->card() + "\" has gone";
+    error_text_ = "the sound card \"" + stream_->card() + "\" is lost";
     close();
   }
   if (opening_)
-    end_opening(now);
+    finish_opening(now);
   else if (now >= retry_at_)
-    begin_to_open(now);
+    start_opening(now);
   return stream_ != nullptr;
 }
 
-void Output::begin_to_open(sync::HostTime now) {
+void Output::start_opening(sync::HostTime now) {
   opening_since_ = now;
   opened_with_ = settings_;
-  ordered_.reset();
-  heard_from_.reset();
-  if (open_) return take(*open(settings_, folder_, fifo_priority_, crossing_, open_, silent_));
-  opening_.emplace([settings = settings_, folder = folder_, priority = fifo_priority_, crossing = crossing_, silent = silent_] {
-    return open(settings, folder, priority, crossing, {}, silent);
+  sent_command_.reset();
+  sent_listener_.reset();
+  if (open_) return use_stream(*open(settings_, folder_, fifo_priority_, queues_, open_, silent_));
+  opening_.emplace([settings = settings_, folder = folder_, priority = fifo_priority_, queues = queues_, silent = silent_] {
+    return open(settings, folder, priority, queues, {}, silent);
   });
 }
 
 std::unique_ptr<Output::Opened> Output::open(const Settings& settings, const std::string& folder, int priority,
-                                             const std::shared_ptr<CallbackQueues>& crossing, const OpenCard& open, bool silent) {
+                                             const std::shared_ptr<CallbackQueues>& queues, const OpenCard& open, bool silent) {
   RendererDef def;
   def.rate_Hz = settings.sample_rate_Hz;
   def.period_frames = settings.period_frames;
   def.ceiling = settings.limiter_ceiling;
-  def.hearing = {.full_scale_dB = settings.full_scale_level_dB, .limit_dB = settings.level_limit_dB};
+  def.level_limit = {.full_scale_dB = settings.full_scale_level_dB, .limit_dB = settings.level_limit_dB};
   def.late = late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s));
   def.instructions = instructions_of(settings);
   // reading an HRTF takes a third of a second
   if (!silent) def.space = space_of(settings, settings.sample_rate_Hz);
   def.silent = silent;
   def.clock_ns = [] { return sync::to_ns(sync::host_now()); };
-  const auto renderer = std::make_shared<Renderer>(*crossing, def);
+  const auto renderer = std::make_shared<Renderer>(*queues, def);
   const StreamOptions options{settings.device,
                               static_cast<int>(settings.sample_rate_Hz),
                               settings.period_frames,
@@ -105,33 +105,33 @@ std::unique_ptr<Output::Opened> Output::open(const Settings& settings, const std
                               folder,
                               priority,
                               renderer->channels()};
-  const Card::Render render = [crossing, renderer](float* out, int frames, const BlockTime& time) {
+  const Card::Render render = [queues, renderer](float* out, int frames, const BlockTime& time) {
     renderer->render(out, frames, time);
   };
   auto card = open ? open(options, render) : std::make_unique<Stream>(options, render);
   return std::make_unique<Opened>(Opened{renderer, std::move(card)});
 }
 
-void Output::take(Opened& opened) {
+void Output::use_stream(Opened& opened) {
   renderer_ = std::move(opened.renderer);
   stream_ = std::move(opened.card);
   medium_ = stream_->medium();
-  trouble_.clear();
+  error_text_.clear();
 }
 
-void Output::end_opening(sync::HostTime now) {
+void Output::finish_opening(sync::HostTime now) {
   if (!opening_->done()) {
-    if (now - opening_since_ > kPatience)
-      trouble_ = "the sound card \"" + opened_with_.device +
+    if (now - opening_since_ > kStartTimeout)
+      error_text_ = "the sound card \"" + opened_with_.device +
                  "\" does not start; choose another --audio-device or \"virtual\"";
     return;
   }
   try {
-    take(*opening_->take());
+    use_stream(*opening_->take());
     // The scene may have selected another card meanwhile.
     if (!same_stream(opened_with_, settings_)) close();
   } catch (const std::exception& e) {
-    trouble_ = e.what();
+    error_text_ = e.what();
     retry_at_ = now + sync::from_seconds(settings_.retry_after_s);
   }
   opening_.reset();
@@ -145,21 +145,21 @@ void Output::close() {
 }
 
 void Output::degrade(const DropoutDef& dropout) {
-  const RenderCommand orders{dropout, settings_.quality == "auto" ? -1 : std::stoi(settings_.quality)};
-  if (ordered_ != orders && crossing_->orders.push(orders)) ordered_ = orders;
+  const RenderCommand command{dropout, settings_.quality == "auto" ? -1 : std::stoi(settings_.quality)};
+  if (sent_command_ != command && queues_->commands.push(command)) sent_command_ = command;
 }
 
-void Output::hear_from(const Eigen::Isometry3d& listener) {
+void Output::set_listener(const Eigen::Isometry3d& listener) {
   const Listener now{listener.cast<float>(), static_cast<float>(settings_.nearest_m)};
-  if (stream_ && heard_from_ != now && crossing_->listeners.push(now)) heard_from_ = now;
+  if (stream_ && sent_listener_ != now && queues_->listeners.push(now)) sent_listener_ = now;
 }
 
-void Output::submit(const Strike& strike, const StrikeLine::Table& table) {
+void Output::submit(const Strike& strike, const StrikeQueue::Table& table) {
   if (!stream_ || !strikes_.submit(strike, table)) drop(strike.event_id, strike.scheduled);
 }
 
 void Output::drop(std::int64_t event_id, sync::HostTime scheduled) {
-  if (unsounded_.size() >= kMaxUnsounded) {
+  if (dropped_reports_.size() >= kMaxDroppedReports) {
     ++reports_lost_;
     return;
   }
@@ -169,7 +169,7 @@ void Output::drop(std::int64_t event_id, sync::HostTime scheduled) {
   report.scheduled_ns = sync::to_ns(scheduled);
   report.presented_ns = -1;
   report.outcome = presentation_t::DROPPED_LATE;
-  unsounded_.push_back(report);
+  dropped_reports_.push_back(report);
 }
 
 sync::Nanoseconds Output::latency() const {
@@ -181,56 +181,56 @@ sync::Nanoseconds Output::latency() const {
 
 // An update waits until the first callback after its sample has been reached. Two of the updates allow for ticks
 // at uneven intervals.
-sync::Nanoseconds Output::tell_every(sync::Nanoseconds lead) const {
+sync::Nanoseconds Output::update_interval(sync::Nanoseconds lead) const {
   const auto period = sync::from_seconds(settings_.period_frames / settings_.sample_rate_Hz);
-  return (latency() + lead + period) / (kTellings - 2);
+  return (latency() + lead + period) / (kMaxQueuedUpdates - 2);
 }
 
 std::optional<presentation_t> Output::next_report() {
   presentation_t report;
-  if (!unsounded_.empty()) {
-    report = unsounded_.front();
-    unsounded_.pop_front();
+  if (!dropped_reports_.empty()) {
+    report = dropped_reports_.front();
+    dropped_reports_.pop_front();
     return report;
   }
-  if (!crossing_->reports.pop(report)) return std::nullopt;
+  if (!queues_->reports.pop(report)) return std::nullopt;
   return report;
 }
 
-std::optional<std::string> Output::news() {
-  std::string now = stream_ ? "plays on " + stream_->card() + " into " + medium_ + too_slow() : trouble_;
-  if (now == told_) return std::nullopt;
-  return told_ = std::move(now);
+std::optional<std::string> Output::take_status_change() {
+  std::string now = stream_ ? "plays on " + stream_->card() + " into " + medium_ + latency_warning() : error_text_;
+  if (now == reported_status_) return std::nullopt;
+  return reported_status_ = std::move(now);
 }
 
-std::string Output::note() const {
-  if (!stream_) return (trouble_.empty() ? "sound card not opened yet" : trouble_) + losses();
+std::string Output::status_text() const {
+  if (!stream_) return (error_text_.empty() ? "sound card not opened yet" : error_text_) + loss_text();
   return stream_->card() + " at " + std::to_string(static_cast<int>(settings_.sample_rate_Hz)) + " Hz, " +
          std::to_string(settings_.period_frames) + " frames, " + std::to_string(stream_->underflows()) +
-         " underflows" + costs() + hearing() + losses() + too_slow();
+         " underflows" + cost_text() + exposure_text() + loss_text() + latency_warning();
 }
 
-std::string Output::too_slow() const {
+std::string Output::latency_warning() const {
   if (!delay_ || latency() <= *delay_ + sync::from_seconds(settings_.late_limit_s)) return "";
-  return ", too slowly for the delay of sound: most blows come too late to be heard; make period_frames or "
-         "latency_periods smaller, or the delay longer";
+  return ", too slowly for the delay of sound: most impacts are dropped as late; decrease period_frames or "
+         "latency_periods, or increase the delay";
 }
 
-std::string Output::losses() const {
+std::string Output::loss_text() const {
   std::string text;
-  if (const std::int64_t states = scrapes_.lost() + rubs_.lost(); states > 0)
-    text += ", " + std::to_string(states) + " states of contacts lost";
-  const std::int64_t reports = reports_lost_ + crossing_->reports_lost.load(std::memory_order_relaxed);
+  if (const std::int64_t states = scrapes_.lost() + recorded_contacts_.lost(); states > 0)
+    text += ", " + std::to_string(states) + " contact updates lost";
+  const std::int64_t reports = reports_lost_ + queues_->reports_lost.load(std::memory_order_relaxed);
   if (reports > 0) text += ", " + std::to_string(reports) + " reports of hits lost";
   return text;
 }
 
-std::string Output::costs() const {
+std::string Output::cost_text() const {
   std::string text;
-  for (std::size_t i = 0; i < crossing_->costs.size(); ++i) {
-    const std::int64_t contacts = crossing_->costs[i].contacts.load(std::memory_order_relaxed);
+  for (std::size_t i = 0; i < queues_->costs.size(); ++i) {
+    const std::int64_t contacts = queues_->costs[i].contacts.load(std::memory_order_relaxed);
     if (contacts == 0) continue;
-    const double us = 1e-3 * static_cast<double>(crossing_->costs[i].ns.load(std::memory_order_relaxed)) /
+    const double us = 1e-3 * static_cast<double>(queues_->costs[i].ns.load(std::memory_order_relaxed)) /
                       static_cast<double>(contacts);
     text +=
         std::string(", ") + (i == 0 ? "modal " : "samples ") + std::to_string(std::lround(us)) + " us a contact";
@@ -238,12 +238,12 @@ std::string Output::costs() const {
   return text;
 }
 
-std::string Output::hearing() const {
-  const ExposureMeter& heard = crossing_->heard;
-  const double exposure = heard.exposure_Pa2_s.load(std::memory_order_relaxed);
-  std::string text = dose_in_words(days_of_sound(exposure, settings_.weekly_level_dB));
-  const long down_dB = std::lround(-20 * std::log10(heard.gain.load(std::memory_order_relaxed)));
-  if (down_dB > 0) text += ", turned down by " + std::to_string(down_dB) + " dB for the ears";
+std::string Output::exposure_text() const {
+  const ExposureMeter& meter = queues_->exposure;
+  const double exposure = meter.exposure_Pa2_s.load(std::memory_order_relaxed);
+  std::string text = dose_text(sound_dose_days(exposure, settings_.weekly_level_dB));
+  const long down_dB = std::lround(-20 * std::log10(meter.gain.load(std::memory_order_relaxed)));
+  if (down_dB > 0) text += ", reduced by " + std::to_string(down_dB) + " dB to limit the level";
   return text;
 }
 

@@ -9,9 +9,9 @@
 
 #include "audio_node/devices/stream.h"
 #include "audio_node/mixer/library.h"
-#include "audio_node/samples/rub_line.h"
-#include "audio_node/mixer/scrape_line.h"
-#include "audio_node/mixer/strike_line.h"
+#include "audio_node/samples/recorded_contact_queue.h"
+#include "audio_node/mixer/scrape_queue.h"
+#include "audio_node/mixer/strike_queue.h"
 #include "audio_node/settings.gen.h"
 #include "sync/node/background_task.h"
 
@@ -29,35 +29,35 @@ class Output {
   // it is dead. True when it plays.
   bool keep_open(sync::HostTime now);
 
-  // Call once per tick with the delay of sound after its event. note() and news() report a card whose latency is
-  // so much longer that every blow would be dropped.
-  void allow(sync::Nanoseconds delay) { delay_ = delay; }
+  // Call once per tick with the delay of sound after its event. status_text() and
+  // take_status_change() report a card whose latency is so much longer that every impact would be dropped.
+  void set_presentation_delay(sync::Nanoseconds delay) { delay_ = delay; }
   // Call once per tick with the degradation of the output by a profile.
   void degrade(const DropoutDef& dropout);
 
-  // When nothing plays or the queue is full the strike will never sound, and is reported as dropped. table: what it refers
-  // to; it is kept as long as the callback may read it.
-  void submit(const Strike& strike, const StrikeLine::Table& table = nullptr);
-  // One that is never made: it is reported as dropped.
+  // When nothing plays or the queue is full the strike is reported as dropped. table: the modes that the strike refers to;
+  // they are kept as long as the callback may read them.
+  void submit(const Strike& strike, const StrikeQueue::Table& table = nullptr);
+  // Reports a hit as dropped without a strike.
   void drop(std::int64_t event_id, sync::HostTime scheduled);
   // Later scrapes are of these surfaces; null: none. The previous surfaces are kept while the callback may read
   // them.
-  void hear(std::shared_ptr<const HeardSurfaces> surfaces) { scrapes_.change(std::move(surfaces)); }
+  void set_surfaces(std::shared_ptr<const AudioSurfaces> surfaces) { scrapes_.set_surfaces(std::move(surfaces)); }
   // Returns surfaces that are no longer needed. Freeing them may take milliseconds, so do not free them in the
   // loop.
-  std::vector<std::shared_ptr<const HeardSurfaces>> take_unread() { return scrapes_.take_unread(); }
+  std::vector<std::shared_ptr<const AudioSurfaces>> take_released() { return scrapes_.take_released(); }
   // Pose of the listener from now on; sources count as at least nearest_m away.
-  void hear_from(const Eigen::Isometry3d& listener);
-  // A state that does not fit is skipped until the next one, and note() counts it. An end is sent later.
+  void set_listener(const Eigen::Isometry3d& listener);
+  // A state that does not fit is skipped until the next one, and status_text() counts it. An end is sent later.
   void submit(const Scrape& scrape) {
     if (stream_ && !silent_) scrapes_.submit(scrape);
   }
-  void submit(const RecordedContact& rub) {
-    if (stream_ && !silent_) rubs_.submit(rub);
+  void submit(const RecordedContact& contact) {
+    if (stream_ && !silent_) recorded_contacts_.submit(contact);
   }
-  // Interval of contact updates at which all that wait for their sample fit into the queue; they wait for
-  // latency() and `lead`.
-  sync::Nanoseconds tell_every(sync::Nanoseconds lead) const;
+  // Shortest interval of contact updates at which all waiting updates fit into the queue; each waits for latency()
+  // and `lead`.
+  sync::Nanoseconds update_interval(sync::Nanoseconds lead) const;
   // The recordings in use. Queued commands must refer to its newest database.
   Library& library() { return library_; }
   // Call once per tick: Library::step(), with the information whether a callback may play recordings.
@@ -66,9 +66,9 @@ class Output {
   std::optional<MediaPair> next_pair() { return stream_ ? stream_->next_pair() : std::nullopt; }
 
   // One line of status: the card in use, or the reason why nothing plays.
-  std::string note() const;
-  // The same once, whenever the card or the reason changes.
-  std::optional<std::string> news();
+  std::string status_text() const;
+  // The same line once after each change of the card or the reason.
+  std::optional<std::string> take_status_change();
   const std::string& medium() const { return medium_; }
   // Since the start, over all streams.
   std::int64_t callbacks() const { return past_callbacks_ + (stream_ ? stream_->callbacks() : 0); }
@@ -79,37 +79,37 @@ class Output {
   double callback_rate_Hz() const { return settings_.sample_rate_Hz / settings_.period_frames; }
   const Settings& settings() const { return settings_; }
   // Cost of each method per contact, in words; empty while nothing has sounded.
-  std::string costs() const;
+  std::string cost_text() const;
   // Sound dose and current gain reduction, in words; empty while nothing has sounded.
-  std::string hearing() const;
+  std::string exposure_text() const;
   // For a card that is too slow for its delay, in words; otherwise empty.
-  std::string too_slow() const;
+  std::string latency_warning() const;
   // Lost updates and reports, in words; empty if none.
-  std::string losses() const;
+  std::string loss_text() const;
   // Step of the quality ladder in use.
-  int quality() const { return crossing_->quality.load(std::memory_order_relaxed); }
+  int quality() const { return queues_->quality.load(std::memory_order_relaxed); }
 
  private:
-  void begin_to_open(sync::HostTime now);
-  void end_opening(sync::HostTime now);
+  void start_opening(sync::HostTime now);
+  void finish_opening(sync::HostTime now);
   void close();
 
   std::string folder_, device_;
   int fifo_priority_;
   Settings settings_, opened_with_;
-  std::string trouble_, medium_, told_;
+  std::string error_text_, medium_, reported_status_;
   std::optional<sync::Nanoseconds> delay_;
   sync::HostTime retry_at_{}, opening_since_{};
   std::int64_t past_callbacks_ = 0, past_underflows_ = 0;
   // The callback of the stream shares the ownership of both.
-  std::shared_ptr<CallbackQueues> crossing_;
+  std::shared_ptr<CallbackQueues> queues_;
   std::shared_ptr<Renderer> renderer_;
-  StrikeLine strikes_;  // goes after the stream, whose callback reads what it keeps; so do the next three
-  ScrapeLine scrapes_;
-  RubLine rubs_;
+  StrikeQueue strikes_;  // outlives the stream, whose callback reads its data; so do the next three
+  ScrapeQueue scrapes_;
+  RecordedContactQueue recorded_contacts_;
   Library library_;
-  std::optional<RenderCommand> ordered_;       // what the renderer has been told; nothing: it is new
-  std::optional<Listener> heard_from_;  // likewise
+  std::optional<RenderCommand> sent_command_;       // last command in the queue; empty: new renderer
+  std::optional<Listener> sent_listener_;  // last listener in the queue
   OpenCard open_;                       // none: a Stream
   bool silent_;
   // A card and its renderer.
@@ -118,11 +118,11 @@ class Output {
     std::unique_ptr<Card> card;
   };
   static std::unique_ptr<Opened> open(const Settings& settings, const std::string& folder, int priority,
-                                      const std::shared_ptr<CallbackQueues>& crossing, const OpenCard& open, bool silent);
-  void take(Opened& opened);
+                                      const std::shared_ptr<CallbackQueues>& queues, const OpenCard& open, bool silent);
+  void use_stream(Opened& opened);
   std::optional<sync::BackgroundTask<Opened>> opening_;
   std::unique_ptr<Card> stream_;
-  std::deque<presentation_t> unsounded_;
+  std::deque<presentation_t> dropped_reports_;
   std::int64_t reports_lost_ = 0;
 };
 

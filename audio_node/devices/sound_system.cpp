@@ -12,8 +12,8 @@
 namespace tactus::audio {
 namespace {
 
-void say_nothing(const char*, int, const char*, int, const char*, ...) {}
-void say_nothing_to_jack(const char*) {}
+void ignore_message(const char*, int, const char*, int, const char*, ...) {}
+void ignore_jack_message(const char*) {}
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";
@@ -45,12 +45,12 @@ bool has_sound_card() {
 
 void silence_sound_libraries() {
   setenv("JACK_NO_START_SERVER", "1", 1);
-  snd_lib_error_set_handler(say_nothing);
+  snd_lib_error_set_handler(ignore_message);
   // PortAudio loads libjack where it is built with it.
   using Handler = void (*)(const char*);
   using SetHandler = void (*)(Handler);
   for (const char* name : {"jack_set_error_function", "jack_set_info_function"})
-    if (const auto set = reinterpret_cast<SetHandler>(dlsym(RTLD_DEFAULT, name))) set(say_nothing_to_jack);
+    if (const auto set = reinterpret_cast<SetHandler>(dlsym(RTLD_DEFAULT, name))) set(ignore_jack_message);
 }
 
 VirtualCard::VirtualCard(const std::string& wav_path, int rate_Hz, int channels, int pairs_fd) {
@@ -67,7 +67,7 @@ VirtualCard::VirtualCard(const std::string& wav_path, int rate_Hz, int channels,
                            kName + "\n";  // PortAudio 19.6 aborts where there is no default
   config_fd_ = memfd_create("asound.conf", MFD_CLOEXEC);
   if (config_fd_ < 0 || ::write(config_fd_, text.data(), text.size()) != static_cast<ssize_t>(text.size()))
-    throw std::runtime_error("the configuration of the virtual sound card cannot be kept in memory; free some");
+    throw std::runtime_error("cannot keep the configuration of the virtual sound card in memory; free some memory");
   use_config(("/proc/self/fd/" + std::to_string(config_fd_)).c_str());
 }
 

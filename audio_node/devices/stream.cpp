@@ -21,7 +21,7 @@ namespace {
 static_assert(MediaPair::kStart == media_clock_t::START && MediaPair::kPeriodic == media_clock_t::PERIODIC &&
               MediaPair::kUnderflow == media_clock_t::UNDERFLOW);
 
-constexpr sync::Nanoseconds kSilentFor{500'000'000};
+constexpr sync::Nanoseconds kCallbackTimeout{500'000'000};
 
 void check(PaError error, const std::string& what) {
   if (error < 0)
@@ -29,9 +29,9 @@ void check(PaError error, const std::string& what) {
                              "); choose another --audio-device or \"virtual\"");
 }
 
-constexpr int kFewestChannels = 2;  // of a card that is listed by name
+constexpr int kMinChannels = 2;  // of a card that is listed by name
 
-[[noreturn]] void refuse_channels(const PaDeviceInfo& card, int channels) {
+[[noreturn]] void reject_channels(const PaDeviceInfo& card, int channels) {
   throw std::runtime_error("the sound card \"" + std::string(card.name) + "\" has " +
                            std::to_string(card.maxOutputChannels) + " channels, but the loudspeakers need " +
                            std::to_string(channels) + "; choose another layout_file or --audio-device");
@@ -48,21 +48,21 @@ PaDeviceIndex find_device(const std::string& wanted, int channels) {
   const PaDeviceInfo* few = nullptr;
   for (PaDeviceIndex i = 0; i < Pa_GetDeviceCount(); ++i) {
     const PaDeviceInfo* info = Pa_GetDeviceInfo(i);
-    if (info->maxOutputChannels < kFewestChannels) continue;
+    if (info->maxOutputChannels < kMinChannels) continue;
     if (std::string(info->name).find(wanted) != std::string::npos) {
       if (info->maxOutputChannels >= channels) return i;
       few = info;
     }
     known += std::string(known.empty() ? "" : ", ") + info->name;
   }
-  if (few) refuse_channels(*few, channels);
+  if (few) reject_channels(*few, channels);
   throw std::runtime_error("there is no sound card \"" + wanted + "\"; choose default, virtual" +
                            (known.empty() ? "" : " or one of: " + known));
 }
 
 // Without real-time priority a thread with short slices is scheduled sooner among busy ones: since Linux 6.12
 // sched_runtime of a normal thread is its slice, 0.1 ms at least (sched(7), EEVDF). Older kernels ignore it.
-void wake_early() {
+void request_short_slice() {
   struct {
     std::uint32_t size, policy;
     std::uint64_t flags;
@@ -99,7 +99,7 @@ Stream::Stream(const StreamOptions& options, Render render)
   silence_sound_libraries();
   medium_ = free_wav_name(options.folder);
   const std::string wav = std::filesystem::path(options.folder) / medium_;
-  if (pipe2(pairs_, O_CLOEXEC | O_NONBLOCK) != 0) throw std::runtime_error("no pipe can be had; close some files");
+  if (pipe2(pairs_, O_CLOEXEC | O_NONBLOCK) != 0) throw std::runtime_error("cannot create a pipe; close some files");
   try {
     open(options, wav);
   } catch (...) {
@@ -126,7 +126,7 @@ void Stream::open(const StreamOptions& options, const std::string& wav) {
     device = find_device(VirtualCard::kName, options.channels);
   }
   if (const PaDeviceInfo* info = Pa_GetDeviceInfo(device); info->maxOutputChannels < options.channels)
-    refuse_channels(*info, options.channels);
+    reject_channels(*info, options.channels);
   card_ = virtual_card_ ? "virtual card" : Pa_GetDeviceInfo(device)->name;
 
   PaStreamParameters parameters{};
@@ -161,7 +161,7 @@ Stream::~Stream() {
 
 bool Stream::alive(sync::HostTime now) const {
   return Pa_IsStreamActive(stream_) == 1 &&
-         sync::to_ns(now) - last_ns_.load(std::memory_order_relaxed) < kSilentFor.count();
+         sync::to_ns(now) - last_ns_.load(std::memory_order_relaxed) < kCallbackTimeout.count();
 }
 
 std::optional<MediaPair> Stream::next_pair() {
@@ -179,9 +179,9 @@ int Stream::on_block(const void*, void* out, unsigned long frames, const PaStrea
 
 // The callback thread inherits the priority of the thread that opened the stream; this raises it to that of the
 // callback.
-void Stream::enter_thread() {
-  entered_ = true;
-  if (!sync::is_realtime()) return wake_early();
+void Stream::configure_thread() {
+  thread_configured_ = true;
+  if (!sync::is_realtime()) return request_short_slice();
   if (fifo_priority_ <= 0) return;
   sched_param param{};
   param.sched_priority = fifo_priority_;
@@ -189,18 +189,18 @@ void Stream::enter_thread() {
 }
 
 void Stream::block(float* out, int frames, const PaStreamCallbackTimeInfo& time, bool underflow) {
-  if (!entered_) enter_thread();
+  if (!thread_configured_) configure_thread();
   const sync::HostTime now = sync::host_now();
   const auto estimate =
       dac_.block(frames, {time.currentTime, time.outputBufferDacTime, now, underflow}, latency_s_);
-  const BlockTime block_time{estimate.first_sample, estimate.uncertainty, used_};
+  const BlockTime block_time{estimate.first_sample, estimate.uncertainty, render_time_};
   render_(out, frames, block_time);
   if (tee_) tee(out, frames, block_time, underflow);
   callbacks_.fetch_add(1, std::memory_order_relaxed);
   if (underflow) underflows_.fetch_add(1, std::memory_order_relaxed);
   last_ns_.store(sync::to_ns(now), std::memory_order_relaxed);
   const sync::HostTime done = sync::host_now();
-  used_ = done - now;
+  render_time_ = done - now;
   if (sync::is_realtime() && guard_.tick(now, done)) sync::leave_realtime();
 }
 

@@ -39,7 +39,7 @@ class Stream : public Card {
                       unsigned long flags, void* self);
   void block(float* out, int frames, const PaStreamCallbackTimeInfo& time, bool underflow);
   void tee(const float* out, int frames, const BlockTime& time, bool underflow);
-  void enter_thread();
+  void configure_thread();
 
   Render render_;
   int rate_Hz_;
@@ -56,9 +56,9 @@ class Stream : public Card {
   // Used on the callback thread only.
   DacClock dac_;
   sync::OverrunGuard guard_;
-  bool entered_ = false;
+  bool thread_configured_ = false;
   std::int64_t next_pair_frame_ = 0;
-  sync::Nanoseconds used_{0};  // by the previous block
+  sync::Nanoseconds render_time_{0};  // by the previous block
 };
 
 // "audio.wav", or "audio.2.wav" and so on where that exists: a restarted node overwrites nothing.

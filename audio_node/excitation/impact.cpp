@@ -24,12 +24,12 @@ using std::numbers::pi;
 constexpr double kAirDensity_kg_m3 = 1.21;
 constexpr double kSoundSpeed_m_s = 343;
 // Bounds of plausible input; values beyond them are clamped.
-constexpr double kMaxMass_kg = 1e3, kMaxSpeed_m_s = 50, kLeastSpeed_m_s = 1e-4, kLeastCurvature_1_m = 1;
+constexpr double kMaxMass_kg = 1e3, kMaxSpeed_m_s = 50, kMinSpeed_m_s = 1e-4, kMinCurvature_1_m = 1;
 // FoleyAutomatic, section 3: impulses at the first four modal frequencies, within 15 ms.
 constexpr std::size_t kMicroCollisions = 4;
 constexpr double kMicroWithin_s = 0.015;
 // For a strike that is inaudible at any strength.
-constexpr float kNeverHeard = 2;
+constexpr float kInaudible = 2;
 
 // Radiation of an oscillating ball of radius a: pressure at 1 m ahead over rho c v is a (ka)^2 / sqrt(4 + (ka)^4)
 // (the dipole field with the velocity of the ball as boundary condition; Pierce, Acoustics, 1981, section 4.2).
@@ -100,8 +100,8 @@ Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>
     Voice v{body_sound(body, shape, material(material_index), extent, settings), table->size(), {}, {}};
     Resonators& resonators = table->emplace_back();
     if (material_index >= 0 && static_cast<std::size_t>(material_index) < scene.materials.size())
-      sound_as_measured(v.sound, scene.materials[static_cast<std::size_t>(material_index)], settings);
-    if (body.is_static) v.stands = to_eigen(body.pose);
+      apply_measured_modes(v.sound, scene.materials[static_cast<std::size_t>(material_index)], settings);
+    if (body.is_static) v.static_pose = to_eigen(body.pose);
     // Close to half the sample rate a resonator would sound at another frequency.
     std::erase_if(v.sound.modes, [&](const Mode& m) { return m.frequency_Hz > 0.45 * rate_Hz; });
     for (const Mode& mode : v.sound.modes) {
@@ -112,7 +112,7 @@ Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>
       resonators.add(step);
       v.radiated.push_back(static_cast<double>(step.unit_gain) / v.sound.mass_kg * kAirDensity_kg_m3 *
                            kSoundSpeed_m_s *
-                           radiation_m(v.sound.radiates_as_Hz.value_or(mode.frequency_Hz), v.sound.radius_m));
+                           radiation_m(v.sound.radiation_frequency_Hz.value_or(mode.frequency_Hz), v.sound.radius_m));
     }
     return v;
   };
@@ -154,13 +154,13 @@ PerMode Impacts::gains(int body, const std::optional<BodyPlace>& place) const {
   return gains;
 }
 
-std::optional<BodyPlace> Impacts::on_body(int body, const Eigen::Vector3d& point_m,
+std::optional<BodyPlace> Impacts::place_on_body(int body, const Eigen::Vector3d& point_m,
                                           const Eigen::Vector3d& direction, const PoseOf& pose) const {
-  std::optional<Eigen::Isometry3d> lies = voice(body).stands;
-  if (!lies && pose) lies = pose(body);
-  if (!lies || !lies->matrix().allFinite() || !point_m.allFinite() || !(direction.norm() > 0.5))
+  std::optional<Eigen::Isometry3d> pose_of_body = voice(body).static_pose;
+  if (!pose_of_body && pose) pose_of_body = pose(body);
+  if (!pose_of_body || !pose_of_body->matrix().allFinite() || !point_m.allFinite() || !(direction.norm() > 0.5))
     return std::nullopt;
-  return BodyPlace{lies->inverse() * point_m, lies->linear().transpose() * direction.normalized()};
+  return BodyPlace{pose_of_body->inverse() * point_m, pose_of_body->linear().transpose() * direction.normalized()};
 }
 
 // Peak pressure at 1 m of the click of a body that the impact accelerates as a whole (acceleration noise;
@@ -201,11 +201,11 @@ Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, c
   Strike strike;
   strike.event_id = event.event_id;
   strike.scheduled = scheduled;
-  strike.heard_from = kNeverHeard;
+  strike.min_audible_gain = kInaudible;
   if (!plausible(event)) return strike;
   const double mass = std::clamp<double>(event.effective_mass_kg, 1e-6, kMaxMass_kg);
-  const double speed = std::clamp<double>(event.approach_speed_m_s, kLeastSpeed_m_s, kMaxSpeed_m_s);
-  const double curvature = std::max<double>(event.curvature_1_m, kLeastCurvature_1_m);
+  const double speed = std::clamp<double>(event.approach_speed_m_s, kMinSpeed_m_s, kMaxSpeed_m_s);
+  const double curvature = std::max<double>(event.curvature_1_m, kMinCurvature_1_m);
   const std::array<const Voice*, 2> bodies{&voice(event.body_a), &voice(event.body_b)};
   const std::array<int, 2> ids{event.body_a, event.body_b}, surfaces{event.material_a, event.material_b};
   const auto surface = [&](std::size_t i) {
@@ -226,17 +226,17 @@ Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, c
     StrikeSide& side = strike.sides[i];
     side.voice = voice_id(ids[i]);
     side.resonators = &(*resonators_)[bodies[i]->number];
-    side.gains = gains(ids[i], on_body(ids[i], point, i == 0 ? Eigen::Vector3d(-normal) : normal, pose));
+    side.gains = gains(ids[i], place_on_body(ids[i], point, i == 0 ? Eigen::Vector3d(-normal) : normal, pose));
     side.impulse = static_cast<float>(impulse);
     side.click = static_cast<float>(click_Pa(bodies[i]->sound, impulse, length_s) / steepest);
     side.place = place;
   }
   // Full scale per Pa.
-  const double pressure = std::max(peak_Pa(strike, rate_Hz_), 1e-9), level = level_of(pressure, settings_);
+  const double pressure = std::max(peak_Pa(strike, rate_Hz_), 1e-9), level = played_level(pressure, settings_);
   const auto scale = static_cast<float>(settings_.gain * level / pressure);
   for (StrikeSide& side : strike.sides) side.impulse *= scale, side.click *= scale;
   const double peak_level = settings_.gain * level / static_cast<double>(place.distance_m);
-  strike.heard_from = static_cast<float>(settings_.inaudible_level / std::max(peak_level, 1e-12));
+  strike.min_audible_gain = static_cast<float>(settings_.inaudible_level / std::max(peak_level, 1e-12));
   return strike;
 }
 

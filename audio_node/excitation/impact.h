@@ -38,7 +38,7 @@ class Impacts {
   // Factor on all strikes from the next one on.
   void set_gain(double gain) { settings_.gain = gain; }
   // T_world_listener from the next strike on; initially that of the scene.
-  void hear_from(const Eigen::Isometry3d& listener) { listener_ = listener; }
+  void set_listener(const Eigen::Isometry3d& listener) { listener_ = listener; }
 
   // An implausible event gives an inaudible strike (plausible.h). Bodies or materials that the scene lacks sound
   // as small wooden ones. A body of unknown pose sounds as if struck at an average place.
@@ -47,12 +47,12 @@ class Impacts {
   const BodySound& body(int id) const { return voice(id).sound; }
   std::int64_t voice_id(int body) const { return generation_ << 32 | static_cast<std::uint32_t>(body); }
   const Resonators& resonators(int body) const { return (*resonators_)[voice(body).number]; }
-  // What the sides of strikes refer to.
+  // Modes of all bodies; the sides of strikes point into it.
   const std::shared_ptr<const ResonatorTable>& table() const { return resonators_; }
   // Pressure at 1 m per impulse of each mode, Pa / (N s), for a force at that place; nothing: anywhere.
   PerMode gains(int body, const std::optional<BodyPlace>& place) const;
   // Converts a world point and direction to the frame of a body: by `pose`, or by the scene for a static body.
-  std::optional<BodyPlace> on_body(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& direction,
+  std::optional<BodyPlace> place_on_body(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& direction,
                                    const PoseOf& pose) const;
 
  private:
@@ -60,7 +60,7 @@ class Impacts {
     BodySound sound;
     std::size_t number = 0;  // in the table of resonators
     std::vector<double> radiated;             // of each mode: pressure at 1 m per impulse and Mode::gain
-    std::optional<Eigen::Isometry3d> stands;  // T_world_body of a static body
+    std::optional<Eigen::Isometry3d> static_pose;  // T_world_body of a static body
   };
   const Voice& voice(int id) const;
   Elastic material(int index) const;

@@ -8,7 +8,7 @@ namespace {
 
 // Time after the blow over which the peak is searched: modes are loudest while they are in phase, and a mode of 40
 // Hz has completed its first swing.
-constexpr double kListen_s = 0.01;  // design
+constexpr double kPeakWindow_s = 0.01;  // design
 
 // Adds the sound of one side in the block that begins `begin` samples after the onset.
 void add(const StrikeSide& side, const ForcePulse& pulse, int begin, PerMode& velocity, PerMode& displacement,
@@ -33,7 +33,7 @@ void add(const StrikeSide& side, const ForcePulse& pulse, int begin, PerMode& ve
 double peak_Pa(const Strike& strike, double rate_Hz) {
   std::array<PerMode, 2> velocity{}, displacement{};
   float peak = 0;
-  const int end = length_of(strike.pulse) + static_cast<int>(kListen_s * rate_Hz);
+  const int end = length_of(strike.pulse) + static_cast<int>(kPeakWindow_s * rate_Hz);
   for (int begin = 0; begin < end; begin += kMaxBlock) {
     std::array<float, kMaxBlock> out{};
     for (std::size_t i = 0; i < 2; ++i)

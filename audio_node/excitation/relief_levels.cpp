@@ -8,7 +8,7 @@ namespace tactus::audio {
 namespace {
 
 // Reduces rows of n values to `fewer` values, each the mean over the covered pixels; rows lie one after the other.
-std::vector<float> coarser(const std::vector<float>& from, int n, int fewer, int count, int stride, int next) {
+std::vector<float> downsampled(const std::vector<float>& from, int n, int fewer, int count, int stride, int next) {
   std::vector<float> to(static_cast<std::size_t>(fewer) * static_cast<std::size_t>(count));
   const double wide = static_cast<double>(n) / fewer;
   for (int c = 0; c < count; ++c)
@@ -23,12 +23,12 @@ std::vector<float> coarser(const std::vector<float>& from, int n, int fewer, int
   return to;
 }
 
-Relief half(const Relief& r) {
+Relief half_resolution(const Relief& r) {
   Relief out;
   out.size_m = r.size_m;
   out.columns = (r.columns + 1) / 2, out.rows = (r.rows + 1) / 2;
-  const auto narrow = coarser(r.heights_m, r.columns, out.columns, r.rows, 1, r.columns);
-  out.heights_m = coarser(narrow, r.rows, out.rows, out.columns, out.columns, 1);
+  const auto narrow = downsampled(r.heights_m, r.columns, out.columns, r.rows, 1, r.columns);
+  out.heights_m = downsampled(narrow, r.rows, out.rows, out.columns, out.columns, 1);
   const auto height = [&](int column, int row) {
     column = (column + out.columns) % out.columns, row = (row + out.rows) % out.rows;
     return out.heights_m[static_cast<std::size_t>(row * out.columns + column)];
@@ -46,7 +46,7 @@ Relief half(const Relief& r) {
 
 ReliefLevels::ReliefLevels(Relief finest) {
   levels_.push_back(std::move(finest));
-  while (levels_.back().columns > 1 || levels_.back().rows > 1) levels_.push_back(half(levels_.back()));
+  while (levels_.back().columns > 1 || levels_.back().rows > 1) levels_.push_back(half_resolution(levels_.back()));
 }
 
 Eigen::Vector2d ReliefLevels::slope(const Eigen::Vector2d& at, const Eigen::Vector2d& step) const {

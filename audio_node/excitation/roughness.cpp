@@ -22,7 +22,7 @@ constexpr double kDirections[3][3] = {
 constexpr double kSquare = 26.0 / 105, kSquareSlope = 0.8;
 
 // A number of -1 .. 1 for each grain (splitmix64's finaliser, Steele, Lea and Flood 2014).
-double grain(std::int64_t i, std::uint64_t seed) {
+double grain_value(std::int64_t i, std::uint64_t seed) {
   auto z = (static_cast<std::uint64_t>(i) + seed) * 0x9E3779B97F4A7C15u;
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
   z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
@@ -44,7 +44,7 @@ double amplitude_m(const Roughness& of, int octave) {
 
 // Share of a wave that remains when a sample advances by this number of grains: all below a quarter, nothing from
 // a half on. The spectrum of a grain lies at about half a wave, and is almost zero one octave above (design).
-double kept(double grains) { return std::clamp(2 - 4 * std::abs(grains), 0.0, 1.0); }
+double antialias_gain(double grains) { return std::clamp(2 - 4 * std::abs(grains), 0.0, 1.0); }
 
 }  // namespace
 
@@ -58,7 +58,7 @@ void add_slopes(const Roughness& of, const Track& track, const Eigen::Vector3f& 
       const Eigen::Vector3d d(kDirections[j]);
       const double x0 = d.dot(track.p) * grains_m, step = d.dot(track.step) * grains_m,
                    bend = d.dot(track.bend) * grains_m;
-      const double kept_first = kept(step), kept_last = kept(step + 2 * frames * bend);
+      const double kept_first = antialias_gain(step), kept_last = antialias_gain(step + 2 * frames * bend);
       if (kept_first <= 0 && kept_last <= 0) continue;
       const double fade = (kept_last - kept_first) / frames;
       const Eigen::Vector3f df = d.cast<float>();
@@ -72,7 +72,7 @@ void add_slopes(const Roughness& of, const Track& track, const Eigen::Vector3f& 
         if (fresh || x < whole || x >= whole + 1) {
           whole = std::floor(x);
           const auto i = static_cast<std::int64_t>(whole);
-          rise = 6 * steep * (grain(i + 1, seed) - grain(i, seed));
+          rise = 6 * steep * (grain_value(i + 1, seed) - grain_value(i, seed));
           fresh = false;
         }
         const double t = x - whole;

@@ -16,10 +16,10 @@ namespace {
 // Of a blow: at most 12 dB above its recording, as for computed blows above the reference (design).
 constexpr double kMaxLevel = 4;
 // An octave either way; beyond it a recording suggests another material (design).
-constexpr double kLeastPitch = 0.5, kMaxPitch = 2;
+constexpr double kMinPitch = 0.5, kMaxPitch = 2;
 // As for scrapes: below the minimum there is no sliding or rolling; above the maximum loudness and speed are
 // clamped (design).
-constexpr double kLeastSpeed_m_s = 1e-3, kMaxSpeed_m_s = 5, kMaxForce_N = 50;
+constexpr double kMinSpeed_m_s = 1e-3, kMaxSpeed_m_s = 5, kMaxForce_N = 50;
 // Between two updates of contacts; a longer interval is a gap (design).
 constexpr double kMaxStep_s = 0.1;
 constexpr float kHalfPower = std::numbers::sqrt2_v<float> / 2;
@@ -39,13 +39,13 @@ MethodGains gains_of(const Settings& s) {
   return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
 }
 
-double level_of(double impulse_N_s, const Settings& s) {
+double recorded_blow_level(double impulse_N_s, const Settings& s) {
   const double relative = std::max(impulse_N_s, 0.0) / s.recorded_impulse_Ns;
   return s.gain * s.recorded_level * std::min(kMaxLevel, std::pow(relative, s.loudness_exponent));
 }
 
 double pitch_of(double size_m, double recorded_size_m) {
-  return std::clamp(recorded_size_m / std::max(size_m, 1e-6), kLeastPitch, kMaxPitch);
+  return std::clamp(recorded_size_m / std::max(size_m, 1e-6), kMinPitch, kMaxPitch);
 }
 
 Sampler::Sampler(const scene_t& scene, const Settings& settings)
@@ -60,30 +60,30 @@ std::string Sampler::material(std::int32_t i) const {
   return i >= 0 && static_cast<std::size_t>(i) < materials_.size() ? materials_[static_cast<std::size_t>(i)] : "";
 }
 
-void Sampler::say(const std::string& a, const std::string& b, Interaction interaction,
+void Sampler::report_missing(const std::string& a, const std::string& b, Interaction interaction,
                   const Database::Found& found) {
-  if (found.pair || !said_.insert({pair_of(a, b), interaction}).second) return;
+  if (found.pair || !reported_missing_.insert({pair_of(a, b), interaction}).second) return;
   const auto named = [](const std::string& m) { return m.empty() ? std::string("(no material)") : m; };
   const std::string of = named(a) + " on " + named(b) + ": no recording of this " + name(interaction);
-  if (!found.any()) return news_.push_back(of + "; it is computed");
+  if (!found.any()) return messages_.push_back(of + "; it is computed");
   std::string materials = found.alone[0] ? a : b;
   if (found.alone[0] && found.alone[1]) materials += " and of " + b;
-  news_.push_back(of + "; that of " + materials + " alone is played");
+  messages_.push_back(of + "; that of " + materials + " alone is played");
 }
 
 Database::Found Sampler::find(std::int32_t a, std::int32_t b, Interaction interaction) {
-  if (!plays()) return {};
+  if (!enabled()) return {};
   const std::string of_a = material(a), of_b = material(b);
   const Database::Found found = database_->find(of_a, of_b, interaction);
-  say(of_a, of_b, interaction, found);
+  report_missing(of_a, of_b, interaction, found);
   return found;
 }
 
-void Sampler::record(Strike& strike, const contact_event_t& event, const Impacts& impacts) {
+void Sampler::add_recordings(Strike& strike, const contact_event_t& event, const Impacts& impacts) {
   const Database::Found found = find(event.material_a, event.material_b, Interaction::kImpact);
   if (!found.any() || !plausible(event)) return;
   const MethodGains method = gains_of(settings_);
-  const double level = level_of(static_cast<double>(strike.impulse_N_s), settings_);
+  const double level = recorded_blow_level(static_cast<double>(strike.impulse_N_s), settings_);
   const BodySound &a = impacts.body(event.body_a), &b = impacts.body(event.body_b);
   std::size_t next = 0;
   float peak = 0;
@@ -92,7 +92,7 @@ void Sampler::record(Strike& strike, const contact_event_t& event, const Impacts
     for (std::size_t k = 0; k < 2; ++k) {
       if (mix.layer[k] < 0) continue;
       const Layer& layer = layers.by_speed[static_cast<std::size_t>(mix.layer[k])];
-      const Recording& take = take_of(layer, event.event_id);
+      const Recording& take = select_take(layer, event.event_id);
       const float gain = static_cast<float>(level) * share * layer.gain * mix.gain[k] * method.recorded;
       strike.recorded.shots[next++] = {&take, gain, static_cast<float>(pitch_of(size_m, layers.size_m))};
       peak += gain * take.peak;
@@ -102,7 +102,7 @@ void Sampler::record(Strike& strike, const contact_event_t& event, const Impacts
   const float each = found.alone[0] && found.alone[1] ? kHalfPower : 1;
   if (found.alone[0]) add(*found.alone[0], a.radius_m, each);
   if (found.alone[1]) add(*found.alone[1], b.radius_m, each);
-  strike.recorded.database = number_;
+  strike.recorded.database = database_number_;
   strike.recorded.place = strike.sides[0].place;
   for (StrikeSide& side : strike.sides) {
     side.impulse *= method.modal, side.click *= method.modal;
@@ -110,11 +110,11 @@ void Sampler::record(Strike& strike, const contact_event_t& event, const Impacts
   }
   // Both are known by their peaks; the sum is at least as loud as the louder one.
   const auto inaudible = static_cast<float>(settings_.inaudible_level);
-  const float computed = inaudible / std::max(strike.heard_from, 1e-12f) * method.modal;
-  strike.heard_from = inaudible / std::max({computed, peak / strike.recorded.place.distance_m, 1e-12f});
+  const float computed = inaudible / std::max(strike.min_audible_gain, 1e-12f) * method.modal;
+  strike.min_audible_gain = inaudible / std::max({computed, peak / strike.recorded.place.distance_m, 1e-12f});
 }
 
-void Sampler::rub(const contact_t& c, Interaction interaction, double speed_m_s, double level, sync::HostTime at) {
+void Sampler::add_contact(const contact_t& c, Interaction interaction, double speed_m_s, double level, sync::HostTime at) {
   // A contact that does not move needs no recording and prints no message.
   const Database::Found found = level > 0
                                     ? find(c.material_a, c.material_b, interaction)
@@ -128,82 +128,82 @@ void Sampler::rub(const contact_t& c, Interaction interaction, double speed_m_s,
     RecordedContact r;
     r.contact = c.contact_id;
     r.part = static_cast<std::int32_t>(2 * static_cast<std::size_t>(interaction) + (i == 2));
-    r.database = number_;
+    r.database = database_number_;
     r.at = at;
-    r.over_s = std::max(r.over_s, period_s_);
+    r.update_interval_s = std::max(r.update_interval_s, period_s_);
     r.layers = all[i];
     r.speed_m_s = speed_m_s;
     r.level = each * gains_of(settings_).recorded *
               static_cast<float>(settings_.gain * settings_.recorded_level * level);
     r.place = place_of(listener_, 0.5 * (to_eigen(c.points[0].a_world_m) + to_eigen(c.points[0].b_world_m)),
                        settings_.nearest_m);
-    rubs_.push_back(r);
+    contacts_.push_back(r);
   }
 }
 
 // Contacts beyond the number of audible loops are computed instead.
 void Sampler::keep_loudest() {
-  constexpr auto most = static_cast<std::ptrdiff_t>(Loops::kMax);
-  if (static_cast<std::ptrdiff_t>(rubs_.size()) <= most) return;
-  std::partial_sort(rubs_.begin(), rubs_.begin() + most, rubs_.end(),
+  constexpr auto max_contacts = static_cast<std::ptrdiff_t>(Loops::kMax);
+  if (static_cast<std::ptrdiff_t>(contacts_.size()) <= max_contacts) return;
+  std::partial_sort(contacts_.begin(), contacts_.begin() + max_contacts, contacts_.end(),
                     [](const RecordedContact& a, const RecordedContact& b) { return a.level > b.level; });
-  for (auto r = rubs_.begin() + most; r != rubs_.end(); ++r)
+  for (auto r = contacts_.begin() + max_contacts; r != contacts_.end(); ++r)
     recorded_.erase({r->contact, static_cast<Interaction>(r->part / 2)});
-  rubs_.erase(rubs_.begin() + most, rubs_.end());
+  contacts_.erase(contacts_.begin() + max_contacts, contacts_.end());
 }
 
-void Sampler::end_others(sync::HostTime at) {
-  std::set<std::pair<std::int64_t, std::int32_t>> heard;
-  for (const RecordedContact& r : rubs_) heard.insert({r.contact, r.part});
+void Sampler::end_stopped_contacts(sync::HostTime at) {
+  std::set<std::pair<std::int64_t, std::int32_t>> playing;
+  for (const RecordedContact& r : contacts_) playing.insert({r.contact, r.part});
   std::vector<RecordedContact> ends;
-  for (const auto& [contact, part] : heard_) {
-    if (heard.contains({contact, part})) continue;
+  for (const auto& [contact, part] : playing_) {
+    if (playing.contains({contact, part})) continue;
     RecordedContact& end = ends.emplace_back();
-    end.contact = contact, end.part = part, end.database = number_, end.at = at, end.ends = true;
+    end.contact = contact, end.part = part, end.database = database_number_, end.at = at, end.ends = true;
   }
   // First, to free places.
-  rubs_.insert(rubs_.begin(), ends.begin(), ends.end());
-  heard_ = std::move(heard);
+  contacts_.insert(contacts_.begin(), ends.begin(), ends.end());
+  playing_ = std::move(playing);
 }
 
-const std::vector<RecordedContact>& Sampler::rubs(const sync::Contacts& contacts, sync::HostTime at) {
-  rubs_.clear();
+const std::vector<RecordedContact>& Sampler::recorded_contacts(const sync::Contacts& contacts, sync::HostTime at) {
+  contacts_.clear();
   recorded_.clear();
-  const double dt_s = std::clamp(sync::to_seconds(at - rubbed_), 0.0, kMaxStep_s);
-  rubbed_ = at;
-  if (!plays()) {
-    moves_.clear();
-    heard_.clear();
-    return rubs_;
+  const double dt_s = std::clamp(sync::to_seconds(at - updated_at_), 0.0, kMaxStep_s);
+  updated_at_ = at;
+  if (!enabled()) {
+    motions_.clear();
+    playing_.clear();
+    return contacts_;
   }
-  for (auto& [id, moves] : moves_) moves.seen = false;
+  for (auto& [id, motion] : motions_) motion.present = false;
   const auto mu = [&](std::int32_t m) {
     return m >= 0 && static_cast<std::size_t>(m) < mu_.size() ? mu_[static_cast<std::size_t>(m)] : 1.0;
   };
   for (const contact_t& c : contacts) {
     if (c.points.empty() || !plausible(c)) continue;
     const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMaxForce_N);
-    const Eigen::Vector3d past = to_eigen(c.sliding_velocity_m_s), round = to_eigen(c.rolling_velocity_m_s);
-    const double slides = std::min(past.norm(), kMaxSpeed_m_s), rolls = std::min(round.norm(), kMaxSpeed_m_s);
-    Moves& moves = moves_[c.contact_id];
-    moves.seen = true;
-    moves.slides.step(past, dt_s), moves.rolls.step(round, dt_s);
+    const Eigen::Vector3d sliding = to_eigen(c.sliding_velocity_m_s), rolling_velocity = to_eigen(c.rolling_velocity_m_s);
+    const double slides = std::min(sliding.norm(), kMaxSpeed_m_s), rolls = std::min(rolling_velocity.norm(), kMaxSpeed_m_s);
+    Motion& motion = motions_[c.contact_id];
+    motion.present = true;
+    motion.slides.step(sliding, dt_s), motion.rolls.step(rolling_velocity, dt_s);
     // Proportional to the root of the friction power (van den Doel, Kry and Pai 2001, section 4.2).
     const double friction = std::min(std::sqrt(mu(c.material_a) * mu(c.material_b)), kMaxFriction);
     const double power_W = friction * force_N * slides;
-    const double scraping = slides >= kLeastSpeed_m_s ? moves.slides.moving() : 0;
-    rub(c, Interaction::kScrape, slides, scraping * settings_.recorded_scrape_level * std::sqrt(power_W), at);
+    const double scraping = slides >= kMinSpeed_m_s ? motion.slides.moving() : 0;
+    add_contact(c, Interaction::kScrape, slides, scraping * settings_.recorded_scrape_level * std::sqrt(power_W), at);
     // The contact point of a sliding body moves too; this is not rolling.
-    const double rolling = rolls >= kLeastSpeed_m_s && rolls > slides ? moves.rolls.moving() : 0;
-    rub(c, Interaction::kRoll, rolls, rolling * settings_.recorded_roll_level * std::sqrt(force_N * rolls), at);
+    const double rolling = rolls >= kMinSpeed_m_s && rolls > slides ? motion.rolls.moving() : 0;
+    add_contact(c, Interaction::kRoll, rolls, rolling * settings_.recorded_roll_level * std::sqrt(force_N * rolls), at);
   }
-  std::erase_if(moves_, [](const auto& m) { return !m.second.seen; });
+  std::erase_if(motions_, [](const auto& m) { return !m.second.present; });
   keep_loudest();
-  end_others(at);
-  return rubs_;
+  end_stopped_contacts(at);
+  return contacts_;
 }
 
-float Sampler::modal_of(std::int64_t contact, Interaction interaction) const {
+float Sampler::modal_gain(std::int64_t contact, Interaction interaction) const {
   return recorded_.contains({contact, interaction}) ? gains_of(settings_).modal : 1;
 }
 

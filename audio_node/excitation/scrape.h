@@ -21,10 +21,10 @@ struct ScrapeSide {
   std::int64_t voice = -1;  // the same for the same body, as for strikes; -1: none
   Resonators resonators;
   PerMode gains{};  // of each mode at the place of the contact, Pa at 1 m per N s
-  // The modes above `beyond_Hz` are too numerous to render one by one. Together they follow a force at once:
+  // The modes above `residual_Hz` are too numerous to render one by one. Together they follow a force at once:
   // pressure at 1 m, Pa per N s a sample.
-  float beyond = 0;
-  double beyond_Hz = 0;
+  float residual_gain = 0;
+  double residual_Hz = 0;
   // False: the place of the contact on it is not known, and its surface adds nothing.
   bool known = false;
   // Both remain valid while a scrape of this number is held; null: none.
@@ -35,7 +35,7 @@ struct ScrapeSide {
   Roughness roughness;
   Eigen::Vector3d place_m = Eigen::Vector3d::Zero(), velocity_m_s = Eigen::Vector3d::Zero();
   // Motion of the contact over this surface per unit of sliding, and of rolling: 0 .. 1 in size.
-  Eigen::Vector3f slides = Eigen::Vector3f::Zero(), rolls = Eigen::Vector3f::Zero();
+  Eigen::Vector3f slide_vector = Eigen::Vector3f::Zero(), roll_vector = Eigen::Vector3f::Zero();
 };
 
 // State at one instant, sent every tick; between ticks the places continue with their velocities.
@@ -48,7 +48,7 @@ struct Scrape {
   // factor 1.
   float slide = 0, roll = 0;
   double cutoff_Hz = 0;   // of rolling, by the patch
-  double over_s = 0.001;  // time until the next update
+  double update_interval_s = 0.001;  // time until the next update
   SourcePosition place;            // position of the source
   std::array<ScrapeSide, 2> sides;
 };

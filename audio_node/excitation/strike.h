@@ -1,4 +1,4 @@
-// What crosses into the audio callback: one impact, by value. It refers to the modes of its bodies (mixer/strike_line.h).
+// Message to the audio callback about one impact. It points to the modes of its bodies (mixer/strike_queue.h).
 #pragma once
 
 #include <array>
@@ -50,7 +50,7 @@ struct Strike {
   std::int64_t scene = 0;  // number of the table that the sides refer to
   sync::HostTime scheduled{};
   ForcePulse pulse = one_hump(1);
-  float heard_from = 0;  // factor on its strength below which it is predicted to be inaudible
+  float min_audible_gain = 0;  // factor on its strength below which it is predicted to be inaudible
   std::array<StrikeSide, 2> sides;
   float impulse_N_s = 0, speed_m_s = 0;  // of the blow
   RecordedStrike recorded;

@@ -33,7 +33,7 @@ Capture::Capture(const std::string& path, int rate_Hz, int channels, int pairs_f
   // The peak chunk holds the time of day, which would make two equal runs differ.
   sf_command(file_, SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);
   sf_command(file_, SFC_UPDATE_HEADER_NOW, nullptr, 0);
-  writer_ = std::thread([this] { write_on(); });
+  writer_ = std::thread([this] { run_writer(); });
 }
 
 Capture::~Capture() {
@@ -44,24 +44,24 @@ Capture::~Capture() {
 
 void Capture::append(const float* interleaved, std::size_t frames) {
   frames_ += static_cast<std::int64_t>(frames);
-  if (pay_silence() && samples_.push(interleaved, frames * static_cast<std::size_t>(channels_))) return;
-  owed_silence_ += static_cast<std::int64_t>(frames);
+  if (write_pending_silence() && samples_.push(interleaved, frames * static_cast<std::size_t>(channels_))) return;
+  pending_silence_ += static_cast<std::int64_t>(frames);
   lost_.fetch_add(static_cast<std::int64_t>(frames), std::memory_order_relaxed);
 }
 
 // Replaces lost frames by silence. True when none remain.
-bool Capture::pay_silence() {
+bool Capture::write_pending_silence() {
   static constexpr std::array<float, 1024> kZeros{};
-  while (owed_silence_ > 0) {
+  while (pending_silence_ > 0) {
     const std::int64_t frames =
-        std::min<std::int64_t>(owed_silence_, static_cast<std::int64_t>(kZeros.size()) / channels_);
+        std::min<std::int64_t>(pending_silence_, static_cast<std::int64_t>(kZeros.size()) / channels_);
     if (!samples_.push(kZeros.data(), static_cast<std::size_t>(frames * channels_))) return false;
-    owed_silence_ -= frames;
+    pending_silence_ -= frames;
   }
   return true;
 }
 
-void Capture::write_on() {
+void Capture::run_writer() {
   // The thread that opens a card may be a real-time one; this one must not be.
   const sched_param normal{};
   pthread_setschedparam(pthread_self(), SCHED_OTHER, &normal);

@@ -43,16 +43,16 @@ class Capture {
   std::int64_t lost_frames() const { return lost_.load(std::memory_order_relaxed); }
 
  private:
-  void write_on();
+  void run_writer();
   void write_all();
-  bool pay_silence();
+  bool write_pending_silence();
 
   int channels_;
   int pairs_fd_;
   Spsc<float> samples_;
   Spsc<MediaPair> pairs_{64};
   std::int64_t frames_ = 0;
-  std::int64_t owed_silence_ = 0;  // lost frames that are still to be replaced by silence
+  std::int64_t pending_silence_ = 0;  // lost frames that are still to be replaced by silence
   std::atomic<std::int64_t> lost_{0};
   std::atomic<bool> stop_{false};
   sf_private_tag* file_ = nullptr;

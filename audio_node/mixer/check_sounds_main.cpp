@@ -15,13 +15,13 @@ using namespace tactus::audio;
 
 namespace {
 
-std::string words(const MaterialPair& m) { return m.first.empty() ? m.second : m.first + "-" + m.second; }
+std::string pair_name(const MaterialPair& m) { return m.first.empty() ? m.second : m.first + "-" + m.second; }
 
 nlohmann::json contents(const Database& database) {
   nlohmann::json all = nlohmann::json::array();
   for (const auto& [key, layers] : database.sounds) {
     nlohmann::json row{
-        {"materials", words(key.materials)}, {"interaction", name(key.interaction)}, {"size_m", layers.size_m}};
+        {"materials", pair_name(key.materials)}, {"interaction", name(key.interaction)}, {"size_m", layers.size_m}};
     for (const Layer& layer : layers.by_speed)
       row["layers"].push_back({{"speed_m_s", layer.speed_m_s}, {"takes", layer.takes.size()}});
     all.push_back(row);
@@ -38,7 +38,7 @@ nlohmann::json coverage(const Database& database, const std::vector<std::string>
         const auto found = database.find(materials[i], materials[k], interaction);
         std::string plays = found.pair ? "pair" : found.alone[0] ? materials[i] : "";
         if (found.alone[1]) plays += (plays.empty() ? "" : " and ") + materials[k];
-        all.push_back({{"materials", words(pair_of(materials[i], materials[k]))},
+        all.push_back({{"materials", pair_name(pair_of(materials[i], materials[k]))},
                        {"interaction", name(interaction)},
                        {"plays", plays.empty() ? "modal" : plays}});
       }
@@ -54,7 +54,7 @@ void print(const nlohmann::json& report) {
       std::printf(" %g (%d)", layer["speed_m_s"].get<double>(), layer["takes"].get<int>());
     std::printf("\n");
   }
-  if (!report["pairs"].empty()) std::printf("\nWhat meets in the scene, and what is played:\n");
+  if (!report["pairs"].empty()) std::printf("\nPairs of the materials of the scene, and the source of their sound:\n");
   std::string last;
   for (const auto& row : report["pairs"]) {
     const auto pair = row["materials"].get<std::string>();
@@ -76,10 +76,10 @@ int main(int argc, char** argv) try {
   std::vector<std::string> materials;
   bool json = false;
   double rate_Hz = 48000;
-  CLI::App app{"What a folder of recordings holds, what of it is broken, and what is missing."};
-  app.add_option("folder", folder, "of recordings; default: the set beside this program");
-  app.add_option("--materials", materials, "of which every pair is looked up")->delimiter(',');
-  app.add_option("--rate", rate_Hz, "of the sound card, Hz")->check(CLI::Range(8000.0, 192000.0));
+  CLI::App app{"Lists the contents of a folder of recordings, its faults, and its gaps."};
+  app.add_option("folder", folder, "folder of recordings; default: the set beside this program");
+  app.add_option("--materials", materials, "materials; prints the source of sound of each pair")->delimiter(',');
+  app.add_option("--rate", rate_Hz, "sample rate of the sound card, Hz")->check(CLI::Range(8000.0, 192000.0));
   app.add_flag("--json", json, "print it as JSON");
   sync::parse_or_exit(app, "check_sounds", argc, argv);
   std::sort(materials.begin(), materials.end());

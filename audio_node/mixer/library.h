@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "audio_node/samples/database.h"
-#include "audio_node/mixer/recorded.h"
+#include "audio_node/mixer/recording_player.h"
 #include "audio_node/settings.gen.h"
 #include "sync/node/background_task.h"
 
@@ -23,23 +23,24 @@ class Library {
  public:
   using Shared = std::shared_ptr<const Database>;
 
-  explicit Library(RecordedQueues& crossing) : crossing_(crossing) {}
+  explicit Library(RecordedQueues& queues) : queues_(queues) {}
 
   // Begins to read when the method needs recordings and folder, rate or size have changed. A method without
   // recordings releases the database.
   void configure(const Settings& settings);
   // Call once per tick. Returns previous databases that are no longer in use: freeing them may take milliseconds,
-  // so do not free them in the loop. heard: there is a callback, or one is being made; false: none is played.
-  std::vector<Shared> step(bool heard = true);
+  // so do not free them in the loop. has_callback: a callback exists or is being opened; false: no database
+  // is in use.
+  std::vector<Shared> step(bool has_callback = true);
 
   // Null: none has been read yet, and none is needed or it is being read.
   const Database* database() const { return now_.get(); }
   // True while a database is being read. A renderer without a clock repeats step() until it is ready.
-  bool reading() const { return opening_ || (wanted_ && wanted_ != read_); }
+  bool reading() const { return opening_ || (requested_ && requested_ != read_); }
   // Number that all queued commands of this database carry.
-  std::int64_t number() const { return told_; }
+  std::int64_t number() const { return number_; }
   // A message about each database that was read, once.
-  std::vector<std::string> news() { return std::exchange(news_, {}); }
+  std::vector<std::string> take_messages() { return std::exchange(messages_, {}); }
 
  private:
   struct Source {
@@ -51,17 +52,17 @@ class Library {
     std::int64_t number;
     Shared database;
   };
-  void take_read(std::vector<Shared>& unread);
-  void use(Shared database);
-  bool tell(Shared next);
+  void receive_database(std::vector<Shared>& released);
+  void set_next(Shared database);
+  bool publish_database(Shared next);
 
-  RecordedQueues& crossing_;
-  std::optional<Source> wanted_, reading_, read_;
+  RecordedQueues& queues_;
+  std::optional<Source> requested_, reading_, read_;
   std::optional<sync::BackgroundTask<Database>> opening_;
   Shared now_, next_;
-  std::int64_t told_ = 0;  // number of `now_`
+  std::int64_t number_ = 0;  // number of `now_`
   std::deque<Kept> kept_;
-  std::vector<std::string> news_;
+  std::vector<std::string> messages_;
 };
 
 }  // namespace tactus::audio

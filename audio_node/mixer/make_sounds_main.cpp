@@ -35,7 +35,7 @@ constexpr double kSpeeds_m_s[] = {0.1, 0.5};  // of layers of each interaction
 // struck places as shares of the half length of the bar, never its middle
 constexpr double kPlaces[] = {0.45, 0.2};
 constexpr double kStriker_kg = 0.1;
-constexpr double kLongest_s = 1.5, kLoop_s = 1.2;
+constexpr double kMaxLength_s = 1.5, kLoop_s = 1.2;
 constexpr float kEnd = 1e-3f;       // of the peak: the sound has ended
 constexpr double kLoopRms = 0.1;    // leaves headroom for its peaks
 constexpr double kRollGrain = 0.1;  // a rolling patch of 1 mm passes no finer grain than 0.1 of scraping
@@ -96,19 +96,19 @@ class Set {
   void render(const material_def_t& a, const material_def_t& b, bool alone) {
     const scene_t scene = bars(a, b);
     const Impacts impacts(scene, {}, settings_, kRate_Hz, 1);
-    const auto own = folder_ / (alone ? a.name : a.name + "-" + b.name);
-    std::filesystem::create_directories(own);
-    std::ofstream(own / "size.txt") << impacts.body(0).radius_m << "\n";
+    const auto sound_folder = folder_ / (alone ? a.name : a.name + "-" + b.name);
+    std::filesystem::create_directories(sound_folder);
+    std::ofstream(sound_folder / "size.txt") << impacts.body(0).radius_m << "\n";
     for (const double speed : kSpeeds_m_s) {
       for (std::size_t take = 0; take < std::size(kPlaces); ++take)
-        write(own, Interaction::kImpact, speed, take, blow(impacts, speed, kPlaces[take], alone));
-      write(own, Interaction::kScrape, speed, 0, rubbed(impacts, speed, alone, false));
-      write(own, Interaction::kRoll, speed, 0, rubbed(impacts, speed, alone, true));
+        write(sound_folder, Interaction::kImpact, speed, take, render_blow(impacts, speed, kPlaces[take], alone));
+      write(sound_folder, Interaction::kScrape, speed, 0, friction_loop(impacts, speed, alone, false));
+      write(sound_folder, Interaction::kRoll, speed, 0, friction_loop(impacts, speed, alone, true));
     }
   }
 
  private:
-  std::vector<float> blow(const Impacts& impacts, double speed_m_s, double along, bool alone) const {
+  std::vector<float> render_blow(const Impacts& impacts, double speed_m_s, double along, bool alone) const {
     contact_event_t e{};
     e.body_b = e.material_b = 1;
     e.point_m.x = static_cast<float>(along * kBar_m.x() / 2), e.normal.z = 1;
@@ -117,7 +117,7 @@ class Set {
     const Strike s = impacts.strike(e, {}, [](int) { return Eigen::Isometry3d::Identity(); });
     Voices voices(2, kRate_Hz, ring(Instructions::kSse2));  // available on every machine: the same bits
     for (std::size_t i = 0; i < (alone ? 1u : 2u); ++i) voices.strike(s.sides[i], 1, s.pulse, 0);
-    auto x = rendered(voices, kLongest_s, [](int) {});
+    auto x = render_samples(voices, kMaxLength_s, [](int) {});
     // At the impulse of a recording.
     const auto scale = static_cast<float>(
         std::pow(settings_.recorded_impulse_Ns / static_cast<double>(s.impulse_N_s), settings_.loudness_exponent));
@@ -127,28 +127,28 @@ class Set {
     return x;
   }
 
-  std::vector<float> rubbed(const Impacts& impacts, double speed_m_s, bool alone, bool rolls) const {
+  std::vector<float> friction_loop(const Impacts& impacts, double speed_m_s, bool alone, bool rolls) const {
     Voices voices(2, kRate_Hz, ring(Instructions::kSse2));
     std::array<PerMode, 2> gains;
     for (int i = 0; i < 2; ++i)
       gains[static_cast<std::size_t>(i)] =
           impacts.gains(i, BodyPlace{{kPlaces[0] * kBar_m.x() / 2, 0, kBar_m.z() / 2}, -Eigen::Vector3d::UnitZ()});
     std::array<float, kMaxBlock> force;
-    double went_m = 0, low = 0;
+    double moved_m = 0, low = 0;
     const double follow = rolls ? 1 - std::exp(-2 * M_PI * kRollCutoff_Hz / kRate_Hz) : 1;
     const double steepness = std::sqrt(mean_square_slope(kRough));
     std::vector<float> surface;
-    const auto x = rendered(voices, kLoop_s + 0.2, [&](int frames) {
+    const auto x = render_samples(voices, kLoop_s + 0.2, [&](int frames) {
       std::array<float, kMaxBlock> slope{}, none{};
       const double step_m = (rolls ? kRollGrain : 1) * speed_m_s / kRate_Hz;
-      add_slopes(kRough, {{went_m, 0, 0}, {step_m, 0, 0}, {0, 0, 0}}, Eigen::Vector3f::UnitX(),
+      add_slopes(kRough, {{moved_m, 0, 0}, {step_m, 0, 0}, {0, 0, 0}}, Eigen::Vector3f::UnitX(),
                  Eigen::Vector3f::Zero(), frames, slope.data(), none.data());
       for (int n = 0; n < frames; ++n) {
         low += follow * (static_cast<double>(slope[static_cast<std::size_t>(n)]) / steepness - low);
         surface.push_back(static_cast<float>(low));
         force[static_cast<std::size_t>(n)] = static_cast<float>(1e-4 * low);
       }
-      went_m += step_m * frames;
+      moved_m += step_m * frames;
       for (int i = 0; i < (alone ? 1 : 2); ++i)
         voices.drive(
             {impacts.voice_id(i), &impacts.resonators(i), &gains[static_cast<std::size_t>(i)], {}, force.data()});
@@ -172,7 +172,7 @@ class Set {
     return both;
   }
 
-  static std::vector<float> rendered(Voices& voices, double length_s, const std::function<void(int)>& before) {
+  static std::vector<float> render_samples(Voices& voices, double length_s, const std::function<void(int)>& before) {
     std::vector<float> x;
     while (x.size() < static_cast<std::size_t>(length_s * kRate_Hz)) {
       std::array<float, 2 * kMaxBlock> mix{};
@@ -184,13 +184,13 @@ class Set {
     return x;
   }
 
-  void write(const std::filesystem::path& own, Interaction interaction, double speed_m_s, std::size_t take,
+  void write(const std::filesystem::path& sound_folder, Interaction interaction, double speed_m_s, std::size_t take,
              const std::vector<float>& x) const {
     std::ostringstream file;
     file << speed_m_s;
     if (take > 0) file << "_" << take + 1;
-    std::filesystem::create_directories(own / name(interaction));
-    const auto path = own / name(interaction) / (file.str() + ".flac");
+    std::filesystem::create_directories(sound_folder / name(interaction));
+    const auto path = sound_folder / name(interaction) / (file.str() + ".flac");
     SF_INFO info{};
     info.samplerate = static_cast<int>(kRate_Hz), info.channels = 1;
     info.format = SF_FORMAT_FLAC | SF_FORMAT_PCM_24;
@@ -210,9 +210,9 @@ class Set {
 int main(int argc, char** argv) try {
   std::string folder, materials, readme;
   CLI::App app{"Renders the default set of recordings from modal models."};
-  app.add_option("folder", folder, "where to");
+  app.add_option("folder", folder, "output folder");
   app.add_option("--materials", materials, "table of materials");
-  app.add_option("--readme", readme, "goes beside them");
+  app.add_option("--readme", readme, "README that is copied into the folder");
   sync::parse_or_exit(app, "make_sounds", argc, argv);
   if (folder.empty() || materials.empty())
     throw std::runtime_error("give a folder and --materials; see make_sounds --help");
@@ -220,7 +220,7 @@ int main(int argc, char** argv) try {
   // It replaces only a set that it made itself, never another folder.
   const auto mark = std::filesystem::path(folder) / ".rendered";
   if (std::filesystem::exists(folder) && !std::filesystem::is_empty(folder) && !std::filesystem::exists(mark))
-    throw std::runtime_error(folder + " is there and no set of this program; give a new folder");
+    throw std::runtime_error(folder + " exists and was not written by make_sounds; give a new folder");
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   std::ofstream(mark) << "by make_sounds\n";

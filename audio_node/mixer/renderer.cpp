@@ -39,10 +39,10 @@ constexpr double kCalm_s = 2;  // design: spare time required before a better st
 // The onset of a sound is lost when a drop-out removes more than half of its amplitude.
 constexpr float kSilenced = 0.5f;
 
-HearingDef hearing_of(const RendererDef& def) {
-  HearingDef hearing = def.hearing;
-  hearing.ears = def.space.hrtf != nullptr;
-  return hearing;
+LevelLimiterDef level_limiter_def(const RendererDef& def) {
+  LevelLimiterDef limiter = def.level_limit;
+  limiter.ears = def.space.hrtf != nullptr;
+  return limiter;
 }
 
 }  // namespace
@@ -52,48 +52,48 @@ sync::LatePolicy late_policy(double rate_Hz, sync::Nanoseconds limit) {
   return {kLate, slack, std::max(slack, limit)};
 }
 
-Renderer::Renderer(CallbackQueues& crossing, const RendererDef& def)
-    : crossing_(crossing),
+Renderer::Renderer(CallbackQueues& queues, const RendererDef& def)
+    : queues_(queues),
       rate_Hz_(def.rate_Hz),
       channels_(def.space.channels()),
       delay_(def.space.latency() + Limiter::kDelay),
       silent_(def.silent),
       late_(def.late),
-      newest_scene_(crossing.strikes_let_go.load(std::memory_order_relaxed)),
+      newest_scene_(queues.oldest_held_scene.load(std::memory_order_relaxed)),
       voices_(kQualities[0].voices, def.rate_Hz, ring(def.instructions), def.space, def.instructions),
       scrapes_(def.rate_Hz),
-      recorded_(crossing.recorded, def.rate_Hz, def.space, def.instructions),
+      recordings_(queues.recorded, def.rate_Hz, def.space, def.instructions),
       clock_ns_(def.clock_ns),
-      scrapes_taken_(crossing.scrapes_let_go.load(std::memory_order_relaxed)),
+      scrapes_taken_(queues.oldest_held_scrape.load(std::memory_order_relaxed)),
       dropout_(def.rate_Hz),
       limiter_(def.ceiling, def.rate_Hz, channels_),
-      level_limiter_(hearing_of(def), def.rate_Hz, channels_),
+      level_limiter_(level_limiter_def(def), def.rate_Hz, channels_),
       ladder_(static_cast<int>(kQualities.size()), sync::from_seconds(kBudget),
               static_cast<int>(kCalm_s * std::min(kMeans_Hz, def.rate_Hz / def.period_frames))) {}
 
-void Renderer::take_orders() {
-  RenderCommand orders;
-  while (crossing_.orders.pop(orders)) {
-    dropout_.set(orders.dropout);
-    pinned_ = std::min(orders.quality, static_cast<int>(kQualities.size()) - 1);
+void Renderer::receive_commands() {
+  RenderCommand command;
+  while (queues_.commands.pop(command)) {
+    dropout_.set(command.dropout);
+    fixed_quality_ = std::min(command.quality, static_cast<int>(kQualities.size()) - 1);
   }
   Listener listener;
   bool moved = false;
-  while (crossing_.listeners.pop(listener)) moved = true;
-  if (moved) voices_.hear_from(listener), recorded_.hear_from(listener);
+  while (queues_.listeners.pop(listener)) moved = true;
+  if (moved) voices_.set_listener(listener), recordings_.set_listener(listener);
 }
 
 // The ladder receives the time per second of sound, since blocks may differ in length.
-void Renderer::adapt(int frames, sync::Nanoseconds used) {
-  if (pinned_ < 0 && used > sync::Nanoseconds(0)) frames_ += last_frames_, used_ += used;
+void Renderer::adapt(int frames, sync::Nanoseconds render_time) {
+  if (fixed_quality_ < 0 && render_time > sync::Nanoseconds(0)) frames_ += last_frames_, render_time_ += render_time;
   last_frames_ = frames;
   if (frames_ > 0 && frames_ >= rate_Hz_ / kMeans_Hz) {
-    ladder_.add(sync::from_seconds(sync::to_seconds(used_) * rate_Hz_ / frames_));
-    frames_ = 0, used_ = {};
+    ladder_.add(sync::from_seconds(sync::to_seconds(render_time_) * rate_Hz_ / frames_));
+    frames_ = 0, render_time_ = {};
   }
-  const int step = pinned_ < 0 ? ladder_.step() : pinned_;
+  const int step = fixed_quality_ < 0 ? ladder_.step() : fixed_quality_;
   voices_.set_limits(kQualities[static_cast<std::size_t>(step)]);
-  crossing_.quality.store(step, std::memory_order_relaxed);
+  queues_.quality.store(step, std::memory_order_relaxed);
 }
 
 sync::Nanoseconds Renderer::samples(int count) const {
@@ -109,68 +109,68 @@ void Renderer::report(const Strike& strike, std::int8_t outcome, std::int64_t pr
   r.presented_ns = presented_ns;
   r.uncertainty_ns = uncertainty.count();
   r.outcome = outcome;
-  if (!crossing_.reports.push(r)) crossing_.reports_lost.fetch_add(1, std::memory_order_relaxed);
+  if (!queues_.reports.push(r)) queues_.reports_lost.fetch_add(1, std::memory_order_relaxed);
 }
 
 void Renderer::render(float* out, int frames, const BlockTime& time) {
   const FlushToZero guard;
-  take_orders();
-  recorded_.take_databases();
-  adapt(frames, time.used);
+  receive_commands();
+  recordings_.receive_databases();
+  adapt(frames, time.render_time);
   Strike strike;
-  while (crossing_.strikes.pop(strike)) {
+  while (queues_.strikes.pop(strike)) {
     newest_scene_ = std::max(newest_scene_, strike.scene);
     if (!scheduler_.push(strike)) report(strike, presentation_t::DROPPED_LATE, -1, sync::Nanoseconds(0));
   }
   for (int done = 0; done < frames;) {
     const int some = next_block(frames - done);
-    render_some(out + channels_ * done, some, {time.first_sample + samples(done), time.uncertainty, {}});
+    render_block(out + channels_ * done, some, {time.first_sample + samples(done), time.uncertainty, {}});
     done += some;
   }
-  let_go_of_strikes();
-  let_go_of_scrapes();
-  recorded_.let_go(scheduler_);
+  release_strikes();
+  release_scrapes();
+  recordings_.release(scheduler_);
 }
 
 void Renderer::abandon() {
   const auto drop = [&](const Strike& s) { report(s, presentation_t::DROPPED_LATE, -1, sync::Nanoseconds(0)); };
-  for (Strike strike; crossing_.strikes.pop(strike);) {
+  for (Strike strike; queues_.strikes.pop(strike);) {
     newest_scene_ = std::max(newest_scene_, strike.scene);
     drop(strike);
   }
   while (const Strike* strike = scheduler_.pop_before(sync::HostTime::max())) drop(*strike);
-  for (Scrape s; crossing_.scrapes.pop(s);) scrapes_taken_ = s.number + 1;
-  let_go_of_strikes();
+  for (Scrape s; queues_.scrapes.pop(s);) scrapes_taken_ = s.number + 1;
+  release_strikes();
   next_scrape_.reset();
   scrapes_.clear();
-  let_go_of_scrapes();
-  recorded_.abandon(scheduler_);
+  release_scrapes();
+  recordings_.abandon(scheduler_);
 }
 
 // The frames of the block are rendered now, pass the spatialiser and leave the limiter kDelay frames later.
-void Renderer::render_some(float* out, int frames, const BlockTime& time) {
+void Renderer::render_block(float* out, int frames, const BlockTime& time) {
   const BlockTime leaving{time.first_sample + samples(delay_), time.uncertainty, {}};
   const sync::HostTime end =
       leaving.first_sample + sync::Nanoseconds(std::llround((frames - 0.5) * 1e9 / rate_Hz_));
   dropout_.next({open_.data(), static_cast<std::size_t>(frames)});
   while (const Strike* strike = scheduler_.pop_before(end)) begin(*strike, frames, leaving);
   std::fill(out, out + channels_ * frames, 0.f);
-  if (!silent_) sound_some(out, frames, leaving.first_sample);
+  if (!silent_) render_sound(out, frames, leaving.first_sample);
 }
 
-void Renderer::sound_some(float* out, int frames, sync::HostTime leaving) {
+void Renderer::render_sound(float* out, int frames, sync::HostTime leaving) {
   const std::int64_t begun = clock();
   const int scraping = scrapes_.active();
-  take_scrapes(leaving);
-  crossing_.costs[0].contacts.fetch_add(scrapes_.active() - scraping, std::memory_order_relaxed);
+  receive_scrapes(leaving);
+  queues_.costs[0].contacts.fetch_add(scrapes_.active() - scraping, std::memory_order_relaxed);
   scrapes_.drive(voices_, frames, leaving);
   voices_.render(out, frames);
   const std::int64_t computed = clock();
-  const int rubs = recorded_.render(out, frames, leaving);
-  crossing_.costs[1].contacts.fetch_add(rubs, std::memory_order_relaxed);
+  const int contacts = recordings_.render(out, frames, leaving);
+  queues_.costs[1].contacts.fetch_add(contacts, std::memory_order_relaxed);
   // A block without sound counts for no contact.
-  if (voices_.active() > 0) crossing_.costs[0].ns.fetch_add(computed - begun, std::memory_order_relaxed);
-  if (recorded_.active() > 0) crossing_.costs[1].ns.fetch_add(clock() - computed, std::memory_order_relaxed);
+  if (voices_.active() > 0) queues_.costs[0].ns.fetch_add(computed - begun, std::memory_order_relaxed);
+  if (recordings_.active() > 0) queues_.costs[1].ns.fetch_add(clock() - computed, std::memory_order_relaxed);
   for (int n = 0; n < frames; ++n)
     for (int c = 0; c < channels_; ++c) out[channels_ * n + c] *= open_[static_cast<std::size_t>(n)];
   limit(out, frames);
@@ -181,38 +181,38 @@ void Renderer::limit(float* out, int frames) {
   limiter_.process(out, frames);
   level_limiter_.process(out, frames);
   // no other thread writes it
-  const double exposure = crossing_.heard.exposure_Pa2_s.load(std::memory_order_relaxed);
-  crossing_.heard.exposure_Pa2_s.store(exposure + level_limiter_.take_exposure_Pa2_s(), std::memory_order_relaxed);
-  crossing_.heard.gain.store(level_limiter_.gain(), std::memory_order_relaxed);
+  const double exposure = queues_.exposure.exposure_Pa2_s.load(std::memory_order_relaxed);
+  queues_.exposure.exposure_Pa2_s.store(exposure + level_limiter_.take_exposure_Pa2_s(), std::memory_order_relaxed);
+  queues_.exposure.gain.store(level_limiter_.gain(), std::memory_order_relaxed);
 }
 
 // They are queued in the order of presentation; an early one waits.
-void Renderer::take_scrapes(sync::HostTime until) {
-  for (Scrape s; next_scrape_ || crossing_.scrapes.pop(s);) {
+void Renderer::receive_scrapes(sync::HostTime until) {
+  for (Scrape s; next_scrape_ || queues_.scrapes.pop(s);) {
     if (next_scrape_) s = *std::exchange(next_scrape_, std::nullopt);
     scrapes_taken_ = s.number + 1;
     if (s.at > until) {
       next_scrape_ = s;
       return;
     }
-    scrapes_.take(s);
+    scrapes_.update(s);
   }
 }
 
 // Strikes that are still in the queue are of the newest scene or of a later one. Voices keep a copy of their modes.
-void Renderer::let_go_of_strikes() {
-  if (crossing_.strikes_let_go.load(std::memory_order_relaxed) == newest_scene_) return;
+void Renderer::release_strikes() {
+  if (queues_.oldest_held_scene.load(std::memory_order_relaxed) == newest_scene_) return;
   std::int64_t held = newest_scene_;
   scheduler_.for_each([&](const Strike& s) { held = std::min(held, s.scene); });
-  crossing_.strikes_let_go.store(held, std::memory_order_release);
+  queues_.oldest_held_scene.store(held, std::memory_order_release);
 }
 
-// What is still in the queue has larger numbers than all that were taken out of it.
-void Renderer::let_go_of_scrapes() {
+// Scrapes that are still in the queue have larger numbers than all received ones.
+void Renderer::release_scrapes() {
   std::int64_t held = scrapes_taken_;
   if (next_scrape_) held = std::min(held, next_scrape_->number);
   if (const auto oldest = scrapes_.oldest()) held = std::min(held, *oldest);
-  crossing_.scrapes_let_go.store(held, std::memory_order_release);
+  queues_.oldest_held_scrape.store(held, std::memory_order_release);
 }
 
 void Renderer::begin(const Strike& strike, int frames, const BlockTime& leaving) {
@@ -224,17 +224,17 @@ void Renderer::begin(const Strike& strike, int frames, const BlockTime& leaving)
   const int offset = static_cast<int>(std::clamp<long>(nearest, 0, frames - 1));
   if (!silent_) {
     for (const StrikeSide& side : strike.sides) voices_.strike(side, gain, strike.pulse, offset);
-    recorded_.begin(strike, gain, offset);
+    recordings_.begin(strike, gain, offset);
   }
   const bool computed = strike.sides[0].voice >= 0 || strike.sides[1].voice >= 0;
-  crossing_.costs[0].contacts.fetch_add(computed ? 1 : 0, std::memory_order_relaxed);
-  crossing_.costs[1].contacts.fetch_add(strike.recorded.database > 0 ? 1 : 0, std::memory_order_relaxed);
+  queues_.costs[0].contacts.fetch_add(computed ? 1 : 0, std::memory_order_relaxed);
+  queues_.costs[1].contacts.fetch_add(strike.recorded.database > 0 ? 1 : 0, std::memory_order_relaxed);
   // The bodies keep ringing during the silence.
   if (open_[static_cast<std::size_t>(offset)] < kSilenced)
     return report(strike, presentation_t::DROPPED_BY_PROFILE, -1, sync::Nanoseconds(0));
   const sync::Nanoseconds half_sample = samples(1) / 2;
-  const bool heard = gain >= strike.heard_from;
-  report(strike, heard ? outcome : presentation_t::INAUDIBLE, sync::to_ns(leaving.first_sample + samples(offset)),
+  const bool audible = gain >= strike.min_audible_gain;
+  report(strike, audible ? outcome : presentation_t::INAUDIBLE, sync::to_ns(leaving.first_sample + samples(offset)),
          leaving.uncertainty + half_sample);
 }
 

@@ -10,7 +10,7 @@
 #include "audio_node/signal/dropout.h"
 #include "audio_node/signal/level_limiter.h"
 #include "audio_node/signal/limiter.h"
-#include "audio_node/mixer/recorded.h"
+#include "audio_node/mixer/recording_player.h"
 #include "audio_node/mixer/scheduler.h"
 #include "audio_node/mixer/scrapes.h"
 #include "audio_node/signal/spsc.h"
@@ -24,7 +24,7 @@ namespace tactus::audio {
 struct BlockTime {
   sync::HostTime first_sample{};
   sync::Nanoseconds uncertainty{0};
-  sync::Nanoseconds used{0};  // rendering time of the previous block; 0: not known
+  sync::Nanoseconds render_time{0};  // rendering time of the previous block; 0: not known
 };
 
 // The quality ladder of sound.
@@ -54,14 +54,14 @@ struct ExposureMeter {
 // Queues and counters between the loop of the node and the callback.
 struct CallbackQueues {
   Spsc<Strike> strikes{512};
-  // The callback holds no strike of a scene of a number below this, and will never again: its table may go.
-  std::atomic<std::int64_t> strikes_let_go{0};
-  Spsc<RenderCommand> orders{16};
+  // The callback holds no strike of a scene of a number below this, and will never again: its table may be freed.
+  std::atomic<std::int64_t> oldest_held_scene{0};
+  Spsc<RenderCommand> commands{16};
   Spsc<Listener> listeners{64};  // the newest applies
-  Spsc<Scrape> scrapes{kTellings * 2 * Scrapes::kMax};
+  Spsc<Scrape> scrapes{kMaxQueuedUpdates * 2 * Scrapes::kMax};
   // The callback holds no scrape with a number below this, and never will again: the data of those scrapes may be
   // freed.
-  std::atomic<std::int64_t> scrapes_let_go{0};
+  std::atomic<std::int64_t> oldest_held_scrape{0};
   static_assert(std::atomic<std::int64_t>::is_always_lock_free);
   RecordedQueues recorded;
   Spsc<presentation_t> reports{4096};
@@ -69,7 +69,7 @@ struct CallbackQueues {
   std::atomic<int> quality{0};                // step in use
   static_assert(std::atomic<int>::is_always_lock_free);
   std::array<MethodCost, 2> costs;  // of computed sound, of recorded sound
-  ExposureMeter heard;
+  ExposureMeter exposure;
 };
 
 // A late sound is weaker, down to zero at the limit: at full strength the ear would take it for another impact.
@@ -80,7 +80,7 @@ struct RendererDef {
   double rate_Hz = 48000;
   int period_frames = 128;  // usual length of one call
   double ceiling = 0.9;
-  HearingDef hearing = {};  // the space determines whether channels are ears
+  LevelLimiterDef level_limit = {};  // the space determines whether channels are ears
   sync::LatePolicy late = late_policy(48000, sync::Nanoseconds(30'000'000));
   Instructions instructions = available_instructions().back();
   Space space = {};
@@ -95,7 +95,7 @@ constexpr int next_block(int frames_left) { return frames_left / ((frames_left +
 // Same strikes, same blocks and same times give the same samples to the bit.
 class Renderer {
  public:
-  Renderer(CallbackQueues& crossing, const RendererDef& def);
+  Renderer(CallbackQueues& queues, const RendererDef& def);
 
   // Channels of the interleaved samples.
   int channels() const { return channels_; }
@@ -110,23 +110,23 @@ class Renderer {
 
   int sounding() const { return voices_.active(); }
   int scraping() const { return scrapes_.active(); }
-  int recorded() const { return recorded_.active(); }
+  int recorded() const { return recordings_.active(); }
 
  private:
-  void take_orders();
-  void adapt(int frames, sync::Nanoseconds used);
-  void render_some(float* out, int frames, const BlockTime& time);
-  void sound_some(float* out, int frames, sync::HostTime leaving);
-  void take_scrapes(sync::HostTime until);
-  void let_go_of_strikes();
-  void let_go_of_scrapes();
+  void receive_commands();
+  void adapt(int frames, sync::Nanoseconds render_time);
+  void render_block(float* out, int frames, const BlockTime& time);
+  void render_sound(float* out, int frames, sync::HostTime leaving);
+  void receive_scrapes(sync::HostTime until);
+  void release_strikes();
+  void release_scrapes();
   void limit(float* out, int frames);
   void begin(const Strike& strike, int frames, const BlockTime& time);
   void report(const Strike& strike, std::int8_t outcome, std::int64_t presented_ns, sync::Nanoseconds uncertainty);
   sync::Nanoseconds samples(int count) const;
   std::int64_t clock() const { return clock_ns_ ? clock_ns_() : 0; }
 
-  CallbackQueues& crossing_;
+  CallbackQueues& queues_;
   double rate_Hz_;
   int channels_;
   int delay_;  // frames between rendering and output
@@ -136,7 +136,7 @@ class Renderer {
   std::int64_t newest_scene_;  // of the strikes that were taken out of the queue
   Voices voices_;
   Scrapes scrapes_;
-  Recorded recorded_;
+  RecordingPlayer recordings_;
   std::int64_t (*clock_ns_)();
   std::optional<Scrape> next_scrape_;  // taken from the queue, not yet due
   std::int64_t scrapes_taken_;         // from the queue, including previous renderers
@@ -145,10 +145,10 @@ class Renderer {
   Limiter limiter_;
   LevelLimiter level_limiter_;
   sync::QualityLadder ladder_;
-  int pinned_ = -1;
+  int fixed_quality_ = -1;
   int last_frames_ = 0;        // of the previous block
   int frames_ = 0;             // rendered frames that the ladder has not received,
-  sync::Nanoseconds used_{0};  // and their rendering time
+  sync::Nanoseconds render_time_{0};  // and their rendering time
 };
 
 }  // namespace tactus::audio

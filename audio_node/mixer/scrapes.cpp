@@ -8,35 +8,35 @@ namespace {
 
 // A received place differs from the extrapolated one: time constant of the correction. Design: touch and the
 // simulation have ticks of 1 ms each and occasionally slip by one.
-constexpr double kFollow_s = 0.01;
+constexpr double kCorrection_s = 0.01;
 // A larger difference means that it was repositioned.
-constexpr double kLeap_m = 0.005;  // design
+constexpr double kMaxCorrection_m = 0.005;  // design
 // Minimum ramp time of a strength at begin, change and end. Design: shorter is audible as a click.
-constexpr double kStrength_s = 0.002;
+constexpr double kMinRamp_s = 0.002;
 // A contact without updates and without an end fades out.
-constexpr sync::Nanoseconds kSilence{30'000'000};  // design: a few lost messages are not a gap
-constexpr double kMaxOver_s = 0.5;                 // design: or twice the update interval, but at most this
+constexpr sync::Nanoseconds kUpdateTimeout{30'000'000};  // design: a few lost messages are not a gap
+constexpr double kMaxTimeout_s = 0.5;                 // design: or twice the update interval, but at most this
 
 // Plausible range. Design: far beyond any scene, so that no number overflows.
-constexpr double kMaxPlace_m = 1e5, kMaxSpeed_m_s = 1e3, kMaxWay = 10, kMaxStrength = 10;
+constexpr double kMaxPlace_m = 1e5, kMaxSpeed_m_s = 1e3, kMaxMotion = 10, kMaxStrength = 10;
 
 // False for NaN and infinity.
-bool within(const Eigen::Vector3d& v, double most) { return v.allFinite() && v.cwiseAbs().maxCoeff() <= most; }
+bool within(const Eigen::Vector3d& v, double max) { return v.allFinite() && v.cwiseAbs().maxCoeff() <= max; }
 
-bool sane(const Scrape& s) {
+bool is_plausible(const Scrape& s) {
   bool all = std::abs(s.slide) <= kMaxStrength && std::abs(s.roll) <= kMaxStrength && std::isfinite(s.cutoff_Hz);
   for (const ScrapeSide& side : s.sides)
     all = all && within(side.place_m, kMaxPlace_m) && within(side.velocity_m_s, kMaxSpeed_m_s) &&
-          within(side.slides.cast<double>(), kMaxWay) && within(side.rolls.cast<double>(), kMaxWay) &&
-          std::isfinite(side.beyond) && std::isfinite(side.beyond_Hz) &&
+          within(side.slide_vector.cast<double>(), kMaxMotion) && within(side.roll_vector.cast<double>(), kMaxMotion) &&
+          std::isfinite(side.residual_gain) && std::isfinite(side.residual_Hz) &&
           std::all_of(side.gains.begin(), side.gains.end(), [](float g) { return std::isfinite(g); });
-  return all && std::isfinite(s.over_s) && s.place.distance_m > 0;
+  return all && std::isfinite(s.update_interval_s) && s.place.distance_m > 0;
 }
 
 // Slope limit for a step in a map: 76 degrees (design).
-constexpr float kSteepest = 4;
+constexpr float kMaxSlope = 4;
 
-bool passes(const ScrapeSide& side) { return !side.slides.isZero(0) || !side.rolls.isZero(0); }
+bool moves_over(const ScrapeSide& side) { return !side.slide_vector.isZero(0) || !side.roll_vector.isZero(0); }
 
 Eigen::Vector2d on_map(const ScrapeSide& side, const Eigen::Vector3d& v) {
   const Relief& r = side.relief->finest();
@@ -45,16 +45,16 @@ Eigen::Vector2d on_map(const ScrapeSide& side, const Eigen::Vector3d& v) {
 
 // Adds the slope of the relief along the directions of sliding and of rolling.
 void add_relief(const ScrapeSide& side, const Track& track, int frames, float* slope, float* slope_rolling) {
-  const auto along = [&](const Eigen::Vector3f& way) -> Eigen::Vector2d {
-    return way.cast<double>()({side.axes.u, side.axes.v});
+  const auto along = [&](const Eigen::Vector3f& vector) -> Eigen::Vector2d {
+    return vector.cast<double>()({side.axes.u, side.axes.v});
   };
-  const Eigen::Vector2d slides = along(side.slides), rolls = along(side.rolls);
+  const Eigen::Vector2d slide_vector = along(side.slide_vector), roll_vector = along(side.roll_vector);
   const Eigen::Vector2d step =
       on_map(side, track.step).cwiseAbs().cwiseMax(on_map(side, track.step + 2 * frames * track.bend).cwiseAbs());
   for (int n = 0; n < frames; ++n) {
     const Eigen::Vector2d s = side.relief->slope(on_map(side, track.at(n)), step);
-    slope[n] += static_cast<float>(s.dot(slides));
-    slope_rolling[n] += static_cast<float>(s.dot(rolls));
+    slope[n] += static_cast<float>(s.dot(slide_vector));
+    slope_rolling[n] += static_cast<float>(s.dot(roll_vector));
   }
 }
 
@@ -78,13 +78,13 @@ void Scrapes::begin(Contact& c, const Scrape& scrape) const {
     c.sides[i].in_use = 0;
     c.sides[i].gains[0] = scrape.sides[i].gains;
     c.sides[i].changed = false;
-    c.sides[i].beyond = {};
-    c.sides[i].beyond.set(scrape.sides[i].beyond_Hz, rate_Hz_);
+    c.sides[i].residual = {};
+    c.sides[i].residual.set(scrape.sides[i].residual_Hz, rate_Hz_);
   }
 }
 
-void Scrapes::take(const Scrape& scrape) {
-  if (!sane(scrape)) return;
+void Scrapes::update(const Scrape& scrape) {
+  if (!is_plausible(scrape)) return;
   const bool silent = scrape.slide == 0 && scrape.roll == 0;
   Contact* known = nullptr;
   Contact* free = nullptr;
@@ -92,9 +92,9 @@ void Scrapes::take(const Scrape& scrape) {
     if (c.on && c.now.id == scrape.id) known = &c;
     if (!c.on && !free) free = &c;
   }
-  const int within = std::max(1, static_cast<int>(std::max(kStrength_s, scrape.over_s) * rate_Hz_));
+  const int within = std::max(1, static_cast<int>(std::max(kMinRamp_s, scrape.update_interval_s) * rate_Hz_));
   if (scrape.ends) {
-    if (known) known->slide.go(0, within), known->roll.go(0, within);
+    if (known) known->slide.set_target(0, within), known->roll.set_target(0, within);
     return;
   }
   if (known) {
@@ -106,17 +106,17 @@ void Scrapes::take(const Scrape& scrape) {
   } else {
     return;
   }
-  known->heard = scrape.at;
-  known->slide.go(scrape.slide, within), known->roll.go(scrape.roll, within);
+  known->updated_at = scrape.at;
+  known->slide.set_target(scrape.slide, within), known->roll.set_target(scrape.roll, within);
 }
 
 // Extrapolates the received place to the first of these samples; the remaining difference is corrected along the
 // track.
-Track Scrapes::follow(const ScrapeSide& told, Side& side, double since_s, bool fresh, int frames) const {
+Track Scrapes::follow(const ScrapeSide& received, Side& side, double since_s, bool fresh, int frames) const {
   const double dt = 1 / rate_Hz_;
-  Eigen::Vector3d lag = told.place_m + since_s * told.velocity_m_s - side.place_m;
-  if (fresh || lag.norm() > kLeap_m) side.place_m += lag, lag.setZero();
-  const Eigen::Vector3d step = (told.velocity_m_s + lag / kFollow_s) * dt;
+  Eigen::Vector3d lag = received.place_m + since_s * received.velocity_m_s - side.place_m;
+  if (fresh || lag.norm() > kMaxCorrection_m) side.place_m += lag, lag.setZero();
+  const Eigen::Vector3d step = (received.velocity_m_s + lag / kCorrection_s) * dt;
   if (fresh) side.step_m = step;
   const Track track{side.place_m, side.step_m, (step - side.step_m) / (2 * frames)};
   side.place_m = track.at(frames);
@@ -126,10 +126,10 @@ Track Scrapes::follow(const ScrapeSide& told, Side& side, double since_s, bool f
 
 void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
   const Scrape& s = c.now;
-  if (first - c.heard >= std::max(kSilence, sync::from_seconds(std::min(2 * s.over_s, kMaxOver_s))) &&
+  if (first - c.updated_at >= std::max(kUpdateTimeout, sync::from_seconds(std::min(2 * s.update_interval_s, kMaxTimeout_s))) &&
       (c.slide.target != 0 || c.roll.target != 0))
-    c.slide.go(0, static_cast<int>(kStrength_s * rate_Hz_)),
-        c.roll.go(0, static_cast<int>(kStrength_s * rate_Hz_));
+    c.slide.set_target(0, static_cast<int>(kMinRamp_s * rate_Hz_)),
+        c.roll.set_target(0, static_cast<int>(kMinRamp_s * rate_Hz_));
   const double since_s = sync::to_seconds(first - s.at);
   Block slope{}, rolling{}, friction, steep;
   friction.fill(1);
@@ -138,7 +138,7 @@ void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
     const ScrapeSide& side = s.sides[i];
     if (!side.known) continue;
     tracks[i] = follow(side, c.sides[i], since_s, c.fresh, frames);
-    if (side.relief && passes(side)) add_relief(side, tracks[i], frames, slope.data(), rolling.data());
+    if (side.relief && moves_over(side)) add_relief(side, tracks[i], frames, slope.data(), rolling.data());
     for (int n = 0; side.friction && n < frames; ++n)
       friction[static_cast<std::size_t>(n)] *=
           static_cast<float>(side.friction->factor(side.outward, tracks[i].at(n)));
@@ -147,32 +147,32 @@ void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
   // product.
   for (int n = 0; n < frames; ++n) {
     const auto k = static_cast<std::size_t>(n);
-    steep[k] = std::sqrt(1 + std::min(slope[k] * slope[k], kSteepest * kSteepest));
+    steep[k] = std::sqrt(1 + std::min(slope[k] * slope[k], kMaxSlope * kMaxSlope));
   }
   for (std::size_t i = 0; i < 2; ++i)
-    if (const ScrapeSide& side = s.sides[i]; side.known && passes(side))
-      add_slopes(side.roughness, tracks[i], side.slides, side.rolls, frames, slope.data(), rolling.data());
+    if (const ScrapeSide& side = s.sides[i]; side.known && moves_over(side))
+      add_slopes(side.roughness, tracks[i], side.slide_vector, side.roll_vector, frames, slope.data(), rolling.data());
   const bool mapped = s.sides[0].friction || s.sides[1].friction;
   c.patch.set(s.cutoff_Hz, rate_Hz_);
   for (int n = 0; n < frames; ++n) {
     const auto k = static_cast<std::size_t>(n);
-    // The factor of a pair is the root of the product, and the strength goes with the root of the power.
-    const float rubs = mapped ? std::sqrt(static_cast<float>(pair_factor(static_cast<double>(friction[k])))) : 1;
-    c.force[k] = c.slide.next() * rubs * steep[k] * slope[k] + c.roll.next() * c.patch.next(rolling[k]).low;
+    // The factor of a pair is the root of the product, and the strength is proportional to the root of the power.
+    const float friction_gain = mapped ? std::sqrt(static_cast<float>(pair_factor(static_cast<double>(friction[k])))) : 1;
+    c.force[k] = c.slide.next() * friction_gain * steep[k] * slope[k] + c.roll.next() * c.patch.next(rolling[k]).low;
   }
   c.fresh = false;
   if (c.slide.value == 0 && c.roll.value == 0 && c.slide.target == 0 && c.roll.target == 0) c.on = false;
 }
 
 void Scrapes::drive(Contact& c, std::size_t i, Voices& voices, int frames) {
-  const ScrapeSide& told = c.now.sides[i];
+  const ScrapeSide& received = c.now.sides[i];
   Side& side = c.sides[i];
   for (int n = 0; n < frames; ++n) {
     const auto k = static_cast<std::size_t>(n);
-    side.direct[k] = told.beyond * side.beyond.next(c.force[k]).high;
+    side.direct[k] = received.residual_gain * side.residual.next(c.force[k]).high;
   }
   const auto with = [&](const PerMode& gains, const Block& force, const float* direct) {
-    voices.drive({told.voice, &told.resonators, &gains, c.now.place, force.data(), direct});
+    voices.drive({received.voice, &received.resonators, &gains, c.now.place, force.data(), direct});
   };
   if (!side.changed) return with(side.gains[side.in_use], c.force, side.direct.data());
   // Crossfades linearly between the sets of gains. Both bodies use the same shares.
@@ -183,7 +183,7 @@ void Scrapes::drive(Contact& c, std::size_t i, Voices& voices, int frames) {
   }
   with(side.gains[side.in_use], c.out, side.direct.data());
   side.in_use = 1 - side.in_use;
-  side.gains[side.in_use] = told.gains;
+  side.gains[side.in_use] = received.gains;
   with(side.gains[side.in_use], c.in, nullptr);
   side.changed = false;
 }

@@ -24,7 +24,7 @@ class Scrapes {
   explicit Scrapes(double rate_Hz) : rate_Hz_(rate_Hz) {}
 
   // Takes a scrape that is due. Realtime-safe: yes.
-  void take(const Scrape& scrape);
+  void update(const Scrape& scrape);
   // Drives the bodies for the next `frames` <= kMaxBlock frames, the first of which is presented at `first`. The
   // forces remain valid until the next call. Realtime-safe: yes.
   void drive(Voices& voices, int frames, sync::HostTime first);
@@ -42,7 +42,7 @@ class Scrapes {
   struct Ramp {
     float value = 0, target = 0;
     int left = 0;
-    void go(float to, int within) {
+    void set_target(float to, int within) {
       if (to != target) target = to, left = within;
     }
     float next();
@@ -53,20 +53,20 @@ class Scrapes {
     std::array<PerMode, 2> gains;
     std::size_t in_use = 0;
     bool changed = false;  // new gains have arrived
-    Butterworth beyond;
+    Butterworth residual;
     Block direct{};  // sound of its modes beyond the rendered ones
   };
   struct Contact {
     Scrape now;
     bool on = false, fresh = true;
-    sync::HostTime heard{};  // presentation time of the newest scrape
+    sync::HostTime updated_at{};  // presentation time of the newest scrape
     Ramp slide, roll;
     Butterworth patch;
     std::array<Side, 2> sides;
     Block force{}, out{}, in{};
   };
   void begin(Contact& contact, const Scrape& scrape) const;
-  Track follow(const ScrapeSide& told, Side& side, double since_s, bool fresh, int frames) const;
+  Track follow(const ScrapeSide& received, Side& side, double since_s, bool fresh, int frames) const;
   void render(Contact& contact, int frames, sync::HostTime first) const;
   static void drive(Contact& contact, std::size_t side, Voices& voices, int frames);
 

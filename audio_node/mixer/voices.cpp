@@ -8,11 +8,11 @@ namespace tactus::audio {
 namespace {
 
 // A voice below this level has ended: -100 dBFS, below the noise of any 16-bit converter.
-constexpr float kOver = 1e-5f;
+constexpr float kEndLevel = 1e-5f;
 
 // A voice that is weaker than the next blow by this factor jumps to the place of the blow: its crossfade within a
 // block, a distortion of about 1/16 of it (spatialiser_test), is 60 dB below the blow. Design.
-constexpr float kDrowned = 1.f / 64;
+constexpr float kMaskedShare = 1.f / 64;
 
 // Squared amplitude of a mode: it decays by the damping with each sample, at any phase.
 float squared_amplitude(float c, float k, float v, float u) {
@@ -39,28 +39,28 @@ Voices::Voices(int voices, double rate_Hz, Ring ring, const Space& space, Instru
       spatialiser_(space, voices + kFading, rate_Hz, instructions) {}
 
 void Voices::set_limits(const VoiceLimits& limits) {
-  const int most = static_cast<int>(voices_.size()) - kFading;
-  limits_ = {std::clamp(limits.voices, 1, most), std::max(1, limits.modes_of)};
+  const int max = static_cast<int>(voices_.size()) - kFading;
+  limits_ = {std::clamp(limits.voices, 1, max), std::max(1, limits.modes_of)};
 }
 
-Voices::Voice* Voices::sounding(std::int64_t id) {
+Voices::Voice* Voices::find_sounding(std::int64_t id) {
   for (Voice& v : voices_)
-    if (v.id == id && !v.whole.on) return &v;
+    if (v.id == id && !v.ending.on) return &v;
   return nullptr;
 }
 
-// The weakest voices fade until at most at_most sound. A voice that a contact drives counts as stronger, at any
+// The weakest voices fade until at most max_voices sound. A voice that a contact drives counts as stronger, at any
 // level: otherwise it would restart in each block.
-void Voices::leave_room(int at_most) {
-  const auto sounds = [](const Voice& v) { return v.id >= 0 && !v.whole.on; };
+void Voices::fade_weakest(int max_voices) {
+  const auto sounds = [](const Voice& v) { return v.id >= 0 && !v.ending.on; };
   auto count = std::count_if(voices_.begin(), voices_.end(), sounds);
-  for (; count > at_most; --count) {
+  for (; count > max_voices; --count) {
     Voice* weakest = nullptr;
     for (Voice& v : voices_)
       if (sounds(v) &&
           (!weakest || std::pair(v.driven > 0, v.level) < std::pair(weakest->driven > 0, weakest->level)))
         weakest = &v;
-    weakest->whole.on = true;
+    weakest->ending.on = true;
   }
 }
 
@@ -69,45 +69,45 @@ Voices::Voice& Voices::free_voice() {
   Voice* best = nullptr;
   for (Voice& v : voices_) {
     if (v.id < 0) return v;
-    if (v.whole.on && (!best || v.level < best->level)) best = &v;
+    if (v.ending.on && (!best || v.level < best->level)) best = &v;
   }
   return *best;
 }
 
-int Voices::allowed(const Voice& v) const {
+int Voices::allowed_modes(const Voice& v) const {
   const int groups = v.modes / kModeGroup;
   return (groups + limits_.modes_of - 1) / limits_.modes_of * kModeGroup;
 }
 
-void Voices::take(Voice& v, std::int64_t id, const Resonators& resonators, const SourcePosition& place) {
+void Voices::start(Voice& v, std::int64_t id, const Resonators& resonators, const SourcePosition& place) {
   v.id = id;
   v.modes = (std::clamp(resonators.count, 0, kMaxModes) + kModeGroup - 1) / kModeGroup * kModeGroup;
-  v.rendered = v.kept = allowed(v);
-  v.cut = v.whole = {};
+  v.rendered = v.kept = allowed_modes(v);
+  v.cut = v.ending = {};
   v.damping = resonators.damping, v.stiffness = resonators.stiffness;
   v.velocity.fill(0), v.displacement.fill(0);
   for (Pulse& p : v.pulses) p.on = false;
   v.driven = 0;
-  v.place = v.heard = place;
+  v.place = v.current_place = place;
   v.silent = 0;
   spatialiser_.begin(static_cast<int>(&v - voices_.data()));
   v.expected = v.level = 0;
 }
 
-Voices::Voice& Voices::voice_of(std::int64_t id, const Resonators& resonators, const SourcePosition& place) {
-  if (Voice* known = sounding(id)) return *known;
-  leave_room(limits_.voices - 1);
+Voices::Voice& Voices::voice_for(std::int64_t id, const Resonators& resonators, const SourcePosition& place) {
+  if (Voice* known = find_sounding(id)) return *known;
+  fade_weakest(limits_.voices - 1);
   Voice& fresh = free_voice();
-  take(fresh, id, resonators, place);
+  start(fresh, id, resonators, place);
   return fresh;
 }
 
 // Modes that were cut return at rest, before a force begins: within a force they would jump.
-void Voices::bring_back(Voice& v) const {
+void Voices::restore_modes(Voice& v) const {
   const auto pushes = [](const Pulse& p) { return p.on; };
-  if (!v.cut.on && v.rendered < allowed(v) && v.driven == 0 &&
+  if (!v.cut.on && v.rendered < allowed_modes(v) && v.driven == 0 &&
       std::none_of(v.pulses.begin(), v.pulses.end(), pushes))
-    v.rendered = v.kept = allowed(v);
+    v.rendered = v.kept = allowed_modes(v);
 }
 
 // The blow keeps its time and strength, and takes the place on the body of the strongest pulse that has room,
@@ -127,9 +127,9 @@ void Voices::join(Voice& v, const Pulse& blow) {
 
 void Voices::strike(const StrikeSide& side, float gain, const ForcePulse& pulse, int offset) {
   if (side.voice < 0) return;
-  Voice& v = voice_of(side.voice, *side.resonators, side.place);
+  Voice& v = voice_for(side.voice, *side.resonators, side.place);
   v.place = side.place;
-  bring_back(v);
+  restore_modes(v);
   const auto free = std::find_if_not(v.pulses.begin(), v.pulses.end(), [](const Pulse& p) { return p.on; });
   const Pulse blow{true, offset, length_of(pulse), pulse, gain * side.impulse, gain * side.click, 0, side.gains};
   if (free != v.pulses.end())
@@ -139,17 +139,17 @@ void Voices::strike(const StrikeSide& side, float gain, const ForcePulse& pulse,
   float response = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(v.rendered); ++i) response += std::abs(side.gains[i]);
   v.expected = gain * (std::abs(side.impulse) * response + std::abs(side.click));
-  if (v.level * side.place.distance_m < kDrowned * v.expected) v.heard = side.place;
+  if (v.level * side.place.distance_m < kMaskedShare * v.expected) v.current_place = side.place;
   v.level += v.expected;
 }
 
 void Voices::drive(const Drive& drive) {
   if (drive.voice < 0) return;
-  Voice& v = voice_of(drive.voice, *drive.resonators, drive.place);
+  Voice& v = voice_for(drive.voice, *drive.resonators, drive.place);
   v.place = drive.place;
   if (v.driven == kDrives) return;
-  bring_back(v);
-  v.directs[static_cast<std::size_t>(v.driven)] = drive.direct;
+  restore_modes(v);
+  v.direct_sounds[static_cast<std::size_t>(v.driven)] = drive.direct;
   v.drives[static_cast<std::size_t>(v.driven++)] = {drive.gains->data(), drive.force};
 }
 
@@ -174,7 +174,7 @@ void Voices::collect(Voice& v, int frames, Pushes& pushes, float* out) {
   pushes.of_blows = pushes.count > 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(v.driven); ++i) {
     pushes.list[static_cast<std::size_t>(pushes.count++)] = v.drives[i];
-    for (int n = 0; v.directs[i] && n < frames; ++n) out[n] += v.directs[i][n];
+    for (int n = 0; v.direct_sounds[i] && n < frames; ++n) out[n] += v.direct_sounds[i][n];
   }
   v.driven = 0;
 }
@@ -199,8 +199,8 @@ void Voices::fade(Fade& fade, float* samples, int frames) const {
 
 // Begins when required and while none is in progress: one after another.
 void Voices::cut(Voice& v) const {
-  if (v.cut.on || v.rendered <= allowed(v)) return;
-  v.kept = allowed(v);
+  if (v.cut.on || v.rendered <= allowed_modes(v)) return;
+  v.kept = allowed_modes(v);
   v.cut.on = true;
 }
 
@@ -225,24 +225,24 @@ void Voices::render(Voice& v, int frames) {
     for (int n = 0; n < frames; ++n) out[static_cast<std::size_t>(n)] += leaving[static_cast<std::size_t>(n)];
     end_cut(v);
   }
-  fade(v.whole, out.data(), frames);
+  fade(v.ending, out.data(), frames);
   const bool numbers = std::all_of(out.begin(), out.begin() + frames, [](float x) { return std::isfinite(x); });
   if (!numbers) out.fill(0);
   const Eigen::Vector3f ear_m = listener_.value_or(Listener{}).T_W_listener.translation();
-  v.heard = glide(v.heard, v.place, ear_m, glide_step_rad_ * static_cast<float>(frames));
-  const SourcePosition place = listener_ ? heard_by(*listener_, v.heard) : v.heard;
+  v.current_place = glide(v.current_place, v.place, ear_m, glide_step_rad_ * static_cast<float>(frames));
+  const SourcePosition place = listener_ ? relative_to_listener(*listener_, v.current_place) : v.current_place;
   spatialiser_.add(static_cast<int>(&v - voices_.data()), place, out.data(), frames);
-  v.level = over_modes(v, [](float a2) { return std::sqrt(a2); }) / place.distance_m * v.whole.gain;
+  v.level = over_modes(v, [](float a2) { return std::sqrt(a2); }) / place.distance_m * v.ending.gain;
   const bool pushed = pushes.count > 0;
   // Sound in the filters of the ears still counts, except for a voice that has become NaN.
-  const bool over = v.whole.gain <= 0 || (!pushed && !(v.level > kOver));
+  const bool over = v.ending.gain <= 0 || (!pushed && !(v.level > kEndLevel));
   if (!numbers || !std::isfinite(v.level) || (over && v.silent >= spatialiser_.tail())) v.id = -1;
   v.silent = over ? v.silent + frames : 0;
   if (pushes.of_blows) v.level += v.expected;
 }
 
 void Voices::render(float* mix, int frames) {
-  leave_room(limits_.voices);
+  fade_weakest(limits_.voices);
   for (Voice& v : voices_)
     if (v.id >= 0) render(v, frames);
   spatialiser_.mix(mix, frames);

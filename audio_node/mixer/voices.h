@@ -49,7 +49,7 @@ class Voices {
   // Call before each render() during the contact. Of one body at most kDrives are rendered at a time.
   void drive(const Drive& drive);
   // Bodies keep their place in the world, including those that ring already.
-  void hear_from(const Listener& listener) { listener_ = listener; }
+  void set_listener(const Listener& listener) { listener_ = listener; }
   // Adds `frames` <= kMaxBlock frames, channels interleaved.
   void render(float* mix, int frames);
 
@@ -87,14 +87,14 @@ class Voices {
     // Rendered modes; those from `kept` on fade, and then stay at rest until the voice is struck again.
     int rendered = 0, kept = 0;
     Fade cut;
-    Fade whole;
+    Fade ending;
     PerMode damping, stiffness, velocity, displacement;
     std::array<Pulse, kPulses> pulses;
     std::array<Push, kDrives> drives;
-    std::array<const float*, kDrives> directs;
+    std::array<const float*, kDrives> direct_sounds;
     int driven = 0;
-    SourcePosition place;         // of the newest contact
-    SourcePosition heard;         // on its way there
+    SourcePosition place;         // position of the newest contact
+    SourcePosition current_place;         // moves smoothly to `place`
     int silent = 0;      // frames since the last input
     float expected = 0;  // expected level of the last pulse
     float level = 0;  // largest sum of amplitudes of the last block, plus the expected level while a pulse is on
@@ -107,14 +107,14 @@ class Voices {
     bool of_blows = false;  // some are blows
   };
 
-  Voice* sounding(std::int64_t id);
+  Voice* find_sounding(std::int64_t id);
   Voice& free_voice();
-  Voice& voice_of(std::int64_t id, const Resonators& resonators, const SourcePosition& place);
-  void leave_room(int at_most);
-  void take(Voice& voice, std::int64_t id, const Resonators& resonators, const SourcePosition& place);
-  void bring_back(Voice& voice) const;
+  Voice& voice_for(std::int64_t id, const Resonators& resonators, const SourcePosition& place);
+  void fade_weakest(int max_voices);
+  void start(Voice& voice, std::int64_t id, const Resonators& resonators, const SourcePosition& place);
+  void restore_modes(Voice& voice) const;
   void cut(Voice& voice) const;
-  int allowed(const Voice& voice) const;
+  int allowed_modes(const Voice& voice) const;
   void end_cut(Voice& voice) const;
   void render(Voice& voice, int frames);
   void fade(Fade& fade, float* samples, int frames) const;

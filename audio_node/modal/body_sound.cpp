@@ -19,7 +19,7 @@ using std::numbers::pi;
 constexpr double kUnknownSize_m = 0.05;  // design
 
 Solid solid_of(const body_def_t& body, const shape_def_t* shape, const Elastic& m,
-               const std::optional<Extent>& mesh, const Settings& s, Range range) {
+               const std::optional<Extent>& mesh, const Settings& s, ModeRange range) {
   const bool fixed = body.is_static != 0;
   const auto side = [&](double x) { return std::max(1e-3, fixed ? std::min(x, s.static_patch_m) : x); };
   const auto clipped_box = [&](double x, double y, double z) {
@@ -62,7 +62,7 @@ Elastic elastic(const material_def_t& m) {
 BodySound body_sound(const body_def_t& body, const shape_def_t* shape, const Elastic& material,
                      const std::optional<Extent>& mesh, const Settings& settings) {
   // More modes than are kept, since those below the lowest frequency are removed.
-  const Range range{settings.highest_frequency_Hz, 2 * settings.max_modes};
+  const ModeRange range{settings.highest_frequency_Hz, 2 * settings.max_modes};
   const Solid solid = solid_of(body, shape, material, mesh, settings, range);
   BodySound sound;
   sound.material = material;
@@ -78,7 +78,7 @@ BodySound body_sound(const body_def_t& body, const shape_def_t* shape, const Ela
   for (const SolidMode& m : solid.modes)
     if (m.frequency_Hz >= settings.lowest_frequency_Hz)
       sound.modes.push_back(
-          {m.frequency_Hz, std::max(kLeastDamping_1_s, damping_1_s(material, m.frequency_Hz)), m.gain, m.shape});
+          {m.frequency_Hz, std::max(kMinDamping_1_s, damping_1_s(material, m.frequency_Hz)), m.gain, m.shape});
   // An overdamped mode does not sound.
   std::erase_if(sound.modes, [](const Mode& m) { return m.damping_1_s >= 2 * pi * m.frequency_Hz; });
   std::stable_sort(sound.modes.begin(), sound.modes.end(),

@@ -16,7 +16,7 @@
 namespace tactus::audio {
 
 // Slower decay than any metal object: a material without damping must not ring for ever.
-inline constexpr double kLeastDamping_1_s = 0.5;  // T60 = 13.8 s, design
+inline constexpr double kMinDamping_1_s = 0.5;  // T60 = 13.8 s, design
 
 struct Mode {
   double frequency_Hz;
@@ -36,7 +36,7 @@ struct BodySound {
   double mass_kg = 1;       // of the vibrating part
   double radius_m = 0.05;   // of a ball of the same extent: determines the radiation
   // Measured modes keep their recorded strength, so all radiate as the strongest does.
-  std::optional<double> radiates_as_Hz{};
+  std::optional<double> radiation_frequency_Hz{};
   bool moves = true;
   Eigen::Isometry3d solid_to_body = Eigen::Isometry3d::Identity();  // T_body_solid
   Eigen::Vector3d half_extents_m = Eigen::Vector3d::Zero();         // of the solid, in its frame

@@ -5,7 +5,7 @@
 
 namespace tactus::audio {
 
-void sound_as_measured(BodySound& sound, const material_def_t& material, const Settings& settings) {
+void apply_measured_modes(BodySound& sound, const material_def_t& material, const Settings& settings) {
   std::vector<measured_mode_t> measured = material.modes;
   std::erase_if(measured, [&](const measured_mode_t& m) {
     return m.frequency_Hz < settings.lowest_frequency_Hz || m.frequency_Hz > settings.highest_frequency_Hz;
@@ -15,11 +15,11 @@ void sound_as_measured(BodySound& sound, const material_def_t& material, const S
                    [](const measured_mode_t& a, const measured_mode_t& b) { return a.amplitude > b.amplitude; });
   if (measured.size() > static_cast<std::size_t>(settings.max_modes))
     measured.resize(static_cast<std::size_t>(settings.max_modes));
-  sound.radiates_as_Hz = measured.front().frequency_Hz;
+  sound.radiation_frequency_Hz = measured.front().frequency_Hz;
   sound.modes.clear();
   for (const measured_mode_t& m : measured)
     sound.modes.push_back({m.frequency_Hz,
-                           std::max(kLeastDamping_1_s, m.damping_1_s),
+                           std::max(kMinDamping_1_s, m.damping_1_s),
                            m.amplitude / measured.front().amplitude,
                            {}});
   std::stable_sort(sound.modes.begin(), sound.modes.end(),

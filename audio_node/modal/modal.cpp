@@ -16,9 +16,9 @@ constexpr int kMaxLines = 256;
 
 // frequency(n), n = 0, 1, ..., ascending, within the range; numbered from `first` on.
 template <class F>
-std::vector<Natural> ascending(Range range, int first, F frequency) {
-  std::vector<Natural> out;
-  for (int n = 0; n < range.at_most; ++n) {
+std::vector<NaturalFrequency> ascending(ModeRange range, int first, F frequency) {
+  std::vector<NaturalFrequency> out;
+  for (int n = 0; n < range.max_modes; ++n) {
     const double f = frequency(n);
     if (!(f < range.below_Hz)) break;
     out.push_back({f, n + first});
@@ -26,11 +26,11 @@ std::vector<Natural> ascending(Range range, int first, F frequency) {
   return out;
 }
 
-std::vector<Natural> sorted(std::vector<Natural> all, Range range) {
-  std::erase_if(all, [&](const Natural& m) { return !(m.frequency_Hz > 0 && m.frequency_Hz < range.below_Hz); });
+std::vector<NaturalFrequency> sorted(std::vector<NaturalFrequency> all, ModeRange range) {
+  std::erase_if(all, [&](const NaturalFrequency& m) { return !(m.frequency_Hz > 0 && m.frequency_Hz < range.below_Hz); });
   std::stable_sort(all.begin(), all.end(),
-                   [](const Natural& a, const Natural& b) { return a.frequency_Hz < b.frequency_Hz; });
-  if (all.size() > static_cast<std::size_t>(range.at_most)) all.resize(static_cast<std::size_t>(range.at_most));
+                   [](const NaturalFrequency& a, const NaturalFrequency& b) { return a.frequency_Hz < b.frequency_Hz; });
+  if (all.size() > static_cast<std::size_t>(range.max_modes)) all.resize(static_cast<std::size_t>(range.max_modes));
   return all;
 }
 
@@ -55,8 +55,8 @@ Beam free_beam(int n) {
 // Modes of a plate by numbers of half waves or nodes in both directions, within the range: beyond the rigid
 // motions, more lines mean a higher mode.
 template <class F>
-std::vector<Natural> plate_modes(Range range, int first, F frequency) {
-  std::vector<Natural> all;
+std::vector<NaturalFrequency> plate_modes(ModeRange range, int first, F frequency) {
+  std::vector<NaturalFrequency> all;
   for (int m = first; m < kMaxLines; ++m) {
     for (int n = first; n < kMaxLines; ++n) {
       const double f = frequency(m, n);
@@ -69,11 +69,11 @@ std::vector<Natural> plate_modes(Range range, int first, F frequency) {
 }
 
 // Modes of a free disc, nu = 0.33 (Leissa, table 2.5).
-struct Listed {
+struct DiscMode {
   double lambda2;
   int diameters, circles;
 };
-constexpr std::array<Listed, 10> kDisc{{{5.253, 2, 0},
+constexpr std::array<DiscMode, 10> kDisc{{{5.253, 2, 0},
                                         {9.084, 0, 1},
                                         {12.23, 3, 0},
                                         {20.52, 1, 1},
@@ -99,14 +99,14 @@ double damping_1_s(const Elastic& m, double frequency_Hz) {
 double bar_speed_m_s(const Elastic& m) { return std::sqrt(m.youngs_modulus_Pa / m.density_kg_m3); }
 double shear_speed_m_s(const Elastic& m) { return bar_speed_m_s(m) / std::sqrt(2 * (1 + m.poissons_ratio)); }
 
-std::vector<Natural> free_bar_bending(const Elastic& m, double length_m, double gyration_m, Range range) {
+std::vector<NaturalFrequency> free_bar_bending(const Elastic& m, double length_m, double gyration_m, ModeRange range) {
   return ascending(range, 0, [&](int n) {
     const double b = free_bar_root(n) / length_m;
     return b * b * gyration_m * bar_speed_m_s(m) / (2 * pi);
   });
 }
 
-std::vector<Natural> thick_bar_bending(const Elastic& m, double length_m, double gyration_m, Range range) {
+std::vector<NaturalFrequency> thick_bar_bending(const Elastic& m, double length_m, double gyration_m, ModeRange range) {
   return ascending(range, 0, [&](int n) {
     const double b = free_bar_root(n) / length_m, br = b * gyration_m;
     const double shear = 2 * (1 + m.poissons_ratio) * 6 / 5;  // E / (kappa G)
@@ -114,16 +114,16 @@ std::vector<Natural> thick_bar_bending(const Elastic& m, double length_m, double
   });
 }
 
-std::vector<Natural> free_bar_harmonics(double speed_m_s, double length_m, Range range) {
+std::vector<NaturalFrequency> free_bar_harmonics(double speed_m_s, double length_m, ModeRange range) {
   return ascending(range, 1, [&](int n) { return (n + 1) * speed_m_s / (2 * length_m); });
 }
 
-std::vector<Natural> supported_plate(const Elastic& m, double a_m, double b_m, double thickness_m, Range range) {
+std::vector<NaturalFrequency> supported_plate(const Elastic& m, double a_m, double b_m, double thickness_m, ModeRange range) {
   const double c = pi / 2 * plate_constant(m, thickness_m);
   return plate_modes(range, 1, [&](int i, int k) { return c * (i * i / (a_m * a_m) + k * k / (b_m * b_m)); });
 }
 
-std::vector<Natural> free_plate(const Elastic& m, double a_m, double b_m, double thickness_m, Range range) {
+std::vector<NaturalFrequency> free_plate(const Elastic& m, double a_m, double b_m, double thickness_m, ModeRange range) {
   const double ratio = a_m / b_m, nu = m.poissons_ratio;
   return plate_modes(range, 0, [&](int i, int k) {
     const Beam x = free_beam(i), y = free_beam(k);
@@ -134,30 +134,30 @@ std::vector<Natural> free_plate(const Elastic& m, double a_m, double b_m, double
   });
 }
 
-std::vector<Natural> free_disc(const Elastic& m, double radius_m, double thickness_m, Range range) {
-  std::vector<Natural> all;
-  for (const Listed& l : kDisc)
+std::vector<NaturalFrequency> free_disc(const Elastic& m, double radius_m, double thickness_m, ModeRange range) {
+  std::vector<NaturalFrequency> all;
+  for (const DiscMode& l : kDisc)
     all.push_back(
         {l.lambda2 / (2 * pi * radius_m * radius_m) * plate_constant(m, thickness_m), l.diameters, l.circles});
   return sorted(std::move(all), range);
 }
 
 double free_disc_lambda2(int diameters, int circles) {
-  const auto found = std::find_if(kDisc.begin(), kDisc.end(), [&](const Listed& l) {
+  const auto found = std::find_if(kDisc.begin(), kDisc.end(), [&](const DiscMode& l) {
     return l.diameters == diameters && l.circles == circles;
   });
-  if (found == kDisc.end()) throw std::logic_error("a mode of a disc that is not listed");
+  if (found == kDisc.end()) throw std::logic_error("the list has no such mode of a disc");
   return found->lambda2;
 }
 
-std::vector<Natural> solid_ball(const Elastic& m, double radius_m, Range range) {
+std::vector<NaturalFrequency> solid_ball(const Elastic& m, double radius_m, ModeRange range) {
   constexpr std::array kShearWaveNumbers{2.639, 3.424, 3.916, 4.440, 4.865, 5.010, 6.033, 6.455, 6.772, 7.023};
-  std::vector<Natural> all;
+  std::vector<NaturalFrequency> all;
   for (const double k : kShearWaveNumbers) all.push_back({k * shear_speed_m_s(m) / (2 * pi * radius_m)});
   return sorted(std::move(all), range);
 }
 
-std::vector<Natural> spherical_shell(const Elastic& m, double radius_m, Range range) {
+std::vector<NaturalFrequency> spherical_shell(const Elastic& m, double radius_m, ModeRange range) {
   const double nu = m.poissons_ratio;
   const double c = std::sqrt(m.youngs_modulus_Pa / (m.density_kg_m3 * (1 - nu * nu))) / (2 * pi * radius_m);
   return ascending(range, 2, [&](int i) {

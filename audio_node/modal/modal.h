@@ -23,15 +23,15 @@ double bar_speed_m_s(const Elastic& material);
 double shear_speed_m_s(const Elastic& material);
 
 // A natural frequency and the numbers of its mode: half waves or nodes in both directions (see each list).
-struct Natural {
+struct NaturalFrequency {
   double frequency_Hz;
   int i = 0, k = 0;
 };
 
-// All lists ascend and end at `below_Hz` or after `at_most` modes.
-struct Range {
+// All lists ascend and end at `below_Hz` or after `max_modes` modes.
+struct ModeRange {
   double below_Hz = 16000;
-  int at_most = 32;
+  int max_modes = 32;
 };
 
 // beta L of the n-th bending mode of a free-free bar, n = 0, 1, ...: the roots of cos x cosh x = 1, which tend to
@@ -41,31 +41,31 @@ double free_bar_root(int n);
 // Bending of a thin free-free bar of length L with radius of gyration r (h/sqrt(12) of a rectangle, R/2 of a
 // circle) (Euler-Bernoulli; Fletcher and Rossing, The Physics of Musical Instruments, 2nd ed., eq. 2.63). i: from
 // 0.
-std::vector<Natural> free_bar_bending(const Elastic& material, double length_m, double gyration_m, Range range);
+std::vector<NaturalFrequency> free_bar_bending(const Elastic& material, double length_m, double gyration_m, ModeRange range);
 // As above, with the first-order correction for shear and rotary inertia, for thick bars (Graff, Wave Motion in
 // Elastic Solids, 1975, section 3.4): f / sqrt(1 + (beta r)^2 (1 + E / (kappa G))), kappa = 5/6.
-std::vector<Natural> thick_bar_bending(const Elastic& material, double length_m, double gyration_m, Range range);
+std::vector<NaturalFrequency> thick_bar_bending(const Elastic& material, double length_m, double gyration_m, ModeRange range);
 // n c / (2 L), free-free (Fletcher and Rossing, section 2.14). Torsion of a round bar: with the shear speed. i: n,
 // from 1.
-std::vector<Natural> free_bar_harmonics(double speed_m_s, double length_m, Range range);
+std::vector<NaturalFrequency> free_bar_harmonics(double speed_m_s, double length_m, ModeRange range);
 
 // Simply supported rectangular plate: (pi/2) sqrt(D/(rho h)) (m^2/a^2 + n^2/b^2), D = E h^3 / (12 (1 - nu^2))
 // (Leissa, Vibration of Plates, NASA SP-160, 1969, eq. 4.20). i, k: half waves along a and b, from 1.
-std::vector<Natural> supported_plate(const Elastic& material, double a_m, double b_m, double thickness_m,
-                                     Range range);
+std::vector<NaturalFrequency> supported_plate(const Elastic& material, double a_m, double b_m, double thickness_m,
+                                     ModeRange range);
 // Completely free rectangular plate by the Rayleigh method with beam functions (Warburton, Proc. IMechE 168, 1954,
 // table 1): within about 15 % of Leissa's table C22. i, k: nodal lines across a and b, from 0.
-std::vector<Natural> free_plate(const Elastic& material, double a_m, double b_m, double thickness_m, Range range);
+std::vector<NaturalFrequency> free_plate(const Elastic& material, double a_m, double b_m, double thickness_m, ModeRange range);
 // Free circular plate: lambda^2 / (2 pi R^2) sqrt(D/(rho h)), nu = 0.33 (Leissa, table 2.5). i: nodal diameters,
 // k: nodal circles.
-std::vector<Natural> free_disc(const Elastic& material, double radius_m, double thickness_m, Range range);
+std::vector<NaturalFrequency> free_disc(const Elastic& material, double radius_m, double thickness_m, ModeRange range);
 // lambda^2 of one of them. Throws std::logic_error when it is not listed.
 double free_disc_lambda2(int diameters, int circles);
 
 // Solid ball: spheroidal modes k_t R of a ball with nu = 1/4 (Lamb 1882; Sato and Usami, Geophys. Mag. 31, 1962).
-std::vector<Natural> solid_ball(const Elastic& material, double radius_m, Range range);
+std::vector<NaturalFrequency> solid_ball(const Elastic& material, double radius_m, ModeRange range);
 // Thin spherical shell, membrane theory: the lower root of O^4 - (1 + 3 nu + n(n+1)) O^2 + (1 - nu^2)(n(n+1) - 2)
 // = 0, O = omega R sqrt(rho (1 - nu^2) / E), n = 2, 3, ... (Baker, J. Acoust. Soc. Am. 33, 1961, p. 1749). i: n.
-std::vector<Natural> spherical_shell(const Elastic& material, double radius_m, Range range);
+std::vector<NaturalFrequency> spherical_shell(const Elastic& material, double radius_m, ModeRange range);
 
 }  // namespace tactus::audio

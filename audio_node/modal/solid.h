@@ -27,10 +27,10 @@ struct Solid {
 // A block of these edges is a bar, a plate or a cube by their ratios. fixed: static, supported at its rim. patch:
 // edges that are only a part of the body.
 Solid solid_box(const Elastic& material, const Eigen::Vector3d& edges_m, bool fixed,
-                const std::array<bool, 3>& patch, Range range);
+                const std::array<bool, 3>& patch, ModeRange range);
 // Along z: a disc when it is flat.
-Solid solid_cylinder(const Elastic& material, double radius_m, double length_m, Range range);
+Solid solid_cylinder(const Elastic& material, double radius_m, double length_m, ModeRange range);
 // A shell when it is lighter than a solid ball.
-Solid solid_sphere(const Elastic& material, double radius_m, double mass_kg, Range range);
+Solid solid_sphere(const Elastic& material, double radius_m, double mass_kg, ModeRange range);
 
 }  // namespace tactus::audio

@@ -51,12 +51,12 @@ std::optional<MaterialPair> materials_of(const std::string& folder) {
 // A layer that is weaker by more than 40 dB is not raised further: it contains more noise than sound (design).
 constexpr float kMaxGain = 100;
 
-void even_out(Layers& layers, Interaction interaction) {
+void equalise_levels(Layers& layers, Interaction interaction) {
   const auto loudness = [&](const Layer& layer) {
-    float most = 0;
+    float loudest = 0;
     for (const Recording& r : layer.takes)
-      most = std::max(most, interaction == Interaction::kImpact ? r.peak : r.rms);
-    return most;
+      loudest = std::max(loudest, interaction == Interaction::kImpact ? r.peak : r.rms);
+    return loudest;
   };
   const float fastest = loudness(layers.by_speed.back());
   for (Layer& layer : layers.by_speed) layer.gain = std::min(kMaxGain, fastest / loudness(layer));
@@ -69,7 +69,7 @@ class Reader {
   void read_materials(const fs::path& folder, double size_m) {
     const auto materials = materials_of(folder.filename().string());
     if (!materials)
-      return blame(folder, "is named after no material and no pair; call it MATERIAL or MATERIAL-MATERIAL");
+      return add_fault(folder, "is not named after a material or a pair of materials; name it MATERIAL or MATERIAL-MATERIAL");
     if (const auto own = size_of(folder)) size_m = *own;
     for (const fs::path& inside : entries(folder)) {
       const auto kind = std::find_if(kInteractions.begin(), kInteractions.end(),
@@ -77,12 +77,12 @@ class Reader {
       if (kind != kInteractions.end() && fs::is_directory(inside))
         read_interaction(inside, {*materials, *kind}, size_m);
       else if (inside.filename() != "size.txt")
-        blame(inside, "is not read; the folders of a pair are impact, scrape and roll");
+        add_fault(inside, "is not read; the folders of a pair are impact, scrape and roll");
     }
   }
 
  private:
-  void blame(const fs::path& path, const std::string& what) {
+  void add_fault(const fs::path& path, const std::string& what) {
     into_.faults.push_back({path.string(), what, true});
   }
 
@@ -91,7 +91,7 @@ class Reader {
     std::string word;
     if (!file || !(file >> word)) return std::nullopt;
     const auto size = positive(word);
-    if (!size) blame(folder / "size.txt", "holds no size; give one number in metres");
+    if (!size) add_fault(folder / "size.txt", "has no size; write one number in metres");
     return size;
   }
 
@@ -103,33 +103,33 @@ class Reader {
       const std::string ending = lower(path.extension().string());
       const auto speed = positive(path.stem().string());
       if (ending != ".wav" && ending != ".flac") {
-        blame(path, "is neither WAV nor FLAC; convert it or take it away");
+        add_fault(path, "is neither WAV nor FLAC; convert it or remove it");
       } else if (std::error_code error; !fs::is_regular_file(path, error)) {
-        blame(path, "is no file; take it away");
+        add_fault(path, "is not a file; remove it");
       } else if (!speed) {
-        blame(path, "does not begin with a speed in m/s; call it 0.5.wav or 0.5_2.wav, for example");
+        add_fault(path, "does not begin with a speed in m/s; name it 0.5.wav or 0.5_2.wav, for example");
       } else if (into_.bytes > kMaxBytes) {
-        blame(path, "is left out: the recordings before it fill 350 MB; take some away");
+        add_fault(path, "is left out: the recordings before it fill 350 MB; remove some");
       } else if (auto take = read_recording(path.string(), key.interaction, rate_Hz_, into_.faults)) {
         into_.bytes += take->samples.size() * sizeof(float);
         layers[*speed].takes.push_back(std::move(*take));
       }
     }
-    if (!any) blame(folder, "is empty; put recordings into it or take it away");
+    if (!any) add_fault(folder, "is empty; put recordings into it or remove it");
     if (layers.empty()) return;
     Layers& found = into_.sounds[key];
     if (!found.by_speed.empty())
-      return blame(folder, "is there twice, as its materials are in the other order too; keep one of the two");
+      return add_fault(folder, "exists twice, with its materials in either order; keep one of the two");
     found.size_m = size_m;
     for (auto& [speed, layer] : layers) {
       if (found.by_speed.size() == static_cast<std::size_t>(kMaxLayers)) {
-        blame(folder, "has more than " + std::to_string(kMaxLayers) + " speeds; the fastest are left out");
+        add_fault(folder, "has more than " + std::to_string(kMaxLayers) + " speeds; the fastest are left out");
         break;
       }
       layer.speed_m_s = speed;
       found.by_speed.push_back(std::move(layer));
     }
-    even_out(found, key.interaction);
+    equalise_levels(found, key.interaction);
   }
 
   Database& into_;
@@ -166,7 +166,7 @@ Database read_database(const std::string& folder, double rate_Hz, double size_m)
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
     database.faults.push_back(
-        {folder, "is no folder of recordings; give another one as the setting sounds", true});
+        {folder, "is not a folder; choose another one with the setting sounds", true});
     return database;
   }
   Reader reader(database, rate_Hz);
@@ -174,10 +174,10 @@ Database read_database(const std::string& folder, double rate_Hz, double size_m)
     if (fs::is_directory(inside, error))
       reader.read_materials(inside, size_m);
     else if (const auto ending = lower(inside.extension().string()); ending == ".wav" || ending == ".flac")
-      database.faults.push_back({inside.string(), "lies beside the folders of materials; put it into one", true});
+      database.faults.push_back({inside.string(), "is outside the folders of materials; move it into one", true});
   if (database.sounds.empty())
     database.faults.push_back(
-        {folder, "holds no recording that can be played; see the README of the default set", true});
+        {folder, "has no playable recording; see the README of the default set", true});
   return database;
 }
 

@@ -13,13 +13,13 @@ inline float between(float a, float b, float c, float d, float part) {
   return b + part * (slope_b + part * (3 * rise - 2 * slope_b - slope_c + part * (slope_b + slope_c - 2 * rise)));
 }
 
-// Reads a part of a recording: out[k] = x(at + k step), as far as all four samples are inside, at most `most`.
+// Reads a part of a recording: out[k] = x(at + k step), as far as all four samples are inside, at most max_count.
 // Returns the count. `at` lies within the recording. Realtime-safe: yes.
-inline int stretch(const float* x, std::size_t size, double at, double step, float* out, int most) {
+inline int stretch(const float* x, std::size_t size, double at, double step, float* out, int max_count) {
   if (at < 1 || size < 4) return 0;
   const double room = (static_cast<double>(size) - 3 - at) / step;  // the last one is at size - 3 and a fraction
   if (room < 0) return 0;
-  const int count = room < most ? static_cast<int>(room) : most;
+  const int count = room < max_count ? static_cast<int>(room) : max_count;
   const float* from = x + static_cast<std::size_t>(at);
   const double begin = at - static_cast<double>(static_cast<std::size_t>(at));
   // At its own pitch it is only copied.

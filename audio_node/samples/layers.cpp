@@ -33,7 +33,7 @@ LayerMix mix_of(const Layers& layers, double speed_m_s) {
   return mix;
 }
 
-const Recording& take_of(const Layer& layer, std::int64_t number) {
+const Recording& select_take(const Layer& layer, std::int64_t number) {
   // splitmix64's finaliser (Steele, Lea and Flood 2014), so that consecutive ids do not cycle through the takes.
   auto z = static_cast<std::uint64_t>(number) * 0x9E3779B97F4A7C15u;
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;

@@ -43,6 +43,6 @@ struct LayerMix {
 LayerMix mix_of(const Layers& layers, double speed_m_s);
 
 // The same number gives the same take; different numbers are distributed evenly. Realtime-safe: yes.
-const Recording& take_of(const Layer& layer, std::int64_t number);
+const Recording& select_take(const Layer& layer, std::int64_t number);
 
 }  // namespace tactus::audio

@@ -12,27 +12,27 @@ namespace {
 // Time constant of a level. Design: shorter is audible as roughness when contacts are updated at 1 kHz.
 constexpr double kLevel_s = 0.005;
 // A contact without updates fades out. Design, as for scrapes: a few lost messages are not a gap.
-constexpr sync::Nanoseconds kSilence{30'000'000};
-constexpr double kMaxOver_s = 0.5;  // design: or twice the update interval, but at most this
-constexpr float kOver = 1e-6f;
+constexpr sync::Nanoseconds kUpdateTimeout{30'000'000};
+constexpr double kMaxTimeout_s = 0.5;  // design: or twice the update interval, but at most this
+constexpr float kEndLevel = 1e-6f;
 // An octave either way; beyond it a recording suggests another material (design).
-constexpr double kLeastStep = 0.5, kMaxStep = 2;
+constexpr double kMinStep = 0.5, kMaxStep = 2;
 
 }  // namespace
 
-bool Loops::take(const RecordedContact& rub) {
-  if (rub.ends) {
+bool Loops::update(const RecordedContact& contact) {
+  if (contact.ends) {
     for (Voice& v : voices_)
-      if (v.on && v.ends_in < 0 && v.now.contact == rub.contact && v.now.part == rub.part)
+      if (v.on && v.ends_in < 0 && v.now.contact == contact.contact && v.now.part == contact.part)
         v.ends_in = static_cast<int>(kEnd_s * rate_Hz_);
     return false;
   }
-  if (!rub.layers) return false;
+  if (!contact.layers) return false;
   Voice* free = nullptr;
   for (Voice& v : voices_) {
     // A contact of another database is another sound; the previous one fades.
-    if (v.on && v.now.contact == rub.contact && v.now.part == rub.part && v.now.layers == rub.layers) {
-      v.now = rub;
+    if (v.on && v.now.contact == contact.contact && v.now.part == contact.part && v.now.layers == contact.layers) {
+      v.now = contact;
       v.ends_in = -1;
       return false;
     }
@@ -42,12 +42,12 @@ bool Loops::take(const RecordedContact& rub) {
   *free = Voice{};
   spatialiser_.begin(static_cast<int>(free - voices_.data()));
   free->on = true;
-  free->now = rub;
-  const auto count = std::min(rub.layers->by_speed.size(), static_cast<std::size_t>(kMaxLayers));
+  free->now = contact;
+  const auto count = std::min(contact.layers->by_speed.size(), static_cast<std::size_t>(kMaxLayers));
   for (std::size_t i = 0; i < count; ++i) {
-    const Recording& r = take_of(rub.layers->by_speed[i], rub.contact);
+    const Recording& r = select_take(contact.layers->by_speed[i], contact.contact);
     // Each contact begins at another place of the loop, so that contacts that begin together remain distinct.
-    const auto begin = static_cast<std::uint64_t>(rub.contact + 1) * 0x9E3779B97F4A7C15u % r.samples.size();
+    const auto begin = static_cast<std::uint64_t>(contact.contact + 1) * 0x9E3779B97F4A7C15u % r.samples.size();
     free->layers[i] = {&r, static_cast<double>(begin), 0};
   }
   return true;
@@ -90,9 +90,9 @@ void Loops::add(Playing& p, double step, float wanted, int ends_in, float* out, 
 }
 
 void Loops::render(Voice& v, int frames, sync::HostTime first) {
-  const bool told =
+  const bool updated =
       v.ends_in < 0 &&
-      first - v.now.at < std::max(kSilence, sync::from_seconds(std::min(2 * v.now.over_s, kMaxOver_s)));
+      first - v.now.at < std::max(kUpdateTimeout, sync::from_seconds(std::min(2 * v.now.update_interval_s, kMaxTimeout_s)));
   const LayerMix mixed = mix_of(*v.now.layers, v.now.speed_m_s);
   std::array<float, kMaxBlock> out{};
   float level = 0;
@@ -102,20 +102,20 @@ void Loops::render(Voice& v, int frames, sync::HostTime first) {
     const Layer& layer = v.now.layers->by_speed[i];
     float wanted = 0;
     for (std::size_t k = 0; k < 2; ++k)
-      if (told && mixed.layer[k] == static_cast<int>(i)) wanted = v.now.level * layer.gain * mixed.gain[k];
-    if (wanted <= 0 && p.level < kOver) {
+      if (updated && mixed.layer[k] == static_cast<int>(i)) wanted = v.now.level * layer.gain * mixed.gain[k];
+    if (wanted <= 0 && p.level < kEndLevel) {
       p.level = 0;
       continue;
     }
-    add(p, std::clamp(v.now.speed_m_s / layer.speed_m_s, kLeastStep, kMaxStep), wanted, v.ends_in, out.data(),
+    add(p, std::clamp(v.now.speed_m_s / layer.speed_m_s, kMinStep, kMaxStep), wanted, v.ends_in, out.data(),
         frames);
     level = std::max(level, p.level);
   }
   spatialiser_.add(static_cast<int>(&v - voices_.data()),
-                   listener_ ? heard_by(*listener_, v.now.place) : v.now.place, out.data(), frames);
+                   listener_ ? relative_to_listener(*listener_, v.now.place) : v.now.place, out.data(), frames);
   v.ends_in = v.ends_in < 0 ? -1 : std::max(0, v.ends_in - frames);
   // The comparison also ends a level that is NaN.
-  const bool over = !told && !(level > kOver);
+  const bool over = !updated && !(level > kEndLevel);
   if (over && v.silent >= spatialiser_.tail()) v.on = false;
   v.silent = over ? v.silent + frames : 0;
 }

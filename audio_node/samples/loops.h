@@ -22,10 +22,10 @@ class Loops {
   explicit Loops(double rate_Hz, const Space& space = {}, Instructions instructions = Instructions::kSse2)
       : rate_Hz_(rate_Hz), spatialiser_(space, kMax, rate_Hz, instructions) {}
 
-  void hear_from(const Listener& listener) { listener_ = listener; }
+  void set_listener(const Listener& listener) { listener_ = listener; }
 
   // Takes a contact that is due. True when it begins. One that ends is silent after kEnd_s.
-  bool take(const RecordedContact& rub);
+  bool update(const RecordedContact& contact);
   // Adds `frames` <= kMaxBlock frames, channels interleaved, the first of which is presented at `first`.
   void render(float* mix, int frames, sync::HostTime first);
 

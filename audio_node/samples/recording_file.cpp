@@ -12,16 +12,16 @@
 namespace tactus::audio {
 namespace {
 
-constexpr double kLongest_s = 20;         // longer recordings are cut (design: no blow rings longer)
-constexpr double kShortestBlow_s = 0.01;  // design: shorter is a click without material
-constexpr double kShortestLoop_s = 0.25;  // design: shorter is audible as a hum of its repetitions
+constexpr double kMaxLength_s = 20;         // longer recordings are cut (design: no blow rings longer)
+constexpr double kMinBlow_s = 0.01;  // design: shorter is a click without material
+constexpr double kMinLoop_s = 0.25;  // design: shorter is audible as a hum of its repetitions
 constexpr float kOnset = 1e-3f;           // of the peak: a blow begins above it (design: -60 dB)
-constexpr float kSilent = 1e-3f;          // of full scale: quieter is silence (design: -60 dBFS)
-constexpr float kFull = 0.9995f;  // of full scale: kClipped consecutive samples at this level are clipped (design)
-constexpr int kClipped = 4;
+constexpr float kMinPeak = 1e-3f;          // of full scale: quieter is silence (design: -60 dBFS)
+constexpr float kClippingLevel = 0.9995f;  // of full scale: kClippedSamples consecutive samples at this level are clipped (design)
+constexpr int kClippedSamples = 4;
 constexpr double kEnd_s = 0.005;  // fade at the end of a blow (design: shorter is audible as a click)
 constexpr double kSeam_s = 0.05;  // of a loop, at most a quarter of it (design)
-constexpr float kLoudest = 10;    // of a float file: larger values are not sound
+constexpr float kMaxSample = 10;    // of a float file: larger values are not sound
 
 struct Close {
   void operator()(SNDFILE* file) const { sf_close(file); }
@@ -30,7 +30,7 @@ struct Close {
 bool clipped(const std::vector<float>& x) {
   int in_a_row = 0;
   for (const float s : x)
-    if (in_a_row = std::abs(s) >= kFull ? in_a_row + 1 : 0; in_a_row >= kClipped) return true;
+    if (in_a_row = std::abs(s) >= kClippingLevel ? in_a_row + 1 : 0; in_a_row >= kClippedSamples) return true;
   return false;
 }
 
@@ -65,23 +65,23 @@ std::vector<float> close_loop(std::vector<float> x, double rate_Hz) {
 
 std::optional<Recording> read_recording(const std::string& path, Interaction interaction, double rate_Hz,
                                         std::vector<SoundFault>& faults) {
-  const auto refuse = [&](const std::string& what) {
+  const auto reject = [&](const std::string& what) {
     faults.push_back({path, what, true});
     return std::nullopt;
   };
   SF_INFO info{};
   const std::unique_ptr<SNDFILE, Close> file(sf_open(path.c_str(), SFM_READ, &info));
   if (!file)
-    return refuse("cannot be read as sound (" + std::string(sf_strerror(nullptr)) + "); give a WAV or FLAC");
+    return reject("cannot be read as sound (" + std::string(sf_strerror(nullptr)) + "); give a WAV or FLAC");
   if (info.channels < 1 || info.channels > 2)
-    return refuse("has " + std::to_string(info.channels) + " channels; give one or two");
+    return reject("has " + std::to_string(info.channels) + " channels; give one or two");
   if (info.samplerate < 8000 || info.samplerate > 192000)
-    return refuse("has " + std::to_string(info.samplerate) + " samples a second; give 8000 to 192000");
-  const auto most = static_cast<sf_count_t>(kLongest_s * info.samplerate);
-  if (info.frames > most) faults.push_back({path, "is longer than 20 s and is played no further; cut it", false});
+    return reject("has " + std::to_string(info.samplerate) + " samples a second; give 8000 to 192000");
+  const auto max_frames = static_cast<sf_count_t>(kMaxLength_s * info.samplerate);
+  if (info.frames > max_frames) faults.push_back({path, "is longer than 20 s; only the first 20 s are played; cut it", false});
   // Counts the frames that are read: a header may state any number.
   std::vector<float> x, block(4096 * static_cast<std::size_t>(info.channels));
-  while (static_cast<sf_count_t>(x.size()) < most) {
+  while (static_cast<sf_count_t>(x.size()) < max_frames) {
     const sf_count_t got = sf_readf_float(file.get(), block.data(), 4096);
     if (got <= 0) break;
     for (sf_count_t n = 0; n < got; ++n) {
@@ -89,18 +89,18 @@ std::optional<Recording> read_recording(const std::string& path, Interaction int
       x.push_back(info.channels == 1 ? frame[0] : 0.5f * (frame[0] + frame[1]));
     }
   }
-  if (!std::all_of(x.begin(), x.end(), [](float s) { return std::abs(s) <= kLoudest; }))
-    return refuse("holds samples that are no sound (no number, or far beyond full scale); record it anew");
-  if (peak_of(x) < kSilent) return refuse("is silent; record it louder or take it away");
+  if (!std::all_of(x.begin(), x.end(), [](float s) { return std::abs(s) <= kMaxSample; }))
+    return reject("has invalid samples (NaN, infinite, or far beyond full scale); record it again");
+  if (peak_of(x) < kMinPeak) return reject("is silent; record it louder or remove it");
   if (clipped(x)) faults.push_back({path, "is clipped; record it with less gain", false});
   const bool blow = interaction == Interaction::kImpact;
   x = resample(x, info.samplerate, rate_Hz);
-  if (peak_of(x) < kSilent) return refuse("holds nothing that can be heard; record it anew or take it away");
+  if (peak_of(x) < kMinPeak) return reject("has no audible sound at the rate of the card; record it again or remove it");
   x = blow ? cut_blow(std::move(x), rate_Hz) : std::move(x);
   const double length_s = static_cast<double>(x.size()) / rate_Hz;
-  if (blow && length_s < kShortestBlow_s) return refuse("is shorter than 10 ms; give the whole sound of the blow");
-  if (!blow && length_s < kShortestLoop_s)
-    return refuse("is shorter than 0.25 s, too short for a loop; give a second or more");
+  if (blow && length_s < kMinBlow_s) return reject("is shorter than 10 ms; give the whole sound of the blow");
+  if (!blow && length_s < kMinLoop_s)
+    return reject("is shorter than 0.25 s, too short for a loop; give a second or more");
   Recording r{blow ? std::move(x) : close_loop(std::move(x), rate_Hz), 0, 0};
   r.peak = peak_of(r.samples);
   double power = 0;

@@ -10,7 +10,7 @@
 
 namespace tactus::audio {
 
-// Pointers into a database remain valid while the callback holds anything with its number (recorded.h).
+// Pointers into a database remain valid while the callback holds anything with its number (recording_player.h).
 struct Shot {
   const Recording* recording = nullptr;  // null: none
   float gain = 0;                        // at 1 m
@@ -31,7 +31,7 @@ struct RecordedContact {
   std::int64_t database = 0;
   sync::HostTime at{};  // presentation time
   bool ends = false;    // the contact no longer scrapes or rolls: only contact, part, database and at are valid
-  double over_s = 0.001;  // time until the next update
+  double update_interval_s = 0.001;  // time until the next update
   const Layers* layers = nullptr;
   double speed_m_s = 0;
   float level = 0;  // at 1 m, relative to the recorded loop

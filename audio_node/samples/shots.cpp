@@ -13,7 +13,7 @@ Shots::Shots(double rate_Hz, const Space& space, Instructions instructions)
       voices_(static_cast<std::size_t>(kMax + kFading)),
       spatialiser_(space, kMax + kFading, rate_Hz, instructions) {}
 
-void Shots::leave_room() {
+void Shots::fade_weakest() {
   const auto sounds = [](const Voice& v) { return v.on && !v.fades; };
   if (std::count_if(voices_.begin(), voices_.end(), sounds) < kMax) return;
   Voice* quietest = nullptr;
@@ -32,12 +32,12 @@ Shots::Voice& Shots::free_voice() {
   return *best;
 }
 
-void Shots::take(const RecordedStrike& strike, float gain, int offset) {
+void Shots::start(const RecordedStrike& strike, float gain, int offset) {
   float level = 0;
   for (const Shot& s : strike.shots)
     if (s.recording) level += s.gain * gain * s.recording->peak;
   if (strike.database == 0 || !(level > 0)) return;
-  leave_room();
+  fade_weakest();
   Voice& v = free_voice();
   v = Voice{};
   spatialiser_.begin(static_cast<int>(&v - voices_.data()));
@@ -85,15 +85,15 @@ void Shots::render(Voice& v, int frames) {
     else
       p.shot.recording = nullptr;
   }
-  float most = 0;
+  float max = 0;
   for (int n = begin; n < frames; ++n) {
     float& s = out[static_cast<std::size_t>(n)];
     if (v.fades) s *= v.fade = std::max(0.f, v.fade - fade_step_);
-    most = std::max(most, std::abs(s));
+    max = std::max(max, std::abs(s));
   }
-  const SourcePosition place = listener_ ? heard_by(*listener_, v.place) : v.place;
+  const SourcePosition place = listener_ ? relative_to_listener(*listener_, v.place) : v.place;
   spatialiser_.add(static_cast<int>(&v - voices_.data()), place, out.data(), frames);
-  if (begin < frames) v.level = most / place.distance_m;
+  if (begin < frames) v.level = max / place.distance_m;
   const bool over = !sounds || v.fade <= 0;
   v.on = !over || v.silent < spatialiser_.tail();
   v.silent = over ? v.silent + frames : 0;

@@ -18,10 +18,10 @@ class Shots {
 
   explicit Shots(double rate_Hz, const Space& space = {}, Instructions instructions = Instructions::kSse2);
 
-  void hear_from(const Listener& listener) { listener_ = listener; }
+  void set_listener(const Listener& listener) { listener_ = listener; }
 
   // From the frame `offset` of the next render() on, scaled by `gain`.
-  void take(const RecordedStrike& strike, float gain, int offset);
+  void start(const RecordedStrike& strike, float gain, int offset);
   // Adds `frames` <= kMaxBlock frames, channels interleaved.
   void render(float* mix, int frames);
 
@@ -51,7 +51,7 @@ class Shots {
     float level = 0;  // peak of the last block at the listener
   };
   Voice& free_voice();
-  void leave_room();
+  void fade_weakest();
   void render(Voice& voice, int frames);
   static bool play(Playing& playing, float* out, int frames);
 

@@ -14,7 +14,7 @@ double from_dB(double level_dB) { return std::pow(10, level_dB / 10); }
 
 }  // namespace
 
-LevelLimiter::LevelLimiter(const HearingDef& def, double rate_Hz, int channels)
+LevelLimiter::LevelLimiter(const LevelLimiterDef& def, double rate_Hz, int channels)
     : limit_(kSinePower * from_dB(def.limit_dB - def.full_scale_dB)),
       Pa2_per_power_(kReference_Pa * kReference_Pa * from_dB(def.full_scale_dB) / kSinePower),
       slow_step_(1 - std::exp(-1 / (kSlow_s * rate_Hz))),
@@ -37,7 +37,7 @@ double LevelLimiter::power_of(std::span<const float> frame) {
 
 // Within kFast_s the slow mean reaches slow + (gain^2 fast - slow) / kBurst, which must not exceed the limit.
 double LevelLimiter::wanted_gain() const {
-  const double allowed = std::max(kBurst * limit_ - (kBurst - 1) * slow_, kPenance * limit_);
+  const double allowed = std::max(kBurst * limit_ - (kBurst - 1) * slow_, kRecoveryShare * limit_);
   return fast_ <= allowed ? 1 : std::sqrt(allowed / fast_);
 }
 

@@ -8,7 +8,7 @@
 
 namespace tactus::audio {
 
-struct HearingDef {
+struct LevelLimiterDef {
   double full_scale_dB = 100;  // SPL of a full-scale sine at the ear
   double limit_dB = 85;        // A-weighted
   // True: each ear has its own channel, and the louder one counts. False: the channels are loudspeakers for both
@@ -25,7 +25,7 @@ class LevelLimiter {
  public:
   static constexpr double kSettled_s = 3;
 
-  LevelLimiter(const HearingDef& def, double rate_Hz, int channels);
+  LevelLimiter(const LevelLimiterDef& def, double rate_Hz, int channels);
   // In place, channels interleaved, one gain for all channels. NaN and infinity become silence; values beyond full
   // scale are clamped.
   void process(float* samples, int frames);
@@ -42,7 +42,7 @@ class LevelLimiter {
   static constexpr double kBurst = kSlow_s / kFast_s;
   // After an excess the fast mean is held at this share of the limit until the slow one has fallen: 3 dB, since
   // silence would sound like a fault. Design.
-  static constexpr double kPenance = 0.5;
+  static constexpr double kRecoveryShare = 0.5;
   // 0.004 dB a sample at 48 kHz: no click; from full scale to the limit within 0.1 s. Slow rise: pumping is
   // audible above about 10 dB a second. Design.
   static constexpr double kFall_dB_s = 200, kRise_dB_s = 10;

@@ -16,7 +16,7 @@ class Spsc {
   static_assert(std::is_trivially_destructible_v<T>);  // owns nothing: copying it allocates nothing
 
  public:
-  explicit Spsc(std::size_t at_least) : slots_(std::bit_ceil(std::max<std::size_t>(at_least, 2))) {}
+  explicit Spsc(std::size_t min_capacity) : slots_(std::bit_ceil(std::max<std::size_t>(min_capacity, 2))) {}
   Spsc(const Spsc&) = delete;
   Spsc& operator=(const Spsc&) = delete;
 
@@ -32,9 +32,9 @@ class Spsc {
 
   // Number of elements taken, 0 when empty.
   bool pop(T& value) { return pop(&value, 1) == 1; }
-  std::size_t pop(T* values, std::size_t at_most) {
+  std::size_t pop(T* values, std::size_t max_count) {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
-    const std::size_t count = std::min(at_most, head_.load(std::memory_order_acquire) - tail);
+    const std::size_t count = std::min(max_count, head_.load(std::memory_order_acquire) - tail);
     for (std::size_t i = 0; i < count; ++i) values[i] = slots_[(tail + i) & (slots_.size() - 1)];
     tail_.store(tail + count, std::memory_order_release);
     return count;

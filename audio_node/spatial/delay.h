@@ -7,7 +7,7 @@
 namespace tactus::audio {
 
 // Minimum delay, samples: half of the samples of the polynomial lie after its place.
-inline constexpr int kLeastDelay = 2;
+inline constexpr int kMinDelay = 2;
 // Number of samples read before the oldest whole sample of a delay.
 inline constexpr int kDelayReach = 3;
 

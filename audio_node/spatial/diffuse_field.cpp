@@ -13,7 +13,7 @@ constexpr std::size_t kBins = 512;  // of the spectrum, around the circle
 // Maximum boost or cut relative to the mean: where the loudspeaker emits nothing there is only noise to raise.
 constexpr double kMax = 1.73;  // 15 dB, as a natural logarithm; design
 
-constexpr double kLeastPower = 1e-15;  // far below any response; avoids the logarithm of zero
+constexpr double kMinPower = 1e-15;  // far below any response; avoids the logarithm of zero
 
 // Its spectrum is the mean of the powers, at a fraction of the cost of one spectrum per response.
 std::vector<double> mean_autocorrelation(const std::vector<std::vector<float>>& responses,
@@ -44,7 +44,7 @@ std::vector<float> diffuse_field_inverse(const std::vector<std::vector<float>>& 
     double power = 0;
     for (std::size_t lag = 0; lag < correlation.size(); ++lag)
       power += (lag > 0 ? 2 : 1) * correlation[lag] * cosine[k * lag % kBins];
-    inverse[k] = -0.5 * std::log(std::max(power, kLeastPower));
+    inverse[k] = -0.5 * std::log(std::max(power, kMinPower));
     middle += inverse[k] / static_cast<double>(inverse.size());
   }
   for (double& x : inverse) x = std::clamp(x, middle - kMax, middle + kMax);

@@ -20,7 +20,7 @@ Fir fir(Instructions instructions) {
   if (instructions == Instructions::kAvx2) return avx2::fir;
   if (instructions == Instructions::kAvx512) return avx512::fir;
 #endif
-  if (instructions != Instructions::kSse2) throw std::logic_error("these instructions are of another machine");
+  if (instructions != Instructions::kSse2) throw std::logic_error("this machine does not have these instructions");
   return sse2::fir;
 }
 

@@ -11,28 +11,29 @@ constexpr int kWidth = TACTUS_FIR_WIDTH;
 // Number of sums that fit into the registers beside their operands: filters share each load of the input.
 constexpr int kSums = kWidth == 16 ? 16 : 8;
 typedef float Lanes __attribute__((vector_size(4 * TACTUS_FIR_WIDTH)));
-typedef float Anywhere __attribute__((vector_size(4 * TACTUS_FIR_WIDTH), aligned(4)));
+typedef float UnalignedLanes __attribute__((vector_size(4 * TACTUS_FIR_WIDTH), aligned(4)));
 
-inline Lanes all(float x) { return x - Lanes{}; }
-inline Lanes load(const float* from) { return *reinterpret_cast<const Anywhere*>(from); }
-inline void store(float* to, Lanes x) { *reinterpret_cast<Anywhere*>(to) = x; }
+inline Lanes broadcast(float x) { return x - Lanes{}; }
+inline Lanes load(const float* from) { return *reinterpret_cast<const UnalignedLanes*>(from); }
+inline void store(float* to, Lanes x) { *reinterpret_cast<UnalignedLanes*>(to) = x; }
 
 template <int kFilters>
-void some(const float* input, const float* const* filters, int taps, float* const* out) {
-  constexpr int kMax = kMaxBlock / kWidth, kFit = kSums / kFilters, kAtOnce = kFit < kMax ? kFit : kMax;
-  static_assert(kMaxBlock % (kAtOnce * kWidth) == 0);
-  for (int n = 0; n < kMaxBlock; n += kAtOnce * kWidth) {
-    Lanes sum[kFilters][kAtOnce] = {};
+void filter_block(const float* input, const float* const* filters, int taps, float* const* out) {
+  constexpr int kVectorsPerBlock = kMaxBlock / kWidth, kMaxVectors = kSums / kFilters,
+                kVectorsAtOnce = kMaxVectors < kVectorsPerBlock ? kMaxVectors : kVectorsPerBlock;
+  static_assert(kMaxBlock % (kVectorsAtOnce * kWidth) == 0);
+  for (int n = 0; n < kMaxBlock; n += kVectorsAtOnce * kWidth) {
+    Lanes sum[kFilters][kVectorsAtOnce] = {};
     for (int k = 0; k < taps; ++k) {
-      Lanes x[kAtOnce];
-      for (int j = 0; j < kAtOnce; ++j) x[j] = load(input + n + j * kWidth - k);
+      Lanes x[kVectorsAtOnce];
+      for (int j = 0; j < kVectorsAtOnce; ++j) x[j] = load(input + n + j * kWidth - k);
       for (int i = 0; i < kFilters; ++i) {
-        const Lanes h = all(filters[i][k]);
-        for (int j = 0; j < kAtOnce; ++j) sum[i][j] += h * x[j];
+        const Lanes h = broadcast(filters[i][k]);
+        for (int j = 0; j < kVectorsAtOnce; ++j) sum[i][j] += h * x[j];
       }
     }
     for (int i = 0; i < kFilters; ++i)
-      for (int j = 0; j < kAtOnce; ++j) store(out[i] + n + j * kWidth, sum[i][j]);
+      for (int j = 0; j < kVectorsAtOnce; ++j) store(out[i] + n + j * kWidth, sum[i][j]);
   }
 }
 
@@ -40,9 +41,9 @@ void some(const float* input, const float* const* filters, int taps, float* cons
 
 void fir(const float* input, const float* const* filters, int count, int taps, float* const* out) {
   if (count == 2)
-    some<2>(input, filters, taps, out);
+    filter_block<2>(input, filters, taps, out);
   else
-    some<4>(input, filters, taps, out);
+    filter_block<4>(input, filters, taps, out);
 }
 
 }  // namespace tactus::audio::TACTUS_FIR

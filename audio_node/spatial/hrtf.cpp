@@ -27,7 +27,7 @@ constexpr int kFade = 16;               // of its last samples
 // A response without its delay, at another rate.
 struct Aligned {
   std::vector<float> left, right;
-  double left_later_s = 0;
+  double interaural_delay_s = 0;
 };
 
 std::vector<float> align(std::span<const float> response, double begin, double in_Hz, double out_Hz, int taps) {
@@ -138,31 +138,31 @@ Hrtf::Hrtf(const MeasuredHrtf& m, double rate_Hz)
       for (std::size_t k = 0; k < 3; ++k) {
         const Aligned& from = aligned[static_cast<std::size_t>(mix.triangle[k])];
         const double weight = mix.weights[static_cast<Eigen::Index>(k)];
-        delays_[at] += static_cast<float>(weight * from.left_later_s * rate_Hz);
+        delays_[at] += static_cast<float>(weight * from.interaural_delay_s * rate_Hz);
         for (std::size_t i = 0; i < n; ++i) {
           to[i] += static_cast<float>(weight) * from.left[i];
           to[n + i] += static_cast<float>(weight) * from.right[i];
         }
       }
-      longest_delay_ = std::max(longest_delay_, std::abs(delays_[at]));
+      max_delay_ = std::max(max_delay_, std::abs(delays_[at]));
     }
   const float* ahead = filters(node(0, kElevations / 2));
   double energy = 0;
   for (std::size_t i = 0; i < 2 * n; ++i) energy += static_cast<double>(ahead[i]) * static_cast<double>(ahead[i]);
   if (!(energy > 0)) throw std::runtime_error("the HRTF file is silent straight ahead; choose another hrtf_file");
   for (float& x : filters_) x *= static_cast<float>(1 / std::sqrt(energy));
-  begins_ = mean_beginning();
+  onset_samples_ = mean_onset();
 }
 
 // Each node is weighted by its part of the sphere, the cosine of its elevation.
-int Hrtf::mean_beginning() const {
+int Hrtf::mean_onset() const {
   double sum = 0, weights = 0;
   for (int e = 0; e < kElevations; ++e)
     for (int a = 0; a < kAzimuths; ++a) {
       const std::size_t at = node(a, e);
       const float* const nearer = filters(at) + (delays_[at] > 0 ? taps_ : 0);
       const double weight = std::cos((e * kStep_deg - 90) * pi / 180);
-      sum += weight * static_cast<double>(first_heard({nearer, static_cast<std::size_t>(taps_)}));
+      sum += weight * static_cast<double>(first_audible({nearer, static_cast<std::size_t>(taps_)}));
       weights += weight;
     }
   return static_cast<int>(std::lround(sum / weights));

@@ -25,9 +25,9 @@ class Hrtf {
   int taps() const { return taps_; }
   // Frames from the beginning of the filters to the first audible sample at the nearer ear (onset.h), mean over
   // all directions: the latency of the filters.
-  int begins() const { return begins_; }
+  int onset_samples() const { return onset_samples_; }
   // Upper bound of the interaural delay, samples.
-  float longest_delay() const { return longest_delay_; }
+  float max_delay() const { return max_delay_; }
 
   // The filters of a direction. Returns the delay of the left ear relative to the right, samples (negative:
   // earlier). Straight ahead the two filters together have energy 1. Realtime-safe: yes.
@@ -38,7 +38,7 @@ class Hrtf {
   static constexpr int kAzimuths = 360 / kStep_deg, kElevations = 180 / kStep_deg + 1;
 
   std::size_t node(int azimuth, int elevation) const;
-  int mean_beginning() const;
+  int mean_onset() const;
   const float* filters(std::size_t node) const {
     return filters_.data() + node * 2 * static_cast<std::size_t>(taps_);
   }
@@ -46,8 +46,8 @@ class Hrtf {
   int taps_;
   std::vector<float> filters_;  // of each node: left, right
   std::vector<float> delays_;   // of each node: left after right, samples
-  float longest_delay_ = 0;
-  int begins_ = 0;
+  float max_delay_ = 0;
+  int onset_samples_ = 0;
 };
 
 }  // namespace tactus::audio

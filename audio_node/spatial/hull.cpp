@@ -32,7 +32,7 @@ class Hull {
     }
   }
 
-  bool begin() {
+  bool build_tetrahedron() {
     if (points_.size() < 4) return false;
     const auto farthest = [&](auto distance) {
       int best = 0;
@@ -53,7 +53,7 @@ class Hull {
   }
 
   // Removes the faces that the point sees; new faces connect their rim to it.
-  void take(int point) {
+  void add_point(int point) {
     std::set<std::pair<int, int>> rim;
     std::erase_if(faces_, [&](const Face& f) {
       if (f.normal.dot(at(point)) <= f.offset + kAbove) return false;
@@ -93,8 +93,8 @@ class Hull {
 
 std::vector<Triangle> convex_hull(const std::vector<Vector3d>& points) {
   Hull hull(points);
-  if (!hull.begin()) return {};
-  for (int i = 0; i < static_cast<int>(points.size()); ++i) hull.take(i);
+  if (!hull.build_tetrahedron()) return {};
+  for (int i = 0; i < static_cast<int>(points.size()); ++i) hull.add_point(i);
   return hull.triangles();
 }
 

@@ -32,7 +32,7 @@ const std::map<std::string, std::string>& built_in() {
   return all;
 }
 
-[[noreturn]] void refuse(const std::string& name, const std::string& why) {
+[[noreturn]] void reject(const std::string& name, const std::string& why) {
   throw std::runtime_error("the loudspeaker layout " + name + " " + why +
                            "; choose stereo, quad, 5.1, cube or another layout_file");
 }
@@ -44,27 +44,27 @@ Layout parse_layout(const std::string& csv, const std::string& name) {
   std::string line;
   std::getline(lines, line);
   if (sync::csv_cells(line) != std::vector<std::string>{"channel", "azimuth_deg", "elevation_deg"})
-    refuse(name, "does not begin with the line channel,azimuth_deg,elevation_deg");
+    reject(name, "does not begin with the line channel,azimuth_deg,elevation_deg");
   Layout layout;
   bool any = false;
   while (std::getline(lines, line)) {
     const std::vector<std::string> row = sync::csv_cells(line);
     if (row.size() == 1 && row[0].empty()) continue;
     const std::string which = "row " + std::to_string(layout.size() + 1);
-    if (row.size() != 3) refuse(name, "has in its " + which + " not three columns");
+    if (row.size() != 3) reject(name, "needs three columns in " + which);
     if (row[1].empty() && row[2].empty()) {
       layout.push_back(std::nullopt);
       continue;
     }
     const auto azimuth = sync::csv_number(row[1]), elevation = sync::csv_number(row[2]);
     if (!azimuth || !elevation || std::abs(*azimuth) > 360 || std::abs(*elevation) > 90)
-      refuse(name, "has in its " + which + " no azimuth of -360 to 360 and elevation of -90 to 90 degrees");
+      reject(name, "needs an azimuth of -360 to 360 and an elevation of -90 to 90 degrees in " + which);
     const double a = *azimuth * std::numbers::pi / 180, e = *elevation * std::numbers::pi / 180;
     layout.push_back(Eigen::Vector3d(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)));
     any = true;
   }
-  if (!any) refuse(name, "has no loudspeaker");
-  if (layout.size() > kMaxChannels) refuse(name, "has more than " + std::to_string(kMaxChannels) + " channels");
+  if (!any) reject(name, "has no loudspeaker");
+  if (layout.size() > kMaxChannels) reject(name, "has more than " + std::to_string(kMaxChannels) + " channels");
   return layout;
 }
 
@@ -72,7 +72,7 @@ Layout load_layout(const std::string& name_or_path) {
   if (const auto known = built_in().find(name_or_path); known != built_in().end())
     return parse_layout(known->second, name_or_path);
   const auto text = sync::read_small_file(name_or_path, kMaxBytes);
-  if (!text) refuse(name_or_path, "cannot be read");
+  if (!text) reject(name_or_path, "cannot be read");
   return parse_layout(*text, name_or_path);
 }
 

@@ -48,8 +48,8 @@ double onset(std::span<const float> samples) {
   return after;
 }
 
-std::size_t first_heard(std::span<const float> samples) {
-  const double enough = kHeard * peak_of(samples);
+std::size_t first_audible(std::span<const float> samples) {
+  const double enough = kAudible * peak_of(samples);
   const auto reached = [&](float x) { return enough > 0 && static_cast<double>(std::abs(x)) >= enough; };
   const auto first = std::find_if(samples.begin(), samples.end(), reached);
   return first == samples.end() ? 0 : static_cast<std::size_t>(first - samples.begin());

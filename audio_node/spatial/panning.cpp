@@ -38,13 +38,13 @@ Panning::Panning(const Layout& layout) : channels_(static_cast<int>(layout.size(
   flat_ = std::all_of(directions.begin(), directions.end(),
                       [](const Vector3d& d) { return std::abs(d.z()) < kLevel; });
   if (flat_)
-    take_pairs(std::move(directions));
+    build_pairs(std::move(directions));
   else
-    take_triangles(std::move(directions));
+    build_triangles(std::move(directions));
 }
 
 // Neighbours around the listener; a virtual loudspeaker is placed in the middle of a gap.
-void Panning::take_pairs(std::vector<Vector3d> level) {
+void Panning::build_pairs(std::vector<Vector3d> level) {
   const auto azimuth = [&](int i) {
     const Vector3d& d = level[static_cast<std::size_t>(i)];
     return std::atan2(d.y(), d.x());
@@ -80,7 +80,7 @@ void Panning::take_pairs(std::vector<Vector3d> level) {
 }
 
 // Adds virtual loudspeakers, above or below a ring, until the listener is well within the hull.
-void Panning::take_triangles(std::vector<Vector3d> directions) {
+void Panning::build_triangles(std::vector<Vector3d> directions) {
   const auto normal_of = [&](const Triangle& t) {
     const auto at = [&](std::size_t i) { return directions[static_cast<std::size_t>(t[i])]; };
     return Vector3d((at(1) - at(0)).cross(at(2) - at(0)).normalized());
@@ -137,7 +137,7 @@ void Panning::gains(const Vector3f& direction, float* of_channels) const {
     const float least = flat_ ? std::min(g.x(), g.y()) : g.minCoeff();
     if (least > best_least) best = &base, best_gains = g, best_least = least;
   }
-  const auto give = [&](int speaker, float power) {
+  const auto add_power = [&](int speaker, float power) {
     of_channels[channel_of_[static_cast<std::size_t>(speaker)]] += power;
   };
   // As powers; a source above a level ring is distributed over the whole ring.
@@ -147,14 +147,14 @@ void Panning::gains(const Vector3f& direction, float* of_channels) const {
     const int speaker = best->speakers[static_cast<std::size_t>(k)];
     const float power = best_gains[k] * best_gains[k] / sum * (1 - height);
     if (speaker < real_) {
-      give(speaker, power);
+      add_power(speaker, power);
     } else {
       const auto& rim = rims_[static_cast<std::size_t>(speaker - real_)];
-      for (const int i : rim) give(i, power / static_cast<float>(rim.size()));
+      for (const int i : rim) add_power(i, power / static_cast<float>(rim.size()));
     }
   }
   const float rest = best && sum > 0 ? height : 1;
-  for (int i = 0; i < real_; ++i) give(i, rest / static_cast<float>(real_));
+  for (int i = 0; i < real_; ++i) add_power(i, rest / static_cast<float>(real_));
   for (int i = 0; i < channels_; ++i) of_channels[i] = std::sqrt(of_channels[i]);
 }
 

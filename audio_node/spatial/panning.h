@@ -26,8 +26,8 @@ class Panning {
     std::array<int, 3> speakers;
     Eigen::Matrix3f gains_of;
   };
-  void take_pairs(std::vector<Eigen::Vector3d> level);
-  void take_triangles(std::vector<Eigen::Vector3d> directions);
+  void build_pairs(std::vector<Eigen::Vector3d> level);
+  void build_triangles(std::vector<Eigen::Vector3d> directions);
 
   int channels_;
   bool flat_ = false;

@@ -11,13 +11,13 @@ namespace tactus::audio {
 namespace {
 
 constexpr double kSameDistance_m = 0.01;
-constexpr unsigned kLeastDirections = 4;  // minimum to surround a head
+constexpr unsigned kMinDirections = 4;  // minimum to surround a head
 
 struct Free {
   void operator()(MYSOFA_HRTF* file) const { mysofa_free(file); }
 };
 
-[[noreturn]] void refuse(const std::string& path, const std::string& why) {
+[[noreturn]] void reject(const std::string& path, const std::string& why) {
   throw std::runtime_error("the HRTF file " + path + " " + why + "; choose another hrtf_file");
 }
 
@@ -31,10 +31,10 @@ Eigen::Vector3d position(const MYSOFA_HRTF& file, std::size_t i) {
 MeasuredHrtf load_sofa(const std::string& path) {
   int error = 0;
   const std::unique_ptr<MYSOFA_HRTF, Free> file(mysofa_load(path.c_str(), &error));
-  if (!file) refuse(path, error == MYSOFA_READ_ERROR ? "cannot be read" : "is no SOFA file of impulse responses");
-  if (mysofa_check(file.get()) != MYSOFA_OK || file->R != 2 || file->M < kLeastDirections ||
+  if (!file) reject(path, error == MYSOFA_READ_ERROR ? "cannot be read" : "is not a SOFA file of impulse responses");
+  if (mysofa_check(file.get()) != MYSOFA_OK || file->R != 2 || file->M < kMinDirections ||
       !(file->DataSamplingRate.values[0] > 0))
-    refuse(path, "holds no impulse responses of two ears in the free field");
+    reject(path, "has no impulse responses of two ears in the free field");
   mysofa_tocartesian(file.get());
   // AES69: the receivers of SimpleFreeFieldHRIR are left and right; the receiver positions show if a file swaps
   // them.
@@ -59,10 +59,10 @@ MeasuredHrtf load_sofa(const std::string& path) {
   }
   const auto finite = [](float x) { return std::isfinite(x); };
   if (!std::all_of(measured.responses.begin(), measured.responses.end(), finite))
-    refuse(path, "holds values that are no numbers");
+    reject(path, "has values that are not finite");
   if (!std::all_of(measured.delays.begin(), measured.delays.end(),
                    [&](double d) { return d >= 0 && d <= measured.samples; }))
-    refuse(path, "holds delays that are longer than its responses, or none");
+    reject(path, "has delays that are negative or longer than its responses");
   return measured;
 }
 

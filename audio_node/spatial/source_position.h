@@ -25,7 +25,7 @@ struct Listener {
 };
 
 // The same place for a listener who has moved. Realtime-safe: yes.
-inline SourcePosition heard_by(const Listener& listener, const SourcePosition& place) {
+inline SourcePosition relative_to_listener(const Listener& listener, const SourcePosition& place) {
   if (!place.source_m.allFinite()) return place;
   const Eigen::Vector3f p = listener.T_W_listener.inverse() * place.source_m;
   const float r = p.norm();

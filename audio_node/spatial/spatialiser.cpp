@@ -10,10 +10,10 @@ namespace {
 
 // A source that has turned by less keeps its filters: a tenth of a degree, the resolution of hearing at best
 // (Mills, J. Acoust. Soc. Am. 30, 1958), so that tremor of a tracked head does not cost new filters in each block.
-constexpr float kTurned = 0.00175f;
+constexpr float kMinTurn_rad = 0.00175f;
 
 // A place that is not finite counts as straight ahead.
-const SourcePosition kNowhere;
+const SourcePosition kStraightAhead;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ Spatialiser::Spatialiser(const Space& space, int sources, double rate_Hz, Instru
   sources_.assign(static_cast<std::size_t>(sources), Source(rate_Hz));
   if (!space.hrtf) return;
   taps_ = space.hrtf->taps();
-  past_ = static_cast<int>(std::ceil(space.hrtf->longest_delay())) + kLeastDelay + kDelayReach;
+  past_ = static_cast<int>(std::ceil(space.hrtf->max_delay())) + kMinDelay + kDelayReach;
   tail_ = taps_ + past_;
   const auto taps = static_cast<std::size_t>(taps_), past = static_cast<std::size_t>(past_);
   next_left_.resize(taps), next_right_.resize(taps);
@@ -31,7 +31,7 @@ Spatialiser::Spatialiser(const Space& space, int sources, double rate_Hz, Instru
     s.left.resize(taps), s.right.resize(taps);
     s.input.resize(taps + kMaxBlock);
     // And one more, which a delay of a whole number of samples reads with weight 0.
-    s.heard_left.resize(past + kMaxBlock + 1), s.heard_right.resize(past + kMaxBlock + 1);
+    s.filtered_left.resize(past + kMaxBlock + 1), s.filtered_right.resize(past + kMaxBlock + 1);
   }
 }
 
@@ -39,17 +39,17 @@ void Spatialiser::begin(int source) {
   Source& s = sources_[static_cast<std::size_t>(source)];
   s.fresh = true;
   s.distance.begin();
-  for (auto* past : {&s.input, &s.heard_left, &s.heard_right}) std::fill(past->begin(), past->end(), 0.f);
+  for (auto* past : {&s.input, &s.filtered_left, &s.filtered_right}) std::fill(past->begin(), past->end(), 0.f);
 }
 
-void Spatialiser::add(int source, const SourcePosition& told, const float* mono, int frames) {
-  const bool is_place = told.direction.allFinite() && told.distance_m > 0 && std::isfinite(told.distance_m);
-  const SourcePosition& place = is_place ? told : kNowhere;
+void Spatialiser::add(int source, const SourcePosition& requested, const float* mono, int frames) {
+  const bool is_place = requested.direction.allFinite() && requested.distance_m > 0 && std::isfinite(requested.distance_m);
+  const SourcePosition& place = is_place ? requested : kStraightAhead;
   Source& s = sources_[static_cast<std::size_t>(source)];
   std::array<float, kMaxBlock> sound;
   s.distance.apply(mono, place.distance_m, frames, sound.data());
   // At most in every second block: new filters double the cost.
-  const bool moved = (place.direction - s.direction).squaredNorm() > kTurned * kTurned;
+  const bool moved = (place.direction - s.direction).squaredNorm() > kMinTurn_rad * kMinTurn_rad;
   const bool turned = s.fresh || (moved && s.rested);
   s.rested = !turned;
   if (turned) s.direction = place.direction;
@@ -65,17 +65,17 @@ void Spatialiser::add(int source, const SourcePosition& told, const float* mono,
 void Spatialiser::add_by_ears(Source& s, const float* sound, int frames, bool turned) {
   float* const input = s.input.data() + taps_;
   std::copy(sound, sound + frames, input);
-  float* const left = s.heard_left.data() + past_;
-  float* const right = s.heard_right.data() + past_;
-  const float later = s.left_later;
-  if (turned) s.left_later = space_.hrtf->at(s.direction, next_left_.data(), next_right_.data());
+  float* const left = s.filtered_left.data() + past_;
+  float* const right = s.filtered_right.data() + past_;
+  const float delay_before = s.interaural_delay;
+  if (turned) s.interaural_delay = space_.hrtf->at(s.direction, next_left_.data(), next_right_.data());
   if (s.fresh) std::swap(s.left, next_left_), std::swap(s.right, next_right_);
   std::array<float, kMaxBlock> new_left, new_right;
   const float* const filters[] = {s.left.data(), s.right.data(), next_left_.data(), next_right_.data()};
-  float* const heard[] = {left, right, new_left.data(), new_right.data()};
-  const bool goes_over = turned && !s.fresh;
-  fir_(input, filters, goes_over ? 4 : 2, taps_, heard);
-  if (goes_over) {
+  float* const filtered[] = {left, right, new_left.data(), new_right.data()};
+  const bool crossfades = turned && !s.fresh;
+  fir_(input, filters, crossfades ? 4 : 2, taps_, filtered);
+  if (crossfades) {
     for (int n = 0; n < frames; ++n) {
       const auto i = static_cast<std::size_t>(n);
       const float share = static_cast<float>(n + 1) / static_cast<float>(frames);
@@ -85,13 +85,13 @@ void Spatialiser::add_by_ears(Source& s, const float* sound, int frames, bool tu
     std::swap(s.left, next_left_), std::swap(s.right, next_right_);
   }
   // The nearer ear has no additional delay.
-  const auto late = [](float by) { return static_cast<float>(kLeastDelay) + std::max(0.f, by); };
-  const float from = s.fresh ? s.left_later : later;
-  add_delayed(left, late(from), late(s.left_later), frames, bus(0));
-  add_delayed(right, late(-from), late(-s.left_later), frames, bus(1));
+  const auto delay = [](float by) { return static_cast<float>(kMinDelay) + std::max(0.f, by); };
+  const float from = s.fresh ? s.interaural_delay : delay_before;
+  add_delayed(left, delay(from), delay(s.interaural_delay), frames, bus(0));
+  add_delayed(right, delay(-from), delay(-s.interaural_delay), frames, bus(1));
   std::copy(input + frames - taps_, input + frames, s.input.begin());
-  std::copy(left + frames - past_, left + frames, s.heard_left.begin());
-  std::copy(right + frames - past_, right + frames, s.heard_right.begin());
+  std::copy(left + frames - past_, left + frames, s.filtered_left.begin());
+  std::copy(right + frames - past_, right + frames, s.filtered_right.begin());
 }
 
 void Spatialiser::gains(const Eigen::Vector3f& direction, float* of_channels) const {

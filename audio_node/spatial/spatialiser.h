@@ -16,7 +16,7 @@
 namespace tactus::audio {
 
 // Maximum latency of rendering for ears, frames: the lead of the filters and the minimum delay.
-inline constexpr int kMaxEarsLatency = Hrtf::kLead + kLeastDelay;
+inline constexpr int kMaxEarsLatency = Hrtf::kLead + kMinDelay;
 
 // Data shared by all sources. Without both members: two channels and equal power by the azimuth (pan.h).
 struct Space {
@@ -25,7 +25,7 @@ struct Space {
 
   int channels() const { return panning && !hrtf ? panning->channels() : 2; }
   // Latency from input to output, frames, for any direction; the further ear has an additional delay.
-  int latency() const { return hrtf ? hrtf->begins() + kLeastDelay : 0; }
+  int latency() const { return hrtf ? hrtf->onset_samples() + kMinDelay : 0; }
 };
 
 // A fixed number of sources, each one mono signal. Directions and distances change within a block, without a
@@ -53,9 +53,9 @@ class Spatialiser {
     bool rested = true;  // it did not turn in the previous block
     Eigen::Vector3f direction = Eigen::Vector3f::Zero();
     std::array<float, kMaxChannels> gains{};
-    float left_later = 0;
+    float interaural_delay = 0;
     // For ears: the filters in use, and the past of input and output.
-    std::vector<float> left, right, input, heard_left, heard_right;
+    std::vector<float> left, right, input, filtered_left, filtered_right;
   };
   void add_by_ears(Source& source, const float* sound, int frames, bool turned);
   void add_by_gains(Source& source, const float* sound, int frames, bool turned);

@@ -56,27 +56,27 @@ Database database() {
 }
 
 // The node without bus and card.
-struct Stage {
-  Stage(const std::string& spatial, const std::string& method) : settings(with(spatial, method)) {
+struct NodeBench {
+  NodeBench(const std::string& spatial, const std::string& method) : settings(with(spatial, method)) {
     def.space = space_of(settings, kRate);
-    renderer = std::make_unique<Renderer>(crossing, def);
-    crossing.recorded.databases.push(1);
-    sampler.play(&data, 1);
+    renderer = std::make_unique<Renderer>(queues, def);
+    queues.recorded.databases.push(1);
+    sampler.set_database(&data, 1);
   }
   sync::HostTime now() const { return sync::host_time(kStart_ns + std::llround(frames * 1e9 / kRate)); }
   void hit(const contact_event_t& e) {
     Strike s = impacts.strike(e, now() + sync::from_seconds(0.01));
-    sampler.record(s, e, impacts);
-    crossing.strikes.push(s);
+    sampler.add_recordings(s, e, impacts);
+    queues.strikes.push(s);
   }
-  void rub(const sync::Contacts& contacts) {
+  void submit_contacts(const sync::Contacts& contacts) {
     const sync::HostTime at = now() + sync::from_seconds(0.01);
-    for (const RecordedContact& r : sampler.rubs(contacts, at)) crossing.recorded.rubs.push(r);
+    for (const RecordedContact& r : sampler.recorded_contacts(contacts, at)) queues.recorded.contacts.push(r);
     for (Scrape s : sliding.scrapes(contacts, sync::SimTime{}, at, 128 / kRate)) {
-      s.slide *= sampler.modal_of(s.id, Interaction::kScrape),
-          s.roll *= sampler.modal_of(s.id, Interaction::kRoll);
+      s.slide *= sampler.modal_gain(s.id, Interaction::kScrape),
+          s.roll *= sampler.modal_gain(s.id, Interaction::kRoll);
       s.number = number++;
-      crossing.scrapes.push(s);
+      queues.scrapes.push(s);
     }
   }
   void play() {
@@ -84,7 +84,7 @@ struct Stage {
     renderer->render(block.data(), 128, {now(), sync::Nanoseconds(0), sync::Nanoseconds(0)});
     out.insert(out.end(), block.begin(), block.end());
     frames += 128;
-    for (presentation_t r; crossing.reports.pop(r);) continue;
+    for (presentation_t r; queues.reports.pop(r);) continue;
   }
 
   Settings settings;
@@ -94,7 +94,7 @@ struct Stage {
   sync::BodyHistory bodies{1};
   Sliding sliding{scene, wavy_surfaces(), bodies, impacts, settings, kRate};
   Sampler sampler{scene, settings};
-  CallbackQueues crossing;
+  CallbackQueues queues;
   RendererDef def;
   std::unique_ptr<Renderer> renderer;
   std::vector<float> out;
@@ -131,11 +131,11 @@ Extremes extremes_of(const std::vector<float>& x) {
 
 // A blow every fifth of a second and a stroke, with `wild` impossible contacts in between.
 std::vector<float> play(const std::string& spatial, const std::string& method, int wild) {
-  auto stage = std::make_unique<Stage>(spatial, method);
+  auto bench = std::make_unique<NodeBench>(spatial, method);
   std::int64_t id = 0, wild_id = 1'000'000;
   const float bad[] = {kNan, kInf, -kInf, 1e30f, -1e30f};
   for (int block = 0; block < 400; ++block) {
-    if (block % 75 == 0) stage->hit(blow(++id, 1));
+    if (block % 75 == 0) bench->hit(blow(++id, 1));
     sync::Contacts contacts{stroke(7, 0.1f, 2)};
     for (int i = 0; i < wild; ++i) {
       const float value = bad[(block + i) % 5];
@@ -144,7 +144,7 @@ std::vector<float> play(const std::string& spatial, const std::string& method, i
        : block % 4 == 1 ? e.effective_mass_kg
        : block % 4 == 2 ? e.point_m.x
                         : e.normal.y) = value;
-      stage->hit(e);
+      bench->hit(e);
       // Also for the existing contact: a contradiction.
       contact_t c = stroke(i % 2 ? 7 : ++wild_id, 0.1f, 2);
       (block % 3 == 0   ? c.sliding_velocity_m_s.x
@@ -152,54 +152,52 @@ std::vector<float> play(const std::string& spatial, const std::string& method, i
                         : c.points[0].a_world_m.z) = c.normal.x = value;
       contacts.push_back(c);
     }
-    stage->rub(contacts);
-    stage->play();
+    bench->submit_contacts(contacts);
+    bench->play();
   }
-  return stage->out;
+  return bench->out;
 }
 
 }  // namespace
 
-TEST_CASE(
-    "The worst that a world can do, much of it at once, is heard as numbers below the ceiling, in any space by "
-    "any method") {
+TEST_CASE("Many extreme contacts at once give samples below the ceiling in any space by any method") {
   const std::string spatial = GENERATE("hrtf", "stereo", "loudspeakers"),
                     method = GENERATE("modal", "samples", "both");
   CAPTURE(spatial, method);
-  auto stage = std::make_unique<Stage>(spatial, method);
+  auto bench = std::make_unique<NodeBench>(spatial, method);
   std::mt19937 random(6);
   std::int64_t id = 0;
   for (int block = 0; block < 200; ++block) {
     for (int i = 0; i < 8; ++i) {
       contact_event_t e = blow(++id, 1 + static_cast<int>(random() % 2));
-      e.approach_speed_m_s = static_cast<float>(kMaxSpeedOfWorld_m_s);
-      e.effective_mass_kg = static_cast<float>(random() % 2 ? kMaxMassOfWorld_kg : 1e-6);
-      e.curvature_1_m = static_cast<float>(random() % 2 ? kMaxCurvatureOfWorld_1_m : 0);
-      if (random() % 4 == 0) e.point_m.x = static_cast<float>(kMaxWayOfWorld_m);
+      e.approach_speed_m_s = static_cast<float>(kMaxPlausibleSpeed_m_s);
+      e.effective_mass_kg = static_cast<float>(random() % 2 ? kMaxPlausibleMass_kg : 1e-6);
+      e.curvature_1_m = static_cast<float>(random() % 2 ? kMaxPlausibleCurvature_1_m : 0);
+      if (random() % 4 == 0) e.point_m.x = static_cast<float>(kMaxPlausiblePosition_m);
       REQUIRE(plausible(e));
-      stage->hit(e);
+      bench->hit(e);
     }
     sync::Contacts contacts;
     for (int i = 0; i < 30; ++i) {
-      contact_t c = stroke(i, static_cast<float>(kMaxSpeedOfWorld_m_s), static_cast<float>(kMaxForceOfWorld_N));
-      c.rolling_velocity_m_s.y = static_cast<float>(random() % 2 ? kMaxSpeedOfWorld_m_s : 0);
+      contact_t c = stroke(i, static_cast<float>(kMaxPlausibleSpeed_m_s), static_cast<float>(kMaxPlausibleForce_N));
+      c.rolling_velocity_m_s.y = static_cast<float>(random() % 2 ? kMaxPlausibleSpeed_m_s : 0);
       REQUIRE(plausible(c));
       contacts.push_back(c);
     }
-    stage->rub(contacts);
-    stage->play();
+    bench->submit_contacts(contacts);
+    bench->play();
   }
-  const Extremes e = extremes_of(stage->out);
+  const Extremes e = extremes_of(bench->out);
   CAPTURE(e.loudest);
   CHECK(e.finite);
   CHECK(e.loudest > 0.05);
   CHECK(e.loudest <= static_cast<double>(static_cast<float>(kCeiling)));
   // The decay after it is finite too.
-  for (int block = 0; block < 20; ++block) stage->rub({}), stage->play();
-  CHECK(extremes_of(stage->out).finite);
+  for (int block = 0; block < 20; ++block) bench->submit_contacts({}), bench->play();
+  CHECK(extremes_of(bench->out).finite);
 }
 
-TEST_CASE("What no world does makes no click in measured ears either, computed, recorded or both") {
+TEST_CASE("Impossible contacts make no click through ears or loudspeakers by any method") {
   const std::string spatial = GENERATE("hrtf", "loudspeakers"), method = GENERATE("modal", "samples", "both");
   const std::vector<float> without = play(spatial, method, 0), with = play(spatial, method, 3);
   REQUIRE(with.size() == without.size());

@@ -96,16 +96,16 @@ std::vector<float> play(int wild, unsigned seed) {
   std::int64_t id = 0, wild_id = 1'000'000, number = 0;
   while (bench->left.size() < 2 * kRate) {
     const sync::HostTime at = sync::host_time(bench->time_ns(bench->left.size() + 200));
-    if (random() % 40 == 0) bench->crossing.strikes.push(impacts.strike(RecordedRun::hit(++id, 0, 0, 1), at));
+    if (random() % 40 == 0) bench->queues.strikes.push(impacts.strike(RecordedRun::hit(++id, 0, 0, 1), at));
     for (int i = 0; i < wild; ++i)
-      bench->crossing.strikes.push(impacts.strike(wild_event(++wild_id, wild_random), at));
+      bench->queues.strikes.push(impacts.strike(wild_event(++wild_id, wild_random), at));
     sync::Contacts contacts{slide(7, 0.1f, 2)};
     for (int i = 0; i < wild; ++i)
       // Also for the existing contact: a contradiction.
       contacts.push_back(wild_slide(wild_random() % 2 ? 7 : static_cast<std::int64_t>(++wild_id), wild_random));
     for (Scrape s : sliding.scrapes(contacts, sync::SimTime{}, at, 128 / kRate)) {
       s.number = number++;
-      bench->crossing.scrapes.push(s);
+      bench->queues.scrapes.push(s);
     }
     bench->play(128);
   }
@@ -114,7 +114,7 @@ std::vector<float> play(int wild, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("What no world does makes no click, and changes nothing of what sounds besides") {
+TEST_CASE("Impossible contacts make no click and leave other sounds unchanged") {
   for (const unsigned seed : {1u, 2u, 3u}) {
     const std::vector<float> without = play(0, seed), with = play(3, seed);
     REQUIRE(with.size() == without.size());
@@ -133,7 +133,7 @@ TEST_CASE("What no world does makes no click, and changes nothing of what sounds
   }
 }
 
-TEST_CASE("Whatever is said, possible or not, what is heard are numbers below the ceiling") {
+TEST_CASE("Random contacts, valid or not, give samples below the ceiling") {
   const scene_t scene = rough_scene();
   const Impacts impacts(scene, no_mesh, Settings{}, kRate, 1);
   const sync::BodyHistory bodies(1);
@@ -147,20 +147,20 @@ TEST_CASE("Whatever is said, possible or not, what is heard are numbers below th
     std::memcpy(&x, &bits, sizeof x);
     return random() % 2 ? x : std::abs(std::fmod(std::isfinite(x) ? x : 1.f, 50.f));
   };
-  int owed = 0;
+  int expected_reports = 0;
   std::int64_t number = 0;
   while (bench->left.size() < 2 * kRate) {
     const sync::HostTime at = sync::host_time(bench->time_ns(bench->left.size() + 100));
-    for (int i = 0; i < 4; ++i, ++owed) {
+    for (int i = 0; i < 4; ++i, ++expected_reports) {
       contact_event_t e =
-          RecordedRun::hit(owed, 0, static_cast<int>(random() % 5) - 1, static_cast<int>(random() % 5));
+          RecordedRun::hit(expected_reports, 0, static_cast<int>(random() % 5) - 1, static_cast<int>(random() % 5));
       if (random() % 2) e.approach_speed_m_s = any();
       if (random() % 2) e.effective_mass_kg = any();
       if (random() % 2) e.curvature_1_m = any();
       if (random() % 3 == 0) e.point_m = {any(), any(), any()};
       if (random() % 3 == 0) e.normal = {any(), any(), any()};
       e.material_a = static_cast<int>(random() % 9) - 4;
-      REQUIRE(bench->crossing.strikes.push(impacts.strike(e, at)));
+      REQUIRE(bench->queues.strikes.push(impacts.strike(e, at)));
     }
     sync::Contacts contacts;
     for (int i = 0; i < 4; ++i) {
@@ -171,20 +171,20 @@ TEST_CASE("Whatever is said, possible or not, what is heard are numbers below th
     }
     for (Scrape s : sliding.scrapes(contacts, sync::SimTime{}, at, static_cast<double>(any()))) {
       s.number = number++;
-      bench->crossing.scrapes.push(s);
+      bench->queues.scrapes.push(s);
     }
     bench->play(128);
   }
   bool below = true;
   for (const float x : bench->left) below &= std::abs(x) <= static_cast<float>(kCeiling);  // false for NaN
   CHECK(below);
-  SECTION("each blow is reported, heard or not") {
+  SECTION("each strike is reported") {
     bench->play(4800);
-    CHECK(static_cast<int>(bench->reports.size()) == owed);
+    CHECK(static_cast<int>(bench->reports.size()) == expected_reports);
   }
 }
 
-TEST_CASE("A contact event that holds no number is refused at the border, once, and counted") {
+TEST_CASE("A contact event with a value that is not finite is rejected on receipt and counted") {
   sync::Queue<contact_events_t> inbox(channels::kContactEvents, 16);
   const auto arrive = [&](const contact_event_t& e) {
     contact_events_t m{};

@@ -38,27 +38,27 @@ struct Folder {
 
 struct Done {
   int status;
-  std::string said;
+  std::string message;
 };
 
 // Runs the program in the folder of this one.
 Done render(const Folder& folder, std::vector<std::string> words) {
   const auto bin = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  const std::string said = folder.file("said.txt");
+  const std::string message_path = folder.file("messages.txt");
   const pid_t child = fork();
   if (child == 0) {
     words.insert(words.begin(), bin / "audio_node");
     std::vector<char*> raw;
     for (std::string& w : words) raw.push_back(w.data());
     raw.push_back(nullptr);
-    const int fd = open(said.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
+    const int fd = open(message_path.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
     dup2(fd, STDERR_FILENO);
     execv(raw[0], raw.data());
     _exit(127);
   }
   int status = -1;
   waitpid(child, &status, 0);
-  std::ifstream text(said);
+  std::ifstream text(message_path);
   return {WEXITSTATUS(status), std::string(std::istreambuf_iterator<char>(text), {})};
 }
 
@@ -83,7 +83,7 @@ std::vector<float> mono_of(const std::string& path) {
 std::vector<double> record(const std::string& path, const std::string& profile = "") {
   RecordedRun run(std::make_unique<sync::FileSink>(path));
   if (!profile.empty())
-    run.raw(0.01, channels::kDegradation,
+    run.write_raw(0.01, channels::kDegradation,
             tactus::test::in_force(profile, {10'000'000, kLogBegins_ns + 10'000'000, 4711, 7, 9, 33, 0}));
   std::mt19937 random(11);
   std::uniform_real_distribution<double> gap(0.25, 0.4);
@@ -94,30 +94,30 @@ std::vector<double> record(const std::string& path, const std::string& profile =
     if (static_cast<int>(times.size()) < kHits && now >= next) {
       const auto n = static_cast<int>(times.size());
       // The glass ball on the board rings for less than the gap.
-      run.hear(now, {RecordedRun::hit(1000 + n, next, 0, 2)});
+      run.write_events(now, {RecordedRun::hit(1000 + n, next, 0, 2)});
       times.push_back(next);
       next += gap(random);
     }
-    if (ms % 17 == 0) run.snapshot(now, {});
+    if (ms % 17 == 0) run.write_contacts(now, {});
   }
   run.finish();
   return times;
 }
 
-std::int64_t first_sample_ns(const std::string& said) {
+std::int64_t first_sample_ns(const std::string& message) {
   const std::string before = "first sample was out at ";
-  const auto at = said.find(before);
+  const auto at = message.find(before);
   REQUIRE(at != std::string::npos);
-  return std::stoll(said.substr(at + before.size()));
+  return std::stoll(message.substr(at + before.size()));
 }
 
 // Samples from the time of hit t plus its delay to its onset out of silence.
-double onset_after(const std::vector<float>& wav, const std::string& said, double t) {
-  const double start_s = static_cast<double>(first_sample_ns(said) - kLogBegins_ns) * 1e-9;
+double onset_after(const std::vector<float>& wav, const std::string& message, double t) {
+  const double start_s = static_cast<double>(first_sample_ns(message) - kLogBegins_ns) * 1e-9;
   const double due = (t + kDelay_s - start_s) * kRate;
   const auto begin = static_cast<std::size_t>(due - 0.02 * kRate),
              end = static_cast<std::size_t>(due + 0.02 * kRate);
-  const std::size_t n = begin + audio::first_heard(std::span(wav).subspan(begin, end - begin));
+  const std::size_t n = begin + audio::first_audible(std::span(wav).subspan(begin, end - begin));
   float before = 0, most = 0;
   for (std::size_t k = begin; k < n - 16; ++k) before = std::max(before, std::abs(wav[k]));
   for (std::size_t k = n; k < end; ++k) most = std::max(most, std::abs(wav[k]));
@@ -128,7 +128,7 @@ double onset_after(const std::vector<float>& wav, const std::string& said, doubl
 
 }  // namespace
 
-TEST_CASE("A log rendered twice gives the same bytes, and each hit its onset at its time plus the delay") {
+TEST_CASE("A log rendered twice gives the same bytes, and each hit starts at its time plus the delay") {
   const Folder folder;
   const std::vector<double> times = record(folder.file("run.lcmlog"));
   const auto words = [&](const char* wav) {
@@ -136,7 +136,7 @@ TEST_CASE("A log rendered twice gives the same bytes, and each hit its onset at 
                                     "--set", "instructions=sse2"};
   };
   const Done first = render(folder, words("a.wav")), again = render(folder, words("b.wav"));
-  CAPTURE(first.said);
+  CAPTURE(first.message);
   REQUIRE(first.status == 0);
   REQUIRE(again.status == 0);
   const std::string a = bytes_of(folder.file("a.wav"));
@@ -151,15 +151,15 @@ TEST_CASE("A log rendered twice gives the same bytes, and each hit its onset at 
   for (const double t : times) {
     CAPTURE(t);
     // Rounded to a sample; a raised cosine reaches a fiftieth of the following signal some samples later.
-    const double late = onset_after(plain, pair.said, t);
+    const double late = onset_after(plain, pair.message, t);
     CHECK(late > -1);
     CHECK(late < 8);
     // From one side ears may receive it earlier or later than the mean over all directions by this much
     // (spatialiser_test).
-    CHECK(std::abs(onset_after(wav, first.said, t) - late) <= 8);
+    CHECK(std::abs(onset_after(wav, first.message, t) - late) <= 8);
   }
 
-  SECTION("and other instructions give the same sound to a thousandth, though not the same bits") {
+  SECTION("other instructions give the same sound to a thousandth, but not the same bits") {
     auto other = words("c.wav");
     other.back() = "instructions=auto";
     REQUIRE(render(folder, other).status == 0);
@@ -176,24 +176,24 @@ TEST_CASE("A log rendered twice gives the same bytes, and each hit its onset at 
   }
 }
 
-TEST_CASE("A profile is laid on the raw log, whatever the run was degraded by, which holds only when it is asked for") {
+TEST_CASE("A profile is applied to the raw log, and the logged profile only on request") {
   const Folder folder;
   const std::string muted = R"(<profile name="muted"><degrade modality="audio" off="true"/></profile>)";
   const std::string late = R"(<profile name="late"><degrade modality="audio" delay="40ms" loss="50%"/></profile>)";
   record(folder.file("plain.lcmlog"));
   record(folder.file("muted.lcmlog"), muted);
   std::ofstream(folder.file("late.xml")) << late;
-  const auto heard = [&](const char* log, const std::vector<std::string>& more = {}) {
+  const auto render_log = [&](const char* log, const std::vector<std::string>& more = {}) {
     std::vector<std::string> words{"--log", folder.file(log), "--wav", folder.file("x.wav"),
                                    "--presented", folder.file("x.csv")};
     words.insert(words.end(), more.begin(), more.end());
     const Done done = render(folder, words);
-    CAPTURE(done.said);
+    CAPTURE(done.message);
     REQUIRE(done.status == 0);
     return std::pair(bytes_of(folder.file("x.wav")), bytes_of(folder.file("x.csv")));
   };
-  const auto plain = heard("plain.lcmlog");
-  CHECK((heard("muted.lcmlog") == plain));
+  const auto plain = render_log("plain.lcmlog");
+  CHECK((render_log("muted.lcmlog") == plain));
   const auto rows = tactus::test::cells_of(plain.second);
   REQUIRE(rows.size() == kHits);
   std::map<std::string, std::int64_t> at_ns;
@@ -202,10 +202,10 @@ TEST_CASE("A profile is laid on the raw log, whatever the run was degraded by, w
     at_ns[row.at(1)] = std::stoll(row.at(4));
   }
 
-  const auto logged = heard("muted.lcmlog", {"--degrade", "logged"});
+  const auto logged = render_log("muted.lcmlog", {"--degrade", "logged"});
   CHECK(std::all_of(logged.first.end() - 48000 * 8 * 14, logged.first.end(), [](char c) { return c == 0; }));
   for (const char* log : {"plain.lcmlog", "muted.lcmlog"}) {
-    const auto worse = heard(log, {"--degrade", folder.file("late.xml")});
+    const auto worse = render_log(log, {"--degrade", folder.file("late.xml")});
     int presented = 0, dropped = 0;
     for (const auto& row : tactus::test::cells_of(worse.second)) {
       dropped += row.at(6) == "dropped_by_profile";
@@ -220,13 +220,13 @@ TEST_CASE("A profile is laid on the raw log, whatever the run was degraded by, w
   }
 }
 
-TEST_CASE("What is no log of a run is refused in one sentence that says what to give") {
+TEST_CASE("A file that is not a log of a run is rejected with a sentence that names the remedy") {
   const Folder folder;
   const auto refusal = [&](const std::string& log) {
     const Done done = render(folder, {"--log", log, "--wav", folder.file("x.wav")});
     CHECK(done.status == 1);
-    CHECK(std::count(done.said.begin(), done.said.end(), '\n') <= 2);  // one more, which names the node
-    return done.said;
+    CHECK(std::count(done.message.begin(), done.message.end(), '\n') <= 2);  // one more, which names the node
+    return done.message;
   };
   CHECK_THAT(refusal(folder.file("none.lcmlog")), Catch::Contains("cannot read"));
   std::ofstream(folder.file("empty.lcmlog"));
@@ -242,7 +242,7 @@ TEST_CASE("What is no log of a run is refused in one sentence that says what to 
   CHECK_THAT(refusal(folder.file("foreign.lcmlog")), Catch::Contains("holds no message of Tactus") && Catch::Contains("scripts/run"));
   const Done no_wav = render(folder, {"--log", folder.file("foreign.lcmlog")});
   CHECK(no_wav.status == 1);
-  CHECK_THAT(no_wav.said, Catch::Contains("--wav"));
+  CHECK_THAT(no_wav.message, Catch::Contains("--wav"));
 }
 
 TEST_CASE("A damaged log is rendered as far as it is intact, and the damage is counted") {
@@ -253,13 +253,13 @@ TEST_CASE("A damaged log is rendered as far as it is intact, and the damage is c
   bytes.resize(bytes.size() - 10);
   std::ofstream(folder.file("damaged.lcmlog"), std::ios::binary) << bytes;
   const Done done = render(folder, {"--log", folder.file("damaged.lcmlog"), "--wav", folder.file("a.wav")});
-  CAPTURE(done.said);
+  CAPTURE(done.message);
   CHECK(done.status == 0);
-  CHECK_THAT(done.said, Catch::Contains("2 regions"));
+  CHECK_THAT(done.message, Catch::Contains("2 regions"));
   CHECK(mono_of(folder.file("a.wav")).size() > 14 * kRate);
 }
 
-TEST_CASE("A log is not written over by its own sound, by whatever name") {
+TEST_CASE("A log is not overwritten by its own sound under any name") {
   const Folder folder;
   record(folder.file("run.lcmlog"));
   std::filesystem::create_symlink(folder.file("run.lcmlog"), folder.file("sound.wav"));
@@ -267,18 +267,18 @@ TEST_CASE("A log is not written over by its own sound, by whatever name") {
   for (const char* wav : {"run.lcmlog", "sound.wav"}) {
     const Done done = render(folder, {"--log", folder.file("run.lcmlog"), "--wav", folder.file(wav)});
     CHECK(done.status == 1);
-    CHECK_THAT(done.said, Catch::Contains("is the log itself"));
+    CHECK_THAT(done.message, Catch::Contains("is the log itself"));
   }
   CHECK(bytes_of(folder.file("run.lcmlog")) == before);
 }
 
-TEST_CASE("A card that is too slow for its delay is said, with the blows that nobody hears") {
+TEST_CASE("A card that is too slow for its delay is reported with the number of dropped hits") {
   const Folder folder;
   record(folder.file("run.lcmlog"));
   const Done done = render(
       folder, {"--log", folder.file("run.lcmlog"), "--wav", folder.file("a.wav"), "--set", "period_frames=4096"});
-  CAPTURE(done.said);
+  CAPTURE(done.message);
   CHECK(done.status == 0);
-  CHECK_THAT(done.said, Catch::Contains("too slowly for the delay of sound"));
-  CHECK_THAT(done.said, Catch::Contains("40 hits (40 of them not heard"));
+  CHECK_THAT(done.message, Catch::Contains("too slowly for the delay of sound"));
+  CHECK_THAT(done.message, Catch::Contains("40 hits (40 of them dropped"));
 }

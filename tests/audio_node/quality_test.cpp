@@ -48,17 +48,17 @@ struct Sounding {
 int run(Bench& bench, double share, int blocks) {
   for (int b = 0; b < blocks; ++b) {
     const double time_s = kPeriod / kRate;
-    bench.used = sync::from_seconds(share * time_s / std::pow(2, bench.crossing.quality.load()));
+    bench.used = sync::from_seconds(share * time_s / std::pow(2, bench.queues.quality.load()));
     bench.play(kPeriod);
   }
-  return bench.crossing.quality.load();
+  return bench.queues.quality.load();
 }
 
 constexpr int kTwoSeconds = static_cast<int>(2 * kRate) / kPeriod;
 
 }  // namespace
 
-TEST_CASE("Sound gets cheaper when its blocks take half of their time, and full again when they long do not") {
+TEST_CASE("The quality falls when blocks take half of their time, and rises again after a calm period") {
   auto bench = std::make_unique<Bench>();
   CHECK(run(*bench, 0.4, kTwoSeconds) == 0);
   CHECK(run(*bench, 0.7, kTwoSeconds / 2) == 1);
@@ -67,17 +67,17 @@ TEST_CASE("Sound gets cheaper when its blocks take half of their time, and full 
   CHECK(run(*bench, 0.3, 10 * kTwoSeconds) == 0);
 }
 
-TEST_CASE("Sound whose quality is held does not heed the time") {
+TEST_CASE("A fixed quality ignores the block times") {
   auto bench = std::make_unique<Bench>();
-  REQUIRE(bench->crossing.orders.push(RenderCommand{{}, 1}));
+  REQUIRE(bench->queues.commands.push(RenderCommand{{}, 1}));
   CHECK(run(*bench, 3, 100) == 1);
   CHECK(run(*bench, 0.01, 10 * kTwoSeconds) == 1);
-  REQUIRE(bench->crossing.orders.push(RenderCommand{{}, -1}));
+  REQUIRE(bench->queues.commands.push(RenderCommand{{}, -1}));
   run(*bench, 0.3, 1);
-  CHECK(bench->crossing.quality.load() == 0);
+  CHECK(bench->queues.quality.load() == 0);
 }
 
-TEST_CASE("With fewer modes the lowest stay as they were, and the others fade") {
+TEST_CASE("With fewer modes the lowest are unchanged, and the others fade") {
   Sounding full{Voices(4, kRate, kRing)}, less{Voices(4, kRate, kRing)};
   Sounding low{Voices(4, kRate, kRing)};  // only the lowest 16 of 64
   full.voices.strike(body(1, 64, 0.1f), 1, one_hump(20), 0);
@@ -96,7 +96,7 @@ TEST_CASE("With fewer modes the lowest stay as they were, and the others fade") 
   CHECK(less.largest_step(20 * kMaxBlock) <= own + 0.1f * 4 / kFade);
 }
 
-TEST_CASE("Modes that were cut come back with the next strike, and without a click") {
+TEST_CASE("Removed modes return with the next strike without a click") {
   Sounding s{Voices(4, kRate, kRing)}, low{Voices(4, kRate, kRing)}, fresh{Voices(4, kRate, kRing)},
       fresh_low{Voices(4, kRate, kRing)};
   s.voices.set_limits({4, 4});
@@ -114,7 +114,7 @@ TEST_CASE("Modes that were cut come back with the next strike, and without a cli
   CHECK(s.voices.energy() - low.voices.energy() == Approx(upper).epsilon(1e-3));
 }
 
-TEST_CASE("When there are too many voices the quietest fade, the others go on") {
+TEST_CASE("With too many voices the quietest fade, and the others continue") {
   const std::vector<float> impulses{0.04f, 0.01f, 0.03f, 0.02f, 0.05f};
   Sounding s{Voices(5, kRate, kRing)}, loud{Voices(5, kRate, kRing)};
   for (std::size_t i = 0; i < impulses.size(); ++i) {
@@ -133,7 +133,7 @@ TEST_CASE("When there are too many voices the quietest fade, the others go on") 
   CHECK(s.largest_step(10 * kMaxBlock) < 0.15f * 0.0425f + 0.03f / kFade);
 }
 
-TEST_CASE("A strike that finds all voices in use takes the quietest, which fades while it begins") {
+TEST_CASE("A strike that finds all voices in use takes the quietest, which fades") {
   Sounding s{Voices(2, kRate, kRing)};
   s.voices.strike(strike_of(0, 1, 300, 2, 0, 0.1f).sides[0], 1, one_hump(1), 0);
   s.voices.strike(strike_of(0, 2, 200, 2, 0, 0.05f).sides[0], 1, one_hump(1), 0);
@@ -148,7 +148,7 @@ TEST_CASE("A strike that finds all voices in use takes the quietest, which fades
   CHECK(s.largest_step(10 * kMaxBlock) < most);
 }
 
-TEST_CASE("However many strikes come at once, the newest sound and the node stays within its voices") {
+TEST_CASE("With any number of simultaneous strikes the newest sound, and the number of voices stays limited") {
   Sounding s{Voices(4, kRate, kRing)};
   for (int i = 0; i < 500; ++i) s.voices.strike(strike_of(0, i, 300, 2, 0, 1e-3f).sides[0], 1, one_hump(1), 0);
   s.render(1);

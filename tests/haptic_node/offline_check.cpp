@@ -98,7 +98,7 @@ std::string live(const std::string& log, const std::string& profile = "", double
   for (int ms = static_cast<int>(kFrom_s * 1000); ms < static_cast<int>(until_s * 1000); ++ms, ++seq) {
     const double t_s = ms * 1e-3, tick_s = t_s + after_us(random) * 1e-6;
     const touch_model_t model = model_at(t_s, seq);
-    run.raw(t_s, channels::kTouchModel, sync::encode(model));
+    run.write_raw(t_s, channels::kTouchModel, sync::encode(model));
     session.push(model, sync::host_time(model.header.publish_time_ns));
     if (ms == 200) {
       run.raw(t_s, channels::kContactEvents, sync::encode(hit_at(t_s)));
@@ -110,7 +110,7 @@ std::string live(const std::string& log, const std::string& profile = "", double
     const std::int64_t sim_time_ns = state.header.sim_time_ns;
     state.header = header;
     state.header.sim_time_ns = sim_time_ns;
-    run.raw(tick_s + 50e-6, channels::kToolState, sync::encode(state));  // transport time to the recorder
+    run.write_raw(tick_s + 50e-6, channels::kToolState, sync::encode(state));  // transport time to the recorder
     table += sync::csv_row(state);
   }
   run.finish();

@@ -47,7 +47,7 @@ scene_t copper() {
 // The finger rests on the block for 1.5 s with 1 N.
 void record(const std::string& path, const std::string& profile = "") {
   RecordedRun run(std::make_unique<sync::FileSink>(path), copper());
-  if (!profile.empty()) run.raw(0.01, channels::kDegradation, test::in_force(profile, header_at(0.01, 0, 33)));
+  if (!profile.empty()) run.write_raw(0.01, channels::kDegradation, test::in_force(profile, header_at(0.01, 0, 33)));
   std::int64_t seq = 0;
   for (int ms = 20; ms < static_cast<int>(kRun_s * 1000); ms += 2) {
     contact_frame_t m{};
@@ -62,7 +62,7 @@ void record(const std::string& path, const std::string& profile = "") {
       c.points.resize(1), c.point_count = 1;
       m.contacts = {c}, m.count = 1;
     }
-    run.raw(ms * 1e-3, channels::kContacts, sync::encode(m));
+    run.write_raw(ms * 1e-3, channels::kContacts, sync::encode(m));
   }
   run.finish();
 }

@@ -32,7 +32,7 @@ Ring ring(Instructions instructions) {
   if (instructions == Instructions::kAvx2) return avx2::ring;
   if (instructions == Instructions::kAvx512) return avx512::ring;
 #endif
-  if (instructions != Instructions::kSse2) throw std::logic_error("these instructions are of another machine");
+  if (instructions != Instructions::kSse2) throw std::logic_error("this machine does not have these instructions");
   return sse2::ring;
 }
 
@@ -44,7 +44,7 @@ const char* name(Instructions instructions) {
   }
 }
 
-std::optional<Instructions> instructions_named(std::string_view wanted) {
+std::optional<Instructions> find_instructions(std::string_view wanted) {
   const auto all = available_instructions();
   if (wanted == "auto") return all.back();
   const auto found = std::find_if(all.begin(), all.end(), [&](Instructions i) { return name(i) == wanted; });

@@ -46,7 +46,7 @@ std::vector<Instructions> available_instructions();
 Ring ring(Instructions instructions);
 const char* name(Instructions instructions);
 // sse2, avx2, avx512, or auto: the widest available. Empty: no such name, or not available on this machine.
-std::optional<Instructions> instructions_named(std::string_view name);
+std::optional<Instructions> find_instructions(std::string_view name);
 
 // Coefficients of one mode of that damped frequency. unit_gain: factor on a gain with which a unit impulse gives
 // the velocity of a unit mass: exp(-d t) (cos w t - d / w sin w t), in the middle of each sample.

@@ -11,15 +11,15 @@ namespace {
 typedef float Lanes __attribute__((vector_size(4 * TACTUS_RING_WIDTH)));
 constexpr int kWidth = TACTUS_RING_WIDTH;
 // Vectors processed together, so that none waits for its own last result.
-constexpr int kAtOnce = 4;
+constexpr int kVectorsAtOnce = 4;
 
-inline Lanes all(float x) { return x - Lanes{}; }
+inline Lanes broadcast(float x) { return x - Lanes{}; }
 inline Lanes load(const float* from) { return *reinterpret_cast<const Lanes*>(from); }
 inline void store(float* to, Lanes x) { *reinterpret_cast<Lanes*>(to) = x; }
 
 // kVectors * kWidth modes from `at` on, under `count` pushes; kPushes: their number if known, otherwise -1.
 template <int kVectors, int kPushes>
-void some(const Ringing& m, int at, const Push* pushes, int count, int frames, Lanes* sum) {
+void add_modes(const Ringing& m, int at, const Push* pushes, int count, int frames, Lanes* sum) {
   Lanes c[kVectors], k[kVectors], v[kVectors], u[kVectors], g[kVectors];
   for (int j = 0; j < kVectors; ++j) {
     const int i = at + j * kWidth;
@@ -29,12 +29,12 @@ void some(const Ringing& m, int at, const Push* pushes, int count, int frames, L
   }
   for (int n = 0; n < frames; ++n) {
     Lanes force;
-    if (kPushes == 1) force = all(pushes[0].force[n]);
+    if (kPushes == 1) force = broadcast(pushes[0].force[n]);
     for (int j = 0; j < kVectors; ++j) {
       v[j] = c[j] * v[j] - k[j] * u[j];
       if (kPushes == 1) v[j] += g[j] * force;
       if (kPushes < 0)
-        for (int p = 0; p < count; ++p) v[j] += load(pushes[p].gains + at + j * kWidth) * all(pushes[p].force[n]);
+        for (int p = 0; p < count; ++p) v[j] += load(pushes[p].gains + at + j * kWidth) * broadcast(pushes[p].force[n]);
       u[j] += v[j];
     }
     Lanes total = v[0];
@@ -48,13 +48,13 @@ void some(const Ringing& m, int at, const Push* pushes, int count, int frames, L
 }
 
 template <int kPushes>
-void each(const Ringing& m, const Push* pushes, int count, int frames, Lanes* sum) {
+void add_groups(const Ringing& m, const Push* pushes, int count, int frames, Lanes* sum) {
   int at = 0;
-  for (; at + kAtOnce * kWidth <= m.modes; at += kAtOnce * kWidth)
-    some<kAtOnce, kPushes>(m, at, pushes, count, frames, sum);
+  for (; at + kVectorsAtOnce * kWidth <= m.modes; at += kVectorsAtOnce * kWidth)
+    add_modes<kVectorsAtOnce, kPushes>(m, at, pushes, count, frames, sum);
   // A group is one vector of 16, two of 8 or four of 4.
-  constexpr int kOfGroup = kModeGroup / kWidth;
-  for (; at < m.modes; at += kModeGroup) some<kOfGroup, kPushes>(m, at, pushes, count, frames, sum);
+  constexpr int kVectorsPerGroup = kModeGroup / kWidth;
+  for (; at < m.modes; at += kModeGroup) add_modes<kVectorsPerGroup, kPushes>(m, at, pushes, count, frames, sum);
 }
 
 }  // namespace
@@ -63,11 +63,11 @@ void ring(const Ringing& m, const Push* pushes, int count, int frames, float* ou
   Lanes sum[kMaxBlock];
   for (int n = 0; n < frames; ++n) sum[n] = Lanes{};
   if (count == 0)
-    each<0>(m, pushes, count, frames, sum);
+    add_groups<0>(m, pushes, count, frames, sum);
   else if (count == 1)
-    each<1>(m, pushes, count, frames, sum);
+    add_groups<1>(m, pushes, count, frames, sum);
   else
-    each<-1>(m, pushes, count, frames, sum);
+    add_groups<-1>(m, pushes, count, frames, sum);
   for (int n = 0; n < frames; ++n) {
     float total = 0;
     for (int i = 0; i < kWidth; ++i) total += sum[n][i];

@@ -49,7 +49,7 @@ std::atomic<int> calls{0};
 
 int call_trapped(const void* in, void* out, unsigned long frames, const PaStreamCallbackTimeInfo* time,
                  PaStreamCallbackFlags flags, void*) {
-  // The first call asks for the priority of the thread, once.
+  // The first call sets the priority of the thread.
   if (calls.fetch_add(1) == 0) return callback(in, out, frames, time, flags, of_callback);
   const Trap trap;
   return callback(in, out, frames, time, flags, of_callback);
@@ -64,7 +64,7 @@ struct Folder {
   std::string path;
 };
 
-Scrape scrape(std::int64_t number, std::mt19937& random, const HeardSurface* surface, const Strike& of) {
+Scrape scrape(std::int64_t number, std::mt19937& random, const AudioSurface* surface, const Strike& of) {
   Scrape s;
   s.number = number;
   s.id = static_cast<std::int64_t>(random() % 24);  // more than are audible at a time
@@ -74,10 +74,10 @@ Scrape scrape(std::int64_t number, std::mt19937& random, const HeardSurface* sur
   ScrapeSide& side = s.sides[0];
   side.voice = of.sides[1].voice, side.resonators = *of.sides[1].resonators, side.gains = of.sides[1].gains;
   side.known = true;
-  side.beyond = 0.1f, side.beyond_Hz = 5000;
+  side.residual_gain = 0.1f, side.residual_Hz = 5000;
   if (surface) side.relief = surface->relief.get(), side.friction = surface->friction.get();
   side.roughness = {1e-6, 0};
-  side.velocity_m_s.x() = 0.1, side.slides.x() = 1, side.rolls.y() = 1;
+  side.velocity_m_s.x() = 0.1, side.slide_vector.x() = 1, side.roll_vector.y() = 1;
   return s;
 }
 
@@ -96,7 +96,7 @@ struct Recordings {
     strike.recorded.shots[0] = {&blow.by_speed[0].takes[0], 0.1f, 1.3f};
     strike.recorded.place = strike.sides[0].place;
   }
-  RecordedContact rub(std::int64_t database, std::mt19937& random) const {
+  RecordedContact contact(std::int64_t database, std::mt19937& random) const {
     RecordedContact r;
     r.contact = static_cast<std::int64_t>(random() % 40);
     r.database = database, r.at = sync::host_now(), r.layers = &loop;
@@ -123,9 +123,9 @@ extern "C" PaError Pa_OpenStream(PaStream** stream, const PaStreamParameters* in
   return real(stream, in, out, rate, frames, flags, call_trapped, user);
 }
 
-TEST_CASE("The trap catches what allocates, locks, waits and writes, and nothing of what happens outside of it") {
+TEST_CASE("The trap counts allocations, locks, waits and I/O, and only while it is armed") {
   const auto caught = [](auto f) {
-    forget_trapped();
+    reset_trapped();
     {
       const Trap trap;
       f();
@@ -133,7 +133,7 @@ TEST_CASE("The trap catches what allocates, locks, waits and writes, and nothing
     return first_trapped();
   };
   if (!traps_allocation()) {
-    WARN("a sanitizer answers the allocator's calls: nothing is trapped");
+    WARN("skipped: a sanitizer replaces the allocator, so the trap counts nothing");
     return;
   }
   CHECK(caught([] { delete new volatile int(1); }) == "malloc");
@@ -148,15 +148,14 @@ TEST_CASE("The trap catches what allocates, locks, waits and writes, and nothing
   CHECK(caught([] { (void)sync::host_now(); }).empty());  // the clock is read without a system call
   // Another thread may do so at the same time.
   CHECK(caught([] {}).empty());
-  forget_trapped();
+  reset_trapped();
   std::vector<int> outside(1000, 1);
   CHECK(trapped() == 0);
 }
 
-TEST_CASE(
-    "Each call that waits, maps, or reads and writes a file or a device is caught, and does what it always does") {
+TEST_CASE("The trap counts each call that waits, maps memory or does I/O, and passes the call on") {
   if (!traps_allocation()) {
-    WARN("a sanitizer answers the allocator's calls: nothing is trapped");
+    WARN("skipped: a sanitizer replaces the allocator, so the trap counts nothing");
     return;
   }
   int pipe_ends[2];
@@ -189,7 +188,7 @@ TEST_CASE(
       pthread_cond_signal(&condition);
       pthread_mutex_unlock(&mutex);
     });
-    forget_trapped();
+    reset_trapped();
     {
       const Trap trap;
       while (!woken) pthread_cond_wait(&condition, &mutex);
@@ -226,7 +225,7 @@ TEST_CASE(
       {"fread", [&] { return fread(&byte, 1, 1, file) == 0; }}};
   for (const Call& call : calls) {
     CAPTURE(call.name);
-    forget_trapped();
+    reset_trapped();
     bool right = false;
     {
       const Trap trap;
@@ -241,12 +240,12 @@ TEST_CASE(
   sem_destroy(&semaphore);
   fclose(file);
   for (const int open_fd : {events, in, out}) ::close(open_fd);
-  forget_trapped();
+  reset_trapped();
 }
 
-TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatever is asked of it") {
+TEST_CASE("The callback allocates nothing, takes no lock and does no I/O for any input") {
   if (!traps_allocation()) {
-    WARN("a sanitizer answers the allocator's calls: nothing is trapped");
+    WARN("skipped: a sanitizer replaces the allocator, so the trap counts nothing");
     return;
   }
   const Folder folder;
@@ -258,15 +257,15 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatev
   const auto [period, spatial] =
       GENERATE(std::pair(64, "hrtf"), std::pair(256, "loudspeakers"), std::pair(128, "stereo"));
   CAPTURE(period, spatial);
-  CallbackQueues crossing;
+  CallbackQueues queues;
   RendererDef def;
   def.period_frames = period, def.space = space_for(spatial);
   def.clock_ns = [] { return sync::to_ns(sync::host_now()); };
-  Renderer renderer(crossing, def);
+  Renderer renderer(queues, def);
   std::mt19937 random(3);
   int reported = 0, steps = 0, struck = 0;
   std::int64_t database = 0;
-  forget_trapped();
+  reset_trapped();
   {
     StreamOptions options;
     options.device = "virtual", options.folder = folder.path, options.period_frames = period;
@@ -281,20 +280,20 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatev
                                   sync::host_now() + sync::from_seconds(early_s));
         s.sides[1].voice += static_cast<std::int64_t>(random() % 100);
         if (k == 0) recordings.add_to(s, database);
-        crossing.strikes.push(s);
+        queues.strikes.push(s);
         if (k == 1)
-          crossing.scrapes.push(scrape(i, random, random() % 3 ? &surfaces->by_material[0] : nullptr, s));
+          queues.scrapes.push(scrape(i, random, random() % 3 ? &surfaces->by_material[0] : nullptr, s));
       }
       // The head turns, and the database changes from time to time.
       Listener listener;
       listener.T_W_listener.rotate(Eigen::AngleAxisf(0.1f * static_cast<float>(i), Eigen::Vector3f::UnitZ()));
       listener.nearest_m = 0.3f;
-      crossing.listeners.push(listener);
-      if (i % 50 == 0) crossing.recorded.databases.push(++database);
-      crossing.recorded.rubs.push(recordings.rub(database, random));
+      queues.listeners.push(listener);
+      if (i % 50 == 0) queues.recorded.databases.push(++database);
+      queues.recorded.contacts.push(recordings.contact(database, random));
       if (i % 10 == 0)
-        crossing.orders.push({{i % 40 < 20 ? 0.01 : 0.0, 0.05}, static_cast<int>(random() % 4) - 1}), ++steps;
-      for (presentation_t r; crossing.reports.pop(r);) ++reported;
+        queues.commands.push({{i % 40 < 20 ? 0.01 : 0.0, 0.05}, static_cast<int>(random() % 4) - 1}), ++steps;
+      for (presentation_t r; queues.reports.pop(r);) ++reported;
       while (stream.next_pair()) continue;
       std::this_thread::sleep_for(std::chrono::milliseconds(3));
     }
@@ -302,20 +301,20 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O, whatev
     CHECK(stream.callbacks() > 100);
   }
   renderer.abandon();
-  for (presentation_t r; crossing.reports.pop(r);) ++reported;
+  for (presentation_t r; queues.reports.pop(r);) ++reported;
   CHECK(reported == struck);  // shows that all of it was rendered
   CHECK(steps == 40);
   CAPTURE(first_trapped());
   CHECK(trapped() == 0);
 }
 
-TEST_CASE("One allocation in one block of the real callback is caught") {
+TEST_CASE("The trap counts a single allocation in one block of the stream callback") {
   if (!traps_allocation()) {
-    WARN("a sanitizer answers the allocator's calls: nothing is trapped");
+    WARN("skipped: a sanitizer replaces the allocator, so the trap counts nothing");
     return;
   }
   const Folder folder;
-  forget_trapped();
+  reset_trapped();
   int blocks = 0;
   {
     StreamOptions options;
@@ -331,15 +330,15 @@ TEST_CASE("One allocation in one block of the real callback is caught") {
   CHECK(first_trapped() == "malloc");
 }
 
-TEST_CASE("Neither does what keeps the samples of a real card") {
+TEST_CASE("The capture of a real card allocates nothing, takes no lock and does no I/O") {
   if (!traps_allocation()) {
-    WARN("a sanitizer answers the allocator's calls: nothing is trapped");
+    WARN("skipped: a sanitizer replaces the allocator, so the trap counts nothing");
     return;
   }
   const Folder folder;
   Capture capture(folder.path + "/x.wav", 48000, 2, -1);
   const std::vector<float> block(2 * 128);
-  forget_trapped();
+  reset_trapped();
   {
     const Trap trap;
     // Longer than the ring: the disk cannot follow, and silence is pending.

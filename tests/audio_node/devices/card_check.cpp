@@ -60,13 +60,13 @@ std::int64_t out_at_ns(const std::vector<MediaPair>& pairs, std::int64_t index) 
 
 }  // namespace
 
-TEST_CASE("Through PortAudio and the virtual card sound is out when it was to be, as the WAV and its pairs show") {
+TEST_CASE("A strike is out at its scheduled time, as the WAV file and its clock pairs show") {
   const Folder folder;
   std::vector<MediaPair> pairs;
   std::vector<presentation_t> reports;
   std::vector<std::int64_t> scheduled_ns;
-  CallbackQueues crossing;
-  Renderer renderer(crossing, {.rate_Hz = kRate});
+  CallbackQueues queues;
+  Renderer renderer(queues, {.rate_Hz = kRate});
   std::int64_t callbacks = 0;
   {
     StreamOptions options;
@@ -78,7 +78,7 @@ TEST_CASE("Through PortAudio and the virtual card sound is out when it was to be
     for (int i = 0; i < 24; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(97));
       const auto at = sync::host_now() + sync::Nanoseconds(60'000'000);
-      REQUIRE(crossing.strikes.push(impulse(i, at)));
+      REQUIRE(queues.strikes.push(impulse(i, at)));
       scheduled_ns.push_back(sync::to_ns(at));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(400));
@@ -87,7 +87,7 @@ TEST_CASE("Through PortAudio and the virtual card sound is out when it was to be
     while (const auto pair = stream.next_pair()) pairs.push_back(*pair);
     WARN("underflows " << stream.underflows());
   }
-  for (presentation_t r; crossing.reports.pop(r);) reports.push_back(r);
+  for (presentation_t r; queues.reports.pop(r);) reports.push_back(r);
 
   CHECK(callbacks > 100);
   REQUIRE_FALSE(pairs.empty());
@@ -131,7 +131,7 @@ TEST_CASE("A restarted stream overwrites no recording") {
   }
 }
 
-TEST_CASE("The virtual card has as many channels as there are loudspeakers, and each is recorded in its own") {
+TEST_CASE("The virtual card has one channel per loudspeaker and records each in its own channel") {
   const Folder folder;
   {
     StreamOptions options;
@@ -156,7 +156,7 @@ TEST_CASE("The virtual card has as many channels as there are loudspeakers, and 
   for (std::size_t i = first; i < first + 64; ++i) CHECK(samples[i] == static_cast<float>(i % 8) / 16);
 }
 
-TEST_CASE("A card that does not exist is refused in one sentence that names it") {
+TEST_CASE("A sound card that does not exist is rejected with a sentence that names it") {
   const Folder folder;
   StreamOptions options;
   options.device = "no such card", options.folder = folder.path;

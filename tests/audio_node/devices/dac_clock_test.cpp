@@ -39,7 +39,7 @@ constexpr double kSample_s = 1.0 / 48000;
 
 }  // namespace
 
-TEST_CASE("The time of a sample is known to a sample, whatever clock PortAudio counts on") {
+TEST_CASE("The time of a sample is accurate to one sample for any clock of PortAudio") {
   for (const double offset : {0.0, 1.79e9, -752.0})
     for (const double drift : {0.0, 100e-6, -100e-6}) {
       Card card;
@@ -60,18 +60,18 @@ TEST_CASE("The time of a sample is known to a sample, whatever clock PortAudio c
     }
 }
 
-TEST_CASE("After an underflow the time is begun anew at once") {
+TEST_CASE("The DAC clock restarts at once after an underflow") {
   Card card;
   DacClock clock(48000);
   for (int block = 0; block < 1000; ++block) clock.block(128, card.next(128), 0.008);
   card.start_s += 0.06;  // a stall
   const double truth = card.out_s();
   const auto e = clock.block(128, card.next(128, true), 0.008);
-  // One reading and one calibration: its noise, and the lateness of that one callback (about 30 us, seldom 200).
+  // One reading and one calibration: its noise, and the lateness of that one callback (about 30 us, rarely 200).
   CHECK(std::abs(static_cast<double>(sync::to_ns(e.first_sample)) * 1e-9 - truth) < 300e-6);
 }
 
-TEST_CASE("One bad reading moves nothing, a lasting jump is followed") {
+TEST_CASE("The DAC clock ignores one bad reading and follows a lasting jump") {
   Card card;
   DacClock clock(48000);
   for (int block = 0; block < 1000; ++block) clock.block(128, card.next(128), 0.008);
@@ -86,7 +86,7 @@ TEST_CASE("One bad reading moves nothing, a lasting jump is followed") {
   CHECK(std::abs(static_cast<double>(sync::to_ns(e.first_sample)) * 1e-9 - truth) < 2 * kSample_s);
 }
 
-TEST_CASE("Where PortAudio gives no times the claimed latency is used, and the doubt is as large") {
+TEST_CASE("Without times of PortAudio the reported latency is used and added to the uncertainty") {
   DacClock clock(48000);
   CallbackTime t;
   t.now = sync::host_time(5'000'000'000);
@@ -95,7 +95,7 @@ TEST_CASE("Where PortAudio gives no times the claimed latency is used, and the d
   CHECK(e.uncertainty >= sync::Nanoseconds(10'000'000));
 }
 
-TEST_CASE("Blocks follow each other evenly however unevenly they are asked for") {
+TEST_CASE("The times of blocks are even when the callback is late at times") {
   Card card;
   DacClock clock(48000);
   double before = 0, worst = 0;
@@ -111,7 +111,7 @@ TEST_CASE("Blocks follow each other evenly however unevenly they are asked for")
   CHECK(worst < 1e-6);
 }
 
-TEST_CASE("Stalls with underflows, each begun by a callback that is late, leave no lasting error") {
+TEST_CASE("Stalls with underflows and a late first callback leave no lasting error") {
   Card card;
   DacClock clock(48000);
   for (int block = 0; block < 1000; ++block) clock.block(128, card.next(128), 0.008);
@@ -129,7 +129,7 @@ TEST_CASE("Stalls with underflows, each begun by a callback that is late, leave 
   CHECK(clock.reseeds() == 6);
 }
 
-TEST_CASE("PortAudio's clock may step, forwards or backwards, and the time of a sample stays known") {
+TEST_CASE("The time of a sample stays accurate when the clock of PortAudio steps") {
   const double step_s = GENERATE(-0.99, -0.5, -0.02, -0.004, 0.004, 0.5, 0.99, -3.0, 3.0);
   CAPTURE(step_s);
   Card card;
@@ -146,7 +146,7 @@ TEST_CASE("PortAudio's clock may step, forwards or backwards, and the time of a 
     covered &= std::abs(error) <= sync::to_seconds(e.uncertainty) + kSample_s / 2;
   }
   // One callback calibrates a step beyond a second, the earliest of eight a smaller one: 30 us each on average,
-  // 0.2 ms seldom, of which the loop passes on a few per cent until the minimum is found again.
+  // rarely 0.2 ms, of which the loop passes on a few per cent until the minimum is found again.
   CHECK(worst < 2 * kSample_s);
   CHECK(covered);
 }

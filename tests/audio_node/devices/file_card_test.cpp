@@ -31,7 +31,7 @@ void silence(float* out, int frames, const BlockTime&) { std::fill(out, out + 2 
 
 }  // namespace
 
-TEST_CASE("A rendering that does not come to its end leaves no file that looks whole") {
+TEST_CASE("An aborted rendering leaves no file with the final name") {
   const Folder folder;
   const std::string wav = folder.path + "/out.wav";
   std::ofstream(wav) << "of before";
@@ -44,7 +44,7 @@ TEST_CASE("A rendering that does not come to its end leaves no file that looks w
   CHECK(folder.files() == 1);
   CHECK(std::filesystem::file_size(wav) == 9);  // the previous file is still there
 
-  SECTION("and one that does has its file, and nothing beside it") {
+  SECTION("a completed rendering leaves only the final file") {
     FileCard card({}, wav, silence);
     card.play_until(sync::host_time(kStart_ns));
     card.finish();
@@ -53,7 +53,7 @@ TEST_CASE("A rendering that does not come to its end leaves no file that looks w
   }
 }
 
-TEST_CASE("Of two renderings into one file the second is refused, and may follow when the first has ended") {
+TEST_CASE("The second of two renderings into one file is rejected until the first has ended") {
   const Folder folder;
   const std::string wav = folder.path + "/out.wav";
   {

@@ -57,33 +57,33 @@ struct SlowCard : FakeCard {
   sync::HostTime next{};
 };
 
-// The health note after ten seconds in which all audible contacts begin and end at every update.
-std::string note_after_telling(const Settings& settings, std::optional<sync::Nanoseconds> every = {}) {
+// Status text after ten seconds in which all audible contacts begin and end at every update.
+std::string status_after_updates(const Settings& settings, std::optional<sync::Nanoseconds> every = {}) {
   constexpr sync::Nanoseconds kLead{2'000'000};
   Output output(".", "", 0, [](const StreamOptions& options, Card::Render render) {
     return std::make_unique<SlowCard>(std::move(render), options);
   });
   output.configure(settings);
-  sync::HostTime told{};
+  sync::HostTime last_update{};
   for (std::int64_t ms = 0; ms < 10'000; ++ms) {
     const sync::HostTime now = sync::host_time(kStart_ns + 1'000'000 * ms);
     output.keep_open(now);
-    if (now - told < every.value_or(output.tell_every(kLead))) continue;
-    told = now;
+    if (now - last_update < every.value_or(output.update_interval(kLead))) continue;
+    last_update = now;
     Scrape scrape;
-    RecordedContact rub;
-    scrape.at = rub.at = now + output.latency() + kLead;
+    RecordedContact contact;
+    scrape.at = contact.at = now + output.latency() + kLead;
     for (int i = 0; i < 2 * Scrapes::kMax; ++i) output.submit(scrape);
-    for (int i = 0; i < 2 * Loops::kMax; ++i) output.submit(rub);
+    for (int i = 0; i < 2 * Loops::kMax; ++i) output.submit(contact);
   }
-  return output.note();
+  return output.status_text();
 }
 
 sync::HostTime at_block(int n) { return sync::host_time(kStart_ns + std::llround(n * 128e9 / kRate)); }
 
 }  // namespace
 
-TEST_CASE("A card that is pulled out is a lost output, and when it is back the next blow sounds") {
+TEST_CASE("An unplugged card is reported as lost, and hits sound again after its return") {
   const auto plug = std::make_shared<FakeCard::Plug>();
   FakeCard* card = nullptr;
   Output output(".", "", 0, [&](const StreamOptions&, Card::Render render) {
@@ -103,13 +103,13 @@ TEST_CASE("A card that is pulled out is a lost output, and when it is back the n
     return -1;
   };
   play(3);
-  CHECK(output.note().find("fake") != std::string::npos);
+  CHECK(output.status_text().find("fake") != std::string::npos);
   output.submit(strike_of(1, 1, 500, 20, sync::to_ns(at_block(now + 5))));
   play(20);
   CHECK(outcome_of(1) == presentation_t::PRESENTED);
   CHECK(card->loudest > 0.01f);
-  CHECK(output.note().find("sound dose of this run below 1 % of a day's") != std::string::npos);
-  CHECK(output.note().find("turned down") == std::string::npos);
+  CHECK(output.status_text().find("sound dose of this run below 1 % of a day's") != std::string::npos);
+  CHECK(output.status_text().find("to limit the level") == std::string::npos);
   const std::int64_t played = output.callbacks();
   CHECK(played >= 20);
 
@@ -120,7 +120,7 @@ TEST_CASE("A card that is pulled out is a lost output, and when it is back the n
   CHECK(outcome_of(2) == presentation_t::DROPPED_LATE);
   output.submit(strike_of(3, 1, 500, 20, sync::to_ns(at_block(now + 5))));
   CHECK(outcome_of(3) == presentation_t::DROPPED_LATE);  // nothing plays: reported at once
-  CHECK(output.note().find("has gone") != std::string::npos);
+  CHECK(output.status_text().find("is lost") != std::string::npos);
 
   plug->in = true;
   CHECK(output.keep_open(at_block(now++)) == true);
@@ -131,7 +131,7 @@ TEST_CASE("A card that is pulled out is a lost output, and when it is back the n
   CHECK(output.callbacks() > played + 15);  // counted over both
 }
 
-TEST_CASE("However long the card's periods are, no contact that is told of is lost on the way to the callback") {
+TEST_CASE("No contact update is lost on the way to the callback, for any period of the card") {
   Settings settings;
   settings.spatial = "stereo";
   for (const auto& [rate_Hz, period_frames, latency_periods] : {std::tuple{48000., 128, 2.},
@@ -142,17 +142,17 @@ TEST_CASE("However long the card's periods are, no contact that is told of is lo
     settings.sample_rate_Hz = rate_Hz, settings.period_frames = period_frames;
     settings.latency_periods = latency_periods;
     CAPTURE(rate_Hz, period_frames, latency_periods);
-    CHECK_THAT(note_after_telling(settings), !Catch::Contains("lost"));
+    CHECK_THAT(status_after_updates(settings), !Catch::Contains("lost"));
   }
   // When they are sent every tick all the same, the health shows the losses.
   settings.sample_rate_Hz = 48000, settings.period_frames = 4096;
-  CHECK_THAT(note_after_telling(settings, sync::Nanoseconds(0)), Catch::Contains(" states of contacts lost"));
+  CHECK_THAT(status_after_updates(settings, sync::Nanoseconds(0)), Catch::Contains(" contact updates lost"));
 }
 
-TEST_CASE("Reports that nobody takes are counted when there is no room for more") {
+TEST_CASE("Reports that do not fit into the queue are counted") {
   Output output(".", "", 0, [](const StreamOptions&, Card::Render) -> std::unique_ptr<Card> { return {}; });
   for (std::int64_t id = 0; id < 1030; ++id) output.drop(id, {});
-  CHECK_THAT(output.note(), Catch::Contains("6 reports of hits lost"));
+  CHECK_THAT(output.status_text(), Catch::Contains("6 reports of hits lost"));
   std::int64_t taken = 0;
   while (output.next_report()) ++taken;
   CHECK(taken == 1024);

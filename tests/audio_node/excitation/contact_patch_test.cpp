@@ -7,7 +7,7 @@
 
 using namespace tactus::audio;
 
-TEST_CASE("A ball of steel of 10 mm on steel under 1 N has Hertz' patch of 41 um") {
+TEST_CASE("A steel ball of 10 mm on steel under 1 N has the Hertzian patch of 41 um") {
   const Elastic steel{2.0e11, 0.29, 7850, 5, 3e-8, 0.6};
   // E* = E / 2 / (1 - nu^2) = 109 GPa; a^3 = 3 * 1 * 0.01 / (4 * 109e9).
   CHECK(reduced_modulus_Pa(steel, steel) == Approx(1.0918e11).epsilon(1e-3));
@@ -19,7 +19,7 @@ TEST_CASE("A ball of steel of 10 mm on steel under 1 N has Hertz' patch of 41 um
   CHECK(std::isfinite(patch_cutoff_Hz(0.5, 0)));
 }
 
-TEST_CASE("A material has the finish of the one that it is most alike, whatever its name") {
+TEST_CASE("A material has the finish of the most similar known material") {
   const Elastic steel{2.0e11, 0.29, 7850, 5, 3e-8, 0.6}, glass{6.2e10, 0.2, 2600, 1, 1e-7, 0.6};
   const Elastic concrete{3.1e10, 0.2, 2250, 6, 3e-6, 0.6};
   CHECK(finish_m(steel) == 1.6e-6);
@@ -27,7 +27,8 @@ TEST_CASE("A material has the finish of the one that it is most alike, whatever 
   CHECK(finish_m(concrete) == 25e-6);
 }
 
-TEST_CASE("What rolls is pushed by the waves as long as its patch, or follows them when it is light or slow") {
+TEST_CASE(
+    "A rolling body receives the force of waves as long as its patch, or follows them when it is light or slow") {
   const double reduced = 1.1e11, radius_m = 0.01, force_N = 1, mass_kg = 0.03;
   const double a = patch_radius_m(force_N, 1 / radius_m, reduced);
   // Hertz' law F = 4/3 E* R^(1/2) d^(3/2), at d = a^2 / R, changed by the height of a wave of length 2 a and slope

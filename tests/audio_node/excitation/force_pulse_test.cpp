@@ -14,7 +14,7 @@ double sum(const ForcePulse& pulse) {
 
 }  // namespace
 
-TEST_CASE("A force pulse carries its whole impulse, whatever its length, and nothing before or after it") {
+TEST_CASE("A force pulse of any length carries its whole impulse and is zero outside of its length") {
   for (const int n : {1, 2, 3, 17, 960}) {
     CAPTURE(n);
     CHECK(sum(one_hump(n)) == Approx(1).epsilon(1e-5));
@@ -26,7 +26,7 @@ TEST_CASE("A force pulse carries its whole impulse, whatever its length, and not
   CHECK(weight_at(ForcePulse{}, 0) == 0);
 }
 
-TEST_CASE("Blows that follow the first come when they are said to, and all share one impulse") {
+TEST_CASE("Later humps of a pulse start at their times and share one impulse") {
   const ForcePulse pulse{Hump{0, 4, 0.7f}, {100, 8, 0.2f}, {50, 1, 0.1f}};
   CHECK(sum(pulse) == Approx(1).epsilon(1e-5));
   CHECK(length_of(pulse) == 108);
@@ -34,14 +34,14 @@ TEST_CASE("Blows that follow the first come when they are said to, and all share
   CHECK(weight_at(pulse, 20) == 0);
   CHECK(weight_at(pulse, 99) == 0);
   CHECK(weight_at(pulse, 104) > 0);
-  SECTION("also where they overlap") {
+  SECTION("overlapping humps add up") {
     const ForcePulse both{Hump{0, 4, 0.5f}, {2, 4, 0.5f}};
     CHECK(sum(both) == Approx(1).epsilon(1e-5));
     CHECK(weight_at(both, 2) == Approx(weight_at({Hump{0, 4, 0.5f}}, 2) + weight_at({Hump{2, 4, 0.5f}}, 2)));
   }
 }
 
-TEST_CASE("A force that joins another is felt in full beside it, from its own beginning") {
+TEST_CASE("A joined pulse acts in full from its own beginning") {
   const ForcePulse first{Hump{0, 40, 0.8f}, {60, 20, 0.2f}}, other{Hump{0, 30, 0.7f}, {35, 10, 0.3f}};
   ForcePulse both = first;
   REQUIRE(has_room(both, 20));
@@ -49,7 +49,7 @@ TEST_CASE("A force that joins another is felt in full beside it, from its own be
   CHECK(length_of(both) == 80);
   for (int i = 20; i < 90; ++i)
     CHECK(weight_at(both, i) == Approx(weight_at(first, i) + 0.5f * weight_at(other, i - 22)).margin(1e-7));
-  SECTION("in place of what is over, and where that is too little at once") {
+  SECTION("a joined pulse replaces ended humps, and is ignored without a free one") {
     join(both, 20, one_hump(50), 30, 1);
     REQUIRE_FALSE(has_room(both, 20));
     const ForcePulse full = both;

@@ -73,14 +73,14 @@ Impacts impacts(const Settings& settings = {}) {
 
 }  // namespace
 
-TEST_CASE("The contact time is that of Hertz") {
+TEST_CASE("The contact time follows the formula of Hertz") {
   // A steel ball of 10 mm radius (32.9 g) on a thick steel plate at 0.1 m/s: by E* = 1.0917e11, T = 2.87 (m^2 / (R
   // E*^2 v))^(1/5).
   const Elastic steel{2e11, 0.29, 7850, 5, 3e-8, 0.6};
   const double e = 2e11 / (1 - 0.29 * 0.29) / 2;
   CHECK(contact_time_s(0.0329, 100, 0.1, steel, steel) ==
         Approx(2.87 * std::pow(0.0329 * 0.0329 / (0.01 * e * e * 0.1), 0.2)));
-  SECTION("and falls with speed to the fifth root") {
+  SECTION("the contact time falls with the fifth root of the speed") {
     CHECK(contact_time_s(1, 10, 32, steel, steel) == Approx(contact_time_s(1, 10, 1, steel, steel) / 2));
   }
 }
@@ -97,43 +97,41 @@ TEST_CASE("The spectrum of the pulse is that of a raised cosine") {
   }
 }
 
-TEST_CASE("A source is heard where it is") {
+TEST_CASE("A source is panned to its direction with the level of its distance") {
   Eigen::Isometry3d listener = Eigen::Isometry3d::Identity();  // faces +x
-  const auto heard = [&](const Eigen::Vector3d& source) { return pan(place_of(listener, source, 0.3)); };
-  const auto left = heard({0, 2, 0}), right = heard({0, -2, 0}), ahead = heard({2, 0, 0}), far = heard({4, 0, 1});
+  const auto stereo_gain = [&](const Eigen::Vector3d& source) { return pan(place_of(listener, source, 0.3)); };
+  const auto left = stereo_gain({0, 2, 0}), right = stereo_gain({0, -2, 0}), ahead = stereo_gain({2, 0, 0}), far = stereo_gain({4, 0, 1});
   CHECK(left.left == Approx(0.5));
   CHECK(left.right == Approx(0).margin(1e-7));
   CHECK(right.right == Approx(0.5));
   CHECK(ahead.left == Approx(ahead.right));
   CHECK(std::hypot(far.left, far.right) == Approx(1 / std::sqrt(17.0)));
   CHECK(place_of(listener, {4, 0, 1}, 0.3).distance_m == Approx(std::sqrt(17.0)));
-  SECTION("and a turn of the listener turns it too") {
+  SECTION("a rotation of the listener rotates the source") {
     listener.rotate(Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitZ()));  // faces +y
-    CHECK(heard({2, 0, 0}).right == Approx(0.5));
+    CHECK(stereo_gain({2, 0, 0}).right == Approx(0.5));
   }
-  SECTION("and nearness does not make it infinite") { CHECK(heard({0, 0, 0}).left < 4); }
+  SECTION("a source at the listener has a finite level") { CHECK(stereo_gain({0, 0, 0}).left < 4); }
 }
 
-TEST_CASE(
-    "A blow is heard from where the ear is when it comes, and before anybody moves it from where the scene has "
-    "it") {
+TEST_CASE("The place of a strike is relative to the last set listener, initially that of the scene") {
   Impacts all = impacts();
   const contact_event_t ahead = hit(0, 2, 1, 0.1f);  // at (1, 0, 0), which the listener of the scene faces
   const auto place = [&] { return all.strike(ahead, {}).sides[0].place; };
   CHECK(place().direction.isApprox(Eigen::Vector3f::UnitX()));
   Eigen::Isometry3d ear = Eigen::Isometry3d::Identity();
   ear.rotate(Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitZ()));  // faces +y: the hit is to the right
-  all.hear_from(ear);
+  all.set_listener(ear);
   CHECK(place().direction.isApprox(-Eigen::Vector3f::UnitY()));
   CHECK(place().distance_m == Approx(1));
   ear.translation().x() = -1;  // twice the distance
-  all.hear_from(ear);
+  all.set_listener(ear);
   CHECK(place().distance_m == Approx(2));
 }
 
-TEST_CASE("Bodies sound by their shape, size, mass and material") {
+TEST_CASE("The sound of a body depends on its shape, size, mass and material") {
   const Impacts all = impacts();
-  SECTION("a steel bar by bending, first at 288 Hz less the correction of its thickness") {
+  SECTION("a steel bar has its first bending mode at 288 Hz less the correction for its thickness") {
     // (beta r)^2 (1 + 3.1) / 2 = 1.1e-3
     REQUIRE_FALSE(all.body(1).modes.empty());
     CHECK(all.body(1).modes[0].frequency_Hz == Approx(288.2).epsilon(1.5e-3));
@@ -147,12 +145,12 @@ TEST_CASE("Bodies sound by their shape, size, mass and material") {
     const double expected = spherical_shell(all.body(4).material, 0.15, {16000, 1})[0].frequency_Hz;
     CHECK(all.body(4).modes[0].frequency_Hz == Approx(expected));
   }
-  SECTION("a floor by a patch of it, which does not move as a whole") {
+  SECTION("a floor is represented by a patch and does not move as a whole") {
     REQUIRE_FALSE(all.body(0).modes.empty());
     CHECK(all.body(0).mass_kg == Approx(0.5 * 0.5 * 0.03 * 750));
     CHECK(all.strike(hit(0, 2, 1, 0.8f), {}).sides[0].click == 0);
   }
-  SECTION("all within the audible range and the number that is allowed") {
+  SECTION("all modes are in the audible range, and at most the maximum number is kept") {
     for (int id = 0; id < 5; ++id) {
       CHECK(all.body(id).modes.size() <= 64);
       for (const Mode& m : all.body(id).modes) {
@@ -164,12 +162,12 @@ TEST_CASE("Bodies sound by their shape, size, mass and material") {
   }
 }
 
-TEST_CASE("An impact's level follows pressure to the power 0.6, and says when it cannot be heard") {
+TEST_CASE("The level of an impact follows its pressure to the power 0.6, and an inaudible impact is marked") {
   const Impacts all = impacts();
   const auto rendered_peak = [&](const contact_event_t& e) {
-    auto crossing = std::make_unique<CallbackQueues>();
-    auto renderer = std::make_unique<Renderer>(*crossing, RendererDef{});
-    crossing->strikes.push(all.strike(e, sync::host_time(10'000'000)));
+    auto queues = std::make_unique<CallbackQueues>();
+    auto renderer = std::make_unique<Renderer>(*queues, RendererDef{});
+    queues->strikes.push(all.strike(e, sync::host_time(10'000'000)));
     std::vector<float> x(2 * 4800);
     renderer->render(x.data(), 4800, {});
     float peak = 0;
@@ -180,9 +178,9 @@ TEST_CASE("An impact's level follows pressure to the power 0.6, and says when it
   // the pressure is 64 times as large, the level 64^0.6 = 12.1 times.
   const double weak = rendered_peak(hit(0, 1, 0.02f, 0.001f)), strong = rendered_peak(hit(0, 1, 0.32f, 0.004f));
   CHECK(strong / weak == Approx(std::pow(64, 0.6)).epsilon(0.02));
-  CHECK(all.strike(hit(0, 1, 0.0001f, 1e-6f), {}).heard_from > 1);
-  CHECK_FALSE(all.strike(hit(0, 1, 0.5f, 0.1f), {}).heard_from > 1);
-  SECTION("impacts of hard bodies at 0.5 m/s, heard from 1 m, peak between -26 and -3 dBFS (a shell)") {
+  CHECK(all.strike(hit(0, 1, 0.0001f, 1e-6f), {}).min_audible_gain > 1);
+  CHECK_FALSE(all.strike(hit(0, 1, 0.5f, 0.1f), {}).min_audible_gain > 1);
+  SECTION("impacts of hard bodies at 0.5 m/s peak between -26 and -3 dBFS at 1 m") {
     for (const int id : {1, 2, 4}) {
       const double peak = rendered_peak(hit(0, id, 0.5f, static_cast<float>(all.body(id).mass_kg), 100));
       CAPTURE(id, peak);
@@ -190,8 +188,7 @@ TEST_CASE("An impact's level follows pressure to the power 0.6, and says when it
       CHECK(peak < 0.71);
     }
   }
-  SECTION(
-      "a rubber ball is softer by far: its blow is too long for modes, its own jerk is the least that is heard") {
+  SECTION("a rubber ball is much softer: its pulse is too long for modes, and its own jerk is the lower bound") {
     const contact_event_t blow = hit(0, 3, 0.5f, static_cast<float>(all.body(3).mass_kg), 100);
     const double length_s = all.strike(blow, {}).pulse[0].samples / 48000.0;
     REQUIRE(length_s > 0.01);
@@ -204,7 +201,7 @@ TEST_CASE("An impact's level follows pressure to the power 0.6, and says when it
   }
 }
 
-TEST_CASE("A tool sounds as what touches of it, not as a body of a size that nobody knows") {
+TEST_CASE("A tool sounds by its contact shape") {
   scene_t s = scene();
   body_def_t body{};
   body.id = s.body_count++, body.tool = 0;
@@ -221,7 +218,7 @@ TEST_CASE("A tool sounds as what touches of it, not as a body of a size that nob
   CHECK(sound().modes.empty());
   CHECK(sound().mass_kg == Approx(0.1));
   CHECK(sound().radius_m == Approx(0.006));
-  SECTION("also a bar in the hand") {
+  SECTION("a tool can be a bar") {
     s.tools[0].shape = tool_def_t::BOX;
     s.tools[0].size_m.x = 0.3, s.tools[0].size_m.y = 0.03, s.tools[0].size_m.z = 0.005;
     REQUIRE_FALSE(sound().modes.empty());
@@ -229,8 +226,7 @@ TEST_CASE("A tool sounds as what touches of it, not as a body of a size that nob
   }
 }
 
-TEST_CASE(
-    "A blow on a nodal line leaves the mode silent, and one whose place nobody knows sounds as the mean of all") {
+TEST_CASE("A strike on a nodal line excites no mode, and a strike at an unknown place has mean gains") {
   const Impacts all = impacts();
   const double length = 0.3;
   contact_event_t blow = hit(0, 1, 0.5f, 0.353f);
@@ -257,13 +253,13 @@ TEST_CASE(
   CHECK(somewhere[0] == anywhere[0]);
   // The end of a free bar moves twice its rms value.
   CHECK(std::abs(end[0]) == Approx(2 * anywhere[0]).epsilon(1e-3));
-  SECTION("also one beside the body counts as one on it") {
+  SECTION("a strike beside the body counts as on its surface") {
     CHECK(gains(1, 0.1)[0] == Approx(end[0]));
     CHECK(gains(1.5)[0] == Approx(end[0]));
   }
 }
 
-TEST_CASE("Hard bodies meet again and again within 15 ms, in step with their lowest modes. Soft ones do not") {
+TEST_CASE("Hard bodies collide repeatedly within 15 ms in step with their lowest modes, soft bodies once") {
   const Impacts all = impacts();
   const auto humps = [](const Strike& s) {
     return std::count_if(s.pulse.begin(), s.pulse.end(), [](const Hump& h) { return h.samples > 0; });
@@ -285,7 +281,7 @@ TEST_CASE("Hard bodies meet again and again within 15 ms, in step with their low
         nearest = std::min(nearest, std::abs(48000 / m.frequency_Hz - hard.pulse[i].begin));
     CHECK(nearest <= 0.5);
   }
-  SECTION("never, when a scene does not want it") {
+  SECTION("the setting micro_collisions 0 disables repeated collisions") {
     Settings settings;
     settings.micro_collisions = 0;
     const Strike none = impacts(settings).strike(hit(1, 4, 1, 0.3f, 30), {});
@@ -293,7 +289,7 @@ TEST_CASE("Hard bodies meet again and again within 15 ms, in step with their low
   }
 }
 
-TEST_CASE("No event, however wild, makes a strike that is no number") {
+TEST_CASE("No contact event gives a strike with values that are not finite") {
   const Impacts all = impacts();
   std::mt19937 random(6);
   const float wild[] = {0, 1e-30f, 1e30f, 1, 3e38f};

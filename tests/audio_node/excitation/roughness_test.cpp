@@ -24,7 +24,7 @@ const Eigen::Vector3d kOblique = Eigen::Vector3d(3, 1, -2).normalized();
 
 }  // namespace
 
-TEST_CASE("Heights and slopes of roughness have the mean square that is asked for, whichever way it is crossed") {
+TEST_CASE("Heights and slopes of roughness have the requested mean square in any direction") {
   const Roughness of{2e-6, 0};
   const Eigen::Vector3d along = GENERATE(Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), kOblique);
   // A quarter of the finest grain, so that nothing is omitted: 0.25 m in total. The longest waves, of 2.4 mm where
@@ -41,7 +41,7 @@ TEST_CASE("Heights and slopes of roughness have the mean square that is asked fo
   CHECK(square_slope / n == Approx(mean_square_slope(of)).epsilon(0.05));
 }
 
-TEST_CASE("Roughness is fractal: over twice the way heights differ by 2^H more") {
+TEST_CASE("Roughness is fractal: height differences over twice the distance are larger by 2^H") {
   const double step_m = 0.4e-6;
   const auto slopes = line({2e-6, 0}, kOblique, step_m, 640'000);
   std::vector<double> heights{0};
@@ -57,7 +57,7 @@ TEST_CASE("Roughness is fractal: over twice the way heights differ by 2^H more")
   CHECK(exponent == Approx(kHurst).margin(0.08));
 }
 
-TEST_CASE("Below a map roughness has no waves that the map shows") {
+TEST_CASE("Roughness below a map has no waves that the map resolves") {
   const double step_m = 0.4e-6;
   const auto long_waves = [&](double texel_m) {
     const auto slopes = line({2e-6, texel_m}, kOblique, step_m, 64'000);
@@ -71,7 +71,7 @@ TEST_CASE("Below a map roughness has no waves that the map shows") {
   CHECK(mean_square_slope({2e-6, 1e-9}) == 0);
 }
 
-TEST_CASE("A surface without roughness has no slope, and one that nothing passes keeps its own") {
+TEST_CASE("A surface without roughness has no slope, and a contact at rest has a constant slope") {
   CHECK(line({0, 0}, kOblique, 1e-6, 64) == std::vector<double>(64, 0.0));
   const auto still = line({2e-6, 0}, kOblique, 0, 64);
   for (const double s : still) CHECK(s == still[0]);

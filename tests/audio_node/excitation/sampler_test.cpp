@@ -82,11 +82,11 @@ struct World {
   Sampler sampler;
   explicit World(const Settings& s, double radius_m = 0.05)
       : scene(balls(radius_m)), settings(s), impacts(scene, {}, s, 48000, 1), sampler(scene, s) {
-    sampler.play(&data, 5);
+    sampler.set_database(&data, 5);
   }
   Strike strike(const contact_event_t& e) {
     Strike s = impacts.strike(e, sync::HostTime{});
-    sampler.record(s, e, impacts);
+    sampler.add_recordings(s, e, impacts);
     return s;
   }
 };
@@ -95,7 +95,7 @@ struct World {
 double rms_of(Strike s) {
   auto bench = std::make_unique<Bench>();
   s.scheduled = sync::host_time(kStart_ns + 1'000'000);
-  bench->crossing.strikes.push(s);
+  bench->queues.strikes.push(s);
   for (int i = 0; i < 20; ++i) bench->play(480);
   double sum = 0;
   for (const float x : bench->left) sum += static_cast<double>(x) * static_cast<double>(x);
@@ -122,7 +122,7 @@ std::vector<float> blows_by(const std::vector<std::string>& methods) {
     if (method != "none") {
       Strike s = w.strike(hit(1, 0.1));
       s.scheduled = sync::host_time(at);
-      REQUIRE(bench->crossing.strikes.push(s));
+      REQUIRE(bench->queues.strikes.push(s));
     }
     at += 20'000'000;
     for (int i = 0; i < 15; ++i) bench->play(64);
@@ -133,7 +133,7 @@ std::vector<float> blows_by(const std::vector<std::string>& methods) {
 
 }  // namespace
 
-TEST_CASE("The method says what sounds: modes, recordings, or both with the same power") {
+TEST_CASE("The method selects modes, recordings, or both with the same total power") {
   World modal(with("modal")), samples(with("samples")), both(with("both", 0.25));
   const Strike m = modal.strike(hit(1)), s = samples.strike(hit(1)), b = both.strike(hit(1));
   CHECK(m.recorded.database == 0);
@@ -148,7 +148,7 @@ TEST_CASE("The method says what sounds: modes, recordings, or both with the same
   CHECK(recordings == Approx(std::sin(0.25 * M_PI / 2)).epsilon(1e-5));
 }
 
-TEST_CASE("What a recorded blow sounds like in the air grows as its impulse to the power 0.6") {
+TEST_CASE("The level of a recorded blow follows its impulse to the power 0.6") {
   World w(with("samples"));
   const double once = rms_of(w.strike(hit(1, 0.5)));
   REQUIRE(once > 0);
@@ -156,11 +156,11 @@ TEST_CASE("What a recorded blow sounds like in the air grows as its impulse to t
   for (const double factor : {0.1, 0.5, 2.0, 4.0})
     CHECK(rms_of(w.strike(hit(1, 0.5 * factor))) / once == Approx(std::pow(factor, 0.6)).epsilon(1e-4));
   // More than 12 dB above its recording it does not grow.
-  CHECK(level_of(1e6, w.settings) == 4);
-  CHECK(level_of(-1, w.settings) == 0);
+  CHECK(recorded_blow_level(1e6, w.settings) == 4);
+  CHECK(recorded_blow_level(-1, w.settings) == 0);
 }
 
-TEST_CASE("A body half as large sounds an octave higher, and no more than that") {
+TEST_CASE("A body of half the size sounds an octave higher, which is the maximum shift") {
   for (const auto& [radius, pitch] :
        std::vector<std::pair<double, double>>{{0.05, 1}, {0.04, 1.25}, {0.025, 2}, {0.01, 2}, {0.5, 0.5}}) {
     World w(with("samples"), radius);
@@ -169,83 +169,81 @@ TEST_CASE("A body half as large sounds an octave higher, and no more than that")
   }
 }
 
-TEST_CASE("What has no recording of its pair falls back to its materials, then to its modes, and says so once") {
+TEST_CASE("A missing recording of a pair is replaced by those of its materials or by modes, and reported once") {
   World w(with("samples"));
   w.strike(hit(1));
-  CHECK(w.sampler.news().empty());
+  CHECK(w.sampler.take_messages().empty());
   const Strike rubber = w.strike(hit(2));
   CHECK(rubber.recorded.database == 5);  // oak alone
   CHECK(rubber.recorded.shots[0].recording ==
         &w.data.sounds.at({{"", "oak"}, Interaction::kImpact}).by_speed[0].takes[0]);
-  auto said = w.sampler.news();
-  REQUIRE(said.size() == 1);
-  CHECK(said[0] == "oak on rubber: no recording of this impact; that of oak alone is played");
+  auto messages = w.sampler.take_messages();
+  REQUIRE(messages.size() == 1);
+  CHECK(messages[0] == "oak on rubber: no recording of this impact; that of oak alone is played");
   w.strike(hit(2));
-  CHECK(w.sampler.news().empty());
+  CHECK(w.sampler.take_messages().empty());
   contact_event_t unknown = hit(2);
   unknown.material_a = unknown.body_a = 1;
   const Strike computed = w.strike(unknown);
   CHECK(computed.recorded.database == 0);
   CHECK(computed.sides[1].voice >= 0);
   CHECK(computed.sides[1].impulse == w.impacts.strike(unknown, {}).sides[1].impulse);
-  said = w.sampler.news();
-  REQUIRE(said.size() == 1);
-  CHECK_THAT(said[0], Catch::Contains("it is computed"));
+  messages = w.sampler.take_messages();
+  REQUIRE(messages.size() == 1);
+  CHECK_THAT(messages[0], Catch::Contains("it is computed"));
 }
 
-TEST_CASE(
-    "Contacts that slide scrape by their recording, those that roll do not slide, and what is computed gives "
-    "way") {
+TEST_CASE("Sliding contacts play their scrape recording, and the computed sound is reduced") {
   World w(with("samples"));
   auto lasting = [&, ms = 0](const contact_t& c) mutable {
-    std::vector<RecordedContact> rubs;
-    for (int i = 0; i < 100; ++i) rubs = w.sampler.rubs({c}, sync::host_time(1'000'000 * ++ms));
-    return rubs;
+    std::vector<RecordedContact> contacts;
+    for (int i = 0; i < 100; ++i) contacts = w.sampler.recorded_contacts({c}, sync::host_time(1'000'000 * ++ms));
+    return contacts;
   };
-  const auto rubs = lasting(sliding(0.2, 0, 4));
-  REQUIRE(rubs.size() == 1);
-  CHECK(rubs[0].database == 5);
-  CHECK(rubs[0].speed_m_s == Approx(0.2));
+  const auto contacts = lasting(sliding(0.2, 0, 4));
+  REQUIRE(contacts.size() == 1);
+  CHECK(contacts[0].database == 5);
+  CHECK(contacts[0].speed_m_s == Approx(0.2));
   // The root of the friction power: 0.5 * 4 N * 0.2 m/s.
-  CHECK(static_cast<double>(rubs[0].level) ==
+  CHECK(static_cast<double>(contacts[0].level) ==
         Approx(Settings{}.recorded_scrape_level * std::sqrt(0.4)).epsilon(1e-6));
-  CHECK(w.sampler.modal_of(11, Interaction::kScrape) == 0);
-  CHECK(w.sampler.modal_of(12, Interaction::kScrape) == 1);
+  CHECK(w.sampler.modal_gain(11, Interaction::kScrape) == 0);
+  CHECK(w.sampler.modal_gain(12, Interaction::kScrape) == 1);
   // No recording of rolling: it is computed.
   CHECK(lasting(sliding(0, 0.3, 4)).empty());
-  CHECK(w.sampler.modal_of(11, Interaction::kRoll) == 1);
+  CHECK(w.sampler.modal_gain(11, Interaction::kRoll) == 1);
   w.sampler.configure(with("modal"));
   CHECK(lasting(sliding(0.2, 0, 4)).empty());
-  CHECK(w.sampler.modal_of(11, Interaction::kScrape) == 1);
+  CHECK(w.sampler.modal_gain(11, Interaction::kScrape) == 1);
 }
 
-TEST_CASE("What rests under load and jitters does not scrape, neither as recorded nor as computed") {
+TEST_CASE("A contact that rests under load and jitters does not scrape, recorded or computed") {
   World w(with("samples"));
   for (int ms = 1; ms < 2000; ++ms) {
     // 2 mm/s back and forth, 50 times a second: it never moves 20 um away.
-    const auto& rubs =
-        w.sampler.rubs({sliding(ms / 10 % 2 ? 0.002 : -0.002, 0, 50)}, sync::host_time(1'000'000 * ms));
-    REQUIRE(rubs.empty());
-    REQUIRE(w.sampler.modal_of(11, Interaction::kScrape) == 0);
+    const auto& contacts =
+        w.sampler.recorded_contacts({sliding(ms / 10 % 2 ? 0.002 : -0.002, 0, 50)}, sync::host_time(1'000'000 * ms));
+    REQUIRE(contacts.empty());
+    REQUIRE(w.sampler.modal_gain(11, Interaction::kScrape) == 0);
   }
 }
 
 TEST_CASE("A recorded contact that ends or comes to rest ends once") {
   World w(with("samples"));
   int ms = 0;
-  const auto rubs = [&](const sync::Contacts& all) {
-    return w.sampler.rubs(all, sync::host_time(1'000'000 * ++ms));
+  const auto update = [&](const sync::Contacts& all) {
+    return w.sampler.recorded_contacts(all, sync::host_time(1'000'000 * ++ms));
   };
   const auto scrape = [&] {
-    for (int i = 0; i < 100; ++i) rubs({sliding(0.2, 0, 4)});
+    for (int i = 0; i < 100; ++i) update({sliding(0.2, 0, 4)});
   };
   const auto ends_in = [&](const sync::Contacts& all) {
-    const auto told = rubs(all);
-    REQUIRE(told.size() == 1);
-    CHECK(told[0].ends);
-    CHECK(told[0].contact == 11);
-    CHECK(told[0].database == 5);
-    CHECK(rubs(all).empty());
+    const auto ended = update(all);
+    REQUIRE(ended.size() == 1);
+    CHECK(ended[0].ends);
+    CHECK(ended[0].contact == 11);
+    CHECK(ended[0].database == 5);
+    CHECK(update(all).empty());
   };
   scrape();
   ends_in({});
@@ -253,9 +251,9 @@ TEST_CASE("A recorded contact that ends or comes to rest ends once") {
   ends_in({sliding(0, 0, 4)});
 }
 
-TEST_CASE("Of more contacts than can be heard at a time the loudest are played, and the others computed") {
+TEST_CASE("The loudest contacts are played, and contacts beyond the maximum number are computed") {
   World w(with("samples"));
-  std::vector<RecordedContact> rubs;
+  std::vector<RecordedContact> contacts;
   for (int ms = 1; ms < 100; ++ms) {
     sync::Contacts all;
     for (int i = 0; i < 2 * Loops::kMax; ++i) {
@@ -263,15 +261,15 @@ TEST_CASE("Of more contacts than can be heard at a time the loudest are played, 
       c.contact_id = i;
       all.push_back(c);
     }
-    rubs = w.sampler.rubs(all, sync::host_time(1'000'000 * ms));
+    contacts = w.sampler.recorded_contacts(all, sync::host_time(1'000'000 * ms));
   }
-  REQUIRE(rubs.size() == Loops::kMax);
-  for (const RecordedContact& r : rubs) CHECK(r.contact >= Loops::kMax);
-  CHECK(w.sampler.modal_of(0, Interaction::kScrape) == 1);
-  CHECK(w.sampler.modal_of(2 * Loops::kMax - 1, Interaction::kScrape) == 0);
+  REQUIRE(contacts.size() == Loops::kMax);
+  for (const RecordedContact& r : contacts) CHECK(r.contact >= Loops::kMax);
+  CHECK(w.sampler.modal_gain(0, Interaction::kScrape) == 1);
+  CHECK(w.sampler.modal_gain(2 * Loops::kMax - 1, Interaction::kScrape) == 0);
 }
 
-TEST_CASE("Absurd events and contacts play finite sound") {
+TEST_CASE("Invalid events and contacts play finite sound") {
   World w(with("samples"));
   for (const float v :
        {0.f, 1e30f, -1e30f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
@@ -280,12 +278,12 @@ TEST_CASE("Absurd events and contacts play finite sound") {
     CAPTURE(v);
     CHECK(std::isfinite(rms_of(w.strike(e))));
     for (const RecordedContact& r :
-         w.sampler.rubs({sliding(static_cast<double>(v), static_cast<double>(v), static_cast<double>(v))}, {}))
+         w.sampler.recorded_contacts({sliding(static_cast<double>(v), static_cast<double>(v), static_cast<double>(v))}, {}))
       CHECK(std::isfinite(r.level));
   }
 }
 
-TEST_CASE("Changing the method while bodies sound is not heard as a click: what sounds goes on as it would have") {
+TEST_CASE("A change of the method leaves sounding bodies unchanged and makes no click") {
   const auto together = blows_by({"modal", "samples", "both", "modal"});
   const auto first = blows_by({"modal", "none", "none", "none"}),
              second = blows_by({"none", "samples", "none", "none"});
@@ -301,7 +299,7 @@ TEST_CASE("Changing the method while bodies sound is not heard as a click: what 
   CHECK(most < 0.9f);
 }
 
-TEST_CASE("A contact that scrapes while the method changes fades from one way to the other") {
+TEST_CASE("A scraping contact crossfades when the method changes") {
   World w(with("samples"));
   Layers smooth;
   Recording wave{{}, 0.5f, 0.35f};
@@ -312,8 +310,8 @@ TEST_CASE("A contact that scrapes while the method changes fades from one way to
   auto bench = std::make_unique<Bench>();
   for (int i = 0; i < 1000; ++i) {
     w.sampler.configure(with(i / 100 % 2 ? "modal" : "samples"));
-    for (const RecordedContact& r : w.sampler.rubs({sliding(1, 0, 8)}, sync::host_time(bench->time_ns(bench->left.size()))))
-      bench->crossing.recorded.rubs.push(r);
+    for (const RecordedContact& r : w.sampler.recorded_contacts({sliding(1, 0, 8)}, sync::host_time(bench->time_ns(bench->left.size()))))
+      bench->queues.recorded.contacts.push(r);
     bench->play(48);
   }
   float steepest = 0, most = 0;

@@ -51,7 +51,7 @@ scene_t board(bool stands) {
 }
 
 // Orientation of the board, as the simulation publishes it.
-world_state_t told(std::int64_t ms, const Eigen::Quaterniond& orientation,
+world_state_t published_pose(std::int64_t ms, const Eigen::Quaterniond& orientation,
                    const Vector3d& spin_rad_s = Vector3d::Zero()) {
   world_state_t m{};
   m.header.run_id = kRun, m.header.incarnation = 7, m.header.seq = ms;
@@ -67,14 +67,14 @@ world_state_t told(std::int64_t ms, const Eigen::Quaterniond& orientation,
 sync::SimTime sim_ms(std::int64_t ms) { return sync::sim_time(ms * kMs); }
 
 // With the bodies of a scene, which sound, and a clock that advances by 1 ms with each update.
-struct Heard {
-  explicit Heard(const scene_t& of, std::shared_ptr<const HeardSurfaces> surfaces = wavy_surfaces(),
+struct SlidingBench {
+  explicit SlidingBench(const scene_t& of, std::shared_ptr<const AudioSurfaces> surfaces = wavy_surfaces(),
                  const Settings& settings = {})
       : scene(of),
         impacts(
             of, [](std::int64_t) { return std::nullopt; }, settings, 48000, 1),
         slides(of, std::move(surfaces), bodies, impacts, settings, 48000) {}
-  std::vector<Scrape> look(const contact_t& c) {
+  std::vector<Scrape> step(const contact_t& c) {
     now_ms += 1;
     return slides.scrapes({c}, sim_ms(now_ms), at_ms(static_cast<double>(now_ms)), 0.001);
   }
@@ -91,11 +91,10 @@ Eigen::Quaterniond turn(double rad, const Vector3d& axis = Vector3d::UnitZ()) {
 
 }  // namespace
 
-TEST_CASE(
-    "Contacts that slide are told with their place on both bodies, and stronger with the power of friction") {
-  Heard h(board(true));
+TEST_CASE("A scrape has its place on both bodies, its velocity and its strength") {
+  SlidingBench h(board(true));
   const Vector3d place(0.005, 0.003, 0), velocity(0, 0.1, 0);
-  const auto all = h.look(sliding(velocity, 2, place));
+  const auto all = h.step(sliding(velocity, 2, place));
   REQUIRE(all.size() == 1);
   const Scrape s = all[0];
   const ScrapeSide &side = s.sides[0], &other = s.sides[1];
@@ -103,8 +102,8 @@ TEST_CASE(
   CHECK(side.relief != nullptr);
   CHECK((side.place_m - place).norm() < 1e-7);
   CHECK((side.velocity_m_s - Vector3d(0.1, 0, 0)).norm() < 1e-6);
-  CHECK(side.slides.x() == Approx(1));
-  CHECK(side.rolls.norm() == 0);
+  CHECK(side.slide_vector.x() == Approx(1));
+  CHECK(side.roll_vector.norm() == 0);
   CHECK(side.voice == h.impacts.voice_id(0));
   CHECK(side.resonators.count > 0);
   CHECK(other.voice == h.impacts.voice_id(1));
@@ -114,43 +113,43 @@ TEST_CASE(
   CHECK(s.roll == 0);
 }
 
-TEST_CASE("What slides is as strong as the root of the power that friction takes") {
-  // Strength goes with the root of friction, force and speed (FoleyAutomatic, section 4.2), level with its power
+TEST_CASE("The strength of sliding is the root of the friction power") {
+  // Strength is proportional to the root of friction, force and speed (FoleyAutomatic, section 4.2), and level to its power
   // 0.6.
   CHECK(sliding_strength(0.5, 2, 0.1) == Approx(std::sqrt(0.1)));
   const double force_N = GENERATE(0.5, 8.0), speed_m_s = GENERATE(0.05, 0.4);
-  const auto told = [&](double force, double speed) {
-    Heard h(board(true));
-    return h.look(sliding({0, speed, 0}, force, {0.005, 0.003, 0})).at(0);
+  const auto scrape_at = [&](double force, double speed) {
+    SlidingBench h(board(true));
+    return h.step(sliding({0, speed, 0}, force, {0.005, 0.003, 0})).at(0);
   };
-  const double one = static_cast<double>(told(2, 0.1).slide),
-               other = static_cast<double>(told(force_N, speed_m_s).slide);
+  const double one = static_cast<double>(scrape_at(2, 0.1).slide),
+               other = static_cast<double>(scrape_at(force_N, speed_m_s).slide);
   CHECK(other / one == Approx(std::sqrt(force_N * speed_m_s / 0.2)).epsilon(1e-4));
 }
 
-TEST_CASE("The reference stroke is as loud over one pair of bodies as a blow that makes them as loud") {
+TEST_CASE("The level of the reference stroke follows its expected pressure to the power 0.6") {
   // Twice the force per slope, and so twice the expected pressure: the law of level takes a power of 0.6.
-  const auto told = [](double force_N) {
+  const auto strength_at = [](double force_N) {
     Settings settings;
     settings.scrape_force_N = force_N;
-    Heard h(board(true), wavy_surfaces(), settings);
-    return static_cast<double>(h.look(sliding({0, 0.1, 0}, 1, {0.005, 0.003, 0})).at(0).slide);
+    SlidingBench h(board(true), wavy_surfaces(), settings);
+    return static_cast<double>(h.step(sliding({0, 0.1, 0}, 1, {0.005, 0.003, 0})).at(0).slide);
   };
-  CHECK(told(80) / told(40) == Approx(std::pow(2, 0.6)).epsilon(1e-4));
+  CHECK(strength_at(80) / strength_at(40) == Approx(std::pow(2, 0.6)).epsilon(1e-4));
 }
 
-TEST_CASE("What rests under load is silent, however it jitters, and what begins to slide is heard at once") {
-  Heard h(board(true));
+TEST_CASE("A contact that rests under load is silent although it jitters, and sliding is audible at once") {
+  SlidingBench h(board(true));
   const Vector3d place(0.005, 0.003, 0);
-  CHECK(h.look(sliding(Vector3d::Zero(), 10, place)).empty());
-  for (int ms = 0; ms < 200; ++ms) REQUIRE(h.look(sliding({0, ms % 2 ? 0.01 : -0.01, 0}, 10, place)).empty());
-  for (int ms = 0; ms < 200; ++ms) REQUIRE(h.look(sliding({0, 0.0009, 0}, 10, place)).empty());  // creeps
-  CHECK(h.look(sliding({0, 0.1, 0}, 10, place)).at(0).slide > 0);
-  SECTION("and ends once, when it rests again or has gone") {
+  CHECK(h.step(sliding(Vector3d::Zero(), 10, place)).empty());
+  for (int ms = 0; ms < 200; ++ms) REQUIRE(h.step(sliding({0, ms % 2 ? 0.01 : -0.01, 0}, 10, place)).empty());
+  for (int ms = 0; ms < 200; ++ms) REQUIRE(h.step(sliding({0, 0.0009, 0}, 10, place)).empty());  // creeps
+  CHECK(h.step(sliding({0, 0.1, 0}, 10, place)).at(0).slide > 0);
+  SECTION("a contact ends once when it comes to rest or is removed") {
     const bool rests = GENERATE(true, false);
     int ends = 0, later = 0;
     for (int ms = 0; ms < 100; ++ms) {
-      const auto all = rests ? h.look(sliding(Vector3d::Zero(), 10, place))
+      const auto all = rests ? h.step(sliding(Vector3d::Zero(), 10, place))
                              : h.slides.scrapes({}, sim_ms(900), at_ms(900), 0.001);
       for (const Scrape& s : all) (s.ends ? ends : later) += 1;
     }
@@ -161,60 +160,60 @@ TEST_CASE("What rests under load is silent, however it jitters, and what begins 
 }
 
 TEST_CASE("Surfaces without a map scrape by the roughness of their materials") {
-  Heard h(board(true), std::make_shared<HeardSurfaces>());
-  const Scrape s = h.look(sliding({0, 0.1, 0}, 2, {0.005, 0.003, 0})).at(0);
+  SlidingBench h(board(true), std::make_shared<AudioSurfaces>());
+  const Scrape s = h.step(sliding({0, 0.1, 0}, 2, {0.005, 0.003, 0})).at(0);
   CHECK(s.sides[0].relief == nullptr);
   CHECK(s.sides[0].roughness.height_m > 0);
   CHECK(s.slide > 0);
 }
 
-TEST_CASE("A body that moves scrapes as it is turned just then, and is silent until that is known") {
-  Heard h(board(false));
+TEST_CASE("A moving body scrapes by its current orientation and is silent until that is known") {
+  SlidingBench h(board(false));
   const contact_t along_y = sliding({0, 0.1, 0}, 2, {0.005, 0.003, 0});
-  CHECK(h.look(along_y).empty());
-  SECTION("about the normal") {
-    h.bodies.push(told(500, turn(M_PI / 2)), at_ms(500));
-    CHECK(h.look(along_y).at(0).sides[0].slides.x() == Approx(1).margin(1e-3));
-    SECTION("and when it has turned on, the way over the map has another direction") {
-      h.bodies.push(told(600, turn(M_PI)), at_ms(600));
+  CHECK(h.step(along_y).empty());
+  SECTION("rotated about the normal") {
+    h.bodies.push(published_pose(500, turn(M_PI / 2)), at_ms(500));
+    CHECK(h.step(along_y).at(0).sides[0].slide_vector.x() == Approx(1).margin(1e-3));
+    SECTION("after a further rotation the path over the map has another direction") {
+      h.bodies.push(published_pose(600, turn(M_PI)), at_ms(600));
       h.now_ms = 600;
-      const ScrapeSide side = h.look(along_y).at(0).sides[0];
-      CHECK(std::abs(side.slides.x()) < 0.05f);
-      CHECK(side.slides.y() == Approx(-1).epsilon(1e-3));
+      const ScrapeSide side = h.step(along_y).at(0).sides[0];
+      CHECK(std::abs(side.slide_vector.x()) < 0.05f);
+      CHECK(side.slide_vector.y() == Approx(-1).epsilon(1e-3));
     }
   }
-  SECTION("onto another side, whose map has other axes") {
+  SECTION("rotated onto another side, whose map has other axes") {
     // +y of the body is up, so u grows along its z, and its z is along -y of the world.
-    h.bodies.push(told(500, turn(M_PI / 2, Vector3d::UnitX())), at_ms(500));
-    const ScrapeSide side = h.look(sliding({0, 0.1, 0}, 2, {0.003, 0.01, 0.005})).at(0).sides[0];
+    h.bodies.push(published_pose(500, turn(M_PI / 2, Vector3d::UnitX())), at_ms(500));
+    const ScrapeSide side = h.step(sliding({0, 0.1, 0}, 2, {0.003, 0.01, 0.005})).at(0).sides[0];
     CHECK(side.axes.across == 1);
     CHECK(side.axes.u == 2);
-    CHECK(side.slides.z() == Approx(-1));
+    CHECK(side.slide_vector.z() == Approx(-1));
   }
-  SECTION("or is the second of the two") {
-    h.bodies.push(told(500, turn(M_PI / 2)), at_ms(500));
+  SECTION("the moving body is the second of the two") {
+    h.bodies.push(published_pose(500, turn(M_PI / 2)), at_ms(500));
     contact_t c = along_y;
     std::swap(c.body_a, c.body_b), std::swap(c.material_a, c.material_b);
     std::swap(c.points[0].a_body_m, c.points[0].b_body_m);
-    const ScrapeSide side = h.look(c).at(0).sides[1];
-    CHECK(side.slides.x() == Approx(-1));
+    const ScrapeSide side = h.step(c).at(0).sides[1];
+    CHECK(side.slide_vector.x() == Approx(-1));
     CHECK(side.place_m.x() == Approx(0.005));
   }
 }
 
-TEST_CASE("A finger on a turning board goes over its map as fast as the places that are told") {
+TEST_CASE("A finger on a rotating board moves over the map at the speed of the received places") {
   // Two thirds of a revolution a second under a finger that stays; the board is published at 60 Hz, the finger at
   // 1 kHz.
   const double spin_rad_s = 4, radius_m = 0.03;
-  Heard h(board(false));
+  SlidingBench h(board(false));
   Vector3d gone = Vector3d::Zero(), began = Vector3d::Zero();
   for (std::int64_t ms = 0; ms <= 500; ++ms) {
     const double rad = 1e-3 * spin_rad_s * static_cast<double>(ms);
     h.now_ms = ms - 1;
-    if (ms % 17 == 0) h.bodies.push(told(ms, turn(rad), {0, 0, spin_rad_s}), sync::host_time(ms * kMs));
+    if (ms % 17 == 0) h.bodies.push(published_pose(ms, turn(rad), {0, 0, spin_rad_s}), sync::host_time(ms * kMs));
     const Vector3d finger(radius_m, 0, 0), board = Vector3d(0, 0, spin_rad_s).cross(finger);
     const contact_t c = sliding(-board, 2, turn(rad).conjugate() * finger);
-    const ScrapeSide side = h.look(c).at(0).sides[0];
+    const ScrapeSide side = h.step(c).at(0).sides[0];
     if (ms == 0) began = side.place_m;
     // Extrapolated with the previous velocity; an error of half a tick of a circle, of 60 waves in total.
     REQUIRE((began + gone - side.place_m).norm() < 0.06 * kWave_m);
@@ -222,22 +221,23 @@ TEST_CASE("A finger on a turning board goes over its map as fast as the places t
   }
 }
 
-TEST_CASE("Over a map that is told of at 60 Hz the way is steady, and a body's own edge goes over none") {
-  Heard h(board(false));
-  h.bodies.push(told(0, turn(0)), sync::host_time(0));
+TEST_CASE(
+    "The path over a map is steady with updates at 60 Hz, and has no length under an edge of the mapped body") {
+  SlidingBench h(board(false));
+  h.bodies.push(published_pose(0, turn(0)), sync::host_time(0));
   h.now_ms = -1;
   const bool own_edge = GENERATE(false, true);
   const double speed_m_s = 0.2;
   Scrape s;
   double before_m = 0;
   for (std::int64_t ms = 0; ms < 500; ++ms) {
-    const double told_m = own_edge ? 0.02 : 1e-3 * speed_m_s * static_cast<double>(ms - ms % 17);
-    contact_t c = sliding({speed_m_s, 0, 0}, 2, {told_m, 0, 0});
+    const double received_m = own_edge ? 0.02 : 1e-3 * speed_m_s * static_cast<double>(ms - ms % 17);
+    contact_t c = sliding({speed_m_s, 0, 0}, 2, {received_m, 0, 0});
     // The other corners of the body; from time to time another one is deepest.
     c.points.resize(2), c.point_count = 2;
-    c.points[1].a_body_m = to_vec3f(Vector3d(told_m + 0.1, 0.05, 0));
+    c.points[1].a_body_m = to_vec3f(Vector3d(received_m + 0.1, 0.05, 0));
     if (ms % 34 >= 17) std::swap(c.points[0], c.points[1]);
-    s = h.look(c).at(0);
+    s = h.step(c).at(0);
     if (own_edge) continue;
     const ScrapeSide& side = s.sides[0];
     REQUIRE(side.velocity_m_s.x() == Approx(speed_m_s).epsilon(0.01));
@@ -255,8 +255,7 @@ TEST_CASE("Over a map that is told of at 60 Hz the way is steady, and a body's o
 }
 
 TEST_CASE(
-    "A ball that rolls is heard of its own circumference, once a turn louder, through the patch that it rests "
-    "on") {
+    "A rolling ball repeats the sound of its circumference, once per revolution louder, and low-passed by its patch") {
   // Of 20 mm, on a floor, 1.6 revolutions a second.
   const double radius_m = 0.02, spin_rad_s = 10, speed_m_s = radius_m * spin_rad_s, force_N = 0.5;
   scene_t scene = board(true);
@@ -264,7 +263,7 @@ TEST_CASE(
   scene.shapes[1].kind = shape_def_t::SPHERE, scene.shapes[1].size_m.x = radius_m;
   Settings settings;
   settings.turn_depth = 0.5;
-  Heard h(scene, std::make_shared<HeardSurfaces>(), settings);
+  SlidingBench h(scene, std::make_shared<AudioSurfaces>(), settings);
   h.now_ms = -1;
   std::vector<double> strong;
   std::vector<Vector3d> places;
@@ -273,7 +272,7 @@ TEST_CASE(
     const double t = 1e-3 * static_cast<double>(ms), rad = spin_rad_s * t;
     const Eigen::Quaterniond lies = turn(rad, Vector3d::UnitY());
     if (ms % 17 == 0) {
-      world_state_t m = told(ms, lies, {0, spin_rad_s, 0});
+      world_state_t m = published_pose(ms, lies, {0, spin_rad_s, 0});
       m.bodies[0].body = 1;
       m.bodies[0].position_m = to_vec3(Vector3d(speed_m_s * t, 0, radius_m));
       h.bodies.push(m, sync::host_time(ms * kMs));
@@ -285,15 +284,15 @@ TEST_CASE(
     c.points[0].a_world_m = c.points[0].a_body_m;
     c.points[0].b_body_m =
         to_vec3f(turn(spin_rad_s * then, Vector3d::UnitY()).conjugate() * Vector3d(0, 0, -radius_m));
-    const auto all = h.look(c);
+    const auto all = h.step(c);
     REQUIRE(all.size() == (ms > 0 || !all.empty() ? 1 : 0));
     s = all[0];
     CHECK(s.slide == 0);
     strong.push_back(static_cast<double>(s.roll));
     places.push_back(s.sides[1].place_m);
   }
-  CHECK(s.sides[0].rolls.x() == Approx(1));
-  CHECK(s.sides[1].rolls.norm() == Approx(1));
+  CHECK(s.sides[0].roll_vector.x() == Approx(1));
+  CHECK(s.sides[1].roll_vector.norm() == Approx(1));
   CHECK(s.sides[1].velocity_m_s.norm() == Approx(speed_m_s));
   const double reduced = reduced_modulus_Pa(elastic(scene.materials[0]), elastic(scene.materials[1]));
   CHECK(s.cutoff_Hz == Approx(speed_m_s / (2 * std::cbrt(3 * force_N * radius_m / (4 * reduced)))));
@@ -311,17 +310,17 @@ TEST_CASE(
     REQUIRE(strong[ms + turn_ms] == Approx(strong[ms]).epsilon(0.01));
 }
 
-TEST_CASE("What rolls is as strong as its inertia makes it while it is slow, and no stronger than its load") {
+TEST_CASE("The strength of rolling is limited by inertia at low speed and by the load") {
   scene_t scene = board(true);
   scene.shapes[1].kind = shape_def_t::SPHERE, scene.shapes[1].size_m.x = 0.02;
   const auto rolls = [&](double force_N, double speed_m_s) {
-    Heard h(scene, std::make_shared<HeardSurfaces>());
+    SlidingBench h(scene, std::make_shared<AudioSurfaces>());
     contact_t c = sliding(Vector3d::Zero(), force_N, Vector3d::Zero());
     c.tool = -1;
     c.rolling_velocity_m_s = to_vec3f(Vector3d(speed_m_s, 0, 0));
     Scrape s;
     for (int ms = 0; ms < 200; ++ms)  // moved far enough to be detected
-      for (const Scrape& last : h.look(c)) s = last;
+      for (const Scrape& last : h.step(c)) s = last;
     return static_cast<double>(s.roll);
   };
   // Of 1 kg at millimetres a second: with the square of the speed. The patch grows slightly with the load: the
@@ -334,25 +333,25 @@ TEST_CASE("What rolls is as strong as its inertia makes it while it is slow, and
   CHECK(rolls(2, 1) == Approx(2 * rolls(1, 1)).epsilon(1e-4));
 }
 
-TEST_CASE("From sliding to rolling nothing jumps") {
+TEST_CASE("The transition from sliding to rolling has no jump") {
   // A ball whose contact slips less and less: c_b goes from 0 to c_a.
-  Heard h(board(true));
+  SlidingBench h(board(true));
   double slide = -1, roll = -1;
   for (int ms = 0; ms <= 400; ++ms) {
     const double slip = ms < 100 ? 1 : ms < 300 ? 1 - (ms - 100) / 200.0 : 0, speed = 0.2;
-    h.bodies.push(told(h.now_ms + 1, turn(0)), at_ms(static_cast<double>(h.now_ms + 1)));
+    h.bodies.push(published_pose(h.now_ms + 1, turn(0)), at_ms(static_cast<double>(h.now_ms + 1)));
     contact_t c = sliding({slip * speed, 0, 0}, 2, {1e-3 * ms * speed, 0, 0});
     c.tool = -1;
     c.rolling_velocity_m_s = to_vec3f(Vector3d((1 - slip / 2) * speed, 0, 0));
-    const Scrape s = h.look(c).at(0);
+    const Scrape s = h.step(c).at(0);
     const double slides = static_cast<double>(s.slide), rolls = static_cast<double>(s.roll);
     if (ms == 0) CHECK(rolls == 0);
     if (ms == 400) {
       CHECK(slides == 0);
       CHECK(rolls > 0);
     }
-    // Sliding goes with a root, which is steepest where it ends: a hundredth of the whole path changes it by a
-    // tenth. Rolling goes with the square of the speed: its last hundredth changes it by 2 %; the gate adds at
+    // Sliding follows a root, which is steepest where it ends: a hundredth of the whole path changes it by a
+    // tenth. Rolling follows the square of the speed: its last hundredth changes it by 2 %; the gate adds at
     // most the opening over 20 um.
     if (ms > 1) {
       REQUIRE(std::abs(slides - slide) < 0.2 * 1e-3);
@@ -362,8 +361,8 @@ TEST_CASE("From sliding to rolling nothing jumps") {
   }
 }
 
-TEST_CASE("Contacts that contradict themselves give no number that is none") {
-  Heard h(board(true));
+TEST_CASE("Contradictory contacts give finite sound") {
+  SlidingBench h(board(true));
   const double bad = GENERATE(1e30, -1e30, std::numeric_limits<double>::quiet_NaN());
   const int where = GENERATE(0, 1, 2, 3, 4);
   contact_t c = sliding({0, 0.1, 0}, 2, {0.005, 0.003, 0});
@@ -377,7 +376,7 @@ TEST_CASE("Contacts that contradict themselves give no number that is none") {
   auto scrapes = std::make_unique<Scrapes>(48000);
   auto voices = std::make_unique<Voices>(4, 48000, ring(Instructions::kSse2));
   for (int ms = 0; ms < 20; ++ms) {
-    for (const Scrape& s : h.look(c)) scrapes->take(s);
+    for (const Scrape& s : h.step(c)) scrapes->update(s);
     float stereo[96] = {};
     scrapes->drive(*voices, 48, at_ms(static_cast<double>(h.now_ms)));
     voices->render(stereo, 48);
@@ -385,8 +384,8 @@ TEST_CASE("Contacts that contradict themselves give no number that is none") {
   }
 }
 
-TEST_CASE("Of very many contacts the strongest are heard, and they are looked at as often as they are told") {
-  Heard h(board(true));
+TEST_CASE("With many contacts the strongest are audible, and all are processed at the snapshot rate") {
+  SlidingBench h(board(true));
   CHECK(h.slides.period_s() == 0);
   sync::Contacts many;
   for (int i = 0; i < 200; ++i) {

@@ -9,7 +9,7 @@
 
 using namespace tactus::audio;
 
-TEST_CASE("The capture holds exactly the samples given, and its pairs come out of the pipe") {
+TEST_CASE("The capture holds exactly the given samples and sends its pairs through the pipe") {
   char folder[] = "/tmp/tactus_capture_XXXXXX";
   REQUIRE(mkdtemp(folder));
   const std::string path = std::string(folder) + "/a.wav";
@@ -43,7 +43,7 @@ TEST_CASE("The capture holds exactly the samples given, and its pairs come out o
   std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("What the disk cannot take becomes silence, so that indices hold") {
+TEST_CASE("Samples that the disk cannot take are replaced by silence, so that indices stay valid") {
   char folder[] = "/tmp/tactus_capture_XXXXXX";
   REQUIRE(mkdtemp(folder));
   const std::string path = std::string(folder) + "/a.wav";

@@ -29,7 +29,7 @@ TEST_CASE("Sound starts on the sample nearest to its time, for any time and any 
   for (int trial = 0; trial < 200; ++trial) {
     auto bench = std::make_unique<Bench>();
     const std::int64_t at = kStart_ns + 5'000'000 + static_cast<std::int64_t>(random() % 40'000'000);
-    REQUIRE(bench->crossing.strikes.push(strike_of(7, 1, 500, 20, at)));
+    REQUIRE(bench->queues.strikes.push(strike_of(7, 1, 500, 20, at)));
     while (bench->left.size() < 3000) bench->play(1 + static_cast<int>(random() % 300));
     const std::size_t onset = first_sound(bench->left);
     CAPTURE(trial, at, onset);
@@ -43,11 +43,11 @@ TEST_CASE("Sound starts on the sample nearest to its time, for any time and any 
   }
 }
 
-TEST_CASE("A late strike is played at once, a very late one is dropped, and both are said") {
+TEST_CASE("A late strike is played at once, a very late strike is dropped, and both are reported") {
   auto bench = std::make_unique<Bench>();
   bench->play(480);
-  REQUIRE(bench->crossing.strikes.push(strike_of(1, 1, 500, 20, bench->time_ns(480) - 10'000'000)));
-  REQUIRE(bench->crossing.strikes.push(strike_of(2, 2, 500, 20, bench->time_ns(480) - 40'000'000)));
+  REQUIRE(bench->queues.strikes.push(strike_of(1, 1, 500, 20, bench->time_ns(480) - 10'000'000)));
+  REQUIRE(bench->queues.strikes.push(strike_of(2, 2, 500, 20, bench->time_ns(480) - 40'000'000)));
   bench->play(480);
   REQUIRE(bench->reports.size() == 2);
   CHECK(bench->reports[0].outcome == presentation_t::DROPPED_LATE);
@@ -58,14 +58,14 @@ TEST_CASE("A late strike is played at once, a very late one is dropped, and both
   CHECK(std::abs(bench->reports[1].presented_ns - bench->time_ns(480 + Limiter::kDelay)) <= 2);
 }
 
-TEST_CASE("Of the sense's row of late rules: on time within its slack, then the weaker the later, then dropped") {
+TEST_CASE("A strike is on time within the slack, then weaker with its lateness, then dropped") {
   // Without damping, so that the level after the onset is the strength.
   const auto played = [](double late_s) {
     auto bench = std::make_unique<Bench>();
     bench->play(480);
     const double first = 480 + Limiter::kDelay;  // the earliest sample that can still be changed
     const auto at = kStart_ns + std::llround((first / kRate - late_s) * 1e9);
-    REQUIRE(bench->crossing.strikes.push(strike_of(1, 1, 500, 0, at)));
+    REQUIRE(bench->queues.strikes.push(strike_of(1, 1, 500, 0, at)));
     for (int i = 0; i < 4; ++i) bench->play(480);
     REQUIRE(bench->reports.size() == 1);
     const double level = *std::max_element(bench->left.begin(), bench->left.end());
@@ -87,12 +87,12 @@ TEST_CASE("Of the sense's row of late rules: on time within its slack, then the 
   CHECK(nothing == 0);
 }
 
-TEST_CASE("What is too late to be strong enough is called inaudible") {
+TEST_CASE("A strike that its lateness makes too weak is reported as inaudible") {
   auto bench = std::make_unique<Bench>();
   bench->play(480);
   Strike s = strike_of(1, 1, 500, 20, bench->time_ns(480) - 20'000'000);
-  s.heard_from = 0.5f;
-  REQUIRE(bench->crossing.strikes.push(s));
+  s.min_audible_gain = 0.5f;
+  REQUIRE(bench->queues.strikes.push(s));
   bench->play(480);
   REQUIRE(bench->reports.size() == 1);
   CHECK(bench->reports[0].outcome == presentation_t::INAUDIBLE);
@@ -102,7 +102,7 @@ TEST_CASE("What is too late to be strong enough is called inaudible") {
 TEST_CASE("A struck voice rings at its frequency and decays at its rate") {
   auto bench = std::make_unique<Bench>();
   const double f = 440, d = 12;
-  REQUIRE(bench->crossing.strikes.push(strike_of(1, 1, f, d, bench->time_ns(1000))));
+  REQUIRE(bench->queues.strikes.push(strike_of(1, 1, f, d, bench->time_ns(1000))));
   while (bench->left.size() < 30000) bench->play(128);
   // A mass on a spring and a damper, struck: its velocity is exp(-d t) (cos w t - d/w sin w t), here in the middle
   // of each sample from 1000 on. Single-precision poles have an error of 6e-8 a sample: 2e-3 over 29000 of them.
@@ -115,10 +115,10 @@ TEST_CASE("A struck voice rings at its frequency and decays at its rate") {
   CHECK(worst < 0.1 * 2e-3);
 }
 
-TEST_CASE("Striking a voice that sounds adds to it and leaves its state alone") {
+TEST_CASE("A strike on a sounding voice adds to it and keeps its state") {
   const auto play = [](std::vector<std::size_t> strikes) {
     auto bench = std::make_unique<Bench>();
-    for (const std::size_t s : strikes) bench->crossing.strikes.push(strike_of(1, 1, 300, 5, bench->time_ns(s)));
+    for (const std::size_t s : strikes) bench->queues.strikes.push(strike_of(1, 1, 300, 5, bench->time_ns(s)));
     while (bench->left.size() < 9000) bench->play(100);
     return bench->left;
   };
@@ -126,7 +126,7 @@ TEST_CASE("Striking a voice that sounds adds to it and leaves its state alone") 
   for (std::size_t n = 0; n < 9000; ++n) CHECK(both[n] == Approx(first[n] + second[n]).margin(1e-5));
 }
 
-TEST_CASE("Energy decays once nothing strikes, down to silence and a free voice") {
+TEST_CASE("The energy of a struck voice decays to silence, and the voice becomes free") {
   Voices voices(4, kRate, kRing);
   const Strike s = strike_of(1, 1, 700, 60, 0);
   voices.strike(s.sides[0], 1, one_hump(20), 3);
@@ -149,7 +149,7 @@ TEST_CASE("Energy decays once nothing strikes, down to silence and a free voice"
   CHECK(voices.active() == 0);
 }
 
-TEST_CASE("A force pulse carries its impulse whatever its length, and spares what is faster than it") {
+TEST_CASE("A force pulse of any length carries its impulse and leaves modes above its spectrum at rest") {
   // At low frequency only the impulse counts; above the first zero of its spectrum, 2 / T, little remains.
   for (const int length : {1, 2, 10, 48, 200}) {
     Voices voices(2, kRate, kRing);
@@ -173,7 +173,7 @@ TEST_CASE("The same strikes in the same blocks give the same samples to the bit"
       Strike s = strike_of(i, static_cast<std::int64_t>(random() % 90), 100 + random() % 9000, 1 + random() % 90,
                            bench->time_ns(random() % 40000), 0.3f);
       s.pulse = one_hump(1 + static_cast<int>(random() % 60));
-      bench->crossing.strikes.push(s);
+      bench->queues.strikes.push(s);
     }
     while (bench->left.size() < 48000) bench->play(1 + static_cast<int>(random() % 256));
     return bench->left;
@@ -183,11 +183,11 @@ TEST_CASE("The same strikes in the same blocks give the same samples to the bit"
   CHECK(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
 }
 
-TEST_CASE("What never sounds is reported when the stream is given up") {
+TEST_CASE("Waiting strikes are reported as dropped when the stream is closed") {
   auto bench = std::make_unique<Bench>();
-  bench->crossing.strikes.push(strike_of(1, 1, 300, 5, bench->time_ns(90000)));
+  bench->queues.strikes.push(strike_of(1, 1, 300, 5, bench->time_ns(90000)));
   bench->play(64);
-  bench->crossing.strikes.push(strike_of(2, 1, 300, 5, bench->time_ns(90000)));
+  bench->queues.strikes.push(strike_of(2, 1, 300, 5, bench->time_ns(90000)));
   bench->renderer.abandon();
   bench->play(0);
   REQUIRE(bench->reports.size() == 2);
@@ -196,14 +196,14 @@ TEST_CASE("What never sounds is reported when the stream is given up") {
 
 TEST_CASE("A report that does not fit is counted") {
   auto bench = std::make_unique<Bench>();
-  while (bench->crossing.reports.push({})) continue;
-  REQUIRE(bench->crossing.strikes.push(strike_of(1, 1, 500, 20, kStart_ns + 1'000'000)));
+  while (bench->queues.reports.push({})) continue;
+  REQUIRE(bench->queues.strikes.push(strike_of(1, 1, 500, 20, kStart_ns + 1'000'000)));
   std::vector<float> block(2 * 480);
   bench->renderer.render(block.data(), 480, {sync::host_time(kStart_ns), {}, {}});
-  CHECK(bench->crossing.reports_lost == 1);
+  CHECK(bench->queues.reports_lost == 1);
 }
 
-TEST_CASE("A callback of more than half a block is cut into blocks of half of the most at least") {
+TEST_CASE("A callback longer than half a block is divided into blocks of at least half of the maximum") {
   for (int frames = 1; frames <= 4096; ++frames) {
     CAPTURE(frames);
     int left = frames, least = kMaxBlock, most = 0;
@@ -219,12 +219,12 @@ TEST_CASE("A callback of more than half a block is cut into blocks of half of th
   }
 }
 
-TEST_CASE("A callback of any length has no block so short that a sound leaps to its new side") {
+TEST_CASE("A callback of any length has no block that is too short for a crossfade") {
   const int frames = GENERATE(33, 63, 65, 67, 129, 191, 193, 257, 1000, 1025, 2049, 4095);
   CAPTURE(frames);
   const double f = 440, w = 2 * pi * f / kRate;
   auto bench = std::make_unique<Bench>();
-  REQUIRE(bench->crossing.strikes.push(strike_of(1, 1, f, 0, kStart_ns + 5'000'000)));
+  REQUIRE(bench->queues.strikes.push(strike_of(1, 1, f, 0, kStart_ns + 5'000'000)));
   while (bench->left.size() < 2000) bench->play(frames);
   const std::size_t from = bench->left.size();
   const double gain = *std::max_element(bench->left.begin(), bench->left.end());
@@ -233,7 +233,7 @@ TEST_CASE("A callback of any length has no block so short that a sound leaps to 
     const std::size_t last = bench->left.size() + static_cast<std::size_t>(frames + Limiter::kDelay) - 1;
     Strike turned = strike_of(2 + i, 1, f, 0, bench->time_ns(last), 0);
     if (i % 2 == 0) turned.sides[0].place.direction = -Eigen::Vector3f::UnitY();
-    REQUIRE(bench->crossing.strikes.push(turned));
+    REQUIRE(bench->queues.strikes.push(turned));
     bench->play(frames);
   }
   bench->play(frames);

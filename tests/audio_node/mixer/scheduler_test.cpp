@@ -9,7 +9,7 @@ using namespace tactus;
 using audio::Scheduler;
 using audio::Strike;
 
-TEST_CASE("Strikes leave in the order of their times, whatever the order in which they came") {
+TEST_CASE("Strikes leave the scheduler in the order of their times") {
   Scheduler scheduler(300);
   std::mt19937 random(3);
   std::vector<std::pair<std::int64_t, std::int64_t>> expected;
@@ -20,7 +20,7 @@ TEST_CASE("Strikes leave in the order of their times, whatever the order in whic
     REQUIRE(scheduler.push(s));
     expected.emplace_back(sync::to_ns(s.scheduled), id);
   }
-  SECTION("and equal times in the order in which they came") {
+  SECTION("strikes of equal time keep their order of arrival") {
     std::sort(expected.begin(), expected.end());
     for (const auto& [time, id] : expected) {
       const Strike* s = scheduler.pop_before(sync::host_time(1000));
@@ -29,12 +29,12 @@ TEST_CASE("Strikes leave in the order of their times, whatever the order in whic
     }
     CHECK(scheduler.pop_before(sync::host_time(1000)) == nullptr);
   }
-  SECTION("a full one refuses, and takes again once one has left") {
+  SECTION("a full scheduler rejects a strike until another one has left") {
     CHECK_FALSE(scheduler.push(Strike{}));
     REQUIRE(scheduler.pop_before(sync::host_time(1000)));
     CHECK(scheduler.push(Strike{}));
   }
-  SECTION("none leaves before its time") {
+  SECTION("no strike leaves before its time") {
     while (const Strike* s = scheduler.pop_before(sync::host_time(25))) CHECK(s->scheduled < sync::host_time(25));
     CHECK(scheduler.size() ==
           std::count_if(expected.begin(), expected.end(), [](const auto& e) { return e.first >= 25; }));

@@ -6,7 +6,7 @@
 #include <limits>
 #include <tactus/material_def_t.hpp>
 
-#include "tests/audio_node/support/rub.h"
+#include "tests/audio_node/support/scrape_run.h"
 
 using namespace tactus;
 using namespace tactus::audio;
@@ -31,9 +31,9 @@ double driven(double frequency_Hz, double natural_Hz, double damping_1_s) {
 
 }  // namespace
 
-TEST_CASE("What slides pushes with the slope of the relief under it, as often a second as it passes a wave") {
+TEST_CASE("The force of a sliding contact follows the slope of the relief at the rate of its waves") {
   const double speed = GENERATE(0.05, 0.2, 0.5);
-  const auto r = rub(
+  const auto r = run_scrape(
       [&](double ms) {
         Scrape s = along_x(&wavy(), speed, ms);
         if (static_cast<int>(ms) % 3 == 0) s.sides[0].place_m.x() += 1e-3 * speed;  // occasionally a tick ahead
@@ -46,19 +46,19 @@ TEST_CASE("What slides pushes with the slope of the relief under it, as often a 
   CHECK(amplitude(r.force, 1.4 * tone_Hz, 0.2, 0.8) < 0.02 * should_be);
 }
 
-TEST_CASE("Told at 60 Hz a slide is as steady as told at 1 kHz") {
-  const auto told = [](double ms) { return along_x(&wavy(), 0.2, ms); };
-  const auto rare = rub(told, 500, 500, 16).force, often = rub(told, 500, 500, 1).force;
+TEST_CASE("A slide with updates at 60 Hz is as steady as one with updates at 1 kHz") {
+  const auto scrape_at = [](double ms) { return along_x(&wavy(), 0.2, ms); };
+  const auto rare = run_scrape(scrape_at, 500, 500, 16).force, often = run_scrape(scrape_at, 500, 500, 1).force;
   float off = 0;
   for (std::size_t n = 0; n < often.size(); ++n) off = std::max(off, std::abs(rare[n] - often[n]));
   // Except for the rounding of places.
   CHECK(off < 1e-5f * kForce);
 }
 
-TEST_CASE("A mode rings as a driven oscillator does, loudest where the waves pass at its frequency") {
+TEST_CASE("A mode responds as a driven oscillator, loudest where the waves pass at its frequency") {
   const double natural_Hz = 500, damping_1_s = 30;
   const double tone_Hz = GENERATE(250.0, 480.0, 500.0, 520.0, 1000.0);
-  const auto r = rub(
+  const auto r = run_scrape(
       [&](double ms) {
         Scrape s = along_x(&wavy(), tone_Hz * kWave_m, ms);
         give_mode(s.sides[0], natural_Hz, damping_1_s);
@@ -75,7 +75,7 @@ TEST_CASE("A mode rings as a driven oscillator does, loudest where the waves pas
 TEST_CASE("Roughness without a map sounds the same at the same place, and an octave higher at twice the speed") {
   // At these speeds no wave is too short for a sample.
   const auto at = [](double speed_m_s) {
-    return rub(
+    return run_scrape(
                [=](double ms) {
                  Scrape s = along_x(nullptr, speed_m_s, ms);
                  s.sides[0].roughness.height_m = 3e-6;
@@ -93,20 +93,20 @@ TEST_CASE("Roughness without a map sounds the same at the same place, and an oct
   CHECK(off < 1e-4 * rms(slow, 0.1, 0.3));
 }
 
-TEST_CASE("Waves too short for a sample do not fold back, neither of a map nor of roughness") {
+TEST_CASE("Waves too short for a sample do not alias, neither of a map nor of roughness") {
   material_def_t m = rough();
   m.bump_size_u_m = m.bump_size_v_m = 1e-4;
   m.bump_height_m = 1e-5;
   const ReliefLevels fine(make_relief(waves(), m));
   const auto at = [&](double tone_Hz) {
-    return rub([&](double ms) { return along_x(&fine, tone_Hz * 1e-4, ms); }, 200, 200).force;
+    return run_scrape([&](double ms) { return along_x(&fine, tone_Hz * 1e-4, ms); }, 200, 200).force;
   };
   CHECK(rms(at(2000), 0.05, 0.2) == Approx(static_cast<double>(kForce) * kTone / std::sqrt(2)).epsilon(0.03));
   // Would alias to 9.6 and 2 kHz.
   CHECK(rms(at(38400), 0.05, 0.2) < 0.01 * rms(at(2000), 0.05, 0.2));
   CHECK(rms(at(46000), 0.05, 0.2) < 0.01 * rms(at(2000), 0.05, 0.2));
   const auto rough_at = [](double speed_m_s) {
-    return rub(
+    return run_scrape(
                [=](double ms) {
                  Scrape s = along_x(nullptr, speed_m_s, ms);
                  s.sides[0].roughness.height_m = 3e-6;
@@ -125,10 +125,10 @@ TEST_CASE("Waves too short for a sample do not fold back, neither of a map nor o
   CHECK(level(22500) < 0.1 * level(5500));
 }
 
-TEST_CASE("What rolls feels the profile through a low-pass at the speed over the width of the patch") {
+TEST_CASE("Rolling filters the profile by a low-pass at the speed over the width of the patch") {
   const double cutoff_Hz = 200, of_cutoff = GENERATE(0.25, 1.0, 2.0, 4.0);
   const double tone_Hz = of_cutoff * cutoff_Hz;
-  const auto r = rub(
+  const auto r = run_scrape(
       [&](double ms) {
         Scrape s = along_x(&wavy(), tone_Hz * kWave_m, ms);
         s.slide = 0, s.roll = kForce, s.cutoff_Hz = cutoff_Hz;
@@ -140,28 +140,28 @@ TEST_CASE("What rolls feels the profile through a low-pass at the speed over the
         Approx(static_cast<double>(kForce) * kSlope / std::sqrt(1 + std::pow(of_cutoff, 4))).epsilon(0.03));
 }
 
-TEST_CASE("What a body sounds beyond its modes follows the force at once, above the highest of them") {
-  const double beyond_Hz = 400, tone_Hz = GENERATE(100.0, 400.0, 1600.0);
-  const auto r = rub(
+TEST_CASE("The residual modes of a body follow the force at once, above the highest rendered mode") {
+  const double residual_Hz = 400, tone_Hz = GENERATE(100.0, 400.0, 1600.0);
+  const auto r = run_scrape(
       [&](double ms) {
         Scrape s = along_x(&wavy(), tone_Hz * kWave_m, ms);
         give_mode(s.sides[0], 400, 60, 0);
-        s.sides[0].beyond = 0.5f, s.sides[0].beyond_Hz = beyond_Hz;
+        s.sides[0].residual_gain = 0.5f, s.sides[0].residual_Hz = residual_Hz;
         return s;
       },
       400, 400);
   // Butterworth of second order.
-  const double ratio = std::pow(tone_Hz / beyond_Hz, 2), high = ratio / std::sqrt(1 + ratio * ratio);
+  const double ratio = std::pow(tone_Hz / residual_Hz, 2), high = ratio / std::sqrt(1 + ratio * ratio);
   CHECK(amplitude(r.sound, tone_Hz, 0.1, 0.4) ==
         Approx(0.5 * high * amplitude(r.force, tone_Hz, 0.1, 0.4)).epsilon(0.01));
 }
 
-TEST_CASE("Friction that changes on the map changes the strength at that place") {
+TEST_CASE("A friction map changes the strength by the place") {
   material_def_t m{};
   m.friction_size_u_m = m.friction_size_v_m = 0.4, m.friction_black = 0.25, m.friction_white = 4;
   const FrictionMap map(HeightMap{2, 2, 255, {0, 255, 0, 255}}, m);
   const auto loud = [&](double from_m, bool mapped) {
-    const auto r = rub(
+    const auto r = run_scrape(
         [&](double ms) {
           Scrape s = along_x(&wavy(), 0.1, ms);
           s.sides[0].place_m.x() += from_m;
@@ -176,14 +176,14 @@ TEST_CASE("Friction that changes on the map changes the strength at that place")
   CHECK(loud(0.295, false) == Approx(loud(0.095, false)).epsilon(0.01));
 }
 
-TEST_CASE("A contact that ends is silent 2 ms later, its bodies when they have rung out, and neither end clicks") {
-  const auto tell = [](double ms) {
+TEST_CASE("A contact that ends is silent 2 ms later without a click, and its bodies ring out") {
+  const auto scrape_at = [](double ms) {
     Scrape s = along_x(&wavy(), 0.1, ms);
     s.sides[0].place_m.x() += kWave_m / 4;  // where it is steepest
     give_mode(s.sides[0], 400, 60, 0.5f);
     return s;
   };
-  const auto r = rub(tell, 500, 1000);
+  const auto r = run_scrape(scrape_at, 500, 1000);
   // Within a sample the slope changes by its curvature, the strength by its ramp of 2 ms. Steep parts are
   // stronger, by k^2 / 2, which changes by at most 3 k^2 / 2.
   const double tone = 2 * M_PI * 0.1 / kWave_m / kRate, ramp = 1 / (0.002 * kRate);
@@ -200,25 +200,25 @@ TEST_CASE("A contact that ends is silent 2 ms later, its bodies when they have r
   for (std::size_t n = 24000 + 14400; n < r.sound.size(); ++n) REQUIRE(r.sound[n] == 0);
 }
 
-TEST_CASE("One that is told of no more, not even that it ended, is silent after 32 ms") {
+TEST_CASE("A contact without further updates and without an end is silent after 32 ms") {
   auto scrapes = std::make_unique<Scrapes>(kRate);
   auto voices = std::make_unique<Voices>(4, kRate, kRing);
-  scrapes->take(along_x(&wavy(), 0.1, 0));
+  scrapes->update(along_x(&wavy(), 0.1, 0));
   for (int ms = 0; ms < 34; ++ms) {
     CHECK(scrapes->active() == (ms < 32 ? 1 : 0));
     scrapes->drive(*voices, 48, at_ms(ms));
   }
 }
 
-TEST_CASE("Where on a body it is struck changes without a click") {
+TEST_CASE("A change of the place on a body makes no click") {
   // A mode of such a high frequency and damping that it follows the force: its jumps would be audible.
   const double mode_Hz = 9000;
-  const auto tell = [&](double ms) {
+  const auto scrape_at = [&](double ms) {
     Scrape s = along_x(&wavy(), 0.1, ms);
     give_mode(s.sides[0], mode_Hz, mode_Hz, ms < 250 ? 1.f : -1.f);
     return s;
   };
-  const auto r = rub(tell, 500, 500);
+  const auto r = run_scrape(scrape_at, 500, 500);
   double change = 0;
   for (std::size_t n = 11900; n < 14400; ++n)
     change = std::max(change, std::abs(static_cast<double>(r.sound[n] - r.sound[n - 1])));
@@ -229,11 +229,11 @@ TEST_CASE("Where on a body it is struck changes without a click") {
         (1 + 2 * kSlope * kSlope) * static_cast<double>(kForce) * kSlope * step * kRate / (2 * M_PI * mode_Hz));
 }
 
-TEST_CASE("What is no number, or beyond all measure, is not heard as such") {
+TEST_CASE("Scrapes with values that are not finite or implausible are ignored") {
   const double bad =
       GENERATE(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300, -1e12);
   const int where = GENERATE(0, 1, 2, 3, 4);
-  const auto r = rub(
+  const auto r = run_scrape(
       [&](double ms) {
         Scrape s = along_x(&wavy(), 0.1, ms);
         give_mode(s.sides[0], 400, 60);
@@ -242,7 +242,7 @@ TEST_CASE("What is no number, or beyond all measure, is not heard as such") {
           if (where == 0) s.sides[0].place_m.x() = bad;
           if (where == 1) s.sides[0].velocity_m_s.y() = bad;
           if (where == 2) s.slide = static_cast<float>(bad);
-          if (where == 3) s.sides[0].slides.x() = static_cast<float>(bad);
+          if (where == 3) s.sides[0].slide_vector.x() = static_cast<float>(bad);
           if (where == 4) s.cutoff_Hz = bad;
         }
         return s;
@@ -251,25 +251,25 @@ TEST_CASE("What is no number, or beyond all measure, is not heard as such") {
   for (const float x : r.sound) REQUIRE(std::abs(x) < 1);
 }
 
-TEST_CASE("More contacts than there is room for leave those that are heard alone") {
+TEST_CASE("Contacts beyond the maximum number leave the sounding ones unchanged") {
   auto scrapes = std::make_unique<Scrapes>(kRate);
   for (int i = 0; i < 3 * Scrapes::kMax; ++i) {
     Scrape s = along_x(&wavy(), 0.1, 0);
     s.id = i;
-    scrapes->take(s);
+    scrapes->update(s);
   }
   CHECK(scrapes->active() == Scrapes::kMax);
   CHECK(scrapes->force(0) != nullptr);
 }
 
-TEST_CASE("One that is told of rarely goes on until it is told anew") {
+TEST_CASE("A scrape with rare updates continues until its next update") {
   const ReliefLevels relief(make_relief(waves(), rough()));
-  const auto tell = [&](double ms) {
+  const auto scrape_at = [&](double ms) {
     Scrape s = along_x(&relief, 0.1, ms);
-    s.over_s = 0.088;
+    s.update_interval_s = 0.088;
     return s;
   };
-  const Rubbed r = rub(tell, 900, 900, 88);
-  const double steady = rms(rub(tell, 900, 900).force, 0.4, 0.9);
+  const ScrapeRun r = run_scrape(scrape_at, 900, 900, 88);
+  const double steady = rms(run_scrape(scrape_at, 900, 900).force, 0.4, 0.9);
   for (double t = 0.4; t < 0.86; t += 0.02) CHECK(rms(r.force, t, t + 0.02) > 0.5 * steady);
 }

@@ -58,7 +58,7 @@ double response(double frequency_Hz) {
 
 }  // namespace
 
-TEST_CASE("A body that a force drives answers as a damped oscillator does, at, below and above its frequency") {
+TEST_CASE("A driven body responds as a damped oscillator at, below and above its frequency") {
   const int frames = 48000 / kMaxBlock * kMaxBlock;
   for (const double f : {500.0, 950.0, 1000.0, 1050.0, 2000.0}) {
     CAPTURE(f);
@@ -70,7 +70,7 @@ TEST_CASE("A body that a force drives answers as a damped oscillator does, at, b
   }
 }
 
-TEST_CASE("Two contacts of one body push it together") {
+TEST_CASE("The forces of two contacts of one body add up") {
   Pushed once, twice;
   const auto force = sine(1000, 4800 / kMaxBlock * kMaxBlock);
   once.play(force);
@@ -87,7 +87,7 @@ TEST_CASE("Two contacts of one body push it together") {
     REQUIRE(twice.left[n] == Approx(2 * once.left[n]).epsilon(1e-4).margin(1e-6));  // single precision
 }
 
-TEST_CASE("A body that nothing drives any more rings down and frees its voice") {
+TEST_CASE("A body without a force rings down and frees its voice") {
   Pushed body;
   body.play(sine(1000, 9600 / kMaxBlock * kMaxBlock));
   CHECK(body.voices.active() == 1);
@@ -95,14 +95,14 @@ TEST_CASE("A body that nothing drives any more rings down and frees its voice") 
   body.play(std::vector<float>(19200), false);
   CHECK(body.voices.active() == 0);
   CHECK(body.left.back() == 0);
-  SECTION("and one at rest that a force of nothing drives makes no sound") {
+  SECTION("a body at rest under zero force makes no sound") {
     Pushed still;
     still.play(std::vector<float>(4800));
     for (const double x : still.left) REQUIRE(x == 0);
   }
 }
 
-TEST_CASE("What contacts drive keeps ringing when all voices are in use by louder bodies") {
+TEST_CASE("A driven body keeps its voice when louder bodies use all voices") {
   Voices voices(4, kRate, kRing);
   for (int i = 0; i < 4; ++i)
     voices.strike(strike_of(0, i, 300 + 50 * i, 0.5, 0, 0.5f).sides[0], 1, one_hump(1), 0);
@@ -121,7 +121,7 @@ TEST_CASE("What contacts drive keeps ringing when all voices are in use by loude
   CHECK(most == 4);
 }
 
-TEST_CASE("More contacts than a body can hear at a time leave it whole") {
+TEST_CASE("Contacts of one body beyond the maximum number leave its sound finite") {
   Pushed body;
   const std::vector<float> force(kMaxBlock, 1e-6f);
   for (int i = 0; i < 3 * Voices::kDrives; ++i)
@@ -132,7 +132,7 @@ TEST_CASE("More contacts than a body can hear at a time leave it whole") {
   CHECK(body.voices.active() == 1);
 }
 
-TEST_CASE("Eighty blows on one body at a time push it as they do one by one") {
+TEST_CASE("Eighty simultaneous blows on one body act as eighty single blows") {
   const auto blow = [](std::int64_t voice, int i) {
     StrikeSide side = strike_of(0, voice, 40, 5, 0, 0.01f * (1 + static_cast<float>(i % 7))).sides[0];
     side.click = 0.3f * side.impulse;
@@ -146,10 +146,10 @@ TEST_CASE("Eighty blows on one body at a time push it as they do one by one") {
       one.strike(blow(0, i), 1, one_hump(1500), 11 * i - block * kMaxBlock);
       if (i < 80) many.strike(blow(i / 16, i), 1, one_hump(1500), 11 * i - block * kMaxBlock);
     }
-    for (auto [voices, heard] : {std::pair(&one, &of_one), std::pair(&many, &of_many)}) {
+    for (auto [voices, output] : {std::pair(&one, &of_one), std::pair(&many, &of_many)}) {
       std::vector<float> mix(2 * kMaxBlock);
       voices->render(mix.data(), kMaxBlock);
-      for (std::size_t n = 0; n < kMaxBlock; ++n) heard->push_back(mix[2 * n]);
+      for (std::size_t n = 0; n < kMaxBlock; ++n) output->push_back(mix[2 * n]);
     }
   }
   float most = 0, off = 0;

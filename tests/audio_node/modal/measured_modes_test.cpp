@@ -45,7 +45,7 @@ const std::vector<measured_mode_t> kBell{{440, 3, 0.2}, {900, 5, 0.4}, {2300, 12
 
 }  // namespace
 
-TEST_CASE("A body of a material with measured modes has these, in their proportions") {
+TEST_CASE("A body of a material with measured modes has these modes in their proportions") {
   const Impacts all = impacts(kBell);
   const BodySound& bell = all.body(1);
   REQUIRE(bell.modes.size() == 3);
@@ -54,10 +54,10 @@ TEST_CASE("A body of a material with measured modes has these, in their proporti
     CHECK(bell.modes[i].damping_1_s == kBell[i].damping_1_s);
     CHECK(bell.modes[i].gain == Approx(kBell[i].amplitude / 0.4));
   }
-  SECTION("and one of the material beside it sounds by its shape") { CHECK(all.body(0).modes.size() > 3); }
+  SECTION("a body of another material sounds by its shape") { CHECK(all.body(0).modes.size() > 3); }
 }
 
-TEST_CASE("What is heard of measured modes is in the proportions of the recording, wherever the body is struck") {
+TEST_CASE("Measured modes sound in the proportions of the recording at any struck place") {
   const Impacts all = impacts(kBell);
   // The unit gain of mode_step makes each a unit of velocity: gains over it are pressures.
   const auto pressures = [&](const BodyPlace& place) {
@@ -78,7 +78,7 @@ TEST_CASE("What is heard of measured modes is in the proportions of the recordin
   CHECK(middle[2] / middle[1] == Approx(0.25).epsilon(1e-6));
 }
 
-TEST_CASE("Of too many measured modes the strongest sound, and none that is not audible") {
+TEST_CASE("The strongest of too many measured modes are kept, and inaudible ones are omitted") {
   Settings settings;
   settings.max_modes = 2;
   std::vector<measured_mode_t> modes = kBell;
@@ -88,7 +88,7 @@ TEST_CASE("Of too many measured modes the strongest sound, and none that is not 
   REQUIRE(all.body(1).modes.size() == 2);
   CHECK(all.body(1).modes[0].frequency_Hz == 440);
   CHECK(all.body(1).modes[1].frequency_Hz == 900);
-  SECTION("and where all are inaudible it sounds by its shape") {
+  SECTION("a body with only inaudible measured modes sounds by its shape") {
     CHECK(impacts({{25, 1, 9}}).body(1).modes.size() > 1);
   }
 }

@@ -24,8 +24,7 @@ double mean(F f) {
 
 }  // namespace
 
-TEST_CASE(
-    "Beam functions are those of a free bar: mean square 1, at right angles to each other and to rigid motions") {
+TEST_CASE("Beam functions of a free bar have mean square 1 and are orthogonal to each other and to rigid motions") {
   for (int n = 0; n < 12; ++n) {
     CAPTURE(n);
     CHECK(mean([&](double x) { return std::pow(free_beam(n, x).value, 2); }) == Approx(1).epsilon(1e-4));
@@ -42,7 +41,7 @@ TEST_CASE(
           free_beam(n, x).slope ==
           Approx((free_beam(n, x + 1e-6).value - free_beam(n, x - 1e-6).value) / 2e-6).epsilon(1e-5).margin(1e-4));
   }
-  SECTION("with nodes where they are printed") {
+  SECTION("the nodes lie at the published places") {
     // Fletcher and Rossing, The Physics of Musical Instruments, table 2.1: 0.224 L; 0.132 and 0.5 L; 0.094, 0.356
     // L.
     for (const auto& [n, x] : {std::pair(0, 0.224), {1, 0.132}, {1, 0.5}, {2, 0.094}, {2, 0.356}}) {
@@ -52,32 +51,32 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A blow on a nodal line leaves a bar's mode silent, and one on its side another bending") {
+TEST_CASE("A strike on a nodal line of a bar excites no mode, and a strike on its side another bending") {
   const ModeShape low = bar_bending_shape(0, 0.3, 2);
   CHECK(low({0.15, 0, 0.01}, kUp) == Approx(2));
   CHECK(low({0, 0, 0.01}, kUp) < -1.2);
   CHECK(low({0.3 * (0.2242 - 0.5), 0, 0.01}, kUp) == Approx(0).margin(2e-3));
   CHECK(low({0.15, 0, 0.01}, Vector3d::UnitY()) == Approx(0).margin(1e-12));
-  SECTION("a push along the bar bends it where it is off the middle, by the slope") {
+  SECTION("a push along the bar off its middle bends it by the slope") {
     const double slope = free_beam(0, 1).slope / 0.3;
     CHECK(low({0.15, 0, 0.01}, Vector3d::UnitX()) == Approx(-0.01 * slope));
     CHECK(low({0.15, 0, 0}, Vector3d::UnitX()) == Approx(0).margin(1e-12));
   }
-  SECTION("stretching needs a push along it, torsion one off the axis") {
+  SECTION("stretching needs a push along the bar, torsion a push off the axis") {
     CHECK(stretching_shape(1, 0.3, 0)({-0.15, 0, 0}, Vector3d::UnitX()) == Approx(std::sqrt(2)));
     CHECK(stretching_shape(1, 0.3, 0)({0, 0, 0}, Vector3d::UnitX()) == Approx(0).margin(1e-12));
     CHECK(stretching_shape(1, 0.3, 0)({-0.15, 0, 0}, kUp) == Approx(0).margin(1e-12));
     CHECK(torsion_shape(1, 0.3, 0, 0.01)({-0.15, 0.01, 0}, kUp) == Approx(std::sqrt(2)));
     CHECK(torsion_shape(1, 0.3, 0, 0.01)({-0.15, 0, 0}, kUp) == Approx(0).margin(1e-12));
   }
-  SECTION("a round bar bends the way it is pushed") {
+  SECTION("a round bar bends in the direction of the push") {
     const ModeShape round = round_bending_shape(0, 0.3);
     for (const double angle : {0., 1., 2., 4.})
       CHECK(round({0, 0, 0.15}, {std::cos(angle), std::sin(angle), 0}) == Approx(2));
   }
 }
 
-TEST_CASE("A plate is silent in a mode on its nodal lines, and its corners drive all of a free one") {
+TEST_CASE("A plate is silent in a mode on its nodal lines, and the corners of a free plate drive all modes") {
   const ModeShape supported = supported_plate_shape(2, 1, 0.4, 0.3, {});
   CHECK(supported({0, 0.02, 0}, kUp) == Approx(0).margin(1e-12));
   CHECK(supported({-0.1, 0, 0}, kUp) == Approx(2));
@@ -86,16 +85,16 @@ TEST_CASE("A plate is silent in a mode on its nodal lines, and its corners drive
   CHECK(free_plate_shape(2, 0, 0.4, 0.3)({0.2, 0.15, 0}, kUp) == Approx(2));
   CHECK(free_plate_shape(1, 1, 0.4, 0.3)({0.2, 0.15, 0}, kUp) == Approx(3));
   CHECK(free_plate_shape(1, 1, 0.4, 0.3)({0.1, 0, 0}, kUp) == Approx(0).margin(1e-12));
-  SECTION("a patch of a larger plate has no lines that stay in place") {
+  SECTION("a patch of a larger plate has no nodal lines") {
     CHECK(supported_plate_shape(2, 1, 0.4, 0.3, {true, true})({0.01, 0.1, 0}, kUp) == Approx(1));
     CHECK(supported_plate_shape(2, 1, 0.4, 0.3, {true, true})({0.01, 0.1, 0}, -kUp) == Approx(-1));
   }
 }
 
-TEST_CASE("A disc's modes lose no momentum, and their circles lie where Leissa prints them") {
+TEST_CASE("The modes of a disc have no net momentum, and their circles lie at the values of Leissa") {
   const double R = 0.1;
   const auto at = [&](int n, int s, double x) { return free_disc_shape(n, s, R)({x * R, 0, 0}, kUp); };
-  for (const Natural& m : free_disc({}, R, 0.001, {1e6, 32})) {
+  for (const NaturalFrequency& m : free_disc({}, R, 0.001, {1e6, 32})) {
     CAPTURE(m.i, m.k);
     const double share = m.i > 0 ? 2 : 1;  // of two degenerate modes
     CHECK(2 * mean([&](double x) { return std::pow(at(m.i, m.k, x), 2) * x; }) == Approx(share).epsilon(1e-4));

@@ -15,7 +15,7 @@ Database read(const SoundFolder& folder) { return read_database(folder.path(), 4
 
 }  // namespace
 
-TEST_CASE("A pair is found in either order, whatever order its folder is named in") {
+TEST_CASE("A pair is found in either order of its materials and of its folder name") {
   const SoundFolder folder;
   folder.write("steel-oak/impact/1.wav", tone(500, 0.2));
   const Database d = read(folder);
@@ -26,7 +26,7 @@ TEST_CASE("A pair is found in either order, whatever order its folder is named i
   CHECK_FALSE(d.find("steel", "oak", Interaction::kScrape).any());
 }
 
-TEST_CASE("Without its pair a contact falls back to its materials alone, then to nothing") {
+TEST_CASE("Without recordings of a pair those of each material are found, otherwise none") {
   const SoundFolder folder;
   folder.write("oak-steel/impact/1.wav", tone(500, 0.2));
   folder.write("oak/impact/1.wav", tone(300, 0.2));
@@ -49,7 +49,7 @@ TEST_CASE("Without its pair a contact falls back to its materials alone, then to
   CHECK_FALSE(d.find("", "", Interaction::kImpact).any());
 }
 
-TEST_CASE("Layers are sorted by speed, takes of one speed stay together, and all layers are made equally loud") {
+TEST_CASE("Layers are sorted by speed, takes of one speed stay together, and all layers are equally loud") {
   const SoundFolder folder;
   folder.write("oak/impact/2.wav", tone(500, 0.2, 0.8));
   folder.write("oak/impact/0.25.wav", tone(500, 0.2, 0.2));
@@ -67,7 +67,7 @@ TEST_CASE("Layers are sorted by speed, takes of one speed stay together, and all
   CHECK(l->by_speed[1].gain == 1);
 }
 
-TEST_CASE("What is wrong with a folder is named, and the rest is played") {
+TEST_CASE("Faults of a folder of recordings are listed, and the rest is played") {
   const SoundFolder folder;
   folder.write("oak/impact/1.wav", tone(500, 0.2));
   folder.write("oak/impact/fast.wav", tone(500, 0.2));
@@ -93,16 +93,16 @@ TEST_CASE("What is wrong with a folder is named, and the rest is played") {
   CHECK(named("oak/impact/2.wav", "cannot be read"));
   CHECK(named("oak/impact/notes.doc", "neither WAV nor FLAC"));
   CHECK(named("oak/bounce", "impact, scrape and roll"));
-  CHECK(named("a-b-c", "no material"));
+  CHECK(named("a-b-c", "not named after a material"));
   CHECK(named("steel-oak/impact", "twice"));
-  CHECK(named("lost.wav", "beside"));
+  CHECK(named("lost.wav", "outside"));
   CHECK(named("oak/size.txt", "no size"));
   CHECK(named("oak/roll", "empty"));
-  CHECK(named("oak/impact/4.wav", "no file"));
+  CHECK(named("oak/impact/4.wav", "not a file"));
   CHECK(d.faults.size() == 10);
 }
 
-TEST_CASE("More speeds than can be played are named, and a faint layer is not made all noise") {
+TEST_CASE("Excess speeds are listed as a fault, and the gain of a faint layer is limited") {
   const SoundFolder folder;
   for (int i = 1; i <= kMaxLayers + 2; ++i)
     folder.write("oak/scrape/0." + std::to_string(10 + i) + ".wav", tone(500, 0.5));
@@ -119,12 +119,12 @@ TEST_CASE("More speeds than can be played are named, and a faint layer is not ma
   CHECK(faint->by_speed[0].gain == 100);
 }
 
-TEST_CASE("An empty folder, and one that is not there, is said") {
+TEST_CASE("An empty or missing folder of recordings is listed as a fault") {
   const SoundFolder folder;
   REQUIRE(read(folder).faults.size() == 1);
-  CHECK_THAT(read(folder).faults[0].what, Catch::Contains("no recording"));
+  CHECK_THAT(read(folder).faults[0].what, Catch::Contains("no playable recording"));
   const Database none = read_database(folder.path() + "/none", 48000, 0.05);
   REQUIRE(none.faults.size() == 1);
-  CHECK_THAT(none.faults[0].what, Catch::Contains("no folder"));
+  CHECK_THAT(none.faults[0].what, Catch::Contains("not a folder"));
   CHECK_FALSE(none.find("oak", "oak", Interaction::kImpact).any());
 }

@@ -15,7 +15,7 @@ Layers three() {
 
 }  // namespace
 
-TEST_CASE("Layers go over into each other by the logarithm of the speed, with the same power throughout") {
+TEST_CASE("Layers crossfade by the logarithm of the speed with constant power") {
   const Layers l = three();
   // Halfway on a logarithmic scale: equal strength, -3 dB each.
   const LayerMix half = mix_of(l, 0.2);
@@ -29,20 +29,20 @@ TEST_CASE("Layers go over into each other by the logarithm of the speed, with th
   }
 }
 
-TEST_CASE("Slower than the slowest layer that is played alone, and faster than the fastest that") {
+TEST_CASE("Below the slowest and above the fastest speed one layer is played alone") {
   const Layers l = three();
   CHECK(mix_of(l, 1e-6).layer == std::array{0, -1});
   CHECK(mix_of(l, 50).layer == std::array{2, -1});
   CHECK(mix_of(Layers{}, 1).layer == std::array{-1, -1});
 }
 
-TEST_CASE("Takes are chosen by the number of the event: the same again, and all of them evenly") {
+TEST_CASE("Takes are selected by the number of the event, reproducibly and evenly") {
   Layer layer;
   layer.takes.resize(4);
   std::array<int, 4> count{};
   for (std::int64_t id = 0; id < 4000; ++id) {
-    const auto i = &take_of(layer, id) - layer.takes.data();
-    CHECK(&take_of(layer, id) == &layer.takes[static_cast<std::size_t>(i)]);
+    const auto i = &select_take(layer, id) - layer.takes.data();
+    CHECK(&select_take(layer, id) == &layer.takes[static_cast<std::size_t>(i)]);
     ++count[static_cast<std::size_t>(i)];
   }
   // The standard deviation of 4000 draws of 1/4 is 27: within 5 of them.

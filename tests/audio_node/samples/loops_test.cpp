@@ -33,19 +33,19 @@ Layers layers(std::vector<std::pair<double, double>> speed_and_frequency) {
 
 sync::HostTime at(double samples) { return sync::host_time(kStart_ns + std::llround(samples * 1e9 / kRate)); }
 
-// Updated once a block of kMaxBlock by `tell` (null: no update), left channel at 1 m.
-struct Sliding {
+// Updated once a block of kMaxBlock by `set_contact` (null: no update), left channel at 1 m.
+struct LoopBench {
   Loops loops{kRate};
   std::vector<float> left;
-  void play(int blocks, const std::function<void(RecordedContact&)>& tell) {
+  void play(int blocks, const std::function<void(RecordedContact&)>& set_contact) {
     for (int b = 0; b < blocks; ++b) {
       const sync::HostTime first = at(static_cast<double>(left.size()));
-      if (tell) {
+      if (set_contact) {
         RecordedContact r;
         r.contact = 4, r.database = 1, r.at = first, r.level = 0.1f;
         r.place.direction = Eigen::Vector3f::UnitY();
-        tell(r);
-        loops.take(r);
+        set_contact(r);
+        loops.update(r);
       }
       std::vector<float> mix(2 * kMaxBlock);
       loops.render(mix.data(), kMaxBlock, first);
@@ -80,11 +80,11 @@ constexpr int kSecond = 48000 / kMaxBlock;
 
 }  // namespace
 
-TEST_CASE("A loop sounds as long as its contact, at its level, over its seam, and is silent after") {
+TEST_CASE("A loop plays over its seam for the duration of its contact, and is then silent") {
   const Layers l = layers({{1, 400}});
-  Sliding s;
-  const auto tell = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1; };
-  s.play(2 * kSecond, tell);
+  LoopBench s;
+  const auto set_contact = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1; };
+  s.play(2 * kSecond, set_contact);
   CHECK(s.loops.active() == 1);
   CHECK(s.most(24000, 96000) == Approx(0.1).epsilon(1e-3));
   // A sine of that level, over four passes of the loop: no step is above its slope; at the beginning the slope of
@@ -99,11 +99,11 @@ TEST_CASE("A loop sounds as long as its contact, at its level, over its seam, an
   CHECK(s.steepest() <= 0.1 * (2 * pi * 400 / kRate + 1.0 / 240) * 1.001);
 }
 
-TEST_CASE("Twice the speed is an octave, and beyond an octave the pitch stays") {
+TEST_CASE("Twice the speed is an octave, which is the maximum shift of a loop") {
   const Layers l = layers({{1, 400}});
   for (const auto& [speed, ratio] :
        std::vector<std::pair<double, double>>{{1, 1}, {0.6, 0.6}, {2, 2}, {9, 2}, {0.01, 0.5}}) {
-    Sliding s;
+    LoopBench s;
     s.play(kSecond, [&, v = speed](RecordedContact& r) { r.layers = &l, r.speed_m_s = v; });
     CAPTURE(speed);
     // One sample in the whole second.
@@ -111,9 +111,9 @@ TEST_CASE("Twice the speed is an octave, and beyond an octave the pitch stays") 
   }
 }
 
-TEST_CASE("Layers go over into each other while the speed changes, without a click") {
+TEST_CASE("Layers crossfade without a click while the speed changes") {
   const Layers l = layers({{0.5, 300}, {2, 300}});
-  Sliding s;
+  LoopBench s;
   double v = 0.3;
   s.play(2 * kSecond, [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = v *= 1.002; });
   // Two sines whose powers add up to that of one, at most an octave up, and the slope of the levels.
@@ -121,9 +121,9 @@ TEST_CASE("Layers go over into each other while the speed changes, without a cli
   for (std::size_t n = 4800; n + 4800 < s.left.size(); n += 4800) CHECK(s.most(n, n + 4800) > 0.01);
 }
 
-TEST_CASE("Level and place that jump are followed without a click, and no number ends") {
+TEST_CASE("Jumps of the level make no click") {
   const Layers l = layers({{1, 100}});
-  Sliding s;
+  LoopBench s;
   int i = 0;
   s.play(2 * kSecond, [&](RecordedContact& r) {
     r.layers = &l, r.speed_m_s = 1, r.level = (i / 50) % 2 ? 0.1f : 0.f;
@@ -134,9 +134,9 @@ TEST_CASE("Level and place that jump are followed without a click, and no number
     CHECK(s.most(static_cast<std::size_t>(k) * 4800, static_cast<std::size_t>(k) * 4800 + 4800) <= 0.1001f);
 }
 
-TEST_CASE("What is of another database is another sound, and the one before fades") {
+TEST_CASE("A contact of another database is a new sound, and the previous one fades") {
   const Layers first = layers({{1, 400}}), second = layers({{1, 900}});
-  Sliding s;
+  LoopBench s;
   s.play(kSecond, [&](RecordedContact& r) { r.layers = &first, r.speed_m_s = 1; });
   s.play(kSecond, [&](RecordedContact& r) { r.layers = &second, r.speed_m_s = 1, r.database = 2; });
   CHECK(s.loops.active() == 1);
@@ -145,22 +145,22 @@ TEST_CASE("What is of another database is another sound, and the one before fade
   CHECK(s.steepest() <= 0.2 * (2 * pi * 900 / kRate + 1.0 / 240) * 1.001);
 }
 
-TEST_CASE("More contacts than there is room for are not heard, and nothing breaks") {
+TEST_CASE("Recorded contacts beyond the maximum number are silent") {
   const Layers l = layers({{1, 400}});
   Loops loops(kRate);
   for (std::int64_t id = 0; id < 100; ++id) {
     RecordedContact r;
     r.contact = id, r.database = 1, r.at = at(0), r.layers = &l, r.level = 0.01f, r.speed_m_s = 1;
-    CHECK(loops.take(r) == (id < Loops::kMax));
+    CHECK(loops.update(r) == (id < Loops::kMax));
   }
   CHECK(loops.active() == Loops::kMax);
 }
 
-TEST_CASE("A loop whose contact is told to end is silent 2 ms later, to the bit and without a click") {
+TEST_CASE("A loop whose contact ends is silent 2 ms later, to the bit and without a click") {
   const Layers l = layers({{1, 400}});
-  Sliding s;
-  const auto tell = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1; };
-  s.play(kSecond, tell);
+  LoopBench s;
+  const auto set_contact = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1; };
+  s.play(kSecond, set_contact);
   const std::size_t ended = s.left.size();
   const auto end = [](RecordedContact& r) { r.ends = true; };
   s.play(2, end);  // a repeated end does not delay it
@@ -172,22 +172,22 @@ TEST_CASE("A loop whose contact is told to end is silent 2 ms later, to the bit 
   // The slope of the wave, and that of a level that falls from 0.1 within 96 samples.
   CHECK(s.steepest(ended) <= 0.1 * (2 * pi * 400 / kRate + 1.0 / 96) * 1.001);
 
-  SECTION("and one that begins again before it was silent goes on from where it is") {
-    Sliding again;
-    again.play(kSecond, tell);
+  SECTION("a contact that resumes before its silence continues at its level") {
+    LoopBench again;
+    again.play(kSecond, set_contact);
     again.play(1, end);
-    again.play(kSecond, tell);
+    again.play(kSecond, set_contact);
     CHECK(again.steepest() <= 0.1 * (2 * pi * 400 / kRate + 1.0 / 96) * 1.001);
     CHECK(again.most(again.left.size() - 4800, again.left.size()) == Approx(0.1).epsilon(1e-3));
   }
 }
 
-TEST_CASE("A loop that is told of rarely goes on until it is told anew") {
+TEST_CASE("A loop with rare updates continues until its next update") {
   const Layers l = layers({{1, 400}});
-  Sliding s;
+  LoopBench s;
   for (int i = 0; i < 10; ++i) {
-    const auto tell = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1, r.over_s = 0.088; };
-    s.play(1, tell);
+    const auto set_contact = [&](RecordedContact& r) { r.layers = &l, r.speed_m_s = 1, r.update_interval_s = 0.088; };
+    s.play(1, set_contact);
     s.play(65, nullptr);  // 88 ms in total
   }
   for (std::size_t n = 24000; n + 480 < s.left.size(); n += 480) CHECK(s.most(n, n + 480) > 0.09f);

@@ -14,7 +14,7 @@ using namespace tactus::audio::test;
 namespace {
 
 // The faults of a file; empty: none.
-std::string said(const std::string& path, Interaction interaction, bool* read = nullptr) {
+std::string faults_of(const std::string& path, Interaction interaction, bool* read = nullptr) {
   std::vector<SoundFault> faults;
   const auto r = read_recording(path, interaction, 48000, faults);
   if (read) *read = r.has_value();
@@ -28,7 +28,7 @@ std::string said(const std::string& path, Interaction interaction, bool* read = 
 
 }  // namespace
 
-TEST_CASE("WAV and FLAC are read, of one channel or two, at any rate") {
+TEST_CASE("WAV and FLAC files with one or two channels are read at any rate") {
   const SoundFolder folder;
   for (const std::string ending : {".wav", ".flac"})
     for (const int rate : {22050, 44100, 48000, 96000}) {
@@ -47,7 +47,7 @@ TEST_CASE("WAV and FLAC are read, of one channel or two, at any rate") {
     }
 }
 
-TEST_CASE("A blow begins with its first sample, whatever silence was recorded before it") {
+TEST_CASE("A recorded blow begins with its first sample, without the silence before it") {
   const SoundFolder folder;
   std::vector<float> x(5000, 1e-5f);
   const auto ring = tone(500, 0.2, 0.5, 48000, 20);
@@ -62,7 +62,7 @@ TEST_CASE("A blow begins with its first sample, whatever silence was recorded be
   CHECK(std::abs(r->samples.back()) < 1e-6f);  // it fades
 }
 
-TEST_CASE("A loop goes on over its seam as it goes on elsewhere") {
+TEST_CASE("A loop is continuous over its seam") {
   std::mt19937 random(3);
   std::normal_distribution<float> normal(0, 0.2f);
   std::vector<float> x(48000);
@@ -82,7 +82,7 @@ TEST_CASE("A loop goes on over its seam as it goes on elsewhere") {
   for (std::size_t n = 1; n < loop.size(); ++n) REQUIRE(std::abs(loop[n] - loop[n - 1]) <= bound);
 }
 
-TEST_CASE("What cannot be played is refused with a sentence that says what to do") {
+TEST_CASE("A recording that cannot be played is rejected with a sentence that names the remedy") {
   const SoundFolder folder;
   const auto at = [&](const char* file) { return folder.path() + "/" + file; };
   folder.text("empty.wav", "");
@@ -98,38 +98,38 @@ TEST_CASE("What cannot be played is refused with a sentence that says what to do
   nan[100] = std::numeric_limits<float>::infinity();
   folder.write("inf.wav", nan);
   using Catch::Contains;
-  CHECK_THAT(said(at("missing.wav"), Interaction::kImpact), Contains("cannot be read"));
-  CHECK_THAT(said(at("empty.wav"), Interaction::kImpact), Contains("cannot be read"));
-  CHECK_THAT(said(at("text.wav"), Interaction::kImpact), Contains("cannot be read"));
-  CHECK_THAT(said(at("ten.wav"), Interaction::kImpact), Contains("10 channels"));
-  CHECK_THAT(said(at("slow.wav"), Interaction::kImpact), Contains("4000 samples a second"));
-  CHECK_THAT(said(at("silent.wav"), Interaction::kImpact), Contains("silent"));
-  CHECK_THAT(said(at("click.wav"), Interaction::kImpact), Contains("10 ms"));
-  CHECK_THAT(said(at("short.wav"), Interaction::kScrape), Contains("too short for a loop"));
-  CHECK_THAT(said(at("nan.wav"), Interaction::kRoll), Contains("no number"));
-  CHECK_THAT(said(at("inf.wav"), Interaction::kRoll), Contains("no number"));
+  CHECK_THAT(faults_of(at("missing.wav"), Interaction::kImpact), Contains("cannot be read"));
+  CHECK_THAT(faults_of(at("empty.wav"), Interaction::kImpact), Contains("cannot be read"));
+  CHECK_THAT(faults_of(at("text.wav"), Interaction::kImpact), Contains("cannot be read"));
+  CHECK_THAT(faults_of(at("ten.wav"), Interaction::kImpact), Contains("10 channels"));
+  CHECK_THAT(faults_of(at("slow.wav"), Interaction::kImpact), Contains("4000 samples a second"));
+  CHECK_THAT(faults_of(at("silent.wav"), Interaction::kImpact), Contains("silent"));
+  CHECK_THAT(faults_of(at("click.wav"), Interaction::kImpact), Contains("10 ms"));
+  CHECK_THAT(faults_of(at("short.wav"), Interaction::kScrape), Contains("too short for a loop"));
+  CHECK_THAT(faults_of(at("nan.wav"), Interaction::kRoll), Contains("invalid samples"));
+  CHECK_THAT(faults_of(at("inf.wav"), Interaction::kRoll), Contains("invalid samples"));
   for (const char* file : {"empty.wav", "text.wav", "ten.wav", "slow.wav", "silent.wav", "nan.wav"}) {
     bool read = true;
-    said(at(file), Interaction::kImpact, &read);
+    faults_of(at(file), Interaction::kImpact, &read);
     CHECK_FALSE(read);
   }
 }
 
-TEST_CASE("What is clipped is played all the same, and said") {
+TEST_CASE("A clipped recording is played and reported") {
   const SoundFolder folder;
   auto x = tone(200, 0.5, 1.5);
   for (float& s : x) s = std::clamp(s, -1.f, 1.f);
   folder.write("a.wav", x);
   bool read = false;
-  CHECK_THAT(said(folder.path() + "/a.wav", Interaction::kImpact, &read), Catch::Contains("clipped"));
+  CHECK_THAT(faults_of(folder.path() + "/a.wav", Interaction::kImpact, &read), Catch::Contains("clipped"));
   CHECK(read);
 }
 
-TEST_CASE("A file that was cut off is read as far as it goes") {
+TEST_CASE("A truncated recording is read as far as possible") {
   const SoundFolder folder;
   folder.write("a.wav", tone(200, 1));
   std::filesystem::resize_file(folder.path() + "/a.wav", 100000);
   bool read = false;
-  said(folder.path() + "/a.wav", Interaction::kImpact, &read);
+  faults_of(folder.path() + "/a.wav", Interaction::kImpact, &read);
   CHECK(read);
 }

@@ -59,11 +59,11 @@ double centroid_Hz(const std::vector<float>& x) {
 
 }  // namespace
 
-TEST_CASE("At its own pitch a recording is heard to the sample, from the frame that it is given") {
+TEST_CASE("At its own pitch a recording is played to the sample from the given frame on") {
   const Recording r = recording(tone(700, 0.05, 0.5));
   for (const int offset : {0, 1, 37, kMaxBlock - 1}) {
     Shots shots(kRate);
-    shots.take(shot(r), 1, offset);
+    shots.start(shot(r), 1, offset);
     const auto left = left_of(shots, 60);
     for (std::size_t n = 0; n < left.size(); ++n) {
       const auto k = static_cast<std::ptrdiff_t>(n) - offset;
@@ -74,12 +74,12 @@ TEST_CASE("At its own pitch a recording is heard to the sample, from the frame t
   }
 }
 
-TEST_CASE("The centre of the spectrum moves as the pitch") {
+TEST_CASE("The centroid of the spectrum moves with the pitch") {
   const Recording r = recording(tone(1000, 0.5, 0.5, 48000, 60));
   double whole = 0;
   for (const float step : {1.f, 0.5f, 0.75f, 1.5f, 2.f}) {
     Shots shots(kRate);
-    shots.take(shot(r, 1, step), 1, 0);
+    shots.start(shot(r, 1, step), 1, 0);
     const double centre = centroid_Hz(left_of(shots, 2048 / kMaxBlock));
     if (step == 1) whole = centre;
     CAPTURE(step, centre, whole);
@@ -97,7 +97,7 @@ TEST_CASE("A strike with a recording starts on the sample nearest to its time") 
     s.event_id = 9;
     s.scheduled = sync::host_time(kStart_ns + after_ns);
     s.recorded = shot(r);
-    REQUIRE(bench->crossing.strikes.push(s));
+    REQUIRE(bench->queues.strikes.push(s));
     while (bench->left.size() < 2000) bench->play(100);
     const auto first = std::find_if(bench->left.begin(), bench->left.end(), [](float x) { return x != 0; });
     const auto onset = static_cast<std::size_t>(first - bench->left.begin());
@@ -106,18 +106,18 @@ TEST_CASE("A strike with a recording starts on the sample nearest to its time") 
     REQUIRE(bench->reports.size() == 1);
     CHECK(bench->reports[0].outcome == presentation_t::PRESENTED);
     CHECK(std::abs(bench->reports[0].presented_ns - bench->time_ns(onset)) <= 2);
-    CHECK(bench->crossing.costs[0].contacts == 0);
-    CHECK(bench->crossing.costs[1].contacts == 1);
+    CHECK(bench->queues.costs[0].contacts == 0);
+    CHECK(bench->queues.costs[1].contacts == 1);
   }
 }
 
-TEST_CASE("When all are in use the quietest gives way, and fades without a click") {
+TEST_CASE("When all voices of recordings are in use the quietest fades without a click") {
   const Recording r = recording(tone(200, 2, 0.5));
   Shots shots(kRate);
-  for (int i = 0; i < Shots::kMax; ++i) shots.take(shot(r, i == 20 ? 1e-3f : 1e-2f), 1, 0);
+  for (int i = 0; i < Shots::kMax; ++i) shots.start(shot(r, i == 20 ? 1e-3f : 1e-2f), 1, 0);
   left_of(shots, 1);
   CHECK(shots.active() == Shots::kMax);
-  shots.take(shot(r, 1e-2f), 1, 0);
+  shots.start(shot(r, 1e-2f), 1, 0);
   const auto left = left_of(shots, 10);
   CHECK(shots.active() == Shots::kMax);
   // All except the weak one continue: 63 in step, and one that begins. No step of a cosine 0.5 cos(w n) is above
@@ -126,18 +126,18 @@ TEST_CASE("When all are in use the quietest gives way, and fades without a click
   for (std::size_t n = 1; n < left.size(); ++n)
     REQUIRE(std::abs(left[n] - left[n - 1]) <= (63 * 1e-2 + 1e-3 + 1e-2) * 0.5 * w + 1e-3 * 0.5 / 240 + 1e-6);
   // Beyond the number that may fade at a time one ends at once; never more than there is room for.
-  for (int i = 0; i < 1000; ++i) shots.take(shot(r), 1, 0);
+  for (int i = 0; i < 1000; ++i) shots.start(shot(r), 1, 0);
   left_of(shots, 1);
   CHECK(shots.active() <= Shots::kMax + 16);
   left_of(shots, 10);
   CHECK(shots.active() == Shots::kMax);
 }
 
-TEST_CASE("A recording of silence or of nothing is over at once, and no strength plays nothing") {
+TEST_CASE("A recording of one sample ends at once, and one of zero strength is not played") {
   const Recording one = recording({0.5f});
   Shots shots(kRate);
-  shots.take(shot(one), 1, 3);
-  shots.take(shot(one, 0), 1, 3);
+  shots.start(shot(one), 1, 3);
+  shots.start(shot(one, 0), 1, 3);
   const auto left = left_of(shots, 1);
   CHECK(left[3] == 0.5f);
   CHECK(shots.active() == 0);

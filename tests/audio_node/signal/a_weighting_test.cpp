@@ -45,8 +45,7 @@ constexpr Row kTable[] = {{63, -26.2, 1, 1},   {126, -16.1, 1, 1},  {251, -8.6, 
 
 }  // namespace
 
-TEST_CASE(
-    "A-weighting has the standard's curve at the frequency that the bilinear transform bends to, at any rate") {
+TEST_CASE("A-weighting has the curve of the standard at the warped frequency, at any rate") {
   for (const double rate_Hz : {8000., 22050., 44100., 48000., 96000., 192000.})
     for (const double f : {20., 31., 100., 440., 1000., 2000., 3500., 7000., 9000., 18000., 40000.}) {
       if (f >= 0.48 * rate_Hz) continue;
@@ -57,7 +56,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("A-weighting is within class 1 of the standard's table from 44.1 kHz on, and up to 2 kHz at 8 kHz") {
+TEST_CASE("A-weighting is within class 1 of the standard from 44.1 kHz on, and up to 2 kHz at 8 kHz") {
   for (const double rate_Hz : {8000., 44100., 48000., 96000., 192000.})
     for (const Row& row : kTable) {
       if (row.frequency_Hz > 0.25 * rate_Hz && rate_Hz < 44100) continue;

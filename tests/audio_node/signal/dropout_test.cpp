@@ -33,8 +33,8 @@ float largest_step(const std::vector<float>& x) {
 
 // A lasting tone, with or without drop-outs.
 struct Tone {
-  explicit Tone(const DropoutDef& dropout) { order(dropout); }
-  void order(const DropoutDef& dropout) { REQUIRE(bench->crossing.orders.push(RenderCommand{dropout, 0})); }
+  explicit Tone(const DropoutDef& dropout) { set_dropout(dropout); }
+  void set_dropout(const DropoutDef& dropout) { REQUIRE(bench->queues.commands.push(RenderCommand{dropout, 0})); }
   void play_until(std::size_t samples) {
     while (bench->left.size() < samples) bench->play(128);
   }
@@ -43,7 +43,7 @@ struct Tone {
 
 }  // namespace
 
-TEST_CASE("A drop-out is silence of its length, so often, with edges of a millisecond") {
+TEST_CASE("A drop-out is silent for its length at its period, with edges of a millisecond") {
   Dropout dropout(kRate);
   dropout.set(kTwenty_ms);
   const auto gains = next(dropout, 10 * kSecond);
@@ -59,7 +59,7 @@ TEST_CASE("A drop-out is silence of its length, so often, with edges of a millis
   CHECK(largest_step(gains) <= kSteepest);
 }
 
-TEST_CASE("Drop-outs depend on the number of the sample only, not on how samples are cut into blocks") {
+TEST_CASE("Drop-outs depend on the sample number only, not on the block sizes") {
   Dropout whole(kRate), cut(kRate);
   whole.set(kTwenty_ms), cut.set(kTwenty_ms);
   std::vector<float> parts;
@@ -68,7 +68,7 @@ TEST_CASE("Drop-outs depend on the number of the sample only, not on how samples
   CHECK(parts == next(whole, parts.size()));
 }
 
-TEST_CASE("Drop-outs are switched on and off without a click, and keep their places") {
+TEST_CASE("Drop-outs are switched on and off without a click and keep their positions") {
   Dropout dropout(kRate), always(kRate);
   always.set(kTwenty_ms);
   std::vector<float> gains;
@@ -90,10 +90,10 @@ TEST_CASE("Drop-outs are switched on and off without a click, and keep their pla
   CHECK(std::equal(gains.begin() + 1600, gains.end(), reference.begin() + 1600));
 }
 
-TEST_CASE("Sound that drops out is the sound without, times the silence, to the bit outside of it") {
+TEST_CASE("Sound with drop-outs equals the sound without, times the drop-out gains, to the bit") {
   Tone plain({}), poor(kTwenty_ms);
   for (Tone* t : {&plain, &poor}) {
-    REQUIRE(t->bench->crossing.strikes.push(strike_of(1, 1, 440, 0.5, t->bench->time_ns(3000))));
+    REQUIRE(t->bench->queues.strikes.push(strike_of(1, 1, 440, 0.5, t->bench->time_ns(3000))));
     t->play_until(2 * kSecond);
   }
   Dropout dropout(kRate);
@@ -109,13 +109,13 @@ TEST_CASE("Sound that drops out is the sound without, times the silence, to the 
   CHECK(loudest > 0.05);
 }
 
-TEST_CASE("A strike whose onset is silenced was dropped by the profile, one before or after it was presented") {
+TEST_CASE("A strike whose onset is in a drop-out is reported as dropped by the profile") {
   // Frames leave the limiter kDelay samples after they were counted.
   const auto struck_at = [](std::size_t counted) {
     Tone tone(kTwenty_ms);
     tone.play_until(kSecond / 2);
     const auto at = tone.bench->time_ns(kSecond + counted + Limiter::kDelay);
-    REQUIRE(tone.bench->crossing.strikes.push(strike_of(1, 1, 440, 0.5, at)));
+    REQUIRE(tone.bench->queues.strikes.push(strike_of(1, 1, 440, 0.5, at)));
     tone.play_until(kSecond + kSecond / 2);
     REQUIRE(tone.bench->reports.size() == 1);
     const auto& left = tone.bench->left;
@@ -133,13 +133,13 @@ TEST_CASE("A strike whose onset is silenced was dropped by the profile, one befo
   CHECK(struck_at(kLength + kEdge).outcome == presentation_t::PRESENTED);
 }
 
-TEST_CASE("Drop-outs are ordered and ended while the sound is on") {
+TEST_CASE("Drop-outs can start and end while a sound plays") {
   Tone tone({});
-  REQUIRE(tone.bench->crossing.strikes.push(strike_of(1, 1, 440, 0.5, tone.bench->time_ns(3000))));
+  REQUIRE(tone.bench->queues.strikes.push(strike_of(1, 1, 440, 0.5, tone.bench->time_ns(3000))));
   tone.play_until(kSecond / 2);
-  tone.order({0.02, 0.1});
+  tone.set_dropout({0.02, 0.1});
   tone.play_until(kSecond);
-  tone.order({});
+  tone.set_dropout({});
   tone.play_until(2 * kSecond);
   const auto silent = [&](std::size_t from, std::size_t to) {
     long run = 0, longest = 0;

@@ -17,7 +17,7 @@ using std::numbers::pi;
 
 namespace {
 
-constexpr HearingDef kDef{};  // 85 dBA with 100 dB at full scale
+constexpr LevelLimiterDef kDef{};  // 85 dBA with 100 dB at full scale
 constexpr auto kSecond = static_cast<std::size_t>(kRate);
 constexpr auto kSettled = static_cast<std::size_t>(LevelLimiter::kSettled_s * kRate);
 
@@ -64,8 +64,8 @@ double steepest_dB(const std::vector<float>& in, const std::vector<float>& out) 
 
 }  // namespace
 
-TEST_CASE("A full-scale tone ends at the limit, at any frequency, through a gain that moves without a click") {
-  HearingDef ears = kDef;
+TEST_CASE("A full-scale tone settles at the limit at any frequency, without a click") {
+  LevelLimiterDef ears = kDef;
   ears.ears = true;
   for (const double frequency_Hz : {200., 1000., 4000.}) {
     const auto in = tone(frequency_Hz, 0.9, 8 * kSecond), out = played(in, {ears, kRate, 2});
@@ -79,9 +79,9 @@ TEST_CASE("A full-scale tone ends at the limit, at any frequency, through a gain
   }
 }
 
-TEST_CASE("Below the limit the level limiter changes no bit, not even of numbers that it has just turned down") {
+TEST_CASE("Below the limit the level limiter changes no bit, also after an excess") {
   // 15 dB below full scale is at the limit.
-  HearingDef ears = kDef;
+  LevelLimiterDef ears = kDef;
   ears.ears = true;
   const auto quiet = tone(1000, 0.17, 4 * kSecond), louder = tone(1000, 0.19, 4 * kSecond);
   const bool same = played(quiet, {ears, kRate, 2}) == quiet, turned = played(louder, {ears, kRate, 2}) != louder;
@@ -97,7 +97,7 @@ TEST_CASE("Below the limit the level limiter changes no bit, not even of numbers
   CHECK(std::equal(out.end() - 4 * 96000, out.end(), both.end() - 4 * 96000));
 }
 
-TEST_CASE("One strike at -12 dBFS that rings for a second is played to the bit") {
+TEST_CASE("A strike at -12 dBFS that rings for a second is unchanged by the level limiter") {
   auto strike = tone(1000, 0.25, 3 * kSecond);
   for (std::size_t i = 0; i < strike.size(); ++i)
     strike[i] *= static_cast<float>(std::exp(-6.9 * static_cast<double>(i / 2) / kRate));
@@ -105,9 +105,9 @@ TEST_CASE("One strike at -12 dBFS that rings for a second is played to the bit")
   CHECK(same);
 }
 
-TEST_CASE("The louder ear counts. Loudspeakers add up") {
+TEST_CASE("The louder ear counts, and the powers of loudspeakers add up") {
   const auto settled = [](bool ears, bool both) {
-    HearingDef def = kDef;
+    LevelLimiterDef def = kDef;
     def.ears = ears;
     auto x = tone(1000, 0.9, 6 * kSecond);
     for (std::size_t i = 1; !both && i < x.size(); i += 2) x[i] = 0;
@@ -119,7 +119,7 @@ TEST_CASE("The louder ear counts. Loudspeakers add up") {
   CHECK(settled(false, true) == Approx(kDef.limit_dB - 10 * std::log10(2)).margin(0.1));
 }
 
-TEST_CASE("What is no number, or beyond all numbers, is silence or full scale at once, and forgotten soon") {
+TEST_CASE("Samples that are not finite become silence, larger ones full scale, and the state recovers") {
   for (const float bad :
        {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e38f}) {
     LevelLimiter limiter(kDef, kRate, 2);
@@ -135,7 +135,7 @@ TEST_CASE("What is no number, or beyond all numbers, is silence or full scale at
   }
 }
 
-TEST_CASE("The dose is that of the level: 80 dBA for 40 hours are a week's, and 3 dB more take half of the time") {
+TEST_CASE("The weekly dose is 80 dBA for 40 hours, and 3 dB more halve the time") {
   const auto exposure = [](double level_dB, std::size_t seconds) {
     LevelLimiter limiter(kDef, kRate, 1);
     // One channel, unchanged.
@@ -151,24 +151,24 @@ TEST_CASE("The dose is that of the level: 80 dBA for 40 hours are a week's, and 
   // 0.04 Pa^2 is 80 dB. The onset of the filter takes 1e-3 of a second.
   CHECK(exposure(80, 4) == Approx(0.04 * 4).epsilon(1e-3));
   CHECK(exposure(83.0103, 2) == Approx(exposure(80, 4)).epsilon(1e-3));
-  CHECK(days_of_sound(0.04 * 40 * 3600, 80) == Approx(7));
-  CHECK(days_of_sound(0.04 * 40 * 3600, 75) == Approx(7 * std::pow(10, 0.5)));
+  CHECK(sound_dose_days(0.04 * 40 * 3600, 80) == Approx(7));
+  CHECK(sound_dose_days(0.04 * 40 * 3600, 75) == Approx(7 * std::pow(10, 0.5)));
   // Reduced sound counts as played.
   CHECK(exposure(100, 8) < 4 * exposure(85, 8));
 }
 
-TEST_CASE("The dose is told in per cent of a day's, and not before there is one") {
-  CHECK(dose_in_words(0).empty());
-  CHECK(dose_in_words(0.001) == ", sound dose of this run below 1 % of a day's");
-  CHECK(dose_in_words(0.034) == ", sound dose of this run 3 % of a day's");
-  CHECK(dose_in_words(2.5) == ", sound dose of this run 250 % of a day's");
+TEST_CASE("The sound dose is reported in per cent of the daily allowance") {
+  CHECK(dose_text(0).empty());
+  CHECK(dose_text(0.001) == ", sound dose of this run below 1 % of a day's");
+  CHECK(dose_text(0.034) == ", sound dose of this run 3 % of a day's");
+  CHECK(dose_text(2.5) == ", sound dose of this run 250 % of a day's");
 }
 
-TEST_CASE("A roar of 128 bodies is played within the limit, and its dose is told") {
+TEST_CASE("The sound of 128 bodies stays within the limit, and its exposure is measured") {
   auto bench = std::make_unique<Bench>();
   std::mt19937 random(5);
   for (int i = 0; i < 128; ++i)
-    REQUIRE(bench->crossing.strikes.push(
+    REQUIRE(bench->queues.strikes.push(
         strike_of(i, i, 300 + 20 * static_cast<double>(random() % 100), 0, bench->time_ns(500), 1)));
   while (bench->left.size() < 8 * kSecond) bench->play(128);
   std::vector<float> both;
@@ -178,20 +178,20 @@ TEST_CASE("A roar of 128 bodies is played within the limit, and its dose is told
   // Beats modulate its power within the slow mean, which may differ by 0.5 dB from the mean of a whole second.
   CHECK(level < kDef.limit_dB + 0.5);
   CHECK(level > kDef.limit_dB - 1);
-  CHECK(bench->crossing.heard.gain.load() < 0.5);
-  const double exposure = bench->crossing.heard.exposure_Pa2_s.load();
+  CHECK(bench->queues.exposure.gain.load() < 0.5);
+  const double exposure = bench->queues.exposure.exposure_Pa2_s.load();
   CHECK(exposure > 7 * 0.1265 / 2);  // 85 dBA are 0.1265 Pa^2
   CHECK(exposure < 2 * 8 * 0.1265);
 }
 
-TEST_CASE("A row of strikes of -12 dBFS is played as if no level were limited") {
+TEST_CASE("A series of strikes at -12 dBFS is unchanged by the level limiter") {
   const auto play = [](double limit_dB) {
     RendererDef def;
-    def.hearing.limit_dB = limit_dB;
-    auto crossing = std::make_unique<CallbackQueues>();
-    auto renderer = std::make_unique<Renderer>(*crossing, def);
+    def.level_limit.limit_dB = limit_dB;
+    auto queues = std::make_unique<CallbackQueues>();
+    auto renderer = std::make_unique<Renderer>(*queues, def);
     for (int i = 0; i < 12; ++i)
-      crossing->strikes.push(
+      queues->strikes.push(
           strike_of(i, i % 3, 400 + 100 * i, 12, kStart_ns + i * std::int64_t{250'000'000}, 0.25f));
     std::vector<float> out(2 * 128), all;
     for (int n = 0; n < 1200; ++n) {

@@ -8,7 +8,7 @@
 
 using tactus::audio::Limiter;
 
-TEST_CASE("The limiter keeps every sample within its ceiling, whatever comes") {
+TEST_CASE("The limiter keeps every sample within its ceiling for any input") {
   const float worst[] = {1e38f,
                          -1e38f,
                          std::numeric_limits<float>::quiet_NaN(),
@@ -49,7 +49,7 @@ TEST_CASE("Below the ceiling the limiter is an exact delay") {
   CHECK(same);
 }
 
-TEST_CASE("A loud sample is turned down by a ramp before it, not clipped") {
+TEST_CASE("A loud sample is reduced by a ramp before it, not clipped") {
   Limiter limiter(0.5, 48000);
   std::vector<float> x(2 * 400, 0.4f);
   x[2 * 200] = 2.f;

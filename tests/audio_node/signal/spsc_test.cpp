@@ -8,7 +8,7 @@
 
 using tactus::audio::Spsc;
 
-TEST_CASE("A bounded queue hands over everything once and in order, between two threads") {
+TEST_CASE("A bounded queue transfers all elements once and in order between two threads") {
   constexpr std::int64_t kCount = 200'000;
   Spsc<std::int64_t> queue(64);
   std::thread sender([&] {

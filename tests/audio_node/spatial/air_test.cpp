@@ -8,7 +8,7 @@
 
 using namespace tactus::audio;
 
-TEST_CASE("Air takes off a tone what the table of ISO 9613-2 says") {
+TEST_CASE("The absorption of air agrees with the table of ISO 9613-2") {
   struct Row {
     double temperature_degC, humidity_percent;
     std::vector<double> dB_km;  // octaves from 63 Hz to 8 kHz
@@ -30,7 +30,7 @@ TEST_CASE("Air takes off a tone what the table of ISO 9613-2 says") {
   }
 }
 
-TEST_CASE("The low-pass of the air takes as much off as the air at 8 kHz, and nearly so below") {
+TEST_CASE("The low-pass of the air has the absorption at 8 kHz, and nearly that below") {
   const double rate_Hz = GENERATE(44100.0, 48000.0, 96000.0), distance_m = GENERATE(3.0, 10.0, 30.0);
   const auto keep = static_cast<double>(air_keep(absorption_dB_m(kAirFit_Hz) * distance_m, rate_Hz));
   const auto lost_dB = [&](double f) {

@@ -20,7 +20,7 @@ std::vector<float> tone(double per_frame) {
 
 }  // namespace
 
-TEST_CASE("A delay of a fraction of a sample is that of a polynomial through the samples") {
+TEST_CASE("A fractional delay agrees with the polynomial through the samples") {
   const float delay = GENERATE(2.f, 2.25f, 2.5f, 7.f, 31.4f);
   const double w = 2 * std::numbers::pi * 3000 / 48000;
   const auto x = tone(w);
@@ -31,7 +31,7 @@ TEST_CASE("A delay of a fraction of a sample is that of a polynomial through the
     CHECK(std::abs(static_cast<double>(out[n]) - std::sin(w * (n - static_cast<double>(delay)))) < 3e-5);
 }
 
-TEST_CASE("A delay that changes goes straight from one value to the other") {
+TEST_CASE("A changing delay moves linearly from one value to the other") {
   const float from = GENERATE(2.f, 20.f), to = GENERATE(2.f, 3.3f, 25.f);
   const double w = 2 * std::numbers::pi * 3000 / 48000;
   const auto x = tone(w);
@@ -43,8 +43,7 @@ TEST_CASE("A delay that changes goes straight from one value to the other") {
   }
 }
 
-TEST_CASE(
-    "Nothing is read beyond the frames that are there and one more, nor before the past that a delay reaches") {
+TEST_CASE("A delay reads only the available frames, one more, and the required past") {
   const float from = GENERATE(2.f, 2.3f, 9.f), to = GENERATE(2.f, 9.f, 8.5f);
   const int past = static_cast<int>(std::ceil(std::max(from, to))) + kDelayReach;
   // NaN in every place that must not be read: with any weight it would be audible.

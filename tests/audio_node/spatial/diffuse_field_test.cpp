@@ -8,7 +8,7 @@
 
 using namespace tactus::audio;
 
-TEST_CASE("What all directions have in common is undone") {
+TEST_CASE("The response common to all directions is removed") {
   // 1 + 0.5 z^-1 has minimum phase, and the inverse (-0.5)^n, of which 1e-7 remains after 24 samples.
   const auto inverse = diffuse_field_inverse({{1, 0.5f}, {1, 0.5f}, {1, 0.5f}}, {1, 2, 1}, 24);
   REQUIRE(inverse.size() == 24);
@@ -16,7 +16,7 @@ TEST_CASE("What all directions have in common is undone") {
     CHECK(static_cast<double>(inverse[n]) == Approx(std::pow(-0.5, n)).margin(1e-6));
 }
 
-TEST_CASE("A direction that was measured twice counts once, by the part of the sphere around it") {
+TEST_CASE("A direction that was measured twice counts once, by its part of the sphere") {
   // Where directions are dense the responses differ.
   std::vector<Eigen::Vector3d> directions;
   for (const double z : {-1.0, 0.0, 0.8, 0.9})

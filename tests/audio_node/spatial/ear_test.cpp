@@ -37,7 +37,8 @@ tool_state_t report(std::int32_t tool, double y_m, std::int64_t ns) {
 
 }  // namespace
 
-TEST_CASE("The ear is where the scene has it until somebody says where the head is, and then where it was last") {
+TEST_CASE(
+    "The ear is at the listener of the scene until the head is reported, and then at the last pose of the head") {
   Ear ear(kRun);
   constexpr std::int64_t kMs = 1'000'000;
   ear.set_scene(with_head(2));

@@ -6,7 +6,7 @@
 
 using namespace tactus::audio;
 
-TEST_CASE("Each filter gives what the sum of its products gives, with all instructions of this machine") {
+TEST_CASE("Each filter gives the sum of its products, with all instructions of this machine") {
   const int taps = GENERATE(16, 128, 272), count = GENERATE(2, 4);
   std::vector<float> input(static_cast<std::size_t>(taps + kMaxBlock));
   for (std::size_t i = 0; i < input.size(); ++i) input[i] = static_cast<float>(std::sin(0.7 * i * i));

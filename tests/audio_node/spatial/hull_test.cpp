@@ -32,7 +32,7 @@ void check_closed(const std::vector<Vector3d>& points, const std::vector<Triangl
 
 }  // namespace
 
-TEST_CASE("The hull of a cube's corners cuts its squares into triangles") {
+TEST_CASE("The hull of the corners of a cube divides its faces into triangles") {
   std::vector<Vector3d> corners;
   for (int i = 0; i < 8; ++i)
     corners.push_back(Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1).normalized());
@@ -51,19 +51,19 @@ TEST_CASE("Directions in one plane have no hull") {
   CHECK(convex_hull({Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()}).empty());
 }
 
-TEST_CASE("Directions stand for the parts of the sphere around them, all of it together") {
+TEST_CASE("The solid angles of directions cover the whole sphere") {
   const double pi = std::numbers::pi;
   std::vector<Vector3d> axes;
   for (int i = 0; i < 3; ++i)
     for (const double sign : {-1.0, 1.0}) axes.push_back(sign * Vector3d::Unit(i));
   for (const double part : solid_angles(axes)) CHECK(part == Approx(4 * pi / 6));
-  SECTION("one that is told twice shares its part with itself") {
+  SECTION("duplicate directions share their part") {
     axes.push_back(axes[3]);
     const auto parts = solid_angles(axes);
     for (const std::size_t i : {0, 1, 2, 4, 5}) CHECK(parts[i] == Approx(4 * pi / 6).epsilon(1e-5));
     CHECK(parts[3] + parts[6] == Approx(4 * pi / 6).epsilon(1e-5));
   }
-  SECTION("and the measured ones") {
+  SECTION("the measured directions cover the sphere") {
     const auto directions = test::kemar().directions;
     double sum = 0;
     for (const double part : solid_angles(directions)) sum += part;

@@ -11,7 +11,7 @@ const std::string kHead = "channel,azimuth_deg,elevation_deg\n";
 
 }  // namespace
 
-TEST_CASE("A layout has one channel for each row, and silent ones where a row has no direction") {
+TEST_CASE("A layout has one channel for each row, and a silent one for a row without a direction") {
   const Layout layout = parse_layout(kHead + "left,90,0\r\nlow,,\n\nup,0,90\n", "room.csv");
   REQUIRE(layout.size() == 3);
   CHECK((*layout[0] - Eigen::Vector3d::UnitY()).norm() < 1e-9);
@@ -19,24 +19,24 @@ TEST_CASE("A layout has one channel for each row, and silent ones where a row ha
   CHECK((*layout[2] - Eigen::Vector3d::UnitZ()).norm() < 1e-9);
 }
 
-TEST_CASE("The layouts that are known by name have their channels") {
+TEST_CASE("The built-in layouts have their channels") {
   CHECK(load_layout("stereo").size() == 2);
   CHECK(load_layout("quad").size() == 4);
   CHECK(load_layout("5.1").size() == 6);
   CHECK(load_layout("cube").size() == 8);
 }
 
-TEST_CASE("A layout that cannot be used is refused with a sentence that says why") {
+TEST_CASE("An unusable layout is rejected with a sentence that names the reason") {
   CHECK_THROWS_WITH(load_layout("/nowhere/room.csv"), Contains("/nowhere/room.csv cannot be read; choose stereo"));
   CHECK_THROWS_WITH(load_layout("/dev/zero"), Contains("/dev/zero cannot be read"));  // it has no end
   CHECK_THROWS_WITH(parse_layout("", "room.csv"),
                     Contains("begin with the line channel,azimuth_deg,elevation_deg"));
   CHECK_THROWS_WITH(parse_layout(kHead, "room.csv"), Contains("has no loudspeaker"));
   CHECK_THROWS_WITH(parse_layout(kHead + "low,,\n", "room.csv"), Contains("has no loudspeaker"));
-  CHECK_THROWS_WITH(parse_layout(kHead + "left,90\n", "room.csv"), Contains("row 1 not three columns"));
-  CHECK_THROWS_WITH(parse_layout(kHead + "left,90,0\nright,x,0\n", "room.csv"), Contains("row 2 no azimuth"));
-  CHECK_THROWS_WITH(parse_layout(kHead + "left,90,91\n", "room.csv"), Contains("row 1 no azimuth"));
-  CHECK_THROWS_WITH(parse_layout(kHead + "left,nan,0\n", "room.csv"), Contains("row 1 no azimuth"));
+  CHECK_THROWS_WITH(parse_layout(kHead + "left,90\n", "room.csv"), Contains("needs three columns in row 1"));
+  CHECK_THROWS_WITH(parse_layout(kHead + "left,90,0\nright,x,0\n", "room.csv"), Contains("degrees in row 2"));
+  CHECK_THROWS_WITH(parse_layout(kHead + "left,90,91\n", "room.csv"), Contains("degrees in row 1"));
+  CHECK_THROWS_WITH(parse_layout(kHead + "left,nan,0\n", "room.csv"), Contains("degrees in row 1"));
   std::string many = kHead;
   for (int i = 0; i < 33; ++i) many += "x,0,0\n";
   CHECK_THROWS_WITH(parse_layout(many, "room.csv"), Contains("more than 32 channels"));

@@ -60,12 +60,12 @@ TEST_CASE("A source in the direction of a loudspeaker comes from it alone") {
   }
 }
 
-TEST_CASE("A subwoofer's channel stays silent") {
+TEST_CASE("The channel of a subwoofer stays silent") {
   const Panning panning(load_layout("5.1"));
   for (double azimuth = -180; azimuth < 180; azimuth += 3) CHECK(gains(panning, towards(azimuth))[3] == 0);
 }
 
-TEST_CASE("Where loudspeakers leave a gap, its rim takes over without a jump") {
+TEST_CASE("A source in a gap of the loudspeakers moves over its rim without a jump") {
   // A pair in front; a ring without height; a dome without floor; two; one.
   const std::string csv =
       GENERATE("left,30,0\nright,-30,0\n", "a,45,0\nb,-45,0\nc,135,0\nd,-135,0\n",

@@ -14,16 +14,16 @@ using namespace tactus::audio::test;
 
 namespace {
 
-struct Heard {
+struct StereoOutput {
   std::vector<double> left, right;
 };
 
 // A tone of amplitude 1 at place(block) at the end of each block.
 template <class PlaceAt>
-Heard tone(const Space& space, double frequency_Hz, int blocks, PlaceAt place) {
+StereoOutput tone(const Space& space, double frequency_Hz, int blocks, PlaceAt place) {
   Spatialiser spatialiser(space, 1, kRate, available_instructions().back());
   spatialiser.begin(0);
-  Heard heard;
+  StereoOutput output;
   for (int b = 0; b < blocks; ++b) {
     std::vector<float> in, out(2 * kMaxBlock);
     for (int n = 0; n < kMaxBlock; ++n)
@@ -32,11 +32,11 @@ Heard tone(const Space& space, double frequency_Hz, int blocks, PlaceAt place) {
     spatialiser.add(0, place(b), in.data(), kMaxBlock);
     spatialiser.mix(out.data(), kMaxBlock);
     for (std::size_t n = 0; n < kMaxBlock; ++n) {
-      heard.left.push_back(static_cast<double>(out[2 * n]));
-      heard.right.push_back(static_cast<double>(out[2 * n + 1]));
+      output.left.push_back(static_cast<double>(out[2 * n]));
+      output.right.push_back(static_cast<double>(out[2 * n + 1]));
     }
   }
-  return heard;
+  return output;
 }
 
 double largest(const std::vector<double>& x, std::size_t from) {
@@ -64,7 +64,7 @@ constexpr std::size_t kSettled = 256;  // longer than any filter and delay
 
 }  // namespace
 
-TEST_CASE("A source that circles the head once a second is heard without a click") {
+TEST_CASE("A source that circles the head once a second makes no click") {
   const Space space = GENERATE(Space{ears(), nullptr}, Space{},
                                Space{nullptr, std::make_shared<const Panning>(load_layout("stereo"))});
   const double f = 440, w = 2 * std::numbers::pi * f / kRate;
@@ -80,7 +80,7 @@ TEST_CASE("A source that circles the head once a second is heard without a click
   CHECK(std::max(largest_bend(swept.left, kSettled), largest_bend(swept.right, kSettled)) < 1.25 * w * w * gain);
 }
 
-TEST_CASE("A source that leaps to the other side goes over within a block") {
+TEST_CASE("A source that jumps to the other side crossfades within a block") {
   const double f = 440, w = 2 * std::numbers::pi * f / kRate;
   const auto leapt = tone({ears(), nullptr}, f, 40, [](int b) { return at(b < 20 ? 90 : -90); });
   const double gain = std::max(largest(leapt.left, kSettled), largest(leapt.right, kSettled));
@@ -90,7 +90,7 @@ TEST_CASE("A source that leaps to the other side goes over within a block") {
         (2.2 * w * w + 0.5 * w + 2.0 / 64) * gain);
 }
 
-TEST_CASE("What sounds on a source next is not heard through what the last sound left") {
+TEST_CASE("The next sound on a source starts without the filters and delays of the last one") {
   const Space space = GENERATE(Space{ears(), nullptr}, Space{});
   Spatialiser spatialiser(space, 1, kRate, Instructions::kSse2);
   std::vector<float> loud(kMaxBlock, 1.f), none(kMaxBlock), out(2 * kMaxBlock);
@@ -104,26 +104,26 @@ TEST_CASE("What sounds on a source next is not heard through what the last sound
   CHECK(std::all_of(out.begin(), out.end(), [](float x) { return x == 0; }));
 }
 
-TEST_CASE("After the tail nothing of a source is left to be heard") {
+TEST_CASE("After its tail a source is silent") {
   Spatialiser spatialiser({ears(), nullptr}, 1, kRate, Instructions::kSse2);
   spatialiser.begin(0);
   std::vector<float> in(kMaxBlock);
   in.back() = 1;
-  std::vector<float> heard;
+  std::vector<float> output;
   for (int b = 0; b < 8; ++b) {
     std::vector<float> out(2 * kMaxBlock);
     spatialiser.add(0, at(90), in.data(), kMaxBlock);
     spatialiser.mix(out.data(), kMaxBlock);
     in.assign(kMaxBlock, 0.f);
-    heard.insert(heard.end(), out.begin(), out.end());
+    output.insert(output.end(), out.begin(), out.end());
   }
-  const auto after = heard.begin() + 2 * (kMaxBlock + spatialiser.tail());
-  CHECK(std::all_of(after, heard.end(), [](float x) { return x == 0; }));
+  const auto after = output.begin() + 2 * (kMaxBlock + spatialiser.tail());
+  CHECK(std::all_of(after, output.end(), [](float x) { return x == 0; }));
   // The far ear still has output in the last quarter.
   CHECK(std::any_of(after - spatialiser.tail() / 2, after, [](float x) { return x != 0; }));
 }
 
-TEST_CASE("Pressure falls as the distance grows, and the air takes the high notes") {
+TEST_CASE("The pressure falls with the distance, and the air absorbs high frequencies") {
   const double f = GENERATE(500.0, 8000.0);
   const float distance_m = GENERATE(0.5f, 2.f, 20.f);
   const auto near = tone({}, f, 60, [](int) { return at(0, 1); });
@@ -135,7 +135,7 @@ TEST_CASE("Pressure falls as the distance grows, and the air takes the high note
   CHECK(rms(far.left, 2000) == Approx(expected).epsilon(0.006));
 }
 
-TEST_CASE("A body that rings stays where it is while the listener turns") {
+TEST_CASE("A ringing body stays in place while the listener turns") {
   Voices voices(4, kRate, kRing, {ears(), nullptr});
   Strike strike = strike_of(1, 1, 2000, 5, 0);
   SourcePosition& place = strike.sides[0].place;
@@ -157,15 +157,15 @@ TEST_CASE("A body that rings stays where it is while the listener turns") {
   CHECK(louder_left() > 6);
   Listener listener;
   listener.T_W_listener = Eigen::AngleAxisf(std::numbers::pi_v<float>, Eigen::Vector3f::UnitZ());
-  voices.hear_from(listener);
+  voices.set_listener(listener);
   CHECK(louder_left() < -6);
   listener.T_W_listener = Eigen::Translation3f(0, 4, 0) * listener.T_W_listener;  // it has walked past the source
-  voices.hear_from(listener);
+  voices.set_listener(listener);
   CHECK(louder_left() > 6);
 }
 
-TEST_CASE("A voice that has ended leaves nothing to the next on its source") {
-  const auto hear = [](Voices& voices, int blocks) {
+TEST_CASE("A voice that has ended leaves no state to the next one on its source") {
+  const auto render = [](Voices& voices, int blocks) {
     std::vector<float> all;
     for (int b = 0; b < blocks; ++b) {
       std::vector<float> out(2 * kMaxBlock);
@@ -178,12 +178,12 @@ TEST_CASE("A voice that has ended leaves nothing to the next on its source") {
   Voices used(1, kRate, kRing, space), fresh(1, kRate, kRing, space);
   const Strike first = strike_of(1, 1, 3000, 500, 0), second = strike_of(2, 2, 500, 500, 0);
   used.strike(first.sides[0], 1, first.pulse, 0);
-  hear(used, 200);
+  render(used, 200);
   REQUIRE(used.active() == 0);
-  for (const float x : hear(used, 10)) CHECK(x == 0);
+  for (const float x : render(used, 10)) CHECK(x == 0);
   used.strike(second.sides[0], 1, second.pulse, 0);
   fresh.strike(second.sides[0], 1, second.pulse, 0);
-  CHECK(hear(used, 50) == hear(fresh, 50));
+  CHECK(render(used, 50) == render(fresh, 50));
 }
 
 namespace {
@@ -192,23 +192,23 @@ namespace {
 double first_heard_blow(const Space& space, const Eigen::Vector3f& from) {
   RendererDef def;
   def.space = space;
-  CallbackQueues crossing;
-  Renderer renderer(crossing, def);
+  CallbackQueues queues;
+  Renderer renderer(queues, def);
   Strike strike = strike_of(1, 1, 6000, 3000, kStart_ns + 20'000'000);
   strike.sides[0].place.direction = from;
-  REQUIRE(crossing.strikes.push(strike));
+  REQUIRE(queues.strikes.push(strike));
   std::vector<float> both;
   for (std::int64_t frame = 0; frame < 2048; frame += kMaxBlock) {
     std::vector<float> out(2 * kMaxBlock);
     renderer.render(out.data(), kMaxBlock, {sync::host_time(kStart_ns + frame * 1'000'000'000 / 48000), {}, {}});
     for (std::size_t n = 0; n < kMaxBlock; ++n) both.push_back(out[2 * n] + out[2 * n + 1]);
   }
-  return static_cast<double>(first_heard(both));
+  return static_cast<double>(first_audible(both));
 }
 
 }  // namespace
 
-TEST_CASE("A blow from any side is first heard when it is without ears, in the mean to 0.1 ms") {
+TEST_CASE("The first audible sample of a blow from any side is on time, in the mean to 0.1 ms") {
   const Space by_ears{ears(), nullptr};
   double sum = 0, weights = 0;
   for (int elevation = -60; elevation <= 60; elevation += 30)
@@ -227,17 +227,17 @@ TEST_CASE("A blow from any side is first heard when it is without ears, in the m
   CHECK(std::abs(sum / weights) <= 4);
 }
 
-TEST_CASE("A place that is no number is heard from ahead") {
+TEST_CASE("A source position that is not finite counts as straight ahead") {
   const Space space = GENERATE(Space{ears(), nullptr}, Space{},
                                Space{nullptr, std::make_shared<const Panning>(load_layout("stereo"))});
   const float none = GENERATE(std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity());
   const auto ahead = tone(space, 440, 4, [](int) { return at(0); });
   const bool direction = GENERATE(true, false);
-  const auto heard = tone(space, 440, 4, [&](int) {
+  const auto output = tone(space, 440, 4, [&](int) {
     return direction ? SourcePosition{Eigen::Vector3f(none, 0, 0), 1} : SourcePosition{Eigen::Vector3f::UnitX(), none};
   });
-  CHECK(heard.left == ahead.left);
-  CHECK(heard.right == ahead.right);
+  CHECK(output.left == ahead.left);
+  CHECK(output.right == ahead.right);
 }
 
 namespace {
@@ -245,7 +245,7 @@ namespace {
 // A body that rings at 440 Hz without damping and is struck from the left, then from elsewhere.
 struct Restruck {
   Voices voices;
-  Heard heard;
+  StereoOutput output;
 
   explicit Restruck(const Space& space) : voices(4, kRate, kRing, space, available_instructions().back()) {}
   void strike(const Eigen::Vector3f& from, float distance_m, float impulse) {
@@ -259,27 +259,27 @@ struct Restruck {
       std::vector<float> out(2 * kMaxBlock);
       voices.render(out.data(), kMaxBlock);
       for (std::size_t n = 0; n < kMaxBlock; ++n) {
-        heard.left.push_back(static_cast<double>(out[2 * n]));
-        heard.right.push_back(static_cast<double>(out[2 * n + 1]));
+        output.left.push_back(static_cast<double>(out[2 * n]));
+        output.right.push_back(static_cast<double>(out[2 * n + 1]));
       }
     }
   }
   // Over the last 10 ms.
   double left_over_right() const {
-    const std::size_t from = heard.left.size() - 480;
-    return largest(heard.left, from) / largest(heard.right, from);
+    const std::size_t from = output.left.size() - 480;
+    return largest(output.left, from) / largest(output.right, from);
   }
 };
 
 }  // namespace
 
-TEST_CASE("A body that rings and is struck elsewhere goes there without a click") {
+TEST_CASE("A ringing body that is struck elsewhere moves there without a click") {
   const Space space = GENERATE(Space{ears(), nullptr}, Space{},
                                Space{nullptr, std::make_shared<const Panning>(load_layout("stereo"))});
   const bool in_world = GENERATE(false, true);
   const float distance_m = GENERATE(1.f, 3.f);
   Restruck body(space);
-  if (in_world) body.voices.hear_from({});
+  if (in_world) body.voices.set_listener({});
   body.strike(towards(80), 1, 0.1f);
   body.play(20);
   CHECK(body.left_over_right() > 1.5);
@@ -287,19 +287,19 @@ TEST_CASE("A body that rings and is struck elsewhere goes there without a click"
   body.strike(towards(-80), distance_m, 0);
   body.play(400);  // 0.53 s: half a revolution takes 0.5 s
   const double w = 2 * std::numbers::pi * 440 / kRate;
-  const double gain = std::max(largest(body.heard.left, kSettled), largest(body.heard.right, kSettled));
-  CHECK(std::max(largest_bend(body.heard.left, kSettled), largest_bend(body.heard.right, kSettled)) <
+  const double gain = std::max(largest(body.output.left, kSettled), largest(body.output.right, kSettled));
+  CHECK(std::max(largest_bend(body.output.left, kSettled), largest_bend(body.output.right, kSettled)) <
         (w * w + 1e-3) * gain);
   CHECK(body.left_over_right() < 1 / 1.5);
   Restruck there(space);
   there.strike(towards(-80), distance_m, 0.1f);
   there.play(400);
   // Over the last 10 ms, 4.4 periods, in which its phase may differ.
-  CHECK(largest(body.heard.right, 20 * kMaxBlock + 25120) ==
-        Approx(largest(there.heard.right, 25120)).epsilon(0.01));
+  CHECK(largest(body.output.right, 20 * kMaxBlock + 25120) ==
+        Approx(largest(there.output.right, 25120)).epsilon(0.01));
 }
 
-TEST_CASE("A blow that drowns what rings is heard from its own place at once") {
+TEST_CASE("A blow that masks the ringing sounds from its own place at once") {
   const Space space = GENERATE(Space{ears(), nullptr}, Space{});
   Restruck body(space);
   body.strike(towards(80), 1, 0.001f);

@@ -40,9 +40,9 @@ inline Strike strike_of(std::int64_t id, std::int64_t voice, double frequency_Hz
 }
 
 struct Bench {
-  CallbackQueues crossing;
+  CallbackQueues queues;
   sync::Nanoseconds used{0};  // reported rendering time of each block
-  Renderer renderer{crossing, {}};
+  Renderer renderer{queues, {}};
   std::vector<float> left;
   std::vector<presentation_t> reports;
 
@@ -53,7 +53,7 @@ struct Bench {
     std::vector<float> block(2 * static_cast<std::size_t>(frames));
     renderer.render(block.data(), frames, {sync::host_time(time_ns(left.size())), sync::Nanoseconds(5000), used});
     for (int n = 0; n < frames; ++n) left.push_back(block[2 * static_cast<std::size_t>(n)]);
-    for (presentation_t r; crossing.reports.pop(r);) reports.push_back(r);
+    for (presentation_t r; queues.reports.pop(r);) reports.push_back(r);
   }
 };
 

@@ -32,7 +32,7 @@ thread_local int armed = 0;
 std::atomic<int> count{0};
 std::atomic<const char*> first{nullptr};
 
-void note(const char* what) {
+void count_call(const char* what) {
   if (armed == 0) return;
   count.fetch_add(1, std::memory_order_relaxed);
   const char* none = nullptr;
@@ -65,7 +65,7 @@ std::string first_trapped() {
   const char* name = first;
   return name ? name : "";
 }
-void forget_trapped() { count = 0, first = nullptr; }
+void reset_trapped() { count = 0, first = nullptr; }
 
 bool traps_allocation() {
 #if defined(TACTUS_SANITIZED)
@@ -78,13 +78,13 @@ bool traps_allocation() {
 }  // namespace tactus::audio::test
 
 using tactus::audio::test::next;
-using tactus::audio::test::note;
+using tactus::audio::test::count_call;
 
 // NOLINTBEGIN: the names and signatures are those of the C library.
 #define PASS_ON(result, name, parameters, arguments)       \
   extern "C" result name parameters {                      \
     static std::atomic<void*> kept{nullptr};               \
-    note(#name);                                           \
+    count_call(#name);                                           \
     return next<result parameters>(kept, #name) arguments; \
   }
 
@@ -98,31 +98,31 @@ void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
 
 void* malloc(std::size_t size) {
-  note("malloc");
+  count_call("malloc");
   return __libc_malloc(size);
 }
 void free(void* p) {
-  if (p) note("free");
+  if (p) count_call("free");
   __libc_free(p);
 }
 void* calloc(std::size_t n, std::size_t size) {
-  note("calloc");
+  count_call("calloc");
   return __libc_calloc(n, size);
 }
 void* realloc(void* p, std::size_t size) {
-  note("realloc");
+  count_call("realloc");
   return __libc_realloc(p, size);
 }
 void* memalign(std::size_t alignment, std::size_t size) {
-  note("memalign");
+  count_call("memalign");
   return __libc_memalign(alignment, size);
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  note("aligned_alloc");
+  count_call("aligned_alloc");
   return __libc_memalign(alignment, size);
 }
 int posix_memalign(void** p, std::size_t alignment, std::size_t size) {
-  note("posix_memalign");
+  count_call("posix_memalign");
   *p = __libc_memalign(alignment, size);
   return *p ? 0 : ENOMEM;
 }
@@ -178,7 +178,7 @@ PASS_ON(int, sem_timedwait, (sem_t * s, const timespec* until), (s, until))
 // Opening a file takes further arguments.
 extern "C" int open(const char* path, int flags, ...) {
   static std::atomic<void*> kept{nullptr};
-  note("open");
+  count_call("open");
   va_list list;
   va_start(list, flags);
   const int mode = va_arg(list, int);
@@ -188,7 +188,7 @@ extern "C" int open(const char* path, int flags, ...) {
 // ioctl takes further arguments too.
 extern "C" int ioctl(int fd, unsigned long request, ...) noexcept {
   static std::atomic<void*> kept{nullptr};
-  note("ioctl");
+  count_call("ioctl");
   va_list list;
   va_start(list, request);
   void* const argument = va_arg(list, void*);
@@ -198,7 +198,7 @@ extern "C" int ioctl(int fd, unsigned long request, ...) noexcept {
 // Calls without a function in the C library, mainly futex.
 extern "C" long syscall(long number, ...) noexcept {
   static std::atomic<void*> kept{nullptr};
-  note("syscall");
+  count_call("syscall");
   va_list list;
   va_start(list, number);
   long a[6];

@@ -20,7 +20,7 @@ class Trap {
 int trapped();
 // The first counted call; empty: none.
 std::string first_trapped();
-void forget_trapped();
+void reset_trapped();
 
 // False where a sanitizer intercepts the allocator itself.
 bool traps_allocation();

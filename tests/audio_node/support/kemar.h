@@ -28,11 +28,11 @@ inline Eigen::Vector3f towards(double azimuth_deg, double elevation_deg = 0) {
   return Eigen::Vector3d(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)).cast<float>();
 }
 
-struct TwoEars {
+struct BinauralResponse {
   std::vector<double> left, right;
 };
 
-inline TwoEars measured_from(double azimuth_deg) {
+inline BinauralResponse measured_response(double azimuth_deg) {
   const MeasuredHrtf& m = kemar();
   std::size_t best = 0;
   for (std::size_t i = 0; i < m.directions.size(); ++i)
@@ -44,21 +44,21 @@ inline TwoEars measured_from(double azimuth_deg) {
 }
 
 // Response to a unit impulse at 1 m from there.
-inline TwoEars heard_from(const Eigen::Vector3f& direction, int blocks = 8) {
+inline BinauralResponse rendered_response(const Eigen::Vector3f& direction, int blocks = 8) {
   static const auto hrtf = ears();
   Spatialiser spatialiser({hrtf, nullptr}, 1, 48000, Instructions::kSse2);
   spatialiser.begin(0);
-  TwoEars heard;
+  BinauralResponse output;
   for (int b = 0; b < blocks; ++b) {
     std::vector<float> in(kMaxBlock), out(2 * kMaxBlock);
     if (b == 0) in[0] = 1;
     spatialiser.add(0, {direction, 1}, in.data(), kMaxBlock);
     spatialiser.mix(out.data(), kMaxBlock);
     for (std::size_t n = 0; n < kMaxBlock; ++n)
-      heard.left.push_back(static_cast<double>(out[2 * n])),
-          heard.right.push_back(static_cast<double>(out[2 * n + 1]));
+      output.left.push_back(static_cast<double>(out[2 * n])),
+          output.right.push_back(static_cast<double>(out[2 * n + 1]));
   }
-  return heard;
+  return output;
 }
 
 inline std::complex<double> spectrum_at(const std::vector<double>& x, double frequency_Hz, double rate_Hz) {
@@ -72,7 +72,7 @@ inline std::complex<double> spectrum_at(const std::vector<double>& x, double fre
 //
 // Delay of the left ear relative to the right, microseconds: the maximum of the cross-correlation below
 // `up_to_Hz`, from the cross-spectrum on a grid of 50 Hz, independent of the sample rate.
-inline double time_difference_us(const TwoEars& ears, double rate_Hz, double up_to_Hz = 1500) {
+inline double time_difference_us(const BinauralResponse& ears, double rate_Hz, double up_to_Hz = 1500) {
   std::vector<std::complex<double>> cross;
   for (double f = 50; f <= up_to_Hz; f += 50) {
     const auto left = spectrum_at(ears.left, f, rate_Hz), right = spectrum_at(ears.right, f, rate_Hz);
@@ -89,7 +89,7 @@ inline double time_difference_us(const TwoEars& ears, double rate_Hz, double up_
 }
 
 // Energy of the left ear over that of the right between two frequencies, dB.
-inline double level_difference_dB(const TwoEars& ears, double rate_Hz, double from_Hz, double to_Hz) {
+inline double level_difference_dB(const BinauralResponse& ears, double rate_Hz, double from_Hz, double to_Hz) {
   double left = 0, right = 0;
   for (double f = from_Hz; f < to_Hz; f += 50) {
     const double l = std::norm(spectrum_at(ears.left, f, rate_Hz)),

@@ -79,19 +79,19 @@ class RecordedRun {
   }
 
   // at_s: publish time since the beginning; simulated time is the same.
-  void hear(double at_s, const std::vector<contact_event_t>& events) {
+  void write_events(double at_s, const std::vector<contact_event_t>& events) {
     contact_events_t m{};
     stamp(m, at_s, events_seq_++);
     m.pages = 1, m.count = static_cast<std::int32_t>(events.size()), m.events = events;
     write(ns(at_s), channels::kContactEvents, sync::encode(m));
   }
-  void snapshot(double at_s, const std::vector<contact_t>& contacts) {
+  void write_contacts(double at_s, const std::vector<contact_t>& contacts) {
     contact_frame_t m{};
     stamp(m, at_s, frames_seq_++);
     m.pages = 1, m.count = static_cast<std::int32_t>(contacts.size()), m.contacts = contacts;
     write(ns(at_s), channels::kContacts, sync::encode(m));
   }
-  void raw(double at_s, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
+  void write_raw(double at_s, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
     write(ns(at_s), channel, bytes);
   }
   void finish() { writer_.flush(); }

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <tactus/material_def_t.hpp>
 
-#include "audio_node/excitation/heard_surfaces.h"
+#include "audio_node/excitation/audio_surfaces.h"
 #include "sync/time/time.h"
 
 namespace tactus::audio::test {
@@ -29,8 +29,8 @@ inline material_def_t rough() {
 }
 
 // Surfaces of a scene in which only the first material has the waves.
-inline std::shared_ptr<HeardSurfaces> wavy_surfaces() {
-  auto surfaces = std::make_shared<HeardSurfaces>();
+inline std::shared_ptr<AudioSurfaces> wavy_surfaces() {
+  auto surfaces = std::make_shared<AudioSurfaces>();
   surfaces->by_material.push_back({std::make_shared<const ReliefLevels>(make_relief(waves(), rough())), nullptr});
   return surfaces;
 }

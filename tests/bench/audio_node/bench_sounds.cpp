@@ -46,7 +46,7 @@ double patch_m2(const scene_t& scene, int material) {
   return M_PI * radius_m * radius_m;
 }
 
-// A contact as the simulation publishes it (audio_node/excitation/contact_way.h): it moves over the bar. A sliding tip keeps its contact
+// A contact as the simulation publishes it (audio_node/excitation/contact_motion.h): it moves over the bar. A sliding tip keeps its contact
 // point, a rolling one moves over both surfaces.
 contact_t contact(const scene_t& scene, int bar, int material, double went_m, bool rolls) {
   const Eigen::Isometry3d lies = to_eigen(scene.bodies[static_cast<std::size_t>(bar)].pose);
@@ -108,7 +108,7 @@ int main(int argc, char** argv) try {
       e.material_a = where.material_a, e.material_b = where.material_b;
       e.effective_mass_kg = 0.02f, e.curvature_1_m = static_cast<float>(kTip_1_m);  // a light hammer
       e.point_m = where.points[0].a_world_m, e.normal = where.normal;
-      run.hear(now, {e});
+      run.write_events(now, {e});
     }
     if (now < next_snapshot) continue;
     next_snapshot += kStep_s;
@@ -116,7 +116,7 @@ int main(int argc, char** argv) try {
     for (const double begin : {kScrape_s, kRoll_s})
       if (now >= kFirst_s && since >= begin && since < begin + kLasts_s)
         contacts.push_back(contact(scene, bar, material, kSpeed_m_s * (since - begin), begin == kRoll_s));
-    run.snapshot(now, contacts);
+    run.write_contacts(now, contacts);
   }
   run.finish();
   return 0;

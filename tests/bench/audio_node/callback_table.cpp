@@ -88,26 +88,26 @@ int main(int argc, char** argv) {
       def.period_frames = frames;
       def.instructions = use;
       def.space = space;
-      auto crossing = std::make_unique<CallbackQueues>();
-      auto renderer = std::make_unique<Renderer>(*crossing, def);
+      auto queues = std::make_unique<CallbackQueues>();
+      auto renderer = std::make_unique<Renderer>(*queues, def);
       RenderCommand all;
       all.quality = 0;
-      crossing->orders.push(all);
+      queues->commands.push(all);
       std::vector<float> stereo(2 * static_cast<std::size_t>(frames));
       std::vector<double> shares;
       const auto blocks = static_cast<int>(seconds / period_s);
       double due = 0;
       for (int k = 0; k < blocks; ++k) {
         const sync::HostTime time = sync::host_time(std::llround(1e9 * k * period_s));
-        for (int i = 0; k == 0 && i < bodies; ++i) crossing->strikes.push(strike_of(i, modes, time, random));
+        for (int i = 0; k == 0 && i < bodies; ++i) queues->strikes.push(strike_of(i, modes, time, random));
         for (due += kStrikes_Hz * period_s; due >= 1; --due)
-          crossing->strikes.push(
+          queues->strikes.push(
               strike_of(static_cast<int>(random() % static_cast<unsigned>(bodies)), modes, time, random));
         const auto begin = std::chrono::steady_clock::now();
         renderer->render(stereo.data(), frames, {time, {}, {}});
         const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         shares.push_back(100 * took_s / period_s);
-        for (presentation_t r; crossing->reports.pop(r);) continue;
+        for (presentation_t r; queues->reports.pop(r);) continue;
       }
       const int rang = renderer->sounding();
       std::sort(shares.begin(), shares.end());

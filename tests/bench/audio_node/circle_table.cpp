@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   double worst_us = 0;
   std::array<double, 3> worst_dB{};
   for (int azimuth = -180; azimuth <= 180; azimuth += 5) {
-    const test::TwoEars ours = test::heard_from(test::towards(azimuth)), measured = test::measured_from(azimuth);
+    const test::BinauralResponse ours = test::rendered_response(test::towards(azimuth)), measured = test::measured_response(azimuth);
     const double theirs_Hz = test::kemar().rate_Hz, ours_us = test::time_difference_us(ours, 48000),
                  measured_us = test::time_difference_us(measured, theirs_Hz);
     std::printf("%-8d %12.0f %12.0f", azimuth, ours_us, measured_us);

@@ -69,7 +69,7 @@ class Rehearsal {
  public:
   Rehearsal(const Database& database, const std::string& method) : scene_(plates()), impacts_(make(method)) {
     sampler_ = std::make_unique<Sampler>(scene_, settings_);
-    sampler_->play(&database, 1);
+    sampler_->set_database(&database, 1);
   }
 
   Cost impacts(int seconds) {
@@ -87,8 +87,8 @@ class Rehearsal {
         e.normal.z = 1, e.effective_mass_kg = 0.1f, e.curvature_1_m = 50;
         e.approach_speed_m_s = 0.05f + 1e-4f * static_cast<float>(random() % 10000);
         Strike s = impacts_.strike(e, at, [](int) { return Eigen::Isometry3d::Identity(); });
-        sampler_->record(s, e, impacts_);
-        crossing_->strikes.push(s);
+        sampler_->add_recordings(s, e, impacts_);
+        queues_->strikes.push(s);
       }
     });
   }
@@ -103,10 +103,10 @@ class Rehearsal {
       contacts.push_back(c);
     }
     return run(seconds, kSliding * seconds, [&](double now_s, sync::HostTime at) {
-      for (const RecordedContact& r : sampler_->rubs(contacts, at)) crossing_->recorded.rubs.push(r);
+      for (const RecordedContact& r : sampler_->recorded_contacts(contacts, at)) queues_->recorded.contacts.push(r);
       for (const contact_t& c : contacts) {
-        const float share = sampler_->modal_of(c.contact_id, Interaction::kScrape);
-        if (share > 0) crossing_->scrapes.push(scrape(c, share, now_s, at));
+        const float share = sampler_->modal_gain(c.contact_id, Interaction::kScrape);
+        if (share > 0) queues_->scrapes.push(scrape(c, share, now_s, at));
       }
     });
   }
@@ -114,7 +114,7 @@ class Rehearsal {
  private:
   Impacts make(const std::string& method) {
     settings_.method = method;
-    crossing_->recorded.databases.push(1);
+    queues_->recorded.databases.push(1);
     return Impacts(scene_, {}, settings_, settings_.sample_rate_Hz, 1);
   }
 
@@ -133,7 +133,7 @@ class Rehearsal {
     }
     const double speed_m_s = static_cast<double>(c.sliding_velocity_m_s.x);
     s.sides[1].place_m.x() = speed_m_s * now_s, s.sides[1].velocity_m_s.x() = speed_m_s;
-    s.sides[1].slides.x() = 1;
+    s.sides[1].slide_vector.x() = 1;
     return s;
   }
 
@@ -141,7 +141,7 @@ class Rehearsal {
   Cost run(int seconds, int contacts, Tell tell) {
     std::vector<float> block(2 * kFrames);
     const auto blocks = static_cast<std::int64_t>(seconds * settings_.sample_rate_Hz / kFrames);
-    const std::int64_t before[] = {crossing_->costs[0].ns, crossing_->costs[1].ns};
+    const std::int64_t before[] = {queues_->costs[0].ns, queues_->costs[1].ns};
     std::int64_t took = 0;
     for (std::int64_t i = 0; i < blocks; ++i) {
       const double now_s = static_cast<double>(i) * kFrames / settings_.sample_rate_Hz;
@@ -150,19 +150,19 @@ class Rehearsal {
       const std::int64_t begun = clock_ns();
       renderer_->render(block.data(), kFrames, {first, {}, {}});
       took += clock_ns() - begun;
-      for (presentation_t r; crossing_->reports.pop(r);) continue;
+      for (presentation_t r; queues_->reports.pop(r);) continue;
     }
     const auto each = [&](std::int64_t ns) { return 1e-3 * static_cast<double>(ns) / contacts; };
-    return {each(crossing_->costs[0].ns - before[0]), each(crossing_->costs[1].ns - before[1]), each(took)};
+    return {each(queues_->costs[0].ns - before[0]), each(queues_->costs[1].ns - before[1]), each(took)};
   }
 
   scene_t scene_;
   Settings settings_;
-  std::unique_ptr<CallbackQueues> crossing_ = std::make_unique<CallbackQueues>();
+  std::unique_ptr<CallbackQueues> queues_ = std::make_unique<CallbackQueues>();
   std::unique_ptr<Renderer> renderer_ = [this] {
     RendererDef def;
     def.clock_ns = clock_ns;
-    return std::make_unique<Renderer>(*crossing_, def);
+    return std::make_unique<Renderer>(*queues_, def);
   }();
   Impacts impacts_;
   std::unique_ptr<Sampler> sampler_;

@@ -117,9 +117,9 @@ int main(int argc, char** argv) {
           side.roughness = {3e-6, row.mapped ? relief.texel_m() : 0};
           const double speed = k == 0 || row.rolls ? 0.1 : 0;
           side.place_m.x() = speed * t + 0.01 * i, side.velocity_m_s.x() = speed;
-          if (speed > 0) side.slides.x() = side.rolls.x() = 1;
+          if (speed > 0) side.slide_vector.x() = side.roll_vector.x() = 1;
         }
-        scrapes->take(s);
+        scrapes->update(s);
       }
       float stereo[2 * kFrames] = {};
       const auto begin = std::chrono::steady_clock::now();
@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
 
   std::printf("%-34s %9s %12s %12s\n", "loop, tick of 1 ms", "contacts", "median us", "p99 us");
   for (const int count : {1, 16, 50}) {
-    auto surfaces = std::make_shared<HeardSurfaces>();
+    auto surfaces = std::make_shared<AudioSurfaces>();
     const sync::BodyHistory bodies(1);
     Sliding sliding(scene, surfaces, bodies, impacts, Settings{}, kRate_Hz);
     std::vector<double> took_us;

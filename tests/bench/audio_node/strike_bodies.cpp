@@ -78,12 +78,12 @@ void strike(const json& of, const std::string& folder) {
   options.device = "virtual", options.folder = folder;
   options.rate_Hz = static_cast<int>(settings.sample_rate_Hz), options.period_frames = static_cast<int>(settings.period_frames);
   const audio::Impacts impacts(scene_of(of), {}, settings, settings.sample_rate_Hz, 1);
-  audio::CallbackQueues crossing;
-  auto renderer = std::make_unique<audio::Renderer>(crossing, audio::RendererDef{});
+  audio::CallbackQueues queues;
+  auto renderer = std::make_unique<audio::Renderer>(queues, audio::RendererDef{});
   audio::Stream stream(
       options, [&](float* out, int frames, const audio::BlockTime& time) { renderer->render(out, frames, time); });
   const auto at_rest = [](int) { return std::optional(Eigen::Isometry3d::Identity()); };
-  crossing.strikes.push(impacts.strike(blow(of), sync::host_now() + kAhead, at_rest));
+  queues.strikes.push(impacts.strike(blow(of), sync::host_now() + kAhead, at_rest));
   std::this_thread::sleep_for(std::chrono::duration<double>(of.at("seconds").get<double>()) + kAhead);
   say_result(of, stream.medium(), stream.underflows());
 }

@@ -5,7 +5,7 @@
 
 using tactus::audio::PlayClock;
 
-TEST_CASE("The virtual card's position and its inverse agree to the nanosecond, for days") {
+TEST_CASE("The position of the virtual card and its inverse agree to the nanosecond for days") {
   std::mt19937_64 random(8);
   for (const std::int64_t rate : {8000, 44100, 48000, 96000}) {
     const PlayClock clock{123'456'789, rate};

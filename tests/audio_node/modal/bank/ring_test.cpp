@@ -80,7 +80,7 @@ std::vector<Bank::Mode> random_modes(int count, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("A mode rings at its frequency and dies with its damping, from 40 Hz to 16 kHz, with any instructions") {
+TEST_CASE("A mode rings at its frequency and decays with its damping from 40 Hz to 16 kHz, with any instructions") {
   for (const Instructions use : available_instructions())
     for (const double f : {40.0, 55.5, 440.0, 3000.0, 16000.0})
       for (const double d : {0.5, 10.0, 200.0}) {
@@ -98,8 +98,7 @@ TEST_CASE("A mode rings at its frequency and dies with its damping, from 40 Hz t
       }
 }
 
-TEST_CASE(
-    "All modes of a body sound together, whatever their number, the length of the block and the instructions") {
+TEST_CASE("The modes of a body add up for any number, block length and instructions") {
   for (const Instructions use : available_instructions())
     for (const int count : {1, 15, 16, 17, 32, 48, 63, 100})
       for (const int block : {1, 7, 64}) {
@@ -118,7 +117,7 @@ TEST_CASE(
       }
 }
 
-TEST_CASE("Pushes at several places at once add up, and one that comes later leaves what rings alone") {
+TEST_CASE("Pushes at several places add up, and a later push leaves the ringing unchanged") {
   for (const Instructions use : available_instructions()) {
     const auto modes = random_modes(37, 5);
     const int frames = 500;
@@ -132,7 +131,7 @@ TEST_CASE("Pushes at several places at once add up, and one that comes later lea
   }
 }
 
-TEST_CASE("The same instructions make the same bits, and others nearly the same") {
+TEST_CASE("The same instructions give the same bits, and others nearly the same") {
   const int frames = 4800;
   const auto modes = random_modes(100, 9);
   const auto plain = Bank(modes).play(ring(Instructions::kSse2), frames, {impulse(frames)});
@@ -143,7 +142,7 @@ TEST_CASE("The same instructions make the same bits, and others nearly the same"
   }
 }
 
-TEST_CASE("A mode that is not pushed never grows") {
+TEST_CASE("A mode without a push never grows") {
   for (const Instructions use : available_instructions()) {
     Bank bank({{40, 0}, {1000, 0}, {16000, 0}});
     const int frames = 48000;
@@ -152,12 +151,12 @@ TEST_CASE("A mode that is not pushed never grows") {
   }
 }
 
-TEST_CASE("Instructions are chosen by name, and one that the machine lacks is not taken for another") {
+TEST_CASE("Instructions are selected by name, and unavailable ones are rejected") {
   const auto all = available_instructions();
-  CHECK(instructions_named("auto") == all.back());
-  CHECK(instructions_named("sse2") == Instructions::kSse2);
-  CHECK_FALSE(instructions_named("mmx"));
-  CHECK_FALSE(instructions_named(""));
+  CHECK(find_instructions("auto") == all.back());
+  CHECK(find_instructions("sse2") == Instructions::kSse2);
+  CHECK_FALSE(find_instructions("mmx"));
+  CHECK_FALSE(find_instructions(""));
   for (const Instructions i : {Instructions::kAvx2, Instructions::kAvx512})
-    CHECK(instructions_named(name(i)).has_value() == (std::find(all.begin(), all.end(), i) != all.end()));
+    CHECK(find_instructions(name(i)).has_value() == (std::find(all.begin(), all.end(), i) != all.end()));
 }

@@ -1,6 +1,6 @@
 // Surfaces of previous scenes and a callback that may still read them: they are freed once it has released them,
 // and never before.
-#include "audio_node/mixer/scrape_line.h"
+#include "audio_node/mixer/scrape_queue.h"
 
 #include <algorithm>
 #include <atomic>
@@ -22,12 +22,12 @@ namespace {
 constexpr float kLoudest = 0.1f;
 
 // As the surfaces of a scene; once freed they become so steep that a callback that reads them is audible.
-ScrapeLine::Surfaces poisoned_when_freed() {
-  auto* surfaces = new HeardSurfaces;
+ScrapeQueue::Surfaces surfaces_spoiled_on_free() {
+  auto* surfaces = new AudioSurfaces;
   auto relief = std::make_shared<ReliefLevels>(make_relief(waves(), rough()));
   surfaces->by_material.push_back({relief, nullptr});
   static std::vector<std::shared_ptr<ReliefLevels>> graveyard;  // memory that is never reused
-  return {surfaces, [relief](const HeardSurfaces* gone) {
+  return {surfaces, [relief](const AudioSurfaces* gone) {
             for (Eigen::Vector2f& slope : const_cast<Relief&>(relief->finest()).slopes) slope.setConstant(1e6f);
             graveyard.push_back(relief);
             delete gone;
@@ -35,7 +35,7 @@ ScrapeLine::Surfaces poisoned_when_freed() {
 }
 
 // Slides along the waves of a relief at 0.1 m/s, over a body with a mode of 300 Hz.
-Scrape over(const ReliefLevels* relief, std::int64_t id, std::int64_t at_ns, float strength) {
+Scrape scrape_over(const ReliefLevels* relief, std::int64_t id, std::int64_t at_ns, float strength) {
   Scrape s;
   s.id = id;
   s.at = sync::host_time(at_ns);
@@ -47,18 +47,18 @@ Scrape over(const ReliefLevels* relief, std::int64_t id, std::int64_t at_ns, flo
   side.resonators = *struck.sides[0].resonators, side.gains = struck.sides[0].gains;
   side.known = true;
   side.relief = relief;
-  side.velocity_m_s.x() = 0.1, side.slides.x() = 1;
+  side.velocity_m_s.x() = 0.1, side.slide_vector.x() = 1;
   return s;
 }
 
 // A loop and a callback in one thread, in alternation.
-struct Line {
+struct QueueFixture {
   std::unique_ptr<Bench> bench = std::make_unique<Bench>();
-  ScrapeLine line{bench->crossing};
+  ScrapeQueue queue{bench->queues};
 
   // Of the contact `id`, presented now or later_samples later.
-  bool scrape(const ScrapeLine::Surfaces& surfaces, std::int64_t id = 1, int later_samples = 0) {
-    return line.submit(over(surfaces->by_material[0].relief.get(), id,
+  bool scrape(const ScrapeQueue::Surfaces& surfaces, std::int64_t id = 1, int later_samples = 0) {
+    return queue.submit(scrape_over(surfaces->by_material[0].relief.get(), id,
                             bench->time_ns(bench->left.size() + static_cast<std::size_t>(later_samples)), 1e-4f));
   }
   // True when there was sound, and none of it from freed surfaces.
@@ -73,107 +73,105 @@ constexpr int kBlock = 128;
 
 }  // namespace
 
-TEST_CASE("Surfaces of a scene that is over go when their last scrape has died away, and not before") {
-  Line l;
-  auto first = poisoned_when_freed();
-  const std::weak_ptr<const HeardSurfaces> watched = first;
-  l.line.change(first);
+TEST_CASE("The surfaces of an ended scene are released when its last scrape has decayed, and not before") {
+  QueueFixture l;
+  auto first = surfaces_spoiled_on_free();
+  const std::weak_ptr<const AudioSurfaces> watched = first;
+  l.queue.set_surfaces(first);
   REQUIRE(l.scrape(first));
   first.reset();
   l.bench->play(kBlock);
-  l.line.change(nullptr);
+  l.queue.set_surfaces(nullptr);
   int blocks = 0;
   while (l.bench->renderer.scraping() && blocks++ < 1000) {
-    CHECK(l.line.take_unread().empty());
+    CHECK(l.queue.take_released().empty());
     REQUIRE_FALSE(watched.expired());
     l.bench->play(kBlock);
   }
   CHECK(blocks > 10);  // it sounded for at least 30 ms
-  CHECK(l.line.take_unread().size() == 1);
+  CHECK(l.queue.take_released().size() == 1);
   CHECK(watched.expired());
   CHECK(l.sound());
 }
 
-TEST_CASE("They stay while a scrape of theirs waits in the queue or for its time") {
-  Line l;
-  const auto first = poisoned_when_freed(), second = poisoned_when_freed();
-  l.line.change(first);
+TEST_CASE("Surfaces are kept while one of their scrapes waits in the queue or for its time") {
+  QueueFixture l;
+  const auto first = surfaces_spoiled_on_free(), second = surfaces_spoiled_on_free();
+  l.queue.set_surfaces(first);
   REQUIRE(l.scrape(first, 1, 4800));  // presented in 100 ms
-  l.line.change(second);
+  l.queue.set_surfaces(second);
   REQUIRE(l.scrape(second, 2, 4800));  // waits behind it
-  l.line.change(nullptr);
+  l.queue.set_surfaces(nullptr);
   for (int n = 0; n < 4800; n += kBlock) {
     l.bench->play(kBlock);
-    REQUIRE(l.line.take_unread().empty());
+    REQUIRE(l.queue.take_released().empty());
   }
   for (int n = 0; n < 9600; n += kBlock) l.bench->play(kBlock);
-  CHECK(l.line.take_unread().size() == 2);
+  CHECK(l.queue.take_released().size() == 2);
   CHECK(l.sound());
 }
 
-TEST_CASE("Of two scenes in quick succession the one that nobody heard goes at once, the one before it later") {
-  Line l;
-  const auto first = poisoned_when_freed(), second = poisoned_when_freed(), third = poisoned_when_freed();
-  l.line.change(first);
+TEST_CASE("Of two scenes in quick succession the one without a scrape is released at once, the earlier one later") {
+  QueueFixture l;
+  const auto first = surfaces_spoiled_on_free(), second = surfaces_spoiled_on_free(), third = surfaces_spoiled_on_free();
+  l.queue.set_surfaces(first);
   REQUIRE(l.scrape(first));
   l.bench->play(kBlock);
-  l.line.change(second);
-  l.line.change(third);
-  const auto unread = l.line.take_unread();
-  REQUIRE(unread.size() == 1);
-  CHECK(unread[0] == second);
+  l.queue.set_surfaces(second);
+  l.queue.set_surfaces(third);
+  const auto released = l.queue.take_released();
+  REQUIRE(released.size() == 1);
+  CHECK(released[0] == second);
   // The same contact continues in the new scene: its voice then reads only the new surfaces.
   REQUIRE(l.scrape(third));
   l.bench->play(kBlock);
-  const auto later = l.line.take_unread();
+  const auto later = l.queue.take_released();
   REQUIRE(later.size() == 1);
   CHECK(later[0] == first);
 }
 
-TEST_CASE(
-    "While the callback stands still nothing that it may read goes, and what waits is bounded by the queue") {
-  Line l;
-  const auto heard = poisoned_when_freed();
-  l.line.change(heard);
-  REQUIRE(l.scrape(heard));
+TEST_CASE("A stopped callback releases no surfaces that it may read, and the queue bounds their number") {
+  QueueFixture l;
+  const auto sounding = surfaces_spoiled_on_free();
+  l.queue.set_surfaces(sounding);
+  REQUIRE(l.scrape(sounding));
   l.bench->play(kBlock);
   std::size_t freed = 0;
   for (int scene = 0; scene < 3000; ++scene) {
-    auto next = poisoned_when_freed();
-    l.line.change(next);
+    auto next = surfaces_spoiled_on_free();
+    l.queue.set_surfaces(next);
     l.scrape(next, scene);
-    freed += l.line.take_unread().size();
+    freed += l.queue.take_released().size();
   }
   // All except those with a scrape in the queue, the sounding one and the present one.
-  CHECK(freed == 3000 + 1 - l.bench->crossing.scrapes.capacity() - 1 - 1);
-  SECTION("until it goes on") {
-    l.line.change(nullptr);
+  CHECK(freed == 3000 + 1 - l.bench->queues.scrapes.capacity() - 1 - 1);
+  SECTION("the resumed callback releases all surfaces") {
+    l.queue.set_surfaces(nullptr);
     for (int n = 0; n < 9600; n += kBlock) l.bench->play(kBlock);
-    freed += l.line.take_unread().size();
+    freed += l.queue.take_released().size();
     CHECK(freed == 3001);
     CHECK(l.sound());
   }
-  SECTION("or its stream is given up, and another goes on where it was") {
-    l.line.change(nullptr);
+  SECTION("the next stream continues with the surfaces of the closed one") {
+    l.queue.set_surfaces(nullptr);
     l.bench->renderer.abandon();
-    freed += l.line.take_unread().size();
+    freed += l.queue.take_released().size();
     CHECK(freed == 3001);
-    const auto fresh = poisoned_when_freed();
-    l.line.change(fresh);
+    const auto fresh = surfaces_spoiled_on_free();
+    l.queue.set_surfaces(fresh);
     REQUIRE(l.scrape(fresh));
-    l.line.change(nullptr);
-    auto another = std::make_unique<Renderer>(l.bench->crossing, RendererDef{});
+    l.queue.set_surfaces(nullptr);
+    auto another = std::make_unique<Renderer>(l.bench->queues, RendererDef{});
     std::vector<float> block(2 * kBlock);
     another->render(block.data(), kBlock, {sync::host_time(l.bench->time_ns(l.bench->left.size())), {}, {}});
-    CHECK(l.line.take_unread().empty());
+    CHECK(l.queue.take_released().empty());
     another->abandon();
-    CHECK(l.line.take_unread().size() == 1);
+    CHECK(l.queue.take_released().size() == 1);
   }
 }
 
-TEST_CASE(
-    "Whatever loop and callback do, in two threads, nothing that is freed is heard, and all is freed in the end") {
-  Line l;
+TEST_CASE("With the loop and the callback in two threads no freed surface is audible, and all are freed in the end") {
+  QueueFixture l;
   std::atomic<bool> done{false};
   std::atomic<std::size_t> played{0};
   float loudest = 0;
@@ -190,50 +188,49 @@ TEST_CASE(
   std::size_t freed = 0;
   constexpr std::size_t kScenes = 400;
   for (std::size_t scene = 0; scene < kScenes; ++scene) {
-    auto surfaces = poisoned_when_freed();
-    l.line.change(surfaces);
+    auto surfaces = surfaces_spoiled_on_free();
+    l.queue.set_surfaces(surfaces);
     const ReliefLevels* relief = surfaces->by_material[0].relief.get();
     surfaces.reset();
     for (int i = 0; i < 50; ++i) {
       const auto id = static_cast<std::int64_t>(random() % 5);
-      l.line.submit(over(relief, id, l.bench->time_ns(played + random() % 1000), 1e-4f));
-      freed += l.line.take_unread().size();
+      l.queue.submit(scrape_over(relief, id, l.bench->time_ns(played + random() % 1000), 1e-4f));
+      freed += l.queue.take_released().size();
       std::this_thread::yield();
     }
   }
-  l.line.change(nullptr);
+  l.queue.set_surfaces(nullptr);
   done = true;
   callback.join();
   CHECK(loudest > 0);
   CHECK(loudest < kLoudest);
-  CHECK(freed + l.line.take_unread().size() == kScenes);
+  CHECK(freed + l.queue.take_released().size() == kScenes);
 }
 
 TEST_CASE(
-    "An end for which there was no room is told when there is, unless its contact goes on. Lost states are "
-    "counted") {
-  auto crossing = std::make_unique<CallbackQueues>();
-  ScrapeLine line(*crossing);
-  const auto tell = [&](std::int64_t id, bool ends) {
+    "An end of a scrape that does not fit is sent later unless its contact continues, and lost updates are counted") {
+  auto queues = std::make_unique<CallbackQueues>();
+  ScrapeQueue queue(*queues);
+  const auto submit = [&](std::int64_t id, bool ends) {
     Scrape s;
     s.id = id, s.ends = ends;
-    return line.submit(s);
+    return queue.submit(s);
   };
-  while (tell(1, false)) continue;
-  CHECK(line.lost() == 1);
-  CHECK_FALSE(tell(1, true));
-  CHECK_FALSE(tell(2, true));
-  CHECK_FALSE(tell(2, false));  // it continues
-  CHECK(line.lost() == 2);
-  line.tell_ends();  // there is no room yet
+  while (submit(1, false)) continue;
+  CHECK(queue.lost() == 1);
+  CHECK_FALSE(submit(1, true));
+  CHECK_FALSE(submit(2, true));
+  CHECK_FALSE(submit(2, false));  // it continues
+  CHECK(queue.lost() == 2);
+  queue.send_ends();  // there is no room yet
   std::int64_t next = 0;
-  for (Scrape s; crossing->scrapes.pop(s);) CHECK(s.number == next++);
-  line.tell_ends();
-  line.tell_ends();
+  for (Scrape s; queues->scrapes.pop(s);) CHECK(s.number == next++);
+  queue.send_ends();
+  queue.send_ends();
   Scrape end;
-  REQUIRE(crossing->scrapes.pop(end));
+  REQUIRE(queues->scrapes.pop(end));
   CHECK(end.ends);
   CHECK(end.id == 1);
   CHECK(end.number == next);
-  CHECK_FALSE(crossing->scrapes.pop(end));
+  CHECK_FALSE(queues->scrapes.pop(end));
 }

@@ -23,7 +23,7 @@ inline Scrape along_x(const ReliefLevels* relief, double speed_m_s, double ms) {
   side.known = true;
   side.relief = relief;
   side.place_m.x() = 1e-3 * ms * speed_m_s, side.velocity_m_s.x() = speed_m_s;
-  side.slides.x() = side.rolls.x() = 1;
+  side.slide_vector.x() = side.roll_vector.x() = 1;
   return s;
 }
 
@@ -34,21 +34,21 @@ inline void give_mode(ScrapeSide& side, double frequency_Hz, double damping_1_s,
   side.gains[0] = gain * step.unit_gain;
 }
 
-struct Rubbed {
+struct ScrapeRun {
   std::vector<float> force, sound;
 };
 
-// Updated by `tell` every `every_ms` for told_ms; then it ends, and the rest is the decay.
-inline Rubbed rub(const std::function<Scrape(double ms)>& tell, int told_ms, int whole_ms, int every_ms = 1) {
+// Updated by `scrape_at` every `every_ms` for updated_ms; then it ends, and the rest is the decay.
+inline ScrapeRun run_scrape(const std::function<Scrape(double ms)>& scrape_at, int updated_ms, int whole_ms, int every_ms = 1) {
   auto scrapes = std::make_unique<Scrapes>(kRate);
   auto voices = std::make_unique<Voices>(4, kRate, kRing);
-  Rubbed out;
+  ScrapeRun out;
   for (int ms = 0; ms < whole_ms; ++ms) {
-    if (ms < told_ms && ms % every_ms == 0) scrapes->take(tell(ms));
-    if (ms == told_ms) {
+    if (ms < updated_ms && ms % every_ms == 0) scrapes->update(scrape_at(ms));
+    if (ms == updated_ms) {
       Scrape end;
       end.id = 3, end.at = at_ms(ms), end.ends = true;
-      scrapes->take(end);
+      scrapes->update(end);
     }
     float stereo[2 * 48] = {};
     const bool on = scrapes->active() > 0;

@@ -13,7 +13,7 @@
 namespace tactus::audio {
 
 // m/s, world frame.
-struct Over {
+struct ContactVelocity {
   std::array<Eigen::Vector3d, 2> surface{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // c_a, c_b
   Eigen::Vector3d rolling = Eigen::Vector3d::Zero();
 };
@@ -29,42 +29,42 @@ class Presliding {
   double moving() const;
 
  private:
-  Eigen::Vector3d way_m_ = Eigen::Vector3d::Zero();  // recent displacement
+  Eigen::Vector3d displacement_m_ = Eigen::Vector3d::Zero();  // recent displacement
 };
 
-// Of one contact, over its whole duration.
-class ContactWay {
+// Motion of one contact, over its whole duration.
+class ContactMotion {
  public:
-  // to_body: rotations from world to body, where known; at least one is known, and `surest` is the index of a
-  // known one. past_m_s: velocity of the surface of b relative to that of a, bounded.
+  // to_body: rotations from world to body, where known; at least one is known, and `reference_side` is the index
+  // of a known one. sliding_m_s: velocity of the surface of b relative to that of a, bounded.
   void step(const contact_t& contact, const std::array<std::optional<Eigen::Quaterniond>, 2>& to_body,
-            std::size_t surest, const Eigen::Vector3d& past_m_s, double dt_s);
+            std::size_t reference_side, const Eigen::Vector3d& sliding_m_s, double dt_s);
 
-  const Over& over() const { return over_; }
+  const ContactVelocity& velocity() const { return velocity_; }
   // In the frame of each body: as received, but continuous between messages, at 1 kHz or at 60 Hz.
   const Eigen::Vector3d& place_m(std::size_t side) const { return sides_[side].place_m; }
   // Index of the contact point in use, of the latest message.
   std::size_t point() const { return point_; }
   // 0 .. 1: degree to which it slides, or rolls.
-  double slides() const { return slid_.moving(); }
-  double rolls() const { return rolled_.moving(); }
+  double sliding_degree() const { return sliding_detector_.moving(); }
+  double rolling_degree() const { return rolling_detector_.moving(); }
 
  private:
   struct Side {
     Eigen::Vector3d place_m = Eigen::Vector3d::Zero();
-    std::optional<Eigen::Vector3d> told_m;
+    std::optional<Eigen::Vector3d> received_m;
     double since_s = 0;  // time since the last message
   };
-  double share(const Eigen::Vector3d& place, const Eigen::Vector3d& along);
-  static void follow(Side& side, const Eigen::Vector3d& told_m, const Eigen::Vector3d& step_m, double dt_s);
+  double motion_share(const Eigen::Vector3d& place, const Eigen::Vector3d& along);
+  static void track(Side& side, const Eigen::Vector3d& received_m, const Eigen::Vector3d& step_m, double dt_s);
 
   std::array<Side, 2> sides_;
-  Over over_;
+  ContactVelocity velocity_;
   std::size_t point_ = 0;
-  Presliding slid_, rolled_;
-  // Share of recent sliding that was motion over the surest surface.
-  std::optional<Eigen::Vector3d> looked_at_m_;
-  double looked_way_m_ = 0, looked_s_ = 0, share_ = 1;
+  Presliding sliding_detector_, rolling_detector_;
+  // Share of recent sliding that was motion over the reference surface.
+  std::optional<Eigen::Vector3d> observed_at_m_;
+  double observed_distance_m_ = 0, observed_s_ = 0, motion_share_ = 1;
 };
 
 }  // namespace tactus::audio

@@ -10,20 +10,20 @@
 namespace tactus::audio {
 
 // Used on the loop thread.
-class RubLine {
+class RecordedContactQueue {
  public:
-  explicit RubLine(Spsc<RecordedContact>& queue) : queue_(queue) {}
+  explicit RecordedContactQueue(Spsc<RecordedContact>& queue) : queue_(queue) {}
 
   // False when the queue is full: a state is skipped and counted as lost; an end is sent as soon as there is room,
   // unless its contact continues.
-  bool submit(const RecordedContact& rub);
+  bool submit(const RecordedContact& contact);
   // Call once per tick.
-  void tell_ends();
+  void send_ends();
   std::int64_t lost() const { return lost_; }
 
  private:
   Spsc<RecordedContact>& queue_;
-  std::deque<RecordedContact> owed_;  // ends that have not been sent
+  std::deque<RecordedContact> pending_ends_;  // ends that have not been sent
   std::int64_t lost_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// The modes that strikes refer to stay as long as the callback may read them, over changes of the scene, and no longer.
-#include "audio_node/mixer/strike_line.h"
+// The modes of strikes are kept while the callback may read them, also when the scene changes, and are then freed.
+#include "audio_node/mixer/strike_queue.h"
 
 #include <catch2/catch.hpp>
 #include <random>
@@ -12,8 +12,8 @@ using namespace tactus::audio::test;
 
 namespace {
 
-// Whose values are spoilt when it goes, so that a late reader is heard.
-StrikeLine::Table table(double frequency_Hz) {
+// Its deleter makes the values audible, so that a read after the release fails the test.
+StrikeQueue::Table table(double frequency_Hz) {
   auto* const all = new ResonatorTable(1);
   all->front().add(mode_step(frequency_Hz, 20, kRate));
   return {all, [](const ResonatorTable* gone) {
@@ -23,26 +23,26 @@ StrikeLine::Table table(double frequency_Hz) {
           }};
 }
 
-// A loop and a callback in one thread, by turns.
-struct Line {
+// A loop and a callback in one thread, in alternation.
+struct QueueFixture {
   std::unique_ptr<Bench> bench = std::make_unique<Bench>();
-  StrikeLine line{bench->crossing};
+  StrikeQueue queue{bench->queues};
 
-  bool strike(const StrikeLine::Table& of, int later_samples, std::int64_t id = 1) {
+  bool strike(const StrikeQueue::Table& of, int later_samples, std::int64_t id = 1) {
     Strike s = strike_of(id, id, 500, 20, bench->time_ns(bench->left.size() + static_cast<std::size_t>(later_samples)));
     if (of) s.sides[0].resonators = &of->front();
-    return line.submit(s, of);
+    return queue.submit(s, of);
   }
   void play(int frames) {
     bench->play(frames);
-    line.free_unread();
+    queue.free_released();
   }
 };
 
 }  // namespace
 
-TEST_CASE("A table is kept while a strike of it waits, and goes once strikes of the next scene alone are held") {
-  Line l;
+TEST_CASE("A table is kept while a strike of it waits, and is freed once only later scenes have strikes") {
+  QueueFixture l;
   auto first = table(500), second = table(700);
   const std::weak_ptr<const ResonatorTable> old = first;
   REQUIRE(l.strike(first, 4800));
@@ -50,39 +50,39 @@ TEST_CASE("A table is kept while a strike of it waits, and goes once strikes of 
   l.play(128);
   CHECK_FALSE(old.expired());
   REQUIRE(l.strike(second, 9600, 2));
-  CHECK(l.line.kept() == 1);
+  CHECK(l.queue.kept() == 1);
   for (int i = 0; i < 20; ++i) {
     l.play(128);
     CHECK_FALSE(old.expired());
   }
   while (l.bench->left.size() < 6000) l.play(128);
   CHECK(old.expired());
-  CHECK(l.line.kept() == 0);
+  CHECK(l.queue.kept() == 0);
   CHECK(l.bench->reports.size() == 1);
 }
 
-TEST_CASE("Scenes that change while the callback stands still keep no more tables than there are strikes in the queue") {
-  Line l;
+TEST_CASE("With a stopped callback at most one table per strike in the queue is kept") {
+  QueueFixture l;
   int submitted = 0;
   for (int i = 0; i < 2000; ++i) submitted += l.strike(table(500), 0, i) ? 1 : 0;
   CHECK(submitted == 512);
-  CHECK(l.line.kept() < 512);
+  CHECK(l.queue.kept() < 512);
   l.play(128);
-  CHECK(l.line.kept() == 0);
+  CHECK(l.queue.kept() == 0);
 }
 
-TEST_CASE("When the callback has ended, nothing but the newest table is kept") {
-  Line l;
+TEST_CASE("A closed renderer releases all tables except the newest") {
+  QueueFixture l;
   for (int i = 0; i < 10; ++i) REQUIRE(l.strike(table(500), 48000, i));
   l.bench->renderer.abandon();
-  l.line.free_unread();
-  CHECK(l.line.kept() == 0);
-  CHECK(l.bench->crossing.reports.room() + 10 == l.bench->crossing.reports.capacity());
+  l.queue.free_released();
+  CHECK(l.queue.kept() == 0);
+  CHECK(l.bench->queues.reports.room() + 10 == l.bench->queues.reports.capacity());
 }
 
-TEST_CASE("No strike sounds with modes that have gone, over any order of strikes and scenes") {
+TEST_CASE("No strike sounds with freed modes, for any order of strikes and scenes") {
   std::mt19937 random(4);
-  Line l;
+  QueueFixture l;
   auto of = table(300);
   for (int i = 0; i < 3000; ++i) {
     if (random() % 7 == 0) of = table(200 + random() % 3000);

@@ -14,23 +14,23 @@
 namespace tactus::audio {
 
 // Of one material; null: none, or not readable.
-struct HeardSurface {
+struct AudioSurface {
   std::shared_ptr<const ReliefLevels> relief;
   std::shared_ptr<const FrictionMap> friction;
-  bool heard() const { return relief || friction; }
+  bool has_maps() const { return relief || friction; }
 };
 
-struct HeardSurfaces {
-  std::vector<HeardSurface> by_material;
+struct AudioSurfaces {
+  std::vector<AudioSurface> by_material;
 
-  const HeardSurface* of(std::int32_t material) const {
+  const AudioSurface* of(std::int32_t material) const {
     const auto i = static_cast<std::size_t>(material);
-    return material >= 0 && i < by_material.size() && by_material[i].heard() ? &by_material[i] : nullptr;
+    return material >= 0 && i < by_material.size() && by_material[i].has_maps() ? &by_material[i] : nullptr;
   }
 };
 
 // Reads the maps and makes their tables. It may take a second, so do not call it in a loop. Surfaces with
 // unreadable maps are smooth.
-std::unique_ptr<HeardSurfaces> read_surfaces(const scene_t& scene, const sync::Pictures& pictures);
+std::unique_ptr<AudioSurfaces> load_surfaces(const scene_t& scene, const sync::Pictures& pictures);
 
 }  // namespace tactus::audio

@@ -1,4 +1,4 @@
-#include "audio_node/excitation/heard_surfaces.h"
+#include "audio_node/excitation/audio_surfaces.h"
 
 #include <map>
 #include <stdexcept>
@@ -7,17 +7,17 @@
 
 namespace tactus::audio {
 
-std::unique_ptr<HeardSurfaces> read_surfaces(const scene_t& scene, const sync::Pictures& pictures) {
+std::unique_ptr<AudioSurfaces> load_surfaces(const scene_t& scene, const sync::Pictures& pictures) {
   std::map<std::int64_t, HeightMap> maps;
   for (const auto& [hash, bytes] : pictures) try {
       maps.emplace(hash, read_height_map(bytes));
     } catch (const std::runtime_error&) {  // vision and touch report the reason
     }
-  auto surfaces = std::make_unique<HeardSurfaces>();
+  auto surfaces = std::make_unique<AudioSurfaces>();
   // Materials that inherited a map share it.
   std::map<std::tuple<std::int64_t, double, double, double>, std::shared_ptr<const ReliefLevels>> reliefs;
   for (const material_def_t& m : scene.materials) {
-    HeardSurface& of = surfaces->by_material.emplace_back();
+    AudioSurface& of = surfaces->by_material.emplace_back();
     if (const auto map = maps.find(m.bump_asset); map != maps.end()) {
       auto& relief = reliefs[{m.bump_asset, m.bump_size_u_m, m.bump_size_v_m, m.bump_height_m}];
       if (!relief) relief = std::make_shared<const ReliefLevels>(make_relief(map->second, m));

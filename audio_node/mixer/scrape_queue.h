@@ -7,30 +7,30 @@
 #include <memory>
 #include <vector>
 
-#include "audio_node/excitation/heard_surfaces.h"
+#include "audio_node/excitation/audio_surfaces.h"
 #include "audio_node/mixer/renderer.h"
 
 namespace tactus::audio {
 
 // Used on the loop thread. The callback never waits for it, and frees nothing.
-class ScrapeLine {
+class ScrapeQueue {
  public:
-  using Surfaces = std::shared_ptr<const HeardSurfaces>;
+  using Surfaces = std::shared_ptr<const AudioSurfaces>;
 
-  explicit ScrapeLine(CallbackQueues& crossing) : crossing_(crossing) {}
+  explicit ScrapeQueue(CallbackQueues& queues) : queues_(queues) {}
 
   // Later scrapes point to these surfaces; null: none. The previous surfaces are kept while the callback may read
   // them. While the callback is stopped, at most one queue of scrapes holds them.
-  void change(Surfaces next);
+  void set_surfaces(Surfaces next);
   // False when the queue is full: a state is skipped and counted as lost; an end is sent as soon as there is room,
   // unless its contact continues.
   bool submit(Scrape scrape);
   // Call once per tick.
-  void tell_ends();
+  void send_ends();
   std::int64_t lost() const { return lost_; }
   // Returns previous surfaces that are no longer read. Freeing them may take milliseconds, so do not free them in
   // the loop.
-  std::vector<Surfaces> take_unread();
+  std::vector<Surfaces> take_released();
 
  private:
   struct Kept {
@@ -39,10 +39,10 @@ class ScrapeLine {
   };
   bool push(Scrape& scrape);
 
-  CallbackQueues& crossing_;
-  std::deque<std::int64_t> owed_;  // contacts whose end has not been sent
+  CallbackQueues& queues_;
+  std::deque<std::int64_t> pending_ends_;  // contacts whose end has not been sent
   std::int64_t lost_ = 0;
-  std::int64_t submitted_ = 0, first_ = 0;  // number of scrapes; number of the first one into `now_`
+  std::int64_t submitted_ = 0, first_ = 0;  // number of scrapes; number of the first one of `now_`
   Surfaces now_;
   std::deque<Kept> kept_;
 };

@@ -1,4 +1,4 @@
-#include "audio_node/excitation/heard_surfaces.h"
+#include "audio_node/excitation/audio_surfaces.h"
 
 #include <catch2/catch.hpp>
 #include <tactus/material_def_t.hpp>
@@ -10,8 +10,7 @@
 using namespace tactus;
 using namespace tactus::audio;
 
-TEST_CASE(
-    "Surfaces are read from the pictures of the scene. What cannot be read is smooth, and leaves the others") {
+TEST_CASE("Surfaces are read from the pictures of the scene, and an unreadable picture gives a smooth surface") {
   scene_t scene{};
   const sync::Bytes good = tactus::test::png_bytes(2, 2, 8, {0, 10, 20, 255}), bad{'x'};
   constexpr std::int64_t kGood = 1, kBad = 2, kNotSent = 3;
@@ -22,7 +21,7 @@ TEST_CASE(
     m.friction_asset = friction, m.friction_size_u_m = m.friction_size_v_m = 0.1, m.friction_white = 1;
     scene.materials.push_back(m);
   }
-  const auto surfaces = read_surfaces(scene, {{kGood, good}, {kBad, bad}});
+  const auto surfaces = load_surfaces(scene, {{kGood, good}, {kBad, bad}});
   REQUIRE(surfaces->by_material.size() == 4);
   REQUIRE(surfaces->of(0));
   CHECK(surfaces->of(0)->relief);
@@ -34,5 +33,5 @@ TEST_CASE(
   CHECK(surfaces->of(2)->relief == surfaces->of(0)->relief);  // shared
   CHECK_FALSE(surfaces->of(2)->friction);
   for (const int material : {-1, 3, 4}) CHECK_FALSE(surfaces->of(material));
-  CHECK_FALSE(read_surfaces(scene, {})->of(0));
+  CHECK_FALSE(load_surfaces(scene, {})->of(0));
 }
