@@ -73,7 +73,7 @@ void publish_state(Telling& telling, sim::Simulation& simulation, bool steps, sy
                              .events = steps ? &simulation.events() : &no_events,
                              .tool_contacts = &simulation.tool_contacts(),
                              .state = {simulation.bodies(), [&](auto& out) { simulation.body_contacts(out); },
-                                       simulation.ahead()},
+                                       simulation.look_ahead()},
                              .game = &simulation.game()},
                             map);
 }
@@ -129,27 +129,27 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* read_before) try {
     while (auto m = tool_states.pop())
       if (m->order != sync::Arrival::kOld) news.push_back(std::move(m->message));
     while (const auto m = healths.pop()) {
-      if (const auto rate_Hz = followed.hear(m->message)) {
+      if (const auto rate_Hz = followed.on_message(m->message)) {
         simulation.mechanics().set_visual_rate(*rate_Hz);
         std::cerr << "sim_node: visual steps follow " << m->message.node << " at " << *rate_Hz << " Hz" << std::endl;
       }
       if (known.size() < 4096 && known.insert(m->message.header.incarnation).second) telling->publisher.request_full_state();
     }
     for (int left = kCommandsPerTick; left > 0; --left)
-      if (const auto m = commands.pop(); m && m->message.header.run_id == options.run_id) commander.take(m->message);
-    for (sim_reply_t& answer : commander.answers()) {
-      answer.header.sim_time_ns = -1;
-      node.bus().publish(channels::kSimReply, answer);
+      if (const auto m = commands.pop(); m && m->message.header.run_id == options.run_id) commander.execute(m->message);
+    for (sim_reply_t& reply : commander.take_replies()) {
+      reply.header.sim_time_ns = -1;
+      node.bus().publish(channels::kSimReply, reply);
     }
     scene_sender.poll(now);
-    if (commander.take_anew()) {
+    if (commander.take_restart()) {
       anew = true;
       life_begins = now + sync::from_seconds(settings.new_life_silence_s);
     }
     if (anew && now < life_begins) continue;
     if (std::exchange(anew, false)) {
       node.begin_incarnation();
-      simulation.begin_life(node.bus().identity().incarnation);
+      simulation.begin_incarnation(node.bus().identity().incarnation);
       begin_telling();
     }
     const bool steps = commander.step_due();

@@ -16,7 +16,7 @@
 #include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/model/ids.h"
 #include "sim_node/collision/detectors/mesh_trees.h"
-#include "sim_node/model/ahead.h"
+#include "sim_node/model/look_ahead.h"
 #include "sim_node/model/world_def.h"
 #include "sim_node/settings.gen.h"
 #include "sim_node/model/state_archive.h"
@@ -50,7 +50,7 @@ class Mechanics {
   // Contacts between bodies to be published now; clears the list first.
   virtual void contacts(std::vector<contact_t>& out) = 0;
   // State of the bodies computed ahead; null: not supported.
-  virtual const Ahead* ahead() { return nullptr; }
+  virtual const LookAhead* look_ahead() { return nullptr; }
 
   // Rate of the look-ahead steps, Hz; ignored without look-ahead.
   virtual void set_visual_rate(double) {}

@@ -52,7 +52,7 @@ const BodyMotion& at(std::span<const BodyMotion> bodies, int i) { return bodies[
 }  // namespace
 
 ContactTracker::ContactTracker(std::vector<SurfaceTraits> surfaces, const Settings& settings, Ids& ids)
-    : surfaces_(std::move(surfaces)), settings_(settings), contact_distance_m_(meeting_distance_m(settings)), ids_(ids) {}
+    : surfaces_(std::move(surfaces)), settings_(settings), contact_distance_m_(contact_distance_m(settings)), ids_(ids) {}
 
 // The point with the highest closing speed.
 ContactTracker::Closing ContactTracker::closing(const Manifold& c, std::span<const BodyMotion> bodies) const {

@@ -215,28 +215,28 @@ void DualGroups::contacts(std::vector<contact_t>& out) {
   for (const LiveContact& c : departed_.contacts) tracker_.describe(c, motions_, out.emplace_back());
 }
 
-const Ahead* DualGroups::ahead() {
-  ahead_now_.fresh = began_;
-  ahead_now_.held = holding_;
-  ahead_now_.promoted = promoted_;
+const LookAhead* DualGroups::look_ahead() {
+  look_ahead_.fresh = began_;
+  look_ahead_.held = holding_;
+  look_ahead_.promoted = promoted_;
   if (began_ || !promoted_.empty()) {
-    ahead_now_.begins = begins_;
-    ahead_now_.time = ends_;
-    ahead_waiting_.clear();
-    for (const int unit : departed_.units) world_->unit_bodies(unit, ahead_waiting_);
-    std::erase_if(ahead_waiting_, [this](int body) { return is_haptic(body); });
-    std::sort(ahead_waiting_.begin(), ahead_waiting_.end());
-    ahead_now_.waiting = ahead_waiting_;
-    ahead_bodies_.clear();
-    ahead_motions_.clear();
+    look_ahead_.begins = begins_;
+    look_ahead_.time = ends_;
+    look_ahead_waiting_.clear();
+    for (const int unit : departed_.units) world_->unit_bodies(unit, look_ahead_waiting_);
+    std::erase_if(look_ahead_waiting_, [this](int body) { return is_haptic(body); });
+    std::sort(look_ahead_waiting_.begin(), look_ahead_waiting_.end());
+    look_ahead_.waiting = look_ahead_waiting_;
+    look_ahead_bodies_.clear();
+    look_ahead_motions_.clear();
     for (const int body : step_->bodies) {
       if (is_haptic(body) || departed_.find(world_->unit_of(body)) >= 0) continue;
-      ahead_bodies_.push_back(body);
-      ahead_motions_.push_back(holding_ ? motions_[index(body)] : step_->end[index(body)]);
+      look_ahead_bodies_.push_back(body);
+      look_ahead_motions_.push_back(holding_ ? motions_[index(body)] : step_->end[index(body)]);
     }
-    ahead_now_.bodies = ahead_bodies_;
-    ahead_now_.motions = ahead_motions_;
-    ahead_now_.contacts = [this](std::vector<contact_t>& out) {
+    look_ahead_.bodies = look_ahead_bodies_;
+    look_ahead_.motions = look_ahead_motions_;
+    look_ahead_.contacts = [this](std::vector<contact_t>& out) {
       out.clear();
       const auto gone = [this](int body) { return motions_[index(body)].moves() && is_haptic(body); };
       for (const LiveContact& c : step_->live.back())
@@ -244,7 +244,7 @@ const Ahead* DualGroups::ahead() {
           tracker_.describe(c, step_->end, out.emplace_back());
     };
   }
-  return &ahead_now_;
+  return &look_ahead_;
 }
 
 }  // namespace tactus::sim

@@ -42,7 +42,7 @@ const BehaviourModel& behaviour_model(std::string_view name) {
                            "\" is unknown; choose quick, step, impulse, penalty or penalty_explicit");
 }
 
-double meeting_distance_m(const Settings& s) {
+double contact_distance_m(const Settings& s) {
   return s.groups == "dual" || behaviour_model(s.solver).finite_forces ? s.contact_tolerance_m : 0;
 }
 

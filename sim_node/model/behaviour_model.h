@@ -31,6 +31,6 @@ const BehaviourModel& behaviour_model(std::string_view name);
 
 // Gap at which surfaces start to interact, m: the reach of springs, in both groups of a dual simulation, so that the
 // contact does not change when a body moves between groups. 0 for models without springs.
-double meeting_distance_m(const Settings& settings);
+double contact_distance_m(const Settings& settings);
 
 }  // namespace tactus::sim

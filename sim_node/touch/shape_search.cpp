@@ -14,12 +14,12 @@ namespace {
 constexpr std::size_t kMaxMeetings = 64;
 
 // Keeps the nearest pair for each place and direction.
-class MeetingCollector : public NearestFirst {
+class MeetingCollector : public PairVisitor {
  public:
   MeetingCollector(double same_direction, const Eigen::Isometry3d& to_tool, std::vector<ToolMeeting>& out)
       : same_direction_(same_direction), to_tool_(to_tool), out_(out) {}
 
-  bool known(const PointPair& p) const override {
+  bool is_redundant(const PointPair& p) const override {
     if (!p.normal.allFinite() || !p.on_a_m.allFinite() || !p.on_b_m.allFinite()) return true;
     const Eigen::Vector3d normal = -p.normal, on_tool = to_tool_ * place(p);
     return std::any_of(out_.begin(), out_.end(), [&](const ToolMeeting& m) {
@@ -28,7 +28,7 @@ class MeetingCollector : public NearestFirst {
     });
   }
 
-  bool take(const PointPair& p) override {
+  bool visit(const PointPair& p) override {
     // The height over the plane: the detector's gap differs for points that are not above each other.
     const Eigen::Vector3d normal = -p.normal;
     out_.push_back({{p.on_b_m, normal, normal.dot(place(p) - p.on_b_m), p.triangle_b}, to_tool_ * place(p)});

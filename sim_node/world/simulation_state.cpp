@@ -63,7 +63,7 @@ std::string Simulation::restore(std::span<const std::uint8_t> bytes) {
   }
 }
 
-void Simulation::begin_life(std::int64_t incarnation) {
+void Simulation::begin_incarnation(std::int64_t incarnation) {
   ids_.rename(incarnation);
   mechanics_->rename(incarnation);
   for (contact_event_t& e : events_) {

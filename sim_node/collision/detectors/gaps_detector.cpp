@@ -98,11 +98,11 @@ class GapsDetector : public Detector, public NearestFirstDetector {
   }
 
   bool nearest_first(int a, const Isometry3d& pose_a, int b, const Isometry3d& pose_b, double reach_m,
-                     NearestFirst& to, std::vector<PointPair>& room) override {
+                     PairVisitor& visitor, std::vector<PointPair>& scratch) override {
     const Shape &sa = shapes_[static_cast<std::size_t>(a)], &sb = shapes_[static_cast<std::size_t>(b)];
     if (!sa.cones || !sb.cones) return false;
     nearest_.find({*sa.tree, *sa.layers, *sa.cones, pose_a}, {*sb.tree, *sb.layers, *sb.cones, pose_b}, reach_m,
-                  to, room);
+                  visitor, scratch);
     return true;
   }
 

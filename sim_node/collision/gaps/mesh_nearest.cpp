@@ -60,7 +60,7 @@ void marked_pairs(const Triangle& a, double lean_a, const Triangle& b, double le
   layer2::piercings(b, over_a, a, false, always);
 }
 
-void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, NearestFirst& to,
+void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, PairVisitor& visitor,
                        std::vector<PointPair>& pairs) {
   pairs.clear();
   facing_.find({a.layers.tree, a.cones, a.pose}, {b.layers.tree, b.cones, b.pose}, reach_m, leaves_);
@@ -96,10 +96,10 @@ void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, NearestFirs
             [](const Candidate& x, const Candidate& y) { return x.gap_m != y.gap_m ? x.gap_m < y.gap_m : x.pair < y.pair; });
   for (const Candidate& t : candidates_) {
     const PointPair& p = pairs[t.pair];
-    if (to.known(p)) continue;
+    if (visitor.is_redundant(p)) continue;
     if (!t.separated && !is_contact({a.tree, a.pose, triangles(p).first}, {b.tree, b.pose, triangles(p).second}, p))
       continue;
-    if (!to.take(p)) return;
+    if (!visitor.visit(p)) return;
   }
 }
 

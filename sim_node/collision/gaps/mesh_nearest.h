@@ -23,9 +23,9 @@ class MeshNearest {
   };
   explicit MeshNearest(Isa isa) : facing_(isa) {}
   // Reports the pairs of the three layers that satisfy is_contact(), to within rounding. Calls is_contact() only for
-  // pairs that `to` does not report as redundant. `room` is scratch memory. Deterministic. Real-time safe once the
+  // pairs that `visitor` does not report as redundant. `scratch` is working memory. Deterministic. Real-time safe once the
   // lists have grown.
-  void find(const Mesh& a, const Mesh& b, double reach_m, NearestFirst& to, std::vector<PointPair>& room);
+  void find(const Mesh& a, const Mesh& b, double reach_m, PairVisitor& visitor, std::vector<PointPair>& scratch);
 
  private:
   FacingPairs facing_;

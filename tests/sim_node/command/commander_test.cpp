@@ -74,10 +74,10 @@ struct Bench {
   }
   // The reply to a command. Waits for file operations.
   sim_reply_t ask(const sim_command_t& c) {
-    commander.take(c);
+    commander.execute(c);
     for (const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
          std::chrono::steady_clock::now() < end;) {
-      for (const sim_reply_t& r : commander.answers())
+      for (const sim_reply_t& r : commander.take_replies())
         if (r.id == c.id) return r;
       std::this_thread::yield();
     }
@@ -211,8 +211,8 @@ TEST_CASE("Every property can be set and has its effect") {
   CHECK(up == Approx(0.5 * std::sqrt(2 * 1.6 * 0.95)).epsilon(0.02));
   // The scene is reset.
   CHECK(b.ask(command(sim_command_t::RESET)).done == 1);
-  CHECK(b.commander.take_anew());
-  CHECK(!b.commander.take_anew());
+  CHECK(b.commander.take_restart());
+  CHECK(!b.commander.take_restart());
   CHECK(b.ball().inverse_mass_1_kg == Approx(5));
   CHECK((b.ball().position_m - Vector3d(0, 0, 0.05)).norm() < 1e-12);
 }
@@ -262,11 +262,11 @@ TEST_CASE("A stored state is restored under its name, from memory and, by anothe
   const auto state = b.simulation.save();
   for (int i = 0; i < 100; ++i) b.tick();
   CHECK(b.ask(command(sim_command_t::RESTORE, "rolling")).done == 1);
-  CHECK(b.commander.take_anew());
+  CHECK(b.commander.take_restart());
   CHECK(b.simulation.save() == state);
 
   Bench other;
-  other.commander.take(command(sim_command_t::PAUSE));
+  other.commander.execute(command(sim_command_t::PAUSE));
   CHECK(other.ask(command(sim_command_t::RESTORE, "rolling")).done == 1);
   CHECK(other.simulation.save() == state);
   CHECK(other.commander.paused());

@@ -183,7 +183,7 @@ TEST_CASE("The visual group on its own thread exchanges bodies in contact and ap
     }
     d.tick();
     (d.groups.is_haptic(ball) ? here : there) += 1;
-    CHECK(d.groups.ahead() != nullptr);
+    CHECK(d.groups.look_ahead() != nullptr);
   }
   CHECK(here > 100);
   CHECK(there > 100);

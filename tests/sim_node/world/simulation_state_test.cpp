@@ -347,7 +347,7 @@ TEST_CASE("A world of a new incarnation renames its contacts, and drops the forc
   run(
       s, hand, [](double) { return Vector3d(0, 0, 0.105); }, 100);
   REQUIRE(s.restore(state) == "");
-  s.begin_life(12);
+  s.begin_incarnation(12);
   const std::int64_t mask = (std::int64_t{1} << 40) - 1;
   s.body_contacts(contacts);
   REQUIRE(contacts.size() == 1);
