@@ -21,9 +21,9 @@ double bound_of(const ShapeDef& s, const WorldDef& world) {
     case ShapeKind::kCapsule: return s.size_m.x() + s.size_m.z() / 2;
     case ShapeKind::kCylinder: return std::hypot(s.size_m.x(), s.size_m.z() / 2);
     case ShapeKind::kMesh: {
-      double most = 0;
-      for (const Eigen::Vector3d& v : world.meshes[index(s.mesh)].vertices) most = std::max(most, v.norm());
-      return most;
+      double max_radius_m = 0;
+      for (const Eigen::Vector3d& v : world.meshes[index(s.mesh)].vertices) max_radius_m = std::max(max_radius_m, v.norm());
+      return max_radius_m;
     }
     default: return s.size_m.norm() / 2;
   }

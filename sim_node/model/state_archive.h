@@ -106,10 +106,10 @@ class StateArchive {
   }
   // A list with a maximum length.
   template <class Item, class Each>
-  void list(std::vector<Item>& items, std::size_t most, Each each) {
+  void list(std::vector<Item>& items, std::size_t max_size, Each each) {
     std::uint64_t size = items.size();
     (*this)(size);
-    require(size <= most && (!reads_ || size <= left_.size()), "the state holds a list that is too long");
+    require(size <= max_size && (!reads_ || size <= left_.size()), "the state holds a list that is too long");
     if (reads_) items.resize(size);
     for (Item& item : items) each(item);
   }

@@ -22,9 +22,9 @@ double closest_axes_m(const SweptSphere& a, const SweptSphere& b, double horizon
 
 // Axis-aligned box around the sphere during the whole horizon.
 struct Bounds {
-  Eigen::Vector3d least_m, most_m;
-  bool meets(const Bounds& o) const {
-    return (least_m.array() <= o.most_m.array()).all() && (o.least_m.array() <= most_m.array()).all();
+  Eigen::Vector3d min_m, max_m;
+  bool overlaps(const Bounds& o) const {
+    return (min_m.array() <= o.max_m.array()).all() && (o.min_m.array() <= max_m.array()).all();
   }
 };
 Bounds bounds_of(const SweptSphere& s, double horizon_s);

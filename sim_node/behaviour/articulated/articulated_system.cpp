@@ -10,7 +10,7 @@ namespace {
 // stable up to 3.3 (Hairer and Wanner 1996, figure IV.2.1). The margin covers poses with less inertia.
 constexpr double kStiff = 0.3;
 // Limits of the growth of sub-steps (Hairer, Norsett and Wanner 1993, equation II.4.13, with its constants).
-constexpr double kSafety = 0.9, kLeast = 0.2, kMax = 5;
+constexpr double kSafety = 0.9, kMinFactor = 0.2, kMaxFactor = 5;
 
 void quaternion_rate(const double* q, const Eigen::Vector3d& spin, bool in_body, double* out) {
   const Eigen::Quaterniond turn(q[0], q[1], q[2], q[3]), rate(0, spin.x(), spin.y(), spin.z());
@@ -175,7 +175,7 @@ void ArticulatedSystem::step(double h_s) {
     pair_.attempt(slope, y_, h);
     ++substeps_;
     const double error = relative_error();
-    state_.reach_s = h * std::clamp(kSafety * std::pow(error, -0.2), kLeast, kMax);
+    state_.reach_s = h * std::clamp(kSafety * std::pow(error, -0.2), kMinFactor, kMaxFactor);
     if (error > 1 && h > finest * 1.01) continue;
     y_ = pair_.result();
     pair_.accept();

@@ -60,14 +60,14 @@ double bend(double lever_m, double angle_rad) {
 // Number of pieces into which the step must be divided, from the result of the undivided step.
 int Advance::pieces_for(const World& world, std::span<const Manifold> contacts, double dt) const {
   const auto motions = world.motions();
-  double most = 0;
+  double max_bend_m = 0;
   for (const Manifold& m : contacts)
     for (const int body : {m.body_a, m.body_b}) {
       const auto i = static_cast<std::size_t>(body);
       const double spin = std::max(motions[i].spin_rad_s.norm(), assumed_[i].spin_rad_s.norm());
-      if (spin > 0 && extents_[i].bend_m > 0) most = std::max(most, bend(extents_[i].bend_m, spin * dt));
+      if (spin > 0 && extents_[i].bend_m > 0) max_bend_m = std::max(max_bend_m, bend(extents_[i].bend_m, spin * dt));
     }
-  return most <= kBend_m ? 1 : static_cast<int>(std::ceil(std::sqrt(most / kBend_m)));
+  return max_bend_m <= kBend_m ? 1 : static_cast<int>(std::ceil(std::sqrt(max_bend_m / kBend_m)));
 }
 
 // Whether a body moved further than the contacts were searched for. assumed_ then holds its actual motion.

@@ -168,8 +168,8 @@ void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::siz
   h_ = h;
   approach_.resize(rows.groups.size());
   for (std::size_t i = 0; i < rows.groups.size(); ++i) approach_[i] = approach(rows.groups[i]);
-  const std::size_t most = kMaxImpacts * rows.groups.size();
-  for (std::size_t n = 0; n < most; ++n) {
+  const std::size_t max_impacts = kMaxImpacts * rows.groups.size();
+  for (std::size_t n = 0; n < max_impacts; ++n) {
     const auto fastest = std::max_element(approach_.begin(), approach_.end());
     if (*fastest <= 0) break;
     ContactGroup& struck = rows.groups[static_cast<std::size_t>(fastest - approach_.begin())];

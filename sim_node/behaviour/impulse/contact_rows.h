@@ -41,7 +41,7 @@ struct ContactPoint {
   double sliding_mobility = 0;                 // largest along the tangents
   double friction = 0;
   double gap_m = 0;            // at the start of the step; negative: overlap
-  double least_speed_m_s = 0;  // minimum separating speed of the contact; negative: the gap may close at this speed
+  double min_speed_m_s = 0;  // minimum separating speed of the contact; negative: the gap may close at this speed
   Eigen::Vector3d drift_m_s;   // of its velocity, from the start of the step to its mean, without impulses
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  // N s, over the step
   double impact_N_s = 0;                              // along the normal, of the collision phase
@@ -171,10 +171,10 @@ inline void add_product(Eigen::Vector3d& out, const Eigen::Matrix3d& m, double x
                                                                  const Eigen::Vector3d& v) {
   const double alone = v.x() - p.mobility.row(0).dot(impulse);
   if (alone >= 0) return Eigen::Vector3d::Zero();
-  Eigen::Vector3d stuck = impulse;
-  add_product<-1>(stuck, p.inverse_mobility, v.x(), v.y(), v.z());
-  const double most = p.friction * stuck.x();
-  if (stuck.x() >= 0 && stuck.y() * stuck.y() + stuck.z() * stuck.z() <= most * most) return stuck;
+  Eigen::Vector3d sticking = impulse;
+  add_product<-1>(sticking, p.inverse_mobility, v.x(), v.y(), v.z());
+  const double max_tangential = p.friction * sticking.x();
+  if (sticking.x() >= 0 && sticking.y() * sticking.y() + sticking.z() * sticking.z() <= max_tangential * max_tangential) return sticking;
   return solve_sliding(p, impulse, v, alone);
 }
 

@@ -51,12 +51,12 @@ void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate,
     pool.resize(pool.size() + n);
     system.dynamics().strike_dof(static_cast<int>(j), {pool.data() + row.response, n});
     row.mobility = pool[row.response + j];
-    const auto add = [&](double wanted, double softness, double least, double most, double& saved) {
-      row.wanted = wanted;
+    const auto add = [&](double target_rate, double softness, double min_impulse, double max_impulse, double& saved) {
+      row.target_rate = target_rate;
       row.softness = softness;
-      row.least = least;
-      row.most = most;
-      row.impulse = std::clamp(saved, least, most);
+      row.min_impulse = min_impulse;
+      row.max_impulse = max_impulse;
+      row.impulse = std::clamp(saved, min_impulse, max_impulse);
       row.memory = &saved;
       rows.push_back(row);
     };
@@ -88,8 +88,8 @@ void append_ball_friction(articulated::ArticulatedSystem& system, std::size_t fi
     pool.resize(pool.size() + n);
     system.dynamics().strike_dof(static_cast<int>(j), {pool.data() + row.response, n});
     row.mobility = pool[row.response + j];
-    row.most = h * d.friction;
-    row.impulse = std::clamp(memory.friction[j], -row.most, row.most);
+    row.max_impulse = h * d.friction;
+    row.impulse = std::clamp(memory.friction[j], -row.max_impulse, row.max_impulse);
     row.memory = &memory.friction[j];
     row.ball = static_cast<int>(j) == tree.links[static_cast<std::size_t>(d.link)].first_dof ? 3 : 1;
     rows.push_back(row);
@@ -112,7 +112,7 @@ double sweep_ball(JointRow* rows, const std::vector<double>& pool, Velocities& v
   for (int k = 0; k < 3; ++k) mobility += rows[k].mobility;
   Eigen::Vector3d next;
   for (int k = 0; k < 3; ++k) next[k] = rows[k].impulse - v.rates[rows[k].rate] / mobility;
-  if (next.norm() > rows[0].most) next *= rows[0].most / next.norm();
+  if (next.norm() > rows[0].max_impulse) next *= rows[0].max_impulse / next.norm();
   double change = 0;
   for (int k = 0; k < 3; ++k) {
     const double by = next[k] - rows[k].impulse;
@@ -127,8 +127,8 @@ double sweep_ball(JointRow* rows, const std::vector<double>& pool, Velocities& v
 
 double sweep(JointRow& row, const std::vector<double>& pool, Velocities& v) {
   if (row.ball) return row.ball == 3 ? sweep_ball(&row, pool, v) : 0;
-  const double missing = row.wanted - v.rates[row.rate] - row.softness * row.impulse;
-  const double impulse = std::clamp(row.impulse + missing / (row.mobility + row.softness), row.least, row.most);
+  const double rate_error = row.target_rate - v.rates[row.rate] - row.softness * row.impulse;
+  const double impulse = std::clamp(row.impulse + rate_error / (row.mobility + row.softness), row.min_impulse, row.max_impulse);
   const double by = impulse - row.impulse;
   row.impulse = impulse;
   apply(row, by, pool, v);

@@ -13,9 +13,9 @@ struct JointRow {
   std::size_t rate = 0;                                 // index of the rate that it acts along
   std::size_t first_rate = 0, rates = 0, response = 0;  // of the system: change of all its rates per unit impulse
   double mobility = 0;
-  double wanted = 0;           // target rate, rad/s or m/s
+  double target_rate = 0;           // target rate, rad/s or m/s
   double softness = 0;         // a soft row requires rate + softness * impulse = wanted
-  double least = 0, most = 0;  // impulse, N m s or N s
+  double min_impulse = 0, max_impulse = 0;  // impulse, N m s or N s
   double impulse = 0;
   int ball = 0;              // for dry friction of a ball joint: 3 in the first of three rows of one torque, 1 in the others
   int mover = 0;             // of its system, numbered as for contacts

@@ -72,7 +72,7 @@ void Layers::settle(ContactRows& rows, Velocities& v) {
     for (int sweep = 0; sweep < kSweeps; ++sweep)
       for (ContactPoint& p : above_.points) {
         Eigen::Vector3d u = above_.velocity(p, v) + p.drift_m_s;
-        u.x() -= p.least_speed_m_s;
+        u.x() -= p.min_speed_m_s;
         const Eigen::Vector3d next = ContactRows::solve_point(p, p.impulse, u), by = next - p.impulse;
         p.impulse = next;
         above_.apply(p, by, v);

@@ -32,7 +32,7 @@ void press(ContactRows& rows, const Penalty& penalty, const Velocities& velocity
     p.force_time_s = h;
     const double inside = p.shell_m - p.gap_m;
     const double damping =
-        penalty.damping_N_s_m * std::clamp(inside / (kDamperSetsIn * penalty.thickness_m), 0.0, 1.0);
+        penalty.damping_N_s_m * std::clamp(inside / (kDampingOnsetShare * penalty.thickness_m), 0.0, 1.0);
     if (penalty.is_explicit) {
       // Closing speed of the previous step, without the forces of this one. Otherwise a resting body would seem to
       // sink.
@@ -54,22 +54,22 @@ Eigen::Vector3d ContactRows::solve_pressed(const ContactPoint& p, const Eigen::V
   const double k = p.mobility(0, 0);
   double normal = p.pressed_N_s;
   if (p.press == Press::kSoft) {
-    const double lacks = v.x() + p.least_speed_m_s - p.soft_speed_m_s + p.softness_1_kg * impulse.x();
+    const double lacks = v.x() + p.min_speed_m_s - p.soft_speed_m_s + p.softness_1_kg * impulse.x();
     normal = std::max(0.0, impulse.x() - lacks / (k + p.softness_1_kg));
   }
   // The body crosses the shell: the surfaces meet.
   if (v.x() + k * (normal - impulse.x()) < 0) normal = std::max(0.0, impulse.x() - v.x() / k);
   const Eigen::Vector2d sliding = v.tail<2>() + p.mobility.block<2, 1>(1, 0) * (normal - impulse.x());
   const double a = p.mobility(1, 1), b = p.mobility(1, 2), d = p.mobility(2, 2), det = a * d - b * b;
-  const Eigen::Vector2d stuck =
+  const Eigen::Vector2d sticking =
       impulse.tail<2>() -
       Eigen::Vector2d(d * sliding.x() - b * sliding.y(), a * sliding.y() - b * sliding.x()) / det;
-  const double most = p.friction * normal;
-  if (stuck.squaredNorm() <= most * most) return {normal, stuck.x(), stuck.y()};
+  const double max_tangential = p.friction * normal;
+  if (sticking.squaredNorm() <= max_tangential * max_tangential) return {normal, sticking.x(), sticking.y()};
   const Eigen::Vector2d slides = impulse.tail<2>() - sliding / p.sliding_mobility;
   const double size = slides.norm();
   if (size == 0) return {normal, 0, 0};
-  return {normal, slides.x() * most / size, slides.y() * most / size};
+  return {normal, slides.x() * max_tangential / size, slides.y() * max_tangential / size};
 }
 
 }  // namespace tactus::sim::impulse

@@ -200,11 +200,11 @@ void World::set_required_speeds(double h) {
   for (ContactPoint& p : rows_.points) {
     const double aside = rows_.velocity(p, aside_).x(), gap = p.gap_m + aside;
     if (p.gap_m >= 0 || gap >= 0)
-      p.least_speed_m_s = -gap / h;
+      p.min_speed_m_s = -gap / h;
     else if (aside < 0)
-      p.least_speed_m_s = -aside / h + repair(-p.gap_m);
+      p.min_speed_m_s = -aside / h + repair(-p.gap_m);
     else
-      p.least_speed_m_s = repair(-gap);
+      p.min_speed_m_s = repair(-gap);
   }
 }
 
@@ -224,7 +224,7 @@ void World::sweep(double h) {
     if (a <= p.visit && b <= p.visit) return 0.0;
     p.visit = visits;
     Eigen::Vector3d v = rows_.velocity(p, velocity_);
-    v.x() -= p.least_speed_m_s;
+    v.x() -= p.min_speed_m_s;
     const Eigen::Vector3d next = ContactRows::solve_point(p, p.impulse, v);
     const Eigen::Vector3d by(next[0] - p.impulse[0], next[1] - p.impulse[1], next[2] - p.impulse[2]);
     const double change = std::max({std::abs(by[0]), std::abs(by[1]), std::abs(by[2])}) * p.mobility(0, 0);

@@ -112,8 +112,8 @@ class World {
   // Resets a unit to its saved pose, at rest.
   void hold(int unit, const SavedStep& saved);
   // Resolves overlaps by the smallest displacement that the contacts allow, weighted by inertia. Changes positions
-  // only, not velocities. contacts: of the current poses. Overlaps deeper than most_m are ignored.
-  void separate(std::span<const Manifold> contacts, double most_m);
+  // only, not velocities. contacts: of the current poses. Overlaps deeper than max_overlap_m are ignored.
+  void separate(std::span<const Manifold> contacts, double max_overlap_m);
 
   // Changes between steps, in force from the next step on. The velocity of a link acts like an impulse: the other
   // joints take their share (Featherstone 2008, section 11.7). Functions return false when the body is not free or

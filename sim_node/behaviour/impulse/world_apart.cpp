@@ -104,7 +104,7 @@ void World::update_inertia(std::span<const Manifold> contacts) {
     }
 }
 
-void World::separate(std::span<const Manifold> contacts, double most_m) {
+void World::separate(std::span<const Manifold> contacts, double max_overlap_m) {
   activate_all();
   for (const int unit : active_) {
     const std::size_t i = index(unit);
@@ -121,7 +121,7 @@ void World::separate(std::span<const Manifold> contacts, double most_m) {
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     double change = 0;
     for (ContactPoint& p : rows_.points) {
-      if (p.gap_m < -most_m) continue;
+      if (p.gap_m < -max_overlap_m) continue;
       const double left = p.gap_m + rows_.velocity(p, velocity_).x();
       const double push = std::max(-p.impulse.x(), -left / p.mobility(0, 0));
       if (push == 0) continue;

@@ -92,7 +92,7 @@ class CcdDetector : public Detector {
             .separation = !mpr_,
             .both_surfaces = false,
             .overlap_depth = true,
-            .least_depth = !mpr_,
+            .minimum_translation = !mpr_,
             .contact_kind = false,
             .one_pair = true,
             .deterministic = true};

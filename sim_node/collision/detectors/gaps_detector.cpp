@@ -47,7 +47,7 @@ class GapsDetector : public Detector, public NearestFirstDetector {
             .separation = true,
             .both_surfaces = true,
             .overlap_depth = true,
-            .least_depth = true,
+            .minimum_translation = true,
             .contact_kind = true,
             .one_pair = false,
             .deterministic = true};

@@ -45,7 +45,7 @@ class NearPairs {
     double grown_m = 0;  // enlargement for impacts, included in the bounds
   };
   struct Span {  // interval of a swept shape on the axis
-    double least_m, most_m;
+    double min_m, max_m;
     std::size_t swept;
   };
   static Extent extent_of(const ShapeDef& shape, const WorldDef& world, MeshTrees& trees);

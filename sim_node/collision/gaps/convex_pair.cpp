@@ -21,7 +21,7 @@ ContactKind kind_of(const FacingList& found) {
   return found.count > 2 ? ContactKind::kSurface : found.count == 2 ? ContactKind::kEdge : ContactKind::kPoint;
 }
 
-double least(const FacingList& found) {
+double min_gap_m(const FacingList& found) {
   double gap = 1e300;
   for (int i = 0; i < found.count; ++i) gap = std::min(gap, found.at[static_cast<std::size_t>(i)].gap_m);
   return gap;
@@ -57,7 +57,7 @@ void convex_pair(const Convex& a, const Isometry3d& pose_a, const Convex& b, con
   if (face.gap_m > reach) return;
   if (face.gap_m > -kTouching_m) {
     corners(face.along);
-    if (least(found) <= face.gap_m + kSame_m) return append(found, face.along, pose_a, a.round_m, b.round_m, out);
+    if (min_gap_m(found) <= face.gap_m + kSame_m) return append(found, face.along, pose_a, a.round_m, b.round_m, out);
   }
   NearestPoints near;
   const Proximity apart = nearest_points(a, b, a_from_b, reach, near);
@@ -78,7 +78,7 @@ void convex_pair(const Convex& a, const Isometry3d& pose_a, const Convex& b, con
     if (way.gap_m > reach) return;
   }
   corners(n);
-  if (least(found) > nearest.gap_m + kSame_m) found.add(nearest);
+  if (min_gap_m(found) > nearest.gap_m + kSame_m) found.add(nearest);
   append(found, n, pose_a, a.round_m, b.round_m, out);
 }
 

@@ -64,8 +64,8 @@ void move(const Motion& m, Ball& b) {
 // connection deviates from it by at most r. straight() is the same for a connection along the normal of a leaf's
 // triangle.
 bool within(const Ball& b, const Vector3f& way, float squared, float r) {
-  const float high = std::abs(way.dot(b.axis)), wide2 = squared - high * high, most = r + high * b.sine;
-  return wide2 * b.cosine * b.cosine <= most * most;
+  const float high = std::abs(way.dot(b.axis)), wide2 = squared - high * high, max_offset = r + high * b.sine;
+  return wide2 * b.cosine * b.cosine <= max_offset * max_offset;
 }
 bool straight(const Ball& b, const Vector3f& way, float squared, float r) {
   const float high = way.dot(b.face);

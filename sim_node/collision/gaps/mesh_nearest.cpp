@@ -21,9 +21,9 @@ constexpr double kNoContact_m = std::numeric_limits<double>::infinity();
 // leads_out() accepts connections whose lateral share of their length is below this.
 constexpr double kStraight = 1e-4;
 
-bool nearer_on(const Triangle& t, const Vector3d& from, double least_m) {
+bool nearer_on(const Triangle& t, const Vector3d& from, double limit_m) {
   if (t.normal.isZero()) return false;
-  return (closest_on_triangle(from, t.v[0], t.v[1], t.v[2]) - from).squaredNorm() < least_m * least_m;
+  return (closest_on_triangle(from, t.v[0], t.v[1], t.v[2]) - from).squaredNorm() < limit_m * limit_m;
 }
 
 Triangle in_frame_of_b(const Triangle& t, const Isometry3d& motion) {
@@ -49,9 +49,9 @@ void marked_pairs(const Triangle& a, double lean_a, const Triangle& b, double le
   const auto add = [&](const PointPair& p) {
     out.push_back(p);
     const bool out_of_a = leads_out(a.normal, p.normal), out_of_b = leads_out(b.normal, p.normal);
-    const double least = nearer_limit_m((p.on_a_m - p.on_b_m).norm(), share_of(out_of_a, out_of_b));
-    if (least > 0 &&
-        ((!out_of_a && nearer_on(a, p.on_b_m, least)) || (!out_of_b && nearer_on(b, p.on_a_m, least))))
+    const double limit_m = nearer_limit_m((p.on_a_m - p.on_b_m).norm(), share_of(out_of_a, out_of_b));
+    if (limit_m > 0 &&
+        ((!out_of_a && nearer_on(a, p.on_b_m, limit_m)) || (!out_of_b && nearer_on(b, p.on_a_m, limit_m))))
       out.back().gap_m = kNoContact_m;
   };
   layer2::vertices_and_edges(a, over_b, in_b, b, over_a, in_a, tol, add);

@@ -38,12 +38,12 @@ bool leads_out(const Vector3d& face_normal, const Vector3d& pair_normal) {
 }
 
 bool nearest_around(const TriangleTree& mesh, const Vector3d& from, const Vector3d& on_mesh, double share) {
-  const double least = nearer_limit_m((from - on_mesh).norm(), share);
+  const double limit_m = nearer_limit_m((from - on_mesh).norm(), share);
   const Vector3d on(kOn_m, kOn_m, kOn_m);
   bool nearest = true;
   mesh.each_within({on_mesh - on, on_mesh + on},
                    [&](const Vector3d& a, const Vector3d& b, const Vector3d& c, int) {
-                     if (!nearest || (closest_on_triangle(from, a, b, c) - from).norm() >= least) return;
+                     if (!nearest || (closest_on_triangle(from, a, b, c) - from).norm() >= limit_m) return;
                      nearest = (closest_on_triangle(on_mesh, a, b, c) - on_mesh).norm() > kOn_m;
                    });
   return nearest;

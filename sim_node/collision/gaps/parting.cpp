@@ -70,14 +70,14 @@ Vector3d between_centres(const Eigen::Isometry3d& a_from_b) {
 
 // Shrinks the cores step by step until they are separated.
 void offer_shrunk(Search& s) {
-  const double most = std::max(s.a.half_m.maxCoeff(), s.b.half_m.maxCoeff());
+  const double max_shrinkage_m = std::max(s.a.half_m.maxCoeff(), s.b.half_m.maxCoeff());
   double by = std::max(1e-5, -s.best.gap_m / 2);
   for (;; by *= 2) {
     NearestPoints found;
-    const Convex a = shrunk(s.a, std::min(by, most)), b = shrunk(s.b, std::min(by, most));
+    const Convex a = shrunk(s.a, std::min(by, max_shrinkage_m)), b = shrunk(s.b, std::min(by, max_shrinkage_m));
     if (nearest_points(a, b, s.a_from_b, 1e30, found) == Proximity::kNear)
       return s.offer((found.on_b - found.on_a) / found.distance_m);
-    if (by >= most) return;
+    if (by >= max_shrinkage_m) return;
   }
 }
 

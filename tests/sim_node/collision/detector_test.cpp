@@ -78,7 +78,7 @@ TEST_CASE("A ball against each primitive: every detector that supports the pair 
         const PointPair& p = *std::min_element(
             found.begin(), found.end(), [](const PointPair& x, const PointPair& y) { return x.gap_m < y.gap_m; });
         const Vector3d n = pose.linear() * planes[0].normal * (swapped ? -1 : 1);
-        if (can.least_depth) {
+        if (can.minimum_translation) {
           // Accuracy of iterative detectors: 0.1 mm. Our own detector has a separate oracle.
           CHECK(p.gap_m == Approx(gap).margin(1e-4));
           CHECK(p.normal.dot(n) > 0.98);

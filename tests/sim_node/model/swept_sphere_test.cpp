@@ -108,7 +108,7 @@ TEST_CASE("A grid finds exactly the boxes that overlap the query, for any sizes"
     const Bounds query = bounds_of(s, kHorizon_s);
     std::vector<int> expected{-1}, found{-1};
     for (int i = 0; i < 500; ++i)
-      if (boxes[static_cast<std::size_t>(i)].meets(query)) expected.push_back(i);
+      if (boxes[static_cast<std::size_t>(i)].overlaps(query)) expected.push_back(i);
     grid.find(query, found);
     CHECK(found == expected);
   }

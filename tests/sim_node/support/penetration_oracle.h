@@ -81,7 +81,7 @@ class PenetrationOracle {
         if (-p.gap_m > depth) depth = -p.gap_m, way = p.normal;
       const auto is_cylinder = [&](std::size_t k) { return world_.shapes[k].kind == ShapeKind::kCylinder; };
       const bool plane = world_.shapes[i].kind == ShapeKind::kPlane || world_.shapes[j].kind == ShapeKind::kPlane;
-      return depth > 0 && !plane && (is_cylinder(i) || is_cylinder(j)) ? least_overlap(i, j, way) : depth;
+      return depth > 0 && !plane && (is_cylinder(i) || is_cylinder(j)) ? min_overlap(i, j, way) : depth;
     }
     return shapes_[i].mesh ? of_mesh(i, j) : of_mesh(j, i);
   }
@@ -100,7 +100,7 @@ class PenetrationOracle {
   }
   // The least overlap over all directions, from i to j. 0: a direction separates the two, which proves that they do
   // not overlap.
-  double least_overlap(std::size_t i, std::size_t j, const Vector3d& guess) const {
+  double min_overlap(std::size_t i, std::size_t j, const Vector3d& guess) const {
     const auto overlap = [&](const Vector3d& n) { return reach(i, n) + reach(j, -n); };
     std::vector<Vector3d> starts{guess, poses_[i].linear().col(2), poses_[j].linear().col(2),
                                  poses_[i].linear().col(2).cross(poses_[j].linear().col(2))};

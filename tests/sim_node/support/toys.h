@@ -65,7 +65,7 @@ class Toys {
   }
   // Solves the contacts that collide() found.
   void solve(double h) { world.step(contacts_, h); }
-  double least_gap_m() {
+  double min_gap_m() {
     collide(0);
     double least = 1;
     for (const Manifold& m : contacts_)
