@@ -99,7 +99,7 @@ void Solver::start(const WorldDef& world) {
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
     const BodyDef& b = world.bodies[i];
     const bool moves = engine_->bodies[i] != nullptr;
-    falls_.push_back(moves && b.gravity);
+    has_gravity_.push_back(moves && b.gravity);
     inert_.push_back({b.centre_of_mass_m,
                       moves ? Eigen::Matrix3d(b.inertia_kg_m2.inverse()) : Eigen::Matrix3d(Eigen::Matrix3d::Zero()),
                       moves && b.gravity ? Eigen::Vector3d(g * settings.step_s) : Eigen::Vector3d(0, 0, 0)});
@@ -243,7 +243,7 @@ void Solver::step() {
 std::span<const BodyMotion> Solver::bodies() const { return impulse_ ? impulse_->bodies() : motions_; }
 std::span<const Manifold> Solver::contacts() const { return impulse_ ? impulse_->contacts() : contacts_; }
 std::span<const Manifold> Solver::solved() const { return impulse_ ? impulse_->solved() : solved_; }
-const impulse::StepReport* Solver::report() const { return impulse_ ? &impulse_->report() : nullptr; }
+const impulse::RecoveryReport* Solver::report() const { return impulse_ ? &impulse_->report() : nullptr; }
 std::int64_t Solver::solver_failures() const { return engine_ ? ode::message_count() - engine_->messages_before : 0; }
 double Solver::largest_joint_gap_m() const { return engine_ ? engine_->joints->largest_gap_m() : 0; }
 

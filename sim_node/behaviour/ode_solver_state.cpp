@@ -28,7 +28,7 @@ void Solver::set_gravity(const Eigen::Vector3d& g) {
   if (impulse_) return static_cast<void>(impulse_->apply({.kind = SceneChange::kGravity, .values = g}));
   dWorldSetGravity(engine_->world.get(), g.x(), g.y(), g.z());
   for (std::size_t i = 0; i < inert_.size(); ++i) {
-    if (!falls_[i]) continue;
+    if (!has_gravity_[i]) continue;
     fall_m_s_[i] += g * settings_.step_s - inert_[i].gravity_m_s;
     inert_[i].gravity_m_s = g * settings_.step_s;
   }

@@ -10,7 +10,7 @@
 
 #include "sim_node/model/body_motion.h"
 #include "sim_node/behaviour/impulse/scene_settings.h"
-#include "sim_node/behaviour/impulse/step_report.h"
+#include "sim_node/behaviour/impulse/recovery_report.h"
 #include "sim_node/contacts/friction_maps.h"
 #include "sim_node/model/manifold.h"
 #include "sim_node/model/world_def.h"
@@ -65,7 +65,7 @@ class Solver {
   // impulses solve.
   double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n);
   // Statistics of the penetration recovery; null for ODE.
-  const impulse::StepReport* report() const;
+  const impulse::RecoveryReport* report() const;
   // Number of solver failures that the engine has reported since the start.
   std::int64_t solver_failures() const;
   // Largest joint error, m.
@@ -89,7 +89,7 @@ class Solver {
   std::vector<double> friction_, restitution_;  // per shape
   std::unique_ptr<const FrictionMaps> friction_maps_;
   std::vector<int> body_of_;                    // per shape
-  std::vector<bool> falls_;                     // per body: affected by gravity
+  std::vector<bool> has_gravity_;                     // per body: affected by gravity
   std::vector<Inert> inert_;
   std::vector<Eigen::Vector3d> fall_m_s_;  // speed that gravity and forces add to each body in the next step
   std::vector<Eigen::Vector3d> shift_m_;   // displacement by which each body was moved back in this step

@@ -20,7 +20,7 @@ constexpr double kRearm = 0.5;
 constexpr double kRollingTime_s = 0.005;
 constexpr double kJump_m = 0.005;
 // Surfaces with a gap below kTouch_m touch. Design value: twice the residual that the solver leaves between resting
-// surfaces (impulse::Law). Touching surfaces separate when the gap exceeds kParted_m.
+// surfaces (impulse::ContactLaw). Touching surfaces separate when the gap exceeds kParted_m.
 constexpr double kTouch_m = 20e-6, kParted_m = 60e-6;
 
 Vector3d centre_of(const Manifold& c) {

@@ -35,7 +35,7 @@ DualGroups::DualGroups(const WorldDef& def, const Settings& settings, Ids& ids,
     : settings_(accepted(def, settings)),
       world_(impulse::build_world(def, for_haptic_group(settings))),
       source_(def, settings, trees),
-      advance_(extents_of(def)),
+      stepper_(extents_of(def)),
       scene_(def, *world_),
       ids_(ids),
       tracker_(surface_traits(def, settings), settings, ids),
@@ -95,7 +95,7 @@ void DualGroups::read_motions(std::span<const int> bodies) {
 }
 
 void DualGroups::find_contacts(double h_s) {
-  source_.find(world_->motions(), world_->active_bodies(), advance_.horizon_s(*world_, h_s), contacts_);
+  source_.find(world_->motions(), world_->active_bodies(), stepper_.horizon_s(*world_, h_s), contacts_);
 }
 
 // Records the pairs of moving bodies of the haptic group that touch.
@@ -143,7 +143,7 @@ void DualGroups::tick(sync::SimTime now, std::span<const GroupTool> tools, std::
     world_->add_torque(load.body, load.torque_N_m);
   }
   loads_.clear();
-  advance_.step(*world_, source_, settings_.step_s, contacts_, solved_);
+  stepper_.step(*world_, source_, settings_.step_s, contacts_, solved_);
   source_.frames().place_impacts(solved_);
   read_motions(active);
   tracker_.update(now + h, h, motions_, contacts_, solved_, events);

@@ -99,7 +99,7 @@ class DualGroups : public Mechanics {
   Settings settings_;
   std::unique_ptr<impulse::World> world_;  // of the haptic group
   SceneContacts source_;
-  impulse::Advance advance_;
+  impulse::AdaptiveStepper stepper_;
   impulse::SceneSettings scene_;
   Ids& ids_;
   ContactTracker tracker_, catching_up_;

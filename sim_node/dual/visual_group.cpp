@@ -32,7 +32,7 @@ VisualGroup::VisualGroup(const WorldDef& def, const Settings& settings, std::vec
       world_(impulse::build_world(def, settings_)),
       finder_(def, settings_, trees),
       source_(*this),
-      advance_(extents_of(def)),
+      stepper_(extents_of(def)),
       scene_(def, *world_),
       ids_(ids),
       tracker_(surface_traits(def, settings_), settings_, ids_),
@@ -177,7 +177,7 @@ void VisualGroup::sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::
                             VisualStep& out, bool record) {
   const auto at = [&](int k) { return sync::Nanoseconds(length.count() * k / settings_.visual_substeps); };
   const auto find = [&](double h) {
-    source_.find(world_->motions(), world_->active_bodies(), advance_.horizon_s(*world_, h), contacts_);
+    source_.find(world_->motions(), world_->active_bodies(), stepper_.horizon_s(*world_, h), contacts_);
   };
   double h = sync::to_seconds(at(1));
   // The contacts found at the end of the previous step are reused if no unit has come or gone and the step is not
@@ -189,7 +189,7 @@ void VisualGroup::sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::
     if (record) record_sub_step(index(k), at(k), out);
     // Steps have one of two lengths that differ by a tick: the next one may be as long as the previous one.
     const double next_s = std::max(h, before_s_);
-    advance_.step(*world_, source_, h, contacts_, solved_, next_s);
+    stepper_.step(*world_, source_, h, contacts_, solved_, next_s);
     frames_.place_impacts(solved_);
     found_ = record;
     found_for_s_ = next_s;

@@ -67,7 +67,7 @@ class VisualGroup {
   std::unique_ptr<impulse::World> world_;
   ContactFinder finder_;
   Contacts source_;
-  impulse::Advance advance_;
+  impulse::AdaptiveStepper stepper_;
   impulse::SceneSettings scene_;
   Ids ids_;
   ContactTracker tracker_, entering_tracker_;         // of the awake bodies, and of those that catch up

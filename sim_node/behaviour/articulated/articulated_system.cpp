@@ -74,7 +74,7 @@ ArticulatedSystem::ArticulatedSystem(const std::vector<LinkDef>& links, double s
   std::vector<double> response(tree_->dofs.size());
   for (std::size_t j = 0; j < passive_.size(); ++j) {
     const Dof& dof = tree_->dofs[j];
-    dynamics_.strike_dof(static_cast<int>(j), response);
+    dynamics_.dof_impulse_to_rates(static_cast<int>(j), response);
     const double mobility = response[j];
     passive_[j] =
         step_s * std::sqrt(dof.stiffness * mobility) <= kStiff && step_s * dof.damping * mobility <= kStiff;
@@ -222,7 +222,7 @@ void ArticulatedSystem::displace(std::span<const double> by) {
 BodyMotion ArticulatedSystem::motion(int link) const {
   const LinkDef& d = tree_->links[static_cast<std::size_t>(link)].def;
   BodyMotion m;
-  const Eigen::Matrix3d& turn = dynamics_.turn(link);
+  const Eigen::Matrix3d& turn = dynamics_.rotation(link);
   m.position_m = m.centre_m = dynamics_.centre_m(link);
   m.orientation = Eigen::Quaterniond(turn);
   m.velocity_m_s = dynamics_.velocity_at(link, m.centre_m);

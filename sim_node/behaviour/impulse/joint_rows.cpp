@@ -29,8 +29,8 @@ bool needs_rows(const articulated::ArticulatedSystem& system) {
   return false;
 }
 
-void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate, double h, double repair,
-                 JointMemory& memory, std::vector<JointRow>& rows, std::vector<double>& pool) {
+void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate, double h, double correction_share,
+                 JointImpulses& memory, std::vector<JointRow>& rows, std::vector<double>& pool) {
   const auto& dofs = system.tree().dofs;
   const std::size_t n = dofs.size();
   for (std::size_t j = 0; j < n; ++j) {
@@ -49,7 +49,7 @@ void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate,
     row.rates = n;
     row.response = pool.size();
     pool.resize(pool.size() + n);
-    system.dynamics().strike_dof(static_cast<int>(j), {pool.data() + row.response, n});
+    system.dynamics().dof_impulse_to_rates(static_cast<int>(j), {pool.data() + row.response, n});
     row.mobility = pool[row.response + j];
     const auto add = [&](double target_rate, double softness, double min_impulse, double max_impulse, double& saved) {
       row.target_rate = target_rate;
@@ -67,14 +67,14 @@ void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate,
     }
     if (d.motor_effort > 0) add(d.motor_velocity, 0, -h * d.motor_effort, h * d.motor_effort, memory.motor[j]);
     if (d.friction > 0 && !ball) add(0, 0, -h * d.friction, h * d.friction, memory.friction[j]);
-    const auto parting = [&](double room) { return room >= 0 ? -room / h : -repair * room / h; };
+    const auto parting = [&](double room) { return room >= 0 ? -room / h : -correction_share * room / h; };
     if (low) add(parting(q - d.lower), 0, 0, kUnbounded, memory.limit[j]);
     if (high) add(-parting(d.upper - q), 0, -kUnbounded, 0, memory.limit[j]);
   }
 }
 
 void append_ball_friction(articulated::ArticulatedSystem& system, std::size_t first_rate, double h,
-                          JointMemory& memory, std::vector<JointRow>& rows, std::vector<double>& pool) {
+                          JointImpulses& memory, std::vector<JointRow>& rows, std::vector<double>& pool) {
   const auto& tree = system.tree();
   const std::size_t n = tree.dofs.size();
   for (std::size_t j = 0; j < n; ++j) {
@@ -86,7 +86,7 @@ void append_ball_friction(articulated::ArticulatedSystem& system, std::size_t fi
     row.rates = n;
     row.response = pool.size();
     pool.resize(pool.size() + n);
-    system.dynamics().strike_dof(static_cast<int>(j), {pool.data() + row.response, n});
+    system.dynamics().dof_impulse_to_rates(static_cast<int>(j), {pool.data() + row.response, n});
     row.mobility = pool[row.response + j];
     row.max_impulse = h * d.friction;
     row.impulse = std::clamp(memory.friction[j], -row.max_impulse, row.max_impulse);

@@ -23,22 +23,22 @@ struct JointRow {
 };
 
 // Impulses of each dof from the last step, for the warm start.
-struct JointMemory {
+struct JointImpulses {
   std::vector<double> friction, motor, limit, spring;
-  explicit JointMemory(std::size_t dofs) : friction(dofs), motor(dofs), limit(dofs), spring(dofs) {}
+  explicit JointImpulses(std::size_t dofs) : friction(dofs), motor(dofs), limit(dofs), spring(dofs) {}
 };
 
 // Whether a system has such constraints.
 bool needs_rows(const articulated::ArticulatedSystem& system);
 
-// Appends the rows of a system whose rates begin at first_rate. repair: share of a limit violation that is corrected
+// Appends the rows of a system whose rates begin at first_rate. correction_share: share of a limit violation that is corrected
 // in a step. Responses go to the pool.
-void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate, double h_s, double repair,
-                 JointMemory& memory, std::vector<JointRow>& rows, std::vector<double>& pool);
+void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate, double h_s, double correction_share,
+                 JointImpulses& memory, std::vector<JointRow>& rows, std::vector<double>& pool);
 
 // The same for dry friction of ball joints, three rows each.
 void append_ball_friction(articulated::ArticulatedSystem& system, std::size_t first_rate, double h_s,
-                          JointMemory& memory, std::vector<JointRow>& rows, std::vector<double>& pool);
+                          JointImpulses& memory, std::vector<JointRow>& rows, std::vector<double>& pool);
 
 // Updates the impulse of a row within its bounds. Returns the error of the rate before the update, rad/s or m/s.
 double sweep(JointRow& row, const std::vector<double>& pool, Velocities& v);

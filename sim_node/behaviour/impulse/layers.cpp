@@ -12,7 +12,7 @@ constexpr int kSweeps = 5;         // over the points of one group; design: four
 
 }  // namespace
 
-void Layers::find(const ContactRows& rows, int movers) {
+void ContactLayers::find(const ContactRows& rows, int movers) {
   layer_.resize(static_cast<std::size_t>(movers), kFlies);
   for (const ContactGroup& g : rows.groups)
     for (const int mover : {g.mover_a, g.mover_b})
@@ -52,7 +52,7 @@ void Layers::find(const ContactRows& rows, int movers) {
   }
 }
 
-void Layers::settle(ContactRows& rows, Velocities& v) {
+void ContactLayers::propagate_shock(ContactRows& rows, Velocities& v) {
   std::swap(above_.inert, rows.inert);
   for (const int number : order_) {
     const ContactGroup& g = rows.groups[static_cast<std::size_t>(number)];

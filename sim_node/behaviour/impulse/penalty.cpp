@@ -5,9 +5,9 @@
 
 namespace tactus::sim::impulse {
 
-void shield(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h) {
+void set_penalty_shells(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h) {
   for (ContactGroup& g : rows.groups) {
-    g.stopped = true;
+    g.stopped_by_spring = true;
     for (int i = g.first; i < g.first + g.count; ++i) {
       ContactPoint& p = rows.points[static_cast<std::size_t>(i)];
       const double closing = -rows.velocity(p, velocity).x();
@@ -21,13 +21,13 @@ void shield(ContactRows& rows, const Penalty& penalty, const Velocities& velocit
       // 2.
       const double inside = std::clamp(p.shell_m - p.gap_m, 0.0, p.shell_m);
       const double bears = penalty.stiffness_N_m * p.mobility(0, 0) * (p.shell_m * p.shell_m - inside * inside);
-      if (closing > 0 && closing * closing > bears) g.stopped = false;
+      if (closing > 0 && closing * closing > bears) g.stopped_by_spring = false;
     }
-    g.shielded = g.stopped || g.restitution == 0;
+    g.spring_only = g.stopped_by_spring || g.restitution == 0;
   }
 }
 
-void press(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h) {
+void set_penalty_forces(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h) {
   for (ContactPoint& p : rows.points) {
     p.force_time_s = h;
     const double inside = p.shell_m - p.gap_m;
@@ -37,24 +37,24 @@ void press(ContactRows& rows, const Penalty& penalty, const Velocities& velocity
       // Closing speed of the previous step, without the forces of this one. Otherwise a resting body would seem to
       // sink.
       const double closing = 2 * p.drift_m_s.x() - rows.velocity(p, velocity).x();
-      p.press = Press::kGiven;
-      p.pressed_N_s = inside > 0 ? std::max(0.0, h * (penalty.stiffness_N_m * inside + damping * closing)) : 0.0;
+      p.penalty_force = PenaltyForce::kExplicit;
+      p.explicit_impulse_N_s = inside > 0 ? std::max(0.0, h * (penalty.stiffness_N_m * inside + damping * closing)) : 0.0;
     } else {
       const SoftRow row = soft_row(penalty.stiffness_N_m, damping, h);
-      p.press = Press::kSoft;
+      p.penalty_force = PenaltyForce::kImplicit;
       p.softness_1_kg = row.cfm_m_s_N / h;
-      p.soft_speed_m_s = row.erp * inside / h;
+      p.penalty_speed_m_s = row.erp * inside / h;
     }
   }
 }
 
 // Solves the normal first, then friction within its cone. Sweeps couple the two.
-Eigen::Vector3d ContactRows::solve_pressed(const ContactPoint& p, const Eigen::Vector3d& impulse,
+Eigen::Vector3d ContactRows::solve_penalty(const ContactPoint& p, const Eigen::Vector3d& impulse,
                                            const Eigen::Vector3d& v) {
   const double k = p.mobility(0, 0);
-  double normal = p.pressed_N_s;
-  if (p.press == Press::kSoft) {
-    const double lacks = v.x() + p.min_speed_m_s - p.soft_speed_m_s + p.softness_1_kg * impulse.x();
+  double normal = p.explicit_impulse_N_s;
+  if (p.penalty_force == PenaltyForce::kImplicit) {
+    const double lacks = v.x() + p.min_speed_m_s - p.penalty_speed_m_s + p.softness_1_kg * impulse.x();
     normal = std::max(0.0, impulse.x() - lacks / (k + p.softness_1_kg));
   }
   // The body crosses the shell: the surfaces meet.

@@ -47,10 +47,10 @@ inline double max_explicit_stiffness_N_m(double mobility_1_kg, double damping_N_
 // Sets for each point the gap at which it presses, and for each contact whether its springs will stop it. Contacts
 // that will cross the shell collide instead, with the restitution of their materials. velocity: at the start of the
 // step. Call it after WarmStart::recall() and before collisions.
-void shield(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h_s);
+void set_penalty_shells(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h_s);
 
 // Sets the penalty force of each point of the rows. velocity: mean over the step before contact. Call it after
 // min_speed_m_s is set.
-void press(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h_s);
+void set_penalty_forces(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h_s);
 
 }  // namespace tactus::sim::impulse

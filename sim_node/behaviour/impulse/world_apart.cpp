@@ -18,7 +18,7 @@ void World::save(SavedStep& out) {
   out.free.clear();
   out.motions.clear();
   out.states.resize(systems_.size());
-  out.memories.resize(systems_.size(), JointMemory(0));
+  out.memories.resize(systems_.size(), JointImpulses(0));
   for (std::size_t s = out.saved_loads.size(); s < systems_.size(); ++s)
     out.saved_loads.push_back(systems_[s].system.saved_loads());
   for (const int unit : active_) {

@@ -18,7 +18,7 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 // the impact is spent.
 constexpr int kMaxImpacts = 8;
 // Factor for friction, which adds at most the same speed in the tangent plane, for coefficients up to 1. For larger
-// coefficients, impulse::Advance detects that a body moved further than the search assumed.
+// coefficients, impulse::AdaptiveStepper detects that a body moved further than the search assumed.
 constexpr double kWithFriction = 2;
 
 }  // namespace

@@ -23,7 +23,7 @@ namespace {
 using Eigen::Vector3d;
 using namespace tactus::sim::test;
 
-// Shell of the simulation, at which surfaces meet behind their springs (law_of).
+// Shell of the simulation, at which surfaces meet behind their springs (contact_law).
 constexpr double kShell_m = 1e-5;
 // Out of reach of the hand.
 constexpr double kFar_m = 3;

@@ -13,7 +13,7 @@ inline constexpr double kToyG = 9.81;
 
 class Toys {
  public:
-  explicit Toys(impulse::Law law = {}) : world(law) {}
+  explicit Toys(impulse::ContactLaw law = {}) : world(law) {}
 
   impulse::World world;
   Eigen::Vector3d gravity_m_s2{0, 0, -kToyG};

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kThickness_m = 0.005, kMass_kg = 0.1, kRadius_m = 0.02;
 
-impulse::Law law(double k, double d, bool is_explicit) {
-  impulse::Law law;
+impulse::ContactLaw law(double k, double d, bool is_explicit) {
+  impulse::ContactLaw law;
   law.penalty = {k, d, kThickness_m, is_explicit};
   return law;
 }
@@ -236,7 +236,7 @@ TEST_CASE("A link on a hinge lies on the shell with all of its weight where that
 TEST_CASE("A body that crosses the shell bounces with its restitution, and one stopped by the spring returns with its energy") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 1e4, e = 0.6;
-  impulse::Law in_shell = law(k, 0, is_explicit);
+  impulse::ContactLaw in_shell = law(k, 0, is_explicit);
   in_shell.penalty.thickness_m = 0.001;
   // The spring stops speeds up to T sqrt(k/m) = 0.32 m/s.
   const double speed = GENERATE(0.05, 0.15, 1.0, 3.0), h = 1e-4;
@@ -268,7 +268,7 @@ TEST_CASE("A body that crosses the shell bounces with its restitution, and one s
 TEST_CASE("A body that starts inside the shell is lifted out gently and rests where the spring carries its weight") {
   const bool is_explicit = GENERATE(true, false);
   const double rise = GENERATE(0.0, 0.02), k = 20000;
-  impulse::Law in_shell = law(k, 5, is_explicit);
+  impulse::ContactLaw in_shell = law(k, 5, is_explicit);
   in_shell.penalty.thickness_m = 0.0005;
   in_shell.penalty.rise_m_s = rise;
   Toys toys(in_shell);
@@ -291,7 +291,7 @@ TEST_CASE("A body that arrives from outside always meets the whole shell") {
   const bool is_explicit = GENERATE(true, false);
   double force[2];
   for (const bool gentle : {false, true}) {
-    impulse::Law in_shell = law(4000, 5, is_explicit);
+    impulse::ContactLaw in_shell = law(4000, 5, is_explicit);
     if (gentle) in_shell.penalty.rise_m_s = 0.02;
     Toys toys(in_shell);
     toys.plane({0, 0, 1}, {0, 0, 0});
