@@ -34,14 +34,14 @@ std::string too_stiff(const WorldDef& world, const Settings& s) {
 
 }  // namespace
 
-std::string refusal(const BehaviourModel& model, const DetectorAbilities& detector) {
+std::string unsupported_reason(const BehaviourModel& model, const DetectorAbilities& detector) {
   if (!model.needs_gaps || detector.separation) return "";
   return "sim_node: the solver \"" + std::string(model.name) +
          "\" needs contacts with gaps, which the detector \"" + std::string(detector.name) +
          "\" does not report; choose a detector that reports gaps, such as \"gaps\", or the solver \"quick\" or \"step\"";
 }
 
-std::string refusal(const WorldDef& world, const Settings& settings) {
+std::string unsupported_reason(const WorldDef& world, const Settings& settings) {
   const BehaviourModel& model = behaviour_model(settings.solver);
   if (settings.groups == "dual" && model.name != "impulse" && model.name != "penalty_explicit")
     return "sim_node: groups = dual has penalty contact near the tools and impulses elsewhere, not the solver \"" +
@@ -49,7 +49,7 @@ std::string refusal(const WorldDef& world, const Settings& settings) {
            "\"; choose solver = impulse, or penalty_explicit for explicit springs near the tools, or "
            "groups = single";
   if (model.needs_gaps) {
-    const std::string blind = refusal(model, make_detector(settings.detector)->abilities());
+    const std::string blind = unsupported_reason(model, make_detector(settings.detector)->abilities());
     if (!blind.empty()) return blind;
   }
   return model.has_stability_limit ? too_stiff(world, settings) : "";

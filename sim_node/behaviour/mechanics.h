@@ -62,7 +62,7 @@ class Mechanics {
   virtual bool set_velocity(int body, const Eigen::Vector3d& velocity_m_s) = 0;
   virtual bool set_spin(int body, const Eigen::Vector3d& spin_rad_s) = 0;
 
-  // Archives all state of the next ticks. Throws BadState when the data does not fit; the world is then partly
+  // Archives all state of the next ticks. Throws InvalidState when the data does not fit; the world is then partly
   // changed.
   virtual void archive(StateArchive& a) = 0;
   // Renames the ids of contacts and events to another incarnation, after `ids` has been renamed.

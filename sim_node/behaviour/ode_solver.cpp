@@ -59,7 +59,7 @@ dBodyID Solver::Engine::make_body(const BodyDef& def, const Eigen::Vector3d& gra
 }
 
 Solver::Solver(const WorldDef& world, const Settings& settings) : settings_(settings) {
-  if (const std::string why = refusal(world, settings); !why.empty()) throw std::runtime_error(why);
+  if (const std::string why = unsupported_reason(world, settings); !why.empty()) throw std::runtime_error(why);
   if (behaviour_model(settings.solver).impulses)
     impulse_ = std::make_unique<ImpulseSolver>(world, settings);
   else

@@ -48,7 +48,7 @@ class Solver {
   bool set_motor(const std::string& joint, int axis, double effort, double velocity);
   bool set_joint_friction(const std::string& joint, int axis, double friction);
 
-  // Archives all state of the next steps. Throws BadState when the data does not fit; the solver is then partly
+  // Archives all state of the next steps. Throws InvalidState when the data does not fit; the solver is then partly
   // changed.
   void archive(StateArchive& a);
 

@@ -37,7 +37,7 @@ class Detector {
   virtual DetectorAbilities abilities() const = 0;
 
   // Returns an empty string when this pair is supported, else one sentence that names an alternative.
-  std::string refusal(ShapeKind a, ShapeKind b) const;
+  std::string unsupported_reason(ShapeKind a, ShapeKind b) const;
   // Prepares a shape and returns its index, counted from 0. Throws std::runtime_error with one sentence when this
   // detector does not support the shape. world: source of meshes and heightfields.
   virtual int add(const ShapeDef& shape, const WorldDef& world) = 0;
@@ -48,7 +48,7 @@ class Detector {
                      double reach_m, std::vector<PointPair>& out) = 0;
 
  protected:
-  virtual bool takes(ShapeKind a, ShapeKind b) const = 0;
+  virtual bool supports(ShapeKind a, ShapeKind b) const = 0;
 };
 
 // ode: dCollide of ODE. ccd, ccd_mpr: libccd for convex shapes, by GJK and EPA or by MPR. fcl: FCL, where it was

@@ -24,7 +24,7 @@ GroupingLimits limits_of(const WorldDef& def, const Settings& s) {
 }
 
 const Settings& accepted(const WorldDef& def, const Settings& s) {
-  if (const std::string why = refusal(def, s); !why.empty()) throw std::runtime_error(why);
+  if (const std::string why = unsupported_reason(def, s); !why.empty()) throw std::runtime_error(why);
   return s;
 }
 

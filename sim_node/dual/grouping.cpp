@@ -26,7 +26,7 @@ Grouping::Grouping(std::vector<GroupBody> bodies, const GroupingLimits& limits, 
   }
 }
 
-double Grouping::left_s(sync::SimTime now) const {
+double Grouping::remaining_s(sync::SimTime now) const {
   return std::max(0.0, sync::to_seconds(step_began_ + limits_.horizon - now));
 }
 
@@ -39,7 +39,7 @@ double acceleration_offset_m(double acceleration, double t_s) { return accelerat
 SweptSphere Grouping::swept(std::size_t i, const BodyMotion& m, double t) const {
   return {m.centre_m, m.velocity_m_s, bodies_[i].radius_m,
           acceleration_offset_m(limits_.gravity_m_s2, t) +
-              kicks_[i].speed_m_s * std::clamp(kicks_[i].left_s + kTick_s, 0.0, t + kTick_s)};
+              kicks_[i].speed_m_s * std::clamp(kicks_[i].remaining_s + kTick_s, 0.0, t + kTick_s)};
 }
 
 SweptSphere Grouping::swept(const GroupTool& tool, double t) const {
@@ -50,18 +50,18 @@ SweptSphere Grouping::swept(const GroupTool& tool, double t) const {
 // mass), and by at most the impulse of the tool's limited force. Impacts by struck bodies are left to watch(): pads
 // for them make the group ten times as large and avoid less than half of the alarms (grouping_table at 30 m/s^2, both
 // variants).
-double Grouping::kick_m_s(const SweptSphere& tool, std::size_t body, double t) const {
+double Grouping::max_impact_speed_m_s(const SweptSphere& tool, std::size_t body, double t) const {
   const double meeting =
       (tool.velocity_m_s - trajectory_of(static_cast<int>(body)).velocity_m_s).norm() + (t > 0 ? tool.pad_m / t : 0);
   return std::min((1 + limits_.restitution) * meeting, limits_.tool_force_N * bodies_[body].inverse_mass_1_kg * t);
 }
 
-void Grouping::enter(int body_index, Kick kick, sync::SimTime now, std::span<const BodyMotion> bodies) {
+void Grouping::enter(int body_index, ImpactBound kick, sync::SimTime now, std::span<const BodyMotion> bodies) {
   const auto i = static_cast<std::size_t>(body_index);
   if (member_[i] || bodies_[i].inverse_mass_1_kg <= 0) return;
   member_[i] = 1;
   kicks_[i] = kick;
-  inside_[i] = swept(i, bodies[i], left_s(now));
+  inside_[i] = swept(i, bodies[i], remaining_s(now));
   // A body that enters from outside is at the present point of its trajectory.
   if (!all_have_trajectories_ && !is_departed_[i]) {
     const SweptSphere& trajectory = trajectories_->of(body_index);
@@ -84,7 +84,7 @@ void Grouping::find_outside(const Bounds& query) {
 
 void Grouping::reach(const SweptSphere& from, double inverse_mass, sync::SimTime now,
                      std::span<const BodyMotion> bodies) {
-  const double t = left_s(now), passed = sync::to_seconds(now - step_began_);
+  const double t = remaining_s(now), passed = sync::to_seconds(now - step_began_);
   find_outside(bounds_of(from, t));
   for (const int j : found_) {
     const auto body = static_cast<std::size_t>(j);
@@ -93,16 +93,16 @@ void Grouping::reach(const SweptSphere& from, double inverse_mass, sync::SimTime
     other.centre_m += other.velocity_m_s * (held_ ? held_after_s_ : passed);
     if (held_) other.velocity_m_s.setZero();
     const double meeting =
-        first_meeting_s(from, other, from.radius_m + other.radius_m + from.pad_m + other.pad_m, t);
+        first_contact_time_s(from, other, from.radius_m + other.radius_m + from.pad_m + other.pad_m, t);
     if (meeting < 0) continue;
     const bool struck_by_tool = inverse_mass <= 0;
-    enter(j, struck_by_tool ? Kick{kick_m_s(from, body, t), t - meeting} : Kick{}, now, bodies);
+    enter(j, struck_by_tool ? ImpactBound{max_impact_speed_m_s(from, body, t), t - meeting} : ImpactBound{}, now, bodies);
   }
 }
 
 void Grouping::close(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) {
   watched_from_ = now;
-  const double t = left_s(now);
+  const double t = remaining_s(now);
   tools_.clear();
   for (const GroupTool& tool : tools) tools_.push_back(swept(tool, t));
   for (const int i : haptic_)
@@ -112,7 +112,7 @@ void Grouping::close(sync::SimTime now, std::span<const BodyMotion> bodies, std:
   // The list grows during the iteration.
   for (std::size_t k = 0; k < haptic_.size(); ++k) {
     const auto i = static_cast<std::size_t>(haptic_[k]);
-    const Kick kick = kicks_[i];
+    const ImpactBound kick = kicks_[i];
     if (bodies_[i].system >= 0)
       for (const int j : systems_[static_cast<std::size_t>(bodies_[i].system)]) enter(j, kick, now, bodies);
     for (const int j : trajectories_->touched_by(haptic_[k])) enter(j, kick, now, bodies);
@@ -124,25 +124,25 @@ void Grouping::close(sync::SimTime now, std::span<const BodyMotion> bodies, std:
 }
 
 void Grouping::close_kim2005(std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) {
-  const double t = left_s(step_began_);
+  const double t = remaining_s(step_began_);
   for (const GroupTool& tool : tools)
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       const SweptSphere from{tool.centre_m, tool.velocity_m_s, tool.radius_m, 0};
       const SweptSphere body{bodies[i].centre_m, bodies[i].velocity_m_s, bodies_[i].radius_m, 0};
-      if (closest_axes_m(from, body, t) <= from.radius_m + body.radius_m)
+      if (axis_distance_m(from, body, t) <= from.radius_m + body.radius_m)
         enter(static_cast<int>(i), {}, step_began_, bodies);
     }
 }
 
 // Whether a body that would leave may meet, in this step, a body that does not leave with it.
 bool Grouping::reaches_what_stays(int body, sync::SimTime now) {
-  const double t = left_s(now);
+  const double t = remaining_s(now);
   const SweptSphere& from = trajectory_of(body);
   find_outside(bounds_of(from, t));
   return std::any_of(found_.begin(), found_.end(), [&](int j) {
     if (leaves_[static_cast<std::size_t>(j)]) return false;
     const SweptSphere& other = trajectory_of(j);
-    return first_meeting_s(from, other, from.radius_m + other.radius_m + from.pad_m + other.pad_m, t) >= 0;
+    return first_contact_time_s(from, other, from.radius_m + other.radius_m + from.pad_m + other.pad_m, t) >= 0;
   });
 }
 
@@ -236,7 +236,7 @@ void Grouping::begin(sync::SimTime now, const SweptTrajectories& trajectories, b
     member_[static_cast<std::size_t>(i)] = 0;
     // No trajectory exists for this body if it leaves: it may fall and reverse its direction. The pad covers both.
     if (all_have_trajectories_) continue;
-    const double t = left_s(now), speed = bodies[static_cast<std::size_t>(i)].velocity_m_s.norm();
+    const double t = remaining_s(now), speed = bodies[static_cast<std::size_t>(i)].velocity_m_s.norm();
     SweptSphere& trajectory = departed_trajectories_[static_cast<std::size_t>(i)] =
         swept(static_cast<std::size_t>(i), bodies[static_cast<std::size_t>(i)], t);
     trajectory.pad_m = acceleration_offset_m(limits_.gravity_m_s2, t) + 2 * speed * t + limits_.tolerance_m;

@@ -78,7 +78,7 @@ class Grouping {
   // not to all bodies.
   void watch(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
 
-  // Everything but the trajectories: after reading, call resume() with those of the current step. Throws BadState.
+  // Everything but the trajectories: after reading, call resume() with those of the current step. Throws InvalidState.
   void archive(StateArchive& a);
   void resume(const SweptTrajectories& trajectories) {
     trajectories_ = &trajectories;
@@ -96,17 +96,17 @@ class Grouping {
  private:
   // Maximum effect of impacts on a body: change of speed, and the time left before the horizon at the earliest
   // impact.
-  struct Kick {
-    double speed_m_s = 0, left_s = 0;
+  struct ImpactBound {
+    double speed_m_s = 0, remaining_s = 0;
   };
-  double left_s(sync::SimTime now) const;
+  double remaining_s(sync::SimTime now) const;
   SweptSphere swept(std::size_t body, const BodyMotion& m, double t_s) const;
   SweptSphere swept(const GroupTool& tool, double t_s) const;
   void close(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
   void close_kim2005(std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
   void reach(const SweptSphere& from, double inverse_mass, sync::SimTime now, std::span<const BodyMotion> bodies);
-  void enter(int body, Kick kick, sync::SimTime now, std::span<const BodyMotion> bodies);
-  double kick_m_s(const SweptSphere& tool, std::size_t body, double t_s) const;
+  void enter(int body, ImpactBound kick, sync::SimTime now, std::span<const BodyMotion> bodies);
+  double max_impact_speed_m_s(const SweptSphere& tool, std::size_t body, double t_s) const;
   void begin(sync::SimTime now, const SweptTrajectories& trajectories, bool includes_all, std::span<const BodyMotion> bodies,
              std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools, bool may_leave);
   void set_touching(std::span<const std::pair<int, int>> touching);
@@ -141,7 +141,7 @@ class Grouping {
   // Of the group, from watched_from_ on.
   sync::SimTime watched_from_{};
   std::vector<SweptSphere> inside_, tools_;
-  std::vector<Kick> kicks_;
+  std::vector<ImpactBound> kicks_;
   std::vector<char> member_;
   std::vector<sync::SimTime> last_reached_;
   std::vector<int> haptic_, before_, entered_, left_, found_;

@@ -39,7 +39,7 @@ void Grouping::archive(StateArchive& a) {
     const auto k = static_cast<std::size_t>(i);
     member_[k] = 1;
     sim::archive(a, inside_[k]);
-    a(kicks_[k].speed_m_s), a(kicks_[k].left_s);
+    a(kicks_[k].speed_m_s), a(kicks_[k].remaining_s);
   }
   for (const int i : departed_) {
     const auto k = static_cast<std::size_t>(i);

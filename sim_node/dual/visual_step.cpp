@@ -36,7 +36,7 @@ void archive_numbers(StateArchive& a, std::vector<int>& numbers, std::size_t cou
 }  // namespace
 
 void shift(LiveContact& c, sync::Nanoseconds by) {
-  for (sync::SimTime* t : {&c.last_hit, &c.last_event, &c.apart_since}) *t += by;
+  for (sync::SimTime* t : {&c.last_hit, &c.last_event, &c.separated_since}) *t += by;
 }
 
 int UnitTransfer::find(int unit) const {

@@ -21,7 +21,7 @@
 namespace tactus::sim {
 
 // Invalid bytes of a state; what() is one sentence.
-struct BadState : std::runtime_error {
+struct InvalidState : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
@@ -37,7 +37,7 @@ class StateArchive {
   // When reading: whether all bytes have been read.
   bool at_end() const { return left_.empty(); }
   void require(bool holds, const char* sentence) const {
-    if (!holds) throw BadState(sentence);
+    if (!holds) throw InvalidState(sentence);
   }
 
   void operator()(std::uint64_t& x) {

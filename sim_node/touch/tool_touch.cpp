@@ -125,8 +125,8 @@ void ToolTouch::track_shape(SimTime now, std::size_t surface, const BodyMotion& 
     return p;
   };
   shape_->query(surface, pose(body.position_m, body.orientation) * surfaces_[surface].traits.in_body,
-                pose(proxy_, proxy_orientation_), reach_m, meetings_);
-  for (const ToolMeeting& m : meetings_) track(now, m.plane, surface, m.tool_point_m);
+                pose(proxy_, proxy_orientation_), reach_m, pairs_near_);
+  for (const ToolPointPair& m : pairs_near_) track(now, m.plane, surface, m.tool_point_m);
 }
 
 void ToolTouch::find_surfaces(SimTime now, std::span<const BodyMotion> bodies) {
@@ -234,7 +234,7 @@ void ToolTouch::update_contact(Near& n, SimTime when, SimTime before, SimTime no
     n.apart = false;
   } else if (n.touching && !n.apart && !touches && n.gap_m > settings_.touch_end_gap_m) {
     n.apart = true;
-    n.apart_since = std::clamp(when, now - kMaxMessageAge, now);
+    n.separated_since = std::clamp(when, now - kMaxMessageAge, now);
   }
   n.closing_m_s = std::max(0.0, -relative_velocity.dot(n.plane.normal));
   n.device_gap_m = gap;
@@ -280,9 +280,9 @@ void ToolTouch::update(SimTime now, std::span<const BodyMotion> bodies, std::spa
   const bool lost = !has_message_ || now - last_message_ > ns(settings_.tool_stale_s);
   for (Near& n : near_) {
     if (!n.touching) continue;
-    const bool over = n.apart && now - n.apart_since >= ns(settings_.contact_end_time_s);
+    const bool over = n.apart && now - n.separated_since >= ns(settings_.contact_end_time_s);
     if (!over && !lost) continue;
-    emit(n, contact_event_t::END, lost && !n.apart ? now : n.apart_since, bodies, events);
+    emit(n, contact_event_t::END, lost && !n.apart ? now : n.separated_since, bodies, events);
     n.touching = false;
     n.apart = true;
     n.impulse_N_s = n.force_N = 0;

@@ -56,7 +56,7 @@ std::string Simulation::restore(std::span<const std::uint8_t> bytes) {
     archive(a);
     a.require(a.at_end(), "the state is longer than it should be");
     return "";
-  } catch (const BadState& e) {
+  } catch (const InvalidState& e) {
     StateArchive back(unwrap_state(before, fingerprint_));
     archive(back);
     return e.what();

@@ -329,10 +329,10 @@ void World::write_results(std::span<Manifold> contacts, double h) const {
     m.impact.effective_mass_kg = 1 / rows_.points[index(g.first + g.first_impact_point)].mobility(0, 0);
     const Eigen::Vector3d met_a = on_a + g.first_s * a.velocity_at(on_a),
                           met_b = on_b + g.first_s * b.velocity_at(on_b);
-    m.impact.place_m = (met_a + met_b) / 2;
+    m.impact.position_m = (met_a + met_b) / 2;
     // Along the normal, the position on the static body is exact.
     if (!a.moves() || !b.moves())
-      m.impact.place_m += at.normal.dot((a.moves() ? met_b : met_a) - m.impact.place_m) * at.normal;
+      m.impact.position_m += at.normal.dot((a.moves() ? met_b : met_a) - m.impact.position_m) * at.normal;
     m.impact.normal = at.normal;
     m.impact.a_body_m = a.to_body(on_a), m.impact.b_body_m = b.to_body(on_b);
     m.impact.triangle_a = at.triangle_a, m.impact.triangle_b = at.triangle_b;

@@ -91,7 +91,7 @@ class World {
 
   // Acts during the next step, N m.
   void add_torque(int body, const Eigen::Vector3d& torque_N_m);
-  // Archives all state of the next steps. Throws BadState when the data does not fit; the world is then partly
+  // Archives all state of the next steps. Throws InvalidState when the data does not fit; the world is then partly
   // changed.
   void archive(StateArchive& a);
 

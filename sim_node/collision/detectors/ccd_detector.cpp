@@ -99,7 +99,7 @@ class CcdDetector : public Detector {
   }
 
   int add(const ShapeDef& shape, const WorldDef& world) override {
-    if (!takes(shape.kind, shape.kind)) throw std::runtime_error(refusal(shape.kind, shape.kind));
+    if (!supports(shape.kind, shape.kind)) throw std::runtime_error(unsupported_reason(shape.kind, shape.kind));
     Convex c{shape.kind, shape.size_m, {}, {0, 0, 0}};
     if (shape.kind == ShapeKind::kMesh) {
       const TriangleMesh& mesh = world.meshes.at(static_cast<std::size_t>(shape.mesh));
@@ -147,7 +147,7 @@ class CcdDetector : public Detector {
   }
 
  protected:
-  bool takes(ShapeKind a, ShapeKind b) const override {
+  bool supports(ShapeKind a, ShapeKind b) const override {
     for (const ShapeKind k : {a, b})
       if (k == ShapeKind::kPlane || k == ShapeKind::kHeightfield) return false;
     return true;

@@ -67,7 +67,7 @@ class GapsDetector : public Detector, public NearestFirstDetector {
     const bool box = convex.core == gaps::Core::kBox && !(world.meshes.empty() && world.heightfields.empty());
     if (meshed || box) {
       s.layers = trees_->layers(shape, world);
-      contact_.accept(*s.layers, *s.layers);
+      contact_.check_supported(*s.layers, *s.layers);
     }
     if (box) s.tree = trees_->triangles(shape, world);
     shapes_.push_back(std::move(s));
@@ -107,7 +107,7 @@ class GapsDetector : public Detector, public NearestFirstDetector {
   }
 
  protected:
-  bool takes(ShapeKind a, ShapeKind b) const override {
+  bool supports(ShapeKind a, ShapeKind b) const override {
     const auto ground = [](ShapeKind k) { return k == ShapeKind::kPlane || k == ShapeKind::kHeightfield; };
     return !(ground(a) && ground(b));
   }

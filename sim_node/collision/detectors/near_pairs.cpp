@@ -70,8 +70,8 @@ NearPairs::NearPairs(const WorldDef& world, double tolerance_m, MeshTrees& trees
     }
   }
   grid_.build(fixed);
-  for (const auto& [a, b] : world.no_collision) apart_.emplace_back(std::min(a, b), std::max(a, b));
-  std::sort(apart_.begin(), apart_.end());
+  for (const auto& [a, b] : world.no_collision) excluded_pairs_.emplace_back(std::min(a, b), std::max(a, b));
+  std::sort(excluded_pairs_.begin(), excluded_pairs_.end());
 }
 
 Bounds NearPairs::bounds_of_shape(int shape) const {
@@ -83,7 +83,7 @@ Bounds NearPairs::bounds_of_shape(int shape) const {
 }
 
 bool NearPairs::may_touch(int a, int b) const {
-  return a != b && !std::binary_search(apart_.begin(), apart_.end(), std::pair(std::min(a, b), std::max(a, b)));
+  return a != b && !std::binary_search(excluded_pairs_.begin(), excluded_pairs_.end(), std::pair(std::min(a, b), std::max(a, b)));
 }
 
 // How far rotation of its body may move a point of the shape.

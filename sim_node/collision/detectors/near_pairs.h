@@ -70,7 +70,7 @@ class NearPairs {
   std::vector<int> fixed_;                   // shapes in the grid, by their index in the grid
   BoundsGrid grid_;
   std::vector<HalfSpace> half_spaces_;
-  std::vector<std::pair<int, int>> apart_;  // sorted pairs of bodies that do not collide
+  std::vector<std::pair<int, int>> excluded_pairs_;  // sorted pairs of bodies that do not collide
   std::vector<Swept> swept_;
   std::vector<Span> order_;
   std::vector<int> grid_hits_;

@@ -62,7 +62,7 @@ class OdeDetector : public Detector {
 
  protected:
   // ODE does not test static geometry against static geometry.
-  bool takes(ShapeKind a, ShapeKind b) const override {
+  bool supports(ShapeKind a, ShapeKind b) const override {
     const auto ground = [](ShapeKind k) { return k == ShapeKind::kPlane || k == ShapeKind::kHeightfield; };
     return !(ground(a) && ground(b));
   }

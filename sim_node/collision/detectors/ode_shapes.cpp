@@ -54,14 +54,14 @@ Shapes::Shapes(const WorldDef& world, const std::vector<dBodyID>& bodies, const 
       dGeomSetQuaternion(geom, q);
     }
   }
-  for (const auto& [a, b] : world.no_collision) apart_.emplace_back(std::min(a, b), std::max(a, b));
-  std::sort(apart_.begin(), apart_.end());
+  for (const auto& [a, b] : world.no_collision) excluded_pairs_.emplace_back(std::min(a, b), std::max(a, b));
+  std::sort(excluded_pairs_.begin(), excluded_pairs_.end());
   raw_.resize(kMaxRaw);
   found_.reserve(kMaxRaw);
 }
 
 bool Shapes::may_collide(int a, int b) const {
-  return a != b && !std::binary_search(apart_.begin(), apart_.end(), std::pair(std::min(a, b), std::max(a, b)));
+  return a != b && !std::binary_search(excluded_pairs_.begin(), excluded_pairs_.end(), std::pair(std::min(a, b), std::max(a, b)));
 }
 
 void Shapes::collide_by_ode(std::size_t a, dGeomID ga, std::size_t b, dGeomID gb) {
@@ -94,7 +94,7 @@ void Shapes::near(void* self, dGeomID ga, dGeomID gb) {
     std::swap(body_a, body_b);
   }
   const int ia = static_cast<int>(a), ib = static_cast<int>(b);
-  if (!s.chosen_.takes(ia, ib) || !s.chosen_.query(ia, pose(ga), ib, pose(gb), s.found_)) s.collide_by_ode(a, ga, b, gb);
+  if (!s.chosen_.supports(ia, ib) || !s.chosen_.query(ia, pose(ga), ib, pose(gb), s.found_)) s.collide_by_ode(a, ga, b, gb);
   if (s.found_.empty()) return;
   Manifold& m = s.out_->emplace_back();
   m.shape_a = static_cast<int>(a), m.shape_b = static_cast<int>(b);

@@ -14,7 +14,7 @@ namespace {
 
 // Tolerance of the inside test, m: a thousand times the rounding of a metre.
 constexpr double kOver_m = 1e-12;
-constexpr double kOnePlace_m = 1e-9;
+constexpr double kSamePosition_m = 1e-9;
 // Lines below this angle are parallel when neither figure is a face. Sine.
 constexpr double kParallel = 0.05;
 // Parallel lines face each other when their lateral distance is at most this, m. On round sides with a radius of 20
@@ -74,16 +74,16 @@ struct Projected {
 struct Collector {
   const Projected &a, &b;
   double reach_m;
-  FacingList& out;
-  std::array<Vector2d, FacingList::kMax> places;
+  FacingPoints& out;
+  std::array<Vector2d, FacingPoints::kMax> places;
 
   void add(const Vector2d& p) {
     const double ha = a.height_at(p), hb = b.height_at(p);
     if (hb - ha > reach_m) return;
     // A corner that lies on an edge or on a corner is detected several times.
     for (int i = 0; i < out.count; ++i)
-      if ((places[static_cast<std::size_t>(i)] - p).squaredNorm() < kOnePlace_m * kOnePlace_m) return;
-    if (out.count < FacingList::kMax) places[static_cast<std::size_t>(out.count)] = p;
+      if ((places[static_cast<std::size_t>(i)] - p).squaredNorm() < kSamePosition_m * kSamePosition_m) return;
+    if (out.count < FacingPoints::kMax) places[static_cast<std::size_t>(out.count)] = p;
     const Vector3d flat = p.x() * a.u + p.y() * a.v;
     out.add({flat + ha * a.n, flat + hb * a.n, hb - ha});
   }
@@ -159,7 +159,7 @@ struct Collector {
 
 }  // namespace
 
-void facing(const Feature& a, const Feature& b, const Vector3d& n, double reach_m, FacingList& out) {
+void facing(const Feature& a, const Feature& b, const Vector3d& n, double reach_m, FacingPoints& out) {
   out.count = 0;
   const Vector3d u = n.unitOrthogonal(), v = n.cross(u);
   const Projected sa(a, n, u, v), sb(b, n, u, v);
@@ -180,7 +180,7 @@ void facing(const Feature& a, const Feature& b, const Vector3d& n, double reach_
   for (std::size_t j = 0; disc_a && j < sb.edges(); ++j) c.edge_with_disc(sb, j, sa);
 }
 
-void facing_plane(const Feature& of, const Vector3d& n, double offset_m, double reach_m, FacingList& out) {
+void facing_plane(const Feature& of, const Vector3d& n, double offset_m, double reach_m, FacingPoints& out) {
   out.count = 0;
   const auto add = [&](const Vector3d& p) {
     const double gap = n.dot(p) - offset_m;

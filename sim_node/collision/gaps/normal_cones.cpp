@@ -24,7 +24,7 @@ constexpr double kMinHeight_m = 1e-5;
 struct AngleCone {  // axis and half angle
   Vector3d axis{0, 0, 1};
   double rad = 4;
-  double lean = 1;  // see NormalCones::lean(); leaves only
+  double tilt_sine = 1;  // see NormalCones::tilt_sine(); leaves only
 };
 
 double angle(const Vector3d& x, const Vector3d& y) { return std::atan2(x.cross(y).norm(), x.dot(y)); }
@@ -87,7 +87,7 @@ std::vector<AngleCone> of_triangles(const std::vector<Triangle>& triangles) {
     if (!known) continue;
     double max_angle_rad = 0;
     for (const AngleCone& p : parts) max_angle_rad = std::max(max_angle_rad, angle(p.axis, triangles[t].normal) + kSlack_rad);
-    if (max_angle_rad < M_PI / 2) cone.lean = std::sin(max_angle_rad);
+    if (max_angle_rad < M_PI / 2) cone.tilt_sine = std::sin(max_angle_rad);
   }
   return cones;
 }
@@ -96,7 +96,7 @@ std::vector<AngleCone> of_triangles(const std::vector<Triangle>& triangles) {
 
 NormalCones::NormalCones(const ObbTree& tree) : cones_(tree.nodes().size() * kLanes) {
   const std::vector<AngleCone> leaves = of_triangles(tree.triangles());
-  for (const AngleCone& w : leaves) leans_.push_back(w.lean);
+  for (const AngleCone& w : leaves) tilts_.push_back(w.tilt_sine);
   std::vector<AngleCone> of_node(tree.nodes().size());
   std::vector<AngleCone> parts;
   // Children come after their parents.

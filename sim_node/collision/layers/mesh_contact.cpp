@@ -30,7 +30,7 @@ ContactMesh::ContactMesh(std::span<const Eigen::Vector3d> vertices, std::span<co
 
 MeshContact::MeshContact(const MeshContactOptions& options) : options_(options), layer1_(options.isa) {}
 
-void MeshContact::accept(const ContactMesh& a, const ContactMesh& b) const {
+void MeshContact::check_supported(const ContactMesh& a, const ContactMesh& b) const {
   if (options_.remover != DuplicateRemover::kAdjacency) return;
   for (const ContactMesh* m : {&a, &b})
     if (!m->check.well_constructed())

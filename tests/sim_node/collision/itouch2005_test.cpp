@@ -25,7 +25,7 @@ std::vector<PointPair> contact_of(const Triangle& a, const Triangle& b, const Re
 }  // namespace
 
 TEST_CASE("Vertices 11, 5 and 6 from a plane, with margin 2, give an edge-plan contact of the second and the third") {
-  const Active active = active_vertices({11, 5, 6}, kExample);
+  const ActiveVertices active = active_vertices({11, 5, 6}, kExample);
   CHECK(active.count == 2);
   CHECK_FALSE(active.vertex[0]);
   CHECK(active.vertex[1]);

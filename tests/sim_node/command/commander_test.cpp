@@ -84,7 +84,7 @@ struct Bench {
     FAIL("no answer");
     return {};
   }
-  std::string refusal(const sim_command_t& c) {
+  std::string command_error(const sim_command_t& c) {
     const auto before = simulation.save();
     const sim_reply_t r = ask(c);
     CHECK(r.done == 0);
@@ -110,7 +110,7 @@ TEST_CASE("A world pauses, takes single steps, and resumes on command") {
   CHECK(b.ask(command(sim_command_t::RESUME)).paused == 0);
   for (int i = 0; i < 7; ++i) b.tick();
   CHECK(b.simulation.now() == sync::sim_time(20'000'000));
-  CHECK_THAT(b.refusal(step = command(sim_command_t::STEP)), Catch::Contains("pause it"));
+  CHECK_THAT(b.command_error(step = command(sim_command_t::STEP)), Catch::Contains("pause it"));
 }
 
 TEST_CASE("A pause changes only the time at which the world continues") {
@@ -223,31 +223,31 @@ TEST_CASE("An impossible command is rejected with a sentence, and nothing change
   const auto set = [](const std::string& of, const std::string& property, std::vector<double> values) {
     return command(sim_command_t::SET, of, property, std::move(values));
   };
-  CHECK_THAT(b.refusal(set("nobody", "mass", {1})), Catch::Contains("\"nobody\""));
-  CHECK_THAT(b.refusal(set("ball", "colour", {1})), Catch::Contains("it has mass, pose"));
-  CHECK_THAT(b.refusal(set("ball", "velocity", {1})), Catch::Contains("takes 3 numbers"));
-  CHECK_THAT(b.refusal(set("ball", "mass", {0})), Catch::Contains("between"));
-  CHECK_THAT(b.refusal(set("ball", "mass", {std::numeric_limits<double>::quiet_NaN()})),
+  CHECK_THAT(b.command_error(set("nobody", "mass", {1})), Catch::Contains("\"nobody\""));
+  CHECK_THAT(b.command_error(set("ball", "colour", {1})), Catch::Contains("it has mass, pose"));
+  CHECK_THAT(b.command_error(set("ball", "velocity", {1})), Catch::Contains("takes 3 numbers"));
+  CHECK_THAT(b.command_error(set("ball", "mass", {0})), Catch::Contains("between"));
+  CHECK_THAT(b.command_error(set("ball", "mass", {std::numeric_limits<double>::quiet_NaN()})),
              Catch::Contains("between"));
-  CHECK_THAT(b.refusal(set("ball", "velocity", {0, 0, 21})), Catch::Contains("between -20 and 20"));
-  CHECK_THAT(b.refusal(set("floor", "mass", {1})), Catch::Contains("fixed"));
-  CHECK_THAT(b.refusal(set("hand", "pose", {0, 0, 0, 0, 0, 0})), Catch::Contains("hand"));
-  CHECK_THAT(b.refusal(set("fan::rotor", "pose", {0, 0, 0, 0, 0, 0})), Catch::Contains("joint"));
-  CHECK_THAT(b.refusal(set("fan::axle", "mass", {1})), Catch::Contains("motor, friction"));
-  CHECK_THAT(b.refusal(push("ball", {101, 0, 0}, 0.1)), Catch::Contains("100 N"));
-  CHECK_THAT(b.refusal(push("ball", {1, 0, 0}, 11)), Catch::Contains("10 s"));
-  CHECK_THAT(b.refusal(push("ball", {1, 0, 0}, 0)), Catch::Contains("1 ms"));
-  CHECK_THAT(b.refusal(push("floor", {1, 0, 0}, 0.1)), Catch::Contains("fixed"));
-  CHECK_THAT(b.refusal(command(sim_command_t::RESTORE, "never")), Catch::Contains("no file"));
-  CHECK_THAT(b.refusal(command(sim_command_t::SNAPSHOT, "../etc")), Catch::Contains("letters"));
-  CHECK_THAT(b.refusal(command(sim_command_t::RESTORE, "")), Catch::Contains("letters"));
+  CHECK_THAT(b.command_error(set("ball", "velocity", {0, 0, 21})), Catch::Contains("between -20 and 20"));
+  CHECK_THAT(b.command_error(set("floor", "mass", {1})), Catch::Contains("fixed"));
+  CHECK_THAT(b.command_error(set("hand", "pose", {0, 0, 0, 0, 0, 0})), Catch::Contains("hand"));
+  CHECK_THAT(b.command_error(set("fan::rotor", "pose", {0, 0, 0, 0, 0, 0})), Catch::Contains("joint"));
+  CHECK_THAT(b.command_error(set("fan::axle", "mass", {1})), Catch::Contains("motor, friction"));
+  CHECK_THAT(b.command_error(push("ball", {101, 0, 0}, 0.1)), Catch::Contains("100 N"));
+  CHECK_THAT(b.command_error(push("ball", {1, 0, 0}, 11)), Catch::Contains("10 s"));
+  CHECK_THAT(b.command_error(push("ball", {1, 0, 0}, 0)), Catch::Contains("1 ms"));
+  CHECK_THAT(b.command_error(push("floor", {1, 0, 0}, 0.1)), Catch::Contains("fixed"));
+  CHECK_THAT(b.command_error(command(sim_command_t::RESTORE, "never")), Catch::Contains("no file"));
+  CHECK_THAT(b.command_error(command(sim_command_t::SNAPSHOT, "../etc")), Catch::Contains("letters"));
+  CHECK_THAT(b.command_error(command(sim_command_t::RESTORE, "")), Catch::Contains("letters"));
 }
 
 TEST_CASE("The number of active pushes is limited") {
   Bench b;
   for (std::size_t i = 0; i < Simulation::kMaxWrenches; ++i)
     CHECK(b.ask(push("ball", {0.01, 0, 0}, 0.05)).done == 1);
-  CHECK_THAT(b.refusal(push("ball", {0.01, 0, 0}, 0.05)), Catch::Contains("64 pushes are active"));
+  CHECK_THAT(b.command_error(push("ball", {0.01, 0, 0}, 0.05)), Catch::Contains("64 pushes are active"));
   for (int i = 0; i < 60; ++i) b.tick();
   CHECK(b.ask(push("ball", {0.01, 0, 0}, 0.05)).done == 1);
 }
@@ -272,13 +272,13 @@ TEST_CASE("A stored state is restored under its name, from memory and, by anothe
   CHECK(other.commander.paused());
 
   std::ofstream(b.folder / "broken.state") << "TACTSTAT and then nothing of use";
-  CHECK_THAT(b.refusal(command(sim_command_t::RESTORE, "broken")), Catch::Contains("not a saved state"));
+  CHECK_THAT(b.command_error(command(sim_command_t::RESTORE, "broken")), Catch::Contains("not a saved state"));
 }
 
 TEST_CASE("The number of stored states is limited. A repeated name replaces the old state") {
   Bench b;
   for (std::size_t i = 0; i < StateStore::kMax; ++i)
     CHECK(b.ask(command(sim_command_t::SNAPSHOT, "s" + std::to_string(i))).done == 1);
-  CHECK_THAT(b.refusal(command(sim_command_t::SNAPSHOT, "another")), Catch::Contains("16 states are stored"));
+  CHECK_THAT(b.command_error(command(sim_command_t::SNAPSHOT, "another")), Catch::Contains("16 states are stored"));
   CHECK(b.ask(command(sim_command_t::SNAPSHOT, "s3")).done == 1);
 }

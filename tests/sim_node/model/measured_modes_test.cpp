@@ -48,7 +48,7 @@ TEST_CASE("A material with measured modes has those of the table, ascending, and
 TEST_CASE("An invalid table of modes is rejected with the line of the scene and the row") {
   const auto refused = [](const std::string& table, const std::string& because) {
     SceneFile file = scene(table);
-    CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:3: ") &&
+    CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:3: ") &&
                                    Catch::Contains("modes \"bell.csv\", which cannot be read: " + because));
   };
   const std::string header = "frequency_Hz,damping_1_s,amplitude\n";
@@ -66,5 +66,5 @@ TEST_CASE("An invalid table of modes is rejected with the line of the scene and 
   for (int i = 0; i < 129; ++i) many += "440,3,1\n";
   refused(many, "it has more than 128 modes");
   SceneFile absent(world("<tactus:material name='bell' base='copper' modes='nowhere.csv'/>"));
-  CHECK_THAT(absent.refusal(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("not found"));
+  CHECK_THAT(absent.load_error(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("not found"));
 }

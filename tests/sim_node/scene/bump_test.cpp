@@ -23,9 +23,9 @@ sync::Bytes ramp(std::uint8_t highest = 255) { return png_bytes(2, 2, 8, {0, 10,
 SceneFile scene(const std::string& materials, const sync::Bytes& picture = ramp()) {
   return SceneFile(world(materials), {{"planks.png", picture}});
 }
-std::string refusal(const std::string& attributes, const sync::Bytes& picture = ramp()) {
+std::string load_error(const std::string& attributes, const sync::Bytes& picture = ramp()) {
   SceneFile file = scene("<tactus:material name='p' base='oak' " + attributes + "/>", picture);
-  return file.refusal();
+  return file.load_error();
 }
 const material_def_t& material(const WorldDef& w, const std::string& name) {
   for (const auto& m : w.materials)
@@ -80,11 +80,11 @@ TEST_CASE("The picture of a height map is sent once, unchanged, for all material
 
 TEST_CASE("An invalid height map is refused with its line") {
   SceneFile absent(world("\n<tactus:material name='p' base='oak' " + kGood + "/>"));
-  CHECK_THAT(absent.refusal(), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("\"planks.png\", which is not found"));
+  CHECK_THAT(absent.load_error(), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("\"planks.png\", which is not found"));
   const auto refused = [](const std::string& attributes, const std::string& because) {
-    CHECK_THAT(refusal(attributes), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains(because));
+    CHECK_THAT(load_error(attributes), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains(because));
   };
-  CHECK(refusal(kGood) == "");
+  CHECK(load_error(kGood) == "");
   SECTION("a picture without size or height, and these without a picture") {
     refused("bump='planks.png' bump_height='1mm'", "lacks its attribute \"bump_size\"");
     refused("bump='planks.png' bump_size='1m 1m'", "lacks its attribute \"bump_height\"");
@@ -109,7 +109,7 @@ TEST_CASE("An invalid height map is refused with its line") {
   }
   SECTION("a picture that is not a height map") {
     const auto unread = [](const sync::Bytes& picture, const std::string& because) {
-      CHECK_THAT(refusal(kGood, picture), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("cannot be read: " + because));
+      CHECK_THAT(load_error(kGood, picture), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("cannot be read: " + because));
     };
     unread({'h', 'e', 'l', 'l', 'o'}, "it is no PNG file");
     unread(png_bytes(2, 2, 8, sync::Bytes(12), PNG_COLOR_TYPE_RGB), "it must be grey");

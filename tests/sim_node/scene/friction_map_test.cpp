@@ -54,10 +54,10 @@ TEST_CASE("An invalid friction map is refused with its line") {
   const auto refused = [](const std::string& attributes, const std::string& because,
                           const sync::Bytes& picture = halves()) {
     SceneFile file = scene(attributes, picture);
-    CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains(because));
+    CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains(because));
   };
   SceneFile good = scene(kGood);
-  CHECK(good.refusal() == "");
+  CHECK(good.load_error() == "");
   refused("friction_map='halves.png' friction_factors='0 1'", "lacks its attribute \"friction_size\"");
   refused("friction_map='halves.png' friction_size='1m 1m'", "lacks its attribute \"friction_factors\"");
   refused("friction_size='1m 1m'", "friction_size without friction_map");

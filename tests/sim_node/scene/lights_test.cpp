@@ -54,5 +54,5 @@ TEST_CASE("A world without a light gets a sun") {
 
 TEST_CASE("An invalid light is refused with its line") {
   SceneFile file(world("<light name='p' type='point'>\n<intensity>-1</intensity></light>"));
-  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("intensity"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("intensity"));
 }

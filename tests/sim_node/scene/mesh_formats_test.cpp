@@ -345,7 +345,7 @@ TEST_CASE("A file that is not a regular file or is too large is not read as a me
   SECTION("and a scene that names one is refused with its line") {
     for (const char* name : {"folder.obj", "pipe.glb", "zero.stl", "sparse.ply"}) {
       file.write("scene.sdf", link(collision(std::string("\n<mesh><uri>") + name + "</uri></mesh>")));
-      CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:6: ") && Catch::Contains(name));
+      CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:6: ") && Catch::Contains(name));
     }
   }
 }

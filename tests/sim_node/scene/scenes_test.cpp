@@ -139,7 +139,7 @@ TEST_CASE("A damaged file is refused or repaired, and never ends the process") {
     }
     INFO(text);
     file.write("scene.sdf", text);
-    const std::string sentence = file.refusal();
+    const std::string sentence = file.load_error();
     (sentence.empty() ? loaded : refused) += 1;
     if (!sentence.empty()) CHECK_THAT(sentence, Catch::StartsWith("scene.sdf"));
   }

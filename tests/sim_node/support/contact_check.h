@@ -11,7 +11,7 @@
 namespace tactus::sim::test {
 
 // Position error of a pair that has been replaced by its duplicate, at most this, m.
-inline constexpr double kAfterMerge_m = 2 * kSamePlace_m;
+inline constexpr double kAfterMerge_m = 2 * kSamePosition_m;
 
 struct Placed {
   Placed(const Soup& soup, const Eigen::Isometry3d& pose) {

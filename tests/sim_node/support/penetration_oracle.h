@@ -29,7 +29,7 @@ class PenetrationOracle {
       }
       if (s.kind == ShapeKind::kPlane || s.kind == ShapeKind::kHeightfield) shape.bound_m = 1e9;
     }
-    for (const auto& [a, b] : world.no_collision) apart_.emplace_back(std::min(a, b), std::max(a, b));
+    for (const auto& [a, b] : world.no_collision) excluded_pairs_.emplace_back(std::min(a, b), std::max(a, b));
   }
 
   struct Deepest {
@@ -69,7 +69,7 @@ class PenetrationOracle {
     const auto tool = [&](int i) { return world_.bodies[static_cast<std::size_t>(i)].tool >= 0; };
     if (a == b || tool(a) || tool(b) || (!moves(a) && !moves(b))) return false;
     const std::pair<int, int> key(std::min(a, b), std::max(a, b));
-    return std::find(apart_.begin(), apart_.end(), key) == apart_.end();
+    return std::find(excluded_pairs_.begin(), excluded_pairs_.end(), key) == excluded_pairs_.end();
   }
 
   double pair(std::size_t i, std::size_t j) {
@@ -263,7 +263,7 @@ class PenetrationOracle {
   const WorldDef& world_;
   std::unique_ptr<Detector> ode_;
   std::vector<Shape> shapes_;
-  std::vector<std::pair<int, int>> apart_;
+  std::vector<std::pair<int, int>> excluded_pairs_;
   std::vector<Eigen::Isometry3d> poses_;
   std::vector<PointPair> pairs_;
   std::vector<Probe> probes_;

@@ -199,17 +199,17 @@ TEST_CASE("A scene takes material, height map, modes and look from the mesh file
   SECTION("invalid properties are refused with the name of the file") {
     mesh.material["base"] = "unobtainium";
     write();
-    CHECK_THAT(file.refusal(), Catch::Contains("t.glb") && Catch::Contains("no such material"));
+    CHECK_THAT(file.load_error(), Catch::Contains("t.glb") && Catch::Contains("no such material"));
     mesh.material["base"] = "oak", mesh.material["bump"] = "gone.png";
     write();
-    CHECK_THAT(file.refusal(), Catch::Contains("t.glb") && Catch::Contains("gone.png"));
+    CHECK_THAT(file.load_error(), Catch::Contains("t.glb") && Catch::Contains("gone.png"));
     mesh.material = {{"base", "unobtainium"}};
     write();
-    CHECK_THAT(file.refusal(),
+    CHECK_THAT(file.load_error(),
                Catch::Contains("t.glb") && Catch::Contains("there are ") && Catch::Contains("steel"));
     mesh.material.clear(), mesh.look["reflectance"] = "2";
     write();
-    CHECK_THAT(file.refusal(), Catch::Contains("t.glb") && Catch::Contains("between 0 and 1"));
+    CHECK_THAT(file.load_error(), Catch::Contains("t.glb") && Catch::Contains("between 0 and 1"));
   }
 }
 

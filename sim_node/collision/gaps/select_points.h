@@ -11,6 +11,6 @@ namespace tactus::sim::gaps {
 // its additional gap: a body must rotate far to close a large gap. A difference of normals counts as a distance, so
 // that floor and wall of one mesh are both represented. Fills out.points and out.count. The first of equal points
 // wins.
-void choose_points(std::span<const ManifoldPoint> found, Manifold& out);
+void select_points(std::span<const ManifoldPoint> found, Manifold& out);
 
 }  // namespace tactus::sim::gaps

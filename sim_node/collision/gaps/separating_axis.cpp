@@ -1,4 +1,4 @@
-#include "sim_node/collision/gaps/parting.h"
+#include "sim_node/collision/gaps/separating_axis.h"
 
 #include <algorithm>
 #include <cmath>
