@@ -130,7 +130,7 @@ void DualGroups::tick(sync::SimTime now, std::span<const GroupTool> tools, std::
     else
       hold(now, tools, events);
   } else {
-    grouping_.watch(now, motions_, tools);
+    grouping_.check_pads(now, motions_, tools);
     promote(now, events);
   }
   apply_queued_changes();
@@ -203,7 +203,7 @@ void DualGroups::hold(sync::SimTime now, std::span<const GroupTool> tools, std::
     record_touching();
     grouping_.hold_step(now, motions_, touching_, tools);
   } else {
-    grouping_.watch(now, motions_, tools);
+    grouping_.check_pads(now, motions_, tools);
   }
   promote(now, events);
 }
