@@ -29,7 +29,7 @@ constexpr double kMeshMargin_m = 0.003;
 // contact moves by less in a step, and the corners of a handheld object are further apart.
 constexpr double kSameFeature_m = 0.004;
 // A surface out of reach is dropped after this time, unless it is touched.
-constexpr sync::Nanoseconds kForgetAfter{50'000'000};
+constexpr sync::Nanoseconds kTrackingTimeout{50'000'000};
 // Maximum back-dating of a begin: the age at which a message counts as lost.
 constexpr sync::Nanoseconds kMaxMessageAge{20'000'000};
 constexpr double kMinForce_N = 1e-4;  // smaller forces are rounding
@@ -52,7 +52,7 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
   double own_compliance = 1 / settings.default_youngs_modulus_Pa;
   if (tool_material_ >= 0) {
     const material_def_t& m = world.materials[static_cast<std::size_t>(tool_material_)];
-    own_static_ = m.friction_static, own_dynamic_ = m.friction_dynamic;
+    tool_static_friction_ = m.friction_static, tool_dynamic_friction_ = m.friction_dynamic;
     own_compliance = (1 - m.poissons_ratio * m.poissons_ratio) / m.youngs_modulus_Pa;
   }
   const std::vector<SurfaceTraits> traits = surface_traits(world, settings);
@@ -65,8 +65,8 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
     ClosestSurface surface(s, meshed ? trees.triangles(s, world) : nullptr, settings.touch_merge_angle_rad);
     const Vector3d centre = s.pose * surface.centre();
     if (shape_) shape_->add(s, world);
-    surfaces_.push_back({std::move(surface), traits[i], s.pose.inverse(), centre, std::sqrt(traits[i].friction_static * own_static_),
-                         std::sqrt(traits[i].friction_dynamic * own_dynamic_), traits[i].compliance_1_Pa + own_compliance,
+    surfaces_.push_back({std::move(surface), traits[i], s.pose.inverse(), centre, std::sqrt(traits[i].friction_static * tool_static_friction_),
+                         std::sqrt(traits[i].friction_dynamic * tool_dynamic_friction_), traits[i].compliance_1_Pa + own_compliance,
                          0});
     if (s.material < 0) continue;
     const material_def_t& m = world.materials[static_cast<std::size_t>(s.material)];
@@ -169,7 +169,7 @@ void ToolTouch::find_surfaces(SimTime now, std::span<const BodyMotion> bodies) {
   // A surface out of reach has a gap of at least this margin.
   for (Near& n : near_)
     if (n.last_seen != now) n.gap_m = std::max(n.gap_m, settings_.touch_margin_m);
-  std::erase_if(near_, [&](const Near& n) { return !n.touching && now - n.last_seen > kForgetAfter; });
+  std::erase_if(near_, [&](const Near& n) { return !n.touching && now - n.last_seen > kTrackingTimeout; });
 }
 
 double ToolTouch::mobility_1_kg(const Near& n, std::span<const BodyMotion> bodies) const {

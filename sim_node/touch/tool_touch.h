@@ -136,7 +136,7 @@ class ToolTouch {
   double radius_m_, bound_m_, tool_mass_kg_;
   std::optional<ShapeSearch> shape_;
   std::vector<ToolPointPair> pairs_near_;
-  double own_static_ = 1, own_dynamic_ = 1;  // friction of the tool's material
+  double tool_static_friction_ = 1, tool_dynamic_friction_ = 1;  // friction of the tool's material
   Settings settings_;
   Ids& ids_;
   Mobility mobility_;

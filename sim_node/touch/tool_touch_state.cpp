@@ -43,8 +43,8 @@ void ToolTouch::rename() {
 void ToolTouch::set_friction(int body, double friction) {
   for (Surface& s : surfaces_) {
     if (s.traits.body != body) continue;
-    s.friction_static = std::sqrt(friction * own_static_);
-    s.friction_dynamic = std::sqrt(friction * own_dynamic_);
+    s.friction_static = std::sqrt(friction * tool_static_friction_);
+    s.friction_dynamic = std::sqrt(friction * tool_dynamic_friction_);
   }
 }
 

@@ -31,7 +31,7 @@ Shapes::Shapes(const WorldDef& world, const std::vector<dBodyID>& bodies, const 
     const ShapeDef& shape = world.shapes[i];
     const BodyDef& body = world.bodies[static_cast<std::size_t>(shape.body)];
     body_of_.push_back(shape.body);
-    is_mesh_.push_back(shape.kind == ShapeKind::kMesh);
+    is_mesh_shape_.push_back(shape.kind == ShapeKind::kMesh);
     if (body.tool >= 0) continue;
     const dBodyID id = bodies[static_cast<std::size_t>(shape.body)];
     const dGeomID geom = geoms_.make(world, shape, id == nullptr, body.pose * shape.pose);
@@ -76,8 +76,8 @@ void Shapes::collide_by_ode(std::size_t a, dGeomID ga, std::size_t b, dGeomID gb
     if (!p.normal.allFinite() || !p.point_m.allFinite() || std::abs(p.normal.norm() - 1) > 1e-3) continue;
     // For a capsule against a mesh, ODE also reports the near side of the axis, without depth.
     if (p.depth_m <= 0 && count > 1) continue;
-    p.triangle_a = is_mesh_[a] ? c.side1 : -1;
-    p.triangle_b = is_mesh_[b] ? c.side2 : -1;
+    p.triangle_a = is_mesh_shape_[a] ? c.side1 : -1;
+    p.triangle_b = is_mesh_shape_[b] ? c.side2 : -1;
     found_.push_back(p);
   }
 }

@@ -115,14 +115,14 @@ TEST_CASE("Every mesh of the project converts to glTF and back identically to th
     if (entry.path().extension() != ".obj") continue;
     INFO(entry.path());
     ++met;
-    const MeshParts mesh = for_place(read_mesh_parts(entry.path()), entry.path(), file.folder() / "back.glb");
+    const MeshParts mesh = with_output_paths(read_mesh_parts(entry.path()), entry.path(), file.folder() / "back.glb");
     REQUIRE(!mesh.parts.empty());
     for (const MeshPart& part : mesh.parts) CHECK(part.tangents.size() == part.texcoords.size());
     check_same(read_back(file, mesh, true), mesh);
     check_same(read_back(file, mesh, false), mesh);
     // A second conversion changes nothing.
     const auto again = file.folder() / "back.glb";
-    check_same(for_place(read_mesh_parts(again), again, again), mesh);
+    check_same(with_output_paths(read_mesh_parts(again), again, again), mesh);
   }
   CHECK(met >= 4);
 }
@@ -137,7 +137,7 @@ TEST_CASE("Paths of pictures and properties are relative to the new file") {
   mesh.material = {{"base", "oak"}, {"bump", "planks.png"}};
   mesh.look = {{"colour_map", "d.png"}};
   const MeshParts moved =
-      for_place(mesh, file.folder() / "from" / "x.obj", file.folder() / "to" / "there" / "x.glb");
+      with_output_paths(mesh, file.folder() / "from" / "x.obj", file.folder() / "to" / "there" / "x.glb");
   CHECK(moved.materials[0].colour_map.file == "../../from/maps/c.png");
   CHECK(moved.materials[0].normal_map.file == "/somewhere/n.png");
   CHECK(moved.material.at("bump") == "../../from/planks.png");
