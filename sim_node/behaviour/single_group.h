@@ -32,13 +32,13 @@ class SingleGroup : public Mechanics {
 
   bool apply(const impulse::SceneChange& change) override { return solver_.apply(change); }
   bool set_pose(int body, const Eigen::Isometry3d& pose) override {
-    return placed(solver_.set_pose(body, pose));
+    return updated(solver_.set_pose(body, pose));
   }
   bool set_velocity(int body, const Eigen::Vector3d& v) override {
-    return placed(solver_.set_velocity(body, v));
+    return updated(solver_.set_velocity(body, v));
   }
   bool set_spin(int body, const Eigen::Vector3d& spin) override {
-    return placed(solver_.set_spin(body, spin));
+    return updated(solver_.set_spin(body, spin));
   }
 
   void archive(StateArchive& a) override;
@@ -48,7 +48,7 @@ class SingleGroup : public Mechanics {
 
  private:
   // Makes a change effective at once.
-  bool placed(bool done) {
+  bool updated(bool done) {
     read();
     return done;
   }

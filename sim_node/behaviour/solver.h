@@ -73,15 +73,15 @@ class Solver {
 
  private:
   struct Engine;
-  struct Inert {  // in body axes; zero for static bodies
+  struct BodyInertia {  // in body axes; zero for static bodies
     Eigen::Vector3d centre_in_body_m;
     Eigen::Matrix3d inverse_inertia;
     Eigen::Vector3d gravity_m_s;  // speed that gravity adds per step
   };
   void start(const WorldDef& world);
   void read_bodies();
-  void back_off(Manifold& contact, bool is_new);
-  void join(Manifold& contact);
+  void move_back(Manifold& contact, bool is_new);
+  void add_contact_joint(Manifold& contact);
 
   std::unique_ptr<ImpulseSolver> impulse_;  // null when ODE solves
   std::unique_ptr<Engine> engine_;          // null when impulses solve
@@ -90,9 +90,9 @@ class Solver {
   std::unique_ptr<const FrictionMaps> friction_maps_;
   std::vector<int> body_of_;                    // per shape
   std::vector<bool> has_gravity_;                     // per body: affected by gravity
-  std::vector<Inert> inert_;
-  std::vector<Eigen::Vector3d> fall_m_s_;  // speed that gravity and forces add to each body in the next step
-  std::vector<Eigen::Vector3d> shift_m_;   // displacement by which each body was moved back in this step
+  std::vector<BodyInertia> inertias_;
+  std::vector<Eigen::Vector3d> free_fall_m_s_;  // speed that gravity and forces add to each body in the next step
+  std::vector<Eigen::Vector3d> moved_back_m_;   // displacement by which each body was moved back in this step
   std::vector<BodyMotion> motions_;
   std::vector<Manifold> contacts_, solved_;
   std::int64_t steps_ = 0;

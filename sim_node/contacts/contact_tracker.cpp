@@ -97,7 +97,7 @@ void ContactTracker::emit(LiveContact& c, std::int8_t kind, sync::SimTime when, 
   when = std::max(when, c.last_event);
   c.last_event = when;
   contact_event_t& e = events_->emplace_back();
-  e.event_id = ids_.fresh();
+  e.event_id = ids_.next_id();
   e.contact_id = c.id;
   e.kind = kind;
   e.time_ns = sync::to_ns(when);
@@ -191,7 +191,7 @@ void ContactTracker::update_pair(const LiveContact* before, const Manifold* near
   if (before)
     c = *before;
   else
-    c.id = ids_.fresh();
+    c.id = ids_.next_id();
   c.normal_force_N = 0;
   if (solved) {
     for (const ManifoldPoint& p : solved->used()) c.normal_force_N += p.normal_force_N;

@@ -24,11 +24,11 @@ void ContactTracker::archive(StateArchive& a, std::size_t bodies) {
 }
 
 void ContactTracker::extract(std::span<const char> marked, std::vector<LiveContact>& out) {
-  const auto goes = [&](const LiveContact& c) {
+  const auto is_marked = [&](const LiveContact& c) {
     return marked[static_cast<std::size_t>(c.manifold.body_a)] || marked[static_cast<std::size_t>(c.manifold.body_b)];
   };
-  std::copy_if(live_.begin(), live_.end(), std::back_inserter(out), goes);
-  std::erase_if(live_, goes);
+  std::copy_if(live_.begin(), live_.end(), std::back_inserter(out), is_marked);
+  std::erase_if(live_, is_marked);
 }
 
 void ContactTracker::insert(std::span<const LiveContact> contacts) {

@@ -62,18 +62,18 @@ void DualGroups::start(std::span<const GroupTool> tools, std::vector<contact_eve
   if (settings_.visual_thread == "own") visual_.start();
 }
 
-void DualGroups::act(const Load& load) {
+void DualGroups::apply_load(const Load& load) {
   if (world_->unit_of(load.body) < 0) return;
   if (!is_haptic(load.body)) grouping_.request_entry(load.body);
   loads_.push_back(load);
 }
 
 void DualGroups::add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m) {
-  act({body, force_N, point_m, Eigen::Vector3d::Zero(), false});
+  apply_load({body, force_N, point_m, Eigen::Vector3d::Zero(), false});
 }
 
 void DualGroups::add_wrench(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& torque_N_m) {
-  act({body, force_N, Eigen::Vector3d::Zero(), torque_N_m, true});
+  apply_load({body, force_N, Eigen::Vector3d::Zero(), torque_N_m, true});
 }
 
 void DualGroups::gather_units(std::span<const int> bodies) {
@@ -173,16 +173,16 @@ void DualGroups::begin_step(sync::SimTime now, std::span<const GroupTool> tools,
 
 void DualGroups::request_next_step() {
   task_.number = ++number_;
-  task_.missed = step_->task.length;
+  task_.catch_up_time = step_->task.length;
   task_.length = rate_.next();
-  task_.enters = departed_;
-  for (LiveContact& c : task_.enters.contacts) shift(c, -clock_offset_);
+  task_.entering = departed_;
+  for (LiveContact& c : task_.entering.contacts) shift(c, -clock_offset_);
   // Units of the step just received that were promoted while the next step was being computed.
-  task_.leaves.clear();
+  task_.leaving.clear();
   const auto haptic = world_->active_units();
   for (const int unit : step_->units)
     if (std::binary_search(haptic.begin(), haptic.end(), unit) || departed_.find(unit) >= 0)
-      task_.leaves.push_back(unit);
+      task_.leaving.push_back(unit);
   task_.changes = changes_;
   changes_.clear();
   visual_.request(task_);

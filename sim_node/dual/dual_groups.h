@@ -70,7 +70,7 @@ class DualGroups : public Mechanics {
     Eigen::Vector3d force_N, point_m, torque_N_m;
     bool at_centre;  // point_m is unused
   };
-  void act(const Load& load);
+  void apply_load(const Load& load);
   // A change that is applied as soon as the body is in the haptic group.
   struct QueuedChange {
     enum Kind { kPose, kVelocity, kSpin };

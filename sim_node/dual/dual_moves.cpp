@@ -81,14 +81,14 @@ void DualGroups::reconcile(sync::SimTime from, sync::SimTime to, std::vector<con
       c.id = similar->contact;
       similar->matched = true;
     } else {
-      c.id = ids_.fresh();
+      c.id = ids_.next_id();
       tracker_.report(c, contact_event_t::BEGIN, to, motions_, events);
     }
   }
   for (const OpenContact& t : open_) {
     if (t.matched) continue;
     contact_event_t& e = events.emplace_back();
-    e.event_id = ids_.fresh();
+    e.event_id = ids_.next_id();
     e.contact_id = t.contact;
     e.kind = contact_event_t::END;
     e.time_ns = sync::to_ns(to);

@@ -98,33 +98,33 @@ void VisualGroup::update_sleeping(sync::Nanoseconds length) {
 }
 
 void VisualGroup::remove_leaving(const VisualTask& task) {
-  if (task.leaves.empty()) return;
-  mark(task.leaves, 0);
+  if (task.leaving.empty()) return;
+  mark(task.leaving, 0);
   wake(sleeping_.wake_islands_of(list_));
-  mark(task.leaves, 1);
+  mark(task.leaving, 1);
   moved_.clear();
   tracker_.extract(mask_, moved_);
-  mark(task.leaves, 0);
+  mark(task.leaving, 0);
   std::erase_if(units_,
-                [&](int unit) { return std::binary_search(task.leaves.begin(), task.leaves.end(), unit); });
+                [&](int unit) { return std::binary_search(task.leaving.begin(), task.leaving.end(), unit); });
 }
 
 // Entering units were in the haptic group at the beginning of the previous step. They catch up by themselves, since
 // they reach no other body in it.
 void VisualGroup::add_entering(const VisualTask& task, VisualStep& out) {
-  const UnitTransfer& enters = task.enters;
-  if (enters.units.empty()) return;
-  for (std::size_t k = 0; k < enters.units.size(); ++k) world_->set_state(enters.units[k], enters.states[k]);
-  world_->set_active(enters.units);
+  const UnitTransfer& entering = task.entering;
+  if (entering.units.empty()) return;
+  for (std::size_t k = 0; k < entering.units.size(); ++k) world_->set_state(entering.units[k], entering.states[k]);
+  world_->set_active(entering.units);
   read_motions();
-  entering_tracker_.insert(enters.contacts);
-  sub_steps(entering_tracker_, now_ - task.missed, task.missed, out, false);
+  entering_tracker_.insert(entering.contacts);
+  sub_steps(entering_tracker_, now_ - task.catch_up_time, task.catch_up_time, out, false);
   moved_.clear();
   std::fill(mask_.begin(), mask_.end(), 1);
   entering_tracker_.extract(mask_, moved_);
   std::fill(mask_.begin(), mask_.end(), 0);
   tracker_.insert(moved_);
-  units_.insert(units_.end(), enters.units.begin(), enters.units.end());
+  units_.insert(units_.end(), entering.units.begin(), entering.units.end());
   std::sort(units_.begin(), units_.end());
 }
 

@@ -10,7 +10,7 @@
 namespace tactus::sim {
 
 struct BehaviourModel {
-  std::string_view name, what;
+  std::string_view name, description;
   // Solved by impulse::World for free bodies and systems of joints; otherwise by ODE.
   bool impulses = false;
   // Acts before surfaces meet, and corrects remaining overlaps by positions. Contacts must therefore carry their

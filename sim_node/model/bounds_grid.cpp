@@ -64,19 +64,19 @@ void BoundsGrid::build(std::span<const Bounds> boxes) {
 
 void BoundsGrid::find(const Bounds& query, std::vector<int>& found) const {
   const auto begin = static_cast<std::ptrdiff_t>(found.size());
-  const auto look = [&](int box) {
+  const auto add_if_overlapping = [&](int box) {
     if (boxes_[static_cast<std::size_t>(box)].overlaps(query)) found.push_back(box);
   };
   if (boxes_.empty()) return;
   const Range r = range_of(query);
   if (r.cells() > kMaxCells) {
-    for (int i = 0; i < static_cast<int>(boxes_.size()); ++i) look(i);
+    for (int i = 0; i < static_cast<int>(boxes_.size()); ++i) add_if_overlapping(i);
     return;
   }
-  for (const int box : large_) look(box);
+  for (const int box : large_) add_if_overlapping(box);
   each_cell(r.min, r.max, [&](int x, int y, int z) {
     const std::uint32_t bucket = bucket_of(x, y, z);
-    for (int k = first_[bucket]; k < first_[bucket + 1]; ++k) look(in_[static_cast<std::size_t>(k)]);
+    for (int k = first_[bucket]; k < first_[bucket + 1]; ++k) add_if_overlapping(in_[static_cast<std::size_t>(k)]);
   });
   std::sort(found.begin() + begin, found.end());
   found.erase(std::unique(found.begin() + begin, found.end()), found.end());

@@ -108,7 +108,7 @@ void ToolTouch::track(SimTime now, const SurfacePlane& plane, std::size_t surfac
   }
   if (best == nullptr) {
     best = &near_.emplace_back();
-    best->contact_id = ids_.fresh();
+    best->contact_id = ids_.next_id();
     best->surface = surface;
   }
   best->plane = plane;
@@ -186,7 +186,7 @@ void ToolTouch::emit(const Near& n, std::int8_t kind, SimTime when, std::span<co
                      std::vector<contact_event_t>& events) const {
   const SurfaceTraits& traits = surfaces_[n.surface].traits;
   contact_event_t e{};
-  e.event_id = ids_.fresh();
+  e.event_id = ids_.next_id();
   e.contact_id = n.contact_id;
   e.kind = kind;
   e.time_ns = std::max<std::int64_t>(0, sync::to_ns(when));
@@ -286,7 +286,7 @@ void ToolTouch::update(SimTime now, std::span<const BodyMotion> bodies, std::spa
     n.touching = false;
     n.apart = true;
     n.impulse_N_s = n.force_N = 0;
-    n.contact_id = ids_.fresh();  // the next touch is another contact
+    n.contact_id = ids_.next_id();  // the next touch is another contact
   }
   write_model(now, bodies);
 }

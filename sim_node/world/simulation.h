@@ -93,7 +93,7 @@ class Simulation {
     Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   };
   void detect_contacts();
-  void take_model(std::size_t tool);
+  void update_model(std::size_t tool);
   void place_tools(std::span<BodyMotion> motions);
   void collect_group_tools();
   void sort_messages(std::span<const tool_state_t> messages);

@@ -73,7 +73,7 @@ class ContactRows {
   std::vector<ContactGroup> groups;
   std::vector<Coupling> couplings;
   std::vector<double> pool;
-  std::vector<InverseInertia> inert;  // per twist
+  std::vector<InverseInertia> inertias;  // per twist
 
   void clear();
   // Relative velocity of the surface of b with respect to a, in the point's axes.
@@ -147,7 +147,7 @@ inline void add_product(Eigen::Vector3d& out, const Eigen::Matrix3d& m, double x
                z = c[6] * n + c[7] * s + c[8] * t;
   if (p.b) {
     Twist& b = v.twists[static_cast<std::size_t>(p.b)];
-    const InverseInertia& m = inert[static_cast<std::size_t>(p.b)];
+    const InverseInertia& m = inertias[static_cast<std::size_t>(p.b)];
     const double k = m.inverse_mass_1_kg;
     b.linear_m_s[0] += k * x, b.linear_m_s[1] += k * y, b.linear_m_s[2] += k * z;
     const Eigen::Vector3d& r = p.arm_b;
@@ -156,7 +156,7 @@ inline void add_product(Eigen::Vector3d& out, const Eigen::Matrix3d& m, double x
   }
   if (p.a) {
     Twist& a = v.twists[static_cast<std::size_t>(p.a)];
-    const InverseInertia& m = inert[static_cast<std::size_t>(p.a)];
+    const InverseInertia& m = inertias[static_cast<std::size_t>(p.a)];
     const double k = m.inverse_mass_1_kg;
     a.linear_m_s[0] -= k * x, a.linear_m_s[1] -= k * y, a.linear_m_s[2] -= k * z;
     const Eigen::Vector3d& r = p.arm_a;

@@ -53,7 +53,7 @@ void ContactLayers::find(const ContactRows& rows, int movers) {
 }
 
 void ContactLayers::propagate_shock(ContactRows& rows, Velocities& v) {
-  std::swap(above_.inert, rows.inert);
+  std::swap(above_.inertias, rows.inertias);
   for (const int number : order_) {
     const ContactGroup& g = rows.groups[static_cast<std::size_t>(number)];
     const int low = std::min(layer_of(g.mover_a), layer_of(g.mover_b));
@@ -78,7 +78,7 @@ void ContactLayers::propagate_shock(ContactRows& rows, Velocities& v) {
         above_.apply(p, by, v);
       }
   }
-  std::swap(above_.inert, rows.inert);
+  std::swap(above_.inertias, rows.inertias);
 }
 
 }  // namespace tactus::sim::impulse

@@ -75,7 +75,7 @@ void World::start_velocities(std::span<const Manifold> contacts, double h) {
     v->twists.resize(free_.size() + 1);
     v->rates.resize(first_rate_.back());
   }
-  rows_.inert.resize(free_.size() + 1);
+  rows_.inertias.resize(free_.size() + 1);
   for (const int unit : active_) {
     const std::size_t i = index(unit);
     if (i < free_.size()) {
@@ -87,7 +87,7 @@ void World::start_velocities(std::span<const Manifold> contacts, double h) {
       velocity_.twists[i + 1] = {f.start_m_s, f.start_rad_s};
       drift_.twists[i + 1] = {f.mean_m_s - f.start_m_s, f.mean_rad_s - f.start_rad_s};
       position_offset_.twists[i + 1] = {};
-      rows_.inert[i + 1] = {1 / b.mass_kg, f.inverse_inertia};
+      rows_.inertias[i + 1] = {1 / b.mass_kg, f.inverse_inertia};
     } else {
       System& s = systems_[i - free_.size()];
       s.touched = s.has_rows;

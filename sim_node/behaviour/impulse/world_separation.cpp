@@ -100,7 +100,7 @@ void World::update_inertia(std::span<const Manifold> contacts) {
       const Mover& at = mover(body);
       if (at.kind != Kind::kFree) continue;
       const BodyMotion& b = motions_[index(body)];
-      rows_.inert[index(at.index + 1)] = {b.inverse_mass_1_kg, b.inverse_inertia};
+      rows_.inertias[index(at.index + 1)] = {b.inverse_mass_1_kg, b.inverse_inertia};
     }
 }
 

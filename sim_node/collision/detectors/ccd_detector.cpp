@@ -131,12 +131,12 @@ class CcdDetector : public Detector {
     ccd.max_iterations = kMaxRounds;
     ccd.epa_tolerance = ccd.mpr_tolerance = ccd.dist_tolerance = kAccuracy_m2;
     ccd_real_t depth = 0;
-    ccd_vec3_t way, at;
-    const int missed = mpr_ ? ccdMPRPenetration(&pa, &pb, &ccd, &depth, &way, &at)
-                            : ccdGJKPenetration(&pa, &pb, &ccd, &depth, &way, &at);
+    ccd_vec3_t direction, at;
+    const int missed = mpr_ ? ccdMPRPenetration(&pa, &pb, &ccd, &depth, &direction, &at)
+                            : ccdGJKPenetration(&pa, &pb, &ccd, &depth, &direction, &at);
     if (missed != 0) return;
     PointPair p;
-    p.normal = Vector3d(way.v[0], way.v[1], way.v[2]);
+    p.normal = Vector3d(direction.v[0], direction.v[1], direction.v[2]);
     if (!(p.normal.norm() > 0.5) || !std::isfinite(depth)) return;
     p.normal.normalize();
     p.gap_m = reach - depth;

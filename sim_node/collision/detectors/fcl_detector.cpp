@@ -39,9 +39,9 @@ class FclDetector : public Detector {
     const bool mesh_a = kinds_[static_cast<std::size_t>(a)] == ShapeKind::kMesh,
                mesh_b = kinds_[static_cast<std::size_t>(b)] == ShapeKind::kMesh;
     fcl::DistanceResultd apart;
-    fcl::DistanceRequestd ask(true);
-    ask.gjk_solver_type = fcl::GJKSolverType::GST_INDEP;  // the libccd solver asserts on flat contacts
-    const double gap = fcl::distance(&ga, pose_a, &gb, pose_b, ask, apart);
+    fcl::DistanceRequestd request(true);
+    request.gjk_solver_type = fcl::GJKSolverType::GST_INDEP;  // the libccd solver asserts on flat contacts
+    const double gap = fcl::distance(&ga, pose_a, &gb, pose_b, request, apart);
     if (gap > reach_m) return;
     PointPair p;
     if (gap > 0) {

@@ -31,7 +31,7 @@ class OdeDetector : public Detector {
 
   int add(const ShapeDef& shape, const WorldDef& world) override {
     Shape s{shape, Eigen::Isometry3d::Identity(), geoms_.make(world, shape, true, Eigen::Isometry3d::Identity())};
-    if (shape.kind == ShapeKind::kHeightfield) s.offset = ode::Geoms::placed(world, shape, s.offset);
+    if (shape.kind == ShapeKind::kHeightfield) s.offset = ode::Geoms::geom_pose(world, shape, s.offset);
     shapes_.push_back(s);
     return static_cast<int>(shapes_.size()) - 1;
   }

@@ -41,7 +41,7 @@ Shapes::Shapes(const WorldDef& world, const std::vector<dBodyID>& bodies, const 
     dSpaceAdd(space_.get(), geom);
     if (shape.kind == ShapeKind::kPlane && !id) continue;
     const Eigen::Isometry3d placed =
-        Geoms::placed(world, shape, id ? about_centre(body, shape.pose) : body.pose * shape.pose);
+        Geoms::geom_pose(world, shape, id ? about_centre(body, shape.pose) : body.pose * shape.pose);
     dQuaternion q;
     set_quaternion(Eigen::Quaterniond(placed.linear()).normalized(), q);
     const Eigen::Vector3d p = placed.translation();

@@ -68,14 +68,14 @@ void convex_pair(const Convex& a, const Isometry3d& pose_a, const Convex& b, con
     n = (near.on_b - near.on_a) / near.distance_m;
     nearest = {near.on_a, near.on_b, near.distance_m};
   } else {
-    const SeparatingAxis way = overlap_axis(a, b, a_from_b);
-    n = way.along;
+    const SeparatingAxis axis = overlap_axis(a, b, a_from_b);
+    n = axis.along;
     const Vector3d on_a = support(a, n), on_b = a_from_b * support(b, a_from_b.linear().transpose() * -n);
     // The support points of crossing edges are not at the crossing. Their midpoint is at least at the right height.
     Vector3d flat = (on_a + on_b) / 2;
     flat -= flat.dot(n) * n;
-    nearest = {flat + on_a.dot(n) * n, flat + on_b.dot(n) * n, way.gap_m};
-    if (way.gap_m > reach) return;
+    nearest = {flat + on_a.dot(n) * n, flat + on_b.dot(n) * n, axis.gap_m};
+    if (axis.gap_m > reach) return;
   }
   corners(n);
   if (min_gap_m(found) > nearest.gap_m + kSame_m) found.add(nearest);

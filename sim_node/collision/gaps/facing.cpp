@@ -19,7 +19,7 @@ constexpr double kSamePosition_m = 1e-9;
 constexpr double kParallel = 0.05;
 // Parallel lines face each other when their lateral distance is at most this, m. On round sides with a radius of 20
 // mm the gap error stays below 0.25 um.
-constexpr double kAside_m = 1e-4;
+constexpr double kLateralTolerance_m = 1e-4;
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -55,8 +55,8 @@ struct Projected {
   double height_at(const Vector2d& p) const {
     if (flat()) return offset / tilt + slope.dot(p);
     if (f.count == 1) return height[0];
-    const Vector2d way = at[1] - at[0];
-    const double t = std::clamp((p - at[0]).dot(way) / way.squaredNorm(), 0.0, 1.0);
+    const Vector2d direction = at[1] - at[0];
+    const double t = std::clamp((p - at[0]).dot(direction) / direction.squaredNorm(), 0.0, 1.0);
     return height[0] + t * (height[1] - height[0]);
   }
   Vector3d point(const Vector2d& p) const { return p.x() * u + p.y() * v + height_at(p) * n; }
@@ -95,11 +95,11 @@ struct Collector {
     // Point of the rim with the least gap. The gap is linear over both planes, so it falls steepest along one
     // direction in the plane of the disc.
     const Vector2d rise = b.slope - a.slope;
-    Vector3d way = rise.x() * of.u + rise.y() * of.v;
-    way = -(way - way.dot(of.f.normal) * of.f.normal);
-    const double steep = way.norm();
+    Vector3d direction = rise.x() * of.u + rise.y() * of.v;
+    direction = -(direction - direction.dot(of.f.normal) * of.f.normal);
+    const double steep = direction.norm();
     if (steep * of.f.radius_m < 1e-9) return;
-    const Vector3d rim = of.f.centre + of.f.radius_m / steep * way;
+    const Vector3d rim = of.f.centre + of.f.radius_m / steep * direction;
     const Vector2d p(rim.dot(of.u), rim.dot(of.v));
     if (other.over(p)) add(p);
   }
@@ -115,8 +115,8 @@ struct Collector {
   void edge_with_disc(const Projected& of, std::size_t i, const Projected& disc) {
     // In the plane of the disc, projected along n, the edge is also a line.
     const Vector2d &p = of.at[i], &q = of.at[(i + 1) % of.corners()];
-    const Vector3d from = disc.point(p) - disc.f.centre, way = disc.point(q) - disc.f.centre - from;
-    const double aa = way.squaredNorm(), bb = from.dot(way),
+    const Vector3d from = disc.point(p) - disc.f.centre, direction = disc.point(q) - disc.f.centre - from;
+    const double aa = direction.squaredNorm(), bb = from.dot(direction),
                  cc = from.squaredNorm() - disc.f.radius_m * disc.f.radius_m;
     const double root = bb * bb - aa * cc;
     if (root <= 0 || aa == 0) return;
@@ -128,8 +128,8 @@ struct Collector {
 
   // Two discs nearly always lie in parallel planes. Otherwise the corners and the lowest points remain.
   void disc_with_disc() {
-    const Vector3d way = b.f.centre - a.f.centre;
-    const Vector2d middle(way.dot(a.u), way.dot(a.v));
+    const Vector3d direction = b.f.centre - a.f.centre;
+    const Vector2d middle(direction.dot(a.u), direction.dot(a.v));
     const double d = middle.norm(), ra = a.f.radius_m, rb = b.f.radius_m;
     if (d == 0 || d >= ra + rb || d <= std::abs(ra - rb)) return;
     const double x = (d * d + ra * ra - rb * rb) / (2 * d), y = std::sqrt(std::max(0.0, ra * ra - x * x));
@@ -146,10 +146,10 @@ struct Collector {
     if (la == 0 || lb == 0) return;
     if (std::abs(cross(pq, st)) > kParallel * std::sqrt(la * lb))
       return edge_with_edge(a.at[0], a.at[1], b.at[0], b.at[1]);
-    const auto ends = [&](const Projected& of, const Projected& other, const Vector2d& way, double length2) {
+    const auto ends = [&](const Projected& of, const Projected& other, const Vector2d& direction, double length2) {
       for (std::size_t i = 0; i < 2; ++i) {
-        const double t = (of.at[i] - other.at[0]).dot(way) / length2;
-        if (t >= 0 && t <= 1 && (other.at[0] + t * way - of.at[i]).norm() <= kAside_m) add(of.at[i]);
+        const double t = (of.at[i] - other.at[0]).dot(direction) / length2;
+        if (t >= 0 && t <= 1 && (other.at[0] + t * direction - of.at[i]).norm() <= kLateralTolerance_m) add(of.at[i]);
       }
     };
     ends(a, b, st, lb);

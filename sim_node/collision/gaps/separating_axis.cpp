@@ -64,8 +64,8 @@ void each_edge(const Convex& c, Visit&& visit) {
 
 // Direction between centres. Depends on the poses only, also for coincident centres.
 Vector3d between_centres(const Eigen::Isometry3d& a_from_b) {
-  const Vector3d way = a_from_b.translation();
-  return way.norm() > 0 ? Vector3d(way.normalized()) : Vector3d(Vector3d::UnitZ());
+  const Vector3d direction = a_from_b.translation();
+  return direction.norm() > 0 ? Vector3d(direction.normalized()) : Vector3d(Vector3d::UnitZ());
 }
 
 // Shrinks the cores step by step until they are separated.
@@ -84,14 +84,14 @@ void offer_shrunk(Search& s) {
 // The same as the general search, in a quarter of the time (Gottschalk, Lin and Manocha 1996: the first six axes).
 SeparatingAxis best_face_axis_of_boxes(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b) {
   const Eigen::Matrix3d turn = a_from_b.linear(), size = turn.cwiseAbs();
-  const Vector3d way = a_from_b.translation(), way_b = turn.transpose() * way;
-  const Vector3d of_a = way.cwiseAbs() - a.half_m - size * b.half_m,
-                 of_b = way_b.cwiseAbs() - b.half_m - size.transpose() * a.half_m;
+  const Vector3d direction = a_from_b.translation(), direction_b = turn.transpose() * direction;
+  const Vector3d of_a = direction.cwiseAbs() - a.half_m - size * b.half_m,
+                 of_b = direction_b.cwiseAbs() - b.half_m - size.transpose() * a.half_m;
   SeparatingAxis best;
   for (int i = 0; i < 3; ++i)
-    if (of_a[i] > best.gap_m + kBetter_m) best = {(way[i] < 0 ? -1.0 : 1.0) * Vector3d::Unit(i), of_a[i]};
+    if (of_a[i] > best.gap_m + kBetter_m) best = {(direction[i] < 0 ? -1.0 : 1.0) * Vector3d::Unit(i), of_a[i]};
   for (int i = 0; i < 3; ++i)
-    if (of_b[i] > best.gap_m + kBetter_m) best = {(way_b[i] < 0 ? -1.0 : 1.0) * turn.col(i), of_b[i]};
+    if (of_b[i] > best.gap_m + kBetter_m) best = {(direction_b[i] < 0 ? -1.0 : 1.0) * turn.col(i), of_b[i]};
   return best;
 }
 

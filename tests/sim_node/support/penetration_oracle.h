@@ -76,12 +76,12 @@ class PenetrationOracle {
     if (!shapes_[i].mesh && !shapes_[j].mesh) {
       ode_->query(shapes_[i].ode, poses_[i], shapes_[j].ode, poses_[j], 0, pairs_);
       double depth = 0;
-      Vector3d way = Vector3d::UnitZ();
+      Vector3d direction = Vector3d::UnitZ();
       for (const PointPair& p : pairs_)
-        if (-p.gap_m > depth) depth = -p.gap_m, way = p.normal;
+        if (-p.gap_m > depth) depth = -p.gap_m, direction = p.normal;
       const auto is_cylinder = [&](std::size_t k) { return world_.shapes[k].kind == ShapeKind::kCylinder; };
       const bool plane = world_.shapes[i].kind == ShapeKind::kPlane || world_.shapes[j].kind == ShapeKind::kPlane;
-      return depth > 0 && !plane && (is_cylinder(i) || is_cylinder(j)) ? min_overlap(i, j, way) : depth;
+      return depth > 0 && !plane && (is_cylinder(i) || is_cylinder(j)) ? min_overlap(i, j, direction) : depth;
     }
     return shapes_[i].mesh ? of_mesh(i, j) : of_mesh(j, i);
   }
