@@ -26,7 +26,7 @@ std::int64_t step_begin(std::int64_t n) { return (1000 * n + 59) / 60; }
 
 // Motion whose acceleration changes at a promotion, as by a touch. Between samples on cubics, rendered poses are
 // exact.
-struct Course {
+struct Trajectory {
   std::map<std::int64_t, Eigen::Vector3d> positions, velocities;  // at the start of each piece, by ms
   std::map<std::int64_t, Eigen::Vector3d> accelerations;
 
@@ -62,8 +62,8 @@ contact_t contact(std::int64_t id, int a, int b) {
 // The dual simulation as its publisher sees it.
 class Dual {
  public:
-  Dual(std::size_t bodies, unsigned seed) : courses(bodies), motions(bodies), random_(seed), ahead_(bodies, 0) {
-    for (Course& c : courses) c.bend(0, acceleration());
+  Dual(std::size_t bodies, unsigned seed) : trajectories(bodies), motions(bodies), random_(seed), ahead_(bodies, 0) {
+    for (Trajectory& c : trajectories) c.bend(0, acceleration());
   }
 
   void tick() {
@@ -73,27 +73,27 @@ class Dual {
     const bool fresh = now - 1 == step_begin(step_);
     if (fresh) ++step_;
     // Some bodies are promoted in the middle of a step, some leave at its end.
-    for (std::size_t i = 0; i < courses.size(); ++i) {
+    for (std::size_t i = 0; i < trajectories.size(); ++i) {
       if (!ahead_[i] || random_() % 300 != 0) continue;
       ahead_[i] = 0;
-      courses[i].bend(now, acceleration());
+      trajectories[i].bend(now, acceleration());
       promoted_.push_back(static_cast<int>(i));
     }
-    for (std::size_t i = 1; fresh && i < courses.size(); ++i)  // body 0 stays ahead from begin to end
+    for (std::size_t i = 1; fresh && i < trajectories.size(); ++i)  // body 0 stays ahead from begin to end
       if (!ahead_[i] && random_() % 4 == 0 && std::find(promoted_.begin(), promoted_.end(), i) == promoted_.end())
         ahead_[i] = 1;
     bodies_.clear();
-    foreseen_.clear();
-    for (std::size_t i = 0; i < courses.size(); ++i) {
-      motions[i] = courses[i].at(ahead_[i] ? std::max<std::int64_t>(0, step_begin(step_ - 1)) : now);
+    predicted_.clear();
+    for (std::size_t i = 0; i < trajectories.size(); ++i) {
+      motions[i] = trajectories[i].at(ahead_[i] ? std::max<std::int64_t>(0, step_begin(step_ - 1)) : now);
       if (!ahead_[i]) continue;
       bodies_.push_back(static_cast<int>(i));
-      foreseen_.push_back(courses[i].at(step_begin(step_)));
+      predicted_.push_back(trajectories[i].at(step_begin(step_)));
     }
     look_ahead.begins = sync::sim_time(step_begin(step_ - 1) * kMs);
     look_ahead.time = sync::sim_time(step_begin(step_) * kMs);
     look_ahead.bodies = bodies_;
-    look_ahead.motions = foreseen_;
+    look_ahead.motions = predicted_;
     look_ahead.fresh = fresh;
     look_ahead.promoted = promoted_;
     look_ahead.contacts = [this](std::vector<contact_t>& out) {
@@ -113,7 +113,7 @@ class Dual {
 
   std::int64_t now = 0;
   bool touching = false;  // body 0 is always in contact with all others
-  std::vector<Course> courses;
+  std::vector<Trajectory> trajectories;
   std::vector<BodyMotion> motions;
   LookAhead look_ahead;
   StateSource source;
@@ -126,7 +126,7 @@ class Dual {
   std::mt19937 random_;
   std::vector<char> ahead_;
   std::vector<int> bodies_, promoted_;
-  std::vector<BodyMotion> foreseen_;
+  std::vector<BodyMotion> predicted_;
   std::int64_t step_ = 0;
 };
 
@@ -183,7 +183,7 @@ TEST_CASE("Rendered poses of bodies computed ahead match the bodies, also after 
     for (std::size_t i = 0; i < bodies; ++i) {
       const auto of = [&](std::int64_t ms) {
         return (history.pose(static_cast<int>(i), sync::sim_time(ms * kMs)).value.position -
-                world.courses[i].at(ms).position_m)
+                world.trajectories[i].at(ms).position_m)
             .norm();
       };
       worst_m = std::max(worst_m, of(world.now - 60));

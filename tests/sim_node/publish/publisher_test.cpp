@@ -162,15 +162,15 @@ TEST_CASE("Each step publishes touch models, events, contacts of tools, and only
 }
 
 TEST_CASE("Every event is repeated in each step for 50 ms, and a storm loses none") {
-  EventRepeater young(4);
+  EventRepeater repeater(4);
   std::map<std::int64_t, int> sent;
   std::int64_t id = 0;
   const int per_step = GENERATE(1, 20, 60);
   for (int i = 0; i < 400; ++i) {
     std::vector<contact_event_t> fresh;
     for (int k = 0; i < 300 && k < per_step; ++k) fresh.push_back(event(id++, i * std::int64_t{1'000'000}));
-    young.add(fresh, sync::sim_time(i * std::int64_t{1'000'000}));
-    const auto& due = young.due(sync::sim_time(i * std::int64_t{1'000'000}));
+    repeater.add(fresh, sync::sim_time(i * std::int64_t{1'000'000}));
+    const auto& due = repeater.due(sync::sim_time(i * std::int64_t{1'000'000}));
     CHECK(due.size() <= 64);
     std::set<std::int64_t> unique;
     for (const auto& e : due) {
@@ -179,7 +179,7 @@ TEST_CASE("Every event is repeated in each step for 50 ms, and a storm loses non
     }
   }
   CHECK(sent.size() == static_cast<std::size_t>(id));
-  CHECK(young.overflow() == 0);
+  CHECK(repeater.overflow() == 0);
   if (per_step == 1)
     for (const auto& [event_id, times] : sent) CHECK(times == 50);
 }

@@ -81,31 +81,31 @@ TEST_CASE("The picture of a height map is sent once, unchanged, for all material
 TEST_CASE("An invalid height map is refused with its line") {
   SceneFile absent(world("\n<tactus:material name='p' base='oak' " + kGood + "/>"));
   CHECK_THAT(absent.load_error(), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("\"planks.png\", which is not found"));
-  const auto refused = [](const std::string& attributes, const std::string& because) {
+  const auto expect_rejection = [](const std::string& attributes, const std::string& because) {
     CHECK_THAT(load_error(attributes), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains(because));
   };
   CHECK(load_error(kGood) == "");
   SECTION("a picture without size or height, and these without a picture") {
-    refused("bump='planks.png' bump_height='1mm'", "lacks its attribute \"bump_size\"");
-    refused("bump='planks.png' bump_size='1m 1m'", "lacks its attribute \"bump_height\"");
-    refused("bump_size='1m 1m'", "bump_size without bump");
-    refused("bump_height='1mm'", "bump_height without bump");
-    refused("bump='' bump_size='1m 1m' bump_height='1mm'", "lacks its attribute \"bump\"");
+    expect_rejection("bump='planks.png' bump_height='1mm'", "lacks its attribute \"bump_size\"");
+    expect_rejection("bump='planks.png' bump_size='1m 1m'", "lacks its attribute \"bump_height\"");
+    expect_rejection("bump_size='1m 1m'", "bump_size without bump");
+    expect_rejection("bump_height='1mm'", "bump_height without bump");
+    expect_rejection("bump='' bump_size='1m 1m' bump_height='1mm'", "lacks its attribute \"bump\"");
   }
   SECTION("invalid sizes and heights") {
     const auto sized = [](const std::string& size, const std::string& height) {
       return "bump='planks.png' bump_size='" + size + "' bump_height='" + height + "'";
     };
-    refused(sized("0.5m", "1mm"), "2 quantities");
-    refused(sized("1m 1m 1m", "1mm"), "2 quantities");
-    refused(sized("1m 0m", "1mm"), "between 0.0001 and 100 m");
-    refused(sized("-1m 1m", "1mm"), "between 0.0001 and 100 m");
-    refused(sized("1000m 1m", "1mm"), "between 0.0001 and 100 m");
-    refused(sized("1m nan", "1mm"), "bump_size");
-    refused(sized("1kg 1m", "1mm"), "bump_size");
-    refused(sized("1m 1m", "0"), "between 1e-07 and 0.1 m");
-    refused(sized("1m 1m", "-1mm"), "between 1e-07 and 0.1 m");
-    refused(sized("1m 1m", "2m"), "between 1e-07 and 0.1 m");
+    expect_rejection(sized("0.5m", "1mm"), "2 quantities");
+    expect_rejection(sized("1m 1m 1m", "1mm"), "2 quantities");
+    expect_rejection(sized("1m 0m", "1mm"), "between 0.0001 and 100 m");
+    expect_rejection(sized("-1m 1m", "1mm"), "between 0.0001 and 100 m");
+    expect_rejection(sized("1000m 1m", "1mm"), "between 0.0001 and 100 m");
+    expect_rejection(sized("1m nan", "1mm"), "bump_size");
+    expect_rejection(sized("1kg 1m", "1mm"), "bump_size");
+    expect_rejection(sized("1m 1m", "0"), "between 1e-07 and 0.1 m");
+    expect_rejection(sized("1m 1m", "-1mm"), "between 1e-07 and 0.1 m");
+    expect_rejection(sized("1m 1m", "2m"), "between 1e-07 and 0.1 m");
   }
   SECTION("a picture that is not a height map") {
     const auto unread = [](const sync::Bytes& picture, const std::string& because) {

@@ -76,7 +76,7 @@ TEST_CASE("All three removers agree on well-constructed meshes") {
 }
 
 TEST_CASE("The adjacency remover rejects a mesh with wrong adjacency and names the fault") {
-  const auto refused = [](const Soup& s, const std::string& why) {
+  const auto expect_rejection = [](const Soup& s, const std::string& why) {
     const Soup good = icosphere(1, 0.1);
     const ContactMesh bad(s.vertices, s.indices), fine(good.vertices, good.indices);
     CHECK_THROWS_WITH(MeshContact({.remover = DuplicateRemover::kAdjacency}).check_supported(fine, bad),
@@ -84,17 +84,17 @@ TEST_CASE("The adjacency remover rejects a mesh with wrong adjacency and names t
     CHECK_NOTHROW(MeshContact().check_supported(fine, bad));
     CHECK_NOTHROW(MeshContact({.remover = DuplicateRemover::kAdjacency}).check_supported(fine, fine));
   };
-  refused(plate(1, 1, 2, 2), "on one side only");
-  refused(doubled_and_reversed(icosphere(0, 1)), "on one side only");
+  expect_rejection(plate(1, 1, 2, 2), "on one side only");
+  expect_rejection(doubled_and_reversed(icosphere(0, 1)), "on one side only");
   Soup twice = icosphere(0, 1);
   twice.indices.insert(twice.indices.end(), {twice.indices[0], twice.indices[1], twice.indices[2]});
-  refused(twice, "twice in the same direction");
+  expect_rejection(twice, "twice in the same direction");
   Soup flat = icosphere(0, 1);
   flat.indices.insert(flat.indices.end(), {0, 0, 1});
-  refused(flat, "uses a vertex twice");
+  expect_rejection(flat, "uses a vertex twice");
   Soup line = icosphere(0, 1);
   line.vertices.insert(line.vertices.end(), {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}});
   line.indices.insert(line.indices.end(), {12, 13, 14});
-  refused(line, "no area");
-  refused(Soup{}, "no triangles");
+  expect_rejection(line, "no area");
+  expect_rejection(Soup{}, "no triangles");
 }
