@@ -123,7 +123,7 @@ TEST_CASE("A damaged file is refused or repaired, and never ends the process") {
 </child><axis><xyz>0 0 1</xyz></axis></joint></model>)");
   SceneFile file;
   std::mt19937 random(7);
-  int loaded = 0, expect_rejection = 0;
+  int loaded = 0, rejected = 0;
   for (int i = 0; i < 80; ++i) {
     std::string text = whole;
     const std::size_t at = random() % text.size();
@@ -140,9 +140,9 @@ TEST_CASE("A damaged file is refused or repaired, and never ends the process") {
     INFO(text);
     file.write("scene.sdf", text);
     const std::string sentence = file.load_error();
-    (sentence.empty() ? loaded : expect_rejection) += 1;
+    (sentence.empty() ? loaded : rejected) += 1;
     if (!sentence.empty()) CHECK_THAT(sentence, Catch::StartsWith("scene.sdf"));
   }
-  CHECK(expect_rejection > 25);
+  CHECK(rejected > 25);
   CHECK(loaded > 5);
 }

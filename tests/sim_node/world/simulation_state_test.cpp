@@ -262,7 +262,7 @@ TEST_CASE("A damaged or foreign state is rejected with a sentence, and nothing c
   const Bytes earlier = s.save();
   run(s, hand, path, 100);
   const Bytes now = s.save();
-  const auto expect_rejection = [&](const Bytes& bytes) {
+  const auto restore_error = [&](const Bytes& bytes) {
     const std::string why = s.restore(bytes);
     CHECK(!why.empty());
     CHECK(s.save() == now);
@@ -272,19 +272,19 @@ TEST_CASE("A damaged or foreign state is rejected with a sentence, and nothing c
   for (int i = 0; i < 200; ++i) {
     Bytes damaged = earlier;
     damaged[random() % damaged.size()] ^= static_cast<std::uint8_t>(1u << (random() % 8));
-    expect_rejection(damaged);
-    expect_rejection(Bytes(earlier.begin(), earlier.begin() + static_cast<std::ptrdiff_t>(random() % earlier.size())));
+    restore_error(damaged);
+    restore_error(Bytes(earlier.begin(), earlier.begin() + static_cast<std::ptrdiff_t>(random() % earlier.size())));
   }
-  CHECK_THAT(expect_rejection({}), Catch::Contains("not a saved state"));
+  CHECK_THAT(restore_error({}), Catch::Contains("not a saved state"));
   Bytes version = earlier;
   ++version[8];
-  CHECK_THAT(expect_rejection(version), Catch::Contains("version"));
+  CHECK_THAT(restore_error(version), Catch::Contains("version"));
   Simulation other(motor(), {});
   other.start(11);
-  CHECK_THAT(expect_rejection(other.save()), Catch::Contains("another scene"));
+  CHECK_THAT(restore_error(other.save()), Catch::Contains("another scene"));
   Simulation set_otherwise(w, exact());
   set_otherwise.start(11);
-  CHECK_THAT(expect_rejection(set_otherwise.save()), Catch::Contains("other settings"));
+  CHECK_THAT(restore_error(set_otherwise.save()), Catch::Contains("other settings"));
   CHECK(s.restore(earlier) == "");
 }
 
