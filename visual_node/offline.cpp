@@ -64,7 +64,7 @@ void Offline::add(const std::function<void(std::span<std::uint8_t>)>& read) {
   video_->write(rgba_);
   if (frames_) {
     std::ostringstream row;
-    row << video_->frames() - 1 << ',' << sync::to_ns(now()) << ',' << std::hex << video_->pixels_of_newest()
+    row << video_->frames() - 1 << ',' << sync::to_ns(now()) << ',' << std::hex << video_->newest_frame_hash()
         << '\n';
     frames_->write(row.str());
   }

@@ -39,13 +39,13 @@ void Options::complete(const std::string& node, const sync::NodeOptions& options
   log.snapshot_every_s = keep.snapshot_every_s;
 }
 
-std::unique_ptr<RenderOutput> open_stage(const Settings& settings, const Options& options) {
+std::unique_ptr<RenderOutput> open_render_output(const Settings& settings, const Options& options) {
   return options.no_pictures ? std::make_unique<RenderOutput>(settings) : std::make_unique<RenderOutput>(settings, options.window);
 }
 
 NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& stage, const Options& options, Offline* log)
     : SettingsRenderer(host, setting_fields()),
-      stage_(stage),
+      render_output_(stage),
       log_(log),
       world_(host.sense().snapshots<world_state_t>(channels::kWorldState, 4096)),
       events_(host.sense().events()),
@@ -55,13 +55,13 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& stage, const 
       walls_(host.node(), lock_),
       recording_(options.keep),
       overlays_(host.bus()),
-      desk_(host.bus()),
+      controls_(host.bus()),
       questions_(host.bus()) {
   host.node().set_rate(settings().rate_Hz);
   composer_.set_schedule([&sense = host.sense()](std::int64_t event, sync::HostTime happened) {
     return sense.schedule(event, happened);
   });
-  if (log_) composer_.foresee({}, {});
+  if (log_) composer_.set_expected_times({}, {});
   questions_.configure(settings());
   say(overlays_.configure(settings()));
   add_tags();
@@ -70,7 +70,7 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& stage, const 
 void NodeRenderer::add_tags() {
   sync::Tags& tags = host().node().tags();
   tags.add("picture", "us", [this] { return sync::to_seconds(took_) * 1e6; });
-  tags.add("quality", "1", [this] { return stage_.quality().step(); });
+  tags.add("quality", "1", [this] { return render_output_.quality().step(); });
   tags.add("flashed", "1", &flashed_);
 }
 
@@ -82,41 +82,41 @@ sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Setting
   take_messages();
   loaded_ = true;
   scene_ = scenes.scene();
-  std::vector<std::string> trouble;
+  std::vector<std::string> warnings;
   const SceneView& view =
       composer_.load(*scene_, meshes_of(scenes), settings,
-                     height_maps_of(*scene_, sync::pictures_of(scenes), trouble), look_files_of(scenes, trouble));
-  trouble.insert(trouble.end(), view.trouble().begin(), view.trouble().end());
-  if (!view.lens().trouble().empty()) trouble.push_back(view.lens().trouble());
-  for (const std::string& sentence : overlays_.configure(settings)) trouble.push_back(sentence);
+                     height_maps_of(*scene_, sync::pictures_of(scenes), warnings), look_files_of(scenes, warnings));
+  warnings.insert(warnings.end(), view.warnings().begin(), view.warnings().end());
+  if (!view.lens().warning().empty()) warnings.push_back(view.lens().warning());
+  for (const std::string& sentence : overlays_.configure(settings)) warnings.push_back(sentence);
   questions_.configure(settings);
-  say(trouble);
+  say(warnings);
   lock_.load(*scene_, settings);
   const sync::Status preparing{node_health_t::WAITING, "prepares the pictures of the scene"};
   host().node().set_state(preparing.state, preparing.note);
-  stage_.load(view, composer_.frame(host().clock(), 0).list, settings, [this] {
+  render_output_.load(view, composer_.frame(host().clock(), 0).list, settings, [this] {
     if (!log_) host().node().heartbeat();
   });
   begin_outputs(view, settings);
   return {.rate_Hz = settings.rate_Hz,
-          .output_latency = sync::from_seconds(1 / settings.rate_Hz) + FrameComposer::kFlashesTake,
+          .output_latency = sync::from_seconds(1 / settings.rate_Hz) + FrameComposer::kInitialFlashTime,
           .status = preparing};
 }
 
 void NodeRenderer::begin_outputs(const SceneView& view, const Settings& settings) {
   if (log_)
     log_->begin(view.width(), view.height(), settings);
-  else if (stage_.draws())
+  else if (render_output_.draws())
     recording_.begin(view.width(), view.height(), settings);
-  if (stage_.draws()) stream_.begin(view.width(), view.height(), settings);
+  if (render_output_.draws()) stream_.begin(view.width(), view.height(), settings);
 }
 
 void NodeRenderer::change(const Settings& settings, const std::string& name) {
   take_messages();  // they came before the change
   LiveOverlays::check(settings);
   if (name.starts_with("stream")) {
-    if (!stage_.draws()) throw std::invalid_argument("it draws no pictures that could be streamed");
-    stream_.begin(stage_.picture().width(), stage_.picture().height(), settings);
+    if (!render_output_.draws()) throw std::invalid_argument("it draws no pictures that could be streamed");
+    stream_.begin(render_output_.picture().width(), render_output_.picture().height(), settings);
   } else {
     overlays_.configure(settings);
     questions_.configure(settings);
@@ -132,7 +132,7 @@ void NodeRenderer::receive(sync::HostTime now) {
 
 void NodeRenderer::take_messages() {
   while (const auto m = world_.pop())
-    composer_.push(m->message, m->arrival), overlays_.push(m->message), desk_.push(m->message);
+    composer_.push(m->message, m->arrival), overlays_.push(m->message), controls_.push(m->message);
   while (const auto m = events_.pop()) composer_.push(m->message, m->arrival), overlays_.push(m->message, m->arrival);
   while (const auto m = tools_.pop()) composer_.push(m->message, m->arrival), overlays_.push(m->message);
   walls_.receive();
@@ -142,14 +142,14 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   take_messages();
   if (std::exchange(loaded_, false) && host().live()) return std::nullopt;  // that took several ticks
   recover(now);
-  const std::optional<AgreedFrame> agreed = begin_frame();
+  const std::optional<LockedFrame> agreed = begin_frame();
   const SceneView* view = composer_.view();
-  if (stage_.draws()) questions_.step();
-  if (host().live() && stage_.draws())
-    desk_.step(now, stage_.display(), overlays_, questions_, frame_.list,
+  if (render_output_.draws()) questions_.step();
+  if (host().live() && render_output_.draws())
+    controls_.step(now, render_output_.display(), overlays_, questions_, frame_.list,
                view ? std::span(view->geometries()) : std::span<const Triangles>{},
                [this](const std::string& sentence) { host().say(sentence); });
-  const bool fresh = stage_.due(now, host().sense().output());
+  const bool fresh = render_output_.due(now, host().sense().output());
   if (fresh) draw(agreed ? host().clock() : now, agreed);
   host().sense().publish(host().clock());  // before the pixels are read back
   keep(now, fresh);
@@ -160,12 +160,12 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
 }
 
 void NodeRenderer::recover(sync::HostTime now) {
-  if (const std::string lost = stage_.recover(now, composer_.view(), frame_.list); !lost.empty()) host().say(lost);
-  say(stage_.take_trouble());
+  if (const std::string lost = render_output_.recover(now, composer_.view(), frame_.list); !lost.empty()) host().say(lost);
+  say(render_output_.take_warnings());
 }
 
 // Which frame this tick draws: of a room, one that its walls agree on.
-std::optional<AgreedFrame> NodeRenderer::begin_frame() {
+std::optional<LockedFrame> NodeRenderer::begin_frame() {
   // A wall that is slow receives the pose of its head all the same.
   if (lock_.on() && host().live()) walls_.catch_up([this](sync::HostTime now) { receive(now); });
   const auto agreed = lock_.begin(host().clock(), host().sense().profile_delay());
@@ -175,7 +175,7 @@ std::optional<AgreedFrame> NodeRenderer::begin_frame() {
   return agreed;
 }
 
-void NodeRenderer::draw(sync::HostTime now, const std::optional<AgreedFrame>& agreed) {
+void NodeRenderer::draw(sync::HostTime now, const std::optional<LockedFrame>& agreed) {
   const sync::ScopedPhaseTimer rendering(sync::Phase::kRender);
   const sync::ModalityEndpoint& sense = host().sense();
   const auto meanwhile = [this](sync::HostTime t) { receive(t); };
@@ -184,18 +184,18 @@ void NodeRenderer::draw(sync::HostTime now, const std::optional<AgreedFrame>& ag
   const sync::HostTime heard = world_.count().newest_arrival;
   frame_ = agreed ? composer_.frame(now, *agreed, heard)
                   : composer_.frame(now, slot_, sense.delay(), heard, sense.profile_delay());
-  stage_.draw_scene(frame_.list, output_);
+  render_output_.draw_scene(frame_.list, output_);
   const sync::HostTime drawn = host().clock();
   if (agreed && !log_) walls_.wait_for_latch(*agreed);
   // Late latch: what arrived while the surfaces were drawn still flashes in this frame.
   const sync::HostTime latched = log_ ? host().clock() : host().node().poll();
   if (!log_) receive(latched);
-  composer_.latch(frame_, latched, agreed ? agreed->delay : sense.delay(), stage_.held());
+  composer_.latch(frame_, latched, agreed ? agreed->delay : sense.delay(), render_output_.held());
   draw_overlays(latched);
   const sync::HostTime ready = host().clock();
   if (agreed && !log_) lock_.drawn(drawn - now, ready - latched), walls_.hold(*agreed, meanwhile);
   waited_ = agreed ? (latched - drawn) + (host().clock() - ready) : sync::Nanoseconds(0);
-  stage_.show();
+  render_output_.show();
   fence_ = host().clock();
   times_ = {now, latched};
   took_ = fence_ - now;
@@ -204,21 +204,21 @@ void NodeRenderer::draw(sync::HostTime now, const std::optional<AgreedFrame>& ag
 }
 
 void NodeRenderer::draw_overlays(sync::HostTime latched) {
-  if (overlays_.on().any() && stage_.draws()) {
+  if (overlays_.on().any() && render_output_.draws()) {
     const sync::ModalityEndpoint& sense = host().sense();
-    PanelFacts facts;
-    facts.rendering = took_;
-    facts.period = sync::from_seconds(1 / settings().rate_Hz);
-    facts.quality = stage_.quality().step();
-    facts.qualities = stage_.quality().steps();
-    facts.profile = sense.profile_name();
-    facts.delay = sense.delay();
-    facts.profile_delay = sense.profile_delay();
-    facts.output = output_;
-    overlays_.append(frame_, facts, latched, stage_.picture().width(), stage_.picture().height());
+    PanelData panel;
+    panel.rendering = took_;
+    panel.period = sync::from_seconds(1 / settings().rate_Hz);
+    panel.quality = render_output_.quality().step();
+    panel.qualities = render_output_.quality().steps();
+    panel.profile = sense.profile_name();
+    panel.delay = sense.delay();
+    panel.profile_delay = sense.profile_delay();
+    panel.output = output_;
+    overlays_.append(frame_, panel, latched, render_output_.picture().width(), render_output_.picture().height());
   }
-  if (stage_.draws()) questions_.append(frame_, latched, stage_.picture().width(), stage_.picture().height());
-  stage_.draw_over(frame_.list);
+  if (render_output_.draws()) questions_.append(frame_, latched, render_output_.picture().width(), render_output_.picture().height());
+  render_output_.draw_flashes_and_overlay(frame_.list);
 }
 
 // The picture is out: reports the events that it is the first to show.
@@ -237,25 +237,25 @@ void NodeRenderer::present(sync::HostTime latched) {
 }
 
 void NodeRenderer::keep(sync::HostTime now, bool fresh) {
-  const auto read = [this](std::span<std::uint8_t> rgba) { stage_.picture().read(rgba); };
+  const auto read = [this](std::span<std::uint8_t> rgba) { render_output_.picture().read(rgba); };
   if (log_) return log_->add(read);
-  if (auto pair = stage_.draws() ? recording_.add(slot_, fresh ? fence_ : now + took_, read) : std::nullopt) {
+  if (auto pair = render_output_.draws() ? recording_.add(slot_, fresh ? fence_ : now + took_, read) : std::nullopt) {
     times_.read = sync::host_now();
     host().bus().publish(channels::kMediaClock, *pair);
     if (fresh && settings().motion_marker == "strip")
       for (media_clock_t& m : stages_of(*pair, times_)) host().bus().publish(channels::kMediaClock, m);
   }
-  if (fresh && stage_.draws())
+  if (fresh && render_output_.draws())
     stream_.add(now, frame_.instant ? sync::to_ns(*frame_.instant) : -1,
                 fence_ + sync::from_seconds(settings().display_latency_s), read);
   for (picture_chunk_t& chunk : stream_.take_chunks())
     host().bus().publish(channels::kPictureChunk, chunk, sync::Port::kBulk);
-  if (const std::string trouble = recording_.trouble(); trouble != said_) host().say(said_ = trouble);
+  if (const std::string error = recording_.error(); error != last_reported_error_) host().say(last_reported_error_ = error);
 }
 
 sync::Status NodeRenderer::status(sync::HostTime now, bool fresh) {
   const std::string walls = lock_.note(now), video = walls.empty() ? recording_.note() : walls;
-  QualityControl& quality = stage_.quality();
+  QualityControl& quality = render_output_.quality();
   if (fresh && scene_) quality.add(sync::host_now() - now - waited_);
   if (const std::string change = quality.take_change(); !change.empty()) host().say(change);
   return {frame_.state, frame_.note + (frame_.note.empty() || video.empty() ? "" : "; ") + video, quality.step(),

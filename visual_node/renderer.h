@@ -36,7 +36,7 @@ struct Options {
 };
 
 // What pictures are drawn on. Throws std::runtime_error with one sentence.
-std::unique_ptr<RenderOutput> open_stage(const Settings& settings, const Options& options);
+std::unique_ptr<RenderOutput> open_render_output(const Settings& settings, const Options& options);
 
 class NodeRenderer : public sync::SettingsRenderer<Settings> {
  public:
@@ -44,7 +44,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   NodeRenderer(sync::RendererHost& host, RenderOutput& stage, const Options& options, Offline* log);
 
   std::optional<sync::Status> step(sync::HostTime now) override;
-  bool closed() override { return stage_.closed() || desk_.closing(); }
+  bool closed() override { return render_output_.closed() || controls_.closing(); }
   std::string finish_log(sync::HostTime clock) override { return log_->result(flashed_, reported_ - flashed_, clock); }
   void finish() override;
 
@@ -56,15 +56,15 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   void receive(sync::HostTime now);
   void take_messages();
   void recover(sync::HostTime now);
-  std::optional<AgreedFrame> begin_frame();
-  void draw(sync::HostTime now, const std::optional<AgreedFrame>& agreed);
+  std::optional<LockedFrame> begin_frame();
+  void draw(sync::HostTime now, const std::optional<LockedFrame>& agreed);
   void draw_overlays(sync::HostTime latched);
   void present(sync::HostTime latched);
   void keep(sync::HostTime now, bool fresh);
   sync::Status status(sync::HostTime now, bool fresh);
   void say(const std::vector<std::string>& sentences) const;
 
-  RenderOutput& stage_;
+  RenderOutput& render_output_;
   Offline* log_;
   sync::ModalityEndpoint::Stream<world_state_t>& world_;
   sync::ModalityEndpoint::Stream<contact_events_t>& events_;
@@ -75,7 +75,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   Recording recording_;
   PictureStream stream_;
   LiveOverlays overlays_;
-  WindowControls desk_;
+  WindowControls controls_;
   LiveQuestions questions_;
   const scene_t* scene_ = nullptr;
   bool loaded_ = false;  // in this tick
@@ -86,7 +86,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   sync::Nanoseconds took_{0}, waited_{0};
   std::int64_t slot_ = -1, periods_ = 0;  // of the video; of the loop, ticked and missed
   std::int64_t reported_ = 0, flashed_ = 0;
-  std::string said_;
+  std::string last_reported_error_;
 };
 
 }  // namespace tactus::visual

@@ -40,16 +40,16 @@ class Factory : public sync::RendererFactory {
     const auto settings = sync::settings_of(visual::setting_fields(), kVisual.name, options.set);
     options_.complete(kVisual.name, options);
     log_ = visual::Offline::open(options_.log, settings.rate_Hz, sync::host_now());
-    stage_ = visual::open_stage(settings, options_);
-    std::cerr << options.name << ": " << stage_->description() << std::endl;
+    render_output_ = visual::open_render_output(settings, options_);
+    std::cerr << options.name << ": " << render_output_->description() << std::endl;
     return log_ ? &log_->run() : nullptr;
   }
   std::unique_ptr<sync::Renderer> make(sync::RendererHost& host) override {
-    return std::make_unique<visual::NodeRenderer>(host, *stage_, options_, log_.get());
+    return std::make_unique<visual::NodeRenderer>(host, *render_output_, options_, log_.get());
   }
   visual::Options options_;
   std::unique_ptr<visual::Offline> log_;
-  std::unique_ptr<visual::RenderOutput> stage_;
+  std::unique_ptr<visual::RenderOutput> render_output_;
 };
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 namespace tactus::visual {
 
-std::string why_context_is_lost() {
+std::string context_loss_reason() {
   // libepoxy aborts the process when the driver has none of these.
   if (epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness") ||
       epoxy_has_gl_extension("GL_ARB_robustness")) {

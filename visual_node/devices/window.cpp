@@ -59,7 +59,7 @@ class Window : public Display {
     if (o.quad_buffer) open(title, o, GLFW_NATIVE_CONTEXT_API, true);
     if (!window_) {
       if (o.quad_buffer)
-        trouble_ += std::string(trouble_.empty() ? "" : "; ") +
+        warning_ += std::string(warning_.empty() ? "" : "; ") +
                     "this display has no buffer for each eye; both eyes are shown side by side";
       open(title, o, GLFW_EGL_CONTEXT_API, false);
     }
@@ -92,8 +92,8 @@ class Window : public Display {
   bool closed() override {
     return !lost_ && (glfwWindowShouldClose(window_) || (x11_window_ != 0 && destroyed_ == x11_window_));
   }
-  std::string lost() override {
-    return lost_ ? "the display server of the window is gone" : why_context_is_lost();
+  std::string loss_reason() override {
+    return lost_ ? "the display server of the window is gone" : context_loss_reason();
   }
   bool server_gone() override { return lost_; }
   bool has_screen() const override { return true; }
@@ -113,7 +113,7 @@ class Window : public Display {
     }
     const GLFWvidmode* mode = monitor_ ? glfwGetVideoMode(monitor_) : nullptr;
     if (!mode) {
-      trouble_ = "no monitor was found: the window keeps its size";
+      warning_ = "no monitor was found: the window keeps its size";
       return;
     }
     glfwGetWindowPos(window_, &windowed_x_, &windowed_y_);
@@ -185,7 +185,7 @@ class Window : public Display {
     GLFWmonitor** monitors = glfwGetMonitors(&count);
     if (count == 0) return;
     if (number >= count)
-      trouble_ = "there is no monitor " + std::to_string(number) + "; using the last of " + std::to_string(count) +
+      warning_ = "there is no monitor " + std::to_string(number) + "; using the last of " + std::to_string(count) +
                  ", counted from 0";
     monitor_ = monitors[std::clamp(number, 0, count - 1)];
   }
@@ -195,7 +195,7 @@ class Window : public Display {
     const GLFWvidmode* mode = monitor_ ? glfwGetVideoMode(monitor_) : nullptr;
     const int max_width = mode ? mode->width : 4096, max_height = mode ? mode->height : 4096;
     if (windowed_width_ > max_width || windowed_height_ > max_height)
-      trouble_ += std::string(trouble_.empty() ? "" : "; ") +
+      warning_ += std::string(warning_.empty() ? "" : "; ") +
                   "the window is larger than its monitor; it is reduced to " +
                   std::to_string(std::min(windowed_width_, max_width)) + " x " +
                   std::to_string(std::min(windowed_height_, max_height)) + " pixels";

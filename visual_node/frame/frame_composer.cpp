@@ -65,7 +65,7 @@ Frame FrameComposer::frame(sync::HostTime now, std::int64_t number, sync::Nanose
   return frame;
 }
 
-Frame FrameComposer::frame(sync::HostTime now, const AgreedFrame& agreed, sync::HostTime newest_arrival) {
+Frame FrameComposer::frame(sync::HostTime now, const LockedFrame& agreed, sync::HostTime newest_arrival) {
   due_ = agreed.here;
   Frame frame;
   frame.number = agreed.number;

@@ -11,7 +11,7 @@ namespace tactus::visual {
 class FrameGrid {
  public:
   // A frame this far before the last one means that the clock was put back, or is another clock.
-  static constexpr std::int64_t kPutBack = 3;
+  static constexpr std::int64_t kMaxFramesBack = 3;
 
   explicit FrameGrid(double rate_Hz = 60) : period_ns_(1e9 / rate_Hz) {}
 

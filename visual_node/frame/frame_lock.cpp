@@ -53,9 +53,9 @@ bool FrameLock::inputs_complete(sync::HostTime now) const {
   return clock_.newest() >= by && (!head || *head >= by);
 }
 
-std::optional<AgreedFrame> FrameLock::begin(sync::HostTime now, sync::Nanoseconds profile_delay) {
+std::optional<LockedFrame> FrameLock::begin(sync::HostTime now, sync::Nanoseconds profile_delay) {
   if (!on()) return std::nullopt;
-  AgreedFrame frame;
+  LockedFrame frame;
   const std::optional<std::int64_t> before = grid_.last();
   frame.number = grid_.pick(clock_.room(now + likely() - kGrace, now));
   if (before) frame.skipped = std::clamp<std::int64_t>(frame.number - *before - 1, 0, kMaxSkipped);
@@ -73,10 +73,10 @@ std::optional<AgreedFrame> FrameLock::begin(sync::HostTime now, sync::Nanosecond
 
 sync::Nanoseconds FrameLock::lead() const {
   const sync::Nanoseconds safe = surfaces_.second_longest() + flashes_.second_longest() + kMargin;
-  return std::max(likely(), std::min(safe, lag_ - kOnTheWay));
+  return std::max(likely(), std::min(safe, lag_ - kMessageLatency));
 }
 
-void FrameLock::show_world(AgreedFrame& frame, RoomTime by, sync::Nanoseconds profile_delay) {
+void FrameLock::show_world(LockedFrame& frame, RoomTime by, sync::Nanoseconds profile_delay) {
   const sim_clock_t published = clock_.published_by(by);
   // The host times of this map are the room's.
   const sync::TimeMap map{sync::sim_time(published.sim_ns), sync::host_time(published.host_ns), published.rate};
@@ -89,7 +89,7 @@ void FrameLock::show_world(AgreedFrame& frame, RoomTime by, sync::Nanoseconds pr
   frame.world = map.to_sim(step_begin);
 }
 
-sync::HostTime FrameLock::latch_at(const AgreedFrame& frame) const {
+sync::HostTime FrameLock::latch_time(const LockedFrame& frame) const {
   return frame.here - flashes_.second_longest() - kMargin / 2;
 }
 
@@ -102,7 +102,7 @@ sync::HostTime FrameLock::next_begin(sync::HostTime now) const {
   return clock_.here(grid_.due(grid_.next(clock_.room(now + lead(), now))), now) - lead();
 }
 
-frame_shown_t FrameLock::message(const AgreedFrame& frame, std::int8_t stage) const {
+frame_shown_t FrameLock::message(const LockedFrame& frame, std::int8_t stage) const {
   frame_shown_t m{};
   m.header.sim_time_ns = sync::to_ns(frame.world);
   m.frame = frame.number;
@@ -115,7 +115,7 @@ frame_shown_t FrameLock::message(const AgreedFrame& frame, std::int8_t stage) co
 std::string FrameLock::note(sync::HostTime now) const {
   if (!on()) return "";
   if (!clock_.mapped(now)) return "walls by arrival: no map of sim_node's clock";
-  if (head_tool_ >= 0 && likely() + kOnTheWay > lag_)
+  if (head_tool_ >= 0 && likely() + kMessageLatency > lag_)
     return "drawing takes longer than frame_lag: other walls have a newer head";
   if (const int left = peers_.ignored(now); waits() && left > 0)
     return "ignores " + std::to_string(left) + " of " + std::to_string(peers_.present(now)) + " walls";

@@ -3,9 +3,9 @@
 //
 //   lock.push(...)                       received messages
 //   frame = lock.begin(now, ...)         which frame this tick draws; nothing: there is no lock
-//   ... draw the surfaces, wait until lock.latch_at(frame), draw the flashes ...
+//   ... draw the surfaces, wait until lock.latch_time(frame), draw the flashes ...
 //   lock.drawn(...)                      how long that took
-//   ... with `wait`: until lock.others_ready(frame, now), for at most max_wait() ...
+//   ... with `wait`: until lock.peers_ready(frame, now), for at most max_wait() ...
 //   ... wait until frame.here, show it ...
 //   lock.shown(frame, now)
 //   ... sleep until lock.next_begin(now) ...
@@ -20,8 +20,8 @@
 #include <tactus/tool_state_t.hpp>
 #include <tactus/world_state_t.hpp>
 
-#include "visual_node/frame/agreed_delay.h"
-#include "visual_node/frame/agreed_frame.h"
+#include "visual_node/frame/room_delay.h"
+#include "visual_node/frame/locked_frame.h"
 #include "visual_node/frame/frame_grid.h"
 #include "visual_node/frame/frame_peers.h"
 #include "visual_node/frame/head_samples.h"
@@ -39,7 +39,7 @@ class FrameLock {
   // A picture that is late by at most this is shown late and not skipped. Design: p99 of that wake-up latency.
   static constexpr sync::Nanoseconds kGrace{3'000'000};
   // Nearly every message takes less than this from its sender to a wall. Design: two ticks of 1 kHz.
-  static constexpr sync::Nanoseconds kOnTheWay{2'000'000};
+  static constexpr sync::Nanoseconds kMessageLatency{2'000'000};
 
   FrameLock(sync::OwnClock own, std::string modality, std::int64_t incarnation)
       : modality_(std::move(modality)), incarnation_(incarnation), clock_(own) {}
@@ -59,9 +59,9 @@ class FrameLock {
   bool inputs_complete(sync::HostTime now) const;
   // Selects the frame to draw from now on; nothing without a room, or before the first message of sim_node.
   // profile_delay: the delay that a profile adds to this modality.
-  std::optional<AgreedFrame> begin(sync::HostTime now, sync::Nanoseconds profile_delay = sync::Nanoseconds(0));
+  std::optional<LockedFrame> begin(sync::HostTime now, sync::Nanoseconds profile_delay = sync::Nanoseconds(0));
   // When to draw the flashes of that frame: late, but so that it is ready when it is due.
-  sync::HostTime latch_at(const AgreedFrame& frame) const;
+  sync::HostTime latch_time(const LockedFrame& frame) const;
   // Reports the drawing time of its surfaces, from begin on, and of its flashes.
   void drawn(sync::Nanoseconds surfaces, sync::Nanoseconds flashes);
   // Best start of the next tick: its picture is ready just in time.
@@ -72,11 +72,11 @@ class FrameLock {
   bool on() const { return mode_ != Mode::kOff && clock_.known(); }
   bool waits() const { return mode_ == Mode::kWait; }
   sync::Nanoseconds max_wait() const { return max_wait_; }
-  bool others_ready(const AgreedFrame& frame, sync::HostTime now) const { return peers_.ready(frame.number, now); }
-  void shown(const AgreedFrame& frame, sync::HostTime now) { peers_.shown(frame.number, now); }
+  bool peers_ready(const LockedFrame& frame, sync::HostTime now) const { return peers_.ready(frame.number, now); }
+  void shown(const LockedFrame& frame, sync::HostTime now) { peers_.shown(frame.number, now); }
 
   // The FRAME_SHOWN message of a frame.
-  frame_shown_t message(const AgreedFrame& frame, std::int8_t stage) const;
+  frame_shown_t message(const LockedFrame& frame, std::int8_t stage) const;
   // The problem of the lock, for the health message; empty: none.
   std::string note(sync::HostTime now) const;
 
@@ -87,7 +87,7 @@ class FrameLock {
   // as it must.
   sync::Nanoseconds lead() const;
   sync::Nanoseconds likely() const { return surfaces_.expected() + flashes_.expected(); }
-  void show_world(AgreedFrame& frame, RoomTime by, sync::Nanoseconds profile_delay);
+  void show_world(LockedFrame& frame, RoomTime by, sync::Nanoseconds profile_delay);
 
   std::string modality_;
   std::int64_t incarnation_;
@@ -96,7 +96,7 @@ class FrameLock {
   RoomClockReader clock_;
   std::int64_t clock_count_ = 0;
   FrameGrid grid_;
-  AgreedDelay delay_;
+  RoomDelay delay_;
   double lockstep_Hz_ = 0;
   HeadSamples heads_;
   int head_tool_ = -1;

@@ -24,7 +24,7 @@ void FramePeers::shown(std::int64_t frame, sync::HostTime now) {
     const bool in_time = wall.drawn >= frame || now - wall.last_message > kGone;
     if (wall.ignored) {
       wall.in_time = in_time ? wall.in_time + 1 : 0;
-      if (wall.in_time >= kReturn) wall.ignored = false, wall.late = 0;
+      if (wall.in_time >= kFramesToReturn) wall.ignored = false, wall.late = 0;
     } else {
       wall.late = in_time ? std::max(0, wall.late - 1) : wall.late + 1;
       if (wall.late >= kGiveUp) wall.ignored = true, wall.in_time = 0;

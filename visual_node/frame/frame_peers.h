@@ -15,9 +15,9 @@ class FramePeers {
  public:
   // A wall without a message for this long counts as absent.
   static constexpr sync::Nanoseconds kGone{1'000'000'000};
-  // A wall with kGiveUp more late frames than frames in time is ignored, until kReturn frames in a row are in
+  // A wall with kGiveUp more late frames than frames in time is ignored, until kFramesToReturn frames in a row are in
   // time. Design: a quarter of a second, and half a second, at 60 Hz.
-  static constexpr int kGiveUp = 15, kReturn = 30;
+  static constexpr int kGiveUp = 15, kFramesToReturn = 30;
   // More walls than a room has are an error.
   static constexpr std::size_t kMax = 64;
 

@@ -13,13 +13,13 @@ namespace tactus::visual {
 class SurfacePrograms {
  public:
   SurfacePrograms() = default;
-  // Adds one sentence to `trouble` for each look whose shader cannot be used. Throws std::runtime_error when that
+  // Adds one sentence to `warnings` for each look whose shader cannot be used. Throws std::runtime_error when that
   // is the first look.
   SurfacePrograms(const ShaderLibrary& library, const std::vector<Look>& looks, const Lighting& lighting,
-                  bool reliefs, std::vector<std::string>& trouble);
+                  bool reliefs, std::vector<std::string>& warnings);
 
   // Rebuilds all programs after a change of shaders.
-  void reload(const ShaderLibrary& library, std::vector<std::string>& trouble);
+  void reload(const ShaderLibrary& library, std::vector<std::string>& warnings);
 
   int looks() const { return static_cast<int>(looks_.size()); }
   const Look& look(int index) const { return looks_[within(index)]; }
@@ -37,7 +37,7 @@ class SurfacePrograms {
   std::size_t within(int look) const {
     return look >= 0 && look < static_cast<int>(looks_.size()) ? static_cast<std::size_t>(look) : 0;
   }
-  void make(const ShaderLibrary& library, std::vector<std::string>& trouble);
+  void make(const ShaderLibrary& library, std::vector<std::string>& warnings);
 
   std::vector<Look> looks_;
   Lighting lighting_;

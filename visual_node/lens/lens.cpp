@@ -39,7 +39,7 @@ Lens::Lens(const scene_t& scene, const Settings& settings, int width, int height
   try {
     place_room(scene, settings);
   } catch (const std::runtime_error& wrong) {
-    trouble_ = std::string(wrong.what()) + "; the scene's camera is used instead";
+    warning_ = std::string(wrong.what()) + "; the scene's camera is used instead";
   }
 }
 

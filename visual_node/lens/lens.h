@@ -23,7 +23,7 @@ class Lens {
   // moves with the head: both eyes see a point at the window's distance at the same place.
   std::array<Camera, 2> eyes(const std::optional<Eigen::Isometry3d>& head, double apart_m, double window_m) const;
   // One sentence about a room that cannot be used; empty: none. Then the scene's camera is used.
-  const std::string& trouble() const { return trouble_; }
+  const std::string& warning() const { return warning_; }
 
  private:
   void place_room(const scene_t& scene, const Settings& settings);
@@ -34,7 +34,7 @@ class Lens {
   Camera plain_;
   Eigen::Isometry3d rest_;    // T_world_camera, of the scene
   std::optional<Wall> wall_;  // in the world frame
-  std::string trouble_;
+  std::string warning_;
 };
 
 }  // namespace tactus::visual

@@ -2,7 +2,7 @@
 
 namespace tactus::visual {
 
-std::vector<View> views_of(const Lens& lens, const std::optional<Eigen::Isometry3d>& head,
+std::vector<View> stereo_views(const Lens& lens, const std::optional<Eigen::Isometry3d>& head,
                            const Settings& settings) {
   if (settings.stereo == "off") return {{.camera = lens.at(head)}};
   const auto [left, right] = lens.eyes(head, settings.eye_distance_m, settings.stereo_distance_m);

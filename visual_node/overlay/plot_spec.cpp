@@ -90,7 +90,7 @@ PlotSpec parse_plot(std::string_view text) {
   }
 }
 
-std::vector<PlotSpec> parse_plots(std::string_view list, std::vector<std::string>& trouble) {
+std::vector<PlotSpec> parse_plots(std::string_view list, std::vector<std::string>& warnings) {
   std::vector<PlotSpec> specs;
   while (!list.empty()) {
     const std::size_t end = list.find(';');
@@ -98,13 +98,13 @@ std::vector<PlotSpec> parse_plots(std::string_view list, std::vector<std::string
     list = end == std::string_view::npos ? std::string_view{} : list.substr(end + 1);
     if (one.empty() || one == "none") continue;
     if (specs.size() == kMaxPlots) {
-      trouble.push_back("more than " + std::to_string(kMaxPlots) + " plots: the rest is ignored");
+      warnings.push_back("more than " + std::to_string(kMaxPlots) + " plots: the rest is ignored");
       break;
     }
     try {
       specs.push_back(parse_plot(one));
     } catch (const std::invalid_argument& e) {
-      trouble.emplace_back(e.what());
+      warnings.emplace_back(e.what());
     }
   }
   return specs;

@@ -64,7 +64,7 @@ SceneView::SceneView(const scene_t& scene, const Meshes& meshes, const Settings&
   for (const int n : kSegments) geometries_.push_back(unit_cylinder(n));
   add_reliefs(scene, height_maps);
   if (settings.geometry == "physics")
-    for (const shape_def_t& s : scene.shapes) add_colliding(s, meshes);
+    for (const shape_def_t& s : scene.shapes) add_collision_shape(s, meshes);
   else
     for (const visual_def_t& v : scene.visuals) add(v, meshes);
   for (const tool_def_t& t : scene.tools) add_tool(scene, t, meshes);
@@ -106,7 +106,7 @@ void SceneView::add(const visual_def_t& v, const Meshes& meshes) {
 }
 
 // Draws the collision shapes, each in the colour of its body.
-void SceneView::add_colliding(const shape_def_t& s, const Meshes& meshes) {
+void SceneView::add_collision_shape(const shape_def_t& s, const Meshes& meshes) {
   Part part;
   const bool known = shape(s, meshes, part);
   part.body = s.body;
@@ -127,7 +127,7 @@ void SceneView::mark_missing(const shape_def_t& s, Part& part) {
   part.look.scale = {kMissing_m, kMissing_m, kMissing_m, 16};
   part.look.diffuse << kMissingColour, 1;
   part.look.emissive << kMissingColour, 0;
-  trouble_.push_back("the mesh of " + s.name + " is missing or damaged: a magenta box of " +
+  warnings_.push_back("the mesh of " + s.name + " is missing or damaged: a magenta box of " +
                      std::to_string(std::lround(1000 * kMissing_m)) + " mm is drawn where it is");
 }
 
@@ -135,10 +135,10 @@ void SceneView::check_look(const visual_def_t& v, const Part& part) {
   const Look& look = appearance_.looks[static_cast<std::size_t>(part.style)];
   const Triangles& t = geometries_[static_cast<std::size_t>(part.geometry)];
   if (look.mapped() && t.texcoords.empty())
-    trouble_.push_back("look " + look.name + " lays a picture on " + v.shape.name +
+    warnings_.push_back("look " + look.name + " lays a picture on " + v.shape.name +
                        ", whose mesh has no texture coordinates: all of it shows one point of the picture");
   else if (look.normal_map >= 0 && t.tangents.empty())
-    trouble_.push_back("look " + look.name + " has a normal map, but the mesh of " + v.shape.name +
+    warnings_.push_back("look " + look.name + " has a normal map, but the mesh of " + v.shape.name +
                        " no tangents: it is drawn smooth");
 }
 
@@ -269,7 +269,7 @@ DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<co
                          const std::optional<Eigen::Isometry3d>& head) const {
   DrawList list;
   list.camera = lens_.at(head);
-  list.views = views_of(lens_, head, settings_);
+  list.views = stereo_views(lens_, head, settings_);
   list.lighting = lighting_;
   std::vector<Placed> opaque, translucent;
   const auto add = [&](const Part& part, const Eigen::Isometry3d& pose) {

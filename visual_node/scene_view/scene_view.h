@@ -48,7 +48,7 @@ class SceneView {
   const Lens& lens() const { return lens_; }
   int missing_meshes() const { return missing_meshes_; }
   // One sentence for each thing that is not drawn as the scene defines it.
-  const std::vector<std::string>& trouble() const { return trouble_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
   int width() const { return width_; }
   int height() const { return height_; }
 
@@ -87,7 +87,7 @@ class SceneView {
 
   void add_reliefs(const scene_t& scene, const HeightMaps& height_maps);
   void add(const visual_def_t& visual, const Meshes& meshes);
-  void add_colliding(const shape_def_t& shape, const Meshes& meshes);
+  void add_collision_shape(const shape_def_t& shape, const Meshes& meshes);
   void mark_missing(const shape_def_t& shape, Part& part);
   void check_look(const visual_def_t& visual, const Part& part);
   void add_tool(const scene_t& scene, const tool_def_t& tool, const Meshes& meshes);
@@ -114,7 +114,7 @@ class SceneView {
   };
   std::vector<Tool> tools_;
   int missing_meshes_ = 0;
-  std::vector<std::string> trouble_;
+  std::vector<std::string> warnings_;
   std::vector<Eigen::Vector4f> tints_;
 };
 

@@ -33,7 +33,7 @@ class VideoFile {
 
   std::int64_t frames() const { return frames_; }
   // A hash of the pixels of the newest picture, and of all pictures: equal numbers mean equal renderings.
-  std::uint64_t pixels_of_newest() const { return newest_; }
+  std::uint64_t newest_frame_hash() const { return newest_; }
   std::uint64_t pixels() const { return pixels_; }
 
  private:

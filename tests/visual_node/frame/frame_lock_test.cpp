@@ -54,7 +54,7 @@ struct Wall {
   FrameLock lock;
   std::int64_t busy_until_ns = 0, frames = 0;
   std::map<std::int64_t, Seen> seen;
-  std::optional<AgreedFrame> drawing;
+  std::optional<LockedFrame> drawing;
 };
 
 // A bus and its walls, simulated in steps of 0.1 ms of the room's clock.
@@ -139,7 +139,7 @@ struct Room {
       held_ns = std::max(held_ns, w.busy_until_ns - ready);
       return;
     }
-    const AgreedFrame& f = *w.drawing;
+    const LockedFrame& f = *w.drawing;
     REQUIRE(w.seen.count(f.number) == 0);
     if (!w.seen.empty()) REQUIRE(f.number > w.seen.rbegin()->first);
     w.seen[f.number] = {sync::to_ns(f.world), f.head_ns, sync::to_ns(f.due)};
@@ -300,7 +300,7 @@ TEST_CASE("FRAME_SHOWN gives the number, due time, instant and head of a frame")
   Room room;
   Wall& wall = room.add(kSimClock, {}, milliseconds(5));
   room.run(2);
-  const AgreedFrame frame = *wall.lock.begin(wall.here(room.t));
+  const LockedFrame frame = *wall.lock.begin(wall.here(room.t));
   const frame_shown_t m = wall.lock.message(frame, frame_shown_t::SHOWN);
   CHECK(m.frame == frame.number);
   CHECK(m.due_ns == std::llround(static_cast<double>(frame.number) * 1e9 / 60));

@@ -60,7 +60,7 @@ TEST_CASE_METHOD(
   for (int i = 0; i < 60; ++i, ++k) waited += !frame(k, kLeft, k - 3);
   CHECK(waited == FramePeers::kGiveUp);
   CHECK(peers.ignored(now) == 1);
-  for (int i = 0; i < FramePeers::kReturn; ++i, ++k) CHECK(frame(k, kLeft, k));
+  for (int i = 0; i < FramePeers::kFramesToReturn; ++i, ++k) CHECK(frame(k, kLeft, k));
   CHECK(peers.ignored(now) == 0);
   CHECK_FALSE(frame(k, kLeft, k - 1));
 }

@@ -67,7 +67,7 @@ void compare(const scene_t& scene, const visual::LookFiles& files, double tolera
   const visual::SceneView view(scene, {}, settings, {}, files);
   visual::Renderer renderer(kWidth, kHeight, settings.shadow_size);
   renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
-  CHECK(renderer.take_trouble().empty());
+  CHECK(renderer.take_warnings().empty());
   std::vector<Eigen::Isometry3d> poses;
   for (const body_def_t& b : scene.bodies) poses.push_back(to_eigen(b.pose));
   const visual::DrawList list = view.draw(poses, {});

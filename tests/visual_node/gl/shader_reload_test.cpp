@@ -66,21 +66,21 @@ const std::string kBroken = "// A colour.\nvec4 shade() {\n  return nothing;\n}\
 
 TEST_CASE("A shader of the scene draws its surface, and an edit is visible in the next picture") {
   Stand stand("mine", own(plain("1, 0, 0")));
-  CHECK(stand.renderer.take_trouble().empty());
+  CHECK(stand.renderer.take_warnings().empty());
   CHECK(stand.middle() == kRed);
   stand.renderer.set_shader_folder({{"mine.frag", plain("0, 1, 0")}});
-  CHECK(stand.renderer.take_trouble().empty());
+  CHECK(stand.renderer.take_warnings().empty());
   CHECK(stand.middle() == kGreen);
 
   SECTION("a shader that does not compile is reported with file and line, and the last good one stays") {
     stand.renderer.set_shader_folder({{"mine.frag", kBroken}});
-    const auto messages = stand.renderer.take_trouble();
+    const auto messages = stand.renderer.take_warnings();
     REQUIRE(messages.size() == 1);
     CHECK_THAT(messages[0], Catch::Contains("look worn") && Catch::Contains("mine.frag:3") &&
                             Catch::Contains("the previous shader stays"));
     CHECK(stand.middle() == kGreen);
     stand.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
-    CHECK(stand.renderer.take_trouble().empty());
+    CHECK(stand.renderer.take_warnings().empty());
     CHECK(stand.middle() == kBlue);
   }
   SECTION("without its file the scene's shader returns") {
@@ -96,7 +96,7 @@ TEST_CASE("Every kind of invalid source is reported in one sentence and removes 
                                         "#extension GL_nowhere : require\nvec4 shade() { return vec4(1); }");
   Stand stand("mine", own(plain("1, 0, 0")));
   stand.renderer.set_shader_folder({{"mine.frag", nonsense}});
-  CHECK(stand.renderer.take_trouble().size() == 1);
+  CHECK(stand.renderer.take_warnings().size() == 1);
   CHECK(stand.middle() == kRed);
 }
 
@@ -104,13 +104,13 @@ TEST_CASE("A missing shader and one that never compiled are drawn as Phong and r
   Stand phong("phong");
   const Image expected = phong.draw();
   Stand unknown("nowhere");
-  auto messages = unknown.renderer.take_trouble();
+  auto messages = unknown.renderer.take_warnings();
   REQUIRE(messages.size() == 1);
   CHECK_THAT(messages[0], Catch::Contains("nowhere") && Catch::Contains("gouraud") &&
                           Catch::Contains("phong is drawn instead"));
   CHECK(unknown.draw().rgba == expected.rgba);
   Stand broken("mine", own(kBroken));
-  messages = broken.renderer.take_trouble();
+  messages = broken.renderer.take_warnings();
   REQUIRE(messages.size() == 1);
   CHECK_THAT(messages[0], Catch::Contains("mine.frag:3: error") && Catch::Contains("phong is drawn instead"));
   CHECK(broken.draw().rgba == expected.rgba);
@@ -118,7 +118,7 @@ TEST_CASE("A missing shader and one that never compiled are drawn as Phong and r
   CHECK_THAT(messages[0], !Catch::Contains("surface.glsl") && !Catch::Contains("warning") && !Catch::Contains("\n"));
   // It can be repaired while it is drawn.
   broken.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
-  CHECK(broken.renderer.take_trouble().empty());
+  CHECK(broken.renderer.take_warnings().empty());
   CHECK(broken.middle() == kBlue);
 }
 
@@ -128,7 +128,7 @@ TEST_CASE("A shader of the node can be replaced too, including its lamps") {
   stand.renderer.set_shader_folder({{"phong.frag", plain("0, 1, 0")}});
   CHECK(stand.middle() == kGreen);
   stand.renderer.set_shader_folder({{"lamps.glsl", "broken"}});
-  CHECK_THAT(stand.renderer.take_trouble().front(), Catch::Contains("lamps.glsl:1"));
+  CHECK_THAT(stand.renderer.take_warnings().front(), Catch::Contains("lamps.glsl:1"));
   CHECK(stand.middle() == kGreen);
   stand.renderer.set_shader_folder({});
   CHECK(stand.middle() == before);
@@ -137,7 +137,7 @@ TEST_CASE("A shader of the node can be replaced too, including its lamps") {
 TEST_CASE("A vertex shader moves its surface") {
   // Moved up by 2 m: from 4 m the floor looks twice as large.
   Stand raised("mine", own(plain("0, 1, 0"), "vec3 moved(vec3 at) { return at + vec3(0.0, 3.0, 0.0); }\n"));
-  CHECK(raised.renderer.take_trouble().empty());
+  CHECK(raised.renderer.take_warnings().empty());
   // The floor ended 5 m to the left, at +y; 2.2 m are visible to each side. Moved by 3 m its right edge is 2 m to
   // the right.
   const Image image = raised.draw();
@@ -145,17 +145,17 @@ TEST_CASE("A vertex shader moves its surface") {
   CHECK(image.at(kWidth / 2 + static_cast<int>(1.95 * scale_px(4)), kHeight / 2) == kGreen);
   CHECK(image.at(kWidth / 2 + static_cast<int>(2.05 * scale_px(4)), kHeight / 2) == Vector3d::Zero());
   raised.renderer.set_shader_folder({{"mine.vert", "vec3 moved(vec3 at) { return at }"}});
-  CHECK_THAT(raised.renderer.take_trouble().front(), Catch::Contains("mine.vert:1"));
+  CHECK_THAT(raised.renderer.take_warnings().front(), Catch::Contains("mine.vert:1"));
 }
 
 TEST_CASE("A pass that does not compile keeps its previous version, and a missing one is left out") {
   Stand stand("phong", own(plain("0, 0, 1")), {"mine", "nowhere"});
-  const auto messages = stand.renderer.take_trouble();
+  const auto messages = stand.renderer.take_warnings();
   REQUIRE(messages.size() == 1);
   CHECK_THAT(messages[0], Catch::Contains("pass nowhere") && Catch::Contains("left out"));
   CHECK(stand.middle() == kBlue);
   stand.renderer.set_shader_folder({{"mine.frag", kBroken}});
-  CHECK_THAT(stand.renderer.take_trouble().front(),
+  CHECK_THAT(stand.renderer.take_warnings().front(),
              Catch::Contains("mine.frag:3") && Catch::Contains("the previous shader stays"));
   CHECK(stand.middle() == kBlue);
   stand.renderer.set_shader_folder({{"mine.frag", plain("1, 0, 0")}});
@@ -167,23 +167,23 @@ TEST_CASE("Uniforms set by name take effect, and an unsuitable one is reported")
   tint.name = "tint", tint.count = 3, tint.values[1] = 1;
   const std::string tinted = "uniform vec3 tint;\nvec4 shade() { return vec4(tint, 1.0); }\n";
   Stand stand("mine", own(tinted), {}, {tint});
-  CHECK(stand.renderer.take_trouble().empty());
+  CHECK(stand.renderer.take_warnings().empty());
   CHECK(stand.middle() == kGreen);
   SECTION("because it has another type") {
     stand.renderer.set_shader_folder(
         {{"mine.frag", "uniform float tint;\nvec4 shade() { return vec4(tint, 0.0, 1.0, 1.0); }\n"}});
-    CHECK_THAT(stand.renderer.take_trouble().at(0),
+    CHECK_THAT(stand.renderer.take_warnings().at(0),
                Catch::Contains("uniform tint") && Catch::Contains("not a vec3"));
     CHECK(stand.middle() == kBlue);
   }
   SECTION("because it has another name") {
     stand.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
-    CHECK_THAT(stand.renderer.take_trouble().at(0), Catch::Contains("has no uniform tint"));
+    CHECK_THAT(stand.renderer.take_warnings().at(0), Catch::Contains("has no uniform tint"));
     CHECK(stand.middle() == kBlue);
   }
   SECTION("but not when it only has no effect") {
     stand.renderer.set_shader_folder({{"mine.frag", "uniform vec3 tint;\n" + plain("0, 0, 1")}});
-    CHECK(stand.renderer.take_trouble().empty());
+    CHECK(stand.renderer.take_warnings().empty());
   }
 }
 

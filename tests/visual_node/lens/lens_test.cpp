@@ -38,7 +38,7 @@ Eigen::Vector2f seen(const Camera& camera, const Vector3d& place) {
 TEST_CASE("A cave is level around the camera position, its front along the camera's heading") {
   const scene_t scene = looking_down();
   const Lens front(scene, room("cave4", "front"), 512, 512), floor(scene, room("cave4", "floor"), 512, 512);
-  REQUIRE(front.trouble().empty());
+  REQUIRE(front.warning().empty());
   // The eye is 1.6 m above the floor, which is then 1.4 m high, and 1.524 m before the front.
   const Vector3d left_foot(1 - 1.524, 2 + 1.524, 1.4);
   CHECK((seen(front.at({}), left_foot) - Eigen::Vector2f(-1, -1)).norm() < 1e-4f);
@@ -65,7 +65,7 @@ TEST_CASE("A missing room or wall is reported, and the scene's camera is used") 
       std::tuple("cave4", "ceiling", "the room cave4 has no wall ceiling, only left, front, right, floor"),
       std::tuple("/no/such/room.csv", "first", "the room /no/such/room.csv cannot be read"));
   const Lens lens(scene, room(name, wall), 640, 480);
-  CHECK_THAT(lens.trouble(), Catch::StartsWith(sentence));
+  CHECK_THAT(lens.warning(), Catch::StartsWith(sentence));
   CHECK(lens.at({}).clip_from_world() == plain.at({}).clip_from_world());
 }
 
@@ -74,10 +74,10 @@ TEST_CASE("Halves and colours show the views of both eyes, from one head pose") 
   Settings s = room(GENERATE("none", "cave4"), "first");
   const Eigen::Isometry3d head = to_eigen(scene.camera) * Eigen::Translation3d(0, 0.1, 0);
   const Lens lens(scene, s, 640, 480);
-  CHECK(views_of(lens, head, s).size() == 1);
+  CHECK(stereo_views(lens, head, s).size() == 1);
   s.stereo = GENERATE("side_by_side", "top_bottom", "anaglyph");
   CAPTURE(s.room, s.stereo);
-  const auto views = views_of(lens, head, s);
+  const auto views = stereo_views(lens, head, s);
   REQUIRE(views.size() == 2);
   const auto expected = eyes(head, s.eye_distance_m);
   for (std::size_t i = 0; i < 2; ++i) CHECK((views[i].camera.eye - expected[i].cast<float>()).norm() < 1e-5f);

@@ -27,18 +27,18 @@ std::vector<std::uint8_t> tool_state(int tool, float force_z_N, const char* node
 }
 
 std::string sentence(const char* text) {
-  std::vector<std::string> trouble;
-  parse_plots(text, trouble);
-  return trouble.empty() ? "" : trouble.front();
+  std::vector<std::string> warnings;
+  parse_plots(text, warnings);
+  return warnings.empty() ? "" : warnings.front();
 }
 
 }  // namespace
 
 TEST_CASE("A plot names a variable of a channel, optionally of one process and one tool") {
-  std::vector<std::string> trouble;
+  std::vector<std::string> warnings;
   const auto specs = parse_plots(
-      "graph TOOL_STATE.force_N.z@tool=1; bar NODE_HEALTH.rate_Hz@audio_node;text SYNC_REPORT.hits;", trouble);
-  CHECK(trouble.empty());
+      "graph TOOL_STATE.force_N.z@tool=1; bar NODE_HEALTH.rate_Hz@audio_node;text SYNC_REPORT.hits;", warnings);
+  CHECK(warnings.empty());
   REQUIRE(specs.size() == 3);
   CHECK(specs[0].kind == PlotSpec::Kind::kGraph);
   CHECK(specs[1].kind == PlotSpec::Kind::kBar);
@@ -50,8 +50,8 @@ TEST_CASE("A plot names a variable of a channel, optionally of one process and o
   CHECK(of_hand.read(tool_state(0, 1)));
   CHECK_FALSE(of_hand.read(tool_state(0, 1, "another_node")));
   CHECK_FALSE(of_hand.read(tool_state(1, 1)));
-  CHECK(parse_plots("none", trouble).empty());
-  CHECK(trouble.empty());
+  CHECK(parse_plots("none", warnings).empty());
+  CHECK(warnings.empty());
 }
 
 TEST_CASE("A plot with an unknown name is rejected in one sentence with similar names") {
@@ -66,33 +66,33 @@ TEST_CASE("A plot with an unknown name is rejected in one sentence with similar 
   CHECK_THAT(sentence("graph TOOL_STATE.fade@"), Catch::Contains("field=number after @"));
   std::string many;
   for (int i = 0; i < 40; ++i) many += "text TOOL_STATE.tool;";
-  std::vector<std::string> trouble;
-  CHECK(parse_plots(many, trouble).size() == kMaxPlots);
-  CHECK(trouble.size() == 1);
+  std::vector<std::string> warnings;
+  CHECK(parse_plots(many, warnings).size() == kMaxPlots);
+  CHECK(warnings.size() == 1);
 }
 
 TEST_CASE("A course keeps the lowest and highest value of each time slice and drops slices beyond its span") {
-  Course course(kSpan);
-  for (int ms = 0; ms < 3000; ++ms) course.add(ms == 2005 ? 50 : ms == 2007 ? -7 : 1, at_ms(ms));
-  const auto slices = course.slices(at_ms(2999));
-  CHECK(slices.size() == Course::kColumns);
+  ValueHistory history(kSpan);
+  for (int ms = 0; ms < 3000; ++ms) history.add(ms == 2005 ? 50 : ms == 2007 ? -7 : 1, at_ms(ms));
+  const auto slices = history.slices(at_ms(2999));
+  CHECK(slices.size() == ValueHistory::kColumns);
   CHECK(slices.front().number == 150);
   CHECK(slices.back().number == 299);
   CHECK(slices[50].lowest == -7);
   CHECK(slices[50].highest == 50);
-  CHECK(course.range(at_ms(2999)) == std::pair(-7.0, 50.0));
-  CHECK(course.range(at_ms(4000)) == std::pair(1.0, 1.0));
-  CHECK_FALSE(course.range(at_ms(9000)));
+  CHECK(history.range(at_ms(2999)) == std::pair(-7.0, 50.0));
+  CHECK(history.range(at_ms(4000)) == std::pair(1.0, 1.0));
+  CHECK_FALSE(history.range(at_ms(9000)));
 }
 
 TEST_CASE("A course accepts late and invalid values without harm") {
-  Course course(kSpan);
-  course.add(1, at_ms(100));
-  course.add(9, at_ms(50));  // late: added to the newest slice
-  course.add(std::numeric_limits<double>::quiet_NaN(), at_ms(101));
-  course.add(std::numeric_limits<double>::infinity(), at_ms(200));
-  REQUIRE(course.slices(at_ms(100)).size() == 1);
-  CHECK(course.slices(at_ms(100)).front().highest == 9);
+  ValueHistory history(kSpan);
+  history.add(1, at_ms(100));
+  history.add(9, at_ms(50));  // late: added to the newest slice
+  history.add(std::numeric_limits<double>::quiet_NaN(), at_ms(101));
+  history.add(std::numeric_limits<double>::infinity(), at_ms(200));
+  REQUIRE(history.slices(at_ms(100)).size() == 1);
+  CHECK(history.slices(at_ms(100)).front().highest == 9);
 }
 
 TEST_CASE("Numbers are labelled with useful precision") {
@@ -104,12 +104,12 @@ TEST_CASE("Numbers are labelled with useful precision") {
 }
 
 TEST_CASE("Plots stay within the picture, and each channel is listed once") {
-  std::vector<std::string> trouble;
+  std::vector<std::string> warnings;
   Plots plots(
       parse_plots(
           "graph TOOL_STATE.force_N.z; bar TOOL_STATE.fade; text NODE_HEALTH.note; graph TOOL_STATE.energy_J;"
           "graph TOOL_STATE.force_N.x; graph TOOL_STATE.force_N.y; graph TOOL_STATE.coupling",
-          trouble),
+          warnings),
       kSpan);
   CHECK(plots.channels() == std::vector<std::string>{"TOOL_STATE", "NODE_HEALTH"});
   for (int ms = 0; ms < 2000; ++ms)
@@ -131,9 +131,9 @@ TEST_CASE("Plots stay within the picture, and each channel is listed once") {
 }
 
 TEST_CASE("A bar has its value below it, and empty text differs from missing text") {
-  std::vector<std::string> trouble;
+  std::vector<std::string> warnings;
   const auto drawn = [&](const char* plot, const char* channel, std::vector<std::uint8_t> bytes) {
-    Plots plots(parse_plots(plot, trouble), kSpan);
+    Plots plots(parse_plots(plot, warnings), kSpan);
     if (!bytes.empty()) plots.push(channel, bytes, at_ms(10));
     std::vector<Rect> overlay;
     plots.append(overlay, at_ms(20), 640, 480);
@@ -161,7 +161,7 @@ TEST_CASE("A bar has its value below it, and empty text differs from missing tex
 }
 
 TEST_CASE("Values that are not finite, and those at the limits of a number, are drawn within their plot") {
-  std::vector<std::string> trouble;
+  std::vector<std::string> warnings;
   const double values[] = {1,
                            -1e308,
                            1e308,
@@ -172,7 +172,7 @@ TEST_CASE("Values that are not finite, and those at the limits of a number, are 
   for (const char* kind : {"graph", "bar", "text"})
     for (std::size_t count = 1; count <= std::size(values); ++count) {
       CAPTURE(kind, count);
-      Plots plots(parse_plots(std::string(kind) + " NODE_HEALTH.rate_Hz", trouble), kSpan);
+      Plots plots(parse_plots(std::string(kind) + " NODE_HEALTH.rate_Hz", warnings), kSpan);
       for (std::size_t i = 0; i < count; ++i) {
         node_health_t m{};
         m.node = "sim_node";

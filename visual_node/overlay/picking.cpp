@@ -1,4 +1,4 @@
-#include "visual_node/overlay/aim.h"
+#include "visual_node/overlay/picking.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -69,7 +69,7 @@ std::optional<Ray> ray_at(const DrawList& list, float x, float y) {
 
 }  // namespace
 
-std::optional<Eigen::Vector3f> hit_at(const DrawList& list, std::span<const Triangles> geometries, float x,
+std::optional<Eigen::Vector3f> pick_surface(const DrawList& list, std::span<const Triangles> geometries, float x,
                                       float y) {
   const auto ray = ray_at(list, x, y);
   if (!ray) return std::nullopt;

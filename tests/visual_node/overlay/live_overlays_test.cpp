@@ -1,5 +1,5 @@
 // All overlays together, on an in-process bus.
-#include "visual_node/overlay/live.h"
+#include "visual_node/overlay/live_overlays.h"
 
 #include <catch2/catch.hpp>
 #include <tactus/tool_state_t.hpp>

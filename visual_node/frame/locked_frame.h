@@ -11,7 +11,7 @@
 
 namespace tactus::visual {
 
-struct AgreedFrame {
+struct LockedFrame {
   std::int64_t number = 0;
   // Number of frames before it that this wall skipped.
   std::int64_t skipped = 0;

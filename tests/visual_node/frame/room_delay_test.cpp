@@ -1,4 +1,4 @@
-#include "visual_node/frame/agreed_delay.h"
+#include "visual_node/frame/room_delay.h"
 
 #include <catch2/catch.hpp>
 #include <random>
@@ -12,7 +12,7 @@ constexpr RoomTime kBegin = room_time(10'000'000'000);
 }
 
 TEST_CASE("The delay slews to the requested value by 5 % of elapsed time and stays there") {
-  AgreedDelay delay;
+  RoomDelay delay;
   CHECK(delay.at(kBegin, kBegin) == milliseconds(0));
   delay.request(kBegin, milliseconds(10));
   CHECK(delay.at(kBegin + milliseconds(100), kBegin + milliseconds(80)) == milliseconds(5));
@@ -28,7 +28,7 @@ TEST_CASE(
     "Two walls that sample and receive at different times have the same delay at the same instant") {
   std::mt19937 random(6);
   for (int trial = 0; trial < 50; ++trial) {
-    AgreedDelay often, seldom;
+    RoomDelay often, seldom;
     int received = 0;
     std::vector<sync::Nanoseconds> asked;
     for (int i = 0; i < 40; ++i) asked.push_back(milliseconds(random() % 3 ? 20 : random() % 60));

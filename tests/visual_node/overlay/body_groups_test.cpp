@@ -1,4 +1,4 @@
-#include "visual_node/overlay/groups.h"
+#include "visual_node/overlay/body_groups.h"
 
 #include <catch2/catch.hpp>
 #include <tactus/body_state_t.hpp>
@@ -23,7 +23,7 @@ world_state_t state(int body, std::int8_t group, std::int64_t seq, std::int64_t 
 }  // namespace
 
 TEST_CASE("A body is in its last published group, also when messages overtake each other") {
-  Groups groups;
+  BodyGroups groups;
   groups.push(state(1, world_state_t::NOW, 5));
   groups.push(state(2, world_state_t::AHEAD, 6));
   const auto tints = groups.tints(4);
@@ -40,12 +40,12 @@ TEST_CASE("A body is in its last published group, also when messages overtake ea
 }
 
 TEST_CASE("A new incarnation of the simulation starts empty, and an invalid body is ignored") {
-  Groups groups;
+  BodyGroups groups;
   groups.push(state(1, world_state_t::NOW, 500));
   groups.push(state(3, world_state_t::AHEAD, 1, 2));
   CHECK(groups.haptic() == 0);
   CHECK(groups.visual() == 1);
-  groups.push(state(Groups::kMaxBodies, world_state_t::NOW, 2, 2));
+  groups.push(state(BodyGroups::kMaxBodies, world_state_t::NOW, 2, 2));
   groups.push(state(-1, world_state_t::NOW, 3, 2));
   CHECK(groups.haptic() == 0);
   CHECK(groups.tints(2).size() == 2);  // fewer bodies than it has received

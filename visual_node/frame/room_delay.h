@@ -11,7 +11,7 @@
 
 namespace tactus::visual {
 
-class AgreedDelay {
+class RoomDelay {
  public:
   // PLAYOUT is sent at 10 Hz: the requests of the last second or two.
   static constexpr std::size_t kMaxRequests = 16;
