@@ -12,8 +12,8 @@ namespace tactus::visual {
 
 namespace {
 
-// What may be there already.
-std::vector<sync::Offline::Written> written_anew(const OfflineOptions& options) {
+// Files that may exist already and are overwritten.
+std::vector<sync::Offline::Written> overwritten_files(const OfflineOptions& options) {
   std::vector<sync::Offline::Written> files;
   if (!options.snapshot.empty()) files.push_back({options.snapshot, "--snapshot"});
   if (!options.frames.empty()) files.push_back({options.frames, "--frames"});
@@ -25,7 +25,7 @@ std::vector<sync::Offline::Written> written_anew(const OfflineOptions& options) 
 void OfflineOptions::add_to(CLI::App& app) {
   sync::OfflineOptions::add_to(app, "draws this log of a run", "--video");
   app.add_option("--video", video, "file for the pictures of the log, MP4")->needs("--log");
-  app.add_option("--frames", frames, "file for a table of when each frame of the log is and of the hash of its pixels, CSV")->needs("--log");
+  app.add_option("--frames", frames, "file for a table of the time and the pixel hash of each frame of the log, CSV")->needs("--log");
   app.add_flag("--as-recorded", as_recorded, "the same as --degrade logged")->needs("--log");
 }
 
@@ -36,11 +36,11 @@ std::unique_ptr<Offline> Offline::open(const OfflineOptions& options, double rat
 }
 
 Offline::Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock)
-    : options_(options), rate_Hz_(rate_Hz), run_(options, written_anew(options), rate_Hz, clock) {
-  std::error_code none;
-  for (const std::string& there : {options_.video, part_of(options_.video)})
-    if (std::filesystem::exists(there, none))
-      throw std::runtime_error(there + " exists and is not written over; remove it or choose another --video");
+    : options_(options), rate_Hz_(rate_Hz), run_(options, overwritten_files(options), rate_Hz, clock) {
+  std::error_code ignored;
+  for (const std::string& path : {options_.video, part_of(options_.video)})
+    if (std::filesystem::exists(path, ignored))
+      throw std::runtime_error(path + " exists and is not overwritten; remove it or choose another --video");
   if (options_.frames.empty()) return;
   frames_ = std::make_unique<sync::AtomicFile>(options_.frames, "--frames");
   frames_->write("frame,host_ns,pixels\n");

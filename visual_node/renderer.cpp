@@ -20,8 +20,8 @@ void Options::add_to(CLI::App& app) {
   app.add_flag("--window", window, "open a window");
   app.add_flag("--no-video", no_video, "write no video.mp4");
   app.add_flag("--no-pictures", no_pictures, "draw nothing, and report what each picture would have shown")->excludes("--window");
-  app.add_option("--snapshot", keep.snapshot, "PNG file that the newest picture is written to");
-  app.add_option("--snapshot-every", keep.snapshot_every_s, "how often, s")
+  app.add_option("--snapshot", recording.snapshot, "PNG file that the newest picture is written to");
+  app.add_option("--snapshot-every", recording.snapshot_every_s, "how often, s")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   log.add_to(app);
@@ -29,23 +29,23 @@ void Options::add_to(CLI::App& app) {
 }
 
 void Options::complete(const std::string& node, const sync::NodeOptions& options) {
-  keep.folder = options.out;
-  // Several of a room write into one folder.
-  if (options.name.starts_with(node + "_")) keep.name += options.name.substr(node.size());
-  keep.video = !no_video && !no_pictures;
-  if (no_pictures && !keep.snapshot.empty())
+  recording.folder = options.out;
+  // Several processes of a room write into one folder.
+  if (options.name.starts_with(node + "_")) recording.name += options.name.substr(node.size());
+  recording.video = !no_video && !no_pictures;
+  if (no_pictures && !recording.snapshot.empty())
     throw std::runtime_error("--no-pictures leaves nothing for --snapshot; leave one out");
-  log.snapshot = keep.snapshot;
-  log.snapshot_every_s = keep.snapshot_every_s;
+  log.snapshot = recording.snapshot;
+  log.snapshot_every_s = recording.snapshot_every_s;
 }
 
 std::unique_ptr<RenderOutput> open_render_output(const Settings& settings, const Options& options) {
   return options.no_pictures ? std::make_unique<RenderOutput>(settings) : std::make_unique<RenderOutput>(settings, options.window);
 }
 
-NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& stage, const Options& options, Offline* log)
+NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& render_output, const Options& options, Offline* log)
     : SettingsRenderer(host, setting_fields()),
-      render_output_(stage),
+      render_output_(render_output),
       log_(log),
       world_(host.sense().snapshots<world_state_t>(channels::kWorldState, 4096)),
       events_(host.sense().events()),
@@ -53,7 +53,7 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& stage, const 
       composer_(host.bus().clocks(), settings(), host.descriptor().late_policy),
       lock_(host.bus().clocks(), host.descriptor().modality, host.bus().identity().incarnation),
       walls_(host.node(), lock_),
-      recording_(options.keep),
+      recording_(options.recording),
       overlays_(host.bus()),
       controls_(host.bus()),
       questions_(host.bus()) {
@@ -63,23 +63,23 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& stage, const 
   });
   if (log_) composer_.set_expected_times({}, {});
   questions_.configure(settings());
-  say(overlays_.configure(settings()));
+  report_all(overlays_.configure(settings()));
   add_tags();
 }
 
 void NodeRenderer::add_tags() {
   sync::Tags& tags = host().node().tags();
-  tags.add("picture", "us", [this] { return sync::to_seconds(took_) * 1e6; });
+  tags.add("picture", "us", [this] { return sync::to_seconds(draw_time_) * 1e6; });
   tags.add("quality", "1", [this] { return render_output_.quality().step(); });
   tags.add("flashed", "1", &flashed_);
 }
 
-void NodeRenderer::say(const std::vector<std::string>& sentences) const {
+void NodeRenderer::report_all(const std::vector<std::string>& sentences) const {
   for (const std::string& sentence : sentences) host().say(sentence);
 }
 
 sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
-  take_messages();
+  process_messages();
   loaded_ = true;
   scene_ = scenes.scene();
   std::vector<std::string> warnings;
@@ -90,20 +90,20 @@ sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Setting
   if (!view.lens().warning().empty()) warnings.push_back(view.lens().warning());
   for (const std::string& sentence : overlays_.configure(settings)) warnings.push_back(sentence);
   questions_.configure(settings);
-  say(warnings);
+  report_all(warnings);
   lock_.load(*scene_, settings);
   const sync::Status preparing{node_health_t::WAITING, "prepares the pictures of the scene"};
   host().node().set_state(preparing.state, preparing.note);
   render_output_.load(view, composer_.frame(host().clock(), 0).list, settings, [this] {
     if (!log_) host().node().heartbeat();
   });
-  begin_outputs(view, settings);
+  start_outputs(view, settings);
   return {.rate_Hz = settings.rate_Hz,
           .output_latency = sync::from_seconds(1 / settings.rate_Hz) + FrameComposer::kInitialFlashTime,
           .status = preparing};
 }
 
-void NodeRenderer::begin_outputs(const SceneView& view, const Settings& settings) {
+void NodeRenderer::start_outputs(const SceneView& view, const Settings& settings) {
   if (log_)
     log_->begin(view.width(), view.height(), settings);
   else if (render_output_.draws())
@@ -112,7 +112,7 @@ void NodeRenderer::begin_outputs(const SceneView& view, const Settings& settings
 }
 
 void NodeRenderer::change(const Settings& settings, const std::string& name) {
-  take_messages();  // they came before the change
+  process_messages();  // they came before the change
   LiveOverlays::check(settings);
   if (name.starts_with("stream")) {
     if (!render_output_.draws()) throw std::invalid_argument("it draws no pictures that could be streamed");
@@ -124,13 +124,13 @@ void NodeRenderer::change(const Settings& settings, const std::string& name) {
   }
 }
 
-// For a wait within a tick: takes in what arrived meanwhile.
+// For a wait within a tick: processes the messages that arrived meanwhile.
 void NodeRenderer::receive(sync::HostTime now) {
   host().sense().step(now);
-  take_messages();
+  process_messages();
 }
 
-void NodeRenderer::take_messages() {
+void NodeRenderer::process_messages() {
   while (const auto m = world_.pop())
     composer_.push(m->message, m->arrival), overlays_.push(m->message), controls_.push(m->message);
   while (const auto m = events_.pop()) composer_.push(m->message, m->arrival), overlays_.push(m->message, m->arrival);
@@ -139,10 +139,10 @@ void NodeRenderer::take_messages() {
 }
 
 std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
-  take_messages();
-  if (std::exchange(loaded_, false) && host().live()) return std::nullopt;  // that took several ticks
+  process_messages();
+  if (std::exchange(loaded_, false) && host().live()) return std::nullopt;  // loading took several ticks
   recover(now);
-  const std::optional<LockedFrame> agreed = begin_frame();
+  const std::optional<LockedFrame> locked = begin_frame();
   const SceneView* view = composer_.view();
   if (render_output_.draws()) questions_.step();
   if (host().live() && render_output_.draws())
@@ -150,56 +150,56 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
                view ? std::span(view->geometries()) : std::span<const Triangles>{},
                [this](const std::string& sentence) { host().say(sentence); });
   const bool fresh = render_output_.due(now, host().sense().output());
-  if (fresh) draw(agreed ? host().clock() : now, agreed);
+  if (fresh) draw(locked ? host().clock() : now, locked);
   host().sense().publish(host().clock());  // before the pixels are read back
-  keep(now, fresh);
+  record(now, fresh);
   if (log_) return std::nullopt;
   const sync::Status status = this->status(now, fresh);
-  if (agreed) host().node().align(lock_.next_begin(sync::host_now()), agreed->skipped);
+  if (locked) host().node().align(lock_.next_begin(sync::host_now()), locked->skipped);
   return status;
 }
 
 void NodeRenderer::recover(sync::HostTime now) {
   if (const std::string lost = render_output_.recover(now, composer_.view(), frame_.list); !lost.empty()) host().say(lost);
-  say(render_output_.take_warnings());
+  report_all(render_output_.take_warnings());
 }
 
-// Which frame this tick draws: of a room, one that its walls agree on.
+// Selects the frame of this tick; in a room, the frame that all walls show.
 std::optional<LockedFrame> NodeRenderer::begin_frame() {
-  // A wall that is slow receives the pose of its head all the same.
-  if (lock_.on() && host().live()) walls_.catch_up([this](sync::HostTime now) { receive(now); });
-  const auto agreed = lock_.begin(host().clock(), host().sense().profile_delay());
+  // A slow wall also needs the newest pose of the head.
+  if (lock_.active() && host().live()) walls_.catch_up([this](sync::HostTime now) { receive(now); });
+  const auto locked = lock_.begin_frame(host().clock(), host().sense().profile_delay());
   const sync::Deadlines& deadlines = host().node().deadlines();
   const std::int64_t before = std::exchange(periods_, deadlines.ticks() + deadlines.missed());
-  slot_ += log_ ? 1 : agreed ? 1 + agreed->skipped : periods_ - before;
-  return agreed;
+  slot_ += log_ ? 1 : locked ? 1 + locked->skipped : periods_ - before;
+  return locked;
 }
 
-void NodeRenderer::draw(sync::HostTime now, const std::optional<LockedFrame>& agreed) {
+void NodeRenderer::draw(sync::HostTime now, const std::optional<LockedFrame>& locked) {
   const sync::ScopedPhaseTimer rendering(sync::Phase::kRender);
   const sync::ModalityEndpoint& sense = host().sense();
   const auto meanwhile = [this](sync::HostTime t) { receive(t); };
   output_ = sense.output();
   overlays_.tint(composer_, scene_ ? scene_->bodies.size() : 0);
-  const sync::HostTime heard = world_.count().newest_arrival;
-  frame_ = agreed ? composer_.frame(now, *agreed, heard)
-                  : composer_.frame(now, slot_, sense.delay(), heard, sense.profile_delay());
+  const sync::HostTime newest_arrival = world_.count().newest_arrival;
+  frame_ = locked ? composer_.frame(now, *locked, newest_arrival)
+                  : composer_.frame(now, slot_, sense.delay(), newest_arrival, sense.profile_delay());
   render_output_.draw_scene(frame_.list, output_);
   const sync::HostTime drawn = host().clock();
-  if (agreed && !log_) walls_.wait_for_latch(*agreed);
-  // Late latch: what arrived while the surfaces were drawn still flashes in this frame.
+  if (locked && !log_) walls_.wait_for_latch(*locked);
+  // Late latch: events that arrived while the surfaces were drawn still flash in this frame.
   const sync::HostTime latched = log_ ? host().clock() : host().node().poll();
   if (!log_) receive(latched);
-  composer_.latch(frame_, latched, agreed ? agreed->delay : sense.delay(), render_output_.held());
+  composer_.latch(frame_, latched, locked ? locked->delay : sense.delay(), render_output_.held());
   draw_overlays(latched);
   const sync::HostTime ready = host().clock();
-  if (agreed && !log_) lock_.drawn(drawn - now, ready - latched), walls_.hold(*agreed, meanwhile);
-  waited_ = agreed ? (latched - drawn) + (host().clock() - ready) : sync::Nanoseconds(0);
+  if (locked && !log_) lock_.add_draw_times(drawn - now, ready - latched), walls_.hold(*locked, meanwhile);
+  wait_time_ = locked ? (latched - drawn) + (host().clock() - ready) : sync::Nanoseconds(0);
   render_output_.show();
   fence_ = host().clock();
   times_ = {now, latched};
-  took_ = fence_ - now;
-  if (agreed && !log_) walls_.shown(*agreed);
+  draw_time_ = fence_ - now;
+  if (locked && !log_) walls_.shown(*locked);
   present(latched);
 }
 
@@ -207,7 +207,7 @@ void NodeRenderer::draw_overlays(sync::HostTime latched) {
   if (overlays_.on().any() && render_output_.draws()) {
     const sync::ModalityEndpoint& sense = host().sense();
     PanelData panel;
-    panel.rendering = took_;
+    panel.rendering = draw_time_;
     panel.period = sync::from_seconds(1 / settings().rate_Hz);
     panel.quality = render_output_.quality().step();
     panel.qualities = render_output_.quality().steps();
@@ -221,11 +221,11 @@ void NodeRenderer::draw_overlays(sync::HostTime latched) {
   render_output_.draw_flashes_and_overlay(frame_.list);
 }
 
-// The picture is out: reports the events that it is the first to show.
+// The picture was presented: reports the events that it shows first.
 void NodeRenderer::present(sync::HostTime latched) {
   const sync::HostTime shown = fence_ + sync::from_seconds(settings().display_latency_s);
   questions_.presented(shown);
-  // An event that arrives just after the latch waits for that of the next frame; not for a picture that a profile holds.
+  // An event that arrives just after the latch waits for the latch of the next frame. Pictures that a profile holds are excluded.
   if (!output_.any())
     host().sense().set_output_latency(shown - latched + sync::from_seconds(1 / settings().rate_Hz));
   for (const presentation_t& report : composer_.presented(shown)) {
@@ -236,10 +236,10 @@ void NodeRenderer::present(sync::HostTime latched) {
   }
 }
 
-void NodeRenderer::keep(sync::HostTime now, bool fresh) {
+void NodeRenderer::record(sync::HostTime now, bool fresh) {
   const auto read = [this](std::span<std::uint8_t> rgba) { render_output_.picture().read(rgba); };
   if (log_) return log_->add(read);
-  if (auto pair = render_output_.draws() ? recording_.add(slot_, fresh ? fence_ : now + took_, read) : std::nullopt) {
+  if (auto pair = render_output_.draws() ? recording_.add(slot_, fresh ? fence_ : now + draw_time_, read) : std::nullopt) {
     times_.read = sync::host_now();
     host().bus().publish(channels::kMediaClock, *pair);
     if (fresh && settings().motion_marker == "strip")
@@ -254,9 +254,9 @@ void NodeRenderer::keep(sync::HostTime now, bool fresh) {
 }
 
 sync::Status NodeRenderer::status(sync::HostTime now, bool fresh) {
-  const std::string walls = lock_.note(now), video = walls.empty() ? recording_.note() : walls;
+  const std::string walls = lock_.status_text(now), video = walls.empty() ? recording_.status_text() : walls;
   QualityControl& quality = render_output_.quality();
-  if (fresh && scene_) quality.add(sync::host_now() - now - waited_);
+  if (fresh && scene_) quality.add(sync::host_now() - now - wait_time_);
   if (const std::string change = quality.take_change(); !change.empty()) host().say(change);
   return {frame_.state, frame_.note + (frame_.note.empty() || video.empty() ? "" : "; ") + video, quality.step(),
           quality.steps()};

@@ -184,9 +184,9 @@ TEST_CASE(
   const std::int64_t first_ns = std::stoll(line.substr(line.find(',') + 1));
   for (std::size_t i = 0; i < kHits.size(); ++i) {
     // The log stores whole microseconds and publishes each hit at a whole millisecond: the next frame shows it.
-    const double told_s = std::ceil(kHits[i] * 1000 - 1e-6) / 1000;
+    const double published_s = std::ceil(kHits[i] * 1000 - 1e-6) / 1000;
     INFO("hit at " << kHits[i]);
-    const double since_first_ns = static_cast<double>(kLogBegins_ns - first_ns) + told_s * 1e9;
+    const double since_first_ns = static_cast<double>(kLogBegins_ns - first_ns) + published_s * 1e9;
     CHECK(seen.at(static_cast<std::uint32_t>(i + 1)) == static_cast<double>(first_number) + std::ceil(since_first_ns / kPeriod_ns));
   }
 }

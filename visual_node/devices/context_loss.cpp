@@ -15,8 +15,8 @@ std::string context_loss_reason() {
       default: return "the graphics device was reset";
     }
   }
-  // Other errors do not mean that the context is lost. The loop calls this once a frame, so few errors are left
-  // unread.
+  // Other errors do not mean that the context is lost. The loop calls this once a frame, so 16 reads drain nearly
+  // all pending errors.
   for (int i = 0; i < 16; ++i) {
     const GLenum error = glGetError();
     if (error == GL_NO_ERROR) return {};

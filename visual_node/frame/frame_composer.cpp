@@ -65,13 +65,13 @@ Frame FrameComposer::frame(sync::HostTime now, std::int64_t number, sync::Nanose
   return frame;
 }
 
-Frame FrameComposer::frame(sync::HostTime now, const LockedFrame& agreed, sync::HostTime newest_arrival) {
-  due_ = agreed.here;
+Frame FrameComposer::frame(sync::HostTime now, const LockedFrame& locked, sync::HostTime newest_arrival) {
+  due_ = locked.due_host_time;
   Frame frame;
-  frame.number = agreed.number;
-  draw(frame, now, agreed.delay, agreed.world, agreed.head, newest_arrival);
+  frame.number = locked.number;
+  draw(frame, now, locked.delay, locked.sim_time, locked.head, newest_arrival);
   for (PoseSample& sample : frame.samples)
-    if (sample.tool == head_tool_ && agreed.head_ns >= 0) sample.seq = agreed.head_seq;
+    if (sample.tool == head_tool_ && locked.head_ns >= 0) sample.seq = locked.head_seq;
   return frame;
 }
 

@@ -87,7 +87,7 @@ class FrameComposer {
               sync::HostTime newest_arrival = sync::HostTime{},
               sync::Nanoseconds view_delay = sync::Nanoseconds(0));
   // Draws the frame that all walls of the room agree on, with its own number, instant and head.
-  Frame frame(sync::HostTime now, const LockedFrame& agreed, sync::HostTime newest_arrival);
+  Frame frame(sync::HostTime now, const LockedFrame& locked, sync::HostTime newest_arrival);
   // Call when the surfaces of that frame are drawn: adds everything above them, with the events that arrived
   // until now. held: how long a profile holds each picture; the picture shows the events up to its instant. 0:
   // one picture a tick.

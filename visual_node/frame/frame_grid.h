@@ -22,7 +22,7 @@ class FrameGrid {
   // The first frame that is due at `ready` (the earliest time at which its picture can be seen) or later, and
   // that comes after the last picked frame.
   std::int64_t next(RoomTime ready) const;
-  std::int64_t pick(RoomTime ready) { return *(last_ = next(ready)); }
+  std::int64_t select_next(RoomTime ready) { return *(last_ = next(ready)); }
   std::optional<std::int64_t> last() const { return last_; }
   void restart() { last_.reset(); }
 

@@ -54,7 +54,7 @@ void WallSync::wait_for_latch(const LockedFrame& frame) const {
 
 void WallSync::hold(const LockedFrame& frame, const std::function<void(sync::HostTime)>& meanwhile) {
   const sync::HostTime ready = sync::host_now();
-  if (lock_.waits()) {
+  if (lock_.waits_for_peers()) {
     publish_stage(frame, frame_shown_t::READY);
     const sync::HostTime until = ready + lock_.max_wait();
     for (sync::HostTime now = ready; now < until && !lock_.peers_ready(frame, now); now = sync::host_now()) {
@@ -62,7 +62,7 @@ void WallSync::hold(const LockedFrame& frame, const std::function<void(sync::Hos
       meanwhile(node_.poll());
     }
   }
-  sync::sleep_until(std::min(frame.here, ready + lock_.period()));
+  sync::sleep_until(std::min(frame.due_host_time, ready + lock_.period()));
   lock_.shown(frame, sync::host_now());
 }
 

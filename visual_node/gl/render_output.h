@@ -55,7 +55,7 @@ class RenderOutput {
   // recovery; empty: not needed. Throws std::runtime_error with one sentence when it fails.
   std::string recover(sync::HostTime now, const SceneView* view, const DrawList& sample);
 
-  // Returns and clears one sentence for each thing that could not be drawn as the scene says.
+  // Returns and clears one sentence for each thing that could not be drawn as the scene specifies.
   std::vector<std::string> take_warnings() { return draws() ? renderer_->take_warnings() : std::vector<std::string>(); }
 
   // How long a profile holds each picture; 0: for the tick.

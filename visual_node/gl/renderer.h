@@ -32,7 +32,7 @@ class Renderer {
   // Returns and clears one sentence for each failure of the last load or change of shaders.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
   // Draws every kind of picture of the loaded scene with this list, so that no later picture takes longer than
-  // others, whatever its quality. A software renderer takes a quarter of a second for each kind of surface when
+  // others at any quality. A software renderer takes a quarter of a second for each kind of surface when
   // it first draws it. meanwhile: called regularly.
   void warm_up(
       DrawList list, const std::function<void()>& meanwhile = [] {});

@@ -126,7 +126,7 @@ std::string Recording::error() const {
   return shared_->error;
 }
 
-std::string Recording::note() const {
+std::string Recording::status_text() const {
   if (const std::string why = error(); !why.empty()) return why;
   return dropped_ > 0 ? "the encoder was too busy for " + std::to_string(dropped_) + " pictures of the video" : "";
 }

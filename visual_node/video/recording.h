@@ -44,7 +44,7 @@ class Recording {
   // Pictures dropped because the encoder was busy; their slots repeat the previous picture.
   std::int64_t dropped() const { return dropped_; }
   // One line for the note of NODE_HEALTH: the two above.
-  std::string note() const;
+  std::string status_text() const;
 
  private:
   struct Shared;  // shared with the writing thread

@@ -37,7 +37,7 @@ VideoFile::VideoFile(std::string file, int width, int height, const Settings& se
   std::error_code none;
   for (const std::string& there : {file_, part_})
     if (std::filesystem::exists(there, none))
-      throw std::runtime_error(there + " exists and is not written over; remove it or choose another --video");
+      throw std::runtime_error(there + " exists and is not overwritten; remove it or choose another --video");
   if (!std::ofstream(part_, std::ios::binary))
     throw std::runtime_error("cannot write " + part_ + "; give --video a file in a folder that can be written");
   try {
