@@ -38,7 +38,7 @@ std::unique_ptr<Offline> Offline::open(const OfflineOptions& options, double rat
 Offline::Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock)
     : options_(options), rate_Hz_(rate_Hz), run_(options, overwritten_files(options), rate_Hz, clock) {
   std::error_code ignored;
-  for (const std::string& path : {options_.video, part_of(options_.video)})
+  for (const std::string& path : {options_.video, part_file_name(options_.video)})
     if (std::filesystem::exists(path, ignored))
       throw std::runtime_error(path + " exists and is not overwritten; remove it or choose another --video");
   if (options_.frames.empty()) return;
@@ -84,7 +84,7 @@ std::string Offline::result(std::int64_t flashed, std::int64_t dropped, sync::Ho
   std::ostringstream text;
   text << options_.video << ": " << video_->frames() << " frames, " << film_s << " s, " << flashed << " flashes";
   if (dropped > 0) text << " (and " << dropped << " events not shown: too late)";
-  text << "; pixels " << std::hex << video_->pixels() << std::dec << rest;
+  text << "; pixels " << std::hex << video_->pixel_hash() << std::dec << rest;
   return text.str();
 }
 

@@ -224,7 +224,7 @@ TEST_CASE("An existing file is not overwritten, under any name") {
   for (const char* video : {"old.mp4", "run.lcmlog", "link.mp4"}) {
     const Done done = render(folder, "run.lcmlog", video);
     CHECK(done.status == 1);
-    CHECK_THAT(done.output, Catch::Contains("not written over"));
+    CHECK_THAT(done.output, Catch::Contains("not overwritten"));
   }
   const Done snapshot = render(folder, "run.lcmlog", "new.mp4", {"--snapshot", folder.file("run.lcmlog")});
   CHECK(snapshot.status == 1);

@@ -52,7 +52,7 @@ GamepadState state_of(const GLFWgamepadstate& s) {
 class Window : public Display {
  public:
   Window(const std::string& title, const WindowOptions& o) : windowed_width_(o.width), windowed_height_(o.height) {
-    if (!glfwInit()) refuse();
+    if (!glfwInit()) reject();
     choose_monitor(o.monitor);
     stay_on_monitor();
     // EGL has no stereo buffers; the native contexts of the desktop may have them.
@@ -63,7 +63,7 @@ class Window : public Display {
                     "this display has no buffer for each eye; both eyes are shown side by side";
       open(title, o, GLFW_EGL_CONTEXT_API, false);
     }
-    if (!window_) refuse();
+    if (!window_) reject();
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(0);  // the loop has its own pace and does not wait for the screen
     glfwSetWindowUserPointer(window_, this);
@@ -78,7 +78,7 @@ class Window : public Display {
     glfwSetWindowPosCallback(window_, [](GLFWwindow* w, int, int) {
       static_cast<Window*>(glfwGetWindowUserPointer(w))->cursor_.reset();
     });
-    survive_the_server();
+    handle_server_loss();
     description_ = std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + " in a window";
     if (o.full_screen) toggle_full_screen();
   }
@@ -223,7 +223,7 @@ class Window : public Display {
 
   // Xlib prints the cause and ends the process when its server goes away, unless both handlers are replaced. GLFW
   // loads Xlib at run time, so this function looks up its symbols and does not link it.
-  void survive_the_server() {
+  void handle_server_loss() {
     using ErrorHandler = int (*)(void*);
     using ExitHandler = void (*)(void*, void*);
     using SetProtocol = void* (*)(int (*)(void*, const ProtocolError*));
@@ -258,7 +258,7 @@ class Window : public Display {
     return ::poll(&fd, 1, 0) > 0 && (fd.revents & (POLLHUP | POLLERR | POLLNVAL));
   }
 
-  [[noreturn]] static void refuse() {
+  [[noreturn]] static void reject() {
     const char* why = nullptr;
     glfwGetError(&why);
     const std::string reason = why ? why : "unknown reason";

@@ -147,7 +147,7 @@ void FrameComposer::add_due_flashes(sync::HostTime t, sync::Nanoseconds delay, s
     early = std::clamp((next_presentation(t) - t) / 2, sync::Nanoseconds(0), std::max(delay, sync::Nanoseconds(0)));
   const sync::HostTime until = (view_ ? t : t - sync::from_seconds(settings_.drop_after_s)) - delay + early;
   const auto due = contacts_.take_events(map->to_sim(until) + sync::Nanoseconds(1));
-  for (const contact_event_t& event : ledger_.take(due, *map, t, delay, held)) flashes_.add(event, t);
+  for (const contact_event_t& event : ledger_.select_flashes(due, *map, t, delay, held)) flashes_.add(event, t);
 }
 
 std::vector<Eigen::Isometry3d> FrameComposer::body_poses(std::optional<sync::SimTime> t) {

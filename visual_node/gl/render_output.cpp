@@ -73,7 +73,7 @@ void RenderOutput::load(const SceneView& view, const DrawList& sample, const Set
 void RenderOutput::draw_scene(const DrawList& list, const sync::OutputValues& output) {
   if (!draws()) return;
   if (shaders_)
-    if (auto folder = shaders_->take()) renderer_->set_shader_folder(std::move(*folder));
+    if (auto folder = shaders_->take_change()) renderer_->set_shader_folder(std::move(*folder));
   renderer_->set_quality(degraded(quality_.quality(), output.value("resolution")));
   renderer_->draw_scene(list);
   finish();

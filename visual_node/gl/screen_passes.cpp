@@ -30,8 +30,8 @@ void ScreenPasses::make(const ShaderLibrary& library, std::vector<std::string>& 
       if (!shade)
         throw std::runtime_error("there is no shader " + passes_[i].shader + "; there are " + library.names());
       programs_[i] = std::make_unique<Program>(
-          std::vector{library.own("pass.vert")},
-          std::vector{library.own("pass.glsl"), *shade, library.own("pass_end.frag")}, "");
+          std::vector{library.source_file("pass.vert")},
+          std::vector{library.source_file("pass.glsl"), *shade, library.source_file("pass_end.frag")}, "");
       for (const std::string& misfit : uniform_mismatches(library, passes_[i].shader, *programs_[i], passes_[i].uniforms))
         warnings.push_back("pass " + passes_[i].shader + ": " + misfit);
     } catch (const std::exception& e) {

@@ -22,19 +22,19 @@ class SurfacePrograms {
   void reload(const ShaderLibrary& library, std::vector<std::string>& warnings);
 
   int looks() const { return static_cast<int>(looks_.size()); }
-  const Look& look(int index) const { return looks_[within(index)]; }
+  const Look& look(int index) const { return looks_[valid_index(index)]; }
   const Program& program(int look, bool relief, bool shadows) const;
   // Calls each(program, look) once for each program with or without shadows.
   template <class Each>
   void for_each(bool shadows, Each each) const {
     for (std::size_t i = 0; i < looks_.size(); ++i)
       for (const bool relief : {false, true})
-        if (const auto& p = made_[index(i, relief, shadows)]) each(*p, looks_[i]);
+        if (const auto& p = programs_[index(i, relief, shadows)]) each(*p, looks_[i]);
   }
 
  private:
   static std::size_t index(std::size_t look, bool relief, bool shadows) { return 4 * look + 2 * relief + shadows; }
-  std::size_t within(int look) const {
+  std::size_t valid_index(int look) const {
     return look >= 0 && look < static_cast<int>(looks_.size()) ? static_cast<std::size_t>(look) : 0;
   }
   void make(const ShaderLibrary& library, std::vector<std::string>& warnings);
@@ -42,7 +42,7 @@ class SurfacePrograms {
   std::vector<Look> looks_;
   Lighting lighting_;
   bool reliefs_ = false;
-  std::vector<std::unique_ptr<Program>> made_;
+  std::vector<std::unique_ptr<Program>> programs_;
 };
 
 }  // namespace tactus::visual

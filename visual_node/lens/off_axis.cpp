@@ -30,8 +30,8 @@ Camera off_axis(const Wall& wall, const Eigen::Vector3d& eye, int width, double 
   return camera;
 }
 
-std::array<Eigen::Vector3d, 2> eyes(const Eigen::Isometry3d& head, double apart_m) {
-  const Eigen::Vector3d left = head.translation() + 0.5 * apart_m * head.linear().col(1);
+std::array<Eigen::Vector3d, 2> eyes(const Eigen::Isometry3d& head, double eye_distance_m) {
+  const Eigen::Vector3d left = head.translation() + 0.5 * eye_distance_m * head.linear().col(1);
   return {left, 2 * head.translation() - left};
 }
 

@@ -26,11 +26,11 @@ std::uint64_t hash_of(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-std::string part_of(const std::string& video) { return video + ".part.mp4"; }
+std::string part_file_name(const std::string& video) { return video + ".part.mp4"; }
 
 VideoFile::VideoFile(std::string file, int width, int height, const Settings& settings)
     : file_(std::move(file)),
-      part_(part_of(file_)),
+      part_(part_file_name(file_)),
       width_(width),
       height_(height),
       planes_(i420_bytes(width, height)) {

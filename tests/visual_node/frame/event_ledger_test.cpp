@@ -41,7 +41,7 @@ TEST_CASE("Every begin and hit yields exactly one report under any frame timing"
         due.push_back(event(++id, kind, time));
         if (kind != contact_event_t::END) expected_at[id] = time + 5'000'000'000;
       }
-      const std::size_t flashed = ledger.take(due, map, sync::host_time(now)).size();
+      const std::size_t flashed = ledger.select_flashes(due, map, sync::host_time(now)).size();
       const auto presented = ledger.presented(sync::host_time(now + 3'000'000));
       std::size_t shown = 0;
       for (const presentation_t& r : presented) {
@@ -70,7 +70,7 @@ TEST_CASE("The outcome of a late event follows the rule of the modality") {
   const sync::TimeMap map{sync::sim_time(0), sync::host_time(0), 1};
   const auto outcome = [&](sync::Late rule, std::int64_t late_ns, std::int64_t foretold_ns) {
     EventLedger ledger(Settings{}, rule);
-    ledger.take({event(1, contact_event_t::HIT, 0)}, map, sync::host_time(foretold_ns));
+    ledger.select_flashes({event(1, contact_event_t::HIT, 0)}, map, sync::host_time(foretold_ns));
     return ledger.presented(sync::host_time(late_ns)).at(0).outcome;
   };
   CHECK(outcome(sync::Late::kShowNewest, 50'000'000, 0) == presentation_t::PRESENTED);

@@ -213,18 +213,18 @@ TEST_CASE("A watched folder is delivered once, and again when it changes") {
   const auto next = [&] {
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);  // generous: this test is not about time
     while (std::chrono::steady_clock::now() < until) {
-      if (auto files = watch.take()) return *files;
+      if (auto files = watch.take_change()) return *files;
       std::this_thread::yield();
     }
     return ShaderFolder{};
   };
   CHECK(next() == ShaderFolder{{"a.frag", "one"}});
-  CHECK_FALSE(watch.take());
+  CHECK_FALSE(watch.take_change());
   std::ofstream(folder / "a.frag") << "two";
   // An editor may write in two steps.
   ShaderFolder seen = next();
   while (!seen.empty() && seen.begin()->second != "two") seen = next();
   CHECK(seen == ShaderFolder{{"a.frag", "two"}});
-  CHECK_FALSE(ShaderWatch("").take());
+  CHECK_FALSE(ShaderWatch("").take_change());
   std::filesystem::remove_all(folder);
 }

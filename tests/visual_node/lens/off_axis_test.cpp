@@ -94,7 +94,7 @@ TEST_CASE("Points behind an edge of two walls lie on matching pixels of both") {
 }
 
 TEST_CASE("An eye in front of the middle of a wall has an ordinary perspective") {
-  const Wall wall = *cave().named("front");
+  const Wall wall = *cave().find_wall("front");
   const double away = 1.524, height = 1.524;
   const Camera off = off_axis(wall, {0, 0, height}, kWidth, 0.02, 100);
   const Eigen::Isometry3d pose(Eigen::Translation3d(0, 0, height));
@@ -107,7 +107,7 @@ TEST_CASE("An eye in front of the middle of a wall has an ordinary perspective")
 
 TEST_CASE("Both eyes see a point on the wall at one place, before it crossed, behind it uncrossed") {
   const double apart = 0.064;
-  const Wall wall = *cave().named("front");
+  const Wall wall = *cave().find_wall("front");
   std::mt19937 random(7);
   std::uniform_real_distribution<double> across(-0.5, 0.5), turn(-1, 1);
   for (int i = 0; i < 200; ++i) {
@@ -136,7 +136,7 @@ TEST_CASE("Both eyes see a point on the wall at one place, before it crossed, be
 }
 
 TEST_CASE("An eye in the plane of a wall or behind it still gets a picture") {
-  const Wall wall = *cave().named("front");
+  const Wall wall = *cave().find_wall("front");
   for (const double x : {1.524, 1.6, 50.0}) {
     const Camera camera = off_axis(wall, {x, 0.2, 1}, kWidth, 0.02, 100);
     CHECK(camera.projection.allFinite());

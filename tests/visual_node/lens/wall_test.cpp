@@ -49,8 +49,8 @@ TEST_CASE("The walls of a cave face the user inside and meet edge on edge") {
 TEST_CASE("A user's room is read from a file, and an invalid one is rejected with a sentence") {
   const Room room = parse_room(kHead + "tilted,1,0.5,0,1,-0.5,0,1.6,0.5,0.8\r\n\n", "mine");
   REQUIRE(room.walls.size() == 1);
-  CHECK(room.named("tilted") == &room.walls[0]);
-  CHECK(room.named("front") == nullptr);
+  CHECK(room.find_wall("tilted") == &room.walls[0]);
+  CHECK(room.find_wall("front") == nullptr);
   CHECK(room.walls[0].width_m() == Approx(1));
   CHECK(room.walls[0].height_m() == Approx(1));
   CHECK((room.walls[0].normal() - Vector3d(-0.8, 0, 0.6)).norm() < 1e-12);
@@ -73,7 +73,7 @@ TEST_CASE("A user's room is read from a file, and an invalid one is rejected wit
 }
 
 TEST_CASE("A moved wall keeps its size and turns its normal") {
-  const Wall front = *load_room("cave4").named("front");
+  const Wall front = *load_room("cave4").find_wall("front");
   const Eigen::Isometry3d by = Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitZ());
   const Wall there = moved(front, by);
   CHECK(there.width_m() == Approx(front.width_m()));
