@@ -166,7 +166,7 @@ nlohmann::json video(const Options& options) {
         if (on) handing_over.push_back(busy_ms - drawn_ms);
       }
     }
-    if (const std::string note = recording.note(); !note.empty()) std::printf("%s\n", note.c_str());
+    if (const std::string note = recording.status_text(); !note.empty()) std::printf("%s\n", note.c_str());
   }
   std::filesystem::remove_all(folder);
   const double a = quantile(alone, 0.5), w = quantile(with_video, 0.5), h = quantile(handing_over, 0.5);
