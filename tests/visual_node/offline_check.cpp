@@ -235,18 +235,18 @@ TEST_CASE("An existing file is not overwritten, under any name") {
 
 TEST_CASE("A file that is not a log of a run is rejected in one sentence, and leaves no file") {
   const Folder folder;
-  const auto refusal = [&](const std::string& log) {
+  const auto error_of = [&](const std::string& log) {
     const Done done = render(folder, log, "x.mp4");
     CHECK(done.status == 1);
     CHECK_FALSE(std::filesystem::exists(folder.file("x.mp4")));
     CHECK_FALSE(std::filesystem::exists(folder.file("x.mp4.part.mp4")));
     return done.output;
   };
-  CHECK_THAT(refusal("none.lcmlog"), Catch::Contains("cannot read"));
+  CHECK_THAT(error_of("none.lcmlog"), Catch::Contains("cannot read"));
   std::ofstream(folder.file("text.lcmlog")) << "This is a letter, and no log.\n";
-  CHECK_THAT(refusal("text.lcmlog"), Catch::Contains("no LCM log"));
+  CHECK_THAT(error_of("text.lcmlog"), Catch::Contains("no LCM log"));
   RecordedRun(std::make_unique<sync::FileSink>(folder.file("bare.lcmlog")), std::vector<sync::Asset>{}).finish();
-  CHECK_THAT(refusal("bare.lcmlog"), Catch::Contains("no scene"));
+  CHECK_THAT(error_of("bare.lcmlog"), Catch::Contains("no scene"));
   record(folder.file("run.lcmlog"));
   const Done no_video = render(folder, "run.lcmlog", "");
   CHECK(no_video.status == 1);

@@ -87,7 +87,7 @@ class Window : public Display {
   }
 
   void show(unsigned framebuffer, int width, int height, bool halves) override {
-    if (!lost_ && !(lost_ = server_hung_up())) guard_.during([&] { put(framebuffer, width, height, halves); });
+    if (!lost_ && !(lost_ = server_hung_up())) guard_.run_guarded([&] { put(framebuffer, width, height, halves); });
   }
   bool closed() override {
     return !lost_ && (glfwWindowShouldClose(window_) || (x11_window_ != 0 && destroyed_ == x11_window_));
@@ -100,7 +100,7 @@ class Window : public Display {
 
   Inputs take_inputs() override {
     Inputs inputs;
-    guard_.during([&] { inputs = inputs_now(); });
+    guard_.run_guarded([&] { inputs = inputs_now(); });
     return inputs;
   }
 

@@ -151,12 +151,12 @@ void Collisions::apply_collision(ContactGroup& g) {
   // Joints get no offset: their momentum depends on their positions, so they receive the impulse at the start of the
   // step.
   std::size_t next = 0;
-  const auto set_aside = [&](double v, double* x) {
+  const auto add_position_offset = [&](double v, double* x) {
     const double change = v - before_[next++];
     if (x) *x -= t * change;
   };
-  for_each_component(g.mover_a, set_aside);
-  if (g.mover_b != g.mover_a) for_each_component(g.mover_b, set_aside);
+  for_each_component(g.mover_a, add_position_offset);
+  if (g.mover_b != g.mover_a) for_each_component(g.mover_b, add_position_offset);
 }
 
 void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::size_t>& first_rate,

@@ -68,9 +68,9 @@ TEST_CASE("Every begin and hit yields exactly one report under any frame timing"
 
 TEST_CASE("The outcome of a late event follows the rule of the modality") {
   const sync::TimeMap map{sync::sim_time(0), sync::host_time(0), 1};
-  const auto outcome = [&](sync::Late rule, std::int64_t late_ns, std::int64_t foretold_ns) {
+  const auto outcome = [&](sync::Late rule, std::int64_t late_ns, std::int64_t predicted_ns) {
     EventLedger ledger(Settings{}, rule);
-    ledger.select_flashes({event(1, contact_event_t::HIT, 0)}, map, sync::host_time(foretold_ns));
+    ledger.select_flashes({event(1, contact_event_t::HIT, 0)}, map, sync::host_time(predicted_ns));
     return ledger.presented(sync::host_time(late_ns)).at(0).outcome;
   };
   CHECK(outcome(sync::Late::kShowNewest, 50'000'000, 0) == presentation_t::PRESENTED);

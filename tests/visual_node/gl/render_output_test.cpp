@@ -17,10 +17,10 @@ namespace {
 sync::HostTime at_s(double s) { return sync::HostTime{sync::from_seconds(s)}; }
 
 // The shared context of these tests, which stays current.
-struct Borrowed : Display {
+struct FakeDisplay : Display {
   std::string& loss;
   bool window;
-  Borrowed(std::string& t, bool w) : loss(t), window(w) { description_ = window ? "a window" : "no window"; }
+  FakeDisplay(std::string& t, bool w) : loss(t), window(w) { description_ = window ? "a window" : "no window"; }
   void show(unsigned, int, int, bool) override {}
   bool closed() override { return false; }
   std::string loss_reason() override { return loss; }
@@ -28,9 +28,9 @@ struct Borrowed : Display {
   bool has_screen() const override { return window; }
 };
 
-struct Fragile {
+struct OutputFixture {
   std::string loss;
-  int opened = 0, may_open = 1000;
+  int opened = 0, max_opens = 1000;
   Settings settings;
   scene_t scene = floor_from_above(2);
   SceneView view{scene, {}, settings, {}};
@@ -38,10 +38,10 @@ struct Fragile {
 
   MakeDisplay make() {
     return [this](const Settings&, bool window) -> std::unique_ptr<Display> {
-      if (opened++ >= may_open) throw std::runtime_error("no OpenGL 3.3 context, tried nothing");
+      if (opened++ >= max_opens) throw std::runtime_error("no OpenGL 3.3 context, tried nothing");
       display();
       loss.clear();
-      return std::make_unique<Borrowed>(loss, window);
+      return std::make_unique<FakeDisplay>(loss, window);
     };
   }
   std::vector<std::uint8_t> picture(RenderOutput& output) {
@@ -57,7 +57,7 @@ struct Fragile {
 }  // namespace
 
 TEST_CASE("A lost device is opened again and draws the loaded scene as before") {
-  Fragile f;
+  OutputFixture f;
   RenderOutput output(f.settings, false, f.make());
   output.load(f.view, f.list, f.settings);
   const auto before = f.picture(output);
@@ -73,7 +73,7 @@ TEST_CASE("A lost device is opened again and draws the loaded scene as before") 
 }
 
 TEST_CASE("A device that is lost before the first scene is opened again too") {
-  Fragile f;
+  OutputFixture f;
   RenderOutput output(f.settings, false, f.make());
   f.loss = "the graphics device was reset";
   CHECK_FALSE(output.recover(at_s(2), nullptr, {}).empty());
@@ -81,7 +81,7 @@ TEST_CASE("A device that is lost before the first scene is opened again too") {
 }
 
 TEST_CASE("A window without a display server is not opened again, and drawing continues without it") {
-  Fragile f;
+  OutputFixture f;
   RenderOutput output(f.settings, true, f.make());
   REQUIRE(output.display().has_screen());
   f.loss = "the display server of the window is gone";
@@ -92,7 +92,7 @@ TEST_CASE("A window without a display server is not opened again, and drawing co
 
 TEST_CASE(
     "A device that is lost repeatedly ends with one sentence, one that is lost rarely does not") {
-  Fragile f;
+  OutputFixture f;
   RenderOutput output(f.settings, false, f.make());
   double now_s = 0;
   for (int i = 0; i < 20; ++i) {
@@ -109,8 +109,8 @@ TEST_CASE(
 }
 
 TEST_CASE("A device that cannot be opened again ends the node with the reason and the attempts") {
-  Fragile f;
-  f.may_open = 1;
+  OutputFixture f;
+  f.max_opens = 1;
   RenderOutput output(f.settings, false, f.make());
   f.loss = "the graphics device was reset";
   CHECK_THROWS_WITH(output.recover(at_s(1), nullptr, {}), Catch::Contains("was reset") &&

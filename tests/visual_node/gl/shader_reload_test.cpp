@@ -19,16 +19,16 @@ using Eigen::Vector3d;
 namespace {
 
 // A floor drawn by the shader `name`, with optional passes.
-struct Stand {
+struct ShaderFixture {
   scene_t scene = floor_from_above(4);
   SceneView view;
   Renderer renderer{kWidth, kHeight, 64};
-  explicit Stand(const std::string& shader, const ShaderText& own = {},
+  explicit ShaderFixture(const std::string& shader, const ShaderText& scene_shader = {},
                  const std::vector<std::string>& passes = {}, const std::vector<uniform_t>& uniforms = {})
       : view(with(shader), {}, Settings{}) {
     Appearance appearance = view.appearance();
     appearance.looks[1].uniforms = uniforms;
-    if (!own.name.empty()) appearance.shaders.push_back(own);
+    if (!scene_shader.name.empty()) appearance.shaders.push_back(scene_shader);
     for (const std::string& p : passes) appearance.passes.emplace_back().shader = p;
     renderer.load(view.geometries(), view.lighting(), {}, appearance);
   }
@@ -53,7 +53,7 @@ std::string plain(const std::string& colour) {
   return "// A colour.\nvec4 shade() {\n  return vec4(" + colour + ", 1.0);\n}\n";
 }
 const Vector3d kRed(255, 0, 0), kGreen(0, 255, 0), kBlue(0, 0, 255);
-ShaderText own(const std::string& fragment, const std::string& vertex = "") {
+ShaderText scene_shader(const std::string& fragment, const std::string& vertex = "") {
   return {.name = "mine",
           .fragment = fragment,
           .vertex = vertex,
@@ -65,27 +65,27 @@ const std::string kBroken = "// A colour.\nvec4 shade() {\n  return nothing;\n}\
 }  // namespace
 
 TEST_CASE("A shader of the scene draws its surface, and an edit is visible in the next picture") {
-  Stand stand("mine", own(plain("1, 0, 0")));
-  CHECK(stand.renderer.take_warnings().empty());
-  CHECK(stand.middle() == kRed);
-  stand.renderer.set_shader_folder({{"mine.frag", plain("0, 1, 0")}});
-  CHECK(stand.renderer.take_warnings().empty());
-  CHECK(stand.middle() == kGreen);
+  ShaderFixture fixture("mine", scene_shader(plain("1, 0, 0")));
+  CHECK(fixture.renderer.take_warnings().empty());
+  CHECK(fixture.middle() == kRed);
+  fixture.renderer.set_shader_folder({{"mine.frag", plain("0, 1, 0")}});
+  CHECK(fixture.renderer.take_warnings().empty());
+  CHECK(fixture.middle() == kGreen);
 
   SECTION("a shader that does not compile is reported with file and line, and the last good one stays") {
-    stand.renderer.set_shader_folder({{"mine.frag", kBroken}});
-    const auto messages = stand.renderer.take_warnings();
+    fixture.renderer.set_shader_folder({{"mine.frag", kBroken}});
+    const auto messages = fixture.renderer.take_warnings();
     REQUIRE(messages.size() == 1);
     CHECK_THAT(messages[0], Catch::Contains("look worn") && Catch::Contains("mine.frag:3") &&
                             Catch::Contains("the previous shader stays"));
-    CHECK(stand.middle() == kGreen);
-    stand.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
-    CHECK(stand.renderer.take_warnings().empty());
-    CHECK(stand.middle() == kBlue);
+    CHECK(fixture.middle() == kGreen);
+    fixture.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
+    CHECK(fixture.renderer.take_warnings().empty());
+    CHECK(fixture.middle() == kBlue);
   }
   SECTION("without its file the scene's shader returns") {
-    stand.renderer.set_shader_folder({});
-    CHECK(stand.middle() == kRed);
+    fixture.renderer.set_shader_folder({});
+    CHECK(fixture.middle() == kRed);
   }
 }
 
@@ -94,22 +94,22 @@ TEST_CASE("Every kind of invalid source is reported in one sentence and removes 
                                         "vec4 shade() { return vec4(1) }", "vec4 other() { return vec4(1); }",
                                         "#version 450 core\nvec4 shade() { return vec4(1) + x; }",
                                         "#extension GL_nowhere : require\nvec4 shade() { return vec4(1); }");
-  Stand stand("mine", own(plain("1, 0, 0")));
-  stand.renderer.set_shader_folder({{"mine.frag", nonsense}});
-  CHECK(stand.renderer.take_warnings().size() == 1);
-  CHECK(stand.middle() == kRed);
+  ShaderFixture fixture("mine", scene_shader(plain("1, 0, 0")));
+  fixture.renderer.set_shader_folder({{"mine.frag", nonsense}});
+  CHECK(fixture.renderer.take_warnings().size() == 1);
+  CHECK(fixture.middle() == kRed);
 }
 
 TEST_CASE("A missing shader and one that never compiled are drawn as Phong and reported once") {
-  Stand phong("phong");
+  ShaderFixture phong("phong");
   const Image expected = phong.draw();
-  Stand unknown("nowhere");
+  ShaderFixture unknown("nowhere");
   auto messages = unknown.renderer.take_warnings();
   REQUIRE(messages.size() == 1);
   CHECK_THAT(messages[0], Catch::Contains("nowhere") && Catch::Contains("gouraud") &&
                           Catch::Contains("phong is drawn instead"));
   CHECK(unknown.draw().rgba == expected.rgba);
-  Stand broken("mine", own(kBroken));
+  ShaderFixture broken("mine", scene_shader(kBroken));
   messages = broken.renderer.take_warnings();
   REQUIRE(messages.size() == 1);
   CHECK_THAT(messages[0], Catch::Contains("mine.frag:3: error") && Catch::Contains("phong is drawn instead"));
@@ -123,20 +123,20 @@ TEST_CASE("A missing shader and one that never compiled are drawn as Phong and r
 }
 
 TEST_CASE("A shader of the node can be replaced too, including its lamps") {
-  Stand stand("phong");
-  const Vector3d before = stand.middle();
-  stand.renderer.set_shader_folder({{"phong.frag", plain("0, 1, 0")}});
-  CHECK(stand.middle() == kGreen);
-  stand.renderer.set_shader_folder({{"lamps.glsl", "broken"}});
-  CHECK_THAT(stand.renderer.take_warnings().front(), Catch::Contains("lamps.glsl:1"));
-  CHECK(stand.middle() == kGreen);
-  stand.renderer.set_shader_folder({});
-  CHECK(stand.middle() == before);
+  ShaderFixture fixture("phong");
+  const Vector3d before = fixture.middle();
+  fixture.renderer.set_shader_folder({{"phong.frag", plain("0, 1, 0")}});
+  CHECK(fixture.middle() == kGreen);
+  fixture.renderer.set_shader_folder({{"lamps.glsl", "broken"}});
+  CHECK_THAT(fixture.renderer.take_warnings().front(), Catch::Contains("lamps.glsl:1"));
+  CHECK(fixture.middle() == kGreen);
+  fixture.renderer.set_shader_folder({});
+  CHECK(fixture.middle() == before);
 }
 
 TEST_CASE("A vertex shader moves its surface") {
   // Moved up by 2 m: from 4 m the floor looks twice as large.
-  Stand raised("mine", own(plain("0, 1, 0"), "vec3 moved(vec3 at) { return at + vec3(0.0, 3.0, 0.0); }\n"));
+  ShaderFixture raised("mine", scene_shader(plain("0, 1, 0"), "vec3 moved(vec3 at) { return at + vec3(0.0, 3.0, 0.0); }\n"));
   CHECK(raised.renderer.take_warnings().empty());
   // The floor ended 5 m to the left, at +y; 2.2 m are visible to each side. Moved by 3 m its right edge is 2 m to
   // the right.
@@ -149,41 +149,41 @@ TEST_CASE("A vertex shader moves its surface") {
 }
 
 TEST_CASE("A pass that does not compile keeps its previous version, and a missing one is left out") {
-  Stand stand("phong", own(plain("0, 0, 1")), {"mine", "nowhere"});
-  const auto messages = stand.renderer.take_warnings();
+  ShaderFixture fixture("phong", scene_shader(plain("0, 0, 1")), {"mine", "nowhere"});
+  const auto messages = fixture.renderer.take_warnings();
   REQUIRE(messages.size() == 1);
   CHECK_THAT(messages[0], Catch::Contains("pass nowhere") && Catch::Contains("left out"));
-  CHECK(stand.middle() == kBlue);
-  stand.renderer.set_shader_folder({{"mine.frag", kBroken}});
-  CHECK_THAT(stand.renderer.take_warnings().front(),
+  CHECK(fixture.middle() == kBlue);
+  fixture.renderer.set_shader_folder({{"mine.frag", kBroken}});
+  CHECK_THAT(fixture.renderer.take_warnings().front(),
              Catch::Contains("mine.frag:3") && Catch::Contains("the previous shader stays"));
-  CHECK(stand.middle() == kBlue);
-  stand.renderer.set_shader_folder({{"mine.frag", plain("1, 0, 0")}});
-  CHECK(stand.middle() == kRed);
+  CHECK(fixture.middle() == kBlue);
+  fixture.renderer.set_shader_folder({{"mine.frag", plain("1, 0, 0")}});
+  CHECK(fixture.middle() == kRed);
 }
 
 TEST_CASE("Uniforms set by name take effect, and an unsuitable one is reported") {
   uniform_t tint{};
   tint.name = "tint", tint.count = 3, tint.values[1] = 1;
   const std::string tinted = "uniform vec3 tint;\nvec4 shade() { return vec4(tint, 1.0); }\n";
-  Stand stand("mine", own(tinted), {}, {tint});
-  CHECK(stand.renderer.take_warnings().empty());
-  CHECK(stand.middle() == kGreen);
+  ShaderFixture fixture("mine", scene_shader(tinted), {}, {tint});
+  CHECK(fixture.renderer.take_warnings().empty());
+  CHECK(fixture.middle() == kGreen);
   SECTION("because it has another type") {
-    stand.renderer.set_shader_folder(
+    fixture.renderer.set_shader_folder(
         {{"mine.frag", "uniform float tint;\nvec4 shade() { return vec4(tint, 0.0, 1.0, 1.0); }\n"}});
-    CHECK_THAT(stand.renderer.take_warnings().at(0),
+    CHECK_THAT(fixture.renderer.take_warnings().at(0),
                Catch::Contains("uniform tint") && Catch::Contains("not a vec3"));
-    CHECK(stand.middle() == kBlue);
+    CHECK(fixture.middle() == kBlue);
   }
   SECTION("because it has another name") {
-    stand.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
-    CHECK_THAT(stand.renderer.take_warnings().at(0), Catch::Contains("has no uniform tint"));
-    CHECK(stand.middle() == kBlue);
+    fixture.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
+    CHECK_THAT(fixture.renderer.take_warnings().at(0), Catch::Contains("has no uniform tint"));
+    CHECK(fixture.middle() == kBlue);
   }
   SECTION("but not when it only has no effect") {
-    stand.renderer.set_shader_folder({{"mine.frag", "uniform vec3 tint;\n" + plain("0, 0, 1")}});
-    CHECK(stand.renderer.take_warnings().empty());
+    fixture.renderer.set_shader_folder({{"mine.frag", "uniform vec3 tint;\n" + plain("0, 0, 1")}});
+    CHECK(fixture.renderer.take_warnings().empty());
   }
 }
 

@@ -19,7 +19,7 @@ sync::BusOptions memory() {
 
 sync::HostTime at_ms(std::int64_t ms) { return sync::HostTime{std::chrono::milliseconds(ms)}; }
 
-struct Laid {
+struct OverlayLayout {
   sync::Bus bus{sync::Identity::fresh("visual_node", 7), memory()};
   LiveOverlays overlays{bus};
 
@@ -41,14 +41,14 @@ struct Laid {
   }
 };
 
-bool meet(const Rect& a, const Rect& b) {
+bool overlap(const Rect& a, const Rect& b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
 }  // namespace
 
 TEST_CASE("In every combination of overlays, plates do not overlap and the marker stays free") {
-  Laid c;
+  OverlayLayout c;
   REQUIRE(c.configure("all,help",
                       "graph TOOL_STATE.force_N.z; bar TOOL_STATE.fade; text TOOL_STATE.tool;"
                       "graph TOOL_STATE.energy_J; graph TOOL_STATE.coupling; graph TOOL_STATE.seq_no")
@@ -62,12 +62,12 @@ TEST_CASE("In every combination of overlays, plates do not overlap and the marke
       if (r.red + r.green + r.blue == 0) plates.push_back(r);
     CHECK(plates.size() >= 2);
     for (std::size_t i = 0; i < plates.size(); ++i)
-      for (std::size_t k = 0; k < i; ++k) CHECK_FALSE(meet(plates[i], plates[k]));
+      for (std::size_t k = 0; k < i; ++k) CHECK_FALSE(overlap(plates[i], plates[k]));
     const auto w = static_cast<float>(width), h = static_cast<float>(height);
     const Rect marker{0, h - kMarkerRows * kMarkerCell_px, w, kMarkerRows * kMarkerCell_px};
     for (const Rect& r : rects) {
       // No pixel of the text leaves the picture or its plate.
-      CHECK((r.x >= 0 && r.y >= 0 && r.x + r.width <= w && !meet(r, marker)));
+      CHECK((r.x >= 0 && r.y >= 0 && r.x + r.width <= w && !overlap(r, marker)));
       CHECK(std::any_of(plates.begin(), plates.end(), [&](const Rect& p) {
         return r.x >= p.x && r.y >= p.y && r.x + r.width <= p.x + p.width && r.y + r.height <= p.y + p.height;
       }));
@@ -76,7 +76,7 @@ TEST_CASE("In every combination of overlays, plates do not overlap and the marke
 }
 
 TEST_CASE("An overlay that is off subscribes to nothing, and a key that switches it on subscribes") {
-  Laid c;
+  OverlayLayout c;
   CHECK(c.configure("none").empty());
   CHECK(c.bus.inboxes().empty());
   CHECK(c.drawn(640, 480).empty());
