@@ -7,9 +7,10 @@
 //   out  TOUCH_MODEL, CONTACT_EVENTS, CONTACTS, WORLD_STATE, GAME_STATE, in this order; SIM_REPLY; SCENE_MANIFEST,
 //        ASSET_CHUNK
 //
-// When TOOL_STATE is lost, the forces on the bodies fade within 10 ms. A simulation that cannot keep up keeps its step length: simulated
-// time falls behind the clock, and the published map shows the speed. A world that is reset or restored continues under another
-// incarnation, as after a restart, so that no receiver keeps obsolete contacts.
+// When TOOL_STATE is lost, the forces on the bodies fade within 10 ms. A simulation that cannot keep up keeps its
+// step length: simulated time falls behind the clock, and the published map shows the speed. A world that is reset
+// or restored continues under another incarnation, as after a restart, so that no receiver keeps obsolete
+// contacts.
 #include "sim_node/run.h"
 
 #include <CLI/CLI.hpp>
@@ -39,7 +40,8 @@ namespace {
 
 sim::Settings settings_of(const sim::WorldDef& world, const std::vector<std::string>& from_command_line) {
   sim::Settings settings;
-  const auto errors = sync::apply_settings(settings, sim::setting_fields(), "sim_node", world.settings, from_command_line);
+  const auto errors =
+      sync::apply_settings(settings, sim::setting_fields(), "sim_node", world.settings, from_command_line);
   if (!errors.empty()) throw std::runtime_error(errors.front());
   return settings;
 }
@@ -68,14 +70,14 @@ void publish_state(WorldPublisher& world_publisher, sim::Simulation& simulation,
   static const std::vector<contact_event_t> no_events;
   sim::SimPacer& pacer = world_publisher.pacer;
   const sync::TimeMap map = steps ? pacer.tick(simulation.now(), due) : pacer.hold(simulation.now(), due);
-  world_publisher.publisher.publish({.time = simulation.now(),
-                             .touch_models = &simulation.touch_models(),
-                             .events = steps ? &simulation.events() : &no_events,
-                             .tool_contacts = &simulation.tool_contacts(),
-                             .state = {simulation.bodies(), [&](auto& out) { simulation.body_contacts(out); },
-                                       simulation.look_ahead()},
-                             .game = &simulation.game()},
-                            map);
+  world_publisher.publisher.publish(
+      {.time = simulation.now(),
+       .touch_models = &simulation.touch_models(),
+       .events = steps ? &simulation.events() : &no_events,
+       .tool_contacts = &simulation.tool_contacts(),
+       .state = {simulation.bodies(), [&](auto& out) { simulation.body_contacts(out); }, simulation.look_ahead()},
+       .game = &simulation.game()},
+      map);
 }
 
 }  // namespace
@@ -112,7 +114,8 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
   std::vector<tool_state_t> new_messages;
 
   node.tags().add("world.time", "s", [&] { return sync::to_seconds(simulation.now().time_since_epoch()); });
-  node.tags().add("world.realtime_factor", "1", [&] { return world_publisher->pacer.realtime_factor(); }, 10);
+  node.tags().add(
+      "world.realtime_factor", "1", [&] { return world_publisher->pacer.realtime_factor(); }, 10);
   node.tags().add("contacts.tools", "1", [&] { return static_cast<double>(simulation.tool_contacts().size()); });
   node.tags().add("contacts.events", "1", [&] { return static_cast<double>(simulation.events().size()); });
 
@@ -121,7 +124,8 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
   const sync::HostTime begin = sync::host_now() + sync::from_seconds(settings.scene_grace_s);
   for (sync::HostTime now = node.wait(); node.running() && now < begin; now = node.wait()) scene_sender.poll(now);
   node.set_state(node_health_t::RUNNING);
-  if (node.running()) std::cerr << "sim_node: the world begins" << std::endl;  // scripts/run measures its duration from here
+  if (node.running())
+    std::cerr << "sim_node: the world begins" << std::endl;  // scripts/run measures its duration from here
 
   while (node.running()) {
     const sync::HostTime now = node.wait();
@@ -137,7 +141,8 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
         world_publisher->publisher.request_full_state();
     }
     for (int left = kMaxCommandsPerTick; left > 0; --left)
-      if (const auto m = commands.pop(); m && m->message.header.run_id == options.run_id) commander.execute(m->message);
+      if (const auto m = commands.pop(); m && m->message.header.run_id == options.run_id)
+        commander.execute(m->message);
     for (sim_reply_t& reply : commander.take_replies()) {
       reply.header.sim_time_ns = -1;
       node.bus().publish(channels::kSimReply, reply);

@@ -25,7 +25,9 @@ std::vector<sync::Offline::Written> overwritten_files(const OfflineOptions& opti
 void OfflineOptions::add_to(CLI::App& app) {
   sync::OfflineOptions::add_to(app, "draws this log of a run", "--video");
   app.add_option("--video", video, "file for the pictures of the log, MP4")->needs("--log");
-  app.add_option("--frames", frames, "file for a table of the time and the pixel hash of each frame of the log, CSV")->needs("--log");
+  app.add_option("--frames", frames,
+                 "file for a table of the time and the pixel hash of each frame of the log, CSV")
+      ->needs("--log");
   app.add_flag("--as-recorded", as_recorded, "the same as --degrade logged")->needs("--log");
 }
 

@@ -1,5 +1,6 @@
-// Offline rendering: a recorded run replaces bus and screen, and the node renders the log to a file as fast as it can. Drawing takes no
-// simulated time, so the result does not depend on the speed of the machine: the same log gives the same pixels.
+// Offline rendering: a recorded run replaces bus and screen, and the node renders the log to a file as fast as it
+// can. Drawing takes no simulated time, so the result does not depend on the speed of the machine: the same log
+// gives the same pixels.
 #pragma once
 
 #include <cstdint>
@@ -34,11 +35,14 @@ class Offline {
 
   sync::Offline& run() { return run_; }
   sync::HostTime now() const { return run_.now(); }
-  // Call when a scene is loaded. Throws std::runtime_error with one sentence when its pictures do not fit the video.
+  // Call when a scene is loaded. Throws std::runtime_error with one sentence when its pictures do not fit the
+  // video.
   void begin(int width, int height, const Settings& settings);
-  // Adds the picture of this tick; read() fills its argument, sRGB, the lowest row first. Does nothing before the first scene.
+  // Adds the picture of this tick; read() fills its argument, sRGB, the lowest row first. Does nothing before the
+  // first scene.
   void add(const std::function<void(std::span<std::uint8_t>)>& read);
-  // Finishes and renames the video. Returns a summary. Throws std::runtime_error with one sentence when the log has no scene.
+  // Finishes and renames the video. Returns a summary. Throws std::runtime_error with one sentence when the log
+  // has no scene.
   std::string result(std::int64_t flashed, std::int64_t dropped, sync::HostTime clock);
 
  private:

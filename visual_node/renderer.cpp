@@ -43,7 +43,8 @@ std::unique_ptr<RenderOutput> open_render_output(const Settings& settings, const
   return options.no_pictures ? std::make_unique<RenderOutput>(settings) : std::make_unique<RenderOutput>(settings, options.window);
 }
 
-NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& render_output, const Options& options, Offline* log)
+NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& render_output, const Options& options,
+                           Offline* log)
     : SettingsRenderer(host, setting_fields()),
       render_output_(render_output),
       log_(log),
@@ -83,9 +84,9 @@ sync::Loaded NodeRenderer::load(const sync::SceneReceiver& scenes, const Setting
   loaded_ = true;
   scene_ = scenes.scene();
   std::vector<std::string> warnings;
-  const SceneView& view =
-      composer_.load(*scene_, meshes_of(scenes), settings,
-                     height_maps_of(*scene_, sync::pictures_of(scenes), warnings), look_files_of(scenes, warnings));
+  const SceneView& view = composer_.load(*scene_, meshes_of(scenes), settings,
+                                         height_maps_of(*scene_, sync::pictures_of(scenes), warnings),
+                                         look_files_of(scenes, warnings));
   warnings.insert(warnings.end(), view.warnings().begin(), view.warnings().end());
   if (!view.lens().warning().empty()) warnings.push_back(view.lens().warning());
   for (const std::string& sentence : overlays_.configure(settings)) warnings.push_back(sentence);
@@ -147,8 +148,8 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   if (render_output_.draws()) questions_.step();
   if (host().live() && render_output_.draws())
     controls_.step(now, render_output_.display(), overlays_, questions_, frame_.list,
-               view ? std::span(view->geometries()) : std::span<const Triangles>{},
-               [this](const std::string& sentence) { host().say(sentence); });
+                   view ? std::span(view->geometries()) : std::span<const Triangles>{},
+                   [this](const std::string& sentence) { host().say(sentence); });
   const bool fresh = render_output_.due(now, host().sense().output());
   if (fresh) draw(locked ? host().clock() : now, locked);
   host().sense().publish(host().clock());  // before the pixels are read back
@@ -160,7 +161,8 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
 }
 
 void NodeRenderer::recover(sync::HostTime now) {
-  if (const std::string lost = render_output_.recover(now, composer_.view(), frame_.list); !lost.empty()) host().say(lost);
+  if (const std::string lost = render_output_.recover(now, composer_.view(), frame_.list); !lost.empty())
+    host().say(lost);
   report_all(render_output_.take_warnings());
 }
 
@@ -217,7 +219,8 @@ void NodeRenderer::draw_overlays(sync::HostTime latched) {
     panel.output = output_;
     overlays_.append(frame_, panel, latched, render_output_.picture().width(), render_output_.picture().height());
   }
-  if (render_output_.draws()) questions_.append(frame_, latched, render_output_.picture().width(), render_output_.picture().height());
+  if (render_output_.draws())
+    questions_.append(frame_, latched, render_output_.picture().width(), render_output_.picture().height());
   render_output_.draw_flashes_and_overlay(frame_.list);
 }
 
@@ -225,7 +228,8 @@ void NodeRenderer::draw_overlays(sync::HostTime latched) {
 void NodeRenderer::present(sync::HostTime latched) {
   const sync::HostTime shown = fence_ + sync::from_seconds(settings().display_latency_s);
   questions_.presented(shown);
-  // An event that arrives just after the latch waits for the latch of the next frame. Pictures that a profile holds are excluded.
+  // An event that arrives just after the latch waits for the latch of the next frame. Pictures that a profile
+  // holds are excluded.
   if (!output_.any())
     host().sense().set_output_latency(shown - latched + sync::from_seconds(1 / settings().rate_Hz));
   for (const presentation_t& report : composer_.presented(shown)) {
@@ -239,7 +243,8 @@ void NodeRenderer::present(sync::HostTime latched) {
 void NodeRenderer::record(sync::HostTime now, bool fresh) {
   const auto read = [this](std::span<std::uint8_t> rgba) { render_output_.picture().read(rgba); };
   if (log_) return log_->add(read);
-  if (auto pair = render_output_.draws() ? recording_.add(slot_, fresh ? fence_ : now + draw_time_, read) : std::nullopt) {
+  if (auto pair =
+          render_output_.draws() ? recording_.add(slot_, fresh ? fence_ : now + draw_time_, read) : std::nullopt) {
     times_.read = sync::host_now();
     host().bus().publish(channels::kMediaClock, *pair);
     if (fresh && settings().motion_marker == "strip")
@@ -250,7 +255,8 @@ void NodeRenderer::record(sync::HostTime now, bool fresh) {
                 fence_ + sync::from_seconds(settings().display_latency_s), read);
   for (picture_chunk_t& chunk : stream_.take_chunks())
     host().bus().publish(channels::kPictureChunk, chunk, sync::Port::kBulk);
-  if (const std::string error = recording_.error(); error != last_reported_error_) host().say(last_reported_error_ = error);
+  if (const std::string error = recording_.error(); error != last_reported_error_)
+    host().say(last_reported_error_ = error);
 }
 
 sync::Status NodeRenderer::status(sync::HostTime now, bool fresh) {

@@ -1,4 +1,5 @@
-// The modality of vision on the renderer host: from the messages of a tick to the picture that is shown and recorded.
+// The modality of vision on the renderer host: from the messages of a tick to the picture that is shown and
+// recorded.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,5 @@
-// Main function of the program, callable so that virtual time can run several programs in one process (sync/virtual_time).
+// Main function of the program, callable so that virtual time can run several programs in one process
+// (sync/virtual_time).
 #pragma once
 
 namespace tactus::visual {

@@ -21,11 +21,13 @@ std::string too_stiff(const WorldDef& world, const Settings& s) {
     const BodyDef& b = world.bodies[i];
     if (b.is_static || b.tool >= 0) continue;
     const double mobility = points_of(world, static_cast<int>(i)) / b.mass_kg;
-    const double max_stiffness_N_m = impulse::max_explicit_stiffness_N_m(mobility, s.penalty_damping_Ns_m, s.step_s);
+    const double max_stiffness_N_m =
+        impulse::max_explicit_stiffness_N_m(mobility, s.penalty_damping_Ns_m, s.step_s);
     if (s.penalty_stiffness_N_m < max_stiffness_N_m) continue;
     char numbers[160];
-    std::snprintf(numbers, sizeof numbers, "mass of %.3g kg allows at most %.3g N/m at a step of %.3g ms, not %.3g",
-                  b.mass_kg, std::max(0.0, max_stiffness_N_m), 1e3 * s.step_s, s.penalty_stiffness_N_m);
+    std::snprintf(numbers, sizeof numbers,
+                  "mass of %.3g kg allows at most %.3g N/m at a step of %.3g ms, not %.3g", b.mass_kg,
+                  std::max(0.0, max_stiffness_N_m), 1e3 * s.step_s, s.penalty_stiffness_N_m);
     return "sim_node: the solver \"penalty_explicit\" is unstable for the body \"" + b.name + "\", whose " +
            numbers + "; lower penalty_stiffness or choose \"penalty\"";
   }

@@ -22,7 +22,8 @@ double bound_of(const ShapeDef& s, const WorldDef& world) {
     case ShapeKind::kCylinder: return std::hypot(s.size_m.x(), s.size_m.z() / 2);
     case ShapeKind::kMesh: {
       double max_radius_m = 0;
-      for (const Eigen::Vector3d& v : world.meshes[index(s.mesh)].vertices) max_radius_m = std::max(max_radius_m, v.norm());
+      for (const Eigen::Vector3d& v : world.meshes[index(s.mesh)].vertices)
+        max_radius_m = std::max(max_radius_m, v.norm());
       return max_radius_m;
     }
     default: return s.size_m.norm() / 2;

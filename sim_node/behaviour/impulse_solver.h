@@ -12,9 +12,9 @@
 #include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/behaviour/impulse/world.h"
 #include "sim_node/contacts/contact_finder.h"
+#include "sim_node/model/state_archive.h"
 #include "sim_node/model/world_def.h"
 #include "sim_node/settings.gen.h"
-#include "sim_node/model/state_archive.h"
 
 namespace tactus::sim {
 

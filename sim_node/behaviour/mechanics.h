@@ -11,15 +11,15 @@
 #include <tactus/contact_t.hpp>
 #include <vector>
 
+#include "sim_node/behaviour/impulse/scene_settings.h"
+#include "sim_node/collision/detectors/mesh_trees.h"
 #include "sim_node/model/body_motion.h"
 #include "sim_node/model/group_tool.h"
-#include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/model/ids.h"
-#include "sim_node/collision/detectors/mesh_trees.h"
 #include "sim_node/model/look_ahead.h"
+#include "sim_node/model/state_archive.h"
 #include "sim_node/model/world_def.h"
 #include "sim_node/settings.gen.h"
-#include "sim_node/model/state_archive.h"
 #include "sync/time/time.h"
 
 namespace tactus::sim {

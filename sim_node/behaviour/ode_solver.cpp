@@ -100,9 +100,10 @@ void Solver::start(const WorldDef& world) {
     const BodyDef& b = world.bodies[i];
     const bool moves = engine_->bodies[i] != nullptr;
     has_gravity_.push_back(moves && b.gravity);
-    inertias_.push_back({b.centre_of_mass_m,
-                      moves ? Eigen::Matrix3d(b.inertia_kg_m2.inverse()) : Eigen::Matrix3d(Eigen::Matrix3d::Zero()),
-                      moves && b.gravity ? Eigen::Vector3d(g * settings.step_s) : Eigen::Vector3d(0, 0, 0)});
+    inertias_.push_back(
+        {b.centre_of_mass_m,
+         moves ? Eigen::Matrix3d(b.inertia_kg_m2.inverse()) : Eigen::Matrix3d(Eigen::Matrix3d::Zero()),
+         moves && b.gravity ? Eigen::Vector3d(g * settings.step_s) : Eigen::Vector3d(0, 0, 0)});
     BodyMotion& m = motions_[i];
     m.position_m = b.pose.translation();
     m.orientation = Eigen::Quaterniond(b.pose.linear()).normalized();
@@ -191,7 +192,8 @@ void Solver::add_contact_joint(Manifold& c) {
     s.mu = friction * p.friction;
     // ODE bounds friction by a pyramid. With one side aligned to the expected sliding direction it is as wide as the
     // cone; at 45 degrees it would be 41 % too wide.
-    Eigen::Vector3d sliding = motions_[b].velocity_at(p.point_m) + free_fall_m_s_[b] - motions_[a].velocity_at(p.point_m) - free_fall_m_s_[a];
+    Eigen::Vector3d sliding = motions_[b].velocity_at(p.point_m) + free_fall_m_s_[b] -
+                              motions_[a].velocity_at(p.point_m) - free_fall_m_s_[a];
     sliding -= sliding.dot(p.normal) * p.normal;
     const Eigen::Vector3d along = sliding.norm() > kStill_m_s ? sliding.normalized() : p.normal.unitOrthogonal();
     const Eigen::Vector3d into_first = first_is_b ? p.normal : Eigen::Vector3d(-p.normal);

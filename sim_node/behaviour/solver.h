@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "sim_node/model/body_motion.h"
-#include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/behaviour/impulse/recovery_report.h"
+#include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/contacts/friction_maps.h"
+#include "sim_node/model/body_motion.h"
 #include "sim_node/model/manifold.h"
+#include "sim_node/model/state_archive.h"
 #include "sim_node/model/world_def.h"
 #include "sim_node/settings.gen.h"
-#include "sim_node/model/state_archive.h"
 
 namespace tactus::sim {
 
@@ -48,8 +48,8 @@ class Solver {
   bool set_motor(const std::string& joint, int axis, double effort, double velocity);
   bool set_joint_friction(const std::string& joint, int axis, double friction);
 
-  // Archives all state of the next steps. Throws InvalidState when the data does not fit; the solver is then partly
-  // changed.
+  // Archives all state of the next steps. Throws InvalidState when the data does not fit; the solver is then
+  // partly changed.
   void archive(StateArchive& a);
 
   // One step: solves the contacts found last, moves the bodies, finds the contacts of the new poses. Deterministic:
@@ -89,7 +89,7 @@ class Solver {
   std::vector<double> friction_, restitution_;  // per shape
   std::unique_ptr<const FrictionMaps> friction_maps_;
   std::vector<int> body_of_;                    // per shape
-  std::vector<bool> has_gravity_;                     // per body: affected by gravity
+  std::vector<bool> has_gravity_;               // per body: affected by gravity
   std::vector<BodyInertia> inertias_;
   std::vector<Eigen::Vector3d> free_fall_m_s_;  // speed that gravity and forces add to each body in the next step
   std::vector<Eigen::Vector3d> moved_back_m_;   // displacement by which each body was moved back in this step

@@ -25,7 +25,7 @@ struct DetectorAbilities {
   // position.
   bool both_surfaces = false;
   bool overlap_depth = true;   // gaps are negative in overlap; without it they are 0 and marked as pierced
-  bool minimum_translation = true;   // depth is the minimum translation distance; without it, depth may be larger
+  bool minimum_translation = true;  // depth is the minimum translation distance; without it, depth may be larger
   bool contact_kind = false;   // sets PointPair::kind; without it, kind is always kPoint
   bool one_pair = false;       // reports at most the deepest pair
   bool deterministic = false;  // equal queries give bit-identical pairs, independent of earlier queries

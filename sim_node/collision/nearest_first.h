@@ -32,9 +32,9 @@ struct NearestFirstDetector {
 
 // Prepares the fast search of two shapes, if the detector has one. Call it before the first search.
 void prepare_nearest_first(Detector& detector, int a, int b);
-// Passes the pairs of detector.query() to `visitor`, nearest first, until it returns false. Uses the detector's fast
-// search where there is one; its results are equal to within rounding. `scratch` is working memory. Real-time safe as
-// far as the detector is, where it has a fast search.
+// Passes the pairs of detector.query() to `visitor`, nearest first, until it returns false. Uses the detector's
+// fast search where there is one; its results are equal to within rounding. `scratch` is working memory. Real-time
+// safe as far as the detector is, where it has a fast search.
 void nearest_first(Detector& detector, int a, const Eigen::Isometry3d& pose_a, int b,
                    const Eigen::Isometry3d& pose_b, double reach_m, PairVisitor& visitor,
                    std::vector<PointPair>& scratch);

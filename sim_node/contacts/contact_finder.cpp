@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim_node/collision/gaps/select_points.h"
 #include "sim_node/collision/detectors/layer_options.h"
+#include "sim_node/collision/gaps/select_points.h"
 #include "sync/time/phases.h"
 
 namespace tactus::sim {

@@ -19,8 +19,8 @@ constexpr double kRearm = 0.5;
 // point that jumps further than kJump_m, relative to the motion of the surfaces, did not roll, m.
 constexpr double kRollingTime_s = 0.005;
 constexpr double kJump_m = 0.005;
-// Surfaces with a gap below kTouch_m touch. Design value: twice the residual that the solver leaves between resting
-// surfaces (impulse::ContactLaw). Touching surfaces separate when the gap exceeds kSeparationGap_m.
+// Surfaces with a gap below kTouch_m touch. Design value: twice the residual that the solver leaves between
+// resting surfaces (impulse::ContactLaw). Touching surfaces separate when the gap exceeds kSeparationGap_m.
 constexpr double kTouch_m = 20e-6, kSeparationGap_m = 60e-6;
 
 Vector3d centre_of(const Manifold& c) {
@@ -52,7 +52,10 @@ const BodyMotion& at(std::span<const BodyMotion> bodies, int i) { return bodies[
 }  // namespace
 
 ContactTracker::ContactTracker(std::vector<SurfaceTraits> surfaces, const Settings& settings, Ids& ids)
-    : surfaces_(std::move(surfaces)), settings_(settings), contact_distance_m_(contact_distance_m(settings)), ids_(ids) {}
+    : surfaces_(std::move(surfaces)),
+      settings_(settings),
+      contact_distance_m_(contact_distance_m(settings)),
+      ids_(ids) {}
 
 // The point with the highest closing speed.
 ContactTracker::Closing ContactTracker::closing(const Manifold& c, std::span<const BodyMotion> bodies) const {
@@ -87,7 +90,8 @@ ContactTracker::Approach ContactTracker::approach(const Manifold& c, const Impac
   };
   return {.speed_m_s = impact.speed_m_s,
           .mass_kg = impact.effective_mass_kg,
-          .curvature_1_m = curved(c.shape_a, impact.a_body_m, impact.triangle_a) + curved(c.shape_b, impact.b_body_m, impact.triangle_b),
+          .curvature_1_m = curved(c.shape_a, impact.a_body_m, impact.triangle_a) +
+                           curved(c.shape_b, impact.b_body_m, impact.triangle_b),
           .position_m = impact.position_m,
           .normal = impact.normal};
 }

@@ -15,7 +15,8 @@ void ContactTracker::archive(StateArchive& a, LiveContact& c, std::size_t bodies
   a(c.id);
   sim::archive(a, c.manifold, bodies, surfaces_.size());
   a(c.a_body_m), a(c.b_body_m), a(c.touching), a(c.gap_m), a(c.normal_force_N), a(c.impulse_N_s);
-  a(c.armed), a(c.last_hit), a(c.last_event), a(c.has_hit), a(c.separated_since), a(c.position_m), a(c.rolling_m_s);
+  a(c.armed), a(c.last_hit), a(c.last_event), a(c.has_hit), a(c.separated_since), a(c.position_m),
+      a(c.rolling_m_s);
 }
 
 void ContactTracker::archive(StateArchive& a, std::size_t bodies) {

@@ -56,7 +56,8 @@ double Grouping::max_impact_speed_m_s(const SweptSphere& tool, std::size_t body,
   return std::min((1 + limits_.restitution) * meeting, limits_.tool_force_N * bodies_[body].inverse_mass_1_kg * t);
 }
 
-void Grouping::add_to_group(int body_index, ImpactBound bound, sync::SimTime now, std::span<const BodyMotion> bodies) {
+void Grouping::add_to_group(int body_index, ImpactBound bound, sync::SimTime now,
+                            std::span<const BodyMotion> bodies) {
   const auto i = static_cast<std::size_t>(body_index);
   if (member_[i] || bodies_[i].inverse_mass_1_kg <= 0) return;
   member_[i] = 1;
@@ -83,7 +84,7 @@ void Grouping::find_outside(const Bounds& query) {
 }
 
 void Grouping::add_reachable(const SweptSphere& from, double inverse_mass, sync::SimTime now,
-                     std::span<const BodyMotion> bodies) {
+                             std::span<const BodyMotion> bodies) {
   const double t = remaining_s(now), passed = sync::to_seconds(now - step_began_);
   find_outside(bounds_of(from, t));
   for (const int j : found_) {
@@ -96,11 +97,13 @@ void Grouping::add_reachable(const SweptSphere& from, double inverse_mass, sync:
         first_contact_time_s(from, other, from.radius_m + other.radius_m + from.pad_m + other.pad_m, t);
     if (meeting < 0) continue;
     const bool struck_by_tool = inverse_mass <= 0;
-    add_to_group(j, struck_by_tool ? ImpactBound{max_impact_speed_m_s(from, body, t), t - meeting} : ImpactBound{}, now, bodies);
+    add_to_group(j, struck_by_tool ? ImpactBound{max_impact_speed_m_s(from, body, t), t - meeting} : ImpactBound{},
+                 now, bodies);
   }
 }
 
-void Grouping::close_group(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) {
+void Grouping::close_group(sync::SimTime now, std::span<const BodyMotion> bodies,
+                           std::span<const GroupTool> tools) {
   watched_from_ = now;
   const double t = remaining_s(now);
   tools_.clear();
@@ -114,7 +117,8 @@ void Grouping::close_group(sync::SimTime now, std::span<const BodyMotion> bodies
     const auto i = static_cast<std::size_t>(haptic_[k]);
     const ImpactBound bound = impact_bounds_[i];
     if (bodies_[i].system >= 0)
-      for (const int j : systems_[static_cast<std::size_t>(bodies_[i].system)]) add_to_group(j, bound, now, bodies);
+      for (const int j : systems_[static_cast<std::size_t>(bodies_[i].system)])
+        add_to_group(j, bound, now, bodies);
     for (const int j : trajectories_->touched_by(haptic_[k])) add_to_group(j, bound, now, bodies);
     for (auto pair = std::lower_bound(touching_.begin(), touching_.end(), std::pair(haptic_[k], -1));
          pair != touching_.end() && pair->first == haptic_[k]; ++pair)
@@ -277,7 +281,8 @@ bool Grouping::pad_exceeded(sync::SimTime now, std::span<const BodyMotion> bodie
   });
 }
 
-void Grouping::check_pads(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) {
+void Grouping::check_pads(sync::SimTime now, std::span<const BodyMotion> bodies,
+                          std::span<const GroupTool> tools) {
   entered_.clear();
   left_.clear();
   const bool requested = !requested_.empty();

@@ -78,7 +78,8 @@ class Grouping {
   // not to all bodies.
   void check_pads(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
 
-  // Everything but the trajectories: after reading, call resume() with those of the current step. Throws InvalidState.
+  // Everything but the trajectories: after reading, call resume() with those of the current step. Throws
+  // InvalidState.
   void archive(StateArchive& a);
   void resume(const SweptTrajectories& trajectories) {
     trajectories_ = &trajectories;
@@ -104,7 +105,8 @@ class Grouping {
   SweptSphere swept(const GroupTool& tool, double t_s) const;
   void close_group(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
   void close_kim2005(std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
-  void add_reachable(const SweptSphere& from, double inverse_mass, sync::SimTime now, std::span<const BodyMotion> bodies);
+  void add_reachable(const SweptSphere& from, double inverse_mass, sync::SimTime now,
+                     std::span<const BodyMotion> bodies);
   void add_to_group(int body, ImpactBound bound, sync::SimTime now, std::span<const BodyMotion> bodies);
   double max_impact_speed_m_s(const SweptSphere& tool, std::size_t body, double t_s) const;
   void begin(sync::SimTime now, const SweptTrajectories& trajectories, bool includes_all, std::span<const BodyMotion> bodies,

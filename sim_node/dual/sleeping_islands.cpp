@@ -25,8 +25,8 @@ SleepingIslands::SleepingIslands(std::vector<char> may_sleep)
       slow_(may_sleep_.size()) {}
 
 std::span<const int> SleepingIslands::update(std::span<const int> bodies, std::span<const BodyMotion> motions,
-                                     std::span<const std::pair<int, int>> touching,
-                                     std::span<const char> supported, sync::Nanoseconds length) {
+                                             std::span<const std::pair<int, int>> touching,
+                                             std::span<const char> supported, sync::Nanoseconds length) {
   changed_.clear();
   for (const int i : bodies) {
     const BodyMotion& m = motions[index(i)];
@@ -69,9 +69,7 @@ std::span<const int> SleepingIslands::wake_islands() {
   changed_.clear();
   if (woken_.empty()) return changed_;
   std::sort(woken_.begin(), woken_.end());
-  const auto wakes = [&](int i) {
-    return std::binary_search(woken_.begin(), woken_.end(), island_[index(i)]);
-  };
+  const auto wakes = [&](int i) { return std::binary_search(woken_.begin(), woken_.end(), island_[index(i)]); };
   std::copy_if(sleeping_.begin(), sleeping_.end(), std::back_inserter(changed_), wakes);
   std::erase_if(sleeping_, wakes);
   for (const int i : changed_) {
@@ -82,8 +80,9 @@ std::span<const int> SleepingIslands::wake_islands() {
   return changed_;
 }
 
-std::span<const int> SleepingIslands::near(std::span<const SweptSphere> trajectories, std::span<const BodyMotion> motions,
-                                   std::span<const double> radii_m, double horizon_s) {
+std::span<const int> SleepingIslands::near(std::span<const SweptSphere> trajectories,
+                                           std::span<const BodyMotion> motions, std::span<const double> radii_m,
+                                           double horizon_s) {
   near_.clear();
   if (sleeping_.empty()) return near_;
   if (stale_) rebuild(motions, radii_m);

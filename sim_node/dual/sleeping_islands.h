@@ -1,13 +1,13 @@
-// Bodies at rest that need not be computed: islands of bodies joined by contacts, all of which have been still for a
-// while. An island wakes as a whole. Pure.
+// Bodies at rest that need not be computed: islands of bodies joined by contacts, all of which have been still for
+// a while. An island wakes as a whole. Pure.
 #pragma once
 
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "sim_node/model/body_motion.h"
 #include "sim_node/dual/swept_trajectories.h"
+#include "sim_node/model/body_motion.h"
 #include "sim_node/model/state_archive.h"
 #include "sync/time/time.h"
 
@@ -15,9 +15,9 @@ namespace tactus::sim {
 
 class SleepingIslands {
  public:
-  // An island sleeps when all its bodies are slower than this for kTimeToSleep, as in ODE (Smith 2006, ODE manual 5.6:
-  // 0.01 m/s, 0.01 rad/s). kTimeToSleep is half a second by design: a body that is about to tip starts to move within
-  // it.
+  // An island sleeps when all its bodies are slower than this for kTimeToSleep, as in ODE (Smith 2006, ODE
+  // manual 5.6: 0.01 m/s, 0.01 rad/s). kTimeToSleep is half a second by design: a body that is about to tip starts
+  // to move within it.
   static constexpr double kSleepSpeed_m_s = 0.01, kSleepSpin_rad_s = 0.01;
   static constexpr sync::Nanoseconds kTimeToSleep{500'000'000};
 
@@ -25,8 +25,8 @@ class SleepingIslands {
   explicit SleepingIslands(std::vector<char> may_sleep);
 
   // Call at the end of a step of this length. bodies: the computed bodies; motions: of all bodies. touching: pairs
-  // that touch; one of a pair may sleep already. supported: bodies that touch something. Returns the bodies that sleep
-  // from now on, ascending.
+  // that touch; one of a pair may sleep already. supported: bodies that touch something. Returns the bodies that
+  // sleep from now on, ascending.
   std::span<const int> update(std::span<const int> bodies, std::span<const BodyMotion> motions,
                               std::span<const std::pair<int, int>> touching, std::span<const char> supported,
                               sync::Nanoseconds length);
@@ -49,9 +49,9 @@ class SleepingIslands {
 
   std::vector<char> may_sleep_;
   std::vector<sync::Nanoseconds> slow_for_;  // per body
-  std::vector<int> island_;                   // island of each sleeping body; -1: awake
-  std::vector<int> sleeping_;                  // ascending
-  bool stale_ = true;                         // the grid does not match sleeping_
+  std::vector<int> island_;                  // island of each sleeping body; -1: awake
+  std::vector<int> sleeping_;                // ascending
+  bool stale_ = true;                        // the grid does not match sleeping_
   std::vector<Bounds> boxes_;
   BoundsGrid grid_;
   std::vector<int> parent_, found_, near_, changed_, woken_;

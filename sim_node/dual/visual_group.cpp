@@ -154,7 +154,9 @@ void VisualGroup::Contacts::find(std::span<const BodyMotion> motions, std::span<
   checked_bodies_.insert(checked_bodies_.end(), near.begin(), near.end());
   std::sort(checked_bodies_.begin(), checked_bodies_.end());
   g.finder_.find(g.contact_motions_, checked_bodies_, h, out);
-  const auto still = [&](int body) { return g.sleeping_.is_asleep(body) || !g.contact_motions_[index(body)].moves(); };
+  const auto still = [&](int body) {
+    return g.sleeping_.is_asleep(body) || !g.contact_motions_[index(body)].moves();
+  };
   std::erase_if(out, [&](const Manifold& m) { return still(m.body_a) && still(m.body_b); });
 }
 

@@ -71,7 +71,7 @@ class VisualGroup {
   impulse::SceneSettings scene_;
   Ids ids_;
   ContactTracker tracker_, entering_tracker_;         // of the awake bodies, and of those that catch up
-  std::vector<LiveContact> sleeping_contacts_;  // of the resting bodies
+  std::vector<LiveContact> sleeping_contacts_;        // of the resting bodies
   SleepingIslands sleeping_;
   sync::SimTime now_{};
   bool found_ = false;  // contacts_ are valid for the present poses and for steps up to found_for_s_

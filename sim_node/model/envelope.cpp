@@ -45,7 +45,7 @@ std::span<const std::uint8_t> unwrap_state(std::span<const std::uint8_t> bytes, 
     throw InvalidState("the bytes are not a saved state of a simulation");
   if (number_at(bytes, 8) != kStateVersion)
     throw InvalidState("the state has version " + std::to_string(number_at(bytes, 8)) +
-                   ", this program reads version " + std::to_string(kStateVersion));
+                       ", this program reads version " + std::to_string(kStateVersion));
   const std::size_t size = bytes.size() - kHead - kTail;
   if (number_at(bytes, 24) != size || number_at(bytes, kHead + size) != hash_of(bytes.first(kHead + size)))
     throw InvalidState("the state is damaged");

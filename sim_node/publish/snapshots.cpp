@@ -179,8 +179,9 @@ void Snapshots::update_ahead(const LookAhead& look_ahead, std::size_t bodies, sy
   if ((look_ahead.fresh && !paused) || (look_ahead.held && !held_)) bodies_pending_ = contacts_pending_ = true;
   held_ = look_ahead.held;
   // Drop a body that left the haptic group before its promotion was published.
-  std::erase_if(promoted_,
-                [&](int body) { return std::binary_search(look_ahead.bodies.begin(), look_ahead.bodies.end(), body); });
+  std::erase_if(promoted_, [&](int body) {
+    return std::binary_search(look_ahead.bodies.begin(), look_ahead.bodies.end(), body);
+  });
   if (paused) return;
   for (const int body : look_ahead.promoted) {
     const auto i = static_cast<std::size_t>(body);

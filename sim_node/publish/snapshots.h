@@ -28,7 +28,7 @@ struct StateSource {
   // beginning of the current visual step; while they are held: at the end of the last one.
   std::span<const BodyMotion> bodies;
   std::function<void(std::vector<contact_t>&)> contacts;  // of the group OTHER; clears the list first
-  const LookAhead* look_ahead = nullptr;                           // null: every body is simulated in every step
+  const LookAhead* look_ahead = nullptr;                  // null: every body is simulated in every step
 };
 
 class Snapshots {

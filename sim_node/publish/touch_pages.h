@@ -25,7 +25,8 @@ void each_touch_page(touch_model_t& whole, touch_model_t& page, Send&& send) {
     send(page);
   };
   const auto part = [](const auto& all, std::size_t number, std::size_t per_page, auto& out) {
-    const std::size_t first = std::min(all.size(), number * per_page), last = std::min(all.size(), first + per_page);
+    const std::size_t first = std::min(all.size(), number * per_page),
+                      last = std::min(all.size(), first + per_page);
     out.assign(all.begin() + static_cast<std::ptrdiff_t>(first), all.begin() + static_cast<std::ptrdiff_t>(last));
   };
   const auto exchange_lists = [&] {

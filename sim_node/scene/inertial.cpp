@@ -22,7 +22,8 @@ Eigen::Matrix3d read_inertia(const LoadContext& context, const sdf::ElementPtr& 
   if (!matrix.allFinite()) context.reject(*inertia, "is not finite");
   const Eigen::Vector3d moments = matrix.selfadjointView<Eigen::Lower>().eigenvalues();  // ascending
   if (!(moments[0] > 0))
-    context.reject(*inertia, "is not positive definite: correct it, or leave it out so that it is computed from the shapes");
+    context.reject(*inertia,
+                   "is not positive definite: correct it, or leave it out so that it is computed from the shapes");
   // No mass distribution has such moments; the solver can still step. Tolerance 1 %, because files have few digits.
   if (moments[2] > 1.01 * (moments[0] + moments[1]))
     context.warn(*inertia, "is not physically possible: one principal moment is larger than the sum of the two others");
@@ -46,7 +47,8 @@ void read_inertial(const LoadContext& context, const sdf::ElementPtr& link, std:
   if (mass) {
     const double given_kg = mass->Get<double>();
     if (!(given_kg > 0 && given_kg < 1e9))
-      context.reject(*mass, "= " + mass->GetValue()->GetAsString() + " must be above 0 kg: give the mass, or make the model static");
+      context.reject(*mass, "= " + mass->GetValue()->GetAsString() +
+                                " must be above 0 kg: give the mass, or make the model static");
     p = scaled_to(p, given_kg);
   } else if (!has_density || !has_volume) {
     p = scaled_to(p, kDefaultMass_kg);

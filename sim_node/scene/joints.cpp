@@ -42,12 +42,14 @@ JointAxis read_axis(const LoadContext& context, const sdf::JointAxis& from, bool
   if (!errors.empty()) context.reject(element, "has no direction: " + errors.front().Message());
   JointAxis axis;
   axis.axis = model_pose.linear() * to_eigen(xyz);
-  if (!axis.axis.allFinite() || axis.axis.norm() < 1e-9) context.reject(element, "has no direction: its <xyz> is zero");
+  if (!axis.axis.allFinite() || axis.axis.norm() < 1e-9)
+    context.reject(element, "has no direction: its <xyz> is zero");
   axis.axis.normalize();
   axis.damping = from.Damping(), axis.friction = from.Friction();
   axis.stiffness = from.SpringStiffness(), axis.reference = from.SpringReference();
   for (const double value : {axis.damping, axis.friction, axis.stiffness})
-    if (!(value >= 0 && value < 1e9)) context.reject(element, "has a damping, friction or stiffness that is negative or not finite");
+    if (!(value >= 0 && value < 1e9))
+      context.reject(element, "has a damping, friction or stiffness that is negative or not finite");
   if (!std::isfinite(axis.reference)) context.reject(element, "has a <spring_reference> that is not finite");
   if (has_limits) {
     if (std::isnan(from.Lower()) || std::isnan(from.Upper()) || from.Lower() > from.Upper())

@@ -97,7 +97,8 @@ void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
   Attributes attributes(context, *element);
   tool_def_t tool{};
   tool.name = attributes.required_text("name");
-  if (context.body_of.contains(tool.name)) context.reject(*element, "has a name that is already in use: choose another");
+  if (context.body_of.contains(tool.name))
+    context.reject(*element, "has a name that is already in use: choose another");
   read_tool_shape(context, *element, attributes, tool);
   tool.mass_kg = attributes.quantity("mass", "kg", 1e-4, 100).value_or(kDefaultMass_kg);
   tool.device = read_device(context, *element, attributes.text("device").value_or("virtual_hand"));
@@ -105,7 +106,8 @@ void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
   tool.material = -1;
   if (const auto material = attributes.text("material")) {
     const auto known = context.material_of.find(*material);
-    if (known == context.material_of.end()) context.reject(*element, "names material \"" + *material + "\": there is none");
+    if (known == context.material_of.end())
+      context.reject(*element, "names material \"" + *material + "\": there is none");
     tool.material = known->second;
   }
   const auto pose = attributes.pose("pose");

@@ -84,7 +84,8 @@ void read_material(LoadContext& context, const sdf::Visual& from, Appearance& a)
   if (given("specular")) a.def.specular = colour(context, *material, m.Specular());
   if (given("emissive")) a.def.emissive = colour(context, *material, m.Emissive());
   if (given("diffuse") && m.Diffuse().A() < 1) a.def.alpha *= std::clamp(static_cast<double>(m.Diffuse().A()), 0.0, 1.0);
-  if (const sdf::ElementPtr shininess = explicit_child(material, "shininess")) {  // of SDF 1.10; libsdformat 12 passes it on as text
+  if (const sdf::ElementPtr shininess =
+          explicit_child(material, "shininess")) {  // of SDF 1.10; libsdformat 12 passes it on as text
     try {
       a.def.shininess = std::clamp(sync::parse_quantity(shininess->GetValue()->GetAsString(), ""), 1.0, 1e4);
     } catch (const std::invalid_argument& e) {
@@ -98,7 +99,8 @@ Appearance read_appearance(LoadContext& context, const sdf::Visual& from, int bo
   Appearance a;
   a.def.shape.name = from.Name(), a.def.shape.body = body, a.def.shape.material = material;
   a.def.alpha = std::clamp(1.0 - static_cast<double>(from.Transparency()), 0.0, 1.0);
-  if (const sdf::ElementPtr look = explicit_child(from.Element(), "tactus:look")) a.look = read_visual_look(context, *look);
+  if (const sdf::ElementPtr look = explicit_child(from.Element(), "tactus:look"))
+    a.look = read_visual_look(context, *look);
   read_material(context, from, a);
   return a;
 }
@@ -181,7 +183,8 @@ void add_mesh_visual(LoadContext& context, const sdf::Visual& visual, Appearance
   std::set<int> seen;
   std::vector<std::pair<VisualDef, std::set<int>>> kinds;
   for (const MeshPart& part : named.parts->parts) {
-    if (!is_selected(part, named.selection) || part.indices.empty() || !seen.insert(part.material).second) continue;
+    if (!is_selected(part, named.selection) || part.indices.empty() || !seen.insert(part.material).second)
+      continue;
     const VisualDef def = with_file_appearance(context, element, named, file_look, part.material, appearance).def;
     const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const auto& kind) { return same(kind.first, def); });
     if (known != kinds.end()) known->second.insert(part.material);
@@ -210,7 +213,9 @@ void add_visuals(LoadContext& context, const sdf::Link& link, int body, int mate
       add_mesh_visual(context, visual, std::move(appearance), subdivide);
       continue;
     }
-    if (subdivide > 0) context.reject(*element, "has a subdivide for another shape than a <mesh>: only a <mesh> has triangles to divide");
+    if (subdivide > 0)
+      context.reject(*element,
+                     "has a subdivide for another shape than a <mesh>: only a <mesh> has triangles to divide");
     const auto shape = read_shape(context, *visual.Geom(), element, pose);
     if (!shape) continue;
     const ShapeDef named = appearance.def.shape;

@@ -65,9 +65,10 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
     ClosestSurface surface(s, meshed ? trees.triangles(s, world) : nullptr, settings.touch_merge_angle_rad);
     const Vector3d centre = s.pose * surface.centre();
     if (shape_) shape_->add(s, world);
-    surfaces_.push_back({std::move(surface), traits[i], s.pose.inverse(), centre, std::sqrt(traits[i].friction_static * tool_static_friction_),
-                         std::sqrt(traits[i].friction_dynamic * tool_dynamic_friction_), traits[i].compliance_1_Pa + own_compliance,
-                         0});
+    surfaces_.push_back({std::move(surface), traits[i], s.pose.inverse(), centre,
+                         std::sqrt(traits[i].friction_static * tool_static_friction_),
+                         std::sqrt(traits[i].friction_dynamic * tool_dynamic_friction_),
+                         traits[i].compliance_1_Pa + own_compliance, 0});
     if (s.material < 0) continue;
     const material_def_t& m = world.materials[static_cast<std::size_t>(s.material)];
     surfaces_.back().bump_asset = m.bump_asset;

@@ -87,7 +87,8 @@ class Window : public Display {
   }
 
   void show(unsigned framebuffer, int width, int height, bool halves) override {
-    if (!lost_ && !(lost_ = server_hung_up())) guard_.run_guarded([&] { put(framebuffer, width, height, halves); });
+    if (!lost_ && !(lost_ = server_hung_up()))
+      guard_.run_guarded([&] { put(framebuffer, width, height, halves); });
   }
   bool closed() override {
     return !lost_ && (glfwWindowShouldClose(window_) || (x11_window_ != 0 && destroyed_ == x11_window_));

@@ -20,13 +20,13 @@
 #include <tactus/tool_state_t.hpp>
 #include <tactus/world_state_t.hpp>
 
-#include "visual_node/frame/room_delay.h"
-#include "visual_node/frame/locked_frame.h"
 #include "visual_node/frame/frame_grid.h"
 #include "visual_node/frame/frame_peers.h"
 #include "visual_node/frame/head_samples.h"
+#include "visual_node/frame/locked_frame.h"
 #include "visual_node/frame/render_time.h"
 #include "visual_node/frame/room_clock_reader.h"
+#include "visual_node/frame/room_delay.h"
 #include "visual_node/settings.gen.h"
 
 namespace tactus::visual {
@@ -59,7 +59,8 @@ class FrameLock {
   bool inputs_complete(sync::HostTime now) const;
   // Selects the frame to draw from now on; nothing without a room, or before the first message of sim_node.
   // profile_delay: the delay that a profile adds to this modality.
-  std::optional<LockedFrame> begin_frame(sync::HostTime now, sync::Nanoseconds profile_delay = sync::Nanoseconds(0));
+  std::optional<LockedFrame> begin_frame(sync::HostTime now,
+                                         sync::Nanoseconds profile_delay = sync::Nanoseconds(0));
   // When to draw the flashes of that frame: late, but so that it is ready when it is due.
   sync::HostTime latch_time(const LockedFrame& frame) const;
   // Reports the drawing time of its surfaces, from begin on, and of its flashes.

@@ -33,8 +33,8 @@ void FramePeers::shown(std::int64_t frame, sync::HostTime now) {
 }
 
 int FramePeers::present(sync::HostTime now) const {
-  return static_cast<int>(
-      std::count_if(walls_.begin(), walls_.end(), [&](const auto& w) { return now - w.second.last_message <= kTimeout; }));
+  return static_cast<int>(std::count_if(walls_.begin(), walls_.end(),
+                                        [&](const auto& w) { return now - w.second.last_message <= kTimeout; }));
 }
 
 int FramePeers::ignored(sync::HostTime now) const {

@@ -15,8 +15,8 @@ class FramePeers {
  public:
   // A wall without a message for this long counts as absent.
   static constexpr sync::Nanoseconds kTimeout{1'000'000'000};
-  // A wall with kMaxLateFrames more late frames than frames in time is ignored, until kFramesToReturn frames in a row are in
-  // time. Design: a quarter of a second, and half a second, at 60 Hz.
+  // A wall with kMaxLateFrames more late frames than frames in time is ignored, until kFramesToReturn frames in a
+  // row are in time. Design: a quarter of a second, and half a second, at 60 Hz.
   static constexpr int kMaxLateFrames = 15, kFramesToReturn = 30;
   // More walls than a room has are an error.
   static constexpr std::size_t kMax = 64;

@@ -30,9 +30,9 @@ class RoomDelay {
   };
   sync::Nanoseconds value(RoomTime t) const;
 
-  std::deque<Request> requests_;    // pending, in order of time
-  Request target_{};             // in force
-  sync::Nanoseconds from_{0};  // the delay at the start of target_
+  std::deque<Request> requests_;  // pending, in order of time
+  Request target_{};              // in force
+  sync::Nanoseconds from_{0};     // the delay at the start of target_
 };
 
 }  // namespace tactus::visual

@@ -56,7 +56,9 @@ class RenderOutput {
   std::string recover(sync::HostTime now, const SceneView* view, const DrawList& sample);
 
   // Returns and clears one sentence for each thing that could not be drawn as the scene specifies.
-  std::vector<std::string> take_warnings() { return draws() ? renderer_->take_warnings() : std::vector<std::string>(); }
+  std::vector<std::string> take_warnings() {
+    return draws() ? renderer_->take_warnings() : std::vector<std::string>();
+  }
 
   // How long a profile holds each picture; 0: for the tick.
   sync::Nanoseconds held() const { return rate_.held(); }

@@ -32,11 +32,12 @@ void ScreenPasses::make(const ShaderLibrary& library, std::vector<std::string>& 
       programs_[i] = std::make_unique<Program>(
           std::vector{library.source_file("pass.vert")},
           std::vector{library.source_file("pass.glsl"), *shade, library.source_file("pass_end.frag")}, "");
-      for (const std::string& misfit : uniform_mismatches(library, passes_[i].shader, *programs_[i], passes_[i].uniforms))
+      for (const std::string& misfit :
+           uniform_mismatches(library, passes_[i].shader, *programs_[i], passes_[i].uniforms))
         warnings.push_back("pass " + passes_[i].shader + ": " + misfit);
     } catch (const std::exception& e) {
       warnings.push_back("pass " + passes_[i].shader + ": " + e.what() +
-                        (programs_[i] ? "; the previous shader stays in use" : "; it is left out"));
+                         (programs_[i] ? "; the previous shader stays in use" : "; it is left out"));
     }
 }
 

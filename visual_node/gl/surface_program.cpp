@@ -64,7 +64,8 @@ std::unique_ptr<Program> surface_program(const ShaderLibrary& library, const Loo
   if (moved) vertex.push_back(*moved);
   vertex.push_back(library.source_file("surface_end.vert"));
   const std::vector<ShaderPiece> fragment{library.source_file("surface.glsl"), library.source_file("lamps.glsl"),
-                                          library.source_file("shade.glsl"), *shade, library.source_file("surface_end.frag")};
+                                          library.source_file("shade.glsl"), *shade,
+                                          library.source_file("surface_end.frag")};
   auto program = std::make_unique<Program>(vertex, fragment, defines(look, relief, moved.has_value(), lighting));
   if (const unsigned block = glGetUniformBlockIndex(program->id(), "Lights"); block != GL_INVALID_INDEX)
     glUniformBlockBinding(program->id(), block, 0);

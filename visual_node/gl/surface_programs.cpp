@@ -39,13 +39,14 @@ void SurfacePrograms::make(const ShaderLibrary& library, std::vector<std::string
           if ((!relief || reliefs_) && (!shadows || lighting_.shadow_light >= 0))
             fresh[index(0, relief, shadows)] =
                 surface_program(library, looks_[i], relief, shadows ? lighting_ : plain);
-      for (const std::string& message : uniform_mismatches(library, looks_[i].shader, *fresh.front(), looks_[i].uniforms))
+      for (const std::string& message :
+           uniform_mismatches(library, looks_[i].shader, *fresh.front(), looks_[i].uniforms))
         warnings.push_back(message_prefix(looks_[i]) + message);
       for (std::size_t k = 0; k < fresh.size(); ++k) programs_[4 * i + k] = std::move(fresh[k]);
     } catch (const std::exception& e) {
       const bool before = programs_[index(i, false, false)] != nullptr;
       warnings.push_back(message_prefix(looks_[i]) + e.what() +
-                        (before ? "; the previous shader stays in use" : "; phong is drawn instead"));
+                         (before ? "; the previous shader stays in use" : "; phong is drawn instead"));
     }
 }
 

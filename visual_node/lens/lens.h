@@ -21,7 +21,8 @@ class Lens {
   Camera camera(const std::optional<Eigen::Isometry3d>& head) const;
   // Cameras of the left and the right eye. Without a wall both look through a window of the picture's size, which
   // moves with the head: both eyes see a point at the window's distance at the same place.
-  std::array<Camera, 2> eyes(const std::optional<Eigen::Isometry3d>& head, double eye_distance_m, double window_m) const;
+  std::array<Camera, 2> eyes(const std::optional<Eigen::Isometry3d>& head, double eye_distance_m,
+                             double window_m) const;
   // One sentence about a room that cannot be used; empty: none. Then the scene's camera is used.
   const std::string& warning() const { return warning_; }
 
@@ -32,7 +33,7 @@ class Lens {
   double half_width_, half_height_;  // of the scene's camera, tangents of the half angles
   double near_m_, far_m_;
   Camera default_camera_;
-  Eigen::Isometry3d default_pose_;    // T_world_camera, of the scene
+  Eigen::Isometry3d default_pose_;  // T_world_camera, of the scene
   std::optional<Wall> wall_;  // in the world frame
   std::string warning_;
 };

@@ -15,8 +15,8 @@ Camera off_axis(const Wall& wall, const Eigen::Vector3d& eye, int width, double 
 
 inline constexpr double kMinEyeDistance_m = 0.01;  // design: no eye comes closer to a screen
 
-// head: T_world_head, x ahead, y to the left, z up. Returns the left and the right eye, eye_distance_m apart along the
-// axis through both ears: a point at infinity has that same distance between the two pictures.
+// head: T_world_head, x ahead, y to the left, z up. Returns the left and the right eye, eye_distance_m apart along
+// the axis through both ears: a point at infinity has that same distance between the two pictures.
 std::array<Eigen::Vector3d, 2> eyes(const Eigen::Isometry3d& head, double eye_distance_m);
 
 }  // namespace tactus::visual

@@ -3,7 +3,7 @@
 namespace tactus::visual {
 
 std::vector<View> stereo_views(const Lens& lens, const std::optional<Eigen::Isometry3d>& head,
-                           const Settings& settings) {
+                               const Settings& settings) {
   if (settings.stereo == "off") return {{.camera = lens.camera(head)}};
   const auto [left, right] = lens.eyes(head, settings.eye_distance_m, settings.stereo_distance_m);
   if (settings.stereo == "top_bottom")

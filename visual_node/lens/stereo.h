@@ -20,6 +20,6 @@ struct View {
 // holds the whole wall, squeezed: stereo displays stretch it. Anaglyph: red for the left eye, green and blue for
 // the right one. Quad-buffer: also halves, which the display shows to one eye each.
 std::vector<View> stereo_views(const Lens& lens, const std::optional<Eigen::Isometry3d>& head,
-                           const Settings& settings);
+                               const Settings& settings);
 
 }  // namespace tactus::visual

@@ -31,8 +31,8 @@ std::vector<Eigen::Vector4f> BodyGroups::tints(std::size_t bodies) const {
 }
 
 std::size_t BodyGroups::count(bool ahead) const {
-  return static_cast<std::size_t>(
-      std::count_if(body_groups_.begin(), body_groups_.end(), [&](const auto& t) { return t.second.ahead == ahead; }));
+  return static_cast<std::size_t>(std::count_if(body_groups_.begin(), body_groups_.end(),
+                                                [&](const auto& t) { return t.second.ahead == ahead; }));
 }
 
 }  // namespace tactus::visual

@@ -81,7 +81,8 @@ void LiveOverlays::tint(FrameComposer& composer, std::size_t bodies) {
   tinted_ = now;
 }
 
-std::vector<InputLine> LiveOverlays::inputs(const Frame& frame, sync::SampleStatus contacts, sync::HostTime now) const {
+std::vector<InputLine> LiveOverlays::inputs(const Frame& frame, sync::SampleStatus contacts,
+                                            sync::HostTime now) const {
   std::vector<InputLine> lines;
   for (const char* channel :
        {channels::kWorldState, channels::kContactEvents, channels::kToolState, channels::kContacts})

@@ -43,8 +43,8 @@ class LiveOverlays {
 
   // Call before a frame is composed: sets the colours of its bodies.
   void tint(FrameComposer& composer, std::size_t bodies);
-  // Call when its surfaces and flashes are drawn: adds lines, text and plots. data: the values of the node itself; the
-  // function fills in the rest.
+  // Call when its surfaces and flashes are drawn: adds lines, text and plots. data: the values of the node itself;
+  // the function fills in the rest.
   void append(Frame& frame, PanelData data, sync::HostTime now, int picture_width, int picture_height);
 
  private:

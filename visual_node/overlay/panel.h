@@ -7,8 +7,8 @@
 #include <tactus/node_health_t.hpp>
 #include <vector>
 
-#include "sync/resampling/sample_status.h"
 #include "sync/node/modality_endpoint.h"
+#include "sync/resampling/sample_status.h"
 #include "visual_node/overlay/overlay_set.h"
 #include "visual_node/scene_view/draw_list.h"
 

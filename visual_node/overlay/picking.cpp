@@ -70,7 +70,7 @@ std::optional<Ray> ray_at(const DrawList& list, float x, float y) {
 }  // namespace
 
 std::optional<Eigen::Vector3f> pick_surface(const DrawList& list, std::span<const Triangles> geometries, float x,
-                                      float y) {
+                                            float y) {
   const auto ray = ray_at(list, x, y);
   if (!ray) return std::nullopt;
   float nearest = std::numeric_limits<float>::infinity();
@@ -99,7 +99,8 @@ std::optional<device_state_t> MousePointer::state(sync::HostTime now) {
   last_ = now;
   const Eigen::Vector3d before = at_, remaining = *target_ - at_;
   const double max_step_m = kMaxSpeed_m_s * dt_s;
-  at_ = first || remaining.norm() <= max_step_m ? *target_ : Eigen::Vector3d(at_ + remaining.normalized() * max_step_m);
+  at_ = first || remaining.norm() <= max_step_m ? *target_
+                                                : Eigen::Vector3d(at_ + remaining.normalized() * max_step_m);
   device_state_t m{};
   m.header.sim_time_ns = -1;
   m.device = kMouseDevice;

@@ -165,8 +165,8 @@ void append_graph(std::vector<Rect>& out, const Box& b, const ValueHistory& hist
 }
 
 // Draws a bar from zero to the value, on the scale of its recent range.
-void append_bar(std::vector<Rect>& out, const Box& b, double value, const ValueHistory& history, sync::HostTime now,
-                float y) {
+void append_bar(std::vector<Rect>& out, const Box& b, double value, const ValueHistory& history,
+                sync::HostTime now, float y) {
   const auto range = history.range(now);
   if (!range || !std::isfinite(value)) return;
   const double least = std::min(0.0, range->first), most = std::max(0.0, range->second);

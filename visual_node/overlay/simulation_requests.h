@@ -9,8 +9,8 @@
 #include <tactus/world_state_t.hpp>
 
 #include "visual_node/devices/display.h"
-#include "visual_node/overlay/picking.h"
 #include "visual_node/overlay/keys.h"
+#include "visual_node/overlay/picking.h"
 
 namespace tactus::visual {
 

@@ -8,9 +8,9 @@
 #include <tactus/world_state_t.hpp>
 
 #include "sync/bus/bus.h"
-#include "visual_node/overlay/simulation_requests.h"
 #include "visual_node/overlay/live_overlays.h"
 #include "visual_node/overlay/live_questions.h"
+#include "visual_node/overlay/simulation_requests.h"
 
 namespace tactus::visual {
 

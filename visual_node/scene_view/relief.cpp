@@ -18,7 +18,7 @@ HeightMaps height_maps_of(const scene_t& scene, const sync::Pictures& pictures,
       maps.emplace(material.bump_asset, read_height_map(picture->second));
     } catch (const std::exception& e) {
       warnings.push_back("the height map of material  " + material.name + " cannot be read: " + e.what() +
-                        "; it is drawn smooth");
+                         "; it is drawn smooth");
     }
   }
   return maps;

@@ -128,7 +128,7 @@ void SceneView::mark_missing(const shape_def_t& s, ShapePart& part) {
   part.instance.diffuse << kMissingColour, 1;
   part.instance.emissive << kMissingColour, 0;
   warnings_.push_back("the mesh of " + s.name + " is missing or damaged: a magenta box of " +
-                     std::to_string(std::lround(1000 * kMissing_m)) + " mm is drawn where it is");
+                      std::to_string(std::lround(1000 * kMissing_m)) + " mm is drawn where it is");
 }
 
 void SceneView::check_look(const visual_def_t& v, const ShapePart& part) {
@@ -136,10 +136,10 @@ void SceneView::check_look(const visual_def_t& v, const ShapePart& part) {
   const Triangles& t = geometries_[static_cast<std::size_t>(part.geometry)];
   if (look.mapped() && t.texcoords.empty())
     warnings_.push_back("look " + look.name + " lays a picture on " + v.shape.name +
-                       ", whose mesh has no texture coordinates: all of it shows one point of the picture");
+                        ", whose mesh has no texture coordinates: all of it shows one point of the picture");
   else if (look.normal_map >= 0 && t.tangents.empty())
     warnings_.push_back("look " + look.name + " has a normal map, but the mesh of " + v.shape.name +
-                       " no tangents: it is drawn smooth");
+                        " no tangents: it is drawn smooth");
 }
 
 void SceneView::add_tool(const scene_t& scene, const tool_def_t& tool, const Meshes& meshes) {
@@ -247,7 +247,8 @@ void add_tint(Instance& instance, const Eigen::Vector4f& tint) {
 }
 }  // namespace
 
-SceneView::PlacedInstance SceneView::place(const ShapePart& part, const Eigen::Isometry3d& body, const Camera& camera) const {
+SceneView::PlacedInstance SceneView::place(const ShapePart& part, const Eigen::Isometry3d& body,
+                                           const Camera& camera) const {
   const Eigen::Isometry3d pose = body * part.in_body;
   const Eigen::Quaternionf q(Eigen::Quaterniond(pose.linear()).cast<float>());
   PlacedInstance p{part.geometry, 0, part.casts_shadow, part.relief, part.look, part.instance};

@@ -73,7 +73,7 @@ class SceneView {
     float radius_m = 0;  // radius of its bounding sphere about the origin of the shape
     bool casts_shadow = true;
     int relief = -1;
-    int look = 0;  // index in Appearance::looks
+    int look = 0;       // index in Appearance::looks
     Instance instance;  // all except its pose
   };
   struct PlacedInstance {

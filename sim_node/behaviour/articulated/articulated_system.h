@@ -1,5 +1,5 @@
-// Articulated bodies in reduced coordinates: joints cannot drift apart, and the energy of a swing is conserved to the
-// accuracy of the integrator. Independent of contacts; their impulses are applied by impulse_to_rates().
+// Articulated bodies in reduced coordinates: joints cannot drift apart, and the energy of a swing is conserved to
+// the accuracy of the integrator. Independent of contacts; their impulses are applied by impulse_to_rates().
 #pragma once
 
 #include <memory>

@@ -268,7 +268,7 @@ void Dynamics::propagate_outward(std::span<double> rates) {
 }
 
 void Dynamics::impulse_to_rates(int link, const Eigen::Vector3d& point_m, const Eigen::Vector3d& impulse,
-                      std::span<double> rates) {
+                                std::span<double> rates) {
   propagate_inward(link, force_at(point_m - origin_, impulse));
   propagate_outward(rates);
 }

@@ -45,9 +45,10 @@ class Dynamics {
   }
   double kinetic_energy_J() const;
 
-  // The following functions need an evaluate() of the current pose. impulse_to_rates() gives the change of every rate by an
-  // impulse, N s, at a point of a link: M^-1 J^T impulse. Cost: one pass over all links.
-  void impulse_to_rates(int link, const Eigen::Vector3d& point_m, const Eigen::Vector3d& impulse, std::span<double> rates);
+  // The following functions need an evaluate() of the current pose. impulse_to_rates() gives the change of every
+  // rate by an impulse, N s, at a point of a link: M^-1 J^T impulse. Cost: one pass over all links.
+  void impulse_to_rates(int link, const Eigen::Vector3d& point_m, const Eigen::Vector3d& impulse,
+                        std::span<double> rates);
   // The same for an angular impulse, N m s.
   void angular_impulse_to_rates(int link, const Eigen::Vector3d& impulse, std::span<double> rates);
   // Change of every rate by a unit impulse along one dof.

@@ -31,8 +31,7 @@ Tree::Tree(const std::vector<LinkDef>& defs) {
       throw std::invalid_argument("link " + std::to_string(i) + " of an articulated system " + why);
     };
     if (d.parent < -1 || d.parent >= static_cast<int>(i)) reject("has a parent that does not come before it");
-    if ((i == 0) != (d.parent < 0))
-      reject("is a second root; only the first link of a system may be a root");
+    if ((i == 0) != (d.parent < 0)) reject("is a second root; only the first link of a system may be a root");
     if (d.is_free && i > 0) reject("is free but has a parent");
     // Joints with several degrees of freedom have massless links in between. A tree with a massless leaf has no
     // dynamics.

@@ -35,7 +35,8 @@ double max_depth_m(std::span<const Manifold> contacts) {
 
 // Calls each(pair, depth) for every pair whose overlap exceeds the limit and has grown.
 template <class Each>
-void for_each_new_overlap(std::span<const Manifold> now, std::span<const Manifold> before, double limit, Each each) {
+void for_each_new_overlap(std::span<const Manifold> now, std::span<const Manifold> before, double limit,
+                          Each each) {
   auto old = before.begin();
   for (const Manifold& m : now) {
     const double depth = max_depth_m(m);
@@ -65,9 +66,12 @@ int AdaptiveStepper::substeps_for(const World& world, std::span<const Manifold> 
     for (const int body : {m.body_a, m.body_b}) {
       const auto i = static_cast<std::size_t>(body);
       const double spin = std::max(motions[i].spin_rad_s.norm(), assumed_[i].spin_rad_s.norm());
-      if (spin > 0 && extents_[i].rotation_lever_m > 0) max_deviation_m = std::max(max_deviation_m, path_deviation_m(extents_[i].rotation_lever_m, spin * dt));
+      if (spin > 0 && extents_[i].rotation_lever_m > 0)
+        max_deviation_m = std::max(max_deviation_m, path_deviation_m(extents_[i].rotation_lever_m, spin * dt));
     }
-  return max_deviation_m <= kMaxPathDeviation_m ? 1 : static_cast<int>(std::ceil(std::sqrt(max_deviation_m / kMaxPathDeviation_m)));
+  return max_deviation_m <= kMaxPathDeviation_m
+             ? 1
+             : static_cast<int>(std::ceil(std::sqrt(max_deviation_m / kMaxPathDeviation_m)));
 }
 
 // Whether a body moved further than the contacts were searched for. assumed_ then holds its actual motion.
@@ -100,7 +104,7 @@ bool AdaptiveStepper::has_new_pair(std::span<const Manifold> contacts) const {
 }
 
 bool AdaptiveStepper::try_substep(World& world, ContactSource& source, double& dt, double finest, double next_h,
-                      std::vector<Manifold>& contacts) {
+                                  std::vector<Manifold>& contacts) {
   world.step(contacts, dt);
   const bool divisible = dt > finest * 1.001;
   if (const int substeps = substeps_for(world, contacts, dt); substeps > 1 && divisible) {
@@ -130,7 +134,7 @@ bool AdaptiveStepper::try_substep(World& world, ContactSource& source, double& d
 double AdaptiveStepper::max_new_overlap_m(std::span<const Manifold> before, double limit) const {
   double deepest = 0;
   for_each_new_overlap(new_contacts_, before, limit,
-                  [&](const Manifold&, double depth) { deepest = std::max(deepest, depth); });
+                       [&](const Manifold&, double depth) { deepest = std::max(deepest, depth); });
   return deepest;
 }
 
@@ -140,7 +144,8 @@ void AdaptiveStepper::resolve_overlaps(World& world, ContactSource& source, doub
     const double depth = max_depth_m(m);
     return depth > kResolvedOverlap_m && depth <= kUnreliableOverlap_m;
   };
-  for (int round = 0; round < kMaxRounds && std::any_of(new_contacts_.begin(), new_contacts_.end(), overlaps); ++round) {
+  for (int round = 0; round < kMaxRounds && std::any_of(new_contacts_.begin(), new_contacts_.end(), overlaps);
+       ++round) {
     world.separate(new_contacts_, kUnreliableOverlap_m);
     ++report_.separation_rounds;
     source.find(world.motions(), world.active_bodies(), next, new_contacts_);
@@ -149,7 +154,8 @@ void AdaptiveStepper::resolve_overlaps(World& world, ContactSource& source, doub
 
 // Last resort: a body whose overlap has grown in the step returns to its start pose, at rest. Its counterpart has
 // moved away or is held too. In the end all bodies are at poses without overlap.
-void AdaptiveStepper::reset_overlapping_units(World& world, ContactSource& source, double next, std::span<const Manifold> before) {
+void AdaptiveStepper::reset_overlapping_units(World& world, ContactSource& source, double next,
+                                              std::span<const Manifold> before) {
   reset_units_.clear();
   for (bool changed = true; changed;) {
     changed = false;
@@ -170,8 +176,8 @@ void AdaptiveStepper::reset_overlapping_units(World& world, ContactSource& sourc
 }
 
 // Forces become means over the whole step, times are counted from its start.
-void AdaptiveStepper::merge_substep(std::vector<Manifold>& solved, std::span<const Manifold> substep, double elapsed, double dt,
-                     double h) {
+void AdaptiveStepper::merge_substep(std::vector<Manifold>& solved, std::span<const Manifold> substep,
+                                    double elapsed, double dt, double h) {
   merged_.clear();
   auto old = solved.begin();
   for (const Manifold& m : substep) {
@@ -208,14 +214,15 @@ double AdaptiveStepper::horizon_s(const World& world, double h) const {
   double fastest = 0;
   for (const int body : world.active_bodies()) {
     const BodyMotion& m = world.motions()[static_cast<std::size_t>(body)];
-    fastest = std::max(
-        fastest, m.velocity_m_s.norm() + extents_[static_cast<std::size_t>(body)].rotation_lever_m * m.spin_rad_s.norm());
+    fastest = std::max(fastest, m.velocity_m_s.norm() + extents_[static_cast<std::size_t>(body)].rotation_lever_m *
+                                                            m.spin_rad_s.norm());
   }
   return fastest * h > kMaxLookAhead_m ? std::max(h / kMaxSubsteps, kMaxLookAhead_m / fastest) : h;
 }
 
-const RecoveryReport& AdaptiveStepper::step(World& world, ContactSource& source, double h, std::vector<Manifold>& contacts,
-                                std::vector<Manifold>& solved, double next_h) {
+const RecoveryReport& AdaptiveStepper::step(World& world, ContactSource& source, double h,
+                                            std::vector<Manifold>& contacts, std::vector<Manifold>& solved,
+                                            double next_h) {
   report_ = {};
   next_h = std::max(h, next_h);
   solved.clear();

@@ -13,11 +13,11 @@ constexpr double kShell_m = 1e-5, kSlack_m = 2e-6;
 
 impulse::ContactLaw contact_law(const Settings& s) {
   impulse::ContactLaw law{.sweeps = s.iterations,
-                   .bounce_speed_m_s = s.bounce_speed_m_s,
-                   .slop_m = kSlack_m,
-                   .correction_share = s.contact_erp,
-                   .max_correction_speed_m_s = s.correcting_speed_m_s,
-                   .shell_m = s.groups == "dual" ? s.contact_tolerance_m : kShell_m};
+                          .bounce_speed_m_s = s.bounce_speed_m_s,
+                          .slop_m = kSlack_m,
+                          .correction_share = s.contact_erp,
+                          .max_correction_speed_m_s = s.correcting_speed_m_s,
+                          .shell_m = s.groups == "dual" ? s.contact_tolerance_m : kShell_m};
   if (behaviour_model(s.solver).finite_forces) {
     law.shell_m = kShell_m;
     law.penalty = {.stiffness_N_m = s.penalty_stiffness_N_m,

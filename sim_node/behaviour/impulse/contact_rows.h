@@ -50,7 +50,7 @@ struct ContactPoint {
   PenaltyForce penalty_force = PenaltyForce::kNone;
   double force_time_s = 0;  // time that relates its impulse to a force: from the middle of the previous step to the middle of this one
   double penalty_speed_m_s = 0, softness_1_kg = 0;  // kImplicit: velocity + softness * impulse = soft speed
-  double explicit_impulse_N_s = 0;                        // kExplicit
+  double explicit_impulse_N_s = 0;                  // kExplicit
   double shell_m = -1;                           // gap below which it presses; negative: not yet known
 };
 
@@ -63,8 +63,8 @@ struct ContactGroup {
   // of the first. Without an impact, the predicted meeting of the free motion. met: -1: none.
   int impacts = 0, first_impact_point = -1;
   double first_s = 0, last_s = 0, speed_m_s = 0;
-  bool spring_only = false;  // no impulses: springs press
-  bool stopped_by_spring = false;   // by springs, before the surfaces meet
+  bool spring_only = false;        // no impulses: springs press
+  bool stopped_by_spring = false;  // by springs, before the surfaces meet
 };
 
 class ContactRows {
@@ -174,7 +174,9 @@ inline void add_product(Eigen::Vector3d& out, const Eigen::Matrix3d& m, double x
   Eigen::Vector3d sticking = impulse;
   add_product<-1>(sticking, p.inverse_mobility, v.x(), v.y(), v.z());
   const double max_tangential = p.friction * sticking.x();
-  if (sticking.x() >= 0 && sticking.y() * sticking.y() + sticking.z() * sticking.z() <= max_tangential * max_tangential) return sticking;
+  if (sticking.x() >= 0 &&
+      sticking.y() * sticking.y() + sticking.z() * sticking.z() <= max_tangential * max_tangential)
+    return sticking;
   return solve_sliding(p, impulse, v, alone);
 }
 

@@ -76,8 +76,9 @@ FreeMotion free_motion(const FreeBody& body, double h) {
   return f;
 }
 
-void complete_step(FreeBody& body, const FreeMotion& f, const Eigen::Vector3d& mean_m_s, const Eigen::Vector3d& mean_rad_s,
-          const Eigen::Vector3d& offset_m, const Eigen::Vector3d& offset_rad, double h) {
+void complete_step(FreeBody& body, const FreeMotion& f, const Eigen::Vector3d& mean_m_s,
+                   const Eigen::Vector3d& mean_rad_s, const Eigen::Vector3d& offset_m,
+                   const Eigen::Vector3d& offset_rad, double h) {
   const Eigen::Vector3d momentum = f.spin_momentum + f.inertia * (mean_rad_s - f.mean_rad_s);
   body.velocity_m_s = mean_m_s;
   body.step_s = h;

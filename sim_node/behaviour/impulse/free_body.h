@@ -37,8 +37,9 @@ struct FreeMotion {
 FreeMotion free_motion(const FreeBody& body, double h_s);
 
 // Completes a step in which the body moved with these mean velocities and got these offsets (m, rad).
-void complete_step(FreeBody& body, const FreeMotion& motion, const Eigen::Vector3d& mean_m_s, const Eigen::Vector3d& mean_rad_s,
-          const Eigen::Vector3d& offset_m, const Eigen::Vector3d& offset_rad, double h_s);
+void complete_step(FreeBody& body, const FreeMotion& motion, const Eigen::Vector3d& mean_m_s,
+                   const Eigen::Vector3d& mean_rad_s, const Eigen::Vector3d& offset_m,
+                   const Eigen::Vector3d& offset_rad, double h_s);
 
 // Moves a body by an offset (m, rad); its velocities do not change.
 void displace(FreeBody& body, const Eigen::Vector3d& by_m, const Eigen::Vector3d& by_rad);

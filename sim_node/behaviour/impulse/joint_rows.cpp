@@ -51,7 +51,8 @@ void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate,
     pool.resize(pool.size() + n);
     system.dynamics().dof_impulse_to_rates(static_cast<int>(j), {pool.data() + row.response, n});
     row.mobility = pool[row.response + j];
-    const auto add = [&](double target_rate, double softness, double min_impulse, double max_impulse, double& saved) {
+    const auto add = [&](double target_rate, double softness, double min_impulse, double max_impulse,
+                         double& saved) {
       row.target_rate = target_rate;
       row.softness = softness;
       row.min_impulse = min_impulse;
@@ -128,7 +129,8 @@ double sweep_ball(JointRow* rows, const std::vector<double>& pool, Velocities& v
 double sweep(JointRow& row, const std::vector<double>& pool, Velocities& v) {
   if (row.ball) return row.ball == 3 ? sweep_ball(&row, pool, v) : 0;
   const double rate_error = row.target_rate - v.rates[row.rate] - row.softness * row.impulse;
-  const double impulse = std::clamp(row.impulse + rate_error / (row.mobility + row.softness), row.min_impulse, row.max_impulse);
+  const double impulse =
+      std::clamp(row.impulse + rate_error / (row.mobility + row.softness), row.min_impulse, row.max_impulse);
   const double by = impulse - row.impulse;
   row.impulse = impulse;
   apply(row, by, pool, v);

@@ -13,7 +13,7 @@ struct JointRow {
   std::size_t rate = 0;                                 // index of the rate that it acts along
   std::size_t first_rate = 0, rates = 0, response = 0;  // of the system: change of all its rates per unit impulse
   double mobility = 0;
-  double target_rate = 0;           // target rate, rad/s or m/s
+  double target_rate = 0;      // target rate, rad/s or m/s
   double softness = 0;         // a soft row requires rate + softness * impulse = wanted
   double min_impulse = 0, max_impulse = 0;  // impulse, N m s or N s
   double impulse = 0;
@@ -31,10 +31,11 @@ struct JointImpulses {
 // Whether a system has such constraints.
 bool needs_rows(const articulated::ArticulatedSystem& system);
 
-// Appends the rows of a system whose rates begin at first_rate. correction_share: share of a limit violation that is corrected
-// in a step. Responses go to the pool.
-void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate, double h_s, double correction_share,
-                 JointImpulses& memory, std::vector<JointRow>& rows, std::vector<double>& pool);
+// Appends the rows of a system whose rates begin at first_rate. correction_share: share of a limit violation that
+// is corrected in a step. Responses go to the pool.
+void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate, double h_s,
+                 double correction_share, JointImpulses& memory, std::vector<JointRow>& rows,
+                 std::vector<double>& pool);
 
 // The same for dry friction of ball joints, three rows each.
 void append_ball_friction(articulated::ArticulatedSystem& system, std::size_t first_rate, double h_s,

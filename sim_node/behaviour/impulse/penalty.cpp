@@ -38,7 +38,8 @@ void set_penalty_forces(ContactRows& rows, const Penalty& penalty, const Velocit
       // sink.
       const double closing = 2 * p.drift_m_s.x() - rows.velocity(p, velocity).x();
       p.penalty_force = PenaltyForce::kExplicit;
-      p.explicit_impulse_N_s = inside > 0 ? std::max(0.0, h * (penalty.stiffness_N_m * inside + damping * closing)) : 0.0;
+      p.explicit_impulse_N_s =
+          inside > 0 ? std::max(0.0, h * (penalty.stiffness_N_m * inside + damping * closing)) : 0.0;
     } else {
       const SoftRow row = soft_row(penalty.stiffness_N_m, damping, h);
       p.penalty_force = PenaltyForce::kImplicit;

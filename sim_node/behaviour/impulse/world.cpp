@@ -185,7 +185,8 @@ void World::build_joints(double h) {
   for (std::size_t s = 0; s < systems_.size(); ++s)
     if (systems_[s].has_rows && present_[index(systems_[s].bodies[0])]) {
       const std::size_t first = joints_.size();
-      append_rows(systems_[s].system, first_rate_[s], h, law_.correction_share, systems_[s].memory, joints_, rows_.pool);
+      append_rows(systems_[s].system, first_rate_[s], h, law_.correction_share, systems_[s].memory, joints_,
+                  rows_.pool);
       append_ball_friction(systems_[s].system, first_rate_[s], h, systems_[s].memory, joints_, rows_.pool);
       for (std::size_t j = first; j < joints_.size(); ++j)
         joints_[j].mover = static_cast<int>(free_.size() + 1 + s);
@@ -195,7 +196,8 @@ void World::build_joints(double h) {
 // Sets the minimum separating speeds: a gap closes at most to zero, and an overlap is corrected gently.
 void World::set_required_speeds(double h) {
   const auto correction_speed = [&](double overlap) {
-    return std::min(law_.max_correction_speed_m_s, law_.correction_share * std::max(0.0, overlap - law_.slop_m) / h);
+    return std::min(law_.max_correction_speed_m_s,
+                    law_.correction_share * std::max(0.0, overlap - law_.slop_m) / h);
   };
   for (ContactPoint& p : rows_.points) {
     const double offset = rows_.velocity(p, position_offset_).x(), gap = p.gap_m + offset;

@@ -23,8 +23,8 @@ struct ContactLaw {
   int sweeps = 40;             // maximum, over all contacts of a step
   double convergence_m_s2 = 1e-6;  // sweeps end when no point changes by more per time of a step: 1e-7 of weight
   double bounce_speed_m_s = 0.02;  // slower impacts do not bounce
-  double slop_m = 1e-4;           // overlap that is not corrected
-  double correction_share = 0.2;             // share of a deeper overlap that is corrected per step
+  double slop_m = 1e-4;            // overlap that is not corrected
+  double correction_share = 0.2;   // share of a deeper overlap that is corrected per step
   double max_correction_speed_m_s = 0.02;  // upper limit of the correction speed
   double shell_m = 0;              // surfaces meet at this gap, so that residuals stay free of overlap
   Penalty penalty = {};            // in a shell beyond that gap, in place of collisions that its springs can stop
@@ -186,7 +186,7 @@ class World {
   Collisions collisions_;
   WarmStart warm_;
   ContactLayers layers_;
-  std::vector<FreeMotion> free_motions_;             // of free bodies
+  std::vector<FreeMotion> free_motions_;    // of free bodies
   std::vector<double> force_time_s_;        // per free body: time from the middle of the previous step to the middle of this one
   std::vector<std::size_t> first_rate_{0};  // of each system, and one past the last
   Velocities velocity_, drift_, position_offset_;

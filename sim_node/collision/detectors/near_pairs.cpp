@@ -17,8 +17,8 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 // Maximum length of a chain of impacts in which each body is hit by the one before. Design value: beyond it most of
 // the impact is spent.
 constexpr int kMaxImpacts = 8;
-// Factor for friction, which adds at most the same speed in the tangent plane, for coefficients up to 1. For larger
-// coefficients, impulse::AdaptiveStepper detects that a body moved further than the search assumed.
+// Factor for friction, which adds at most the same speed in the tangent plane, for coefficients up to 1. For
+// larger coefficients, impulse::AdaptiveStepper detects that a body moved further than the search assumed.
 constexpr double kWithFriction = 2;
 
 }  // namespace
@@ -83,7 +83,8 @@ Bounds NearPairs::bounds_of_shape(int shape) const {
 }
 
 bool NearPairs::may_touch(int a, int b) const {
-  return a != b && !std::binary_search(excluded_pairs_.begin(), excluded_pairs_.end(), std::pair(std::min(a, b), std::max(a, b)));
+  return a != b && !std::binary_search(excluded_pairs_.begin(), excluded_pairs_.end(),
+                                       std::pair(std::min(a, b), std::max(a, b)));
 }
 
 // How far rotation of its body may move a point of the shape.
@@ -115,8 +116,7 @@ void NearPairs::pair_with_fixed(std::size_t i, std::span<const BodyMotion> bodie
   const BodyMotion& m = bodies[index(s.body)];
   const double reach = (m.velocity_m_s.norm() + impact_speed_m_s_[index(s.body)]) * h + rotation_reach_m(m, s.shape, h) +
                        gravity_m_s2_ * h * h + tolerance_m_;
-  const Vector3d middle = (s.bounds.min_m + s.bounds.max_m) / 2,
-                 half = (s.bounds.max_m - s.bounds.min_m) / 2;
+  const Vector3d middle = (s.bounds.min_m + s.bounds.max_m) / 2, half = (s.bounds.max_m - s.bounds.min_m) / 2;
   for (const HalfSpace& p : half_spaces_)
     if (p.normal.dot(middle) - p.normal.cwiseAbs().dot(half) - p.offset_m <= tolerance_m_ / 2 &&
         may_touch(s.body, body_of_[index(p.shape)]))

@@ -61,7 +61,8 @@ Shapes::Shapes(const WorldDef& world, const std::vector<dBodyID>& bodies, const 
 }
 
 bool Shapes::may_collide(int a, int b) const {
-  return a != b && !std::binary_search(excluded_pairs_.begin(), excluded_pairs_.end(), std::pair(std::min(a, b), std::max(a, b)));
+  return a != b && !std::binary_search(excluded_pairs_.begin(), excluded_pairs_.end(),
+                                       std::pair(std::min(a, b), std::max(a, b)));
 }
 
 void Shapes::collide_by_ode(std::size_t a, dGeomID ga, std::size_t b, dGeomID gb) {
@@ -94,7 +95,8 @@ void Shapes::near(void* self, dGeomID ga, dGeomID gb) {
     std::swap(body_a, body_b);
   }
   const int ia = static_cast<int>(a), ib = static_cast<int>(b);
-  if (!s.chosen_.supports(ia, ib) || !s.chosen_.query(ia, pose(ga), ib, pose(gb), s.found_)) s.collide_by_ode(a, ga, b, gb);
+  if (!s.chosen_.supports(ia, ib) || !s.chosen_.query(ia, pose(ga), ib, pose(gb), s.found_))
+    s.collide_by_ode(a, ga, b, gb);
   if (s.found_.empty()) return;
   Manifold& m = s.out_->emplace_back();
   m.shape_a = static_cast<int>(a), m.shape_b = static_cast<int>(b);

@@ -57,7 +57,8 @@ void convex_pair(const Convex& a, const Isometry3d& pose_a, const Convex& b, con
   if (face.gap_m > reach) return;
   if (face.gap_m > -kTouching_m) {
     corners(face.along);
-    if (min_gap_m(found) <= face.gap_m + kSame_m) return append(found, face.along, pose_a, a.round_m, b.round_m, out);
+    if (min_gap_m(found) <= face.gap_m + kSame_m)
+      return append(found, face.along, pose_a, a.round_m, b.round_m, out);
   }
   NearestPoints near;
   const Proximity apart = nearest_points(a, b, a_from_b, reach, near);

@@ -149,7 +149,8 @@ struct Collector {
     const auto ends = [&](const Projected& of, const Projected& other, const Vector2d& direction, double length2) {
       for (std::size_t i = 0; i < 2; ++i) {
         const double t = (of.at[i] - other.at[0]).dot(direction) / length2;
-        if (t >= 0 && t <= 1 && (other.at[0] + t * direction - of.at[i]).norm() <= kLateralTolerance_m) add(of.at[i]);
+        if (t >= 0 && t <= 1 && (other.at[0] + t * direction - of.at[i]).norm() <= kLateralTolerance_m)
+          add(of.at[i]);
       }
     };
     ends(a, b, st, lb);

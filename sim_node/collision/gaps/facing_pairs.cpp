@@ -64,7 +64,8 @@ void move(const Motion& m, Ball& b) {
 // connection deviates from it by at most r. straight() is the same for a connection along the normal of a leaf's
 // triangle.
 bool within(const Ball& b, const Vector3f& direction, float squared, float r) {
-  const float high = std::abs(direction.dot(b.axis)), wide2 = squared - high * high, max_offset = r + high * b.sine;
+  const float high = std::abs(direction.dot(b.axis)), wide2 = squared - high * high,
+              max_offset = r + high * b.sine;
   return wide2 * b.cosine * b.cosine <= max_offset * max_offset;
 }
 bool straight(const Ball& b, const Vector3f& direction, float squared, float r) {

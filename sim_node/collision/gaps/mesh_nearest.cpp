@@ -73,7 +73,8 @@ void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, PairVisitor
     if (i != last) ta = in_frame_of_b(of_a[static_cast<std::size_t>(i)], b_from_a);
     last = i;
     const std::size_t first = pairs.size();
-    marked_pairs(ta, a.cones.tilt_sine(i), of_b[static_cast<std::size_t>(j)], b.cones.tilt_sine(j), reach_m, pairs);
+    marked_pairs(ta, a.cones.tilt_sine(i), of_b[static_cast<std::size_t>(j)], b.cones.tilt_sine(j), reach_m,
+                 pairs);
     for (std::size_t k = first; k < pairs.size(); ++k) pairs[k].triangle_a = i, pairs[k].triangle_b = j;
   }
   layer3_.remove_hashed(pairs);

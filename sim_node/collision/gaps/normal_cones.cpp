@@ -86,7 +86,8 @@ std::vector<AngleCone> of_triangles(const std::vector<Triangle>& triangles) {
     AngleCone& cone = cones.emplace_back(known ? around(parts) : AngleCone{});
     if (!known) continue;
     double max_angle_rad = 0;
-    for (const AngleCone& p : parts) max_angle_rad = std::max(max_angle_rad, angle(p.axis, triangles[t].normal) + kSlack_rad);
+    for (const AngleCone& p : parts)
+      max_angle_rad = std::max(max_angle_rad, angle(p.axis, triangles[t].normal) + kSlack_rad);
     if (max_angle_rad < M_PI / 2) cone.tilt_sine = std::sin(max_angle_rad);
   }
   return cones;

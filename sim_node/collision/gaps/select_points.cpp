@@ -6,11 +6,11 @@
 namespace tactus::sim::gaps {
 namespace {
 
-// Weight of a gap against a distance. The value 2 excludes a point that the body reaches only by rotating 27 degrees,
-// more than in any step. Design value.
+// Weight of a gap against a distance. The value 2 excludes a point that the body reaches only by rotating 27
+// degrees, more than in any step. Design value.
 constexpr double kGapWeight = 2;
-// Weight of a difference of normals, as a share of the contact's extent. Less than half, so that a floor keeps three
-// points beside one point of a wall. Design value.
+// Weight of a difference of normals, as a share of the contact's extent. Less than half, so that a floor keeps
+// three points beside one point of a wall. Design value.
 constexpr double kTurnWeight = 0.4;
 constexpr double kSamePosition_m = 1e-6;
 

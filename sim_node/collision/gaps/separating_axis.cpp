@@ -11,12 +11,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A later direction replaces an earlier one when its gap is larger by more than this, m. Between equal directions, as
-// of aligned cubes, the choice is then stable.
+// A later direction replaces an earlier one when its gap is larger by more than this, m. Between equal directions,
+// as of aligned cubes, the choice is then stable.
 constexpr double kBetter_m = 1e-9;
 
-// Depth up to which an overlap with a triangle is shallow, m. Design value: a hundred times the overlap that a solver
-// may leave.
+// Depth up to which an overlap with a triangle is shallow, m. Design value: a hundred times the overlap that a
+// solver may leave.
 constexpr double kShallow_m = 1e-3;
 
 struct Search {
@@ -111,8 +111,8 @@ SeparatingAxis best_face_axis(const Convex& a, const Convex& b, const Eigen::Iso
 
 SeparatingAxis overlap_axis(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b) {
   Search s{a, b, a_from_b, {}};
-  // A triangle is part of a surface. A shallow overlap is resolved along its face normal, since other directions lead
-  // into the neighbouring triangle.
+  // A triangle is part of a surface. A shallow overlap is resolved along its face normal, since other directions
+  // lead into the neighbouring triangle.
   if (b.core == Core::kTriangle) {
     each_face(b, [&](const Vector3d& n) { s.offer_both(a_from_b.linear() * n); });
     if (s.best.gap_m > -kShallow_m) return s.best;

@@ -7,8 +7,8 @@
 namespace tactus::sim {
 namespace {
 
-// Cell size of the hash grid. Much larger than kSamePosition_m, so that nearly every pair searches its own cell only.
-// Much smaller than a manifold, so that few pairs share a cell.
+// Cell size of the hash grid. Much larger than kSamePosition_m, so that nearly every pair searches its own cell
+// only. Much smaller than a manifold, so that few pairs share a cell.
 constexpr double kCell_m = 128 * kSamePosition_m;
 
 std::size_t hash(std::int64_t x, std::int64_t y, std::int64_t z) {

@@ -17,13 +17,15 @@ bool any_in(const Triangle& of, const Heights& distance, const Triangle& t, doub
   return false;
 }
 
-void project_active(const Triangle& of, const ActiveVertices& active, const Heights& h, const Triangle& t, bool of_a,
-                    std::vector<PointPair>& out) {
+void project_active(const Triangle& of, const ActiveVertices& active, const Heights& h, const Triangle& t,
+                    bool of_a, std::vector<PointPair>& out) {
   for (std::size_t i = 0; i < 3; ++i)
     if (active.vertex[i] && layer2::in_prism(of.v[i], t)) out.push_back(layer2::over_face(of.v[i], t, h[i], of_a));
 }
 
-bool active_edge(const ActiveVertices& active, std::size_t i) { return active.vertex[i] && active.vertex[(i + 1) % 3]; }
+bool active_edge(const ActiveVertices& active, std::size_t i) {
+  return active.vertex[i] && active.vertex[(i + 1) % 3];
+}
 
 }  // namespace
 

@@ -42,7 +42,7 @@ inline PointPair over_face(const Eigen::Vector3d& vertex, const Triangle& face, 
 inline Eigen::Vector3d facing(const Triangle& a, const Triangle& b, const Eigen::Vector3d& across) {
   const Eigen::Vector3d direction = a.normal - b.normal;
   const Eigen::Vector3d n = across.norm() > kTouching_m ? across.normalized()
-                            : direction.norm() > 1e-6         ? direction.normalized()
+                            : direction.norm() > 1e-6   ? direction.normalized()
                             : a.normal.isZero()         ? Eigen::Vector3d::UnitZ()
                                                         : a.normal;
   return n.dot(direction) < 0 ? Eigen::Vector3d(-n) : n;

@@ -80,7 +80,8 @@ std::vector<uniform_t> read_uniforms(const LoadContext& context, const sdf::Elem
       } catch (const std::invalid_argument& e) {
         reject(uniform.name + ": " + e.what());
       }
-      if (!(std::abs(uniform.values[uniform.count]) <= kMaxUniformMagnitude)) reject(uniform.name + " exceeds 1e6");
+      if (!(std::abs(uniform.values[uniform.count]) <= kMaxUniformMagnitude))
+        reject(uniform.name + " exceeds 1e6");
     }
     if (uniform.count == 0) reject(uniform.name + " has no number");
     for (const uniform_t& other : uniforms)
@@ -195,8 +196,7 @@ void read_environment(LoadContext& context, const sdf::Element& element) {
   Attributes attributes(context, element);
   const std::string uri = attributes.required_text("picture");
   attributes.done();
-  if (context.world.environment_asset != 0)
-    context.reject(element, "appears twice: a scene has one environment");
+  if (context.world.environment_asset != 0) context.reject(element, "appears twice: a scene has one environment");
   context.world.environment_asset = picture_of(context, element, "picture", uri, PictureUse::kColour);
 }
 
@@ -240,9 +240,9 @@ int look_index(WorldDef& world, const LookAttributes& attributes) {
   look.uniform_count = static_cast<std::int32_t>(look.uniforms.size());
   // Without a shader name, use the one that shows all given attributes.
   look.shader = attributes.shader.value_or(look.reflectance > 0 ? "reflecting"
-                                      : look.normal_map    ? "normal_mapped"
-                                      : look.colour_map    ? "textured"
-                                                           : "");
+                                           : look.normal_map    ? "normal_mapped"
+                                           : look.colour_map    ? "textured"
+                                                                : "");
   if (look.shader.empty() && !look.colour_map && !look.normal_map && look.reflectance == 0 &&
       look.uniforms.empty())
     return -1;

@@ -32,7 +32,8 @@ std::int64_t image_hash(LoadContext& context, const sdf::Element& element, const
 void read_bump(LoadContext& context, const sdf::Element& element, Attributes& attributes, material_def_t& material) {
   if (!attributes.text("bump")) {
     for (const char* key : {"bump_size", "bump_height"})
-      if (attributes.text(key)) context.reject(element, std::string("has ") + key + " without bump: name the picture too");
+      if (attributes.text(key))
+        context.reject(element, std::string("has ") + key + " without bump: name the picture too");
     return;
   }
   const std::string uri = attributes.required_text("bump");
@@ -46,7 +47,8 @@ void read_bump(LoadContext& context, const sdf::Element& element, Attributes& at
 void read_friction_map(LoadContext& context, const sdf::Element& element, Attributes& attributes, material_def_t& material) {
   if (!attributes.text("friction_map")) {
     for (const char* key : {"friction_size", "friction_factors"})
-      if (attributes.text(key)) context.reject(element, std::string("has ") + key + " without friction_map: name the picture too");
+      if (attributes.text(key))
+        context.reject(element, std::string("has ") + key + " without friction_map: name the picture too");
     return;
   }
   const std::string uri = attributes.required_text("friction_map");
@@ -86,7 +88,8 @@ void read_material(LoadContext& context, const sdf::Element& element) {
     if (value)
       material.*property.field = *value;
     else if (known == context.material_of.end())
-      context.reject(element, std::string("is new and lacks \"") + property.attribute + "\": give it, or a base to take it from");
+      context.reject(element, std::string("is new and lacks \"") + property.attribute +
+                                  "\": give it, or a base to take it from");
   }
   read_bump(context, element, attributes, material);
   read_friction_map(context, element, attributes, material);

@@ -60,9 +60,11 @@ int main(int argc, char** argv) try {
   sync::parse_or_exit(app, "convert_geometry", argc, argv);
 
   std::string extension = fs::path(out).extension().string();
-  if (extension != ".glb" && extension != ".gltf") reject("\"" + out + "\" must end in .glb or .gltf: only glTF is written");
+  if (extension != ".glb" && extension != ".gltf")
+    reject("\"" + out + "\" must end in .glb or .gltf: only glTF is written");
   if (fs::exists(out) && !force) reject("\"" + out + "\" exists already: give another name, or --force");
-  if (!fs::is_directory(fs::absolute(out).parent_path())) reject("the folder of \"" + out + "\" does not exist: create it first");
+  if (!fs::is_directory(fs::absolute(out).parent_path()))
+    reject("the folder of \"" + out + "\" does not exist: create it first");
 
   MeshParts mesh;
   try {
@@ -77,7 +79,8 @@ int main(int argc, char** argv) try {
       value = fs::relative(fs::absolute(value), fs::absolute(out).parent_path()).generic_string();
     (word.of_look ? mesh.look : mesh.material)[word.attribute] = value;
   }
-  if (!mesh.material.empty() && !mesh.material.contains("base")) reject("the material is missing: give --material, for example oak");
+  if (!mesh.material.empty() && !mesh.material.contains("base"))
+    reject("the material is missing: give --material, for example oak");
   const auto table = builtin_materials();
   const bool known = mesh.material.empty() || std::any_of(table.begin(), table.end(), [&](const material_def_t& m) {
     return m.name == mesh.material["base"];

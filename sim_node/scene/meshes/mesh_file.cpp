@@ -44,7 +44,8 @@ TriangleMesh join_parts(const MeshParts& parts, const MeshSelection& selection, 
     if (!only || only->contains(part.material)) append(part, mesh);
   }
   if (mesh.indices.empty())
-    throw std::runtime_error(selection.submesh.empty() ? "it has no triangle" : "it has no submesh \"" + selection.submesh + "\"");
+    throw std::runtime_error(selection.submesh.empty() ? "it has no triangle"
+                                                       : "it has no submesh \"" + selection.submesh + "\"");
   if (mesh.texcoords.size() != mesh.vertices.size()) mesh.texcoords.clear();
   if (mesh.tangents.size() != mesh.vertices.size()) mesh.tangents.clear();
   if (selection.centre)

@@ -55,7 +55,8 @@ std::vector<double> Attributes::required_quantities(const std::string& name, std
   std::vector<double> found;
   for (std::string word; in >> word;) found.push_back(number(name, word, unit, min, max));
   if (found.size() != count)
-    context_.reject(element_, "has " + name + "=\"" + value + "\": it must be " + std::to_string(count) + " quantities");
+    context_.reject(element_,
+                    "has " + name + "=\"" + value + "\": it must be " + std::to_string(count) + " quantities");
   return found;
 }
 
@@ -79,8 +80,8 @@ std::vector<double> Attributes::numbers(const std::string& name, std::size_t cou
       break;
     }
   if (found.size() != count)
-    context_.reject(element_, "has " + name + "=\"" + value + "\": it must be " + std::to_string(count) +
-                                  " finite numbers");
+    context_.reject(element_,
+                    "has " + name + "=\"" + value + "\": it must be " + std::to_string(count) + " finite numbers");
   return found;
 }
 
@@ -99,7 +100,8 @@ std::optional<Eigen::Isometry3d> Attributes::pose(const std::string& name) {
 void Attributes::done() const {
   for (const auto& attribute : element_.GetAttributes())
     if (!read_names_.contains(attribute->GetKey()) && !attribute->GetKey().starts_with("xmlns"))
-      context_.reject(element_, "has no attribute \"" + attribute->GetKey() + "\": docs/scene_format.md lists those it has");
+      context_.reject(element_,
+                      "has no attribute \"" + attribute->GetKey() + "\": docs/scene_format.md lists those it has");
 }
 
 }  // namespace tactus::sim

@@ -84,7 +84,7 @@ const sdf::Element* find_quoted_element(const sdf::ElementPtr& element, const st
 }
 
 void throw_first_error(const sdf::Errors& errors, const sdf::ElementPtr& root, const SdfFiles& files,
-                   const MutedConsole& muted) {
+                       const MutedConsole& muted) {
   const sdf::Error* first = nullptr;
   int more = 0;
   for (const sdf::Error& error : errors) {
