@@ -142,7 +142,7 @@ struct Room {
     const LockedFrame& f = *w.drawing;
     REQUIRE(w.seen.count(f.number) == 0);
     if (!w.seen.empty()) REQUIRE(f.number > w.seen.rbegin()->first);
-    w.seen[f.number] = {sync::to_ns(f.world), f.head_ns, sync::to_ns(f.due)};
+    w.seen[f.number] = {sync::to_ns(f.sim_time), f.head_ns, sync::to_ns(f.due)};
     late_ns = std::max(late_ns, t - sync::to_ns(f.due));
     w.drawing.reset();
     w.busy_until_ns = std::max(t, room_of(w.lock.next_begin(w.to_host(t))));
