@@ -1,12 +1,13 @@
-// What the program does. A function, so that a virtual time can run it beside others in one process (sync/virtual_time).
+// Main function of the program, callable so that virtual time can run several programs in one process
+// (sync/virtual_time).
 #pragma once
 
 namespace tactus::sim {
 
 struct WorldDef;
 
-// Returns the exit status, after one sentence on stderr where that is not 0. world: what the file of the command line holds, where
-// that has been read already, as for many runs of one scene; null: it is read.
-int run(int argc, char** argv, const WorldDef* world = nullptr);
+// Returns the exit status; a status other than 0 follows one sentence on stderr. loaded_world: the content of the
+// scene file of the command line if it is already loaded, as for many runs of one scene; null: the file is loaded.
+int run(int argc, char** argv, const WorldDef* loaded_world = nullptr);
 
 }  // namespace tactus::sim

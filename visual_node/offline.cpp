@@ -25,7 +25,9 @@ std::vector<sync::OfflineInput::Written> written_anew(const OfflineOptions& opti
 void OfflineOptions::add_to(CLI::App& app) {
   sync::OfflineOptions::add_to(app, "draws this log of a run", "--video");
   app.add_option("--video", video, "file for the pictures of the log, MP4")->needs("--log");
-  app.add_option("--frames", frames, "file for a table of when each frame of the log is and of the hash of its pixels, CSV")->needs("--log");
+  app.add_option("--frames", frames,
+                 "file for a table of the time and the pixel hash of each frame of the log, CSV")
+      ->needs("--log");
   app.add_flag("--as-recorded", as_recorded, "the same as --degrade logged")->needs("--log");
 }
 
@@ -36,11 +38,11 @@ std::unique_ptr<Offline> Offline::open(const OfflineOptions& options, double rat
 }
 
 Offline::Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock)
-    : options_(options), rate_Hz_(rate_Hz), run_(options, written_anew(options), rate_Hz, clock) {
-  std::error_code none;
-  for (const std::string& there : {options_.video, part_of(options_.video)})
-    if (std::filesystem::exists(there, none))
-      throw std::runtime_error(there + " exists and is not written over; remove it or choose another --video");
+    : options_(options), rate_Hz_(rate_Hz), run_(options, overwritten_files(options), rate_Hz, clock) {
+  std::error_code ignored;
+  for (const std::string& path : {options_.video, part_file_name(options_.video)})
+    if (std::filesystem::exists(path, ignored))
+      throw std::runtime_error(path + " exists and is not overwritten; remove it or choose another --video");
   if (options_.frames.empty()) return;
   frames_ = std::make_unique<sync::AtomicFile>(options_.frames, "--frames");
   frames_->write("frame,host_ns,pixels\n");
@@ -64,7 +66,7 @@ void Offline::add(const std::function<void(std::span<std::uint8_t>)>& read) {
   video_->write(rgba_);
   if (frames_) {
     std::ostringstream row;
-    row << video_->frames() - 1 << ',' << sync::to_ns(now()) << ',' << std::hex << video_->pixels_of_newest()
+    row << video_->frames() - 1 << ',' << sync::to_ns(now()) << ',' << std::hex << video_->newest_frame_hash()
         << '\n';
     frames_->write(row.str());
   }
@@ -84,7 +86,7 @@ std::string Offline::result(std::int64_t flashed, std::int64_t dropped, sync::Ho
   std::ostringstream text;
   text << options_.video << ": " << video_->frames() << " frames, " << film_s << " s, " << flashed << " flashes";
   if (dropped > 0) text << " (and " << dropped << " events not shown: too late)";
-  text << "; pixels " << std::hex << video_->pixels() << std::dec << rest;
+  text << "; pixels " << std::hex << video_->pixel_hash() << std::dec << rest;
   return text.str();
 }
 

@@ -1,4 +1,5 @@
-// A recorded run in place of bus and screen: the node draws the log into a file, as fast as it can. A frame takes no time there, so that nothing in it depends on how fast the machine draws: the same log
+// Offline rendering: a recorded run replaces bus and screen, and the node renders the log to a file as fast as it
+// can. Drawing takes no simulated time, so the result does not depend on the speed of the machine: the same log
 // gives the same pixels.
 #pragma once
 
@@ -16,32 +17,32 @@ namespace tactus::visual {
 
 struct OfflineOptions : sync::OfflineOptions {
   std::string video;
-  std::string frames;    // table of when each frame is and what it shows, CSV; empty: none
+  std::string frames;    // table of the time and the pixel hash of each frame, CSV; empty: none
   std::string snapshot;  // PNG file; empty: none
   double snapshot_every_s = 1;
 
   void add_to(CLI::App& app);
 };
 
-// All times but `clock`, that of whoever looks on, are the log's.
+// All times are on the clock of the log, except `clock`, the current time of this host.
 class Offline {
  public:
-  // Throws std::runtime_error with one sentence when the log holds no run, or the video would lie where something
-  // is.
+  // Throws std::runtime_error with one sentence when the log holds no run, or a file of the video's name exists.
   Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
 
-  // The same where a log is asked for; else null.
+  // Creates the object if the options name a log; else null.
   static std::unique_ptr<Offline> open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
 
   sync::OfflineInput& run() { return run_; }
   sync::HostTime now() const { return run_.now(); }
-  // A scene has come. Throws std::runtime_error with one sentence when its pictures do not fit the video.
+  // Call when a scene is loaded. Throws std::runtime_error with one sentence when its pictures do not fit the
+  // video.
   void begin(int width, int height, const Settings& settings);
-  // The picture of this tick; read() fills the bytes given, sRGB, the lowest row first. Before the first scene
-  // there is none.
+  // Adds the picture of this tick; read() fills its argument, sRGB, the lowest row first. Does nothing before the
+  // first scene.
   void add(const std::function<void(std::span<std::uint8_t>)>& read);
-  // The file gets its name. What came of it, in lines. Throws std::runtime_error with one sentence when there is
-  // none.
+  // Finishes and renames the video. Returns a summary. Throws std::runtime_error with one sentence when the log
+  // has no scene.
   std::string result(std::int64_t flashed, std::int64_t dropped, sync::HostTime clock);
 
  private:

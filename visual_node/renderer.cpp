@@ -21,8 +21,8 @@ void Options::add_to(CLI::App& app) {
   app.add_flag("--window", window, "open a window");
   app.add_flag("--no-video", no_video, "write no video.mp4");
   app.add_flag("--no-pictures", no_pictures, "draw nothing, and report what each picture would have shown")->excludes("--window");
-  app.add_option("--snapshot", keep.snapshot, "PNG file that the newest picture is written to");
-  app.add_option("--snapshot-every", keep.snapshot_every_s, "how often, s")
+  app.add_option("--snapshot", recording.snapshot, "PNG file that the newest picture is written to");
+  app.add_option("--snapshot-every", recording.snapshot_every_s, "how often, s")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   log.add_to(app);
@@ -30,23 +30,24 @@ void Options::add_to(CLI::App& app) {
 }
 
 void Options::complete(const std::string& node, const sync::NodeOptions& options) {
-  keep.folder = options.out;
-  // Several of a room write into one folder.
-  if (options.name.starts_with(node + "_")) keep.name += options.name.substr(node.size());
-  keep.video = !no_video && !no_pictures;
-  if (no_pictures && !keep.snapshot.empty())
+  recording.folder = options.out;
+  // Several processes of a room write into one folder.
+  if (options.name.starts_with(node + "_")) recording.name += options.name.substr(node.size());
+  recording.video = !no_video && !no_pictures;
+  if (no_pictures && !recording.snapshot.empty())
     throw std::runtime_error("--no-pictures leaves nothing for --snapshot; leave one out");
-  log.snapshot = keep.snapshot;
-  log.snapshot_every_s = keep.snapshot_every_s;
+  log.snapshot = recording.snapshot;
+  log.snapshot_every_s = recording.snapshot_every_s;
 }
 
-std::unique_ptr<RenderOutput> open_stage(const Settings& settings, const Options& options) {
+std::unique_ptr<RenderOutput> open_render_output(const Settings& settings, const Options& options) {
   return options.no_pictures ? std::make_unique<RenderOutput>(settings) : std::make_unique<RenderOutput>(settings, options.window);
 }
 
-NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& stage, const Options& options, Offline* log)
+NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& render_output, const Options& options,
+                           Offline* log)
     : SettingsRenderer(host, setting_fields()),
-      stage_(stage),
+      render_output_(render_output),
       log_(log),
       world_(host.endpoint().snapshots<world_state_t>(channels::kWorldState, 4096)),
       events_(host.endpoint().events()),
@@ -62,16 +63,16 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& stage, const 
   composer_.set_schedule([&endpoint = host.endpoint()](std::int64_t event, sync::HostTime happened) {
     return endpoint.schedule(event, happened);
   });
-  if (log_) composer_.foresee({}, {});
+  if (log_) composer_.set_expected_times({}, {});
   questions_.configure(settings());
-  say(overlays_.configure(settings()));
+  report_all(overlays_.configure(settings()));
   add_tags();
 }
 
 void NodeRenderer::add_tags() {
   sync::Tags& tags = host().node().tags();
-  tags.add("picture", "us", [this] { return sync::to_seconds(took_) * 1e6; });
-  tags.add("quality", "1", [this] { return stage_.quality().step(); });
+  tags.add("picture", "us", [this] { return sync::to_seconds(draw_time_) * 1e6; });
+  tags.add("quality", "1", [this] { return render_output_.quality().step(); });
   tags.add("flashed", "1", &flashed_);
 }
 
@@ -83,41 +84,41 @@ sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Se
   take_messages();
   loaded_ = true;
   scene_ = scenes.scene();
-  std::vector<std::string> trouble;
-  const SceneView& view =
-      composer_.load(*scene_, meshes_of(scenes), settings,
-                     height_maps_of(*scene_, sync::pictures_of(scenes), trouble), look_files_of(scenes, trouble));
-  trouble.insert(trouble.end(), view.trouble().begin(), view.trouble().end());
-  if (!view.lens().trouble().empty()) trouble.push_back(view.lens().trouble());
-  for (const std::string& sentence : overlays_.configure(settings)) trouble.push_back(sentence);
+  std::vector<std::string> warnings;
+  const SceneView& view = composer_.load(*scene_, meshes_of(scenes), settings,
+                                         height_maps_of(*scene_, sync::pictures_of(scenes), warnings),
+                                         look_files_of(scenes, warnings));
+  warnings.insert(warnings.end(), view.warnings().begin(), view.warnings().end());
+  if (!view.lens().warning().empty()) warnings.push_back(view.lens().warning());
+  for (const std::string& sentence : overlays_.configure(settings)) warnings.push_back(sentence);
   questions_.configure(settings);
-  say(trouble);
+  report_all(warnings);
   lock_.load(*scene_, settings);
   const sync::Status preparing{node_health_t::WAITING, "prepares the pictures of the scene"};
   host().node().set_state(preparing.state, preparing.text);
   stage_.load(view, composer_.frame(host().clock(), 0).list, settings, [this] {
     if (!log_) host().node().heartbeat();
   });
-  begin_outputs(view, settings);
+  start_outputs(view, settings);
   return {.rate_Hz = settings.rate_Hz,
-          .output_latency = sync::from_seconds(1 / settings.rate_Hz) + FrameComposer::kFlashesTake,
+          .output_latency = sync::from_seconds(1 / settings.rate_Hz) + FrameComposer::kInitialFlashTime,
           .status = preparing};
 }
 
-void NodeRenderer::begin_outputs(const SceneView& view, const Settings& settings) {
+void NodeRenderer::start_outputs(const SceneView& view, const Settings& settings) {
   if (log_)
     log_->begin(view.width(), view.height(), settings);
-  else if (stage_.draws())
+  else if (render_output_.draws())
     recording_.begin(view.width(), view.height(), settings);
-  if (stage_.draws()) stream_.begin(view.width(), view.height(), settings);
+  if (render_output_.draws()) stream_.begin(view.width(), view.height(), settings);
 }
 
 void NodeRenderer::apply_setting(const Settings& settings, const std::string& name) {
   take_messages();  // they came before the change
   LiveOverlays::check(settings);
   if (name.starts_with("stream")) {
-    if (!stage_.draws()) throw std::invalid_argument("it draws no pictures that could be streamed");
-    stream_.begin(stage_.picture().width(), stage_.picture().height(), settings);
+    if (!render_output_.draws()) throw std::invalid_argument("it draws no pictures that could be streamed");
+    stream_.begin(render_output_.picture().width(), render_output_.picture().height(), settings);
   } else {
     overlays_.configure(settings);
     questions_.configure(settings);
@@ -125,13 +126,13 @@ void NodeRenderer::apply_setting(const Settings& settings, const std::string& na
   }
 }
 
-// For a wait within a tick: takes in what arrived meanwhile.
+// For a wait within a tick: processes the messages that arrived meanwhile.
 void NodeRenderer::receive(sync::HostTime now) {
   host().endpoint().step(now);
   take_messages();
 }
 
-void NodeRenderer::take_messages() {
+void NodeRenderer::process_messages() {
   while (const auto m = world_.pop())
     composer_.push(m->message, m->arrival), overlays_.push(m->message), desk_.push(m->message);
   while (const auto m = tools_.pop()) composer_.push(m->message, m->arrival), overlays_.push(m->message);
@@ -139,10 +140,10 @@ void NodeRenderer::take_messages() {
 }
 
 std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
-  take_messages();
-  if (std::exchange(loaded_, false) && host().live()) return std::nullopt;  // that took several ticks
+  process_messages();
+  if (std::exchange(loaded_, false) && host().live()) return std::nullopt;  // loading took several ticks
   recover(now);
-  const std::optional<AgreedFrame> agreed = begin_frame();
+  const std::optional<LockedFrame> locked = begin_frame();
   const SceneView* view = composer_.view();
   if (stage_.draws()) questions_.step();
   if (host().live() && stage_.draws())
@@ -155,7 +156,7 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   keep(now, fresh);
   if (log_) return std::nullopt;
   const sync::Status status = this->status(now, fresh);
-  if (agreed) host().node().align(lock_.next_begin(sync::host_now()), agreed->skipped);
+  if (locked) host().node().align(lock_.next_begin(sync::host_now()), locked->skipped);
   return status;
 }
 
@@ -171,11 +172,11 @@ std::optional<AgreedFrame> NodeRenderer::begin_frame() {
   const auto agreed = lock_.begin(host().clock(), host().endpoint().profile_delay());
   const sync::Deadlines& deadlines = host().node().deadlines();
   const std::int64_t before = std::exchange(periods_, deadlines.ticks() + deadlines.missed());
-  slot_ += log_ ? 1 : agreed ? 1 + agreed->skipped : periods_ - before;
-  return agreed;
+  slot_ += log_ ? 1 : locked ? 1 + locked->skipped : periods_ - before;
+  return locked;
 }
 
-void NodeRenderer::draw(sync::HostTime now, const std::optional<AgreedFrame>& agreed) {
+void NodeRenderer::draw(sync::HostTime now, const std::optional<LockedFrame>& locked) {
   const sync::ScopedPhaseTimer rendering(sync::Phase::kRender);
   const sync::ModalityEndpoint& endpoint = host().endpoint();
   const auto meanwhile = [this](sync::HostTime t) { receive(t); };
@@ -186,20 +187,20 @@ void NodeRenderer::draw(sync::HostTime now, const std::optional<AgreedFrame>& ag
                   : composer_.frame(now, slot_, endpoint.delay(), heard, endpoint.profile_delay());
   stage_.draw_scene(frame_.list, output_);
   const sync::HostTime drawn = host().clock();
-  if (agreed && !log_) walls_.wait_for_latch(*agreed);
-  // Late latch: what arrived while the surfaces were drawn still flashes in this frame.
+  if (locked && !log_) walls_.wait_for_latch(*locked);
+  // Late latch: events that arrived while the surfaces were drawn still flash in this frame.
   const sync::HostTime latched = log_ ? host().clock() : host().node().poll();
   if (!log_) receive(latched);
   composer_.latch(frame_, latched, agreed ? agreed->delay : endpoint.delay(), stage_.held());
   draw_overlays(latched);
   const sync::HostTime ready = host().clock();
-  if (agreed && !log_) lock_.drawn(drawn - now, ready - latched), walls_.hold(*agreed, meanwhile);
-  waited_ = agreed ? (latched - drawn) + (host().clock() - ready) : sync::Nanoseconds(0);
-  stage_.show();
+  if (locked && !log_) lock_.add_draw_times(drawn - now, ready - latched), walls_.hold(*locked, meanwhile);
+  wait_time_ = locked ? (latched - drawn) + (host().clock() - ready) : sync::Nanoseconds(0);
+  render_output_.show();
   fence_ = host().clock();
   times_ = {now, latched};
-  took_ = fence_ - now;
-  if (agreed && !log_) walls_.shown(*agreed);
+  draw_time_ = fence_ - now;
+  if (locked && !log_) walls_.shown(*locked);
   present(latched);
 }
 
@@ -217,15 +218,17 @@ void NodeRenderer::draw_overlays(sync::HostTime latched) {
     facts.output = output_;
     overlays_.append(frame_, facts, latched, stage_.picture().width(), stage_.picture().height());
   }
-  if (stage_.draws()) questions_.append(frame_, latched, stage_.picture().width(), stage_.picture().height());
-  stage_.draw_over(frame_.list);
+  if (render_output_.draws())
+    questions_.append(frame_, latched, render_output_.picture().width(), render_output_.picture().height());
+  render_output_.draw_flashes_and_overlay(frame_.list);
 }
 
-// The picture is out: reports the events that it is the first to show.
+// The picture was presented: reports the events that it shows first.
 void NodeRenderer::present(sync::HostTime latched) {
   const sync::HostTime shown = fence_ + sync::from_seconds(settings().display_latency_s);
   questions_.presented(shown);
-  // An event that arrives just after the latch waits for that of the next frame; not for a picture that a profile holds.
+  // An event that arrives just after the latch waits for the latch of the next frame. Pictures that a profile
+  // holds are excluded.
   if (!output_.any())
     host().endpoint().set_output_latency(shown - latched + sync::from_seconds(1 / settings().rate_Hz));
   for (const presentation_t& report : composer_.presented(shown)) {
@@ -236,16 +239,17 @@ void NodeRenderer::present(sync::HostTime latched) {
   }
 }
 
-void NodeRenderer::keep(sync::HostTime now, bool fresh) {
-  const auto read = [this](std::span<std::uint8_t> rgba) { stage_.picture().read(rgba); };
+void NodeRenderer::record(sync::HostTime now, bool fresh) {
+  const auto read = [this](std::span<std::uint8_t> rgba) { render_output_.picture().read(rgba); };
   if (log_) return log_->add(read);
-  if (auto pair = stage_.draws() ? recording_.add(slot_, fresh ? fence_ : now + took_, read) : std::nullopt) {
+  if (auto pair =
+          render_output_.draws() ? recording_.add(slot_, fresh ? fence_ : now + draw_time_, read) : std::nullopt) {
     times_.read = sync::host_now();
     host().bus().publish(channels::kMediaClock, *pair);
     if (fresh && settings().motion_marker == "strip")
       for (media_clock_t& m : stages_of(*pair, times_)) host().bus().publish(channels::kMediaClock, m);
   }
-  if (fresh && stage_.draws())
+  if (fresh && render_output_.draws())
     stream_.add(now, frame_.instant ? sync::to_ns(*frame_.instant) : -1,
                 fence_ + sync::from_seconds(settings().display_latency_s), read);
   for (picture_chunk_t& chunk : stream_.take_chunks())

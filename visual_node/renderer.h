@@ -1,4 +1,5 @@
-// The modality of vision on the renderer host: from the messages of a tick to the picture that is shown and kept.
+// The modality of vision on the renderer host: from the messages of a tick to the picture that is shown and
+// recorded.
 #pragma once
 
 #include <memory>
@@ -24,27 +25,27 @@
 
 namespace tactus::visual {
 
-// What the command line says, beside the options of every node.
+// Command-line options of visual_node, in addition to those of every node.
 struct Options {
   bool window = false, no_video = false, no_pictures = false;
-  RecordingOptions keep;
+  RecordingOptions recording;
   OfflineOptions log;
 
   void add_to(CLI::App& app);
-  // Fills what follows from the options of every node. Throws std::runtime_error with one sentence.
+  // Sets the values that follow from the options of every node. Throws std::runtime_error with one sentence.
   void complete(const std::string& node, const sync::NodeOptions& options);
 };
 
-// What pictures are drawn on. Throws std::runtime_error with one sentence.
-std::unique_ptr<RenderOutput> open_stage(const Settings& settings, const Options& options);
+// Opens the output that pictures are drawn on. Throws std::runtime_error with one sentence.
+std::unique_ptr<RenderOutput> open_render_output(const Settings& settings, const Options& options);
 
 class NodeRenderer : public sync::SettingsRenderer<Settings> {
  public:
-  // stage: outlives this. log: null: it renders the bus.
-  NodeRenderer(sync::RendererHost& host, RenderOutput& stage, const Options& options, Offline* log);
+  // render_output: must outlive this object. log: null: renders the messages of the bus.
+  NodeRenderer(sync::RendererHost& host, RenderOutput& render_output, const Options& options, Offline* log);
 
   std::optional<sync::Status> step(sync::HostTime now) override;
-  bool closed() override { return stage_.closed() || desk_.closing(); }
+  bool closed() override { return render_output_.closed() || controls_.closing(); }
   std::string finish_log(sync::HostTime clock) override { return log_->result(flashed_, reported_ - flashed_, clock); }
   void finish() override;
 
@@ -52,19 +53,19 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   sync::LoadedScene load(const sync::SceneReceiver& scenes, const Settings& settings) override;
   void apply_setting(const Settings& settings, const std::string& name) override;
   void add_tags();
-  void begin_outputs(const SceneView& view, const Settings& settings);
+  void start_outputs(const SceneView& view, const Settings& settings);
   void receive(sync::HostTime now);
-  void take_messages();
+  void process_messages();
   void recover(sync::HostTime now);
-  std::optional<AgreedFrame> begin_frame();
-  void draw(sync::HostTime now, const std::optional<AgreedFrame>& agreed);
+  std::optional<LockedFrame> begin_frame();
+  void draw(sync::HostTime now, const std::optional<LockedFrame>& locked);
   void draw_overlays(sync::HostTime latched);
   void present(sync::HostTime latched);
-  void keep(sync::HostTime now, bool fresh);
+  void record(sync::HostTime now, bool fresh);
   sync::Status status(sync::HostTime now, bool fresh);
-  void say(const std::vector<std::string>& sentences) const;
+  void report_all(const std::vector<std::string>& sentences) const;
 
-  RenderOutput& stage_;
+  RenderOutput& render_output_;
   Offline* log_;
   sync::ModalityEndpoint::Stream<world_state_t>& world_;
   sync::ModalityEndpoint::Events& events_;
@@ -75,7 +76,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   Recording recording_;
   PictureStream stream_;
   LiveOverlays overlays_;
-  WindowControls desk_;
+  WindowControls controls_;
   LiveQuestions questions_;
   const scene_t* scene_ = nullptr;
   bool loaded_ = false;  // in this tick
@@ -83,10 +84,10 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   sync::OutputValues output_;  // output operators in force
   sync::HostTime fence_{};
   FrameTimes times_;
-  sync::Nanoseconds took_{0}, waited_{0};
+  sync::Nanoseconds draw_time_{0}, wait_time_{0};
   std::int64_t slot_ = -1, periods_ = 0;  // of the video; of the loop, ticked and missed
   std::int64_t reported_ = 0, flashed_ = 0;
-  std::string said_;
+  std::string last_reported_error_;
 };
 
 }  // namespace tactus::visual

@@ -1,14 +1,16 @@
 // visual_node: draws the scene, its tools and a flash for every contact, at 60 Hz.
 //
-//   in   WORLD_STATE, CONTACT_EVENTS, TOOL_STATE   bodies, contacts, tools; of a head, where the eye is
-//        SCENE, SETTING, QUESTION                  what is drawn, what changes, what a participant is asked
-//        PLAYOUT, FRAME_SHOWN                      of a room: its delay, and the frames that other walls have drawn
-//        CONTACTS, NODE_HEALTH                     while an overlay shows them, and the channels that a plot names
-//   out  PRESENTED, MEDIA_CLOCK, FRAME_SHOWN       every begin and hit; which frame was out when
+//   in   WORLD_STATE, CONTACT_EVENTS, TOOL_STATE   bodies, contacts and tools; the position of a tracked head
+//        SCENE, SETTING, QUESTION                  the scene, changes of settings, questions for a participant
+//        PLAYOUT, FRAME_SHOWN                      of a room: its delay, and the frames that other walls have
+//        drawn CONTACTS, NODE_HEALTH                     while an overlay shows them, and the channels that a plot
+//        names
+//   out  PRESENTED, MEDIA_CLOCK, FRAME_SHOWN       a report for every begin and hit; presentation times of frames
 //        SIM_COMMAND, DEVICE_STATE, ANSWER         keys, mouse and gamepad of a window
 //        PICTURE_CHUNK                             the picture, when streamed
 //
-// When WORLD_STATE is lost, bodies are extrapolated for 50 ms, then held, and the picture is marked. With --log it renders a log into --video.
+// When WORLD_STATE is lost, bodies are extrapolated for 50 ms, then held, and the picture is marked. With --log
+// the node renders a log to the file --video.
 #include "visual_node/run.h"
 
 #include <iostream>
@@ -40,16 +42,16 @@ class Factory : public sync::RendererFactory {
     const auto settings = sync::settings_of(visual::setting_fields(), kVisual.name, options.set);
     options_.complete(kVisual.name, options);
     log_ = visual::Offline::open(options_.log, settings.rate_Hz, sync::host_now());
-    stage_ = visual::open_stage(settings, options_);
-    std::cerr << options.name << ": " << stage_->description() << std::endl;
+    render_output_ = visual::open_render_output(settings, options_);
+    std::cerr << options.name << ": " << render_output_->description() << std::endl;
     return log_ ? &log_->run() : nullptr;
   }
   std::unique_ptr<sync::Renderer> make(sync::RendererHost& host) override {
-    return std::make_unique<visual::NodeRenderer>(host, *stage_, options_, log_.get());
+    return std::make_unique<visual::NodeRenderer>(host, *render_output_, options_, log_.get());
   }
   visual::Options options_;
   std::unique_ptr<visual::Offline> log_;
-  std::unique_ptr<visual::RenderOutput> stage_;
+  std::unique_ptr<visual::RenderOutput> render_output_;
 };
 
 }  // namespace

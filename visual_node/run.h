@@ -1,9 +1,10 @@
-// What the program does. A function, so that a virtual time can run it beside others in one process (sync/virtual_time).
+// Main function of the program, callable so that virtual time can run several programs in one process
+// (sync/virtual_time).
 #pragma once
 
 namespace tactus::visual {
 
-// Returns the exit status, after one sentence on stderr where that is not 0.
+// Returns the exit status; a status other than 0 follows one sentence on stderr.
 int run(int argc, char** argv);
 
 }  // namespace tactus::visual

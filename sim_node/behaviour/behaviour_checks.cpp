@@ -21,11 +21,13 @@ std::string too_stiff(const WorldDef& world, const Settings& s) {
     const BodyDef& b = world.bodies[i];
     if (b.is_static || b.tool >= 0) continue;
     const double mobility = points_of(world, static_cast<int>(i)) / b.mass_kg;
-    const double most = impulse::stiffest_explicit(mobility, s.penalty_damping_Ns_m, s.step_s);
-    if (s.penalty_stiffness_N_m < most) continue;
+    const double max_stiffness_N_m =
+        impulse::max_explicit_stiffness_N_m(mobility, s.penalty_damping_Ns_m, s.step_s);
+    if (s.penalty_stiffness_N_m < max_stiffness_N_m) continue;
     char numbers[160];
-    std::snprintf(numbers, sizeof numbers, "mass of %.3g kg allows at most %.3g N/m at a step of %.3g ms, not %.3g",
-                  b.mass_kg, std::max(0.0, most), 1e3 * s.step_s, s.penalty_stiffness_N_m);
+    std::snprintf(numbers, sizeof numbers,
+                  "mass of %.3g kg allows at most %.3g N/m at a step of %.3g ms, not %.3g", b.mass_kg,
+                  std::max(0.0, max_stiffness_N_m), 1e3 * s.step_s, s.penalty_stiffness_N_m);
     return "sim_node: the solver \"penalty_explicit\" is unstable for the body \"" + b.name + "\", whose " +
            numbers + "; lower penalty_stiffness or choose \"penalty\"";
   }
@@ -34,14 +36,14 @@ std::string too_stiff(const WorldDef& world, const Settings& s) {
 
 }  // namespace
 
-std::string refusal(const BehaviourModel& model, const DetectorAbilities& detector) {
+std::string unsupported_reason(const BehaviourModel& model, const DetectorAbilities& detector) {
   if (!model.needs_gaps || detector.separation) return "";
   return "sim_node: the solver \"" + std::string(model.name) +
          "\" needs contacts with gaps, which the detector \"" + std::string(detector.name) +
          "\" does not report; choose a detector that reports gaps, such as \"gaps\", or the solver \"quick\" or \"step\"";
 }
 
-std::string refusal(const WorldDef& world, const Settings& settings) {
+std::string unsupported_reason(const WorldDef& world, const Settings& settings) {
   const BehaviourModel& model = behaviour_model(settings.solver);
   if (settings.groups == "dual" && model.name != "impulse" && model.name != "penalty_explicit")
     return "sim_node: groups = dual has penalty contact near the tools and impulses elsewhere, not the solver \"" +
@@ -49,7 +51,7 @@ std::string refusal(const WorldDef& world, const Settings& settings) {
            "\"; choose solver = impulse, or penalty_explicit for explicit springs near the tools, or "
            "groups = single";
   if (model.needs_gaps) {
-    const std::string blind = refusal(model, make_detector(settings.detector)->abilities());
+    const std::string blind = unsupported_reason(model, make_detector(settings.detector)->abilities());
     if (!blind.empty()) return blind;
   }
   return model.has_stability_limit ? too_stiff(world, settings) : "";

@@ -12,9 +12,9 @@
 namespace tactus::sim {
 
 // Returns an empty string when the detector supports the model, else one sentence that names an alternative.
-std::string refusal(const BehaviourModel& model, const DetectorAbilities& detector);
+std::string unsupported_reason(const BehaviourModel& model, const DetectorAbilities& detector);
 // Returns an empty string when the model of these settings can simulate this scene, else one sentence with the
 // remedy. The builder of the systems detects loops of joints.
-std::string refusal(const WorldDef& world, const Settings& settings);
+std::string unsupported_reason(const WorldDef& world, const Settings& settings);
 
 }  // namespace tactus::sim

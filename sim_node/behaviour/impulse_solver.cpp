@@ -21,9 +21,10 @@ double bound_of(const ShapeDef& s, const WorldDef& world) {
     case ShapeKind::kCapsule: return s.size_m.x() + s.size_m.z() / 2;
     case ShapeKind::kCylinder: return std::hypot(s.size_m.x(), s.size_m.z() / 2);
     case ShapeKind::kMesh: {
-      double most = 0;
-      for (const Eigen::Vector3d& v : world.meshes[index(s.mesh)].vertices) most = std::max(most, v.norm());
-      return most;
+      double max_radius_m = 0;
+      for (const Eigen::Vector3d& v : world.meshes[index(s.mesh)].vertices)
+        max_radius_m = std::max(max_radius_m, v.norm());
+      return max_radius_m;
     }
     default: return s.size_m.norm() / 2;
   }
@@ -39,7 +40,7 @@ std::vector<impulse::Extent> extents_of(const WorldDef& world) {
     impulse::Extent& e = out[index(s.body)];
     const double from_centre = (s.pose.translation() - body.centre_of_mass_m).norm(), bound = bound_of(s, world);
     e.bound_m = std::max(e.bound_m, from_centre + bound);
-    e.bend_m = std::max(e.bend_m, from_centre + (s.kind == ShapeKind::kSphere ? 0 : bound));
+    e.rotation_lever_m = std::max(e.rotation_lever_m, from_centre + (s.kind == ShapeKind::kSphere ? 0 : bound));
   }
   return out;
 }
@@ -53,7 +54,7 @@ void SceneContacts::find(std::span<const BodyMotion> motions, std::span<const in
 ImpulseSolver::ImpulseSolver(const WorldDef& world, const Settings& settings)
     : world_(impulse::build_world(world, settings)),
       source_(world, settings),
-      advance_(extents_of(world)),
+      stepper_(extents_of(world)),
       step_s_(settings.step_s),
       scene_(world, *world_),
       shapes_(world.shapes.size()) {
@@ -72,11 +73,11 @@ void ImpulseSolver::read() {
 // Updates motions and contacts after a change.
 void ImpulseSolver::detect_contacts() {
   read();
-  source_.find(world_->motions(), world_->active_bodies(), advance_.horizon_s(*world_, step_s_), contacts_);
+  source_.find(world_->motions(), world_->active_bodies(), stepper_.horizon_s(*world_, step_s_), contacts_);
 }
 
 void ImpulseSolver::step(double h) {
-  report_ = advance_.step(*world_, source_, h, contacts_, solved_);
+  report_ = stepper_.step(*world_, source_, h, contacts_, solved_);
   source_.frames().place_impacts(solved_);
   read();
 }

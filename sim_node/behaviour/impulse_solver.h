@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "sim_node/behaviour/impulse/advance.h"
+#include "sim_node/behaviour/impulse/adaptive_stepper.h"
 #include "sim_node/behaviour/impulse/body_frames.h"
 #include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/behaviour/impulse/world.h"
 #include "sim_node/contacts/contact_finder.h"
+#include "sim_node/model/state_archive.h"
 #include "sim_node/model/world_def.h"
 #include "sim_node/settings.gen.h"
-#include "sim_node/model/state_archive.h"
 
 namespace tactus::sim {
 
@@ -53,7 +53,7 @@ class ImpulseSolver {
   std::span<const BodyMotion> bodies() const { return bodies_; }
   std::span<const Manifold> contacts() const { return contacts_; }
   std::span<const Manifold> solved() const { return solved_; }
-  const impulse::StepReport& report() const { return report_; }
+  const impulse::RecoveryReport& report() const { return report_; }
   // Speed of the point along n per unit impulse along n at the point, 1/kg; joints included.
   double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n) {
     return world_->mobility(body, point_m, n);
@@ -72,8 +72,8 @@ class ImpulseSolver {
 
   std::unique_ptr<impulse::World> world_;
   SceneContacts source_;
-  impulse::Advance advance_;
-  impulse::StepReport report_;
+  impulse::AdaptiveStepper stepper_;
+  impulse::RecoveryReport report_;
   double step_s_;
   impulse::SceneSettings scene_;
   std::size_t shapes_;

@@ -11,15 +11,15 @@
 #include <tactus/contact_t.hpp>
 #include <vector>
 
+#include "sim_node/behaviour/impulse/scene_settings.h"
+#include "sim_node/collision/detectors/mesh_trees.h"
 #include "sim_node/model/body_motion.h"
 #include "sim_node/model/group_tool.h"
-#include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/model/ids.h"
-#include "sim_node/collision/detectors/mesh_trees.h"
-#include "sim_node/model/ahead.h"
+#include "sim_node/model/look_ahead.h"
+#include "sim_node/model/state_archive.h"
 #include "sim_node/model/world_def.h"
 #include "sim_node/settings.gen.h"
-#include "sim_node/model/state_archive.h"
 #include "sync/time/time.h"
 
 namespace tactus::sim {
@@ -50,7 +50,7 @@ class Mechanics {
   // Contacts between bodies to be published now; clears the list first.
   virtual void contacts(std::vector<contact_t>& out) = 0;
   // State of the bodies computed ahead; null: not supported.
-  virtual const Ahead* ahead() { return nullptr; }
+  virtual const LookAhead* look_ahead() { return nullptr; }
 
   // Rate of the look-ahead steps, Hz; ignored without look-ahead.
   virtual void set_visual_rate(double) {}
@@ -62,7 +62,7 @@ class Mechanics {
   virtual bool set_velocity(int body, const Eigen::Vector3d& velocity_m_s) = 0;
   virtual bool set_spin(int body, const Eigen::Vector3d& spin_rad_s) = 0;
 
-  // Archives all state of the next ticks. Throws BadState when the data does not fit; the world is then partly
+  // Archives all state of the next ticks. Throws InvalidState when the data does not fit; the world is then partly
   // changed.
   virtual void archive(StateArchive& a) = 0;
   // Renames the ids of contacts and events to another incarnation, after `ids` has been renamed.

@@ -22,11 +22,11 @@ struct Solver::Engine {
   std::vector<bool> jointed;
   std::unique_ptr<ode::Joints> joints;
   std::unique_ptr<ode::Shapes> shapes;
-  struct Joined {
+  struct JointPoint {
     ManifoldPoint* point;
     bool first_is_b;
   };
-  std::vector<Joined> joined;
+  std::vector<JointPoint> joint_points;
   std::vector<dJointFeedback> feedback;
   bool exact = false;
   long long messages_before = 0;  // number of messages up to the end of the construction

@@ -59,7 +59,7 @@ dBodyID Solver::Engine::make_body(const BodyDef& def, const Eigen::Vector3d& gra
 }
 
 Solver::Solver(const WorldDef& world, const Settings& settings) : settings_(settings) {
-  if (const std::string why = refusal(world, settings); !why.empty()) throw std::runtime_error(why);
+  if (const std::string why = unsupported_reason(world, settings); !why.empty()) throw std::runtime_error(why);
   if (behaviour_model(settings.solver).impulses)
     impulse_ = std::make_unique<ImpulseSolver>(world, settings);
   else
@@ -89,7 +89,7 @@ void Solver::start(const WorldDef& world) {
   engine_->joints = std::make_unique<ode::Joints>(world, w, engine_->bodies, settings.joint_erp, settings.joint_cfm);
   engine_->shapes = std::make_unique<ode::Shapes>(world, engine_->bodies, settings);
   engine_->feedback.resize(kMaxPoints);
-  engine_->joined.reserve(kMaxPoints);
+  engine_->joint_points.reserve(kMaxPoints);
   friction_maps_ = std::make_unique<const FrictionMaps>(world);
   for (const ShapeDef& s : world.shapes) {
     friction_.push_back(s.friction);
@@ -99,18 +99,19 @@ void Solver::start(const WorldDef& world) {
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
     const BodyDef& b = world.bodies[i];
     const bool moves = engine_->bodies[i] != nullptr;
-    falls_.push_back(moves && b.gravity);
-    inert_.push_back({b.centre_of_mass_m,
-                      moves ? Eigen::Matrix3d(b.inertia_kg_m2.inverse()) : Eigen::Matrix3d(Eigen::Matrix3d::Zero()),
-                      moves && b.gravity ? Eigen::Vector3d(g * settings.step_s) : Eigen::Vector3d(0, 0, 0)});
+    has_gravity_.push_back(moves && b.gravity);
+    inertias_.push_back(
+        {b.centre_of_mass_m,
+         moves ? Eigen::Matrix3d(b.inertia_kg_m2.inverse()) : Eigen::Matrix3d(Eigen::Matrix3d::Zero()),
+         moves && b.gravity ? Eigen::Vector3d(g * settings.step_s) : Eigen::Vector3d(0, 0, 0)});
     BodyMotion& m = motions_[i];
     m.position_m = b.pose.translation();
     m.orientation = Eigen::Quaterniond(b.pose.linear()).normalized();
     m.centre_m = b.pose * b.centre_of_mass_m;
     m.inverse_mass_1_kg = moves ? 1 / b.mass_kg : 0;
-    fall_m_s_.push_back(inert_[i].gravity_m_s);
+    free_fall_m_s_.push_back(inertias_[i].gravity_m_s);
   }
-  shift_m_.resize(world.bodies.size());
+  moved_back_m_.resize(world.bodies.size());
   read_bodies();
   engine_->shapes->collide(contacts_);
   engine_->messages_before = ode::message_count();
@@ -128,8 +129,8 @@ void Solver::read_bodies() {
     m.velocity_m_s = to_eigen(dBodyGetLinearVel(id));
     m.spin_rad_s = to_eigen(dBodyGetAngularVel(id));
     const Eigen::Matrix3d r = m.orientation.toRotationMatrix();
-    m.position_m = m.centre_m - r * inert_[i].centre_in_body_m;
-    m.inverse_inertia = r * inert_[i].inverse_inertia * r.transpose();
+    m.position_m = m.centre_m - r * inertias_[i].centre_in_body_m;
+    m.inverse_inertia = r * inertias_[i].inverse_inertia * r.transpose();
   }
 }
 
@@ -139,7 +140,7 @@ void Solver::add_force(int body, const Eigen::Vector3d& f, const Eigen::Vector3d
   const dBodyID id = engine_->bodies[i];
   if (!id) return;
   dBodyAddForceAtPos(id, f.x(), f.y(), f.z(), p.x(), p.y(), p.z());
-  fall_m_s_[i] += f * (motions_[i].inverse_mass_1_kg * settings_.step_s);
+  free_fall_m_s_[i] += f * (motions_[i].inverse_mass_1_kg * settings_.step_s);
 }
 
 void Solver::add_torque(int body, const Eigen::Vector3d& t) {
@@ -149,9 +150,9 @@ void Solver::add_torque(int body, const Eigen::Vector3d& t) {
 
 // A newly arrived body overshot the surface within the step. It is moved back to the surface, so that it bounces from
 // there and gets no later correction impulse. Jointed bodies are left to their joints.
-void Solver::back_off(Manifold& c, bool is_new) {
+void Solver::move_back(Manifold& c, bool is_new) {
   const auto a = static_cast<std::size_t>(c.body_a), b = static_cast<std::size_t>(c.body_b);
-  for (ManifoldPoint& p : c.used()) p.depth_m -= p.normal.dot(shift_m_[b] - shift_m_[a]);
+  for (ManifoldPoint& p : c.used()) p.depth_m -= p.normal.dot(moved_back_m_[b] - moved_back_m_[a]);
   if (!is_new) return;
   const ManifoldPoint& deepest = c.points[0];
   const double closing = -deepest.normal.dot(motions_[b].velocity_at(deepest.point_m) - motions_[a].velocity_at(deepest.point_m));
@@ -162,8 +163,8 @@ void Solver::back_off(Manifold& c, bool is_new) {
   const Eigen::Vector3d n = deepest.normal;
   const auto move = [&](std::size_t body, double by) {
     if (by == 0) return;
-    shift_m_[body] += by * n;
-    const Eigen::Vector3d p = motions_[body].centre_m + shift_m_[body];
+    moved_back_m_[body] += by * n;
+    const Eigen::Vector3d p = motions_[body].centre_m + moved_back_m_[body];
     dBodySetPosition(engine_->bodies[body], p.x(), p.y(), p.z());
   };
   move(a, -overshot * free_a / (free_a + free_b));
@@ -171,7 +172,7 @@ void Solver::back_off(Manifold& c, bool is_new) {
   for (ManifoldPoint& p : c.used()) p.depth_m -= overshot * p.normal.dot(n);
 }
 
-void Solver::join(Manifold& c) {
+void Solver::add_contact_joint(Manifold& c) {
   const auto a = static_cast<std::size_t>(c.body_a), b = static_cast<std::size_t>(c.body_b);
   if (friction_maps_->applies(c.shape_a, c.shape_b)) friction_maps_->apply(to_body(motions_[a]), to_body(motions_[b]), c);
   const auto sa = static_cast<std::size_t>(c.shape_a), sb = static_cast<std::size_t>(c.shape_b);
@@ -187,11 +188,12 @@ void Solver::join(Manifold& c) {
   s.soft_erp = settings_.contact_erp;
   s.soft_cfm = settings_.contact_cfm;
   for (ManifoldPoint& p : c.used()) {
-    if (engine_->joined.size() >= kMaxPoints) return;
+    if (engine_->joint_points.size() >= kMaxPoints) return;
     s.mu = friction * p.friction;
     // ODE bounds friction by a pyramid. With one side aligned to the expected sliding direction it is as wide as the
     // cone; at 45 degrees it would be 41 % too wide.
-    Eigen::Vector3d sliding = motions_[b].velocity_at(p.point_m) + fall_m_s_[b] - motions_[a].velocity_at(p.point_m) - fall_m_s_[a];
+    Eigen::Vector3d sliding = motions_[b].velocity_at(p.point_m) + free_fall_m_s_[b] -
+                              motions_[a].velocity_at(p.point_m) - free_fall_m_s_[a];
     sliding -= sliding.dot(p.normal) * p.normal;
     const Eigen::Vector3d along = sliding.norm() > kStill_m_s ? sliding.normalized() : p.normal.unitOrthogonal();
     const Eigen::Vector3d into_first = first_is_b ? p.normal : Eigen::Vector3d(-p.normal);
@@ -203,8 +205,8 @@ void Solver::join(Manifold& c) {
     contact.geom.depth = p.depth_m;
     const dJointID id = dJointCreateContact(engine_->world.get(), engine_->contact_joints, &contact);
     dJointAttach(id, first, second);
-    dJointSetFeedback(id, &engine_->feedback[engine_->joined.size()]);
-    engine_->joined.push_back({&p, first_is_b});
+    dJointSetFeedback(id, &engine_->feedback[engine_->joint_points.size()]);
+    engine_->joint_points.push_back({&p, first_is_b});
   }
 }
 
@@ -215,25 +217,25 @@ void Solver::step() {
   // step.
   dRandSetSeed(static_cast<unsigned long>(++steps_));
   engine_->joints->apply_passive(settings_.step_s);
-  std::fill(shift_m_.begin(), shift_m_.end(), Eigen::Vector3d::Zero());
-  engine_->joined.clear();
+  std::fill(moved_back_m_.begin(), moved_back_m_.end(), Eigen::Vector3d::Zero());
+  engine_->joint_points.clear();
   auto before = solved_.begin();
   for (Manifold& c : contacts_) {
     while (before != solved_.end() && before->before(c)) ++before;
-    back_off(c, before == solved_.end() || c.before(*before));
-    join(c);
+    move_back(c, before == solved_.end() || c.before(*before));
+    add_contact_joint(c);
   }
   if (engine_->exact)
     dWorldStep(engine_->world.get(), settings_.step_s);
   else
     dWorldQuickStep(engine_->world.get(), settings_.step_s);
-  for (std::size_t i = 0; i < engine_->joined.size(); ++i) {
-    const auto [point, first_is_b] = engine_->joined[i];
+  for (std::size_t i = 0; i < engine_->joint_points.size(); ++i) {
+    const auto [point, first_is_b] = engine_->joint_points[i];
     const double along = to_eigen(engine_->feedback[i].f1).dot(point->normal);
     point->normal_force_N = std::max(0.0, first_is_b ? along : -along);
   }
   dJointGroupEmpty(engine_->contact_joints);
-  for (std::size_t i = 0; i < fall_m_s_.size(); ++i) fall_m_s_[i] = inert_[i].gravity_m_s;
+  for (std::size_t i = 0; i < free_fall_m_s_.size(); ++i) free_fall_m_s_[i] = inertias_[i].gravity_m_s;
   std::swap(contacts_, solved_);
   read_bodies();
   const sync::ScopedPhaseTimer collision(sync::Phase::kCollision);
@@ -243,7 +245,7 @@ void Solver::step() {
 std::span<const BodyMotion> Solver::bodies() const { return impulse_ ? impulse_->bodies() : motions_; }
 std::span<const Manifold> Solver::contacts() const { return impulse_ ? impulse_->contacts() : contacts_; }
 std::span<const Manifold> Solver::solved() const { return impulse_ ? impulse_->solved() : solved_; }
-const impulse::StepReport* Solver::report() const { return impulse_ ? &impulse_->report() : nullptr; }
+const impulse::RecoveryReport* Solver::report() const { return impulse_ ? &impulse_->report() : nullptr; }
 std::int64_t Solver::solver_failures() const { return engine_ ? ode::message_count() - engine_->messages_before : 0; }
 double Solver::largest_joint_gap_m() const { return engine_ ? engine_->joints->largest_gap_m() : 0; }
 

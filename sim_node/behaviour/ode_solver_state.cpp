@@ -27,10 +27,10 @@ bool Solver::apply(const SceneChange& c) {
 void Solver::set_gravity(const Eigen::Vector3d& g) {
   if (impulse_) return static_cast<void>(impulse_->apply({.kind = SceneChange::kGravity, .values = g}));
   dWorldSetGravity(engine_->world.get(), g.x(), g.y(), g.z());
-  for (std::size_t i = 0; i < inert_.size(); ++i) {
-    if (!falls_[i]) continue;
-    fall_m_s_[i] += g * settings_.step_s - inert_[i].gravity_m_s;
-    inert_[i].gravity_m_s = g * settings_.step_s;
+  for (std::size_t i = 0; i < inertias_.size(); ++i) {
+    if (!has_gravity_[i]) continue;
+    free_fall_m_s_[i] += g * settings_.step_s - inertias_[i].gravity_m_s;
+    inertias_[i].gravity_m_s = g * settings_.step_s;
   }
 }
 
@@ -41,7 +41,7 @@ bool Solver::set_mass(int body, double mass_kg) {
   if (!id || engine_->jointed[i]) return false;
   dMass mass;
   dBodyGetMass(id, &mass);
-  inert_[i].inverse_inertia *= mass.mass / mass_kg;
+  inertias_[i].inverse_inertia *= mass.mass / mass_kg;
   dMassAdjust(&mass, mass_kg);
   dBodySetMass(id, &mass);
   motions_[i].inverse_mass_1_kg = 1 / mass_kg;
@@ -54,7 +54,7 @@ bool Solver::set_pose(int body, const Eigen::Isometry3d& pose) {
   const auto i = static_cast<std::size_t>(body);
   const dBodyID id = engine_->bodies[i];
   if (!id || engine_->jointed[i]) return false;
-  const Eigen::Vector3d p = pose * inert_[i].centre_in_body_m;
+  const Eigen::Vector3d p = pose * inertias_[i].centre_in_body_m;
   dQuaternion q;
   ode::set_quaternion(Eigen::Quaterniond(pose.linear()).normalized(), q);
   dBodySetPosition(id, p.x(), p.y(), p.z());
@@ -155,8 +155,8 @@ void Solver::archive(StateArchive& a) {
   dWorldSetGravity(engine_->world.get(), g.x(), g.y(), g.z());
   a.fixed(friction_, [&](double& x) { a(x); });
   a.fixed(restitution_, [&](double& x) { a(x); });
-  a.fixed(inert_, [&](Inert& x) { a(x.inverse_inertia), a(x.gravity_m_s); });
-  a.fixed(fall_m_s_, [&](Eigen::Vector3d& x) { a(x); });
+  a.fixed(inertias_, [&](BodyInertia& x) { a(x.inverse_inertia), a(x.gravity_m_s); });
+  a.fixed(free_fall_m_s_, [&](Eigen::Vector3d& x) { a(x); });
   if (a.reads()) read_bodies();
   for (auto* list : {&contacts_, &solved_})
     a.list(*list, kMaxPoints, [&](Manifold& m) { sim::archive(a, m, motions_.size(), friction_.size()); });

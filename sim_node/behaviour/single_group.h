@@ -31,15 +31,9 @@ class SingleGroup : public Mechanics {
   void contacts(std::vector<contact_t>& out) override;
 
   bool apply(const impulse::SceneChange& change) override { return solver_.apply(change); }
-  bool set_pose(int body, const Eigen::Isometry3d& pose) override {
-    return placed(solver_.set_pose(body, pose));
-  }
-  bool set_velocity(int body, const Eigen::Vector3d& v) override {
-    return placed(solver_.set_velocity(body, v));
-  }
-  bool set_spin(int body, const Eigen::Vector3d& spin) override {
-    return placed(solver_.set_spin(body, spin));
-  }
+  bool set_pose(int body, const Eigen::Isometry3d& pose) override { return updated(solver_.set_pose(body, pose)); }
+  bool set_velocity(int body, const Eigen::Vector3d& v) override { return updated(solver_.set_velocity(body, v)); }
+  bool set_spin(int body, const Eigen::Vector3d& spin) override { return updated(solver_.set_spin(body, spin)); }
 
   void archive(StateArchive& a) override;
   void rename(std::int64_t) override { tracker_.rename(); }
@@ -48,7 +42,7 @@ class SingleGroup : public Mechanics {
 
  private:
   // Makes a change effective at once.
-  bool placed(bool done) {
+  bool updated(bool done) {
     read();
     return done;
   }

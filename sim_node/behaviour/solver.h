@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "sim_node/model/body_motion.h"
+#include "sim_node/behaviour/impulse/recovery_report.h"
 #include "sim_node/behaviour/impulse/scene_settings.h"
-#include "sim_node/behaviour/impulse/step_report.h"
 #include "sim_node/contacts/friction_maps.h"
+#include "sim_node/model/body_motion.h"
 #include "sim_node/model/manifold.h"
+#include "sim_node/model/state_archive.h"
 #include "sim_node/model/world_def.h"
 #include "sim_node/settings.gen.h"
-#include "sim_node/model/state_archive.h"
 
 namespace tactus::sim {
 
@@ -48,8 +48,8 @@ class Solver {
   bool set_motor(const std::string& joint, int axis, double effort, double velocity);
   bool set_joint_friction(const std::string& joint, int axis, double friction);
 
-  // Archives all state of the next steps. Throws BadState when the data does not fit; the solver is then partly
-  // changed.
+  // Archives all state of the next steps. Throws InvalidState when the data does not fit; the solver is then
+  // partly changed.
   void archive(StateArchive& a);
 
   // One step: solves the contacts found last, moves the bodies, finds the contacts of the new poses. Deterministic:
@@ -65,7 +65,7 @@ class Solver {
   // impulses solve.
   double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n);
   // Statistics of the penetration recovery; null for ODE.
-  const impulse::StepReport* report() const;
+  const impulse::RecoveryReport* report() const;
   // Number of solver failures that the engine has reported since the start.
   std::int64_t solver_failures() const;
   // Largest joint error, m.
@@ -73,15 +73,15 @@ class Solver {
 
  private:
   struct Engine;
-  struct Inert {  // in body axes; zero for static bodies
+  struct BodyInertia {  // in body axes; zero for static bodies
     Eigen::Vector3d centre_in_body_m;
     Eigen::Matrix3d inverse_inertia;
     Eigen::Vector3d gravity_m_s;  // speed that gravity adds per step
   };
   void start(const WorldDef& world);
   void read_bodies();
-  void back_off(Manifold& contact, bool is_new);
-  void join(Manifold& contact);
+  void move_back(Manifold& contact, bool is_new);
+  void add_contact_joint(Manifold& contact);
 
   std::unique_ptr<ImpulseSolver> impulse_;  // null when ODE solves
   std::unique_ptr<Engine> engine_;          // null when impulses solve
@@ -89,10 +89,10 @@ class Solver {
   std::vector<double> friction_, restitution_;  // per shape
   std::unique_ptr<const FrictionMaps> friction_maps_;
   std::vector<int> body_of_;                    // per shape
-  std::vector<bool> falls_;                     // per body: affected by gravity
-  std::vector<Inert> inert_;
-  std::vector<Eigen::Vector3d> fall_m_s_;  // speed that gravity and forces add to each body in the next step
-  std::vector<Eigen::Vector3d> shift_m_;   // displacement by which each body was moved back in this step
+  std::vector<bool> has_gravity_;               // per body: affected by gravity
+  std::vector<BodyInertia> inertias_;
+  std::vector<Eigen::Vector3d> free_fall_m_s_;  // speed that gravity and forces add to each body in the next step
+  std::vector<Eigen::Vector3d> moved_back_m_;   // displacement by which each body was moved back in this step
   std::vector<BodyMotion> motions_;
   std::vector<Manifold> contacts_, solved_;
   std::int64_t steps_ = 0;

@@ -24,8 +24,8 @@ std::string_view shape_word(ShapeKind kind) {
 
 }  // namespace
 
-std::string Detector::refusal(ShapeKind a, ShapeKind b) const {
-  if (takes(a, b)) return "";
+std::string Detector::unsupported_reason(ShapeKind a, ShapeKind b) const {
+  if (supports(a, b)) return "";
   return "sim_node: the detector \"" + std::string(abilities().name) + "\" does not support a " + std::string(shape_word(a)) +
          " against a " + std::string(shape_word(b)) + "; choose \"ode\", which supports every pair";
 }

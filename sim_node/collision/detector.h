@@ -25,7 +25,7 @@ struct DetectorAbilities {
   // position.
   bool both_surfaces = false;
   bool overlap_depth = true;   // gaps are negative in overlap; without it they are 0 and marked as pierced
-  bool least_depth = true;   // depth is the minimum translation distance; without it, depth may be larger
+  bool minimum_translation = true;  // depth is the minimum translation distance; without it, depth may be larger
   bool contact_kind = false;   // sets PointPair::kind; without it, kind is always kPoint
   bool one_pair = false;       // reports at most the deepest pair
   bool deterministic = false;  // equal queries give bit-identical pairs, independent of earlier queries
@@ -37,7 +37,7 @@ class Detector {
   virtual DetectorAbilities abilities() const = 0;
 
   // Returns an empty string when this pair is supported, else one sentence that names an alternative.
-  std::string refusal(ShapeKind a, ShapeKind b) const;
+  std::string unsupported_reason(ShapeKind a, ShapeKind b) const;
   // Prepares a shape and returns its index, counted from 0. Throws std::runtime_error with one sentence when this
   // detector does not support the shape. world: source of meshes and heightfields.
   virtual int add(const ShapeDef& shape, const WorldDef& world) = 0;
@@ -48,7 +48,7 @@ class Detector {
                      double reach_m, std::vector<PointPair>& out) = 0;
 
  protected:
-  virtual bool takes(ShapeKind a, ShapeKind b) const = 0;
+  virtual bool supports(ShapeKind a, ShapeKind b) const = 0;
 };
 
 // ode: dCollide of ODE. ccd, ccd_mpr: libccd for convex shapes, by GJK and EPA or by MPR. fcl: FCL, where it was

@@ -22,7 +22,7 @@ std::string at(sync::SimTime t) {
 
 }  // namespace
 
-void Commander::take(const sim_command_t& c) {
+void Commander::execute(const sim_command_t& c) {
   if (pending_ && pending_->id == c.id) return;
   const auto before =
       std::find_if(past_replies_.begin(), past_replies_.end(), [&](const sim_reply_t& r) { return r.id == c.id; });
@@ -31,12 +31,12 @@ void Commander::take(const sim_command_t& c) {
     return;
   }
   std::string text;
-  const std::string error = execute(c, text);
+  const std::string error = run_command(c, text);
   if (pending_ && pending_->id == c.id) return;
   reply(c.id, error, text);
 }
 
-std::string Commander::execute(const sim_command_t& c, std::string& text) {
+std::string Commander::run_command(const sim_command_t& c, std::string& text) {
   switch (c.kind) {
     case sim_command_t::PAUSE:
       paused_ = true;
@@ -117,7 +117,7 @@ void Commander::reply(std::int64_t id, const std::string& error, const std::stri
   if (replies_.size() < kMaxReplies) replies_.push_back(std::move(r));
 }
 
-std::vector<sim_reply_t>& Commander::answers() {
+std::vector<sim_reply_t>& Commander::take_replies() {
   if (auto done = store_.poll(); done && pending_) {
     std::string text = pending_->text, error = done->error;
     if (pending_->reads && error.empty()) error = restore_bytes(done->bytes, pending_->name, text);

@@ -26,15 +26,15 @@ class Commander {
       : simulation_(simulation), world_(world), store_(std::move(folder)) {}
 
   // Executes a command of this run. A repeated command is replied to again and has no effect.
-  void take(const sim_command_t& command);
+  void execute(const sim_command_t& command);
   // The replies to send now; also completes finished file operations. Call once per tick.
-  std::vector<sim_reply_t>& answers();
+  std::vector<sim_reply_t>& take_replies();
 
   // Whether this tick is a step of the world; counts down the requested single steps. False: the world is paused.
   bool step_due();
   bool paused() const { return paused_; }
   // True once after the world was reset or restored: a new incarnation must begin.
-  bool take_anew() { return std::exchange(restarted_, false); }
+  bool take_restart() { return std::exchange(restarted_, false); }
 
  private:
   struct PendingFile {  // a command that waits for a file
@@ -43,7 +43,7 @@ class Commander {
     std::string name, text;
   };
   // Returns an error sentence; empty: success, and `text` describes the result.
-  std::string execute(const sim_command_t& c, std::string& text);
+  std::string run_command(const sim_command_t& c, std::string& text);
   std::string snapshot(const sim_command_t& c, std::string& text);
   std::string restore(const sim_command_t& c, std::string& text);
   std::string restore_bytes(std::span<const std::uint8_t> bytes, const std::string& name, std::string& text);

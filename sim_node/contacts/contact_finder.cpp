@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim_node/collision/gaps/choose.h"
 #include "sim_node/collision/detectors/layer_options.h"
+#include "sim_node/collision/gaps/select_points.h"
 #include "sync/time/phases.h"
 
 namespace tactus::sim {
@@ -52,17 +52,17 @@ ContactFinder::ContactFinder(const WorldDef& world, const Settings& settings, st
                              "\" reports no gaps, which the contact search needs; choose auto, gaps, layers, ccd or fcl");
   if (can.name != "gaps") chosen_ = std::move(chosen);
   only_triangles_ = can.name == "layers";
-  chosen_takes_.resize(kKinds * kKinds, false);
+  chosen_supports_.resize(kKinds * kKinds, false);
   for (std::size_t i = 0; chosen_ && i < kKinds; ++i)
     for (const ShapeKind k : kAllKinds)
-      chosen_takes_[both(kAllKinds[i], k)] = chosen_->refusal(kAllKinds[i], k).empty();
+      chosen_supports_[both(kAllKinds[i], k)] = chosen_->unsupported_reason(kAllKinds[i], k).empty();
   for (std::size_t i = 0; i < world.shapes.size(); ++i) {
     const ShapeDef& shape = world.shapes[i];
     body_of_.push_back(shape.body);
     kinds_.push_back(shape.kind);
     if (world.bodies[index(shape.body)].tool >= 0) continue;
     number_[i] = gaps_->add(shape, world);
-    if (chosen_ && chosen_takes_[both(shape.kind, shape.kind)]) chosen_number_[i] = chosen_->add(shape, world);
+    if (chosen_ && chosen_supports_[both(shape.kind, shape.kind)]) chosen_number_[i] = chosen_->add(shape, world);
   }
 }
 
@@ -75,7 +75,7 @@ void ContactFinder::detect_pair(const NearPair& pair, std::vector<Manifold>& out
   const bool meshed = kinds_[a] == ShapeKind::kMesh || kinds_[b] == ShapeKind::kMesh ||
                       kinds_[a] == ShapeKind::kHeightfield || kinds_[b] == ShapeKind::kHeightfield;
   bool found = chosen_ && chosen_number_[a] >= 0 && chosen_number_[b] >= 0 &&
-               chosen_takes_[both(kinds_[a], kinds_[b])] && (meshed || !only_triangles_);
+               chosen_supports_[both(kinds_[a], kinds_[b])] && (meshed || !only_triangles_);
   if (found) {
     query(*chosen_, chosen_number_);
     std::erase_if(pairs_, [](const PointPair& p) { return !is_sound(p); });
@@ -88,7 +88,7 @@ void ContactFinder::detect_pair(const NearPair& pair, std::vector<Manifold>& out
   Manifold& m = out.emplace_back();
   m.shape_a = pair.shape_a, m.shape_b = pair.shape_b;
   m.body_a = body_of_[a], m.body_b = body_of_[b];
-  gaps::choose_points(points_, m);
+  gaps::select_points(points_, m);
   if (friction_.applies(m.shape_a, m.shape_b))
     friction_.apply(friction_.to_body(m.shape_a, near_.pose(m.shape_a)),
                    friction_.to_body(m.shape_b, near_.pose(m.shape_b)), m);

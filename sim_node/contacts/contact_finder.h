@@ -45,7 +45,7 @@ class ContactFinder {
   std::vector<ShapeKind> kinds_;             // per shape
   std::unique_ptr<Detector> gaps_, chosen_;  // chosen_: null when it is `gaps`
   std::vector<int> number_, chosen_number_;  // per shape, index in the detector; -1: none
-  std::vector<bool> chosen_takes_;           // by both kinds
+  std::vector<bool> chosen_supports_;        // by both kinds
   bool only_triangles_ = false;              // the selected detector is used for meshes only
   std::vector<PointPair> pairs_;
   std::vector<ManifoldPoint> points_;

@@ -19,9 +19,9 @@ constexpr double kRearm = 0.5;
 // point that jumps further than kJump_m, relative to the motion of the surfaces, did not roll, m.
 constexpr double kRollingTime_s = 0.005;
 constexpr double kJump_m = 0.005;
-// Surfaces with a gap below kTouch_m touch. Design value: twice the residual that the solver leaves between resting
-// surfaces (impulse::Law). Touching surfaces separate when the gap exceeds kParted_m.
-constexpr double kTouch_m = 20e-6, kParted_m = 60e-6;
+// Surfaces with a gap below kTouch_m touch. Design value: twice the residual that the solver leaves between
+// resting surfaces (impulse::ContactLaw). Touching surfaces separate when the gap exceeds kSeparationGap_m.
+constexpr double kTouch_m = 20e-6, kSeparationGap_m = 60e-6;
 
 Vector3d centre_of(const Manifold& c) {
   Vector3d sum = Vector3d::Zero();
@@ -52,7 +52,10 @@ const BodyMotion& at(std::span<const BodyMotion> bodies, int i) { return bodies[
 }  // namespace
 
 ContactTracker::ContactTracker(std::vector<SurfaceTraits> surfaces, const Settings& settings, Ids& ids)
-    : surfaces_(std::move(surfaces)), settings_(settings), contact_distance_m_(meeting_distance_m(settings)), ids_(ids) {}
+    : surfaces_(std::move(surfaces)),
+      settings_(settings),
+      contact_distance_m_(contact_distance_m(settings)),
+      ids_(ids) {}
 
 // The point with the highest closing speed.
 ContactTracker::Closing ContactTracker::closing(const Manifold& c, std::span<const BodyMotion> bodies) const {
@@ -70,7 +73,7 @@ ContactTracker::Approach ContactTracker::approach(const Manifold& c, std::span<c
   return {.speed_m_s = speed_m_s,
           .mass_kg = effective_mass(at(bodies, c.body_a), at(bodies, c.body_b), point->point_m, point->normal),
           .curvature_1_m = curvature_of(c, *point, bodies),
-          .place_m = point->point_m,
+          .position_m = point->point_m,
           .normal = point->normal};
 }
 
@@ -87,8 +90,9 @@ ContactTracker::Approach ContactTracker::approach(const Manifold& c, const Impac
   };
   return {.speed_m_s = impact.speed_m_s,
           .mass_kg = impact.effective_mass_kg,
-          .curvature_1_m = curved(c.shape_a, impact.a_body_m, impact.triangle_a) + curved(c.shape_b, impact.b_body_m, impact.triangle_b),
-          .place_m = impact.place_m,
+          .curvature_1_m = curved(c.shape_a, impact.a_body_m, impact.triangle_a) +
+                           curved(c.shape_b, impact.b_body_m, impact.triangle_b),
+          .position_m = impact.position_m,
           .normal = impact.normal};
 }
 
@@ -97,7 +101,7 @@ void ContactTracker::emit(LiveContact& c, std::int8_t kind, sync::SimTime when, 
   when = std::max(when, c.last_event);
   c.last_event = when;
   contact_event_t& e = events_->emplace_back();
-  e.event_id = ids_.fresh();
+  e.event_id = ids_.next_id();
   e.contact_id = c.id;
   e.kind = kind;
   e.time_ns = sync::to_ns(when);
@@ -106,7 +110,7 @@ void ContactTracker::emit(LiveContact& c, std::int8_t kind, sync::SimTime when, 
   e.material_a = surfaces_[static_cast<std::size_t>(m.shape_a)].material;
   e.material_b = surfaces_[static_cast<std::size_t>(m.shape_b)].material;
   e.tool = -1;
-  e.point_m = to_vec3f(status.place_m);
+  e.point_m = to_vec3f(status.position_m);
   e.normal = to_vec3f(status.normal);
   e.approach_speed_m_s = static_cast<float>(std::max(0.0, status.speed_m_s));
   e.effective_mass_kg = static_cast<float>(status.mass_kg);
@@ -127,11 +131,11 @@ void ContactTracker::store_state(LiveContact& c, std::span<const BodyMotion> bod
   const Vector3d surfaces = 0.5 * (a.velocity_at(place) + b.velocity_at(place));
   Vector3d rolling = Vector3d::Zero();
   if (rolls && kind_of(m) != ContactKind::kSurface) {
-    const Vector3d beyond = tangential(place - c.place_m - surfaces * step_s_, n);
+    const Vector3d beyond = tangential(place - c.position_m - surfaces * step_s_, n);
     if (beyond.norm() < kJump_m) rolling = beyond / step_s_;
   }
   c.rolling_m_s += (rolling - c.rolling_m_s) * std::min(1.0, step_s_ / kRollingTime_s);
-  c.place_m = place;
+  c.position_m = place;
   c.touching = true;
   c.gap_m = 0;
   const ManifoldPoint& p = m.points[0];
@@ -163,17 +167,17 @@ bool ContactTracker::separate(LiveContact& c, const Manifold* near, const Manifo
     const double since_s = struck        ? step_s_ - struck->impact.last_s
                            : opening > 0 ? std::clamp(c.gap_m / opening, 0.0, step_s_)
                                          : step_s_;
-    c.apart_since = now_ - sync::from_seconds(since_s);
+    c.separated_since = now_ - sync::from_seconds(since_s);
     c.touching = false;
   }
   c.armed = true;
   const bool ended = c.gap_m > settings_.contact_end_gap_m ||
-                     now_ - c.apart_since > sync::from_seconds(settings_.contact_end_time_s);
+                     now_ - c.separated_since > sync::from_seconds(settings_.contact_end_time_s);
   if (ended) {
     Approach status = approach(m, bodies);
     status.speed_m_s = 0;
-    status.place_m = on_a;
-    emit(c, contact_event_t::END, c.apart_since, status);
+    status.position_m = on_a;
+    emit(c, contact_event_t::END, c.separated_since, status);
   }
   return ended;
 }
@@ -184,14 +188,14 @@ void ContactTracker::update_pair(const LiveContact* before, const Manifold* near
                             std::span<const BodyMotion> bodies) {
   const Manifold* struck = solved && solved->impact.count > 0 ? solved : nullptr;
   const bool touched = before && before->touching;
-  const double within = contact_distance_m_ + (touched ? kParted_m : kTouch_m);
+  const double within = contact_distance_m_ + (touched ? kSeparationGap_m : kTouch_m);
   const bool touches = near && -deepest(*near) <= within;
   if (!before && !struck && !touches) return;
   LiveContact& c = next_.emplace_back();
   if (before)
     c = *before;
   else
-    c.id = ids_.fresh();
+    c.id = ids_.next_id();
   c.normal_force_N = 0;
   if (solved) {
     for (const ManifoldPoint& p : solved->used()) c.normal_force_N += p.normal_force_N;
@@ -199,13 +203,13 @@ void ContactTracker::update_pair(const LiveContact* before, const Manifold* near
   }
   if (struck) {
     const Impact& i = struck->impact;
-    if (!before) c.place_m = i.place_m;
+    if (!before) c.position_m = i.position_m;
     take_points(*struck, [](const ManifoldPoint& p) { return p.normal_force_N > 0; }, c.manifold);
     c.a_body_m = i.a_body_m, c.b_body_m = i.b_body_m;
     begin_or_hit(c, !before, now_ - step_ + sync::from_seconds(i.first_s), i.speed_m_s, [&] { return approach(c.manifold, i); });
   }
   if (touches) {
-    const double far = contact_distance_m_ + kParted_m;
+    const double far = contact_distance_m_ + kSeparationGap_m;
     take_points(*near, [&](const ManifoldPoint& p) { return -p.depth_m <= far; }, c.manifold);
     store_state(c, bodies, touched);
     if (struck) return;
@@ -271,7 +275,7 @@ void ContactTracker::describe(const LiveContact& c, std::span<const BodyMotion> 
   out.normal_force_N = static_cast<float>(c.normal_force_N);
   out.impulse_N_s = static_cast<float>(c.impulse_N_s);
   out.sliding_velocity_m_s =
-      to_vec3f(tangential(b.velocity_at(c.place_m) - a.velocity_at(c.place_m), deepest.normal));
+      to_vec3f(tangential(b.velocity_at(c.position_m) - a.velocity_at(c.position_m), deepest.normal));
   out.rolling_velocity_m_s = to_vec3f(c.rolling_m_s);
   out.points.clear();
   for (const ManifoldPoint& p : m.used()) {

@@ -30,8 +30,8 @@ struct LiveContact {
   bool armed = true;        // the approach has been slow enough since the last hit for another one
   sync::SimTime last_hit{}, last_event{};
   bool has_hit = false;
-  sync::SimTime apart_since{};
-  Eigen::Vector3d place_m = Eigen::Vector3d::Zero();  // centre of its points
+  sync::SimTime separated_since{};
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  // centre of its points
   Eigen::Vector3d rolling_m_s = Eigen::Vector3d::Zero();
 };
 
@@ -74,7 +74,7 @@ class ContactTracker {
     double speed_m_s = 0;  // closing speed; negative: separating
     double mass_kg = 0;    // effective mass
     double curvature_1_m = 0;
-    Eigen::Vector3d place_m = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::UnitZ();
+    Eigen::Vector3d position_m = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::UnitZ();
   };
   struct Closing {
     const ManifoldPoint* point = nullptr;

@@ -15,7 +15,8 @@ void ContactTracker::archive(StateArchive& a, LiveContact& c, std::size_t bodies
   a(c.id);
   sim::archive(a, c.manifold, bodies, surfaces_.size());
   a(c.a_body_m), a(c.b_body_m), a(c.touching), a(c.gap_m), a(c.normal_force_N), a(c.impulse_N_s);
-  a(c.armed), a(c.last_hit), a(c.last_event), a(c.has_hit), a(c.apart_since), a(c.place_m), a(c.rolling_m_s);
+  a(c.armed), a(c.last_hit), a(c.last_event), a(c.has_hit), a(c.separated_since), a(c.position_m),
+      a(c.rolling_m_s);
 }
 
 void ContactTracker::archive(StateArchive& a, std::size_t bodies) {
@@ -24,11 +25,11 @@ void ContactTracker::archive(StateArchive& a, std::size_t bodies) {
 }
 
 void ContactTracker::extract(std::span<const char> marked, std::vector<LiveContact>& out) {
-  const auto goes = [&](const LiveContact& c) {
+  const auto is_marked = [&](const LiveContact& c) {
     return marked[static_cast<std::size_t>(c.manifold.body_a)] || marked[static_cast<std::size_t>(c.manifold.body_b)];
   };
-  std::copy_if(live_.begin(), live_.end(), std::back_inserter(out), goes);
-  std::erase_if(live_, goes);
+  std::copy_if(live_.begin(), live_.end(), std::back_inserter(out), is_marked);
+  std::erase_if(live_, is_marked);
 }
 
 void ContactTracker::insert(std::span<const LiveContact> contacts) {

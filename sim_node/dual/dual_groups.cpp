@@ -24,7 +24,7 @@ GroupingLimits limits_of(const WorldDef& def, const Settings& s) {
 }
 
 const Settings& accepted(const WorldDef& def, const Settings& s) {
-  if (const std::string why = refusal(def, s); !why.empty()) throw std::runtime_error(why);
+  if (const std::string why = unsupported_reason(def, s); !why.empty()) throw std::runtime_error(why);
   return s;
 }
 
@@ -35,7 +35,7 @@ DualGroups::DualGroups(const WorldDef& def, const Settings& settings, Ids& ids,
     : settings_(accepted(def, settings)),
       world_(impulse::build_world(def, for_haptic_group(settings))),
       source_(def, settings, trees),
-      advance_(extents_of(def)),
+      stepper_(extents_of(def)),
       scene_(def, *world_),
       ids_(ids),
       tracker_(surface_traits(def, settings), settings, ids),
@@ -62,18 +62,18 @@ void DualGroups::start(std::span<const GroupTool> tools, std::vector<contact_eve
   if (settings_.visual_thread == "own") visual_.start();
 }
 
-void DualGroups::act(const Load& load) {
+void DualGroups::apply_load(const Load& load) {
   if (world_->unit_of(load.body) < 0) return;
   if (!is_haptic(load.body)) grouping_.request_entry(load.body);
   loads_.push_back(load);
 }
 
 void DualGroups::add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m) {
-  act({body, force_N, point_m, Eigen::Vector3d::Zero(), false});
+  apply_load({body, force_N, point_m, Eigen::Vector3d::Zero(), false});
 }
 
 void DualGroups::add_wrench(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& torque_N_m) {
-  act({body, force_N, Eigen::Vector3d::Zero(), torque_N_m, true});
+  apply_load({body, force_N, Eigen::Vector3d::Zero(), torque_N_m, true});
 }
 
 void DualGroups::gather_units(std::span<const int> bodies) {
@@ -95,7 +95,7 @@ void DualGroups::read_motions(std::span<const int> bodies) {
 }
 
 void DualGroups::find_contacts(double h_s) {
-  source_.find(world_->motions(), world_->active_bodies(), advance_.horizon_s(*world_, h_s), contacts_);
+  source_.find(world_->motions(), world_->active_bodies(), stepper_.horizon_s(*world_, h_s), contacts_);
 }
 
 // Records the pairs of moving bodies of the haptic group that touch.
@@ -130,7 +130,7 @@ void DualGroups::tick(sync::SimTime now, std::span<const GroupTool> tools, std::
     else
       hold(now, tools, events);
   } else {
-    grouping_.watch(now, motions_, tools);
+    grouping_.check_pads(now, motions_, tools);
     promote(now, events);
   }
   apply_queued_changes();
@@ -143,7 +143,7 @@ void DualGroups::tick(sync::SimTime now, std::span<const GroupTool> tools, std::
     world_->add_torque(load.body, load.torque_N_m);
   }
   loads_.clear();
-  advance_.step(*world_, source_, settings_.step_s, contacts_, solved_);
+  stepper_.step(*world_, source_, settings_.step_s, contacts_, solved_);
   source_.frames().place_impacts(solved_);
   read_motions(active);
   tracker_.update(now + h, h, motions_, contacts_, solved_, events);
@@ -173,16 +173,16 @@ void DualGroups::begin_step(sync::SimTime now, std::span<const GroupTool> tools,
 
 void DualGroups::request_next_step() {
   task_.number = ++number_;
-  task_.missed = step_->task.length;
+  task_.catch_up_time = step_->task.length;
   task_.length = rate_.next();
-  task_.enters = departed_;
-  for (LiveContact& c : task_.enters.contacts) shift(c, -clock_offset_);
+  task_.entering = departed_;
+  for (LiveContact& c : task_.entering.contacts) shift(c, -clock_offset_);
   // Units of the step just received that were promoted while the next step was being computed.
-  task_.leaves.clear();
+  task_.leaving.clear();
   const auto haptic = world_->active_units();
   for (const int unit : step_->units)
     if (std::binary_search(haptic.begin(), haptic.end(), unit) || departed_.find(unit) >= 0)
-      task_.leaves.push_back(unit);
+      task_.leaving.push_back(unit);
   task_.changes = changes_;
   changes_.clear();
   visual_.request(task_);
@@ -203,7 +203,7 @@ void DualGroups::hold(sync::SimTime now, std::span<const GroupTool> tools, std::
     record_touching();
     grouping_.hold_step(now, motions_, touching_, tools);
   } else {
-    grouping_.watch(now, motions_, tools);
+    grouping_.check_pads(now, motions_, tools);
   }
   promote(now, events);
 }
@@ -215,28 +215,28 @@ void DualGroups::contacts(std::vector<contact_t>& out) {
   for (const LiveContact& c : departed_.contacts) tracker_.describe(c, motions_, out.emplace_back());
 }
 
-const Ahead* DualGroups::ahead() {
-  ahead_now_.fresh = began_;
-  ahead_now_.held = holding_;
-  ahead_now_.promoted = promoted_;
+const LookAhead* DualGroups::look_ahead() {
+  look_ahead_.fresh = began_;
+  look_ahead_.held = holding_;
+  look_ahead_.promoted = promoted_;
   if (began_ || !promoted_.empty()) {
-    ahead_now_.begins = begins_;
-    ahead_now_.time = ends_;
-    ahead_waiting_.clear();
-    for (const int unit : departed_.units) world_->unit_bodies(unit, ahead_waiting_);
-    std::erase_if(ahead_waiting_, [this](int body) { return is_haptic(body); });
-    std::sort(ahead_waiting_.begin(), ahead_waiting_.end());
-    ahead_now_.waiting = ahead_waiting_;
-    ahead_bodies_.clear();
-    ahead_motions_.clear();
+    look_ahead_.begins = begins_;
+    look_ahead_.time = ends_;
+    look_ahead_waiting_.clear();
+    for (const int unit : departed_.units) world_->unit_bodies(unit, look_ahead_waiting_);
+    std::erase_if(look_ahead_waiting_, [this](int body) { return is_haptic(body); });
+    std::sort(look_ahead_waiting_.begin(), look_ahead_waiting_.end());
+    look_ahead_.waiting = look_ahead_waiting_;
+    look_ahead_bodies_.clear();
+    look_ahead_motions_.clear();
     for (const int body : step_->bodies) {
       if (is_haptic(body) || departed_.find(world_->unit_of(body)) >= 0) continue;
-      ahead_bodies_.push_back(body);
-      ahead_motions_.push_back(holding_ ? motions_[index(body)] : step_->end[index(body)]);
+      look_ahead_bodies_.push_back(body);
+      look_ahead_motions_.push_back(holding_ ? motions_[index(body)] : step_->end[index(body)]);
     }
-    ahead_now_.bodies = ahead_bodies_;
-    ahead_now_.motions = ahead_motions_;
-    ahead_now_.contacts = [this](std::vector<contact_t>& out) {
+    look_ahead_.bodies = look_ahead_bodies_;
+    look_ahead_.motions = look_ahead_motions_;
+    look_ahead_.contacts = [this](std::vector<contact_t>& out) {
       out.clear();
       const auto gone = [this](int body) { return motions_[index(body)].moves() && is_haptic(body); };
       for (const LiveContact& c : step_->live.back())
@@ -244,7 +244,7 @@ const Ahead* DualGroups::ahead() {
           tracker_.describe(c, step_->end, out.emplace_back());
     };
   }
-  return &ahead_now_;
+  return &look_ahead_;
 }
 
 }  // namespace tactus::sim

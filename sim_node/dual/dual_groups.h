@@ -42,7 +42,7 @@ class DualGroups : public Mechanics {
     return world_->mobility(body, point_m, n);
   }
   void contacts(std::vector<contact_t>& out) override;
-  const Ahead* ahead() override;
+  const LookAhead* look_ahead() override;
 
   bool apply(const impulse::SceneChange& change) override;
   // A body whose pose or velocity is set enters the haptic group first.
@@ -70,7 +70,7 @@ class DualGroups : public Mechanics {
     Eigen::Vector3d force_N, point_m, torque_N_m;
     bool at_centre;  // point_m is unused
   };
-  void act(const Load& load);
+  void apply_load(const Load& load);
   // A change that is applied as soon as the body is in the haptic group.
   struct QueuedChange {
     enum Kind { kPose, kVelocity, kSpin };
@@ -99,7 +99,7 @@ class DualGroups : public Mechanics {
   Settings settings_;
   std::unique_ptr<impulse::World> world_;  // of the haptic group
   SceneContacts source_;
-  impulse::Advance advance_;
+  impulse::AdaptiveStepper stepper_;
   impulse::SceneSettings scene_;
   Ids& ids_;
   ContactTracker tracker_, catching_up_;
@@ -133,9 +133,9 @@ class DualGroups : public Mechanics {
   std::vector<OpenContact> open_;  // published contacts of the promoted bodies that have not ended
   std::vector<contact_event_t> discarded_events_;
   // The state computed ahead, for the publisher.
-  Ahead ahead_now_;
-  std::vector<int> ahead_bodies_, ahead_waiting_;
-  std::vector<BodyMotion> ahead_motions_;
+  LookAhead look_ahead_;
+  std::vector<int> look_ahead_bodies_, look_ahead_waiting_;
+  std::vector<BodyMotion> look_ahead_motions_;
 };
 
 }  // namespace tactus::sim

@@ -44,7 +44,7 @@ void DualGroups::catch_up(std::span<const int> units, sync::SimTime from, sync::
   for (std::int64_t k = 0; k < steps; ++k) {
     const sync::Nanoseconds h = (to - from) * (k + 1) / steps - (to - from) * k / steps;
     find_contacts(sync::to_seconds(h));
-    advance_.step(*world_, source_, sync::to_seconds(h), contacts_, solved_);
+    stepper_.step(*world_, source_, sync::to_seconds(h), contacts_, solved_);
     source_.frames().place_impacts(solved_);
     read_motions(world_->active_bodies());
     catching_up_.update(from + (to - from) * (k + 1) / steps, h, motions_, contacts_, solved_, discarded_events_);
@@ -81,14 +81,14 @@ void DualGroups::reconcile(sync::SimTime from, sync::SimTime to, std::vector<con
       c.id = similar->contact;
       similar->matched = true;
     } else {
-      c.id = ids_.fresh();
+      c.id = ids_.next_id();
       tracker_.report(c, contact_event_t::BEGIN, to, motions_, events);
     }
   }
   for (const OpenContact& t : open_) {
     if (t.matched) continue;
     contact_event_t& e = events.emplace_back();
-    e.event_id = ids_.fresh();
+    e.event_id = ids_.next_id();
     e.contact_id = t.contact;
     e.kind = contact_event_t::END;
     e.time_ns = sync::to_ns(to);

@@ -11,16 +11,16 @@ namespace tactus::sim {
 class FollowedRate {
  public:
   // Smaller relative differences count as the same rate: the reported frame count varies by one per second.
-  static constexpr double kSame = 0.03;
+  static constexpr double kMinRelativeChange = 0.03;
 
   // process: name of the visual_node process; empty: no process is followed.
   explicit FollowedRate(std::string process) : process_(std::move(process)) {}
 
   // The new rate in Hz when this message changes it. A process that is not running or reports no frames changes
   // nothing.
-  std::optional<double> hear(const node_health_t& m) {
+  std::optional<double> on_message(const node_health_t& m) {
     if (process_.empty() || m.node != process_ || m.state != node_health_t::RUNNING || !(m.rate_Hz > 0)) return {};
-    if (std::abs(m.rate_Hz - rate_Hz_) <= kSame * rate_Hz_) return {};
+    if (std::abs(m.rate_Hz - rate_Hz_) <= kMinRelativeChange * rate_Hz_) return {};
     return rate_Hz_ = m.rate_Hz;
   }
 

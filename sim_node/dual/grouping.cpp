@@ -14,7 +14,7 @@ Grouping::Grouping(std::vector<GroupBody> bodies, const GroupingLimits& limits, 
   departed_trajectories_.resize(n);
   is_departed_.resize(n);
   inside_.resize(n);
-  kicks_.resize(n);
+  impact_bounds_.resize(n);
   member_.resize(n);
   last_reached_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -26,7 +26,7 @@ Grouping::Grouping(std::vector<GroupBody> bodies, const GroupingLimits& limits, 
   }
 }
 
-double Grouping::left_s(sync::SimTime now) const {
+double Grouping::remaining_s(sync::SimTime now) const {
   return std::max(0.0, sync::to_seconds(step_began_ + limits_.horizon - now));
 }
 
@@ -39,7 +39,7 @@ double acceleration_offset_m(double acceleration, double t_s) { return accelerat
 SweptSphere Grouping::swept(std::size_t i, const BodyMotion& m, double t) const {
   return {m.centre_m, m.velocity_m_s, bodies_[i].radius_m,
           acceleration_offset_m(limits_.gravity_m_s2, t) +
-              kicks_[i].speed_m_s * std::clamp(kicks_[i].left_s + kTick_s, 0.0, t + kTick_s)};
+              impact_bounds_[i].speed_m_s * std::clamp(impact_bounds_[i].remaining_s + kTick_s, 0.0, t + kTick_s)};
 }
 
 SweptSphere Grouping::swept(const GroupTool& tool, double t) const {
@@ -50,18 +50,19 @@ SweptSphere Grouping::swept(const GroupTool& tool, double t) const {
 // mass), and by at most the impulse of the tool's limited force. Impacts by struck bodies are left to watch(): pads
 // for them make the group ten times as large and avoid less than half of the alarms (grouping_table at 30 m/s^2, both
 // variants).
-double Grouping::kick_m_s(const SweptSphere& tool, std::size_t body, double t) const {
+double Grouping::max_impact_speed_m_s(const SweptSphere& tool, std::size_t body, double t) const {
   const double meeting =
       (tool.velocity_m_s - trajectory_of(static_cast<int>(body)).velocity_m_s).norm() + (t > 0 ? tool.pad_m / t : 0);
   return std::min((1 + limits_.restitution) * meeting, limits_.tool_force_N * bodies_[body].inverse_mass_1_kg * t);
 }
 
-void Grouping::enter(int body_index, Kick kick, sync::SimTime now, std::span<const BodyMotion> bodies) {
+void Grouping::add_to_group(int body_index, ImpactBound bound, sync::SimTime now,
+                            std::span<const BodyMotion> bodies) {
   const auto i = static_cast<std::size_t>(body_index);
   if (member_[i] || bodies_[i].inverse_mass_1_kg <= 0) return;
   member_[i] = 1;
-  kicks_[i] = kick;
-  inside_[i] = swept(i, bodies[i], left_s(now));
+  impact_bounds_[i] = bound;
+  inside_[i] = swept(i, bodies[i], remaining_s(now));
   // A body that enters from outside is at the present point of its trajectory.
   if (!all_have_trajectories_ && !is_departed_[i]) {
     const SweptSphere& trajectory = trajectories_->of(body_index);
@@ -82,9 +83,9 @@ void Grouping::find_outside(const Bounds& query) {
   found_.insert(found_.end(), departed_.begin(), departed_.end());
 }
 
-void Grouping::reach(const SweptSphere& from, double inverse_mass, sync::SimTime now,
-                     std::span<const BodyMotion> bodies) {
-  const double t = left_s(now), passed = sync::to_seconds(now - step_began_);
+void Grouping::add_reachable(const SweptSphere& from, double inverse_mass, sync::SimTime now,
+                             std::span<const BodyMotion> bodies) {
+  const double t = remaining_s(now), passed = sync::to_seconds(now - step_began_);
   find_outside(bounds_of(from, t));
   for (const int j : found_) {
     const auto body = static_cast<std::size_t>(j);
@@ -93,69 +94,72 @@ void Grouping::reach(const SweptSphere& from, double inverse_mass, sync::SimTime
     other.centre_m += other.velocity_m_s * (held_ ? held_after_s_ : passed);
     if (held_) other.velocity_m_s.setZero();
     const double meeting =
-        first_meeting_s(from, other, from.radius_m + other.radius_m + from.pad_m + other.pad_m, t);
+        first_contact_time_s(from, other, from.radius_m + other.radius_m + from.pad_m + other.pad_m, t);
     if (meeting < 0) continue;
     const bool struck_by_tool = inverse_mass <= 0;
-    enter(j, struck_by_tool ? Kick{kick_m_s(from, body, t), t - meeting} : Kick{}, now, bodies);
+    add_to_group(j, struck_by_tool ? ImpactBound{max_impact_speed_m_s(from, body, t), t - meeting} : ImpactBound{},
+                 now, bodies);
   }
 }
 
-void Grouping::close(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) {
+void Grouping::close_group(sync::SimTime now, std::span<const BodyMotion> bodies,
+                           std::span<const GroupTool> tools) {
   watched_from_ = now;
-  const double t = left_s(now);
+  const double t = remaining_s(now);
   tools_.clear();
   for (const GroupTool& tool : tools) tools_.push_back(swept(tool, t));
   for (const int i : haptic_)
     inside_[static_cast<std::size_t>(i)] =
         swept(static_cast<std::size_t>(i), bodies[static_cast<std::size_t>(i)], t);
-  for (const SweptSphere& tool : tools_) reach(tool, 0, now, bodies);
+  for (const SweptSphere& tool : tools_) add_reachable(tool, 0, now, bodies);
   // The list grows during the iteration.
   for (std::size_t k = 0; k < haptic_.size(); ++k) {
     const auto i = static_cast<std::size_t>(haptic_[k]);
-    const Kick kick = kicks_[i];
+    const ImpactBound bound = impact_bounds_[i];
     if (bodies_[i].system >= 0)
-      for (const int j : systems_[static_cast<std::size_t>(bodies_[i].system)]) enter(j, kick, now, bodies);
-    for (const int j : trajectories_->touched_by(haptic_[k])) enter(j, kick, now, bodies);
+      for (const int j : systems_[static_cast<std::size_t>(bodies_[i].system)])
+        add_to_group(j, bound, now, bodies);
+    for (const int j : trajectories_->touched_by(haptic_[k])) add_to_group(j, bound, now, bodies);
     for (auto pair = std::lower_bound(touching_.begin(), touching_.end(), std::pair(haptic_[k], -1));
          pair != touching_.end() && pair->first == haptic_[k]; ++pair)
-      enter(pair->second, kick, now, bodies);
-    reach(inside_[i], bodies_[i].inverse_mass_1_kg, now, bodies);
+      add_to_group(pair->second, bound, now, bodies);
+    add_reachable(inside_[i], bodies_[i].inverse_mass_1_kg, now, bodies);
   }
 }
 
 void Grouping::close_kim2005(std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) {
-  const double t = left_s(step_began_);
+  const double t = remaining_s(step_began_);
   for (const GroupTool& tool : tools)
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       const SweptSphere from{tool.centre_m, tool.velocity_m_s, tool.radius_m, 0};
       const SweptSphere body{bodies[i].centre_m, bodies[i].velocity_m_s, bodies_[i].radius_m, 0};
-      if (closest_axes_m(from, body, t) <= from.radius_m + body.radius_m)
-        enter(static_cast<int>(i), {}, step_began_, bodies);
+      if (axis_distance_m(from, body, t) <= from.radius_m + body.radius_m)
+        add_to_group(static_cast<int>(i), {}, step_began_, bodies);
     }
 }
 
 // Whether a body that would leave may meet, in this step, a body that does not leave with it.
-bool Grouping::reaches_what_stays(int body, sync::SimTime now) {
-  const double t = left_s(now);
+bool Grouping::reaches_group(int body, sync::SimTime now) {
+  const double t = remaining_s(now);
   const SweptSphere& from = trajectory_of(body);
   find_outside(bounds_of(from, t));
   return std::any_of(found_.begin(), found_.end(), [&](int j) {
     if (leaves_[static_cast<std::size_t>(j)]) return false;
     const SweptSphere& other = trajectory_of(j);
-    return first_meeting_s(from, other, from.radius_m + other.radius_m + from.pad_m + other.pad_m, t) >= 0;
+    return first_contact_time_s(from, other, from.radius_m + other.radius_m + from.pad_m + other.pad_m, t) >= 0;
   });
 }
 
 // A body that nothing requires any more leaves by itself, or stays with every body that it may meet.
-void Grouping::stay_or_leave(sync::SimTime now, std::span<const BodyMotion> bodies) {
+void Grouping::update_leaving(sync::SimTime now, std::span<const BodyMotion> bodies) {
   leaves_.resize(bodies_.size());
   for (const int i : before_) leaves_[static_cast<std::size_t>(i)] = !member_[static_cast<std::size_t>(i)];
   for (bool changed = true; changed;) {
     changed = false;
     for (const int i : before_) {
-      if (!leaves_[static_cast<std::size_t>(i)] || !reaches_what_stays(i, now)) continue;
+      if (!leaves_[static_cast<std::size_t>(i)] || !reaches_group(i, now)) continue;
       leaves_[static_cast<std::size_t>(i)] = 0;
-      enter(i, {}, now, bodies);
+      add_to_group(i, {}, now, bodies);
       changed = true;
     }
   }
@@ -188,15 +192,15 @@ void Grouping::hold_step(sync::SimTime now, std::span<const BodyMotion> bodies,
   step_began_ = now;
   set_touching(touching);
   before_ = haptic_;
-  close(now, bodies, tools);
+  close_group(now, bodies, tools);
   enter_requested(now, bodies);
-  close(now, bodies, tools);
+  close_group(now, bodies, tools);
   record_entered(now);
 }
 
 void Grouping::enter_requested(sync::SimTime now, std::span<const BodyMotion> bodies) {
   for (const int body : requested_) {
-    enter(body, {}, now, bodies);
+    add_to_group(body, {}, now, bodies);
     last_reached_[static_cast<std::size_t>(body)] = now;
   }
   requested_.clear();
@@ -236,7 +240,7 @@ void Grouping::begin(sync::SimTime now, const SweptTrajectories& trajectories, b
     member_[static_cast<std::size_t>(i)] = 0;
     // No trajectory exists for this body if it leaves: it may fall and reverse its direction. The pad covers both.
     if (all_have_trajectories_) continue;
-    const double t = left_s(now), speed = bodies[static_cast<std::size_t>(i)].velocity_m_s.norm();
+    const double t = remaining_s(now), speed = bodies[static_cast<std::size_t>(i)].velocity_m_s.norm();
     SweptSphere& trajectory = departed_trajectories_[static_cast<std::size_t>(i)] =
         swept(static_cast<std::size_t>(i), bodies[static_cast<std::size_t>(i)], t);
     trajectory.pad_m = acceleration_offset_m(limits_.gravity_m_s2, t) + 2 * speed * t + limits_.tolerance_m;
@@ -246,15 +250,15 @@ void Grouping::begin(sync::SimTime now, const SweptTrajectories& trajectories, b
   if (rule_ == GroupingRule::kKim2005) {
     close_kim2005(bodies, tools);
   } else {
-    close(now, bodies, tools);
+    close_group(now, bodies, tools);
     enter_requested(now, bodies);
     for (const int i : haptic_) last_reached_[static_cast<std::size_t>(i)] = now;
     for (const int i : before_)
       if (!may_leave || now - last_reached_[static_cast<std::size_t>(i)] < limits_.leave_after)
-        enter(i, {}, now, bodies);
-    close(now, bodies, tools);
-    stay_or_leave(now, bodies);
-    close(now, bodies, tools);
+        add_to_group(i, {}, now, bodies);
+    close_group(now, bodies, tools);
+    update_leaving(now, bodies);
+    close_group(now, bodies, tools);
   }
   std::sort(haptic_.begin(), haptic_.end());
   entered_.clear();
@@ -277,15 +281,16 @@ bool Grouping::pad_exceeded(sync::SimTime now, std::span<const BodyMotion> bodie
   });
 }
 
-void Grouping::watch(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools) {
+void Grouping::check_pads(sync::SimTime now, std::span<const BodyMotion> bodies,
+                          std::span<const GroupTool> tools) {
   entered_.clear();
   left_.clear();
   const bool requested = !requested_.empty();
   if (!requested && (rule_ == GroupingRule::kKim2005 || !pad_exceeded(now, bodies, tools))) return;
-  if (!requested) ++alarms_;
+  if (!requested) ++pad_violations_;
   before_ = haptic_;
   enter_requested(now, bodies);
-  close(now, bodies, tools);
+  close_group(now, bodies, tools);
   record_entered(now);
 }
 

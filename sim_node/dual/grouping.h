@@ -39,7 +39,7 @@ struct GroupBody {
 struct GroupingLimits {
   sync::Nanoseconds horizon{17'000'000};  // until the next visual step, in whole haptic ticks
   double tolerance_m = 0.001;             // a smaller gap is a contact
-  // Limits that the pads are computed for; beyond them watch() acts.
+  // Limits that the pads are computed for; beyond them check_pads() acts.
   double tool_acceleration_m_s2 = 30;
   double tool_force_N = 20;  // on one body
   double gravity_m_s2 = 9.81;
@@ -76,9 +76,10 @@ class Grouping {
   // Call in each haptic tick before contact detection. When a tool or a body is further from its straight line than
   // its pad, the group is closed again from the current motions; bodies only enter. Cost: proportional to the group,
   // not to all bodies.
-  void watch(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
+  void check_pads(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
 
-  // Everything but the trajectories: after reading, call resume() with those of the current step. Throws BadState.
+  // Everything but the trajectories: after reading, call resume() with those of the current step. Throws
+  // InvalidState.
   void archive(StateArchive& a);
   void resume(const SweptTrajectories& trajectories) {
     trajectories_ = &trajectories;
@@ -91,28 +92,29 @@ class Grouping {
   std::span<const int> entered() const { return entered_; }
   std::span<const int> left() const { return left_; }
   // Number of times that a pad was exceeded.
-  std::int64_t alarms() const { return alarms_; }
+  std::int64_t pad_violations() const { return pad_violations_; }
 
  private:
   // Maximum effect of impacts on a body: change of speed, and the time left before the horizon at the earliest
   // impact.
-  struct Kick {
-    double speed_m_s = 0, left_s = 0;
+  struct ImpactBound {
+    double speed_m_s = 0, remaining_s = 0;
   };
-  double left_s(sync::SimTime now) const;
+  double remaining_s(sync::SimTime now) const;
   SweptSphere swept(std::size_t body, const BodyMotion& m, double t_s) const;
   SweptSphere swept(const GroupTool& tool, double t_s) const;
-  void close(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
+  void close_group(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
   void close_kim2005(std::span<const BodyMotion> bodies, std::span<const GroupTool> tools);
-  void reach(const SweptSphere& from, double inverse_mass, sync::SimTime now, std::span<const BodyMotion> bodies);
-  void enter(int body, Kick kick, sync::SimTime now, std::span<const BodyMotion> bodies);
-  double kick_m_s(const SweptSphere& tool, std::size_t body, double t_s) const;
+  void add_reachable(const SweptSphere& from, double inverse_mass, sync::SimTime now,
+                     std::span<const BodyMotion> bodies);
+  void add_to_group(int body, ImpactBound bound, sync::SimTime now, std::span<const BodyMotion> bodies);
+  double max_impact_speed_m_s(const SweptSphere& tool, std::size_t body, double t_s) const;
   void begin(sync::SimTime now, const SweptTrajectories& trajectories, bool includes_all, std::span<const BodyMotion> bodies,
              std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools, bool may_leave);
   void set_touching(std::span<const std::pair<int, int>> touching);
   void record_entered(sync::SimTime now);
-  void stay_or_leave(sync::SimTime now, std::span<const BodyMotion> bodies);
-  bool reaches_what_stays(int body, sync::SimTime now);
+  void update_leaving(sync::SimTime now, std::span<const BodyMotion> bodies);
+  bool reaches_group(int body, sync::SimTime now);
   void enter_requested(sync::SimTime now, std::span<const BodyMotion> bodies);
   const SweptSphere& trajectory_of(int body) const {
     return is_departed_[static_cast<std::size_t>(body)] ? departed_trajectories_[static_cast<std::size_t>(body)] : trajectories_->of(body);
@@ -141,11 +143,11 @@ class Grouping {
   // Of the group, from watched_from_ on.
   sync::SimTime watched_from_{};
   std::vector<SweptSphere> inside_, tools_;
-  std::vector<Kick> kicks_;
+  std::vector<ImpactBound> impact_bounds_;
   std::vector<char> member_;
   std::vector<sync::SimTime> last_reached_;
   std::vector<int> haptic_, before_, entered_, left_, found_;
-  std::int64_t alarms_ = 0;
+  std::int64_t pad_violations_ = 0;
 };
 
 }  // namespace tactus::sim

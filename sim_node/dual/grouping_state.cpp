@@ -28,7 +28,7 @@ void Grouping::archive(StateArchive& a) {
   };
   sim::archive(a, limits_.horizon);
   sim::archive(a, limits_.leave_after);
-  a(step_began_), a(watched_from_), a(held_), a(held_after_s_), a(alarms_);
+  a(step_began_), a(watched_from_), a(held_), a(held_after_s_), a(pad_violations_);
   if (a.reads()) {
     for (const int i : haptic_) member_[static_cast<std::size_t>(i)] = 0;
     for (const int i : departed_) is_departed_[static_cast<std::size_t>(i)] = 0;
@@ -39,7 +39,7 @@ void Grouping::archive(StateArchive& a) {
     const auto k = static_cast<std::size_t>(i);
     member_[k] = 1;
     sim::archive(a, inside_[k]);
-    a(kicks_[k].speed_m_s), a(kicks_[k].left_s);
+    a(impact_bounds_[k].speed_m_s), a(impact_bounds_[k].remaining_s);
   }
   for (const int i : departed_) {
     const auto k = static_cast<std::size_t>(i);

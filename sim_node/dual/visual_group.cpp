@@ -13,7 +13,7 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 // Bodies touch within this distance, m; design: the gap at which a contact is reported before it closes.
 constexpr double kTouching_m = 0.001;
 
-std::vector<char> may_rest(const WorldDef& def) {
+std::vector<char> may_sleep(const WorldDef& def) {
   std::vector<char> out;
   for (const BodyDef& b : def.bodies) out.push_back(!b.is_static && b.tool < 0);
   for (const JointDef& j : def.joints)
@@ -32,12 +32,12 @@ VisualGroup::VisualGroup(const WorldDef& def, const Settings& settings, std::vec
       world_(impulse::build_world(def, settings_)),
       finder_(def, settings_, trees),
       source_(*this),
-      advance_(extents_of(def)),
+      stepper_(extents_of(def)),
       scene_(def, *world_),
       ids_(ids),
       tracker_(surface_traits(def, settings_), settings_, ids_),
       entering_tracker_(surface_traits(def, settings_), settings_, ids_),
-      resting_(may_rest(def)),
+      sleeping_(may_sleep(def)),
       mask_(def.bodies.size()),
       motions_(frames_.at_start(def)),
       contact_motions_(motions_) {
@@ -46,14 +46,14 @@ VisualGroup::VisualGroup(const WorldDef& def, const Settings& settings, std::vec
   read_motions();
 }
 
-// Resting units belong to the group but are not computed.
+// Sleeping units belong to the group but are not computed.
 void VisualGroup::activate() {
   const auto active = world_->active_units();
   awake_.clear();
   for (const int unit : units_) {
     list_.clear();
     world_->unit_bodies(unit, list_);
-    if (!resting_.rests(list_.front())) awake_.push_back(unit);
+    if (!sleeping_.is_asleep(list_.front())) awake_.push_back(unit);
   }
   if (!std::equal(awake_.begin(), awake_.end(), active.begin(), active.end())) found_ = false;
   world_->set_active(awake_);
@@ -79,18 +79,18 @@ void VisualGroup::wake(std::span<const int> woken) {
     return mask_[index(c.manifold.body_a)] || mask_[index(c.manifold.body_b)];
   };
   moved_.clear();
-  std::copy_if(resting_contacts_.begin(), resting_contacts_.end(), std::back_inserter(moved_), wakes);
-  std::erase_if(resting_contacts_, wakes);
+  std::copy_if(sleeping_contacts_.begin(), sleeping_contacts_.end(), std::back_inserter(moved_), wakes);
+  std::erase_if(sleeping_contacts_, wakes);
   tracker_.insert(moved_);
   for (const int body : woken) mask_[index(body)] = 0;
 }
 
-void VisualGroup::settle(sync::Nanoseconds length) {
-  const auto calm = resting_.settle(world_->active_bodies(), motions_, touching_, supported_, length);
-  if (calm.empty()) return;
-  for (const int body : calm) mask_[index(body)] = 1;
-  tracker_.extract(mask_, resting_contacts_);
-  for (const int body : calm) {
+void VisualGroup::update_sleeping(sync::Nanoseconds length) {
+  const auto newly_asleep = sleeping_.update(world_->active_bodies(), motions_, touching_, supported_, length);
+  if (newly_asleep.empty()) return;
+  for (const int body : newly_asleep) mask_[index(body)] = 1;
+  tracker_.extract(mask_, sleeping_contacts_);
+  for (const int body : newly_asleep) {
     motions_[index(body)].velocity_m_s.setZero();
     motions_[index(body)].spin_rad_s.setZero();
     mask_[index(body)] = 0;
@@ -98,33 +98,33 @@ void VisualGroup::settle(sync::Nanoseconds length) {
 }
 
 void VisualGroup::remove_leaving(const VisualTask& task) {
-  if (task.leaves.empty()) return;
-  mark(task.leaves, 0);
-  wake(resting_.wake_with(list_));
-  mark(task.leaves, 1);
+  if (task.leaving.empty()) return;
+  mark(task.leaving, 0);
+  wake(sleeping_.wake_islands_of(list_));
+  mark(task.leaving, 1);
   moved_.clear();
   tracker_.extract(mask_, moved_);
-  mark(task.leaves, 0);
+  mark(task.leaving, 0);
   std::erase_if(units_,
-                [&](int unit) { return std::binary_search(task.leaves.begin(), task.leaves.end(), unit); });
+                [&](int unit) { return std::binary_search(task.leaving.begin(), task.leaving.end(), unit); });
 }
 
 // Entering units were in the haptic group at the beginning of the previous step. They catch up by themselves, since
 // they reach no other body in it.
 void VisualGroup::add_entering(const VisualTask& task, VisualStep& out) {
-  const UnitTransfer& enters = task.enters;
-  if (enters.units.empty()) return;
-  for (std::size_t k = 0; k < enters.units.size(); ++k) world_->set_state(enters.units[k], enters.states[k]);
-  world_->set_active(enters.units);
+  const UnitTransfer& entering = task.entering;
+  if (entering.units.empty()) return;
+  for (std::size_t k = 0; k < entering.units.size(); ++k) world_->set_state(entering.units[k], entering.states[k]);
+  world_->set_active(entering.units);
   read_motions();
-  entering_tracker_.insert(enters.contacts);
-  sub_steps(entering_tracker_, now_ - task.missed, task.missed, out, false);
+  entering_tracker_.insert(entering.contacts);
+  sub_steps(entering_tracker_, now_ - task.catch_up_time, task.catch_up_time, out, false);
   moved_.clear();
   std::fill(mask_.begin(), mask_.end(), 1);
   entering_tracker_.extract(mask_, moved_);
   std::fill(mask_.begin(), mask_.end(), 0);
   tracker_.insert(moved_);
-  units_.insert(units_.end(), enters.units.begin(), enters.units.end());
+  units_.insert(units_.end(), entering.units.begin(), entering.units.end());
   std::sort(units_.begin(), units_.end());
 }
 
@@ -134,7 +134,7 @@ bool VisualGroup::is_about_to_strike(const Manifold& m, int awake, double h) con
   return motions_[index(awake)].moves() &&
          std::any_of(m.used().begin(), m.used().end(), [&](const ManifoldPoint& p) {
            const double closing = (a.velocity_at(p.point_m) - b.velocity_at(p.point_m)).dot(p.normal);
-           return closing > Resting::kStill_m_s && -p.depth_m <= closing * h;
+           return closing > SleepingIslands::kSleepSpeed_m_s && -p.depth_m <= closing * h;
          });
 }
 
@@ -143,31 +143,33 @@ void VisualGroup::Contacts::find(std::span<const BodyMotion> motions, std::span<
   VisualGroup& g = group_;
   for (const int body : active) g.contact_motions_[index(body)] = g.frames_.motion(body, motions[index(body)]);
   straight_.clear();
-  if (g.resting_.count() > 0)
+  if (g.sleeping_.count() > 0)
     for (const int body : active) {
       const BodyMotion& m = g.contact_motions_[index(body)];
       straight_.push_back({m.centre_m, m.velocity_m_s, g.radii_m_[index(body)], kTouching_m});
     }
-  const auto near = g.resting_.near(straight_, g.contact_motions_, g.radii_m_, h);
+  const auto near = g.sleeping_.near(straight_, g.contact_motions_, g.radii_m_, h);
   if (near.empty()) return g.finder_.find(g.contact_motions_, active, h, out);
   checked_bodies_.assign(active.begin(), active.end());
   checked_bodies_.insert(checked_bodies_.end(), near.begin(), near.end());
   std::sort(checked_bodies_.begin(), checked_bodies_.end());
   g.finder_.find(g.contact_motions_, checked_bodies_, h, out);
-  const auto still = [&](int body) { return g.resting_.rests(body) || !g.contact_motions_[index(body)].moves(); };
+  const auto still = [&](int body) {
+    return g.sleeping_.is_asleep(body) || !g.contact_motions_[index(body)].moves();
+  };
   std::erase_if(out, [&](const Manifold& m) { return still(m.body_a) && still(m.body_b); });
 }
 
 // Wakes the resting bodies that are about to be struck, with their islands.
 bool VisualGroup::wake_struck(double h) {
-  if (resting_.count() == 0) return false;
+  if (sleeping_.count() == 0) return false;
   list_.clear();
   for (const Manifold& m : contacts_) {
-    if (resting_.rests(m.body_a) && is_about_to_strike(m, m.body_b, h)) list_.push_back(m.body_a);
-    if (resting_.rests(m.body_b) && is_about_to_strike(m, m.body_a, h)) list_.push_back(m.body_b);
+    if (sleeping_.is_asleep(m.body_a) && is_about_to_strike(m, m.body_b, h)) list_.push_back(m.body_a);
+    if (sleeping_.is_asleep(m.body_b) && is_about_to_strike(m, m.body_a, h)) list_.push_back(m.body_b);
   }
   if (list_.empty()) return false;
-  wake(resting_.wake_with(list_));
+  wake(sleeping_.wake_islands_of(list_));
   activate();
   return true;
 }
@@ -177,7 +179,7 @@ void VisualGroup::sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::
                             VisualStep& out, bool record) {
   const auto at = [&](int k) { return sync::Nanoseconds(length.count() * k / settings_.visual_substeps); };
   const auto find = [&](double h) {
-    source_.find(world_->motions(), world_->active_bodies(), advance_.horizon_s(*world_, h), contacts_);
+    source_.find(world_->motions(), world_->active_bodies(), stepper_.horizon_s(*world_, h), contacts_);
   };
   double h = sync::to_seconds(at(1));
   // The contacts found at the end of the previous step are reused if no unit has come or gone and the step is not
@@ -189,7 +191,7 @@ void VisualGroup::sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::
     if (record) record_sub_step(index(k), at(k), out);
     // Steps have one of two lengths that differ by a tick: the next one may be as long as the previous one.
     const double next_s = std::max(h, before_s_);
-    advance_.step(*world_, source_, h, contacts_, solved_, next_s);
+    stepper_.step(*world_, source_, h, contacts_, solved_, next_s);
     frames_.place_impacts(solved_);
     found_ = record;
     found_for_s_ = next_s;
@@ -200,7 +202,7 @@ void VisualGroup::sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::
     tracker.update(begin + at(k + 1), at(k + 1) - at(k), motions_, contacts_, solved_, out.events);
     if (record) {
       tracker.take_previous(out.live[index(k)]);
-      add_resting(out.live[index(k)]);
+      add_sleeping(out.live[index(k)]);
     }
     for (const LiveContact& c : tracker.live()) record_touching(c.manifold.body_a, c.manifold.body_b);
     for (std::size_t i = first; i < out.events.size(); ++i)
@@ -222,8 +224,8 @@ void VisualGroup::record_sub_step(std::size_t k, sync::Nanoseconds passed, Visua
   for (std::size_t i = 0; i < units_.size(); ++i) world_->copy_state(units_[i], out.states[k][i]);
 }
 
-void VisualGroup::add_resting(std::vector<LiveContact>& live) const {
-  live.insert(live.end(), resting_contacts_.begin(), resting_contacts_.end());
+void VisualGroup::add_sleeping(std::vector<LiveContact>& live) const {
+  live.insert(live.end(), sleeping_contacts_.begin(), sleeping_contacts_.end());
 }
 
 // Straight lines from the poses at the beginning to those at the end of the step.
@@ -256,7 +258,7 @@ void VisualGroup::run(const VisualTask& task, VisualStep& out) {
   remove_leaving(task);
   for (const impulse::SceneChange& change : task.changes) scene_.apply(*world_, change);
   if (!task.changes.empty()) found_ = false;
-  if (!task.changes.empty()) wake(resting_.wake_all());
+  if (!task.changes.empty()) wake(sleeping_.wake_all());
   add_entering(task, out);
   activate();
   out.begins = now_;
@@ -268,18 +270,18 @@ void VisualGroup::run(const VisualTask& task, VisualStep& out) {
   out.states.resize(index(settings_.visual_substeps) + 1);
   out.live.resize(index(settings_.visual_substeps) + 1);
   sub_steps(tracker_, now_, task.length, out, true);
-  for (const LiveContact& c : resting_contacts_) record_touching(c.manifold.body_a, c.manifold.body_b);
+  for (const LiveContact& c : sleeping_contacts_) record_touching(c.manifold.body_a, c.manifold.body_b);
   // Events are published in order of time; within a sub-step they are found in order of shapes.
   std::stable_sort(out.events.begin(), out.events.end(),
                    [](const contact_event_t& x, const contact_event_t& y) { return x.time_ns < y.time_ns; });
   now_ += task.length;
   record_sub_step(index(settings_.visual_substeps), task.length, out);
   out.live.back().assign(tracker_.live().begin(), tracker_.live().end());
-  add_resting(out.live.back());
+  add_sleeping(out.live.back());
   record_trajectories(out);
-  settle(task.length);
+  update_sleeping(task.length);
   out.end = motions_;
-  out.asleep = static_cast<std::int64_t>(resting_.count());
+  out.asleep = static_cast<std::int64_t>(sleeping_.count());
 }
 
 }  // namespace tactus::sim

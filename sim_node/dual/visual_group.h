@@ -7,7 +7,7 @@
 
 #include "sim_node/behaviour/impulse/build_world.h"
 #include "sim_node/behaviour/impulse_solver.h"
-#include "sim_node/dual/resting.h"
+#include "sim_node/dual/sleeping_islands.h"
 #include "sim_node/dual/visual_step.h"
 
 namespace tactus::sim {
@@ -26,7 +26,7 @@ class VisualGroup {
 
   const impulse::World& world() const { return *world_; }
   sync::SimTime now() const { return now_; }
-  // Everything that the next steps depend on. Throws BadState.
+  // Everything that the next steps depend on. Throws InvalidState.
   void archive(StateArchive& a);
   void rename(std::int64_t incarnation);
   // Call before the first step.
@@ -38,7 +38,7 @@ class VisualGroup {
   void remove_leaving(const VisualTask& task);
   void add_entering(const VisualTask& task, VisualStep& out);
   void wake(std::span<const int> woken);
-  void settle(sync::Nanoseconds length);
+  void update_sleeping(sync::Nanoseconds length);
   // Contacts of the awake bodies. A resting body takes part when an awake body is near it; it is treated as fixed.
   class Contacts : public impulse::ContactSource {
    public:
@@ -58,7 +58,7 @@ class VisualGroup {
   void read_motions();
   void record_touching(int a, int b);
   void record_sub_step(std::size_t k, sync::Nanoseconds passed, VisualStep& out);
-  void add_resting(std::vector<LiveContact>& live) const;
+  void add_sleeping(std::vector<LiveContact>& live) const;
   void record_trajectories(VisualStep& out);
 
   Settings settings_;
@@ -67,12 +67,12 @@ class VisualGroup {
   std::unique_ptr<impulse::World> world_;
   ContactFinder finder_;
   Contacts source_;
-  impulse::Advance advance_;
+  impulse::AdaptiveStepper stepper_;
   impulse::SceneSettings scene_;
   Ids ids_;
   ContactTracker tracker_, entering_tracker_;         // of the awake bodies, and of those that catch up
-  std::vector<LiveContact> resting_contacts_;  // of the resting bodies
-  Resting resting_;
+  std::vector<LiveContact> sleeping_contacts_;        // of the resting bodies
+  SleepingIslands sleeping_;
   sync::SimTime now_{};
   bool found_ = false;  // contacts_ are valid for the present poses and for steps up to found_for_s_
   double found_for_s_ = 0, before_s_ = 0;  // length of the previous sub-step

@@ -11,8 +11,8 @@ void VisualGroup::archive(StateArchive& a) {
   world_->archive(a);
   ids_.archive(a);
   tracker_.archive(a, motions_.size());
-  a.list(resting_contacts_, kMaxContacts, [&](LiveContact& c) { tracker_.archive(a, c, motions_.size()); });
-  resting_.archive(a);
+  a.list(sleeping_contacts_, kMaxContacts, [&](LiveContact& c) { tracker_.archive(a, c, motions_.size()); });
+  sleeping_.archive(a);
   a(now_);
   a.list(units_, static_cast<std::size_t>(world_->units()), [&](int& unit) {
     a.index(unit, static_cast<std::size_t>(world_->units()));
@@ -32,7 +32,7 @@ void VisualGroup::archive(StateArchive& a) {
 void VisualGroup::rename(std::int64_t incarnation) {
   ids_.rename(incarnation);
   tracker_.rename();
-  for (LiveContact& c : resting_contacts_) c.id = ids_.renamed(c.id);
+  for (LiveContact& c : sleeping_contacts_) c.id = ids_.renamed(c.id);
 }
 
 }  // namespace tactus::sim

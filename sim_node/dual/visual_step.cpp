@@ -36,7 +36,7 @@ void archive_numbers(StateArchive& a, std::vector<int>& numbers, std::size_t cou
 }  // namespace
 
 void shift(LiveContact& c, sync::Nanoseconds by) {
-  for (sync::SimTime* t : {&c.last_hit, &c.last_event, &c.apart_since}) *t += by;
+  for (sync::SimTime* t : {&c.last_hit, &c.last_event, &c.separated_since}) *t += by;
 }
 
 int UnitTransfer::find(int unit) const {
@@ -58,9 +58,9 @@ void UnitTransfer::archive(StateArchive& a, int max_units, std::size_t bodies, C
 
 void VisualTask::archive(StateArchive& a, int units, std::size_t bodies, ContactTracker& tracker) {
   a(number);
-  archive_time(a, length), archive_time(a, missed);
-  enters.archive(a, units, bodies, tracker);
-  archive_numbers(a, leaves, static_cast<std::size_t>(units));
+  archive_time(a, length), archive_time(a, catch_up_time);
+  entering.archive(a, units, bodies, tracker);
+  archive_numbers(a, leaving, static_cast<std::size_t>(units));
   a.list(changes, kMaxChanges, [&](impulse::SceneChange& c) { c.archive(a, bodies); });
 }
 
@@ -89,7 +89,7 @@ void VisualStep::archive(StateArchive& a, int max_units, std::size_t count, Cont
 void VisualStep::rename(const Ids& ids) {
   for (auto& list : live)
     for (LiveContact& c : list) c.id = ids.renamed(c.id);
-  for (LiveContact& c : task.enters.contacts) c.id = ids.renamed(c.id);
+  for (LiveContact& c : task.entering.contacts) c.id = ids.renamed(c.id);
   for (contact_event_t& e : events) {
     e.event_id = ids.renamed(e.event_id);
     e.contact_id = ids.renamed(e.contact_id);

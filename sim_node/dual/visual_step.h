@@ -36,9 +36,10 @@ void shift(LiveContact& contact, sync::Nanoseconds by);
 struct VisualTask {
   std::int64_t number = 0;     // of the step
   sync::Nanoseconds length{};  // of the step
-  sync::Nanoseconds missed{};  // length of the previous step, at whose beginning the entering units left the haptic group
-  UnitTransfer enters;             // their state at that time
-  std::vector<int> leaves;     // units that are now in the haptic group
+  sync::Nanoseconds
+      catch_up_time{};  // length of the previous step, at whose beginning the entering units left the haptic group
+  UnitTransfer entering;                      // their state at that time
+  std::vector<int> leaving;                   // units that are now in the haptic group
   std::vector<impulse::SceneChange> changes;  // valid from the beginning of the step on
 
   void archive(StateArchive& a, int units, std::size_t bodies, ContactTracker& tracker);

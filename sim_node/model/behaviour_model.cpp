@@ -7,22 +7,22 @@ namespace tactus::sim {
 namespace {
 
 constexpr std::array<BehaviourModel, 5> kModels{{
-    {.name = "quick", .what = "iterative: ODE's QuickStep"},
-    {.name = "step", .what = "LCP: ODE's dWorldStep"},
+    {.name = "quick", .description = "iterative: ODE's QuickStep"},
+    {.name = "step", .description = "LCP: ODE's dWorldStep"},
     {.name = "impulse",
-     .what = "impulses: collisions pair by pair, then contact",
+     .description = "impulses: collisions pair by pair, then contact",
      .impulses = true,
      .needs_gaps = true,
      .needs_trees = true},
     {.name = "penalty",
-     .what = "spring and damper in a shell, of the end of the step",
+     .description = "spring and damper in a shell, of the end of the step",
      .impulses = true,
      .needs_gaps = true,
      .needs_trees = true,
      .bounces = false,
      .finite_forces = true},
     {.name = "penalty_explicit",
-     .what = "spring and damper in a shell, of the start of the step",
+     .description = "spring and damper in a shell, of the start of the step",
      .impulses = true,
      .needs_gaps = true,
      .needs_trees = true,
@@ -42,7 +42,7 @@ const BehaviourModel& behaviour_model(std::string_view name) {
                            "\" is unknown; choose quick, step, impulse, penalty or penalty_explicit");
 }
 
-double meeting_distance_m(const Settings& s) {
+double contact_distance_m(const Settings& s) {
   return s.groups == "dual" || behaviour_model(s.solver).finite_forces ? s.contact_tolerance_m : 0;
 }
 

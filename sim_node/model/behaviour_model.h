@@ -10,7 +10,7 @@
 namespace tactus::sim {
 
 struct BehaviourModel {
-  std::string_view name, what;
+  std::string_view name, description;
   // Solved by impulse::World for free bodies and systems of joints; otherwise by ODE.
   bool impulses = false;
   // Acts before surfaces meet, and corrects remaining overlaps by positions. Contacts must therefore carry their
@@ -31,6 +31,6 @@ const BehaviourModel& behaviour_model(std::string_view name);
 
 // Gap at which surfaces start to interact, m: the reach of springs, in both groups of a dual simulation, so that the
 // contact does not change when a body moves between groups. 0 for models without springs.
-double meeting_distance_m(const Settings& settings);
+double contact_distance_m(const Settings& settings);
 
 }  // namespace tactus::sim

@@ -13,10 +13,10 @@ constexpr int kFurthest = (1 << 20) - 1;
 constexpr double kSmallestCell_m = 1e-3;
 
 template <class Visit>
-void each_cell(const Eigen::Array3i& least, const Eigen::Array3i& most, Visit&& visit) {
-  for (int x = least.x(); x <= most.x(); ++x)
-    for (int y = least.y(); y <= most.y(); ++y)
-      for (int z = least.z(); z <= most.z(); ++z) visit(x, y, z);
+void each_cell(const Eigen::Array3i& min, const Eigen::Array3i& max, Visit&& visit) {
+  for (int x = min.x(); x <= max.x(); ++x)
+    for (int y = min.y(); y <= max.y(); ++y)
+      for (int z = min.z(); z <= max.z(); ++z) visit(x, y, z);
 }
 
 }  // namespace
@@ -31,13 +31,13 @@ BoundsGrid::Range BoundsGrid::range_of(const Bounds& b) const {
   const auto cell = [&](const Eigen::Vector3d& p) -> Eigen::Array3i {
     return (p / cell_m_).array().floor().max(-kFurthest).min(kFurthest).cast<int>();
   };
-  return {cell(b.least_m), cell(b.most_m)};
+  return {cell(b.min_m), cell(b.max_m)};
 }
 
 void BoundsGrid::build(std::span<const Bounds> boxes) {
   boxes_.assign(boxes.begin(), boxes.end());
   sizes_.clear();
-  for (const Bounds& b : boxes_) sizes_.push_back((b.most_m - b.least_m).maxCoeff());
+  for (const Bounds& b : boxes_) sizes_.push_back((b.max_m - b.min_m).maxCoeff());
   entries_.clear();
   large_.clear();
   buckets_ = std::bit_ceil(static_cast<std::uint32_t>(2 * boxes_.size() + 1));
@@ -51,7 +51,7 @@ void BoundsGrid::build(std::span<const Bounds> boxes) {
     if (r.cells() > kMaxCells)
       large_.push_back(i);
     else
-      each_cell(r.least, r.most, [&](int x, int y, int z) { entries_.push_back({bucket_of(x, y, z), i}); });
+      each_cell(r.min, r.max, [&](int x, int y, int z) { entries_.push_back({bucket_of(x, y, z), i}); });
   }
   // Counting sort, filled from the end so that each bucket is in order.
   first_.assign(buckets_ + 1, 0);
@@ -64,19 +64,19 @@ void BoundsGrid::build(std::span<const Bounds> boxes) {
 
 void BoundsGrid::find(const Bounds& query, std::vector<int>& found) const {
   const auto begin = static_cast<std::ptrdiff_t>(found.size());
-  const auto look = [&](int box) {
-    if (boxes_[static_cast<std::size_t>(box)].meets(query)) found.push_back(box);
+  const auto add_if_overlapping = [&](int box) {
+    if (boxes_[static_cast<std::size_t>(box)].overlaps(query)) found.push_back(box);
   };
   if (boxes_.empty()) return;
   const Range r = range_of(query);
   if (r.cells() > kMaxCells) {
-    for (int i = 0; i < static_cast<int>(boxes_.size()); ++i) look(i);
+    for (int i = 0; i < static_cast<int>(boxes_.size()); ++i) add_if_overlapping(i);
     return;
   }
-  for (const int box : large_) look(box);
-  each_cell(r.least, r.most, [&](int x, int y, int z) {
+  for (const int box : large_) add_if_overlapping(box);
+  each_cell(r.min, r.max, [&](int x, int y, int z) {
     const std::uint32_t bucket = bucket_of(x, y, z);
-    for (int k = first_[bucket]; k < first_[bucket + 1]; ++k) look(in_[static_cast<std::size_t>(k)]);
+    for (int k = first_[bucket]; k < first_[bucket + 1]; ++k) add_if_overlapping(in_[static_cast<std::size_t>(k)]);
   });
   std::sort(found.begin() + begin, found.end());
   found.erase(std::unique(found.begin() + begin, found.end()), found.end());

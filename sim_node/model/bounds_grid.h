@@ -23,8 +23,8 @@ class BoundsGrid {
     int box;
   };
   struct Range {
-    Eigen::Array3i least, most;
-    long long cells() const { return (most - least + 1).cast<long long>().prod(); }
+    Eigen::Array3i min, max;
+    long long cells() const { return (max - min + 1).cast<long long>().prod(); }
   };
   Range range_of(const Bounds& b) const;
   std::uint32_t bucket_of(int x, int y, int z) const;

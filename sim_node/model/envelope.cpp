@@ -42,15 +42,15 @@ std::vector<std::uint8_t> wrap_state(std::span<const std::uint8_t> state, std::u
 
 std::span<const std::uint8_t> unwrap_state(std::span<const std::uint8_t> bytes, std::uint64_t fingerprint) {
   if (bytes.size() < kHead + kTail || !std::equal(kMagic.begin(), kMagic.end(), bytes.begin()))
-    throw BadState("the bytes are not a saved state of a simulation");
+    throw InvalidState("the bytes are not a saved state of a simulation");
   if (number_at(bytes, 8) != kStateVersion)
-    throw BadState("the state has version " + std::to_string(number_at(bytes, 8)) +
-                   ", this program reads version " + std::to_string(kStateVersion));
+    throw InvalidState("the state has version " + std::to_string(number_at(bytes, 8)) +
+                       ", this program reads version " + std::to_string(kStateVersion));
   const std::size_t size = bytes.size() - kHead - kTail;
   if (number_at(bytes, 24) != size || number_at(bytes, kHead + size) != hash_of(bytes.first(kHead + size)))
-    throw BadState("the state is damaged");
+    throw InvalidState("the state is damaged");
   if (number_at(bytes, 16) != fingerprint)
-    throw BadState("the state belongs to another scene or to other settings");
+    throw InvalidState("the state belongs to another scene or to other settings");
   return bytes.subspan(kHead, size);
 }
 

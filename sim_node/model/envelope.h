@@ -21,8 +21,8 @@ namespace tactus::sim {
 inline constexpr std::uint64_t kStateVersion = 2;
 
 std::vector<std::uint8_t> wrap_state(std::span<const std::uint8_t> state, std::uint64_t fingerprint);
-// Returns the state inside. Throws BadState with one sentence when the bytes are damaged, or of another version or
-// world.
+// Returns the state inside. Throws InvalidState with one sentence when the bytes are damaged, or of another
+// version or world.
 std::span<const std::uint8_t> unwrap_state(std::span<const std::uint8_t> bytes, std::uint64_t fingerprint);
 
 }  // namespace tactus::sim

@@ -11,8 +11,8 @@ class Ids {
   // Several counters may share one incarnation. Each starts at its own lane and advances by the number of lanes.
   explicit Ids(std::int64_t incarnation, std::int64_t lane = 0, std::int64_t lanes = 1)
       : incarnation_(incarnation), lane_(lane), lanes_(lanes) {}
-  std::int64_t fresh() { return sync::prefixed_id(incarnation_, lane_ + lanes_ * next_++); }
-  // Whether fresh() has returned this id.
+  std::int64_t next_id() { return sync::prefixed_id(incarnation_, lane_ + lanes_ * next_++); }
+  // Whether next_id() has returned this id.
   bool issued(std::int64_t id) const {
     const std::int64_t count = id & ((std::int64_t{1} << 40) - 1);
     return count % lanes_ == lane_ && count / lanes_ < next_ && id == sync::prefixed_id(incarnation_, count);

@@ -9,7 +9,7 @@ namespace {
 // Distance per radian between two points with one position and different normals, as in a corner, m. Smaller than any
 // patch and larger than the distance of duplicates.
 constexpr double kNormalWeight_m = 1e-3;
-constexpr double kSamePlace_m = 1e-6;
+constexpr double kSamePosition_m = 1e-6;
 
 double apart(const ManifoldPoint& a, const ManifoldPoint& b) {
   return (a.point_m - b.point_m).norm() + kNormalWeight_m * (a.normal - b.normal).norm();
@@ -26,7 +26,7 @@ void reduce_points(std::span<const ManifoldPoint> found, Manifold& out) {
   out.points[static_cast<std::size_t>(out.count++)] = *deepest;
   while (out.count < kMaxManifoldPoints) {
     const ManifoldPoint* best = nullptr;
-    double best_distance = kSamePlace_m;
+    double best_distance = kSamePosition_m;
     for (const ManifoldPoint& p : found) {
       double nearest = std::numeric_limits<double>::max();
       for (const ManifoldPoint& chosen : out.used()) nearest = std::min(nearest, apart(p, chosen));

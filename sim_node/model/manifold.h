@@ -23,7 +23,7 @@ struct Impact {
   double first_s = 0, last_s = 0;  // times of the first and the last impact, from the start of the step
   double speed_m_s = 0;            // closing speed before the first impact
   double effective_mass_kg = 0;    // at the first impact, joints included
-  Eigen::Vector3d place_m = Eigen::Vector3d::Zero();  // of the first impact, world
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  // of the first impact, world
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, world, from a to b
   // Positions of the first impact in the frames of the bodies at the start of the step (of its last part, if it was
   // divided). In an impulse world: from the centres of mass, with the rotation since the start

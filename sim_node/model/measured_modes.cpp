@@ -33,7 +33,7 @@ std::map<std::string, std::size_t> columns_of(std::string_view line) {
 }
 
 measured_mode_t mode_of(const std::vector<std::string>& cells, const std::map<std::string, std::size_t>& columns) {
-  const auto figure = [&](const std::string& column, const std::string& unit) {
+  const auto property = [&](const std::string& column, const std::string& unit) {
     const std::size_t at = columns.at(column);
     if (at >= cells.size()) throw std::runtime_error(column + " is missing");
     try {
@@ -43,9 +43,9 @@ measured_mode_t mode_of(const std::vector<std::string>& cells, const std::map<st
     }
   };
   measured_mode_t mode{};
-  mode.frequency_Hz = figure("frequency_Hz", "Hz");
-  mode.damping_1_s = figure("damping_1_s", "1/s");
-  mode.amplitude = figure("amplitude", "1");
+  mode.frequency_Hz = property("frequency_Hz", "Hz");
+  mode.damping_1_s = property("damping_1_s", "1/s");
+  mode.amplitude = property("amplitude", "1");
   if (!(mode.frequency_Hz >= kMinModeFrequency_Hz && mode.frequency_Hz <= kMaxModeFrequency_Hz))
     throw std::runtime_error("frequency_Hz is not between 20 and 20000");
   if (!(mode.damping_1_s > 0 && mode.damping_1_s < 2 * std::numbers::pi * mode.frequency_Hz))

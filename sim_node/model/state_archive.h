@@ -21,7 +21,7 @@
 namespace tactus::sim {
 
 // Invalid bytes of a state; what() is one sentence.
-struct BadState : std::runtime_error {
+struct InvalidState : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
@@ -37,7 +37,7 @@ class StateArchive {
   // When reading: whether all bytes have been read.
   bool at_end() const { return left_.empty(); }
   void require(bool holds, const char* sentence) const {
-    if (!holds) throw BadState(sentence);
+    if (!holds) throw InvalidState(sentence);
   }
 
   void operator()(std::uint64_t& x) {
@@ -106,10 +106,10 @@ class StateArchive {
   }
   // A list with a maximum length.
   template <class Item, class Each>
-  void list(std::vector<Item>& items, std::size_t most, Each each) {
+  void list(std::vector<Item>& items, std::size_t max_size, Each each) {
     std::uint64_t size = items.size();
     (*this)(size);
-    require(size <= most && (!reads_ || size <= left_.size()), "the state holds a list that is too long");
+    require(size <= max_size && (!reads_ || size <= left_.size()), "the state holds a list that is too long");
     if (reads_) items.resize(size);
     for (Item& item : items) each(item);
   }

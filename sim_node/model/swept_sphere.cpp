@@ -5,7 +5,7 @@
 
 namespace tactus::sim {
 
-double first_meeting_s(const SweptSphere& a, const SweptSphere& b, double distance, double horizon_s) {
+double first_contact_time_s(const SweptSphere& a, const SweptSphere& b, double distance, double horizon_s) {
   const Eigen::Vector3d apart = b.centre_m - a.centre_m, closing = b.velocity_m_s - a.velocity_m_s;
   // |apart + closing t|^2 = distance^2
   const double c = apart.squaredNorm() - distance * distance, half_b = apart.dot(closing),
@@ -17,7 +17,7 @@ double first_meeting_s(const SweptSphere& a, const SweptSphere& b, double distan
   return when <= horizon_s ? when : -1;
 }
 
-double closest_axes_m(const SweptSphere& a, const SweptSphere& b, double horizon_s) {
+double axis_distance_m(const SweptSphere& a, const SweptSphere& b, double horizon_s) {
   const Eigen::Vector3d u = a.velocity_m_s * horizon_s, v = b.velocity_m_s * horizon_s,
                         w = a.centre_m - b.centre_m;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);

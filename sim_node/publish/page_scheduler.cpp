@@ -19,8 +19,8 @@ PageScheduler::PageScheduler(double rate_Hz, double pages_per_second, sync::Nano
 
 // Distributes the remaining pages evenly over the ticks up to the next snapshot.
 void PageScheduler::set_share(State& s) const {
-  const double left_s = static_cast<double>(s.next) / rate_Hz_ - seconds(now_);
-  const double ticks = std::max(1.0, std::floor(left_s / sync::to_seconds(step_)));
+  const double remaining_s = static_cast<double>(s.next) / rate_Hz_ - seconds(now_);
+  const double ticks = std::max(1.0, std::floor(remaining_s / sync::to_seconds(step_)));
   s.share = static_cast<std::size_t>(std::ceil(static_cast<double>(s.left()) / ticks));
 }
 

@@ -53,7 +53,7 @@ void copy(Page& page, std::vector<Item> Page::*list, const std::vector<Item>& fr
 // when it has just begun: their velocity extrapolates it, with an error of g h^2 / 2 = 5 um in 1 ms.
 const BodyMotion& Snapshots::present(std::size_t body, sync::SimTime now, const StateSource& source) {
   const BodyMotion& m = source.bodies[body];
-  const Ahead* a = source.ahead;
+  const LookAhead* a = source.look_ahead;
   const auto in = [body](std::span<const int> list) {
     return std::binary_search(list.begin(), list.end(), static_cast<int>(body));
   };
@@ -95,7 +95,7 @@ void Snapshots::add_ahead(std::size_t body, const BodyMotion& m, const BodyMotio
 
 void Snapshots::take_bodies(sync::SimTime now, sync::SimTime pace, const StateSource& source, bool full,
                             bool with_ahead) {
-  const Ahead* a = source.ahead;
+  const LookAhead* a = source.look_ahead;
   bodies_.time = now;
   bodies_ahead_.time = a ? a->time : now;
   full_ = full;
@@ -134,9 +134,9 @@ void Snapshots::take_contacts(sync::SimTime now, const StateSource& source) {
   contacts_.pages = paged(contacts_.items, empty_size<contact_frame_t>());
   contacts_ahead_.pages.clear();
   sent_contacts_ = 0;
-  if (!source.ahead) return;
-  contacts_ahead_.time = source.ahead->held ? now : source.ahead->time;
-  source.ahead->contacts(contacts_ahead_.items);
+  if (!source.look_ahead) return;
+  contacts_ahead_.time = source.look_ahead->held ? now : source.look_ahead->time;
+  source.look_ahead->contacts(contacts_ahead_.items);
   contacts_ahead_.pages = paged(contacts_ahead_.items, empty_size<contact_frame_t>());
 }
 
@@ -171,18 +171,19 @@ void Snapshots::fill(contact_frame_t& m) {
 
 // Updates the state of the bodies computed ahead. paused: the world is paused, and the data of this tick have been
 // published before.
-void Snapshots::update_ahead(const Ahead& ahead, std::size_t bodies, sync::SimTime pace, bool paused) {
+void Snapshots::update_ahead(const LookAhead& look_ahead, std::size_t bodies, sync::SimTime pace, bool paused) {
   ahead_.resize(bodies, 0);
   gone_.resize(bodies, 0);
   repeat_until_.resize(bodies, sync::SimTime::min());
   moved_.resize(bodies, 0);
-  if ((ahead.fresh && !paused) || (ahead.held && !held_)) bodies_pending_ = contacts_pending_ = true;
-  held_ = ahead.held;
+  if ((look_ahead.fresh && !paused) || (look_ahead.held && !held_)) bodies_pending_ = contacts_pending_ = true;
+  held_ = look_ahead.held;
   // Drop a body that left the haptic group before its promotion was published.
-  std::erase_if(promoted_,
-                [&](int body) { return std::binary_search(ahead.bodies.begin(), ahead.bodies.end(), body); });
+  std::erase_if(promoted_, [&](int body) {
+    return std::binary_search(look_ahead.bodies.begin(), look_ahead.bodies.end(), body);
+  });
   if (paused) return;
-  for (const int body : ahead.promoted) {
+  for (const int body : look_ahead.promoted) {
     const auto i = static_cast<std::size_t>(body);
     ahead_[i] = 0;
     moved_[i] = 1;
@@ -258,8 +259,8 @@ void Snapshots::tick(sync::SimTime now, sync::SimTime pace, const StateSource& s
                      const std::function<void(contact_frame_t&)>& send_contacts,
                      const std::function<void(world_state_t&)>& send_world) {
   scheduler_.tick(pace);
-  if (source.ahead) {
-    update_ahead(*source.ahead, source.bodies.size(), pace, last_now_ == now);
+  if (source.look_ahead) {
+    update_ahead(*source.look_ahead, source.bodies.size(), pace, last_now_ == now);
     last_now_ = now;
     publish_promoted(now, source, send_world);
     take_due_ahead(now, pace, source);

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "sim_node/model/body_motion.h"
-#include "sim_node/model/ahead.h"
+#include "sim_node/model/look_ahead.h"
 #include "sim_node/publish/page_scheduler.h"
 
 namespace tactus::sim {
@@ -28,7 +28,7 @@ struct StateSource {
   // beginning of the current visual step; while they are held: at the end of the last one.
   std::span<const BodyMotion> bodies;
   std::function<void(std::vector<contact_t>&)> contacts;  // of the group OTHER; clears the list first
-  const Ahead* ahead = nullptr;                           // null: every body is simulated in every step
+  const LookAhead* look_ahead = nullptr;                  // null: every body is simulated in every step
 };
 
 class Snapshots {
@@ -63,7 +63,7 @@ class Snapshots {
 
   void take_bodies(sync::SimTime now, sync::SimTime pace, const StateSource& source, bool full, bool with_ahead);
   void take_contacts(sync::SimTime now, const StateSource& source);
-  void update_ahead(const Ahead& ahead, std::size_t bodies, sync::SimTime pace, bool paused);
+  void update_ahead(const LookAhead& look_ahead, std::size_t bodies, sync::SimTime pace, bool paused);
   void publish_promoted(sync::SimTime now, const StateSource& source,
                      const std::function<void(world_state_t&)>& send);
   void take_due(sync::SimTime now, sync::SimTime pace, const StateSource& source);

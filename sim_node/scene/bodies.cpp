@@ -25,7 +25,7 @@ constexpr double kDefaultFriction = 1;
 double value_of(const LoadContext& context, const sdf::ElementPtr& element, double min, double max) {
   const double value = element->Get<double>();
   if (!(value >= min && value <= max))
-    context.refuse(*element, "= " + element->GetValue()->GetAsString() + " is out of range");
+    context.reject(*element, "= " + element->GetValue()->GetAsString() + " is out of range");
   return value;
 }
 
@@ -37,16 +37,16 @@ void read_surface(const LoadContext& context, const sdf::ElementPtr& collision, 
     const material_def_t& material = context.world.materials[static_cast<std::size_t>(shape.material)];
     shape.friction = material.friction_dynamic, shape.restitution = material.restitution;
   }
-  const sdf::ElementPtr surface = written(collision, "surface");
-  if (const auto mu = written(written(written(surface, "friction"), "ode"), "mu"))
+  const sdf::ElementPtr surface = explicit_child(collision, "surface");
+  if (const auto mu = explicit_child(explicit_child(explicit_child(surface, "friction"), "ode"), "mu"))
     shape.friction = std::min(value_of(context, mu, 0, std::numeric_limits<double>::infinity()), 1e6);
-  if (const auto bounce = written(written(surface, "bounce"), "restitution_coefficient"))
+  if (const auto bounce = explicit_child(explicit_child(surface, "bounce"), "restitution_coefficient"))
     shape.restitution = value_of(context, bounce, 0, 1);
 }
 
 // Material that the mesh file names; -1: none.
 int file_material(LoadContext& context, const sdf::Geometry& geometry, const sdf::ElementPtr& owner) {
-  if (geometry.Type() != sdf::GeometryType::MESH || written(owner, "tactus:surface")) return -1;
+  if (geometry.Type() != sdf::GeometryType::MESH || explicit_child(owner, "tactus:surface")) return -1;
   return material_of_file(context, named_mesh(context, *geometry.MeshShape(), *owner), -1);
 }
 
@@ -107,10 +107,10 @@ int add_link(LoadContext& context, const sdf::Link& link, const Eigen::Isometry3
   if (first_shape == context.world.shapes.size() && first_visual < context.world.visuals.size())
     add_bounding_box(context, first_visual, index, material);
   read_inertial(context, element, std::span(context.world.shapes).subspan(first_shape), body);
-  if (const auto gravity = written(element, "gravity")) body.gravity = gravity->Get<bool>();
-  if (const auto decay = written(element, "velocity_decay")) {
+  if (const auto gravity = explicit_child(element, "gravity")) body.gravity = gravity->Get<bool>();
+  if (const auto decay = explicit_child(element, "velocity_decay")) {
     const auto damping = [&](const char* name) {
-      const auto given = written(decay, name);
+      const auto given = explicit_child(decay, name);
       return given ? value_of(context, given, 0, 1e6) : 0.0;
     };
     body.linear_damping_1_s = damping("linear"), body.angular_damping_1_s = damping("angular");
@@ -129,7 +129,7 @@ int add_link(LoadContext& context, const sdf::Link& link, const Eigen::Isometry3
 void forbid_self_collision(LoadContext& context, const sdf::Model& model, const std::vector<int>& bodies) {
   std::vector<bool> collides;
   for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {
-    const auto given = written(model.LinkByIndex(i)->Element(), "self_collide");
+    const auto given = explicit_child(model.LinkByIndex(i)->Element(), "self_collide");
     collides.push_back(given ? given->Get<bool>() : model.SelfCollide());
   }
   for (std::size_t a = 0; a < bodies.size(); ++a)

@@ -30,7 +30,7 @@ std::optional<JointKind> kind_of(sdf::JointType type) {
 int body_of(const LoadContext& context, const std::string& scope, const std::string& link, const sdf::Element& element) {
   if (link == "world") return -1;
   const auto known = context.body_of.find(scope + link);
-  if (known == context.body_of.end()) context.refuse(element, "connects \"" + link + "\": there is no such link");
+  if (known == context.body_of.end()) context.reject(element, "connects \"" + link + "\": there is no such link");
   return known->second;
 }
 
@@ -39,19 +39,21 @@ JointAxis read_axis(const LoadContext& context, const sdf::JointAxis& from, bool
   const sdf::Element& element = *from.Element();
   ignition::math::Vector3d xyz;
   const sdf::Errors errors = from.ResolveXyz(xyz, "__model__");
-  if (!errors.empty()) context.refuse(element, "has no direction: " + errors.front().Message());
+  if (!errors.empty()) context.reject(element, "has no direction: " + errors.front().Message());
   JointAxis axis;
   axis.axis = model_pose.linear() * to_eigen(xyz);
-  if (!axis.axis.allFinite() || axis.axis.norm() < 1e-9) context.refuse(element, "has no direction: its <xyz> is zero");
+  if (!axis.axis.allFinite() || axis.axis.norm() < 1e-9)
+    context.reject(element, "has no direction: its <xyz> is zero");
   axis.axis.normalize();
   axis.damping = from.Damping(), axis.friction = from.Friction();
   axis.stiffness = from.SpringStiffness(), axis.reference = from.SpringReference();
   for (const double value : {axis.damping, axis.friction, axis.stiffness})
-    if (!(value >= 0 && value < 1e9)) context.refuse(element, "has a damping, friction or stiffness that is negative or not finite");
-  if (!std::isfinite(axis.reference)) context.refuse(element, "has a <spring_reference> that is not finite");
+    if (!(value >= 0 && value < 1e9))
+      context.reject(element, "has a damping, friction or stiffness that is negative or not finite");
+  if (!std::isfinite(axis.reference)) context.reject(element, "has a <spring_reference> that is not finite");
   if (has_limits) {
     if (std::isnan(from.Lower()) || std::isnan(from.Upper()) || from.Lower() > from.Upper())
-      context.refuse(element, "has a lower limit above its upper limit");
+      context.reject(element, "has a lower limit above its upper limit");
     axis.lower = std::max(from.Lower(), -kNoLimit), axis.upper = std::min(from.Upper(), kNoLimit);
   }
   if (from.Effort() >= 0 && from.Effort() < 1e15) axis.effort = from.Effort();
@@ -59,12 +61,12 @@ JointAxis read_axis(const LoadContext& context, const sdf::JointAxis& from, bool
 }
 
 void read_motor(const LoadContext& context, const sdf::ElementPtr& element, JointDef& joint) {
-  const sdf::ElementPtr motor = written(element, "tactus:motor");
+  const sdf::ElementPtr motor = explicit_child(element, "tactus:motor");
   if (!motor) return;
   Attributes attributes(context, *motor);
   const bool linear = joint.kind == JointKind::kPrismatic;
   if (joint.kind == JointKind::kFixed || joint.kind == JointKind::kBall)
-    context.refuse(*motor, "is on a joint without an axis");
+    context.reject(*motor, "is on a joint without an axis");
   const int axes = joint.kind == JointKind::kUniversal ? 2 : 1;
   const int index = static_cast<int>(attributes.quantity("axis", "1", 1, axes).value_or(1));
   const double effort = linear ? attributes.required_quantity("force", "N", -1e6, 1e6)
@@ -89,22 +91,22 @@ void add_joint(LoadContext& context, const sdf::Joint& from, const Eigen::Isomet
   std::string parent, child;
   const sdf::Errors no_parent = from.ResolveParentLink(parent), no_child = from.ResolveChildLink(child);
   for (const auto& errors : {no_parent, no_child})
-    if (!errors.empty()) context.refuse(*element, "connects nothing: " + errors.front().Message());
+    if (!errors.empty()) context.reject(*element, "connects nothing: " + errors.front().Message());
   JointDef joint;
   joint.name = scope + from.Name();
   joint.kind = *kind;
   joint.parent = body_of(context, scope, parent, *element);
   joint.child = body_of(context, scope, child, *element);
-  if (joint.parent == joint.child) context.refuse(*element, "connects a link with itself");
+  if (joint.parent == joint.child) context.reject(*element, "connects a link with itself");
   joint.anchor_m = (model_pose * context.resolve(from.SemanticPose(), *element, "__model__")).translation();
   const unsigned axes = *kind == JointKind::kUniversal ? 2 : *kind == JointKind::kFixed || *kind == JointKind::kBall ? 0 : 1;
   for (unsigned i = 0; i < axes; ++i) {
     const sdf::JointAxis* axis = from.Axis(i);
-    if (!axis) context.refuse(*element, "lacks its <axis" + std::string(i ? "2" : "") + ">");
+    if (!axis) context.reject(*element, "lacks its <axis" + std::string(i ? "2" : "") + ">");
     joint.axes[i] = read_axis(context, *axis, from.Type() != sdf::JointType::CONTINUOUS, model_pose);
   }
   if (axes == 2 && joint.axes[0].axis.cross(joint.axes[1].axis).norm() < 1e-6)
-    context.refuse(*element, "has two axes in one direction");
+    context.reject(*element, "has two axes in one direction");
   read_motor(context, element, joint);
   if (joint.parent >= 0 && joint.child >= 0) {
     context.world.no_collision.emplace_back(std::min(joint.parent, joint.child), std::max(joint.parent, joint.child));

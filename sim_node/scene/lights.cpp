@@ -11,13 +11,13 @@ namespace tactus::sim {
 namespace {
 
 double at_least_0(const LoadContext& context, const sdf::Element& element, double value, const char* what) {
-  if (!(value >= 0)) context.refuse(element, std::string("has a ") + what + " that is negative or no number");
+  if (!(value >= 0)) context.reject(element, std::string("has a ") + what + " that is negative or no number");
   return std::min(value, 1e6);
 }
 
 vec3f_t colour(const LoadContext& context, const sdf::Element& element, const ignition::math::Color& c) {
   const Eigen::Vector3d rgb = to_eigen(c);
-  if (!rgb.allFinite()) context.refuse(element, "has a colour that is not finite");
+  if (!rgb.allFinite()) context.reject(element, "has a colour that is not finite");
   return to_vec3f(rgb.cwiseMax(0).cwiseMin(1e3));
 }
 
@@ -27,7 +27,7 @@ void add_light(LoadContext& context, const sdf::Light& light, const Eigen::Isome
   const sdf::Element& e = *light.Element();
   const Eigen::Isometry3d pose = parent_pose * context.resolve(light.SemanticPose(), e);
   const Eigen::Vector3d direction = pose.linear() * to_eigen(light.Direction());
-  if (!direction.allFinite() || direction.norm() < 1e-9) context.refuse(e, "has no <direction>");
+  if (!direction.allFinite() || direction.norm() < 1e-9) context.reject(e, "has no <direction>");
   light_def_t def{};
   def.name = light.Name();
   def.kind = light.Type() == sdf::LightType::SPOT          ? light_def_t::SPOT

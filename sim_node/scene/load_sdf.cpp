@@ -47,7 +47,8 @@ void add_builtin_models(LoadContext& context) {
 
 void read_gravity(LoadContext& context, const sdf::World& world) {
   const Eigen::Vector3d gravity = to_eigen(world.Gravity());
-  if (!gravity.allFinite() || gravity.norm() > 1e4) context.refuse(*world.Element(), "has a <gravity> that is not finite");
+  if (!gravity.allFinite() || gravity.norm() > 1e4)
+    context.reject(*world.Element(), "has a <gravity> that is not finite");
   context.world.gravity_m_s2 = gravity;
 }
 

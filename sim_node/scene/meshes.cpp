@@ -19,7 +19,7 @@ int add(LoadContext& context, const std::string& key, const NamedMesh& named, co
   if (is_new) try {
       context.world.meshes.push_back(make());
     } catch (const std::exception& e) {
-      context.refuse(element, "names mesh \"" + named.uri + "\", which cannot be read: " + e.what());
+      context.reject(element, "names mesh \"" + named.uri + "\", which cannot be read: " + e.what());
     }
   return at->second;
 }
@@ -38,17 +38,17 @@ MeshPart part_of(const TriangleMesh& mesh) {
   return part;
 }
 
-TriangleMesh as_seen(const NamedMesh& named, const std::set<int>& materials, int times) {
+TriangleMesh make_display_mesh(const NamedMesh& named, const std::set<int>& materials, int times) {
   MeshParts chosen;
   bool textured = false;
   for (const MeshPart& part : named.parts->parts)
-    if (is_chosen(part, named.choice)) {
+    if (is_selected(part, named.selection)) {
       chosen.parts.push_back(part);
       textured = textured || (!part.texcoords.empty() && materials.contains(part.material));
     }
   if (textured)
     for (MeshPart& part : chosen.parts) fill_texcoords(part);
-  TriangleMesh mesh = join_parts(chosen, named.choice, &materials);
+  TriangleMesh mesh = join_parts(chosen, named.selection, &materials);
   if (times == 0) return mesh;
   mesh = subdivide(mesh, times);
   if (!textured) return mesh;
@@ -66,9 +66,9 @@ NamedMesh named_mesh(LoadContext& context, const sdf::Mesh& mesh, const sdf::Ele
                   {mesh.Submesh(), mesh.CenterSubmesh(), to_eigen(mesh.Scale())},
                   nullptr,
                   ""};
-  const Eigen::Vector3d& scale = named.choice.scale;
+  const Eigen::Vector3d& scale = named.selection.scale;
   if (!scale.allFinite() || (scale.array() == 0).any() || scale.cwiseAbs().maxCoeff() > 1e6)
-    context.refuse(element, "has a <scale> that is zero or not finite");
+    context.reject(element, "has a <scale> that is zero or not finite");
   std::ostringstream key;
   key << named.file.string() << '|' << mesh.Submesh() << '|' << mesh.CenterSubmesh() << '|' << scale.transpose();
   named.key = key.str();
@@ -76,21 +76,21 @@ NamedMesh named_mesh(LoadContext& context, const sdf::Mesh& mesh, const sdf::Ele
   if (!parts) try {
       parts = std::make_shared<const MeshParts>(read_mesh_parts(named.file));
     } catch (const std::exception& e) {
-      context.refuse(element, "names mesh \"" + named.uri + "\", which cannot be read: " + e.what());
+      context.reject(element, "names mesh \"" + named.uri + "\", which cannot be read: " + e.what());
     }
   named.parts = parts.get();
   return named;
 }
 
 int collision_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element) {
-  return add(context, named.key, named, element, [&] { return join_parts(*named.parts, named.choice); });
+  return add(context, named.key, named, element, [&] { return join_parts(*named.parts, named.selection); });
 }
 
 int display_mesh(LoadContext& context, const NamedMesh& named, const std::set<int>& materials, int subdivide,
               const sdf::Element& element) {
   std::string key = named.key + "|seen|" + std::to_string(subdivide);
   for (const int material : materials) key += "|" + std::to_string(material);
-  return add(context, key, named, element, [&] { return as_seen(named, materials, subdivide); });
+  return add(context, key, named, element, [&] { return make_display_mesh(named, materials, subdivide); });
 }
 
 int material_of_file(LoadContext& context, const NamedMesh& named, int otherwise) {

@@ -13,7 +13,7 @@ namespace tactus::sim {
 struct NamedMesh {
   std::string uri;
   std::filesystem::path file;
-  MeshChoice choice;
+  MeshSelection selection;
   const MeshParts* parts = nullptr;  // lives as long as the context
   std::string key;                   // equal keys refer to the same mesh
 };

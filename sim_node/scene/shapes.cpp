@@ -21,7 +21,7 @@ namespace {
 int heightfield_index(LoadContext& context, const sdf::Heightmap& map, const sdf::Element& element) {
   const Eigen::Vector3d size = to_eigen(map.Size()), centre = to_eigen(map.Position());
   if (!size.allFinite() || (size.array() <= 0).any() || !centre.allFinite())
-    context.refuse(element, "has a <size> that is not positive or a <pos> that is not finite");
+    context.reject(element, "has a <size> that is not positive or a <pos> that is not finite");
   const std::filesystem::path file = context.asset_file(map.Uri(), element);
   std::ostringstream key;
   key << file.string() << "|height|" << size.transpose() << '|' << centre.transpose();
@@ -29,7 +29,7 @@ int heightfield_index(LoadContext& context, const sdf::Heightmap& map, const sdf
   if (is_new) try {
       context.world.heightfields.push_back(read_height_image(file, size, centre));
     } catch (const std::exception& e) {
-      context.refuse(element, "names height image \"" + map.Uri() + "\", which cannot be read: " + e.what());
+      context.reject(element, "names height image \"" + map.Uri() + "\", which cannot be read: " + e.what());
     }
   return at->second;
 }
@@ -37,7 +37,7 @@ int heightfield_index(LoadContext& context, const sdf::Heightmap& map, const sdf
 void require_positive(const LoadContext& context, const sdf::Element& owner, const ShapeDef& shape) {
   // Unused sizes of a kind are 1.
   if (!shape.size_m.allFinite() || (shape.size_m.array() <= 0).any() || shape.size_m.maxCoeff() > 1e6)
-    context.refuse(owner, "has a size that is zero, negative or not finite: every length must be above 0 m");
+    context.reject(owner, "has a size that is zero, negative or not finite: every length must be above 0 m");
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ std::optional<ShapeDef> read_shape(LoadContext& context, const sdf::Geometry& ge
       break;
     case sdf::GeometryType::PLANE: {
       const Eigen::Vector3d normal = to_eigen(geometry.PlaneShape()->Normal());
-      if (!normal.allFinite() || normal.norm() < 1e-6) context.refuse(element, "has a <normal> without direction");
+      if (!normal.allFinite() || normal.norm() < 1e-6) context.reject(element, "has a <normal> without direction");
       shape.kind = ShapeKind::kPlane;
       shape.size_m = {geometry.PlaneShape()->Size().X(), geometry.PlaneShape()->Size().Y(), 1};
       shape.pose.rotate(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal));

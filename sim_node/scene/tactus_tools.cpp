@@ -37,14 +37,14 @@ std::string read_device(const LoadContext& context, const sdf::Element& element,
   if (device.file.empty()) return text;
   const std::filesystem::path file = context.asset_file(device.file, element);
   if (std::filesystem::file_size(file) > kMaxMotionFileBytes || !std::ifstream(file))
-    context.refuse(element, "names \"" + device.file + "\", which is not readable or larger than " +
+    context.reject(element, "names \"" + device.file + "\", which is not readable or larger than " +
                                 std::to_string(kMaxMotionFileBytes >> 20) + " MiB: give it another motion file");
   return with_device_file(text, std::filesystem::absolute(file).lexically_normal().string());
 } catch (const BadDevice& e) {
-  context.refuse(element, std::string("has a bad device: ") + e.what());
+  context.reject(element, std::string("has a bad device: ") + e.what());
 }
 
-constexpr double kLargest_m = 1, kSmallest_m = 1e-4;  // of a handheld tool
+constexpr double kMaxSize_m = 1, kMinSize_m = 1e-4;  // of a handheld tool
 
 // The triangles of a mesh tool; each file and scale is read once.
 int mesh_of_tool(LoadContext& context, const sdf::Element& element, const std::string& uri, double scale) {
@@ -54,7 +54,7 @@ int mesh_of_tool(LoadContext& context, const sdf::Element& element, const std::s
   if (is_new) try {
       context.world.meshes.push_back(read_mesh(file, "", false, Eigen::Vector3d::Constant(scale)));
     } catch (const std::exception& e) {
-      context.refuse(element, "names mesh \"" + uri + "\", which cannot be read: " + e.what());
+      context.reject(element, "names mesh \"" + uri + "\", which cannot be read: " + e.what());
     }
   return at->second;
 }
@@ -67,18 +67,18 @@ void read_tool_shape(LoadContext& context, const sdf::Element& element, Attribut
     tool.radius_m = attributes.quantity("radius", "m", 0, 1).value_or(kDefaultRadius_m);
   } else if (shape == "box") {
     tool.shape = tool_def_t::BOX;
-    const auto edges = attributes.required_quantities("size", 3, "m", kSmallest_m, kLargest_m);
+    const auto edges = attributes.required_quantities("size", 3, "m", kMinSize_m, kMaxSize_m);
     tool.size_m = {edges[0], edges[1], edges[2]};
   } else if (shape == "capsule") {
     tool.shape = tool_def_t::CAPSULE;
-    tool.size_m.x = attributes.required_quantity("radius", "m", kSmallest_m, kLargest_m);
-    tool.size_m.z = attributes.required_quantity("length", "m", kSmallest_m, kLargest_m);
+    tool.size_m.x = attributes.required_quantity("radius", "m", kMinSize_m, kMaxSize_m);
+    tool.size_m.z = attributes.required_quantity("length", "m", kMinSize_m, kMaxSize_m);
   } else if (shape == "mesh") {
     tool.shape = tool_def_t::MESH;
     const std::string uri = attributes.required_text("mesh");
     tool.mesh_hash = mesh_of_tool(context, element, uri, attributes.quantity("scale", "1", 1e-6, 1e6).value_or(1));
   } else {
-    context.refuse(element, "has shape \"" + shape + "\": give it ball, box, capsule or mesh");
+    context.reject(element, "has shape \"" + shape + "\": give it ball, box, capsule or mesh");
   }
 }
 
@@ -97,7 +97,8 @@ void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
   Attributes attributes(context, *element);
   tool_def_t tool{};
   tool.name = attributes.required_text("name");
-  if (context.body_of.contains(tool.name)) context.refuse(*element, "has a name that is already in use: choose another");
+  if (context.body_of.contains(tool.name))
+    context.reject(*element, "has a name that is already in use: choose another");
   read_tool_shape(context, *element, attributes, tool);
   tool.mass_kg = attributes.quantity("mass", "kg", 1e-4, 100).value_or(kDefaultMass_kg);
   tool.device = read_device(context, *element, attributes.text("device").value_or("virtual_hand"));
@@ -105,7 +106,8 @@ void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
   tool.material = -1;
   if (const auto material = attributes.text("material")) {
     const auto known = context.material_of.find(*material);
-    if (known == context.material_of.end()) context.refuse(*element, "names material \"" + *material + "\": there is none");
+    if (known == context.material_of.end())
+      context.reject(*element, "names material \"" + *material + "\": there is none");
     tool.material = known->second;
   }
   const auto pose = attributes.pose("pose");
@@ -118,12 +120,12 @@ void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
     }
     const waypoint_t waypoint = read_waypoint(context, *child);
     if (!tool.waypoints.empty() && !(waypoint.time_s > tool.waypoints.back().time_s))
-      context.refuse(*child, "comes at or before the waypoint above it: times must grow");
+      context.reject(*child, "comes at or before the waypoint above it: times must grow");
     tool.waypoints.push_back(waypoint);
   }
   tool.waypoint_count = static_cast<std::int32_t>(tool.waypoints.size());
   if (tool.waypoints.empty() && tool.device == "virtual_hand")
-    context.refuse(*element, "has no <tactus:waypoint>: the virtual hand needs a path of one or more");
+    context.reject(*element, "has no <tactus:waypoint>: the virtual hand needs a path of one or more");
 
   BodyDef body;
   body.name = tool.name;
@@ -136,8 +138,8 @@ void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
   context.body_of[body.name] = tool.body;
   context.world.bodies.push_back(body);
   if (is_shaped(tool)) tool.radius_m = tool_bound_m(context.world, tool);
-  if (tool.radius_m > kLargest_m)
-    context.refuse(*element, "extends further than 1 m from its origin: make it smaller");
+  if (tool.radius_m > kMaxSize_m)
+    context.reject(*element, "extends further than 1 m from its origin: make it smaller");
   BodyDef& held = context.world.bodies.back();
   held.inertia_kg_m2 = tool_inertia(context.world, tool, held.centre_of_mass_m);
   context.world.tools.push_back(tool);

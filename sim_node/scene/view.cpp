@@ -27,18 +27,18 @@ Eigen::Isometry3d look_pose(const Eigen::Vector3d& from, const Eigen::Vector3d& 
 std::optional<Eigen::Isometry3d> read_viewpoint(const LoadContext& context, const sdf::Element& element, Attributes& attributes) {
   const auto pose = attributes.pose("pose");
   const auto position = attributes.position("position"), at = attributes.position("look_at");
-  if (pose && (position || at)) context.refuse(element, "has both a pose and a position: give one");
-  if (position.has_value() != at.has_value()) context.refuse(element, "needs position and look_at together");
-  if (position && (*position - *at).norm() < 1e-6) context.refuse(element, "looks at itself");
+  if (pose && (position || at)) context.reject(element, "has both a pose and a position: give one");
+  if (position.has_value() != at.has_value()) context.reject(element, "needs position and look_at together");
+  if (position && (*position - *at).norm() < 1e-6) context.reject(element, "looks at itself");
   return position ? look_pose(*position, *at) : pose;
 }
 
 bool read_tactus_camera(LoadContext& context, const sdf::ElementPtr& world) {
-  const sdf::ElementPtr element = written(world, "tactus:camera");
+  const sdf::ElementPtr element = explicit_child(world, "tactus:camera");
   if (!element) return false;
   Attributes attributes(context, *element);
   const auto place = read_viewpoint(context, *element, attributes);
-  if (!place) context.refuse(*element, "lacks its pose, or position and look_at");
+  if (!place) context.reject(*element, "lacks its pose, or position and look_at");
   context.world.camera = *place;
   context.world.camera_fov_rad = attributes.quantity("fov", "rad", 1 * kDeg, 170 * kDeg).value_or(60 * kDeg);
   attributes.done();
@@ -46,10 +46,10 @@ bool read_tactus_camera(LoadContext& context, const sdf::ElementPtr& world) {
 }
 
 bool read_gui_camera(LoadContext& context, const sdf::ElementPtr& world) {
-  const sdf::ElementPtr pose = written(written(written(world, "gui"), "camera"), "pose");
+  const sdf::ElementPtr pose = explicit_child(explicit_child(explicit_child(world, "gui"), "camera"), "pose");
   if (!pose) return false;
   context.world.camera = to_eigen(pose->Get<ignition::math::Pose3d>());
-  if (!context.world.camera.matrix().allFinite()) context.refuse(*pose, "is not finite");
+  if (!context.world.camera.matrix().allFinite()) context.reject(*pose, "is not finite");
   context.world.camera_fov_rad = 60 * kDeg;  // as in Gazebo's window
   return true;
 }
@@ -57,7 +57,7 @@ bool read_gui_camera(LoadContext& context, const sdf::ElementPtr& world) {
 bool read_camera_sensor(LoadContext& context) {
   if (!context.camera_sensor) return false;
   context.world.camera = context.camera_sensor_pose;
-  const auto fov = written(written(context.camera_sensor, "camera"), "horizontal_fov");
+  const auto fov = explicit_child(explicit_child(context.camera_sensor, "camera"), "horizontal_fov");
   const double angle = fov ? fov->Get<double>() : 1.047;  // SDF's default
   context.world.camera_fov_rad = std::min(std::max(angle, kDeg), 170 * kDeg);
   return true;
@@ -80,11 +80,11 @@ void frame_all_bodies(LoadContext& context) {
   context.world.camera_fov_rad = 60 * kDeg;
 }
 
-void read_light_from_everywhere(LoadContext& context, const sdf::World* world, const sdf::ElementPtr& element) {
-  const sdf::ElementPtr scene = written(element, "scene");
+void read_ambient_light(LoadContext& context, const sdf::World* world, const sdf::ElementPtr& element) {
+  const sdf::ElementPtr scene = explicit_child(element, "scene");
   const auto colour = [&](const char* name, const ignition::math::Color& given, const Eigen::Vector3d& missing) {
-    const Eigen::Vector3d value = written(scene, name) ? to_eigen(given) : missing;
-    if (!value.allFinite()) context.refuse(*scene, "has a colour that is not finite");
+    const Eigen::Vector3d value = explicit_child(scene, name) ? to_eigen(given) : missing;
+    if (!value.allFinite()) context.reject(*scene, "has a colour that is not finite");
     return Eigen::Vector3d(value.cwiseMax(0).cwiseMin(1));
   };
   const sdf::Scene* given = world ? world->Scene() : nullptr;
@@ -99,14 +99,14 @@ void read_view(LoadContext& context, const sdf::World* world, const sdf::Element
   if (!read_tactus_camera(context, element) && !read_gui_camera(context, element) && !read_camera_sensor(context))
     frame_all_bodies(context);
   context.world.listener = context.world.camera;
-  if (const sdf::ElementPtr listener = written(element, "tactus:listener")) {
+  if (const sdf::ElementPtr listener = explicit_child(element, "tactus:listener")) {
     Attributes attributes(context, *listener);
     const auto place = read_viewpoint(context, *listener, attributes);
-    if (!place) context.refuse(*listener, "lacks its pose, or position and look_at");
+    if (!place) context.reject(*listener, "lacks its pose, or position and look_at");
     context.world.listener = *place;
     attributes.done();
   }
-  read_light_from_everywhere(context, world, element);
+  read_ambient_light(context, world, element);
 }
 
 }  // namespace tactus::sim

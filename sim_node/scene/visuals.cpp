@@ -30,7 +30,7 @@ const std::map<std::string, Eigen::Vector3d> kScripts{
 
 Eigen::Vector3d colour(const LoadContext& context, const sdf::Element& element, const ignition::math::Color& c) {
   const Eigen::Vector3d rgb = to_eigen(c);
-  if (!rgb.allFinite()) context.refuse(element, "has a colour that is not finite");
+  if (!rgb.allFinite()) context.reject(element, "has a colour that is not finite");
   return rgb.cwiseMax(0).cwiseMin(1);
 }
 
@@ -45,11 +45,11 @@ struct Appearance {
 // The maps of <pbr>, for both of its workflows.
 LookAttributes read_pbr(LoadContext& context, const sdf::ElementPtr& material) {
   LookAttributes words;
-  const sdf::ElementPtr pbr = written(material, "pbr");
-  sdf::ElementPtr workflow = written(pbr, "metal");
-  if (!workflow) workflow = written(pbr, "specular");
+  const sdf::ElementPtr pbr = explicit_child(material, "pbr");
+  sdf::ElementPtr workflow = explicit_child(pbr, "metal");
+  if (!workflow) workflow = explicit_child(pbr, "specular");
   const auto picture = [&](const char* name, PictureUse use) -> std::optional<std::int64_t> {
-    const sdf::ElementPtr element = written(workflow, name);
+    const sdf::ElementPtr element = explicit_child(workflow, name);
     if (!element) return std::nullopt;
     const std::string uri = element->Get<std::string>();
     // Third-party worlds name pictures that are on remote servers.
@@ -65,12 +65,12 @@ LookAttributes read_pbr(LoadContext& context, const sdf::ElementPtr& material) {
 }
 
 void read_material(LoadContext& context, const sdf::Visual& from, Appearance& a) {
-  const sdf::ElementPtr material = written(from.Element(), "material");
+  const sdf::ElementPtr material = explicit_child(from.Element(), "material");
   if (!material || !from.Material()) return;
   const sdf::Material& m = *from.Material();
-  const auto given = [&](const char* name) { return written(material, name) != nullptr; };
+  const auto given = [&](const char* name) { return explicit_child(material, name) != nullptr; };
 
-  if (const sdf::ElementPtr script = written(material, "script")) {
+  if (const sdf::ElementPtr script = explicit_child(material, "script")) {
     const auto known = kScripts.find(m.ScriptName());
     a.coloured = true;
     if (known != kScripts.end())
@@ -84,11 +84,12 @@ void read_material(LoadContext& context, const sdf::Visual& from, Appearance& a)
   if (given("specular")) a.def.specular = colour(context, *material, m.Specular());
   if (given("emissive")) a.def.emissive = colour(context, *material, m.Emissive());
   if (given("diffuse") && m.Diffuse().A() < 1) a.def.alpha *= std::clamp(static_cast<double>(m.Diffuse().A()), 0.0, 1.0);
-  if (const sdf::ElementPtr shininess = written(material, "shininess")) {  // of SDF 1.10; libsdformat 12 passes it on as text
+  if (const sdf::ElementPtr shininess =
+          explicit_child(material, "shininess")) {  // of SDF 1.10; libsdformat 12 passes it on as text
     try {
       a.def.shininess = std::clamp(sync::parse_quantity(shininess->GetValue()->GetAsString(), ""), 1.0, 1e4);
     } catch (const std::invalid_argument& e) {
-      context.refuse(*shininess, std::string("is no number: ") + e.what());
+      context.reject(*shininess, std::string("is no number: ") + e.what());
     }
   }
   a.look.add(read_pbr(context, material));
@@ -98,7 +99,8 @@ Appearance read_appearance(LoadContext& context, const sdf::Visual& from, int bo
   Appearance a;
   a.def.shape.name = from.Name(), a.def.shape.body = body, a.def.shape.material = material;
   a.def.alpha = std::clamp(1.0 - static_cast<double>(from.Transparency()), 0.0, 1.0);
-  if (const sdf::ElementPtr look = written(from.Element(), "tactus:look")) a.look = read_visual_look(context, *look);
+  if (const sdf::ElementPtr look = explicit_child(from.Element(), "tactus:look"))
+    a.look = read_visual_look(context, *look);
   read_material(context, from, a);
   return a;
 }
@@ -158,12 +160,12 @@ bool same(const VisualDef& a, const VisualDef& b) {
 
 // Number of subdivisions that the visual requests.
 int read_display(const LoadContext& context, const sdf::ElementPtr& visual) {
-  const sdf::ElementPtr display = written(visual, "tactus:display");
+  const sdf::ElementPtr display = explicit_child(visual, "tactus:display");
   if (!display) return 0;
   Attributes attributes(context, *display);
   const double times = attributes.required_quantity("subdivide", "1", 0, 6);
   attributes.done();
-  if (times != std::floor(times)) context.refuse(*display, "has a subdivide that is not a whole number");
+  if (times != std::floor(times)) context.reject(*display, "has a subdivide that is not a whole number");
   return static_cast<int>(times);
 }
 
@@ -181,7 +183,8 @@ void add_mesh_visual(LoadContext& context, const sdf::Visual& visual, Appearance
   std::set<int> seen;
   std::vector<std::pair<VisualDef, std::set<int>>> kinds;
   for (const MeshPart& part : named.parts->parts) {
-    if (!is_chosen(part, named.choice) || part.indices.empty() || !seen.insert(part.material).second) continue;
+    if (!is_selected(part, named.selection) || part.indices.empty() || !seen.insert(part.material).second)
+      continue;
     const VisualDef def = with_file_appearance(context, element, named, file_look, part.material, appearance).def;
     const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const auto& kind) { return same(kind.first, def); });
     if (known != kinds.end()) known->second.insert(part.material);
@@ -210,7 +213,9 @@ void add_visuals(LoadContext& context, const sdf::Link& link, int body, int mate
       add_mesh_visual(context, visual, std::move(appearance), subdivide);
       continue;
     }
-    if (subdivide > 0) context.refuse(*element, "has a subdivide for another shape than a <mesh>: only a <mesh> has triangles to divide");
+    if (subdivide > 0)
+      context.reject(*element,
+                     "has a subdivide for another shape than a <mesh>: only a <mesh> has triangles to divide");
     const auto shape = read_shape(context, *visual.Geom(), element, pose);
     if (!shape) continue;
     const ShapeDef named = appearance.def.shape;

@@ -11,28 +11,28 @@ namespace tactus::sim {
 namespace {
 
 // Per surface, the nearest ones; more than the touch model holds for all surfaces.
-constexpr std::size_t kMaxMeetings = 64;
+constexpr std::size_t kMaxPairs = 64;
 
 // Keeps the nearest pair for each place and direction.
-class MeetingCollector : public NearestFirst {
+class ToolPairCollector : public PairVisitor {
  public:
-  MeetingCollector(double same_direction, const Eigen::Isometry3d& to_tool, std::vector<ToolMeeting>& out)
+  ToolPairCollector(double same_direction, const Eigen::Isometry3d& to_tool, std::vector<ToolPointPair>& out)
       : same_direction_(same_direction), to_tool_(to_tool), out_(out) {}
 
-  bool known(const PointPair& p) const override {
+  bool is_redundant(const PointPair& p) const override {
     if (!p.normal.allFinite() || !p.on_a_m.allFinite() || !p.on_b_m.allFinite()) return true;
     const Eigen::Vector3d normal = -p.normal, on_tool = to_tool_ * place(p);
-    return std::any_of(out_.begin(), out_.end(), [&](const ToolMeeting& m) {
+    return std::any_of(out_.begin(), out_.end(), [&](const ToolPointPair& m) {
       return m.plane.normal.dot(normal) > same_direction_ &&
-             (m.tool_point_m - on_tool).norm() < ShapeSearch::kSamePlace_m;
+             (m.tool_point_m - on_tool).norm() < ShapeSearch::kSamePosition_m;
     });
   }
 
-  bool take(const PointPair& p) override {
+  bool visit(const PointPair& p) override {
     // The height over the plane: the detector's gap differs for points that are not above each other.
     const Eigen::Vector3d normal = -p.normal;
     out_.push_back({{p.on_b_m, normal, normal.dot(place(p) - p.on_b_m), p.triangle_b}, to_tool_ * place(p)});
-    return out_.size() < kMaxMeetings;
+    return out_.size() < kMaxPairs;
   }
 
  private:
@@ -40,7 +40,7 @@ class MeetingCollector : public NearestFirst {
 
   double same_direction_;
   Eigen::Isometry3d to_tool_;
-  std::vector<ToolMeeting>& out_;
+  std::vector<ToolPointPair>& out_;
 };
 
 }  // namespace
@@ -57,9 +57,9 @@ void ShapeSearch::add(const ShapeDef& shape, const WorldDef& world) {
 }
 
 void ShapeSearch::query(std::size_t shape, const Eigen::Isometry3d& pose, const Eigen::Isometry3d& tool_pose,
-                        double reach_m, std::vector<ToolMeeting>& out) {
+                        double reach_m, std::vector<ToolPointPair>& out) {
   out.clear();
-  MeetingCollector meetings(same_direction_, tool_pose.inverse(Eigen::Isometry), out);
+  ToolPairCollector meetings(same_direction_, tool_pose.inverse(Eigen::Isometry), out);
   nearest_first(*detector_, tool_, tool_pose, detector_ids_[shape], pose, reach_m + kSkin_m, meetings, pairs_);
 }
 

@@ -13,7 +13,7 @@
 namespace tactus::sim {
 
 // A point of a surface, and the point of the tool that faces it.
-struct ToolMeeting {
+struct ToolPointPair {
   SurfacePlane plane;                     // world frame; its distance is the gap
   Eigen::Vector3d tool_point_m{0, 0, 0};  // in the tool's frame
 };
@@ -24,7 +24,7 @@ class ShapeSearch {
  public:
   // Places of one direction whose points on the tool are nearer than this are merged. Design: a quarter of the margin
   // of a touch model, far below the breadth of a hand, so that 49 planes reach around a tool.
-  static constexpr double kSamePlace_m = 0.002;
+  static constexpr double kSamePosition_m = 0.002;
 
   // Design: less than the penetration that a hand perceives by pressing, a hundred times the error of a proxy.
   static constexpr double kSkin_m = 0.0001;
@@ -37,7 +37,7 @@ class ShapeSearch {
   // The meetings with that shape, nearest first; clears `out` first. Deterministic. Realtime-safe once the lists have
   // grown.
   void query(std::size_t shape, const Eigen::Isometry3d& pose, const Eigen::Isometry3d& tool_pose, double reach_m,
-             std::vector<ToolMeeting>& out);
+             std::vector<ToolPointPair>& out);
 
  private:
   double same_direction_;  // cosine of the merge angle

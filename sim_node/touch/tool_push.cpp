@@ -20,7 +20,7 @@ constexpr double kMinForce_N = 1e-9;
 
 }  // namespace
 
-bool ToolPush::accept(const header_t& header) {
+bool ToolPush::is_current(const header_t& header) {
   if (header.incarnation == incarnation_) {
     if (header.seq <= last_seq_) return false;
     last_seq_ = header.seq;
@@ -54,7 +54,7 @@ void ToolPush::receive(std::span<const tool_state_t> new_messages, sync::SimTime
   std::int64_t publish_ns = 0;
   for (auto& [id, a] : impulses_) a.received.setZero();
   for (const tool_state_t& m : new_messages) {
-    if (!accept(m.header)) continue;
+    if (!is_current(m.header)) continue;
     any = true;
     publish_ns = m.header.publish_time_ns;
     for (const tool_constraint_t& c : m.constraints) add_constraint(c, now, bodies);

@@ -71,7 +71,7 @@ class ToolPush {
     double energy_J = 0;
     sync::SimTime used{};
   };
-  bool accept(const header_t& header);
+  bool is_current(const header_t& header);
   void receive(std::span<const tool_state_t> new_messages, sync::SimTime now, std::span<const BodyMotion> bodies);
   void add_constraint(const tool_constraint_t& c, sync::SimTime now, std::span<const BodyMotion> bodies);
 

@@ -29,7 +29,7 @@ constexpr double kMeshMargin_m = 0.003;
 // contact moves by less in a step, and the corners of a handheld object are further apart.
 constexpr double kSameFeature_m = 0.004;
 // A surface out of reach is dropped after this time, unless it is touched.
-constexpr sync::Nanoseconds kForgetAfter{50'000'000};
+constexpr sync::Nanoseconds kTrackingTimeout{50'000'000};
 // Maximum back-dating of a begin: the age at which a message counts as lost.
 constexpr sync::Nanoseconds kMaxMessageAge{20'000'000};
 constexpr double kMinForce_N = 1e-4;  // smaller forces are rounding
@@ -52,7 +52,7 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
   double own_compliance = 1 / settings.default_youngs_modulus_Pa;
   if (tool_material_ >= 0) {
     const material_def_t& m = world.materials[static_cast<std::size_t>(tool_material_)];
-    own_static_ = m.friction_static, own_dynamic_ = m.friction_dynamic;
+    tool_static_friction_ = m.friction_static, tool_dynamic_friction_ = m.friction_dynamic;
     own_compliance = (1 - m.poissons_ratio * m.poissons_ratio) / m.youngs_modulus_Pa;
   }
   const std::vector<SurfaceTraits> traits = surface_traits(world, settings);
@@ -65,9 +65,10 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
     ClosestSurface surface(s, meshed ? trees.triangles(s, world) : nullptr, settings.touch_merge_angle_rad);
     const Vector3d centre = s.pose * surface.centre();
     if (shape_) shape_->add(s, world);
-    surfaces_.push_back({std::move(surface), traits[i], s.pose.inverse(), centre, std::sqrt(traits[i].friction_static * own_static_),
-                         std::sqrt(traits[i].friction_dynamic * own_dynamic_), traits[i].compliance_1_Pa + own_compliance,
-                         0});
+    surfaces_.push_back({std::move(surface), traits[i], s.pose.inverse(), centre,
+                         std::sqrt(traits[i].friction_static * tool_static_friction_),
+                         std::sqrt(traits[i].friction_dynamic * tool_dynamic_friction_),
+                         traits[i].compliance_1_Pa + own_compliance, 0});
     if (s.material < 0) continue;
     const material_def_t& m = world.materials[static_cast<std::size_t>(s.material)];
     surfaces_.back().bump_asset = m.bump_asset;
@@ -108,7 +109,7 @@ void ToolTouch::track(SimTime now, const SurfacePlane& plane, std::size_t surfac
   }
   if (best == nullptr) {
     best = &near_.emplace_back();
-    best->contact_id = ids_.fresh();
+    best->contact_id = ids_.next_id();
     best->surface = surface;
   }
   best->plane = plane;
@@ -125,8 +126,8 @@ void ToolTouch::track_shape(SimTime now, std::size_t surface, const BodyMotion& 
     return p;
   };
   shape_->query(surface, pose(body.position_m, body.orientation) * surfaces_[surface].traits.in_body,
-                pose(proxy_, proxy_orientation_), reach_m, meetings_);
-  for (const ToolMeeting& m : meetings_) track(now, m.plane, surface, m.tool_point_m);
+                pose(proxy_, proxy_orientation_), reach_m, pairs_near_);
+  for (const ToolPointPair& m : pairs_near_) track(now, m.plane, surface, m.tool_point_m);
 }
 
 void ToolTouch::find_surfaces(SimTime now, std::span<const BodyMotion> bodies) {
@@ -169,7 +170,7 @@ void ToolTouch::find_surfaces(SimTime now, std::span<const BodyMotion> bodies) {
   // A surface out of reach has a gap of at least this margin.
   for (Near& n : near_)
     if (n.last_seen != now) n.gap_m = std::max(n.gap_m, settings_.touch_margin_m);
-  std::erase_if(near_, [&](const Near& n) { return !n.touching && now - n.last_seen > kForgetAfter; });
+  std::erase_if(near_, [&](const Near& n) { return !n.touching && now - n.last_seen > kTrackingTimeout; });
 }
 
 double ToolTouch::mobility_1_kg(const Near& n, std::span<const BodyMotion> bodies) const {
@@ -186,7 +187,7 @@ void ToolTouch::emit(const Near& n, std::int8_t kind, SimTime when, std::span<co
                      std::vector<contact_event_t>& events) const {
   const SurfaceTraits& traits = surfaces_[n.surface].traits;
   contact_event_t e{};
-  e.event_id = ids_.fresh();
+  e.event_id = ids_.next_id();
   e.contact_id = n.contact_id;
   e.kind = kind;
   e.time_ns = std::max<std::int64_t>(0, sync::to_ns(when));
@@ -234,7 +235,7 @@ void ToolTouch::update_contact(Near& n, SimTime when, SimTime before, SimTime no
     n.apart = false;
   } else if (n.touching && !n.apart && !touches && n.gap_m > settings_.touch_end_gap_m) {
     n.apart = true;
-    n.apart_since = std::clamp(when, now - kMaxMessageAge, now);
+    n.separated_since = std::clamp(when, now - kMaxMessageAge, now);
   }
   n.closing_m_s = std::max(0.0, -relative_velocity.dot(n.plane.normal));
   n.device_gap_m = gap;
@@ -280,13 +281,13 @@ void ToolTouch::update(SimTime now, std::span<const BodyMotion> bodies, std::spa
   const bool lost = !has_message_ || now - last_message_ > ns(settings_.tool_stale_s);
   for (Near& n : near_) {
     if (!n.touching) continue;
-    const bool over = n.apart && now - n.apart_since >= ns(settings_.contact_end_time_s);
+    const bool over = n.apart && now - n.separated_since >= ns(settings_.contact_end_time_s);
     if (!over && !lost) continue;
-    emit(n, contact_event_t::END, lost && !n.apart ? now : n.apart_since, bodies, events);
+    emit(n, contact_event_t::END, lost && !n.apart ? now : n.separated_since, bodies, events);
     n.touching = false;
     n.apart = true;
     n.impulse_N_s = n.force_N = 0;
-    n.contact_id = ids_.fresh();  // the next touch is another contact
+    n.contact_id = ids_.next_id();  // the next touch is another contact
   }
   write_model(now, bodies);
 }

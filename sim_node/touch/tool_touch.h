@@ -94,7 +94,7 @@ class ToolTouch {
     sync::SimTime last_seen{};
     bool touching = false;
     bool apart = true;  // while touching: within the hysteresis of the end
-    sync::SimTime apart_since{}, last_hit{};
+    sync::SimTime separated_since{}, last_hit{};
     bool has_hit = false;
     double gap_m = 1, force_N = 0, impulse_N_s = 0;
     double device_gap_m = 1;  // in the newest message
@@ -135,8 +135,8 @@ class ToolTouch {
   // radius_m_: of a ball; 0 for a shaped tool. bound_m_: of the bounding sphere of the tool.
   double radius_m_, bound_m_, tool_mass_kg_;
   std::optional<ShapeSearch> shape_;
-  std::vector<ToolMeeting> meetings_;
-  double own_static_ = 1, own_dynamic_ = 1;  // friction of the tool's material
+  std::vector<ToolPointPair> pairs_near_;
+  double tool_static_friction_ = 1, tool_dynamic_friction_ = 1;  // friction of the tool's material
   Settings settings_;
   Ids& ids_;
   Mobility mobility_;

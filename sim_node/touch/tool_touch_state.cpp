@@ -25,7 +25,7 @@ void ToolTouch::archive(StateArchive& a) {
               "the state belongs to another scene");
     n.surface = static_cast<std::size_t>(surface);
     a(n.plane.point), a(n.plane.normal), a(n.plane.distance_m), a(n.last_seen), a(n.gap_m);
-    a(n.touching), a(n.apart), a(n.apart_since), a(n.has_hit), a(n.last_hit), a(n.force_N), a(n.impulse_N_s);
+    a(n.touching), a(n.apart), a(n.separated_since), a(n.has_hit), a(n.last_hit), a(n.force_N), a(n.impulse_N_s);
     a(n.device_gap_m), a(n.has_device_gap), a(n.closing_m_s);
     if (shape_) a(n.tool_point_m);
   });
@@ -43,8 +43,8 @@ void ToolTouch::rename() {
 void ToolTouch::set_friction(int body, double friction) {
   for (Surface& s : surfaces_) {
     if (s.traits.body != body) continue;
-    s.friction_static = std::sqrt(friction * own_static_);
-    s.friction_dynamic = std::sqrt(friction * own_dynamic_);
+    s.friction_static = std::sqrt(friction * tool_static_friction_);
+    s.friction_dynamic = std::sqrt(friction * tool_dynamic_friction_);
   }
 }
 

@@ -85,7 +85,7 @@ void Simulation::collect_group_tools() {
     if (tool.touch.touches()) group_tools_.push_back(tool.touch.group_tool());
 }
 
-void Simulation::take_model(std::size_t tool) {
+void Simulation::update_model(std::size_t tool) {
   tools_[tool].touch.exchange_model(models_[tool]);
   tools_[tool].push.applied_impulses(models_[tool].applied, kMaxApplied);
   models_[tool].applied_count = static_cast<std::int8_t>(models_[tool].applied.size());
@@ -103,7 +103,7 @@ void Simulation::detect_contacts() {
     touch.restrict_to(mechanics_->near_tools());
     touch.update(now(), motions, tools_[i].new_messages, events_);
     touch.describe(motions, tool_contacts_);
-    take_model(i);
+    update_model(i);
   }
   std::stable_sort(events_.begin(), events_.end(),
                    [](const contact_event_t& a, const contact_event_t& b) { return a.time_ns < b.time_ns; });
@@ -139,7 +139,7 @@ void Simulation::hold(std::span<const tool_state_t> messages) {
     tools_[i].touch.restrict_to(std::nullopt);
     tools_[i].touch.update_at_rest(now(), held_motions_, tools_[i].new_messages);
     tools_[i].push.hold(now(), tools_[i].new_messages, held_motions_);
-    take_model(i);
+    update_model(i);
   }
   place_tools(held_motions_);
   for (Tool& tool : tools_) tool.touch.describe(held_motions_, tool_contacts_);

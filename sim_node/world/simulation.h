@@ -48,7 +48,7 @@ class Simulation {
   void reset() { restore(begin_); }
   // Call after restore(): starts a new incarnation. Contacts continue under new ids, and tool messages of the old
   // incarnation are dropped, because the tools stay at their present poses.
-  void begin_life(std::int64_t incarnation);
+  void begin_incarnation(std::int64_t incarnation);
 
   // Replaces step() while the world is paused: tools touch the surfaces at their present poses, bodies do not yield,
   // and everything is published at rest. tools: as for step().
@@ -71,7 +71,7 @@ class Simulation {
     return held_ ? std::span<const BodyMotion>(held_motions_) : mechanics_->motions();
   }
   // Bodies that are computed ahead; null: none.
-  const Ahead* ahead() { return mechanics_->ahead(); }
+  const LookAhead* look_ahead() { return mechanics_->look_ahead(); }
   Game& game() { return game_; }
   // Access for changes at run time. Set friction with set_friction(), which also updates the tools.
   Mechanics& mechanics() { return *mechanics_; }
@@ -93,7 +93,7 @@ class Simulation {
     Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   };
   void detect_contacts();
-  void take_model(std::size_t tool);
+  void update_model(std::size_t tool);
   void place_tools(std::span<BodyMotion> motions);
   void collect_group_tools();
   void sort_messages(std::span<const tool_state_t> messages);

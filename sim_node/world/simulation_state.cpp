@@ -56,14 +56,14 @@ std::string Simulation::restore(std::span<const std::uint8_t> bytes) {
     archive(a);
     a.require(a.at_end(), "the state is longer than it should be");
     return "";
-  } catch (const BadState& e) {
+  } catch (const InvalidState& e) {
     StateArchive back(unwrap_state(before, fingerprint_));
     archive(back);
     return e.what();
   }
 }
 
-void Simulation::begin_life(std::int64_t incarnation) {
+void Simulation::begin_incarnation(std::int64_t incarnation) {
   ids_.rename(incarnation);
   mechanics_->rename(incarnation);
   for (contact_event_t& e : events_) {

@@ -16,7 +16,7 @@
 #include "sync/playout/policy.h"
 #include "sync/text/settings.h"
 #include "visual_node/lens/wall.h"
-#include "visual_node/overlay/kinds.h"
+#include "visual_node/overlay/overlay_set.h"
 #include "visual_node/overlay/plot_spec.h"
 
 namespace {

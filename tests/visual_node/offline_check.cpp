@@ -183,9 +183,9 @@ TEST_CASE("A log rendered twice gives identical files with every event in its fr
   const std::int64_t first_ns = std::stoll(line.substr(line.find(',') + 1));
   for (std::size_t i = 0; i < kHits.size(); ++i) {
     // The log stores whole microseconds and publishes each hit at a whole millisecond: the next frame shows it.
-    const double told_s = std::ceil(kHits[i] * 1000 - 1e-6) / 1000;
+    const double published_s = std::ceil(kHits[i] * 1000 - 1e-6) / 1000;
     INFO("hit at " << kHits[i]);
-    const double since_first_ns = static_cast<double>(kLogBegins_ns - first_ns) + told_s * 1e9;
+    const double since_first_ns = static_cast<double>(kLogBegins_ns - first_ns) + published_s * 1e9;
     CHECK(seen.at(static_cast<std::uint32_t>(i + 1)) == static_cast<double>(first_number) + std::ceil(since_first_ns / kPeriod_ns));
   }
 }
@@ -223,7 +223,7 @@ TEST_CASE("An existing file is not overwritten under any name") {
   for (const char* video : {"old.mp4", "run.lcmlog", "link.mp4"}) {
     const Done done = render(folder, "run.lcmlog", video);
     CHECK(done.status == 1);
-    CHECK_THAT(done.output, Catch::Contains("not written over"));
+    CHECK_THAT(done.output, Catch::Contains("not overwritten"));
   }
   const Done snapshot = render(folder, "run.lcmlog", "new.mp4", {"--snapshot", folder.file("run.lcmlog")});
   CHECK(snapshot.status == 1);
@@ -234,18 +234,18 @@ TEST_CASE("An existing file is not overwritten under any name") {
 
 TEST_CASE("A file that is not a log is rejected in one sentence without output files") {
   const Folder folder;
-  const auto refusal = [&](const std::string& log) {
+  const auto error_of = [&](const std::string& log) {
     const Done done = render(folder, log, "x.mp4");
     CHECK(done.status == 1);
     CHECK_FALSE(std::filesystem::exists(folder.file("x.mp4")));
     CHECK_FALSE(std::filesystem::exists(folder.file("x.mp4.part.mp4")));
     return done.output;
   };
-  CHECK_THAT(refusal("none.lcmlog"), Catch::Contains("cannot read"));
+  CHECK_THAT(error_of("none.lcmlog"), Catch::Contains("cannot read"));
   std::ofstream(folder.file("text.lcmlog")) << "This is a letter, and no log.\n";
-  CHECK_THAT(refusal("text.lcmlog"), Catch::Contains("no LCM log"));
+  CHECK_THAT(error_of("text.lcmlog"), Catch::Contains("no LCM log"));
   RecordedRun(std::make_unique<sync::FileSink>(folder.file("bare.lcmlog")), std::vector<sync::Asset>{}).finish();
-  CHECK_THAT(refusal("bare.lcmlog"), Catch::Contains("no scene"));
+  CHECK_THAT(error_of("bare.lcmlog"), Catch::Contains("no scene"));
   record(folder.file("run.lcmlog"));
   const Done no_video = render(folder, "run.lcmlog", "");
   CHECK(no_video.status == 1);

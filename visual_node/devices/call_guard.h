@@ -18,7 +18,7 @@ class CallGuard {
   CallGuard();
   // Runs `call`, under the watchdog. Never waits. Call from one thread only.
   template <class Call>
-  void during(Call&& call) {
+  void run_guarded(Call&& call) {
     calls_.fetch_add(1, std::memory_order_relaxed);  // odd: a call is in progress
     call();
     calls_.fetch_add(1, std::memory_order_relaxed);

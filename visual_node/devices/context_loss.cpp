@@ -4,7 +4,7 @@
 
 namespace tactus::visual {
 
-std::string why_context_is_lost() {
+std::string context_loss_reason() {
   // libepoxy aborts the process when the driver has none of these.
   if (epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness") ||
       epoxy_has_gl_extension("GL_ARB_robustness")) {
@@ -15,8 +15,8 @@ std::string why_context_is_lost() {
       default: return "the graphics device was reset";
     }
   }
-  // Other errors do not mean that the context is lost. The loop calls this once a frame, so few errors are left
-  // unread.
+  // Other errors do not mean that the context is lost. The loop calls this once a frame, so 16 reads drain nearly
+  // all pending errors.
   for (int i = 0; i < 16; ++i) {
     const GLenum error = glGetError();
     if (error == GL_NO_ERROR) return {};

@@ -8,6 +8,6 @@ namespace tactus::visual {
 
 // Checks the current context. Returns the reason of its loss as a clause, or an empty string while the driver
 // reports no loss.
-std::string why_context_is_lost();
+std::string context_loss_reason();
 
 }  // namespace tactus::visual

@@ -38,7 +38,7 @@ class Display {
   // True once the user has closed the window.
   virtual bool closed() = 0;
   // The reason why this display can no longer draw, as a clause; empty while it can.
-  virtual std::string lost() = 0;
+  virtual std::string loss_reason() = 0;
   // True when the display is lost because the display server is gone, so no new window can be opened.
   virtual bool server_gone() { return false; }
   // True when the screen adds a delay after the fence of show().
@@ -47,10 +47,10 @@ class Display {
   virtual Inputs take_inputs() { return {}; }
   virtual void toggle_full_screen() {}
   // One sentence about a request that could not be met; returned once, then empty.
-  std::string take_trouble() { return std::exchange(trouble_, {}); }
+  std::string take_warning() { return std::exchange(warning_, {}); }
 
  protected:
-  std::string description_, trouble_;
+  std::string description_, warning_;
 };
 
 // Makes an OpenGL 3.3 core context current in the calling thread. Tries the EGL device of this index (-1: no
@@ -63,6 +63,6 @@ std::unique_ptr<Display> make_window(const std::string& title, const WindowOptio
 
 // Configures a software renderer: one thread, so that the 1 kHz loops keep a core, unless the user has configured
 // it. Call this first in the process.
-void quiet_software_renderer();
+void configure_software_renderer();
 
 }  // namespace tactus::visual

@@ -36,7 +36,7 @@ class Headless : public Display {
   }
   void show(unsigned, int, int, bool) override {}
   bool closed() override { return false; }
-  std::string lost() override { return why_context_is_lost(); }
+  std::string loss_reason() override { return context_loss_reason(); }
   bool has_screen() const override { return false; }
 
  private:
@@ -120,7 +120,7 @@ std::unique_ptr<Display> try_candidate(const Candidate& c, std::string& reason) 
 
 }  // namespace
 
-void quiet_software_renderer() {
+void configure_software_renderer() {
   setenv("LP_NUM_THREADS", "1", 0);
   // The renderer allocates and frees some MB in blocks of 64 KiB for every picture. With these thresholds malloc
   // keeps the memory, so the kernel does not clear and map it again, which took a quarter of the time. The second

@@ -52,18 +52,18 @@ GamepadState state_of(const GLFWgamepadstate& s) {
 class Window : public Display {
  public:
   Window(const std::string& title, const WindowOptions& o) : windowed_width_(o.width), windowed_height_(o.height) {
-    if (!glfwInit()) refuse();
+    if (!glfwInit()) reject();
     choose_monitor(o.monitor);
     stay_on_monitor();
     // EGL has no stereo buffers; the native contexts of the desktop may have them.
     if (o.quad_buffer) open(title, o, GLFW_NATIVE_CONTEXT_API, true);
     if (!window_) {
       if (o.quad_buffer)
-        trouble_ += std::string(trouble_.empty() ? "" : "; ") +
+        warning_ += std::string(warning_.empty() ? "" : "; ") +
                     "this display has no buffer for each eye; both eyes are shown side by side";
       open(title, o, GLFW_EGL_CONTEXT_API, false);
     }
-    if (!window_) refuse();
+    if (!window_) reject();
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(0);  // the loop has its own pace and does not wait for the screen
     glfwSetWindowUserPointer(window_, this);
@@ -78,7 +78,7 @@ class Window : public Display {
     glfwSetWindowPosCallback(window_, [](GLFWwindow* w, int, int) {
       static_cast<Window*>(glfwGetWindowUserPointer(w))->cursor_.reset();
     });
-    survive_the_server();
+    handle_server_loss();
     description_ = std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + " in a window";
     if (o.full_screen) toggle_full_screen();
   }
@@ -87,20 +87,21 @@ class Window : public Display {
   }
 
   void show(unsigned framebuffer, int width, int height, bool halves) override {
-    if (!lost_ && !(lost_ = server_hung_up())) guard_.during([&] { put(framebuffer, width, height, halves); });
+    if (!lost_ && !(lost_ = server_hung_up()))
+      guard_.run_guarded([&] { put(framebuffer, width, height, halves); });
   }
   bool closed() override {
     return !lost_ && (glfwWindowShouldClose(window_) || (x11_window_ != 0 && destroyed_ == x11_window_));
   }
-  std::string lost() override {
-    return lost_ ? "the display server of the window is gone" : why_context_is_lost();
+  std::string loss_reason() override {
+    return lost_ ? "the display server of the window is gone" : context_loss_reason();
   }
   bool server_gone() override { return lost_; }
   bool has_screen() const override { return true; }
 
   Inputs take_inputs() override {
     Inputs inputs;
-    guard_.during([&] { inputs = inputs_now(); });
+    guard_.run_guarded([&] { inputs = inputs_now(); });
     return inputs;
   }
 
@@ -113,7 +114,7 @@ class Window : public Display {
     }
     const GLFWvidmode* mode = monitor_ ? glfwGetVideoMode(monitor_) : nullptr;
     if (!mode) {
-      trouble_ = "no monitor was found: the window keeps its size";
+      warning_ = "no monitor was found: the window keeps its size";
       return;
     }
     glfwGetWindowPos(window_, &windowed_x_, &windowed_y_);
@@ -185,7 +186,7 @@ class Window : public Display {
     GLFWmonitor** monitors = glfwGetMonitors(&count);
     if (count == 0) return;
     if (number >= count)
-      trouble_ = "there is no monitor " + std::to_string(number) + "; using the last of " + std::to_string(count) +
+      warning_ = "there is no monitor " + std::to_string(number) + "; using the last of " + std::to_string(count) +
                  ", counted from 0";
     monitor_ = monitors[std::clamp(number, 0, count - 1)];
   }
@@ -195,7 +196,7 @@ class Window : public Display {
     const GLFWvidmode* mode = monitor_ ? glfwGetVideoMode(monitor_) : nullptr;
     const int max_width = mode ? mode->width : 4096, max_height = mode ? mode->height : 4096;
     if (windowed_width_ > max_width || windowed_height_ > max_height)
-      trouble_ += std::string(trouble_.empty() ? "" : "; ") +
+      warning_ += std::string(warning_.empty() ? "" : "; ") +
                   "the window is larger than its monitor; it is reduced to " +
                   std::to_string(std::min(windowed_width_, max_width)) + " x " +
                   std::to_string(std::min(windowed_height_, max_height)) + " pixels";
@@ -223,7 +224,7 @@ class Window : public Display {
 
   // Xlib prints the cause and ends the process when its server goes away, unless both handlers are replaced. GLFW
   // loads Xlib at run time, so this function looks up its symbols and does not link it.
-  void survive_the_server() {
+  void handle_server_loss() {
     using ErrorHandler = int (*)(void*);
     using ExitHandler = void (*)(void*, void*);
     using SetProtocol = void* (*)(int (*)(void*, const ProtocolError*));
@@ -258,7 +259,7 @@ class Window : public Display {
     return ::poll(&fd, 1, 0) > 0 && (fd.revents & (POLLHUP | POLLERR | POLLNVAL));
   }
 
-  [[noreturn]] static void refuse() {
+  [[noreturn]] static void reject() {
     const char* why = nullptr;
     glfwGetError(&why);
     const std::string reason = why ? why : "unknown reason";

@@ -15,8 +15,9 @@ void EventLedger::set(const Settings& s) {
   uncertainty_ = sync::from_seconds(s.fence_uncertainty_s);
 }
 
-std::vector<contact_event_t> EventLedger::take(const std::vector<contact_event_t>& due, const sync::TimeMap& map,
-                                               sync::HostTime t, sync::Nanoseconds delay, sync::Nanoseconds held) {
+std::vector<contact_event_t> EventLedger::select_flashes(const std::vector<contact_event_t>& due,
+                                                         const sync::TimeMap& map, sync::HostTime t,
+                                                         sync::Nanoseconds delay, sync::Nanoseconds held) {
   std::vector<contact_event_t> to_flash;
   for (const contact_event_t& event : due) {
     if (!is_expected(event)) continue;

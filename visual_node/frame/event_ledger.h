@@ -35,9 +35,9 @@ class EventLedger {
   // Returns those of the events due for the frame expected at t that must flash. An event that would be shown too
   // late is dropped and reported as such. held: how long a profile has held the picture, so that no earlier frame
   // could show it.
-  std::vector<contact_event_t> take(const std::vector<contact_event_t>& due, const sync::TimeMap& map,
-                                    sync::HostTime t, sync::Nanoseconds delay = sync::Nanoseconds(0),
-                                    sync::Nanoseconds held = sync::Nanoseconds(0));
+  std::vector<contact_event_t> select_flashes(const std::vector<contact_event_t>& due, const sync::TimeMap& map,
+                                              sync::HostTime t, sync::Nanoseconds delay = sync::Nanoseconds(0),
+                                              sync::Nanoseconds held = sync::Nanoseconds(0));
   // The frame was presented at t: returns the reports of the events that it showed first, and of those dropped
   // since.
   std::vector<presentation_t> presented(sync::HostTime t);

@@ -65,13 +65,13 @@ Frame FrameComposer::frame(sync::HostTime now, std::int64_t number, sync::Nanose
   return frame;
 }
 
-Frame FrameComposer::frame(sync::HostTime now, const AgreedFrame& agreed, sync::HostTime newest_arrival) {
-  due_ = agreed.here;
+Frame FrameComposer::frame(sync::HostTime now, const LockedFrame& locked, sync::HostTime newest_arrival) {
+  due_ = locked.due_host_time;
   Frame frame;
-  frame.number = agreed.number;
-  draw(frame, now, agreed.delay, agreed.world, agreed.head, newest_arrival);
+  frame.number = locked.number;
+  draw(frame, now, locked.delay, locked.sim_time, locked.head, newest_arrival);
   for (PoseSample& sample : frame.samples)
-    if (sample.tool == head_tool_ && agreed.head_ns >= 0) sample.seq = agreed.head_seq;
+    if (sample.tool == head_tool_ && locked.head_ns >= 0) sample.seq = locked.head_seq;
   return frame;
 }
 
@@ -147,7 +147,7 @@ void FrameComposer::add_due_flashes(sync::HostTime t, sync::Nanoseconds delay, s
     early = std::clamp((next_presentation(t) - t) / 2, sync::Nanoseconds(0), std::max(delay, sync::Nanoseconds(0)));
   const sync::HostTime until = (view_ ? t : t - sync::from_seconds(settings_.drop_after_s)) - delay + early;
   const auto due = contacts_.take_events(map->to_sim(until) + sync::Nanoseconds(1));
-  for (const contact_event_t& event : ledger_.take(due, *map, t, delay, held)) flashes_.add(event, t);
+  for (const contact_event_t& event : ledger_.select_flashes(due, *map, t, delay, held)) flashes_.add(event, t);
 }
 
 std::vector<Eigen::Isometry3d> FrameComposer::body_poses(std::optional<sync::SimTime> t) {

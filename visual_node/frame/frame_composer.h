@@ -18,12 +18,12 @@
 #include "sync/resampling/body_history.h"
 #include "sync/resampling/contact_stream.h"
 #include "sync/resampling/pose_history.h"
-#include "visual_node/frame/agreed_frame.h"
 #include "visual_node/frame/display_gain.h"
 #include "visual_node/frame/event_ledger.h"
-#include "visual_node/frame/sample_status_counts.h"
+#include "visual_node/frame/locked_frame.h"
 #include "visual_node/frame/motion_marker.h"
 #include "visual_node/frame/render_time.h"
+#include "visual_node/frame/sample_status_counts.h"
 #include "visual_node/scene_view/flashes.h"
 #include "visual_node/scene_view/scene_view.h"
 
@@ -43,7 +43,7 @@ struct Frame {
 class FrameComposer {
  public:
   // Assumed time from latch to fence before the first frame: typical for a software renderer.
-  static constexpr sync::Nanoseconds kFlashesTake{1'000'000};
+  static constexpr sync::Nanoseconds kInitialFlashTime{1'000'000};
 
   // own: messages of another clock are read through its map, those of another run by arrival. late: the outcome
   // of an event that could not be shown in time. events: those of the node; null: its own, from push().
@@ -53,7 +53,7 @@ class FrameComposer {
   void set_schedule(Schedule schedule) { ledger_.set_schedule(std::move(schedule)); }
   // Sets the assumed times from tick to fence and from latch to fence until frames are measured. 0 for a log,
   // where drawing takes no time.
-  void foresee(sync::Nanoseconds frame, sync::Nanoseconds flashes) {
+  void set_expected_times(sync::Nanoseconds frame, sync::Nanoseconds flashes) {
     render_time_ = RenderTime(frame), latch_time_ = RenderTime(flashes);
   }
   void push(const world_state_t& m, sync::HostTime arrival) { bodies_.push(m, arrival); }
@@ -88,7 +88,7 @@ class FrameComposer {
               sync::HostTime newest_arrival = sync::HostTime{},
               sync::Nanoseconds view_delay = sync::Nanoseconds(0));
   // Draws the frame that all walls of the room agree on, with its own number, instant and head.
-  Frame frame(sync::HostTime now, const AgreedFrame& agreed, sync::HostTime newest_arrival);
+  Frame frame(sync::HostTime now, const LockedFrame& locked, sync::HostTime newest_arrival);
   // Call when the surfaces of that frame are drawn: adds everything above them, with the events that arrived
   // until now. held: how long a profile holds each picture; the picture shows the events up to its instant. 0:
   // one picture a tick.
@@ -128,7 +128,7 @@ class FrameComposer {
   std::optional<SceneView> view_;
   Flashes flashes_;
   EventLedger ledger_;
-  RenderTime render_time_, latch_time_{kFlashesTake};  // times from tick and from latch to the fence
+  RenderTime render_time_, latch_time_{kInitialFlashTime};  // times from tick and from latch to the fence
   sync::HostTime tick_{}, latched_{};
   std::optional<sync::HostTime> due_;  // of the frame in progress, when the walls agree on it
   std::optional<sync::HostTime> stale_since_;

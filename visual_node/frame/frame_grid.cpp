@@ -19,7 +19,7 @@ std::int64_t FrameGrid::first_due_at_or_after(RoomTime t) const {
 
 std::int64_t FrameGrid::next(RoomTime ready) const {
   const std::int64_t first = first_due_at_or_after(ready);
-  return last_ && first <= *last_ && *last_ - first < kPutBack ? *last_ + 1 : first;
+  return last_ && first <= *last_ && *last_ - first < kMaxFramesBack ? *last_ + 1 : first;
 }
 
 }  // namespace tactus::visual

@@ -11,7 +11,7 @@ namespace tactus::visual {
 class FrameGrid {
  public:
   // A frame this far before the last one means that the clock was put back, or is another clock.
-  static constexpr std::int64_t kPutBack = 3;
+  static constexpr std::int64_t kMaxFramesBack = 3;
 
   explicit FrameGrid(double rate_Hz = 60) : period_ns_(1e9 / rate_Hz) {}
 
@@ -22,7 +22,7 @@ class FrameGrid {
   // The first frame that is due at `ready` (the earliest time at which its picture can be seen) or later, and
   // that comes after the last picked frame.
   std::int64_t next(RoomTime ready) const;
-  std::int64_t pick(RoomTime ready) { return *(last_ = next(ready)); }
+  std::int64_t select_next(RoomTime ready) { return *(last_ = next(ready)); }
   std::optional<std::int64_t> last() const { return last_; }
   void restart() { last_.reset(); }
 

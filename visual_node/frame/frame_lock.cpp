@@ -23,7 +23,7 @@ void FrameLock::load(const scene_t& scene, const Settings& s) {
   max_wait_ = sync::from_seconds(s.lock_wait_s);
   grid_ = FrameGrid(s.rate_Hz);
   head_tool_ = head_of(scene);
-  heads_.forget();
+  heads_.clear();
 }
 
 void FrameLock::push(const world_state_t& m, sync::HostTime arrival) {
@@ -32,7 +32,7 @@ void FrameLock::push(const world_state_t& m, sync::HostTime arrival) {
   clock_count_ = clock_.clocks();
   grid_.restart();
   delay_.restart();
-  heads_.forget();
+  heads_.clear();
 }
 
 void FrameLock::push(const tool_state_t& m, sync::HostTime arrival) {
@@ -47,22 +47,22 @@ void FrameLock::push(const playout_t& m, sync::HostTime arrival) {
 }
 
 bool FrameLock::inputs_complete(sync::HostTime now) const {
-  if (!on()) return true;
-  const RoomTime by = clock_.room(now + likely(), now) - lag_;
+  if (!active()) return true;
+  const RoomTime by = clock_.to_room(now + expected_draw_time(), now) - lag_;
   const auto head = heads_.newest();
   return clock_.newest() >= by && (!head || *head >= by);
 }
 
-std::optional<AgreedFrame> FrameLock::begin(sync::HostTime now, sync::Nanoseconds profile_delay) {
-  if (!on()) return std::nullopt;
-  AgreedFrame frame;
+std::optional<LockedFrame> FrameLock::begin_frame(sync::HostTime now, sync::Nanoseconds profile_delay) {
+  if (!active()) return std::nullopt;
+  LockedFrame frame;
   const std::optional<std::int64_t> before = grid_.last();
-  frame.number = grid_.pick(clock_.room(now + likely() - kGrace, now));
+  frame.number = grid_.select_next(clock_.to_room(now + expected_draw_time() - kGrace, now));
   if (before) frame.skipped = std::clamp<std::int64_t>(frame.number - *before - 1, 0, kMaxSkipped);
   frame.due = grid_.due(frame.number);
-  frame.here = clock_.here(frame.due, now);
+  frame.due_host_time = clock_.to_host(frame.due, now);
   const RoomTime by = frame.due - lag_;
-  show_world(frame, by, profile_delay);
+  set_world_instant(frame, by, profile_delay);
   if (const auto sample = heads_.published_by(by - profile_delay)) {
     frame.head = extrapolate(*sample, frame.due - profile_delay);
     frame.head_ns = sample->publish_ns;
@@ -71,40 +71,40 @@ std::optional<AgreedFrame> FrameLock::begin(sync::HostTime now, sync::Nanosecond
   return frame;
 }
 
-sync::Nanoseconds FrameLock::lead() const {
+sync::Nanoseconds FrameLock::lead_time() const {
   const sync::Nanoseconds safe = surfaces_.second_longest() + flashes_.second_longest() + kMargin;
-  return std::max(likely(), std::min(safe, lag_ - kOnTheWay));
+  return std::max(expected_draw_time(), std::min(safe, lag_ - kMessageLatency));
 }
 
-void FrameLock::show_world(AgreedFrame& frame, RoomTime by, sync::Nanoseconds profile_delay) {
+void FrameLock::set_world_instant(LockedFrame& frame, RoomTime by, sync::Nanoseconds profile_delay) {
   const sim_clock_t published = clock_.published_by(by);
   // The host times of this map are the room's.
   const sync::TimeMap map{sync::sim_time(published.sim_ns), sync::host_time(published.host_ns), published.rate};
   const sync::HostTime due = sync::host_time(sync::to_ns(frame.due));
   frame.delay = delay_.at(frame.due, by) + profile_delay;
-  frame.world = map.to_sim(due - frame.delay);
+  frame.sim_time = map.to_sim(due - frame.delay);
   if (lockstep_Hz_ <= 0 || map.rate <= 0) return;
   const sync::HostTime step_begin = sync::Lockstep{map, lockstep_Hz_}.begin_of_iteration(due - frame.delay);
   frame.delay = due - step_begin;
-  frame.world = map.to_sim(step_begin);
+  frame.sim_time = map.to_sim(step_begin);
 }
 
-sync::HostTime FrameLock::latch_at(const AgreedFrame& frame) const {
-  return frame.here - flashes_.second_longest() - kMargin / 2;
+sync::HostTime FrameLock::latch_time(const LockedFrame& frame) const {
+  return frame.due_host_time - flashes_.second_longest() - kMargin / 2;
 }
 
-void FrameLock::drawn(sync::Nanoseconds surfaces, sync::Nanoseconds flashes) {
+void FrameLock::add_draw_times(sync::Nanoseconds surfaces, sync::Nanoseconds flashes) {
   surfaces_.add(surfaces);
   flashes_.add(flashes);
 }
 
 sync::HostTime FrameLock::next_begin(sync::HostTime now) const {
-  return clock_.here(grid_.due(grid_.next(clock_.room(now + lead(), now))), now) - lead();
+  return clock_.to_host(grid_.due(grid_.next(clock_.to_room(now + lead_time(), now))), now) - lead_time();
 }
 
-frame_shown_t FrameLock::message(const AgreedFrame& frame, std::int8_t stage) const {
+frame_shown_t FrameLock::message(const LockedFrame& frame, std::int8_t stage) const {
   frame_shown_t m{};
-  m.header.sim_time_ns = sync::to_ns(frame.world);
+  m.header.sim_time_ns = sync::to_ns(frame.sim_time);
   m.frame = frame.number;
   m.due_ns = sync::to_ns(frame.due);
   m.head_ns = frame.head_ns;
@@ -112,12 +112,12 @@ frame_shown_t FrameLock::message(const AgreedFrame& frame, std::int8_t stage) co
   return m;
 }
 
-std::string FrameLock::note(sync::HostTime now) const {
-  if (!on()) return "";
+std::string FrameLock::status_text(sync::HostTime now) const {
+  if (!active()) return "";
   if (!clock_.mapped(now)) return "walls by arrival: no map of sim_node's clock";
-  if (head_tool_ >= 0 && likely() + kOnTheWay > lag_)
+  if (head_tool_ >= 0 && expected_draw_time() + kMessageLatency > lag_)
     return "drawing takes longer than frame_lag: other walls have a newer head";
-  if (const int left = peers_.ignored(now); waits() && left > 0)
+  if (const int left = peers_.ignored(now); waits_for_peers() && left > 0)
     return "ignores " + std::to_string(left) + " of " + std::to_string(peers_.present(now)) + " walls";
   return "";
 }

@@ -14,10 +14,10 @@ namespace tactus::visual {
 class FramePeers {
  public:
   // A wall without a message for this long counts as absent.
-  static constexpr sync::Nanoseconds kGone{1'000'000'000};
-  // A wall with kGiveUp more late frames than frames in time is ignored, until kReturn frames in a row are in
-  // time. Design: a quarter of a second, and half a second, at 60 Hz.
-  static constexpr int kGiveUp = 15, kReturn = 30;
+  static constexpr sync::Nanoseconds kTimeout{1'000'000'000};
+  // A wall with kMaxLateFrames more late frames than frames in time is ignored, until kFramesToReturn frames in a
+  // row are in time. Design: a quarter of a second, and half a second, at 60 Hz.
+  static constexpr int kMaxLateFrames = 15, kFramesToReturn = 30;
   // More walls than a room has are an error.
   static constexpr std::size_t kMax = 64;
 
@@ -30,13 +30,13 @@ class FramePeers {
   // Number of present walls, and of those that are ignored.
   int present(sync::HostTime now) const;
   int ignored(sync::HostTime now) const;
-  void forget() { walls_.clear(); }
+  void clear() { walls_.clear(); }
 
  private:
   struct Wall {
     std::int64_t drawn = -1;
     sync::HostTime last_message{};
-    int late = 0;     // counts up to kGiveUp
+    int late = 0;     // counts up to kMaxLateFrames
     int in_time = 0;  // in a row, of an ignored wall
     bool ignored = false;
   };

@@ -26,7 +26,7 @@ class HeadSamples {
   static constexpr sync::Nanoseconds kSpan{1'000'000'000};
 
   void push(const tool_state_t& m, RoomTime sent);
-  void forget() { samples_.clear(); }
+  void clear() { samples_.clear(); }
   // Send time of the newest pose; nothing: there is none.
   std::optional<RoomTime> newest() const {
     return samples_.empty() ? std::nullopt : std::optional(samples_.back().sent);

@@ -1,5 +1,5 @@
 // Marker cells at the lower left edge of a frame. They name the frame and the contact events that flash in it, so
-// that the frames themselves record what was shown when. visual_node/marker.py reads them. Pure.
+// that the frames themselves record what was shown when. scripts/python/tactus/log/marker.py reads them. Pure.
 //
 // A cell is 4 x 4 pixels, black or white, so that it survives video compression; a row has 68 cells. Row 0 lies on
 // the lowest 4 pixels, row k above it. From the left, most significant bit first:

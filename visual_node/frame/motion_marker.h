@@ -1,5 +1,5 @@
 // Marker cells above those of frame/marker.h. They name the newest pose sample of each tool in the frame, so that
-// the latency from motion to pixel can be read from the frames themselves. visual_node/marker.py reads them. Pure.
+// the latency from motion to pixel can be read from the frames themselves. scripts/python/tactus/log/marker.py reads them. Pure.
 //
 // A row has the format of frame/marker_row.h, begins with 0 1 1 0 and continues with
 //   frame, 24 bits | index of the tool, 4 bits | low 28 bits of header.seq of its TOOL_STATE

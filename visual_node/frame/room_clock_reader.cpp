@@ -36,15 +36,15 @@ bool RoomClockReader::mapped(sync::HostTime now) const {
   return source == sync::SenderClock::ClockSource::kSame || source == sync::SenderClock::ClockSource::kMapped;
 }
 
-sync::HostTime RoomClockReader::here(RoomTime t, sync::HostTime now) const {
+sync::HostTime RoomClockReader::to_host(RoomTime t, sync::HostTime now) const {
   return sender_.to_host(sync::to_ns(t), now);
 }
 
 // Clocks drift relative to each other by at most 1e-4, so each round leaves that share of the difference: 3 ns of a
 // year.
-RoomTime RoomClockReader::room(sync::HostTime t, sync::HostTime now) const {
+RoomTime RoomClockReader::to_room(sync::HostTime t, sync::HostTime now) const {
   RoomTime guess = room_time(last_.publish_time_ns);
-  for (int round = 0; round < 4; ++round) guess += t - here(guess, now);
+  for (int round = 0; round < 4; ++round) guess += t - to_host(guess, now);
   return guess;
 }
 
@@ -55,7 +55,7 @@ RoomTime RoomClockReader::sent(const header_t& h, sync::HostTime arrival) const 
       if (const auto read = own_.maps->read(sync::host_time(h.publish_time_ns), h.clock, last_.clock))
         return room_time(sync::to_ns(read->time));
   }
-  return room(arrival, arrival);
+  return to_room(arrival, arrival);
 }
 
 sim_clock_t RoomClockReader::published_by(RoomTime t) const {

@@ -32,8 +32,8 @@ class RoomClockReader {
   // False: the clock is neither ours nor mapped; it is read by arrival, accurate to the smallest latency.
   bool mapped(sync::HostTime now) const;
   // Convert between the room's clock and this host's. Only when known().
-  sync::HostTime here(RoomTime t, sync::HostTime now) const;
-  RoomTime room(sync::HostTime t, sync::HostTime now) const;
+  sync::HostTime to_host(RoomTime t, sync::HostTime now) const;
+  RoomTime to_room(sync::HostTime t, sync::HostTime now) const;
   // Send time of a message whose sender may have a third clock.
   RoomTime sent(const header_t& header, sync::HostTime arrival) const;
 

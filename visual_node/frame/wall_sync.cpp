@@ -50,25 +50,25 @@ void WallSync::catch_up(const std::function<void(sync::HostTime)>& meanwhile) {
   last_ = now;
 }
 
-void WallSync::wait_for_latch(const AgreedFrame& frame) const {
-  sync::sleep_until(std::min(lock_.latch_at(frame), sync::host_now() + lock_.period()));
+void WallSync::wait_for_latch(const LockedFrame& frame) const {
+  sync::sleep_until(std::min(lock_.latch_time(frame), sync::host_now() + lock_.period()));
 }
 
-void WallSync::hold(const AgreedFrame& frame, const std::function<void(sync::HostTime)>& meanwhile) {
+void WallSync::hold(const LockedFrame& frame, const std::function<void(sync::HostTime)>& meanwhile) {
   const sync::HostTime ready = sync::host_now();
-  if (lock_.waits()) {
+  if (lock_.waits_for_peers()) {
     publish_stage(frame, frame_shown_t::READY);
     const sync::HostTime until = ready + lock_.max_wait();
-    for (sync::HostTime now = ready; now < until && !lock_.others_ready(frame, now); now = sync::host_now()) {
+    for (sync::HostTime now = ready; now < until && !lock_.peers_ready(frame, now); now = sync::host_now()) {
       node_.bus().wait(std::min(kPollInterval, until - now));
       meanwhile(node_.poll());
     }
   }
-  sync::sleep_until(std::min(frame.here, ready + lock_.period()));
+  sync::sleep_until(std::min(frame.due_host_time, ready + lock_.period()));
   lock_.shown(frame, sync::host_now());
 }
 
-void WallSync::publish_stage(const AgreedFrame& frame, std::int8_t stage) {
+void WallSync::publish_stage(const LockedFrame& frame, std::int8_t stage) {
   frame_shown_t m = lock_.message(frame, stage);
   node_.bus().publish(channels::kFrameShown, m);
 }

@@ -24,15 +24,15 @@ class WallSync {
   // received messages.
   void catch_up(const std::function<void(sync::HostTime)>& meanwhile);
   // Waits after the surfaces are drawn: the flashes are drawn late, so that they show the newest events.
-  void wait_for_latch(const AgreedFrame& frame) const;
+  void wait_for_latch(const LockedFrame& frame) const;
   // Holds a ready picture until it is due, with frame_lock=wait until the others have it too. meanwhile:
   // processes received messages.
-  void hold(const AgreedFrame& frame, const std::function<void(sync::HostTime)>& meanwhile);
+  void hold(const LockedFrame& frame, const std::function<void(sync::HostTime)>& meanwhile);
   // Reports that the picture is visible.
-  void shown(const AgreedFrame& frame) { publish_stage(frame, frame_shown_t::SHOWN); }
+  void shown(const LockedFrame& frame) { publish_stage(frame, frame_shown_t::SHOWN); }
 
  private:
-  void publish_stage(const AgreedFrame& frame, std::int8_t stage);
+  void publish_stage(const LockedFrame& frame, std::int8_t stage);
 
   sync::Node& node_;
   FrameLock& lock_;

@@ -40,7 +40,7 @@ std::string with_files(const std::string& log, const std::vector<std::string>& n
 }
 
 // #line keeps the line numbers of the file.
-std::string put_together(const std::vector<ShaderPiece>& pieces, const std::string& defines) {
+std::string concatenate(const std::vector<ShaderPiece>& pieces, const std::string& defines) {
   std::string text = "#version 330 core\n" + defines;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     std::string piece = pieces[i].text;
@@ -104,8 +104,8 @@ Program::Program(const std::string& vertex_name, std::string_view vertex, const 
 
 Program::Program(const std::vector<ShaderPiece>& vertex, const std::vector<ShaderPiece>& fragment,
                  const std::string& defines) {
-  const Shader v(GL_VERTEX_SHADER, put_together(vertex, defines), names_of(vertex)),
-      f(GL_FRAGMENT_SHADER, put_together(fragment, defines), names_of(fragment));
+  const Shader v(GL_VERTEX_SHADER, concatenate(vertex, defines), names_of(vertex)),
+      f(GL_FRAGMENT_SHADER, concatenate(fragment, defines), names_of(fragment));
   link(v.id(), f.id(), names_of(vertex).back() + " and " + names_of(fragment).back());
 }
 

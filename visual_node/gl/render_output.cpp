@@ -16,7 +16,7 @@ std::unique_ptr<Display> make_display(const Settings& s, bool window) {
 
 RenderOutput::RenderOutput(const Settings& s, bool window, MakeDisplay make)
     : settings_(s), window_(window), make_(std::move(make)), quality_(s), loop_rate_Hz_(s.rate_Hz) {
-  quiet_software_renderer();
+  configure_software_renderer();
   open();
 }
 
@@ -31,7 +31,7 @@ void RenderOutput::open() {
 
 std::string RenderOutput::recover(sync::HostTime now, const SceneView* view, const DrawList& sample) {
   if (!draws()) return {};
-  std::string why = display_->lost();
+  std::string why = display_->loss_reason();
   const bool hangs = unfinished_ >= kMaxUnfinished;
   if (why.empty() && hangs) why = "the graphics device does not finish what it is given";
   if (why.empty()) return {};
@@ -73,15 +73,15 @@ void RenderOutput::load(const SceneView& view, const DrawList& sample, const Set
 void RenderOutput::draw_scene(const DrawList& list, const sync::OutputValues& output) {
   if (!draws()) return;
   if (shaders_)
-    if (auto folder = shaders_->take()) renderer_->set_shader_folder(std::move(*folder));
+    if (auto folder = shaders_->take_change()) renderer_->set_shader_folder(std::move(*folder));
   renderer_->set_quality(degraded(quality_.quality(), output.value("resolution")));
   renderer_->draw_scene(list);
   finish();
 }
 
-void RenderOutput::draw_over(const DrawList& list) {
+void RenderOutput::draw_flashes_and_overlay(const DrawList& list) {
   if (!draws()) return;
-  renderer_->draw_over(list);
+  renderer_->draw_flashes_and_overlay(list);
   finish();
 }
 

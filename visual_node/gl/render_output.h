@@ -55,8 +55,10 @@ class RenderOutput {
   // recovery; empty: not needed. Throws std::runtime_error with one sentence when it fails.
   std::string recover(sync::HostTime now, const SceneView* view, const DrawList& sample);
 
-  // Returns and clears one sentence for each thing that could not be drawn as the scene says.
-  std::vector<std::string> take_trouble() { return draws() ? renderer_->take_trouble() : std::vector<std::string>(); }
+  // Returns and clears one sentence for each thing that could not be drawn as the scene specifies.
+  std::vector<std::string> take_warnings() {
+    return draws() ? renderer_->take_warnings() : std::vector<std::string>();
+  }
 
   // How long a profile holds each picture; 0: for the tick.
   sync::Nanoseconds held() const { return rate_.held(); }
@@ -64,7 +66,7 @@ class RenderOutput {
   // The two parts of a picture; each returns when the part is drawn. show() then presents it, which ends with a
   // fence.
   void draw_scene(const DrawList& list, const sync::OutputValues& output);
-  void draw_over(const DrawList& list);
+  void draw_flashes_and_overlay(const DrawList& list);
   void show();
 
  private:

@@ -54,8 +54,8 @@ Renderer::Renderer(int width, int height, int shadow_size, int samples)
   if (samples > 1) {
     samples_ = std::make_unique<MultisampleTarget>(width, height, samples);
     if (samples_->samples() != samples)
-      trouble_.push_back("anti_aliasing=" + std::to_string(samples) + ": this device supports " +
-                         std::to_string(samples_->samples()) + " samples a pixel");
+      warnings_.push_back("anti_aliasing=" + std::to_string(samples) + ": this device supports " +
+                          std::to_string(samples_->samples()) + " samples a pixel");
   }
   load({}, {});
 }
@@ -67,8 +67,8 @@ void Renderer::load(const std::vector<Triangles>& geometries, const Lighting& li
   coarse_shadow_ = shadows ? std::make_unique<ShadowTarget>(shadow_size_ / 2) : nullptr;
   library_ = ShaderLibrary(appearance.shaders);
   library_.set(folder_);
-  surfaces_ = SurfacePrograms(library_, appearance.looks, lighting, !reliefs.empty(), trouble_);
-  passes_ = ScreenPasses(library_, appearance.passes, picture_.width(), picture_.height(), trouble_);
+  surfaces_ = SurfacePrograms(library_, appearance.looks, lighting, !reliefs.empty(), warnings_);
+  passes_ = ScreenPasses(library_, appearance.passes, picture_.width(), picture_.height(), warnings_);
   colours_.clear(), normals_.clear();
   colours_.resize(appearance.pictures.size()), normals_.resize(appearance.pictures.size());
   const auto make = [&](auto& textures, int index, bool encoded) {
@@ -91,8 +91,8 @@ void Renderer::load(const std::vector<Triangles>& geometries, const Lighting& li
 void Renderer::set_shader_folder(ShaderFolder folder) {
   folder_ = std::move(folder);
   library_.set(folder_);
-  surfaces_.reload(library_, trouble_);
-  passes_.reload(library_, trouble_);
+  surfaces_.reload(library_, warnings_);
+  passes_.reload(library_, warnings_);
 }
 
 // Drivers compile a program when it first draws, and again for each new combination within a picture or the next
@@ -111,7 +111,7 @@ void Renderer::warm_up(DrawList list, const std::function<void()>& meanwhile) {
   const auto draw = [&](const DrawList& picture, const Quality& q) {
     quality_ = q;
     draw_scene(picture);
-    draw_over(picture);
+    draw_flashes_and_overlay(picture);
     wait();
     meanwhile();
   };
@@ -146,10 +146,10 @@ void Renderer::draw_scene(const DrawList& list) {
   if (!quality_.coarse) passes_.draw(picture_);
 }
 
-void Renderer::draw_over(const DrawList& list) {
+void Renderer::draw_flashes_and_overlay(const DrawList& list) {
   std::pair size{picture_.width(), picture_.height()};
   if (quality_.coarse)
-    size = bind_small();
+    size = bind_scaled_target();
   else
     picture_.bind();
   draw_glows(list, size);
@@ -201,7 +201,7 @@ void Renderer::draw_strokes(const DrawList& list) {
 }
 
 // Returns the size of the bound target.
-std::pair<int, int> Renderer::bind_small() const {
+std::pair<int, int> Renderer::bind_scaled_target() const {
   if (quality_.scale == 1) {
     picture_.bind();
     return {picture_.width(), picture_.height()};
@@ -251,7 +251,7 @@ void Renderer::draw_shadow(const DrawList& list, const ShadowTarget& shadow) {
 }
 
 void Renderer::draw_surfaces(const DrawList& list) {
-  const std::pair size = bind_small();
+  const std::pair size = bind_scaled_target();
   const bool resolves = samples_ != nullptr;
   if (resolves) samples_->bind(size.first, size.second);
   glEnable(GL_FRAMEBUFFER_SRGB);
@@ -345,11 +345,11 @@ void Renderer::draw_surface(const Batch& batch, bool translucent) {
   }
   if (look.colour_map >= 0) bind(kColourUnit, colours_[static_cast<std::size_t>(look.colour_map)]->id());
   if (look.normal_map >= 0) bind(kNormalUnit, normals_[static_cast<std::size_t>(look.normal_map)]->id());
-  translucent ? draw_through(batch) : draw_batch(batch);
+  translucent ? draw_translucent(batch) : draw_batch(batch);
 }
 
 // A transparent shape is also visible from the back: draw first its far side, then its near one.
-void Renderer::draw_through(const Batch& batch) {
+void Renderer::draw_translucent(const Batch& batch) {
   const auto at = static_cast<std::size_t>(batch.geometry);
   if (at >= geometries_.size() || !geometries_[at]->two_sided()) return draw_batch(batch);
   glEnable(GL_CULL_FACE);

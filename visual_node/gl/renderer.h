@@ -30,9 +30,9 @@ class Renderer {
   // does not compile keeps its previous version.
   void set_shader_folder(ShaderFolder folder);
   // Returns and clears one sentence for each failure of the last load or change of shaders.
-  std::vector<std::string> take_trouble() { return std::exchange(trouble_, {}); }
+  std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
   // Draws every kind of picture of the loaded scene with this list, so that no later picture takes longer than
-  // others, whatever its quality. A software renderer takes a quarter of a second for each kind of surface when
+  // others at any quality. A software renderer takes a quarter of a second for each kind of surface when
   // it first draws it. meanwhile: called regularly.
   void warm_up(
       DrawList list, const std::function<void()>& meanwhile = [] {});
@@ -41,14 +41,14 @@ class Renderer {
   // A picture is drawn in two parts, so that it can include late events: first the surfaces, which take nearly
   // all of the time, then flashes and overlay. Each call submits the work to the device and returns.
   void draw_scene(const DrawList& list);
-  void draw_over(const DrawList& list);
+  void draw_flashes_and_overlay(const DrawList& list);
   // Waits until the device has finished all submitted work; false when it does not within 1 s, or cannot.
   bool wait() const;
   const PictureTarget& picture() const { return picture_; }
 
  private:
   const ShadowTarget* shadow() const;
-  std::pair<int, int> bind_small() const;
+  std::pair<int, int> bind_scaled_target() const;
   void draw_shadow(const DrawList& list, const ShadowTarget& shadow);
   void draw_surfaces(const DrawList& list);
   void draw_surfaces(const DrawList& list, const Camera& camera);
@@ -58,7 +58,7 @@ class Renderer {
   void describe(const Program& surface, const Look& look, const DrawList& list, const Camera& camera) const;
   void draw_sky(const DrawList& list, const Camera& camera);
   void draw_surface(const Batch& batch, bool translucent);
-  void draw_through(const Batch& batch);
+  void draw_translucent(const Batch& batch);
   void draw_batch(const Batch& batch);
 
   PictureTarget picture_, small_;  // small_ is the target at less than full scale
@@ -73,7 +73,7 @@ class Renderer {
   std::vector<std::unique_ptr<SurfaceTexture>> colours_, normals_;  // by index of the picture; null: not used as such
   std::unique_ptr<EnvironmentTexture> environment_;
   bool sky_ = false;  // the environment is a picture and visible
-  std::vector<std::string> trouble_;
+  std::vector<std::string> warnings_;
   Program shadow_program_{"shadow"}, glow_{"glow"}, overlay_{"overlay"}, upscale_{"upscale"}, sky_program_{"sky"},
       stroke_{"stroke"};
   std::vector<std::unique_ptr<GeometryBuffer>> geometries_;

@@ -12,31 +12,32 @@
 namespace tactus::visual {
 
 ScreenPasses::ScreenPasses(const ShaderLibrary& library, const std::vector<pass_t>& passes, int width, int height,
-                           std::vector<std::string>& trouble)
+                           std::vector<std::string>& warnings)
     : passes_(passes), programs_(passes.size()) {
   if (passes.empty()) return;
   other_ = std::make_unique<PictureTarget>(width, height);
   quad_ = std::make_unique<QuadArray>(1);
-  make(library, trouble);
+  make(library, warnings);
 }
 
-void ScreenPasses::reload(const ShaderLibrary& library, std::vector<std::string>& trouble) {
-  make(library, trouble);
+void ScreenPasses::reload(const ShaderLibrary& library, std::vector<std::string>& warnings) {
+  make(library, warnings);
 }
 
-void ScreenPasses::make(const ShaderLibrary& library, std::vector<std::string>& trouble) {
+void ScreenPasses::make(const ShaderLibrary& library, std::vector<std::string>& warnings) {
   for (std::size_t i = 0; i < passes_.size(); ++i) try {
       const auto shade = library.fragment(passes_[i].shader);
       if (!shade)
         throw std::runtime_error("there is no shader " + passes_[i].shader + "; there are " + library.names());
       programs_[i] = std::make_unique<Program>(
-          std::vector{library.own("pass.vert")},
-          std::vector{library.own("pass.glsl"), *shade, library.own("pass_end.frag")}, "");
-      for (const std::string& misfit : misfits(library, passes_[i].shader, *programs_[i], passes_[i].uniforms))
-        trouble.push_back("pass " + passes_[i].shader + ": " + misfit);
+          std::vector{library.source_file("pass.vert")},
+          std::vector{library.source_file("pass.glsl"), *shade, library.source_file("pass_end.frag")}, "");
+      for (const std::string& misfit :
+           uniform_mismatches(library, passes_[i].shader, *programs_[i], passes_[i].uniforms))
+        warnings.push_back("pass " + passes_[i].shader + ": " + misfit);
     } catch (const std::exception& e) {
-      trouble.push_back("pass " + passes_[i].shader + ": " + e.what() +
-                        (programs_[i] ? "; the previous shader stays in use" : "; it is left out"));
+      warnings.push_back("pass " + passes_[i].shader + ": " + e.what() +
+                         (programs_[i] ? "; the previous shader stays in use" : "; it is left out"));
     }
 }
 

@@ -51,7 +51,7 @@ std::optional<ShaderPiece> ShaderLibrary::vertex(const std::string& name) const 
   return find(name + ".vert", "");
 }
 
-ShaderPiece ShaderLibrary::own(const std::string& file) const {
+ShaderPiece ShaderLibrary::source_file(const std::string& file) const {
   const auto piece = find(file, std::string(shader_text(file)));
   if (!piece) throw std::runtime_error("there is no shader " + file);
   return *piece;

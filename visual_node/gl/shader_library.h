@@ -25,7 +25,7 @@ class ShaderLibrary {
   // Its vertex shader, if it has one of its own.
   std::optional<ShaderPiece> vertex(const std::string& name) const;
   // A file of shaders/, or its replacement from the folder.
-  ShaderPiece own(const std::string& file) const;
+  ShaderPiece source_file(const std::string& file) const;
   // Names that looks and passes may use, for messages.
   std::string names() const;
 

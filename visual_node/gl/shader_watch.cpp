@@ -56,7 +56,7 @@ ShaderWatch::~ShaderWatch() {
   thread_.detach();
 }
 
-std::optional<ShaderFolder> ShaderWatch::take() {
+std::optional<ShaderFolder> ShaderWatch::take_change() {
   if (!shared_) return {};
   const std::unique_lock lock(shared_->mutex, std::try_to_lock);
   if (!lock.owns_lock() || !shared_->changed) return {};

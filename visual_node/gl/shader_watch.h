@@ -20,7 +20,7 @@ class ShaderWatch {
   ~ShaderWatch();
   // Returns the content of the folder if it has changed since the last call; it is at most half a second old.
   // Never blocks.
-  std::optional<ShaderFolder> take();
+  std::optional<ShaderFolder> take_change();
 
  private:
   struct Shared;

@@ -59,12 +59,13 @@ std::unique_ptr<Program> surface_program(const ShaderLibrary& library, const Loo
   const auto shade = library.fragment(look.shader);
   if (!shade) throw std::runtime_error("there is no shader " + look.shader + "; there are " + library.names());
   const auto moved = library.vertex(look.shader);
-  std::vector<ShaderPiece> vertex{library.own("surface.vert")};
-  if (look.shader == "gouraud") vertex.push_back(library.own("lamps.glsl"));
+  std::vector<ShaderPiece> vertex{library.source_file("surface.vert")};
+  if (look.shader == "gouraud") vertex.push_back(library.source_file("lamps.glsl"));
   if (moved) vertex.push_back(*moved);
-  vertex.push_back(library.own("surface_end.vert"));
-  const std::vector<ShaderPiece> fragment{library.own("surface.glsl"), library.own("lamps.glsl"),
-                                          library.own("shade.glsl"), *shade, library.own("surface_end.frag")};
+  vertex.push_back(library.source_file("surface_end.vert"));
+  const std::vector<ShaderPiece> fragment{library.source_file("surface.glsl"), library.source_file("lamps.glsl"),
+                                          library.source_file("shade.glsl"), *shade,
+                                          library.source_file("surface_end.frag")};
   auto program = std::make_unique<Program>(vertex, fragment, defines(look, relief, moved.has_value(), lighting));
   if (const unsigned block = glGetUniformBlockIndex(program->id(), "Lights"); block != GL_INVALID_INDEX)
     glUniformBlockBinding(program->id(), block, 0);

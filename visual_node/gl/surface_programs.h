@@ -13,36 +13,36 @@ namespace tactus::visual {
 class SurfacePrograms {
  public:
   SurfacePrograms() = default;
-  // Adds one sentence to `trouble` for each look whose shader cannot be used. Throws std::runtime_error when that
+  // Adds one sentence to `warnings` for each look whose shader cannot be used. Throws std::runtime_error when that
   // is the first look.
   SurfacePrograms(const ShaderLibrary& library, const std::vector<Look>& looks, const Lighting& lighting,
-                  bool reliefs, std::vector<std::string>& trouble);
+                  bool reliefs, std::vector<std::string>& warnings);
 
   // Rebuilds all programs after a change of shaders.
-  void reload(const ShaderLibrary& library, std::vector<std::string>& trouble);
+  void reload(const ShaderLibrary& library, std::vector<std::string>& warnings);
 
   int looks() const { return static_cast<int>(looks_.size()); }
-  const Look& look(int index) const { return looks_[within(index)]; }
+  const Look& look(int index) const { return looks_[valid_index(index)]; }
   const Program& program(int look, bool relief, bool shadows) const;
   // Calls each(program, look) once for each program with or without shadows.
   template <class Each>
   void for_each(bool shadows, Each each) const {
     for (std::size_t i = 0; i < looks_.size(); ++i)
       for (const bool relief : {false, true})
-        if (const auto& p = made_[index(i, relief, shadows)]) each(*p, looks_[i]);
+        if (const auto& p = programs_[index(i, relief, shadows)]) each(*p, looks_[i]);
   }
 
  private:
   static std::size_t index(std::size_t look, bool relief, bool shadows) { return 4 * look + 2 * relief + shadows; }
-  std::size_t within(int look) const {
+  std::size_t valid_index(int look) const {
     return look >= 0 && look < static_cast<int>(looks_.size()) ? static_cast<std::size_t>(look) : 0;
   }
-  void make(const ShaderLibrary& library, std::vector<std::string>& trouble);
+  void make(const ShaderLibrary& library, std::vector<std::string>& warnings);
 
   std::vector<Look> looks_;
   Lighting lighting_;
   bool reliefs_ = false;
-  std::vector<std::unique_ptr<Program>> made_;
+  std::vector<std::unique_ptr<Program>> programs_;
 };
 
 }  // namespace tactus::visual

@@ -55,7 +55,7 @@ void finish(unsigned kind, unsigned wrap) {
 
 }  // namespace
 
-Eigen::Vector2d place_around(const Eigen::Vector3d& direction) {
+Eigen::Vector2d equirectangular_uv(const Eigen::Vector3d& direction) {
   const Eigen::Vector3d d = direction.normalized();
   return {0.5 - std::atan2(d.y(), d.x()) / (2 * std::numbers::pi),
           0.5 + std::asin(std::clamp(d.z(), -1.0, 1.0)) / std::numbers::pi};
@@ -79,7 +79,7 @@ EnvironmentTexture::EnvironmentTexture(const Raster& around) {
     for (int row = 0; row < edge; ++row)
       for (int column = 0; column < edge; ++column) {
         const double s = 2 * (column + 0.5) / edge - 1, t = 2 * (row + 0.5) / edge - 1;
-        const auto texel = sample(around, place_around(through(face, s, t)));
+        const auto texel = sample(around, equirectangular_uv(through(face, s, t)));
         std::copy(texel.begin(), texel.end(), rgba.begin() + 4 * (row * edge + column));
       }
     glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<unsigned>(face), 0, GL_SRGB8_ALPHA8, edge, edge, 0,

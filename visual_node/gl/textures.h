@@ -37,6 +37,6 @@ class EnvironmentTexture {
 };
 
 // The place of a direction in that picture: shares of width and height from the lower left, 0 .. 1.
-Eigen::Vector2d place_around(const Eigen::Vector3d& direction);
+Eigen::Vector2d equirectangular_uv(const Eigen::Vector3d& direction);
 
 }  // namespace tactus::visual

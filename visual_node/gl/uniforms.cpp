@@ -12,8 +12,8 @@ constexpr std::array<const char*, 4> kNames{"a float", "a vec2", "a vec3", "a ve
 
 }  // namespace
 
-std::vector<std::string> misfits(const ShaderLibrary& library, const std::string& shader, const Program& program,
-                                 const std::vector<uniform_t>& uniforms) {
+std::vector<std::string> uniform_mismatches(const ShaderLibrary& library, const std::string& shader,
+                                            const Program& program, const std::vector<uniform_t>& uniforms) {
   std::vector<std::string> sentences;
   const auto fragment = library.fragment(shader), vertex = library.vertex(shader);
   for (const uniform_t& u : uniforms) {

@@ -11,7 +11,7 @@ namespace tactus::visual {
 
 // One sentence for each uniform that the program of this shader would ignore: its source does not contain the name,
 // or declares another type by that name.
-std::vector<std::string> misfits(const ShaderLibrary& library, const std::string& shader, const Program& program,
-                                 const std::vector<uniform_t>& uniforms);
+std::vector<std::string> uniform_mismatches(const ShaderLibrary& library, const std::string& shader,
+                                            const Program& program, const std::vector<uniform_t>& uniforms);
 
 }  // namespace tactus::visual

@@ -29,24 +29,24 @@ Lens::Lens(const scene_t& scene, const Settings& settings, int width, int height
     : width_(width),
       near_m_(settings.near_m),
       far_m_(std::max(settings.far_m, 2 * settings.near_m)),
-      rest_(to_eigen(scene.camera)) {
+      default_pose_(to_eigen(scene.camera)) {
   const double fov = settings.fov_rad > 0       ? settings.fov_rad
                      : scene.camera_fov_rad > 0 ? scene.camera_fov_rad
                                                 : kDefaultFov_rad;
-  plain_ = make_camera(rest_, std::min(fov, 3.0), width, height, near_m_, far_m_);
+  default_camera_ = make_camera(default_pose_, std::min(fov, 3.0), width, height, near_m_, far_m_);
   half_width_ = std::tan(std::min(fov, 3.0) / 2);
   half_height_ = half_width_ * height / width;
   try {
     place_room(scene, settings);
   } catch (const std::runtime_error& wrong) {
-    trouble_ = std::string(wrong.what()) + "; the scene's camera is used instead";
+    warning_ = std::string(wrong.what()) + "; the scene's camera is used instead";
   }
 }
 
 void Lens::place_room(const scene_t& scene, const Settings& settings) {
   if (settings.room == "none") return;
   const Room room = load_room(settings.room);
-  const Wall* const wall = settings.wall == "first" ? &room.walls.front() : room.named(settings.wall);
+  const Wall* const wall = settings.wall == "first" ? &room.walls.front() : room.find_wall(settings.wall);
   if (!wall) {
     std::string all;
     for (const Wall& w : room.walls) all += (all.empty() ? "" : ", ") + w.name;
@@ -56,19 +56,19 @@ void Lens::place_room(const scene_t& scene, const Settings& settings) {
   wall_ = moved(*wall, (room.walls.size() > 1 ? heading(camera) : camera) * Eigen::Translation3d(-room.eye));
 }
 
-Camera Lens::at(const std::optional<Eigen::Isometry3d>& head) const {
-  if (wall_) return off_axis(*wall_, head.value_or(rest_).translation(), width_, near_m_, far_m_);
-  return head ? moved(plain_, *head) : plain_;
+Camera Lens::camera(const std::optional<Eigen::Isometry3d>& head) const {
+  if (wall_) return off_axis(*wall_, head.value_or(default_pose_).translation(), width_, near_m_, far_m_);
+  return head ? moved(default_camera_, *head) : default_camera_;
 }
 
-std::array<Camera, 2> Lens::eyes(const std::optional<Eigen::Isometry3d>& head, double apart_m,
+std::array<Camera, 2> Lens::eyes(const std::optional<Eigen::Isometry3d>& head, double eye_distance_m,
                                  double window_m) const {
-  const Eigen::Isometry3d at = head.value_or(rest_);
+  const Eigen::Isometry3d at = head.value_or(default_pose_);
   const Wall window{"", at * Eigen::Vector3d(window_m, half_width_ * window_m, -half_height_ * window_m),
                     at * Eigen::Vector3d(window_m, -half_width_ * window_m, -half_height_ * window_m),
                     at * Eigen::Vector3d(window_m, half_width_ * window_m, half_height_ * window_m)};
   const Wall& wall = wall_ ? *wall_ : window;
-  const auto [left, right] = visual::eyes(at, apart_m);
+  const auto [left, right] = visual::eyes(at, eye_distance_m);
   return {off_axis(wall, left, width_, near_m_, far_m_), off_axis(wall, right, width_, near_m_, far_m_)};
 }
 

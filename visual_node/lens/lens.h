@@ -18,12 +18,13 @@ class Lens {
   Lens(const scene_t& scene, const Settings& settings, int width, int height);
 
   // head: T_world_head, x ahead, z up; nothing: the pose of the scene's camera.
-  Camera at(const std::optional<Eigen::Isometry3d>& head) const;
+  Camera camera(const std::optional<Eigen::Isometry3d>& head) const;
   // Cameras of the left and the right eye. Without a wall both look through a window of the picture's size, which
   // moves with the head: both eyes see a point at the window's distance at the same place.
-  std::array<Camera, 2> eyes(const std::optional<Eigen::Isometry3d>& head, double apart_m, double window_m) const;
+  std::array<Camera, 2> eyes(const std::optional<Eigen::Isometry3d>& head, double eye_distance_m,
+                             double window_m) const;
   // One sentence about a room that cannot be used; empty: none. Then the scene's camera is used.
-  const std::string& trouble() const { return trouble_; }
+  const std::string& warning() const { return warning_; }
 
  private:
   void place_room(const scene_t& scene, const Settings& settings);
@@ -31,10 +32,10 @@ class Lens {
   int width_;
   double half_width_, half_height_;  // of the scene's camera, tangents of the half angles
   double near_m_, far_m_;
-  Camera plain_;
-  Eigen::Isometry3d rest_;    // T_world_camera, of the scene
+  Camera default_camera_;
+  Eigen::Isometry3d default_pose_;  // T_world_camera, of the scene
   std::optional<Wall> wall_;  // in the world frame
-  std::string trouble_;
+  std::string warning_;
 };
 
 }  // namespace tactus::visual

@@ -6,7 +6,7 @@ namespace tactus::visual {
 
 Camera off_axis(const Wall& wall, const Eigen::Vector3d& eye, int width, double near_m, double far_m) {
   const Eigen::Vector3d right = wall.right(), up = wall.up(), normal = wall.normal();
-  const double before_m = (eye - wall.lower_left).dot(normal), away_m = std::max(before_m, kNearest_m);
+  const double before_m = (eye - wall.lower_left).dot(normal), away_m = std::max(before_m, kMinEyeDistance_m);
   const Eigen::Vector3d origin = eye + (away_m - before_m) * normal;
   // Extent of the wall seen origin there, projected onto the near plane.
   const auto near = [&](const Eigen::Vector3d& axis, const Eigen::Vector3d& corner) {
@@ -30,8 +30,8 @@ Camera off_axis(const Wall& wall, const Eigen::Vector3d& eye, int width, double 
   return camera;
 }
 
-std::array<Eigen::Vector3d, 2> eyes(const Eigen::Isometry3d& head, double apart_m) {
-  const Eigen::Vector3d left = head.translation() + 0.5 * apart_m * head.linear().col(1);
+std::array<Eigen::Vector3d, 2> eyes(const Eigen::Isometry3d& head, double eye_distance_m) {
+  const Eigen::Vector3d left = head.translation() + 0.5 * eye_distance_m * head.linear().col(1);
   return {left, 2 * head.translation() - left};
 }
 

@@ -10,13 +10,13 @@ namespace tactus::visual {
 
 // Maps the corners of the wall to those of the picture (Kooima, "Generalized Perspective Projection", 2009). wall
 // and eye: in the world frame. near_m and far_m: depth along the normal of the wall. An eye in the plane of the
-// wall or behind it is moved to kNearest_m before it.
+// wall or behind it is moved to kMinEyeDistance_m before it.
 Camera off_axis(const Wall& wall, const Eigen::Vector3d& eye, int width, double near_m, double far_m);
 
-inline constexpr double kNearest_m = 0.01;  // design: no eye comes closer to a screen
+inline constexpr double kMinEyeDistance_m = 0.01;  // design: no eye comes closer to a screen
 
-// head: T_world_head, x ahead, y to the left, z up. Returns the left and the right eye, apart_m apart along the
-// axis through both ears: a point at infinity has that same distance between the two pictures.
-std::array<Eigen::Vector3d, 2> eyes(const Eigen::Isometry3d& head, double apart_m);
+// head: T_world_head, x ahead, y to the left, z up. Returns the left and the right eye, eye_distance_m apart along
+// the axis through both ears: a point at infinity has that same distance between the two pictures.
+std::array<Eigen::Vector3d, 2> eyes(const Eigen::Isometry3d& head, double eye_distance_m);
 
 }  // namespace tactus::visual

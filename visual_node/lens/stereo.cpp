@@ -2,9 +2,9 @@
 
 namespace tactus::visual {
 
-std::vector<View> views_of(const Lens& lens, const std::optional<Eigen::Isometry3d>& head,
-                           const Settings& settings) {
-  if (settings.stereo == "off") return {{.camera = lens.at(head)}};
+std::vector<View> stereo_views(const Lens& lens, const std::optional<Eigen::Isometry3d>& head,
+                               const Settings& settings) {
+  if (settings.stereo == "off") return {{.camera = lens.camera(head)}};
   const auto [left, right] = lens.eyes(head, settings.eye_distance_m, settings.stereo_distance_m);
   if (settings.stereo == "top_bottom")
     return {{.camera = left, .y = 0.5f, .height = 0.5f}, {.camera = right, .height = 0.5f}};

@@ -19,7 +19,7 @@ struct View {
 // The views for the setting `stereo`; one full view when it is off. Each half (left and right, or upper and lower)
 // holds the whole wall, squeezed: stereo displays stretch it. Anaglyph: red for the left eye, green and blue for
 // the right one. Quad-buffer: also halves, which the display shows to one eye each.
-std::vector<View> views_of(const Lens& lens, const std::optional<Eigen::Isometry3d>& head,
-                           const Settings& settings);
+std::vector<View> stereo_views(const Lens& lens, const std::optional<Eigen::Isometry3d>& head,
+                               const Settings& settings);
 
 }  // namespace tactus::visual

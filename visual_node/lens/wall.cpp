@@ -22,7 +22,7 @@ constexpr double kMinSide_m = 0.01;
 constexpr std::size_t kMaxWalls = 16;
 constexpr std::uintmax_t kMaxBytes = 65536;  // design: far more than 16 walls take
 
-[[noreturn]] void refuse(const std::string& name, const std::string& why) {
+[[noreturn]] void reject(const std::string& name, const std::string& why) {
   throw std::runtime_error("the room " + name + " " + why +
                            "; choose desk, cave4, cave6 or another file of walls");
 }
@@ -44,7 +44,7 @@ Wall moved(const Wall& wall, const Eigen::Isometry3d& by) {
   return {wall.name, by * wall.lower_left, by * wall.lower_right, by * wall.upper_left};
 }
 
-const Wall* Room::named(const std::string& name) const {
+const Wall* Room::find_wall(const std::string& name) const {
   const auto found = std::find_if(walls.begin(), walls.end(), [&](const Wall& w) { return w.name == name; });
   return found == walls.end() ? nullptr : &*found;
 }
@@ -54,32 +54,32 @@ Room parse_room(const std::string& csv, const std::string& name) {
   std::string line;
   std::getline(lines, line);
   if (sync::csv_cells(line) != sync::csv_cells(kColumns))
-    refuse(name, std::string("does not begin with the line ") + kColumns);
+    reject(name, std::string("does not begin with the line ") + kColumns);
   Room room;
   bool has_eye = false;
   while (std::getline(lines, line)) {
     const std::vector<std::string> row = sync::csv_cells(line);
     if (row.size() == 1 && row[0].empty()) continue;
     const std::string which = "row " + std::to_string(room.walls.size() + 1);
-    if (row.size() != 10) refuse(name, "does not have ten columns in its " + which);
+    if (row.size() != 10) reject(name, "does not have ten columns in its " + which);
     if (row[0] == "eye") {
       const auto at = numbers<3>(row);
-      if (!at || has_eye) refuse(name, "does not have one row eye with three numbers");
+      if (!at || has_eye) reject(name, "does not have one row eye with three numbers");
       room.eye = {(*at)[0], (*at)[1], (*at)[2]};
       has_eye = true;
       continue;
     }
     const auto n = numbers<9>(row);
-    if (row[0].empty() || !n) refuse(name, "does not have a name and nine numbers in its " + which);
+    if (row[0].empty() || !n) reject(name, "does not have a name and nine numbers in its " + which);
     const Wall wall{row[0], {(*n)[0], (*n)[1], (*n)[2]}, {(*n)[3], (*n)[4], (*n)[5]}, {(*n)[6], (*n)[7], (*n)[8]}};
     if (!(wall.width_m() >= kMinSide_m) || !(wall.height_m() >= kMinSide_m) ||
         !(std::abs(wall.right().dot(wall.up())) <= kSquare))
-      refuse(name, "does not have a rectangle of at least 1 cm in its " + which + " (" + wall.name + ")");
-    if (room.named(wall.name)) refuse(name, "has two walls " + wall.name);
+      reject(name, "does not have a rectangle of at least 1 cm in its " + which + " (" + wall.name + ")");
+    if (room.find_wall(wall.name)) reject(name, "has two walls " + wall.name);
     room.walls.push_back(wall);
-    if (room.walls.size() > kMaxWalls) refuse(name, "has more than " + std::to_string(kMaxWalls) + " walls");
+    if (room.walls.size() > kMaxWalls) reject(name, "has more than " + std::to_string(kMaxWalls) + " walls");
   }
-  if (room.walls.empty()) refuse(name, "has no wall");
+  if (room.walls.empty()) reject(name, "has no wall");
   return room;
 }
 
@@ -87,7 +87,7 @@ Room load_room(const std::string& name_or_path) {
   if (const std::string_view known = room_text(name_or_path + ".csv"); !known.empty())
     return parse_room(std::string(known), name_or_path);
   const auto text = sync::read_small_file(name_or_path, kMaxBytes);
-  if (!text) refuse(name_or_path, "cannot be read");
+  if (!text) reject(name_or_path, "cannot be read");
   return parse_room(*text, name_or_path);
 }
 

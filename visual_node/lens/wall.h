@@ -28,7 +28,7 @@ struct Room {
   std::vector<Wall> walls;
 
   // Null: no wall of that name.
-  const Wall* named(const std::string& name) const;
+  const Wall* find_wall(const std::string& name) const;
 };
 
 // Loads desk, cave4 (left, front, right, floor), cave6 (also back and ceiling), or a CSV file with one row a wall.

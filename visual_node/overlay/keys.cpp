@@ -10,21 +10,21 @@ struct Key {
   const char* description;
 };
 constexpr Key kKeys[] = {
-    {' ', "space", {Act::kPauseOrResume}, "pause, resume"},
-    {'.', ".", {Act::kStep}, "one step of 1 ms"},
-    {'R', "R", {Act::kReset}, "restart"},
-    {'1', "1", {Act::kOverlay, Overlay::kContacts}, "contacts"},
-    {'2', "2", {Act::kOverlay, Overlay::kForces}, "forces"},
-    {'3', "3", {Act::kOverlay, Overlay::kTools}, "tools"},
-    {'4', "4", {Act::kOverlay, Overlay::kGroups}, "groups"},
-    {'5', "5", {Act::kOverlay, Overlay::kAges}, "ages"},
-    {'6', "6", {Act::kOverlay, Overlay::kDegradation}, "degradation"},
-    {'7', "7", {Act::kOverlay, Overlay::kReport}, "report"},
-    {'8', "8", {Act::kOverlay, Overlay::kPlots}, "plots"},
-    {'H', "H", {Act::kOverlay, Overlay::kHelp}, "this help"},
-    {kF11, "F11", {Act::kFullScreen}, "full screen"},
-    {'F', "F", {Act::kFullScreen}, "full screen"},
-    {kEscape, "escape", {Act::kClose}, "close"},
+    {' ', "space", {Action::kPauseOrResume}, "pause, resume"},
+    {'.', ".", {Action::kStep}, "one step of 1 ms"},
+    {'R', "R", {Action::kReset}, "restart"},
+    {'1', "1", {Action::kOverlay, Overlay::kContacts}, "contacts"},
+    {'2', "2", {Action::kOverlay, Overlay::kForces}, "forces"},
+    {'3', "3", {Action::kOverlay, Overlay::kTools}, "tools"},
+    {'4', "4", {Action::kOverlay, Overlay::kGroups}, "groups"},
+    {'5', "5", {Action::kOverlay, Overlay::kAges}, "ages"},
+    {'6', "6", {Action::kOverlay, Overlay::kDegradation}, "degradation"},
+    {'7', "7", {Action::kOverlay, Overlay::kReport}, "report"},
+    {'8', "8", {Action::kOverlay, Overlay::kPlots}, "plots"},
+    {'H', "H", {Action::kOverlay, Overlay::kHelp}, "this help"},
+    {kF11, "F11", {Action::kFullScreen}, "full screen"},
+    {'F', "F", {Action::kFullScreen}, "full screen"},
+    {kEscape, "escape", {Action::kClose}, "close"},
 };
 
 }  // namespace

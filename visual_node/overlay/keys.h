@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "visual_node/overlay/kinds.h"
+#include "visual_node/overlay/overlay_set.h"
 
 namespace tactus::visual {
 
-enum class Act { kPauseOrResume, kStep, kReset, kFullScreen, kClose, kOverlay };
+enum class Action { kPauseOrResume, kStep, kReset, kFullScreen, kClose, kOverlay };
 struct KeyAction {
-  Act act;
+  Action action;
   Overlay overlay = Overlay::kHelp;  // for kOverlay
   bool operator==(const KeyAction&) const = default;
 };

@@ -23,14 +23,14 @@ void LiveQuestions::step() {
 }
 
 bool LiveQuestions::press(int key, sync::HostTime now) {
-  const auto press = press_of(key);
+  const auto press = question_input(key);
   const bool consumed = enabled_ && press && dialog_.press(*press, "key", now);
   send();
   return consumed;
 }
 
 bool LiveQuestions::press(Button button, sync::HostTime now) {
-  const bool consumed = enabled_ && dialog_.press(press_of(button), "gamepad", now);
+  const bool consumed = enabled_ && dialog_.press(question_input(button), "gamepad", now);
   send();
   return consumed;
 }

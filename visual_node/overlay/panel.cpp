@@ -49,7 +49,7 @@ std::size_t lines_in(float height, float size) {
   return static_cast<std::size_t>(std::max(0.0f, (height - 4 * size) / line_step(size)));
 }
 
-void append_report(std::vector<std::string>& lines, const PanelFacts& f) {
+void append_report(std::vector<std::string>& lines, const PanelData& f) {
   lines.push_back(text("contacts  %zu", f.contacts));
   const auto physics = f.physics.median();
   if (physics && f.physics.nominal_rate_Hz() > 0)
@@ -63,7 +63,7 @@ void append_report(std::vector<std::string>& lines, const PanelFacts& f) {
                       : "rendering not measured");
 }
 
-void append_ages(std::vector<std::string>& lines, const PanelFacts& f) {
+void append_ages(std::vector<std::string>& lines, const PanelData& f) {
   for (const InputLine& i : f.inputs) {
     const std::string status = i.status == sync::SampleStatus::kNone ? "" : std::string(" ") + sync::to_string(i.status);
     lines.push_back(i.age.age < sync::Nanoseconds(0) ? i.channel + " nothing yet" + status
@@ -71,7 +71,7 @@ void append_ages(std::vector<std::string>& lines, const PanelFacts& f) {
   }
 }
 
-void append_degradation(std::vector<std::string>& lines, const PanelFacts& f) {
+void append_degradation(std::vector<std::string>& lines, const PanelData& f) {
   lines.push_back("profile   " + (f.profile.empty() ? "none" : f.profile));
   lines.push_back(text("delay     %.0f ms, profile %.0f ms", ms(f.delay), ms(f.profile_delay)));
   if (const double Hz = f.output.value("frame_rate"); Hz > 0) lines.push_back(text("pictures  %.3g Hz", Hz));
@@ -96,7 +96,7 @@ void TickTimes::push(const node_health_t& m) {
   newest_ = m;
 }
 
-std::vector<std::string> panel_lines(const OverlaySet& on, const PanelFacts& f) {
+std::vector<std::string> panel_lines(const OverlaySet& on, const PanelData& f) {
   std::vector<std::string> lines;
   if (on.on(Overlay::kReport)) append_report(lines, f);
   if (on.on(Overlay::kGroups)) {
@@ -110,7 +110,7 @@ std::vector<std::string> panel_lines(const OverlaySet& on, const PanelFacts& f) 
   return lines;
 }
 
-float append_lines(std::vector<Rect>& overlay, const std::vector<std::string>& lines, const TextRoom& room,
+float append_lines(std::vector<Rect>& overlay, const std::vector<std::string>& lines, const TextArea& room,
                    float largest) {
   float size = std::max(1.0f, largest);
   std::vector<std::string> all = wrapped(lines, letters_in(room.right - room.x, size));

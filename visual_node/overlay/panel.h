@@ -7,9 +7,9 @@
 #include <tactus/node_health_t.hpp>
 #include <vector>
 
-#include "sync/resampling/sample_status.h"
 #include "sync/node/modality_endpoint.h"
-#include "visual_node/overlay/kinds.h"
+#include "sync/resampling/sample_status.h"
+#include "visual_node/overlay/overlay_set.h"
 #include "visual_node/scene_view/draw_list.h"
 
 namespace tactus::visual {
@@ -34,7 +34,7 @@ struct InputLine {
   sync::SampleStatus status = sync::SampleStatus::kNone;  // status of the drawn data; kNone: the channel is not resampled
 };
 
-struct PanelFacts {
+struct PanelData {
   std::size_t contacts = 0;
   TickTimes physics;
   sync::Nanoseconds rendering{0}, period{0};
@@ -46,16 +46,16 @@ struct PanelFacts {
   sync::OutputValues output;
 };
 
-std::vector<std::string> panel_lines(const OverlaySet& on, const PanelFacts& facts);
+std::vector<std::string> panel_lines(const OverlaySet& on, const PanelData& data);
 
 // The area of the picture that text may use, pixels from its upper left.
-struct TextRoom {
+struct TextArea {
   float x, y, right, bottom;
 };
 
 // Draws lines on one dark plate at the upper left of the room. largest: pixels for each pixel of a letter, reduced
 // until all lines fit. Long lines wrap; lines that still do not fit are left out. Returns the y of the next plate.
-float append_lines(std::vector<Rect>& overlay, const std::vector<std::string>& lines, const TextRoom& room,
+float append_lines(std::vector<Rect>& overlay, const std::vector<std::string>& lines, const TextArea& room,
                    float largest);
 
 // Size of a letter's pixel in a picture of that height: 2 at 640 x 480, more in larger ones.

@@ -16,7 +16,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t\n") - begin + 1);
 }
 
-[[noreturn]] void refuse(std::string_view text, const std::string& why) {
+[[noreturn]] void reject(std::string_view text, const std::string& why) {
   throw std::invalid_argument("plot \"" + sync::printable(std::string(text.substr(0, 80))) + "\": " + why);
 }
 
@@ -24,20 +24,20 @@ PlotSpec::Kind kind_of(std::string_view word, std::string_view text) {
   if (word == "graph") return PlotSpec::Kind::kGraph;
   if (word == "bar") return PlotSpec::Kind::kBar;
   if (word == "text") return PlotSpec::Kind::kText;
-  refuse(text, "begin it with graph, bar or text");
+  reject(text, "begin it with graph, bar or text");
 }
 
 const MessageType& type_of(std::string_view channel, std::string_view text) {
   if (const MessageType* type = type_on(channel)) return *type;
   std::vector<std::string> names;
   for (const Channel& c : channel_types()) names.emplace_back(c.name);
-  refuse(text, "there is no channel \"" + sync::printable(std::string(channel.substr(0, 40))) +
+  reject(text, "there is no channel \"" + sync::printable(std::string(channel.substr(0, 40))) +
                    "\"; nearest: " + spelling_suggestions(channel, names));
 }
 
 void add_filter(PlotSpec& spec, const MessageType& type, std::string_view filter, std::string_view text) {
   const std::size_t equals = filter.find('=');
-  if (filter.empty()) refuse(text, "write a process or field=number after @");
+  if (filter.empty()) reject(text, "write a process or field=number after @");
   if (equals == std::string_view::npos) {
     // Every message of a channel begins with its header.
     spec.conditions.emplace_back(FieldPath(type, "header.source"),
@@ -48,7 +48,7 @@ void add_filter(PlotSpec& spec, const MessageType& type, std::string_view filter
   double value = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
   if (error != std::errc{} || end != number.data() + number.size())
-    refuse(text, "\"" + sync::printable(std::string(number.substr(0, 40))) + "\" is not a number");
+    reject(text, "\"" + sync::printable(std::string(number.substr(0, 40))) + "\" is not a number");
   spec.conditions.emplace_back(FieldPath(type, filter.substr(0, equals)), value);
 }
 
@@ -81,16 +81,16 @@ PlotSpec parse_plot(std::string_view text) {
                   {},
                   title};
     if (spec.value.is_text() && kind != PlotSpec::Kind::kText)
-      refuse(text, "this field is text, not a number; use the kind text");
+      reject(text, "this field is text, not a number; use the kind text");
     for (const std::string_view filter : filters) add_filter(spec, type, filter, text);
     return spec;
   } catch (const std::invalid_argument& e) {
     if (std::string_view(e.what()).starts_with("plot \"")) throw;
-    refuse(text, e.what());
+    reject(text, e.what());
   }
 }
 
-std::vector<PlotSpec> parse_plots(std::string_view list, std::vector<std::string>& trouble) {
+std::vector<PlotSpec> parse_plots(std::string_view list, std::vector<std::string>& warnings) {
   std::vector<PlotSpec> specs;
   while (!list.empty()) {
     const std::size_t end = list.find(';');
@@ -98,13 +98,13 @@ std::vector<PlotSpec> parse_plots(std::string_view list, std::vector<std::string
     list = end == std::string_view::npos ? std::string_view{} : list.substr(end + 1);
     if (one.empty() || one == "none") continue;
     if (specs.size() == kMaxPlots) {
-      trouble.push_back("more than " + std::to_string(kMaxPlots) + " plots: the rest is ignored");
+      warnings.push_back("more than " + std::to_string(kMaxPlots) + " plots: the rest is ignored");
       break;
     }
     try {
       specs.push_back(parse_plot(one));
     } catch (const std::invalid_argument& e) {
-      trouble.emplace_back(e.what());
+      warnings.emplace_back(e.what());
     }
   }
   return specs;

@@ -31,7 +31,7 @@ inline constexpr std::size_t kMaxPlots = 12;
 
 // Throws std::invalid_argument with one sentence that suggests the nearest names.
 PlotSpec parse_plot(std::string_view text);
-// The valid plots of the list, at most kMaxPlots; adds a sentence to `trouble` for each invalid one.
-std::vector<PlotSpec> parse_plots(std::string_view list, std::vector<std::string>& trouble);
+// The valid plots of the list, at most kMaxPlots; adds a sentence to `warnings` for each invalid one.
+std::vector<PlotSpec> parse_plots(std::string_view list, std::vector<std::string>& warnings);
 
 }  // namespace tactus::visual

@@ -61,7 +61,7 @@ std::string label(double value) {
   return buffer;
 }
 
-void Course::add(double value, sync::HostTime t) {
+void ValueHistory::add(double value, sync::HostTime t) {
   if (!std::isfinite(value)) return;
   const std::int64_t slice = number(t);
   if (slices_.empty() || slice > slices_.back().number) {
@@ -74,14 +74,14 @@ void Course::add(double value, sync::HostTime t) {
   slices_.back().highest = std::max(slices_.back().highest, value);
 }
 
-std::vector<Course::Slice> Course::slices(sync::HostTime now) const {
+std::vector<ValueHistory::Slice> ValueHistory::slices(sync::HostTime now) const {
   std::vector<Slice> seen;
   for (const Slice& s : slices_)
     if (s.number > number(now) - kColumns && s.number <= number(now)) seen.push_back(s);
   return seen;
 }
 
-std::optional<std::pair<double, double>> Course::range(sync::HostTime now) const {
+std::optional<std::pair<double, double>> ValueHistory::range(sync::HostTime now) const {
   std::optional<std::pair<double, double>> range;
   for (const Slice& s : slices(now)) {
     if (!range) range.emplace(s.lowest, s.highest);
@@ -92,7 +92,7 @@ std::optional<std::pair<double, double>> Course::range(sync::HostTime now) const
 }
 
 Plots::Plots(std::vector<PlotSpec> specs, sync::Nanoseconds span) {
-  for (PlotSpec& s : specs) plots_.push_back({std::move(s), Course(span), std::nullopt, 0, {}});
+  for (PlotSpec& s : specs) plots_.push_back({std::move(s), ValueHistory(span), std::nullopt, 0, {}});
 }
 
 std::vector<std::string> Plots::channels() const {
@@ -114,7 +114,7 @@ void Plots::push(const std::string& channel, std::span<const std::uint8_t> bytes
     }
     p.value = std::get<double>(*read);
     p.newest = label(p.value);
-    p.course.add(p.value, arrival);
+    p.history.add(p.value, arrival);
   }
 }
 
@@ -125,14 +125,14 @@ std::string span(double least, double most, const std::string& unit) {
 }
 
 // Draws the course between its lowest and highest value, which are printed below it.
-void append_graph(std::vector<Rect>& out, const Box& b, const Course& course, const std::string& unit,
+void append_graph(std::vector<Rect>& out, const Box& b, const ValueHistory& history, const std::string& unit,
                   sync::HostTime now, float height) {
-  const auto range = course.range(now);
+  const auto range = history.range(now);
   const float top = b.y + b.line() + kPad_px, left = b.x + kPad_px;
   const float width = b.width - 2 * kPad_px, bottom = top + height;
   fill(out, left, bottom, width, 1, kLabel, 0.6f);
   fill(out, left, top, 1, height, kLabel, 0.6f);
-  const std::string ago = label(-sync::to_seconds(course.span())) + " s", newest = "now";
+  const std::string ago = label(-sync::to_seconds(history.span())) + " s", newest = "now";
   const std::string values = range ? span(range->first, range->second, unit) : "";
   // In a narrow picture the range of values has priority over the time labels.
   if (letters(b) >= ago.size() + values.size() + newest.size() + 2) {
@@ -148,26 +148,26 @@ void append_graph(std::vector<Rect>& out, const Box& b, const Course& course, co
     const double share = most > least ? (v / 2 - least / 2) / (most / 2 - least / 2) : 0.5;
     return bottom - static_cast<float>(share) * (height - 1);
   };
-  const std::int64_t last = course.number(now);
-  const float column = width / Course::kColumns;
+  const std::int64_t last = history.number(now);
+  const float column = width / ValueHistory::kColumns;
   double before = 0;
   bool first = true;
-  for (const Course::Slice& s : course.slices(now)) {
+  for (const ValueHistory::Slice& s : history.slices(now)) {
     // Drawn up to the previous slice, so that a step is a line.
     const double low = first ? s.lowest : std::min(s.lowest, before),
                  high = first ? s.highest : std::max(s.highest, before);
     first = false;
     before = s.lowest / 2 + s.highest / 2;
-    const float x = left + column * static_cast<float>(Course::kColumns - 1 - (last - s.number));
+    const float x = left + column * static_cast<float>(ValueHistory::kColumns - 1 - (last - s.number));
     fill(out, x, place(high) - 1, std::max(1.0f, column), place(low) - place(high) + 2, kLine);
   }
   if (least < 0 && most > 0) fill(out, left, place(0), width, 1, kLabel, 0.4f);
 }
 
 // Draws a bar from zero to the value, on the scale of its recent range.
-void append_bar(std::vector<Rect>& out, const Box& b, double value, const Course& course, sync::HostTime now,
-                float y) {
-  const auto range = course.range(now);
+void append_bar(std::vector<Rect>& out, const Box& b, double value, const ValueHistory& history,
+                sync::HostTime now, float y) {
+  const auto range = history.range(now);
   if (!range || !std::isfinite(value)) return;
   const double least = std::min(0.0, range->first), most = std::max(0.0, range->second);
   const float left = b.x + kPad_px, width = b.width - 2 * kPad_px, height = b.line() * 0.8f;
@@ -202,8 +202,8 @@ void Plots::append(std::vector<Rect>& overlay, sync::HostTime now, int width, in
                                                   : *p.newest + " " + unit;
     const bool old = !p.newest || now - p.at > kOldAfter;
     const float y = b.y + b.line() + kPad_px;
-    if (graph) append_graph(overlay, b, p.course, unit, now, graph_height);
-    if (bar) append_bar(overlay, b, p.value, p.course, now, y);
+    if (graph) append_graph(overlay, b, p.history, unit, now, graph_height);
+    if (bar) append_bar(overlay, b, p.value, p.history, now, y);
     if (!graph) words(overlay, b, value, bar ? y + b.line() + kPad_px : y, old ? kOld : kLabel);
     b.y += plate_height + kMargin_px;
   }

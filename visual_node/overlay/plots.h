@@ -14,7 +14,7 @@ namespace tactus::visual {
 
 // The history of one variable over the last seconds: the lowest and highest value in each of kColumns time slices,
 // so that no peak is lost and memory is bounded at any publication rate.
-class Course {
+class ValueHistory {
  public:
   static constexpr int kColumns = 150;
   struct Slice {
@@ -22,7 +22,7 @@ class Course {
     double lowest = 0, highest = 0;
   };
 
-  explicit Course(sync::Nanoseconds span) : length_(std::max(sync::Nanoseconds(1), span / kColumns)) {}
+  explicit ValueHistory(sync::Nanoseconds span) : length_(std::max(sync::Nanoseconds(1), span / kColumns)) {}
   // Ignores values that are not finite. Time may go back by a few messages, not further.
   void add(double value, sync::HostTime t);
   // The slices of the span that ends now, oldest first.
@@ -57,7 +57,7 @@ class Plots {
  private:
   struct Plot {
     PlotSpec spec;
-    Course course;
+    ValueHistory history;
     std::optional<std::string> newest;  // as text
     double value = 0;
     sync::HostTime at{};

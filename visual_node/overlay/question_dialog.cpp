@@ -43,7 +43,7 @@ void QuestionDialog::set_presented(sync::HostTime at) {
   if (key_ && !presented_) presented_ = at;
 }
 
-bool QuestionDialog::press(const Press& press, const char* by, sync::HostTime now) {
+bool QuestionDialog::press(const QuestionInput& press, const char* by, sync::HostTime now) {
   if (!study_running(now)) return false;
   const question_t* m = current(now);
   if (!m || !presented_) return true;

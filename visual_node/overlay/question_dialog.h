@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "sync/node/current_question.h"
-#include "visual_node/overlay/presses.h"
+#include "visual_node/overlay/question_input.h"
 
 namespace tactus::visual {
 
@@ -33,7 +33,7 @@ class QuestionDialog {
   void set_presented(sync::HostTime at);
 
   // Returns true when the study consumes the press. A press before the question was presented does not answer it.
-  bool press(const Press& press, const char* by, sync::HostTime now);
+  bool press(const QuestionInput& press, const char* by, sync::HostTime now);
   // The answer to send now: once, and again for each repetition of its question.
   std::optional<answer_t> take_answer() { return std::exchange(to_send_, std::nullopt); }
 

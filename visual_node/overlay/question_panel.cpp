@@ -42,19 +42,19 @@ class Layout {
   Layout(const question_t& m, double number, float width, float size, float leading)
       : m_(m), number_(number), size_(size), small_(std::max(1.0f, size - 1)), leading_(leading) {
     inner_ = width - 2 * kPadding * size_;
-    text_ = words_in_lines(m.text, letters_in(inner_, size_));
+    text_ = wrap_text(m.text, letters_in(inner_, size_));
     if (m.kind == question_t::CHOICE)
       for (const std::string& c : m.choices)
-        choices_.push_back(words_in_lines(c, letters_in(inner_ - kChoiceIndent * size_, size_)));
+        choices_.push_back(wrap_text(c, letters_in(inner_ - kChoiceIndent * size_, size_)));
     if (m.kind == question_t::NUMBER) {
       const std::string low = m.count == 2 ? m.choices[0] : number_text(m.lowest, m.step),
                         high = m.count == 2 ? m.choices[1] : number_text(m.highest, m.step);
       for (const std::string& end : {low, high})
-        ends_.push_back(words_in_lines(end, letters_in(inner_ / 2 - 4 * size_, size_)));
+        ends_.push_back(wrap_text(end, letters_in(inner_ / 2 - 4 * size_, size_)));
     }
-    foot_ = words_in_lines(hint(m), letters_in(inner_, small_));
+    foot_ = wrap_text(hint(m), letters_in(inner_, small_));
     if (!m.progress.empty()) {
-      const auto progress = words_in_lines(m.progress, letters_in(inner_, small_));
+      const auto progress = wrap_text(m.progress, letters_in(inner_, small_));
       foot_.insert(foot_.end(), progress.begin(), progress.end());
     }
   }
@@ -134,7 +134,7 @@ class Layout {
 
 }  // namespace
 
-std::vector<std::string> words_in_lines(std::string_view text, std::size_t letters) {
+std::vector<std::string> wrap_text(std::string_view text, std::size_t letters) {
   std::vector<std::string> lines;
   while (!text.empty()) {
     if (text.size() <= letters) {
@@ -158,7 +158,7 @@ std::string number_text(double number, double step) {
   return text;
 }
 
-void append_question(std::vector<Rect>& overlay, const question_t& m, double number, const TextRoom& room) {
+void append_question(std::vector<Rect>& overlay, const question_t& m, double number, const TextArea& room) {
   const float width = (room.right - room.x) * kWidth, all = room.bottom - room.y;
   const float margin = std::floor(all * 0.03f);
   // A picture of 720 lines: 4 pixels for each pixel of a letter, a letter of 28 lines; 480 lines: 3 pixels.

@@ -4,19 +4,19 @@
 
 namespace tactus::visual {
 
-void SimulationRequests::request(Act act, std::int64_t id) {
+void SimulationRequests::request(Action action, std::int64_t id) {
   if (pending_.size() >= kMaxPending) return;
   sim_command_t c{};
   c.header.sim_time_ns = -1;
   c.header.run_id = c.header.incarnation = 1;  // placeholders; the bus stamps them
   c.id = id;
-  switch (act) {
-    case Act::kPauseOrResume: c.kind = paused_ ? sim_command_t::RESUME : sim_command_t::PAUSE; break;
-    case Act::kStep:
+  switch (action) {
+    case Action::kPauseOrResume: c.kind = paused_ ? sim_command_t::RESUME : sim_command_t::PAUSE; break;
+    case Action::kStep:
       c.kind = sim_command_t::STEP;
       c.steps = 1;
       break;
-    case Act::kReset: c.kind = sim_command_t::RESET; break;
+    case Action::kReset: c.kind = sim_command_t::RESET; break;
     default: return;
   }
   pending_.push_back(c);

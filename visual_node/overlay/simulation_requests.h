@@ -9,8 +9,8 @@
 #include <tactus/world_state_t.hpp>
 
 #include "visual_node/devices/display.h"
-#include "visual_node/overlay/aim.h"
 #include "visual_node/overlay/keys.h"
+#include "visual_node/overlay/picking.h"
 
 namespace tactus::visual {
 
@@ -24,7 +24,7 @@ class SimulationRequests {
   // The newest world state decides between pause and resume.
   void push(const world_state_t& m) { paused_ = m.clock.rate == 0; }
   // id: a unique number.
-  void request(Act act, std::int64_t id);
+  void request(Action action, std::int64_t id);
   void push(const sim_reply_t& m);
   // The command to send now.
   std::optional<sim_command_t> step(sync::HostTime now);

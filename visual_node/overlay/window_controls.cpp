@@ -6,12 +6,12 @@
 
 namespace tactus::visual {
 
-void WindowControls::execute(const KeyAction& action, Display& display, LiveOverlays& overlays) {
-  switch (action.act) {
-    case Act::kOverlay: return overlays.toggle(action.overlay);
-    case Act::kFullScreen: return display.toggle_full_screen();
-    case Act::kClose: closing_ = true; return;
-    default: requests_.request(action.act, sync::request_id());
+void WindowControls::execute(const KeyAction& key_action, Display& display, LiveOverlays& overlays) {
+  switch (key_action.action) {
+    case Action::kOverlay: return overlays.toggle(key_action.overlay);
+    case Action::kFullScreen: return display.toggle_full_screen();
+    case Action::kClose: closing_ = true; return;
+    default: requests_.request(key_action.action, sync::request_id());
   }
 }
 
@@ -22,16 +22,16 @@ void WindowControls::step(sync::HostTime now, Display& display, LiveOverlays& ov
   const Inputs inputs = display.take_inputs();
   for (const int key : inputs.keys)
     if (!questions.press(key, now))
-      if (const auto action = action_of(key)) execute(*action, display, overlays);
+      if (const auto key_action = action_of(key)) execute(*key_action, display, overlays);
   for (const Button button : inputs.buttons) questions.press(button, now);
   if (inputs.aim)
-    if (const auto hit = hit_at(list, geometries, inputs.aim->first, inputs.aim->second))
+    if (const auto hit = pick_surface(list, geometries, inputs.aim->first, inputs.aim->second))
       pointer_.aim(hit->cast<double>());
   if (auto state = pointer_.state(now)) bus_.publish(channels::kDeviceState, *state);
   while (const auto m = replies_->pop())
     if (m->message.header.run_id == bus_.identity().run_id) requests_.push(m->message);
   if (auto command = requests_.step(now)) bus_.publish(channels::kSimCommand, *command);
-  for (const std::string& sentence : {requests_.take_answer(), display.take_trouble()})
+  for (const std::string& sentence : {requests_.take_answer(), display.take_warning()})
     if (!sentence.empty()) report(sentence);
 }
 

@@ -8,9 +8,9 @@
 #include <tactus/world_state_t.hpp>
 
 #include "sync/bus/bus.h"
-#include "visual_node/overlay/simulation_requests.h"
-#include "visual_node/overlay/live.h"
+#include "visual_node/overlay/live_overlays.h"
 #include "visual_node/overlay/live_questions.h"
+#include "visual_node/overlay/simulation_requests.h"
 
 namespace tactus::visual {
 
@@ -27,7 +27,7 @@ class WindowControls {
   bool closing() const { return closing_; }
 
  private:
-  void execute(const KeyAction& action, Display& display, LiveOverlays& overlays);
+  void execute(const KeyAction& key_action, Display& display, LiveOverlays& overlays);
 
   sync::Bus& bus_;
   sync::Queue<sim_reply_t>* replies_ = nullptr;  // set once there is a window

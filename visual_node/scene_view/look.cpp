@@ -12,7 +12,7 @@ constexpr float kReflectanceOfGlass = 0.04f;
 
 }  // namespace
 
-LookFiles look_files_of(const sync::SceneReceiver& scenes, std::vector<std::string>& trouble) {
+LookFiles look_files_of(const sync::SceneReceiver& scenes, std::vector<std::string>& warnings) {
   LookFiles files;
   if (!scenes.scene()) return files;
   const auto picture = [&](std::int64_t hash, const std::string& of) {
@@ -22,7 +22,7 @@ LookFiles look_files_of(const sync::SceneReceiver& scenes, std::vector<std::stri
       if (!asset) throw std::runtime_error("it was not sent");
       files.pictures.emplace(hash, read_raster(asset->bytes));
     } catch (const std::exception& e) {
-      trouble.push_back("the " + of + " cannot be read: " + e.what() + "; it is drawn without");
+      warnings.push_back("the " + of + " cannot be read: " + e.what() + "; it is drawn without");
     }
   };
   const auto text = [&](std::int64_t hash, const std::string& of) {
@@ -30,7 +30,7 @@ LookFiles look_files_of(const sync::SceneReceiver& scenes, std::vector<std::stri
     if (const sync::Asset* asset = scenes.asset(hash))
       files.texts.emplace(hash, std::string(asset->bytes.begin(), asset->bytes.end()));
     else
-      trouble.push_back("the text of shader " + of + " was not sent; phong is drawn instead");
+      warnings.push_back("the text of shader " + of + " was not sent; phong is drawn instead");
   };
   for (const look_t& look : scenes.scene()->looks) {
     picture(look.colour_map, "colour map of look " + look.name);

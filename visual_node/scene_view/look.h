@@ -21,8 +21,8 @@ struct LookFiles {
   std::map<std::int64_t, std::string> texts;
 };
 
-// Decodes them. Adds one sentence to `trouble` for each missing or damaged file.
-LookFiles look_files_of(const sync::SceneReceiver& scenes, std::vector<std::string>& trouble);
+// Decodes them. Adds one sentence to `warnings` for each missing or damaged file.
+LookFiles look_files_of(const sync::SceneReceiver& scenes, std::vector<std::string>& warnings);
 
 // The sources of a shader; empty: the built-in source of the stage.
 struct ShaderText {

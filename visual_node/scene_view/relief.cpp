@@ -7,7 +7,7 @@
 namespace tactus::visual {
 
 HeightMaps height_maps_of(const scene_t& scene, const sync::Pictures& pictures,
-                          std::vector<std::string>& trouble) {
+                          std::vector<std::string>& warnings) {
   HeightMaps maps;
   std::set<std::int64_t> tried{0};  // 0: smooth
   for (const material_def_t& material : scene.materials) {
@@ -17,8 +17,8 @@ HeightMaps height_maps_of(const scene_t& scene, const sync::Pictures& pictures,
       if (picture == pictures.end()) throw std::runtime_error("it was not sent");
       maps.emplace(material.bump_asset, read_height_map(picture->second));
     } catch (const std::exception& e) {
-      trouble.push_back("the height map of material  " + material.name + " cannot be read: " + e.what() +
-                        "; it is drawn smooth");
+      warnings.push_back("the height map of material  " + material.name + " cannot be read: " + e.what() +
+                         "; it is drawn smooth");
     }
   }
   return maps;

@@ -14,7 +14,8 @@ namespace tactus::visual {
 
 using HeightMaps = std::map<std::int64_t, HeightMap>;  // by content hash
 
-// Adds one sentence to `trouble` for each missing or damaged map.
-HeightMaps height_maps_of(const scene_t& scene, const sync::Pictures& pictures, std::vector<std::string>& trouble);
+// Adds one sentence to `warnings` for each missing or damaged map.
+HeightMaps height_maps_of(const scene_t& scene, const sync::Pictures& pictures,
+                          std::vector<std::string>& warnings);
 
 }  // namespace tactus::visual

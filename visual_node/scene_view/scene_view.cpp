@@ -64,13 +64,13 @@ SceneView::SceneView(const scene_t& scene, const Meshes& meshes, const Settings&
   for (const int n : kSegments) geometries_.push_back(unit_cylinder(n));
   add_reliefs(scene, height_maps);
   if (settings.geometry == "physics")
-    for (const shape_def_t& s : scene.shapes) add_colliding(s, meshes);
+    for (const shape_def_t& s : scene.shapes) add_collision_shape(s, meshes);
   else
     for (const visual_def_t& v : scene.visuals) add(v, meshes);
   for (const tool_def_t& t : scene.tools) add_tool(scene, t, meshes);
   // The housing of a lamp would block all of its light.
-  for (Part& p : parts_) p.casts_shadow = p.casts_shadow && !lamp_inside(scene, p);
-  for (Tool& t : tools_) t.ghost.look.diffuse.w() = static_cast<float>(settings.ghost_alpha);
+  for (ShapePart& p : parts_) p.casts_shadow = p.casts_shadow && !lamp_inside(scene, p);
+  for (Tool& t : tools_) t.ghost.instance.diffuse.w() = static_cast<float>(settings.ghost_alpha);
 }
 
 // Materials with the same inherited height map share one relief.
@@ -88,62 +88,62 @@ void SceneView::add_reliefs(const scene_t& scene, const HeightMaps& height_maps)
 }
 
 void SceneView::add(const visual_def_t& v, const Meshes& meshes) {
-  Part part;
+  ShapePart part;
   if (v.alpha <= 0) return;
   const bool known = shape(v.shape, meshes, part);
   part.body = v.shape.body;
   part.in_body = to_eigen(v.shape.pose);
   if (v.shape.material >= 0 && v.shape.material < static_cast<int>(relief_of_material_.size()))
     part.relief = relief_of_material_[static_cast<std::size_t>(v.shape.material)];
-  part.look.scale.w() = std::max(v.shininess, 1.0f);
-  part.look.diffuse = with(v.diffuse, std::min(v.alpha, 1.0f));
-  part.look.specular = with(v.specular, 0);
-  part.look.ambient = with(v.ambient, 0);
-  part.look.emissive = with(v.emissive, 0);
-  if (v.look >= 0 && v.look < static_cast<int>(appearance_.looks.size()) - 1) part.style = v.look + 1;
+  part.instance.scale.w() = std::max(v.shininess, 1.0f);
+  part.instance.diffuse = with(v.diffuse, std::min(v.alpha, 1.0f));
+  part.instance.specular = with(v.specular, 0);
+  part.instance.ambient = with(v.ambient, 0);
+  part.instance.emissive = with(v.emissive, 0);
+  if (v.look >= 0 && v.look < static_cast<int>(appearance_.looks.size()) - 1) part.look = v.look + 1;
   known ? check_look(v, part) : mark_missing(v.shape, part);
   parts_.push_back(part);
 }
 
 // Draws the collision shapes, each in the colour of its body.
-void SceneView::add_colliding(const shape_def_t& s, const Meshes& meshes) {
-  Part part;
+void SceneView::add_collision_shape(const shape_def_t& s, const Meshes& meshes) {
+  ShapePart part;
   const bool known = shape(s, meshes, part);
   part.body = s.body;
   part.in_body = to_eigen(s.pose);
-  part.look.scale.w() = 16;
-  part.look.diffuse << body_colour(s.body), 1;
-  part.look.ambient << body_colour(s.body), 0;
+  part.instance.scale.w() = 16;
+  part.instance.diffuse << body_colour(s.body), 1;
+  part.instance.ambient << body_colour(s.body), 0;
   if (!known) mark_missing(s, part);
   parts_.push_back(part);
 }
 
-void SceneView::mark_missing(const shape_def_t& s, Part& part) {
+void SceneView::mark_missing(const shape_def_t& s, ShapePart& part) {
   part.geometry = kBox;
   part.radius_m = kMissing_m;
   part.casts_shadow = false;
-  part.relief = -1, part.style = 0;
-  part.look = {};
-  part.look.scale = {kMissing_m, kMissing_m, kMissing_m, 16};
-  part.look.diffuse << kMissingColour, 1;
-  part.look.emissive << kMissingColour, 0;
-  trouble_.push_back("the mesh of " + s.name + " is missing or damaged: a magenta box of " +
-                     std::to_string(std::lround(1000 * kMissing_m)) + " mm is drawn where it is");
+  part.relief = -1, part.look = 0;
+  part.instance = {};
+  part.instance.scale = {kMissing_m, kMissing_m, kMissing_m, 16};
+  part.instance.diffuse << kMissingColour, 1;
+  part.instance.emissive << kMissingColour, 0;
+  warnings_.push_back("the mesh of " + s.name + " is missing or damaged: a magenta box of " +
+                      std::to_string(std::lround(1000 * kMissing_m)) + " mm is drawn where it is");
 }
 
-void SceneView::check_look(const visual_def_t& v, const Part& part) {
-  const Look& look = appearance_.looks[static_cast<std::size_t>(part.style)];
+void SceneView::check_look(const visual_def_t& v, const ShapePart& part) {
+  const Look& look = appearance_.looks[static_cast<std::size_t>(part.look)];
   const Triangles& t = geometries_[static_cast<std::size_t>(part.geometry)];
   if (look.mapped() && t.texcoords.empty())
-    trouble_.push_back("look " + look.name + " lays a picture on " + v.shape.name +
-                       ", whose mesh has no texture coordinates: all of it shows one point of the picture");
+    warnings_.push_back("look " + look.name + " lays a picture on " + v.shape.name +
+                        ", whose mesh has no texture coordinates: all of it shows one point of the picture");
   else if (look.normal_map >= 0 && t.tangents.empty())
-    trouble_.push_back("look " + look.name + " has a normal map, but the mesh of " + v.shape.name +
-                       " no tangents: it is drawn smooth");
+    warnings_.push_back("look " + look.name + " has a normal map, but the mesh of " + v.shape.name +
+                        " no tangents: it is drawn smooth");
 }
 
 void SceneView::add_tool(const scene_t& scene, const tool_def_t& tool, const Meshes& meshes) {
-  Part ball;
+  ShapePart ball;
   shape_def_t form{};
   form.kind = tool.shape == tool_def_t::BOX       ? shape_def_t::BOX
               : tool.shape == tool_def_t::CAPSULE ? shape_def_t::CAPSULE
@@ -159,14 +159,14 @@ void SceneView::add_tool(const scene_t& scene, const tool_def_t& tool, const Mes
     shape(form, meshes, ball);
   }
   ball.body = tool.body;
-  ball.look.scale.w() = 40;
-  ball.look.diffuse << kToolColour, 1;
-  ball.look.specular = {0.5f, 0.5f, 0.5f, 0};
+  ball.instance.scale.w() = 40;
+  ball.instance.diffuse << kToolColour, 1;
+  ball.instance.specular = {0.5f, 0.5f, 0.5f, 0};
   // It glows slightly, so that the hand is visible in the dark.
-  ball.look.ambient << kToolColour, 0;
-  ball.look.emissive << 0.12f * kToolColour, 0;
+  ball.instance.ambient << kToolColour, 0;
+  ball.instance.emissive << 0.12f * kToolColour, 0;
   const bool has_visual =
-      std::any_of(parts_.begin(), parts_.end(), [&](const Part& p) { return p.body == tool.body; });
+      std::any_of(parts_.begin(), parts_.end(), [&](const ShapePart& p) { return p.body == tool.body; });
   const int light = steered_light(tool, scene.lights);
   // A pointing device is drawn only while it is in use.
   if (!has_visual && !only_points(tool, scene.lights) && tool.body < static_cast<int>(scene.bodies.size()))
@@ -175,10 +175,10 @@ void SceneView::add_tool(const scene_t& scene, const tool_def_t& tool, const Mes
                     light >= 0 ? scene.lights[static_cast<std::size_t>(light)] : light_def_t{}});
 }
 
-bool SceneView::shape(const shape_def_t& s, const Meshes& meshes, Part& part) {
+bool SceneView::shape(const shape_def_t& s, const Meshes& meshes, ShapePart& part) {
   const Eigen::Vector3f size = to_eigen(s.size_m).cast<float>();
   const float r = size.x();
-  const auto scaled = [&](float x, float y, float z) { part.look.scale = {x, y, z, 1}; };
+  const auto scaled = [&](float x, float y, float z) { part.instance.scale = {x, y, z, 1}; };
   switch (s.kind) {
     case shape_def_t::BOX:
       part.geometry = kBox;
@@ -222,7 +222,7 @@ bool SceneView::shape(const shape_def_t& s, const Meshes& meshes, Part& part) {
   }
 }
 
-bool SceneView::lamp_inside(const scene_t& scene, const Part& part) const {
+bool SceneView::lamp_inside(const scene_t& scene, const ShapePart& part) const {
   if (lighting_.shadow_light < 0) return false;
   const Eigen::Vector3f lamp =
       lighting_.lights[static_cast<std::size_t>(lighting_.shadow_light)].position.head<3>();
@@ -247,10 +247,11 @@ void add_tint(Instance& instance, const Eigen::Vector4f& tint) {
 }
 }  // namespace
 
-SceneView::Placed SceneView::place(const Part& part, const Eigen::Isometry3d& body, const Camera& camera) const {
+SceneView::PlacedInstance SceneView::place(const ShapePart& part, const Eigen::Isometry3d& body,
+                                           const Camera& camera) const {
   const Eigen::Isometry3d pose = body * part.in_body;
   const Eigen::Quaternionf q(Eigen::Quaterniond(pose.linear()).cast<float>());
-  Placed p{part.geometry, 0, part.casts_shadow, part.relief, part.style, part.look};
+  PlacedInstance p{part.geometry, 0, part.casts_shadow, part.relief, part.look, part.instance};
   p.instance.orientation = q.coeffs();
   p.instance.position.head<3>() = pose.translation().cast<float>();
   p.instance.body_orientation = Eigen::Quaternionf(Eigen::Quaterniond(body.linear()).cast<float>()).coeffs();
@@ -259,7 +260,7 @@ SceneView::Placed SceneView::place(const Part& part, const Eigen::Isometry3d& bo
     add_tint(p.instance, tints_[static_cast<std::size_t>(part.body)]);
   p.distance_m = (p.instance.position.head<3>() - camera.eye).norm();
   if (part.levels) {
-    const float radius_px = part.look.scale.x() * camera.focal_px / std::max(p.distance_m, 1e-3f);
+    const float radius_px = part.instance.scale.x() * camera.focal_px / std::max(p.distance_m, 1e-3f);
     for (const float limit : kCoarserBelow_px) p.geometry += radius_px >= limit;
   }
   return p;
@@ -268,13 +269,13 @@ SceneView::Placed SceneView::place(const Part& part, const Eigen::Isometry3d& bo
 DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<const ToolPose> tools,
                          const std::optional<Eigen::Isometry3d>& head) const {
   DrawList list;
-  list.camera = lens_.at(head);
-  list.views = views_of(lens_, head, settings_);
+  list.camera = lens_.camera(head);
+  list.views = stereo_views(lens_, head, settings_);
   list.lighting = lighting_;
-  std::vector<Placed> opaque, translucent;
-  const auto add = [&](const Part& part, const Eigen::Isometry3d& pose) {
+  std::vector<PlacedInstance> opaque, translucent;
+  const auto add = [&](const ShapePart& part, const Eigen::Isometry3d& pose) {
     const bool seen_through =
-        part.look.diffuse.w() < 1 || appearance_.looks[static_cast<std::size_t>(part.style)].translucent;
+        part.instance.diffuse.w() < 1 || appearance_.looks[static_cast<std::size_t>(part.look)].translucent;
     (seen_through ? translucent : opaque).push_back(place(part, pose, list.camera));
   };
   const auto tool_of = [&](int body) {
@@ -282,7 +283,7 @@ DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<co
       if (tools_[i].body == body && tools[i].known) return static_cast<int>(i);
     return -1;
   };
-  for (const Part& part : parts_) {
+  for (const ShapePart& part : parts_) {
     const int tool = tool_of(part.body);
     if (tool >= 0)
       add(part, tools[static_cast<std::size_t>(tool)].proxy);
@@ -290,21 +291,21 @@ DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<co
       add(part, bodies[static_cast<std::size_t>(part.body)]);
   }
   for (std::size_t i = 0; i < std::min(tools.size(), tools_.size()); ++i)
-    if (tools[i].known && !tools_[i].unseen) add(tools_[i].ghost, tools[i].device);
+    if (tools[i].known && !tools_[i].hidden) add(tools_[i].ghost, tools[i].device);
   for (std::size_t i = 0; i < std::min(tools.size(), tools_.size()); ++i)
     if (tools[i].known && tools_[i].light >= 0)
       aim(list.lighting, static_cast<std::size_t>(tools_[i].light), tools_[i].lamp, tools[i].device.translation());
 
   // Planes and boxes have the lowest numbers and are mostly floors and walls: they are drawn last, to reduce
   // overdraw.
-  std::sort(opaque.begin(), opaque.end(), [](const Placed& a, const Placed& b) {
+  std::sort(opaque.begin(), opaque.end(), [](const PlacedInstance& a, const PlacedInstance& b) {
     return std::tuple(-a.geometry, a.casts_shadow, a.relief, a.look, a.distance_m) <
            std::tuple(-b.geometry, b.casts_shadow, b.relief, b.look, b.distance_m);
   });
   std::sort(translucent.begin(), translucent.end(),
-            [](const Placed& a, const Placed& b) { return a.distance_m > b.distance_m; });
-  const auto append = [&](const std::vector<Placed>& from, std::vector<Batch>& to) {
-    for (const Placed& p : from) {
+            [](const PlacedInstance& a, const PlacedInstance& b) { return a.distance_m > b.distance_m; });
+  const auto append = [&](const std::vector<PlacedInstance>& from, std::vector<Batch>& to) {
+    for (const PlacedInstance& p : from) {
       const auto first = static_cast<int>(list.instances.size());
       if (to.empty() || to.back().geometry != p.geometry || to.back().casts_shadow != p.casts_shadow ||
           to.back().relief != p.relief || to.back().look != p.look)

@@ -48,7 +48,7 @@ class SceneView {
   const Lens& lens() const { return lens_; }
   int missing_meshes() const { return missing_meshes_; }
   // One sentence for each thing that is not drawn as the scene defines it.
-  const std::vector<std::string>& trouble() const { return trouble_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
   int width() const { return width_; }
   int height() const { return height_; }
 
@@ -65,7 +65,7 @@ class SceneView {
   // The order of geometries_; kLevels: number of subdivisions of round shapes.
   static constexpr int kPlane = 0, kBox = 1, kSphere = 2, kCylinder = 5, kLevels = 3;
 
-  struct Part {  // one visible shape
+  struct ShapePart {  // one visible shape
     int body = 0;
     Eigen::Isometry3d in_body = Eigen::Isometry3d::Identity();  // T_body_shape
     int geometry = 0;                                           // index of the coarsest level
@@ -73,10 +73,10 @@ class SceneView {
     float radius_m = 0;  // radius of its bounding sphere about the origin of the shape
     bool casts_shadow = true;
     int relief = -1;
-    int style = 0;  // index in Appearance::looks
-    Instance look;  // all except its pose
+    int look = 0;       // index in Appearance::looks
+    Instance instance;  // all except its pose
   };
-  struct Placed {
+  struct PlacedInstance {
     int geometry;
     float distance_m;
     bool casts_shadow;
@@ -87,13 +87,13 @@ class SceneView {
 
   void add_reliefs(const scene_t& scene, const HeightMaps& height_maps);
   void add(const visual_def_t& visual, const Meshes& meshes);
-  void add_colliding(const shape_def_t& shape, const Meshes& meshes);
-  void mark_missing(const shape_def_t& shape, Part& part);
-  void check_look(const visual_def_t& visual, const Part& part);
+  void add_collision_shape(const shape_def_t& shape, const Meshes& meshes);
+  void mark_missing(const shape_def_t& shape, ShapePart& part);
+  void check_look(const visual_def_t& visual, const ShapePart& part);
   void add_tool(const scene_t& scene, const tool_def_t& tool, const Meshes& meshes);
-  bool shape(const shape_def_t& shape, const Meshes& meshes, Part& part);
-  bool lamp_inside(const scene_t& scene, const Part& part) const;
-  Placed place(const Part& part, const Eigen::Isometry3d& body, const Camera& camera) const;
+  bool shape(const shape_def_t& shape, const Meshes& meshes, ShapePart& part);
+  bool lamp_inside(const scene_t& scene, const ShapePart& part) const;
+  PlacedInstance place(const ShapePart& part, const Eigen::Isometry3d& body, const Camera& camera) const;
 
   int width_, height_;
   Lens lens_;
@@ -104,17 +104,17 @@ class SceneView {
   std::map<std::int64_t, int> mesh_geometry_;
   std::vector<Relief> reliefs_;
   std::vector<int> relief_of_material_;
-  std::vector<Part> parts_;
+  std::vector<ShapePart> parts_;
   struct Tool {
     int body;
-    Part ghost;
+    ShapePart ghost;
     int light = -1;       // index of the light that it steers
-    bool unseen = false;  // the user's own head is not drawn
+    bool hidden = false;  // the user's own head is not drawn
     light_def_t lamp{};
   };
   std::vector<Tool> tools_;
   int missing_meshes_ = 0;
-  std::vector<std::string> trouble_;
+  std::vector<std::string> warnings_;
   std::vector<Eigen::Vector4f> tints_;
 };
 

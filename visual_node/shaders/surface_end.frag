@@ -1,4 +1,4 @@
-uniform float see_through;  // 1: the background shows through, 0: opaque whatever shade() returns
+uniform float see_through;  // 1: the background shows through, 0: opaque for any opacity from shade()
 
 void main() {
   begin();

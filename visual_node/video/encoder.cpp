@@ -22,8 +22,8 @@ namespace {
 
 // Room for two pictures of 640x480, which reduces switches between the two processes.
 constexpr int kPipeBytes = 1 << 20;
-constexpr auto kPatience = std::chrono::milliseconds(10);
-constexpr int kWaits = 300;  // 3 s
+constexpr auto kWaitInterval = std::chrono::milliseconds(10);
+constexpr int kMaxWaits = 300;  // 3 s
 
 }  // namespace
 
@@ -114,9 +114,9 @@ Encoder::Encoder(const std::vector<std::string>& command) {
 Encoder::~Encoder() {
   if (child_ < 0) return;
   close(pipe_);
-  for (int i = 0; i < kWaits; ++i) {
+  for (int i = 0; i < kMaxWaits; ++i) {
     if (waitpid(child_, nullptr, WNOHANG) != 0) return;
-    std::this_thread::sleep_for(kPatience);
+    std::this_thread::sleep_for(kWaitInterval);
   }
   kill(child_, SIGKILL);
   waitpid(child_, nullptr, 0);

@@ -12,7 +12,7 @@ namespace tactus::visual {
 
 struct Recording::Shared {
   mutable std::mutex mutex;
-  std::string trouble;
+  std::string error;
 };
 
 namespace {
@@ -61,7 +61,7 @@ constexpr std::size_t kSnapshotQueue = 2;
 
 }  // namespace
 
-std::string next_video(const std::string& folder, const std::string& name) {
+std::string next_video_path(const std::string& folder, const std::string& name) {
   const std::filesystem::path out(folder);
   std::filesystem::path file = out / (name + ".mp4");
   for (int n = 2; std::filesystem::exists(file); ++n) file = out / (name + "." + std::to_string(n) + ".mp4");
@@ -82,11 +82,11 @@ void Recording::begin(int width, int height, const Settings& settings) {
                                                return write_png(file, p.rgba, width, height);
                                              });
   if (!options_.video) return;
-  file_ = next_video(options_.folder, options_.name);
+  file_ = next_video_path(options_.folder, options_.name);
   clock_.emplace();
   const auto report = [shared = shared_](std::string text) {
     const std::lock_guard lock(shared->mutex);
-    shared->trouble = std::move(text);
+    shared->error = std::move(text);
   };
   auto writer = std::make_shared<VideoWriter>(
       encoder_command(file_, width, height, settings.rate_Hz, settings.video_crf), width, height, report);
@@ -121,13 +121,13 @@ std::optional<media_clock_t> Recording::add(std::int64_t tick, sync::HostTime fe
   return m;
 }
 
-std::string Recording::trouble() const {
+std::string Recording::error() const {
   const std::lock_guard lock(shared_->mutex);
-  return shared_->trouble;
+  return shared_->error;
 }
 
-std::string Recording::note() const {
-  if (const std::string why = trouble(); !why.empty()) return why;
+std::string Recording::status_text() const {
+  if (const std::string why = error(); !why.empty()) return why;
   return dropped_ > 0 ? "the encoder was too busy for " + std::to_string(dropped_) + " pictures of the video" : "";
 }
 

@@ -25,7 +25,7 @@ struct RecordingOptions {
 };
 
 // With the name "video": "video.mp4" in the folder, or "video.2.mp4" and so on when that file exists.
-std::string next_video(const std::string& folder, const std::string& name = "video");
+std::string next_video_path(const std::string& folder, const std::string& name = "video");
 
 class Recording {
  public:
@@ -40,11 +40,11 @@ class Recording {
   std::optional<media_clock_t> add(std::int64_t tick, sync::HostTime fence,
                                    const std::function<void(std::span<std::uint8_t>)>& read);
   // Why a requested video is missing; empty: it is being written.
-  std::string trouble() const;
+  std::string error() const;
   // Pictures dropped because the encoder was busy; their slots repeat the previous picture.
   std::int64_t dropped() const { return dropped_; }
   // One line for the note of NODE_HEALTH: the two above.
-  std::string note() const;
+  std::string status_text() const;
 
  private:
   struct Shared;  // shared with the writing thread

@@ -26,18 +26,18 @@ std::uint64_t hash_of(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-std::string part_of(const std::string& video) { return video + ".part.mp4"; }
+std::string part_file_name(const std::string& video) { return video + ".part.mp4"; }
 
 VideoFile::VideoFile(std::string file, int width, int height, const Settings& settings)
     : file_(std::move(file)),
-      part_(part_of(file_)),
+      part_(part_file_name(file_)),
       width_(width),
       height_(height),
       planes_(i420_bytes(width, height)) {
   std::error_code none;
   for (const std::string& there : {file_, part_})
     if (std::filesystem::exists(there, none))
-      throw std::runtime_error(there + " exists and is not written over; remove it or choose another --video");
+      throw std::runtime_error(there + " exists and is not overwritten; remove it or choose another --video");
   if (!std::ofstream(part_, std::ios::binary))
     throw std::runtime_error("cannot write " + part_ + "; give --video a file in a folder that can be written");
   try {

@@ -33,8 +33,8 @@ class VideoFile {
 
   std::int64_t frames() const { return frames_; }
   // A hash of the pixels of the newest picture, and of all pictures: equal numbers mean equal renderings.
-  std::uint64_t pixels_of_newest() const { return newest_; }
-  std::uint64_t pixels() const { return pixels_; }
+  std::uint64_t newest_frame_hash() const { return newest_; }
+  std::uint64_t pixel_hash() const { return pixels_; }
 
  private:
   std::string file_, part_;
@@ -47,6 +47,6 @@ class VideoFile {
 };
 
 // Name of the file that is written until the video is complete.
-std::string part_of(const std::string& video);
+std::string part_file_name(const std::string& video);
 
 }  // namespace tactus::visual

@@ -10,7 +10,7 @@ namespace {
 // stable up to 3.3 (Hairer and Wanner 1996, figure IV.2.1). The margin covers poses with less inertia.
 constexpr double kStiff = 0.3;
 // Limits of the growth of sub-steps (Hairer, Norsett and Wanner 1993, equation II.4.13, with its constants).
-constexpr double kSafety = 0.9, kLeast = 0.2, kMax = 5;
+constexpr double kSafety = 0.9, kMinFactor = 0.2, kMaxFactor = 5;
 
 void quaternion_rate(const double* q, const Eigen::Vector3d& spin, bool in_body, double* out) {
   const Eigen::Quaterniond turn(q[0], q[1], q[2], q[3]), rate(0, spin.x(), spin.y(), spin.z());
@@ -74,7 +74,7 @@ ArticulatedSystem::ArticulatedSystem(const std::vector<LinkDef>& links, double s
   std::vector<double> response(tree_->dofs.size());
   for (std::size_t j = 0; j < passive_.size(); ++j) {
     const Dof& dof = tree_->dofs[j];
-    dynamics_.strike_dof(static_cast<int>(j), response);
+    dynamics_.dof_impulse_to_rates(static_cast<int>(j), response);
     const double mobility = response[j];
     passive_[j] =
         step_s * std::sqrt(dof.stiffness * mobility) <= kStiff && step_s * dof.damping * mobility <= kStiff;
@@ -175,7 +175,7 @@ void ArticulatedSystem::step(double h_s) {
     pair_.attempt(slope, y_, h);
     ++substeps_;
     const double error = relative_error();
-    state_.reach_s = h * std::clamp(kSafety * std::pow(error, -0.2), kLeast, kMax);
+    state_.reach_s = h * std::clamp(kSafety * std::pow(error, -0.2), kMinFactor, kMaxFactor);
     if (error > 1 && h > finest * 1.01) continue;
     y_ = pair_.result();
     pair_.accept();
@@ -222,7 +222,7 @@ void ArticulatedSystem::displace(std::span<const double> by) {
 BodyMotion ArticulatedSystem::motion(int link) const {
   const LinkDef& d = tree_->links[static_cast<std::size_t>(link)].def;
   BodyMotion m;
-  const Eigen::Matrix3d& turn = dynamics_.turn(link);
+  const Eigen::Matrix3d& turn = dynamics_.rotation(link);
   m.position_m = m.centre_m = dynamics_.centre_m(link);
   m.orientation = Eigen::Quaterniond(turn);
   m.velocity_m_s = dynamics_.velocity_at(link, m.centre_m);

@@ -1,5 +1,5 @@
-// Articulated bodies in reduced coordinates: joints cannot drift apart, and the energy of a swing is conserved to the
-// accuracy of the integrator. Independent of contacts; their impulses are applied by strike().
+// Articulated bodies in reduced coordinates: joints cannot drift apart, and the energy of a swing is conserved to
+// the accuracy of the integrator. Independent of contacts; their impulses are applied by impulse_to_rates().
 #pragma once
 
 #include <memory>
@@ -65,7 +65,7 @@ class ArticulatedSystem {
   void displace(std::span<const double> by);
 
   const Tree& tree() const { return *tree_; }
-  // At the current pose, for strike(), response() and jacobian().
+  // At the current pose, for impulse_to_rates(), response() and jacobian().
   Dynamics& dynamics();
   // The contact solver integrates the springs and dampers of this dof implicitly.
   bool is_stiff(int dof) const { return !passive_[static_cast<std::size_t>(dof)]; }

@@ -26,14 +26,14 @@ void Dynamics::place_link(std::size_t i, const double* positions, const double* 
   const double* q = positions + l.first_coordinate;
   const double* dq = rates + l.first_dof;
   if (l.def.is_free) {
-    w.turn = Eigen::Quaterniond(q[3], q[4], q[5], q[6]).normalized().toRotationMatrix();
+    w.rotation = Eigen::Quaterniond(q[3], q[4], q[5], q[6]).normalized().toRotationMatrix();
     w.centre.setZero();
     w.velocity << dq[0], dq[1], dq[2], dq[3], dq[4], dq[5];
     w.bias.setZero();
     return;
   }
   const Work* parent = l.def.parent < 0 ? nullptr : &work_[index(l.def.parent)];
-  const Eigen::Matrix3d& before = parent ? parent->turn : kUpright;
+  const Eigen::Matrix3d& before = parent ? parent->rotation : kUpright;
   const Spatial& carrier = parent ? parent->velocity : kStill;
   Eigen::Vector3d anchor = parent ? Eigen::Vector3d(parent->centre + before * l.from_parent_m) : kNowhere;
   const auto hinge = [&](int k, const Eigen::Vector3d& axis) {
@@ -42,7 +42,7 @@ void Dynamics::place_link(std::size_t i, const double* positions, const double* 
   switch (l.def.joint) {
     case JointKind::kRevolute: {
       const Eigen::Vector3d axis = before * l.def.axes[0].axis;
-      w.turn.noalias() = turn_about(axis, q[0]) * before;
+      w.rotation.noalias() = rotation_about(axis, q[0]) * before;
       hinge(0, axis);
       w.velocity = carrier + dq[0] * w.axes.col(0);
       w.bias = cross_motion(carrier, dq[0] * w.axes.col(0));
@@ -50,9 +50,9 @@ void Dynamics::place_link(std::size_t i, const double* positions, const double* 
     }
     case JointKind::kUniversal: {
       const Eigen::Vector3d first = before * l.def.axes[0].axis;
-      const Eigen::Matrix3d cross = turn_about(first, q[0]) * before;
+      const Eigen::Matrix3d cross = rotation_about(first, q[0]) * before;
       const Eigen::Vector3d second = cross * l.def.axes[1].axis;
-      w.turn.noalias() = turn_about(second, q[1]) * cross;
+      w.rotation.noalias() = rotation_about(second, q[1]) * cross;
       hinge(0, first);
       hinge(1, second);
       const Spatial between = carrier + dq[0] * w.axes.col(0);
@@ -61,8 +61,8 @@ void Dynamics::place_link(std::size_t i, const double* positions, const double* 
       break;
     }
     case JointKind::kBall: {
-      w.turn.noalias() = before * Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
-      for (int k = 0; k < 3; ++k) hinge(k, w.turn.col(k));
+      w.rotation.noalias() = before * Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+      for (int k = 0; k < 3; ++k) hinge(k, w.rotation.col(k));
       const Spatial joint = w.axes * Eigen::Vector3d(dq[0], dq[1], dq[2]);
       w.velocity = carrier + joint;
       w.bias = cross_motion(carrier, joint);
@@ -71,19 +71,19 @@ void Dynamics::place_link(std::size_t i, const double* positions, const double* 
     case JointKind::kPrismatic: {
       const Eigen::Vector3d axis = before * l.def.axes[0].axis;
       anchor += q[0] * axis;
-      w.turn = before;
+      w.rotation = before;
       w.axes.col(0) = spatial(kNowhere, axis);
       w.velocity = carrier + dq[0] * w.axes.col(0);
       w.bias = cross_motion(carrier, dq[0] * w.axes.col(0));
       break;
     }
     case JointKind::kFixed:
-      w.turn = before;
+      w.rotation = before;
       w.velocity = carrier;
       w.bias.setZero();
       break;
   }
-  w.centre = anchor + w.turn * l.to_centre_m;
+  w.centre = anchor + w.rotation * l.to_centre_m;
 }
 
 void Dynamics::place(const double* positions, const double* rates) {
@@ -96,7 +96,7 @@ void Dynamics::place(const double* positions, const double* rates) {
 void Dynamics::load_link(std::size_t i, const Loads& loads) {
   const LinkDef& d = tree_.links[i].def;
   Work& w = work_[i];
-  const Eigen::Matrix3d inertia = w.turn * d.inertia_kg_m2 * w.turn.transpose();
+  const Eigen::Matrix3d inertia = w.rotation * d.inertia_kg_m2 * w.rotation.transpose();
   w.inertia = rigid_inertia(d.mass_kg, w.centre, inertia);
   const Eigen::Vector3d spin = w.velocity.head<3>();
   const Eigen::Vector3d speed = w.velocity.tail<3>() + spin.cross(w.centre);
@@ -217,7 +217,7 @@ double Dynamics::kinetic_energy_J() const {
     const LinkDef& d = tree_.links[i].def;
     const Work& w = work_[i];
     const Eigen::Vector3d spin = w.velocity.head<3>(), speed = w.velocity.tail<3>() + spin.cross(w.centre);
-    const Eigen::Vector3d local = w.turn.transpose() * spin;
+    const Eigen::Vector3d local = w.rotation.transpose() * spin;
     sum += 0.5 * (d.mass_kg * speed.squaredNorm() + local.dot(d.inertia_kg_m2 * local));
   }
   return sum;
@@ -267,20 +267,20 @@ void Dynamics::propagate_outward(std::span<double> rates) {
   }
 }
 
-void Dynamics::strike(int link, const Eigen::Vector3d& point_m, const Eigen::Vector3d& impulse,
-                      std::span<double> rates) {
+void Dynamics::impulse_to_rates(int link, const Eigen::Vector3d& point_m, const Eigen::Vector3d& impulse,
+                                std::span<double> rates) {
   propagate_inward(link, force_at(point_m - origin_, impulse));
   propagate_outward(rates);
 }
 
-void Dynamics::twist(int link, const Eigen::Vector3d& impulse, std::span<double> rates) {
+void Dynamics::angular_impulse_to_rates(int link, const Eigen::Vector3d& impulse, std::span<double> rates) {
   Spatial couple = Spatial::Zero();
   couple.head<3>() = impulse;
   propagate_inward(link, couple);
   propagate_outward(rates);
 }
 
-void Dynamics::strike_dof(int dof, std::span<double> rates) {
+void Dynamics::dof_impulse_to_rates(int dof, std::span<double> rates) {
   const int link = tree_.dofs[index(dof)].link;
   const Link& l = tree_.links[index(link)];
   const int k = dof - l.first_dof;

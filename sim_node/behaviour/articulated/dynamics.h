@@ -36,7 +36,7 @@ class Dynamics {
   void place(const double* positions, const double* rates);
 
   // Of a link, as last evaluated or placed, world.
-  const Eigen::Matrix3d& turn(int link) const { return work_[index(link)].turn; }
+  const Eigen::Matrix3d& rotation(int link) const { return work_[index(link)].rotation; }
   Eigen::Vector3d centre_m(int link) const { return work_[index(link)].centre + origin_; }
   Eigen::Vector3d spin_rad_s(int link) const { return work_[index(link)].velocity.head<3>(); }
   Eigen::Vector3d velocity_at(int link, const Eigen::Vector3d& point_m) const {
@@ -45,13 +45,14 @@ class Dynamics {
   }
   double kinetic_energy_J() const;
 
-  // The following functions need an evaluate() of the current pose. strike() gives the change of every rate by an
-  // impulse, N s, at a point of a link: M^-1 J^T impulse. Cost: one pass over all links.
-  void strike(int link, const Eigen::Vector3d& point_m, const Eigen::Vector3d& impulse, std::span<double> rates);
+  // The following functions need an evaluate() of the current pose. impulse_to_rates() gives the change of every
+  // rate by an impulse, N s, at a point of a link: M^-1 J^T impulse. Cost: one pass over all links.
+  void impulse_to_rates(int link, const Eigen::Vector3d& point_m, const Eigen::Vector3d& impulse,
+                        std::span<double> rates);
   // The same for an angular impulse, N m s.
-  void twist(int link, const Eigen::Vector3d& impulse, std::span<double> rates);
+  void angular_impulse_to_rates(int link, const Eigen::Vector3d& impulse, std::span<double> rates);
   // Change of every rate by a unit impulse along one dof.
-  void strike_dof(int dof, std::span<double> rates);
+  void dof_impulse_to_rates(int dof, std::span<double> rates);
   // Change of velocity of one point per unit impulse at another, per axis: J_to M^-1 J_from^T, 1/kg. Cost: the paths
   // from both links to the root. response(a, b) is the transpose of response(b, a).
   Eigen::Matrix3d response(int to_link, const Eigen::Vector3d& to_m, int from_link, const Eigen::Vector3d& from_m);
@@ -61,7 +62,7 @@ class Dynamics {
 
  private:
   struct Work {
-    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     Eigen::Vector3d centre;                       // from the common point, m
     Eigen::Matrix<double, 6, kMaxDofs> axes;     // S: motion per unit rate of each dof
     Spatial velocity, bias;                       // v, and c: acceleration at zero joint acceleration

@@ -55,7 +55,7 @@ inline Spatial force_at(const Eigen::Vector3d& p, const Eigen::Vector3d& force) 
 }
 
 // Rotation matrix about a unit axis (Rodrigues).
-inline Eigen::Matrix3d turn_about(const Eigen::Vector3d& axis, double angle_rad) {
+inline Eigen::Matrix3d rotation_about(const Eigen::Vector3d& axis, double angle_rad) {
   const double s = std::sin(angle_rad), c = std::cos(angle_rad), d = 1 - c;
   const double x = axis.x(), y = axis.y(), z = axis.z();
   Eigen::Matrix3d out;

@@ -27,18 +27,17 @@ Tree::Tree(const std::vector<LinkDef>& defs) {
   links.reserve(defs.size());
   for (std::size_t i = 0; i < defs.size(); ++i) {
     const LinkDef& d = defs[i];
-    const auto refuse = [&](const char* why) {
+    const auto reject = [&](const char* why) {
       throw std::invalid_argument("link " + std::to_string(i) + " of an articulated system " + why);
     };
-    if (d.parent < -1 || d.parent >= static_cast<int>(i)) refuse("has a parent that does not come before it");
-    if ((i == 0) != (d.parent < 0))
-      refuse("is a second root; only the first link of a system may be a root");
-    if (d.is_free && i > 0) refuse("is free but has a parent");
+    if (d.parent < -1 || d.parent >= static_cast<int>(i)) reject("has a parent that does not come before it");
+    if ((i == 0) != (d.parent < 0)) reject("is a second root; only the first link of a system may be a root");
+    if (d.is_free && i > 0) reject("is free but has a parent");
     // Joints with several degrees of freedom have massless links in between. A tree with a massless leaf has no
     // dynamics.
     const Eigen::LLT<Eigen::Matrix3d> positive(d.inertia_kg_m2);
     if (!(d.mass_kg > 0) || positive.info() != Eigen::Success)
-      refuse("has a mass or inertia that is not positive");
+      reject("has a mass or inertia that is not positive");
     Link link{d, dof_count(), dofs_of(d), coordinates, {}, {}};
     for (JointAxis& axis : link.def.axes)
       if (axis.axis.norm() > 0) axis.axis.normalize();

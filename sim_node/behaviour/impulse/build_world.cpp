@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim_node/behaviour/impulse/law_of.h"
+#include "sim_node/behaviour/impulse/contact_law.h"
 
 namespace tactus::sim::impulse {
 namespace {
@@ -18,7 +18,7 @@ class Builder {
   Builder(const WorldDef& def, const Settings& settings)
       : def_(def),
         settings_(settings),
-        world_(std::make_unique<World>(law_of(settings))),
+        world_(std::make_unique<World>(contact_law(settings))),
         placed_(def.bodies.size()),
         jointed_(def.bodies.size()),
         used_(def.joints.size()) {}
@@ -138,7 +138,7 @@ class Builder {
       if (b.velocity_m_s.isZero(0)) continue;
       const int link = static_cast<int>(i);
       articulated::Dynamics& d = system.dynamics();
-      d.strike(link, d.centre_m(link), b.mass_kg * b.velocity_m_s, rates);
+      d.impulse_to_rates(link, d.centre_m(link), b.mass_kg * b.velocity_m_s, rates);
       system.add_rates(rates);
     }
   }

@@ -23,7 +23,7 @@ void Collisions::for_each_component(int mover, F&& each) {
   if (mover < 0) return;
   const auto m = static_cast<std::size_t>(mover);
   if (m < velocity_->twists.size()) {
-    Twist &v = velocity_->twists[m], &x = aside_->twists[m];
+    Twist &v = velocity_->twists[m], &x = position_offset_->twists[m];
     for (int k = 0; k < 3; ++k) each(v.linear_m_s[k], &x.linear_m_s[k]);
     for (int k = 0; k < 3; ++k) each(v.angular_rad_s[k], &x.angular_rad_s[k]);
     return;
@@ -34,8 +34,8 @@ void Collisions::for_each_component(int mover, F&& each) {
 }
 
 // Solves gap + s t + (drift / h) t^2 = 0: the drift grows linearly over the step, so half of it is in the mean.
-bool Collisions::meets(const ContactPoint& p, Meeting& out) const {
-  const double gap = p.gap_m + rows_->velocity(p, *aside_).x();
+bool Collisions::will_touch(const ContactPoint& p, PredictedImpact& out) const {
+  const double gap = p.gap_m + rows_->velocity(p, *position_offset_).x();
   const double speed = rows_->velocity(p, *velocity_).x(), bend = p.drift_m_s.x() / h_;
   double t = 0;
   if (gap < 0 && -gap > -1.5 * speed * h_) {
@@ -59,18 +59,18 @@ bool Collisions::meets(const ContactPoint& p, Meeting& out) const {
 }
 
 // Speed gained within the step, for example by gravity, is no collision.
-bool Collisions::collides(const ContactPoint& p, Meeting& out) const {
-  return meets(p, out) && out.speed_m_s > limits_.bounce_speed_m_s + 2 * std::abs(p.drift_m_s.x());
+bool Collisions::will_collide(const ContactPoint& p, PredictedImpact& out) const {
+  return will_touch(p, out) && out.speed_m_s > limits_.bounce_speed_m_s + 2 * std::abs(p.drift_m_s.x());
 }
 
 double Collisions::approach(const ContactGroup& g) const {
-  if (g.shielded) return 0;
+  if (g.spring_only) return 0;
   double fastest = 0;
   bool overlaps = false;
   for (int i = g.first; i < g.first + g.count; ++i) {
-    Meeting m;
+    PredictedImpact m;
     const ContactPoint& p = rows_->points[static_cast<std::size_t>(i)];
-    if (collides(p, m)) fastest = std::max(fastest, m.speed_m_s);
+    if (will_collide(p, m)) fastest = std::max(fastest, m.speed_m_s);
     overlaps |= p.gap_m < 0;
   }
   if (g.restitution > 0 || overlaps) return fastest;
@@ -80,39 +80,39 @@ double Collisions::approach(const ContactGroup& g) const {
 }
 
 // Predicts the meeting of a pair without impact from its free motion, when its gap is open.
-void Collisions::predict_meeting(ContactGroup& g) const {
+void Collisions::predict_impact(ContactGroup& g) const {
   g.first_s = h_;
   for (int i = 0; i < g.count; ++i) {
-    Meeting m;
+    PredictedImpact m;
     const ContactPoint& p = rows_->points[static_cast<std::size_t>(g.first + i)];
     if (p.gap_m < kTouching_m) {
-      g.met = -1;
+      g.first_impact_point = -1;
       return;
     }
-    if (!meets(p, m) || (g.met >= 0 && m.time_s >= g.first_s)) continue;
-    g.met = i;
+    if (!will_touch(p, m) || (g.first_impact_point >= 0 && m.time_s >= g.first_s)) continue;
+    g.first_impact_point = i;
     g.first_s = g.last_s = std::max(0.0, m.time_s);
     g.speed_m_s = m.speed_m_s;
   }
 }
 
-void Collisions::rebound(ContactGroup& g) {
+void Collisions::apply_collision(ContactGroup& g) {
   std::array<Eigen::Vector3d, 4> impulse;
   std::array<double, 4> wanted;
   std::array<bool, 4> takes_part{};
-  Meeting first{h_, 0}, m;
+  PredictedImpact first{h_, 0}, m;
   const auto point = [&](int i) -> ContactPoint& { return rows_->points[static_cast<std::size_t>(g.first + i)]; };
   const int count = std::min(g.count, 4);
   int struck = 0;
   for (int i = 0; i < count; ++i)
-    if (collides(point(i), m) && m.time_s < first.time_s) {
+    if (will_collide(point(i), m) && m.time_s < first.time_s) {
       first = m;
       struck = i;
     }
   const double t = first.time_s;
   g.last_s = std::max(0.0, t);
   if (g.impacts++ == 0) {
-    g.met = struck;
+    g.first_impact_point = struck;
     g.first_s = g.last_s;
     g.speed_m_s = first.speed_m_s;
   } else if (g.last_s < g.first_s) {
@@ -123,7 +123,7 @@ void Collisions::rebound(ContactGroup& g) {
     const auto k = static_cast<std::size_t>(i);
     const double speed = rows_->velocity(p, *velocity_).x() + 2 * t / h_ * p.drift_m_s.x();
     const double mean = rows_->velocity(p, *velocity_).x() + t / h_ * p.drift_m_s.x();
-    const double gap = p.gap_m + rows_->velocity(p, *aside_).x() + t * mean;
+    const double gap = p.gap_m + rows_->velocity(p, *position_offset_).x() + t * mean;
     takes_part[k] = gap < limits_.touching_m;
     impulse[k].setZero();
     wanted[k] = std::max(0.0, -g.restitution * speed);
@@ -151,29 +151,29 @@ void Collisions::rebound(ContactGroup& g) {
   // Joints get no offset: their momentum depends on their positions, so they receive the impulse at the start of the
   // step.
   std::size_t next = 0;
-  const auto set_aside = [&](double v, double* x) {
+  const auto add_position_offset = [&](double v, double* x) {
     const double change = v - before_[next++];
     if (x) *x -= t * change;
   };
-  for_each_component(g.mover_a, set_aside);
-  if (g.mover_b != g.mover_a) for_each_component(g.mover_b, set_aside);
+  for_each_component(g.mover_a, add_position_offset);
+  if (g.mover_b != g.mover_a) for_each_component(g.mover_b, add_position_offset);
 }
 
 void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::size_t>& first_rate,
-                         Velocities& velocity, Velocities& aside) {
+                         Velocities& velocity, Velocities& position_offset) {
   rows_ = &rows;
   first_rate_ = &first_rate;
   velocity_ = &velocity;
-  aside_ = &aside;
+  position_offset_ = &position_offset;
   h_ = h;
   approach_.resize(rows.groups.size());
   for (std::size_t i = 0; i < rows.groups.size(); ++i) approach_[i] = approach(rows.groups[i]);
-  const std::size_t most = kMaxImpacts * rows.groups.size();
-  for (std::size_t n = 0; n < most; ++n) {
+  const std::size_t max_impacts = kMaxImpacts * rows.groups.size();
+  for (std::size_t n = 0; n < max_impacts; ++n) {
     const auto fastest = std::max_element(approach_.begin(), approach_.end());
     if (*fastest <= 0) break;
     ContactGroup& struck = rows.groups[static_cast<std::size_t>(fastest - approach_.begin())];
-    rebound(struck);
+    apply_collision(struck);
     const auto shares = [&](int mover) {
       return mover >= 0 && (mover == struck.mover_a || mover == struck.mover_b);
     };
@@ -182,7 +182,7 @@ void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::siz
         approach_[i] = approach(rows.groups[i]);
   }
   for (ContactGroup& g : rows.groups)
-    if (g.impacts == 0 && !g.stopped) predict_meeting(g);
+    if (g.impacts == 0 && !g.stopped_by_spring) predict_impact(g);
 }
 
 }  // namespace tactus::sim::impulse

@@ -25,24 +25,24 @@ class Collisions {
   // one impulse, so that it stops where and when it met. The contact solver handles the rest, and all impacts on
   // joints without restitution.
   void resolve(ContactRows& rows, double h_s, const std::vector<std::size_t>& first_rate, Velocities& velocity,
-               Velocities& aside);
+               Velocities& position_offset);
 
  private:
-  struct Meeting {
+  struct PredictedImpact {
     double time_s = 0, speed_m_s = 0;
   };
-  bool meets(const ContactPoint& p, Meeting& out) const;
-  bool collides(const ContactPoint& p, Meeting& out) const;
+  bool will_touch(const ContactPoint& p, PredictedImpact& out) const;
+  bool will_collide(const ContactPoint& p, PredictedImpact& out) const;
   double approach(const ContactGroup& g) const;
-  void rebound(ContactGroup& g);
-  void predict_meeting(ContactGroup& g) const;
+  void apply_collision(ContactGroup& g);
+  void predict_impact(ContactGroup& g) const;
   template <class F>
   void for_each_component(int mover, F&& each);
 
   Limits limits_;
   ContactRows* rows_ = nullptr;
   const std::vector<std::size_t>* first_rate_ = nullptr;
-  Velocities *velocity_ = nullptr, *aside_ = nullptr;
+  Velocities *velocity_ = nullptr, *position_offset_ = nullptr;
   double h_ = 0;
   std::vector<double> approach_;  // per group
   std::vector<double> before_;    // velocities of the two movers

@@ -79,7 +79,7 @@ void ContactRows::compute_mobility(ContactPoint& p) const {
   Eigen::Matrix3d k = Eigen::Matrix3d::Zero();
   const auto add = [&](int twist, const Eigen::Vector3d& arm) {
     if (!twist) return;
-    const InverseInertia& m = inert[static_cast<std::size_t>(twist)];
+    const InverseInertia& m = inertias[static_cast<std::size_t>(twist)];
     Eigen::Matrix3d turn;  // columns: arm x axis
     for (int i = 0; i < 3; ++i) turn.col(i) = arm.cross(Eigen::Vector3d(p.axes.row(i)));
     k.noalias() += turn.transpose() * (m.inverse_inertia * turn);

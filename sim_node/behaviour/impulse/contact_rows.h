@@ -29,7 +29,7 @@ struct Coupling {
 
 // Force of a point before its surfaces meet: none, a spring and damper evaluated at the end of the step (implicit),
 // or a given impulse (explicit).
-enum class Press { kNone, kSoft, kGiven };
+enum class PenaltyForce { kNone, kImplicit, kExplicit };
 
 // In its own axes: normal (from a to b) and two tangents. Impulses act on b, and with opposite sign on a.
 struct ContactPoint {
@@ -41,16 +41,16 @@ struct ContactPoint {
   double sliding_mobility = 0;                 // largest along the tangents
   double friction = 0;
   double gap_m = 0;            // at the start of the step; negative: overlap
-  double least_speed_m_s = 0;  // minimum separating speed of the contact; negative: the gap may close at this speed
+  double min_speed_m_s = 0;  // minimum separating speed of the contact; negative: the gap may close at this speed
   Eigen::Vector3d drift_m_s;   // of its velocity, from the start of the step to its mean, without impulses
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  // N s, over the step
   double impact_N_s = 0;                              // along the normal, of the collision phase
   int mover_a = 0, mover_b = 0;                       // as in its group, plus one; 0: static
   int visit = -1;                                     // counter value at which it was last solved
-  Press press = Press::kNone;
+  PenaltyForce penalty_force = PenaltyForce::kNone;
   double force_time_s = 0;  // time that relates its impulse to a force: from the middle of the previous step to the middle of this one
-  double soft_speed_m_s = 0, softness_1_kg = 0;  // kSoft: velocity + softness * impulse = soft speed
-  double pressed_N_s = 0;                        // kGiven
+  double penalty_speed_m_s = 0, softness_1_kg = 0;  // kImplicit: velocity + softness * impulse = soft speed
+  double explicit_impulse_N_s = 0;                  // kExplicit
   double shell_m = -1;                           // gap below which it presses; negative: not yet known
 };
 
@@ -61,10 +61,10 @@ struct ContactGroup {
   double restitution = 0;
   // Impacts in the step: their number, the times of the first and the last after its start, and the point and speed
   // of the first. Without an impact, the predicted meeting of the free motion. met: -1: none.
-  int impacts = 0, met = -1;
+  int impacts = 0, first_impact_point = -1;
   double first_s = 0, last_s = 0, speed_m_s = 0;
-  bool shielded = false;  // no impulses: springs press
-  bool stopped = false;   // by springs, before the surfaces meet
+  bool spring_only = false;        // no impulses: springs press
+  bool stopped_by_spring = false;  // by springs, before the surfaces meet
 };
 
 class ContactRows {
@@ -73,7 +73,7 @@ class ContactRows {
   std::vector<ContactGroup> groups;
   std::vector<Coupling> couplings;
   std::vector<double> pool;
-  std::vector<InverseInertia> inert;  // per twist
+  std::vector<InverseInertia> inertias;  // per twist
 
   void clear();
   // Relative velocity of the surface of b with respect to a, in the point's axes.
@@ -81,7 +81,7 @@ class ContactRows {
   void apply(const ContactPoint& p, const Eigen::Vector3d& impulse, Velocities& v) const;
   // The same as solve(), with support for points that press before the surfaces meet.
   static Eigen::Vector3d solve_point(const ContactPoint& p, const Eigen::Vector3d& impulse, const Eigen::Vector3d& v) {
-    return p.press == Press::kNone ? solve(p, impulse, v) : solve_pressed(p, impulse, v);
+    return p.penalty_force == PenaltyForce::kNone ? solve(p, impulse, v) : solve_penalty(p, impulse, v);
   }
   // Computes the mobility from the arms and couplings. Call it after they are set.
   void compute_mobility(ContactPoint& p) const;
@@ -96,7 +96,7 @@ class ContactRows {
  private:
   void add_velocity(const ContactPoint& p, const Velocities& v, Eigen::Vector3d& out) const;
   void apply_to_joints(const ContactPoint& p, const Eigen::Vector3d& impulse, Velocities& v) const;
-  static Eigen::Vector3d solve_pressed(const ContactPoint& p, const Eigen::Vector3d& impulse,
+  static Eigen::Vector3d solve_penalty(const ContactPoint& p, const Eigen::Vector3d& impulse,
                                        const Eigen::Vector3d& v);
   // alone: normal velocity without an impulse here.
   static Eigen::Vector3d solve_sliding(const ContactPoint& p, const Eigen::Vector3d& impulse,
@@ -147,7 +147,7 @@ inline void add_product(Eigen::Vector3d& out, const Eigen::Matrix3d& m, double x
                z = c[6] * n + c[7] * s + c[8] * t;
   if (p.b) {
     Twist& b = v.twists[static_cast<std::size_t>(p.b)];
-    const InverseInertia& m = inert[static_cast<std::size_t>(p.b)];
+    const InverseInertia& m = inertias[static_cast<std::size_t>(p.b)];
     const double k = m.inverse_mass_1_kg;
     b.linear_m_s[0] += k * x, b.linear_m_s[1] += k * y, b.linear_m_s[2] += k * z;
     const Eigen::Vector3d& r = p.arm_b;
@@ -156,7 +156,7 @@ inline void add_product(Eigen::Vector3d& out, const Eigen::Matrix3d& m, double x
   }
   if (p.a) {
     Twist& a = v.twists[static_cast<std::size_t>(p.a)];
-    const InverseInertia& m = inert[static_cast<std::size_t>(p.a)];
+    const InverseInertia& m = inertias[static_cast<std::size_t>(p.a)];
     const double k = m.inverse_mass_1_kg;
     a.linear_m_s[0] -= k * x, a.linear_m_s[1] -= k * y, a.linear_m_s[2] -= k * z;
     const Eigen::Vector3d& r = p.arm_a;
@@ -171,10 +171,12 @@ inline void add_product(Eigen::Vector3d& out, const Eigen::Matrix3d& m, double x
                                                                  const Eigen::Vector3d& v) {
   const double alone = v.x() - p.mobility.row(0).dot(impulse);
   if (alone >= 0) return Eigen::Vector3d::Zero();
-  Eigen::Vector3d stuck = impulse;
-  add_product<-1>(stuck, p.inverse_mobility, v.x(), v.y(), v.z());
-  const double most = p.friction * stuck.x();
-  if (stuck.x() >= 0 && stuck.y() * stuck.y() + stuck.z() * stuck.z() <= most * most) return stuck;
+  Eigen::Vector3d sticking = impulse;
+  add_product<-1>(sticking, p.inverse_mobility, v.x(), v.y(), v.z());
+  const double max_tangential = p.friction * sticking.x();
+  if (sticking.x() >= 0 &&
+      sticking.y() * sticking.y() + sticking.z() * sticking.z() <= max_tangential * max_tangential)
+    return sticking;
   return solve_sliding(p, impulse, v, alone);
 }
 

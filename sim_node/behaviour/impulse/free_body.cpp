@@ -59,8 +59,8 @@ Eigen::Vector3d mean_spin(const FreeBody& body, const Eigen::Vector3d& momentum,
 
 }  // namespace
 
-Flight fly(const FreeBody& body, double h) {
-  Flight f;
+FreeMotion free_motion(const FreeBody& body, double h) {
+  FreeMotion f;
   f.inertia = in_world(body.orientation, body.inertia_kg_m2);
   f.inverse_inertia = f.inertia.inverse();
   const Eigen::Vector3d gained = h * (body.gravity_m_s2 + body.force_N / body.mass_kg) -
@@ -76,13 +76,14 @@ Flight fly(const FreeBody& body, double h) {
   return f;
 }
 
-void land(FreeBody& body, const Flight& f, const Eigen::Vector3d& mean_m_s, const Eigen::Vector3d& mean_rad_s,
-          const Eigen::Vector3d& aside_m, const Eigen::Vector3d& aside_rad, double h) {
+void complete_step(FreeBody& body, const FreeMotion& f, const Eigen::Vector3d& mean_m_s,
+                   const Eigen::Vector3d& mean_rad_s, const Eigen::Vector3d& offset_m,
+                   const Eigen::Vector3d& offset_rad, double h) {
   const Eigen::Vector3d momentum = f.spin_momentum + f.inertia * (mean_rad_s - f.mean_rad_s);
   body.velocity_m_s = mean_m_s;
   body.step_s = h;
-  body.centre_m += h * mean_m_s + aside_m;
-  body.orientation = turned(body.orientation, h * mean_rad_s + aside_rad);
+  body.centre_m += h * mean_m_s + offset_m;
+  body.orientation = turned(body.orientation, h * mean_rad_s + offset_rad);
   const Eigen::Matrix3d r = body.orientation.toRotationMatrix();
   body.spin_rad_s = r * (body.inertia_kg_m2.inverse() * (r.transpose() * momentum));
   body.force_N.setZero();

@@ -25,7 +25,7 @@ struct FreeBody {
 };
 
 // Motion of a body in the next step without contacts. World axes.
-struct Flight {
+struct FreeMotion {
   Eigen::Matrix3d inertia, inverse_inertia;  // kg m^2, 1/(kg m^2)
   Eigen::Vector3d spin_momentum;             // kg m^2/s, at the end of the step
   Eigen::Vector3d start_m_s, mean_m_s;       // velocity at the start of the step, and its mean over it
@@ -34,11 +34,12 @@ struct Flight {
 
 // Integrates the rotation of a torque-free body with exact angular momentum, by the classical Runge-Kutta method
 // (Hairer, Norsett and Wanner 1993, table II.1.2). Real-time safe: yes.
-Flight fly(const FreeBody& body, double h_s);
+FreeMotion free_motion(const FreeBody& body, double h_s);
 
 // Completes a step in which the body moved with these mean velocities and got these offsets (m, rad).
-void land(FreeBody& body, const Flight& flight, const Eigen::Vector3d& mean_m_s, const Eigen::Vector3d& mean_rad_s,
-          const Eigen::Vector3d& aside_m, const Eigen::Vector3d& aside_rad, double h_s);
+void complete_step(FreeBody& body, const FreeMotion& motion, const Eigen::Vector3d& mean_m_s,
+                   const Eigen::Vector3d& mean_rad_s, const Eigen::Vector3d& offset_m,
+                   const Eigen::Vector3d& offset_rad, double h_s);
 
 // Moves a body by an offset (m, rad); its velocities do not change.
 void displace(FreeBody& body, const Eigen::Vector3d& by_m, const Eigen::Vector3d& by_rad);

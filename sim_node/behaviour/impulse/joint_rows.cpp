@@ -29,8 +29,8 @@ bool needs_rows(const articulated::ArticulatedSystem& system) {
   return false;
 }
 
-void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate, double h, double repair,
-                 JointMemory& memory, std::vector<JointRow>& rows, std::vector<double>& pool) {
+void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate, double h, double correction_share,
+                 JointImpulses& memory, std::vector<JointRow>& rows, std::vector<double>& pool) {
   const auto& dofs = system.tree().dofs;
   const std::size_t n = dofs.size();
   for (std::size_t j = 0; j < n; ++j) {
@@ -49,14 +49,15 @@ void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate,
     row.rates = n;
     row.response = pool.size();
     pool.resize(pool.size() + n);
-    system.dynamics().strike_dof(static_cast<int>(j), {pool.data() + row.response, n});
+    system.dynamics().dof_impulse_to_rates(static_cast<int>(j), {pool.data() + row.response, n});
     row.mobility = pool[row.response + j];
-    const auto add = [&](double wanted, double softness, double least, double most, double& saved) {
-      row.wanted = wanted;
+    const auto add = [&](double target_rate, double softness, double min_impulse, double max_impulse,
+                         double& saved) {
+      row.target_rate = target_rate;
       row.softness = softness;
-      row.least = least;
-      row.most = most;
-      row.impulse = std::clamp(saved, least, most);
+      row.min_impulse = min_impulse;
+      row.max_impulse = max_impulse;
+      row.impulse = std::clamp(saved, min_impulse, max_impulse);
       row.memory = &saved;
       rows.push_back(row);
     };
@@ -67,14 +68,14 @@ void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate,
     }
     if (d.motor_effort > 0) add(d.motor_velocity, 0, -h * d.motor_effort, h * d.motor_effort, memory.motor[j]);
     if (d.friction > 0 && !ball) add(0, 0, -h * d.friction, h * d.friction, memory.friction[j]);
-    const auto parting = [&](double room) { return room >= 0 ? -room / h : -repair * room / h; };
+    const auto parting = [&](double room) { return room >= 0 ? -room / h : -correction_share * room / h; };
     if (low) add(parting(q - d.lower), 0, 0, kUnbounded, memory.limit[j]);
     if (high) add(-parting(d.upper - q), 0, -kUnbounded, 0, memory.limit[j]);
   }
 }
 
 void append_ball_friction(articulated::ArticulatedSystem& system, std::size_t first_rate, double h,
-                          JointMemory& memory, std::vector<JointRow>& rows, std::vector<double>& pool) {
+                          JointImpulses& memory, std::vector<JointRow>& rows, std::vector<double>& pool) {
   const auto& tree = system.tree();
   const std::size_t n = tree.dofs.size();
   for (std::size_t j = 0; j < n; ++j) {
@@ -86,10 +87,10 @@ void append_ball_friction(articulated::ArticulatedSystem& system, std::size_t fi
     row.rates = n;
     row.response = pool.size();
     pool.resize(pool.size() + n);
-    system.dynamics().strike_dof(static_cast<int>(j), {pool.data() + row.response, n});
+    system.dynamics().dof_impulse_to_rates(static_cast<int>(j), {pool.data() + row.response, n});
     row.mobility = pool[row.response + j];
-    row.most = h * d.friction;
-    row.impulse = std::clamp(memory.friction[j], -row.most, row.most);
+    row.max_impulse = h * d.friction;
+    row.impulse = std::clamp(memory.friction[j], -row.max_impulse, row.max_impulse);
     row.memory = &memory.friction[j];
     row.ball = static_cast<int>(j) == tree.links[static_cast<std::size_t>(d.link)].first_dof ? 3 : 1;
     rows.push_back(row);
@@ -112,7 +113,7 @@ double sweep_ball(JointRow* rows, const std::vector<double>& pool, Velocities& v
   for (int k = 0; k < 3; ++k) mobility += rows[k].mobility;
   Eigen::Vector3d next;
   for (int k = 0; k < 3; ++k) next[k] = rows[k].impulse - v.rates[rows[k].rate] / mobility;
-  if (next.norm() > rows[0].most) next *= rows[0].most / next.norm();
+  if (next.norm() > rows[0].max_impulse) next *= rows[0].max_impulse / next.norm();
   double change = 0;
   for (int k = 0; k < 3; ++k) {
     const double by = next[k] - rows[k].impulse;
@@ -127,8 +128,9 @@ double sweep_ball(JointRow* rows, const std::vector<double>& pool, Velocities& v
 
 double sweep(JointRow& row, const std::vector<double>& pool, Velocities& v) {
   if (row.ball) return row.ball == 3 ? sweep_ball(&row, pool, v) : 0;
-  const double missing = row.wanted - v.rates[row.rate] - row.softness * row.impulse;
-  const double impulse = std::clamp(row.impulse + missing / (row.mobility + row.softness), row.least, row.most);
+  const double rate_error = row.target_rate - v.rates[row.rate] - row.softness * row.impulse;
+  const double impulse =
+      std::clamp(row.impulse + rate_error / (row.mobility + row.softness), row.min_impulse, row.max_impulse);
   const double by = impulse - row.impulse;
   row.impulse = impulse;
   apply(row, by, pool, v);

@@ -13,9 +13,9 @@ struct JointRow {
   std::size_t rate = 0;                                 // index of the rate that it acts along
   std::size_t first_rate = 0, rates = 0, response = 0;  // of the system: change of all its rates per unit impulse
   double mobility = 0;
-  double wanted = 0;           // target rate, rad/s or m/s
+  double target_rate = 0;      // target rate, rad/s or m/s
   double softness = 0;         // a soft row requires rate + softness * impulse = wanted
-  double least = 0, most = 0;  // impulse, N m s or N s
+  double min_impulse = 0, max_impulse = 0;  // impulse, N m s or N s
   double impulse = 0;
   int ball = 0;              // for dry friction of a ball joint: 3 in the first of three rows of one torque, 1 in the others
   int mover = 0;             // of its system, numbered as for contacts
@@ -23,22 +23,23 @@ struct JointRow {
 };
 
 // Impulses of each dof from the last step, for the warm start.
-struct JointMemory {
+struct JointImpulses {
   std::vector<double> friction, motor, limit, spring;
-  explicit JointMemory(std::size_t dofs) : friction(dofs), motor(dofs), limit(dofs), spring(dofs) {}
+  explicit JointImpulses(std::size_t dofs) : friction(dofs), motor(dofs), limit(dofs), spring(dofs) {}
 };
 
 // Whether a system has such constraints.
 bool needs_rows(const articulated::ArticulatedSystem& system);
 
-// Appends the rows of a system whose rates begin at first_rate. repair: share of a limit violation that is corrected
-// in a step. Responses go to the pool.
-void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate, double h_s, double repair,
-                 JointMemory& memory, std::vector<JointRow>& rows, std::vector<double>& pool);
+// Appends the rows of a system whose rates begin at first_rate. correction_share: share of a limit violation that
+// is corrected in a step. Responses go to the pool.
+void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate, double h_s,
+                 double correction_share, JointImpulses& memory, std::vector<JointRow>& rows,
+                 std::vector<double>& pool);
 
 // The same for dry friction of ball joints, three rows each.
 void append_ball_friction(articulated::ArticulatedSystem& system, std::size_t first_rate, double h_s,
-                          JointMemory& memory, std::vector<JointRow>& rows, std::vector<double>& pool);
+                          JointImpulses& memory, std::vector<JointRow>& rows, std::vector<double>& pool);
 
 // Updates the impulse of a row within its bounds. Returns the error of the rate before the update, rad/s or m/s.
 double sweep(JointRow& row, const std::vector<double>& pool, Velocities& v);

@@ -12,7 +12,7 @@ constexpr int kSweeps = 5;         // over the points of one group; design: four
 
 }  // namespace
 
-void Layers::find(const ContactRows& rows, int movers) {
+void ContactLayers::find(const ContactRows& rows, int movers) {
   layer_.resize(static_cast<std::size_t>(movers), kFlies);
   for (const ContactGroup& g : rows.groups)
     for (const int mover : {g.mover_a, g.mover_b})
@@ -52,8 +52,8 @@ void Layers::find(const ContactRows& rows, int movers) {
   }
 }
 
-void Layers::settle(ContactRows& rows, Velocities& v) {
-  std::swap(above_.inert, rows.inert);
+void ContactLayers::propagate_shock(ContactRows& rows, Velocities& v) {
+  std::swap(above_.inertias, rows.inertias);
   for (const int number : order_) {
     const ContactGroup& g = rows.groups[static_cast<std::size_t>(number)];
     const int low = std::min(layer_of(g.mover_a), layer_of(g.mover_b));
@@ -72,13 +72,13 @@ void Layers::settle(ContactRows& rows, Velocities& v) {
     for (int sweep = 0; sweep < kSweeps; ++sweep)
       for (ContactPoint& p : above_.points) {
         Eigen::Vector3d u = above_.velocity(p, v) + p.drift_m_s;
-        u.x() -= p.least_speed_m_s;
+        u.x() -= p.min_speed_m_s;
         const Eigen::Vector3d next = ContactRows::solve_point(p, p.impulse, u), by = next - p.impulse;
         p.impulse = next;
         above_.apply(p, by, v);
       }
   }
-  std::swap(above_.inert, rows.inert);
+  std::swap(above_.inertias, rows.inertias);
 }
 
 }  // namespace tactus::sim::impulse

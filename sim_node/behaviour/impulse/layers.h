@@ -9,7 +9,7 @@
 
 namespace tactus::sim::impulse {
 
-class Layers {
+class ContactLayers {
  public:
   // movers: number of mover indices. Real-time safe once its lists have grown.
   void find(const ContactRows& rows, int movers);
@@ -17,7 +17,7 @@ class Layers {
   // processor does not wait for the body that it has just updated.
   const std::vector<int>& points() const { return points_; }
   // The last pass, over contacts between free bodies that rest on something. Flying bodies keep their momentum.
-  void settle(ContactRows& rows, Velocities& v);
+  void propagate_shock(ContactRows& rows, Velocities& v);
 
  private:
   int layer_of(int mover) const { return mover < 0 ? 0 : layer_[static_cast<std::size_t>(mover)]; }

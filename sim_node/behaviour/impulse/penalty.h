@@ -24,7 +24,7 @@ struct Penalty {
 // Share of the shell over which damping increases to its full value. Full damping at once would act like an impact on
 // arrival (Hunt and Crossley 1975, equation 6 and figure 3). Design value: thin compared with the shell, so that the
 // damper inside is linear.
-inline constexpr double kDamperSetsIn = 0.1;
+inline constexpr double kDampingOnsetShare = 0.1;
 
 // Spring and damper as a constraint of the step (Smith 2006, ODE manual 3.8.2).
 struct SoftRow {
@@ -40,17 +40,17 @@ inline SoftRow soft_row(double stiffness_N_m, double damping_N_s_m, double h_s) 
 // press in one direction together, 1/kg (1/m for one point on a mass). From the poles of x'' = -(k x + d x')/m
 // stepped as v += h a(x, v), x += h v: h^2 k + 2 h d < 4 m (Hairer, Lubich, Wanner 2006, I.1.4 and its exercises, for
 // d = 0: h w < 2).
-inline double stiffest_explicit(double mobility_1_kg, double damping_N_s_m, double h_s) {
+inline double max_explicit_stiffness_N_m(double mobility_1_kg, double damping_N_s_m, double h_s) {
   return (4 / mobility_1_kg - 2 * h_s * damping_N_s_m) / (h_s * h_s);
 }
 
 // Sets for each point the gap at which it presses, and for each contact whether its springs will stop it. Contacts
 // that will cross the shell collide instead, with the restitution of their materials. velocity: at the start of the
 // step. Call it after WarmStart::recall() and before collisions.
-void shield(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h_s);
+void set_penalty_shells(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h_s);
 
 // Sets the penalty force of each point of the rows. velocity: mean over the step before contact. Call it after
-// least_speed_m_s is set.
-void press(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h_s);
+// min_speed_m_s is set.
+void set_penalty_forces(ContactRows& rows, const Penalty& penalty, const Velocities& velocity, double h_s);
 
 }  // namespace tactus::sim::impulse

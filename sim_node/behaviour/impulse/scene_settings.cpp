@@ -13,7 +13,7 @@ int axis_of(bool swapped, int axis) { return swapped ? 1 - axis : axis; }
 
 SceneSettings::SceneSettings(const WorldDef& def, const World& world) {
   for (const BodyDef& b : def.bodies) {
-    falls_.push_back(b.gravity);
+    has_gravity_.push_back(b.gravity);
     centre_in_body_m_.push_back(b.centre_of_mass_m);
   }
   for (const ShapeDef& s : def.shapes) body_of_.push_back(s.body);
@@ -44,8 +44,8 @@ bool SceneSettings::apply(World& world, const SceneChange& c) const {
   const Joint* j = joint(c.joint);
   switch (c.kind) {
     case SceneChange::kGravity:
-      for (std::size_t body = 0; body < falls_.size(); ++body)
-        if (falls_[body] && world.moves(static_cast<int>(body)))
+      for (std::size_t body = 0; body < has_gravity_.size(); ++body)
+        if (has_gravity_[body] && world.moves(static_cast<int>(body)))
           world.set_gravity(static_cast<int>(body), c.values);
       return true;
     case SceneChange::kMass: return world.set_mass(c.body, c.values.x());

@@ -41,7 +41,7 @@ class SceneSettings {
   const Joint* joint(const std::string& name) const;
   Surface changed(Surface surface, const SceneChange& change) const;
 
-  std::vector<bool> falls_;
+  std::vector<bool> has_gravity_;
   std::vector<int> body_of_;  // per shape
   std::vector<Eigen::Vector3d> centre_in_body_m_;
   std::vector<Joint> joints_;

@@ -30,7 +30,7 @@ void WarmStart::recall(std::span<const Manifold> contacts, std::span<const BodyM
       const Eigen::Vector3d here = place(m, m.points[static_cast<std::size_t>(i)], poses);
       double nearest = kSame_m * kSame_m;
       for (auto k = stored; k != stored_.end() && k->shape_a == m.shape_a && k->shape_b == m.shape_b; ++k) {
-        const double apart = (k->place_m - here).squaredNorm();
+        const double apart = (k->position_m - here).squaredNorm();
         if (apart >= nearest) continue;
         nearest = apart;
         p.impulse = p.force_time_s * (p.axes * k->force_N);
@@ -48,7 +48,7 @@ void WarmStart::store(std::span<const Manifold> contacts, std::span<const BodyMo
     const Manifold& m = contacts[static_cast<std::size_t>(g.manifold)];
     for (int i = 0; i < g.count; ++i) {
       const ContactPoint& p = rows.points[static_cast<std::size_t>(g.first + i)];
-      if (p.impulse.x() <= 0 && p.press == Press::kNone) continue;
+      if (p.impulse.x() <= 0 && p.penalty_force == PenaltyForce::kNone) continue;
       stored_.push_back({m.shape_a, m.shape_b, place(m, m.points[static_cast<std::size_t>(i)], poses),
                        p.axes.transpose() * p.impulse / p.force_time_s, p.shell_m});
     }

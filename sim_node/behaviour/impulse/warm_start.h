@@ -25,7 +25,7 @@ class WarmStart {
  private:
   struct StoredPoint {
     int shape_a = -1, shape_b = -1;
-    Eigen::Vector3d place_m;  // in the frame of the moving body
+    Eigen::Vector3d position_m;  // in the frame of the moving body
     Eigen::Vector3d force_N;  // world, on b
     double shell_m = -1;      // as in ContactPoint
   };

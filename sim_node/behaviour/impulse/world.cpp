@@ -40,7 +40,7 @@ void World::make_system(const std::vector<int>& bodies, articulated::Articulated
   }
   first_rate_.push_back(first_rate_.back() + dofs);
   const bool has_rows = needs_rows(system);
-  systems_.push_back({std::move(system), JointMemory(dofs), bodies, has_rows, false});
+  systems_.push_back({std::move(system), JointImpulses(dofs), bodies, has_rows, false});
 }
 
 int World::add_surface(const Surface& surface) {
@@ -70,12 +70,12 @@ int World::mover_number(const Mover& m) const {
 
 void World::start_velocities(std::span<const Manifold> contacts, double h) {
   activate_all();
-  flights_.resize(free_.size());
-  for (Velocities* v : {&velocity_, &drift_, &aside_}) {
+  free_motions_.resize(free_.size());
+  for (Velocities* v : {&velocity_, &drift_, &position_offset_}) {
     v->twists.resize(free_.size() + 1);
     v->rates.resize(first_rate_.back());
   }
-  rows_.inert.resize(free_.size() + 1);
+  rows_.inertias.resize(free_.size() + 1);
   for (const int unit : active_) {
     const std::size_t i = index(unit);
     if (i < free_.size()) {
@@ -83,11 +83,11 @@ void World::start_velocities(std::span<const Manifold> contacts, double h) {
       b.velocity_m_s = velocity_for(b, h);
       force_time_s_[i] = b.step_s < 0 ? h : (b.step_s + h) / 2;
       b.step_s = h;
-      const Flight& f = flights_[i] = fly(b, h);
+      const FreeMotion& f = free_motions_[i] = free_motion(b, h);
       velocity_.twists[i + 1] = {f.start_m_s, f.start_rad_s};
       drift_.twists[i + 1] = {f.mean_m_s - f.start_m_s, f.mean_rad_s - f.start_rad_s};
-      aside_.twists[i + 1] = {};
-      rows_.inert[i + 1] = {1 / b.mass_kg, f.inverse_inertia};
+      position_offset_.twists[i + 1] = {};
+      rows_.inertias[i + 1] = {1 / b.mass_kg, f.inverse_inertia};
     } else {
       System& s = systems_[i - free_.size()];
       s.touched = s.has_rows;
@@ -100,7 +100,7 @@ void World::start_velocities(std::span<const Manifold> contacts, double h) {
     if (index(unit) < free_.size()) continue;
     const std::size_t s = index(unit) - free_.size();
     for (std::size_t j = first_rate_[s]; j < first_rate_[s + 1]; ++j)
-      velocity_.rates[j] = drift_.rates[j] = aside_.rates[j] = 0;
+      velocity_.rates[j] = drift_.rates[j] = position_offset_.rates[j] = 0;
     if (!systems_[s].touched) continue;
     const auto acceleration = systems_[s].system.accelerations();
     const auto& rates = systems_[s].system.state().rates;
@@ -128,7 +128,7 @@ void World::couple(ContactPoint& p, int system, int link_a, int link_b, const Ei
       for (std::size_t i = 0; i < n; ++i)
         for (int k = 0; k < 3; ++k) jacobian[index(r) * n + i] += sign * p.axes(r, k) * scratch_[index(k) * n + i];
     for (int r = 0; r < 3; ++r) {
-      s.dynamics().strike(link, point_m, p.axes.row(r), std::span(scratch_).first(n));
+      s.dynamics().impulse_to_rates(link, point_m, p.axes.row(r), std::span(scratch_).first(n));
       for (std::size_t i = 0; i < n; ++i) response[index(r) * n + i] += sign * scratch_[i];
     }
   }
@@ -185,7 +185,8 @@ void World::build_joints(double h) {
   for (std::size_t s = 0; s < systems_.size(); ++s)
     if (systems_[s].has_rows && present_[index(systems_[s].bodies[0])]) {
       const std::size_t first = joints_.size();
-      append_rows(systems_[s].system, first_rate_[s], h, law_.repair, systems_[s].memory, joints_, rows_.pool);
+      append_rows(systems_[s].system, first_rate_[s], h, law_.correction_share, systems_[s].memory, joints_,
+                  rows_.pool);
       append_ball_friction(systems_[s].system, first_rate_[s], h, systems_[s].memory, joints_, rows_.pool);
       for (std::size_t j = first; j < joints_.size(); ++j)
         joints_[j].mover = static_cast<int>(free_.size() + 1 + s);
@@ -194,22 +195,23 @@ void World::build_joints(double h) {
 
 // Sets the minimum separating speeds: a gap closes at most to zero, and an overlap is corrected gently.
 void World::set_required_speeds(double h) {
-  const auto repair = [&](double overlap) {
-    return std::min(law_.repair_speed_m_s, law_.repair * std::max(0.0, overlap - law_.slack_m) / h);
+  const auto correction_speed = [&](double overlap) {
+    return std::min(law_.max_correction_speed_m_s,
+                    law_.correction_share * std::max(0.0, overlap - law_.slop_m) / h);
   };
   for (ContactPoint& p : rows_.points) {
-    const double aside = rows_.velocity(p, aside_).x(), gap = p.gap_m + aside;
+    const double offset = rows_.velocity(p, position_offset_).x(), gap = p.gap_m + offset;
     if (p.gap_m >= 0 || gap >= 0)
-      p.least_speed_m_s = -gap / h;
-    else if (aside < 0)
-      p.least_speed_m_s = -aside / h + repair(-p.gap_m);
+      p.min_speed_m_s = -gap / h;
+    else if (offset < 0)
+      p.min_speed_m_s = -offset / h + correction_speed(-p.gap_m);
     else
-      p.least_speed_m_s = repair(-gap);
+      p.min_speed_m_s = correction_speed(-gap);
   }
 }
 
 void World::sweep(double h) {
-  const double settled_m_s = law_.settled_m_s2 * h;
+  const double settled_m_s = law_.convergence_m_s2 * h;
   for (const ContactPoint& p : rows_.points)
     if (p.impulse.x() > 0) rows_.apply(p, p.impulse, velocity_);
   for (const JointRow& row : joints_) apply(row, row.impulse, rows_.pool, velocity_);
@@ -224,7 +226,7 @@ void World::sweep(double h) {
     if (a <= p.visit && b <= p.visit) return 0.0;
     p.visit = visits;
     Eigen::Vector3d v = rows_.velocity(p, velocity_);
-    v.x() -= p.least_speed_m_s;
+    v.x() -= p.min_speed_m_s;
     const Eigen::Vector3d next = ContactRows::solve_point(p, p.impulse, v);
     const Eigen::Vector3d by(next[0] - p.impulse[0], next[1] - p.impulse[1], next[2] - p.impulse[2]);
     const double change = std::max({std::abs(by[0]), std::abs(by[1]), std::abs(by[2])}) * p.mobility(0, 0);
@@ -263,8 +265,8 @@ void World::finish(double h) {
     const std::size_t i = index(unit);
     if (i < free_.size()) {
       FreeBody& b = free_[i];
-      const Twist &v = velocity_.twists[i + 1], &x = aside_.twists[i + 1];
-      land(b, flights_[i], v.linear_m_s, v.angular_rad_s, x.linear_m_s, x.angular_rad_s, h);
+      const Twist &v = velocity_.twists[i + 1], &x = position_offset_.twists[i + 1];
+      complete_step(b, free_motions_[i], v.linear_m_s, v.angular_rad_s, x.linear_m_s, x.angular_rad_s, h);
       motions_[index(body_of_[i])] = motion_of(b);
     } else {
       finish(i - free_.size(), h);
@@ -318,21 +320,21 @@ void World::write_results(std::span<Manifold> contacts, double h) const {
       m.points[index(i)].normal_force_N = p.impact_N_s / h + p.impulse.x() / p.force_time_s;
     }
     m.impact = {};
-    if (g.met < 0 || m.points[index(g.met)].normal_force_N <= 0) continue;
-    const ManifoldPoint& at = m.points[index(g.met)];
+    if (g.first_impact_point < 0 || m.points[index(g.first_impact_point)].normal_force_N <= 0) continue;
+    const ManifoldPoint& at = m.points[index(g.first_impact_point)];
     const Eigen::Vector3d half = at.depth_m / 2 * at.normal, on_a = at.point_m + half, on_b = at.point_m - half;
     const BodyMotion &a = motions_[index(m.body_a)], &b = motions_[index(m.body_b)];
     m.impact.count = std::max(1, g.impacts);
     m.impact.first_s = std::min(g.first_s, h);
     m.impact.last_s = std::min(g.last_s, h);
     m.impact.speed_m_s = g.speed_m_s;
-    m.impact.effective_mass_kg = 1 / rows_.points[index(g.first + g.met)].mobility(0, 0);
+    m.impact.effective_mass_kg = 1 / rows_.points[index(g.first + g.first_impact_point)].mobility(0, 0);
     const Eigen::Vector3d met_a = on_a + g.first_s * a.velocity_at(on_a),
                           met_b = on_b + g.first_s * b.velocity_at(on_b);
-    m.impact.place_m = (met_a + met_b) / 2;
+    m.impact.position_m = (met_a + met_b) / 2;
     // Along the normal, the position on the static body is exact.
     if (!a.moves() || !b.moves())
-      m.impact.place_m += at.normal.dot((a.moves() ? met_b : met_a) - m.impact.place_m) * at.normal;
+      m.impact.position_m += at.normal.dot((a.moves() ? met_b : met_a) - m.impact.position_m) * at.normal;
     m.impact.normal = at.normal;
     m.impact.a_body_m = a.to_body(on_a), m.impact.b_body_m = b.to_body(on_b);
     m.impact.triangle_a = at.triangle_a, m.impact.triangle_b = at.triangle_b;
@@ -345,15 +347,15 @@ void World::step(std::span<Manifold> contacts, double h) {
   build_rows(contacts, h);
   build_joints(h);
   warm_.recall(contacts, motions_, rows_);
-  const bool presses = law_.penalty.stiffness_N_m > 0;
-  if (presses) shield(rows_, law_.penalty, velocity_, h);
-  collisions_.resolve(rows_, h, first_rate_, velocity_, aside_);
+  const bool has_penalty = law_.penalty.stiffness_N_m > 0;
+  if (has_penalty) set_penalty_shells(rows_, law_.penalty, velocity_, h);
+  collisions_.resolve(rows_, h, first_rate_, velocity_, position_offset_);
   add_drift();
   set_required_speeds(h);
-  if (presses) press(rows_, law_.penalty, velocity_, h);
+  if (has_penalty) set_penalty_forces(rows_, law_.penalty, velocity_, h);
   layers_.find(rows_, static_cast<int>(free_.size() + systems_.size()) + 1);
   sweep(h);
-  if (sweeps_ == law_.sweeps) layers_.settle(rows_, velocity_);
+  if (sweeps_ == law_.sweeps) layers_.propagate_shock(rows_, velocity_);
   warm_.store(contacts, motions_, rows_);
   for (const JointRow& row : joints_) *row.memory = row.impulse;
   write_results(contacts, h);

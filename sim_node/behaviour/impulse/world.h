@@ -19,13 +19,13 @@
 
 namespace tactus::sim::impulse {
 
-struct Law {
+struct ContactLaw {
   int sweeps = 40;             // maximum, over all contacts of a step
-  double settled_m_s2 = 1e-6;  // sweeps end when no point changes by more per time of a step: 1e-7 of weight
+  double convergence_m_s2 = 1e-6;  // sweeps end when no point changes by more per time of a step: 1e-7 of weight
   double bounce_speed_m_s = 0.02;  // slower impacts do not bounce
-  double slack_m = 1e-4;           // overlap that is not corrected
-  double repair = 0.2;             // share of a deeper overlap that is corrected per step
-  double repair_speed_m_s = 0.02;  // upper limit of the correction speed
+  double slop_m = 1e-4;            // overlap that is not corrected
+  double correction_share = 0.2;   // share of a deeper overlap that is corrected per step
+  double max_correction_speed_m_s = 0.02;  // upper limit of the correction speed
   double shell_m = 0;              // surfaces meet at this gap, so that residuals stay free of overlap
   Penalty penalty = {};            // in a shell beyond that gap, in place of collisions that its springs can stop
 };
@@ -47,7 +47,7 @@ struct UnitState {
 
 class World {
  public:
-  explicit World(Law law = {}) : law_(law), collisions_({law.bounce_speed_m_s, law.slack_m}) {}
+  explicit World(ContactLaw law = {}) : law_(law), collisions_({law.bounce_speed_m_s, law.slop_m}) {}
 
   // Each returns the next body index, from 0. A system takes one index per link, in order.
   int add_fixed();
@@ -91,7 +91,7 @@ class World {
 
   // Acts during the next step, N m.
   void add_torque(int body, const Eigen::Vector3d& torque_N_m);
-  // Archives all state of the next steps. Throws BadState when the data does not fit; the world is then partly
+  // Archives all state of the next steps. Throws InvalidState when the data does not fit; the world is then partly
   // changed.
   void archive(StateArchive& a);
 
@@ -100,7 +100,7 @@ class World {
     std::vector<FreeBody> free;
     std::vector<articulated::ArticulatedSystem::State> states;
     std::vector<articulated::ArticulatedSystem::SavedLoads> saved_loads;
-    std::vector<JointMemory> memories;
+    std::vector<JointImpulses> memories;
     std::vector<BodyMotion> motions;  // of the active bodies
     WarmStart warm;
   };
@@ -112,8 +112,8 @@ class World {
   // Resets a unit to its saved pose, at rest.
   void hold(int unit, const SavedStep& saved);
   // Resolves overlaps by the smallest displacement that the contacts allow, weighted by inertia. Changes positions
-  // only, not velocities. contacts: of the current poses. Overlaps deeper than most_m are ignored.
-  void separate(std::span<const Manifold> contacts, double most_m);
+  // only, not velocities. contacts: of the current poses. Overlaps deeper than max_overlap_m are ignored.
+  void separate(std::span<const Manifold> contacts, double max_overlap_m);
 
   // Changes between steps, in force from the next step on. The velocity of a link acts like an impulse: the other
   // joints take their share (Featherstone 2008, section 11.7). Functions return false when the body is not free or
@@ -144,7 +144,7 @@ class World {
   };
   struct System {
     articulated::ArticulatedSystem system;
-    JointMemory memory;
+    JointImpulses memory;
     std::vector<int> bodies;  // of its links
     bool has_rows = false, touched = false;
   };
@@ -171,7 +171,7 @@ class World {
     return present_[index(body)] ? movers_[index(body)] : kStill;
   }
 
-  Law law_;
+  ContactLaw law_;
   std::vector<Mover> movers_;
   std::vector<char> present_;                // per body: its unit is active
   std::vector<int> active_, active_bodies_;  // ascending; empty before the first step
@@ -185,11 +185,11 @@ class World {
   std::vector<JointRow> joints_;
   Collisions collisions_;
   WarmStart warm_;
-  Layers layers_;
-  std::vector<Flight> flights_;             // of free bodies
+  ContactLayers layers_;
+  std::vector<FreeMotion> free_motions_;    // of free bodies
   std::vector<double> force_time_s_;        // per free body: time from the middle of the previous step to the middle of this one
   std::vector<std::size_t> first_rate_{0};  // of each system, and one past the last
-  Velocities velocity_, drift_, aside_;
+  Velocities velocity_, drift_, position_offset_;
   std::vector<double> scratch_;
   std::vector<int> last_change_;  // per mover plus one: counter value of its last change
   int sweeps_ = 0;

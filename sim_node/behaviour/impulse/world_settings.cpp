@@ -55,7 +55,7 @@ void World::set_velocity(int body, const Eigen::Vector3d& v) {
   articulated::Dynamics& d = s.system.dynamics();
   const Eigen::Vector3d centre = d.centre_m(m.link), by = v - d.velocity_at(m.link, centre);
   scratch_.resize(s.system.tree().dofs.size());
-  d.strike(m.link, centre, s.system.tree().links[index(m.link)].def.mass_kg * by, scratch_);
+  d.impulse_to_rates(m.link, centre, s.system.tree().links[index(m.link)].def.mass_kg * by, scratch_);
   s.system.add_rates(scratch_);
   refresh(s);
 }
@@ -69,10 +69,10 @@ void World::set_spin(int body, const Eigen::Vector3d& w) {
   if (m.kind != Kind::kLink) return;
   System& s = systems_[index(m.index)];
   articulated::Dynamics& d = s.system.dynamics();
-  const Eigen::Matrix3d turn = d.turn(m.link);
+  const Eigen::Matrix3d turn = d.rotation(m.link);
   const Eigen::Matrix3d inertia = turn * s.system.tree().links[index(m.link)].def.inertia_kg_m2 * turn.transpose();
   scratch_.resize(s.system.tree().dofs.size());
-  d.twist(m.link, inertia * (w - d.spin_rad_s(m.link)), scratch_);
+  d.angular_impulse_to_rates(m.link, inertia * (w - d.spin_rad_s(m.link)), scratch_);
   s.system.add_rates(scratch_);
   refresh(s);
 }

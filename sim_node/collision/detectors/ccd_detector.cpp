@@ -92,14 +92,14 @@ class CcdDetector : public Detector {
             .separation = !mpr_,
             .both_surfaces = false,
             .overlap_depth = true,
-            .least_depth = !mpr_,
+            .minimum_translation = !mpr_,
             .contact_kind = false,
             .one_pair = true,
             .deterministic = true};
   }
 
   int add(const ShapeDef& shape, const WorldDef& world) override {
-    if (!takes(shape.kind, shape.kind)) throw std::runtime_error(refusal(shape.kind, shape.kind));
+    if (!supports(shape.kind, shape.kind)) throw std::runtime_error(unsupported_reason(shape.kind, shape.kind));
     Convex c{shape.kind, shape.size_m, {}, {0, 0, 0}};
     if (shape.kind == ShapeKind::kMesh) {
       const TriangleMesh& mesh = world.meshes.at(static_cast<std::size_t>(shape.mesh));
@@ -131,12 +131,12 @@ class CcdDetector : public Detector {
     ccd.max_iterations = kMaxRounds;
     ccd.epa_tolerance = ccd.mpr_tolerance = ccd.dist_tolerance = kAccuracy_m2;
     ccd_real_t depth = 0;
-    ccd_vec3_t way, at;
-    const int missed = mpr_ ? ccdMPRPenetration(&pa, &pb, &ccd, &depth, &way, &at)
-                            : ccdGJKPenetration(&pa, &pb, &ccd, &depth, &way, &at);
+    ccd_vec3_t direction, at;
+    const int missed = mpr_ ? ccdMPRPenetration(&pa, &pb, &ccd, &depth, &direction, &at)
+                            : ccdGJKPenetration(&pa, &pb, &ccd, &depth, &direction, &at);
     if (missed != 0) return;
     PointPair p;
-    p.normal = Vector3d(way.v[0], way.v[1], way.v[2]);
+    p.normal = Vector3d(direction.v[0], direction.v[1], direction.v[2]);
     if (!(p.normal.norm() > 0.5) || !std::isfinite(depth)) return;
     p.normal.normalize();
     p.gap_m = reach - depth;
@@ -147,7 +147,7 @@ class CcdDetector : public Detector {
   }
 
  protected:
-  bool takes(ShapeKind a, ShapeKind b) const override {
+  bool supports(ShapeKind a, ShapeKind b) const override {
     for (const ShapeKind k : {a, b})
       if (k == ShapeKind::kPlane || k == ShapeKind::kHeightfield) return false;
     return true;

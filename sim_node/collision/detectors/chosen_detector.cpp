@@ -15,16 +15,16 @@ ChosenDetector::ChosenDetector(const WorldDef& world, const Settings& settings) 
   triangles_only_ = settings.detector == "layers";
   if (detector_->abilities().separation) shell_m_ = settings.contact_tolerance_m;
   for (std::size_t i = 0; i < world.shapes.size(); ++i)
-    if (kinds_[i] != ShapeKind::kHeightfield && detector_->refusal(kinds_[i], kinds_[i]).empty() &&
+    if (kinds_[i] != ShapeKind::kHeightfield && detector_->unsupported_reason(kinds_[i], kinds_[i]).empty() &&
         world.bodies[static_cast<std::size_t>(world.shapes[i].body)].tool < 0)
       number_[i] = detector_->add(world.shapes[i], world);
 }
 
-bool ChosenDetector::takes(int a, int b) const {
+bool ChosenDetector::supports(int a, int b) const {
   const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
   if (!detector_ || number_[i] < 0 || number_[j] < 0) return false;
   if (triangles_only_ && kinds_[i] != ShapeKind::kMesh && kinds_[j] != ShapeKind::kMesh) return false;
-  return detector_->refusal(kinds_[i], kinds_[j]).empty();
+  return detector_->unsupported_reason(kinds_[i], kinds_[j]).empty();
 }
 
 bool ChosenDetector::query(int a, const Eigen::Isometry3d& pose_a, int b, const Eigen::Isometry3d& pose_b,
@@ -33,7 +33,7 @@ bool ChosenDetector::query(int a, const Eigen::Isometry3d& pose_a, int b, const 
   detector_->query(number_[static_cast<std::size_t>(a)], pose_a, number_[static_cast<std::size_t>(b)], pose_b,
                    shell_m_, pairs_);
   if (std::any_of(pairs_.begin(), pairs_.end(), [](const PointPair& p) { return p.pierced; })) return false;
-  patches_.make(pairs_, std::max(shell_m_, kSamePlace_m), patch_list_);
+  patches_.make(pairs_, std::max(shell_m_, kSamePosition_m), patch_list_);
   for (const ContactPatch& patch : patch_list_)
     for (int i = 0; i < patch.count; ++i) {
       const PointPair& p = patch.points[static_cast<std::size_t>(i)];

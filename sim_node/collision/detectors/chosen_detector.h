@@ -19,7 +19,7 @@ class ChosenDetector {
   double shell_m() const { return shell_m_; }
   // Whether the selected detector handles this pair. "layers" is for triangles, so a pair of boxes stays with ODE.
   // Heightfields also stay with ODE, which holds them in a frame of their own.
-  bool takes(int shape_a, int shape_b) const;
+  bool supports(int shape_a, int shape_b) const;
   // Writes the contact of two shapes at these poses into `out`, after clearing it. A detector that reports gaps has
   // contacts from the contact tolerance on. Depth is measured from there, so bodies meet at that distance and never
   // overlap. Returns false when the surfaces intersect, which this detector cannot resolve; query ODE then.

@@ -25,7 +25,7 @@ class FclDetector : public Detector {
   }
 
   int add(const ShapeDef& shape, const WorldDef& world) override {
-    if (!takes(shape.kind, shape.kind)) throw std::runtime_error(refusal(shape.kind, shape.kind));
+    if (!supports(shape.kind, shape.kind)) throw std::runtime_error(unsupported_reason(shape.kind, shape.kind));
     shapes_.emplace_back(geometry(shape, world));
     kinds_.push_back(shape.kind);
     return static_cast<int>(shapes_.size()) - 1;
@@ -39,9 +39,9 @@ class FclDetector : public Detector {
     const bool mesh_a = kinds_[static_cast<std::size_t>(a)] == ShapeKind::kMesh,
                mesh_b = kinds_[static_cast<std::size_t>(b)] == ShapeKind::kMesh;
     fcl::DistanceResultd apart;
-    fcl::DistanceRequestd ask(true);
-    ask.gjk_solver_type = fcl::GJKSolverType::GST_INDEP;  // the libccd solver asserts on flat contacts
-    const double gap = fcl::distance(&ga, pose_a, &gb, pose_b, ask, apart);
+    fcl::DistanceRequestd request(true);
+    request.gjk_solver_type = fcl::GJKSolverType::GST_INDEP;  // the libccd solver asserts on flat contacts
+    const double gap = fcl::distance(&ga, pose_a, &gb, pose_b, request, apart);
     if (gap > reach_m) return;
     PointPair p;
     if (gap > 0) {
@@ -70,7 +70,7 @@ class FclDetector : public Detector {
   }
 
  protected:
-  bool takes(ShapeKind a, ShapeKind b) const override {
+  bool supports(ShapeKind a, ShapeKind b) const override {
     for (const ShapeKind k : {a, b})
       if (k == ShapeKind::kPlane || k == ShapeKind::kHeightfield) return false;
     return true;

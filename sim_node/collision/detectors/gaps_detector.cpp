@@ -47,7 +47,7 @@ class GapsDetector : public Detector, public NearestFirstDetector {
             .separation = true,
             .both_surfaces = true,
             .overlap_depth = true,
-            .least_depth = true,
+            .minimum_translation = true,
             .contact_kind = true,
             .one_pair = false,
             .deterministic = true};
@@ -67,7 +67,7 @@ class GapsDetector : public Detector, public NearestFirstDetector {
     const bool box = convex.core == gaps::Core::kBox && !(world.meshes.empty() && world.heightfields.empty());
     if (meshed || box) {
       s.layers = trees_->layers(shape, world);
-      contact_.accept(*s.layers, *s.layers);
+      contact_.check_supported(*s.layers, *s.layers);
     }
     if (box) s.tree = trees_->triangles(shape, world);
     shapes_.push_back(std::move(s));
@@ -98,16 +98,16 @@ class GapsDetector : public Detector, public NearestFirstDetector {
   }
 
   bool nearest_first(int a, const Isometry3d& pose_a, int b, const Isometry3d& pose_b, double reach_m,
-                     NearestFirst& to, std::vector<PointPair>& room) override {
+                     PairVisitor& visitor, std::vector<PointPair>& scratch) override {
     const Shape &sa = shapes_[static_cast<std::size_t>(a)], &sb = shapes_[static_cast<std::size_t>(b)];
     if (!sa.cones || !sb.cones) return false;
     nearest_.find({*sa.tree, *sa.layers, *sa.cones, pose_a}, {*sb.tree, *sb.layers, *sb.cones, pose_b}, reach_m,
-                  to, room);
+                  visitor, scratch);
     return true;
   }
 
  protected:
-  bool takes(ShapeKind a, ShapeKind b) const override {
+  bool supports(ShapeKind a, ShapeKind b) const override {
     const auto ground = [](ShapeKind k) { return k == ShapeKind::kPlane || k == ShapeKind::kHeightfield; };
     return !(ground(a) && ground(b));
   }

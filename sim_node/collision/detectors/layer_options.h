@@ -12,7 +12,7 @@ inline MeshContactOptions layer_options(const Settings& s) {
           .remover = s.duplicate_remover == "adjacency"     ? DuplicateRemover::kAdjacency
                      : s.duplicate_remover == "brute_force" ? DuplicateRemover::kBruteForce
                                                             : DuplicateRemover::kHashed,
-          .isa = isa_named(s.isa)};
+          .isa = parse_isa(s.isa)};
 }
 
 }  // namespace tactus::sim

@@ -25,9 +25,9 @@ class LayersDetector : public Detector {
   }
 
   int add(const ShapeDef& shape, const WorldDef& world) override {
-    if (!takes(shape.kind, shape.kind)) throw std::runtime_error(refusal(shape.kind, shape.kind));
+    if (!supports(shape.kind, shape.kind)) throw std::runtime_error(unsupported_reason(shape.kind, shape.kind));
     const ContactMesh& ready = *meshes_.emplace_back(trees_->layers(shape, world));
-    contact_.accept(ready, ready);
+    contact_.check_supported(ready, ready);
     return static_cast<int>(meshes_.size()) - 1;
   }
 
@@ -39,7 +39,7 @@ class LayersDetector : public Detector {
   }
 
  protected:
-  bool takes(ShapeKind a, ShapeKind b) const override {
+  bool supports(ShapeKind a, ShapeKind b) const override {
     for (const ShapeKind k : {a, b})
       if (k != ShapeKind::kMesh && k != ShapeKind::kBox && k != ShapeKind::kHeightfield) return false;
     return true;

@@ -17,8 +17,8 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 // Maximum length of a chain of impacts in which each body is hit by the one before. Design value: beyond it most of
 // the impact is spent.
 constexpr int kMaxImpacts = 8;
-// Factor for friction, which adds at most the same speed in the tangent plane, for coefficients up to 1. For larger
-// coefficients, impulse::Advance detects that a body moved further than the search assumed.
+// Factor for friction, which adds at most the same speed in the tangent plane, for coefficients up to 1. For
+// larger coefficients, impulse::AdaptiveStepper detects that a body moved further than the search assumed.
 constexpr double kWithFriction = 2;
 
 }  // namespace
@@ -70,8 +70,8 @@ NearPairs::NearPairs(const WorldDef& world, double tolerance_m, MeshTrees& trees
     }
   }
   grid_.build(fixed);
-  for (const auto& [a, b] : world.no_collision) apart_.emplace_back(std::min(a, b), std::max(a, b));
-  std::sort(apart_.begin(), apart_.end());
+  for (const auto& [a, b] : world.no_collision) excluded_pairs_.emplace_back(std::min(a, b), std::max(a, b));
+  std::sort(excluded_pairs_.begin(), excluded_pairs_.end());
 }
 
 Bounds NearPairs::bounds_of_shape(int shape) const {
@@ -83,7 +83,8 @@ Bounds NearPairs::bounds_of_shape(int shape) const {
 }
 
 bool NearPairs::may_touch(int a, int b) const {
-  return a != b && !std::binary_search(apart_.begin(), apart_.end(), std::pair(std::min(a, b), std::max(a, b)));
+  return a != b && !std::binary_search(excluded_pairs_.begin(), excluded_pairs_.end(),
+                                       std::pair(std::min(a, b), std::max(a, b)));
 }
 
 // How far rotation of its body may move a point of the shape.
@@ -105,8 +106,8 @@ void NearPairs::place(const BodyMotion& m, int body, double h) {
     Swept& s = swept_.emplace_back(Swept{shape, body, bounds_of_shape(shape)});
     const Vector3d displacement = h * m.velocity_m_s;
     const double isotropic = rotation_reach_m(m, shape, h) + gravity_m_s2_ * h * h + tolerance_m_ / 2;
-    s.bounds.least_m += (displacement.array().min(0) - isotropic).matrix();
-    s.bounds.most_m += (displacement.array().max(0) + isotropic).matrix();
+    s.bounds.min_m += (displacement.array().min(0) - isotropic).matrix();
+    s.bounds.max_m += (displacement.array().max(0) + isotropic).matrix();
   }
 }
 
@@ -115,8 +116,7 @@ void NearPairs::pair_with_fixed(std::size_t i, std::span<const BodyMotion> bodie
   const BodyMotion& m = bodies[index(s.body)];
   const double reach = (m.velocity_m_s.norm() + impact_speed_m_s_[index(s.body)]) * h + rotation_reach_m(m, s.shape, h) +
                        gravity_m_s2_ * h * h + tolerance_m_;
-  const Vector3d middle = (s.bounds.least_m + s.bounds.most_m) / 2,
-                 half = (s.bounds.most_m - s.bounds.least_m) / 2;
+  const Vector3d middle = (s.bounds.min_m + s.bounds.max_m) / 2, half = (s.bounds.max_m - s.bounds.min_m) / 2;
   for (const HalfSpace& p : half_spaces_)
     if (p.normal.dot(middle) - p.normal.cwiseAbs().dot(half) - p.offset_m <= tolerance_m_ / 2 &&
         may_touch(s.body, body_of_[index(p.shape)]))
@@ -124,7 +124,7 @@ void NearPairs::pair_with_fixed(std::size_t i, std::span<const BodyMotion> bodie
   if (fixed_.empty()) return;
   grid_hits_.clear();
   const Vector3d more = Vector3d::Constant(tolerance_m_ / 2);
-  grid_.find({s.bounds.least_m - more, s.bounds.most_m + more}, grid_hits_);
+  grid_.find({s.bounds.min_m - more, s.bounds.max_m + more}, grid_hits_);
   for (const int at : grid_hits_)
     if (may_touch(s.body, body_of_[index(fixed_[index(at)])])) add(s.shape, fixed_[index(at)], reach);
 }
@@ -133,8 +133,8 @@ void NearPairs::pair_with_fixed(std::size_t i, std::span<const BodyMotion> bodie
 void NearPairs::order_swept() {
   Vector3d sum(0, 0, 0), squares(0, 0, 0);
   for (const Swept& s : swept_) {
-    sum += s.bounds.least_m;
-    squares += s.bounds.least_m.cwiseAbs2();
+    sum += s.bounds.min_m;
+    squares += s.bounds.min_m.cwiseAbs2();
   }
   Eigen::Index axis = 0;
   (static_cast<double>(swept_.size()) * squares - sum.cwiseAbs2()).maxCoeff(&axis);
@@ -143,10 +143,10 @@ void NearPairs::order_swept() {
   for (std::size_t k = 0; k < order_.size(); ++k) {
     Span& o = order_[k];
     if (!known) o.swept = k;
-    o.least_m = swept_[o.swept].bounds.least_m[axis], o.most_m = swept_[o.swept].bounds.most_m[axis];
+    o.min_m = swept_[o.swept].bounds.min_m[axis], o.max_m = swept_[o.swept].bounds.max_m[axis];
   }
   const auto before = [](const Span& x, const Span& y) {
-    return x.least_m != y.least_m ? x.least_m < y.least_m : x.swept < y.swept;
+    return x.min_m != y.min_m ? x.min_m < y.min_m : x.swept < y.swept;
   };
   std::size_t moves = 0;
   for (std::size_t k = 1; k < order_.size() && moves < 4 * order_.size(); ++k)
@@ -159,9 +159,9 @@ void NearPairs::pair_moving(std::span<const BodyMotion> bodies, double h) {
   order_swept();
   for (std::size_t i = 0; i < order_.size(); ++i) {
     const Swept& s = swept_[order_[i].swept];
-    for (std::size_t j = i + 1; j < order_.size() && order_[j].least_m <= order_[i].most_m; ++j) {
+    for (std::size_t j = i + 1; j < order_.size() && order_[j].min_m <= order_[i].max_m; ++j) {
       const Swept& t = swept_[order_[j].swept];
-      if (!s.bounds.meets(t.bounds) || !may_touch(s.body, t.body)) continue;
+      if (!s.bounds.overlaps(t.bounds) || !may_touch(s.body, t.body)) continue;
       const BodyMotion &m = bodies[index(s.body)], &n = bodies[index(t.body)];
       add(s.shape, t.shape,
           ((m.velocity_m_s - n.velocity_m_s).norm() + impact_speed_m_s_[index(s.body)] + impact_speed_m_s_[index(t.body)]) * h +
@@ -208,8 +208,8 @@ bool NearPairs::add_impacts(std::span<const BodyMotion> bodies, std::span<const 
   if (!more) return false;
   for (Swept& s : swept_) {
     const double grow = impact_speed_m_s_[index(s.body)] * h - s.grown_m;
-    s.bounds.least_m.array() -= grow;
-    s.bounds.most_m.array() += grow;
+    s.bounds.min_m.array() -= grow;
+    s.bounds.max_m.array() += grow;
     s.grown_m += grow;
   }
   return true;

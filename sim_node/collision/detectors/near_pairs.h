@@ -45,7 +45,7 @@ class NearPairs {
     double grown_m = 0;  // enlargement for impacts, included in the bounds
   };
   struct Span {  // interval of a swept shape on the axis
-    double least_m, most_m;
+    double min_m, max_m;
     std::size_t swept;
   };
   static Extent extent_of(const ShapeDef& shape, const WorldDef& world, MeshTrees& trees);
@@ -70,7 +70,7 @@ class NearPairs {
   std::vector<int> fixed_;                   // shapes in the grid, by their index in the grid
   BoundsGrid grid_;
   std::vector<HalfSpace> half_spaces_;
-  std::vector<std::pair<int, int>> apart_;  // sorted pairs of bodies that do not collide
+  std::vector<std::pair<int, int>> excluded_pairs_;  // sorted pairs of bodies that do not collide
   std::vector<Swept> swept_;
   std::vector<Span> order_;
   std::vector<int> grid_hits_;

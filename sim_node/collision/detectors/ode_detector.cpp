@@ -31,7 +31,7 @@ class OdeDetector : public Detector {
 
   int add(const ShapeDef& shape, const WorldDef& world) override {
     Shape s{shape, Eigen::Isometry3d::Identity(), geoms_.make(world, shape, true, Eigen::Isometry3d::Identity())};
-    if (shape.kind == ShapeKind::kHeightfield) s.offset = ode::Geoms::placed(world, shape, s.offset);
+    if (shape.kind == ShapeKind::kHeightfield) s.offset = ode::Geoms::geom_pose(world, shape, s.offset);
     shapes_.push_back(s);
     return static_cast<int>(shapes_.size()) - 1;
   }
@@ -62,7 +62,7 @@ class OdeDetector : public Detector {
 
  protected:
   // ODE does not test static geometry against static geometry.
-  bool takes(ShapeKind a, ShapeKind b) const override {
+  bool supports(ShapeKind a, ShapeKind b) const override {
     const auto ground = [](ShapeKind k) { return k == ShapeKind::kPlane || k == ShapeKind::kHeightfield; };
     return !(ground(a) && ground(b));
   }

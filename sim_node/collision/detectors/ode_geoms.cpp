@@ -29,7 +29,7 @@ dGeomID Geoms::make(const WorldDef& world, const ShapeDef& shape, bool is_static
   return dCreatePlane(nullptr, n.x(), n.y(), n.z(), n.dot(pose.translation()));
 }
 
-Eigen::Isometry3d Geoms::placed(const WorldDef& world, const ShapeDef& shape, const Eigen::Isometry3d& pose) {
+Eigen::Isometry3d Geoms::geom_pose(const WorldDef& world, const ShapeDef& shape, const Eigen::Isometry3d& pose) {
   Eigen::Isometry3d out = pose;
   if (shape.kind == ShapeKind::kPlane) out.translate(Eigen::Vector3d(0, 0, -kPlate_m / 2));
   if (shape.kind == ShapeKind::kHeightfield) {

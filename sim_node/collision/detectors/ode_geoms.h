@@ -16,7 +16,7 @@ class Geoms {
   // is_static: a plane is infinite, at `pose` in the world. Otherwise a plane is a plate.
   dGeomID make(const WorldDef& world, const ShapeDef& shape, bool is_static, const Eigen::Isometry3d& pose);
   // Pose of ODE's geometry for a shape at `pose`. ODE's heightfields have y up, and a plate lies below its plane.
-  static Eigen::Isometry3d placed(const WorldDef& world, const ShapeDef& shape, const Eigen::Isometry3d& pose);
+  static Eigen::Isometry3d geom_pose(const WorldDef& world, const ShapeDef& shape, const Eigen::Isometry3d& pose);
 
  private:
   struct Triangles {  // ODE keeps pointers to these arrays

@@ -31,7 +31,7 @@ Shapes::Shapes(const WorldDef& world, const std::vector<dBodyID>& bodies, const 
     const ShapeDef& shape = world.shapes[i];
     const BodyDef& body = world.bodies[static_cast<std::size_t>(shape.body)];
     body_of_.push_back(shape.body);
-    is_mesh_.push_back(shape.kind == ShapeKind::kMesh);
+    is_mesh_shape_.push_back(shape.kind == ShapeKind::kMesh);
     if (body.tool >= 0) continue;
     const dBodyID id = bodies[static_cast<std::size_t>(shape.body)];
     const dGeomID geom = geoms_.make(world, shape, id == nullptr, body.pose * shape.pose);
@@ -41,7 +41,7 @@ Shapes::Shapes(const WorldDef& world, const std::vector<dBodyID>& bodies, const 
     dSpaceAdd(space_.get(), geom);
     if (shape.kind == ShapeKind::kPlane && !id) continue;
     const Eigen::Isometry3d placed =
-        Geoms::placed(world, shape, id ? about_centre(body, shape.pose) : body.pose * shape.pose);
+        Geoms::geom_pose(world, shape, id ? about_centre(body, shape.pose) : body.pose * shape.pose);
     dQuaternion q;
     set_quaternion(Eigen::Quaterniond(placed.linear()).normalized(), q);
     const Eigen::Vector3d p = placed.translation();
@@ -54,14 +54,15 @@ Shapes::Shapes(const WorldDef& world, const std::vector<dBodyID>& bodies, const 
       dGeomSetQuaternion(geom, q);
     }
   }
-  for (const auto& [a, b] : world.no_collision) apart_.emplace_back(std::min(a, b), std::max(a, b));
-  std::sort(apart_.begin(), apart_.end());
+  for (const auto& [a, b] : world.no_collision) excluded_pairs_.emplace_back(std::min(a, b), std::max(a, b));
+  std::sort(excluded_pairs_.begin(), excluded_pairs_.end());
   raw_.resize(kMaxRaw);
   found_.reserve(kMaxRaw);
 }
 
 bool Shapes::may_collide(int a, int b) const {
-  return a != b && !std::binary_search(apart_.begin(), apart_.end(), std::pair(std::min(a, b), std::max(a, b)));
+  return a != b && !std::binary_search(excluded_pairs_.begin(), excluded_pairs_.end(),
+                                       std::pair(std::min(a, b), std::max(a, b)));
 }
 
 void Shapes::collide_by_ode(std::size_t a, dGeomID ga, std::size_t b, dGeomID gb) {
@@ -76,8 +77,8 @@ void Shapes::collide_by_ode(std::size_t a, dGeomID ga, std::size_t b, dGeomID gb
     if (!p.normal.allFinite() || !p.point_m.allFinite() || std::abs(p.normal.norm() - 1) > 1e-3) continue;
     // For a capsule against a mesh, ODE also reports the near side of the axis, without depth.
     if (p.depth_m <= 0 && count > 1) continue;
-    p.triangle_a = is_mesh_[a] ? c.side1 : -1;
-    p.triangle_b = is_mesh_[b] ? c.side2 : -1;
+    p.triangle_a = is_mesh_shape_[a] ? c.side1 : -1;
+    p.triangle_b = is_mesh_shape_[b] ? c.side2 : -1;
     found_.push_back(p);
   }
 }
@@ -94,7 +95,8 @@ void Shapes::near(void* self, dGeomID ga, dGeomID gb) {
     std::swap(body_a, body_b);
   }
   const int ia = static_cast<int>(a), ib = static_cast<int>(b);
-  if (!s.chosen_.takes(ia, ib) || !s.chosen_.query(ia, pose(ga), ib, pose(gb), s.found_)) s.collide_by_ode(a, ga, b, gb);
+  if (!s.chosen_.supports(ia, ib) || !s.chosen_.query(ia, pose(ga), ib, pose(gb), s.found_))
+    s.collide_by_ode(a, ga, b, gb);
   if (s.found_.empty()) return;
   Manifold& m = s.out_->emplace_back();
   m.shape_a = static_cast<int>(a), m.shape_b = static_cast<int>(b);

@@ -35,8 +35,8 @@ class Shapes {
   Geoms geoms_;
   Owned<dSpaceID> space_;
   std::vector<int> body_of_;                // per shape
-  std::vector<bool> is_mesh_;               // per shape
-  std::vector<std::pair<int, int>> apart_;  // sorted pairs of bodies that do not collide
+  std::vector<bool> is_mesh_shape_;         // per shape
+  std::vector<std::pair<int, int>> excluded_pairs_;  // sorted pairs of bodies that do not collide
   std::vector<dContactGeom> raw_;
   std::vector<ManifoldPoint> found_;
   ChosenDetector chosen_;

@@ -14,8 +14,8 @@ namespace tactus::sim::gaps {
 void convex_pair(const Convex& a, const Eigen::Isometry3d& pose_a, const Convex& b,
                  const Eigen::Isometry3d& pose_b, double reach_m, std::vector<PointPair>& out);
 
-// Appends the corners of a over or under the face of a triangle, whatever feature is nearest: for example the far end
-// of a tilted shape.
+// Appends the corners of a over or under the face of a triangle, regardless of the nearest feature: for example
+// the far end of a tilted shape.
 void over_face(const Convex& a, const Eigen::Isometry3d& pose_a, const Convex& triangle,
                const Eigen::Isometry3d& pose_b, double reach_m, std::vector<PointPair>& out);
 

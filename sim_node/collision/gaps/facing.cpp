@@ -14,12 +14,12 @@ namespace {
 
 // Tolerance of the inside test, m: a thousand times the rounding of a metre.
 constexpr double kOver_m = 1e-12;
-constexpr double kOnePlace_m = 1e-9;
+constexpr double kSamePosition_m = 1e-9;
 // Lines below this angle are parallel when neither figure is a face. Sine.
 constexpr double kParallel = 0.05;
 // Parallel lines face each other when their lateral distance is at most this, m. On round sides with a radius of 20
 // mm the gap error stays below 0.25 um.
-constexpr double kAside_m = 1e-4;
+constexpr double kLateralTolerance_m = 1e-4;
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -55,8 +55,8 @@ struct Projected {
   double height_at(const Vector2d& p) const {
     if (flat()) return offset / tilt + slope.dot(p);
     if (f.count == 1) return height[0];
-    const Vector2d way = at[1] - at[0];
-    const double t = std::clamp((p - at[0]).dot(way) / way.squaredNorm(), 0.0, 1.0);
+    const Vector2d direction = at[1] - at[0];
+    const double t = std::clamp((p - at[0]).dot(direction) / direction.squaredNorm(), 0.0, 1.0);
     return height[0] + t * (height[1] - height[0]);
   }
   Vector3d point(const Vector2d& p) const { return p.x() * u + p.y() * v + height_at(p) * n; }
@@ -74,16 +74,16 @@ struct Projected {
 struct Collector {
   const Projected &a, &b;
   double reach_m;
-  FacingList& out;
-  std::array<Vector2d, FacingList::kMax> places;
+  FacingPoints& out;
+  std::array<Vector2d, FacingPoints::kMax> places;
 
   void add(const Vector2d& p) {
     const double ha = a.height_at(p), hb = b.height_at(p);
     if (hb - ha > reach_m) return;
     // A corner that lies on an edge or on a corner is detected several times.
     for (int i = 0; i < out.count; ++i)
-      if ((places[static_cast<std::size_t>(i)] - p).squaredNorm() < kOnePlace_m * kOnePlace_m) return;
-    if (out.count < FacingList::kMax) places[static_cast<std::size_t>(out.count)] = p;
+      if ((places[static_cast<std::size_t>(i)] - p).squaredNorm() < kSamePosition_m * kSamePosition_m) return;
+    if (out.count < FacingPoints::kMax) places[static_cast<std::size_t>(out.count)] = p;
     const Vector3d flat = p.x() * a.u + p.y() * a.v;
     out.add({flat + ha * a.n, flat + hb * a.n, hb - ha});
   }
@@ -95,11 +95,11 @@ struct Collector {
     // Point of the rim with the least gap. The gap is linear over both planes, so it falls steepest along one
     // direction in the plane of the disc.
     const Vector2d rise = b.slope - a.slope;
-    Vector3d way = rise.x() * of.u + rise.y() * of.v;
-    way = -(way - way.dot(of.f.normal) * of.f.normal);
-    const double steep = way.norm();
+    Vector3d direction = rise.x() * of.u + rise.y() * of.v;
+    direction = -(direction - direction.dot(of.f.normal) * of.f.normal);
+    const double steep = direction.norm();
     if (steep * of.f.radius_m < 1e-9) return;
-    const Vector3d rim = of.f.centre + of.f.radius_m / steep * way;
+    const Vector3d rim = of.f.centre + of.f.radius_m / steep * direction;
     const Vector2d p(rim.dot(of.u), rim.dot(of.v));
     if (other.over(p)) add(p);
   }
@@ -115,8 +115,8 @@ struct Collector {
   void edge_with_disc(const Projected& of, std::size_t i, const Projected& disc) {
     // In the plane of the disc, projected along n, the edge is also a line.
     const Vector2d &p = of.at[i], &q = of.at[(i + 1) % of.corners()];
-    const Vector3d from = disc.point(p) - disc.f.centre, way = disc.point(q) - disc.f.centre - from;
-    const double aa = way.squaredNorm(), bb = from.dot(way),
+    const Vector3d from = disc.point(p) - disc.f.centre, direction = disc.point(q) - disc.f.centre - from;
+    const double aa = direction.squaredNorm(), bb = from.dot(direction),
                  cc = from.squaredNorm() - disc.f.radius_m * disc.f.radius_m;
     const double root = bb * bb - aa * cc;
     if (root <= 0 || aa == 0) return;
@@ -128,8 +128,8 @@ struct Collector {
 
   // Two discs nearly always lie in parallel planes. Otherwise the corners and the lowest points remain.
   void disc_with_disc() {
-    const Vector3d way = b.f.centre - a.f.centre;
-    const Vector2d middle(way.dot(a.u), way.dot(a.v));
+    const Vector3d direction = b.f.centre - a.f.centre;
+    const Vector2d middle(direction.dot(a.u), direction.dot(a.v));
     const double d = middle.norm(), ra = a.f.radius_m, rb = b.f.radius_m;
     if (d == 0 || d >= ra + rb || d <= std::abs(ra - rb)) return;
     const double x = (d * d + ra * ra - rb * rb) / (2 * d), y = std::sqrt(std::max(0.0, ra * ra - x * x));
@@ -146,10 +146,11 @@ struct Collector {
     if (la == 0 || lb == 0) return;
     if (std::abs(cross(pq, st)) > kParallel * std::sqrt(la * lb))
       return edge_with_edge(a.at[0], a.at[1], b.at[0], b.at[1]);
-    const auto ends = [&](const Projected& of, const Projected& other, const Vector2d& way, double length2) {
+    const auto ends = [&](const Projected& of, const Projected& other, const Vector2d& direction, double length2) {
       for (std::size_t i = 0; i < 2; ++i) {
-        const double t = (of.at[i] - other.at[0]).dot(way) / length2;
-        if (t >= 0 && t <= 1 && (other.at[0] + t * way - of.at[i]).norm() <= kAside_m) add(of.at[i]);
+        const double t = (of.at[i] - other.at[0]).dot(direction) / length2;
+        if (t >= 0 && t <= 1 && (other.at[0] + t * direction - of.at[i]).norm() <= kLateralTolerance_m)
+          add(of.at[i]);
       }
     };
     ends(a, b, st, lb);
@@ -159,7 +160,7 @@ struct Collector {
 
 }  // namespace
 
-void facing(const Feature& a, const Feature& b, const Vector3d& n, double reach_m, FacingList& out) {
+void facing(const Feature& a, const Feature& b, const Vector3d& n, double reach_m, FacingPoints& out) {
   out.count = 0;
   const Vector3d u = n.unitOrthogonal(), v = n.cross(u);
   const Projected sa(a, n, u, v), sb(b, n, u, v);
@@ -180,7 +181,7 @@ void facing(const Feature& a, const Feature& b, const Vector3d& n, double reach_
   for (std::size_t j = 0; disc_a && j < sb.edges(); ++j) c.edge_with_disc(sb, j, sa);
 }
 
-void facing_plane(const Feature& of, const Vector3d& n, double offset_m, double reach_m, FacingList& out) {
+void facing_plane(const Feature& of, const Vector3d& n, double offset_m, double reach_m, FacingPoints& out) {
   out.count = 0;
   const auto add = [&](const Vector3d& p) {
     const double gap = n.dot(p) - offset_m;

@@ -63,24 +63,25 @@ void move(const Motion& m, Ball& b) {
 // Whether a connection from one ball to the other may lie within the cone. `way` connects the centres, and the
 // connection deviates from it by at most r. straight() is the same for a connection along the normal of a leaf's
 // triangle.
-bool within(const Ball& b, const Vector3f& way, float squared, float r) {
-  const float high = std::abs(way.dot(b.axis)), wide2 = squared - high * high, most = r + high * b.sine;
-  return wide2 * b.cosine * b.cosine <= most * most;
+bool within(const Ball& b, const Vector3f& direction, float squared, float r) {
+  const float high = std::abs(direction.dot(b.axis)), wide2 = squared - high * high,
+              max_offset = r + high * b.sine;
+  return wide2 * b.cosine * b.cosine <= max_offset * max_offset;
 }
-bool straight(const Ball& b, const Vector3f& way, float squared, float r) {
-  const float high = way.dot(b.face);
+bool straight(const Ball& b, const Vector3f& direction, float squared, float r) {
+  const float high = direction.dot(b.face);
   return squared - high * high <= r * r;
 }
 
 // A pair lies over a's face or over b's face, or is a local minimum of the distance on both.
 bool may_meet(const Ball& a, const Ball& b, float reach, float slack) {
-  const Vector3f way = b.centre - a.centre;
-  const float squared = way.squaredNorm(), r = a.radius + b.radius + slack, far = reach + r;
+  const Vector3f direction = b.centre - a.centre;
+  const float squared = direction.squaredNorm(), r = a.radius + b.radius + slack, far = reach + r;
   if (squared > far * far) return false;
-  const bool in_a = within(a, way, squared, r), in_b = within(b, way, squared, r);
+  const bool in_a = within(a, direction, squared, r), in_b = within(b, direction, squared, r);
   if (in_a && in_b) return true;
-  return (in_a && (!a.leaf || straight(a, way, squared, r))) ||
-         (in_b && (!b.leaf || straight(b, way, squared, r)));
+  return (in_a && (!a.leaf || straight(a, direction, squared, r))) ||
+         (in_b && (!b.leaf || straight(b, direction, squared, r)));
 }
 
 }  // namespace

@@ -71,10 +71,10 @@ Feature of_triangle(const std::array<Vector3d, 3>& t, const Vector3d& d) {
     f.normal = n.dot(d) < 0 ? Vector3d(-n) : n;
     return f;
   }
-  std::size_t least = 0;
+  std::size_t opposite_corner = 0;
   for (std::size_t i = 1; i < 3; ++i)
-    if (t[i].dot(d) < t[least].dot(d)) least = i;
-  return line(t[(least + 1) % 3], t[(least + 2) % 3]);
+    if (t[i].dot(d) < t[opposite_corner].dot(d)) opposite_corner = i;
+  return line(t[(opposite_corner + 1) % 3], t[(opposite_corner + 2) % 3]);
 }
 
 Feature local(const Convex& c, const Vector3d& d) {

@@ -23,23 +23,23 @@ struct Feature {
 Feature feature_along(const Convex& c, const Eigen::Isometry3d& to, const Eigen::Vector3d& along);
 
 // A point where two figures face each other along n, with its position on either.
-struct Facing {
+struct FacingPoint {
   Eigen::Vector3d on_a, on_b;
   double gap_m;  // along n
 };
-struct FacingList {
+struct FacingPoints {
   static constexpr int kMax = 40;  // two discs or a disc and a box have at most 18, two quadrilaterals 24
   int count = 0;
-  std::array<Facing, kMax> at;
-  void add(const Facing& f) {
+  std::array<FacingPoint, kMax> at;
+  void add(const FacingPoint& f) {
     if (count < kMax) at[static_cast<std::size_t>(count++)] = f;
   }
 };
 
 // Corners of the overlap, seen along n (unit, from a to b), with a gap of at most reach_m. `a` faces n, `b` faces -n.
-void facing(const Feature& a, const Feature& b, const Eigen::Vector3d& n, double reach_m, FacingList& out);
+void facing(const Feature& a, const Feature& b, const Eigen::Vector3d& n, double reach_m, FacingPoints& out);
 
 // Corners of a figure against the half space n . x <= offset_m. For a disc also the lowest point of its rim.
-void facing_plane(const Feature& of, const Eigen::Vector3d& n, double offset_m, double reach_m, FacingList& out);
+void facing_plane(const Feature& of, const Eigen::Vector3d& n, double offset_m, double reach_m, FacingPoints& out);
 
 }  // namespace tactus::sim::gaps

@@ -18,12 +18,12 @@ namespace {
 // Gap of a pair that is no contact but removes the duplicates at its position.
 constexpr double kNoContact_m = std::numeric_limits<double>::infinity();
 
-// leads_out() accepts connections whose lateral share of their length is below this.
+// leaves_face() accepts connections whose lateral share of their length is below this.
 constexpr double kStraight = 1e-4;
 
-bool nearer_on(const Triangle& t, const Vector3d& from, double least_m) {
+bool nearer_on(const Triangle& t, const Vector3d& from, double limit_m) {
   if (t.normal.isZero()) return false;
-  return (closest_on_triangle(from, t.v[0], t.v[1], t.v[2]) - from).squaredNorm() < least_m * least_m;
+  return (closest_on_triangle(from, t.v[0], t.v[1], t.v[2]) - from).squaredNorm() < limit_m * limit_m;
 }
 
 Triangle in_frame_of_b(const Triangle& t, const Isometry3d& motion) {
@@ -34,7 +34,7 @@ Triangle in_frame_of_b(const Triangle& t, const Isometry3d& motion) {
 
 }  // namespace
 
-void marked_pairs(const Triangle& a, double lean_a, const Triangle& b, double lean_b, double tol,
+void marked_pairs(const Triangle& a, double tilt_a, const Triangle& b, double tilt_b, double tol,
                   std::vector<PointPair>& out) {
   const Heights over_b = layer2::heights(a, b);
   if (layer2::out_of_reach(over_b, tol)) return;
@@ -43,15 +43,15 @@ void marked_pairs(const Triangle& a, double lean_a, const Triangle& b, double le
   const Sides in_b = layer2::sides(a, b), in_a = layer2::sides(b, a);
   // A pair is a local minimum on both triangles, or leaves the face of one along its normal.
   const auto off = [](const Sides& s, double by_m) { return layer2::out_of_reach(s, by_m); };
-  if ((off(in_b, lean_b * tol) || off(in_a, lean_a * tol)) && off(in_b, kStraight * tol) &&
+  if ((off(in_b, tilt_b * tol) || off(in_a, tilt_a * tol)) && off(in_b, kStraight * tol) &&
       off(in_a, kStraight * tol))
     return;
   const auto add = [&](const PointPair& p) {
     out.push_back(p);
-    const bool out_of_a = leads_out(a.normal, p.normal), out_of_b = leads_out(b.normal, p.normal);
-    const double least = nearer_limit_m((p.on_a_m - p.on_b_m).norm(), share_of(out_of_a, out_of_b));
-    if (least > 0 &&
-        ((!out_of_a && nearer_on(a, p.on_b_m, least)) || (!out_of_b && nearer_on(b, p.on_a_m, least))))
+    const bool out_of_a = leaves_face(a.normal, p.normal), out_of_b = leaves_face(b.normal, p.normal);
+    const double limit_m = nearer_limit_m((p.on_a_m - p.on_b_m).norm(), nearer_share(out_of_a, out_of_b));
+    if (limit_m > 0 &&
+        ((!out_of_a && nearer_on(a, p.on_b_m, limit_m)) || (!out_of_b && nearer_on(b, p.on_a_m, limit_m))))
       out.back().gap_m = kNoContact_m;
   };
   layer2::vertices_and_edges(a, over_b, in_b, b, over_a, in_a, tol, add);
@@ -60,7 +60,7 @@ void marked_pairs(const Triangle& a, double lean_a, const Triangle& b, double le
   layer2::piercings(b, over_a, a, false, always);
 }
 
-void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, NearestFirst& to,
+void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, PairVisitor& visitor,
                        std::vector<PointPair>& pairs) {
   pairs.clear();
   facing_.find({a.layers.tree, a.cones, a.pose}, {b.layers.tree, b.cones, b.pose}, reach_m, leaves_);
@@ -73,7 +73,8 @@ void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, NearestFirs
     if (i != last) ta = in_frame_of_b(of_a[static_cast<std::size_t>(i)], b_from_a);
     last = i;
     const std::size_t first = pairs.size();
-    marked_pairs(ta, a.cones.lean(i), of_b[static_cast<std::size_t>(j)], b.cones.lean(j), reach_m, pairs);
+    marked_pairs(ta, a.cones.tilt_sine(i), of_b[static_cast<std::size_t>(j)], b.cones.tilt_sine(j), reach_m,
+                 pairs);
     for (std::size_t k = first; k < pairs.size(); ++k) pairs[k].triangle_a = i, pairs[k].triangle_b = j;
   }
   layer3_.remove_hashed(pairs);
@@ -96,10 +97,10 @@ void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, NearestFirs
             [](const Candidate& x, const Candidate& y) { return x.gap_m != y.gap_m ? x.gap_m < y.gap_m : x.pair < y.pair; });
   for (const Candidate& t : candidates_) {
     const PointPair& p = pairs[t.pair];
-    if (to.known(p)) continue;
+    if (visitor.is_redundant(p)) continue;
     if (!t.separated && !is_contact({a.tree, a.pose, triangles(p).first}, {b.tree, b.pose, triangles(p).second}, p))
       continue;
-    if (!to.take(p)) return;
+    if (!visitor.visit(p)) return;
   }
 }
 

@@ -22,10 +22,10 @@ class MeshNearest {
     const Eigen::Isometry3d& pose;
   };
   explicit MeshNearest(Isa isa) : facing_(isa) {}
-  // Reports the pairs of the three layers that satisfy is_contact(), to within rounding. Calls is_contact() only for
-  // pairs that `to` does not report as redundant. `room` is scratch memory. Deterministic. Real-time safe once the
-  // lists have grown.
-  void find(const Mesh& a, const Mesh& b, double reach_m, NearestFirst& to, std::vector<PointPair>& room);
+  // Reports the pairs of the three layers that satisfy is_contact(), to within rounding. Calls is_contact() only
+  // for pairs that `visitor` does not report as redundant. `scratch` is working memory. Deterministic. Real-time
+  // safe once the lists have grown.
+  void find(const Mesh& a, const Mesh& b, double reach_m, PairVisitor& visitor, std::vector<PointPair>& scratch);
 
  private:
   FacingPairs facing_;
@@ -39,10 +39,10 @@ class MeshNearest {
   std::vector<Candidate> candidates_;
 };
 
-// Appends the result of complete_contact(), without types. A pair whose connection has a nearer point on one of the
-// two triangles is no contact; its gap is infinite. Appends nothing when the lean of the connections (NormalCones)
-// rules out a contact. Both triangles are in one frame.
-void marked_pairs(const Triangle& a, double lean_a, const Triangle& b, double lean_b, double tolerance_m,
+// Appends the result of complete_contact(), without types. A pair whose connection has a nearer point on one of
+// the two triangles is no contact; its gap is infinite. Appends nothing when the tilt of the connections
+// (NormalCones) rules out a contact. Both triangles are in one frame.
+void marked_pairs(const Triangle& a, double tilt_a, const Triangle& b, double tilt_b, double tolerance_m,
                   std::vector<PointPair>& out);
 
 }  // namespace tactus::sim::gaps

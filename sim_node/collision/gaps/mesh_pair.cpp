@@ -32,18 +32,18 @@ double nearer_limit_m(double distance_m, double share) {
   return share * distance_m - std::max(kOn_m, 1e-6 * distance_m);
 }
 
-bool leads_out(const Vector3d& face_normal, const Vector3d& pair_normal) {
+bool leaves_face(const Vector3d& face_normal, const Vector3d& pair_normal) {
   constexpr double kStraight = 1 - 1e-9;  // cosine
   return std::abs(face_normal.dot(pair_normal)) > kStraight;
 }
 
 bool nearest_around(const TriangleTree& mesh, const Vector3d& from, const Vector3d& on_mesh, double share) {
-  const double least = nearer_limit_m((from - on_mesh).norm(), share);
+  const double limit_m = nearer_limit_m((from - on_mesh).norm(), share);
   const Vector3d on(kOn_m, kOn_m, kOn_m);
   bool nearest = true;
   mesh.each_within({on_mesh - on, on_mesh + on},
                    [&](const Vector3d& a, const Vector3d& b, const Vector3d& c, int) {
-                     if (!nearest || (closest_on_triangle(from, a, b, c) - from).norm() >= least) return;
+                     if (!nearest || (closest_on_triangle(from, a, b, c) - from).norm() >= limit_m) return;
                      nearest = (closest_on_triangle(on_mesh, a, b, c) - on_mesh).norm() > kOn_m;
                    });
   return nearest;
@@ -89,9 +89,9 @@ void plane_mesh(const Isometry3d& plane_pose, const TriangleTree& mesh, const Is
 }
 
 bool is_contact(const MeshSide& a, const MeshSide& b, const PointPair& p) {
-  const bool over_a = leads_out(a.pose.linear() * a.triangle.normal, p.normal),
-             over_b = leads_out(b.pose.linear() * b.triangle.normal, p.normal);
-  const double share = share_of(over_a, over_b);
+  const bool over_a = leaves_face(a.pose.linear() * a.triangle.normal, p.normal),
+             over_b = leaves_face(b.pose.linear() * b.triangle.normal, p.normal);
+  const double share = nearer_share(over_a, over_b);
   const auto around = [share](const MeshSide& s, const Vector3d& from, const Vector3d& on) {
     const Isometry3d back = s.pose.inverse(Eigen::Isometry);
     return nearest_around(s.mesh, back * from, back * on, share);

@@ -26,10 +26,10 @@ bool nearest_around(const TriangleTree& mesh, const Eigen::Vector3d& from, const
                     double share = 1);
 
 // Whether a pair leaves a triangle's face along its normal, that is, lies over the face.
-bool leads_out(const Eigen::Vector3d& face_normal, const Eigen::Vector3d& pair_normal);
+bool leaves_face(const Eigen::Vector3d& face_normal, const Eigen::Vector3d& pair_normal);
 // Share for nearest_around(), by whether one end of the pair lies over a face. A pair over a face is a contact unless
 // a point nearby is much nearer. A pair between edges is a contact only when no point nearby is nearer.
-inline double share_of(bool over_a, bool over_b) {
+inline double nearer_share(bool over_a, bool over_b) {
   constexpr double kMuchNearer = 0.9;  // a tilt of 26 degrees, the most that a step may rotate; design value
   return over_a || over_b ? kMuchNearer : 1;
 }

@@ -19,12 +19,12 @@ constexpr double kSlack_rad = 0.02;
 constexpr double kWidest_rad = 1.4;
 // The normal of a triangle with less height than this is unreliable within that millionth, m. Derived for a reach of
 // 10 mm.
-constexpr double kLeastHeight_m = 1e-5;
+constexpr double kMinHeight_m = 1e-5;
 
 struct AngleCone {  // axis and half angle
   Vector3d axis{0, 0, 1};
   double rad = 4;
-  double lean = 1;  // see NormalCones::lean(); leaves only
+  double tilt_sine = 1;  // see NormalCones::tilt_sine(); leaves only
 };
 
 double angle(const Vector3d& x, const Vector3d& y) { return std::atan2(x.cross(y).norm(), x.dot(y)); }
@@ -43,7 +43,7 @@ AngleCone around(const std::vector<AngleCone>& parts) {
   return w.rad > kWidest_rad ? AngleCone{} : w;
 }
 
-double least_height_m(const Triangle& t) {
+double min_height_m(const Triangle& t) {
   double longest = 0;
   for (int i = 0; i < 3; ++i) longest = std::max(longest, (t.v[(i + 1) % 3] - t.v[i]).norm());
   return longest > 0 ? (t.v[1] - t.v[0]).cross(t.v[2] - t.v[0]).norm() / longest : 0;
@@ -79,15 +79,16 @@ std::vector<AngleCone> of_triangles(const std::vector<Triangle>& triangles) {
       known = known && !open[static_cast<std::size_t>(c)];
       for (const int n : stars[static_cast<std::size_t>(c)]) {
         const Triangle& near = triangles[static_cast<std::size_t>(n)];
-        known = known && !near.normal.isZero() && least_height_m(near) > kLeastHeight_m;
+        known = known && !near.normal.isZero() && min_height_m(near) > kMinHeight_m;
         parts.push_back({near.normal, kSlack_rad});
       }
     }
     AngleCone& cone = cones.emplace_back(known ? around(parts) : AngleCone{});
     if (!known) continue;
-    double most = 0;
-    for (const AngleCone& p : parts) most = std::max(most, angle(p.axis, triangles[t].normal) + kSlack_rad);
-    if (most < M_PI / 2) cone.lean = std::sin(most);
+    double max_angle_rad = 0;
+    for (const AngleCone& p : parts)
+      max_angle_rad = std::max(max_angle_rad, angle(p.axis, triangles[t].normal) + kSlack_rad);
+    if (max_angle_rad < M_PI / 2) cone.tilt_sine = std::sin(max_angle_rad);
   }
   return cones;
 }
@@ -96,7 +97,7 @@ std::vector<AngleCone> of_triangles(const std::vector<Triangle>& triangles) {
 
 NormalCones::NormalCones(const ObbTree& tree) : cones_(tree.nodes().size() * kLanes) {
   const std::vector<AngleCone> leaves = of_triangles(tree.triangles());
-  for (const AngleCone& w : leaves) leans_.push_back(w.lean);
+  for (const AngleCone& w : leaves) tilts_.push_back(w.tilt_sine);
   std::vector<AngleCone> of_node(tree.nodes().size());
   std::vector<AngleCone> parts;
   // Children come after their parents.

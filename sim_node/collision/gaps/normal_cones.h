@@ -25,11 +25,11 @@ class NormalCones {
 
   // Sine of the largest angle between the triangle's normal and a connection to the nearest point; 1 where it is
   // unknown.
-  double lean(int triangle) const { return leans_[static_cast<std::size_t>(triangle)]; }
+  double tilt_sine(int triangle) const { return tilts_[static_cast<std::size_t>(triangle)]; }
 
  private:
   std::vector<NormalCone> cones_;
-  std::vector<double> leans_;
+  std::vector<double> tilts_;
 };
 
 }  // namespace tactus::sim::gaps

@@ -7,9 +7,9 @@
 namespace tactus::sim {
 namespace {
 
-// Cell size of the hash grid. Much larger than kSamePlace_m, so that nearly every pair searches its own cell only.
-// Much smaller than a manifold, so that few pairs share a cell.
-constexpr double kCell_m = 128 * kSamePlace_m;
+// Cell size of the hash grid. Much larger than kSamePosition_m, so that nearly every pair searches its own cell
+// only. Much smaller than a manifold, so that few pairs share a cell.
+constexpr double kCell_m = 128 * kSamePosition_m;
 
 std::size_t hash(std::int64_t x, std::int64_t y, std::int64_t z) {
   // Teschner et al. 2003, Optimized spatial hashing, equation 1, with the upper bits folded in.
@@ -23,8 +23,8 @@ std::int64_t cell(double x) { return static_cast<std::int64_t>(std::floor(x / kC
 }  // namespace
 
 bool same_pair(const PointPair& x, const PointPair& y) {
-  return (x.on_a_m - y.on_a_m).squaredNorm() <= kSamePlace_m * kSamePlace_m &&
-         (x.on_b_m - y.on_b_m).squaredNorm() <= kSamePlace_m * kSamePlace_m;
+  return (x.on_a_m - y.on_a_m).squaredNorm() <= kSamePosition_m * kSamePosition_m &&
+         (x.on_b_m - y.on_b_m).squaredNorm() <= kSamePosition_m * kSamePosition_m;
 }
 
 void Duplicates::remove_hashed(std::vector<PointPair>& pairs) {
@@ -39,8 +39,8 @@ void Duplicates::remove_hashed(std::vector<PointPair>& pairs) {
     bool is_new = true;
     std::int64_t low[3], high[3];
     for (int k = 0; k < 3; ++k) {
-      low[k] = cell(pair.on_a_m[k] - kSamePlace_m);
-      high[k] = cell(pair.on_a_m[k] + kSamePlace_m);
+      low[k] = cell(pair.on_a_m[k] - kSamePosition_m);
+      high[k] = cell(pair.on_a_m[k] + kSamePosition_m);
     }
     for (std::int64_t x = low[0]; x <= high[0] && is_new; ++x)
       for (std::int64_t y = low[1]; y <= high[1] && is_new; ++y)

@@ -11,7 +11,7 @@ namespace tactus::sim {
 
 // Two pairs are equal when both their points are nearer to each other than this, m: a thousand times the rounding at
 // a distance of 100 m, and a thousandth of the resolution of a contact.
-inline constexpr double kSamePlace_m = 1e-7;
+inline constexpr double kSamePosition_m = 1e-7;
 
 bool same_pair(const PointPair& x, const PointPair& y);
 

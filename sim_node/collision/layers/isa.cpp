@@ -22,7 +22,7 @@ std::string_view name_of(Isa isa) {
   return isa == Isa::kAvx512 ? "avx512" : isa == Isa::kAvx2 ? "avx2" : "baseline";
 }
 
-Isa isa_named(std::string_view name) {
+Isa parse_isa(std::string_view name) {
   if (name == "auto") return best_isa();
   for (const Isa isa : {Isa::kBaseline, Isa::kAvx2, Isa::kAvx512}) {
     if (name != name_of(isa)) continue;

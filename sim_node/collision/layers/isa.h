@@ -12,7 +12,7 @@ Isa best_isa();
 
 // "auto", "baseline", "avx2", "avx512". Throws std::runtime_error with one sentence when the name is unknown or
 // the processor lacks it.
-Isa isa_named(std::string_view name);
+Isa parse_isa(std::string_view name);
 std::string_view name_of(Isa isa);
 
 }  // namespace tactus::sim

@@ -17,18 +17,20 @@ bool any_in(const Triangle& of, const Heights& distance, const Triangle& t, doub
   return false;
 }
 
-void project_active(const Triangle& of, const Active& active, const Heights& h, const Triangle& t, bool of_a,
-                    std::vector<PointPair>& out) {
+void project_active(const Triangle& of, const ActiveVertices& active, const Heights& h, const Triangle& t,
+                    bool of_a, std::vector<PointPair>& out) {
   for (std::size_t i = 0; i < 3; ++i)
     if (active.vertex[i] && layer2::in_prism(of.v[i], t)) out.push_back(layer2::over_face(of.v[i], t, h[i], of_a));
 }
 
-bool active_edge(const Active& active, std::size_t i) { return active.vertex[i] && active.vertex[(i + 1) % 3]; }
+bool active_edge(const ActiveVertices& active, std::size_t i) {
+  return active.vertex[i] && active.vertex[(i + 1) % 3];
+}
 
 }  // namespace
 
-Active active_vertices(const std::array<double, 3>& distances_m, const Reach& reach) {
-  Active active;
+ActiveVertices active_vertices(const std::array<double, 3>& distances_m, const Reach& reach) {
+  ActiveVertices active;
   const double nearest = *std::min_element(distances_m.begin(), distances_m.end());
   for (std::size_t i = 0; i < 3; ++i) {
     active.vertex[i] = distances_m[i] <= reach.tolerance_m && distances_m[i] - nearest <= reach.margin_m;
@@ -47,7 +49,7 @@ void itouch2005_contact(const Triangle& a, const Triangle& b, const Reach& reach
   const auto add = [&](const PointPair& p) { out.push_back(p); };
   ContactKind kind = ContactKind::kPoint;
   if (any_in(a, of_a, b, tol) || any_in(b, of_b, a, tol)) {
-    const Active active_a = active_vertices(of_a, reach), active_b = active_vertices(of_b, reach);
+    const ActiveVertices active_a = active_vertices(of_a, reach), active_b = active_vertices(of_b, reach);
     const int order = std::max(active_a.count, active_b.count);
     kind = order == 3 ? ContactKind::kSurface : order == 2 ? ContactKind::kEdge : ContactKind::kPoint;
     project_active(a, active_a, over_b, b, true, out);

@@ -30,7 +30,7 @@ ContactMesh::ContactMesh(std::span<const Eigen::Vector3d> vertices, std::span<co
 
 MeshContact::MeshContact(const MeshContactOptions& options) : options_(options), layer1_(options.isa) {}
 
-void MeshContact::accept(const ContactMesh& a, const ContactMesh& b) const {
+void MeshContact::check_supported(const ContactMesh& a, const ContactMesh& b) const {
   if (options_.remover != DuplicateRemover::kAdjacency) return;
   for (const ContactMesh* m : {&a, &b})
     if (!m->check.well_constructed())
@@ -76,20 +76,20 @@ void MeshContact::query(const ContactMesh& a, const Eigen::Isometry3d& pose_a, c
 bool MeshContact::nearest(const ContactMesh& a, const Eigen::Isometry3d& pose_a, const ContactMesh& b,
                           const Eigen::Isometry3d& pose_b, double beyond_m, PointPair& out) {
   const Eigen::Isometry3d b_from_a = pose_b.inverse() * pose_a;
-  double least = beyond_m;
+  double min_distance_m = beyond_m;
   bool found = false;
   const auto leaf = [&](int i, int j) {
     search_.clear();
     complete_contact(moved(a.tree.triangles()[static_cast<std::size_t>(i)], b_from_a),
-                     b.tree.triangles()[static_cast<std::size_t>(j)], {least, least}, search_);
+                     b.tree.triangles()[static_cast<std::size_t>(j)], {min_distance_m, min_distance_m}, search_);
     for (const PointPair& p : search_) {
-      if (found && p.gap_m >= least) continue;
+      if (found && p.gap_m >= min_distance_m) continue;
       found = true;
-      least = p.gap_m;
+      min_distance_m = p.gap_m;
       out = p;
       out.triangle_a = i, out.triangle_b = j;
     }
-    return least;
+    return min_distance_m;
   };
   // Passed by reference: a copy into a std::function would allocate.
   layer1_.narrow(a.tree, pose_a, b.tree, pose_b, beyond_m, std::ref(leaf));

@@ -41,7 +41,7 @@ class MeshContact {
   explicit MeshContact(const MeshContactOptions& options = {});
   // Throws std::runtime_error with one sentence when the options do not support these meshes: the adjacency remover
   // needs well-constructed ones. Call it at start-up.
-  void accept(const ContactMesh& a, const ContactMesh& b) const;
+  void check_supported(const ContactMesh& a, const ContactMesh& b) const;
   // Writes all point pairs within the tolerance into `out`, after clearing it. Deterministic, and bit-identical with
   // every instruction set. Real-time safe once the lists have grown. Not thread-safe.
   void query(const ContactMesh& a, const Eigen::Isometry3d& pose_a, const ContactMesh& b,

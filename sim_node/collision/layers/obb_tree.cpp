@@ -15,7 +15,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 // A split with less than this share on one side is replaced by a split in halves, so that no soup makes a deep tree.
-constexpr int kLeastShare = 8;
+constexpr int kMinShareDivisor = 8;
 // Ratio of the smallest height to the longest edge below which a triangle has no normal: ten times the rounding of
 // the vertices to double.
 constexpr double kFlat = 1e-14;
@@ -126,7 +126,7 @@ class Builder {
       for (const int i : part) mean += along(i) / static_cast<double>(count);
       auto left = static_cast<std::size_t>(
           std::partition(part.begin(), part.end(), [&](int i) { return along(i) < mean; }) - part.begin());
-      if (std::min(left, count - left) * kLeastShare < count) {
+      if (std::min(left, count - left) * kMinShareDivisor < count) {
         left = count / 2;
         std::nth_element(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(left), part.end(),
                          [&](int i, int j) { return along(i) < along(j); });

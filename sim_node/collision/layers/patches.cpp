@@ -36,8 +36,8 @@ double hull_of(std::vector<Vector2d>& points, std::vector<Vector2d>& hull) {
   if (points.size() < 3) return 0;
   std::sort(points.begin(), points.end(),
             [](const Vector2d& a, const Vector2d& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
-  const auto run = [&](const Vector2d& p, std::size_t least) {
-    while (hull.size() >= least + 2 && cross(hull[hull.size() - 2], hull.back(), p) <= 0) hull.pop_back();
+  const auto run = [&](const Vector2d& p, std::size_t min_size) {
+    while (hull.size() >= min_size + 2 && cross(hull[hull.size() - 2], hull.back(), p) <= 0) hull.pop_back();
     hull.push_back(p);
   };
   for (const Vector2d& p : points) run(p, 0);
@@ -107,10 +107,10 @@ void Patches::choose(double tolerance_m, ContactPatch& patch) const {
   const auto add = [&](std::size_t i) { patch.points[static_cast<std::size_t>(patch.count++)] = *patch_[i]; };
   const auto best = [&](auto&& score) {
     std::size_t at = 0;
-    double most = 0;
+    double max_score = 0;
     for (std::size_t i = 0; i < flat_.size(); ++i)
-      if (score(i) > most) most = score(i), at = i;
-    return std::pair(at, most);
+      if (score(i) > max_score) max_score = score(i), at = i;
+    return std::pair(at, max_score);
   };
   // Among equally deep pairs, as of parallel faces, a corner is selected.
   Vector2d centre(0, 0);

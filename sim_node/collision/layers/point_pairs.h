@@ -40,12 +40,12 @@ inline PointPair over_face(const Eigen::Vector3d& vertex, const Triangle& face, 
 
 // Contact normal, from a to b, where two surfaces touch without a gap.
 inline Eigen::Vector3d facing(const Triangle& a, const Triangle& b, const Eigen::Vector3d& across) {
-  const Eigen::Vector3d way = a.normal - b.normal;
+  const Eigen::Vector3d direction = a.normal - b.normal;
   const Eigen::Vector3d n = across.norm() > kTouching_m ? across.normalized()
-                            : way.norm() > 1e-6         ? way.normalized()
+                            : direction.norm() > 1e-6   ? direction.normalized()
                             : a.normal.isZero()         ? Eigen::Vector3d::UnitZ()
                                                         : a.normal;
-  return n.dot(way) < 0 ? Eigen::Vector3d(-n) : n;
+  return n.dot(direction) < 0 ? Eigen::Vector3d(-n) : n;
 }
 
 // Edge i of a against edge j of b.
@@ -54,14 +54,14 @@ void between_edges(const Triangle& a, std::size_t i, const Triangle& b, std::siz
                    Add&& add) {
   const Eigen::Vector3d &p = a.v[i], &q = a.v[(i + 1) % 3], &u = b.v[j], &v = b.v[(j + 1) % 3];
   nearest_on_segments(p, q, u, v, tolerance_m, [&](const Eigen::Vector3d& on_a, const Eigen::Vector3d& on_b) {
-    const Eigen::Vector3d way = on_b - on_a;
-    const double squared = way.squaredNorm();
+    const Eigen::Vector3d direction = on_b - on_a;
+    const double squared = direction.squaredNorm();
     if (!(squared <= tolerance_m * tolerance_m)) return;
     PointPair pair;
     pair.on_a_m = on_a, pair.on_b_m = on_b;
     pair.gap_m = std::sqrt(squared);
     if (pair.gap_m > kTouching_m)
-      pair.normal = way / pair.gap_m;
+      pair.normal = direction / pair.gap_m;
     else
       pair.normal = facing(a, b, (q - p).normalized().cross((v - u).normalized()));
     add(pair);

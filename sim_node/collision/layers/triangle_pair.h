@@ -31,11 +31,11 @@ void itouch2005_contact(const Triangle& a, const Triangle& b, const Reach& reach
 
 // Active vertices of I-Touch, from the distances to a plane: the nearest vertex and those within the margin of it, if
 // they are within the tolerance. One: vertex-plan, two: edge-plan, three: plan-plan.
-struct Active {
+struct ActiveVertices {
   std::array<bool, 3> vertex{};
   int count = 0;
 };
-Active active_vertices(const std::array<double, 3>& distances_m, const Reach& reach);
+ActiveVertices active_vertices(const std::array<double, 3>& distances_m, const Reach& reach);
 
 // Type of a contact by its extent. The points within the margin of the deepest are one place, lie along a line, or
 // span an area, each with the tolerance as the limit.

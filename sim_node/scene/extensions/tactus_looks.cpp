@@ -29,7 +29,7 @@ const std::vector<std::string> kPassShaders{"greyscale", "blur", "edges"};
 constexpr std::uintmax_t kMaxShaderBytes = 64 << 10;
 constexpr std::size_t kMaxUniforms = 32, kMaxShaders = 64, kMaxPasses = 16;
 constexpr std::size_t kMaxName = 64;  // as in uniform_t.lcm
-constexpr float kLargestUniform = 1e6f;
+constexpr float kMaxUniformMagnitude = 1e6f;
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -46,7 +46,7 @@ void check_shader(const LoadContext& context, const sdf::Element& element, const
                   const std::vector<std::string>& known) {
   const auto& own = context.world.shaders;
   if (!is_identifier(name))
-    context.refuse(element,
+    context.reject(element,
                    "names shader \"" + name + "\": it must be letters, digits and _, 64 at most, no digit first");
   if (contains(known, name) ||
       std::any_of(own.begin(), own.end(), [&](const shader_t& s) { return s.name == name; }))
@@ -68,24 +68,25 @@ std::vector<uniform_t> read_uniforms(const LoadContext& context, const sdf::Elem
     std::istringstream words(part);
     uniform_t uniform{};
     if (!(words >> uniform.name)) continue;
-    const auto refuse = [&](const std::string& what) {
-      context.refuse(element,
+    const auto reject = [&](const std::string& what) {
+      context.reject(element,
                      "has uniforms=\"" + text + "\": " + what + "; write it as \"scale 2; tint 1 0.5 0\"");
     };
-    if (!is_identifier(uniform.name)) refuse("\"" + uniform.name + "\" is not a valid uniform name");
+    if (!is_identifier(uniform.name)) reject("\"" + uniform.name + "\" is not a valid uniform name");
     for (std::string word; words >> word; ++uniform.count) {
-      if (uniform.count == 4) refuse(uniform.name + " has more than 4 numbers");
+      if (uniform.count == 4) reject(uniform.name + " has more than 4 numbers");
       try {
         uniform.values[uniform.count] = static_cast<float>(sync::parse_quantity(word, ""));
       } catch (const std::invalid_argument& e) {
-        refuse(uniform.name + ": " + e.what());
+        reject(uniform.name + ": " + e.what());
       }
-      if (!(std::abs(uniform.values[uniform.count]) <= kLargestUniform)) refuse(uniform.name + " exceeds 1e6");
+      if (!(std::abs(uniform.values[uniform.count]) <= kMaxUniformMagnitude))
+        reject(uniform.name + " exceeds 1e6");
     }
-    if (uniform.count == 0) refuse(uniform.name + " has no number");
+    if (uniform.count == 0) reject(uniform.name + " has no number");
     for (const uniform_t& other : uniforms)
-      if (other.name == uniform.name) refuse(uniform.name + " is given twice");
-    if (uniforms.size() == kMaxUniforms) refuse("more than " + std::to_string(kMaxUniforms) + " are given");
+      if (other.name == uniform.name) reject(uniform.name + " is given twice");
+    if (uniforms.size() == kMaxUniforms) reject("more than " + std::to_string(kMaxUniforms) + " are given");
     uniforms.push_back(uniform);
   }
   return uniforms;
@@ -93,28 +94,28 @@ std::vector<uniform_t> read_uniforms(const LoadContext& context, const sdf::Elem
 
 // Reads all attributes except the name.
 LookAttributes read_look_attributes(LoadContext& context, const sdf::Element& element, Attributes& attributes) {
-  LookAttributes words;
-  words.shader = attributes.text("shader");
-  if (words.shader && !words.shader->empty()) check_shader(context, element, *words.shader, kSurfaceShaders);
+  LookAttributes look;
+  look.shader = attributes.text("shader");
+  if (look.shader && !look.shader->empty()) check_shader(context, element, *look.shader, kSurfaceShaders);
   const auto picture = [&](const char* what, PictureUse use) -> std::optional<std::int64_t> {
     const auto uri = attributes.text(what);
     if (!uri) return std::nullopt;
     return uri->empty() ? 0 : picture_of(context, element, what, *uri, use);
   };
-  words.colour_map = picture("colour_map", PictureUse::kColour);
-  words.normal_map = picture("normal_map", PictureUse::kDirections);
-  words.reflectance = attributes.quantity("reflectance", "1", 0, 1);
+  look.colour_map = picture("colour_map", PictureUse::kColour);
+  look.normal_map = picture("normal_map", PictureUse::kDirections);
+  look.reflectance = attributes.quantity("reflectance", "1", 0, 1);
   if (const auto uniforms = attributes.text("uniforms"))
-    words.uniforms = read_uniforms(context, element, *uniforms);
-  return words;
+    look.uniforms = read_uniforms(context, element, *uniforms);
+  return look;
 }
 
-const LookAttributes& known_look(const LoadContext& context, const sdf::Element& element, const std::string& name) {
+const LookAttributes& find_look(const LoadContext& context, const sdf::Element& element, const std::string& name) {
   const auto known = context.look_of.find(name);
   if (known != context.look_of.end()) return *known->second;
   std::string names;
-  for (const auto& [each, words] : context.look_of) names += (names.empty() ? "" : ", ") + each;
-  context.refuse(
+  for (const auto& [each, look] : context.look_of) names += (names.empty() ? "" : ", ") + each;
+  context.reject(
       element, "names look \"" + name + "\": there " + (names.empty() ? "is none in this scene" : "are " + names));
 }
 
@@ -123,14 +124,14 @@ void read_look(LoadContext& context, const sdf::Element& element) {
   const std::string name = attributes.required_text("name");
   const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
   if (name.size() > kMaxName || !std::all_of(name.begin(), name.end(), printable))
-    context.refuse(element, "has a name that is longer than 64 characters or not printable ASCII");
+    context.reject(element, "has a name that is longer than 64 characters or not printable ASCII");
   const auto base = attributes.text("base");
-  auto words = std::make_shared<LookAttributes>(read_look_attributes(context, element, attributes));
+  auto look = std::make_shared<LookAttributes>(read_look_attributes(context, element, attributes));
   attributes.done();
-  if (base) words->add(known_look(context, element, *base));
-  words->name = name;
-  if (!context.look_of.emplace(name, words).second)
-    context.refuse(element, "has a name that another look has: choose another");
+  if (base) look->add(find_look(context, element, *base));
+  look->name = name;
+  if (!context.look_of.emplace(name, look).second)
+    context.reject(element, "has a name that another look has: choose another");
 }
 
 std::int64_t read_text(LoadContext& context, const sdf::Element& element, const std::string& what,
@@ -153,7 +154,7 @@ std::int64_t read_text(LoadContext& context, const sdf::Element& element, const 
       texts.push_back(std::move(text));
     return hash;
   } catch (const std::exception& e) {
-    context.refuse(element, "names " + what + " \"" + uri + "\", which cannot be read: " + e.what());
+    context.reject(element, "names " + what + " \"" + uri + "\", which cannot be read: " + e.what());
   }
 }
 
@@ -165,14 +166,14 @@ void read_shader(LoadContext& context, const sdf::Element& element) {
   shader.vertex_file = attributes.text("vertex").value_or("");
   attributes.done();
   if (!is_identifier(shader.name))
-    context.refuse(
+    context.reject(
         element, "has name=\"" + shader.name + "\": it must be letters, digits and _, 64 at most, no digit first");
   if (contains(kSurfaceShaders, shader.name) || contains(kPassShaders, shader.name))
-    context.refuse(element, "has a name that a shader of visual_node has: choose another");
+    context.reject(element, "has a name that a shader of visual_node has: choose another");
   for (const shader_t& other : context.world.shaders)
-    if (other.name == shader.name) context.refuse(element, "has a name that another shader has: choose another");
+    if (other.name == shader.name) context.reject(element, "has a name that another shader has: choose another");
   if (context.world.shaders.size() == kMaxShaders)
-    context.refuse(element, "is one too many: a scene may have " + std::to_string(kMaxShaders));
+    context.reject(element, "is one too many: a scene may have " + std::to_string(kMaxShaders));
   shader.fragment_asset = read_text(context, element, "fragment", shader.fragment_file);
   if (!shader.vertex_file.empty()) shader.vertex_asset = read_text(context, element, "vertex", shader.vertex_file);
   context.world.shaders.push_back(shader);
@@ -187,7 +188,7 @@ void read_pass(LoadContext& context, const sdf::Element& element) {
   attributes.done();
   check_shader(context, element, pass.shader, kPassShaders);
   if (context.world.passes.size() == kMaxPasses)
-    context.refuse(element, "is one too many: a scene may have " + std::to_string(kMaxPasses));
+    context.reject(element, "is one too many: a scene may have " + std::to_string(kMaxPasses));
   context.world.passes.push_back(pass);
 }
 
@@ -195,8 +196,7 @@ void read_environment(LoadContext& context, const sdf::Element& element) {
   Attributes attributes(context, element);
   const std::string uri = attributes.required_text("picture");
   attributes.done();
-  if (context.world.environment_asset != 0)
-    context.refuse(element, "appears twice: a scene has one environment");
+  if (context.world.environment_asset != 0) context.reject(element, "appears twice: a scene has one environment");
   context.world.environment_asset = picture_of(context, element, "picture", uri, PictureUse::kColour);
 }
 
@@ -225,24 +225,24 @@ void read_looks(LoadContext& context, const sdf::ElementPtr& world) {
 LookAttributes read_visual_look(LoadContext& context, const sdf::Element& element) {
   Attributes attributes(context, element);
   const auto name = attributes.text("name");
-  LookAttributes words = read_look_attributes(context, element, attributes);
+  LookAttributes look = read_look_attributes(context, element, attributes);
   attributes.done();
-  if (name) words.add(known_look(context, element, *name));
-  return words;
+  if (name) look.add(find_look(context, element, *name));
+  return look;
 }
 
-int look_index(WorldDef& world, const LookAttributes& words) {
-  if (words.empty()) return -1;
+int look_index(WorldDef& world, const LookAttributes& attributes) {
+  if (attributes.empty()) return -1;
   look_t look{};
-  look.colour_map = words.colour_map.value_or(0), look.normal_map = words.normal_map.value_or(0);
-  look.reflectance = static_cast<float>(words.reflectance.value_or(0));
-  look.uniforms = words.uniforms.value_or(std::vector<uniform_t>{});
+  look.colour_map = attributes.colour_map.value_or(0), look.normal_map = attributes.normal_map.value_or(0);
+  look.reflectance = static_cast<float>(attributes.reflectance.value_or(0));
+  look.uniforms = attributes.uniforms.value_or(std::vector<uniform_t>{});
   look.uniform_count = static_cast<std::int32_t>(look.uniforms.size());
   // Without a shader name, use the one that shows all given attributes.
-  look.shader = words.shader.value_or(look.reflectance > 0 ? "reflecting"
-                                      : look.normal_map    ? "normal_mapped"
-                                      : look.colour_map    ? "textured"
-                                                           : "");
+  look.shader = attributes.shader.value_or(look.reflectance > 0 ? "reflecting"
+                                           : look.normal_map    ? "normal_mapped"
+                                           : look.colour_map    ? "textured"
+                                                                : "");
   if (look.shader.empty() && !look.colour_map && !look.normal_map && look.reflectance == 0 &&
       look.uniforms.empty())
     return -1;
@@ -252,7 +252,7 @@ int look_index(WorldDef& world, const LookAttributes& words) {
     other.name.clear();
     if (sync::encode(other) == bytes) return static_cast<int>(i);
   }
-  look.name = words.name.empty() ? "look " + std::to_string(world.looks.size()) : words.name;
+  look.name = attributes.name.empty() ? "look " + std::to_string(world.looks.size()) : attributes.name;
   world.looks.push_back(look);
   return static_cast<int>(world.looks.size()) - 1;
 }

@@ -29,6 +29,6 @@ void read_looks(LoadContext& context, const sdf::ElementPtr& world);
 LookAttributes read_visual_look(LoadContext& context, const sdf::Element& element);
 
 // Index of that look in the world, without duplicates; -1: empty look.
-int look_index(WorldDef& world, const LookAttributes& words);
+int look_index(WorldDef& world, const LookAttributes& attributes);
 
 }  // namespace tactus::sim

@@ -22,7 +22,7 @@ struct Name {
 Name split(const LoadContext& context, const sdf::Element& element, const std::string& text, const char* attribute) {
   const std::size_t dot = text.find('.');
   if (dot == std::string::npos || dot == 0 || dot + 1 == text.size() || text.size() > 112)
-    context.refuse(element, "has " + std::string(attribute) + "=\"" + text + "\": write NODE.NAME");
+    context.reject(element, "has " + std::string(attribute) + "=\"" + text + "\": write NODE.NAME");
   return {text.substr(0, dot), text.substr(dot + 1)};
 }
 
@@ -40,8 +40,8 @@ const sync::SettingRow& row_of(const LoadContext& context, const sdf::Element& e
     numbers += (numbers.empty() ? "" : ", ") + std::string(r.row.name);
   }
   const std::string what = "drives \"" + to.node + "." + to.rest + "\", ";
-  if (!known) context.refuse(element, what + "and there is no such node");
-  context.refuse(element, what + "which is not a number that can be changed while " + to.node + " runs" +
+  if (!known) context.reject(element, what + "and there is no such node");
+  context.reject(element, what + "which is not a number that can be changed while " + to.node + " runs" +
                               (numbers.empty() ? "" : "; such are " + numbers));
 }
 
@@ -62,7 +62,7 @@ map_def_t read_map(const LoadContext& context, const sdf::Element& element) {
   map.low = attributes.quantity("low", unit, low, high).value_or(low);
   map.high = attributes.quantity("high", unit, low, high).value_or(high);
   attributes.done();
-  if (map.low > map.high) context.refuse(element, "has a low above its high: exchange them");
+  if (map.low > map.high) context.reject(element, "has a low above its high: exchange them");
   return map;
 }
 
@@ -72,7 +72,7 @@ void read_maps(LoadContext& context, const sdf::ElementPtr& world) {
   for (auto element = world->GetFirstElement(); element; element = element->GetNextElement()) {
     if (element->GetName() != "tactus:map") continue;
     if (context.world.maps.size() >= kMaxMaps)
-      context.refuse(*element, "is one too many: a scene has at most " + std::to_string(kMaxMaps) + " maps");
+      context.reject(*element, "is one too many: a scene has at most " + std::to_string(kMaxMaps) + " maps");
     context.world.maps.push_back(read_map(context, *element));
   }
 }

@@ -24,7 +24,7 @@ std::int64_t image_hash(LoadContext& context, const sdf::Element& element, const
     read_height_map(image.bytes);
     return add_image(context.world, std::move(image));
   } catch (const std::exception& e) {
-    context.refuse(element, "names " + what + " \"" + uri + "\", which cannot be read: " + e.what());
+    context.reject(element, "names " + what + " \"" + uri + "\", which cannot be read: " + e.what());
   }
 }
 
@@ -32,7 +32,8 @@ std::int64_t image_hash(LoadContext& context, const sdf::Element& element, const
 void read_bump(LoadContext& context, const sdf::Element& element, Attributes& attributes, material_def_t& material) {
   if (!attributes.text("bump")) {
     for (const char* key : {"bump_size", "bump_height"})
-      if (attributes.text(key)) context.refuse(element, std::string("has ") + key + " without bump: name the picture too");
+      if (attributes.text(key))
+        context.reject(element, std::string("has ") + key + " without bump: name the picture too");
     return;
   }
   const std::string uri = attributes.required_text("bump");
@@ -46,7 +47,8 @@ void read_bump(LoadContext& context, const sdf::Element& element, Attributes& at
 void read_friction_map(LoadContext& context, const sdf::Element& element, Attributes& attributes, material_def_t& material) {
   if (!attributes.text("friction_map")) {
     for (const char* key : {"friction_size", "friction_factors"})
-      if (attributes.text(key)) context.refuse(element, std::string("has ") + key + " without friction_map: name the picture too");
+      if (attributes.text(key))
+        context.reject(element, std::string("has ") + key + " without friction_map: name the picture too");
     return;
   }
   const std::string uri = attributes.required_text("friction_map");
@@ -67,7 +69,7 @@ void read_modes(LoadContext& context, const sdf::Element& element, Attributes& a
     material.modes = parse_measured_modes({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     material.mode_count = static_cast<int>(material.modes.size());
   } catch (const std::exception& e) {
-    context.refuse(element, "names modes \"" + uri + "\", which cannot be read: " + e.what());
+    context.reject(element, "names modes \"" + uri + "\", which cannot be read: " + e.what());
   }
 }
 
@@ -77,16 +79,17 @@ void read_material(LoadContext& context, const sdf::Element& element) {
   const auto base = attributes.text("base");
   const auto known = context.material_of.find(base.value_or(name));
   if (base && known == context.material_of.end())
-    context.refuse(element, "has base=\"" + *base + "\": there is no such material before this line");
+    context.reject(element, "has base=\"" + *base + "\": there is no such material before this line");
   material_def_t material{};
   if (known != context.material_of.end()) material = context.world.materials[static_cast<std::size_t>(known->second)];
   material.name = name;
-  for (const MaterialFigure& figure : material_figures()) {
-    const auto value = attributes.quantity(figure.attribute, figure.unit, figure.min, figure.max);
+  for (const MaterialProperty& property : material_properties()) {
+    const auto value = attributes.quantity(property.attribute, property.unit, property.min, property.max);
     if (value)
-      material.*figure.field = *value;
+      material.*property.field = *value;
     else if (known == context.material_of.end())
-      context.refuse(element, std::string("is new and lacks \"") + figure.attribute + "\": give it, or a base to take it from");
+      context.reject(element, std::string("is new and lacks \"") + property.attribute +
+                                  "\": give it, or a base to take it from");
   }
   read_bump(context, element, attributes, material);
   read_friction_map(context, element, attributes, material);
@@ -99,12 +102,12 @@ void read_material(LoadContext& context, const sdf::Element& element) {
     context.world.materials[static_cast<std::size_t>(at->second)] = material;
 }
 
-int known_material(const LoadContext& context, const sdf::Element& element, const std::string& name) {
+int find_material(const LoadContext& context, const sdf::Element& element, const std::string& name) {
   const auto known = context.material_of.find(name);
   if (known != context.material_of.end()) return known->second;
   std::string names;
   for (const auto& [each, index] : context.material_of) names += (names.empty() ? "" : ", ") + each;
-  context.refuse(element, "names material \"" + name + "\": there are " + names);
+  context.reject(element, "names material \"" + name + "\": there are " + names);
 }
 
 }  // namespace
@@ -112,7 +115,7 @@ int known_material(const LoadContext& context, const sdf::Element& element, cons
 int define_material(LoadContext& context, const Properties& properties, const std::filesystem::path& file) {
   const auto base = properties.find("base");
   if (base != properties.end() && properties.size() == 1)
-    return known_material(context, *element_of("tactus:material", properties, file), base->second);
+    return find_material(context, *element_of("tactus:material", properties, file), base->second);
   Properties named = properties;
   named["name"] = file.filename().string();
   if (context.material_of.contains(named["name"])) named["name"] = file.string();
@@ -129,12 +132,12 @@ void read_materials(LoadContext& context, const sdf::ElementPtr& world) {
 }
 
 int surface_material(const LoadContext& context, const sdf::ElementPtr& element, int inherited) {
-  const sdf::ElementPtr surface = written(element, "tactus:surface");
+  const sdf::ElementPtr surface = explicit_child(element, "tactus:surface");
   if (!surface) return inherited;
   Attributes attributes(context, *surface);
   const std::string name = attributes.required_text("material");
   attributes.done();
-  return known_material(context, *surface, name);
+  return find_material(context, *surface, name);
 }
 
 }  // namespace tactus::sim

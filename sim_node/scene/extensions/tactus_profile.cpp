@@ -48,20 +48,20 @@ void check_names(const LoadContext& context, const sdf::Element& element, const 
     if (!sync::known_modality(rule.modality))
       context.warn(element, at + "there is no modality \"" + rule.modality + "\"; another program may have it");
     if (!rule.material.empty() && !context.material_of.contains(rule.material))
-      context.refuse(element, "is invalid: " + at + "material=\"" + rule.material +
+      context.reject(element, "is invalid: " + at + "material=\"" + rule.material +
                                   "\": there is no such material in this scene");
     for (const std::string& name : {rule.body_a, rule.body_b})
       if (!name.empty() && std::none_of(world.bodies.begin(), world.bodies.end(),
                                         [&](const BodyDef& body) { return body.name == name; }))
-        context.refuse(element, "is invalid: " + at + "bodies=\"" + rule.body_a + " " + rule.body_b +
+        context.reject(element, "is invalid: " + at + "bodies=\"" + rule.body_a + " " + rule.body_b +
                                     "\": there is no body \"" + name + "\" in this scene" +
                                     suggest_body(world, name));
   }
 }
 
-void refuse_text(const LoadContext& context, const sdf::Element& element) {
+void reject_text(const LoadContext& context, const sdf::Element& element) {
   if (element.GetValue() && !element.GetValue()->GetAsString().empty())
-    context.refuse(element, "has text in it, which has no meaning here: remove it");
+    context.reject(element, "has text in it, which has no meaning here: remove it");
 }
 
 sync::Profile parse_checked(const LoadContext& context, const sdf::Element& element, const std::string& xml) {
@@ -69,7 +69,7 @@ sync::Profile parse_checked(const LoadContext& context, const sdf::Element& elem
     return sync::parse_profile(xml, "");
   } catch (const std::invalid_argument& e) {
     const std::string what = e.what();  // ":1: reason"
-    context.refuse(element, "is invalid: " + what.substr(what.find(": ") + 2));
+    context.reject(element, "is invalid: " + what.substr(what.find(": ") + 2));
   }
 }
 
@@ -78,45 +78,45 @@ std::string from_file(LoadContext& context, const sdf::ElementPtr& element) {
   const auto file = context.asset_file(attributes.required_text("file"), *element);
   attributes.done();
   if (element->GetFirstElement())
-    context.refuse(*element, "names a file and holds <tactus:degrade> too: choose one");
+    context.reject(*element, "names a file and holds <tactus:degrade> too: choose one");
   try {
     const sync::ProfileInForce profile = sync::read_profile_file(file.string());
     check_names(context, *element, *profile.parsed, file.filename().string());
     return profile.text;
   } catch (const std::invalid_argument& e) {
-    context.refuse(*element, std::string("is invalid: ") + e.what());
+    context.reject(*element, std::string("is invalid: ") + e.what());
   }
 }
 
 }  // namespace
 
 void read_profile(LoadContext& context, const sdf::ElementPtr& world) {
-  const sdf::ElementPtr element = written(world, "tactus:profile");
+  const sdf::ElementPtr element = explicit_child(world, "tactus:profile");
   if (!element) return;
   for (auto other = element->GetNextElement("tactus:profile"); other;
        other = other->GetNextElement("tactus:profile"))
-    context.refuse(*other, "is a second profile: a scene has one, with any number of <tactus:degrade>");
+    context.reject(*other, "is a second profile: a scene has one, with any number of <tactus:degrade>");
   if (element->HasAttribute("file")) {
     context.world.profile = from_file(context, element);
     return;
   }
-  refuse_text(context, *element);
+  reject_text(context, *element);
   parse_checked(context, *element, tag("profile", *element) + "/>");
   std::string rules;
   for (auto child = element->GetFirstElement(); child; child = child->GetNextElement()) {
     if (child->GetName() != "tactus:degrade")
-      context.refuse(*child, "is not known in a profile: it holds <tactus:degrade>");
+      context.reject(*child, "is not known in a profile: it holds <tactus:degrade>");
     const std::string rule = tag("degrade", *child) + "/>";
-    refuse_text(context, *child);
+    reject_text(context, *child);
     if (child->GetFirstElement())
-      context.refuse(*child->GetFirstElement(), "is within a <tactus:degrade>, which has attributes alone");
+      context.reject(*child->GetFirstElement(), "is within a <tactus:degrade>, which has attributes alone");
     check_names(context, *child, parse_checked(context, *child, "<profile>" + rule + "</profile>"), "");
     rules += "  " + rule + "\n";
   }
   context.world.profile = tag("profile", *element) + ">\n" + rules + "</profile>\n";
   parse_checked(context, *element, context.world.profile);
   if (context.world.profile.size() > sync::kMaxProfileBytes)
-    context.refuse(*element, "is longer than 64 kB: leave out what it does not need");
+    context.reject(*element, "is longer than 64 kB: leave out what it does not need");
 }
 
 }  // namespace tactus::sim

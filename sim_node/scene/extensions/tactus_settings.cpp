@@ -16,11 +16,12 @@ void check(const LoadContext& context, const sdf::Element& element, const settin
     return setting.node == r.node && setting.name == r.row.name;
   });
   if (row == kAllSettings.end())
-    context.refuse(element, "has no setting \"" + setting.name + "\": docs/settings.md lists those of " + setting.node);
+    context.reject(element,
+                   "has no setting \"" + setting.name + "\": docs/settings.md lists those of " + setting.node);
   try {
     sync::check_scene_setting(row->row, setting.value);
   } catch (const std::invalid_argument& e) {
-    context.refuse(element, std::string("is invalid: ") + e.what());
+    context.reject(element, std::string("is invalid: ") + e.what());
   }
 }
 

@@ -15,7 +15,7 @@ namespace {
 using M = material_def_t;
 
 // Bounds from aerogel to diamond, with a margin; they detect wrong powers of ten and wrong units.
-constexpr std::array<MaterialFigure, 11> kFigures{{
+constexpr std::array<MaterialProperty, 11> kProperties{{
     {"youngs_modulus_Pa", "youngs_modulus", "Pa", 1e3, 2e12, &M::youngs_modulus_Pa},
     {"poissons_ratio", "poissons_ratio", "1", -0.99, 0.4999, &M::poissons_ratio},
     {"density_kg_m3", "density", "kg/m3", 1, 25'000, &M::density_kg_m3},
@@ -31,7 +31,7 @@ constexpr std::array<MaterialFigure, 11> kFigures{{
 
 }  // namespace
 
-std::span<const MaterialFigure> material_figures() { return kFigures; }
+std::span<const MaterialProperty> material_properties() { return kProperties; }
 
 std::vector<material_def_t> parse_materials(std::string_view csv) {
   std::vector<std::string> header;
@@ -57,15 +57,15 @@ std::vector<material_def_t> parse_materials(std::string_view csv) {
     };
     material_def_t material{};
     material.name = cell("name");
-    for (const MaterialFigure& figure : material_figures()) {
+    for (const MaterialProperty& property : material_properties()) {
       double value = 0;
       try {
-        value = sync::parse_quantity(cell(figure.column), figure.unit);
+        value = sync::parse_quantity(cell(property.column), property.unit);
       } catch (const std::invalid_argument& e) {
-        fail(std::string(figure.column) + ": " + e.what());
+        fail(std::string(property.column) + ": " + e.what());
       }
-      if (value < figure.min || value > figure.max) fail(std::string(figure.column) + " is out of range");
-      material.*figure.field = value;
+      if (value < property.min || value > property.max) fail(std::string(property.column) + " is out of range");
+      material.*property.field = value;
     }
     for (std::size_t i = 0; i < header.size(); ++i)
       if (header[i].ends_with("_source") && cells[i].empty()) fail(header[i] + " is empty: cite where the figures are from");

@@ -9,14 +9,14 @@
 namespace tactus::sim {
 
 // One property of a material: its column in the table, its attribute in <tactus:material>, and its range.
-struct MaterialFigure {
+struct MaterialProperty {
   const char* column;
   const char* attribute;
   const char* unit;
   double min, max;
   double material_def_t::*field;
 };
-std::span<const MaterialFigure> material_figures();
+std::span<const MaterialProperty> material_properties();
 
 // Throws std::runtime_error with the row when a value is missing, not a number, out of range, or without a source.
 std::vector<material_def_t> parse_materials(std::string_view csv);

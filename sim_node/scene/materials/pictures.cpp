@@ -85,7 +85,7 @@ std::int64_t picture_of(LoadContext& context, const sdf::Element& element, const
     check_picture(image.bytes, use);
     return add_image(context.world, std::move(image));
   } catch (const std::exception& e) {
-    context.refuse(element, "names " + what + " \"" + uri + "\", which cannot be read: " + e.what());
+    context.reject(element, "names " + what + " \"" + uri + "\", which cannot be read: " + e.what());
   }
 }
 

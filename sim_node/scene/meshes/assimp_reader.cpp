@@ -34,7 +34,7 @@ class BoundedFiles : public Assimp::DefaultIOSystem {
   }
 };
 
-void refuse_above_limit(std::size_t triangles) {
+void check_triangle_count(std::size_t triangles) {
   if (triangles > kMaxTriangles)
     throw std::runtime_error("it has more than " + std::to_string(kMaxTriangles) + " triangles: simplify it");
 }
@@ -90,7 +90,7 @@ void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent, Me
   const aiMatrix4x4 pose = parent * node.mTransformation;
   for (unsigned m = 0; m < node.mNumMeshes; ++m) {
     const aiMesh& part = *scene.mMeshes[node.mMeshes[m]];
-    refuse_above_limit(triangles += part.mNumFaces);
+    check_triangle_count(triangles += part.mNumFaces);
     add(part, node, pose, mesh);
   }
   for (unsigned c = 0; c < node.mNumChildren; ++c) add(scene, *node.mChildren[c], pose, mesh, triangles);
@@ -158,7 +158,7 @@ MeshParts read_with_assimp(const std::filesystem::path& file) {
   const aiScene* scene = importer.ReadFile(file.string(), 0);
   std::size_t faces = 0;  // counted before processing: normals of millions of triangles take minutes
   for (unsigned m = 0; scene && m < scene->mNumMeshes; ++m) faces += scene->mMeshes[m]->mNumFaces;
-  refuse_above_limit(faces);
+  check_triangle_count(faces);
   if (scene)
     scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType |
                                          aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices);

@@ -43,7 +43,7 @@ bool same(const MeshPart& a, const MeshPart& b) {
 
 }  // namespace
 
-MeshParts for_place(MeshParts mesh, const fs::path& in, const fs::path& out) {
+MeshParts with_output_paths(MeshParts mesh, const fs::path& in, const fs::path& out) {
   const fs::path from = folder_of(in), to = folder_of(out);
   std::erase_if(mesh.parts, [](const MeshPart& part) { return part.indices.empty(); });
   for (MeshPart& part : mesh.parts) make_tangents(part);
@@ -56,7 +56,7 @@ MeshParts for_place(MeshParts mesh, const fs::path& in, const fs::path& out) {
   return mesh;
 }
 
-bool same_to_the_bit(const MeshParts& a, const MeshParts& b) {
+bool bit_identical(const MeshParts& a, const MeshParts& b) {
   const auto same_material = [](const MeshMaterial& x, const MeshMaterial& y) {
     return x.diffuse == y.diffuse && x.specular == y.specular && x.emissive == y.emissive &&
            x.shininess == y.shininess && x.alpha == y.alpha && x.colour_map == y.colour_map &&
@@ -98,7 +98,7 @@ void write_and_verify(const MeshParts& mesh, const fs::path& out) {
     file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     file.close();
     if (!file) throw std::runtime_error("it cannot be written");
-    if (!same_to_the_bit(read_mesh_parts(temporary), mesh))
+    if (!bit_identical(read_mesh_parts(temporary), mesh))
       throw std::runtime_error("it reads back differently, so it is not written");
     fs::rename(temporary, out, error);
     if (error) throw std::runtime_error("it cannot be written: " + error.message());

@@ -9,10 +9,10 @@ namespace tactus::sim {
 
 // The parts with tangents where they have texture coordinates; picture and property paths are made relative to the
 // folder of `out` instead of that of `in`.
-MeshParts for_place(MeshParts mesh, const std::filesystem::path& in, const std::filesystem::path& out);
+MeshParts with_output_paths(MeshParts mesh, const std::filesystem::path& in, const std::filesystem::path& out);
 
 // Equality to the bit, except for names that are not UTF-8.
-bool same_to_the_bit(const MeshParts& a, const MeshParts& b);
+bool bit_identical(const MeshParts& a, const MeshParts& b);
 
 // Throws std::runtime_error with one clause when a file that a property names is missing or invalid.
 void check_properties(const MeshParts& mesh, const std::filesystem::path& out);

@@ -42,7 +42,7 @@ std::vector<PropertyOption> property_options() {
           {"--uniforms", "uniforms", true, false, "numbers for the shader, for example \"scale 2; tint 1 0.5 0\""}};
 }
 
-void refuse(const std::string& sentence) { throw std::runtime_error(sentence); }
+void reject(const std::string& sentence) { throw std::runtime_error(sentence); }
 
 }  // namespace
 
@@ -60,15 +60,17 @@ int main(int argc, char** argv) try {
   sync::parse_or_exit(app, "convert_geometry", argc, argv);
 
   std::string extension = fs::path(out).extension().string();
-  if (extension != ".glb" && extension != ".gltf") refuse("\"" + out + "\" must end in .glb or .gltf: only glTF is written");
-  if (fs::exists(out) && !force) refuse("\"" + out + "\" exists already: give another name, or --force");
-  if (!fs::is_directory(fs::absolute(out).parent_path())) refuse("the folder of \"" + out + "\" does not exist: create it first");
+  if (extension != ".glb" && extension != ".gltf")
+    reject("\"" + out + "\" must end in .glb or .gltf: only glTF is written");
+  if (fs::exists(out) && !force) reject("\"" + out + "\" exists already: give another name, or --force");
+  if (!fs::is_directory(fs::absolute(out).parent_path()))
+    reject("the folder of \"" + out + "\" does not exist: create it first");
 
   MeshParts mesh;
   try {
-    mesh = for_place(read_mesh_parts(in), in, out);
+    mesh = with_output_paths(read_mesh_parts(in), in, out);
   } catch (const std::exception& e) {
-    refuse("\"" + in + "\" cannot be read: " + e.what());
+    reject("\"" + in + "\" cannot be read: " + e.what());
   }
   for (const PropertyOption& word : given) {
     if (word.value.empty()) continue;
@@ -77,7 +79,8 @@ int main(int argc, char** argv) try {
       value = fs::relative(fs::absolute(value), fs::absolute(out).parent_path()).generic_string();
     (word.of_look ? mesh.look : mesh.material)[word.attribute] = value;
   }
-  if (!mesh.material.empty() && !mesh.material.contains("base")) refuse("the material is missing: give --material, for example oak");
+  if (!mesh.material.empty() && !mesh.material.contains("base"))
+    reject("the material is missing: give --material, for example oak");
   const auto table = builtin_materials();
   const bool known = mesh.material.empty() || std::any_of(table.begin(), table.end(), [&](const material_def_t& m) {
     return m.name == mesh.material["base"];
@@ -89,7 +92,7 @@ int main(int argc, char** argv) try {
   try {
     write_and_verify(mesh, out);
   } catch (const std::exception& e) {
-    refuse("\"" + out + "\": " + e.what());
+    reject("\"" + out + "\": " + e.what());
   }
   std::size_t triangles = 0;
   for (const MeshPart& part : mesh.parts) triangles += part.indices.size() / 3;

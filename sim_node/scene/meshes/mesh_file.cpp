@@ -31,25 +31,26 @@ void scale_by(const Eigen::Vector3d& scale, TriangleMesh& mesh) {
 
 }  // namespace
 
-bool is_chosen(const MeshPart& part, const MeshChoice& choice) {
-  return choice.submesh.empty() || choice.submesh == part.mesh || choice.submesh == part.node;
+bool is_selected(const MeshPart& part, const MeshSelection& selection) {
+  return selection.submesh.empty() || selection.submesh == part.mesh || selection.submesh == part.node;
 }
 
-TriangleMesh join_parts(const MeshParts& parts, const MeshChoice& choice, const std::set<int>* only) {
+TriangleMesh join_parts(const MeshParts& parts, const MeshSelection& selection, const std::set<int>* only) {
   TriangleMesh mesh;
   Eigen::AlignedBox3d bounding_box;
   for (const MeshPart& part : parts.parts) {
-    if (!is_chosen(part, choice)) continue;
+    if (!is_selected(part, selection)) continue;
     for (const auto& p : part.positions_m) bounding_box.extend(p.cast<double>());
     if (!only || only->contains(part.material)) append(part, mesh);
   }
   if (mesh.indices.empty())
-    throw std::runtime_error(choice.submesh.empty() ? "it has no triangle" : "it has no submesh \"" + choice.submesh + "\"");
+    throw std::runtime_error(selection.submesh.empty() ? "it has no triangle"
+                                                       : "it has no submesh \"" + selection.submesh + "\"");
   if (mesh.texcoords.size() != mesh.vertices.size()) mesh.texcoords.clear();
   if (mesh.tangents.size() != mesh.vertices.size()) mesh.tangents.clear();
-  if (choice.centre)
+  if (selection.centre)
     for (Eigen::Vector3d& v : mesh.vertices) v -= bounding_box.center();
-  scale_by(choice.scale, mesh);
+  scale_by(selection.scale, mesh);
   remove_degenerate(mesh);
   if (mesh.indices.empty()) throw std::runtime_error("all its triangles have zero area");
   complete_normals(mesh);

@@ -12,18 +12,19 @@ namespace tactus::sim {
 
 // Selection and placement of the parts of a file: only the submesh of that name (of a mesh or its node), empty: all.
 // `centre` moves the centre of their bounding box to the origin, before scaling.
-struct MeshChoice {
+struct MeshSelection {
   std::string submesh;
   bool centre = false;
   Eigen::Vector3d scale{1, 1, 1};
 };
 
-bool is_chosen(const MeshPart& part, const MeshChoice& choice);
+bool is_selected(const MeshPart& part, const MeshSelection& selection);
 
 // The selected parts as one mesh; with `only`, the parts with these materials, but centred as the whole selection.
 // Texture coordinates and tangents are kept if every part has them. Throws std::runtime_error with one clause when no
 // triangle is left.
-TriangleMesh join_parts(const MeshParts& mesh, const MeshChoice& choice, const std::set<int>* only = nullptr);
+TriangleMesh join_parts(const MeshParts& mesh, const MeshSelection& selection,
+                        const std::set<int>* only = nullptr);
 
 // Throws std::runtime_error with one clause when the file is invalid.
 TriangleMesh read_mesh(const std::filesystem::path& file, const std::string& submesh, bool centre,

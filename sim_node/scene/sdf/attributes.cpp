@@ -9,14 +9,14 @@
 namespace tactus::sim {
 
 std::optional<std::string> Attributes::text(const std::string& name) {
-  asked_.insert(name);
+  read_names_.insert(name);
   if (!element_.HasAttribute(name)) return std::nullopt;
   return element_.GetAttribute(name)->GetAsString();
 }
 
 std::string Attributes::required_text(const std::string& name) {
   const auto value = text(name);
-  if (!value || value->empty()) context_.refuse(element_, "lacks its attribute \"" + name + "\"");
+  if (!value || value->empty()) context_.reject(element_, "lacks its attribute \"" + name + "\"");
   return *value;
 }
 
@@ -26,12 +26,12 @@ double Attributes::number(const std::string& name, const std::string& word, cons
   try {
     number = sync::parse_quantity(word, unit);
   } catch (const std::invalid_argument& e) {
-    context_.refuse(element_, "has " + name + "=\"" + word + "\": " + e.what());
+    context_.reject(element_, "has " + name + "=\"" + word + "\": " + e.what());
   }
   if (!(number >= min && number <= max)) {
     std::ostringstream sentence;
     sentence << "has " << name << "=\"" << word << "\": it must be between " << min << " and " << max << " " << unit;
-    context_.refuse(element_, sentence.str());
+    context_.reject(element_, sentence.str());
   }
   return number;
 }
@@ -44,7 +44,7 @@ std::optional<double> Attributes::quantity(const std::string& name, const std::s
 
 double Attributes::required_quantity(const std::string& name, const std::string& unit, double min, double max) {
   const auto value = quantity(name, unit, min, max);
-  if (!value) context_.refuse(element_, "lacks its attribute \"" + name + "\"");
+  if (!value) context_.reject(element_, "lacks its attribute \"" + name + "\"");
   return *value;
 }
 
@@ -55,7 +55,8 @@ std::vector<double> Attributes::required_quantities(const std::string& name, std
   std::vector<double> found;
   for (std::string word; in >> word;) found.push_back(number(name, word, unit, min, max));
   if (found.size() != count)
-    context_.refuse(element_, "has " + name + "=\"" + value + "\": it must be " + std::to_string(count) + " quantities");
+    context_.reject(element_,
+                    "has " + name + "=\"" + value + "\": it must be " + std::to_string(count) + " quantities");
   return found;
 }
 
@@ -63,7 +64,7 @@ std::optional<bool> Attributes::flag(const std::string& name) {
   const auto value = text(name);
   if (!value) return std::nullopt;
   if (*value != "true" && *value != "false" && *value != "1" && *value != "0")
-    context_.refuse(element_, "has " + name + "=\"" + *value + "\": it must be true or false");
+    context_.reject(element_, "has " + name + "=\"" + *value + "\": it must be true or false");
   return *value == "true" || *value == "1";
 }
 
@@ -79,8 +80,8 @@ std::vector<double> Attributes::numbers(const std::string& name, std::size_t cou
       break;
     }
   if (found.size() != count)
-    context_.refuse(element_, "has " + name + "=\"" + value + "\": it must be " + std::to_string(count) +
-                                  " finite numbers");
+    context_.reject(element_,
+                    "has " + name + "=\"" + value + "\": it must be " + std::to_string(count) + " finite numbers");
   return found;
 }
 
@@ -98,8 +99,9 @@ std::optional<Eigen::Isometry3d> Attributes::pose(const std::string& name) {
 
 void Attributes::done() const {
   for (const auto& attribute : element_.GetAttributes())
-    if (!asked_.contains(attribute->GetKey()) && !attribute->GetKey().starts_with("xmlns"))
-      context_.refuse(element_, "has no attribute \"" + attribute->GetKey() + "\": docs/scene_format.md lists those it has");
+    if (!read_names_.contains(attribute->GetKey()) && !attribute->GetKey().starts_with("xmlns"))
+      context_.reject(element_,
+                      "has no attribute \"" + attribute->GetKey() + "\": docs/scene_format.md lists those it has");
 }
 
 }  // namespace tactus::sim

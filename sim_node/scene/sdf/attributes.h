@@ -34,7 +34,7 @@ class Attributes {
 
   const LoadContext& context_;
   const sdf::Element& element_;
-  std::set<std::string> asked_;
+  std::set<std::string> read_names_;
 };
 
 }  // namespace tactus::sim

@@ -6,7 +6,7 @@
 
 namespace tactus::sim {
 
-void LoadContext::refuse(const sdf::Element& element, const std::string& sentence) const {
+void LoadContext::reject(const sdf::Element& element, const std::string& sentence) const {
   throw std::runtime_error(files.where(element) + ": " + xml_path(element) + " " + sentence);
 }
 
@@ -16,9 +16,9 @@ void LoadContext::warn(const sdf::Element& element, const std::string& sentence)
 
 std::filesystem::path LoadContext::asset_file(const std::string& uri, const sdf::Element& element) const {
   const std::filesystem::path file = files.find(uri, element.FilePath());
-  if (file.empty()) refuse(element, "names \"" + uri + "\", which is not found: put it beside the scene file");
+  if (file.empty()) reject(element, "names \"" + uri + "\", which is not found: put it beside the scene file");
   if (!std::filesystem::is_regular_file(file))
-    refuse(element, "names \"" + uri + "\", which is not a regular file: name a regular file");
+    reject(element, "names \"" + uri + "\", which is not a regular file: name a regular file");
   return file;
 }
 
@@ -26,10 +26,10 @@ Eigen::Isometry3d LoadContext::resolve(const sdf::SemanticPose& pose, const sdf:
                                        const std::string& resolve_to) const {
   ignition::math::Pose3d resolved;
   const sdf::Errors errors = pose.Resolve(resolved, resolve_to);
-  if (!errors.empty()) refuse(element, "has no pose: " + errors.front().Message());
+  if (!errors.empty()) reject(element, "has no pose: " + errors.front().Message());
   const Eigen::Isometry3d result = to_eigen(resolved);
   if (!result.matrix().allFinite() || result.translation().cwiseAbs().maxCoeff() > 1e6)
-    refuse(element, "has a pose that is not finite or farther than 1e6 m: correct its <pose>");
+    reject(element, "has a pose that is not finite or farther than 1e6 m: correct its <pose>");
   return result;
 }
 
@@ -40,7 +40,7 @@ std::string xml_path(const sdf::Element& element) {
   return path;
 }
 
-sdf::ElementPtr written(const sdf::ElementPtr& element, const std::string& child) {
+sdf::ElementPtr explicit_child(const sdf::ElementPtr& element, const std::string& child) {
   if (!element) return nullptr;
   for (auto each = element->GetFirstElement(); each; each = each->GetNextElement())
     if (each->GetName() == child && each->GetExplicitlySetInFile()) return each;

@@ -31,7 +31,7 @@ struct LoadContext {
   std::map<std::string, std::shared_ptr<const LookAttributes>> look_of = {};     // name -> definition in <world>
 
   // "FILE:LINE: sentence"
-  [[noreturn]] void refuse(const sdf::Element& element, const std::string& sentence) const;
+  [[noreturn]] void reject(const sdf::Element& element, const std::string& sentence) const;
   void warn(const sdf::Element& element, const std::string& sentence) const;
 
   // The file of a mesh or picture that an element names; rejects a missing file.
@@ -46,6 +46,6 @@ struct LoadContext {
 std::string xml_path(const sdf::Element& element);
 
 // The first child of that name in the file, ignoring elements created as defaults.
-sdf::ElementPtr written(const sdf::ElementPtr& element, const std::string& child);
+sdf::ElementPtr explicit_child(const sdf::ElementPtr& element, const std::string& child);
 
 }  // namespace tactus::sim

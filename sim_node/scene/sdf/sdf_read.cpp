@@ -83,8 +83,8 @@ const sdf::Element* find_quoted_element(const sdf::ElementPtr& element, const st
   return nullptr;
 }
 
-void refuse_errors(const sdf::Errors& errors, const sdf::ElementPtr& root, const SdfFiles& files,
-                   const MutedConsole& muted) {
+void throw_first_error(const sdf::Errors& errors, const sdf::ElementPtr& root, const SdfFiles& files,
+                       const MutedConsole& muted) {
   const sdf::Error* first = nullptr;
   int more = 0;
   for (const sdf::Error& error : errors) {
@@ -112,10 +112,10 @@ std::unique_ptr<sdf::Root> read_sdf(const SdfFiles& files) {
     for (const auto& file : files.included()) {
       sdf::Errors errors;
       sdf::readFile(file.string(), sdf::ParserConfig::GlobalConfig(), errors);
-      refuse_errors(errors, nullptr, files, muted);
+      throw_first_error(errors, nullptr, files, muted);
     }
     const sdf::Errors errors = root->Load(files.main_file().string(), sdf::ParserConfig::GlobalConfig());
-    refuse_errors(errors, root->Element(), files, muted);
+    throw_first_error(errors, root->Element(), files, muted);
   } catch (const std::runtime_error&) {
     throw;
   } catch (const std::exception& e) {

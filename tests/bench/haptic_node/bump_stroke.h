@@ -21,7 +21,7 @@ struct BumpStroke {
 // Samples of each tick between the ends.
 struct BumpTrace {
   double step_m = 0;
-  std::vector<double> place_m;  // along the stroke
+  std::vector<double> position_m;  // along the stroke
   std::vector<double> along_N, up_N;
   std::vector<double> slope;     // of the map, along the stroke, at the device
   std::vector<double> proxy_m;   // height of the proxy

@@ -85,8 +85,8 @@ std::vector<double> sampled(const std::vector<double>& x, const std::vector<doub
 }
 
 Compared compare(const BumpTrace& felt, const BumpTrace& truth) {
-  return {correlation(felt.along_N, sampled(truth.place_m, truth.along_N, felt.place_m)),
-          correlation(felt.up_N, sampled(truth.place_m, truth.up_N, felt.place_m))};
+  return {correlation(felt.along_N, sampled(truth.position_m, truth.along_N, felt.position_m)),
+          correlation(felt.up_N, sampled(truth.position_m, truth.up_N, felt.position_m))};
 }
 
 bool method_table(nlohmann::json& json) {
@@ -219,10 +219,10 @@ void draw(const std::string& path) {
        {std::pair{"mesh", "#444"}, {"normal", "#b2182b"}, {"height", "#2166ac"}, {"both", "#762a83"}}) {
     stroke.method = method;
     const BumpTrace t = run(stroke);
-    if (stroke.method == "mesh") picture.curve("slope of the map", "#888", t.place_m, t.slope, -0.4, 0.4, "m/m");
-    picture.curve(stroke.method == "mesh" ? "triangles" : method, colour, t.place_m, t.along_N, -1.6, 0.6,
+    if (stroke.method == "mesh") picture.curve("slope of the map", "#888", t.position_m, t.slope, -0.4, 0.4, "m/m");
+    picture.curve(stroke.method == "mesh" ? "triangles" : method, colour, t.position_m, t.along_N, -1.6, 0.6,
                   "N along");
-    picture.curve("", colour, t.place_m, t.up_N, 1.6, 2.8, "N up");
+    picture.curve("", colour, t.position_m, t.up_N, 1.6, 2.8, "N up");
   }
   picture.axis("along the stroke, 0 to 50 mm");
   picture.title("Spectra, by normals: force along the stroke (red) and what the slope asks for (grey), dB");

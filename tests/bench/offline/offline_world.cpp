@@ -66,7 +66,7 @@ void OfflineWorld::publish() {
        .touch_models = &simulation_.touch_models(),
        .events = &simulation_.events(),
        .tool_contacts = &simulation_.tool_contacts(),
-       .state = {simulation_.bodies(), [&](auto& out) { simulation_.body_contacts(out); }, simulation_.ahead()},
+       .state = {simulation_.bodies(), [&](auto& out) { simulation_.body_contacts(out); }, simulation_.look_ahead()},
        .game = &simulation_.game()},
       world_map());
   const sync::HostTime now = world_map().to_host(simulation_.now());

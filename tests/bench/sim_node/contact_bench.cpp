@@ -24,7 +24,7 @@ namespace {
 constexpr double kH = 1.0 / 240, kSize = 0.1;
 
 struct Scene {
-  Toys toys{impulse::Law{.sweeps = 20}};
+  Toys toys{impulse::ContactLaw{.sweeps = 20}};
   dWorldID world = dWorldCreate();
   dJointGroupID joints = dJointGroupCreate(0);
   std::vector<dBodyID> bodies;

@@ -99,9 +99,9 @@ nlohmann::json tick_row(int balls, int ticks) {
     s.step({});
     const double us = cpu_us() - before;
     if (i < ticks / 10) continue;
-    const Ahead* ahead = s.ahead();
+    const LookAhead* look_ahead = s.look_ahead();
     all.push_back(us);
-    if (ahead && ahead->fresh) begins.push_back(us);
+    if (look_ahead && look_ahead->fresh) begins.push_back(us);
   }
   const auto& groups = dynamic_cast<const DualGroups&>(s.mechanics());
   late = groups.late_steps();

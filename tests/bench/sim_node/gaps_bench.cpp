@@ -83,8 +83,8 @@ void pairs(nlohmann::json& json) {
       const ShapeKind a = kinds[i].def.kind, b = kinds[j].def.kind;
       auto gaps = make_detector("gaps"), ode = make_detector("ode");
       auto fcl = make_fcl_detector();
-      if (!gaps->refusal(a, b).empty()) continue;
-      if (fcl && !fcl->refusal(a, b).empty()) fcl = nullptr;
+      if (!gaps->unsupported_reason(a, b).empty()) continue;
+      if (fcl && !fcl->unsupported_reason(a, b).empty()) fcl = nullptr;
       for (Detector* d : {gaps.get(), ode.get(), fcl.get()})
         if (d) d->add(kinds[i].def, world), d->add(kinds[j].def, world);
       Random random(8);

@@ -38,7 +38,7 @@ Outcome measure(const test::HardScene& scene, const Settings& settings, bool thr
     out.us_a_step += std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - before).count() /
                      static_cast<double>(n);
     if (const auto* r = solver.report())
-      out.pieces += r->pieces, out.separated += r->separated, out.held += r->held;
+      out.pieces += r->substeps, out.separated += r->separation_rounds, out.held += r->reset_units;
     const auto d = oracle.deepest(solver.bodies());
     if (d.depth_m <= out.deepest_m) continue;
     out.deepest_m = d.depth_m, out.at_s = static_cast<double>(out.steps) * settings.step_s;

@@ -13,7 +13,7 @@ using test::kToyG;
 // A tower of boxes, or a ball, rests in a shell kBends times as thick as the deflection of its springs under one of them: there spring and
 // damper are linear.
 inline constexpr double kBends = 8;
-static_assert(kBends * impulse::kDamperSetsIn < 1);
+static_assert(kBends * impulse::kDampingOnsetShare < 1);
 inline double bend_m(double k) { return kLightest_kg * kToyG / k; }
 
 // The largest value for which stays(value) holds, to 1 %, searched downwards from `most` to `least`; 0: none.

@@ -23,7 +23,7 @@ namespace {
 using Eigen::Vector3d;
 using namespace tactus::sim::test;
 
-// Shell of the simulation, at which surfaces meet behind their springs (law_of).
+// Shell of the simulation, at which surfaces meet behind their springs (contact_law).
 constexpr double kShell_m = 1e-5;
 // Out of reach of the hand.
 constexpr double kFar_m = 3;
@@ -100,7 +100,7 @@ bool grouped_stays_stable(const GroupedRow& row, int boxes, double x) {
     if (i < near || !dual) w.bodies[static_cast<std::size_t>(i)].velocity_m_s.z() -= kToyG * h / 2;
   }
   add_tool(w, {boxes == 0 ? 0.05 : 0.07, 0, 0.04});
-  if (!refusal(w, s).empty()) return false;
+  if (!unsupported_reason(w, s).empty()) return false;
   Simulation simulation(w, s);
   simulation.start(1);
   for (int i = 0; i < kSettle; ++i) simulation.step({});

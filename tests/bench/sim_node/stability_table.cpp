@@ -31,11 +31,11 @@ struct Model {
   std::string name;
   // Advances a scene by h, in any number of internal steps.
   std::function<void(Toys&, double h)> step;
-  std::function<impulse::Law(double stiffness, double damping)> law;
+  std::function<impulse::ContactLaw(double stiffness, double damping)> law;
 };
 
-impulse::Law penalty(double k, double d, bool is_explicit) {
-  impulse::Law law;
+impulse::ContactLaw penalty(double k, double d, bool is_explicit) {
+  impulse::ContactLaw law;
   if (k > 0) law.penalty = {k, d, kShell_m, is_explicit};
   return law;
 }
@@ -53,7 +53,7 @@ struct Resting {
   std::vector<std::pair<int, double>> bodies;  // and their mass
 
   // boxes: in the tower; 0: a ball. k 0: hard contact, under the gravity of the earth.
-  Resting(const impulse::Law& law, int boxes, double k) : toys(law) {
+  Resting(const impulse::ContactLaw& law, int boxes, double k) : toys(law) {
     const double each = k > 0 ? bend_m(k) : 0, up = kBends * each;
     toys.reach_m = up + 0.002;
     toys.plane({0, 0, 1}, {0, 0, 0});
@@ -82,7 +82,7 @@ struct Resting {
 // limit does, by 1/sqrt(1 - h^2 k / 4 m): ten times within 1 % of it, a hundred times in energy.
 bool stays_stable(const Model& model, int boxes, double x, double h) {
   const double k = x * kLightest_kg / (h * h), d = kDampingRatio * 2 * std::sqrt(k * kLightest_kg);
-  impulse::Law law = model.law(k, d);
+  impulse::ContactLaw law = model.law(k, d);
   law.penalty.thickness_m = kBends * bend_m(k);
   Resting r(law, boxes, law.penalty.stiffness_N_m == 0 ? 0 : k);
   std::mt19937 random(1);
@@ -110,7 +110,7 @@ struct Arrival {
   double most_N = 0, jump_N = 0;
 };
 Arrival arrive(const Model& model, double k, double h) {
-  impulse::Law law = model.law(k, 1);
+  impulse::ContactLaw law = model.law(k, 1);
   Toys toys(law);
   toys.reach_m = kShell_m + 0.02;
   toys.gravity_m_s2.setZero();

@@ -58,7 +58,7 @@ Picture half_as_high(const Picture& from) {
 
 // Throws if a part of the scene could not be drawn as specified.
 Picture checked(const ShippedScene& from, Picture picture) {
-  if (!from.trouble.empty()) throw std::runtime_error(from.trouble.front());
+  if (!from.warnings.empty()) throw std::runtime_error(from.warnings.front());
   return picture;
 }
 

@@ -92,7 +92,7 @@ int main(int argc, char** argv) try {
   }
   scene_t scene = *scenes.scene();
   if (!at.empty()) scene.camera.position_m = to_vec3({at[0], at[1], at[2]});
-  visual::quiet_software_renderer();
+  visual::configure_software_renderer();
   const auto display = visual::make_headless(-1);
   std::vector<Eigen::Isometry3d> poses;
   for (const body_def_t& body : scene.bodies) poses.push_back(to_eigen(body.pose));
@@ -108,11 +108,11 @@ int main(int argc, char** argv) try {
     const visual::SceneView view(scene, visual::meshes_of(scenes), settings,
                                  visual::height_maps_of(*scenes.scene(), sync::pictures_of(scenes), said),
                                  visual::look_files_of(scenes, said));
-    if (!view.lens().trouble().empty()) throw std::runtime_error(view.lens().trouble());
+    if (!view.lens().warning().empty()) throw std::runtime_error(view.lens().warning());
     visual::Renderer renderer(edge, edge, settings.shadow_size);
     renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
     renderer.draw_scene(view.draw(poses, {}));
-    renderer.draw_over({});
+    renderer.draw_flashes_and_overlay({});
     renderer.wait();
     Pixels wall(static_cast<std::size_t>(edge * edge) * 4);
     renderer.picture().read(wall);

@@ -51,7 +51,7 @@ class Scenery {
     const visual::DrawList list = view_.draw(poses_, {});
     renderer_.draw_scene(list);
     renderer_.wait();
-    renderer_.draw_over(list);
+    renderer_.draw_flashes_and_overlay(list);
     renderer_.wait();
     return ms_since(begin);
   }
@@ -166,7 +166,7 @@ nlohmann::json video(const Options& options) {
         if (on) handing_over.push_back(busy_ms - drawn_ms);
       }
     }
-    if (const std::string note = recording.note(); !note.empty()) std::printf("%s\n", note.c_str());
+    if (const std::string note = recording.status_text(); !note.empty()) std::printf("%s\n", note.c_str());
   }
   std::filesystem::remove_all(folder);
   const double a = quantile(alone, 0.5), w = quantile(with_video, 0.5), h = quantile(handing_over, 0.5);
@@ -197,7 +197,7 @@ int main(int argc, char** argv) try {
   CLI11_PARSE(app, argc, argv);
   if (options.threads == 0) options.threads = options.table == "video" ? 1 : 2;
   setenv("LP_NUM_THREADS", std::to_string(options.threads).c_str(), 1);
-  visual::quiet_software_renderer();
+  visual::configure_software_renderer();
   const auto display = visual::make_headless(-1);
   std::printf("%s, drawn by %d threads where that is software\n\n", display->description().c_str(),
               options.threads);

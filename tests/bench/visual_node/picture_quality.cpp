@@ -58,7 +58,7 @@ int main(int argc, char** argv) try {
     sender.poll(now);
     bus.drain(now);
   }
-  visual::quiet_software_renderer();
+  visual::configure_software_renderer();
   const auto display = visual::make_headless(-1);
   const visual::Settings settings;
   const visual::SceneView view(*scenes.scene(), visual::meshes_of(scenes), settings,
@@ -92,7 +92,7 @@ int main(int argc, char** argv) try {
       renderer.draw_scene(list);
       renderer.wait();
       row.surfaces_ms.push_back(ms_since(begin));
-      renderer.draw_over(list);
+      renderer.draw_flashes_and_overlay(list);
       renderer.wait();
       row.picture_ms.push_back(ms_since(begin));
       renderer.picture().read(rgba);

@@ -32,8 +32,8 @@ struct NewtonEuler {
     for (std::size_t i = 0; i < links.size(); ++i) {
       const LinkDef& d = links[i].def;
       const bool root = d.parent < 0;
-      const Eigen::Matrix3d turn = placed.turn(static_cast<int>(i));
-      const Eigen::Matrix3d before = root ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : placed.turn(d.parent);
+      const Eigen::Matrix3d turn = placed.rotation(static_cast<int>(i));
+      const Eigen::Matrix3d before = root ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : placed.rotation(d.parent);
       const Vector3d spin = root ? Vector3d(0, 0, 0) : b[at(d.parent)].spin;
       const Vector3d turning = root ? Vector3d(0, 0, 0) : b[at(d.parent)].turning;
       Body& me = b[i];
@@ -97,7 +97,7 @@ struct NewtonEuler {
 
 Eigen::VectorXd joined(ArticulatedSystem& s, int link, const Vector3d& p, const Vector3d& impulse) {
   Eigen::VectorXd out(static_cast<Eigen::Index>(s.tree().dofs.size()));
-  s.dynamics().strike(link, p, impulse, {out.data(), s.tree().dofs.size()});
+  s.dynamics().impulse_to_rates(link, p, impulse, {out.data(), s.tree().dofs.size()});
   return out;
 }
 
@@ -152,7 +152,7 @@ TEST_CASE("The velocity of a point is its Jacobian times the joint rates") {
     const auto state = s.state();
     const std::size_t dofs = state.rates.size();
     const Vector3d local(0.1, -0.2, 0.3);
-    const auto place = [&] { return Vector3d(s.dynamics().centre_m(5) + s.dynamics().turn(5) * local); };
+    const auto place = [&] { return Vector3d(s.dynamics().centre_m(5) + s.dynamics().rotation(5) * local); };
     const Vector3d here = place();
     std::vector<double> rows(3 * dofs);
     s.dynamics().jacobian(5, here, rows);
@@ -210,7 +210,7 @@ TEST_CASE("The response of one joint to an impulse along another is symmetric") 
   randomize_state(s, random);
   const std::size_t n = s.tree().dofs.size();
   Eigen::MatrixXd inverse(n, n);
-  for (std::size_t j = 0; j < n; ++j) s.dynamics().strike_dof(static_cast<int>(j), {inverse.data() + j * n, n});
+  for (std::size_t j = 0; j < n; ++j) s.dynamics().dof_impulse_to_rates(static_cast<int>(j), {inverse.data() + j * n, n});
   CHECK((inverse - inverse.transpose()).norm() < 1e-11 * inverse.norm());
   CHECK(inverse.ldlt().isPositive());
 }

@@ -213,7 +213,7 @@ TEST_CASE("A free asymmetric top nutates with the period of Jacobi's elliptic fu
   const Vector3d before = spin;
   for (int i = 0; i < steps; ++i) s.step(kH);
   s.step(period - steps * kH);
-  const Vector3d local = s.dynamics().turn(0).transpose() * s.dynamics().spin_rad_s(0);
+  const Vector3d local = s.dynamics().rotation(0).transpose() * s.dynamics().spin_rad_s(0);
   CHECK((local - before).norm() < 1e-5);
 }
 

@@ -182,7 +182,7 @@ TEST_CASE("A fast body stops at the surface of a wall, also of a thin one") {
   double least = 1;
   for (int i = 0; i < 1.5 / h; ++i) {
     toys.step(h);
-    least = std::min(least, toys.least_gap_m());
+    least = std::min(least, toys.min_gap_m());
   }
   INFO("h " << h << " speed " << speed << " e " << e << " least gap " << least);
   // Exact for the ball. A corner of a rotating box deviates from the linear path by (spin h)^2 / 2 of its arm per

@@ -166,7 +166,7 @@ TEST_CASE("Painleve's rod jams for mu above 4/3 without gaining energy") {
     // The leapfrog velocity is half a step behind its height: the sum varies by m g v h / 2.
     const double sway = mass * kToyG * kH * (1 + b.velocity_m_s.norm());
     REQUIRE(energy() < had + sway);
-    least = std::min(least, toys.least_gap_m());
+    least = std::min(least, toys.min_gap_m());
   }
   CHECK(b.velocity_m_s.allFinite());
   // In one step a tip that rotates at 10 rad/s deviates from its line by (spin h)^2 l / 4.

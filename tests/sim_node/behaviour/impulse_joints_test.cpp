@@ -136,7 +136,7 @@ TEST_CASE("A chain that falls on the floor rests with its weight shared between 
   double fastest = 0;
   for (int i = 0; i < 8; ++i) fastest = std::max(fastest, toys.motion(chain + i).velocity_m_s.norm());
   CHECK(fastest < 5e-3);
-  CHECK(toys.least_gap_m() > -5e-4);
+  CHECK(toys.min_gap_m() > -5e-4);
   double force = 0;
   for (int i = 0; i < 100; ++i) {
     toys.step(kH);

@@ -141,14 +141,14 @@ TEST_CASE("In the impulse solver dry friction of a ball joint is equal about eve
   const double inertia = 0.01;
   add_body(w, "knob", 1, inertia * Eigen::Matrix3d::Identity(), at(0, 0, 0));
   add_joint(w, JointKind::kBall, -1, 0, {0, 0, 0}, {1, 0, 0}).axes[0].friction = 0.02;
-  const Vector3d way =
+  const Vector3d direction =
       GENERATE(Vector3d(1, 0, 0), Vector3d(1, 1, 0), Vector3d(1, -2, 0.5), Vector3d(1, 1, 1)).normalized();
   Solver s(w, by_impulse());
-  REQUIRE(s.set_spin(0, 4 * way));
+  REQUIRE(s.set_spin(0, 4 * direction));
   run(s, 1);
   const Vector3d spin = body(s, 0).spin_rad_s;
-  CHECK(spin.dot(way) == Approx(4 - 0.02 / inertia).epsilon(0.005));
-  CHECK((spin - spin.dot(way) * way).norm() < 0.01);
+  CHECK(spin.dot(direction) == Approx(4 - 0.02 / inertia).epsilon(0.005));
+  CHECK((spin - spin.dot(direction) * direction).norm() < 0.01);
   run(s, 1.1);
   CHECK(body(s, 0).spin_rad_s.norm() < 1e-6);
 }

@@ -9,7 +9,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-FreeBody thrown() {
+FreeBody thrown_body() {
   FreeBody b;
   b.mass_kg = 0.3;
   b.inertia_kg_m2 = Vector3d(1e-4, 2e-4, 3e-4).asDiagonal();
@@ -24,9 +24,9 @@ FreeBody thrown() {
 // A pendulum and two flying bodies; three units.
 World three() {
   World w;
-  w.add_free(thrown());
+  w.add_free(thrown_body());
   w.add_system(articulated::ArticulatedSystem(test::horizontal_chain(1)));
-  w.add_free(thrown());
+  w.add_free(thrown_body());
   return w;
 }
 
@@ -34,7 +34,7 @@ World three() {
 
 TEST_CASE("A flying body follows the parabola for any step lengths", "[impulse]") {
   World w;
-  w.add_free(thrown());
+  w.add_free(thrown_body());
   double t = 0;
   for (const double h : {0.001, 0.004, 0.00425, 0.001, 0.0167, 0.002}) {
     w.step({}, h);
@@ -54,7 +54,7 @@ TEST_CASE("An inactive unit does not move and does not affect the active ones", 
     some.step({}, 0.001);
   }
   CHECK(some.motions()[2].centre_m == all.motions()[2].centre_m);
-  CHECK(some.motions()[0].centre_m == thrown().centre_m);
+  CHECK(some.motions()[0].centre_m == thrown_body().centre_m);
   CHECK(std::vector<int>(some.active_bodies().begin(), some.active_bodies().end()) == std::vector<int>{2});
 }
 

@@ -94,13 +94,13 @@ TEST_CASE("A step is subdivided only if rotation would pass through a thin wall"
   const int box = add_box(w, 0.2, {0.3, 0.02, 0.02}, at(0, 0, 0.03));
   Solver still(w, by_impulse(0.001));
   still.step();
-  CHECK(still.report()->pieces == 1);
+  CHECK(still.report()->substeps == 1);
   Solver turning(w, by_impulse(0.001));
   turning.set_spin(box, {0, 150, 0});
   for (int i = 0; i < 50; ++i) {
     turning.step();
-    CHECK(turning.report()->deepest_m <= kAllowed_m);
-    if (i == 0) CHECK(turning.report()->pieces > 1);
+    CHECK(turning.report()->max_overlap_m <= kAllowed_m);
+    if (i == 0) CHECK(turning.report()->substeps > 1);
   }
   CHECK(turning.bodies()[static_cast<std::size_t>(box)].centre_m.z() > 0);
 }

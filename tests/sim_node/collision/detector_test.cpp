@@ -46,7 +46,7 @@ TEST_CASE("Each detector returns the geometric distance of a ball to each suppor
   for (auto& detector : built_in()) {
     const DetectorAbilities can = detector->abilities();
     for (const ShapeKind kind : {ShapeKind::kBox, ShapeKind::kSphere, ShapeKind::kCylinder, ShapeKind::kCapsule}) {
-      if (!detector->refusal(kind, ShapeKind::kSphere).empty()) continue;
+      if (!detector->unsupported_reason(kind, ShapeKind::kSphere).empty()) continue;
       const ShapeDef def = shape(kind, kSize);
       const ClosestSurface surface(def, nullptr);
       const int thing = detector->add(def, world),
@@ -78,7 +78,7 @@ TEST_CASE("Each detector returns the geometric distance of a ball to each suppor
         const PointPair& p = *std::min_element(
             found.begin(), found.end(), [](const PointPair& x, const PointPair& y) { return x.gap_m < y.gap_m; });
         const Vector3d n = pose.linear() * planes[0].normal * (swapped ? -1 : 1);
-        if (can.least_depth) {
+        if (can.minimum_translation) {
           // Accuracy of iterative detectors: 0.1 mm. Our own detector has a separate oracle.
           CHECK(p.gap_m == Approx(gap).margin(1e-4));
           CHECK(p.normal.dot(n) > 0.98);
@@ -143,14 +143,14 @@ TEST_CASE("A detector rejects unsupported shapes at start-up and suggests an alt
   for (auto& detector : built_in())
     for (const ShapeKind a : {ShapeKind::kBox, ShapeKind::kSphere, ShapeKind::kPlane, ShapeKind::kMesh})
       for (const ShapeKind b : {ShapeKind::kBox, ShapeKind::kCylinder, ShapeKind::kCapsule, ShapeKind::kMesh}) {
-        const std::string why = detector->refusal(a, b);
-        CHECK(why.empty() == detector->refusal(b, a).empty());
+        const std::string why = detector->unsupported_reason(a, b);
+        CHECK(why.empty() == detector->unsupported_reason(b, a).empty());
         if (why.empty()) continue;
         CHECK(detector->abilities().name != "ode");
         CHECK_THAT(why,
                    Catch::Contains(std::string(detector->abilities().name)) && Catch::Contains("choose \"ode\""));
       }
-  CHECK_FALSE(make_detector("ode")->refusal(ShapeKind::kPlane, ShapeKind::kHeightfield).empty());
+  CHECK_FALSE(make_detector("ode")->unsupported_reason(ShapeKind::kPlane, ShapeKind::kHeightfield).empty());
   CHECK_THROWS_WITH(make_detector("ccd")->add(shape(ShapeKind::kMesh, {1, 1, 1}, 1), world),
                     Catch::Contains("convex meshes only"));
   CHECK_NOTHROW(make_detector("ccd")->add(shape(ShapeKind::kMesh, {1, 1, 1}, 0), world));
@@ -168,7 +168,7 @@ TEST_CASE("A deterministic detector repeats a query bit-identically, with other 
   for (auto& detector : built_in()) {
     if (!detector->abilities().deterministic) continue;
     for (const ShapeKind kind : {ShapeKind::kBox, ShapeKind::kMesh}) {
-      if (!detector->refusal(kind, kind).empty()) continue;
+      if (!detector->unsupported_reason(kind, kind).empty()) continue;
       const int a = detector->add(shape(kind, kSize, 0), world), b = detector->add(shape(kind, kSize, 0), world);
       Random random(8);
       for (int i = 0; i < 20; ++i) {

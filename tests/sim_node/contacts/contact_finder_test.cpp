@@ -43,7 +43,7 @@ std::vector<Manifold> contacts(const WorldDef& w, double h = kStep) {
   return out;
 }
 
-double least_gap(const Manifold& m) {
+double min_gap(const Manifold& m) {
   double gap = 1e300;
   for (const ManifoldPoint& p : m.used()) gap = std::min(gap, -p.depth_m);
   return gap;
@@ -80,7 +80,7 @@ TEST_CASE("A box tilted by one degree has contacts at all lower corners that may
   const auto found = contacts(w);
   REQUIRE(found.size() == 1);
   CHECK(found[0].count == 4);
-  CHECK(least_gap(found[0]) == Approx(0.001).epsilon(1e-9));
+  CHECK(min_gap(found[0]) == Approx(0.001).epsilon(1e-9));
 }
 
 TEST_CASE("Contacts of a ball with each shape are found within the motion of one step") {
@@ -106,7 +106,7 @@ TEST_CASE("Contacts of a ball with each shape are found within the motion of one
   REQUIRE(found.size() == 1);
   CHECK(found[0].body_a == 0);
   CHECK(found[0].body_b == 1);
-  CHECK(least_gap(found[0]) == Approx(gap).margin(1e-9));
+  CHECK(min_gap(found[0]) == Approx(gap).margin(1e-9));
   CHECK(found[0].points[0].normal.z() == Approx(1));
 }
 
@@ -138,7 +138,7 @@ TEST_CASE("Contacts include bodies that an impact reaches through a row within t
   // impact, two gaps close.
   CHECK(found.size() >= (e > 0 ? 4u : 2u));
   for (const Manifold& m : found)
-    if (m.body_b == m.body_a + 1) CHECK(least_gap(m) == Approx(gap));
+    if (m.body_b == m.body_a + 1) CHECK(min_gap(m) == Approx(gap));
 }
 
 TEST_CASE("A body that bounces off the floor has contacts with the body above") {

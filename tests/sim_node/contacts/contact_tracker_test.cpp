@@ -202,39 +202,39 @@ TEST_CASE("Every contact of tumbling bodies begins once, then hits, and ends at 
   Tracked t(w, by(solver));
   t.run(4);
   std::set<std::int64_t> event_ids;
-  struct Life {
+  struct ContactLifetime {
     std::int64_t begun = -1, ended = -1, last = -1;
     std::pair<int, int> bodies;
   };
-  std::map<std::int64_t, Life> lives;
+  std::map<std::int64_t, ContactLifetime> lifetimes;
   for (const contact_event_t& e : t.events) {
     CHECK(event_ids.insert(e.event_id).second);
     CHECK(e.body_a < e.body_b);
     CHECK(std::isfinite(e.effective_mass_kg));
     CHECK(e.effective_mass_kg > 0);
     CHECK(e.curvature_1_m >= 0);
-    Life& life = lives[e.contact_id];
+    ContactLifetime& lifetime = lifetimes[e.contact_id];
     if (e.kind == contact_event_t::BEGIN) {
-      CHECK(life.begun < 0);
-      life.begun = e.time_ns;
-      life.bodies = {e.body_a, e.body_b};
+      CHECK(lifetime.begun < 0);
+      lifetime.begun = e.time_ns;
+      lifetime.bodies = {e.body_a, e.body_b};
     }
-    CHECK(life.begun >= 0);
-    CHECK(life.ended < 0);
-    CHECK(e.time_ns >= life.last);
-    CHECK(life.bodies == std::pair<int, int>(e.body_a, e.body_b));
+    CHECK(lifetime.begun >= 0);
+    CHECK(lifetime.ended < 0);
+    CHECK(e.time_ns >= lifetime.last);
+    CHECK(lifetime.bodies == std::pair<int, int>(e.body_a, e.body_b));
     if (e.kind == contact_event_t::HIT) CHECK(e.approach_speed_m_s > t.settings.hit_speed_m_s);
-    if (e.kind == contact_event_t::END) life.ended = e.time_ns;
-    life.last = e.time_ns;
+    if (e.kind == contact_event_t::END) lifetime.ended = e.time_ns;
+    lifetime.last = e.time_ns;
   }
   CHECK(t.of_kind(contact_event_t::HIT).size() > 50);
   // The live contacts are those that have begun and not ended, once each, and one per pair of shapes.
   std::size_t open = 0;
-  for (const auto& [id, life] : lives) open += life.ended < 0;
+  for (const auto& [id, lifetime] : lifetimes) open += lifetime.ended < 0;
   CHECK(open == t.tracker.live().size());
   std::set<std::pair<int, int>> pairs;
   for (const LiveContact& c : t.tracker.live()) {
-    CHECK(lives.at(c.id).ended < 0);
+    CHECK(lifetimes.at(c.id).ended < 0);
     CHECK(pairs.insert({c.manifold.shape_a, c.manifold.shape_b}).second);
   }
 }

@@ -15,7 +15,7 @@ namespace {
 constexpr double kBall_m = 0.03;
 
 // Position of a body of the visual group at an instant within its step: on the chords between its sub-steps.
-Vector3d on_its_way(const VisualStep& step, std::size_t unit, sync::Nanoseconds passed) {
+Vector3d position_in_step(const VisualStep& step, std::size_t unit, sync::Nanoseconds passed) {
   const std::size_t k = step.time_before(passed);
   const Vector3d from = step.states[k][unit].body.centre_m;
   if (k + 1 >= step.times.size()) return from;
@@ -86,7 +86,7 @@ TEST_CASE("Bodies of the two groups never touch for any motion of the hand") {
     for (std::size_t u = 0; u < step.units.size(); ++u) {
       const int body = step.bodies[u];
       if (d.groups.is_haptic(body)) continue;
-      const Vector3d place = on_its_way(step, u, passed);
+      const Vector3d place = position_in_step(step, u, passed);
       for (const int other : d.groups.haptic())
         nearest_m = std::min(nearest_m, (d.body(other).centre_m - place).norm() - 2 * kBall_m);
       // Nor does the tool touch a body outside the haptic group.
@@ -183,7 +183,7 @@ TEST_CASE("A visual group on its own thread exchanges bodies and applies changes
     }
     d.tick();
     (d.groups.is_haptic(ball) ? here : there) += 1;
-    CHECK(d.groups.ahead() != nullptr);
+    CHECK(d.groups.look_ahead() != nullptr);
   }
   CHECK(here > 100);
   CHECK(there > 100);

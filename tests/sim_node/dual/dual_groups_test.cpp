@@ -139,7 +139,7 @@ TEST_CASE("A restored state continues bit-identically, independent of the steps 
   StateArchive saved, ids;
   d.groups.archive(saved);
   d.ids.archive(ids);
-  const auto go_on = [&] {
+  const auto run_again = [&] {
     d.events.clear();
     double sum = 0;
     for (int i = 333; i < 700; ++i) {
@@ -151,14 +151,14 @@ TEST_CASE("A restored state continues bit-identically, independent of the steps 
     for (const contact_event_t& e : d.events) numbers += e.event_id ^ e.time_ns;
     return std::tuple(sum, d.events.size(), numbers);
   };
-  const auto first = go_on();
+  const auto first = run_again();
   StateArchive back{std::span<const std::uint8_t>(saved.bytes())},
       back_ids{std::span<const std::uint8_t>(ids.bytes())};
   d.ids.archive(back_ids);
   d.groups.archive(back);
   CHECK(back.at_end());
   d.ticks = 333;
-  CHECK(go_on() == first);
+  CHECK(run_again() == first);
 }
 
 TEST_CASE("The solver setting selects evaluation of the springs near a tool at the start or end of a step") {

@@ -96,7 +96,7 @@ TEST_CASE("A body that a struck body may strike is in the group, a third one aft
   CHECK(Row::list(kim.haptic()) == Ints{0});
   r.motions[1].centre_m.x() += 0.004;
   r.motions[1].velocity_m_s.x() = 2;
-  sound.watch(Row::at(2), r.motions, r.tools);
+  sound.check_pads(Row::at(2), r.motions, r.tools);
   CHECK(Row::list(sound.entered()) == Ints{2});
 }
 
@@ -105,15 +105,15 @@ TEST_CASE("A tool that changes direction is detected in the same tick, and the g
   Grouping g(r.bodies, r.limits);
   r.step(g, 0);
   CHECK(g.haptic().empty());
-  g.watch(Row::at(1), r.motions, r.tools);
-  CHECK(g.alarms() == 0);
+  g.check_pads(Row::at(1), r.motions, r.tools);
+  CHECK(g.pad_violations() == 0);
   r.tools[0].centre_m = {1.5, 0, 0.05};  // further than any hand can move
-  g.watch(Row::at(2), r.motions, r.tools);
-  CHECK(g.alarms() == 1);
+  g.check_pads(Row::at(2), r.motions, r.tools);
+  CHECK(g.pad_violations() == 1);
   CHECK(Row::list(g.entered()) == Ints{3});
   CHECK(g.is_haptic(3));
-  g.watch(Row::at(3), r.motions, r.tools);
-  CHECK(g.alarms() == 1);
+  g.check_pads(Row::at(3), r.motions, r.tools);
+  CHECK(g.pad_violations() == 1);
   CHECK(g.entered().empty());
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "sim_node/collision/gaps/choose.h"
+#include "sim_node/collision/gaps/select_points.h"
 #include <random>
 #include <vector>
 
@@ -55,15 +55,15 @@ TEST_CASE("The reduction of points with gaps keeps the near ones and one of ever
   std::vector<ManifoldPoint> found{point(0, 0, 0, up),        point(0.1, 0, 1e-3, up),   point(0, 0.1, 1e-3, up),
                                    point(0.1, 0.1, 2e-3, up), point(0.2, 0, 0.08, up),   point(0.2, 0.2, 0.09, up),
                                    point(0, 0.2, 0.1, up),    point(-0.2, -0.2, 0.2, up)};
-  gaps::choose_points(found, m);
+  gaps::select_points(found, m);
   REQUIRE(m.count == 4);
   for (const ManifoldPoint& p : m.used()) CHECK(-p.depth_m < 0.01);
   // Its corners on a floor, two of them also at a wall.
   found = {point(0, 0, 0, up),   point(0.1, 0, 0, up),       point(0, 0.1, 0, up),
            point(0.1, 0.1, 0, up), point(0.1, 0, 1e-5, aside), point(0.1, 0.1, 1e-5, aside)};
-  gaps::choose_points(found, m);
+  gaps::select_points(found, m);
   REQUIRE(m.count == 4);
   CHECK(std::count_if(m.used().begin(), m.used().end(), [&](const ManifoldPoint& p) { return p.normal == up; }) == 3);
-  gaps::choose_points({}, m);
+  gaps::select_points({}, m);
   CHECK(m.count == 0);
 }

@@ -48,23 +48,23 @@ TEST_CASE("A material has the measured modes of its table in ascending order") {
 TEST_CASE("An invalid table of modes is rejected with the line of the scene and its row") {
   const auto refused = [](const std::string& table, const std::string& because) {
     SceneFile file = scene(table);
-    CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:3: ") &&
+    CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:3: ") &&
                                    Catch::Contains("modes \"bell.csv\", which cannot be read: " + because));
   };
   const std::string header = "frequency_Hz,damping_1_s,amplitude\n";
-  refused("", "it has no modes");
-  refused(header, "it has no modes");
-  refused("frequency_Hz,amplitude\n440,1\n", "row 1: column damping_1_s is missing");
-  refused(header + "440,3,1\n440,3\n", "row 3: amplitude is missing");
-  refused(header + "440,3,loud\n", "row 2: amplitude: ");
-  refused(header + "10,3,1\n", "row 2: frequency_Hz is not between 20 and 20000");
-  refused(header + "440,-3,1\n", "row 2: damping_1_s is not above 0");
-  refused(header + "440,3000,1\n", "row 2: damping_1_s is not above 0 and below critical damping");
-  refused(header + "440,3,0\n", "row 2: amplitude is not above 0");
-  refused(header + "nan,3,1\n", "row 2: frequency_Hz");
+  expect_rejection("", "it has no modes");
+  expect_rejection(header, "it has no modes");
+  expect_rejection("frequency_Hz,amplitude\n440,1\n", "row 1: column damping_1_s is missing");
+  expect_rejection(header + "440,3,1\n440,3\n", "row 3: amplitude is missing");
+  expect_rejection(header + "440,3,loud\n", "row 2: amplitude: ");
+  expect_rejection(header + "10,3,1\n", "row 2: frequency_Hz is not between 20 and 20000");
+  expect_rejection(header + "440,-3,1\n", "row 2: damping_1_s is not above 0");
+  expect_rejection(header + "440,3000,1\n", "row 2: damping_1_s is not above 0 and below critical damping");
+  expect_rejection(header + "440,3,0\n", "row 2: amplitude is not above 0");
+  expect_rejection(header + "nan,3,1\n", "row 2: frequency_Hz");
   std::string many = header;
   for (int i = 0; i < 129; ++i) many += "440,3,1\n";
-  refused(many, "it has more than 128 modes");
+  expect_rejection(many, "it has more than 128 modes");
   SceneFile absent(world("<tactus:material name='bell' base='copper' modes='nowhere.csv'/>"));
-  CHECK_THAT(absent.refusal(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("not found"));
+  CHECK_THAT(absent.load_error(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("not found"));
 }

@@ -53,7 +53,7 @@ TEST_CASE("The first contact time of two linear motions matches a fine sampling 
   for (int round = 0; round < 1000; ++round) {
     const SweptSphere a = c.sphere(), b = c.sphere();
     const double distance = c.between(0.1, 1);
-    const double when = first_meeting_s(a, b, distance, kHorizon_s);
+    const double when = first_contact_time_s(a, b, distance, kHorizon_s);
     CHECK((when >= 0) == (closest_approach_m(a, b, kHorizon_s) <= distance));
     if (when <= 0) continue;
     ++met;
@@ -77,10 +77,10 @@ TEST_CASE("The distance of two capsule axes matches a fine sampling and never ex
         least = std::min(least, (a.centre_m + a.velocity_m_s * (kHorizon_s * k / 100) - b.centre_m -
                                  b.velocity_m_s * (kHorizon_s * l / 100))
                                     .norm());
-    CHECK(closest_axes_m(a, b, kHorizon_s) <= least + 1e-12);
-    CHECK(closest_axes_m(a, b, kHorizon_s) >= least - 0.008);  // 35 m/s for a hundredth of the horizon each
-    CHECK(closest_axes_m(a, b, kHorizon_s) <= closest_approach_m(a, b, kHorizon_s) + 1e-12);
-    CHECK(closest_axes_m(a, b, kHorizon_s) == Approx(closest_axes_m(b, a, kHorizon_s)).margin(1e-9));
+    CHECK(axis_distance_m(a, b, kHorizon_s) <= least + 1e-12);
+    CHECK(axis_distance_m(a, b, kHorizon_s) >= least - 0.008);  // 35 m/s for a hundredth of the horizon each
+    CHECK(axis_distance_m(a, b, kHorizon_s) <= closest_approach_m(a, b, kHorizon_s) + 1e-12);
+    CHECK(axis_distance_m(a, b, kHorizon_s) == Approx(axis_distance_m(b, a, kHorizon_s)).margin(1e-9));
   }
 }
 
@@ -107,7 +107,7 @@ TEST_CASE("A grid finds exactly the boxes that overlap the query") {
     const Bounds query = bounds_of(s, kHorizon_s);
     std::vector<int> expected{-1}, found{-1};
     for (int i = 0; i < 500; ++i)
-      if (boxes[static_cast<std::size_t>(i)].meets(query)) expected.push_back(i);
+      if (boxes[static_cast<std::size_t>(i)].overlaps(query)) expected.push_back(i);
     grid.find(query, found);
     CHECK(found == expected);
   }

@@ -170,8 +170,8 @@ TEST_CASE("Every event is repeated for 50 ms, and many events at once lose none"
   for (int i = 0; i < 400; ++i) {
     std::vector<contact_event_t> fresh;
     for (int k = 0; i < 300 && k < per_step; ++k) fresh.push_back(event(id++, i * std::int64_t{1'000'000}));
-    young.add(fresh, sync::sim_time(i * std::int64_t{1'000'000}));
-    const auto& due = young.due(sync::sim_time(i * std::int64_t{1'000'000}));
+    repeater.add(fresh, sync::sim_time(i * std::int64_t{1'000'000}));
+    const auto& due = repeater.due(sync::sim_time(i * std::int64_t{1'000'000}));
     CHECK(due.size() <= 64);
     std::set<std::int64_t> unique;
     for (const auto& e : due) {
@@ -180,7 +180,7 @@ TEST_CASE("Every event is repeated for 50 ms, and many events at once lose none"
     }
   }
   CHECK(sent.size() == static_cast<std::size_t>(id));
-  CHECK(young.overflow() == 0);
+  CHECK(repeater.overflow() == 0);
   if (per_step == 1)
     for (const auto& [event_id, times] : sent) CHECK(times == 50);
 }

@@ -23,9 +23,9 @@ sync::Bytes ramp(std::uint8_t highest = 255) { return png_bytes(2, 2, 8, {0, 10,
 SceneFile scene(const std::string& materials, const sync::Bytes& picture = ramp()) {
   return SceneFile(world(materials), {{"planks.png", picture}});
 }
-std::string refusal(const std::string& attributes, const sync::Bytes& picture = ramp()) {
+std::string load_error(const std::string& attributes, const sync::Bytes& picture = ramp()) {
   SceneFile file = scene("<tactus:material name='p' base='oak' " + attributes + "/>", picture);
-  return file.refusal();
+  return file.load_error();
 }
 const material_def_t& material(const WorldDef& w, const std::string& name) {
   for (const auto& m : w.materials)
@@ -80,9 +80,9 @@ TEST_CASE("A height map is sent once, unchanged, for all materials that use it")
 
 TEST_CASE("An invalid height map is rejected with its line") {
   SceneFile absent(world("\n<tactus:material name='p' base='oak' " + kGood + "/>"));
-  CHECK_THAT(absent.refusal(), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("\"planks.png\", which is not found"));
-  const auto refused = [](const std::string& attributes, const std::string& because) {
-    CHECK_THAT(refusal(attributes), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains(because));
+  CHECK_THAT(absent.load_error(), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("\"planks.png\", which is not found"));
+  const auto expect_rejection = [](const std::string& attributes, const std::string& because) {
+    CHECK_THAT(load_error(attributes), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains(because));
   };
   CHECK(refusal(kGood) == "");
   SECTION("picture, size and height are required together") {
@@ -96,20 +96,20 @@ TEST_CASE("An invalid height map is rejected with its line") {
     const auto sized = [](const std::string& size, const std::string& height) {
       return "bump='planks.png' bump_size='" + size + "' bump_height='" + height + "'";
     };
-    refused(sized("0.5m", "1mm"), "2 quantities");
-    refused(sized("1m 1m 1m", "1mm"), "2 quantities");
-    refused(sized("1m 0m", "1mm"), "between 0.0001 and 100 m");
-    refused(sized("-1m 1m", "1mm"), "between 0.0001 and 100 m");
-    refused(sized("1000m 1m", "1mm"), "between 0.0001 and 100 m");
-    refused(sized("1m nan", "1mm"), "bump_size");
-    refused(sized("1kg 1m", "1mm"), "bump_size");
-    refused(sized("1m 1m", "0"), "between 1e-07 and 0.1 m");
-    refused(sized("1m 1m", "-1mm"), "between 1e-07 and 0.1 m");
-    refused(sized("1m 1m", "2m"), "between 1e-07 and 0.1 m");
+    expect_rejection(sized("0.5m", "1mm"), "2 quantities");
+    expect_rejection(sized("1m 1m 1m", "1mm"), "2 quantities");
+    expect_rejection(sized("1m 0m", "1mm"), "between 0.0001 and 100 m");
+    expect_rejection(sized("-1m 1m", "1mm"), "between 0.0001 and 100 m");
+    expect_rejection(sized("1000m 1m", "1mm"), "between 0.0001 and 100 m");
+    expect_rejection(sized("1m nan", "1mm"), "bump_size");
+    expect_rejection(sized("1kg 1m", "1mm"), "bump_size");
+    expect_rejection(sized("1m 1m", "0"), "between 1e-07 and 0.1 m");
+    expect_rejection(sized("1m 1m", "-1mm"), "between 1e-07 and 0.1 m");
+    expect_rejection(sized("1m 1m", "2m"), "between 1e-07 and 0.1 m");
   }
   SECTION("a picture that is not a height map is rejected") {
     const auto unread = [](const sync::Bytes& picture, const std::string& because) {
-      CHECK_THAT(refusal(kGood, picture), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("cannot be read: " + because));
+      CHECK_THAT(load_error(kGood, picture), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("cannot be read: " + because));
     };
     unread({'h', 'e', 'l', 'l', 'o'}, "it is no PNG file");
     unread(png_bytes(2, 2, 8, sync::Bytes(12), PNG_COLOR_TYPE_RGB), "it must be grey");

@@ -54,21 +54,21 @@ TEST_CASE("An invalid friction map is rejected with its line") {
   const auto refused = [](const std::string& attributes, const std::string& because,
                           const sync::Bytes& picture = halves()) {
     SceneFile file = scene(attributes, picture);
-    CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains(because));
+    CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains(because));
   };
   SceneFile good = scene(kGood);
-  CHECK(good.refusal() == "");
-  refused("friction_map='halves.png' friction_factors='0 1'", "lacks its attribute \"friction_size\"");
-  refused("friction_map='halves.png' friction_size='1m 1m'", "lacks its attribute \"friction_factors\"");
-  refused("friction_size='1m 1m'", "friction_size without friction_map");
-  refused("friction_factors='1 1'", "friction_factors without friction_map");
+  CHECK(good.load_error() == "");
+  expect_rejection("friction_map='halves.png' friction_factors='0 1'", "lacks its attribute \"friction_size\"");
+  expect_rejection("friction_map='halves.png' friction_size='1m 1m'", "lacks its attribute \"friction_factors\"");
+  expect_rejection("friction_size='1m 1m'", "friction_size without friction_map");
+  expect_rejection("friction_factors='1 1'", "friction_factors without friction_map");
   const auto with = [](const std::string& size, const std::string& factors) {
     return "friction_map='halves.png' friction_size='" + size + "' friction_factors='" + factors + "'";
   };
-  refused(with("1m 0m", "0 1"), "between 0.0001 and 100 m");
-  refused(with("1m 1m", "1"), "2 quantities");
-  refused(with("1m 1m", "-0.1 1"), "between 0 and 20");
-  refused(with("1m 1m", "0 21"), "between 0 and 20");
-  refused(with("1m 1m", "0 nan"), "friction_factors");
-  refused(kGood, "names friction_map \"halves.png\", which cannot be read: it is no PNG file", {'x'});
+  expect_rejection(with("1m 0m", "0 1"), "between 0.0001 and 100 m");
+  expect_rejection(with("1m 1m", "1"), "2 quantities");
+  expect_rejection(with("1m 1m", "-0.1 1"), "between 0 and 20");
+  expect_rejection(with("1m 1m", "0 21"), "between 0 and 20");
+  expect_rejection(with("1m 1m", "0 nan"), "friction_factors");
+  expect_rejection(kGood, "names friction_map \"halves.png\", which cannot be read: it is no PNG file", {'x'});
 }

@@ -38,14 +38,14 @@ TEST_CASE("Missing values are computed from the shapes") {
 TEST_CASE("An impossible mass or inertia is rejected with its line") {
   const auto refusal = [](const std::string& inside) {
     SceneFile file(link(inside + kBall));
-    return file.refusal();
+    return file.load_error();
   };
   for (const char* mass : {"0", "-1", "nan", "inf"}) {
     INFO(mass);
-    CHECK_THAT(refusal("<inertial>\n<mass>" + std::string(mass) + "</mass></inertial>"), Catch::StartsWith("scene.sdf:"));
+    CHECK_THAT(load_error("<inertial>\n<mass>" + std::string(mass) + "</mass></inertial>"), Catch::StartsWith("scene.sdf:"));
   }
-  CHECK_THAT(refusal(inertial("\n<mass>0</mass>")), Catch::StartsWith("scene.sdf:6: ") && Catch::Contains("above 0 kg"));
-  CHECK_THAT(refusal(inertial("<mass>1</mass>\n" + inertia(1, 0, 1))), Catch::StartsWith("scene.sdf:6: ") &&
+  CHECK_THAT(load_error(inertial("\n<mass>0</mass>")), Catch::StartsWith("scene.sdf:6: ") && Catch::Contains("above 0 kg"));
+  CHECK_THAT(load_error(inertial("<mass>1</mass>\n" + inertia(1, 0, 1))), Catch::StartsWith("scene.sdf:6: ") &&
                                                                           Catch::Contains("not positive definite"));
 }
 

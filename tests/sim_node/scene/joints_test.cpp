@@ -89,18 +89,18 @@ TEST_CASE("A motor applies a constant torque to an axis") {
 TEST_CASE("An invalid joint is rejected with its line") {
   const auto refusal = [](const std::string& type, const std::string& inside) {
     SceneFile file(jointed(type, inside));
-    return file.refusal();
+    return file.load_error();
   };
-  CHECK_THAT(refusal("revolute", "<axis><xyz>0 0 0</xyz></axis>"), Catch::StartsWith("scene.sdf:"));
-  CHECK_THAT(refusal("revolute", "<axis><xyz>1 0 0</xyz><limit><lower>2</lower><upper>1</upper></limit></axis>"),
+  CHECK_THAT(load_error("revolute", "<axis><xyz>0 0 0</xyz></axis>"), Catch::StartsWith("scene.sdf:"));
+  CHECK_THAT(load_error("revolute", "<axis><xyz>1 0 0</xyz><limit><lower>2</lower><upper>1</upper></limit></axis>"),
              Catch::StartsWith("scene.sdf:6: ") && Catch::Contains("lower limit above"));
-  CHECK_THAT(refusal("revolute", "<axis><xyz>1 0 0</xyz><dynamics><damping>-1</damping></dynamics></axis>"),
+  CHECK_THAT(load_error("revolute", "<axis><xyz>1 0 0</xyz><dynamics><damping>-1</damping></dynamics></axis>"),
              Catch::StartsWith("scene.sdf:6: "));
-  CHECK_THAT(refusal("universal", kAxis), Catch::Contains("scene.sdf:"));
-  CHECK_THAT(refusal("universal", kAxis + "<axis2><xyz>1 0 0</xyz></axis2>"), Catch::Contains("two axes in one direction"));
-  CHECK_THAT(refusal("ball", "<tactus:motor torque='1'/>"), Catch::StartsWith("scene.sdf:6: ") && Catch::Contains("without an axis"));
-  CHECK_THAT(refusal("revolute", kAxis + "\n<tactus:motor/>"), Catch::StartsWith("scene.sdf:7: ") && Catch::Contains("torque"));
-  CHECK_THAT(refusal("revolute", kAxis + "\n<tactus:motor torque='1' speed='2'/>"), Catch::Contains("no attribute \"speed\""));
+  CHECK_THAT(load_error("universal", kAxis), Catch::Contains("scene.sdf:"));
+  CHECK_THAT(load_error("universal", kAxis + "<axis2><xyz>1 0 0</xyz></axis2>"), Catch::Contains("two axes in one direction"));
+  CHECK_THAT(load_error("ball", "<tactus:motor torque='1'/>"), Catch::StartsWith("scene.sdf:6: ") && Catch::Contains("without an axis"));
+  CHECK_THAT(load_error("revolute", kAxis + "\n<tactus:motor/>"), Catch::StartsWith("scene.sdf:7: ") && Catch::Contains("torque"));
+  CHECK_THAT(load_error("revolute", kAxis + "\n<tactus:motor torque='1' speed='2'/>"), Catch::Contains("no attribute \"speed\""));
 }
 
 TEST_CASE("An unsupported joint type is omitted with one warning") {

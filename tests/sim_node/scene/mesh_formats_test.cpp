@@ -231,7 +231,7 @@ TEST_CASE("A glTF without normals has smooth ones at small angles and split ones
 
 TEST_CASE("A glTF with invalid buffers, accessors, indices or nodes is rejected with the reason") {
   SceneFile file;
-  const auto refused = [&](auto change) {
+  const auto rejection = [&](auto change) {
     nlohmann::json document = document_of(square());
     change(document);
     file.write("t.gltf", document.dump());
@@ -241,39 +241,39 @@ TEST_CASE("A glTF with invalid buffers, accessors, indices or nodes is rejected 
     return said;
   };
   using J = nlohmann::json;
-  CHECK_THAT(refused([](J& d) { d["buffers"][0]["byteLength"] = 1'000'000; }),
+  CHECK_THAT(rejection([](J& d) { d["buffers"][0]["byteLength"] = 1'000'000; }),
              Catch::Contains("shorter than its byteLength"));
-  CHECK_THAT(refused([](J& d) { d["bufferViews"][0]["byteLength"] = 1'000'000; }),
+  CHECK_THAT(rejection([](J& d) { d["bufferViews"][0]["byteLength"] = 1'000'000; }),
              Catch::Contains("beyond its buffer"));
-  CHECK_THAT(refused([](J& d) { d["bufferViews"][0]["byteOffset"] = 4294967295.0; }),
+  CHECK_THAT(rejection([](J& d) { d["bufferViews"][0]["byteOffset"] = 4294967295.0; }),
              Catch::Contains("beyond its buffer"));
-  CHECK_THAT(refused([](J& d) { d["bufferViews"][0]["byteOffset"] = -4; }), Catch::Contains("not a count"));
-  CHECK_THAT(refused([](J& d) { d["bufferViews"][0]["byteStride"] = 4; }), Catch::Contains("beyond its view"));
-  CHECK_THAT(refused([](J& d) { d["bufferViews"][0]["buffer"] = 7; }), Catch::Contains("beyond its buffer"));
-  CHECK_THAT(refused([](J& d) { d["accessors"][0]["count"] = 5; }), Catch::Contains("beyond its view"));
-  CHECK_THAT(refused([](J& d) { d["accessors"][0]["count"] = 4'000'000'000.0; }), Catch::Contains("vertices"));
-  CHECK_THAT(refused([](J& d) { d["accessors"][0]["count"] = 1e300; }), Catch::Contains("not a count"));
-  CHECK_THAT(refused([](J& d) { d["accessors"][0]["componentType"] = 1; }), Catch::Contains("component type"));
-  CHECK_THAT(refused([](J& d) { d["accessors"][0]["type"] = "MAT4"; }), Catch::Contains("MAT4"));
-  CHECK_THAT(refused([](J& d) { d["accessors"][0]["type"] = "VEC2"; }), Catch::Contains("type"));
-  CHECK_THAT(refused([](J& d) { d["accessors"][0]["byteOffset"] = 8; }), Catch::Contains("beyond its view"));
-  CHECK_THAT(refused([](J& d) { d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99; }),
+  CHECK_THAT(rejection([](J& d) { d["bufferViews"][0]["byteOffset"] = -4; }), Catch::Contains("not a count"));
+  CHECK_THAT(rejection([](J& d) { d["bufferViews"][0]["byteStride"] = 4; }), Catch::Contains("beyond its view"));
+  CHECK_THAT(rejection([](J& d) { d["bufferViews"][0]["buffer"] = 7; }), Catch::Contains("beyond its buffer"));
+  CHECK_THAT(rejection([](J& d) { d["accessors"][0]["count"] = 5; }), Catch::Contains("beyond its view"));
+  CHECK_THAT(rejection([](J& d) { d["accessors"][0]["count"] = 4'000'000'000.0; }), Catch::Contains("vertices"));
+  CHECK_THAT(rejection([](J& d) { d["accessors"][0]["count"] = 1e300; }), Catch::Contains("not a count"));
+  CHECK_THAT(rejection([](J& d) { d["accessors"][0]["componentType"] = 1; }), Catch::Contains("component type"));
+  CHECK_THAT(rejection([](J& d) { d["accessors"][0]["type"] = "MAT4"; }), Catch::Contains("MAT4"));
+  CHECK_THAT(rejection([](J& d) { d["accessors"][0]["type"] = "VEC2"; }), Catch::Contains("type"));
+  CHECK_THAT(rejection([](J& d) { d["accessors"][0]["byteOffset"] = 8; }), Catch::Contains("beyond its view"));
+  CHECK_THAT(rejection([](J& d) { d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99; }),
              Catch::Contains("accessors"));
-  CHECK_THAT(refused([](J& d) { d["meshes"][0]["primitives"][0]["indices"] = 0; }), Catch::Contains("type"));
-  CHECK_THAT(refused([](J& d) { d["meshes"][0]["primitives"][0]["material"] = 3; }), Catch::Contains("materials"));
-  CHECK_THAT(refused([](J& d) { d["nodes"][0]["mesh"] = 12; }), Catch::Contains("meshes"));
-  CHECK_THAT(refused([](J& d) { d["nodes"][0]["children"] = {0}; }), Catch::Contains("not a tree"));
-  CHECK_THAT(refused([](J& d) { d["nodes"][0]["children"] = {"x"}; }), Catch::Contains("nodes"));
-  CHECK_THAT(refused([](J& d) { d["nodes"][0]["scale"] = {0, "a", 1}; }), Catch::Contains("not finite"));
-  CHECK_THAT(refused([](J& d) { d["buffers"][0]["uri"] = "no.bin"; }), Catch::Contains("no.bin"));
-  CHECK_THAT(refused([](J& d) { d["buffers"][0]["uri"] = "/dev/zero"; }), Catch::Contains("not a regular file"));
-  CHECK_THAT(refused([](J& d) { d["buffers"][0]["uri"] = "data:x;base64,????"; }), Catch::Contains("base64"));
-  CHECK_THAT(refused([](J& d) { d["asset"]["version"] = "1.0"; }), Catch::Contains("2.0"));
-  CHECK_THAT(refused([](J& d) { d.erase("scenes"); }), Catch::Contains("no scene"));
+  CHECK_THAT(rejection([](J& d) { d["meshes"][0]["primitives"][0]["indices"] = 0; }), Catch::Contains("type"));
+  CHECK_THAT(rejection([](J& d) { d["meshes"][0]["primitives"][0]["material"] = 3; }), Catch::Contains("materials"));
+  CHECK_THAT(rejection([](J& d) { d["nodes"][0]["mesh"] = 12; }), Catch::Contains("meshes"));
+  CHECK_THAT(rejection([](J& d) { d["nodes"][0]["children"] = {0}; }), Catch::Contains("not a tree"));
+  CHECK_THAT(rejection([](J& d) { d["nodes"][0]["children"] = {"x"}; }), Catch::Contains("nodes"));
+  CHECK_THAT(rejection([](J& d) { d["nodes"][0]["scale"] = {0, "a", 1}; }), Catch::Contains("not finite"));
+  CHECK_THAT(rejection([](J& d) { d["buffers"][0]["uri"] = "no.bin"; }), Catch::Contains("no.bin"));
+  CHECK_THAT(rejection([](J& d) { d["buffers"][0]["uri"] = "/dev/zero"; }), Catch::Contains("not a regular file"));
+  CHECK_THAT(rejection([](J& d) { d["buffers"][0]["uri"] = "data:x;base64,????"; }), Catch::Contains("base64"));
+  CHECK_THAT(rejection([](J& d) { d["asset"]["version"] = "1.0"; }), Catch::Contains("2.0"));
+  CHECK_THAT(rejection([](J& d) { d.erase("scenes"); }), Catch::Contains("no scene"));
   for (const char* list : {"accessors", "bufferViews", "buffers", "nodes", "meshes"}) {
     INFO(list);
-    refused([&](J& d) { d[list] = 3; });
-    if (list != std::string("meshes")) refused([&](J& d) { d[list] = J::array({{{"mesh", 9}}}); });
+    rejection([&](J& d) { d[list] = 3; });
+    if (list != std::string("meshes")) rejection([&](J& d) { d[list] = J::array({{{"mesh", 9}}}); });
   }
 }
 
@@ -287,15 +287,15 @@ TEST_CASE("A truncated or corrupted .glb file is read or rejected without side e
     CHECK(why(file.folder() / "t.glb") != "");
   }
   std::uint32_t random = 1;
-  int refused = 0;
+  int rejected = 0;
   for (int i = 0; i < 400; ++i) {
     sync::Bytes changed = whole;
     random = random * 1664525u + 1013904223u;
     changed[(random >> 8) % changed.size()] ^= static_cast<std::uint8_t>(1u << (random >> 29));
     file.write("t.glb", {changed.begin(), changed.end()});
-    refused += why(file.folder() / "t.glb") != "";
+    rejected += why(file.folder() / "t.glb") != "";
   }
-  CHECK(refused > 0);
+  CHECK(rejected > 0);
 }
 
 TEST_CASE("Deep or very large JSON is rejected before it is stored") {
@@ -340,7 +340,7 @@ TEST_CASE("A file that is not regular or is too large is rejected as a mesh") {
   SECTION("a scene that names it is rejected with the line") {
     for (const char* name : {"folder.obj", "pipe.glb", "zero.stl", "sparse.ply"}) {
       file.write("scene.sdf", link(collision(std::string("\n<mesh><uri>") + name + "</uri></mesh>")));
-      CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:6: ") && Catch::Contains(name));
+      CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:6: ") && Catch::Contains(name));
     }
   }
 }

@@ -123,7 +123,7 @@ TEST_CASE("A damaged scene file is rejected or repaired and never ends the proce
 </child><axis><xyz>0 0 1</xyz></axis></joint></model>)");
   SceneFile file;
   std::mt19937 random(7);
-  int loaded = 0, refused = 0;
+  int loaded = 0, rejected = 0;
   for (int i = 0; i < 80; ++i) {
     std::string text = whole;
     const std::size_t at = random() % text.size();
@@ -139,10 +139,10 @@ TEST_CASE("A damaged scene file is rejected or repaired and never ends the proce
     }
     INFO(text);
     file.write("scene.sdf", text);
-    const std::string sentence = file.refusal();
-    (sentence.empty() ? loaded : refused) += 1;
+    const std::string sentence = file.load_error();
+    (sentence.empty() ? loaded : rejected) += 1;
     if (!sentence.empty()) CHECK_THAT(sentence, Catch::StartsWith("scene.sdf"));
   }
-  CHECK(refused > 25);
+  CHECK(rejected > 25);
   CHECK(loaded > 5);
 }

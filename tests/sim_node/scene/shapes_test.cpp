@@ -56,17 +56,17 @@ TEST_CASE("Every kind of geometry becomes its shape") {
 
 TEST_CASE("A size of zero or less is rejected with its line") {
   SceneFile file;
-  const auto refusal = [&](const std::string& geometry) {
+  const auto load_error = [&](const std::string& geometry) {
     file.write("scene.sdf", link(collision("\n" + geometry)));
-    return file.refusal();
+    return file.load_error();
   };
   for (const std::string geometry :
        {"<box><size>1 0 3</size></box>", "<box><size>1 nan 3</size></box>", "<sphere><radius>-1</radius></sphere>",
         "<cylinder><radius>0.5</radius><length>0</length></cylinder>", "<box><size>1 inf 3</size></box>"}) {
     INFO(geometry);
-    CHECK_THAT(refusal(geometry), Catch::StartsWith("scene.sdf:6: "));
+    CHECK_THAT(load_error(geometry), Catch::StartsWith("scene.sdf:6: "));
   }
-  CHECK_THAT(refusal("<plane><normal>0 0 0</normal><size>1 1</size></plane>"), Catch::Contains("scene.sdf:6"));
+  CHECK_THAT(load_error("<plane><normal>0 0 0</normal><size>1 1</size></plane>"), Catch::Contains("scene.sdf:6"));
 }
 
 TEST_CASE("A mesh is found beside its file, scaled and shared by equal references") {
@@ -85,14 +85,14 @@ TEST_CASE("A mesh is found beside its file, scaled and shared by equal reference
 
 TEST_CASE("An unreadable mesh is rejected with file, line and remedy") {
   SceneFile file(link("<collision name='a'><geometry>\n<mesh><uri>cube.obj</uri></mesh></geometry></collision>"));
-  CHECK(file.refusal() == "scene.sdf:6: /sdf/world[@name=\"w\"]/model[@name=\"m\"]/link[@name=\"l\"]/collision[@name=\"a\"]/"
+  CHECK(file.load_error() == "scene.sdf:6: /sdf/world[@name=\"w\"]/model[@name=\"m\"]/link[@name=\"l\"]/collision[@name=\"a\"]/"
                           "geometry/mesh names \"cube.obj\", which is not found: put it beside the scene file");
   file.write("cube.obj", "this is no mesh");
-  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:6: ") && Catch::Contains("cannot be read"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:6: ") && Catch::Contains("cannot be read"));
   file.write("cube.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
-  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:6: ") && Catch::Contains("cannot be read"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:6: ") && Catch::Contains("cannot be read"));
   file.write("cube.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
-  CHECK_THAT(file.refusal(), Catch::Contains("zero area"));
+  CHECK_THAT(file.load_error(), Catch::Contains("zero area"));
 }
 
 TEST_CASE("The bounding box of a rotated shape is tight") {

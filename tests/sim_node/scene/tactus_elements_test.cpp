@@ -10,9 +10,9 @@ using namespace tactus;
 using namespace tactus::sim;
 
 namespace {
-std::string refusal(const std::string& inside) {
+std::string load_error(const std::string& inside) {
   SceneFile file(world(inside));
-  return file.refusal();
+  return file.load_error();
 }
 WorldDef load(const std::string& inside) {
   SceneFile file(world(inside));
@@ -112,11 +112,11 @@ TEST_CASE("A hole names the ball that fills it by body or model") {
   CHECK(w.holes[0].position_m == Eigen::Vector3d(1, 2, 3));
   CHECK(w.holes[0].radius_m == Approx(0.03));
   CHECK(w.holes[0].depth_m == Approx(0.1));
-  CHECK_THAT(refusal(ball + "<tactus:hole name='h' position='0 0 0' radius='1cm' ball='two'/>"), Catch::Contains("no such body"));
-  CHECK_THAT(refusal(ball + "<tactus:hole name='h' position='0 0 0' radius='1cm' ball='rock'/>"), Catch::Contains("cannot fall"));
-  CHECK_THAT(refusal(ball + "<tactus:hole name='h' position='0 0 0' ball='ball'/>"), Catch::Contains("\"radius\""));
-  CHECK_THAT(refusal(ball + "<tactus:hole name='h' position='0 0' radius='1cm' ball='ball'/>"), Catch::Contains("3 finite"));
-  CHECK_THAT(refusal(ball + "<tactus:hole name='h' position='0 0 0' radius='0m' ball='ball'/>"), Catch::Contains("between"));
+  CHECK_THAT(load_error(ball + "<tactus:hole name='h' position='0 0 0' radius='1cm' ball='two'/>"), Catch::Contains("no such body"));
+  CHECK_THAT(load_error(ball + "<tactus:hole name='h' position='0 0 0' radius='1cm' ball='rock'/>"), Catch::Contains("cannot fall"));
+  CHECK_THAT(load_error(ball + "<tactus:hole name='h' position='0 0 0' ball='ball'/>"), Catch::Contains("\"radius\""));
+  CHECK_THAT(load_error(ball + "<tactus:hole name='h' position='0 0' radius='1cm' ball='ball'/>"), Catch::Contains("3 finite"));
+  CHECK_THAT(load_error(ball + "<tactus:hole name='h' position='0 0 0' radius='0m' ball='ball'/>"), Catch::Contains("between"));
 }
 
 TEST_CASE("A tool may have a shape, and has the inertia of a solid of that shape") {
@@ -144,7 +144,7 @@ TEST_CASE("A tool may have a shape, and has the inertia of a solid of that shape
     CHECK(b.inertia_kg_m2(0, 0) == Approx(0.4 * 0.2 * 0.005 * 0.005));
   });
   const auto said = [&](const std::string& attributes) {
-    return refusal("<tactus:tool name='h' " + attributes + ">" + point);
+    return load_error("<tactus:tool name='h' " + attributes + ">" + point);
   };
   CHECK_THAT(said("shape='cone' size='1cm 1cm 1cm'"), Catch::Contains("\"cone\""));
   CHECK_THAT(said("shape='box'"), Catch::Contains("\"size\""));
@@ -158,15 +158,15 @@ TEST_CASE("A tool may have a shape, and has the inertia of a solid of that shape
 
 TEST_CASE("An invalid tool is rejected with its line") {
   const std::string point = "<tactus:waypoint time='1' position='0 0 0'/>";
-  CHECK_THAT(refusal("<tactus:tool name='h'/>"), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("waypoint"));
-  CHECK_THAT(refusal("<tactus:tool name='h'>\n" + point + "\n" + point + "</tactus:tool>"),
+  CHECK_THAT(load_error("<tactus:tool name='h'/>"), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("waypoint"));
+  CHECK_THAT(load_error("<tactus:tool name='h'>\n" + point + "\n" + point + "</tactus:tool>"),
              Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("times must grow"));
-  CHECK_THAT(refusal("<tactus:tool name='h'><tactus:waypoint time='1' position='0 0'/></tactus:tool>"), Catch::Contains("3 finite"));
-  CHECK_THAT(refusal("<tactus:tool name='h'><tactus:waypoint time='1'/></tactus:tool>"), Catch::Contains("position"));
-  CHECK_THAT(refusal("<tactus:tool name='h' radius='2m'>" + point + "</tactus:tool>"), Catch::Contains("radius"));
-  CHECK_THAT(refusal("<tactus:tool name='h' loop='maybe'>" + point + "</tactus:tool>"), Catch::Contains("true or false"));
-  CHECK_THAT(refusal("<tactus:tool name='h' material='air'>" + point + "</tactus:tool>"), Catch::Contains("\"air\""));
-  CHECK_THAT(refusal("<tactus:tool>" + point + "</tactus:tool>"), Catch::Contains("\"name\""));
+  CHECK_THAT(load_error("<tactus:tool name='h'><tactus:waypoint time='1' position='0 0'/></tactus:tool>"), Catch::Contains("3 finite"));
+  CHECK_THAT(load_error("<tactus:tool name='h'><tactus:waypoint time='1'/></tactus:tool>"), Catch::Contains("position"));
+  CHECK_THAT(load_error("<tactus:tool name='h' radius='2m'>" + point + "</tactus:tool>"), Catch::Contains("radius"));
+  CHECK_THAT(load_error("<tactus:tool name='h' loop='maybe'>" + point + "</tactus:tool>"), Catch::Contains("true or false"));
+  CHECK_THAT(load_error("<tactus:tool name='h' material='air'>" + point + "</tactus:tool>"), Catch::Contains("\"air\""));
+  CHECK_THAT(load_error("<tactus:tool>" + point + "</tactus:tool>"), Catch::Contains("\"name\""));
 }
 
 TEST_CASE("An invalid device is rejected with its line before a node starts") {
@@ -177,7 +177,7 @@ TEST_CASE("An invalid device is rejected with its line before a node starts") {
     file.write("long.csv", "");
     std::filesystem::resize_file(file.folder() / "long.csv", (64 << 20) + 1);
     std::filesystem::create_directory(file.folder() / "folder");
-    return file.refusal();
+    return file.load_error();
   };
   CHECK(said("playback:short.csv") == "");
   CHECK(said("virtual_hand:short.csv") == "");
@@ -208,13 +208,13 @@ TEST_CASE("Node settings are validated and passed on as written") {
 TEST_CASE("A setting that is unknown or out of range is rejected with its line") {
   CHECK_THAT(refusal("\n<tactus:audio_node presentation_dely='25ms'/>"),
              Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("no setting \"presentation_dely\""));
-  CHECK_THAT(refusal("<tactus:audio_node presentation_delay='25'/>"),
+  CHECK_THAT(load_error("<tactus:audio_node presentation_delay='25'/>"),
              Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("between"));
-  CHECK_THAT(refusal("<tactus:audio_node presentation_delay='25kg'/>"), Catch::Contains("no unit"));
-  CHECK_THAT(refusal("<tactus:haptic_node force_limit='30 N'/>"), Catch::StartsWith("scene.sdf:3: ") &&
+  CHECK_THAT(load_error("<tactus:audio_node presentation_delay='25kg'/>"), Catch::Contains("no unit"));
+  CHECK_THAT(load_error("<tactus:haptic_node force_limit='30 N'/>"), Catch::StartsWith("scene.sdf:3: ") &&
                                                                       Catch::Contains("only tighten") &&
                                                                       Catch::Contains("8 N or less"));
-  CHECK(refusal("<tactus:haptic_node force_limit='3 N'/>").empty());
+  CHECK(load_error("<tactus:haptic_node force_limit='3 N'/>").empty());
 }
 
 TEST_CASE("Settings of an unknown node are passed on with a warning") {
@@ -238,13 +238,13 @@ TEST_CASE("A degradation profile in a scene is read, and an invalid one is rejec
   CHECK(profile.rules[1].modality == "visual");
   CHECK(load("").profile.empty());
 
-  const auto at = [](const std::string& rule) { return refusal("<tactus:profile>\n" + rule + "\n</tactus:profile>"); };
+  const auto at = [](const std::string& rule) { return load_error("<tactus:profile>\n" + rule + "\n</tactus:profile>"); };
   CHECK_THAT(at("<tactus:degrade modality='audio' delay='40kg'/>"), Catch::Contains("delay=\"40kg\""));
   CHECK_THAT(at("<tactus:degrade delay='40ms'/>"), Catch::Contains("needs a modality"));
   CHECK_THAT(at("<tactus:worsen modality='audio'/>"), Catch::Contains("tactus:degrade"));
-  CHECK_THAT(refusal("<tactus:profile colour='red'/>"), Catch::Contains("colour"));
-  CHECK_THAT(refusal("<tactus:profile/><tactus:profile/>"), Catch::Contains("second profile"));
-  CHECK_THAT(refusal("<tactus:profile file='none.xml'/>"), Catch::Contains("none.xml"));
+  CHECK_THAT(load_error("<tactus:profile colour='red'/>"), Catch::Contains("colour"));
+  CHECK_THAT(load_error("<tactus:profile/><tactus:profile/>"), Catch::Contains("second profile"));
+  CHECK_THAT(load_error("<tactus:profile file='none.xml'/>"), Catch::Contains("none.xml"));
 }
 
 TEST_CASE("A scene can name the file of its profile") {
@@ -252,7 +252,7 @@ TEST_CASE("A scene can name the file of its profile") {
   file.write("late.xml", "<profile name='late'><degrade modality='audio' delay='40ms'/></profile>");
   CHECK(sync::parse_profile(file.load().profile, "late.xml").name == "late");
   file.write("late.xml", "<profile><degrade/></profile>");
-  CHECK_THAT(file.refusal(), Catch::Contains("late.xml:1"));
+  CHECK_THAT(file.load_error(), Catch::Contains("late.xml:1"));
 }
 
 TEST_CASE("A profile in a scene with an unknown modality causes a warning with the line") {
@@ -268,7 +268,7 @@ TEST_CASE("A profile in a scene that names an unknown material or body is reject
   const std::string ball =
       "<model name='ball'><link name='l'/></model><model name='floor'><link name='l'/></model>";
   const auto at = [&](const std::string& what) {
-    return refusal(ball + "\n<tactus:profile>\n<tactus:degrade modality='audio' off='true' " + what +
+    return load_error(ball + "\n<tactus:profile>\n<tactus:degrade modality='audio' off='true' " + what +
                    "/></tactus:profile>");
   };
   CHECK(at("material='steel' bodies='floor::l ball::l'").empty());
@@ -280,7 +280,7 @@ TEST_CASE("A profile in a scene that names an unknown material or body is reject
 
   SceneFile file(world(ball + "<tactus:profile file='late.xml'/>"));
   file.write("late.xml", "<profile>\n<degrade modality='audio' material='stele' off='true'/></profile>");
-  CHECK_THAT(file.refusal(), Catch::Contains("late.xml:2: material=\"stele\""));
+  CHECK_THAT(file.load_error(), Catch::Contains("late.xml:2: material=\"stele\""));
   file.write("late.xml", "<profile>\n\n<degrade modality='smell' delay='1ms'/></profile>");
   CHECK_FALSE(file.load().profile.empty());
   REQUIRE(file.warnings.size() == 1);
@@ -291,10 +291,10 @@ TEST_CASE("Text or elements inside <tactus:degrade> and text in its profile are 
   CHECK_THAT(refusal("<tactus:profile>\ndegrade modality='audio' off='true'</tactus:profile>"),
              Catch::Contains("has text in it"));
   CHECK_THAT(
-      refusal(
+      load_error(
           "<tactus:profile><tactus:degrade modality='audio' off='true'>loss</tactus:degrade></tactus:profile>"),
       Catch::Contains("has text in it"));
-  CHECK_THAT(refusal("<tactus:profile><tactus:degrade modality='audio' "
+  CHECK_THAT(load_error("<tactus:profile><tactus:degrade modality='audio' "
                      "off='true'><tactus:x/></tactus:degrade></tactus:profile>"),
              Catch::Contains("attributes alone"));
 }
@@ -312,7 +312,7 @@ TEST_CASE("A map can drive only a live number, within its range and safety limit
   CHECK(w.maps[1].gain == 1);
   CHECK(w.maps[1].low == 0.5);
   CHECK(w.maps[1].high == 8);  // its default: no scene may loosen it
-  const auto map = [](const std::string& rest) { return refusal("<tactus:map " + rest + "/>"); };
+  const auto map = [](const std::string& rest) { return load_error("<tactus:map " + rest + "/>"); };
   CHECK_THAT(map("from='force' to='visual_node.exposure'"), Catch::Contains("NODE.NAME"));
   CHECK_THAT(map("from='a.b'"), Catch::Contains("to"));
   CHECK_THAT(map("from='a.b' to='nose_node.exposure'"), Catch::Contains("no such node"));

@@ -66,11 +66,11 @@ TEST_CASE("Ambient light and background come from the scene, otherwise from the 
 TEST_CASE("An invalid camera is rejected with its line") {
   const auto refusal = [](const std::string& element) {
     SceneFile file(world(element));
-    return file.refusal();
+    return file.load_error();
   };
-  CHECK_THAT(refusal("<tactus:camera/>"), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("lacks its pose"));
-  CHECK_THAT(refusal("\n<tactus:camera pose='0 0 1 0 0'/>"), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("6 finite"));
-  CHECK_THAT(refusal("<tactus:camera pose='0 0 nan 0 0 0'/>"), Catch::Contains("6 finite"));
-  CHECK_THAT(refusal("<tactus:camera pose='0 0 1 0 0 0' fov='200deg'/>"), Catch::Contains("fov"));
-  CHECK_THAT(refusal("<tactus:camera position='0 0 1'/>"), Catch::Contains("look_at"));
+  CHECK_THAT(load_error("<tactus:camera/>"), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("lacks its pose"));
+  CHECK_THAT(load_error("\n<tactus:camera pose='0 0 1 0 0'/>"), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("6 finite"));
+  CHECK_THAT(load_error("<tactus:camera pose='0 0 nan 0 0 0'/>"), Catch::Contains("6 finite"));
+  CHECK_THAT(load_error("<tactus:camera pose='0 0 1 0 0 0' fov='200deg'/>"), Catch::Contains("fov"));
+  CHECK_THAT(load_error("<tactus:camera position='0 0 1'/>"), Catch::Contains("look_at"));
 }

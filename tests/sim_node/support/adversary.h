@@ -48,7 +48,7 @@ class Adversary {
     const double ticks = static_cast<double>(tick_);
     result_.group /= ticks;
     result_.touched /= def_.steps;
-    result_.alarms = grouping_.alarms();
+    result_.alarms = grouping_.pad_violations();
     return result_;
   }
 
@@ -174,7 +174,7 @@ class Adversary {
           std::tie(m.centre_m, m.velocity_m_s) = ways_[i][static_cast<std::size_t>(k)];
       }
       const std::vector<GroupTool> tools{tool_};
-      grouping_.watch(at(tick_), motions_, tools);
+      grouping_.check_pads(at(tick_), motions_, tools);
       check(met, touched);
       result_.group += static_cast<double>(grouping_.haptic().size());
     }

@@ -11,7 +11,7 @@
 namespace tactus::sim::test {
 
 // Position error of a pair that has been replaced by its duplicate, at most this, m.
-inline constexpr double kAfterMerge_m = 2 * kSamePlace_m;
+inline constexpr double kAfterMerge_m = 2 * kSamePosition_m;
 
 struct Placed {
   Placed(const Soup& soup, const Eigen::Isometry3d& pose) {
@@ -65,10 +65,10 @@ inline void check_sound(const Placed& a, const Placed& b, double tolerance_m, co
     const double off =
         std::max(exact_distance(p.on_a_m, a.triangles[i]), exact_distance(p.on_b_m, b.triangles[j]));
     if (off > 1e-9) CHECK(off <= 1e-9);
-    const Eigen::Vector3d way = p.on_b_m - p.on_a_m;
+    const Eigen::Vector3d direction = p.on_b_m - p.on_a_m;
     if (p.gap_m > tolerance_m || p.gap_m < 0) CHECK(p.gap_m == Approx(tolerance_m / 2));
     if (std::abs(p.normal.norm() - 1) > 1e-9) CHECK(p.normal.norm() == Approx(1));
-    if ((way - p.gap_m * p.normal).norm() > 1e-9) CHECK((way - p.gap_m * p.normal).norm() <= 1e-9);
+    if ((direction - p.gap_m * p.normal).norm() > 1e-9) CHECK((direction - p.gap_m * p.normal).norm() <= 1e-9);
   }
   int duplicates = 0;
   for (std::size_t i = 0; i < found.pairs.size(); ++i)
@@ -81,12 +81,12 @@ inline Eigen::Isometry3d placed_near(const ContactMesh& a, const ContactMesh& b,
                                       double gap_m) {
   MeshContact contact;
   Eigen::Isometry3d pose = random_pose(random, 1);
-  const Eigen::Vector3d way = direction(random);
-  pose.translation() = from_m * way;
+  const Eigen::Vector3d towards = direction(random);
+  pose.translation() = from_m * towards;
   for (int i = 0; i < 60; ++i) {
     const double d = contact.distance_m(a, Eigen::Isometry3d::Identity(), b, pose, 1);
-    if (d <= gap_m || pose.translation().dot(way) < 0) break;
-    pose.translation() -= (d - 0.9 * gap_m) * way;
+    if (d <= gap_m || pose.translation().dot(towards) < 0) break;
+    pose.translation() -= (d - 0.9 * gap_m) * towards;
   }
   return pose;
 }

@@ -29,7 +29,7 @@ class PenetrationOracle {
       }
       if (s.kind == ShapeKind::kPlane || s.kind == ShapeKind::kHeightfield) shape.bound_m = 1e9;
     }
-    for (const auto& [a, b] : world.no_collision) apart_.emplace_back(std::min(a, b), std::max(a, b));
+    for (const auto& [a, b] : world.no_collision) excluded_pairs_.emplace_back(std::min(a, b), std::max(a, b));
   }
 
   struct Deepest {
@@ -69,19 +69,19 @@ class PenetrationOracle {
     const auto tool = [&](int i) { return world_.bodies[static_cast<std::size_t>(i)].tool >= 0; };
     if (a == b || tool(a) || tool(b) || (!moves(a) && !moves(b))) return false;
     const std::pair<int, int> key(std::min(a, b), std::max(a, b));
-    return std::find(apart_.begin(), apart_.end(), key) == apart_.end();
+    return std::find(excluded_pairs_.begin(), excluded_pairs_.end(), key) == excluded_pairs_.end();
   }
 
   double pair(std::size_t i, std::size_t j) {
     if (!shapes_[i].mesh && !shapes_[j].mesh) {
       ode_->query(shapes_[i].ode, poses_[i], shapes_[j].ode, poses_[j], 0, pairs_);
       double depth = 0;
-      Vector3d way = Vector3d::UnitZ();
+      Vector3d direction = Vector3d::UnitZ();
       for (const PointPair& p : pairs_)
-        if (-p.gap_m > depth) depth = -p.gap_m, way = p.normal;
+        if (-p.gap_m > depth) depth = -p.gap_m, direction = p.normal;
       const auto is_cylinder = [&](std::size_t k) { return world_.shapes[k].kind == ShapeKind::kCylinder; };
       const bool plane = world_.shapes[i].kind == ShapeKind::kPlane || world_.shapes[j].kind == ShapeKind::kPlane;
-      return depth > 0 && !plane && (is_cylinder(i) || is_cylinder(j)) ? least_overlap(i, j, way) : depth;
+      return depth > 0 && !plane && (is_cylinder(i) || is_cylinder(j)) ? min_overlap(i, j, direction) : depth;
     }
     return shapes_[i].mesh ? of_mesh(i, j) : of_mesh(j, i);
   }
@@ -100,7 +100,7 @@ class PenetrationOracle {
   }
   // The least overlap over all directions, from i to j. 0: a direction separates the two, which proves that they do
   // not overlap.
-  double least_overlap(std::size_t i, std::size_t j, const Vector3d& guess) const {
+  double min_overlap(std::size_t i, std::size_t j, const Vector3d& guess) const {
     const auto overlap = [&](const Vector3d& n) { return reach(i, n) + reach(j, -n); };
     std::vector<Vector3d> starts{guess, poses_[i].linear().col(2), poses_[j].linear().col(2),
                                  poses_[i].linear().col(2).cross(poses_[j].linear().col(2))};
@@ -263,7 +263,7 @@ class PenetrationOracle {
   const WorldDef& world_;
   std::unique_ptr<Detector> ode_;
   std::vector<Shape> shapes_;
-  std::vector<std::pair<int, int>> apart_;
+  std::vector<std::pair<int, int>> excluded_pairs_;
   std::vector<Eigen::Isometry3d> poses_;
   std::vector<PointPair> pairs_;
   std::vector<Probe> probes_;

@@ -39,7 +39,7 @@ class SceneFile {
     return load_sdf(folder_ / "scene.sdf", warnings);
   }
   // The sentence that rejects the scene, without the folder; empty when it loads.
-  std::string refusal() {
+  std::string load_error() {
     try {
       load();
       return "";

@@ -27,8 +27,8 @@ inline std::uint64_t state_hash(const std::filesystem::path& scene, const std::v
   const WorldDef world = load_sdf(scene.string(), warnings);
   Settings settings;
   settings.visual_thread = "none";  // in a thread of its own, a step may be late
-  const auto refused = sync::apply_settings(settings, setting_fields(), "sim_node", world.settings, overrides);
-  if (!refused.empty()) throw std::runtime_error(refused.front());
+  const auto errors = sync::apply_settings(settings, setting_fields(), "sim_node", world.settings, overrides);
+  if (!errors.empty()) throw std::runtime_error(errors.front());
   std::uint64_t hash = sync::kFnv1aBegin;
   const auto add = [&](const void* data, std::size_t size) { hash = sync::fnv1a_64(hash, data, size); };
   const auto message = [&](const auto& m) {

@@ -13,7 +13,7 @@ inline constexpr double kToyG = 9.81;
 
 class Toys {
  public:
-  explicit Toys(impulse::Law law = {}) : world(law) {}
+  explicit Toys(impulse::ContactLaw law = {}) : world(law) {}
 
   impulse::World world;
   Eigen::Vector3d gravity_m_s2{0, 0, -kToyG};
@@ -65,7 +65,7 @@ class Toys {
   }
   // Solves the contacts that collide() found.
   void solve(double h) { world.step(contacts_, h); }
-  double least_gap_m() {
+  double min_gap_m() {
     collide(0);
     double least = 1;
     for (const Manifold& m : contacts_)

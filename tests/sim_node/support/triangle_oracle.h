@@ -18,8 +18,8 @@ namespace detail {
 // A feature: its first corner and the vectors to the others.
 struct Feature {
   Exact at;
-  Exact way[2];
-  int ways = 0;
+  Exact direction[2];
+  int directions = 0;
 };
 
 inline Feature feature(const Corners& t, unsigned corners) {
@@ -31,7 +31,7 @@ inline Feature feature(const Corners& t, unsigned corners) {
     if (first)
       f.at = v;
     else
-      f.way[f.ways++] = v - f.at;
+      f.direction[f.directions++] = v - f.at;
     first = false;
   }
   return f;
@@ -65,16 +65,16 @@ inline bool solve(int n, long double m[4][5]) {
 }
 
 // Clamps a solution that is off a feature by rounding; false when it is further off.
-inline bool settle(int ways, long double* x) {
+inline bool settle(int directions, long double* x) {
   long double sum = 0;
-  for (int i = 0; i < ways; ++i) {
+  for (int i = 0; i < directions; ++i) {
     if (x[i] < -1e-9L) return false;
     x[i] = std::max(x[i], 0.0L);
     sum += x[i];
   }
   if (sum > 1 + 1e-9L) return false;
   if (sum > 1)
-    for (int i = 0; i < ways; ++i) x[i] /= sum;
+    for (int i = 0; i < directions; ++i) x[i] /= sum;
   return true;
 }
 
@@ -85,22 +85,22 @@ inline double exact_distance(const Corners& a, const Corners& b) {
   for (unsigned ca = 1; ca < 8; ++ca)
     for (unsigned cb = 1; cb < 8; ++cb) {
       const detail::Feature fa = detail::feature(a, ca), fb = detail::feature(b, cb);
-      const int n = fa.ways + fb.ways;
-      Exact way[4];
-      for (int i = 0; i < fa.ways; ++i) way[i] = fa.way[i];
-      for (int i = 0; i < fb.ways; ++i) way[fa.ways + i] = -fb.way[i];
+      const int n = fa.directions + fb.directions;
+      Exact direction[4];
+      for (int i = 0; i < fa.directions; ++i) direction[i] = fa.direction[i];
+      for (int i = 0; i < fb.directions; ++i) direction[fa.directions + i] = -fb.direction[i];
       const Exact apart = fa.at - fb.at;
       long double m[4][5] = {};
       for (int i = 0; i < n; ++i) {
-        for (int j = 0; j < n; ++j) m[i][j] = way[i].dot(way[j]);
-        m[i][4] = -way[i].dot(apart);
+        for (int j = 0; j < n; ++j) m[i][j] = direction[i].dot(direction[j]);
+        m[i][4] = -direction[i].dot(apart);
       }
       if (n > 0 && !detail::solve(n, m)) continue;  // a smaller feature is equally near
       long double x[4] = {};
       for (int i = 0; i < n; ++i) x[i] = m[i][4];
-      if (!detail::settle(fa.ways, x) || !detail::settle(fb.ways, x + fa.ways)) continue;
+      if (!detail::settle(fa.directions, x) || !detail::settle(fb.directions, x + fa.directions)) continue;
       Exact d = apart;
-      for (int i = 0; i < n; ++i) d += x[i] * way[i];
+      for (int i = 0; i < n; ++i) d += x[i] * direction[i];
       best = std::min(best, d.dot(d));
     }
   return static_cast<double>(std::sqrt(best));

@@ -21,7 +21,7 @@ namespace {
 struct Rig {
   Settings settings;
   Ids ids{5};
-  std::int64_t contact = ids.fresh();
+  std::int64_t contact = ids.next_id();
   WorldDef world = empty_world(0);
   int ball = add_ball(world, 0.2, 0.05, {0, 0, 0});
   Solver solver{world, settings};

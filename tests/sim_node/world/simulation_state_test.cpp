@@ -262,7 +262,7 @@ TEST_CASE("A damaged or foreign state is rejected with a message and changes not
   const Bytes earlier = s.save();
   run(s, hand, path, 100);
   const Bytes now = s.save();
-  const auto refused = [&](const Bytes& bytes) {
+  const auto restore_error = [&](const Bytes& bytes) {
     const std::string why = s.restore(bytes);
     CHECK(!why.empty());
     CHECK(s.save() == now);
@@ -272,19 +272,19 @@ TEST_CASE("A damaged or foreign state is rejected with a message and changes not
   for (int i = 0; i < 200; ++i) {
     Bytes damaged = earlier;
     damaged[random() % damaged.size()] ^= static_cast<std::uint8_t>(1u << (random() % 8));
-    refused(damaged);
-    refused(Bytes(earlier.begin(), earlier.begin() + static_cast<std::ptrdiff_t>(random() % earlier.size())));
+    restore_error(damaged);
+    restore_error(Bytes(earlier.begin(), earlier.begin() + static_cast<std::ptrdiff_t>(random() % earlier.size())));
   }
-  CHECK_THAT(refused({}), Catch::Contains("not a saved state"));
+  CHECK_THAT(restore_error({}), Catch::Contains("not a saved state"));
   Bytes version = earlier;
   ++version[8];
-  CHECK_THAT(refused(version), Catch::Contains("version"));
+  CHECK_THAT(restore_error(version), Catch::Contains("version"));
   Simulation other(motor(), {});
   other.start(11);
-  CHECK_THAT(refused(other.save()), Catch::Contains("another scene"));
+  CHECK_THAT(restore_error(other.save()), Catch::Contains("another scene"));
   Simulation set_otherwise(w, exact());
   set_otherwise.start(11);
-  CHECK_THAT(refused(set_otherwise.save()), Catch::Contains("other settings"));
+  CHECK_THAT(restore_error(set_otherwise.save()), Catch::Contains("other settings"));
   CHECK(s.restore(earlier) == "");
 }
 
@@ -347,7 +347,7 @@ TEST_CASE("A world of a new incarnation has new contact ids and no old forces") 
   run(
       s, hand, [](double) { return Vector3d(0, 0, 0.105); }, 100);
   REQUIRE(s.restore(state) == "");
-  s.begin_life(12);
+  s.begin_incarnation(12);
   const std::int64_t mask = (std::int64_t{1} << 40) - 1;
   s.body_contacts(contacts);
   REQUIRE(contacts.size() == 1);

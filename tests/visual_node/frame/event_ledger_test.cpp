@@ -29,7 +29,7 @@ TEST_CASE("Every begin and hit has exactly one report under any frame timing") {
   for (int trial = 0; trial < 50; ++trial) {
     EventLedger ledger(settings);
     std::map<std::int64_t, int> reports;
-    std::map<std::int64_t, std::int64_t> owed_at;
+    std::map<std::int64_t, std::int64_t> expected_at;
     std::int64_t now = 5'000'000'000, id = 0;
     for (int frame = 0; frame < 100; ++frame) {
       // Occasional stalls of up to a second.
@@ -39,15 +39,15 @@ TEST_CASE("Every begin and hit has exactly one report under any frame timing") {
         const int kind = static_cast<int>(random() % 3);
         const std::int64_t time = now - 5'000'000'000 - static_cast<std::int64_t>(random() % 400'000'000);
         due.push_back(event(++id, kind, time));
-        if (kind != contact_event_t::END) owed_at[id] = time + 5'000'000'000;
+        if (kind != contact_event_t::END) expected_at[id] = time + 5'000'000'000;
       }
-      const std::size_t flashed = ledger.take(due, map, sync::host_time(now)).size();
+      const std::size_t flashed = ledger.select_flashes(due, map, sync::host_time(now)).size();
       const auto presented = ledger.presented(sync::host_time(now + 3'000'000));
       std::size_t shown = 0;
       for (const presentation_t& r : presented) {
         ++reports[r.event_id];
-        REQUIRE(owed_at.contains(r.event_id));
-        CHECK(r.scheduled_ns == owed_at[r.event_id]);
+        REQUIRE(expected_at.contains(r.event_id));
+        CHECK(r.scheduled_ns == expected_at[r.event_id]);
         const std::int64_t late = now - r.scheduled_ns;
         if (r.outcome == presentation_t::DROPPED_LATE) {
           CHECK(late > 250'000'000);
@@ -61,7 +61,7 @@ TEST_CASE("Every begin and hit has exactly one report under any frame timing") {
       }
       CHECK(shown == flashed);
     }
-    CHECK(reports.size() == owed_at.size());
+    CHECK(reports.size() == expected_at.size());
     for (const auto& [event_id, count] : reports) CHECK(count == 1);
   }
 }
@@ -70,7 +70,7 @@ TEST_CASE("The outcome of a late event follows the rule of the modality") {
   const sync::TimeMap map{sync::sim_time(0), sync::host_time(0), 1};
   const auto outcome = [&](sync::LateRule rule, std::int64_t late_ns, std::int64_t foretold_ns) {
     EventLedger ledger(Settings{}, rule);
-    ledger.take({event(1, contact_event_t::HIT, 0)}, map, sync::host_time(foretold_ns));
+    ledger.select_flashes({event(1, contact_event_t::HIT, 0)}, map, sync::host_time(predicted_ns));
     return ledger.presented(sync::host_time(late_ns)).at(0).outcome;
   };
   CHECK(outcome(sync::LateRule::kShowNewest, 50'000'000, 0) == presentation_t::PRESENTED);

@@ -42,7 +42,7 @@ TEST_CASE("Jitter of a wall neither repeats a frame nor moves back to an earlier
       t += static_cast<std::int64_t>(random() % 40'000'000);    // up to two and a half frames
       const std::int64_t tremble = static_cast<std::int64_t>(random() % 30'000'000) - 15'000'000;
       const RoomTime ready = room_time(t + tremble);
-      const std::int64_t k = grid.pick(ready);
+      const std::int64_t k = grid.select_next(ready);
       REQUIRE(k > last);
       // The frame is not due before the picture is ready, nor later than necessary.
       REQUIRE(grid.due(k) >= ready);
@@ -54,10 +54,10 @@ TEST_CASE("Jitter of a wall neither repeats a frame nor moves back to an earlier
 
 TEST_CASE("A clock step back by more than a few frames restarts the numbering") {
   FrameGrid grid(60);
-  const std::int64_t far = grid.pick(room_time(100'000'000'000));
-  CHECK(grid.pick(grid.due(far - 2)) == far + 1);
-  CHECK(grid.pick(room_time(40'000'000'000)) == 2400);
+  const std::int64_t far = grid.select_next(room_time(100'000'000'000));
+  CHECK(grid.select_next(grid.due(far - 2)) == far + 1);
+  CHECK(grid.select_next(room_time(40'000'000'000)) == 2400);
   grid.restart();
   CHECK_FALSE(grid.last());
-  CHECK(grid.pick(room_time(1)) == 1);
+  CHECK(grid.select_next(room_time(1)) == 1);
 }

@@ -47,14 +47,14 @@ struct Wall {
     m.at_ns = kBegin_ns + ahead.count();
     maps.observe(m, {});
   }
-  sync::HostTime here(std::int64_t room_ns) const { return sync::host_time(room_ns) + ahead; }
+  sync::HostTime to_host(std::int64_t room_ns) const { return sync::host_time(room_ns) + ahead; }
 
   sync::ClockMaps maps;
   sync::Nanoseconds ahead, draws;
   FrameLock lock;
   std::int64_t busy_until_ns = 0, frames = 0;
   std::map<std::int64_t, Seen> seen;
-  std::optional<AgreedFrame> drawing;
+  std::optional<LockedFrame> drawing;
 };
 
 // A bus and its walls, simulated in steps of 0.1 ms of the room's clock.
@@ -90,7 +90,7 @@ struct Room {
     for (const auto& wall : walls)
       if (arrives())  // latency 0.1 .. 1.5 ms
         pending.emplace(t + 100'000 + static_cast<std::int64_t>(random() % 1'400'000),
-                        [m, w = wall.get()](std::int64_t at) { w->lock.push(m, w->here(at)); });
+                        [m, w = wall.get()](std::int64_t at) { w->lock.push(m, w->to_host(at)); });
   }
   header_t stamp(std::int64_t sim, std::int64_t incarnation, std::int64_t seq) const {
     header_t h{};
@@ -124,28 +124,28 @@ struct Room {
   // As in the loop: begin at the best time, draw, hold until due.
   void draw(Wall& w) {
     if (t < w.busy_until_ns) return;
-    const auto room_of = [&](sync::HostTime here) { return sync::to_ns(here - w.ahead); };
+    const auto room_of = [&](sync::HostTime to_host) { return sync::to_ns(to_host - w.ahead); };
     if (!w.drawing) {
-      w.drawing = w.lock.begin(w.here(t));
+      w.drawing = w.lock.begin_frame(w.to_host(t));
       if (!w.drawing) {
         w.busy_until_ns = t + 16'666'667;
         return;
       }
       const auto jitter = microseconds(random() % 1500);
-      w.lock.drawn(w.draws + jitter, microseconds(800));
+      w.lock.add_draw_times(w.draws + jitter, microseconds(800));
       const std::int64_t ready = t + (w.draws + jitter + microseconds(800)).count();
-      w.busy_until_ns = std::max(ready, room_of(w.drawing->here));
+      w.busy_until_ns = std::max(ready, room_of(w.drawing->due_host_time));
       // A frame is never shown before it is due, nor held for longer than a period.
       held_ns = std::max(held_ns, w.busy_until_ns - ready);
       return;
     }
-    const AgreedFrame& f = *w.drawing;
+    const LockedFrame& f = *w.drawing;
     REQUIRE(w.seen.count(f.number) == 0);
     if (!w.seen.empty()) REQUIRE(f.number > w.seen.rbegin()->first);
-    w.seen[f.number] = {sync::to_ns(f.world), f.head_ns, sync::to_ns(f.due)};
+    w.seen[f.number] = {sync::to_ns(f.sim_time), f.head_ns, sync::to_ns(f.due)};
     late_ns = std::max(late_ns, t - sync::to_ns(f.due));
     w.drawing.reset();
-    w.busy_until_ns = std::max(t, room_of(w.lock.next_begin(w.here(t))));
+    w.busy_until_ns = std::max(t, room_of(w.lock.next_begin(w.to_host(t))));
   }
 
  public:
@@ -211,8 +211,8 @@ TEST_CASE("With a short lag a slow wall draws the same time with an older head p
   REQUIRE(c.frames > 30);
   CHECK(c.world == c.frames);
   CHECK(c.head == 0);
-  CHECK(slow.lock.note(slow.here(room.t)).find("frame_lag") != std::string::npos);
-  CHECK(room.walls[0]->lock.note(room.walls[0]->here(room.t)).empty());
+  CHECK(slow.lock.status_text(slow.to_host(room.t)).find("frame_lag") != std::string::npos);
+  CHECK(room.walls[0]->lock.status_text(room.walls[0]->to_host(room.t)).empty());
 }
 
 TEST_CASE("Walls stay together while the simulation slows down, pauses and resumes") {
@@ -286,7 +286,7 @@ TEST_CASE("There is no lock without a room, with the lock off, or before the fir
     w.header.publish_time_ns = kBegin_ns;
     w.clock.host_ns = kBegin_ns, w.clock.rate = 1;
     if (received) lock.push(w, sync::host_time(kBegin_ns));
-    return lock.begin(sync::host_time(kBegin_ns + 50'000'000)).has_value();
+    return lock.begin_frame(sync::host_time(kBegin_ns + 50'000'000)).has_value();
   };
   CHECK(locked("cave4", "time", true));
   CHECK(locked("cave4", "wait", true));
@@ -299,11 +299,11 @@ TEST_CASE("FRAME_SHOWN contains number, due time, simulated time and head pose o
   Room room;
   Wall& wall = room.add(kSimClock, {}, milliseconds(5));
   room.run(2);
-  const AgreedFrame frame = *wall.lock.begin(wall.here(room.t));
+  const LockedFrame frame = *wall.lock.begin_frame(wall.to_host(room.t));
   const frame_shown_t m = wall.lock.message(frame, frame_shown_t::SHOWN);
   CHECK(m.frame == frame.number);
   CHECK(m.due_ns == std::llround(static_cast<double>(frame.number) * 1e9 / 60));
-  CHECK(m.header.sim_time_ns == sync::to_ns(frame.world));
+  CHECK(m.header.sim_time_ns == sync::to_ns(frame.sim_time));
   CHECK(m.head_ns == frame.head_ns);
   CHECK(frame.head.status == sync::SampleStatus::kExtrapolated);
   CHECK(m.stage == frame_shown_t::SHOWN);
@@ -312,13 +312,13 @@ TEST_CASE("FRAME_SHOWN contains number, due time, simulated time and head pose o
 TEST_CASE("After a stall a wall detects missing inputs of its next frame") {
   Room room;
   Wall& wall = room.add(2, std::chrono::hours(1), milliseconds(9));
-  CHECK(wall.lock.inputs_complete(wall.here(room.t)));  // no lock before the first message
+  CHECK(wall.lock.inputs_complete(wall.to_host(room.t)));  // no lock before the first message
   room.run(1);
-  CHECK(wall.lock.inputs_complete(wall.here(room.t)));
+  CHECK(wall.lock.inputs_complete(wall.to_host(room.t)));
   // Head and clock are those published frame_lag before the due time of the frame, which comes one drawing time
   // after its begin.
-  CHECK(wall.lock.inputs_complete(wall.here(room.t) + milliseconds(5)));
-  CHECK_FALSE(wall.lock.inputs_complete(wall.here(room.t) + milliseconds(200)));
+  CHECK(wall.lock.inputs_complete(wall.to_host(room.t) + milliseconds(5)));
+  CHECK_FALSE(wall.lock.inputs_complete(wall.to_host(room.t) + milliseconds(200)));
   room.run(0.205);  // the world publishes every 17 ms, the last time 5 ms ago
-  CHECK(wall.lock.inputs_complete(wall.here(room.t)));
+  CHECK(wall.lock.inputs_complete(wall.to_host(room.t)));
 }

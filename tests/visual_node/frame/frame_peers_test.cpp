@@ -57,9 +57,9 @@ TEST_CASE_METHOD(Room, "A wall that is always late is ignored after 250 ms and r
   std::int64_t k = 100;
   int waited = 0;
   for (int i = 0; i < 60; ++i, ++k) waited += !frame(k, kLeft, k - 3);
-  CHECK(waited == FramePeers::kGiveUp);
+  CHECK(waited == FramePeers::kMaxLateFrames);
   CHECK(peers.ignored(now) == 1);
-  for (int i = 0; i < FramePeers::kReturn; ++i, ++k) CHECK(frame(k, kLeft, k));
+  for (int i = 0; i < FramePeers::kFramesToReturn; ++i, ++k) CHECK(frame(k, kLeft, k));
   CHECK(peers.ignored(now) == 0);
   CHECK_FALSE(frame(k, kLeft, k - 1));
 }

@@ -56,7 +56,7 @@ struct Seen {
 };
 
 // Place of a world point in the picture, -1 .. 1; x to the right.
-Eigen::Vector2f seen_at(const Frame& f, const Eigen::Vector3f& point) {
+Eigen::Vector2f image_position(const Frame& f, const Eigen::Vector3f& point) {
   const Eigen::Vector4f clip = f.list.camera.clip_from_world() * point.homogeneous();
   return clip.head<2>() / clip.w();
 }
@@ -66,7 +66,7 @@ const Eigen::Vector3f kBall{0, 2, 1};
 
 TEST_CASE_METHOD(Seen, "Without a tracked head the view is that of the scene, and the health reports it") {
   const Frame f = frame();
-  CHECK(seen_at(f, kBall).norm() < 1e-5f);
+  CHECK(image_position(f, kBall).norm() < 1e-5f);
   CHECK(f.note.find("no head yet") != std::string::npos);
 }
 
@@ -74,13 +74,13 @@ TEST_CASE_METHOD(Seen, "The eye is at the head, and the head rotates the camera 
   hold({0, 0.5, 1}, 0);
   Frame f = frame();
   CHECK((f.list.camera.eye - Eigen::Vector3f(0, 0.5f, 1)).norm() < 1e-5f);
-  CHECK(seen_at(f, kBall).norm() < 1e-5f);  // straight ahead, only nearer
+  CHECK(image_position(f, kBall).norm() < 1e-5f);  // straight ahead, only nearer
   CHECK(f.note.find("head") == std::string::npos);
   hold({-2, 2, 1}, -std::numbers::pi / 2);  // on the left side, turned to the right
   f = frame();
-  CHECK(seen_at(f, kBall).norm() < 1e-5f);
+  CHECK(image_position(f, kBall).norm() < 1e-5f);
   hold({-2, 2, 1}, -std::numbers::pi / 2 + 0.1);  // turned to the left: the point ahead moves to the right
-  CHECK(seen_at(frame(), kBall).x() > 0.05f);
+  CHECK(image_position(frame(), kBall).x() > 0.05f);
 }
 
 TEST_CASE_METHOD(Seen, "The head of the user is not drawn") {

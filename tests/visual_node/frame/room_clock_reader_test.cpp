@@ -42,8 +42,8 @@ TEST_CASE("On the host of sim_node the room clock is the host clock") {
   reader.on_message(stamp(5'000'000'000), map_of(1, 5'000'000'000), sync::host_time(5'000'300'000));
   const sync::HostTime now = sync::host_time(6'000'000'000);
   CHECK(reader.mapped(now));
-  CHECK(sync::to_ns(reader.room(now, now)) == 6'000'000'000);
-  CHECK(reader.here(room_time(123), now) == sync::host_time(123));
+  CHECK(sync::to_ns(reader.to_room(now, now)) == 6'000'000'000);
+  CHECK(reader.to_host(room_time(123), now) == sync::host_time(123));
 }
 
 TEST_CASE("On another host the room clock is mapped in both directions, exact to 3 ns") {
@@ -60,9 +60,9 @@ TEST_CASE("On another host the room clock is mapped in both directions, exact to
     const sync::HostTime now = sync::host_time(2 * kHour_ns + 2'100'000'000);
     INFO(ahead << " ns, " << drift);
     REQUIRE(reader.mapped(now));
-    const RoomTime room = reader.room(now, now);
+    const RoomTime room = reader.to_room(now, now);
     // Two roundings of the map and one of the search.
-    CHECK(std::abs((reader.here(room, now) - now).count()) <= 3);
+    CHECK(std::abs((reader.to_host(room, now) - now).count()) <= 3);
     // The drift counts from at_ns, at most two hours ago: 100 ppm of that.
     CHECK(std::abs(sync::to_ns(room) - (sync::to_ns(now) + ahead)) <= 1e-4 * 3 * kHour_ns);
   }
@@ -76,7 +76,7 @@ TEST_CASE("A clock without a map is read by arrival and reported") {
   const sync::HostTime now = sync::host_time(100'000'000);
   CHECK_FALSE(reader.mapped(now));
   // Accurate to the smallest latency, here 0.2 ms, and the drift of two quartz clocks in 0.1 s.
-  CHECK(std::abs(sync::to_ns(reader.room(now, now)) - (kHour_ns + 100'000'000)) <= 200'000 + 100'000);
+  CHECK(std::abs(sync::to_ns(reader.to_room(now, now)) - (kHour_ns + 100'000'000)) <= 200'000 + 100'000);
 }
 
 TEST_CASE("The map at a time does not depend on later maps or the order of arrival") {

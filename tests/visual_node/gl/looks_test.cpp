@@ -49,7 +49,7 @@ scene_t lit(int shape, int lamp) {
   return scene;
 }
 
-void wear(scene_t& scene, const std::string& shader, std::int64_t colour = 0, std::int64_t normal = 0,
+void set_look(scene_t& scene, const std::string& shader, std::int64_t colour = 0, std::int64_t normal = 0,
           float reflectance = 0) {
   look_t look{};
   look.name = "worn", look.shader = shader, look.colour_map = colour, look.normal_map = normal,
@@ -67,7 +67,7 @@ void compare(const scene_t& scene, const visual::LookFiles& files, double tolera
   const visual::SceneView view(scene, {}, settings, {}, files);
   visual::Renderer renderer(kWidth, kHeight, settings.shadow_size);
   renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
-  CHECK(renderer.take_trouble().empty());
+  CHECK(renderer.take_warnings().empty());
   std::vector<Eigen::Isometry3d> poses;
   for (const body_def_t& b : scene.bodies) poses.push_back(to_eigen(b.pose));
   const visual::DrawList list = view.draw(poses, {});
@@ -152,7 +152,7 @@ TEST_CASE("Lamps are added, and exposure scales all light before encoding") {
 TEST_CASE("Gouraud shades the corners of the triangles and interpolates between them") {
   const int lamp = GENERATE(light_def_t::POINT, light_def_t::DIRECTIONAL, light_def_t::SPOT);
   scene_t scene = lit(shape_def_t::SPHERE, lamp);
-  wear(scene, "gouraud");
+  set_look(scene, "gouraud");
   const visual_def_t& v = scene.visuals[0];
   compare(scene, {}, kTolerance, [&](const Hit& hit, const Vector3d& eye) { return gouraud(scene, v, hit, eye); });
   // Phong shading does not match here; otherwise the test above could not distinguish them.
@@ -172,7 +172,7 @@ TEST_CASE("Gouraud shades the corners of the triangles and interpolates between 
 TEST_CASE("A colour map scales reflected light but neither highlights nor emitted light") {
   const int shape = GENERATE(shape_def_t::SPHERE, shape_def_t::BOX, shape_def_t::PLANE);
   scene_t scene = lit(shape, light_def_t::POINT);
-  wear(scene, "textured", 7);
+  set_look(scene, "textured", 7);
   const Raster picture = smooth_picture();
   compare(scene, {{{7, picture}}, {}}, kTolerance + 0.5, [&](const Hit& hit, const Vector3d& eye) {
     return phong(scene, scene.visuals[0], hit.point, eye, bilinear(picture, hit.point.uv, linear));
@@ -182,7 +182,7 @@ TEST_CASE("A colour map scales reflected light but neither highlights nor emitte
 TEST_CASE("A normal map rotates normals along tangent and binormal") {
   const int shape = GENERATE(shape_def_t::SPHERE, shape_def_t::BOX, shape_def_t::PLANE, shape_def_t::CYLINDER);
   scene_t scene = lit(shape, light_def_t::POINT);
-  wear(scene, "normal_mapped", 0, 8);
+  set_look(scene, "normal_mapped", 0, 8);
   const Raster map = bumps();
   // A weight of eight bits errs by 1/512 of the difference of two texels, at most 0.2: 0.0004 of a direction, a
   // tenth of a level.
@@ -230,7 +230,7 @@ TEST_CASE("A mirror shows the environment in the reflected direction, with Schli
   scene_t scene = lit(shape, light_def_t::POINT);
   scene.environment_asset = 9;
   scene.visuals[0].alpha = GENERATE(1.0f, 0.4f);
-  wear(scene, "reflecting", 0, 0, reflectance);
+  set_look(scene, "reflecting", 0, 0, reflectance);
   compare(scene, {{{9, around()}}, {}}, kTolerance + kRounded,
           [&](const Hit& hit, const Vector3d& eye) -> Vector3d {
             const double f = fresnel(reflectance, hit.point.normal.dot((eye - hit.point.at).normalized()));
@@ -244,7 +244,7 @@ TEST_CASE("A mirror shows the environment in the reflected direction, with Schli
 TEST_CASE("A normal map also changes the reflection of a mirror") {
   scene_t scene = lit(shape_def_t::PLANE, light_def_t::POINT);
   scene.environment_asset = 9;
-  wear(scene, "reflecting", 0, 8, 0.6f);
+  set_look(scene, "reflecting", 0, 8, 0.6f);
   const Raster map = bumps();
   compare(scene, {{{8, map}, {9, around()}}, {}}, kTolerance + kRounded,
           [&](const Hit& hit, const Vector3d& eye) -> Vector3d {
@@ -258,7 +258,7 @@ TEST_CASE("A normal map also changes the reflection of a mirror") {
 TEST_CASE("Without an environment picture a mirror shows the background colour") {
   scene_t scene = lit(shape_def_t::SPHERE, light_def_t::DIRECTIONAL);
   scene.background = to_vec3f({0.3, 0.1, 0.5});
-  wear(scene, "reflecting", 0, 0, 0.3f);
+  set_look(scene, "reflecting", 0, 0, 0.3f);
   compare(scene, {}, kTolerance, [&](const Hit& hit, const Vector3d& eye) -> Vector3d {
     const double f = fresnel(double{0.3f}, hit.point.normal.dot((eye - hit.point.at).normalized()));
     return (1 - f) * phong(scene, scene.visuals[0], hit.point, eye) + f * Vector3d(0.3, 0.1, 0.5);
@@ -272,7 +272,7 @@ TEST_CASE("A translucent surface transmits the light that it does not reflect, i
   scene.lights[0].intensity = GENERATE(0.8f, 4.0f);  // brighter than white, if it were opaque
   scene.background = to_vec3f({0.2, 0.5, 0.3});
   scene.visuals[0].alpha = alpha;
-  wear(scene, reflectance > 0 ? "reflecting" : "phong", 0, 0, reflectance);
+  set_look(scene, reflectance > 0 ? "reflecting" : "phong", 0, 0, reflectance);
   compare(scene, {}, kTolerance, [&](const Hit& hit, const Vector3d& eye) -> Vector3d {
     const double f =
         reflectance > 0 ? fresnel(reflectance, hit.point.normal.dot((eye - hit.point.at).normalized())) : 0;

@@ -26,7 +26,7 @@ std::pair<std::set<int>, std::vector<std::string>> levels(int samples, const Qua
   std::set<int> seen;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) seen.insert(static_cast<int>(image.at(x, y).x()));
-  return {seen, renderer.take_trouble()};
+  return {seen, renderer.take_warnings()};
 }
 
 }  // namespace

@@ -17,20 +17,20 @@ namespace {
 sync::HostTime at_s(double s) { return sync::HostTime{sync::from_seconds(s)}; }
 
 // The shared context of these tests, which stays current.
-struct Borrowed : Display {
-  std::string& trouble;
+struct FakeDisplay : Display {
+  std::string& loss;
   bool window;
-  Borrowed(std::string& t, bool w) : trouble(t), window(w) { description_ = window ? "a window" : "no window"; }
+  FakeDisplay(std::string& t, bool w) : loss(t), window(w) { description_ = window ? "a window" : "no window"; }
   void show(unsigned, int, int, bool) override {}
   bool closed() override { return false; }
-  std::string lost() override { return trouble; }
-  bool server_gone() override { return window && !trouble.empty(); }
+  std::string loss_reason() override { return loss; }
+  bool server_gone() override { return window && !loss.empty(); }
   bool has_screen() const override { return window; }
 };
 
-struct Fragile {
-  std::string trouble;
-  int opened = 0, may_open = 1000;
+struct OutputFixture {
+  std::string loss;
+  int opened = 0, max_opens = 1000;
   Settings settings;
   scene_t scene = floor_from_above(2);
   SceneView view{scene, {}, settings, {}};
@@ -38,15 +38,15 @@ struct Fragile {
 
   MakeDisplay make() {
     return [this](const Settings&, bool window) -> std::unique_ptr<Display> {
-      if (opened++ >= may_open) throw std::runtime_error("no OpenGL 3.3 context, tried nothing");
+      if (opened++ >= max_opens) throw std::runtime_error("no OpenGL 3.3 context, tried nothing");
       display();
-      trouble.clear();
-      return std::make_unique<Borrowed>(trouble, window);
+      loss.clear();
+      return std::make_unique<FakeDisplay>(loss, window);
     };
   }
   std::vector<std::uint8_t> picture(RenderOutput& output) {
     output.draw_scene(list, {});
-    output.draw_over(list);
+    output.draw_flashes_and_overlay(list);
     std::vector<std::uint8_t> rgba(
         static_cast<std::size_t>(output.picture().width() * output.picture().height() * 4));
     output.picture().read(rgba);
@@ -65,7 +65,7 @@ TEST_CASE("A lost device is opened again and draws the scene as before") {
   CHECK(output.recover(at_s(1), &f.view, f.list).empty());
   CHECK(f.opened == 1);
 
-  f.trouble = "the graphics device was reset";
+  f.loss = "the graphics device was reset";
   CHECK(output.recover(at_s(2), &f.view, f.list) == "the graphics device was reset; drawing continues with no window");
   CHECK(f.opened == 2);
   CHECK(f.picture(output) == before);
@@ -75,7 +75,7 @@ TEST_CASE("A lost device is opened again and draws the scene as before") {
 TEST_CASE("A device that is lost before the first scene is opened again") {
   Fragile f;
   RenderOutput output(f.settings, false, f.make());
-  f.trouble = "the graphics device was reset";
+  f.loss = "the graphics device was reset";
   CHECK_FALSE(output.recover(at_s(2), nullptr, {}).empty());
   CHECK(output.picture().width() == f.settings.width);
 }
@@ -84,7 +84,7 @@ TEST_CASE("A window without a display server is closed, and drawing continues wi
   Fragile f;
   RenderOutput output(f.settings, true, f.make());
   REQUIRE(output.display().has_screen());
-  f.trouble = "the display server of the window is gone";
+  f.loss = "the display server of the window is gone";
   CHECK_THAT(output.recover(at_s(1), nullptr, {}),
              Catch::Contains("display server") && Catch::Contains("no window"));
   CHECK_FALSE(output.display().has_screen());
@@ -95,15 +95,15 @@ TEST_CASE("A device that is lost more than three times in a minute ends the node
   RenderOutput output(f.settings, false, f.make());
   double now_s = 0;
   for (int i = 0; i < 20; ++i) {
-    f.trouble = "the graphics device was reset";
+    f.loss = "the graphics device was reset";
     CHECK_FALSE(output.recover(at_s(now_s += 21), nullptr, {}).empty());  // three a minute
   }
   now_s += 1000;
   for (std::size_t i = 0; i < RenderOutput::kMaxLosses; ++i) {
-    f.trouble = "the graphics device was reset";
+    f.loss = "the graphics device was reset";
     CHECK_FALSE(output.recover(at_s(now_s += 1), nullptr, {}).empty());
   }
-  f.trouble = "the graphics device was reset";
+  f.loss = "the graphics device was reset";
   CHECK_THROWS_WITH(output.recover(at_s(now_s), nullptr, {}), Catch::Contains("4 times in a minute"));
 }
 
@@ -111,7 +111,7 @@ TEST_CASE("The error for a device that cannot be opened again has the reason and
   Fragile f;
   f.may_open = 1;
   RenderOutput output(f.settings, false, f.make());
-  f.trouble = "the graphics device was reset";
+  f.loss = "the graphics device was reset";
   CHECK_THROWS_WITH(output.recover(at_s(1), nullptr, {}), Catch::Contains("was reset") &&
                                                              Catch::Contains("cannot be opened again") &&
                                                              Catch::Contains("tried nothing"));
@@ -122,5 +122,5 @@ TEST_CASE("An OpenGL error in a working context does not count as a lost device"
   Settings settings;
   Renderer renderer(64, 64, settings.shadow_size);
   CHECK(renderer.wait());
-  CHECK(display().lost().empty());
+  CHECK(display().loss_reason().empty());
 }

@@ -38,7 +38,7 @@ Image drawn(const std::vector<pass_t>& passes, std::vector<Rect> overlay = {}) {
   Appearance appearance = view.appearance();
   appearance.passes = passes;
   renderer.load(view.geometries(), view.lighting(), {}, appearance);
-  CHECK(renderer.take_trouble().empty());
+  CHECK(renderer.take_warnings().empty());
   std::vector<Eigen::Isometry3d> poses;
   for (const body_def_t& b : scene.bodies) poses.push_back(to_eigen(b.pose));
   DrawList list = view.draw(poses, {});

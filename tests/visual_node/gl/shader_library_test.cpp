@@ -21,7 +21,7 @@ TEST_CASE("A shader of the folder precedes one of the scene, which precedes one 
   CHECK(library.fragment("stripes")->text == "edited");
   CHECK(library.fragment("stripes")->name == "stripes.frag");
   CHECK(library.fragment("phong")->text == "mine");
-  CHECK(library.own("phong.frag").text == "mine");
+  CHECK(library.source_file("phong.frag").text == "mine");
   library.set({});
   CHECK(library.fragment("stripes")->text == "of the scene");
   CHECK(library.fragment("phong")->text == shader_text("phong.frag"));
@@ -47,7 +47,7 @@ TEST_CASE("Every offered name exists, and a shader part is not a look") {
   for (const char* name :
        {"surface_end", "shadow", "glow", "sky", "upscale", "overlay", "", "../phong", "nowhere"})
     CHECK_FALSE(library.fragment(name));
-  CHECK_THROWS_WITH(library.own("nowhere.vert"), Catch::Contains("nowhere.vert"));
+  CHECK_THROWS_WITH(library.source_file("nowhere.vert"), Catch::Contains("nowhere.vert"));
 }
 
 TEST_CASE("A shader of the scene moves vertices when it has a vertex source") {

@@ -19,16 +19,16 @@ using Eigen::Vector3d;
 namespace {
 
 // A floor drawn by the shader `name`, with optional passes.
-struct Stand {
+struct ShaderFixture {
   scene_t scene = floor_from_above(4);
   SceneView view;
   Renderer renderer{kWidth, kHeight, 64};
-  explicit Stand(const std::string& shader, const ShaderText& own = {},
+  explicit ShaderFixture(const std::string& shader, const ShaderText& scene_shader = {},
                  const std::vector<std::string>& passes = {}, const std::vector<uniform_t>& uniforms = {})
       : view(with(shader), {}, Settings{}) {
     Appearance appearance = view.appearance();
     appearance.looks[1].uniforms = uniforms;
-    if (!own.name.empty()) appearance.shaders.push_back(own);
+    if (!scene_shader.name.empty()) appearance.shaders.push_back(scene_shader);
     for (const std::string& p : passes) appearance.passes.emplace_back().shader = p;
     renderer.load(view.geometries(), view.lighting(), {}, appearance);
   }
@@ -53,7 +53,7 @@ std::string plain(const std::string& colour) {
   return "// A colour.\nvec4 shade() {\n  return vec4(" + colour + ", 1.0);\n}\n";
 }
 const Vector3d kRed(255, 0, 0), kGreen(0, 255, 0), kBlue(0, 0, 255);
-ShaderText own(const std::string& fragment, const std::string& vertex = "") {
+ShaderText scene_shader(const std::string& fragment, const std::string& vertex = "") {
   return {.name = "mine",
           .fragment = fragment,
           .vertex = vertex,
@@ -65,12 +65,12 @@ const std::string kBroken = "// A colour.\nvec4 shade() {\n  return nothing;\n}\
 }  // namespace
 
 TEST_CASE("A shader of the scene draws its surface, and an edit is visible in the next picture") {
-  Stand stand("mine", own(plain("1, 0, 0")));
-  CHECK(stand.renderer.take_trouble().empty());
-  CHECK(stand.middle() == kRed);
-  stand.renderer.set_shader_folder({{"mine.frag", plain("0, 1, 0")}});
-  CHECK(stand.renderer.take_trouble().empty());
-  CHECK(stand.middle() == kGreen);
+  ShaderFixture fixture("mine", scene_shader(plain("1, 0, 0")));
+  CHECK(fixture.renderer.take_warnings().empty());
+  CHECK(fixture.middle() == kRed);
+  fixture.renderer.set_shader_folder({{"mine.frag", plain("0, 1, 0")}});
+  CHECK(fixture.renderer.take_warnings().empty());
+  CHECK(fixture.middle() == kGreen);
 
   SECTION("a shader that does not compile is reported, and the last valid one stays") {
     stand.renderer.set_shader_folder({{"mine.frag", kBroken}});
@@ -78,10 +78,10 @@ TEST_CASE("A shader of the scene draws its surface, and an edit is visible in th
     REQUIRE(messages.size() == 1);
     CHECK_THAT(messages[0], Catch::Contains("look worn") && Catch::Contains("mine.frag:3") &&
                             Catch::Contains("the previous shader stays"));
-    CHECK(stand.middle() == kGreen);
-    stand.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
-    CHECK(stand.renderer.take_trouble().empty());
-    CHECK(stand.middle() == kBlue);
+    CHECK(fixture.middle() == kGreen);
+    fixture.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
+    CHECK(fixture.renderer.take_warnings().empty());
+    CHECK(fixture.middle() == kBlue);
   }
   SECTION("without its file the shader of the scene returns") {
     stand.renderer.set_shader_folder({});
@@ -94,23 +94,23 @@ TEST_CASE("Every kind of invalid source is reported in one sentence and keeps th
                                         "vec4 shade() { return vec4(1) }", "vec4 other() { return vec4(1); }",
                                         "#version 450 core\nvec4 shade() { return vec4(1) + x; }",
                                         "#extension GL_nowhere : require\nvec4 shade() { return vec4(1); }");
-  Stand stand("mine", own(plain("1, 0, 0")));
-  stand.renderer.set_shader_folder({{"mine.frag", nonsense}});
-  CHECK(stand.renderer.take_trouble().size() == 1);
-  CHECK(stand.middle() == kRed);
+  ShaderFixture fixture("mine", scene_shader(plain("1, 0, 0")));
+  fixture.renderer.set_shader_folder({{"mine.frag", nonsense}});
+  CHECK(fixture.renderer.take_warnings().size() == 1);
+  CHECK(fixture.middle() == kRed);
 }
 
 TEST_CASE("A missing or invalid shader is drawn as Phong and reported once") {
   Stand phong("phong");
   const Image expected = phong.draw();
-  Stand unknown("nowhere");
-  auto messages = unknown.renderer.take_trouble();
+  ShaderFixture unknown("nowhere");
+  auto messages = unknown.renderer.take_warnings();
   REQUIRE(messages.size() == 1);
   CHECK_THAT(messages[0], Catch::Contains("nowhere") && Catch::Contains("gouraud") &&
                           Catch::Contains("phong is drawn instead"));
   CHECK(unknown.draw().rgba == expected.rgba);
-  Stand broken("mine", own(kBroken));
-  messages = broken.renderer.take_trouble();
+  ShaderFixture broken("mine", scene_shader(kBroken));
+  messages = broken.renderer.take_warnings();
   REQUIRE(messages.size() == 1);
   CHECK_THAT(messages[0], Catch::Contains("mine.frag:3: error") && Catch::Contains("phong is drawn instead"));
   CHECK(broken.draw().rgba == expected.rgba);
@@ -118,7 +118,7 @@ TEST_CASE("A missing or invalid shader is drawn as Phong and reported once") {
   CHECK_THAT(messages[0], !Catch::Contains("surface.glsl") && !Catch::Contains("warning") && !Catch::Contains("\n"));
   // It can be repaired while it is drawn.
   broken.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
-  CHECK(broken.renderer.take_trouble().empty());
+  CHECK(broken.renderer.take_warnings().empty());
   CHECK(broken.middle() == kBlue);
 }
 
@@ -136,8 +136,8 @@ TEST_CASE("A shader of the node can be replaced, including its lamps") {
 
 TEST_CASE("A vertex shader moves its surface") {
   // Moved up by 2 m: from 4 m the floor looks twice as large.
-  Stand raised("mine", own(plain("0, 1, 0"), "vec3 moved(vec3 at) { return at + vec3(0.0, 3.0, 0.0); }\n"));
-  CHECK(raised.renderer.take_trouble().empty());
+  ShaderFixture raised("mine", scene_shader(plain("0, 1, 0"), "vec3 moved(vec3 at) { return at + vec3(0.0, 3.0, 0.0); }\n"));
+  CHECK(raised.renderer.take_warnings().empty());
   // The floor ended 5 m to the left, at +y; 2.2 m are visible to each side. Moved by 3 m its right edge is 2 m to
   // the right.
   const Image image = raised.draw();
@@ -145,7 +145,7 @@ TEST_CASE("A vertex shader moves its surface") {
   CHECK(image.at(kWidth / 2 + static_cast<int>(1.95 * scale_px(4)), kHeight / 2) == kGreen);
   CHECK(image.at(kWidth / 2 + static_cast<int>(2.05 * scale_px(4)), kHeight / 2) == Vector3d::Zero());
   raised.renderer.set_shader_folder({{"mine.vert", "vec3 moved(vec3 at) { return at }"}});
-  CHECK_THAT(raised.renderer.take_trouble().front(), Catch::Contains("mine.vert:1"));
+  CHECK_THAT(raised.renderer.take_warnings().front(), Catch::Contains("mine.vert:1"));
 }
 
 TEST_CASE("An invalid pass keeps its previous version, and a missing one is omitted") {
@@ -153,13 +153,13 @@ TEST_CASE("An invalid pass keeps its previous version, and a missing one is omit
   const auto messages = stand.renderer.take_trouble();
   REQUIRE(messages.size() == 1);
   CHECK_THAT(messages[0], Catch::Contains("pass nowhere") && Catch::Contains("left out"));
-  CHECK(stand.middle() == kBlue);
-  stand.renderer.set_shader_folder({{"mine.frag", kBroken}});
-  CHECK_THAT(stand.renderer.take_trouble().front(),
+  CHECK(fixture.middle() == kBlue);
+  fixture.renderer.set_shader_folder({{"mine.frag", kBroken}});
+  CHECK_THAT(fixture.renderer.take_warnings().front(),
              Catch::Contains("mine.frag:3") && Catch::Contains("the previous shader stays"));
-  CHECK(stand.middle() == kBlue);
-  stand.renderer.set_shader_folder({{"mine.frag", plain("1, 0, 0")}});
-  CHECK(stand.middle() == kRed);
+  CHECK(fixture.middle() == kBlue);
+  fixture.renderer.set_shader_folder({{"mine.frag", plain("1, 0, 0")}});
+  CHECK(fixture.middle() == kRed);
 }
 
 TEST_CASE("Uniforms are set by name, and an unsuitable one is reported") {
@@ -172,9 +172,9 @@ TEST_CASE("Uniforms are set by name, and an unsuitable one is reported") {
   SECTION("the uniform has another type") {
     stand.renderer.set_shader_folder(
         {{"mine.frag", "uniform float tint;\nvec4 shade() { return vec4(tint, 0.0, 1.0, 1.0); }\n"}});
-    CHECK_THAT(stand.renderer.take_trouble().at(0),
+    CHECK_THAT(fixture.renderer.take_warnings().at(0),
                Catch::Contains("uniform tint") && Catch::Contains("not a vec3"));
-    CHECK(stand.middle() == kBlue);
+    CHECK(fixture.middle() == kBlue);
   }
   SECTION("the uniform has another name") {
     stand.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
@@ -213,18 +213,18 @@ TEST_CASE("A watched folder is read once, and again when it changes") {
   const auto next = [&] {
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);  // generous: this test is not about time
     while (std::chrono::steady_clock::now() < until) {
-      if (auto files = watch.take()) return *files;
+      if (auto files = watch.take_change()) return *files;
       std::this_thread::yield();
     }
     return ShaderFolder{};
   };
   CHECK(next() == ShaderFolder{{"a.frag", "one"}});
-  CHECK_FALSE(watch.take());
+  CHECK_FALSE(watch.take_change());
   std::ofstream(folder / "a.frag") << "two";
   // An editor may write in two steps.
   ShaderFolder seen = next();
   while (!seen.empty() && seen.begin()->second != "two") seen = next();
   CHECK(seen == ShaderFolder{{"a.frag", "two"}});
-  CHECK_FALSE(ShaderWatch("").take());
+  CHECK_FALSE(ShaderWatch("").take_change());
   std::filesystem::remove_all(folder);
 }

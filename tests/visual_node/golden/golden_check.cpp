@@ -112,7 +112,7 @@ Picture draw(const Frame& frame, const std::function<void(scene_t&)>& change = {
   frame.change(scene);
   if (change) change(scene);
   Picture picture = shipped->draw(scene, frame.settings);
-  CHECK(shipped->trouble == std::vector<std::string>{});
+  CHECK(shipped->warnings == std::vector<std::string>{});
   return picture;
 }
 

@@ -32,7 +32,7 @@ class ShippedScene {
  public:
   explicit ShippedScene(const std::string& file)
       : bus_(sync::Identity::fresh("bench", 1), {.memory = true}),
-        sender_(bus_, sim::make_assets(sim::load_sdf(file, trouble))),
+        sender_(bus_, sim::make_assets(sim::load_sdf(file, warnings))),
         scenes_(bus_) {
     for (sync::HostTime now = sync::host_time(1'000'000'000); !scenes_.poll(now);
          now += std::chrono::milliseconds(1)) {
@@ -41,27 +41,27 @@ class ShippedScene {
     }
     scene = *scenes_.scene();
     meshes = visual::meshes_of(scenes_);
-    height_maps = visual::height_maps_of(scene, sync::pictures_of(scenes_), trouble);
-    look_files = visual::look_files_of(scenes_, trouble);
+    height_maps = visual::height_maps_of(scene, sync::pictures_of(scenes_), warnings);
+    look_files = visual::look_files_of(scenes_, warnings);
   }
 
   // The scene, its lamps and looks may be changed; files that it names by hash stay. overlay: drawn over it.
   Picture draw(const scene_t& of, const visual::Settings& settings, std::vector<visual::Rect> overlay = {}) {
     static const auto display = [] {
-      visual::quiet_software_renderer();
+      visual::configure_software_renderer();
       return visual::make_headless(-1);
     }();
     const visual::SceneView view(of, meshes, settings, height_maps, look_files);
     visual::Renderer renderer(view.width(), view.height(), settings.shadow_size, settings.anti_aliasing);
     renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
-    for (const auto& messages : {view.trouble(), renderer.take_trouble()})
-      trouble.insert(trouble.end(), messages.begin(), messages.end());
+    for (const auto& messages : {view.warnings(), renderer.take_warnings()})
+      warnings.insert(warnings.end(), messages.begin(), messages.end());
     std::vector<Eigen::Isometry3d> poses;
     for (const body_def_t& body : of.bodies) poses.push_back(to_eigen(body.pose));
     renderer.draw_scene(view.draw(poses, {}));
     visual::DrawList over;
     over.overlay = std::move(overlay);
-    renderer.draw_over(over);
+    renderer.draw_flashes_and_overlay(over);
     renderer.wait();
     Picture picture{view.width(), view.height(), {}};
     picture.rgba.resize(static_cast<std::size_t>(4 * picture.width * picture.height));
@@ -73,7 +73,7 @@ class ShippedScene {
   visual::Meshes meshes;
   visual::HeightMaps height_maps;
   visual::LookFiles look_files;
-  std::vector<std::string> trouble;  // all messages so far
+  std::vector<std::string> warnings;  // all messages so far
 
  private:
   sync::Bus bus_;

@@ -38,15 +38,15 @@ Eigen::Vector2f seen(const Camera& camera, const Vector3d& place) {
 TEST_CASE("A cave is level around the camera, and its front faces the heading of the camera") {
   const scene_t scene = looking_down();
   const Lens front(scene, room("cave4", "front"), 512, 512), floor(scene, room("cave4", "floor"), 512, 512);
-  REQUIRE(front.trouble().empty());
+  REQUIRE(front.warning().empty());
   // The eye is 1.6 m above the floor, which is then 1.4 m high, and 1.524 m before the front.
   const Vector3d left_foot(1 - 1.524, 2 + 1.524, 1.4);
-  CHECK((seen(front.at({}), left_foot) - Eigen::Vector2f(-1, -1)).norm() < 1e-4f);
-  CHECK((seen(floor.at({}), left_foot) - Eigen::Vector2f(-1, 1)).norm() < 1e-4f);
+  CHECK((seen(front.camera({}), left_foot) - Eigen::Vector2f(-1, -1)).norm() < 1e-4f);
+  CHECK((seen(floor.camera({}), left_foot) - Eigen::Vector2f(-1, 1)).norm() < 1e-4f);
   // A head moves the eye, not the room.
   const Eigen::Isometry3d head = Eigen::Translation3d(0.3, 2.5, 2.7) * Eigen::AngleAxisd(1, Vector3d::UnitZ());
-  CHECK((front.at(head).eye - head.translation().cast<float>()).norm() < 1e-6f);
-  CHECK((seen(front.at(head), left_foot) - Eigen::Vector2f(-1, -1)).norm() < 1e-4f);
+  CHECK((front.camera(head).eye - head.translation().cast<float>()).norm() < 1e-6f);
+  CHECK((seen(front.camera(head), left_foot) - Eigen::Vector2f(-1, -1)).norm() < 1e-4f);
 }
 
 TEST_CASE("A desktop screen is upright before the camera at any camera pose") {
@@ -54,8 +54,8 @@ TEST_CASE("A desktop screen is upright before the camera at any camera pose") {
   const Lens lens(scene, room("desk"), 640, 360);
   const Eigen::Isometry3d camera = to_eigen(scene.camera);
   // The middle of the screen, and its upper edge.
-  CHECK(seen(lens.at({}), camera * Vector3d(0.6, 0, 0)).norm() < 1e-4f);
-  CHECK(seen(lens.at({}), camera * Vector3d(0.6, 0, 0.1494)).y() == Approx(1).margin(1e-4));
+  CHECK(seen(lens.camera({}), camera * Vector3d(0.6, 0, 0)).norm() < 1e-4f);
+  CHECK(seen(lens.camera({}), camera * Vector3d(0.6, 0, 0.1494)).y() == Approx(1).margin(1e-4));
 }
 
 TEST_CASE("A missing room or wall is reported, and the camera of the scene is used") {
@@ -65,8 +65,8 @@ TEST_CASE("A missing room or wall is reported, and the camera of the scene is us
       std::tuple("cave4", "ceiling", "the room cave4 has no wall ceiling, only left, front, right, floor"),
       std::tuple("/no/such/room.csv", "first", "the room /no/such/room.csv cannot be read"));
   const Lens lens(scene, room(name, wall), 640, 480);
-  CHECK_THAT(lens.trouble(), Catch::StartsWith(sentence));
-  CHECK(lens.at({}).clip_from_world() == plain.at({}).clip_from_world());
+  CHECK_THAT(lens.warning(), Catch::StartsWith(sentence));
+  CHECK(lens.camera({}).clip_from_world() == plain.camera({}).clip_from_world());
 }
 
 TEST_CASE("Stereo halves and colours show both eyes for one head pose") {
@@ -74,10 +74,10 @@ TEST_CASE("Stereo halves and colours show both eyes for one head pose") {
   Settings s = room(GENERATE("none", "cave4"), "first");
   const Eigen::Isometry3d head = to_eigen(scene.camera) * Eigen::Translation3d(0, 0.1, 0);
   const Lens lens(scene, s, 640, 480);
-  CHECK(views_of(lens, head, s).size() == 1);
+  CHECK(stereo_views(lens, head, s).size() == 1);
   s.stereo = GENERATE("side_by_side", "top_bottom", "anaglyph");
   CAPTURE(s.room, s.stereo);
-  const auto views = views_of(lens, head, s);
+  const auto views = stereo_views(lens, head, s);
   REQUIRE(views.size() == 2);
   const auto expected = eyes(head, s.eye_distance_m);
   for (std::size_t i = 0; i < 2; ++i) CHECK((views[i].camera.eye - expected[i].cast<float>()).norm() < 1e-5f);
@@ -90,7 +90,7 @@ TEST_CASE("Stereo halves and colours show both eyes for one head pose") {
   if (s.room != "none") return;
   // The window that moves with the head is as wide as the camera's view at 1 m, and both eyes see it at one
   // place.
-  const Camera plain = lens.at(head);
+  const Camera plain = lens.camera(head);
   for (const double y : {-0.3, 0.2})
     for (const View& v : views) {
       const Vector3d place = head * Vector3d(s.stereo_distance_m, y, 0.1);

@@ -107,7 +107,7 @@ TEST_CASE("An eye in front of the centre of a wall has a symmetric perspective")
 
 TEST_CASE("Both eyes see a point on the wall at one place, nearer points crossed, farther ones uncrossed") {
   const double apart = 0.064;
-  const Wall wall = *cave().named("front");
+  const Wall wall = *cave().find_wall("front");
   std::mt19937 random(7);
   std::uniform_real_distribution<double> across(-0.5, 0.5), turn(-1, 1);
   for (int i = 0; i < 200; ++i) {

@@ -49,24 +49,24 @@ TEST_CASE("The walls of a cave face the user and share their edges") {
 TEST_CASE("A custom room is read from a file, and an invalid one is rejected with a message") {
   const Room room = parse_room(kHead + "tilted,1,0.5,0,1,-0.5,0,1.6,0.5,0.8\r\n\n", "mine");
   REQUIRE(room.walls.size() == 1);
-  CHECK(room.named("tilted") == &room.walls[0]);
-  CHECK(room.named("front") == nullptr);
+  CHECK(room.find_wall("tilted") == &room.walls[0]);
+  CHECK(room.find_wall("front") == nullptr);
   CHECK(room.walls[0].width_m() == Approx(1));
   CHECK(room.walls[0].height_m() == Approx(1));
   CHECK((room.walls[0].normal() - Vector3d(-0.8, 0, 0.6)).norm() < 1e-12);
 
-  const auto refused = [](const std::string& rows, const std::string& why) {
+  const auto expect_rejection = [](const std::string& rows, const std::string& why) {
     CHECK_THROWS_WITH(parse_room(rows, "mine"), Catch::StartsWith("the room mine ") && Catch::Contains(why));
   };
-  refused("", "does not begin with");
-  refused(kHead, "has no wall");
-  refused(kHead + "a,1,2,3\n", "does not have ten columns");
-  refused(kHead + "a,1,0.5,0,1,-0.5,0,1,0.5,nan\n", "nine numbers");
-  refused(kHead + "a,1,0.5,0,1,-0.5,0,1,0.5,1e999\n", "nine numbers");
-  refused(kHead + ",1,0.5,0,1,-0.5,0,1,0.5,1\n", "does not have a name");
-  refused(kHead + "a,1,0.5,0,1,-0.5,0,1,0.4,1\n", "does not have a rectangle");
-  refused(kHead + "a,1,0.5,0,1,0.5,0,1,0.5,1\n", "does not have a rectangle");
-  refused(kHead + "a,1,0.5,0,1,-0.5,0,1,0.5,1\na,2,0.5,0,2,-0.5,0,2,0.5,1\n", "two walls a");
+  expect_rejection("", "does not begin with");
+  expect_rejection(kHead, "has no wall");
+  expect_rejection(kHead + "a,1,2,3\n", "does not have ten columns");
+  expect_rejection(kHead + "a,1,0.5,0,1,-0.5,0,1,0.5,nan\n", "nine numbers");
+  expect_rejection(kHead + "a,1,0.5,0,1,-0.5,0,1,0.5,1e999\n", "nine numbers");
+  expect_rejection(kHead + ",1,0.5,0,1,-0.5,0,1,0.5,1\n", "does not have a name");
+  expect_rejection(kHead + "a,1,0.5,0,1,-0.5,0,1,0.4,1\n", "does not have a rectangle");
+  expect_rejection(kHead + "a,1,0.5,0,1,0.5,0,1,0.5,1\n", "does not have a rectangle");
+  expect_rejection(kHead + "a,1,0.5,0,1,-0.5,0,1,0.5,1\na,2,0.5,0,2,-0.5,0,2,0.5,1\n", "two walls a");
   // Endless files are rejected too; a scene might name one.
   for (const char* path : {"/no/such/room.csv", "/dev/zero", "/tmp"})
     CHECK_THROWS_WITH(load_room(path), Catch::Contains("cannot be read"));

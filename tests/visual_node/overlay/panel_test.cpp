@@ -41,12 +41,12 @@ TEST_CASE("The setting lists overlays, and an unknown word is rejected with simi
 TEST_CASE("Every overlay has a key, and the help lists every key") {
   std::size_t reached = 0;
   for (std::size_t i = 0; i < kOverlayNames.size(); ++i)
-    for (int key = 0; key < 400; ++key) reached += action_of(key) == KeyAction{Act::kOverlay, static_cast<Overlay>(i)};
+    for (int key = 0; key < 400; ++key) reached += action_of(key) == KeyAction{Action::kOverlay, static_cast<Overlay>(i)};
   CHECK(reached == kOverlayNames.size());
   std::size_t keys = 0;
   for (int key = 0; key < 400; ++key) keys += action_of(key).has_value();
   CHECK(help_lines().size() == keys + 1);  // and the mouse
-  CHECK(action_of(' ') == KeyAction{Act::kPauseOrResume});
+  CHECK(action_of(' ') == KeyAction{Action::kPauseOrResume});
   CHECK_FALSE(action_of('Q'));
 }
 
@@ -74,13 +74,13 @@ TEST_CASE("An overlay has lines with its figures only while it is on") {
   facts.quality = 1, facts.qualities = 4;
   facts.inputs = {{"WORLD_STATE", {microseconds(12300), {}}, sync::SampleStatus::kInterpolated},
                   {"TOOL_STATE", {}, sync::SampleStatus::kNone}};
-  facts.profile = "late sound";
-  CHECK(panel_lines({}, facts).empty());
+  data.profile = "late sound";
+  CHECK(panel_lines({}, data).empty());
   const auto text = [&](Overlay o) {
     OverlaySet on;
     on.set(o);
     std::string all;
-    for (const std::string& line : panel_lines(on, facts)) all += line + "\n";
+    for (const std::string& line : panel_lines(on, data)) all += line + "\n";
     return all;
   };
   CHECK(text(Overlay::kReport) == "contacts  12\nphysics   no messages\nrendering 8.2 of 16.7 ms\n");
@@ -109,7 +109,7 @@ TEST_CASE("Every character of a line is drawn within the picture") {
 
 TEST_CASE("A long line wraps, and the letters become smaller before lines are omitted") {
   const float wide = (kGlyphWidth + 1) * 2;
-  const TextRoom room{0, 0, 20 * wide + 8, 480};  // 20 letters of size 2
+  const TextArea room{0, 0, 20 * wide + 8, 480};  // 20 letters of size 2
   const auto lowest = [&](const std::vector<std::string>& lines, float bottom = 480) {
     std::vector<Rect> overlay;
     append_lines(overlay, lines, {room.x, room.y, room.right, bottom}, 2);
@@ -128,22 +128,22 @@ TEST_CASE("A long line wraps, and the letters become smaller before lines are om
 }
 
 TEST_CASE("All lines of all overlays fit at 640 x 480, beside the plots and above the markers") {
-  PanelFacts facts;
-  facts.haptic_bodies = 3000, facts.visual_bodies = 3000, facts.contacts = 10000;
-  facts.physics.push(health(0, {}));
-  facts.rendering = facts.period = microseconds(16667);
-  facts.delay = facts.profile_delay = microseconds(250000);
-  facts.output.set("frame_rate", 12.5), facts.output.set("resolution", 0.25);
+  PanelData data;
+  data.haptic_bodies = 3000, data.visual_bodies = 3000, data.contacts = 10000;
+  data.physics.push(health(0, {}));
+  data.rendering = data.period = microseconds(16667);
+  data.delay = data.profile_delay = microseconds(250000);
+  data.output.set("frame_rate", 12.5), data.output.set("resolution", 0.25);
   for (const char* channel : {"WORLD_STATE", "CONTACT_EVENTS", "TOOL_STATE", "CONTACTS"})
-    facts.inputs.push_back({channel, {microseconds(1234567), {}}, sync::SampleStatus::kExtrapolated});
+    data.inputs.push_back({channel, {microseconds(1234567), {}}, sync::SampleStatus::kExtrapolated});
   OverlaySet on = parse_overlays("all");
   on.set(Overlay::kHelp);
   const float left = plots_left(640), bottom = 480 - 64;
   std::vector<Rect> overlay;
-  append_lines(overlay, panel_lines(on, facts), {8, 36, left, bottom}, text_size(480));
+  append_lines(overlay, panel_lines(on, data), {8, 36, left, bottom}, text_size(480));
   REQUIRE(!overlay.empty());
   // The plate is as high as all lines: none was left out or cut.
-  const std::size_t lines = panel_lines(on, facts).size();
+  const std::size_t lines = panel_lines(on, data).size();
   CHECK(overlay.front().height >= static_cast<float>(lines) * (kGlyphHeight + 3));
   for (const Rect& r : overlay) {
     CHECK(r.x + r.width <= left);

@@ -27,9 +27,9 @@ std::vector<std::uint8_t> tool_state(int tool, float force_z_N, const char* node
 }
 
 std::string sentence(const char* text) {
-  std::vector<std::string> trouble;
-  parse_plots(text, trouble);
-  return trouble.empty() ? "" : trouble.front();
+  std::vector<std::string> warnings;
+  parse_plots(text, warnings);
+  return warnings.empty() ? "" : warnings.front();
 }
 
 }  // namespace
@@ -37,8 +37,8 @@ std::string sentence(const char* text) {
 TEST_CASE("A plot names a variable of a channel and optionally a process and a tool") {
   std::vector<std::string> trouble;
   const auto specs = parse_plots(
-      "graph TOOL_STATE.force_N.z@tool=1; bar NODE_HEALTH.rate_Hz@audio_node;text SYNC_REPORT.hits;", trouble);
-  CHECK(trouble.empty());
+      "graph TOOL_STATE.force_N.z@tool=1; bar NODE_HEALTH.rate_Hz@audio_node;text SYNC_REPORT.hits;", warnings);
+  CHECK(warnings.empty());
   REQUIRE(specs.size() == 3);
   CHECK(specs[0].kind == PlotSpec::Kind::kGraph);
   CHECK(specs[1].kind == PlotSpec::Kind::kBar);
@@ -50,8 +50,8 @@ TEST_CASE("A plot names a variable of a channel and optionally a process and a t
   CHECK(of_hand.read(tool_state(0, 1)));
   CHECK_FALSE(of_hand.read(tool_state(0, 1, "another_node")));
   CHECK_FALSE(of_hand.read(tool_state(1, 1)));
-  CHECK(parse_plots("none", trouble).empty());
-  CHECK(trouble.empty());
+  CHECK(parse_plots("none", warnings).empty());
+  CHECK(warnings.empty());
 }
 
 TEST_CASE("A plot with an unknown name is rejected in one sentence with similar names") {
@@ -66,9 +66,9 @@ TEST_CASE("A plot with an unknown name is rejected in one sentence with similar 
   CHECK_THAT(sentence("graph TOOL_STATE.fade@"), Catch::Contains("field=number after @"));
   std::string many;
   for (int i = 0; i < 40; ++i) many += "text TOOL_STATE.tool;";
-  std::vector<std::string> trouble;
-  CHECK(parse_plots(many, trouble).size() == kMaxPlots);
-  CHECK(trouble.size() == 1);
+  std::vector<std::string> warnings;
+  CHECK(parse_plots(many, warnings).size() == kMaxPlots);
+  CHECK(warnings.size() == 1);
 }
 
 TEST_CASE("A plot keeps the lowest and highest value of each time slice within its span") {
@@ -80,9 +80,9 @@ TEST_CASE("A plot keeps the lowest and highest value of each time slice within i
   CHECK(slices.back().number == 299);
   CHECK(slices[50].lowest == -7);
   CHECK(slices[50].highest == 50);
-  CHECK(course.range(at_ms(2999)) == std::pair(-7.0, 50.0));
-  CHECK(course.range(at_ms(4000)) == std::pair(1.0, 1.0));
-  CHECK_FALSE(course.range(at_ms(9000)));
+  CHECK(history.range(at_ms(2999)) == std::pair(-7.0, 50.0));
+  CHECK(history.range(at_ms(4000)) == std::pair(1.0, 1.0));
+  CHECK_FALSE(history.range(at_ms(9000)));
 }
 
 TEST_CASE("A plot accepts late and invalid values") {
@@ -109,7 +109,7 @@ TEST_CASE("Plots stay within the picture, and each channel is subscribed once") 
       parse_plots(
           "graph TOOL_STATE.force_N.z; bar TOOL_STATE.fade; text NODE_HEALTH.note; graph TOOL_STATE.energy_J;"
           "graph TOOL_STATE.force_N.x; graph TOOL_STATE.force_N.y; graph TOOL_STATE.coupling",
-          trouble),
+          warnings),
       kSpan);
   CHECK(plots.channels() == std::vector<std::string>{"TOOL_STATE", "NODE_HEALTH"});
   for (int ms = 0; ms < 2000; ++ms)
@@ -131,9 +131,9 @@ TEST_CASE("Plots stay within the picture, and each channel is subscribed once") 
 }
 
 TEST_CASE("A bar has its value below it, and empty text differs from missing text") {
-  std::vector<std::string> trouble;
+  std::vector<std::string> warnings;
   const auto drawn = [&](const char* plot, const char* channel, std::vector<std::uint8_t> bytes) {
-    Plots plots(parse_plots(plot, trouble), kSpan);
+    Plots plots(parse_plots(plot, warnings), kSpan);
     if (!bytes.empty()) plots.push(channel, bytes, at_ms(10));
     std::vector<Rect> overlay;
     plots.append(overlay, at_ms(20), 640, 480);
@@ -172,7 +172,7 @@ TEST_CASE("Values that are not finite or very large are drawn within their plot"
   for (const char* kind : {"graph", "bar", "text"})
     for (std::size_t count = 1; count <= std::size(values); ++count) {
       CAPTURE(kind, count);
-      Plots plots(parse_plots(std::string(kind) + " NODE_HEALTH.rate_Hz", trouble), kSpan);
+      Plots plots(parse_plots(std::string(kind) + " NODE_HEALTH.rate_Hz", warnings), kSpan);
       for (std::size_t i = 0; i < count; ++i) {
         node_health_t m{};
         m.node = "sim_node";

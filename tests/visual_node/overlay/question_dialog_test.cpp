@@ -21,7 +21,7 @@ struct Dialog {
     dialog.push(m, at_ms(ms));
     dialog.set_presented(at_ms(ms + 5));
   }
-  bool key(int key, std::int64_t ms) { return dialog.press(press_of(key).value(), "key", at_ms(ms)); }
+  bool key(int key, std::int64_t ms) { return dialog.press(question_input(key).value(), "key", at_ms(ms)); }
   answer_t sent() {
     auto a = dialog.take_answer();
     REQUIRE(a);
@@ -94,9 +94,9 @@ TEST_CASE("A text is confirmed with Enter, space or A, and not with a digit") {
   }
   Dialog d;
   d.ask(question(5, question_t::READ), 0);
-  d.dialog.press(press_of(Button::kB), "gamepad", at_ms(50));
+  d.dialog.press(question_input(Button::kB), "gamepad", at_ms(50));
   CHECK_FALSE(d.dialog.take_answer());
-  d.dialog.press(press_of(Button::kA), "gamepad", at_ms(60));
+  d.dialog.press(question_input(Button::kA), "gamepad", at_ms(60));
   CHECK(d.sent().by == "gamepad");
 }
 
@@ -178,12 +178,12 @@ TEST_CASE("A question that replaces another one is timed from its own presentati
 
 TEST_CASE("Digits of both key blocks are choices, and other keys go to the window") {
   for (int i = 0; i < 9; ++i) {
-    CHECK(press_of('1' + i)->choice == i);
-    CHECK(press_of(321 + i)->choice == i);
+    CHECK(question_input('1' + i)->choice == i);
+    CHECK(question_input(321 + i)->choice == i);
   }
   for (const int key : {static_cast<int>('H'), static_cast<int>('R'), static_cast<int>('0'), 256, 300, 320, 330})
-    CHECK_FALSE(press_of(key));
-  CHECK(press_of(Button::kY).choice == 3);
-  CHECK(press_of(Button::kLeft).fine == -1);
-  CHECK(press_of(Button::kUp).coarse == 1);
+    CHECK_FALSE(question_input(key));
+  CHECK(question_input(Button::kY).choice == 3);
+  CHECK(question_input(Button::kLeft).fine == -1);
+  CHECK(question_input(Button::kUp).coarse == 1);
 }

@@ -58,13 +58,13 @@ question_t longest() {
 
 TEST_CASE("Text wraps at a blank, and a long word is split at the line end") {
   using Lines = std::vector<std::string>;
-  CHECK(words_in_lines("", 10).empty());
-  CHECK(words_in_lines("ten letter", 10) == Lines{"ten letter"});
-  CHECK(words_in_lines("ten letters", 10) == Lines{"ten", "letters"});
-  CHECK(words_in_lines("ten  letters go", 11) == Lines{"ten ", "letters go"});
-  CHECK(words_in_lines("unbelievable", 5) == Lines{"unbel", "ievab", "le"});
-  CHECK(words_in_lines("ab cd", 2) == Lines{"ab", "cd"});
-  for (const std::string& line : words_in_lines(longest().text, 17)) CHECK(line.size() <= 17);
+  CHECK(wrap_text("", 10).empty());
+  CHECK(wrap_text("ten letter", 10) == Lines{"ten letter"});
+  CHECK(wrap_text("ten letters", 10) == Lines{"ten", "letters"});
+  CHECK(wrap_text("ten  letters go", 11) == Lines{"ten ", "letters go"});
+  CHECK(wrap_text("unbelievable", 5) == Lines{"unbel", "ievab", "le"});
+  CHECK(wrap_text("ab cd", 2) == Lines{"ab", "cd"});
+  for (const std::string& line : wrap_text(longest().text, 17)) CHECK(line.size() <= 17);
 }
 
 TEST_CASE("A number has as many decimals as its step") {

@@ -40,7 +40,7 @@ struct SmallRoom {
     const SceneView view(scene, {}, settings);
     std::vector<Eigen::Isometry3d> poses;
     for (const body_def_t& b : scene.bodies) poses.push_back(to_eigen(b.pose));
-    return hit_at(view.draw(poses, {}), view.geometries(), x, y);
+    return pick_surface(view.draw(poses, {}), view.geometries(), x, y);
   }
 };
 
@@ -124,7 +124,7 @@ TEST_CASE("The pointer moves continuously and is a valid device") {
 TEST_CASE("A key press sends one command and repeats it for a limited time until it is answered") {
   SimulationRequests requests;
   CHECK_FALSE(requests.step(at_ms(0)));
-  requests.request(Act::kPauseOrResume, 7);
+  requests.request(Action::kPauseOrResume, 7);
   auto c = requests.step(at_ms(0));
   REQUIRE(c);
   CHECK(c->kind == sim_command_t::PAUSE);
@@ -137,9 +137,9 @@ TEST_CASE("A key press sends one command and repeats it for a limited time until
   requests.push(reply(7, true));
   CHECK(requests.take_answer() == "done");
   CHECK_FALSE(requests.step(at_ms(300)));
-  requests.request(Act::kPauseOrResume, 8);  // the world is paused: resume
+  requests.request(Action::kPauseOrResume, 8);  // the world is paused: resume
   CHECK(requests.step(at_ms(400))->kind == sim_command_t::RESUME);
-  requests.request(Act::kStep, 9);
+  requests.request(Action::kStep, 9);
   CHECK(requests.step(at_ms(3500)).has_value() == false);
   CHECK(requests.take_answer() == "no sim_node answers");
   CHECK_FALSE(requests.step(at_ms(3600)));
@@ -147,7 +147,7 @@ TEST_CASE("A key press sends one command and repeats it for a limited time until
 
 TEST_CASE("Each key press sends its own command, and held keys do not fill memory") {
   SimulationRequests requests;
-  for (int i = 0; i < 1000; ++i) requests.request(i % 2 ? Act::kStep : Act::kReset, i + 1);
+  for (int i = 0; i < 1000; ++i) requests.request(i % 2 ? Action::kStep : Action::kReset, i + 1);
   std::size_t answered = 0;
   while (const auto c = requests.step(at_ms(0))) {
     CHECK(valid(*c));

@@ -106,13 +106,13 @@ TEST_CASE("A picture on a mesh without texture coordinates is reported") {
   mesh.positions_m = {0, 0, 0, 1, 0, 0, 0, 1, 0}, mesh.normals = {0, 0, 1, 0, 0, 1, 0, 0, 1},
   mesh.indices = {0, 1, 2};
   const LookFiles files{{{5, dot(false)}, {6, dot(false)}}, {}};
-  const auto trouble = [&] { return SceneView(scene, {{3, mesh}}, Settings{}, {}, files).trouble(); };
-  REQUIRE(trouble().size() == 1);
-  CHECK_THAT(trouble()[0],
+  const auto warnings = [&] { return SceneView(scene, {{3, mesh}}, Settings{}, {}, files).warnings(); };
+  REQUIRE(warnings().size() == 1);
+  CHECK_THAT(warnings()[0],
              Catch::Contains("tiles") && Catch::Contains("kettle") && Catch::Contains("no texture coordinates"));
   mesh.texcoords = {0, 0, 1, 0, 0, 1};
-  REQUIRE(trouble().size() == 1);
-  CHECK_THAT(trouble()[0], Catch::Contains("tangents"));
+  REQUIRE(warnings().size() == 1);
+  CHECK_THAT(warnings()[0], Catch::Contains("tangents"));
   mesh.tangents = {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1};
-  CHECK(trouble().empty());
+  CHECK(warnings().empty());
 }

@@ -33,7 +33,7 @@ Image render_at(const scene_t& scene, const std::vector<Eigen::Isometry3d>& pose
   Renderer renderer(kWidth, kHeight, settings.shadow_size);
   renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
   Image image = draw(renderer, view.draw(poses, {}));
-  CHECK(display().lost().empty());
+  CHECK(display().loss_reason().empty());
   return image;
 }
 
@@ -160,7 +160,7 @@ TEST_CASE("The smallest and largest picture sizes of the settings are drawn") {
     renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
     const DrawList list = view.draw(poses_of(scene), {});
     renderer.draw_scene(list);
-    renderer.draw_over(list);
+    renderer.draw_flashes_and_overlay(list);
     CHECK(renderer.wait());
     std::vector<std::uint8_t> rgba(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
     renderer.picture().read(rgba);

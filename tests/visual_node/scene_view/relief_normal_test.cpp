@@ -166,8 +166,8 @@ TEST_CASE("The normals of the haptic and the drawn surface agree within 1 degree
   test::display();
   const ShaderLibrary library;
   const Program program({{"quad.vert", kQuad}},
-                        {library.own("surface.glsl"), library.own("lamps.glsl"), library.own("shade.glsl"),
-                         library.own("phong.frag"), library.own("surface_end.frag")},
+                        {library.source_file("surface.glsl"), library.source_file("lamps.glsl"), library.source_file("shade.glsl"),
+                         library.source_file("phong.frag"), library.source_file("surface_end.frag")},
                         kDefines);
   struct Case {
     std::string name;

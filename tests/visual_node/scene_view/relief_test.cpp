@@ -46,11 +46,11 @@ TEST_CASE("A damaged or missing height map is reported once and does not affect 
   scene_t scene = test::empty_scene();
   const std::vector<std::uint8_t> good = test::png_bytes(2, 2, 8, {0, 10, 20, 255}), bad{'x'};
   for (const std::int64_t asset : {1, 2, 2, 12345, 0}) scene.materials.push_back(test::rough(asset, 1, 1, 0.001));
-  std::vector<std::string> trouble;
-  const HeightMaps maps = height_maps_of(scene, {{1, good}, {2, bad}}, trouble);
+  std::vector<std::string> warnings;
+  const HeightMaps maps = height_maps_of(scene, {{1, good}, {2, bad}}, warnings);
   CHECK(maps.size() == 1);
   CHECK(maps.contains(1));
-  REQUIRE(trouble.size() == 2);
-  CHECK_THAT(trouble[0], Catch::Contains("it is no PNG file; it is drawn smooth"));
-  CHECK_THAT(trouble[1], Catch::Contains("it was not sent"));
+  REQUIRE(warnings.size() == 2);
+  CHECK_THAT(warnings[0], Catch::Contains("it is no PNG file; it is drawn smooth"));
+  CHECK_THAT(warnings[1], Catch::Contains("it was not sent"));
 }

@@ -125,8 +125,8 @@ TEST_CASE("A shape with a missing mesh is drawn as a magenta box, counted and re
   scene.visuals[0].shape.name = "kettle";
   const SceneView view(scene, {}, Settings{});
   CHECK(view.missing_meshes() == 1);
-  REQUIRE(view.trouble().size() == 1);
-  CHECK_THAT(view.trouble()[0], Catch::Contains("kettle") && Catch::Contains("magenta"));
+  REQUIRE(view.warnings().size() == 1);
+  CHECK_THAT(view.warnings()[0], Catch::Contains("kettle") && Catch::Contains("magenta"));
   const std::vector<Eigen::Isometry3d> pose{Eigen::Isometry3d(Eigen::Translation3d(2, 1, 0))};
   const DrawList list = view.draw(pose, {});
   REQUIRE(list.instances.size() == 1);

@@ -25,7 +25,7 @@ inline double srgb(double linear) {
 
 inline visual::Display& display() {
   static const auto context = [] {
-    visual::quiet_software_renderer();
+    visual::configure_software_renderer();
     return visual::make_headless(-1);
   }();
   return *context;
@@ -45,7 +45,7 @@ inline Image draw(visual::Renderer& renderer, const visual::DrawList& list, cons
   renderer.set_quality(quality);
   renderer.draw_scene(list);
   renderer.wait();
-  renderer.draw_over(list);
+  renderer.draw_flashes_and_overlay(list);
   renderer.wait();
   Image image;
   renderer.picture().read(image.rgba);

@@ -92,11 +92,11 @@ TEST_CASE("Colours are converted to BT.709, and the lowest row becomes the last"
 
 TEST_CASE("A restarted node does not overwrite an existing video") {
   const Folder folder;
-  CHECK(next_video(folder.path.string()) == (folder.path / "video.mp4").string());
+  CHECK(next_video_path(folder.path.string()) == (folder.path / "video.mp4").string());
   std::ofstream(folder.path / "video.mp4") << "x";
-  CHECK(next_video(folder.path.string()) == (folder.path / "video.2.mp4").string());
+  CHECK(next_video_path(folder.path.string()) == (folder.path / "video.2.mp4").string());
   std::ofstream(folder.path / "video.2.mp4") << "x";
-  CHECK(next_video(folder.path.string()) == (folder.path / "video.3.mp4").string());
+  CHECK(next_video_path(folder.path.string()) == (folder.path / "video.3.mp4").string());
 }
 
 TEST_CASE("An encoder receives every byte and ends with its owner") {
@@ -142,7 +142,7 @@ TEST_CASE("A video and a snapshot are complete when their owner ends") {
       CHECK(pair->index == tick);
       CHECK(pair->host_time_ns == 1'000'000'000 + tick * 16'666'667);
     }
-    CHECK(recording.trouble().empty());
+    CHECK(recording.error().empty());
     CHECK(recording.dropped() == 0);
   }
   CHECK(reads == 9);

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kThickness_m = 0.005, kMass_kg = 0.1, kRadius_m = 0.02;
 
-impulse::Law law(double k, double d, bool is_explicit) {
-  impulse::Law law;
+impulse::ContactLaw law(double k, double d, bool is_explicit) {
+  impulse::ContactLaw law;
   law.penalty = {k, d, kThickness_m, is_explicit};
   return law;
 }
@@ -43,9 +43,9 @@ struct Pressed {
 double growth(double k, double d, bool is_explicit, double h, double g, int steps) {
   const double rest = kMass_kg * g / k, first = 0.01 * rest;
   Pressed p(k, d, is_explicit, rest + first, h, g);
-  double most = 0;
-  for (int i = 0; i < steps; ++i) most = std::max(most, std::abs(p.step() - rest));
-  return most / first;
+  double max = 0;
+  for (int i = 0; i < steps; ++i) max = std::max(max, std::abs(p.step() - rest));
+  return max / first;
 }
 
 }  // namespace
@@ -117,7 +117,7 @@ TEST_CASE("Each integration form follows its recurrence to rounding") {
 TEST_CASE("Explicit penalty is stable up to h^2 k + 2 h d = 4 m and unstable beyond") {
   const double h = 1.0 / 60, g = 3 * kToyG;
   const double d = GENERATE(0.0, 1.0, 3.0);
-  const double limit = impulse::stiffest_explicit(1 / kMass_kg, d, h);
+  const double limit = impulse::max_explicit_stiffness_N_m(1 / kMass_kg, d, h);
   CHECK(h * h * limit + 2 * h * d == Approx(4 * kMass_kg));
   // An undamped oscillation reaches 1/sqrt(1 - h^2 k / 4 m) times its initial amplitude: 10 at 99 % of the limit.
   CHECK(growth(0.99 * limit, d, true, h, g, 2000) < 11);
@@ -127,7 +127,7 @@ TEST_CASE("Explicit penalty is stable up to h^2 k + 2 h d = 4 m and unstable bey
 TEST_CASE("Implicit penalty never exceeds its initial amplitude for any stiffness") {
   const double times = GENERATE(1.0, 10.0, 1e3, 1e6);  // times the stiffest explicit one
   const double h = GENERATE(0.001, 1.0 / 60);
-  const double k = times * impulse::stiffest_explicit(1 / kMass_kg, 0, h);
+  const double k = times * impulse::max_explicit_stiffness_N_m(1 / kMass_kg, 0, h);
   CHECK(growth(k, GENERATE(0.0, 5.0), false, h, kToyG, 500) <= 1.0 + 1e-6);
 }
 
@@ -136,12 +136,12 @@ TEST_CASE("The penalty force of a new contact grows continuously from zero") {
   const double k = 4000, d = 5, speed = 0.25, h = 1e-4;
   Pressed p(k, d, is_explicit, -0.001, h);
   p.toys.world.free_body(p.ball).velocity_m_s = {0, 0, -speed};
-  double before = 0, most = 0, jump = 0;
+  double before = 0, max = 0, jump = 0;
   for (int i = 0; i < 600; ++i) {
     p.step();
     const double force = p.toys.force_N();
     jump = std::max(jump, std::abs(force - before));
-    most = std::max(most, force);
+    max = std::max(max, force);
     before = force;
   }
   //
@@ -150,9 +150,9 @@ TEST_CASE("The penalty force of a new contact grows continuously from zero") {
   // the force allows.
   const double fastest = speed + 0.02;
   const double rate =
-      k * fastest + d * fastest * fastest / (impulse::kDamperSetsIn * kThickness_m) + d * most / kMass_kg;
+      k * fastest + d * fastest * fastest / (impulse::kDampingOnsetShare * kThickness_m) + d * max / kMass_kg;
   CHECK(jump <= h * rate);
-  CHECK(most > 3);
+  CHECK(max > 3);
 }
 
 TEST_CASE("A body too fast for the penalty shell stops at the surface") {
@@ -166,17 +166,17 @@ TEST_CASE("A body too fast for the penalty shell stops at the surface") {
       toys.box(0.4, {0.1, 0.1, 0.04},
                Eigen::Translation3d(1, 0, 0.5) * Eigen::Isometry3d(Eigen::AngleAxisd(0.3, Vector3d::UnitX())));
   for (const int body : {ball, box}) toys.world.free_body(body).velocity_m_s = {0, 0, -speed};
-  double least = 1;
+  double min = 1;
   for (int i = 0; i < 0.8 / h; ++i) {
     toys.step(h);
-    least = std::min(least, toys.motion(ball).centre_m.z() - kRadius_m);
+    min = std::min(min, toys.motion(ball).centre_m.z() - kRadius_m);
     for (int corner = 0; corner < 8; ++corner)
-      least = std::min(
-          least, toys.motion(box)
+      min = std::min(
+          min, toys.motion(box)
                      .to_world({corner & 1 ? 0.05 : -0.05, corner & 2 ? 0.05 : -0.05, corner & 4 ? 0.02 : -0.02})
                      .z());
   }
-  CHECK(least > -1e-5);
+  CHECK(min > -1e-5);
 }
 
 TEST_CASE("Friction in the penalty shell obeys the friction cone") {
@@ -236,7 +236,7 @@ TEST_CASE("A link on a hinge rests on the shell with all of its weight") {
 TEST_CASE("A body that crosses the shell rebounds with its restitution, a slower one keeps its speed") {
   const bool is_explicit = GENERATE(true, false);
   const double k = 1e4, e = 0.6;
-  impulse::Law in_shell = law(k, 0, is_explicit);
+  impulse::ContactLaw in_shell = law(k, 0, is_explicit);
   in_shell.penalty.thickness_m = 0.001;
   // The spring stops speeds up to T sqrt(k/m) = 0.32 m/s.
   const double speed = GENERATE(0.05, 0.15, 1.0, 3.0), h = 1e-4;
@@ -245,12 +245,12 @@ TEST_CASE("A body that crosses the shell rebounds with its restitution, a slower
   toys.plane({0, 0, 1}, {0, 0, 0}, 0.5, e);
   const int ball = toys.ball(kMass_kg, kRadius_m, {0, 0, kRadius_m + 0.01}, 0.5, e);
   toys.world.free_body(ball).velocity_m_s = {0, 0, -speed};
-  double least = 1;
+  double min = 1;
   for (int i = 0; i < 0.03 / speed / h; ++i) {
     toys.step(h);
-    least = std::min(least, toys.motion(ball).centre_m.z() - kRadius_m);
+    min = std::min(min, toys.motion(ball).centre_m.z() - kRadius_m);
   }
-  CHECK(least > -1e-6);
+  CHECK(min > -1e-6);
   const double back = toys.motion(ball).velocity_m_s.z();
   INFO("speed " << speed << " back " << back);
   if (speed < 0.3) {
@@ -268,7 +268,7 @@ TEST_CASE("A body that crosses the shell rebounds with its restitution, a slower
 TEST_CASE("A body that starts inside the shell is pushed out gently and rests on the spring") {
   const bool is_explicit = GENERATE(true, false);
   const double rise = GENERATE(0.0, 0.02), k = 20000;
-  impulse::Law in_shell = law(k, 5, is_explicit);
+  impulse::ContactLaw in_shell = law(k, 5, is_explicit);
   in_shell.penalty.thickness_m = 0.0005;
   in_shell.penalty.rise_m_s = rise;
   Toys toys(in_shell);
@@ -291,18 +291,18 @@ TEST_CASE("A body that arrives from outside always enters the whole shell") {
   const bool is_explicit = GENERATE(true, false);
   double force[2];
   for (const bool gentle : {false, true}) {
-    impulse::Law in_shell = law(4000, 5, is_explicit);
+    impulse::ContactLaw in_shell = law(4000, 5, is_explicit);
     if (gentle) in_shell.penalty.rise_m_s = 0.02;
     Toys toys(in_shell);
     toys.plane({0, 0, 1}, {0, 0, 0});
     const int ball = toys.ball(kMass_kg, kRadius_m, {0, 0, kRadius_m + 0.01});
     toys.world.free_body(ball).velocity_m_s = {0, 0, -0.3};
-    double most = 0;
+    double max = 0;
     for (int i = 0; i < 100; ++i) {
       toys.step(0.001);
-      most = std::max(most, toys.force_N());
+      max = std::max(max, toys.force_N());
     }
-    force[gentle] = most;
+    force[gentle] = max;
   }
   CHECK(force[0] > 5);
   CHECK(force[1] == force[0]);

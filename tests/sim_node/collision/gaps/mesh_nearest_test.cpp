@@ -16,13 +16,13 @@ using Eigen::Vector3d;
 namespace {
 
 // The selection that a tool makes.
-struct Kept : NearestFirst {
-  bool known(const PointPair& p) const override {
+struct Kept : PairVisitor {
+  bool is_redundant(const PointPair& p) const override {
     return std::any_of(pairs.begin(), pairs.end(), [&](const PointPair& q) {
       return q.normal.dot(p.normal) > std::cos(0.1745) && (q.on_a_m - p.on_a_m).norm() < 0.002;
     });
   }
-  bool take(const PointPair& p) override {
+  bool visit(const PointPair& p) override {
     pairs.push_back(p);
     return pairs.size() < most;
   }
@@ -105,13 +105,13 @@ TEST_CASE("The nearest-first search over two meshes finds the contacts that a to
     const int a = detector->add(mesh_shape(0), world), b = detector->add(mesh_shape(1), world);
     prepare_nearest_first(*detector, a, b);
     Random random(17);
-    std::vector<PointPair> room;
+    std::vector<PointPair> scratch;
     int touching = 0;
     for (int i = 0; i < 60; ++i) {
       const Isometry3d at_a = pose(s, random), at_b = Isometry3d::Identity();
       Kept all, nearest;
-      nearest_first_of_all(*detector, a, at_a, b, at_b, s.reach_m, all, room);
-      nearest_first(*detector, a, at_a, b, at_b, s.reach_m, nearest, room);
+      nearest_first_of_all(*detector, a, at_a, b, at_b, s.reach_m, all, scratch);
+      nearest_first(*detector, a, at_a, b, at_b, s.reach_m, nearest, scratch);
       INFO(s.name << ", pose " << i);
       CHECK(nearest.pairs.size() == all.pairs.size());
       CHECK(missing(all, nearest) == 0);
@@ -131,12 +131,12 @@ TEST_CASE("The nearest-first search is ordered, independent of the limit and bit
   const int a = detector->add(mesh_shape(0), world), b = detector->add(mesh_shape(1), world);
   prepare_nearest_first(*detector, a, b);
   const Isometry3d at_a(Eigen::Translation3d(0.055, 0.02, 0.01));
-  std::vector<PointPair> room;
+  std::vector<PointPair> scratch;
   Kept all, again, few;
   few.most = 3;
-  nearest_first(*detector, a, at_a, b, Isometry3d::Identity(), 0.006, all, room);
-  nearest_first(*detector, a, at_a, b, Isometry3d::Identity(), 0.006, few, room);
-  nearest_first(*detector, a, at_a, b, Isometry3d::Identity(), 0.006, again, room);
+  nearest_first(*detector, a, at_a, b, Isometry3d::Identity(), 0.006, all, scratch);
+  nearest_first(*detector, a, at_a, b, Isometry3d::Identity(), 0.006, few, scratch);
+  nearest_first(*detector, a, at_a, b, Isometry3d::Identity(), 0.006, again, scratch);
   REQUIRE(all.pairs.size() > 3);
   REQUIRE(few.pairs.size() == 3);
   REQUIRE(again.pairs.size() == all.pairs.size());

@@ -30,12 +30,12 @@ TEST_CASE("The hashed remover keeps the same pairs as brute force, also across c
     std::vector<PointPair> pairs;
     for (int i = 0; i < 60; ++i) {
       // Positions on the borders of cells, around zero and far from it, where rounding moves a point to another cell.
-      const double grid = 128 * kSamePlace_m * std::floor(uniform(random, -3, 3));
+      const double grid = 128 * kSamePosition_m * std::floor(uniform(random, -3, 3));
       const Vector3d at = (i % 2 ? grid : uniform(random, -1e-3, 1e-3)) * Vector3d::Ones() +
                           (i % 3 ? 0.0 : 40.0) * Vector3d::UnitX();
       for (int k = static_cast<int>(random() % 4); k >= 0; --k)
         pairs.push_back(
-            pair_at(at + 0.4 * kSamePlace_m * direction(random), at + 0.4 * kSamePlace_m * direction(random)));
+            pair_at(at + 0.4 * kSamePosition_m * direction(random), at + 0.4 * kSamePosition_m * direction(random)));
       // The same position on one surface only is no duplicate.
       pairs.push_back(pair_at(at, at + 1e-4 * direction(random)));
     }
@@ -65,7 +65,7 @@ TEST_CASE("All three removers agree on well-constructed meshes") {
                                 {DuplicateRemover::kBruteForce, &brute},
                                 {DuplicateRemover::kAdjacency, &adjacent}}) {
       MeshContact contact({.remover = remover});
-      contact.accept(ma, mb);
+      contact.check_supported(ma, mb);
       contact.query(ma, Isometry3d::Identity(), mb, pose, {2e-3, 1e-3}, *out);
     }
     CHECK(same_points(hashed.pairs, brute.pairs));
@@ -79,22 +79,22 @@ TEST_CASE("The adjacency remover rejects a mesh with wrong adjacency with the re
   const auto refused = [](const Soup& s, const std::string& why) {
     const Soup good = icosphere(1, 0.1);
     const ContactMesh bad(s.vertices, s.indices), fine(good.vertices, good.indices);
-    CHECK_THROWS_WITH(MeshContact({.remover = DuplicateRemover::kAdjacency}).accept(fine, bad),
+    CHECK_THROWS_WITH(MeshContact({.remover = DuplicateRemover::kAdjacency}).check_supported(fine, bad),
                       Catch::Contains(why) && Catch::Contains("choose the hashed remover"));
-    CHECK_NOTHROW(MeshContact().accept(fine, bad));
-    CHECK_NOTHROW(MeshContact({.remover = DuplicateRemover::kAdjacency}).accept(fine, fine));
+    CHECK_NOTHROW(MeshContact().check_supported(fine, bad));
+    CHECK_NOTHROW(MeshContact({.remover = DuplicateRemover::kAdjacency}).check_supported(fine, fine));
   };
-  refused(plate(1, 1, 2, 2), "on one side only");
-  refused(doubled_and_reversed(icosphere(0, 1)), "on one side only");
+  expect_rejection(plate(1, 1, 2, 2), "on one side only");
+  expect_rejection(doubled_and_reversed(icosphere(0, 1)), "on one side only");
   Soup twice = icosphere(0, 1);
   twice.indices.insert(twice.indices.end(), {twice.indices[0], twice.indices[1], twice.indices[2]});
-  refused(twice, "twice in the same direction");
+  expect_rejection(twice, "twice in the same direction");
   Soup flat = icosphere(0, 1);
   flat.indices.insert(flat.indices.end(), {0, 0, 1});
-  refused(flat, "uses a vertex twice");
+  expect_rejection(flat, "uses a vertex twice");
   Soup line = icosphere(0, 1);
   line.vertices.insert(line.vertices.end(), {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}});
   line.indices.insert(line.indices.end(), {12, 13, 14});
-  refused(line, "no area");
-  refused(Soup{}, "no triangles");
+  expect_rejection(line, "no area");
+  expect_rejection(Soup{}, "no triangles");
 }

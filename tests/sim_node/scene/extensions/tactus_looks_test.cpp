@@ -36,9 +36,9 @@ SceneFile scene(const std::string& outside, const std::string& inside) {
                     {"n.png", picture(3)},
                     {"own.frag", {kShader, kShader + std::strlen(kShader)}}});
 }
-std::string refusal(const std::string& outside, const std::string& inside = "") {
+std::string load_error(const std::string& outside, const std::string& inside = "") {
   SceneFile file = scene(outside, inside);
-  return file.refusal();
+  return file.load_error();
 }
 look_t look_of(SceneFile& file) {
   const WorldDef w = file.load();
@@ -170,7 +170,7 @@ TEST_CASE("An invalid look, shader, pass or picture is rejected with its line") 
   const auto worn = [](const std::string& attributes) { return refusal("", "<tactus:look " + attributes + "/>"); };
   CHECK_THAT(worn("name='wood'"),
              Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("there is none in this scene"));
-  CHECK_THAT(refusal("<tactus:look name='oak' shader='phong'/>", "<tactus:look name='wood'/>"),
+  CHECK_THAT(load_error("<tactus:look name='oak' shader='phong'/>", "<tactus:look name='wood'/>"),
              Catch::Contains("there are oak"));
   CHECK_THAT(worn("colour_map='gone.png'"), Catch::Contains("gone.png\", which is not found"));
   CHECK_THAT(worn("colour_map='own.frag'"), Catch::Contains("neither PNG nor JPEG"));
@@ -186,26 +186,26 @@ TEST_CASE("An invalid look, shader, pass or picture is rejected with its line") 
   CHECK_THAT(worn("uniforms='a 1; a 2'"), Catch::Contains("twice"));
   CHECK_THAT(worn("uniforms='a 1e300'"), Catch::Contains("exceeds 1e6"));
   CHECK_THAT(worn("uniforms='a b'"), Catch::Contains("uniforms"));
-  CHECK_THAT(refusal("<tactus:look shader='phong'/>"), Catch::Contains("\"name\""));
-  CHECK_THAT(refusal("<tactus:look name='a'/><tactus:look name='a'/>"), Catch::Contains("another look has"));
-  CHECK_THAT(refusal("<tactus:look name='" + std::string(65, 'a') + "'/>"), Catch::Contains("64"));
-  CHECK_THAT(refusal("<tactus:look name='a' base='b'/>"), Catch::Contains("names look \"b\""));
-  CHECK_THAT(refusal("\n<tactus:shader name='own' fragment='gone.frag'/>"),
+  CHECK_THAT(load_error("<tactus:look shader='phong'/>"), Catch::Contains("\"name\""));
+  CHECK_THAT(load_error("<tactus:look name='a'/><tactus:look name='a'/>"), Catch::Contains("another look has"));
+  CHECK_THAT(load_error("<tactus:look name='" + std::string(65, 'a') + "'/>"), Catch::Contains("64"));
+  CHECK_THAT(load_error("<tactus:look name='a' base='b'/>"), Catch::Contains("names look \"b\""));
+  CHECK_THAT(load_error("\n<tactus:shader name='own' fragment='gone.frag'/>"),
              Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("not found"));
-  CHECK_THAT(refusal("<tactus:shader name='own'/>"), Catch::Contains("\"fragment\""));
-  CHECK_THAT(refusal("<tactus:shader name='o w n' fragment='own.frag'/>"), Catch::Contains("letters"));
-  CHECK_THAT(refusal("<tactus:shader name='phong' fragment='own.frag'/>"), Catch::Contains("visual_node"));
-  CHECK_THAT(refusal("<tactus:shader name='own' fragment='a.png'/>"), Catch::Contains("printable"));
-  CHECK_THAT(refusal("<tactus:pass uniforms='a 1'/>"), Catch::Contains("\"shader\""));
-  CHECK_THAT(refusal("<tactus:environment picture='own.frag'/>"), Catch::Contains("neither PNG nor JPEG"));
-  CHECK_THAT(refusal("<tactus:environment picture='a.png'/><tactus:environment picture='b.png'/>"),
+  CHECK_THAT(load_error("<tactus:shader name='own'/>"), Catch::Contains("\"fragment\""));
+  CHECK_THAT(load_error("<tactus:shader name='o w n' fragment='own.frag'/>"), Catch::Contains("letters"));
+  CHECK_THAT(load_error("<tactus:shader name='phong' fragment='own.frag'/>"), Catch::Contains("visual_node"));
+  CHECK_THAT(load_error("<tactus:shader name='own' fragment='a.png'/>"), Catch::Contains("printable"));
+  CHECK_THAT(load_error("<tactus:pass uniforms='a 1'/>"), Catch::Contains("\"shader\""));
+  CHECK_THAT(load_error("<tactus:environment picture='own.frag'/>"), Catch::Contains("neither PNG nor JPEG"));
+  CHECK_THAT(load_error("<tactus:environment picture='a.png'/><tactus:environment picture='b.png'/>"),
              Catch::Contains("twice"));
-  CHECK_THAT(refusal("", "<tactus:display subdivide='2'/>"), Catch::Contains("only a <mesh>"));
-  CHECK_THAT(refusal("", "<tactus:display subdivide='1.5'/>"), Catch::Contains("whole number"));
-  CHECK_THAT(refusal("", "<tactus:display/>"), Catch::Contains("\"subdivide\""));
+  CHECK_THAT(load_error("", "<tactus:display subdivide='2'/>"), Catch::Contains("only a <mesh>"));
+  CHECK_THAT(load_error("", "<tactus:display subdivide='1.5'/>"), Catch::Contains("whole number"));
+  CHECK_THAT(load_error("", "<tactus:display/>"), Catch::Contains("\"subdivide\""));
   SceneFile large = scene("<tactus:shader name='own' fragment='large.frag'/>", "");
   large.write("large.frag", std::string(65 << 10, ' '));
-  CHECK_THAT(large.refusal(), Catch::Contains("larger than"));
+  CHECK_THAT(large.load_error(), Catch::Contains("larger than"));
 }
 
 TEST_CASE("Pictures are complete files of limited size, and JPEG is accepted only for colours") {

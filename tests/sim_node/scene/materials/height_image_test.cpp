@@ -61,15 +61,15 @@ TEST_CASE("A large height map is reduced for display and keeps its edges") {
 
 TEST_CASE("A picture that is not a height map is rejected with its line") {
   SceneFile file(heightmap());
-  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("not found"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("not found"));
   file.write("h.png", "no picture at all");
-  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("no PNG"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("no PNG"));
   write_png(file, 2, 2, 8, PNG_COLOR_TYPE_RGB, std::vector<unsigned char>(12));
-  CHECK_THAT(file.refusal(), Catch::Contains("grey"));
+  CHECK_THAT(file.load_error(), Catch::Contains("grey"));
   write_png(file, 1, 2, 8, PNG_COLOR_TYPE_GRAY, {0, 0});
-  CHECK_THAT(file.refusal(), Catch::Contains("samples"));
+  CHECK_THAT(file.load_error(), Catch::Contains("samples"));
   // Cut in the middle of its data.
   write_png(file, 100, 100, 8, PNG_COLOR_TYPE_GRAY, std::vector<unsigned char>(10'000, 7));
   std::filesystem::resize_file(file.folder() / "h.png", 60);
-  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("cannot be read"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("cannot be read"));
 }

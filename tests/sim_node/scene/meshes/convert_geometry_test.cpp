@@ -115,14 +115,14 @@ TEST_CASE("Every mesh of the project is converted to glTF and back bit-identical
     if (entry.path().extension() != ".obj") continue;
     INFO(entry.path());
     ++met;
-    const MeshParts mesh = for_place(read_mesh_parts(entry.path()), entry.path(), file.folder() / "back.glb");
+    const MeshParts mesh = with_output_paths(read_mesh_parts(entry.path()), entry.path(), file.folder() / "back.glb");
     REQUIRE(!mesh.parts.empty());
     for (const MeshPart& part : mesh.parts) CHECK(part.tangents.size() == part.texcoords.size());
     check_same(read_back(file, mesh, true), mesh);
     check_same(read_back(file, mesh, false), mesh);
     // A second conversion changes nothing.
     const auto again = file.folder() / "back.glb";
-    check_same(for_place(read_mesh_parts(again), again, again), mesh);
+    check_same(with_output_paths(read_mesh_parts(again), again, again), mesh);
   }
   CHECK(met >= 4);
 }
@@ -137,7 +137,7 @@ TEST_CASE("Paths of pictures and properties are relative to the new file") {
   mesh.material = {{"base", "oak"}, {"bump", "planks.png"}};
   mesh.look = {{"colour_map", "d.png"}};
   const MeshParts moved =
-      for_place(mesh, file.folder() / "from" / "x.obj", file.folder() / "to" / "there" / "x.glb");
+      with_output_paths(mesh, file.folder() / "from" / "x.obj", file.folder() / "to" / "there" / "x.glb");
   CHECK(moved.materials[0].colour_map.file == "../../from/maps/c.png");
   CHECK(moved.materials[0].normal_map.file == "/somewhere/n.png");
   CHECK(moved.material.at("bump") == "../../from/planks.png");
@@ -199,17 +199,17 @@ TEST_CASE("A material of a scene takes height map, modes and look from the mesh 
   SECTION("invalid properties are rejected with the name of the file") {
     mesh.material["base"] = "unobtainium";
     write();
-    CHECK_THAT(file.refusal(), Catch::Contains("t.glb") && Catch::Contains("no such material"));
+    CHECK_THAT(file.load_error(), Catch::Contains("t.glb") && Catch::Contains("no such material"));
     mesh.material["base"] = "oak", mesh.material["bump"] = "gone.png";
     write();
-    CHECK_THAT(file.refusal(), Catch::Contains("t.glb") && Catch::Contains("gone.png"));
+    CHECK_THAT(file.load_error(), Catch::Contains("t.glb") && Catch::Contains("gone.png"));
     mesh.material = {{"base", "unobtainium"}};
     write();
-    CHECK_THAT(file.refusal(),
+    CHECK_THAT(file.load_error(),
                Catch::Contains("t.glb") && Catch::Contains("there are ") && Catch::Contains("steel"));
     mesh.material.clear(), mesh.look["reflectance"] = "2";
     write();
-    CHECK_THAT(file.refusal(), Catch::Contains("t.glb") && Catch::Contains("between 0 and 1"));
+    CHECK_THAT(file.load_error(), Catch::Contains("t.glb") && Catch::Contains("between 0 and 1"));
   }
 }
 

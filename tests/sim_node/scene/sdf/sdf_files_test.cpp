@@ -56,19 +56,19 @@ TEST_CASE("A warning in an included file names that file and its line") {
 
 TEST_CASE("An include that is missing, empty, circular or invalid is rejected with its line") {
   SceneFile file(world("\n<include><uri>ball.sdf</uri></include>"));
-  CHECK(file.refusal() == "scene.sdf:4: include of \"ball.sdf\" is not found: put it beside the file");
+  CHECK(file.load_error() == "scene.sdf:4: include of \"ball.sdf\" is not found: put it beside the file");
   file.write("ball.sdf", ball("ball", "<include><uri>ball.sdf</uri></include>"));
-  CHECK_THAT(file.refusal(), Catch::StartsWith("ball.sdf:3: ") && Catch::Contains("break the circle"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("ball.sdf:3: ") && Catch::Contains("break the circle"));
   file.write("ball.sdf", ball("ball", "<include><uri>scene.sdf</uri></include>"));
-  CHECK_THAT(file.refusal(), Catch::StartsWith("ball.sdf:3: ") && Catch::Contains("break the circle"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("ball.sdf:3: ") && Catch::Contains("break the circle"));
   file.write("ball.sdf", "<sdf version='1.6'><model name='m'><link name='l'></model></sdf>");
-  CHECK_THAT(file.refusal(), Catch::StartsWith("ball.sdf:1: ") && Catch::Contains("XML"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("ball.sdf:1: ") && Catch::Contains("XML"));
   file.write("ball.sdf", "<sdf version='1.6'>\n<model name='m'><link name='l'/><joint name='j'\n type='revolute'/></model></sdf>");
-  CHECK_THAT(file.refusal(), Catch::StartsWith("ball.sdf:"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("ball.sdf:"));
   file.write("scene.sdf", world("<include><uri/></include>"));
-  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("lacks its <uri>"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("lacks its <uri>"));
   file.write("scene.sdf", world("<include/>"));
-  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:3: "));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:3: "));
 }
 
 TEST_CASE("Two files with one name in two folders are rejected") {
@@ -76,7 +76,7 @@ TEST_CASE("Two files with one name in two folders are rejected") {
   file.write("ball.sdf", ball("ball"));
   file.write("sub/ball.sdf", ball("other_ball"));
   file.write("sub/outer.sdf", "<sdf version='1.9'><model name='outer'><link name='l'/><include><uri>ball.sdf</uri></include></model></sdf>");
-  CHECK_THAT(file.refusal(), Catch::StartsWith("sub/outer.sdf:1: ") && Catch::Contains("exists twice"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("sub/outer.sdf:1: ") && Catch::Contains("exists twice"));
 }
 
 TEST_CASE("Standard Gazebo models are built in, and nothing is downloaded") {
@@ -93,23 +93,23 @@ TEST_CASE("Standard Gazebo models are built in, and nothing is downloaded") {
 
 TEST_CASE("A file that is not a scene is rejected in one sentence") {
   SceneFile file;
-  CHECK_THAT(file.refusal(), Catch::Contains("cannot be read"));
+  CHECK_THAT(file.load_error(), Catch::Contains("cannot be read"));
   file.write("scene.sdf", "");
-  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf"));
   file.write("scene.sdf", "<sdf version='1.9'>\n<world name='w'>\n</sdf>");
-  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:2: ") || Catch::StartsWith("scene.sdf:3: "));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:2: ") || Catch::StartsWith("scene.sdf:3: "));
   file.write("scene.sdf", "<robot name='r'/>");
-  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:1: ") && Catch::Contains("<sdf version"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:1: ") && Catch::Contains("<sdf version"));
   file.write("scene.sdf", "<sdf><world name='w'/></sdf>");
-  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf:1: ") && Catch::Contains("version"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:1: ") && Catch::Contains("version"));
   file.write("scene.sdf", "<sdf version='99'><world name='w'/></sdf>");
-  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf"));
   file.write("scene.sdf", "<sdf version='1.11'><world name='w'/></sdf>");
-  CHECK(file.refusal() == "");
+  CHECK(file.load_error() == "");
   REQUIRE(file.warnings.size() == 1);
   CHECK_THAT(file.warnings[0], Catch::Contains("newer than 1.9"));
   file.write("scene.sdf", "<sdf version='1.9'></sdf>");
-  CHECK_THAT(file.refusal(), Catch::StartsWith("scene.sdf"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf"));
 }
 
 TEST_CASE("Messages of libsdformat are returned with their line, not printed") {
@@ -117,13 +117,13 @@ TEST_CASE("Messages of libsdformat are returned with their line, not printed") {
   std::streambuf* before = std::cerr.rdbuf(printed.rdbuf());
   SceneFile file(world("<model name='m'>\n<link name='a'/><link name='b'/>\n<joint name='j' type='revolute'><parent>a</parent>"
                        "<child>no_such_link</child><axis><xyz>0 0 1</xyz></axis></joint></model>"));
-  const std::string joint = file.refusal();
+  const std::string joint = file.load_error();
   file.write("scene.sdf", link("<inertial><mass>heavy</mass></inertial>"));
-  const std::string mass = file.refusal();
+  const std::string mass = file.load_error();
   file.write("scene.sdf", model("<link name='a'/>\n<link name='a'/>"));
-  const std::string twice = file.refusal();
+  const std::string twice = file.load_error();
   file.write("scene.sdf", world("<model>\n</model>"));
-  const std::string nameless = file.refusal();
+  const std::string nameless = file.load_error();
   std::cerr.rdbuf(before);
   CHECK_THAT(joint, Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("no_such_link"));
   CHECK_THAT(mass, Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("heavy"));

@@ -1,4 +1,4 @@
-#include "visual_node/overlay/touches.h"
+#include "visual_node/overlay/contact_strokes.h"
 
 #include <algorithm>
 #include <tactus/contact_point_t.hpp>

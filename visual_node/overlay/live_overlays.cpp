@@ -1,4 +1,4 @@
-#include "visual_node/overlay/live.h"
+#include "visual_node/overlay/live_overlays.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -8,7 +8,7 @@
 #include "sync/bus/decode.h"
 #include "visual_node/frame/marker.h"
 #include "visual_node/frame/motion_marker.h"
-#include "visual_node/overlay/touches.h"
+#include "visual_node/overlay/contact_strokes.h"
 
 namespace tactus::visual {
 namespace {
@@ -23,26 +23,26 @@ constexpr float kPanelAt_px = 8, kPanelBelow_px = 36;
 
 void LiveOverlays::check(const Settings& settings) {
   parse_overlays(settings.overlay);
-  std::vector<std::string> trouble;
-  parse_plots(settings.plots, trouble);
-  if (!trouble.empty()) throw std::invalid_argument(trouble.front());
+  std::vector<std::string> warnings;
+  parse_plots(settings.plots, warnings);
+  if (!warnings.empty()) throw std::invalid_argument(warnings.front());
 }
 
 std::vector<std::string> LiveOverlays::configure(const Settings& settings) {
-  std::vector<std::string> trouble;
+  std::vector<std::string> warnings;
   try {
     on_ = parse_overlays(settings.overlay);
   } catch (const std::invalid_argument& e) {
-    trouble.emplace_back(e.what());
+    warnings.emplace_back(e.what());
   }
   markers_px_ = marker_height_px(settings.event_marker == "strip", settings.motion_marker == "strip");
   force_scale_m_N_ = static_cast<float>(settings.force_scale_m_N);
-  plots_ = Plots(parse_plots(settings.plots, trouble), sync::from_seconds(settings.plot_span_s));
+  plots_ = Plots(parse_plots(settings.plots, warnings), sync::from_seconds(settings.plot_span_s));
   if (!plots_.empty()) on_.set(Overlay::kPlots);
-  groups_.reset();
+  body_groups_.reset();
   tools_.clear();
   subscribe();
-  return trouble;
+  return warnings;
 }
 
 void LiveOverlays::toggle(Overlay o) {
@@ -60,7 +60,7 @@ void LiveOverlays::subscribe() {
   for (const std::string& channel : wanted)
     if (!queues_.contains(channel)) queues_[channel] = &bus_.raw(channel.c_str(), kQueueLength);
   if (!on_.on(Overlay::kForces)) tools_.clear();
-  if (!on_.on(Overlay::kGroups)) groups_.reset();
+  if (!on_.on(Overlay::kGroups)) body_groups_.reset();
 }
 
 void LiveOverlays::receive() {
@@ -77,11 +77,12 @@ void LiveOverlays::receive() {
 
 void LiveOverlays::tint(FrameComposer& composer, std::size_t bodies) {
   const bool now = on_.on(Overlay::kGroups);
-  if (now || tinted_) composer.tint(now ? groups_.tints(bodies) : std::vector<Eigen::Vector4f>{});
+  if (now || tinted_) composer.tint(now ? body_groups_.tints(bodies) : std::vector<Eigen::Vector4f>{});
   tinted_ = now;
 }
 
-std::vector<InputLine> LiveOverlays::inputs(const Frame& frame, sync::SampleStatus contacts, sync::HostTime now) const {
+std::vector<InputLine> LiveOverlays::inputs(const Frame& frame, sync::SampleStatus contacts,
+                                            sync::HostTime now) const {
   std::vector<InputLine> lines;
   for (const char* channel :
        {channels::kWorldState, channels::kContactEvents, channels::kToolState, channels::kContacts})
@@ -98,7 +99,7 @@ std::vector<InputLine> LiveOverlays::inputs(const Frame& frame, sync::SampleStat
   return lines;
 }
 
-void LiveOverlays::append(Frame& frame, PanelFacts facts, sync::HostTime now, int picture_width,
+void LiveOverlays::append(Frame& frame, PanelData data, sync::HostTime now, int picture_width,
                           int picture_height) {
   if (!on_.any()) return;
   receive();
@@ -113,11 +114,11 @@ void LiveOverlays::append(Frame& frame, PanelFacts facts, sync::HostTime now, in
     if (on_.on(Overlay::kForces) && state != tools_.end())
       append_hand_force(strokes, frame.tools[i], state->second, force_scale_m_N_);
   }
-  facts.contacts = touching.value.size();
-  facts.physics = physics_;
-  facts.haptic_bodies = groups_.haptic();
-  facts.visual_bodies = groups_.visual();
-  if (on_.on(Overlay::kAges)) facts.inputs = inputs(frame, touching.status, now);
+  data.contacts = touching.value.size();
+  data.physics = physics_;
+  data.haptic_bodies = body_groups_.haptic();
+  data.visual_bodies = body_groups_.visual();
+  if (on_.on(Overlay::kAges)) data.inputs = inputs(frame, touching.status, now);
   // Nothing is drawn over the markers at the lower edge, which programs read.
   const float bottom = static_cast<float>(picture_height - markers_px_);
   float right = static_cast<float>(picture_width);
@@ -125,7 +126,7 @@ void LiveOverlays::append(Frame& frame, PanelFacts facts, sync::HostTime now, in
     right = plots_left(picture_width);
     plots_.append(frame.list.overlay, now, picture_width, picture_height - markers_px_);
   }
-  append_lines(frame.list.overlay, panel_lines(on_, facts), {kPanelAt_px, kPanelBelow_px, right, bottom},
+  append_lines(frame.list.overlay, panel_lines(on_, data), {kPanelAt_px, kPanelBelow_px, right, bottom},
                text_size(picture_height));
 }
 

@@ -15,8 +15,8 @@ namespace tactus::visual {
 
 // The point on the nearest opaque surface in the picture at (x, y), shares of its width and height from the upper
 // left. m, world. Nothing: no surface, or no view covers that place. Tests every triangle: some ms for 100,000.
-std::optional<Eigen::Vector3f> hit_at(const DrawList& list, std::span<const Triangles> geometries, float x,
-                                      float y);
+std::optional<Eigen::Vector3f> pick_surface(const DrawList& list, std::span<const Triangles> geometries, float x,
+                                            float y);
 
 // Name of the device that the mouse is; it steers a lamp with --device LAMP=external:mouse.
 inline constexpr const char* kMouseDevice = "mouse";
@@ -24,7 +24,8 @@ inline constexpr const char* kMouseDevice = "mouse";
 // A pointer that follows the aimed point at kMaxSpeed_m_s or less: haptic_node rejects a device that jumps.
 class MousePointer {
  public:
-  static constexpr double kMaxSpeed_m_s = 5;  // design: a quarter of the speed that haptic_node accepts from a device
+  static constexpr double kMaxSpeed_m_s =
+      5;  // design: a quarter of the speed that haptic_node accepts from a device
 
   void aim(const Eigen::Vector3d& at) { target_ = at; }
   // Call once a tick: the state of the device; nothing before the first aim().

@@ -20,7 +20,7 @@ sync::BusOptions memory() {
 
 sync::HostTime at_ms(std::int64_t ms) { return sync::HostTime{std::chrono::milliseconds(ms)}; }
 
-struct Laid {
+struct OverlayLayout {
   sync::Bus bus{sync::Identity::fresh("visual_node", 7), memory()};
   sync::EventInbox events{bus.clocks()};
   LiveOverlays overlays{bus, events};
@@ -43,7 +43,7 @@ struct Laid {
   }
 };
 
-bool meet(const Rect& a, const Rect& b) {
+bool overlap(const Rect& a, const Rect& b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
@@ -64,12 +64,12 @@ TEST_CASE("Overlays do not overlap in any combination and keep the marker free")
       if (r.red + r.green + r.blue == 0) plates.push_back(r);
     CHECK(plates.size() >= 2);
     for (std::size_t i = 0; i < plates.size(); ++i)
-      for (std::size_t k = 0; k < i; ++k) CHECK_FALSE(meet(plates[i], plates[k]));
+      for (std::size_t k = 0; k < i; ++k) CHECK_FALSE(overlap(plates[i], plates[k]));
     const auto w = static_cast<float>(width), h = static_cast<float>(height);
     const Rect marker{0, h - kMarkerRows * kMarkerCell_px, w, kMarkerRows * kMarkerCell_px};
     for (const Rect& r : rects) {
       // No pixel of the text leaves the picture or its plate.
-      CHECK((r.x >= 0 && r.y >= 0 && r.x + r.width <= w && !meet(r, marker)));
+      CHECK((r.x >= 0 && r.y >= 0 && r.x + r.width <= w && !overlap(r, marker)));
       CHECK(std::any_of(plates.begin(), plates.end(), [&](const Rect& p) {
         return r.x >= p.x && r.y >= p.y && r.x + r.width <= p.x + p.width && r.y + r.height <= p.y + p.height;
       }));

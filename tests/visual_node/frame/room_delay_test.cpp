@@ -1,4 +1,4 @@
-#include "visual_node/frame/agreed_delay.h"
+#include "visual_node/frame/room_delay.h"
 
 #include <catch2/catch.hpp>
 #include <random>
@@ -27,7 +27,7 @@ TEST_CASE("The delay slews to its target by 5 % of the elapsed time") {
 TEST_CASE("Two walls with different sampling times have the same delay at the same time") {
   std::mt19937 random(6);
   for (int trial = 0; trial < 50; ++trial) {
-    AgreedDelay often, seldom;
+    RoomDelay often, seldom;
     int received = 0;
     std::vector<sync::Nanoseconds> asked;
     for (int i = 0; i < 40; ++i) asked.push_back(milliseconds(random() % 3 ? 20 : random() % 60));

@@ -1,4 +1,4 @@
-#include "visual_node/overlay/groups.h"
+#include "visual_node/overlay/body_groups.h"
 
 #include <catch2/catch.hpp>
 #include <tactus/body_state_t.hpp>
@@ -45,7 +45,7 @@ TEST_CASE("A new incarnation of the simulation clears the groups, and invalid bo
   groups.push(state(3, world_state_t::AHEAD, 1, 2));
   CHECK(groups.haptic() == 0);
   CHECK(groups.visual() == 1);
-  groups.push(state(Groups::kMaxBodies, world_state_t::NOW, 2, 2));
+  groups.push(state(BodyGroups::kMaxBodies, world_state_t::NOW, 2, 2));
   groups.push(state(-1, world_state_t::NOW, 3, 2));
   CHECK(groups.haptic() == 0);
   CHECK(groups.tints(2).size() == 2);  // fewer bodies than it has received

@@ -7,6 +7,6 @@
 namespace tactus::sim {
 
 // The settings must name a model that is solved by impulses.
-impulse::Law law_of(const Settings& settings);
+impulse::ContactLaw contact_law(const Settings& settings);
 
 }  // namespace tactus::sim

@@ -1,4 +1,4 @@
-#include "sim_node/collision/gaps/parting.h"
+#include "sim_node/collision/gaps/separating_axis.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,12 +11,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A later direction replaces an earlier one when its gap is larger by more than this, m. Between equal directions, as
-// of aligned cubes, the choice is then stable.
+// A later direction replaces an earlier one when its gap is larger by more than this, m. Between equal directions,
+// as of aligned cubes, the choice is then stable.
 constexpr double kBetter_m = 1e-9;
 
-// Depth up to which an overlap with a triangle is shallow, m. Design value: a hundred times the overlap that a solver
-// may leave.
+// Depth up to which an overlap with a triangle is shallow, m. Design value: a hundred times the overlap that a
+// solver may leave.
 constexpr double kShallow_m = 1e-3;
 
 struct Search {
@@ -64,34 +64,34 @@ void each_edge(const Convex& c, Visit&& visit) {
 
 // Direction between centres. Depends on the poses only, also for coincident centres.
 Vector3d between_centres(const Eigen::Isometry3d& a_from_b) {
-  const Vector3d way = a_from_b.translation();
-  return way.norm() > 0 ? Vector3d(way.normalized()) : Vector3d(Vector3d::UnitZ());
+  const Vector3d direction = a_from_b.translation();
+  return direction.norm() > 0 ? Vector3d(direction.normalized()) : Vector3d(Vector3d::UnitZ());
 }
 
 // Shrinks the cores step by step until they are separated.
 void offer_shrunk(Search& s) {
-  const double most = std::max(s.a.half_m.maxCoeff(), s.b.half_m.maxCoeff());
+  const double max_shrinkage_m = std::max(s.a.half_m.maxCoeff(), s.b.half_m.maxCoeff());
   double by = std::max(1e-5, -s.best.gap_m / 2);
   for (;; by *= 2) {
     NearestPoints found;
-    const Convex a = shrunk(s.a, std::min(by, most)), b = shrunk(s.b, std::min(by, most));
+    const Convex a = shrunk(s.a, std::min(by, max_shrinkage_m)), b = shrunk(s.b, std::min(by, max_shrinkage_m));
     if (nearest_points(a, b, s.a_from_b, 1e30, found) == Proximity::kNear)
       return s.offer((found.on_b - found.on_a) / found.distance_m);
-    if (by >= most) return;
+    if (by >= max_shrinkage_m) return;
   }
 }
 
 // The same as the general search, in a quarter of the time (Gottschalk, Lin and Manocha 1996: the first six axes).
 SeparatingAxis best_face_axis_of_boxes(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b) {
   const Eigen::Matrix3d turn = a_from_b.linear(), size = turn.cwiseAbs();
-  const Vector3d way = a_from_b.translation(), way_b = turn.transpose() * way;
-  const Vector3d of_a = way.cwiseAbs() - a.half_m - size * b.half_m,
-                 of_b = way_b.cwiseAbs() - b.half_m - size.transpose() * a.half_m;
+  const Vector3d direction = a_from_b.translation(), direction_b = turn.transpose() * direction;
+  const Vector3d of_a = direction.cwiseAbs() - a.half_m - size * b.half_m,
+                 of_b = direction_b.cwiseAbs() - b.half_m - size.transpose() * a.half_m;
   SeparatingAxis best;
   for (int i = 0; i < 3; ++i)
-    if (of_a[i] > best.gap_m + kBetter_m) best = {(way[i] < 0 ? -1.0 : 1.0) * Vector3d::Unit(i), of_a[i]};
+    if (of_a[i] > best.gap_m + kBetter_m) best = {(direction[i] < 0 ? -1.0 : 1.0) * Vector3d::Unit(i), of_a[i]};
   for (int i = 0; i < 3; ++i)
-    if (of_b[i] > best.gap_m + kBetter_m) best = {(way_b[i] < 0 ? -1.0 : 1.0) * turn.col(i), of_b[i]};
+    if (of_b[i] > best.gap_m + kBetter_m) best = {(direction_b[i] < 0 ? -1.0 : 1.0) * turn.col(i), of_b[i]};
   return best;
 }
 
@@ -111,8 +111,8 @@ SeparatingAxis best_face_axis(const Convex& a, const Convex& b, const Eigen::Iso
 
 SeparatingAxis overlap_axis(const Convex& a, const Convex& b, const Eigen::Isometry3d& a_from_b) {
   Search s{a, b, a_from_b, {}};
-  // A triangle is part of a surface. A shallow overlap is resolved along its face normal, since other directions lead
-  // into the neighbouring triangle.
+  // A triangle is part of a surface. A shallow overlap is resolved along its face normal, since other directions
+  // lead into the neighbouring triangle.
   if (b.core == Core::kTriangle) {
     each_face(b, [&](const Vector3d& n) { s.offer_both(a_from_b.linear() * n); });
     if (s.best.gap_m > -kShallow_m) return s.best;

@@ -11,7 +11,7 @@
 
 namespace tactus::visual {
 
-class AgreedDelay {
+class RoomDelay {
  public:
   // PLAYOUT is sent at 10 Hz: the requests of the last second or two.
   static constexpr std::size_t kMaxRequests = 16;
@@ -30,9 +30,9 @@ class AgreedDelay {
   };
   sync::Nanoseconds value(RoomTime t) const;
 
-  std::deque<Request> requests_;    // pending, in order of time
-  Request target_{};             // in force
-  sync::Nanoseconds from_{0};  // the delay at the start of target_
+  std::deque<Request> requests_;  // pending, in order of time
+  Request target_{};              // in force
+  sync::Nanoseconds from_{0};     // the delay at the start of target_
 };
 
 }  // namespace tactus::visual

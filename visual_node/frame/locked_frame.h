@@ -11,14 +11,14 @@
 
 namespace tactus::visual {
 
-struct AgreedFrame {
+struct LockedFrame {
   std::int64_t number = 0;
   // Number of frames before it that this wall skipped.
   std::int64_t skipped = 0;
-  RoomTime due;         // when it must be visible
-  sync::HostTime here;  // `due` on the clock of this wall's host
-  sync::SimTime world;  // shown instant of the world
-  // Presentation delay: `here` minus the host time of `world`.
+  RoomTime due;                  // when it must be visible
+  sync::HostTime due_host_time;  // `due` on the clock of this wall's host
+  sync::SimTime sim_time;        // shown instant of the world
+  // Presentation delay: `due_host_time` minus the host time of `sim_time`.
   sync::Nanoseconds delay{0};
   // The head at the due time, and header.publish_time_ns of the sample that it derives from; -1: none.
   sync::Sample<sync::BodyPose> head;

@@ -12,8 +12,8 @@
 #include "sync/bus/bus.h"
 #include "sync/resampling/contact_stream.h"
 #include "visual_node/frame/frame_composer.h"
-#include "visual_node/overlay/groups.h"
-#include "visual_node/overlay/kinds.h"
+#include "visual_node/overlay/body_groups.h"
+#include "visual_node/overlay/overlay_set.h"
 #include "visual_node/overlay/panel.h"
 #include "visual_node/overlay/plots.h"
 
@@ -33,7 +33,7 @@ class LiveOverlays {
 
   // Messages that the node receives anyway.
   void push(const world_state_t& m) {
-    if (on_.on(Overlay::kGroups)) groups_.push(m);
+    if (on_.on(Overlay::kGroups)) body_groups_.push(m);
   }
   void push(const tool_state_t& m) {
     if (on_.on(Overlay::kForces)) tools_[m.tool] = m;
@@ -41,9 +41,9 @@ class LiveOverlays {
 
   // Call before a frame is composed: sets the colours of its bodies.
   void tint(FrameComposer& composer, std::size_t bodies);
-  // Call when its surfaces and flashes are drawn: adds lines, text and plots. facts: data of the node itself; the
-  // rest is filled in here.
-  void append(Frame& frame, PanelFacts facts, sync::HostTime now, int picture_width, int picture_height);
+  // Call when its surfaces and flashes are drawn: adds lines, text and plots. data: the values of the node itself;
+  // the function fills in the rest.
+  void append(Frame& frame, PanelData data, sync::HostTime now, int picture_width, int picture_height);
 
  private:
   static constexpr int kMaxTools = 64;
@@ -62,7 +62,7 @@ class LiveOverlays {
   std::map<std::string, sync::RawQueue*>
       queues_;  // by channel; a queue stays with the bus once created, used or not
   sync::ContactStream contacts_;
-  Groups groups_;
+  BodyGroups body_groups_;
   bool tinted_ = false;
   TickTimes physics_;
   std::map<int, tool_state_t> tools_;

@@ -9,7 +9,7 @@
 
 namespace tactus::visual {
 
-class Groups {
+class BodyGroups {
  public:
   // Limit of body indices.
   static constexpr int kMaxBodies = 1 << 16;
@@ -28,7 +28,7 @@ class Groups {
     bool ahead = false;
   };
   std::size_t count(bool ahead) const;
-  std::map<int, BodyGroup> groups_;
+  std::map<int, BodyGroup> body_groups_;
   std::int64_t incarnation_ = 0;
 };
 

@@ -1,4 +1,4 @@
-#include "sim_node/behaviour/impulse/law_of.h"
+#include "sim_node/behaviour/impulse/contact_law.h"
 
 #include "sim_node/model/behaviour_model.h"
 
@@ -11,13 +11,13 @@ constexpr double kShell_m = 1e-5, kSlack_m = 2e-6;
 
 }  // namespace
 
-impulse::Law law_of(const Settings& s) {
-  impulse::Law law{.sweeps = s.iterations,
-                   .bounce_speed_m_s = s.bounce_speed_m_s,
-                   .slack_m = kSlack_m,
-                   .repair = s.contact_erp,
-                   .repair_speed_m_s = s.correcting_speed_m_s,
-                   .shell_m = s.groups == "dual" ? s.contact_tolerance_m : kShell_m};
+impulse::ContactLaw contact_law(const Settings& s) {
+  impulse::ContactLaw law{.sweeps = s.iterations,
+                          .bounce_speed_m_s = s.bounce_speed_m_s,
+                          .slop_m = kSlack_m,
+                          .correction_share = s.contact_erp,
+                          .max_correction_speed_m_s = s.correcting_speed_m_s,
+                          .shell_m = s.groups == "dual" ? s.contact_tolerance_m : kShell_m};
   if (behaviour_model(s.solver).finite_forces) {
     law.shell_m = kShell_m;
     law.penalty = {.stiffness_N_m = s.penalty_stiffness_N_m,

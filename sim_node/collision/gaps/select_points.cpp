@@ -1,4 +1,4 @@
-#include "sim_node/collision/gaps/choose.h"
+#include "sim_node/collision/gaps/select_points.h"
 
 #include <algorithm>
 #include <limits>
@@ -6,17 +6,17 @@
 namespace tactus::sim::gaps {
 namespace {
 
-// Weight of a gap against a distance. The value 2 excludes a point that the body reaches only by rotating 27 degrees,
-// more than in any step. Design value.
+// Weight of a gap against a distance. The value 2 excludes a point that the body reaches only by rotating 27
+// degrees, more than in any step. Design value.
 constexpr double kGapWeight = 2;
-// Weight of a difference of normals, as a share of the contact's extent. Less than half, so that a floor keeps three
-// points beside one point of a wall. Design value.
+// Weight of a difference of normals, as a share of the contact's extent. Less than half, so that a floor keeps
+// three points beside one point of a wall. Design value.
 constexpr double kTurnWeight = 0.4;
-constexpr double kSamePlace_m = 1e-6;
+constexpr double kSamePosition_m = 1e-6;
 
 }  // namespace
 
-void choose_points(std::span<const ManifoldPoint> found, Manifold& out) {
+void select_points(std::span<const ManifoldPoint> found, Manifold& out) {
   out.count = 0;
   if (found.empty()) return;
   const ManifoldPoint* deepest = found.data();
@@ -35,7 +35,7 @@ void choose_points(std::span<const ManifoldPoint> found, Manifold& out) {
       for (const ManifoldPoint& chosen : out.used())
         nearest = std::min(nearest, (p.point_m - chosen.point_m).norm() +
                                         kTurnWeight * extent * (p.normal - chosen.normal).norm());
-      if (nearest <= kSamePlace_m || nearest - behind(p) <= best_score) continue;
+      if (nearest <= kSamePosition_m || nearest - behind(p) <= best_score) continue;
       best_score = nearest - behind(p);
       best = &p;
     }

@@ -12,7 +12,7 @@
 namespace tactus::sim {
 
 // State of the bodies that are computed ahead.
-struct Ahead {
+struct LookAhead {
   sync::SimTime begins{};               // start of the running visual step
   sync::SimTime time{};                 // its end
   std::span<const int> bodies;          // their indices, ascending

@@ -1,4 +1,4 @@
-#include "visual_node/overlay/presses.h"
+#include "visual_node/overlay/question_input.h"
 
 namespace tactus::visual {
 namespace {
@@ -9,22 +9,22 @@ constexpr int kEnter = 257, kRight = 262, kLeft = 263, kDown = 264, kUp = 265, k
 
 }  // namespace
 
-std::optional<Press> press_of(int key) {
-  if (key >= '1' && key <= '9') return Press{.choice = key - '1'};
-  if (key >= kPad1 && key <= kPad9) return Press{.choice = key - kPad1};
+std::optional<QuestionInput> question_input(int key) {
+  if (key >= '1' && key <= '9') return QuestionInput{.choice = key - '1'};
+  if (key >= kPad1 && key <= kPad9) return QuestionInput{.choice = key - kPad1};
   switch (key) {
-    case kLeft: return Press{.fine = -1};
-    case kRight: return Press{.fine = 1};
-    case kDown: return Press{.coarse = -1};
-    case kUp: return Press{.coarse = 1};
+    case kLeft: return QuestionInput{.fine = -1};
+    case kRight: return QuestionInput{.fine = 1};
+    case kDown: return QuestionInput{.coarse = -1};
+    case kUp: return QuestionInput{.coarse = 1};
     case kEnter:
-    case kPadEnter: return Press{.confirms = true, .continues = true};
-    case ' ': return Press{.continues = true};
+    case kPadEnter: return QuestionInput{.confirms = true, .continues = true};
+    case ' ': return QuestionInput{.continues = true};
     default: return std::nullopt;
   }
 }
 
-Press press_of(Button button) {
+QuestionInput question_input(Button button) {
   switch (button) {
     case Button::kA: return {.choice = 0, .confirms = true, .continues = true};
     case Button::kB: return {.choice = 1};

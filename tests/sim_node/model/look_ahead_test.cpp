@@ -26,7 +26,7 @@ std::int64_t step_begin(std::int64_t n) { return (1000 * n + 59) / 60; }
 
 // Motion whose acceleration changes at a promotion, as by a touch. Between samples on cubics, rendered poses are
 // exact.
-struct Course {
+struct Trajectory {
   std::map<std::int64_t, Eigen::Vector3d> positions, velocities;  // at the start of each piece, by ms
   std::map<std::int64_t, Eigen::Vector3d> accelerations;
 
@@ -62,41 +62,41 @@ contact_t contact(std::int64_t id, int a, int b) {
 // The dual simulation as its publisher sees it.
 class Dual {
  public:
-  Dual(std::size_t bodies, unsigned seed) : courses(bodies), motions(bodies), random_(seed), ahead_(bodies, 0) {
-    for (Course& c : courses) c.bend(0, acceleration());
+  Dual(std::size_t bodies, unsigned seed) : trajectories(bodies), motions(bodies), random_(seed), ahead_(bodies, 0) {
+    for (Trajectory& c : trajectories) c.bend(0, acceleration());
   }
 
   void tick() {
-    ahead.promoted = {};
+    look_ahead.promoted = {};
     promoted_.clear();
     // As in the simulation: a step begins with a tick and is published at its end.
     const bool fresh = now - 1 == step_begin(step_);
     if (fresh) ++step_;
     // Some bodies are promoted in the middle of a step, some leave at its end.
-    for (std::size_t i = 0; i < courses.size(); ++i) {
+    for (std::size_t i = 0; i < trajectories.size(); ++i) {
       if (!ahead_[i] || random_() % 300 != 0) continue;
       ahead_[i] = 0;
-      courses[i].bend(now, acceleration());
+      trajectories[i].bend(now, acceleration());
       promoted_.push_back(static_cast<int>(i));
     }
-    for (std::size_t i = 1; fresh && i < courses.size(); ++i)  // body 0 stays ahead from begin to end
+    for (std::size_t i = 1; fresh && i < trajectories.size(); ++i)  // body 0 stays ahead from begin to end
       if (!ahead_[i] && random_() % 4 == 0 && std::find(promoted_.begin(), promoted_.end(), i) == promoted_.end())
         ahead_[i] = 1;
     bodies_.clear();
-    foreseen_.clear();
-    for (std::size_t i = 0; i < courses.size(); ++i) {
-      motions[i] = courses[i].at(ahead_[i] ? std::max<std::int64_t>(0, step_begin(step_ - 1)) : now);
+    predicted_.clear();
+    for (std::size_t i = 0; i < trajectories.size(); ++i) {
+      motions[i] = trajectories[i].at(ahead_[i] ? std::max<std::int64_t>(0, step_begin(step_ - 1)) : now);
       if (!ahead_[i]) continue;
       bodies_.push_back(static_cast<int>(i));
-      foreseen_.push_back(courses[i].at(step_begin(step_)));
+      predicted_.push_back(trajectories[i].at(step_begin(step_)));
     }
-    ahead.begins = sync::sim_time(step_begin(step_ - 1) * kMs);
-    ahead.time = sync::sim_time(step_begin(step_) * kMs);
-    ahead.bodies = bodies_;
-    ahead.motions = foreseen_;
-    ahead.fresh = fresh;
-    ahead.promoted = promoted_;
-    ahead.contacts = [this](std::vector<contact_t>& out) {
+    look_ahead.begins = sync::sim_time(step_begin(step_ - 1) * kMs);
+    look_ahead.time = sync::sim_time(step_begin(step_) * kMs);
+    look_ahead.bodies = bodies_;
+    look_ahead.motions = predicted_;
+    look_ahead.fresh = fresh;
+    look_ahead.promoted = promoted_;
+    look_ahead.contacts = [this](std::vector<contact_t>& out) {
       out.clear();
       if (!touching) return;
       for (const int b : bodies_) out.push_back(contact(100 + b, 0, b));
@@ -108,14 +108,14 @@ class Dual {
                   if (!ahead_[i])
                     out.push_back(contact(100 + static_cast<std::int64_t>(i), 0, static_cast<int>(i)));
               },
-              &ahead};
+              &look_ahead};
   }
 
   std::int64_t now = 0;
   bool touching = false;  // body 0 is always in contact with all others
-  std::vector<Course> courses;
+  std::vector<Trajectory> trajectories;
   std::vector<BodyMotion> motions;
-  Ahead ahead;
+  LookAhead look_ahead;
   StateSource source;
 
  private:
@@ -126,7 +126,7 @@ class Dual {
   std::mt19937 random_;
   std::vector<char> ahead_;
   std::vector<int> bodies_, promoted_;
-  std::vector<BodyMotion> foreseen_;
+  std::vector<BodyMotion> predicted_;
   std::int64_t step_ = 0;
 };
 
@@ -155,7 +155,7 @@ TEST_CASE("Rendered poses of bodies computed ahead match the bodies, for any ord
   std::int64_t stood_ms = 0;  // duration for which the world stood still
   for (; world.now < 600; ++world.now) {
     world.tick();
-    for (const int b : world.ahead.promoted) promoted[b] = world.now;
+    for (const int b : world.look_ahead.promoted) promoted[b] = world.now;
     const auto publish = [&] {
       const std::int64_t pace = world.now + stood_ms;
       snapshots.tick(
@@ -183,7 +183,7 @@ TEST_CASE("Rendered poses of bodies computed ahead match the bodies, for any ord
     for (std::size_t i = 0; i < bodies; ++i) {
       const auto of = [&](std::int64_t ms) {
         return (history.pose(static_cast<int>(i), sync::sim_time(ms * kMs)).value.position -
-                world.courses[i].at(ms).position_m)
+                world.trajectories[i].at(ms).position_m)
             .norm();
       };
       worst_m = std::max(worst_m, of(world.now - 60));
@@ -206,12 +206,12 @@ TEST_CASE("A late visual step holds its bodies, and their motion continues from 
   sync::BodyHistory history(1);
   std::vector<BodyMotion> now(1), foreseen(1);
   const int body = 0;
-  Ahead ahead{.bodies = {&body, 1},
+  LookAhead look_ahead{.bodies = {&body, 1},
               .motions = foreseen,
               .waiting = {},
               .contacts = [](auto& out) { out.clear(); },
               .promoted = {}};
-  const StateSource source{now, [](auto& out) { out.clear(); }, &ahead};
+  const StateSource source{now, [](auto& out) { out.clear(); }, &look_ahead};
   std::int64_t seq = 0, ms = 0;
   const auto tick = [&](double x, double v, double x_ahead) {
     now[0].position_m.x() = x, now[0].velocity_m_s.x() = v;
@@ -226,23 +226,23 @@ TEST_CASE("A late visual step holds its bodies, and their motion continues from 
   };
   const auto x = [&](std::int64_t t) { return history.pose(0, sync::sim_time(t * kMs)).value.position.x(); };
   for (int i = 0; i < 17; ++i) {
-    ahead.fresh = ms == 0;
-    ahead.time = sync::sim_time(17 * kMs);
+    look_ahead.fresh = ms == 0;
+    look_ahead.time = sync::sim_time(17 * kMs);
     tick(0, 1, 0.017);
   }
   // The step due at 17 ms is not ready before 30 ms.
-  ahead.fresh = false;
-  ahead.held = true;
+  look_ahead.fresh = false;
+  look_ahead.held = true;
   while (ms < 30) {
     tick(0.017, 1, 0);  // the state at which it stopped
     CHECK(x(ms - 1) == Approx(0.017));
     CHECK(x(ms + 20) == Approx(0.017));
   }
-  ahead.held = false;
-  ahead.begins = sync::sim_time(30 * kMs);
-  ahead.time = sync::sim_time(47 * kMs);
+  look_ahead.held = false;
+  look_ahead.begins = sync::sim_time(30 * kMs);
+  look_ahead.time = sync::sim_time(47 * kMs);
   for (int i = 0; i < 17; ++i) {
-    ahead.fresh = i == 0;
+    look_ahead.fresh = i == 0;
     tick(0.017, 1, 0.034);
   }
   for (std::int64_t t = 17; t <= 30; ++t) CHECK(x(t) == Approx(0.017).margin(3e-3));

@@ -18,7 +18,7 @@ void World::save(SavedStep& out) {
   out.free.clear();
   out.motions.clear();
   out.states.resize(systems_.size());
-  out.memories.resize(systems_.size(), JointMemory(0));
+  out.memories.resize(systems_.size(), JointImpulses(0));
   for (std::size_t s = out.saved_loads.size(); s < systems_.size(); ++s)
     out.saved_loads.push_back(systems_[s].system.saved_loads());
   for (const int unit : active_) {
@@ -100,11 +100,11 @@ void World::update_inertia(std::span<const Manifold> contacts) {
       const Mover& at = mover(body);
       if (at.kind != Kind::kFree) continue;
       const BodyMotion& b = motions_[index(body)];
-      rows_.inert[index(at.index + 1)] = {b.inverse_mass_1_kg, b.inverse_inertia};
+      rows_.inertias[index(at.index + 1)] = {b.inverse_mass_1_kg, b.inverse_inertia};
     }
 }
 
-void World::separate(std::span<const Manifold> contacts, double most_m) {
+void World::separate(std::span<const Manifold> contacts, double max_overlap_m) {
   activate_all();
   for (const int unit : active_) {
     const std::size_t i = index(unit);
@@ -121,7 +121,7 @@ void World::separate(std::span<const Manifold> contacts, double most_m) {
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     double change = 0;
     for (ContactPoint& p : rows_.points) {
-      if (p.gap_m < -most_m) continue;
+      if (p.gap_m < -max_overlap_m) continue;
       const double left = p.gap_m + rows_.velocity(p, velocity_).x();
       const double push = std::max(-p.impulse.x(), -left / p.mobility(0, 0));
       if (push == 0) continue;

@@ -1,4 +1,4 @@
-#include "visual_node/overlay/aim.h"
+#include "visual_node/overlay/picking.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -69,8 +69,8 @@ std::optional<Ray> ray_at(const DrawList& list, float x, float y) {
 
 }  // namespace
 
-std::optional<Eigen::Vector3f> hit_at(const DrawList& list, std::span<const Triangles> geometries, float x,
-                                      float y) {
+std::optional<Eigen::Vector3f> pick_surface(const DrawList& list, std::span<const Triangles> geometries, float x,
+                                            float y) {
   const auto ray = ray_at(list, x, y);
   if (!ray) return std::nullopt;
   float nearest = std::numeric_limits<float>::infinity();
@@ -99,7 +99,8 @@ std::optional<device_state_t> MousePointer::state(sync::HostTime now) {
   last_ = now;
   const Eigen::Vector3d before = at_, remaining = *target_ - at_;
   const double max_step_m = kMaxSpeed_m_s * dt_s;
-  at_ = first || remaining.norm() <= max_step_m ? *target_ : Eigen::Vector3d(at_ + remaining.normalized() * max_step_m);
+  at_ = first || remaining.norm() <= max_step_m ? *target_
+                                                : Eigen::Vector3d(at_ + remaining.normalized() * max_step_m);
   device_state_t m{};
   m.header.sim_time_ns = -1;
   m.device = kMouseDevice;

@@ -1,4 +1,4 @@
-#include "visual_node/overlay/kinds.h"
+#include "visual_node/overlay/overlay_set.h"
 
 #include <algorithm>
 #include <stdexcept>
