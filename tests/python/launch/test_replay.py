@@ -21,13 +21,13 @@ class Keys(unittest.TestCase):
     def setUp(self):
         self.orders = keys.Orders("/nowhere/control")
 
-    def test_every_key_that_the_help_names_has_its_order(self):
+    def test_every_key_of_the_help_has_its_command(self):
         read = b" .\x1b[C\x1b[D10ml"
         self.assertEqual(list(self.orders.of_keys(read)),
                          ["toggle", "step", "seek +5", "seek -5", "speed 1", "seek 0", "speed max", "loop on"])
         self.assertEqual(list(self.orders.of_keys(b"lq")), ["loop off", "quit"])
 
-    def test_the_speed_doubles_and_halves_within_what_a_replay_takes(self):
+    def test_the_speed_doubles_and_halves_within_its_limits(self):
         said = [float(order.split()[1]) for order in self.orders.of_keys(b"+" * 20)]
         self.assertEqual(said[:3], [2, 4, 8])
         self.assertEqual(said[-1], keys.FASTEST)
@@ -39,13 +39,13 @@ class Keys(unittest.TestCase):
         list(self.orders.of_keys(b"1"))
         self.assertEqual(next(self.orders.of_keys(b"+")), "speed 2.0")
 
-    def test_any_bytes_at_all_are_orders_or_nothing(self):
+    def test_any_bytes_are_valid_commands_or_ignored(self):
         for seed in range(500):
             read = random.Random(seed).randbytes(200)
             for order in self.orders.of_keys(read):
                 self.assertRegex(order, r"^(toggle|step|quit|seek [+-]?\d+|speed (max|[0-9.]+)|loop (on|off))$")
 
-    def test_lines_come_whole_however_they_are_cut(self):
+    def test_lines_are_complete_for_any_fragmentation(self):
         text = "pause\nseek +3\n  speed max \nloop on\n".encode()
         for seed in range(50):
             cut, orders, said = random.Random(seed), keys.Orders("/nowhere"), []
@@ -56,12 +56,12 @@ class Keys(unittest.TestCase):
                 at = to
             self.assertEqual(said, ["pause", "seek +3", "speed max", "loop on"])
 
-    def test_a_line_that_never_ends_takes_no_more_memory_than_its_bound(self):
+    def test_an_endless_line_uses_limited_memory(self):
         for _ in range(100):
             self.assertEqual(self.orders.of_lines(b"x" * 4096), [])
         self.assertLessEqual(len(self.orders.rest), keys.LONGEST)
 
-    def test_an_order_goes_into_the_pipe_and_is_lost_without_harm_when_nobody_reads(self):
+    def test_a_command_without_a_reader_is_dropped(self):
         self.orders.send("pause")  # there is no pipe
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "control")
@@ -95,19 +95,19 @@ class Words(unittest.TestCase):
             self.parse(*words)
         return str(refused.exception)
 
-    def test_a_folder_stands_for_all_parts_of_the_recording_in_it(self):
+    def test_a_folder_replays_all_parts_of_its_recording(self):
         plan, stay, _ = replay.parse([".", "--stay"], self.folder)
         self.assertEqual(pathlib.Path(plan.replay[0]), self.folder)
         self.assertTrue(stay)
 
-    def test_each_sense_is_live_unless_it_is_left_out(self):
+    def test_every_modality_is_live_unless_left_out(self):
         self.assertEqual(self.parse().without, [])
         self.assertEqual(set(self.parse("--only", "audio_node").without), {"haptic_node", "visual_node", "thermal_node", "haptic_node_lamp"})
         self.assertEqual(set(self.parse("--only", "haptic_node").without), {"audio_node", "visual_node", "thermal_node"})
         # The process of another tool needs haptic_node.
         self.assertEqual(set(self.parse("--without", "haptic_node").without), {"haptic_node", "haptic_node_lamp"})
 
-    def test_what_the_replay_does_is_passed_on_to_it(self):
+    def test_options_of_the_replay_are_passed_to_it(self):
         plan = self.parse("--speed", "0.5", "--start", "1", "--channels", "WORLD_.*", "--rename", "A=B", "--rename", "C=D", "--loop")
         words = " ".join(plan.replay[1:])
         for part in ("--speed 0.5", "--start 1", "--channels WORLD_.*", "--rename A=B", "--rename C=D", "--loop"):
@@ -115,7 +115,7 @@ class Words(unittest.TestCase):
         self.assertEqual(plan.seed, 7)
         self.assertEqual(self.parse("--seed", "12").seed, 12)
 
-    def test_wrong_words_are_refused_with_one_sentence(self):
+    def test_invalid_arguments_are_refused_with_one_sentence(self):
         self.assertIn("sim_node", self.refusal("--only", "sim_node"))
         self.assertIn("contradict", self.refusal("--degrade", "a.xml", "--as-recorded"))
         self.assertIn("holds the first tool", self.refusal("--only", "haptic_node_lamp"))
@@ -127,7 +127,7 @@ class Words(unittest.TestCase):
 
 
 class Descriptions(unittest.TestCase):
-    def test_a_log_that_cannot_be_described_is_refused_with_what_the_program_says(self):
+    def test_an_unreadable_log_is_refused_with_the_message_of_the_program(self):
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(replay.cluster, "BIN", pathlib.Path(folder)):
             with self.assertRaisesRegex(Refusal, "not built"):
                 replay.described("run.lcmlog")

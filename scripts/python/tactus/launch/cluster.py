@@ -12,7 +12,7 @@ from tactus.launch import arguments, services, walls
 from tactus.launch.arguments import SENSES
 from tactus.paths import BIN, tactus_command
 from tactus.refusal import Interrupted, Refusal
-from tactus.terminal import complain, say
+from tactus.terminal import report_error, report_run
 
 INSIDE = pathlib.Path(__file__).resolve().parent / "inside"
 # The simulation stops first, so that all modalities present its last events; the recorder last, so that the log is complete.
@@ -20,7 +20,7 @@ INSIDE = pathlib.Path(__file__).resolve().parent / "inside"
 WORLDS = ("sim_node", "replay")
 STOP_ORDER = ((WORLDS, 0.3), (SENSES, 0.3), (("sync_node",), 0.3), (("recorder",), 10.0))
 SCATTER_M = "0.08"  # design: keeps the balls of the dark room apart from each other and from other bodies
-PRESENT_THE_LAST_S = 0.2  # sound comes 20 ms after its event, and each report is repeated 20 ms later
+LAST_PRESENTATION_S = 0.2  # sound comes 20 ms after its event, and each report is repeated 20 ms later
 PATIENCE_S = 15           # to close a video on a busy machine
 CHECK_S, READ_SCENE_S = 60, 600
 PROGRESS_S = 10
@@ -89,14 +89,14 @@ def check(words, stop):
         if process.returncode != 0:
             raise Refusal(said[name].split("\n")[-1] or f"{name}: fails its checks with status {process.returncode}")
     if said.get("sim_node"):
-        complain(said["sim_node"])  # warnings of the scene
+        report_error(said["sim_node"])  # warnings of the scene
 
 
 def last_of_check(name, process, stop):
     """Output of the check after it has ended. Raises Interrupted when the user stops the run."""
     now = begin = time.monotonic()
-    at_most_s, next_said = READ_SCENE_S if name == "sim_node" else CHECK_S, begin + PROGRESS_S
-    while now < begin + at_most_s:
+    timeout_s, next_said = READ_SCENE_S if name == "sim_node" else CHECK_S, begin + PROGRESS_S
+    while now < begin + timeout_s:
         try:
             said = process.communicate(timeout=0.1)[1].strip()
             if stop.asked:
@@ -107,10 +107,10 @@ def last_of_check(name, process, stop):
         if stop.asked:
             raise Interrupted
         if name == "sim_node" and now > next_said:
-            say(f"sim_node is still reading the scene ({now - begin:.0f} s)")
+            report_run(f"sim_node is still reading the scene ({now - begin:.0f} s)")
             next_said += PROGRESS_S
     process.kill()
-    return process.communicate()[1].strip() + f"\n{name}: does not finish its checks in {at_most_s} s"
+    return process.communicate()[1].strip() + f"\n{name}: does not finish its checks in {timeout_s} s"
 
 
 def die_with_parent():
@@ -208,7 +208,7 @@ class Cluster:
             names = (*self.plan.senses(), *self.plan.people()) if names == SENSES else names
             services.request_end([self.services[name] for name in names if name in self.services], grace_s)
             if names == WORLDS:
-                time.sleep(PRESENT_THE_LAST_S)
+                time.sleep(LAST_PRESENTATION_S)
         stubborn = services.end_or_kill(self.services.values(), PATIENCE_S)
         self.end_supervisor()
         return stubborn

@@ -9,7 +9,7 @@ import time
 from tactus.launch.cluster import die_with_parent
 from tactus.paths import BIN, SCRIPTS, tactus_command
 from tactus.refusal import Refusal
-from tactus.terminal import say
+from tactus.terminal import report_run
 
 PAGE = SCRIPTS / "live" / "page" / "dist"
 ADDRESS = "live_server: open "  # scripts/live/live_server_main.cpp
@@ -45,10 +45,10 @@ class Page:
         while time.monotonic() < end and self.process.poll() is None:
             with open(self.log(), encoding="utf-8", errors="replace") as file:
                 if ADDRESS in file.read():
-                    say(f"the live page: http://127.0.0.1:{self.socket.getsockname()[1]}/?token={self.token}")
+                    report_run(f"the live page: http://127.0.0.1:{self.socket.getsockname()[1]}/?token={self.token}")
                     return
             time.sleep(0.05)
-        say(f"the live page does not start; the run continues without it; see {self.log()}")
+        report_run(f"the live page does not start; the run continues without it; see {self.log()}")
 
     def log(self):
         return self.out / "logs" / "live_server.log"

@@ -11,9 +11,9 @@ import time
 
 from tactus import terminal
 from tactus.launch import arguments, cluster, equipment, hands, live, network, priority, services, virtual, walls
-from tactus.launch.results import git_commit, sum_up
+from tactus.launch.results import git_commit, summarise
 from tactus.refusal import Interrupted, Refusal, sentence_of
-from tactus.terminal import say
+from tactus.terminal import report_run
 
 LONGEST_LOADING_S = 600
 PROGRESS_S = 5
@@ -48,7 +48,7 @@ def watch_over(running, seconds, stop):
             raise Refusal(f"sim_node: its world has not begun after {LONGEST_LOADING_S // 60} minutes; see "
                           f"{running.plan.out}/logs/sim_node.log")
         elif end is None and now > next_said:
-            say(f"sim_node is still reading the scene ({now - loading_since:.0f} s)")
+            report_run(f"sim_node is still reading the scene ({now - loading_since:.0f} s)")
             next_said += PROGRESS_S
         if running.page is not None:
             running.page.keep()
@@ -57,7 +57,7 @@ def watch_over(running, seconds, stop):
         for name, why in running.lost().items():
             if name not in named:
                 named.add(name)
-                say(f"{name}: {why}; the others continue ({running.services[name].last_output_line()})")
+                report_run(f"{name}: {why}; the others continue ({running.services[name].last_output_line()})")
         time.sleep(0.1)
     return end is not None
 
@@ -97,7 +97,7 @@ def run(plan, watch=watch_over):
             raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
     cluster.check(cluster.commands(plan, run_id, git), stop)
     for name in arguments.unknown_modalities(plan):
-        say(f"{name!r} is no modality of this run; check the names in the profile and in --soa")
+        report_run(f"{name!r} is no modality of this run; check the names in the profile and in --soa")
     expectation = priority.expectation(plan.realtime)
     net = network.choose(plan.network, plan.port)
     services.remove_leftovers()
@@ -105,10 +105,10 @@ def run(plan, watch=watch_over):
     claim = claim_out(plan)
     warnings = equipment.lacking(plan)
     running = cluster.Cluster(plan, net, cluster.commands(plan, run_id, git), run_id)
-    say(f"{plan.scene.name}, {plan.seconds:g} s, seed {plan.seed}, network {net.how}, results in {plan.out}")
-    say(expectation)
+    report_run(f"{plan.scene.name}, {plan.seconds:g} s, seed {plan.seed}, network {net.how}, results in {plan.out}")
+    report_run(expectation)
     for warning in warnings:
-        say(warning)
+        report_run(warning)
     wrong = []
     try:
         running.start()
@@ -135,11 +135,11 @@ def run(plan, watch=watch_over):
     wrong += [f"{name}: did not end when asked and was killed; see {plan.out}/logs/{name}.log" for name in stubborn]
     for name, count in restarts.items():
         if name not in lost:
-            say(f"{name} died and was started again, {count} times in all" if count > 1 else f"{name} died once and was started again")
+            report_run(f"{name} died and was started again, {count} times in all" if count > 1 else f"{name} died once and was started again")
     for name in taken:
-        say(f"{name} was taken down and not brought back")
-    wrong += sum_up(plan, git, {*lost, *taken}, restarts, warnings)
-    say(f"results in {plan.out}")
+        report_run(f"{name} was taken down and not brought back")
+    wrong += summarise(plan, git, {*lost, *taken}, restarts, warnings)
+    report_run(f"results in {plan.out}")
     os.close(claim)
     return wrong
 
@@ -160,8 +160,8 @@ def main(words):
     except OSError as error:
         wrong = [sentence_of(error)]
     except Interrupted:
-        terminal.complain("run: interrupted; nothing was started")
+        terminal.report_error("run: interrupted; nothing was started")
         return INTERRUPTED
     for sentence in wrong:
-        terminal.complain(sentence if names_its_speaker(sentence) else f"run: {sentence}")
+        terminal.report_error(sentence if names_its_speaker(sentence) else f"run: {sentence}")
     return 1 if wrong else 0

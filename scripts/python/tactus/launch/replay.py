@@ -11,7 +11,7 @@ import time
 from tactus import terminal
 from tactus.launch import arguments, cluster, hands, keys, main as supervisor
 from tactus.refusal import Refusal, sentence_of
-from tactus.terminal import say
+from tactus.terminal import report_run
 
 SENSES = arguments.SENSES
 OF_REPLAY = ("speed", "start", "end", "channels", "leave_out", "also", "most")
@@ -114,7 +114,7 @@ def watcher(control, stay):
                 for name, why in running.lost().items():
                     if name not in named:
                         named.add(name)
-                        say(f"{name}: {why}; the others continue ({running.services[name].last_output_line()})")
+                        report_run(f"{name}: {why}; the others continue ({running.services[name].last_output_line()})")
                 if world.lost():
                     break
                 time.sleep(0.05)
@@ -131,7 +131,7 @@ def main(words):
         plan, stay, says = parse(words, os.getcwd())
         plan.replay += ["--control", str(control)]
         if says["recovered"]:
-            say(says["recovered"])
+            report_run(says["recovered"])
         plan.out.mkdir(parents=True, exist_ok=True)
         (plan.out / "control").unlink(missing_ok=True)
         (plan.out / "control").symlink_to(control)
@@ -143,11 +143,11 @@ def main(words):
     except OSError as error:
         wrong = [sentence_of(error)]
     except supervisor.Interrupted:
-        terminal.complain("replay: interrupted; nothing was started")
+        terminal.report_error("replay: interrupted; nothing was started")
         return supervisor.INTERRUPTED
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     for sentence in wrong:
-        terminal.complain(sentence if supervisor.names_its_speaker(sentence) or sentence.startswith("replay:")
+        terminal.report_error(sentence if supervisor.names_its_speaker(sentence) or sentence.startswith("replay:")
                           else f"replay: {sentence}")
     return 1 if wrong else 0

@@ -18,7 +18,7 @@ def git_commit():
     return commit + ("+" if changed.strip() else "")
 
 
-def sum_up(plan, git, lost, restarts, warnings):
+def summarise(plan, git, lost, restarts, warnings):
     """Writes summary.json and the CSV tables from the log. lost: the nodes that are not expected at the end of the log.
     Returns the errors, one sentence each."""
     if not any(plan.out.glob("run*.lcmlog")):
@@ -32,12 +32,12 @@ def sum_up(plan, git, lost, restarts, warnings):
     # All results are written before the first is printed. A second Ctrl-C does not reach these programs.
     all_done = [subprocess.run(words, capture_output=True, text=True, errors="replace", check=False, start_new_session=True)
                 for words in (summarise, *exports)]
-    terminal.tell(all_done[0].stdout.rstrip("\n"))
+    terminal.report(all_done[0].stdout.rstrip("\n"))
     wrong = []
     for done in all_done:
         name = os.path.basename(done.args[0])
         if done.returncode != 0:
             wrong.append(done.stderr.strip().split("\n")[-1] or f"{name}: ended with status {done.returncode}")
         elif done.stderr:
-            terminal.complain(done.stderr.rstrip("\n"))
+            terminal.report_error(done.stderr.rstrip("\n"))
     return wrong

@@ -1,6 +1,6 @@
 """Service folders for runit, and commands to their services.
 
-A node runs as a service: runsv restarts it when it dies. Its `finish` script records each death. After more than MOST_DEATHS
+A node runs as a service: runsv restarts it when it dies. Its `finish` script records each death. After more than MAX_DEATHS
 deaths within WINDOW_S it leaves the node down and writes the reason to the file `lost`.
 """
 import fcntl
@@ -14,7 +14,7 @@ import time
 
 from tactus.refusal import Refusal
 
-MOST_DEATHS = 5
+MAX_DEATHS = 5
 WINDOW_S = 10
 
 FINISH = """#!/bin/sh
@@ -93,7 +93,7 @@ class Service:
         (self.path / "down").touch()  # runsv waits for a command
         write_script(self.path / "run", RUN.format(name=name, log=shlex.quote(str(log)),
                                                    folder=shlex.quote(str(working_folder)), command=shlex.join(command)))
-        write_script(self.path / "finish", FINISH.format(name=name, window=WINDOW_S, most=MOST_DEATHS))
+        write_script(self.path / "finish", FINISH.format(name=name, window=WINDOW_S, most=MAX_DEATHS))
 
     def order(self, letter):
         """Sends a command of runsv(8): u, d, t, k, p, c. False without a running runsv."""
@@ -170,8 +170,8 @@ def end_or_kill(services, patience_s):
     return [s.name for s in stubborn]
 
 
-def wait_until(condition, at_most_s):
-    end = time.monotonic() + at_most_s
+def wait_until(condition, timeout_s):
+    end = time.monotonic() + timeout_s
     while not condition():
         if time.monotonic() > end:
             return False

@@ -54,10 +54,10 @@ def main(words):
             raise Refusal(f"{options.study}: has no <observer> for {next(c.id for c in study.conditions if study.observer(c) is None)}; add one, or leave out --simulated")
         return session.lead(study, options)
     except Refusal as refusal:
-        terminal.complain(f"study: {refusal}")
+        terminal.report_error(f"study: {refusal}")
     except OSError as error:
-        terminal.complain(f"study: {sentence_of(error)}")
+        terminal.report_error(f"study: {sentence_of(error)}")
     except KeyboardInterrupt:
-        terminal.complain("study: interrupted; the same command resumes with the next trial")
+        terminal.report_error("study: interrupted; the same command resumes with the next trial")
         return 130
     return 1

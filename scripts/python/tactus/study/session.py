@@ -16,7 +16,7 @@ from tactus.study.live_cluster import LiveCluster
 from tactus.study.plan import Plan
 from tactus.study.simulated import Participant
 from tactus.study.study_file import YES_OR_NO
-from tactus.terminal import tell
+from tactus.terminal import report
 
 TASKS = {"synchrony": "sj", "order": "toj", "two_interval": "2ifc", "rating": "rating", "matching": "matching", "performance": "game"}
 ESTIMATE_EVERY = 10      # trials; a fit takes 0.1 s
@@ -49,23 +49,23 @@ def lead(study, options):
         with contextlib.suppress(shutil.SameFileError):  # resumed from the copy itself
             shutil.copyfile(study.path, folder / "study.xml")
         if journal.repaired:
-            tell(f"study: {journal.repaired}")
+            report(f"study: {journal.repaired}")
         resume(plan, journal.answered())
         for line in plan.describe():
-            tell(line)
+            report(line)
         if journal.ended:
             formats.export(folder)  # the process may have been killed before its export
-            tell(f"study: this session ended after {plan.done} trials; analyse it: tactus study analyse {folder}")
+            report(f"study: this session ended after {plan.done} trials; analyse it: tactus study analyse {folder}")
             return 0
         if resumed:
-            tell(f"study: resumes after {plan.done} of {plan.expected_trials} trials")
+            report(f"study: resumes after {plan.done} of {plan.expected_trials} trials")
         s = Session(study, options, plan, journal, folder, observer)
         try:
             s.run()
         finally:
             s.end()
             formats.export(folder)
-        tell(s.summary())
+        report(s.summary())
         if options.json:
             pathlib.Path(options.json).write_text(json.dumps(s.figures(), indent=2) + "\n", encoding="utf-8")
     return 0
@@ -86,7 +86,7 @@ class Session:
         runs.mkdir(exist_ok=True)
         number = 1 + max((int(p.name[3:]) for p in runs.glob("run[0-9]*") if p.is_dir() and p.name[3:].isdigit()), default=0)
         out = runs / f"run{number}"
-        tell(f"study: starts the cluster, results in {out}")
+        report(f"study: starts the cluster, results in {out}")
         self.cluster = LiveCluster(out, cluster_words(self.study, self.options))
         self.cluster.wait_until_it_runs()
         if self.options.live is not None:
@@ -94,8 +94,8 @@ class Session:
             if page is None and not (self.options.window or self.options.simulated):
                 raise Refusal(f"the live page does not start, so the participant cannot answer; see {out}/logs/live_server.log, or use --window")
             if page is not None:
-                tell(f"study: the participant's page is {page}{'&' if '?' in page else '?'}participant")
-                tell(f"study: the experimenter's page is {page}")
+                report(f"study: the participant's page is {page}{'&' if '?' in page else '?'}participant")
+                report(f"study: the experimenter's page is {page}")
         s = self.study.stimulus
         self.lead = Lead(out, None if self.options.device else (*s.rest_m, s.above_m), looks=sees(self.study, self.options))
         if not self.lead.wait_for(lambda: self.lead.senses and self.lead.sim_ns is not None and all(x["state"] == 1 for x in self.lead.senses.values()), 60):
@@ -232,13 +232,13 @@ class Session:
         if self.lead is not None and self.lead.senses:
             slow = [f"{n} {s['rate_Hz']:.0f}/{s['nominal_rate_Hz']:.0f} Hz" for n, s in self.lead.senses.items() if s["rate_Hz"] < 0.98 * s["nominal_rate_Hz"]]
             words += f"  slow: {', '.join(slow)}" if slow else ""
-        tell(words)
+        report(words)
         if done and done % ESTIMATE_EVERY == 0:
             if self.lead is not None and self.lead.senses:
-                tell("  rates: " + ", ".join(f"{n} {s['rate_Hz']:.1f} Hz, {s['missed_ticks']} ticks missed" for n, s in sorted(self.lead.senses.items())))
+                report("  rates: " + ", ".join(f"{n} {s['rate_Hz']:.1f} Hz, {s['missed_ticks']} ticks missed" for n, s in sorted(self.lead.senses.items())))
             for name, estimate in self.plan.estimates().items():
                 if estimate:
-                    tell(f"  {name}: " + ", ".join(f"{k} {v:.3g}" for k, v in estimate.items() if isinstance(v, float)))
+                    report(f"  {name}: " + ", ".join(f"{k} {v:.3g}" for k, v in estimate.items() if isinstance(v, float)))
 
     def pause(self, trial):
         if any(e["kind"] == "break" and e.get("before") == trial.number for e in self.journal.entries):
