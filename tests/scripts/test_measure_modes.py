@@ -1,4 +1,4 @@
-"""What measure_modes --check refuses: modes that are missing, and modes, dampings and nodal lines that are off."""
+"""Tests of measure_modes --check, which refuses missing modes and wrong frequencies, dampings and nodal lines."""
 import importlib.machinery
 import importlib.util
 import os

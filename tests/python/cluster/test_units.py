@@ -64,7 +64,7 @@ class Units(unittest.TestCase):
     def test_systemd_rejects_a_damaged_unit(self):
         wrong = self.system / "wrong.service"
         self.addCleanup(wrong.unlink)
-        wrong.write_text("[Service]\nExecStart=/opt/tactus/bin/nobody\nProtectSysten=strict\n", encoding="ascii")
+        wrong.write_text("[Service]\nExecStart=/opt/tactus/bin/missing\nProtectSysten=strict\n", encoding="ascii")
         said = self.analyze("verify", "wrong.service").stderr
         self.assertIn("ProtectSysten", said)
         self.assertIn("not executable", said)

@@ -240,7 +240,7 @@ class Shaders(Folders):
 
 class Checks(Folders):
     def check(self, stop=False, **programs):
-        cluster.check({name: self.program(name, text) for name, text in programs.items()}, types.SimpleNamespace(asked=stop))
+        cluster.check({name: self.program(name, text) for name, text in programs.items()}, types.SimpleNamespace(requested=stop))
 
     def test_a_refusal_of_invalid_bytes_is_still_one_sentence(self):
         (self.folder / "hostile").write_bytes(HOSTILE)
@@ -295,7 +295,7 @@ class Running:
 class Seconds(Folders):
     def watch(self, running, stop=False):
         with mock.patch.object(main, "time", running):
-            return main.watch_over(running, 20, types.SimpleNamespace(asked=stop))
+            return main.watch_over(running, 20, types.SimpleNamespace(requested=stop))
 
     def test_seconds_count_from_the_beginning_of_the_world(self):
         running = Running(begins_at=32)
@@ -378,7 +378,7 @@ class Programs(unittest.TestCase):
     def test_scripts_build_builds_all_programs_of_a_run_and_a_study(self):
         from tactus.launch import virtual
         built = (SCRIPTS / "build").read_text(encoding="utf-8").partition("targets+=(")[2].partition(")")[0].split()
-        for program in (*arguments.SENSES, *virtual.PROGRAMS, arguments.PARTICIPANT, "conductor", "play_games"):
+        for program in (*arguments.SENSES, *virtual.PROGRAMS, arguments.PLAYER, "conductor", "play_games"):
             self.assertIn(program, built)
 
 

@@ -14,6 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "scripts" / "python"))
 from tactus.log import log_tables
 from tactus.report import figures, report, traces, words
+from tactus.tables import read_rows
 
 LIVE_FROM = 5_000_000_000
 HOSTILE = 'dark<script>alert(1)"&.sdf'
@@ -22,9 +23,9 @@ HOSTILE = 'dark<script>alert(1)"&.sdf'
 def summary(**more):
     node = {"rate_hz": 1000.0, "ticks": 1000, "missed_ticks": 0, "stale_ticks": 0, "tick_us": {"p50": 10.0, "p99": 20.0, "p999": 30.0, "max": 40.0},
             "wake_us": {"p50": 1.0, "p99": 2.0, "p999": 3.0, "max": 4.0}, "input_age_ms": {}, "quality": [], "restarts": 0, "scheduling": ""}
-    owed = {"owed": 3, "presented": 3, "late": 0, "lost": 0, "stalled": 0, "dead": 0, "dropped_by_profile": 0, "dropped_late": 0}
+    counts = {"owed": 3, "presented": 3, "late": 0, "lost": 0, "stalled": 0, "dead": 0, "dropped_by_profile": 0, "dropped_late": 0}
     return {"scene": HOSTILE, "seconds": 1.0, "recorded_seconds": 1.0, "log_holes_seconds": 0, "seed": 1, "git": "", "realtime_factor": 1.0, "warnings": [], "absent": [],
-            "nodes": {"sim_node": node}, "contacts": {"begin": 3, "hit": 3, "end": 3, "late": 0, "lost": 0, "dropped_by_profile": 0, "by_modality": {"audio": owed}},
+            "nodes": {"sim_node": node}, "contacts": {"begin": 3, "hit": 3, "end": 3, "late": 0, "lost": 0, "dropped_by_profile": 0, "by_modality": {"audio": counts}},
             "asynchrony_ms": {}, "bus": {}, **more}
 
 
@@ -51,7 +52,7 @@ class Logs(unittest.TestCase):
     def long(*rows):
         return [["log_s", "world_s", "sender", "seq", "field", "unit", "value"], *rows]
 
-    def of_events(self, heard_after_ms, audio_ms, visual_ms, push_ms=()):
+    def of_events(self, received_after_ms, audio_ms, visual_ms, push_ms=()):
         """A log with events every 100 ms, received and presented after the given times in ms."""
         at = [LIVE_FROM + i * 100_000_000 for i in range(len(audio_ms))]
         presented = [["modality", "event_id", "part", "scheduled_ns", "presented_ns", "uncertainty_ns", "outcome"]]
@@ -61,14 +62,14 @@ class Logs(unittest.TestCase):
         return self.log({
             "LOG_INFO.csv": self.long(["-1", "", "recorder", 0, "live_from_ns", "ns", LIVE_FROM], ["-1", "", "recorder", 0, "scene", "", HOSTILE]),
             "events.csv": [["event_id", "kind", "host_ns"], *([i, "hit", ns] for i, ns in enumerate(at))],
-            "CONTACT_EVENTS.csv": self.long(*([(ns - LIVE_FROM) * 1e-9 + heard_after_ms * 1e-3, "", "sim_node", i, "events[0].event_id", "", i] for i, ns in enumerate(at))),
+            "CONTACT_EVENTS.csv": self.long(*([(ns - LIVE_FROM) * 1e-9 + received_after_ms * 1e-3, "", "sim_node", i, "events[0].event_id", "", i] for i, ns in enumerate(at))),
             "presented.csv": presented})
 
 
 class Figures(Logs):
     def test_latencies_are_those_of_the_events(self):
         log = self.of_events(2.5, [20, 21, 25], [33, None, 40], [1, 1.5, 2])
-        hops = log_tables.latencies_ms(log.events(), log.first_heard_ns(), log.presented_ns())
+        hops = log_tables.latencies_ms(log.events(), log.first_received_ns(), log.presented_ns())
         np.testing.assert_allclose(hops["simulation to bus"], [2.5] * 3, atol=1e-6)
         np.testing.assert_allclose(hops["event to audio"], [20, 21, 25], atol=1e-6)
         np.testing.assert_allclose(hops["event to visual"], [33, 40], atol=1e-6)
@@ -87,10 +88,10 @@ class Figures(Logs):
         log = self.log({"LOG_INFO.csv": self.long(["-1", "", "recorder", 0, "live_from_ns", "ns", LIVE_FROM]),
                         "CONTACT_EVENTS.csv": self.long(["0.5", "", "sim_node", 0, "events[1].event_id", "", "9"], ["0.6", "", "sim_node", 1, "events[0].event_id", "", "9"],
                                                         ["0.1", "", "sim_node", 1, "events[0].contact_id", "", "9"])})
-        self.assertEqual(log.first_heard_ns(), {"9": LIVE_FROM + 500_000_000})
+        self.assertEqual(log.first_received_ns(), {"9": LIVE_FROM + 500_000_000})
 
     def test_published_thresholds_have_the_sign_of_the_later_modality(self):
-        rows = log_tables.thresholds(ROOT / "sync" / "presentation" / "thresholds.csv")
+        rows = read_rows(ROOT / "sync" / "presentation" / "thresholds.csv")
         both = {at: row["source"] for at, row in log_tables.bands(rows, "audio", "visual")}
         self.assertIn("ITU-R BT.1359-1, 1998", both[45.0])
         self.assertIn("ITU-R BT.1359-1, 1998", both[-125.0])
@@ -117,11 +118,11 @@ class Figures(Logs):
     def test_a_force_change_within_the_weber_fraction_is_not_counted(self):
         reference = np.array([[0, 0, 2.0]] * 100)
         for percent, share in ((6.9, 0), (7.1, 1)):
-            self.assertEqual(traces.beyond(reference, reference * (1 + percent / 100), 0.07), share)
+            self.assertEqual(traces.share_above_jnd(reference, reference * (1 + percent / 100), 0.07), share)
         weak = np.array([[0, 0, 0.1]] * 10)
-        self.assertEqual(traces.beyond(weak, weak + [0, 0, 0.034], 0.07), 0)  # 7 % of the floor of 0.5 N
-        self.assertEqual(traces.beyond(weak, weak + [0, 0, 0.036], 0.07), 1)
-        self.assertEqual(traces.beyond(np.zeros((5, 3)), np.zeros((5, 3)), 0.07), 0)
+        self.assertEqual(traces.share_above_jnd(weak, weak + [0, 0, 0.034], 0.07), 0)  # 7 % of the floor of 0.5 N
+        self.assertEqual(traces.share_above_jnd(weak, weak + [0, 0, 0.036], 0.07), 1)
+        self.assertEqual(traces.share_above_jnd(np.zeros((5, 3)), np.zeros((5, 3)), 0.07), 0)
 
     def test_the_force_at_a_time_is_that_of_the_newest_tick(self):
         hand = {"time_s": np.array([np.nan, 0.2, 0.1, 0.3]), "force_N": np.array([[9, 9, 9], [2, 0, 0], [1, 0, 0], [3, 0, 0]], dtype=float)}

@@ -138,7 +138,7 @@ class Files(unittest.TestCase):
         for folder in ("a", "b"):
             open(self.path(folder, "late.xml"), "w", encoding="utf-8").close()
         files = [self.path("a", "late.xml"), self.path("b", "late.xml"), "logged"]
-        self.assertEqual({"late": files[0], "late_2": files[1], "logged": "logged"}, rerender.named(files, self.fail))
+        self.assertEqual({"late": files[0], "late_2": files[1], "logged": "logged"}, rerender.profile_names(files, self.fail))
 
     def refusal(self, *words):
         done = subprocess.run([*tactus_command("rerender"), *words], capture_output=True, text=True, check=False)

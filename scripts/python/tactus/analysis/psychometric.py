@@ -27,7 +27,7 @@ class Condition:
     measured: bool  # whether the levels are measured, else requested. If a lower level is worse, they are severities, so that functions rise
 
     def words(self):
-        what = f"{self.pair[0]}–{self.pair[1]}" if self.pair else self.factor.words() + (f" as {self.factor.severity_axis()}" if self.factor.falling else "")
+        what = f"{self.pair[0]}–{self.pair[1]}" if self.pair else self.factor.words() + (f" as {self.factor.severity_axis()}" if self.factor.lower_is_worse else "")
         return f"{what}, {answers.CALLED[self.kind]}"
 
     def axis(self):

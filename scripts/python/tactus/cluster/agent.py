@@ -165,7 +165,7 @@ def prepare(request):
     (home / "files").mkdir(exist_ok=True)
     services.remove_leftovers()
     folder = services.make_folder(out)
-    lock = services.hold(folder)
+    lock = services.lock_folder(folder)
     for name, words in request["nodes"].items():
         services.Service(folder, name, with_folders(request, words), out / "logs" / f"{name}.log", home)
     net = network.choose("auto", request["port"]) if request["private"] else network.Network(False, [], "the host's")
@@ -263,7 +263,7 @@ def stop(request):
     services.request_end(members, request.get("patience", END_S))
     still_running = [s for s in members if not s.is_down()]
     for s in still_running:
-        s.order("k")
+        s.control("k")
     services.wait_until(lambda: all(s.is_down() for s in still_running), 2)
     return {"killed": [s.name for s in still_running]}
 
@@ -276,7 +276,7 @@ def restart(request):
 def send_command(request):
     """Sends a command of runsv(8) to nodes: p pause, c continue, k kill, t end (the node restarts)."""
     for name in request["names"]:
-        if not running_service(request, name).order(request["letter"]):
+        if not running_service(request, name).control(request["letter"]):
             raise Refusal(f"{name}: its supervisor does not respond; see the log supervisor.log of the host")
     return {}
 

@@ -4,11 +4,12 @@ Sources: sizes and rates are those of the default scene's log (traffic.csv). The
 service time s and random arrivals is rho s / (2 (1 - rho)) (Pollaczek and Khinchine for M/D/1; Kleinrock, Queueing Systems I, 1975,
 equation 5.63); the tests compare with it.
 """
-import csv
 import dataclasses
 import math
 import pathlib
 import random
+
+from tactus.tables import read_rows
 
 WIRE_OVERHEAD_BYTES = 8 + 20 + 14 + 4 + 8 + 12 + 8 + 12  # LCM's head and a channel, IP, Ethernet with check and gap, UDP: RFC 768, RFC 791, IEEE 802.3
 FEW_CLOCKS, MAX_CLOCKS, PROBES, PERIOD_S, MAPS_PER_S = 16, 64, 8, 2.0, 2  # sync/clock_sync/clock_probe.h, sync/tools/sync_node_main.cpp
@@ -25,8 +26,8 @@ class Flow:
 
 
 def read_flows():
-    with open(pathlib.Path(__file__).with_name("traffic.csv"), newline="", encoding="utf-8") as file:
-        return [Flow(r["channel"], r["of"], float(r["per_s"] or 0), int(r["bytes"]), float(r["thin_per_s"] or 0)) for r in csv.DictReader(file)]
+    rows = read_rows(pathlib.Path(__file__).with_name("traffic.csv"))
+    return [Flow(r["channel"], r["of"], float(r["per_s"] or 0), int(r["bytes"]), float(r["thin_per_s"] or 0)) for r in rows]
 
 
 def sender_count(of, hosts):

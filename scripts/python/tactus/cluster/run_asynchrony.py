@@ -1,5 +1,4 @@
 """The asynchronies of a run that was gathered from the hosts of a lab: exports its logs and evaluates them with asynchrony.py."""
-import csv
 import json
 import pathlib
 import re
@@ -8,6 +7,7 @@ import tempfile
 
 from tactus.cluster import asynchrony
 from tactus.paths import BIN
+from tactus.tables import read_rows
 
 TITLES = {"nothing": "nothing spoilt", "others": "another host spoilt", "spoilt": "one of the two hosts spoilt, or the recorder's"}
 SUMMARY_BIN_MS = 0.11     # a bin of SoaHistogram, and the rounding of summary.json
@@ -21,10 +21,8 @@ def log_parts(out):
 
 
 def rows(path):
-    if not path.exists():
-        return []
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    """Rows of a table of export_log, which writes none for a channel without messages."""
+    return read_rows(path) if path.exists() else []
 
 
 def run_program(*words):

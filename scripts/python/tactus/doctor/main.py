@@ -18,7 +18,7 @@ import sys
 from tactus.doctor import bus, clocks, devices, realtime
 from tactus.doctor.line import GOOD, MISSING, WEAK
 from tactus.launch.equipment import has_sound_card
-from tactus.launch.network import ROUTE, allowed, candidates
+from tactus.launch.network import ROUTE, candidates, is_allowed
 
 COLOURS = {GOOD: "\x1b[32m", WEAK: "\x1b[33m", MISSING: "\x1b[31m"}
 SIGN = {GOOD: "good   ", WEAK: "weak   ", MISSING: "missing"}
@@ -40,7 +40,7 @@ def progress(what):
 
 def examine(seconds, port, out):
     """Yields the result of each check."""
-    private = any(allowed(flags, ROUTE) for flags, _ in candidates(net=True))
+    private = any(is_allowed(flags, ROUTE) for flags, _ in candidates(net=True))
     network = [bus.route(), bus.loopback(), bus.namespaces(private)]
     bus.either(network)
     yield from network

@@ -58,7 +58,7 @@ def make_folder(out):
                   "both are full; set TMPDIR to a folder that can")
 
 
-def hold(folder):
+def lock_folder(folder):
     """Marks the folder as in use until the returned file is closed or this process ends. A lock, because process ids differ
     between process namespaces."""
     lock = open(folder / "new", "w", encoding="ascii")
@@ -95,7 +95,7 @@ class Service:
                                                    folder=shlex.quote(str(working_folder)), command=shlex.join(command)))
         write_script(self.path / "finish", FINISH.format(name=name, window=WINDOW_S, most=MAX_DEATHS))
 
-    def order(self, letter):
+    def control(self, letter):
         """Sends a command of runsv(8): u, d, t, k, p, c. False without a running runsv."""
         try:
             pipe = os.open(self.path / "supervise" / "control", os.O_WRONLY | os.O_NONBLOCK)
@@ -107,7 +107,7 @@ class Service:
 
     def start(self, patience_s=5.0):
         """Starts the node; True on success. Waits up to patience_s for runsv."""
-        return wait_until(lambda: self.order("u"), patience_s)
+        return wait_until(lambda: self.control("u"), patience_s)
 
     def is_down(self):
         try:
@@ -156,18 +156,18 @@ class Service:
 def request_end(services, patience_s):
     """Asks all services to end and waits at most patience_s."""
     for s in services:
-        s.order("d")
+        s.control("d")
     wait_until(lambda: all(s.is_down() for s in services), patience_s)
 
 
 def end_or_kill(services, patience_s):
     """Waits at most patience_s for all services, then kills the others. Returns their names."""
     wait_until(lambda: all(s.is_down() for s in services), patience_s)
-    stubborn = [s for s in services if not s.is_down()]
-    for s in stubborn:
-        s.order("k")
+    killed = [s for s in services if not s.is_down()]
+    for s in killed:
+        s.control("k")
     wait_until(lambda: all(s.is_down() for s in services), 2.0)
-    return [s.name for s in stubborn]
+    return [s.name for s in killed]
 
 
 def wait_until(condition, timeout_s):

@@ -40,25 +40,25 @@ def run(plan, stop, claim_out):
     plan_file = plan.out / "logs" / "virtual_time.json"
     plan_file.write_text(json.dumps(words, indent=1) + "\n", encoding="utf-8")
     report_run(f"{plan.scene.name}, {plan.seconds:g} s of virtual time, seed {plan.seed}, without pictures, results in {plan.out}")
-    wrong = play(plan, plan_file, stop)
-    wrong += summarise(plan, git, set(), {}, [])
+    errors = play(plan, plan_file, stop)
+    errors += summarise(plan, git, set(), {}, [])
     report_run(f"results in {plan.out}")
     os.close(claim)
-    return wrong
+    return errors
 
 
 def play(plan, plan_file, stop):
     """Runs virtual_time and prints its progress. Returns the errors."""
     command = [str(cluster.BIN / "virtual_time"), str(plan_file), "--seconds", f"{plan.seconds:g}", "--seed", str(plan.seed), *plan.virtual]
     log = plan.out / "logs" / "virtual_time.log"
-    with open(log, "w", encoding="utf-8") as said, open(log, encoding="utf-8", errors="replace") as output:
-        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=said, stderr=said, start_new_session=True,
+    with open(log, "w", encoding="utf-8") as log_file, open(log, encoding="utf-8", errors="replace") as output:
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log_file, stderr=log_file, start_new_session=True,
                                    preexec_fn=cluster.die_with_parent)
-        asked = False
+        forwarded = False
         while process.poll() is None:
-            if stop.asked and not asked:
+            if stop.requested and not forwarded:
                 process.send_signal(signal.SIGTERM)
-                asked = True
+                forwarded = True
             forward_output(output)
             time.sleep(POLL_S)
         forward_output(output)
