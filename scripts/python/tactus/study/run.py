@@ -52,7 +52,7 @@ def main(words):
         study = study_file.read(options.study)
         if options.simulated and study.task != "game" and any(study.observer(c) is None for c in study.conditions):
             raise Refusal(f"{options.study}: has no <observer> for {next(c.id for c in study.conditions if study.observer(c) is None)}; add one, or leave out --simulated")
-        return session.lead(study, options)
+        return session.run_session(study, options)
     except Refusal as refusal:
         terminal.report_error(f"study: {refusal}")
     except OSError as error:
