@@ -48,14 +48,14 @@ class Bus(unittest.TestCase):
         for private in (True, False):
             for loop in (GOOD, WEAK):
                 lines = [bus.namespaces(private), Line("multicast loopback", loop, "")]
-                bus.either(lines)
+                bus.mark_required_network(lines)
                 self.assertEqual(lines[0].needed, not private and loop != GOOD)
                 self.assertEqual(lines[0].verdict == MISSING, lines[0].needed)
 
     def test_small_buffers_are_weak(self):
         with mock.patch.object(bus.socket.socket, "setsockopt", side_effect=[OSError, None]), \
              mock.patch.object(bus.socket.socket, "getsockopt", return_value=2 * 212992):
-            line = bus.room()
+            line = bus.receive_buffer()
         self.assertEqual(line.verdict, WEAK)
         self.assertEqual(line.figures["given_bytes"], 212992)
         self.assertIn("rmem_max", line.remedy)

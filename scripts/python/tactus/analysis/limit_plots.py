@@ -1,7 +1,7 @@
 """Figures of limits: all limits of a factor, the ratio of L_break to L_detect, and felt properties."""
 import numpy as np
 
-from tactus.analysis.look import BREAK, INK, PALE, colour, figures, stamp
+from tactus.analysis.plot_style import BREAK, INK, PALE, colour, figures, stamp
 
 MARK = {"detect": "o", "appear": "s", "break": "D"}
 NAME = {"detect": "L_detect", "appear": "L_appear", "break": "L_break"}

@@ -3,7 +3,7 @@ import numpy as np
 from matplotlib.colors import TwoSlopeNorm
 
 from tactus.analysis import limits, resampling
-from tactus.analysis.look import BREAK, INK, PALE, colour, figures, stamp
+from tactus.analysis.plot_style import BREAK, INK, PALE, colour, figures, stamp
 
 SHADE = "RdYlBu"
 
