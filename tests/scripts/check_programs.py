@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Checks how the programs of the cluster meet wrong options and an unusable network.
 
-  check_programs.py help SOURCE_ROOT PROGRAM...      every program explains itself with --help
-  check_programs.py options SOURCE_ROOT PROGRAM...   a wrong option ends with exit 1 and one sentence to stderr
+  check_programs.py help SOURCE_ROOT PROGRAM...      every program prints help
+  check_programs.py options SOURCE_ROOT PROGRAM...   an invalid option exits with 1 and one sentence on stderr
   check_programs.py network SOURCE_ROOT PROGRAM...   so do a missing multicast route and a port that is taken
 
 Programs run in a network namespace of their own; where that is not allowed, `network` is skipped (exit 77).
@@ -83,11 +83,11 @@ def small_log():
 
 
 def scene_arguments(root, program):
-    """What a program cannot do without."""
+    """Required arguments of a program."""
     if name_of(program) == "replay":
-        return [small_log()]  # it is looked at before the bus is joined
+        return [small_log()]  # it is read before the bus is joined
     if " LOG" in help_of(program):
-        return [os.path.join(root, "LICENSE")]  # a file that is there; it is not read before the options are
+        return [os.path.join(root, "LICENSE")]  # any existing file; the options are read first
     if name_of(program) == "degrade":
         return ["off"]
     if name_of(program) == "simulation":
@@ -130,7 +130,7 @@ def check_no_route(root, program):
 
 def check_busy_port(root, program):
     port = 7667
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as holder:  # shares with nobody
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as holder:  # without SO_REUSEADDR
         holder.bind(("", port))
         return one_sentence(program, scene_arguments(root, program) + ["--port", str(port)], str(port),
                             may_say_before=True)

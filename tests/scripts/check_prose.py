@@ -3,7 +3,7 @@
 
   check_prose.py [OPTIONS] [PATH...]
 
-Prints each offence as FILE:LINE: rule: "text": what is wrong; what to write. Exits 1 when there is one. PATH limits the check
+Prints each offence as FILE:LINE: rule: "text": fault; replacement. Exits 1 when there is one. PATH limits the check
 to files or folders; default: the whole tree.
 
   --summary      prints counts per folder and per rule instead of each offence

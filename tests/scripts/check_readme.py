@@ -1,4 +1,4 @@
-"""Runs what the README tells its reader to run: every command of its sh blocks and every ./scripts/... of its text.
+"""Runs the commands of the README: every command of its sh blocks and every ./scripts/... of its text.
 
 Takes the repository's root. A command that would run for long is asked whether its arguments are right; the run itself is a
 test of its own (tests/cluster/run_test.cpp). Links to files of the repository must lead somewhere.

@@ -17,7 +17,7 @@ class CheckLayers(unittest.TestCase):
                     file.write(text)
             return list(check_layers.offences(root))
 
-    def test_what_is_allowed_passes(self):
+    def test_allowed_code_passes(self):
         self.assertEqual([], self.found({
             "audio_node/a.cpp": '#include "audio_node/a.h"\n#include "sync/time/time.h"\n#include "lcmtypes/valid.h"\n#include <tactus/pose_t.hpp>\n',
             "sync/bus/bus.cpp": "#include <lcm/lcm-cpp.hpp>\n",
@@ -42,7 +42,7 @@ class CheckLayers(unittest.TestCase):
                 self.assertEqual(1 if "EGL" not in line else len(found), len(found))
                 self.assertTrue(found and found[0].startswith(name + ":2: "), found)
 
-    def test_a_test_that_would_never_run_for_its_name_is_found(self):
+    def test_a_test_title_with_a_semicolon_is_found(self):
         for text in ('TEST_CASE("one; two") {', 'TEST_CASE(\n    "one "\n    "and; two", "[x]") {'):
             found = self.found({"tests/sync/a_test.cpp": "\n" + text + "\n}\n"})
             self.assertEqual(1, len(found))

@@ -48,7 +48,7 @@ class GenerateSettings(unittest.TestCase):
                 self.assertEqual(1, len(err.strip().splitlines()))
                 self.assertEqual("", text)
 
-    def test_a_limit_that_protects_a_person_is_marked(self):
+    def test_a_safety_limit_is_marked(self):
         rows = "heat,degC,42,34,43,Heat,design,max\ncold,degC,15,10,30,Cold,design,min\nrate,Hz,50,1,100,Rate,design\n"
         text = self.generate(rows, more_columns=",safety")[2]
         self.assertIn('"Heat", "design", "max", false}', text)
@@ -57,7 +57,7 @@ class GenerateSettings(unittest.TestCase):
         self.assertIn("| `heat` | degC | 42 | 34 .. 43; in a scene 34 .. 42 | Heat | design |", text)
         self.assertIn("| `cold` | degC | 15 | 10 .. 30; in a scene 15 .. 30 | Cold | design |", text)
 
-    def test_what_may_change_while_the_node_runs_is_marked(self):
+    def test_a_live_setting_is_marked(self):
         rows = "gain,1,1,0,2,Gain,design,,yes\nheat,degC,42,34,43,Heat,design,max,yes\nrate,Hz,50,1,100,Rate,design\n"
         text = self.generate(rows, more_columns=",safety,live")[2]
         self.assertIn('"Gain", "design", "", true}', text)
@@ -67,7 +67,7 @@ class GenerateSettings(unittest.TestCase):
         self.assertIn("34 .. 43; in a scene 34 .. 42; live", text)
         self.assertNotEqual(0, self.generate("gain,1,1,0,2,Gain,design,,maybe\n", more_columns=",safety,live")[0])
 
-    def test_a_mark_that_means_nothing_is_refused(self):
+    def test_an_unknown_mark_is_refused(self):
         for row in ("rate,Hz,50,1,100,Rate,design,up", "loud,bool,false,,,Loud,design,max", "name,text,,,,Name,design,min"):
             with self.subTest(row=row):
                 code, err, text = self.generate(row + "\n", more_columns=",safety")

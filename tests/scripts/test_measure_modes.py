@@ -1,4 +1,4 @@
-"""What measure_modes --check refuses: modes that are missing, and modes, dampings and nodal lines that are off."""
+"""Tests of measure_modes --check, which refuses missing modes and wrong frequencies, dampings and nodal lines."""
 import importlib.machinery
 import importlib.util
 import os
@@ -16,26 +16,26 @@ def table(found, frequency_error=0.0, damping_error=0.0, below_dB=100.0):
 
 
 class Check(unittest.TestCase):
-    def test_is_silent_when_every_mode_that_is_driven_was_found(self):
+    def test_passes_when_every_excited_mode_was_found(self):
         self.assertEqual(list(measure_modes.failures(table(3))), [])
 
-    def test_refuses_a_mode_too_few_too_many_and_none_at_all(self):
+    def test_refuses_missing_and_additional_modes(self):
         for found in (2, 4, 0):
             self.assertEqual(list(measure_modes.failures(table(found))),
                              [f"a bar: {found} modes were found, where by closed forms the blow drives 3"])
 
-    def test_refuses_what_is_off(self):
+    def test_refuses_wrong_frequencies_and_dampings(self):
         for wrong in ({"frequency_error": 0.0011}, {"damping_error": -0.051}, {"below_dB": 39.9}):
             self.assertNotEqual(list(measure_modes.failures(table(3, **wrong))), [])
 
 
 class Expected(unittest.TestCase):
-    def test_a_blow_drives_all_modes_but_those_that_it_meets_on_a_nodal_line(self):
+    def test_a_strike_excites_all_modes_except_on_their_nodal_lines(self):
         # On the middle of a plate: those with m and n odd, 4 of 16.
         keys = [(m, n) for m in range(1, 5) for n in range(1, 5)]
         self.assertEqual(measure_modes.driven(keys, [measure_modes.plate_shape(key, (0.5, 0.5)) for key in keys]), 4)
 
-    def test_each_body_is_struck_where_all_of_its_modes_are_driven(self):
+    def test_each_body_is_struck_where_all_of_its_modes_are_excited(self):
         counts = []
         for _, _, expected, count, _ in measure_modes.bodies(measure_modes.materials()):
             self.assertEqual(count, len(expected))

@@ -17,26 +17,26 @@ class Ages(unittest.TestCase):
     sent = {0: {n: n * MS for n in range(100)}}
     fences = {0: 20 * MS, 1: 40 * MS, 2: 60 * MS}
 
-    def test_the_newest_report_of_each_frame_is_as_old_as_it_is_at_the_fence(self):
+    def test_the_age_of_a_frame_is_that_of_its_newest_report_at_the_fence(self):
         newest, _ = measure_motion.ages({0: {0: 12}, 1: {0: 35}, 2: {0: 57}}, self.sent, self.fences)
         self.assertEqual([8, 5, 3], newest)
 
-    def test_every_report_after_the_first_frame_waits_for_the_frame_that_shows_it_or_a_later_one(self):
+    def test_every_report_waits_for_the_first_frame_that_shows_it_or_a_later_one(self):
         _, each = measure_motion.ages({0: {0: 12}, 1: {0: 14}}, self.sent, self.fences)
         self.assertEqual([40 - 13, 40 - 14], each)
 
-    def test_a_frame_that_shows_the_same_again_is_older_and_no_report_counts_twice(self):
+    def test_a_repeated_frame_is_older_and_each_report_counts_once(self):
         newest, each = measure_motion.ages({0: {0: 12}, 1: {0: 13}, 2: {0: 13}}, self.sent, self.fences)
         self.assertEqual([8, 27, 47], newest)
         self.assertEqual([27], each)
 
-    def test_of_a_number_the_low_bits_are_drawn(self):
+    def test_the_low_bits_of_a_number_are_drawn(self):
         high = 5 << 28
         sent = {1: {high + n: n * MS for n in range(100)}}
         newest, _ = measure_motion.ages({0: {1: 12}}, sent, self.fences)
         self.assertEqual([8], newest)
 
-    def test_a_frame_without_a_clock_and_a_report_that_nobody_sent_count_for_nothing(self):
+    def test_frames_without_a_clock_and_unsent_reports_are_ignored(self):
         self.assertEqual(([], []), measure_motion.ages({7: {0: 12}, 0: {0: 1000}, 1: {3: 1}}, self.sent, self.fences))
 
 

@@ -33,7 +33,7 @@ class Logs(unittest.TestCase):
         file.flush()
         return file.name
 
-    def test_what_is_missing_in_the_numbering_of_each_sender_is_counted(self):
+    def test_gaps_in_the_sequence_numbers_of_each_sender_are_counted(self):
         drawn = random.Random(3)
         kept, expected = [], {}
         for source in (5, 6):
@@ -45,12 +45,12 @@ class Logs(unittest.TestCase):
         self.assertEqual(recorded, 1400)
         self.assertEqual(dict(seen), expected)
 
-    def test_a_message_heard_twice_counts_once_and_foreign_ones_not_at_all(self):
+    def test_repeated_messages_count_once_and_foreign_ones_never(self):
         recorded, _ = measure_recording.numbered(self.log(("A", message(5, 1, 3)), ("A", message(5, 1, 3)), ("B", b"letter"),
                                                           ("C", message(5, 1, 0, run=0))))
         self.assertEqual(recorded, 1)
 
-    def test_a_log_that_is_cut_is_read_to_its_last_whole_event(self):
+    def test_a_truncated_log_is_read_to_its_last_complete_event(self):
         path = self.log(("A", b"1" * 100), ("B", b"2" * 100))
         whole = pathlib.Path(path).read_bytes()
         for length in range(len(whole)):
@@ -66,7 +66,7 @@ class Drops(unittest.TestCase):
                        "   11: 00000000:1DF3 00000000:0000 07 00000000:00000000 00:00000000 00000000     0        0 222 2 0000000000000000 7",
                        "   12: 00000000:1DF3 00000000:0000 07 00000000:00000000 00:00000000 00000000     0        0 333 2 0000000000000000 9"])
 
-    def test_drops_belong_to_the_process_that_holds_the_socket_once_however_often_it_holds_it(self):
+    def test_drops_of_a_socket_count_once_for_its_process(self):
         text = self.TABLE + "\nprocess recorder\nlrwx 1 0 0 3 -> socket:[111]\nlrwx 1 0 0 4 -> socket:[111]\n" \
             "process lcm-logger\nlrwx 1 0 0 3 -> socket:[222]\nlrwx 1 0 0 4 -> socket:[333]\nlrwx 1 0 0 5 -> socket:[999]\n"
         looked = measure_recording.drops(text)

@@ -15,7 +15,7 @@ def printable(text):
     return "".join(c if c == "\n" or not (ord(c) < 32 or 127 <= ord(c) < 160) else f"\\x{ord(c):02x}" for c in text)
 
 
-def tell(text, stream=None):
+def report(text, stream=None):
     """Prints complete lines and flushes."""
     stream = stream or sys.stdout
     try:
@@ -26,9 +26,10 @@ def tell(text, stream=None):
         os.close(null)
 
 
-def say(text):
-    tell(f"run: {text}")
+def report_run(text):
+    """Prints a line of scripts/run."""
+    report(f"run: {text}")
 
 
-def complain(text):
-    tell(text, sys.stderr)
+def report_error(text):
+    report(text, sys.stderr)

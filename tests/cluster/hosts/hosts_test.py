@@ -14,8 +14,8 @@ import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(REPOSITORY / "scripts" / "python"))
-from tactus.cluster import rehearsal
-from tactus.cluster.reach import Failed
+from tactus.cluster import lab_cluster
+from tactus.cluster.host_connection import Failed
 from tactus.launch.cluster import BIN
 from tactus.refusal import Refusal
 
@@ -45,15 +45,15 @@ class Hosts(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="tactus-hosts-test-"))
-        cls.r = rehearsal.Rehearsal(write_file(cls.folder), cls.folder, ordinary=("sound",))
+        cls.r = lab_cluster.LabCluster(write_file(cls.folder), cls.folder, ordinary=("sound",))
         cls.addClassCleanup(shutil.rmtree, cls.folder, ignore_errors=True)
         cls.addClassCleanup(cls.r.close)
         cls.r.up()
         cls.expect_whole(cls)
 
     def expect_whole(self):
-        if self.r.wait_until_whole(PATIENCE_S) is None:
-            raise AssertionError(f"not whole: {({n: self.r.watch.state(n) for n in self.r.placement})}")
+        if self.r.wait_until_running(PATIENCE_S) is None:
+            raise AssertionError(f"not whole: {({n: self.r.node_states.state(n) for n in self.r.placement})}")
 
     def wait(self, condition, what, patience_s=PATIENCE_S):
         end = time.monotonic() + patience_s
@@ -64,7 +64,7 @@ class Hosts(unittest.TestCase):
     def at(self, host, *words):
         """Output of one of our programs, run with this host's view of the network."""
         c = self.r.cluster
-        environment = dict(os.environ, TACTUS_GROUP=c.bus.group, TACTUS_PORT=str(c.bus.port), TACTUS_TTL=str(c.bus.ttl), TACTUS_RUN_ID=str(self.r.watch.run_id))
+        environment = dict(os.environ, TACTUS_GROUP=c.bus.group, TACTUS_PORT=str(c.bus.port), TACTUS_TTL=str(c.bus.ttl), TACTUS_RUN_ID=str(self.r.node_states.run_id))
         inside = self.r.lab.hosts[host].inside() if host else []
         return subprocess.run([*inside, str(BIN / words[0]), *words[1:]], env=environment, capture_output=True, text=True, timeout=60, check=False)
 
@@ -89,7 +89,7 @@ class Hosts(unittest.TestCase):
     def test_10_every_host_runs_what_the_file_says_from_a_build_of_its_own(self):
         states = self.r.operator.states()
         for host, s in states.items():
-            self.assertEqual(set(self.r.cluster.of_host(host)), set(s["nodes"]))
+            self.assertEqual(set(self.r.cluster.nodes_on(host)), set(s["nodes"]))
             for node in s["nodes"].values():
                 self.assertTrue(node["up"])
         self.assertEqual(1, len({s["run"]["build"] for s in states.values()}))
@@ -157,17 +157,17 @@ class Hosts(unittest.TestCase):
 
     def doctor(self):
         from tactus.cluster import checkup
-        said, checkup.tell = checkup.tell, lambda *_: None
+        said, checkup.report = checkup.report, lambda *_: None
         try:
             return checkup.run(self.r.operator, 2)
         finally:
-            checkup.tell = said
+            checkup.report = said
 
     def test_20_a_sense_moves_and_nobody_else_is_started_anew(self):
         before = self.incarnations()
         self.r.operator.move("audio_node", "picture")
         self.r.placement["audio_node"] = "picture"
-        self.wait(lambda: self.r.watch.state("audio_node") == "running", "audio_node runs on its new host")
+        self.wait(lambda: self.r.node_states.state("audio_node") == "running", "audio_node runs on its new host")
         states = self.r.operator.states()
         self.assertIn("audio_node", states["picture"]["nodes"])
         self.assertNotIn("audio_node", states["sound"]["nodes"])
@@ -179,15 +179,15 @@ class Hosts(unittest.TestCase):
         self.assertEqual(before, after)
 
     def test_21_what_cannot_be_moved_is_refused(self):
-        for node, host, word in (("recorder", "sound", "recording"), ("sync_node", "sound", "each host"), ("sim_node", "sound", "--anew"),
+        for node, host, word in (("recorder", "sound", "recording"), ("sync_node", "sound", "each host"), ("sim_node", "sound", "--restart"),
                                  ("audio_node", "sound", "already"), ("audio_node", "cellar", "no such host"), ("nose_node", "sound", "no such node")):
             with self.subTest(node), self.assertRaisesRegex(Refusal, word):
                 self.r.operator.move(node, host)
 
     def test_22_a_killed_node_comes_back_alone(self):
         before = self.incarnations()
-        self.r.operator.ask("sound", "order", names=["thermal_node"], letter="k")
-        self.wait(lambda: self.r.watch.state("thermal_node") != "running", "thermal_node is missed")
+        self.r.operator.request("sound", "send_command", names=["thermal_node"], letter="k")
+        self.wait(lambda: self.r.node_states.state("thermal_node") != "running", "thermal_node is missed")
         self.expect_whole()
         after = self.incarnations()
         self.assertNotEqual(before.pop("thermal_node"), after.pop("thermal_node"))
@@ -199,7 +199,7 @@ class Hosts(unittest.TestCase):
         self.wait(lambda: self.states_at("sound").get("audio_node") in ("stale", "input lost"), "audio_node says that it hears nothing")
         self.assertIn(self.states_at("sound").get("thermal_node"), ("stale", "input lost"))
         for node in ("sim_node", "haptic_node", "visual_node"):
-            self.assertEqual("running", self.r.watch.state(node))
+            self.assertEqual("running", self.r.node_states.state(node))
         self.r.lab.hosts["sound"].mend()
         self.expect_whole()
         self.assertEqual(before, self.incarnations())
@@ -220,7 +220,7 @@ class Hosts(unittest.TestCase):
         self.assertEqual(0, there.returncode, there.stderr)
         halves = {row["profile"] for name, row in self.health().items() if name in ("haptic_node", "visual_node")}
         self.assertEqual(1, len(halves), "the half with the simulation has one profile")
-        self.r.lab.unite()
+        self.r.lab.rejoin()
         self.expect_whole()
 
         def agreed():
@@ -236,7 +236,7 @@ class Hosts(unittest.TestCase):
         before, processes = self.health(), self.incarnations()
         host = self.r.lab.hosts["picture"]
         host.kill()
-        self.wait(lambda: self.r.watch.state("visual_node") != "running", "the picture is missed")
+        self.wait(lambda: self.r.node_states.state("visual_node") != "running", "the picture is missed")
         host.boot()
         self.r.operator.up("again")
         self.expect_whole()
@@ -262,7 +262,7 @@ class Hosts(unittest.TestCase):
 
     def test_50_another_cluster_on_the_same_port_is_refused_and_on_another_hears_nothing(self):
         from tactus.cluster.cluster_file import read
-        from tactus.cluster.orders import Operator
+        from tactus.cluster.cluster_operator import Operator
         config = str(self.r.lab.folder / "ssh_config")
         same = Operator(read(str(write_file(self.folder, "second", 7667)), self.folder / "x"), config, quiet=True)
         with self.assertRaisesRegex(Refusal, "another cluster already uses"):
@@ -284,7 +284,7 @@ class Hosts(unittest.TestCase):
 
     def test_51_a_build_that_speaks_otherwise_is_refused_with_what_differs(self):
         from tactus.cluster.cluster_file import read
-        from tactus.cluster.orders import Operator
+        from tactus.cluster.cluster_operator import Operator
         own = self.r.lab.hosts["picture"].home / "own" / "bin"
         own.mkdir(parents=True)
         said = subprocess.run([BIN / "message_types"], capture_output=True, text=True, check=True).stdout
@@ -313,5 +313,5 @@ class Hosts(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rehearsal.enter(__file__, sys.argv[1:])
+    lab_cluster.enter(__file__, sys.argv[1:])
     unittest.main(verbosity=2, failfast=True)

@@ -10,8 +10,8 @@ import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(REPOSITORY / "scripts" / "python"))
-from tactus.cluster import cluster_file, rehearsal, status
-from tactus.cluster.orders import Operator
+from tactus.cluster import cluster_file, lab_cluster, status
+from tactus.cluster.cluster_operator import Operator
 
 PATIENCE_S = 60
 FILE = """<cluster name="beside">
@@ -44,10 +44,10 @@ class Namespaces(unittest.TestCase):
             time.sleep(0.2)
 
     def whole(self):
-        return status.whole(self.operator.cluster, *status.gather(self.operator))
+        return status.all_running(self.operator.cluster, *status.query(self.operator))
 
     def runs_at(self, node):
-        states, _ = status.gather(self.operator)
+        states, _ = status.query(self.operator)
         return [host for host, s in states.items() if not isinstance(s, Exception) and node in s["nodes"]]
 
     def test_a_sense_runs_in_a_namespace_and_moves_out_of_it(self):
@@ -68,5 +68,5 @@ class Namespaces(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rehearsal.enter(__file__, sys.argv[1:])
+    lab_cluster.enter(__file__, sys.argv[1:])
     unittest.main(verbosity=2)

@@ -18,7 +18,7 @@ import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(REPOSITORY / "scripts" / "python"))
-from tactus.cluster import rehearsal
+from tactus.cluster import lab_cluster
 from tactus.launch.cluster import BIN
 from tactus.refusal import Refusal
 
@@ -47,7 +47,7 @@ class Sites(unittest.TestCase):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="tactus-relay-test-"))
         path = cls.folder / "sites.xml"
         path.write_text(FILE, encoding="utf-8")
-        cls.r = rehearsal.Rehearsal(path, cls.folder)
+        cls.r = lab_cluster.LabCluster(path, cls.folder)
         cls.addClassCleanup(shutil.rmtree, cls.folder, ignore_errors=True)
         cls.addClassCleanup(cls.r.close)
         cls.r.lab.sites([["world"], ["near"], ["far"]], LINE)
@@ -55,8 +55,8 @@ class Sites(unittest.TestCase):
         cls.expect_whole(cls)
 
     def expect_whole(self):
-        if self.r.wait_until_whole(PATIENCE_S) is None:
-            raise AssertionError(f"not whole: {({n: self.r.watch.state(n) for n in self.r.placement})}")
+        if self.r.wait_until_running(PATIENCE_S) is None:
+            raise AssertionError(f"not whole: {({n: self.r.node_states.state(n) for n in self.r.placement})}")
 
     def wait(self, condition, what, patience_s=PATIENCE_S):
         end = time.monotonic() + patience_s
@@ -71,7 +71,7 @@ class Sites(unittest.TestCase):
             outs[host] = self.folder / f"heard_{host}"
             shutil.rmtree(outs[host], ignore_errors=True)
             outs[host].mkdir()
-            words = [BIN / "recorder", "--out", outs[host], "--name", f"ear_{host}", "--run-id", self.r.watch.run_id, "--group", c.bus.group, "--port", c.bus.port,
+            words = [BIN / "recorder", "--out", outs[host], "--name", f"ear_{host}", "--run-id", self.r.node_states.run_id, "--group", c.bus.group, "--port", c.bus.port,
                      "--ttl", "0", "--tags", "none", "--seconds", 1]
             recorders[host] = subprocess.Popen([*self.r.lab.hosts[host].inside(), *map(str, words)], stderr=subprocess.DEVNULL)
         time.sleep(seconds)
@@ -108,7 +108,7 @@ class Sites(unittest.TestCase):
         return {name: node["pid"] for s in self.r.operator.states().values() for name, node in s["nodes"].items()}
 
     def note(self, relay):
-        return self.r.watch.newest.get(relay, {}).get("note", "")
+        return self.r.node_states.newest.get(relay, {}).get("note", "")
 
     def test_10_every_sense_in_every_site_presents_every_event_and_what_must_not_cross_does_not(self):
         begin = time.monotonic()
@@ -161,7 +161,7 @@ class Sites(unittest.TestCase):
 
     def at(self, host, *words):
         c = self.r.cluster
-        environment = dict(os.environ, TACTUS_GROUP=c.bus.group, TACTUS_PORT=str(c.bus.port), TACTUS_TTL=str(c.bus.ttl), TACTUS_RUN_ID=str(self.r.watch.run_id))
+        environment = dict(os.environ, TACTUS_GROUP=c.bus.group, TACTUS_PORT=str(c.bus.port), TACTUS_TTL=str(c.bus.ttl), TACTUS_RUN_ID=str(self.r.node_states.run_id))
         return subprocess.run([*self.r.lab.hosts[host].inside(), str(BIN / words[0]), *words[1:]], env=environment, capture_output=True, text=True, timeout=60, check=False)
 
     def test_30_a_slow_line_makes_its_site_sparse_and_no_other(self):
@@ -187,14 +187,14 @@ class Sites(unittest.TestCase):
         heard = self.hear(["near"], 3)
         self.assertEqual(0, heard["near"]["contacts"]["by_modality"]["audio"]["lost"])
         for node in ("sim_node", "haptic_node", "audio_node"):
-            self.assertEqual("running", self.r.watch.state(node), f"{node}: {self.note(node)}")
+            self.assertEqual("running", self.r.node_states.state(node), f"{node}: {self.note(node)}")
         self.r.lab.hosts["far"].mend()
         self.expect_whole()
         self.assertEqual(before, self.incarnations())
 
     def test_32_a_killed_relay_comes_back_alone(self):
         before = self.incarnations()
-        self.r.operator.ask("near", "order", names=["relay_near"], letter="k")
+        self.r.operator.request("near", "send_command", names=["relay_near"], letter="k")
         self.wait(lambda: self.incarnations().get("relay_near") != before["relay_near"], "it is started again")
         self.expect_whole()
         after = self.incarnations()
@@ -207,7 +207,7 @@ class Sites(unittest.TestCase):
 
     def test_34_who_is_no_relay_is_not_heard(self):
         """The same bytes from the address of a relay that is down are accepted: a relay is identified by its address only."""
-        header = struct.pack(">qqiqiqq", -1, 1, 1, self.r.watch.run_id, 7, 1, 0)
+        header = struct.pack(">qqiqiqq", -1, 1, 1, self.r.node_states.run_id, 7, 1, 0)
         datagram = b"TRL1\0SIM_COMMAND\0" + bytes(8) + header + bytes(40)
 
         def arrives(port):
@@ -218,9 +218,9 @@ class Sites(unittest.TestCase):
             sender.join()
             return "SIM_COMMAND" in self.channels("world")
         self.assertFalse(arrives(LINE + 1))
-        self.r.operator.ask("near", "stop", patience_s=20, names=["relay_near"], patience=3)
+        self.r.operator.request("near", "stop", patience_s=20, names=["relay_near"], patience=3)
         self.assertTrue(arrives(LINE))
-        self.r.operator.ask("near", "start", patience_s=40, names=["relay_near"])
+        self.r.operator.request("near", "start", patience_s=40, names=["relay_near"])
         self.expect_whole()
 
     def test_90_at_the_end_all_results_are_gathered(self):
@@ -231,5 +231,5 @@ class Sites(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rehearsal.enter(__file__, sys.argv[1:])
+    lab_cluster.enter(__file__, sys.argv[1:])
     unittest.main(verbosity=2, failfast=True)

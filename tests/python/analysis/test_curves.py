@@ -82,7 +82,7 @@ class Curves(unittest.TestCase):
     def test_an_unknown_answer_is_refused(self):
         for kind, response, pair in (("sj", "perhaps", ("audio", "visual")), ("toj", "haptic", ("audio", "visual"))):
             with self.assertRaisesRegex(Refusal, "is unknown"):
-                answers.says_yes(kind, response, math.nan, pair)
+                answers.is_yes(kind, response, math.nan, pair)
         with self.assertRaisesRegex(Refusal, "is not two senses"):
             answers.pair_of("audio")
 
@@ -100,7 +100,7 @@ class Detection(unittest.TestCase):
         inside = np.zeros(2)
         for seed in range(60):
             curves = psychometric.curves(trials.of_rows(judgements(np.random.default_rng(seed), 15, 60, 0.02, LEVELS, 25)), 1)
-            late = {l.factor.modality: l for l in detection.detected(curves, 1)}
+            late = {l.factor.modality: l for l in detection.detection_limits(curves, 1)}
             inside += [late["visual"].low <= 15 + 60 * EDGE <= late["visual"].high, late["audio"].low <= 60 * EDGE - 15 <= late["audio"].high]
         # 57 expected, binomial standard deviation 1.7.
         self.assertTrue((inside >= 53).all(), inside)
@@ -110,7 +110,7 @@ class Detection(unittest.TestCase):
         for seed in range(25):
             rng = np.random.default_rng(seed)
             rows = [r for i in range(10) for r in judgements(rng, rng.normal(15, 20), 60, 0.02, LEVELS, 15, f"P{i:02}", jitter_ms=0.0)]
-            late = {l.factor.modality: l for l in detection.detected(psychometric.curves(trials.of_rows(rows), 1), 1)}["visual"]
+            late = {l.factor.modality: l for l in detection.detection_limits(psychometric.curves(trials.of_rows(rows), 1), 1)}["visual"]
             inside += late.low <= 15 + 60 * EDGE <= late.high
             # People differ by 20 ms: the standard error of the mean of ten is 6 ms, so the interval is about 25 ms wide.
             self.assertTrue(14 < late.high - late.low < 45, late)
@@ -124,7 +124,7 @@ class Detection(unittest.TestCase):
             p = 0.5 + 0.49 * (1 - math.exp(-((x / 25) ** 2.5)))
             rows.append({"study": "lag", "participant_id": "P01", "task": "2ifc", "observer": "human", "trial": i + 1, "modality_degraded": "haptic", "operator": "delay",
                          "level": x, "unit": "ms", "correct": int(rng.random() < p)})
-        found, = detection.detected(psychometric.curves(trials.of_rows(rows), 1), 1)
+        found, = detection.detection_limits(psychometric.curves(trials.of_rows(rows), 1), 1)
         truth = 25 * math.log(2) ** (1 / 2.5)  # half way from 0.5 to 1
         self.assertEqual(found.factor, Factor("haptic", "delay", "ms"))
         self.assertTrue(found.low <= truth <= found.high, found)
@@ -137,7 +137,7 @@ class Detection(unittest.TestCase):
             p = 0.5 + 0.49 * (1 - math.exp(-((10 / hz) ** 2.5)))
             rows.append({"study": "slow", "participant_id": "P01", "task": "2ifc", "observer": "human", "trial": i + 1, "modality_degraded": "visual", "operator": "rate",
                          "level": hz, "unit": "Hz", "correct": int(rng.random() < p)})
-        found, = detection.detected(psychometric.curves(trials.of_rows(rows), 1), 1)
+        found, = detection.detection_limits(psychometric.curves(trials.of_rows(rows), 1), 1)
         truth = 10 / math.log(2) ** (1 / 2.5)
         self.assertTrue(found.low >= truth >= found.high, found)  # from the mildest to the most severe end
         self.assertEqual(found.up_to, 2)
@@ -196,12 +196,12 @@ class Presses(unittest.TestCase):
         inside = 0
         for seed in range(25):
             rows = trials.of_rows(pressings(np.random.default_rng(seed), 1, 0.008, each=40))
-            found, = detection.detected(psychometric.curves(rows, 1), 1, lambda study: "stiffness")
+            found, = detection.detection_limits(psychometric.curves(rows, 1), 1, lambda study: "stiffness")
             self.assertEqual((found.kind, found.by, found.observer), ("appear", "stiffness, judged", "simulated"))
             inside += found.low <= truth <= found.high
         # 24 expected; the fitted function differs slightly from that of the observer.
         self.assertGreaterEqual(inside, 21)
-        found, = detection.detected(psychometric.curves(rows, 1), 1)
+        found, = detection.detection_limits(psychometric.curves(rows, 1), 1)
         self.assertEqual((found.kind, found.by), ("detect", "2ifc"))  # the study does not ask which was the softer
 
     def test_a_delay_that_changes_nothing_reaches_no_limit(self):
@@ -233,8 +233,8 @@ class Published(unittest.TestCase):
     def test_the_ratio_to_a_limit_that_was_not_reached_has_no_upper_end(self):
         rng = np.random.default_rng(1)
         delay = Factor("visual", "delay", "ms")
-        never = limits.of_draws("break", delay, "either", math.inf, np.full(100, np.inf), 400.0, "human", 10)
-        seen = limits.of_draws("detect", delay, "sj", 50.0, np.full(100, 50.0), 200.0, "human", 10)
+        never = limits.from_draws("break", delay, "either", math.inf, np.full(100, np.inf), 400.0, "human", 10)
+        seen = limits.from_draws("detect", delay, "sj", 50.0, np.full(100, 50.0), 200.0, "human", 10)
         self.assertEqual(limits.ratio(never, seen, rng).high, math.inf)
 
 

@@ -114,7 +114,7 @@ class Breaking(unittest.TestCase):
             # No game reaches the limit, and lost games end early: time and success are separate, each with its known crossing.
             rows = self.rows(np.random.default_rng(seed))
             made, _ = cells(rows, seed, 400)
-            found = limits.breaking(made, DELAY, MARGINS, "simulated")[0]
+            found = limits.break_limits(made, DELAY, MARGINS, "simulated")[0]
             inside[0] += found.low <= 120 <= found.high
             values.append(found.value)
         # 285 expected, binomial standard deviation 3.8.
@@ -127,7 +127,7 @@ class Breaking(unittest.TestCase):
             rng = np.random.default_rng(1000 + seed)
             rows = [row for x in (0, *self.LEVELS) for row in games(rng, 100, [("visual", "delay", x, "ms")], 1.1, 6 * (1 + 0.1 * x / 120), first=1000 * x)]
             made, _ = cells(rows, seed, 400)
-            found = limits.breaking(made, DELAY, MARGINS, "simulated")[1]
+            found = limits.break_limits(made, DELAY, MARGINS, "simulated")[1]
             inside += found.low <= 120 <= found.high
         self.assertTrue(273 <= inside <= 297, inside)
 
@@ -142,7 +142,7 @@ class Breaking(unittest.TestCase):
                     rows += games(rng, 10, [("visual", "delay", x, "ms")], 1.1, 6 * (1 + slope * x / 120), first=len(rows), participant=f"P{p:02}")
             made, clustered = cells(rows, seed, 400)
             self.assertTrue(clustered)
-            found = limits.breaking(made, DELAY, MARGINS, "simulated")[1]
+            found = limits.break_limits(made, DELAY, MARGINS, "simulated")[1]
             inside += found.low <= 120 <= found.high
         # 190 expected; a percentile interval of 12 clusters is known to hold a little less (Davison and Hinkley 1997, section 5.3).
         self.assertGreaterEqual(inside, 178)
@@ -153,14 +153,14 @@ class Breaking(unittest.TestCase):
         for hz in (60, 30, 10, 5):
             rows += [game(1000 * hz + i, True, 6.0 * (1 + 2 / hz), [("visual", "rate", hz, "Hz")]) for i in range(50)]
         made, _ = cells(rows)
-        found = limits.breaking(made, rate, MARGINS, "simulated")
+        found = limits.break_limits(made, rate, MARGINS, "simulated")
         self.assertAlmostEqual(found[1].value, 20, places=6)  # 2 / hz = 0.1
         self.assertFalse(found[0].reached)
         self.assertEqual(found[0].up_to, 5)
 
     def test_a_limit_that_was_not_reached_names_the_largest_level(self):
         rows = [row for x in (0, 40, 80) for row in games(np.random.default_rng(x), 100, [("visual", "delay", x, "ms")], 1.1, 6, first=1000 * x)]
-        found = limits.breaking(cells(rows)[0], DELAY, (0.1, 1.5), "simulated")
+        found = limits.break_limits(cells(rows)[0], DELAY, (0.1, 1.5), "simulated")
         self.assertEqual([(l.reached, l.up_to) for l in found], [(False, 80)] * 3)
 
     def test_harmless_needs_evidence(self):
@@ -196,7 +196,7 @@ class Breaking(unittest.TestCase):
 
     def test_the_ratio_is_of_the_limits_and_its_interval_of_both(self):
         rng = np.random.default_rng(1)
-        one = lambda kind, at, sd: limits.of_draws(kind, DELAY, "x", at, rng.normal(at, sd, 20000), 400.0, "simulated", 10)
+        one = lambda kind, at, sd: limits.from_draws(kind, DELAY, "x", at, rng.normal(at, sd, 20000), 400.0, "simulated", 10)
         found = limits.ratio(one("break", 120, 6), one("detect", 60, 3), rng)
         self.assertAlmostEqual(found.value, 2)
         # Fieller's interval of the ratio of two normal means with 5 % each: 2 (1 ± 1.96 sqrt(2) 0.05), to second order.

@@ -58,21 +58,21 @@ class ClusterFile(unittest.TestCase):
     def test_each_site_has_a_relay_with_a_line_to_every_other(self):
         c = self.read(self.of_sites())
         self.assertEqual("sound", c.nodes["relay_sound"].host)
-        words = commands.of_nodes(c, 7, "git", {str(cluster_file.sites.SHIPPED): "@BUILD@/share/relays"})["relay_desk"]
+        words = commands.node_commands(c, 7, "git", {str(cluster_file.sites.SHIPPED): "@BUILD@/share/relays"})["relay_desk"]
         line = " ".join(words)
         for part in ("@BUILD@/bin/relay --name relay_desk --listen 192.0.2.7:7700 --to 198.51.100.2:7700,2000 --rules @BUILD@/share/relays/wide.xml", "--run-id 7",
                      "--group 239.1.2.3 --ttl 1"):
             self.assertIn(part, line)
-        self.assertIn("--to 192.0.2.7:7700 ", " ".join(commands.of_nodes(c, 7, "git", {})["relay_sound"]))
+        self.assertIn("--to 192.0.2.7:7700 ", " ".join(commands.node_commands(c, 7, "git", {})["relay_sound"]))
 
-    def test_a_namespace_keeps_what_is_its_own_and_a_second_local_host_is_refused(self):
+    def test_a_namespace_has_its_own_folder_and_a_second_local_host_is_refused(self):
         second = '<host name="sound" reach="{}"/>'
         of_file = '<host name="sound" reach="ssh" address="me@10.0.0.2" folder="~/t"/>'
         c = self.read(GOOD.replace(of_file, second.format("namespace")))
         self.assertEqual(("~/.local/share/tactus/hosts/sound", ""), (c.hosts["sound"].folder, c.hosts["desk"].folder))
         self.refused(GOOD.replace(of_file, second.format("local")), "c.xml:5: ", "is a second local host")
 
-    def test_sites_without_relays_or_with_wrong_ones_are_refused(self):
+    def test_sites_without_relays_or_with_wrong_relays_are_refused(self):
         self.refused(GOOD.replace(*self.SITES[0]), "c.xml:5: ", "hosts of 2 sites and no relays")
         self.refused(GOOD.replace(*self.SITES[1]).replace("<relay host=\"sound\" at=\"198.51.100.2\" kbit=\"2000\"/>", ""), "one site, which needs no relay")
         self.refused(self.of_sites(("<relay host=\"desk\"", "<relay host=\"cellar\"")), "no host \"cellar\"")
@@ -83,11 +83,11 @@ class ClusterFile(unittest.TestCase):
         self.refused(self.of_sites(("kbit=\"2000\"", "kbit=\"2\"")), "kbit")
         self.refused(self.of_sites(("rules=\"wide\"", "rules=\"wide\" port=\"7668\"")), "a port of the bus")
 
-    def test_a_whole_file_is_read(self):
+    def test_a_complete_file_is_read(self):
         c = self.read(GOOD)
         self.assertEqual(cluster_file.Bus("239.1.2.3", 7700, 1), c.bus)
-        self.assertEqual(["sim_node", "recorder", "visual_node", "visual_node_front", "sync_node"], c.of_host("desk"))
-        self.assertEqual(["audio_node", "visual_node_right", "visual_node_floor", "sync_node_sound"], c.of_host("sound"))
+        self.assertEqual(["sim_node", "recorder", "visual_node", "visual_node_front", "sync_node"], c.nodes_on("desk"))
+        self.assertEqual(["audio_node", "visual_node_right", "visual_node_floor", "sync_node_sound"], c.nodes_on("sound"))
         self.assertEqual(("--audio-device", "HDA Intel"), c.nodes["audio_node"].options)
         self.assertEqual((("PULSE_SERVER", "/run/pulse"),), c.nodes["audio_node"].environment)
         self.assertEqual(["haptic_node", "thermal_node"], sorted(n for n in c.plan.without))
@@ -96,7 +96,7 @@ class ClusterFile(unittest.TestCase):
         self.assertEqual(["width=320", "width=640"], c.plan.settings["visual_node_right"])
         self.assertFalse(c.is_private())
 
-    def test_every_shipped_file_is_in_order(self):
+    def test_every_shipped_file_is_valid(self):
         for path in cluster_file.SHIPPED.glob("*.xml"):
             with self.subTest(path.name):
                 c = cluster_file.read(path.stem)
@@ -105,7 +105,7 @@ class ClusterFile(unittest.TestCase):
 
     def test_the_commands_of_a_node_name_the_folders_of_its_host(self):
         c = self.read(GOOD)
-        words = commands.of_nodes(c, 7, "abc", {str(cluster_file.arguments.SCENES): "@BUILD@/share/scenes"})
+        words = commands.node_commands(c, 7, "abc", {str(cluster_file.arguments.SCENES): "@BUILD@/share/scenes"})
         audio = words["audio_node"]
         self.assertEqual(["env", "PULSE_SERVER=/run/pulse", "nice", "-n", "3", "@BUILD@/bin/audio_node"], audio[:6])
         self.assertEqual(["--group", "239.1.2.3", "--ttl", "1", "--audio-device", "HDA Intel"], audio[-6:])
@@ -118,7 +118,7 @@ class ClusterFile(unittest.TestCase):
         for name, line in words.items():
             self.assertFalse([w for w in line if w.startswith(str(SCRIPTS.parent))], name)
 
-    def test_what_is_wrong_is_refused_with_its_line(self):
+    def test_errors_are_refused_with_their_line(self):
         for old, new, line, *words in (
                 ('ttl="1"', 'ttl="0"', 2, "several hosts, but with ttl 0"),
                 ('host="sound" nice', 'host="cellar" nice', 8, 'no host "cellar"', "desk, sound"),
@@ -147,16 +147,16 @@ class ClusterFile(unittest.TestCase):
                 said = self.refused(GOOD.replace(old, new, 1), *words)
                 self.assertIn(f"c.xml:{line}: ", said)
 
-    def test_what_scripts_run_refuses_is_refused(self):
+    def test_options_that_scripts_run_refuses_are_refused(self):
         self.refused(GOOD.replace('name="gain" value', 'name="loudness" value'), "c.xml:9: ", "no setting loudness")
         self.refused(GOOD.replace("dark_room.sdf", "bright_room.sdf"), "bright_room.sdf", "is not a file")
         self.refused(GOOD.replace('seed="5"', 'seed="5" keep="3"'), "--keep needs")
 
-    def test_no_entity_is_read_from_elsewhere(self):
+    def test_external_entities_are_not_read(self):
         said = self.refused('<!DOCTYPE cluster [<!ENTITY x SYSTEM "file:///etc/hostname">]>\n' + GOOD.replace('name="gain"', 'name="&x;"'))
         self.assertNotIn(pathlib.Path("/etc/hostname").read_text(encoding="utf-8").strip(), said)
 
-    def test_a_file_that_is_not_there_names_the_shipped_ones(self):
+    def test_a_missing_file_names_the_shipped_ones(self):
         with self.assertRaises(Refusal) as caught:
             cluster_file.read("nothing.xml")
         self.assertIn("cave4", str(caught.exception))

@@ -9,10 +9,10 @@ from tactus.cluster import growth
 
 
 class Growth(unittest.TestCase):
-    def test_the_traffic_of_the_plan_crosses_as_the_rules_of_a_relay_say(self):
+    def test_the_relay_traffic_agrees_with_the_relay_rules(self):
         from lxml import etree
         rules = {e.get("channel"): e for e in etree.parse(str(pathlib.Path(growth.__file__).with_name("relays") / "wide.xml")).getroot().iter("pass")}
-        for flow in growth.flows():
+        for flow in growth.read_flows():
             if flow.channel in ("CLOCK_PROBE", "CLOCK_MAP"):
                 self.assertNotIn(flow.channel, rules)
                 continue
@@ -23,7 +23,7 @@ class Growth(unittest.TestCase):
                 self.assertIn(flow.thin_per_s, snapshots, flow.channel)
                 self.assertLessEqual(flow.thin_per_s, flow.per_s, flow.channel)
 
-    def test_a_queue_waits_as_pollaczek_and_khinchine_say(self):
+    def test_the_mean_wait_agrees_with_pollaczek_and_khinchine(self):
         """M/D/1: the mean wait is rho s / (2 (1 - rho)); Kleinrock 1975, equation 5.63."""
         service_s = 1e-3
         for rho in (0.3, 0.6, 0.8):
@@ -36,18 +36,18 @@ class Growth(unittest.TestCase):
             self.assertAlmostEqual(1, waited / count / expected, delta=0.04, msg=f"rho {rho}")
             self.assertAlmostEqual(rho, queue.busy_s / at, delta=0.01)
 
-    def test_who_wakes_at_times_adds_half_a_period_in_the_mean_and_never_more_than_one(self):
-        dice, ticks = random.Random(3), growth.Ticks(500, 0.0007)
+    def test_a_periodic_loop_adds_half_a_period_on_average_and_one_at_most(self):
+        dice, ticks = random.Random(3), growth.PeriodicLoop(500, 0.0007)
         waited = [ticks.serve(at, 1) - at for at in (dice.uniform(0, 100) for _ in range(20_000))]
         self.assertAlmostEqual(1e-3, sum(waited) / len(waited), delta=2e-5)
         self.assertLessEqual(-1e-9, min(waited))
         self.assertLessEqual(max(waited), 2e-3 + 1e-9)
 
-    def test_a_bucket_never_lets_more_pass_than_its_rate_and_its_burst(self):
+    def test_a_token_bucket_passes_at_most_its_rate_and_burst(self):
         """The bound of a token bucket: in any t at most burst + rate t (Cruz 1991, equation 1)."""
         dice = random.Random(7)
         rate, burst, size = 1e5, 5e4, 1e4
-        bucket = growth.Bucket(rate, burst, 0.5)
+        bucket = growth.TokenBucket(rate, burst, 0.5)
         passed, at = [], 0.0
         for _ in range(5000):
             at += dice.expovariate(20 if dice.random() < 0.5 else 5)
@@ -61,26 +61,26 @@ class Growth(unittest.TestCase):
             for j in range(i, min(i + 300, len(passed)), 11):
                 self.assertLessEqual((j - i + 1) * size, burst + rate * (passed[j] - passed[i]) + size + 1e-6)
 
-    def test_a_queue_that_is_full_loses_and_never_makes_wait_longer(self):
-        queue = growth.Queue(1000, most_s=0.01)
+    def test_a_full_queue_drops_messages_and_keeps_the_maximum_wait(self):
+        queue = growth.Queue(1000, max_wait_s=0.01)
         for i in range(1000):
             done = queue.serve(i * 1e-4, 1)
             self.assertTrue(done is None or done - i * 1e-4 <= 0.011 + 1e-9)
         self.assertGreater(queue.lost, 800)
 
-    def test_what_arrives_is_what_is_offered(self):
+    def test_arrivals_agree_with_the_offered_load(self):
         for hosts in (1, 16, 60):
             found = growth.arrivals(hosts, True, 2.0, 3)
             offered = growth.offered_bit_s(hosts, True)
             self.assertAlmostEqual(1, sum(m[1] for m in found) / 2.0 / offered, delta=0.02)
             self.assertEqual(found, growth.arrivals(hosts, True, 2.0, 3))
 
-    def test_with_many_hosts_the_clocks_take_a_share_that_grows_no_faster_than_they_do(self):
-        probes = next(f for f in growth.flows() if f.channel == "CLOCK_PROBE")
-        of_all = lambda hosts: hosts * growth.rate(probes, hosts)
-        self.assertAlmostEqual(4 * 6 * 6, of_all(6))       # 8 probes in 2 s, 5 answers to each
-        self.assertLess(of_all(250) / of_all(64), 1.3 * 250 / 64)
-        self.assertLess(of_all(64) / of_all(16), 1.3 * 64 / 16 * 16 / 15)
+    def test_clock_traffic_grows_at_most_linearly_with_the_hosts(self):
+        probes = next(f for f in growth.read_flows() if f.channel == "CLOCK_PROBE")
+        all_probes = lambda hosts: hosts * growth.messages_per_s(probes, hosts)
+        self.assertAlmostEqual(4 * 6 * 6, all_probes(6))       # 8 probes in 2 s, 5 answers to each
+        self.assertLess(all_probes(250) / all_probes(64), 1.3 * 250 / 64)
+        self.assertLess(all_probes(64) / all_probes(16), 1.3 * 64 / 16 * 16 / 15)
 
 
 if __name__ == "__main__":

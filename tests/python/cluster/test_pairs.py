@@ -29,12 +29,12 @@ class Pairs(unittest.TestCase):
     def deafen(self, who, to):
         self.said[who]["others"][to].update(heard=False, answered=False)
 
-    def test_nothing_is_found_where_all_is_well(self):
+    def test_a_healthy_network_has_no_findings(self):
         self.assertEqual([], pairs.findings(self.said))
         self.assertEqual(6, len(pairs.rows(self.said)))
         self.assertIn("+5.000000", pairs.text(pairs.rows(self.said)))
 
-    def test_one_that_hears_nobody_and_one_that_nobody_hears(self):
+    def test_a_host_that_receives_nothing_and_one_that_is_not_received_are_reported(self):
         self.deafen("b", "a")
         self.deafen("b", "c")
         self.found("b: receives nothing from the other hosts", "route")
@@ -43,14 +43,14 @@ class Pairs(unittest.TestCase):
         self.deafen("c", "b")
         self.found("a: receives nothing from b", "a firewall on a")
 
-    def test_a_ttl_of_zero_is_named(self):
+    def test_a_ttl_of_zero_is_reported(self):
         for name in self.said:
             self.said[name]["ttl"] = 0
             for o in list(self.said[name]["others"]):
                 self.deafen(name, o)
         self.found("ttl is 0")
 
-    def test_losses_bursts_and_buffers(self):
+    def test_losses_bursts_and_buffers_are_reported(self):
         self.said["a"]["others"]["b"]["lost"] = 0.1
         self.found("a: loses 10.0 % of the datagrams of b")
         self.said["c"]["others"]["a"]["of_bursts"] = 200
@@ -60,17 +60,17 @@ class Pairs(unittest.TestCase):
         self.said["b"]["refused"] = 4
         self.found("b: its network refused 4")
 
-    def test_slow_ways_and_uncertain_clocks(self):
+    def test_slow_networks_and_uncertain_clocks_are_reported(self):
         self.said["a"]["others"]["c"]["round_trip_us"]["p99"] = 50_000
         self.found("a: answers of c take up to 50 ms")
         self.said["a"]["others"]["c"]["uncertainty_us"] = 9000
         self.found("a: knows the clock of c to 9.0 ms only")
 
-    def test_answers_that_do_not_come_back(self):
+    def test_lost_answers_are_reported(self):
         self.said["a"]["others"]["b"]["answered"] = False
         self.found("a: b receives its datagrams, but the answers are lost")
 
-    def test_a_host_that_said_nothing_is_no_error(self):
+    def test_a_host_without_results_is_skipped(self):
         del self.said["c"]
         self.assertEqual([], pairs.findings(self.said))
         self.assertEqual(4, len(pairs.rows(self.said)))

@@ -22,7 +22,7 @@ class Refusals(unittest.TestCase):
         self.assertEqual((done.returncode, done.stdout), (1, ""), words)
         self.assertRegex(done.stderr, r"\Aprivate_path: [^\n]*" + sentence + r"[^\n]*\n\Z")
 
-    def test_each_wrong_word_is_one_sentence(self):
+    def test_each_invalid_argument_is_refused_with_one_sentence(self):
         with tempfile.TemporaryDirectory() as folder:
             out = os.path.join(folder, "out")
             good = {"--hosts": "a,b", "--server": "192.0.2.1", "--out": out}
@@ -66,17 +66,17 @@ class Files(unittest.TestCase):
     def part(self, name, element):
         return re.search(rf"<{element}>\n(.*?\n)</{element}>", self.conf(name), re.S).group(1)
 
-    def test_nobody_but_the_owner_reads_any_of_it(self):
+    def test_only_the_owner_can_read_the_files(self):
         for path in [self.out, *self.out.rglob("*")]:
             self.assertEqual(stat.S_IMODE(path.stat().st_mode) & 0o077, 0, path)
 
-    def test_the_first_listens_and_the_others_dial_it(self):
+    def test_the_first_host_listens_and_the_others_connect_to_it(self):
         self.assertRegex(self.conf("desk"), r"(?m)^lport 1200$")
         for name in ("sound", "wall"):
             self.assertRegex(self.conf(name), r"(?m)^remote lab\.example\.org 1200$")
             self.assertRegex(self.conf(name), r"(?m)^verify-x509-name desk name$")
 
-    def test_the_authority_signs_each_key_for_its_use_and_stays_away_from_the_hosts(self):
+    def test_the_authority_signs_each_key_for_its_use_and_is_in_no_folder_of_a_host(self):
         key = (self.out / "authority" / "ca.key").read_text(encoding="ascii")
         for name, purpose, other in (("desk", "sslserver", "sslclient"), ("sound", "sslclient", "sslserver"), ("wall", "sslclient", "sslserver")):
             verify = lambda use: subprocess.run(["openssl", "verify", "-CAfile", self.out / "authority" / "ca.crt", "-purpose", use], capture_output=True,
@@ -91,7 +91,7 @@ class Files(unittest.TestCase):
             rules = (self.out / name / "tactus.nft").read_text(encoding="ascii")
             self.assertEqual(rules.count('!= { "lo", "tactus0" } udp dport { 7700, 7701 } counter drop'), 2)
 
-    def test_no_two_paths_have_a_key_in_common(self):
+    def test_two_paths_have_no_common_key(self):
         again = self.out.with_name("again")
         self.assertEqual(run("make", "--hosts", "desk,sound", "--server", "lab.example.org", "--out", again).returncode, 0)
         self.assertNotEqual((again / "desk" / "tactus.conf").read_text(encoding="ascii").split("<tls-crypt>")[1], self.part("desk", "tls-crypt"))

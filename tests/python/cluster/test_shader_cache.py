@@ -24,7 +24,7 @@ class ShaderCache(unittest.TestCase):
     def files(self):
         return sorted(str(p.relative_to(self.there)) for p in self.there.rglob("*") if p.is_file())
 
-    def test_what_was_compiled_here_is_there_afterwards_and_what_is_there_is_kept(self):
+    def test_missing_shaders_are_copied_and_existing_ones_kept(self):
         for name, data in (("mesa_shader_cache/ab/cdef", b"shader"), ("mesa_shader_cache/index", b"of here"), ("mesa_shader_cache/ab/half.tmp", b""),
                            ("mesa_shader_cache_db/part0/mesa_cache.db", b"db"), ("other/file", b"")):
             self.write(name, data)
@@ -35,16 +35,16 @@ class ShaderCache(unittest.TestCase):
         self.assertEqual(b"shader", (self.there / "mesa_shader_cache/ab/cdef").read_bytes())
         self.assertEqual(b"its own", (self.there / "mesa_shader_cache_db/part0/mesa_cache.db").read_bytes())
 
-    def test_a_host_without_any_sends_none(self):
+    def test_a_host_without_shaders_sends_none(self):
         self.assertEqual(0, shader_cache.unpack(shader_cache.packed(self.here), self.there))
 
-    def test_no_more_goes_than_is_allowed(self):
+    def test_the_size_limit_is_kept(self):
         for i in range(10):
             self.write(f"mesa_shader_cache/ab/{i}", bytes(1000))
         self.assertEqual(4, shader_cache.unpack(shader_cache.packed(self.here, 4500), self.there))
         self.assertEqual(2, shader_cache.unpack(shader_cache.packed(self.here), self.there / "b", 2500))
 
-    def test_nothing_leaves_the_folders_of_mesa(self):
+    def test_files_outside_the_folders_of_mesa_are_refused(self):
         into = io.BytesIO()
         with tarfile.open(fileobj=into, mode="w:gz") as tar:
             for name in ("/etc/x", "../x", "mesa_shader_cache/../../x", "mesa_shader_cache/../x", ".bashrc", "mesa_shader_cache", "mesa_shader_cache/a/b/c/d"):

@@ -13,7 +13,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 KINDS = ("sync", "recorder", "haptic", "audio", "visual", "thermal", "sim", "relay", "path")
 SOURCES = {"sync": "sync/tools/sync_node.cpp", "recorder": "sync/tools/recorder/recorder_node.cpp", "haptic": "haptic_node/run.cpp", "audio": "audio_node/run.cpp",
            "visual": "visual_node/run.cpp", "thermal": "thermal_node/run.cpp", "sim": "sim_node/run.cpp"}
-MOST_EXPOSED = 5  # systemd rates lower values as "OK"
+MAX_EXPOSURE = 5  # systemd rates lower values as "OK"
 
 
 def run(*words):
@@ -56,27 +56,27 @@ class Units(unittest.TestCase):
         values = re.findall(rf"(?m)^{key}=(.*)$", (self.system / f"tactus-{kind}.service").read_text(encoding="ascii"))
         return values[-1] if values else None
 
-    def test_systemd_finds_nothing_wrong_with_any_of_them(self):
+    def test_systemd_accepts_every_unit(self):
         self.assertEqual(len(self.names), len(KINDS) + 3)
         done = self.analyze("verify", *self.names)
         self.assertEqual((done.returncode, done.stdout + done.stderr), (0, ""))
 
-    def test_it_would_find_what_is_wrong(self):
+    def test_systemd_rejects_a_damaged_unit(self):
         wrong = self.system / "wrong.service"
         self.addCleanup(wrong.unlink)
-        wrong.write_text("[Service]\nExecStart=/opt/tactus/bin/nobody\nProtectSysten=strict\n", encoding="ascii")
+        wrong.write_text("[Service]\nExecStart=/opt/tactus/bin/missing\nProtectSysten=strict\n", encoding="ascii")
         said = self.analyze("verify", "wrong.service").stderr
         self.assertIn("ProtectSysten", said)
         self.assertIn("not executable", said)
 
-    def test_each_is_exposed_little(self):
+    def test_each_unit_has_a_low_exposure(self):
         for name in self.names:
             if name.endswith(".target"):
                 continue
             said = self.analyze("security", "--offline=true", name).stdout
             found = re.search(r"Overall exposure level for (\S+): ([0-9.]+)", said)
             print(f"{found.group(1)}: {found.group(2)}", file=sys.stderr)
-            self.assertLess(float(found.group(2)), MOST_EXPOSED, name)
+            self.assertLess(float(found.group(2)), MAX_EXPOSURE, name)
 
     def test_priorities_are_those_of_the_sources(self):
         for kind, source in SOURCES.items():
@@ -93,7 +93,7 @@ class Units(unittest.TestCase):
         architecture = {"audio": "70", "haptic": "60", "sim": "50", "sync": "40", "recorder": "40"}
         self.assertEqual({kind: self.last(kind, "LimitRTPRIO") for kind in architecture}, architecture)
 
-    def test_what_was_asked_for_is_where_the_nodes_read_it(self):
+    def test_options_are_written_to_the_environment_of_the_nodes(self):
         environment = (self.root / "etc/tactus/tactus.env").read_text(encoding="ascii")
         for line in ("TACTUS_PORT=7700", "TACTUS_TTL=1", "SYNC_OPTIONS=--name sync_node_wall", "TACTUS_GROUP=239.255.76.67"):
             self.assertIn(f"\n{line}\n", environment)
@@ -103,11 +103,11 @@ class Units(unittest.TestCase):
             if path.is_file():
                 self.assertNotRegex(path.read_text(encoding="ascii"), r"@[A-Z]+@", path)
 
-    def test_nothing_is_enabled(self):
+    def test_no_unit_is_enabled(self):
         self.assertEqual([p for p in self.system.rglob("*") if p.is_symlink() or p.is_dir()], [])
         self.assertIn("nothing is enabled", self.said)
 
-    def test_what_somebody_wrote_into_the_environment_is_kept(self):
+    def test_an_edited_environment_file_is_kept(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(run("install", "--root", folder, "--units-only").returncode, 0)
             file = pathlib.Path(folder) / "etc/tactus/tactus.env"
@@ -116,7 +116,7 @@ class Units(unittest.TestCase):
             self.assertEqual(file.read_text(encoding="ascii"), "TACTUS_PORT=1\n")
             self.assertFalse((pathlib.Path(folder) / "etc/systemd/system/tactus-path.service").exists(), "unless it is asked for")
 
-    def test_each_wrong_word_is_one_sentence(self):
+    def test_each_invalid_argument_is_refused_with_one_sentence(self):
         for sentence, words in (("no unit of \"smell\"", ["--only", "smell"]), ("absolute path", ["--prefix", "opt"]), ("absolute path", ["--out", "/a b"]),
                                 ("from 0 to 255", ["--ttl", "256"]), ("not a multicast group", ["--group", "10.0.0.1"]), ("--host", ["--host", "a b"]),
                                 ("is not a folder", ["--root", "/none/such"]), ("--help", ["--wrong"])):

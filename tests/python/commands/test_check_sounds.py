@@ -44,7 +44,7 @@ class CheckSounds(unittest.TestCase):
     def place(self, name):
         return os.path.join(self.path, name)
 
-    def test_a_whole_folder_ends_with_0_and_says_what_a_scene_falls_back_to(self):
+    def test_a_complete_folder_exits_with_0_and_lists_the_fallbacks_of_a_scene(self):
         tone(self.place("steel-oak/impact/0.5.wav"))
         tone(self.place("oak/scrape/0.2.wav"), 1)
         scene = self.place("scene.sdf")
@@ -59,7 +59,7 @@ class CheckSounds(unittest.TestCase):
         self.assertEqual(plays["felt-steel", "impact"], "modal")
         self.assertEqual(check(self.path)[0], 0)
 
-    def test_what_is_broken_is_named_with_what_to_do_and_ends_with_1(self):
+    def test_each_fault_is_reported_with_its_remedy_and_exit_status_1(self):
         tone(self.place("oak/impact/0.5.wav"))
         tone(self.place("oak/impact/1.wav"), level=0.0)
         tone(self.place("oak/impact/2.wav"), level=1.5)
@@ -74,14 +74,14 @@ class CheckSounds(unittest.TestCase):
             self.assertIn(word, line)
         self.assertEqual(check(self.place("nowhere"))[0], 1)
 
-    def test_the_default_set_is_whole(self):
+    def test_the_default_set_is_complete(self):
         code, text = check("--scene", os.path.join(ROOT, "sim_node", "scenes", "materials_bench.sdf"), "--json")
         self.assertEqual(code, 0, text)
         report = json.loads(text)
         self.assertEqual(report["faults"], [])
         self.assertNotIn("modal", [p["plays"] for p in report["pairs"]])
 
-    def test_the_default_set_is_rendered_to_the_same_bits_and_over_no_folder_of_somebody(self):
+    def test_the_default_set_is_rendered_identically_and_overwrites_no_folder(self):
         def make(name):
             return subprocess.run([os.path.join(os.environ["TACTUS_BIN"], "make_sounds"), self.place(name), "--materials",
                                    os.path.join(ROOT, "sim_node", "scenes", "materials.csv")], capture_output=True, check=False)
@@ -97,7 +97,7 @@ class CheckSounds(unittest.TestCase):
         self.assertTrue(os.path.exists(self.place("mine/impact/1.wav")))
 
     @unittest.skipUnless(os.path.isdir(KITS), "hydrogen-drumkits is not installed: no real recordings to try")
-    def test_real_recordings_make_a_folder_that_is_whole(self):
+    def test_real_recordings_make_a_complete_folder(self):
         folder = self.place("drums")
         self.assertEqual(check(folder, command="drumkit-sounds")[0], 0)
         code, text = check(folder, "--json")
@@ -105,7 +105,7 @@ class CheckSounds(unittest.TestCase):
         layers = {(s["materials"], s["interaction"]): len(s["layers"]) for s in json.loads(text)["sounds"]}
         self.assertEqual(layers["copper-oak", "impact"], 5)
 
-    def test_drums_without_the_package_and_a_scene_that_is_none_are_one_sentence(self):
+    def test_a_missing_drum_package_and_an_invalid_scene_are_refused_with_one_sentence(self):
         for code, text in (check(self.place("drums"), "--from", self.place("none"), command="drumkit-sounds"),
                            check(self.path, "--scene", self.place("none.sdf"))):
             self.assertEqual(code, 1)

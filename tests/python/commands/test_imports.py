@@ -42,21 +42,21 @@ def circle(graph):
 
 
 class Imports(unittest.TestCase):
-    def test_nothing_is_imported_but_the_package_the_standard_library_and_what_setup_installs(self):
+    def test_only_the_package_the_standard_library_and_packages_of_setup_are_imported(self):
         for name in FILES:
             self.assertEqual(set(), {other for other in imports(name) if other.split(".")[0] not in KNOWN}, name)
 
-    def test_no_circle_of_modules(self):
+    def test_modules_have_no_import_cycle(self):
         self.assertEqual([], circle({name: imports(name) & FILES.keys() - {name} for name in FILES}))
 
-    def test_no_circle_of_packages(self):
+    def test_packages_have_no_import_cycle(self):
         package = lambda name: ".".join(name.split(".")[:2])
         graph = {}
         for name in FILES:
             graph.setdefault(package(name), set()).update(package(other) for other in imports(name) & FILES.keys() if package(other) not in (package(name), "tactus"))
         self.assertEqual([], circle(graph))
 
-    def test_a_circle_is_found(self):
+    def test_a_cycle_is_found(self):
         self.assertEqual(["b", "c", "b"], circle({"a": {"b"}, "b": {"c"}, "c": {"b"}}))
 
     def test_a_folder_holds_at_most_forty_files(self):

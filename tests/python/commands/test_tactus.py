@@ -27,7 +27,7 @@ class Help(unittest.TestCase):
             for line in listed:
                 self.assertLessEqual(len(line), 100)
 
-    def test_every_command_explains_itself(self):
+    def test_every_command_has_help(self):
         for name in BY_NAME:
             with self.subTest(name):
                 done = tactus(name, "--help", env={**os.environ, "TACTUS_BIN": "/nowhere"})
@@ -35,12 +35,12 @@ class Help(unittest.TestCase):
                 self.assertGreater(len(done.stdout.split()), 12)
                 self.assertIn(name, done.stdout)
 
-    def test_nothing_asked_is_answered_with_the_list(self):
+    def test_without_arguments_all_commands_are_listed(self):
         done = tactus()
         self.assertEqual((1, ""), (done.returncode, done.stdout))
         self.assertIn("rerender", done.stderr)
 
-    def test_a_misspelt_name_is_answered_with_the_nearest(self):
+    def test_a_misspelt_name_suggests_the_nearest(self):
         for wrong, right in (("reply", "replay"), ("private_path", "private-path"), ("degarde", "degrade")):
             done = tactus(wrong)
             self.assertEqual(1, done.returncode)
@@ -54,14 +54,14 @@ class Anywhere(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def test_through_a_link_on_the_path(self):
+    def test_tactus_runs_through_a_link_on_the_path(self):
         (self.folder / "tactus").symlink_to(TACTUS)
         done = subprocess.run(["tactus", "build", "--help"], capture_output=True, text=True, check=False, cwd="/",
                               env={**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}"})
         self.assertEqual((0, ""), (done.returncode, done.stderr))
         self.assertIn("scripts/build", done.stdout)
 
-    def test_nothing_is_imported_from_the_folder_of_the_caller(self):
+    def test_no_module_is_imported_from_the_current_folder(self):
         for name in ("argparse", "tactus", "importlib", "numpy", "report"):
             (self.folder / f"{name}.py").write_text("raise SystemExit('imported')\n", encoding="utf-8")
         for environment in (os.environ, {**os.environ, "PYTHONPATH": str(self.folder)}):
@@ -69,13 +69,13 @@ class Anywhere(unittest.TestCase):
                 done = tactus(*words, cwd=self.folder, env={**environment, "TACTUS_BIN": "/nowhere"})
                 self.assertEqual((0, ""), (done.returncode, done.stderr))
 
-    def test_a_reader_that_goes_away_is_no_fault(self):
+    def test_a_closed_output_is_no_error(self):
         done = subprocess.run(f"{TACTUS} --help | head -c 1", shell=True, capture_output=True, text=True, check=False)
         self.assertEqual(("U", ""), (done.stdout, done.stderr))
 
 
 class Refusals(unittest.TestCase):
-    def test_wrong_words_end_with_1_and_one_sentence(self):
+    def test_invalid_arguments_exit_with_1_and_one_sentence(self):
         for words, sentence in (
                 (("degrade", "none.xml"), "degrade: the profile none.xml is not a file; give the path of an XML file, or off"),
                 (("degrade", "--fast"), "degrade: unknown option '--fast'; see tactus degrade --help"),
@@ -91,7 +91,7 @@ class Refusals(unittest.TestCase):
                 done = tactus(*words, env={**os.environ, "TACTUS_BIN": "/nowhere"})
                 self.assertEqual((1, "", sentence + "\n"), (done.returncode, done.stdout, done.stderr))
 
-    def test_no_cluster_runs(self):
+    def test_commands_without_a_running_cluster_are_refused(self):
         with tempfile.TemporaryDirectory() as folder:
             environment = {**os.environ, "TMPDIR": folder, "TACTUS_BIN": "/nowhere"}
             for words in (("attach", "true"), ("spy",), ("degrade", "off"), ("simulation", "pause")):

@@ -32,7 +32,7 @@ def namespaces():
 
 
 class Bus(unittest.TestCase):
-    def test_a_network_without_multicast_is_named_with_the_remedy(self):
+    def test_a_network_without_multicast_is_reported_with_the_remedy(self):
         if not namespaces():
             self.skipTest("this system allows no network namespace")
         code = ("import sys; sys.path.insert(0, sys.argv[1]); from tactus.doctor import bus\n"
@@ -44,25 +44,25 @@ class Bus(unittest.TestCase):
             if verdict == WEAK:
                 self.assertTrue(all("ip route add" in line for line in said))
 
-    def test_only_without_either_network_no_cluster_can_run(self):
+    def test_the_bus_is_missing_only_without_both_networks(self):
         for private in (True, False):
             for loop in (GOOD, WEAK):
                 lines = [bus.namespaces(private), Line("multicast loopback", loop, "")]
-                bus.either(lines)
+                bus.mark_required_network(lines)
                 self.assertEqual(lines[0].needed, not private and loop != GOOD)
                 self.assertEqual(lines[0].verdict == MISSING, lines[0].needed)
 
     def test_small_buffers_are_weak(self):
         with mock.patch.object(bus.socket.socket, "setsockopt", side_effect=[OSError, None]), \
              mock.patch.object(bus.socket.socket, "getsockopt", return_value=2 * 212992):
-            line = bus.room()
+            line = bus.receive_buffer()
         self.assertEqual(line.verdict, WEAK)
         self.assertEqual(line.figures["given_bytes"], 212992)
         self.assertIn("rmem_max", line.remedy)
 
 
 class Clocks(unittest.TestCase):
-    def test_the_layout_of_a_map_is_that_of_its_type(self):
+    def test_the_layout_of_a_clock_map_agrees_with_its_type(self):
         self.assertEqual(clocks.HEADER, layout("header_t"))
         self.assertEqual(clocks.MAP, layout("clock_map_t"))
 
@@ -70,7 +70,7 @@ class Clocks(unittest.TestCase):
         return (struct.pack(">II", clocks.SMALL, 7) + b"CLOCK_MAP\0" + b"12345678" + struct.pack(clocks.HEADER, -1, 9, of, 1, 3, 4, 5)
                 + struct.pack(clocks.MAP, of, to, 9, offset, 0.0, uncertainty, 0.0, 1, 2, 3))
 
-    def test_a_map_is_read_and_nothing_else_is_taken_for_one(self):
+    def test_only_clock_maps_are_read(self):
         packet = self.packet()
         self.assertEqual(clocks.map_of(packet), (1, 2, 5_000_000, 30_000))
         for length in range(len(packet)):
@@ -80,7 +80,7 @@ class Clocks(unittest.TestCase):
         for _ in range(1000):
             self.assertIsNone(clocks.map_of(noise.randbytes(noise.randrange(300))))
 
-    def test_clocks_that_are_known_badly_are_weak(self):
+    def test_uncertain_clocks_are_weak(self):
         for uncertainty, verdict in ((0.9, GOOD), (1.1, WEAK)):
             with mock.patch.object(clocks, "listen", return_value=({(1, 2): (5e6, uncertainty * 1e6)}, 10)):
                 line = clocks.offsets(7667)
@@ -90,14 +90,14 @@ class Clocks(unittest.TestCase):
 
 
 class Realtime(unittest.TestCase):
-    def test_a_refused_priority_is_said_with_what_to_write_where(self):
+    def test_a_refused_priority_is_reported_with_the_remedy(self):
         with mock.patch.object(realtime.os, "sched_setscheduler", side_effect=PermissionError(1, "Operation not permitted")):
             line = realtime.priority()
         self.assertEqual(line.verdict, WEAK)
         self.assertIn("rtprio", line.remedy)
         self.assertIn("not permitted", line.found)
 
-    def test_memory_that_may_not_be_locked_is_weak(self):
+    def test_memory_that_cannot_be_locked_is_weak(self):
         with mock.patch.object(realtime.resource, "getrlimit", return_value=(8 << 20, 8 << 20)), \
              mock.patch.object(realtime.os, "geteuid", return_value=1000):
             line = realtime.memory()
@@ -111,7 +111,7 @@ class Realtime(unittest.TestCase):
                 file.flush()
                 self.assertEqual(realtime.share(file.name).verdict, verdict)
 
-    def test_lateness_is_told_by_its_order_statistics(self):
+    def test_lateness_is_reported_by_its_order_statistics(self):
         late = [float(i) for i in range(1000)]
         random.Random(1).shuffle(late)
         with mock.patch.object(realtime, "lateness_us", return_value=late):
@@ -128,14 +128,14 @@ class Realtime(unittest.TestCase):
 
 
 class Devices(unittest.TestCase):
-    def test_who_draws_is_said_and_a_software_renderer_is_called_one(self):
+    def test_the_renderer_is_named_and_a_software_renderer_is_marked(self):
         def fails():
             raise OSError("no display can be opened")
         self.assertEqual(devices.picture(lambda: "GeForce").verdict, GOOD)
         self.assertEqual(devices.picture(lambda: "llvmpipe (LLVM)").verdict, WEAK)
         self.assertEqual(devices.picture(fails).verdict, MISSING)
 
-    def test_without_a_sound_card_the_run_is_heard_by_nobody(self):
+    def test_a_missing_sound_card_is_reported(self):
         self.assertEqual(devices.sound(False).verdict, WEAK)
         self.assertEqual(devices.sound(True).verdict, GOOD)
 
@@ -149,22 +149,22 @@ class Devices(unittest.TestCase):
 
 
 class Program(unittest.TestCase):
-    def test_its_table_and_its_file_say_the_same_and_the_exit_status_is_the_verdict(self):
+    def test_table_and_json_agree_and_the_exit_status_is_the_verdict(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "fit.json"
             words = [str(ROOT / "scripts" / "tactus"), "doctor", "--seconds", "0.2", "--out", folder, "--json", str(path)]
             run = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
             self.assertIn(run.returncode, (0, 1), run.stderr)
-            told = json.loads(path.read_text())
-        self.assertEqual(told["fit"], run.returncode == 0)
-        for line in told["lines"]:
+            report = json.loads(path.read_text())
+        self.assertEqual(report["fit"], run.returncode == 0)
+        for line in report["lines"]:
             self.assertIn(f"{line['what'] + ':':26}{line['found']}", run.stdout)
             self.assertIn(line["verdict"], (GOOD, WEAK, MISSING))
             if line["verdict"] != GOOD:
                 self.assertTrue(line["remedy"], line)
-        self.assertGreaterEqual(len(told["lines"]), 12)
+        self.assertGreaterEqual(len(report["lines"]), 12)
 
-    def test_an_unwritable_folder_and_wrong_words_end_with_one(self):
+    def test_an_unwritable_folder_and_invalid_arguments_exit_with_1(self):
         for words in (["--seconds", "0.1", "--out", "/proc"], ["--seconds", "nonsense"], ["--seconds", "0"]):
             run = subprocess.run([str(ROOT / "scripts" / "tactus"), "doctor", *words], capture_output=True, text=True, timeout=60, check=False)
             self.assertEqual(run.returncode, 1, run.stdout + run.stderr)

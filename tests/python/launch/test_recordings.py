@@ -16,19 +16,19 @@ class Recordings(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             return arguments.parse(["--out", f"{folder}/out", *words], os.getcwd())
 
-    def test_the_size_of_a_recording_is_the_recorders_affair(self):
+    def test_recording_limits_are_passed_to_the_recorder(self):
         self.assertEqual(self.plan().recorder, [])
         self.assertEqual(self.plan("--split-mb", "100", "--keep", "3", "--tags", "sim_node.*", "--tags", "none").recorder,
                          ["--split-mb", "100", "--keep", "3", "--tags", "sim_node.*", "--tags", "none"])
 
-    def test_bounds_that_contradict_each_other_are_refused_before_anything_starts(self):
+    def test_contradictory_limits_are_refused_at_the_start(self):
         self.assertIn("--keep needs", refusal_of("--keep", "3"))
         self.assertIn("twice", refusal_of("--split-mb", "100", "--max-mb", "150"))
         self.assertIn("--split-mb", refusal_of("--split-mb", "0"))
         self.assertIn("--keep", refusal_of("--split-mb", "1", "--keep", "1.5"))
         self.assertEqual("", refusal_of("--split-minutes", "1", "--max-mb", "150", "--out", "/tmp/none/of/it"))
 
-    def test_a_folder_that_holds_any_part_of_a_recording_is_not_written_to(self):
+    def test_a_folder_with_a_part_of_a_recording_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:
             (pathlib.Path(folder) / "run.7.lcmlog").touch()
             self.assertIn("already holds a run", refusal_of("--out", folder))

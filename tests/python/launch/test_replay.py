@@ -19,62 +19,62 @@ SAYS = {"scene": "table.sdf", "version": "1", "git": "", "seed": 7, "length_s": 
 
 class Keys(unittest.TestCase):
     def setUp(self):
-        self.orders = keys.Orders("/nowhere/control")
+        self.commands = keys.KeyCommands("/nowhere/control")
 
-    def test_every_key_that_the_help_names_has_its_order(self):
+    def test_every_key_of_the_help_has_its_command(self):
         read = b" .\x1b[C\x1b[D10ml"
-        self.assertEqual(list(self.orders.of_keys(read)),
+        self.assertEqual(list(self.commands.commands_of_keys(read)),
                          ["toggle", "step", "seek +5", "seek -5", "speed 1", "seek 0", "speed max", "loop on"])
-        self.assertEqual(list(self.orders.of_keys(b"lq")), ["loop off", "quit"])
+        self.assertEqual(list(self.commands.commands_of_keys(b"lq")), ["loop off", "quit"])
 
-    def test_the_speed_doubles_and_halves_within_what_a_replay_takes(self):
-        said = [float(order.split()[1]) for order in self.orders.of_keys(b"+" * 20)]
-        self.assertEqual(said[:3], [2, 4, 8])
-        self.assertEqual(said[-1], keys.FASTEST)
-        said = [float(order.split()[1]) for order in self.orders.of_keys(b"-" * 40)]
-        self.assertEqual(said[0], keys.FASTEST / 2)
-        self.assertEqual(said[-1], keys.SLOWEST)
-        self.assertGreaterEqual(keys.SLOWEST, 0.01)  # sync/tools/replay/replay.h
-        self.assertLessEqual(keys.FASTEST, 100)
-        list(self.orders.of_keys(b"1"))
-        self.assertEqual(next(self.orders.of_keys(b"+")), "speed 2.0")
+    def test_the_speed_doubles_and_halves_within_its_limits(self):
+        received = [float(command.split()[1]) for command in self.commands.commands_of_keys(b"+" * 20)]
+        self.assertEqual(received[:3], [2, 4, 8])
+        self.assertEqual(received[-1], keys.MAX_SPEED)
+        received = [float(command.split()[1]) for command in self.commands.commands_of_keys(b"-" * 40)]
+        self.assertEqual(received[0], keys.MAX_SPEED / 2)
+        self.assertEqual(received[-1], keys.MIN_SPEED)
+        self.assertGreaterEqual(keys.MIN_SPEED, 0.01)  # sync/tools/replay/replay.h
+        self.assertLessEqual(keys.MAX_SPEED, 100)
+        list(self.commands.commands_of_keys(b"1"))
+        self.assertEqual(next(self.commands.commands_of_keys(b"+")), "speed 2.0")
 
-    def test_any_bytes_at_all_are_orders_or_nothing(self):
+    def test_any_bytes_are_valid_commands_or_ignored(self):
         for seed in range(500):
             read = random.Random(seed).randbytes(200)
-            for order in self.orders.of_keys(read):
-                self.assertRegex(order, r"^(toggle|step|quit|seek [+-]?\d+|speed (max|[0-9.]+)|loop (on|off))$")
+            for command in self.commands.commands_of_keys(read):
+                self.assertRegex(command, r"^(toggle|step|quit|seek [+-]?\d+|speed (max|[0-9.]+)|loop (on|off))$")
 
-    def test_lines_come_whole_however_they_are_cut(self):
+    def test_lines_are_complete_for_any_fragmentation(self):
         text = "pause\nseek +3\n  speed max \nloop on\n".encode()
         for seed in range(50):
-            cut, orders, said = random.Random(seed), keys.Orders("/nowhere"), []
+            cut, commands, received = random.Random(seed), keys.KeyCommands("/nowhere"), []
             at = 0
             while at < len(text):
                 to = at + cut.randint(1, 9)
-                said += orders.of_lines(text[at:to])
+                received += commands.commands_of_lines(text[at:to])
                 at = to
-            self.assertEqual(said, ["pause", "seek +3", "speed max", "loop on"])
+            self.assertEqual(received, ["pause", "seek +3", "speed max", "loop on"])
 
-    def test_a_line_that_never_ends_takes_no_more_memory_than_its_bound(self):
+    def test_an_endless_line_uses_limited_memory(self):
         for _ in range(100):
-            self.assertEqual(self.orders.of_lines(b"x" * 4096), [])
-        self.assertLessEqual(len(self.orders.rest), keys.LONGEST)
+            self.assertEqual(self.commands.commands_of_lines(b"x" * 4096), [])
+        self.assertLessEqual(len(self.commands.rest), keys.MAX_LINE_BYTES)
 
-    def test_an_order_goes_into_the_pipe_and_is_lost_without_harm_when_nobody_reads(self):
-        self.orders.send("pause")  # there is no pipe
+    def test_a_command_without_a_reader_is_dropped(self):
+        self.commands.send("pause")  # there is no pipe
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "control")
             os.mkfifo(path)
-            orders = keys.Orders(path)
-            orders.send("pause")  # no reader has opened it
+            commands = keys.KeyCommands(path)
+            commands.send("pause")  # no reader has opened it
             reader = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
-            orders.send("seek +5")
+            commands.send("seek +5")
             self.assertEqual(os.read(reader, 100), b"seek +5\n")
             for _ in range(20000):  # more than the capacity of a pipe
-                orders.send("toggle")
+                commands.send("toggle")
             os.close(reader)
-            orders.send("pause")
+            commands.send("pause")
 
 
 class Words(unittest.TestCase):
@@ -83,7 +83,7 @@ class Words(unittest.TestCase):
         self.addCleanup(kept.cleanup)
         self.folder = pathlib.Path(kept.name)
         (self.folder / "run.lcmlog").write_bytes(b"x")
-        what = mock.patch.object(replay, "described", lambda log: SAYS)
+        what = mock.patch.object(replay, "describe_log", lambda log: SAYS)
         what.start()
         self.addCleanup(what.stop)
 
@@ -95,19 +95,19 @@ class Words(unittest.TestCase):
             self.parse(*words)
         return str(refused.exception)
 
-    def test_a_folder_stands_for_all_parts_of_the_recording_in_it(self):
+    def test_a_folder_replays_all_parts_of_its_recording(self):
         plan, stay, _ = replay.parse([".", "--stay"], self.folder)
         self.assertEqual(pathlib.Path(plan.replay[0]), self.folder)
         self.assertTrue(stay)
 
-    def test_each_sense_is_live_unless_it_is_left_out(self):
+    def test_every_modality_is_live_unless_left_out(self):
         self.assertEqual(self.parse().without, [])
         self.assertEqual(set(self.parse("--only", "audio_node").without), {"haptic_node", "visual_node", "thermal_node", "haptic_node_lamp"})
         self.assertEqual(set(self.parse("--only", "haptic_node").without), {"audio_node", "visual_node", "thermal_node"})
         # The process of another tool needs haptic_node.
         self.assertEqual(set(self.parse("--without", "haptic_node").without), {"haptic_node", "haptic_node_lamp"})
 
-    def test_what_the_replay_does_is_passed_on_to_it(self):
+    def test_options_of_the_replay_are_passed_to_it(self):
         plan = self.parse("--speed", "0.5", "--start", "1", "--channels", "WORLD_.*", "--rename", "A=B", "--rename", "C=D", "--loop")
         words = " ".join(plan.replay[1:])
         for part in ("--speed 0.5", "--start 1", "--channels WORLD_.*", "--rename A=B", "--rename C=D", "--loop"):
@@ -115,7 +115,7 @@ class Words(unittest.TestCase):
         self.assertEqual(plan.seed, 7)
         self.assertEqual(self.parse("--seed", "12").seed, 12)
 
-    def test_wrong_words_are_refused_with_one_sentence(self):
+    def test_invalid_arguments_are_refused_with_one_sentence(self):
         self.assertIn("sim_node", self.refusal("--only", "sim_node"))
         self.assertIn("contradict", self.refusal("--degrade", "a.xml", "--as-recorded"))
         self.assertIn("holds the first tool", self.refusal("--only", "haptic_node_lamp"))
@@ -127,17 +127,17 @@ class Words(unittest.TestCase):
 
 
 class Descriptions(unittest.TestCase):
-    def test_a_log_that_cannot_be_described_is_refused_with_what_the_program_says(self):
+    def test_an_unreadable_log_is_refused_with_the_message_of_the_program(self):
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(replay.cluster, "BIN", pathlib.Path(folder)):
             with self.assertRaisesRegex(Refusal, "not built"):
-                replay.described("run.lcmlog")
+                replay.describe_log("run.lcmlog")
             program = pathlib.Path(folder) / "replay"
             program.write_text("#!/bin/sh\necho replay: run.lcmlog is no log >&2\nexit 1\n")
             program.chmod(0o755)
             with self.assertRaisesRegex(Refusal, "run.lcmlog is no log"):
-                replay.described("run.lcmlog")
+                replay.describe_log("run.lcmlog")
             program.write_text("#!/bin/sh\necho '{\"tools\": []}'\n")
-            self.assertEqual(replay.described("run.lcmlog"), {"tools": []})
+            self.assertEqual(replay.describe_log("run.lcmlog"), {"tools": []})
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@ class VirtualTime(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
 
-    def test_one_seed_gives_the_same_log_and_sound_to_the_bit_and_another_does_not(self):
+    def test_a_seed_determines_log_and_sound_exactly(self):
         for name, seed in (("a", "5"), ("b", "5"), ("c", "6")):
             run(self.folder / name, "--seed", seed)
         same = lambda one, other, what: filecmp.cmp(self.folder / one / what, self.folder / other / what, shallow=False)
@@ -41,7 +41,7 @@ class VirtualTime(unittest.TestCase):
             self.assertTrue(same("a", "b", what), what)
         self.assertFalse(same("a", "c", "run.lcmlog"))
 
-    def test_every_sense_presents_what_it_owes_and_no_tick_is_missed(self):
+    def test_every_modality_presents_its_expected_events_without_missed_ticks(self):
         out = self.folder / "run"
         said = run(out, seconds=12)
         facts = summary(out)
@@ -53,7 +53,7 @@ class VirtualTime(unittest.TestCase):
             self.assertEqual(node["missed_ticks"], 0, name)
         self.assertIn("times as fast as real time", said.stderr)
 
-    def test_a_profile_delays_its_sense_and_no_other(self):
+    def test_a_profile_delays_only_its_modality(self):
         profile = self.folder / "late.xml"
         profile.write_text(PROFILE, encoding="utf-8")
         run(self.folder / "healthy", seconds=8)
@@ -62,12 +62,12 @@ class VirtualTime(unittest.TestCase):
         self.assertAlmostEqual(late["audio_visual"]["p50"] - healthy["audio_visual"]["p50"], -100, delta=1)
         self.assertEqual(late["haptic_visual"], healthy["haptic_visual"])
 
-    def test_a_bus_that_loses_much_loses_no_event_and_one_that_is_slow_makes_senses_later(self):
+    def test_bus_losses_lose_no_event_and_bus_latency_delays_modalities(self):
         run(self.folder / "lossy", "--loss-percent", "20", "--latency-ms", "15", seconds=8)
         for name, sense in summary(self.folder / "lossy")["contacts"]["by_modality"].items():
             self.assertEqual(sense["lost"], 0, name)
 
-    def test_a_player_wins_with_all_senses_and_not_without_sight_or_touch(self):
+    def test_a_player_wins_only_with_sight_and_touch(self):
         blind, numb = self.folder / "blind.xml", self.folder / "numb.xml"
         blind.write_text('<profile><degrade modality="visual" off="true"/></profile>', encoding="utf-8")
         numb.write_text('<profile><degrade modality="haptic" off="true"/></profile>', encoding="utf-8")
@@ -81,7 +81,7 @@ class VirtualTime(unittest.TestCase):
             self.assertLess(game["blind"]["filled"], 3, game)
             self.assertEqual(game["numb"]["filled"], 0, game)  # a hand without force pushes nothing
 
-    def test_it_ends_early_with_all_results_when_it_is_asked_to(self):
+    def test_an_interrupted_run_ends_early_with_all_results(self):
         out = self.folder / "long"
         process = subprocess.Popen([str(RUN), "--virtual-time", "--seconds", "80000", "--out", str(out)], stdout=subprocess.PIPE,
                                    stderr=subprocess.STDOUT, text=True)
@@ -93,7 +93,7 @@ class VirtualTime(unittest.TestCase):
         said, _ = process.communicate(timeout=60)
         self.assertTrue((out / "summary.json").exists(), said)
 
-    def test_what_cannot_keep_up_with_it_is_refused_in_a_sentence(self):
+    def test_options_that_need_real_time_are_refused_with_one_sentence(self):
         for words in (["--listen"], ["--window"], ["--live"], ["--device", "external:arm"], ["--loss-percent", "101"]):
             done = run(self.folder / "refused", *words, status=1)
             self.assertEqual(len(done.stderr.strip().split("\n")), 1, done.stderr)
@@ -102,7 +102,7 @@ class VirtualTime(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn("--virtual-time", done.stderr)
 
-    def test_a_plan_that_is_none_is_refused_in_a_sentence(self):
+    def test_an_invalid_plan_is_refused_with_one_sentence(self):
         program = pathlib.Path(os.environ["TACTUS_BIN"]) / "virtual_time"
         plan = self.folder / "plan.json"
         for text in ("", "[]", "{}", '{"a": []}', '{"a": ["sim_node", 3]}', '{"a": ["rm"]}'):

@@ -23,7 +23,7 @@ def row(event, at, outcome="presented", part="whole"):
 class Events(unittest.TestCase):
     reference = compare.times_of([row(n, n * 100 * MS) for n in range(100)])
 
-    def test_those_that_come_later_are_told_with_their_shift_and_those_that_are_gone_with_their_number(self):
+    def test_later_events_are_reported_with_their_shift_and_missing_ones_with_their_count(self):
         other = compare.times_of([row(n, n * 100 * MS + 40 * MS) for n in range(90)]
                                  + [row(n, -1, "dropped_by_profile") for n in range(90, 100)] + [row(200, 5)])
         found = compare.events(self.reference, other)
@@ -31,21 +31,21 @@ class Events(unittest.TestCase):
         self.assertAlmostEqual(40, found["shift_p50_ms"])
         self.assertAlmostEqual(40, found["shift_p99_ms"])
 
-    def test_a_rendering_is_no_other_than_itself(self):
+    def test_a_rendering_does_not_differ_from_itself(self):
         found = compare.events(self.reference, self.reference)
         self.assertEqual({"presented": 100, "dropped": 0, "added": 0, "shift_p50_ms": 0.0, "shift_p99_ms": 0.0}, found)
 
-    def test_of_one_event_each_part_counts_once_as_it_was_first_told(self):
+    def test_each_part_of_an_event_counts_once_at_its_first_report(self):
         times = compare.times_of([row(1, 10, part="transient"), row(1, 12, part="constraint"), row(1, 99, part="transient"),
                                   row(2, 7, "inaudible")])
         self.assertEqual({("1", "transient"): 10, ("1", "constraint"): 12}, times)
 
-    def test_where_nothing_is_common_there_is_no_shift(self):
+    def test_without_common_events_there_is_no_shift(self):
         self.assertIsNone(compare.events(self.reference, {})["shift_p50_ms"])
 
 
 class Force(unittest.TestCase):
-    def test_what_differs_by_more_than_a_weber_fraction_is_beyond_it(self):
+    def test_differences_above_the_weber_fraction_are_counted(self):
         reference = np.zeros((100, 3))
         reference[:50, 2] = 2.0
         other = reference.copy()
@@ -58,19 +58,19 @@ class Force(unittest.TestCase):
         self.assertAlmostEqual(0.3, found["difference_peak_N"])
         self.assertAlmostEqual(np.sqrt((10 * 0.15**2 + 10 * 0.3**2) / 100), found["difference_rms_N"])
 
-    def test_below_half_a_newton_the_tube_narrows_no_more(self):
+    def test_below_half_a_newton_the_tolerance_is_constant(self):
         reference, other = np.full((4, 3), [0, 0, 0.1]), np.full((4, 3), [0, 0, 0.13])
         self.assertEqual(0, compare.force(reference, other)["beyond_7_percent"])
         other[:, 2] = 0.1 + 0.036
         self.assertEqual(1, compare.force(reference, other)["beyond_7_percent"])
 
-    def test_where_nobody_feels_anything_nothing_is_beyond(self):
+    def test_without_force_no_difference_is_counted(self):
         found = compare.force(np.zeros((5, 3)), np.full((5, 3), 1e-9))
         self.assertEqual((0, 0.0), (found["with_force"], found["beyond_7_percent"]))
 
 
 class Pictures(unittest.TestCase):
-    def test_colour_differences_are_those_that_sharma_wu_and_dalal_publish(self):
+    def test_colour_differences_agree_with_sharma_wu_and_dalal(self):
         # Table 1 of their paper: pairs 1, 4, 7, 10, 14, 17, 20, 25, 28, 34.
         pairs = [((50, 2.6772, -79.7751), (50, 0, -82.7485), 2.0425), ((50, -1.3802, -84.2814), (50, 0, -82.7485), 1.0000),
                  ((50, 0, 0), (50, -1, 2), 2.3669), ((50, 2.49, -0.001), (50, -2.49, 0.0010), 7.1792),
@@ -81,11 +81,11 @@ class Pictures(unittest.TestCase):
         np.testing.assert_allclose(colour.ciede2000(one, two), truth, atol=5e-5)
         np.testing.assert_allclose(colour.ciede2000(two, one), truth, atol=5e-5)
 
-    def test_white_black_and_red_are_where_the_standard_has_them(self):
+    def test_white_black_and_red_agree_with_the_standard(self):
         lab = colour.lab_of(np.array([[255, 255, 255], [0, 0, 0], [255, 0, 0]], dtype=np.uint8))
         np.testing.assert_allclose(lab, [[100, 0, 0], [0, 0, 0], [53.24, 80.09, 67.20]], atol=0.05)
 
-    def test_frames_that_one_has_and_the_other_has_not_differ(self):
+    def test_frames_of_only_one_rendering_count_as_different(self):
         self.assertEqual([1, 3, 4], compare.frames(["a", "b", "c"], ["a", "x", "c", "d", "e"]))
         self.assertEqual([], compare.frames(["a", "b"], ["a", "b"]))
 
@@ -116,29 +116,29 @@ class Files(unittest.TestCase):
         with open(self.path(name, "presented_haptic.csv"), "w", encoding="utf-8", newline="") as file:
             file.write("modality,event_id,part,scheduled_ns,presented_ns,uncertainty_ns,outcome\n")
 
-    def test_ticks_are_held_against_those_of_the_same_instant(self):
+    def test_ticks_of_the_same_time_are_compared(self):
         self.write_haptic("one", {n: 1.0 for n in range(10)})
         self.write_haptic("two", {n: 1.0 + 0.5 * (n == 7) for n in range(2, 12)})
         found = changed.changed("haptic", self.path("one", ""), self.path("two", ""))
         self.assertEqual(8, found["ticks"])
         self.assertAlmostEqual(0.5, found["difference_peak_N"])
 
-    def test_one_digit_that_differs_is_no_longer_the_same(self):
+    def test_files_that_differ_in_one_digit_are_different(self):
         self.write_haptic("one", {0: 1.0, 1: 2.0})
         self.write_haptic("two", {0: 1.0, 1: 2.0})
         self.assertEqual([], changed.same_bytes("haptic", self.path("one", ""), self.path("two", ""))["differ"])
         self.write_haptic("two", {0: 1.0, 1: 2.000000001})
         self.assertEqual(["haptic.csv"], changed.same_bytes("haptic", self.path("one", ""), self.path("two", ""))["differ"])
 
-    def test_seconds_keep_all_their_nanoseconds(self):
+    def test_seconds_are_read_to_the_nanosecond(self):
         self.assertEqual(55797080447968123, read.nanoseconds("55797080.447968123"))
         self.assertEqual(5_100_000_000, read.nanoseconds("5.1"))
 
-    def test_profiles_of_one_name_get_folders_of_their_own(self):
+    def test_profiles_of_the_same_name_have_separate_folders(self):
         for folder in ("a", "b"):
             open(self.path(folder, "late.xml"), "w", encoding="utf-8").close()
         files = [self.path("a", "late.xml"), self.path("b", "late.xml"), "logged"]
-        self.assertEqual({"late": files[0], "late_2": files[1], "logged": "logged"}, rerender.named(files, self.fail))
+        self.assertEqual({"late": files[0], "late_2": files[1], "logged": "logged"}, rerender.profile_names(files, self.fail))
 
     def refusal(self, *words):
         done = subprocess.run([*tactus_command("rerender"), *words], capture_output=True, text=True, check=False)
@@ -146,7 +146,7 @@ class Files(unittest.TestCase):
         self.assertEqual(1, done.stderr.count("\n"), done.stderr)
         return done.stderr
 
-    def test_what_is_wrong_is_said_in_one_sentence(self):
+    def test_each_invalid_argument_is_refused_with_one_sentence(self):
         log = self.path("run.lcmlog")
         open(log, "w", encoding="utf-8").close()
         self.assertIn("is neither a log nor the folder of a run", self.refusal(self.path("none.lcmlog")))
@@ -154,7 +154,7 @@ class Files(unittest.TestCase):
         self.assertIn("is not a file", self.refusal(log, "--degrade", self.path("none.xml")))
         self.assertIn("SENSE:NAME=VALUE", self.refusal(log, "--set", "smell:rose=1"))
 
-    def test_a_node_that_refuses_is_quoted_and_one_that_renders_says_how_fast(self):
+    def test_a_refusal_of_a_node_is_quoted_and_a_rendering_reports_its_speed(self):
         with self.assertRaisesRegex(render.Refused, "no scene"):
             render.render(["sh", "-c", "echo 'a: 5 % of the log' >&2; echo 'a: no scene' >&2; exit 1"], lambda _: None)
         shares = []

@@ -39,7 +39,7 @@ class TheLivePageOfAStudy(unittest.TestCase):
         self.assertEqual(self.cluster.page(), "http://127.0.0.1:46417/?token=3a8d")
 
     def test_is_none_if_the_run_reports_that_it_does_not_start(self):
-        self.say(f"run: {live_cluster.NO_PAGE}; the others go on (see logs/live_server.log)\n")
+        self.say(f"run: {live_cluster.NO_PAGE}; the run continues without it; see logs/live_server.log\n")
         self.assertIsNone(self.cluster.page())
         self.assertIn(live_cluster.NO_PAGE, (SCRIPTS / "python" / "tactus" / "launch" / "live.py").read_text(encoding="utf-8"))
 

@@ -14,14 +14,14 @@ from PIL import Image
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "scripts" / "python"))
 from tactus.log import marker
-from tactus.study import ear, eye, simulated, skin
+from tactus.study import flash_detector, simulated, sound_detector, vibration_detector
 
 EVENT = 5589537784101601287
 FRAME_NS = 16_666_667
 
 
 def lead_of(**kept):
-    """A Lead that has received all its messages."""
+    """A TrialRunnerClient that has received all its messages."""
     return types.SimpleNamespace(wait_for=lambda condition, _: bool(condition()), pulses=collections.deque(), pictures=collections.deque(), media={}, **kept)
 
 
@@ -48,19 +48,19 @@ def jpeg(luma):
 
 class TheEye(unittest.TestCase):
     def stream(self, first_frame, shows_from, count=12):
-        return [(k * FRAME_NS, jpeg(picture((first_frame + k) % eye.FRAMES, (EVENT, 8) if k >= shows_from else (8,), seed=k))) for k in range(count)]
+        return [(k * FRAME_NS, jpeg(picture((first_frame + k) % flash_detector.FRAMES, (EVENT, 8) if k >= shows_from else (8,), seed=k))) for k in range(count)]
 
     def seen_ns(self, pictures, expected_ns):
-        lead = lead_of()
-        lead.pictures.extend(pictures)
-        return eye.Eye(lead).onset_ns(EVENT, expected_ns)
+        runner = lead_of()
+        runner.pictures.extend(pictures)
+        return flash_detector.FlashDetector(runner).onset_ns(EVENT, expected_ns)
 
     def test_a_hit_is_seen_in_the_first_frame_that_shows_it_regardless_of_reports(self):
         for shows_from in (3, 4, 5):
             self.assertEqual(shows_from * FRAME_NS, self.seen_ns(self.stream(900, shows_from), 4 * FRAME_NS))
 
     def test_frame_numbers_repeat_after_24_bits(self):
-        self.assertEqual(4 * FRAME_NS, self.seen_ns(self.stream(eye.FRAMES - 4, 4), 4 * FRAME_NS))
+        self.assertEqual(4 * FRAME_NS, self.seen_ns(self.stream(flash_detector.FRAMES - 4, 4), 4 * FRAME_NS))
 
     def test_without_the_preceding_frame_the_onset_is_unknown(self):
         pictures = self.stream(900, 4)
@@ -75,10 +75,10 @@ class TheEye(unittest.TestCase):
 
 class TheSkin(unittest.TestCase):
     def test_the_tick_nearest_to_the_expected_one_is_felt(self):
-        lead = lead_of()
-        lead.pulses.extend([(0, 0.3), (96_000_000, 0.4), (140_000_000, 0.2)])
-        self.assertEqual(96_000_000, skin.Skin(lead).onset_ns(100_000_000))
-        self.assertIsNone(skin.Skin(lead).onset_ns(50_000_000))
+        runner = lead_of()
+        runner.pulses.extend([(0, 0.3), (96_000_000, 0.4), (140_000_000, 0.2)])
+        self.assertEqual(96_000_000, vibration_detector.VibrationDetector(runner).onset_ns(100_000_000))
+        self.assertIsNone(vibration_detector.VibrationDetector(runner).onset_ns(50_000_000))
 
 
 class TheEar(unittest.TestCase):
@@ -93,10 +93,10 @@ class TheEar(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             body = b"fmt " + len(form).to_bytes(4, "little") + form + b"data" + len(stereo).to_bytes(4, "little") + stereo
             (pathlib.Path(folder) / name).write_bytes(b"RIFF" + (4 + len(body)).to_bytes(4, "little") + b"WAVE" + body)
-            lead = lead_of()
-            lead.media["audio.wav"] = collections.deque([(0, at_ns - 9_000_000_000)])
-            lead.media[name] = collections.deque([(0, at_ns)])
-            return ear.Ear(folder, lead).onset_ns(expected_ns)
+            runner = lead_of()
+            runner.media["audio.wav"] = collections.deque([(0, at_ns - 9_000_000_000)])
+            runner.media[name] = collections.deque([(0, at_ns)])
+            return sound_detector.SoundDetector(folder, runner).onset_ns(expected_ns)
 
     def test_a_hit_is_heard_at_its_first_sample_regardless_of_reports(self):
         for report_ns in (-15_000_000, 0, 12_000_000):
@@ -113,11 +113,11 @@ class TheEar(unittest.TestCase):
 class AParticipant(unittest.TestCase):
     def test_perceived_asynchrony_is_returned_and_a_missing_percept_is_named(self):
         study = types.SimpleNamespace()
-        lead = lead_of()
-        lead.pulses.append((30_000_000, 0.4))
-        lead.pictures.extend((k * FRAME_NS, jpeg(picture(900 + k, (EVENT,) if k >= 4 else ()))) for k in range(12))
+        runner = lead_of()
+        runner.pulses.append((30_000_000, 0.4))
+        runner.pictures.extend((k * FRAME_NS, jpeg(picture(900 + k, (EVENT,) if k >= 4 else ()))) for k in range(12))
         with tempfile.TemporaryDirectory() as folder:
-            participant = simulated.Participant(study, "P01", 1, folder, lead)
+            participant = simulated.Participant(study, "P01", 1, folder, runner)
             observed = types.SimpleNamespace(event=str(EVENT), times_ns={"haptic": 32_000_000, "visual": 70_000_000})
             self.assertEqual((4 * FRAME_NS * 1e-6 - 30, ""), participant.perceived_ms(observed))
             warm = types.SimpleNamespace(event=str(EVENT), times_ns={"haptic": 32_000_000, "thermal": 70_000_000})

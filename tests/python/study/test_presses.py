@@ -19,20 +19,20 @@ WEBER, LAPSE = 0.23, 0.02
 SPRING_N_m = 40.0
 
 
-class Lead:
+class TrialRunnerClient:
     """A trial runner whose hand presses a spring of SPRING_N_m, or of `softer` times that if touch is degraded."""
 
     def __init__(self, softer):
         self.softer, self.profiles, self.felt, self.moved = softer, [], [], False
 
-    def put_in_force(self, profile, _):
+    def apply_profile(self, profile, _):
         self.profiles.append(profile)
         return True
 
     def wait_for(self, condition, _):
         return bool(condition())
 
-    def order(self, press):
+    def send(self, press):
         stiffness = SPRING_N_m * (self.softer if "haptic" in self.profiles[-1].split(">", 1)[1] else 1)
         depth = press["depth_m"] * np.sin(np.linspace(0, math.pi, 200)) ** 2
         self.felt += [(i, -z, stiffness * z) for i, z in enumerate(depth)]
@@ -48,7 +48,7 @@ class TwoPresses(unittest.TestCase):
 
     def test_the_stiffness_of_each_and_which_was_degraded_are_columns(self):
         for degraded in (0, 1):
-            observed = stimuli.press(Lead(0.5), self.study, self.trial(degraded), 1)
+            observed = stimuli.press(TrialRunnerClient(0.5), self.study, self.trial(degraded), 1)
             wanted = [SPRING_N_m * (0.5 if i == degraded else 1) for i in (0, 1)]
             self.assertEqual(observed.missed, "")
             np.testing.assert_allclose(observed.stiffnesses_N_m, wanted, rtol=1e-6)
@@ -58,15 +58,15 @@ class TwoPresses(unittest.TestCase):
         for operator, (_, _, least, most) in quantities.OPERATORS.items():
             level = least if quantities.nothing(operator, most) else most
             condition = conditions.Condition("c", "factor", factors=(conditions.Factor("haptic", operator),), levels=(level,))
-            lead = Lead(1.0)
-            stimuli.press(lead, self.study, self.trial(1, level, condition), 1)
+            runner = TrialRunnerClient(1.0)
+            stimuli.press(runner, self.study, self.trial(1, level, condition), 1)
             with self.subTest(operator):
-                self.assertNotIn("haptic", lead.profiles[0].split(">", 1)[1])
-                self.assertIn('<degrade modality="haptic"', lead.profiles[1])
+                self.assertNotIn("haptic", runner.profiles[0].split(">", 1)[1])
+                self.assertIn('<degrade modality="haptic"', runner.profiles[1])
 
     def test_the_observer_judges_the_felt_stiffness_and_ignores_the_level(self):
         participant = simulated.Participant(self.study, "P01", 1, "nowhere", types.SimpleNamespace())
-        found = lambda degraded, level, stiffnesses: np.mean([participant.says_yes(dataclasses.replace(self.trial(degraded, level), number=n), 1, level,
+        found = lambda degraded, level, stiffnesses: np.mean([participant.is_yes(dataclasses.replace(self.trial(degraded, level), number=n), 1, level,
                                                               stimuli.Observed(stiffnesses_N_m=stiffnesses)) for n in range(400)])
         for level in (5.0, 40.0):
             self.assertAlmostEqual(found(0, level, (40.0, 40.0)), 0.5, delta=0.1)                    # four standard errors of 400 answers

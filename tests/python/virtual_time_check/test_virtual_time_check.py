@@ -28,8 +28,8 @@ class Verdicts(unittest.TestCase):
             self.assertEqual(says, bounds.verdict(low, high, 0.15), (low, high))
 
     def test_a_figure_without_interval_is_compared_by_its_difference_and_a_missing_one_is_open(self):
-        self.assertEqual([bounds.HOLDS, bounds.MISSED, bounds.OPEN], [bounds.single("latency", "ms", live, 10.0, 2.0).says for live in (11.5, 7.0, math.nan)])
-        self.assertEqual(bounds.MISSED, bounds.single("events lost", "", 1.0, 0.0, 0.0).says)
+        self.assertEqual([bounds.HOLDS, bounds.MISSED, bounds.OPEN], [bounds.single("latency", "ms", live, 10.0, 2.0).verdict for live in (11.5, 7.0, math.nan)])
+        self.assertEqual(bounds.MISSED, bounds.single("events lost", "", 1.0, 0.0, 0.0).verdict)
 
     def test_a_row_of_json_has_no_nan(self):
         json.dumps(bounds.single("latency", "ms", math.nan, 10.0, 2.0).row(), allow_nan=False)
@@ -68,7 +68,7 @@ class Scene(unittest.TestCase):
     def test_equal_runs_hold_every_bound(self):
         senses = {"haptic": (0, 1), "audio": (20, 0), "visual": (20, -3), "thermal": (20, 10)}
         held = self.held(self.runs((40, senses), (40, senses)), self.runs((40, senses), (40, senses)))
-        self.assertEqual({bounds.HOLDS}, {h.says for h in held.values()}, held)
+        self.assertEqual({bounds.HOLDS}, {h.verdict for h in held.values()}, held)
         figures = ("visual: scheduled after the event", "visual: presented after that", "visual: presented after the event", "asynchrony audio to visual")
         self.assertEqual([20, -3, 17, -3], [held[f].live for f in figures])
 
@@ -89,13 +89,13 @@ class Scene(unittest.TestCase):
     def test_a_sense_two_frames_late_and_a_lost_event_miss_their_bounds(self):
         lost = {"contacts": {"begin": 80, "hit": 40, "by_modality": {"audio": {"lost": 1}}}}
         held = self.held(self.runs((40, {"haptic": (0, 1), "visual": (54, 0)}, lost)), self.runs((40, {"haptic": (0, 1), "visual": (20, 0)})))
-        self.assertEqual([bounds.MISSED] * 3 + [bounds.HOLDS], [held[f].says for f in ("visual: presented after the event", "asynchrony haptic to visual", "events lost, live",
+        self.assertEqual([bounds.MISSED] * 3 + [bounds.HOLDS], [held[f].verdict for f in ("visual: presented after the event", "asynchrony haptic to visual", "events lost, live",
                                                                                      "haptic: presented after the event")])
 
     def test_counts_are_compared_by_the_interval_between_the_means_of_runs(self):
         senses = {"haptic": (0, 1)}
         few, many, wide = ([(n, senses) for n in counts] for counts in ((40, 41, 40), (60, 61, 60), (20, 60, 40)))
-        says = lambda a, b: self.held(self.runs(*a), self.runs(*b))["hits in a run"].says
+        says = lambda a, b: self.held(self.runs(*a), self.runs(*b))["hits in a run"].verdict
         self.assertEqual((bounds.HOLDS, bounds.MISSED, bounds.OPEN, bounds.OPEN), (says(few, few), says(few, many), says(few, wide), says(few[:1], few)))
 
     def test_the_interval_between_means_agrees_with_statsmodels(self):
@@ -135,25 +135,25 @@ class Games(unittest.TestCase):
         self.assertEqual(([0], [60.0], [1], [59.0]), (c.live_won, c.live_s, c.virtual_won, c.virtual_s))
 
     def test_different_games_miss_equal_games_hold_and_few_games_are_open(self):
-        says = lambda live, virtual, n: cell("some", live * n, virtual * n).success().says
+        says = lambda live, virtual, n: cell("some", live * n, virtual * n).success().verdict
         self.assertEqual((bounds.MISSED, bounds.HOLDS, bounds.OPEN), (says([None], [20.0], 10), says([20.0], [20.0], 25), says([20.0], [20.0], 10)))
-        self.assertEqual(bounds.OPEN, cell("one", [20.0], [None]).time().says)
-        self.assertEqual([bounds.OPEN] * 2, [h.says for h in (cell("none", [], []).success(), cell("none", [], []).time())])
+        self.assertEqual(bounds.OPEN, cell("one", [20.0], [None]).time().verdict)
+        self.assertEqual([bounds.OPEN] * 2, [h.verdict for h in (cell("none", [], []).success(), cell("none", [], []).time())])
         json.dumps([cell("none", [], []).row(), *(o.row() for o in game_figures.orders([cell("none", [], [])], draws=10))], allow_nan=False)
 
     def test_times_without_won_games_are_as_open_as_success(self):
         for n, says in ((2, bounds.OPEN), (10, bounds.OPEN), (25, bounds.HOLDS)):
             lost = cell("ruinous", [None] * n, [None] * n)
-            self.assertEqual((says, says), (lost.success().says, lost.time().says), n)
+            self.assertEqual((says, says), (lost.success().verdict, lost.time().verdict), n)
             self.assertAlmostEqual(60 * lost.success().high, lost.time().high)
 
     def test_all_conditions_together_are_more_precise_than_each_alone(self):
         won, lost = ([cell(str(i), [t] * 10, [t] * 9 + [u]) for i in range(4)] for t, u in ((20.0, 21.0), (None, None)))
-        self.assertEqual({bounds.OPEN}, {c.success().says for c in won + lost})
-        self.assertEqual([bounds.HOLDS] * 2, [h.says for h in game_figures.together(won + lost)])
-        self.assertEqual([bounds.OPEN] * 2, [h.says for h in game_figures.together([cell("few", [20.0], [20.0])])])
+        self.assertEqual({bounds.OPEN}, {c.success().verdict for c in won + lost})
+        self.assertEqual([bounds.HOLDS] * 2, [h.verdict for h in game_figures.together(won + lost)])
+        self.assertEqual([bounds.OPEN] * 2, [h.verdict for h in game_figures.together([cell("few", [20.0], [20.0])])])
         worse = [cell(str(i), [None] * 6 + [20.0] * 4, [20.0] * 10) for i in range(4)]
-        self.assertEqual([bounds.MISSED] * 2, [h.says for h in game_figures.together(worse)])
+        self.assertEqual([bounds.MISSED] * 2, [h.verdict for h in game_figures.together(worse)])
 
     def test_the_interval_over_conditions_covers_the_truth(self):
         dice, inside = np.random.default_rng(5), 0
@@ -172,14 +172,14 @@ class Games(unittest.TestCase):
         for order, value, says in ((by_time, 1, bounds.HOLDS), (by_success, 1, bounds.HOLDS), (reverse, -1, bounds.MISSED)):
             self.assertAlmostEqual(value, order.tau)
             self.assertAlmostEqual(value, order.rho)
-            self.assertEqual(says, order.says)
+            self.assertEqual(says, order.verdict)
 
     def test_an_order_within_the_scatter_of_games_is_open(self):
         dice = np.random.default_rng(3)
         cells = [cell(str(i), list(dice.uniform(10, 50, 4)), list(dice.uniform(10, 50, 4))) for i in range(8)]
         order = game_figures.orders(cells, draws=200)[1]
         self.assertLess(order.reached, game_figures.LEAST_TAU)
-        self.assertEqual(bounds.OPEN, order.says)
+        self.assertEqual(bounds.OPEN, order.verdict)
 
     def test_redrawn_games_have_the_shares_and_times_of_the_played_ones(self):
         cells = [cell("all", [20.0] * 50, [20.0] * 50), cell("half", [30.0] * 50, [30.0, None] * 25), cell("none", [None] * 50, [None] * 50)]
@@ -189,12 +189,12 @@ class Games(unittest.TestCase):
 
     def test_single_games_prove_no_order(self):
         cells = [cell(str(i), [a], [b]) for i, (a, b) in enumerate(((None, 17.0), (None, None), (11.0, 13.0), (20.0, None)))]
-        self.assertEqual({bounds.OPEN}, {o.says for o in game_figures.orders(cells, draws=200)})
+        self.assertEqual({bounds.OPEN}, {o.verdict for o in game_figures.orders(cells, draws=200)})
 
     def test_equal_conditions_have_no_order(self):
         by_success, _ = game_figures.orders([cell(str(i), [20.0 + i], [20.0 + i]) for i in range(4)], draws=200)
         self.assertTrue(math.isnan(by_success.tau))
-        self.assertEqual(bounds.OPEN, by_success.says)
+        self.assertEqual(bounds.OPEN, by_success.verdict)
         json.dumps(by_success.row(), allow_nan=False)
 
     def test_of_eight_conditions_chance_reaches_the_bound_one_time_in_sixty(self):

@@ -7,7 +7,7 @@ from tactus.refusal import Refusal
 
 # Task of a trial: the psychometric function of tactus/psychophysics/functions.py that it follows.
 FUNCTION = {"sj": "synchrony_window", "toj": "order", "2ifc": "weibull"}
-CALLED = {"sj": "synchrony judgement", "toj": "temporal order judgement", "2ifc": "two intervals, which one was degraded"}
+TASK_NAMES = {"sj": "synchrony judgement", "toj": "temporal order judgement", "2ifc": "two intervals, which one was degraded"}
 OTHER_NAMES = {"synchrony": "sj", "order": "toj", "two_interval": "2ifc", "2afc": "2ifc"}
 GUESS_2IFC = 0.5
 TOGETHER = {"yes", "1", "sync", "synchronous", "simultaneous", "together", "true"}
@@ -28,7 +28,7 @@ def pair_of(text):
     return tuple(parts)
 
 
-def says_yes(kind, row_response, row_correct, pair):
+def is_yes(kind, row_response, row_correct, pair):
     """Whether one answer counts as yes: together (sj), a was first (toj), correct (2ifc). None: no answer."""
     if kind == "2ifc":
         return None if row_correct != row_correct else bool(row_correct)
@@ -51,6 +51,6 @@ def says_yes(kind, row_response, row_correct, pair):
 
 def answered(kind, trials, pair):
     """(mask of rows with an answer, yes as 0/1)."""
-    said = [says_yes(kind, r, c, pair) for r, c in zip(trials["response"], trials["correct"])]
-    rows = np.array([s is not None for s in said], dtype=bool)
-    return rows, np.array([bool(s) for s in said], dtype=float)
+    answers = [is_yes(kind, r, c, pair) for r, c in zip(trials["response"], trials["correct"])]
+    rows = np.array([s is not None for s in answers], dtype=bool)
+    return rows, np.array([bool(s) for s in answers], dtype=float)

@@ -85,7 +85,7 @@ def of_levels(property, jnd, bound, factor, rows, shift, resampler, base, refere
     drawn = np.stack(draws)
     drawn = drawn[:, ~np.isnan(drawn).any(axis=0)]
     point = crossing(severities, sign * np.array(shifts)[:, None], weights, bound)[0]
-    limit = limits.of_draws("appear", factor, f"{property}, measured" if measured else property, point, crossing(severities, sign * drawn, weights, bound), float(severities.max()),
+    limit = limits.from_draws("appear", factor, f"{property}, measured" if measured else property, point, crossing(severities, sign * drawn, weights, bound), float(severities.max()),
                             rows.observer(), len(rows))
     return Felt(property, factor, levels, shifts, intervals, counts, reference, bound, jnd, limit,
                 "more" if sign > 0 else "less", left_out, rows.observer(), measured)

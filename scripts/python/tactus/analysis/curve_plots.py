@@ -2,7 +2,7 @@
 import numpy as np
 
 from tactus.analysis import answers, psychometric, published
-from tactus.analysis.look import BREAK, INK, PALE, colour, figures, label_of, stamp, thresholds_behind
+from tactus.analysis.plot_style import BREAK, INK, PALE, colour, figures, label_of, stamp, thresholds_behind
 from tactus.psychophysics import fits, functions
 
 BAND_DRAWS = 300  # draws of the band around a curve; design
@@ -98,14 +98,14 @@ def curve_figure(curve, seed):
 
 def small_multiples(curves):
     """Answers and function of each participant, with the function of all participants behind."""
-    people = [c for c in curves if c.participant != psychometric.EVERYBODY][:MAX_SMALL]
-    everybody = next(c for c in curves if c.participant == psychometric.EVERYBODY)
+    people = [c for c in curves if c.participant != psychometric.ALL_PARTICIPANTS][:MAX_SMALL]
+    all_participants = next(c for c in curves if c.participant == psychometric.ALL_PARTICIPANTS)
     rows = -(-len(people) // SIDE_BY_SIDE)
     fig, grid = figures.new(rows, SIDE_BY_SIDE, height_in=0.5 + 1.35 * rows, sharex=True, sharey=True, squeeze=False)
-    tint = colour(everybody.condition.pair[1] if everybody.condition.pair else everybody.condition.factor.modality)
+    tint = colour(all_participants.condition.pair[1] if all_participants.condition.pair else all_participants.condition.factor.modality)
     for axes, curve in zip(grid.flat, people):
-        if everybody.fit is not None:
-            line(axes, everybody, color=PALE, linewidth=1)
+        if all_participants.fit is not None:
+            line(axes, all_participants, color=PALE, linewidth=1)
         if len(curve.levels):
             points(axes, curve, 0.4, color=tint)
         if curve.fit is not None:
@@ -117,9 +117,9 @@ def small_multiples(curves):
         axes.set_ylim(-0.03, 1.03)
     for axes in grid.flat[len(people):]:
         axes.set_visible(False)
-    fig.supxlabel(everybody.condition.axis(), fontsize=8)
-    fig.supylabel(asked(everybody.condition), fontsize=8)
-    stamp(fig, everybody.observer)
+    fig.supxlabel(all_participants.condition.axis(), fontsize=8)
+    fig.supylabel(asked(all_participants.condition), fontsize=8)
+    stamp(fig, all_participants.observer)
     return fig
 
 
@@ -164,7 +164,7 @@ def running(curve, levels, yes, name):
 
 def trace_figure(curves):
     """Levels in order of presentation, filled for the answer yes; the running estimate; and the final interval."""
-    people = [c for c in curves if c.participant != psychometric.EVERYBODY] or curves
+    people = [c for c in curves if c.participant != psychometric.ALL_PARTICIPANTS] or curves
     people = [c for c in people if len(c.trials)][:MAX_SMALL]
     rows = -(-len(people) // SIDE_BY_SIDE)
     columns = min(SIDE_BY_SIDE, len(people))

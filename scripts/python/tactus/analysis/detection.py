@@ -14,7 +14,7 @@ from scipy.stats import norm
 from tactus.analysis import limits, resampling
 from tactus.analysis.operators import Factor
 
-EVERYBODY = ""  # the participant of a curve of all together
+ALL_PARTICIPANTS = ""  # the participant of a curve of all together
 
 
 def draws_of(value, interval, rng, draws=resampling.DRAWS):
@@ -44,11 +44,11 @@ def severities(values):
     return np.array([max(v, 0.0) for v in values])
 
 
-def of_condition(condition, curves, rng, felt=""):
+def condition_limits(condition, curves, rng, felt=""):
     """[Limit] of one condition from its curves. felt: the property by which its two intervals were compared, or ""."""
     fitted = [c for c in curves if c.fit is not None]
-    everybody = [c for c in fitted if c.participant == EVERYBODY]
-    people = [c for c in fitted if c.participant != EVERYBODY]
+    all_participants = [c for c in fitted if c.participant == ALL_PARTICIPANTS]
+    people = [c for c in fitted if c.participant != ALL_PARTICIPANTS]
     sides = [(+1, condition.pair[1], condition.pair[0]), (-1, condition.pair[0], condition.pair[1])] if condition.pair else [(0, None, None)]
     made = []
     for sign, late, early in sides:
@@ -59,19 +59,19 @@ def of_condition(condition, curves, rng, felt=""):
             values = severities([one(c, None)[0] for c in people])
             point = float(values.mean())
             draws = resampling.Resampler([c.participant for c in people], rng).of_cell([c.participant for c in people], values[:, None])[0][:, 0]
-        elif everybody:
-            point, draws = one(everybody[0], rng)
+        elif all_participants:
+            point, draws = one(all_participants[0], rng)
             point, draws = severities([point])[0], severities(draws)
         else:
             continue
-        used = people if len(people) >= resampling.FEWEST_PARTICIPANTS else everybody
+        used = people if len(people) >= resampling.FEWEST_PARTICIPANTS else all_participants
         tried = np.abs(np.concatenate([c.levels for c in used]))
-        made.append(limits.of_draws("appear" if felt else "detect", factor, by, point, draws, float(tried.max()),
+        made.append(limits.from_draws("appear" if felt else "detect", factor, by, point, draws, float(tried.max()),
                                     " and ".join(sorted({c.observer for c in used})), int(sum(c.total.sum() for c in used))))
     return made
 
 
-def detected(curves, seed, felt=lambda study: ""):
+def detection_limits(curves, seed, felt=lambda study: ""):
     """[Limit] of all conditions. felt(study): the property in its study file, or ""."""
     made = []
     conditions = []
@@ -79,6 +79,6 @@ def detected(curves, seed, felt=lambda study: ""):
         if c.condition not in conditions:
             conditions.append(c.condition)
     for i, condition in enumerate(conditions):
-        made += of_condition(condition, [c for c in curves if c.condition == condition], np.random.default_rng([seed, 1000 + i]),
+        made += condition_limits(condition, [c for c in curves if c.condition == condition], np.random.default_rng([seed, 1000 + i]),
                              felt(condition.study) if condition.kind == "2ifc" else "")
     return made

@@ -64,4 +64,4 @@ def edge_of(row, baseline, second, levels, margins, observer):
     whole = ~np.isnan(np.stack([c.draws[:, 0] for c in [*mine, baseline]])).any(axis=0)
     point = first_reached([mean(c) for c in mine], mean(baseline))[0]
     draws = first_reached([c.draws[whole] for c in mine], baseline.draws[whole])
-    return limits.of_draws("break", second, limits.EITHER, point, draws, float(severities.max()), observer, int(weights.sum()))
+    return limits.from_draws("break", second, limits.EITHER, point, draws, float(severities.max()), observer, int(weights.sum()))

@@ -1,7 +1,7 @@
 """Figures of limits: all limits of a factor, the ratio of L_break to L_detect, and felt properties."""
 import numpy as np
 
-from tactus.analysis.look import BREAK, INK, PALE, colour, figures, stamp
+from tactus.analysis.plot_style import BREAK, INK, PALE, colour, figures, stamp
 
 MARK = {"detect": "o", "appear": "s", "break": "D"}
 NAME = {"detect": "L_detect", "appear": "L_appear", "break": "L_break"}
@@ -23,12 +23,12 @@ def limits_figure(factor, found, thresholds, observer):
         if limit.reached:
             axes.plot([limit.value], [y], MARK[limit.kind], color=TINT[limit.kind], markersize=5)
         if not np.isfinite(limit.high):
-            axes.plot([limit.up_to], [y], "<" if factor.falling else ">", color=TINT[limit.kind], markerfacecolor="white", markersize=6)
+            axes.plot([limit.up_to], [y], "<" if factor.lower_is_worse else ">", color=TINT[limit.kind], markerfacecolor="white", markersize=6)
         names.append(f"{NAME[limit.kind]} by {limit.by}")
         y -= 1
     axes.set_yticks(range(0, y, -1), names, fontsize=7.5)
     axes.set(xlabel=factor.axis(), title="open triangle: not reached up to this level")
-    if factor.falling:
+    if factor.lower_is_worse:
         axes.invert_xaxis()
     else:
         axes.set_xlim(left=0)

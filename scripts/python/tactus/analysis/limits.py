@@ -39,7 +39,7 @@ class Limit:
         return np.isfinite(self.value)
 
 
-def of_draws(kind, factor, by, point, draws, up_to, observer, n):
+def from_draws(kind, factor, by, point, draws, up_to, observer, n):
     """A Limit from a severity and its draws."""
     low, high = resampling.interval(draws)
     def at(s):
@@ -60,7 +60,7 @@ def factors_of(cells):
     return sorted({degraded[0][0] for degraded in cells if len(degraded) == 1 and not degraded[0][0].removal})
 
 
-def breaking(cells, factor, margins, observer):
+def break_limits(cells, factor, margins, observer):
     """[Limit] by success, by time, and by whichever comes first."""
     baseline, mine = cells[()], series(cells, factor)
     severities = np.array([factor.severity(cell.achieved) for cell in mine])
@@ -76,7 +76,7 @@ def breaking(cells, factor, margins, observer):
     whole = ~np.isnan(np.stack([d.draws[:, 0] for d in [*mine, baseline]])).any(axis=0)
     draws = both([cell.draws[whole] for cell in mine], baseline.draws[whole])
     up_to = float(severities.max())
-    make = lambda by, point, draw: of_draws("break", factor, by, point, draw, up_to, observer, n)
+    make = lambda by, point, draw: from_draws("break", factor, by, point, draw, up_to, observer, n)
     return [make("success", points[0][0], draws[0]), make("time", points[1][0], draws[1]),
             make(EITHER, min(points[0][0], points[1][0]), np.minimum(*draws))]
 

@@ -5,7 +5,7 @@ import math
 NO_GAIN = "gain_of_0"
 REMOVALS = ("off", "freeze", "remove", NO_GAIN)  # operators without levels: the sense is absent
 # Operators whose lower level is worse. Their severity is 1/level: the period of a rate, the time constant of a low-pass; for shares (FROM_ONE) 1/level - 1.
-FALLING = ("rate", "frame_rate", "lowpass", "resolution", "gain")
+LOWER_IS_WORSE = ("rate", "frame_rate", "lowpass", "resolution", "gain")
 FROM_ONE = ("resolution", "gain")
 GAIN_ABOVE = "gain_above_1"  # a gain above 1 is a separate factor, whose severity grows with the level
 NAME = {"haptic": "touch", "audio": "sound", "visual": "vision", "thermal": "warmth"}
@@ -36,24 +36,24 @@ class Factor:
         return self.operator in REMOVALS
 
     @property
-    def falling(self):
+    def lower_is_worse(self):
         """Whether a lower level is worse."""
-        return self.operator in FALLING
+        return self.operator in LOWER_IS_WORSE
 
     def severity(self, level):
         """Severity, 0 or more, of a level that trials.read accepts."""
-        return 1.0 / level - (self.operator in FROM_ONE) if self.falling else level - (self.operator == GAIN_ABOVE)
+        return 1.0 / level - (self.operator in FROM_ONE) if self.lower_is_worse else level - (self.operator == GAIN_ABOVE)
 
     def level(self, severity):
         """The level of a severity; inverse of severity()."""
-        if not self.falling:
+        if not self.lower_is_worse:
             return severity + (self.operator == GAIN_ABOVE)
         inverse = severity + (self.operator in FROM_ONE)
         return 1.0 / inverse if inverse else math.inf
 
     def undegraded(self, level):
         """Whether the level has no effect."""
-        return not self.removal and level == (1 if self.operator in FROM_ONE else math.nan if self.falling else 0)
+        return not self.removal and level == (1 if self.operator in FROM_ONE else math.nan if self.lower_is_worse else 0)
 
     def words(self):
         return f"{NAME.get(self.modality, self.modality)}: {self.operator.replace('_', ' ')}"
@@ -62,4 +62,4 @@ class Factor:
         return f"{self.operator.replace('_', ' ')} of {NAME.get(self.modality, self.modality)}" + (f" ({self.unit})" if self.unit else "")
 
     def severity_axis(self):
-        return f"1 / {self.axis()}" + (" − 1" if self.operator in FROM_ONE else "") if self.falling else self.axis()
+        return f"1 / {self.axis()}" + (" − 1" if self.operator in FROM_ONE else "") if self.lower_is_worse else self.axis()

@@ -3,7 +3,7 @@ import numpy as np
 from matplotlib.colors import TwoSlopeNorm
 
 from tactus.analysis import limits, resampling
-from tactus.analysis.look import BREAK, INK, PALE, colour, figures, stamp
+from tactus.analysis.plot_style import BREAK, INK, PALE, colour, figures, stamp
 
 SHADE = "RdYlBu"
 
@@ -21,7 +21,7 @@ def factor_figure(cells, factor, found, margins, observer):
     baseline, mine = cells[()], limits.series(cells, factor)
     fig, (left, right) = figures.new(1, 2, height_in=2.6)
     tint = colour(factor.modality)
-    falling = factor.falling
+    falling = factor.lower_is_worse
     x = np.array([cell.achieved for cell in mine])
     zero = None if falling else 0.0
     shares = np.array([100 * cell.share for cell in mine])

@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from tactus.analysis import answers, operators
-from tactus.analysis.detection import EVERYBODY
+from tactus.analysis.detection import ALL_PARTICIPANTS
 from tactus.analysis.operators import Factor
 from tactus.psychophysics import fits
 
@@ -27,8 +27,8 @@ class Condition:
     measured: bool  # whether the levels are measured, else requested. If a lower level is worse, they are severities, so that functions rise
 
     def words(self):
-        what = f"{self.pair[0]}–{self.pair[1]}" if self.pair else self.factor.words() + (f" as {self.factor.severity_axis()}" if self.factor.falling else "")
-        return f"{what}, {answers.CALLED[self.kind]}"
+        what = f"{self.pair[0]}–{self.pair[1]}" if self.pair else self.factor.words() + (f" as {self.factor.severity_axis()}" if self.factor.lower_is_worse else "")
+        return f"{what}, {answers.TASK_NAMES[self.kind]}"
 
     def axis(self):
         if self.pair:
@@ -136,7 +136,7 @@ def curves(trials, seed):
     made = []
     for i, (condition, rows) in enumerate(conditions_of(trials)):
         people = rows.participants()
-        parts = [(EVERYBODY, rows)] + ([(p, rows.where(rows["participant_id"] == p)) for p in people] if len(people) > 1 else [])
+        parts = [(ALL_PARTICIPANTS, rows)] + ([(p, rows.where(rows["participant_id"] == p)) for p in people] if len(people) > 1 else [])
         for participant, mine in parts:
             made.append(curve(condition, participant, mine, np.random.default_rng([seed, i, *participant.encode()])))
     return made

@@ -1,10 +1,10 @@
 """Published thresholds of asynchrony, from sync/presentation/thresholds.csv. Every value has a source."""
-import csv
 import dataclasses
 import re
 
 from tactus.analysis.operators import Factor
 from tactus.paths import REPOSITORY
+from tactus.tables import read_rows
 
 THRESHOLDS = REPOSITORY / "sync" / "presentation" / "thresholds.csv"
 
@@ -33,8 +33,7 @@ class Threshold:
 
 
 def thresholds(path=THRESHOLDS):
-    with open(path, newline="", encoding="utf-8") as file:
-        return [Threshold(r["earlier"], r["later"], float(r["threshold_ms"]), r["what"], r["situation"], r["source"]) for r in csv.DictReader(file)]
+    return [Threshold(r["earlier"], r["later"], float(r["threshold_ms"]), r["what"], r["situation"], r["source"]) for r in read_rows(path)]
 
 
 def of_pair(a, b):

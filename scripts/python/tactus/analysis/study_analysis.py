@@ -71,7 +71,7 @@ def performances_of(trials, settings):
         limit_s, margins = performance.limit_s(games, settings.limit_s(study)), settings.margins(study)
         cells, clustered = performance.cells_of(games, limit_s, np.random.default_rng([settings.seed, 2000 + i]))
         differences = performance.differences(cells, clustered, margins, settings.alpha, limit_s)
-        found = {factor: limits.breaking(cells, factor, margins, games.observer()) for factor in limits.factors_of(cells)}
+        found = {factor: limits.break_limits(cells, factor, margins, games.observer()) for factor in limits.factors_of(cells)}
         edges = [frontier.frontier(cells, *pair, margins, games.observer()) for pair in frontier.pairs_of(cells)]
         made.append(Performance(study, margins, cells, clustered, limit_s, differences, found, edges, games.observer(), len(games.participants())))
     return made
@@ -128,7 +128,7 @@ def analyse(trials, settings):
     curves = curves_of(kept, settings.seed)
     felt = [f for (name, rows) in appearance.judged(kept, settings.felt) for f in appearance.felt(name, rows, rng)] + presses.felt(kept, rng)
     performances = performances_of(kept, settings)
-    found = detection.detected(curves, settings.seed, settings.felt) if curves else []
+    found = detection.detection_limits(curves, settings.seed, settings.felt) if curves else []
     found += [f.limit for f in felt]
     for p in performances:
         several = f" ({p.study})" if len(performances) > 1 else ""  # names the study if there are several

@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from tactus.analysis import limit_plots, limits, mixed, performance_plots, published, resampling
-from tactus.analysis.look import figures
+from tactus.analysis.plot_style import figures
 from tactus.analysis.result_tables import degraded_words
 from tactus.report.words import figure as number, listed, page, safe, table
 

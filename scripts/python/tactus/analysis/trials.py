@@ -87,7 +87,7 @@ def no_severity(row):
             continue
         if level is None and row["task"] == "game":
             return f"a game under {operator} has no {prefix}level; write its level"
-        falls = operator in operators.FALLING and operator != "gain"
+        falls = operator in operators.LOWER_IS_WORSE and operator != "gain"
         if level is not None and (level < 0 or falls and level == 0):
             return f"{prefix}level is {level:g}; a level of {operator} must be {'above 0; use the operator off for nothing at all' if falls else '0 or more'}"
     return None

@@ -1,5 +1,5 @@
-"""The agent: runs on a host for one request, which reach.py sends together with this code, answers and exits. runit supervises
-the nodes, as on one machine (scripts/python/tactus/launch/services.py).
+"""The agent: runs on a host for one request, which host_connection.py sends together with this code, answers and exits. runit
+supervises the nodes, as on one machine (scripts/python/tactus/launch/services.py).
 
 FOLDER (~/.local/share/tactus) holds builds/IDENTITY and clusters/NAME with run.json, files/ and out/."""
 import base64
@@ -29,24 +29,24 @@ END_S = 5
 URL = "udpm://{group}:{port}?ttl={ttl}"
 
 
-def base(request):
+def tactus_folder(request):
     return pathlib.Path(request["folder"] or "~/.local/share/tactus").expanduser()
 
 
-def place(request):
-    return base(request) / "clusters" / request["cluster"]
+def cluster_folder(request):
+    return tactus_folder(request) / "clusters" / request["cluster"]
 
 
-def record(request):
+def run_record(request):
     """The record of the running cluster on this host; {} when it does not run."""
     try:
-        kept = json.loads((place(request) / "run.json").read_text(encoding="utf-8"))
+        run = json.loads((cluster_folder(request) / "run.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
-    return kept if is_held(pathlib.Path(kept["services"])) else {}
+    return run if is_locked(pathlib.Path(run["services"])) else {}
 
 
-def is_held(folder):
+def is_locked(folder):
     """True while the supervisor runs, because it holds the lock."""
     try:
         with open(folder / "in_use", "r", encoding="ascii") as lock:
@@ -58,30 +58,30 @@ def is_held(folder):
         return False
 
 
-def nothing(_):
+def ping(_):
     return {}
 
 
-def look(request):
+def inspect_host(request):
     """Properties of this host, and the state of build and cluster on it."""
     build = build_folder(request)
     programs = [str(p) for p in sorted((build / "bin").glob("*")) if p.is_file()] if build.is_dir() else []
-    kept = record(request)
+    run = run_record(request)
     return {"machine": platform.machine(), "python": platform.python_version(), "runit": bool(shutil.which("runsvdir")), "cores": os.cpu_count(),
-            "build": build.is_dir(), "missing": missing_libraries(programs), "messages": said_of_messages(build), "run": kept,
+            "build": build.is_dir(), "missing": missing_libraries(programs), "messages": message_types(build), "run": run,
             "realtime": resource.getrlimit(resource.RLIMIT_RTPRIO)[1], "root": os.geteuid() == 0}
 
 
 def build_folder(request):
-    return pathlib.Path(request["own_build"]).expanduser() if request.get("own_build") else base(request) / "builds" / request["build"]
+    return pathlib.Path(request["own_build"]).expanduser() if request.get("own_build") else tactus_folder(request) / "builds" / request["build"]
 
 
 def missing_libraries(programs):
-    said = subprocess.run(["ldd", *programs], capture_output=True, text=True, check=False).stdout if programs else ""
-    return sorted({line.split()[0] for line in said.splitlines() if "not found" in line})
+    output = subprocess.run(["ldd", *programs], capture_output=True, text=True, check=False).stdout if programs else ""
+    return sorted({line.split()[0] for line in output.splitlines() if "not found" in line})
 
 
-def said_of_messages(build):
+def message_types(build):
     try:
         return subprocess.run([build / "bin" / "message_types"], capture_output=True, text=True, check=True, timeout=10).stdout
     except (OSError, subprocess.SubprocessError):
@@ -90,7 +90,7 @@ def said_of_messages(build):
 
 def receive(request):
     """Unpacks the tar behind the request: a build, or the files of a run. All or nothing."""
-    into = build_folder(request) if request["into"] == "build" else place(request) / "files"
+    into = build_folder(request) if request["into"] == "build" else cluster_folder(request) / "files"
     into.parent.mkdir(parents=True, exist_ok=True)
     fresh = into.with_name(f"{into.name}.{os.getpid()}.new")
     try:
@@ -103,7 +103,7 @@ def receive(request):
     fresh.rename(into)
     if request["into"] == "build":
         old = sorted((p for p in into.parent.iterdir() if p != into), key=lambda p: p.stat().st_mtime)
-        in_use = {json.loads(p.read_text(encoding="utf-8")).get("build") for p in base(request).glob("clusters/*/run.json")}
+        in_use = {json.loads(p.read_text(encoding="utf-8")).get("build") for p in tactus_folder(request).glob("clusters/*/run.json")}
         for path in old[:max(0, len(old) - KEPT_BUILDS + 1)]:
             if path.name not in in_use:
                 shutil.rmtree(path, ignore_errors=True)
@@ -115,14 +115,14 @@ def shaders(_):
     return {"tar": base64.b64encode(shader_cache.packed(shader_cache.folder())).decode()}
 
 
-def take_shaders(_):
+def store_shaders(_):
     """Stores the shaders behind the request."""
-    return {"taken": shader_cache.unpack(sys.stdin.buffer.read(), shader_cache.folder())}
+    return {"stored": shader_cache.unpack(sys.stdin.buffer.read(), shader_cache.folder())}
 
 
-def filled(request, words):
+def with_folders(request, words):
     """The words with placeholders replaced by the folders of this host."""
-    into = {"@BUILD@": str(build_folder(request)), "@FILES@": str(place(request) / "files"), "@OUT@": str(place(request) / "out")}
+    into = {"@BUILD@": str(build_folder(request)), "@FILES@": str(cluster_folder(request) / "files"), "@OUT@": str(cluster_folder(request) / "out")}
     done = []
     for word in words:
         for mark, folder in into.items():
@@ -135,11 +135,11 @@ def check(request):
     """Runs all nodes with --check in parallel; {node: error}, and "warnings"."""
     started = {}
     for name, words in request["nodes"].items():
-        words = filled(request, words)
+        words = with_folders(request, words)
         at = words.index("--out")
         started[name] = subprocess.Popen(words[:at] + words[at + 2:] + ["--check"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                          stderr=subprocess.PIPE, text=True, errors="replace")
-    said = {}
+    findings = {}
     for name, process in started.items():
         patience_s = READ_SCENE_S if name == "sim_node" else CHECK_S
         try:
@@ -148,26 +148,26 @@ def check(request):
             process.kill()
             text = f"{name}: does not finish its checks in {patience_s} s"
         if process.returncode != 0:
-            said[name] = text.split("\n")[-1] or f"{name}: fails its checks with status {process.returncode}"
+            findings[name] = text.split("\n")[-1] or f"{name}: fails its checks with status {process.returncode}"
         elif name == "sim_node" and text:
-            said["warnings"] = text
-    return said
+            findings["warnings"] = text
+    return findings
 
 
 def prepare(request):
     """Starts the supervisor with every node as a stopped service, so that any node can be started immediately."""
-    if record(request):
+    if run_record(request):
         return {"prepared": False}
-    home = place(request)
+    home = cluster_folder(request)
     out = home / "out"
-    kept = clear_of_before(home, out)
+    kept = set_earlier_results_aside(home, out)
     (out / "logs").mkdir(parents=True, exist_ok=True)
     (home / "files").mkdir(exist_ok=True)
     services.remove_leftovers()
     folder = services.make_folder(out)
-    lock = services.hold(folder)
+    lock = services.lock_folder(folder)
     for name, words in request["nodes"].items():
-        services.Service(folder, name, filled(request, words), out / "logs" / f"{name}.log", home)
+        services.Service(folder, name, with_folders(request, words), out / "logs" / f"{name}.log", home)
     net = network.choose("auto", request["port"]) if request["private"] else network.Network(False, [], "the host's")
     words = [*net.unshare, str(build_folder(request) / "share" / "inside"), str(folder), "private" if net.private else "host"]
     with open(out / "logs" / "supervisor.log", "w", encoding="utf-8") as log:
@@ -180,14 +180,14 @@ def prepare(request):
     (out / "cluster").symlink_to(folder)
     run = {"run_id": request["run_id"], "build": request["build"], "services": str(folder), "holder": holder.pid, "here": [], "began": time.time(),
             "namespaces": net.unshare}
-    write_record(request, run)
+    write_run_record(request, run)
     controls = [folder / "services" / name / "supervise" / "control" for name in request["nodes"]]
     if not services.wait_until(lambda: all(p.exists() for p in controls), 15):
         raise Refusal(f"the supervisor does not start its services; see {out}/logs/supervisor.log on the host")
     return {"prepared": True, "kept": kept}
 
 
-def clear_of_before(home, out):
+def set_earlier_results_aside(home, out):
     """Removes the results of an earlier run when they were gathered; otherwise renames them. Returns the new path, or ""."""
     marker = home / "gathered"
     gathered = marker.exists()
@@ -202,13 +202,13 @@ def clear_of_before(home, out):
     return str(aside)
 
 
-def write_record(request, kept):
-    path = place(request) / "run.json"
-    path.with_suffix(".new").write_text(json.dumps(kept), encoding="utf-8")
+def write_run_record(request, run):
+    path = cluster_folder(request) / "run.json"
+    path.with_suffix(".new").write_text(json.dumps(run), encoding="utf-8")
     path.with_suffix(".new").rename(path)
 
 
-class Running(services.Service):
+class RunningService(services.Service):
     """An existing service."""
 
     def __init__(self, folder, name, log):  # pylint: disable=super-init-not-called
@@ -224,11 +224,11 @@ class Running(services.Service):
             return 0
 
 
-def running(request, name):
-    kept = record(request)
-    if not kept:
+def running_service(request, name):
+    run = run_record(request)
+    if not run:
         raise Refusal(f"the cluster {request['cluster']} does not run here; start it with tactus cluster up")
-    service = Running(pathlib.Path(kept["services"]), name, place(request) / "out" / "logs" / f"{name}.log")
+    service = RunningService(pathlib.Path(run["services"]), name, cluster_folder(request) / "out" / "logs" / f"{name}.log")
     if not service.path.is_dir():
         raise Refusal(f"there is no node {name} in this cluster")
     return service
@@ -236,10 +236,10 @@ def running(request, name):
 
 def start(request):
     """Starts nodes and records that they belong to this host. Returns when each has written to its log."""
-    kept = record(request)
-    members = [running(request, name) for name in request["names"]]
-    since = {**kept.get("since", {}), **{n: time.time() for n in request["names"] if n not in kept["here"]}}
-    write_record(request, {**kept, "here": list(dict.fromkeys([*kept["here"], *request["names"]])), "since": since})
+    run = run_record(request)
+    members = [running_service(request, name) for name in request["names"]]
+    since = {**run.get("since", {}), **{n: time.time() for n in request["names"] if n not in run["here"]}}
+    write_run_record(request, {**run, "here": list(dict.fromkeys([*run["here"], *request["names"]])), "since": since})
     members = [s for s in members if s.is_down()]
     before = {s.name: s.log.stat().st_size if s.log.exists() else 0 for s in members}
     for s in members:
@@ -252,20 +252,20 @@ def start(request):
 
 def stop(request):
     """Asks nodes to end, waits, and kills the others. With leave they no longer belong to this host."""
-    kept = record(request)
-    if not kept:
+    run = run_record(request)
+    if not run:
         return {"killed": []}
-    members = [s for s in (running(request, name) for name in request["names"]) if s.is_up()]
+    members = [s for s in (running_service(request, name) for name in request["names"]) if s.is_up()]
     if request.get("leave"):
-        write_record(request, {**kept, "here": [n for n in kept["here"] if n not in request["names"]]})
+        write_run_record(request, {**run, "here": [n for n in run["here"] if n not in request["names"]]})
     for s in members:
         (s.path / "asked").touch()  # not counted as a death: services.FINISH
     services.request_end(members, request.get("patience", END_S))
-    stubborn = [s for s in members if not s.is_down()]
-    for s in stubborn:
-        s.order("k")
-    services.wait_until(lambda: all(s.is_down() for s in stubborn), 2)
-    return {"killed": [s.name for s in stubborn]}
+    still_running = [s for s in members if not s.is_down()]
+    for s in still_running:
+        s.control("k")
+    services.wait_until(lambda: all(s.is_down() for s in still_running), 2)
+    return {"killed": [s.name for s in still_running]}
 
 
 def restart(request):
@@ -273,27 +273,27 @@ def restart(request):
     return stop(request) | start(request)
 
 
-def order(request):
+def send_command(request):
     """Sends a command of runsv(8) to nodes: p pause, c continue, k kill, t end (the node restarts)."""
     for name in request["names"]:
-        if not running(request, name).order(request["letter"]):
+        if not running_service(request, name).control(request["letter"]):
             raise Refusal(f"{name}: its supervisor does not respond; see the log supervisor.log of the host")
     return {}
 
 
-def state(request):
+def node_states(request):
     """State of every node of this host, from its supervisor."""
-    kept = record(request)
+    run = run_record(request)
     nodes = {}
-    for name in kept.get("here", []):
-        s = running(request, name)
+    for name in run.get("here", []):
+        s = running_service(request, name)
         nodes[name] = {"up": s.is_up(), "pid": s.pid(), "deaths": s.deaths(), "lost": s.lost(), "taken_down": s.is_stopped_by_user(), "last": s.last_output_line()[-200:],
                        "begun": name == "sim_node" and s.log_contains("sim_node: the world begins")}
-    return {"run": kept, "nodes": nodes, "load": os.getloadavg()[0], "cores": os.cpu_count()}
+    return {"run": run, "nodes": nodes, "load": os.getloadavg()[0], "cores": os.cpu_count()}
 
 
 def logs(request):
-    folder = place(request) / "out" / "logs"
+    folder = cluster_folder(request) / "out" / "logs"
     found = {}
     for path in sorted(folder.glob("*.log")):
         if not request["names"] or path.stem in request["names"]:
@@ -304,56 +304,57 @@ def logs(request):
     return found
 
 
-def on_the_bus(request):
+def run_bus_program(request):
     """Runs a program of the bus in the network of the cluster; returns status, out and err."""
-    kept = record(request)
-    words = filled(request, request["words"])
+    run = run_record(request)
+    words = with_folders(request, request["words"])
     for name, text in request.get("files", {}).items():  # named by the words
-        (place(request) / "files").mkdir(parents=True, exist_ok=True)
-        (place(request) / "files" / name).write_text(text, encoding="utf-8")
-    if "--net" in kept.get("namespaces", []):
-        ns = f"/proc/{kept['holder']}/ns"
-        words = ["nsenter", f"--net={ns}/net", *([f"--user={ns}/user", "--preserve-credentials"] if "--user" in kept["namespaces"] else []), *words]
+        (cluster_folder(request) / "files").mkdir(parents=True, exist_ok=True)
+        (cluster_folder(request) / "files" / name).write_text(text, encoding="utf-8")
+    if "--net" in run.get("namespaces", []):
+        ns = f"/proc/{run['holder']}/ns"
+        words = ["nsenter", f"--net={ns}/net", *([f"--user={ns}/user", "--preserve-credentials"] if "--user" in run["namespaces"] else []), *words]
     try:
         done = subprocess.run(words, capture_output=True, text=True, errors="replace", timeout=request["patience"], check=False)
     except subprocess.TimeoutExpired:
-        raise Refusal(f"{pathlib.Path(words[0]).name}: does not end within {request['patience_s']} s") from None
+        raise Refusal(f"{pathlib.Path(words[0]).name}: does not end within {request['patience']} s") from None
     return {"status": done.returncode, "out": done.stdout, "err": done.stderr}
 
 
-def end(request):
+def end_supervisor(request):
     """Ends the supervisor; the recording stays."""
-    kept = record(request)
-    if kept:
-        folder = pathlib.Path(kept["services"])
+    run = run_record(request)
+    if run:
+        folder = pathlib.Path(run["services"])
         with contextlib.suppress(OSError):
             (folder / "stopping").touch()
-        holder = kept["holder"]
+        holder = run["holder"]
         children = pathlib.Path(f"/proc/{holder}/task/{holder}/children")
-        pids = [int(p) for p in children.read_text(encoding="ascii").split()] if kept["namespaces"] and children.exists() else [holder]
+        pids = [int(p) for p in children.read_text(encoding="ascii").split()] if run["namespaces"] and children.exists() else [holder]
         for pid in pids:
             with contextlib.suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGHUP)
-        if not services.wait_until(lambda: not is_held(folder), END_S):
+        if not services.wait_until(lambda: not is_locked(folder), END_S):
             with contextlib.suppress(ProcessLookupError):
                 os.kill(holder, signal.SIGKILL)
         shutil.rmtree(folder, ignore_errors=True)
-        (place(request) / "out" / "cluster").unlink(missing_ok=True)
-    (place(request) / "run.json").unlink(missing_ok=True)
-    return {"was_there": bool(kept)}
+        (cluster_folder(request) / "out" / "cluster").unlink(missing_ok=True)
+    (cluster_folder(request) / "run.json").unlink(missing_ok=True)
+    return {"was_there": bool(run)}
 
 
 def collect(request):
     """Writes all results as a tar to stdout, instead of an answer."""
     with gzip.GzipFile(fileobj=sys.stdout.buffer, mode="wb", compresslevel=1) as packed, tarfile.open(fileobj=packed, mode="w|") as tar:
-        out = place(request) / "out"
+        out = cluster_folder(request) / "out"
         for path in sorted(out.rglob("*")):
             if path.is_file() and not path.is_symlink():
                 tar.add(path, str(path.relative_to(out)))
-    (place(request) / "gathered").touch()
+    (cluster_folder(request) / "gathered").touch()
 
 
-QUESTIONS = {f.__name__: f for f in (nothing, look, receive, shaders, take_shaders, check, prepare, start, stop, restart, order, state, logs, on_the_bus, end)}
+REQUESTS = {f.__name__: f for f in (ping, inspect_host, receive, shaders, store_shaders, check, prepare, start, stop, restart, send_command, node_states, logs,
+                                    run_bus_program, end_supervisor)}
 
 
 def main(request):
@@ -361,7 +362,7 @@ def main(request):
         collect(request)
         return
     try:
-        answer = QUESTIONS[request["what"]](request)
+        answer = REQUESTS[request["what"]](request)
     except Refusal as refusal:
         answer = {"refusal": str(refusal)}
     except OSError as error:

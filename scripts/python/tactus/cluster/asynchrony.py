@@ -17,29 +17,29 @@ import dataclasses
 import itertools
 import re
 
-NAMES = ("haptic_push", "haptic", "audio", "visual", "thermal")  # the order of sync/presentation/presentation_matcher.cpp
+MODALITY_ORDER = ("haptic_push", "haptic", "audio", "visual", "thermal")  # the order of sync/presentation/presentation_matcher.cpp
 CONSTRAINT, TRANSIENT = 1, 2                                     # presentation_t: part
 PRESENTED, LATE, INAUDIBLE = 0, 1, 4                             # presentation_t: outcome
 GRAIN = {"haptic": 1.0, "thermal": 1.0, "visual": 0.5}           # share of the period by which a presentation may miss its time
-SLEW = 0.05                                                      # sync/playout/follower.h
-MOST_UNCERTAIN_NS = 16_000_000                                   # sync/clocks/clock_maps.h
-PER_S = 1_000_000_000
-BEFORE_NS = PER_S // 2                                           # after a change, the delay counts as changing for this time: messages on their way, frames begun
+MAX_SLEW = 0.05                                                      # sync/playout/follower.h
+MAX_UNCERTAINTY_NS = 16_000_000                                   # sync/clocks/clock_maps.h
+NS_PER_S = 1_000_000_000
+SETTLING_NS = NS_PER_S // 2                                           # after a change, the delay counts as changing for this time: messages on their way, frames begun
 
 
 @dataclasses.dataclass(frozen=True)
 class Onset:
     """The presentation of one event or frame by one node."""
-    what: int
+    event: int
     sense: str     # haptic_push: the immediate force at a begin, independent of the policy
     node: str
     host: str
     true_ns: int
-    told_ns: int   # on the clock of the recorder, by the maps
+    reported_ns: int   # on the clock of the recorder, by the maps
     clock_ns: int  # half width that the map states
     own_ns: int    # half width that the node states
     late: bool = False
-    meant_ns: int | None = None  # scheduled time
+    scheduled_ns: int | None = None  # scheduled time
     ready_ns: int | None = None  # earliest possible time
 
 
@@ -51,38 +51,38 @@ class Pair:
     hosts: tuple
     at_ns: int            # time of the first onset
     true_ns: int
-    told_ns: int
+    reported_ns: int
     clocks_ns: int
     stated_ns: int        # clocks_ns plus the uncertainties of both nodes
-    aim_ns: int | None    # of the playout delays; None: changing or without an aim
+    planned_ns: int | None    # of the playout delays; None: changing or without an aim
     grain_ns: int
     late: bool
 
     @property
-    def off_ns(self):
-        return self.told_ns - self.true_ns
+    def reporting_error_ns(self):
+        return self.reported_ns - self.true_ns
 
     @property
-    def outside(self):
-        return abs(self.off_ns) > self.clocks_ns
+    def exceeds_clock_uncertainty(self):
+        return abs(self.reporting_error_ns) > self.clocks_ns
 
     @property
-    def aside_ns(self):
-        return None if self.aim_ns is None else self.true_ns - self.aim_ns
+    def scheduling_error_ns(self):
+        return None if self.planned_ns is None else self.true_ns - self.planned_ns
 
     @property
-    def beyond(self):
-        return self.aside_ns is not None and abs(self.aside_ns) > self.stated_ns + self.grain_ns
+    def exceeds_stated_uncertainty(self):
+        return self.scheduling_error_ns is not None and abs(self.scheduling_error_ns) > self.stated_ns + self.grain_ns
 
 
 # reports
 
-def plain(row):
+def without_units(row):
     """A row of a wide table of export_log with units removed from the column names."""
     return {name.partition(" (")[0]: value for name, value in row.items()}
 
 
-def messages(rows):
+def group_messages(rows):
     """(log_s, sender, {field: value}, {place: {field: value}}) of each message of a long table of export_log; its type must have at most one list."""
     for (log_s, sender, _), fields in itertools.groupby(rows, lambda r: (r["log_s"], r["sender"], r["seq"])):
         once, lists = {}, {}
@@ -95,19 +95,19 @@ def messages(rows):
         yield float(log_s), sender, once, lists
 
 
-class Maps:
+class ClockMapHistory:
     """The clock maps of a log between other hosts and the host of the recorder, as known at each time."""
 
     def __init__(self, rows, host_of, home, ahead_s):
         """rows: CLOCK_MAP, wide. host_of: {node: host}. home: the recorder's host."""
-        rows = [plain(r) for r in rows]
+        rows = [without_units(r) for r in rows]
         self.home, self.lines = home, {}
         host_of_clock = {r["to_clock"]: host_of[r["sender"]] for r in rows if r["sender"] in host_of}
         shifts = []
         for r in rows:
             of, to = host_of_clock.get(r["of_clock"]), host_of_clock.get(r["to_clock"])
             if to == home:
-                shifts.append(int(r["at_ns"]) - ahead_s[home] * PER_S - round(float(r["log_s"]) * PER_S))
+                shifts.append(int(r["at_ns"]) - ahead_s[home] * NS_PER_S - round(float(r["log_s"]) * NS_PER_S))
             if home in (of, to) and of and to:
                 self.lines.setdefault((of, to), []).append((float(r["log_s"]), r))
         shifts.sort()
@@ -116,39 +116,39 @@ class Maps:
 
     def at_ns(self, log_s):
         """Log time in s to the clock of the lab, ns."""
-        return self.begin_ns + round(log_s * PER_S)
+        return self.begin_ns + round(log_s * NS_PER_S)
 
-    def read(self, of_ns, host, log_s):
+    def to_recorder_clock(self, of_ns, host, log_s):
         """(ns, half width) on the clock of the recorder of a time of a host, by the map known at log_s; None without a map that is certain enough."""
         if host == self.home:
             return of_ns, 0
-        for key, read in (((host, self.home), from_of), ((self.home, host), to_of)):
+        for key, read in (((host, self.home), invert_clock_map), ((self.home, host), apply_clock_map)):
             lines = self.lines.get(key, ())
             newest = bisect.bisect_right(lines, log_s, key=lambda line: line[0])
             if newest:
                 ns, half_ns = read(lines[newest - 1][1], of_ns)
-                return (ns, half_ns) if half_ns <= MOST_UNCERTAIN_NS else None
+                return (ns, half_ns) if half_ns <= MAX_UNCERTAINTY_NS else None
         return None
 
 
-def half_width(row, since_ns):
+def map_uncertainty_ns(row, since_ns):
     return int(row["uncertainty_ns"]) + round(abs(since_ns) * float(row["uncertainty_drift"])) + 2  # sync/clocks/clock_maps.cpp: two roundings
 
 
-def from_of(row, ns):
+def invert_clock_map(row, ns):
     since = round((ns - int(row["at_ns"]) - int(row["offset_ns"])) / (1 + float(row["drift"])))
-    return int(row["at_ns"]) + since, half_width(row, since)
+    return int(row["at_ns"]) + since, map_uncertainty_ns(row, since)
 
 
-def to_of(row, ns):
+def apply_clock_map(row, ns):
     since = ns - int(row["at_ns"])
-    return ns + int(row["offset_ns"]) + round(since * float(row["drift"])), half_width(row, since)
+    return ns + int(row["offset_ns"]) + round(since * float(row["drift"])), map_uncertainty_ns(row, since)
 
 
-def onsets(rows, kinds, maps, host_of, ahead_s):
+def event_onsets(rows, kinds, maps, host_of, ahead_s):
     """Onsets of each event by each node, from the long table of PRESENTED. kinds: {event_id: kind}, as events.csv has them."""
     found = {}
-    for log_s, node, once, reports in messages(rows):
+    for log_s, node, once, reports in group_messages(rows):
         host = host_of.get(node)
         for r in reports.values():
             event, part, sense = int(r["event_id"]), int(r["part"]), once["modality"]
@@ -156,98 +156,98 @@ def onsets(rows, kinds, maps, host_of, ahead_s):
                 continue
             if part and part != (TRANSIENT if kinds.get(str(event)) == "hit" else CONSTRAINT):
                 continue
-            read = maps.read(int(r["presented_ns"]), host, log_s)
+            read = maps.to_recorder_clock(int(r["presented_ns"]), host, log_s)
             if read is not None:
-                found[node, event, part] = Onset(event, sense + ("_push" if part == CONSTRAINT else ""), node, host, int(r["presented_ns"]) - ahead_s[host] * PER_S,
+                found[node, event, part] = Onset(event, sense + ("_push" if part == CONSTRAINT else ""), node, host, int(r["presented_ns"]) - ahead_s[host] * NS_PER_S,
                                                  read[0], read[1], int(r["uncertainty_ns"]), int(r["outcome"]) == LATE,
-                                                 *(int(r[name]) - ahead_s[host] * PER_S if int(r[name]) >= 0 else None for name in ("scheduled_ns", "ready_ns")))
+                                                 *(int(r[name]) - ahead_s[host] * NS_PER_S if int(r[name]) >= 0 else None for name in ("scheduled_ns", "ready_ns")))
     return list(found.values())
 
 
-def frames(told, shown, maps, host_of, ahead_s, own_ns):
-    """Onsets of frames, by wall. told: rows of FRAME_SHOWN, wide, with the arrival; shown: rows of frame_shown.csv of the same log, in the same order,
+def frame_onsets(reported, shown, maps, host_of, ahead_s, own_ns):
+    """Onsets of frames, by wall. reported: rows of FRAME_SHOWN, wide, with the arrival; shown: rows of frame_shown.csv of the same log, in the same order,
     with the presentation time. own_ns: {wall: half width that the wall states for its presentations}."""
     found = []
-    told = [r for r in map(plain, told) if r["sender"]]  # rows without a readable header are only in the first table
-    if [r["frame"] for r in told] != [r["frame"] for r in shown]:
+    reported = [r for r in map(without_units, reported) if r["sender"]]  # rows without a readable header are only in the first table
+    if [r["frame"] for r in reported] != [r["frame"] for r in shown]:
         raise ValueError("FRAME_SHOWN.csv and frame_shown.csv are from different logs; export both from one log")
-    for arrived, row in zip(told, shown):
+    for arrived, row in zip(reported, shown):
         node = arrived["sender"]
         host = host_of.get(node)
-        read = maps.read(int(row["publish_ns"]), host, float(arrived["log_s"])) if host and row["stage"] == "shown" and node in own_ns else None
+        read = maps.to_recorder_clock(int(row["publish_ns"]), host, float(arrived["log_s"])) if host and row["stage"] == "shown" and node in own_ns else None
         if read is not None:
-            found.append(Onset(int(row["frame"]), "visual", node, host, int(row["publish_ns"]) - ahead_s[host] * PER_S, *read, own_ns[node]))
+            found.append(Onset(int(row["frame"]), "visual", node, host, int(row["publish_ns"]) - ahead_s[host] * NS_PER_S, *read, own_ns[node]))
     return found
 
 
-class Delays:
+class PlayoutDelays:
     """The playout delay of each modality, which follows the requests of PLAYOUT."""
 
     def __init__(self, rows, maps):
-        self.told = {}  # by modality: (ns, delay from then on, requested delay)
-        for log_s, _, _, entries in messages(rows):
+        self.requests = {}  # by modality: (ns, delay from then on, requested delay)
+        for log_s, _, _, entries in group_messages(rows):
             at = maps.at_ns(log_s)
             for e in entries.values():
-                asked, of_sense = int(e["delay_ns"]), self.told.setdefault(e["modality"], [])
-                of_sense.append((at, followed(of_sense[-1], at) if of_sense else asked, asked))
+                requested, of_sense = int(e["delay_ns"]), self.requests.setdefault(e["modality"], [])
+                of_sense.append((at, limit_slew(of_sense[-1], at) if of_sense else requested, requested))
 
     def at(self, sense, ns):
         """The delay if it was constant from the event to the presentation; else None."""
-        told = self.told.get(sense, ())
-        end = bisect.bisect_right(told, ns, key=lambda t: t[0])
+        requests = self.requests.get(sense, ())
+        end = bisect.bisect_right(requests, ns, key=lambda t: t[0])
         if not end:
             return None
-        delay = told[end - 1][2]
-        begin = bisect.bisect_left(told, ns - delay - BEFORE_NS, hi=end - 1, key=lambda t: t[0])
-        return delay if all(t[1] == t[2] == delay for t in told[begin:end]) else None
+        delay = requests[end - 1][2]
+        begin = bisect.bisect_left(requests, ns - delay - SETTLING_NS, hi=end - 1, key=lambda t: t[0])
+        return delay if all(t[1] == t[2] == delay for t in requests[begin:end]) else None
 
 
-def followed(before, at):
-    begin, delay, asked = before
-    most = round(SLEW * (at - begin))
-    return delay + max(-most, min(asked - delay, most))
+def limit_slew(before, at):
+    begin, delay, requested = before
+    limit = round(MAX_SLEW * (at - begin))
+    return delay + max(-limit, min(requested - delay, limit))
 
 
 # pairs
 
-def between(a, b, name, delays, periods_ns):
+def make_pair(a, b, name, delays, periods_ns):
     aims = [0, 0]
     if a.sense != b.sense:
         aims = [delays.at(o.sense, o.true_ns) if delays else None for o in (a, b)]
     grain = sum(round(GRAIN.get(o.sense, 0) * periods_ns.get(o.node, 0)) for o in (a, b))
-    grain += sum(max(0, o.ready_ns - o.meant_ns) for o, aim in zip((a, b), aims) if aim == 0 and a.sense != b.sense and o.ready_ns and o.meant_ns)
+    grain += sum(max(0, o.ready_ns - o.scheduled_ns) for o, aim in zip((a, b), aims) if aim == 0 and a.sense != b.sense and o.ready_ns and o.scheduled_ns)
     clocks = a.clock_ns + b.clock_ns
-    return Pair(name(a), name(b), (a.host, b.host), min(a.true_ns, b.true_ns), b.true_ns - a.true_ns, b.told_ns - a.told_ns, clocks,
+    return Pair(name(a), name(b), (a.host, b.host), min(a.true_ns, b.true_ns), b.true_ns - a.true_ns, b.reported_ns - a.reported_ns, clocks,
                 clocks + a.own_ns + b.own_ns, None if None in aims else aims[1] - aims[0], grain, a.late or b.late)
 
 
-def by_event(found):
+def group_by_event(found):
     events = {}
     for o in found:
-        events.setdefault(o.what, []).append(o)
+        events.setdefault(o.event, []).append(o)
     return events.values()
 
 
-def of_senses(found, delays, periods_ns):
+def modality_pairs(found, delays, periods_ns):
     """Yields a Pair for each event and pair of modalities; of several walls the first one by reported times."""
-    place = lambda sense: (NAMES.index(sense) if sense in NAMES else len(NAMES), sense)
-    for event in by_event(found):
+    place = lambda sense: (MODALITY_ORDER.index(sense) if sense in MODALITY_ORDER else len(MODALITY_ORDER), sense)
+    for event in group_by_event(found):
         first = {}
         for o in event:
-            if o.sense not in first or o.told_ns < first[o.sense].told_ns:
+            if o.sense not in first or o.reported_ns < first[o.sense].reported_ns:
                 first[o.sense] = o
         for a, b in itertools.combinations(sorted(first, key=place), 2):
-            yield between(first[a], first[b], lambda o: o.sense, delays, periods_ns)
+            yield make_pair(first[a], first[b], lambda o: o.sense, delays, periods_ns)
 
 
-def of_walls(found, periods_ns, names):
+def wall_pairs(found, periods_ns, names):
     """Yields a Pair for each event or frame and pair of walls. names: {node: wall}."""
-    for event in by_event(o for o in found if o.node in names):
+    for event in group_by_event(o for o in found if o.node in names):
         for a, b in itertools.combinations(sorted(event, key=lambda o: list(names).index(o.node)), 2):
-            yield between(a, b, lambda o: names[o.node], None, periods_ns)
+            yield make_pair(a, b, lambda o: names[o.node], None, periods_ns)
 
 
-def by_window(pairs, windows, home):
+def split_by_window(pairs, windows, home):
     """{"nothing": pairs without a fault, "others": with a fault of another host, "spoilt": with a fault of one of their hosts or of the
     recorder host, which has the maps}. windows: (faulty host or None, begin, end) in ns; pairs outside all windows are left out."""
     found = {"nothing": [], "others": [], "spoilt": []}
@@ -267,36 +267,36 @@ def quantile(values, q):
     return values[max(0, -int(-q * len(values) // 1) - 1)]
 
 
-def summed_up(pairs):
+def summary_rows(pairs):
     """A row for each pair of names, in ms."""
     groups = {}
     for p in pairs:
         groups.setdefault((p.a, p.b), []).append(p)
     rows = []
     for (a, b), of in groups.items():
-        aside = [abs(p.aside_ns) for p in of if p.aside_ns is not None]
+        aside = [abs(p.scheduling_error_ns) for p in of if p.scheduling_error_ns is not None]
         rows.append({"a": a, "b": b, "n": len(of), "other_host": sum(p.hosts[0] != p.hosts[1] for p in of),
                      "true_p50_ms": quantile([p.true_ns for p in of], 0.5) / 1e6, "true_worst_ms": max((p.true_ns for p in of), key=abs) / 1e6,
-                     "off_worst_ms": max(abs(p.off_ns) for p in of) / 1e6, "clocks_worst_ms": max(p.clocks_ns for p in of) / 1e6,
-                     "outside": sum(p.outside for p in of), "stated_worst_ms": max(p.stated_ns for p in of) / 1e6, "late": sum(p.late for p in of),
+                     "off_worst_ms": max(abs(p.reporting_error_ns) for p in of) / 1e6, "clocks_worst_ms": max(p.clocks_ns for p in of) / 1e6,
+                     "outside": sum(p.exceeds_clock_uncertainty for p in of), "stated_worst_ms": max(p.stated_ns for p in of) / 1e6, "late": sum(p.late for p in of),
                      "aimed": len(aside), "aside_p50_ms": quantile(aside, 0.5) / 1e6 if aside else None, "aside_worst_ms": max(aside) / 1e6 if aside else None,
-                     "grain_ms": max(p.grain_ns for p in of) / 1e6, "beyond": sum(p.beyond for p in of), "beyond_in_time": sum(p.beyond and not p.late for p in of)})
+                     "grain_ms": max(p.grain_ns for p in of) / 1e6, "beyond": sum(p.exceeds_stated_uncertainty for p in of), "beyond_in_time": sum(p.exceeds_stated_uncertainty and not p.late for p in of)})
     return rows
 
 
-def instants(found, events_ns, delays):
+def scheduling_rows(found, events_ns, delays):
     """A row for each node, in ms: meant, the scheduled time minus event and playout delay; met, the presentation minus the scheduled time. The first
     crosses hosts and should be within the uncertainty of their maps, the second is of the node alone. events_ns: {event: ns}."""
     nodes = {}
     for o in found:
         delay = delays.at(o.sense, o.true_ns)
-        if delay is not None and o.what in events_ns and o.meant_ns is not None:
-            nodes.setdefault((o.sense, o.node), []).append((o.meant_ns - events_ns[o.what] - delay, o.true_ns - o.meant_ns))
+        if delay is not None and o.event in events_ns and o.scheduled_ns is not None:
+            nodes.setdefault((o.sense, o.node), []).append((o.scheduled_ns - events_ns[o.event] - delay, o.true_ns - o.scheduled_ns))
     return [{"sense": sense, "node": node, "n": len(of), "meant_p50_ms": quantile([m for m, _ in of], 0.5) / 1e6, "meant_worst_ms": max((m for m, _ in of), key=abs) / 1e6,
              "met_p50_ms": quantile([t for _, t in of], 0.5) / 1e6, "met_worst_ms": max((t for _, t in of), key=abs) / 1e6} for (sense, node), of in sorted(nodes.items())]
 
 
-def text_of_instants(rows):
+def scheduling_text(rows):
     lines = [f"{'':24} {'n':>6} {'meant p50':>10} {'worst':>8} {'met p50':>8} {'worst':>8}"]
     lines += [f"{r['node']:24} {r['n']:6d} {r['meant_p50_ms']:10.2f} {r['meant_worst_ms']:8.2f} {r['met_p50_ms']:8.2f} {r['met_worst_ms']:8.2f}" for r in rows]
     return "\n".join(lines)
@@ -313,14 +313,14 @@ def text(rows):
     return "\n".join(lines)
 
 
-def against_summary(pairs, said):
+def compare_with_summary(pairs, summary):
     """Rows that compare asynchrony_ms of summarise with the values computed here: equal counts, quantiles within a bin."""
     rows = []
-    for name, s in said.items():
+    for name, s in summary.items():
         of = [p for p in pairs if f"{p.a}_{p.b}" == name]
         if not s["n"] and not of:
             continue
-        differs = [abs(s[f"p{q:02d}"] - quantile([p.told_ns for p in of], q / 100) / 1e6) for q in (5, 50, 95)] if s["n"] and of else []
+        differs = [abs(s[f"p{q:02d}"] - quantile([p.reported_ns for p in of], q / 100) / 1e6) for q in (5, 50, 95)] if s["n"] and of else []
         rows.append({"pair": name, "n_said": s["n"], "n": len(of), "differs_ms": max(differs, default=None),
                      "uncertainty_said_ms": s["uncertainty"], "uncertainty_ms": max((p.stated_ns for p in of), default=0) / 1e6})
     return rows

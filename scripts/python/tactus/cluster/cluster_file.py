@@ -10,7 +10,7 @@ from tactus.refusal import Refusal
 SCHEMA = pathlib.Path(__file__).with_name("cluster.xsd")
 SHIPPED = pathlib.Path(__file__).with_name("clusters")
 LARGEST_BYTES = 1_000_000
-MOST_HOSTS = 250  # the addresses of a /24 network
+MAX_HOSTS = 250  # the addresses of a /24 network
 RECORDER, SYNC, WORLD = "recorder", "sync_node", "sim_node"
 NEEDED = (WORLD, RECORDER)
 RUN_OPTIONS = ("seed", "realtime", "degrade", "policy", "aligner", "base", "budget", "soa", "split_mb", "split_minutes", "keep", "max_mb", "tags")
@@ -27,7 +27,7 @@ class Host:
 
 
 @dataclasses.dataclass(frozen=True)
-class Placed:
+class NodePlacement:
     """Placement and options of a node."""
     host: str
     realtime: str     # "": that of the run
@@ -50,11 +50,11 @@ class Cluster:
     path: pathlib.Path
     bus: Bus
     hosts: dict  # {name: Host}, in the order of the file
-    nodes: dict  # {process: Placed}, sync_nodes among them
+    nodes: dict  # {process: NodePlacement}, sync_nodes among them
     plan: object  # arguments.Plan, with the same checks as scripts/run
     relays: object  # sites.Relays; None: one site
 
-    def of_host(self, host):
+    def nodes_on(self, host):
         return [name for name, placed in self.nodes.items() if placed.host == host]
 
     def is_private(self):
@@ -99,7 +99,7 @@ def read(text, out="."):
     if not schema.validate(root):
         first = schema.error_log[0]
         raise Refusal(f"{text}:{first.line}: {plain(first.message)}")
-    return Reading(text, path, root, out).cluster()
+    return ClusterReader(text, path, root, out).cluster()
 
 
 def plain(message):
@@ -109,7 +109,7 @@ def plain(message):
     return message.rstrip(".")
 
 
-class Reading:
+class ClusterReader:
     """Checks of a tree that the schema has validated."""
 
     def __init__(self, text, path, root, out):
@@ -118,7 +118,7 @@ class Reading:
     def refuse(self, element, sentence):
         raise Refusal(f"{self.text}:{element.sourceline}: {sentence}")
 
-    def one(self, tag):
+    def only_child(self, tag):
         found = self.root.findall(tag)
         if len(found) > 1:
             self.refuse(found[1], f"there is a second <{tag}>; leave one away")
@@ -128,8 +128,8 @@ class Reading:
         hosts = {e.get("name"): self.host(e) for e in self.root.findall("host")}
         if not hosts:
             self.refuse(self.root, "there is no <host>; name at least one")
-        if len(hosts) > MOST_HOSTS:
-            self.refuse(self.root, f"there are {len(hosts)} hosts; at most {MOST_HOSTS} can share one bus; split them into sites with relays")
+        if len(hosts) > MAX_HOSTS:
+            self.refuse(self.root, f"there are {len(hosts)} hosts; at most {MAX_HOSTS} can share one bus; split them into sites with relays")
         placed, words = {}, []
         self.settings = {}  # {process: words of --set}
         known = (WORLD, RECORDER, *arguments.SENSES, *hands.processes(scene.tools(self.scene())))
@@ -138,7 +138,7 @@ class Reading:
             if name not in known and not name.startswith(SYNC):
                 self.refuse(element, f"there is no node \"{name}\"; there are {', '.join(known)}, and {SYNC}, which every host has in any case")
             placed[name] = self.placed(element, hosts)
-            self.take_settings(element, name)
+            self.read_settings(element, name)
             if element.get("device") is not None:
                 words += self.device(element)
         words += self.walls(placed, hosts)
@@ -149,14 +149,14 @@ class Reading:
         plan = self.plan(placed, words, bus)
         relays = sites.read(self, hosts)
         if relays and bus.port <= relays.port <= bus.port + 3:
-            self.refuse(self.one("relays"), f"port=\"{relays.port}\" is a port of the bus; choose another")
+            self.refuse(self.only_child("relays"), f"port=\"{relays.port}\" is a port of the bus; choose another")
         first = placed[RECORDER].host
         for e in self.root.findall("node"):
             if e.get("name").startswith(SYNC) and e.get("name") != sync_name(e.get("host"), first):
                 self.refuse(e, f"the {SYNC} of {e.get('host')} is {sync_name(e.get('host'), first)}; use this name, or remove the node: every host has one")
         for host in hosts:
-            placed[sync_name(host, first)] = placed.get(sync_name(host, first)) or Placed(host, "", "", 0, (), ())
-        placed |= {name: Placed(relay.host, "", "", 0, (), ()) for name, relay in (relays.by_name if relays else {}).items()}
+            placed[sync_name(host, first)] = placed.get(sync_name(host, first)) or NodePlacement(host, "", "", 0, (), ())
+        placed |= {name: NodePlacement(relay.host, "", "", 0, (), ()) for name, relay in (relays.by_name if relays else {}).items()}
         return Cluster(self.root.get("name"), self.path, bus, hosts, placed, plan, relays)
 
     def host(self, e):
@@ -173,7 +173,7 @@ class Reading:
         return Host(e.get("name"), reach, address or e.get("name"), folder, e.get("build", ""), e.get("site", ""))
 
     def bus(self, hosts):
-        e = self.one("bus")
+        e = self.only_child("bus")
         get = lambda name, default: default if e is None else e.get(name, default)
         bus = Bus(get("group", "239.255.76.67"), int(get("port", "7667")), int(get("ttl", "0")))  # as in lcmtypes/channels.h
         if any(int(part) > 255 for part in bus.group.split(".")):
@@ -193,10 +193,10 @@ class Reading:
             options = tuple(shlex.split(get("options", "")))
         except ValueError as error:
             self.refuse(e, f"options: {str(error).lower()}; close the quotation")
-        return Placed(e.get("host"), get("realtime", ""), get("cpus", ""), int(get("nice", "0")), options,
+        return NodePlacement(e.get("host"), get("realtime", ""), get("cpus", ""), int(get("nice", "0")), options,
                       tuple((v.get("name"), v.get("value")) for v in environment))
 
-    def take_settings(self, e, process):
+    def read_settings(self, e, process):
         """Checks the names of settings; the node checks the values."""
         program = next((n for n in (hands.FIRST, walls.FIRST) if process.startswith(n)), process)
         for s in e.findall("set"):
@@ -216,7 +216,7 @@ class Reading:
         return ["--device", f"{others[name]}={e.get('device')}"]
 
     def walls(self, placed, hosts):
-        e = self.one("walls")
+        e = self.only_child("walls")
         if e is None:
             return []
         if walls.FIRST in placed:
@@ -232,20 +232,20 @@ class Reading:
                 self.refuse(w, f"the room {e.get('room')} has no wall \"{w.get('name')}\"; it has {', '.join(names)}")
             process = process_of[w.get("name")]
             placed[process] = self.placed(w, hosts)
-            self.take_settings(e, process)
-            self.take_settings(w, process)  # comes last, so it overrides
+            self.read_settings(e, process)
+            self.read_settings(w, process)  # comes last, so it overrides
         for wall in names:
             if process_of[wall] not in placed:
                 self.refuse(e, f"the wall {wall} is on no host; add <wall name=\"{wall}\" host=\"...\"/>")
         return words
 
     def scene(self):
-        run = self.one("run")
+        run = self.only_child("run")
         return arguments.scene_file(self.path.parent, "dark_room.sdf" if run is None else run.get("scene", "dark_room.sdf"))
 
     def plan(self, placed, words, bus):
         """The plan of the equivalent command line of scripts/run on one machine."""
-        run = self.one("run")
+        run = self.only_child("run")
         get = lambda name: None if run is None else run.get(name)
         line = [str(self.scene()), "--port", str(bus.port), *words]
         for option in RUN_OPTIONS:

@@ -5,8 +5,8 @@ from tactus.cluster.sites import RELAY
 from tactus.launch import cluster as one_machine
 
 
-def of_nodes(cluster, run_id, git, there):
-    """{node: command line}. there: {path here: path on the hosts}, of shipment.of_run."""
+def node_commands(cluster, run_id, git, there):
+    """{node: command line}. there: {path here: path on the hosts}, of deployment.run_files."""
     plan = cluster.plan
     paths = {str(one_machine.BIN): "@BUILD@/bin", str(plan.out): "@OUT@", **there}
     made = one_machine.commands(plan, run_id, git)
@@ -15,11 +15,11 @@ def of_nodes(cluster, run_id, git, there):
             made[name] = [str(one_machine.BIN / RELAY), *cluster.relays.words(name), *one_machine.common(plan, run_id)]
         elif name not in made:  # sync_node of another host
             made[name] = [*made[SYNC], "--name", name]
-    return {name: around(placed, [translated(word, paths) for word in made[name]] + bus_words(cluster, name, placed))
+    return {name: with_scheduling(placed, [translate_paths(word, paths) for word in made[name]] + bus_arguments(cluster, name, placed))
             for name, placed in cluster.nodes.items()}
 
 
-def translated(word, paths):
+def translate_paths(word, paths):
     """Replaces the longest path that equals the word or is a parent folder of it."""
     head, equals, tail = word.rpartition("=") if word.startswith(("room=", "shader_folder=")) else ("", "", word)
     for path in sorted(paths, key=len, reverse=True):
@@ -28,14 +28,14 @@ def translated(word, paths):
     return word
 
 
-def bus_words(cluster, name, placed):
+def bus_arguments(cluster, name, placed):
     words = ["--group", cluster.bus.group, "--ttl", str(cluster.bus.ttl)]
     if placed.realtime:
         words += ["--realtime", placed.realtime]
     return words + list(placed.options)
 
 
-def around(placed, words):
+def with_scheduling(placed, words):
     """Prepends env, taskset and nice to a command line, as the cluster file specifies, and removes the realtime choice of the
     run when the node has its own."""
     if placed.realtime:

@@ -4,14 +4,15 @@ Sources: sizes and rates are those of the default scene's log (traffic.csv). The
 service time s and random arrivals is rho s / (2 (1 - rho)) (Pollaczek and Khinchine for M/D/1; Kleinrock, Queueing Systems I, 1975,
 equation 5.63); the tests compare with it.
 """
-import csv
 import dataclasses
 import math
 import pathlib
 import random
 
-ON_THE_WIRE = 8 + 20 + 14 + 4 + 8 + 12 + 8 + 12  # LCM's head and a channel, IP, Ethernet with check and gap, UDP: RFC 768, RFC 791, IEEE 802.3
-FEW_CLOCKS, MOST_CLOCKS, PROBES, PERIOD_S, MAPS_PER_S = 16, 64, 8, 2.0, 2  # sync/clock_sync/clock_probe.h, sync/tools/sync_node_main.cpp
+from tactus.tables import read_rows
+
+WIRE_OVERHEAD_BYTES = 8 + 20 + 14 + 4 + 8 + 12 + 8 + 12  # LCM's head and a channel, IP, Ethernet with check and gap, UDP: RFC 768, RFC 791, IEEE 802.3
+FEW_CLOCKS, MAX_CLOCKS, PROBES, PERIOD_S, MAPS_PER_S = 16, 64, 8, 2.0, 2  # sync/clock_sync/clock_probe.h, sync/tools/sync_node_main.cpp
 
 
 @dataclasses.dataclass(frozen=True)
@@ -24,19 +25,19 @@ class Flow:
     thin_per_s: float  # messages a second that a relay forwards
 
 
-def flows():
-    with open(pathlib.Path(__file__).with_name("traffic.csv"), newline="", encoding="utf-8") as file:
-        return [Flow(r["channel"], r["of"], float(r["per_s"] or 0), int(r["bytes"]), float(r["thin_per_s"] or 0)) for r in csv.DictReader(file)]
+def read_flows():
+    rows = read_rows(pathlib.Path(__file__).with_name("traffic.csv"))
+    return [Flow(r["channel"], r["of"], float(r["per_s"] or 0), int(r["bytes"]), float(r["thin_per_s"] or 0)) for r in rows]
 
 
-def senders(of, hosts):
+def sender_count(of, hosts):
     """Number of senders; the default scene has two tools."""
     return {"world": 1, "hand": 2, "node": hosts, "host": hosts, "pair": hosts}[of]
 
 
-def rate(flow, hosts, thin=False):
+def messages_per_s(flow, hosts, thin=False):
     """Messages a second of one sender in a site with `hosts` hosts. Only the relay hosts track the clocks of other sites."""
-    others = min(hosts - 1, MOST_CLOCKS)
+    others = min(hosts - 1, MAX_CLOCKS)
     stretch = max(1, others // FEW_CLOCKS)
     if flow.channel == "CLOCK_PROBE":
         return 0.0 if thin else PROBES / (PERIOD_S * stretch) * (1 + others)  # its probes, and its answers to those of all others
@@ -45,66 +46,66 @@ def rate(flow, hosts, thin=False):
     return flow.thin_per_s if thin else flow.per_s
 
 
-def bits(flow):
-    return 8 * (flow.bytes + ON_THE_WIRE)
+def wire_bits(flow):
+    return 8 * (flow.bytes + WIRE_OVERHEAD_BYTES)
 
 
 def offered_bit_s(hosts, has_world, thin=False):
     """Load of the senders of a site on the wire, bit/s."""
-    return sum(senders(f.of, hosts) * rate(f, hosts, thin) * bits(f) for f in flows() if has_world or f.of not in ("world", "hand"))
+    return sum(sender_count(f.of, hosts) * messages_per_s(f, hosts, thin) * wire_bits(f) for f in read_flows() if has_world or f.of not in ("world", "hand"))
 
 
 def arrivals(hosts, has_world, seconds, seed, thin=False):
     """[(time in s, bits, flow)] of the senders of one site, sorted by time; each sender is periodic with a random phase."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     found = []
-    for f in flows():
+    for f in read_flows():
         if not has_world and f.of in ("world", "hand"):
             continue
-        each = rate(f, hosts, thin)
-        if each <= 0:
+        per_s = messages_per_s(f, hosts, thin)
+        if per_s <= 0:
             continue
-        for _ in range(senders(f.of, hosts)):
-            t = dice.random() / each
+        for _ in range(sender_count(f.of, hosts)):
+            t = rng.random() / per_s
             while t < seconds:
-                found.append((t, bits(f), f))
-                t += 1 / each
+                found.append((t, wire_bits(f), f))
+                t += 1 / per_s
     found.sort(key=lambda m: m[0])
     return found
 
 
 class Queue:
-    """A link or a processor: serves messages in order; drops those that would wait longer than `most_s`."""
+    """A link or a processor: serves messages in order; drops those that would wait longer than `max_wait_s`."""
 
-    def __init__(self, bit_per_s, most_s=float("inf"), each_s=0.0):
-        self.bit_per_s, self.most_s, self.each_s = bit_per_s, most_s, each_s
+    def __init__(self, bit_per_s, max_wait_s=float("inf"), per_message_s=0.0):
+        self.bit_per_s, self.max_wait_s, self.per_message_s = bit_per_s, max_wait_s, per_message_s
         self.free = self.busy_s = 0.0
         self.lost = 0
 
     def serve(self, at, size):
         """Time of completion in s; None when the message is dropped."""
         begin = max(at, self.free)
-        if begin - at > self.most_s:
+        if begin - at > self.max_wait_s:
             self.lost += 1
             return None
-        took = size / self.bit_per_s + self.each_s
-        self.free = begin + took
-        self.busy_s += took
+        service_s = size / self.bit_per_s + self.per_message_s
+        self.free = begin + service_s
+        self.busy_s += service_s
         return self.free
 
 
-class Bucket(Queue):
-    """A token bucket: burst in bits, rate in bit/s. Messages without tokens wait at most `most_s`."""
+class TokenBucket(Queue):
+    """A token bucket: burst in bits, rate in bit/s. Messages without tokens wait at most `max_wait_s`."""
 
-    def __init__(self, bit_per_s, burst_bits, most_s):
-        super().__init__(bit_per_s, most_s)
+    def __init__(self, bit_per_s, burst_bits, max_wait_s):
+        super().__init__(bit_per_s, max_wait_s)
         self.tokens, self.burst, self.last = burst_bits, burst_bits, 0.0
 
     def serve(self, at, size):
         at_work = max(at, self.free)
         self.tokens = min(self.burst, self.tokens + (at_work - self.last) * self.bit_per_s)
         wait = max(0.0, (size - self.tokens) / self.bit_per_s)
-        if at_work + wait - at > self.most_s:
+        if at_work + wait - at > self.max_wait_s:
             self.last = at_work
             self.lost += 1
             return None
@@ -114,7 +115,7 @@ class Bucket(Queue):
         return self.free
 
 
-class Ticks:
+class PeriodicLoop:
     """A periodic loop: handles messages at the next tick."""
 
     def __init__(self, rate_hz, phase_s):

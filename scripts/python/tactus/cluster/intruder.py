@@ -1,6 +1,6 @@
 """A simulated attacker without a key, for tests/measure/measure_private_path: records all frames and sends forged ones.
 
-  tactus --module tactus.cluster.intruder DEVICE KNOWN.json     commands on stdin: "hear", "forge SECONDS", "tell"; each is answered by a line of JSON on stdout
+  tactus --module tactus.cluster.intruder DEVICE KNOWN.json     commands on stdin: "record", "forge SECONDS", "counts"; each is answered by a line of JSON on stdout
 
 KNOWN.json holds what the attacker knows of the hosts: {"hosts": [{"mac", "address", "inside"}], "group", "port", "listen"}.
 """
@@ -15,11 +15,11 @@ import sys
 import threading
 import time
 
-ETHERNET, IP, EVERYTHING = 14, 0x0800, 0x0003
+ETHERNET, IP, ALL_PROTOCOLS = 14, 0x0800, 0x0003
 OUTGOING = 4               # PACKET_OUTGOING of packet(7)
 BUFFER_BYTES = 64 << 20
 RATE_HZ = 300              # of forged frames
-KEPT = 500                 # frames to send again
+MAX_REPLAYED = 500         # frames to send again
 MARK = b"FORGED_"          # prefix of the channels of the intruder, followed by the number of the kind
 # An LCM message at any offset: magic number, sequence number, channel name; or a fragment: magic number, sequence number, size and offset
 # below 16 MB, number and count below 256. In encrypted data the magic number alone occurs once in 4 GB.
@@ -30,7 +30,7 @@ KINDS = ("multicast", "multicast in a host's name", "multicast in the path's nam
          "through a host into the path", "as if of the host itself", "sent again", "the path's packets")
 
 
-def marked(kind):
+def marked_message(kind):
     return b"LC02" + os.urandom(4) + MARK + str(kind).encode() + b"\0" + os.urandom(64)
 
 
@@ -45,7 +45,7 @@ def frame(to, by, source, destination, port, data, source_port=40000):
     return to + by + struct.pack(">H", IP) + head + udp
 
 
-def unsummed(data):
+def without_checksum(data):
     """The UDP frame with a zero checksum, because virtual links leave the checksum to a network card that does not exist."""
     return data[:40] + b"\0\0" + data[42:]
 
@@ -53,15 +53,15 @@ def unsummed(data):
 class Intruder:
     def __init__(self, device, known):
         self.known, self.frames, self.lock = known, [], threading.Lock()
-        self.wire = socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.htons(EVERYTHING))
+        self.wire = socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.htons(ALL_PROTOCOLS))
         self.wire.setsockopt(socket.SOL_SOCKET, 33, BUFFER_BYTES)  # SO_RCVBUFFORCE
-        self.wire.bind((device, EVERYTHING))
+        self.wire.bind((device, ALL_PROTOCOLS))
         self.wire.setsockopt(263, 1, struct.pack("iHH8s", socket.if_nametoindex(device), 1, 0, b""))  # SOL_PACKET, PACKET_ADD_MEMBERSHIP: promiscuous
         self.mac = self.wire.getsockname()[4]
         self.address = known["own"]
-        threading.Thread(target=self.take, daemon=True).start()
+        threading.Thread(target=self.receive_frames, daemon=True).start()
 
-    def take(self):
+    def receive_frames(self):
         while True:
             try:
                 data, sender = self.wire.recvfrom(65536)
@@ -71,26 +71,26 @@ class Intruder:
                 with self.lock:
                     self.frames.append(data)
 
-    def hear(self):
+    def record(self):
         """Starts a new recording."""
         with self.lock:
             self.frames = []
         return {}
 
-    def tell(self):
+    def counts(self):
         """Counts of the recorded frames, and of those with readable content."""
         with self.lock:
             frames, self.frames = self.frames, []
-        said = [data for data in frames if MARK not in data]
-        return {"frames": len(said), "bytes": sum(map(len, said)), "messages": sum(bool(MESSAGE.search(d)) for d in said),
-                "channels": sum(bool(CHANNELS.search(d)) for d in said), "texts": sum(bool(TEXTS.search(d)) for d in said)}
+        others = [data for data in frames if MARK not in data]
+        return {"frames": len(others), "bytes": sum(map(len, others)), "messages": sum(bool(MESSAGE.search(d)) for d in others),
+                "channels": sum(bool(CHANNELS.search(d)) for d in others), "texts": sum(bool(TEXTS.search(d)) for d in others)}
 
     def forged(self, kind, port):
         """Frames of this kind, one for each host."""
         hosts, group = self.known["hosts"], self.known["group"]
         to_group = bytes([1, 0, 0x5E, socket.inet_aton(group)[1] & 0x7F, *socket.inet_aton(group)[2:]])
         for host, other in zip(hosts, reversed(hosts)):
-            mac, data = bytes.fromhex(host["mac"].replace(":", "")), marked(kind)
+            mac, data = bytes.fromhex(host["mac"].replace(":", "")), marked_message(kind)
             yield {"multicast": lambda: frame(to_group, self.mac, self.address, group, port, data),
                    "multicast in a host's name": lambda: frame(to_group, self.mac, host["address"], group, port, data),
                    "multicast in the path's name": lambda: frame(to_group, self.mac, host["inside"], group, port, data),
@@ -100,31 +100,31 @@ class Intruder:
                    "through a host into the path": lambda: frame(mac, self.mac, self.address, other["inside"], port, data),
                    "as if of the host itself": lambda: frame(mac, self.mac, "127.0.0.1", group, port, data)}[KINDS[kind]]()
 
-    def of_path(self, kind, heard):
+    def of_path(self, kind, recorded):
         """Frames to the port of OpenVPN: recorded ones with a flipped bit, noise, a new connection, an Ethernet frame without a key."""
         host = self.known["hosts"][0]
         mac = bytes.fromhex(host["mac"].replace(":", ""))
-        inner = frame(b"\xff" * 6, self.mac, host["inside"], self.known["group"], self.known["port"], marked(kind))
+        inner = frame(b"\xff" * 6, self.mac, host["inside"], self.known["group"], self.known["port"], marked_message(kind))
         forged = [os.urandom(random.randrange(1, 1400)), b"\x38" + os.urandom(53), b"\x48\0\0\0\0\0\0\1" + inner, b"\x30" + inner]
         for data in forged:
             yield frame(mac, self.mac, self.known["hosts"][-1]["address"], host["address"], self.known["listen"], data, random.randrange(1024, 65536))
-        if heard:
-            turned = bytearray(random.choice(heard))
-            turned[random.randrange(min(42, len(turned) - 1), len(turned))] ^= 1 << random.randrange(8)
-            yield bytes(turned)
+        if recorded:
+            corrupted = bytearray(random.choice(recorded))
+            corrupted[random.randrange(min(42, len(corrupted) - 1), len(corrupted))] ^= 1 << random.randrange(8)
+            yield bytes(corrupted)
 
     def forge(self, seconds):
         """Sends frames of all kinds cyclically. Returns the count of each kind."""
         count = dict.fromkeys(KINDS, 0)
         with self.lock:
-            heard = [unsummed(d) for d in self.frames[-KEPT:] if d[12:14] == b"\x08\0" and d[14] == 0x45 and d[23] == 17]
+            recorded = [without_checksum(d) for d in self.frames[-MAX_REPLAYED:] if d[12:14] == b"\x08\0" and d[14] == 0x45 and d[23] == 17]
         begin = time.monotonic()
         for n in itertools.count():
             kind = n % len(KINDS)
             if KINDS[kind] == "sent again":
-                frames = [random.choice(heard)] if heard else []
+                frames = [random.choice(recorded)] if recorded else []
             elif KINDS[kind] == "the path's packets":
-                frames = list(self.of_path(kind, heard))
+                frames = list(self.of_path(kind, recorded))
             else:
                 frames = list(self.forged(kind, self.known["port"] + n // len(KINDS) % 2))
             for data in frames:

@@ -12,14 +12,14 @@ import subprocess
 import tempfile
 import time
 
-from tactus.cluster import reach
+from tactus.cluster import host_connection
 from tactus.paths import REPOSITORY
 
 VARIABLE = "TACTUS_LAB"  # environment variable with the folder of the lab
 SUBNET = "10.77.0"
 OPERATOR = f"{SUBNET}.254"
-MOST_HOSTS = 100
-APART_S = 1000           # clock offset between successive hosts
+MAX_HOSTS = 100
+CLOCK_SPACING_S = 1000   # clock offset between successive hosts
 PATIENCE_S = 20
 SSHD = """Port 22
 HostKey /root/.lab/host_key
@@ -32,8 +32,8 @@ PidFile none
 MaxStartups 50
 MaxSessions 50
 """
-PERSON = "person"  # login name on hosts without root login
-PERSON_ID = 1000
+USER = "person"  # login name on hosts without root login
+USER_ID = 1000
 SSH = """Host *
   User root
   IdentityFile {folder}/key
@@ -62,9 +62,9 @@ class Host:
         self.lab, self.name, self.number, self.ordinary = lab, name, number, ordinary
         self.port = f"port{number}"  # its port of the switch
         self.address = f"{SUBNET}.{number}"
-        self.ahead_s = APART_S * number
+        self.ahead_s = CLOCK_SPACING_S * number
         self.disk = lab.folder / name
-        self.home = self.disk / PERSON if ordinary else self.disk  # of the login user
+        self.home = self.disk / USER if ordinary else self.disk  # of the login user
         self.process = self.pid = None
 
     def prepare(self):
@@ -74,19 +74,19 @@ class Host:
         shutil.copy(self.lab.folder / "key.pub", self.home / ".ssh" / "authorized_keys")
         if self.ordinary:
             for path in (self.home, *self.home.rglob("*")):
-                os.chown(path, PERSON_ID, PERSON_ID)
+                os.chown(path, USER_ID, USER_ID)
             known = pathlib.Path("/etc/passwd").read_text(encoding="utf-8")
-            (self.disk / ".lab" / "passwd").write_text(f"{known.rstrip()}\n{PERSON}:*:{PERSON_ID}:{PERSON_ID}::/home/{PERSON}:/bin/sh\n", encoding="utf-8")
+            (self.disk / ".lab" / "passwd").write_text(f"{known.rstrip()}\n{USER}:*:{USER_ID}:{USER_ID}::/home/{USER}:/bin/sh\n", encoding="utf-8")
         (self.disk / ".lab" / "sshd_config").write_text(SSHD, encoding="ascii")
         sh("ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", str(self.disk / ".lab" / "host_key"))
         public = (self.disk / ".lab" / "host_key.pub").read_text(encoding="ascii").split()[:2]
         with open(self.lab.folder / "known_hosts", "a", encoding="ascii") as file:
             file.write(f"{self.name},{self.address} {' '.join(public)}\n")
         with open(self.lab.folder / "ssh_config", "a", encoding="utf-8") as file:
-            file.write(f"Host {self.name}\n  HostName {self.address}\n" + (f"  User {PERSON}\n" if self.ordinary else ""))
+            file.write(f"Host {self.name}\n  HostName {self.address}\n" + (f"  User {USER}\n" if self.ordinary else ""))
 
     def boot(self):
-        person = (f"mount --bind /root/.lab/passwd /etc/passwd && mount -t tmpfs tmpfs /home && mkdir /home/{PERSON} && mount --bind {self.home} /home/{PERSON} && "
+        person = (f"mount --bind /root/.lab/passwd /etc/passwd && mount -t tmpfs tmpfs /home && mkdir /home/{USER} && mount --bind {self.home} /home/{USER} && "
                   if self.ordinary else "")
         limits = "" if self.ordinary else "ulimit -l unlimited 2>/dev/null; "
         # The repository is hidden first, because its mount point may be inside a folder that is hidden next.
@@ -109,7 +109,7 @@ class Host:
         self.process.stdin.write("linked\n")
         self.process.stdin.flush()
         end = time.monotonic() + PATIENCE_S
-        while not answers(self.address):
+        while not sshd_answers(self.address):
             if self.process.poll() is not None or time.monotonic() > end:
                 raise Error(f"sshd of the host {self.name} does not answer; see {self.disk}/.lab/sshd.log")
             time.sleep(0.02)
@@ -215,7 +215,7 @@ class Lab:
         for name in names:
             sh("ip", "link", "set", self.hosts[name].port, "master", "switch2")
 
-    def unite(self):
+    def rejoin(self):
         for host in self.hosts.values():
             sh("ip", "link", "set", host.port, "master", "switch")
         sh("ip", "link", "del", "switch2")
@@ -232,8 +232,8 @@ class Lab:
         """Limits the lines to and from this host to kbit/s and drops the excess. 0: no limit."""
         sh("nft", "flush chain bridge sites lines")
         if kbit:
-            for way in ("iifname", "oifname"):
-                sh("nft", f"add rule bridge sites lines {way} {self.hosts[name].port} limit rate over {1000 * kbit // 8} bytes/second burst 16000 bytes drop")
+            for direction in ("iifname", "oifname"):
+                sh("nft", f"add rule bridge sites lines {direction} {self.hosts[name].port} limit rate over {1000 * kbit // 8} bytes/second burst 16000 bytes drop")
 
     def close(self):
         for host in self.hosts.values():
@@ -241,7 +241,7 @@ class Lab:
         sh("nft", "delete", "table", "bridge", "sites", check=False)
         sh("ip", "link", "del", "switch2", check=False)
         sh("ip", "link", "del", "switch", check=False)
-        shutil.rmtree(reach.control_folder(self.folder / "ssh_config"), ignore_errors=True)
+        shutil.rmtree(host_connection.control_folder(self.folder / "ssh_config"), ignore_errors=True)
         shutil.rmtree(self.folder, ignore_errors=True)
 
 
@@ -264,7 +264,7 @@ def is_inside():
     return os.environ.get("TACTUS_LAB_INSIDE") == "1"
 
 
-def answers(address):
+def sshd_answers(address):
     import socket
     try:
         with socket.create_connection((address, 22), timeout=1) as s:

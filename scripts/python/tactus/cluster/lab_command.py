@@ -23,7 +23,7 @@ from tactus.paths import tactus_command
 FAULTS = {"cut": 0, "mend": 0, "stop": 0, "go-on": 0, "kill": 0, "boot": 0, "limit": 1, "lose": 1}
 
 
-def names_of(words):
+def parse_host_names(words):
     """(names of the hosts, the command). Raises lab.Error."""
     names = "3"
     if words and (words[0] == "--hosts" or words[0].startswith("--hosts=")):
@@ -38,14 +38,14 @@ def names_of(words):
     if names.isdigit():
         names = ",".join(f"host{n}" for n in range(1, int(names) + 1))
     names = names.split(",")
-    if not 1 <= len(names) <= lab.MOST_HOSTS or len(set(names)) != len(names) or not all(n.replace("-", "").isalnum() and n.isascii() for n in names):
-        raise lab.Error(f"--hosts {','.join(names)[:60]}: give a number from 1 to {lab.MOST_HOSTS}, or different names of letters, digits and hyphens")
+    if not 1 <= len(names) <= lab.MAX_HOSTS or len(set(names)) != len(names) or not all(n.replace("-", "").isalnum() and n.isascii() for n in names):
+        raise lab.Error(f"--hosts {','.join(names)[:60]}: give a number from 1 to {lab.MAX_HOSTS}, or different names of letters, digits and hyphens")
     if not words:
         raise lab.Error("name a command to run in the lab; see tactus lab --help")
     return names, words
 
 
-def spoil(words):
+def send_fault(words):
     """The second form: sends the command to the process that made the lab, because the hosts are its children."""
     folder = pathlib.Path(os.environ[lab.VARIABLE])
     name, what, *rest = words
@@ -68,7 +68,7 @@ def spoil(words):
         raise lab.Error(said)
 
 
-def keep(made, command):
+def serve_faults(made, command):
     """Executes requests until the command has ended; returns its status."""
     pipe = made.folder / "order"
     os.mkfifo(pipe)
@@ -89,10 +89,10 @@ def keep(made, command):
             continue
         *lines, rest = rest.split(b"\n")
         for line in lines:
-            carry_out(made, *json.loads(line))
+            apply_fault(made, *json.loads(line))
 
 
-def carry_out(made, answer, name, what, *values):
+def apply_fault(made, answer, name, what, *values):
     said = ""
     try:
         getattr(made.hosts[name], what.replace("-", "_"))(*values)
@@ -109,15 +109,15 @@ def main(words):
         return 0 if words else 1
     try:
         if lab.VARIABLE in os.environ and len(words) > 1 and words[1] in FAULTS:
-            spoil(words)
+            send_fault(words)
             return 0
-        names, command = names_of(words)
+        names, command = parse_host_names(words)
         if not lab.is_inside():
             lab.enter([*tactus_command("lab"), *words])
         del os.environ["TACTUS_LAB_INSIDE"]
         made = lab.Lab(names)
         try:
-            return keep(made, command)
+            return serve_faults(made, command)
         except FileNotFoundError:
             raise lab.Error(f"there is no command {command[0]}") from None
         finally:

@@ -8,13 +8,13 @@ import time
 
 from tactus import terminal
 from tactus.refusal import Refusal, sentence_of
-from tactus.terminal import tell
+from tactus.terminal import report
 
 LAB = "TACTUS_LAB"
 PERIOD_S = 1.0
-TOLD = ("degrade", "playout", "set")
-LONGEST_FILE = 65536  # kMaxProfileBytes of sync/degradation/profile_exchange.h
-MOST_LINES = 100_000
+BUS_PROGRAMS = ("degrade", "playout", "set")
+MAX_FILE_CHARACTERS = 65536  # kMaxProfileBytes of sync/degradation/profile_exchange.h
+MAX_LINES = 100_000
 
 
 class Parser(argparse.ArgumentParser):
@@ -29,8 +29,8 @@ def parsed(words):
         c = commands.add_parser(name, add_help=False, allow_abbrev=False)
         c.add_argument("--file")
         c.add_argument("--ssh-config")
-        for flags, how in arguments:
-            c.add_argument(*flags, **how)
+        for flags, options in arguments:
+            c.add_argument(*flags, **options)
     flag = {"action": "store_true"}
     command("up", (["name"], {"nargs": "?"}))
     command("check", (["name"], {"nargs": "?"}))
@@ -38,31 +38,31 @@ def parsed(words):
     command("status", (["--once"], flag), (["--json"], flag))
     command("logs", (["nodes"], {"nargs": "*"}), (["--lines"], {"type": int, "default": 10}), (["--follow"], flag))
     command("restart", (["node"], {}))
-    command("move", (["node"], {}), (["host"], {}), (["--anew"], flag), (["--lost"], flag))
-    for name in TOLD:
+    command("move", (["node"], {}), (["host"], {}), (["--restart"], flag), (["--lost"], flag))
+    for name in BUS_PROGRAMS:
         command(name, (["words"], {"nargs": argparse.REMAINDER}))
     command("doctor", (["--seconds"], {"type": float, "default": 5.0}), (["--json"], {}))
     a = parser.parse_args(words)
     if getattr(a, "name", None) and a.file:
         raise Refusal("the cluster file is given twice, as an argument and with --file; remove one")
-    if a.command == "logs" and not 0 <= a.lines <= MOST_LINES:
-        raise Refusal(f"--lines {a.lines}: give a number from 0 to {MOST_LINES}")
+    if a.command == "logs" and not 0 <= a.lines <= MAX_LINES:
+        raise Refusal(f"--lines {a.lines}: give a number from 0 to {MAX_LINES}")
     return a
 
 
-def memory():
+def last_file_path():
     """Path of the file that holds the cluster file of the last up."""
     return pathlib.Path(os.environ.get("XDG_STATE_HOME") or "~/.local/state").expanduser() / "tactus" / "cluster"
 
 
-def file_of(a):
+def cluster_file_name(a):
     named = getattr(a, "name", None) or a.file or os.environ.get("TACTUS_CLUSTER")
     if named:
         return named
     if pathlib.Path("cluster.xml").is_file():
         return "cluster.xml"
     try:
-        return memory().read_text(encoding="utf-8").strip()
+        return last_file_path().read_text(encoding="utf-8").strip()
     except OSError:
         raise Refusal("no cluster file is named, and there is no cluster.xml here; give one with --file, or the name of a shipped file: "
                       "one_machine, desk_and_sound, cave4, cave6") from None
@@ -70,14 +70,14 @@ def file_of(a):
 
 def remember(path):
     try:
-        memory().parent.mkdir(parents=True, exist_ok=True)
-        memory().write_text(str(path), encoding="utf-8")
+        last_file_path().parent.mkdir(parents=True, exist_ok=True)
+        last_file_path().write_text(str(path), encoding="utf-8")
     except OSError:
         pass  # the next command then needs --file
 
 
 def operator_of(a, cluster):
-    from tactus.cluster.orders import Operator
+    from tactus.cluster.cluster_operator import Operator
     config = a.ssh_config or (os.path.join(os.environ[LAB], "ssh_config") if LAB in os.environ else None)
     if config and not os.path.isfile(config):
         raise Refusal(f"--ssh-config {config}: is not a file; give the path of an ssh configuration")
@@ -89,10 +89,10 @@ def up(a, cluster):
     operator = operator_of(a, cluster)
     begin = time.monotonic()
     remember(cluster.path)
-    away = operator.up(results.git_commit())
+    unreachable = operator.up(results.git_commit())
     if not operator.wait_for_world():
         raise Refusal("sim_node: its world has not begun after 10 minutes; see tactus cluster logs sim_node")
-    operator.say(f"{cluster.name} runs on {len(cluster.hosts) - len(away)} of {len(cluster.hosts)} hosts, {time.monotonic() - begin:.1f} s after the command")
+    operator.report(f"{cluster.name} runs on {len(cluster.hosts) - len(unreachable)} of {len(cluster.hosts)} hosts, {time.monotonic() - begin:.1f} s after the command")
     return []
 
 
@@ -102,12 +102,12 @@ def down(a, cluster):
     if out.is_file() or out.is_dir() and any(out.iterdir()):
         raise Refusal(f"--out {out}: already exists; choose another folder")
     operator = operator_of(a, cluster)
-    wrong, ran = operator.down(out.absolute())
+    errors, ran = operator.down(out.absolute())
     if ran:
-        wrong += operator.sum_up(out.absolute(), results.git_commit(), **ran)
+        errors += operator.summarise(out.absolute(), results.git_commit(), **ran)
     if out.is_dir():
-        operator.say(f"results in {out}")
-    return wrong
+        operator.report(f"results in {out}")
+    return errors
 
 
 def status(a, cluster):
@@ -116,14 +116,14 @@ def status(a, cluster):
     live = not a.once and sys.stdout is not None and sys.stdout.isatty()
     while True:
         begin = time.monotonic()
-        states, bus = table.gather(operator)
+        states, bus = table.query(operator)
         found = table.rows(cluster, states, bus)
         if a.json:
-            tell(json.dumps({"cluster": cluster.name, "whole": table.whole(cluster, states, bus), "nodes": found}))
+            report(json.dumps({"cluster": cluster.name, "whole": table.all_running(cluster, states, bus), "nodes": found}))
         else:
             if live:
                 os.write(1, b"\x1b[H\x1b[2J")  # cursor home, clear the screen
-            tell(table.text(found, os.get_terminal_size().columns if live else 160))
+            report(table.text(found, os.get_terminal_size().columns if live else 160))
         if not live:
             return [] if any(r.get("process") == "up" for r in found) else [f"no node of {cluster.name} runs; start it with tactus cluster up"]
         time.sleep(max(0.0, PERIOD_S - (time.monotonic() - begin)))
@@ -136,14 +136,14 @@ def logs(a, cluster):
             raise Refusal(f"{name}: there is no such node in {cluster.name}; there are {', '.join(cluster.nodes)}")
     offsets = {}
     while True:
-        answers = operator.ask_all("logs", names=a.nodes, lines=a.lines, offsets=lambda h: offsets.get(h, {}))
-        for host, said in answers.items():
-            if isinstance(said, Exception):
-                terminal.complain(f"cluster: {said}")
+        answers = operator.request_all("logs", names=a.nodes, lines=a.lines, offsets=lambda h: offsets.get(h, {}))
+        for host, answer in answers.items():
+            if isinstance(answer, Exception):
+                terminal.report_error(f"cluster: {answer}")
                 continue
-            for node, part in said.items():
+            for node, part in answer.items():
                 for line in part["lines"]:
-                    tell(f"{host} {node}: {line}")
+                    report(f"{host} {node}: {line}")
                 offsets.setdefault(host, {})[node] = part["offset"]
         if not a.follow:
             return []
@@ -156,58 +156,58 @@ def restart(a, cluster):
 
 
 def move(a, cluster):
-    operator_of(a, cluster).move(a.node, a.host, a.anew, a.lost)
+    operator_of(a, cluster).move(a.node, a.host, a.restart, a.lost)
     return []
 
 
-def tell_program(a, cluster):
+def run_bus_program(a, cluster):
     """Runs degrade, playout or set on a host of the cluster; copies a profile there."""
     words, files = [a.command], {}
     for word in a.words:
         if a.command == "degrade" and os.path.isfile(word):
             files["told.xml"] = pathlib.Path(word).read_text(encoding="utf-8", errors="replace")
-            if len(files["told.xml"]) > LONGEST_FILE:
-                raise Refusal(f"{word}: is longer than {LONGEST_FILE} bytes; this cannot be a profile; give a smaller file")
+            if len(files["told.xml"]) > MAX_FILE_CHARACTERS:
+                raise Refusal(f"{word}: is longer than {MAX_FILE_CHARACTERS} bytes; this cannot be a profile; give a smaller file")
             word = "@FILES@/told.xml"
         words.append(word)
-    said = operator_of(a, cluster).tell(words, files)
-    tell(said["out"].rstrip("\n"))
-    return [] if said["status"] == 0 else [(said["err"].strip().splitlines() or ["it ended with status " + str(said["status"])])[-1]]
+    result = operator_of(a, cluster).run_bus_program(words, files)
+    report(result["out"].rstrip("\n"))
+    return [] if result["status"] == 0 else [(result["err"].strip().splitlines() or ["it ended with status " + str(result["status"])])[-1]]
 
 
 def doctor(a, cluster):
     from tactus.cluster import checkup
     if not 0.5 <= a.seconds <= 600:
         raise Refusal(f"--seconds {a.seconds:g}: give a number from 0.5 to 600")
-    figures, wrong = checkup.run(operator_of(a, cluster), a.seconds)
+    figures, errors = checkup.run(operator_of(a, cluster), a.seconds)
     if a.json:
         pathlib.Path(a.json).write_text(json.dumps(figures, indent=1), encoding="utf-8")
-    tell("" if wrong else "\nno fault found")
-    return wrong
+    report("" if errors else "\nno fault found")
+    return errors
 
 
 def check(_, cluster):
-    tell(f"cluster: {cluster.name} is valid: {len(cluster.nodes)} nodes on {len(cluster.hosts)} hosts, {cluster.bus.group}:{cluster.bus.port}, ttl {cluster.bus.ttl}")
+    report(f"cluster: {cluster.name} is valid: {len(cluster.nodes)} nodes on {len(cluster.hosts)} hosts, {cluster.bus.group}:{cluster.bus.port}, ttl {cluster.bus.ttl}")
     return []
 
 
 def main(words):
     terminal.prepare()
     try:
-        from tactus.cluster.reach import Failed, Unreachable
+        from tactus.cluster.host_connection import Failed, Unreachable
         a = parsed(words)
         from tactus.cluster import cluster_file
-        cluster = cluster_file.read(file_of(a), os.path.abspath(os.path.join("out", f"cluster-{os.getpid()}")))
+        cluster = cluster_file.read(cluster_file_name(a), os.path.abspath(os.path.join("out", f"cluster-{os.getpid()}")))
         try:
-            wrong = {"up": up, "down": down, "status": status, "logs": logs, "restart": restart, "move": move, "check": check, "doctor": doctor, **{name: tell_program for name in TOLD}}[a.command](a, cluster)
+            errors = {"up": up, "down": down, "status": status, "logs": logs, "restart": restart, "move": move, "check": check, "doctor": doctor, **{name: run_bus_program for name in BUS_PROGRAMS}}[a.command](a, cluster)
         except (Failed, Unreachable) as error:
             raise Refusal(str(error)) from None
     except Refusal as refusal:
-        wrong = [str(refusal)]
+        errors = [str(refusal)]
     except OSError as error:
-        wrong = [sentence_of(error)]
+        errors = [sentence_of(error)]
     except KeyboardInterrupt:
         return 130
-    for sentence in wrong:
-        terminal.complain(f"cluster: {sentence}")
-    return 1 if wrong else 0
+    for sentence in errors:
+        terminal.report_error(f"cluster: {sentence}")
+    return 1 if errors else 0

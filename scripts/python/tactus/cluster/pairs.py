@@ -1,17 +1,17 @@
 """Finds faults between hosts from the results of probe_pairs on each host. Pure functions."""
 
 GROUP_ROUTE = "ip route add 224.0.0.0/4 dev INTERFACE"
-LOSES_ABOVE = 0.01       # of single datagrams: contact events are repeated for 50 ms, states are not
-LATE_US = 20_000         # round trip p99: more than a frame at 60 Hz; sound and picture would both wait for it
-UNCERTAIN_US = 1000      # design: a tenth of the smallest asynchrony that a person can distinguish
-BUFFER_BYTES = 4 << 20   # the size that sync/bus/udp_port.cpp requests
+MAX_LOSS = 0.01            # of single datagrams: contact events are repeated for 50 ms, states are not
+MAX_ROUND_TRIP_US = 20_000  # round trip p99: more than a frame at 60 Hz; sound and picture would both wait for it
+MAX_UNCERTAINTY_US = 1000  # design: a tenth of the smallest asynchrony that a person can distinguish
+BUFFER_BYTES = 4 << 20     # the size that sync/bus/udp_port.cpp requests
 COLUMNS = ("from", "to", "heard", "lost", "of bursts", "round trip p50/us", "p99/us", "clock/s", "+-/us", "ttl")
 
 
-def findings(said):
-    """One sentence for each fault, in the order of checks. said: {host: JSON of probe_pairs}."""
+def findings(results):
+    """One sentence for each fault, in the order of checks. results: {host: JSON of probe_pairs}."""
     found = []
-    for host, a in said.items():
+    for host, a in results.items():
         if a["refused"]:
             found.append(f"{host}: its network refused {a['refused']} datagrams; check its interface (ip -s link)")
         if a["buffer_bytes"] < BUFFER_BYTES:
@@ -19,53 +19,53 @@ def findings(said):
                          f"sysctl net.core.rmem_max={BUFFER_BYTES}")
         if a["strangers"]:
             found.append(f"{host}: receives {a['strangers']} datagrams of another doctor; run only one doctor at a time")
-    for host, a in said.items():
-        others = [o for o in a["others"] if o in said]
-        deaf = [o for o in others if not a["others"][o]["heard"]]
-        if others and deaf == others and len(others) > 1:
-            found.append(f"{host}: receives nothing from the other hosts; {causes(host, said, None)}")
+    for host, a in results.items():
+        others = [o for o in a["others"] if o in results]
+        silent = [o for o in others if not a["others"][o]["heard"]]
+        if others and silent == others and len(others) > 1:
+            found.append(f"{host}: receives nothing from the other hosts; {causes(host, results, None)}")
             continue
-        for other in deaf:
-            found.append(f"{host}: receives nothing from {other}; {causes(host, said, other)}")
+        for other in silent:
+            found.append(f"{host}: receives nothing from {other}; {causes(host, results, other)}")
         for other in others:
             o = a["others"][other]
             if not o["heard"]:
                 continue
-            if o["lost"] > LOSES_ABOVE:
+            if o["lost"] > MAX_LOSS:
                 found.append(f"{host}: loses {100 * o['lost']:.1f} % of the datagrams of {other}; check cable, switch and wireless link between them")
-            burst = said[other]["burst"]
-            if burst and o["of_bursts"] < burst * (1 - max(LOSES_ABOVE, 1.5 * o["lost"])):
+            burst = results[other]["burst"]
+            if burst and o["of_bursts"] < burst * (1 - max(MAX_LOSS, 1.5 * o["lost"])):
                 found.append(f"{host}: {burst - o['of_bursts']} of {burst} datagrams of bursts of {other} are lost, but single datagrams are not; a buffer on "
                              f"the path is too small: sysctl net.core.rmem_max={BUFFER_BYTES} on {host}, or the switch")
-            if o["answered"] and o["round_trip_us"]["p99"] > LATE_US:
+            if o["answered"] and o["round_trip_us"]["p99"] > MAX_ROUND_TRIP_US:
                 found.append(f"{host}: answers of {other} take up to {o['round_trip_us']['p99'] / 1000:.0f} ms (p99), which delays sound and picture or makes them late; use a faster network")
-            if o["answered"] and o["uncertainty_us"] > UNCERTAIN_US:
+            if o["answered"] and o["uncertainty_us"] > MAX_UNCERTAINTY_US:
                 found.append(f"{host}: knows the clock of {other} to {o['uncertainty_us'] / 1000:.1f} ms only; use a faster network between them")
-            if not o["answered"] and o["heard"] and said[other]["others"].get(host, {}).get("heard"):
+            if not o["answered"] and o["heard"] and results[other]["others"].get(host, {}).get("heard"):
                 found.append(f"{host}: {other} receives its datagrams, but the answers are lost; allow UDP of these ports both ways in the firewall")
     return found
 
 
-def causes(host, said, other):
+def causes(host, results, other):
     """Possible causes why host receives nothing from other (None: from all), and the remedy."""
-    ours = said[host]
-    if any(a["ttl"] == 0 for name, a in said.items() if name == other or other is None):
+    own = results[host]
+    if any(a["ttl"] == 0 for name, a in results.items() if name == other or other is None):
         return "ttl is 0, so no message leaves a host; set <bus ttl=\"1\"/>"
-    if other is not None and said[other]["others"].get(host, {}).get("heard"):
+    if other is not None and results[other]["others"].get(host, {}).get("heard"):
         return (f"{other} receives from {host}: a firewall on {host} drops datagrams, or the switch drops group members (IGMP snooping without a querier)")
-    if other is not None and any(o.get("heard") for name, o in ours["others"].items() if name != other):
+    if other is not None and any(o.get("heard") for name, o in own["others"].items() if name != other):
         return f"other hosts are connected: check the route of {other} ({GROUP_ROUTE}), its firewall, and whether both are in one network"
     return f"check its route ({GROUP_ROUTE}), its firewall, and whether the switch forwards multicast"
 
 
-def rows(said):
+def rows(results):
     """A dictionary of COLUMNS for each pair and direction: from sends, to receives."""
     found = []
-    for to, a in said.items():
+    for to, a in results.items():
         for origin, o in a["others"].items():
             row = {"from": origin, "to": to, "heard": "yes" if o["heard"] else "NO"}
             if o["heard"]:
-                row |= {"lost": f"{100 * o['lost']:.1f} %", "of bursts": f"{o['of_bursts']}/{said[origin]['burst'] if origin in said else '?'}", "ttl": o["ttl"]}
+                row |= {"lost": f"{100 * o['lost']:.1f} %", "of bursts": f"{o['of_bursts']}/{results[origin]['burst'] if origin in results else '?'}", "ttl": o["ttl"]}
             if o["answered"]:
                 row |= {"round trip p50/us": f"{o['round_trip_us']['p50']:.0f}", "p99/us": f"{o['round_trip_us']['p99']:.0f}",
                         "clock/s": f"{o['offset_us'] / 1e6:+.6f}", "+-/us": f"{o['uncertainty_us']:.0f}"}

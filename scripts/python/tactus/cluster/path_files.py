@@ -8,7 +8,7 @@ import tempfile
 AUTHORITY = "authority"  # the folder of the signing key; no host needs it
 DEVICE = "tactus0"
 SUBNET = "10.76.67"      # of the path; 76.67 as in the LCM group 239.255.76.67
-MOST_HOSTS = 250
+MAX_HOSTS = 250
 MULTICAST = "224.0.0.0/4"
 START = """\
 #!/bin/sh
@@ -105,22 +105,22 @@ def write(folder, a):
         first = number == 1
         values = {"name": name, "first": a.hosts[0], "server": a.server, "listen": a.listen, "device": DEVICE, "multicast": MULTICAST,
                   "address": f"{SUBNET}.{number}"}
-        key, certificate = keys.of(name, "server" if first else "client")
+        key, certificate = keys.make_signed_key(name, "server" if first else "client")
         text = (LISTENS if first else DIALS).format(**values) + COMMON.format(**values)
-        for element, content in (("ca", keys.certificate), ("cert", certificate), ("key", key), ("tls-crypt", keys.shared)):
+        for element, content in (("ca", keys.certificate), ("cert", certificate), ("key", key), ("tls-crypt", keys.shared_key)):
             text += f"<{element}>\n{content.strip()}\n</{element}>\n"
-        keep(folder / name / "tactus.conf", text)
-        keep(folder / name / "tactus.nft", rules(DEVICE, a.port))
-        keep(folder / name / "start", START.format(**values), 0o700)
-    keep(folder / AUTHORITY / "ca.key", keys.key)
-    keep(folder / AUTHORITY / "ca.crt", keys.certificate)
+        write_private(folder / name / "tactus.conf", text)
+        write_private(folder / name / "tactus.nft", rules(DEVICE, a.port))
+        write_private(folder / name / "start", START.format(**values), 0o700)
+    write_private(folder / AUTHORITY / "ca.key", keys.key)
+    write_private(folder / AUTHORITY / "ca.crt", keys.certificate)
 
 
 def rules(device, port):
     return RULES.format(device=device, port=port, next=port + 1)
 
 
-def keep(path, text, mode=0o600):
+def write_private(path, text, mode=0o600):
     path.parent.parent.mkdir(mode=0o700, exist_ok=True)
     path.parent.mkdir(mode=0o700, exist_ok=True)
     with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "w", encoding="ascii") as file:
@@ -134,10 +134,10 @@ class Keys:
         self.days = days
         self.key = new_key()
         self.certificate = self.sign("Tactus private path", self.key, "ca")
-        self.shared = "-----BEGIN OpenVPN Static key V1-----\n" + "\n".join(os.urandom(16).hex() for _ in range(16)) + \
+        self.shared_key = "-----BEGIN OpenVPN Static key V1-----\n" + "\n".join(os.urandom(16).hex() for _ in range(16)) + \
             "\n-----END OpenVPN Static key V1-----\n"
 
-    def of(self, name, use):
+    def make_signed_key(self, name, use):
         """(key, certificate)."""
         key = new_key()
         return key, self.sign(name, key, use)
@@ -147,7 +147,7 @@ class Keys:
             at = pathlib.Path(folder)
             files = {"own.key": key, "ca.key": self.key, "extensions": EXTENSIONS[use], **({} if use == "ca" else {"ca.crt": self.certificate})}
             for file, text in files.items():
-                keep(at / "keys" / file, text)
+                write_private(at / "keys" / file, text)
             openssl("req", "-new", "-key", at / "keys" / "own.key", "-subj", f"/CN={name}", "-out", at / "request")
             signer = ["-signkey", at / "keys" / "ca.key"] if use == "ca" else ["-CA", at / "keys" / "ca.crt", "-CAkey", at / "keys" / "ca.key"]
             return openssl("x509", "-req", "-in", at / "request", *signer, "-days", str(self.days), "-set_serial", "0x" + os.urandom(16).hex(),

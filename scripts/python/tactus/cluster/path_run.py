@@ -17,21 +17,21 @@ OPTIONS = {"sync_node_two": ["--name", "sync_node_two"], "haptic_node_lamp": ["-
            # Software rendering on the shared processors, therefore the cheapest settings.
            "visual_node": ["--no-video", *(w for s in ("width=320", "height=240", "rate=30", "quality=3") for w in ("--set", s))]}
 SCENE = SCENES / "dark_room.sdf"
-PATIENCE_S = 60  # for a machine with other load
+TIMEOUT_S = 60  # for a machine with other load
 SELF_TEST = b"LCM_SELF_TEST"  # sent by each starting node, identical on both ports
-STARVED = 0.1    # share of missed ticks
+STARVED_SHARE = 0.1  # share of missed ticks
 EVENT, SYNC = 28, 0xEDA1DA01  # LCM's log format
 
 
-class Trouble(Exception):
+class RunError(Exception):
     """A failed run; one sentence."""
 
 
-def wait_until(holds, what, patience_s=PATIENCE_S):
-    end = time.monotonic() + patience_s
+def wait_until(holds, condition, timeout_s=TIMEOUT_S):
+    end = time.monotonic() + timeout_s
     while not holds():
         if time.monotonic() > end:
-            raise Trouble(f"{what} within {patience_s} s")
+            raise RunError(f"{condition} within {timeout_s} s")
         time.sleep(0.05)
 
 
@@ -45,7 +45,7 @@ class Run:
         for host, names in ((hosts[0], FIRST[:2]), (hosts[1], SECOND), (hosts[0], FIRST[2:])):
             for name in names:
                 self.start(host, name)
-        wait_until(lambda: "the world begins" in self.said("sim_node"), "sim_node: its world does not begin")
+        wait_until(lambda: "the world begins" in self.log_text("sim_node"), "sim_node: its world does not begin")
         wait_until(lambda: self.presentations() > 0, "no sense presents anything")
 
     def start(self, host, name):
@@ -57,10 +57,10 @@ class Run:
         with open(self.folder / f"{name}.log", "w", encoding="utf-8") as log:
             self.nodes[name] = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
 
-    def said(self, name):
+    def log_text(self, name):
         return (self.folder / f"{name}.log").read_text(encoding="utf-8", errors="replace")
 
-    def read_on(self):
+    def read_new_events(self):
         """Reads the new events of the log of the recorder."""
         with contextlib.suppress(FileNotFoundError), open(self.folder / "run.lcmlog", "rb") as file:
             file.seek(self.read_to)
@@ -68,7 +68,7 @@ class Run:
             while at + EVENT <= len(data):
                 sync, _, _, name, size = struct.unpack(">IqqII", data[at:at + EVENT])
                 if sync != SYNC:
-                    raise Trouble("the log is damaged")
+                    raise RunError("the log is damaged")
                 end = at + EVENT + name + size
                 if end > len(data):
                     break
@@ -84,7 +84,7 @@ class Run:
             self.read_to += at
 
     def presentations(self):
-        self.read_on()
+        self.read_new_events()
         return self.count["presentations"]
 
     def end(self):
@@ -92,25 +92,25 @@ class Run:
         for names in (FIRST[2:], SECOND, FIRST[:1], FIRST[1:2]):
             for name in names:
                 if self.nodes[name].poll() is not None:
-                    raise Trouble(f"{name}: ended by itself: {(self.said(name).strip() or 'silently').splitlines()[-1]}")
+                    raise RunError(f"{name}: ended by itself: {(self.log_text(name).strip() or 'silently').splitlines()[-1]}")
             time.sleep(0.3)  # until the last event is presented
             for name in names:
                 self.nodes[name].terminate()
             for name in names:
-                self.nodes[name].wait(PATIENCE_S)
-        self.read_on()
+                self.nodes[name].wait(TIMEOUT_S)
+        self.read_new_events()
         subprocess.run([BIN / "summarise", self.folder, "--out", self.folder / "summary.json"], capture_output=True, check=False)
         try:
             summary = json.loads((self.folder / "summary.json").read_text(encoding="utf-8"))
         except OSError:
-            raise Trouble("summarise: made no summary of the log") from None
+            raise RunError("summarise: made no summary of the log") from None
         age = summary["nodes"]["haptic_node"]["input_age_ms"].get("TOUCH_MODEL", {}).get("p50")  # from host to host
         senses = {}
-        for sense, debt in summary["contacts"]["by_modality"].items():
+        for sense, counts in summary["contacts"]["by_modality"].items():
             node = summary["nodes"][f"{sense}_node"]
             # A node without enough processor time loses events without an attack.
-            starved = node["missed_ticks"] > STARVED * (node["ticks"] + node["missed_ticks"])
-            senses[sense] = {**{what: debt[what] for what in ("owed", "presented", "lost")}, "starved": starved}
+            starved = node["missed_ticks"] > STARVED_SHARE * (node["ticks"] + node["missed_ticks"])
+            senses[sense] = {**{what: counts[what] for what in ("owed", "presented", "lost")}, "starved": starved}
         return {**self.count, **{what: sum(s[what] for s in senses.values()) for what in ("owed", "presented", "lost")}, "senses": senses, "touch_age_ms": age}
 
     def kill(self):

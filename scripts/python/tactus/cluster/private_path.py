@@ -55,9 +55,9 @@ def parsed(words):
         words_of.add_argument("--port", type=int, default=7667)  # as in lcmtypes/channels.h
     a = parser.parse_args(words)
     a.hosts = host_names(a.hosts)
-    for option, most in (("listen", 65535), ("port", 65534), ("days", 36500)):
-        if not 1 <= getattr(a, option, 1) <= most:
-            raise Refusal(f"--{option} {getattr(a, option)}: give a number from 1 to {most}")
+    for option, highest in (("listen", 65535), ("port", 65534), ("days", 36500)):
+        if not 1 <= getattr(a, option, 1) <= highest:
+            raise Refusal(f"--{option} {getattr(a, option)}: give a number from 1 to {highest}")
     if a.command == "make":
         a.server = server_address(a.server)
     elif not re.fullmatch(r"[A-Za-z0-9_.-]{1,15}", a.device):
@@ -67,11 +67,11 @@ def parsed(words):
 
 def host_names(text):
     names = text.split(",")
-    if not 2 <= len(names) <= path_files.MOST_HOSTS:
-        raise Refusal(f"--hosts {text[:60]}: a path joins 2 to {path_files.MOST_HOSTS} hosts; separate their names by commas")
+    if not 2 <= len(names) <= path_files.MAX_HOSTS:
+        raise Refusal(f"--hosts {text[:60]}: a path joins 2 to {path_files.MAX_HOSTS} hosts; separate their names by commas")
     for name in names:
         if not NAME.fullmatch(name):
-            raise Refusal(f"--hosts: \"{name[:60]}\" is no name of a host; use letters, digits and hyphens, at most 32")
+            raise Refusal(f"--hosts: \"{name[:60]}\" is no name of a host; use letters, digits and hyphens, at highest 32")
         if name == path_files.AUTHORITY:
             raise Refusal(f"--hosts: {name} is the folder of the signing key; rename the host")
     if len(set(names)) != len(names):
@@ -105,24 +105,24 @@ def make(a):
         raise Refusal(f"openssl {error.cmd[1]}: {(error.stderr.strip() or 'failed').splitlines()[-1]}") from None
     finally:
         shutil.rmtree(fresh, ignore_errors=True)
-    terminal.tell(path_files.guide(out, a))
+    terminal.report(path_files.guide(out, a))
 
 
 def main(words):
     terminal.prepare()
     if not words or {"-h", "--help"} & set(words):
-        terminal.tell(__doc__.split("\n", 2)[2].strip("\n"), None if words else sys.stderr)
+        terminal.report(__doc__.split("\n", 2)[2].strip("\n"), None if words else sys.stderr)
         return 0 if words else 1
     try:
         a = parsed(words)
         if a.command == "make":
             make(a)
         else:
-            terminal.tell(macsec.commands(a.hosts, a.device, a.port))
+            terminal.report(macsec.commands(a.hosts, a.device, a.port))
         return 0
     except Refusal as refusal:
-        wrong = str(refusal)
+        error_text = str(refusal)
     except OSError as error:
-        wrong = sentence_of(error)
-    terminal.complain(f"private_path: {wrong}")
+        error_text = sentence_of(error)
+    terminal.report_error(f"private_path: {error_text}")
     return 1

@@ -27,13 +27,13 @@ class Relays:
         return ["--name", process, "--listen", f"{own.at}:{self.port}", *(w for line in to for w in ("--to", line)), "--rules", str(self.rules)]
 
 
-def name_of(host):
+def relay_name(host):
     return f"{RELAY}_{host}"
 
 
 def read(reading, hosts):
-    """Relays of the file, or None. reading: cluster_file.Reading."""
-    e = reading.one("relays")
+    """Relays of the file, or None. reading: cluster_file.ClusterReader."""
+    e = reading.only_child("relays")
     sites = {host.site for host in hosts.values()}
     if e is None:
         if len(sites) > 1:
@@ -52,13 +52,13 @@ def read(reading, hosts):
         if not is_address(at):
             reading.refuse(r, f"at=\"{at}\" is not an IPv4 address; give the one at which other relays reach {host}, for example 192.0.2.7")
         covered[site] = host
-        found[name_of(host)] = Relay(host, at, int(r.get("kbit", "0")))
+        found[relay_name(host)] = Relay(host, at, int(r.get("kbit", "0")))
     for name, host in hosts.items():
         if host.site not in covered:
             reading.refuse(e, f"no host of the site of {name} has a relay; add <relay host=\"{name}\" at=\"...\"/>")
     if len(found) < 2:
         reading.refuse(e, "there is one site, which needs no relay; set site= of the other hosts, or remove <relays>")
-    return Relays(rules_file(reading, e), int(e.get("port", "7700")), found)
+    return Relays(find_rules(reading, e), int(e.get("port", "7700")), found)
 
 
 def is_address(text):
@@ -68,12 +68,12 @@ def is_address(text):
         return False
 
 
-def rules_file(reading, e):
+def find_rules(reading, e):
     """Path of the rules: a file relative to the cluster file, or a shipped file by its name."""
     text = e.get("rules", "wide")
-    beside, shipped = reading.path.parent / text, SHIPPED / f"{text}.xml"
-    if beside.is_file():
-        return beside.resolve()
+    local, shipped = reading.path.parent / text, SHIPPED / f"{text}.xml"
+    if local.is_file():
+        return local.resolve()
     if pathlib.Path(text).name == text and shipped.is_file():
         return shipped
     known = ", ".join(sorted(p.stem for p in SHIPPED.glob("*.xml")))

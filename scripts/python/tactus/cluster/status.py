@@ -6,7 +6,7 @@ from tactus.cluster.cluster_file import RECORDER
 COLUMNS = ("host", "node", "process", "on the bus", "rate Hz", "missed", "input age ms", "rendered", "restarts", "note")
 
 
-def gather(operator):
+def query(operator):
     """({host: state or error}, output of watch --json from the first host that answers)."""
     states = operator.states(patience_s=3)  # a later answer counts as not reached
     first = operator.cluster.nodes[RECORDER].host
@@ -19,8 +19,8 @@ def gather(operator):
         operator.identity = s["run"]["build"]
         words = ["@BUILD@/bin/watch", "--once", "--json", "--run-id", str(s["run"]["run_id"]), "--group", c.bus.group, "--port", str(c.bus.port)]
         try:
-            said = operator.ask(host, "on_the_bus", words=words, patience_s=5, patience=4)
-            bus = {"host": host, **json.loads(said["out"] or "{}")}
+            result = operator.request(host, "run_bus_program", words=words, patience_s=5, patience=4)
+            bus = {"host": host, **json.loads(result["out"] or "{}")}
             break
         except Exception:  # pylint: disable=broad-except  # try the next host
             continue
@@ -29,7 +29,7 @@ def gather(operator):
 
 def rows(cluster, states, bus):
     """Dictionaries of COLUMNS, in the order of the file; host is empty for a node that no host runs."""
-    heard = bus.get("nodes", {})
+    published = bus.get("nodes", {})
     found = []
     seen = set()
     for host, s in states.items():
@@ -38,23 +38,23 @@ def rows(cluster, states, bus):
             continue
         for name, node in s["nodes"].items():
             seen.add(name)
-            found.append(row(host, name, node, heard.get(name)))
+            found.append(row(host, name, node, published.get(name)))
         if not s["run"]:
             found.append({"host": host, "node": "", "process": "nothing runs", "note": "tactus cluster up"})
-    away = [h for h, s in states.items() if isinstance(s, Exception)]
+    unreachable = [h for h, s in states.items() if isinstance(s, Exception)]
     for name, placed in cluster.nodes.items():
         if name not in seen:
-            by_ear = heard.get(name)
-            found.append(row(placed.host if placed.host in away else "", name, None, by_ear))
+            of_node = published.get(name)
+            found.append(row(placed.host if placed.host in unreachable else "", name, None, of_node))
     return found
 
 
-def row(host, name, node, heard):
+def row(host, name, node, published):
     process = "not seen" if node is None else "LEFT DOWN" if node["lost"] else "taken down" if node["taken_down"] else "up" if node["up"] else "starting"
     r = {"host": host, "node": name, "process": process, "restarts": "" if node is None else node["deaths"]}
-    if heard:
-        r |= {"on the bus": heard["state"], "rate Hz": heard["rate_hz"], "missed": heard["missed_ticks"], "input age ms": heard["input_age_ms"],
-              "rendered": heard["contacts_rendered"], "note": heard["note"]}
+    if published:
+        r |= {"on the bus": published["state"], "rate Hz": published["rate_hz"], "missed": published["missed_ticks"], "input age ms": published["input_age_ms"],
+              "rendered": published["contacts_rendered"], "note": published["note"]}
     if node and (node["lost"] or not node["up"]):
         r["note"] = node["lost"] or node["last"]
     return r
@@ -72,8 +72,8 @@ def cell(value):
     return "" if value is None else f"{value:.1f}" if isinstance(value, float) else str(value)
 
 
-def whole(cluster, states, bus):
+def all_running(cluster, states, bus):
     """True when every node of the file runs and publishes."""
     up = {n for s in states.values() if not isinstance(s, Exception) for n, node in s["nodes"].items() if node["up"]}
-    heard = bus.get("nodes", {})
-    return all(n in up and heard.get(n, {}).get("state") == "running" for n in cluster.nodes)
+    published = bus.get("nodes", {})
+    return all(n in up and published.get(n, {}).get("state") == "running" for n in cluster.nodes)

@@ -29,7 +29,7 @@ from tactus.refusal import Refusal, sentence_of
 
 UNITS = pathlib.Path(__file__).with_name("units")
 KINDS = ("sync", "recorder", "haptic", "audio", "visual", "thermal", "sim", "relay", "path")
-LEFT_OUT = ("relay", "path")  # unless requested with --only
+OPTIONAL = ("relay", "path")  # unless requested with --only
 TEMPLATES = ("haptic", "visual")  # for further tools and walls
 SYSTEM, ETC = "etc/systemd/system", "etc/tactus"
 
@@ -44,7 +44,7 @@ def parsed(words):
     commands = parser.add_subparsers(dest="command", required=True, parser_class=Parser)
     c = commands.add_parser("install", add_help=False, allow_abbrev=False)
     c.add_argument("--root", default="/")
-    c.add_argument("--only", default=",".join(k for k in KINDS if k not in LEFT_OUT))
+    c.add_argument("--only", default=",".join(k for k in KINDS if k not in OPTIONAL))
     c.add_argument("--prefix", default="/opt/tactus")
     c.add_argument("--out", default="/var/lib/tactus")
     c.add_argument("--units-only", action="store_true")
@@ -64,9 +64,9 @@ def parsed(words):
         if path is not None and not re.fullmatch(r"/[A-Za-z0-9._/+-]+", path):
             raise Refusal(f"--{option} {path[:80]}: give an absolute path of letters, digits and ._/+-")
     a.scene = a.scene or f"{a.prefix}/share/scenes/dark_room.sdf"
-    for option, value, least, most in (("--port", a.port, 1, 65534), ("--ttl", a.ttl, 0, 255), ("--run-id", a.run_id, 1, 2**63 - 1)):
-        if not least <= value <= most:
-            raise Refusal(f"{option} {value}: give a number from {least} to {most}")
+    for option, value, low, high in (("--port", a.port, 1, 65534), ("--ttl", a.ttl, 0, 255), ("--run-id", a.run_id, 1, 2**63 - 1)):
+        if not low <= value <= high:
+            raise Refusal(f"{option} {value}: give a number from {low} to {high}")
     try:
         if not ipaddress.IPv4Address(a.group).is_multicast:
             raise ValueError
@@ -89,7 +89,7 @@ def sections(text):
     return {name: "\n".join(lines).strip() for name, lines in found.items()}
 
 
-def with_common(name):
+def service_text(name):
     """The text of a service with the common lines; its own lines come after them and override."""
     common = sections((UNITS / "common.conf").read_text(encoding="ascii").replace(f" {name}", ""))  # no unit is ordered after itself
     own = sections((UNITS / name).read_text(encoding="ascii"))
@@ -97,7 +97,7 @@ def with_common(name):
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-def filled(text, a):
+def fill_placeholders(text, a):
     values = {"PREFIX": a.prefix, "OUT": a.out, "GROUP": a.group, "PORT": a.port, "TTL": a.ttl, "RUN_ID": a.run_id, "SCENE": a.scene,
               "SYNC_OPTIONS": f"--name sync_node_{a.host}" if a.host else ""}
     return re.sub(r"@([A-Z_]+)@", lambda m: str(values[m[1]]), text)
@@ -105,11 +105,11 @@ def filled(text, a):
 
 def files(a):
     """{path relative to the root: text} of all written files."""
-    read = lambda name: filled((UNITS / name).read_text(encoding="ascii"), a)
+    read = lambda name: fill_placeholders((UNITS / name).read_text(encoding="ascii"), a)
     found = {f"{SYSTEM}/tactus.target": read("tactus.target")}
     for kind in a.only:
         for name in (f"tactus-{kind}.service", *([f"tactus-{kind}@.service"] if kind in TEMPLATES else [])):
-            found[f"{SYSTEM}/{name}"] = filled(with_common(name), a)
+            found[f"{SYSTEM}/{name}"] = fill_placeholders(service_text(name), a)
     return found | {f"{ETC}/tactus.env": read("tactus.env"), "etc/sysusers.d/tactus.conf": read("sysusers.conf"),
                     "etc/tmpfiles.d/tactus.conf": read("tmpfiles.conf")}
 
@@ -132,7 +132,7 @@ def install(a):
         fresh.rename(into)
     units = [f"tactus-{kind}" for kind in a.only]
     where = "" if root == pathlib.Path("/") else " (in that system)"
-    terminal.tell((f"{root / ETC / 'tactus.env'} already existed and was kept\n" if kept else "") +
+    terminal.report((f"{root / ETC / 'tactus.env'} already existed and was kept\n" if kept else "") +
                   f"units of {', '.join(a.only)} are in {root / SYSTEM}; nothing is enabled. As root{where}:\n\n"
                   "  systemd-sysusers && systemd-tmpfiles --create && systemctl daemon-reload\n"
                   f"  systemctl enable {' '.join(units)} tactus.target && systemctl start tactus.target")
@@ -140,12 +140,12 @@ def install(a):
 
 def copy_programs(prefix):
     """Copies the programs of the build without debug information. A running program keeps its old file."""
-    from tactus.cluster import shipment
-    for there, here in shipment.parts().items():
+    from tactus.cluster import deployment
+    for there, here in deployment.parts().items():
         into = prefix / there
         into.parent.mkdir(parents=True, exist_ok=True)
         fresh = into.with_name(f".{into.name}.new")
-        fresh.write_bytes(shipment.stripped(here))
+        fresh.write_bytes(deployment.stripped(here))
         shutil.copymode(here, fresh)
         fresh.rename(into)
     shutil.copy(UNITS / "README.md", prefix / "share" / "units.md")
@@ -154,14 +154,14 @@ def copy_programs(prefix):
 def main(words):
     terminal.prepare()
     if not words or {"-h", "--help"} & set(words):
-        terminal.tell(__doc__.split("\n", 2)[2].strip("\n"), None if words else sys.stderr)
+        terminal.report(__doc__.split("\n", 2)[2].strip("\n"), None if words else sys.stderr)
         return 0 if words else 1
     try:
         install(parsed(words))
         return 0
     except Refusal as refusal:
-        wrong = str(refusal)
+        error_text = str(refusal)
     except OSError as error:
-        wrong = sentence_of(error)
-    terminal.complain(f"units: {wrong}")
+        error_text = sentence_of(error)
+    terminal.report_error(f"units: {error_text}")
     return 1

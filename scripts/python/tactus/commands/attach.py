@@ -80,7 +80,7 @@ def entering(found):
 
 def main(words):
     if not words or words[0] in ("--help", "-h"):
-        return prepare.show(USAGE, asked=bool(words))
+        return prepare.print_usage(USAGE, requested=bool(words))
     try:
         if os.path.isdir(words[0]) and "/" in words[0] or os.path.islink(os.path.join(words[0], "cluster")):
             out, *words = words
@@ -96,4 +96,4 @@ def main(words):
             raise Refusal(f"there is no command {words[0]}; see tactus attach --help for examples")
     except Refusal as refusal:
         return prepare.refuse("attach", refusal)
-    prepare.become([*entering(found), *words], there)
+    prepare.replace_process([*entering(found), *words], there)

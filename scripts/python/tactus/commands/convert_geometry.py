@@ -14,5 +14,5 @@ measured modes, shader and appearance. A scene uses them as defaults for attribu
 
 def main(words):
     if {"--help", "-h"} & set(words):
-        return prepare.show(USAGE)
-    prepare.become([prepare.program("convert_geometry"), *words])
+        return prepare.print_usage(USAGE)
+    prepare.replace_process([prepare.program("convert_geometry"), *words])

@@ -12,7 +12,7 @@ Applies the degradation profile to the running cluster that writes to OUT_DIR; d
 
 def main(words):
     if not words or words[0] in ("--help", "-h"):
-        return prepare.show(USAGE, asked=bool(words))
+        return prepare.print_usage(USAGE, requested=bool(words))
     if words[0].startswith("-"):
         return prepare.refuse("degrade", f"unknown option '{words[0]}'; see tactus degrade --help")
     if len(words) > 2:
@@ -22,4 +22,4 @@ def main(words):
         return prepare.refuse("degrade", f"the profile {profile} is not a file; give the path of an XML file, or off")
     if folder and not os.path.isdir(folder[0]):
         return prepare.refuse("degrade", f"the folder {folder[0]} does not exist; name the folder that a run writes to")
-    prepare.become([*tactus_command("attach"), *map(os.path.realpath, folder), "degrade", profile])
+    prepare.replace_process([*tactus_command("attach"), *map(os.path.realpath, folder), "degrade", profile])

@@ -52,7 +52,7 @@ def parsed(words):
 
 def main(words):
     if {"--help", "-h"} & set(words):
-        return prepare.show(USAGE)
+        return prepare.print_usage(USAGE)
     try:
         logs, options, out = parsed(words)
         out = out or os.path.join(logs[0] if os.path.isdir(logs[0]) else os.path.dirname(logs[0]), "tables")

@@ -14,7 +14,7 @@ tactus live VERB --help describes a verb."""
 
 def main(words):
     if not words or words[0] in ("--help", "-h"):
-        return prepare.show(USAGE, asked=bool(words))
+        return prepare.print_usage(USAGE, requested=bool(words))
     verb, *words = words
     if verb not in VERBS:
         return prepare.refuse("live", f"there is no verb '{verb}'; choose from {', '.join(VERBS)}")

@@ -12,8 +12,8 @@ Serves the live page for a log, with a seek bar, and prints its address. Ctrl-C 
 
 def main(words):
     if not words or words[0] in ("--help", "-h"):
-        return prepare.show(USAGE, asked=bool(words))
+        return prepare.print_usage(USAGE, requested=bool(words))
     prepare.install_and_build("live_server")
     if subprocess.run([SCRIPTS / "live" / "bundle"], check=False).returncode != 0:
         sys.exit(1)
-    prepare.become([str(BIN / "live_server"), *words, "--page", str(SCRIPTS / "live" / "page" / "dist")])
+    prepare.replace_process([str(BIN / "live_server"), *words, "--page", str(SCRIPTS / "live" / "page" / "dist")])

@@ -1,5 +1,5 @@
 """The command `tactus playout`: shows or changes the playout policy of a running cluster."""
-from tactus.commands import ask
+from tactus.commands import request_program
 
 USAGE = """Usage: tactus playout [POLICY] [--soa LIST] [--base TIME] [--budget TIME] [--aligner NAME] [--in OUT_DIR]
 
@@ -14,4 +14,4 @@ With a policy: applies it to all modalities at the same time; delays are slewed 
 
 
 def main(words):
-    return ask.main("playout", USAGE, words, may_be_none=True)
+    return request_program.main("playout", USAGE, words, may_be_none=True)

@@ -7,10 +7,10 @@ import sys
 from tactus.paths import BIN, SCRIPTS
 
 
-def show(usage, asked=True):
-    """Prints a usage text; returns the exit status. asked: the user gave --help; otherwise arguments are missing and the text goes to stderr."""
-    print(usage, file=sys.stdout if asked else sys.stderr)
-    return 0 if asked else 1
+def print_usage(usage, requested=True):
+    """Prints a usage text; returns the exit status. requested: the user gave --help; otherwise arguments are missing and the text goes to stderr."""
+    print(usage, file=sys.stdout if requested else sys.stderr)
+    return 0 if requested else 1
 
 
 def refuse(name, sentence):
@@ -36,7 +36,7 @@ def program(name):
     return str(path)
 
 
-def become(words, environment=None):
+def replace_process(words, environment=None):
     """Replaces this process by a program, with default signal handlers. Does not return."""
     for number in (signal.SIGPIPE, signal.SIGXFSZ):  # Python ignores them, and ignored signals are inherited
         signal.signal(number, signal.SIG_DFL)

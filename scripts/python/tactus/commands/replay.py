@@ -38,7 +38,7 @@ Exit status: as for scripts/run."""
 
 def main(words):
     if {"--help", "-h"} & set(words):
-        return prepare.show(USAGE)
+        return prepare.print_usage(USAGE)
     prepare.install_and_build()
     from tactus.launch import replay
     return replay.main(words)

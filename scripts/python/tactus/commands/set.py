@@ -1,5 +1,5 @@
 """The command `tactus set`: changes settings of a node of a running cluster."""
-from tactus.commands import ask
+from tactus.commands import request_program
 
 USAGE = """Usage: tactus set NODE NAME=VALUE... [--in OUT_DIR]
 
@@ -16,4 +16,4 @@ Prints the change, or one sentence with the reason for the failure. docs/setting
 
 
 def main(words):
-    return ask.main("set", USAGE, words)
+    return request_program.main("set", USAGE, words)

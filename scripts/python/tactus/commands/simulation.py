@@ -1,5 +1,5 @@
 """The command `tactus simulation`: pauses, steps, resets and changes the simulation of a running cluster."""
-from tactus.commands import ask
+from tactus.commands import request_program
 
 USAGE = """Usage: tactus simulation COMMAND [--in OUT_DIR]
 
@@ -19,4 +19,4 @@ Prints the result, or one sentence with the reason for the failure. docs/command
 
 
 def main(words):
-    return ask.main("simulation", USAGE, words)
+    return request_program.main("simulation", USAGE, words)

@@ -21,8 +21,8 @@ On a network without a cluster of scripts/run, run the program directly: build/d
 
 def main(words):
     if words[:1] in (["--help"], ["-h"]):
-        return prepare.show(USAGE)
+        return prepare.print_usage(USAGE)
     folder = []
     if words and os.path.isdir(words[0]):
         folder, words = [words[0] if "/" in words[0] else f"./{words[0]}"], words[1:]
-    prepare.become([*tactus_command("attach"), *folder, "spy", *words])
+    prepare.replace_process([*tactus_command("attach"), *folder, "spy", *words])

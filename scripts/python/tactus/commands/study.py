@@ -22,7 +22,7 @@ def usage():
 
 def main(words):
     if not words or words[0] in ("--help", "-h"):
-        return prepare.show(usage(), asked=bool(words))
+        return prepare.print_usage(usage(), requested=bool(words))
     verb, *words = words
     if verb not in VERBS:
         return prepare.refuse("study", f"there is no verb '{verb}'; choose from {', '.join(VERBS)}")

@@ -31,7 +31,7 @@ def namespaces(allowed):
                 "sysctl user.max_user_namespaces=10000, or run as root")
 
 
-def room():
+def receive_buffer():
     """Size of the receive buffer that the kernel allows a process."""
     with open("/proc/sys/net/core/rmem_max", encoding="ascii") as file:
         most = int(file.read())
@@ -81,7 +81,7 @@ def loopback():
                 f"{1000 * (last - begun):.1f} ms", figures=figures)
 
 
-def either(lines):
+def mark_required_network(lines):
     """Marks the private network as missing when neither network works, because a run needs one of them."""
     by_name = {line.what: line for line in lines}
     private, loop = by_name["private network"], by_name["multicast loopback"]

@@ -18,13 +18,13 @@ import sys
 from tactus.doctor import bus, clocks, devices, realtime
 from tactus.doctor.line import GOOD, MISSING, WEAK
 from tactus.launch.equipment import has_sound_card
-from tactus.launch.network import ROUTE, allowed, candidates
+from tactus.launch.network import ROUTE, candidates, is_allowed
 
 COLOURS = {GOOD: "\x1b[32m", WEAK: "\x1b[33m", MISSING: "\x1b[31m"}
 SIGN = {GOOD: "good   ", WEAK: "weak   ", MISSING: "missing"}
 
 
-def say(line):
+def print_line(line):
     colour, plain = (COLOURS[line.verdict], "\x1b[0m") if sys.stdout.isatty() else ("", "")
     print(f"{colour}{SIGN[line.verdict]}{plain}  {line.what + ':':26}{line.found}")
     if line.remedy and line.verdict != GOOD:
@@ -40,16 +40,16 @@ def progress(what):
 
 def examine(seconds, port, out):
     """Yields the result of each check."""
-    private = any(allowed(flags, ROUTE) for flags, _ in candidates(net=True))
+    private = any(is_allowed(flags, ROUTE) for flags, _ in candidates(net=True))
     network = [bus.route(), bus.loopback(), bus.namespaces(private)]
-    bus.either(network)
+    bus.mark_required_network(network)
     yield from network
-    yield bus.room()
+    yield bus.receive_buffer()
     yield clocks.offsets(port)
     yield realtime.priority()
     yield realtime.memory()
     yield realtime.share()
-    if not realtime.may_fifo():
+    if not realtime.fifo_refusal():
         yield realtime.wakeups(seconds, True, progress("waking with priority"))
     yield realtime.wakeups(seconds, False, progress("waking without priority"))
     yield devices.cores()
@@ -78,7 +78,7 @@ def main(words):
         return 1
     lines = []
     for line in examine(options.seconds, options.port, options.out):
-        say(line)
+        print_line(line)
         lines.append(line)
     fit = not any(line.needed and line.verdict == MISSING for line in lines)
     weak = [line.what for line in lines if line.verdict != GOOD]

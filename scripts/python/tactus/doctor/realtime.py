@@ -19,7 +19,7 @@ class Timespec(ctypes.Structure):
     _fields_ = [("tv_sec", ctypes.c_long), ("tv_nsec", ctypes.c_long)]
 
 
-def may_fifo(priority=PRIORITY):
+def fifo_refusal(priority=PRIORITY):
     """None when SCHED_FIFO is allowed, else the reason. Tried in a thread, so that this process keeps its priority."""
     why = []
 
@@ -36,7 +36,7 @@ def may_fifo(priority=PRIORITY):
 
 
 def priority():
-    why = may_fifo()
+    why = fifo_refusal()
     limit = resource.getrlimit(getattr(resource, "RLIMIT_RTPRIO", 14))[0]
     if not why:
         return Line("real-time priority", GOOD, f"SCHED_FIFO {PRIORITY} is allowed", figures={"rtprio": limit})

@@ -1,6 +1,5 @@
 """The command line of scripts/run, checked completely before anything starts."""
 import argparse
-import csv
 import dataclasses
 import os
 import pathlib
@@ -10,14 +9,15 @@ import xml.etree.ElementTree
 from tactus.launch import hands, scene, walls
 from tactus.paths import REPOSITORY, SCENES
 from tactus.refusal import Refusal
+from tactus.tables import read_rows
 
 SENSES = ("haptic_node", "audio_node", "visual_node", "thermal_node")
-PARTICIPANT = "participant"
+PLAYER = "participant"
 REMOVABLE = ("sim_node", *SENSES, "sync_node")
-LEAST_FREE_BYTES = 20_000_000  # about ten seconds of log and sound
-LONGEST_S = 86400  # one day; a longer log fills most disks
+MIN_FREE_BYTES = 20_000_000  # about ten seconds of log and sound
+MAX_SECONDS = 86400  # one day; a longer log fills most disks
 RECORDING = ("split_mb", "split_minutes", "keep", "max_mb")  # sync/tools/recorder/recorder_node.cpp
-WIRE = {"latency-ms": 10_000, "jitter-ms": 10_000, "loss-percent": 100}  # maximum of each: scripts/virtual_time/virtual_time_main.cpp
+BUS_OPTIONS = {"latency-ms": 10_000, "jitter-ms": 10_000, "loss-percent": 100}  # maximum of each: scripts/virtual_time/virtual_time_main.cpp
 PLAYOUT = ("policy", "aligner", "base", "budget", "soa")  # sync/playout/options.cpp
 
 
@@ -52,11 +52,11 @@ class Plan:
 
     def nodes(self):
         """Names of the processes of this run, in start order."""
-        return [n for n in ("recorder", "sync_node", *self.senses(), *self.people(), self.world) if n not in self.without]
+        return [n for n in ("recorder", "sync_node", *self.senses(), *self.players(), self.world) if n not in self.without]
 
-    def people(self):
+    def players(self):
         """Names of the simulated players."""
-        return [PARTICIPANT] if self.player else []
+        return [PLAYER] if self.player else []
 
     def senses(self):
         """Names of the processes of all modalities, including the left-out ones."""
@@ -90,7 +90,7 @@ def parse(words, here):
     parser.add_argument("--tags", action="append", default=[])
     parser.add_argument("--player", action="store_true")
     parser.add_argument("--virtual-time", action="store_true")
-    for option in WIRE:
+    for option in BUS_OPTIONS:
         parser.add_argument(f"--{option}")
     parser.add_argument("--window", action="store_true")
     parser.add_argument("--live")
@@ -108,7 +108,7 @@ def parse(words, here):
     scene_path = scene_file(here, a.scene)
     tools = scene.tools(scene_path)
     others = hands.processes(tools)
-    room, pictures = of_room(here, a.room)
+    room, pictures = room_walls(here, a.room)
     several = {**others, **{process: wall for process, wall in pictures.items() if process != walls.FIRST}}
     for node in a.without:
         if node == "recorder":
@@ -122,7 +122,7 @@ def parse(words, here):
     others = {process: tool for process, tool in others.items() if process not in a.without}
     pictures = {process: wall for process, wall in pictures.items() if process not in a.without}
     plan = Plan(scene=scene_path, shaders=scene.shader_folder(scene_path),
-                seconds=number("--seconds", a.seconds, 1, LONGEST_S, "seconds"),
+                seconds=number("--seconds", a.seconds, 1, MAX_SECONDS, "seconds"),
                 out=out_folder(here, a.out), out_is_ours=not a.out, without=a.without,
                 devices=devices(a.device, a.without, tools), hands=others, room=room, walls=pictures,
                 degrade=profile(here, a.degrade), playout=playout(a),
@@ -132,7 +132,7 @@ def parse(words, here):
     if plan.player:
         if plan.devices or hands.FIRST in plan.without:
             raise Refusal("--player holds the first tool's device itself; leave --device and --without haptic_node away")
-        plan.devices = {"": f"external:{PARTICIPANT}"}
+        plan.devices = {"": f"external:{PLAYER}"}
     if plan.window and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise Refusal("visual_node: --window needs a display and neither DISPLAY nor WAYLAND_DISPLAY is set; leave "
                       "--window away and look at video.mp4")
@@ -195,7 +195,7 @@ def unknown_modalities(plan):
     return sorted(named - {node.removesuffix("_node") for node in SENSES})
 
 
-def of_room(here, text):
+def room_walls(here, text):
     """(room, {process: wall}) of --room. Raises Refusal."""
     if text is None:
         return "", {}
@@ -217,7 +217,7 @@ def playout(a):
 
 def virtual(a):
     """The options for virtual_time; None: a live run. Raises Refusal."""
-    given = {option: value for option in WIRE if (value := getattr(a, option.replace("-", "_"))) is not None}
+    given = {option: value for option in BUS_OPTIONS if (value := getattr(a, option.replace("-", "_"))) is not None}
     if not a.virtual_time:
         if given:
             raise Refusal(f"--{next(iter(given))} needs --virtual-time, because only the simulated bus has it; for a live run "
@@ -229,7 +229,7 @@ def virtual(a):
         if value:
             raise Refusal(f"--virtual-time and {option} contradict each other: nothing outside the run can keep up with it; leave one away")
     return [word for option, value in given.items()
-            for word in (f"--{option}", f"{number(f'--{option}', value, 0, WIRE[option], ''):g}")]
+            for word in (f"--{option}", f"{number(f'--{option}', value, 0, BUS_OPTIONS[option], ''):g}")]
 
 
 def recording(a):
@@ -261,7 +261,7 @@ def out_folder(here, text):
     if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
         raise Refusal(f"recorder: the folder {path} for the results cannot be written; name another with --out")
     disk = os.statvfs(existing)
-    if disk.f_bavail * disk.f_frsize < LEAST_FREE_BYTES:
+    if disk.f_bavail * disk.f_frsize < MIN_FREE_BYTES:
         raise Refusal(f"recorder: the disk of {path} is full; make room there or name another with --out")
     return path.absolute()
 
@@ -289,8 +289,7 @@ def settings(words, others):
             raise Refusal(f"--set {word}: write it as NODE.NAME=VALUE, for example audio_node.gain=0.5")
         if node not in ("sim_node", *SENSES, *others):
             raise Refusal(f"--set {word}: {node} has no settings; choose from sim_node, {', '.join((*SENSES, *others))}")
-        with open(REPOSITORY / program(node) / "settings.csv", newline="", encoding="utf-8") as file:
-            names = [row["name"] for row in csv.DictReader(file)]
+        names = [row["name"] for row in read_rows(REPOSITORY / program(node) / "settings.csv")]
         if name not in names:
             raise Refusal(f"{node}: there is no setting {name}; docs/settings.md lists them all")
         if node in others:

@@ -12,7 +12,7 @@ from tactus.launch import arguments, services, walls
 from tactus.launch.arguments import SENSES
 from tactus.paths import BIN, tactus_command
 from tactus.refusal import Interrupted, Refusal
-from tactus.terminal import complain, say
+from tactus.terminal import report_error, report_run
 
 INSIDE = pathlib.Path(__file__).resolve().parent / "inside"
 # The simulation stops first, so that all modalities present its last events; the recorder last, so that the log is complete.
@@ -20,7 +20,7 @@ INSIDE = pathlib.Path(__file__).resolve().parent / "inside"
 WORLDS = ("sim_node", "replay")
 STOP_ORDER = ((WORLDS, 0.3), (SENSES, 0.3), (("sync_node",), 0.3), (("recorder",), 10.0))
 SCATTER_M = "0.08"  # design: keeps the balls of the dark room apart from each other and from other bodies
-PRESENT_THE_LAST_S = 0.2  # sound comes 20 ms after its event, and each report is repeated 20 ms later
+LAST_PRESENTATION_S = 0.2  # sound comes 20 ms after its event, and each report is repeated 20 ms later
 PATIENCE_S = 15           # to close a video on a busy machine
 CHECK_S, READ_SCENE_S = 60, 600
 PROGRESS_S = 10
@@ -36,31 +36,31 @@ def commands(plan, run_id, git):
     """{name: command line} of every process of the plan."""
     own = {
         "recorder": ["--scene", str(plan.scene), "--seconds", f"{plan.seconds:g}", "--git", git, *plan.recorder],
-        "haptic_node": device_words(plan, ""),
+        "haptic_node": device_arguments(plan, ""),
         # A run is silent by default; with --listen the node searches for the sound card.
         "audio_node": [] if plan.listen or names_sound_card(plan) else ["--audio-device", "virtual"],
         "visual_node": ["--window"] if plan.window else [],
         "sim_node": [str(plan.scene)],
         # The seed sets the positions of the balls, so no player can rely on fixed ones.
-        arguments.PARTICIPANT: [str(plan.scene), "--device", arguments.PARTICIPANT, "--scatter-along", SCATTER_M, "--scatter-aside", SCATTER_M],
+        arguments.PLAYER: [str(plan.scene), "--device", arguments.PLAYER, "--scatter-along", SCATTER_M, "--scatter-aside", SCATTER_M],
         "replay": [*plan.replay, *(word for name in plan.nodes() if name != "replay" for word in ("--live", name))],
     }
     own["sync_node"] = list(plan.playout)
     for name, tool in plan.hands.items():
-        own[name] = ["--name", name, "--tool", tool, *device_words(plan, tool)]
+        own[name] = ["--name", name, "--tool", tool, *device_arguments(plan, tool)]
     for name, wall in plan.walls.items():
         own[name] = [*own.get(name, []), *(["--name", name] if name != plan.program(name) else []), "--set", f"room={plan.room}", "--set", f"wall={wall}"]
     if plan.shaders:
         for name in {walls.FIRST, *plan.walls}:
             own[name] = [*own.get(name, []), "--set", f"shader_folder={plan.shaders}"]
     if plan.degrade:
-        for name in (*plan.senses(), *plan.people(), "sync_node"):
+        for name in (*plan.senses(), *plan.players(), "sync_node"):
             own[name] = [*own.get(name, []), "--degrade", str(plan.degrade)]
     return {name: [str(BIN / plan.program(name)), *own.get(name, []), *common(plan, run_id),
                    *(word for s in plan.settings.get(name, []) for word in ("--set", s))] for name in plan.nodes()}
 
 
-def device_words(plan, tool):
+def device_arguments(plan, tool):
     return ["--device", plan.devices[tool]] if tool in plan.devices else []
 
 
@@ -78,7 +78,7 @@ def check(words, stop):
             started[name] = subprocess.Popen(command[:at] + command[at + 2:] + ["--check"], stdin=subprocess.DEVNULL,
                                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace",
                                              start_new_session=True, preexec_fn=die_with_parent)
-        said = {name: last_of_check(name, process, stop) for name, process in started.items()}
+        output = {name: check_output(name, process, stop) for name, process in started.items()}
     finally:
         for process in started.values():
             if process.poll() is None:
@@ -87,30 +87,30 @@ def check(words, stop):
             process.stderr.close()
     for name, process in started.items():
         if process.returncode != 0:
-            raise Refusal(said[name].split("\n")[-1] or f"{name}: fails its checks with status {process.returncode}")
-    if said.get("sim_node"):
-        complain(said["sim_node"])  # warnings of the scene
+            raise Refusal(output[name].split("\n")[-1] or f"{name}: fails its checks with status {process.returncode}")
+    if output.get("sim_node"):
+        report_error(output["sim_node"])  # warnings of the scene
 
 
-def last_of_check(name, process, stop):
+def check_output(name, process, stop):
     """Output of the check after it has ended. Raises Interrupted when the user stops the run."""
     now = begin = time.monotonic()
-    at_most_s, next_said = READ_SCENE_S if name == "sim_node" else CHECK_S, begin + PROGRESS_S
-    while now < begin + at_most_s:
+    timeout_s, next_report = READ_SCENE_S if name == "sim_node" else CHECK_S, begin + PROGRESS_S
+    while now < begin + timeout_s:
         try:
-            said = process.communicate(timeout=0.1)[1].strip()
-            if stop.asked:
+            output = process.communicate(timeout=0.1)[1].strip()
+            if stop.requested:
                 raise Interrupted
-            return said
+            return output
         except subprocess.TimeoutExpired:
             now = time.monotonic()
-        if stop.asked:
+        if stop.requested:
             raise Interrupted
-        if name == "sim_node" and now > next_said:
-            say(f"sim_node is still reading the scene ({now - begin:.0f} s)")
-            next_said += PROGRESS_S
+        if name == "sim_node" and now > next_report:
+            report_run(f"sim_node is still reading the scene ({now - begin:.0f} s)")
+            next_report += PROGRESS_S
     process.kill()
-    return process.communicate()[1].strip() + f"\n{name}: does not finish its checks in {at_most_s} s"
+    return process.communicate()[1].strip() + f"\n{name}: does not finish its checks in {timeout_s} s"
 
 
 def die_with_parent():
@@ -126,7 +126,7 @@ class Cluster:
         self.in_use = None
         self.holder = self.table = self.page = None
         try:
-            self.in_use = services.hold(self.folder)
+            self.in_use = services.lock_folder(self.folder)
             logs = plan.out / "logs"
             logs.mkdir(exist_ok=True)
             here = pathlib.Path.cwd()
@@ -147,7 +147,7 @@ class Cluster:
         with open(self.plan.out / "logs" / "supervisor.log", "w", encoding="utf-8") as log:
             self.holder = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
                                            preexec_fn=die_with_parent if self.network.unshare else None)
-        for group in (("recorder", "sync_node"), (*self.plan.senses(), *self.plan.people()), (self.plan.world,)):
+        for group in (("recorder", "sync_node"), (*self.plan.senses(), *self.plan.players()), (self.plan.world,)):
             members = [self.services[name] for name in group if name in self.services]
             for service in members:
                 if not service.start():
@@ -205,13 +205,13 @@ class Cluster:
         if not self.alive():
             return []
         for names, grace_s in STOP_ORDER:
-            names = (*self.plan.senses(), *self.plan.people()) if names == SENSES else names
+            names = (*self.plan.senses(), *self.plan.players()) if names == SENSES else names
             services.request_end([self.services[name] for name in names if name in self.services], grace_s)
             if names == WORLDS:
-                time.sleep(PRESENT_THE_LAST_S)
-        stubborn = services.end_or_kill(self.services.values(), PATIENCE_S)
+                time.sleep(LAST_PRESENTATION_S)
+        killed = services.end_or_kill(self.services.values(), PATIENCE_S)
         self.end_supervisor()
-        return stubborn
+        return killed
 
     def end_supervisor(self):
         for pid in children(self.holder.pid) if self.network.unshare else [self.holder.pid]:

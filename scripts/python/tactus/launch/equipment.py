@@ -4,7 +4,7 @@ import os
 import shutil
 
 
-def lacking(plan):
+def missing_equipment(plan):
     """One sentence for each missing item."""
     found = []
     if "visual_node" not in plan.without and not shutil.which("ffmpeg"):

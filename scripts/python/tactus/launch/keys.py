@@ -5,13 +5,13 @@ import stat
 import termios
 import tty
 
-LONGEST = 65536  # bytes of an incomplete line
-OF_KEY = {b" ": "toggle", b".": "step", b"\x1b[C": "seek +5", b"\x1b[D": "seek -5", b"0": "seek 0", b"1": "speed 1", b"m": "speed max",
+MAX_LINE_BYTES = 65536  # bytes of an incomplete line
+COMMAND_OF_KEY = {b" ": "toggle", b".": "step", b"\x1b[C": "seek +5", b"\x1b[D": "seek -5", b"0": "seek 0", b"1": "speed 1", b"m": "speed max",
           b"\x1b[H": "seek 0"}
-SLOWEST, FASTEST = 1 / 64, 64
+MIN_SPEED, MAX_SPEED = 1 / 64, 64
 
 
-class Orders:
+class KeyCommands:
     """A context manager; inside it the terminal delivers single keys."""
 
     def __init__(self, control):
@@ -36,7 +36,7 @@ class Orders:
         if self.before is not None:
             termios.tcsetattr(0, termios.TCSADRAIN, self.before)
 
-    def pass_on(self):
+    def forward_new(self):
         """Forwards new commands to the replay. True: the user quits."""
         if self.stdin is None or not select.select([self.stdin], [], [], 0)[0]:
             return False
@@ -44,22 +44,22 @@ class Orders:
         if not read:
             self.stdin = None
             return False
-        orders = self.of_keys(read) if self.before is not None else self.of_lines(read)
-        for order in orders:
-            if order == "quit":
+        commands = self.commands_of_keys(read) if self.before is not None else self.commands_of_lines(read)
+        for command in commands:
+            if command == "quit":
                 return True
-            self.send(order)
+            self.send(command)
         return False
 
-    def of_keys(self, read):
+    def commands_of_keys(self, read):
         while read:
             key = read[:3] if read.startswith(b"\x1b[") else read[:1]
             read = read[len(key):]
-            if key in OF_KEY:
+            if key in COMMAND_OF_KEY:
                 self.speed = 1.0 if key == b"1" else self.speed
-                yield OF_KEY[key]
+                yield COMMAND_OF_KEY[key]
             elif key in b"+-":
-                self.speed = min(FASTEST, max(SLOWEST, self.speed * (2 if key == b"+" else 0.5)))
+                self.speed = min(MAX_SPEED, max(MIN_SPEED, self.speed * (2 if key == b"+" else 0.5)))
                 yield f"speed {self.speed}"
             elif key == b"l":
                 self.loop = not self.loop
@@ -67,18 +67,18 @@ class Orders:
             elif key == b"q":
                 yield "quit"
 
-    def of_lines(self, read):
+    def commands_of_lines(self, read):
         *lines, self.rest = (self.rest + read).split(b"\n")
-        self.rest = self.rest[:LONGEST]
+        self.rest = self.rest[:MAX_LINE_BYTES]
         return [line.decode("utf-8", "replace").strip() for line in lines]
 
-    def send(self, order):
+    def send(self, command):
         try:
             pipe = os.open(self.control, os.O_WRONLY | os.O_NONBLOCK)
         except OSError:
             return  # the pipe does not exist yet, or no longer
         try:
-            os.write(pipe, f"{order}\n".encode())
+            os.write(pipe, f"{command}\n".encode())
         except OSError:
             pass  # the replay has ended or no longer reads
         finally:

@@ -9,12 +9,12 @@ import time
 from tactus.launch.cluster import die_with_parent
 from tactus.paths import BIN, SCRIPTS, tactus_command
 from tactus.refusal import Refusal
-from tactus.terminal import say
+from tactus.terminal import report_run
 
 PAGE = SCRIPTS / "live" / "page" / "dist"
 ADDRESS = "live_server: open "  # scripts/live/live_server_main.cpp
-PATIENCE_S = 10
-AGAIN_S = 1  # minimum time between two starts of the server
+TIMEOUT_S = 10
+RESTART_DELAY_S = 1  # minimum time between two starts of the server
 
 
 class Page:
@@ -41,14 +41,14 @@ class Page:
         """Starts the server inside the cluster that writes to `out`; prints the address of the page."""
         self.out = out
         self.launch()
-        end = time.monotonic() + PATIENCE_S
+        end = time.monotonic() + TIMEOUT_S
         while time.monotonic() < end and self.process.poll() is None:
             with open(self.log(), encoding="utf-8", errors="replace") as file:
                 if ADDRESS in file.read():
-                    say(f"the live page: http://127.0.0.1:{self.socket.getsockname()[1]}/?token={self.token}")
+                    report_run(f"the live page: http://127.0.0.1:{self.socket.getsockname()[1]}/?token={self.token}")
                     return
             time.sleep(0.05)
-        say(f"the live page does not start; the run continues without it; see {self.log()}")
+        report_run(f"the live page does not start; the run continues without it; see {self.log()}")
 
     def log(self):
         return self.out / "logs" / "live_server.log"
@@ -62,9 +62,9 @@ class Page:
                                             env={**os.environ, "TACTUS_LIVE_TOKEN": self.token},
                                             pass_fds=(self.socket.fileno(),), preexec_fn=die_with_parent)
 
-    def keep(self):
+    def restart_if_ended(self):
         """Restarts a server that died; the address of the page stays the same."""
-        if self.process is not None and self.process.poll() is not None and time.monotonic() > self.started + AGAIN_S:
+        if self.process is not None and self.process.poll() is not None and time.monotonic() > self.started + RESTART_DELAY_S:
             self.launch()
 
     def stop(self):

@@ -11,11 +11,11 @@ import time
 
 from tactus import terminal
 from tactus.launch import arguments, cluster, equipment, hands, live, network, priority, services, virtual, walls
-from tactus.launch.results import git_commit, sum_up
+from tactus.launch.results import git_commit, summarise
 from tactus.refusal import Interrupted, Refusal, sentence_of
-from tactus.terminal import say
+from tactus.terminal import report_run
 
-LONGEST_LOADING_S = 600
+MAX_LOADING_S = 600
 PROGRESS_S = 5
 
 
@@ -23,12 +23,12 @@ class Stop:
     """Flag set by SIGINT, SIGTERM and SIGHUP; polled by the loop."""
 
     def __init__(self):
-        self.asked = False
+        self.requested = False
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, self.ask)
+            signal.signal(number, self.request)
 
-    def ask(self, *_):
-        self.asked = True
+    def request(self, *_):
+        self.requested = True
 
 
 def watch_over(running, seconds, stop):
@@ -36,28 +36,28 @@ def watch_over(running, seconds, stop):
     minutes for a large scene, unless there is no simulation. Reports each node that is left down. Returns False when the
     simulation never began. Raises Refusal."""
     now = loading_since = time.monotonic()
-    next_said = now + PROGRESS_S
+    next_report = now + PROGRESS_S
     end = None
-    named = set()
-    while not stop.asked and (end is None or now < end):
+    reported = set()
+    while not stop.requested and (end is None or now < end):
         now = time.monotonic()
         if end is None and (running.world_has_begun() or not running.expects_world()):
             end = now + seconds
             running.show_table()
-        elif end is None and now > loading_since + LONGEST_LOADING_S:
-            raise Refusal(f"sim_node: its world has not begun after {LONGEST_LOADING_S // 60} minutes; see "
+        elif end is None and now > loading_since + MAX_LOADING_S:
+            raise Refusal(f"sim_node: its world has not begun after {MAX_LOADING_S // 60} minutes; see "
                           f"{running.plan.out}/logs/sim_node.log")
-        elif end is None and now > next_said:
-            say(f"sim_node is still reading the scene ({now - loading_since:.0f} s)")
-            next_said += PROGRESS_S
+        elif end is None and now > next_report:
+            report_run(f"sim_node is still reading the scene ({now - loading_since:.0f} s)")
+            next_report += PROGRESS_S
         if running.page is not None:
-            running.page.keep()
+            running.page.restart_if_ended()
         if not running.alive():
             raise Refusal(f"supervisor: ended too early; see {running.plan.out}/logs/supervisor.log")
         for name, why in running.lost().items():
-            if name not in named:
-                named.add(name)
-                say(f"{name}: {why}; the others continue ({running.services[name].last_output_line()})")
+            if name not in reported:
+                reported.add(name)
+                report_run(f"{name}: {why}; the others continue ({running.services[name].last_output_line()})")
         time.sleep(0.1)
     return end is not None
 
@@ -97,56 +97,56 @@ def run(plan, watch=watch_over):
             raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
     cluster.check(cluster.commands(plan, run_id, git), stop)
     for name in arguments.unknown_modalities(plan):
-        say(f"{name!r} is no modality of this run; check the names in the profile and in --soa")
+        report_run(f"{name!r} is no modality of this run; check the names in the profile and in --soa")
     expectation = priority.expectation(plan.realtime)
     net = network.choose(plan.network, plan.port)
     services.remove_leftovers()
     page = live.Page(plan.live) if plan.live is not None else None
     claim = claim_out(plan)
-    warnings = equipment.lacking(plan)
+    warnings = equipment.missing_equipment(plan)
     running = cluster.Cluster(plan, net, cluster.commands(plan, run_id, git), run_id)
-    say(f"{plan.scene.name}, {plan.seconds:g} s, seed {plan.seed}, network {net.how}, results in {plan.out}")
-    say(expectation)
+    report_run(f"{plan.scene.name}, {plan.seconds:g} s, seed {plan.seed}, network {net.description}, results in {plan.out}")
+    report_run(expectation)
     for warning in warnings:
-        say(warning)
-    wrong = []
+        report_run(warning)
+    errors = []
     try:
         running.start()
         if page is not None:
             running.page = page
             page.start(plan.out)
         if not watch(running, plan.seconds, stop):
-            wrong.append("interrupted before the world began")
+            errors.append("interrupted before the world began")
     except Refusal as refusal:
-        wrong.append(str(refusal))
+        errors.append(str(refusal))
     except OSError as error:
-        wrong.append(sentence_of(error))
+        errors.append(sentence_of(error))
     finally:
         if page is not None:
             page.stop()
-        taken = running.taken_down()
-        stubborn = running.stop()
+        taken_down = running.taken_down()
+        killed = running.stop()
         lost = running.lost()
         restarts = {name: s.deaths() for name, s in running.services.items() if s.deaths()}
-        words_of = {name: running.services[name].last_output_line() for name in lost}
+        last_lines = {name: running.services[name].last_output_line() for name in lost}
         running.clean()
-    wrong += [f"{name}: could not be kept running: {why} ({words_of[name]}); see {plan.out}/logs/{name}.log"
+    errors += [f"{name}: could not be kept running: {why} ({last_lines[name]}); see {plan.out}/logs/{name}.log"
               for name, why in lost.items()]
-    wrong += [f"{name}: did not end when asked and was killed; see {plan.out}/logs/{name}.log" for name in stubborn]
+    errors += [f"{name}: did not end when asked and was killed; see {plan.out}/logs/{name}.log" for name in killed]
     for name, count in restarts.items():
         if name not in lost:
-            say(f"{name} died and was started again, {count} times in all" if count > 1 else f"{name} died once and was started again")
-    for name in taken:
-        say(f"{name} was taken down and not brought back")
-    wrong += sum_up(plan, git, {*lost, *taken}, restarts, warnings)
-    say(f"results in {plan.out}")
+            report_run(f"{name} died and was started again, {count} times in all" if count > 1 else f"{name} died once and was started again")
+    for name in taken_down:
+        report_run(f"{name} was taken down and not brought back")
+    errors += summarise(plan, git, {*lost, *taken_down}, restarts, warnings)
+    report_run(f"results in {plan.out}")
     os.close(claim)
-    return wrong
+    return errors
 
 
-def names_its_speaker(sentence):
-    speaker = sentence.split(":")[0]
-    return speaker.endswith("_node") or speaker.startswith((f"{hands.FIRST}_", f"{walls.FIRST}_")) or speaker in ("recorder", "network", "supervision", "supervisor", "summarise", "export_csv", "export_events")
+def starts_with_program_name(sentence):
+    program = sentence.split(":")[0]
+    return program.endswith("_node") or program.startswith((f"{hands.FIRST}_", f"{walls.FIRST}_")) or program in ("recorder", "network", "supervision", "supervisor", "summarise", "export_csv", "export_events")
 
 
 def main(words):
@@ -154,14 +154,14 @@ def main(words):
     terminal.prepare()
     try:
         plan = arguments.parse(words[1:] if only_arguments else words, os.getcwd())
-        wrong = [] if only_arguments else run(plan)
+        errors = [] if only_arguments else run(plan)
     except Refusal as refusal:
-        wrong = [str(refusal)]
+        errors = [str(refusal)]
     except OSError as error:
-        wrong = [sentence_of(error)]
+        errors = [sentence_of(error)]
     except Interrupted:
-        terminal.complain("run: interrupted; nothing was started")
+        terminal.report_error("run: interrupted; nothing was started")
         return INTERRUPTED
-    for sentence in wrong:
-        terminal.complain(sentence if names_its_speaker(sentence) else f"run: {sentence}")
-    return 1 if wrong else 0
+    for sentence in errors:
+        terminal.report_error(sentence if starts_with_program_name(sentence) else f"run: {sentence}")
+    return 1 if errors else 0

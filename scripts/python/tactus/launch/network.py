@@ -21,22 +21,22 @@ ROUTE = "ip link set lo up && ip route add 224.0.0.0/4 dev lo"
 class Network:
     private: bool
     unshare: list  # command words before the program inside; empty: no namespaces
-    how: str       # description for the user
+    description: str  # description for the user
 
 
-def choose(wish, port):
+def choose(choice, port):
     """The best network that this system allows. Raises Refusal."""
-    if wish != "host":
-        for flags, how in candidates(net=True):
-            if allowed(flags, ROUTE):
-                return Network(True, flags, f"private ({how})")
-        if wish == "private":
+    if choice != "host":
+        for flags, description in candidates(net=True):
+            if is_allowed(flags, ROUTE):
+                return Network(True, flags, f"private ({description})")
+        if choice == "private":
             raise Refusal("--network private: this system allows neither root nor users a network namespace; use --network "
                           "host, or allow user namespaces (sysctl user.max_user_namespaces)")
     check_host(port)
-    for flags, how in candidates(net=False):
-        if allowed(flags, "true"):
-            return Network(False, flags, f"the machine's ({how})")
+    for flags, description in candidates(net=False):
+        if is_allowed(flags, "true"):
+            return Network(False, flags, f"the machine's ({description})")
     return Network(False, [], "the machine's, without a process namespace")
 
 
@@ -46,13 +46,13 @@ def candidates(net):
     # the private network; an older unshare can only map the user to root.
     users = [([], "root")] if os.geteuid() == 0 else [(["--user", "--map-current-user", "--keep-caps"], "user namespace")]
     users.append((["--user", "--map-root-user"], "user namespace"))
-    for user, how in users:
+    for user, description in users:
         # With a separate /proc, programs such as pkill see only the cluster.
         for proc in (["--mount-proc"], ["--mount"]):
-            yield ["unshare", *user, *(["--net"] if net else []), "--pid", "--fork", "--kill-child", *proc], how
+            yield ["unshare", *user, *(["--net"] if net else []), "--pid", "--fork", "--kill-child", *proc], description
 
 
-def allowed(flags, command):
+def is_allowed(flags, command):
     if not shutil.which("unshare"):
         return False
     # Some versions return 0 after a refused mount, but always write to stderr.

@@ -11,18 +11,18 @@ def expectation(choice):
     """One sentence for the user. Raises Refusal when priority is required and refused."""
     if choice == "off":
         return "real-time priority is off: beside a busy renderer a 1 ms loop wakes up to 3 ms late (p99)"
-    if granted():
+    if is_granted():
         return "real-time priority: audio 70, haptic 60, sim 50, sync_node and recorder 40; visual nodes normal"
     if choice == "require":
-        raise Refusal(f"haptic_node: --realtime require, but {remark()}; run scripts/setup --realtime and log in again, or "
+        raise Refusal(f"haptic_node: --realtime require, but {refusal_reason()}; run scripts/setup --realtime and log in again, or "
                       "use --realtime try")
-    return (f"no real-time priority ({remark()}): the run works, but beside a busy renderer a 1 ms loop wakes up to 3 ms "
+    return (f"no real-time priority ({refusal_reason()}): the run works, but beside a busy renderer a 1 ms loop wakes up to 3 ms "
             "late (p99); scripts/setup --realtime allows it")
 
 
-def granted():
+def is_granted():
     return subprocess.run(["chrt", "-f", str(HIGHEST), "true"], capture_output=True, check=False).returncode == 0
 
 
-def remark():
+def refusal_reason():
     return "the system refuses it to root here" if os.geteuid() == 0 else "ulimit -r is below 70"

@@ -11,17 +11,17 @@ import time
 from tactus import terminal
 from tactus.launch import arguments, cluster, hands, keys, main as supervisor
 from tactus.refusal import Refusal, sentence_of
-from tactus.terminal import say
+from tactus.terminal import report_run
 
 SENSES = arguments.SENSES
-OF_REPLAY = ("speed", "start", "end", "channels", "leave_out", "also", "most")
-OVER = "replay: over"   # sync/tools/replay_main.cpp
-ENDS = "replay: ends"
-AFTERWARDS_S = 0.5      # the last sounds and frames are presented after the last message
-LONGEST_S = arguments.LONGEST_S
+REPLAY_OPTIONS = ("speed", "start", "end", "channels", "leave_out", "also", "most")
+END_REACHED = "replay: over"  # sync/tools/replay_main.cpp
+EXIT_LINE = "replay: ends"
+SETTLING_S = 0.5  # the last sounds and frames are presented after the last message
+MAX_SECONDS = arguments.MAX_SECONDS
 
 
-def described(log):
+def describe_log(log):
     """Description of the log: scene, tools, seed, recovered. Raises Refusal."""
     program = cluster.BIN / "replay"
     if not os.access(program, os.X_OK):
@@ -37,7 +37,7 @@ def parse(words, here):
     parser = arguments.Parser(add_help=False, allow_abbrev=False, prog="replay")
     parser.error = lambda message: (_ for _ in ()).throw(Refusal(f"{message}; see tactus replay --help"))
     parser.add_argument("log")
-    for option in (*OF_REPLAY, "out", "degrade", *arguments.PLAYOUT):
+    for option in (*REPLAY_OPTIONS, "out", "degrade", *arguments.PLAYOUT):
         parser.add_argument("--" + option.replace("_", "-"))
     for option in ("only", "without", "rename", "device", "set"):
         parser.add_argument("--" + option, action="append", default=[])
@@ -53,8 +53,8 @@ def parse(words, here):
     a = parser.parse_args(words)
     here = pathlib.Path(here)
     log = here / a.log  # for a folder, the program replay reads all parts
-    says = described(log)
-    others = hands.processes(says["tools"])
+    description = describe_log(log)
+    others = hands.processes(description["tools"])
     known = (*SENSES, *others, "sync_node")
     for node in (*a.only, *a.without):
         if node not in known:
@@ -71,25 +71,20 @@ def parse(words, here):
         raise Refusal("--degrade and --as-recorded contradict each other; leave one away")
     others = {process: tool for process, tool in others.items() if process not in without}
     words = [str(log), "--stay"]
-    for option in OF_REPLAY:
+    for option in REPLAY_OPTIONS:
         if (value := getattr(a, option)) is not None:
             words += ["--" + option.replace("_", "-"), value]
     words += [f"--{option.replace('_', '-')}" for option in ("loop", "paused", "as_recorded", "verbatim") if getattr(a, option)]
     words += [word for rename in a.rename for word in ("--rename", rename)]
-    own_without = argparse_like(a, without)
-    return arguments.Plan(
-        scene=pathlib.Path(says["scene"] or log.name), shaders=None, seconds=LONGEST_S,
-        out=arguments.out_folder(here, a.out), out_is_ours=not a.out, without=without,
-        devices=arguments.devices(a.device, without, says["tools"]), hands=others, room="", walls={},
-        degrade=arguments.profile(here, a.degrade), playout=arguments.playout(own_without), window=a.window, listen=a.listen,
-        realtime=a.realtime, seed=int(arguments.number("--seed", a.seed or str(says["seed"]), 0, 2**63 - 1, "", whole=True)),
-        network=a.network, port=int(arguments.number("--port", a.port, 1024, 65534, "", whole=True)),
-        settings=arguments.settings(a.set, others), world="replay", replay=words), a.stay, says
-
-
-def argparse_like(a, without):
     a.without = without
-    return a
+    return arguments.Plan(
+        scene=pathlib.Path(description["scene"] or log.name), shaders=None, seconds=MAX_SECONDS,
+        out=arguments.out_folder(here, a.out), out_is_ours=not a.out, without=without,
+        devices=arguments.devices(a.device, without, description["tools"]), hands=others, room="", walls={},
+        degrade=arguments.profile(here, a.degrade), playout=arguments.playout(a), window=a.window, listen=a.listen,
+        realtime=a.realtime, seed=int(arguments.number("--seed", a.seed or str(description["seed"]), 0, 2**63 - 1, "", whole=True)),
+        network=a.network, port=int(arguments.number("--port", a.port, 1024, 65534, "", whole=True)),
+        settings=arguments.settings(a.set, others), world="replay", replay=words), a.stay, description
 
 
 def watcher(control, stay):
@@ -97,24 +92,24 @@ def watcher(control, stay):
     def watch_over(running, _seconds, stop):
         world = running.services["replay"]
         begun, over_since = False, None
-        named = set()
-        with keys.Orders(control) as orders:
-            while not stop.asked:
+        reported = set()
+        with keys.KeyCommands(control) as commands:
+            while not stop.requested:
                 if not begun and running.world_has_begun():
                     begun = True
                     running.show_table()
-                if orders.pass_on() or world.log_contains(ENDS):
+                if commands.forward_new() or world.log_contains(EXIT_LINE):
                     break
-                over = OVER in world.last_output_line()
+                over = END_REACHED in world.last_output_line()
                 over_since = (over_since or time.monotonic()) if over else None
-                if over and not stay and time.monotonic() > over_since + AFTERWARDS_S:
+                if over and not stay and time.monotonic() > over_since + SETTLING_S:
                     break
                 if not running.alive():
                     raise Refusal(f"supervisor: ended too early; see {running.plan.out}/logs/supervisor.log")
                 for name, why in running.lost().items():
-                    if name not in named:
-                        named.add(name)
-                        say(f"{name}: {why}; the others continue ({running.services[name].last_output_line()})")
+                    if name not in reported:
+                        reported.add(name)
+                        report_run(f"{name}: {why}; the others continue ({running.services[name].last_output_line()})")
                 if world.lost():
                     break
                 time.sleep(0.05)
@@ -128,26 +123,26 @@ def main(words):
     control = folder / "control"
     try:
         os.mkfifo(control)
-        plan, stay, says = parse(words, os.getcwd())
+        plan, stay, description = parse(words, os.getcwd())
         plan.replay += ["--control", str(control)]
-        if says["recovered"]:
-            say(says["recovered"])
+        if description["recovered"]:
+            report_run(description["recovered"])
         plan.out.mkdir(parents=True, exist_ok=True)
         (plan.out / "control").unlink(missing_ok=True)
         (plan.out / "control").symlink_to(control)
         plan.out_is_ours = False
-        wrong = supervisor.run(plan, watcher(control, stay))
+        errors = supervisor.run(plan, watcher(control, stay))
         (plan.out / "control").unlink(missing_ok=True)
     except Refusal as refusal:
-        wrong = [str(refusal)]
+        errors = [str(refusal)]
     except OSError as error:
-        wrong = [sentence_of(error)]
+        errors = [sentence_of(error)]
     except supervisor.Interrupted:
-        terminal.complain("replay: interrupted; nothing was started")
+        terminal.report_error("replay: interrupted; nothing was started")
         return supervisor.INTERRUPTED
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-    for sentence in wrong:
-        terminal.complain(sentence if supervisor.names_its_speaker(sentence) or sentence.startswith("replay:")
+    for sentence in errors:
+        terminal.report_error(sentence if supervisor.starts_with_program_name(sentence) or sentence.startswith("replay:")
                           else f"replay: {sentence}")
-    return 1 if wrong else 0
+    return 1 if errors else 0

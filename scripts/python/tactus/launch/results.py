@@ -10,34 +10,34 @@ def git_commit():
     """The commit of this repository, with + for modified files; "unknown" without git."""
     git = ["git", "-c", "safe.directory=*", "-C", str(REPOSITORY)]
     try:
-        said = lambda *words: subprocess.run([*git, *words], capture_output=True, check=True, text=True, errors="replace",
+        git_output = lambda *words: subprocess.run([*git, *words], capture_output=True, check=True, text=True, errors="replace",
                                              start_new_session=True).stdout
-        commit, changed = said("rev-parse", "HEAD").strip(), said("status", "--porcelain", "-uno")
+        commit, changed = git_output("rev-parse", "HEAD").strip(), git_output("status", "--porcelain", "-uno")
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
     return commit + ("+" if changed.strip() else "")
 
 
-def sum_up(plan, git, lost, restarts, warnings):
+def summarise(plan, git, lost, restarts, warnings):
     """Writes summary.json and the CSV tables from the log. lost: the nodes that are not expected at the end of the log.
     Returns the errors, one sentence each."""
     if not any(plan.out.glob("run*.lcmlog")):
         return [f"recorder: {plan.out}/run.lcmlog was not written; see {plan.out}/logs/recorder.log"]
-    kept = [name for name in plan.nodes() if name not in lost]
-    summarise = [str(BIN / "summarise"), str(plan.out), "--out", str(plan.out / "summary.json"), "--nodes", ",".join(kept),
-                 "--seconds", f"{plan.seconds:g}", "--scene", str(plan.scene), "--seed", str(plan.seed), "--git", git,
-                 *(word for name, count in restarts.items() for word in ("--restarts", f"{name}={count}")),
-                 *(word for sentence in warnings for word in ("--warning", sentence))]
+    expected = [name for name in plan.nodes() if name not in lost]
+    summary_command = [str(BIN / "summarise"), str(plan.out), "--out", str(plan.out / "summary.json"), "--nodes", ",".join(expected),
+                       "--seconds", f"{plan.seconds:g}", "--scene", str(plan.scene), "--seed", str(plan.seed), "--git", git,
+                       *(word for name, count in restarts.items() for word in ("--restarts", f"{name}={count}")),
+                       *(word for sentence in warnings for word in ("--warning", sentence))]
     exports = [[str(BIN / name), str(plan.out), "--out", str(plan.out)] for name in ("export_csv", "export_events")]
     # All results are written before the first is printed. A second Ctrl-C does not reach these programs.
     all_done = [subprocess.run(words, capture_output=True, text=True, errors="replace", check=False, start_new_session=True)
-                for words in (summarise, *exports)]
-    terminal.tell(all_done[0].stdout.rstrip("\n"))
-    wrong = []
+                for words in (summary_command, *exports)]
+    terminal.report(all_done[0].stdout.rstrip("\n"))
+    errors = []
     for done in all_done:
         name = os.path.basename(done.args[0])
         if done.returncode != 0:
-            wrong.append(done.stderr.strip().split("\n")[-1] or f"{name}: ended with status {done.returncode}")
+            errors.append(done.stderr.strip().split("\n")[-1] or f"{name}: ended with status {done.returncode}")
         elif done.stderr:
-            terminal.complain(done.stderr.rstrip("\n"))
-    return wrong
+            terminal.report_error(done.stderr.rstrip("\n"))
+    return errors

@@ -2,7 +2,7 @@
 import xml.parsers.expat
 
 
-def in_world(scene):
+def world_elements(scene):
     """[(element, attributes)] of the children of <world>, in order; empty when the scene cannot be read."""
     found, path = [], []
 
@@ -24,11 +24,11 @@ def in_world(scene):
 
 def tools(scene):
     """Names of the tools of the scene."""
-    return [attributes.get("name", "") for name, attributes in in_world(scene) if name == "tactus:tool"]
+    return [attributes.get("name", "") for name, attributes in world_elements(scene) if name == "tactus:tool"]
 
 
 def shader_folder(scene):
     """Folder of the shaders of the scene, which are reloaded on change; None without shaders, or when the scene sets shader_folder."""
-    world = in_world(scene)
-    says = any(name == "tactus:visual_node" and "shader_folder" in attributes for name, attributes in world)
-    return scene.parent if not says and any(name == "tactus:shader" for name, _ in world) else None
+    world = world_elements(scene)
+    sets_folder = any(name == "tactus:visual_node" and "shader_folder" in attributes for name, attributes in world)
+    return scene.parent if not sets_folder and any(name == "tactus:shader" for name, _ in world) else None

@@ -1,6 +1,6 @@
 """Service folders for runit, and commands to their services.
 
-A node runs as a service: runsv restarts it when it dies. Its `finish` script records each death. After more than MOST_DEATHS
+A node runs as a service: runsv restarts it when it dies. Its `finish` script records each death. After more than MAX_DEATHS
 deaths within WINDOW_S it leaves the node down and writes the reason to the file `lost`.
 """
 import fcntl
@@ -14,7 +14,7 @@ import time
 
 from tactus.refusal import Refusal
 
-MOST_DEATHS = 5
+MAX_DEATHS = 5
 WINDOW_S = 10
 
 FINISH = """#!/bin/sh
@@ -58,7 +58,7 @@ def make_folder(out):
                   "both are full; set TMPDIR to a folder that can")
 
 
-def hold(folder):
+def lock_folder(folder):
     """Marks the folder as in use until the returned file is closed or this process ends. A lock, because process ids differ
     between process namespaces."""
     lock = open(folder / "new", "w", encoding="ascii")
@@ -93,9 +93,9 @@ class Service:
         (self.path / "down").touch()  # runsv waits for a command
         write_script(self.path / "run", RUN.format(name=name, log=shlex.quote(str(log)),
                                                    folder=shlex.quote(str(working_folder)), command=shlex.join(command)))
-        write_script(self.path / "finish", FINISH.format(name=name, window=WINDOW_S, most=MOST_DEATHS))
+        write_script(self.path / "finish", FINISH.format(name=name, window=WINDOW_S, most=MAX_DEATHS))
 
-    def order(self, letter):
+    def control(self, letter):
         """Sends a command of runsv(8): u, d, t, k, p, c. False without a running runsv."""
         try:
             pipe = os.open(self.path / "supervise" / "control", os.O_WRONLY | os.O_NONBLOCK)
@@ -107,7 +107,7 @@ class Service:
 
     def start(self, patience_s=5.0):
         """Starts the node; True on success. Waits up to patience_s for runsv."""
-        return wait_until(lambda: self.order("u"), patience_s)
+        return wait_until(lambda: self.control("u"), patience_s)
 
     def is_down(self):
         try:
@@ -156,22 +156,22 @@ class Service:
 def request_end(services, patience_s):
     """Asks all services to end and waits at most patience_s."""
     for s in services:
-        s.order("d")
+        s.control("d")
     wait_until(lambda: all(s.is_down() for s in services), patience_s)
 
 
 def end_or_kill(services, patience_s):
     """Waits at most patience_s for all services, then kills the others. Returns their names."""
     wait_until(lambda: all(s.is_down() for s in services), patience_s)
-    stubborn = [s for s in services if not s.is_down()]
-    for s in stubborn:
-        s.order("k")
+    killed = [s for s in services if not s.is_down()]
+    for s in killed:
+        s.control("k")
     wait_until(lambda: all(s.is_down() for s in services), 2.0)
-    return [s.name for s in stubborn]
+    return [s.name for s in killed]
 
 
-def wait_until(condition, at_most_s):
-    end = time.monotonic() + at_most_s
+def wait_until(condition, timeout_s):
+    end = time.monotonic() + timeout_s
     while not condition():
         if time.monotonic() > end:
             return False

@@ -6,9 +6,9 @@ import subprocess
 import time
 
 from tactus.launch import arguments, cluster
-from tactus.launch.results import git_commit, sum_up
+from tactus.launch.results import git_commit, summarise
 from tactus.refusal import Refusal
-from tactus.terminal import complain, say
+from tactus.terminal import report_error, report_run
 
 POLL_S = 0.1
 PROGRAMS = ("virtual_time", "summarise", "export_csv", "export_events")
@@ -32,44 +32,44 @@ def run(plan, stop, claim_out):
     words = commands(plan, git)
     cluster.check(words, stop)
     for name in arguments.unknown_modalities(plan):
-        say(f"{name!r} is no modality of this run; check the names in the profile and in --soa")
+        report_run(f"{name!r} is no modality of this run; check the names in the profile and in --soa")
     claim = claim_out(plan)
     for name in words:  # claim_out may have chosen another folder
         words[name][words[name].index("--out") + 1] = str(plan.out)
     (plan.out / "logs").mkdir(exist_ok=True)
     plan_file = plan.out / "logs" / "virtual_time.json"
     plan_file.write_text(json.dumps(words, indent=1) + "\n", encoding="utf-8")
-    say(f"{plan.scene.name}, {plan.seconds:g} s of virtual time, seed {plan.seed}, without pictures, results in {plan.out}")
-    wrong = play(plan, plan_file, stop)
-    wrong += sum_up(plan, git, set(), {}, [])
-    say(f"results in {plan.out}")
+    report_run(f"{plan.scene.name}, {plan.seconds:g} s of virtual time, seed {plan.seed}, without pictures, results in {plan.out}")
+    errors = play(plan, plan_file, stop)
+    errors += summarise(plan, git, set(), {}, [])
+    report_run(f"results in {plan.out}")
     os.close(claim)
-    return wrong
+    return errors
 
 
 def play(plan, plan_file, stop):
     """Runs virtual_time and prints its progress. Returns the errors."""
     command = [str(cluster.BIN / "virtual_time"), str(plan_file), "--seconds", f"{plan.seconds:g}", "--seed", str(plan.seed), *plan.virtual]
     log = plan.out / "logs" / "virtual_time.log"
-    with open(log, "w", encoding="utf-8") as said, open(log, encoding="utf-8", errors="replace") as heard:
-        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=said, stderr=said, start_new_session=True,
+    with open(log, "w", encoding="utf-8") as log_file, open(log, encoding="utf-8", errors="replace") as output:
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log_file, stderr=log_file, start_new_session=True,
                                    preexec_fn=cluster.die_with_parent)
-        asked = False
+        forwarded = False
         while process.poll() is None:
-            if stop.asked and not asked:
+            if stop.requested and not forwarded:
                 process.send_signal(signal.SIGTERM)
-                asked = True
-            tell(heard)
+                forwarded = True
+            forward_output(output)
             time.sleep(POLL_S)
-        tell(heard)
+        forward_output(output)
     if process.returncode == 0:
         return []
     last = log.read_text(encoding="utf-8", errors="replace").strip().split("\n")[-1]
     return [f"virtual_time: ended with status {process.returncode} ({last}); see {log}"]
 
 
-def tell(heard):
+def forward_output(output):
     """Prints the lines of virtual_time itself; the output of its nodes stays in the log."""
-    for line in heard:
+    for line in output:
         if line.startswith("virtual_time:"):
-            complain(line.rstrip("\n"))
+            report_error(line.rstrip("\n"))

@@ -3,6 +3,7 @@ import csv
 import re
 
 from tactus.paths import REPOSITORY
+from tactus.tables import read_rows
 
 FIRST = "visual_node"  # draws the first wall, or the camera of the scene without a room
 LONGEST_NAME = 40      # of a process name, which is also the name of its folder, log and video
@@ -14,8 +15,7 @@ def room(here, text):
     shipped = sorted(path.stem for path in ROOMS.glob("*.csv"))
     path = ROOMS / f"{text}.csv" if text in shipped else here / text
     try:
-        with open(path, newline="", encoding="utf-8") as file:
-            names = [row["wall"] for row in csv.DictReader(file)]
+        names = [row["wall"] for row in read_rows(path)]
     except (OSError, KeyError, TypeError, UnicodeDecodeError, csv.Error):
         raise ValueError(f"--room {text}: is not a file of walls; choose {', '.join(shipped)} or a CSV file such as {ROOMS}/cave4.csv") from None
     names = [name for name in names if name and name != "eye"]

@@ -8,7 +8,7 @@ import numpy as np
 # Channels of a report; large channels are not exported.
 CHANNELS = "LOG_INFO|NODE_HEALTH|CONTACT_EVENTS|PLAYOUT|DEGRADATION|DEGRADED|TAG_LIST|TAG_VALUES"
 PHASES = ("collision", "solve", "integrate", "decode", "render", "other")  # sync/time/phases.h
-WHY = ("let through", "rate", "deadband", "loss", "off", "freeze")          # sync::Why, sync/degradation/operator_chain.h
+DROP_REASONS = ("let through", "rate", "deadband", "loss", "off", "freeze")  # sync::Why, sync/degradation/operator_chain.h
 PRESENTED = ("presented", "late", "inaudible")                               # outcomes of presented.csv that count as presented (docs/results.md)
 POLICIES = ("asap", "aligned", "experiment", "local_haptic_first", "itouch2005")  # lcmtypes/types/control/playout_t.lcm
 SENSES = ("haptic", "haptic_push", "audio", "visual", "thermal")             # an asynchrony is later minus earlier in this list
@@ -46,7 +46,7 @@ class LogTables:
         """{process: nominal rate in Hz}, from NODE_HEALTH."""
         return {row["sender"]: float(row["value"]) for row in self.rows("NODE_HEALTH.csv", "nominal_rate_Hz") if row["field"] == "nominal_rate_Hz"}
 
-    def work(self):
+    def phase_times_us(self):
         """{process: {phase: us of each tick}} of the tagged variables work and work.PHASE."""
         found = {}
         for row in self.rows("tags.csv", ",work"):
@@ -58,12 +58,12 @@ class LogTables:
         """Rows of events.csv, by event_id."""
         return {row["event_id"]: row for row in self.rows("events.csv")}
 
-    def first_heard_ns(self):
+    def first_received_ns(self):
         """{event_id: host ns at which the recorder first received it}."""
-        heard = {}
+        received = {}
         for row in self.rows("CONTACT_EVENTS.csv", ".event_id,"):
-            heard.setdefault(row["value"], self.live_from_ns + round(float(row["log_s"]) * 1e9))
-        return heard
+            received.setdefault(row["value"], self.live_from_ns + round(float(row["log_s"]) * 1e9))
+        return received
 
     def presented_ns(self):
         """{modality: {event_id: host ns}}; the immediate force of touch is haptic_push."""
@@ -120,7 +120,7 @@ class LogTables:
                 what = "events" if int(message[f"decisions[{i}].is_event"]) else "snapshots"
                 own = out.setdefault((message["modality"], what), {"why": {}, "held_ms": [], "twice": 0})
                 why = int(message[f"decisions[{i}].why"])
-                name = WHY[why] if 0 <= why < len(WHY) else f"reason {why}"
+                name = DROP_REASONS[why] if 0 <= why < len(DROP_REASONS) else f"reason {why}"
                 own["why"][name] = own["why"].get(name, 0) + 1
                 own["twice"] += int(message[f"decisions[{i}].twice"])
                 if why == 0:
@@ -141,7 +141,7 @@ class LogTables:
         if message:
             yield message
 
-    def hand(self, tool):
+    def tool_trace(self, tool):
         """Arrays of haptic.csv of one tool: seq, simulation time s (NaN: before its start), force (n,3) N, device and proxy height m."""
         seq, time, force, device, proxy = [], [], [], [], []
         for row in self.rows("haptic.csv"):
@@ -158,10 +158,10 @@ class LogTables:
     def tools(self):
         return sorted({row["tool"] for row in self.rows("haptic.csv")}, key=int)
 
-    def warmth(self):
+    def temperatures(self):
         """Array (n,3) of thermal.csv: simulation time s, skin and commanded temperature, degC."""
-        told = [(float(row["time_s"]), float(row["skin_degC"]), float(row["commanded_degC"])) for row in self.rows("thermal.csv") if row["time_s"]]
-        return np.array(told).reshape(-1, 3)
+        rows = [(float(row["time_s"]), float(row["skin_degC"]), float(row["commanded_degC"])) for row in self.rows("thermal.csv") if row["time_s"]]
+        return np.array(rows).reshape(-1, 3)
 
 
 def asynchronies_ms(presented):
@@ -177,20 +177,14 @@ def asynchronies_ms(presented):
     return out
 
 
-def latencies_ms(events, heard, presented):
+def latencies_ms(events, received, presented):
     """{hop: ms} of each event, from its instant to the bus and to the presentation of each modality."""
     at = {event: int(row["host_ns"]) for event, row in events.items() if row["host_ns"] and int(row["host_ns"]) > 0}
-    out = {"simulation to bus": np.array([(heard[e] - ns) * 1e-6 for e, ns in at.items() if e in heard])}
+    out = {"simulation to bus": np.array([(received[e] - ns) * 1e-6 for e, ns in at.items() if e in received])}
     for sense in SENSES:
         onsets = presented.get(sense, {})
         out[f"event to {sense}"] = np.array([(onsets[e] - ns) * 1e-6 for e, ns in at.items() if e in onsets])
     return {hop: values for hop, values in out.items() if len(values)}
-
-
-def thresholds(path):
-    """Rows of sync/presentation/thresholds.csv."""
-    with open(path, encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def bands(rows, a, b):

@@ -75,10 +75,6 @@ def amplitudes(samples, rate, poles):
     return solution[:len(poles)] + 1j * solution[len(poles):]
 
 
-def sum_of(poles, c, rate, count):
-    return waves(poles, rate, count) @ np.concatenate([c.real, c.imag])
-
-
 def standing_out(samples, rate, poles, c):
     """Mask of the poles that rise above the residual near their frequency after removal of all modes."""
     count = min(len(samples), 1 << 15)

@@ -7,6 +7,7 @@ from xml.sax.saxutils import quoteattr
 
 from tactus.refusal import Refusal
 from tactus.paths import SCENES
+from tactus.tables import read_rows
 
 COLUMNS = ("frequency_Hz", "damping_1_s", "amplitude", "decay_frequency_Hz", "decay_damping_1_s", "agrees")
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_ .-]*")
@@ -33,8 +34,7 @@ def write_csv(path, modes):
 
 
 def builtin_materials():
-    with open(SCENES / "materials.csv", newline="", encoding="utf-8") as file:
-        return [row["name"] for row in csv.DictReader(file)]
+    return [row["name"] for row in read_rows(SCENES / "materials.csv")]
 
 
 def write_xml(path, analysis, name, base):

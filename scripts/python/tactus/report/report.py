@@ -1,7 +1,7 @@
 """A report on one or several logs: its sections, in order. The report states which data a log lacks."""
-from tactus.log import log_tables
 from tactus.paths import REPOSITORY
 from tactus.report import sections, traces, words
+from tactus.tables import read_rows
 
 
 class Report:
@@ -9,7 +9,7 @@ class Report:
 
     def __init__(self, logs, gallery):
         self.logs, self.gallery = logs, gallery
-        self.thresholds = log_tables.thresholds(REPOSITORY / "sync" / "presentation" / "thresholds.csv")
+        self.thresholds = read_rows(REPOSITORY / "sync" / "presentation" / "thresholds.csv")
         self.tables, self.sources, self.missing = 0, [], []
 
     @property

@@ -88,7 +88,7 @@ def processes(report):
         return "".join(out) + report.lacks("No process published its health.")
     out.append(report.table("Processes: nominal and achieved rate, missed ticks, duration and start latency of a tick. sync_node also wakes when a message arrives.",
                             ["process", "nominal, Hz", "achieved, Hz", "missed", "tick p50, µs", "p99", "max", "late p50, µs", "p99", "restarts"], rows))
-    work = log.work()
+    work = log.phase_times_us()
     if not work:
         return "".join(out) + report.lacks("No time per phase of any process was recorded (tagged variables work.*), so physics and rendering are shown only by their ticks.")
     names = sorted(work)
@@ -109,9 +109,9 @@ def processes(report):
     axes.legend([figures.plt.Rectangle((0, 0), 1, 1, color=figures.PHASE_COLOUR[p]) for p in log_tables.PHASES], log_tables.PHASES, ncols=6, loc="lower center",
                 bbox_to_anchor=(0.45, 1.0), handlelength=1, columnspacing=1.2)
     physics = work.get("sim_node", {})
-    told = [f"{phase} {number(physics[phase].mean())} µs" for phase in ("collision", "solve", "integrate") if phase in physics]
+    means = [f"{phase} {number(physics[phase].mean())} µs" for phase in ("collision", "solve", "integrate") if phase in physics]
     caption = ("Mean time of a tick by phase; the mark is the 99th percentile of the whole tick. "
-               + (f"Physics took {listed(told)} of a step on average, {number(percentile(physics['all'], 99))} µs at the 99th percentile." if told and "all" in physics else ""))
+               + (f"Physics took {listed(means)} of a step on average, {number(percentile(physics['all'], 99))} µs at the 99th percentile." if means and "all" in physics else ""))
     out.append(report.gallery.keep(fig, "work", caption))
     render = [[name, *(float(work[name][p].mean()) if p in work[name] else None for p in log_tables.PHASES),
                percentile(work[name]["all"], 99) if "all" in work[name] else None] for name in names]
@@ -129,10 +129,10 @@ def budget_lines(axes, report):
 
 def latency(report):
     out = ["<h2>Latency</h2>\n"]
-    hops = [log_tables.latencies_ms(log.events(), log.first_heard_ns(), log.presented_ns()) for log in report.logs]
+    hops = [log_tables.latencies_ms(log.events(), log.first_received_ns(), log.presented_ns()) for log in report.logs]
     own, late = hops[0], report.log.lateness_ms()
     if not own:
-        return "".join(out) + report.lacks("No event has a time on the host clock, so latency is unknown.")
+        return "".join(out) + report.lacks("No event has a time on the host clock; the latency is unknown.")
     fig, (left, right) = figures.new(columns=2, height_in=2.7)
     for hop, values in own.items():
         sense = hop.removeprefix("event to ")
@@ -239,10 +239,10 @@ def raster(report):
 
 def degradation(report):
     several = len(report.logs) > 1
-    return "<h2>Degradation</h2>\n" + "".join((f"<h3>{safe(log.name)}</h3>\n" if several else "") + of_profile(report, log, i) for i, log in enumerate(report.logs))
+    return "<h2>Degradation</h2>\n" + "".join((f"<h3>{safe(log.name)}</h3>\n" if several else "") + profile_effect(report, log, i) for i, log in enumerate(report.logs))
 
 
-def of_profile(report, log, which):
+def profile_effect(report, log, which):
     out = []
     profile, decisions = log.profile(), log.decisions()
     if not profile or "<degrade" not in profile[0]:

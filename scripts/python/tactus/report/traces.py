@@ -10,10 +10,10 @@ JND, FLOOR_N = (0.07, 0.10), 0.5
 FORCE_SOURCES = ("Pang, Tan and Durlach 1991, Perception & Psychophysics 49(6):531-540: roughly 7 % from 2.5 to 10 N, pinch grasp, five persons",
                  "Raghu Prasad, Purswani and Manivannan 2013, Force JND for right index finger using contra lateral force matching paradigm, ICoRD'13: "
                  "approximately 10 % from 2 to 5 N, six persons")
-MOST_TOOLS = 4
+MAX_TOOLS = 4
 
 
-def beyond(reference_N, other_N, fraction):
+def share_above_jnd(reference_N, other_N, fraction):
     """Share of ticks, among those with force in either, in which the difference exceeds the just noticeable one. Arrays (n,3), N."""
     size = np.linalg.norm(reference_N, axis=1)
     felt = (size > 1e-3) | (np.linalg.norm(other_N, axis=1) > 1e-3)
@@ -32,8 +32,8 @@ def resampled(hand, times_s):
     return out
 
 
-def of_tool(report, tool, first):
-    hands = [log.hand(tool) for log in report.logs]
+def tool_section(report, tool, first):
+    hands = [log.tool_trace(tool) for log in report.logs]
     own = hands[0]
     known = ~np.isnan(own["time_s"])
     if not known.any():
@@ -46,15 +46,15 @@ def of_tool(report, tool, first):
     top.fill_between(at, np.maximum(low10, 0), high10, color="#f3ddd3", linewidth=0, label=f"± {JND[1] * 100:.0f} %")
     top.fill_between(at, np.maximum(low, 0), high, color="#e8bfae", linewidth=0, label=f"± {JND[0] * 100:.0f} %")
     top.plot(*figures.envelope(t, size), color=figures.COLOUR["haptic"], linewidth=0.8, label="force")
-    told = []
+    comparisons = []
     for i, (log, hand) in enumerate(list(zip(report.logs, hands))[1:], 1):
         other = resampled(hand, t)
         both = ~np.isnan(other[:, 0])
         if not both.any():
             continue
         top.plot(*figures.envelope(t[both], np.linalg.norm(other[both], axis=1)), color=figures.OF_LOG[i % len(figures.OF_LOG)], linewidth=0.7, label=log.name)
-        share = [100 * beyond(force[both], other[both], k) for k in JND]
-        told.append(f"the force of {safe(log.name)} was outside the band of 7 % in {number(share[0])} % of the ticks with force, and outside the band of 10 % in {number(share[1])} %")
+        share = [100 * share_above_jnd(force[both], other[both], k) for k in JND]
+        comparisons.append(f"the force of {safe(log.name)} was outside the band of 7 % in {number(share[0])} % of the ticks with force, and outside the band of 10 % in {number(share[1])} %")
     top.set(ylabel="force, N", ylim=(0, None))
     top.legend(ncols=6, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
     bottom.plot(*figures.envelope(t, own["device_m"][known] * 1e3), color="#888888", linewidth=0.9, label="device")
@@ -62,7 +62,7 @@ def of_tool(report, tool, first):
     bottom.set(ylabel="height, mm", xlabel="s of the world")
     bottom.legend(ncols=2, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
     cited = ", ".join(report.cite(source) for source in FORCE_SOURCES)
-    more = (" Two runs with a person differ in their motion; " + "; ".join(told) + ".") if told else ""
+    more = (" Two runs with a person differ in their motion; " + "; ".join(comparisons) + ".") if comparisons else ""
     in_contact = float(np.mean(size > 1e-3)) * 100
     return report.gallery.keep(fig, f"force_{tool}", f"Tool {safe(tool)}{' (the first)' if first else ''}: force on the hand, maximum {number(size.max())} N, present in {number(in_contact)} % of the ticks. Shaded: "
                                f"unnoticeable differences, by Weber fractions of 7 and 10 % {cited}, also outside the forces of those studies, and never narrower than at {FLOOR_N} N (design). Below: height of the device and of the "
@@ -70,14 +70,14 @@ def of_tool(report, tool, first):
 
 
 def temperature(report):
-    warm = report.log.warmth()
+    warm = report.log.temperatures()
     if len(warm) < 2:
         return report.lacks("No temperature was recorded.")
     fig, axes = figures.new(height_in=1.9)
     axes.plot(warm[:, 0], warm[:, 1], color=figures.COLOUR["thermal"], label="skin")
     axes.plot(warm[:, 0], warm[:, 2], color="#999999", linewidth=0.8, label="command to the display")
     for i, log in enumerate(report.logs[1:], 1):
-        other = log.warmth()
+        other = log.temperatures()
         if len(other) > 1:
             axes.plot(other[:, 0], other[:, 1], color=figures.OF_LOG[i % len(figures.OF_LOG)], linewidth=0.8, label=f"skin, {log.name}")
     axes.set(xlabel="s of the world", ylabel="°C")
@@ -90,9 +90,9 @@ def section(report):
     tools = report.log.tools()
     if not tools:
         out.append(report.lacks("No tool was recorded, so force and position are missing."))
-    for i, tool in enumerate(tools[:MOST_TOOLS]):
-        out.append(of_tool(report, tool, i == 0))
-    if len(tools) > MOST_TOOLS:
-        out.append(report.lacks(f"{len(tools) - MOST_TOOLS} more tools of the log are not drawn."))
+    for i, tool in enumerate(tools[:MAX_TOOLS]):
+        out.append(tool_section(report, tool, i == 0))
+    if len(tools) > MAX_TOOLS:
+        out.append(report.lacks(f"{len(tools) - MAX_TOOLS} more tools of the log are not drawn."))
     out.append(temperature(report))
     return "".join(out)

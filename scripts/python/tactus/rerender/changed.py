@@ -6,10 +6,11 @@ import os
 import numpy as np
 
 from tactus.rerender import colour, compare, read
+from tactus.tables import read_rows
 
 
 def presented(folder, sense):
-    return compare.times_of(read.rows(os.path.join(folder, f"presented_{sense}.csv")))
+    return compare.times_of(read_rows(os.path.join(folder, f"presented_{sense}.csv")))
 
 
 def haptic(reference, other, _):
@@ -34,7 +35,7 @@ def audio(reference, other, first_ns):
 
 
 def visual(reference, other, _):
-    hashes = [[row["pixels"] for row in read.rows(os.path.join(folder, "frames.csv"))] for folder in (reference, other)]
+    hashes = [[row["pixels"] for row in read_rows(os.path.join(folder, "frames.csv"))] for folder in (reference, other)]
     differ = compare.frames(*hashes)
     means, seen = [], []
     both = set(n for n in differ if n < min(map(len, hashes)))
@@ -51,11 +52,11 @@ def visual(reference, other, _):
             "pixels_seen_to_differ": float(np.mean(seen)) if seen else 0.0}
 
 
-OF = {"haptic": haptic, "audio": audio, "visual": visual, "thermal": thermal}
+COMPARISONS = {"haptic": haptic, "audio": audio, "visual": visual, "thermal": thermal}
 
 
 def changed(sense, reference, other, first_ns=None):
-    return {**compare.events(presented(reference, sense), presented(other, sense)), **OF[sense](reference, other, first_ns)}
+    return {**compare.events(presented(reference, sense), presented(other, sense)), **COMPARISONS[sense](reference, other, first_ns)}
 
 
 def same_bytes(sense, one, other):

@@ -5,6 +5,7 @@ import numpy as np
 
 from tactus.log import sound_onsets
 from tactus.rerender import compare, read
+from tactus.tables import read_rows
 
 
 def row(sense, what, values, unit, note=""):
@@ -14,15 +15,15 @@ def row(sense, what, values, unit, note=""):
 
 
 def of_run(run, sense):
-    rows = [r for r in read.rows(os.path.join(run, "presented.csv")) if r["modality"] == sense]
+    rows = [r for r in read_rows(os.path.join(run, "presented.csv")) if r["modality"] == sense]
     return compare.times_of(rows)
 
 
 def presented(run, folder, sense):
     """Difference of the presentation times that the nodes report."""
-    live, again = of_run(run, sense), compare.times_of(read.rows(os.path.join(folder, f"presented_{sense}.csv")))
+    live, again = of_run(run, sense), compare.times_of(read_rows(os.path.join(folder, f"presented_{sense}.csv")))
     shift = compare.shifts_ms(live, again)
-    return row(sense, "presented, as the node says", shift, "ms", f"{len(live.keys() - again.keys())} only live, {len(again.keys() - live.keys())} only again")
+    return row(sense, "presented, as the node reports", shift, "ms", f"{len(live.keys() - again.keys())} only live, {len(again.keys() - live.keys())} only again")
 
 
 def haptic(run, folder, _):
@@ -38,10 +39,10 @@ def haptic(run, folder, _):
 
 def audio(run, folder, first_ns):
     """Onsets in the samples of both WAVs: the live one by the clock of its sound card, the other from its first sample."""
-    clock = sound_onsets.clock_of(read.rows(os.path.join(run, "media_clock.csv")), "audio.wav")
+    clock = sound_onsets.clock_of(read_rows(os.path.join(run, "media_clock.csv")), "audio.wav")
     live, again = read.Sound(os.path.join(run, "audio.wav"), clock=clock), read.Sound(os.path.join(folder, "audio.wav"), first_ns)
     heard_live = live.onsets_ns(of_run(run, "audio"))
-    heard_again = again.onsets_ns(compare.times_of(read.rows(os.path.join(folder, "presented_audio.csv"))))
+    heard_again = again.onsets_ns(compare.times_of(read_rows(os.path.join(folder, "presented_audio.csv"))))
     return [row("audio", "onsets in the samples", compare.shifts_ms(heard_live, heard_again), "ms")]
 
 
@@ -52,13 +53,13 @@ def thermal(run, folder, _):
     return [row("thermal", "skin, at the same instant", skin_live[inside] - np.interp(at_live[inside], at, skin), "K")]
 
 
-MORE = {"haptic": haptic, "audio": audio, "thermal": thermal}
-NEEDS = {"haptic": ["haptic.csv"], "audio": ["audio.wav", "media_clock.csv"], "thermal": ["thermal.csv"], "visual": []}
+SIGNAL_COMPARISONS = {"haptic": haptic, "audio": audio, "thermal": thermal}
+REQUIRED_FILES = {"haptic": ["haptic.csv"], "audio": ["audio.wav", "media_clock.csv"], "thermal": ["thermal.csv"], "visual": []}
 
 
 def against_live(sense, run, folder, first_ns):
     """Rows of the comparison; none when the run has no results of this modality."""
-    if any(not os.path.isfile(os.path.join(run, name)) for name in ["presented.csv", *NEEDS[sense]]):
+    if any(not os.path.isfile(os.path.join(run, name)) for name in ["presented.csv", *REQUIRED_FILES[sense]]):
         return []
-    more = MORE[sense](run, folder, first_ns) if sense in MORE else []
+    more = SIGNAL_COMPARISONS[sense](run, folder, first_ns) if sense in SIGNAL_COMPARISONS else []
     return [*more, presented(run, folder, sense)]

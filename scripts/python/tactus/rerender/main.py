@@ -39,7 +39,7 @@ from tactus.refusal import Refusal
 from tactus.rerender import changed, live, render
 
 REFERENCE = "reference"
-MOST_APART_MS = 1.0  # maximum shift of onsets, live and rerendered
+MAX_ONSET_SHIFT_MS = 1.0  # maximum shift of onsets, live and rerendered
 
 
 def arguments(words):
@@ -68,7 +68,7 @@ def arguments(words):
             refuse(f'--set {setting}: is not SENSE:NAME=VALUE with one of {", ".join(render.SENSES)}')
         options.settings.setdefault(sense, []).append(rest)
     options.only = [s for s in render.SENSES if s in (options.only or render.SENSES)]
-    options.profiles = named(options.degrade, refuse)
+    options.profiles = profile_names(options.degrade, refuse)
     options.programs = str(BIN)
     for sense in options.only:
         if not os.access(os.path.join(options.programs, render.SENSES[sense][0]), os.X_OK):
@@ -76,7 +76,7 @@ def arguments(words):
     return options
 
 
-def named(files, refuse):
+def profile_names(files, refuse):
     """{folder name: file} of the profiles; files of the same name get numbers."""
     profiles = {}
     for file in files:
@@ -93,7 +93,7 @@ class Renderings:
 
     def __init__(self, options, folders):
         self.options, self.folders = options, folders
-        self.said, self.failed = {}, {}
+        self.output, self.failed = {}, {}
         self.terminal = sys.stderr.isatty()
 
     def run(self):
@@ -104,16 +104,16 @@ class Renderings:
             words = render.command(self.options.programs, sense, self.options.log, folder, self.folders[name], self.options.tool,
                                    self.options.settings)
             head = f"rerender: {number} of {len(todo)}: {name}, {sense}"
-            self.tell(head)
+            self.show_progress(head)
             try:
-                self.said[name, sense] = render.render(words, lambda share, head=head: self.tell(f"{head}, {share} %", True))
+                self.output[name, sense] = render.render(words, lambda share, head=head: self.show_progress(f"{head}, {share} %", True))
             except render.Refused as e:
                 self.failed[name, sense] = str(e)
                 print(f"\n{head}: {e}" if self.terminal else f"{head}: {e}", file=sys.stderr)
         if self.terminal:
             print(file=sys.stderr)
 
-    def tell(self, text, passing=False):
+    def show_progress(self, text, passing=False):
         """Prints a progress line; on a terminal it overwrites the last one, elsewhere passing lines are skipped."""
         if self.terminal:
             print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
@@ -121,21 +121,21 @@ class Renderings:
             print(text, file=sys.stderr, flush=True)
 
     def facts(self, name, sense):
-        return render.facts(self.said[name, sense])
+        return render.facts(self.output[name, sense])
 
     def done(self, name, sense):
-        return (name, sense) in self.said
+        return (name, sense) in self.output
 
     def first_ns(self, *names):
         return tuple(self.facts(name, "audio")["first_sample_ns"] for name in names)
 
 
-def compared(renderings, options):
+def compare_all(renderings, options):
     """Yields a row for each modality and profile."""
     for sense in options.only:
         for name in options.profiles:
             if renderings.done(REFERENCE, sense) and renderings.done(name, sense):
-                renderings.tell(f"rerender: compares {name}, {sense}", True)
+                renderings.show_progress(f"rerender: compares {name}, {sense}", True)
                 folders = [os.path.join(options.out, n) for n in (REFERENCE, name)]
                 first = renderings.first_ns(REFERENCE, name) if sense == "audio" else None
                 yield {"sense": sense, "profile": name, **changed.changed(sense, *folders, first), **renderings.facts(name, sense)}
@@ -161,7 +161,7 @@ COLUMNS = {
     "thermal": [("skin RMS K", lambda r: number(r["skin_rms_K"], 3)), ("peak K", lambda r: number(r["skin_peak_K"])),
                 ("command RMS K", lambda r: number(r["command_rms_K"], 3)), ("peak K", lambda r: number(r["command_peak_K"]))],
 }
-OF_ALL = [("presented", lambda r: str(r["presented"])), ("dropped", lambda r: str(r["dropped"])), ("added", lambda r: str(r["added"])),
+COMMON_COLUMNS = [("presented", lambda r: str(r["presented"])), ("dropped", lambda r: str(r["dropped"])), ("added", lambda r: str(r["added"])),
           ("later p50", lambda r: number(r["shift_p50_ms"])), ("p99 ms", lambda r: number(r["shift_p99_ms"]))]
 
 
@@ -175,7 +175,7 @@ def show(head, lines):
 def print_changes(rows):
     for sense in render.SENSES:
         mine = [r for r in rows if r["sense"] == sense]
-        columns = OF_ALL + COLUMNS[sense]
+        columns = COMMON_COLUMNS + COLUMNS[sense]
         if mine:
             print()
             show([sense, *(title for title, _ in columns)], [[r["profile"], *(cell(r) for _, cell in columns)] for r in mine])
@@ -192,7 +192,7 @@ def print_renderings(renderings, options):
     show(["rendered", "in s", "times as fast as time"], lines)
 
 
-def twice(renderings, options):
+def compare_twice(renderings, options):
     rows = []
     for sense in options.only:
         if renderings.done(REFERENCE, sense) and renderings.done("again", sense):
@@ -239,20 +239,20 @@ def rerender(words):
     renderings = Renderings(options, folders)
     renderings.run()
     result = {"log": os.path.abspath(options.log), "out": os.path.abspath(options.out), "profiles": options.profiles}
-    result["changed"] = list(compared(renderings, options))
+    result["changed"] = list(compare_all(renderings, options))
     if renderings.terminal:
         print("\r\033[K", end="", file=sys.stderr)
     print_renderings(renderings, options)
     print_changes(result["changed"])
     result["not_rendered"] = [{"profile": n, "sense": s, "why": why} for (n, s), why in renderings.failed.items()]
     if options.twice:
-        result["twice"] = twice(renderings, options)
+        result["twice"] = compare_twice(renderings, options)
     if options.live:
         result["live"] = against_live(renderings, options)
     print(f"\nrerender: results in {options.out}, after {time.monotonic() - begin:.0f} s")
     if options.json:
         with open(options.json, "w", encoding="utf-8") as file:
             json.dump(result, file, indent=2)
-    late = [r for r in result.get("live", []) if r["what"].startswith("onsets") and r["n"] and r["max"] > MOST_APART_MS]
+    late = [r for r in result.get("live", []) if r["what"].startswith("onsets") and r["n"] and r["max"] > MAX_ONSET_SHIFT_MS]
     return 1 if renderings.failed or late or any(r["differ"] for r in result.get("twice", [])) else 0
 

@@ -1,17 +1,12 @@
 """Reads the files of a rendering or of a run as arrays."""
-import csv
 import subprocess
 
 import numpy as np
 
 from tactus.log import sound_onsets
+from tactus.tables import read_rows
 
 STRIDE = 4  # design: only every fourth pixel of every fourth row is compared
-
-
-def rows(path):
-    with open(path, encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 def nanoseconds(text):
@@ -23,7 +18,7 @@ def nanoseconds(text):
 def forces(path, tool=None):
     """{(host ns, seq): force, N} of one tool; None: the first in the file."""
     found = {}
-    for row in rows(path):
+    for row in read_rows(path):
         tool = row["tool"] if tool is None else tool
         if row["tool"] == tool and row["host_s"]:
             found[(nanoseconds(row["host_s"]), row["seq"])] = [float(row[f"force_{axis}_N"]) for axis in "xyz"]
@@ -32,15 +27,14 @@ def forces(path, tool=None):
 
 def tool_of(path):
     """Number of the tool of a table, as text; None for an empty one."""
-    with open(path, encoding="utf-8") as file:
-        return next((row["tool"] for row in csv.DictReader(file)), None)
+    return next((row["tool"] for row in read_rows(path)), None)
 
 
 def temperatures(path, tool=None):
     """(host ns, skin, command) of one tool, each an array."""
-    told = [row for row in rows(path) if row["host_s"] and (tool is None or row["tool"] == tool)]
-    column = lambda name: np.array([float(row[name]) for row in told])
-    return np.array([nanoseconds(row["host_s"]) for row in told], dtype=float), column("skin_degC"), column("commanded_degC")
+    rows_of_tool = [row for row in read_rows(path) if row["host_s"] and (tool is None or row["tool"] == tool)]
+    column = lambda name: np.array([float(row[name]) for row in rows_of_tool])
+    return np.array([nanoseconds(row["host_s"]) for row in rows_of_tool], dtype=float), column("skin_degC"), column("commanded_degC")
 
 
 def pictures(path, wanted):
@@ -77,7 +71,7 @@ class Sound:
         found = sound_onsets.onset(self.samples, self.at(presented_ns), self.rate)
         return None if found is None else self.host_ns(found)
 
-    def lone(self, times):
+    def isolated(self, times):
         """Keys of {key: ns} without another event nearby."""
         before, after = sound_onsets.ALONE_BEFORE_S * 1e9, sound_onsets.ALONE_AFTER_S * 1e9
         order = sorted(times, key=times.get)
@@ -87,5 +81,5 @@ class Sound:
 
     def onsets_ns(self, times):
         """{key: ns} of the lone events with a clear onset."""
-        found = ((key, self.onset_ns(times[key])) for key in self.lone(times))
+        found = ((key, self.onset_ns(times[key])) for key in self.isolated(times))
         return {key: at for key, at in found if at is not None}

@@ -10,7 +10,7 @@ SENSES = {
     "visual": ("visual_node", "--video", "video.mp4"),
     "thermal": ("thermal_node", "--trace", "thermal.csv"),
 }
-OF_A_TOOL = ("haptic", "thermal")
+PER_TOOL = ("haptic", "thermal")
 
 
 class Refused(Exception):
@@ -26,42 +26,42 @@ def command(programs, sense, log, folder, profile, tool, settings):
         words += ["--frames", os.path.join(folder, "frames.csv")]
     if profile:
         words += ["--degrade", profile]
-    if tool and sense in OF_A_TOOL:
+    if tool and sense in PER_TOOL:
         words += ["--tool", tool]
     for setting in settings.get(sense, []):
         words += ["--set", setting]
     return words
 
 
-def render(words, tell):
-    """Runs a node; returns its lines of output. Calls tell(share of the log in %). Raises Refused."""
-    said = []
+def render(words, report_progress):
+    """Runs a node; returns its lines of output. Calls report_progress(share of the log in %). Raises Refused."""
+    output = []
     with subprocess.Popen(words, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, errors="replace") as node:
         try:
             for line in node.stderr:
                 share = re.search(r": (\d+) % of the log$", line.rstrip())
                 if share:
-                    tell(int(share.group(1)))
+                    report_progress(int(share.group(1)))
                 else:
-                    said.append(line.rstrip())
+                    output.append(line.rstrip())
         except BaseException:
             node.terminate()
             raise
     if node.returncode != 0:
-        raise Refused(said[-1] if said else f"{words[0]} ended with status {node.returncode} without a message")
-    return said
+        raise Refused(output[-1] if output else f"{words[0]} ended with status {node.returncode} without a message")
+    return output
 
 
-def figure(said, pattern):
+def figure(output, pattern):
     """The number in the last line that matches, or None."""
-    for line in reversed(said):
+    for line in reversed(output):
         found = re.search(pattern, line)
         if found:
             return float(found.group(1))
     return None
 
 
-def facts(said):
+def facts(output):
     """Duration and speed of a rendering, and the output time of the first sound sample, from the output of the node."""
-    return {"took_s": figure(said, r" in ([\d.e+-]+) s \("), "times_as_fast_as_time": figure(said, r"\(([\d.e+-]+) times as fast"),
-            "first_sample_ns": next((int(m.group(1)) for m in (re.search(r"first sample was out at (\d+) ns", line) for line in said) if m), None)}
+    return {"took_s": figure(output, r" in ([\d.e+-]+) s \("), "times_as_fast_as_time": figure(output, r"\(([\d.e+-]+) times as fast"),
+            "first_sample_ns": next((int(m.group(1)) for m in (re.search(r"first sample was out at (\d+) ns", line) for line in output) if m), None)}

@@ -130,12 +130,12 @@ def main(words):
         options = parsed(words)
         lines, figures = checked(study_file.read(options.study), options)
         for line in lines:
-            terminal.tell(line)
+            terminal.report(line)
         if options.json:
             pathlib.Path(options.json).write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
         return 0
     except Refusal as refusal:
-        terminal.complain(f"study: {refusal}")
+        terminal.report_error(f"study: {refusal}")
     except (OSError, subprocess.TimeoutExpired) as error:
-        terminal.complain(f"study: {sentence_of(error) if isinstance(error, OSError) else 'sync_node did not end in time; run scripts/build again'}")
+        terminal.report_error(f"study: {sentence_of(error) if isinstance(error, OSError) else 'sync_node did not end in time; run scripts/build again'}")
     return 1

@@ -1,5 +1,5 @@
 """Command line of scripts/run for the live cluster of a study."""
-from tactus.study import eye
+from tactus.study import flash_detector
 
 
 def sees(study, options):
@@ -19,7 +19,7 @@ def cluster_words(study, options):
         if not options.window:  # the page shows the questions itself
             words += ["--set", "visual_node.questions=false"]
     if sees(study, options):
-        for setting in eye.SETTINGS:
+        for setting in flash_detector.SETTINGS:
             words += ["--set", f"visual_node.{setting}"]
     for setting in options.set:
         words += ["--set", setting]

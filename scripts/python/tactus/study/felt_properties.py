@@ -1,7 +1,8 @@
 """Felt properties and their published just noticeable differences (JND), from just_noticeable.csv. Every value has a source."""
-import csv
 import dataclasses
 import pathlib
+
+from tactus.tables import read_rows
 
 JUST_NOTICEABLE = pathlib.Path(__file__).with_name("just_noticeable.csv")
 
@@ -21,9 +22,8 @@ class JustNoticeable:
 def just_noticeable():
     """{property: [JustNoticeable]}; L_appear is compared with the first of each."""
     found = {}
-    with open(JUST_NOTICEABLE, newline="", encoding="utf-8") as file:
-        for r in csv.DictReader(file):
-            found.setdefault(r["property"], []).append(JustNoticeable(float(r["jnd"]), r["unit"], r["situation"], r["source"]))
+    for r in read_rows(JUST_NOTICEABLE):
+        found.setdefault(r["property"], []).append(JustNoticeable(float(r["jnd"]), r["unit"], r["situation"], r["source"]))
     return found
 
 

@@ -3,7 +3,7 @@ import dataclasses
 
 from tactus.refusal import Refusal
 from tactus.study import stimuli
-from tactus.study.lead import Lead
+from tactus.study.trial_runner_client import TrialRunnerClient
 from tactus.study.live_cluster import LiveCluster
 
 START_TIMEOUT_S = 60
@@ -25,37 +25,37 @@ class Played:
         return f"{'won' if self.row['success'] else 'not won'} after {self.row['completion_time_s']:.1f} s" if self.row else ""
 
 
-def outcome(lead, limit_s):
+def outcome(runner, limit_s):
     """Waits for the end of the game; returns a Played."""
-    began_ns = lead.sim_ns
+    began_ns = runner.sim_ns
     wrong = [0]
 
     def over():
-        if lead.game is not None:
-            wrong[0] = max(wrong[0], lead.game["wrong"])
-        return lead.game is not None and lead.game["won"] or lead.sim_ns - began_ns >= limit_s * 1e9
-    if not lead.wait_for(over, 2 * limit_s + 10):
+        if runner.game is not None:
+            wrong[0] = max(wrong[0], runner.game["wrong"])
+        return runner.game is not None and runner.game["won"] or runner.sim_ns - began_ns >= limit_s * 1e9
+    if not runner.wait_for(over, 2 * limit_s + 10):
         return Played(missed="the simulation stopped")
-    if lead.game is None:
+    if runner.game is None:
         return Played(missed="the scene reports no game")
-    won = lead.game["won"]
-    seconds = min(limit_s, (lead.game["won_sim_ns"] - began_ns) * 1e-9) if won else limit_s
+    won = runner.game["won"]
+    seconds = min(limit_s, (runner.game["won_sim_ns"] - began_ns) * 1e-9) if won else limit_s
     return Played(row={"success": int(won), "completion_time_s": round(max(0.0, seconds), 4), "errors": wrong[0]})
 
 
 def play(session, trial, attempt):
     """A game with a person, in the running simulation, after a reset."""
-    lead, study = session.lead, session.study
-    missed = stimuli.ready(lead, study.profile(trial.condition, trial.level))
+    runner, study = session.run_session, session.study
+    missed = stimuli.ready(runner, study.profile(trial.condition, trial.level))
     if missed:
         return Played(missed=missed)
     session.read("Ready for the next game?")
-    lead.reply = lead.game = None
-    lead.order(command={"kind": "reset"})
-    if not lead.wait_for(lambda: lead.reply is not None, 5) or not lead.reply["done"]:
+    runner.reply = runner.game = None
+    runner.send(command={"kind": "reset"})
+    if not runner.wait_for(lambda: runner.reply is not None, 5) or not runner.reply["done"]:
         return Played(missed="the simulation was not reset")
-    stimuli.wait(lead, 0.6)  # until health and simulation time arrive again
-    return outcome(lead, study.stimulus.limit_s)
+    stimuli.wait(runner, 0.6)  # until health and simulation time arrive again
+    return outcome(runner, study.stimulus.limit_s)
 
 
 def play_simulated(session, trial, attempt):
@@ -78,15 +78,15 @@ def play_in_new_cluster(out, scene, profile, seed, limit_s, settings):
     settings: of the cluster, NODE.NAME=VALUE each. Raises Refusal."""
     words = [str(scene), "--player", "--seed", str(seed), "--degrade", str(profile)]
     cluster = LiveCluster(out, words + [w for s in settings for w in ("--set", s)])
-    lead = None
+    runner = None
     try:
         cluster.wait_until_it_runs()
-        lead = Lead(out)
-        if not lead.wait_for(lambda: lead.sim_ns is not None and lead.sim_ns > 0, START_TIMEOUT_S):
+        runner = TrialRunnerClient(out)
+        if not runner.wait_for(lambda: runner.sim_ns is not None and runner.sim_ns > 0, START_TIMEOUT_S):
             raise Refusal(f"the simulation has not started after {START_TIMEOUT_S} s; see {cluster.log}")
-        lead.sim_ns = 0  # the player starts with the simulation
-        return outcome(lead, limit_s)
+        runner.sim_ns = 0  # the player starts with the simulation
+        return outcome(runner, limit_s)
     finally:
-        if lead is not None:
-            lead.end()
+        if runner is not None:
+            runner.end()
         cluster.end()

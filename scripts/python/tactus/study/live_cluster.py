@@ -29,7 +29,7 @@ class LiveCluster:
                                             stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT, start_new_session=True,
                                             preexec_fn=die_with_parent)
 
-    def last_words(self):
+    def last_output_line(self):
         lines = self.log.read_text(encoding="utf-8", errors="replace").strip().splitlines()
         return lines[-1] if lines else "no message"
 
@@ -45,7 +45,7 @@ class LiveCluster:
     def check(self):
         """Raises Refusal if the cluster has ended."""
         if self.process.poll() is not None:
-            raise Refusal(f"run: the cluster has ended ({self.last_words()}); see {self.log}")
+            raise Refusal(f"run: the cluster has ended ({self.last_output_line()}); see {self.log}")
 
     def page(self):
         """Address of the live page, which the run prints some time after its start; None if the page does not start. Raises Refusal."""

@@ -118,7 +118,7 @@ class Plan:
         answers."""
         if self.study.response not in study_file.YES_OR_NO:
             return {}
-        return {c.id: p.estimate() or (None if any(f.operator in quantities.FALLING for f in c.factors) else self.fitted(p)) for c, p in zip(self.study.conditions, self.procedures)}
+        return {c.id: p.estimate() or (None if any(f.operator in quantities.LOWER_IS_WORSE for f in c.factors) else self.fitted(p)) for c, p in zip(self.study.conditions, self.procedures)}
 
     def fitted(self, procedure):
         name, fixed = FUNCTIONS[self.study.response]

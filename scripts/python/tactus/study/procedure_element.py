@@ -35,8 +35,8 @@ def read(reading, e, yes_or_no, response, found):
         reading.refuse(e, f"{kind} needs yes/no answers, but answers to {response} are not; use kind=\"constant\"")
     if kind != "constant" and any(c.kind == "pair" for c in found):
         reading.refuse(e, f"{kind} cannot choose the levels of a pair; use kind=\"constant\"")
-    if kind != "constant" and response == "two_interval" and any(c.factors[0].operator in quantities.FALLING for c in found):
-        reading.refuse(e, f"{kind} lowers the level after right answers, but a lower {', '.join(quantities.FALLING)} is a stronger degradation; use kind=\"constant\"")
+    if kind != "constant" and response == "two_interval" and any(c.factors[0].operator in quantities.LOWER_IS_WORSE for c in found):
+        reading.refuse(e, f"{kind} lowers the level after right answers, but a lower {', '.join(quantities.LOWER_IS_WORSE)} is a stronger degradation; use kind=\"constant\"")
     if kind != "quest_plus" and e.find("prior") is not None:
         reading.refuse(e.find("prior"), "only quest_plus takes a <prior>; remove it, or use kind=\"quest_plus\"")
     if response == "two_interval" and e.get("rule") == "1up1down":

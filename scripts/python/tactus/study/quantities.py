@@ -12,7 +12,7 @@ OPERATORS = {
     "quantise": ("N", {"N": 1.0, "mN": 1e-3}, 0, 100), "gain": ("", {"": 1.0}, 0, 10), "lowpass": ("Hz", {"Hz": 1.0}, 0.1, 1000),
     "frame_rate": ("Hz", {"Hz": 1.0}, 2, 240), "resolution": ("", {"": 1.0}, 0.01, 1), "response": ("ms", TIME_MS, 0, 60_000)}
 OUTPUT_OF = {"frame_rate": "visual", "resolution": "visual", "response": "thermal"}  # modality.csv of each node folder
-FALLING = ("rate", "frame_rate", "lowpass", "resolution", "gain")  # a lower level is a stronger degradation, as in analysis/operators.py
+LOWER_IS_WORSE = ("rate", "frame_rate", "lowpass", "resolution", "gain")  # a lower level is a stronger degradation, as in analysis/operators.py
 SMALLEST = {"response": 1.0}  # of levels above 0
 ASYNCHRONY = ("ms", TIME_MS, -5_000, 5_000)
 PAUSE = ("s", {"ms": 1e-3, "s": 1.0}, 0, 3600)

@@ -52,12 +52,12 @@ def main(words):
         study = study_file.read(options.study)
         if options.simulated and study.task != "game" and any(study.observer(c) is None for c in study.conditions):
             raise Refusal(f"{options.study}: has no <observer> for {next(c.id for c in study.conditions if study.observer(c) is None)}; add one, or leave out --simulated")
-        return session.lead(study, options)
+        return session.run_session(study, options)
     except Refusal as refusal:
-        terminal.complain(f"study: {refusal}")
+        terminal.report_error(f"study: {refusal}")
     except OSError as error:
-        terminal.complain(f"study: {sentence_of(error)}")
+        terminal.report_error(f"study: {sentence_of(error)}")
     except KeyboardInterrupt:
-        terminal.complain("study: interrupted; the same command resumes with the next trial")
+        terminal.report_error("study: interrupted; the same command resumes with the next trial")
         return 130
     return 1

@@ -11,19 +11,19 @@ from tactus.refusal import Refusal
 from tactus.study import formats, games, questions, stimuli
 from tactus.study.cluster_words import cluster_words, sees
 from tactus.study.journal import Journal
-from tactus.study.lead import Lead
+from tactus.study.trial_runner_client import TrialRunnerClient
 from tactus.study.live_cluster import LiveCluster
 from tactus.study.plan import Plan
 from tactus.study.simulated import Participant
 from tactus.study.study_file import YES_OR_NO
-from tactus.terminal import tell
+from tactus.terminal import report
 
 TASKS = {"synchrony": "sj", "order": "toj", "two_interval": "2ifc", "rating": "rating", "matching": "matching", "performance": "game"}
 ESTIMATE_EVERY = 10      # trials; a fit takes 0.1 s
 MAX_MISSED_IN_A_ROW = 10  # missed trials in a row; more: the apparatus does not suit the study (design)
 
 
-def folder_of(study, options):
+def session_folder(study, options):
     name = options.participant if options.session == 1 else f"{options.participant}_session{options.session}"
     return pathlib.Path(options.out).absolute() / study.name / name
 
@@ -38,10 +38,10 @@ def resume(plan, answered):
         plan.answered(trial, entry["yes"])
 
 
-def lead(study, options):
+def run_session(study, options):
     """Runs or resumes a session; returns the exit status."""
     signal.signal(signal.SIGTERM, lambda *_: (_ for _ in ()).throw(KeyboardInterrupt()))
-    folder = folder_of(study, options)
+    folder = session_folder(study, options)
     plan = Plan(study, options.participant, options.seed)
     observer = "simulated" if options.simulated else "human"
     with Journal(folder) as journal:
@@ -49,23 +49,23 @@ def lead(study, options):
         with contextlib.suppress(shutil.SameFileError):  # resumed from the copy itself
             shutil.copyfile(study.path, folder / "study.xml")
         if journal.repaired:
-            tell(f"study: {journal.repaired}")
+            report(f"study: {journal.repaired}")
         resume(plan, journal.answered())
         for line in plan.describe():
-            tell(line)
+            report(line)
         if journal.ended:
             formats.export(folder)  # the process may have been killed before its export
-            tell(f"study: this session ended after {plan.done} trials; analyse it: tactus study analyse {folder}")
+            report(f"study: this session ended after {plan.done} trials; analyse it: tactus study analyse {folder}")
             return 0
         if resumed:
-            tell(f"study: resumes after {plan.done} of {plan.expected_trials} trials")
+            report(f"study: resumes after {plan.done} of {plan.expected_trials} trials")
         s = Session(study, options, plan, journal, folder, observer)
         try:
             s.run()
         finally:
             s.end()
             formats.export(folder)
-        tell(s.summary())
+        report(s.summary())
         if options.json:
             pathlib.Path(options.json).write_text(json.dumps(s.figures(), indent=2) + "\n", encoding="utf-8")
     return 0
@@ -74,8 +74,8 @@ def lead(study, options):
 class Session:
     def __init__(self, study, options, plan, journal, folder, observer):
         self.study, self.options, self.plan, self.journal, self.folder, self.observer = study, options, plan, journal, folder, observer
-        self.cluster = self.lead = self.participant = None
-        self.began, self.led = time.monotonic(), 0
+        self.cluster = self.runner = self.participant = None
+        self.began, self.trials_done = time.monotonic(), 0
         self.trials_began = self.began  # set again after the start of the cluster and the instructions
         self.errors_ms, self.missed = [], 0
 
@@ -86,7 +86,7 @@ class Session:
         runs.mkdir(exist_ok=True)
         number = 1 + max((int(p.name[3:]) for p in runs.glob("run[0-9]*") if p.is_dir() and p.name[3:].isdigit()), default=0)
         out = runs / f"run{number}"
-        tell(f"study: starts the cluster, results in {out}")
+        report(f"study: starts the cluster, results in {out}")
         self.cluster = LiveCluster(out, cluster_words(self.study, self.options))
         self.cluster.wait_until_it_runs()
         if self.options.live is not None:
@@ -94,18 +94,18 @@ class Session:
             if page is None and not (self.options.window or self.options.simulated):
                 raise Refusal(f"the live page does not start, so the participant cannot answer; see {out}/logs/live_server.log, or use --window")
             if page is not None:
-                tell(f"study: the participant's page is {page}{'&' if '?' in page else '?'}participant")
-                tell(f"study: the experimenter's page is {page}")
+                report(f"study: the participant's page is {page}{'&' if '?' in page else '?'}participant")
+                report(f"study: the experimenter's page is {page}")
         s = self.study.stimulus
-        self.lead = Lead(out, None if self.options.device else (*s.rest_m, s.above_m), looks=sees(self.study, self.options))
-        if not self.lead.wait_for(lambda: self.lead.senses and self.lead.sim_ns is not None and all(x["state"] == 1 for x in self.lead.senses.values()), 60):
+        self.runner = TrialRunnerClient(out, None if self.options.device else (*s.rest_m, s.above_m), with_pictures=sees(self.study, self.options))
+        if not self.runner.wait_for(lambda: self.runner.senses and self.runner.sim_ns is not None and all(x["state"] == 1 for x in self.runner.senses.values()), 60):
             raise Refusal(f"the senses are not ready after 60 s; see {out}/logs")
         if self.options.simulated:
-            self.participant = Participant(self.study, self.options.participant, self.plan.seed, out, self.lead)
+            self.participant = Participant(self.study, self.options.participant, self.plan.seed, out, self.runner)
 
     def end(self):
-        if self.lead is not None:
-            self.lead.end()
+        if self.runner is not None:
+            self.runner.end()
         if self.cluster is not None:
             self.cluster.end()
 
@@ -114,18 +114,18 @@ class Session:
     def ask(self, question, trial=None):
         """Publishes a question and waits for its answer, without a time limit."""
         progress = f"{self.plan.done} of {self.plan.expected_trials} done"
-        self.lead.answer = self.lead.asked = None
-        self.lead.order(question={**question, "progress": progress, "trial": trial.number if trial else 0, "condition": trial.condition.id[:64] if trial else ""})
-        while not self.lead.wait_for(lambda: self.lead.answer is not None or (self.participant and self.lead.asked is not None), 1):
+        self.runner.answer = self.runner.asked = None
+        self.runner.send(question={**question, "progress": progress, "trial": trial.number if trial else 0, "condition": trial.condition.id[:64] if trial else ""})
+        while not self.runner.wait_for(lambda: self.runner.answer is not None or (self.participant and self.runner.asked is not None), 1):
             self.cluster.check()
-        return self.lead.answer
+        return self.runner.answer
 
     def answered(self, **answer):
         """Publishes the answer of a simulated participant."""
-        self.lead.order(answer=answer)
-        if not self.lead.wait_for(lambda: self.lead.answer is not None, 5):
+        self.runner.send(answer=answer)
+        if not self.runner.wait_for(lambda: self.runner.answer is not None, 5):
             raise Refusal("conductor: did not accept the answer of the simulated participant; see its lines in the log of the run")
-        return self.lead.answer
+        return self.runner.answer
 
     def read(self, text):
         if self.participant is None:
@@ -146,27 +146,27 @@ class Session:
         in_a_row = 0
         self.trials_began = time.monotonic()
         while (trial := self.plan.next()) is not None:
-            if self.options.most is not None and self.led >= self.options.most:
+            if self.options.most is not None and self.trials_done >= self.options.most:
                 return
             if block is not None and trial.block != block:
                 self.pause(trial)
             block = trial.block
             attempt = 1 + sum(e["kind"] == "trial" and e["trial"] == trial.number for e in self.journal.entries)
-            observed = stimulus(self, trial, attempt) if self.study.task == "game" else stimulus(self.lead, self.study, trial, self.plan.draw(f"foreperiod {trial.number} {attempt}"))
+            observed = stimulus(self, trial, attempt) if self.study.task == "game" else stimulus(self.runner, self.study, trial, self.plan.draw(f"foreperiod {trial.number} {attempt}"))
             if self.study.task != "game":
                 self.cluster.check()
             answer = None
             if not observed.missed:
                 answer = self.answer(trial, attempt, observed)
-            self.keep(trial, attempt, observed, answer)
+            self.store(trial, attempt, observed, answer)
             in_a_row = in_a_row + 1 if observed.missed else 0
             if in_a_row >= MAX_MISSED_IN_A_ROW or attempt > self.study.repeats and observed.missed:
                 raise Refusal(f"trial {trial.number} ({trial.condition.id} at {trial.level}) was missed {attempt} times ({observed.missed}); the apparatus does not meet "
                               "the tolerance of this study: see the summary of its run, and resume with the same command")
-            self.led += not observed.missed
+            self.trials_done += not observed.missed
         self.questionnaire(self.study.blocks)
         self.journal.append({"kind": "end"})
-        if self.lead is not None:
+        if self.runner is not None:
             self.read("That was the last one. Thank you!")  # all answers are already on the disk
 
     def answer(self, trial, attempt, observed):
@@ -183,11 +183,11 @@ class Session:
                 return None
         self.ask(question, trial)
         if self.study.response in YES_OR_NO:
-            yes = self.participant.says_yes(trial, attempt, level, observed)
+            yes = self.participant.is_yes(trial, attempt, level, observed)
             return self.answered(choice=questions.choice_of(self.study, trial, yes))
         return self.answered(number=self.study.number[0]) if self.study.number else self.answered(choice=0)
 
-    def keep(self, trial, attempt, observed, answer):
+    def store(self, trial, attempt, observed, answer):
         """Writes the trial to the journal and prints its line."""
         profile = self.study.profile(trial.condition, trial.level)
         presented = 1 + sum(e["kind"] == "trial" for e in self.journal.entries)
@@ -224,21 +224,21 @@ class Session:
 
     def report(self, trial, observed, response):
         done, expected = self.plan.done, self.plan.expected_trials
-        left_s = (time.monotonic() - self.trials_began) / max(1, self.led + 1) * max(0, expected - done)
+        left_s = (time.monotonic() - self.trials_began) / max(1, self.trials_done + 1) * max(0, expected - done)
         words = f"trial {trial.number:4d} of {expected}  {trial.condition.words(trial.level)}"
         if observed.soa_ms is not None:
             words += f": {observed.soa_ms:.1f} +-{observed.uncertainty_ms:.1f} ms"
         words += f"  {observed.missed or response or observed.words()}  {left_s / 60:.0f} min left"
-        if self.lead is not None and self.lead.senses:
-            slow = [f"{n} {s['rate_Hz']:.0f}/{s['nominal_rate_Hz']:.0f} Hz" for n, s in self.lead.senses.items() if s["rate_Hz"] < 0.98 * s["nominal_rate_Hz"]]
+        if self.runner is not None and self.runner.senses:
+            slow = [f"{n} {s['rate_Hz']:.0f}/{s['nominal_rate_Hz']:.0f} Hz" for n, s in self.runner.senses.items() if s["rate_Hz"] < 0.98 * s["nominal_rate_Hz"]]
             words += f"  slow: {', '.join(slow)}" if slow else ""
-        tell(words)
+        report(words)
         if done and done % ESTIMATE_EVERY == 0:
-            if self.lead is not None and self.lead.senses:
-                tell("  rates: " + ", ".join(f"{n} {s['rate_Hz']:.1f} Hz, {s['missed_ticks']} ticks missed" for n, s in sorted(self.lead.senses.items())))
+            if self.runner is not None and self.runner.senses:
+                report("  rates: " + ", ".join(f"{n} {s['rate_Hz']:.1f} Hz, {s['missed_ticks']} ticks missed" for n, s in sorted(self.runner.senses.items())))
             for name, estimate in self.plan.estimates().items():
                 if estimate:
-                    tell(f"  {name}: " + ", ".join(f"{k} {v:.3g}" for k, v in estimate.items() if isinstance(v, float)))
+                    report(f"  {name}: " + ", ".join(f"{k} {v:.3g}" for k, v in estimate.items() if isinstance(v, float)))
 
     def pause(self, trial):
         if any(e["kind"] == "break" and e.get("before") == trial.number for e in self.journal.entries):
@@ -246,17 +246,17 @@ class Session:
         formats.export(self.folder)
         if self.study.questionnaire_at == "block":
             self.questionnaire(trial.block - 1)
-        if self.participant is None and self.lead is not None:
+        if self.participant is None and self.runner is not None:
             since = time.monotonic()
             self.ask({"kind": "read", "text": f"Block {trial.block - 1} of {self.study.blocks} is done. Take a break of {self.study.break_s:.0f} s or longer; continue when you are ready."})
             left_s = self.study.break_s - (time.monotonic() - since)
             if left_s > 0:
-                self.lead.wait_for(lambda: False, left_s)
+                self.runner.wait_for(lambda: False, left_s)
         self.journal.append({"kind": "break", "before": trial.number})
 
     def questionnaire(self, block):
         """Asks the items once, at the end of the session, or at the end of each block; then they are ITEM_blockN in the journal."""
-        if self.lead is None:
+        if self.runner is None:
             return
         known = {e["item"] for e in self.journal.entries if e["kind"] == "questionnaire"}
         for item in self.study.questionnaire:

@@ -2,32 +2,32 @@
 the perceived stimulus. All answers are marked observer=simulated."""
 
 from tactus.psychophysics import observers
-from tactus.study.ear import Ear
-from tactus.study.eye import Eye
-from tactus.study.skin import Skin
+from tactus.study.flash_detector import FlashDetector
+from tactus.study.sound_detector import SoundDetector
+from tactus.study.vibration_detector import VibrationDetector
 
 UNPERCEIVED = {"audio": "the sound of the hit is not in the samples", "visual": "the first frame that shows the hit was not received",
                "haptic": "the vibration of the hit is not in the ticks"}
 
 
 class Participant:
-    def __init__(self, study, name, seed, out, lead):
-        self.study, self.name, self.seed, self.lead = study, name, seed, lead
-        ear, eye, skin = Ear(out, lead), Eye(lead), Skin(lead)
-        self.organs = {"audio": lambda o: ear.onset_ns(o.times_ns["audio"]), "visual": lambda o: eye.onset_ns(int(o.event), o.times_ns["visual"]),
-                       "haptic": lambda o: skin.onset_ns(o.times_ns["haptic"])}
+    def __init__(self, study, name, seed, out, runner):
+        self.study, self.name, self.seed, self.runner = study, name, seed, runner
+        sound, flash, vibration = SoundDetector(out, runner), FlashDetector(runner), VibrationDetector(runner)
+        self.onsets_ns = {"audio": lambda o: sound.onset_ns(o.times_ns["audio"]), "visual": lambda o: flash.onset_ns(int(o.event), o.times_ns["visual"]),
+                       "haptic": lambda o: vibration.onset_ns(o.times_ns["haptic"])}
 
     def perceived_ms(self, observed):
         """(perceived asynchrony in ms, ""), or (None, reason why it was not perceived). Warmth has no onset; its reported time is used."""
         times = {}
         for sense, reported_ns in observed.times_ns.items():
-            times[sense] = self.organs[sense](observed) if sense in self.organs else reported_ns
+            times[sense] = self.onsets_ns[sense](observed) if sense in self.onsets_ns else reported_ns
             if times[sense] is None:
                 return None, UNPERCEIVED[sense]
         a, b = times.values()
         return (b - a) * 1e-6, ""
 
-    def says_yes(self, trial, attempt, level, observed):
+    def is_yes(self, trial, attempt, level, observed):
         """Whether the answer is yes: together (synchrony), the first sense first (order), or the degraded interval found (two_interval). An observer of
         stiffness judges the two felt stiffnesses and ignores the level."""
         observer = self.study.observer(trial.condition)

@@ -30,39 +30,39 @@ class Observed:
         return ""
 
 
-def wait(lead, seconds):
-    lead.wait_for(lambda: False, seconds)
+def wait(runner, seconds):
+    runner.wait_for(lambda: False, seconds)
 
 
-def ready(lead, profile):
+def ready(runner, profile):
     """"" if the profile is in force in every sense, else the reason."""
-    if not lead.put_in_force(profile, IN_FORCE_TIMEOUT_S):
-        return f"the profile was not in force in {', '.join(lead.missing()) or 'any sense'} after {IN_FORCE_TIMEOUT_S:g} s"
-    wait(lead, SETTLES_S)
+    if not runner.apply_profile(profile, IN_FORCE_TIMEOUT_S):
+        return f"the profile was not in force in {', '.join(runner.missing()) or 'any sense'} after {IN_FORCE_TIMEOUT_S:g} s"
+    wait(runner, SETTLES_S)
     return ""
 
 
-def first_hit(lead, known):
+def first_hit(runner, known):
     """The first hit that is not among the known events; None: none yet."""
-    return next((e for i, e in lead.events.items() if i not in known and e["kind"] == "hit"), None)
+    return next((e for i, e in runner.events.items() if i not in known and e["kind"] == "hit"), None)
 
 
-def tap(lead, study, trial, seed):
+def tap(runner, study, trial, seed):
     """One tap under the trial's profile; returns an Observed."""
     senses = trial.condition.senses
-    missed = ready(lead, study.profile(trial.condition, trial.level))
+    missed = ready(runner, study.profile(trial.condition, trial.level))
     if missed:
         return Observed(missed=missed)
-    wait(lead, random.Random(seed).uniform(*FOREPERIOD_S))
-    known = set(lead.events)
+    wait(runner, random.Random(seed).uniform(*FOREPERIOD_S))
+    known = set(runner.events)
     if study.stimulus.by == "apparatus":
-        lead.order(tap={"depth_m": study.stimulus.depth_m})
+        runner.send(tap={"depth_m": study.stimulus.depth_m})
     longest_s = study.base_delay_ms / 1e3 + abs(trial.level or 0) / 1e3 + REPORT_TIMEOUT_S
-    if not lead.wait_for(lambda: first_hit(lead, known) is not None, longest_s if study.stimulus.by == "apparatus" else 3600):
+    if not runner.wait_for(lambda: first_hit(runner, known) is not None, longest_s if study.stimulus.by == "apparatus" else 3600):
         return Observed(missed="the tap caused no hit")
-    event = first_hit(lead, known)["event"]
-    report = lambda sense: lead.presented.get((event, sense, PART.get(sense, "whole")))
-    lead.wait_for(lambda: all(report(s) for s in senses), longest_s)
+    event = first_hit(runner, known)["event"]
+    report = lambda sense: runner.presented.get((event, sense, PART.get(sense, "whole")))
+    runner.wait_for(lambda: all(report(s) for s in senses), longest_s)
     observed = Observed(event=event)
     for sense in senses:
         r = report(sense)
@@ -75,7 +75,7 @@ def tap(lead, study, trial, seed):
     error = observed.soa_ms - trial.level
     if abs(error) > study.tolerance_ms:
         observed.missed = f"the asynchrony was {observed.soa_ms:.1f} ms instead of {trial.level:g} ms, more than {study.tolerance_ms:g} ms off"
-    wait(lead, 0.3)  # until the hand is back and the ringing has decayed
+    wait(runner, 0.3)  # until the hand is back and the ringing has decayed
     return observed
 
 
@@ -89,25 +89,25 @@ def felt_stiffness(samples):
     return float(np.polyfit(depth, data[:, 2], 1)[0])
 
 
-def press(lead, study, trial, seed):
+def press(runner, study, trial, seed):
     """Two presses: one under the trial's profile, the other under the base alone. Returns an Observed."""
     stiffnesses, strongest = [], 0.0
     for interval in (0, 1):
         level = trial.level if interval == trial.degraded_interval else None
-        missed = ready(lead, study.profile(trial.condition, level))
+        missed = ready(runner, study.profile(trial.condition, level))
         if missed:
             return Observed(missed=missed)
-        wait(lead, random.Random(seed + interval).uniform(*FOREPERIOD_S))
-        lead.felt.clear()
-        lead.moved = False
+        wait(runner, random.Random(seed + interval).uniform(*FOREPERIOD_S))
+        runner.felt.clear()
+        runner.moved = False
         s = study.stimulus
-        lead.order(press={"depth_m": s.depth_m, "period_s": s.period_s, "times": s.times})
-        if not lead.wait_for(lambda: lead.moved, s.period_s * s.times + 5):
+        runner.send(press={"depth_m": s.depth_m, "period_s": s.period_s, "times": s.times})
+        if not runner.wait_for(lambda: runner.moved, s.period_s * s.times + 5):
             return Observed(missed="the hand did not return from the press")
-        stiffness = felt_stiffness(lead.felt)
+        stiffness = felt_stiffness(runner.felt)
         if stiffness is None:
             return Observed(missed=f"nothing was felt in interval {interval + 1}")
         stiffnesses.append(stiffness)
-        strongest = max(strongest, max(f for _, _, f in lead.felt))
+        strongest = max(strongest, max(f for _, _, f in runner.felt))
     return Observed(stiffnesses_N_m=tuple(stiffnesses), reached_N=strongest, row={"stiffness_first_n_m": round(stiffnesses[0], 4),
                     "stiffness_second_n_m": round(stiffnesses[1], 4), "degraded_interval": trial.degraded_interval + 1})

@@ -344,8 +344,8 @@ class Reading:
                 self.refuse(e, f"{name} needs the parameters {', '.join(function.parameters)}, each once")
             if name in observers.PERCEPTS:
                 self.percept(e, name, params, kind)
-            elif kind == "two_interval" and any(f.operator in quantities.FALLING for c in found if of in ("", c.id) for f in c.factors):
-                self.refuse(e, f"{name} rises with the level, but a lower {', '.join(quantities.FALLING)} is a stronger degradation; remove its <observer>")
+            elif kind == "two_interval" and any(f.operator in quantities.LOWER_IS_WORSE for c in found if of in ("", c.id) for f in c.factors):
+                self.refuse(e, f"{name} rises with the level, but a lower {', '.join(quantities.LOWER_IS_WORSE)} is a stronger degradation; remove its <observer>")
             elif function.dimensions == 1 and kind in YES_OR_NO:
                 with np.errstate(all="ignore"):
                     p = [function.p(c.levels, **params) for c in found if c.levels and of in ("", c.id)]

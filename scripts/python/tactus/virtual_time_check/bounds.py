@@ -15,7 +15,7 @@ def verdict(low, high, bound):
 
 
 @dataclasses.dataclass(frozen=True)
-class Held:
+class BoundCheck:
     """A figure of both. low, high: interval of the difference live - virtual; both equal the difference for a figure without an interval."""
     figure: str
     unit: str
@@ -30,23 +30,23 @@ class Held:
         return self.live - self.virtual
 
     @property
-    def says(self):
+    def verdict(self):
         return verdict(self.low, self.high, self.bound)
 
     def row(self):
         """{member: value} for JSON, which has no NaN: null."""
-        found = {**dataclasses.asdict(self), "difference": self.difference, "says": self.says}
+        found = {**dataclasses.asdict(self), "difference": self.difference, "says": self.verdict}
         return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in found.items()}
 
 
 def single(figure, unit, live, virtual, bound):
     """A figure without an interval. NaN: one of both has no value; the verdict is OPEN."""
-    return Held(figure, unit, live, virtual, live - virtual, live - virtual, bound)
+    return BoundCheck(figure, unit, live, virtual, live - virtual, live - virtual, bound)
 
 
 def of_means(figure, unit, live, virtual, bound, interval):
     """The means of both over runs or games. interval: (low, high) of their difference."""
-    return Held(figure, unit, mean(live), mean(virtual), *(float(x) for x in interval), bound)
+    return BoundCheck(figure, unit, mean(live), mean(virtual), *(float(x) for x in interval), bound)
 
 
 def mean(values):

@@ -95,7 +95,7 @@ def stratified(cells):
 
 
 def together(cells):
-    """[bounds.Held] of all games: the mean differences of success and of time, which are more precise than those of one condition."""
+    """[bounds.BoundCheck] of all games: the mean differences of success and of time, which are more precise than those of one condition."""
     cells = [c for c in cells if c.n]
     of_success = stratified(cells) if cells else (math.nan, math.nan)
     means = lambda name: [np.mean(getattr(c, name)) for c in cells]
@@ -114,14 +114,14 @@ class Order:
     reached: float
 
     @property
-    def says(self):
+    def verdict(self):
         if math.isnan(self.tau) or self.tau < LEAST_TAU and not self.reached >= LEAST_TAU:
             return bounds.OPEN
         return bounds.HOLDS if self.tau >= LEAST_TAU else bounds.MISSED
 
     def row(self):
         figures = {k: None if isinstance(v, float) and math.isnan(v) else v for k, v in dataclasses.asdict(self).items()}
-        return {**figures, "least_tau": LEAST_TAU, "says": self.says}
+        return {**figures, "least_tau": LEAST_TAU, "says": self.verdict}
 
 
 def correlation(of, a, b):

@@ -104,7 +104,7 @@ def welch(a, b, level=LEVEL):
 
 
 def rows(live, virtual):
-    """[bounds.Held] of two Runs; tests/measure/measure_agreement gives the reason for each bound."""
+    """[bounds.BoundCheck] of two Runs; tests/measure/measure_agreement gives the reason for each bound."""
     period = periods_ms(virtual.rates)
     tick = {sense: period.get(node, math.nan) for sense, node in NODE_OF.items()}
     frame = tick["visual"] if not math.isnan(tick["visual"]) else 0.0

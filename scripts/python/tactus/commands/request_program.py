@@ -9,7 +9,7 @@ def main(program, usage, words, may_be_none=False):
     """words: the arguments; "--in OUT_DIR", at any position, selects the cluster; default: the cluster that was started last.
     may_be_none: the program accepts a call without other arguments. Returns an exit status, or does not return."""
     if {"--help", "-h"} & set(words):
-        return prepare.show(usage)
+        return prepare.print_usage(usage)
     folder, rest, words = [], [], list(words)
     while words:
         word = words.pop(0)
@@ -22,5 +22,5 @@ def main(program, usage, words, may_be_none=False):
             return prepare.refuse(program, f"the folder {words[0]} does not exist; name the folder that a run writes to")
         folder = [os.path.realpath(words.pop(0))]
     if not rest and not may_be_none:
-        return prepare.show(usage, asked=False)
-    prepare.become([*tactus_command("attach"), *folder, program, *rest])
+        return prepare.print_usage(usage, requested=False)
+    prepare.replace_process([*tactus_command("attach"), *folder, program, *rest])

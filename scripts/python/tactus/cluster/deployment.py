@@ -71,7 +71,7 @@ def stripped(path):
         return pathlib.Path(small.name).read_bytes() if done.returncode == 0 else whole
 
 
-def of_run(cluster):
+def run_files(cluster):
     """(tar of the files of this run, {local path: path on the host}): a scene with its folder, the profile, a room, relay rules. Raises Refusal."""
     into, there = io.BytesIO(), {}
     with tarfile.open(fileobj=into, mode="w:gz", compresslevel=1) as tar:

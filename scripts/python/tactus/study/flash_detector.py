@@ -8,7 +8,7 @@ from PIL import Image
 
 from tactus.log import marker
 
-PICTURES_TIMEOUT_S = 1.5  # as for the ear
+PICTURES_TIMEOUT_S = 1.5  # as for sound
 NEAR_NS = 100_000_000   # around the expected frame: six periods of 60 Hz, longer than the lateness of any frame that is not dropped (design)
 FRAMES = 1 << 24        # frame numbers of the marker repeat after this number (visual_node/frame/marker.h)
 SETTINGS = ("stream=60", "stream_width=4096", "width=320", "height=240")  # every frame, marker unscaled, at most 1 MB/s (visual_node/video/picture_stream.h)
@@ -36,16 +36,16 @@ def first_that_shows(pictures, event):
     return None
 
 
-class Eye:
-    """Searches the pictures that a Lead stores."""
+class FlashDetector:
+    """Searches the pictures that a TrialRunnerClient stores."""
 
-    def __init__(self, lead):
-        self.lead = lead
+    def __init__(self, runner):
+        self.runner = runner
 
     def onset_ns(self, event, expected_ns):
         """Presentation time of the first frame that shows the event, host time in ns; None: unknown."""
-        pictures = self.lead.pictures
-        if not self.lead.wait_for(lambda: pictures and pictures[-1][0] > expected_ns + NEAR_NS / 2, PICTURES_TIMEOUT_S):
+        pictures = self.runner.pictures
+        if not self.runner.wait_for(lambda: pictures and pictures[-1][0] > expected_ns + NEAR_NS / 2, PICTURES_TIMEOUT_S):
             return None
         kept = sorted(pictures)
         begin = bisect.bisect_left(kept, expected_ns - NEAR_NS, key=lambda p: p[0])

@@ -10,16 +10,16 @@ import threading
 import time
 
 from tactus.cluster import cluster_file, lab
-from tactus.cluster.orders import Operator
-from tactus.cluster.reach import Failed, Unreachable  # noqa: F401  re-exported
+from tactus.cluster.cluster_operator import Operator
+from tactus.cluster.host_connection import Failed, Unreachable  # noqa: F401  re-exported
 from tactus.paths import BIN
 
 PATIENCE_S = 60
-STAYS_S = 0.3
+STABLE_S = 0.3
 SILENT_S = 3.0  # the observer receives nothing
 
 
-class Rehearsal:
+class LabCluster:
     """The cluster of a file in a lab with its hosts. Only inside lab.enter()."""
 
     def __init__(self, file, folder, ordinary=()):
@@ -30,36 +30,36 @@ class Rehearsal:
         self.lab = lab.Lab([name for name, host in self.cluster.hosts.items() if host.reach == "ssh"], ordinary)
         self.operator = Operator(self.cluster, str(self.lab.folder / "ssh_config"), quiet=True)
         self.placement = {}
-        self.watch = None
+        self.node_states = None
 
     def up(self):
         """Starts the cluster; returns the seconds until the simulation began."""
         begin = time.monotonic()
         self.operator.up("rehearsal")
         self.operator.wait_for_world()
-        took = time.monotonic() - begin
+        seconds = time.monotonic() - begin
         self.placement = self.operator.placement(self.operator.states())
-        self.watch = Watch(self.cluster, self.run_id())
-        return took
+        self.node_states = NodeStates(self.cluster, self.run_id())
+        return seconds
 
     def run_id(self):
         return next(s["run"]["run_id"] for s in self.operator.states().values() if not isinstance(s, Exception) and s["run"])
 
-    def nodes_of(self, host):
+    def nodes_on(self, host):
         return [n for n, h in self.placement.items() if h == host]
 
-    def whole(self):
-        return self.watch.all_run(self.placement)
+    def all_running(self):
+        return self.node_states.all_running(self.placement)
 
-    def wait_until_whole(self, patience_s=PATIENCE_S):
-        """Seconds until all nodes run, and run for STAYS_S; None on timeout."""
+    def wait_until_running(self, patience_s=PATIENCE_S):
+        """Seconds until all nodes run, and run for STABLE_S; None on timeout."""
         begin, since = time.monotonic(), None
         while time.monotonic() < begin + patience_s:
-            if not self.whole():
+            if not self.all_running():
                 since = None
             elif since is None:
                 since = time.monotonic()
-            elif time.monotonic() - since > STAYS_S:
+            elif time.monotonic() - since > STABLE_S:
                 return since - begin
             time.sleep(0.02)
         return None
@@ -70,7 +70,7 @@ class Rehearsal:
         shutil.rmtree(out, ignore_errors=True)
         out.mkdir(parents=True)
         c = self.cluster
-        words = [BIN / "recorder", "--out", out, "--name", "observer", "--run-id", self.watch.run_id, "--group", c.bus.group, "--port", c.bus.port,
+        words = [BIN / "recorder", "--out", out, "--name", "observer", "--run-id", self.node_states.run_id, "--group", c.bus.group, "--port", c.bus.port,
                  "--ttl", "0", "--tags", "none", "--seconds", 1]
         with open(out / "observer.log", "w", encoding="utf-8") as log:
             observer = subprocess.Popen([str(w) for w in words], stderr=log, stdout=log)
@@ -85,37 +85,37 @@ class Rehearsal:
 
     def down(self, out):
         """Stops the cluster and gathers its results, with tables of events and clocks. Returns the errors, one sentence each."""
-        wrong = self.operator.down(out)[0]
+        errors = self.operator.down(out)[0]
         subprocess.run([BIN / "export_events", out, "--out", out], capture_output=True, check=False)
-        return wrong
+        return errors
 
     def close(self):
-        if self.watch:
-            self.watch.close()
+        if self.node_states:
+            self.node_states.close()
         self.lab.close()
 
 
-class Watch:
+class NodeStates:
     """The states of all nodes, received ten times a second."""
 
     def __init__(self, cluster, run_id):
         self.run_id = run_id
-        self.newest, self.heard = {}, 0.0
+        self.newest, self.received_s = {}, 0.0
         words = [BIN / "watch", "--json", "--period", "0.1", "--run-id", run_id, "--group", cluster.bus.group, "--port", cluster.bus.port]
         self.process = subprocess.Popen([str(w) for w in words], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-        threading.Thread(target=self.listen, daemon=True).start()
+        threading.Thread(target=self.receive, daemon=True).start()
 
-    def listen(self):
+    def receive(self):
         for line in self.process.stdout:
             try:
-                self.newest, self.heard = json.loads(line)["nodes"], time.monotonic()
+                self.newest, self.received_s = json.loads(line)["nodes"], time.monotonic()
             except (ValueError, KeyError):
                 continue  # incomplete line at the end
 
     def state(self, node):
-        return self.newest.get(node, {}).get("state", "not heard") if time.monotonic() < self.heard + SILENT_S else "not heard"
+        return self.newest.get(node, {}).get("state", "not heard") if time.monotonic() < self.received_s + SILENT_S else "not heard"
 
-    def all_run(self, nodes):
+    def all_running(self, nodes):
         return all(self.state(n) == "running" for n in nodes)
 
     def close(self):

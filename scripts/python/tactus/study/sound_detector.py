@@ -9,14 +9,14 @@ QUIET_S, NEAR_S = 0.030, (0.018, 0.025)  # before the expected onset, and around
 RISE = 1e-4  # share of the peak at which an onset counts; finds the first sample of a tap in a silent scene (tests/measure/measure_soa)
 
 
-class Ear:
-    """Reads the recording of audio_node in the folder; a Lead provides the presentation times of its samples."""
+class SoundDetector:
+    """Reads the recording of audio_node in the folder; a TrialRunnerClient provides the presentation times of its samples."""
 
-    def __init__(self, out, lead):
-        self.out, self.lead = pathlib.Path(out), lead
+    def __init__(self, out, runner):
+        self.out, self.runner = pathlib.Path(out), runner
         self.path = self.layout = None
 
-    def listen_to(self, name):
+    def open_file(self, name):
         if self.path is None or self.path.name != name:
             self.path, self.layout = self.out / name, None
 
@@ -52,17 +52,17 @@ class Ear:
 
     def onset_ns(self, expected_ns):
         """Presentation time of the first sample of a sound near the expected time, host time in ns; None: no onset there."""
-        heard = [(abs(at_ns - expected_ns), name, index, at_ns) for name, pairs in self.lead.media.items() for index, at_ns in pairs]
-        if not heard:
+        candidates = [(abs(at_ns - expected_ns), name, index, at_ns) for name, pairs in self.runner.media.items() for index, at_ns in pairs]
+        if not candidates:
             return None
-        _, name, index, at_ns = min(heard)
-        self.listen_to(name)
+        _, name, index, at_ns = min(candidates)
+        self.open_file(name)
         if self._layout() is None:
             return None
         rate = self.layout[3]
         expected = index + (expected_ns - at_ns) * 1e-9 * rate
         begin, end = int(expected - QUIET_S * rate), int(expected + NEAR_S[1] * rate)
-        if not self.lead.wait_for(lambda: self._samples(begin, end) is not None, SAMPLES_TIMEOUT_S):
+        if not self.runner.wait_for(lambda: self._samples(begin, end) is not None, SAMPLES_TIMEOUT_S):
             return None
         samples = np.abs(self._samples(begin, end))
         quiet = int((QUIET_S - NEAR_S[0]) * rate)

@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "python"))
-from tactus.cluster import cluster_file, reach
+from tactus.cluster import cluster_file, host_connection
 from tactus.paths import SCRIPTS
 
 
@@ -20,24 +20,24 @@ class Connections(unittest.TestCase):
         self.addCleanup(lambda: os.environ.pop("XDG_RUNTIME_DIR") if before is None else os.environ.update(XDG_RUNTIME_DIR=before))
 
     def path(self, ssh_config):
-        words = reach.Reach(cluster_file.Host("world", "ssh", "world", "", "", ""), ssh_config).words(["true"])
+        words = host_connection.HostConnection(cluster_file.Host("world", "ssh", "world", "", "", ""), ssh_config).command_line(["true"])
         return next(w for w in words if w.startswith("ControlPath="))
 
-    def test_a_host_of_the_same_name_by_another_configuration_is_another_host(self):
+    def test_another_ssh_configuration_has_its_own_connection(self):
         self.assertEqual(self.path(None), self.path(None))
         self.assertEqual(self.path("/a/config"), self.path("/a/../a/config"))
         self.assertEqual(3, len({self.path(None), self.path("/a/config"), self.path("/b/config")}))
 
-    def test_a_host_of_the_same_name_on_another_network_is_another_host(self):
+    def test_another_network_namespace_has_its_own_connection(self):
         inside = ["unshare", "--net", "--user", "--map-root-user"] if os.getuid() else ["unshare", "--net"]
         if subprocess.run([*inside, "true"], capture_output=True, check=False).returncode:
             self.skipTest("this system allows no network of one's own")
-        program = f"import sys; sys.path[:0] = {[str(SCRIPTS / 'python')]!r}; from tactus.cluster import reach; print(reach.control_folder(None))"
+        program = f"import sys; sys.path[:0] = {[str(SCRIPTS / 'python')]!r}; from tactus.cluster import host_connection; print(host_connection.control_folder(None))"
         said = subprocess.run([*inside, sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.strip()
-        self.assertNotEqual(str(reach.control_folder(None)), said)
+        self.assertNotEqual(str(host_connection.control_folder(None)), said)
 
-    def test_nobody_else_reads_the_folder(self):
-        self.assertEqual(0o700, reach.control_folder(None).stat().st_mode & 0o777)
+    def test_only_the_owner_can_read_the_folder(self):
+        self.assertEqual(0o700, host_connection.control_folder(None).stat().st_mode & 0o777)
 
 
 if __name__ == "__main__":
