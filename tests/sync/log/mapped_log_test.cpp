@@ -44,7 +44,7 @@ TEST_CASE("A log that is truncated while it is read ends the program with an err
   std::filesystem::remove(path);
   CHECK(WIFEXITED(status));
   CHECK(WEXITSTATUS(status) == 1);
-  CHECK_THAT(text, Catch::Contains("cut while it was read"));
+  CHECK_THAT(text, Catch::Contains("truncated the log while it was read"));
 }
 
 TEST_CASE("A folder is read as one log of all its parts, sorted by number") {

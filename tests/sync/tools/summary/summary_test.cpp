@@ -362,8 +362,8 @@ TEST_CASE("A run with too many events to match is reported as a failure") {
              MatcherFixture::event_message(1'000'000 + i, 9900, contact_event_t::END, 100), 9901);
   log.health("audio_node", "audio", 10'100, 750);
   const RunSummary s = log.summary();
-  CHECK_THAT(s.failure(), Catch::Contains("found no room"));
-  CHECK_THAT(to_text(s), Catch::Contains("found no room"));
+  CHECK_THAT(s.failure(), Catch::Contains("exceed the limits of the matching"));
+  CHECK_THAT(to_text(s), Catch::Contains("exceed the limits of the matching"));
 }
 
 TEST_CASE("The summary has the share of each quality step and the age of the inputs") {
