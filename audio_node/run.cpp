@@ -25,7 +25,7 @@ namespace {
 // The loop only forwards events, at a priority below the simulation; the callback of the card renders them at 70.
 const sync::NodeDescriptor kAudio{.name = "audio_node",
                                   .modality = "audio",
-                                  .expected_events = node_health_t::OWES_HIT,
+                                  .expected_events = node_health_t::EXPECTS_HIT,
                                   .rate_Hz = 1000,
                                   .fifo_priority = 45,
                                   .about = "Sounds the hits of the scene through a sound card.",

@@ -122,7 +122,7 @@ bool sane(const hole_state_t& h) {
   return name(h.name) && h.ball >= 0 && h.inside >= -1 && between(h.filled, 0, 1);
 }
 bool sane(const decision_t& d) {
-  return between(d.is_event, 0, 1) && d.time_ns >= 0 && between(d.why, 0, 5) && d.held_ns >= 0 &&
+  return between(d.is_event, 0, 1) && d.time_ns >= 0 && between(d.drop_reason, 0, 5) && d.held_ns >= 0 &&
          between(d.twice, 0, 1);
 }
 bool sane(const presentation_t& p) {
@@ -254,7 +254,7 @@ bool valid(const device_force_t& m) {
 }
 bool valid(const presented_t& m) { return sane(m.header) && name(m.modality) && all_sane(m.reports); }
 bool valid(const node_health_t& m) {
-  return sane(m.header) && name(m.node) && (m.modality.empty() || name(m.modality)) && between(m.owes, 0, 15) &&
+  return sane(m.header) && name(m.node) && (m.modality.empty() || name(m.modality)) && between(m.expected_events, 0, 15) &&
          m.tool >= -1 && between(m.state, node_health_t::WAITING, node_health_t::READY) &&
          sane_not_negative(m.nominal_rate_Hz) && sane_not_negative(m.rate_Hz) && m.ticks >= 0 &&
          m.missed_ticks >= 0 && m.stale_ticks >= 0 && sane(m.tick) && sane(m.wake) && m.contacts_rendered >= 0 &&

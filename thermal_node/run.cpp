@@ -25,7 +25,7 @@ namespace {
 const sync::NodeDescriptor kThermal{
     .name = "thermal_node",
     .modality = "thermal",
-    .expected_events = int{node_health_t::OWES_BEGIN} | node_health_t::OWES_HIT | node_health_t::OWES_OWN_TOOL_ONLY,
+    .expected_events = int{node_health_t::EXPECTS_BEGIN} | node_health_t::EXPECTS_HIT | node_health_t::EXPECTS_OWN_TOOL_ONLY,
     .rate_Hz = thermal::Settings{}.rate_Hz,
     .about = "Renders the temperature of what a tool touches.",
     .inputs = {channels::kContacts, channels::kContactEvents},

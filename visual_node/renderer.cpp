@@ -258,7 +258,7 @@ void NodeRenderer::record(sync::HostTime now, bool fresh) {
 }
 
 sync::Status NodeRenderer::status(sync::HostTime now, bool fresh) {
-  const std::string walls = lock_.note(now), video = walls.empty() ? recording_.note() : walls;
+  const std::string walls = lock_.status_text(now), video = walls.empty() ? recording_.status_text() : walls;
   QualityControl& quality = stage_.quality();
   if (fresh && scene_) quality.add(sync::host_now() - now - waited_);
   if (const std::string change = quality.take_change(); !change.empty()) host().print_status(change);

@@ -27,7 +27,7 @@ namespace {
 const sync::NodeDescriptor kVisual{
     .name = "visual_node",
     .modality = "visual",
-    .expected_events = int{node_health_t::OWES_BEGIN} | int{node_health_t::OWES_HIT},
+    .expected_events = int{node_health_t::EXPECTS_BEGIN} | int{node_health_t::EXPECTS_HIT},
     .rate_Hz = visual::Settings{}.rate_Hz,
     .about = "Draws the scene, its tools and a flash for every contact.",
     .inputs = {channels::kWorldState, channels::kContactEvents, channels::kToolState},

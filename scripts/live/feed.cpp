@@ -111,7 +111,7 @@ json Feed::health(sync::HostTime now) const {
     std::int64_t gaps = 0;
     for (const input_health_t& i : h.inputs) gaps += i.gaps;
     out.push_back({{"node", sync::printable(name)}, {"source", h.header.source}, {"modality", sync::printable(h.modality)}, {"state", h.state},
-                   {"lost", now - n.arrival > kLostAfter}, {"note", sync::printable(h.note)}, {"rate_Hz", h.rate_Hz},
+                   {"lost", now - n.arrival > kLostAfter}, {"note", sync::printable(h.status_text)}, {"rate_Hz", h.rate_Hz},
                    {"nominal_Hz", h.nominal_rate_Hz}, {"missed", h.missed_ticks}, {"ticks", h.ticks},
                    {"rendered", h.contacts_rendered}, {"profile", std::to_string(h.profile)},
                    {"realtime", h.realtime_factor}, {"gaps", gaps}, {"tick_max_us", seconds(h.tick.max_ns) * 1e6},
@@ -123,7 +123,7 @@ json Feed::health(sync::HostTime now) const {
 json Feed::report() const {
   json senses = json::array(), pairs = json::array();
   for (const auto& [name, r] : modalities_)
-    senses.push_back({{"modality", sync::printable(name)}, {"owed", r.owed}, {"presented", r.presented}, {"lost", r.lost},
+    senses.push_back({{"modality", sync::printable(name)}, {"expected", r.expected}, {"presented", r.presented}, {"lost", r.lost},
                       {"dropped", r.dropped_by_profile}, {"late", r.dropped_late}});
   for (const auto& [key, r] : pairs_)
     pairs.push_back({{"a", sync::printable(r.a)}, {"b", sync::printable(r.b)}, {"n", r.n}, {"p05_ms", seconds(r.p05_ns) * 1e3},

@@ -49,7 +49,7 @@ std::string haptic_csv_names() {
   return "time_s,host_s,tool,device_x_m,device_y_m,device_z_m,proxy_x_m,proxy_y_m,proxy_z_m,force_x_N,force_y_N,"
          "force_z_N,torque_x_N_m,torque_y_N_m,torque_z_N_m,transient_x_N,transient_y_N,transient_z_N,fade,"
          "coupling,"
-         "touch_how,constraints,energy_J,generated_J,seq\n";
+         "touch_status,constraints,energy_J,generated_J,seq\n";
 }
 
 std::string csv_row(const tool_state_t& m) {
@@ -63,7 +63,7 @@ std::string csv_row(const tool_state_t& m) {
       .vector(m.transient_N)
       .number(m.fade)
       .number(m.coupling)
-      .text(to_string(static_cast<SampleStatus>(m.touch_how)))
+      .text(to_string(static_cast<SampleStatus>(m.touch_status)))
       .number(m.constraint_count)
       .number(m.energy_J)
       .number(m.generated_J)

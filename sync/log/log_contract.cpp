@@ -22,7 +22,11 @@ struct RenamedField {
   std::string_view type, before, now;
 };
 // Fields that were renamed since 0.1.0, each with its message type.
-constexpr std::array<RenamedField, 0> kRenamedFields{};
+constexpr std::array<RenamedField, 5> kRenamedFields{{{"modality_report_t", "owed", "expected"},
+                                                      {"tool_state_t", "touch_how", "touch_status"},
+                                                      {"decision_t", "why", "drop_reason"},
+                                                      {"node_health_t", "owes", "expected_events"},
+                                                      {"node_health_t", "note", "status_text"}}};
 
 std::string text_of(const Field& f) {
   return std::string(f.type) + " " + std::string(f.name) + (f.count.empty() ? "" : "[" + std::string(f.count) + "]");

@@ -191,9 +191,9 @@ std::optional<HostTime> ModalityEndpoint::arrival_of(std::int64_t event_id) cons
 
 bool ModalityEndpoint::expects(const contact_event_t& e) const {
   const int expected = descriptor_.expected_events;
-  if ((expected & node_health_t::OWES_OWN_TOOL_ONLY) && (tool_ < 0 || e.tool != tool_)) return false;
-  return (e.kind == contact_event_t::BEGIN && (expected & node_health_t::OWES_BEGIN)) ||
-         (e.kind == contact_event_t::HIT && (expected & node_health_t::OWES_HIT));
+  if ((expected & node_health_t::EXPECTS_OWN_TOOL_ONLY) && (tool_ < 0 || e.tool != tool_)) return false;
+  return (e.kind == contact_event_t::BEGIN && (expected & node_health_t::EXPECTS_BEGIN)) ||
+         (e.kind == contact_event_t::HIT && (expected & node_health_t::EXPECTS_HIT));
 }
 
 void ModalityEndpoint::report_dropped(const std::vector<contact_event_t>& dropped) {
@@ -236,7 +236,7 @@ void ModalityEndpoint::publish_decisions() {
     out.key = static_cast<std::int64_t>(d.key);
     out.is_event = d.is_event ? 1 : 0;
     out.time_ns = to_ns(d.time);
-    out.why = static_cast<std::int8_t>(d.decision.why);
+    out.drop_reason = static_cast<std::int8_t>(d.decision.why);
     const Nanoseconds held = d.decision.release - d.arrival + d.decision.shift + (d.is_event ? profile_delay_ : Nanoseconds(0));
     out.held_ns = d.decision.dropped() ? 0 : held.count();
     out.twice = d.decision.duplicated ? 1 : 0;

@@ -234,9 +234,9 @@ node_health_t Node::health_message(HostTime now) {
   m.header.sim_time_ns = -1;
   m.node = options_.name;
   m.modality = descriptor_.modality;
-  m.owes = descriptor_.expected_events | (descriptor_.late_rule == LateRule::kAlwaysApply ? node_health_t::NOT_WAITED_FOR : 0);
-  m.note = status_text_.empty() ? scheduling_ : status_text_ + "; " + scheduling_;
-  if (m.note.size() > kMaxNote) m.note.replace(kMaxNote - 3, std::string::npos, "...");
+  m.expected_events = descriptor_.expected_events | (descriptor_.late_rule == LateRule::kAlwaysApply ? node_health_t::OTHERS_DO_NOT_WAIT : 0);
+  m.status_text = status_text_.empty() ? scheduling_ : status_text_ + "; " + scheduling_;
+  if (m.status_text.size() > kMaxNote) m.status_text.replace(kMaxNote - 3, std::string::npos, "...");
   m.tick = tick_.to_message();
   m.wake = wake_.to_message();
   std::int64_t forgotten = 0;
@@ -260,7 +260,7 @@ node_health_t Node::health_message(HostTime now) {
     for (const auto& inbox : bus_.inboxes())
       if (needed(inbox->count()) == first) list(inbox->count());
   m.foreign_control = bus_.clocks().maps->foreign();
-  if (forgotten > 0) m.note += "; " + std::to_string(forgotten) + " senders too many";
+  if (forgotten > 0) m.status_text += "; " + std::to_string(forgotten) + " senders too many";
   fit(m, channels::kMaxMessageBytes);
   return m;
 }

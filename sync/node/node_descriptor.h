@@ -15,7 +15,7 @@ namespace tactus::sync {
 struct NodeDescriptor {
   std::string name;      // of the process: "audio_node"
   std::string modality;  // "audio"; empty: it renders nothing
-  int expected_events = node_health_t::OWES_NOTHING;  // bits of node_health_t: each such event needs a report
+  int expected_events = node_health_t::EXPECTS_NOTHING;  // bits of node_health_t: each such event needs a report
   double rate_Hz = 100;
   int fifo_priority = 0;  // 0: normal scheduling
   std::string about;      // one sentence for --help

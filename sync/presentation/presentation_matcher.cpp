@@ -107,7 +107,7 @@ void PresentationMatcher::observe(const node_health_t& m, HostTime arrival) {
   }
   Renderer& r = renderers_[m.header.source];
   r.modality = m.modality;
-  r.expected_events = m.owes;
+  r.expected_events = m.expected_events;
   r.tool = m.tool;
   const HostTime sent = clock_of(m.header, arrival).to_host(m.header.publish_time_ns, arrival);
   if (simulations_.contains(m.header.source)) simulation_last_seen_ = arrival;
@@ -157,7 +157,7 @@ void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
 std::map<std::string, bool> PresentationMatcher::running_modalities() const {
   std::map<std::string, bool> waited_for;
   for (const auto& [source, r] : renderers_)
-    if (!r.modality.empty()) waited_for[r.modality] = (r.expected_events & node_health_t::NOT_WAITED_FOR) == 0;
+    if (!r.modality.empty()) waited_for[r.modality] = (r.expected_events & node_health_t::OTHERS_DO_NOT_WAIT) == 0;
   return waited_for;
 }
 
@@ -229,11 +229,11 @@ void PresentationMatcher::finish(HostTime now) {
 }
 
 bool PresentationMatcher::expects(const Renderer& r, const Event& e) const {
-  const int kind = e.kind == contact_event_t::BEGIN ? node_health_t::OWES_BEGIN
-                   : e.kind == contact_event_t::HIT ? node_health_t::OWES_HIT
+  const int kind = e.kind == contact_event_t::BEGIN ? node_health_t::EXPECTS_BEGIN
+                   : e.kind == contact_event_t::HIT ? node_health_t::EXPECTS_HIT
                                                     : 0;
   if (r.modality.empty() || (r.expected_events & kind) == 0) return false;
-  return (r.expected_events & node_health_t::OWES_OWN_TOOL_ONLY) == 0 || (e.tool >= 0 && e.tool == r.tool);
+  return (r.expected_events & node_health_t::EXPECTS_OWN_TOOL_ONLY) == 0 || (e.tool >= 0 && e.tool == r.tool);
 }
 
 void PresentationMatcher::settle(Event& e, HostTime now, bool last) {

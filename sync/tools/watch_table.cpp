@@ -77,7 +77,7 @@ std::vector<WatchTable::Row> WatchTable::rows(HostTime now) const {
     const Nanoseconds silence = now - node.arrival;
     const bool lost = silence > kLostAfter;
     Row row{name, lost ? "LOST" : state_name(h.state), lost ? 0 : h.rate_Hz, h.missed_ticks, Nanoseconds(-1), "",
-            h.contacts_rendered, lost ? "silent for " + duration(silence) : quality_text(h) + h.note};
+            h.contacts_rendered, lost ? "silent for " + duration(silence) : quality_text(h) + h.status_text};
     for (const input_health_t& in : h.inputs) {
       if (!flows(in.channel) || Nanoseconds(in.age_ns) <= row.input_age) continue;
       row.input_age = Nanoseconds(in.age_ns);
@@ -105,7 +105,7 @@ std::string WatchTable::to_text(HostTime now, std::size_t width) const {
     std::string line = "events " + std::to_string(report_->begins) + " begin " + std::to_string(report_->hits) + " hit " +
                        std::to_string(report_->ends) + " end";
     for (const modality_report_t& m : report_->modalities)
-      line += " | " + m.modality + " " + std::to_string(m.presented) + "/" + std::to_string(m.owed) +
+      line += " | " + m.modality + " " + std::to_string(m.presented) + "/" + std::to_string(m.expected) +
               (m.lost > 0 ? " LOST " + std::to_string(m.lost) : "");
     for (const pair_report_t& p : report_->pairs)
       line += " | " + p.a + " to " + p.b + (p.p50_ns < 0 ? " -" : " ") + duration(Nanoseconds(std::abs(p.p50_ns))) +
@@ -125,7 +125,7 @@ std::string WatchTable::to_json(HostTime now) const {
   Json out = {{"host_s", to_seconds(now.time_since_epoch())}, {"nodes", nodes}};
   if (report_) {
     for (const modality_report_t& m : report_->modalities)
-      modalities[m.modality] = {{"owed", m.owed}, {"presented", m.presented}, {"lost", m.lost}, {"stalled", m.stalled},
+      modalities[m.modality] = {{"expected", m.expected}, {"presented", m.presented}, {"lost", m.lost}, {"stalled", m.stalled},
                                 {"dead", m.dead}, {"dropped_by_profile", m.dropped_by_profile},
                                 {"dropped_late", m.dropped_late}};
     for (const pair_report_t& p : report_->pairs)

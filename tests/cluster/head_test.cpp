@@ -80,7 +80,7 @@ struct WithHead : Running {
     std::ifstream file(raw, std::ios::binary);
     return Pixels(std::istreambuf_iterator<char>(file), {});
   }
-  std::string note(const std::string& node) const { return ear.health(node) ? ear.health(node)->note : "silent"; }
+  std::string note(const std::string& node) const { return ear.health(node) ? ear.health(node)->status_text : "silent"; }
 };
 
 }  // namespace

@@ -23,7 +23,7 @@ TEST_CASE(
   c.set({"overlay=none"});
   const Grey again = c.later_picture();
   CHECK(part_apart(plain, again, true) < 2);
-  CHECK_THAT(c.set({"plots=graph TOOL_STATE.force_N.z@tool=0; text NODE_HEALTH.note@sim_node"}),
+  CHECK_THAT(c.set({"plots=graph TOOL_STATE.force_N.z@tool=0; text NODE_HEALTH.status_text@sim_node"}),
              Catch::Contains("plots is graph"));
   const Grey plots = c.later_picture();
   CHECK(part_apart(again, plots, false) > 5);

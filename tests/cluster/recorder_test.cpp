@@ -90,7 +90,7 @@ TEST_CASE("A recorder whose disk is full says so, and its file is whole up to th
         [&] {
           const node_health_t* h = sender.ear.health("recorder");
           return h && h->state == node_health_t::OUTPUT_LOST &&
-                 h->note.find("No space left on device") != std::string::npos;
+                 h->status_text.find("No space left on device") != std::string::npos;
         },
         kPatience_s);
     CHECK(said);

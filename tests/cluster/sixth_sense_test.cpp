@@ -44,7 +44,7 @@ TEST_CASE(
   INFO(c.processes.said("wind_node"));
   REQUIRE(joined);
   CHECK(c.ear.health("wind_node")->modality == "wind");
-  CHECK(c.ear.health("wind_node")->owes == node_health_t::OWES_HIT);
+  CHECK(c.ear.health("wind_node")->expected_events == node_health_t::EXPECTS_HIT);
 
   modality_report_t kept{};
   std::set<std::string> paired_with;
@@ -58,7 +58,7 @@ TEST_CASE(
     return kept.presented >= 5 && paired_with.size() == kOthers.size();
   };
   CHECK(c.ear.wait_until(reported, kPatience_s));
-  INFO("presented " << kept.presented << " of " << kept.owed << ", with " << paired_with.size() << " others");
+  INFO("presented " << kept.presented << " of " << kept.expected << ", with " << paired_with.size() << " others");
   CHECK(kept.lost == 0);
 
   // The other nodes keep their rates.

@@ -125,8 +125,8 @@ TEST_CASE("On two machines no event is lost, and no sense's asynchrony is that o
     UNSCOPED_INFO(names << ": " << p.n << " asynchronies, median " << p.p50_ns << " ns");
   REQUIRE(enough);
   for (const auto& [modality, r] : kept) {
-    INFO(modality << " lost " << r.lost << " of " << r.owed);
-    CHECK(r.owed > 0);
+    INFO(modality << " lost " << r.lost << " of " << r.expected);
+    CHECK(r.expected > 0);
     CHECK(r.lost == 0);
   }
   // The wrong clock would give an hour; a slow machine gives half a second.

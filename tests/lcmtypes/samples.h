@@ -114,7 +114,7 @@ class Samples {
     i.channel = name(), i.age_ns = whole(-1, 1000), i.uncertainty_ns = whole(-1, 9), i.messages = whole(0, 9), i.gaps = whole(0, 9),
     i.bad = whole(0, 9);
   }
-  void fill(modality_report_t& r) { r.modality = name(), r.owed = whole(0, 9), r.presented = whole(0, 9); }
+  void fill(modality_report_t& r) { r.modality = name(), r.expected = whole(0, 9), r.presented = whole(0, 9); }
   void fill(pair_report_t& r) {
     r.a = name(), r.b = name(), r.n = whole(0, 9), r.p50_ns = whole(-1000, 1000);
     r.beyond_least = whole(-1, 9), r.beyond_all = whole(-1, 9);
@@ -149,7 +149,7 @@ class Samples {
     m.tool = whole(0, 3);
     fill(m.device), fill(m.proxy), fill(m.device_velocity_m_s), fill(m.proxy_velocity_m_s);
     fill(m.device_spin_rad_s), fill(m.proxy_spin_rad_s), fill(m.force_N), fill(m.torque_N_m), fill(m.transient_N);
-    m.energy_J = single(-9, 9), m.generated_J = single(-9, 9), m.coupling = single(0, 1), m.touch_how = static_cast<std::int8_t>(whole(0, 5)), m.fade = single(0, 1);
+    m.energy_J = single(-9, 9), m.generated_J = single(-9, 9), m.coupling = single(0, 1), m.touch_status = static_cast<std::int8_t>(whole(0, 5)), m.fade = single(0, 1);
     m.buttons = whole(0, 9);
     fill_list(m.constraint_count, m.constraints, 0, 8);
   }
@@ -176,8 +176,8 @@ class Samples {
   void fill(presented_t& m) { fill(m.header), m.modality = name(), fill_list(m.count, m.reports, 0, 30); }
   void fill(node_health_t& m) {
     fill(m.header);
-    m.node = name(), m.modality = whole(0, 1) ? name() : "", m.note = name(80);
-    m.owes = whole(0, 7), m.tool = whole(-1, 3), m.state = static_cast<std::int8_t>(whole(0, 4));
+    m.node = name(), m.modality = whole(0, 1) ? name() : "", m.status_text = name(80);
+    m.expected_events = whole(0, 7), m.tool = whole(-1, 3), m.state = static_cast<std::int8_t>(whole(0, 4));
     m.nominal_rate_Hz = real(0, 1000), m.rate_Hz = real(0, 1000), m.ticks = whole(0, 99),
     m.missed_ticks = whole(0, 99);
     m.qualities = static_cast<std::int8_t>(whole(1, 4)), m.quality = static_cast<std::int8_t>(whole(0, 1));
@@ -226,7 +226,7 @@ class Samples {
   }
   void fill(decision_t& d) {
     d.key = whole(0, 99), d.is_event = static_cast<std::int8_t>(whole(0, 1)), d.time_ns = whole(0, 99);
-    d.why = static_cast<std::int8_t>(whole(0, 5)), d.held_ns = whole(0, 99), d.twice = static_cast<std::int8_t>(whole(0, 1));
+    d.drop_reason = static_cast<std::int8_t>(whole(0, 5)), d.held_ns = whole(0, 99), d.twice = static_cast<std::int8_t>(whole(0, 1));
   }
   void fill(degraded_t& m) {
     fill(m.header), m.modality = name(), m.profile = whole(0, 99), fill_list(m.count, m.decisions, 0, 30);

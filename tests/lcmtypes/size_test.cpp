@@ -78,7 +78,7 @@ TEST_CASE("A health message with both histograms full, 8 inputs and a long note 
   test::Samples samples(1);
   node_health_t m{};
   samples.fill(m);
-  m.node = std::string(24, 'n'), m.modality = std::string(12, 'm'), m.note = std::string(140, 'x');
+  m.node = std::string(24, 'n'), m.modality = std::string(12, 'm'), m.status_text = std::string(140, 'x');
   sync::Histogram h;
   for (int i = 0; i < sync::Histogram::kBins; ++i)
     h.add(sync::Nanoseconds(static_cast<std::int64_t>(1000 * std::exp2(i / 4.0))));

@@ -11,7 +11,7 @@ using namespace tactus;
 
 const sync::NodeDescriptor kWind{
     .name = "wind_node", .modality = "wind",
-    .expected_events = node_health_t::OWES_HIT,
+    .expected_events = node_health_t::EXPECTS_HIT,
     .rate_Hz = wind::Settings{}.rate_Hz,
     .about = "Blows a gust for every hit.",
     .inputs = {channels::kContactEvents, channels::kContacts},

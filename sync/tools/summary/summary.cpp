@@ -51,7 +51,7 @@ void RunSummary::observe(const node_health_t& m, HostTime now) {
       ages[input.channel].add(Nanoseconds(input.age_ns));
   if (!sim_progress_.contains(m.header.incarnation)) return;
   for (auto& [name, incarnations] : incarnations_)
-    for (auto& [incarnation, other] : incarnations) other.status_text = other.last.note;
+    for (auto& [incarnation, other] : incarnations) other.status_text = other.last.status_text;
 }
 
 void RunSummary::observe_sim_progress(const header_t& h) {

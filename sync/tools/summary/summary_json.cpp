@@ -81,7 +81,7 @@ Json contacts(const PresentationMatcher& m) {
     const auto it = m.modalities().find(name);
     const OutcomeCounts t = it == m.modalities().end() ? OutcomeCounts{} : it->second;
     presented[name] = t.presented;
-    by_modality[name] = {{"owed", t.expected},
+    by_modality[name] = {{"expected", t.expected},
                          {"presented", t.presented},
                          {"late", t.late},
                          {"lost", t.lost},

@@ -50,7 +50,7 @@ std::string contacts(const PresentationMatcher& m) {
   if (m.overflow() > 0)
     out += line("%lld events or senses exceed the limits of the matching", static_cast<long long>(m.overflow()));
   if (m.modalities().empty()) return out;
-  out += line("%-14s %9s %9s %10s %7s %7s %7s %10s %12s", "sense", "owed", "presented", "of it late", "lost",
+  out += line("%-14s %9s %9s %10s %7s %7s %7s %10s %12s", "modality", "expected", "presented", "of it late", "lost",
               "stalled", "dead", "by profile", "dropped late");
   for (const auto& [name, t] : m.modalities())
     out +=

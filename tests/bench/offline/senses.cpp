@@ -50,7 +50,7 @@ class Sound {
       for (const contact_event_t& e : stream_.take_events(world_map().to_sim(until))) {
         out.events.push_back(e);
         if (e.kind != contact_event_t::HIT) continue;
-        ++out.audio.owed;
+        ++out.audio.expected;
         due_[e.event_id] = e.time_ns;
         queues_.strikes.push(impacts_->strike(e, world_map().to_host(sync::sim_time(e.time_ns)) + delay_));
       }
@@ -127,7 +127,7 @@ class Pictures {
   void finish(Rendered& out) const {
     for (const contact_event_t& e : out.events) {
       if (!visual::is_expected(e)) continue;
-      ++out.visual.owed;
+      ++out.visual.expected;
       if (const auto at = shown_.find(e.event_id); at != shown_.end())
         out.visual.error_s.push_back(at->second - 1e-9 * static_cast<double>(e.time_ns));
     }
@@ -212,7 +212,7 @@ Rendered render_log(const scene_t& scene, std::span<const std::uint8_t> log) {
   }
   pictures.finish(out);
   for (const contact_event_t& e : out.events)
-    out.thermal.owed += e.tool == warmth.tool() && e.tool >= 0 && e.kind != contact_event_t::END;
+    out.thermal.expected += e.tool == warmth.tool() && e.tool >= 0 && e.kind != contact_event_t::END;
   hear(out, sound.delay_s());
   return out;
 }

@@ -14,7 +14,7 @@
 namespace tactus::bench {
 
 struct SenseResult {
-  std::int64_t owed = 0, presented = 0;
+  std::int64_t expected = 0, presented = 0;
   // Time of presentation, minus the instant of the event and the commanded delay; s, for each event.
   std::vector<double> error_s;
 };

@@ -89,7 +89,7 @@ json sense_json(const SenseResult& r) {
   const double median = quantile(late, 0.5);
   std::vector<double> spread;
   for (const double e : late) spread.push_back(std::abs(e - median));
-  return {{"owed", r.owed},
+  return {{"expected", r.expected},
           {"presented", r.presented},
           {"error_ms_p50", median},
           {"error_ms_worst", quantile(late, 1)},
@@ -237,7 +237,7 @@ json rendered_by_all(const sim::WorldDef& world, const sim::Settings& settings, 
   std::map<std::int64_t, double> when;
   for (const contact_event_t& e : rendered.events) {
     when[e.event_id] = 1e-9 * static_cast<double>(e.time_ns);
-    touch.owed += e.tool >= 0 && e.kind == contact_event_t::BEGIN;
+    touch.expected += e.tool >= 0 && e.kind == contact_event_t::BEGIN;
   }
   for (const presentation_t& r : run.felt()) {
     if (r.part != presentation_t::CONSTRAINT || r.presented_ns < 0 || !when.count(r.event_id)) continue;

@@ -119,14 +119,14 @@ class Hosts(unittest.TestCase):
 
     def test_12_every_event_is_presented_by_every_sense_on_whichever_host(self):
         begin = time.monotonic()
-        owed = {}
-        while time.monotonic() < begin + PATIENCE_S and not all(owed.get(m, 0) > 0 for m in ("audio", "visual")):
+        expected = {}
+        while time.monotonic() < begin + PATIENCE_S and not all(expected.get(m, 0) > 0 for m in ("audio", "visual")):
             summary = self.r.record("present", 4)
             for modality, m in summary["contacts"]["by_modality"].items():
-                owed[modality] = owed.get(modality, 0) + m["owed"]
+                expected[modality] = expected.get(modality, 0) + m["expected"]
                 self.assertEqual(0, m["lost"], modality)
-        self.assertGreater(owed["audio"], 0)
-        self.assertGreater(owed["visual"], 0)
+        self.assertGreater(expected["audio"], 0)
+        self.assertGreater(expected["visual"], 0)
 
     def test_13_the_doctor_finds_nothing_between_the_hosts_and_their_clocks_as_far_apart_as_they_are(self):
         figures, wrong = self.doctor()

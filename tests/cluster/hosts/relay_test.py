@@ -112,14 +112,14 @@ class Sites(unittest.TestCase):
 
     def test_10_every_sense_in_every_site_presents_every_event_and_what_must_not_cross_does_not(self):
         begin = time.monotonic()
-        owed = {}
-        while time.monotonic() < begin + PATIENCE_S and not all(owed.get(m, 0) > 0 for m in ("audio", "visual")):
+        expected = {}
+        while time.monotonic() < begin + PATIENCE_S and not all(expected.get(m, 0) > 0 for m in ("audio", "visual")):
             heard = self.hear(["world", "far"], 4)
             for modality, m in heard["world"]["contacts"]["by_modality"].items():
-                owed[modality] = owed.get(modality, 0) + m["owed"]
+                expected[modality] = expected.get(modality, 0) + m["expected"]
                 self.assertEqual(0, m["lost"], modality)
-        self.assertGreater(owed["audio"], 0)
-        self.assertGreater(owed["visual"], 0)
+        self.assertGreater(expected["audio"], 0)
+        self.assertGreater(expected["visual"], 0)
         self.assertGreater(len(self.rows("world", "TOUCH_MODEL")), 1000)
         self.assertEqual([], self.rows("far", "TOUCH_MODEL"))
         senders = {row["sender"] for row in self.rows("far", "CLOCK_PROBE")}

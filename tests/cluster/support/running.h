@@ -68,7 +68,7 @@ struct Running {
     std::string all;
     for (const char* n : {"sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node"}) {
       const node_health_t* h = ear.health(n);
-      all += std::string(n) + (h ? " state " + std::to_string(h->state) + " (" + h->note + ")" : " silent") +
+      all += std::string(n) + (h ? " state " + std::to_string(h->state) + " (" + h->status_text + ")" : " silent") +
              ": " + processes.said(n) + "\n";
     }
     return all;

@@ -117,7 +117,7 @@ TEST_CASE("The force fades from 50 to 70 ms after the last touch model and retur
     CHECK(out.force_N.z() == Approx(full * factor).margin(1e-6));
     CHECK(out.state.fade == Approx(factor).margin(1e-6));
     CHECK(bench.renderer.lost() == (ms > 150));
-    if (ms > 150) CHECK(out.state.touch_how == static_cast<int>(sync::SampleStatus::kStale));
+    if (ms > 150) CHECK(out.state.touch_status == static_cast<int>(sync::SampleStatus::kStale));
   }
   double last = 0;
   for (int ms = 401; ms <= 500; ++ms) {
@@ -131,7 +131,7 @@ TEST_CASE("The force fades from 50 to 70 ms after the last touch model and retur
 
 TEST_CASE("The state reports the sample status of the touch model") {
   Bench bench;
-  const auto status = [](const TickOutput& out) { return static_cast<sync::SampleStatus>(out.state.touch_how); };
+  const auto status = [](const TickOutput& out) { return static_cast<sync::SampleStatus>(out.state.touch_status); };
   CHECK(status(bench.tick(0, Vector3d::Zero())) == sync::SampleStatus::kNone);
   CHECK(bench.tick(1, Vector3d::Zero()).state.header.sim_time_ns == -1);
   const auto m = model(2, {});

@@ -23,7 +23,7 @@ HOSTILE = 'dark<script>alert(1)"&.sdf'
 def summary(**more):
     node = {"rate_hz": 1000.0, "ticks": 1000, "missed_ticks": 0, "stale_ticks": 0, "tick_us": {"p50": 10.0, "p99": 20.0, "p999": 30.0, "max": 40.0},
             "wake_us": {"p50": 1.0, "p99": 2.0, "p999": 3.0, "max": 4.0}, "input_age_ms": {}, "quality": [], "restarts": 0, "scheduling": ""}
-    counts = {"owed": 3, "presented": 3, "late": 0, "lost": 0, "stalled": 0, "dead": 0, "dropped_by_profile": 0, "dropped_late": 0}
+    counts = {"expected": 3, "presented": 3, "late": 0, "lost": 0, "stalled": 0, "dead": 0, "dropped_by_profile": 0, "dropped_late": 0}
     return {"scene": HOSTILE, "seconds": 1.0, "recorded_seconds": 1.0, "log_holes_seconds": 0, "seed": 1, "git": "", "realtime_factor": 1.0, "warnings": [], "absent": [],
             "nodes": {"sim_node": node}, "contacts": {"begin": 3, "hit": 3, "end": 3, "late": 0, "lost": 0, "dropped_by_profile": 0, "by_modality": {"audio": counts}},
             "asynchrony_ms": {}, "bus": {}, **more}
@@ -139,7 +139,7 @@ class Figures(Logs):
     def test_degradation_decisions_are_counted_by_reason(self):
         fields = [("modality", "audio"), ("count", 3)]
         for i, (event, why, held, twice) in enumerate(((1, 0, 40_000_000, 0), (1, 3, 0, 0), (0, 0, 5_000_000, 1))):
-            fields += [(f"decisions[{i}].is_event", event), (f"decisions[{i}].why", why), (f"decisions[{i}].held_ns", held), (f"decisions[{i}].twice", twice)]
+            fields += [(f"decisions[{i}].is_event", event), (f"decisions[{i}].drop_reason", why), (f"decisions[{i}].held_ns", held), (f"decisions[{i}].twice", twice)]
         log = self.log({"DEGRADED.csv": self.long(*(["1", "", "audio_node", 0, f, "", v] for f, v in fields))})
         found = log.decisions()
         self.assertEqual(found["audio", "events"]["why"], {"let through": 1, "loss": 1})

@@ -22,7 +22,7 @@ input_health_t input(const std::string& channel, std::int32_t gaps = 0, std::int
 
 node_health_t with_inputs(int n, std::size_t note_bytes) {
   node_health_t m{};
-  m.node = "visual_node_front", m.modality = "visual", m.note = std::string(note_bytes, 'n');
+  m.node = "visual_node_front", m.modality = "visual", m.status_text = std::string(note_bytes, 'n');
   for (histogram_t* h : {&m.tick, &m.wake}) h->bins.resize(Histogram::kBins), h->bin_count = Histogram::kBins;
   for (int i = 0; i < n; ++i) add_input(m, input("CHANNEL_OF_A_NAME_" + std::to_string(i)));
   return m;
@@ -52,7 +52,7 @@ TEST_CASE("A health message with many inputs and a long note fits a datagram and
       REQUIRE(m.input_count == static_cast<std::int32_t>(m.inputs.size()));
       const int left_out = n - m.input_count;
       REQUIRE((left_out == 0) == fits);
-      if (left_out > 0) REQUIRE_THAT(m.note, Catch::EndsWith(std::to_string(left_out) + " inputs not listed"));
+      if (left_out > 0) REQUIRE_THAT(m.status_text, Catch::EndsWith(std::to_string(left_out) + " inputs not listed"));
       if (m.input_count > 0) REQUIRE(m.inputs.front().channel == "CHANNEL_OF_A_NAME_0");
       REQUIRE(m.input_count >= std::min(n, 6));  // the inputs that a renderer needs, and more
     }

@@ -45,7 +45,7 @@ TEST_CASE("A row of haptic.csv has a value in every column") {
   m.coupling = 0.75f;
   m.energy_J = -0.25f;
   m.generated_J = 0.001953125f;
-  m.touch_how = static_cast<std::int8_t>(SampleStatus::kHeld);
+  m.touch_status = static_cast<std::int8_t>(SampleStatus::kHeld);
   const std::string names = haptic_csv_names(), row = csv_row(m);
   CHECK(cells(names).size() == cells(row).size());
   CHECK(cell(names, row, "time_s") == "1.234567891");
@@ -62,7 +62,7 @@ TEST_CASE("A row of haptic.csv has a value in every column") {
   CHECK(cell(names, row, "coupling") == "0.75");
   CHECK(cell(names, row, "energy_J") == "-0.25");
   CHECK(cell(names, row, "generated_J") == "0.001953125");
-  CHECK(cell(names, row, "touch_how") == "held");
+  CHECK(cell(names, row, "touch_status") == "held");
 }
 
 TEST_CASE("A row of thermal.csv has a value in every column") {

@@ -29,7 +29,7 @@ struct MatcherFixture {
     m.header = header_of(node, incarnation, 0, to_ns(at(ms)), kRun);
     m.node = node;
     m.modality = modality;
-    m.owes = owes;
+    m.expected_events = owes;
     m.state = state;
     m.tool = tool;
     return m;

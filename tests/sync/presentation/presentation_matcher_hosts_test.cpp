@@ -14,7 +14,7 @@ using namespace tactus::sync;
 
 namespace {
 
-constexpr int kHit = node_health_t::OWES_HIT;
+constexpr int kHit = node_health_t::EXPECTS_HIT;
 
 // audio_node runs on a host whose clock (2) is an hour ahead of the matcher's (1).
 struct TwoHosts {

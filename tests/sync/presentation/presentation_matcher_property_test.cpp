@@ -13,8 +13,8 @@ using namespace tactus;
 using namespace tactus::sync;
 
 namespace {
-constexpr int kHit = node_health_t::OWES_HIT;
-constexpr int kBoth = int{node_health_t::OWES_BEGIN} | int{node_health_t::OWES_HIT};
+constexpr int kHit = node_health_t::EXPECTS_HIT;
+constexpr int kBoth = int{node_health_t::EXPECTS_BEGIN} | int{node_health_t::EXPECTS_HIT};
 }  // namespace
 
 TEST_CASE("Every expected event has one outcome when messages are lost, repeated and reordered") {
@@ -30,7 +30,7 @@ TEST_CASE("Every expected event has one outcome when messages are lost, repeated
                                {"audio_node", "audio", kHit},
                                {"wall_1", "visual", kBoth},
                                {"wall_2", "visual", kBoth},
-                               {"smell_node", "smell", node_health_t::OWES_BEGIN}};
+                               {"smell_node", "smell", node_health_t::EXPECTS_BEGIN}};
 
     // Every message with its time of arrival.
     struct Sent {

@@ -15,8 +15,8 @@ using namespace tactus;
 using namespace tactus::sync;
 
 namespace {
-constexpr int kHit = node_health_t::OWES_HIT;
-constexpr int kBoth = int{node_health_t::OWES_BEGIN} | int{node_health_t::OWES_HIT};
+constexpr int kHit = node_health_t::EXPECTS_HIT;
+constexpr int kBoth = int{node_health_t::EXPECTS_BEGIN} | int{node_health_t::EXPECTS_HIT};
 }  // namespace
 
 TEST_CASE("A reported event has the outcome of its report") {
@@ -58,8 +58,8 @@ TEST_CASE("A node must present the kinds of events that it declares") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 5000);
   f.healths("visual_node", "visual", kBoth, 0, 5000);
-  f.healths("left", "haptic", kBoth | node_health_t::OWES_OWN_TOOL_ONLY, 0, 5000, 1, node_health_t::RUNNING, 0);
-  f.healths("right", "haptic", kBoth | node_health_t::OWES_OWN_TOOL_ONLY, 0, 5000, 1, node_health_t::RUNNING, 1);
+  f.healths("left", "haptic", kBoth | node_health_t::EXPECTS_OWN_TOOL_ONLY, 0, 5000, 1, node_health_t::RUNNING, 0);
+  f.healths("right", "haptic", kBoth | node_health_t::EXPECTS_OWN_TOOL_ONLY, 0, 5000, 1, node_health_t::RUNNING, 1);
   f.healths("sim_node", "", 0, 0, 5000);
   f.event(1, 1000, contact_event_t::BEGIN);
   f.event(2, 1001, contact_event_t::HIT, 1);

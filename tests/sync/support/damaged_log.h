@@ -42,7 +42,7 @@ struct DamagedLog {
       m.header.clock = 4711;
       m.node = "some_node";
       // Half of them have the same length, so that a forged length may end at the beginning of another event.
-      m.note = std::string(static_cast<std::size_t>(i % 2 ? 40 : i * 37 % 300), 'x');
+      m.status_text = std::string(static_cast<std::size_t>(i % 2 ? 40 : i * 37 % 300), 'x');
       write(channels::kNodeHealth, m, 1000 * i);
     }
     bytes = state->bytes;

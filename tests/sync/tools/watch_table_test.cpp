@@ -20,7 +20,7 @@ node_health_t health(const std::string& node) {
   m.rate_Hz = 999.94;
   m.missed_ticks = 3;
   m.contacts_rendered = 17;
-  m.note = "SCHED_FIFO 60, memory locked";
+  m.status_text = "SCHED_FIFO 60, memory locked";
   m.inputs = {{"TOUCH_MODEL", 1'300'000, 0, 100, 0, 0}, {"CONTACT_EVENTS", 9'000'000'000, 0, 5, 0, 0},
               {"SCENE_MANIFEST", 700'000'000, 0, 5, 0, 0}};
   m.input_count = 3;
@@ -85,7 +85,7 @@ TEST_CASE("Without a report the table contains a message") {
 TEST_CASE("Control characters from a node are escaped") {
   WatchTable table;
   node_health_t m = health("a\x1b[2J");
-  m.note = "one\ntwo\x1b]0;title\a";
+  m.status_text = "one\ntwo\x1b]0;title\a";
   table.observe(m, kNow);
   const std::string text = table.to_text(kNow);
   CHECK(std::count(text.begin(), text.end(), '\n') == 2);
@@ -96,7 +96,7 @@ TEST_CASE("Control characters from a node are escaped") {
 TEST_CASE("The JSON output is one line for any note") {
   WatchTable table;
   node_health_t m = health("audio_node");
-  m.note = "line\nbreak \"quoted\" \xff";
+  m.status_text = "line\nbreak \"quoted\" \xff";
   table.observe(m, kNow);
   const std::string json = table.to_json(kNow);
   CHECK(std::count(json.begin(), json.end(), '\n') == 1);

@@ -60,7 +60,7 @@ TEST_CASE("A plot with an unknown name is rejected in one sentence with similar 
   CHECK_THAT(sentence("graph TOOL_STATE.farce_N.z"), Catch::Contains("nearest: force_N"));
   CHECK_THAT(sentence("graph TOOL_STATE"), Catch::Contains("which field"));
   CHECK_THAT(sentence("pie TOOL_STATE.tool"), Catch::Contains("graph, bar or text"));
-  CHECK_THAT(sentence("graph NODE_HEALTH.note"), Catch::Contains("text, not a number"));
+  CHECK_THAT(sentence("graph NODE_HEALTH.status_text"), Catch::Contains("text, not a number"));
   CHECK_THAT(sentence("graph TOOL_STATE.fade@tool=x"), Catch::Contains("is not a number"));
   CHECK_THAT(sentence("graph TOOL_STATE.fade@tolo=1"), Catch::Contains("nearest: tool"));
   CHECK_THAT(sentence("graph TOOL_STATE.fade@"), Catch::Contains("field=number after @"));
@@ -107,7 +107,7 @@ TEST_CASE("Plots stay within the picture, and each channel is subscribed once") 
   std::vector<std::string> trouble;
   Plots plots(
       parse_plots(
-          "graph TOOL_STATE.force_N.z; bar TOOL_STATE.fade; text NODE_HEALTH.note; graph TOOL_STATE.energy_J;"
+          "graph TOOL_STATE.force_N.z; bar TOOL_STATE.fade; text NODE_HEALTH.status_text; graph TOOL_STATE.energy_J;"
           "graph TOOL_STATE.force_N.x; graph TOOL_STATE.force_N.y; graph TOOL_STATE.coupling",
           warnings),
       kSpan);
@@ -156,8 +156,8 @@ TEST_CASE("A bar has its value below it, and empty text differs from missing tex
     return sum;
   };
   REQUIRE(!sync::encode(health).empty());
-  CHECK(pixels(drawn("text NODE_HEALTH.note", "NODE_HEALTH", sync::encode(health))) !=
-        pixels(drawn("text NODE_HEALTH.note", "NODE_HEALTH", {})));
+  CHECK(pixels(drawn("text NODE_HEALTH.status_text", "NODE_HEALTH", sync::encode(health))) !=
+        pixels(drawn("text NODE_HEALTH.status_text", "NODE_HEALTH", {})));
 }
 
 TEST_CASE("Values that are not finite or very large are drawn within their plot") {

@@ -88,7 +88,7 @@ export class Senses {
       const slow = h.lost || h.rate_Hz < 0.9 * h.nominal_Hz;
       const tr = row([[m, "name"], [`${h.rate_Hz.toFixed(0)} / ${h.nominal_Hz.toFixed(0)} Hz`, slow ? "n bad" : "n"],
         [of.length ? `${quantile(of, 0.5).toFixed(1)} ms` : "–", "n"], [of.length ? `${quantile(of, 0.95).toFixed(1)} ms` : "–", "n"],
-        [report ? `${report.presented} / ${report.owed}` : "–", "n"], [report ? String(report.lost) : "–", report && report.lost ? "n bad" : "n"]]);
+        [report ? `${report.presented} / ${report.expected}` : "–", "n"], [report ? String(report.lost) : "–", report && report.lost ? "n bad" : "n"]]);
       (tr.firstElementChild as HTMLElement).style.color = colourOf(m);
       tr.dataset.modality = m;
       return tr;

@@ -110,8 +110,8 @@ class Run:
             node = summary["nodes"][f"{sense}_node"]
             # A node without enough processor time loses events without an attack.
             starved = node["missed_ticks"] > STARVED_SHARE * (node["ticks"] + node["missed_ticks"])
-            senses[sense] = {**{what: counts[what] for what in ("owed", "presented", "lost")}, "starved": starved}
-        return {**self.count, **{what: sum(s[what] for s in senses.values()) for what in ("owed", "presented", "lost")}, "senses": senses, "touch_age_ms": age}
+            senses[sense] = {**{what: counts[what] for what in ("expected", "presented", "lost")}, "starved": starved}
+        return {**self.count, **{what: sum(s[what] for s in senses.values()) for what in ("expected", "presented", "lost")}, "senses": senses, "touch_age_ms": age}
 
     def kill(self):
         for process in self.nodes.values():

@@ -119,7 +119,7 @@ class LogTables:
             for i in range(int(message["count"])):
                 what = "events" if int(message[f"decisions[{i}].is_event"]) else "snapshots"
                 own = out.setdefault((message["modality"], what), {"why": {}, "held_ms": [], "twice": 0})
-                why = int(message[f"decisions[{i}].why"])
+                why = int(message[f"decisions[{i}].drop_reason"])
                 name = DROP_REASONS[why] if 0 <= why < len(DROP_REASONS) else f"reason {why}"
                 own["why"][name] = own["why"].get(name, 0) + 1
                 own["twice"] += int(message[f"decisions[{i}].twice"])

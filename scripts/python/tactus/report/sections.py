@@ -62,7 +62,7 @@ def contacts(report):
     c = report.log.summary["contacts"]
     rows = []
     for sense, m in c["by_modality"].items():
-        rows.append([figures.NAME.get(sense, sense).replace(" (hit)", ""), *(m[k] for k in ("owed", "presented", "late", "dropped_late", "dropped_by_profile", "stalled", "dead", "lost"))])
+        rows.append([figures.NAME.get(sense, sense).replace(" (hit)", ""), *(m[k] for k in ("expected", "presented", "late", "dropped_late", "dropped_by_profile", "stalled", "dead", "lost"))])
     out.append(f"<p>{number(c['begin'])} contacts began, {number(c['end'])} ended, and {number(c['hit'])} hits occurred. Sound must present each hit; vision each "
                "begin and hit; touch and warmth those of their own tool.</p>\n")
     if not rows:

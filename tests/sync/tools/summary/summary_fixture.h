@@ -52,12 +52,12 @@ struct RunLog {
   void health(const std::string& node, const std::string& modality, double ms, double rate_Hz,
               std::int64_t incarnation = 1, std::int8_t state_ = node_health_t::RUNNING, std::int64_t missed = 0) {
     node_health_t m = MatcherFixture::health_message(
-        node, modality, modality.empty() ? 0 : node_health_t::OWES_HIT, ms, incarnation, state_);
+        node, modality, modality.empty() ? 0 : node_health_t::EXPECTS_HIT, ms, incarnation, state_);
     m.nominal_rate_Hz = rate_Hz;
     m.ticks = static_cast<std::int64_t>(ms * 1e-3 * rate_Hz);
     m.missed_ticks = missed;
     m.stale_ticks = 4;
-    m.note = note;
+    m.status_text = note;
     Histogram h;
     h.add(Nanoseconds(static_cast<std::int64_t>(incarnation) * 100'000));
     m.tick = m.wake = h.to_message();

@@ -290,7 +290,7 @@ TEST_CASE("Presentation times of another host are mapped by the clock maps in th
   for (int ms = 0; ms <= 6000; ms += 100) {
     log.health("visual_node", "visual", ms, 60);
     log.send(channels::kNodeHealth,
-             there(MatcherFixture::health_message("audio_node", "audio", node_health_t::OWES_HIT, ms)), ms);
+             there(MatcherFixture::health_message("audio_node", "audio", node_health_t::EXPECTS_HIT, ms)), ms);
     if (mapped && ms % 500 == 0) {
       clock_map_t map{};
       map.header = header_of("sync_node", 1, 0, to_ns(MatcherFixture::at(ms)));

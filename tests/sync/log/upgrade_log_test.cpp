@@ -1,0 +1,137 @@
+// Tests of the conversion of logs with renamed message fields.
+#include "sync/log/upgrade_log.h"
+
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <string>
+#include <tactus/tool_state_t.hpp>
+#include <vector>
+
+#include "lcmtypes/channels.h"
+#include "lcmtypes/fields.h"
+#include "sync/bus/decode.h"
+#include "sync/log/log_contract.h"
+#include "sync/log/log_reader.h"
+#include "sync/log/log_writer.h"
+#include "sync/log/mapped_log.h"
+#include "sync/log/recorder_types.h"
+#include "tests/sync/support/memory_sink.h"
+#include "tests/sync/support/temporary_folder.h"
+
+using namespace tactus;
+using namespace tactus::sync;
+
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+constexpr std::int64_t kOldFingerprint = 0x0123456789abcdef;
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  return at == text.npos ? text : text.replace(at, from.size(), to);
+}
+
+std::string hexadecimal(std::int64_t fingerprint) {
+  char text[20];
+  std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(fingerprint));
+  return text;
+}
+
+// LOG_TYPES of a release in which tool_state_t had another name for touch_status, and so another fingerprint.
+std::vector<std::string> old_types(const std::string& old_field) {
+  std::vector<std::string> pages = log_types();
+  for (std::string& page : pages) {
+    page = replaced(page, hexadecimal(tool_state_t::getHash()), hexadecimal(kOldFingerprint));
+    page = replaced(page, "int8_t touch_status", old_field);
+  }
+  return pages;
+}
+
+tool_state_t tool() {
+  tool_state_t m{};
+  m.header.run_id = m.header.incarnation = 1;
+  m.header.sim_time_ns = 5;
+  m.device.orientation.w = m.proxy.orientation.w = 1;
+  m.touch_status = 2;
+  return m;
+}
+
+Bytes with_fingerprint(Bytes bytes, std::int64_t fingerprint) {
+  for (int i = 7; i >= 0; --i, fingerprint >>= 8) bytes[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(fingerprint);
+  return bytes;
+}
+
+Bytes old_log(const std::string& old_field, bool with_types = true) {
+  Bytes log;
+  std::int64_t number = 0;
+  const auto text = [](const std::string& s) { return Bytes(s.begin(), s.end()); };
+  if (with_types)
+    for (const std::string& page : old_types(old_field)) append_event(log, number++, 10, kLogTypes, text(page));
+  append_event(log, number++, 20, "FOREIGN", text("a message of another system"));
+  append_event(log, number++, 40, channels::kToolState, with_fingerprint(sync::encode(tool()), kOldFingerprint));
+  append_event(log, number++, 30, "SHORT", text("abc"));
+  return log;
+}
+
+struct Result {
+  UpgradeCounts counts;
+  Bytes bytes;
+};
+Result upgraded(const Bytes& log) {
+  const auto state = std::make_shared<MemorySink::State>();
+  Result r{upgrade_log(log, std::make_unique<MemorySink>(state)), {}};
+  r.bytes = state->bytes;
+  return r;
+}
+
+}  // namespace
+
+TEST_CASE("A log with renamed fields is converted to messages that this release decodes") {
+  const Result result = upgraded(old_log("int8_t touch_how"));
+  CHECK(result.counts.converted == 1);
+  CHECK(result.counts.damaged_regions == 0);
+  CHECK(recorded_types(result.bytes).size() == message_types().size());
+  CHECK(renamed_types(recorded_types(result.bytes)).empty());
+  std::vector<LogEvent> messages;
+  for (const LogEvent& e : read_all(result.bytes))
+    if (e.channel != kLogTypes) messages.push_back(e);
+  REQUIRE(messages.size() == 3);
+  const auto state = decode<tool_state_t>(messages[1].data.data(), messages[1].data.size());
+  REQUIRE(state);
+  CHECK(state->touch_status == 2);
+}
+
+TEST_CASE("A conversion keeps channels, stamps, order and all other bytes") {
+  const Bytes log = old_log("int8_t touch_how");
+  const Result result = upgraded(log);
+  std::vector<LogEvent> before, after;
+  for (const LogEvent& e : read_all(log))
+    if (e.channel != kLogTypes) before.push_back(e);
+  for (const LogEvent& e : read_all(result.bytes))
+    if (e.channel != kLogTypes) after.push_back(e);
+  REQUIRE(after.size() == before.size());
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    CHECK(after[i].channel == before[i].channel);
+    CHECK(after[i].timestamp_us == before[i].timestamp_us);
+    const std::size_t from = before[i].channel == channels::kToolState ? 8 : 0;
+    CHECK(Bytes(after[i].data.begin() + static_cast<std::ptrdiff_t>(from), after[i].data.end()) ==
+          Bytes(before[i].data.begin() + static_cast<std::ptrdiff_t>(from), before[i].data.end()));
+  }
+}
+
+TEST_CASE("A log with other fields than renamed ones is refused with the name of the type") {
+  CHECK_THROWS_WITH(upgraded(old_log("int8_t unknown_field")), Catch::Contains("tool_state_t") && Catch::Contains("other fields"));
+  CHECK_THROWS_WITH(upgraded(old_log("int32_t touch_how")), Catch::Contains("tool_state_t"));
+  CHECK_THROWS_WITH(upgraded(old_log("", false)), Catch::Contains("LOG_TYPES"));
+}
+
+TEST_CASE("A reader refuses a log with renamed fields and names the command that converts it") {
+  const TemporaryFolder folder;
+  const std::string path = (folder.path / "old.lcmlog").string();
+  REQUIRE(FileSink(path).append(old_log("int8_t touch_how")).empty());
+  CHECK_THROWS_WITH(MappedLog(path), Catch::Contains("tool_state_t") && Catch::Contains("tactus log upgrade " + path));
+  CHECK_NOTHROW(MappedLog(path, LogTypes::kAny));
+  const std::string converted = (folder.path / "new.lcmlog").string();
+  REQUIRE(FileSink(converted).append(upgraded(old_log("int8_t touch_how")).bytes).empty());
+  CHECK_NOTHROW(MappedLog(converted));
+}
