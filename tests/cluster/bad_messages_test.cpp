@@ -101,7 +101,7 @@ void spoil(Datagrams& wire, std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("Malformed, truncated, oversized and non-finite messages are counted and dropped, and nobody exits", "[smoke]") {
+TEST_CASE("Malformed, truncated, oversized and non-finite messages are counted and dropped, and no node exits", "[smoke]") {
   Running c;
   c.start();
   Datagrams wire;

@@ -42,7 +42,9 @@ json measured(RunScript& run, const std::string& scenario) {
 
 }  // namespace
 
-TEST_CASE("Two hosts agree on time, and their uncertainty holds the truth: idle, drifting, held in one direction, jumping, replaced", "[exclusive]") {
+TEST_CASE(
+    "The clock maps of two hosts contain the true offset: idle, drifting, delayed in one direction, "
+    "jumping, replaced", "[exclusive]") {
   const std::string scenario = GENERATE(as<std::string>{}, "idle", "drift", "held", "jump", "restart");
   RunScript run;
   const json row = measured(run, scenario);
@@ -56,7 +58,7 @@ TEST_CASE("Two hosts agree on time, and their uncertainty holds the truth: idle,
   CHECK(row["epochs"].get<int>() == (scenario == "jump" ? 2 : 1));
 }
 
-TEST_CASE("A sense on a host an hour ahead renders, keeps its debts, and its health ages what it hears truly", "[exclusive]") {
+TEST_CASE("A modality on a host whose clock is an hour ahead presents all expected events and reports correct ages", "[exclusive]") {
   RunScript run;
   if (!time_namespaces(run)) return;
   Running r;

@@ -48,7 +48,7 @@ struct Commanded : Running {
 
 }  // namespace
 
-TEST_CASE("A world that is paused stands still while every process lives on, takes single steps, and goes on", "[smoke]") {
+TEST_CASE("A paused world stands still while every process runs, takes single steps, and resumes", "[smoke]") {
   Commanded c;
   c.start();
   CHECK_THAT(c.ask({"step"}, 1), Catch::Contains("pause it"));
@@ -75,9 +75,7 @@ TEST_CASE("A world that is paused stands still while every process lives on, tak
   }
 }
 
-TEST_CASE(
-    "A world that is reset or put back is another one to every sense, and none holds on to contacts that are no "
-    "more") {
+TEST_CASE("After a reset or restore every modality starts with the new world, and drops the contacts of the old one") {
   Commanded c;
   c.start();
   c.listen(1);
@@ -119,7 +117,7 @@ TEST_CASE(
   CHECK_THAT(c.ask({"restore", "never"}, 1), Catch::Contains("no file"));
 }
 
-TEST_CASE("What is set and pushed moves the world of a running cluster. What cannot be is one sentence") {
+TEST_CASE("Set and push commands move bodies of a running cluster, and impossible commands are rejected with one sentence") {
   Commanded c;
   auto& states = c.ear.bus().queue<world_state_t>(channels::kWorldState, 4096);
   c.start();

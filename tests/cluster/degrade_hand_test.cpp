@@ -146,7 +146,7 @@ void check_others(Degraded& c, const std::map<std::string, double>& rates, const
 
 }  // namespace
 
-TEST_CASE("DEGRADE-5: touch is delayed, thinned, lost, frozen, off or coarse, and only the hand feels it", "[exclusive]") {
+TEST_CASE("DEGRADE-5: touch is delayed, decimated, lost, frozen, off or coarse, and only the hand is affected", "[exclusive]") {
   Degraded c;
   c.start();
   // Each modality runs by itself: aligned ones wait for the slowest, which is vision, whose time varies beside other work.
@@ -183,7 +183,7 @@ TEST_CASE("DEGRADE-5: touch is delayed, thinned, lost, frozen, off or coarse, an
   CHECK(error_N(clean, c.feel(4)) < 0.05 * peak_N);
 }
 
-TEST_CASE("DEGRADE-6: warmth is delayed, slow or off, and the hand that it is on does not notice", "[exclusive]") {
+TEST_CASE("DEGRADE-6: warmth is delayed, slow or off, and touch on the same hand is not affected", "[exclusive]") {
   Degraded c;
   c.start();
   // Each modality runs by itself: aligned ones wait for the slowest, which is vision, whose time varies beside other work.

@@ -24,7 +24,7 @@ bool of_incarnation(std::int64_t id, std::int64_t incarnation) {
 
 }  // namespace
 
-TEST_CASE("DEGRADE-1: with audio_node stopped the others go on at their rates", "[exclusive]") {
+TEST_CASE("DEGRADE-1: with audio_node stopped the others keep their rates", "[exclusive]") {
   Running c;
   c.start();
   const auto before = c.rates(2);
@@ -40,7 +40,7 @@ TEST_CASE("DEGRADE-1: with audio_node stopped the others go on at their rates", 
   CHECK(c.ear.wait_until([&] { return c.ear.rendered("visual_node") > seen; }, kPatience_s));
 }
 
-TEST_CASE("DEGRADE-2: visual_node, frozen for 2 s, disturbs nobody and then shows now", "[exclusive]") {
+TEST_CASE("DEGRADE-2: visual_node, frozen for 2 s, disturbs no other node and then shows the present state", "[exclusive]") {
   Running c;
   c.start();
   const std::int64_t stale_at_start = c.ear.health("visual_node")->stale_ticks;
@@ -73,7 +73,7 @@ TEST_CASE("DEGRADE-2: visual_node, frozen for 2 s, disturbs nobody and then show
   CHECK(c.all_live(kNodes));
 }
 
-TEST_CASE("DEGRADE-3: when sim_node dies the force fades, all report it and go on, and nothing old hangs", "[exclusive]") {
+TEST_CASE("DEGRADE-3: when sim_node dies the force fades, all nodes report it and resume, and no old contact remains", "[exclusive]") {
   Running c;
   c.start();
   REQUIRE(c.ear.wait_until([&] { return c.ear.force_N() > 0; }, kPatience_s));
@@ -109,7 +109,7 @@ TEST_CASE("DEGRADE-3: when sim_node dies the force fades, all report it and go o
   CHECK(c.all_live(kNodes));
 }
 
-TEST_CASE("A node that joins late gets the scene without anyone restarting", "[exclusive]") {
+TEST_CASE("A node that joins late receives the scene without a restart of other nodes", "[exclusive]") {
   Running c;
   const std::string late = GENERATE(as<std::string>{}, "haptic_node", "audio_node", "visual_node", "thermal_node");
   c.processes.start("sim_node", {tapping_scene()});

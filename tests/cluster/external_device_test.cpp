@@ -53,7 +53,7 @@ struct WithDriver : Running {
 
 }  // namespace
 
-TEST_CASE("A device that a program drives is felt, lost when it is killed or frozen, and felt again", "[exclusive]") {
+TEST_CASE("A device driven by a program is felt, lost when the program is killed or frozen, and felt again", "[exclusive]") {
   const std::string language = GENERATE("C++", "Python");
   CAPTURE(language);
   WithDriver c;
@@ -91,7 +91,7 @@ TEST_CASE("A simulated string device taps the floor like any other hand", "[excl
   CHECK(c.ear.wait_until([&] { return c.ear.hits() >= 3; }, kPatience_s));
 }
 
-TEST_CASE("Two programs that drive one device lose it, until one of them is gone", "[exclusive]") {
+TEST_CASE("A device driven by two programs is lost until one of them ends", "[exclusive]") {
   WithDriver c;
   c.start_touch();
   c.start_driver("C++");

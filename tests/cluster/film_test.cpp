@@ -37,7 +37,7 @@ std::size_t events_of(const RunLog& log, std::int64_t before_end_ns) {
 
 }  // namespace
 
-TEST_CASE("A run that was recorded is drawn into the same film each time, with a flash for every begin and hit") {
+TEST_CASE("A recorded run is drawn into the same film each time, with a flash for every begin and hit") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "4", "--out", run.out()});
   const int status = run.finish(150);

@@ -84,7 +84,7 @@ struct WithHead : Running {
 
 }  // namespace
 
-TEST_CASE("A head that a program moves changes the picture and nothing else, and the view stays when it is lost", "[exclusive]") {
+TEST_CASE("A head that a program moves changes the picture and nothing else, and the view stays after its loss", "[exclusive]") {
   WithHead c;
   c.start_all();
   const Pixels at_rest = c.seen({0, 0, 0}, 0);
@@ -125,8 +125,7 @@ TEST_CASE("A head that a program moves changes the picture and nothing else, and
   CHECK(c.note("visual_node").find("head") == std::string::npos);
 }
 
-TEST_CASE(
-    "A wand that a program moves turns the light to where it is, and the light stays there when it is lost", "[exclusive]") {
+TEST_CASE("A wand that a program moves directs the light to its position, and the light stays there after its loss", "[exclusive]") {
   WithHead c;
   c.start_all();
   c.start_head("wand");

@@ -51,7 +51,9 @@ std::vector<question_t> study() {
 
 }  // namespace
 
-TEST_CASE("What a study asks is answered in the live page by click, key and slider, and onlookers and what is malformed answer nothing") {
+TEST_CASE(
+    "The live page answers questions of a study by click, key and slider, and rejects malformed answers "
+    "and those of observer pages") {
   INFO("install the packages chromium, nodejs and npm, and run scripts/live/bundle");
   const std::filesystem::path page = repository() / "scripts/live/page";
   REQUIRE(std::filesystem::exists("/usr/bin/chromium"));

@@ -50,7 +50,7 @@ std::vector<std::pair<std::string, std::vector<std::uint8_t>>> events_in(const s
 
 }  // namespace
 
-TEST_CASE("All senses render a replayed log, and go on rendering it when one of them is killed") {
+TEST_CASE("All modalities render a replayed log, and continue when one of them is killed") {
   Folder folder;
   const auto log = recorded(folder);
   Processes processes(folder.path() / "again", kLiveRun);
@@ -87,7 +87,7 @@ TEST_CASE("All senses render a replayed log, and go on rendering it when one of 
   for (const char* n : {"haptic_node", "visual_node", "thermal_node"}) CHECK(processes.running(n));
 }
 
-TEST_CASE("A running replay obeys what is written into its pipe") {
+TEST_CASE("A running replay executes the commands from its pipe") {
   Folder folder;
   const auto log = recorded(folder);
   const std::string pipe = folder.path() / "control";
@@ -124,7 +124,7 @@ TEST_CASE("A running replay obeys what is written into its pipe") {
   CHECK(processes.wait_for_exit("replay", kPatience_s) == 0);
 }
 
-TEST_CASE("The stock lcm-logger hears all of what is replayed as it is, and its log is replayed in turn") {
+TEST_CASE("The stock lcm-logger receives all replayed messages unchanged, and its log can be replayed") {
   Folder folder;
   const std::filesystem::path ours = folder.path() / "ours.lcmlog";
   {

@@ -259,8 +259,8 @@ std::int64_t world_at(const std::filesystem::path& path, double at_s) {
 }  // namespace
 
 TEST_CASE(
-    "What a person does in the live page is done on the bus, a frozen or killed browser changes nothing, and the "
-    "log is shown again", "[exclusive]") {
+    "Actions in the live page reach the bus, a frozen or killed browser changes nothing, and the log "
+    "can be replayed in the page", "[exclusive]") {
   require_what_the_browser_needs();
   RunScript run;
   const std::filesystem::path profile = run.folder.path() / "late_warmth.xml";

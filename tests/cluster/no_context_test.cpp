@@ -4,7 +4,7 @@
 using namespace tactus;
 using namespace tactus::cluster;
 
-TEST_CASE("Where no OpenGL context can be had vision ends with what it tried, and the other senses go on", "[smoke]") {
+TEST_CASE("Without an OpenGL context visual_node ends with a list of its attempts, and the other nodes continue", "[smoke]") {
   Seeing c;
   const auto no_vendor = c.folder.path() / "vendor.json";
   std::ofstream(no_vendor) << "{}\n";

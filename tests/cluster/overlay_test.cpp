@@ -4,8 +4,7 @@
 using namespace tactus;
 using namespace tactus::cluster;
 
-TEST_CASE(
-    "Overlays and plots are laid over a running picture and taken off again, and what there is not is refused") {
+TEST_CASE("Overlays and plots are added to a running picture and removed, and unknown ones are rejected") {
   Seeing c;
   c.start_with(c.snapshots());
   const auto before = c.rates(1);

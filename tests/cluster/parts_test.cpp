@@ -20,9 +20,7 @@ std::size_t lines_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE(
-    "A run that is recorded in parts has the results of all of them, and is rendered again from its folder or "
-    "from one") {
+TEST_CASE("A run recorded in parts has the results of all parts, and can be rendered from its folder or from one part") {
   RunScript run;
   run.start(
       {tapping_scene(), "--seconds", "6", "--without", "visual_node", "--split-mb", "2", "--out", run.out()});
@@ -70,7 +68,7 @@ TEST_CASE(
   CHECK(says["length_s"] > 5);
 }
 
-TEST_CASE("Of a run that keeps its newest parts the results are of those, and the others are gone") {
+TEST_CASE("A run that keeps its newest parts has their results, and the older parts are deleted") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "6", "--without", "visual_node", "--split-mb", "1", "--keep", "2",
              "--tags", "none", "--out", run.out()});

@@ -34,7 +34,7 @@ double settled_asynchrony_ms(Running& c, const std::string& a, const std::string
 
 }  // namespace
 
-TEST_CASE("Sound and picture are as far apart as an experiment asks, changed while the cluster runs", "[exclusive]") {
+TEST_CASE("Sound and picture have the requested SOA, also after a change in the running cluster", "[exclusive]") {
   Running c;
   c.start();
   // 100 ms of a base of 200 ms are slewed at 5 % of the time: within 4.5 s.
@@ -49,7 +49,9 @@ TEST_CASE("Sound and picture are as far apart as an experiment asks, changed whi
   CHECK(c.all_live(kNodes));
 }
 
-TEST_CASE("Who decides when the senses present may die: they keep it, and it comes back with what was asked for", "[exclusive]") {
+TEST_CASE(
+    "When sync_node is killed the modalities keep the playout policy, and the restarted sync_node "
+    "publishes the requested one", "[exclusive]") {
   Running c;
   c.start();
   ask_for(c, {"experiment", "--base", "150ms", "--soa", "visual=100ms"});
@@ -66,7 +68,7 @@ TEST_CASE("Who decides when the senses present may die: they keep it, and it com
   CHECK(ask_for(c, {}).find("experiment") != std::string::npos);
 }
 
-TEST_CASE("In the serial loop of 2005 all senses go on, one after the other", "[exclusive]") {
+TEST_CASE("In the serial loop of 2005 all modalities render, one after the other", "[exclusive]") {
   Running c;
   c.start();
   CHECK(ask_for(c, {"itouch2005"}).find("one loop") != std::string::npos);
@@ -74,7 +76,7 @@ TEST_CASE("In the serial loop of 2005 all senses go on, one after the other", "[
   CHECK(c.all_live(kNodes));
 }
 
-TEST_CASE("What the display takes after the fence is in what is reported as presented, and is made up for", "[exclusive]") {
+TEST_CASE("The reported presentation time includes the display latency after the fence, and playout compensates for it", "[exclusive]") {
   Running c;
   c.start();
   c.processes.kill("visual_node");

@@ -20,7 +20,7 @@ int outcomes(const Ear& ear, const std::string& modality, std::int8_t outcome) {
 
 }  // namespace
 
-TEST_CASE("A profile put in force while the cluster runs degrades its own sense alone, and can be taken away", "[exclusive]") {
+TEST_CASE("A profile put in force in a running cluster degrades only its modality, and can be removed", "[exclusive]") {
   Running c;
   c.start();
   const auto before = c.rates(1);
@@ -40,8 +40,7 @@ TEST_CASE("A profile put in force while the cluster runs degrades its own sense 
       c.ear.wait_until([&] { return outcomes(c.ear, "audio", presentation_t::PRESENTED) > heard; }, kPatience_s));
 }
 
-TEST_CASE(
-    "A scene that brings a profile degrades the sense that it names, and no other, until somebody takes it away", "[exclusive]") {
+TEST_CASE("The profile of a scene degrades the modality that it names and no other, until a user removes it", "[exclusive]") {
   Running c;
   std::stringstream text;
   text << std::ifstream(tapping_scene()).rdbuf();

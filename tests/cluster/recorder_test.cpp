@@ -54,7 +54,7 @@ std::vector<std::int64_t> numbers_in(const std::filesystem::path& log) {
 
 }  // namespace
 
-TEST_CASE("Of a recorder that is killed at most the last 100 ms are missing, and its file is whole up to there", "[exclusive]") {
+TEST_CASE("A killed recorder loses at most the last 100 ms, and its file is valid up to that point", "[exclusive]") {
   Folder folder;
   Processes processes(folder.path(), Running::kRunId);
   Sender sender;
@@ -71,7 +71,7 @@ TEST_CASE("Of a recorder that is killed at most the last 100 ms are missing, and
   for (std::size_t i = 0; i < numbers.size(); ++i) CHECK(numbers[i] == static_cast<std::int64_t>(i));
 }
 
-TEST_CASE("A recorder whose disk is full says so, and its file is whole up to there", "[exclusive]") {
+TEST_CASE("A recorder with a full disk reports it, and its file is valid up to that point", "[exclusive]") {
   Folder folder;
   const std::filesystem::path small = folder.path() / "small";
   std::filesystem::create_directory(small);
@@ -104,7 +104,9 @@ TEST_CASE("A recorder whose disk is full says so, and its file is whole up to th
   umount(small.c_str());
 }
 
-TEST_CASE("Of a node that floods all is recorded that the kernel delivers, and what others say besides", "[exclusive]") {
+TEST_CASE(
+    "The recorder stores all messages that the kernel delivers while a node floods the bus, and those "
+    "of the other nodes", "[exclusive]") {
   Folder folder;
   Processes processes(folder.path(), Running::kRunId);
   Sender sender;

@@ -7,7 +7,7 @@
 using namespace tactus;
 using namespace tactus::cluster;
 
-TEST_CASE("The stock lcm-logplayer replays a log into a running audio_node and visual_node, and they render it", "[smoke]") {
+TEST_CASE("audio_node and visual_node render a log that the stock lcm-logplayer replays", "[smoke]") {
   Folder folder;
   {
     Running c;

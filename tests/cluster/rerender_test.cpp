@@ -24,7 +24,9 @@ json changed_of(const json& result, const std::string& sense) {
 
 }  // namespace
 
-TEST_CASE("A recorded run is rendered to the same bytes twice, sounds within a millisecond of itself, and a profile changes its sense alone", "[exclusive]") {
+TEST_CASE(
+    "A recorded run renders twice to the same bytes, within 1 ms of its live sound, and a profile "
+    "changes only its modality", "[exclusive]") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "5", "--out", run.out()});
   const int status = run.finish(150);

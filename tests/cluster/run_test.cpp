@@ -24,7 +24,7 @@ void check_keys(const json& object, const std::vector<std::string>& keys) {
 
 }  // namespace
 
-TEST_CASE("scripts/run leaves the log, sound, pictures, tables and a whole summary", "[smoke]") {
+TEST_CASE("scripts/run writes the log, sound, pictures, tables and a complete summary", "[smoke]") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "8", "--out", run.out()});
   const int status = run.finish(kLongest_s);
@@ -59,7 +59,7 @@ TEST_CASE("scripts/run leaves the log, sound, pictures, tables and a whole summa
   for (const auto& [channel, counts] : summary["bus"].items()) check_keys(counts, {"messages", "bytes", "gaps"});
 }
 
-TEST_CASE("In two groups every sense presents what it owes, and the world keeps its rate", "[exclusive]") {
+TEST_CASE("With two groups every modality presents its expected events, and the world keeps its rate", "[exclusive]") {
   RunScript run;
   run.start({"--seconds", "8", "--set", "sim_node.groups=dual", "--out", run.out()});
   const int status = run.finish(kLongest_s);
@@ -73,7 +73,7 @@ TEST_CASE("In two groups every sense presents what it owes, and the world keeps 
   }
 }
 
-TEST_CASE("Without audio_node the others run as before, in the default scene", "[exclusive]") {
+TEST_CASE("Without audio_node the others run unchanged, in the default scene", "[exclusive]") {
   RunScript run;
   run.start({"--seconds", "6", "--without", "audio_node", "--out", run.out()});
   const int status = run.finish(kLongest_s);
@@ -84,7 +84,7 @@ TEST_CASE("Without audio_node the others run as before, in the default scene", "
   CHECK(json::parse(contents(run.out() / "summary.json"))["absent"] == json::array({"audio"}));
 }
 
-TEST_CASE("A reader that closes the pipe costs no results, and nothing keeps running") {
+TEST_CASE("A closed output pipe loses no results, and leaves no process behind") {
   RunScript run;
   const std::string script = (repository() / "scripts/run").string();
   run.processes.spawn("pipe", {"env", "TACTUS_BIN=" + programs().string(), "sh", "-c",
@@ -100,7 +100,7 @@ TEST_CASE("A reader that closes the pipe costs no results, and nothing keeps run
   }
 }
 
-TEST_CASE("What is wrong is said in one sentence before anything starts", "[smoke]") {
+TEST_CASE("Errors of the command line are reported in one sentence before any process starts", "[smoke]") {
   struct Wrong {
     std::vector<std::string> options;
     std::string names;
@@ -133,7 +133,7 @@ TEST_CASE("What is wrong is said in one sentence before anything starts", "[smok
   CHECK_FALSE(std::filesystem::exists(run.folder.path() / "out"));
 }
 
-TEST_CASE("A busy port is named, with the remedy, when the machine's network is used", "[exclusive]") {
+TEST_CASE("A busy port of the machine's network is named, with the remedy", "[exclusive]") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "30", "--network", "host", "--without", "visual_node", "--out", run.out("a")}, "first");
   const auto up = [&] {
@@ -156,7 +156,7 @@ TEST_CASE("A busy port is named, with the remedy, when the machine's network is 
   CHECK(std::filesystem::exists(run.out("a") / "summary.json"));
 }
 
-TEST_CASE("Two runs at once do not hear each other", "[exclusive]") {
+TEST_CASE("Two simultaneous runs do not receive each other's messages", "[exclusive]") {
   RunScript run;
   const std::vector<std::string> names{"a", "b"};
   for (const std::string& name : names)
@@ -172,7 +172,7 @@ TEST_CASE("Two runs at once do not hear each other", "[exclusive]") {
   }
 }
 
-TEST_CASE("When scripts/run is killed outright nothing keeps running") {
+TEST_CASE("A killed scripts/run leaves no process behind") {
   const std::string network = GENERATE(as<std::string>{}, "private", "host");
   RunScript run;
   run.start({tapping_scene(), "--seconds", "60", "--network", network, "--out", run.out()});

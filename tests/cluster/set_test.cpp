@@ -47,9 +47,7 @@ struct Set : Running {
 
 }  // namespace
 
-TEST_CASE(
-    "A force limit that is tightened while the hand taps holds from the answer on, and may be loosened to where "
-    "it was", "[smoke]") {
+TEST_CASE("A force limit lowered during taps holds from the reply on, and can be raised to its former value", "[smoke]") {
   Set c;
   c.start();
   const double before_N = c.largest_N(2);
@@ -63,7 +61,7 @@ TEST_CASE(
   CHECK(c.ear.wait_until([&] { return c.lives("haptic_node"); }, kPatience_s));
 }
 
-TEST_CASE("What a running node may not or cannot do is refused in a sentence, and changes nothing", "[smoke]") {
+TEST_CASE("A running node rejects forbidden and impossible settings with a sentence, and keeps its values", "[smoke]") {
   Set c;
   c.start();
   CHECK_THAT(c.ask({"haptic_node", "force_limit=20N"}, 1), Catch::Contains("force_limit"));

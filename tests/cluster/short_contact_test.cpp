@@ -141,18 +141,18 @@ void check_all_but(const std::string& degraded) {
 
 }  // namespace
 
-TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, when no sense is degraded", "[exclusive]") {
+TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, without degradation", "[exclusive]") {
   check_all_but("");
 }
-TEST_CASE("A 3 ms contact between two video frames flashes and warms and is felt, with sound degraded", "[exclusive]") {
+TEST_CASE("A 3 ms contact between two video frames flashes, warms and is felt, with degraded sound", "[exclusive]") {
   check_all_but("audio");
 }
-TEST_CASE("A 3 ms contact between two video frames sounds and warms and is felt, with vision degraded", "[exclusive]") {
+TEST_CASE("A 3 ms contact between two video frames sounds, warms and is felt, with degraded vision", "[exclusive]") {
   check_all_but("visual");
 }
-TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, with touch degraded", "[exclusive]") {
+TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, with degraded touch", "[exclusive]") {
   check_all_but("haptic");
 }
-TEST_CASE("A 3 ms contact between two video frames flashes and sounds and is felt, with warmth degraded", "[exclusive]") {
+TEST_CASE("A 3 ms contact between two video frames flashes, sounds and is felt, with degraded warmth", "[exclusive]") {
   check_all_but("thermal");
 }

@@ -32,8 +32,8 @@ const std::vector<std::string> kOthers{"haptic", "audio", "visual", "thermal"};
 }  // namespace
 
 TEST_CASE(
-    "A sixth sense joins a running cluster: it is in health, in the report and in the summary, with a debt and "
-    "asynchronies", "[exclusive]") {
+    "A sixth modality joins a running cluster: health, report and summary contain it, with expected "
+    "events and asynchronies", "[exclusive]") {
   Running c;
   auto& reports = c.ear.bus().queue<sync_report_t>(channels::kSyncReport, 256);
   c.processes.start("recorder");
@@ -82,7 +82,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A profile delays the sixth sense by just its 50 ms, and no other sense", "[exclusive]") {
+TEST_CASE("A profile delays the sixth modality by its 50 ms, and no other modality", "[exclusive]") {
   Running c;
   c.start();
   c.processes.start("wind_node");

@@ -27,7 +27,7 @@ const json& channel(const json& all, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("A look at the bus of a running cluster lists its channels with rates, losses and ages", "[exclusive]") {
+TEST_CASE("spy lists the channels of a running cluster with rates, losses and ages", "[exclusive]") {
   Running c;
   c.start();
   const std::string file = c.folder.path() / "spy.json";
@@ -53,7 +53,7 @@ TEST_CASE("A look at the bus of a running cluster lists its channels with rates,
   CHECK_THAT(c.processes.said("spy"), Catch::Contains("TOOL_STATE") && Catch::Contains("kB/s"));
 }
 
-TEST_CASE("In a terminal keys show the fields of a channel and the variables of all nodes, and end it as it was") {
+TEST_CASE("In a terminal keys of spy show the fields of a channel and the variables of all nodes, and quitting restores the terminal") {
   Running c;
   c.start();
   const std::string typescript = c.folder.path() / "typescript";
@@ -76,7 +76,7 @@ TEST_CASE("In a terminal keys show the fields of a channel and the variables of 
   CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
 }
 
-TEST_CASE("Without a terminal or anything to hear, spy says so in one sentence", "[smoke]") {
+TEST_CASE("Without a terminal or without messages, spy reports it in one sentence", "[smoke]") {
   Running c;
   c.processes.spawn("none", {programs() / "spy"});
   CHECK(c.processes.wait_for_exit("none", 20) == 1);

@@ -21,7 +21,7 @@ long number_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-TEST_CASE("A running picture is streamed on request as whole JPEG files, in order, and the loop keeps its rate") {
+TEST_CASE("A running picture is streamed on request as complete JPEG files, in order, and the loop keeps its rate") {
   Seeing c;
   c.start_with(c.snapshots());
   const auto before = c.rates(2);

@@ -28,7 +28,7 @@ std::int64_t run_id_of(RunScript& run) {
 
 }  // namespace
 
-TEST_CASE("DEGRADE-4: any node that is killed rejoins alone", "[exclusive]") {
+TEST_CASE("DEGRADE-4: every killed node rejoins by itself", "[exclusive]") {
   RunScript run;
   // Uses the network of this test, so that the test receives the bus.
   run.start({tapping_scene(), "--seconds", "120", "--network", "host", "--out", run.out()});
@@ -65,7 +65,7 @@ TEST_CASE("DEGRADE-4: any node that is killed rejoins alone", "[exclusive]") {
   CHECK(nothing_lives(5));
 }
 
-TEST_CASE("A node that keeps dying is left lost and named, and the others go on", "[exclusive]") {
+TEST_CASE("A node that dies repeatedly stays lost and is named, and the others continue", "[exclusive]") {
   RunScript run;
   run.start(
       {tapping_scene(), "--seconds", "14", "--network", "host", "--without", "visual_node", "--out", run.out()});
@@ -84,7 +84,7 @@ TEST_CASE("A node that keeps dying is left lost and named, and the others go on"
   CHECK(run.processes.said("run").find("thermal_node: could not be kept running") != std::string::npos);
 }
 
-TEST_CASE("tactus attach runs a command inside the cluster's own network") {
+TEST_CASE("tactus attach runs a command in the network of the cluster") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "40", "--network", "private", "--without", "visual_node", "--out",
              run.out()});

@@ -19,7 +19,7 @@ std::vector<std::string> without(const std::string& node) {
 
 }  // namespace
 
-TEST_CASE("DEGRADE-1 on two machines: with audio_node stopped over there the others go on at their rates", "[exclusive]") {
+TEST_CASE("DEGRADE-1 on two machines: with audio_node stopped on the other machine the rest keep their rates", "[exclusive]") {
   TwoMachines m;
   if (!m.start()) return;
   const auto before = m.running->rates(2);
@@ -37,7 +37,8 @@ TEST_CASE("DEGRADE-1 on two machines: with audio_node stopped over there the oth
 }
 
 TEST_CASE(
-    "DEGRADE-2 on two machines: visual_node, frozen over there for 2 s, disturbs nobody and then shows now", "[exclusive]") {
+    "DEGRADE-2 on two machines: visual_node, frozen there for 2 s, disturbs no other node and then "
+    "shows the present state", "[exclusive]") {
   TwoMachines m;
   if (!m.start()) return;
   const auto before = m.running->rates(2);
@@ -62,8 +63,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "DEGRADE-3 on two machines: when sim_node dies the force fades, all on both report it, and go on with the "
-    "next one", "[exclusive]") {
+    "DEGRADE-3 on two machines: when sim_node dies the force fades, all nodes report it and resume with "
+    "the next sim_node", "[exclusive]") {
   TwoMachines m;
   if (!m.start()) return;
   REQUIRE(m.ear().wait_until([&] { return m.ear().force_N() > 0; }, kPatience_s));
@@ -90,7 +91,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("DEGRADE-4 on two machines: any node that is killed and started again rejoins alone", "[exclusive]") {
+TEST_CASE("DEGRADE-4 on two machines: every killed and restarted node rejoins by itself", "[exclusive]") {
   TwoMachines m;
   if (!m.start()) return;
   for (const std::string& node : kNodes) {
@@ -104,7 +105,7 @@ TEST_CASE("DEGRADE-4 on two machines: any node that is killed and started again 
   for (const std::string& node : kNodes) CHECK(m.ear().rejoined(node) == 1);
 }
 
-TEST_CASE("On two machines no event is lost, and no sense's asynchrony is that of the wrong clock", "[exclusive]") {
+TEST_CASE("On two machines no event is lost, and all asynchronies are converted to one clock", "[exclusive]") {
   TwoMachines m;
   if (!m.start()) return;
   const auto source = static_cast<std::int32_t>(sync::fnv1a_32("sync_node"));
@@ -135,8 +136,8 @@ TEST_CASE("On two machines no event is lost, and no sense's asynchrony is that o
 }
 
 TEST_CASE(
-    "While lcm-logplayer replays a log, one sense is stopped, another frozen and a third killed, and the rest "
-    "render on", "[exclusive]") {
+    "While lcm-logplayer replays a log, one modality is stopped, another frozen and a third killed, and "
+    "the rest keep rendering", "[exclusive]") {
   Folder folder;
   {
     Running c;

@@ -126,7 +126,7 @@ struct Story {
 
 }  // namespace
 
-TEST_CASE("Of several hands one goes and another comes, and neither the world nor the hand that stays notices", "[exclusive]") {
+TEST_CASE("One of several hands leaves and another joins without an effect on the simulation and the remaining hand", "[exclusive]") {
   // Repeats the run once when the machine was too slow even before the first change: there is no baseline then.
   auto story = std::make_unique<Story>();
   for (int tries = 1; tries < 3 && figures(RunLog(story->c.out()), story->two).sim_Hz < 990; ++tries) {

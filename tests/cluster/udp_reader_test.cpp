@@ -39,7 +39,7 @@ Bytes numbered(int i, std::size_t size = 300) {
 
 }  // namespace
 
-TEST_CASE("Messages of both ports come in order, also those that came while nobody read", "[smoke]") {
+TEST_CASE("Messages of both ports are read in order, also those that arrived between reads", "[smoke]") {
   sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);
   Datagrams wire;
   constexpr int kMany = 4000;
@@ -59,7 +59,7 @@ TEST_CASE("Messages of both ports come in order, also those that came while nobo
   CHECK(heard.size() == 2);
 }
 
-TEST_CASE("A reader that waits wakes when something comes, and reads no more than it asked for") {
+TEST_CASE("A waiting reader wakes when a message arrives, and reads at most the requested number") {
   sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);
   Datagrams wire;
   std::thread later([&] {
@@ -81,8 +81,7 @@ TEST_CASE("A reader that waits wakes when something comes, and reads no more tha
   CHECK(count == 10);
 }
 
-TEST_CASE(
-    "What is too long, in one datagram or in fragments, is told as too long, and what is noise is not told") {
+TEST_CASE("Oversized messages, whole or in fragments, are reported as oversized, and noise is ignored") {
   sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);
   Datagrams wire;
   wire.send_message("LONG", Bytes(50000));
@@ -99,7 +98,7 @@ TEST_CASE(
   CHECK(fits == std::map<std::string, bool>{{"LONG", false}, {"F", false}, {"LAST", true}});
 }
 
-TEST_CASE("Another group on the same port is not heard") {
+TEST_CASE("Messages of another multicast group on the same port are not received") {
   sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);
   sync::UdpReader other("239.255.76.68", channels::kDefaultPort);
   Datagrams wire;
@@ -108,7 +107,7 @@ TEST_CASE("Another group on the same port is not heard") {
   CHECK(read(other, 0.1, 1).empty());
 }
 
-TEST_CASE("What comes in by another network, where another program joined the group, is not heard") {
+TEST_CASE("Messages from another network interface, where another program joined the group, are not received") {
   const Cable cable;
   if (!cable.made()) {
     WARN("skipped: this system allows no second network with a cable to it");

@@ -125,15 +125,14 @@ struct TwoHosts {
 
 }  // namespace
 
-TEST_CASE("Two walls on two hosts show the same instant and the same head in 99 of 100 frames", "[exclusive]") {
+TEST_CASE("Two walls on two hosts show the same time and the same head pose in 99 of 100 frames", "[exclusive]") {
   TwoHosts c;
   if (!c.start()) return;
   c.watch(100);
   c.check_agreed();
 }
 
-TEST_CASE(
-    "Beside a wall that draws ten pictures a second another keeps its rate, and what both show is the same", "[exclusive]") {
+TEST_CASE("A wall keeps its rate beside another that draws ten pictures a second, and both show the same state", "[exclusive]") {
   TwoHosts c;
   if (!c.start({"--emulate-load", "5"})) return;  // wastes five of six periods
   c.watch(20);
@@ -147,7 +146,7 @@ TEST_CASE(
   CHECK(share < 0.3);  // 10 of 60, and other work of the machine
 }
 
-TEST_CASE("Walls that wait for one another show the same, and one that is dead is waited for no longer", "[exclusive]") {
+TEST_CASE("Walls that wait for each other show the same state, and stop waiting for a dead wall", "[exclusive]") {
   TwoHosts c;
   if (!c.start({}, "wait")) return;
   c.watch(100);

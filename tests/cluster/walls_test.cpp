@@ -43,7 +43,9 @@ struct TwoWalls : Running {
 
 }  // namespace
 
-TEST_CASE("Of two walls of a room each shows every event, and one that is frozen or killed is missed by nobody", "[exclusive]") {
+TEST_CASE(
+    "Each of two walls of a room shows every event, and a frozen or killed wall does not disturb the "
+    "other processes", "[exclusive]") {
   TwoWalls c;
   c.start_all();
   CHECK(c.draws_on(TwoWalls::kLeft));

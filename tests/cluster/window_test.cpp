@@ -125,8 +125,7 @@ X.XCloseDisplay(d)
 
 }  // namespace
 
-TEST_CASE(
-    "A window shows the picture. Its keys pause, step and reset the world, lay overlays and fill the screen") {
+TEST_CASE("A window shows the picture, and its keys pause, step and reset the world, toggle overlays and fill the screen") {
   Desktop c;
   c.start_window();
   c.ear.listen(1);
@@ -162,8 +161,7 @@ TEST_CASE(
   CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
 }
 
-TEST_CASE(
-    "A question of a study is drawn in the window, and answered by its keys, which do nothing else meanwhile") {
+TEST_CASE("The window draws a question of a study and answers it by its keys, which have no other effect meanwhile") {
   Desktop c;
   c.start_window();
   c.ear.listen(1);
@@ -229,7 +227,7 @@ TEST_CASE(
   CHECK(c.hear_until([&] { return c.rate > 0; }));
 }
 
-TEST_CASE("The mouse in the window is a device that points at what is seen under it") {
+TEST_CASE("The mouse in the window is a device that points at the object under the cursor") {
   Desktop c;
   c.start_window();
   c.x({"mousemove", "320", "400"});
@@ -240,7 +238,7 @@ TEST_CASE("The mouse in the window is a device that points at what is seen under
   CHECK(c.goes_on("visual_node"));
 }
 
-TEST_CASE("The spot light shines at what the mouse is held on, and stays there when it is let go", "[exclusive]") {
+TEST_CASE("The spot light follows the pressed mouse, and stays in place after its release", "[exclusive]") {
   Desktop c;
   c.start_server();
   const std::string run = std::to_string(Running::kRunId);
@@ -287,9 +285,7 @@ TEST_CASE("The spot light shines at what the mouse is held on, and stays there w
   CHECK(c.aimed_at.size() == 1);
 }
 
-TEST_CASE(
-    "A window that is not seen or next to nothing, or larger than its screen, stops nobody. A closed one ends the "
-    "node") {
+TEST_CASE("A hidden, tiny or oversized window stops no node, and a closed window ends visual_node") {
   Desktop c;
   c.start_window({"--set", "window_width=16384", "--set", "window_height=1", "--set", "monitor=7", "--set",
                   "stereo=quad_buffer"});
@@ -323,8 +319,7 @@ TEST_CASE(
   CHECK(c.processes.wait_for_exit("visual_node", kPatience_s) == 0);
 }
 
-TEST_CASE(
-    "A display server that is killed takes the window along and not the node. Without one there is a sentence") {
+TEST_CASE("A killed display server closes the window and not the node, and without a display server the start fails with a message") {
   Desktop c;
   c.start_window();
   const auto before = c.rates(1);
@@ -353,7 +348,7 @@ TEST_CASE(
   CHECK(c.others_live());
 }
 
-TEST_CASE("A display server that stands still ends the node in a sentence, and nobody else notices") {
+TEST_CASE("A frozen display server ends visual_node with a message, and the other nodes continue") {
   Desktop c;
   c.start_window();
   const auto before = c.rates(1);

@@ -41,7 +41,7 @@ std::string why_not(Answers& answers, const AnswerThus& answer, sync::HostTime n
 
 }  // namespace
 
-TEST_CASE("A page is told what is asked, and its answer carries the id of the question and how it was given") {
+TEST_CASE("A page receives the question, and its answer carries the question's id and the kind of input") {
   Answers a(7);
   CHECK(a.told(at(0)).is_null());
   a.push(question(question_t::CHOICE), at(0));
@@ -58,7 +58,7 @@ TEST_CASE("A page is told what is asked, and its answer carries the id of the qu
   CHECK_FALSE(a.take_answer());
 }
 
-TEST_CASE("An answer of a page is sent again for each repetition of its question, and not with the next question") {
+TEST_CASE("An answer of a page is repeated for each repetition of its question, and not for the next question") {
   Answers a(7);
   a.push(question(question_t::CHOICE, 0), at(0));
   a.answer({a.told(at(0))["question"], 0, 0, 0}, at(0));
@@ -71,7 +71,7 @@ TEST_CASE("An answer of a page is sent again for each repetition of its question
   CHECK(a.told(at(0.6))["answered"] == false);
 }
 
-TEST_CASE("An answer that fits no question is refused with what is wrong, and none is sent") {
+TEST_CASE("An answer that fits no question is rejected with a reason, and is not published") {
   Answers a(7);
   CHECK_THAT(why_not(a, {"5.1", 0, 0, 0}, at(0)), Catch::Contains("not asked any more"));
   a.push(question(question_t::CHOICE, 0), at(0));
@@ -97,7 +97,7 @@ TEST_CASE("An answer that fits no question is refused with what is wrong, and no
   CHECK_FALSE(why_not(a, {a.told(at(3))["question"], -1, 0, 0}, at(3)).empty());
 }
 
-TEST_CASE("A page sees who leads, and that nobody leads any more. Another run is not heeded, but in a log") {
+TEST_CASE("A page shows the trial runner and its end, and ignores questions of another run, except in a log") {
   Answers a(7), log(0);
   a.push(question(question_t::READ, 0, 3, 8), at(0));
   log.push(question(question_t::READ, 0, 3, 8), at(0));

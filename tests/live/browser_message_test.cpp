@@ -66,7 +66,7 @@ bool taken(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("Each message of a page is read as what it says") {
+TEST_CASE("Each kind of page message is parsed") {
   const auto watch = std::get<WatchThese>(parse_browser_message(kGood[0]));
   CHECK(watch.names == std::vector<std::string>{"TOOL_STATE:force_N.z", "sim_node.work.collision"});
   CHECK(std::get<Command>(parse_browser_message(kGood[1])).kind == sim_command_t::PAUSE);
@@ -88,7 +88,7 @@ TEST_CASE("Each message of a page is read as what it says") {
   CHECK((answer.question == "4.11" && answer.choice == 1 && answer.number == 0 && answer.after_ns == 350'000'000));
 }
 
-TEST_CASE("What is no message of a page, or beyond its range, is refused with a sentence") {
+TEST_CASE("Malformed and out-of-range page messages are rejected with a sentence") {
   for (const char* text :
        {"", "null", "[]", "{}", "{\"t\":1}", R"({"t":"fly"})", R"({"t":"command"})", R"({"t":"command","what":"push"})",
         R"({"t":"command","what":"set"})", R"({"t":"command","what":"step"})", R"({"t":"command","what":"step","steps":0})",
@@ -118,7 +118,7 @@ TEST_CASE("What is no message of a page, or beyond its range, is refused with a 
   CHECK_FALSE(taken(std::string(kMaxBrowserBytes, '[')));  // deep nesting
 }
 
-TEST_CASE("10,000 mutated messages are taken within their bounds or refused with a sentence") {
+TEST_CASE("10,000 mutated messages are parsed within their bounds or rejected with a sentence") {
   std::mt19937 random(20);
   const std::string letters = "{}[]\":,.-+eE0123456789truefalsnu\\ \x01\x7f\xc3\xff";
   int good = 0, refused = 0;

@@ -60,7 +60,7 @@ struct Page {
 
 }  // namespace
 
-TEST_CASE("A command is repeated until it is answered, with one number, and the answer is told") {
+TEST_CASE("A command is repeated with one id until its reply, and the reply is shown") {
   Page p;
   p.controls.command({sim_command_t::STEP, 25}, p.now);
   p.pass(0.45);
@@ -89,7 +89,7 @@ TEST_CASE("A command is repeated until it is answered, with one number, and the 
   CHECK(p.told.size() == 1);
 }
 
-TEST_CASE("A command that nobody answers is given up after three seconds, with a sentence") {
+TEST_CASE("A command without a reply fails after three seconds, with a sentence") {
   Page p;
   p.controls.command({sim_command_t::PAUSE, 0}, p.now);
   p.pass(10);
@@ -99,7 +99,7 @@ TEST_CASE("A command that nobody answers is given up after three seconds, with a
   CHECK_FALSE(p.told[0].second);
 }
 
-TEST_CASE("Sliders begin from the profile in force, and the newest profile is the one that is shown") {
+TEST_CASE("Sliders start from the profile in force, and show the newest profile") {
   Page p;
   CHECK_FALSE(p.controls.profile());
   p.in_force(R"(<profile name="by hand" seed="3"><degrade modality="visual" jitter="5ms"/></profile>)", kRealtime_ns + 50);
@@ -137,7 +137,7 @@ TEST_CASE("Sliders begin from the profile in force, and the newest profile is th
   }
 }
 
-TEST_CASE("Tags are asked for once a second as long as they are wanted") {
+TEST_CASE("Tags are requested once a second while a page watches them") {
   Page p;
   p.controls.want_tags({"sim_node.work.collision"}, p.now);
   p.pass(2.95);
@@ -151,7 +151,7 @@ TEST_CASE("Tags are asked for once a second as long as they are wanted") {
   CHECK(Page::all(p.tags).back().patterns == std::vector<std::string>{"*"});  // more than a request can name
 }
 
-TEST_CASE("Nobody takes hold of a tool before the scene is known") {
+TEST_CASE("No page can move a tool before the scene is known") {
   Page p;
   CHECK_THROWS_WITH(p.controls.hand({0, 0, 0, false}, 1.33, p.now), Catch::Contains("not known yet"));
   p.pass(0.1);

@@ -74,7 +74,7 @@ struct Fed {
 
 }  // namespace
 
-TEST_CASE("An event and what became of it are told once, with the latency between them") {
+TEST_CASE("An event and its presentation are sent once, with the latency between them") {
   Fed f;
   for (int copy = 0; copy < 3; ++copy) {  // events and reports are repeated on the bus
     f.take(channels::kContactEvents, hit(1, 100));
@@ -102,7 +102,7 @@ TEST_CASE("Times of two clocks are not compared: the presentation is drawn at it
   CHECK(news["presented"][0][4].is_null());
 }
 
-TEST_CASE("Nodes are told with their health four times a second, and as lost when they are silent") {
+TEST_CASE("The health of nodes is sent four times a second, and silent nodes are sent as lost") {
   Fed f;
   f.take(channels::kNodeHealth, health("audio_node"), 0);
   json first = f.feed.news(at(0.1));
@@ -119,7 +119,7 @@ TEST_CASE("Nodes are told with their health four times a second, and as lost whe
   CHECK(f.feed.state(at(2))["health"].empty());
 }
 
-TEST_CASE("Of another run nothing is told, and of a log all") {
+TEST_CASE("Events of another run are ignored, and a log shows all runs") {
   Fed live, log{Feed(0)};
   for (Fed* f : {&live, &log}) {
     f->take(channels::kNodeHealth, health("audio_node", kRun + 1));
@@ -130,7 +130,7 @@ TEST_CASE("Of another run nothing is told, and of a log all") {
   CHECK(log.feed.state(at(0))["health"].size() == 1);
 }
 
-TEST_CASE("A flood is bounded and what is left out counted, and hostile bytes are counted and tell nothing") {
+TEST_CASE("A flood is bounded and its dropped events are counted, and malformed messages are counted and ignored") {
   Fed f;
   for (int i = 0; i < 10'000; ++i) {
     f.take(channels::kContactEvents, hit(i, i));

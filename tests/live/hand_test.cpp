@@ -27,7 +27,7 @@ Vector3d place(const device_state_t& m) { return to_eigen(m.pose.position_m); }
 
 }  // namespace
 
-TEST_CASE("A place in the picture is a place on the ray behind it") {
+TEST_CASE("A point in the picture is a point on its view ray") {
   // A camera at the origin that looks along +x with 90 degrees from left to right: tan 45 degrees is 1.
   CHECK(behind_pixel(scene(), kAspect, 0, 0, 2).isApprox(Vector3d(2, 0, 0)));
   CHECK(behind_pixel(scene(), kAspect, 1, 0, 2).isApprox(Vector3d(2, -2, 0)));
@@ -50,7 +50,7 @@ TEST_CASE("A place in the picture is a place on the ray behind it") {
   }
 }
 
-TEST_CASE("The hand begins at the tool and follows the mouse in the tool's plane, no faster than its limit") {
+TEST_CASE("The hand starts at the tool and follows the mouse in the tool's plane, up to its speed limit") {
   Hand hand;
   const Vector3d tool(0.5, 0.1, -0.05);
   hand.aim({0.4, 0.2, 0, false}, scene(), kAspect, tool, at(0));
@@ -75,7 +75,7 @@ TEST_CASE("The hand begins at the tool and follows the mouse in the tool's plane
   CHECK(to_eigen(m->velocity_m_s).norm() == 0);
 }
 
-TEST_CASE("However the mouse jumps, two places of the hand lie no farther apart than its speed allows") {
+TEST_CASE("The hand keeps its speed limit for any jump of the mouse") {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> unit(-1, 1);
   Hand hand;
@@ -97,7 +97,7 @@ TEST_CASE("However the mouse jumps, two places of the hand lie no farther apart 
   }
 }
 
-TEST_CASE("A silent page lets go, and who takes hold again begins where the tool is then") {
+TEST_CASE("A silent page releases the hand, and the next grasp starts at the tool's position") {
   Hand hand;
   CHECK_FALSE(hand.state(at(0)));  // the hand is not held
   hand.aim({0, 0, 0, false}, scene(), kAspect, Vector3d(1, 0, 0), at(0));

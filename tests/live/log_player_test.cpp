@@ -49,7 +49,7 @@ struct Playing {
 
 }  // namespace
 
-TEST_CASE("A log is played at its own speed, each event once and in order") {
+TEST_CASE("A log is replayed at its own speed, each event once and in order") {
   Playing p;
   CHECK(p.player.length_s() == Approx(59.99));
   for (int i = 0; i < 200; ++i) p.advance(0.05);
@@ -76,7 +76,7 @@ TEST_CASE("A log is played at its own speed, each event once and in order") {
   }
 }
 
-TEST_CASE("Wherever a log is wound to, it stands there, and what lay three seconds before is told first") {
+TEST_CASE("A seek to any time stops there and first sends the events of the three seconds before it") {
   Playing p;
   p.player.play(false, 1);
   std::mt19937 random(9);
@@ -101,7 +101,7 @@ TEST_CASE("Wherever a log is wound to, it stands there, and what lay three secon
   CHECK(p.player.position_s() == 0);
 }
 
-TEST_CASE("A log is open at once, and its length grows while it is read through") {
+TEST_CASE("A log opens at once, and its known length grows while it is scanned") {
   const auto log = minute();
   LogPlayer player{std::span<const std::uint8_t>(log->bytes)};
   double before_s = 0;
@@ -112,7 +112,7 @@ TEST_CASE("A log is open at once, and its length grows while it is read through"
   CHECK(player.length_s() == Approx(59.99));
 }
 
-TEST_CASE("What is no log is refused with a sentence, and a damaged one is played around its damage") {
+TEST_CASE("A file that is no log is rejected with a sentence, and a damaged log is replayed without its damaged part") {
   const std::vector<std::uint8_t> nothing, text(1000, 'x');
   CHECK_THROWS_WITH(LogPlayer{std::span(nothing)}, Catch::Contains("no event"));
   CHECK_THROWS_WITH(LogPlayer{std::span(text)}, Catch::Contains("no event"));

@@ -5,7 +5,7 @@
 
 using namespace tactus::live;
 
-TEST_CASE("Only the page that was served itself, with its token, may talk to the server") {
+TEST_CASE("Only the served page, with its token, may connect to the server") {
   const Access access{8931, true, "0123456789abcdef"};
   CHECK(host_allowed("127.0.0.1:8931", access));
   CHECK(host_allowed("localhost:8931", access));

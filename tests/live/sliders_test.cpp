@@ -32,7 +32,7 @@ bool same(const Sliders& a, const Sliders& b) {
 
 }  // namespace
 
-TEST_CASE("Sliders show what a profile says always and of all contacts, and that it says more") {
+TEST_CASE("Sliders show the unconditional operators of a profile, and that it has others") {
   const auto shown = shown_of(kRich);
   CHECK(same(shown.at("audio").sliders, {40, 0, 0.05}));
   CHECK(same(shown.at("haptic").sliders, {0, 50, 0}));
@@ -47,7 +47,7 @@ TEST_CASE("Sliders show what a profile says always and of all contacts, and that
   CHECK_THROWS_AS(shown_of("<profile"), std::invalid_argument);
 }
 
-TEST_CASE("A slider changes what it stands for, and all else of the profile in force stays") {
+TEST_CASE("A slider changes its own operator, and the rest of the profile in force stays") {
   auto at = sliders_of(kRich);
   at["audio"].delay_ms = 90;
   const auto changed = sync::parse_profile(slid(kRich, at), "changed");
@@ -86,7 +86,7 @@ TEST_CASE("A slider changes what it stands for, and all else of the profile in f
   }
 }
 
-TEST_CASE("Wherever the sliders stand, the profile is one, and shows them where they were left") {
+TEST_CASE("All slider positions give a valid profile, which sets the sliders to the same positions") {
   std::mt19937 random(5);
   const auto share = [&] { return random() % 4 == 0 ? 0.0 : static_cast<double>(random() % 1001) / 1000; };
   for (int i = 0; i < 2000; ++i) {

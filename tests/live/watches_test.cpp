@@ -34,7 +34,7 @@ struct Watching {
 
 }  // namespace
 
-TEST_CASE("A page is told the values of what it watches, once, and of nothing else") {
+TEST_CASE("A page receives each value of its watched variables once, and no others") {
   Watching w;
   CHECK(w.watches.wants(channels::kToolState));
   CHECK_FALSE(w.watches.wants(channels::kWorldState));
@@ -47,7 +47,7 @@ TEST_CASE("A page is told the values of what it watches, once, and of nothing el
   CHECK(w.watches.values().empty());
 }
 
-TEST_CASE("Two hands that send one variable are two curves") {
+TEST_CASE("Two hands that publish one variable are two curves") {
   Watching w;
   for (int i = 0; i < 10; ++i) {
     w.tool_at(0.01 * i, 1, "haptic_node");
@@ -66,7 +66,7 @@ TEST_CASE("Two hands that send one variable are two curves") {
   }
 }
 
-TEST_CASE("Values are thinned out to 200 a second, and what waits is bounded by leaving out the oldest") {
+TEST_CASE("Values are decimated to 200 a second, and a full queue drops the oldest") {
   Watching w;
   for (int i = 0; i < 1000; ++i) w.tool_at(0.001 * i, i);
   CHECK(w.watches.values().size() == 200);
@@ -76,7 +76,7 @@ TEST_CASE("Values are thinned out to 200 a second, and what waits is bounded by 
   CHECK(all.back()[2] == 99'999);  // after a jump in a log, the newest values before its place remain
 }
 
-TEST_CASE("Values of a log that was wound back are shown, and what is no number is not") {
+TEST_CASE("Values of a log are shown after a seek backwards, and non-finite values are not") {
   Watching w;
   w.tool_at(5, 1);
   w.tool_at(1, 2);
@@ -86,7 +86,7 @@ TEST_CASE("Values of a log that was wound back are shown, and what is no number 
   CHECK(w.watches.values().empty());
 }
 
-TEST_CASE("Bytes that are no message of their channel give no value") {
+TEST_CASE("Malformed messages of a channel give no value") {
   Watching w;
   const auto good = tool("haptic_node", 1);
   w.watches.take(channels::kToolState, {}, at(0));
@@ -99,7 +99,7 @@ TEST_CASE("Bytes that are no message of their channel give no value") {
   CHECK(w.watches.values().empty());
 }
 
-TEST_CASE("A name that is none is told with the reason, and the others keep their numbers") {
+TEST_CASE("An invalid name is reported with a reason, and the others keep their indices") {
   Watches w;
   CHECK_THAT(w.set({"NO_SUCH:thing", "TOOL_STATE:force_N.z"}), Catch::Contains("NO_SUCH"));
   w.take(channels::kToolState, tool("haptic_node", 3), at(0));

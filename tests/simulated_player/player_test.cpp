@@ -69,7 +69,7 @@ struct Toy {
 
 }  // namespace
 
-TEST_CASE("A player who sees pushes a ball into its hole from wherever it lies") {
+TEST_CASE("A player with sight pushes a ball into its hole from any start position") {
   for (const double x : {-0.2, -0.05, 0.05, 0.3})
     for (const double y : {-0.15, 0.0, 0.1}) {
       Toy toy(one_ball(), {{x, y, 0.025}});
@@ -78,12 +78,12 @@ TEST_CASE("A player who sees pushes a ball into its hole from wherever it lies")
     }
 }
 
-TEST_CASE("A player takes one ball after the other, and each into its own hole") {
+TEST_CASE("A player pushes one ball after the other, each into its own hole") {
   Toy toy(two_balls(), {{-0.05, 0.05, 0.025}, {-0.08, 0.25, 0.03}});
   CHECK(toy.play(20));
 }
 
-TEST_CASE("A player does nothing about what he has not had time to see") {
+TEST_CASE("A player does not react before the reaction time has passed") {
   Toy toy(one_ball(), {{0, 0, 0.025}});
   const Vector3d rest = toy.hand;
   // Before the reaction time has passed no percept takes effect: the player moves towards its first guess of the ball, beside the hole.
@@ -93,7 +93,7 @@ TEST_CASE("A player does nothing about what he has not had time to see") {
   CHECK((before - rest).norm() < 0.14 * PlayerDef{}.reach_m_s + 1e-9);
 }
 
-TEST_CASE("A hand never moves faster than it can, whatever it senses") {
+TEST_CASE("The hand keeps its speed limit for any percepts") {
   Toy toy(two_balls(), {{-0.05, 0.05, 0.025}, {-0.08, 0.25, 0.03}});
   Vector3d last = toy.hand;
   double fastest = 0;
@@ -105,7 +105,7 @@ TEST_CASE("A hand never moves faster than it can, whatever it senses") {
   CHECK(fastest <= 1.001 * std::max(PlayerDef{}.reach_m_s, 6 * 0.2));
 }
 
-TEST_CASE("Who hears a ball fall goes on to the next without looking, and who hears nothing looks") {
+TEST_CASE("A player who hears a ball fall starts on the next ball at once, and a deaf player waits to see it") {
   const auto until_next = [](bool hears, bool sees_at_once) {
     Toy toy(two_balls(), {{-0.05, 0, 0.025}, {-0.08, 0.3, 0.03}});
     double fell_s = 0, next_s = 0;
@@ -125,7 +125,7 @@ TEST_CASE("Who hears a ball fall goes on to the next without looking, and who he
   CHECK(until_next(false, false) == Approx(PlayerDef{}.reaction_s + 0.5).margin(0.02));
 }
 
-TEST_CASE("Who does not see finds a ball by touch, near where he was told that it is") {
+TEST_CASE("A blind player finds a ball by touch near its announced place") {
   Toy toy(one_ball(), {{-0.05, 0.04, 0.025}});
   const auto blind = [](Percept& p) { p.balls_m.assign(p.balls_m.size(), std::nullopt); };
   toy.play(40, blind);

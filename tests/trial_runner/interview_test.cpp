@@ -22,7 +22,7 @@ sync::HostTime ms(std::int64_t t) { return sync::host_time(t * 1'000'000); }
 
 }  // namespace
 
-TEST_CASE("A question is said at once, again every 200 ms, and no more once it is answered") {
+TEST_CASE("A question is published at once and every 200 ms until it is answered") {
   Interview interview(1);
   interview.ask(choice(2));
   const auto first = interview.step(ms(1000));
@@ -44,7 +44,7 @@ TEST_CASE("A question is said at once, again every 200 ms, and no more once it i
   CHECK(nothing->id != first->id);
 }
 
-TEST_CASE("An answer to another question, or one that it has not, is none") {
+TEST_CASE("An answer to another question, or with an unknown choice, is rejected") {
   Interview interview(1);
   interview.ask(choice(2));
   interview.step(ms(0));
@@ -59,13 +59,13 @@ TEST_CASE("An answer to another question, or one that it has not, is none") {
   CHECK(interview.waits());
 }
 
-TEST_CASE("Nothing can be answered before it was asked") {
+TEST_CASE("A question cannot be answered before it is published") {
   Interview interview(1);
   interview.ask(choice(2));
   CHECK_FALSE(interview.answer(0, 0, "button", ms(0)));
 }
 
-TEST_CASE("A number outside of its range is no answer") {
+TEST_CASE("A number out of range is rejected") {
   Interview interview(1);
   question_t q{};
   q.kind = question_t::NUMBER, q.text = "How warm?", q.lowest = 20, q.highest = 40, q.step = 0.5;
@@ -76,7 +76,7 @@ TEST_CASE("A number outside of its range is no answer") {
   CHECK(interview.take(*interview.answer(0, 40, "page", ms(1))));
 }
 
-TEST_CASE("A question that nobody could answer is not asked, and the one before stays") {
+TEST_CASE("A question without a possible answer is rejected, and the previous question stays") {
   Interview interview(1);
   interview.ask(choice(3));
   CHECK_THROWS_AS(interview.ask(choice(1)), std::invalid_argument);

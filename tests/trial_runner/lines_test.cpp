@@ -22,7 +22,7 @@ struct Pipes {
 
 }  // namespace
 
-TEST_CASE("Orders come line by line, and none is waited for") {
+TEST_CASE("Orders are read line by line without blocking") {
   Pipes p;
   Lines lines(p.in[0], p.out[1]);
   CHECK_FALSE(lines.next());
@@ -37,7 +37,7 @@ TEST_CASE("Orders come line by line, and none is waited for") {
   CHECK(lines.ended());
 }
 
-TEST_CASE("Neither an order without an end nor a listener that never reads holds up the work") {
+TEST_CASE("An endless order or an unread output ends with an error and does not block") {
   Pipes p;
   Lines lines(p.in[0], p.out[1]);
   const auto order_without_end = [&] {

@@ -9,7 +9,7 @@ using namespace tactus;
 using namespace tactus::conductor;
 using Catch::Matchers::Contains;
 
-TEST_CASE("Each order is read as what it is") {
+TEST_CASE("Each kind of order is parsed") {
   CHECK(std::get<ProfileOrder>(parse_order(R"({"profile": "<profile/>"})")).text == "<profile/>");
   CHECK(std::get<TapOrder>(parse_order(R"({"tap": {"depth_m": 0.01}})")).depth_m == 0.01);
   CHECK(std::get<PressOrder>(parse_order(R"({"press": {"depth_m": 0.01, "period_s": 0.5, "times": 3}})")).times ==
@@ -27,7 +27,7 @@ TEST_CASE("Each order is read as what it is") {
   CHECK(q.step == 0.1);
 }
 
-TEST_CASE("What is no order is refused with a reason") {
+TEST_CASE("A malformed order is rejected with a reason") {
   const auto refuses = [](const char* line, const char* why) {
     CHECK_THROWS_WITH(parse_order(line), Contains(why));
   };
