@@ -4,7 +4,7 @@
 
 #include "sync/random/keyed_random.h"
 
-namespace tactus::participant {
+namespace tactus::simulated_player {
 namespace {
 
 // Correlation time of the tremor (design: movements are corrected about five times a second).
@@ -27,4 +27,4 @@ void Arm::step(const Eigen::Vector3d& wanted_m, const Eigen::Vector3d& force_N, 
   position_ += dt_s * velocity_;
 }
 
-}  // namespace tactus::participant
+}  // namespace tactus::simulated_player

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-namespace tactus::participant {
+namespace tactus::simulated_player {
 
 // Design, in the range of measured hands that hold a posture (Tsuji, Morasso, Goto and Ito 1995, Biological Cybernetics 72,
 // "Human hand impedance characteristics during maintained posture").
@@ -33,4 +33,4 @@ class Arm {
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero(), tremor_ = Eigen::Vector3d::Zero();
 };
 
-}  // namespace tactus::participant
+}  // namespace tactus::simulated_player

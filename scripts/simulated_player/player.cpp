@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-namespace tactus::participant {
+namespace tactus::simulated_player {
 namespace {
 
 using Eigen::Vector3d;
@@ -285,4 +285,4 @@ Vector3d Player::search(const Percept&) {
   return towards(to, 1.5 * def_.push_m_s);
 }
 
-}  // namespace tactus::participant
+}  // namespace tactus::simulated_player

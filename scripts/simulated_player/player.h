@@ -20,7 +20,7 @@
 
 #include "scripts/simulated_player/rules.h"
 
-namespace tactus::participant {
+namespace tactus::simulated_player {
 
 // The percepts of all modalities at an instant.
 struct Percept {
@@ -133,4 +133,4 @@ class Player {
   bool begun_ = false;
 };
 
-}  // namespace tactus::participant
+}  // namespace tactus::simulated_player

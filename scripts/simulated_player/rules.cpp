@@ -5,7 +5,7 @@
 
 #include "sim_node/scene/load_sdf.h"
 
-namespace tactus::participant {
+namespace tactus::simulated_player {
 namespace {
 
 // The floor around the holes: static boxes with their top at the height of the rims, within a millimetre.
@@ -47,4 +47,4 @@ Rules read_rules(const std::string& sdf_file) {
   return rules;
 }
 
-}  // namespace tactus::participant
+}  // namespace tactus::simulated_player

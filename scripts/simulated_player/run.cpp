@@ -43,7 +43,7 @@ Eigen::Vector3d force_of(const device_force_t& m, sync::HostTime arrival, sync::
 
 }  // namespace
 
-int tactus::participant::run(int argc, char** argv, const Rules* read_before) try {
+int tactus::simulated_player::run(int argc, char** argv, const Rules* read_before) try {
   CLI::App app;
   sync::NodeOptions options;
   std::string scene_file, device = "player";

@@ -8,7 +8,7 @@
 
 #include "sync/random/keyed_random.h"
 
-namespace tactus::participant {
+namespace tactus::simulated_player {
 namespace {
 
 // The nodes whose output is observed: visual_node and audio_node.
@@ -110,4 +110,4 @@ void Senses::listen(sync::HostTime now, Percept& percept) {
   });
 }
 
-}  // namespace tactus::participant
+}  // namespace tactus::simulated_player

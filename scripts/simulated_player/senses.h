@@ -17,7 +17,7 @@
 #include "sync/resampling/contact_stream.h"
 #include "sync/node/modality_endpoint.h"
 
-namespace tactus::participant {
+namespace tactus::simulated_player {
 
 class Senses {
  public:
@@ -55,4 +55,4 @@ class Senses {
   std::vector<Sound> sounds_;  // pending
 };
 
-}  // namespace tactus::participant
+}  // namespace tactus::simulated_player

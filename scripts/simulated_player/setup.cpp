@@ -7,7 +7,7 @@
 #include "lcmtypes/channels.h"
 #include "sync/random/keyed_random.h"
 
-namespace tactus::participant {
+namespace tactus::simulated_player {
 namespace {
 
 constexpr sync::Nanoseconds kRepeat{50'000'000};  // a datagram may be lost
@@ -56,4 +56,4 @@ void Setup::step(sync::HostTime now, sync::Queue<sim_reply_t>& replies) {
   for (sim_command_t& c : commands_) bus_.publish(channels::kSimCommand, c);
 }
 
-}  // namespace tactus::participant
+}  // namespace tactus::simulated_player

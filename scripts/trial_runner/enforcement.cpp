@@ -1,6 +1,6 @@
 #include "scripts/trial_runner/enforcement.h"
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 
 void Enforcement::push(const node_health_t& m, sync::HostTime arrival) {
   if (m.modality.empty() || (senses_.size() >= kMaxSenses && !senses_.contains(m.node))) return;
@@ -30,4 +30,4 @@ std::optional<std::vector<std::string>> Enforcement::take_in_force(sync::HostTim
   return names;
 }
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -9,7 +9,7 @@
 
 #include "sync/degradation/profile_exchange.h"
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 
 class Enforcement {
  public:
@@ -39,4 +39,4 @@ class Enforcement {
   std::map<std::string, ModalityEndpoint> senses_;  // by node
 };
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 namespace {
 
 constexpr double kApproach_s = 0.5;  // to the surface before a press, and back after it; design
@@ -57,4 +57,4 @@ void Hand::step(double dt_s) {
   position_m_ = at;
 }
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -6,7 +6,7 @@
 
 #include "scripts/trial_runner/orders.h"
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 
 class Hand {
  public:
@@ -38,4 +38,4 @@ class Hand {
   double since_s_ = 0;
 };
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -5,7 +5,7 @@
 #include "lcmtypes/valid.h"
 #include "sync/random/keyed_random.h"
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 
 void Interview::ask(question_t question) {
   question.header.sim_time_ns = -1;
@@ -53,4 +53,4 @@ std::optional<question_t> Interview::step(sync::HostTime now) {
   return question_;
 }
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

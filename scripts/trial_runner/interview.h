@@ -7,7 +7,7 @@
 
 #include "sync/time/time.h"
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 
 class Interview {
  public:
@@ -35,4 +35,4 @@ class Interview {
   std::optional<sync::HostTime> first_, next_;
 };
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -7,7 +7,7 @@
 #include <csignal>
 #include <stdexcept>
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 namespace {
 
 void never_wait(int descriptor) { fcntl(descriptor, F_SETFL, fcntl(descriptor, F_GETFL) | O_NONBLOCK); }
@@ -55,4 +55,4 @@ void Lines::flush() {
   }
 }
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 
 class Lines {
  public:
@@ -30,4 +30,4 @@ class Lines {
   std::string in_, out_;
 };
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

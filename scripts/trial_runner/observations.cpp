@@ -8,7 +8,7 @@
 #include <tactus/presentation_t.hpp>
 #include <utility>
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 namespace {
 
 using nlohmann::json;
@@ -123,4 +123,4 @@ std::optional<json> Observations::push(const tool_state_t& m, sync::HostTime arr
                 {"force_N", force_N}}}};
 }
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -20,7 +20,7 @@
 #include "sync/tools/picture_reader.h"
 #include "sync/clocks/sender_clock.h"
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 
 class Observations {
  public:
@@ -57,4 +57,4 @@ class Observations {
   std::map<std::int32_t, bool> vibrates_;  // by source
 };
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

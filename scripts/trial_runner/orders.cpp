@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <tactus/sim_command_t.hpp>
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 namespace {
 
 using nlohmann::json;
@@ -111,4 +111,4 @@ Order parse_order(std::string_view line) {
   refuse("there is no order \"" + what + "\"");
 }
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -7,7 +7,7 @@
 #include <tactus/question_t.hpp>
 #include <variant>
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 
 // {"profile": "<profile .../>"}: puts it in force, and reports when every modality has it.
 struct ProfileOrder {
@@ -46,4 +46,4 @@ using Order = std::variant<ProfileOrder, QuestionOrder, AnswerOrder, TapOrder, P
 // Throws std::invalid_argument with one sentence for any other line.
 Order parse_order(std::string_view line);
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

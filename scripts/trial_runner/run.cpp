@@ -51,7 +51,7 @@
 using namespace tactus;
 using nlohmann::json;
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 namespace {
 
 const sync::NodeDescriptor kConductor{.name = "conductor",
@@ -338,4 +338,4 @@ int run(int argc, char** argv) try {
   return sync::fail(kConductor.name, e);
 }
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

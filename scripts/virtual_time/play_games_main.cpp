@@ -42,7 +42,7 @@ struct Loaded {
   std::string scene, out;
   std::vector<std::string> scatter;
   sim::WorldDef world;
-  participant::Rules rules;
+  simulated_player::Rules rules;
   sync::WirePlan wire;
 };
 
@@ -92,8 +92,8 @@ GameVerdict play(const Loaded& loaded, const GameDef& game) {
   add("visual_node", words({"visual_node", "--no-pictures"}, degraded), visual::run);
   add("thermal_node", words({"thermal_node"}, degraded), thermal::run);
   add("participant",
-      words(words({"participant", loaded.scene, "--device", "participant"}, loaded.scatter), degraded),
-      [&](int argc, char** argv) { return participant::run(argc, argv, &loaded.rules); });
+      words(words({"simulated_player", loaded.scene, "--device", "participant"}, loaded.scatter), degraded),
+      [&](int argc, char** argv) { return simulated_player::run(argc, argv, &loaded.rules); });
   add("sim_node", words({"sim_node", loaded.scene}, common),
       [&](int argc, char** argv) { return sim::run(argc, argv, &loaded.world); });
   const sync::HostTime latest = time.now() + kWorldBegins;
@@ -189,7 +189,7 @@ int main(int argc, char** argv) try {
   loaded.scatter = {"--scatter-along", along, "--scatter-aside", aside};
   std::vector<std::string> warnings;
   loaded.world = sim::load_sdf(loaded.scene, warnings);
-  loaded.rules = participant::read_rules(loaded.scene);
+  loaded.rules = simulated_player::read_rules(loaded.scene);
   for (std::string line; std::getline(std::cin, line);) {
     const json asked = json::parse(line, nullptr, false);
     if (!asked.is_object() || !asked.contains("game") || !asked["game"].is_string())

@@ -34,7 +34,7 @@ const std::map<std::string, std::function<int(int, char**)>> kPrograms{
     {"thermal_node", thermal::run},
     {"sync_node", sync::run_sync_node},
     {"recorder", sync::run_recorder},
-    {"participant", [](int argc, char** argv) { return participant::run(argc, argv); }},
+    {"simulated_player", [](int argc, char** argv) { return simulated_player::run(argc, argv); }},
 };
 
 using Words = std::vector<std::string>;

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-using namespace tactus::participant;
+using namespace tactus::simulated_player;
 using Eigen::Vector3d;
 
 namespace {

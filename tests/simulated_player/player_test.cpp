@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-using namespace tactus::participant;
+using namespace tactus::simulated_player;
 using Eigen::Vector3d;
 
 namespace {

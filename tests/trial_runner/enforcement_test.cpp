@@ -5,7 +5,7 @@
 #include <tactus/node_health_t.hpp>
 
 using namespace tactus;
-using namespace tactus::conductor;
+using namespace tactus::trial_runner;
 
 namespace {
 

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace tactus::conductor;
+using namespace tactus::trial_runner;
 using Eigen::Vector3d;
 
 namespace {

@@ -6,7 +6,7 @@
 #include <tactus/question_t.hpp>
 
 using namespace tactus;
-using namespace tactus::conductor;
+using namespace tactus::trial_runner;
 
 namespace {
 

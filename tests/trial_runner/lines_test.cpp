@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-using tactus::conductor::Lines;
+using tactus::trial_runner::Lines;
 
 namespace {
 

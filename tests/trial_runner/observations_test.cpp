@@ -11,7 +11,7 @@
 #include <tactus/tool_state_t.hpp>
 
 using namespace tactus;
-using namespace tactus::conductor;
+using namespace tactus::trial_runner;
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <tactus/sim_command_t.hpp>
 
 using namespace tactus;
-using namespace tactus::conductor;
+using namespace tactus::trial_runner;
 using Catch::Matchers::Contains;
 
 TEST_CASE("Each kind of order is parsed") {

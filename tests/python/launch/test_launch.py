@@ -378,7 +378,7 @@ class Programs(unittest.TestCase):
     def test_whoever_has_built_nothing_yet_gets_all_programs_that_a_run_or_a_study_starts(self):
         from tactus.launch import virtual
         built = (SCRIPTS / "build").read_text(encoding="utf-8").partition("targets+=(")[2].partition(")")[0].split()
-        for program in (*arguments.SENSES, *virtual.PROGRAMS, arguments.PARTICIPANT, "conductor", "play_games"):
+        for program in (*arguments.SENSES, *virtual.PROGRAMS, arguments.PLAYER_PROGRAM, "trial_runner", "play_games"):
             self.assertIn(program, built)
 
 

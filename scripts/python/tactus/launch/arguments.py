@@ -12,7 +12,8 @@ from tactus.paths import REPOSITORY, SCENES
 from tactus.refusal import Refusal
 
 SENSES = ("haptic_node", "audio_node", "visual_node", "thermal_node")
-PARTICIPANT = "participant"
+PARTICIPANT = "participant"  # node and device of the simulated player
+PLAYER_PROGRAM = "simulated_player"
 REMOVABLE = ("sim_node", *SENSES, "sync_node")
 LEAST_FREE_BYTES = 20_000_000  # about ten seconds of log and sound
 LONGEST_S = 86400  # one day; a longer log fills most disks
@@ -65,6 +66,8 @@ class Plan:
 
     def program(self, name):
         """Name of the program of a process."""
+        if name == PARTICIPANT:
+            return PLAYER_PROGRAM
         return hands.FIRST if name in self.hands else walls.FIRST if name in self.walls else name
 
 

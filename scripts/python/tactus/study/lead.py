@@ -1,4 +1,4 @@
-"""Client of the trial runner (scripts/trial_runner, program `conductor`): sends orders, stores observations, waits with time limits."""
+"""Client of the trial runner (scripts/trial_runner, program `trial_runner`): sends orders, stores observations, waits with time limits."""
 import collections
 import json
 import os
@@ -18,7 +18,7 @@ class Lead:
     """A trial runner in the cluster whose results are in `out`. hand: (x, y, z, above) in m, if it holds the device. looks: it also sends pictures."""
 
     def __init__(self, out, hand=None, looks=False):
-        words = [*tactus_command("attach"), str(out), "conductor", "--out", str(out)]
+        words = [*tactus_command("attach"), str(out), "trial_runner", "--out", str(out)]
         if hand is not None:
             words += ["--hand", *(f"{x:g}" for x in hand[:3]), "--above", f"{hand[3]:g}"]
         words += ["--look"] if looks else []
@@ -42,7 +42,7 @@ class Lead:
             self.process.stdin.write(json.dumps(what).encode() + b"\n")
             self.process.stdin.flush()
         except OSError:
-            raise Refusal(f"conductor: has ended ({self.last_words()}); check that the cluster is running") from None
+            raise Refusal(f"trial_runner: has ended ({self.last_words()}); check that the cluster is running") from None
 
     def last_words(self):
         try:
@@ -58,7 +58,7 @@ class Lead:
             return
         data = os.read(self.process.stdout.fileno(), 1 << 20)
         if not data:
-            raise Refusal(f"conductor: has ended ({self.last_words()}); check that the cluster is running")
+            raise Refusal(f"trial_runner: has ended ({self.last_words()}); check that the cluster is running")
         *lines, self.rest = (self.rest + data).split(b"\n")
         for line in lines:
             self.take(json.loads(line))
@@ -103,7 +103,7 @@ class Lead:
                 return False
             self.pump(min(left, 0.1))
             if self.refused:
-                raise Refusal(f"conductor: {self.refused.popleft()}")
+                raise Refusal(f"trial_runner: {self.refused.popleft()}")
         return True
 
     def put_in_force(self, profile, timeout_s):
