@@ -66,7 +66,7 @@ TEST_CASE("A press reaches its depth the given number of times, in the given per
   CHECK(seconds == Approx(4 * 0.5 + 1).margin(0.01));
 }
 
-TEST_CASE("A moving hand rejects a second order") {
+TEST_CASE("A moving hand rejects a second request") {
   Hand hand({0, 0, 0.04}, 0.032);
   REQUIRE(hand.tap({0.01}));
   CHECK_FALSE(hand.tap({0.01}));

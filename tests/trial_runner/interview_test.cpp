@@ -34,9 +34,9 @@ TEST_CASE("A question is published at once and every 200 ms until it is answered
   const auto a = interview.answer(1, 0, "button", ms(1300));
   REQUIRE(a);
   CHECK(a->after_ns == 300'000'000);
-  REQUIRE(interview.take(*a));
-  CHECK_FALSE(interview.take(*a));
-  CHECK_FALSE(interview.waits());
+  REQUIRE(interview.accept(*a));
+  CHECK_FALSE(interview.accept(*a));
+  CHECK_FALSE(interview.is_open());
   const auto nothing = interview.step(ms(1301));
   REQUIRE(nothing);
   CHECK(nothing->kind == question_t::NOTHING);
@@ -50,13 +50,13 @@ TEST_CASE("An answer to another question, or with an unknown choice, is rejected
   interview.step(ms(0));
   answer_t a = *interview.answer(0, 0, "key", ms(10));
   ++a.id;
-  CHECK_FALSE(interview.take(a));
+  CHECK_FALSE(interview.accept(a));
   --a.id, a.choice = 2;
-  CHECK_FALSE(interview.take(a));
+  CHECK_FALSE(interview.accept(a));
   a.choice = -1;
-  CHECK_FALSE(interview.take(a));
+  CHECK_FALSE(interview.accept(a));
   CHECK_FALSE(interview.answer(2, 0, "button", ms(20)));
-  CHECK(interview.waits());
+  CHECK(interview.is_open());
 }
 
 TEST_CASE("A question cannot be answered before it is published") {
@@ -71,9 +71,9 @@ TEST_CASE("A number out of range is rejected") {
   q.kind = question_t::NUMBER, q.text = "How warm?", q.lowest = 20, q.highest = 40, q.step = 0.5;
   interview.ask(q);
   interview.step(ms(0));
-  CHECK_FALSE(interview.take(*interview.answer(0, 19, "page", ms(1))));
-  CHECK_FALSE(interview.take(*interview.answer(0, NAN, "page", ms(1))));
-  CHECK(interview.take(*interview.answer(0, 40, "page", ms(1))));
+  CHECK_FALSE(interview.accept(*interview.answer(0, 19, "page", ms(1))));
+  CHECK_FALSE(interview.accept(*interview.answer(0, NAN, "page", ms(1))));
+  CHECK(interview.accept(*interview.answer(0, 40, "page", ms(1))));
 }
 
 TEST_CASE("A question without a possible answer is rejected, and the previous question stays") {
@@ -81,5 +81,5 @@ TEST_CASE("A question without a possible answer is rejected, and the previous qu
   interview.ask(choice(3));
   CHECK_THROWS_AS(interview.ask(choice(1)), std::invalid_argument);
   CHECK_THROWS_AS(interview.ask(choice(10)), std::invalid_argument);
-  CHECK(interview.asked().count == 3);
+  CHECK(interview.question().count == 3);
 }

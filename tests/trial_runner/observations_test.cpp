@@ -52,10 +52,10 @@ TEST_CASE("Messages that the bus repeats are written once") {
 
 TEST_CASE("A presentation is written with its time and uncertainty, and a dropped one without a time") {
   Observations o(kOwn);
-  const auto said = o.push(presented(1, 100), sync::host_time(200));
-  CHECK(said.at(0).at("at_ns") == 100);
-  CHECK(said.at(0).at("uncertainty_ns") == 4);
-  CHECK(said.at(0).at("presented") == "1");
+  const auto lines = o.push(presented(1, 100), sync::host_time(200));
+  CHECK(lines.at(0).at("at_ns") == 100);
+  CHECK(lines.at(0).at("uncertainty_ns") == 4);
+  CHECK(lines.at(0).at("presented") == "1");
   const auto dropped = o.push(presented(2, -1), sync::host_time(200));
   CHECK(dropped.at(0).at("at_ns").is_null());
 }
