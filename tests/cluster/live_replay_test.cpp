@@ -74,7 +74,7 @@ TEST_CASE("All modalities render a replayed log, and continue when one of them i
   std::map<std::string, std::int64_t> before;
   for (const std::string& n : kSenses) before[n] = ear.rendered(n);
   CHECK(ear.wait_until([&] { return all_have_rendered("audio_node", before); }, kPatience_s));
-  SECTION("and when it comes back it gets the scene, and renders too") {
+  SECTION("a restarted node receives the scene and renders") {
     processes.start("audio_node");
     const std::int64_t old = ear.rendered("audio_node");
     CHECK(ear.wait_until(

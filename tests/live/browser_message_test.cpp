@@ -25,24 +25,24 @@ const std::vector<std::string> kGood{
 
 // Checks the bounds of a message, for any input.
 void check_bounds(const BrowserMessage& m) {
-  if (const auto* w = std::get_if<WatchThese>(&m)) {
+  if (const auto* w = std::get_if<WatchRequest>(&m)) {
     CHECK(w->names.size() <= kMaxWatched);
     for (const std::string& n : w->names) CHECK((!n.empty() && n.size() <= 192));
   } else if (const auto* c = std::get_if<Command>(&m)) {
     CHECK((c->kind >= sim_command_t::PAUSE && c->kind <= sim_command_t::RESET));
     CHECK((c->steps >= 0 && c->steps <= 10'000));
-  } else if (const auto* d = std::get_if<DegradeThus>(&m)) {
+  } else if (const auto* d = std::get_if<DegradeRequest>(&m)) {
     CHECK(d->senses.size() <= 16);
     for (const auto& [name, s] : d->senses) {
       CHECK((s.delay_ms >= 0 && s.delay_ms <= 2000));
       CHECK((s.rate_Hz == 0 || (s.rate_Hz >= 0.1 && s.rate_Hz <= 1000)));
       CHECK((s.loss >= 0 && s.loss <= 1));
     }
-  } else if (const auto* h = std::get_if<HandAt>(&m)) {
+  } else if (const auto* h = std::get_if<HandTarget>(&m)) {
     CHECK((std::abs(h->x) <= 1 && std::abs(h->y) <= 1 && std::abs(h->push_m) <= 1));
   } else if (const auto* p = std::get_if<LogPlay>(&m)) {
     CHECK((p->rate >= 0.1 && p->rate <= 16));
-  } else if (const auto* a = std::get_if<AnswerThus>(&m)) {
+  } else if (const auto* a = std::get_if<PageAnswer>(&m)) {
     CHECK((!a->question.empty() && a->question.size() <= 64));
     CHECK((a->choice >= -1 && a->choice <= 8 && std::abs(a->number) <= 1e9 && a->after_ns >= 0));
   } else {
@@ -67,24 +67,24 @@ bool taken(const std::string& text) {
 }  // namespace
 
 TEST_CASE("Each kind of page message is parsed") {
-  const auto watch = std::get<WatchThese>(parse_browser_message(kGood[0]));
+  const auto watch = std::get<WatchRequest>(parse_browser_message(kGood[0]));
   CHECK(watch.names == std::vector<std::string>{"TOOL_STATE:force_N.z", "sim_node.work.collision"});
   CHECK(std::get<Command>(parse_browser_message(kGood[1])).kind == sim_command_t::PAUSE);
   const auto step = std::get<Command>(parse_browser_message(kGood[2]));
   CHECK((step.kind == sim_command_t::STEP && step.steps == 25));
   CHECK(std::get<Command>(parse_browser_message(R"({"t":"command","what":"resume"})")).kind == sim_command_t::RESUME);
   CHECK(std::get<Command>(parse_browser_message(R"({"t":"command","what":"reset"})")).kind == sim_command_t::RESET);
-  const auto worse = std::get<DegradeThus>(parse_browser_message(kGood[3]));
+  const auto worse = std::get<DegradeRequest>(parse_browser_message(kGood[3]));
   REQUIRE(worse.senses.contains("audio"));
   CHECK(worse.senses.at("audio").delay_ms == 80);
   CHECK(worse.senses.at("audio").loss == 0.25);
   CHECK_FALSE(worse.clear);
-  const auto hand = std::get<HandAt>(parse_browser_message(kGood[4]));
+  const auto hand = std::get<HandTarget>(parse_browser_message(kGood[4]));
   CHECK((hand.x == -0.5 && hand.y == 1 && hand.push_m == 0 && hand.down));
   const auto play = std::get<LogPlay>(parse_browser_message(kGood[5]));
   CHECK((play.play && play.rate == 2));
   CHECK(std::get<LogSeek>(parse_browser_message(kGood[6])).to_s == 12.5);
-  const auto answer = std::get<AnswerThus>(parse_browser_message(kGood[7]));
+  const auto answer = std::get<PageAnswer>(parse_browser_message(kGood[7]));
   CHECK((answer.question == "4.11" && answer.choice == 1 && answer.number == 0 && answer.after_ns == 350'000'000));
 }
 

@@ -35,7 +35,7 @@ struct Playing {
   LogPlayer player{std::span<const std::uint8_t>(log->bytes)};
   std::vector<int> heard;
   Playing() {
-    while (player.read_on()) {
+    while (player.scan_next()) {
     }
   }
   void advance(double s) {
@@ -57,18 +57,18 @@ TEST_CASE("A log is replayed at its own speed, each event once and in order") {
   for (int i = 0; i < 1001; ++i) REQUIRE(p.heard[static_cast<std::size_t>(i)] == i);
   CHECK(p.player.position_s() == Approx(10));
 
-  SECTION("and at eight times it") {
+  SECTION("at eight times its speed") {
     p.player.play(true, 8);
     for (int i = 0; i < 20; ++i) p.advance(0.05);
     CHECK(p.heard.size() == 1801);
   }
-  SECTION("stopped it stands") {
+  SECTION("a paused log keeps its position") {
     p.player.play(false, 1);
     for (int i = 0; i < 20; ++i) p.advance(0.05);
     CHECK(p.heard.size() == 1001);
     CHECK(p.player.position_s() == Approx(10));
   }
-  SECTION("at its end it stands, with all events told") {
+  SECTION("at its end it stops, after all events") {
     p.player.play(true, 16);
     for (int i = 0; i < 200; ++i) p.advance(0.05);
     CHECK(p.heard.size() == kEvents);
@@ -108,7 +108,7 @@ TEST_CASE("A log opens at once, and its known length grows while it is scanned")
   do {
     CHECK(player.length_s() >= before_s);
     before_s = player.length_s();
-  } while (player.read_on());
+  } while (player.scan_next());
   CHECK(player.length_s() == Approx(59.99));
 }
 
@@ -124,7 +124,7 @@ TEST_CASE("A file that is no log is rejected with a sentence, and a damaged log 
     auto bytes = p.log->bytes;
     for (int i = 0; i < 20; ++i) bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1u << random() % 8);
     LogPlayer player{std::span<const std::uint8_t>(bytes)};
-    while (player.read_on()) {
+    while (player.scan_next()) {
     }
     player.play(true, 16);
     std::size_t heard = 0;

@@ -53,16 +53,16 @@ TEST_CASE("The hand moves without position jumps") {
 TEST_CASE("A press reaches its depth the given number of times, in the given periods") {
   Hand hand({0, 0, 0.04}, 0.032);
   REQUIRE(hand.press({0.01, 0.5, 4}));
-  int turns = 0;
+  int presses = 0;
   bool deep = false;
   double seconds = 0;
   for (; hand.busy(); seconds += kStep_s) {
     hand.step(kStep_s);
     const bool now_deep = hand.position_m().z() < 0.008 - 0.0099;
-    turns += now_deep && !deep;
+    presses += now_deep && !deep;
     deep = now_deep;
   }
-  CHECK(turns == 4);
+  CHECK(presses == 4);
   CHECK(seconds == Approx(4 * 0.5 + 1).margin(0.01));
 }
 

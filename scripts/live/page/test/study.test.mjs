@@ -36,7 +36,7 @@ try {
 
   // Malformed, or to another question: each is refused with its reason, and nothing of it is on the bus.
   const answer = { t: "answer", question: "1.2", choice: -1, number: 0, after_ns: 5 };
-  for (const [message, reason] of [[answer, /not asked any more/], [{ ...answer, choice: 0.5 }, /no whole number/], [{ ...answer, after_ns: -1 }, /out of range/],
+  for (const [message, reason] of [[answer, /no longer open/], [{ ...answer, choice: 0.5 }, /no whole number/], [{ ...answer, after_ns: -1 }, /out of range/],
     [{ ...answer, number: "1" }, /no number/], [{ ...answer, question: 7 }, /no name/], [{ t: "answer" }, /which question/]])
     assert.match(await refusal(message), reason);
 
