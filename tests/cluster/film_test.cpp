@@ -13,10 +13,10 @@ using namespace tactus::cluster;
 namespace {
 
 // The word after `before` in a program's output.
-std::string word_after(const std::string& said, const std::string& before) {
-  const auto at = said.find(before);
+std::string word_after(const std::string& output, const std::string& before) {
+  const auto at = output.find(before);
   REQUIRE(at != std::string::npos);
-  std::istringstream rest(said.substr(at + before.size()));
+  std::istringstream rest(output.substr(at + before.size()));
   std::string word;
   rest >> word;
   return word;
@@ -41,7 +41,7 @@ TEST_CASE("A recorded run is drawn into the same film each time, with a flash fo
   RunScript run;
   run.start({tapping_scene(), "--seconds", "4", "--out", run.out()});
   const int status = run.finish(150);
-  INFO(run.processes.said("run"));
+  INFO(run.processes.output("run"));
   REQUIRE(status == 0);
   const std::filesystem::path log = run.out() / "run.lcmlog";
   const auto film = [&](const std::string& name, const std::vector<std::string>& more = {}) {

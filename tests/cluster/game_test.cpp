@@ -27,7 +27,7 @@ TEST_CASE("A live simulated player pushes every ball into its hole, and none wit
     if (!seen) words.insert(words.end(), {"--without", "visual_node"});
     run.start(words);
     const int status = run.finish(150);
-    INFO((seen ? "seen: " : "unseen: ") << run.processes.said("run"));
+    INFO((seen ? "seen: " : "unseen: ") << run.processes.output("run"));
     CHECK(status == 0);
     const json summary = json::parse(contents(run.out() / "summary.json"), nullptr, false);
     REQUIRE_FALSE(summary.is_discarded());
@@ -46,7 +46,7 @@ TEST_CASE("The hand of the dark room, or a string device, pushes every ball into
     run.start({"--seconds", "20", "--device", device, "--without", "visual_node", "--without", "audio_node",
                "--without", "thermal_node", "--out", run.out()});
     const int status = run.finish(150);
-    INFO(device << ", attempt " << attempt << ": " << run.processes.said("run"));
+    INFO(device << ", attempt " << attempt << ": " << run.processes.output("run"));
     CHECK(status == 0);
     const json summary = json::parse(contents(run.out() / "summary.json"), nullptr, false);
     REQUIRE_FALSE(summary.is_discarded());

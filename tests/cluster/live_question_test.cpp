@@ -17,7 +17,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-constexpr double kPatience_s = 60;  // liveness, not speed
+constexpr double kTimeout_s = 60;  // liveness, not speed
 constexpr std::int64_t kRunId = 4712;
 constexpr const char* kToken = "0123456789abcdef0123";
 constexpr std::int64_t kFirst = 4'611'686'018'427'387'901;  // no double represents it: JavaScript must not use one either
@@ -74,7 +74,7 @@ TEST_CASE(
   std::map<std::int64_t, std::vector<answer_t>> answers;
   std::vector<question_t> left = study();
   sync::HostTime over{};  // time at which the current question was answered
-  const sync::HostTime end = sync::host_now() + sync::from_seconds(2 * kPatience_s);
+  const sync::HostTime end = sync::host_now() + sync::from_seconds(2 * kTimeout_s);
   for (sync::HostTime next{}; processes.running("browser") && sync::host_now() < end; bus.wait(std::chrono::milliseconds(20))) {
     const sync::HostTime now = sync::host_now();
     bus.drain(now);
@@ -88,9 +88,9 @@ TEST_CASE(
     question_t m = left.empty() ? question(kFirst + 5, question_t::NOTHING, "") : left.front();
     bus.publish(channels::kQuestion, m);
   }
-  const int status = processes.wait_for_exit("browser", kPatience_s);
-  INFO(processes.said("browser"));
-  INFO(processes.said("live_server"));
+  const int status = processes.wait_for_exit("browser", kTimeout_s);
+  INFO(processes.output("browser"));
+  INFO(processes.output("live_server"));
   CHECK(status == 0);
   CHECK(left.empty());
   const std::vector<question_t> asked = study();
@@ -102,7 +102,7 @@ TEST_CASE(
     for (const answer_t& a : answers[m.id]) {
       CHECK((a.choice == answers[m.id][0].choice && a.number == answers[m.id][0].number));
       CHECK(a.by == "page");
-      CHECK((a.after_ns > 0 && a.after_ns < static_cast<std::int64_t>(kPatience_s * 1e9)));
+      CHECK((a.after_ns > 0 && a.after_ns < static_cast<std::int64_t>(kTimeout_s * 1e9)));
     }
   }
   CHECK(answers[kFirst][0].choice == -1);

@@ -16,23 +16,23 @@ using namespace tactus::cluster;
 
 namespace {
 
-constexpr std::int64_t kLiveRun = Running::kRunId + 1;
+constexpr std::int64_t kLiveRun = RunningCluster::kRunId + 1;
 
 // Records four seconds of the small scene into folder/run.lcmlog.
 std::filesystem::path recorded(const Folder& folder) {
-  Running c;
+  RunningCluster c;
   c.processes.start("recorder");
   c.start();
-  c.ear.listen(4);
+  c.monitor.receive_for(4);
   c.processes.signal("recorder", SIGTERM);
-  REQUIRE(c.processes.wait_for_exit("recorder", kPatience_s) == 0);
+  REQUIRE(c.processes.wait_for_exit("recorder", kTimeout_s) == 0);
   std::filesystem::rename(c.folder.path() / "run.lcmlog", folder.path() / "run.lcmlog");
   return folder.path() / "run.lcmlog";
 }
 
 std::vector<std::string> options_of_replay(const std::filesystem::path& log, std::vector<std::string> more = {}) {
   std::vector<std::string> words{log.string()};
-  for (const std::string& sense : kSenses) words.insert(words.end(), {"--live", sense});
+  for (const std::string& sense : kModalityNodes) words.insert(words.end(), {"--live", sense});
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
@@ -54,35 +54,35 @@ TEST_CASE("All modalities render a replayed log, and continue when one of them i
   Folder folder;
   const auto log = recorded(folder);
   Processes processes(folder.path() / "again", kLiveRun);
-  Ear ear(kLiveRun);
-  for (const std::string& sense : kSenses) processes.start(sense);
+  ClusterMonitor monitor(kLiveRun);
+  for (const std::string& sense : kModalityNodes) processes.start(sense);
   processes.start("replay", options_of_replay(log, {"--loop"}));
   const auto all_have_rendered = [&](const std::string& but, const std::map<std::string, std::int64_t>& before) {
-    return std::all_of(kSenses.begin(), kSenses.end(), [&](const std::string& n) {
-      return n == but || ear.rendered(n) > (before.contains(n) ? before.at(n) : 0);
+    return std::all_of(kModalityNodes.begin(), kModalityNodes.end(), [&](const std::string& n) {
+      return n == but || monitor.rendered(n) > (before.contains(n) ? before.at(n) : 0);
     });
   };
-  const bool rendered = ear.wait_until([&] { return all_have_rendered("", {}); }, kPatience_s);
-  for (const std::string& n : kSenses) INFO(n << " rendered " << ear.rendered(n) << ": " << processes.said(n));
-  INFO(processes.said("replay"));
+  const bool rendered = monitor.wait_until([&] { return all_have_rendered("", {}); }, kTimeout_s);
+  for (const std::string& n : kModalityNodes) INFO(n << " rendered " << monitor.rendered(n) << ": " << processes.output(n));
+  INFO(processes.output("replay"));
   REQUIRE(rendered);
   // The recorded health of renderers is not replayed: one haptic_node publishes, with one incarnation.
-  CHECK(ear.rejoined("haptic_node") == 0);
-  CHECK(ear.health("sim_node") == nullptr);
+  CHECK(monitor.rejoined("haptic_node") == 0);
+  CHECK(monitor.health("sim_node") == nullptr);
 
   processes.kill("audio_node");
   std::map<std::string, std::int64_t> before;
-  for (const std::string& n : kSenses) before[n] = ear.rendered(n);
-  CHECK(ear.wait_until([&] { return all_have_rendered("audio_node", before); }, kPatience_s));
+  for (const std::string& n : kModalityNodes) before[n] = monitor.rendered(n);
+  CHECK(monitor.wait_until([&] { return all_have_rendered("audio_node", before); }, kTimeout_s));
   SECTION("a restarted node receives the scene and renders") {
     processes.start("audio_node");
-    const std::int64_t old = ear.rendered("audio_node");
-    CHECK(ear.wait_until(
+    const std::int64_t old = monitor.rendered("audio_node");
+    CHECK(monitor.wait_until(
         [&] {
-          return ear.rejoined("audio_node") > 0 && ear.rendered("audio_node") != old &&
-                 ear.rendered("audio_node") > 0;
+          return monitor.rejoined("audio_node") > 0 && monitor.rendered("audio_node") != old &&
+                 monitor.rendered("audio_node") > 0;
         },
-        kPatience_s));
+        kTimeout_s));
   }
   for (const char* n : {"haptic_node", "visual_node", "thermal_node"}) CHECK(processes.running(n));
 }
@@ -93,35 +93,35 @@ TEST_CASE("A running replay executes the commands from its pipe") {
   const std::string pipe = folder.path() / "control";
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
   Processes processes(folder.path() / "again", kLiveRun);
-  Ear ear(kLiveRun);
-  auto& states = ear.bus().queue<world_state_t>(channels::kWorldState, 4096);
+  ClusterMonitor monitor(kLiveRun);
+  auto& states = monitor.bus().queue<world_state_t>(channels::kWorldState, 4096);
   processes.start("replay", {log, "--paused", "--stay", "--control", pipe});
   const auto order = [&](const std::string& words) { std::ofstream(pipe) << words << std::endl; };
   // Instants of the world that are published within the given time.
   const auto heard = [&](double seconds) {
-    ear.listen(0.3);
+    monitor.receive_for(0.3);
     while (states.pop()) {
     }
-    ear.listen(seconds);
+    monitor.receive_for(seconds);
     std::vector<std::int64_t> times;
     while (const auto m = states.pop()) times.push_back(m->message.header.sim_time_ns);
     return times;
   };
-  REQUIRE(ear.wait_until([&] { return ear.health("replay") != nullptr; }, kPatience_s));
+  REQUIRE(monitor.wait_until([&] { return monitor.health("replay") != nullptr; }, kTimeout_s));
   CHECK(heard(0.5).empty());
   order("loop on\nresume");
   CHECK_FALSE(heard(1).empty());
   order("pause");
   CHECK(heard(0.5).empty());
   order("seek 1\nstep 0.5");
-  ear.listen(3);
-  CHECK_THAT(processes.said("replay"), Catch::Contains("1.00 of"));
+  monitor.receive_for(3);
+  CHECK_THAT(processes.output("replay"), Catch::Contains("1.00 of"));
   CHECK(heard(0.3).empty());
   order("fly");
-  CHECK(ear.wait_until([&] { return processes.said("replay").find("cannot obey 'fly'") != std::string::npos; },
-                       kPatience_s));
+  CHECK(monitor.wait_until([&] { return processes.output("replay").find("cannot obey 'fly'") != std::string::npos; },
+                       kTimeout_s));
   order("quit");
-  CHECK(processes.wait_for_exit("replay", kPatience_s) == 0);
+  CHECK(processes.wait_for_exit("replay", kTimeout_s) == 0);
 }
 
 TEST_CASE("The stock lcm-logger receives all replayed messages unchanged, and its log can be replayed") {
@@ -138,20 +138,20 @@ TEST_CASE("The stock lcm-logger receives all replayed messages unchanged, and it
   const auto through_lcm_logger = [&](const std::filesystem::path& from, const std::filesystem::path& to,
                                       const std::vector<std::string>& options) {
     processes.spawn("lcm-logger", {"lcm-logger", "--quiet", "--lcm-url=udpm://239.255.76.67:7667?ttl=0", to});
-    Ear ear(kLiveRun);
-    ear.wait_until([&] { return std::filesystem::exists(to); }, kPatience_s);
-    ear.listen(0.5);
+    ClusterMonitor monitor(kLiveRun);
+    monitor.wait_until([&] { return std::filesystem::exists(to); }, kTimeout_s);
+    monitor.receive_for(0.5);
     // No faster than the stock logger can follow on a busy machine: its receive buffer of 208 KiB holds 0.3 s of this.
     std::vector<std::string> words{from, "--most", "500"};
     words.insert(words.end(), options.begin(), options.end());
     processes.start("replay", words);
-    REQUIRE(processes.wait_for_exit("replay", kPatience_s) == 0);
-    ear.listen(1);
+    REQUIRE(processes.wait_for_exit("replay", kTimeout_s) == 0);
+    monitor.receive_for(1);
     processes.signal("lcm-logger", SIGTERM);
-    processes.wait_for_exit("lcm-logger", kPatience_s);
+    processes.wait_for_exit("lcm-logger", kTimeout_s);
   };
   through_lcm_logger(ours, folder.path() / "stock.lcmlog", {});
-  CHECK_THAT(processes.said("replay"), Catch::Contains("holds no message of Tactus"));
+  CHECK_THAT(processes.output("replay"), Catch::Contains("holds no message of Tactus"));
   const bool heard_all = events_in(ours) == events_in(folder.path() / "stock.lcmlog");
   CHECK(heard_all);
   // The replay's own messages are recorded, too, and are no longer foreign.

@@ -24,16 +24,16 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double kPatience_s = 60;  // liveness, not speed
+constexpr double kTimeout_s = 60;  // liveness, not speed
 
 // The address printed by a program; "": none.
 std::string address_of(Processes& processes, const std::string& name) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience_s);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kTimeout_s);
   while (std::chrono::steady_clock::now() < end && processes.running(name)) {
-    const std::string said = processes.said(name);
-    const std::size_t from = said.find("http://127.0.0.1:");
-    if (from != std::string::npos && said.find('\n', from) != std::string::npos)
-      return said.substr(from, said.find_first_of(" \n", from) - from);
+    const std::string output = processes.output(name);
+    const std::size_t from = output.find("http://127.0.0.1:");
+    if (from != std::string::npos && output.find('\n', from) != std::string::npos)
+      return output.substr(from, output.find_first_of(" \n", from) - from);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   return "";
@@ -51,9 +51,9 @@ void in_browser(RunScript& run, const std::string& test, const std::vector<std::
   std::vector<std::string> command{"node", (repository() / "scripts/live/page/test" / test).string()};
   command.insert(command.end(), arguments.begin(), arguments.end());
   run.processes.spawn(test, command);
-  const int status = run.processes.wait_for_exit(test, 3 * kPatience_s);
-  INFO(run.processes.said(test));
-  INFO(run.processes.said("run"));
+  const int status = run.processes.wait_for_exit(test, 3 * kTimeout_s);
+  INFO(run.processes.output(test));
+  INFO(run.processes.output("run"));
   REQUIRE(status == 0);
 }
 
@@ -269,13 +269,13 @@ TEST_CASE(
   run.start({tapping_scene(), "--live", "--degrade", profile, "--device", "external:live", "--seconds", "90",
              "--out", run.out()});
   const std::string address = address_of(run.processes, "run");
-  INFO(run.processes.said("run"));
+  INFO(run.processes.output("run"));
   REQUIRE_FALSE(address.empty());
   const std::filesystem::path marks_file = run.folder.path() / "marks.json",
                               seen_file = run.folder.path() / "seen.json";
   in_browser(run, "run.test.mjs", {address, marks_file});
   run.processes.signal("run", SIGINT);
-  CHECK(run.finish(kPatience_s) >= 0);
+  CHECK(run.finish(kTimeout_s) >= 0);
 
   const Marks marks{json::parse(contents(marks_file))};
   const RunLog log(run.out());
@@ -290,7 +290,7 @@ TEST_CASE(
   run.processes.spawn("open", {"env", "TACTUS_BIN=" + programs().string(),
                                (repository() / "scripts/tactus").string(), "live", "open", recorded});
   const std::string shown_at = address_of(run.processes, "open");
-  INFO(run.processes.said("open"));
+  INFO(run.processes.output("open"));
   REQUIRE_FALSE(shown_at.empty());
   in_browser(run, "log.test.mjs", {shown_at, seen_file});
   const json seen = json::parse(contents(seen_file));
@@ -303,5 +303,5 @@ TEST_CASE(
     CHECK(place["sim_ns"].get<double>() == Approx(expected).margin(60e6));
   }
   run.processes.signal("open", SIGTERM);
-  CHECK(run.processes.wait_for_exit("open", kPatience_s) >= 0);
+  CHECK(run.processes.wait_for_exit("open", kTimeout_s) >= 0);
 }

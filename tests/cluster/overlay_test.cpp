@@ -1,11 +1,11 @@
 // Tests of overlays, plots and the picture stream of a running node, changed over the bus.
-#include "tests/cluster/support/seeing.h"
+#include "tests/cluster/support/picture_cluster.h"
 
 using namespace tactus;
 using namespace tactus::cluster;
 
 TEST_CASE("Overlays and plots are added to a running picture and removed, and unknown ones are rejected") {
-  Seeing c;
+  PictureCluster c;
   c.start_with(c.snapshots());
   const auto before = c.rates(1);
   const Grey plain = c.later_picture();
@@ -14,7 +14,7 @@ TEST_CASE("Overlays and plots are added to a running picture and removed, and un
     Grey of_a, of_b;
     for (std::size_t i = 0; i < a.size(); ++i)
       if (i / 640 < 240 && (i % 640 < 320) == left) of_a.push_back(a[i]), of_b.push_back(b[i]);
-    return apart(of_a, of_b);
+    return mean_difference(of_a, of_b);
   };
   CHECK_THAT(c.set({"overlay=report, ages,degradation"}), Catch::Contains("visual_node: overlay is report"));
   const Grey words = c.later_picture();
@@ -37,5 +37,5 @@ TEST_CASE("Overlays and plots are added to a running picture and removed, and un
 
   c.set({"overlay=all", "plot_span=1s"});
   c.check_rates_hold(before, 2);
-  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
 }

@@ -25,7 +25,7 @@ TEST_CASE("A run recorded in parts has the results of all parts, and can be rend
   run.start(
       {tapping_scene(), "--seconds", "6", "--without", "visual_node", "--split-mb", "2", "--out", run.out()});
   const int status = run.finish(150);
-  INFO(run.processes.said("run"));
+  INFO(run.processes.output("run"));
   REQUIRE(status == 0);
   const std::vector<std::string> parts = sync::log_parts_in(run.out());
   REQUIRE(parts.size() >= 3);
@@ -73,7 +73,7 @@ TEST_CASE("A run that keeps its newest parts has their results, and the older pa
   run.start({tapping_scene(), "--seconds", "6", "--without", "visual_node", "--split-mb", "1", "--keep", "2",
              "--tags", "none", "--out", run.out()});
   const int status = run.finish(150);
-  INFO(run.processes.said("run"));
+  INFO(run.processes.output("run"));
   CHECK(status == 0);
   const std::vector<std::string> parts = sync::log_parts_in(run.out());
   CHECK(parts.size() == 2);

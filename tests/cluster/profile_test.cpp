@@ -11,9 +11,9 @@ using namespace tactus::cluster;
 
 namespace {
 
-int outcomes(const Ear& ear, const std::string& modality, std::int8_t outcome) {
-  const auto reports = ear.presented().find(modality);
-  if (reports == ear.presented().end()) return 0;
+int outcomes(const ClusterMonitor& monitor, const std::string& modality, std::int8_t outcome) {
+  const auto reports = monitor.presented().find(modality);
+  if (reports == monitor.presented().end()) return 0;
   return static_cast<int>(std::count_if(reports->second.begin(), reports->second.end(),
                                         [&](const auto& r) { return r.second.outcome == outcome; }));
 }
@@ -21,27 +21,27 @@ int outcomes(const Ear& ear, const std::string& modality, std::int8_t outcome) {
 }  // namespace
 
 TEST_CASE("A profile put in force in a running cluster degrades only its modality, and can be removed", "[exclusive]") {
-  Running c;
+  RunningCluster c;
   c.start();
   const auto before = c.rates(1);
   CHECK(put_in_force(c, "<degrade modality=\"audio\" off=\"true\"/>").find("audio_node") != std::string::npos);
 
-  CHECK(c.ear.wait_until([&] { return outcomes(c.ear, "audio", presentation_t::DROPPED_BY_PROFILE) >= 3; },
-                         kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return outcomes(c.monitor, "audio", presentation_t::DROPPED_BY_PROFILE) >= 3; },
+                         kTimeout_s));
   for (const std::string& other : std::vector<std::string>{"haptic", "visual"})
-    CHECK(outcomes(c.ear, other, presentation_t::DROPPED_BY_PROFILE) == 0);
+    CHECK(outcomes(c.monitor, other, presentation_t::DROPPED_BY_PROFILE) == 0);
   // A commanded gap is no loss: the node itself is well.
-  CHECK(c.all_live(kNodes));
+  CHECK(c.all_running(kNodes));
   c.check_rates_hold(before, 2);
 
   put_in_force(c, "");
-  const int heard = outcomes(c.ear, "audio", presentation_t::PRESENTED);
+  const int heard = outcomes(c.monitor, "audio", presentation_t::PRESENTED);
   CHECK(
-      c.ear.wait_until([&] { return outcomes(c.ear, "audio", presentation_t::PRESENTED) > heard; }, kPatience_s));
+      c.monitor.wait_until([&] { return outcomes(c.monitor, "audio", presentation_t::PRESENTED) > heard; }, kTimeout_s));
 }
 
 TEST_CASE("The profile of a scene degrades the modality that it names and no other, until a user removes it", "[exclusive]") {
-  Running c;
+  RunningCluster c;
   std::stringstream text;
   text << std::ifstream(tapping_scene()).rdbuf();
   std::string scene = text.str();
@@ -51,13 +51,13 @@ TEST_CASE("The profile of a scene degrades the modality that it names and no oth
   const std::string file = c.folder.path() / "silent.sdf";
   std::ofstream(file) << scene;
   c.processes.start_all(file);
-  const auto dropped = [&] { return outcomes(c.ear, "audio", presentation_t::DROPPED_BY_PROFILE); };
-  const auto heard = [&] { return outcomes(c.ear, "audio", presentation_t::PRESENTED); };
-  CHECK(c.ear.wait_until(
-      [&] { return dropped() >= 3 && outcomes(c.ear, "haptic", presentation_t::PRESENTED) >= 3; }, kPatience_s));
+  const auto dropped = [&] { return outcomes(c.monitor, "audio", presentation_t::DROPPED_BY_PROFILE); };
+  const auto heard = [&] { return outcomes(c.monitor, "audio", presentation_t::PRESENTED); };
+  CHECK(c.monitor.wait_until(
+      [&] { return dropped() >= 3 && outcomes(c.monitor, "haptic", presentation_t::PRESENTED) >= 3; }, kTimeout_s));
   INFO(c.words());
   CHECK(heard() == 0);
-  CHECK(outcomes(c.ear, "visual", presentation_t::DROPPED_BY_PROFILE) == 0);
+  CHECK(outcomes(c.monitor, "visual", presentation_t::DROPPED_BY_PROFILE) == 0);
   put_in_force(c, "");
-  CHECK(c.ear.wait_until([&] { return heard() > 0; }, kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return heard() > 0; }, kTimeout_s));
 }

@@ -24,17 +24,17 @@ namespace {
 // Sends numbered messages on a channel that no other program uses.
 struct Sender {
   static constexpr const char* kChannel = channels::kGameState;
-  Ear ear{Running::kRunId};
+  ClusterMonitor monitor{RunningCluster::kRunId};
   std::vector<sync::HostTime> sent;
 
-  void send(int count, sync::Nanoseconds apart) {
+  void send(int count, sync::Nanoseconds mean_difference) {
     sync::HostTime next = sync::host_now();
     for (int i = 0; i < count; ++i) {
       game_state_t m{};
       m.header.sim_time_ns = 0;
-      ear.bus().publish(kChannel, m);
+      monitor.bus().publish(kChannel, m);
       sent.push_back(sync::host_now());
-      next += apart;
+      next += mean_difference;
       std::this_thread::sleep_until(std::chrono::steady_clock::time_point(next.time_since_epoch()));
     }
   }
@@ -56,10 +56,10 @@ std::vector<std::int64_t> numbers_in(const std::filesystem::path& log) {
 
 TEST_CASE("A killed recorder loses at most the last 100 ms, and its file is valid up to that point", "[exclusive]") {
   Folder folder;
-  Processes processes(folder.path(), Running::kRunId);
+  Processes processes(folder.path(), RunningCluster::kRunId);
   Sender sender;
   processes.start("recorder");
-  REQUIRE(sender.ear.wait_until([&] { return sender.ear.health("recorder") != nullptr; }, kPatience_s));
+  REQUIRE(sender.monitor.wait_until([&] { return sender.monitor.health("recorder") != nullptr; }, kTimeout_s));
   // Without a scene the log begins after 5 s; earlier messages wait until then.
   sender.send(7000, sync::Nanoseconds(1'000'000));
   const sync::HostTime killed = sync::host_now();
@@ -80,26 +80,26 @@ TEST_CASE("A recorder with a full disk reports it, and its file is valid up to t
     return;
   }
   {
-    Processes processes(folder.path(), Running::kRunId);
+    Processes processes(folder.path(), RunningCluster::kRunId);
     Sender sender;
-    processes.spawn("recorder", {(programs() / "recorder").string(), "--run-id", std::to_string(Running::kRunId),
+    processes.spawn("recorder", {(programs() / "recorder").string(), "--run-id", std::to_string(RunningCluster::kRunId),
                                  "--out", small});
-    REQUIRE(sender.ear.wait_until([&] { return sender.ear.health("recorder") != nullptr; }, kPatience_s));
+    REQUIRE(sender.monitor.wait_until([&] { return sender.monitor.health("recorder") != nullptr; }, kTimeout_s));
     sender.send(9000, sync::Nanoseconds(700'000));
-    const bool said = sender.ear.wait_until(
+    const bool output = sender.monitor.wait_until(
         [&] {
-          const node_health_t* h = sender.ear.health("recorder");
+          const node_health_t* h = sender.monitor.health("recorder");
           return h && h->state == node_health_t::OUTPUT_LOST &&
                  h->note.find("No space left on device") != std::string::npos;
         },
-        kPatience_s);
-    CHECK(said);
+        kTimeout_s);
+    CHECK(output);
     const auto numbers = numbers_in(small / "run.lcmlog");
     CHECK(numbers.size() > 100);
     for (std::size_t i = 0; i < numbers.size(); ++i) CHECK(numbers[i] == static_cast<std::int64_t>(i));
     processes.signal("recorder", SIGTERM);
-    CHECK(processes.wait_for_exit("recorder", kPatience_s) == 1);
-    CHECK_THAT(processes.said("recorder"), Catch::Contains("make room on its disk"));
+    CHECK(processes.wait_for_exit("recorder", kTimeout_s) == 1);
+    CHECK_THAT(processes.output("recorder"), Catch::Contains("make room on its disk"));
   }
   umount(small.c_str());
 }
@@ -108,14 +108,14 @@ TEST_CASE(
     "The recorder stores all messages that the kernel delivers while a node floods the bus, and those "
     "of the other nodes", "[exclusive]") {
   Folder folder;
-  Processes processes(folder.path(), Running::kRunId);
+  Processes processes(folder.path(), RunningCluster::kRunId);
   Sender sender;
   processes.start("recorder", {"--split-mb", "1"});
-  REQUIRE(sender.ear.wait_until([&] { return sender.ear.health("recorder") != nullptr; }, kPatience_s));
+  REQUIRE(sender.monitor.wait_until([&] { return sender.monitor.health("recorder") != nullptr; }, kTimeout_s));
   sender.send(60'000, sync::Nanoseconds(0));
-  sender.ear.listen(6);
+  sender.monitor.receive_for(6);
   processes.signal("recorder", SIGTERM);
-  CHECK(processes.wait_for_exit("recorder", kPatience_s) == 0);
+  CHECK(processes.wait_for_exit("recorder", kTimeout_s) == 0);
   std::set<std::int64_t> found;
   int parts = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
@@ -124,10 +124,10 @@ TEST_CASE(
     for (const std::int64_t n : numbers_in(entry.path())) CHECK(found.insert(n).second);
   }
   CHECK(parts > 3);
-  CHECK_THAT(processes.said("recorder"), !Catch::Contains("want of"));
+  CHECK_THAT(processes.output("recorder"), !Catch::Contains("want of"));
   // The missing messages form a gap that the recorder has counted: as many as the kernel dropped at its socket.
-  const std::string said = processes.said("recorder");
-  const std::size_t at = said.rfind("GAME_STATE ");
-  const std::int64_t gaps = at == std::string::npos ? 0 : std::stoll(said.substr(at + 11));
+  const std::string output = processes.output("recorder");
+  const std::size_t at = output.rfind("GAME_STATE ");
+  const std::int64_t gaps = at == std::string::npos ? 0 : std::stoll(output.substr(at + 11));
   CHECK(static_cast<std::int64_t>(found.size()) + gaps >= 60'000 - 1);
 }

@@ -30,15 +30,15 @@ TEST_CASE(
   RunScript run;
   run.start({tapping_scene(), "--seconds", "5", "--out", run.out()});
   const int status = run.finish(150);
-  INFO(run.processes.said("run"));
+  INFO(run.processes.output("run"));
   REQUIRE(status == 0);
   const std::filesystem::path late = run.folder.path() / "late.xml", table = run.folder.path() / "table.json";
   std::ofstream(late) << R"(<profile name="late"><degrade modality="audio" delay="40ms"/></profile>)";
   // Exits with 1 when a byte differs, or when an onset of sound is more than 1 ms off.
-  const std::string said = run.output_of(
+  const std::string output = run.output_of(
       {"env", "TACTUS_BIN=" + programs().string(), (repository() / "scripts/tactus").string(), "rerender", run.out() / "run.lcmlog", "--degrade", late,
        "--twice", "--live", "--set", "visual:width=320", "--set", "visual:height=240", "--json", table});
-  INFO(said);
+  INFO(output);
   const json result = json::parse(contents(table));
   CHECK(result["not_rendered"].empty());
   REQUIRE(result["twice"].size() == 4);

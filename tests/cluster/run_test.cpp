@@ -28,9 +28,9 @@ TEST_CASE("scripts/run writes the log, sound, pictures, tables and a complete su
   RunScript run;
   run.start({tapping_scene(), "--seconds", "8", "--out", run.out()});
   const int status = run.finish(kLongest_s);
-  INFO(run.processes.said("run"));
+  INFO(run.processes.output("run"));
   REQUIRE(status == 0);
-  CHECK(nothing_lives(5));
+  CHECK(all_processes_ended(5));
   for (const char* file : {"run.lcmlog", "audio.wav", "video.mp4", "haptic.csv", "thermal.csv", "events.csv", "presented.csv",
                            "summary.json"}) {
     INFO(file);
@@ -63,7 +63,7 @@ TEST_CASE("With two groups every modality presents its expected events, and the 
   RunScript run;
   run.start({"--seconds", "8", "--set", "sim_node.groups=dual", "--out", run.out()});
   const int status = run.finish(kLongest_s);
-  INFO(run.processes.said("run"));
+  INFO(run.processes.output("run"));
   CHECK(status == 0);
   const json summary = json::parse(contents(run.out() / "summary.json"));
   for (const char* sense : {"audio", "haptic", "thermal", "visual"}) {
@@ -77,7 +77,7 @@ TEST_CASE("Without audio_node the others run unchanged, in the default scene", "
   RunScript run;
   run.start({"--seconds", "6", "--without", "audio_node", "--out", run.out()});
   const int status = run.finish(kLongest_s);
-  INFO(run.processes.said("run"));
+  INFO(run.processes.output("run"));
   CHECK(status == 0);
   CHECK_FALSE(std::filesystem::exists(run.out() / "audio.wav"));
   CHECK(std::filesystem::exists(run.out() / "video.mp4"));
@@ -90,10 +90,10 @@ TEST_CASE("A closed output pipe loses no results, and leaves no process behind")
   run.processes.spawn("pipe", {"env", "TACTUS_BIN=" + programs().string(), "sh", "-c",
                                quoted(script) + " " + quoted(tapping_scene()) + " --seconds 3 --out " + quoted(run.out()) + " | head -1"});
   CHECK(run.finish(kLongest_s, "pipe") == 0);
-  INFO(run.processes.said("pipe"));
+  INFO(run.processes.output("pipe"));
   for (int i = 0; i < 600 && !std::filesystem::exists(run.out() / "events.csv"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  CHECK(nothing_lives(15));
+  CHECK(all_processes_ended(15));
   for (const char* file : {"run.lcmlog", "haptic.csv", "thermal.csv", "events.csv", "presented.csv", "summary.json"}) {
     INFO(file);
     CHECK(std::filesystem::is_regular_file(run.out() / file));
@@ -125,11 +125,11 @@ TEST_CASE("Errors of the command line are reported in one sentence before any pr
   }));
   run.start(wrong.options);
   CHECK(run.finish(60) == 1);
-  const std::string said = run.processes.said("run");
-  INFO(said);
-  CHECK(said.find(wrong.names) != std::string::npos);
-  CHECK(std::count(said.begin(), said.end(), '\n') == 1);
-  CHECK(nothing_lives(5));
+  const std::string output = run.processes.output("run");
+  INFO(output);
+  CHECK(output.find(wrong.names) != std::string::npos);
+  CHECK(std::count(output.begin(), output.end(), '\n') == 1);
+  CHECK(all_processes_ended(5));
   CHECK_FALSE(std::filesystem::exists(run.folder.path() / "out"));
 }
 
@@ -143,15 +143,15 @@ TEST_CASE("A busy port of the machine's network is named, with the remedy", "[ex
   REQUIRE(up());
   run.start({tapping_scene(), "--seconds", "1", "--network", "host", "--out", run.out("b")}, "second");
   CHECK(run.finish(60, "second") == 1);
-  const std::string said = run.processes.said("second");
-  INFO(said);
-  CHECK(said.find("7667") != std::string::npos);
-  CHECK(said.find("--port") != std::string::npos);
+  const std::string output = run.processes.output("second");
+  INFO(output);
+  CHECK(output.find("7667") != std::string::npos);
+  CHECK(output.find("--port") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(run.out("b")));
   // Ctrl-C ends the first run early, with its results.
   run.processes.signal("first", SIGINT);
   const int status = run.finish(60, "first");
-  INFO(run.processes.said("first"));
+  INFO(run.processes.output("first"));
   CHECK(status == 0);
   CHECK(std::filesystem::exists(run.out("a") / "summary.json"));
 }
@@ -163,7 +163,7 @@ TEST_CASE("Two simultaneous runs do not receive each other's messages", "[exclus
     run.start({tapping_scene(), "--seconds", "4", "--without", "visual_node", "--out", run.out(name)}, name);
   for (const std::string& name : names) {
     const int status = run.finish(kLongest_s, name);
-    INFO(run.processes.said(name));
+    INFO(run.processes.output(name));
     CHECK(status == 0);
     const json summary = json::parse(contents(run.out(name) / "summary.json"), nullptr, false);
     REQUIRE_FALSE(summary.is_discarded());
@@ -179,7 +179,7 @@ TEST_CASE("A killed scripts/run leaves no process behind") {
   const auto up = [&] { return std::filesystem::exists(run.out() / "run.lcmlog"); };
   for (int i = 0; i < 1200 && !up(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   REQUIRE(up());
-  CHECK(living_processes().size() > 5);
+  CHECK(running_processes().size() > 5);
   run.processes.kill("run");
-  CHECK(nothing_lives(10));
+  CHECK(all_processes_ended(10));
 }

@@ -9,7 +9,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-struct Set : Running {
+struct Set : RunningCluster {
   int asked = 0;
 
   std::string ask(const std::vector<std::string>& words, int wanted_status = 0) {
@@ -17,12 +17,12 @@ struct Set : Running {
     std::vector<std::string> command{programs() / "set", "--run-id", std::to_string(kRunId)};
     command.insert(command.end(), words.begin(), words.end());
     processes.spawn(name, command);
-    const int status = processes.wait_for_exit(name, kPatience_s);
-    INFO(processes.said(name));
+    const int status = processes.wait_for_exit(name, kTimeout_s);
+    INFO(processes.output(name));
     CHECK(status == wanted_status);
-    const std::string said = processes.said(name);
-    CHECK(std::count(said.begin(), said.end(), '\n') == 1);
-    return said;
+    const std::string output = processes.output(name);
+    CHECK(std::count(output.begin(), output.end(), '\n') == 1);
+    return output;
   }
   // The largest force in TOOL_STATE over the given time, N: the hand taps twice per second.
   double largest_N(double seconds) {
@@ -58,7 +58,7 @@ TEST_CASE("A force limit lowered during taps holds from the reply on, and can be
   CHECK(tightened_N > 0.4);  // the setting limits the force and does not end touch
   c.ask({"haptic_node", "force_limit=8N"});
   CHECK(c.largest_N(2) > 0.8 * before_N);
-  CHECK(c.ear.wait_until([&] { return c.lives("haptic_node"); }, kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return c.is_running("haptic_node"); }, kTimeout_s));
 }
 
 TEST_CASE("A running node rejects forbidden and impossible settings with a sentence, and keeps its values", "[smoke]") {
@@ -71,5 +71,5 @@ TEST_CASE("A running node rejects forbidden and impossible settings with a sente
   CHECK_THAT(c.ask({"nose_node", "force_limit=1N"}, 1), Catch::Contains("nose_node"));
   CHECK_THAT(c.ask({"haptic_node", "force_limit"}, 1), Catch::Contains("NAME=VALUE"));
   CHECK(c.largest_N(2) > 1);
-  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
 }

@@ -72,11 +72,11 @@ Result read(const std::filesystem::path& out) {
   const auto events = table(out / "events.csv");
   REQUIRE_FALSE(events.empty());
   const auto ns = [](const auto& row, const char* name) { return std::stoll(row.at(name)); };
-  std::map<std::string, std::int64_t> began, happened_ns;
+  std::map<std::string, std::int64_t> began, event_ns;
   // Events of the last 1.2 s may be unreported when the run ends.
   const std::int64_t settled = ns(events.back(), "host_ns") - 1'200'000'000;
   for (const auto& row : events) {
-    happened_ns[row.at("event_id")] = ns(row, "host_ns");
+    event_ns[row.at("event_id")] = ns(row, "host_ns");
     if (row.at("kind") == "begin") began[row.at("contact_id")] = ns(row, "sim_ns");
     if (row.at("kind") == "end" && began.contains(row.at("contact_id")))
       r.lasted_ms.push_back(static_cast<double>(ns(row, "sim_ns") - began.at(row.at("contact_id"))) * 1e-6);
@@ -84,9 +84,9 @@ Result read(const std::filesystem::path& out) {
   }
   for (const auto& row : table(out / "presented.csv")) {
     r.outcome[row.at("modality")][row.at("event_id")] = row.at("outcome");
-    if (ns(row, "presented_ns") < 0 || !happened_ns.contains(row.at("event_id"))) continue;
+    if (ns(row, "presented_ns") < 0 || !event_ns.contains(row.at("event_id"))) continue;
     const double after_ms =
-        static_cast<double>(ns(row, "presented_ns") - happened_ns.at(row.at("event_id"))) * 1e-6;
+        static_cast<double>(ns(row, "presented_ns") - event_ns.at(row.at("event_id"))) * 1e-6;
     const auto [soonest, fresh] = r.soonest_ms.try_emplace(row.at("modality"), after_ms);
     soonest->second = std::min(soonest->second, after_ms);
   }
@@ -106,7 +106,7 @@ void check_all_but(const std::string& degraded) {
     if (!policy.empty()) options.insert(options.end(), {"--policy", policy});
     run.start(options);
     const int status = run.finish(150);
-    INFO("policy \"" << policy << "\": " << run.processes.said("run"));
+    INFO("policy \"" << policy << "\": " << run.processes.output("run"));
     REQUIRE(status == 0);
 
     Result r = read(run.out());
@@ -125,9 +125,9 @@ void check_all_but(const std::string& degraded) {
         presented += outcome == "presented" || outcome == "late";
         refused += outcome == "dropped_by_profile" || outcome == "dropped_late";
       }
-      std::ostringstream said;
-      for (const auto& [outcome, n] : outcomes) said << n << " " << outcome << ", ";
-      INFO(sense << " of " << owed << ": " << said.str());
+      std::ostringstream output;
+      for (const auto& [outcome, n] : outcomes) output << n << " " << outcome << ", ";
+      INFO(sense << " of " << owed << ": " << output.str());
       CHECK(owed >= 10);
       // The profile takes effect on its modality: 30 ms, less half a video frame, because a picture shows the nearest event.
       if (sense == degraded && r.soonest_ms.contains(sense)) CHECK(r.soonest_ms.at(sense) > 21);

@@ -15,9 +15,9 @@ using namespace tactus::cluster;
 
 namespace {
 
-struct Tagged : Running {
-  sync::Queue<tag_list_t>& lists = ear.bus().queue<tag_list_t>(channels::kTagList, 1024);
-  sync::Queue<tag_values_t>& values = ear.bus().queue<tag_values_t>(channels::kTagValues, 65536);
+struct Tagged : RunningCluster {
+  sync::Queue<tag_list_t>& lists = monitor.bus().queue<tag_list_t>(channels::kTagList, 1024);
+  sync::Queue<tag_values_t>& values = monitor.bus().queue<tag_values_t>(channels::kTagValues, 65536);
   sync::TagTable table;
   struct Series {
     std::string unit;
@@ -28,15 +28,15 @@ struct Tagged : Running {
   std::int64_t messages = 0;
 
   // Receives for the given time; requests the pattern once per second.
-  void listen(double seconds, const std::string& pattern = "") {
+  void receive_for(double seconds, const std::string& pattern = "") {
     for (double left = seconds; left > 0; left -= 0.5) {
       if (!pattern.empty()) {
         tag_request_t request{};
         request.header.sim_time_ns = -1;
         request.patterns = {pattern}, request.pattern_count = 1;
-        ear.bus().publish(channels::kTagRequest, request);
+        monitor.bus().publish(channels::kTagRequest, request);
       }
-      ear.listen(0.5);
+      monitor.receive_for(0.5);
       while (const auto m = lists.pop()) table.push(m->message);
       while (const auto m = values.pop()) {
         ++messages;
@@ -76,9 +76,9 @@ std::string scene_with(const Folder& folder, const std::string& element) {
 TEST_CASE("Every node publishes its requested variables at each of its ticks, and stops when no request is active", "[exclusive]") {
   Tagged c;
   c.start();
-  c.listen(2);
+  c.receive_for(2);
   CHECK(c.messages == 0);
-  c.listen(4, "*");
+  c.receive_for(4, "*");
   for (const std::string& node : kNodes) {
     INFO(node << "\n" << c.words());
     CHECK(c.heard[node + ".work"].unit == "us");
@@ -113,9 +113,9 @@ TEST_CASE("Every node publishes its requested variables at each of its ticks, an
   CHECK(parts > 0.8 * whole);
   CHECK(parts < 1.2 * whole);
 
-  c.listen(4);
+  c.receive_for(4);
   const std::int64_t before = c.messages;
-  c.listen(2);
+  c.receive_for(2);
   CHECK(c.messages == before);
 }
 
@@ -125,9 +125,9 @@ TEST_CASE("One line of a scene makes the sound level weaken the felt vibration",
   c.processes.start_all(scene_with(
       c.folder,
       "<tactus:map from='audio_node.hits' to='haptic_node.force_limit' gain='-0.5' offset='8N' low='0.5N'/>"));
-  REQUIRE(c.ear.wait_until([&] { return c.all_live(kNodes) && c.ear.hits() > 0; }, kPatience_s));
+  REQUIRE(c.monitor.wait_until([&] { return c.all_running(kNodes) && c.monitor.hits() > 0; }, kTimeout_s));
   const auto weak = [&] {
-    c.listen(2, "*");
+    c.receive_for(2, "*");
     const auto& forces = c.heard["haptic_node.force"].values;
     const double most = *std::max_element(forces.end() - 1000, forces.end());
     return most > 0.4 && most <= 0.5 + 1e-6;

@@ -36,7 +36,7 @@ void check_unchanged(const Figures& before, const Figures& now) {
   CHECK(now.felt_p50_ms > 0);
   CHECK(no_later(before.felt_p50_ms, now.felt_p50_ms, 1.5, 2));
   CHECK(close(before.peak_N(), now.peak_N(), 0.1));
-  CHECK(apart_N(before, now) < 0.05 * before.peak_N());
+  CHECK(mean_difference_N(before, now) < 0.05 * before.peak_N());
 }
 
 // Begins of a tool's contacts without an end.
@@ -80,7 +80,7 @@ struct ThreeHands : RunScript {
       return contents(out() / "logs/sim_node.log").find("the world begins") != std::string::npos;
     };
     for (int i = 0; i < 1200 && !up(); ++i) sleep_s(0.05);
-    INFO(processes.said("run"));
+    INFO(processes.output("run"));
     REQUIRE(up());
   }
   // Three spans without changes, after the last change has settled.
@@ -120,7 +120,7 @@ struct Story {
     gentle = c.watch();
     c.processes.signal("run", SIGINT);
     CHECK(c.finish(60) == 0);  // a hand that was removed does not count as missing
-    CHECK_THAT(c.processes.said("run"), Catch::Contains("haptic_node_right was taken down"));
+    CHECK_THAT(c.processes.output("run"), Catch::Contains("haptic_node_right was taken down"));
   }
 };
 
@@ -151,7 +151,7 @@ TEST_CASE("One of several hands leaves and another joins without an effect on th
     INFO(name);
     check_unchanged(before, figures(log, spans));
     // Also during the half second in which a hand leaves or joins.
-    const Figures meanwhile = of_span(log, {spans.front().from_ns - 500'000'000, spans.front().from_ns});
+    const Figures meanwhile = figures_of_span(log, {spans.front().from_ns - 500'000'000, spans.front().from_ns});
     CHECK(meanwhile.sim_step_p50_ms == Approx(1).margin(0.05));
     CHECK(meanwhile.hand_step_p50_ms == Approx(1).margin(0.05));
   }

@@ -22,7 +22,7 @@ struct TwoHosts {
   };
 
   Cable cable;
-  std::optional<Running> running;
+  std::optional<RunningCluster> running;
   std::map<std::string, std::map<std::int64_t, Shown>> frames;  // by wall and number
 
   // Returns false where the system allows no second host. front: command prefix of the wall there.
@@ -32,7 +32,7 @@ struct TwoHosts {
       return false;
     }
     running.emplace();
-    shown_ = &running->ear.bus().queue<frame_shown_t>(channels::kFrameShown, 4096);
+    shown_ = &running->monitor.bus().queue<frame_shown_t>(channels::kFrameShown, 4096);
     const std::string scene = repository() / "tests/cluster/scenes/walls.sdf";
     spawn({}, "sync_node", "sync_node");
     spawn(cable.there(), "sync_node", "sync_node_there");
@@ -43,26 +43,26 @@ struct TwoHosts {
     words.insert(words.end(), front.begin(), front.end());
     spawn(cable.there(), "visual_node", kFront, words);
     spawn({}, "sim_node", "sim_node", {scene});
-    const bool alive = running->ear.wait_until(
+    const bool alive = running->monitor.wait_until(
         [&] {
-          return running->all_live({"sim_node", kLeft, kFront});
+          return running->all_running({"sim_node", kLeft, kFront});
         },
-        kPatience_s);
-    UNSCOPED_INFO(running->words() << running->processes.said(kFront));
+        kTimeout_s);
+    UNSCOPED_INFO(running->words() << running->processes.output(kFront));
     REQUIRE(alive);
-    running->ear.listen(1);  // until the clocks of both are mapped
+    running->monitor.receive_for(1);  // until the clocks of both are mapped
     return true;
   }
   // Receives until the left wall has shown kFrames more frames, and both walls have shown at least `both`.
   void watch(std::int64_t both) {
     frames.clear();
     while (shown_->pop()) continue;
-    const bool enough = running->ear.wait_until(
+    const bool enough = running->monitor.wait_until(
         [&] {
-          take_in();
+          drain();
           return static_cast<std::int64_t>(frames[kLeft].size()) >= kFrames && common() >= both;
         },
-        kPatience_s);
+        kTimeout_s);
     INFO(frames[kLeft].size() << " frames left, " << frames[kFront].size() << " in front, " << common()
                               << " of both");
     REQUIRE(enough);
@@ -106,15 +106,15 @@ struct TwoHosts {
   void spawn(std::vector<std::string> words, const std::string& program, const std::string& name,
              const std::vector<std::string>& options = {}) {
     words.insert(words.end(),
-                 {(programs() / program).string(), "--name", name, "--run-id", std::to_string(Running::kRunId),
+                 {(programs() / program).string(), "--name", name, "--run-id", std::to_string(RunningCluster::kRunId),
                   "--out", running->folder.path().string(), "--ttl", "1"});
     words.insert(words.end(), options.begin(), options.end());
     running->processes.spawn(name, words);
   }
-  void take_in() {
+  void drain() {
     while (const auto m = shown_->pop())
       for (const char* wall : {kLeft, kFront})
-        if (const node_health_t* h = running->ear.health(wall);
+        if (const node_health_t* h = running->monitor.health(wall);
             h && h->header.incarnation == m->message.header.incarnation &&
             m->message.stage == frame_shown_t::SHOWN)
           frames[wall][m->message.frame] = {m->message.header.sim_time_ns, m->message.head_ns};

@@ -8,7 +8,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-struct TwoWalls : Running {
+struct TwoWalls : RunningCluster {
   static constexpr const char* kLeft = "visual_node";
   static constexpr const char* kFront = "visual_node_front";
   std::vector<std::string> nodes = kNodes;
@@ -24,7 +24,7 @@ struct TwoWalls : Running {
     processes.start(kLeft, draws("left"));
     start_front();
     processes.start("sim_node", {tapping_scene()});
-    const bool alive = ear.wait_until([&] { return all_live(nodes) && ear.hits() > 0; }, kPatience_s);
+    const bool alive = monitor.wait_until([&] { return all_running(nodes) && monitor.hits() > 0; }, kTimeout_s);
     UNSCOPED_INFO(words());
     REQUIRE(alive);
   }
@@ -36,8 +36,8 @@ struct TwoWalls : Running {
     processes.spawn(kFront, words);
   }
   bool draws_on(const std::string& node) {
-    const std::int64_t before = ear.rendered(node);
-    return ear.wait_until([&] { return ear.rendered(node) > before + 2; }, kPatience_s);
+    const std::int64_t before = monitor.rendered(node);
+    return monitor.wait_until([&] { return monitor.rendered(node) > before + 2; }, kTimeout_s);
   }
 };
 
@@ -56,13 +56,13 @@ TEST_CASE(
   c.check_rates_hold(before, 2);
   CHECK(c.draws_on(TwoWalls::kLeft));
   c.processes.signal(TwoWalls::kFront, SIGCONT);
-  CHECK(c.ear.wait_until([&] { return c.all_live(c.nodes); }, kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return c.all_running(c.nodes); }, kTimeout_s));
   CHECK(c.draws_on(TwoWalls::kFront));
 
   c.processes.kill(TwoWalls::kFront);
   c.check_rates_hold(before, 2);
   CHECK(c.draws_on(TwoWalls::kLeft));
   c.start_front();
-  CHECK(c.ear.wait_until([&] { return c.all_live(c.nodes); }, kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return c.all_running(c.nodes); }, kTimeout_s));
   CHECK(c.draws_on(TwoWalls::kFront));
 }

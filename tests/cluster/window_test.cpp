@@ -8,7 +8,7 @@
 #include <tactus/question_t.hpp>
 #include <tactus/world_state_t.hpp>
 
-#include "tests/cluster/support/seeing.h"
+#include "tests/cluster/support/picture_cluster.h"
 
 using namespace tactus;
 using namespace tactus::cluster;
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kWide = 1024, kHigh = 768;  // size of the screen, pixels; the window is 640 x 480 at its upper left
 
-struct Desktop : Seeing {
+struct Desktop : PictureCluster {
   std::string display;
   sync::Bus bus{sync::Identity::fresh("desktop_test", kRunId), {}};
   sync::Queue<world_state_t>& worlds{bus.queue<world_state_t>(channels::kWorldState, 4096)};
@@ -33,12 +33,12 @@ struct Desktop : Seeing {
   void start_server() {
     processes.spawn("Xvfb", {"Xvfb", "-displayfd", "1", "-screen", "0",
                              std::to_string(kWide) + "x" + std::to_string(kHigh) + "x24", "-nolisten", "tcp"});
-    ear.wait_until([&] { return processes.said("Xvfb").find('\n') != std::string::npos; }, kPatience_s);
-    const std::string said = processes.said("Xvfb");
-    INFO("Xvfb (Debian package xvfb): " << said);
-    const std::size_t end = said.find_last_of("0123456789");
+    monitor.wait_until([&] { return processes.output("Xvfb").find('\n') != std::string::npos; }, kTimeout_s);
+    const std::string output = processes.output("Xvfb");
+    INFO("Xvfb (Debian package xvfb): " << output);
+    const std::size_t end = output.find_last_of("0123456789");
     REQUIRE(end != std::string::npos);
-    display = ":" + said.substr(said.find_last_not_of("0123456789", end) + 1);
+    display = ":" + output.substr(output.find_last_not_of("0123456789", end) + 1);
     display = display.substr(0, display.find('\n'));
   }
   std::vector<std::string> on_display() const { return {"DISPLAY=" + display, "WAYLAND_DISPLAY="}; }
@@ -55,10 +55,10 @@ struct Desktop : Seeing {
     command.insert(command.end(), words.begin(), words.end());
     processes.spawn(name, command);
     hear_until([&] { return !processes.running(name); });  // the question is repeated meanwhile
-    const int status = processes.wait_for_exit(name, kPatience_s);
-    INFO("xdotool (Debian package xdotool): " << processes.said(name));
+    const int status = processes.wait_for_exit(name, kTimeout_s);
+    INFO("xdotool (Debian package xdotool): " << processes.output(name));
     CHECK(status == 0);
-    return processes.said(name);
+    return processes.output(name);
   }
   std::string window() {
     const std::string found = x({"search", "--sync", "--name", "^Tactus$"});
@@ -77,7 +77,7 @@ struct Desktop : Seeing {
   }
   template <class Condition>
   bool hear_until(const Condition& condition) {
-    return ear.wait_until(
+    return monitor.wait_until(
         [&] {
           bus.drain(sync::host_now());
           while (const auto m = worlds.pop()) rate = m->message.clock.rate;
@@ -90,7 +90,7 @@ struct Desktop : Seeing {
           }
           return condition();
         },
-        kPatience_s);
+        kTimeout_s);
   }
   void hear_for(double seconds) {
     const sync::HostTime end = sync::host_now() + sync::from_seconds(seconds);
@@ -117,8 +117,8 @@ X.XSendEvent(d, ctypes.c_ulong(window), 0, ctypes.c_long(0), ctypes.byref(e))
 X.XCloseDisplay(d)
 )";
     processes.spawn("close", {"/usr/bin/python3", "-c", program, display, window()});
-    const int status = processes.wait_for_exit("close", kPatience_s);
-    INFO(processes.said("close"));
+    const int status = processes.wait_for_exit("close", kTimeout_s);
+    INFO(processes.output("close"));
     REQUIRE(status == 0);
   }
 };
@@ -128,7 +128,7 @@ X.XCloseDisplay(d)
 TEST_CASE("A window shows the picture, and its keys pause, step and reset the world, toggle overlays and fill the screen") {
   Desktop c;
   c.start_window();
-  c.ear.listen(1);
+  c.monitor.receive_for(1);
   const Grey shown = c.screen();
   REQUIRE(shown.size() == kWide * kHigh);
   CHECK(Desktop::brightest(shown, true) > 40);
@@ -141,30 +141,30 @@ TEST_CASE("A window shows the picture, and its keys pause, step and reset the wo
   const Grey still = c.later_picture();
   c.x({"key", "h"});
   const Grey helped = c.later_picture();
-  CHECK(apart(still, helped) > 3);  // a plate full of text
+  CHECK(mean_difference(still, helped) > 3);  // a plate full of text
   c.x({"key", "h"});
-  CHECK(apart(still, c.later_picture()) < 1);
+  CHECK(mean_difference(still, c.later_picture()) < 1);
   c.x({"key", "period"});
   c.x({"key", "r"});
   c.x({"key", "space"});
   CHECK(c.hear_until([&] { return c.rate > 0; }));
-  const std::string said = c.processes.said("visual_node");
-  CHECK_THAT(said, Catch::Contains("1 step from") && Catch::Contains("reset to its first instant"));
+  const std::string output = c.processes.output("visual_node");
+  CHECK_THAT(output, Catch::Contains("1 step from") && Catch::Contains("reset to its first instant"));
 
   c.x({"key", "F11"});
-  c.ear.listen(1);
+  c.monitor.receive_for(1);
   CHECK_THAT(c.geometry(), Catch::Contains("1024x768"));
   CHECK(Desktop::brightest(c.screen(), false) > 10);
   c.x({"key", "f"});
-  c.ear.listen(1);
+  c.monitor.receive_for(1);
   CHECK_THAT(c.geometry(), Catch::Contains("640x480"));
-  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
 }
 
 TEST_CASE("The window draws a question of a study and answers it by its keys, which have no other effect meanwhile") {
   Desktop c;
   c.start_window();
-  c.ear.listen(1);
+  c.monitor.receive_for(1);
   c.x({"mousemove", "300", "300"});
   c.x({"key", "space"});
   REQUIRE(c.hear_until([&] { return c.rate == 0; }));  // a still picture
@@ -185,20 +185,20 @@ TEST_CASE("The window draws a question of a study and answers it by its keys, wh
     for (const answer_t& a : c.answered[id]) {
       CHECK((a.choice == c.answered[id][0].choice && a.number == c.answered[id][0].number));
       CHECK(a.after_ns == c.answered[id][0].after_ns);
-      CHECK((a.by == "key" && a.after_ns > 0 && a.after_ns < static_cast<std::int64_t>(kPatience_s * 1e9)));
+      CHECK((a.by == "key" && a.after_ns > 0 && a.after_ns < static_cast<std::int64_t>(kTimeout_s * 1e9)));
     }
     return c.answered[id][0];
   };
 
   ask(11, question_t::CHOICE, "Did you hear the ball and see it touch the floor at the same time?");
-  CHECK(apart(still, c.picture()) > 3);
+  CHECK(mean_difference(still, c.picture()) > 3);
   c.x({"key", "3"});  // there is no third choice; the key must not open an overlay either
   c.hear_for(0.5);
   CHECK(c.answered.empty());
   c.x({"key", "2"});
   CHECK((answer(11).choice == 1 && answer(11).number == 0));
   c.hear_for(0.5);
-  CHECK(apart(still, c.picture()) < 1);  // the question is closed, and no overlay is open
+  CHECK(mean_difference(still, c.picture()) < 1);  // the question is closed, and no overlay is open
 
   ask(12, question_t::NUMBER, "How hard was it?");
   for (const char* key : {"Right", "Up", "Up", "Left", "Left"}) c.x({"key", key});  // 5 and 1, 1, 1, less 2
@@ -213,15 +213,15 @@ TEST_CASE("The window draws a question of a study and answers it by its keys, wh
   // A second window shows no questions.
   c.set({"questions=false"});
   ask(14, question_t::READ, "Not here.");
-  CHECK(apart(still, c.picture()) < 1);
+  CHECK(mean_difference(still, c.picture()) < 1);
   c.set({"questions=true"});
   c.hear_for(1);
-  CHECK(apart(still, c.picture()) > 1);
+  CHECK(mean_difference(still, c.picture()) > 1);
 
   // The program with the question has stopped publishing.
   c.asked_now = {};
   c.hear_for(3.5);
-  CHECK(apart(still, c.picture()) < 1);
+  CHECK(mean_difference(still, c.picture()) < 1);
   CHECK(c.answered.find(14) == c.answered.end());
   c.x({"key", "space"});
   CHECK(c.hear_until([&] { return c.rate > 0; }));
@@ -231,17 +231,17 @@ TEST_CASE("The mouse in the window is a device that points at the object under t
   Desktop c;
   c.start_window();
   c.x({"mousemove", "320", "400"});
-  CHECK_FALSE(c.ear.wait_until([&] { return c.hear_until([&] { return true; }) && c.aimed > 0; }, 0.5));
+  CHECK_FALSE(c.monitor.wait_until([&] { return c.hear_until([&] { return true; }) && c.aimed > 0; }, 0.5));
   c.x({"mousedown", "1"});
   CHECK(c.hear_until([&] { return c.aimed > 5; }));
   c.x({"mouseup", "1"});
-  CHECK(c.goes_on("visual_node"));
+  CHECK(c.keeps_ticking("visual_node"));
 }
 
 TEST_CASE("The spot light follows the pressed mouse, and stays in place after its release", "[exclusive]") {
   Desktop c;
   c.start_server();
-  const std::string run = std::to_string(Running::kRunId);
+  const std::string run = std::to_string(RunningCluster::kRunId);
   c.processes.start("sync_node");
   c.processes.start("haptic_node");
   c.processes.spawn("haptic_node_wand",
@@ -251,7 +251,7 @@ TEST_CASE("The spot light follows the pressed mouse, and stays in place after it
   options.insert(options.end(), {"--window", "--set", "width=640", "--set", "height=480"});
   c.start_vision(options, c.on_display());
   c.processes.start("sim_node", {repository() / "tests/cluster/scenes/head.sdf"});
-  REQUIRE(c.ear.wait_until([&] { return c.all_live({"sim_node", "haptic_node", "visual_node"}); }, kPatience_s));
+  REQUIRE(c.monitor.wait_until([&] { return c.all_running({"sim_node", "haptic_node", "visual_node"}); }, kTimeout_s));
   const auto brightness = [](const Grey& p, bool left) {
     double sum = 0;
     for (std::size_t i = 0; i < p.size(); ++i)
@@ -261,20 +261,20 @@ TEST_CASE("The spot light follows the pressed mouse, and stays in place after it
   const auto held_at = [&](const char* x_px) {
     c.x({"mousemove", x_px, "300"});
     c.x({"mousedown", "1"});
-    CHECK(c.ear.wait_until([&] { return c.lives("haptic_node_wand"); }, kPatience_s));
-    c.ear.listen(0.5);
+    CHECK(c.monitor.wait_until([&] { return c.is_running("haptic_node_wand"); }, kTimeout_s));
+    c.monitor.receive_for(0.5);
     const Grey held = c.later_picture();
     c.x({"mouseup", "1"});
     return held;
   };
   const Grey left = held_at("120"), right = held_at("520");
-  CHECK(apart(left, right) > 1);
+  CHECK(mean_difference(left, right) > 1);
   CHECK(brightness(left, true) > brightness(right, true));
   CHECK(brightness(right, false) > brightness(left, false));
   c.x({"mousemove", "120", "300"});  // no button: the mouse only passes
   const Grey after = c.later_picture();
-  INFO("from where it was held " << apart(right, after) << ", from where it passes " << apart(left, after));
-  CHECK(apart(right, after) < 0.5);
+  INFO("from where it was held " << mean_difference(right, after) << ", from where it passes " << mean_difference(left, after));
+  CHECK(mean_difference(right, after) < 0.5);
 
   // Released and moved within one frame.
   c.hear_for(0.1);
@@ -290,7 +290,7 @@ TEST_CASE("A hidden, tiny or oversized window stops no node, and a closed window
   c.start_window({"--set", "window_width=16384", "--set", "window_height=1", "--set", "monitor=7", "--set",
                   "stereo=quad_buffer"});
   const auto before = c.rates(1);
-  CHECK_THAT(c.processes.said("visual_node"), Catch::Contains("larger than its monitor") &&
+  CHECK_THAT(c.processes.output("visual_node"), Catch::Contains("larger than its monitor") &&
                                                   Catch::Contains("no monitor 7") &&
                                                   Catch::Contains("no buffer for each eye"));
   CHECK_THAT(c.geometry(), Catch::Contains("1024x1"));
@@ -302,21 +302,21 @@ TEST_CASE("A hidden, tiny or oversized window stops no node, and a closed window
                                              {"windowsize", window, "700", "500"}}) {
     CAPTURE(words[0]);
     c.x(words);
-    CHECK(c.goes_on("visual_node"));
+    CHECK(c.keeps_ticking("visual_node"));
   }
   c.check_rates_hold(before, 1);
   c.ask_to_close();
-  CHECK(c.processes.wait_for_exit("visual_node", kPatience_s) == 0);
-  CHECK_THAT(c.processes.said("visual_node"), Catch::Contains("visual_node: the window was closed\n"));
-  CHECK(c.others_live());
+  CHECK(c.processes.wait_for_exit("visual_node", kTimeout_s) == 0);
+  CHECK_THAT(c.processes.output("visual_node"), Catch::Contains("visual_node: the window was closed\n"));
+  CHECK(c.others_running());
 
   // Another program destroys the window.
   std::vector<std::string> options = c.snapshots();
   options.push_back("--window");
   c.start_vision(options, c.on_display());
-  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
   c.x({"windowclose", c.window()});
-  CHECK(c.processes.wait_for_exit("visual_node", kPatience_s) == 0);
+  CHECK(c.processes.wait_for_exit("visual_node", kTimeout_s) == 0);
 }
 
 TEST_CASE("A killed display server closes the window and not the node, and without a display server the start fails with a message") {
@@ -325,27 +325,27 @@ TEST_CASE("A killed display server closes the window and not the node, and witho
   const auto before = c.rates(1);
   c.processes.kill("Xvfb");
   // The node continues until it detects the loss: the frame in progress, and the missed ticks beside load.
-  CHECK(c.ear.wait_until(
+  CHECK(c.monitor.wait_until(
       [&] {
-        return c.processes.said("visual_node").find("the display server of the window is gone; drawing continues with ") !=
+        return c.processes.output("visual_node").find("the display server of the window is gone; drawing continues with ") !=
                std::string::npos;
       },
-      kPatience_s));
-  CHECK_THAT(c.processes.said("visual_node"), !Catch::Contains("X connection"));
-  CHECK(c.goes_on("visual_node"));
-  CHECK(apart(c.later_picture(), Grey(640 * 480, 0)) > 1);
+      kTimeout_s));
+  CHECK_THAT(c.processes.output("visual_node"), !Catch::Contains("X connection"));
+  CHECK(c.keeps_ticking("visual_node"));
+  CHECK(mean_difference(c.later_picture(), Grey(640 * 480, 0)) > 1);
   c.check_rates_hold(before, 1);
 
   c.processes.kill("visual_node");
   for (const std::vector<std::string>& where :
        std::vector<std::vector<std::string>>{c.on_display(), {"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY"}}) {
     c.start_vision({"--window"}, where);
-    CHECK(c.processes.wait_for_exit("visual_node", kPatience_s) == 1);
-    const std::string said = c.processes.said("visual_node");
-    CHECK_THAT(said.substr(said.rfind('\n', said.size() - 2) + 1),
+    CHECK(c.processes.wait_for_exit("visual_node", kTimeout_s) == 1);
+    const std::string output = c.processes.output("visual_node");
+    CHECK_THAT(output.substr(output.rfind('\n', output.size() - 2) + 1),
                Catch::Contains("--window: no window can be opened") && Catch::Contains("leave --window out"));
   }
-  CHECK(c.others_live());
+  CHECK(c.others_running());
 }
 
 TEST_CASE("A frozen display server ends visual_node with a message, and the other nodes continue") {
@@ -353,9 +353,9 @@ TEST_CASE("A frozen display server ends visual_node with a message, and the othe
   c.start_window();
   const auto before = c.rates(1);
   c.processes.signal("Xvfb", SIGSTOP);
-  CHECK(c.processes.wait_for_exit("visual_node", kPatience_s) == 1);
-  CHECK_THAT(c.processes.said("visual_node"),
+  CHECK(c.processes.wait_for_exit("visual_node", kTimeout_s) == 1);
+  CHECK_THAT(c.processes.output("visual_node"),
              Catch::Contains("the display server does not answer, so the node ends"));
-  CHECK(c.others_live());
+  CHECK(c.others_running());
   c.check_rates_hold(before, 1, "visual_node");
 }

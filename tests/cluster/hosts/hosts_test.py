@@ -71,8 +71,8 @@ class Hosts(unittest.TestCase):
     def states_at(self, host):
         """{node: state} as received on that host."""
         import json
-        said = self.at(host, "watch", "--once", "--json").stdout
-        return {name: n["state"] for name, n in json.loads(said)["nodes"].items()} if said else {}
+        output = self.at(host, "watch", "--once", "--json").stdout
+        return {name: n["state"] for name, n in json.loads(output)["nodes"].items()} if output else {}
 
     def health(self, seconds=1.5):
         """{node: newest row of NODE_HEALTH} from an observer's log."""
@@ -104,9 +104,9 @@ class Hosts(unittest.TestCase):
         self.assertEqual({1000}, users)
         self.assertIn("normal schedul", self.health()["audio_node"]["note"])
         _, wrong = self.doctor()
-        said = [w for w in wrong if w.startswith("sound: SCHED_FIFO")]
-        self.assertEqual(1, len(said), wrong)
-        self.assertIn("person - rtprio 90", said[0])
+        output = [w for w in wrong if w.startswith("sound: SCHED_FIFO")]
+        self.assertEqual(1, len(output), wrong)
+        self.assertIn("person - rtprio 90", output[0])
 
     def name_of(self, process):
         return pathlib.Path(f"/proc/{process}/comm").read_text(encoding="ascii").strip()
@@ -133,9 +133,9 @@ class Hosts(unittest.TestCase):
         between = [w for w in wrong if "receives nothing" in w or "loses" in w]
         self.assertEqual([], between)
         offset_s = lambda a, b: self.r.lab.hosts[b].ahead_s - self.r.lab.hosts[a].ahead_s
-        for host, said in figures["pairs"].items():
-            self.assertEqual(2, len(said["others"]))
-            for other, o in said["others"].items():
+        for host, output in figures["pairs"].items():
+            self.assertEqual(2, len(output["others"]))
+            for other, o in output["others"].items():
                 self.assertLessEqual(abs(o["offset_us"] - 1e6 * offset_s(host, other)), o["uncertainty_us"], (host, other))
                 self.assertEqual(1, o["ttl"])
         self.assertEqual(set(self.r.lab.hosts), set(figures["hosts"]))
@@ -157,11 +157,11 @@ class Hosts(unittest.TestCase):
 
     def doctor(self):
         from tactus.cluster import checkup
-        said, checkup.tell = checkup.tell, lambda *_: None
+        output, checkup.tell = checkup.tell, lambda *_: None
         try:
             return checkup.run(self.r.operator, 2)
         finally:
-            checkup.tell = said
+            checkup.tell = output
 
     def test_20_a_moved_node_restarts_no_other_node(self):
         before = self.incarnations()
@@ -287,8 +287,8 @@ class Hosts(unittest.TestCase):
         from tactus.cluster.orders import Operator
         own = self.r.lab.hosts["picture"].home / "own" / "bin"
         own.mkdir(parents=True)
-        said = subprocess.run([BIN / "message_types"], capture_output=True, text=True, check=True).stdout
-        (own / "message_types").write_text("#!/bin/sh\ncat <<'X'\n" + said.replace("struct contact_events_t 0x", "struct contact_events_t 0xf") + "X\n", encoding="utf-8")
+        output = subprocess.run([BIN / "message_types"], capture_output=True, text=True, check=True).stdout
+        (own / "message_types").write_text("#!/bin/sh\ncat <<'X'\n" + output.replace("struct contact_events_t 0x", "struct contact_events_t 0xf") + "X\n", encoding="utf-8")
         (own / "message_types").chmod(0o755)
         path = write_file(self.folder, "mixed", 7787, ' build="~/own"')
         mixed = Operator(read(str(path), self.folder / "x"), str(self.r.lab.folder / "ssh_config"), quiet=True)

@@ -148,8 +148,8 @@ class Sites(unittest.TestCase):
     def test_20_a_profile_put_in_force_in_one_site_is_in_force_in_all(self):
         path = self.folder / "late.xml"
         path.write_text(LATE, encoding="utf-8")
-        said = self.at("world", "degrade", str(path))
-        self.assertEqual(0, said.returncode, said.stderr)
+        output = self.at("world", "degrade", str(path))
+        self.assertEqual(0, output.returncode, output.stderr)
 
         def everywhere():
             self.record_at(["world"], 1.2)

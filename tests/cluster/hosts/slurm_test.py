@@ -99,8 +99,8 @@ class SweepOnSlurm(unittest.TestCase):
 
     def test_it_plays_the_same_games_as_parallel(self):
         self.sweep(self.study, "--games", 3, "--jobs", 2, "--out", self.folder / "parallel")
-        said = self.sweep(self.study, "--games", 3, "--slurm", "--partition", "all", "--array-size", 3, "--out", self.folder / "slurm")
-        self.assertIn("12 of 12 games", said)
+        output = self.sweep(self.study, "--games", 3, "--slurm", "--partition", "all", "--array-size", 3, "--out", self.folder / "slurm")
+        self.assertIn("12 of 12 games", output)
         self.assertEqual((self.folder / "parallel" / "games.csv").read_bytes(), (self.folder / "slurm" / "games.csv").read_bytes())
         self.assertEqual({0}, {row["missed"] for row in trial_table.read(self.folder / "slurm" / "games.csv")})
 

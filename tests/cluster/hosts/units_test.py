@@ -93,7 +93,7 @@ class System:
     def of(self, kind, key):
         return self.inside("systemctl", "show", "--property", key, "--value", f"tactus-{kind}").strip()
 
-    def said(self, kind):
+    def output(self, kind):
         return self.inside("cat", f"/run/said-tactus-{kind}", check=False)
 
     def close(self):
@@ -131,11 +131,11 @@ def cgroups():
 
 def check(system):
     wait_until(system.is_up, "systemd starts tactus.target")
-    wait_until(lambda: "the world begins" in system.said("sim"), "the world begins: " + system.said("sim"))
-    wait_until(lambda: "Initialization Sequence Completed" in system.said("path"), "the private path begins: " + system.said("path"))
+    wait_until(lambda: "the world begins" in system.output("sim"), "the world begins: " + system.output("sim"))
+    wait_until(lambda: "Initialization Sequence Completed" in system.output("path"), "the private path begins: " + system.output("path"))
     time.sleep(3)
     for kind in KINDS:
-        assert system.of(kind, "ActiveState") == "active" and system.of(kind, "NRestarts") == "0", f"{kind}: {system.of(kind, 'Result')}: {system.said(kind)}"
+        assert system.of(kind, "ActiveState") == "active" and system.of(kind, "NRestarts") == "0", f"{kind}: {system.of(kind, 'Result')}: {system.output(kind)}"
         pid = system.of(kind, "MainPID")
         status = dict(line.split(":\t", 1) for line in system.inside("cat", f"/proc/{pid}/status").splitlines() if ":\t" in line)
         assert (status["NoNewPrivs"], status["Seccomp"]) == ("1", "2"), kind
@@ -158,7 +158,7 @@ def check(system):
     system.inside("systemctl", "stop", "tactus.target")
     wait_until(lambda: all(system.of(kind, "ActiveState") in ("inactive", "failed") for kind in KINDS), "all end")
     for kind in KINDS:
-        assert (system.of(kind, "ActiveState"), system.of(kind, "Result")) == ("inactive", "success"), f"{kind}: {system.of(kind, 'Result')}: {system.said(kind)}"
+        assert (system.of(kind, "ActiveState"), system.of(kind, "Result")) == ("inactive", "success"), f"{kind}: {system.of(kind, 'Result')}: {system.output(kind)}"
 
 
 def presented_counts(system):

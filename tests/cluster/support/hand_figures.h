@@ -32,7 +32,7 @@ struct Figures {
   double peak_N() const { return *std::max_element(force_N.begin(), force_N.end()); }
 };
 
-inline Figures of_span(const RunLog& log, const Span& span) {
+inline Figures figures_of_span(const RunLog& log, const Span& span) {
   Figures f;
   std::vector<std::int64_t> steps, ticks;
   std::vector<std::vector<double>> force(static_cast<std::size_t>(kPeriod_s * 1000));
@@ -52,19 +52,19 @@ inline Figures of_span(const RunLog& log, const Span& span) {
       if (m.node == "haptic_node" && in.channel == channels::kTouchModel)
         ages.push_back(static_cast<double>(in.age_ns) * 1e-6);
   });
-  std::map<std::int64_t, std::int64_t> happened_ns;
+  std::map<std::int64_t, std::int64_t> event_ns;
   log.each<contact_events_t>(channels::kContactEvents, span, [&](const contact_events_t& m) {
     for (const contact_event_t& e : m.events)
       if (e.tool == kLeft && e.kind == contact_event_t::HIT && m.clock.rate > 0)
-        happened_ns[e.event_id] =
+        event_ns[e.event_id] =
             m.clock.host_ns +
             static_cast<std::int64_t>(static_cast<double>(e.time_ns - m.clock.sim_ns) / m.clock.rate);
   });
   log.each<presented_t>(channels::kPresented, span, [&](const presented_t& m) {
     for (const presentation_t& p : m.reports)
       if (m.modality == "haptic" && p.part == presentation_t::TRANSIENT && p.presented_ns >= 0 &&
-          happened_ns.contains(p.event_id))
-        felt.push_back(static_cast<double>(p.presented_ns - happened_ns.at(p.event_id)) * 1e-6);
+          event_ns.contains(p.event_id))
+        felt.push_back(static_cast<double>(p.presented_ns - event_ns.at(p.event_id)) * 1e-6);
   });
   f.sim_Hz = static_cast<double>(steps.size()) / span.seconds();
   f.hand_Hz = static_cast<double>(ticks.size()) / span.seconds();
@@ -80,7 +80,7 @@ inline Figures of_span(const RunLog& log, const Span& span) {
 // but an effect of the other hands would be in all three. The force is the median.
 inline Figures figures(const RunLog& log, const std::vector<Span>& spans) {
   std::vector<Figures> each;
-  for (const Span& span : spans) each.push_back(of_span(log, span));
+  for (const Span& span : spans) each.push_back(figures_of_span(log, span));
   const auto values = [&](const auto& get) {
     std::vector<double> x;
     for (const Figures& f : each) x.push_back(get(f));
@@ -99,7 +99,7 @@ inline Figures figures(const RunLog& log, const std::vector<Span>& spans) {
 }
 
 // Mean difference of two traces of force where either is not 0, N. It is also small for the same taps shifted by some ms.
-inline double apart_N(const Figures& a, const Figures& b) {
+inline double mean_difference_N(const Figures& a, const Figures& b) {
   double sum = 0;
   int felt = 0;
   for (std::size_t i = 0; i < a.force_N.size(); ++i) {

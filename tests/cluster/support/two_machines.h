@@ -12,7 +12,7 @@
 
 namespace tactus::cluster {
 
-inline const std::vector<std::string> kThere{"audio_node", "visual_node", "thermal_node"};
+inline const std::vector<std::string> kRemoteNodes{"audio_node", "visual_node", "thermal_node"};
 
 // Must exist before any program listens: a socket that joined a group on the old route would not receive from the cable.
 class Cable {
@@ -63,7 +63,7 @@ class Cable {
 
 struct TwoMachines {
   Cable cable;
-  std::optional<Running> running;
+  std::optional<RunningCluster> running;
   sync::Queue<sync_report_t>* reports = nullptr;
 
   // Starts everything and waits until all modalities have rendered something. Returns false where the system allows no second machine.
@@ -73,34 +73,34 @@ struct TwoMachines {
       return false;
     }
     running.emplace();
-    reports = &ear().bus().queue<sync_report_t>(channels::kSyncReport, 256);
+    reports = &monitor().bus().queue<sync_report_t>(channels::kSyncReport, 256);
     start_node("sync_node");
-    start_there("sync_node", "sync_node_there");
+    start_remote("sync_node", "sync_node_there");
     for (const std::string& node : kNodes) start_node(node);
-    const bool alive = ear().wait_until(
+    const bool alive = monitor().wait_until(
         [&] {
-          return running->all_live(kNodes) && ear().hits() > 0 &&
-                 std::all_of(kSenses.begin(), kSenses.end(), [&](const auto& n) { return ear().rendered(n) > 0; });
+          return running->all_running(kNodes) && monitor().hits() > 0 &&
+                 std::all_of(kModalityNodes.begin(), kModalityNodes.end(), [&](const auto& n) { return monitor().rendered(n) > 0; });
         },
-        kPatience_s);
+        kTimeout_s);
     UNSCOPED_INFO(running->words());
     REQUIRE(alive);
     return true;
   }
-  Ear& ear() { return running->ear; }
+  ClusterMonitor& monitor() { return running->monitor; }
   // Starts a node on its machine.
   void start_node(const std::string& node) {
-    if (std::find(kThere.begin(), kThere.end(), node) != kThere.end()) return start_there(node, node);
+    if (std::find(kRemoteNodes.begin(), kRemoteNodes.end(), node) != kRemoteNodes.end()) return start_remote(node, node);
     std::vector<std::string> options{"--ttl", "1"};
     if (node == "sim_node") options.push_back(tapping_scene());
     running->processes.start(node, options);
   }
 
  private:
-  void start_there(const std::string& program, const std::string& name) {
+  void start_remote(const std::string& program, const std::string& name) {
     std::vector<std::string> command = cable.there();
     command.insert(command.end(),
-                   {(programs() / program).string(), "--name", name, "--run-id", std::to_string(Running::kRunId),
+                   {(programs() / program).string(), "--name", name, "--run-id", std::to_string(RunningCluster::kRunId),
                     "--out", running->folder.path().string(), "--ttl", "1"});
     if (program == "audio_node") command.insert(command.end(), {"--audio-device", "virtual"});
     running->processes.spawn(name, command);
