@@ -121,7 +121,7 @@ TEST_CASE("Malformed, truncated, oversized and non-finite messages are counted a
     CHECK(c.monitor.wait_until([&] { return c.monitor.malformed(node) > before[node]; }, kTimeout_s));
   }
   const bool recovered = c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s);
-  INFO(c.words());
+  INFO(c.log_text());
   CHECK(recovered);
   const std::int64_t hits = c.monitor.hits();
   CHECK(c.monitor.wait_until([&] { return c.monitor.hits() > hits; }, kTimeout_s));

@@ -81,7 +81,7 @@ TEST_CASE("A modality on a host whose clock is an hour ahead presents all expect
     return pair.has_value();
   };
   const bool presented = r.monitor.wait_until(has_pair, kTimeout_s);
-  INFO(r.words());
+  INFO(r.log_text());
   REQUIRE(presented);
   // The wrong clock would give half an hour; a slow machine gives half a second.
   CHECK(std::abs(pair->p50_ns) < 500'000'000);

@@ -58,7 +58,7 @@ TEST_CASE("A paused world stands still while every process runs, takes single st
   c.receive_for(2);
   CHECK(c.sim_ns() == paused_ns);
   CHECK(c.newest->clock.rate == 0);
-  UNSCOPED_INFO(c.words());
+  UNSCOPED_INFO(c.log_text());
   CHECK(c.all_running(kNodes));
   CHECK(c.monitor.force_N() <= 8);
   CHECK_THAT(c.run_command({"step", "25"}), Catch::Contains("25 steps"));

@@ -105,7 +105,7 @@ TEST_CASE("DEGRADE-3: when sim_node dies the force fades, all nodes report it an
     CHECK(of_incarnation(constraint.contact_id, second));
   CHECK(c.monitor.wait_until([&] { return !c.monitor.contact_ids().empty(); }, kTimeout_s));
   for (const std::int64_t id : c.monitor.contact_ids()) CHECK(of_incarnation(id, second));
-  UNSCOPED_INFO(c.words());
+  UNSCOPED_INFO(c.log_text());
   CHECK(c.all_running(kNodes));
 }
 
@@ -117,7 +117,7 @@ TEST_CASE("A node that joins late receives the scene without a restart of other 
   c.monitor.receive_for(1);
   c.processes.start(late);
   const bool joined = c.monitor.wait_until([&] { return c.is_running(late); }, kTimeout_s);
-  INFO(c.words());
+  INFO(c.log_text());
   CHECK(joined);
   CHECK(c.monitor.rejoined("sim_node") == 0);
 }

@@ -25,9 +25,9 @@ std::string word_after(const std::string& output, const std::string& before) {
 // Number of begins and hits at least before_end_ns before the log ends, each counted once.
 std::size_t events_of(const RunLog& log, std::int64_t before_end_ns) {
   std::int64_t end_ns = 0;
-  log.each<world_state_t>(channels::kWorldState, [&](const auto& m) { end_ns = m.header.publish_time_ns; });
+  log.for_each<world_state_t>(channels::kWorldState, [&](const auto& m) { end_ns = m.header.publish_time_ns; });
   std::set<std::int64_t> ids;
-  log.each<contact_events_t>(channels::kContactEvents, [&](const auto& m) {
+  log.for_each<contact_events_t>(channels::kContactEvents, [&](const auto& m) {
     for (const contact_event_t& e : m.events)
       if (e.kind != contact_event_t::END && m.header.publish_time_ns <= end_ns - before_end_ns)
         ids.insert(e.event_id);

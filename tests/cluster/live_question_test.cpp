@@ -70,32 +70,32 @@ TEST_CASE(
   processes.spawn("browser", command);
 
   sync::Bus bus(sync::Identity::fresh("conductor", kRunId), {});
-  auto& heard = bus.queue<answer_t>(channels::kAnswer, 1024);
+  auto& answer_queue = bus.queue<answer_t>(channels::kAnswer, 1024);
   std::map<std::int64_t, std::vector<answer_t>> answers;
-  std::vector<question_t> left = study();
-  sync::HostTime over{};  // time at which the current question was answered
+  std::vector<question_t> remaining = study();
+  sync::HostTime next_question_time{};  // time at which the current question was answered
   const sync::HostTime end = sync::host_now() + sync::from_seconds(2 * kTimeout_s);
   for (sync::HostTime next{}; processes.running("browser") && sync::host_now() < end; bus.wait(std::chrono::milliseconds(20))) {
     const sync::HostTime now = sync::host_now();
     bus.drain(now);
-    while (const auto m = heard.pop()) answers[m->message.id].push_back(m->message);
-    if (!left.empty() && answers.contains(left.front().id)) {
-      if (over == sync::HostTime{}) over = now + sync::from_seconds(1);
-      if (now >= over) left.erase(left.begin()), over = {};
+    while (const auto m = answer_queue.pop()) answers[m->message.id].push_back(m->message);
+    if (!remaining.empty() && answers.contains(remaining.front().id)) {
+      if (next_question_time == sync::HostTime{}) next_question_time = now + sync::from_seconds(1);
+      if (now >= next_question_time) remaining.erase(remaining.begin()), next_question_time = {};
     }
     if (now < next) continue;
     next = now + std::chrono::milliseconds(200);
-    question_t m = left.empty() ? question(kFirst + 5, question_t::NOTHING, "") : left.front();
+    question_t m = remaining.empty() ? question(kFirst + 5, question_t::NOTHING, "") : remaining.front();
     bus.publish(channels::kQuestion, m);
   }
   const int status = processes.wait_for_exit("browser", kTimeout_s);
   INFO(processes.output("browser"));
   INFO(processes.output("live_server"));
   CHECK(status == 0);
-  CHECK(left.empty());
-  const std::vector<question_t> asked = study();
-  CHECK(answers.size() == asked.size());  // no other question has an answer
-  for (const question_t& m : asked) {
+  CHECK(remaining.empty());
+  const std::vector<question_t> questions = study();
+  CHECK(answers.size() == questions.size());  // no other question has an answer
+  for (const question_t& m : questions) {
     CAPTURE(m.text);
     REQUIRE(answers.contains(m.id));
     CHECK(answers[m.id].size() >= 3);  // the answer is repeated for each repetition of the question

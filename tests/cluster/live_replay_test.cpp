@@ -19,7 +19,7 @@ namespace {
 constexpr std::int64_t kLiveRun = RunningCluster::kRunId + 1;
 
 // Records four seconds of the small scene into folder/run.lcmlog.
-std::filesystem::path recorded(const Folder& folder) {
+std::filesystem::path record_run(const Folder& folder) {
   RunningCluster c;
   c.processes.start("recorder");
   c.start();
@@ -52,14 +52,14 @@ std::vector<std::pair<std::string, std::vector<std::uint8_t>>> events_in(const s
 
 TEST_CASE("All modalities render a replayed log, and continue when one of them is killed") {
   Folder folder;
-  const auto log = recorded(folder);
+  const auto log = record_run(folder);
   Processes processes(folder.path() / "again", kLiveRun);
   ClusterMonitor monitor(kLiveRun);
   for (const std::string& sense : kModalityNodes) processes.start(sense);
   processes.start("replay", options_of_replay(log, {"--loop"}));
-  const auto all_have_rendered = [&](const std::string& but, const std::map<std::string, std::int64_t>& before) {
+  const auto all_have_rendered = [&](const std::string& except, const std::map<std::string, std::int64_t>& before) {
     return std::all_of(kModalityNodes.begin(), kModalityNodes.end(), [&](const std::string& n) {
-      return n == but || monitor.rendered(n) > (before.contains(n) ? before.at(n) : 0);
+      return n == except || monitor.rendered(n) > (before.contains(n) ? before.at(n) : 0);
     });
   };
   const bool rendered = monitor.wait_until([&] { return all_have_rendered("", {}); }, kTimeout_s);
@@ -89,16 +89,16 @@ TEST_CASE("All modalities render a replayed log, and continue when one of them i
 
 TEST_CASE("A running replay executes the commands from its pipe") {
   Folder folder;
-  const auto log = recorded(folder);
+  const auto log = record_run(folder);
   const std::string pipe = folder.path() / "control";
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
   Processes processes(folder.path() / "again", kLiveRun);
   ClusterMonitor monitor(kLiveRun);
   auto& states = monitor.bus().queue<world_state_t>(channels::kWorldState, 4096);
   processes.start("replay", {log, "--paused", "--stay", "--control", pipe});
-  const auto order = [&](const std::string& words) { std::ofstream(pipe) << words << std::endl; };
+  const auto command = [&](const std::string& words) { std::ofstream(pipe) << words << std::endl; };
   // Instants of the world that are published within the given time.
-  const auto heard = [&](double seconds) {
+  const auto received_times = [&](double seconds) {
     monitor.receive_for(0.3);
     while (states.pop()) {
     }
@@ -108,27 +108,27 @@ TEST_CASE("A running replay executes the commands from its pipe") {
     return times;
   };
   REQUIRE(monitor.wait_until([&] { return monitor.health("replay") != nullptr; }, kTimeout_s));
-  CHECK(heard(0.5).empty());
-  order("loop on\nresume");
-  CHECK_FALSE(heard(1).empty());
-  order("pause");
-  CHECK(heard(0.5).empty());
-  order("seek 1\nstep 0.5");
+  CHECK(received_times(0.5).empty());
+  command("loop on\nresume");
+  CHECK_FALSE(received_times(1).empty());
+  command("pause");
+  CHECK(received_times(0.5).empty());
+  command("seek 1\nstep 0.5");
   monitor.receive_for(3);
   CHECK_THAT(processes.output("replay"), Catch::Contains("1.00 of"));
-  CHECK(heard(0.3).empty());
-  order("fly");
+  CHECK(received_times(0.3).empty());
+  command("fly");
   CHECK(monitor.wait_until([&] { return processes.output("replay").find("cannot obey 'fly'") != std::string::npos; },
                        kTimeout_s));
-  order("quit");
+  command("quit");
   CHECK(processes.wait_for_exit("replay", kTimeout_s) == 0);
 }
 
 TEST_CASE("The stock lcm-logger receives all replayed messages unchanged, and its log can be replayed") {
   Folder folder;
-  const std::filesystem::path ours = folder.path() / "ours.lcmlog";
+  const std::filesystem::path own_log = folder.path() / "ours.lcmlog";
   {
-    sync::LogWriter writer(std::make_unique<sync::FileSink>(ours));
+    sync::LogWriter writer(std::make_unique<sync::FileSink>(own_log));
     for (int i = 0; i < 2000; ++i)
       writer.write(1'700'000'000'000'000 + 1000 * i, "CHANNEL_" + std::to_string(i % 5),
                    std::vector<std::uint8_t>(static_cast<std::size_t>(i % 700), static_cast<std::uint8_t>(i)));
@@ -150,12 +150,12 @@ TEST_CASE("The stock lcm-logger receives all replayed messages unchanged, and it
     processes.signal("lcm-logger", SIGTERM);
     processes.wait_for_exit("lcm-logger", kTimeout_s);
   };
-  through_lcm_logger(ours, folder.path() / "stock.lcmlog", {});
+  through_lcm_logger(own_log, folder.path() / "stock.lcmlog", {});
   CHECK_THAT(processes.output("replay"), Catch::Contains("holds no message of Tactus"));
-  const bool heard_all = events_in(ours) == events_in(folder.path() / "stock.lcmlog");
-  CHECK(heard_all);
+  const bool all_received = events_in(own_log) == events_in(folder.path() / "stock.lcmlog");
+  CHECK(all_received);
   // The replay's own messages are recorded, too, and are no longer foreign.
   through_lcm_logger(folder.path() / "stock.lcmlog", folder.path() / "again.lcmlog", {"--verbatim"});
-  const bool same = events_in(folder.path() / "stock.lcmlog") == events_in(folder.path() / "again.lcmlog");
-  CHECK(same);
+  const bool identical = events_in(folder.path() / "stock.lcmlog") == events_in(folder.path() / "again.lcmlog");
+  CHECK(identical);
 }

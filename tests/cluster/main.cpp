@@ -39,7 +39,7 @@ bool may_unshare() {
 
 int enter(int argc, char** argv) {
   if (!may_unshare()) {
-    std::cout << "skipped: this system allows no network namespace of one's own\n";
+    std::cout << "skipped: this system does not allow network namespaces\n";
     return kExitSkipped;
   }
   setenv(kInside, "1", 1);

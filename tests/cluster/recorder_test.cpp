@@ -27,14 +27,14 @@ struct Sender {
   ClusterMonitor monitor{RunningCluster::kRunId};
   std::vector<sync::HostTime> sent;
 
-  void send(int count, sync::Nanoseconds mean_difference) {
+  void send(int count, sync::Nanoseconds interval) {
     sync::HostTime next = sync::host_now();
     for (int i = 0; i < count; ++i) {
       game_state_t m{};
       m.header.sim_time_ns = 0;
       monitor.bus().publish(kChannel, m);
       sent.push_back(sync::host_now());
-      next += mean_difference;
+      next += interval;
       std::this_thread::sleep_until(std::chrono::steady_clock::time_point(next.time_since_epoch()));
     }
   }
@@ -65,9 +65,9 @@ TEST_CASE("A killed recorder loses at most the last 100 ms, and its file is vali
   const sync::HostTime killed = sync::host_now();
   processes.kill("recorder");
   const auto numbers = numbers_in(folder.path() / "run.lcmlog");
-  std::size_t owed = 0;
-  while (owed < sender.sent.size() && sender.sent[owed] < killed - sync::Nanoseconds(100'000'000)) ++owed;
-  CHECK(numbers.size() >= owed);
+  std::size_t expected = 0;
+  while (expected < sender.sent.size() && sender.sent[expected] < killed - sync::Nanoseconds(100'000'000)) ++expected;
+  CHECK(numbers.size() >= expected);
   for (std::size_t i = 0; i < numbers.size(); ++i) CHECK(numbers[i] == static_cast<std::int64_t>(i));
 }
 
@@ -76,7 +76,7 @@ TEST_CASE("A recorder with a full disk reports it, and its file is valid up to t
   const std::filesystem::path small = folder.path() / "small";
   std::filesystem::create_directory(small);
   if (mount("tmpfs", small.c_str(), "tmpfs", 0, "size=400k") != 0) {
-    WARN("no tmpfs may be mounted here");
+    WARN("skipped: this system does not allow mounting a tmpfs");
     return;
   }
   {
@@ -86,14 +86,14 @@ TEST_CASE("A recorder with a full disk reports it, and its file is valid up to t
                                  "--out", small});
     REQUIRE(sender.monitor.wait_until([&] { return sender.monitor.health("recorder") != nullptr; }, kTimeout_s));
     sender.send(9000, sync::Nanoseconds(700'000));
-    const bool output = sender.monitor.wait_until(
+    const bool reported = sender.monitor.wait_until(
         [&] {
           const node_health_t* h = sender.monitor.health("recorder");
           return h && h->state == node_health_t::OUTPUT_LOST &&
                  h->note.find("No space left on device") != std::string::npos;
         },
         kTimeout_s);
-    CHECK(output);
+    CHECK(reported);
     const auto numbers = numbers_in(small / "run.lcmlog");
     CHECK(numbers.size() > 100);
     for (std::size_t i = 0; i < numbers.size(); ++i) CHECK(numbers[i] == static_cast<std::int64_t>(i));

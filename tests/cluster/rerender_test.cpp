@@ -18,7 +18,7 @@ json row_of(const json& rows, const std::string& sense, const std::string& what)
 json changed_of(const json& result, const std::string& sense) {
   for (const json& row : result["changed"])
     if (row["sense"] == sense) return row;
-  FAIL("nothing is said of what changed for " << sense);
+  FAIL("no row on the change of " << sense);
   return {};
 }
 
@@ -51,9 +51,9 @@ TEST_CASE(
   const json onsets = row_of(result["live"], "audio", "onsets");
   CHECK(onsets["n"] >= 3);
   CHECK(onsets["max"] <= 1.0);
-  const json felt = row_of(result["live"], "haptic", "force, while");
-  CHECK(felt["n"] > 100);
-  CHECK(felt["p50"] < 0.05);
+  const json force = row_of(result["live"], "haptic", "force, while");
+  CHECK(force["n"] > 100);
+  CHECK(force["p50"] < 0.05);
   CHECK(row_of(result["live"], "thermal", "skin")["p50"] < 0.1);
 
   const json audio = changed_of(result, "audio");

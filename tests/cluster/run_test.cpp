@@ -8,7 +8,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double kLongest_s = 150;
+constexpr double kRunTimeout_s = 150;
 
 double media_seconds(RunScript& run, const std::filesystem::path& file) {
   const std::string text = run.output_of({"ffprobe", "-v", "error", "-show_entries", "format=duration", "-of", "csv=p=0", file});
@@ -27,7 +27,7 @@ void check_keys(const json& object, const std::vector<std::string>& keys) {
 TEST_CASE("scripts/run writes the log, sound, pictures, tables and a complete summary", "[smoke]") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "8", "--out", run.out()});
-  const int status = run.finish(kLongest_s);
+  const int status = run.finish(kRunTimeout_s);
   INFO(run.processes.output("run"));
   REQUIRE(status == 0);
   CHECK(all_processes_ended(5));
@@ -62,7 +62,7 @@ TEST_CASE("scripts/run writes the log, sound, pictures, tables and a complete su
 TEST_CASE("With two groups every modality presents its expected events, and the world keeps its rate", "[exclusive]") {
   RunScript run;
   run.start({"--seconds", "8", "--set", "sim_node.groups=dual", "--out", run.out()});
-  const int status = run.finish(kLongest_s);
+  const int status = run.finish(kRunTimeout_s);
   INFO(run.processes.output("run"));
   CHECK(status == 0);
   const json summary = json::parse(contents(run.out() / "summary.json"));
@@ -76,7 +76,7 @@ TEST_CASE("With two groups every modality presents its expected events, and the 
 TEST_CASE("Without audio_node the others run unchanged, in the default scene", "[exclusive]") {
   RunScript run;
   run.start({"--seconds", "6", "--without", "audio_node", "--out", run.out()});
-  const int status = run.finish(kLongest_s);
+  const int status = run.finish(kRunTimeout_s);
   INFO(run.processes.output("run"));
   CHECK(status == 0);
   CHECK_FALSE(std::filesystem::exists(run.out() / "audio.wav"));
@@ -89,7 +89,7 @@ TEST_CASE("A closed output pipe loses no results, and leaves no process behind")
   const std::string script = (repository() / "scripts/run").string();
   run.processes.spawn("pipe", {"env", "TACTUS_BIN=" + programs().string(), "sh", "-c",
                                quoted(script) + " " + quoted(tapping_scene()) + " --seconds 3 --out " + quoted(run.out()) + " | head -1"});
-  CHECK(run.finish(kLongest_s, "pipe") == 0);
+  CHECK(run.finish(kRunTimeout_s, "pipe") == 0);
   INFO(run.processes.output("pipe"));
   for (int i = 0; i < 600 && !std::filesystem::exists(run.out() / "events.csv"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -101,14 +101,14 @@ TEST_CASE("A closed output pipe loses no results, and leaves no process behind")
 }
 
 TEST_CASE("Errors of the command line are reported in one sentence before any process starts", "[smoke]") {
-  struct Wrong {
+  struct BadCommand {
     std::vector<std::string> options;
-    std::string names;
+    std::string expected_word;
   };
   RunScript run;
   const std::filesystem::path broken = run.folder.path() / "broken.sdf";
   std::ofstream(broken) << "<sdf version='1.9'><world name='w'><model name='m'><link></world></sdf>\n";
-  const Wrong wrong = GENERATE_COPY(values<Wrong>({
+  const BadCommand bad = GENERATE_COPY(values<BadCommand>({
       {{"--bogus"}, "--bogus"},
       {{"nowhere.sdf"}, "nowhere.sdf"},
       {{broken.string()}, "sim_node"},
@@ -123,11 +123,11 @@ TEST_CASE("Errors of the command line are reported in one sentence before any pr
       {{"--port", "99999999"}, "--port"},
       {{"--out", "/proc/nowhere/run"}, "/proc/nowhere"},
   }));
-  run.start(wrong.options);
+  run.start(bad.options);
   CHECK(run.finish(60) == 1);
   const std::string output = run.processes.output("run");
   INFO(output);
-  CHECK(output.find(wrong.names) != std::string::npos);
+  CHECK(output.find(bad.expected_word) != std::string::npos);
   CHECK(std::count(output.begin(), output.end(), '\n') == 1);
   CHECK(all_processes_ended(5));
   CHECK_FALSE(std::filesystem::exists(run.folder.path() / "out"));
@@ -162,7 +162,7 @@ TEST_CASE("Two simultaneous runs do not receive each other's messages", "[exclus
   for (const std::string& name : names)
     run.start({tapping_scene(), "--seconds", "4", "--without", "visual_node", "--out", run.out(name)}, name);
   for (const std::string& name : names) {
-    const int status = run.finish(kLongest_s, name);
+    const int status = run.finish(kRunTimeout_s, name);
     INFO(run.processes.output(name));
     CHECK(status == 0);
     const json summary = json::parse(contents(run.out(name) / "summary.json"), nullptr, false);

@@ -17,7 +17,7 @@ using nlohmann::json;
 namespace {
 
 // Waits until each of these modalities has presented the given number of new events.
-bool presents(RunningCluster& c, const std::vector<std::string>& modalities, const PresentedEvents& before,
+bool wait_for_presentations(RunningCluster& c, const std::vector<std::string>& modalities, const PresentedEvents& before,
               std::size_t events) {
   return c.monitor.wait_until(
       [&] {
@@ -46,20 +46,20 @@ TEST_CASE(
   CHECK(c.monitor.health("wind_node")->modality == "wind");
   CHECK(c.monitor.health("wind_node")->owes == node_health_t::OWES_HIT);
 
-  modality_report_t kept{};
+  modality_report_t latest{};
   std::set<std::string> paired_with;
   const auto reported = [&] {
     while (const auto m = reports.pop()) {
       for (const modality_report_t& r : m->message.modalities)
-        if (r.modality == "wind") kept = r;
+        if (r.modality == "wind") latest = r;
       for (const pair_report_t& p : m->message.pairs)
         if (p.b == "wind" && p.n > 0) paired_with.insert(p.a);
     }
-    return kept.presented >= 5 && paired_with.size() == kOthers.size();
+    return latest.presented >= 5 && paired_with.size() == kOthers.size();
   };
   CHECK(c.monitor.wait_until(reported, kTimeout_s));
-  INFO("presented " << kept.presented << " of " << kept.owed << ", with " << paired_with.size() << " others");
-  CHECK(kept.lost == 0);
+  INFO("presented " << latest.presented << " of " << latest.owed << ", with " << paired_with.size() << " others");
+  CHECK(latest.lost == 0);
 
   // The other nodes keep their rates.
   c.check_rates_hold(before, 2);
@@ -93,14 +93,14 @@ TEST_CASE("A profile delays the sixth modality by its 50 ms, and no other modali
   c.monitor.receive_for(2);
   constexpr std::size_t kEvents = 12;
   const PresentedEvents none = presented_events(c.monitor);
-  REQUIRE(presents(c, all, none, kEvents));
+  REQUIRE(wait_for_presentations(c, all, none, kEvents));
   std::map<std::string, double> before;
   for (const std::string& m : all) before[m] = median(delays_ms(c.monitor, m, none));
 
   CHECK(put_in_force(c, "<degrade modality=\"wind\" delay=\"50ms\"/>").find("wind_node") != std::string::npos);
   c.monitor.receive_for(0.5);  // events in flight
   const PresentedEvents until = presented_events(c.monitor);
-  REQUIRE(presents(c, all, until, kEvents));
+  REQUIRE(wait_for_presentations(c, all, until, kEvents));
   REQUIRE(c.monitor.health("wind_node"));
   CHECK(c.monitor.health("wind_node")->profile != 0);
   for (const std::string& m : all) {

@@ -15,7 +15,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-struct Tagged : RunningCluster {
+struct TagCluster : RunningCluster {
   sync::Queue<tag_list_t>& lists = monitor.bus().queue<tag_list_t>(channels::kTagList, 1024);
   sync::Queue<tag_values_t>& values = monitor.bus().queue<tag_values_t>(channels::kTagValues, 65536);
   sync::TagTable table;
@@ -24,7 +24,7 @@ struct Tagged : RunningCluster {
     std::vector<double> values;
     std::int64_t first_ns = 0, last_ns = 0;
   };
-  std::map<std::string, Series> heard;  // by "node.tag"
+  std::map<std::string, Series> series;  // by "node.tag"
   std::int64_t messages = 0;
 
   // Receives for the given time; requests the pattern once per second.
@@ -42,7 +42,7 @@ struct Tagged : RunningCluster {
         ++messages;
         table.read(m->message,
                    [&](const sync::TagTable::List& list, const tag_def_t& tag, std::int64_t t, double value) {
-                     Series& s = heard[list.node + "." + tag.name];
+                     Series& s = series[list.node + "." + tag.name];
                      s.unit = tag.unit;
                      if (s.values.empty()) s.first_ns = t;
                      s.last_ns = t;
@@ -52,7 +52,7 @@ struct Tagged : RunningCluster {
     }
   }
   double rate_Hz(const std::string& name) {
-    const Series& s = heard[name];
+    const Series& s = series[name];
     return s.values.size() < 2
                ? 0
                : static_cast<double>(s.values.size() - 1) / (static_cast<double>(s.last_ns - s.first_ns) * 1e-9);
@@ -74,15 +74,15 @@ std::string scene_with(const Folder& folder, const std::string& element) {
 }  // namespace
 
 TEST_CASE("Every node publishes its requested variables at each of its ticks, and stops when no request is active", "[exclusive]") {
-  Tagged c;
+  TagCluster c;
   c.start();
   c.receive_for(2);
   CHECK(c.messages == 0);
   c.receive_for(4, "*");
   for (const std::string& node : kNodes) {
-    INFO(node << "\n" << c.words());
-    CHECK(c.heard[node + ".work"].unit == "us");
-    CHECK(c.heard[node + ".work.decode"].values.size() > 100);
+    INFO(node << "\n" << c.log_text());
+    CHECK(c.series[node + ".work"].unit == "us");
+    CHECK(c.series[node + ".work.decode"].values.size() > 100);
   }
   // Within a factor of two of their rates: the machine may be busy.
   CHECK(c.rate_Hz("sim_node.work.collision") > 500);
@@ -90,20 +90,20 @@ TEST_CASE("Every node publishes its requested variables at each of its ticks, an
   CHECK(c.rate_Hz("thermal_node.skin") > 25);
   CHECK(c.rate_Hz("thermal_node.skin") < 100);
   CHECK(c.rate_Hz("visual_node.work.render") > 15);
-  CHECK(c.heard["haptic_node.force"].unit == "N");
-  const auto most = [&](const std::string& name) {
-    const auto& v = c.heard[name].values;
+  CHECK(c.series["haptic_node.force"].unit == "N");
+  const auto max = [&](const std::string& name) {
+    const auto& v = c.series[name].values;
     return v.empty() ? -1 : *std::max_element(v.begin(), v.end());
   };
-  CHECK(most("haptic_node.force") > 1);  // the hand taps
+  CHECK(max("haptic_node.force") > 1);  // the hand taps
   for (const char* phase : {"collision", "solve", "integrate", "decode", "other"}) {
     INFO(phase);
-    CHECK(most(std::string("sim_node.work.") + phase) > 0);
+    CHECK(max(std::string("sim_node.work.") + phase) > 0);
   }
   // Phases are parts of the whole tick.
   const auto sum = [&](const std::string& name) {
     double total = 0;
-    for (const double x : c.heard[name].values) total += x;
+    for (const double x : c.series[name].values) total += x;
     return total;
   };
   double parts = 0;
@@ -120,23 +120,23 @@ TEST_CASE("Every node publishes its requested variables at each of its ticks, an
 }
 
 TEST_CASE("One line of a scene makes the sound level weaken the felt vibration", "[exclusive]") {
-  Tagged c;
+  TagCluster c;
   // Each hit that sounded reduces the largest force by half a newton, down to half a newton.
   c.processes.start_all(scene_with(
       c.folder,
       "<tactus:map from='audio_node.hits' to='haptic_node.force_limit' gain='-0.5' offset='8N' low='0.5N'/>"));
   REQUIRE(c.monitor.wait_until([&] { return c.all_running(kNodes) && c.monitor.hits() > 0; }, kTimeout_s));
-  const auto weak = [&] {
+  const auto is_limited = [&] {
     c.receive_for(2, "*");
-    const auto& forces = c.heard["haptic_node.force"].values;
-    const double most = *std::max_element(forces.end() - 1000, forces.end());
-    return most > 0.4 && most <= 0.5 + 1e-6;
+    const auto& forces = c.series["haptic_node.force"].values;
+    const double max = *std::max_element(forces.end() - 1000, forces.end());
+    return max > 0.4 && max <= 0.5 + 1e-6;
   };
-  bool became_weak = false;
-  for (int tries = 0; tries < 20 && !became_weak; ++tries) became_weak = weak();
-  INFO(c.words());
-  CHECK(became_weak);
-  const auto& hits = c.heard["audio_node.hits"].values;
+  bool limited = false;
+  for (int tries = 0; tries < 20 && !limited; ++tries) limited = is_limited();
+  INFO(c.log_text());
+  CHECK(limited);
+  const auto& hits = c.series["audio_node.hits"].values;
   REQUIRE_FALSE(hits.empty());
   CHECK(hits.back() >= 15);  // 8 N - 15 * 0.5 N
 }

@@ -121,7 +121,7 @@ TEST_CASE("On two machines no event is lost, and all asynchronies are converted 
         return pairs["haptic audio"].n > 10 && pairs["haptic visual"].n > 10 && pairs["haptic thermal"].n > 10;
       },
       kTimeout_s);
-  INFO(m.running->words());
+  INFO(m.running->log_text());
   for (const auto& [names, p] : pairs)
     UNSCOPED_INFO(names << ": " << p.n << " asynchronies, median " << p.p50_ns << " ns");
   REQUIRE(enough);
@@ -149,30 +149,30 @@ TEST_CASE(
     std::filesystem::rename(c.folder.path() / "run.lcmlog", folder.path() / "run.lcmlog");
   }
   constexpr std::int64_t kOtherRun = RunningCluster::kRunId + 1;
-  const std::string stopped = "audio_node", frozen = "thermal_node", keeps_ticking = "visual_node";
+  const std::string stopped = "audio_node", frozen = "thermal_node", remaining = "visual_node";
   Processes processes(folder.path() / "again", kOtherRun);
   ClusterMonitor monitor(kOtherRun);
-  for (const std::string& node : {stopped, frozen, keeps_ticking}) processes.start(node);
-  REQUIRE(monitor.wait_until([&] { return monitor.health(stopped) && monitor.health(frozen) && monitor.health(keeps_ticking); },
+  for (const std::string& node : {stopped, frozen, remaining}) processes.start(node);
+  REQUIRE(monitor.wait_until([&] { return monitor.health(stopped) && monitor.health(frozen) && monitor.health(remaining); },
                          kTimeout_s));
   processes.spawn("lcm-logplayer",
                   {"lcm-logplayer", "-l", "udpm://239.255.76.67:7667?ttl=0", folder.path() / "run.lcmlog"});
   REQUIRE(monitor.wait_until(
-      [&] { return monitor.rendered(stopped) > 0 && monitor.rendered(frozen) > 0 && monitor.rendered(keeps_ticking) > 0; },
+      [&] { return monitor.rendered(stopped) > 0 && monitor.rendered(frozen) > 0 && monitor.rendered(remaining) > 0; },
       kTimeout_s));
 
   processes.signal(stopped, SIGTERM);
   CHECK(processes.wait_for_exit(stopped, kTimeout_s) == 0);
   processes.signal(frozen, SIGSTOP);
-  std::int64_t rendered = monitor.rendered(keeps_ticking), ticks = monitor.ticks(keeps_ticking);
-  CHECK(monitor.wait_until([&] { return monitor.rendered(keeps_ticking) > rendered + 2; }, kTimeout_s));
-  CHECK(monitor.ticks(keeps_ticking) > ticks);
+  std::int64_t rendered = monitor.rendered(remaining), ticks = monitor.ticks(remaining);
+  CHECK(monitor.wait_until([&] { return monitor.rendered(remaining) > rendered + 2; }, kTimeout_s));
+  CHECK(monitor.ticks(remaining) > ticks);
   processes.signal(frozen, SIGCONT);
   rendered = monitor.rendered(frozen);
   CHECK(monitor.wait_until([&] { return monitor.rendered(frozen) > rendered; }, kTimeout_s));
   processes.kill(frozen);
-  rendered = monitor.rendered(keeps_ticking);
-  CHECK(monitor.wait_until([&] { return monitor.rendered(keeps_ticking) > rendered; }, kTimeout_s));
-  CHECK(processes.running(keeps_ticking));
-  CHECK(monitor.rejoined(keeps_ticking) == 0);
+  rendered = monitor.rendered(remaining);
+  CHECK(monitor.wait_until([&] { return monitor.rendered(remaining) > rendered; }, kTimeout_s));
+  CHECK(processes.running(remaining));
+  CHECK(monitor.rejoined(remaining) == 0);
 }

@@ -17,44 +17,44 @@ struct TwoHosts {
   // Frames show the head and the world of this time ago, s. It exceeds the drawing time of a picture of this size beside other load, so
   // that no frame begins before its data have arrived.
   static constexpr const char* kLag = "frame_lag=0.15";
-  struct Shown {
+  struct ShownFrame {
     std::int64_t world_ns = 0, head_ns = 0;
   };
 
   Cable cable;
   std::optional<RunningCluster> running;
-  std::map<std::string, std::map<std::int64_t, Shown>> frames;  // by wall and number
+  std::map<std::string, std::map<std::int64_t, ShownFrame>> frames;  // by wall and number
 
   // Returns false where the system allows no second host. front: command prefix of the wall there.
   bool start(const std::vector<std::string>& front = {}, const std::string& lock = "time") {
-    if (!cable.made()) {
-      WARN("skipped: this system allows no second network with a cable to it");
+    if (!cable.is_ready()) {
+      WARN("skipped: this system does not allow a second network namespace with a cable");
       return false;
     }
     running.emplace();
     shown_ = &running->monitor.bus().queue<frame_shown_t>(channels::kFrameShown, 4096);
     const std::string scene = repository() / "tests/cluster/scenes/walls.sdf";
     spawn({}, "sync_node", "sync_node");
-    spawn(cable.there(), "sync_node", "sync_node_there");
+    spawn(cable.remote_prefix(), "sync_node", "sync_node_there");
     spawn({}, "haptic_node", "haptic_node");
     spawn({}, "haptic_node", "haptic_node_head", {"--tool", "head"});
-    spawn({}, "visual_node", kLeft, draws("left", lock));
-    std::vector<std::string> words = draws("front", lock);
+    spawn({}, "visual_node", kLeft, wall_options("left", lock));
+    std::vector<std::string> words = wall_options("front", lock);
     words.insert(words.end(), front.begin(), front.end());
-    spawn(cable.there(), "visual_node", kFront, words);
+    spawn(cable.remote_prefix(), "visual_node", kFront, words);
     spawn({}, "sim_node", "sim_node", {scene});
     const bool alive = running->monitor.wait_until(
         [&] {
           return running->all_running({"sim_node", kLeft, kFront});
         },
         kTimeout_s);
-    UNSCOPED_INFO(running->words() << running->processes.output(kFront));
+    UNSCOPED_INFO(running->log_text() << running->processes.output(kFront));
     REQUIRE(alive);
     running->monitor.receive_for(1);  // until the clocks of both are mapped
     return true;
   }
   // Receives until the left wall has shown kFrames more frames, and both walls have shown at least `both`.
-  void watch(std::int64_t both) {
+  void record_frames(std::int64_t both) {
     frames.clear();
     while (shown_->pop()) continue;
     const bool enough = running->monitor.wait_until(
@@ -68,20 +68,20 @@ struct TwoHosts {
     REQUIRE(enough);
   }
   std::int64_t common() const {
-    return count([](const Shown&, const Shown&) { return true; });
+    return count([](const ShownFrame&, const ShownFrame&) { return true; });
   }
   // Number of frames that both walls have shown and for which the predicate holds.
-  template <class Holds>
-  std::int64_t count(const Holds& holds) const {
+  template <class Predicate>
+  std::int64_t count(const Predicate& predicate) const {
     std::int64_t n = 0;
     const auto left = frames.find(kLeft), front = frames.find(kFront);
     if (left == frames.end() || front == frames.end()) return 0;
     for (const auto& [number, frame] : left->second)
       if (const auto other = front->second.find(number); other != front->second.end())
-        n += holds(frame, other->second);
+        n += predicate(frame, other->second);
     return n;
   }
-  void check_agreed() const {
+  void check_agreement() const {
     const std::int64_t n = common();
     INFO(n << " frames of both");
     CHECK(count([](auto& a, auto& b) { return a.world_ns == b.world_ns; }) >= 0.99 * static_cast<double>(n));
@@ -96,7 +96,7 @@ struct TwoHosts {
   }
 
  private:
-  static std::vector<std::string> draws(const std::string& wall, const std::string& lock) {
+  static std::vector<std::string> wall_options(const std::string& wall, const std::string& lock) {
     std::vector<std::string> words{"--no-video"};
     for (const std::string& s : {std::string("room=cave4"), "wall=" + wall, std::string("width=320"),
                                  std::string("height=320"), std::string(kLag), "frame_lock=" + lock})
@@ -128,15 +128,15 @@ struct TwoHosts {
 TEST_CASE("Two walls on two hosts show the same time and the same head pose in 99 of 100 frames", "[exclusive]") {
   TwoHosts c;
   if (!c.start()) return;
-  c.watch(100);
-  c.check_agreed();
+  c.record_frames(100);
+  c.check_agreement();
 }
 
 TEST_CASE("A wall keeps its rate beside another that draws ten pictures a second, and both show the same state", "[exclusive]") {
   TwoHosts c;
   if (!c.start({"--emulate-load", "5"})) return;  // wastes five of six periods
-  c.watch(20);
-  c.check_agreed();
+  c.record_frames(20);
+  c.check_agreement();
   const auto& left = c.frames[TwoHosts::kLeft];
   const auto due = static_cast<double>(left.rbegin()->first - left.begin()->first + 1);
   CHECK(static_cast<double>(left.size()) >
@@ -149,8 +149,8 @@ TEST_CASE("A wall keeps its rate beside another that draws ten pictures a second
 TEST_CASE("Walls that wait for each other show the same state, and stop waiting for a dead wall", "[exclusive]") {
   TwoHosts c;
   if (!c.start({}, "wait")) return;
-  c.watch(100);
-  c.check_agreed();
+  c.record_frames(100);
+  c.check_agreement();
   const auto before = c.running->rates(2);
   c.running->processes.kill(TwoHosts::kFront);
   c.running->check_rates_hold(before, 2);

@@ -22,7 +22,7 @@ inline double mean_difference(const Grey& a, const Grey& b) {
 
 struct PictureCluster : RunningCluster {
   std::filesystem::path snapshot = folder.path() / "now.png";
-  int asked = 0;
+  int call_count = 0;
 
   // Options of visual_node: pictures of 640 x 480, ten per second.
   std::vector<std::string> snapshots() const {
@@ -34,9 +34,9 @@ struct PictureCluster : RunningCluster {
     for (const char* node : {"haptic_node", "audio_node", "thermal_node"}) processes.start(node);
     start_vision(options, before);
     processes.start("sim_node", {tapping_scene()});
-    const bool alive = monitor.wait_until([&] { return all_running(kNodes) && monitor.hits() > 0; }, kTimeout_s);
-    UNSCOPED_INFO(words());
-    REQUIRE(alive);
+    const bool running = monitor.wait_until([&] { return all_running(kNodes) && monitor.hits() > 0; }, kTimeout_s);
+    UNSCOPED_INFO(log_text());
+    REQUIRE(running);
   }
   void start_vision(const std::vector<std::string>& options, const std::vector<std::string>& before = {}) {
     std::vector<std::string> command{"env"};
@@ -65,7 +65,7 @@ struct PictureCluster : RunningCluster {
   }
   // Output of the program `set`: a line for each change, one line when it refuses.
   std::string set(const std::vector<std::string>& words, int wanted_status = 0) {
-    const std::string name = "set" + std::to_string(++asked);
+    const std::string name = "set" + std::to_string(++call_count);
     std::vector<std::string> command{programs() / "set", "--run-id", std::to_string(kRunId), "visual_node"};
     command.insert(command.end(), words.begin(), words.end());
     processes.spawn(name, command);

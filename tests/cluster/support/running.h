@@ -29,7 +29,7 @@ struct RunningCluster {
   void start() {
     processes.start_all(tapping_scene());
     const bool alive = monitor.wait_until([&] { return all_running(kNodes) && monitor.hits() > 0; }, kTimeout_s);
-    UNSCOPED_INFO(words());
+    UNSCOPED_INFO(log_text());
     REQUIRE(alive);
   }
   // Ticks per second over a while, by node.
@@ -64,7 +64,7 @@ struct RunningCluster {
       FAIL_CHECK(node << ": " << rate << " Hz before, " << now[node] << " Hz in the last of three spans");
   }
   // The last output of every process, for the report of a failure.
-  std::string words() const {
+  std::string log_text() const {
     std::string all;
     for (const char* n : {"sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node"}) {
       const node_health_t* h = monitor.health(n);
