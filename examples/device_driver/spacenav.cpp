@@ -68,7 +68,7 @@ class Daemon {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto argument = [&](int i, const char* otherwise) { return std::string(argc > i ? argv[i] : otherwise); };
+  const auto argument = [&](int i, const char* default_value) { return std::string(argc > i ? argv[i] : default_value); };
   if (argument(1, "").starts_with("-")) {
     std::cout << "spacenav [NAME [GROUP [PORT [RUN]]]]: a 3D mouse as the device NAME (head); beside it: "
                  "haptic_node --tool "

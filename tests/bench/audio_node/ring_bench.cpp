@@ -58,7 +58,7 @@ struct Way {
 int main(int argc, char** argv) {
   std::string json;
   int modes = 1600;
-  CLI::App app{"How many modes ring at 48 kHz on one core."};
+  CLI::App app{"Number of modes that one core renders at 48 kHz."};
   app.add_option("--modes", modes, "of the bank")->check(CLI::Range(16, 1'000'000));
   app.add_option("--json", json, "also write the figures there");
   CLI11_PARSE(app, argc, argv);

@@ -172,7 +172,7 @@ struct Way {
 
 int main(int argc, char** argv) try {
   std::string json, file = "/usr/share/libmysofa/MIT_KEMAR_normal_pinna.sofa";
-  CLI::App app{"What it takes to hear many sources through measured ears."};
+  CLI::App app{"Cost of many sources rendered with a measured HRTF."};
   app.add_option("--hrtf", file, "SOFA file");
   app.add_option("--json", json, "also write the figures there");
   CLI11_PARSE(app, argc, argv);

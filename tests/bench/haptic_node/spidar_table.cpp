@@ -144,7 +144,7 @@ json table_of(const StringFrame& f) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("What force a string device can render, and where.");
+  CLI::App app("Forces that a string device can render, by position.");
   std::string out;
   std::vector<std::string> names = known_frames();
   app.add_option("--json", out, "file to write the figures to");

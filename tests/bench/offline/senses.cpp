@@ -50,7 +50,7 @@ class Sound {
       for (const contact_event_t& e : stream_.take_events(world_map().to_sim(until))) {
         out.events.push_back(e);
         if (e.kind != contact_event_t::HIT) continue;
-        ++out.audio.owed;
+        ++out.audio.expected;
         due_[e.event_id] = e.time_ns;
         crossing_.strikes.push(impacts_->strike(e, world_map().to_host(sync::sim_time(e.time_ns)) + delay_));
       }
@@ -77,7 +77,7 @@ class Sound {
 };
 
 // The first sample that leaves the preceding level by 2 % of the loudest one near it, where one stands out.
-void hear(Rendered& out, double delay_s) {
+void find_onsets(Rendered& out, double delay_s) {
   std::vector<std::pair<double, std::int64_t>> hits;
   for (const contact_event_t& e : out.events)
     if (e.kind == contact_event_t::HIT) hits.emplace_back(1e-9 * static_cast<double>(e.time_ns), e.event_id);
@@ -101,7 +101,7 @@ void hear(Rendered& out, double delay_s) {
     if (near < 4 * level) continue;
     auto n = begin;
     while (std::abs(out.samples[static_cast<std::size_t>(n)]) <= 1.5f * level + 0.02f * near) ++n;
-    out.heard_s[id] = static_cast<double>(n) / kRate_Hz - delay_s;
+    out.onset_s[id] = static_cast<double>(n) / kRate_Hz - delay_s;
   }
 }
 
@@ -127,7 +127,7 @@ class Pictures {
   void finish(Rendered& out) const {
     for (const contact_event_t& e : out.events) {
       if (!visual::is_expected(e)) continue;
-      ++out.visual.owed;
+      ++out.visual.expected;
       if (const auto at = shown_.find(e.event_id); at != shown_.end())
         out.visual.error_s.push_back(at->second - 1e-9 * static_cast<double>(e.time_ns));
     }
@@ -212,8 +212,8 @@ Rendered render_log(const scene_t& scene, std::span<const std::uint8_t> log) {
   }
   pictures.finish(out);
   for (const contact_event_t& e : out.events)
-    out.thermal.owed += e.tool == warmth.tool() && e.tool >= 0 && e.kind != contact_event_t::END;
-  hear(out, sound.delay_s());
+    out.thermal.expected += e.tool == warmth.tool() && e.tool >= 0 && e.kind != contact_event_t::END;
+  find_onsets(out, sound.delay_s());
   return out;
 }
 

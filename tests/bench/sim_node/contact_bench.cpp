@@ -218,7 +218,7 @@ nlohmann::json whole(int boxes, int high) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("What a step of many boxes costs, beside ODE");
+  CLI::App app("Cost of a step with many boxes, ours and ODE");
   std::string file;
   std::vector<int> sizes{10, 100, 500}, heights{1, 10};
   bool whole_only = false;

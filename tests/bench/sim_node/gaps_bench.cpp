@@ -164,9 +164,9 @@ void boxes(int count, int high, nlohmann::json& json) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("What finding contacts with their gaps costs");
+  CLI::App app("Cost of contact detection with gaps");
   std::string file;
-  app.add_option("--json", file, "write the figures there too");
+  app.add_option("--json", file, "also write the figures there");
   CLI11_PARSE(app, argc, argv);
   dInitODE2(0);
   nlohmann::json json;

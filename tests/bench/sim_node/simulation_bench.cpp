@@ -54,8 +54,8 @@ json undisturbed(const sim::WorldDef& world, const sim::Settings& settings, doub
   sim::test::PenetrationOracle oracle(world);
   const double h = settings.step_s;
   std::vector<double> us;
-  std::vector<contact_t> list, told;
-  double contacts = 0, deepest = 0, first = 0, least = 0, most = 0, gained = 0;
+  std::vector<contact_t> list, ahead_contacts;
+  double contacts = 0, deepest = 0, first = 0, min = 0, max = 0, gained = 0;
   const int steps = static_cast<int>(seconds / h);
   for (int i = 0; i < steps; ++i) {
     run.step();
@@ -64,18 +64,18 @@ json undisturbed(const sim::WorldDef& world, const sim::Settings& settings, doub
     run.simulation().body_contacts(list);
     contacts += static_cast<double>(list.size());
     if (const sim::Ahead* ahead = run.simulation().ahead()) {
-      if (ahead->fresh) ahead->contacts(told);
-      contacts += static_cast<double>(told.size());
+      if (ahead->fresh) ahead->contacts(ahead_contacts);
+      contacts += static_cast<double>(ahead_contacts.size());
     }
     if (list.size() < 60 || i % 10 == 0) deepest = std::max(deepest, oracle.deepest(bodies).depth_m);
     const double energy = energy_J(world, bodies, h);
-    if (i == 0) first = least = most = energy;
-    least = std::min(least, energy), most = std::max(most, energy);
-    gained = std::max(gained, energy - least);
+    if (i == 0) first = min = max = energy;
+    min = std::min(min, energy), max = std::max(max, energy);
+    gained = std::max(gained, energy - min);
   }
   return {
       {"contacts", contacts / steps},    {"step_us_p50", quantile(us, 0.5)}, {"step_us_p99", quantile(us, 0.99)},
-      {"penetration_um", 1e6 * deepest}, {"energy_gained_J", gained},        {"energy_range_J", most - least},
+      {"penetration_um", 1e6 * deepest}, {"energy_gained_J", gained},        {"energy_range_J", max - min},
       {"energy_first_J", first}};
 }
 
@@ -83,13 +83,13 @@ json steadiness_json(const Steadiness& s) {
   return {{"windows", s.windows}, {"jitter", s.jitter}, {"gone", s.gone}, {"octaves", s.bands}};
 }
 
-json sense_json(const SenseResult& r) {
+json sense_json(const ModalityResult& r) {
   std::vector<double> late;
   for (const double e : r.error_s) late.push_back(1e3 * e);
   const double median = quantile(late, 0.5);
   std::vector<double> spread;
   for (const double e : late) spread.push_back(std::abs(e - median));
-  return {{"owed", r.owed},
+  return {{"owed", r.expected},
           {"presented", r.presented},
           {"error_ms_p50", median},
           {"error_ms_worst", quantile(late, 1)},
@@ -103,12 +103,12 @@ int body_named(const sim::WorldDef& world, const std::string& model) {
 }
 
 // Includes the contacts of bodies that are published ahead, in the step in which they are published; the second list then holds their new contacts.
-void body_contacts(sim::Simulation& simulation, std::vector<contact_t>& out, std::vector<contact_t>& told) {
+void body_contacts(sim::Simulation& simulation, std::vector<contact_t>& out, std::vector<contact_t>& ahead_contacts) {
   simulation.body_contacts(out);
   const sim::Ahead* ahead = simulation.ahead();
   if (!ahead || !ahead->fresh) return;
-  ahead->contacts(told);
-  out.insert(out.end(), told.begin(), told.end());
+  ahead->contacts(ahead_contacts);
+  out.insert(out.end(), ahead_contacts.begin(), ahead_contacts.end());
 }
 
 using Series = std::map<std::pair<int, int>, std::vector<double>>;  // by pair of bodies: force of each step
@@ -173,7 +173,7 @@ json bounces_of(const sim::WorldDef& world, const Rendered& rendered, double sec
     used[found] = true;
     events.push_back(best);
     worst_event = std::max(worst_event, best);
-    if (const auto at = rendered.heard_s.find(rendered.events[found].event_id); at != rendered.heard_s.end()) {
+    if (const auto at = rendered.onset_s.find(rendered.events[found].event_id); at != rendered.onset_s.end()) {
       heard.push_back(std::abs(at->second - t));
       worst_heard = std::max(worst_heard, heard.back());
       if (truly == 0) first_heard = heard.back();
@@ -201,10 +201,10 @@ json rendered_by_all(const sim::WorldDef& world, const sim::Settings& settings, 
       static_cast<std::size_t>(settings.groups == "dual" ? std::ceil(1 / (settings.visual_rate_Hz * h)) : 0);
   Series series;
   std::vector<std::vector<double>> hands(run.hand_forces_N().size());
-  std::vector<contact_t> list, told;
+  std::vector<contact_t> list, ahead_contacts;
   for (int i = 0; i < steps; ++i) {
     run.step();
-    body_contacts(run.simulation(), list, told);
+    body_contacts(run.simulation(), list, ahead_contacts);
     for (const contact_t& c : list) {
       auto& s = series[{c.body_a, c.body_b}];
       hold(s, static_cast<std::size_t>(i), held);
@@ -224,20 +224,20 @@ json rendered_by_all(const sim::WorldDef& world, const sim::Settings& settings, 
   std::vector<std::vector<double>> all;
   for (const auto& [pair, s] : series) all.push_back(s);
   // A contact that begins again within 20 ms of its end counts as interrupted.
-  int begins = 0, anew = 0;
+  int begins = 0, restarted = 0;
   std::map<std::pair<int, int>, std::int64_t> ended;
   for (const contact_event_t& e : rendered.events) {
     const std::pair pair(e.body_a, e.body_b);
     if (e.kind == contact_event_t::END) ended[pair] = e.time_ns;
     if (e.kind != contact_event_t::BEGIN) continue;
     ++begins;
-    anew += ended.count(pair) && e.time_ns - ended[pair] < 20'000'000;
+    restarted += ended.count(pair) && e.time_ns - ended[pair] < 20'000'000;
   }
-  SenseResult touch;
+  ModalityResult touch;
   std::map<std::int64_t, double> when;
   for (const contact_event_t& e : rendered.events) {
     when[e.event_id] = 1e-9 * static_cast<double>(e.time_ns);
-    touch.owed += e.tool >= 0 && e.kind == contact_event_t::BEGIN;
+    touch.expected += e.tool >= 0 && e.kind == contact_event_t::BEGIN;
   }
   for (const presentation_t& r : run.felt()) {
     if (r.part != presentation_t::CONSTRAINT || r.presented_ns < 0 || !when.count(r.event_id)) continue;
@@ -248,7 +248,7 @@ json rendered_by_all(const sim::WorldDef& world, const sim::Settings& settings, 
               {"force_on_hand", steadiness_json(steadiness(hands, 1 / h))},
               {"events", rendered.events.size()},
               {"begins", begins},
-              {"begins_anew", anew},
+              {"begins_anew", restarted},
               {"haptic", sense_json(touch)},
               {"audio", sense_json(rendered.audio)},
               {"visual", sense_json(rendered.visual)},

@@ -187,17 +187,17 @@ bool hands_hold(const GroupedRow& row, double k) {
   simulation.start(1);
   const double period_s = 2 * M_PI / swing;
   const auto steps = static_cast<int>(std::max(400.0, 60 * period_s / row.step_s));
-  std::vector<tool_state_t> news;
+  std::vector<tool_state_t> states;
   std::int64_t tick = 0;
   double early = 0, late = 0;
   for (int i = 0; i < steps; ++i) {
-    news.clear();
+    states.clear();
     const double now_s = sync::to_seconds(simulation.now().time_since_epoch());
     for (; 0.001 * static_cast<double>(tick) < now_s + row.step_s - 1e-9; ++tick)
       for (Holding& hand : hands)
-        news.push_back(hand.tick(simulation.touch_models()[static_cast<std::size_t>(hand.tool)],
+        states.push_back(hand.tick(simulation.touch_models()[static_cast<std::size_t>(hand.tool)],
                                  0.001 * static_cast<double>(tick) - now_s, tick * 1'000'000));
-    simulation.step(news);
+    simulation.step(states);
     const double away = std::abs(simulation.bodies()[static_cast<std::size_t>(box)].centre_m.x());
     if (i < steps / 4) early = std::max(early, away);
     if (i >= 3 * steps / 4) late = std::max(late, away);

@@ -107,7 +107,7 @@ double stiffest(const Model& model, int boxes, double h) {
 
 // A ball that arrives at 1 m/s: its largest force, and the largest change from one step to the next.
 struct Arrival {
-  double most_N = 0, jump_N = 0;
+  double max_N = 0, jump_N = 0;
 };
 Arrival arrive(const Model& model, double k, double h) {
   impulse::Law law = model.law(k, 1);
@@ -122,7 +122,7 @@ Arrival arrive(const Model& model, double k, double h) {
   for (double t = 0; t < 0.08; t += h) {
     model.step(toys, h);
     const double force = toys.force_N();
-    out.most_N = std::max(out.most_N, force);
+    out.max_N = std::max(out.max_N, force);
     out.jump_N = std::max(out.jump_N, std::abs(force - before));
     before = force;
   }
@@ -212,11 +212,11 @@ int main(int argc, char** argv) {
   for (const Model& model : models()) {
     const double us = cost_us(model, k, 0.001);
     const Arrival at_1 = arrive(model, k, 1e-3), at_01 = arrive(model, k, 1e-4), at_001 = arrive(model, k, 1e-5);
-    std::printf("%-18s %11.1f | %12.2f %12.2f %12.2f | %12.3f %12.3f |", model.name.c_str(), us, at_1.most_N,
-                at_01.most_N, at_001.most_N, at_01.jump_N, at_001.jump_N);
+    std::printf("%-18s %11.1f | %12.2f %12.2f %12.2f | %12.3f %12.3f |", model.name.c_str(), us, at_1.max_N,
+                at_01.max_N, at_001.max_N, at_01.jump_N, at_001.jump_N);
     json row = {{"contact", model.name},           {"step_100_boxes_us", us},
-                {"force_1ms_N", at_1.most_N},      {"force_0.1ms_N", at_01.most_N},
-                {"force_0.01ms_N", at_001.most_N}, {"change_0.1ms_N", at_01.jump_N},
+                {"force_1ms_N", at_1.max_N},      {"force_0.1ms_N", at_01.max_N},
+                {"force_0.01ms_N", at_001.max_N}, {"change_0.1ms_N", at_01.jump_N},
                 {"change_0.01ms_N", at_001.jump_N}};
     for (const int boxes : {0, 3}) {
       for (const double h : {0.001, 1.0 / 60}) {
@@ -237,7 +237,7 @@ int main(int argc, char** argv) {
       std::sqrt(k * kLightest_kg),
       std::pow(std::sqrt(4 + 4 * kDampingRatio * kDampingRatio) - 2 * kDampingRatio, 2));
   std::printf(
-      "the tower's explicit springs: %.0f N/m at 1 ms, %.0f N/m at 1/60 s: what 1 kHz gains for what a hand feels "
+      "the tower's explicit springs: %.0f N/m at 1 ms, %.0f N/m at 1/60 s: the gain of 1 kHz for the felt stiffness "
       "is a factor of "
       "%.0f\n",
       at_1ms_N_m, at_60Hz_N_m, at_1ms_N_m / at_60Hz_N_m);

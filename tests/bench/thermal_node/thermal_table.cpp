@@ -195,7 +195,7 @@ constexpr double kWeberOfRate = 0.43;
 
 double rate_K_s(const Trace& t) { return 33 - t[50]; }  // mean of the first second
 
-json told_apart(const std::vector<Shown>& shown) {
+json distinguishable_pairs(const std::vector<Shown>& shown) {
   std::puts(
       "\nPairs that a person could tell apart, by cooling that differs by 43 % or more in the first second "
       "(Bergmann Tiest and Kappers\n"
@@ -255,7 +255,7 @@ json costs(const Material& m) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"How true is warmth?"};
+  CLI::App app{"Accuracy of the rendered temperature, against closed forms."};
   std::string file;
   app.add_option("--json", file, "the figures and the traces");
   CLI11_PARSE(app, argc, argv);
@@ -267,7 +267,7 @@ int main(int argc, char** argv) try {
   out["display"]["half_space"] = displayed(ten, "half_space", "half_space", nullptr);
   out["display"]["bioheat"] = displayed(ten, "bioheat", "bioheat", &shown);
   out["display"]["half_space_for_bioheat"] = displayed(ten, "half_space", "bioheat", nullptr);
-  out["told_apart"] = told_apart(shown);
+  out["told_apart"] = distinguishable_pairs(shown);
   out["tick"] = costs(ten.front());
   for (const Shown& s : shown)
     out["traces"][s.material.name] = {

@@ -154,8 +154,8 @@ int main(int argc, char** argv) try {
   std::vector<std::string> wanted;
   int samples = 4;
   CLI::App app("Draws pictures of the shipped scenes for the documents.");
-  app.add_option("FOLDER", folder, "where the PNG files go")->required()->check(CLI::ExistingDirectory);
-  app.add_option("PICTURE", wanted, "which; none: all")
+  app.add_option("FOLDER", folder, "folder of the PNG files")->required()->check(CLI::ExistingDirectory);
+  app.add_option("PICTURE", wanted, "pictures to draw; default: all")
       ->check(CLI::IsMember({"dark_room", "bump_plane", "looks", "reflecting", "stereo", "questions"}));
   app.add_option("--samples", samples, "a pixel")->check(CLI::Range(1, 16))->capture_default_str();
   CLI11_PARSE(app, argc, argv);
