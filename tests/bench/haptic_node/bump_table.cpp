@@ -67,7 +67,7 @@ bool spectrum_table(nlohmann::json& json) {
   return good;
 }
 
-struct Compared {
+struct Comparison {
   double along = 0, up = 0;  // correlation with the force of the triangles
 };
 
@@ -84,7 +84,7 @@ std::vector<double> sampled(const std::vector<double>& x, const std::vector<doub
   return out;
 }
 
-Compared compare(const BumpTrace& felt, const BumpTrace& truth) {
+Comparison compare(const BumpTrace& felt, const BumpTrace& truth) {
   return {correlation(felt.along_N, sampled(truth.place_m, truth.along_N, felt.place_m)),
           correlation(felt.up_N, sampled(truth.place_m, truth.up_N, felt.place_m))};
 }
@@ -111,11 +111,11 @@ bool method_table(nlohmann::json& json) {
                         .friction = 0.2,
                         .depth_m = kShallow_m,
                         .lateral_m = 0.011};
-      Compared by_height, by_normal;
+      Comparison by_height, by_normal;
       for (const char* method : {"mesh", "none", "height", "normal", "both"}) {
         stroke.method = method;
         const BumpTrace t = run(stroke);
-        const Compared c = compare(t, truth);
+        const Comparison c = compare(t, truth);
         if (stroke.method == "height") by_height = c;
         if (stroke.method == "normal") by_normal = c;
         const double p99 = quantile(t.change_N, 0.99), most = quantile(t.change_N, 1);

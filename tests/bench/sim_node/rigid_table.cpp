@@ -293,16 +293,16 @@ int main(int argc, char** argv) {
   app.add_flag("--check", check, "exit 1 unless all rows stay within the limits");
   CLI11_PARSE(app, argc, argv);
   Report report;
-  const auto wanted = [&](const std::string& name) { return only.empty() || only == name; };
+  const auto selected = [&](const std::string& name) { return only.empty() || only == name; };
   for (const double rate_Hz : {1000.0, 2000.0, 4000.0}) {
-    if (wanted("pressed")) pressed(report, rate_Hz);
-    if (wanted("pushed")) pushed(report, rate_Hz);
-    if (wanted("thin")) thin(report, rate_Hz);
-    if (wanted("hole")) hole(report, TACTUS_SOURCE_DIR "/sim_node/scenes", rate_Hz);
-    if (wanted("stroke")) stroke(report, tool_def_t::BOX, rate_Hz, seconds);
-    if (wanted("stroke")) stroke(report, tool_def_t::CAPSULE, rate_Hz, seconds);
+    if (selected("pressed")) pressed(report, rate_Hz);
+    if (selected("pushed")) pushed(report, rate_Hz);
+    if (selected("thin")) thin(report, rate_Hz);
+    if (selected("hole")) hole(report, TACTUS_SOURCE_DIR "/sim_node/scenes", rate_Hz);
+    if (selected("stroke")) stroke(report, tool_def_t::BOX, rate_Hz, seconds);
+    if (selected("stroke")) stroke(report, tool_def_t::CAPSULE, rate_Hz, seconds);
   }
-  if (wanted("between")) between(report);
+  if (selected("between")) between(report);
   if (!json.empty()) std::ofstream(json) << report.out.dump(2) << "\n";
   return check && !report.good ? 1 : 0;
 }

@@ -17,7 +17,7 @@
 #include "sim_node/scene/load_sdf.h"
 #include "sync/text/settings.h"
 #include "tests/bench/offline/offline_world.h"
-#include "tests/bench/offline/senses.h"
+#include "tests/bench/offline/log_renderers.h"
 #include "tests/bench/offline/steadiness.h"
 #include "tests/sim_node/support/penetration_oracle.h"
 #include "tests/sync/support/memory_sink.h"
@@ -49,7 +49,7 @@ double energy_J(const sim::WorldDef& world, std::span<const sim::BodyMotion> bod
 }
 
 // Without hands: cost, depth, energy.
-json undisturbed(const sim::WorldDef& world, const sim::Settings& settings, double seconds) {
+json without_hands(const sim::WorldDef& world, const sim::Settings& settings, double seconds) {
   OfflineWorld run(world, settings, false, nullptr);
   sim::test::PenetrationOracle oracle(world);
   const double h = settings.step_s;
@@ -123,7 +123,7 @@ void hold(std::vector<double>& force, std::size_t n, std::size_t held) {
 constexpr double kG = 9.81, kFall_m = 0.3, kBounce = 0.8, kSlide_m_s = 2.5, kFriction = 0.4,
                  kLeastBounce_m_s = 0.3;
 
-void set_going(sim::WorldDef& world) {
+void set_initial_velocities(sim::WorldDef& world) {
   if (world.name != "bounce_and_rest") return;
   world.bodies[static_cast<std::size_t>(body_named(world, "sliding"))].velocity_m_s = {kSlide_m_s, 0, 0};
   world.bodies[static_cast<std::size_t>(body_named(world, "rolling"))].velocity_m_s = {0.4, 0, 0};
@@ -153,7 +153,7 @@ json contact_of(const sim::WorldDef& world, const std::string& model, const Seri
 }
 
 // True times of the ball's bounces, against the events and against the samples of their sounds.
-json bounces_of(const sim::WorldDef& world, const Rendered& rendered, double seconds) {
+json bounce_accuracy(const sim::WorldDef& world, const Rendered& rendered, double seconds) {
   const int body = body_named(world, "bouncing");
   std::vector<double> events, heard;
   std::vector<char> used(rendered.events.size());
@@ -257,7 +257,7 @@ json rendered_by_all(const sim::WorldDef& world, const sim::Settings& settings, 
     const double stops_s = kSlide_m_s / (kFriction * kG);
     const auto& block = run.simulation().bodies()[static_cast<std::size_t>(body_named(world, "sliding"))];
     const double slid = block.position_m.x() + 0.8, truly = kSlide_m_s * kSlide_m_s / (2 * kFriction * kG);
-    out["bounce"] = bounces_of(world, rendered, seconds);
+    out["bounce"] = bounce_accuracy(world, rendered, seconds);
     out["rest"] = contact_of(world, "resting", series, rendered, h, 0.5, seconds);
     out["slide"] = contact_of(world, "sliding", series, rendered, h, 0.1, stops_s - 0.03);
     out["slide"]["distance_error_percent"] = 100 * (slid / truly - 1);
@@ -285,13 +285,13 @@ int main(int argc, char** argv) {
   try {
     std::vector<std::string> warnings;
     sim::WorldDef world = sim::load_sdf(scene, warnings);
-    set_going(world);
+    set_initial_velocities(world);
     set.push_back("detector=" + detector);
     set.push_back("solver=" + solver);
     sim::Settings settings;
     const auto refused = sync::apply_settings(settings, sim::setting_fields(), "sim_node", world.settings, set);
     if (!refused.empty()) throw std::runtime_error(refused.front());
-    out.update(undisturbed(world, settings, seconds));
+    out.update(without_hands(world, settings, seconds));
     out.update(rendered_by_all(world, settings, seconds, log));
   } catch (const std::exception& e) {
     out["refused"] = e.what();
