@@ -29,7 +29,7 @@ question_t question(int kind, std::int64_t seq = 0, std::int64_t id = kBig, std:
   return m;
 }
 
-std::string why_not(Answers& answers, const PageAnswer& answer, sync::HostTime now) {
+std::string rejection(Answers& answers, const PageAnswer& answer, sync::HostTime now) {
   try {
     answers.answer(answer, now);
   } catch (const std::invalid_argument& e) {
@@ -73,28 +73,28 @@ TEST_CASE("An answer of a page is repeated for each repetition of its question, 
 
 TEST_CASE("An answer that fits no question is rejected with a reason, and is not published") {
   Answers a(7);
-  CHECK_THAT(why_not(a, {"5.1", 0, 0, 0}, at(0)), Catch::Contains("no longer open"));
+  CHECK_THAT(rejection(a, {"5.1", 0, 0, 0}, at(0)), Catch::Contains("no longer open"));
   a.push(question(question_t::CHOICE, 0), at(0));
   const std::string name = a.to_json(at(0))["question"];
-  CHECK_THAT(why_not(a, {name + "0", 0, 0, 0}, at(0)), Catch::Contains("no longer open"));
-  CHECK_THAT(why_not(a, {name, 2, 0, 0}, at(0)), Catch::Contains("none of the choices"));
-  CHECK_THAT(why_not(a, {name, -1, 0, 0}, at(0)), Catch::Contains("none of the choices"));
-  CHECK_THAT(why_not(a, {name, 0, 0.5, 0}, at(0)), Catch::Contains("range of its slider"));
-  CHECK_THAT(why_not(a, {name, 0, 0, 0}, at(2.1)), Catch::Contains("no longer open"));
+  CHECK_THAT(rejection(a, {name + "0", 0, 0, 0}, at(0)), Catch::Contains("no longer open"));
+  CHECK_THAT(rejection(a, {name, 2, 0, 0}, at(0)), Catch::Contains("none of the choices"));
+  CHECK_THAT(rejection(a, {name, -1, 0, 0}, at(0)), Catch::Contains("none of the choices"));
+  CHECK_THAT(rejection(a, {name, 0, 0.5, 0}, at(0)), Catch::Contains("range of its slider"));
+  CHECK_THAT(rejection(a, {name, 0, 0, 0}, at(2.1)), Catch::Contains("no longer open"));
   CHECK_FALSE(a.take_answer());
-  CHECK(why_not(a, {name, 0, 0, 0}, at(1)).empty());
-  CHECK_THAT(why_not(a, {name, 1, 0, 0}, at(1)), Catch::Contains("has been answered"));
+  CHECK(rejection(a, {name, 0, 0, 0}, at(1)).empty());
+  CHECK_THAT(rejection(a, {name, 1, 0, 0}, at(1)), Catch::Contains("has been answered"));
   CHECK(a.take_answer()->choice == 0);
 
   a.push(question(question_t::NUMBER, 1, 12), at(2));
   const std::string number = a.to_json(at(2))["question"];
-  CHECK_FALSE(why_not(a, {number, -1, 1.01, 0}, at(2)).empty());
-  CHECK_FALSE(why_not(a, {number, 0, 0.5, 0}, at(2)).empty());
-  CHECK(why_not(a, {number, -1, -1, 0}, at(2)).empty());
+  CHECK_FALSE(rejection(a, {number, -1, 1.01, 0}, at(2)).empty());
+  CHECK_FALSE(rejection(a, {number, 0, 0.5, 0}, at(2)).empty());
+  CHECK(rejection(a, {number, -1, -1, 0}, at(2)).empty());
   CHECK(a.take_answer()->number == -1);
 
   a.push(question(question_t::NOTHING, 2, 13), at(3));
-  CHECK_FALSE(why_not(a, {a.to_json(at(3))["question"], -1, 0, 0}, at(3)).empty());
+  CHECK_FALSE(rejection(a, {a.to_json(at(3))["question"], -1, 0, 0}, at(3)).empty());
 }
 
 TEST_CASE("A page shows the trial runner and its end, and ignores questions of another run, except in a log") {

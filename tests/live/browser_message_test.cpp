@@ -51,7 +51,7 @@ void check_bounds(const BrowserMessage& m) {
 }
 
 // True when the message is accepted. Any exception without one sentence fails the test.
-bool taken(const std::string& text) {
+bool accepted(const std::string& text) {
   try {
     check_bounds(parse_browser_message(text));
     return true;
@@ -109,13 +109,13 @@ TEST_CASE("Malformed and out-of-range page messages are rejected with a sentence
         R"({"t":"answer","question":"4.11","choice":-1,"number":1e10,"after_ns":0})",
         R"({"t":"answer","question":"4.11","choice":1,"number":0,"after_ns":-1})"}) {
     INFO(text);
-    CHECK_FALSE(taken(text));
+    CHECK_FALSE(accepted(text));
   }
   nlohmann::json many{{"t", "watch"}, {"names", nlohmann::json::array()}};
   for (std::size_t i = 0; i <= kMaxWatched; ++i) many["names"].push_back("n" + std::to_string(i));
-  CHECK_FALSE(taken(many.dump()));
-  CHECK_FALSE(taken(std::string(kMaxBrowserBytes + 1, ' ')));
-  CHECK_FALSE(taken(std::string(kMaxBrowserBytes, '[')));  // deep nesting
+  CHECK_FALSE(accepted(many.dump()));
+  CHECK_FALSE(accepted(std::string(kMaxBrowserBytes + 1, ' ')));
+  CHECK_FALSE(accepted(std::string(kMaxBrowserBytes, '[')));  // deep nesting
 }
 
 TEST_CASE("10,000 mutated messages are parsed within their bounds or rejected with a sentence") {
@@ -134,7 +134,7 @@ TEST_CASE("10,000 mutated messages are parsed within their bounds or rejected wi
       }
       if (text.empty()) text = "x";
     }
-    ++(taken(text) ? good : refused);
+    ++(accepted(text) ? good : refused);
   }
   CHECK(good > 100);  // both occur; otherwise the mutations test nothing
   CHECK(refused > 1000);

@@ -25,7 +25,7 @@ sync::BusOptions memory() {
   return options;
 }
 
-struct Page {
+struct PageFixture {
   sync::Bus bus{sync::Identity::fresh("live_server", 9), memory()};
   std::vector<std::pair<std::string, bool>> replies;
   Controls controls{bus, [this](const std::string& sentence, bool good) { replies.emplace_back(sentence, good); }};
@@ -61,10 +61,10 @@ struct Page {
 }  // namespace
 
 TEST_CASE("A command is repeated with one id until its reply, and the reply is shown") {
-  Page p;
+  PageFixture p;
   p.controls.command({sim_command_t::STEP, 25}, p.now);
   p.run_for(0.45);
-  const auto sent = Page::all(p.commands);
+  const auto sent = PageFixture::all(p.commands);
   REQUIRE(sent.size() == 5);  // at once, and each tenth of a second
   for (const auto& m : sent) {
     CHECK(m.id == sent[0].id);
@@ -83,24 +83,24 @@ TEST_CASE("A command is repeated with one id until its reply, and the reply is s
   p.bus.publish(channels::kSimReply, reply);
   p.run_for(0.01);
   CHECK(p.replies == std::vector<std::pair<std::string, bool>>{{"25 steps", true}});
-  Page::all(p.commands);
+  PageFixture::all(p.commands);
   p.run_for(5);
-  CHECK(Page::all(p.commands).empty());
+  CHECK(PageFixture::all(p.commands).empty());
   CHECK(p.replies.size() == 1);
 }
 
 TEST_CASE("A command without a reply fails after three seconds, with a sentence") {
-  Page p;
+  PageFixture p;
   p.controls.command({sim_command_t::PAUSE, 0}, p.now);
   p.run_for(10);
-  CHECK(Page::all(p.commands).size() <= 31);
+  CHECK(PageFixture::all(p.commands).size() <= 31);
   REQUIRE(p.replies.size() == 1);
   CHECK_THAT(p.replies[0].first, Catch::Contains("no reply from sim_node"));
   CHECK_FALSE(p.replies[0].second);
 }
 
 TEST_CASE("Sliders start from the profile in force, and show the newest profile") {
-  Page p;
+  PageFixture p;
   CHECK_FALSE(p.controls.profile());
   p.in_force(R"(<profile name="by hand" seed="3"><degrade modality="visual" jitter="5ms"/></profile>)", kRealtime_ns + 50);
   REQUIRE(p.controls.profile());
@@ -109,7 +109,7 @@ TEST_CASE("Sliders start from the profile in force, and show the newest profile"
   // A clock that was set back must not make the page's request the older one.
   p.controls.degrade({{{"audio", {80, 0, 0}}}, false}, kRealtime_ns, p.now);
   p.run_for(0.05);
-  const auto sent = Page::all(p.profiles);
+  const auto sent = PageFixture::all(p.profiles);
   REQUIRE_FALSE(sent.empty());
   CHECK(sent[0].generation > kRealtime_ns + 50);
   const auto profile = sync::parse_profile(sent[0].text, "sent");
@@ -121,15 +121,15 @@ TEST_CASE("Sliders start from the profile in force, and show the newest profile"
   SECTION("all well removes all operators") {
     p.controls.degrade({{{"audio", {0, 0, 0}}}, true}, kRealtime_ns + 1000, p.now);
     p.run_for(0.05);
-    const auto well = Page::all(p.profiles);
+    const auto well = PageFixture::all(p.profiles);
     REQUIRE_FALSE(well.empty());
     CHECK(sync::parse_profile(well.back().text, "well").rules.empty());
   }
   SECTION("it is sent for two seconds, and then repeated by sync_node") {
     p.run_for(3);
-    CHECK(Page::all(p.profiles).size() < 25);
+    CHECK(PageFixture::all(p.profiles).size() < 25);
     p.run_for(3);
-    CHECK(Page::all(p.profiles).empty());
+    CHECK(PageFixture::all(p.profiles).empty());
   }
   SECTION("a later profile of another sender replaces it") {
     p.in_force(R"(<profile name="later"><degrade modality="haptic" off="true"/></profile>)", kRealtime_ns + 9999);
@@ -138,21 +138,21 @@ TEST_CASE("Sliders start from the profile in force, and show the newest profile"
 }
 
 TEST_CASE("Tags are requested once a second while a page watches them") {
-  Page p;
+  PageFixture p;
   p.controls.request_tags({"sim_node.work.collision"}, p.now);
   p.run_for(2.95);
-  const auto requests = Page::all(p.tags);
+  const auto requests = PageFixture::all(p.tags);
   REQUIRE(requests.size() == 3);
   for (const auto& m : requests) CHECK(m.patterns == std::vector<std::string>{"sim_node.work.collision"});
   std::vector<std::string> many;
   for (int i = 0; i < 17; ++i) many.push_back("node.tag" + std::to_string(i));
   p.controls.request_tags(many, p.now);
   p.run_for(0.02);
-  CHECK(Page::all(p.tags).back().patterns == std::vector<std::string>{"*"});  // more than a request can name
+  CHECK(PageFixture::all(p.tags).back().patterns == std::vector<std::string>{"*"});  // more than a request can name
 }
 
 TEST_CASE("No page can move a tool before the scene is known") {
-  Page p;
+  PageFixture p;
   CHECK_THROWS_WITH(p.controls.hand({0, 0, 0, false}, 1.33, p.now), Catch::Contains("not known yet"));
   p.run_for(0.1);
   auto& devices = p.bus.queue<device_state_t>(channels::kDeviceState, 10);

@@ -26,7 +26,7 @@ std::map<std::string, Sliders> sliders_of(const std::string& profile) {
   return out;
 }
 
-bool same(const Sliders& a, const Sliders& b) {
+bool same_positions(const Sliders& a, const Sliders& b) {
   return a.delay_ms == Approx(b.delay_ms) && a.rate_Hz == Approx(b.rate_Hz) && a.loss == Approx(b.loss);
 }
 
@@ -34,9 +34,9 @@ bool same(const Sliders& a, const Sliders& b) {
 
 TEST_CASE("Sliders show the unconditional operators of a profile, and that it has others") {
   const auto shown = slider_states(kRich);
-  CHECK(same(shown.at("audio").sliders, {40, 0, 0.05}));
-  CHECK(same(shown.at("haptic").sliders, {0, 50, 0}));
-  CHECK(same(shown.at("visual").sliders, {0, 0, 0}));
+  CHECK(same_positions(shown.at("audio").sliders, {40, 0, 0.05}));
+  CHECK(same_positions(shown.at("haptic").sliders, {0, 50, 0}));
+  CHECK(same_positions(shown.at("visual").sliders, {0, 0, 0}));
   CHECK(shown.at("audio").more);
   CHECK(shown.at("visual").more);
   CHECK_FALSE(shown.at("haptic").more);
@@ -100,7 +100,7 @@ TEST_CASE("All slider positions give a valid profile, which sets the sliders to 
       const bool nothing = s.delay_ms == 0 && s.rate_Hz == 0 && s.loss == 0;
       if (nothing && !shown.contains(sense)) continue;
       REQUIRE(shown.contains(sense));
-      REQUIRE(same(shown.at(sense), s));
+      REQUIRE(same_positions(shown.at(sense), s));
     }
     REQUIRE(with_sliders(text, at) == text);  // unchanged sliders leave the profile unchanged
   }

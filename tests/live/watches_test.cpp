@@ -24,9 +24,9 @@ std::vector<std::uint8_t> tool(const std::string& node, double force_N) {
   return sync::encode(m);
 }
 
-struct Watching {
+struct WatchesFixture {
   Watches watches;
-  Watching() { REQUIRE(watches.set({"TOOL_STATE:force_N.z", "sim_node.work.collision"}).empty()); }
+  WatchesFixture() { REQUIRE(watches.set({"TOOL_STATE:force_N.z", "sim_node.work.collision"}).empty()); }
   void tool_at(double s, double force_N, const std::string& node = "haptic_node") {
     watches.on_message(channels::kToolState, tool(node, force_N), at(s));
   }
@@ -35,7 +35,7 @@ struct Watching {
 }  // namespace
 
 TEST_CASE("A page receives each value of its watched variables once, and no others") {
-  Watching w;
+  WatchesFixture w;
   CHECK(w.watches.accepts(channels::kToolState));
   CHECK_FALSE(w.watches.accepts(channels::kWorldState));
   CHECK(w.watches.tags() == std::vector<std::string>{"sim_node.work.collision"});
@@ -48,7 +48,7 @@ TEST_CASE("A page receives each value of its watched variables once, and no othe
 }
 
 TEST_CASE("Two hands that publish one variable are two curves") {
-  Watching w;
+  WatchesFixture w;
   for (int i = 0; i < 10; ++i) {
     w.tool_at(0.01 * i, 1, "haptic_node");
     w.tool_at(0.01 * i + 0.001, 2, "haptic_node_left");
@@ -67,7 +67,7 @@ TEST_CASE("Two hands that publish one variable are two curves") {
 }
 
 TEST_CASE("Values are decimated to 200 a second, and a full queue drops the oldest") {
-  Watching w;
+  WatchesFixture w;
   for (int i = 0; i < 1000; ++i) w.tool_at(0.001 * i, i);
   CHECK(w.watches.values().size() == 200);
   for (int i = 0; i < 100'000; ++i) w.tool_at(2 + 0.005 * i, i);
@@ -77,7 +77,7 @@ TEST_CASE("Values are decimated to 200 a second, and a full queue drops the olde
 }
 
 TEST_CASE("Values of a log are shown after a seek backwards, and non-finite values are not") {
-  Watching w;
+  WatchesFixture w;
   w.tool_at(5, 1);
   w.tool_at(1, 2);
   CHECK(w.watches.values().size() == 2);
@@ -87,7 +87,7 @@ TEST_CASE("Values of a log are shown after a seek backwards, and non-finite valu
 }
 
 TEST_CASE("Malformed messages of a channel give no value") {
-  Watching w;
+  WatchesFixture w;
   const auto good = tool("haptic_node", 1);
   w.watches.on_message(channels::kToolState, {}, at(0));
   for (std::size_t size = 0; size + 1 < good.size(); size += 7)
