@@ -190,7 +190,7 @@ void Player::select_goal() {
   goal_ = next;
   search_radius_m_ = search_angle_rad_ = 0;
   only_felt_ = false;
-  begin(goal_ == count ? Action::kDone : Action::kRise);
+  start(goal_ == count ? Action::kDone : Action::kRise);
 }
 
 Vector3d Player::rise(const Percept& p) {
@@ -216,7 +216,7 @@ Vector3d Player::descend(const Percept&) {
   if (flat(target_m_ - to).norm() > kBallMoved_m || ball_rolls())
     start(Action::kRise);
   else if ((target_m_ - to).norm() < kArrived_m)
-    begin(ball().known ? Action::kPush : Action::kSearch);
+    start(ball().known ? Action::kPush : Action::kSearch);
   return step_towards(to, 0.6 * def_.air_speed_m_s);
 }
 
