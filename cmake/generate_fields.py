@@ -12,7 +12,7 @@ import sys
 STRUCT = re.compile(r"struct\s+(\w+)\s*\{(.*)\}", re.S)
 FIELD = re.compile(r"(\w+)\s+(\w+)\s*(?:\[(\w+)\])?\s*;")
 CHANNEL = re.compile(r'\*\s*k\w+\s*=\s*"(\w+)";\s*//\s*(\w+)')
-MOST_COMMENT = 400
+MAX_COMMENT_LENGTH = 400
 
 
 def fields_of(path):
@@ -30,7 +30,7 @@ def fields_of(path):
             match = FIELD.fullmatch(line.split("//")[0].strip())
             if not match:
                 sys.exit(f"{path}: cannot read {line!r}; write one field a line")
-            fields.append((*match.groups(default=""), " ".join(comment)[:MOST_COMMENT]))
+            fields.append((*match.groups(default=""), " ".join(comment)[:MAX_COMMENT_LENGTH]))
             comment = []
     return name, fields
 

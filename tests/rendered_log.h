@@ -54,7 +54,7 @@ class RenderedLog {
     waitpid(child, &status, 0);
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes(said)};
   }
-  // What it writes of run.lcmlog, which must work.
+  // The trace rendered from run.lcmlog. Fails the test when rendering fails.
   std::string trace(std::vector<std::string> more = {}, const std::string& log = "run.lcmlog") const {
     std::vector<std::string> words{"--log", file(log), "--trace", file("trace.csv")};
     words.insert(words.end(), more.begin(), more.end());
@@ -88,7 +88,7 @@ inline std::vector<std::vector<std::string>> cells_of(const std::string& table) 
   return rows;
 }
 
-// As sync_node says that a profile is in force.
+// The message by which sync_node publishes a profile in force.
 inline std::vector<std::uint8_t> in_force(const std::string& profile, header_t header) {
   degradation_t m{};
   m.header = header;

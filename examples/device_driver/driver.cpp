@@ -44,7 +44,7 @@ struct Forces {
   tactus::device_force_t newest{};
   Clock::time_point arrived{};
 
-  void hear(const lcm::ReceiveBuffer*, const std::string&, const tactus::device_force_t* m) {
+  void on_message(const lcm::ReceiveBuffer*, const std::string&, const tactus::device_force_t* m) {
     if (m->device != device) return;
     newest = *m;
     arrived = Clock::now();
@@ -58,7 +58,7 @@ struct Forces {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto argument = [&](int i, const char* otherwise) { return std::string(argc > i ? argv[i] : otherwise); };
+  const auto argument = [&](int i, const char* default_value) { return std::string(argc > i ? argv[i] : default_value); };
   if (argument(1, "").starts_with("-")) {
     std::cout << "Usage: device_driver [NAME [GROUP [PORT [RUN]]]]\nDrives the device NAME (arm) for haptic_node "
                  "--device "
@@ -72,7 +72,7 @@ int main(int argc, char** argv) {
     std::cerr << "device_driver: cannot open the bus; check that the network lets multicast through\n";
     return 1;
   }
-  bus.subscribe("DEVICE_FORCE", &Forces::hear, &forces);
+  bus.subscribe("DEVICE_FORCE", &Forces::on_message, &forces);
 
   tactus::device_state_t state{};  // LCM initialises nothing by itself
   state.device = forces.device;

@@ -39,7 +39,7 @@ class Bus:
         self.socket.sendto(struct.pack(">II", self.SMALL, self.sequence) + channel.encode() + b"\0" + data, self.to)
         self.sequence = (self.sequence + 1) & 0xFFFFFFFF
 
-    def heard(self, channel):
+    def received(self, channel):
         """The messages of a channel that have arrived; does not wait."""
         while select.select([self.socket], [], [], 0)[0]:
             datagram = self.socket.recv(65536)
@@ -88,7 +88,7 @@ def main():
     while True:
         tick += PERIOD_S
         time.sleep(max(0.0, tick - time.monotonic()))
-        for data in bus.heard("DEVICE_FORCE"):
+        for data in bus.received("DEVICE_FORCE"):
             try:
                 message = device_force_t.decode(data)
             except ValueError:  # a message of another type

@@ -191,16 +191,16 @@ def main():
         if source is None and tick - tried > TRY_AGAIN_S:
             source, tried = opened(options.kind, path), tick
         try:
-            there = source is not None and source.step(pose, PERIOD_S)
+            is_connected = source is not None and source.step(pose, PERIOD_S)
         except OSError:  # unplugged
-            there = False
-        if source is not None and not there:
+            is_connected = False
+        if source is not None and not is_connected:
             source.close()
             source = None
-        state.state = state.ANSWERS if there else state.LOST
+        state.state = state.ANSWERS if is_connected else state.LOST
         for axis, i in (("x", 0), ("y", 1), ("z", 2)):
             setattr(state.pose.position_m, axis, pose.position[i])
-            setattr(state.velocity_m_s, axis, pose.velocity[i] if there else 0.0)
+            setattr(state.velocity_m_s, axis, pose.velocity[i] if is_connected else 0.0)
             setattr(state.pose.orientation, axis, pose.turn[i + 1])
         state.pose.orientation.w = pose.turn[0]
         state.buttons = pose.buttons

@@ -11,9 +11,9 @@ namespace tactus::examples {
 class PushMotion {
  public:
   // design: spacenavd reports about 350 at full push by default: 0.3 m/s, an unhurried hand, and a quarter turn per second.
-  static constexpr double kSpeed_m_s = 0.3 / 350, kTurn_rad_s = 1.57 / 350;
+  static constexpr double kSpeed_m_s = 0.3 / 350, kSpin_rad_s = 1.57 / 350;
   // The daemon reports motion about 60 times per second and once when it ends. An older report has expired (design: three periods).
-  static constexpr double kHolds_s = 0.05;
+  static constexpr double kTimeout_s = 0.05;
 
   // half_m: range to each side of the origin along each axis, m.
   explicit PushMotion(double half_m) : half_m_(half_m) {}
@@ -23,7 +23,7 @@ class PushMotion {
   void push(int x, int y, int z, int rx, int ry, int rz) {
     push_ = {-double(z), -double(x), double(y)};
     twist_ = {-double(rz), -double(rx), double(ry)};
-    holds_s_ = kHolds_s;
+    remaining_s_ = kTimeout_s;
   }
   void press(int button, bool down) {
     if (button < 0 || button > 30) return;
@@ -31,14 +31,14 @@ class PushMotion {
   }
   // dt > 0, s.
   void step(double dt) {
-    const double on = holds_s_ > 0 ? 1 : 0;
-    holds_s_ -= dt;
+    const double on = remaining_s_ > 0 ? 1 : 0;
+    remaining_s_ -= dt;
     double angle = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const double to = std::clamp(position_[i] + on * push_[i] * kSpeed_m_s * dt, -half_m_, half_m_);
       velocity_[i] = (to - position_[i]) / dt;
       position_[i] = to;
-      spin_[i] = on * twist_[i] * kTurn_rad_s;
+      spin_[i] = on * twist_[i] * kSpin_rad_s;
       angle += spin_[i] * spin_[i];
     }
     turn(std::sqrt(angle) * dt, dt);
@@ -67,7 +67,7 @@ class PushMotion {
   double half_m_;
   std::array<double, 3> push_{}, twist_{}, position_{}, velocity_{}, spin_{};
   std::array<double, 4> orientation_{1, 0, 0, 0};
-  double holds_s_ = 0;
+  double remaining_s_ = 0;
   std::int32_t buttons_ = 0;
 };
 

@@ -23,18 +23,18 @@ namespace {
 
 using Clock = std::chrono::steady_clock;  // CLOCK_MONOTONIC on Linux, as header_t requires
 constexpr auto kPeriod = std::chrono::milliseconds(4);
-constexpr auto kTryAgain = std::chrono::seconds(1);
+constexpr auto kRetryPeriod = std::chrono::seconds(1);
 constexpr double kHalf_m = 0.5;  // range to each side of its origin (design: the reach of an arm)
 
 // The connection to spacenavd.
 class Daemon {
  public:
-  bool there() const { return there_; }
-  void look_for(Clock::time_point now) {
-    if (there_ || now < next_try_) return;
-    next_try_ = now + kTryAgain;
-    there_ = spnav_open() != -1;
-    if (there_)
+  bool is_connected() const { return connected_; }
+  void poll_connection(Clock::time_point now) {
+    if (connected_ || now < next_try_) return;
+    next_try_ = now + kRetryPeriod;
+    connected_ = spnav_open() != -1;
+    if (connected_)
       std::cerr << "spacenav: the daemon answers\n";
     else if (!said_)
       std::cerr << "spacenav: no spacenavd answers, so the 3D mouse is lost; install and start it (apt install "
@@ -44,11 +44,11 @@ class Daemon {
   }
   // Reads the events that have arrived.
   void read(tactus::examples::PushMotion& motion) {
-    if (!there_) return;
+    if (!connected_) return;
     char byte = 0;
     if (recv(spnav_fd(), &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0) {  // the daemon has ended
       spnav_close();
-      there_ = false;
+      connected_ = false;
       std::cerr << "spacenav: the daemon is gone; it is tried every second\n";
       return;
     }
@@ -61,14 +61,14 @@ class Daemon {
   }
 
  private:
-  bool there_ = false, said_ = false;
+  bool connected_ = false, said_ = false;
   Clock::time_point next_try_{};
 };
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto argument = [&](int i, const char* otherwise) { return std::string(argc > i ? argv[i] : otherwise); };
+  const auto argument = [&](int i, const char* default_value) { return std::string(argc > i ? argv[i] : default_value); };
   if (argument(1, "").starts_with("-")) {
     std::cout << "spacenav [NAME [GROUP [PORT [RUN]]]]: a 3D mouse as the device NAME (head); beside it: "
                  "haptic_node --tool "
@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
   tactus::examples::PushMotion motion(kHalf_m);
   for (Clock::time_point next = Clock::now();; next += kPeriod) {
     std::this_thread::sleep_until(next);
-    daemon.look_for(Clock::now());
+    daemon.poll_connection(Clock::now());
     daemon.read(motion);
     motion.step(std::chrono::duration<double>(kPeriod).count());
 
@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
     state.velocity_m_s.x = float(vx), state.velocity_m_s.y = float(vy), state.velocity_m_s.z = float(vz);
     state.spin_rad_s.x = float(wx), state.spin_rad_s.y = float(wy), state.spin_rad_s.z = float(wz);
     state.buttons = motion.buttons();
-    state.state = daemon.there() ? tactus::device_state_t::ANSWERS : tactus::device_state_t::LOST;
+    state.state = daemon.is_connected() ? tactus::device_state_t::ANSWERS : tactus::device_state_t::LOST;
     state.header.publish_time_ns =
         std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
     bus.publish("DEVICE_STATE", &state);

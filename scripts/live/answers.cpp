@@ -10,9 +10,9 @@ namespace {
 
 using nlohmann::json;
 
-std::string name_of(const question_t& m) { return std::to_string(m.header.incarnation) + "." + std::to_string(m.id); }
+std::string question_name(const question_t& m) { return std::to_string(m.header.incarnation) + "." + std::to_string(m.id); }
 
-std::string kind_of(const question_t& m) {
+std::string kind_name(const question_t& m) {
   switch (m.kind) {
     case question_t::READ: return "read";
     case question_t::CHOICE: return "choice";
@@ -24,14 +24,14 @@ std::string kind_of(const question_t& m) {
 }  // namespace
 
 void Answers::push(const question_t& m, sync::HostTime arrival) {
-  if (!asked_.push(m, arrival)) return;
-  to_send_.reset();
-  if (const answer_t* known = answered(m)) to_send_ = *known;
+  if (!question_.push(m, arrival)) return;
+  pending_.reset();
+  if (const answer_t* known = answered(m)) pending_ = *known;
 }
 
 const answer_t* Answers::answered(const question_t& m) const {
-  const auto found = std::find_if(answered_.begin(), answered_.end(), [&](const auto& a) { return a.first == sync::key_of(m); });
-  return found == answered_.end() ? nullptr : &found->second;
+  const auto found = std::find_if(answers_.begin(), answers_.end(), [&](const auto& a) { return a.first == sync::key_of(m); });
+  return found == answers_.end() ? nullptr : &found->second;
 }
 
 void Answers::answer(const AnswerThus& given, sync::HostTime now) {
@@ -42,14 +42,14 @@ void Answers::answer(const AnswerThus& given, sync::HostTime now) {
   if (m->kind == question_t::CHOICE ? given.choice < 0 || given.choice >= m->count : given.choice != -1)
     throw std::invalid_argument("the answer is none of the choices; load the page again");
   if (m->kind == question_t::NUMBER ? !(given.number >= m->lowest && given.number <= m->highest) : given.number != 0)
-    throw std::invalid_argument("the answer is not between the ends of its slider; load the page again");
+    throw std::invalid_argument("the answer is outside the range of its slider; load the page again");
   answer_t a{};
   a.header.sim_time_ns = -1;
   a.header.run_id = a.header.incarnation = 1;  // the bus stamps them
   a.id = m->id, a.choice = given.choice, a.number = given.number, a.after_ns = given.after_ns, a.by = "page";
-  answered_.emplace_back(sync::key_of(*m), a);
-  if (answered_.size() > kRemembered) answered_.pop_front();
-  to_send_ = a;
+  answers_.emplace_back(sync::key_of(*m), a);
+  if (answers_.size() > kMaxStoredAnswers) answers_.pop_front();
+  pending_ = a;
 }
 
 json Answers::told(sync::HostTime now) const {
@@ -57,7 +57,7 @@ json Answers::told(sync::HostTime now) const {
   if (!m) return nullptr;
   json choices = json::array();
   for (const std::string& c : m->choices) choices.push_back(sync::printable(c));
-  return {{"question", name_of(*m)}, {"kind", kind_of(*m)}, {"text", sync::printable(m->text)}, {"choices", choices},
+  return {{"question", question_name(*m)}, {"kind", kind_name(*m)}, {"text", sync::printable(m->text)}, {"choices", choices},
           {"lowest", m->lowest}, {"highest", m->highest}, {"step", m->step}, {"trial", m->trial},
           {"condition", sync::printable(m->condition)}, {"progress", sync::printable(m->progress)},
           {"answered", answered(*m) != nullptr}};

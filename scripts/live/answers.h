@@ -18,32 +18,32 @@ namespace tactus::live {
 
 class Answers {
  public:
-  static constexpr std::size_t kRemembered = 64;  // design: a leader asks one question after the other
+  static constexpr std::size_t kMaxStoredAnswers = 64;  // design: a leader asks one question after the other
 
   // run_id: as of sync::CurrentQuestion.
-  explicit Answers(std::int64_t run_id) : asked_(run_id) {}
+  explicit Answers(std::int64_t run_id) : question_(run_id) {}
 
   void push(const question_t& m, sync::HostTime arrival);
   // The answer of a page. Throws std::invalid_argument with one sentence when it does not fit the present question, or when
   // that has been answered.
-  void answer(const AnswerThus& answer, sync::HostTime now);
+  void answer(const PageAnswer& answer, sync::HostTime now);
   // The answer to publish now: once, and again for each repetition of its question.
-  std::optional<answer_t> take_answer() { return std::exchange(to_send_, std::nullopt); }
+  std::optional<answer_t> take_answer() { return std::exchange(pending_, std::nullopt); }
   // The log position was changed.
-  void clear() { asked_.clear(), to_send_.reset(); }
+  void clear() { question_.clear(), pending_.reset(); }
 
-  // For pages; null: no process leads a study. `question` is the name of the question for AnswerThus, as text: JavaScript has
+  // For pages; null: no process leads a study. `question` is the name of the question for PageAnswer, as text: JavaScript has
   // no 64-bit integers.
-  nlohmann::json told(sync::HostTime now) const;
+  nlohmann::json to_json(sync::HostTime now) const;
   // header.source of the leader; nullopt: there is none.
   std::optional<std::int32_t> leader(sync::HostTime now) const;
 
  private:
   const answer_t* answered(const question_t& m) const;
 
-  sync::CurrentQuestion asked_;
-  std::deque<std::pair<sync::QuestionKey, answer_t>> answered_;
-  std::optional<answer_t> to_send_;
+  sync::CurrentQuestion question_;
+  std::deque<std::pair<sync::QuestionKey, answer_t>> answers_;
+  std::optional<answer_t> pending_;
 };
 
 }  // namespace tactus::live

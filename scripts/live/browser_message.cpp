@@ -11,15 +11,15 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMaxSenses = 16;
+constexpr std::size_t kMaxModalities = 16;
 constexpr int kMaxSteps = 10'000;
 
-double number(const json& j, const char* name, double least, double most) {
+double number(const json& j, const char* name, double min, double max) {
   const auto found = j.find(name);
   if (found == j.end() || !found->is_number())
     throw std::invalid_argument(std::string("the page sent no number \"") + name + "\"; load it again");
   const double value = found->get<double>();
-  if (!(value >= least && value <= most))
+  if (!(value >= min && value <= max))
     throw std::invalid_argument(std::string("\"") + name + "\" is out of range; load the page again");
   return value;
 }
@@ -27,30 +27,30 @@ double number(const json& j, const char* name, double least, double most) {
 bool flag(const json& j, const char* name) {
   const auto found = j.find(name);
   if (found == j.end() || !found->is_boolean())
-    throw std::invalid_argument(std::string("the page did not say whether \"") + name + "\"; load it again");
+    throw std::invalid_argument(std::string("the page sent no flag \"") + name + "\"; load it again");
   return found->get<bool>();
 }
 
-std::string text(const json& j, std::size_t most) {
-  if (!j.is_string()) throw std::invalid_argument("the page sent something that is no name; load it again");
+std::string text(const json& j, std::size_t max) {
+  if (!j.is_string()) throw std::invalid_argument("the page sent a name that is not text; load it again");
   std::string s = j.get<std::string>();
   const auto printable = [](unsigned char c) { return c > 32 && c < 127; };
-  if (s.empty() || s.size() > most || !std::all_of(s.begin(), s.end(), printable))
+  if (s.empty() || s.size() > max || !std::all_of(s.begin(), s.end(), printable))
     throw std::invalid_argument("the page sent a name that is empty, too long or not printable; load it again");
   return s;
 }
 
-bool is_sense(const std::string& name) {
+bool is_modality_name(const std::string& name) {
   return std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
 }
 
-WatchThese watch(const json& j) {
+WatchRequest watch(const json& j) {
   const auto names = j.find("names");
   if (names == j.end() || !names->is_array() || names->size() > kMaxWatched)
-    throw std::invalid_argument("the page watches at most " + std::to_string(kMaxWatched) + " variables; take some away");
-  WatchThese w;
+    throw std::invalid_argument("the page watches at most " + std::to_string(kMaxWatched) + " variables; remove some");
+  WatchRequest w;
   for (const json& name : *names) w.names.push_back(text(name, 192));
   return w;
 }
@@ -62,18 +62,18 @@ Command command(const json& j) {
   if (word == "resume") return {sim_command_t::RESUME, 0};
   if (word == "reset") return {sim_command_t::RESET, 0};
   if (word == "step") return {sim_command_t::STEP, static_cast<int>(number(j, "steps", 1, kMaxSteps))};
-  throw std::invalid_argument("the page asks the simulation for what it must not; load it again");
+  throw std::invalid_argument("the page sent an unknown command; load it again");
 }
 
-DegradeThus degrade(const json& j) {
+DegradeRequest degrade(const json& j) {
   const auto senses = j.find("senses");
-  if (senses == j.end() || !senses->is_object() || senses->size() > kMaxSenses)
+  if (senses == j.end() || !senses->is_object() || senses->size() > kMaxModalities)
     throw std::invalid_argument("the page sent no sliders, or too many; load it again");
-  DegradeThus d;
+  DegradeRequest d;
   d.clear = flag(j, "clear");
   for (const auto& [name, s] : senses->items()) {
-    if (name.empty() || name.size() > 64 || !is_sense(name) || !s.is_object())
-      throw std::invalid_argument("the page sent sliders of what is no sense; load it again");
+    if (name.empty() || name.size() > 64 || !is_modality_name(name) || !s.is_object())
+      throw std::invalid_argument("the page sent sliders of an invalid modality name; load it again");
     Sliders sliders{number(s, "delay_ms", 0, 2000), number(s, "rate_Hz", 0, 1000), number(s, "loss", 0, 1)};
     if (sliders.rate_Hz > 0 && sliders.rate_Hz < 0.1) throw std::invalid_argument("\"rate_Hz\" is below 0.1; give more, or 0");
     d.senses[name] = sliders;
@@ -81,31 +81,31 @@ DegradeThus degrade(const json& j) {
   return d;
 }
 
-AnswerThus answer(const json& j) {
-  constexpr double kLongest_ns = 86'400e9;
+PageAnswer answer(const json& j) {
+  constexpr double kMaxAnswerTime_ns = 86'400e9;
   const auto question = j.find("question");
-  if (question == j.end()) throw std::invalid_argument("the page did not say which question it answers; load it again");
+  if (question == j.end()) throw std::invalid_argument("the page's answer names no question; load it again");
   const double choice = number(j, "choice", -1, 8);
   if (choice != std::floor(choice)) throw std::invalid_argument("\"choice\" is no whole number; load the page again");
   return {text(*question, 64), static_cast<int>(choice), number(j, "number", -1e9, 1e9),
-          static_cast<std::int64_t>(number(j, "after_ns", 0, kLongest_ns))};
+          static_cast<std::int64_t>(number(j, "after_ns", 0, kMaxAnswerTime_ns))};
 }
 
 }  // namespace
 
 BrowserMessage parse_browser_message(std::string_view bytes) {
-  if (bytes.size() > kMaxBrowserBytes) throw std::invalid_argument("the page sent too much at once; load it again");
+  if (bytes.size() > kMaxBrowserBytes) throw std::invalid_argument("the page sent more than 8192 bytes at once; load it again");
   const json j = json::parse(bytes, nullptr, false);
-  if (!j.is_object() || !j.contains("t")) throw std::invalid_argument("the page sent what is no message; load it again");
+  if (!j.is_object() || !j.contains("t")) throw std::invalid_argument("the page sent a malformed message; load it again");
   const std::string kind = text(j["t"], 16);
   if (kind == "watch") return watch(j);
   if (kind == "command") return command(j);
   if (kind == "degrade") return degrade(j);
-  if (kind == "hand") return HandAt{number(j, "x", -1, 1), number(j, "y", -1, 1), number(j, "push_m", -1, 1), flag(j, "down")};
+  if (kind == "hand") return HandTarget{number(j, "x", -1, 1), number(j, "y", -1, 1), number(j, "push_m", -1, 1), flag(j, "down")};
   if (kind == "play") return LogPlay{flag(j, "play"), number(j, "rate", 0.1, 16)};
   if (kind == "seek") return LogSeek{number(j, "to_s", 0, 1e7)};
   if (kind == "answer") return answer(j);
-  throw std::invalid_argument("the page asks for what this server does not know; load it again");
+  throw std::invalid_argument("the page sent an unknown kind of message; load it again");
 }
 
 }  // namespace tactus::live

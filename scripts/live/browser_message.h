@@ -18,18 +18,18 @@ struct Sliders {
   double loss = 0;      // share, 0 .. 1
 };
 
-struct WatchThese {
+struct WatchRequest {
   std::vector<std::string> names;  // "CHANNEL:path" or "node.tag", at most kMaxWatched
 };
 struct Command {
   std::int8_t kind = 0;  // of sim_command_t: PAUSE, RESUME, STEP or RESET
   int steps = 0;
 };
-struct DegradeThus {
+struct DegradeRequest {
   std::map<std::string, Sliders> senses;
   bool clear = false;  // also removes all other operators of the profile in force
 };
-struct HandAt {
+struct HandTarget {
   double x = 0, y = 0;  // place in the picture, -1 .. 1 from left to right and from bottom to top
   double push_m = 0;    // away from the camera, -1 .. 1
   bool down = false;    // held: the first button of the device
@@ -42,13 +42,13 @@ struct LogSeek {
   double to_s = 0;  // since its beginning
 };
 // The answer of a participant to a study's question; answers.h checks it against the question.
-struct AnswerThus {
+struct PageAnswer {
   std::string question;       // its name, as sent to the page
   int choice = -1;            // 0 .. 8; -1: not a choice
   double number = 0;          // at most 1e9
   std::int64_t after_ns = 0;  // since the page first showed the question, at most a day
 };
-using BrowserMessage = std::variant<WatchThese, Command, DegradeThus, HandAt, LogPlay, LogSeek, AnswerThus>;
+using BrowserMessage = std::variant<WatchRequest, Command, DegradeRequest, HandTarget, LogPlay, LogSeek, PageAnswer>;
 
 inline constexpr std::size_t kMaxWatched = 32;
 inline constexpr std::size_t kMaxBrowserBytes = 8192;

@@ -5,7 +5,7 @@
 namespace tactus::live {
 namespace {
 
-constexpr int kDeepest = 4;  // design: deeper members are not worth plotting
+constexpr int kMaxDepth = 4;  // design: deeper members are not worth plotting
 
 void add(const MessageType& type, const std::string& before, int depth, nlohmann::json& out, const std::string& channel) {
   for (const Field& field : type.fields) {
@@ -13,7 +13,7 @@ void add(const MessageType& type, const std::string& before, int depth, nlohmann
     if (field.type == "byte") continue;
     const std::string path = before + std::string(field.name) + (field.count.empty() ? "" : "[0]");
     if (const MessageType* inner = message_type(field.type)) {
-      if (depth + 1 < kDeepest) add(*inner, path + ".", depth + 1, out, channel);
+      if (depth + 1 < kMaxDepth) add(*inner, path + ".", depth + 1, out, channel);
       continue;
     }
     if (field.type == "string") continue;

@@ -29,17 +29,17 @@ namespace tactus::live {
 
 class Controls {
  public:
-  using Tell = std::function<void(const std::string& sentence, bool good)>;
-  explicit Controls(sync::Bus& bus, Tell tell);
+  using ReplyHandler = std::function<void(const std::string& sentence, bool good)>;
+  explicit Controls(sync::Bus& bus, ReplyHandler on_reply);
 
   // realtime_ns: CLOCK_REALTIME, which numbers profiles. Each throws std::invalid_argument with one sentence for an invalid
   // request.
   void command(const Command& command, sync::HostTime now);
-  void degrade(const DegradeThus& sliders, std::int64_t realtime_ns, sync::HostTime now);
-  void hand(const HandAt& at, double aspect, sync::HostTime now);
+  void degrade(const DegradeRequest& sliders, std::int64_t realtime_ns, sync::HostTime now);
+  void hand(const HandTarget& at, double aspect, sync::HostTime now);
   // Requests pictures from visual_node at this rate; 0: none.
   void stream(double rate_Hz, sync::HostTime now);
-  void want_tags(const std::vector<std::string>& names, sync::HostTime now);
+  void request_tags(const std::vector<std::string>& names, sync::HostTime now);
 
   // Call it once an iteration of the loop: sends due messages and reads the answers.
   void step(sync::HostTime now);
@@ -56,13 +56,13 @@ class Controls {
   int scenes() const { return scenes_; }
 
  private:
-  template <class Question>
-  struct Asked {
-    Question question;
+  template <class Message>
+  struct PendingRequest {
+    Message message;
     sync::HostTime until, next;
   };
   sync::Bus& bus_;
-  Tell tell_;
+  ReplyHandler on_reply_;
   sync::Queue<sim_reply_t>& replies_;
   sync::Queue<setting_reply_t>& setting_replies_;
   sync::Queue<contact_frame_t>& frames_;
@@ -73,8 +73,8 @@ class Controls {
   Hand hand_;
   std::optional<tool_state_t> tool_;
   std::optional<sim_clock_t> clock_;
-  std::optional<Asked<sim_command_t>> command_;
-  std::optional<Asked<setting_change_t>> setting_;
+  std::optional<PendingRequest<sim_command_t>> command_;
+  std::optional<PendingRequest<setting_change_t>> setting_;
   sync::ProfileReceiver profiles_;
   std::optional<sync::ProfileInForce> in_force_, profile_;
   sync::HostTime profile_until_{}, profile_next_{};

@@ -23,34 +23,34 @@ double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
 
-bool Feed::wants(std::string_view channel) {
+bool Feed::accepts(std::string_view channel) {
   return channel == channels::kNodeHealth || channel == channels::kSyncReport || channel == channels::kContactEvents ||
          channel == channels::kPresented;
 }
 
-void Feed::take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
-  if (!wants(channel)) return;
+void Feed::on_message(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
+  if (!accepts(channel)) return;
   if (channel == channels::kNodeHealth) {
     const auto m = sync::decode<node_health_t>(bytes.data(), bytes.size());
     if (!m) {
-      ++bad_;
-    } else if (ours(m->header) && (nodes_.contains(m->node) || nodes_.size() < kMaxNodes)) {
+      ++malformed_;
+    } else if (is_own_run(m->header) && (nodes_.contains(m->node) || nodes_.size() < kMaxNodes)) {
       nodes_[m->node] = {*m, arrival};
     }
   } else if (channel == channels::kSyncReport) {
-    if (const auto m = sync::decode<sync_report_t>(bytes.data(), bytes.size())) take(*m);
-    else ++bad_;
+    if (const auto m = sync::decode<sync_report_t>(bytes.data(), bytes.size())) on_message(*m);
+    else ++malformed_;
   } else if (channel == channels::kContactEvents) {
-    if (const auto m = sync::decode<contact_events_t>(bytes.data(), bytes.size())) take(*m);
-    else ++bad_;
+    if (const auto m = sync::decode<contact_events_t>(bytes.data(), bytes.size())) on_message(*m);
+    else ++malformed_;
   } else {
-    if (const auto m = sync::decode<presented_t>(bytes.data(), bytes.size())) take(*m);
-    else ++bad_;
+    if (const auto m = sync::decode<presented_t>(bytes.data(), bytes.size())) on_message(*m);
+    else ++malformed_;
   }
 }
 
-void Feed::take(const contact_events_t& m) {
-  if (!ours(m.header)) return;
+void Feed::on_message(const contact_events_t& m) {
+  if (!is_own_run(m.header)) return;
   event_clock_ = m.header.clock;
   for (const contact_event_t& e : m.events) {
     if (event_host_ns_.contains(e.event_id)) continue;
@@ -58,29 +58,29 @@ void Feed::take(const contact_events_t& m) {
     const std::int64_t host_ns = sync::to_ns(map.to_host(sync::sim_time(e.time_ns)));
     event_host_ns_[e.event_id] = host_ns;
     event_order_.push_back(e.event_id);
-    if (event_order_.size() > kRemembered) {
+    if (event_order_.size() > kMaxStoredEvents) {
       event_host_ns_.erase(event_order_.front());
       event_order_.pop_front();
     }
-    if (events_.size() < kMaxOfFrame)
+    if (events_.size() < kMaxPerFrame)
       events_.push_back({seconds(host_ns), e.kind, e.body_a, e.body_b, e.approach_speed_m_s});
     else
-      ++left_out_;
+      ++dropped_events_;
   }
 }
 
-void Feed::take(const presented_t& m) {
-  if (!ours(m.header)) return;
+void Feed::on_message(const presented_t& m) {
+  if (!is_own_run(m.header)) return;
   for (const presentation_t& p : m.reports) {
     const std::tuple key{p.event_id, m.modality, static_cast<int>(p.part)};
     if (!presented_.insert(key).second) continue;
     presented_order_.push_back(key);
-    if (presented_order_.size() > kRemembered) {
+    if (presented_order_.size() > kMaxStoredEvents) {
       presented_.erase(presented_order_.front());
       presented_order_.pop_front();
     }
-    if (presentations_.size() >= kMaxOfFrame) {
-      ++left_out_;
+    if (presentations_.size() >= kMaxPerFrame) {
+      ++dropped_events_;
       continue;
     }
     // Times of two clocks are not compared: such a presentation is drawn at its event, without a latency.
@@ -93,8 +93,8 @@ void Feed::take(const presented_t& m) {
   }
 }
 
-void Feed::take(const sync_report_t& m) {
-  if (!ours(m.header)) return;
+void Feed::on_message(const sync_report_t& m) {
+  if (!is_own_run(m.header)) return;
   for (const modality_report_t& r : m.modalities)
     if (modalities_.contains(r.modality) || modalities_.size() < kMaxModalities) modalities_[r.modality] = r;
   for (const pair_report_t& r : m.pairs)
@@ -131,13 +131,13 @@ json Feed::report() const {
   return {{"senses", senses}, {"pairs", pairs}};
 }
 
-json Feed::news(sync::HostTime now) {
+json Feed::take_changes(sync::HostTime now) {
   json out = json::object();
   if (!events_.empty()) out["events"] = std::exchange(events_, json::array());
   if (!presentations_.empty()) out["presented"] = std::exchange(presentations_, json::array());
-  if (left_out_ > 0) out["left_out"] = left_out_;
-  if (!health_told_ || now - *health_told_ >= kHealthPeriod || now < *health_told_) {
-    health_told_ = now;
+  if (dropped_events_ > 0) out["left_out"] = dropped_events_;
+  if (!last_health_ || now - *last_health_ >= kHealthPeriod || now < *last_health_) {
+    last_health_ = now;
     if (!nodes_.empty()) out["health"] = health(now);
   }
   if (std::exchange(report_new_, false)) out["report"] = report();

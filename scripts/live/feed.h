@@ -26,38 +26,38 @@ namespace tactus::live {
 
 class Feed {
  public:
-  // Number of remembered events; events of one frame beyond kMaxOfFrame are left out and counted.
-  static constexpr std::size_t kRemembered = 4096;
-  static constexpr std::size_t kMaxOfFrame = 400;
+  // Number of remembered events; events of one frame beyond kMaxPerFrame are left out and counted.
+  static constexpr std::size_t kMaxStoredEvents = 4096;
+  static constexpr std::size_t kMaxPerFrame = 400;
   static constexpr std::size_t kMaxNodes = 64, kMaxModalities = 32;
 
   // run_id: accepts only messages of this run; 0: of any run, as in a log.
   explicit Feed(std::int64_t run_id) : run_id_(run_id) {}
 
   // True for channels that are used here.
-  static bool wants(std::string_view channel);
-  void take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
+  static bool accepts(std::string_view channel);
+  void on_message(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
   // The log position was changed.
   void clear();
 
   // The changes since the last call, for every page; {} when there are none.
-  nlohmann::json news(sync::HostTime now);
+  nlohmann::json take_changes(sync::HostTime now);
   // The complete state for a new page: all nodes and the newest report.
   nlohmann::json state(sync::HostTime now) const;
   std::set<std::string> modalities() const;
   // The node with this header.source; "": unknown.
   std::string node_of(std::int32_t source) const;
-  std::int64_t bad() const { return bad_; }
+  std::int64_t malformed() const { return malformed_; }
 
  private:
   struct Node {
     node_health_t health;
     sync::HostTime arrival;
   };
-  bool ours(const header_t& header) const { return run_id_ == 0 || header.run_id == run_id_; }
-  void take(const contact_events_t& m);
-  void take(const presented_t& m);
-  void take(const sync_report_t& m);
+  bool is_own_run(const header_t& header) const { return run_id_ == 0 || header.run_id == run_id_; }
+  void on_message(const contact_events_t& m);
+  void on_message(const presented_t& m);
+  void on_message(const sync_report_t& m);
   nlohmann::json health(sync::HostTime now) const;
   nlohmann::json report() const;
 
@@ -71,9 +71,9 @@ class Feed {
   std::set<std::tuple<std::int64_t, std::string, int>> presented_;
   std::deque<std::tuple<std::int64_t, std::string, int>> presented_order_;
   nlohmann::json events_ = nlohmann::json::array(), presentations_ = nlohmann::json::array();
-  std::int64_t left_out_ = 0, bad_ = 0;
+  std::int64_t dropped_events_ = 0, malformed_ = 0;
   bool report_new_ = false;
-  std::optional<sync::HostTime> health_told_;
+  std::optional<sync::HostTime> last_health_;
 };
 
 }  // namespace tactus::live

@@ -18,15 +18,15 @@ inline constexpr const char* kHandDevice = "live";
 class Hand {
  public:
   // Design: a quick reach; haptic_node accepts up to 20 m/s and limits its force.
-  static constexpr double kFastest_m_s = 1;
+  static constexpr double kMaxSpeed_m_s = 1;
   // The page repeats the mouse position every 100 ms. After this silence the device stops publishing; haptic_node loses it,
   // and the force fades to zero (design: three repetitions).
-  static constexpr sync::Nanoseconds kSilence{350'000'000};
+  static constexpr sync::Nanoseconds kTimeout{350'000'000};
   // Design: limits of the distance between the camera and the plane.
-  static constexpr double kNearest_m = 0.05, kFarthest_m = 10;
+  static constexpr double kMinDepth_m = 0.05, kMaxDepth_m = 10;
 
   // aspect: width of the picture by its height. tool: the present position of the tool, if known; only a new grab uses it.
-  void aim(const HandAt& at, const scene_t& scene, double aspect, const std::optional<Eigen::Vector3d>& tool,
+  void aim(const HandTarget& at, const scene_t& scene, double aspect, const std::optional<Eigen::Vector3d>& tool,
            sync::HostTime now);
   // The device state to publish now; nullopt while no page holds the device.
   std::optional<device_state_t> state(sync::HostTime now);
@@ -35,10 +35,10 @@ class Hand {
   double depth_m_ = 0;
   Eigen::Vector3d target_m_ = Eigen::Vector3d::Zero(), at_m_ = Eigen::Vector3d::Zero();
   bool down_ = false;
-  std::optional<sync::HostTime> heard_, last_;
+  std::optional<sync::HostTime> last_input_, last_step_;
 };
 
 // The place behind a point of the picture, at that distance along the camera's axis, m, world.
-Eigen::Vector3d behind_pixel(const scene_t& scene, double aspect, double x, double y, double depth_m);
+Eigen::Vector3d unproject(const scene_t& scene, double aspect, double x, double y, double depth_m);
 
 }  // namespace tactus::live

@@ -33,7 +33,7 @@ using namespace tactus;
 
 namespace {
 
-constexpr sync::Nanoseconds kTurn{5'000'000};      // design: the device of a page publishes at 200 Hz
+constexpr sync::Nanoseconds kLoopPeriod{5'000'000};      // design: the device of a page publishes at 200 Hz
 constexpr double kStream_Hz = 15;                  // design: smooth enough to steer by, 12 KB each
 constexpr std::size_t kMaxFileBytes = 8 << 20;
 std::atomic<bool> stop{false};
@@ -51,7 +51,7 @@ live::PageFile read_file(const std::string& folder, const char* name, const char
   std::stringstream bytes;
   bytes << file.rdbuf();
   if (!file || bytes.str().empty() || bytes.str().size() > kMaxFileBytes)
-    throw std::runtime_error(path.string() + " is not there; scripts/live/bundle makes the page");
+    throw std::runtime_error(path.string() + " is missing; scripts/live/bundle makes the page");
   return {type, bytes.str()};
 }
 
@@ -64,7 +64,7 @@ std::string random_token() {
 
 std::shared_ptr<const std::string> shared(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
-std::shared_ptr<const std::string> said(const std::string& sentence, bool good) {
+std::shared_ptr<const std::string> reply_message(const std::string& sentence, bool good) {
   return shared(nlohmann::json{{"t", "reply"}, {"text", sync::printable(sentence)}, {"good", good}}.dump());
 }
 
@@ -75,66 +75,66 @@ std::int64_t realtime_ns() {
 // The served content, with the open pages.
 class Server {
  public:
-  Server(const Options& o, live::PageSession& station)
-      : station_(station),
+  Server(const Options& o, live::PageSession& session)
+      : session_(session),
         web_(o.listen_fd >= 0 ? o.listen_fd : live::listen_on(o.bind, o.http_port),
              {{"/", read_file(o.page, "index.html", "text/html; charset=utf-8")},
               {"/main.js", read_file(o.page, "main.js", "text/javascript; charset=utf-8")},
               {"/icon.svg", read_file(o.page, "icon.svg", "image/svg+xml")},
               {"/main.css", read_file(o.page, "main.css", "text/css; charset=utf-8")}},
              o.token, o.bind == "127.0.0.1",
-             {[this](int page) { opened_.push_back(page); }, [this](int page) { station_.close(page); pages_.erase(page); },
+             {[this](int page) { opened_.push_back(page); }, [this](int page) { session_.close(page); pages_.erase(page); },
               [this](int page, std::string_view text) { messages_.emplace_back(page, text); }}) {
     // The address is for the user; a program that reads this output can open it.
     std::cout << "live_server: open http://" << o.bind << ":" << web_.port() << "/?token=" << o.token << std::endl;
   }
   // Calls handle(page, message) for each request of a page.
   template <class Handle>
-  void turn(Handle&& handle) {
-    web_.run_for(kTurn);
+  void step(Handle&& handle) {
+    web_.run_for(kLoopPeriod);
     const sync::HostTime now = sync::host_now();
     for (const int page : std::exchange(opened_, {})) {
-      station_.open(page);
+      session_.open(page);
       pages_.insert(page);
-      web_.send(page, shared(station_.hello(now)));
+      web_.send(page, shared(session_.hello(now)));
     }
     for (const auto& [page, text] : std::exchange(messages_, {})) {
       if (!pages_.contains(page)) continue;
       try {
         live::BrowserMessage m = live::parse_browser_message(text);
-        if (const auto* watch = std::get_if<live::WatchThese>(&m)) {
-          if (const std::string wrong = station_.watch(page, watch->names); !wrong.empty()) web_.send(page, said(wrong, false));
+        if (const auto* watch = std::get_if<live::WatchRequest>(&m)) {
+          if (const std::string wrong = session_.watch(page, watch->names); !wrong.empty()) web_.send(page, reply_message(wrong, false));
         } else {
           handle(m);
         }
       } catch (const std::invalid_argument& e) {
-        web_.send(page, said(e.what(), false));
+        web_.send(page, reply_message(e.what(), false));
       }
     }
   }
   // Returns true when a frame was sent.
-  bool show(sync::HostTime now, const nlohmann::json& extra) {
-    if (const auto picture = station_.picture()) {
+  bool send_frames(sync::HostTime now, const nlohmann::json& extra) {
+    if (const auto picture = session_.picture()) {
       const auto bytes = shared(*picture);
       for (const int page : pages_) web_.send_picture(page, bytes);
     }
     if (sync::host_now() < next_frame_) return false;
-    next_frame_ = sync::host_now() + live::PageSession::kFrame;
+    next_frame_ = sync::host_now() + live::PageSession::kFramePeriod;
     std::int64_t dropped = 0;
     for (const int page : pages_)
       if (const auto* q = web_.queue(page)) dropped += q->dropped() + q->dropped_pictures();
     nlohmann::json all = extra;
     all["pages"] = {{"open", pages_.size()}, {"dropped", dropped}, {"refused", web_.refused()}};
-    for (auto& [page, frame] : station_.frames(now, all)) web_.send(page, shared(std::move(frame)));
+    for (auto& [page, frame] : session_.frames(now, all)) web_.send(page, shared(std::move(frame)));
     return true;
   }
-  void tell(const std::string& sentence, bool good) {
-    for (const int page : pages_) web_.send(page, said(sentence, good));
+  void send_reply(const std::string& sentence, bool good) {
+    for (const int page : pages_) web_.send(page, reply_message(sentence, good));
   }
-  bool anybody() const { return !pages_.empty(); }
+  bool has_pages() const { return !pages_.empty(); }
 
  private:
-  live::PageSession& station_;
+  live::PageSession& session_;
   std::vector<int> opened_;
   std::vector<std::pair<int, std::string>> messages_;
   std::set<int> pages_;
@@ -142,35 +142,35 @@ class Server {
   live::WebServer web_;
 };
 
-void show_log(const Options& o) {
+void serve_log(const Options& o) {
   live::LogPlayer player(o.log);
-  live::PageSession station(false, 0, std::filesystem::path(o.log).filename());
-  Server server(o, station);
+  live::PageSession session(false, 0, std::filesystem::path(o.log).filename());
+  Server server(o, session);
   sync::HostTime last = sync::host_now();
-  bool wound = false;  // the log position has changed, and no page has received it yet
+  bool position_changed = false;  // the log position has changed, and no page has received it yet
   while (!stop) {
-    server.turn([&](const live::BrowserMessage& m) {
+    server.step([&](const live::BrowserMessage& m) {
       if (const auto* play = std::get_if<live::LogPlay>(&m)) {
         player.play(play->play, play->rate);
       } else if (const auto* seek = std::get_if<live::LogSeek>(&m)) {
         player.seek(seek->to_s);
-        station.clear();
-        wound = true;
+        session.clear();
+        position_changed = true;
       } else {
-        throw std::invalid_argument("this is a log: nothing of it can be changed; start scripts/run --live");
+        throw std::invalid_argument("a log cannot be changed; start scripts/run --live");
       }
     });
     const sync::HostTime now = sync::host_now();
-    player.read_on();
-    if (server.anybody())  // playback waits for the first page
+    player.scan_next();
+    if (server.has_pages())  // playback waits for the first page
       player.advance(now - last, [&](std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime t) {
-        if (station.wants(channel)) station.take(channel, bytes, t);
+        if (session.accepts(channel)) session.on_message(channel, bytes, t);
       });
     last = now;
     nlohmann::json extra{{"log", {{"position_s", player.position_s()}, {"length_s", player.length_s()},
                                   {"playing", player.playing()}, {"rate", player.rate()}, {"damaged", player.damaged_regions()}}}};
-    if (wound) extra["wound"] = true;
-    if (server.show(player.position(), extra)) wound = false;
+    if (position_changed) extra["wound"] = true;
+    if (server.send_frames(player.position(), extra)) position_changed = false;
   }
 }
 
@@ -181,7 +181,7 @@ nlohmann::json scene_of(const scene_t& scene) {
   return {{"name", sync::printable(scene.name)}, {"bodies", bodies}, {"tools", tools}};
 }
 
-void show_cluster(const Options& o) {
+void serve_cluster(const Options& o) {
   sync::Bus bus(sync::Identity::fresh("live_server", o.run_id), o.bus);
   bus.track_clocks();
   live::PageSession station(true, o.run_id, "live");
@@ -193,64 +193,64 @@ void show_cluster(const Options& o) {
     inputs.emplace_back(c.name, &bus.raw(std::string(c.name).c_str(), capacity));
     inputs.back().second->set_enabled(false);
   }
-  bool streaming = false, looked_on = false;
+  bool streaming = false, had_pages = false;
   sync::HostTime opened{}, next_scene{};
-  std::int64_t told = -1;  // generation of the profile that `degradation` shows
-  nlohmann::json degradation = live::told_of("");
+  std::int64_t sent_generation = -1;  // generation of the profile that `degradation` shows
+  nlohmann::json degradation = live::degradation_json("");
   while (!stop) {
-    server.turn([&](const live::BrowserMessage& m) {
+    server.step([&](const live::BrowserMessage& m) {
       const sync::HostTime now = sync::host_now();
       if (const auto* command = std::get_if<live::Command>(&m)) controls.command(*command, now);
-      else if (const auto* degrade = std::get_if<live::DegradeThus>(&m)) controls.degrade(*degrade, realtime_ns(), now);
-      else if (const auto* hand = std::get_if<live::HandAt>(&m)) controls.hand(*hand, station.picture_aspect(), now);
-      else if (const auto* answer = std::get_if<live::AnswerThus>(&m)) station.answers().answer(*answer, now);
-      else throw std::invalid_argument("the world cannot be wound back; open its log");
+      else if (const auto* degrade = std::get_if<live::DegradeRequest>(&m)) controls.degrade(*degrade, realtime_ns(), now);
+      else if (const auto* hand = std::get_if<live::HandTarget>(&m)) controls.hand(*hand, session.picture_aspect(), now);
+      else if (const auto* answer = std::get_if<live::PageAnswer>(&m)) session.answers().answer(*answer, now);
+      else throw std::invalid_argument("a running world cannot seek; open its log");
     });
     const sync::HostTime now = sync::host_now();
     bus.drain(now);
     for (auto& [name, queue] : inputs) {
       queue->set_enabled(station.wants(name));
       queue->read([&, channel = std::string_view(name)](std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
-        station.take(channel, bytes, arrival);
+        session.on_message(channel, bytes, arrival);
       });
     }
-    if (auto answer = station.answers().take_answer()) bus.publish(channels::kAnswer, *answer);
-    const bool looks = server.anybody();
-    if (looks && !looked_on) opened = now;
+    if (auto answer = session.answers().take_answer()) bus.publish(channels::kAnswer, *answer);
+    const bool has_pages = server.has_pages();
+    if (has_pages && !had_pages) opened = now;
     // A stream that another program requested is left unchanged: if pictures arrive already, this server neither starts nor
     // stops it.
-    if (looks && !streaming && now - opened > sync::from_seconds(1) &&
-        (!station.picture_came() || now - *station.picture_came() > sync::from_seconds(2))) {
+    if (has_pages && !streaming && now - opened > sync::from_seconds(1) &&
+        (!session.picture_arrival() || now - *session.picture_arrival() > sync::from_seconds(2))) {
       controls.stream(kStream_Hz, now);
       streaming = true;
       opened = now;
     }
-    if (streaming && looks && station.picture_came() && now - *station.picture_came() > sync::from_seconds(4) && now - opened > sync::from_seconds(5)) {
+    if (streaming && has_pages && session.picture_arrival() && now - *session.picture_arrival() > sync::from_seconds(4) && now - opened > sync::from_seconds(5)) {
       streaming = false;  // visual_node was restarted and has lost the request
     }
-    if (!looks && looked_on && streaming) {
+    if (!has_pages && had_pages && streaming) {
       controls.stream(0, now);
       streaming = false;
     }
-    looked_on = looks;
-    if (looks) controls.want_tags(station.wanted_tags(), now);
+    had_pages = has_pages;
+    if (has_pages) controls.request_tags(session.requested_tags(), now);
     controls.step(now);
     const auto world = controls.world(now);
     nlohmann::json extra{{"world", {{"known", world.known}, {"sim_s", world.sim_s}, {"rate", world.rate}}},
                          {"profile", std::to_string(controls.profile() ? controls.profile()->hash : 0)}};
-    if (const std::int64_t generation = controls.profile() ? controls.profile()->generation : -1; generation != told) {
-      told = generation;
-      degradation = live::told_of(controls.profile()->text);
+    if (const std::int64_t generation = controls.profile() ? controls.profile()->generation : -1; generation != sent_generation) {
+      sent_generation = generation;
+      degradation = live::degradation_json(controls.profile()->text);
       next_scene = now;  // at once
     }
     // Again once a second, for new pages.
     if (controls.scene() != nullptr && now >= next_scene) {
       extra["degradation"] = degradation;
       extra["scene"] = scene_of(*controls.scene());
-      if (server.show(now, extra)) next_scene = now + sync::from_seconds(1);
+      if (server.send_frames(now, extra)) next_scene = now + sync::from_seconds(1);
       continue;
     }
-    server.show(now, extra);
+    server.send_frames(now, extra);
   }
 }
 
@@ -261,10 +261,10 @@ int main(int argc, char** argv) try {
   Options o;
   app.add_option("LOG", o.log, "shows this log instead of a running cluster");
   app.add_option("--page", o.page, "folder of the page, made by scripts/live/bundle")->required();
-  app.add_option("--http-port", o.http_port, "of the page; 0: any that is free")->check(CLI::Range(0, 65535))->capture_default_str();
-  app.add_option("--bind", o.bind, "address that the page is served on; beyond 127.0.0.1 whoever knows the token can drive the cluster")->capture_default_str();
-  app.add_option("--listen-fd", o.listen_fd, "a listening socket that was inherited, instead of --http-port")->check(CLI::Range(0, 1'000'000));
-  app.add_option("--token", o.token, "of the address; default: drawn at random")->envname("TACTUS_LIVE_TOKEN");
+  app.add_option("--http-port", o.http_port, "port of the page; 0: any free port")->check(CLI::Range(0, 65535))->capture_default_str();
+  app.add_option("--bind", o.bind, "address of the page's server; beyond 127.0.0.1 any user with the token can control the cluster")->capture_default_str();
+  app.add_option("--listen-fd", o.listen_fd, "inherited listening socket, instead of --http-port")->check(CLI::Range(0, 1'000'000));
+  app.add_option("--token", o.token, "token of the address; default: random")->envname("TACTUS_LIVE_TOKEN");
   app.add_option("--port", o.bus.port, "UDP port of the bus")->envname("TACTUS_PORT")->check(CLI::Range(1, 65534))->capture_default_str();
   app.add_option("--run-id", o.run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
   sync::parse_or_exit(app, "live_server", argc, argv);
@@ -273,8 +273,8 @@ int main(int argc, char** argv) try {
   if (o.token.empty()) o.token = random_token();
   if (o.token.size() < 16 || o.token.size() > 128)
     throw std::runtime_error("--token: give 16 to 128 letters and digits, or none");
-  if (o.log.empty()) show_cluster(o);
-  else show_log(o);
+  if (o.log.empty()) serve_cluster(o);
+  else serve_log(o);
   return 0;
 } catch (const std::exception& e) {
   return tactus::sync::fail("live_server", e);

@@ -9,7 +9,7 @@
 namespace tactus::live {
 
 LogPlayer::LogPlayer(const std::string& path)
-    : file_(std::make_unique<sync::MappedLog>(path)), bytes_(file_->bytes()), whole_(bytes_), scanner_(bytes_) {
+    : file_(std::make_unique<sync::MappedLog>(path)), bytes_(file_->bytes()), scan_(bytes_), scanner_(bytes_) {
   try {
     begin();
   } catch (const std::runtime_error& e) {
@@ -17,15 +17,15 @@ LogPlayer::LogPlayer(const std::string& path)
   }
 }
 
-LogPlayer::LogPlayer(std::span<const std::uint8_t> bytes) : bytes_(bytes), whole_(bytes), scanner_(bytes) { begin(); }
+LogPlayer::LogPlayer(std::span<const std::uint8_t> bytes) : bytes_(bytes), scan_(bytes), scanner_(bytes) { begin(); }
 
 void LogPlayer::begin() {
   // The offset between the stamps and the recorder's CLOCK_MONOTONIC comes first in the log. A log of LCM's own logger lacks
   // it: its stamps are then used as the clock.
-  sync::LogScanner look(bytes_);
+  sync::LogScanner probe(bytes_);
   sync::LogEvent event;
   bool any = false;
-  for (int i = 0; i < kMaxEvents && look.next(event); ++i) {
+  for (int i = 0; i < kMaxEvents && probe.next(event); ++i) {
     any = true;
     if (event.channel != channels::kLogInfo) continue;
     if (const auto info = sync::decode<log_info_t>(event.data.data(), event.data.size())) {
@@ -34,8 +34,8 @@ void LogPlayer::begin() {
     }
   }
   if (!any) throw std::runtime_error("holds no event of an LCM log; name a run.lcmlog");
-  read_on();
-  begin_ = position_ = places_.front().time;
+  scan_next();
+  begin_ = position_ = seek_points_.front().time;
   playing_ = true;
 }
 
@@ -45,31 +45,31 @@ sync::HostTime LogPlayer::stamp(const sync::LogEvent& event) const {
   return sync::host_time(us * 1000 - std::clamp<std::int64_t>(offset_ns_, -kMax_us * 1000, kMax_us * 1000));
 }
 
-bool LogPlayer::read_on() {
+bool LogPlayer::scan_next() {
   sync::LogEvent event;
   for (int i = 0; i < kMaxEvents; ++i) {
-    if (!whole_.next(event)) return false;
-    const sync::HostTime t = whole_clock_.observe(stamp(event));
-    end_ = places_.empty() ? t : std::max(end_, t);
-    if (!places_.empty() && t < places_.back().time + kPlaceEach) continue;
+    if (!scan_.next(event)) return false;
+    const sync::HostTime t = scan_clock_.observe(stamp(event));
+    end_ = seek_points_.empty() ? t : std::max(end_, t);
+    if (!seek_points_.empty() && t < seek_points_.back().time + kSeekPointInterval) continue;
     const auto* channel = reinterpret_cast<const std::uint8_t*>(event.channel.data());
-    places_.push_back({t, static_cast<std::size_t>(channel - bytes_.data()) - sync::kLogEventHeaderBytes});
+    seek_points_.push_back({t, static_cast<std::size_t>(channel - bytes_.data()) - sync::kLogEventHeaderBytes});
   }
   return true;
 }
 
 void LogPlayer::seek(double to_s) {
   const sync::HostTime to = begin_ + sync::from_seconds(std::clamp(to_s, 0.0, length_s()));
-  const auto after = std::upper_bound(places_.begin(), places_.end(), to - kBefore,
-                                      [](sync::HostTime t, const Place& p) { return t < p.time; });
-  const Place& from = after == places_.begin() ? places_.front() : *std::prev(after);
+  const auto after = std::upper_bound(seek_points_.begin(), seek_points_.end(), to - kSeekLead,
+                                      [](sync::HostTime t, const SeekPoint& p) { return t < p.time; });
+  const SeekPoint& from = after == seek_points_.begin() ? seek_points_.front() : *std::prev(after);
   scanner_ = sync::LogScanner(bytes_.subspan(from.offset));
   clock_ = sync::SummaryClock();
   has_pending_ = false;
   position_ = to;
 }
 
-void LogPlayer::advance(sync::Nanoseconds dt, const Take& take) {
+void LogPlayer::advance(sync::Nanoseconds dt, const EventHandler& on_event) {
   if (playing_)
     position_ = std::min(end_, position_ + sync::from_seconds(std::clamp(sync::to_seconds(dt), 0.0, 0.5) * rate_));
   for (int i = 0; i < kMaxEvents; ++i) {
@@ -77,7 +77,7 @@ void LogPlayer::advance(sync::Nanoseconds dt, const Take& take) {
     has_pending_ = true;
     const sync::HostTime t = clock_.observe(stamp(pending_));
     if (t > position_) return;
-    take(pending_.channel, pending_.data, t);
+    on_event(pending_.channel, pending_.data, t);
     has_pending_ = false;
   }
 }

@@ -19,11 +19,11 @@ namespace tactus::live {
 
 class LogPlayer {
  public:
-  using Take = std::function<void(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival)>;
+  using EventHandler = std::function<void(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival)>;
   // Design: at most a tenth of a second of reading or playing at once, on a slow machine.
   static constexpr int kMaxEvents = 20'000;
   // Length of the log before the position of a seek that is shown, too, so that graphs are not empty.
-  static constexpr sync::Nanoseconds kBefore{3'000'000'000};
+  static constexpr sync::Nanoseconds kSeekLead{3'000'000'000};
 
   // Throws std::runtime_error with one sentence when the file is no log.
   explicit LogPlayer(const std::string& path);
@@ -31,12 +31,12 @@ class LogPlayer {
   explicit LogPlayer(std::span<const std::uint8_t> bytes);
 
   // Scans the next piece; returns true while there is more.
-  bool read_on();
+  bool scan_next();
   void play(bool on, double rate) { playing_ = on, rate_ = rate; }
-  // The next advance starts kBefore earlier, and passes on the events in between at once.
+  // The next advance starts kSeekLead earlier, and passes on the events in between at once.
   void seek(double to_s);
   // Advances by this real time: passes on the events recorded in that interval.
-  void advance(sync::Nanoseconds dt, const Take& take);
+  void advance(sync::Nanoseconds dt, const EventHandler& on_event);
 
   bool playing() const { return playing_; }
   double rate() const { return rate_; }
@@ -44,22 +44,22 @@ class LogPlayer {
   sync::HostTime position() const { return position_; }
   double position_s() const { return sync::to_seconds(position_ - begin_); }
   double length_s() const { return sync::to_seconds(end_ - begin_); }
-  std::int64_t damaged_regions() const { return whole_.damaged_regions(); }
+  std::int64_t damaged_regions() const { return scan_.damaged_regions(); }
 
  private:
   void begin();
   sync::HostTime stamp(const sync::LogEvent& event) const;
-  struct Place {
+  struct SeekPoint {
     sync::HostTime time;
     std::size_t offset;
   };
-  static constexpr sync::Nanoseconds kPlaceEach{500'000'000};
+  static constexpr sync::Nanoseconds kSeekPointInterval{500'000'000};
 
   std::unique_ptr<sync::MappedLog> file_;
   std::span<const std::uint8_t> bytes_;
-  sync::LogScanner whole_, scanner_;
-  sync::SummaryClock whole_clock_, clock_;
-  std::vector<Place> places_;
+  sync::LogScanner scan_, scanner_;
+  sync::SummaryClock scan_clock_, clock_;
+  std::vector<SeekPoint> seek_points_;
   std::int64_t offset_ns_ = 0;
   sync::HostTime begin_{}, end_{}, position_{};
   sync::LogEvent pending_;

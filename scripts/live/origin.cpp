@@ -16,16 +16,16 @@ bool origin_allowed(std::string_view origin, std::string_view host) {
   return !host.empty() && origin.substr(0, kScheme.size()) == kScheme && origin.substr(kScheme.size()) == host;
 }
 
-bool token_right(std::string_view target, const Access& access) {
+bool token_matches(std::string_view target, const Access& access) {
   constexpr std::string_view kName = "token=";
   const std::size_t at = target.find(kName);
   if (access.token.empty() || at == std::string_view::npos) return false;
-  std::string_view said = target.substr(at + kName.size());
-  said = said.substr(0, said.find('&'));
-  if (said.size() != access.token.size()) return false;
+  std::string_view given = target.substr(at + kName.size());
+  given = given.substr(0, given.find('&'));
+  if (given.size() != access.token.size()) return false;
   unsigned differs = 0;
-  for (std::size_t i = 0; i < said.size(); ++i)
-    differs |= static_cast<unsigned char>(said[i]) ^ static_cast<unsigned char>(access.token[i]);
+  for (std::size_t i = 0; i < given.size(); ++i)
+    differs |= static_cast<unsigned char>(given[i]) ^ static_cast<unsigned char>(access.token[i]);
   return differs == 0;
 }
 

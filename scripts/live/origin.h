@@ -20,6 +20,6 @@ bool host_allowed(std::string_view host, const Access& access);
 // Checks the Origin of a WebSocket: it must be the page of that very host. A browser always sends it.
 bool origin_allowed(std::string_view origin, std::string_view host);
 // True when the text after "token=" in the target of a request is the token. The comparison takes constant time.
-bool token_right(std::string_view target, const Access& access);
+bool token_matches(std::string_view target, const Access& access);
 
 }  // namespace tactus::live

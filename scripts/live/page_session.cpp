@@ -23,26 +23,26 @@ using nlohmann::json;
 // Text of the bus may contain invalid UTF-8, which is replaced.
 std::string dump(const json& j) { return j.dump(-1, ' ', false, json::error_handler_t::replace); }
 
-constexpr sync::Nanoseconds kSameClock{5'000'000'000};  // a time farther from its arrival belongs to another clock
+constexpr sync::Nanoseconds kMaxClockDifference{5'000'000'000};  // a time farther from its arrival belongs to another clock
 constexpr std::size_t kMaxTags = 4096;                 // in the list of a page
 
 }  // namespace
 
 PageSession::PageSession(bool live, std::int64_t run_id, std::string title) : live_(live), title_(std::move(title)), feed_(run_id), answers_(run_id) {}
 
-bool PageSession::wants(std::string_view channel) const {
+bool PageSession::accepts(std::string_view channel) const {
   // Also without a page: given answers are repeated for the leader of a study.
   if (channel == channels::kQuestion) return true;
   if (watches_.empty()) return false;
-  if (Feed::wants(channel) || channel == channels::kPictureChunk || channel == channels::kTagList ||
+  if (Feed::accepts(channel) || channel == channels::kPictureChunk || channel == channels::kTagList ||
       channel == channels::kTagValues)
     return true;
-  return std::any_of(watches_.begin(), watches_.end(), [&](const auto& w) { return w.second.wants(channel); });
+  return std::any_of(watches_.begin(), watches_.end(), [&](const auto& w) { return w.second.accepts(channel); });
 }
 
-void PageSession::take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
-  feed_.take(channel, bytes, arrival);
-  for (auto& [page, w] : watches_) w.take(channel, bytes, arrival);
+void PageSession::on_message(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
+  feed_.on_message(channel, bytes, arrival);
+  for (auto& [page, w] : watches_) w.on_message(channel, bytes, arrival);
   if (channel == channels::kQuestion) {
     if (const auto m = sync::decode<question_t>(bytes.data(), bytes.size())) answers_.push(*m, arrival);
   } else if (channel == channels::kTagList) {
@@ -52,8 +52,8 @@ void PageSession::take(std::string_view channel, std::span<const std::uint8_t> b
     if (!m) return;
     tags_.read(*m, [&](const sync::TagTable::List& list, const tag_def_t& def, std::int64_t time_ns, double value) {
       const sync::HostTime own = sync::host_time(time_ns);
-      const bool same = own > arrival - kSameClock && own < arrival + kSameClock;
-      for (auto& [page, w] : watches_) w.take_tag(list.node + "." + def.name, same ? own : arrival, value);
+      const bool same = own > arrival - kMaxClockDifference && own < arrival + kMaxClockDifference;
+      for (auto& [page, w] : watches_) w.on_tag_value(list.node + "." + def.name, same ? own : arrival, value);
     });
   } else if (channel == channels::kPictureChunk) {
     const auto m = sync::decode<picture_chunk_t>(bytes.data(), bytes.size());
@@ -65,7 +65,7 @@ void PageSession::take(std::string_view channel, std::span<const std::uint8_t> b
     if (picture->source != *wall_) return;
     if (picture->height > 0) aspect_ = static_cast<double>(picture->width) / picture->height;
     picture_.emplace(picture->jpeg.begin(), picture->jpeg.end());
-    picture_came_ = arrival;
+    picture_arrival_ = arrival;
   }
 }
 
@@ -76,7 +76,7 @@ void PageSession::clear() {
 }
 
 json PageSession::study(sync::HostTime now) const {
-  json out = answers_.told(now);
+  json out = answers_.to_json(now);
   if (const auto leader = answers_.leader(now)) out["leader"] = sync::printable(feed_.node_of(*leader));
   return out;
 }
@@ -107,7 +107,7 @@ std::string PageSession::hello(sync::HostTime now) const {
 }
 
 std::map<int, std::string> PageSession::frames(sync::HostTime now, const json& extra) {
-  json all = feed_.news(now);
+  json all = feed_.take_changes(now);
   all["t"] = "frame";
   all["now"] = sync::to_seconds(now.time_since_epoch());
   all["study"] = study(now);
@@ -115,7 +115,7 @@ std::map<int, std::string> PageSession::frames(sync::HostTime now, const json& e
   std::size_t tags = 0;
   for (const auto& [key, list] : tags_.lists())
     tags += static_cast<std::size_t>(std::count_if(list.tags.begin(), list.tags.end(), [](const tag_def_t& t) { return !t.name.empty(); }));
-  if (std::exchange(tags_told_, tags) != tags) all["tags"] = tag_list();
+  if (std::exchange(sent_tag_count_, tags) != tags) all["tags"] = tag_list();
   std::map<int, std::string> out;
   for (auto& [page, w] : watches_) {
     json frame = all;
@@ -127,7 +127,7 @@ std::map<int, std::string> PageSession::frames(sync::HostTime now, const json& e
 
 std::optional<std::string> PageSession::picture() { return std::exchange(picture_, std::nullopt); }
 
-std::vector<std::string> PageSession::wanted_tags() const {
+std::vector<std::string> PageSession::requested_tags() const {
   std::set<std::string> names;
   for (const auto& [page, w] : watches_)
     for (const std::string& name : w.tags()) names.insert(name);

@@ -23,19 +23,19 @@ namespace tactus::live {
 
 class PageSession {
  public:
-  static constexpr sync::Nanoseconds kFrame{50'000'000};  // design: 20 a second look smooth
+  static constexpr sync::Nanoseconds kFramePeriod{50'000'000};  // design: 20 a second look smooth
 
   // live: false when a log is shown. run_id: as of Feed.
   PageSession(bool live, std::int64_t run_id, std::string title);
 
   void open(int page) { watches_[page]; }
   void close(int page) { watches_.erase(page); }
-  bool anybody() const { return !watches_.empty(); }
+  bool has_pages() const { return !watches_.empty(); }
   // Sets the variables that one page shows from now on. Returns a sentence about invalid names; "": all are valid.
   std::string watch(int page, const std::vector<std::string>& names) { return watches_[page].set(names); }
 
-  bool wants(std::string_view channel) const;
-  void take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
+  bool accepts(std::string_view channel) const;
+  void on_message(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
   // The log position was changed.
   void clear();
 
@@ -47,10 +47,10 @@ class PageSession {
   std::optional<std::string> picture();
   double picture_aspect() const { return aspect_; }
   // The arrival of the newest picture.
-  std::optional<sync::HostTime> picture_came() const { return picture_came_; }
+  std::optional<sync::HostTime> picture_arrival() const { return picture_arrival_; }
 
   // The tagged variables that the pages show, as patterns of TAG_REQUEST.
-  std::vector<std::string> wanted_tags() const;
+  std::vector<std::string> requested_tags() const;
   const Feed& feed() const { return feed_; }
   // The present question of a study, and the answers of pages.
   Answers& answers() { return answers_; }
@@ -65,12 +65,12 @@ class PageSession {
   Answers answers_;
   std::map<int, Watches> watches_;
   sync::TagTable tags_;
-  std::size_t tags_told_ = 0;
+  std::size_t sent_tag_count_ = 0;
   sync::PictureReader pictures_;
   std::optional<std::int32_t> wall_;
   std::optional<std::string> picture_;
   double aspect_ = 4.0 / 3;
-  std::optional<sync::HostTime> picture_came_;
+  std::optional<sync::HostTime> picture_arrival_;
 };
 
 }  // namespace tactus::live

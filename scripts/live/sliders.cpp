@@ -17,24 +17,24 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-constexpr const char* kEmpty = "<profile name=\"live page\"/>";
-constexpr const char* kChanged = ", changed in the live page";
+constexpr const char* kEmptyProfile = "<profile name=\"live page\"/>";
+constexpr const char* kChangedSuffix = ", changed in the live page";
 
 const std::string& or_empty(const std::string& profile) {
-  static const std::string empty = kEmpty;
+  static const std::string empty = kEmptyProfile;
   return profile.empty() ? empty : profile;
 }
 
 bool has_value(const XMLElement& e, const char* name) { return e.Attribute(name) != nullptr; }
 
 // True for a rule that applies at all times and to all contacts.
-bool plain(const XMLElement& e) {
+bool is_unconditional(const XMLElement& e) {
   return !has_value(e, "from") && !has_value(e, "until") && !has_value(e, "bodies") && !has_value(e, "material");
 }
 
-XMLElement* first(XMLElement& root, const std::string& sense, const char* attribute) {
+XMLElement* first_element(XMLElement& root, const std::string& sense, const char* attribute) {
   for (XMLElement* e = root.FirstChildElement("degrade"); e; e = e->NextSiblingElement("degrade"))
-    if (e->Attribute("modality", sense.c_str()) && plain(*e) && (attribute == nullptr || has_value(*e, attribute)))
+    if (e->Attribute("modality", sense.c_str()) && is_unconditional(*e) && (attribute == nullptr || has_value(*e, attribute)))
       return e;
   return nullptr;
 }
@@ -52,24 +52,24 @@ std::string number(double value) {
   return text.str();
 }
 
-bool same(double a, double b) { return std::abs(a - b) <= 1e-9 + 1e-6 * std::abs(a); }
+bool nearly_equal(double a, double b) { return std::abs(a - b) <= 1e-9 + 1e-6 * std::abs(a); }
 
 // False for an element without any operator left, which is no valid rule.
-bool does_something(const XMLElement& e) {
+bool has_operator(const XMLElement& e) {
   for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a; a = a->Next())
     if (const std::string name = a->Name(); name != "modality" && name != "conceal") return true;
   return false;
 }
 
 void set(XMLElement& root, const std::string& sense, const char* attribute, const std::string& value) {
-  XMLElement* e = first(root, sense, attribute);
+  XMLElement* e = first_element(root, sense, attribute);
   if (value.empty()) {
     if (e == nullptr) return;
     e->DeleteAttribute(attribute);
-    if (!does_something(*e)) root.DeleteChild(e);
+    if (!has_operator(*e)) root.DeleteChild(e);
     return;
   }
-  if (e == nullptr) e = first(root, sense, nullptr);
+  if (e == nullptr) e = first_element(root, sense, nullptr);
   if (e == nullptr) {
     e = root.InsertNewChildElement("degrade");
     e->SetAttribute("modality", sense.c_str());
@@ -77,24 +77,24 @@ void set(XMLElement& root, const std::string& sense, const char* attribute, cons
   e->SetAttribute(attribute, value.c_str());
 }
 
-void slide_delay(XMLElement& root, const std::string& sense, double delay_ms) {
-  const auto old = operator_of("delay", first(root, sense, "delay")).delay.value_or(sync::DelayDef{});
-  if (same(old.delay_s * 1e3, delay_ms)) return;
+void apply_delay(XMLElement& root, const std::string& sense, double delay_ms) {
+  const auto old = operator_of("delay", first_element(root, sense, "delay")).delay.value_or(sync::DelayDef{});
+  if (nearly_equal(old.delay_s * 1e3, delay_ms)) return;
   const char* kind = old.kind == sync::DelayKind::kNetwork ? " network" : "";
   set(root, sense, "delay", delay_ms > 0 ? number(delay_ms) + "ms" + kind : "");
 }
 
-void slide_rate(XMLElement& root, const std::string& sense, double rate_Hz) {
-  const auto old = operator_of("rate", first(root, sense, "rate")).rate.value_or(sync::RateDef{});
-  if (same(old.rate_Hz, rate_Hz)) return;
+void apply_rate(XMLElement& root, const std::string& sense, double rate_Hz) {
+  const auto old = operator_of("rate", first_element(root, sense, "rate")).rate.value_or(sync::RateDef{});
+  if (nearly_equal(old.rate_Hz, rate_Hz)) return;
   const bool fits = old.phase_s > 0 && old.phase_s * rate_Hz < 1;
   set(root, sense, "rate",
       rate_Hz > 0 ? number(rate_Hz) + "Hz" + (fits ? " phase=" + number(old.phase_s * 1e3) + "ms" : "") : "");
 }
 
-void slide_loss(XMLElement& root, const std::string& sense, double loss) {
-  const auto old = operator_of("loss", first(root, sense, "loss")).loss.value_or(sync::LossDef{});
-  if (same(old.share, loss)) return;
+void apply_loss(XMLElement& root, const std::string& sense, double loss) {
+  const auto old = operator_of("loss", first_element(root, sense, "loss")).loss.value_or(sync::LossDef{});
+  if (nearly_equal(old.share, loss)) return;
   // A share that bursts of that length cannot reach becomes independent losses (sync/random/loss.h).
   const bool fits = old.mean_burst >= 1 && old.mean_burst * (1 - loss) > loss;
   set(root, sense, "loss",
@@ -109,22 +109,22 @@ std::string parse(tinyxml2::XMLDocument& document, const std::string& profile) {
   return name;
 }
 
-std::map<std::string, Shown> shown_of(XMLElement& root) {
+std::map<std::string, SliderState> slider_states(XMLElement& root) {
   std::map<std::string, int> elements;
-  std::map<std::string, Shown> out;
+  std::map<std::string, SliderState> out;
   for (XMLElement* e = root.FirstChildElement("degrade"); e; e = e->NextSiblingElement("degrade")) {
     const std::string sense = e->Attribute("modality");
-    Shown& s = out[sense];
-    s.more = s.more || ++elements[sense] > 1 || !plain(*e);
+    SliderState& s = out[sense];
+    s.more = s.more || ++elements[sense] > 1 || !is_unconditional(*e);
     for (const tinyxml2::XMLAttribute* a = e->FirstAttribute(); a; a = a->Next())
       if (const std::string name = a->Name();
           name != "modality" && name != "delay" && name != "rate" && name != "loss")
         s.more = true;
   }
   for (auto& [sense, s] : out) {
-    const auto delay = operator_of("delay", first(root, sense, "delay")).delay;
-    const auto rate = operator_of("rate", first(root, sense, "rate")).rate;
-    const auto loss = operator_of("loss", first(root, sense, "loss")).loss;
+    const auto delay = operator_of("delay", first_element(root, sense, "delay")).delay;
+    const auto rate = operator_of("rate", first_element(root, sense, "rate")).rate;
+    const auto loss = operator_of("loss", first_element(root, sense, "loss")).loss;
     s.sliders = {delay ? delay->delay_s * 1e3 : 0, rate ? rate->rate_Hz : 0, loss ? loss->share : 0};
   }
   return out;
@@ -132,17 +132,17 @@ std::map<std::string, Shown> shown_of(XMLElement& root) {
 
 }  // namespace
 
-std::map<std::string, Shown> shown_of(const std::string& profile) {
+std::map<std::string, SliderState> slider_states(const std::string& profile) {
   tinyxml2::XMLDocument document;
   parse(document, profile);
-  return shown_of(*document.RootElement());
+  return slider_states(*document.RootElement());
 }
 
-nlohmann::json told_of(const std::string& profile) {
+nlohmann::json degradation_json(const std::string& profile) {
   tinyxml2::XMLDocument document;
   const std::string name = parse(document, profile);
   nlohmann::json senses = nlohmann::json::object();
-  for (const auto& [sense, s] : shown_of(*document.RootElement()))
+  for (const auto& [sense, s] : slider_states(*document.RootElement()))
     senses[sync::printable(sense)] = {{"delay_ms", s.sliders.delay_ms},
                                       {"rate_Hz", s.sliders.rate_Hz},
                                       {"loss", s.sliders.loss},
@@ -150,17 +150,17 @@ nlohmann::json told_of(const std::string& profile) {
   return {{"name", sync::printable(profile.empty() ? "" : name)}, {"senses", senses}};
 }
 
-std::string slid(const std::string& profile, const std::map<std::string, Sliders>& senses) {
+std::string with_sliders(const std::string& profile, const std::map<std::string, Sliders>& senses) {
   tinyxml2::XMLDocument document;
   parse(document, profile);
   XMLElement& root = *document.RootElement();
   for (const auto& [sense, s] : senses) {
-    slide_delay(root, sense, s.delay_ms);
-    slide_rate(root, sense, s.rate_Hz);
-    slide_loss(root, sense, s.loss);
+    apply_delay(root, sense, s.delay_ms);
+    apply_rate(root, sense, s.rate_Hz);
+    apply_loss(root, sense, s.loss);
   }
   const std::string name = root.Attribute("name") ? root.Attribute("name") : "";
-  if (!name.ends_with("live page")) root.SetAttribute("name", (name + kChanged).c_str());
+  if (!name.ends_with("live page")) root.SetAttribute("name", (name + kChangedSuffix).c_str());
   tinyxml2::XMLPrinter printer(nullptr, true);
   document.Print(&printer);
   std::string text = printer.CStr();

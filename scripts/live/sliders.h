@@ -11,17 +11,17 @@
 namespace tactus::live {
 
 // The slider positions of each modality for a profile: the first value that applies at all times and to all contacts.
-struct Shown {
+struct SliderState {
   Sliders sliders;
   bool more = false;  // the profile has more operators of this modality than its sliders show
 };
 // Throws std::invalid_argument with one sentence for an invalid profile; "" degrades nothing.
-std::map<std::string, Shown> shown_of(const std::string& profile);
+std::map<std::string, SliderState> slider_states(const std::string& profile);
 // {"name": ..., "senses": {sense: {delay_ms, rate_Hz, loss, more}}}, as sent to pages.
-nlohmann::json told_of(const std::string& profile);
+nlohmann::json degradation_json(const std::string& profile);
 
 // The profile with the sliders at these positions: a value that a slider has not changed stays as written, with its kind, its
 // burst and its phase. Throws as above, also for an invalid result.
-std::string slid(const std::string& profile, const std::map<std::string, Sliders>& senses);
+std::string with_sliders(const std::string& profile, const std::map<std::string, Sliders>& senses);
 
 }  // namespace tactus::live

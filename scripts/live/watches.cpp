@@ -36,7 +36,7 @@ std::string Watches::set(const std::vector<std::string>& names) {
   return wrong;
 }
 
-bool Watches::wants(std::string_view channel) const {
+bool Watches::accepts(std::string_view channel) const {
   for (const Watch& w : watches_)
     if (w.path && w.channel == channel) return true;
   return false;
@@ -49,29 +49,29 @@ Watches::Curve* Watches::curve(Watch& w, std::int32_t source) {
   return &w.curves.emplace_back(Curve{source, {}, {}});
 }
 
-void Watches::keep(Curve& c, sync::HostTime time, double value) {
+void Watches::add_value(Curve& c, sync::HostTime time, double value) {
   if (!std::isfinite(value)) return;
   const bool back = c.newest && time < *c.newest;  // a log that was sought backwards
-  if (c.newest && !back && time - *c.newest < kThinnest) return;
+  if (c.newest && !back && time - *c.newest < kMinInterval) return;
   c.newest = time;
   c.waiting.push_back({time, value});
   if (c.waiting.size() > kMaxWaiting) c.waiting.pop_front();
 }
 
-void Watches::take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
+void Watches::on_message(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
   for (Watch& w : watches_) {
     if (!w.path || w.channel != channel) continue;
     const auto source = w.source ? w.source->number(bytes) : 0.0;
     if (!source) continue;
     Curve* c = curve(w, static_cast<std::int32_t>(*source));
-    if (c == nullptr || (c->newest && arrival >= *c->newest && arrival - *c->newest < kThinnest)) continue;
-    if (const auto value = w.path->number(bytes)) keep(*c, arrival, *value);
+    if (c == nullptr || (c->newest && arrival >= *c->newest && arrival - *c->newest < kMinInterval)) continue;
+    if (const auto value = w.path->number(bytes)) add_value(*c, arrival, *value);
   }
 }
 
-void Watches::take_tag(const std::string& name, sync::HostTime time, double value) {
+void Watches::on_tag_value(const std::string& name, sync::HostTime time, double value) {
   for (Watch& w : watches_)
-    if (!w.path && w.name == name) keep(*curve(w, 0), time, value);
+    if (!w.path && w.name == name) add_value(*curve(w, 0), time, value);
 }
 
 std::vector<std::string> Watches::tags() const {

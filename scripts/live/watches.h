@@ -19,8 +19,8 @@ namespace tactus::live {
 class Watches {
  public:
   // Design: no screen shows more than 200 values of one curve per second.
-  static constexpr sync::Nanoseconds kThinnest{5'000'000};
-  // Values of one curve for one frame, the newest: after a seek, LogPlayer::kBefore of the log arrives at once.
+  static constexpr sync::Nanoseconds kMinInterval{5'000'000};
+  // Values of one curve for one frame, the newest: after a seek, LogPlayer::kSeekLead of the log arrives at once.
   static constexpr std::size_t kMaxWaiting = 600;
   // Curves of one variable; values of further senders are left out. Design: the number of distinguishable colours.
   static constexpr std::size_t kMaxSenders = 8;
@@ -29,10 +29,10 @@ class Watches {
   // "CHANNEL:path" is a field, anything else "node.tag".
   std::string set(const std::vector<std::string>& names);
 
-  bool wants(std::string_view channel) const;
-  void take(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
+  bool accepts(std::string_view channel) const;
+  void on_message(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
   // A value of a tagged variable.
-  void take_tag(const std::string& name, sync::HostTime time, double value);
+  void on_tag_value(const std::string& name, sync::HostTime time, double value);
   std::vector<std::string> tags() const;
 
   // [[number of the variable, s, value, header.source of its sender; 0: of a tag], ...] since the last call.
@@ -55,7 +55,7 @@ class Watches {
   };
   // Null when there are too many.
   static Curve* curve(Watch& w, std::int32_t source);
-  static void keep(Curve& c, sync::HostTime time, double value);
+  static void add_value(Curve& c, sync::HostTime time, double value);
   std::vector<Watch> watches_;
 };
 

@@ -26,9 +26,9 @@ using Code = boost::system::error_code;
 namespace {
 
 constexpr std::size_t kMaxHeaderBytes = 8192;
-constexpr std::chrono::seconds kRequestPatience{10};  // design
+constexpr std::chrono::seconds kRequestTimeout{10};  // design
 // Design: a page that is silent for this time, also to pings, is closed. Until then a frozen page costs a full queue.
-constexpr std::chrono::seconds kIdle{60};
+constexpr std::chrono::seconds kIdleTimeout{60};
 
 class Page;
 class Connection;
@@ -59,7 +59,7 @@ class Page : public std::enable_shared_from_this<Page> {
   void open(http::request<http::empty_body> request) {
     request_ = std::move(request);
     socket_.read_message_max(kMaxBrowserBytes);
-    socket_.set_option(websocket::stream_base::timeout{kRequestPatience, kIdle, true});
+    socket_.set_option(websocket::stream_base::timeout{kRequestTimeout, kIdleTimeout, true});
     socket_.async_accept(request_, [self = shared_from_this()](Code e) { self->opened(e); });
   }
   void pump() {
@@ -129,7 +129,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void read() {
     parser_.header_limit(kMaxHeaderBytes);
     parser_.body_limit(0);
-    stream_.expires_after(kRequestPatience);
+    stream_.expires_after(kRequestTimeout);
     http::async_read(stream_, buffer_, parser_, [self = shared_from_this()](Code e, std::size_t) {
       if (!e) self->answer();
     });
@@ -145,7 +145,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
       return refuse(http::status::forbidden, "This server answers only to the address that it printed.\n");
     if (websocket::is_upgrade(request)) {
       const std::string origin(request[http::field::origin]);
-      if (!origin_allowed(origin, host) || !token_right(target, server->access))
+      if (!origin_allowed(origin, host) || !token_matches(target, server->access))
         return refuse(http::status::forbidden, "Open the address that was printed, with its token.\n");
       stream_.expires_never();
       std::make_shared<Page>(std::move(stream_), server)->open(parser_.release());
@@ -172,7 +172,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     response_.keep_alive(false);
     response_.body() = std::move(body);
     response_.prepare_payload();
-    stream_.expires_after(kRequestPatience);
+    stream_.expires_after(kRequestTimeout);
     http::async_write(stream_, response_, [self = shared_from_this()](Code, std::size_t) {
       Code ignored;
       self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
@@ -222,7 +222,7 @@ WebServer::~WebServer() {
   impl_->pages.clear();
 }
 
-void WebServer::run_for(std::chrono::nanoseconds at_most) { impl_->io.run_for(at_most); }
+void WebServer::run_for(std::chrono::nanoseconds max_wait) { impl_->io.run_for(max_wait); }
 
 void WebServer::send(int page, std::shared_ptr<const std::string> text) {
   const auto found = impl_->pages.find(page);

@@ -36,8 +36,8 @@ class WebServer {
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
-  // Handles events until at least one was handled or at_most has passed.
-  void run_for(std::chrono::nanoseconds at_most);
+  // Handles events until at least one was handled or max_wait has passed.
+  void run_for(std::chrono::nanoseconds max_wait);
 
   // To one page; no effect when it is closed.
   void send(int page, std::shared_ptr<const std::string> text);

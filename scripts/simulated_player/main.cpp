@@ -1,3 +1,3 @@
 #include "scripts/simulated_player/run.h"
 
-int main(int argc, char** argv) { return tactus::participant::run(argc, argv); }
+int main(int argc, char** argv) { return tactus::simulated_player::run(argc, argv); }

@@ -20,7 +20,7 @@
 
 #include "scripts/simulated_player/rules.h"
 
-namespace tactus::participant {
+namespace tactus::simulated_player {
 
 // The percepts of all modalities at an instant.
 struct Percept {
@@ -36,28 +36,28 @@ struct Percept {
 
 // All values are design: a careful person who pushes a ball the size of an egg.
 struct PlayerDef {
-  double reaction_s = 0.15;        // from sight or sound to action
-  double touch_reaction_s = 0.07;  // from touch to action
-  double reach_m_s = 0.5;          // in the air
-  double push_m_s = 0.16;          // at the ball
-  double gentle_N = 1.5;           // a push with more force slows down
-  double felt_N = 0.15;    // a smaller force is not noticed (about the absolute threshold of a fingertip on a held tool)
-  double clear_m = 0.13;   // height of travel over the floor
-  double slow_m_s = 0.15;  // it waits for a ball that rolls faster
+  double reaction_s = 0.15;         // from sight or sound to action
+  double touch_reaction_s = 0.07;   // from touch to action
+  double air_speed_m_s = 0.5;       // in the air
+  double push_speed_m_s = 0.16;     // at the ball
+  double gentle_force_N = 1.5;      // a push with more force slows down
+  double touch_threshold_N = 0.15;  // a smaller force is not noticed (about the absolute threshold of a fingertip on a held tool)
+  double travel_height_m = 0.13;    // height of travel over the floor
+  double slow_ball_m_s = 0.15;      // it waits for a ball that rolls faster
   // Predicted age of sight at the time of action: the reaction time plus the age of an undegraded picture.
-  double reckons_s = 0.2;
+  double sight_delay_s = 0.2;
   double gap_m = 0.02;  // distance behind the ball at which the hand comes down
 };
 
 class Player {
  public:
-  enum class Doing : std::uint8_t { kTravel, kDescend, kPush, kSearch, kRise, kDone };
+  enum class Action : std::uint8_t { kTravel, kDescend, kPush, kSearch, kRise, kDone };
 
   Player(Rules rules, const PlayerDef& def);
 
   // The target of the arm from now on, m, world. Call it in order of time.
   Eigen::Vector3d step(const Percept& percept);
-  Doing doing() const { return doing_; }
+  Action action() const { return action_; }
   // The present goal; the number of goals: all are believed to be reached.
   int goal() const { return goal_; }
 
@@ -66,71 +66,71 @@ class Player {
     Eigen::Vector3d at_m{0, 0, 0};
     Eigen::Vector3d speed_m_s{0, 0, 0};  // as seen
     bool known = false, in_hole = false;
-    double since_s = -1e9;             // when it was last seen or felt
-    double changed_s = -1e9;           // when the picture last showed it elsewhere
+    double last_sensed_s = -1e9;       // when it was last seen or felt
+    double last_change_s = -1e9;       // when the picture last showed it elsewhere
     Eigen::Vector3d shown_m{0, 0, 0};  // its place then
-    double heard_s = -1e9;             // when its fall was heard
+    double fall_heard_s = -1e9;        // when its fall was heard
   };
   void perceive(const Percept& p);
   void feel(const Percept& p);
-  void choose();
-  void begin(Doing doing);
-  Eigen::Vector3d act(const Percept& p);
+  void select_goal();
+  void start(Action action);
+  Eigen::Vector3d step_action(const Percept& p);
   Eigen::Vector3d travel(const Percept& p);
   Eigen::Vector3d descend(const Percept& p);
   Eigen::Vector3d push(const Percept& p);
   Eigen::Vector3d search(const Percept& p);
   Eigen::Vector3d rise(const Percept& p);
-  // In push: the speed of the hand across its way, which keeps the ball in front of it.
-  Eigen::Vector3d balance(const Percept& p, const Eigen::Vector3d& way);
+  // In push: the speed of the hand across the direction to the hole, which keeps the ball in front of it.
+  Eigen::Vector3d balance(const Percept& p, const Eigen::Vector3d& direction);
   // Distance from hand to ball at contact, in the plane of the floor, m.
-  double reach_m() const;
+  double contact_distance_m() const;
   // The predicted present place of the ball: sight compensates for its own delay.
-  Eigen::Vector3d expected_m();
+  Eigen::Vector3d predicted_ball_m();
   // True while the ball is seen to roll.
-  bool rolls();
+  bool ball_rolls();
   const Goal& target() const { return rules_.goals[static_cast<std::size_t>(goal_)]; }
   Belief& ball() { return beliefs_[static_cast<std::size_t>(goal_)]; }
   // Unit vector from the ball to its hole, in the plane of the floor.
-  Eigen::Vector3d way();
+  Eigen::Vector3d direction_to_hole();
   // The place of the hand for a push, with this gap to the contact of ball and hand.
-  Eigen::Vector3d behind(double gap_m);
-  Eigen::Vector3d towards(const Eigen::Vector3d& to, double speed_m_s) const;
-  double height() const;
+  Eigen::Vector3d position_behind(double gap_m);
+  Eigen::Vector3d step_towards(const Eigen::Vector3d& to, double speed_m_s) const;
+  double push_height_m() const;
 
-  bool sees() { return now_s_ - ball().since_s < kSeen_s && !only_felt_; }
+  bool sees_ball() { return now_s_ - ball().last_sensed_s < kSightValid_s && !only_felt_; }
   // True while an obstacle holds the hand back, such as a wall or the rim of a hole.
-  bool held() const { return now_s_ - free_s_ > kHeld_s; }
+  bool is_held() const { return now_s_ - last_free_s_ > kHeld_s; }
   // The nearest place over the floor.
-  Eigen::Vector3d over_floor(const Eigen::Vector3d& at) const;
+  Eigen::Vector3d clamped_to_floor(const Eigen::Vector3d& at) const;
 
-  bool feels() const { return now_s_ - felt_s_ < kFeltLately_s; }
+  bool feels_contact() const { return now_s_ - felt_s_ < kTouchValid_s; }
 
   // A ball seen within this time counts as visible: a few pictures.
-  static constexpr double kSeen_s = 0.1;
-  static constexpr double kFeltLately_s = 0.1;
+  static constexpr double kSightValid_s = 0.1;
+  static constexpr double kTouchValid_s = 0.1;
   static constexpr double kHeld_s = 0.4;
 
   Rules rules_;
   PlayerDef def_;
   std::deque<Percept> seen_, felt_;  // waiting for their reaction time, oldest first
   std::vector<Belief> beliefs_;
-  Doing doing_ = Doing::kTravel;
+  Action action_ = Action::kTravel;
   int goal_ = 0;
   double now_s_ = 0, dt_s_ = 0;
-  double since_s_ = 0;                         // since when it has been doing that
-  double felt_s_ = -1e9;                       // when it last felt a contact
-  double force_N_ = 0;                         // felt, in the plane of the floor
-  Eigen::Vector3d pull_N_{0, 0, 0};            // felt
-  double free_s_ = -1e9;                       // when it last felt no force that could hold it
-  bool only_felt_ = false;                     // the belief about the ball comes from touch or hearing alone
-  Eigen::Vector3d felt_from_hand_m_{0, 0, 0};  // place of the ball relative to the hand, as felt
+  double action_start_s_ = 0;                                     // start of the present action
+  double felt_s_ = -1e9;                                          // when it last felt a contact
+  double force_N_ = 0;                                            // felt, in the plane of the floor
+  Eigen::Vector3d pull_N_{0, 0, 0};                               // felt
+  double last_free_s_ = -1e9;                                     // when it last felt no force that could hold it
+  bool only_felt_ = false;                                        // the belief about the ball comes from touch or hearing alone
+  Eigen::Vector3d felt_from_hand_m_{0, 0, 0};                     // place of the ball relative to the hand, as felt
   Eigen::Vector3d felt_at_m_{0, 0, 0}, felt_speed_m_s_{0, 0, 0};  // of the ball
-  Eigen::Vector3d begun_m_{0, 0, 0};                              // place of the hand at the start of the present action
-  double searched_m_ = 0;                                         // radius of the present revolution of the search
-  double turned_rad_ = 0;
-  Eigen::Vector3d wanted_m_{0, 0, 0};
-  bool begun_ = false;
+  Eigen::Vector3d action_start_m_{0, 0, 0};                       // place of the hand at the start of the present action
+  double search_radius_m_ = 0;                                    // radius of the present revolution of the search
+  double search_angle_rad_ = 0;
+  Eigen::Vector3d target_m_{0, 0, 0};
+  bool started_ = false;
 };
 
-}  // namespace tactus::participant
+}  // namespace tactus::simulated_player

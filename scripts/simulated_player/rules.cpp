@@ -5,7 +5,7 @@
 
 #include "sim_node/scene/load_sdf.h"
 
-namespace tactus::participant {
+namespace tactus::simulated_player {
 namespace {
 
 // The floor around the holes: static boxes with their top at the height of the rims, within a millimetre.
@@ -33,18 +33,18 @@ Rules read_rules(const std::string& sdf_file) {
     for (const sim::ShapeDef& shape : world.shapes)
       if (shape.body == hole.ball && shape.kind == sim::ShapeKind::kSphere) goal.ball_radius_m = shape.size_m.x();
     if (goal.ball_radius_m <= 0)
-      throw std::runtime_error(sdf_file + ": what belongs into \"" + hole.name +
-                               "\" is no ball, which a player could push there");
+      throw std::runtime_error(sdf_file + ": the body of hole \"" + hole.name +
+                               "\" is no ball; a player can push only balls");
     rules.goals.push_back(goal);
   }
   if (rules.goals.empty())
     throw std::runtime_error(sdf_file +
                              ": has no tactus:hole, so there is no game to play; dark_room.sdf has one");
-  if (world.tools.empty()) throw std::runtime_error(sdf_file + ": has no tool that a hand could hold");
+  if (world.tools.empty()) throw std::runtime_error(sdf_file + ": has no tool for the hand");
   rules.hand_radius_m = world.tools.front().radius_m;
   rules.floor_m = floor_of(world, rules.goals.front().hole_m.z());
   rules.slope_m_s2 = {world.gravity_m_s2.x(), world.gravity_m_s2.y(), 0};
   return rules;
 }
 
-}  // namespace tactus::participant
+}  // namespace tactus::simulated_player

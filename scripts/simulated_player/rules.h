@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus::participant {
+namespace tactus::simulated_player {
 
 struct Goal {
   int body = -1;                    // of the ball, index in the scene
@@ -28,4 +28,4 @@ struct Rules {
 // Throws std::runtime_error with one sentence when the file holds no game of balls.
 Rules read_rules(const std::string& sdf_file);
 
-}  // namespace tactus::participant
+}  // namespace tactus::simulated_player

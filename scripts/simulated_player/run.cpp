@@ -1,4 +1,4 @@
-// participant: a simulated player that plays a scene's game with the output of the cluster's modalities, in place of a
+// simulated_player: a simulated player that plays a scene's game with the output of the cluster's modalities, in place of a
 // person.
 //
 //   in   WORLD_STATE, CONTACT_EVENTS   as visual_node and audio_node present them, with the degradations of the profile
@@ -18,7 +18,7 @@
 #include <tactus/sim_reply_t.hpp>
 
 #include "scripts/simulated_player/arm.h"
-#include "scripts/simulated_player/senses.h"
+#include "scripts/simulated_player/perception.h"
 #include "scripts/simulated_player/setup.h"
 #include "sync/node/node.h"
 #include "sync/assets/scene_receiver.h"
@@ -27,7 +27,7 @@ using namespace tactus;
 
 namespace {
 
-const sync::NodeDescriptor kParticipant{.name = "participant",
+const sync::NodeDescriptor kSimulatedPlayer{.name = "participant",
                                         .modality = "",
                                         .rate_Hz = 1000,
                                         .fifo_priority = 55,
@@ -43,7 +43,7 @@ Eigen::Vector3d force_of(const device_force_t& m, sync::HostTime arrival, sync::
 
 }  // namespace
 
-int tactus::participant::run(int argc, char** argv, const Rules* read_before) try {
+int tactus::simulated_player::run(int argc, char** argv, const Rules* read_before) try {
   CLI::App app;
   sync::NodeOptions options;
   std::string scene_file, device = "player";
@@ -51,61 +51,61 @@ int tactus::participant::run(int argc, char** argv, const Rules* read_before) tr
   Scatter scatter;
   ArmDef arm_def;
   PlayerDef player_def;
-  options.add_to(app, kParticipant);
+  options.add_to(app, kSimulatedPlayer);
   app.add_option("SCENE", scene_file, "SDF file of the world, for the rules of its game")
       ->required()
       ->check(CLI::ExistingFile);
-  app.add_option("--device", device, "name of the device that it moves: haptic_node --device external:NAME")
+  app.add_option("--device", device, "name of the device that it controls: haptic_node --device external:NAME")
       ->capture_default_str();
   app.add_option("--degrade", options.degrade,
-                 "degradation profile (XML): as the senses have it, which are listened in on");
-  app.add_option("--frame-rate", frame_rate_Hz, "of the pictures that it looks at, Hz")
+                 "degradation profile (XML) of the observed modalities");
+  app.add_option("--frame-rate", frame_rate_Hz, "rate of the observed pictures, Hz")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
   app.add_option(
          "--scatter-along", scatter.along_m,
-         "before it plays it puts each ball elsewhere, as the seed says: so far towards its hole or away, m")
+         "half range of each ball's random start position (from the seed), towards its hole or away, m")
       ->check(CLI::Range(0.0, 0.2));
-  app.add_option("--scatter-aside", scatter.aside_m, "and so far to the side, m")->check(CLI::Range(0.0, 0.2));
-  app.add_option("--reaction", player_def.reaction_s, "from what is seen or heard to what is done, s")
+  app.add_option("--scatter-aside", scatter.aside_m, "half range of each ball's random start position to the side, m")->check(CLI::Range(0.0, 0.2));
+  app.add_option("--reaction", player_def.reaction_s, "reaction time to sight and hearing, s")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
-  sync::parse_or_exit(app, kParticipant.name, argc, argv);
+  sync::parse_or_exit(app, kSimulatedPlayer.name, argc, argv);
   const Rules rules = read_before ? *read_before : read_rules(scene_file);
 
-  sync::Node node(kParticipant, options);
+  sync::Node node(kSimulatedPlayer, options);
   sync::SceneReceiver scenes(node.bus());
   auto& forces = node.bus().queue<device_force_t>(channels::kDeviceForce, 64);
   auto& replies = node.bus().queue<sim_reply_t>(channels::kSimReply, 64);
   std::optional<Setup> setup;
-  Senses senses(node, rules, frame_rate_Hz);
+  Perception perception(node, rules, frame_rate_Hz);
   Player player(rules, player_def);
   Arm arm(arm_def, Eigen::Vector3d(kRest_m[0], kRest_m[1], kRest_m[2]), options.seed);
   device_state_t state{};
   state.device = device;
   device_force_t force{};
-  sync::HostTime felt_at{};
-  sync::HostTime before{};
+  sync::HostTime force_arrival{};
+  sync::HostTime last_tick{};
   node.tags().add("goal", "1", [&] { return player.goal(); });
-  node.tags().add("doing", "1", [&] { return static_cast<double>(player.doing()); });
+  node.tags().add("doing", "1", [&] { return static_cast<double>(player.action()); });
   node.set_state(node_health_t::WAITING, "waits for the scene");
 
   while (node.running()) {
     const sync::HostTime now = node.wait();
     while (const auto m = forces.pop())
       if (m->message.device == device && m->message.header.run_id == options.run_id)
-        force = m->message, felt_at = m->arrival;
+        force = m->message, force_arrival = m->arrival;
     if (scenes.poll(now)) {
-      senses.set_scene(*scenes.scene());
+      perception.set_scene(*scenes.scene());
       setup.emplace(node.bus(), *scenes.scene(), rules, places(rules, *scenes.scene(), scatter, options.seed),
                     options.seed);
       node.set_state(node_health_t::RUNNING);
     }
-    Percept percept = senses.perceive(now);
-    percept.force_N = force_of(force, felt_at, now);
+    Percept percept = perception.perceive(now);
+    percept.force_N = force_of(force, force_arrival, now);
     percept.hand_m = arm.position_m();
     // A late tick moves no further than one on time.
-    const double dt_s = std::min(2e-3, sync::to_seconds(now - std::exchange(before, now)));
+    const double dt_s = std::min(2e-3, sync::to_seconds(now - std::exchange(last_tick, now)));
     if (setup && (scatter.along_m > 0 || scatter.aside_m > 0) && !setup->done()) {
       setup->step(now, replies);
       percept.balls_m.assign(rules.goals.size(), std::nullopt);  // sight is off before the game begins
@@ -122,5 +122,5 @@ int tactus::participant::run(int argc, char** argv, const Rules* read_before) tr
   }
   return 0;
 } catch (const std::exception& e) {
-  return sync::fail(kParticipant.name, e);
+  return sync::fail(kSimulatedPlayer.name, e);
 }

@@ -1,8 +1,8 @@
-// The program participant, as a function, so that virtual time can run it beside other programs in one process
+// The program simulated_player, as a function, so that virtual time can run it beside other programs in one process
 // (sync/virtual_time).
 #pragma once
 
-namespace tactus::participant {
+namespace tactus::simulated_player {
 
 struct Rules;
 
@@ -10,4 +10,4 @@ struct Rules;
 // have been read already; null: they are read from the scene.
 int run(int argc, char** argv, const Rules* rules = nullptr);
 
-}  // namespace tactus::participant
+}  // namespace tactus::simulated_player

@@ -11,7 +11,7 @@
 #include "scripts/simulated_player/rules.h"
 #include "sync/bus/bus.h"
 
-namespace tactus::participant {
+namespace tactus::simulated_player {
 
 // The area for the balls: in front of their holes, apart from each other and from the objects in the room.
 struct Scatter {
@@ -36,4 +36,4 @@ class Setup {
   sync::HostTime next_{};
 };
 
-}  // namespace tactus::participant
+}  // namespace tactus::simulated_player

@@ -1,33 +1,33 @@
 #include "scripts/trial_runner/enforcement.h"
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 
 void Enforcement::push(const node_health_t& m, sync::HostTime arrival) {
-  if (m.modality.empty() || (senses_.size() >= kMaxSenses && !senses_.contains(m.node))) return;
-  senses_[m.node] = {m.profile, arrival};
+  if (m.modality.empty() || (modalities_.size() >= kMaxModalities && !modalities_.contains(m.node))) return;
+  modalities_[m.node] = {m.profile, arrival};
 }
 
 const sync::ProfileInForce* Enforcement::to_send(sync::HostTime now) {
-  if (!profile_ || told_ || (next_ && now < *next_)) return nullptr;
+  if (!profile_ || confirmed_ || (next_ && now < *next_)) return nullptr;
   next_ = now + kRepeat;
   return &*profile_;
 }
 
 std::vector<std::string> Enforcement::missing(sync::HostTime now) const {
   std::vector<std::string> names;
-  for (const auto& [name, sense] : senses_)
-    if (profile_ && now - sense.heard <= kForgotten && sense.profile != profile_->hash) names.push_back(name);
+  for (const auto& [name, node] : modalities_)
+    if (profile_ && now - node.received <= kHealthTimeout && node.profile != profile_->hash) names.push_back(name);
   return names;
 }
 
 std::optional<std::vector<std::string>> Enforcement::take_in_force(sync::HostTime now) {
-  if (!profile_ || told_ || !missing(now).empty()) return std::nullopt;
+  if (!profile_ || confirmed_ || !missing(now).empty()) return std::nullopt;
   std::vector<std::string> names;
-  for (const auto& [name, sense] : senses_)
-    if (now - sense.heard <= kForgotten) names.push_back(name);
+  for (const auto& [name, node] : modalities_)
+    if (now - node.received <= kHealthTimeout) names.push_back(name);
   if (names.empty()) return std::nullopt;
-  told_ = true;
+  confirmed_ = true;
   return names;
 }
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -9,16 +9,16 @@
 
 #include "sync/degradation/profile_exchange.h"
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 
 class Enforcement {
  public:
   static constexpr sync::Nanoseconds kRepeat{100'000'000};     // a datagram may be lost
-  static constexpr sync::Nanoseconds kForgotten{500'000'000};  // health comes every 100 ms: a node silent for this time is gone
-  static constexpr std::size_t kMaxSenses = 64;
+  static constexpr sync::Nanoseconds kHealthTimeout{500'000'000};  // health comes every 100 ms: a node silent for this time is gone
+  static constexpr std::size_t kMaxModalities = 64;
 
   // Puts this profile in force from now on.
-  void begin(sync::ProfileInForce profile) { profile_ = std::move(profile), told_ = false, next_.reset(); }
+  void begin(sync::ProfileInForce profile) { profile_ = std::move(profile), confirmed_ = false, next_.reset(); }
   void push(const node_health_t& m, sync::HostTime arrival);
   // The profile, when it is due to be sent (again).
   const sync::ProfileInForce* to_send(sync::HostTime now);
@@ -29,14 +29,14 @@ class Enforcement {
   const std::optional<sync::ProfileInForce>& profile() const { return profile_; }
 
  private:
-  struct ModalityEndpoint {
+  struct NodeStatus {
     std::int64_t profile = 0;
-    sync::HostTime heard{};
+    sync::HostTime received{};
   };
   std::optional<sync::ProfileInForce> profile_;
-  bool told_ = false;
+  bool confirmed_ = false;
   std::optional<sync::HostTime> next_;
-  std::map<std::string, ModalityEndpoint> senses_;  // by node
+  std::map<std::string, NodeStatus> modalities_;  // by node
 };
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 namespace {
 
 constexpr double kApproach_s = 0.5;  // to the surface before a press, and back after it; design
@@ -13,32 +13,32 @@ double smooth(double share) { return 0.5 - 0.5 * std::cos(std::numbers::pi * sha
 
 }  // namespace
 
-bool Hand::tap(const TapOrder& order) {
+bool Hand::tap(const TapRequest& request) {
   if (busy()) return false;
-  tap_ = order, since_s_ = 0;
+  tap_ = request, elapsed_s_ = 0;
   return true;
 }
 
-bool Hand::press(const PressOrder& order) {
+bool Hand::press(const PressRequest& request) {
   if (busy()) return false;
-  press_ = order, since_s_ = 0;
+  press_ = request, elapsed_s_ = 0;
   return true;
 }
 
-std::optional<double> Hand::below_m() const {
+std::optional<double> Hand::depth_below_rest_m() const {
   if (tap_) {
     const double deepest = above_m_ + tap_->depth_m, down_s = deepest / kDown_m_s;
-    if (since_s_ < down_s) return since_s_ * kDown_m_s;
-    if (since_s_ < down_s + kDwell_s) return deepest;
-    if (since_s_ < down_s + kDwell_s + kUp_s)
-      return deepest * (1 - smooth((since_s_ - down_s - kDwell_s) / kUp_s));
+    if (elapsed_s_ < down_s) return elapsed_s_ * kDown_m_s;
+    if (elapsed_s_ < down_s + kDwell_s) return deepest;
+    if (elapsed_s_ < down_s + kDwell_s + kUp_s)
+      return deepest * (1 - smooth((elapsed_s_ - down_s - kDwell_s) / kUp_s));
   }
   if (press_) {
     const double pressing_s = press_->period_s * press_->times;
-    if (since_s_ < kApproach_s) return above_m_ * smooth(since_s_ / kApproach_s);
-    if (const double t = since_s_ - kApproach_s; t < pressing_s)
+    if (elapsed_s_ < kApproach_s) return above_m_ * smooth(elapsed_s_ / kApproach_s);
+    if (const double t = elapsed_s_ - kApproach_s; t < pressing_s)
       return above_m_ + press_->depth_m * (0.5 - 0.5 * std::cos(2 * std::numbers::pi * t / press_->period_s));
-    if (const double t = since_s_ - kApproach_s - pressing_s; t < kApproach_s)
+    if (const double t = elapsed_s_ - kApproach_s - pressing_s; t < kApproach_s)
       return above_m_ * (1 - smooth(t / kApproach_s));
   }
   return std::nullopt;
@@ -49,12 +49,12 @@ void Hand::step(double dt_s) {
     velocity_m_s_.setZero();
     return;
   }
-  since_s_ += dt_s;
-  const auto below = below_m();
+  elapsed_s_ += dt_s;
+  const auto below = depth_below_rest_m();
   if (!below) tap_.reset(), press_.reset();
   const Eigen::Vector3d at = rest_m_ - Eigen::Vector3d(0, 0, below.value_or(0));
   velocity_m_s_ = (at - position_m_) / dt_s;
   position_m_ = at;
 }
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "scripts/trial_runner/orders.h"
+#include "scripts/trial_runner/requests.h"
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 
 class Hand {
  public:
@@ -17,8 +17,8 @@ class Hand {
   Hand(const Eigen::Vector3d& rest_m, double above_m) : rest_m_(rest_m), above_m_(above_m), position_m_(rest_m) {}
 
   // Starts at the next step; false: it is busy.
-  bool tap(const TapOrder& order);
-  bool press(const PressOrder& order);
+  bool tap(const TapRequest& request);
+  bool press(const PressRequest& request);
   bool busy() const { return tap_ || press_; }
   // One step of dt_s.
   void step(double dt_s);
@@ -28,14 +28,14 @@ class Hand {
 
  private:
   // Depth below its rest at the present time of the movement; nullopt: it has ended.
-  std::optional<double> below_m() const;
+  std::optional<double> depth_below_rest_m() const;
 
   Eigen::Vector3d rest_m_;
   double above_m_;
   Eigen::Vector3d position_m_, velocity_m_s_ = Eigen::Vector3d::Zero();
-  std::optional<TapOrder> tap_;
-  std::optional<PressOrder> press_;
-  double since_s_ = 0;
+  std::optional<TapRequest> tap_;
+  std::optional<PressRequest> press_;
+  double elapsed_s_ = 0;
 };
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -5,7 +5,7 @@
 #include "lcmtypes/valid.h"
 #include "sync/random/keyed_random.h"
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 
 void Interview::ask(question_t question) {
   question.header.sim_time_ns = -1;
@@ -18,12 +18,12 @@ void Interview::ask(question_t question) {
         "\" cannot be asked: text has at most 600 characters of ASCII, a choice 40, condition and progress 64; "
         "2 to 9 choices; a number lies between two with a step");
   question_ = std::move(question);
-  waits_ = question_.kind != question_t::NOTHING;
+  open_ = question_.kind != question_t::NOTHING;
   first_.reset(), next_.reset();
 }
 
-std::optional<answer_t> Interview::take(const answer_t& answer) {
-  if (!waits_ || answer.id != question_.id) return std::nullopt;
+std::optional<answer_t> Interview::accept(const answer_t& answer) {
+  if (!open_ || answer.id != question_.id) return std::nullopt;
   if (question_.kind == question_t::CHOICE && (answer.choice < 0 || answer.choice >= question_.count))
     return std::nullopt;
   if (question_.kind == question_t::NUMBER &&
@@ -36,7 +36,7 @@ std::optional<answer_t> Interview::take(const answer_t& answer) {
 }
 
 std::optional<answer_t> Interview::answer(int choice, double number, const char* by, sync::HostTime now) const {
-  if (!waits_ || !first_) return std::nullopt;
+  if (!open_ || !first_) return std::nullopt;
   answer_t a{};
   a.header.sim_time_ns = -1;
   a.id = question_.id, a.choice = question_.kind == question_t::CHOICE ? choice : -1;
@@ -53,4 +53,4 @@ std::optional<question_t> Interview::step(sync::HostTime now) {
   return question_;
 }
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

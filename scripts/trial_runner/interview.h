@@ -7,7 +7,7 @@
 
 #include "sync/time/time.h"
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 
 class Interview {
  public:
@@ -18,10 +18,10 @@ class Interview {
   // Replaces the present question. Throws std::invalid_argument with one sentence when no answer to it is possible.
   void ask(question_t question);
   // True while a question waits for its answer.
-  bool waits() const { return waits_; }
-  const question_t& asked() const { return question_; }
+  bool is_open() const { return open_; }
+  const question_t& question() const { return question_; }
   // The answer, when it is the first to the present question and fits it.
-  std::optional<answer_t> take(const answer_t& answer);
+  std::optional<answer_t> accept(const answer_t& answer);
   // The answer to the present question, from a button of the device or a simulated participant; nullopt: it does not fit the
   // question.
   std::optional<answer_t> answer(int choice, double number, const char* by, sync::HostTime now) const;
@@ -31,8 +31,8 @@ class Interview {
  private:
   std::uint64_t seed_, count_ = 0;
   question_t question_{};
-  bool waits_ = false;
+  bool open_ = false;
   std::optional<sync::HostTime> first_, next_;
 };
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -7,30 +7,30 @@
 #include <csignal>
 #include <stdexcept>
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 namespace {
 
-void never_wait(int descriptor) { fcntl(descriptor, F_SETFL, fcntl(descriptor, F_GETFL) | O_NONBLOCK); }
+void set_nonblocking(int descriptor) { fcntl(descriptor, F_SETFL, fcntl(descriptor, F_GETFL) | O_NONBLOCK); }
 
 }  // namespace
 
-Lines::Lines(int in, int out) : from_(in), to_(out) {
+Lines::Lines(int in, int out) : input_fd_(in), output_fd_(out) {
   std::signal(SIGPIPE, SIG_IGN);
-  never_wait(in);
-  never_wait(out);
+  set_nonblocking(in);
+  set_nonblocking(out);
 }
 
 std::optional<std::string> Lines::next() {
   char bytes[4096];
-  for (ssize_t n; !ended_ && in_.size() <= kLongestLine; in_.append(bytes, static_cast<std::size_t>(n))) {
-    n = read(from_, bytes, sizeof bytes);
+  for (ssize_t n; !ended_ && in_.size() <= kMaxLine; in_.append(bytes, static_cast<std::size_t>(n))) {
+    n = read(input_fd_, bytes, sizeof bytes);
     if (n < 0) break;
     if (n == 0) ended_ = true;
   }
   const auto end = in_.find('\n');
   if (end == std::string::npos) {
-    if (in_.size() > kLongestLine)
-      throw std::runtime_error("an order is longer than 128 KiB; give one JSON object a line");
+    if (in_.size() > kMaxLine)
+      throw std::runtime_error("a request is longer than 128 KiB; give one JSON object a line");
     return std::nullopt;
   }
   std::string line = in_.substr(0, end);
@@ -38,9 +38,9 @@ std::optional<std::string> Lines::next() {
   return line;
 }
 
-void Lines::say(const std::string& line) {
+void Lines::write_line(const std::string& line) {
   if (out_.size() > kMaxUnread)
-    throw std::runtime_error("nobody reads what the conductor says; read its lines as they come");
+    throw std::runtime_error("more than 8 MiB of output are unread; read the lines of trial_runner as they come");
   out_ += line;
   out_ += '\n';
   flush();
@@ -48,11 +48,11 @@ void Lines::say(const std::string& line) {
 
 void Lines::flush() {
   while (!out_.empty()) {
-    const ssize_t n = write(to_, out_.data(), out_.size());
-    if (n < 0 && errno == EPIPE) throw std::runtime_error("whoever listened to the conductor has gone");
+    const ssize_t n = write(output_fd_, out_.data(), out_.size());
+    if (n < 0 && errno == EPIPE) throw std::runtime_error("the reader of trial_runner's output has closed it");
     if (n <= 0) return;
     out_.erase(0, static_cast<std::size_t>(n));
   }
 }
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

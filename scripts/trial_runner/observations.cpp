@@ -8,7 +8,7 @@
 #include <tactus/presentation_t.hpp>
 #include <utility>
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 namespace {
 
 using nlohmann::json;
@@ -33,9 +33,9 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
 
 }  // namespace
 
-bool Observations::fresh(std::set<std::vector<std::int64_t>>& known, std::vector<std::int64_t> key) {
+bool Observations::is_first(std::set<std::vector<std::int64_t>>& known, std::vector<std::int64_t> key) {
   if (!known.insert(std::move(key)).second) return false;
-  if (known.size() > kRemembered) known.erase(known.begin());  // the smallest id: the oldest of an incarnation
+  if (known.size() > kMaxStoredIds) known.erase(known.begin());  // the smallest id: the oldest of an incarnation
   return true;
 }
 
@@ -47,23 +47,23 @@ sync::SenderClock* Observations::clock_of(const header_t& header, sync::HostTime
 }
 
 std::vector<json> Observations::push(const contact_events_t& m) {
-  std::vector<json> said;
+  std::vector<json> lines;
   for (const contact_event_t& e : m.events)
-    if (fresh(events_, {e.event_id}))
-      said.push_back({{"event", std::to_string(e.event_id)},
+    if (is_first(events_, {e.event_id}))
+      lines.push_back({{"event", std::to_string(e.event_id)},
                       {"kind", kKinds[e.kind]},
                       {"tool", e.tool},
                       {"sim_ns", e.time_ns},
                       {"speed_m_s", e.approach_speed_m_s}});
-  return said;
+  return lines;
 }
 
 std::vector<json> Observations::push(const presented_t& m, sync::HostTime arrival) {
-  std::vector<json> said;
+  std::vector<json> lines;
   const sync::SenderClock* clock = clock_of(m.header, arrival);
-  if (!clock) return said;
+  if (!clock) return lines;
   for (const presentation_t& p : m.reports) {
-    if (!fresh(reports_, {p.event_id, m.header.source, p.part})) continue;
+    if (!is_first(reports_, {p.event_id, m.header.source, p.part})) continue;
     json line{{"presented", std::to_string(p.event_id)},
               {"modality", m.modality},
               {"part", kParts[p.part]},
@@ -77,9 +77,9 @@ std::vector<json> Observations::push(const presented_t& m, sync::HostTime arriva
       line["uncertainty_ns"] = at.uncertainty.count() + p.uncertainty_ns;
     }
     if (p.scheduled_ns >= 0) line["scheduled_ns"] = sync::to_ns(read(p.scheduled_ns).time);
-    said.push_back(std::move(line));
+    lines.push_back(std::move(line));
   }
-  return said;
+  return lines;
 }
 
 std::optional<json> Observations::push(const media_clock_t& m, sync::HostTime arrival) {
@@ -123,4 +123,4 @@ std::optional<json> Observations::push(const tool_state_t& m, sync::HostTime arr
                 {"force_N", force_N}}}};
 }
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

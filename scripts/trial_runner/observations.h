@@ -20,12 +20,12 @@
 #include "sync/tools/picture_reader.h"
 #include "sync/clocks/sender_clock.h"
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 
 class Observations {
  public:
   // Number of remembered event ids, so that each event is written once.
-  static constexpr std::size_t kRemembered = 4096;
+  static constexpr std::size_t kMaxStoredIds = 4096;
   static constexpr std::size_t kMaxSenders = 256;
 
   explicit Observations(sync::OwnClock own) : own_(own) {}
@@ -46,7 +46,7 @@ class Observations {
   std::optional<nlohmann::json> push(const tool_state_t& m, sync::HostTime arrival);
 
  private:
-  bool fresh(std::set<std::vector<std::int64_t>>& known, std::vector<std::int64_t> key);
+  bool is_first(std::set<std::vector<std::int64_t>>& known, std::vector<std::int64_t> key);
   sync::SenderClock* clock_of(const header_t& header, sync::HostTime arrival);
 
   sync::OwnClock own_;
@@ -57,4 +57,4 @@ class Observations {
   std::map<std::int32_t, bool> vibrates_;  // by source
 };
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -1,4 +1,4 @@
-// conductor: the trial runner of a study. It puts the profiles of the trials in force, asks the participant, moves a hand
+// trial_runner: the trial runner of a study. It puts the profiles of the trials in force, asks the participant, moves a hand
 // where the study has one, and reports presentations and their times. Commands come on standard input, observations go to
 // standard output, a line of JSON each.
 //
@@ -42,7 +42,7 @@
 #include "scripts/trial_runner/interview.h"
 #include "scripts/trial_runner/lines.h"
 #include "scripts/trial_runner/observations.h"
-#include "scripts/trial_runner/orders.h"
+#include "scripts/trial_runner/requests.h"
 #include "sync/random/keyed_random.h"
 #include "sync/bus/identity.h"
 #include "sync/node/node.h"
@@ -51,26 +51,26 @@
 using namespace tactus;
 using nlohmann::json;
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 namespace {
 
-const sync::NodeDescriptor kConductor{.name = "conductor",
-                                      .modality = "",
-                                      .rate_Hz = 1000,
-                                      .fifo_priority = 55,
-                                      .about = "Leads the trials of a study."};
-constexpr sync::Nanoseconds kSensesEvery{500'000'000}, kRepeat{50'000'000};
-constexpr int kForceEvery = 5;  // ticks between two lines on the force of a press
-constexpr int kMaxOrdersATick = 16;
+const sync::NodeDescriptor kTrialRunner{.name = "conductor",
+                                        .modality = "",
+                                        .rate_Hz = 1000,
+                                        .fifo_priority = 55,
+                                        .about = "Runs the trials of a study."};
+constexpr sync::Nanoseconds kHealthPeriod{500'000'000}, kRepeat{50'000'000};
+constexpr int kForceDecimation = 5;  // ticks between two lines on the force of a press
+constexpr int kMaxRequestsPerTick = 16;
 
 std::int64_t realtime_ns() {
   return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
       .count();
 }
 
-class Conductor {
+class TrialRunner {
  public:
-  Conductor(sync::Node& node, const std::optional<std::pair<Eigen::Vector3d, double>>& hand, bool looks,
+  TrialRunner(sync::Node& node, const std::optional<std::pair<Eigen::Vector3d, double>>& hand, bool with_pictures,
             Lines& lines)
       : node_(node),
         lines_(lines),
@@ -88,78 +88,78 @@ class Conductor {
         tools_(node.bus().queue<tool_state_t>(channels::kToolState, 256)),
         forces_(node.bus().queue<device_force_t>(channels::kDeviceForce, 64)) {
     if (hand) hand_.emplace(hand->first, hand->second);
-    if (looks) pictures_ = &node.bus().queue<picture_chunk_t>(channels::kPictureChunk, 4096, sync::Port::kBulk);
-    state_.device = kConductor.name;
+    if (with_pictures) pictures_ = &node.bus().queue<picture_chunk_t>(channels::kPictureChunk, 4096, sync::Port::kBulk);
+    state_.device = kTrialRunner.name;
     state_.pose.orientation.w = 1;
     state_.header.sim_time_ns = -1;
   }
 
   // One tick. Returns false at the end command, or when the standard input is closed.
   bool step(sync::HostTime now) {
-    if (!heed_orders(now)) return false;
-    listen(now);
+    if (!handle_requests(now)) return false;
+    poll_queues(now);
     if (const auto* profile = enforcement_.to_send(now)) sync::send_profile(node_.bus(), *profile);
     if (const auto senses = enforcement_.take_in_force(now))
-      say({{"in_force", enforcement_.profile()->hash},
-           {"at_ns", sync::to_ns(now)},
-           {"since_sim_ns", sync::to_ns(enforcement_.profile()->start)},
-           {"senses", *senses}});
+      write({{"in_force", enforcement_.profile()->hash},
+             {"at_ns", sync::to_ns(now)},
+             {"since_sim_ns", sync::to_ns(enforcement_.profile()->start)},
+             {"senses", *senses}});
     if (auto question = interview_.step(now)) {
       node_.bus().publish(channels::kQuestion, *question);
-      if (question->kind != question_t::NOTHING && question->id != asked_)
-        say({{"asked", std::to_string(question->id)}, {"at_ns", sync::to_ns(now)}}), asked_ = question->id;
+      if (question->kind != question_t::NOTHING && question->id != published_question_)
+        write({{"asked", std::to_string(question->id)}, {"at_ns", sync::to_ns(now)}}), published_question_ = question->id;
     }
     if (command_ && now >= next_command_)
       node_.bus().publish(channels::kSimCommand, *command_), next_command_ = now + kRepeat;
-    if (now >= next_senses_) say_senses(now), next_senses_ = now + kSensesEvery;
-    move(now);
+    if (now >= next_health_) write_modalities(now), next_health_ = now + kHealthPeriod;
+    step_hand(now);
     lines_.flush();
     return true;
   }
 
  private:
   // Invalid UTF-8, as in quoted or truncated text, is replaced instead of ending the process.
-  void say(const json& line) { lines_.say(line.dump(-1, ' ', false, json::error_handler_t::replace)); }
+  void write(const json& line) { lines_.write_line(line.dump(-1, ' ', false, json::error_handler_t::replace)); }
 
-  bool heed_orders(sync::HostTime now) {
-    for (int i = 0; i < kMaxOrdersATick; ++i) {
+  bool handle_requests(sync::HostTime now) {
+    for (int i = 0; i < kMaxRequestsPerTick; ++i) {
       const auto line = lines_.next();
       if (!line) return !lines_.ended();
       try {
-        const Order order = parse_order(*line);
-        if (std::holds_alternative<EndOrder>(order)) return false;
-        std::visit([&](const auto& o) { obey(o, now); }, order);
+        const Request request = parse_request(*line);
+        if (std::holds_alternative<EndRequest>(request)) return false;
+        std::visit([&](const auto& o) { handle(o, now); }, request);
       } catch (const std::invalid_argument& e) {
-        say({{"refused", e.what()}});
+        write({{"refused", e.what()}});
       }
     }
     return true;
   }
 
-  void obey(const ProfileOrder& o, sync::HostTime now) {
+  void handle(const ProfileRequest& o, sync::HostTime now) {
     if (o.text.size() > sync::kMaxProfileBytes) throw std::invalid_argument("the profile is longer than 64 KiB");
     sync::ProfileInForce profile = sync::read_profile(o.text, "profile");
     profile.generation = realtime_ns();
     if (const auto map = simulation_.map(now)) profile.start = std::max(sync::SimTime{}, map->to_sim(now));
     enforcement_.begin(std::move(profile));
   }
-  void obey(const QuestionOrder& o, sync::HostTime) { interview_.ask(o.question); }
-  void obey(const AnswerOrder& o, sync::HostTime now) {
+  void handle(const QuestionRequest& o, sync::HostTime) { interview_.ask(o.question); }
+  void handle(const AnswerRequest& o, sync::HostTime now) {
     if (auto a = interview_.answer(o.choice, o.number, "simulated", now))
-      give(*a);
+      publish_answer(*a);
     else
-      throw std::invalid_argument("nothing is asked that this answers");
+      throw std::invalid_argument("no open question fits this answer");
   }
-  void obey(const TapOrder& o, sync::HostTime) {
-    if (!hand_) throw std::invalid_argument("there is no hand to tap with; start the conductor with --hand");
+  void handle(const TapRequest& o, sync::HostTime) {
+    if (!hand_) throw std::invalid_argument("there is no hand to tap with; start trial_runner with --hand");
     if (!hand_->tap(o)) throw std::invalid_argument("the hand is still moving");
   }
-  void obey(const PressOrder& o, sync::HostTime) {
-    if (!hand_) throw std::invalid_argument("there is no hand to press with; start the conductor with --hand");
+  void handle(const PressRequest& o, sync::HostTime) {
+    if (!hand_) throw std::invalid_argument("there is no hand to press with; start trial_runner with --hand");
     if (!hand_->press(o)) throw std::invalid_argument("the hand is still moving");
   }
-  void obey(const CommandOrder& o, sync::HostTime now) {
-    if (command_) throw std::invalid_argument("the command before is not answered yet");
+  void handle(const CommandRequest& o, sync::HostTime now) {
+    if (command_) throw std::invalid_argument("the previous command has no reply yet");
     command_.emplace();
     command_->header.sim_time_ns = -1;
     command_->id =
@@ -169,113 +169,113 @@ class Conductor {
     command_->kind = o.kind, command_->name = o.name;
     next_command_ = now;
   }
-  void obey(const EndOrder&, sync::HostTime) {}
+  void handle(const EndRequest&, sync::HostTime) {}
 
   // Publishes an answer that was given here, as a window publishes its own.
-  void give(answer_t answer) {
+  void publish_answer(answer_t answer) {
     node_.bus().publish(channels::kAnswer, answer);
-    heed(answer);
+    accept_answer(answer);
   }
-  void heed(const answer_t& answer) {
-    if (const auto a = interview_.take(answer))
-      say({{"answer", std::to_string(a->id)},
-           {"choice", a->choice},
-           {"number", a->number},
-           {"after_s", static_cast<double>(a->after_ns) * 1e-9},
-           {"by", a->by}});
+  void accept_answer(const answer_t& answer) {
+    if (const auto a = interview_.accept(answer))
+      write({{"answer", std::to_string(a->id)},
+             {"choice", a->choice},
+             {"number", a->number},
+             {"after_s", static_cast<double>(a->after_ns) * 1e-9},
+             {"by", a->by}});
   }
 
-  bool ours(const header_t& header) const { return header.run_id == node_.options().run_id; }
+  bool is_own_run(const header_t& header) const { return header.run_id == node_.options().run_id; }
 
-  void listen(sync::HostTime now) {
+  void poll_queues(sync::HostTime now) {
     while (const auto m = healths_.pop())
-      if (ours(m->message.header)) enforcement_.push(m->message, m->arrival), remember(m->message, m->arrival);
+      if (is_own_run(m->message.header)) enforcement_.push(m->message, m->arrival), store_health(m->message, m->arrival);
     while (const auto m = frames_.pop())
       if (ours(m->message.header)) simulation_.track(m->message.header, m->message.clock, m->arrival);
     while (const auto m = events_.pop())
-      if (ours(m->message.header))
-        for (const json& line : observations_.push(m->message)) say(line);
+      if (is_own_run(m->message.header))
+        for (const json& line : observations_.push(m->message)) write(line);
     while (const auto m = presented_.pop())
-      if (ours(m->message.header))
-        for (const json& line : observations_.push(m->message, m->arrival)) say(line);
+      if (is_own_run(m->message.header))
+        for (const json& line : observations_.push(m->message, m->arrival)) write(line);
     while (const auto m = media_.pop())
-      if (ours(m->message.header) && m->message.medium.starts_with("audio"))
-        if (const auto line = observations_.push(m->message, m->arrival)) say(*line);
+      if (is_own_run(m->message.header) && m->message.medium.starts_with("audio"))
+        if (const auto line = observations_.push(m->message, m->arrival)) write(*line);
     while (const auto m = games_.pop())
-      if (ours(m->message.header))
-        if (const auto line = observations_.push(m->message)) say(*line);
+      if (is_own_run(m->message.header))
+        if (const auto line = observations_.push(m->message)) write(*line);
     while (const auto m = replies_.pop())
-      if (command_ && ours(m->message.header) && m->message.id == command_->id) {
-        say({{"reply", {{"done", m->message.done == 1}, {"text", m->message.text}}}});
+      if (command_ && is_own_run(m->message.header) && m->message.id == command_->id) {
+        write({{"reply", {{"done", m->message.done == 1}, {"text", m->message.text}}}});
         command_.reset();
       }
     while (const auto m = answers_.pop())
-      if (ours(m->message.header)) heed(m->message);
+      if (is_own_run(m->message.header)) accept_answer(m->message);
     while (const auto m = tools_.pop())
-      if (ours(m->message.header)) {
-        push_button(m->message, now);
-        if (const auto line = observations_.push(m->message, m->arrival)) say(*line);
+      if (is_own_run(m->message.header)) {
+        handle_buttons(m->message, now);
+        if (const auto line = observations_.push(m->message, m->arrival)) write(*line);
       }
     while (const auto m = forces_.pop())
-      if (ours(m->message.header) && m->message.device == state_.device) force_N_ = m->message.force_N.z;
+      if (is_own_run(m->message.header) && m->message.device == state_.device) force_N_ = m->message.force_N.z;
     while (pictures_) {
       const auto m = pictures_->pop();
       if (!m) break;
-      if (!ours(m->message.header)) continue;
-      if (const auto line = observations_.push(m->message, m->arrival)) say(*line);
+      if (!is_own_run(m->message.header)) continue;
+      if (const auto line = observations_.push(m->message, m->arrival)) write(*line);
     }
   }
 
   // Button 1 is the first choice; any button continues after a text.
-  void push_button(const tool_state_t& m, sync::HostTime now) {
+  void handle_buttons(const tool_state_t& m, sync::HostTime now) {
     int& before = buttons_[m.header.source];
     const int pressed = m.buttons & ~std::exchange(before, m.buttons);
     for (int i = 0; i < 9; ++i)
-      if (pressed >> i & 1 && interview_.asked().kind != question_t::NUMBER)
-        if (auto a = interview_.answer(i, 0, "button", now)) give(*a);
+      if (pressed >> i & 1 && interview_.question().kind != question_t::NUMBER)
+        if (auto a = interview_.answer(i, 0, "button", now)) publish_answer(*a);
   }
 
-  void remember(const node_health_t& m, sync::HostTime arrival) {
-    if (m.modality.empty() || (senses_.size() >= Enforcement::kMaxSenses && !senses_.contains(m.node))) return;
-    senses_[m.node] = {m.modality, m.state, m.rate_Hz, m.nominal_rate_Hz, m.missed_ticks, m.profile, arrival};
+  void store_health(const node_health_t& m, sync::HostTime arrival) {
+    if (m.modality.empty() || (modalities_.size() >= Enforcement::kMaxModalities && !modalities_.contains(m.node))) return;
+    modalities_[m.node] = {m.modality, m.state, m.rate_Hz, m.nominal_rate_Hz, m.missed_ticks, m.profile, arrival};
   }
-  void say_senses(sync::HostTime now) {
+  void write_modalities(sync::HostTime now) {
     json all = json::object();
-    for (const auto& [name, s] : senses_)
+    for (const auto& [name, s] : modalities_)
       all[name] = {{"modality", s.modality},
                    {"state", s.state},
                    {"rate_Hz", s.rate_Hz},
                    {"nominal_rate_Hz", s.nominal_rate_Hz},
                    {"missed_ticks", s.missed_ticks},
-                   {"age_s", sync::to_seconds(now - s.heard)},
+                   {"age_s", sync::to_seconds(now - s.received)},
                    {"in_force", enforcement_.profile() && s.profile == enforcement_.profile()->hash}};
     json line{{"senses", all}, {"at_ns", sync::to_ns(now)}};
     if (const auto map = simulation_.map(now)) line["sim_ns"] = sync::to_ns(map->to_sim(now));
-    say(line);
+    write(line);
   }
 
-  void move(sync::HostTime now) {
+  void step_hand(sync::HostTime now) {
     if (!hand_) return;
     const bool moved = hand_->busy();
     // A late tick moves no further than one on time.
-    hand_->step(std::clamp(sync::to_seconds(now - std::exchange(before_, now)), 1e-4, 2e-3));
+    hand_->step(std::clamp(sync::to_seconds(now - std::exchange(last_tick_, now)), 1e-4, 2e-3));
     const auto& at = hand_->position_m();
     const auto& v = hand_->velocity_m_s();
-    if (hand_->presses() && ++ticks_ % kForceEvery == 0)
-      say({{"felt", {{"at_ns", sync::to_ns(now)}, {"z_m", at.z()}, {"force_N", force_N_}}}});
-    if (moved && !hand_->busy()) say({{"moved", true}, {"at_ns", sync::to_ns(now)}});
+    if (hand_->presses() && ++ticks_ % kForceDecimation == 0)
+      write({{"felt", {{"at_ns", sync::to_ns(now)}, {"z_m", at.z()}, {"force_N", force_N_}}}});
+    if (moved && !hand_->busy()) write({{"moved", true}, {"at_ns", sync::to_ns(now)}});
     state_.pose.position_m = {at.x(), at.y(), at.z()};
     state_.velocity_m_s = {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
     state_.state = device_state_t::ANSWERS;
     node_.bus().publish(channels::kDeviceState, state_);
   }
 
-  struct ModalityEndpoint {
+  struct NodeStatus {
     std::string modality;
     int state = 0;
     double rate_Hz = 0, nominal_rate_Hz = 0;
     std::int64_t missed_ticks = 0, profile = 0;
-    sync::HostTime heard{};
+    sync::HostTime received{};
   };
 
   sync::Node& node_;
@@ -296,12 +296,12 @@ class Conductor {
   sync::Queue<tool_state_t>& tools_;
   sync::Queue<device_force_t>& forces_;
   sync::Queue<picture_chunk_t>* pictures_ = nullptr;
-  std::map<std::string, ModalityEndpoint> senses_;
+  std::map<std::string, NodeStatus> modalities_;
   std::map<std::int32_t, int> buttons_;  // by source
   std::optional<sim_command_t> command_;
-  sync::HostTime next_command_{}, next_senses_{}, before_{};
+  sync::HostTime next_command_{}, next_health_{}, last_tick_{};
   std::uint64_t commands_ = 0;
-  std::int64_t asked_ = 0;
+  std::int64_t published_question_ = 0;
   int ticks_ = 0;
   float force_N_ = 0;
   device_state_t state_{};
@@ -314,28 +314,28 @@ int run(int argc, char** argv) try {
   sync::NodeOptions options;
   std::vector<double> rest_m;
   double above_m = 0;
-  bool looks = false;
-  options.add_to(app, kConductor);
+  bool with_pictures = false;
+  options.add_to(app, kTrialRunner);
   auto* hand =
-      app.add_option("--hand", rest_m, "the conductor holds device external:conductor, and rests here: X Y Z, m")
+      app.add_option("--hand", rest_m, "rest position of the hand, device external:conductor: X Y Z, m")
           ->expected(3);
-  app.add_option("--above", above_m, "so far above the surface that it strikes, m")
+  app.add_option("--above", above_m, "height of the rest position above the surface, m")
       ->check(CLI::Range(0.0, 1.0))
       ->needs(hand);
-  app.add_flag("--look", looks, "says the pictures, too, that visual_node streams");
-  sync::parse_or_exit(app, kConductor.name, argc, argv);
-  std::optional<std::pair<Eigen::Vector3d, double>> held;
-  if (!rest_m.empty()) held.emplace(Eigen::Vector3d(rest_m[0], rest_m[1], rest_m[2]), above_m);
+  app.add_flag("--look", with_pictures, "writes the pictures that visual_node streams");
+  sync::parse_or_exit(app, kTrialRunner.name, argc, argv);
+  std::optional<std::pair<Eigen::Vector3d, double>> hand_pose;
+  if (!rest_m.empty()) hand_pose.emplace(Eigen::Vector3d(rest_m[0], rest_m[1], rest_m[2]), above_m);
 
   Lines lines(STDIN_FILENO, STDOUT_FILENO);
-  sync::Node node(kConductor, options);
-  Conductor conductor(node, held, looks, lines);
+  sync::Node node(kTrialRunner, options);
+  TrialRunner runner(node, hand_pose, with_pictures, lines);
   node.set_state(node_health_t::RUNNING);
   while (node.running())
-    if (!conductor.step(node.wait())) break;
+    if (!runner.step(node.wait())) break;
   return 0;
 } catch (const std::exception& e) {
-  return sync::fail(kConductor.name, e);
+  return sync::fail(kTrialRunner.name, e);
 }
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

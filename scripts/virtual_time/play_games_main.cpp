@@ -35,14 +35,14 @@ using nlohmann::json;
 
 namespace {
 
-constexpr sync::Nanoseconds kTurn{50'000'000};
-constexpr sync::Nanoseconds kWorldBegins{60'000'000'000};  // at the latest: a scene's grace is some seconds
+constexpr sync::Nanoseconds kRunStep{50'000'000};
+constexpr sync::Nanoseconds kWorldStartTimeout{60'000'000'000};  // at the latest: a scene's grace is some seconds
 
 struct Loaded {
   std::string scene, out;
   std::vector<std::string> scatter;
   sim::WorldDef world;
-  participant::Rules rules;
+  simulated_player::Rules rules;
   sync::WirePlan wire;
 };
 
@@ -92,21 +92,21 @@ GameVerdict play(const Loaded& loaded, const GameDef& game) {
   add("visual_node", words({"visual_node", "--no-pictures"}, degraded), visual::run);
   add("thermal_node", words({"thermal_node"}, degraded), thermal::run);
   add("participant",
-      words(words({"participant", loaded.scene, "--device", "participant"}, loaded.scatter), degraded),
-      [&](int argc, char** argv) { return participant::run(argc, argv, &loaded.rules); });
+      words(words({"simulated_player", loaded.scene, "--device", "participant"}, loaded.scatter), degraded),
+      [&](int argc, char** argv) { return simulated_player::run(argc, argv, &loaded.rules); });
   add("sim_node", words({"sim_node", loaded.scene}, common),
       [&](int argc, char** argv) { return sim::run(argc, argv, &loaded.world); });
-  const sync::HostTime latest = time.now() + kWorldBegins;
-  while (!referee.begun() && time.now() < latest) time.run_for(kTurn);
+  const sync::HostTime latest = time.now() + kWorldStartTimeout;
+  while (!referee.begun() && time.now() < latest) time.run_for(kRunStep);
   if (!referee.begun()) throw std::runtime_error("the world does not begin");
   const sync::HostTime until = time.now() + sync::from_seconds(game.limit_s);
-  while (time.now() < until && !referee.decided()) time.run_for(kTurn);
+  while (time.now() < until && !referee.decided()) time.run_for(kRunStep);
   for (const char* name : {"sync_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "participant", "sim_node"})
-    if (time.result(name) > 0) throw std::runtime_error(std::string(name) + " left");
+    if (time.result(name) > 0) throw std::runtime_error(std::string(name) + " ended too early");
   return referee.verdict();
 }
 
-json told(const Loaded& loaded, const GameDef& game) try {
+json play_to_json(const Loaded& loaded, const GameDef& game) try {
   const GameVerdict v = play(loaded, game);
   const bool won = v.won && v.time_s <= game.limit_s;
   return {{"won", won},       {"time_s", won ? v.time_s : game.limit_s}, {"filled", v.filled},
@@ -126,18 +126,18 @@ std::string last_line(int fd) {
   return text.substr(text.rfind('\n') + 1);
 }
 
-json in_a_process(const Loaded& loaded, const GameDef& game) {
+json play_in_process(const Loaded& loaded, const GameDef& game) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
-    throw std::runtime_error(std::string("no pipe to a game: ") + std::strerror(errno));
-  const int said = memfd_create("game", MFD_CLOEXEC);
+    throw std::runtime_error(std::string("cannot create a pipe to a game: ") + std::strerror(errno));
+  const int stderr_fd = memfd_create("game", MFD_CLOEXEC);
   const pid_t parent = getpid(), child = fork();
-  if (child < 0) throw std::runtime_error(std::string("no process for a game: ") + std::strerror(errno));
+  if (child < 0) throw std::runtime_error(std::string("cannot start a process for a game: ") + std::strerror(errno));
   if (child == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(1);
-    if (said >= 0) dup2(said, STDERR_FILENO);
-    const std::string line = told(loaded, game).dump();
+    if (stderr_fd >= 0) dup2(stderr_fd, STDERR_FILENO);
+    const std::string line = play_to_json(loaded, game).dump();
     for (std::size_t done = 0; done < line.size();) {
       const ssize_t n = write(ends[1], line.data() + done, line.size() - done);
       if (n <= 0) _exit(1);
@@ -155,8 +155,8 @@ json in_a_process(const Loaded& loaded, const GameDef& game) {
   json result = json::parse(line, nullptr, false);
   if (!result.is_object())
     result = {{"trouble", "the game's process ended with status " + std::to_string(status)}};
-  if (result.contains("trouble") && said >= 0) result["said"] = last_line(said);
-  close(said);
+  if (result.contains("trouble") && stderr_fd >= 0) result["said"] = last_line(stderr_fd);
+  close(stderr_fd);
   return result;
 }
 
@@ -164,24 +164,24 @@ json in_a_process(const Loaded& loaded, const GameDef& game) {
 
 int main(int argc, char** argv) try {
   CLI::App app(
-      "Plays games of the artificial player in virtual time: a JSON line on stdin for each, "
+      "Plays games of the simulated player in virtual time: a JSON line on stdin for each, "
       "{\"game\": NAME, \"seed\": N, \"limit_s\": S, \"profile\": XML}, and one on stdout.");
   Loaded loaded;
   std::string
       along = "0.08",
       aside = "0.08";  // design: the balls of the dark room stay apart from each other and from the objects there
   app.add_option("SCENE", loaded.scene, "SDF file of a world with a game")->required()->check(CLI::ExistingFile);
-  app.add_option("--out", loaded.out, "empty folder for what the nodes write")
+  app.add_option("--out", loaded.out, "empty folder for the output of the nodes")
       ->required()
       ->check(CLI::ExistingDirectory);
-  app.add_option("--scatter-along", along, "balls begin so far nearer to their holes or further, m")
+  app.add_option("--scatter-along", along, "half range of the balls' start positions towards or away from their holes, m")
       ->capture_default_str();
-  app.add_option("--scatter-aside", aside, "and so far to the side, m")->capture_default_str();
+  app.add_option("--scatter-aside", aside, "half range of the balls' start positions to the side, m")->capture_default_str();
   double latency_ms = 0, jitter_ms = 0, loss_percent = 0;
-  app.add_option("--latency-ms", latency_ms, "of the bus")->check(CLI::Range(0.0, 10000.0))->capture_default_str();
-  app.add_option("--jitter-ms", jitter_ms, "of the bus, mean of what is added; its tail is heavy")
+  app.add_option("--latency-ms", latency_ms, "latency of the bus, ms")->check(CLI::Range(0.0, 10000.0))->capture_default_str();
+  app.add_option("--jitter-ms", jitter_ms, "mean of the additional latency of the bus, ms; heavy-tailed")
       ->check(CLI::Range(0.0, 10000.0));
-  app.add_option("--loss-percent", loss_percent, "of datagrams on the bus")->check(CLI::Range(0.0, 100.0));
+  app.add_option("--loss-percent", loss_percent, "share of lost datagrams on the bus, percent")->check(CLI::Range(0.0, 100.0));
   sync::parse_or_exit(app, "play_games", argc, argv);
   loaded.wire.latency = sync::from_seconds(latency_ms * 1e-3);
   if (jitter_ms > 0) loaded.wire.jitter = {.shape = sync::JitterShape::kPareto, .scale_s = jitter_ms * 1e-3};
@@ -189,21 +189,21 @@ int main(int argc, char** argv) try {
   loaded.scatter = {"--scatter-along", along, "--scatter-aside", aside};
   std::vector<std::string> warnings;
   loaded.world = sim::load_sdf(loaded.scene, warnings);
-  loaded.rules = participant::read_rules(loaded.scene);
+  loaded.rules = simulated_player::read_rules(loaded.scene);
   for (std::string line; std::getline(std::cin, line);) {
-    const json asked = json::parse(line, nullptr, false);
-    if (!asked.is_object() || !asked.contains("game") || !asked["game"].is_string())
+    const json request = json::parse(line, nullptr, false);
+    if (!request.is_object() || !request.contains("game") || !request["game"].is_string())
       throw std::runtime_error("this line names no game: " + line.substr(0, 200));
     json result;
     try {
-      result = in_a_process(loaded, {asked.value("seed", std::uint64_t{1}), asked.value("limit_s", 30.0),
-                                     asked.value("profile", "")});
+      result = play_in_process(loaded, {request.value("seed", std::uint64_t{1}), request.value("limit_s", 30.0),
+                                     request.value("profile", "")});
     } catch (const json::exception& e) {
       throw std::runtime_error(
           "a game is {\"game\": NAME, \"seed\": N, \"limit_s\": S, \"profile\": XML}, which this line is not: " +
           line.substr(0, 200));
     }
-    result["game"] = asked["game"];
+    result["game"] = request["game"];
     std::cout << result.dump() << std::endl;
     if (!std::cout) return 1;
   }

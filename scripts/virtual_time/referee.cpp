@@ -10,7 +10,7 @@
 
 namespace tactus {
 
-void Referee::hear(std::string_view channel, std::span<const std::uint8_t> data) {
+void Referee::on_message(std::string_view channel, std::span<const std::uint8_t> data) {
   if (channel == channels::kGameState) {
     const auto m = sync::decode<game_state_t>(data.data(), data.size());
     if (!m) return;

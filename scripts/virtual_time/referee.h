@@ -21,7 +21,7 @@ struct GameVerdict {
 class Referee {
  public:
   // Receives all messages of the bus.
-  void hear(std::string_view channel, std::span<const std::uint8_t> data);
+  void on_message(std::string_view channel, std::span<const std::uint8_t> data);
   // True once the simulation has published the world.
   bool begun() const { return begun_; }
   // True when it is won, or cannot be won any more: a ball lies in a wrong hole.

@@ -34,33 +34,33 @@ const std::map<std::string, std::function<int(int, char**)>> kPrograms{
     {"thermal_node", thermal::run},
     {"sync_node", sync::run_sync_node},
     {"recorder", sync::run_recorder},
-    {"participant", [](int argc, char** argv) { return participant::run(argc, argv); }},
+    {"simulated_player", [](int argc, char** argv) { return simulated_player::run(argc, argv); }},
 };
 
 using Words = std::vector<std::string>;
 
-constexpr sync::Nanoseconds kTurn{100'000'000};
-constexpr sync::Nanoseconds kWorldBegins{60'000'000'000};   // at the latest: a scene's grace is some seconds
-constexpr sync::Nanoseconds kPresentTheLast{300'000'000};  // time to present and report the last events
-constexpr std::chrono::seconds kProgress{5};
+constexpr sync::Nanoseconds kRunStep{100'000'000};
+constexpr sync::Nanoseconds kWorldStartTimeout{60'000'000'000};  // at the latest: a scene's grace is some seconds
+constexpr sync::Nanoseconds kFinalPresentations{300'000'000};    // time to present and report the last events
+constexpr std::chrono::seconds kProgressPeriod{5};
 
 // One line of the plan.
-struct Planned {
+struct PlannedProgram {
   std::string name;
   Words words;  // the program first
 };
 
-volatile std::sig_atomic_t stop_asked = 0;
+volatile std::sig_atomic_t stop_requested = 0;
 
-std::vector<Planned> read_plan(const std::string& file) {
+std::vector<PlannedProgram> read_plan(const std::string& file) {
   std::ifstream in(file);
   const nlohmann::json plan = nlohmann::json::parse(in, nullptr, false);
-  const std::string wrong = file + " is no plan: it holds {\"NAME\": [\"PROGRAM\", \"OPTION\", ...], ...}";
+  const std::string wrong = file + " is no plan; write {\"NAME\": [\"PROGRAM\", \"OPTION\", ...], ...}";
   if (!plan.is_object() || plan.empty()) throw std::runtime_error(wrong);
-  std::vector<Planned> programs;
+  std::vector<PlannedProgram> programs;
   for (const auto& [name, words] : plan.items()) {
     if (!words.is_array() || words.empty() || !std::all_of(words.begin(), words.end(), [](const auto& w) { return w.is_string(); }))
-      throw std::runtime_error(wrong + "; what it has for " + name + " is none");
+      throw std::runtime_error(wrong + "; the entry " + name + " is no such list");
     programs.push_back({name, words.get<Words>()});
     const std::string program = std::filesystem::path(programs.back().words.front()).filename();
     if (!kPrograms.contains(program)) throw std::runtime_error(program + " does not run in virtual time; leave it out of " + file);
@@ -84,9 +84,9 @@ void end_in_order(sync::VirtualTime& time, const std::vector<Planned>& programs)
       if (concerns(program.words.front())) time.request_stop(program.name);
     time.run_for(kPresentTheLast);
   };
-  ask([](const std::string& program) { return program == "sim_node"; });
-  ask([](const std::string& program) { return program != "sync_node" && program != "recorder"; });
-  ask([](const std::string& program) { return program == "sync_node"; });
+  request_stop([](const std::string& program) { return program == "sim_node"; });
+  request_stop([](const std::string& program) { return program != "sync_node" && program != "recorder"; });
+  request_stop([](const std::string& program) { return program == "sync_node"; });
   time.end();
 }
 
@@ -100,41 +100,41 @@ int main(int argc, char** argv) try {
   app.add_option("PLAN", file, "command lines of the nodes, JSON: {\"NAME\": [\"PROGRAM\", \"OPTION\", ...], ...}")
       ->required()
       ->check(CLI::ExistingFile);
-  app.add_option("--seconds", seconds, "of the world, from when it begins")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--seed", plan.seed, "of identities, phases of loops, and what the bus does")->capture_default_str();
-  app.add_option("--latency-ms", latency_ms, "of the bus")->check(CLI::Range(0.0, 10000.0))->capture_default_str();
-  app.add_option("--jitter-ms", jitter_ms, "of the bus, mean of what is added; its tail is heavy")->check(CLI::Range(0.0, 10000.0));
-  app.add_option("--loss-percent", loss_percent, "of datagrams on the bus")->check(CLI::Range(0.0, 100.0));
+  app.add_option("--seconds", seconds, "simulated time to run after the start of the world, s")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--seed", plan.seed, "seed of identities, phases of loops, and the bus")->capture_default_str();
+  app.add_option("--latency-ms", latency_ms, "latency of the bus, ms")->check(CLI::Range(0.0, 10000.0))->capture_default_str();
+  app.add_option("--jitter-ms", jitter_ms, "mean of the additional latency of the bus, ms; heavy-tailed")->check(CLI::Range(0.0, 10000.0));
+  app.add_option("--loss-percent", loss_percent, "share of lost datagrams on the bus, percent")->check(CLI::Range(0.0, 100.0));
   sync::parse_or_exit(app, "virtual_time", argc, argv);
-  const std::vector<Planned> programs = read_plan(file);
+  const std::vector<PlannedProgram> programs = read_plan(file);
   plan.wire = {.latency = sync::from_seconds(latency_ms * 1e-3),
                .jitter = {.shape = sync::JitterShape::kPareto, .scale_s = jitter_ms * 1e-3},
                .loss = {.share = loss_percent / 100}};
   if (jitter_ms == 0) plan.wire.jitter = {};
 
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop_asked = 1; });
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop_requested = 1; });
   sync::VirtualTime time(plan);
   std::optional<sync::HostTime> world_began;
   time.wire().add_listener([&](sync::HostTime now, std::string_view channel, std::span<const std::uint8_t>) {
     if (!world_began && channel == channels::kWorldState) world_began = now;
   });
-  for (const Planned& program : programs) time.add(program.name, [&] { return run_program(program.words); });
+  for (const PlannedProgram& program : programs) time.add(program.name, [&] { return run_program(program.words); });
   const auto begun = std::chrono::steady_clock::now();
-  auto next_said = begun + kProgress;
-  while (!world_began && !stop_asked && time.now() < sync::VirtualTime::kBegin + kWorldBegins) time.run_for(kTurn);
-  if (!world_began && !stop_asked) throw std::runtime_error("the world does not begin; the plan needs a sim_node, and a scene that it can read");
-  const sync::HostTime until = world_began.value_or(time.now()) + sync::from_seconds(seconds);
-  while (time.now() < until && !stop_asked) {
-    time.run_until(std::min(until, time.now() + kTurn));
-    if (const auto now = std::chrono::steady_clock::now(); now >= next_said) {
-      next_said = now + kProgress;
-      std::cerr << "virtual_time: " << sync::to_seconds(time.now() - *world_began) << " of " << seconds << " s" << std::endl;
+  auto next_progress = begun + kProgressPeriod;
+  while (!world_start && !stop_requested && time.now() < sync::VirtualTime::kBegin + kWorldStartTimeout) time.run_for(kRunStep);
+  if (!world_start && !stop_requested) throw std::runtime_error("the world does not begin; add a sim_node with a readable scene to the plan");
+  const sync::HostTime until = world_start.value_or(time.now()) + sync::from_seconds(seconds);
+  while (time.now() < until && !stop_requested) {
+    time.run_until(std::min(until, time.now() + kRunStep));
+    if (const auto now = std::chrono::steady_clock::now(); now >= next_progress) {
+      next_progress = now + kProgressPeriod;
+      std::cerr << "virtual_time: " << sync::to_seconds(time.now() - *world_start) << " of " << seconds << " s" << std::endl;
     }
   }
-  end_in_order(time, programs);
-  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  const double lasted_s = sync::to_seconds(time.now() - sync::VirtualTime::kBegin);
-  std::cerr << "virtual_time: " << lasted_s << " s in " << took_s << " s, " << lasted_s / took_s << " times as fast as real time; "
+  stop_in_order(time, programs);
+  const double real_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  const double virtual_s = sync::to_seconds(time.now() - sync::VirtualTime::kBegin);
+  std::cerr << "virtual_time: " << virtual_s << " s in " << real_s << " s, " << virtual_s / real_s << " times as fast as real time; "
             << time.wire().sent() << " messages sent" << std::endl;
   return 0;
 } catch (const std::exception& e) {

@@ -24,55 +24,55 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 header_t header() {
   header_t h{};
-  h.run_id = Running::kRunId;
+  h.run_id = RunningCluster::kRunId;
   h.source = 666;
   h.incarnation = 666;
   return h;
 }
 
 template <class Message>
-Message headed() {
+Message with_header() {
   Message m{};
   m.header = header();
   return m;
 }
 
 // Well-formed messages with one non-finite value, by channel.
-std::map<std::string, Bytes> not_finite() {
-  auto events = headed<contact_events_t>();
+std::map<std::string, Bytes> non_finite_messages() {
+  auto events = with_header<contact_events_t>();
   events.pages = 1;
   events.count = 1;
   events.events.resize(1);
   events.events[0].approach_speed_m_s = kNan;
-  auto contacts = headed<contact_frame_t>();
+  auto contacts = with_header<contact_frame_t>();
   contacts.pages = 1;
   contacts.count = 1;
   contacts.contacts.resize(1);
   contacts.contacts[0].depth_m = std::numeric_limits<float>::infinity();
-  auto world = headed<world_state_t>();
+  auto world = with_header<world_state_t>();
   world.pages = 1;
   world.count = 1;
   world.bodies.resize(1);
   world.bodies[0].position_m.x = std::numeric_limits<double>::quiet_NaN();
-  auto touch = headed<touch_model_t>();
+  auto touch = with_header<touch_model_t>();
   touch.clock.rate = std::numeric_limits<double>::quiet_NaN();
-  auto tool = headed<tool_state_t>();
+  auto tool = with_header<tool_state_t>();
   tool.force_N.z = kNan;
-  auto health = headed<node_health_t>();
+  auto health = with_header<node_health_t>();
   health.rate_Hz = std::numeric_limits<double>::infinity();
   return {{channels::kContactEvents, sync::encode(events)}, {channels::kContacts, sync::encode(contacts)},
           {channels::kWorldState, sync::encode(world)},     {channels::kTouchModel, sync::encode(touch)},
           {channels::kToolState, sync::encode(tool)},       {channels::kNodeHealth, sync::encode(health)}};
 }
 
-const std::vector<std::string> kAll{channels::kTouchModel,  channels::kContactEvents, channels::kContacts,
+const std::vector<std::string> kChannels{channels::kTouchModel,  channels::kContactEvents, channels::kContacts,
                                     channels::kWorldState,  channels::kToolState,     channels::kThermalState,
                                     channels::kPresented,   channels::kNodeHealth,    channels::kSceneManifest,
                                     channels::kAssetChunk,  channels::kAssetRequest,  channels::kThermalDevice,
                                     channels::kDeviceState, channels::kDeviceForce};
 
 // One round of every kind of bad datagram, on both ports.
-void spoil(Datagrams& wire, std::mt19937& random) {
+void send_bad_messages(Datagrams& wire, std::mt19937& random) {
   std::uniform_int_distribution<int> byte(0, 255);
   const auto noise = [&](std::size_t size) {
     Bytes bytes(size);
@@ -80,7 +80,7 @@ void spoil(Datagrams& wire, std::mt19937& random) {
     return bytes;
   };
   for (int port : {0, 1}) {
-    for (const auto& [channel, bytes] : not_finite()) {
+    for (const auto& [channel, bytes] : non_finite_messages()) {
       wire.send_message(channel, bytes, port);
       Bytes part(bytes.begin(), bytes.begin() + static_cast<long>(byte(random) * bytes.size() / 256));
       wire.send_message(channel, part, port);
@@ -88,7 +88,7 @@ void spoil(Datagrams& wire, std::mt19937& random) {
       longer.resize(bytes.size() + 5);
       wire.send_message(channel, longer, port);
     }
-    for (const std::string& channel : kAll) {
+    for (const std::string& channel : kChannels) {
       wire.send_message(channel, {}, port);
       wire.send_message(channel, noise(64), port);
       wire.send_message(channel, noise(4000), port);
@@ -101,30 +101,30 @@ void spoil(Datagrams& wire, std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("Malformed, truncated, oversized and non-finite messages are counted and dropped, and nobody exits", "[smoke]") {
-  Running c;
+TEST_CASE("Malformed, truncated, oversized and non-finite messages are counted and dropped, and no node exits", "[smoke]") {
+  RunningCluster c;
   c.start();
   Datagrams wire;
   std::mt19937 random(1);
   std::map<std::string, std::int64_t> before;
-  for (const std::string& node : kNodes) before[node] = c.ear.bad(node);
+  for (const std::string& node : kNodes) before[node] = c.monitor.malformed(node);
   // 3 s of about 10,000 datagrams per second.
   for (int round = 0; round < 300; ++round) {
-    spoil(wire, random);
-    c.ear.listen(0.01);
+    send_bad_messages(wire, random);
+    c.monitor.receive_for(0.01);
   }
   const std::vector<std::string> all{"sim_node",    "haptic_node",  "audio_node",
                                      "visual_node", "thermal_node", "sync_node"};
   for (const std::string& node : all) {
-    INFO(node << ": " << c.processes.said(node));
+    INFO(node << ": " << c.processes.output(node));
     CHECK(c.processes.running(node));
-    CHECK(c.ear.wait_until([&] { return c.ear.bad(node) > before[node]; }, kPatience_s));
+    CHECK(c.monitor.wait_until([&] { return c.monitor.malformed(node) > before[node]; }, kTimeout_s));
   }
-  const bool well = c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s);
-  INFO(c.words());
-  CHECK(well);
-  const std::int64_t hits = c.ear.hits();
-  CHECK(c.ear.wait_until([&] { return c.ear.hits() > hits; }, kPatience_s));
-  REQUIRE(c.ear.tool_state() != nullptr);
-  CHECK(std::isfinite(c.ear.force_N()));
+  const bool recovered = c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s);
+  INFO(c.log_text());
+  CHECK(recovered);
+  const std::int64_t hits = c.monitor.hits();
+  CHECK(c.monitor.wait_until([&] { return c.monitor.hits() > hits; }, kTimeout_s));
+  REQUIRE(c.monitor.tool_state() != nullptr);
+  CHECK(std::isfinite(c.monitor.force_N()));
 }

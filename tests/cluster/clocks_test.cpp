@@ -15,24 +15,24 @@ using nlohmann::json;
 namespace {
 
 // Runs a command in a time namespace whose clock is an hour ahead: another host, as far as clocks are concerned.
-std::vector<std::string> an_hour_ahead(std::vector<std::string> command) {
+std::vector<std::string> with_clock_ahead(std::vector<std::string> command) {
   const std::vector<std::string> host{"unshare", "--time", "--monotonic", "3600", "--fork", "--kill-child"};
   command.insert(command.begin(), host.begin(), host.end());
   return command;
 }
 
-bool time_namespaces(RunScript& run) {
-  run.processes.spawn("probe", an_hour_ahead({"true"}));
+bool has_time_namespaces(RunScript& run) {
+  run.processes.spawn("probe", with_clock_ahead({"true"}));
   return run.processes.wait_for_exit("probe", 20) == 0;
 }
 
 // Runs one scenario of tests/measure/measure_clocks.
-json measured(RunScript& run, const std::string& scenario) {
+json run_scenario(RunScript& run, const std::string& scenario) {
   const std::filesystem::path file = run.folder.path() / (scenario + ".json");
   run.processes.spawn("measure", {"env", "TACTUS_BIN=" + programs().string(), (repository() / "tests/measure/measure_clocks").string(),
                                   "--seconds", "16", "--only", scenario, "--json", file});
   const int status = run.processes.wait_for_exit("measure", 90);
-  UNSCOPED_INFO(run.processes.said("measure"));
+  UNSCOPED_INFO(run.processes.output("measure"));
   if (status == 77) return {};
   const json rows = json::parse(contents(file), nullptr, false);
   REQUIRE(rows.is_array());
@@ -42,10 +42,12 @@ json measured(RunScript& run, const std::string& scenario) {
 
 }  // namespace
 
-TEST_CASE("Two hosts agree on time, and their uncertainty holds the truth: idle, drifting, held in one direction, jumping, replaced", "[exclusive]") {
+TEST_CASE(
+    "The clock maps of two hosts contain the true offset: idle, drifting, delayed in one direction, "
+    "jumping, replaced", "[exclusive]") {
   const std::string scenario = GENERATE(as<std::string>{}, "idle", "drift", "held", "jump", "restart");
   RunScript run;
-  const json row = measured(run, scenario);
+  const json row = run_scenario(run, scenario);
   if (row.is_null()) return;  // this machine has no time namespaces
   INFO(row.dump());
   REQUIRE(row["n"].get<int>() > 20);
@@ -56,42 +58,42 @@ TEST_CASE("Two hosts agree on time, and their uncertainty holds the truth: idle,
   CHECK(row["epochs"].get<int>() == (scenario == "jump" ? 2 : 1));
 }
 
-TEST_CASE("A sense on a host an hour ahead renders, keeps its debts, and its health ages what it hears truly", "[exclusive]") {
+TEST_CASE("A modality on a host whose clock is an hour ahead presents all expected events and reports correct ages", "[exclusive]") {
   RunScript run;
-  if (!time_namespaces(run)) return;
-  Running r;
+  if (!has_time_namespaces(run)) return;
+  RunningCluster r;
   // Both processes share one time namespace: each namespace is a clock of its own, and a host has one sync_node.
-  const std::string common = " --run-id " + std::to_string(Running::kRunId) + " --out " + quoted(r.folder.path());
-  const std::string there = quoted(programs() / "sync_node") + common + " --name sync_node_there & exec " +
+  const std::string common = " --run-id " + std::to_string(RunningCluster::kRunId) + " --out " + quoted(r.folder.path());
+  const std::string remote = quoted(programs() / "sync_node") + common + " --name sync_node_there & exec " +
                             quoted(programs() / "visual_node") + common;
-  r.processes.spawn("visual_node", an_hour_ahead({"sh", "-c", there}));
-  auto& reports = r.ear.bus().queue<sync_report_t>(channels::kSyncReport, 64);
+  r.processes.spawn("visual_node", with_clock_ahead({"sh", "-c", remote}));
+  auto& reports = r.monitor.bus().queue<sync_report_t>(channels::kSyncReport, 64);
   r.processes.start("sync_node");
   r.processes.start("audio_node");
   r.processes.start("haptic_node");
   r.processes.start("sim_node", {tapping_scene()});
   const auto source = static_cast<std::int32_t>(sync::fnv1a_32("sync_node"));
   std::optional<pair_report_t> pair;
-  const auto known = [&] {
+  const auto has_pair = [&] {
     while (const auto m = reports.pop())
       for (const pair_report_t& p : m->message.pairs)
         if (m->message.header.source == source && p.a == "audio" && p.b == "visual" && p.n > 20) pair = p;
     return pair.has_value();
   };
-  const bool presented = r.ear.wait_until(known, kPatience_s);
-  INFO(r.words());
+  const bool presented = r.monitor.wait_until(has_pair, kTimeout_s);
+  INFO(r.log_text());
   REQUIRE(presented);
   // The wrong clock would give half an hour; a slow machine gives half a second.
   CHECK(std::abs(pair->p50_ns) < 500'000'000);
   CHECK(pair->uncertainty_ns > 1'000);
-  const node_health_t* health = r.ear.health("visual_node");
+  const node_health_t* health = r.monitor.health("visual_node");
   REQUIRE(health);
-  bool aged = false;
+  bool has_age = false;
   for (const input_health_t& in : health->inputs) {
     if (in.channel != channels::kWorldState) continue;
-    aged = true;
+    has_age = true;
     CHECK(in.uncertainty_ns > 0);
     CHECK(in.age_ns < 5'000'000'000);
   }
-  CHECK(aged);
+  CHECK(has_age);
 }

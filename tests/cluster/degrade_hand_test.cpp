@@ -22,48 +22,48 @@ std::size_t phase_ms(const header_t& h) {
 }
 
 // Measurements over one span: the rendered force, and the timing of the other modalities.
-struct Felt {
-  Trace force = Trace(kPeriod_ms), warmed_by = Trace(kPeriod_ms);  // force on the hand, N, and the force in the input of warmth, N
-  std::set<int> steps_cN;                                          // forces that were held for at least 5 ticks
+struct Measurement {
+  Trace force = Trace(kPeriod_ms), thermal_force = Trace(kPeriod_ms);  // force on the hand, N, and the force in the input of warmth, N
+  std::set<int> held_forces_cN;                                          // forces that were held for at least 5 ticks
   std::vector<std::int64_t> ticks, world;                          // send times of TOOL_STATE and TOUCH_MODEL
-  Trace told = Trace(kPeriod_ms / 20);    // degrees C, by tick of the period: setpoint of the display
+  Trace setpoints = Trace(kPeriod_ms / 20);    // degrees C, by tick of the period: setpoint of the display
   std::map<std::string, double> wait_ms;  // median delay of each other modality
 
   double peak_N() const {
-    double most = 0;
-    for (const auto& f : force) most = std::max(most, f.empty() ? 0 : median(f));
-    return most;
+    double max = 0;
+    for (const auto& f : force) max = std::max(max, f.empty() ? 0 : median(f));
+    return max;
   }
 };
 
 // Peak-to-peak temperature of the display with each tap, K.
-double ripple_K(const Felt& f) {
-  double least = 100, most = -100;
-  for (const auto& told : f.told) {
-    if (told.empty()) continue;
-    least = std::min(least, median(told));
-    most = std::max(most, median(told));
+double ripple_K(const Measurement& f) {
+  double min = 100, max = -100;
+  for (const auto& setpoints : f.setpoints) {
+    if (setpoints.empty()) continue;
+    min = std::min(min, median(setpoints));
+    max = std::max(max, median(setpoints));
   }
-  return most - least;
+  return max - min;
 }
 
-struct Degraded : Running {
-  sync::Queue<tool_state_t>& tools = ear.bus().queue<tool_state_t>(channels::kToolState, 8192);
-  sync::Queue<touch_model_t>& models = ear.bus().queue<touch_model_t>(channels::kTouchModel, 8192);
-  sync::Queue<thermal_state_t>& skins = ear.bus().queue<thermal_state_t>(channels::kThermalState, 8192);
+struct DegradedCluster : RunningCluster {
+  sync::Queue<tool_state_t>& tools = monitor.bus().queue<tool_state_t>(channels::kToolState, 8192);
+  sync::Queue<touch_model_t>& models = monitor.bus().queue<touch_model_t>(channels::kTouchModel, 8192);
+  sync::Queue<thermal_state_t>& skins = monitor.bus().queue<thermal_state_t>(channels::kThermalState, 8192);
 
-  Felt feel(double seconds) {
+  Measurement measure(double seconds) {
     while (tools.pop()) {
     }
     while (models.pop()) {
     }
     while (skins.pop()) {
     }
-    Felt f;
-    const EventsHeard before = heard_of(ear);
+    Measurement f;
+    const PresentedEvents before = presented_events(monitor);
     int held = 0, last_cN = 0;
     for (double waited = 0; waited < seconds; waited += 0.5) {
-      ear.listen(0.5);
+      monitor.receive_for(0.5);
       while (auto m = tools.pop()) {
         const tool_state_t& t = m->message;
         const double N = std::hypot(t.force_N.x, t.force_N.y, t.force_N.z);
@@ -72,23 +72,23 @@ struct Degraded : Running {
         const int cN = static_cast<int>(std::lround(100 * N));
         held = cN == last_cN ? held + 1 : 0;
         last_cN = cN;
-        if (held == 5 && cN > 0) f.steps_cN.insert(cN);
+        if (held == 5 && cN > 0) f.held_forces_cN.insert(cN);
       }
       while (auto m = models.pop())
         if (m->message.page == 0) f.world.push_back(m->message.header.publish_time_ns);
       while (auto m = skins.pop()) {
-        f.warmed_by[phase_ms(m->message.header)].push_back(m->message.force_N);
-        f.told[phase_ms(m->message.header) / 20].push_back(m->message.commanded_degC);
+        f.thermal_force[phase_ms(m->message.header)].push_back(m->message.force_N);
+        f.setpoints[phase_ms(m->message.header) / 20].push_back(m->message.commanded_degC);
       }
     }
     for (const char* sense : {"audio", "visual", "thermal"})
-      if (const auto waits = waits_ms(ear, sense, before); !waits.empty()) f.wait_ms[sense] = median(waits);
+      if (const auto waits = delays_ms(monitor, sense, before); !waits.empty()) f.wait_ms[sense] = median(waits);
     return f;
   }
 };
 
 // Mean difference of the forces over a period, N.
-double error_N(const Felt& clean, const Felt& f) {
+double force_difference_N(const Measurement& clean, const Measurement& f) {
   double sum = 0;
   int n = 0;
   for (std::size_t ms = 0; ms < kPeriod_ms; ++ms)
@@ -101,33 +101,33 @@ double error_N(const Felt& clean, const Felt& f) {
 }
 
 // Lag of the force in the input of warmth behind the force on the hand, ms: the shift of best agreement.
-double lag_ms(const Felt& f) {
+double lag_ms(const Measurement& f) {
   double best = -1;
-  std::size_t at = 0;
+  std::size_t best_shift = 0;
   for (std::size_t shift = 0; shift < kPeriod_ms; shift += 10) {
     double sum = 0;
     for (std::size_t ms = 0; ms < kPeriod_ms; ++ms)
-      for (const double w : f.warmed_by[(ms + shift) % kPeriod_ms])
+      for (const double w : f.thermal_force[(ms + shift) % kPeriod_ms])
         if (!f.force[ms].empty()) sum += w * median(f.force[ms]);
-    if (sum > best) best = sum, at = shift;
+    if (sum > best) best = sum, best_shift = shift;
   }
-  return static_cast<double>(at);
+  return static_cast<double>(best_shift);
 }
 
-// Checks the rates in the best of three spans, as Running::check_rates_hold. Vision may become faster when other work on the machine ends.
-void check_not_slower(Degraded& c, std::map<std::string, double> left) {
+// Checks the rates in the best of three spans, as RunningCluster::check_rates_hold. Vision may become faster when other work on the machine ends.
+void check_not_slower(DegradedCluster& c, std::map<std::string, double> left) {
   std::map<std::string, double> now;
   for (int span = 0; span < 3 && !left.empty(); ++span) {
     now = c.rates(1);
     std::erase_if(left, [&](const auto& b) { return now[b.first] > b.second / 2; });
   }
   for (const auto& [node, rate] : left)
-    FAIL_CHECK(node << ": " << rate << " Hz before, " << now[node] << " Hz at the last of three looks");
+    FAIL_CHECK(node << ": " << rate << " Hz before, " << now[node] << " Hz in the last of three spans");
 }
 
 // Checks the rates of the servo loop and of the simulation, and the time of the other modalities from the earliest possible instant to the
 // output. The medians have wide bounds, because other work comes and goes.
-void check_others(Degraded& c, const std::map<std::string, double>& rates, const Felt& clean, const Felt& f,
+void check_other_modalities(DegradedCluster& c, const std::map<std::string, double>& rates, const Measurement& clean, const Measurement& f,
                   const std::string& degraded) {
   check_not_slower(c, rates);
   CHECK(quantile(steps_ms(f.ticks), 0.5) == Approx(1).margin(0.05));
@@ -146,18 +146,18 @@ void check_others(Degraded& c, const std::map<std::string, double>& rates, const
 
 }  // namespace
 
-TEST_CASE("DEGRADE-5: touch is delayed, thinned, lost, frozen, off or coarse, and only the hand feels it", "[exclusive]") {
-  Degraded c;
+TEST_CASE("DEGRADE-5: touch is delayed, decimated, lost, frozen, off or coarse, and only the hand is affected", "[exclusive]") {
+  DegradedCluster c;
   c.start();
   // Each modality runs by itself: aligned ones wait for the slowest, which is vision, whose time varies beside other work.
-  ask_for(c, {"asap"});
-  c.feel(2);  // delays of presentation settle
-  Felt clean = c.feel(5), again = c.feel(5);
+  request_playout(c, {"asap"});
+  c.measure(2);  // delays of presentation settle
+  Measurement clean = c.measure(5), again = c.measure(5);
   // A pause of the machine shifts a tap in one of the spans: measures until two spans are alike.
-  for (int span = 2; span < 5 && error_N(clean, again) > 0.002 * clean.peak_N(); ++span)
-    clean = std::move(again), again = c.feel(5);
+  for (int span = 2; span < 5 && force_difference_N(clean, again) > 0.002 * clean.peak_N(); ++span)
+    clean = std::move(again), again = c.measure(5);
   const auto rates = c.rates(2);
-  const double peak_N = clean.peak_N(), noise_N = error_N(clean, again);
+  const double peak_N = clean.peak_N(), noise_N = force_difference_N(clean, again);
   REQUIRE(peak_N > 1);
   REQUIRE(noise_N < 0.01 * peak_N);
   // The same taps differ by a few mN, beside heavy load by about 20 mN.
@@ -165,51 +165,51 @@ TEST_CASE("DEGRADE-5: touch is delayed, thinned, lost, frozen, off or coarse, an
   for (const std::string rule : {"delay=\"40ms\"", "rate=\"3Hz\"", "loss=\"98% burst=400\"", "freeze=\"zero\"",
                                  "off=\"true\"", "force_step=\"1N\""}) {
     put_in_force(c, "<degrade modality=\"haptic\" " + rule + "/>");
-    c.feel(1);
-    const Felt f = c.feel(4);
-    INFO(rule << ": force off by " << error_N(clean, f) << " N in the mean, peak " << f.peak_N() << " N of "
-              << peak_N << " N; two clean spans differ by " << noise_N << " N; " << f.steps_cN.size()
+    c.measure(1);
+    const Measurement f = c.measure(4);
+    INFO(rule << ": force off by " << force_difference_N(clean, f) << " N in the mean, peak " << f.peak_N() << " N of "
+              << peak_N << " N; two clean spans differ by " << noise_N << " N; " << f.held_forces_cN.size()
               << " forces held");
-    CHECK(error_N(clean, f) > effect_N);
+    CHECK(force_difference_N(clean, f) > effect_N);
     if (rule == "off=\"true\"" || rule == "freeze=\"zero\"") CHECK(f.peak_N() == 0);
     if (rule == "force_step=\"1N\"") {
-      CHECK(!f.steps_cN.empty());
-      for (const int cN : f.steps_cN) CHECK(cN % 100 == 0);
+      CHECK(!f.held_forces_cN.empty());
+      for (const int cN : f.held_forces_cN) CHECK(cN % 100 == 0);
     }
-    check_others(c, rates, clean, f, "haptic");
+    check_other_modalities(c, rates, clean, f, "haptic");
   }
   put_in_force(c, "");
-  c.feel(1);
-  CHECK(error_N(clean, c.feel(4)) < 0.05 * peak_N);
+  c.measure(1);
+  CHECK(force_difference_N(clean, c.measure(4)) < 0.05 * peak_N);
 }
 
-TEST_CASE("DEGRADE-6: warmth is delayed, slow or off, and the hand that it is on does not notice", "[exclusive]") {
-  Degraded c;
+TEST_CASE("DEGRADE-6: warmth is delayed, slow or off, and touch on the same hand is not affected", "[exclusive]") {
+  DegradedCluster c;
   c.start();
   // Each modality runs by itself: aligned ones wait for the slowest, which is vision, whose time varies beside other work.
-  ask_for(c, {"asap"});
-  c.feel(2);
-  const Felt clean = c.feel(4);
+  request_playout(c, {"asap"});
+  c.measure(2);
+  const Measurement clean = c.measure(4);
   const auto rates = c.rates(2);
   REQUIRE(clean.peak_N() > 1);
   const double lag = lag_ms(clean);
   for (const std::string rule : {"delay=\"150ms\"", "response=\"1s\"", "off=\"true\""}) {
     put_in_force(c, "<degrade modality=\"thermal\" " + rule + "/>");
-    c.feel(2);
-    const Felt f = c.feel(4);
+    c.measure(2);
+    const Measurement f = c.measure(4);
     INFO(rule << ": warmth follows force by " << lag_ms(f) << " ms, clean by " << lag << " ms; the display goes "
               << ripple_K(f) << " K up and down, clean " << ripple_K(clean) << " K");
     if (rule.starts_with("delay"))
       CHECK(std::remainder(lag_ms(f) - lag - 150, kPeriod_ms) == Approx(0).margin(40));
     // A lag of 1 s leaves 1 / sqrt(1 + (2 pi 2 Hz 1 s)^2), a thirteenth, of a variation at 2 Hz.
     if (rule.starts_with("response")) CHECK(ripple_K(f) < 0.4 * ripple_K(clean));
-    double told_N = 0;
-    for (const auto& by : f.warmed_by)
-      for (const double N : by) told_N = std::max(told_N, N);
-    CHECK((told_N == 0) == (rule == "off=\"true\""));
-    check_others(c, rates, clean, f, "thermal");
-    CHECK(error_N(clean, f) < 0.05 * clean.peak_N());
+    double max_thermal_force_N = 0;
+    for (const auto& by : f.thermal_force)
+      for (const double N : by) max_thermal_force_N = std::max(max_thermal_force_N, N);
+    CHECK((max_thermal_force_N == 0) == (rule == "off=\"true\""));
+    check_other_modalities(c, rates, clean, f, "thermal");
+    CHECK(force_difference_N(clean, f) < 0.05 * clean.peak_N());
   }
   put_in_force(c, "");
-  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
 }

@@ -24,40 +24,40 @@ bool of_incarnation(std::int64_t id, std::int64_t incarnation) {
 
 }  // namespace
 
-TEST_CASE("DEGRADE-1: with audio_node stopped the others go on at their rates", "[exclusive]") {
-  Running c;
+TEST_CASE("DEGRADE-1: with audio_node stopped the others keep their rates", "[exclusive]") {
+  RunningCluster c;
   c.start();
   const auto before = c.rates(2);
   c.processes.signal("audio_node", SIGTERM);
-  CHECK(c.processes.wait_for_exit("audio_node", kPatience_s) == 0);
-  const std::int64_t hits = c.ear.hits(), felt = c.ear.rendered("haptic_node"),
-                     seen = c.ear.rendered("visual_node");
+  CHECK(c.processes.wait_for_exit("audio_node", kTimeout_s) == 0);
+  const std::int64_t hits = c.monitor.hits(), felt = c.monitor.rendered("haptic_node"),
+                     seen = c.monitor.rendered("visual_node");
   c.check_rates_hold(before, 3, "audio_node");
-  CHECK(c.ear.health("audio_node") == nullptr);
-  CHECK(c.ear.wait_until([&] { return c.all_live(without("audio_node")); }, kPatience_s));
-  CHECK(c.ear.wait_until([&] { return c.ear.hits() > hits; }, kPatience_s));
-  CHECK(c.ear.wait_until([&] { return c.ear.rendered("haptic_node") > felt; }, kPatience_s));
-  CHECK(c.ear.wait_until([&] { return c.ear.rendered("visual_node") > seen; }, kPatience_s));
+  CHECK(c.monitor.health("audio_node") == nullptr);
+  CHECK(c.monitor.wait_until([&] { return c.all_running(without("audio_node")); }, kTimeout_s));
+  CHECK(c.monitor.wait_until([&] { return c.monitor.hits() > hits; }, kTimeout_s));
+  CHECK(c.monitor.wait_until([&] { return c.monitor.rendered("haptic_node") > felt; }, kTimeout_s));
+  CHECK(c.monitor.wait_until([&] { return c.monitor.rendered("visual_node") > seen; }, kTimeout_s));
 }
 
-TEST_CASE("DEGRADE-2: visual_node, frozen for 2 s, disturbs nobody and then shows now", "[exclusive]") {
-  Running c;
+TEST_CASE("DEGRADE-2: visual_node, frozen for 2 s, disturbs no other node and then shows the present state", "[exclusive]") {
+  RunningCluster c;
   c.start();
-  const std::int64_t stale_at_start = c.ear.health("visual_node")->stale_ticks;
+  const std::int64_t stale_at_start = c.monitor.health("visual_node")->stale_ticks;
   const auto before = c.rates(2);
   // Heavy load alone makes some inputs stale: the same number as before the freeze is no effect of the freeze.
-  const std::int64_t stale = c.ear.health("visual_node")->stale_ticks;
+  const std::int64_t stale = c.monitor.health("visual_node")->stale_ticks;
   const std::int64_t usual = stale - stale_at_start;
-  const std::int64_t frames = c.ear.ticks("visual_node");
-  const std::int64_t missed = c.ear.health("visual_node")->missed_ticks;
+  const std::int64_t frames = c.monitor.ticks("visual_node");
+  const std::int64_t missed = c.monitor.health("visual_node")->missed_ticks;
   c.processes.signal("visual_node", SIGSTOP);
   c.check_rates_hold(before, 2, "visual_node");
-  CHECK(c.ear.health("visual_node") == nullptr);
+  CHECK(c.monitor.health("visual_node") == nullptr);
   c.processes.signal("visual_node", SIGCONT);
 
-  REQUIRE(c.ear.wait_until([&] { return c.lives("visual_node"); }, kPatience_s));
-  c.ear.listen(1);
-  const node_health_t* h = c.ear.health("visual_node");
+  REQUIRE(c.monitor.wait_until([&] { return c.is_running("visual_node"); }, kTimeout_s));
+  c.monitor.receive_for(1);
+  const node_health_t* h = c.monitor.health("visual_node");
   REQUIRE(h != nullptr);
   CHECK(h->state == node_health_t::RUNNING);
   CHECK(h->ticks > frames);
@@ -70,54 +70,54 @@ TEST_CASE("DEGRADE-2: visual_node, frozen for 2 s, disturbs nobody and then show
     if (in.channel == channels::kWorldState || in.channel == channels::kContactEvents)
       CHECK(in.age_ns < 500'000'000);
   }
-  CHECK(c.all_live(kNodes));
+  CHECK(c.all_running(kNodes));
 }
 
-TEST_CASE("DEGRADE-3: when sim_node dies the force fades, all report it and go on, and nothing old hangs", "[exclusive]") {
-  Running c;
+TEST_CASE("DEGRADE-3: when sim_node dies the force fades, all nodes report it and resume, and no old contact remains", "[exclusive]") {
+  RunningCluster c;
   c.start();
-  REQUIRE(c.ear.wait_until([&] { return c.ear.force_N() > 0; }, kPatience_s));
-  REQUIRE(c.ear.wait_until([&] { return !c.ear.contact_ids().empty(); }, kPatience_s));
-  const std::int64_t first = c.ear.health("sim_node")->header.incarnation;
+  REQUIRE(c.monitor.wait_until([&] { return c.monitor.force_N() > 0; }, kTimeout_s));
+  REQUIRE(c.monitor.wait_until([&] { return !c.monitor.contact_ids().empty(); }, kTimeout_s));
+  const std::int64_t first = c.monitor.health("sim_node")->header.incarnation;
   c.processes.kill("sim_node");
 
-  CHECK(c.ear.wait_until([&] { return c.ear.force_N() == 0 && c.ear.tool_state()->fade == 0; }, 5));
-  for (const std::string& node : kSenses) {
+  CHECK(c.monitor.wait_until([&] { return c.monitor.force_N() == 0 && c.monitor.tool_state()->fade == 0; }, 5));
+  for (const std::string& node : kModalityNodes) {
     INFO(node);
-    CHECK(c.ear.wait_until(
+    CHECK(c.monitor.wait_until(
         [&] { return c.state(node, node_health_t::INPUT_LOST) || c.state(node, node_health_t::STALE); },
-        kPatience_s));
+        kTimeout_s));
   }
-  c.ear.listen(1);
-  for (const std::string& node : kSenses) {
-    INFO(node << ": " << c.processes.said(node));
+  c.monitor.receive_for(1);
+  for (const std::string& node : kModalityNodes) {
+    INFO(node << ": " << c.processes.output(node));
     CHECK(c.processes.running(node));
   }
-  CHECK(c.ear.force_N() == 0);
+  CHECK(c.monitor.force_N() == 0);
 
   c.processes.start("sim_node", {tapping_scene()});
-  REQUIRE(c.ear.wait_until([&] { return c.ear.rejoined("sim_node") == 1 && c.lives("sim_node"); }, kPatience_s));
-  const std::int64_t second = c.ear.health("sim_node")->header.incarnation;
+  REQUIRE(c.monitor.wait_until([&] { return c.monitor.rejoined("sim_node") == 1 && c.is_running("sim_node"); }, kTimeout_s));
+  const std::int64_t second = c.monitor.health("sim_node")->header.incarnation;
   REQUIRE(second != first);
-  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
-  CHECK(c.ear.wait_until([&] { return c.ear.force_N() > 0; }, kPatience_s));
-  for (const tool_constraint_t& constraint : c.ear.tool_state()->constraints)
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
+  CHECK(c.monitor.wait_until([&] { return c.monitor.force_N() > 0; }, kTimeout_s));
+  for (const tool_constraint_t& constraint : c.monitor.tool_state()->constraints)
     CHECK(of_incarnation(constraint.contact_id, second));
-  CHECK(c.ear.wait_until([&] { return !c.ear.contact_ids().empty(); }, kPatience_s));
-  for (const std::int64_t id : c.ear.contact_ids()) CHECK(of_incarnation(id, second));
-  UNSCOPED_INFO(c.words());
-  CHECK(c.all_live(kNodes));
+  CHECK(c.monitor.wait_until([&] { return !c.monitor.contact_ids().empty(); }, kTimeout_s));
+  for (const std::int64_t id : c.monitor.contact_ids()) CHECK(of_incarnation(id, second));
+  UNSCOPED_INFO(c.log_text());
+  CHECK(c.all_running(kNodes));
 }
 
-TEST_CASE("A node that joins late gets the scene without anyone restarting", "[exclusive]") {
-  Running c;
+TEST_CASE("A node that joins late receives the scene without a restart of other nodes", "[exclusive]") {
+  RunningCluster c;
   const std::string late = GENERATE(as<std::string>{}, "haptic_node", "audio_node", "visual_node", "thermal_node");
   c.processes.start("sim_node", {tapping_scene()});
-  REQUIRE(c.ear.wait_until([&] { return c.lives("sim_node"); }, kPatience_s));
-  c.ear.listen(1);
+  REQUIRE(c.monitor.wait_until([&] { return c.is_running("sim_node"); }, kTimeout_s));
+  c.monitor.receive_for(1);
   c.processes.start(late);
-  const bool joined = c.ear.wait_until([&] { return c.lives(late); }, kPatience_s);
-  INFO(c.words());
+  const bool joined = c.monitor.wait_until([&] { return c.is_running(late); }, kTimeout_s);
+  INFO(c.log_text());
   CHECK(joined);
-  CHECK(c.ear.rejoined("sim_node") == 0);
+  CHECK(c.monitor.rejoined("sim_node") == 0);
 }

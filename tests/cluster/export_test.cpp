@@ -32,7 +32,7 @@ Rows read(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("The log of a run becomes tables that agree with what the run says of itself") {
+TEST_CASE("The tables exported from the log of a run agree with its summary") {
   RunScript run;
   run.start({(repository() / "sim_node/scenes/steel_then_oak.sdf").string(), "--seconds", "4", "--without",
              "visual_node", "--out", run.out()});

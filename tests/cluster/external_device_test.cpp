@@ -21,14 +21,14 @@ std::filesystem::path python_types(const Folder& folder) {
   return types;
 }
 
-struct WithDriver : Running {
+struct ClusterWithDriver : RunningCluster {
   // Starts touch with an external device, without a driver.
   void start_touch() {
     processes.start("sim_node", {tapping_scene()});
     processes.start("haptic_node", {"--device", "external:arm"});
     const bool waits =
-        ear.wait_until([&] { return state("haptic_node", node_health_t::OUTPUT_LOST); }, kPatience_s);
-    INFO(processes.said("haptic_node"));
+        monitor.wait_until([&] { return state("haptic_node", node_health_t::OUTPUT_LOST); }, kTimeout_s);
+    INFO(processes.output("haptic_node"));
     REQUIRE(waits);
   }
   void start_driver(const std::string& language) {
@@ -43,28 +43,28 @@ struct WithDriver : Running {
   }
   // The spring pulls the driver's weight 5 mm under the floor, plus the tool's radius of 13 mm: 300 N/m against the coupling, about 3 N.
   bool is_felt() {
-    return ear.wait_until([&] { return lives("haptic_node") && ear.force_N() > 1.5; }, kPatience_s);
+    return monitor.wait_until([&] { return is_running("haptic_node") && monitor.force_N() > 1.5; }, kTimeout_s);
   }
   bool is_lost() {
-    return ear.wait_until([&] { return state("haptic_node", node_health_t::OUTPUT_LOST) && ear.force_N() == 0; },
-                          kPatience_s);
+    return monitor.wait_until([&] { return state("haptic_node", node_health_t::OUTPUT_LOST) && monitor.force_N() == 0; },
+                          kTimeout_s);
   }
 };
 
 }  // namespace
 
-TEST_CASE("A device that a program drives is felt, lost when it is killed or frozen, and felt again", "[exclusive]") {
+TEST_CASE("A device driven by a program is felt, lost when the program is killed or frozen, and felt again", "[exclusive]") {
   const std::string language = GENERATE("C++", "Python");
   CAPTURE(language);
-  WithDriver c;
+  ClusterWithDriver c;
   c.start_touch();
   c.start_driver(language);
   const bool felt = c.is_felt();
-  INFO(c.processes.said("driver") << c.processes.said("haptic_node"));
+  INFO(c.processes.output("driver") << c.processes.output("haptic_node"));
   REQUIRE(felt);
 
   // The weight rests where its spring and the floor balance: above its rest position, which is 5 mm under the floor.
-  const tool_state_t* tool = c.ear.tool_state();
+  const tool_state_t* tool = c.monitor.tool_state();
   REQUIRE(tool);
   CHECK(tool->device.position_m.z > -0.005);
 
@@ -78,21 +78,21 @@ TEST_CASE("A device that a program drives is felt, lost when it is killed or fro
   CHECK(c.processes.running("haptic_node"));
   c.start_driver(language);
   CHECK(c.is_felt());
-  CHECK(c.ear.bad("haptic_node") == 0);
+  CHECK(c.monitor.malformed("haptic_node") == 0);
 }
 
 TEST_CASE("A simulated string device taps the floor like any other hand", "[exclusive]") {
-  Running c;
+  RunningCluster c;
   c.processes.start("sim_node", {tapping_scene()});
   c.processes.start("haptic_node", {"--device", "spidar:desktop,offset=0/0/0.03"});
-  const bool felt = c.ear.wait_until([&] { return c.lives("haptic_node") && c.ear.force_N() > 0.5; }, kPatience_s);
-  INFO(c.processes.said("haptic_node"));
+  const bool felt = c.monitor.wait_until([&] { return c.is_running("haptic_node") && c.monitor.force_N() > 0.5; }, kTimeout_s);
+  INFO(c.processes.output("haptic_node"));
   REQUIRE(felt);
-  CHECK(c.ear.wait_until([&] { return c.ear.hits() >= 3; }, kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return c.monitor.hits() >= 3; }, kTimeout_s));
 }
 
-TEST_CASE("Two programs that drive one device lose it, until one of them is gone", "[exclusive]") {
-  WithDriver c;
+TEST_CASE("A device driven by two programs is lost until one of them ends", "[exclusive]") {
+  ClusterWithDriver c;
   c.start_touch();
   c.start_driver("C++");
   REQUIRE(c.is_felt());

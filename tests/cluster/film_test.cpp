@@ -13,10 +13,10 @@ using namespace tactus::cluster;
 namespace {
 
 // The word after `before` in a program's output.
-std::string word_after(const std::string& said, const std::string& before) {
-  const auto at = said.find(before);
+std::string word_after(const std::string& output, const std::string& before) {
+  const auto at = output.find(before);
   REQUIRE(at != std::string::npos);
-  std::istringstream rest(said.substr(at + before.size()));
+  std::istringstream rest(output.substr(at + before.size()));
   std::string word;
   rest >> word;
   return word;
@@ -25,9 +25,9 @@ std::string word_after(const std::string& said, const std::string& before) {
 // Number of begins and hits at least before_end_ns before the log ends, each counted once.
 std::size_t events_of(const RunLog& log, std::int64_t before_end_ns) {
   std::int64_t end_ns = 0;
-  log.each<world_state_t>(channels::kWorldState, [&](const auto& m) { end_ns = m.header.publish_time_ns; });
+  log.for_each<world_state_t>(channels::kWorldState, [&](const auto& m) { end_ns = m.header.publish_time_ns; });
   std::set<std::int64_t> ids;
-  log.each<contact_events_t>(channels::kContactEvents, [&](const auto& m) {
+  log.for_each<contact_events_t>(channels::kContactEvents, [&](const auto& m) {
     for (const contact_event_t& e : m.events)
       if (e.kind != contact_event_t::END && m.header.publish_time_ns <= end_ns - before_end_ns)
         ids.insert(e.event_id);
@@ -37,11 +37,11 @@ std::size_t events_of(const RunLog& log, std::int64_t before_end_ns) {
 
 }  // namespace
 
-TEST_CASE("A run that was recorded is drawn into the same film each time, with a flash for every begin and hit") {
+TEST_CASE("A recorded run is drawn into the same film each time, with a flash for every begin and hit") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "4", "--out", run.out()});
   const int status = run.finish(150);
-  INFO(run.processes.said("run"));
+  INFO(run.processes.output("run"));
   REQUIRE(status == 0);
   const std::filesystem::path log = run.out() / "run.lcmlog";
   const auto film = [&](const std::string& name, const std::vector<std::string>& more = {}) {

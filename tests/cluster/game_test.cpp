@@ -19,7 +19,7 @@ double longest_standstill_us(const json& summary) {
 
 }  // namespace
 
-TEST_CASE("A simulated person finds every ball and pushes it into its hole, live, and none where nobody draws the picture", "[exclusive]") {
+TEST_CASE("A live simulated player pushes every ball into its hole, and none without a picture", "[exclusive]") {
   for (const bool seen : {true, false}) {
     RunScript run;
     std::vector<std::string> words{"--seconds", "20", "--player", "--without", "audio_node", "--without", "thermal_node", "--out", run.out(),
@@ -27,7 +27,7 @@ TEST_CASE("A simulated person finds every ball and pushes it into its hole, live
     if (!seen) words.insert(words.end(), {"--without", "visual_node"});
     run.start(words);
     const int status = run.finish(150);
-    INFO((seen ? "seen: " : "unseen: ") << run.processes.said("run"));
+    INFO((seen ? "seen: " : "unseen: ") << run.processes.output("run"));
     CHECK(status == 0);
     const json summary = json::parse(contents(run.out() / "summary.json"), nullptr, false);
     REQUIRE_FALSE(summary.is_discarded());
@@ -38,7 +38,7 @@ TEST_CASE("A simulated person finds every ball and pushes it into its hole, live
   }
 }
 
-TEST_CASE("The hand of the dark room, and a string device in its place, push every ball into its hole", "[exclusive]") {
+TEST_CASE("The hand of the dark room, or a string device, pushes every ball into its hole", "[exclusive]") {
   // The simulated string device is driven by the same hand; its pose comes from string lengths, its force from tensions.
   const std::string device = GENERATE("virtual_hand", "spidar:cave,offset=-0.1/0/0.2");
   for (int attempt = 1;; ++attempt) {
@@ -46,7 +46,7 @@ TEST_CASE("The hand of the dark room, and a string device in its place, push eve
     run.start({"--seconds", "20", "--device", device, "--without", "visual_node", "--without", "audio_node",
                "--without", "thermal_node", "--out", run.out()});
     const int status = run.finish(150);
-    INFO(device << ", attempt " << attempt << ": " << run.processes.said("run"));
+    INFO(device << ", attempt " << attempt << ": " << run.processes.output("run"));
     CHECK(status == 0);
     const json summary = json::parse(contents(run.out() / "summary.json"), nullptr, false);
     REQUIRE_FALSE(summary.is_discarded());

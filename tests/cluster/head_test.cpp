@@ -18,16 +18,16 @@ namespace {
 using Pixels = std::vector<unsigned char>;
 
 // Mean difference of two pictures, of 255.
-double apart(const Pixels& a, const Pixels& b) {
+double mean_difference(const Pixels& a, const Pixels& b) {
   REQUIRE(a.size() == b.size());
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - b[i]);
   return sum / static_cast<double>(a.size());
 }
 
-struct WithHead : Running {
+struct ClusterWithHead : RunningCluster {
   std::filesystem::path snapshot = folder.path() / "now.png";
-  bool pointed = false;  // its node was RUNNING
+  bool head_ran = false;  // its node was RUNNING
   int buttons = 0;       // of the head, as in any TOOL_STATE: beside heavy load a device is lost for moments
   sync::Bus tracker{sync::Identity::fresh("tracker", kRunId), {}};
 
@@ -38,8 +38,8 @@ struct WithHead : Running {
     start_head();
     processes.start("visual_node", {"--no-video", "--snapshot", snapshot, "--snapshot-every", "0.1"});
     processes.start("sim_node", {scene});
-    const bool alive = ear.wait_until([&] { return all_live(kNodes) && ear.hits() > 0; }, kPatience_s);
-    UNSCOPED_INFO(words());
+    const bool alive = monitor.wait_until([&] { return all_running(kNodes) && monitor.hits() > 0; }, kTimeout_s);
+    UNSCOPED_INFO(log_text());
     REQUIRE(alive);
   }
   void start_head(const std::string& tool = "head") {
@@ -48,7 +48,7 @@ struct WithHead : Running {
                      "--name", "haptic_node_" + tool, "--tool", tool});
   }
   // Sends the head pose at 250 Hz for the given time. Yaw about z.
-  void hold(const Eigen::Vector3d& moved_m, double yaw_rad, double seconds, const char* device = "head") {
+  void publish_pose(const Eigen::Vector3d& moved_m, double yaw_rad, double seconds, const char* device = "head") {
     const sync::HostTime end = sync::host_now() + sync::from_seconds(seconds);
     while (sync::host_now() < end) {
       device_state_t m{};
@@ -59,17 +59,17 @@ struct WithHead : Running {
       m.buttons = 5;
       m.state = device_state_t::ANSWERS;
       tracker.publish(channels::kDeviceState, m);
-      ear.listen(0.004);
-      if (ear.tool_state() && ear.tool_state()->tool == 1) buttons |= ear.tool_state()->buttons;
-      pointed = pointed || lives("haptic_node_head");
+      monitor.receive_for(0.004);
+      if (monitor.tool_state() && monitor.tool_state()->tool == 1) buttons |= monitor.tool_state()->buttons;
+      head_ran = head_ran || is_running("haptic_node_head");
     }
   }
   // The picture after 1 s at this pose. Frames are rare beside heavy load, and a snapshot is one of them.
-  Pixels seen(const Eigen::Vector3d& moved_m, double yaw_rad, const char* device = "head") {
-    const std::int64_t before = ear.ticks("visual_node");
-    for (double held = 0; held < 1.5 || (ear.ticks("visual_node") < before + 12 && held < kPatience_s);
+  Pixels picture_at(const Eigen::Vector3d& moved_m, double yaw_rad, const char* device = "head") {
+    const std::int64_t before = monitor.ticks("visual_node");
+    for (double held = 0; held < 1.5 || (monitor.ticks("visual_node") < before + 12 && held < kTimeout_s);
          held += 0.5)
-      hold(moved_m, yaw_rad, 0.5, device);
+      publish_pose(moved_m, yaw_rad, 0.5, device);
     return picture();
   }
   Pixels picture() {
@@ -85,56 +85,55 @@ struct WithHead : Running {
 
 }  // namespace
 
-TEST_CASE("A head that a program moves changes the picture and nothing else, and the view stays when it is lost", "[exclusive]") {
-  WithHead c;
+TEST_CASE("A head that a program moves changes the picture and nothing else, and the view stays after its loss", "[exclusive]") {
+  ClusterWithHead c;
   c.start_all();
-  const Pixels at_rest = c.seen({0, 0, 0}, 0);
+  const Pixels at_rest = c.picture_at({0, 0, 0}, 0);
   REQUIRE(at_rest.size() == 320 * 240);
   CHECK(*std::max_element(at_rest.begin(), at_rest.end()) > 40);  // the picture is lit
-  CHECK(apart(at_rest, c.seen({0, 0, 0}, 0)) < 0.5);
-  CHECK(c.pointed);
+  CHECK(mean_difference(at_rest, c.picture_at({0, 0, 0}, 0)) < 0.5);
+  CHECK(c.head_ran);
   CHECK(c.buttons == 5);
   const auto before = c.rates(1);
 
-  const Pixels turned = c.seen({0, 0, 0}, 0.2), aside = c.seen({0, -0.15, 0}, 0);
-  CHECK(apart(at_rest, turned) > 3);
-  CHECK(apart(at_rest, aside) > 3);
-  CHECK(apart(turned, aside) > 3);
-  CHECK(apart(at_rest, c.seen({0, 0, 0}, 0)) < 0.5);  // and back at rest
+  const Pixels turned = c.picture_at({0, 0, 0}, 0.2), aside = c.picture_at({0, -0.15, 0}, 0);
+  CHECK(mean_difference(at_rest, turned) > 3);
+  CHECK(mean_difference(at_rest, aside) > 3);
+  CHECK(mean_difference(turned, aside) > 3);
+  CHECK(mean_difference(at_rest, c.picture_at({0, 0, 0}, 0)) < 0.5);  // and back at rest
   c.check_rates_hold(before, 2);
 
   // The device sends no more: the view stays, touch by the other hand continues.
-  c.seen({0, -0.15, 0}, 0);
-  CHECK(c.ear.wait_until([&] { return c.state("haptic_node_head", node_health_t::OUTPUT_LOST); }, kPatience_s));
-  c.ear.listen(0.5);
-  CHECK(apart(c.picture(), aside) < 0.5);
+  c.picture_at({0, -0.15, 0}, 0);
+  CHECK(c.monitor.wait_until([&] { return c.state("haptic_node_head", node_health_t::OUTPUT_LOST); }, kTimeout_s));
+  c.monitor.receive_for(0.5);
+  CHECK(mean_difference(c.picture(), aside) < 0.5);
   // Its node is killed.
   c.processes.kill("haptic_node_head");
-  const bool said = c.ear.wait_until(
+  const bool reported = c.monitor.wait_until(
       [&] { return c.note("visual_node").find("the head is lost: the view stays") != std::string::npos; },
-      kPatience_s);
+      kTimeout_s);
   INFO(c.note("visual_node"));
-  CHECK(said);
-  CHECK(apart(c.picture(), aside) < 0.5);
-  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
-  const std::int64_t hits = c.ear.hits();
-  CHECK(c.ear.wait_until([&] { return c.ear.hits() > hits; }, kPatience_s));
+  CHECK(reported);
+  CHECK(mean_difference(c.picture(), aside) < 0.5);
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
+  const std::int64_t hits = c.monitor.hits();
+  CHECK(c.monitor.wait_until([&] { return c.monitor.hits() > hits; }, kTimeout_s));
 
   c.start_head();
-  CHECK(c.ear.wait_until([&] { return c.ear.health("haptic_node_head") != nullptr; }, kPatience_s));
-  CHECK(apart(at_rest, c.seen({0, 0, 0}, 0)) < 0.5);
+  CHECK(c.monitor.wait_until([&] { return c.monitor.health("haptic_node_head") != nullptr; }, kTimeout_s));
+  CHECK(mean_difference(at_rest, c.picture_at({0, 0, 0}, 0)) < 0.5);
   CHECK(c.note("visual_node").find("head") == std::string::npos);
 }
 
-TEST_CASE(
-    "A wand that a program moves turns the light to where it is, and the light stays there when it is lost", "[exclusive]") {
-  WithHead c;
+TEST_CASE("A wand that a program moves directs the light to its position, and the light stays there after its loss", "[exclusive]") {
+  ClusterWithHead c;
   c.start_all();
   c.start_head("wand");
-  const Pixels middle = c.seen({0, 0, 0.05}, 0, "wand");
-  const Pixels left = c.seen({0, 0.3, 0}, 0, "wand"), right = c.seen({0, -0.3, 0}, 0, "wand");
-  CHECK(apart(middle, left) > 1);
-  CHECK(apart(left, right) > 1);
+  const Pixels middle = c.picture_at({0, 0, 0.05}, 0, "wand");
+  const Pixels left = c.picture_at({0, 0.3, 0}, 0, "wand"), right = c.picture_at({0, -0.3, 0}, 0, "wand");
+  CHECK(mean_difference(middle, left) > 1);
+  CHECK(mean_difference(left, right) > 1);
   // The lit half is the one that the head points to: the left of the picture is the left of the camera.
   const auto half = [](const Pixels& p, bool left_half) {
     double sum = 0;
@@ -144,8 +143,8 @@ TEST_CASE(
   };
   CHECK(half(left, true) > half(right, true));
   CHECK(half(right, false) > half(left, false));
-  CHECK(c.ear.wait_until([&] { return c.state("haptic_node_wand", node_health_t::OUTPUT_LOST); }, kPatience_s));
-  c.ear.listen(0.5);
-  CHECK(apart(c.picture(), right) < 0.5);
-  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return c.state("haptic_node_wand", node_health_t::OUTPUT_LOST); }, kTimeout_s));
+  c.monitor.receive_for(0.5);
+  CHECK(mean_difference(c.picture(), right) < 0.5);
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
 }

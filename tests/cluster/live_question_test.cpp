@@ -17,7 +17,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-constexpr double kPatience_s = 60;  // liveness, not speed
+constexpr double kTimeout_s = 60;  // liveness, not speed
 constexpr std::int64_t kRunId = 4712;
 constexpr const char* kToken = "0123456789abcdef0123";
 constexpr std::int64_t kFirst = 4'611'686'018'427'387'901;  // no double represents it: JavaScript must not use one either
@@ -51,7 +51,9 @@ std::vector<question_t> study() {
 
 }  // namespace
 
-TEST_CASE("What a study asks is answered in the live page by click, key and slider, and onlookers and what is malformed answer nothing") {
+TEST_CASE(
+    "The live page answers questions of a study by click, key and slider, and rejects malformed answers "
+    "and those of observer pages") {
   INFO("install the packages chromium, nodejs and npm, and run scripts/live/bundle");
   const std::filesystem::path page = repository() / "scripts/live/page";
   REQUIRE(std::filesystem::exists("/usr/bin/chromium"));
@@ -68,39 +70,39 @@ TEST_CASE("What a study asks is answered in the live page by click, key and slid
   processes.spawn("browser", command);
 
   sync::Bus bus(sync::Identity::fresh("conductor", kRunId), {});
-  auto& heard = bus.queue<answer_t>(channels::kAnswer, 1024);
+  auto& answer_queue = bus.queue<answer_t>(channels::kAnswer, 1024);
   std::map<std::int64_t, std::vector<answer_t>> answers;
-  std::vector<question_t> left = study();
-  sync::HostTime over{};  // time at which the current question was answered
-  const sync::HostTime end = sync::host_now() + sync::from_seconds(2 * kPatience_s);
+  std::vector<question_t> remaining = study();
+  sync::HostTime next_question_time{};  // time at which the current question was answered
+  const sync::HostTime end = sync::host_now() + sync::from_seconds(2 * kTimeout_s);
   for (sync::HostTime next{}; processes.running("browser") && sync::host_now() < end; bus.wait(std::chrono::milliseconds(20))) {
     const sync::HostTime now = sync::host_now();
     bus.drain(now);
-    while (const auto m = heard.pop()) answers[m->message.id].push_back(m->message);
-    if (!left.empty() && answers.contains(left.front().id)) {
-      if (over == sync::HostTime{}) over = now + sync::from_seconds(1);
-      if (now >= over) left.erase(left.begin()), over = {};
+    while (const auto m = answer_queue.pop()) answers[m->message.id].push_back(m->message);
+    if (!remaining.empty() && answers.contains(remaining.front().id)) {
+      if (next_question_time == sync::HostTime{}) next_question_time = now + sync::from_seconds(1);
+      if (now >= next_question_time) remaining.erase(remaining.begin()), next_question_time = {};
     }
     if (now < next) continue;
     next = now + std::chrono::milliseconds(200);
-    question_t m = left.empty() ? question(kFirst + 5, question_t::NOTHING, "") : left.front();
+    question_t m = remaining.empty() ? question(kFirst + 5, question_t::NOTHING, "") : remaining.front();
     bus.publish(channels::kQuestion, m);
   }
-  const int status = processes.wait_for_exit("browser", kPatience_s);
-  INFO(processes.said("browser"));
-  INFO(processes.said("live_server"));
+  const int status = processes.wait_for_exit("browser", kTimeout_s);
+  INFO(processes.output("browser"));
+  INFO(processes.output("live_server"));
   CHECK(status == 0);
-  CHECK(left.empty());
-  const std::vector<question_t> asked = study();
-  CHECK(answers.size() == asked.size());  // no other question has an answer
-  for (const question_t& m : asked) {
+  CHECK(remaining.empty());
+  const std::vector<question_t> questions = study();
+  CHECK(answers.size() == questions.size());  // no other question has an answer
+  for (const question_t& m : questions) {
     CAPTURE(m.text);
     REQUIRE(answers.contains(m.id));
     CHECK(answers[m.id].size() >= 3);  // the answer is repeated for each repetition of the question
     for (const answer_t& a : answers[m.id]) {
       CHECK((a.choice == answers[m.id][0].choice && a.number == answers[m.id][0].number));
       CHECK(a.by == "page");
-      CHECK((a.after_ns > 0 && a.after_ns < static_cast<std::int64_t>(kPatience_s * 1e9)));
+      CHECK((a.after_ns > 0 && a.after_ns < static_cast<std::int64_t>(kTimeout_s * 1e9)));
     }
   }
   CHECK(answers[kFirst][0].choice == -1);

@@ -16,23 +16,23 @@ using namespace tactus::cluster;
 
 namespace {
 
-constexpr std::int64_t kLiveRun = Running::kRunId + 1;
+constexpr std::int64_t kLiveRun = RunningCluster::kRunId + 1;
 
 // Records four seconds of the small scene into folder/run.lcmlog.
-std::filesystem::path recorded(const Folder& folder) {
-  Running c;
+std::filesystem::path record_run(const Folder& folder) {
+  RunningCluster c;
   c.processes.start("recorder");
   c.start();
-  c.ear.listen(4);
+  c.monitor.receive_for(4);
   c.processes.signal("recorder", SIGTERM);
-  REQUIRE(c.processes.wait_for_exit("recorder", kPatience_s) == 0);
+  REQUIRE(c.processes.wait_for_exit("recorder", kTimeout_s) == 0);
   std::filesystem::rename(c.folder.path() / "run.lcmlog", folder.path() / "run.lcmlog");
   return folder.path() / "run.lcmlog";
 }
 
 std::vector<std::string> options_of_replay(const std::filesystem::path& log, std::vector<std::string> more = {}) {
   std::vector<std::string> words{log.string()};
-  for (const std::string& sense : kSenses) words.insert(words.end(), {"--live", sense});
+  for (const std::string& sense : kModalityNodes) words.insert(words.end(), {"--live", sense});
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
@@ -50,59 +50,59 @@ std::vector<std::pair<std::string, std::vector<std::uint8_t>>> events_in(const s
 
 }  // namespace
 
-TEST_CASE("All senses render a replayed log, and go on rendering it when one of them is killed") {
+TEST_CASE("All modalities render a replayed log, and continue when one of them is killed") {
   Folder folder;
-  const auto log = recorded(folder);
+  const auto log = record_run(folder);
   Processes processes(folder.path() / "again", kLiveRun);
-  Ear ear(kLiveRun);
-  for (const std::string& sense : kSenses) processes.start(sense);
+  ClusterMonitor monitor(kLiveRun);
+  for (const std::string& sense : kModalityNodes) processes.start(sense);
   processes.start("replay", options_of_replay(log, {"--loop"}));
-  const auto all_have_rendered = [&](const std::string& but, const std::map<std::string, std::int64_t>& before) {
-    return std::all_of(kSenses.begin(), kSenses.end(), [&](const std::string& n) {
-      return n == but || ear.rendered(n) > (before.contains(n) ? before.at(n) : 0);
+  const auto all_have_rendered = [&](const std::string& except, const std::map<std::string, std::int64_t>& before) {
+    return std::all_of(kModalityNodes.begin(), kModalityNodes.end(), [&](const std::string& n) {
+      return n == except || monitor.rendered(n) > (before.contains(n) ? before.at(n) : 0);
     });
   };
-  const bool rendered = ear.wait_until([&] { return all_have_rendered("", {}); }, kPatience_s);
-  for (const std::string& n : kSenses) INFO(n << " rendered " << ear.rendered(n) << ": " << processes.said(n));
-  INFO(processes.said("replay"));
+  const bool rendered = monitor.wait_until([&] { return all_have_rendered("", {}); }, kTimeout_s);
+  for (const std::string& n : kModalityNodes) INFO(n << " rendered " << monitor.rendered(n) << ": " << processes.output(n));
+  INFO(processes.output("replay"));
   REQUIRE(rendered);
   // The recorded health of renderers is not replayed: one haptic_node publishes, with one incarnation.
-  CHECK(ear.rejoined("haptic_node") == 0);
-  CHECK(ear.health("sim_node") == nullptr);
+  CHECK(monitor.rejoined("haptic_node") == 0);
+  CHECK(monitor.health("sim_node") == nullptr);
 
   processes.kill("audio_node");
   std::map<std::string, std::int64_t> before;
-  for (const std::string& n : kSenses) before[n] = ear.rendered(n);
-  CHECK(ear.wait_until([&] { return all_have_rendered("audio_node", before); }, kPatience_s));
-  SECTION("and when it comes back it gets the scene, and renders too") {
+  for (const std::string& n : kModalityNodes) before[n] = monitor.rendered(n);
+  CHECK(monitor.wait_until([&] { return all_have_rendered("audio_node", before); }, kTimeout_s));
+  SECTION("a restarted node receives the scene and renders") {
     processes.start("audio_node");
-    const std::int64_t old = ear.rendered("audio_node");
-    CHECK(ear.wait_until(
+    const std::int64_t old = monitor.rendered("audio_node");
+    CHECK(monitor.wait_until(
         [&] {
-          return ear.rejoined("audio_node") > 0 && ear.rendered("audio_node") != old &&
-                 ear.rendered("audio_node") > 0;
+          return monitor.rejoined("audio_node") > 0 && monitor.rendered("audio_node") != old &&
+                 monitor.rendered("audio_node") > 0;
         },
-        kPatience_s));
+        kTimeout_s));
   }
   for (const char* n : {"haptic_node", "visual_node", "thermal_node"}) CHECK(processes.running(n));
 }
 
-TEST_CASE("A running replay obeys what is written into its pipe") {
+TEST_CASE("A running replay executes the commands from its pipe") {
   Folder folder;
-  const auto log = recorded(folder);
+  const auto log = record_run(folder);
   const std::string pipe = folder.path() / "control";
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
   Processes processes(folder.path() / "again", kLiveRun);
-  Ear ear(kLiveRun);
-  auto& states = ear.bus().queue<world_state_t>(channels::kWorldState, 4096);
+  ClusterMonitor monitor(kLiveRun);
+  auto& states = monitor.bus().queue<world_state_t>(channels::kWorldState, 4096);
   processes.start("replay", {log, "--paused", "--stay", "--control", pipe});
-  const auto order = [&](const std::string& words) { std::ofstream(pipe) << words << std::endl; };
+  const auto command = [&](const std::string& words) { std::ofstream(pipe) << words << std::endl; };
   // Instants of the world that are published within the given time.
-  const auto heard = [&](double seconds) {
-    ear.listen(0.3);
+  const auto received_times = [&](double seconds) {
+    monitor.receive_for(0.3);
     while (states.pop()) {
     }
-    ear.listen(seconds);
+    monitor.receive_for(seconds);
     std::vector<std::int64_t> times;
     while (const auto m = states.pop()) times.push_back(m->message.header.sim_time_ns);
     return times;
@@ -124,11 +124,11 @@ TEST_CASE("A running replay obeys what is written into its pipe") {
   CHECK(processes.wait_for_exit("replay", kPatience_s) == 0);
 }
 
-TEST_CASE("The stock lcm-logger hears all of what is replayed as it is, and its log is replayed in turn") {
+TEST_CASE("The stock lcm-logger receives all replayed messages unchanged, and its log can be replayed") {
   Folder folder;
-  const std::filesystem::path ours = folder.path() / "ours.lcmlog";
+  const std::filesystem::path own_log = folder.path() / "ours.lcmlog";
   {
-    sync::LogWriter writer(std::make_unique<sync::FileSink>(ours));
+    sync::LogWriter writer(std::make_unique<sync::FileSink>(own_log));
     for (int i = 0; i < 2000; ++i)
       writer.write(1'700'000'000'000'000 + 1000 * i, "CHANNEL_" + std::to_string(i % 5),
                    std::vector<std::uint8_t>(static_cast<std::size_t>(i % 700), static_cast<std::uint8_t>(i)));
@@ -138,24 +138,24 @@ TEST_CASE("The stock lcm-logger hears all of what is replayed as it is, and its 
   const auto through_lcm_logger = [&](const std::filesystem::path& from, const std::filesystem::path& to,
                                       const std::vector<std::string>& options) {
     processes.spawn("lcm-logger", {"lcm-logger", "--quiet", "--lcm-url=udpm://239.255.76.67:7667?ttl=0", to});
-    Ear ear(kLiveRun);
-    ear.wait_until([&] { return std::filesystem::exists(to); }, kPatience_s);
-    ear.listen(0.5);
+    ClusterMonitor monitor(kLiveRun);
+    monitor.wait_until([&] { return std::filesystem::exists(to); }, kTimeout_s);
+    monitor.receive_for(0.5);
     // No faster than the stock logger can follow on a busy machine: its receive buffer of 208 KiB holds 0.3 s of this.
     std::vector<std::string> words{from, "--most", "500"};
     words.insert(words.end(), options.begin(), options.end());
     processes.start("replay", words);
-    REQUIRE(processes.wait_for_exit("replay", kPatience_s) == 0);
-    ear.listen(1);
+    REQUIRE(processes.wait_for_exit("replay", kTimeout_s) == 0);
+    monitor.receive_for(1);
     processes.signal("lcm-logger", SIGTERM);
-    processes.wait_for_exit("lcm-logger", kPatience_s);
+    processes.wait_for_exit("lcm-logger", kTimeout_s);
   };
-  through_lcm_logger(ours, folder.path() / "stock.lcmlog", {});
-  CHECK_THAT(processes.said("replay"), Catch::Contains("holds no message of Tactus"));
-  const bool heard_all = events_in(ours) == events_in(folder.path() / "stock.lcmlog");
-  CHECK(heard_all);
+  through_lcm_logger(own_log, folder.path() / "stock.lcmlog", {});
+  CHECK_THAT(processes.output("replay"), Catch::Contains("holds no message of Tactus"));
+  const bool all_received = events_in(own_log) == events_in(folder.path() / "stock.lcmlog");
+  CHECK(all_received);
   // The replay's own messages are recorded, too, and are no longer foreign.
   through_lcm_logger(folder.path() / "stock.lcmlog", folder.path() / "again.lcmlog", {"--verbatim"});
-  const bool same = events_in(folder.path() / "stock.lcmlog") == events_in(folder.path() / "again.lcmlog");
-  CHECK(same);
+  const bool identical = events_in(folder.path() / "stock.lcmlog") == events_in(folder.path() / "again.lcmlog");
+  CHECK(identical);
 }

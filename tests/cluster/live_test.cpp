@@ -24,22 +24,22 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double kPatience_s = 60;  // liveness, not speed
+constexpr double kTimeout_s = 60;  // liveness, not speed
 
 // The address printed by a program; "": none.
 std::string address_of(Processes& processes, const std::string& name) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience_s);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kTimeout_s);
   while (std::chrono::steady_clock::now() < end && processes.running(name)) {
-    const std::string said = processes.said(name);
-    const std::size_t from = said.find("http://127.0.0.1:");
-    if (from != std::string::npos && said.find('\n', from) != std::string::npos)
-      return said.substr(from, said.find_first_of(" \n", from) - from);
+    const std::string output = processes.output(name);
+    const std::size_t from = output.find("http://127.0.0.1:");
+    if (from != std::string::npos && output.find('\n', from) != std::string::npos)
+      return output.substr(from, output.find_first_of(" \n", from) - from);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   return "";
 }
 
-void require_what_the_browser_needs() {
+void require_browser() {
   INFO("install the packages chromium, nodejs and npm, and run scripts/live/bundle");
   REQUIRE(std::filesystem::exists("/usr/bin/chromium"));
   REQUIRE(std::filesystem::exists(repository() / "scripts/live/page/node_modules/puppeteer-core/package.json"));
@@ -47,13 +47,13 @@ void require_what_the_browser_needs() {
 }
 
 // Runs a test of scripts/live/page/test to its end.
-void in_browser(RunScript& run, const std::string& test, const std::vector<std::string>& arguments) {
+void run_browser_test(RunScript& run, const std::string& test, const std::vector<std::string>& arguments) {
   std::vector<std::string> command{"node", (repository() / "scripts/live/page/test" / test).string()};
   command.insert(command.end(), arguments.begin(), arguments.end());
   run.processes.spawn(test, command);
-  const int status = run.processes.wait_for_exit(test, 3 * kPatience_s);
-  INFO(run.processes.said(test));
-  INFO(run.processes.said("run"));
+  const int status = run.processes.wait_for_exit(test, 3 * kTimeout_s);
+  INFO(run.processes.output(test));
+  INFO(run.processes.output("run"));
   REQUIRE(status == 0);
 }
 
@@ -67,45 +67,45 @@ struct Marks {
 constexpr std::int64_t kMs = 1'000'000;
 
 void check_commands(const RunLog& log) {
-  std::map<int, std::int64_t> asked;  // id by kind
+  std::map<int, std::int64_t> requested;  // id by kind
   int steps = 0;
-  log.each<sim_command_t>(channels::kSimCommand, [&](const sim_command_t& m) {
-    asked[m.kind] = m.id;
+  log.for_each<sim_command_t>(channels::kSimCommand, [&](const sim_command_t& m) {
+    requested[m.kind] = m.id;
     if (m.kind == sim_command_t::STEP) steps = m.steps;
   });
   std::set<std::int64_t> done;
-  log.each<sim_reply_t>(channels::kSimReply, [&](const sim_reply_t& m) {
+  log.for_each<sim_reply_t>(channels::kSimReply, [&](const sim_reply_t& m) {
     INFO(m.text);
     CHECK(m.done == 1);
     done.insert(m.id);
   });
   for (const int kind : {sim_command_t::PAUSE, sim_command_t::STEP, sim_command_t::RESUME, sim_command_t::RESET}) {
     INFO("command " << kind);
-    REQUIRE(asked.contains(kind));
-    CHECK(done.contains(asked[kind]));
+    REQUIRE(requested.contains(kind));
+    CHECK(done.contains(requested[kind]));
   }
   CHECK(steps == 25);
 }
 
 // Instants of the world that are published within a span.
-std::set<std::int64_t> instants(const RunLog& log, const Span& span) {
+std::set<std::int64_t> sim_times(const RunLog& log, const Span& span) {
   std::set<std::int64_t> out;
-  log.each<world_state_t>(channels::kWorldState, span,
+  log.for_each<world_state_t>(channels::kWorldState, span,
                           [&](const world_state_t& m) { out.insert(m.header.sim_time_ns); });
   return out;
 }
 
 void check_world(const RunLog& log, const Marks& marks) {
   const std::int64_t paused = marks.at("paused"), stepped = marks.at("stepped");
-  const auto before = instants(log, {paused - 200 * kMs, paused}),
-             after = instants(log, {stepped - 400 * kMs, stepped});
+  const auto before = sim_times(log, {paused - 200 * kMs, paused}),
+             after = sim_times(log, {stepped - 400 * kMs, stepped});
   REQUIRE(before.size() == 1);
   REQUIRE(after.size() == 1);
   CHECK(*after.begin() - *before.begin() == 25 * kMs);  // 25 steps of 1 ms
-  CHECK(instants(log, {stepped + 200 * kMs, marks.at("reset")}).size() > 5);
+  CHECK(sim_times(log, {stepped + 200 * kMs, marks.at("reset")}).size() > 5);
   // The balls, which have rested on the floor, are dropped again from at least 0.3 m.
   double before_m = 0, after_m = 0;
-  log.each<world_state_t>(channels::kWorldState, [&](const world_state_t& m) {
+  log.for_each<world_state_t>(channels::kWorldState, [&](const world_state_t& m) {
     const std::int64_t t = m.header.publish_time_ns;
     for (const body_state_t& b : m.bodies) {
       if (t > stepped && t < marks.at("reset")) before_m = std::max(before_m, b.position_m.z);
@@ -116,31 +116,31 @@ void check_world(const RunLog& log, const Marks& marks) {
   CHECK(after_m > 0.25);
 }
 
-void check_profile_taken(const RunLog& log, std::int64_t hash, std::int64_t at_ns) {
-  std::map<std::string, std::int64_t> knows;  // newest before that instant
-  log.each<node_health_t>(channels::kNodeHealth, [&](const node_health_t& m) {
-    if (!m.modality.empty() && m.header.publish_time_ns < at_ns) knows[m.modality] = m.profile;
+void check_profile_received(const RunLog& log, std::int64_t hash, std::int64_t at_ns) {
+  std::map<std::string, std::int64_t> profiles;  // newest before that instant
+  log.for_each<node_health_t>(channels::kNodeHealth, [&](const node_health_t& m) {
+    if (!m.modality.empty() && m.header.publish_time_ns < at_ns) profiles[m.modality] = m.profile;
   });
   for (const char* sense : {"haptic", "audio", "visual", "thermal"}) {
     INFO(sense);
-    REQUIRE(knows.contains(sense));
-    CHECK(knows[sense] == hash);
+    REQUIRE(profiles.contains(sense));
+    CHECK(profiles[sense] == hash);
   }
 }
 
 void check_profiles(const RunLog& log, const Marks& marks) {
   const auto newest_in = [&](const Span& span) {
     degradation_t newest{};
-    log.each<degradation_t>(channels::kDegradation, span, [&](const degradation_t& m) {
+    log.for_each<degradation_t>(channels::kDegradation, span, [&](const degradation_t& m) {
       if (m.generation >= newest.generation) newest = m;
     });
     return newest;
   };
-  const degradation_t worse = newest_in({marks.at("cleared") - 60'000 * kMs, marks.at("clear")});
-  INFO(worse.text);
-  REQUIRE(worse.pages == 1);  // shorter than a datagram
+  const degradation_t degraded = newest_in({marks.at("cleared") - 60'000 * kMs, marks.at("clear")});
+  INFO(degraded.text);
+  REQUIRE(degraded.pages == 1);  // shorter than a datagram
   std::map<std::string, sync::Rule> rules;
-  for (const sync::Rule& r : sync::parse_profile(worse.text, "of the sliders").rules) rules[r.modality] = r;
+  for (const sync::Rule& r : sync::parse_profile(degraded.text, "of the sliders").rules) rules[r.modality] = r;
   CHECK(rules.size() == 4);
   // Rules in force before remain, including those without a slider.
   REQUIRE(rules["thermal"].delay);
@@ -152,21 +152,21 @@ void check_profiles(const RunLog& log, const Marks& marks) {
   CHECK(rules["visual"].rate->rate_Hz == Approx(10));
   REQUIRE(rules["haptic"].loss);
   CHECK(rules["haptic"].loss->share == Approx(0.5));
-  check_profile_taken(log, worse.hash, marks.at("degraded"));
+  check_profile_received(log, degraded.hash, marks.at("degraded"));
 
   const degradation_t well = newest_in(marks.between("clear", "cleared"));
   CHECK(sync::parse_profile(well.text, "of all well").rules.empty());
-  check_profile_taken(log, well.hash, marks.at("cleared"));
+  check_profile_received(log, well.hash, marks.at("cleared"));
 }
 
 void check_hand(const RunLog& log, const Marks& marks) {
-  struct At {
+  struct TimedPosition {
     std::int64_t t_ns;
     vec3_t p;
   };
-  std::vector<At> path;
+  std::vector<TimedPosition> path;
   double lowest_m = 10, highest_m = -10;
-  log.each<device_state_t>(channels::kDeviceState, [&](const device_state_t& m) {
+  log.for_each<device_state_t>(channels::kDeviceState, [&](const device_state_t& m) {
     CHECK(m.device == "live");
     const auto& v = m.velocity_m_s;
     CHECK(std::hypot(v.x, v.y, v.z) <= 1.0001);
@@ -187,35 +187,35 @@ void check_hand(const RunLog& log, const Marks& marks) {
   // The server releases the hand after 350 ms without messages.
   CHECK(path.back().t_ns < marks.at("let_go") + 1000 * kMs);
 
-  double most_N = 0;
-  log.each<tool_state_t>(channels::kToolState, marks.between("hand", "let_go"), [&](const tool_state_t& m) {
-    most_N = std::max(most_N, std::hypot<double>(m.force_N.x, m.force_N.y, m.force_N.z));
+  double max_force_N = 0;
+  log.for_each<tool_state_t>(channels::kToolState, marks.between("hand", "let_go"), [&](const tool_state_t& m) {
+    max_force_N = std::max(max_force_N, std::hypot<double>(m.force_N.x, m.force_N.y, m.force_N.z));
   });
-  CHECK(most_N > 0.5);  // the floor pushes back through the mouse
+  CHECK(max_force_N > 0.5);  // the floor pushes back through the mouse
   std::map<int, int> states;
-  log.each<node_health_t>(channels::kNodeHealth, marks.between("freeze", "over"), [&](const node_health_t& m) {
+  log.for_each<node_health_t>(channels::kNodeHealth, marks.between("freeze", "over"), [&](const node_health_t& m) {
     if (m.node == "haptic_node") ++states[m.state];
   });
   CHECK(states[node_health_t::OUTPUT_LOST] > 0);
 }
 
 void check_tag(const RunLog& log, const Marks& marks) {
-  int asked = 0, before = 0;
-  log.each<tag_request_t>(channels::kTagRequest, [&](const tag_request_t& m) {
+  int requested = 0, before = 0;
+  log.for_each<tag_request_t>(channels::kTagRequest, [&](const tag_request_t& m) {
     if (m.header.source != static_cast<std::int32_t>(sync::fnv1a_32("live_server"))) return;
     const bool named =
         std::find(m.patterns.begin(), m.patterns.end(), "sim_node.work.collision") != m.patterns.end();
-    asked += named;
+    requested += named;
     before += named && m.header.publish_time_ns < marks.at("filled");
   });
-  CHECK(asked > 3);
+  CHECK(requested > 3);
   CHECK(before == 0);
 }
 
 // Ticks per second of each node, from NODE_HEALTH.
 std::map<std::string, double> rates(const RunLog& log, const Span& span) {
   std::map<std::string, std::pair<node_health_t, node_health_t>> ends;
-  log.each<node_health_t>(channels::kNodeHealth, span, [&](const node_health_t& m) {
+  log.for_each<node_health_t>(channels::kNodeHealth, span, [&](const node_health_t& m) {
     if (!ends.contains(m.node)) ends[m.node].first = m;
     ends[m.node].second = m;
   });
@@ -227,7 +227,7 @@ std::map<std::string, double> rates(const RunLog& log, const Span& span) {
   return out;
 }
 
-void check_nobody_notices(const RunLog& log, const Marks& marks) {
+void check_rates_unchanged(const RunLog& log, const Marks& marks) {
   const auto before = rates(log, marks.between("filled", "degrade"));
   for (const auto& [from, to] : {std::pair{"freeze", "frozen"}, std::pair{"killed", "over"}}) {
     auto during = rates(log, marks.between(from, to));
@@ -242,7 +242,7 @@ void check_nobody_notices(const RunLog& log, const Marks& marks) {
 }
 
 // The last published instant of the world before a place in a log; -1: none.
-std::int64_t world_at(const std::filesystem::path& path, double at_s) {
+std::int64_t sim_time_at(const std::filesystem::path& path, double at_s) {
   sync::MappedLog file(path);
   sync::LogScanner scanner(file.bytes());
   std::optional<std::int64_t> first_us;
@@ -259,9 +259,9 @@ std::int64_t world_at(const std::filesystem::path& path, double at_s) {
 }  // namespace
 
 TEST_CASE(
-    "What a person does in the live page is done on the bus, a frozen or killed browser changes nothing, and the "
-    "log is shown again", "[exclusive]") {
-  require_what_the_browser_needs();
+    "Actions in the live page reach the bus, a frozen or killed browser changes nothing, and the log "
+    "can be replayed in the page", "[exclusive]") {
+  require_browser();
   RunScript run;
   const std::filesystem::path profile = run.folder.path() / "late_warmth.xml";
   std::ofstream(profile)
@@ -269,13 +269,13 @@ TEST_CASE(
   run.start({tapping_scene(), "--live", "--degrade", profile, "--device", "external:live", "--seconds", "90",
              "--out", run.out()});
   const std::string address = address_of(run.processes, "run");
-  INFO(run.processes.said("run"));
+  INFO(run.processes.output("run"));
   REQUIRE_FALSE(address.empty());
   const std::filesystem::path marks_file = run.folder.path() / "marks.json",
                               seen_file = run.folder.path() / "seen.json";
-  in_browser(run, "run.test.mjs", {address, marks_file});
+  run_browser_test(run, "run.test.mjs", {address, marks_file});
   run.processes.signal("run", SIGINT);
-  CHECK(run.finish(kPatience_s) >= 0);
+  CHECK(run.finish(kTimeout_s) >= 0);
 
   const Marks marks{json::parse(contents(marks_file))};
   const RunLog log(run.out());
@@ -284,24 +284,24 @@ TEST_CASE(
   check_profiles(log, marks);
   check_commands(log);
   check_world(log, marks);
-  check_nobody_notices(log, marks);
+  check_rates_unchanged(log, marks);
 
   const std::filesystem::path recorded = run.out() / "run.lcmlog";
   run.processes.spawn("open", {"env", "TACTUS_BIN=" + programs().string(),
                                (repository() / "scripts/tactus").string(), "live", "open", recorded});
   const std::string shown_at = address_of(run.processes, "open");
-  INFO(run.processes.said("open"));
+  INFO(run.processes.output("open"));
   REQUIRE_FALSE(shown_at.empty());
-  in_browser(run, "log.test.mjs", {shown_at, seen_file});
+  run_browser_test(run, "log.test.mjs", {shown_at, seen_file});
   const json seen = json::parse(contents(seen_file));
   REQUIRE(seen["places"].size() == 3);
   for (const json& place : seen["places"]) {
     const double to_s = place["to_s"].get<double>();
     INFO(place.dump());
     // Shown to four figures. The world is published 100 times per second, and a variable is decimated to 200 points.
-    const auto expected = static_cast<double>(world_at(recorded, to_s));
+    const auto expected = static_cast<double>(sim_time_at(recorded, to_s));
     CHECK(place["sim_ns"].get<double>() == Approx(expected).margin(60e6));
   }
   run.processes.signal("open", SIGTERM);
-  CHECK(run.processes.wait_for_exit("open", kPatience_s) >= 0);
+  CHECK(run.processes.wait_for_exit("open", kTimeout_s) >= 0);
 }

@@ -14,7 +14,7 @@
 namespace {
 
 constexpr const char* kInside = "TACTUS_TEST_INSIDE";
-constexpr int kSkipped = 77;  // the skip code that CTest expects
+constexpr int kExitSkipped = 77;  // the skip code that CTest expects
 constexpr const char* kNetwork =
     "PATH=$PATH:/usr/sbin:/sbin; ip link set lo up && ip route add 224.0.0.0/4 dev lo || exit 77; exec \"$0\" \"$@\"";
 
@@ -39,8 +39,8 @@ bool may_unshare() {
 
 int enter(int argc, char** argv) {
   if (!may_unshare()) {
-    std::cout << "skipped: this system allows no network namespace of one's own\n";
-    return kSkipped;
+    std::cout << "skipped: this system does not allow network namespaces\n";
+    return kExitSkipped;
   }
   setenv(kInside, "1", 1);
   std::vector<std::string> words = unshare_words();

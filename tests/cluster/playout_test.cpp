@@ -9,11 +9,11 @@ using namespace tactus::cluster;
 namespace {
 
 // Asynchronies of a after b, ms, for new hits of the tool; touch by its transient.
-std::vector<double> asynchronies_ms(const Ear& ear, const std::string& a, const std::string& b,
-                                    const EventsHeard& before) {
+std::vector<double> asynchronies_ms(const ClusterMonitor& monitor, const std::string& a, const std::string& b,
+                                    const PresentedEvents& before) {
   std::vector<double> out;
-  const auto of_a = ear.presented().find(a), of_b = ear.presented().find(b);
-  if (of_a == ear.presented().end() || of_b == ear.presented().end()) return out;
+  const auto of_a = monitor.presented().find(a), of_b = monitor.presented().find(b);
+  if (of_a == monitor.presented().end() || of_b == monitor.presented().end()) return out;
   const auto known = before.find(a);
   for (const auto& [id, r] : of_a->second) {
     const auto other = of_b->second.find(id);
@@ -25,64 +25,66 @@ std::vector<double> asynchronies_ms(const Ear& ear, const std::string& a, const 
 }
 
 // Median asynchrony over the next seconds, after the delays have been slewed.
-double settled_asynchrony_ms(Running& c, const std::string& a, const std::string& b, double slewed_s) {
-  c.ear.listen(slewed_s);
-  const EventsHeard before = heard_of(c.ear);
-  CHECK(c.ear.wait_until([&] { return asynchronies_ms(c.ear, a, b, before).size() >= 5; }, kPatience_s));
-  return median(asynchronies_ms(c.ear, a, b, before));
+double settled_asynchrony_ms(RunningCluster& c, const std::string& a, const std::string& b, double slewed_s) {
+  c.monitor.receive_for(slewed_s);
+  const PresentedEvents before = presented_events(c.monitor);
+  CHECK(c.monitor.wait_until([&] { return asynchronies_ms(c.monitor, a, b, before).size() >= 5; }, kTimeout_s));
+  return median(asynchronies_ms(c.monitor, a, b, before));
 }
 
 }  // namespace
 
-TEST_CASE("Sound and picture are as far apart as an experiment asks, changed while the cluster runs", "[exclusive]") {
-  Running c;
+TEST_CASE("Sound and picture have the requested SOA, also after a change in the running cluster", "[exclusive]") {
+  RunningCluster c;
   c.start();
   // 100 ms of a base of 200 ms are slewed at 5 % of the time: within 4.5 s.
-  CHECK(ask_for(c, {"experiment", "--base", "200ms", "--soa", "audio=-60ms,visual=60ms"}).find("experiment") !=
+  CHECK(request_playout(c, {"experiment", "--base", "200ms", "--soa", "audio=-60ms,visual=60ms"}).find("experiment") !=
         std::string::npos);
-  const double apart = settled_asynchrony_ms(c, "visual", "audio", 6);
-  CHECK(apart > 60);
-  CHECK(apart < 240);
-  ask_for(c, {"experiment", "--base", "200ms"});
+  const double separated_ms = settled_asynchrony_ms(c, "visual", "audio", 6);
+  CHECK(separated_ms > 60);
+  CHECK(separated_ms < 240);
+  request_playout(c, {"experiment", "--base", "200ms"});
   const double together = settled_asynchrony_ms(c, "visual", "audio", 4);
   CHECK(std::abs(together) < 60);
-  CHECK(c.all_live(kNodes));
+  CHECK(c.all_running(kNodes));
 }
 
-TEST_CASE("Who decides when the senses present may die: they keep it, and it comes back with what was asked for", "[exclusive]") {
-  Running c;
+TEST_CASE(
+    "When sync_node is killed the modalities keep the playout policy, and the restarted sync_node "
+    "publishes the requested one", "[exclusive]") {
+  RunningCluster c;
   c.start();
-  ask_for(c, {"experiment", "--base", "150ms", "--soa", "visual=100ms"});
+  request_playout(c, {"experiment", "--base", "150ms", "--soa", "visual=100ms"});
   const double before = settled_asynchrony_ms(c, "visual", "audio", 6);
   c.processes.kill("sync_node");
   const double alone = settled_asynchrony_ms(c, "visual", "audio", 1);
   CHECK(alone > before / 2);
   CHECK(alone < before * 2);
   c.processes.start("sync_node", {});
-  CHECK(c.ear.wait_until([&] { return c.lives("sync_node"); }, kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return c.is_running("sync_node"); }, kTimeout_s));
   const double again = settled_asynchrony_ms(c, "visual", "audio", 2);
   CHECK(again > before / 2);
   CHECK(again < before * 2);
-  CHECK(ask_for(c, {}).find("experiment") != std::string::npos);
+  CHECK(request_playout(c, {}).find("experiment") != std::string::npos);
 }
 
-TEST_CASE("In the serial loop of 2005 all senses go on, one after the other", "[exclusive]") {
-  Running c;
+TEST_CASE("In the serial loop of 2005 all modalities render, one after the other", "[exclusive]") {
+  RunningCluster c;
   c.start();
-  CHECK(ask_for(c, {"itouch2005"}).find("one loop") != std::string::npos);
+  CHECK(request_playout(c, {"itouch2005"}).find("one loop") != std::string::npos);
   CHECK(settled_asynchrony_ms(c, "visual", "audio", 4) > 0);
-  CHECK(c.all_live(kNodes));
+  CHECK(c.all_running(kNodes));
 }
 
-TEST_CASE("What the display takes after the fence is in what is reported as presented, and is made up for", "[exclusive]") {
-  Running c;
+TEST_CASE("The reported presentation time includes the display latency after the fence, and playout compensates for it", "[exclusive]") {
+  RunningCluster c;
   c.start();
   c.processes.kill("visual_node");
   c.processes.start("visual_node", {"--set", "display_latency=0.1"});
-  CHECK(c.ear.wait_until([&] { return c.lives("visual_node"); }, kPatience_s));
-  ask_for(c, {"asap"});
+  CHECK(c.monitor.wait_until([&] { return c.is_running("visual_node"); }, kTimeout_s));
+  request_playout(c, {"asap"});
   // Without the policy, picture and sound come within one or two frames of each other.
   CHECK(settled_asynchrony_ms(c, "visual", "audio", 2) > 60);
-  ask_for(c, {"experiment", "--base", "300ms"});
+  request_playout(c, {"experiment", "--base", "300ms"});
   CHECK(std::abs(settled_asynchrony_ms(c, "visual", "audio", 7)) < 60);
 }

@@ -11,38 +11,37 @@ using namespace tactus::cluster;
 
 namespace {
 
-int outcomes(const Ear& ear, const std::string& modality, std::int8_t outcome) {
-  const auto reports = ear.presented().find(modality);
-  if (reports == ear.presented().end()) return 0;
+int count_outcomes(const ClusterMonitor& monitor, const std::string& modality, std::int8_t outcome) {
+  const auto reports = monitor.presented().find(modality);
+  if (reports == monitor.presented().end()) return 0;
   return static_cast<int>(std::count_if(reports->second.begin(), reports->second.end(),
                                         [&](const auto& r) { return r.second.outcome == outcome; }));
 }
 
 }  // namespace
 
-TEST_CASE("A profile put in force while the cluster runs degrades its own sense alone, and can be taken away", "[exclusive]") {
-  Running c;
+TEST_CASE("A profile put in force in a running cluster degrades only its modality, and can be removed", "[exclusive]") {
+  RunningCluster c;
   c.start();
   const auto before = c.rates(1);
   CHECK(put_in_force(c, "<degrade modality=\"audio\" off=\"true\"/>").find("audio_node") != std::string::npos);
 
-  CHECK(c.ear.wait_until([&] { return outcomes(c.ear, "audio", presentation_t::DROPPED_BY_PROFILE) >= 3; },
-                         kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return count_outcomes(c.monitor, "audio", presentation_t::DROPPED_BY_PROFILE) >= 3; },
+                         kTimeout_s));
   for (const std::string& other : std::vector<std::string>{"haptic", "visual"})
-    CHECK(outcomes(c.ear, other, presentation_t::DROPPED_BY_PROFILE) == 0);
+    CHECK(count_outcomes(c.monitor, other, presentation_t::DROPPED_BY_PROFILE) == 0);
   // A commanded gap is no loss: the node itself is well.
-  CHECK(c.all_live(kNodes));
+  CHECK(c.all_running(kNodes));
   c.check_rates_hold(before, 2);
 
   put_in_force(c, "");
-  const int heard = outcomes(c.ear, "audio", presentation_t::PRESENTED);
+  const int presented = count_outcomes(c.monitor, "audio", presentation_t::PRESENTED);
   CHECK(
-      c.ear.wait_until([&] { return outcomes(c.ear, "audio", presentation_t::PRESENTED) > heard; }, kPatience_s));
+      c.monitor.wait_until([&] { return count_outcomes(c.monitor, "audio", presentation_t::PRESENTED) > presented; }, kTimeout_s));
 }
 
-TEST_CASE(
-    "A scene that brings a profile degrades the sense that it names, and no other, until somebody takes it away", "[exclusive]") {
-  Running c;
+TEST_CASE("The profile of a scene degrades the modality that it names and no other, until a user removes it", "[exclusive]") {
+  RunningCluster c;
   std::stringstream text;
   text << std::ifstream(tapping_scene()).rdbuf();
   std::string scene = text.str();
@@ -52,13 +51,13 @@ TEST_CASE(
   const std::string file = c.folder.path() / "silent.sdf";
   std::ofstream(file) << scene;
   c.processes.start_all(file);
-  const auto dropped = [&] { return outcomes(c.ear, "audio", presentation_t::DROPPED_BY_PROFILE); };
-  const auto heard = [&] { return outcomes(c.ear, "audio", presentation_t::PRESENTED); };
-  CHECK(c.ear.wait_until(
-      [&] { return dropped() >= 3 && outcomes(c.ear, "haptic", presentation_t::PRESENTED) >= 3; }, kPatience_s));
-  INFO(c.words());
-  CHECK(heard() == 0);
-  CHECK(outcomes(c.ear, "visual", presentation_t::DROPPED_BY_PROFILE) == 0);
+  const auto dropped = [&] { return count_outcomes(c.monitor, "audio", presentation_t::DROPPED_BY_PROFILE); };
+  const auto presented = [&] { return count_outcomes(c.monitor, "audio", presentation_t::PRESENTED); };
+  CHECK(c.monitor.wait_until(
+      [&] { return dropped() >= 3 && count_outcomes(c.monitor, "haptic", presentation_t::PRESENTED) >= 3; }, kTimeout_s));
+  INFO(c.log_text());
+  CHECK(presented() == 0);
+  CHECK(count_outcomes(c.monitor, "visual", presentation_t::DROPPED_BY_PROFILE) == 0);
   put_in_force(c, "");
-  CHECK(c.ear.wait_until([&] { return heard() > 0; }, kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return presented() > 0; }, kTimeout_s));
 }

@@ -24,17 +24,17 @@ namespace {
 // Sends numbered messages on a channel that no other program uses.
 struct Sender {
   static constexpr const char* kChannel = channels::kGameState;
-  Ear ear{Running::kRunId};
+  ClusterMonitor monitor{RunningCluster::kRunId};
   std::vector<sync::HostTime> sent;
 
-  void send(int count, sync::Nanoseconds apart) {
+  void send(int count, sync::Nanoseconds interval) {
     sync::HostTime next = sync::host_now();
     for (int i = 0; i < count; ++i) {
       game_state_t m{};
       m.header.sim_time_ns = 0;
-      ear.bus().publish(kChannel, m);
+      monitor.bus().publish(kChannel, m);
       sent.push_back(sync::host_now());
-      next += apart;
+      next += interval;
       std::this_thread::sleep_until(std::chrono::steady_clock::time_point(next.time_since_epoch()));
     }
   }
@@ -54,46 +54,46 @@ std::vector<std::int64_t> numbers_in(const std::filesystem::path& log) {
 
 }  // namespace
 
-TEST_CASE("Of a recorder that is killed at most the last 100 ms are missing, and its file is whole up to there", "[exclusive]") {
+TEST_CASE("A killed recorder loses at most the last 100 ms, and its file is valid up to that point", "[exclusive]") {
   Folder folder;
-  Processes processes(folder.path(), Running::kRunId);
+  Processes processes(folder.path(), RunningCluster::kRunId);
   Sender sender;
   processes.start("recorder");
-  REQUIRE(sender.ear.wait_until([&] { return sender.ear.health("recorder") != nullptr; }, kPatience_s));
+  REQUIRE(sender.monitor.wait_until([&] { return sender.monitor.health("recorder") != nullptr; }, kTimeout_s));
   // Without a scene the log begins after 5 s; earlier messages wait until then.
   sender.send(7000, sync::Nanoseconds(1'000'000));
   const sync::HostTime killed = sync::host_now();
   processes.kill("recorder");
   const auto numbers = numbers_in(folder.path() / "run.lcmlog");
-  std::size_t owed = 0;
-  while (owed < sender.sent.size() && sender.sent[owed] < killed - sync::Nanoseconds(100'000'000)) ++owed;
-  CHECK(numbers.size() >= owed);
+  std::size_t expected = 0;
+  while (expected < sender.sent.size() && sender.sent[expected] < killed - sync::Nanoseconds(100'000'000)) ++expected;
+  CHECK(numbers.size() >= expected);
   for (std::size_t i = 0; i < numbers.size(); ++i) CHECK(numbers[i] == static_cast<std::int64_t>(i));
 }
 
-TEST_CASE("A recorder whose disk is full says so, and its file is whole up to there", "[exclusive]") {
+TEST_CASE("A recorder with a full disk reports it, and its file is valid up to that point", "[exclusive]") {
   Folder folder;
   const std::filesystem::path small = folder.path() / "small";
   std::filesystem::create_directory(small);
   if (mount("tmpfs", small.c_str(), "tmpfs", 0, "size=400k") != 0) {
-    WARN("no tmpfs may be mounted here");
+    WARN("skipped: this system does not allow mounting a tmpfs");
     return;
   }
   {
-    Processes processes(folder.path(), Running::kRunId);
+    Processes processes(folder.path(), RunningCluster::kRunId);
     Sender sender;
-    processes.spawn("recorder", {(programs() / "recorder").string(), "--run-id", std::to_string(Running::kRunId),
+    processes.spawn("recorder", {(programs() / "recorder").string(), "--run-id", std::to_string(RunningCluster::kRunId),
                                  "--out", small});
-    REQUIRE(sender.ear.wait_until([&] { return sender.ear.health("recorder") != nullptr; }, kPatience_s));
+    REQUIRE(sender.monitor.wait_until([&] { return sender.monitor.health("recorder") != nullptr; }, kTimeout_s));
     sender.send(9000, sync::Nanoseconds(700'000));
-    const bool said = sender.ear.wait_until(
+    const bool reported = sender.monitor.wait_until(
         [&] {
-          const node_health_t* h = sender.ear.health("recorder");
+          const node_health_t* h = sender.monitor.health("recorder");
           return h && h->state == node_health_t::OUTPUT_LOST &&
                  h->status_text.find("No space left on device") != std::string::npos;
         },
-        kPatience_s);
-    CHECK(said);
+        kTimeout_s);
+    CHECK(reported);
     const auto numbers = numbers_in(small / "run.lcmlog");
     CHECK(numbers.size() > 100);
     for (std::size_t i = 0; i < numbers.size(); ++i) CHECK(numbers[i] == static_cast<std::int64_t>(i));
@@ -104,16 +104,18 @@ TEST_CASE("A recorder whose disk is full says so, and its file is whole up to th
   umount(small.c_str());
 }
 
-TEST_CASE("Of a node that floods all is recorded that the kernel delivers, and what others say besides", "[exclusive]") {
+TEST_CASE(
+    "The recorder stores all messages that the kernel delivers while a node floods the bus, and those "
+    "of the other nodes", "[exclusive]") {
   Folder folder;
-  Processes processes(folder.path(), Running::kRunId);
+  Processes processes(folder.path(), RunningCluster::kRunId);
   Sender sender;
   processes.start("recorder", {"--split-mb", "1"});
-  REQUIRE(sender.ear.wait_until([&] { return sender.ear.health("recorder") != nullptr; }, kPatience_s));
+  REQUIRE(sender.monitor.wait_until([&] { return sender.monitor.health("recorder") != nullptr; }, kTimeout_s));
   sender.send(60'000, sync::Nanoseconds(0));
-  sender.ear.listen(6);
+  sender.monitor.receive_for(6);
   processes.signal("recorder", SIGTERM);
-  CHECK(processes.wait_for_exit("recorder", kPatience_s) == 0);
+  CHECK(processes.wait_for_exit("recorder", kTimeout_s) == 0);
   std::set<std::int64_t> found;
   int parts = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
@@ -122,10 +124,10 @@ TEST_CASE("Of a node that floods all is recorded that the kernel delivers, and w
     for (const std::int64_t n : numbers_in(entry.path())) CHECK(found.insert(n).second);
   }
   CHECK(parts > 3);
-  CHECK_THAT(processes.said("recorder"), !Catch::Contains("want of"));
+  CHECK_THAT(processes.output("recorder"), !Catch::Contains("want of"));
   // The missing messages form a gap that the recorder has counted: as many as the kernel dropped at its socket.
-  const std::string said = processes.said("recorder");
-  const std::size_t at = said.rfind("GAME_STATE ");
-  const std::int64_t gaps = at == std::string::npos ? 0 : std::stoll(said.substr(at + 11));
+  const std::string output = processes.output("recorder");
+  const std::size_t at = output.rfind("GAME_STATE ");
+  const std::int64_t gaps = at == std::string::npos ? 0 : std::stoll(output.substr(at + 11));
   CHECK(static_cast<std::int64_t>(found.size()) + gaps >= 60'000 - 1);
 }

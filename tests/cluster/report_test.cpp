@@ -7,9 +7,7 @@
 using namespace tactus::cluster;
 using nlohmann::json;
 
-TEST_CASE(
-    "A run and a run that was degraded become one page, the same bytes twice, whose figures are those of the "
-    "runs") {
+TEST_CASE("The report of a run and a degraded run has the same bytes twice, and the figures of the runs") {
   RunScript run;
   const auto late = run.folder.path() / "late.xml";
   std::ofstream(late) << R"(<profile name="late"><degrade modality="audio" delay="60ms"/></profile>)";

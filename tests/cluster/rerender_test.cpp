@@ -18,25 +18,27 @@ json row_of(const json& rows, const std::string& sense, const std::string& what)
 json changed_of(const json& result, const std::string& sense) {
   for (const json& row : result["changed"])
     if (row["sense"] == sense) return row;
-  FAIL("nothing is said of what changed for " << sense);
+  FAIL("no row on the change of " << sense);
   return {};
 }
 
 }  // namespace
 
-TEST_CASE("A recorded run is rendered to the same bytes twice, sounds within a millisecond of itself, and a profile changes its sense alone", "[exclusive]") {
+TEST_CASE(
+    "A recorded run renders twice to the same bytes, within 1 ms of its live sound, and a profile "
+    "changes only its modality", "[exclusive]") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "5", "--out", run.out()});
   const int status = run.finish(150);
-  INFO(run.processes.said("run"));
+  INFO(run.processes.output("run"));
   REQUIRE(status == 0);
   const std::filesystem::path late = run.folder.path() / "late.xml", table = run.folder.path() / "table.json";
   std::ofstream(late) << R"(<profile name="late"><degrade modality="audio" delay="40ms"/></profile>)";
   // Exits with 1 when a byte differs, or when an onset of sound is more than 1 ms off.
-  const std::string said = run.output_of(
+  const std::string output = run.output_of(
       {"env", "TACTUS_BIN=" + programs().string(), (repository() / "scripts/tactus").string(), "rerender", run.out() / "run.lcmlog", "--degrade", late,
        "--twice", "--live", "--set", "visual:width=320", "--set", "visual:height=240", "--json", table});
-  INFO(said);
+  INFO(output);
   const json result = json::parse(contents(table));
   CHECK(result["not_rendered"].empty());
   REQUIRE(result["twice"].size() == 4);
@@ -49,9 +51,9 @@ TEST_CASE("A recorded run is rendered to the same bytes twice, sounds within a m
   const json onsets = row_of(result["live"], "audio", "onsets");
   CHECK(onsets["n"] >= 3);
   CHECK(onsets["max"] <= 1.0);
-  const json felt = row_of(result["live"], "haptic", "force, while");
-  CHECK(felt["n"] > 100);
-  CHECK(felt["p50"] < 0.05);
+  const json force = row_of(result["live"], "haptic", "force, while");
+  CHECK(force["n"] > 100);
+  CHECK(force["p50"] < 0.05);
   CHECK(row_of(result["live"], "thermal", "skin")["p50"] < 0.1);
 
   const json audio = changed_of(result, "audio");

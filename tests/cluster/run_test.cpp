@@ -8,7 +8,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double kLongest_s = 150;
+constexpr double kRunTimeout_s = 150;
 
 double media_seconds(RunScript& run, const std::filesystem::path& file) {
   const std::string text = run.output_of({"ffprobe", "-v", "error", "-show_entries", "format=duration", "-of", "csv=p=0", file});
@@ -24,13 +24,13 @@ void check_keys(const json& object, const std::vector<std::string>& keys) {
 
 }  // namespace
 
-TEST_CASE("scripts/run leaves the log, sound, pictures, tables and a whole summary", "[smoke]") {
+TEST_CASE("scripts/run writes the log, sound, pictures, tables and a complete summary", "[smoke]") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "8", "--out", run.out()});
-  const int status = run.finish(kLongest_s);
-  INFO(run.processes.said("run"));
+  const int status = run.finish(kRunTimeout_s);
+  INFO(run.processes.output("run"));
   REQUIRE(status == 0);
-  CHECK(nothing_lives(5));
+  CHECK(all_processes_ended(5));
   for (const char* file : {"run.lcmlog", "audio.wav", "video.mp4", "haptic.csv", "thermal.csv", "events.csv", "presented.csv",
                            "summary.json"}) {
     INFO(file);
@@ -59,11 +59,11 @@ TEST_CASE("scripts/run leaves the log, sound, pictures, tables and a whole summa
   for (const auto& [channel, counts] : summary["bus"].items()) check_keys(counts, {"messages", "bytes", "gaps"});
 }
 
-TEST_CASE("In two groups every sense presents what it owes, and the world keeps its rate", "[exclusive]") {
+TEST_CASE("With two groups every modality presents its expected events, and the world keeps its rate", "[exclusive]") {
   RunScript run;
   run.start({"--seconds", "8", "--set", "sim_node.groups=dual", "--out", run.out()});
-  const int status = run.finish(kLongest_s);
-  INFO(run.processes.said("run"));
+  const int status = run.finish(kRunTimeout_s);
+  INFO(run.processes.output("run"));
   CHECK(status == 0);
   const json summary = json::parse(contents(run.out() / "summary.json"));
   for (const char* sense : {"audio", "haptic", "thermal", "visual"}) {
@@ -73,42 +73,42 @@ TEST_CASE("In two groups every sense presents what it owes, and the world keeps 
   }
 }
 
-TEST_CASE("Without audio_node the others run as before, in the default scene", "[exclusive]") {
+TEST_CASE("Without audio_node the others run unchanged, in the default scene", "[exclusive]") {
   RunScript run;
   run.start({"--seconds", "6", "--without", "audio_node", "--out", run.out()});
-  const int status = run.finish(kLongest_s);
-  INFO(run.processes.said("run"));
+  const int status = run.finish(kRunTimeout_s);
+  INFO(run.processes.output("run"));
   CHECK(status == 0);
   CHECK_FALSE(std::filesystem::exists(run.out() / "audio.wav"));
   CHECK(std::filesystem::exists(run.out() / "video.mp4"));
   CHECK(json::parse(contents(run.out() / "summary.json"))["absent"] == json::array({"audio"}));
 }
 
-TEST_CASE("A reader that closes the pipe costs no results, and nothing keeps running") {
+TEST_CASE("A closed output pipe loses no results, and leaves no process behind") {
   RunScript run;
   const std::string script = (repository() / "scripts/run").string();
   run.processes.spawn("pipe", {"env", "TACTUS_BIN=" + programs().string(), "sh", "-c",
                                quoted(script) + " " + quoted(tapping_scene()) + " --seconds 3 --out " + quoted(run.out()) + " | head -1"});
-  CHECK(run.finish(kLongest_s, "pipe") == 0);
-  INFO(run.processes.said("pipe"));
+  CHECK(run.finish(kRunTimeout_s, "pipe") == 0);
+  INFO(run.processes.output("pipe"));
   for (int i = 0; i < 600 && !std::filesystem::exists(run.out() / "events.csv"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  CHECK(nothing_lives(15));
+  CHECK(all_processes_ended(15));
   for (const char* file : {"run.lcmlog", "haptic.csv", "thermal.csv", "events.csv", "presented.csv", "summary.json"}) {
     INFO(file);
     CHECK(std::filesystem::is_regular_file(run.out() / file));
   }
 }
 
-TEST_CASE("What is wrong is said in one sentence before anything starts", "[smoke]") {
-  struct Wrong {
+TEST_CASE("Errors of the command line are reported in one sentence before any process starts", "[smoke]") {
+  struct BadCommand {
     std::vector<std::string> options;
-    std::string names;
+    std::string expected_word;
   };
   RunScript run;
   const std::filesystem::path broken = run.folder.path() / "broken.sdf";
   std::ofstream(broken) << "<sdf version='1.9'><world name='w'><model name='m'><link></world></sdf>\n";
-  const Wrong wrong = GENERATE_COPY(values<Wrong>({
+  const BadCommand bad = GENERATE_COPY(values<BadCommand>({
       {{"--bogus"}, "--bogus"},
       {{"nowhere.sdf"}, "nowhere.sdf"},
       {{broken.string()}, "sim_node"},
@@ -123,17 +123,17 @@ TEST_CASE("What is wrong is said in one sentence before anything starts", "[smok
       {{"--port", "99999999"}, "--port"},
       {{"--out", "/proc/nowhere/run"}, "/proc/nowhere"},
   }));
-  run.start(wrong.options);
+  run.start(bad.options);
   CHECK(run.finish(60) == 1);
-  const std::string said = run.processes.said("run");
-  INFO(said);
-  CHECK(said.find(wrong.names) != std::string::npos);
-  CHECK(std::count(said.begin(), said.end(), '\n') == 1);
-  CHECK(nothing_lives(5));
+  const std::string output = run.processes.output("run");
+  INFO(output);
+  CHECK(output.find(bad.expected_word) != std::string::npos);
+  CHECK(std::count(output.begin(), output.end(), '\n') == 1);
+  CHECK(all_processes_ended(5));
   CHECK_FALSE(std::filesystem::exists(run.folder.path() / "out"));
 }
 
-TEST_CASE("A busy port is named, with the remedy, when the machine's network is used", "[exclusive]") {
+TEST_CASE("A busy port of the machine's network is named, with the remedy", "[exclusive]") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "30", "--network", "host", "--without", "visual_node", "--out", run.out("a")}, "first");
   const auto up = [&] {
@@ -143,27 +143,27 @@ TEST_CASE("A busy port is named, with the remedy, when the machine's network is 
   REQUIRE(up());
   run.start({tapping_scene(), "--seconds", "1", "--network", "host", "--out", run.out("b")}, "second");
   CHECK(run.finish(60, "second") == 1);
-  const std::string said = run.processes.said("second");
-  INFO(said);
-  CHECK(said.find("7667") != std::string::npos);
-  CHECK(said.find("--port") != std::string::npos);
+  const std::string output = run.processes.output("second");
+  INFO(output);
+  CHECK(output.find("7667") != std::string::npos);
+  CHECK(output.find("--port") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(run.out("b")));
   // Ctrl-C ends the first run early, with its results.
   run.processes.signal("first", SIGINT);
   const int status = run.finish(60, "first");
-  INFO(run.processes.said("first"));
+  INFO(run.processes.output("first"));
   CHECK(status == 0);
   CHECK(std::filesystem::exists(run.out("a") / "summary.json"));
 }
 
-TEST_CASE("Two runs at once do not hear each other", "[exclusive]") {
+TEST_CASE("Two simultaneous runs do not receive each other's messages", "[exclusive]") {
   RunScript run;
   const std::vector<std::string> names{"a", "b"};
   for (const std::string& name : names)
     run.start({tapping_scene(), "--seconds", "4", "--without", "visual_node", "--out", run.out(name)}, name);
   for (const std::string& name : names) {
-    const int status = run.finish(kLongest_s, name);
-    INFO(run.processes.said(name));
+    const int status = run.finish(kRunTimeout_s, name);
+    INFO(run.processes.output(name));
     CHECK(status == 0);
     const json summary = json::parse(contents(run.out(name) / "summary.json"), nullptr, false);
     REQUIRE_FALSE(summary.is_discarded());
@@ -172,14 +172,14 @@ TEST_CASE("Two runs at once do not hear each other", "[exclusive]") {
   }
 }
 
-TEST_CASE("When scripts/run is killed outright nothing keeps running") {
+TEST_CASE("A killed scripts/run leaves no process behind") {
   const std::string network = GENERATE(as<std::string>{}, "private", "host");
   RunScript run;
   run.start({tapping_scene(), "--seconds", "60", "--network", network, "--out", run.out()});
   const auto up = [&] { return std::filesystem::exists(run.out() / "run.lcmlog"); };
   for (int i = 0; i < 1200 && !up(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   REQUIRE(up());
-  CHECK(living_processes().size() > 5);
+  CHECK(running_processes().size() > 5);
   run.processes.kill("run");
-  CHECK(nothing_lives(10));
+  CHECK(all_processes_ended(10));
 }

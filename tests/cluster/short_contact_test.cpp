@@ -23,7 +23,7 @@ std::vector<std::string> policies_for(const std::string& degraded) {
   return {kPolicy.at(degraded)};
 }
 
-const std::map<std::string, std::vector<std::string>> kOwes{
+const std::map<std::string, std::vector<std::string>> kExpectedKinds{
     {"haptic", {"begin", "hit"}}, {"audio", {"hit"}}, {"visual", {"begin", "hit"}}, {"thermal", {"begin", "hit"}}};
 
 // The tool dips 0.6 mm into the floor and out of it at 0.5 m/s: 3 ms from touch to the published end, at a gap of 0.3 mm. 257 ms between
@@ -63,8 +63,8 @@ std::vector<std::map<std::string, std::string>> table(const std::filesystem::pat
 struct Result {
   std::map<std::string, std::string> kind;                            // kind of each settled event, by id
   std::map<std::string, std::map<std::string, std::string>> outcome;  // by modality and event
-  std::map<std::string, double> soonest_ms;                           // after the event, by modality
-  std::vector<double> lasted_ms;                                      // durations of the contacts
+  std::map<std::string, double> min_latency_ms;                           // after the event, by modality
+  std::vector<double> durations_ms;                                      // durations of the contacts
 };
 
 Result read(const std::filesystem::path& out) {
@@ -72,28 +72,28 @@ Result read(const std::filesystem::path& out) {
   const auto events = table(out / "events.csv");
   REQUIRE_FALSE(events.empty());
   const auto ns = [](const auto& row, const char* name) { return std::stoll(row.at(name)); };
-  std::map<std::string, std::int64_t> began, happened_ns;
+  std::map<std::string, std::int64_t> began, event_ns;
   // Events of the last 1.2 s may be unreported when the run ends.
   const std::int64_t settled = ns(events.back(), "host_ns") - 1'200'000'000;
   for (const auto& row : events) {
-    happened_ns[row.at("event_id")] = ns(row, "host_ns");
+    event_ns[row.at("event_id")] = ns(row, "host_ns");
     if (row.at("kind") == "begin") began[row.at("contact_id")] = ns(row, "sim_ns");
     if (row.at("kind") == "end" && began.contains(row.at("contact_id")))
-      r.lasted_ms.push_back(static_cast<double>(ns(row, "sim_ns") - began.at(row.at("contact_id"))) * 1e-6);
+      r.durations_ms.push_back(static_cast<double>(ns(row, "sim_ns") - began.at(row.at("contact_id"))) * 1e-6);
     if (ns(row, "host_ns") < settled) r.kind[row.at("event_id")] = row.at("kind");
   }
   for (const auto& row : table(out / "presented.csv")) {
     r.outcome[row.at("modality")][row.at("event_id")] = row.at("outcome");
-    if (ns(row, "presented_ns") < 0 || !happened_ns.contains(row.at("event_id"))) continue;
+    if (ns(row, "presented_ns") < 0 || !event_ns.contains(row.at("event_id"))) continue;
     const double after_ms =
-        static_cast<double>(ns(row, "presented_ns") - happened_ns.at(row.at("event_id"))) * 1e-6;
-    const auto [soonest, fresh] = r.soonest_ms.try_emplace(row.at("modality"), after_ms);
-    soonest->second = std::min(soonest->second, after_ms);
+        static_cast<double>(ns(row, "presented_ns") - event_ns.at(row.at("event_id"))) * 1e-6;
+    const auto [min_latency, inserted] = r.min_latency_ms.try_emplace(row.at("modality"), after_ms);
+    min_latency->second = std::min(min_latency->second, after_ms);
   }
   return r;
 }
 
-void check_all_but(const std::string& degraded) {
+void check_presentations(const std::string& degraded) {
   for (const std::string& policy : policies_for(degraded)) {
     RunScript run;
     const std::filesystem::path profile = run.folder.path() / "profile.xml";
@@ -106,53 +106,53 @@ void check_all_but(const std::string& degraded) {
     if (!policy.empty()) options.insert(options.end(), {"--policy", policy});
     run.start(options);
     const int status = run.finish(150);
-    INFO("policy \"" << policy << "\": " << run.processes.said("run"));
+    INFO("policy \"" << policy << "\": " << run.processes.output("run"));
     REQUIRE(status == 0);
 
     Result r = read(run.out());
-    REQUIRE(r.lasted_ms.size() >= 10);
-    std::sort(r.lasted_ms.begin(), r.lasted_ms.end());
-    CHECK(r.lasted_ms[r.lasted_ms.size() / 2] == Approx(3).margin(1.5));
-    for (const auto& [sense, kinds] : kOwes) {
-      int owed = 0, presented = 0, refused = 0;
+    REQUIRE(r.durations_ms.size() >= 10);
+    std::sort(r.durations_ms.begin(), r.durations_ms.end());
+    CHECK(r.durations_ms[r.durations_ms.size() / 2] == Approx(3).margin(1.5));
+    for (const auto& [sense, kinds] : kExpectedKinds) {
+      int expected = 0, presented = 0, refused = 0;
       std::map<std::string, int> outcomes;
       for (const auto& [id, kind] : r.kind) {
         if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) continue;
-        ++owed;
+        ++expected;
         const auto& reports = r.outcome[sense];
         const std::string outcome = reports.contains(id) ? reports.at(id) : "nothing";
         ++outcomes[outcome];
         presented += outcome == "presented" || outcome == "late";
         refused += outcome == "dropped_by_profile" || outcome == "dropped_late";
       }
-      std::ostringstream said;
-      for (const auto& [outcome, n] : outcomes) said << n << " " << outcome << ", ";
-      INFO(sense << " of " << owed << ": " << said.str());
-      CHECK(owed >= 10);
+      std::ostringstream output;
+      for (const auto& [outcome, n] : outcomes) output << n << " " << outcome << ", ";
+      INFO(sense << " of " << expected << ": " << output.str());
+      CHECK(expected >= 10);
       // The profile takes effect on its modality: 30 ms, less half a video frame, because a picture shows the nearest event.
-      if (sense == degraded && r.soonest_ms.contains(sense)) CHECK(r.soonest_ms.at(sense) > 21);
+      if (sense == degraded && r.min_latency_ms.contains(sense)) CHECK(r.min_latency_ms.at(sense) > 21);
       // A rate limit may delay an event too far for the degraded modality, which then reports a refusal. In the serial loop touch renders
       // only contacts that exist in its own slot.
       const bool may_refuse = sense == degraded || (policy == "itouch2005" && sense == "haptic");
-      CHECK(presented + (may_refuse ? refused : 0) == owed);
+      CHECK(presented + (may_refuse ? refused : 0) == expected);
     }
   }
 }
 
 }  // namespace
 
-TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, when no sense is degraded", "[exclusive]") {
-  check_all_but("");
+TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, without degradation", "[exclusive]") {
+  check_presentations("");
 }
-TEST_CASE("A 3 ms contact between two video frames flashes and warms and is felt, with sound degraded", "[exclusive]") {
-  check_all_but("audio");
+TEST_CASE("A 3 ms contact between two video frames flashes, warms and is felt, with degraded sound", "[exclusive]") {
+  check_presentations("audio");
 }
-TEST_CASE("A 3 ms contact between two video frames sounds and warms and is felt, with vision degraded", "[exclusive]") {
-  check_all_but("visual");
+TEST_CASE("A 3 ms contact between two video frames sounds, warms and is felt, with degraded vision", "[exclusive]") {
+  check_presentations("visual");
 }
-TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, with touch degraded", "[exclusive]") {
-  check_all_but("haptic");
+TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, with degraded touch", "[exclusive]") {
+  check_presentations("haptic");
 }
-TEST_CASE("A 3 ms contact between two video frames flashes and sounds and is felt, with warmth degraded", "[exclusive]") {
-  check_all_but("thermal");
+TEST_CASE("A 3 ms contact between two video frames flashes, sounds and is felt, with degraded warmth", "[exclusive]") {
+  check_presentations("thermal");
 }

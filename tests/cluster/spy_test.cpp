@@ -27,14 +27,14 @@ const json& channel(const json& all, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("A look at the bus of a running cluster lists its channels with rates, losses and ages", "[exclusive]") {
-  Running c;
+TEST_CASE("spy lists the channels of a running cluster with rates, losses and ages", "[exclusive]") {
+  RunningCluster c;
   c.start();
   const std::string file = c.folder.path() / "spy.json";
   c.processes.spawn(
-      "spy", {programs() / "spy", "--run-id", std::to_string(Running::kRunId), "--once", "3", "--json", file});
-  const int status = c.processes.wait_for_exit("spy", kPatience_s);
-  INFO(c.processes.said("spy"));
+      "spy", {programs() / "spy", "--run-id", std::to_string(RunningCluster::kRunId), "--once", "3", "--json", file});
+  const int status = c.processes.wait_for_exit("spy", kTimeout_s);
+  INFO(c.processes.output("spy"));
   REQUIRE(status == 0);
   const json all = json::parse(contents(file), nullptr, false);
   REQUIRE_FALSE(all.is_discarded());
@@ -50,14 +50,14 @@ TEST_CASE("A look at the bus of a running cluster lists its channels with rates,
   CHECK(tool["age_ms"].get<double>() < 50);
   CHECK(channel(all, "NODE_HEALTH")["senders"].get<int>() >= 6);
   CHECK(channel(all, "WORLD_STATE")["type"] == "world_state_t");
-  CHECK_THAT(c.processes.said("spy"), Catch::Contains("TOOL_STATE") && Catch::Contains("kB/s"));
+  CHECK_THAT(c.processes.output("spy"), Catch::Contains("TOOL_STATE") && Catch::Contains("kB/s"));
 }
 
-TEST_CASE("In a terminal keys show the fields of a channel and the variables of all nodes, and end it as it was") {
-  Running c;
+TEST_CASE("In a terminal keys of spy show the fields of a channel and the variables of all nodes, and quitting restores the terminal") {
+  RunningCluster c;
   c.start();
   const std::string typescript = c.folder.path() / "typescript";
-  const std::string spy = (programs() / "spy").string() + " --run-id " + std::to_string(Running::kRunId);
+  const std::string spy = (programs() / "spy").string() + " --run-id " + std::to_string(RunningCluster::kRunId);
   // Keys: down to TOOL_STATE, enter; back; variables; end.
   c.processes.spawn("spy", {"sh", "-c",
                             "(sleep 3; for i in $(seq 60); do printf j; sleep 0.01; done; sleep 1; printf k; "
@@ -65,7 +65,7 @@ TEST_CASE("In a terminal keys show the fields of a channel and the variables of 
                             "printf h; sleep 1; printf t; sleep 4; printf q; sleep 1) | "
                             "script -qfec 'stty cols 150 rows 50; exec " +
                                 spy + "' " + typescript});
-  const int status = c.processes.wait_for_exit("spy", kPatience_s);
+  const int status = c.processes.wait_for_exit("spy", kTimeout_s);
   const std::string seen = contents(typescript);
   INFO(seen.substr(seen.size() > 6000 ? seen.size() - 6000 : 0));
   CHECK(status == 0);
@@ -73,14 +73,14 @@ TEST_CASE("In a terminal keys show the fields of a channel and the variables of 
   CHECK_THAT(seen, Catch::Contains("the newest message"));
   CHECK_THAT(seen, Catch::Contains("haptic_node.force") && Catch::Contains("sim_node.work.collision"));
   CHECK_THAT(seen, Catch::Contains("\033[?1049h") && Catch::Contains("\033[?1049l"));
-  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
 }
 
-TEST_CASE("Without a terminal or anything to hear, spy says so in one sentence", "[smoke]") {
-  Running c;
+TEST_CASE("Without a terminal or without messages, spy reports it in one sentence", "[smoke]") {
+  RunningCluster c;
   c.processes.spawn("none", {programs() / "spy"});
   CHECK(c.processes.wait_for_exit("none", 20) == 1);
-  CHECK_THAT(c.processes.said("none"), Catch::Contains("--once"));
+  CHECK_THAT(c.processes.output("none"), Catch::Contains("--once"));
   c.processes.spawn("silent", {programs() / "spy", "--once", "0.5"});
   CHECK(c.processes.wait_for_exit("silent", 20) == 1);
   CHECK_THAT(c.processes.said("silent"), Catch::Contains("received no message on port"));

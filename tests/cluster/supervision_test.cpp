@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <tactus/node_health_t.hpp>
 
-#include "tests/cluster/support/ear.h"
+#include "tests/cluster/support/cluster_monitor.h"
 #include "tests/cluster/support/run_script.h"
 
 using namespace tactus;
@@ -10,7 +10,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-constexpr double kPatience_s = 60;
+constexpr double kTimeout_s = 60;
 
 // The id of the started run, once it has a recorder. Fails the test with the run's output when there is none in time.
 std::int64_t run_id_of(RunScript& run) {
@@ -22,23 +22,23 @@ std::int64_t run_id_of(RunScript& run) {
     if (!run.processes.running("run")) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  FAIL("the run does not come up (status " << run.finish(0) << "): " << run.processes.said("run"));
+  FAIL("the run does not come up (status " << run.finish(0) << "): " << run.processes.output("run"));
   return 0;
 }
 
 }  // namespace
 
-TEST_CASE("DEGRADE-4: any node that is killed rejoins alone", "[exclusive]") {
+TEST_CASE("DEGRADE-4: every killed node rejoins by itself", "[exclusive]") {
   RunScript run;
   // Uses the network of this test, so that the test receives the bus.
   run.start({tapping_scene(), "--seconds", "120", "--network", "host", "--out", run.out()});
-  Ear ear(run_id_of(run));
-  const auto all_live = [&] {
+  ClusterMonitor monitor(run_id_of(run));
+  const auto all_running = [&] {
     return std::all_of(kNodes.begin(), kNodes.end(),
-                       [&](const auto& n) { return ear.in_state(n, node_health_t::RUNNING); });
+                       [&](const auto& n) { return monitor.in_state(n, node_health_t::RUNNING); });
   };
-  const bool alive = ear.wait_until(all_live, kPatience_s);
-  INFO(run.processes.said("run"));
+  const bool alive = monitor.wait_until(all_running, kTimeout_s);
+  INFO(run.processes.output("run"));
   REQUIRE(alive);
 
   std::vector<std::string> nodes = kNodes;
@@ -46,45 +46,45 @@ TEST_CASE("DEGRADE-4: any node that is killed rejoins alone", "[exclusive]") {
   for (const std::string& node : nodes) {
     INFO(node);
     run.output_of({"sv", "kill", run.out() / "cluster/services" / node});
-    REQUIRE(ear.wait_until([&] { return ear.rejoined(node) == 1; }, kPatience_s));
-    REQUIRE(ear.wait_until(all_live, kPatience_s));
+    REQUIRE(monitor.wait_until([&] { return monitor.rejoined(node) == 1; }, kTimeout_s));
+    REQUIRE(monitor.wait_until(all_running, kTimeout_s));
   }
-  const std::int64_t hits = ear.hits();
-  CHECK(ear.wait_until([&] { return ear.hits() > hits; }, kPatience_s));
-  for (const std::string& node : nodes) CHECK(ear.rejoined(node) == 1);
+  const std::int64_t hits = monitor.hits();
+  CHECK(monitor.wait_until([&] { return monitor.hits() > hits; }, kTimeout_s));
+  for (const std::string& node : nodes) CHECK(monitor.rejoined(node) == 1);
 
   run.processes.signal("run", SIGINT);
-  run.finish(kPatience_s);
+  run.finish(kTimeout_s);
   const auto summary = nlohmann::json::parse(contents(run.out() / "summary.json"), nullptr, false);
-  INFO(run.processes.said("run"));
+  INFO(run.processes.output("run"));
   REQUIRE_FALSE(summary.is_discarded());
   for (const std::string& node : kNodes) {
     INFO(node);
     CHECK(summary["nodes"][node]["restarts"] == 1);
   }
-  CHECK(nothing_lives(5));
+  CHECK(all_processes_ended(5));
 }
 
-TEST_CASE("A node that keeps dying is left lost and named, and the others go on", "[exclusive]") {
+TEST_CASE("A node that dies repeatedly stays lost and is named, and the others continue", "[exclusive]") {
   RunScript run;
   run.start(
       {tapping_scene(), "--seconds", "14", "--network", "host", "--without", "visual_node", "--out", run.out()});
-  Ear ear(run_id_of(run));
-  REQUIRE(ear.wait_until([&] { return ear.in_state("thermal_node", node_health_t::RUNNING); }, kPatience_s));
+  ClusterMonitor monitor(run_id_of(run));
+  REQUIRE(monitor.wait_until([&] { return monitor.in_state("thermal_node", node_health_t::RUNNING); }, kTimeout_s));
   const std::filesystem::path service = run.out() / "cluster/services/thermal_node";
   for (int i = 0; i < 200 && !std::filesystem::exists(service / "lost"); ++i) {
     run.processes.spawn("sv", {"sv", "kill", service});
     run.processes.wait_for_exit("sv", 10);
-    ear.listen(0.1);
+    monitor.receive_for(0.1);
   }
   CHECK(contents(service / "lost").find("left down") != std::string::npos);
-  CHECK(ear.in_state("haptic_node", node_health_t::RUNNING));
-  CHECK(ear.in_state("audio_node", node_health_t::RUNNING));
-  CHECK(run.finish(kPatience_s) == 1);
-  CHECK(run.processes.said("run").find("thermal_node: could not be kept running") != std::string::npos);
+  CHECK(monitor.in_state("haptic_node", node_health_t::RUNNING));
+  CHECK(monitor.in_state("audio_node", node_health_t::RUNNING));
+  CHECK(run.finish(kTimeout_s) == 1);
+  CHECK(run.processes.output("run").find("thermal_node: could not be kept running") != std::string::npos);
 }
 
-TEST_CASE("tactus attach runs a command inside the cluster's own network") {
+TEST_CASE("tactus attach runs a command in the network of the cluster") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "40", "--network", "private", "--without", "visual_node", "--out",
              run.out()});
@@ -103,7 +103,7 @@ TEST_CASE("tactus attach runs a command inside the cluster's own network") {
   for (int i = 0; i < 600 && !std::filesystem::exists(deaths); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   run.processes.signal("run", SIGINT);
-  run.finish(kPatience_s);
-  CHECK(run.processes.said("run").find("thermal_node died once") != std::string::npos);
+  run.finish(kTimeout_s);
+  CHECK(run.processes.output("run").find("thermal_node died once") != std::string::npos);
   run.output_of({tactus, "attach", run.out(), "true"}, 1);
 }

@@ -19,36 +19,37 @@ std::vector<std::string> without(const std::string& node) {
 
 }  // namespace
 
-TEST_CASE("DEGRADE-1 on two machines: with audio_node stopped over there the others go on at their rates", "[exclusive]") {
+TEST_CASE("DEGRADE-1 on two machines: with audio_node stopped on the other machine the rest keep their rates", "[exclusive]") {
   TwoMachines m;
   if (!m.start()) return;
   const auto before = m.running->rates(2);
   m.running->processes.signal("audio_node", SIGTERM);
-  CHECK(m.running->processes.wait_for_exit("audio_node", kPatience_s) == 0);
+  CHECK(m.running->processes.wait_for_exit("audio_node", kTimeout_s) == 0);
   std::map<std::string, std::int64_t> rendered;
-  for (const std::string& sense : kSenses) rendered[sense] = m.ear().rendered(sense);
+  for (const std::string& sense : kModalityNodes) rendered[sense] = m.monitor().rendered(sense);
   m.running->check_rates_hold(before, 3, "audio_node");
-  CHECK(m.ear().health("audio_node") == nullptr);
-  CHECK(m.ear().wait_until([&] { return m.running->all_live(without("audio_node")); }, kPatience_s));
+  CHECK(m.monitor().health("audio_node") == nullptr);
+  CHECK(m.monitor().wait_until([&] { return m.running->all_running(without("audio_node")); }, kTimeout_s));
   for (const char* sense : {"haptic_node", "visual_node", "thermal_node"}) {
     INFO(sense);
-    CHECK(m.ear().wait_until([&] { return m.ear().rendered(sense) > rendered.at(sense); }, kPatience_s));
+    CHECK(m.monitor().wait_until([&] { return m.monitor().rendered(sense) > rendered.at(sense); }, kTimeout_s));
   }
 }
 
 TEST_CASE(
-    "DEGRADE-2 on two machines: visual_node, frozen over there for 2 s, disturbs nobody and then shows now", "[exclusive]") {
+    "DEGRADE-2 on two machines: visual_node, frozen there for 2 s, disturbs no other node and then "
+    "shows the present state", "[exclusive]") {
   TwoMachines m;
   if (!m.start()) return;
   const auto before = m.running->rates(2);
-  const std::int64_t frames = m.ear().ticks("visual_node"), missed = m.ear().health("visual_node")->missed_ticks;
+  const std::int64_t frames = m.monitor().ticks("visual_node"), missed = m.monitor().health("visual_node")->missed_ticks;
   m.running->processes.signal("visual_node", SIGSTOP);
   m.running->check_rates_hold(before, 2, "visual_node");
-  CHECK(m.ear().health("visual_node") == nullptr);
+  CHECK(m.monitor().health("visual_node") == nullptr);
   m.running->processes.signal("visual_node", SIGCONT);
-  REQUIRE(m.ear().wait_until([&] { return m.running->lives("visual_node"); }, kPatience_s));
-  m.ear().listen(1);
-  const node_health_t* h = m.ear().health("visual_node");
+  REQUIRE(m.monitor().wait_until([&] { return m.running->is_running("visual_node"); }, kTimeout_s));
+  m.monitor().receive_for(1);
+  const node_health_t* h = m.monitor().health("visual_node");
   REQUIRE(h != nullptr);
   CHECK(h->ticks > frames);
   // The node skipped the missed frames: two seconds at its rate.
@@ -58,59 +59,59 @@ TEST_CASE(
     if (in.channel == channels::kWorldState || in.channel == channels::kContactEvents)
       CHECK(in.age_ns < 500'000'000);
   }
-  CHECK(m.ear().wait_until([&] { return m.running->all_live(kNodes); }, kPatience_s));
+  CHECK(m.monitor().wait_until([&] { return m.running->all_running(kNodes); }, kTimeout_s));
 }
 
 TEST_CASE(
-    "DEGRADE-3 on two machines: when sim_node dies the force fades, all on both report it, and go on with the "
-    "next one", "[exclusive]") {
+    "DEGRADE-3 on two machines: when sim_node dies the force fades, all nodes report it and resume with "
+    "the next sim_node", "[exclusive]") {
   TwoMachines m;
   if (!m.start()) return;
-  REQUIRE(m.ear().wait_until([&] { return m.ear().force_N() > 0; }, kPatience_s));
+  REQUIRE(m.monitor().wait_until([&] { return m.monitor().force_N() > 0; }, kTimeout_s));
   m.running->processes.signal("sim_node", SIGKILL);
-  m.running->processes.wait_for_exit("sim_node", kPatience_s);
-  CHECK(m.ear().wait_until([&] { return m.ear().force_N() == 0 && m.ear().tool_state()->fade == 0; }, 5));
-  for (const std::string& node : kSenses) {
+  m.running->processes.wait_for_exit("sim_node", kTimeout_s);
+  CHECK(m.monitor().wait_until([&] { return m.monitor().force_N() == 0 && m.monitor().tool_state()->fade == 0; }, 5));
+  for (const std::string& node : kModalityNodes) {
     INFO(node);
-    CHECK(m.ear().wait_until(
+    CHECK(m.monitor().wait_until(
         [&] {
           return m.running->state(node, node_health_t::INPUT_LOST) || m.running->state(node, node_health_t::STALE);
         },
-        kPatience_s));
+        kTimeout_s));
   }
   m.start_node("sim_node");
-  REQUIRE(m.ear().wait_until([&] { return m.ear().rejoined("sim_node") == 1 && m.running->all_live(kNodes); },
-                             kPatience_s));
-  CHECK(m.ear().wait_until([&] { return m.ear().force_N() > 0; }, kPatience_s));
-  for (const std::string& sense : kSenses) {
+  REQUIRE(m.monitor().wait_until([&] { return m.monitor().rejoined("sim_node") == 1 && m.running->all_running(kNodes); },
+                             kTimeout_s));
+  CHECK(m.monitor().wait_until([&] { return m.monitor().force_N() > 0; }, kTimeout_s));
+  for (const std::string& sense : kModalityNodes) {
     INFO(sense);
-    const std::int64_t rendered = m.ear().rendered(sense);
-    CHECK(m.ear().rejoined(sense) == 0);
-    CHECK(m.ear().wait_until([&] { return m.ear().rendered(sense) > rendered; }, kPatience_s));
+    const std::int64_t rendered = m.monitor().rendered(sense);
+    CHECK(m.monitor().rejoined(sense) == 0);
+    CHECK(m.monitor().wait_until([&] { return m.monitor().rendered(sense) > rendered; }, kTimeout_s));
   }
 }
 
-TEST_CASE("DEGRADE-4 on two machines: any node that is killed and started again rejoins alone", "[exclusive]") {
+TEST_CASE("DEGRADE-4 on two machines: every killed and restarted node rejoins by itself", "[exclusive]") {
   TwoMachines m;
   if (!m.start()) return;
   for (const std::string& node : kNodes) {
     INFO(node);
     m.running->processes.signal(node, SIGKILL);
-    m.running->processes.wait_for_exit(node, kPatience_s);
+    m.running->processes.wait_for_exit(node, kTimeout_s);
     m.start_node(node);
-    REQUIRE(m.ear().wait_until([&] { return m.ear().rejoined(node) == 1; }, kPatience_s));
-    REQUIRE(m.ear().wait_until([&] { return m.running->all_live(kNodes); }, kPatience_s));
+    REQUIRE(m.monitor().wait_until([&] { return m.monitor().rejoined(node) == 1; }, kTimeout_s));
+    REQUIRE(m.monitor().wait_until([&] { return m.running->all_running(kNodes); }, kTimeout_s));
   }
-  for (const std::string& node : kNodes) CHECK(m.ear().rejoined(node) == 1);
+  for (const std::string& node : kNodes) CHECK(m.monitor().rejoined(node) == 1);
 }
 
-TEST_CASE("On two machines no event is lost, and no sense's asynchrony is that of the wrong clock", "[exclusive]") {
+TEST_CASE("On two machines no event is lost, and all asynchronies are converted to one clock", "[exclusive]") {
   TwoMachines m;
   if (!m.start()) return;
   const auto source = static_cast<std::int32_t>(sync::fnv1a_32("sync_node"));
   std::map<std::string, modality_report_t> kept;
   std::map<std::string, pair_report_t> pairs;
-  const bool enough = m.ear().wait_until(
+  const bool enough = m.monitor().wait_until(
       [&] {
         while (const auto r = m.reports->pop()) {
           if (r->message.header.source != source) continue;
@@ -119,8 +120,8 @@ TEST_CASE("On two machines no event is lost, and no sense's asynchrony is that o
         }
         return pairs["haptic audio"].n > 10 && pairs["haptic visual"].n > 10 && pairs["haptic thermal"].n > 10;
       },
-      kPatience_s);
-  INFO(m.running->words());
+      kTimeout_s);
+  INFO(m.running->log_text());
   for (const auto& [names, p] : pairs)
     UNSCOPED_INFO(names << ": " << p.n << " asynchronies, median " << p.p50_ns << " ns");
   REQUIRE(enough);
@@ -135,43 +136,43 @@ TEST_CASE("On two machines no event is lost, and no sense's asynchrony is that o
 }
 
 TEST_CASE(
-    "While lcm-logplayer replays a log, one sense is stopped, another frozen and a third killed, and the rest "
-    "render on", "[exclusive]") {
+    "While lcm-logplayer replays a log, one modality is stopped, another frozen and a third killed, and "
+    "the rest keep rendering", "[exclusive]") {
   Folder folder;
   {
-    Running c;
+    RunningCluster c;
     c.processes.start("recorder");
     c.start();
-    c.ear.listen(14);
+    c.monitor.receive_for(14);
     c.processes.signal("recorder", SIGTERM);
-    REQUIRE(c.processes.wait_for_exit("recorder", kPatience_s) == 0);
+    REQUIRE(c.processes.wait_for_exit("recorder", kTimeout_s) == 0);
     std::filesystem::rename(c.folder.path() / "run.lcmlog", folder.path() / "run.lcmlog");
   }
-  constexpr std::int64_t kOtherRun = Running::kRunId + 1;
-  const std::string stopped = "audio_node", frozen = "thermal_node", goes_on = "visual_node";
+  constexpr std::int64_t kOtherRun = RunningCluster::kRunId + 1;
+  const std::string stopped = "audio_node", frozen = "thermal_node", remaining = "visual_node";
   Processes processes(folder.path() / "again", kOtherRun);
-  Ear ear(kOtherRun);
-  for (const std::string& node : {stopped, frozen, goes_on}) processes.start(node);
-  REQUIRE(ear.wait_until([&] { return ear.health(stopped) && ear.health(frozen) && ear.health(goes_on); },
-                         kPatience_s));
+  ClusterMonitor monitor(kOtherRun);
+  for (const std::string& node : {stopped, frozen, remaining}) processes.start(node);
+  REQUIRE(monitor.wait_until([&] { return monitor.health(stopped) && monitor.health(frozen) && monitor.health(remaining); },
+                         kTimeout_s));
   processes.spawn("lcm-logplayer",
                   {"lcm-logplayer", "-l", "udpm://239.255.76.67:7667?ttl=0", folder.path() / "run.lcmlog"});
-  REQUIRE(ear.wait_until(
-      [&] { return ear.rendered(stopped) > 0 && ear.rendered(frozen) > 0 && ear.rendered(goes_on) > 0; },
-      kPatience_s));
+  REQUIRE(monitor.wait_until(
+      [&] { return monitor.rendered(stopped) > 0 && monitor.rendered(frozen) > 0 && monitor.rendered(remaining) > 0; },
+      kTimeout_s));
 
   processes.signal(stopped, SIGTERM);
-  CHECK(processes.wait_for_exit(stopped, kPatience_s) == 0);
+  CHECK(processes.wait_for_exit(stopped, kTimeout_s) == 0);
   processes.signal(frozen, SIGSTOP);
-  std::int64_t rendered = ear.rendered(goes_on), ticks = ear.ticks(goes_on);
-  CHECK(ear.wait_until([&] { return ear.rendered(goes_on) > rendered + 2; }, kPatience_s));
-  CHECK(ear.ticks(goes_on) > ticks);
+  std::int64_t rendered = monitor.rendered(remaining), ticks = monitor.ticks(remaining);
+  CHECK(monitor.wait_until([&] { return monitor.rendered(remaining) > rendered + 2; }, kTimeout_s));
+  CHECK(monitor.ticks(remaining) > ticks);
   processes.signal(frozen, SIGCONT);
-  rendered = ear.rendered(frozen);
-  CHECK(ear.wait_until([&] { return ear.rendered(frozen) > rendered; }, kPatience_s));
+  rendered = monitor.rendered(frozen);
+  CHECK(monitor.wait_until([&] { return monitor.rendered(frozen) > rendered; }, kTimeout_s));
   processes.kill(frozen);
-  rendered = ear.rendered(goes_on);
-  CHECK(ear.wait_until([&] { return ear.rendered(goes_on) > rendered; }, kPatience_s));
-  CHECK(processes.running(goes_on));
-  CHECK(ear.rejoined(goes_on) == 0);
+  rendered = monitor.rendered(remaining);
+  CHECK(monitor.wait_until([&] { return monitor.rendered(remaining) > rendered; }, kTimeout_s));
+  CHECK(processes.running(remaining));
+  CHECK(monitor.rejoined(remaining) == 0);
 }

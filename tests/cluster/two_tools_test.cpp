@@ -21,28 +21,28 @@ void sleep_s(double seconds) { std::this_thread::sleep_for(std::chrono::duration
 
 // Beside other work single ticks come late, with and without the other hands. Only a multiple of the figures before is an effect.
 void check_unchanged(const Figures& before, const Figures& now) {
-  const auto close = [](double a, double b, double share) { return std::abs(b - a) <= share * a; };
+  const auto within = [](double a, double b, double share) { return std::abs(b - a) <= share * a; };
   const auto no_later = [](double a, double b, double factor, double least_ms) {
     return b <= factor * std::max(a, least_ms);
   };
-  CHECK(close(before.sim_Hz, now.sim_Hz, 0.02));
-  CHECK(close(before.hand_Hz, now.hand_Hz, 0.02));
-  CHECK(close(before.sim_step_p50_ms, now.sim_step_p50_ms, 0.05));
-  CHECK(close(before.hand_step_p50_ms, now.hand_step_p50_ms, 0.05));
+  CHECK(within(before.sim_Hz, now.sim_Hz, 0.02));
+  CHECK(within(before.hand_Hz, now.hand_Hz, 0.02));
+  CHECK(within(before.sim_step_p50_ms, now.sim_step_p50_ms, 0.05));
+  CHECK(within(before.hand_step_p50_ms, now.hand_step_p50_ms, 0.05));
   CHECK(no_later(before.sim_step_p99_ms, now.sim_step_p99_ms, 1.5, 2));
   CHECK(no_later(before.hand_step_p99_ms, now.hand_step_p99_ms, 1.5, 2));
   CHECK(no_later(before.age_p50_ms, now.age_p50_ms, 1.5, 1));
   CHECK(no_later(before.age_p90_ms, now.age_p90_ms, 1.5, 2));
   CHECK(now.felt_p50_ms > 0);
   CHECK(no_later(before.felt_p50_ms, now.felt_p50_ms, 1.5, 2));
-  CHECK(close(before.peak_N(), now.peak_N(), 0.1));
-  CHECK(apart_N(before, now) < 0.05 * before.peak_N());
+  CHECK(within(before.peak_N(), now.peak_N(), 0.1));
+  CHECK(mean_difference_N(before, now) < 0.05 * before.peak_N());
 }
 
 // Begins of a tool's contacts without an end.
-std::set<std::int64_t> left_open(const RunLog& log, int tool) {
+std::set<std::int64_t> open_contacts(const RunLog& log, int tool) {
   std::set<std::int64_t> open, ended;
-  log.each<contact_events_t>(channels::kContactEvents, [&](const contact_events_t& m) {
+  log.for_each<contact_events_t>(channels::kContactEvents, [&](const contact_events_t& m) {
     for (const contact_event_t& e : m.events) {
       if (e.tool != tool) continue;
       if (e.kind == contact_event_t::BEGIN) open.insert(e.contact_id);
@@ -53,22 +53,22 @@ std::set<std::int64_t> left_open(const RunLog& log, int tool) {
   return open;
 }
 
-int begins(const RunLog& log, int tool) {
+int begin_count(const RunLog& log, int tool) {
   std::set<std::int64_t> ids;
-  log.each<contact_events_t>(channels::kContactEvents, [&](const contact_events_t& m) {
+  log.for_each<contact_events_t>(channels::kContactEvents, [&](const contact_events_t& m) {
     for (const contact_event_t& e : m.events)
       if (e.tool == tool && e.kind == contact_event_t::BEGIN) ids.insert(e.event_id);
   });
   return static_cast<int>(ids.size());
 }
 
-double largest_N(const RunLog& log, int tool, const std::vector<Span>& spans) {
+double max_force_N(const RunLog& log, int tool, const std::vector<Span>& spans) {
   const Span span{spans.front().from_ns, spans.back().to_ns};
-  double most = 0;
-  log.each<tool_state_t>(channels::kToolState, span, [&](const tool_state_t& m) {
-    if (m.tool == tool) most = std::max<double>(most, std::hypot(m.force_N.x, m.force_N.y, m.force_N.z));
+  double max = 0;
+  log.for_each<tool_state_t>(channels::kToolState, span, [&](const tool_state_t& m) {
+    if (m.tool == tool) max = std::max<double>(max, std::hypot(m.force_N.x, m.force_N.y, m.force_N.z));
   });
-  return most;
+  return max;
 }
 
 struct ThreeHands : RunScript {
@@ -80,11 +80,11 @@ struct ThreeHands : RunScript {
       return contents(out() / "logs/sim_node.log").find("the world begins") != std::string::npos;
     };
     for (int i = 0; i < 1200 && !up(); ++i) sleep_s(0.05);
-    INFO(processes.said("run"));
+    INFO(processes.output("run"));
     REQUIRE(up());
   }
   // Three spans without changes, after the last change has settled.
-  std::vector<Span> watch() {
+  std::vector<Span> record_spans() {
     sleep_s(0.5);
     std::vector<Span> spans;
     for (int i = 0; i < 3; ++i) {
@@ -97,52 +97,52 @@ struct ThreeHands : RunScript {
 };
 
 // One hand leaves; another joins, is killed and comes back; one is set to push less.
-struct Story {
+struct Scenario {
   ThreeHands c;
   std::vector<Span> two, alone, joined, again, gentle;
 
-  Story() {
+  Scenario() {
     c.begin();
     c.output_of({"sv", "down", c.service("haptic_node_third")});
     sleep_s(1.5);
-    two = c.watch();
+    two = c.record_spans();
     c.output_of({"sv", "down", c.service("haptic_node_right")});
-    alone = c.watch();
+    alone = c.record_spans();
     c.output_of({"sv", "up", c.service("haptic_node_third")});
-    joined = c.watch();
+    joined = c.record_spans();
     c.output_of({"sv", "kill", c.service("haptic_node_third")});  // the supervisor restarts it
-    again = c.watch();
+    again = c.record_spans();
     // Through the command line script.
     const std::string answer =
         c.output_of({"env", "TACTUS_BIN=" + programs().string(), repository() / "scripts/tactus", "set", "--in", c.out(),
                      "haptic_node", "force_limit=1N"});
     CHECK_THAT(answer, Catch::Contains("force_limit is 1N"));
-    gentle = c.watch();
+    gentle = c.record_spans();
     c.processes.signal("run", SIGINT);
     CHECK(c.finish(60) == 0);  // a hand that was removed does not count as missing
-    CHECK_THAT(c.processes.said("run"), Catch::Contains("haptic_node_right was taken down"));
+    CHECK_THAT(c.processes.output("run"), Catch::Contains("haptic_node_right was taken down"));
   }
 };
 
 }  // namespace
 
-TEST_CASE("Of several hands one goes and another comes, and neither the world nor the hand that stays notices", "[exclusive]") {
+TEST_CASE("One of several hands leaves and another joins without an effect on the simulation and the remaining hand", "[exclusive]") {
   // Repeats the run once when the machine was too slow even before the first change: there is no baseline then.
-  auto story = std::make_unique<Story>();
-  for (int tries = 1; tries < 3 && figures(RunLog(story->c.out()), story->two).sim_Hz < 990; ++tries) {
-    story.reset();
-    story = std::make_unique<Story>();
+  auto scenario = std::make_unique<Scenario>();
+  for (int tries = 1; tries < 3 && figures(RunLog(scenario->c.out()), scenario->two).sim_Hz < 990; ++tries) {
+    scenario.reset();
+    scenario = std::make_unique<Scenario>();
   }
-  const ThreeHands& c = story->c;
-  const auto &two = story->two, &alone = story->alone, &joined = story->joined, &again = story->again,
-             &gentle = story->gentle;
+  const ThreeHands& c = scenario->c;
+  const auto &two = scenario->two, &alone = scenario->alone, &joined = scenario->joined, &again = scenario->again,
+             &gentle = scenario->gentle;
 
   const RunLog log(c.out());
   const Figures before = figures(log, two);
   const std::vector<std::pair<const char*, std::vector<Span>>> after{
       {"alone", alone}, {"joined", joined}, {"again", again}};
-  std::string table = "two hands: " + words(before);
-  for (const auto& [name, spans] : after) table += std::string(name) + ": " + words(figures(log, spans));
+  std::string table = "two hands: " + to_text(before);
+  for (const auto& [name, spans] : after) table += std::string(name) + ": " + to_text(figures(log, spans));
   if (std::getenv("TACTUS_PRINT")) std::cout << table;
   INFO(table);
   REQUIRE(before.sim_Hz > 900);
@@ -151,25 +151,25 @@ TEST_CASE("Of several hands one goes and another comes, and neither the world no
     INFO(name);
     check_unchanged(before, figures(log, spans));
     // Also during the half second in which a hand leaves or joins.
-    const Figures meanwhile = of_span(log, {spans.front().from_ns - 500'000'000, spans.front().from_ns});
+    const Figures meanwhile = figures_of_span(log, {spans.front().from_ns - 500'000'000, spans.front().from_ns});
     CHECK(meanwhile.sim_step_p50_ms == Approx(1).margin(0.05));
     CHECK(meanwhile.hand_step_p50_ms == Approx(1).margin(0.05));
   }
 
   // The right hand pressed when it left.
-  CHECK(largest_N(log, kRight, two) > 0.5);
-  CHECK(begins(log, kRight) >= 1);
-  CHECK(left_open(log, kRight).empty());
-  CHECK(largest_N(log, kRight, joined) == 0);
+  CHECK(max_force_N(log, kRight, two) > 0.5);
+  CHECK(begin_count(log, kRight) >= 1);
+  CHECK(open_contacts(log, kRight).empty());
+  CHECK(max_force_N(log, kRight, joined) == 0);
   // The third hand works, both times.
-  CHECK(largest_N(log, kThird, alone) == 0);
-  CHECK(largest_N(log, kThird, joined) > 0.5);
-  CHECK(largest_N(log, kThird, again) > 0.5);
-  CHECK(begins(log, kThird) >= 2);
-  CHECK(largest_N(log, kLeft, again) > 1.5);
-  CHECK(largest_N(log, kLeft, gentle) <= 1 + 1e-6);
-  CHECK(largest_N(log, kLeft, gentle) > 0.9);
-  CHECK(largest_N(log, kThird, gentle) == Approx(largest_N(log, kThird, again)).epsilon(0.3));
+  CHECK(max_force_N(log, kThird, alone) == 0);
+  CHECK(max_force_N(log, kThird, joined) > 0.5);
+  CHECK(max_force_N(log, kThird, again) > 0.5);
+  CHECK(begin_count(log, kThird) >= 2);
+  CHECK(max_force_N(log, kLeft, again) > 1.5);
+  CHECK(max_force_N(log, kLeft, gentle) <= 1 + 1e-6);
+  CHECK(max_force_N(log, kLeft, gentle) > 0.9);
+  CHECK(max_force_N(log, kThird, gentle) == Approx(max_force_N(log, kThird, again)).epsilon(0.3));
 
   const auto summary = nlohmann::json::parse(contents(c.out() / "summary.json"), nullptr, false);
   REQUIRE_FALSE(summary.is_discarded());

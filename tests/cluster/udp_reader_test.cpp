@@ -14,21 +14,21 @@ using namespace tactus::cluster;
 
 namespace {
 
-using Heard = std::map<std::pair<std::size_t, std::string>, std::vector<Bytes>>;
+using ReceivedMessages = std::map<std::pair<std::size_t, std::string>, std::vector<Bytes>>;
 
 // Reads for the given time, or until `enough` messages have arrived.
-Heard read(sync::UdpReader& reader, double seconds, std::size_t enough) {
-  Heard heard;
+ReceivedMessages read(sync::UdpReader& reader, double seconds, std::size_t enough) {
+  ReceivedMessages received;
   std::size_t count = 0;
   const auto end = sync::host_now() + sync::from_seconds(seconds);
   for (auto now = sync::host_now(); now < end && count < enough; now = sync::host_now()) {
     reader.wait(end - now);
     reader.read(100000, [&](std::size_t side, const sync::ChannelBytes& m) {
-      heard[{side, std::string(m.channel)}].emplace_back(m.data.begin(), m.data.end());
+      received[{side, std::string(m.channel)}].emplace_back(m.data.begin(), m.data.end());
       ++count;
     });
   }
-  return heard;
+  return received;
 }
 
 Bytes numbered(int i, std::size_t size = 300) {
@@ -39,27 +39,27 @@ Bytes numbered(int i, std::size_t size = 300) {
 
 }  // namespace
 
-TEST_CASE("Messages of both ports come in order, also those that came while nobody read", "[smoke]") {
+TEST_CASE("Messages of both ports are read in order, also those that arrived between reads", "[smoke]") {
   sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);
   Datagrams wire;
-  constexpr int kMany = 4000;
-  for (int i = 0; i < kMany; ++i) {
+  constexpr int kCount = 4000;
+  for (int i = 0; i < kCount; ++i) {
     wire.send_message("A", numbered(i));
     wire.send_message("B", numbered(i), 1);
     if (i % 100 == 99)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));  // 0.2 s in all: the reader's thread must drain the sockets meanwhile
   }
-  const Heard heard = read(reader, 10, 2 * kMany);
+  const ReceivedMessages received = read(reader, 10, 2 * kCount);
   for (const auto& key : {std::pair<std::size_t, std::string>{0, "A"}, {1, "B"}}) {
-    REQUIRE(heard.contains(key));
-    const auto& messages = heard.at(key);
-    REQUIRE(messages.size() == kMany);
-    for (int i = 0; i < kMany; ++i) REQUIRE(messages[static_cast<std::size_t>(i)] == numbered(i));
+    REQUIRE(received.contains(key));
+    const auto& messages = received.at(key);
+    REQUIRE(messages.size() == kCount);
+    for (int i = 0; i < kCount; ++i) REQUIRE(messages[static_cast<std::size_t>(i)] == numbered(i));
   }
-  CHECK(heard.size() == 2);
+  CHECK(received.size() == 2);
 }
 
-TEST_CASE("A reader that waits wakes when something comes, and reads no more than it asked for") {
+TEST_CASE("A waiting reader wakes when a message arrives, and reads at most the requested number") {
   sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);
   Datagrams wire;
   std::thread later([&] {
@@ -71,18 +71,17 @@ TEST_CASE("A reader that waits wakes when something comes, and reads no more tha
   CHECK(sync::host_now() - begin < std::chrono::seconds(30));
   later.join();
   int count = 0;
-  const auto hear = [&](std::size_t, const sync::ChannelBytes& m) {
+  const auto on_message = [&](std::size_t, const sync::ChannelBytes& m) {
     CHECK(Bytes(m.data.begin(), m.data.end()) == numbered(count));
     ++count;
   };
-  for (int tries = 0; count < 3 && tries < 1000; ++tries) reader.read(3 - count, hear);
+  for (int tries = 0; count < 3 && tries < 1000; ++tries) reader.read(3 - count, on_message);
   CHECK(count == 3);
-  for (int tries = 0; count < 10 && tries < 1000; ++tries) reader.read(10 - count, hear);
+  for (int tries = 0; count < 10 && tries < 1000; ++tries) reader.read(10 - count, on_message);
   CHECK(count == 10);
 }
 
-TEST_CASE(
-    "What is too long, in one datagram or in fragments, is told as too long, and what is noise is not told") {
+TEST_CASE("Oversized messages, whole or in fragments, are reported as oversized, and noise is ignored") {
   sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);
   Datagrams wire;
   wire.send_message("LONG", Bytes(50000));
@@ -99,7 +98,7 @@ TEST_CASE(
   CHECK(fits == std::map<std::string, bool>{{"LONG", false}, {"F", false}, {"LAST", true}});
 }
 
-TEST_CASE("Another group on the same port is not heard") {
+TEST_CASE("Messages of another multicast group on the same port are not received") {
   sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);
   sync::UdpReader other("239.255.76.68", channels::kDefaultPort);
   Datagrams wire;
@@ -108,10 +107,10 @@ TEST_CASE("Another group on the same port is not heard") {
   CHECK(read(other, 0.1, 1).empty());
 }
 
-TEST_CASE("What comes in by another network, where another program joined the group, is not heard") {
+TEST_CASE("Messages from another network interface, where another program joined the group, are not received") {
   const Cable cable;
-  if (!cable.made()) {
-    WARN("skipped: this system allows no second network with a cable to it");
+  if (!cable.is_ready()) {
+    WARN("skipped: this system does not allow a second network namespace with a cable");
     return;
   }
   sync::UdpReader reader(channels::kGroup, channels::kDefaultPort);  // on the cable, according to the route

@@ -17,71 +17,71 @@ struct TwoHosts {
   // Frames show the head and the world of this time ago, s. It exceeds the drawing time of a picture of this size beside other load, so
   // that no frame begins before its data have arrived.
   static constexpr const char* kLag = "frame_lag=0.15";
-  struct Shown {
+  struct ShownFrame {
     std::int64_t world_ns = 0, head_ns = 0;
   };
 
   Cable cable;
-  std::optional<Running> running;
-  std::map<std::string, std::map<std::int64_t, Shown>> frames;  // by wall and number
+  std::optional<RunningCluster> running;
+  std::map<std::string, std::map<std::int64_t, ShownFrame>> frames;  // by wall and number
 
   // Returns false where the system allows no second host. front: command prefix of the wall there.
   bool start(const std::vector<std::string>& front = {}, const std::string& lock = "time") {
-    if (!cable.made()) {
-      WARN("skipped: this system allows no second network with a cable to it");
+    if (!cable.is_ready()) {
+      WARN("skipped: this system does not allow a second network namespace with a cable");
       return false;
     }
     running.emplace();
-    shown_ = &running->ear.bus().queue<frame_shown_t>(channels::kFrameShown, 4096);
+    shown_ = &running->monitor.bus().queue<frame_shown_t>(channels::kFrameShown, 4096);
     const std::string scene = repository() / "tests/cluster/scenes/walls.sdf";
     spawn({}, "sync_node", "sync_node");
-    spawn(cable.there(), "sync_node", "sync_node_there");
+    spawn(cable.remote_prefix(), "sync_node", "sync_node_there");
     spawn({}, "haptic_node", "haptic_node");
     spawn({}, "haptic_node", "haptic_node_head", {"--tool", "head"});
-    spawn({}, "visual_node", kLeft, draws("left", lock));
-    std::vector<std::string> words = draws("front", lock);
+    spawn({}, "visual_node", kLeft, wall_options("left", lock));
+    std::vector<std::string> words = wall_options("front", lock);
     words.insert(words.end(), front.begin(), front.end());
-    spawn(cable.there(), "visual_node", kFront, words);
+    spawn(cable.remote_prefix(), "visual_node", kFront, words);
     spawn({}, "sim_node", "sim_node", {scene});
-    const bool alive = running->ear.wait_until(
+    const bool alive = running->monitor.wait_until(
         [&] {
-          return running->all_live({"sim_node", kLeft, kFront});
+          return running->all_running({"sim_node", kLeft, kFront});
         },
-        kPatience_s);
-    UNSCOPED_INFO(running->words() << running->processes.said(kFront));
+        kTimeout_s);
+    UNSCOPED_INFO(running->log_text() << running->processes.output(kFront));
     REQUIRE(alive);
-    running->ear.listen(1);  // until the clocks of both are mapped
+    running->monitor.receive_for(1);  // until the clocks of both are mapped
     return true;
   }
   // Receives until the left wall has shown kFrames more frames, and both walls have shown at least `both`.
-  void watch(std::int64_t both) {
+  void record_frames(std::int64_t both) {
     frames.clear();
     while (shown_->pop()) continue;
-    const bool enough = running->ear.wait_until(
+    const bool enough = running->monitor.wait_until(
         [&] {
-          take_in();
+          drain();
           return static_cast<std::int64_t>(frames[kLeft].size()) >= kFrames && common() >= both;
         },
-        kPatience_s);
+        kTimeout_s);
     INFO(frames[kLeft].size() << " frames left, " << frames[kFront].size() << " in front, " << common()
                               << " of both");
     REQUIRE(enough);
   }
   std::int64_t common() const {
-    return count([](const Shown&, const Shown&) { return true; });
+    return count([](const ShownFrame&, const ShownFrame&) { return true; });
   }
   // Number of frames that both walls have shown and for which the predicate holds.
-  template <class Holds>
-  std::int64_t count(const Holds& holds) const {
+  template <class Predicate>
+  std::int64_t count(const Predicate& predicate) const {
     std::int64_t n = 0;
     const auto left = frames.find(kLeft), front = frames.find(kFront);
     if (left == frames.end() || front == frames.end()) return 0;
     for (const auto& [number, frame] : left->second)
       if (const auto other = front->second.find(number); other != front->second.end())
-        n += holds(frame, other->second);
+        n += predicate(frame, other->second);
     return n;
   }
-  void check_agreed() const {
+  void check_agreement() const {
     const std::int64_t n = common();
     INFO(n << " frames of both");
     CHECK(count([](auto& a, auto& b) { return a.world_ns == b.world_ns; }) >= 0.99 * static_cast<double>(n));
@@ -96,7 +96,7 @@ struct TwoHosts {
   }
 
  private:
-  static std::vector<std::string> draws(const std::string& wall, const std::string& lock) {
+  static std::vector<std::string> wall_options(const std::string& wall, const std::string& lock) {
     std::vector<std::string> words{"--no-video"};
     for (const std::string& s : {std::string("room=cave4"), "wall=" + wall, std::string("width=320"),
                                  std::string("height=320"), std::string(kLag), "frame_lock=" + lock})
@@ -106,15 +106,15 @@ struct TwoHosts {
   void spawn(std::vector<std::string> words, const std::string& program, const std::string& name,
              const std::vector<std::string>& options = {}) {
     words.insert(words.end(),
-                 {(programs() / program).string(), "--name", name, "--run-id", std::to_string(Running::kRunId),
+                 {(programs() / program).string(), "--name", name, "--run-id", std::to_string(RunningCluster::kRunId),
                   "--out", running->folder.path().string(), "--ttl", "1"});
     words.insert(words.end(), options.begin(), options.end());
     running->processes.spawn(name, words);
   }
-  void take_in() {
+  void drain() {
     while (const auto m = shown_->pop())
       for (const char* wall : {kLeft, kFront})
-        if (const node_health_t* h = running->ear.health(wall);
+        if (const node_health_t* h = running->monitor.health(wall);
             h && h->header.incarnation == m->message.header.incarnation &&
             m->message.stage == frame_shown_t::SHOWN)
           frames[wall][m->message.frame] = {m->message.header.sim_time_ns, m->message.head_ns};
@@ -125,19 +125,18 @@ struct TwoHosts {
 
 }  // namespace
 
-TEST_CASE("Two walls on two hosts show the same instant and the same head in 99 of 100 frames", "[exclusive]") {
+TEST_CASE("Two walls on two hosts show the same time and the same head pose in 99 of 100 frames", "[exclusive]") {
   TwoHosts c;
   if (!c.start()) return;
-  c.watch(100);
-  c.check_agreed();
+  c.record_frames(100);
+  c.check_agreement();
 }
 
-TEST_CASE(
-    "Beside a wall that draws ten pictures a second another keeps its rate, and what both show is the same", "[exclusive]") {
+TEST_CASE("A wall keeps its rate beside another that draws ten pictures a second, and both show the same state", "[exclusive]") {
   TwoHosts c;
   if (!c.start({"--emulate-load", "5"})) return;  // wastes five of six periods
-  c.watch(20);
-  c.check_agreed();
+  c.record_frames(20);
+  c.check_agreement();
   const auto& left = c.frames[TwoHosts::kLeft];
   const auto due = static_cast<double>(left.rbegin()->first - left.begin()->first + 1);
   CHECK(static_cast<double>(left.size()) >
@@ -147,11 +146,11 @@ TEST_CASE(
   CHECK(share < 0.3);  // 10 of 60, and other work of the machine
 }
 
-TEST_CASE("Walls that wait for one another show the same, and one that is dead is waited for no longer", "[exclusive]") {
+TEST_CASE("Walls that wait for each other show the same state, and stop waiting for a dead wall", "[exclusive]") {
   TwoHosts c;
   if (!c.start({}, "wait")) return;
-  c.watch(100);
-  c.check_agreed();
+  c.record_frames(100);
+  c.check_agreement();
   const auto before = c.running->rates(2);
   c.running->processes.kill(TwoHosts::kFront);
   c.running->check_rates_hold(before, 2);

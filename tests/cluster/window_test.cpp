@@ -16,30 +16,30 @@ using namespace tactus::cluster;
 
 namespace {
 
-constexpr int kWide = 1024, kHigh = 768;  // size of the screen, pixels; the window is 640 x 480 at its upper left
+constexpr int kScreenWidth = 1024, kScreenHeight = 768;  // size of the screen, pixels; the window is 640 x 480 at its upper left
 
-struct Desktop : Seeing {
+struct Desktop : PictureCluster {
   std::string display;
   sync::Bus bus{sync::Identity::fresh("desktop_test", kRunId), {}};
   sync::Queue<world_state_t>& worlds{bus.queue<world_state_t>(channels::kWorldState, 4096)};
   sync::Queue<device_state_t>& devices{bus.queue<device_state_t>(channels::kDeviceState, 4096)};
   sync::Queue<answer_t>& answers{bus.queue<answer_t>(channels::kAnswer, 4096)};
   std::map<std::int64_t, std::vector<answer_t>> answered;  // by id
-  question_t asked_now{};
-  sync::HostTime ask_next{};
+  question_t open_question{};
+  sync::HostTime next_question{};
   double rate = -1;          // rate of the world, as last published; -1: unknown
-  int aimed = 0;             // number of messages of the mouse as a device
-  std::set<float> aimed_at;  // world y of the mouse in those messages, m
+  int mouse_messages = 0;             // number of messages of the mouse as a device
+  std::set<float> mouse_y_m;  // world y of the mouse in those messages, m
 
   void start_server() {
     processes.spawn("Xvfb", {"Xvfb", "-displayfd", "1", "-screen", "0",
-                             std::to_string(kWide) + "x" + std::to_string(kHigh) + "x24", "-nolisten", "tcp"});
-    ear.wait_until([&] { return processes.said("Xvfb").find('\n') != std::string::npos; }, kPatience_s);
-    const std::string said = processes.said("Xvfb");
-    INFO("Xvfb (Debian package xvfb): " << said);
-    const std::size_t end = said.find_last_of("0123456789");
+                             std::to_string(kScreenWidth) + "x" + std::to_string(kScreenHeight) + "x24", "-nolisten", "tcp"});
+    monitor.wait_until([&] { return processes.output("Xvfb").find('\n') != std::string::npos; }, kTimeout_s);
+    const std::string output = processes.output("Xvfb");
+    INFO("Xvfb (Debian package xvfb): " << output);
+    const std::size_t end = output.find_last_of("0123456789");
     REQUIRE(end != std::string::npos);
-    display = ":" + said.substr(said.find_last_not_of("0123456789", end) + 1);
+    display = ":" + output.substr(output.find_last_not_of("0123456789", end) + 1);
     display = display.substr(0, display.find('\n'));
   }
   std::vector<std::string> on_display() const { return {"DISPLAY=" + display, "WAYLAND_DISPLAY="}; }
@@ -50,55 +50,55 @@ struct Desktop : Seeing {
     options.insert(options.end(), more.begin(), more.end());
     start_with(options, on_display());
   }
-  std::string x(const std::vector<std::string>& words) {
-    const std::string name = "xdotool" + std::to_string(++asked);
+  std::string xdotool(const std::vector<std::string>& words) {
+    const std::string name = "xdotool" + std::to_string(++call_count);
     std::vector<std::string> command{"env", "DISPLAY=" + display, "xdotool"};
     command.insert(command.end(), words.begin(), words.end());
     processes.spawn(name, command);
-    hear_until([&] { return !processes.running(name); });  // the question is repeated meanwhile
-    const int status = processes.wait_for_exit(name, kPatience_s);
-    INFO("xdotool (Debian package xdotool): " << processes.said(name));
+    receive_until([&] { return !processes.running(name); });  // the question is repeated meanwhile
+    const int status = processes.wait_for_exit(name, kTimeout_s);
+    INFO("xdotool (Debian package xdotool): " << processes.output(name));
     CHECK(status == 0);
-    return processes.said(name);
+    return processes.output(name);
   }
   std::string window() {
-    const std::string found = x({"search", "--sync", "--name", "^Tactus$"});
+    const std::string found = xdotool({"search", "--sync", "--name", "^Tactus$"});
     return found.substr(0, found.find('\n'));
   }
-  std::string geometry() { return x({"getwindowgeometry", window()}); }
+  std::string geometry() { return xdotool({"getwindowgeometry", window()}); }
   Grey screen() {
-    return grey("-f x11grab -draw_mouse 0 -video_size " + std::to_string(kWide) + "x" + std::to_string(kHigh) +
+    return grey("-f x11grab -draw_mouse 0 -video_size " + std::to_string(kScreenWidth) + "x" + std::to_string(kScreenHeight) +
                 " -i " + display);
   }
   static int brightest(const Grey& screen, bool in_window) {
-    int most = 0;
+    int max = 0;
     for (std::size_t i = 0; i < screen.size(); ++i)
-      if ((i % kWide < 640 && i / kWide < 480) == in_window) most = std::max<int>(most, screen[i]);
-    return most;
+      if ((i % kScreenWidth < 640 && i / kScreenWidth < 480) == in_window) max = std::max<int>(max, screen[i]);
+    return max;
   }
   template <class Condition>
-  bool hear_until(const Condition& condition) {
-    return ear.wait_until(
+  bool receive_until(const Condition& condition) {
+    return monitor.wait_until(
         [&] {
           bus.drain(sync::host_now());
           while (const auto m = worlds.pop()) rate = m->message.clock.rate;
           while (const auto m = devices.pop())
-            if (m->message.device == "mouse") ++aimed, aimed_at.insert(m->message.pose.position_m.y);
+            if (m->message.device == "mouse") ++mouse_messages, mouse_y_m.insert(m->message.pose.position_m.y);
           while (const auto m = answers.pop()) answered[m->message.id].push_back(m->message);
-          if (asked_now.id > 0 && sync::host_now() >= ask_next) {
-            bus.publish(channels::kQuestion, asked_now);
-            ask_next = sync::host_now() + std::chrono::milliseconds(200);
+          if (open_question.id > 0 && sync::host_now() >= next_question) {
+            bus.publish(channels::kQuestion, open_question);
+            next_question = sync::host_now() + std::chrono::milliseconds(200);
           }
           return condition();
         },
-        kPatience_s);
+        kTimeout_s);
   }
-  void hear_for(double seconds) {
+  void receive_for(double seconds) {
     const sync::HostTime end = sync::host_now() + sync::from_seconds(seconds);
-    hear_until([&] { return sync::host_now() >= end; });
+    receive_until([&] { return sync::host_now() >= end; });
   }
   // Asks the window to close as a window manager does (ICCCM 4.2.8.1).
-  void ask_to_close() {
+  void request_close() {
     const char* program = R"(
 import ctypes, sys
 X = ctypes.CDLL("libX11.so.6")
@@ -118,59 +118,57 @@ X.XSendEvent(d, ctypes.c_ulong(window), 0, ctypes.c_long(0), ctypes.byref(e))
 X.XCloseDisplay(d)
 )";
     processes.spawn("close", {"/usr/bin/python3", "-c", program, display, window()});
-    const int status = processes.wait_for_exit("close", kPatience_s);
-    INFO(processes.said("close"));
+    const int status = processes.wait_for_exit("close", kTimeout_s);
+    INFO(processes.output("close"));
     REQUIRE(status == 0);
   }
 };
 
 }  // namespace
 
-TEST_CASE(
-    "A window shows the picture. Its keys pause, step and reset the world, lay overlays and fill the screen") {
+TEST_CASE("A window shows the picture, and its keys pause, step and reset the world, toggle overlays and fill the screen") {
   Desktop c;
   c.start_window();
-  c.ear.listen(1);
+  c.monitor.receive_for(1);
   const Grey shown = c.screen();
-  REQUIRE(shown.size() == kWide * kHigh);
+  REQUIRE(shown.size() == kScreenWidth * kScreenHeight);
   CHECK(Desktop::brightest(shown, true) > 40);
   CHECK(Desktop::brightest(shown, false) == 0);
 
-  c.x({"mousemove", "300", "300"});
-  REQUIRE(c.hear_until([&] { return c.rate > 0; }));
-  c.x({"key", "space"});
-  CHECK(c.hear_until([&] { return c.rate == 0; }));
+  c.xdotool({"mousemove", "300", "300"});
+  REQUIRE(c.receive_until([&] { return c.rate > 0; }));
+  c.xdotool({"key", "space"});
+  CHECK(c.receive_until([&] { return c.rate == 0; }));
   const Grey still = c.later_picture();
-  c.x({"key", "h"});
+  c.xdotool({"key", "h"});
   const Grey helped = c.later_picture();
-  CHECK(apart(still, helped) > 3);  // a plate full of text
-  c.x({"key", "h"});
-  CHECK(apart(still, c.later_picture()) < 1);
-  c.x({"key", "period"});
-  c.x({"key", "r"});
-  c.x({"key", "space"});
-  CHECK(c.hear_until([&] { return c.rate > 0; }));
-  const std::string said = c.processes.said("visual_node");
-  CHECK_THAT(said, Catch::Contains("1 step from") && Catch::Contains("reset to its first instant"));
+  CHECK(mean_difference(still, helped) > 3);  // a plate full of text
+  c.xdotool({"key", "h"});
+  CHECK(mean_difference(still, c.later_picture()) < 1);
+  c.xdotool({"key", "period"});
+  c.xdotool({"key", "r"});
+  c.xdotool({"key", "space"});
+  CHECK(c.receive_until([&] { return c.rate > 0; }));
+  const std::string output = c.processes.output("visual_node");
+  CHECK_THAT(output, Catch::Contains("1 step from") && Catch::Contains("reset to its first instant"));
 
-  c.x({"key", "F11"});
-  c.ear.listen(1);
+  c.xdotool({"key", "F11"});
+  c.monitor.receive_for(1);
   CHECK_THAT(c.geometry(), Catch::Contains("1024x768"));
   CHECK(Desktop::brightest(c.screen(), false) > 10);
-  c.x({"key", "f"});
-  c.ear.listen(1);
+  c.xdotool({"key", "f"});
+  c.monitor.receive_for(1);
   CHECK_THAT(c.geometry(), Catch::Contains("640x480"));
-  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
 }
 
-TEST_CASE(
-    "A question of a study is drawn in the window, and answered by its keys, which do nothing else meanwhile") {
+TEST_CASE("The window draws a question of a study and answers it by its keys, which have no other effect meanwhile") {
   Desktop c;
   c.start_window();
-  c.ear.listen(1);
-  c.x({"mousemove", "300", "300"});
-  c.x({"key", "space"});
-  REQUIRE(c.hear_until([&] { return c.rate == 0; }));  // a still picture
+  c.monitor.receive_for(1);
+  c.xdotool({"mousemove", "300", "300"});
+  c.xdotool({"key", "space"});
+  REQUIRE(c.receive_until([&] { return c.rate == 0; }));  // a still picture
   const Grey still = c.later_picture();
   const auto ask = [&](std::int64_t id, std::int8_t kind, const std::string& text) {
     question_t m{};
@@ -179,72 +177,72 @@ TEST_CASE(
     if (kind == question_t::CHOICE) m.count = 2, m.choices = {"at the same time", "not at the same time"};
     if (kind == question_t::NUMBER) m.lowest = 0, m.highest = 10, m.step = 1;
     m.progress = "block 1 of 4";
-    c.asked_now = m;
-    c.ask_next = {};
-    c.hear_for(1);  // until a picture shows the change
+    c.open_question = m;
+    c.next_question = {};
+    c.receive_for(1);  // until a picture shows the change
   };
   const auto answer = [&](std::int64_t id) {
-    REQUIRE(c.hear_until([&] { return c.answered[id].size() >= 3; }));  // each repetition is answered
+    REQUIRE(c.receive_until([&] { return c.answered[id].size() >= 3; }));  // each repetition is answered
     for (const answer_t& a : c.answered[id]) {
       CHECK((a.choice == c.answered[id][0].choice && a.number == c.answered[id][0].number));
       CHECK(a.after_ns == c.answered[id][0].after_ns);
-      CHECK((a.by == "key" && a.after_ns > 0 && a.after_ns < static_cast<std::int64_t>(kPatience_s * 1e9)));
+      CHECK((a.by == "key" && a.after_ns > 0 && a.after_ns < static_cast<std::int64_t>(kTimeout_s * 1e9)));
     }
     return c.answered[id][0];
   };
 
   ask(11, question_t::CHOICE, "Did you hear the ball and see it touch the floor at the same time?");
-  CHECK(apart(still, c.picture()) > 3);
-  c.x({"key", "3"});  // there is no third choice; the key must not open an overlay either
-  c.hear_for(0.5);
+  CHECK(mean_difference(still, c.picture()) > 3);
+  c.xdotool({"key", "3"});  // there is no third choice; the key must not open an overlay either
+  c.receive_for(0.5);
   CHECK(c.answered.empty());
-  c.x({"key", "2"});
+  c.xdotool({"key", "2"});
   CHECK((answer(11).choice == 1 && answer(11).number == 0));
-  c.hear_for(0.5);
-  CHECK(apart(still, c.picture()) < 1);  // the question is closed, and no overlay is open
+  c.receive_for(0.5);
+  CHECK(mean_difference(still, c.picture()) < 1);  // the question is closed, and no overlay is open
 
   ask(12, question_t::NUMBER, "How hard was it?");
-  for (const char* key : {"Right", "Up", "Up", "Left", "Left"}) c.x({"key", key});  // 5 and 1, 1, 1, less 2
-  c.x({"key", "Return"});
+  for (const char* key : {"Right", "Up", "Up", "Left", "Left"}) c.xdotool({"key", key});  // 5 and 1, 1, 1, less 2
+  c.xdotool({"key", "Return"});
   CHECK((answer(12).number == 6 && answer(12).choice == -1));
 
   ask(13, question_t::READ, "Read this.");
-  c.x({"key", "space"});
+  c.xdotool({"key", "space"});
   CHECK(answer(13).choice == -1);
   CHECK(c.rate == 0);  // the space key did not resume the simulation
 
   // A second window shows no questions.
   c.set({"questions=false"});
   ask(14, question_t::READ, "Not here.");
-  CHECK(apart(still, c.picture()) < 1);
+  CHECK(mean_difference(still, c.picture()) < 1);
   c.set({"questions=true"});
-  c.hear_for(1);
-  CHECK(apart(still, c.picture()) > 1);
+  c.receive_for(1);
+  CHECK(mean_difference(still, c.picture()) > 1);
 
   // The program with the question has stopped publishing.
-  c.asked_now = {};
-  c.hear_for(3.5);
-  CHECK(apart(still, c.picture()) < 1);
+  c.open_question = {};
+  c.receive_for(3.5);
+  CHECK(mean_difference(still, c.picture()) < 1);
   CHECK(c.answered.find(14) == c.answered.end());
-  c.x({"key", "space"});
-  CHECK(c.hear_until([&] { return c.rate > 0; }));
+  c.xdotool({"key", "space"});
+  CHECK(c.receive_until([&] { return c.rate > 0; }));
 }
 
-TEST_CASE("The mouse in the window is a device that points at what is seen under it") {
+TEST_CASE("The mouse in the window is a device that points at the object under the cursor") {
   Desktop c;
   c.start_window();
-  c.x({"mousemove", "320", "400"});
-  CHECK_FALSE(c.ear.wait_until([&] { return c.hear_until([&] { return true; }) && c.aimed > 0; }, 0.5));
-  c.x({"mousedown", "1"});
-  CHECK(c.hear_until([&] { return c.aimed > 5; }));
-  c.x({"mouseup", "1"});
-  CHECK(c.goes_on("visual_node"));
+  c.xdotool({"mousemove", "320", "400"});
+  CHECK_FALSE(c.monitor.wait_until([&] { return c.receive_until([&] { return true; }) && c.mouse_messages > 0; }, 0.5));
+  c.xdotool({"mousedown", "1"});
+  CHECK(c.receive_until([&] { return c.mouse_messages > 5; }));
+  c.xdotool({"mouseup", "1"});
+  CHECK(c.keeps_ticking("visual_node"));
 }
 
-TEST_CASE("The spot light shines at what the mouse is held on, and stays there when it is let go", "[exclusive]") {
+TEST_CASE("The spot light follows the pressed mouse, and stays in place after its release", "[exclusive]") {
   Desktop c;
   c.start_server();
-  const std::string run = std::to_string(Running::kRunId);
+  const std::string run = std::to_string(RunningCluster::kRunId);
   c.processes.start("sync_node");
   c.processes.start("haptic_node");
   c.processes.spawn("haptic_node_wand",
@@ -254,7 +252,7 @@ TEST_CASE("The spot light shines at what the mouse is held on, and stays there w
   options.insert(options.end(), {"--window", "--set", "width=640", "--set", "height=480"});
   c.start_vision(options, c.on_display());
   c.processes.start("sim_node", {repository() / "tests/cluster/scenes/head.sdf"});
-  REQUIRE(c.ear.wait_until([&] { return c.all_live({"sim_node", "haptic_node", "visual_node"}); }, kPatience_s));
+  REQUIRE(c.monitor.wait_until([&] { return c.all_running({"sim_node", "haptic_node", "visual_node"}); }, kTimeout_s));
   const auto brightness = [](const Grey& p, bool left) {
     double sum = 0;
     for (std::size_t i = 0; i < p.size(); ++i)
@@ -262,40 +260,38 @@ TEST_CASE("The spot light shines at what the mouse is held on, and stays there w
     return sum;
   };
   const auto held_at = [&](const char* x_px) {
-    c.x({"mousemove", x_px, "300"});
-    c.x({"mousedown", "1"});
-    CHECK(c.ear.wait_until([&] { return c.lives("haptic_node_wand"); }, kPatience_s));
-    c.ear.listen(0.5);
+    c.xdotool({"mousemove", x_px, "300"});
+    c.xdotool({"mousedown", "1"});
+    CHECK(c.monitor.wait_until([&] { return c.is_running("haptic_node_wand"); }, kTimeout_s));
+    c.monitor.receive_for(0.5);
     const Grey held = c.later_picture();
-    c.x({"mouseup", "1"});
+    c.xdotool({"mouseup", "1"});
     return held;
   };
   const Grey left = held_at("120"), right = held_at("520");
-  CHECK(apart(left, right) > 1);
+  CHECK(mean_difference(left, right) > 1);
   CHECK(brightness(left, true) > brightness(right, true));
   CHECK(brightness(right, false) > brightness(left, false));
-  c.x({"mousemove", "120", "300"});  // no button: the mouse only passes
+  c.xdotool({"mousemove", "120", "300"});  // no button: the mouse only passes
   const Grey after = c.later_picture();
-  INFO("from where it was held " << apart(right, after) << ", from where it passes " << apart(left, after));
-  CHECK(apart(right, after) < 0.5);
+  INFO("difference from the held position " << mean_difference(right, after) << ", from the passed position " << mean_difference(left, after));
+  CHECK(mean_difference(right, after) < 0.5);
 
   // Released and moved within one frame.
-  c.hear_for(0.1);
-  c.aimed_at.clear();
+  c.receive_for(0.1);
+  c.mouse_y_m.clear();
   for (int i = 0; i < 20; ++i)
-    c.x({"mousemove", "520", "300", "mousedown", "1", "sleep", "0.1", "mouseup", "1", "mousemove", "120", "300"});
-  c.hear_for(0.2);
-  CHECK(c.aimed_at.size() == 1);
+    c.xdotool({"mousemove", "520", "300", "mousedown", "1", "sleep", "0.1", "mouseup", "1", "mousemove", "120", "300"});
+  c.receive_for(0.2);
+  CHECK(c.mouse_y_m.size() == 1);
 }
 
-TEST_CASE(
-    "A window that is not seen or next to nothing, or larger than its screen, stops nobody. A closed one ends the "
-    "node") {
+TEST_CASE("A hidden, tiny or oversized window stops no node, and a closed window ends visual_node") {
   Desktop c;
   c.start_window({"--set", "window_width=16384", "--set", "window_height=1", "--set", "monitor=7", "--set",
                   "stereo=quad_buffer"});
   const auto before = c.rates(1);
-  CHECK_THAT(c.processes.said("visual_node"), Catch::Contains("larger than its monitor") &&
+  CHECK_THAT(c.processes.output("visual_node"), Catch::Contains("larger than its monitor") &&
                                                   Catch::Contains("no monitor 7") &&
                                                   Catch::Contains("no buffer for each eye"));
   CHECK_THAT(c.geometry(), Catch::Contains("1024x1"));
@@ -306,62 +302,61 @@ TEST_CASE(
                                              {"windowmap", window},
                                              {"windowsize", window, "700", "500"}}) {
     CAPTURE(words[0]);
-    c.x(words);
-    CHECK(c.goes_on("visual_node"));
+    c.xdotool(words);
+    CHECK(c.keeps_ticking("visual_node"));
   }
   c.check_rates_hold(before, 1);
-  c.ask_to_close();
-  CHECK(c.processes.wait_for_exit("visual_node", kPatience_s) == 0);
-  CHECK_THAT(c.processes.said("visual_node"), Catch::Contains("visual_node: the window was closed\n"));
-  CHECK(c.others_live());
+  c.request_close();
+  CHECK(c.processes.wait_for_exit("visual_node", kTimeout_s) == 0);
+  CHECK_THAT(c.processes.output("visual_node"), Catch::Contains("visual_node: the window was closed\n"));
+  CHECK(c.others_running());
 
   // Another program destroys the window.
   std::vector<std::string> options = c.snapshots();
   options.push_back("--window");
   c.start_vision(options, c.on_display());
-  CHECK(c.ear.wait_until([&] { return c.all_live(kNodes); }, kPatience_s));
-  c.x({"windowclose", c.window()});
-  CHECK(c.processes.wait_for_exit("visual_node", kPatience_s) == 0);
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
+  c.xdotool({"windowclose", c.window()});
+  CHECK(c.processes.wait_for_exit("visual_node", kTimeout_s) == 0);
 }
 
-TEST_CASE(
-    "A display server that is killed takes the window along and not the node. Without one there is a sentence") {
+TEST_CASE("A killed display server closes the window and not the node, and without a display server the start fails with a message") {
   Desktop c;
   c.start_window();
   const auto before = c.rates(1);
   c.processes.kill("Xvfb");
   // The node continues until it detects the loss: the frame in progress, and the missed ticks beside load.
-  CHECK(c.ear.wait_until(
+  CHECK(c.monitor.wait_until(
       [&] {
-        return c.processes.said("visual_node").find("the display server of the window is gone; drawing continues with ") !=
+        return c.processes.output("visual_node").find("the display server of the window is gone; drawing continues with ") !=
                std::string::npos;
       },
-      kPatience_s));
-  CHECK_THAT(c.processes.said("visual_node"), !Catch::Contains("X connection"));
-  CHECK(c.goes_on("visual_node"));
-  CHECK(apart(c.later_picture(), Grey(640 * 480, 0)) > 1);
+      kTimeout_s));
+  CHECK_THAT(c.processes.output("visual_node"), !Catch::Contains("X connection"));
+  CHECK(c.keeps_ticking("visual_node"));
+  CHECK(mean_difference(c.later_picture(), Grey(640 * 480, 0)) > 1);
   c.check_rates_hold(before, 1);
 
   c.processes.kill("visual_node");
-  for (const std::vector<std::string>& where :
+  for (const std::vector<std::string>& environment :
        std::vector<std::vector<std::string>>{c.on_display(), {"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY"}}) {
-    c.start_vision({"--window"}, where);
-    CHECK(c.processes.wait_for_exit("visual_node", kPatience_s) == 1);
-    const std::string said = c.processes.said("visual_node");
-    CHECK_THAT(said.substr(said.rfind('\n', said.size() - 2) + 1),
+    c.start_vision({"--window"}, environment);
+    CHECK(c.processes.wait_for_exit("visual_node", kTimeout_s) == 1);
+    const std::string output = c.processes.output("visual_node");
+    CHECK_THAT(output.substr(output.rfind('\n', output.size() - 2) + 1),
                Catch::Contains("--window: no window can be opened") && Catch::Contains("leave --window out"));
   }
-  CHECK(c.others_live());
+  CHECK(c.others_running());
 }
 
-TEST_CASE("A display server that stands still ends the node in a sentence, and nobody else notices") {
+TEST_CASE("A frozen display server ends visual_node with a message, and the other nodes continue") {
   Desktop c;
   c.start_window();
   const auto before = c.rates(1);
   c.processes.signal("Xvfb", SIGSTOP);
-  CHECK(c.processes.wait_for_exit("visual_node", kPatience_s) == 1);
-  CHECK_THAT(c.processes.said("visual_node"),
+  CHECK(c.processes.wait_for_exit("visual_node", kTimeout_s) == 1);
+  CHECK_THAT(c.processes.output("visual_node"),
              Catch::Contains("the display server does not answer, so the node ends"));
-  CHECK(c.others_live());
+  CHECK(c.others_running());
   c.check_rates_hold(before, 1, "visual_node");
 }

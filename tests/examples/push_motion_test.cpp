@@ -19,7 +19,7 @@ Eigen::Quaterniond orientation(const PushMotion& m) {
 
 }  // namespace
 
-TEST_CASE("A 3D mouse that is pushed moves the tool the same way: away along x, to the left along y, up along z") {
+TEST_CASE("A push of a 3D mouse moves the tool in the same direction: away along x, to the left along y, up along z") {
   struct Push {
     int x, y, z;                   // libspnav: right, up, towards the person
     std::array<double, 3> wanted;  // directions of ours
@@ -36,7 +36,7 @@ TEST_CASE("A 3D mouse that is pushed moves the tool the same way: away along x, 
   }
 }
 
-TEST_CASE("Twists turn about the axes along which pushes of the same sign move, by the right hand") {
+TEST_CASE("Twists rotate by the right-hand rule about the axes of pushes with the same sign") {
   for (int axis = 0; axis < 3; ++axis) {
     PushMotion pushed(0.5), twisted(0.5);
     std::array<int, 3> full{};
@@ -54,7 +54,7 @@ TEST_CASE("Twists turn about the axes along which pushes of the same sign move, 
   }
 }
 
-TEST_CASE("A mouse of which nothing is heard any more stands still after 50 ms") {
+TEST_CASE("A silent mouse stops the tool after 50 ms") {
   PushMotion m(0.5);
   m.push(0, kFull, 0, 0, kFull, 0);
   for (int i = 0; i < 100; ++i) m.step(kDt);
@@ -64,7 +64,7 @@ TEST_CASE("A mouse of which nothing is heard any more stands still after 50 ms")
   CHECK(m.position_m()[2] < 0.3 * (0.05 + 2 * kDt));
 }
 
-TEST_CASE("However it is handled it stays within its box and its orientation a rotation that follows its spin") {
+TEST_CASE("For any input the tool stays in its box, and its orientation is the integral of its angular velocity") {
   std::mt19937 random(5);
   std::uniform_int_distribution<int> any(-kFull, kFull);
   PushMotion m(0.2);
@@ -80,7 +80,7 @@ TEST_CASE("However it is handled it stays within its box and its orientation a r
   }
 }
 
-TEST_CASE("Its buttons are bits, and numbers that are none are not heeded") {
+TEST_CASE("Buttons are bits of a mask, and button numbers out of range are ignored") {
   PushMotion m(0.5);
   m.press(0, true);
   m.press(2, true);

@@ -41,14 +41,14 @@ struct Listeners {
   TagTable tags;
   spy::Channels channels{{kRun, 4711, nullptr}};
   spy::Screen screen;
-  live::PageSession station{false, kRun, "log"};
+  live::PageSession session{false, kRun, "log"};
   ContactStream contacts{{kRun, 4711, nullptr}};
   PictureReader pictures;
   Bus bus{Identity{"fuzz", 1, 1, kRun, 4711}, BusOptions{.memory = true}};
   SceneReceiver scene{bus};
   std::size_t written = 0;
 
-  void hear(const LogEvent& e, HostTime now) {
+  void on_event(const LogEvent& e, HostTime now) {
     summary.add(e);
     tables.learn(e);
     if (const MessageType* type = type_on(std::string(e.channel))) {
@@ -58,7 +58,7 @@ struct Listeners {
     written += tag_rows(tags, tables, e, now).size();
     MessageBatch batch;
     if (batch.add(now, {e.channel, e.data}, std::size_t{1} << 24)) channels.push(batch[0]);
-    station.take(e.channel, e.data, now);
+    session.on_message(e.channel, e.data, now);
     as<tag_list_t>(e, channels::kTagList, [&](const auto& m) { screen.push(m); });
     as<tag_values_t>(e, channels::kTagValues, [&](const auto& m) { screen.push(m, now); });
     as<contact_events_t>(e, channels::kContactEvents, [&](const auto& m) { contacts.push(m, now); });
@@ -78,11 +78,11 @@ struct Listeners {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto all = std::make_unique<Listeners>();
-  all->station.open(1);
-  all->station.watch(1, {"TOOL_STATE:force_N.z", "sim_node.work.solve"});
+  all->session.open(1);
+  all->session.watch(1, {"TOOL_STATE:force_N.z", "sim_node.work.solve"});
   LogScanner scanner({data, size});
   HostTime now = host_time(1'000'000'000);
-  for (LogEvent e; scanner.next(e);) all->hear(e, now += Nanoseconds(1'000'000));
+  for (LogEvent e; scanner.next(e);) all->on_event(e, now += Nanoseconds(1'000'000));
   all->summary.end_of_log(scanner.damaged_regions());
   if (to_json(all->summary).empty() || to_text(all->summary).empty()) std::abort();
   all->screen.sample(all->channels, now);
@@ -90,7 +90,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     all->screen.press(key);
     if (all->screen.draw(all->channels, now, 80, 24).size() > 24) std::abort();
   }
-  all->station.frames(now, nlohmann::json::object());
-  if (all->station.hello(now).empty()) std::abort();
+  all->session.frames(now, nlohmann::json::object());
+  if (all->session.hello(now).empty()) std::abort();
   return 0;
 }

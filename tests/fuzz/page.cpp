@@ -13,18 +13,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
     const live::BrowserMessage m = live::parse_browser_message(text);
-    if (const auto* sliders = std::get_if<live::DegradeThus>(&m))
-      if (sync::parse_profile(live::slid("", sliders->senses), "page").rules.size() > sliders->senses.size())
+    if (const auto* sliders = std::get_if<live::DegradeRequest>(&m))
+      if (sync::parse_profile(live::with_sliders("", sliders->senses), "page").rules.size() > sliders->senses.size())
         std::abort();
-    if (const auto* hand = std::get_if<live::HandAt>(&m))
+    if (const auto* hand = std::get_if<live::HandTarget>(&m))
       if (!(hand->x >= -1 && hand->x <= 1 && hand->push_m >= -1 && hand->push_m <= 1)) std::abort();
-    if (const auto* watch = std::get_if<live::WatchThese>(&m))
+    if (const auto* watch = std::get_if<live::WatchRequest>(&m))
       if (watch->names.size() > live::kMaxWatched) std::abort();
   } catch (const std::invalid_argument& e) {
     if (*e.what() == 0) std::abort();
   }
   const live::Access access{.port = 8080, .loopback = true, .token = "0123456789abcdef"};
-  if (live::token_right(text, access) && text.find(access.token) == std::string_view::npos) std::abort();
+  if (live::token_matches(text, access) && text.find(access.token) == std::string_view::npos) std::abort();
   if (live::origin_allowed(text, "127.0.0.1:8080") && text != "http://127.0.0.1:8080") std::abort();
   live::host_allowed(text, access);
   return 0;

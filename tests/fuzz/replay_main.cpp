@@ -119,7 +119,7 @@ void change(Bytes& b, const Bytes& other, std::mt19937& random) {
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::cerr << "usage: fuzz_NAME RUNS FOLDER...: seeds of the folders, and so many mutations of them\n";
+    std::cerr << "usage: fuzz_NAME RUNS FOLDER...: replays the seeds of the folders and RUNS mutations of them\n";
     return 1;
   }
   const std::string name = std::filesystem::path(argv[0]).filename();

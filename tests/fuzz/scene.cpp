@@ -8,7 +8,7 @@
 namespace {
 
 // Copies the files that scenes refer to into their folder.
-bool put_beside(const std::filesystem::path& folder) {
+bool copy_assets(const std::filesystem::path& folder) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(TACTUS_SOURCE_DIR "/sim_node/scenes"))
     std::filesystem::create_symlink(entry.path(), folder / entry.path().filename(), error);
@@ -19,7 +19,7 @@ bool put_beside(const std::filesystem::path& folder) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const tactus::fuzz::FileOf file("scene.sdf");
-  static const bool beside = put_beside(file.folder());
+  static const bool beside = copy_assets(file.folder());
   if (!beside) std::abort();
   file.write(data, size);
   std::vector<std::string> warnings;

@@ -23,7 +23,7 @@ namespace {
 
 // A rejection is a std::exception with one sentence; anything else aborts.
 template <class Read>
-void try_to(Read&& read) {
+void expect_no_crash(Read&& read) {
   try {
     read();
   } catch (const std::runtime_error& e) {
@@ -38,24 +38,24 @@ void try_to(Read&& read) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tactus;
   const std::string text(reinterpret_cast<const char*>(data), size);
-  try_to([&] { sim::parse_materials(text); });
-  try_to([&] { sim::parse_measured_modes(text); });
-  try_to([&] { audio::parse_layout(text, "fuzz.csv"); });
-  try_to([&] { visual::parse_room(text, "fuzz.csv"); });
-  try_to([&] { haptic::parse_frame(text, "fuzz.json"); });
-  try_to([&] {
+  expect_no_crash([&] { sim::parse_materials(text); });
+  expect_no_crash([&] { sim::parse_measured_modes(text); });
+  expect_no_crash([&] { audio::parse_layout(text, "fuzz.csv"); });
+  expect_no_crash([&] { visual::parse_room(text, "fuzz.csv"); });
+  expect_no_crash([&] { haptic::parse_frame(text, "fuzz.json"); });
+  expect_no_crash([&] {
     std::istringstream in(text);
     haptic::read_motion(in, "fuzz.csv");
   });
-  try_to([&] { parse_tool_device(text); });
-  try_to([&] { visual::parse_overlays(text); });
-  try_to([&] { visual::parse_plot(text); });
+  expect_no_crash([&] { parse_tool_device(text); });
+  expect_no_crash([&] { visual::parse_overlays(text); });
+  expect_no_crash([&] { visual::parse_plot(text); });
   std::vector<std::string> trouble;
   visual::parse_plots(text, trouble);
-  try_to([&] {
+  expect_no_crash([&] {
     if (!std::isfinite(sync::parse_quantity(text, "s"))) std::abort();
   });
-  try_to([&] { sync::parse_duration(text); });
+  expect_no_crash([&] { sync::parse_duration(text); });
   sync::csv_cells(text);
   if (const auto number = sync::csv_number(text); number && !std::isfinite(*number)) std::abort();
   return 0;

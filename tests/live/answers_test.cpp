@@ -29,7 +29,7 @@ question_t question(int kind, std::int64_t seq = 0, std::int64_t id = kBig, std:
   return m;
 }
 
-std::string why_not(Answers& answers, const AnswerThus& answer, sync::HostTime now) {
+std::string rejection(Answers& answers, const PageAnswer& answer, sync::HostTime now) {
   try {
     answers.answer(answer, now);
   } catch (const std::invalid_argument& e) {
@@ -41,73 +41,73 @@ std::string why_not(Answers& answers, const AnswerThus& answer, sync::HostTime n
 
 }  // namespace
 
-TEST_CASE("A page is told what is asked, and its answer carries the id of the question and how it was given") {
+TEST_CASE("A page receives the question, and its answer carries the question's id and the kind of input") {
   Answers a(7);
-  CHECK(a.told(at(0)).is_null());
+  CHECK(a.to_json(at(0)).is_null());
   a.push(question(question_t::CHOICE), at(0));
-  const auto told = a.told(at(0.1));
-  CHECK((told["kind"] == "choice" && told["text"] == "Which was first?" && told["choices"][1] == "flash"));
-  CHECK((told["trial"] == 3 && told["condition"] == "audio +80 ms" && told["progress"] == "block 1 of 4"));
-  CHECK(told["answered"] == false);
-  a.answer({told["question"], 1, 0, 350'000'000}, at(0.4));
+  const auto shown = a.to_json(at(0.1));
+  CHECK((shown["kind"] == "choice" && shown["text"] == "Which was first?" && shown["choices"][1] == "flash"));
+  CHECK((shown["trial"] == 3 && shown["condition"] == "audio +80 ms" && shown["progress"] == "block 1 of 4"));
+  CHECK(shown["answered"] == false);
+  a.answer({shown["question"], 1, 0, 350'000'000}, at(0.4));
   const auto sent = a.take_answer();
   REQUIRE(sent);
   CHECK(valid(*sent));
   CHECK((sent->id == kBig && sent->choice == 1 && sent->number == 0 && sent->after_ns == 350'000'000 && sent->by == "page"));
-  CHECK(a.told(at(0.5))["answered"] == true);
+  CHECK(a.to_json(at(0.5))["answered"] == true);
   CHECK_FALSE(a.take_answer());
 }
 
-TEST_CASE("An answer of a page is sent again for each repetition of its question, and not with the next question") {
+TEST_CASE("An answer of a page is repeated for each repetition of its question, and not for the next question") {
   Answers a(7);
   a.push(question(question_t::CHOICE, 0), at(0));
-  a.answer({a.told(at(0))["question"], 0, 0, 0}, at(0));
+  a.answer({a.to_json(at(0))["question"], 0, 0, 0}, at(0));
   CHECK(a.take_answer());
   a.push(question(question_t::CHOICE, 1), at(0.2));
   CHECK(a.take_answer());
   a.push(question(question_t::CHOICE, 2), at(0.4));
   a.push(question(question_t::READ, 3, 12), at(0.6));  // before the answer was accepted
   CHECK_FALSE(a.take_answer());
-  CHECK(a.told(at(0.6))["answered"] == false);
+  CHECK(a.to_json(at(0.6))["answered"] == false);
 }
 
-TEST_CASE("An answer that fits no question is refused with what is wrong, and none is sent") {
+TEST_CASE("An answer that fits no question is rejected with a reason, and is not published") {
   Answers a(7);
-  CHECK_THAT(why_not(a, {"5.1", 0, 0, 0}, at(0)), Catch::Contains("not asked any more"));
+  CHECK_THAT(rejection(a, {"5.1", 0, 0, 0}, at(0)), Catch::Contains("no longer open"));
   a.push(question(question_t::CHOICE, 0), at(0));
-  const std::string name = a.told(at(0))["question"];
-  CHECK_THAT(why_not(a, {name + "0", 0, 0, 0}, at(0)), Catch::Contains("not asked any more"));
-  CHECK_THAT(why_not(a, {name, 2, 0, 0}, at(0)), Catch::Contains("none of the choices"));
-  CHECK_THAT(why_not(a, {name, -1, 0, 0}, at(0)), Catch::Contains("none of the choices"));
-  CHECK_THAT(why_not(a, {name, 0, 0.5, 0}, at(0)), Catch::Contains("ends of its slider"));
-  CHECK_THAT(why_not(a, {name, 0, 0, 0}, at(2.1)), Catch::Contains("not asked any more"));
+  const std::string name = a.to_json(at(0))["question"];
+  CHECK_THAT(rejection(a, {name + "0", 0, 0, 0}, at(0)), Catch::Contains("no longer open"));
+  CHECK_THAT(rejection(a, {name, 2, 0, 0}, at(0)), Catch::Contains("none of the choices"));
+  CHECK_THAT(rejection(a, {name, -1, 0, 0}, at(0)), Catch::Contains("none of the choices"));
+  CHECK_THAT(rejection(a, {name, 0, 0.5, 0}, at(0)), Catch::Contains("range of its slider"));
+  CHECK_THAT(rejection(a, {name, 0, 0, 0}, at(2.1)), Catch::Contains("no longer open"));
   CHECK_FALSE(a.take_answer());
-  CHECK(why_not(a, {name, 0, 0, 0}, at(1)).empty());
-  CHECK_THAT(why_not(a, {name, 1, 0, 0}, at(1)), Catch::Contains("has been answered"));
+  CHECK(rejection(a, {name, 0, 0, 0}, at(1)).empty());
+  CHECK_THAT(rejection(a, {name, 1, 0, 0}, at(1)), Catch::Contains("has been answered"));
   CHECK(a.take_answer()->choice == 0);
 
   a.push(question(question_t::NUMBER, 1, 12), at(2));
-  const std::string number = a.told(at(2))["question"];
-  CHECK_FALSE(why_not(a, {number, -1, 1.01, 0}, at(2)).empty());
-  CHECK_FALSE(why_not(a, {number, 0, 0.5, 0}, at(2)).empty());
-  CHECK(why_not(a, {number, -1, -1, 0}, at(2)).empty());
+  const std::string number = a.to_json(at(2))["question"];
+  CHECK_FALSE(rejection(a, {number, -1, 1.01, 0}, at(2)).empty());
+  CHECK_FALSE(rejection(a, {number, 0, 0.5, 0}, at(2)).empty());
+  CHECK(rejection(a, {number, -1, -1, 0}, at(2)).empty());
   CHECK(a.take_answer()->number == -1);
 
   a.push(question(question_t::NOTHING, 2, 13), at(3));
-  CHECK_FALSE(why_not(a, {a.told(at(3))["question"], -1, 0, 0}, at(3)).empty());
+  CHECK_FALSE(rejection(a, {a.to_json(at(3))["question"], -1, 0, 0}, at(3)).empty());
 }
 
-TEST_CASE("A page sees who leads, and that nobody leads any more. Another run is not heeded, but in a log") {
+TEST_CASE("A page shows the trial runner and its end, and ignores questions of another run, except in a log") {
   Answers a(7), log(0);
   a.push(question(question_t::READ, 0, 3, 8), at(0));
   log.push(question(question_t::READ, 0, 3, 8), at(0));
-  CHECK(a.told(at(0)).is_null());
+  CHECK(a.to_json(at(0)).is_null());
   CHECK_FALSE(a.leader(at(0)));
-  CHECK(log.told(at(0))["kind"] == "read");
+  CHECK(log.to_json(at(0))["kind"] == "read");
   a.push(question(question_t::NOTHING), at(0));
-  CHECK(a.told(at(0))["kind"] == "nothing");
+  CHECK(a.to_json(at(0))["kind"] == "nothing");
   CHECK(a.leader(at(0)) == static_cast<std::int32_t>(sync::fnv1a_32("conductor")));
-  CHECK(a.told(at(2.1)).is_null());
+  CHECK(a.to_json(at(2.1)).is_null());
   log.clear();
-  CHECK(log.told(at(0)).is_null());
+  CHECK(log.to_json(at(0)).is_null());
 }

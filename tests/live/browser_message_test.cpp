@@ -25,24 +25,24 @@ const std::vector<std::string> kGood{
 
 // Checks the bounds of a message, for any input.
 void check_bounds(const BrowserMessage& m) {
-  if (const auto* w = std::get_if<WatchThese>(&m)) {
+  if (const auto* w = std::get_if<WatchRequest>(&m)) {
     CHECK(w->names.size() <= kMaxWatched);
     for (const std::string& n : w->names) CHECK((!n.empty() && n.size() <= 192));
   } else if (const auto* c = std::get_if<Command>(&m)) {
     CHECK((c->kind >= sim_command_t::PAUSE && c->kind <= sim_command_t::RESET));
     CHECK((c->steps >= 0 && c->steps <= 10'000));
-  } else if (const auto* d = std::get_if<DegradeThus>(&m)) {
+  } else if (const auto* d = std::get_if<DegradeRequest>(&m)) {
     CHECK(d->senses.size() <= 16);
     for (const auto& [name, s] : d->senses) {
       CHECK((s.delay_ms >= 0 && s.delay_ms <= 2000));
       CHECK((s.rate_Hz == 0 || (s.rate_Hz >= 0.1 && s.rate_Hz <= 1000)));
       CHECK((s.loss >= 0 && s.loss <= 1));
     }
-  } else if (const auto* h = std::get_if<HandAt>(&m)) {
+  } else if (const auto* h = std::get_if<HandTarget>(&m)) {
     CHECK((std::abs(h->x) <= 1 && std::abs(h->y) <= 1 && std::abs(h->push_m) <= 1));
   } else if (const auto* p = std::get_if<LogPlay>(&m)) {
     CHECK((p->rate >= 0.1 && p->rate <= 16));
-  } else if (const auto* a = std::get_if<AnswerThus>(&m)) {
+  } else if (const auto* a = std::get_if<PageAnswer>(&m)) {
     CHECK((!a->question.empty() && a->question.size() <= 64));
     CHECK((a->choice >= -1 && a->choice <= 8 && std::abs(a->number) <= 1e9 && a->after_ns >= 0));
   } else {
@@ -51,7 +51,7 @@ void check_bounds(const BrowserMessage& m) {
 }
 
 // True when the message is accepted. Any exception without one sentence fails the test.
-bool taken(const std::string& text) {
+bool accepted(const std::string& text) {
   try {
     check_bounds(parse_browser_message(text));
     return true;
@@ -66,29 +66,29 @@ bool taken(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("Each message of a page is read as what it says") {
-  const auto watch = std::get<WatchThese>(parse_browser_message(kGood[0]));
+TEST_CASE("Each kind of page message is parsed") {
+  const auto watch = std::get<WatchRequest>(parse_browser_message(kGood[0]));
   CHECK(watch.names == std::vector<std::string>{"TOOL_STATE:force_N.z", "sim_node.work.collision"});
   CHECK(std::get<Command>(parse_browser_message(kGood[1])).kind == sim_command_t::PAUSE);
   const auto step = std::get<Command>(parse_browser_message(kGood[2]));
   CHECK((step.kind == sim_command_t::STEP && step.steps == 25));
   CHECK(std::get<Command>(parse_browser_message(R"({"t":"command","what":"resume"})")).kind == sim_command_t::RESUME);
   CHECK(std::get<Command>(parse_browser_message(R"({"t":"command","what":"reset"})")).kind == sim_command_t::RESET);
-  const auto worse = std::get<DegradeThus>(parse_browser_message(kGood[3]));
+  const auto worse = std::get<DegradeRequest>(parse_browser_message(kGood[3]));
   REQUIRE(worse.senses.contains("audio"));
   CHECK(worse.senses.at("audio").delay_ms == 80);
   CHECK(worse.senses.at("audio").loss == 0.25);
   CHECK_FALSE(worse.clear);
-  const auto hand = std::get<HandAt>(parse_browser_message(kGood[4]));
+  const auto hand = std::get<HandTarget>(parse_browser_message(kGood[4]));
   CHECK((hand.x == -0.5 && hand.y == 1 && hand.push_m == 0 && hand.down));
   const auto play = std::get<LogPlay>(parse_browser_message(kGood[5]));
   CHECK((play.play && play.rate == 2));
   CHECK(std::get<LogSeek>(parse_browser_message(kGood[6])).to_s == 12.5);
-  const auto answer = std::get<AnswerThus>(parse_browser_message(kGood[7]));
+  const auto answer = std::get<PageAnswer>(parse_browser_message(kGood[7]));
   CHECK((answer.question == "4.11" && answer.choice == 1 && answer.number == 0 && answer.after_ns == 350'000'000));
 }
 
-TEST_CASE("What is no message of a page, or beyond its range, is refused with a sentence") {
+TEST_CASE("Malformed and out-of-range page messages are rejected with a sentence") {
   for (const char* text :
        {"", "null", "[]", "{}", "{\"t\":1}", R"({"t":"fly"})", R"({"t":"command"})", R"({"t":"command","what":"push"})",
         R"({"t":"command","what":"set"})", R"({"t":"command","what":"step"})", R"({"t":"command","what":"step","steps":0})",
@@ -109,16 +109,16 @@ TEST_CASE("What is no message of a page, or beyond its range, is refused with a 
         R"({"t":"answer","question":"4.11","choice":-1,"number":1e10,"after_ns":0})",
         R"({"t":"answer","question":"4.11","choice":1,"number":0,"after_ns":-1})"}) {
     INFO(text);
-    CHECK_FALSE(taken(text));
+    CHECK_FALSE(accepted(text));
   }
   nlohmann::json many{{"t", "watch"}, {"names", nlohmann::json::array()}};
   for (std::size_t i = 0; i <= kMaxWatched; ++i) many["names"].push_back("n" + std::to_string(i));
-  CHECK_FALSE(taken(many.dump()));
-  CHECK_FALSE(taken(std::string(kMaxBrowserBytes + 1, ' ')));
-  CHECK_FALSE(taken(std::string(kMaxBrowserBytes, '[')));  // deep nesting
+  CHECK_FALSE(accepted(many.dump()));
+  CHECK_FALSE(accepted(std::string(kMaxBrowserBytes + 1, ' ')));
+  CHECK_FALSE(accepted(std::string(kMaxBrowserBytes, '[')));  // deep nesting
 }
 
-TEST_CASE("10,000 mutated messages are taken within their bounds or refused with a sentence") {
+TEST_CASE("10,000 mutated messages are parsed within their bounds or rejected with a sentence") {
   std::mt19937 random(20);
   const std::string letters = "{}[]\":,.-+eE0123456789truefalsnu\\ \x01\x7f\xc3\xff";
   int good = 0, refused = 0;
@@ -134,7 +134,7 @@ TEST_CASE("10,000 mutated messages are taken within their bounds or refused with
       }
       if (text.empty()) text = "x";
     }
-    ++(taken(text) ? good : refused);
+    ++(accepted(text) ? good : refused);
   }
   CHECK(good > 100);  // both occur; otherwise the mutations test nothing
   CHECK(refused > 1000);

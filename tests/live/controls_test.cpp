@@ -26,16 +26,16 @@ sync::BusOptions memory() {
   return options;
 }
 
-struct Page {
+struct PageFixture {
   sync::Bus bus{sync::Identity::fresh("live_server", 9), memory()};
-  std::vector<std::pair<std::string, bool>> told;
-  Controls controls{bus, [this](const std::string& sentence, bool good) { told.emplace_back(sentence, good); }};
+  std::vector<std::pair<std::string, bool>> replies;
+  Controls controls{bus, [this](const std::string& sentence, bool good) { replies.emplace_back(sentence, good); }};
   sync::Queue<sim_command_t>& commands = bus.queue<sim_command_t>(channels::kSimCommand, 100);
   sync::Queue<degradation_t>& profiles = bus.queue<degradation_t>(channels::kDegradation, 100);
   sync::Queue<tag_request_t>& tags = bus.queue<tag_request_t>(channels::kTagRequest, 100);
   sync::HostTime now = sync::host_time(5'000'000'000);
 
-  void pass(double s) {
+  void run_for(double s) {
     for (const sync::HostTime end = now + sync::from_seconds(s); now < end; now += sync::from_seconds(0.005)) {
       bus.drain(now);
       controls.step(now);
@@ -54,18 +54,18 @@ struct Page {
     p.hash = sync::fnv1a_64(xml.data(), xml.size());
     p.generation = generation;
     sync::send_profile(bus, p);
-    pass(0.02);
+    run_for(0.02);
     all(profiles);
   }
 };
 
 }  // namespace
 
-TEST_CASE("A command is repeated until it is answered, with one number, and the answer is told") {
-  Page p;
+TEST_CASE("A command is repeated with one id until its reply, and the reply is shown") {
+  PageFixture p;
   p.controls.command({sim_command_t::STEP, 25}, p.now);
-  p.pass(0.45);
-  const auto sent = Page::all(p.commands);
+  p.run_for(0.45);
+  const auto sent = PageFixture::all(p.commands);
   REQUIRE(sent.size() == 5);  // at once, and each tenth of a second
   for (const auto& m : sent) {
     CHECK(m.id == sent[0].id);
@@ -77,31 +77,31 @@ TEST_CASE("A command is repeated until it is answered, with one number, and the 
   reply.done = 1;
   reply.text = "other";
   p.bus.publish(channels::kSimReply, reply);
-  p.pass(0.01);
-  CHECK(p.told.empty());
+  p.run_for(0.01);
+  CHECK(p.replies.empty());
   reply.id = sent[0].id;
   reply.text = "25 steps";
   p.bus.publish(channels::kSimReply, reply);
-  p.pass(0.01);
-  CHECK(p.told == std::vector<std::pair<std::string, bool>>{{"25 steps", true}});
-  Page::all(p.commands);
-  p.pass(5);
-  CHECK(Page::all(p.commands).empty());
-  CHECK(p.told.size() == 1);
+  p.run_for(0.01);
+  CHECK(p.replies == std::vector<std::pair<std::string, bool>>{{"25 steps", true}});
+  PageFixture::all(p.commands);
+  p.run_for(5);
+  CHECK(PageFixture::all(p.commands).empty());
+  CHECK(p.replies.size() == 1);
 }
 
-TEST_CASE("A command that nobody answers is given up after three seconds, with a sentence") {
-  Page p;
+TEST_CASE("A command without a reply fails after three seconds, with a sentence") {
+  PageFixture p;
   p.controls.command({sim_command_t::PAUSE, 0}, p.now);
-  p.pass(10);
-  CHECK(Page::all(p.commands).size() <= 31);
-  REQUIRE(p.told.size() == 1);
-  CHECK_THAT(p.told[0].first, Catch::Contains("no sim_node answers"));
-  CHECK_FALSE(p.told[0].second);
+  p.run_for(10);
+  CHECK(PageFixture::all(p.commands).size() <= 31);
+  REQUIRE(p.replies.size() == 1);
+  CHECK_THAT(p.replies[0].first, Catch::Contains("no reply from sim_node"));
+  CHECK_FALSE(p.replies[0].second);
 }
 
-TEST_CASE("Sliders begin from the profile in force, and the newest profile is the one that is shown") {
-  Page p;
+TEST_CASE("Sliders start from the profile in force, and show the newest profile") {
+  PageFixture p;
   CHECK_FALSE(p.controls.profile());
   p.in_force(R"(<profile name="by hand" seed="3"><degrade modality="visual" jitter="5ms"/></profile>)", kRealtime_ns + 50);
   REQUIRE(p.controls.profile());
@@ -109,8 +109,8 @@ TEST_CASE("Sliders begin from the profile in force, and the newest profile is th
 
   // A clock that was set back must not make the page's request the older one.
   p.controls.degrade({{{"audio", {80, 0, 0}}}, false}, kRealtime_ns, p.now);
-  p.pass(0.05);
-  const auto sent = Page::all(p.profiles);
+  p.run_for(0.05);
+  const auto sent = PageFixture::all(p.profiles);
   REQUIRE_FALSE(sent.empty());
   CHECK(sent[0].generation > kRealtime_ns + 50);
   const auto profile = sync::parse_profile(sent[0].text, "sent");
@@ -119,44 +119,44 @@ TEST_CASE("Sliders begin from the profile in force, and the newest profile is th
   CHECK(profile.rules[1].delay->delay_s == Approx(0.08));
   CHECK(p.controls.profile()->hash == sent[0].hash);
 
-  SECTION("all well takes all of it away") {
+  SECTION("all well removes all operators") {
     p.controls.degrade({{{"audio", {0, 0, 0}}}, true}, kRealtime_ns + 1000, p.now);
-    p.pass(0.05);
-    const auto well = Page::all(p.profiles);
+    p.run_for(0.05);
+    const auto well = PageFixture::all(p.profiles);
     REQUIRE_FALSE(well.empty());
     CHECK(sync::parse_profile(well.back().text, "well").rules.empty());
   }
-  SECTION("it is sent for two seconds, and then left to sync_node") {
-    p.pass(3);
-    CHECK(Page::all(p.profiles).size() < 25);
-    p.pass(3);
-    CHECK(Page::all(p.profiles).empty());
+  SECTION("it is sent for two seconds, and then repeated by sync_node") {
+    p.run_for(3);
+    CHECK(PageFixture::all(p.profiles).size() < 25);
+    p.run_for(3);
+    CHECK(PageFixture::all(p.profiles).empty());
   }
-  SECTION("what somebody else sends later holds") {
+  SECTION("a later profile of another sender replaces it") {
     p.in_force(R"(<profile name="later"><degrade modality="haptic" off="true"/></profile>)", kRealtime_ns + 9999);
     CHECK(p.controls.profile()->generation == kRealtime_ns + 9999);
   }
 }
 
-TEST_CASE("Tags are asked for once a second as long as they are wanted") {
-  Page p;
-  p.controls.want_tags({"sim_node.work.collision"}, p.now);
-  p.pass(2.95);
-  const auto asked = Page::all(p.tags);
-  REQUIRE(asked.size() == 3);
-  for (const auto& m : asked) CHECK(m.patterns == std::vector<std::string>{"sim_node.work.collision"});
+TEST_CASE("Tags are requested once a second while a page watches them") {
+  PageFixture p;
+  p.controls.request_tags({"sim_node.work.collision"}, p.now);
+  p.run_for(2.95);
+  const auto requests = PageFixture::all(p.tags);
+  REQUIRE(requests.size() == 3);
+  for (const auto& m : requests) CHECK(m.patterns == std::vector<std::string>{"sim_node.work.collision"});
   std::vector<std::string> many;
   for (int i = 0; i < 17; ++i) many.push_back("node.tag" + std::to_string(i));
-  p.controls.want_tags(many, p.now);
-  p.pass(0.02);
-  CHECK(Page::all(p.tags).back().patterns == std::vector<std::string>{"*"});  // more than a request can name
+  p.controls.request_tags(many, p.now);
+  p.run_for(0.02);
+  CHECK(PageFixture::all(p.tags).back().patterns == std::vector<std::string>{"*"});  // more than a request can name
 }
 
-TEST_CASE("Nobody takes hold of a tool before the scene is known") {
-  Page p;
+TEST_CASE("No page can move a tool before the scene is known") {
+  PageFixture p;
   CHECK_THROWS_WITH(p.controls.hand({0, 0, 0, false}, 1.33, p.now), Catch::Contains("not known yet"));
-  p.pass(0.1);
+  p.run_for(0.1);
   auto& devices = p.bus.queue<device_state_t>(channels::kDeviceState, 10);
-  p.pass(0.1);
+  p.run_for(0.1);
   CHECK_FALSE(devices.pop());
 }

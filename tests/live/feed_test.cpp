@@ -40,7 +40,7 @@ contact_events_t hit(std::int64_t id, double sim_ms, std::int64_t run = kRun) {
   m.events[0].effective_mass_kg = 0.1;
   return m;
 }
-presented_t heard(const std::string& modality, std::int64_t id, double host_ms, std::int32_t clock = 0) {
+presented_t presented(const std::string& modality, std::int64_t id, double host_ms, std::int32_t clock = 0) {
   presented_t m{};
   m.header = sync::header_of(modality + "_node", 1, id, 1);
   m.header.clock = clock;
@@ -63,55 +63,55 @@ node_health_t health(const std::string& node, std::int64_t run = kRun) {
   return m;
 }
 
-struct Fed {
+struct FeedInput {
   Feed feed{kRun};
   template <class Message>
-  void take(const char* channel, const Message& m, double s = 0) {
+  void on_message(const char* channel, const Message& m, double s = 0) {
     const auto bytes = sync::encode(m);
-    feed.take(channel, bytes, at(s));
+    feed.on_message(channel, bytes, at(s));
   }
 };
 
 }  // namespace
 
-TEST_CASE("An event and what became of it are told once, with the latency between them") {
-  Fed f;
+TEST_CASE("An event and its presentation are sent once, with the latency between them") {
+  FeedInput f;
   for (int copy = 0; copy < 3; ++copy) {  // events and reports are repeated on the bus
-    f.take(channels::kContactEvents, hit(1, 100));
-    f.take(channels::kPresented, heard("audio", 1, 130));
+    f.on_message(channels::kContactEvents, hit(1, 100));
+    f.on_message(channels::kPresented, presented("audio", 1, 130));
   }
-  const json news = f.feed.news(at(1));
-  REQUIRE(news["events"].size() == 1);
-  CHECK(news["events"][0][0] == Approx(10.1));
-  CHECK(news["events"][0][1] == contact_event_t::HIT);
-  CHECK(news["events"][0][4] == Approx(0.5));
-  REQUIRE(news["presented"].size() == 1);
-  CHECK(news["presented"][0][0] == Approx(10.13));
-  CHECK(news["presented"][0][1] == "audio");
-  CHECK(news["presented"][0][4] == Approx(30));
-  CHECK_FALSE(f.feed.news(at(1.01)).contains("events"));
+  const json changes = f.feed.take_changes(at(1));
+  REQUIRE(changes["events"].size() == 1);
+  CHECK(changes["events"][0][0] == Approx(10.1));
+  CHECK(changes["events"][0][1] == contact_event_t::HIT);
+  CHECK(changes["events"][0][4] == Approx(0.5));
+  REQUIRE(changes["presented"].size() == 1);
+  CHECK(changes["presented"][0][0] == Approx(10.13));
+  CHECK(changes["presented"][0][1] == "audio");
+  CHECK(changes["presented"][0][4] == Approx(30));
+  CHECK_FALSE(f.feed.take_changes(at(1.01)).contains("events"));
 }
 
 TEST_CASE("Times of two clocks are not compared: the presentation is drawn at its event, without a latency") {
-  Fed f;
-  f.take(channels::kContactEvents, hit(1, 100));
-  f.take(channels::kPresented, heard("audio", 1, 777'000, 42));
-  const json news = f.feed.news(at(1));
-  REQUIRE(news["presented"].size() == 1);
-  CHECK(news["presented"][0][0] == Approx(10.1));
-  CHECK(news["presented"][0][4].is_null());
+  FeedInput f;
+  f.on_message(channels::kContactEvents, hit(1, 100));
+  f.on_message(channels::kPresented, presented("audio", 1, 777'000, 42));
+  const json changes = f.feed.take_changes(at(1));
+  REQUIRE(changes["presented"].size() == 1);
+  CHECK(changes["presented"][0][0] == Approx(10.1));
+  CHECK(changes["presented"][0][4].is_null());
 }
 
-TEST_CASE("Nodes are told with their health four times a second, and as lost when they are silent") {
-  Fed f;
-  f.take(channels::kNodeHealth, health("audio_node"), 0);
-  json first = f.feed.news(at(0.1));
+TEST_CASE("The health of nodes is sent four times a second, and silent nodes are sent as lost") {
+  FeedInput f;
+  f.on_message(channels::kNodeHealth, health("audio_node"), 0);
+  json first = f.feed.take_changes(at(0.1));
   REQUIRE(first["health"].size() == 1);
   CHECK(first["health"][0]["node"] == "audio_node");
   CHECK(first["health"][0]["source"] == static_cast<std::int32_t>(sync::fnv1a_32("audio_node")));
   CHECK(first["health"][0]["lost"] == false);
-  CHECK_FALSE(f.feed.news(at(0.2)).contains("health"));
-  CHECK(f.feed.news(at(0.4)).contains("health"));
+  CHECK_FALSE(f.feed.take_changes(at(0.2)).contains("health"));
+  CHECK(f.feed.take_changes(at(0.4)).contains("health"));
   CHECK(f.feed.state(at(1.4))["health"][0]["lost"] == false);
   CHECK(f.feed.state(at(1.6))["health"][0]["lost"] == true);
   CHECK(f.feed.modalities() == std::set<std::string>{"audio"});
@@ -119,39 +119,39 @@ TEST_CASE("Nodes are told with their health four times a second, and as lost whe
   CHECK(f.feed.state(at(2))["health"].empty());
 }
 
-TEST_CASE("Of another run nothing is told, and of a log all") {
-  Fed live, log{Feed(0)};
-  for (Fed* f : {&live, &log}) {
-    f->take(channels::kNodeHealth, health("audio_node", kRun + 1));
-    f->take(channels::kContactEvents, hit(1, 1, kRun + 1));
+TEST_CASE("Events of another run are ignored, and a log shows all runs") {
+  FeedInput live, log{Feed(0)};
+  for (FeedInput* f : {&live, &log}) {
+    f->on_message(channels::kNodeHealth, health("audio_node", kRun + 1));
+    f->on_message(channels::kContactEvents, hit(1, 1, kRun + 1));
   }
-  CHECK(live.feed.news(at(0)).empty());
-  CHECK(log.feed.news(at(0)).contains("health"));
+  CHECK(live.feed.take_changes(at(0)).empty());
+  CHECK(log.feed.take_changes(at(0)).contains("health"));
   CHECK(log.feed.state(at(0))["health"].size() == 1);
 }
 
-TEST_CASE("A flood is bounded and what is left out counted, and hostile bytes are counted and tell nothing") {
-  Fed f;
+TEST_CASE("A flood is bounded and its dropped events are counted, and malformed messages are counted and ignored") {
+  FeedInput f;
   for (int i = 0; i < 10'000; ++i) {
-    f.take(channels::kContactEvents, hit(i, i));
-    f.take(channels::kPresented, heard("audio", i, i + 30));
+    f.on_message(channels::kContactEvents, hit(i, i));
+    f.on_message(channels::kPresented, presented("audio", i, i + 30));
   }
-  for (int i = 0; i < 200; ++i) f.take(channels::kNodeHealth, health("node_" + std::to_string(i)));
-  const json news = f.feed.news(at(0));
-  CHECK(news["events"].size() == Feed::kMaxOfFrame);
-  CHECK(news["presented"].size() == Feed::kMaxOfFrame);
-  CHECK(news["left_out"] == 2 * (10'000 - Feed::kMaxOfFrame));
-  CHECK(news["health"].size() == Feed::kMaxNodes);
+  for (int i = 0; i < 200; ++i) f.on_message(channels::kNodeHealth, health("node_" + std::to_string(i)));
+  const json changes = f.feed.take_changes(at(0));
+  CHECK(changes["events"].size() == Feed::kMaxPerFrame);
+  CHECK(changes["presented"].size() == Feed::kMaxPerFrame);
+  CHECK(changes["left_out"] == 2 * (10'000 - Feed::kMaxPerFrame));
+  CHECK(changes["health"].size() == Feed::kMaxNodes);
 
   std::mt19937 random(1);
-  const std::vector<std::vector<std::uint8_t>> good{sync::encode(hit(1, 1)), sync::encode(heard("audio", 1, 1)),
+  const std::vector<std::vector<std::uint8_t>> good{sync::encode(hit(1, 1)), sync::encode(presented("audio", 1, 1)),
                                                     sync::encode(health("audio_node"))};
   const char* channels[]{channels::kContactEvents, channels::kPresented, channels::kNodeHealth};
   for (std::size_t i = 0; i < 3000; ++i) {
     auto bytes = good[i % 3];
     bytes.resize(random() % bytes.size());
-    f.feed.take(channels[(i + i / 3) % 3], bytes, at(1));
+    f.feed.on_message(channels[(i + i / 3) % 3], bytes, at(1));
   }
-  CHECK(f.feed.bad() == 3000);
-  CHECK_NOTHROW(f.feed.news(at(2)).dump());
+  CHECK(f.feed.malformed() == 3000);
+  CHECK_NOTHROW(f.feed.take_changes(at(2)).dump());
 }

@@ -27,12 +27,12 @@ Vector3d place(const device_state_t& m) { return to_eigen(m.pose.position_m); }
 
 }  // namespace
 
-TEST_CASE("A place in the picture is a place on the ray behind it") {
+TEST_CASE("A point in the picture is a point on its view ray") {
   // A camera at the origin that looks along +x with 90 degrees from left to right: tan 45 degrees is 1.
-  CHECK(behind_pixel(scene(), kAspect, 0, 0, 2).isApprox(Vector3d(2, 0, 0)));
-  CHECK(behind_pixel(scene(), kAspect, 1, 0, 2).isApprox(Vector3d(2, -2, 0)));
-  CHECK(behind_pixel(scene(), kAspect, -1, 0, 2).isApprox(Vector3d(2, 2, 0)));
-  CHECK(behind_pixel(scene(), kAspect, 0, 1, 2).isApprox(Vector3d(2, 0, 1.5)));
+  CHECK(unproject(scene(), kAspect, 0, 0, 2).isApprox(Vector3d(2, 0, 0)));
+  CHECK(unproject(scene(), kAspect, 1, 0, 2).isApprox(Vector3d(2, -2, 0)));
+  CHECK(unproject(scene(), kAspect, -1, 0, 2).isApprox(Vector3d(2, 2, 0)));
+  CHECK(unproject(scene(), kAspect, 0, 1, 2).isApprox(Vector3d(2, 0, 1.5)));
 
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -42,7 +42,7 @@ TEST_CASE("A place in the picture is a place on the ray behind it") {
     camera.rotate(Eigen::Quaterniond(unit(random), unit(random), unit(random), unit(random)).normalized());
     const double fov = 1.2 + unit(random), x = unit(random), y = unit(random), depth = 5.1 + 5 * unit(random);
     // Projected again with a pinhole camera, by the focal length in half widths.
-    const Vector3d p = camera.inverse() * behind_pixel(scene(camera, fov), kAspect, x, y, depth);
+    const Vector3d p = camera.inverse() * unproject(scene(camera, fov), kAspect, x, y, depth);
     const double focal = 1 / std::tan(fov / 2);
     REQUIRE(p.x() == Approx(depth));
     REQUIRE(-p.y() / p.x() * focal == Approx(x).margin(1e-9));
@@ -50,7 +50,7 @@ TEST_CASE("A place in the picture is a place on the ray behind it") {
   }
 }
 
-TEST_CASE("The hand begins at the tool and follows the mouse in the tool's plane, no faster than its limit") {
+TEST_CASE("The hand starts at the tool and follows the mouse in the tool's plane, up to its speed limit") {
   Hand hand;
   const Vector3d tool(0.5, 0.1, -0.05);
   hand.aim({0.4, 0.2, 0, false}, scene(), kAspect, tool, at(0));
@@ -61,8 +61,8 @@ TEST_CASE("The hand begins at the tool and follows the mouse in the tool's plane
   CHECK(m->state == device_state_t::ANSWERS);
   CHECK(m->buttons == 0);
 
-  const Vector3d target = behind_pixel(scene(), kAspect, 0.4, 0.2, 0.5);
-  const double way_s = (target - tool).norm() / Hand::kFastest_m_s;
+  const Vector3d target = unproject(scene(), kAspect, 0.4, 0.2, 0.5);
+  const double way_s = (target - tool).norm() / Hand::kMaxSpeed_m_s;
   for (int i = 1; i <= 100; ++i) {
     const double t = 0.01 * i;
     if (i % 10 == 0) hand.aim({0.4, 0.2, 0, true}, scene(), kAspect, std::nullopt, at(t));
@@ -75,7 +75,7 @@ TEST_CASE("The hand begins at the tool and follows the mouse in the tool's plane
   CHECK(to_eigen(m->velocity_m_s).norm() == 0);
 }
 
-TEST_CASE("However the mouse jumps, two places of the hand lie no farther apart than its speed allows") {
+TEST_CASE("The hand keeps its speed limit for any jump of the mouse") {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> unit(-1, 1);
   Hand hand;
@@ -89,15 +89,15 @@ TEST_CASE("However the mouse jumps, two places of the hand lie no farther apart 
     const auto m = hand.state(at(t));
     REQUIRE(m);
     REQUIRE(place(*m).allFinite());
-    if (last) REQUIRE((place(*m) - *last).norm() <= Hand::kFastest_m_s * dt + 1e-6);
-    REQUIRE(to_eigen(m->velocity_m_s).norm() <= Hand::kFastest_m_s * 1.000001);
-    REQUIRE(place(*m).x() >= Hand::kNearest_m - 1e-9);
-    REQUIRE(place(*m).x() <= Hand::kFarthest_m + 1e-9);
+    if (last) REQUIRE((place(*m) - *last).norm() <= Hand::kMaxSpeed_m_s * dt + 1e-6);
+    REQUIRE(to_eigen(m->velocity_m_s).norm() <= Hand::kMaxSpeed_m_s * 1.000001);
+    REQUIRE(place(*m).x() >= Hand::kMinDepth_m - 1e-9);
+    REQUIRE(place(*m).x() <= Hand::kMaxDepth_m + 1e-9);
     last = place(*m);
   }
 }
 
-TEST_CASE("A silent page lets go, and who takes hold again begins where the tool is then") {
+TEST_CASE("A silent page releases the hand, and the next grasp starts at the tool's position") {
   Hand hand;
   CHECK_FALSE(hand.state(at(0)));  // the hand is not held
   hand.aim({0, 0, 0, false}, scene(), kAspect, Vector3d(1, 0, 0), at(0));
@@ -109,7 +109,7 @@ TEST_CASE("A silent page lets go, and who takes hold again begins where the tool
   REQUIRE(m);
   CHECK(place(*m).isApprox(Vector3d(2, 0.3, 0)));
 
-  SECTION("a tool that is behind the camera, or nowhere, gives no plane: half a metre is taken") {
+  SECTION("a tool behind the camera or at no valid position gives a plane at half a metre") {
     for (const Vector3d& wrong : {Vector3d(-1, 0, 0), Vector3d(NAN, 0, 0)}) {
       Hand other;
       other.aim({0, 0, 0, false}, scene(), kAspect, wrong, at(0));

@@ -12,7 +12,7 @@ std::shared_ptr<const std::string> text(std::string s) { return std::make_shared
 
 }  // namespace
 
-TEST_CASE("What does not fit into the queue of a page is refused and counted, and what waits goes out in order") {
+TEST_CASE("Messages beyond the queue of a page are rejected and counted, and waiting messages are sent in order") {
   SendQueue queue;
   for (std::size_t i = 0; i < SendQueue::kMaxMessages; ++i) REQUIRE(queue.push(text(std::to_string(i))));
   CHECK_FALSE(queue.push(text("late")));
@@ -26,7 +26,7 @@ TEST_CASE("What does not fit into the queue of a page is refused and counted, an
   CHECK(queue.dropped() == 3);
 }
 
-TEST_CASE("Of pictures a slow page gets the newest, after what is text") {
+TEST_CASE("A slow page receives the newest picture, after its text messages") {
   SendQueue queue;
   for (int i = 0; i < 5; ++i) queue.put_picture(text("picture " + std::to_string(i)));
   queue.push(text("words"));
@@ -37,7 +37,7 @@ TEST_CASE("Of pictures a slow page gets the newest, after what is text") {
   CHECK_FALSE(queue.pop());
 }
 
-TEST_CASE("Whatever is put in and taken out, a queue stays within its bounds, and nothing is lost uncounted") {
+TEST_CASE("Under random use a queue stays within its bounds, and every lost message is counted") {
   std::mt19937 random(7);
   SendQueue queue;
   std::int64_t pushed = 0, popped = 0, pictures = 0, shown = 0;

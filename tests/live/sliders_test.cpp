@@ -22,35 +22,35 @@ const std::string kRich = R"(<profile name="late sound" seed="7">
 
 std::map<std::string, Sliders> sliders_of(const std::string& profile) {
   std::map<std::string, Sliders> out;
-  for (const auto& [sense, s] : shown_of(profile)) out[sense] = s.sliders;
+  for (const auto& [sense, s] : slider_states(profile)) out[sense] = s.sliders;
   return out;
 }
 
-bool same(const Sliders& a, const Sliders& b) {
+bool same_positions(const Sliders& a, const Sliders& b) {
   return a.delay_ms == Approx(b.delay_ms) && a.rate_Hz == Approx(b.rate_Hz) && a.loss == Approx(b.loss);
 }
 
 }  // namespace
 
-TEST_CASE("Sliders show what a profile says always and of all contacts, and that it says more") {
-  const auto shown = shown_of(kRich);
-  CHECK(same(shown.at("audio").sliders, {40, 0, 0.05}));
-  CHECK(same(shown.at("haptic").sliders, {0, 50, 0}));
-  CHECK(same(shown.at("visual").sliders, {0, 0, 0}));
+TEST_CASE("Sliders show the unconditional operators of a profile, and that it has others") {
+  const auto shown = slider_states(kRich);
+  CHECK(same_positions(shown.at("audio").sliders, {40, 0, 0.05}));
+  CHECK(same_positions(shown.at("haptic").sliders, {0, 50, 0}));
+  CHECK(same_positions(shown.at("visual").sliders, {0, 0, 0}));
   CHECK(shown.at("audio").more);
   CHECK(shown.at("visual").more);
   CHECK_FALSE(shown.at("haptic").more);
-  CHECK(shown_of("").empty());
-  CHECK(told_of(kRich)["name"] == "late sound");
-  CHECK(told_of(kRich)["senses"]["audio"]["delay_ms"] == 40);
-  CHECK(told_of("")["name"] == "");
-  CHECK_THROWS_AS(shown_of("<profile"), std::invalid_argument);
+  CHECK(slider_states("").empty());
+  CHECK(degradation_json(kRich)["name"] == "late sound");
+  CHECK(degradation_json(kRich)["senses"]["audio"]["delay_ms"] == 40);
+  CHECK(degradation_json("")["name"] == "");
+  CHECK_THROWS_AS(slider_states("<profile"), std::invalid_argument);
 }
 
-TEST_CASE("A slider changes what it stands for, and all else of the profile in force stays") {
+TEST_CASE("A slider changes its own operator, and the rest of the profile in force stays") {
   auto at = sliders_of(kRich);
   at["audio"].delay_ms = 90;
-  const auto changed = sync::parse_profile(slid(kRich, at), "changed");
+  const auto changed = sync::parse_profile(with_sliders(kRich, at), "changed");
   CHECK(changed.seed == 7);
   CHECK(changed.name == "late sound, changed in the live page");
   REQUIRE(changed.rules.size() == 4);
@@ -64,44 +64,44 @@ TEST_CASE("A slider changes what it stands for, and all else of the profile in f
   CHECK(changed.rules[2].material == "steel");
   CHECK(changed.rules[3].rate->phase_s == Approx(0.005));
 
-  SECTION("a burst and a phase stay as long as they are possible") {
+  SECTION("a burst and a phase stay while they are possible") {
     at["audio"].loss = 0.2;
     at["haptic"].rate_Hz = 100;
-    auto p = sync::parse_profile(slid(kRich, at), "p");
+    auto p = sync::parse_profile(with_sliders(kRich, at), "p");
     CHECK(p.rules[0].loss->mean_burst == Approx(3));
     CHECK(p.rules[3].rate->phase_s == Approx(0.005));
     at["audio"].loss = 1;
     at["haptic"].rate_Hz = 500;
-    p = sync::parse_profile(slid(kRich, at), "p");
+    p = sync::parse_profile(with_sliders(kRich, at), "p");
     CHECK(p.rules[0].loss->mean_burst == 0);
     CHECK(p.rules[3].rate->rate_Hz == Approx(500));
   }
-  SECTION("a line that says nothing any more goes") {
+  SECTION("an element without operators is removed") {
     at["haptic"].rate_Hz = 0;
-    CHECK(sync::parse_profile(slid(kRich, at), "p").rules.size() == 3);
+    CHECK(sync::parse_profile(with_sliders(kRich, at), "p").rules.size() == 3);
   }
-  SECTION("the name says once that it was changed") {
-    const std::string again = slid(slid(kRich, at), {{"audio", {10, 0, 0}}});
+  SECTION("the name is marked as changed once") {
+    const std::string again = with_sliders(with_sliders(kRich, at), {{"audio", {10, 0, 0}}});
     CHECK(sync::parse_profile(again, "again").name == "late sound, changed in the live page");
   }
 }
 
-TEST_CASE("Wherever the sliders stand, the profile is one, and shows them where they were left") {
+TEST_CASE("All slider positions give a valid profile, which sets the sliders to the same positions") {
   std::mt19937 random(5);
   const auto share = [&] { return random() % 4 == 0 ? 0.0 : static_cast<double>(random() % 1001) / 1000; };
   for (int i = 0; i < 2000; ++i) {
     std::map<std::string, Sliders> at;
     for (const char* sense : {"audio", "haptic", "visual", "thermal", "wind"})
       if (random() % 3) at[sense] = {share() * 2000, random() % 2 ? 0 : 0.1 + share() * 999.9, share()};
-    const std::string text = slid(i % 2 ? kRich : "", at);
+    const std::string text = with_sliders(i % 2 ? kRich : "", at);
     INFO(text);
     const auto shown = sliders_of(text);
     for (const auto& [sense, s] : at) {
       const bool nothing = s.delay_ms == 0 && s.rate_Hz == 0 && s.loss == 0;
       if (nothing && !shown.contains(sense)) continue;
       REQUIRE(shown.contains(sense));
-      REQUIRE(same(shown.at(sense), s));
+      REQUIRE(same_positions(shown.at(sense), s));
     }
-    REQUIRE(slid(text, at) == text);  // unchanged sliders leave the profile unchanged
+    REQUIRE(with_sliders(text, at) == text);  // unchanged sliders leave the profile unchanged
   }
 }

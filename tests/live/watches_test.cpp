@@ -24,31 +24,31 @@ std::vector<std::uint8_t> tool(const std::string& node, double force_N) {
   return sync::encode(m);
 }
 
-struct Watching {
+struct WatchesFixture {
   Watches watches;
-  Watching() { REQUIRE(watches.set({"TOOL_STATE:force_N.z", "sim_node.work.collision"}).empty()); }
+  WatchesFixture() { REQUIRE(watches.set({"TOOL_STATE:force_N.z", "sim_node.work.collision"}).empty()); }
   void tool_at(double s, double force_N, const std::string& node = "haptic_node") {
-    watches.take(channels::kToolState, tool(node, force_N), at(s));
+    watches.on_message(channels::kToolState, tool(node, force_N), at(s));
   }
 };
 
 }  // namespace
 
-TEST_CASE("A page is told the values of what it watches, once, and of nothing else") {
-  Watching w;
-  CHECK(w.watches.wants(channels::kToolState));
-  CHECK_FALSE(w.watches.wants(channels::kWorldState));
+TEST_CASE("A page receives each value of its watched variables once, and no others") {
+  WatchesFixture w;
+  CHECK(w.watches.accepts(channels::kToolState));
+  CHECK_FALSE(w.watches.accepts(channels::kWorldState));
   CHECK(w.watches.tags() == std::vector<std::string>{"sim_node.work.collision"});
   w.tool_at(0, 1.5);
-  w.watches.take_tag("sim_node.work.collision", at(0.25), 7);
-  w.watches.take_tag("sim_node.work.solve", at(0.25), 8);
+  w.watches.on_tag_value("sim_node.work.collision", at(0.25), 7);
+  w.watches.on_tag_value("sim_node.work.solve", at(0.25), 8);
   const auto source = static_cast<std::int32_t>(sync::fnv1a_32("haptic_node"));
   CHECK(w.watches.values() == nlohmann::json({{0, 10.0, 1.5, source}, {1, 10.25, 7.0, 0}}));
   CHECK(w.watches.values().empty());
 }
 
-TEST_CASE("Two hands that send one variable are two curves") {
-  Watching w;
+TEST_CASE("Two hands that publish one variable are two curves") {
+  WatchesFixture w;
   for (int i = 0; i < 10; ++i) {
     w.tool_at(0.01 * i, 1, "haptic_node");
     w.tool_at(0.01 * i + 0.001, 2, "haptic_node_left");
@@ -60,14 +60,14 @@ TEST_CASE("Two hands that send one variable are two curves") {
   CHECK(values.size() == 2);
   for (const auto& [source, of] : values) CHECK(of.size() == 1);
 
-  SECTION("and of more senders than can be told apart the later ones are left out") {
+  SECTION("senders beyond the maximum are dropped") {
     for (int i = 0; i < 100; ++i) w.tool_at(1, i, "node_" + std::to_string(i));
     CHECK(w.watches.values().size() == Watches::kMaxSenders - 2);
   }
 }
 
-TEST_CASE("Values are thinned out to 200 a second, and what waits is bounded by leaving out the oldest") {
-  Watching w;
+TEST_CASE("Values are decimated to 200 a second, and a full queue drops the oldest") {
+  WatchesFixture w;
   for (int i = 0; i < 1000; ++i) w.tool_at(0.001 * i, i);
   CHECK(w.watches.values().size() == 200);
   for (int i = 0; i < 100'000; ++i) w.tool_at(2 + 0.005 * i, i);
@@ -76,33 +76,33 @@ TEST_CASE("Values are thinned out to 200 a second, and what waits is bounded by 
   CHECK(all.back()[2] == 99'999);  // after a jump in a log, the newest values before its place remain
 }
 
-TEST_CASE("Values of a log that was wound back are shown, and what is no number is not") {
-  Watching w;
+TEST_CASE("Values of a log are shown after a seek backwards, and non-finite values are not") {
+  WatchesFixture w;
   w.tool_at(5, 1);
   w.tool_at(1, 2);
   CHECK(w.watches.values().size() == 2);
-  w.watches.take_tag("sim_node.work.collision", at(1), NAN);
-  w.watches.take_tag("sim_node.work.collision", at(2), INFINITY);
+  w.watches.on_tag_value("sim_node.work.collision", at(1), NAN);
+  w.watches.on_tag_value("sim_node.work.collision", at(2), INFINITY);
   CHECK(w.watches.values().empty());
 }
 
-TEST_CASE("Bytes that are no message of their channel give no value") {
-  Watching w;
+TEST_CASE("Malformed messages of a channel give no value") {
+  WatchesFixture w;
   const auto good = tool("haptic_node", 1);
-  w.watches.take(channels::kToolState, {}, at(0));
+  w.watches.on_message(channels::kToolState, {}, at(0));
   for (std::size_t size = 0; size + 1 < good.size(); size += 7)
-    w.watches.take(channels::kToolState, std::span(good).first(size), at(static_cast<double>(size)));
+    w.watches.on_message(channels::kToolState, std::span(good).first(size), at(static_cast<double>(size)));
   for (const auto& v : w.watches.values()) CHECK(v[2].is_number());  // bytes after the field may be missing
   auto other = good;
   other[0] ^= 0xff;  // another fingerprint
-  w.watches.take(channels::kToolState, other, at(1e4));
+  w.watches.on_message(channels::kToolState, other, at(1e4));
   CHECK(w.watches.values().empty());
 }
 
-TEST_CASE("A name that is none is told with the reason, and the others keep their numbers") {
+TEST_CASE("An invalid name is reported with a reason, and the others keep their indices") {
   Watches w;
   CHECK_THAT(w.set({"NO_SUCH:thing", "TOOL_STATE:force_N.z"}), Catch::Contains("NO_SUCH"));
-  w.take(channels::kToolState, tool("haptic_node", 3), at(0));
+  w.on_message(channels::kToolState, tool("haptic_node", 3), at(0));
   const auto values = w.values();
   REQUIRE(values.size() == 1);
   CHECK(values[0][0] == 1);

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-using namespace tactus::participant;
+using namespace tactus::simulated_player;
 using Eigen::Vector3d;
 
 namespace {
@@ -18,7 +18,7 @@ Vector3d after(Arm& arm, const Vector3d& wanted, const Vector3d& force, double s
 
 }  // namespace
 
-TEST_CASE("An arm that is pushed yields as a spring does, and comes back") {
+TEST_CASE("A pushed arm deflects like a spring, and returns") {
   Arm arm({}, Vector3d(0.1, 0, 0.2), 1);
   const Vector3d rest = after(arm, {0.1, 0, 0.2}, Vector3d::Zero(), 1);
   CHECK((rest - Vector3d(0.1, 0, 0.2)).norm() < 1e-12);
@@ -28,7 +28,7 @@ TEST_CASE("An arm that is pushed yields as a spring does, and comes back") {
   CHECK((after(arm, {0.1, 0, 0.2}, Vector3d::Zero(), 3) - rest).norm() < 1e-6);
 }
 
-TEST_CASE("An arm answers a step as a damped mass on a spring does") {
+TEST_CASE("The step response of the arm is that of a damped spring-mass system") {
   const ArmDef def{.noise_share = 0};
   Arm arm(def, Vector3d::Zero(), 1);
   arm.step({1e-3, 0, 0}, Vector3d::Zero(), kStep_s);  // the step itself: through the damper it gives the mass a velocity
@@ -44,7 +44,7 @@ TEST_CASE("An arm answers a step as a damped mass on a spring does") {
   }
 }
 
-TEST_CASE("The tremor grows with the speed that is wanted, is none at rest, and is the same for one seed") {
+TEST_CASE("The tremor grows with the commanded speed, is zero at rest, and is reproducible from the seed") {
   const auto spread = [](double speed_m_s, std::uint64_t seed) {
     Arm arm({}, Vector3d::Zero(), seed);
     double sum = 0;

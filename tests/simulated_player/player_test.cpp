@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-using namespace tactus::participant;
+using namespace tactus::simulated_player;
 using Eigen::Vector3d;
 
 namespace {
@@ -22,8 +22,8 @@ Rules two_balls() {
 }
 
 // A world of balls that stay where they are pushed, on a plane, and fall at the place of their hole; and a hand at its commanded position.
-struct Toy {
-  explicit Toy(Rules r, std::vector<Vector3d> at) : rules(std::move(r)), balls(std::move(at)), player(rules, {}) {}
+struct ToyWorld {
+  explicit ToyWorld(Rules r, std::vector<Vector3d> at) : rules(std::move(r)), balls(std::move(at)), player(rules, {}) {}
 
   // True when all balls are in their holes within `seconds` of simulated time.
   bool play(double seconds, const std::function<void(Percept&)>& sense = [](Percept&) {}) {
@@ -38,7 +38,7 @@ struct Toy {
       hand.z() = std::max(hand.z(), kHand_m);
       force.setZero();
       for (std::size_t i = 0; i < balls.size(); ++i) push(i);
-      if (in_holes() == balls.size() && player.doing() == Player::Doing::kDone) return true;
+      if (in_holes() == balls.size() && player.action() == Player::Action::kDone) return true;
     }
     return false;
   }
@@ -69,32 +69,32 @@ struct Toy {
 
 }  // namespace
 
-TEST_CASE("A player who sees pushes a ball into its hole from wherever it lies") {
+TEST_CASE("A player with sight pushes a ball into its hole from any start position") {
   for (const double x : {-0.2, -0.05, 0.05, 0.3})
     for (const double y : {-0.15, 0.0, 0.1}) {
-      Toy toy(one_ball(), {{x, y, 0.025}});
+      ToyWorld toy(one_ball(), {{x, y, 0.025}});
       INFO("ball at " << x << " " << y);
       CHECK(toy.play(15));
     }
 }
 
-TEST_CASE("A player takes one ball after the other, and each into its own hole") {
-  Toy toy(two_balls(), {{-0.05, 0.05, 0.025}, {-0.08, 0.25, 0.03}});
+TEST_CASE("A player pushes one ball after the other, each into its own hole") {
+  ToyWorld toy(two_balls(), {{-0.05, 0.05, 0.025}, {-0.08, 0.25, 0.03}});
   CHECK(toy.play(20));
 }
 
-TEST_CASE("A player does nothing about what he has not had time to see") {
-  Toy toy(one_ball(), {{0, 0, 0.025}});
+TEST_CASE("A player does not react before the reaction time has passed") {
+  ToyWorld toy(one_ball(), {{0, 0, 0.025}});
   const Vector3d rest = toy.hand;
   // Before the reaction time has passed no percept takes effect: the player moves towards its first guess of the ball, beside the hole.
   toy.play(0.14);
   const Vector3d before = toy.hand;
   toy.play(0.1);
-  CHECK((before - rest).norm() < 0.14 * PlayerDef{}.reach_m_s + 1e-9);
+  CHECK((before - rest).norm() < 0.14 * PlayerDef{}.air_speed_m_s + 1e-9);
 }
 
-TEST_CASE("A hand never moves faster than it can, whatever it senses") {
-  Toy toy(two_balls(), {{-0.05, 0.05, 0.025}, {-0.08, 0.25, 0.03}});
+TEST_CASE("The hand keeps its speed limit for any percepts") {
+  ToyWorld toy(two_balls(), {{-0.05, 0.05, 0.025}, {-0.08, 0.25, 0.03}});
   Vector3d last = toy.hand;
   double fastest = 0;
   toy.play(20, [&](Percept& p) {
@@ -102,12 +102,12 @@ TEST_CASE("A hand never moves faster than it can, whatever it senses") {
     last = p.hand_m;
     if (static_cast<int>(p.time_s * 10) % 3 == 0) p.balls_m[0] = Vector3d(0.3, -0.3, 0.025);  // the ball seems to jump
   });
-  CHECK(fastest <= 1.001 * std::max(PlayerDef{}.reach_m_s, 6 * 0.2));
+  CHECK(fastest <= 1.001 * std::max(PlayerDef{}.air_speed_m_s, 6 * 0.2));
 }
 
-TEST_CASE("Who hears a ball fall goes on to the next without looking, and who hears nothing looks") {
+TEST_CASE("A player who hears a ball fall starts on the next ball at once, and a deaf player waits to see it") {
   const auto until_next = [](bool hears, bool sees_at_once) {
-    Toy toy(two_balls(), {{-0.05, 0, 0.025}, {-0.08, 0.3, 0.03}});
+    ToyWorld toy(two_balls(), {{-0.05, 0, 0.025}, {-0.08, 0.3, 0.03}});
     double fell_s = 0, next_s = 0;
     std::vector<std::pair<double, std::vector<std::optional<Vector3d>>>> shown;
     toy.play(20, [&](Percept& p) {
@@ -125,13 +125,13 @@ TEST_CASE("Who hears a ball fall goes on to the next without looking, and who he
   CHECK(until_next(false, false) == Approx(PlayerDef{}.reaction_s + 0.5).margin(0.02));
 }
 
-TEST_CASE("Who does not see finds a ball by touch, near where he was told that it is") {
-  Toy toy(one_ball(), {{-0.05, 0.04, 0.025}});
+TEST_CASE("A blind player finds a ball by touch near its announced place") {
+  ToyWorld toy(one_ball(), {{-0.05, 0.04, 0.025}});
   const auto blind = [](Percept& p) { p.balls_m.assign(p.balls_m.size(), std::nullopt); };
   toy.play(40, blind);
   CHECK((toy.balls[0] - Vector3d(-0.05, 0.04, 0.025)).norm() > 0.01);  // the hand touched and moved it
 
-  Toy numb(one_ball(), {{-0.05, 0.04, 0.025}});
+  ToyWorld numb(one_ball(), {{-0.05, 0.04, 0.025}});
   numb.play(40, [&](Percept& p) {
     blind(p);
     p.force_N.setZero();

@@ -5,7 +5,7 @@
 #include <tactus/node_health_t.hpp>
 
 using namespace tactus;
-using namespace tactus::conductor;
+using namespace tactus::trial_runner;
 
 namespace {
 
@@ -25,7 +25,7 @@ sync::ProfileInForce profile(std::int64_t hash) {
 
 }  // namespace
 
-TEST_CASE("A profile is in force when every sense that is there has it, and that is said once") {
+TEST_CASE("A profile is in force when every present modality has it, and this is reported once") {
   Enforcement e;
   e.push(health("audio_node", "audio", 0), ms(0));
   e.push(health("visual_node", "visual", 0), ms(0));
@@ -43,7 +43,7 @@ TEST_CASE("A profile is in force when every sense that is there has it, and that
   CHECK_FALSE(e.to_send(ms(1000)));
 }
 
-TEST_CASE("A sense that has gone is not waited for, and without any nothing is in force") {
+TEST_CASE("A silent modality is not waited for, and without modalities no profile is in force") {
   Enforcement e;
   e.push(health("audio_node", "audio", 0), ms(0));
   e.begin(profile(7));
@@ -53,7 +53,7 @@ TEST_CASE("A sense that has gone is not waited for, and without any nothing is i
   CHECK(e.take_in_force(ms(601)) == std::vector<std::string>{"visual_node"});
 }
 
-TEST_CASE("The next profile has to be taken anew") {
+TEST_CASE("The next profile must be confirmed again by every modality") {
   Enforcement e;
   e.push(health("audio_node", "audio", 7), ms(0));
   e.begin(profile(7));

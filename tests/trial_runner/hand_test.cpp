@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace tactus::conductor;
+using namespace tactus::trial_runner;
 using Eigen::Vector3d;
 
 namespace {
@@ -41,7 +41,7 @@ TEST_CASE("A tap reaches its depth below the surface and comes back to rest") {
   CHECK(hand.velocity_m_s().norm() == 0);
 }
 
-TEST_CASE("No motion of the hand leaps") {
+TEST_CASE("The hand moves without position jumps") {
   Hand hand({0, 0, 0.04}, 0.032);
   SECTION("of a tap") { REQUIRE(hand.tap({0.05})); }
   SECTION("of a press") { REQUIRE(hand.press({0.02, 0.5, 3})); }
@@ -50,23 +50,23 @@ TEST_CASE("No motion of the hand leaps") {
   CHECK(path.largest_step_m < 1.3 * kStep_s);
 }
 
-TEST_CASE("A press goes to its depth as often as it is told, and takes as long") {
+TEST_CASE("A press reaches its depth the given number of times, in the given periods") {
   Hand hand({0, 0, 0.04}, 0.032);
   REQUIRE(hand.press({0.01, 0.5, 4}));
-  int turns = 0;
+  int presses = 0;
   bool deep = false;
   double seconds = 0;
   for (; hand.busy(); seconds += kStep_s) {
     hand.step(kStep_s);
     const bool now_deep = hand.position_m().z() < 0.008 - 0.0099;
-    turns += now_deep && !deep;
+    presses += now_deep && !deep;
     deep = now_deep;
   }
-  CHECK(turns == 4);
+  CHECK(presses == 4);
   CHECK(seconds == Approx(4 * 0.5 + 1).margin(0.01));
 }
 
-TEST_CASE("A hand that moves takes no second order") {
+TEST_CASE("A moving hand rejects a second request") {
   Hand hand({0, 0, 0.04}, 0.032);
   REQUIRE(hand.tap({0.01}));
   CHECK_FALSE(hand.tap({0.01}));

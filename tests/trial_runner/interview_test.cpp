@@ -6,7 +6,7 @@
 #include <tactus/question_t.hpp>
 
 using namespace tactus;
-using namespace tactus::conductor;
+using namespace tactus::trial_runner;
 
 namespace {
 
@@ -22,7 +22,7 @@ sync::HostTime ms(std::int64_t t) { return sync::host_time(t * 1'000'000); }
 
 }  // namespace
 
-TEST_CASE("A question is said at once, again every 200 ms, and no more once it is answered") {
+TEST_CASE("A question is published at once and every 200 ms until it is answered") {
   Interview interview(1);
   interview.ask(choice(2));
   const auto first = interview.step(ms(1000));
@@ -34,9 +34,9 @@ TEST_CASE("A question is said at once, again every 200 ms, and no more once it i
   const auto a = interview.answer(1, 0, "button", ms(1300));
   REQUIRE(a);
   CHECK(a->after_ns == 300'000'000);
-  REQUIRE(interview.take(*a));
-  CHECK_FALSE(interview.take(*a));
-  CHECK_FALSE(interview.waits());
+  REQUIRE(interview.accept(*a));
+  CHECK_FALSE(interview.accept(*a));
+  CHECK_FALSE(interview.is_open());
   const auto nothing = interview.step(ms(1301));
   REQUIRE(nothing);
   CHECK(nothing->kind == question_t::NOTHING);
@@ -44,42 +44,42 @@ TEST_CASE("A question is said at once, again every 200 ms, and no more once it i
   CHECK(nothing->id != first->id);
 }
 
-TEST_CASE("An answer to another question, or one that it has not, is none") {
+TEST_CASE("An answer to another question, or with an unknown choice, is rejected") {
   Interview interview(1);
   interview.ask(choice(2));
   interview.step(ms(0));
   answer_t a = *interview.answer(0, 0, "key", ms(10));
   ++a.id;
-  CHECK_FALSE(interview.take(a));
+  CHECK_FALSE(interview.accept(a));
   --a.id, a.choice = 2;
-  CHECK_FALSE(interview.take(a));
+  CHECK_FALSE(interview.accept(a));
   a.choice = -1;
-  CHECK_FALSE(interview.take(a));
+  CHECK_FALSE(interview.accept(a));
   CHECK_FALSE(interview.answer(2, 0, "button", ms(20)));
-  CHECK(interview.waits());
+  CHECK(interview.is_open());
 }
 
-TEST_CASE("Nothing can be answered before it was asked") {
+TEST_CASE("A question cannot be answered before it is published") {
   Interview interview(1);
   interview.ask(choice(2));
   CHECK_FALSE(interview.answer(0, 0, "button", ms(0)));
 }
 
-TEST_CASE("A number outside of its range is no answer") {
+TEST_CASE("A number out of range is rejected") {
   Interview interview(1);
   question_t q{};
   q.kind = question_t::NUMBER, q.text = "How warm?", q.lowest = 20, q.highest = 40, q.step = 0.5;
   interview.ask(q);
   interview.step(ms(0));
-  CHECK_FALSE(interview.take(*interview.answer(0, 19, "page", ms(1))));
-  CHECK_FALSE(interview.take(*interview.answer(0, NAN, "page", ms(1))));
-  CHECK(interview.take(*interview.answer(0, 40, "page", ms(1))));
+  CHECK_FALSE(interview.accept(*interview.answer(0, 19, "page", ms(1))));
+  CHECK_FALSE(interview.accept(*interview.answer(0, NAN, "page", ms(1))));
+  CHECK(interview.accept(*interview.answer(0, 40, "page", ms(1))));
 }
 
-TEST_CASE("A question that nobody could answer is not asked, and the one before stays") {
+TEST_CASE("A question without a possible answer is rejected, and the previous question stays") {
   Interview interview(1);
   interview.ask(choice(3));
   CHECK_THROWS_AS(interview.ask(choice(1)), std::invalid_argument);
   CHECK_THROWS_AS(interview.ask(choice(10)), std::invalid_argument);
-  CHECK(interview.asked().count == 3);
+  CHECK(interview.question().count == 3);
 }

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-using tactus::conductor::Lines;
+using tactus::trial_runner::Lines;
 
 namespace {
 
@@ -22,7 +22,7 @@ struct Pipes {
 
 }  // namespace
 
-TEST_CASE("Orders come line by line, and none is waited for") {
+TEST_CASE("Requests are read line by line without blocking") {
   Pipes p;
   Lines lines(p.in[0], p.out[1]);
   CHECK_FALSE(lines.next());
@@ -37,18 +37,18 @@ TEST_CASE("Orders come line by line, and none is waited for") {
   CHECK(lines.ended());
 }
 
-TEST_CASE("Neither an order without an end nor a listener that never reads holds up the work") {
+TEST_CASE("An endless request or an unread output ends with an error and does not block") {
   Pipes p;
   Lines lines(p.in[0], p.out[1]);
-  const auto order_without_end = [&] {
+  const auto request_without_end = [&] {
     for (int i = 0; i < 100; ++i) {
       p.write_in(std::string(4096, 'x'));
       lines.next();
     }
   };
-  CHECK_THROWS_WITH(order_without_end(), Catch::Contains("longer than 128 KiB"));
+  CHECK_THROWS_WITH(request_without_end(), Catch::Contains("longer than 128 KiB"));
   const auto too_much = [&] {
-    for (int i = 0; i < 20; ++i) lines.say(std::string(1 << 20, 'y'));
+    for (int i = 0; i < 20; ++i) lines.write_line(std::string(1 << 20, 'y'));
   };
-  CHECK_THROWS_WITH(too_much(), Catch::Contains("nobody reads"));
+  CHECK_THROWS_WITH(too_much(), Catch::Contains("unread"));
 }

@@ -11,7 +11,7 @@
 #include <tactus/tool_state_t.hpp>
 
 using namespace tactus;
-using namespace tactus::conductor;
+using namespace tactus::trial_runner;
 
 namespace {
 
@@ -39,7 +39,7 @@ picture_chunk_t piece(std::int64_t picture, int chunk, int chunks, const std::st
 
 }  // namespace
 
-TEST_CASE("What is repeated on the bus is said once") {
+TEST_CASE("Messages that the bus repeats are written once") {
   Observations o(kOwn);
   contact_events_t events{};
   events.count = 1;
@@ -50,17 +50,17 @@ TEST_CASE("What is repeated on the bus is said once") {
   CHECK(o.push(presented(42, 100), sync::host_time(220)).empty());
 }
 
-TEST_CASE("A presentation is said with its instant and its uncertainty, and without when there was none") {
+TEST_CASE("A presentation is written with its time and uncertainty, and a dropped one without a time") {
   Observations o(kOwn);
-  const auto said = o.push(presented(1, 100), sync::host_time(200));
-  CHECK(said.at(0).at("at_ns") == 100);
-  CHECK(said.at(0).at("uncertainty_ns") == 4);
-  CHECK(said.at(0).at("presented") == "1");
+  const auto lines = o.push(presented(1, 100), sync::host_time(200));
+  CHECK(lines.at(0).at("at_ns") == 100);
+  CHECK(lines.at(0).at("uncertainty_ns") == 4);
+  CHECK(lines.at(0).at("presented") == "1");
   const auto dropped = o.push(presented(2, -1), sync::host_time(200));
   CHECK(dropped.at(0).at("at_ns").is_null());
 }
 
-TEST_CASE("An event of 64 bits survives JSON, where numbers are doubles") {
+TEST_CASE("A 64-bit event id is exact in JSON, where numbers are doubles") {
   Observations o(kOwn);
   contact_events_t events{};
   events.count = 1;
@@ -68,7 +68,7 @@ TEST_CASE("An event of 64 bits survives JSON, where numbers are doubles") {
   CHECK(o.push(events).at(0).at("event") == "5589537784101601287");
 }
 
-TEST_CASE("A picture is said when all of its pieces have come, in whatever order, and not otherwise") {
+TEST_CASE("A picture is written when all of its chunks have arrived, in any order") {
   Observations o(kOwn);
   const std::string full(1024, 'a');
   const auto arrival = sync::host_time(100);
@@ -87,7 +87,7 @@ TEST_CASE("A picture is said when all of its pieces have come, in whatever order
   CHECK(o.push(unknown, arrival)->at("at_ns").is_null());
 }
 
-TEST_CASE("The tick in which a hit begins to vibrate in the hand is said, of each tool by itself") {
+TEST_CASE("The tick in which the vibration of a hit begins is written, separately for each tool") {
   Observations o(kOwn);
   std::int64_t at_ns = 1'000'000;
   const auto tick = [&](float transient_N, int source) {
@@ -108,7 +108,7 @@ TEST_CASE("The tick in which a hit begins to vibrate in the hand is said, of eac
   CHECK(tick(0.1F, 3));
 }
 
-TEST_CASE("How a game stands is said when it changes") {
+TEST_CASE("The state of a game is written when it changes") {
   Observations o(kOwn);
   game_state_t m{};
   m.won_ns = -1, m.count = 1;

@@ -26,7 +26,7 @@ contact_event_t hit() {
 
 }  // namespace
 
-TEST_CASE("A hit is a gust in its tick, is reported so, and dies away") {
+TEST_CASE("A hit starts a gust in its tick, is reported as presented, and decays") {
   wind::Fan fan;
   const presentation_t report = fan.blow(kSettings, hit(), host(43), host(60));
   CHECK(report.event_id == 7);
@@ -39,7 +39,7 @@ TEST_CASE("A hit is a gust in its tick, is reported so, and dies away") {
   CHECK(fan.share == fan.gust);
 }
 
-TEST_CASE("A gust that comes late is reported as late, and one that comes too late is dropped") {
+TEST_CASE("A late gust is reported as late, and a gust beyond the limit is dropped") {
   wind::Fan fan;
   CHECK(fan.blow(kSettings, hit(), host(730), host(900)).outcome == presentation_t::LATE);
   fan.gust = 0;
@@ -49,13 +49,13 @@ TEST_CASE("A gust that comes late is reported as late, and one that comes too la
   CHECK(fan.gust == 0);
 }
 
-TEST_CASE("Gusts add up to the full speed at the most") {
+TEST_CASE("Gusts add up to at most the full speed") {
   wind::Fan fan;
   for (int i = 0; i < 5; ++i) fan.blow(kSettings, hit(), host(0), host(0));
   CHECK(fan.gust == 1);
 }
 
-TEST_CASE("A fan that is made slow follows with its time constant") {
+TEST_CASE("A slowed fan follows with its time constant") {
   wind::Fan fan;
   fan.gust = 1;
   fan.step(kSettings, 0.02);

@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
   int bodies = 100, modes = 100, frames = 64;
   double seconds = 10;
   std::string json;
-  CLI::App app{"What a block costs in the card's callback when many bodies ring."};
+  CLI::App app{"Cost of a block in the audio callback while many bodies ring."};
   app.add_option("--bodies", bodies, "that ring")->check(CLI::Range(1, kQualities[0].voices));
   app.add_option("--modes", modes, "of each")->check(CLI::Range(1, kMaxModes));
   app.add_option("--frames", frames, "of a block")->check(CLI::Range(1, 4096));

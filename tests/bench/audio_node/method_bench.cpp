@@ -137,8 +137,8 @@ class Rehearsal {
     return s;
   }
 
-  template <class Tell>
-  Cost run(int seconds, int contacts, Tell tell) {
+  template <class Excite>
+  Cost run(int seconds, int contacts, Excite excite) {
     std::vector<float> block(2 * kFrames);
     const auto blocks = static_cast<std::int64_t>(seconds * settings_.sample_rate_Hz / kFrames);
     const std::int64_t before[] = {queues_->costs[0].ns, queues_->costs[1].ns};
@@ -146,7 +146,7 @@ class Rehearsal {
     for (std::int64_t i = 0; i < blocks; ++i) {
       const double now_s = static_cast<double>(i) * kFrames / settings_.sample_rate_Hz;
       const sync::HostTime first = sync::host_time(1'000'000'000 + ++rendered_ * kFrames * 1'000'000'000 / 48000);
-      tell(now_s, first);
+      excite(now_s, first);
       const std::int64_t begun = clock_ns();
       renderer_->render(block.data(), kFrames, {first, {}, {}});
       took += clock_ns() - begun;
@@ -174,7 +174,7 @@ class Rehearsal {
 int main(int argc, char** argv) {
   std::string json, folder = "default";
   int seconds = 10;
-  CLI::App app{"What a contact costs the audio callback by each method."};
+  CLI::App app{"Cost of a contact in the audio callback, by method."};
   app.add_option("--seconds", seconds, "of sound of each row")->check(CLI::Range(1, 600));
   app.add_option("--sounds", folder, "folder of recordings; default: the set beside the program");
   app.add_option("--json", json, "also write the figures there");

@@ -74,12 +74,12 @@ int main(int argc, char** argv) try {
                                         .modality = "",
                                         .rate_Hz = 1000,
                                         .fifo_priority = 50,
-                                        .about = "Stands in for sim_node: strikes a board at random times."};
+                                        .about = "Replaces sim_node: strikes a board at random times."};
   CLI::App app;
   sync::NodeOptions options;
   std::string scene_file;
   options.add_to(app, descriptor);
-  app.add_option("SCENE", scene_file, "not read: the board is always the same");
+  app.add_option("SCENE", scene_file, "ignored: the board is always the same");
   sync::parse_or_exit(app, descriptor.name, argc, argv);
 
   sync::Node node(descriptor, options);
@@ -95,19 +95,19 @@ int main(int argc, char** argv) try {
   const sync::HostTime begin = sync::host_now();
   sync::Nanoseconds next = sync::from_seconds(1);
   std::int64_t hits = 0, ticks = 0;
-  std::vector<contact_event_t> told;
+  std::vector<contact_event_t> repeated;
   while (node.running()) {
     const sync::HostTime now = node.wait();
     scene_sender.poll(now);
     const sync::Nanoseconds time = now - begin;
     for (; next <= time; next += sync::from_seconds(gap_s(random)))
-      told.push_back(hit(sync::prefixed_id(node.bus().identity().incarnation, hits++), next.count(), azimuth_rad(random)));
-    std::erase_if(told, [&](const contact_event_t& e) { return time.count() - e.time_ns > kRepeat.count(); });
+      repeated.push_back(hit(sync::prefixed_id(node.bus().identity().incarnation, hits++), next.count(), azimuth_rad(random)));
+    std::erase_if(repeated, [&](const contact_event_t& e) { return time.count() - e.time_ns > kRepeat.count(); });
     const sim_clock_t clock{time.count(), sync::to_ns(now), 1};
-    if (!told.empty()) {
+    if (!repeated.empty()) {
       contact_events_t m{};
       m.header.sim_time_ns = time.count(), m.clock = clock, m.pages = 1;
-      m.events = told, m.count = static_cast<std::int32_t>(told.size());
+      m.events = repeated, m.count = static_cast<std::int32_t>(repeated.size());
       node.bus().publish(channels::kContactEvents, m);
     }
     if (ticks++ % kSnapshotEvery == 0) {

@@ -43,7 +43,7 @@ __attribute__((noinline)) void plain(const Ringing& m, const Push* pushes, int c
 }
 
 // Median of rounds interleaved with the other methods; modes at 48 kHz.
-struct Way {
+struct Variant {
   std::string name;
   std::function<void(int pushes)> block;
   std::vector<double> modes = {};
@@ -58,7 +58,7 @@ struct Way {
 int main(int argc, char** argv) {
   std::string json;
   int modes = 1600;
-  CLI::App app{"How many modes ring at 48 kHz on one core."};
+  CLI::App app{"Number of modes that one core renders at 48 kHz."};
   app.add_option("--modes", modes, "of the bank")->check(CLI::Range(16, 1'000'000));
   app.add_option("--json", json, "also write the figures there");
   CLI11_PARSE(app, argc, argv);
@@ -88,32 +88,32 @@ int main(int argc, char** argv) {
     };
   };
   constexpr int kBlocks = 20;
-  const auto timed = [&](Way& way, int pushes) {
+  const auto measure = [&](Variant& variant, int pushes) {
     const auto begin = std::chrono::steady_clock::now();
-    for (int k = 0; k < kBlocks; ++k) way.block(pushes);
+    for (int k = 0; k < kBlocks; ++k) variant.block(pushes);
     const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    way.modes.push_back(modes * kBlocks * kMaxBlock / kRate_Hz / took_s);
+    variant.modes.push_back(modes * kBlocks * kMaxBlock / kRate_Hz / took_s);
   };
 
   std::printf("%-8s %-8s %14s %10s\n", "modes", "state", "modes / core", "ratio");
   nlohmann::json rows = nlohmann::json::array();
   for (const std::string state : {"pushed", "free", "silent"}) {
-    std::vector<Way> ways{{"plain", bank_of(plain)}};
+    std::vector<Variant> variants{{"plain", bank_of(plain)}};
 #if defined(TACTUS_STK)
     StkBars bars(modes, kRate_Hz);
-    if (state != "silent") ways.push_back({"stk", [&](int pushes) { bars.block(kMaxBlock, pushes > 0); }});
+    if (state != "silent") variants.push_back({"stk", [&](int pushes) { bars.block(kMaxBlock, pushes > 0); }});
 #endif
-    for (const Instructions i : available_instructions()) ways.push_back({name(i), bank_of(ring(i))});
+    for (const Instructions i : available_instructions()) variants.push_back({name(i), bank_of(ring(i))});
     if (state == "silent")  // 20 s at 10 / s: e^-200
-      for (int k = 0; k < 20 * kRate_Hz / kMaxBlock; ++k) ways.back().block(0);
+      for (int k = 0; k < 20 * kRate_Hz / kMaxBlock; ++k) variants.back().block(0);
     for (int round = 0; round < 41; ++round)
-      for (Way& way : ways) timed(way, state == "pushed" ? 1 : 0);
-    const double plainly = ways[0].median();
-    for (Way& way : ways) {
-      std::printf("%-8s %-8s %14.0f %10.1f\n", way.name.c_str(), state.c_str(), way.median(),
-                  way.median() / plainly);
+      for (Variant& variant : variants) measure(variant, state == "pushed" ? 1 : 0);
+    const double plainly = variants[0].median();
+    for (Variant& variant : variants) {
+      std::printf("%-8s %-8s %14.0f %10.1f\n", variant.name.c_str(), state.c_str(), variant.median(),
+                  variant.median() / plainly);
       rows.push_back(
-          {{"way", way.name}, {"state", state}, {"modes", way.median()}, {"ratio", way.median() / plainly}});
+          {{"way", variant.name}, {"state", state}, {"modes", variant.median()}, {"ratio", variant.median() / plainly}});
     }
   }
   if (!json.empty()) std::ofstream(json) << rows.dump(1) << "\n";

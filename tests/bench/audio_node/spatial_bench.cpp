@@ -59,7 +59,7 @@ double processor_s() {
 // Renders kRoundFrames.
 using Round = std::function<void()>;
 
-Round ours(const Space& space, Instructions instructions, int sources, bool circling) {
+Round our_renderer(const Space& space, Instructions instructions, int sources, bool circling) {
   struct State {
     Spatialiser spatialiser;
     std::vector<SourcePosition> places;
@@ -118,7 +118,7 @@ class OpenAl {
       alSourcei(sources_[i], AL_BUFFER, static_cast<ALint>(buffer_));
       alSourcei(sources_[i], AL_LOOPING, AL_TRUE);
       alSourcei(sources_[i], AL_SAMPLE_OFFSET, static_cast<ALint>(97 * i));
-      put(i);
+      place_source(i);
       alSourcePlay(sources_[i]);
     }
     if (alGetError() != AL_NO_ERROR) throw std::runtime_error("OpenAL Soft does not play that many sources");
@@ -137,14 +137,14 @@ class OpenAl {
     float out[2 * kFrames];
     for (int done = 0; done < kRoundFrames; done += kFrames, frame_ += kFrames) {
       if (circling_)
-        for (std::size_t i = 0; i < sources_.size(); ++i) put(i);
+        for (std::size_t i = 0; i < sources_.size(); ++i) place_source(i);
       render_(device_, out, kFrames);
     }
   }
 
  private:
   // OpenAL looks along -z, y up.
-  void put(std::size_t i) {
+  void place_source(std::size_t i) {
     const Eigen::Vector3f d =
         3 * direction(static_cast<int>(i), static_cast<int>(sources_.size()), frame_, circling_);
     alSource3f(sources_[i], AL_POSITION, -d.y(), d.z(), -d.x());
@@ -158,7 +158,7 @@ class OpenAl {
   std::int64_t frame_ = 0;
 };
 
-struct Way {
+struct Variant {
   std::string name;
   Round round;
   std::vector<double> shares = {};
@@ -172,7 +172,7 @@ struct Way {
 
 int main(int argc, char** argv) try {
   std::string json, file = "/usr/share/libmysofa/MIT_KEMAR_normal_pinna.sofa";
-  CLI::App app{"What it takes to hear many sources through measured ears."};
+  CLI::App app{"Cost of many sources rendered with a measured HRTF."};
   app.add_option("--hrtf", file, "SOFA file");
   app.add_option("--json", json, "also write the figures there");
   CLI11_PARSE(app, argc, argv);
@@ -185,25 +185,25 @@ int main(int argc, char** argv) try {
   for (const bool circling : {false, true})
     for (const int sources : {32, 128}) {
       OpenAl open_al(sources, circling);
-      std::vector<Way> ways{{"OpenAL Soft", [&] { open_al.round(); }}};
+      std::vector<Variant> variants{{"OpenAL Soft", [&] { open_al.round(); }}};
       for (const Instructions i : available_instructions())
-        ways.push_back({name(i), ours(space, i, sources, circling)});
+        variants.push_back({name(i), our_renderer(space, i, sources, circling)});
       for (int round = 0; round < kRounds; ++round)
-        for (Way& way : ways) {
+        for (Variant& variant : variants) {
           const double begin_s = processor_s();
-          way.round();
-          way.shares.push_back(100 * (processor_s() - begin_s) * kRate_Hz / kRoundFrames);
+          variant.round();
+          variant.shares.push_back(100 * (processor_s() - begin_s) * kRate_Hz / kRoundFrames);
         }
-      const double theirs = ways[0].median();
-      for (Way& way : ways) {
+      const double theirs = variants[0].median();
+      for (Variant& variant : variants) {
         const char* how = circling ? "circling" : "still";
-        std::printf("%-8d %-9s %-12s %12.2f %12.2f\n", sources, how, way.name.c_str(), way.median(),
-                    way.median() / theirs);
+        std::printf("%-8d %-9s %-12s %12.2f %12.2f\n", sources, how, variant.name.c_str(), variant.median(),
+                    variant.median() / theirs);
         rows.push_back({{"sources", sources},
                         {"how", how},
-                        {"way", way.name},
-                        {"percent", way.median()},
-                        {"of_openal", way.median() / theirs}});
+                        {"way", variant.name},
+                        {"percent", variant.median()},
+                        {"of_openal", variant.median() / theirs}});
       }
     }
   if (!json.empty()) std::ofstream(json) << rows.dump(1) << "\n";

@@ -92,8 +92,8 @@ void strike(const json& of, const std::string& folder) {
 
 int main(int argc, char** argv) try {
   std::string cases, folder = ".";
-  CLI::App app{"Strikes bodies one after the other, each alone, through the virtual card; one JSON line for each says its WAV."};
-  app.add_option("cases", cases, "JSON: an array of what is struck where")->required();
+  CLI::App app{"Strikes bodies one after the other, each alone, through the virtual card; one JSON line for each reports its WAV."};
+  app.add_option("cases", cases, "JSON: an array of strikes, each with a body and a point")->required();
   app.add_option("--out", folder, "folder of the WAV files");
   CLI11_PARSE(app, argc, argv);
   std::ifstream file(cases);

@@ -67,7 +67,7 @@ bool spectrum_table(nlohmann::json& json) {
   return good;
 }
 
-struct Compared {
+struct Comparison {
   double along = 0, up = 0;  // correlation with the force of the triangles
 };
 
@@ -111,11 +111,11 @@ bool method_table(nlohmann::json& json) {
                         .friction = 0.2,
                         .depth_m = kShallow_m,
                         .lateral_m = 0.011};
-      Compared by_height, by_normal;
+      Comparison by_height, by_normal;
       for (const char* method : {"mesh", "none", "height", "normal", "both"}) {
         stroke.method = method;
         const BumpTrace t = run(stroke);
-        const Compared c = compare(t, truth);
+        const Comparison c = compare(t, truth);
         if (stroke.method == "height") by_height = c;
         if (stroke.method == "normal") by_normal = c;
         const double p99 = quantile(t.change_N, 0.99), most = quantile(t.change_N, 1);
@@ -225,7 +225,7 @@ void draw(const std::string& path) {
     picture.curve("", colour, t.position_m, t.up_N, 1.6, 2.8, "N up");
   }
   picture.axis("along the stroke, 0 to 50 mm");
-  picture.title("Spectra, by normals: force along the stroke (red) and what the slope asks for (grey), dB");
+  picture.title("Spectra, by normals: force along the stroke (red) and the force by the slope (grey), dB");
   for (const double speed_m_s : {0.05, 0.5}) {
     const BumpStroke long_one{.speed_m_s = speed_m_s, .rate_Hz = 1000};
     const BumpTrace t = run(long_one);
@@ -253,7 +253,7 @@ void draw(const std::string& path) {
 int main(int argc, char** argv) {
   std::string json_file, picture;
   bool check = false;
-  CLI::App app{"Does the hand feel the map that the eye sees?"};
+  CLI::App app{"Agreement of the felt and the seen height map."};
   app.add_option("--json", json_file, "also write the figures there");
   app.add_option("--picture", picture, "draw the stroke and the spectra there (SVG)");
   app.add_flag("--check", check, "exit 1 unless all figures stay within their bounds");

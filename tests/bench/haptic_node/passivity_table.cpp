@@ -98,21 +98,21 @@ std::vector<unsigned> seeds_of(const Network& network, unsigned seeds) {
 }
 
 struct Row {
-  double generated_mJ = 0, told_mJ = 0, without_mJ = 0, of_ideal = 1e9, most_of_ideal = 0, of_design = 1e9,
+  double generated_mJ = 0, observed_mJ = 0, without_mJ = 0, of_ideal = 1e9, max_of_ideal = 0, of_design = 1e9,
          K_N_m = 1e9, factor = 1, pushed = 1e9;
   bool cycle = false;
   bool good = true;
 
-  void take(const EpisodeDef& def, const Pair& pair) {
+  void add(const EpisodeDef& def, const Pair& pair) {
     const EpisodeResult& r = pair.with;
     generated_mJ = std::max(generated_mJ, r.generated_mJ);
-    told_mJ = std::max(told_mJ, r.observed_mJ);
+    observed_mJ = std::max(observed_mJ, r.observed_mJ);
     without_mJ = std::max(without_mJ, pair.without_mJ);
     factor = std::min(factor, r.least_coupling);
     if (def.act == Act::kPress) {
       cycle = cycle || r.cycles();
       of_ideal = std::min(of_ideal, r.force_N / r.ideal_N);
-      most_of_ideal = std::max(most_of_ideal, r.force_N / r.ideal_N);
+      max_of_ideal = std::max(max_of_ideal, r.force_N / r.ideal_N);
       of_design = std::min(of_design, r.force_N / design_N(def, r.ideal_N));
       K_N_m = std::min(K_N_m, r.stiffness_N_m);
     }
@@ -122,7 +122,7 @@ struct Row {
 
 void print(const char* hand, const EpisodeDef& def, const EpisodeResult& r) {
   std::printf(
-      "  %-10s %-6s seed %2u generated %8.3f told %8.3f factor %5.3f sway %7.4f force %7.3f of ideal %6.3f peak "
+      "  %-10s %-6s seed %2u generated %8.3f observed %8.3f factor %5.3f sway %7.4f force %7.3f of ideal %6.3f peak "
       "%6.2f step %5.3f pushed %6.3f%s\n",
       hand, kActs[static_cast<int>(def.act)], def.seed, r.generated_mJ, r.observed_mJ, r.least_coupling, r.sway_N,
       r.force_N, r.force_N / r.ideal_N, r.peak_N, r.largest_step_N, r.pushed_m,
@@ -150,7 +150,7 @@ nlohmann::json as_json(const SurfaceKind& surface, const char* hand, const Episo
 
 bool good(const SurfaceKind& surface, const Network& network, const Row& r) {
   if (r.generated_mJ > kMaxGenerated_mJ || r.cycle) return false;
-  if (surface.mass_kg <= 0) return r.of_ideal > 0.75 && r.most_of_ideal < 1.25;
+  if (surface.mass_kg <= 0) return r.of_ideal > 0.75 && r.max_of_ideal < 1.25;
   return r.of_design >= (network.bursts || network.freezes ? 0.2 : 0.5) && r.pushed >= 0;
 }
 
@@ -160,7 +160,7 @@ int main(int argc, char** argv) {
   std::string json;
   bool check = false, all = false;
   unsigned seed = 0, seeds = 8;
-  CLI::App app{"Does touch give a hand and a body more energy than they gave?"};
+  CLI::App app{"Energy that touch adds to a hand and a body (passivity)."};
   app.add_option("--json", json, "also write the figures there");
   app.add_flag("--check", check, "exit 1 unless all rows stay within the limits");
   app.add_option("--seeds", seeds, "losses are drawn with the seeds 1 to this")->check(CLI::Range(1, 10000));
@@ -182,7 +182,7 @@ int main(int argc, char** argv) {
             def.act = act, def.mass_kg = surface.mass_kg, def.stiffness_N_m = surface.stiffness_N_m;
             def.network = network, def.hand = hand.impedance, def.seed = drawn;
             const Pair pair = with_and_without(def);
-            row.take(def, pair);
+            row.add(def, pair);
             if (all) print(hand.name, def, pair.with);
             episodes.push_back(as_json(surface, hand.name, def, pair));
           }
@@ -190,14 +190,14 @@ int main(int argc, char** argv) {
       row.good = good(surface, network, row);
       everything_good = everything_good && row.good;
       std::printf("%-14s %-20s %9.3f %9.3f %9.2f %6s %9.3f %10.3f %8.1f %7.3f%s\n", surface.name().c_str(),
-                  network.name, row.generated_mJ, row.told_mJ, row.without_mJ, row.cycle ? "yes" : "no",
+                  network.name, row.generated_mJ, row.observed_mJ, row.without_mJ, row.cycle ? "yes" : "no",
                   row.of_ideal, row.of_design, row.K_N_m, row.factor, row.good ? "" : "  <- beyond its limits");
       rows.push_back({{"surface", surface.name()},
                       {"touch_model", network.name},
                       {"delay_ms", network.delay_ms},
                       {"plain_delay", network.rate_Hz == 1000 && !network.bursts && !network.freezes},
                       {"generated_mJ", row.generated_mJ},
-                      {"told_mJ", row.told_mJ},
+                      {"told_mJ", row.observed_mJ},
                       {"without_mJ", row.without_mJ},
                       {"cycle", row.cycle},
                       {"of_ideal", row.of_ideal},

@@ -63,16 +63,16 @@ Figures measure(int planes, double rate_Hz, Fresh fresh, int ticks, bool rigid) 
     const double ms = 1000 * i / rate_Hz, angle = 2 * M_PI * ms * 1e-3;  // once around a second
     // 3 mm beyond the room that the cup leaves for the tool, so that the spring is stretched all the time.
     const Vector3d device = 0.018 * Vector3d(0.6 * std::cos(angle), 0.6 * std::sin(angle), -0.8);
-    const bool news =
+    const bool new_model =
         i == 0 || fresh == Fresh::kEachTick || (fresh == Fresh::kEachMs && static_cast<int>(ms) != last_ms);
     last_ms = static_cast<int>(ms);
-    if (news) m.header.sim_time_ns = static_cast<std::int64_t>(ms * 1e6);
+    if (new_model) m.header.sim_time_ns = static_cast<std::int64_t>(ms * 1e6);
     // Only the arrival time is renewed, because the model would count as lost otherwise.
     bench.arrival = host_ms(ms);
     const auto begin = std::chrono::steady_clock::now();
     TickInput in;
     if (rigid) in.device.orientation = Eigen::AngleAxisd(0.1 * std::sin(angle), Vector3d::UnitX());
-    const TickOutput& tick = bench.tick(ms, device, news ? &m : nullptr, {}, in);
+    const TickOutput& tick = bench.tick(ms, device, new_model ? &m : nullptr, {}, in);
     const double took =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
     if (i < warm_up) continue;
@@ -94,7 +94,7 @@ Figures measure(int planes, double rate_Hz, Fresh fresh, int ticks, bool rigid) 
 int main(int argc, char** argv) {
   std::string json;
   int ticks = 20000;
-  CLI::App app{"What one tick of touch costs."};
+  CLI::App app{"Cost of one tick of touch."};
   app.add_option("--ticks", ticks, "of each row")->check(CLI::Range(100, 10000000));
   app.add_option("--json", json, "also write the figures there");
   CLI11_PARSE(app, argc, argv);

@@ -34,16 +34,16 @@ std::vector<Vector3d> directions(int count) {
 }
 
 // The force or torque in the least favourable direction; 0 where the strings do not hold the grip.
-double sure(const StringFrame& f, const GripPose& pose, bool torque, const std::vector<Vector3d>& ways) {
-  constexpr double kFar = 1000;  // N or N m: more than any motor here provides
-  double least = kFar;
-  for (const Vector3d& way : ways) {
+double guaranteed_N(const StringFrame& f, const GripPose& pose, bool torque, const std::vector<Vector3d>& samples) {
+  constexpr double kHuge = 1000;  // N or N m: more than any motor here provides
+  double min = kHuge;
+  for (const Vector3d& direction : samples) {
     Wrench w;
-    (torque ? w.torque_N_m : w.force_N) = kFar * way;
+    (torque ? w.torque_N_m : w.force_N) = kHuge * direction;
     const Tensions t = solve_tensions(f, pose, w);
-    least = std::min(least, t.held ? t.share * kFar : 0);
+    min = std::min(min, t.held ? t.share * kHuge : 0);
   }
-  return least;
+  return min;
 }
 
 struct Row {
@@ -52,7 +52,7 @@ struct Row {
 
 // Over poses at this distance from the middle, tilted by `tilt_rad` about axes of all directions.
 Row row(const StringFrame& f, double radius_m, double tilt_rad) {
-  const auto ways = directions(60), places = directions(radius_m > 0 ? 40 : 1),
+  const auto samples = directions(60), places = directions(radius_m > 0 ? 40 : 1),
              axes = directions(tilt_rad > 0 ? 12 : 1);
   Row r{radius_m, tilt_rad, 0, 1e9, 1e9, 0, 0};
   int poses = 0;
@@ -65,8 +65,8 @@ Row row(const StringFrame& f, double radius_m, double tilt_rad) {
         continue;
       }
       r.kept += 1;
-      r.force_N = std::min(r.force_N, sure(f, pose, false, ways));
-      if (f.has_torque()) r.torque_N_m = std::min(r.torque_N_m, sure(f, pose, true, ways));
+      r.force_N = std::min(r.force_N, guaranteed_N(f, pose, false, samples));
+      if (f.has_torque()) r.torque_N_m = std::min(r.torque_N_m, guaranteed_N(f, pose, true, samples));
       // Worst rounding of every string by half a count, to first order.
       const Eigen::MatrixXd back =
           Eigen::MatrixXd(structure_matrix(f, pose).transpose()).completeOrthogonalDecomposition().pseudoInverse();
@@ -92,8 +92,8 @@ json speeds(const StringFrame& f) {
   const auto us = [](Clock::duration d) { return std::chrono::duration<double, std::micro>(d).count(); };
   std::vector<double> pose_us, given_us, cut_us;
   GripPose pose;
-  for (const Vector3d& way : directions(2000)) {
-    const GripPose next{0.5 * f.workspace_radius_m * way, {}};
+  for (const Vector3d& direction : directions(2000)) {
+    const GripPose next{0.5 * f.workspace_radius_m * direction, {}};
     const PerString lengths = string_lengths(f, next);
     pose.position_m = next.position_m + Vector3d(0.001, 0, 0);
     auto start = Clock::now();
@@ -101,7 +101,7 @@ json speeds(const StringFrame& f) {
     pose_us.push_back(us(Clock::now() - start));
     for (const double size : {0.5, 1000.0}) {
       start = Clock::now();
-      const Tensions t = solve_tensions(f, pose, {size * way, Vector3d::Zero()});
+      const Tensions t = solve_tensions(f, pose, {size * direction, Vector3d::Zero()});
       (size < 1 ? given_us : cut_us).push_back(us(Clock::now() - start));
       if (t.share > 2) return {};  // never happens: prevents the optimiser from removing the call
     }
@@ -144,7 +144,7 @@ json table_of(const StringFrame& f) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("What force a string device can render, and where.");
+  CLI::App app("Forces that a string device can render, by position.");
   std::string out;
   std::vector<std::string> names = known_frames();
   app.add_option("--json", out, "file to write the figures to");

@@ -19,7 +19,7 @@ scene_t scene_of(const sim::WorldDef& world, sync::Nanoseconds step) {
   for (const sync::Asset& asset : sim::make_assets(world, step.count()))
     if (asset.kind == asset_ref_t::SCENE)
       if (auto scene = sync::decode_asset<scene_t>(asset.bytes)) return *scene;
-  throw std::runtime_error("simulation_bench: the scene cannot be told");
+  throw std::runtime_error("simulation_bench: the world has no scene asset");
 }
 
 OfflineWorld::OfflineWorld(const sim::WorldDef& world, const sim::Settings& settings, bool hands,

@@ -88,9 +88,9 @@ Eigen::Vector3d place(int i, int high) {
 }
 
 // The same boxes with the whole step, in our world and in one of ODE.
-class Whole {
+class OdeWorld {
  public:
-  Whole(int boxes, int high) {
+  OdeWorld(int boxes, int high) {
     WorldDef w = empty_world();
     add_floor(w);
     for (int i = 0; i < boxes; ++i)
@@ -111,13 +111,13 @@ class Whole {
       dGeomSetBody(dCreateBox(space_, kSize, kSize, kSize), body);
     }
   }
-  ~Whole() {
+  ~OdeWorld() {
     dJointGroupDestroy(joints_);
     dSpaceDestroy(space_);
     dWorldDestroy(world_);
   }
-  Whole(const Whole&) = delete;
-  Whole& operator=(const Whole&) = delete;
+  OdeWorld(const OdeWorld&) = delete;
+  OdeWorld& operator=(const OdeWorld&) = delete;
 
   double ours_us() {
     const auto begin = Clock::now();
@@ -127,7 +127,7 @@ class Whole {
   // Duration of the whole step; quick: the part of its QuickStep.
   double ode_us(double& quick) {
     const auto begin = Clock::now();
-    dSpaceCollide(space_, this, &Whole::meet);
+    dSpaceCollide(space_, this, &OdeWorld::collide);
     const auto found = Clock::now();
     dWorldQuickStep(world_, kH);
     quick = us_since(found);
@@ -141,8 +141,8 @@ class Whole {
   }
 
  private:
-  static void meet(void* whole, dGeomID a, dGeomID b) {
-    const Whole& w = *static_cast<Whole*>(whole);
+  static void collide(void* whole, dGeomID a, dGeomID b) {
+    const OdeWorld& w = *static_cast<OdeWorld*>(whole);
     dContact c[4]{};
     const int n = dCollide(a, b, 4, &c[0].geom, sizeof(dContact));
     for (int i = 0; i < n; ++i) {
@@ -192,7 +192,7 @@ nlohmann::json solving(int boxes, int high) {
 }
 
 nlohmann::json whole(int boxes, int high) {
-  Whole s(boxes, high);
+  OdeWorld s(boxes, high);
   std::vector<double> ours, ode, quick;
   for (int i = 0; i < 300; ++i) {
     double q = 0;
@@ -218,7 +218,7 @@ nlohmann::json whole(int boxes, int high) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("What a step of many boxes costs, beside ODE");
+  CLI::App app("Cost of a step with many boxes, ours and ODE");
   std::string file;
   std::vector<int> sizes{10, 100, 500}, heights{1, 10};
   bool whole_only = false;

@@ -158,7 +158,7 @@ void ticks_table(int ticks, nlohmann::json& out) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"What a world in two groups costs, beside one that is simulated whole at 1 kHz."};
+  CLI::App app{"Cost of a world in two groups, and of one that is simulated as a whole at 1 kHz."};
   int ticks = 3000, rounds = 5;
   std::string json, only;
   app.add_option("--ticks", ticks, "of each row of the first table")

@@ -28,14 +28,14 @@ double median(std::vector<double> v) {
   return v.empty() ? 0 : v[v.size() / 2];
 }
 
-template <class Do>
-double us(Do&& what) {
+template <class Action>
+double us(Action&& what) {
   const auto before = std::chrono::steady_clock::now();
   what();
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - before).count();
 }
 
-struct Named {
+struct NamedShape {
   const char* name;
   ShapeDef def;
 };
@@ -67,7 +67,7 @@ Isometry3d at_gap(Detector& gaps, int a, int b, double gap, Random& random) {
 }
 
 void pairs(nlohmann::json& json) {
-  const Named kinds[] = {{"plane", shape(ShapeKind::kPlane, {1, 1, 1})},
+  const NamedShape kinds[] = {{"plane", shape(ShapeKind::kPlane, {1, 1, 1})},
                          {"ball", shape(ShapeKind::kSphere, {0.05, 0, 0})},
                          {"box", shape(ShapeKind::kBox, {0.1, 0.08, 0.12})},
                          {"capsule", shape(ShapeKind::kCapsule, {0.04, 0, 0.1})},
@@ -92,16 +92,16 @@ void pairs(nlohmann::json& json) {
       std::vector<double> apart, over, by_ode, by_fcl;
       for (int k = 0; k < 60; ++k) {
         const Isometry3d near = at_gap(*gaps, 0, 1, 2e-4, random), in = at_gap(*gaps, 0, 1, -5e-6, random);
-        const auto ask = [&](Detector& d, const Isometry3d& pose, double reach) {
+        const auto query = [&](Detector& d, const Isometry3d& pose, double reach) {
           std::vector<double> t;
           for (int r = 0; r < 5; ++r)
             t.push_back(us([&] { d.query(0, Isometry3d::Identity(), 1, pose, reach, found); }));
           return median(t);
         };
-        apart.push_back(ask(*gaps, near, 1e-3));
-        over.push_back(ask(*gaps, in, 1e-3));
-        by_ode.push_back(ask(*ode, in, 0));
-        if (fcl) by_fcl.push_back(ask(*fcl, near, 1e-3));
+        apart.push_back(query(*gaps, near, 1e-3));
+        over.push_back(query(*gaps, in, 1e-3));
+        by_ode.push_back(query(*ode, in, 0));
+        if (fcl) by_fcl.push_back(query(*fcl, near, 1e-3));
       }
       const std::string name = std::string(kinds[i].name) + " - " + kinds[j].name;
       std::printf("%-22s %10.2f %10.2f %10.2f %10.2f\n", name.c_str(), median(apart), median(over), median(by_ode),
@@ -164,9 +164,9 @@ void boxes(int count, int high, nlohmann::json& json) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("What finding contacts with their gaps costs");
+  CLI::App app("Cost of contact detection with gaps");
   std::string file;
-  app.add_option("--json", file, "write the figures there too");
+  app.add_option("--json", file, "also write the figures there");
   CLI11_PARSE(app, argc, argv);
   dInitODE2(0);
   nlohmann::json json;

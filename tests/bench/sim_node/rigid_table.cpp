@@ -193,14 +193,14 @@ void hole(Report& report, const std::string& scenes, double rate_Hz) {
                             haptic::MonotoneCubic::Ends::kRest),
       false, {}, about(Vector3d::UnitY(), 3 * M_PI / 180));
   hand.begin(sync::host_time(0));
-  double most_N = 0, most_N_m = 0, most_change = 0, z = 0;
+  double max_N = 0, max_N_m = 0, max_change = 0, z = 0;
   Vector3d last = Vector3d::Zero();
   for (int i = 0; i < static_cast<int>(3 * rate_Hz); ++i) {
     const auto& out = loop.tick(hand.read(sync::host_time(std::llround(1e9 * loop.time_s()))));
     hand.write(haptic::Wrench{out.force_N, out.torque_N_m});
-    most_N = std::max(most_N, out.force_N.norm());
-    most_N_m = std::max(most_N_m, out.torque_N_m.norm());
-    most_change = std::max(most_change, (out.force_N - last).norm());
+    max_N = std::max(max_N, out.force_N.norm());
+    max_N_m = std::max(max_N_m, out.torque_N_m.norm());
+    max_change = std::max(max_change, (out.force_N - last).norm());
     last = out.force_N;
     z = out.state.proxy.position_m.z;
   }
@@ -208,9 +208,9 @@ void hole(Report& report, const std::string& scenes, double rate_Hz) {
   report.row("hole " + std::to_string(static_cast<int>(rate_Hz)) + " Hz",
              {{"mm_deep", 1e3 * depth},
               {"of_mm", 1e3 * down},
-              {"N_max", most_N},
-              {"N_m_max", most_N_m},
-              {"N_a_tick", most_change}},
+              {"N_max", max_N},
+              {"N_m_max", max_N_m},
+              {"N_a_tick", max_change}},
              depth > 0.8 * down);
 }
 
@@ -286,23 +286,23 @@ int main(int argc, char** argv) {
   std::string json, only;
   double seconds = 3;
   bool check = false;
-  CLI::App app{"How true and how smooth is touch with six degrees of freedom?"};
+  CLI::App app{"Accuracy and smoothness of touch with six degrees of freedom."};
   app.add_option("--json", json, "also write the figures there");
   app.add_option("--seconds", seconds, "of each stroke")->check(CLI::Range(0.1, 100.0));
-  app.add_option("--only", only, "the rows of that name: pressed, pushed, thin, between, hole or stroke");
+  app.add_option("--only", only, "only the rows of this name: pressed, pushed, thin, between, hole or stroke");
   app.add_flag("--check", check, "exit 1 unless all rows stay within the limits");
   CLI11_PARSE(app, argc, argv);
   Report report;
-  const auto wanted = [&](const std::string& name) { return only.empty() || only == name; };
+  const auto selected = [&](const std::string& name) { return only.empty() || only == name; };
   for (const double rate_Hz : {1000.0, 2000.0, 4000.0}) {
-    if (wanted("pressed")) pressed(report, rate_Hz);
-    if (wanted("pushed")) pushed(report, rate_Hz);
-    if (wanted("thin")) thin(report, rate_Hz);
-    if (wanted("hole")) hole(report, TACTUS_SOURCE_DIR "/sim_node/scenes", rate_Hz);
-    if (wanted("stroke")) stroke(report, tool_def_t::BOX, rate_Hz, seconds);
-    if (wanted("stroke")) stroke(report, tool_def_t::CAPSULE, rate_Hz, seconds);
+    if (selected("pressed")) pressed(report, rate_Hz);
+    if (selected("pushed")) pushed(report, rate_Hz);
+    if (selected("thin")) thin(report, rate_Hz);
+    if (selected("hole")) hole(report, TACTUS_SOURCE_DIR "/sim_node/scenes", rate_Hz);
+    if (selected("stroke")) stroke(report, tool_def_t::BOX, rate_Hz, seconds);
+    if (selected("stroke")) stroke(report, tool_def_t::CAPSULE, rate_Hz, seconds);
   }
-  if (wanted("between")) between(report);
+  if (selected("between")) between(report);
   if (!json.empty()) std::ofstream(json) << report.out.dump(2) << "\n";
   return check && !report.good ? 1 : 0;
 }

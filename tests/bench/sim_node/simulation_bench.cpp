@@ -17,7 +17,7 @@
 #include "sim_node/scene/load_sdf.h"
 #include "sync/text/settings.h"
 #include "tests/bench/offline/offline_world.h"
-#include "tests/bench/offline/senses.h"
+#include "tests/bench/offline/log_renderers.h"
 #include "tests/bench/offline/steadiness.h"
 #include "tests/sim_node/support/penetration_oracle.h"
 #include "tests/sync/support/memory_sink.h"
@@ -49,13 +49,13 @@ double energy_J(const sim::WorldDef& world, std::span<const sim::BodyMotion> bod
 }
 
 // Without hands: cost, depth, energy.
-json undisturbed(const sim::WorldDef& world, const sim::Settings& settings, double seconds) {
+json without_hands(const sim::WorldDef& world, const sim::Settings& settings, double seconds) {
   OfflineWorld run(world, settings, false, nullptr);
   sim::test::PenetrationOracle oracle(world);
   const double h = settings.step_s;
   std::vector<double> us;
-  std::vector<contact_t> list, told;
-  double contacts = 0, deepest = 0, first = 0, least = 0, most = 0, gained = 0;
+  std::vector<contact_t> list, ahead_contacts;
+  double contacts = 0, deepest = 0, first = 0, min = 0, max = 0, gained = 0;
   const int steps = static_cast<int>(seconds / h);
   for (int i = 0; i < steps; ++i) {
     run.step();
@@ -69,13 +69,13 @@ json undisturbed(const sim::WorldDef& world, const sim::Settings& settings, doub
     }
     if (list.size() < 60 || i % 10 == 0) deepest = std::max(deepest, oracle.deepest(bodies).depth_m);
     const double energy = energy_J(world, bodies, h);
-    if (i == 0) first = least = most = energy;
-    least = std::min(least, energy), most = std::max(most, energy);
-    gained = std::max(gained, energy - least);
+    if (i == 0) first = min = max = energy;
+    min = std::min(min, energy), max = std::max(max, energy);
+    gained = std::max(gained, energy - min);
   }
   return {
       {"contacts", contacts / steps},    {"step_us_p50", quantile(us, 0.5)}, {"step_us_p99", quantile(us, 0.99)},
-      {"penetration_um", 1e6 * deepest}, {"energy_gained_J", gained},        {"energy_range_J", most - least},
+      {"penetration_um", 1e6 * deepest}, {"energy_gained_J", gained},        {"energy_range_J", max - min},
       {"energy_first_J", first}};
 }
 
@@ -83,7 +83,7 @@ json steadiness_json(const Steadiness& s) {
   return {{"windows", s.windows}, {"jitter", s.jitter}, {"gone", s.gone}, {"octaves", s.bands}};
 }
 
-json sense_json(const SenseResult& r) {
+json sense_json(const ModalityResult& r) {
   std::vector<double> late;
   for (const double e : r.error_s) late.push_back(1e3 * e);
   const double median = quantile(late, 0.5);
@@ -103,7 +103,7 @@ int body_named(const sim::WorldDef& world, const std::string& model) {
 }
 
 // Includes the contacts of bodies that are published ahead, in the step in which they are published; the second list then holds their new contacts.
-void body_contacts(sim::Simulation& simulation, std::vector<contact_t>& out, std::vector<contact_t>& told) {
+void body_contacts(sim::Simulation& simulation, std::vector<contact_t>& out, std::vector<contact_t>& ahead_contacts) {
   simulation.body_contacts(out);
   const sim::LookAhead* look_ahead = simulation.look_ahead();
   if (!look_ahead || !look_ahead->fresh) return;
@@ -123,7 +123,7 @@ void hold(std::vector<double>& force, std::size_t n, std::size_t held) {
 constexpr double kG = 9.81, kFall_m = 0.3, kBounce = 0.8, kSlide_m_s = 2.5, kFriction = 0.4,
                  kLeastBounce_m_s = 0.3;
 
-void set_going(sim::WorldDef& world) {
+void set_initial_velocities(sim::WorldDef& world) {
   if (world.name != "bounce_and_rest") return;
   world.bodies[static_cast<std::size_t>(body_named(world, "sliding"))].velocity_m_s = {kSlide_m_s, 0, 0};
   world.bodies[static_cast<std::size_t>(body_named(world, "rolling"))].velocity_m_s = {0.4, 0, 0};
@@ -153,7 +153,7 @@ json contact_of(const sim::WorldDef& world, const std::string& model, const Seri
 }
 
 // True times of the ball's bounces, against the events and against the samples of their sounds.
-json bounces_of(const sim::WorldDef& world, const Rendered& rendered, double seconds) {
+json bounce_accuracy(const sim::WorldDef& world, const Rendered& rendered, double seconds) {
   const int body = body_named(world, "bouncing");
   std::vector<double> events, heard;
   std::vector<char> used(rendered.events.size());
@@ -173,7 +173,7 @@ json bounces_of(const sim::WorldDef& world, const Rendered& rendered, double sec
     used[found] = true;
     events.push_back(best);
     worst_event = std::max(worst_event, best);
-    if (const auto at = rendered.heard_s.find(rendered.events[found].event_id); at != rendered.heard_s.end()) {
+    if (const auto at = rendered.onset_s.find(rendered.events[found].event_id); at != rendered.onset_s.end()) {
       heard.push_back(std::abs(at->second - t));
       worst_heard = std::max(worst_heard, heard.back());
       if (truly == 0) first_heard = heard.back();
@@ -201,10 +201,10 @@ json rendered_by_all(const sim::WorldDef& world, const sim::Settings& settings, 
       static_cast<std::size_t>(settings.groups == "dual" ? std::ceil(1 / (settings.visual_rate_Hz * h)) : 0);
   Series series;
   std::vector<std::vector<double>> hands(run.hand_forces_N().size());
-  std::vector<contact_t> list, told;
+  std::vector<contact_t> list, ahead_contacts;
   for (int i = 0; i < steps; ++i) {
     run.step();
-    body_contacts(run.simulation(), list, told);
+    body_contacts(run.simulation(), list, ahead_contacts);
     for (const contact_t& c : list) {
       auto& s = series[{c.body_a, c.body_b}];
       hold(s, static_cast<std::size_t>(i), held);
@@ -224,16 +224,16 @@ json rendered_by_all(const sim::WorldDef& world, const sim::Settings& settings, 
   std::vector<std::vector<double>> all;
   for (const auto& [pair, s] : series) all.push_back(s);
   // A contact that begins again within 20 ms of its end counts as interrupted.
-  int begins = 0, anew = 0;
+  int begins = 0, restarted = 0;
   std::map<std::pair<int, int>, std::int64_t> ended;
   for (const contact_event_t& e : rendered.events) {
     const std::pair pair(e.body_a, e.body_b);
     if (e.kind == contact_event_t::END) ended[pair] = e.time_ns;
     if (e.kind != contact_event_t::BEGIN) continue;
     ++begins;
-    anew += ended.count(pair) && e.time_ns - ended[pair] < 20'000'000;
+    restarted += ended.count(pair) && e.time_ns - ended[pair] < 20'000'000;
   }
-  SenseResult touch;
+  ModalityResult touch;
   std::map<std::int64_t, double> when;
   for (const contact_event_t& e : rendered.events) {
     when[e.event_id] = 1e-9 * static_cast<double>(e.time_ns);
@@ -248,7 +248,7 @@ json rendered_by_all(const sim::WorldDef& world, const sim::Settings& settings, 
               {"force_on_hand", steadiness_json(steadiness(hands, 1 / h))},
               {"events", rendered.events.size()},
               {"begins", begins},
-              {"begins_anew", anew},
+              {"begins_anew", restarted},
               {"haptic", sense_json(touch)},
               {"audio", sense_json(rendered.audio)},
               {"visual", sense_json(rendered.visual)},
@@ -257,7 +257,7 @@ json rendered_by_all(const sim::WorldDef& world, const sim::Settings& settings, 
     const double stops_s = kSlide_m_s / (kFriction * kG);
     const auto& block = run.simulation().bodies()[static_cast<std::size_t>(body_named(world, "sliding"))];
     const double slid = block.position_m.x() + 0.8, truly = kSlide_m_s * kSlide_m_s / (2 * kFriction * kG);
-    out["bounce"] = bounces_of(world, rendered, seconds);
+    out["bounce"] = bounce_accuracy(world, rendered, seconds);
     out["rest"] = contact_of(world, "resting", series, rendered, h, 0.5, seconds);
     out["slide"] = contact_of(world, "sliding", series, rendered, h, 0.1, stops_s - 0.03);
     out["slide"]["distance_error_percent"] = 100 * (slid / truly - 1);
@@ -285,13 +285,13 @@ int main(int argc, char** argv) {
   try {
     std::vector<std::string> warnings;
     sim::WorldDef world = sim::load_sdf(scene, warnings);
-    set_going(world);
+    set_initial_velocities(world);
     set.push_back("detector=" + detector);
     set.push_back("solver=" + solver);
     sim::Settings settings;
     const auto refused = sync::apply_settings(settings, sim::setting_fields(), "sim_node", world.settings, set);
     if (!refused.empty()) throw std::runtime_error(refused.front());
-    out.update(undisturbed(world, settings, seconds));
+    out.update(without_hands(world, settings, seconds));
     out.update(rendered_by_all(world, settings, seconds, log));
   } catch (const std::exception& e) {
     out["refused"] = e.what();

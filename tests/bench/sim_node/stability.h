@@ -16,17 +16,17 @@ inline constexpr double kBends = 8;
 static_assert(kBends * impulse::kDampingOnsetShare < 1);
 inline double bend_m(double k) { return kLightest_kg * kToyG / k; }
 
-// The largest value for which stays(value) holds, to 1 %, searched downwards from `most` to `least`; 0: none.
-template <class Stays>
-double largest(double most, double least, Stays stays) {
-  double low = most, high = most;
-  for (; !stays(low); low /= 1.5) {
-    if (low < least) return 0;
+// The largest value for which is_stable(value) holds, to 1 %, searched downwards from `max` to `min`; 0: none.
+template <class IsStable>
+double largest_stable(double max, double min, IsStable is_stable) {
+  double low = max, high = max;
+  for (; !is_stable(low); low /= 1.5) {
+    if (low < min) return 0;
     high = low;
   }
   while (high / low > 1.01) {
     const double middle = std::sqrt(low * high);
-    (stays(middle) ? low : high) = middle;
+    (is_stable(middle) ? low : high) = middle;
   }
   return low;
 }

@@ -28,9 +28,9 @@ constexpr double kShell_m = 1e-5;
 // Out of reach of the hand.
 constexpr double kFar_m = 3;
 // Steps before the push, and after it.
-constexpr int kSettle = 300, kWatched = 3000;
+constexpr int kSettleSteps = 300, kWatchedSteps = 3000;
 // A structure far from the hand stands while it is no further than this from its first position, m.
-constexpr double kStands_m = 1e-3;
+constexpr double kMaxDrift_m = 1e-3;
 
 const std::array<GroupedRow, 6> kRows{{
     {"all at 1/60 s, explicit", "single", "penalty_explicit", 1.0 / 60},
@@ -103,16 +103,16 @@ bool grouped_stays_stable(const GroupedRow& row, int boxes, double x) {
   if (!unsupported_reason(w, s).empty()) return false;
   Simulation simulation(w, s);
   simulation.start(1);
-  for (int i = 0; i < kSettle; ++i) simulation.step({});
+  for (int i = 0; i < kSettleSteps; ++i) simulation.step({});
   for (int i = 1; i < near; ++i) simulation.mechanics().set_spin(i, any() / 0.05);
   const auto count = static_cast<std::size_t>(near - 1);
   const double first = static_cast<double>(count) * 4 * kLightest_kg * 1e-12;
-  for (int i = 0; i < kWatched; ++i) {
+  for (int i = 0; i < kWatchedSteps; ++i) {
     simulation.step({});
     const auto bodies = simulation.bodies();
     if (!(kinetic_J(bodies.subspan(1, count)) < 100 * first)) return false;
     for (std::size_t far = count + 1; far <= 2 * count; ++far)
-      if (!((bodies[far].centre_m - w.bodies[far].pose.translation()).norm() < kStands_m)) return false;
+      if (!((bodies[far].centre_m - w.bodies[far].pose.translation()).norm() < kMaxDrift_m)) return false;
     if (!dual) continue;
     const auto& groups = dynamic_cast<const DualGroups&>(simulation.mechanics());
     if (!groups.is_haptic(1) || groups.is_haptic(all - 1))
@@ -167,7 +167,7 @@ struct Holding {
 
 }  // namespace
 
-bool hands_hold(const GroupedRow& row, double k) {
+bool two_hands_stay_stable(const GroupedRow& row, double k) {
   // Each presses with 2 N, within the limit of the simulation for a hand; the push moves the box by a tenth of that.
   constexpr double kPress_N = 2, kHalf_m = 0.05, kRadius_m = 0.01;
   const double depth = kPress_N / k, swing = std::sqrt(2 * k / kHeld_kg);
@@ -187,17 +187,17 @@ bool hands_hold(const GroupedRow& row, double k) {
   simulation.start(1);
   const double period_s = 2 * M_PI / swing;
   const auto steps = static_cast<int>(std::max(400.0, 60 * period_s / row.step_s));
-  std::vector<tool_state_t> news;
+  std::vector<tool_state_t> states;
   std::int64_t tick = 0;
   double early = 0, late = 0;
   for (int i = 0; i < steps; ++i) {
-    news.clear();
+    states.clear();
     const double now_s = sync::to_seconds(simulation.now().time_since_epoch());
     for (; 0.001 * static_cast<double>(tick) < now_s + row.step_s - 1e-9; ++tick)
       for (Holding& hand : hands)
-        news.push_back(hand.tick(simulation.touch_models()[static_cast<std::size_t>(hand.tool)],
+        states.push_back(hand.tick(simulation.touch_models()[static_cast<std::size_t>(hand.tool)],
                                  0.001 * static_cast<double>(tick) - now_s, tick * 1'000'000));
-    simulation.step(news);
+    simulation.step(states);
     const double away = std::abs(simulation.bodies()[static_cast<std::size_t>(box)].centre_m.x());
     if (i < steps / 4) early = std::max(early, away);
     if (i >= 3 * steps / 4) late = std::max(late, away);

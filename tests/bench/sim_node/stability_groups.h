@@ -22,7 +22,7 @@ bool grouped_stays_stable(const GroupedRow& row, int boxes, double x);
 
 // Whether two hands of that stiffness each, damped by a ratio of 0.7, hold a box between them: after a push it comes to rest and its
 // oscillation does not grow. Hands sense and act every millisecond; the world receives their forces with its next step.
-bool hands_hold(const GroupedRow& row, double stiffness_N_m);
+bool two_hands_stay_stable(const GroupedRow& row, double stiffness_N_m);
 
 inline constexpr double kHeld_kg = 0.2;  // the box
 

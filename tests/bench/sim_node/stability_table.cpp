@@ -102,12 +102,12 @@ bool stays_stable(const Model& model, int boxes, double x, double h) {
 
 // The largest stable k h^2 / m; 0: none, because a softer tower topples for lack of stiffness.
 double stiffest(const Model& model, int boxes, double h) {
-  return largest(kStiffestTried, 0.01, [&](double x) { return stays_stable(model, boxes, x, h); });
+  return largest_stable(kStiffestTried, 0.01, [&](double x) { return stays_stable(model, boxes, x, h); });
 }
 
 // A ball that arrives at 1 m/s: its largest force, and the largest change from one step to the next.
 struct Arrival {
-  double most_N = 0, jump_N = 0;
+  double max_N = 0, jump_N = 0;
 };
 Arrival arrive(const Model& model, double k, double h) {
   impulse::ContactLaw law = model.law(k, 1);
@@ -122,7 +122,7 @@ Arrival arrive(const Model& model, double k, double h) {
   for (double t = 0; t < 0.08; t += h) {
     model.step(toys, h);
     const double force = toys.force_N();
-    out.most_N = std::max(out.most_N, force);
+    out.max_N = std::max(out.max_N, force);
     out.jump_N = std::max(out.jump_N, std::abs(force - before));
     before = force;
   }
@@ -156,9 +156,9 @@ double cost_us(const Model& model, double k, double h) {
 }
 
 // "> most" when there is no limit.
-std::string limit(double x, double most, const char* form) {
+std::string limit(double x, double max, const char* form) {
   char text[32];
-  std::snprintf(text, sizeof text, x >= most ? "> %.0e" : x > 0 ? form : "none", x);
+  std::snprintf(text, sizeof text, x >= max ? "> %.0e" : x > 0 ? form : "none", x);
   return text;
 }
 
@@ -174,7 +174,7 @@ json groups() {
     std::printf("%-26s |", row.name.c_str());
     for (const int boxes : {0, 3}) {
       const double x =
-          largest(kStiffestTried, 0.01, [&](double tried) { return grouped_stays_stable(row, boxes, tried); });
+          largest_stable(kStiffestTried, 0.01, [&](double tried) { return grouped_stays_stable(row, boxes, tried); });
       const double to_N_m = kLightest_kg / (row.step_s * row.step_s);
       std::printf(boxes ? " %8s %12s" : " %10s %12s", limit(x, kStiffestTried, "%.2f").c_str(),
                   limit(x * to_N_m, kStiffestTried * to_N_m, "%.0f").c_str());
@@ -183,7 +183,7 @@ json groups() {
       r[what + "_kh2_m"] = x;
       r[what + "_N_m"] = x * to_N_m;
     }
-    const double hand = largest(kStiffestHand_N_m, kSoftestHand_N_m, [&](double k) { return hands_hold(row, k); });
+    const double hand = largest_stable(kStiffestHand_N_m, kSoftestHand_N_m, [&](double k) { return two_hands_stay_stable(row, k); });
     std::printf(" | %s\n", limit(hand, kStiffestHand_N_m, "%.0f").c_str());
     std::fflush(stdout);
     r["hand_N_m"] = hand;
@@ -212,19 +212,19 @@ int main(int argc, char** argv) {
   for (const Model& model : models()) {
     const double us = cost_us(model, k, 0.001);
     const Arrival at_1 = arrive(model, k, 1e-3), at_01 = arrive(model, k, 1e-4), at_001 = arrive(model, k, 1e-5);
-    std::printf("%-18s %11.1f | %12.2f %12.2f %12.2f | %12.3f %12.3f |", model.name.c_str(), us, at_1.most_N,
-                at_01.most_N, at_001.most_N, at_01.jump_N, at_001.jump_N);
+    std::printf("%-18s %11.1f | %12.2f %12.2f %12.2f | %12.3f %12.3f |", model.name.c_str(), us, at_1.max_N,
+                at_01.max_N, at_001.max_N, at_01.jump_N, at_001.jump_N);
     json row = {{"contact", model.name},           {"step_100_boxes_us", us},
-                {"force_1ms_N", at_1.most_N},      {"force_0.1ms_N", at_01.most_N},
-                {"force_0.01ms_N", at_001.most_N}, {"change_0.1ms_N", at_01.jump_N},
+                {"force_1ms_N", at_1.max_N},      {"force_0.1ms_N", at_01.max_N},
+                {"force_0.01ms_N", at_001.max_N}, {"change_0.1ms_N", at_01.jump_N},
                 {"change_0.01ms_N", at_001.jump_N}};
     for (const int boxes : {0, 3}) {
       for (const double h : {0.001, 1.0 / 60}) {
-        const double most = stiffest(model, boxes, h);
-        std::printf(" %8s", limit(most, kStiffestTried, "%.2f").c_str());
+        const double max = stiffest(model, boxes, h);
+        std::printf(" %8s", limit(max, kStiffestTried, "%.2f").c_str());
         if (model.name == "penalty, explicit" && boxes)
-          (h < 0.01 ? at_1ms_N_m : at_60Hz_N_m) = most * kLightest_kg / (h * h);
-        row[std::string(boxes ? "tower" : "ball") + (h < 0.01 ? "_kh2_m_1ms" : "_kh2_m_60Hz")] = most;
+          (h < 0.01 ? at_1ms_N_m : at_60Hz_N_m) = max * kLightest_kg / (h * h);
+        row[std::string(boxes ? "tower" : "ball") + (h < 0.01 ? "_kh2_m_1ms" : "_kh2_m_60Hz")] = max;
       }
       std::printf(boxes ? "\n" : " |");
     }
@@ -237,7 +237,7 @@ int main(int argc, char** argv) {
       std::sqrt(k * kLightest_kg),
       std::pow(std::sqrt(4 + 4 * kDampingRatio * kDampingRatio) - 2 * kDampingRatio, 2));
   std::printf(
-      "the tower's explicit springs: %.0f N/m at 1 ms, %.0f N/m at 1/60 s: what 1 kHz gains for what a hand feels "
+      "the tower's explicit springs: %.0f N/m at 1 ms, %.0f N/m at 1/60 s: the gain of 1 kHz for the felt stiffness "
       "is a factor of "
       "%.0f\n",
       at_1ms_N_m, at_60Hz_N_m, at_1ms_N_m / at_60Hz_N_m);

@@ -12,7 +12,7 @@
 using namespace tactus::sim;
 
 int main(int argc, char** argv) try {
-  CLI::App app("What each scene comes to, as one number");
+  CLI::App app("Prints a hash of the final state of each scene");
   std::string scenes = TACTUS_SOURCE_DIR "/sim_node/scenes";
   int steps = test::kGoldenSteps;
   std::vector<std::string> settings;

@@ -93,9 +93,9 @@ double quantile(std::vector<double> x, double q) {
 int main(int argc, char** argv) {
   std::string json, only;
   int steps = 200;
-  CLI::App app{"What the touch model of a tool costs."};
+  CLI::App app{"Cost of the touch model of a tool."};
   app.add_option("--steps", steps, "of each row of a tool with a shape")->check(CLI::Range(1, 100'000));
-  app.add_option("--only", only, "the rows of a tool with a shape whose scene and tool hold that, as \"bowl.obj mesh\"");
+  app.add_option("--only", only, "only the rows of a tool with a shape whose scene and tool contain this text, such as \"bowl.obj mesh\"");
   app.add_option("--json", json, "also write the figures there");
   CLI11_PARSE(app, argc, argv);
   std::vector<Scene> scenes;
@@ -108,16 +108,16 @@ int main(int argc, char** argv) {
   std::vector<contact_event_t> events;
   for (int i = 0; i < kSteps; ++i)
     for (Scene& s : scenes) {
-      tool_state_t news{};
+      tool_state_t state{};
       const Vector3d p = s.path[static_cast<std::size_t>(i)];
-      news.header.sim_time_ns = std::int64_t{1'000'000} * i;
-      for (pose_t* pose : {&news.proxy, &news.device}) {
+      state.header.sim_time_ns = std::int64_t{1'000'000} * i;
+      for (pose_t* pose : {&state.proxy, &state.device}) {
         pose->position_m.x = p.x(), pose->position_m.y = p.y(), pose->position_m.z = p.z();
         pose->orientation.w = 1;
       }
       events.clear();
       const auto begin = std::chrono::steady_clock::now();
-      s.touch->update(sync::sim_time(news.header.sim_time_ns), s.bodies, {&news, 1}, events);
+      s.touch->update(sync::sim_time(state.header.sim_time_ns), s.bodies, {&state, 1}, events);
       s.us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
       s.planes += s.touch->model().planes.size();
     }

@@ -75,12 +75,12 @@ class Subscriber {
       for (int i = 0; i < got; ++i) take(static_cast<std::size_t>(i), ahead);
     }
   }
-  nlohmann::json said() {
+  nlohmann::json statistics() {
     std::sort(latencies_us_.begin(), latencies_us_.end());
     const auto at = [&](double share) {
       return latencies_us_.empty() ? 0.0 : latencies_us_[static_cast<std::size_t>(share * double(latencies_us_.size() - 1))];
     };
-    return {{"messages", heard_}, {"lost", lost_}, {"bad", bad_}, {"latency_us", {{"p50", at(0.5)}, {"p99", at(0.99)}, {"worst", at(1)}}}};
+    return {{"messages", received_}, {"lost", lost_}, {"bad", malformed_}, {"latency_us", {{"p50", at(0.5)}, {"p99", at(0.99)}, {"worst", at(1)}}}};
   }
 
  private:
@@ -94,20 +94,20 @@ class Subscriber {
         std::memcpy(&t, CMSG_DATA(c), sizeof t);
         arrived = t.tv_sec * 1'000'000'000 + t.tv_nsec - ahead;
       }
-    if (m->channel == channels::kContactEvents) hear<contact_events_t>(*m, arrived);
-    if (m->channel == channels::kWorldState) hear<world_state_t>(*m, arrived);
-    if (m->channel == channels::kTouchModel) hear<touch_model_t>(*m, arrived);
+    if (m->channel == channels::kContactEvents) on_message<contact_events_t>(*m, arrived);
+    if (m->channel == channels::kWorldState) on_message<world_state_t>(*m, arrived);
+    if (m->channel == channels::kTouchModel) on_message<touch_model_t>(*m, arrived);
   }
   template <class Message>
-  void hear(const sync::ChannelBytes& bytes, std::int64_t arrived) {
+  void on_message(const sync::ChannelBytes& bytes, std::int64_t arrived) {
     const auto m = sync::decode<Message>(bytes.data.data(), bytes.data.size());
     if (!m) {
-      ++bad_;
+      ++malformed_;
       return;
     }
-    ++heard_;
-    auto [next, fresh] = next_.try_emplace({std::string(bytes.channel), m->header.incarnation}, m->header.seq);
-    if (!fresh && m->header.seq > next->second) lost_ += m->header.seq - next->second;
+    ++received_;
+    auto [next, inserted] = next_.try_emplace({std::string(bytes.channel), m->header.incarnation}, m->header.seq);
+    if (!inserted && m->header.seq > next->second) lost_ += m->header.seq - next->second;
     next->second = m->header.seq + 1;
     latencies_us_.push_back(static_cast<double>(arrived - m->header.publish_time_ns) * 1e-3);
   }
@@ -118,14 +118,14 @@ class Subscriber {
   std::array<iovec, kBatch> parts_;
   std::array<mmsghdr, kBatch> messages_{};
   std::map<std::pair<std::string, std::int64_t>, std::int64_t> next_;
-  std::int64_t heard_ = 0, lost_ = 0, bad_ = 0;
+  std::int64_t received_ = 0, lost_ = 0, malformed_ = 0;
   std::vector<double> latencies_us_;
 };
 
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Hears the bus as a renderer does, renders nothing, and says what it heard when it is ended."};
+  CLI::App app{"Receives the bus like a renderer without rendering, and prints statistics of the received messages at its end."};
   sync::BusOptions bus;
   sync::add_bus_options(app, bus);
   sync::parse_or_exit(app, "minimal_renderer", argc, argv);
@@ -137,7 +137,7 @@ int main(int argc, char** argv) try {
     clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
     subscriber.tick();
   }
-  std::cout << subscriber.said() << std::endl;
+  std::cout << subscriber.statistics() << std::endl;
   return 0;
 } catch (const std::exception& e) {
   return tactus::sync::fail("minimal_renderer", e);

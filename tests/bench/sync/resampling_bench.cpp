@@ -116,9 +116,9 @@ Wire bodies_at(std::int64_t ms, int bodies) {
   return wire;
 }
 
-struct Second {
+struct RecordedSecond {
   std::vector<Wire> contacts, events, bodies;  // by millisecond
-  explicit Second(int n) {
+  explicit RecordedSecond(int n) {
     for (std::int64_t ms = 0; ms < kRecorded_ms; ++ms) {
       contacts.push_back(contacts_at(ms, n));
       events.push_back(events_at(ms, n));
@@ -127,7 +127,7 @@ struct Second {
   }
 };
 
-OperatorChain stack_of(bool degraded) {
+OperatorChain chain_of(bool degraded) {
   if (!degraded) return {};
   return OperatorChain(
       parse_profile(R"(<profile><degrade modality="m" delay="5ms network" jitter="2ms normal" loss="5% burst=3"
@@ -137,8 +137,8 @@ OperatorChain stack_of(bool degraded) {
 }
 
 // An endpoint that receives one millisecond of messages at a time.
-struct ModalityEndpoint {
-  OperatorChain stack;
+struct StreamBench {
+  OperatorChain chain;
   DegradedSnapshots<contact_frame_t> contacts;
   DegradedSnapshots<world_state_t> world;
   EventInbox events{1};
@@ -146,11 +146,11 @@ struct ModalityEndpoint {
   ContactStream stream{events};
   BodyHistory bodies{1};
 
-  explicit ModalityEndpoint(bool degraded) : stack(stack_of(degraded)) {}
+  explicit StreamBench(bool degraded) : chain(chain_of(degraded)) {}
   template <class Message, class Degraded, class Sink>
   void take(const Wire& wire, HostTime now, Degraded& degraded, Sink& sink) {
     for (const auto& bytes : wire)
-      degraded.push(*decode<Message>(bytes.data(), bytes.size()), now, stack, &decisions);
+      degraded.push(*decode<Message>(bytes.data(), bytes.size()), now, chain, &decisions);
     while (const auto m = degraded.pop(now)) sink.push(m->first, m->second);
     decisions.clear();
   }
@@ -158,18 +158,18 @@ struct ModalityEndpoint {
 
 // reads: the streams of the second to receive; render: the requests at a tick. One iteration is one period.
 template <class Read, class Render>
-void sense(benchmark::State& state, int period_ms, const Read& read, const Render& render) {
+void read_and_render(benchmark::State& state, int period_ms, const Read& read, const Render& render) {
   const auto n = static_cast<int>(state.range(0));
   const bool degraded = state.range(1) != 0;
-  static std::map<int, Second> seconds;
-  const Second& second = seconds.try_emplace(n, n).first->second;
-  auto s = std::make_unique<ModalityEndpoint>(degraded);
+  static std::map<int, RecordedSecond> seconds;
+  const RecordedSecond& second = seconds.try_emplace(n, n).first->second;
+  auto s = std::make_unique<StreamBench>(degraded);
   std::int64_t ms = 0;
   for (auto _ : state) {
     if (ms + period_ms > kRecorded_ms) {
       state.PauseTiming();
       ms = 0;
-      s = std::make_unique<ModalityEndpoint>(degraded);
+      s = std::make_unique<StreamBench>(degraded);
       state.ResumeTiming();
     }
     for (int i = 0; i < period_ms; ++i, ++ms) read(*s, second, static_cast<std::size_t>(ms), host_time(ms * kMs));
@@ -206,7 +206,7 @@ void read_contacts(ModalityEndpoint& s, const Second& second, std::size_t ms, Ho
 
 // Events and state of all contacts, a thousand times per second.
 void every_millisecond(benchmark::State& state) {
-  sense(state, 1, read_contacts, [](ModalityEndpoint& s, SimTime t, int) {
+  read_and_render(state, 1, read_contacts, [](StreamBench& s, SimTime t, int) {
     benchmark::DoNotOptimize(s.stream.take_events(t));
     benchmark::DoNotOptimize(s.stream.state_at(t - Nanoseconds(8 * kMs)));
   });
@@ -214,19 +214,19 @@ void every_millisecond(benchmark::State& state) {
 
 // As audio_node: the events alone; a block of 128 samples at 48 kHz is 2.7 ms.
 void audio_node(benchmark::State& state) {
-  sense(
+  read_and_render(
       state, 3,
       [](ModalityEndpoint& s, const Second& second, std::size_t ms, HostTime now) {
         for (const auto& bytes : second.events[ms])
     s.events.push(*decode<contact_events_t>(bytes.data(), bytes.size()), now, s.stack, &s.decisions);
   s.events.release(now);
       },
-      [](ModalityEndpoint& s, SimTime t, int) { benchmark::DoNotOptimize(s.stream.take_events(t)); });
+      [](StreamBench& s, SimTime t, int) { benchmark::DoNotOptimize(s.stream.take_events(t)); });
 }
 
 // As thermal_node: the integral over its tick.
 void thermal_node(benchmark::State& state) {
-  sense(state, 20, read_contacts, [](ModalityEndpoint& s, SimTime t, int) {
+  read_and_render(state, 20, read_contacts, [](StreamBench& s, SimTime t, int) {
     benchmark::DoNotOptimize(s.stream.take_events(t));
     benchmark::DoNotOptimize(s.stream.integral(t - Nanoseconds(25 * kMs), t - Nanoseconds(5 * kMs), 0, 1000));
   });
@@ -234,7 +234,7 @@ void thermal_node(benchmark::State& state) {
 
 // As visual_node: the events, and as many body poses as there are contacts.
 void visual_node(benchmark::State& state) {
-  sense(
+  read_and_render(
       state, 16,
       [](ModalityEndpoint& s, const Second& second, std::size_t ms, HostTime now) {
         for (const auto& bytes : second.events[ms])
@@ -242,7 +242,7 @@ void visual_node(benchmark::State& state) {
   s.events.release(now);
         s.take<world_state_t>(second.bodies[ms], now, s.world, s.bodies);
       },
-      [](ModalityEndpoint& s, SimTime t, int n) {
+      [](StreamBench& s, SimTime t, int n) {
         benchmark::DoNotOptimize(s.stream.take_events(t));
         for (int i = 0; i < n; ++i) benchmark::DoNotOptimize(s.bodies.pose(i, t));
       });

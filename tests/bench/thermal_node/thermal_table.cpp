@@ -21,9 +21,9 @@ using nlohmann::json;
 
 namespace {
 
-const std::vector<std::string> kTen{"copper", "aluminium", "steel", "granite", "concrete",
+const std::vector<std::string> kMaterials{"copper", "aluminium", "steel", "granite", "concrete",
                                     "glass",  "abs",       "oak",   "rubber",  "foam"};
-const double kTimes[] = {0.1, 1, 10};
+const double kTimes_s[] = {0.1, 1, 10};
 
 // From sim_node/scenes/materials.csv, whose numbers come before every quoted text.
 std::vector<Material> materials() {
@@ -33,22 +33,22 @@ std::vector<Material> materials() {
     std::istringstream cells(line);
     std::vector<std::string> row;
     for (std::string cell; row.size() < 12 && std::getline(cells, cell, ',');) row.push_back(cell);
-    if (row.size() == 12 && std::find(kTen.begin(), kTen.end(), row[0]) != kTen.end())
+    if (row.size() == 12 && std::find(kMaterials.begin(), kMaterials.end(), row[0]) != kMaterials.end())
       found.push_back({row[0], std::stod(row[9]), std::stod(row[3]), std::stod(row[10]), std::stod(row[11])});
   }
   std::sort(found.begin(), found.end(),
             [](const Material& a, const Material& b) { return a.effusivity_() > b.effusivity_(); });
-  if (found.size() != kTen.size()) throw std::runtime_error("sim_node/scenes/materials.csv lacks one of the ten");
+  if (found.size() != kMaterials.size()) throw std::runtime_error("sim_node/scenes/materials.csv lacks one of the ten");
   return found;
 }
 
-oracle::Slab deep(double k, double c) { return {20 * std::sqrt(k / c * 10), k, c}; }
+oracle::Slab semi_infinite(double k, double c) { return {20 * std::sqrt(k / c * 10), k, c}; }
 
-oracle::FiniteDifferences truth_of(const Material& m, const std::string& model) {
+oracle::FiniteDifferences reference_of(const Material& m, const std::string& model) {
   const double h = contact_conductance_W_m2K(m.conductivity_W_mK);
-  oracle::Touch touch{{}, deep(m.conductivity_W_mK, m.heat_capacity()), h};
+  oracle::Touch touch{{}, semi_infinite(m.conductivity_W_mK, m.heat_capacity()), h};
   if (model == "half_space") {
-    oracle::Slab tissue = deep(0.37, 3.77e6);
+    oracle::Slab tissue = semi_infinite(0.37, 3.77e6);
     tissue.blood_W_m3K = 0.0025 * 3.77e6;
     touch.skin = {tissue};
     return oracle::FiniteDifferences(touch);
@@ -60,10 +60,10 @@ oracle::FiniteDifferences truth_of(const Material& m, const std::string& model) 
   touch.blood_degC = resting.blood_degC();
   oracle::Touch bare = touch;
   bare.skin_air_W_m2K = 8;
-  oracle::FiniteDifferences rest(bare), truth(touch);
+  oracle::FiniteDifferences rest(bare), reference(touch);
   rest.begin_at_rest();
-  truth.begin_like(rest);
-  return truth;
+  reference.begin_like(rest);
+  return reference;
 }
 
 json against_oracle(const std::vector<Material>& ten) {
@@ -78,16 +78,16 @@ json against_oracle(const std::vector<Material>& ten) {
     std::printf("  %-10s", m.name.c_str());
     json row{{"material", m.name}, {"effusivity", m.effusivity_()}};
     for (const std::string model : {"half_space", "bioheat"}) {
-      auto truth = truth_of(m, model);
+      auto reference = reference_of(m, model);
       const Trace trace = touching(m, model, 10);
       double off_K = 0;
-      for (const double t : kTimes) {
-        truth.advance(t);
+      for (const double t : kTimes_s) {
+        reference.advance(t);
         const double degC = trace[static_cast<std::size_t>(std::lround(t / 0.02))];
-        off_K = std::max(off_K, std::abs(degC - truth.surface_degC()));
+        off_K = std::max(off_K, std::abs(degC - reference.surface_degC()));
         std::printf(" %7.2f", degC - 33);
         row[model]["change_K"].push_back(degC - 33);
-        row[model]["oracle_K"].push_back(truth.surface_degC() - 33);
+        row[model]["oracle_K"].push_back(reference.surface_degC() - 33);
       }
       std::printf("    %4.1f %s", 1000 * off_K, model == "half_space" ? "|" : "\n");
       worst_K = std::max(worst_K, off_K);
@@ -195,7 +195,7 @@ constexpr double kWeberOfRate = 0.43;
 
 double rate_K_s(const Trace& t) { return 33 - t[50]; }  // mean of the first second
 
-json told_apart(const std::vector<Shown>& shown) {
+json distinguishable_pairs(const std::vector<Shown>& shown) {
   std::puts(
       "\nPairs that a person could tell apart, by cooling that differs by 43 % or more in the first second "
       "(Bergmann Tiest and Kappers\n"
@@ -255,7 +255,7 @@ json costs(const Material& m) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"How true is warmth?"};
+  CLI::App app{"Accuracy of the rendered temperature, against closed forms."};
   std::string file;
   app.add_option("--json", file, "the figures and the traces");
   CLI11_PARSE(app, argc, argv);
@@ -267,7 +267,7 @@ int main(int argc, char** argv) try {
   out["display"]["half_space"] = displayed(ten, "half_space", "half_space", nullptr);
   out["display"]["bioheat"] = displayed(ten, "bioheat", "bioheat", &shown);
   out["display"]["half_space_for_bioheat"] = displayed(ten, "half_space", "bioheat", nullptr);
-  out["told_apart"] = told_apart(shown);
+  out["told_apart"] = distinguishable_pairs(shown);
   out["tick"] = costs(ten.front());
   for (const Shown& s : shown)
     out["traces"][s.material.name] = {

@@ -31,7 +31,7 @@ ShippedScene load(const std::string& name) {
 }
 
 // Joins pictures of one size from left to right.
-Picture beside(const std::vector<Picture>& parts) {
+Picture side_by_side(const std::vector<Picture>& parts) {
   Picture all{0, parts.front().height, {}};
   for (const Picture& p : parts) all.width += p.width;
   all.rgba.resize(static_cast<std::size_t>(4 * all.width * all.height));
@@ -46,7 +46,7 @@ Picture beside(const std::vector<Picture>& parts) {
 }
 
 // Averages pairs of rows as bytes, which is accurate enough because the two rows differ little.
-Picture half_as_high(const Picture& from) {
+Picture half_height(const Picture& from) {
   Picture to{from.width, from.height / 2, {}};
   const auto row = static_cast<std::size_t>(4 * from.width);
   for (std::size_t i = 0; i < row * static_cast<std::size_t>(to.height); ++i) {
@@ -85,7 +85,7 @@ Picture bump_plane(int samples) {
     scene.lights[0].direction = to_vec3(Eigen::Vector3d(-lamp.normalized()));
     parts.push_back(s.draw(scene, sized(180, 300, samples)));
   }
-  return checked(s, beside(parts));
+  return checked(s, side_by_side(parts));
 }
 
 Picture looks(int samples) {
@@ -115,11 +115,11 @@ Picture stereo(int samples) {
   settings.stereo = std::string("side_by_side");
   settings.stereo_distance_m = 1.2;
   Picture picture = s.draw(s.scene, settings);
-  return checked(s, half_as_high(picture));
+  return checked(s, half_height(picture));
 }
 
 // A question to the participant of a study, above the cells of the marker.
-Picture asked(const question_t& m, double number, int width, int height, int samples) {
+Picture requested(const question_t& m, double number, int width, int height, int samples) {
   constexpr float kMarker_px = 48;
   ShippedScene s = load("dark_room");
   std::vector<visual::Rect> overlay;
@@ -141,7 +141,7 @@ Picture questions(int samples) {
   number.count = 2;
   number.lowest = 0, number.highest = 100, number.step = 1;
   choice.progress = number.progress = "block 1 of 4, 12 of 60";
-  return beside({asked(choice, 0, 640, 480, samples), asked(number, 64, 640, 480, samples)});
+  return side_by_side({requested(choice, 0, 640, 480, samples), requested(number, 64, 640, 480, samples)});
 }
 
 }  // namespace
@@ -154,8 +154,8 @@ int main(int argc, char** argv) try {
   std::vector<std::string> wanted;
   int samples = 4;
   CLI::App app("Draws pictures of the shipped scenes for the documents.");
-  app.add_option("FOLDER", folder, "where the PNG files go")->required()->check(CLI::ExistingDirectory);
-  app.add_option("PICTURE", wanted, "which; none: all")
+  app.add_option("FOLDER", folder, "folder of the PNG files")->required()->check(CLI::ExistingDirectory);
+  app.add_option("PICTURE", wanted, "pictures to draw; default: all")
       ->check(CLI::IsMember({"dark_room", "bump_plane", "looks", "reflecting", "stereo", "questions"}));
   app.add_option("--samples", samples, "a pixel")->check(CLI::Range(1, 16))->capture_default_str();
   CLI11_PARSE(app, argc, argv);

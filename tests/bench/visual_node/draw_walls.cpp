@@ -71,7 +71,7 @@ int main(int argc, char** argv) try {
   int edge = 400;
   std::vector<std::string> set;
   std::vector<double> at;
-  CLI::App app("Draws a scene as the walls of a room show it, unfolded.");
+  CLI::App app("Draws the pictures of all walls of a room, unfolded.");
   app.add_option("OUT", out, "PNG file")->required();
   app.add_option("SCENE", scene_file, "SDF file")->check(CLI::ExistingFile);
   app.add_option("--room", room, "cave4 or cave6")->check(CLI::IsMember({"cave4", "cave6"}))->capture_default_str();

@@ -181,7 +181,7 @@ nlohmann::json video(const Options& options) {
 
 int main(int argc, char** argv) try {
   Options options;
-  CLI::App app("What a picture costs: triangles, bodies, video.");
+  CLI::App app("Cost of a picture: triangles, bodies, video.");
   app.add_option("--pictures", options.pictures, "of each row")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();

@@ -43,7 +43,7 @@ double ms_since(sync::HostTime begin) { return 1e3 * sync::to_seconds(sync::host
 int main(int argc, char** argv) try {
   std::string scene_file = TACTUS_SOURCE_DIR "/sim_node/scenes/dark_room.sdf", png;
   int pictures = 200;
-  CLI::App app("What a picture costs in each step of vision's quality ladder.");
+  CLI::App app("Cost of a picture at each quality step of visual_node.");
   app.add_option("SCENE", scene_file, "SDF file")->check(CLI::ExistingFile);
   app.add_option("--pictures", pictures, "of each step")->check(CLI::Range(1, 100000))->capture_default_str();
   app.add_option("--png", png, "folder to write the last picture of each step to")->check(CLI::ExistingDirectory);

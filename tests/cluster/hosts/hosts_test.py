@@ -19,7 +19,7 @@ from tactus.cluster.host_connection import Failed
 from tactus.launch.cluster import BIN
 from tactus.refusal import Refusal
 
-PATIENCE_S = 60
+TIMEOUT_S = 60
 FILE = """<cluster name="{name}">
   <bus ttl="1" port="{port}"/>
   <run scene="{scene}" budget="150ms"/>
@@ -55,7 +55,7 @@ class Hosts(unittest.TestCase):
         if self.r.wait_until_running(PATIENCE_S) is None:
             raise AssertionError(f"not whole: {({n: self.r.node_states.state(n) for n in self.r.placement})}")
 
-    def wait(self, condition, what, patience_s=PATIENCE_S):
+    def wait(self, condition, what, patience_s=TIMEOUT_S):
         end = time.monotonic() + patience_s
         while not condition():
             self.assertLess(time.monotonic(), end, what)
@@ -71,8 +71,8 @@ class Hosts(unittest.TestCase):
     def states_at(self, host):
         """{node: state} as received on that host."""
         import json
-        said = self.at(host, "watch", "--once", "--json").stdout
-        return {name: n["state"] for name, n in json.loads(said)["nodes"].items()} if said else {}
+        output = self.at(host, "watch", "--once", "--json").stdout
+        return {name: n["state"] for name, n in json.loads(output)["nodes"].items()} if output else {}
 
     def health(self, seconds=1.5):
         """{node: newest row of NODE_HEALTH} from an observer's log."""
@@ -86,7 +86,7 @@ class Hosts(unittest.TestCase):
         """{node: incarnation}; a restarted process has another number."""
         return {name: node["pid"] for s in self.r.operator.states().values() for name, node in s["nodes"].items()}
 
-    def test_10_every_host_runs_what_the_file_says_from_a_build_of_its_own(self):
+    def test_10_every_host_runs_its_nodes_of_the_file_from_its_own_build(self):
         states = self.r.operator.states()
         for host, s in states.items():
             self.assertEqual(set(self.r.cluster.nodes_on(host)), set(s["nodes"]))
@@ -99,25 +99,25 @@ class Hosts(unittest.TestCase):
         listing = subprocess.run(["nsenter", f"--mount=/proc/{self.r.lab.hosts['sound'].pid}/ns/mnt", "ls", str(REPOSITORY)], capture_output=True, text=True, check=False)
         self.assertEqual("", listing.stdout)
 
-    def test_10_where_nobody_is_root_the_nodes_run_all_the_same_and_the_doctor_says_what_they_lack(self):
+    def test_10_nodes_run_without_root_and_the_doctor_reports_missing_rights(self):
         users = {pathlib.Path(f"/proc/{p}").stat().st_uid for p in self.r.lab.hosts["sound"].processes() if self.name_of(p) in ("audio_node", "thermal_node", "sync_node")}
         self.assertEqual({1000}, users)
         self.assertIn("normal schedul", self.health()["audio_node"]["note"])
         _, wrong = self.doctor()
-        said = [w for w in wrong if w.startswith("sound: SCHED_FIFO")]
-        self.assertEqual(1, len(said), wrong)
-        self.assertIn("person - rtprio 90", said[0])
+        output = [w for w in wrong if w.startswith("sound: SCHED_FIFO")]
+        self.assertEqual(1, len(output), wrong)
+        self.assertIn("person - rtprio 90", output[0])
 
     def name_of(self, process):
         return pathlib.Path(f"/proc/{process}/comm").read_text(encoding="ascii").strip()
 
-    def test_11_up_again_changes_nothing(self):
+    def test_11_a_second_up_changes_nothing(self):
         before = self.incarnations()
         self.r.operator.up("again")
         self.expect_whole()
         self.assertEqual(before, self.incarnations())
 
-    def test_12_every_event_is_presented_by_every_sense_on_whichever_host(self):
+    def test_12_every_modality_presents_every_event_on_any_host(self):
         begin = time.monotonic()
         expected = {}
         while time.monotonic() < begin + PATIENCE_S and not all(expected.get(m, 0) > 0 for m in ("audio", "visual")):
@@ -128,15 +128,15 @@ class Hosts(unittest.TestCase):
         self.assertGreater(expected["audio"], 0)
         self.assertGreater(expected["visual"], 0)
 
-    def test_13_the_doctor_finds_nothing_between_the_hosts_and_their_clocks_as_far_apart_as_they_are(self):
+    def test_13_the_doctor_finds_no_network_fault_and_the_true_clock_offsets(self):
         figures, wrong = self.doctor()
         between = [w for w in wrong if "receives nothing" in w or "loses" in w]
         self.assertEqual([], between)
-        apart_s = lambda a, b: self.r.lab.hosts[b].ahead_s - self.r.lab.hosts[a].ahead_s
-        for host, said in figures["pairs"].items():
-            self.assertEqual(2, len(said["others"]))
-            for other, o in said["others"].items():
-                self.assertLessEqual(abs(o["offset_us"] - 1e6 * apart_s(host, other)), o["uncertainty_us"], (host, other))
+        offset_s = lambda a, b: self.r.lab.hosts[b].ahead_s - self.r.lab.hosts[a].ahead_s
+        for host, output in figures["pairs"].items():
+            self.assertEqual(2, len(output["others"]))
+            for other, o in output["others"].items():
+                self.assertLessEqual(abs(o["offset_us"] - 1e6 * offset_s(host, other)), o["uncertainty_us"], (host, other))
                 self.assertEqual(1, o["ttl"])
         self.assertEqual(set(self.r.lab.hosts), set(figures["hosts"]))
 
@@ -163,7 +163,7 @@ class Hosts(unittest.TestCase):
         finally:
             checkup.report = said
 
-    def test_20_a_sense_moves_and_nobody_else_is_started_anew(self):
+    def test_20_a_moved_node_restarts_no_other_node(self):
         before = self.incarnations()
         self.r.operator.move("audio_node", "picture")
         self.r.placement["audio_node"] = "picture"
@@ -184,7 +184,7 @@ class Hosts(unittest.TestCase):
             with self.subTest(node), self.assertRaisesRegex(Refusal, word):
                 self.r.operator.move(node, host)
 
-    def test_22_a_killed_node_comes_back_alone(self):
+    def test_22_a_killed_node_rejoins_by_itself(self):
         before = self.incarnations()
         self.r.operator.request("sound", "send_command", names=["thermal_node"], letter="k")
         self.wait(lambda: self.r.node_states.state("thermal_node") != "running", "thermal_node is missed")
@@ -193,10 +193,10 @@ class Hosts(unittest.TestCase):
         self.assertNotEqual(before.pop("thermal_node"), after.pop("thermal_node"))
         self.assertEqual(before, after)
 
-    def test_30_a_host_that_is_cut_off_holds_and_says_so_and_comes_back_by_itself(self):
+    def test_30_a_disconnected_host_holds_reports_it_and_recovers(self):
         before = self.incarnations()
         self.r.lab.hosts["sound"].cut()
-        self.wait(lambda: self.states_at("sound").get("audio_node") in ("stale", "input lost"), "audio_node says that it hears nothing")
+        self.wait(lambda: self.states_at("sound").get("audio_node") in ("stale", "input lost"), "audio_node reports its lost input")
         self.assertIn(self.states_at("sound").get("thermal_node"), ("stale", "input lost"))
         for node in ("sim_node", "haptic_node", "visual_node"):
             self.assertEqual("running", self.r.node_states.state(node))
@@ -204,14 +204,14 @@ class Hosts(unittest.TestCase):
         self.expect_whole()
         self.assertEqual(before, self.incarnations())
 
-    def test_31_two_halves_keep_what_they_have_and_agree_on_the_newer_profile_when_they_are_one_again(self):
+    def test_31_two_halves_keep_their_profiles_and_agree_on_the_newer_one_after_reunion(self):
         for name, delay in (("before", 10), ("here", 20), ("there", 30)):
             (self.folder / f"{name}.xml").write_text(LATE.format("audio", delay), encoding="utf-8")
-        told = self.at("world", "degrade", str(self.folder / "before.xml"))
-        self.assertEqual(0, told.returncode, told.stderr)
+        published = self.at("world", "degrade", str(self.folder / "before.xml"))
+        self.assertEqual(0, published.returncode, published.stderr)
         before = self.incarnations()
         self.r.lab.split(["sound"])
-        self.wait(lambda: self.states_at("sound").get("audio_node") in ("stale", "input lost"), "the half without the simulation says so")
+        self.wait(lambda: self.states_at("sound").get("audio_node") in ("stale", "input lost"), "the half without the simulation reports its lost input")
         self.assertEqual("running", self.states_at("world").get("visual_node"))
         self.assertNotIn("sim_node", [n for n, s in self.states_at("sound").items() if s == "running"])
         here = self.at("world", "degrade", str(self.folder / "here.xml"))
@@ -226,11 +226,11 @@ class Hosts(unittest.TestCase):
         def agreed():
             profiles = {name: row["profile"] for name, row in self.health().items() if name in SENSES}
             return len(profiles) == len(SENSES) and len(set(profiles.values())) == 1 and not halves & set(profiles.values())
-        self.wait(agreed, "all senses have the newer profile")
+        self.wait(agreed, "all modalities have the newer profile")
         self.assertEqual(before, self.incarnations())
         self.assertEqual(0, self.at("world", "degrade", "off").returncode)
 
-    def test_40_a_host_that_lost_its_power_joins_late_with_scene_profile_and_clock(self):
+    def test_40_a_host_after_a_power_loss_rejoins_with_scene_profile_and_clock(self):
         (self.folder / "slow.xml").write_text(LATE.format("thermal", 15), encoding="utf-8")
         self.assertEqual(0, self.at("world", "degrade", str(self.folder / "slow.xml")).returncode)
         before, processes = self.health(), self.incarnations()
@@ -245,13 +245,13 @@ class Hosts(unittest.TestCase):
             now = self.health()
             return now["visual_node"]["profile"] == before["haptic_node"]["profile"] and "3 other" not in now["sync_node"]["note"] and \
                 "2 other clocks" in now["sync_node_picture"]["note"]
-        self.wait(joined, "it has the profile, and the clocks of the others")
+        self.wait(joined, "visual_node has the profile, and its host has the clocks of the others")
         after = self.incarnations()
         for name in ("sim_node", "haptic_node", "audio_node", "thermal_node", "recorder", "sync_node", "sync_node_sound"):
             self.assertEqual(processes[name], after[name], name)
         self.assertEqual(0, self.at("world", "degrade", "off").returncode)
 
-    def test_41_a_host_that_is_away_is_left_out_and_named(self):
+    def test_41_an_absent_host_is_left_out_and_named(self):
         self.r.lab.hosts["picture"].cut()
         try:
             away = self.r.operator.up("again")
@@ -260,7 +260,7 @@ class Hosts(unittest.TestCase):
             self.r.lab.hosts["picture"].mend()
         self.expect_whole()
 
-    def test_50_another_cluster_on_the_same_port_is_refused_and_on_another_hears_nothing(self):
+    def test_50_another_cluster_is_refused_on_the_same_port_and_isolated_on_another(self):
         from tactus.cluster.cluster_file import read
         from tactus.cluster.cluster_operator import Operator
         config = str(self.r.lab.folder / "ssh_config")
@@ -282,20 +282,20 @@ class Hosts(unittest.TestCase):
         self.expect_whole()
         self.assertEqual(before, self.incarnations())
 
-    def test_51_a_build_that_speaks_otherwise_is_refused_with_what_differs(self):
+    def test_51_an_incompatible_build_is_refused_with_the_difference(self):
         from tactus.cluster.cluster_file import read
         from tactus.cluster.cluster_operator import Operator
         own = self.r.lab.hosts["picture"].home / "own" / "bin"
         own.mkdir(parents=True)
-        said = subprocess.run([BIN / "message_types"], capture_output=True, text=True, check=True).stdout
-        (own / "message_types").write_text("#!/bin/sh\ncat <<'X'\n" + said.replace("struct contact_events_t 0x", "struct contact_events_t 0xf") + "X\n", encoding="utf-8")
+        output = subprocess.run([BIN / "message_types"], capture_output=True, text=True, check=True).stdout
+        (own / "message_types").write_text("#!/bin/sh\ncat <<'X'\n" + output.replace("struct contact_events_t 0x", "struct contact_events_t 0xf") + "X\n", encoding="utf-8")
         (own / "message_types").chmod(0o755)
         path = write_file(self.folder, "mixed", 7787, ' build="~/own"')
         mixed = Operator(read(str(path), self.folder / "x"), str(self.r.lab.folder / "ssh_config"), quiet=True)
         with self.assertRaisesRegex(Refusal, "picture: the messages of its build differ: .*contact_events_t"):
             mixed.up("mixed")
 
-    def test_90_at_the_end_all_results_are_gathered_and_every_log_is_whole(self):
+    def test_90_down_collects_all_results_and_complete_logs(self):
         out = self.folder / "results"
         wrong, ran = self.r.operator.down(out)
         self.assertEqual([], wrong)

@@ -13,7 +13,7 @@ sys.path.insert(0, str(REPOSITORY / "scripts" / "python"))
 from tactus.cluster import cluster_file, lab_cluster, status
 from tactus.cluster.cluster_operator import Operator
 
-PATIENCE_S = 60
+TIMEOUT_S = 60
 FILE = """<cluster name="beside">
   <bus ttl="1"/>
   <run scene="metronome.sdf"/>
@@ -38,7 +38,7 @@ class Namespaces(unittest.TestCase):
         self.operator = Operator(cluster_file.read(str(path), self.folder / "plan"), quiet=True)
 
     def wait(self, condition, what):
-        end = time.monotonic() + PATIENCE_S
+        end = time.monotonic() + TIMEOUT_S
         while not condition():
             self.assertLess(time.monotonic(), end, what)
             time.sleep(0.2)
@@ -50,14 +50,14 @@ class Namespaces(unittest.TestCase):
         states, _ = status.query(self.operator)
         return [host for host, s in states.items() if not isinstance(s, Exception) and node in s["nodes"]]
 
-    def test_a_sense_runs_in_a_namespace_and_moves_out_of_it(self):
+    def test_a_node_runs_in_a_namespace_and_moves_out_of_it(self):
         self.operator.up("git")
         self.assertTrue(self.operator.wait_for_world())
-        self.wait(self.whole, "all run and are heard")
+        self.wait(self.whole, "all nodes run and are received")
         self.assertEqual(["beside"], self.runs_at("audio_node"))
         self.assertEqual(["here"], self.runs_at("sim_node"))
         self.operator.move("audio_node", "here")
-        self.wait(self.whole, "all run and are heard after the move")
+        self.wait(self.whole, "all nodes run and are received after the move")
         self.assertEqual(["here"], self.runs_at("audio_node"))
         out = self.folder / "out"
         wrong, ran = self.operator.down(out)

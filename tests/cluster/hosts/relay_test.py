@@ -22,7 +22,7 @@ from tactus.cluster import lab_cluster
 from tactus.launch.cluster import BIN
 from tactus.refusal import Refusal
 
-PATIENCE_S = 60
+TIMEOUT_S = 60
 LINE = 7700
 FILE = """<cluster name="sites">
   <bus ttl="1"/>
@@ -58,17 +58,17 @@ class Sites(unittest.TestCase):
         if self.r.wait_until_running(PATIENCE_S) is None:
             raise AssertionError(f"not whole: {({n: self.r.node_states.state(n) for n in self.r.placement})}")
 
-    def wait(self, condition, what, patience_s=PATIENCE_S):
+    def wait(self, condition, what, patience_s=TIMEOUT_S):
         end = time.monotonic() + patience_s
         while not condition():
             self.assertLess(time.monotonic(), end, what)
             time.sleep(0.05)
 
-    def hear(self, hosts, seconds):
+    def record_at(self, hosts, seconds):
         """{host: summary} of the messages that each host receives on its bus."""
         c, outs, recorders = self.r.cluster, {}, {}
         for host in hosts:
-            outs[host] = self.folder / f"heard_{host}"
+            outs[host] = self.folder / f"recorded_{host}"
             shutil.rmtree(outs[host], ignore_errors=True)
             outs[host].mkdir()
             words = [BIN / "recorder", "--out", outs[host], "--name", f"ear_{host}", "--run-id", self.r.node_states.run_id, "--group", c.bus.group, "--port", c.bus.port,
@@ -79,15 +79,15 @@ class Sites(unittest.TestCase):
             recorder.terminate()
         for recorder in recorders.values():
             recorder.wait(20)
-        heard = {}
+        summaries = {}
         for host, out in outs.items():
             subprocess.run([BIN / "summarise", out, "--out", out / "summary.json"], capture_output=True, check=False)
-            heard[host] = json.loads((out / "summary.json").read_text(encoding="utf-8"))
-        return heard
+            summaries[host] = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+        return summaries
 
     def rows(self, host, channel):
-        """The messages of a channel in the last recording of hear() there."""
-        out = self.folder / f"heard_{host}"
+        """The messages of a channel in the last recording of record_at() there."""
+        out = self.folder / f"recorded_{host}"
         subprocess.run([BIN / "export_log", out, "--out", out, "--channels", channel, "--wide"], check=True, capture_output=True)
         path = out / f"{channel}.csv"
         if not path.is_file():
@@ -97,7 +97,7 @@ class Sites(unittest.TestCase):
 
     def channels(self, host):
         """All channels with a message in the recording there, of known or unknown type; read by LCM's log format."""
-        data, at, found = (self.folder / f"heard_{host}" / "run.lcmlog").read_bytes(), 0, set()
+        data, at, found = (self.folder / f"recorded_{host}" / "run.lcmlog").read_bytes(), 0, set()
         while at + 28 <= len(data):
             channel, size = struct.unpack_from(">II", data, at + 20)
             found.add(data[at + 28:at + 28 + channel].decode())
@@ -110,7 +110,7 @@ class Sites(unittest.TestCase):
     def note(self, relay):
         return self.r.node_states.newest.get(relay, {}).get("note", "")
 
-    def test_10_every_sense_in_every_site_presents_every_event_and_what_must_not_cross_does_not(self):
+    def test_10_every_site_presents_every_event_and_blocked_channels_do_not_cross(self):
         begin = time.monotonic()
         expected = {}
         while time.monotonic() < begin + PATIENCE_S and not all(expected.get(m, 0) > 0 for m in ("audio", "visual")):
@@ -125,8 +125,8 @@ class Sites(unittest.TestCase):
         senders = {row["sender"] for row in self.rows("far", "CLOCK_PROBE")}
         self.assertLessEqual(senders, {"sync_node_far"})
 
-    def test_11_the_hand_comes_at_60_Hz_numbered_without_gaps_and_is_no_loss_to_anyone(self):
-        self.hear(["world", "far"], 4)
+    def test_11_the_hand_arrives_at_60_Hz_with_consecutive_numbers(self):
+        self.record_at(["world", "far"], 4)
         first = lambda host: [row for row in self.rows(host, "TOOL_STATE") if row["sender"] == "haptic_node"]
         here, there = first("world"), first("far")
         time_s = lambda rows: float(rows[-1]["log_s"]) - float(rows[0]["log_s"])
@@ -136,8 +136,8 @@ class Sites(unittest.TestCase):
         numbers = [int(row["seq"]) for row in there]
         self.assertEqual(list(range(numbers[0], numbers[0] + len(numbers))), numbers, self.note("relay_world"))
 
-    def test_12_what_is_said_in_one_site_is_heard_once_in_another(self):
-        self.hear(["near", "far"], 3)
+    def test_12_messages_of_one_site_arrive_once_in_another(self):
+        self.record_at(["near", "far"], 3)
         for host in ("near", "far"):
             for channel in ("PRESENTED", "NODE_HEALTH", "WORLD_STATE"):
                 rows = self.rows(host, channel)
@@ -148,15 +148,15 @@ class Sites(unittest.TestCase):
     def test_20_a_profile_put_in_force_in_one_site_is_in_force_in_all(self):
         path = self.folder / "late.xml"
         path.write_text(LATE, encoding="utf-8")
-        said = self.at("world", "degrade", str(path))
-        self.assertEqual(0, said.returncode, said.stderr)
+        output = self.at("world", "degrade", str(path))
+        self.assertEqual(0, output.returncode, output.stderr)
 
         def everywhere():
-            self.hear(["world"], 1.2)
+            self.record_at(["world"], 1.2)
             newest = {row["node"]: row["profile"] for row in self.rows("world", "NODE_HEALTH")}
             senses = [newest.get(n) for n in ("haptic_node", "audio_node", "visual_node", "thermal_node")]
             return None not in senses and len(set(senses)) == 1 and senses[0] != "0"
-        self.wait(everywhere, "all senses have the profile")
+        self.wait(everywhere, "all modalities have the profile")
         self.assertEqual(0, self.at("world", "degrade", "off").returncode)
 
     def at(self, host, *words):
@@ -164,35 +164,35 @@ class Sites(unittest.TestCase):
         environment = dict(os.environ, TACTUS_GROUP=c.bus.group, TACTUS_PORT=str(c.bus.port), TACTUS_TTL=str(c.bus.ttl), TACTUS_RUN_ID=str(self.r.node_states.run_id))
         return subprocess.run([*self.r.lab.hosts[host].inside(), str(BIN / words[0]), *words[1:]], env=environment, capture_output=True, text=True, timeout=60, check=False)
 
-    def test_30_a_slow_line_makes_its_site_sparse_and_no_other(self):
+    def test_30_a_slow_line_decimates_its_own_site_only(self):
         before = self.incarnations()
         rate = lambda host: len(self.rows(host, "WORLD_STATE"))
-        self.hear(["near", "far"], 4)
+        self.record_at(["near", "far"], 4)
         usual = {host: rate(host) for host in ("near", "far")}
         self.r.lab.slow("far", 100)
         time.sleep(1)
-        heard = self.hear(["near", "far"], 4)
+        summaries = self.record_at(["near", "far"], 4)
         slowed = {host: rate(host) for host in ("near", "far")}
         self.assertGreater(slowed["near"], 0.9 * usual["near"])
         self.assertLess(slowed["far"], 0.8 * usual["far"])
-        self.assertEqual(0, heard["near"]["contacts"]["by_modality"]["audio"]["lost"])
+        self.assertEqual(0, summaries["near"]["contacts"]["by_modality"]["audio"]["lost"])
         self.r.lab.slow("far", 0)
         self.expect_whole()
         self.assertEqual(before, self.incarnations())
 
-    def test_31_a_site_that_is_cut_off_is_missed_and_named_and_the_others_go_on(self):
+    def test_31_a_disconnected_site_is_named_and_the_others_continue(self):
         before = self.incarnations()
         self.r.lab.hosts["far"].cut()
-        self.wait(lambda: "10.77.0.3:7700: not heard" in self.note("relay_near"), "the relay says which site it does not hear")
-        heard = self.hear(["near"], 3)
-        self.assertEqual(0, heard["near"]["contacts"]["by_modality"]["audio"]["lost"])
+        self.wait(lambda: "10.77.0.3:7700: not heard" in self.note("relay_near"), "the relay names the unreachable site")
+        summaries = self.record_at(["near"], 3)
+        self.assertEqual(0, summaries["near"]["contacts"]["by_modality"]["audio"]["lost"])
         for node in ("sim_node", "haptic_node", "audio_node"):
             self.assertEqual("running", self.r.node_states.state(node), f"{node}: {self.note(node)}")
         self.r.lab.hosts["far"].mend()
         self.expect_whole()
         self.assertEqual(before, self.incarnations())
 
-    def test_32_a_killed_relay_comes_back_alone(self):
+    def test_32_a_killed_relay_restarts_by_itself(self):
         before = self.incarnations()
         self.r.operator.request("near", "send_command", names=["relay_near"], letter="k")
         self.wait(lambda: self.incarnations().get("relay_near") != before["relay_near"], "it is started again")
@@ -201,11 +201,11 @@ class Sites(unittest.TestCase):
         self.assertNotEqual(before.pop("relay_near"), after.pop("relay_near"))
         self.assertEqual(before, after)
 
-    def test_33_a_relay_is_not_moved(self):
+    def test_33_a_relay_cannot_be_moved(self):
         with self.assertRaisesRegex(Refusal, "expect it on this host"):
             self.r.operator.move("relay_near", "world")
 
-    def test_34_who_is_no_relay_is_not_heard(self):
+    def test_34_datagrams_of_other_addresses_are_ignored(self):
         """The same bytes from the address of a relay that is down are accepted: a relay is identified by its address only."""
         header = struct.pack(">qqiqiqq", -1, 1, 1, self.r.node_states.run_id, 7, 1, 0)
         datagram = b"TRL1\0SIM_COMMAND\0" + bytes(8) + header + bytes(40)
@@ -214,7 +214,7 @@ class Sites(unittest.TestCase):
             program = f"import socket; s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM); s.bind(('10.77.0.2', {port})); s.sendto({datagram!r}, ('10.77.0.1', {LINE}))"
             sender = threading.Timer(1.0, lambda: subprocess.run([*self.r.lab.hosts["near"].inside(), sys.executable, "-c", program], check=True))
             sender.start()
-            self.hear(["world"], 2)
+            self.record_at(["world"], 2)
             sender.join()
             return "SIM_COMMAND" in self.channels("world")
         self.assertFalse(arrives(LINE + 1))
@@ -223,7 +223,7 @@ class Sites(unittest.TestCase):
         self.r.operator.request("near", "start", patience_s=40, names=["relay_near"])
         self.expect_whole()
 
-    def test_90_at_the_end_all_results_are_gathered(self):
+    def test_90_down_collects_all_results(self):
         wrong, ran = self.r.operator.down(self.folder / "results")
         self.assertEqual([], wrong)
         self.assertIsNotNone(ran)

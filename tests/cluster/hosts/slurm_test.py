@@ -14,10 +14,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "scripts" / "python"))
 from tactus.study import trial_table
 
-SKIPPED = 77
+EXIT_SKIPPED = 77
 NODE, ADDRESS = "one", "10.88.0.1"  # an interface name and an address that no other program uses
 NAMESPACES = ["unshare", "--net", "--uts", "--pid", "--fork", "--kill-child", "--mount-proc"]
-SOON_S = 60
+TIMEOUT_S = 60
 CONFIGURATION = """ClusterName=one
 SlurmctldHost={node}({address})
 AuthType=auth/none
@@ -54,7 +54,7 @@ STUDY = f"""<?xml version="1.0" encoding="UTF-8"?>
 """
 
 
-def asked(*words):
+def output_of(*words):
     return subprocess.run(words, capture_output=True, text=True, check=False)
 
 
@@ -74,37 +74,37 @@ class SweepOnSlurm(unittest.TestCase):
             daemon = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             cls.addClassCleanup(daemon.wait)
             cls.addClassCleanup(daemon.terminate)
-        cls.until(cls, lambda: "idle" in asked("sinfo", "--noheader", "--format=%T").stdout, "the node is idle")
+        cls.until(cls, lambda: "idle" in output_of("sinfo", "--noheader", "--format=%T").stdout, "the node is idle")
         cls.study = cls.folder / "short.xml"
         cls.study.write_text(STUDY, encoding="utf-8")
 
     def until(self, condition, what):
-        end = time.monotonic() + SOON_S
+        end = time.monotonic() + TIMEOUT_S
         while not condition():
             if time.monotonic() > end:
                 logs = "".join(path.read_text(errors="replace")[-1500:] for path in self.folder.glob("*.log"))
-                raise AssertionError(f"{what}: not within {SOON_S} s\n{logs}")
+                raise AssertionError(f"{what}: not within {TIMEOUT_S} s\n{logs}")
             time.sleep(0.1)
 
     def words(self, *words):
         return [str(ROOT / "scripts" / "tactus"), "study", "sweep", *map(str, words)]
 
     def sweep(self, *words):
-        done = asked(*self.words(*words))
+        done = output_of(*self.words(*words))
         self.assertEqual(0, done.returncode, done.stdout + done.stderr)
         return done.stdout
 
     def jobs(self):
-        return asked("squeue", "--noheader", "--format=%i").stdout.split()
+        return output_of("squeue", "--noheader", "--format=%i").stdout.split()
 
-    def test_it_plays_the_games_that_parallel_plays(self):
+    def test_it_plays_the_same_games_as_parallel(self):
         self.sweep(self.study, "--games", 3, "--jobs", 2, "--out", self.folder / "parallel")
-        said = self.sweep(self.study, "--games", 3, "--slurm", "--partition", "all", "--array-size", 3, "--out", self.folder / "slurm")
-        self.assertIn("12 of 12 games", said)
+        output = self.sweep(self.study, "--games", 3, "--slurm", "--partition", "all", "--array-size", 3, "--out", self.folder / "slurm")
+        self.assertIn("12 of 12 games", output)
         self.assertEqual((self.folder / "parallel" / "games.csv").read_bytes(), (self.folder / "slurm" / "games.csv").read_bytes())
         self.assertEqual({0}, {row["missed"] for row in trial_table.read(self.folder / "slurm" / "games.csv")})
 
-    def test_who_follows_it_may_be_killed_and_goes_on_with_nothing_lost_or_played_twice(self):
+    def test_the_killed_client_resumes_without_lost_or_repeated_games(self):
         out = self.folder / "killed"
         chunks = lambda: sum(path.stat().st_size for path in (out / "chunks").glob("*.csv")) if (out / "chunks").is_dir() else 0
         process = subprocess.Popen(self.words(self.study, "--games", 6, "--slurm", "--array-size", 2, "--out", out), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -112,22 +112,22 @@ class SweepOnSlurm(unittest.TestCase):
         process.send_signal(signal.SIGKILL)
         process.wait()
         for job in self.jobs():
-            asked("scancel", job)
+            output_of("scancel", job)
         self.until(lambda: not self.jobs(), "the jobs have ended")
         self.sweep("--resume", "--slurm", "--out", out)
         rows = trial_table.read(out / "games.csv")
         self.assertEqual(list(range(1, 25)), [row["trial"] for row in rows])
 
-    def test_asked_to_end_it_takes_its_jobs_along(self):
+    def test_an_interrupt_cancels_its_jobs(self):
         out = self.folder / "ended"
         process = subprocess.Popen(self.words(self.study, "--games", 200, "--slurm", "--array-size", 2, "--out", out), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.until(self.jobs, "jobs wait or run")
         process.send_signal(signal.SIGTERM)
-        self.assertNotEqual(0, process.wait(SOON_S))
+        self.assertNotEqual(0, process.wait(TIMEOUT_S))
         self.until(lambda: not self.jobs(), "no job waits or runs")
 
-    def test_a_partition_that_is_not_there_is_refused_in_a_sentence(self):
-        done = asked(*self.words(self.study, "--games", 1, "--slurm", "--partition", "none", "--out", self.folder / "refused"))
+    def test_a_missing_partition_is_refused_in_one_sentence(self):
+        done = output_of(*self.words(self.study, "--games", 1, "--slurm", "--partition", "none", "--out", self.folder / "refused"))
         self.assertEqual((1, 1), (done.returncode, len(done.stderr.strip().splitlines())), done.stderr)
         self.assertIn("sbatch refused", done.stderr)
 
@@ -135,7 +135,7 @@ class SweepOnSlurm(unittest.TestCase):
 if __name__ == "__main__":
     if sys.argv[1:2] != ["inside"]:
         if os.getuid() or subprocess.run([*NAMESPACES, "true"], capture_output=True, check=False).returncode:
-            print("a Slurm cluster of its own needs namespaces, and root")
-            sys.exit(SKIPPED)
+            print("this test needs root and namespaces for a private Slurm cluster")
+            sys.exit(EXIT_SKIPPED)
         sys.exit(subprocess.run([*NAMESPACES, sys.executable, __file__, "inside"], check=False).returncode)
     unittest.main(argv=sys.argv[:1])

@@ -15,20 +15,20 @@ sys.path.insert(0, str(SCRIPTS / "python"))
 from tactus.refusal import Refusal
 from tactus.study import journal
 
-SOON_S = 90  # a cluster starts within seconds; beside other work it takes longer
+TIMEOUT_S = 90  # a cluster starts within seconds; beside other work it takes longer
 
 
-class AStudyOnALiveCluster(unittest.TestCase):
+class StudyOnALiveCluster(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.out = pathlib.Path(folder.name)
-        self.said = self.out / "said.log"
+        self.log = self.out / "session.log"
 
     def start(self, study, *words):
-        said = open(self.said, "ab")
-        self.addCleanup(said.close)
-        return subprocess.Popen([str(SCRIPTS / "tactus"), "study", "run", study, "--participant", "P01", "--simulated", "--out", str(self.out), *words], stdout=said, stderr=said)
+        output = open(self.log, "ab")
+        self.addCleanup(output.close)
+        return subprocess.Popen([str(SCRIPTS / "tactus"), "study", "run", study, "--participant", "P01", "--simulated", "--out", str(self.out), *words], stdout=output, stderr=output)
 
     def trials(self, study):
         try:
@@ -37,13 +37,13 @@ class AStudyOnALiveCluster(unittest.TestCase):
             return []
 
     def wait_for_trials(self, study, count, process):
-        end = time.monotonic() + SOON_S
+        end = time.monotonic() + TIMEOUT_S
         while len([t for t in self.trials(study) if not t["missed"]]) < count:
-            self.assertIsNone(process.poll(), self.said.read_text(errors="replace")[-2000:])
-            self.assertLess(time.monotonic(), end, self.said.read_text(errors="replace")[-2000:])
+            self.assertIsNone(process.poll(), self.log.read_text(errors="replace")[-2000:])
+            self.assertLess(time.monotonic(), end, self.log.read_text(errors="replace")[-2000:])
             time.sleep(0.1)
 
-    def test_what_was_asked_for_is_presented_and_a_killed_session_goes_on(self):
+    def test_requested_stimuli_are_presented_and_a_killed_session_resumes(self):
         study = "audio_haptic_synchrony"
         first = self.start(study)
         try:
@@ -52,7 +52,7 @@ class AStudyOnALiveCluster(unittest.TestCase):
             first.send_signal(signal.SIGKILL)
             first.wait()
         second = self.start(study, "--most", "3")
-        self.assertEqual(second.wait(SOON_S), 0, self.said.read_text(errors="replace")[-2000:])
+        self.assertEqual(second.wait(TIMEOUT_S), 0, self.log.read_text(errors="replace")[-2000:])
         counted = [t for t in self.trials(study) if not t["missed"]]
         self.assertEqual([t["trial"] for t in counted], list(range(1, len(counted) + 1)))
         self.assertGreaterEqual(len(counted), 5)
@@ -62,19 +62,19 @@ class AStudyOnALiveCluster(unittest.TestCase):
             self.assertEqual((t["by"], t["row"]["observer"]), ("simulated", "simulated"))
         self.assertTrue((self.out / study / "P01" / "trials.csv").exists())
 
-    def test_a_simulated_participant_sees_the_frames_themselves(self):
+    def test_a_simulated_participant_perceives_the_video_frames(self):
         study = "audio_visual_synchrony"
         process = self.start(study, "--most", "4")
-        self.assertEqual(process.wait(SOON_S), 0, self.said.read_text(errors="replace")[-2000:])
+        self.assertEqual(process.wait(TIMEOUT_S), 0, self.log.read_text(errors="replace")[-2000:])
         counted = [t for t in self.trials(study) if not t["missed"]]
         self.assertGreaterEqual(len(counted), 4)
         for t in counted:
             self.assertLess(abs(t["sensed_ms"] - t["row"]["soa_achieved_ms"]), 2)  # measured in pixels and samples, against the reported value
 
-    def test_of_two_presses_each_is_felt_and_a_delay_of_touch_makes_one_softer(self):
+    def test_each_of_two_presses_is_felt_and_a_touch_delay_makes_one_softer(self):
         study = "haptic_delay_stiffness"
         process = self.start(study, "--most", "6")  # each of its delays once
-        self.assertEqual(process.wait(2 * SOON_S), 0, self.said.read_text(errors="replace")[-2000:])
+        self.assertEqual(process.wait(2 * TIMEOUT_S), 0, self.log.read_text(errors="replace")[-2000:])
         pressed = [t for t in self.trials(study) if not t["missed"]]
         self.assertEqual(len(pressed), 6)
         for t in pressed:
@@ -90,7 +90,7 @@ class AStudyOnALiveCluster(unittest.TestCase):
     def test_a_game_is_a_trial(self):
         study = "senses_removed"
         process = self.start(study, "--most", "2")
-        self.assertEqual(process.wait(2 * SOON_S), 0, self.said.read_text(errors="replace")[-2000:])
+        self.assertEqual(process.wait(2 * TIMEOUT_S), 0, self.log.read_text(errors="replace")[-2000:])
         games = [t["row"] for t in self.trials(study) if not t["missed"]]
         self.assertEqual(len(games), 2)
         for row in games:

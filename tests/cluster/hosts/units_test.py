@@ -16,8 +16,8 @@ BIN = pathlib.Path(os.environ.get("TACTUS_BIN") or ROOT / "build" / "dev" / "bin
 SYSTEMD = "/lib/systemd/systemd"
 KINDS = ("sync", "recorder", "haptic", "haptic@lamp", "audio", "visual", "thermal", "sim", "path")
 PRIORITIES = {"sync": 40, "recorder": 40, "haptic": 60, "haptic@lamp": 60, "audio": 45, "visual": 0, "thermal": 0, "sim": 50}
-PATIENCE_S = 60
-SKIPPED = 77
+TIMEOUT_S = 60
+EXIT_SKIPPED = 77
 # Includes only the targets of the system's own units: this system runs only the units of Tactus.
 BOOT = r"""
 set -e
@@ -87,20 +87,20 @@ class System:
         return done.stdout
 
     def is_up(self):
-        assert self.holder.poll() is None, "it ended: " + (self.folder / "log").read_text(encoding="utf-8")[-500:]
+        assert self.holder.poll() is None, "the system ended: " + (self.folder / "log").read_text(encoding="utf-8")[-500:]
         return self.pid() is not None and self.inside("systemctl", "is-active", "tactus.target", check=False).strip() == "active"
 
     def of(self, kind, key):
         return self.inside("systemctl", "show", "--property", key, "--value", f"tactus-{kind}").strip()
 
-    def said(self, kind):
+    def output(self, kind):
         return self.inside("cat", f"/run/said-tactus-{kind}", check=False)
 
     def close(self):
         self.holder.kill()
         self.holder.wait()
         (self.cgroup / "cgroup.kill").write_text("1", encoding="ascii")
-        wait_until(lambda: "populated 0" in (self.cgroup / "cgroup.events").read_text(encoding="ascii"), "what ran in it ends")
+        wait_until(lambda: "populated 0" in (self.cgroup / "cgroup.events").read_text(encoding="ascii"), "all processes of the system end")
         for path in sorted((p for p in self.cgroup.rglob("*") if p.is_dir()), reverse=True):
             path.rmdir()
         self.cgroup.rmdir()
@@ -114,9 +114,9 @@ def run(*words):
 
 
 def wait_until(holds, what):
-    end = time.monotonic() + PATIENCE_S
+    end = time.monotonic() + TIMEOUT_S
     while not holds():
-        assert time.monotonic() < end, f"not within {PATIENCE_S} s: {what}"
+        assert time.monotonic() < end, f"not within {TIMEOUT_S} s: {what}"
         time.sleep(0.1)
 
 
@@ -131,11 +131,11 @@ def cgroups():
 
 def check(system):
     wait_until(system.is_up, "systemd starts tactus.target")
-    wait_until(lambda: "the world begins" in system.said("sim"), "the world begins: " + system.said("sim"))
-    wait_until(lambda: "Initialization Sequence Completed" in system.said("path"), "the private path begins: " + system.said("path"))
+    wait_until(lambda: "the world begins" in system.output("sim"), "the world begins: " + system.output("sim"))
+    wait_until(lambda: "Initialization Sequence Completed" in system.output("path"), "the private path begins: " + system.output("path"))
     time.sleep(3)
     for kind in KINDS:
-        assert system.of(kind, "ActiveState") == "active" and system.of(kind, "NRestarts") == "0", f"{kind}: {system.of(kind, 'Result')}: {system.said(kind)}"
+        assert system.of(kind, "ActiveState") == "active" and system.of(kind, "NRestarts") == "0", f"{kind}: {system.of(kind, 'Result')}: {system.output(kind)}"
         pid = system.of(kind, "MainPID")
         status = dict(line.split(":\t", 1) for line in system.inside("cat", f"/proc/{pid}/status").splitlines() if ":\t" in line)
         assert (status["NoNewPrivs"], status["Seccomp"]) == ("1", "2"), kind
@@ -153,15 +153,15 @@ def check(system):
         assert (made.strip() == "made") == may, path
     system.inside("kill", "-9", pid)
     wait_until(lambda: system.of("sim", "ActiveState") == "active" and system.of("sim", "NRestarts") == "1" and system.of("sim", "MainPID") != pid,
-               "the simulation is started again")
-    wait_until(lambda: all_present(senses(system)), "every sense presents, in a new world too; vision compiles its shaders first")
+               "the supervisor restarts the simulation")
+    wait_until(lambda: all_present(presented_counts(system)), "every modality presents in the new world, after visual_node has compiled its shaders")
     system.inside("systemctl", "stop", "tactus.target")
     wait_until(lambda: all(system.of(kind, "ActiveState") in ("inactive", "failed") for kind in KINDS), "all end")
     for kind in KINDS:
-        assert (system.of(kind, "ActiveState"), system.of(kind, "Result")) == ("inactive", "success"), f"{kind}: {system.of(kind, 'Result')}: {system.said(kind)}"
+        assert (system.of(kind, "ActiveState"), system.of(kind, "Result")) == ("inactive", "success"), f"{kind}: {system.of(kind, 'Result')}: {system.output(kind)}"
 
 
-def senses(system):
+def presented_counts(system):
     """{modality: number of presented events} in the log of the units' recorder."""
     out = system.folder / "out"
     out.mkdir(exist_ok=True)
@@ -183,19 +183,19 @@ def main():
     needed = ("unshare", "nsenter", "openvpn", "nft", "openssl", "systemctl")
     if os.geteuid() != 0 or place is None or not os.path.exists(SYSTEMD) or not os.path.exists("/dev/net/tun") or \
             not all(shutil.which(p, path=os.environ.get("PATH", "") + ":/usr/sbin:/sbin") for p in needed):
-        print("skipped: a systemd of one's own needs root, cgroup2, /dev/net/tun, and the packages of scripts/packages.txt")
-        return SKIPPED
+        print("skipped: a private systemd needs root, cgroup2, /dev/net/tun, and the packages of scripts/packages.txt")
+        return EXIT_SKIPPED
     with tempfile.TemporaryDirectory(prefix="tactus-units-") as folder:
         probe = "mkdir l u w m && mount -t tmpfs tmpfs u && mkdir u/u u/w && mount -t overlay overlay -o lowerdir=/,upperdir=u/u,workdir=u/w m"
         if subprocess.run(["unshare", "--mount", "--net", "--pid", "--fork", "--cgroup", "sh", "-c", probe], cwd=folder, capture_output=True, check=False).returncode:
-            print("skipped: this system allows no namespaces of one's own with a copy of its files")
-            return SKIPPED
+            print("skipped: this system does not allow namespaces with an overlay of its files")
+            return EXIT_SKIPPED
         inside = pathlib.Path(folder) / "system"
         inside.mkdir()
         system = System(inside, place)
         try:
             check(system)
-            presented = senses(system)
+            presented = presented_counts(system)
             print("presented:", presented)
             assert all_present(presented), presented
         finally:

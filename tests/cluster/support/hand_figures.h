@@ -32,46 +32,46 @@ struct Figures {
   double peak_N() const { return *std::max_element(force_N.begin(), force_N.end()); }
 };
 
-inline Figures of_span(const RunLog& log, const Span& span) {
+inline Figures figures_of_span(const RunLog& log, const Span& span) {
   Figures f;
   std::vector<std::int64_t> steps, ticks;
   std::vector<std::vector<double>> force(static_cast<std::size_t>(kPeriod_s * 1000));
-  log.each<touch_model_t>(channels::kTouchModel, span, [&](const touch_model_t& m) {
+  log.for_each<touch_model_t>(channels::kTouchModel, span, [&](const touch_model_t& m) {
     if (m.tool == kLeft && m.page == 0) steps.push_back(m.header.publish_time_ns);
   });
-  log.each<tool_state_t>(channels::kToolState, span, [&](const tool_state_t& m) {
+  log.for_each<tool_state_t>(channels::kToolState, span, [&](const tool_state_t& m) {
     if (m.tool != kLeft) return;
     ticks.push_back(m.header.publish_time_ns);
     // The host's time, which the path of a virtual hand follows.
     const auto ms = static_cast<std::size_t>(m.header.publish_time_ns / 1'000'000) % force.size();
     force[ms].push_back(std::hypot(m.force_N.x, m.force_N.y, m.force_N.z));
   });
-  std::vector<double> ages, felt;
-  log.each<node_health_t>(channels::kNodeHealth, span, [&](const node_health_t& m) {
+  std::vector<double> ages, delays_ms;
+  log.for_each<node_health_t>(channels::kNodeHealth, span, [&](const node_health_t& m) {
     for (const input_health_t& in : m.inputs)
       if (m.node == "haptic_node" && in.channel == channels::kTouchModel)
         ages.push_back(static_cast<double>(in.age_ns) * 1e-6);
   });
-  std::map<std::int64_t, std::int64_t> happened_ns;
-  log.each<contact_events_t>(channels::kContactEvents, span, [&](const contact_events_t& m) {
+  std::map<std::int64_t, std::int64_t> event_ns;
+  log.for_each<contact_events_t>(channels::kContactEvents, span, [&](const contact_events_t& m) {
     for (const contact_event_t& e : m.events)
       if (e.tool == kLeft && e.kind == contact_event_t::HIT && m.clock.rate > 0)
-        happened_ns[e.event_id] =
+        event_ns[e.event_id] =
             m.clock.host_ns +
             static_cast<std::int64_t>(static_cast<double>(e.time_ns - m.clock.sim_ns) / m.clock.rate);
   });
-  log.each<presented_t>(channels::kPresented, span, [&](const presented_t& m) {
+  log.for_each<presented_t>(channels::kPresented, span, [&](const presented_t& m) {
     for (const presentation_t& p : m.reports)
       if (m.modality == "haptic" && p.part == presentation_t::TRANSIENT && p.presented_ns >= 0 &&
-          happened_ns.contains(p.event_id))
-        felt.push_back(static_cast<double>(p.presented_ns - happened_ns.at(p.event_id)) * 1e-6);
+          event_ns.contains(p.event_id))
+        delays_ms.push_back(static_cast<double>(p.presented_ns - event_ns.at(p.event_id)) * 1e-6);
   });
   f.sim_Hz = static_cast<double>(steps.size()) / span.seconds();
   f.hand_Hz = static_cast<double>(ticks.size()) / span.seconds();
   f.sim_step_p50_ms = quantile(steps_ms(steps), 0.5), f.sim_step_p99_ms = quantile(steps_ms(steps), 0.99);
   f.hand_step_p50_ms = quantile(steps_ms(ticks), 0.5), f.hand_step_p99_ms = quantile(steps_ms(ticks), 0.99);
   f.age_p50_ms = quantile(ages, 0.5), f.age_p90_ms = quantile(ages, 0.9);
-  f.felt_p50_ms = quantile(felt, 0.5);
+  f.felt_p50_ms = quantile(delays_ms, 0.5);
   for (const auto& samples : force) f.force_N.push_back(quantile(samples, 0.5));
   return f;
 }
@@ -80,7 +80,7 @@ inline Figures of_span(const RunLog& log, const Span& span) {
 // but an effect of the other hands would be in all three. The force is the median.
 inline Figures figures(const RunLog& log, const std::vector<Span>& spans) {
   std::vector<Figures> each;
-  for (const Span& span : spans) each.push_back(of_span(log, span));
+  for (const Span& span : spans) each.push_back(figures_of_span(log, span));
   const auto values = [&](const auto& get) {
     std::vector<double> x;
     for (const Figures& f : each) x.push_back(get(f));
@@ -99,18 +99,18 @@ inline Figures figures(const RunLog& log, const std::vector<Span>& spans) {
 }
 
 // Mean difference of two traces of force where either is not 0, N. It is also small for the same taps shifted by some ms.
-inline double apart_N(const Figures& a, const Figures& b) {
+inline double mean_difference_N(const Figures& a, const Figures& b) {
   double sum = 0;
-  int felt = 0;
+  int samples = 0;
   for (std::size_t i = 0; i < a.force_N.size(); ++i) {
     if (std::max(a.force_N[i], b.force_N[i]) < 0.01) continue;
     sum += std::abs(a.force_N[i] - b.force_N[i]);
-    ++felt;
+    ++samples;
   }
-  return felt > 0 ? sum / felt : 0;
+  return samples > 0 ? sum / samples : 0;
 }
 
-inline std::string words(const Figures& f) {
+inline std::string to_text(const Figures& f) {
   std::ostringstream out;
   out << "sim " << f.sim_Hz << " Hz, step " << f.sim_step_p50_ms << " / " << f.sim_step_p99_ms
       << " ms (p50 / p99); hand " << f.hand_Hz << " Hz, tick " << f.hand_step_p50_ms << " / " << f.hand_step_p99_ms

@@ -52,7 +52,7 @@ void Processes::start(const std::string& node, const std::vector<std::string>& o
 
 void Processes::start_all(const std::string& scene) {
   start("sync_node");
-  for (const std::string& node : kSenses) start(node);
+  for (const std::string& node : kModalityNodes) start(node);
   start("sim_node", {scene});
 }
 
@@ -83,8 +83,8 @@ void Processes::kill(const std::string& name) {
 
 bool Processes::running(const std::string& name) { return wait_for_exit(name, 0) == -2; }
 
-int Processes::wait_for_exit(const std::string& name, double at_most_s) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(at_most_s);
+int Processes::wait_for_exit(const std::string& name, double timeout_s) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
   while (!ended_.contains(name)) {
     int status = 0;
     if (waitpid(pids_.at(name), &status, WNOHANG) > 0)
@@ -97,7 +97,7 @@ int Processes::wait_for_exit(const std::string& name, double at_most_s) {
   return ended_.at(name);
 }
 
-std::string Processes::said(const std::string& name) const {
+std::string Processes::output(const std::string& name) const {
   std::ifstream file(out_ / "logs" / (name + ".log"));
   std::stringstream text;
   text << file.rdbuf();

@@ -10,7 +10,7 @@
 
 namespace tactus::cluster {
 
-inline const std::vector<std::string> kSenses{"haptic_node", "audio_node", "visual_node", "thermal_node"};
+inline const std::vector<std::string> kModalityNodes{"haptic_node", "audio_node", "visual_node", "thermal_node"};
 inline const std::vector<std::string> kNodes{"sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node"};
 
 // The small scene of these tests: balls that drop, and a tool that taps without end.
@@ -47,10 +47,10 @@ class Processes {
   void kill(const std::string& name);
   // True while the process has not ended.
   bool running(const std::string& name);
-  // Waits up to at_most_s seconds. Returns the exit status; -1 when a signal killed the process, -2 when it still runs.
-  int wait_for_exit(const std::string& name, double at_most_s);
+  // Waits up to timeout_s seconds. Returns the exit status; -1 when a signal killed the process, -2 when it still runs.
+  int wait_for_exit(const std::string& name, double timeout_s);
   // The output of a process so far.
-  std::string said(const std::string& name) const;
+  std::string output(const std::string& name) const;
 
  private:
   std::filesystem::path out_;

@@ -13,47 +13,47 @@
 namespace tactus::cluster {
 
 // Runs the command line program. rules: <degrade .../> elements; "": no degradation. Returns the program's output.
-inline std::string put_in_force(Running& c, const std::string& rules) {
+inline std::string put_in_force(RunningCluster& c, const std::string& rules) {
   static int number = 0;
   const std::string name = "degrade" + std::to_string(++number);
   const std::filesystem::path file = c.folder.path() / (name + ".xml");
   std::ofstream(file) << "<profile name=\"" << name << "\">" << rules << "</profile>";
   c.processes.spawn(
-      name, {programs() / "degrade", "--run-id", std::to_string(Running::kRunId), rules.empty() ? "off" : file});
-  const int status = c.processes.wait_for_exit(name, kPatience_s);
-  INFO(c.processes.said(name));
+      name, {programs() / "degrade", "--run-id", std::to_string(RunningCluster::kRunId), rules.empty() ? "off" : file});
+  const int status = c.processes.wait_for_exit(name, kTimeout_s);
+  INFO(c.processes.output(name));
   CHECK(status == 0);
-  return c.processes.said(name);
+  return c.processes.output(name);
 }
 
 // Requests a playout policy by the command line program. Returns the program's output.
-inline std::string ask_for(Running& c, std::vector<std::string> words) {
+inline std::string request_playout(RunningCluster& c, std::vector<std::string> words) {
   static int number = 0;
   const std::string name = "playout" + std::to_string(++number);
-  std::vector<std::string> command{programs() / "playout", "--run-id", std::to_string(Running::kRunId)};
+  std::vector<std::string> command{programs() / "playout", "--run-id", std::to_string(RunningCluster::kRunId)};
   command.insert(command.end(), words.begin(), words.end());
   c.processes.spawn(name, command);
-  const int status = c.processes.wait_for_exit(name, kPatience_s);
-  INFO(c.processes.said(name));
+  const int status = c.processes.wait_for_exit(name, kTimeout_s);
+  INFO(c.processes.output(name));
   CHECK(status == 0);
-  return c.processes.said(name);
+  return c.processes.output(name);
 }
 
-using EventsHeard = std::map<std::string, std::set<std::int64_t>>;
+using PresentedEvents = std::map<std::string, std::set<std::int64_t>>;
 
 // The events that each modality has reported so far.
-inline EventsHeard heard_of(const Ear& ear) {
-  EventsHeard heard;
-  for (const auto& [modality, reports] : ear.presented())
+inline PresentedEvents presented_events(const ClusterMonitor& monitor) {
+  PresentedEvents heard;
+  for (const auto& [modality, reports] : monitor.presented())
     for (const auto& [id, report] : reports) heard[modality].insert(id);
   return heard;
 }
 
 // Delays of the events reported since, from the earliest possible presentation to the presentation, ms.
-inline std::vector<double> waits_ms(const Ear& ear, const std::string& modality, const EventsHeard& before) {
+inline std::vector<double> delays_ms(const ClusterMonitor& monitor, const std::string& modality, const PresentedEvents& before) {
   std::vector<double> out;
-  const auto reports = ear.presented().find(modality);
-  if (reports == ear.presented().end()) return out;
+  const auto reports = monitor.presented().find(modality);
+  if (reports == monitor.presented().end()) return out;
   const auto known = before.find(modality);
   for (const auto& [id, r] : reports->second)
     if (r.presented_ns >= 0 && r.ready_ns >= 0 && (known == before.end() || !known->second.contains(id)))

@@ -15,7 +15,7 @@ namespace tactus::cluster {
 // A span of CLOCK_MONOTONIC, ns.
 struct Span {
   std::int64_t from_ns, to_ns;
-  bool holds(std::int64_t ns) const { return ns >= from_ns && ns < to_ns; }
+  bool contains(std::int64_t ns) const { return ns >= from_ns && ns < to_ns; }
   double seconds() const { return static_cast<double>(to_ns - from_ns) * 1e-9; }
 };
 
@@ -25,17 +25,17 @@ class RunLog {
 
   // Every message of a channel, in the order of the log.
   template <class Message>
-  void each(const char* channel, const auto& use) const {
+  void for_each(const char* channel, const auto& handle) const {
     sync::LogScanner scanner(file_.bytes());
     for (sync::LogEvent e; scanner.next(e);)
       if (e.channel == channel)
-        if (const auto m = sync::decode<Message>(e.data.data(), e.data.size())) use(*m);
+        if (const auto m = sync::decode<Message>(e.data.data(), e.data.size())) handle(*m);
   }
   // The messages that were sent within a span.
   template <class Message>
-  void each(const char* channel, const Span& span, const auto& use) const {
-    each<Message>(channel, [&](const Message& m) {
-      if (span.holds(m.header.publish_time_ns)) use(m);
+  void for_each(const char* channel, const Span& span, const auto& handle) const {
+    for_each<Message>(channel, [&](const Message& m) {
+      if (span.contains(m.header.publish_time_ns)) handle(m);
     });
   }
 

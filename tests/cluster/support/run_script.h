@@ -27,15 +27,15 @@ struct RunScript {
     command.insert(command.end(), options.begin(), options.end());
     processes.spawn(name, command);
   }
-  int finish(double at_most_s, const std::string& name = "run") { return processes.wait_for_exit(name, at_most_s); }
+  int finish(double timeout_s, const std::string& name = "run") { return processes.wait_for_exit(name, timeout_s); }
   // Runs a program to its end and returns its output.
   std::string output_of(const std::vector<std::string>& command, int wanted_status = 0) {
     const std::string name = "command" + std::to_string(++commands_);
     processes.spawn(name, command);
     const int status = processes.wait_for_exit(name, 60);
-    INFO(command.front() << ": " << processes.said(name));
+    INFO(command.front() << ": " << processes.output(name));
     CHECK(status == wanted_status);
-    return processes.said(name);
+    return processes.output(name);
   }
 
  private:
@@ -43,7 +43,7 @@ struct RunScript {
 };
 
 // Processes of this namespace that have not ended, without the test itself.
-inline std::set<int> living_processes() {
+inline std::set<int> running_processes() {
   while (waitpid(-1, nullptr, WNOHANG) > 0) {
   }
   std::set<int> found;
@@ -59,10 +59,10 @@ inline std::set<int> living_processes() {
   return found;
 }
 
-// Waits until no process but the test runs; false after at_most_s seconds.
-inline bool nothing_lives(double at_most_s) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(at_most_s);
-  while (!living_processes().empty()) {
+// Waits until no process but the test runs; false after timeout_s seconds.
+inline bool all_processes_ended(double timeout_s) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
+  while (!running_processes().empty()) {
     if (std::chrono::steady_clock::now() > end) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }

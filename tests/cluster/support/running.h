@@ -5,42 +5,42 @@
 #include <map>
 #include <tactus/node_health_t.hpp>
 
-#include "tests/cluster/support/ear.h"
+#include "tests/cluster/support/cluster_monitor.h"
 #include "tests/cluster/support/processes.h"
 
 namespace tactus::cluster {
 
 // Long enough for a loaded machine: the tests assert liveness, not speed.
-constexpr double kPatience_s = 40;
+constexpr double kTimeout_s = 40;
 
-struct Running {
+struct RunningCluster {
   static constexpr std::int64_t kRunId = 4711;
 
   Folder folder;
   Processes processes{folder.path(), kRunId};
-  Ear ear{kRunId};
+  ClusterMonitor monitor{kRunId};
 
-  bool state(const std::string& node, std::int8_t wanted) const { return ear.in_state(node, wanted); }
-  bool lives(const std::string& node) const { return state(node, node_health_t::RUNNING); }
-  bool all_live(const std::vector<std::string>& nodes) const {
-    return std::all_of(nodes.begin(), nodes.end(), [&](const auto& n) { return lives(n); });
+  bool state(const std::string& node, std::int8_t wanted) const { return monitor.in_state(node, wanted); }
+  bool is_running(const std::string& node) const { return state(node, node_health_t::RUNNING); }
+  bool all_running(const std::vector<std::string>& nodes) const {
+    return std::all_of(nodes.begin(), nodes.end(), [&](const auto& n) { return is_running(n); });
   }
   // Starts everything and waits until all modalities have rendered something.
   void start() {
     processes.start_all(tapping_scene());
-    const bool alive = ear.wait_until([&] { return all_live(kNodes) && ear.hits() > 0; }, kPatience_s);
-    UNSCOPED_INFO(words());
+    const bool alive = monitor.wait_until([&] { return all_running(kNodes) && monitor.hits() > 0; }, kTimeout_s);
+    UNSCOPED_INFO(log_text());
     REQUIRE(alive);
   }
   // Ticks per second over a while, by node.
   std::map<std::string, double> rates(double seconds) {
     std::map<std::string, std::pair<std::int64_t, std::int64_t>> before;
     for (const std::string& n : kNodes)
-      if (const node_health_t* h = ear.health(n)) before[n] = {h->ticks, h->header.publish_time_ns};
-    ear.listen(seconds);
+      if (const node_health_t* h = monitor.health(n)) before[n] = {h->ticks, h->header.publish_time_ns};
+    monitor.receive_for(seconds);
     std::map<std::string, double> out;
     for (const auto& [n, b] : before) {
-      const node_health_t* h = ear.health(n);
+      const node_health_t* h = monitor.health(n);
       const double span_s = h ? static_cast<double>(h->header.publish_time_ns - b.second) * 1e-9 : 0;
       out[n] = span_s > 0 ? static_cast<double>(h->ticks - b.first) / span_s : 0;
     }
@@ -61,10 +61,10 @@ struct Running {
       });
     }
     for (const auto& [node, rate] : left)
-      FAIL_CHECK(node << ": " << rate << " Hz before, " << now[node] << " Hz at the last of three looks");
+      FAIL_CHECK(node << ": " << rate << " Hz before, " << now[node] << " Hz in the last of three spans");
   }
   // The last output of every process, for the report of a failure.
-  std::string words() const {
+  std::string log_text() const {
     std::string all;
     for (const char* n : {"sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node"}) {
       const node_health_t* h = ear.health(n);

@@ -1,19 +1,19 @@
 // The WebSocket connection, with automatic reconnection.
-import { Said } from "./messages";
+import { ServerMessage } from "./messages";
 
 export class Connection {
   private socket?: WebSocket;
-  constructor(private heard: (m: Said) => void, private picture: (jpeg: Blob) => void, private state: (open: boolean) => void) { this.open(); }
+  constructor(private onMessage: (m: ServerMessage) => void, private onPicture: (jpeg: Blob) => void, private onState: (open: boolean) => void) { this.open(); }
   private open(): void {
     const token = new URLSearchParams(location.search).get("token") ?? "";
     const socket = new WebSocket(`ws://${location.host}/ws?token=${encodeURIComponent(token)}`);
     this.socket = socket;
-    socket.onopen = () => this.state(true);
+    socket.onopen = () => this.onState(true);
     socket.onmessage = (e: MessageEvent<string | Blob>) => {
-      if (typeof e.data === "string") this.heard(JSON.parse(e.data) as Said);
-      else this.picture(e.data);
+      if (typeof e.data === "string") this.onMessage(JSON.parse(e.data) as ServerMessage);
+      else this.onPicture(e.data);
     };
-    socket.onclose = () => { this.state(false); setTimeout(() => this.open(), 1000); };
+    socket.onclose = () => { this.onState(false); setTimeout(() => this.open(), 1000); };
   }
   send(message: object): void {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));

@@ -2,10 +2,10 @@
 import "uplot/dist/uPlot.min.css";
 import "./page.css";
 import { Connection } from "./connection";
-import { Common, Frame, Hello, Said, element } from "./messages";
+import { Common, Frame, Hello, ServerMessage, element } from "./messages";
 import { Picture } from "./picture";
 import { Raster } from "./raster";
-import { Senses } from "./senses";
+import { ModalityTables } from "./modalities";
 import { Sliders } from "./sliders";
 import { StudyPanel } from "./study";
 import { Variables } from "./variables";
@@ -13,7 +13,7 @@ import { Variables } from "./variables";
 let live = true, paused = false, playing = true, now_s = 0, at_ms = 0, profile = "0", seeking = false, restored = false;
 const send = (m: object): void => connection.send(m);
 const variables = new Variables((names) => send({ t: "watch", names }));
-const senses = new Senses(), raster = new Raster();
+const tables = new ModalityTables(), raster = new Raster();
 const picture = new Picture(send);
 const study = new StudyPanel(send);
 const sliders = new Sliders((senses, clear) => send({ t: "degrade", senses, clear }));
@@ -30,8 +30,8 @@ function common(m: Common): void {
   now_s = m.now;
   at_ms = performance.now();
   if (m.tags) variables.catalog(undefined, m.tags);
-  if (m.health) { variables.senders(m.health); senses.takeHealth(m.health, profile); if (live) sliders.modalities(senses.modalities()); }
-  if (m.report) senses.takeReport(m.report);
+  if (m.health) { variables.senders(m.health); tables.updateHealth(m.health, profile); if (live) sliders.modalities(tables.modalities()); }
+  if (m.report) tables.updateReport(m.report);
 }
 function hello(m: Hello): void {
   live = m.live;
@@ -41,7 +41,7 @@ function hello(m: Hello): void {
   element("controls").hidden = !live;
   element("degrade").hidden = !live;
   element("handlabel").hidden = !live;
-  senses.thresholds = m.thresholds;
+  tables.thresholds = m.thresholds;
   variables.catalog(m.catalog, m.tags);
   common(m);
   if (restored) variables.resend();
@@ -49,14 +49,14 @@ function hello(m: Hello): void {
   restored = true;
 }
 function frame(m: Frame): void {
-  if (m.wound) { variables.clear(); senses.clear(); raster.clear(); }
+  if (m.wound) { variables.clear(); tables.clear(); raster.clear(); }
   if (m.profile) profile = m.profile;
   common(m);
   if (m.degradation) sliders.inForce(m.degradation);
-  if (m.values) variables.take(m.values);
-  raster.take(m.events, m.presented);
-  if (m.presented) senses.presented(m.presented);
-  if (m.study !== undefined) study.take(m.study);
+  if (m.values) variables.addValues(m.values);
+  raster.addEvents(m.events, m.presented);
+  if (m.presented) tables.presented(m.presented);
+  if (m.study !== undefined) study.update(m.study);
   if (m.scene) element("title").textContent = m.scene.name;
   if (m.world?.known) {
     paused = m.world.rate === 0;
@@ -69,18 +69,18 @@ function frame(m: Frame): void {
     const seek = element<HTMLInputElement>("seek");
     seek.max = String(Math.max(0.01, m.log.length_s));
     if (!seeking) seek.value = String(m.log.position_s);
-    element("place").textContent = `${m.log.position_s.toFixed(1)} / ${m.log.length_s.toFixed(1)} s${m.log.damaged ? `, ${m.log.damaged} places damaged` : ""}`;
+    element("place").textContent = `${m.log.position_s.toFixed(1)} / ${m.log.length_s.toFixed(1)} s${m.log.damaged ? `, ${m.log.damaged} damaged regions` : ""}`;
     element("play").textContent = playing ? "Pause" : "Play";
   }
 }
-const connection = new Connection((m: Said) => {
+const connection = new Connection((m: ServerMessage) => {
   if (m.t === "hello") hello(m);
   else if (m.t === "frame") frame(m);
   else toast(m.text, m.good);
 }, (jpeg) => picture.show(jpeg), (open) => {
   element("link").textContent = open ? "connected" : "not connected";
   element("link").className = open ? "good" : "bad";
-  if (!open) study.take(null);
+  if (!open) study.update(null);
 });
 
 element("pause").addEventListener("click", () => send({ t: "command", what: paused ? "resume" : "pause" }));
@@ -97,7 +97,7 @@ seek.addEventListener("change", () => { seeking = false; send({ t: "seek", to_s:
 function draw(): void {
   const ahead = live ? Math.min(0.2, (performance.now() - at_ms) / 1000) : 0;
   variables.draw(now_s + ahead);
-  raster.draw(now_s + ahead, senses.modalities());
+  raster.draw(now_s + ahead, tables.modalities());
 }
 setInterval(draw, 50);
-setInterval(() => senses.draw(now_s), 250);
+setInterval(() => tables.draw(now_s), 250);

@@ -1,5 +1,5 @@
 // The messages of the server: scripts/live/README.md.
-export interface Named { name: string; unit: string; about: string }
+export interface VariableInfo { name: string; unit: string; about: string }
 export interface Threshold { earlier: string; later: string; ms: number; what: string; source: string }
 export interface NodeHealth {
   node: string; source: number; modality: string; state: number; lost: boolean; note: string; rate_Hz: number; nominal_Hz: number; missed: number;
@@ -11,16 +11,16 @@ export type Event = [time_s: number, kind: number, body_a: number, body_b: numbe
 export type Presentation = [time_s: number, modality: string, part: number, outcome: number, latency_ms: number | null];
 // source: header.source of the sender; 0: the process with that tag.
 export type Value = [variable: number, time_s: number, value: number, source: number];
-export interface Common { now: number; health?: NodeHealth[]; report?: { senses: Sense[]; pairs: Pair[] }; tags?: Named[] }
-export interface Slid { delay_ms: number; rate_Hz: number; loss: number }
+export interface Common { now: number; health?: NodeHealth[]; report?: { senses: ModalityReport[]; pairs: Pair[] }; tags?: VariableInfo[] }
+export interface SliderValues { delay_ms: number; rate_Hz: number; loss: number }
 // The profile in force; more: it contains operators of a modality that no slider shows.
-export interface Degradation { name: string; senses: Record<string, Slid & { more: boolean }> }
+export interface Degradation { name: string; senses: Record<string, SliderValues & { more: boolean }> }
 // question: its name; kind "nothing": a trial is in progress. leader: the leading node; "": it publishes no health.
 export interface Study {
   question: string; kind: "nothing" | "read" | "choice" | "number"; text: string; choices: string[]; lowest: number; highest: number; step: number;
   trial: number; condition: string; progress: string; answered: boolean; leader: string;
 }
-export interface Hello extends Common { t: "hello"; live: boolean; title: string; thresholds: Threshold[]; catalog: Named[] }
+export interface Hello extends Common { t: "hello"; live: boolean; title: string; thresholds: Threshold[]; catalog: VariableInfo[] }
 export interface Frame extends Common {
   t: "frame"; values?: Value[]; events?: Event[]; presented?: Presentation[]; left_out?: number; wound?: boolean;
   world?: { known: boolean; sim_s: number; rate: number }; profile?: string; degradation?: Degradation;
@@ -30,10 +30,10 @@ export interface Frame extends Common {
   log?: { position_s: number; length_s: number; playing: boolean; rate: number; damaged: number };
 }
 export interface Reply { t: "reply"; text: string; good: boolean }
-export type Said = Hello | Frame | Reply;
+export type ServerMessage = Hello | Frame | Reply;
 
-export const senseColour: Record<string, string> = { haptic: "#e69f00", audio: "#56b4e9", visual: "#cc79a7", thermal: "#d9622b", world: "#9aa4b2" };
-export const colourOf = (modality: string): string => senseColour[modality] ?? "#009e73";
+export const modalityColour: Record<string, string> = { haptic: "#e69f00", audio: "#56b4e9", visual: "#cc79a7", thermal: "#d9622b", world: "#9aa4b2" };
+export const colourOf = (modality: string): string => modalityColour[modality] ?? "#009e73";
 export function element<T extends HTMLElement>(id: string): T {
   const found = document.getElementById(id);
   if (!found) throw new Error(`the page lacks #${id}`);

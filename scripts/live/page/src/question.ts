@@ -2,7 +2,7 @@
 import { Study } from "./messages";
 
 // One press can have several meanings; the present question decides which one counts.
-export interface Press { choice?: number; fine?: number; coarse?: number; confirms?: boolean; goesOn?: boolean }
+export interface Press { choice?: number; fine?: number; coarse?: number; confirms?: boolean; continues?: boolean }
 // As parsed by live_server.
 export interface Answer { t: "answer"; question: string; choice: number; number: number; after_ns: number }
 
@@ -14,22 +14,22 @@ export function pressOfKey(key: string): Press | undefined {
     case "ArrowRight": return { fine: 1 };
     case "ArrowDown": return { coarse: -1 };
     case "ArrowUp": return { coarse: 1 };
-    case "Enter": return { confirms: true, goesOn: true };
-    case " ": return { goesOn: true };
+    case "Enter": return { confirms: true, continues: true };
+    case " ": return { continues: true };
     default: return undefined;
   }
 }
 
 // The mark on a number scale: it begins in the middle; both ends can be reached, though the last step may be shorter.
 export class Mark {
-  static readonly MOST_STEPS = 10000;  // design: the finest resolution of a mark
+  static readonly MAX_STEPS = 10000;  // design: the finest resolution of a mark
   readonly steps: number;
   private readonly step: number;
   private at: number;
   constructor(private readonly lowest: number, private readonly highest: number, step: number) {
     const steps = Math.ceil((highest - lowest) / step - 1e-9);
-    this.steps = steps <= Mark.MOST_STEPS ? steps : Mark.MOST_STEPS;
-    this.step = steps <= Mark.MOST_STEPS ? step : (highest - lowest) / Mark.MOST_STEPS;
+    this.steps = steps <= Mark.MAX_STEPS ? steps : Mark.MAX_STEPS;
+    this.step = steps <= Mark.MAX_STEPS ? step : (highest - lowest) / Mark.MAX_STEPS;
     this.at = Math.floor(this.steps / 2);
   }
   get place(): number { return this.at; }
@@ -44,43 +44,43 @@ export class Mark {
 }
 
 // The present question, the time of its display, and whether its answer is in transfer. Times: performance.now(), ms.
-export class Desk {
-  static readonly LOST_MS = 1500;  // design: an answer that the server has not accepted within this time may be given again
-  private asked: Study | undefined;
+export class QuestionState {
+  static readonly ANSWER_TIMEOUT_MS = 1500;  // design: an answer that the server has not accepted within this time may be given again
+  private question: Study | undefined;
   private seen_ms: number | undefined;
   private sent_ms: number | undefined;
   mark: Mark | undefined;
 
   // Returns true when the present question has changed or ended.
-  take(study: Study | null): boolean {
-    const asked = study && study.kind !== "nothing" && !study.answered ? study : undefined;
-    const other = asked?.question !== this.asked?.question;
-    this.asked = asked;
-    if (other) {
+  update(study: Study | null): boolean {
+    const open = study && study.kind !== "nothing" && !study.answered ? study : undefined;
+    const changed = open?.question !== this.question?.question;
+    this.question = open;
+    if (changed) {
       this.seen_ms = this.sent_ms = undefined;
-      this.mark = asked?.kind === "number" ? new Mark(asked.lowest, asked.highest, asked.step) : undefined;
+      this.mark = open?.kind === "number" ? new Mark(open.lowest, open.highest, open.step) : undefined;
     }
-    return other;
+    return changed;
   }
-  get on(): Study | undefined { return this.asked; }
-  seen(question: string, at_ms: number): void { if (this.asked?.question === question && this.seen_ms === undefined) this.seen_ms = at_ms; }
+  get current(): Study | undefined { return this.question; }
+  seen(question: string, at_ms: number): void { if (this.question?.question === question && this.seen_ms === undefined) this.seen_ms = at_ms; }
   // No answer is accepted before the question was seen, or while an answer is in transfer.
-  waits(at_ms: number): boolean {
-    return this.asked !== undefined && this.seen_ms !== undefined && !(this.sent_ms !== undefined && at_ms < this.sent_ms + Desk.LOST_MS);
+  acceptsAnswer(at_ms: number): boolean {
+    return this.question !== undefined && this.seen_ms !== undefined && !(this.sent_ms !== undefined && at_ms < this.sent_ms + QuestionState.ANSWER_TIMEOUT_MS);
   }
   // used: the press has a meaning for the present question.
   press(p: Press, at_ms: number): { used: boolean; answer?: Answer } {
-    const m = this.asked;
+    const m = this.question;
     if (!m) return { used: false };
-    if (m.kind === "read") return p.goesOn ? { used: true, answer: this.answer(-1, at_ms) } : { used: false };
+    if (m.kind === "read") return p.continues ? { used: true, answer: this.answer(-1, at_ms) } : { used: false };
     if (m.kind === "choice") return p.choice !== undefined && p.choice < m.choices.length ? { used: true, answer: this.answer(p.choice, at_ms) } : { used: false };
     if (p.fine || p.coarse) { this.mark?.move(p.fine ?? 0, p.coarse ?? 0); return { used: true }; }
     return p.confirms ? { used: true, answer: this.answer(-1, at_ms) } : { used: false };
   }
   private answer(choice: number, at_ms: number): Answer | undefined {
-    if (!this.asked || !this.waits(at_ms)) return undefined;
+    if (!this.question || !this.acceptsAnswer(at_ms)) return undefined;
     this.sent_ms = at_ms;
-    return { t: "answer", question: this.asked.question, choice, number: this.mark?.number ?? 0, after_ns: Math.max(0, Math.round((at_ms - this.seen_ms!) * 1e6)) };
+    return { t: "answer", question: this.question.question, choice, number: this.mark?.number ?? 0, after_ns: Math.max(0, Math.round((at_ms - this.seen_ms!) * 1e6)) };
   }
 }
 
@@ -88,18 +88,18 @@ export class Desk {
 export class Pad {
   private before: boolean[] | undefined;
   private static readonly presses: Press[] = [
-    { choice: 0, confirms: true, goesOn: true }, { choice: 1 }, { choice: 2 }, { choice: 3 }, { fine: -1 }, { fine: 1 }, { coarse: 1 }, { coarse: -1 }];
+    { choice: 0, confirms: true, continues: true }, { choice: 1 }, { choice: 2 }, { choice: 3 }, { fine: -1 }, { fine: 1 }, { coarse: 1 }, { coarse: -1 }];
   // The new presses; buttons held at the first call count as pressed before.
   pressed(buttons: readonly boolean[], axes: readonly number[]): Press[] {
     const held = [0, 1, 2, 3, 14, 15, 12, 13].map((i) => buttons[i] ?? false);
     for (const stick of [0, 2]) {
       const x = axes[stick] ?? 0, y = axes[stick + 1] ?? 0, sideways = Math.abs(x) >= Math.abs(y), far = sideways ? x : y;
-      const way = (sideways ? 4 : 6) + (far < 0 ? 0 : 1);
+      const direction = (sideways ? 4 : 6) + (far < 0 ? 0 : 1);
       // Design: a stick counts as pushed beyond 0.6, and as released within 0.35.
-      held[way] = held[way]! || Math.abs(far) > (this.before?.[way] ? 0.35 : 0.6);
+      held[direction] = held[direction]! || Math.abs(far) > (this.before?.[direction] ? 0.35 : 0.6);
     }
-    const fresh = this.before ? held.flatMap((h, i) => (h && !this.before![i] ? [Pad.presses[i]!] : [])) : [];
+    const pressed = this.before ? held.flatMap((h, i) => (h && !this.before![i] ? [Pad.presses[i]!] : [])) : [];
     this.before = held;
-    return fresh;
+    return pressed;
   }
 }

@@ -2,7 +2,7 @@
 import { Event, Presentation, colourOf, element, make } from "./messages";
 
 const SPAN_S = 10;
-const MOST = 6000;
+const MAX_EVENTS = 6000;
 // Of presentation_t.outcome; 0 and 1: presented.
 const DROPPED_LATE = 2, DROPPED_BY_PROFILE = 3, INAUDIBLE = 4;
 
@@ -14,11 +14,11 @@ export class Raster {
     legend.append(make("span", "quiet", "world: │ begin  ◆ hit  · end    senses: │ presented  ○ inaudible  × dropped"));
   }
   clear(): void { this.events = []; this.presented = []; }
-  take(events: Event[] = [], presented: Presentation[] = []): void {
+  addEvents(events: Event[] = [], presented: Presentation[] = []): void {
     this.events.push(...events);
     this.presented.push(...presented);
-    if (this.events.length > MOST) this.events.splice(0, this.events.length - MOST);
-    if (this.presented.length > MOST) this.presented.splice(0, this.presented.length - MOST);
+    if (this.events.length > MAX_EVENTS) this.events.splice(0, this.events.length - MAX_EVENTS);
+    if (this.presented.length > MAX_EVENTS) this.presented.splice(0, this.presented.length - MAX_EVENTS);
   }
   draw(now: number, modalities: string[]): void {
     const canvas = element<HTMLCanvasElement>("raster"), scale = devicePixelRatio;

@@ -1,6 +1,6 @@
 // Delay, rate and loss of each modality. The sliders start at the values of the profile in force; the server changes only the
 // moved sliders' values in the profile, and keeps the rest.
-import { Degradation, Slid, colourOf, element, make } from "./messages";
+import { Degradation, SliderValues, colourOf, element, make } from "./messages";
 
 // Rates on a scale that a slider can show; the last: unlimited.
 const RATES = [1, 2, 5, 10, 15, 20, 30, 60, 120, 250, 500, 0];
@@ -11,19 +11,19 @@ const nearest = (rate_Hz: number): number => {
   const far = RATES.map((r) => (r ? Math.abs(Math.log(r / rate_Hz)) : Infinity));
   return far.indexOf(Math.min(...far));
 };
-const words = {
-  delay: (s: Slid) => `${+s.delay_ms.toFixed(1)} ms`,
-  rate: (s: Slid) => (s.rate_Hz ? `${+s.rate_Hz.toFixed(1)} Hz` : "full"),
-  loss: (s: Slid) => `${+(s.loss * 100).toFixed(1)} %`,
+const labels = {
+  delay: (s: SliderValues) => `${+s.delay_ms.toFixed(1)} ms`,
+  rate: (s: SliderValues) => (s.rate_Hz ? `${+s.rate_Hz.toFixed(1)} Hz` : "full"),
+  loss: (s: SliderValues) => `${+(s.loss * 100).toFixed(1)} %`,
 };
 
 export class Sliders {
-  private settings = new Map<string, Slid>();
+  private settings = new Map<string, SliderValues>();
   private more = new Set<string>();  // modalities with operators that no slider shows
   private timer = 0;
   private touched_ms = -Infinity;
-  private told = "";
-  constructor(private send: (senses: Record<string, Slid>, clear: boolean) => void) {
+  private shownProfile = "";
+  constructor(private send: (senses: Record<string, SliderValues>, clear: boolean) => void) {
     element("clear").addEventListener("click", () => {
       clearTimeout(this.timer);
       for (const m of this.settings.keys()) this.settings.set(m, { delay_ms: 0, rate_Hz: 0, loss: 0 });
@@ -34,18 +34,18 @@ export class Sliders {
     });
   }
   modalities(names: string[]): void {
-    const fresh = names.filter((n) => !this.settings.has(n));
-    if (!fresh.length) return;
-    for (const n of fresh) this.settings.set(n, { delay_ms: 0, rate_Hz: 0, loss: 0 });
-    this.told = "";  // shows the profile in force for them, too, once it is received again
+    const added = names.filter((n) => !this.settings.has(n));
+    if (!added.length) return;
+    for (const n of added) this.settings.set(n, { delay_ms: 0, rate_Hz: 0, loss: 0 });
+    this.shownProfile = "";  // shows the profile in force for them, too, once it is received again
     this.build();
   }
   inForce(d: Degradation): void {
     element("inforce").textContent = d.name ? `in force: ${d.name}` : "";
     const text = JSON.stringify(d.senses);
     element("inforce").dataset.senses = text;
-    if (text === this.told || performance.now() < this.touched_ms + SETTLE_MS) return;
-    this.told = text;
+    if (text === this.shownProfile || performance.now() < this.touched_ms + SETTLE_MS) return;
+    this.shownProfile = text;
     this.more = new Set(Object.entries(d.senses).filter(([, s]) => s.more).map(([m]) => m));
     for (const m of this.settings.keys()) {
       const { delay_ms, rate_Hz, loss } = d.senses[m] ?? { delay_ms: 0, rate_Hz: 0, loss: 0 };
@@ -53,7 +53,7 @@ export class Sliders {
     }
     this.build();
   }
-  private touch(): void { this.touched_ms = performance.now(); this.told = ""; }
+  private touch(): void { this.touched_ms = performance.now(); this.shownProfile = ""; }
   private changed(): void {
     this.touch();
     clearTimeout(this.timer);
@@ -63,17 +63,17 @@ export class Sliders {
     element("sliders").replaceChildren(...[...this.settings.keys()].sort().map((m) => {
       const s = this.settings.get(m)!, box = make("div", "sense"), name = make("span", "name", this.more.has(m) ? `${m} +` : m);
       name.style.color = colourOf(m);
-      if (this.more.has(m)) name.title = "the profile in force says more of this sense than these sliders show; it stays";
+      if (this.more.has(m)) name.title = "the profile in force has further operators of this modality, which the sliders keep";
       box.append(name,
-        this.slider(`${m}-delay`, "delay", 500, 5, s.delay_ms, words.delay(s), (v) => { s.delay_ms = v; return words.delay(s); }),
-        this.slider(`${m}-rate`, "rate", RATES.length - 1, 1, nearest(s.rate_Hz), words.rate(s), (v) => { s.rate_Hz = RATES[v]!; return words.rate(s); }),
-        this.slider(`${m}-loss`, "loss", 100, 1, s.loss * 100, words.loss(s), (v) => { s.loss = v / 100; return words.loss(s); }));
+        this.slider(`${m}-delay`, "delay", 500, 5, s.delay_ms, labels.delay(s), (v) => { s.delay_ms = v; return labels.delay(s); }),
+        this.slider(`${m}-rate`, "rate", RATES.length - 1, 1, nearest(s.rate_Hz), labels.rate(s), (v) => { s.rate_Hz = RATES[v]!; return labels.rate(s); }),
+        this.slider(`${m}-loss`, "loss", 100, 1, s.loss * 100, labels.loss(s), (v) => { s.loss = v / 100; return labels.loss(s); }));
       return box;
     }));
   }
-  private slider(id: string, title: string, most: number, step: number, value: number, text: string, set: (v: number) => string): HTMLElement {
+  private slider(id: string, title: string, max: number, step: number, value: number, text: string, set: (v: number) => string): HTMLElement {
     const label = document.createElement("label"), shown = make("b", "", text), input = document.createElement("input");
-    Object.assign(input, { type: "range", id, min: "0", max: String(most), step: String(step) });
+    Object.assign(input, { type: "range", id, min: "0", max: String(max), step: String(step) });
     input.value = String(value);
     input.addEventListener("input", () => { shown.textContent = set(Number(input.value)); this.changed(); });
     label.append(title, shown, input);

@@ -1,12 +1,12 @@
 // The panel of a study: with ?participant in the address, the question and its answer controls; otherwise the leader and the
 // question.
 import { Study, element, make } from "./messages";
-import { Desk, Pad, Press, pressOfKey } from "./question";
+import { QuestionState, Pad, Press, pressOfKey } from "./question";
 
 export const participant = new URLSearchParams(location.search).has("participant");
 
 export class StudyPanel {
-  private desk = new Desk();
+  private state = new QuestionState();
   private pads = new Map<number, Pad>();
   private box = element("study");
   private shown = "";
@@ -19,31 +19,31 @@ export class StudyPanel {
       if (!press || (e.repeat && !press.fine && !press.coarse)) return;
       if (this.press(press, e.timeStamp)) e.preventDefault();
     });
-    const look = (): void => { this.lookAtPads(); requestAnimationFrame(look); };
-    requestAnimationFrame(look);
+    const poll = (): void => { this.pollGamepads(); requestAnimationFrame(poll); };
+    requestAnimationFrame(poll);
   }
-  take(study: Study | null): void {
-    if (!participant) return this.watch(study);
-    if (this.desk.take(study)) this.ask();
-    this.box.classList.toggle("sent", !this.desk.waits(performance.now()));
+  update(study: Study | null): void {
+    if (!participant) return this.showStatus(study);
+    if (this.state.update(study)) this.showQuestion();
+    this.box.classList.toggle("sent", !this.state.acceptsAnswer(performance.now()));
   }
   private press(p: Press, at_ms: number): boolean {
-    const { used, answer } = this.desk.press(p, at_ms);
+    const { used, answer } = this.state.press(p, at_ms);
     if (answer) this.send(answer);
-    this.box.classList.toggle("sent", !this.desk.waits(performance.now()));
+    this.box.classList.toggle("sent", !this.state.acceptsAnswer(performance.now()));
     this.showMark();
     return used;
   }
-  private lookAtPads(): void {
-    const there = navigator.getGamepads().flatMap((g) => (g ? [g] : []));
-    for (const index of this.pads.keys()) if (!there.some((g) => g.index === index)) this.pads.delete(index);
-    for (const g of there) {
+  private pollGamepads(): void {
+    const connected = navigator.getGamepads().flatMap((g) => (g ? [g] : []));
+    for (const index of this.pads.keys()) if (!connected.some((g) => g.index === index)) this.pads.delete(index);
+    for (const g of connected) {
       if (!this.pads.has(g.index)) this.pads.set(g.index, new Pad());
       for (const p of this.pads.get(g.index)!.pressed(g.buttons.map((b) => b.pressed), g.axes)) this.press(p, performance.now());
     }
   }
-  private ask(): void {
-    const m = this.desk.on;
+  private showQuestion(): void {
+    const m = this.state.current;
     this.box.hidden = !m;
     this.slider = undefined;
     this.box.replaceChildren();
@@ -53,13 +53,13 @@ export class StudyPanel {
     if (m.kind === "choice") m.choices.forEach((c, i) => answers.append(this.button(c, String(i + 1), { choice: i })));
     if (m.kind === "number") this.box.append(this.slide(m));
     if (m.kind === "number") answers.append(this.button("answer", "Enter", { confirms: true }));
-    if (m.kind === "read") answers.append(this.button("go on", "Enter", { goesOn: true }));
+    if (m.kind === "read") answers.append(this.button("continue", "Enter", { continues: true }));
     this.box.append(answers, make("p", "quiet", m.progress));
     this.showMark();
     // After painting: a message that is posted just before a frame is drawn arrives just after it.
     requestAnimationFrame(() => {
       const channel = new MessageChannel();
-      channel.port1.onmessage = () => { this.desk.seen(m.question, performance.now()); this.box.classList.toggle("sent", !this.desk.waits(performance.now())); };
+      channel.port1.onmessage = () => { this.state.seen(m.question, performance.now()); this.box.classList.toggle("sent", !this.state.acceptsAnswer(performance.now())); };
       channel.port2.postMessage(0);
     });
   }
@@ -70,7 +70,7 @@ export class StudyPanel {
     return button;
   }
   private slide(m: Study): HTMLElement {
-    const box = make("div", "slide"), input = document.createElement("input"), ends = make("div", "ends"), mark = this.desk.mark!;
+    const box = make("div", "slide"), input = document.createElement("input"), ends = make("div", "ends"), mark = this.state.mark!;
     Object.assign(input, { type: "range", id: "mark", min: "0", max: String(mark.steps), step: "1" });
     input.addEventListener("input", () => { mark.place = Number(input.value); this.showMark(); });
     const words = m.choices.length === 2 ? m.choices : [mark.text(m.lowest), mark.text(m.highest)];
@@ -80,13 +80,13 @@ export class StudyPanel {
     return box;
   }
   private showMark(): void {
-    const mark = this.desk.mark, output = this.box.querySelector("output");
+    const mark = this.state.mark, output = this.box.querySelector("output");
     if (!mark || !this.slider || !output) return;
     this.slider.value = String(mark.place);
     output.textContent = mark.text();
   }
   // For observers: without answer controls.
-  private watch(study: Study | null): void {
+  private showStatus(study: Study | null): void {
     const text = JSON.stringify(study);
     if (text === this.shown) return;
     this.shown = text;
@@ -94,11 +94,11 @@ export class StudyPanel {
     if (!study) return;
     const facts = [study.progress, study.trial ? `trial ${study.trial}` : "", study.condition].filter((s) => s !== "").join(" · ");
     const head = make("h2", "", "Study");
-    head.append(make("span", "", `led by ${study.leader || "a program that has no name here"}`));
-    const asked = study.kind === "nothing" ? "nothing is asked: a trial is under way" : study.text;
-    const state = study.kind === "nothing" ? "" : study.answered ? "answered in a page" : "waits for the participant";
+    head.append(make("span", "", `led by ${study.leader || "a program without health messages"}`));
+    const asked = study.kind === "nothing" ? "no question: a trial is in progress" : study.text;
+    const status = study.kind === "nothing" ? "" : study.answered ? "answered in a page" : "waits for the participant";
     const offered = study.kind === "number" ? `${study.lowest} to ${study.highest}${study.choices.length ? `: ${study.choices.join(" to ")}` : ""}`
       : study.choices.map((c, i) => `${i + 1} ${c}`).join("   ");
-    this.box.replaceChildren(head, make("p", "facts", facts), make("p", "asked", asked), make("p", "offered quiet", offered), make("p", "quiet", state));
+    this.box.replaceChildren(head, make("p", "facts", facts), make("p", "asked", asked), make("p", "offered quiet", offered), make("p", "quiet", status));
   }
 }

@@ -1,21 +1,21 @@
 // Cards of variables: a graph over time, a bar or text, as selected by the user.
 import uPlot from "uplot";
-import { Named, NodeHealth, Value, element, figure, make } from "./messages";
+import { VariableInfo, NodeHealth, Value, element, figure, make } from "./messages";
 
 const SPAN_S = 20;
-const MOST = 24;
+const MAX_CARDS = 24;
 type Kind = "graph" | "bar" | "text";
 // The values of a variable from one sender: two hands both send TOOL_STATE.
 interface Series { source: number; times: number[]; values: number[] }
-interface Card { name: string; kind: Kind; box: HTMLElement; body: HTMLElement; value: HTMLElement; series: Series[]; least: number; most: number; plot?: uPlot }
+interface Card { name: string; kind: Kind; box: HTMLElement; body: HTMLElement; value: HTMLElement; series: Series[]; min: number; max: number; plot?: uPlot }
 const COLOURS = ["#7aa7e0", "#e69f00", "#cc79a7", "#009e73", "#f0e442", "#d9622b", "#9aa4b2", "#ffffff"];  // one for each sender that the server distinguishes
 
 export class Variables {
   private cards: Card[] = [];
   private units = new Map<string, string>();
   private nodes = new Map<number, string>();
-  private known: Named[] = [];
-  private tags: Named[] = [];
+  private known: VariableInfo[] = [];
+  private tags: VariableInfo[] = [];
   constructor(private watch: (names: string[]) => void) {
     const choose = element<HTMLInputElement>("choose");
     choose.addEventListener("change", () => {
@@ -24,7 +24,7 @@ export class Variables {
     });
     window.addEventListener("resize", () => this.cards.forEach((c) => this.build(c)));
   }
-  catalog(known?: Named[], tags?: Named[]): void {
+  catalog(known?: VariableInfo[], tags?: VariableInfo[]): void {
     if (known) this.known = known;
     if (tags) this.tags = tags;
     const list = element("names");
@@ -38,39 +38,39 @@ export class Variables {
   }
   senders(health: NodeHealth[]): void { for (const h of health) this.nodes.set(h.source, h.node); }
   restore(): void {
-    let kept: [string, Kind][] = [["TOOL_STATE:force_N.z", "graph"], ["TOOL_STATE:proxy.position_m.z", "graph"], ["THERMAL_STATE:skin_degC", "text"]];
+    let saved: [string, Kind][] = [["TOOL_STATE:force_N.z", "graph"], ["TOOL_STATE:proxy.position_m.z", "graph"], ["THERMAL_STATE:skin_degC", "text"]];
     try {
       const text = localStorage.getItem("tactus-live-variables");
-      if (text) kept = JSON.parse(text) as [string, Kind][];
+      if (text) saved = JSON.parse(text) as [string, Kind][];
     } catch { /* a damaged store: as if there were none */ }
-    for (const [name, kind] of kept) this.add(name, kind, false);
+    for (const [name, kind] of saved) this.add(name, kind, false);
     this.changed();
   }
   names(): string[] { return this.cards.map((c) => c.name); }
   resend(): void { this.watch(this.names()); }
   private changed(): void {
     this.watch(this.names());
-    try { localStorage.setItem("tactus-live-variables", JSON.stringify(this.cards.map((c) => [c.name, c.kind]))); } catch { /* not allowed: not kept */ }
+    try { localStorage.setItem("tactus-live-variables", JSON.stringify(this.cards.map((c) => [c.name, c.kind]))); } catch { /* not allowed: not saved */ }
   }
-  add(name: string, kind: Kind, tell = true): void {
-    if (this.cards.length >= MOST || this.cards.some((c) => c.name === name)) return;
+  add(name: string, kind: Kind, save = true): void {
+    if (this.cards.length >= MAX_CARDS || this.cards.some((c) => c.name === name)) return;
     const box = make("div", "card");
     box.dataset.name = name;
     const head = make("div", "head"), value = make("span", "value"), body = make("div", "body");
     const select = document.createElement("select");
     for (const k of ["graph", "bar", "text"]) select.append(new Option(k, k, false, k === kind));
     const remove = make("button", "", "×");
-    remove.title = "take away";
+    remove.title = "remove";
     head.append(make("span", "name", name), value, select, remove);
     head.firstElementChild!.setAttribute("title", name);
     box.append(head, body);
-    const card: Card = { name, kind, box, body, value, series: [], least: Infinity, most: -Infinity };
+    const card: Card = { name, kind, box, body, value, series: [], min: Infinity, max: -Infinity };
     select.addEventListener("change", () => { card.kind = select.value as Kind; this.build(card); this.changed(); });
     remove.addEventListener("click", () => { card.plot?.destroy(); box.remove(); this.cards = this.cards.filter((c) => c !== card); this.changed(); });
     element("cards").append(box);
     this.cards.push(card);
     this.build(card);
-    if (tell) this.changed();
+    if (save) this.changed();
   }
   private build(card: Card): void {
     card.plot?.destroy();
@@ -91,8 +91,8 @@ export class Variables {
       card.body.lastElementChild!.append(make("span"), make("span"));
     } else card.body.append(make("div", "big value"));
   }
-  clear(): void { for (const c of this.cards) { for (const s of c.series) { s.times = []; s.values = []; } c.least = Infinity; c.most = -Infinity; } }
-  take(values: Value[]): void {
+  clear(): void { for (const c of this.cards) { for (const s of c.series) { s.times = []; s.values = []; } c.min = Infinity; c.max = -Infinity; } }
+  addValues(values: Value[]): void {
     for (const [i, t, v, source] of values) {
       const c = this.cards[i];
       if (!c) continue;
@@ -103,7 +103,7 @@ export class Variables {
         this.build(c);
       }
       s.times.push(t); s.values.push(v);
-      c.least = Math.min(c.least, v); c.most = Math.max(c.most, v);
+      c.min = Math.min(c.min, v); c.max = Math.max(c.max, v);
     }
   }
   draw(now: number): void {
@@ -128,7 +128,7 @@ export class Variables {
     box.replaceChildren(...lasts.map((v, k) => {
       const span = make("span", "one", figure(v) + (k === lasts.length - 1 ? unit : ""));
       span.style.color = COLOURS[k % COLOURS.length]!;
-      span.title = this.nodes.get(c.series[k]!.source) ?? "a sender that says nothing of its health";
+      span.title = this.nodes.get(c.series[k]!.source) ?? "a sender without health messages";
       return span;
     }));
   }
@@ -144,7 +144,7 @@ export class Variables {
     });
   }
   private bar(c: Card, last: number): void {
-    const lo = Math.min(0, c.least), hi = Math.max(0, c.most), span = hi - lo || 1;
+    const lo = Math.min(0, c.min), hi = Math.max(0, c.max), span = hi - lo || 1;
     const at = (x: number) => `${(100 * (x - lo)) / span}%`;
     const bar = c.body.firstElementChild!.firstElementChild as HTMLElement, zero = c.body.firstElementChild!.lastElementChild as HTMLElement;
     bar.style.left = at(Math.min(0, last)); bar.style.width = `${(100 * Math.abs(last)) / span}%`; zero.style.left = at(0);

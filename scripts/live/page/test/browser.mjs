@@ -1,4 +1,4 @@
-// A headless Chromium with the page in it, and what the tests do there: as a person would, with mouse and keys.
+// Opens the page in a headless Chromium, and operates it with mouse and keys.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import puppeteer from "puppeteer-core";
@@ -6,16 +6,16 @@ import puppeteer from "puppeteer-core";
 export const wait = (ms) => new Promise((done) => setTimeout(done, ms));
 // CLOCK_MONOTONIC, which stamps the messages too.
 export const now_ns = () => Number(process.hrtime.bigint());
-export const PATIENCE_MS = 20000; // liveness, not speed: the machine may be busy
+export const TIMEOUT_MS = 20000; // liveness, not speed: the machine may be busy
 
-// Waits until it is true; the sentence says what never came.
-export async function until(what, ask, patience_ms = PATIENCE_MS) {
-  const end = Date.now() + patience_ms;
+// Waits until the condition holds; `what` names the condition in the error message.
+export async function until(what, check, timeout_ms = TIMEOUT_MS) {
+  const end = Date.now() + timeout_ms;
   let last;
   for (;;) {
-    try { last = await ask(); } catch (error) { last = error.message; }
+    try { last = await check(); } catch (error) { last = error.message; }
     if (last === true) return;
-    assert.ok(Date.now() < end, `it never came that ${what} (last: ${JSON.stringify(last)})`);
+    assert.ok(Date.now() < end, `timeout before ${what} (last: ${JSON.stringify(last)})`);
     await wait(100);
   }
 }
@@ -38,7 +38,7 @@ export class Browser {
   text(selector) { return this.page.$eval(selector, (e) => e.innerText.trim()); }
   has(selector) { return this.page.$(selector).then((e) => e !== null); }
   pictures() { return this.page.$eval("#picture", (e) => Number(e.dataset.count ?? "0")); }
-  // As a finger leaves it there.
+  // Sets a slider and releases it.
   slide(selector, value) {
     return this.page.$eval(selector, (e, v) => {
       e.value = String(v);
@@ -52,25 +52,25 @@ export class Browser {
     await this.page.keyboard.sendCharacter(name);
     await this.page.keyboard.press("Enter");
   }
-  // The senses in the order of their lanes.
+  // The modalities in the order of their lanes.
   senses() { return this.page.$$eval("#senses tr[data-modality]", (rows) => rows.map((r) => r.dataset.modality)); }
-  // Pixels of marks in each lane of the event raster: nearer to the colour of the lane than to what lies behind it.
+  // Number of pixels of marks in each lane of the event raster: pixels nearer to the colour of the lane than to the background.
   marks() {
     return this.page.evaluate(() => {
       const canvas = document.getElementById("raster"), rows = [...document.querySelectorAll("#senses tr[data-modality]")];
       const rgb = (css) => { const c = document.createElement("canvas").getContext("2d"); c.fillStyle = css; c.fillRect(0, 0, 1, 1); return c.getImageData(0, 0, 1, 1).data; };
       const lanes = [["world", "#9aa4b2"], ...rows.map((r) => [r.dataset.modality, r.firstElementChild.style.color])];
-      const scale = devicePixelRatio, lane = 24 * scale, left = Math.ceil(82 * scale), behind = rgb("#2b313b");
+      const scale = devicePixelRatio, lane = 24 * scale, left = Math.ceil(82 * scale), background = rgb("#2b313b");
       const far = (d, i, c) => (d[i] - c[0]) ** 2 + (d[i + 1] - c[1]) ** 2 + (d[i + 2] - c[2]) ** 2;
       return Object.fromEntries(lanes.map(([name, css], n) => {
         const own = rgb(css), d = canvas.getContext("2d").getImageData(left, n * lane, canvas.width - left, lane).data;
         let count = 0;
-        for (let i = 0; i < d.length; i += 4) if (d[i + 3] > 100 && far(d, i, own) < far(d, i, behind)) ++count;
+        for (let i = 0; i < d.length; i += 4) if (d[i + 3] > 100 && far(d, i, own) < far(d, i, background)) ++count;
         return [name, count];
       }));
     });
   }
-  // Values that the graph of this variable holds.
+  // Number of values in the graph of this variable.
   drawn(name) { return this.page.$$eval(".card", (cards, wanted) => Number(cards.find((c) => c.dataset.name === wanted)?.dataset.values ?? "0"), name); }
   value(name) { return this.page.$$eval(".card", (cards, wanted) => cards.find((c) => c.dataset.name === wanted)?.innerText ?? "", name); }
   // Distinct colours of the first scale of asynchrony.

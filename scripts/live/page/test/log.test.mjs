@@ -1,5 +1,5 @@
-// The page of a log, in a browser: played, stopped and sought. What it showed at each place is written to SEEN, and held against the
-// log itself by tests/cluster/live_test.cpp.
+// Plays, pauses and seeks the page of a log in a browser. Writes the shown values of each position to SEEN, which
+// tests/cluster/live_test.cpp compares with the log.
 //
 //   node log.test.mjs URL SEEN
 import assert from "node:assert/strict";
@@ -10,39 +10,39 @@ const [url, seenFile] = process.argv.slice(2);
 const kVariable = "WORLD_STATE:clock.sim_ns";
 const it = await Browser.open(url);
 try {
-  await until("the page is connected, and a picture came", async () => /^connected/.test(await it.text("#link")) && (await it.pictures()) > 0);
-  assert.ok(await it.page.$eval("#logbar", (e) => !e.hidden), "a log has a bar to seek with");
+  await until("the page is connected and shows a picture", async () => /^connected/.test(await it.text("#link")) && (await it.pictures()) > 0);
+  assert.ok(await it.page.$eval("#logbar", (e) => !e.hidden), "the page of a log has a seek bar");
   for (const control of ["#controls", "#degrade", "#handlabel"])
-    assert.ok(await it.page.$eval(control, (e) => e.hidden), `${control} must not be there: a log cannot be changed`);
+    assert.ok(await it.page.$eval(control, (e) => e.hidden), `${control} must be hidden: a log cannot be changed`);
   const place = async () => (await it.text("#place")).match(/[\d.]+/g).map(Number); // s, of s
   const [, length_s] = await place();
   await it.add(kVariable);
 
-  await until("it plays", async () => (await place())[0] > 0.5);
+  await until("the log plays", async () => (await place())[0] > 0.5);
   await it.click("#play");
-  await until("it stands", async () => (await it.text("#play")) === "Play");
-  const [stands_s] = await place();
+  await until("the log is paused", async () => (await it.text("#play")) === "Play");
+  const [paused_s] = await place();
   await wait(500);
-  assert.equal((await place())[0], stands_s, "it stands still");
+  assert.equal((await place())[0], paused_s, "a paused log keeps its position");
 
-  // Forward and back: the variable that is shown is the world's own time, which knows where it is.
+  // Forward and back: the shown variable is the simulated time, which identifies the position.
   const seen = { length_s, places: [] };
   for (const share of [0.6, 0.3, 0.9]) {
     const to_s = Math.round(share * length_s * 100) / 100;
     await it.slide("#seek", to_s);
-    await until(`it is at ${to_s} s`, async () => Math.abs((await place())[0] - to_s) < 0.06 || place());
+    await until(`the position is ${to_s} s`, async () => Math.abs((await place())[0] - to_s) < 0.06 || place());
     await wait(700);
     const value = /([\d.e+]+) ns/.exec(await it.value(kVariable));
     assert.ok(value, `the page shows no value at ${to_s} s: ${await it.value(kVariable)}`);
     seen.places.push({ to_s, sim_ns: Number(value[1]) });
-    await until("what lay shortly before is there too", async () => (await it.drawn(kVariable)) > 20 || it.drawn(kVariable));
+    await until("the graph also has the values before the position", async () => (await it.drawn(kVariable)) > 20 || it.drawn(kVariable));
   }
   await it.slide("#seek", Math.round(30 * length_s) / 100);
-  await until("marks of events are there again", async () => (await it.marks()).world > 0 || it.marks());
+  await until("the event raster has marks again", async () => (await it.marks()).world > 0 || it.marks());
 
   await it.page.select("#speed", "16");
   await it.click("#play");
-  await until("it comes to its end", async () => { const [at, all] = await place(); return all - at < 0.2 || [at, all]; });
+  await until("the log reaches its end", async () => { const [at, all] = await place(); return all - at < 0.2 || [at, all]; });
   fs.writeFileSync(seenFile, JSON.stringify(seen));
   assert.deepEqual(it.errors, [], "the page has reported errors");
 } catch (error) {

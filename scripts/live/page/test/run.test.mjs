@@ -1,5 +1,5 @@
-// The page of a running cluster, in a browser: exercises each control and looks at what the page shows. What became of each on the
-// bus is read from the log of the run by tests/cluster/live_test.cpp, by the times that are written to MARKS.
+// Operates each control of the page of a running cluster in a browser, and checks the display. Writes the time of each action to
+// MARKS; tests/cluster/live_test.cpp reads the effects on the bus from the log of the run.
 //
 //   node run.test.mjs URL MARKS [PICTURE.png]
 import assert from "node:assert/strict";
@@ -14,7 +14,7 @@ function mark(name) {
   fs.writeFileSync(marksFile, JSON.stringify(marks));
   console.log(`${((Date.now() - begun) / 1000).toFixed(1)} s: ${name}`);
 }
-// What a server answers to who asks for a WebSocket so; 101: it is opened.
+// The HTTP status of a WebSocket request with this origin and token; 101: it is opened.
 function upgrade(origin, token) {
   const at = new URL(url);
   return new Promise((done, failed) => {
@@ -34,13 +34,13 @@ function server_MB() {
         return Number(/VmRSS:\s+(\d+)/.exec(fs.readFileSync(`/proc/${name}/status`, "utf8"))[1]) / 1024;
     } catch { /* ended meanwhile */ }
   }
-  throw new Error("there is no live_server");
+  throw new Error("no live_server runs");
 }
 
 const it = await Browser.open(url);
 try {
-  await until("the page is connected, and a picture came", async () => /^connected/.test(await it.text("#link")) && (await it.pictures()) > 2);
-  await until("all senses are listed", async () => (await it.senses()).join() === "audio,haptic,thermal,visual" || it.senses());
+  await until("the page is connected and shows pictures", async () => /^connected/.test(await it.text("#link")) && (await it.pictures()) > 2);
+  await until("all modalities are listed", async () => (await it.senses()).join() === "audio,haptic,thermal,visual" || it.senses());
   mark("shown");
 
   // The mouse as the hand: from above the floor down into it and up again, several times; then the page is silent.
@@ -63,7 +63,7 @@ try {
     const found = await it.marks();
     return ["world", "audio", "haptic", "thermal", "visual"].every((lane) => found[lane] > 0) || found;
   });
-  await until("every sense has a rate, and audio and visual a latency", async () => {
+  await until("every modality has a rate, and two have a latency", async () => {
     const rows = await it.page.$$eval("#senses tr[data-modality]", (all) => all.map((r) => [...r.children].map((c) => c.innerText)));
     return rows.every((r) => / \/ \d+ Hz$/.test(r[1]) && Number.parseFloat(r[1]) > 0) && rows.filter((r) => /ms$/.test(r[2]) && /ms$/.test(r[3])).length >= 2 || rows;
   });
@@ -86,29 +86,29 @@ try {
   await it.page.select(`${card} select`, "graph");
   if (screenshot) await it.page.screenshot({ path: screenshot });
 
-  // A sense worse and better. The sliders begin where the profile is that the run was started with.
-  await until("the slider of warmth stands where the profile in force has it", async () =>
+  // Degrades modalities and restores them. The sliders start at the profile of the run.
+  await until("the slider of warmth shows the profile in force", async () =>
     (await it.page.$eval("#thermal-delay", (e) => e.value)) === "30" && /late warmth/.test(await it.text("#inforce")) || it.text("#inforce"));
   await it.slide("#audio-delay", 80);
-  await it.slide("#visual-rate", 3); // the fourth of its places: 10 Hz
+  await it.slide("#visual-rate", 3); // the fourth rate: 10 Hz
   await it.slide("#haptic-loss", 50);
   mark("degrade");
-  // All three: the page sends once the hand rests, and on a busy machine it may seem to rest between two of them.
-  await until("the profile has all that the sliders ask for", async () => {
+  // All three: the page sends after a pause of the sliders; a busy machine may cause a pause between two of them.
+  await until("the profile has the values of all sliders", async () => {
     const s = JSON.parse(await it.page.$eval("#inforce", (e) => e.dataset.senses ?? "{}"));
     return s.audio?.delay_ms === 80 && s.visual?.rate_Hz === 10 && s.haptic?.loss === 0.5 || s;
   });
-  await until("all senses have taken the profile", async () =>
+  await until("all modalities have the profile", async () =>
     /changed in the live page/.test(await it.text("#inforce")) && (await it.text("#nodes")).match(/taken/g)?.length === 4 || it.text("#nodes"));
   mark("degraded");
-  mark("clear");  // before: what is sent may be on the bus before the click returns
+  mark("clear");  // before the click: the message may be on the bus before the click returns
   await it.click("#clear");
   await wait(1500);
   mark("cleared");
 
-  // The world stands still, goes on by 25 steps, goes on, and begins again.
+  // Pauses the world, advances it by 25 steps, resumes it, and resets it.
   await it.click("#pause");
-  await until("the world stands still", async () => /stands still/.test(await it.text("#world")) || it.text("#world"));
+  await until("the world is paused", async () => /stands still/.test(await it.text("#world")) || it.text("#world"));
   await wait(300);
   mark("paused");
   await it.page.$eval("#steps", (e) => { e.value = "25"; });
@@ -116,16 +116,16 @@ try {
   await wait(1000);
   mark("stepped");
   await it.click("#pause");
-  await until("the world goes on", async () => !/stands still/.test(await it.text("#world")) || it.text("#world"));
+  await until("the world resumes", async () => !/stands still/.test(await it.text("#world")) || it.text("#world"));
   await wait(500);
   mark("reset");
   await it.click("#reset");
   await wait(1000);
   mark("was_reset");
 
-  // Strangers are refused over the wire, and not only by the page.
+  // The server itself refuses foreign origins and wrong tokens.
   const token = new URL(url).searchParams.get("token"), own = new URL(url).origin;
-  assert.equal(await upgrade(own, token), 101, "the page itself is let in");
+  assert.equal(await upgrade(own, token), 101, "the page itself is accepted");
   for (const [origin, key] of [["http://evil.example", token], ["", token], ["null", token], [own.replace("http:", "https:"), token],
     [own, ""], [own, token.replace(/.$/, (c) => (c === "0" ? "1" : "0"))], [own, token + "0"]])
     assert.equal(await upgrade(origin, key), 403, `Origin "${origin}", token "${key}" must be refused`);
@@ -144,11 +144,11 @@ try {
   await wait(3000);
   const after_MB = server_MB();
   mark("over");
-  // Queues are bounded by 4 MiB a page and what the kernel takes; anything that grew with time would be far beyond.
+  // Queues are bounded by 4 MiB a page plus kernel buffers; memory that grows with time would exceed this by far.
   for (const [when, MB] of [["before", before_MB], ["frozen", frozen_MB], ["after", after_MB]]) console.log(`server ${when}: ${MB.toFixed(1)} MB`);
-  assert.ok(Math.max(frozen_MB, after_MB) < before_MB + 16, "the server has grown with a page that does not read");
+  assert.ok(Math.max(frozen_MB, after_MB) < before_MB + 16, "the memory of the server grows with a page that does not read");
 
-  // The next page is served as the first was.
+  // The next page is served like the first.
   const again = await Browser.open(url);
   await until("a new browser is served", async () => /^connected/.test(await again.text("#link")) && (await again.pictures()) > 0);
   await again.close();

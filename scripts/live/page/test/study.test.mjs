@@ -1,5 +1,5 @@
-// The pages of a participant and of who looks on, in browsers: tests/cluster/live_question_test.cpp asks on the bus, and holds what is
-// answered here against what it hears.
+// Operates the pages of a participant and of an observer in browsers. tests/cluster/live_question_test.cpp publishes the questions and
+// compares the answers on the bus with the expected ones.
 //
 //   node study.test.mjs URL [FOLDER]     FOLDER: where screenshots go
 import assert from "node:assert/strict";
@@ -7,13 +7,13 @@ import path from "node:path";
 import { Browser, until, wait } from "./browser.mjs";
 
 const [url, folder] = process.argv.slice(2);
-const participant = await Browser.open(`${url}&participant`), onlooker = await Browser.open(url);
+const participant = await Browser.open(`${url}&participant`), observer = await Browser.open(url);
 const asked = (it) => it.page.$eval("#study", (e) => (e.hidden ? "" : e.querySelector(".asked")?.innerText.trim() ?? ""));
 const toast = (it) => it.page.$eval("#toast", (e) => (e.classList.contains("on") ? e.textContent : ""));
-const is = (it, text) => until(`it is asked "${text}"`, async () => (await asked(it)) === text || asked(it));
-const ready = () => until("it can be answered", () => participant.page.$eval("#study", (e) => !e.classList.contains("sent")));
+const is = (it, text) => until(`the page shows "${text}"`, async () => (await asked(it)) === text || asked(it));
+const ready = () => until("the question can be answered", () => participant.page.$eval("#study", (e) => !e.classList.contains("sent")));
 const keep = async (it, name) => { if (folder) await it.page.screenshot({ path: path.join(folder, name) }); };
-// What the server says to a message of another page than ours, as anybody with the token could send it.
+// The server's reply to a message of another client that has the token.
 function refusal(message) {
   return participant.page.evaluate((text) => new Promise((done) => {
     const socket = new WebSocket(`ws://${location.host}/ws?token=${new URLSearchParams(location.search).get("token")}`);
@@ -34,28 +34,28 @@ try {
     assert.equal(await participant.page.$eval(other, (e) => getComputedStyle(e).display === "none" || getComputedStyle(e).visibility === "hidden"), true, `a participant must not see ${other}`);
   assert.ok(!(await participant.text("body")).includes("audio +80 ms"), "a participant must not see the condition");
 
-  // Malformed, or to another question: each is refused with its reason, and nothing of it is on the bus.
+  // Malformed answers and answers to another question are refused with a reason, and not published.
   const answer = { t: "answer", question: "1.2", choice: -1, number: 0, after_ns: 5 };
-  for (const [message, reason] of [[answer, /not asked any more/], [{ ...answer, choice: 0.5 }, /no whole number/], [{ ...answer, after_ns: -1 }, /out of range/],
-    [{ ...answer, number: "1" }, /no number/], [{ ...answer, question: 7 }, /no name/], [{ t: "answer" }, /which question/]])
+  for (const [message, reason] of [[answer, /no longer open/], [{ ...answer, choice: 0.5 }, /no whole number/], [{ ...answer, after_ns: -1 }, /out of range/],
+    [{ ...answer, number: "1" }, /no number/], [{ ...answer, question: 7 }, /not text/], [{ t: "answer" }, /names no question/]])
     assert.match(await refusal(message), reason);
 
   await ready();
   await keep(participant, "read.png");
-  await participant.page.keyboard.press("1");  // no answer to what is to be read
+  await participant.page.keyboard.press("1");  // no answer to a text
   await wait(300);
   await is(participant, "You will see a ball fall and hear it.");
   await participant.page.keyboard.press("Enter");
 
-  // Who looks on sees what is asked, of whom and how far it is, and has nothing to answer it with.
+  // The observer's page shows the question, the condition and the progress, and has no answer controls.
   await is(participant, "Was it at the same time?");
-  await onlooker.page.bringToFront();
-  await is(onlooker, "Was it at the same time?");
+  await observer.page.bringToFront();
+  await is(observer, "Was it at the same time?");
   for (const shown of ["block 1 of 4", "trial 2", "audio +80 ms", "2 not at the same time", "waits for the participant"])
-    assert.ok((await onlooker.text("#study")).includes(shown), `who looks on must see "${shown}": ${await onlooker.text("#study")}`);
-  assert.equal(await onlooker.page.$$eval("#study :is(button, input)", (all) => all.length), 0);
-  await keep(onlooker, "onlooker.png");
-  await onlooker.page.keyboard.press("1");
+    assert.ok((await observer.text("#study")).includes(shown), `the observer's page must show "${shown}": ${await observer.text("#study")}`);
+  assert.equal(await observer.page.$$eval("#study :is(button, input)", (all) => all.length), 0);
+  await keep(observer, "observer.png");
+  await observer.page.keyboard.press("1");
   await wait(500);
   await participant.page.bringToFront();
   await is(participant, "Was it at the same time?");
@@ -66,11 +66,11 @@ try {
   await is(participant, "Which was first?");
   await ready();
   await participant.page.keyboard.press("3");
-  await until("it is gone when it is answered", async () => (await asked(participant)) === "");
+  await until("the question disappears after its answer", async () => (await asked(participant)) === "");
 
   await is(participant, "How hard was it?");
   await ready();
-  assert.equal(await participant.text("#study .marked"), "50", "the mark begins in the middle");
+  assert.equal(await participant.text("#study .marked"), "50", "the mark starts in the middle");
   await participant.slide("#mark", 64);
   assert.equal(await participant.text("#study .marked"), "64");
   assert.deepEqual(await participant.page.$$eval("#study .ends span", (all) => all.map((e) => e.innerText)), ["very soft", "very hard"]);
@@ -84,16 +84,16 @@ try {
   await participant.page.keyboard.press("ArrowLeft");
   assert.equal(await participant.text("#study .marked"), "0.15");
   await participant.page.keyboard.press("Enter");
-  await until("nothing is asked during a trial", async () => (await asked(participant)) === "");
-  await onlooker.page.bringToFront();
-  await is(onlooker, "nothing is asked: a trial is under way");
+  await until("no question is shown during a trial", async () => (await asked(participant)) === "");
+  await observer.page.bringToFront();
+  await is(observer, "no question: a trial is in progress");
   assert.equal(await toast(participant), "");
-  assert.deepEqual([...participant.errors, ...onlooker.errors], [], "the pages have reported errors");
-  await wait(1500);  // nothing more is answered
+  assert.deepEqual([...participant.errors, ...observer.errors], [], "the pages have reported errors");
+  await wait(1500);  // no further answer is sent
 } catch (error) {
   console.error(error.message);
   process.exitCode = 1;
 } finally {
   await participant.close();
-  await onlooker.close();
+  await observer.close();
 }

@@ -65,6 +65,8 @@ class Plan:
 
     def program(self, name):
         """Name of the program of a process."""
+        if name == PARTICIPANT:
+            return PLAYER_PROGRAM
         return hands.FIRST if name in self.hands else walls.FIRST if name in self.walls else name
 
 

@@ -103,7 +103,7 @@ class TrialRunnerClient:
                 return False
             self.receive(min(left, 0.1))
             if self.refused:
-                raise Refusal(f"conductor: {self.refused.popleft()}")
+                raise Refusal(f"trial_runner: {self.refused.popleft()}")
         return True
 
     def apply_profile(self, profile, timeout_s):

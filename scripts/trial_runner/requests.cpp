@@ -1,4 +1,4 @@
-#include "scripts/trial_runner/orders.h"
+#include "scripts/trial_runner/requests.h"
 
 #include <array>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <tactus/sim_command_t.hpp>
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 namespace {
 
 using nlohmann::json;
@@ -39,7 +39,7 @@ std::int8_t choice_of(const json& j, const char* key,
   refuse(std::string(key) + " \"" + word + "\" is none of " + all);
 }
 
-Order question(const json& j) {
+Request question(const json& j) {
   question_t q{};
   q.kind = choice_of(j, "kind",
                      {{"nothing", question_t::NOTHING},
@@ -60,18 +60,18 @@ Order question(const json& j) {
     q.lowest = number_of(j, "lowest", -1e9, 1e9), q.highest = number_of(j, "highest", -1e9, 1e9);
     q.step = number_of(j, "step", 0, 1e9);
   }
-  return QuestionOrder{q};
+  return QuestionRequest{q};
 }
 
-Order answer(const json& j) {
-  AnswerOrder a;
+Request answer(const json& j) {
+  AnswerRequest a;
   if (j.contains("choice")) a.choice = static_cast<int>(number_of(j, "choice", 0, 8));
   if (j.contains("number")) a.number = number_of(j, "number", -1e9, 1e9);
   return a;
 }
 
-Order command(const json& j) {
-  CommandOrder c;
+Request command(const json& j) {
+  CommandRequest c;
   c.kind = choice_of(j, "kind",
                      {{"pause", sim_command_t::PAUSE},
                       {"resume", sim_command_t::RESUME},
@@ -82,17 +82,17 @@ Order command(const json& j) {
   return c;
 }
 
-Order press(const json& j) {
-  return PressOrder{number_of(j, "depth_m", 0, 0.1), number_of(j, "period_s", 0.1, 10),
+Request press(const json& j) {
+  return PressRequest{number_of(j, "depth_m", 0, 0.1), number_of(j, "period_s", 0.1, 10),
                     static_cast<int>(number_of(j, "times", 1, 100))};
 }
 
 }  // namespace
 
-Order parse_order(std::string_view line) {
+Request parse_request(std::string_view line) {
   const json j = json::parse(line, nullptr, false);
   if (!j.is_object() || j.size() != 1)
-    refuse("an order is a JSON object with one member, for example {\"end\": true}");
+    refuse("a request is a JSON object with one member, for example {\"end\": true}");
   const auto& [what, value] = *j.items().begin();
   const auto object = [&]() -> const json& {
     if (!value.is_object()) refuse(what + " is no JSON object");
@@ -100,15 +100,15 @@ Order parse_order(std::string_view line) {
   };
   if (what == "profile") {
     if (!value.is_string()) refuse("profile is not text");
-    return ProfileOrder{value.get<std::string>()};
+    return ProfileRequest{value.get<std::string>()};
   }
   if (what == "question") return question(object());
   if (what == "answer") return answer(object());
-  if (what == "tap") return TapOrder{number_of(object(), "depth_m", 0, 0.1)};
+  if (what == "tap") return TapRequest{number_of(object(), "depth_m", 0, 0.1)};
   if (what == "press") return press(object());
   if (what == "command") return command(object());
-  if (what == "end") return EndOrder{};
-  refuse("there is no order \"" + what + "\"");
+  if (what == "end") return EndRequest{};
+  refuse("there is no request \"" + what + "\"");
 }
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -1,5 +1,5 @@
 // Rate, latency and asynchrony of the modalities, with the published thresholds; and their nodes.
-import { NodeHealth, Pair, Presentation, Sense, Threshold, colourOf, element, make } from "./messages";
+import { NodeHealth, Pair, Presentation, ModalityReport, Threshold, colourOf, element, make } from "./messages";
 
 const STATES = ["waiting", "running", "stale", "input lost", "output lost", "ready"];
 const SPAN_MS = 250;  // of the scale of asynchrony, to both sides
@@ -12,10 +12,10 @@ function row(cells: [string, string][], heading = false): HTMLElement {
 }
 const quantile = (sorted: number[], q: number): number => sorted[Math.min(sorted.length - 1, Math.floor(q * sorted.length))]!;
 
-export class Senses {
+export class ModalityTables {
   private latencies = new Map<string, [number, number][]>();
   private health: NodeHealth[] = [];
-  private senses: Sense[] = [];
+  private reports: ModalityReport[] = [];
   thresholds: Threshold[] = [];
   presented(list: Presentation[]): void {
     for (const [t, modality, part, , latency] of list) {
@@ -28,7 +28,7 @@ export class Senses {
   }
   clear(): void { this.latencies.clear(); }
   modalities(): string[] { return [...new Set(this.health.map((h) => h.modality).filter((m) => m))].sort(); }
-  takeHealth(health: NodeHealth[], wanted: string): void {
+  updateHealth(health: NodeHealth[], wanted: string): void {
     this.health = health;
     const table = element("nodes");
     table.replaceChildren(row([["node", ""], ["state", ""], ["missed", ""], ["gaps", ""], ["tick max", ""], ["profile", ""]], true), ...health.map((h) => {
@@ -40,11 +40,11 @@ export class Senses {
       return tr;
     }));
   }
-  takeReport(report: { senses: Sense[]; pairs: Pair[] }): void {
-    this.senses = report.senses;
+  updateReport(report: { senses: ModalityReport[]; pairs: Pair[] }): void {
+    this.reports = report.senses;
     const box = element("pairs");
     const shown = report.pairs.filter((p) => p.n > 0);
-    box.replaceChildren(...(shown.length ? shown.map((p) => this.pair(p)) : [make("p", "quiet", "nothing has been presented by two senses yet")]));
+    box.replaceChildren(...(shown.length ? shown.map((p) => this.pair(p)) : [make("p", "quiet", "no event has been presented by two senses yet")]));
     requestAnimationFrame(() => shown.forEach((p, i) => this.drawPair(box.children[i]!.querySelector("canvas")!, p)));
   }
   private pair(p: Pair): HTMLElement {
@@ -84,7 +84,7 @@ export class Senses {
     const rows = this.modalities().map((m) => {
       const nodes = this.health.filter((h) => h.modality === m), h = nodes[0]!;
       const of = (this.latencies.get(m) ?? []).filter(([t]) => t > now - MEMORY_S).map(([, l]) => l).sort((a, b) => a - b);
-      const report = this.senses.find((s) => s.modality === m);
+      const report = this.reports.find((s) => s.modality === m);
       const slow = h.lost || h.rate_Hz < 0.9 * h.nominal_Hz;
       const tr = row([[m, "name"], [`${h.rate_Hz.toFixed(0)} / ${h.nominal_Hz.toFixed(0)} Hz`, slow ? "n bad" : "n"],
         [of.length ? `${quantile(of, 0.5).toFixed(1)} ms` : "–", "n"], [of.length ? `${quantile(of, 0.95).toFixed(1)} ms` : "–", "n"],

@@ -1,25 +1,25 @@
-// Tests of parsing the orders of a study.
-#include "scripts/trial_runner/orders.h"
+// Tests of parsing the requests of a study.
+#include "scripts/trial_runner/requests.h"
 
 #include <catch2/catch.hpp>
 #include <tactus/question_t.hpp>
 #include <tactus/sim_command_t.hpp>
 
 using namespace tactus;
-using namespace tactus::conductor;
+using namespace tactus::trial_runner;
 using Catch::Matchers::Contains;
 
-TEST_CASE("Each order is read as what it is") {
-  CHECK(std::get<ProfileOrder>(parse_order(R"({"profile": "<profile/>"})")).text == "<profile/>");
-  CHECK(std::get<TapOrder>(parse_order(R"({"tap": {"depth_m": 0.01}})")).depth_m == 0.01);
-  CHECK(std::get<PressOrder>(parse_order(R"({"press": {"depth_m": 0.01, "period_s": 0.5, "times": 3}})")).times ==
+TEST_CASE("Each kind of request is parsed") {
+  CHECK(std::get<ProfileRequest>(parse_request(R"({"profile": "<profile/>"})")).text == "<profile/>");
+  CHECK(std::get<TapRequest>(parse_request(R"({"tap": {"depth_m": 0.01}})")).depth_m == 0.01);
+  CHECK(std::get<PressRequest>(parse_request(R"({"press": {"depth_m": 0.01, "period_s": 0.5, "times": 3}})")).times ==
         3);
-  CHECK(std::get<CommandOrder>(parse_order(R"({"command": {"kind": "reset"}})")).kind == sim_command_t::RESET);
-  CHECK(std::get<AnswerOrder>(parse_order(R"({"answer": {"number": 0.5}})")).number == 0.5);
-  CHECK(std::holds_alternative<EndOrder>(parse_order(R"({"end": true})")));
+  CHECK(std::get<CommandRequest>(parse_request(R"({"command": {"kind": "reset"}})")).kind == sim_command_t::RESET);
+  CHECK(std::get<AnswerRequest>(parse_request(R"({"answer": {"number": 0.5}})")).number == 0.5);
+  CHECK(std::holds_alternative<EndRequest>(parse_request(R"({"end": true})")));
   const auto q =
-      std::get<QuestionOrder>(
-          parse_order(
+      std::get<QuestionRequest>(
+          parse_request(
               R"({"question": {"kind": "number", "text": "How hard?", "lowest": 0, "highest": 1, "step": 0.1, "trial": 3, "condition": "c"}})"))
           .question;
   CHECK(q.kind == question_t::NUMBER);
@@ -27,15 +27,15 @@ TEST_CASE("Each order is read as what it is") {
   CHECK(q.step == 0.1);
 }
 
-TEST_CASE("What is no order is refused with a reason") {
+TEST_CASE("A malformed request is rejected with a reason") {
   const auto refuses = [](const char* line, const char* why) {
-    CHECK_THROWS_WITH(parse_order(line), Contains(why));
+    CHECK_THROWS_WITH(parse_request(line), Contains(why));
   };
   refuses("", "JSON object with one member");
   refuses("[]", "JSON object with one member");
   refuses("{}", "JSON object with one member");
   refuses(R"({"end": true, "tap": {}})", "JSON object with one member");
-  refuses(R"({"dance": 1})", "there is no order");
+  refuses(R"({"dance": 1})", "there is no request");
   refuses(R"({"tap": 1})", "tap is no JSON object");
   refuses(R"({"tap": {"depth_m": "deep"}})", "depth_m is not a number from 0");
   refuses(R"({"tap": {"depth_m": 5}})", "depth_m is not a number from 0");

@@ -12,7 +12,7 @@ namespace tactus::cluster {
 using Grey = std::vector<unsigned char>;
 
 // Mean difference of two pictures, of 255.
-inline double apart(const Grey& a, const Grey& b) {
+inline double mean_difference(const Grey& a, const Grey& b) {
   REQUIRE(a.size() == b.size());
   REQUIRE(!a.empty());
   double sum = 0;
@@ -20,9 +20,9 @@ inline double apart(const Grey& a, const Grey& b) {
   return sum / static_cast<double>(a.size());
 }
 
-struct Seeing : Running {
+struct PictureCluster : RunningCluster {
   std::filesystem::path snapshot = folder.path() / "now.png";
-  int asked = 0;
+  int call_count = 0;
 
   // Options of visual_node: pictures of 640 x 480, ten per second.
   std::vector<std::string> snapshots() const {
@@ -34,9 +34,9 @@ struct Seeing : Running {
     for (const char* node : {"haptic_node", "audio_node", "thermal_node"}) processes.start(node);
     start_vision(options, before);
     processes.start("sim_node", {tapping_scene()});
-    const bool alive = ear.wait_until([&] { return all_live(kNodes) && ear.hits() > 0; }, kPatience_s);
-    UNSCOPED_INFO(words());
-    REQUIRE(alive);
+    const bool running = monitor.wait_until([&] { return all_running(kNodes) && monitor.hits() > 0; }, kTimeout_s);
+    UNSCOPED_INFO(log_text());
+    REQUIRE(running);
   }
   void start_vision(const std::vector<std::string>& options, const std::vector<std::string>& before = {}) {
     std::vector<std::string> command{"env"};
@@ -58,36 +58,36 @@ struct Seeing : Running {
   Grey picture() { return grey("-i " + quoted(snapshot)); }
   // A picture that is drawn a few frames from now.
   Grey later_picture() {
-    const std::int64_t before = ear.ticks("visual_node");
-    CHECK(ear.wait_until([&] { return ear.ticks("visual_node") > before + 12; }, kPatience_s));
-    ear.listen(0.5);
+    const std::int64_t before = monitor.ticks("visual_node");
+    CHECK(monitor.wait_until([&] { return monitor.ticks("visual_node") > before + 12; }, kTimeout_s));
+    monitor.receive_for(0.5);
     return picture();
   }
   // Output of the program `set`: a line for each change, one line when it refuses.
   std::string set(const std::vector<std::string>& words, int wanted_status = 0) {
-    const std::string name = "set" + std::to_string(++asked);
+    const std::string name = "set" + std::to_string(++call_count);
     std::vector<std::string> command{programs() / "set", "--run-id", std::to_string(kRunId), "visual_node"};
     command.insert(command.end(), words.begin(), words.end());
     processes.spawn(name, command);
-    const int status = processes.wait_for_exit(name, kPatience_s);
-    const std::string said = processes.said(name);
-    INFO(said);
+    const int status = processes.wait_for_exit(name, kTimeout_s);
+    const std::string output = processes.output(name);
+    INFO(output);
     CHECK(status == wanted_status);
-    CHECK(std::count(said.begin(), said.end(), '\n') == (status == 0 ? static_cast<long>(words.size()) : 1));
-    return said;
+    CHECK(std::count(output.begin(), output.end(), '\n') == (status == 0 ? static_cast<long>(words.size()) : 1));
+    return output;
   }
-  bool goes_on(const std::string& node) {
-    const std::int64_t before = ear.ticks(node);
-    return ear.wait_until([&] { return lives(node) && ear.ticks(node) > before + 5; }, kPatience_s);
+  bool keeps_ticking(const std::string& node) {
+    const std::int64_t before = monitor.ticks(node);
+    return monitor.wait_until([&] { return is_running(node) && monitor.ticks(node) > before + 5; }, kTimeout_s);
   }
   // The modalities without vision: touch, sound and warmth are live, and hits are published.
-  bool others_live() {
-    const std::int64_t hits = ear.hits();
-    return ear.wait_until(
+  bool others_running() {
+    const std::int64_t hits = monitor.hits();
+    return monitor.wait_until(
         [&] {
-          return ear.hits() > hits && all_live({"sim_node", "haptic_node", "audio_node", "thermal_node"});
+          return monitor.hits() > hits && all_running({"sim_node", "haptic_node", "audio_node", "thermal_node"});
         },
-        kPatience_s);
+        kTimeout_s);
   }
 };
 

@@ -17,14 +17,14 @@ using nlohmann::json;
 namespace {
 
 // Waits until each of these modalities has presented the given number of new events.
-bool presents(Running& c, const std::vector<std::string>& modalities, const EventsHeard& before,
+bool wait_for_presentations(RunningCluster& c, const std::vector<std::string>& modalities, const PresentedEvents& before,
               std::size_t events) {
-  return c.ear.wait_until(
+  return c.monitor.wait_until(
       [&] {
         return std::all_of(modalities.begin(), modalities.end(),
-                           [&](const std::string& m) { return waits_ms(c.ear, m, before).size() >= events; });
+                           [&](const std::string& m) { return delays_ms(c.monitor, m, before).size() >= events; });
       },
-      kPatience_s);
+      kTimeout_s);
 }
 
 const std::vector<std::string> kOthers{"haptic", "audio", "visual", "thermal"};
@@ -32,30 +32,30 @@ const std::vector<std::string> kOthers{"haptic", "audio", "visual", "thermal"};
 }  // namespace
 
 TEST_CASE(
-    "A sixth sense joins a running cluster: it is in health, in the report and in the summary, with a debt and "
-    "asynchronies", "[exclusive]") {
-  Running c;
-  auto& reports = c.ear.bus().queue<sync_report_t>(channels::kSyncReport, 256);
+    "A sixth modality joins a running cluster: health, report and summary contain it, with expected "
+    "events and asynchronies", "[exclusive]") {
+  RunningCluster c;
+  auto& reports = c.monitor.bus().queue<sync_report_t>(channels::kSyncReport, 256);
   c.processes.start("recorder");
   c.start();
   const auto before = c.rates(2);
   c.processes.start("wind_node");
-  const bool joined = c.ear.wait_until([&] { return c.lives("wind_node"); }, kPatience_s);
-  INFO(c.processes.said("wind_node"));
+  const bool joined = c.monitor.wait_until([&] { return c.is_running("wind_node"); }, kTimeout_s);
+  INFO(c.processes.output("wind_node"));
   REQUIRE(joined);
   CHECK(c.ear.health("wind_node")->modality == "wind");
   CHECK(c.ear.health("wind_node")->expected_events == node_health_t::EXPECTS_HIT);
 
-  modality_report_t kept{};
+  modality_report_t latest{};
   std::set<std::string> paired_with;
   const auto reported = [&] {
     while (const auto m = reports.pop()) {
       for (const modality_report_t& r : m->message.modalities)
-        if (r.modality == "wind") kept = r;
+        if (r.modality == "wind") latest = r;
       for (const pair_report_t& p : m->message.pairs)
         if (p.b == "wind" && p.n > 0) paired_with.insert(p.a);
     }
-    return kept.presented >= 5 && paired_with.size() == kOthers.size();
+    return latest.presented >= 5 && paired_with.size() == kOthers.size();
   };
   CHECK(c.ear.wait_until(reported, kPatience_s));
   INFO("presented " << kept.presented << " of " << kept.expected << ", with " << paired_with.size() << " others");
@@ -63,15 +63,15 @@ TEST_CASE(
 
   // The other nodes keep their rates.
   c.check_rates_hold(before, 2);
-  for (const auto& [node, rate] : before) CHECK(c.lives(node));
+  for (const auto& [node, rate] : before) CHECK(c.is_running(node));
   for (const char* node : {"wind_node", "recorder"}) {
     c.processes.signal(node, SIGTERM);
-    CHECK(c.processes.wait_for_exit(node, kPatience_s) == 0);
+    CHECK(c.processes.wait_for_exit(node, kTimeout_s) == 0);
   }
   CHECK(std::filesystem::file_size(c.folder.path() / "wind.csv") > 1000);
   c.processes.spawn("summarise", {programs() / "summarise", c.folder.path() / "run.lcmlog", "--out",
                                   c.folder.path() / "summary.json"});
-  c.processes.wait_for_exit("summarise", kPatience_s);
+  c.processes.wait_for_exit("summarise", kTimeout_s);
   const json summary = json::parse(contents(c.folder.path() / "summary.json"), nullptr, false);
   REQUIRE_FALSE(summary.is_discarded());
   CHECK(summary["contacts"]["by_modality"]["wind"]["presented"] > 0);
@@ -82,29 +82,29 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A profile delays the sixth sense by just its 50 ms, and no other sense", "[exclusive]") {
-  Running c;
+TEST_CASE("A profile delays the sixth modality by its 50 ms, and no other modality", "[exclusive]") {
+  RunningCluster c;
   c.start();
   c.processes.start("wind_node");
-  REQUIRE(c.ear.wait_until([&] { return c.lives("wind_node"); }, kPatience_s));
+  REQUIRE(c.monitor.wait_until([&] { return c.is_running("wind_node"); }, kTimeout_s));
   std::vector<std::string> all = kOthers;
   all.push_back("wind");
-  ask_for(c, {"asap"});  // otherwise all modalities wait for the slowest
-  c.ear.listen(2);
+  request_playout(c, {"asap"});  // otherwise all modalities wait for the slowest
+  c.monitor.receive_for(2);
   constexpr std::size_t kEvents = 12;
-  const EventsHeard none = heard_of(c.ear);
-  REQUIRE(presents(c, all, none, kEvents));
+  const PresentedEvents none = presented_events(c.monitor);
+  REQUIRE(wait_for_presentations(c, all, none, kEvents));
   std::map<std::string, double> before;
-  for (const std::string& m : all) before[m] = median(waits_ms(c.ear, m, none));
+  for (const std::string& m : all) before[m] = median(delays_ms(c.monitor, m, none));
 
   CHECK(put_in_force(c, "<degrade modality=\"wind\" delay=\"50ms\"/>").find("wind_node") != std::string::npos);
-  c.ear.listen(0.5);  // events in flight
-  const EventsHeard until = heard_of(c.ear);
-  REQUIRE(presents(c, all, until, kEvents));
-  REQUIRE(c.ear.health("wind_node"));
-  CHECK(c.ear.health("wind_node")->profile != 0);
+  c.monitor.receive_for(0.5);  // events in flight
+  const PresentedEvents until = presented_events(c.monitor);
+  REQUIRE(wait_for_presentations(c, all, until, kEvents));
+  REQUIRE(c.monitor.health("wind_node"));
+  CHECK(c.monitor.health("wind_node")->profile != 0);
   for (const std::string& m : all) {
-    const double now = median(waits_ms(c.ear, m, until));
+    const double now = median(delays_ms(c.monitor, m, until));
     INFO(m << " waited " << before[m] << " ms before and " << now << " ms now");
     // A busy machine moves a median by some ticks, but not by half of the delay.
     CHECK(std::abs(now - before[m] - (m == "wind" ? 50 : 0)) < 25);

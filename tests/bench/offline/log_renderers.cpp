@@ -1,5 +1,5 @@
 // Rendering of a log by the libraries of audio_node, visual_node and thermal_node on a manual clock.
-#include "tests/bench/offline/senses.h"
+#include "tests/bench/offline/log_renderers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,7 +77,7 @@ class Sound {
 };
 
 // The first sample that leaves the preceding level by 2 % of the loudest one near it, where one stands out.
-void hear(Rendered& out, double delay_s) {
+void find_onsets(Rendered& out, double delay_s) {
   std::vector<std::pair<double, std::int64_t>> hits;
   for (const contact_event_t& e : out.events)
     if (e.kind == contact_event_t::HIT) hits.emplace_back(1e-9 * static_cast<double>(e.time_ns), e.event_id);
@@ -91,17 +91,17 @@ void hear(Rendered& out, double delay_s) {
                begin = static_cast<std::ptrdiff_t>(at - 0.018 * kRate_Hz),
                end = static_cast<std::ptrdiff_t>(at + 0.025 * kRate_Hz);
     if (quiet < 0 || end >= static_cast<std::ptrdiff_t>(out.samples.size())) continue;
-    const auto most = [&](std::ptrdiff_t from, std::ptrdiff_t to) {
+    const auto max_level = [&](std::ptrdiff_t from, std::ptrdiff_t to) {
       float loudest = 0;
       for (auto n = from; n < to; ++n)
         loudest = std::max(loudest, std::abs(out.samples[static_cast<std::size_t>(n)]));
       return loudest;
     };
-    const float level = most(quiet, begin) + 1e-5f, near = most(begin, end);
+    const float level = max_level(quiet, begin) + 1e-5f, near = max_level(begin, end);
     if (near < 4 * level) continue;
     auto n = begin;
     while (std::abs(out.samples[static_cast<std::size_t>(n)]) <= 1.5f * level + 0.02f * near) ++n;
-    out.heard_s[id] = static_cast<double>(n) / kRate_Hz - delay_s;
+    out.onset_s[id] = static_cast<double>(n) / kRate_Hz - delay_s;
   }
 }
 

@@ -15,12 +15,12 @@ namespace tactus::cluster {
 namespace {
 
 constexpr std::size_t kQueue = 8192;
-constexpr sync::Nanoseconds kSilentAfter{1'500'000'000};
-constexpr sync::Nanoseconds kLook{20'000'000};
+constexpr sync::Nanoseconds kHealthTimeout{1'500'000'000};
+constexpr sync::Nanoseconds kPollInterval{20'000'000};
 
 }  // namespace
 
-Ear::Ear(std::int64_t run_id)
+ClusterMonitor::ClusterMonitor(std::int64_t run_id)
     : run_id_(run_id),
       bus_(sync::Identity::fresh("test", run_id), {}),
       health_queue_(bus_.queue<node_health_t>(channels::kNodeHealth, kQueue)),
@@ -29,43 +29,43 @@ Ear::Ear(std::int64_t run_id)
       event_queue_(bus_.queue<contact_events_t>(channels::kContactEvents, kQueue)),
       presented_queue_(bus_.queue<presented_t>(channels::kPresented, kQueue)) {}
 
-bool Ear::wait_until(const std::function<bool()>& condition, double at_most_s) {
-  const sync::HostTime end = sync::host_now() + sync::from_seconds(at_most_s);
+bool ClusterMonitor::wait_until(const std::function<bool()>& condition, double timeout_s) {
+  const sync::HostTime end = sync::host_now() + sync::from_seconds(timeout_s);
   for (;;) {
-    take_in();
+    drain();
     if (condition()) return true;
     if (sync::host_now() > end) return false;
-    bus_.wait(kLook);
+    bus_.wait(kPollInterval);
   }
 }
 
-void Ear::listen(double seconds) {
+void ClusterMonitor::receive_for(double seconds) {
   wait_until([] { return false; }, seconds);
 }
 
-void Ear::take_in() {
+void ClusterMonitor::drain() {
   bus_.drain(sync::host_now());
-  const auto ours = [&](const header_t& h) { return h.run_id == run_id_; };
+  const auto is_own_run = [&](const header_t& h) { return h.run_id == run_id_; };
   while (auto m = health_queue_.pop()) {
-    if (!ours(m->message.header)) continue;
-    Heard& heard = heard_[m->message.node];
-    if (heard.health.header.incarnation != m->message.header.incarnation) ++heard.incarnations;
-    heard.health = std::move(m->message);
-    heard.arrival = m->arrival;
+    if (!is_own_run(m->message.header)) continue;
+    NodeStatus& status = nodes_[m->message.node];
+    if (status.health.header.incarnation != m->message.header.incarnation) ++status.incarnations;
+    status.health = std::move(m->message);
+    status.arrival = m->arrival;
   }
   while (auto m = tool_queue_.pop())
-    if (ours(m->message.header)) tool_ = std::move(m->message);
+    if (is_own_run(m->message.header)) tool_ = std::move(m->message);
   while (auto m = contact_queue_.pop())
-    if (ours(m->message.header)) take(m->message);
+    if (is_own_run(m->message.header)) on_message(m->message);
   while (auto m = event_queue_.pop())
     for (const contact_event_t& e : m->message.events)
       if (e.kind == contact_event_t::HIT) hits_.insert(e.event_id);
   while (auto m = presented_queue_.pop())
-    if (ours(m->message.header))
+    if (is_own_run(m->message.header))
       for (const presentation_t& p : m->message.reports) presented_[m->message.modality][p.event_id] = p;
 }
 
-void Ear::take(const contact_frame_t& page) {
+void ClusterMonitor::on_message(const contact_frame_t& page) {
   Snapshot& part = partial_[page.group];
   if (part.incarnation != page.header.incarnation || part.sim_time_ns != page.header.sim_time_ns)
     part = Snapshot{page.header.incarnation, page.header.sim_time_ns, page.pages, {}};
@@ -75,46 +75,46 @@ void Ear::take(const contact_frame_t& page) {
   if (static_cast<int>(part.ids.size()) == part.pages && page.group < 3) snapshots_[page.group] = part;
 }
 
-std::set<std::int64_t> Ear::contact_ids() const {
+std::set<std::int64_t> ClusterMonitor::contact_ids() const {
   std::set<std::int64_t> all;
   for (const Snapshot& s : snapshots_)
     for (const auto& [page, ids] : s.ids) all.insert(ids.begin(), ids.end());
   return all;
 }
 
-const node_health_t* Ear::health(const std::string& node) const {
-  const auto it = heard_.find(node);
-  if (it == heard_.end() || sync::host_now() - it->second.arrival > kSilentAfter) return nullptr;
+const node_health_t* ClusterMonitor::health(const std::string& node) const {
+  const auto it = nodes_.find(node);
+  if (it == nodes_.end() || sync::host_now() - it->second.arrival > kHealthTimeout) return nullptr;
   return &it->second.health;
 }
 
-bool Ear::in_state(const std::string& node, std::int8_t state) const {
+bool ClusterMonitor::in_state(const std::string& node, std::int8_t state) const {
   const node_health_t* h = health(node);
   return h && h->state == state;
 }
 
-std::int64_t Ear::ticks(const std::string& node) const {
-  const auto it = heard_.find(node);
-  return it == heard_.end() ? 0 : it->second.health.ticks;
+std::int64_t ClusterMonitor::ticks(const std::string& node) const {
+  const auto it = nodes_.find(node);
+  return it == nodes_.end() ? 0 : it->second.health.ticks;
 }
 
-std::int64_t Ear::rendered(const std::string& node) const {
-  const auto it = heard_.find(node);
-  return it == heard_.end() ? 0 : it->second.health.contacts_rendered;
+std::int64_t ClusterMonitor::rendered(const std::string& node) const {
+  const auto it = nodes_.find(node);
+  return it == nodes_.end() ? 0 : it->second.health.contacts_rendered;
 }
 
-std::int64_t Ear::bad(const std::string& node) const {
+std::int64_t ClusterMonitor::malformed(const std::string& node) const {
   std::int64_t sum = 0;
-  if (const auto it = heard_.find(node); it != heard_.end())
+  if (const auto it = nodes_.find(node); it != nodes_.end())
     for (const input_health_t& in : it->second.health.inputs) sum += in.bad;
   return sum;
 }
 
-std::int64_t Ear::rejoined(const std::string& node) const {
-  const auto it = heard_.find(node);
-  return it == heard_.end() ? 0 : it->second.incarnations - 1;
+std::int64_t ClusterMonitor::rejoined(const std::string& node) const {
+  const auto it = nodes_.find(node);
+  return it == nodes_.end() ? 0 : it->second.incarnations - 1;
 }
 
-double Ear::force_N() const { return tool_ ? std::hypot(tool_->force_N.x, tool_->force_N.y, tool_->force_N.z) : -1; }
+double ClusterMonitor::force_N() const { return tool_ ? std::hypot(tool_->force_N.x, tool_->force_N.y, tool_->force_N.z) : -1; }
 
 }  // namespace tactus::cluster

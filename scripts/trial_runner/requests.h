@@ -1,4 +1,4 @@
-// The commands to the trial runner, a JSON object with one member a line. Pure.
+// Requests to the trial runner, a JSON object with one member a line. Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,43 +7,43 @@
 #include <tactus/question_t.hpp>
 #include <variant>
 
-namespace tactus::conductor {
+namespace tactus::trial_runner {
 
 // {"profile": "<profile .../>"}: puts it in force, and reports when every modality has it.
-struct ProfileOrder {
+struct ProfileRequest {
   std::string text;
 };
 // {"question": {"kind": "read" | "choice" | "number" | "nothing", "text": , "choices": [], "lowest": , "highest": , "step": ,
 // "trial": , "condition": , "progress": }}: asks it until it is answered. "nothing": a trial is in progress.
-struct QuestionOrder {
+struct QuestionRequest {
   question_t question;
 };
 // {"answer": {"choice": 0}} or {"answer": {"number": 0.5}}: a simulated participant's answer to the present question.
-struct AnswerOrder {
+struct AnswerRequest {
   int choice = -1;
   double number = 0;
 };
 // {"tap": {"depth_m": 0.012}}: the hand taps the surface below it. Needs --hand.
-struct TapOrder {
+struct TapRequest {
   double depth_m = 0;
 };
 // {"press": {"depth_m": 0.012, "period_s": 1, "times": 2}}: the hand moves down and up this number of times, smoothly; the
 // force on it is reported.
-struct PressOrder {
+struct PressRequest {
   double depth_m = 0, period_s = 0;
   int times = 0;
 };
 // {"command": {"kind": "reset" | "pause" | "resume"}}, or "snapshot" and "restore" with a "name".
-struct CommandOrder {
+struct CommandRequest {
   std::int8_t kind = 0;
   std::string name;
 };
 // {"end": true}
-struct EndOrder {};
+struct EndRequest {};
 
-using Order = std::variant<ProfileOrder, QuestionOrder, AnswerOrder, TapOrder, PressOrder, CommandOrder, EndOrder>;
+using Request = std::variant<ProfileRequest, QuestionRequest, AnswerRequest, TapRequest, PressRequest, CommandRequest, EndRequest>;
 
 // Throws std::invalid_argument with one sentence for any other line.
-Order parse_order(std::string_view line);
+Request parse_request(std::string_view line);
 
-}  // namespace tactus::conductor
+}  // namespace tactus::trial_runner

@@ -21,9 +21,9 @@ struct SenseResult {
 
 struct Rendered {
   std::vector<contact_event_t> events;  // events of the whole log, each once, in order of time
-  SenseResult audio, visual, thermal;
+  ModalityResult audio, visual, thermal;
   // Onsets found in the samples, of isolated hits: time by event id, less the delay.
-  std::map<std::int64_t, double> heard_s;  // simulated time at which its sound begins
+  std::map<std::int64_t, double> onset_s;  // simulated time at which its sound begins
   std::vector<float> samples;              // left, at 48 kHz, from kWorldBegins_ns on
 };
 

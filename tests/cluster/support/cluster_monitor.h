@@ -17,15 +17,15 @@
 
 namespace tactus::cluster {
 
-class Ear {
+class ClusterMonitor {
  public:
   // Accepts only messages of this run: a replayed log contains nodes of the same names.
-  explicit Ear(std::int64_t run_id);
+  explicit ClusterMonitor(std::int64_t run_id);
 
-  // Receives messages until the condition holds; false when it does not hold within at_most_s seconds.
-  bool wait_until(const std::function<bool()>& condition, double at_most_s);
+  // Receives messages until the condition holds; false when it does not hold within timeout_s seconds.
+  bool wait_until(const std::function<bool()>& condition, double timeout_s);
   // Receives messages for the given time, s.
-  void listen(double seconds);
+  void receive_for(double seconds);
 
   // The newest health of a node; null after 1.5 s without one.
   const node_health_t* health(const std::string& node) const;
@@ -34,7 +34,7 @@ class Ear {
   std::int64_t ticks(const std::string& node) const;
   std::int64_t rendered(const std::string& node) const;
   // Rejected messages, over all inputs of a node.
-  std::int64_t bad(const std::string& node) const;
+  std::int64_t malformed(const std::string& node) const;
   // Number of changes of a node's incarnation.
   std::int64_t rejoined(const std::string& node) const;
 
@@ -51,7 +51,7 @@ class Ear {
   sync::Bus& bus() { return bus_; }
 
  private:
-  struct Heard {
+  struct NodeStatus {
     node_health_t health;
     sync::HostTime arrival;
     std::int64_t incarnations = 0;
@@ -61,8 +61,8 @@ class Ear {
     int pages = 0;
     std::map<int, std::vector<std::int64_t>> ids;  // by page
   };
-  void take_in();
-  void take(const contact_frame_t& page);
+  void drain();
+  void on_message(const contact_frame_t& page);
 
   std::int64_t run_id_;
   sync::Bus bus_;
@@ -71,7 +71,7 @@ class Ear {
   sync::Queue<contact_frame_t>& contact_queue_;
   sync::Queue<contact_events_t>& event_queue_;
   sync::Queue<presented_t>& presented_queue_;
-  std::map<std::string, Heard> heard_;
+  std::map<std::string, NodeStatus> nodes_;
   std::optional<tool_state_t> tool_;
   Snapshot snapshots_[3];           // newest complete one of each group
   std::map<int, Snapshot> partial_;  // by group

@@ -17,12 +17,12 @@
 #include "sync/resampling/contact_stream.h"
 #include "sync/node/modality_endpoint.h"
 
-namespace tactus::participant {
+namespace tactus::simulated_player {
 
-class Senses {
+class Perception {
  public:
   // frame_rate_Hz: rate of the pictures. Throws std::runtime_error as sync::ModalityEndpoint does.
-  Senses(sync::Node& node, Rules rules, double frame_rate_Hz);
+  Perception(sync::Node& node, Rules rules, double frame_rate_Hz);
 
   void set_scene(const scene_t& scene);
   // Call it once a tick. Sight and hearing at `now`; the caller adds the hand and the force on it.
@@ -31,8 +31,8 @@ class Senses {
  private:
   // True when a node renders that modality, or did so a moment ago.
   bool rendered(const std::string& modality, sync::HostTime now) const;
-  void look(sync::HostTime now);
-  void listen(sync::HostTime now, Percept& percept);
+  void update_sight(sync::HostTime now);
+  void update_hearing(sync::HostTime now, Percept& percept);
 
   Rules rules_;
   sync::ModalityEndpoint eyes_, ears_;
@@ -43,9 +43,9 @@ class Senses {
   sync::ContactStream contacts_;
   double frame_rate_Hz_;
   std::uint64_t seed_;
-  std::map<std::string, sync::HostTime> heard_of_;  // newest health of the node that renders a modality, by modality
-  sync::HostTime next_look_{};
-  std::vector<std::optional<Eigen::Vector3d>> shown_;
+  std::map<std::string, sync::HostTime> last_health_;  // newest health of the node that renders a modality, by modality
+  sync::HostTime next_picture_{};
+  std::vector<std::optional<Eigen::Vector3d>> visible_balls_m_;
   struct Sound {
     sync::HostTime at;
     std::size_t goal;
@@ -55,4 +55,4 @@ class Senses {
   std::vector<Sound> sounds_;  // pending
 };
 
-}  // namespace tactus::participant
+}  // namespace tactus::simulated_player
