@@ -71,7 +71,7 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Off
       frames_(host.endpoint().snapshots<contact_frame_t>(channels::kContacts, 4096)),
       world_(host.endpoint().snapshots<world_state_t>(channels::kWorldState, 4096)),
       tools_(host.bus().queue<tool_state_t>(channels::kToolState, 512)),
-      ear_(host.bus().clocks()),
+      listener_(host.bus().clocks()),
       contacts_(events_.inbox()),
       bodies_(host.bus().clocks()),
       output_(host.options().out, options.device, kCallbackPriority,
@@ -94,7 +94,7 @@ void NodeRenderer::add_tags() {
 }
 
 void NodeRenderer::configure(const Settings& settings) {
-  if (!instructions_named(settings.instructions))
+  if (!find_instructions(settings.instructions))
     host().print_status("this machine has no " + settings.instructions + " instructions; it computes with " +
                name(available_instructions().back()));
   output_.configure(settings);
@@ -104,7 +104,7 @@ void NodeRenderer::configure(const Settings& settings) {
 
 sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
   scene_ = scenes.scene();
-  ear_.set_scene(*scene_);
+  listener_.set_scene(*scene_);
   configure(settings);
   const auto extent = [&](std::int64_t hash) -> std::optional<Extent> {
     const sync::Asset* asset = scenes.asset(hash);
@@ -166,21 +166,21 @@ void NodeRenderer::receive() {
 }
 
 std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
-  finish_reading();
-  const bool plays = (impacts_ || (real_time_ && now - started_ > kOpenAnyway)) && output_.keep_open(now);
+  poll_loading();
+  const bool plays = (impacts_ || (real_time_ && now - started_ > kSceneTimeout)) && output_.keep_open(now);
   const sync::ModalityEndpoint& endpoint = host().endpoint();
-  output_.allow(endpoint.delay());
+  output_.set_presentation_delay(endpoint.delay());
   output_.degrade({endpoint.output().value("dropout"), endpoint.output().value("dropout.every")});
-  if (scene_) output_.hear_from(ear_.at(now + output_.latency()));
+  if (scene_) output_.set_listener(listener_.at(now + output_.latency()));
   receive();
-  strike_due(now);
-  submit_lasting(now);
+  process_due_hits(now);
+  submit_contacts(now);
   publish();
   print_messages();
   return status(now, plays);
 }
 
-void NodeRenderer::strike_due(sync::HostTime now) {
+void NodeRenderer::process_due_hits(sync::HostTime now) {
   const auto map = contacts_.map(now);
   if (!map || !impacts_ || !sampler_) return;
   const sync::ScopedPhaseTimer rendering(sync::Phase::kRender);
@@ -190,9 +190,9 @@ void NodeRenderer::strike_due(sync::HostTime now) {
   const auto schedule = [&](const contact_event_t& e) {
     return host().endpoint().schedule(e.event_id, map->to_host(sync::sim_time(e.time_ns)));
   };
-  hits_ += strike_due_hits(events_.inbox(), map->to_sim(now + kEarly), now,
+  hits_ += strike_due_hits(events_.inbox(), map->to_sim(now + kEarlyWindow), now,
                            late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s)),
-                           HitActions{schedule, [&] { return !real_time_ || sync::host_now() - begun < kStrikesFor; },
+                           HitActions{schedule, [&] { return !real_time_ || sync::host_now() - begun < kStrikeBudget; },
                                       [&](const contact_event_t& e, sync::HostTime scheduled) { strike(e, scheduled); },
                                       [&](const contact_event_t& e, sync::HostTime scheduled) { drop(e, scheduled); }});
 }
@@ -216,12 +216,12 @@ void NodeRenderer::submit_contacts(sync::HostTime now) {
   const auto map = contacts_.map(now);
   if (!map || !sampler_ || !due || !(slides || sampler_->enabled())) return;
   submitted_at_ = now;
-  sampler_->tell_every(sync::to_seconds(every));
-  const sync::HostTime heard_at = now + output_.latency() + kScrapeLead;
-  if (sliding_) sliding_->hear_from(ear_.at(heard_at));
-  sampler_->hear_from(ear_.at(heard_at));
+  sampler_->set_update_interval(sync::to_seconds(every));
+  const sync::HostTime presented_at = now + output_.latency() + kScrapeLead;
+  if (sliding_) sliding_->set_listener(listener_.at(presented_at));
+  sampler_->set_listener(listener_.at(presented_at));
   const sync::Nanoseconds delay = host().endpoint().delay();
-  const sync::SimTime t = map->to_sim(std::min(now, heard_at - delay));
+  const sync::SimTime t = map->to_sim(std::min(now, presented_at - delay));
   contacts_.extend_history(delay);
   bodies_.extend_history(delay);
   // Without contact snapshots they would never end.
@@ -245,11 +245,11 @@ void NodeRenderer::publish() {
   while (const auto pair = output_.next_pair()) publish_pair(host().bus(), output_.medium(), *pair);
 }
 
-void NodeRenderer::print_news() {
-  for (const std::string& news : output_.library().news()) host().print_status(news);
+void NodeRenderer::print_messages() {
+  for (const std::string& message : output_.library().take_messages()) host().print_status(message);
   if (sampler_)
-    for (const std::string& news : sampler_->news()) host().print_status(news);
-  if (const auto news = output_.news()) host().print_status(*news);
+    for (const std::string& message : sampler_->take_messages()) host().print_status(message);
+  if (const auto message = output_.take_status_change()) host().print_status(*message);
 }
 
 sync::Status NodeRenderer::status(sync::HostTime now, bool plays) {

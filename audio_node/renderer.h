@@ -56,7 +56,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   void poll_loading();
   void take_surfaces();
   void receive();
-  void strike_due(sync::HostTime now);
+  void process_due_hits(sync::HostTime now);
   void strike(const contact_event_t& event, sync::HostTime scheduled);
   void drop(const contact_event_t& event, sync::HostTime scheduled) { output_.drop(event.event_id, scheduled); }
   void submit_contacts(sync::HostTime now);
@@ -80,8 +80,8 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   std::unique_ptr<Impacts> impacts_;
   std::unique_ptr<Sliding> sliding_;
   std::unique_ptr<Sampler> sampler_;
-  std::optional<sync::BackgroundTask<HeardSurfaces>> opening_surfaces_;
-  sync::HostTime started_, slid_at_{}, submitted_at_{};
+  std::optional<sync::BackgroundTask<AudioSurfaces>> loading_surfaces_;
+  sync::HostTime started_, scraped_at_{}, submitted_at_{};
   std::int64_t scenes_ = 0, hits_ = 0, dropped_ = 0;
 };
 

@@ -47,20 +47,20 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Off
 
 sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
   scene_ = scenes.scene();
-  choice_ = resolve_config(*scene_, settings, tool_name_);
+  config_ = resolve_config(*scene_, settings, tool_name_);
   if (session_) session_->end();
-  begin_to_open(scenes);
-  if (log_) log_->follow(choice_.tool);
-  host().print_status(choice_.tool >= 0 ? limits_sentence(settings) : choice_.problem);
-  const auto points = [&](const tool_def_t& tool) { return only_points(tool, scene_->lights); };
-  points_ = choice_.tool >= 0 && points(scene_->tools[static_cast<std::size_t>(choice_.tool)]);
-  no_touch_ = std::all_of(scene_->tools.begin(), scene_->tools.end(), points);
+  start_loading(scenes);
+  if (log_) log_->follow(config_.tool);
+  host().print_status(config_.tool >= 0 ? limits_sentence(settings) : config_.problem);
+  const auto is_pointer = [&](const tool_def_t& tool) { return only_points(tool, scene_->lights); };
+  is_pointer_ = config_.tool >= 0 && is_pointer(scene_->tools[static_cast<std::size_t>(config_.tool)]);
+  only_pointers_ = std::all_of(scene_->tools.begin(), scene_->tools.end(), is_pointer);
   quality_ = Quality(settings);
   return {.tool = config_.tool,
           .rate_Hz = settings.rate_Hz,
           .output_latency = sync::from_seconds(1 / settings.rate_Hz),
           .status = {.state = node_health_t::WAITING,
-                     .text = choice_.tool >= 0 ? "waits for its device" : choice_.problem}};
+                     .text = config_.tool >= 0 ? "waits for its device" : config_.problem}};
 }
 
 void NodeRenderer::start_loading(const sync::SceneReceiver& scenes) {
@@ -81,10 +81,10 @@ void NodeRenderer::finish_loading() {
   // A log waits for both; the live loop never waits.
   while (log_ && ((maps_task_ && !maps_task_->done()) || (device_task_ && !device_task_->done())))
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  if (opening_maps_ && opening_maps_->done()) {
-    maps_ = opening_maps_->take();
-    opening_maps_.reset();
-    if (!maps_->trouble.empty()) host().print_status(maps_->trouble);
+  if (maps_task_ && maps_task_->done()) {
+    maps_ = maps_task_->take();
+    maps_task_.reset();
+    if (!maps_->error.empty()) host().print_status(maps_->error);
     if (session_ && !session_->ended()) session_->set_maps(maps_);
   }
   if (device_task_ && device_task_->done()) start_session();
@@ -103,8 +103,9 @@ void NodeRenderer::start_session() {
 }
 
 void NodeRenderer::apply_setting(const Settings& settings, const std::string&) {
-  if (!session_) throw std::invalid_argument("it has no scene yet: nothing of it can be changed");
-  choice_.settings = settings;
+  if (!session_)
+    throw std::invalid_argument("it has no scene yet, so no setting can change; wait until it is ready");
+  config_.settings = settings;
   session_->change(settings);
 }
 
@@ -142,7 +143,7 @@ TickOutput& NodeRenderer::render(sync::HostTime now) {
                         {.delay = endpoint.delay(),
                          .touch_delay = endpoint.profile_delay(),
                          .force_step_N = endpoint.output().value("force_step"),
-                         .touch_arrival = no_touch_ ? now : touch_.count().newest_arrival},
+                         .touch_arrival = only_pointers_ ? now : touch_.count().newest_arrival},
                         quality_.planes());
 }
 
@@ -157,14 +158,14 @@ sync::Status NodeRenderer::status() const {
   sync::Status s{.quality = quality_.step(), .qualities = Quality::steps()};
   if (session_->device_lost()) {
     s.state = node_health_t::OUTPUT_LOST;
-    s.text = "the device does not answer, or two hold it: the force is zero";
-  } else if (points_) {
-    s.text = "points, and does not touch";
+    s.text = "the device does not answer, or two processes command it: the force is zero";
+  } else if (is_pointer_) {
+    s.text = "the tool is a pointer and does not touch";
   } else if (session_->has_touch_model() && session_->lost()) {
     s.state = node_health_t::INPUT_LOST;
     s.text = "no touch model: the force is zero";
   } else if (session_->has_touch_model()) {
-    s.text = maps_ ? maps_->trouble : "reads the maps of its surfaces";
+    s.text = maps_ ? maps_->error : "reads the maps of its surfaces";
   } else {
     s.state = node_health_t::READY;
     s.text = "waits for a touch model";

@@ -25,17 +25,17 @@ using namespace tactus;
 
 namespace {
 
-const sync::NodeDescriptor kHaptic{
-    .name = "haptic_node",
-    .modality = "haptic",
-    .expected_events = int{node_health_t::EXPECTS_BEGIN} | node_health_t::EXPECTS_HIT | node_health_t::EXPECTS_OWN_TOOL_ONLY,
-    .rate_Hz = haptic::Settings{}.rate_Hz,
-    .fifo_priority = 60,
-    .about = "Renders the contact force on the hand.",
-    .inputs = {channels::kTouchModel, channels::kContactEvents},
-    .presentation_instant = "the tick whose force shows it",
-    .late_rule = haptic::kLate,
-    .output_operators = sync::output_operators_of("haptic")};
+const sync::NodeDescriptor kHaptic{.name = "haptic_node",
+                                   .modality = "haptic",
+                                   .expected_events = int{node_health_t::EXPECTS_BEGIN} | node_health_t::EXPECTS_HIT |
+                                                      node_health_t::EXPECTS_OWN_TOOL_ONLY,
+                                   .rate_Hz = haptic::Settings{}.rate_Hz,
+                                   .fifo_priority = 60,
+                                   .about = "Renders the contact force on the hand.",
+                                   .inputs = {channels::kTouchModel, channels::kContactEvents},
+                                   .presentation_instant = "the tick whose force presents it",
+                                   .late_rule = haptic::kLatePolicy,
+                                   .output_operators = sync::output_operators_of("haptic")};
 
 class Factory : public sync::RendererFactory {
   void add_options(CLI::App& app) override { options_.add_to(app); }

@@ -20,7 +20,7 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, std::string tool_name, Offl
       log_(log),
       events_(host.endpoint().events()),
       frames_(host.endpoint().snapshots<contact_frame_t>(channels::kContacts, 4096)),
-      answers_(host.bus().queue<thermal_device_t>(channels::kThermalDevice, 64)),
+      device_messages_(host.bus().queue<thermal_device_t>(channels::kThermalDevice, 64)),
       stream_(events_.inbox()),
       quality_(Settings{}) {
   add_tags();
@@ -38,7 +38,7 @@ void NodeRenderer::add_tags() {
 
 sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
   const scene_t& scene = *scenes.scene();
-  choice_ = resolve_config(scene, settings, tool_name_);
+  config_ = resolve_config(scene, settings, tool_name_);
   if (log_) log_->run().require_rate(settings.rate_Hz);
   quality_ = Quality(settings);
   if (renderer_) dwell_ = renderer_->dwell();
@@ -52,11 +52,11 @@ sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Se
   return {.tool = config_.tool,
           .rate_Hz = settings.rate_Hz,
           .output_latency = sync::from_seconds(1 / settings.rate_Hz) + Ticks::kSettle,
-          .status = {.state = node_health_t::WAITING, .text = choice_.problem}};
+          .status = {.state = node_health_t::WAITING, .text = config_.problem}};
 }
 
 void NodeRenderer::apply_setting(const Settings& settings, const std::string&) {
-  choice_.settings = settings;
+  config_.settings = settings;
   if (renderer_) renderer_->change(settings);
 }
 
@@ -79,7 +79,8 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
 
 void NodeRenderer::render(sync::HostTime now) {
   const sync::ModalityEndpoint& endpoint = host().endpoint();
-  const Tick tick = ticks_.next(stream_, now, endpoint.newest_arrival(), choice_.tool, choice_.tool_body, endpoint.delay());
+  const Tick tick =
+      ticks_.next(stream_, now, endpoint.newest_arrival(), config_.tool, config_.tool_body, endpoint.delay());
   std::optional<sync::ScopedPhaseTimer> rendering(sync::Phase::kRender);
   const double command_degC = command_degC_.value_or(config_.settings.skin_rest_degC);
   const auto plate = device_ ? device_->step(command_degC, renderer_->load_W(), now) : std::nullopt;
@@ -108,7 +109,7 @@ sync::Status NodeRenderer::status() const {
     s.state = node_health_t::INPUT_LOST;
     s.text = "no contacts: the command returns to resting skin";
   } else if (device_silent_) {
-    s.text = "the display is silent: taken to be as commanded";
+    s.text = "the display is silent: the plate is assumed to be at its command";
   }
   return s;
 }

@@ -22,17 +22,17 @@ using namespace tactus;
 
 namespace {
 
-const sync::NodeDescriptor kThermal{
-    .name = "thermal_node",
-    .modality = "thermal",
-    .expected_events = int{node_health_t::EXPECTS_BEGIN} | node_health_t::EXPECTS_HIT | node_health_t::EXPECTS_OWN_TOOL_ONLY,
-    .rate_Hz = thermal::Settings{}.rate_Hz,
-    .about = "Renders the temperature of what a tool touches.",
-    .inputs = {channels::kContacts, channels::kContactEvents},
-    .presentation_instant = "the end of the tick whose heat holds it",
-    .late_rule = thermal::kLate,
-    .output_operators = sync::output_operators_of("thermal"),
-    .phases = {sync::Phase::kRender}};
+const sync::NodeDescriptor kThermal{.name = "thermal_node",
+                                    .modality = "thermal",
+                                    .expected_events = int{node_health_t::EXPECTS_BEGIN} | node_health_t::EXPECTS_HIT |
+                                                       node_health_t::EXPECTS_OWN_TOOL_ONLY,
+                                    .rate_Hz = thermal::Settings{}.rate_Hz,
+                                    .about = "Renders the temperature of the objects that a tool touches.",
+                                    .inputs = {channels::kContacts, channels::kContactEvents},
+                                    .presentation_instant = "the end of the tick that applies it",
+                                    .late_rule = thermal::kLatePolicy,
+                                    .output_operators = sync::output_operators_of("thermal"),
+                                    .phases = {sync::Phase::kRender}};
 
 class Factory : public sync::RendererFactory {
   void add_options(CLI::App& app) override {

@@ -12,8 +12,8 @@ namespace tactus::visual {
 
 namespace {
 
-// What may be there already.
-std::vector<sync::OfflineInput::Written> written_anew(const OfflineOptions& options) {
+// Files that may exist already and are overwritten.
+std::vector<sync::OfflineInput::Written> overwritten_files(const OfflineOptions& options) {
   std::vector<sync::OfflineInput::Written> files;
   if (!options.snapshot.empty()) files.push_back({options.snapshot, "--snapshot"});
   if (!options.frames.empty()) files.push_back({options.frames, "--frames"});

@@ -55,9 +55,9 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& render_output
       composer_(host.bus().clocks(), settings(), host.descriptor().late_rule, &events_.inbox()),
       lock_(host.bus().clocks(), host.descriptor().modality, host.bus().identity().incarnation),
       walls_(host.node(), lock_),
-      recording_(options.keep),
+      recording_(options.recording),
       overlays_(host.bus(), events_.inbox()),
-      desk_(host.bus()),
+      controls_(host.bus()),
       questions_(host.bus()) {
   host.node().set_rate(settings().rate_Hz);
   composer_.set_schedule([&endpoint = host.endpoint()](std::int64_t event, sync::HostTime happened) {
@@ -76,12 +76,12 @@ void NodeRenderer::add_tags() {
   tags.add("flashed", "1", &flashed_);
 }
 
-void NodeRenderer::say(const std::vector<std::string>& sentences) const {
+void NodeRenderer::report_all(const std::vector<std::string>& sentences) const {
   for (const std::string& sentence : sentences) host().print_status(sentence);
 }
 
 sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Settings& settings) {
-  take_messages();
+  process_messages();
   loaded_ = true;
   scene_ = scenes.scene();
   std::vector<std::string> warnings;
@@ -96,7 +96,7 @@ sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Se
   lock_.load(*scene_, settings);
   const sync::Status preparing{node_health_t::WAITING, "prepares the pictures of the scene"};
   host().node().set_state(preparing.state, preparing.text);
-  stage_.load(view, composer_.frame(host().clock(), 0).list, settings, [this] {
+  render_output_.load(view, composer_.frame(host().clock(), 0).list, settings, [this] {
     if (!log_) host().node().heartbeat();
   });
   start_outputs(view, settings);
@@ -114,7 +114,7 @@ void NodeRenderer::start_outputs(const SceneView& view, const Settings& settings
 }
 
 void NodeRenderer::apply_setting(const Settings& settings, const std::string& name) {
-  take_messages();  // they came before the change
+  process_messages();  // they came before the change
   LiveOverlays::check(settings);
   if (name.starts_with("stream")) {
     if (!render_output_.draws()) throw std::invalid_argument("it draws no pictures that could be streamed");
@@ -129,12 +129,12 @@ void NodeRenderer::apply_setting(const Settings& settings, const std::string& na
 // For a wait within a tick: processes the messages that arrived meanwhile.
 void NodeRenderer::receive(sync::HostTime now) {
   host().endpoint().step(now);
-  take_messages();
+  process_messages();
 }
 
 void NodeRenderer::process_messages() {
   while (const auto m = world_.pop())
-    composer_.push(m->message, m->arrival), overlays_.push(m->message), desk_.push(m->message);
+    composer_.push(m->message, m->arrival), overlays_.push(m->message), controls_.push(m->message);
   while (const auto m = tools_.pop()) composer_.push(m->message, m->arrival), overlays_.push(m->message);
   walls_.receive();
 }
@@ -145,15 +145,15 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   recover(now);
   const std::optional<LockedFrame> locked = begin_frame();
   const SceneView* view = composer_.view();
-  if (stage_.draws()) questions_.step();
-  if (host().live() && stage_.draws())
-    desk_.step(now, stage_.display(), overlays_, questions_, frame_.list,
-               view ? std::span(view->geometries()) : std::span<const Triangles>{},
-               [this](const std::string& sentence) { host().print_status(sentence); });
-  const bool fresh = stage_.due(now, host().endpoint().output());
-  if (fresh) draw(agreed ? host().clock() : now, agreed);
+  if (render_output_.draws()) questions_.step();
+  if (host().live() && render_output_.draws())
+    controls_.step(now, render_output_.display(), overlays_, questions_, frame_.list,
+                   view ? std::span(view->geometries()) : std::span<const Triangles>{},
+                   [this](const std::string& sentence) { host().print_status(sentence); });
+  const bool fresh = render_output_.due(now, host().endpoint().output());
+  if (fresh) draw(locked ? host().clock() : now, locked);
   host().endpoint().publish(host().clock());  // before the pixels are read back
-  keep(now, fresh);
+  record(now, fresh);
   if (log_) return std::nullopt;
   const sync::Status status = this->status(now, fresh);
   if (locked) host().node().align(lock_.next_begin(sync::host_now()), locked->skipped);
@@ -161,15 +161,16 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
 }
 
 void NodeRenderer::recover(sync::HostTime now) {
-  if (const std::string lost = stage_.recover(now, composer_.view(), frame_.list); !lost.empty()) host().print_status(lost);
-  say(stage_.take_trouble());
+  if (const std::string lost = render_output_.recover(now, composer_.view(), frame_.list); !lost.empty())
+    host().print_status(lost);
+  report_all(render_output_.take_warnings());
 }
 
-// Which frame this tick draws: of a room, one that its walls agree on.
-std::optional<AgreedFrame> NodeRenderer::begin_frame() {
-  // A wall that is slow receives the pose of its head all the same.
-  if (lock_.on() && host().live()) walls_.catch_up([this](sync::HostTime now) { receive(now); });
-  const auto agreed = lock_.begin(host().clock(), host().endpoint().profile_delay());
+// Selects the frame of this tick; in a room, the frame that all walls show.
+std::optional<LockedFrame> NodeRenderer::begin_frame() {
+  // A slow wall also needs the newest pose of the head.
+  if (lock_.active() && host().live()) walls_.catch_up([this](sync::HostTime now) { receive(now); });
+  const auto locked = lock_.begin_frame(host().clock(), host().endpoint().profile_delay());
   const sync::Deadlines& deadlines = host().node().deadlines();
   const std::int64_t before = std::exchange(periods_, deadlines.ticks() + deadlines.missed());
   slot_ += log_ ? 1 : locked ? 1 + locked->skipped : periods_ - before;
@@ -182,16 +183,16 @@ void NodeRenderer::draw(sync::HostTime now, const std::optional<LockedFrame>& lo
   const auto meanwhile = [this](sync::HostTime t) { receive(t); };
   output_ = endpoint.output();
   overlays_.tint(composer_, scene_ ? scene_->bodies.size() : 0);
-  const sync::HostTime heard = world_.count().newest_arrival;
-  frame_ = agreed ? composer_.frame(now, *agreed, heard)
-                  : composer_.frame(now, slot_, endpoint.delay(), heard, endpoint.profile_delay());
-  stage_.draw_scene(frame_.list, output_);
+  const sync::HostTime newest_arrival = world_.count().newest_arrival;
+  frame_ = locked ? composer_.frame(now, *locked, newest_arrival)
+                  : composer_.frame(now, slot_, endpoint.delay(), newest_arrival, endpoint.profile_delay());
+  render_output_.draw_scene(frame_.list, output_);
   const sync::HostTime drawn = host().clock();
   if (locked && !log_) walls_.wait_for_latch(*locked);
   // Late latch: events that arrived while the surfaces were drawn still flash in this frame.
   const sync::HostTime latched = log_ ? host().clock() : host().node().poll();
   if (!log_) receive(latched);
-  composer_.latch(frame_, latched, agreed ? agreed->delay : endpoint.delay(), stage_.held());
+  composer_.latch(frame_, latched, locked ? locked->delay : endpoint.delay(), render_output_.held());
   draw_overlays(latched);
   const sync::HostTime ready = host().clock();
   if (locked && !log_) lock_.add_draw_times(drawn - now, ready - latched), walls_.hold(*locked, meanwhile);
@@ -205,18 +206,18 @@ void NodeRenderer::draw(sync::HostTime now, const std::optional<LockedFrame>& lo
 }
 
 void NodeRenderer::draw_overlays(sync::HostTime latched) {
-  if (overlays_.on().any() && stage_.draws()) {
+  if (overlays_.on().any() && render_output_.draws()) {
     const sync::ModalityEndpoint& endpoint = host().endpoint();
-    PanelFacts facts;
-    facts.rendering = took_;
-    facts.period = sync::from_seconds(1 / settings().rate_Hz);
-    facts.quality = stage_.quality().step();
-    facts.qualities = stage_.quality().steps();
-    facts.profile = endpoint.profile_name();
-    facts.delay = endpoint.delay();
-    facts.profile_delay = endpoint.profile_delay();
-    facts.output = output_;
-    overlays_.append(frame_, facts, latched, stage_.picture().width(), stage_.picture().height());
+    PanelData panel;
+    panel.rendering = draw_time_;
+    panel.period = sync::from_seconds(1 / settings().rate_Hz);
+    panel.quality = render_output_.quality().step();
+    panel.qualities = render_output_.quality().steps();
+    panel.profile = endpoint.profile_name();
+    panel.delay = endpoint.delay();
+    panel.profile_delay = endpoint.profile_delay();
+    panel.output = output_;
+    overlays_.append(frame_, panel, latched, render_output_.picture().width(), render_output_.picture().height());
   }
   if (render_output_.draws())
     questions_.append(frame_, latched, render_output_.picture().width(), render_output_.picture().height());
@@ -254,13 +255,14 @@ void NodeRenderer::record(sync::HostTime now, bool fresh) {
                 fence_ + sync::from_seconds(settings().display_latency_s), read);
   for (picture_chunk_t& chunk : stream_.take_chunks())
     host().bus().publish(channels::kPictureChunk, chunk, sync::Port::kBulk);
-  if (const std::string trouble = recording_.trouble(); trouble != said_) host().print_status(said_ = trouble);
+  if (const std::string error = recording_.error(); error != last_reported_error_)
+    host().print_status(last_reported_error_ = error);
 }
 
 sync::Status NodeRenderer::status(sync::HostTime now, bool fresh) {
   const std::string walls = lock_.status_text(now), video = walls.empty() ? recording_.status_text() : walls;
-  QualityControl& quality = stage_.quality();
-  if (fresh && scene_) quality.add(sync::host_now() - now - waited_);
+  QualityControl& quality = render_output_.quality();
+  if (fresh && scene_) quality.add(sync::host_now() - now - wait_time_);
   if (const std::string change = quality.take_change(); !change.empty()) host().print_status(change);
   return {frame_.state, frame_.note + (frame_.note.empty() || video.empty() ? "" : "; ") + video, quality.step(),
           quality.steps()};

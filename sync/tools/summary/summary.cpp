@@ -172,7 +172,7 @@ std::map<std::string, NodeSummary> RunSummary::nodes() const {
       node.wake.merge(Histogram::from_message(incarnation_health.last.wake));
       ticks += incarnation_health.last.ticks - incarnation_health.first.ticks;
       ns += incarnation_health.last.header.publish_time_ns - incarnation_health.first.header.publish_time_ns;
-      if (incarnation_health.last_received >= newest) node.scheduling = incarnation_health.status_text.empty() ? incarnation_health.last.note : incarnation_health.status_text;
+      if (incarnation_health.last_received >= newest) node.scheduling = incarnation_health.status_text.empty() ? incarnation_health.last.status_text : incarnation_health.status_text;
       newest = std::max(newest, incarnation_health.last_received);
     }
     node.rate_Hz = ns > 0 ? static_cast<double>(ticks) / (static_cast<double>(ns) * 1e-9) : 0;
