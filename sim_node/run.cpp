@@ -131,7 +131,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
     const sync::HostTime now = node.wait();
     new_messages.clear();
     while (auto m = tool_states.pop())
-      if (m->sequence_status != sync::SequenceStatus::kOld) news.push_back(std::move(m->message));
+      if (m->sequence_status != sync::SequenceStatus::kOld) new_messages.push_back(std::move(m->message));
     while (const auto m = healths.pop()) {
       if (const auto rate_Hz = followed_rate.on_message(m->message)) {
         simulation.mechanics().set_visual_rate(*rate_Hz);

@@ -34,10 +34,10 @@ const answer_t* Answers::answered(const question_t& m) const {
   return found == answers_.end() ? nullptr : &found->second;
 }
 
-void Answers::answer(const AnswerThus& given, sync::HostTime now) {
-  const question_t* m = asked_.newest(now);
-  if (!m || m->kind == question_t::NOTHING || given.question != name_of(*m))
-    throw std::invalid_argument("that question is not asked any more; answer the one that is shown");
+void Answers::answer(const PageAnswer& given, sync::HostTime now) {
+  const question_t* m = question_.newest(now);
+  if (!m || m->kind == question_t::NOTHING || given.question != question_name(*m))
+    throw std::invalid_argument("that question is no longer open; answer the shown one");
   if (answered(*m)) throw std::invalid_argument("that question has been answered; wait for the next");
   if (m->kind == question_t::CHOICE ? given.choice < 0 || given.choice >= m->count : given.choice != -1)
     throw std::invalid_argument("the answer is none of the choices; load the page again");
@@ -52,8 +52,8 @@ void Answers::answer(const AnswerThus& given, sync::HostTime now) {
   pending_ = a;
 }
 
-json Answers::told(sync::HostTime now) const {
-  const question_t* m = asked_.newest(now);
+json Answers::to_json(sync::HostTime now) const {
+  const question_t* m = question_.newest(now);
   if (!m) return nullptr;
   json choices = json::array();
   for (const std::string& c : m->choices) choices.push_back(sync::printable(c));
@@ -64,7 +64,7 @@ json Answers::told(sync::HostTime now) const {
 }
 
 std::optional<std::int32_t> Answers::leader(sync::HostTime now) const {
-  const question_t* m = asked_.newest(now);
+  const question_t* m = question_.newest(now);
   return m ? std::optional(m->header.source) : std::nullopt;
 }
 

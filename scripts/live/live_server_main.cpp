@@ -184,9 +184,9 @@ nlohmann::json scene_of(const scene_t& scene) {
 void serve_cluster(const Options& o) {
   sync::Bus bus(sync::Identity::fresh("live_server", o.run_id), o.bus);
   bus.track_clocks();
-  live::PageSession station(true, o.run_id, "live");
-  Server server(o, station);
-  live::Controls controls(bus, [&](const std::string& sentence, bool good) { server.tell(sentence, good); });
+  live::PageSession session(true, o.run_id, "live");
+  Server server(o, session);
+  live::Controls controls(bus, [&](const std::string& sentence, bool good) { server.send_reply(sentence, good); });
   std::vector<std::pair<std::string, sync::RawQueue*>> inputs;
   for (const Channel& c : channel_types()) {
     const std::size_t capacity = c.name == channels::kPictureChunk ? 1024 : 128;  // design: some iterations of each
@@ -209,7 +209,7 @@ void serve_cluster(const Options& o) {
     const sync::HostTime now = sync::host_now();
     bus.drain(now);
     for (auto& [name, queue] : inputs) {
-      queue->set_enabled(station.wants(name));
+      queue->set_enabled(session.accepts(name));
       queue->read([&, channel = std::string_view(name)](std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
         session.on_message(channel, bytes, arrival);
       });

@@ -80,7 +80,7 @@ GameVerdict play(const Loaded& loaded, const GameDef& game) {
   sync::VirtualTime time(plan);
   Referee referee;
   time.wire().add_listener([&](sync::HostTime, std::string_view channel, std::span<const std::uint8_t> data) {
-    referee.hear(channel, data);
+    referee.on_message(channel, data);
   });
   const auto add = [&](const std::string& name, std::vector<std::string> line,
                        std::function<int(int, char**)> program) {

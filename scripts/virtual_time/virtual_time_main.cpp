@@ -78,11 +78,11 @@ int run_program(const Words& given) {
 }
 
 // Ends the simulation first, so that all modalities present its last events; the recorder last, so that the log is complete.
-void end_in_order(sync::VirtualTime& time, const std::vector<Planned>& programs) {
-  const auto ask = [&](auto&& concerns) {
-    for (const Planned& program : programs)
-      if (concerns(program.words.front())) time.request_stop(program.name);
-    time.run_for(kPresentTheLast);
+void stop_in_order(sync::VirtualTime& time, const std::vector<PlannedProgram>& programs) {
+  const auto request_stop = [&](auto&& selects) {
+    for (const PlannedProgram& program : programs)
+      if (selects(program.words.front())) time.request_stop(program.name);
+    time.run_for(kFinalPresentations);
   };
   request_stop([](const std::string& program) { return program == "sim_node"; });
   request_stop([](const std::string& program) { return program != "sync_node" && program != "recorder"; });
@@ -114,9 +114,9 @@ int main(int argc, char** argv) try {
 
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop_requested = 1; });
   sync::VirtualTime time(plan);
-  std::optional<sync::HostTime> world_began;
+  std::optional<sync::HostTime> world_start;
   time.wire().add_listener([&](sync::HostTime now, std::string_view channel, std::span<const std::uint8_t>) {
-    if (!world_began && channel == channels::kWorldState) world_began = now;
+    if (!world_start && channel == channels::kWorldState) world_start = now;
   });
   for (const PlannedProgram& program : programs) time.add(program.name, [&] { return run_program(program.words); });
   const auto begun = std::chrono::steady_clock::now();

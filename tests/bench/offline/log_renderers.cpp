@@ -52,12 +52,12 @@ class Sound {
         if (e.kind != contact_event_t::HIT) continue;
         ++out.audio.expected;
         due_[e.event_id] = e.time_ns;
-        queues_.strikes.push(impacts_->strike(e, world_map().to_host(sync::sim_time(e.time_ns)) + delay_));
+        crossing_.strikes.push(impacts_->strike(e, world_map().to_host(sync::sim_time(e.time_ns)) + delay_));
       }
       std::vector<float> block(2 * kFrames);
       renderer_->render(block.data(), kFrames, {first, sync::Nanoseconds(1000), sync::Nanoseconds(0)});
       for (int n = 0; n < kFrames; ++n) out.samples.push_back(block[2 * static_cast<std::size_t>(n)]);
-      for (presentation_t r; queues_.reports.pop(r);) {
+      for (presentation_t r; crossing_.reports.pop(r);) {
         if (r.presented_ns < 0) continue;
         ++out.audio.presented;
         out.audio.error_s.push_back(seconds(r.presented_ns) - 1e-9 * static_cast<double>(due_[r.event_id]) -
@@ -70,8 +70,8 @@ class Sound {
   audio::Settings settings_;
   std::unique_ptr<audio::Impacts> impacts_;
   sync::Nanoseconds delay_{0};
-  audio::CallbackQueues queues_;
-  std::unique_ptr<audio::Renderer> renderer_ = std::make_unique<audio::Renderer>(queues_, audio::RendererDef{});
+  audio::CallbackQueues crossing_;
+  std::unique_ptr<audio::Renderer> renderer_ = std::make_unique<audio::Renderer>(crossing_, audio::RendererDef{});
   sync::ContactStream stream_;
   std::map<std::int64_t, std::int64_t> due_;
 };
@@ -213,7 +213,7 @@ Rendered render_log(const scene_t& scene, std::span<const std::uint8_t> log) {
   pictures.finish(out);
   for (const contact_event_t& e : out.events)
     out.thermal.expected += e.tool == warmth.tool() && e.tool >= 0 && e.kind != contact_event_t::END;
-  hear(out, sound.delay_s());
+  find_onsets(out, sound.delay_s());
   return out;
 }
 

@@ -13,7 +13,7 @@
 
 namespace tactus::bench {
 
-struct SenseResult {
+struct ModalityResult {
   std::int64_t expected = 0, presented = 0;
   // Time of presentation, minus the instant of the event and the commanded delay; s, for each event.
   std::vector<double> error_s;

@@ -52,7 +52,7 @@ class Hosts(unittest.TestCase):
         cls.expect_whole(cls)
 
     def expect_whole(self):
-        if self.r.wait_until_running(PATIENCE_S) is None:
+        if self.r.wait_until_running(TIMEOUT_S) is None:
             raise AssertionError(f"not whole: {({n: self.r.node_states.state(n) for n in self.r.placement})}")
 
     def wait(self, condition, what, patience_s=TIMEOUT_S):
@@ -120,7 +120,7 @@ class Hosts(unittest.TestCase):
     def test_12_every_modality_presents_every_event_on_any_host(self):
         begin = time.monotonic()
         expected = {}
-        while time.monotonic() < begin + PATIENCE_S and not all(expected.get(m, 0) > 0 for m in ("audio", "visual")):
+        while time.monotonic() < begin + TIMEOUT_S and not all(expected.get(m, 0) > 0 for m in ("audio", "visual")):
             summary = self.r.record("present", 4)
             for modality, m in summary["contacts"]["by_modality"].items():
                 expected[modality] = expected.get(modality, 0) + m["expected"]
@@ -157,11 +157,11 @@ class Hosts(unittest.TestCase):
 
     def doctor(self):
         from tactus.cluster import checkup
-        said, checkup.report = checkup.report, lambda *_: None
+        output, checkup.report = checkup.report, lambda *_: None
         try:
             return checkup.run(self.r.operator, 2)
         finally:
-            checkup.report = said
+            checkup.report = output
 
     def test_20_a_moved_node_restarts_no_other_node(self):
         before = self.incarnations()
@@ -178,7 +178,7 @@ class Hosts(unittest.TestCase):
         self.assertNotEqual(before.pop("audio_node"), after.pop("audio_node"))
         self.assertEqual(before, after)
 
-    def test_21_what_cannot_be_moved_is_refused(self):
+    def test_21_impossible_moves_are_refused(self):
         for node, host, word in (("recorder", "sound", "recording"), ("sync_node", "sound", "each host"), ("sim_node", "sound", "--restart"),
                                  ("audio_node", "sound", "already"), ("audio_node", "cellar", "no such host"), ("nose_node", "sound", "no such node")):
             with self.subTest(node), self.assertRaisesRegex(Refusal, word):
@@ -187,7 +187,7 @@ class Hosts(unittest.TestCase):
     def test_22_a_killed_node_rejoins_by_itself(self):
         before = self.incarnations()
         self.r.operator.request("sound", "send_command", names=["thermal_node"], letter="k")
-        self.wait(lambda: self.r.node_states.state("thermal_node") != "running", "thermal_node is missed")
+        self.wait(lambda: self.r.node_states.state("thermal_node") != "running", "thermal_node is reported as lost")
         self.expect_whole()
         after = self.incarnations()
         self.assertNotEqual(before.pop("thermal_node"), after.pop("thermal_node"))
@@ -236,7 +236,7 @@ class Hosts(unittest.TestCase):
         before, processes = self.health(), self.incarnations()
         host = self.r.lab.hosts["picture"]
         host.kill()
-        self.wait(lambda: self.r.node_states.state("visual_node") != "running", "the picture is missed")
+        self.wait(lambda: self.r.node_states.state("visual_node") != "running", "visual_node is reported as lost")
         host.boot()
         self.r.operator.up("again")
         self.expect_whole()

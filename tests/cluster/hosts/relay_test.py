@@ -55,7 +55,7 @@ class Sites(unittest.TestCase):
         cls.expect_whole(cls)
 
     def expect_whole(self):
-        if self.r.wait_until_running(PATIENCE_S) is None:
+        if self.r.wait_until_running(TIMEOUT_S) is None:
             raise AssertionError(f"not whole: {({n: self.r.node_states.state(n) for n in self.r.placement})}")
 
     def wait(self, condition, what, patience_s=TIMEOUT_S):
@@ -113,9 +113,9 @@ class Sites(unittest.TestCase):
     def test_10_every_site_presents_every_event_and_blocked_channels_do_not_cross(self):
         begin = time.monotonic()
         expected = {}
-        while time.monotonic() < begin + PATIENCE_S and not all(expected.get(m, 0) > 0 for m in ("audio", "visual")):
-            heard = self.hear(["world", "far"], 4)
-            for modality, m in heard["world"]["contacts"]["by_modality"].items():
+        while time.monotonic() < begin + TIMEOUT_S and not all(expected.get(m, 0) > 0 for m in ("audio", "visual")):
+            summaries = self.record_at(["world", "far"], 4)
+            for modality, m in summaries["world"]["contacts"]["by_modality"].items():
                 expected[modality] = expected.get(modality, 0) + m["expected"]
                 self.assertEqual(0, m["lost"], modality)
         self.assertGreater(expected["audio"], 0)
@@ -195,7 +195,7 @@ class Sites(unittest.TestCase):
     def test_32_a_killed_relay_restarts_by_itself(self):
         before = self.incarnations()
         self.r.operator.request("near", "send_command", names=["relay_near"], letter="k")
-        self.wait(lambda: self.incarnations().get("relay_near") != before["relay_near"], "it is started again")
+        self.wait(lambda: self.incarnations().get("relay_near") != before["relay_near"], "relay_near restarts")
         self.expect_whole()
         after = self.incarnations()
         self.assertNotEqual(before.pop("relay_near"), after.pop("relay_near"))

@@ -5,7 +5,7 @@ export interface NodeHealth {
   node: string; source: number; modality: string; state: number; lost: boolean; note: string; rate_Hz: number; nominal_Hz: number; missed: number;
   ticks: number; rendered: number; profile: string; realtime: number; gaps: number; tick_max_us: number; wake_max_us: number;
 }
-export interface Sense { modality: string; expected: number; presented: number; lost: number; dropped: number; late: number }
+export interface ModalityReport { modality: string; expected: number; presented: number; lost: number; dropped: number; late: number }
 export interface Pair { a: string; b: string; n: number; p05_ms: number; p50_ms: number; p95_ms: number; beyond_least: number }
 export type Event = [time_s: number, kind: number, body_a: number, body_b: number, speed_m_s: number];
 export type Presentation = [time_s: number, modality: string, part: number, outcome: number, latency_ms: number | null];
