@@ -101,17 +101,17 @@ Controls::World Controls::world(sync::HostTime now) const {
 void Controls::step(sync::HostTime now) {
   const auto is_own_run = [&](const header_t& h) { return h.run_id == bus_.identity().run_id; };
   while (const auto m = frames_.pop()) {
-    if (!ours(m->message.header)) continue;
+    if (!is_own_run(m->message.header)) continue;
     simulation_.track(m->message.header, m->message.clock, m->arrival);
     clock_ = m->message.clock;
   }
   while (auto m = tools_.pop())
     if (is_own_run(m->message.header) && m->message.tool == 0) tool_ = std::move(m->message);
   while (const auto m = degradations_.pop())
-    if (ours(m->message.header))
-      if (auto heard = profiles_.push(m->message);
-          heard && (!in_force_ || heard->generation >= in_force_->generation))
-        in_force_ = std::move(heard);
+    if (is_own_run(m->message.header))
+      if (auto received = profiles_.push(m->message);
+          received && (!in_force_ || received->generation >= in_force_->generation))
+        in_force_ = std::move(received);
   if (scene_.poll(now)) ++scenes_;
   while (const auto m = replies_.pop()) {
     if (!command_ || !is_own_run(m->message.header) || m->message.id != command_->message.id) continue;

@@ -31,8 +31,8 @@ constexpr sync::Nanoseconds kEarly{20'000'000};  // events this far ahead are ac
 
 Perception::Perception(sync::Node& node, Rules rules, double frame_rate_Hz)
     : rules_(std::move(rules)),
-      eyes_(node, of("visual_node", "visual", int{node_health_t::EXPECTS_BEGIN} | node_health_t::EXPECTS_HIT)),
-      ears_(node, of("audio_node", "audio", node_health_t::EXPECTS_HIT)),
+      eyes_(node, observed_node("visual_node", "visual", int{node_health_t::EXPECTS_BEGIN} | node_health_t::EXPECTS_HIT)),
+      ears_(node, observed_node("audio_node", "audio", node_health_t::EXPECTS_HIT)),
       healths_(node.bus().queue<node_health_t>(channels::kNodeHealth, 256)),
       world_(eyes_.snapshots<world_state_t>(channels::kWorldState, 4096)),
       events_(ears_.events()),

@@ -104,11 +104,11 @@ std::optional<json> Observations::push(const game_state_t& m) {
 
 std::optional<json> Observations::push(const picture_chunk_t& m, sync::HostTime arrival) {
   const sync::SenderClock* clock = clock_of(m.header, arrival);
-  auto whole = pictures_.push(m);
-  if (!clock || !whole) return std::nullopt;
-  json line{{"picture", whole->picture}, {"sim_ns", whole->sim_time_ns}, {"at_ns", nullptr}};
-  if (whole->presented_ns >= 0) line["at_ns"] = sync::to_ns(clock->to_host(whole->presented_ns, arrival));
-  line["jpeg"] = base64(whole->jpeg);
+  auto picture = pictures_.push(m);
+  if (!clock || !picture) return std::nullopt;
+  json line{{"picture", picture->picture}, {"sim_ns", picture->sim_time_ns}, {"at_ns", nullptr}};
+  if (picture->presented_ns >= 0) line["at_ns"] = sync::to_ns(clock->to_host(picture->presented_ns, arrival));
+  line["jpeg"] = base64(picture->jpeg);
   return line;
 }
 

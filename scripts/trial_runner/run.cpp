@@ -191,7 +191,7 @@ class TrialRunner {
     while (const auto m = healths_.pop())
       if (is_own_run(m->message.header)) enforcement_.push(m->message, m->arrival), store_health(m->message, m->arrival);
     while (const auto m = frames_.pop())
-      if (ours(m->message.header)) simulation_.track(m->message.header, m->message.clock, m->arrival);
+      if (is_own_run(m->message.header)) simulation_.track(m->message.header, m->message.clock, m->arrival);
     while (const auto m = events_.pop())
       if (is_own_run(m->message.header))
         for (const json& line : observations_.push(m->message)) write(line);

@@ -19,12 +19,12 @@ void add_input(node_health_t& m, const input_health_t& input) {
 }
 
 void fit(node_health_t& m, std::size_t bytes) {
-  const std::string note = m.status_text;
+  const std::string text = m.status_text;
   int left_out = 0;
   while (static_cast<std::size_t>(m.getEncodedSize()) > bytes && !m.inputs.empty()) {
     m.inputs.pop_back();
     m.input_count = static_cast<std::int32_t>(m.inputs.size());
-    m.status_text = note + "; " + std::to_string(++left_out) + " inputs not listed";
+    m.status_text = text + "; " + std::to_string(++left_out) + " inputs not listed";
   }
 }
 

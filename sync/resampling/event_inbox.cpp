@@ -58,7 +58,7 @@ void EventInbox::push(const contact_events_t& m, HostTime arrival, OperatorChain
 }
 
 void EventInbox::hold(const contact_event_t& event, std::int64_t incarnation, HostTime release) {
-  held_.emplace(release, Held{event, incarnation});
+  held_.emplace(release, HeldEvent{event, incarnation});
   if (held_.size() <= kMaxHeld) return;
   held_.erase(std::prev(held_.end()));
   ++overflow_;
@@ -72,7 +72,7 @@ void EventInbox::release(HostTime now) {
 }
 
 // Drops an event of a replaced simulation, or of an impossible future.
-void EventInbox::release_one(const Held& held) {
+void EventInbox::release_one(const HeldEvent& held) {
   const contact_event_t& e = held.event;
   if (held.incarnation != clock_.incarnation()) return;
   if (sim_time(e.time_ns) > clock_.latest_plausible()) {

@@ -30,7 +30,7 @@ struct ContactSpan {
 class EventInbox {
  public:
   static constexpr std::size_t kMaxPending = 4096;
-  // Held by a profile: its longest delay, one minute, of 1,000 events a second.
+  // HeldEvent by a profile: its longest delay, one minute, of 1,000 events a second.
   static constexpr std::size_t kMaxHeld = 1 << 16;
   // Repetitions end 50 ms after an event; 8192 ids are 80 ms of 100,000 events a second.
   static constexpr std::size_t kRemembered = 8192;
@@ -90,19 +90,19 @@ class EventInbox {
     HostTime arrival{};
     bool decided = false;  // in this incarnation of the simulation
   };
-  struct Held {
+  struct HeldEvent {
     contact_event_t event;
     std::int64_t incarnation;
   };
 
   bool decide_now(std::int64_t id);
   void hold(const contact_event_t& event, std::int64_t incarnation, HostTime release);
-  void release_one(const Held& held);
+  void release_one(const HeldEvent& held);
 
   SimClockTracker clock_;
   RecentMap<std::int64_t, Known> memory_{kRemembered};       // by event id
   RecentMap<std::int64_t, ContactSpan> spans_{kRemembered};  // by contact id
-  std::multimap<HostTime, Held> held_;                       // by the operators, until their release
+  std::multimap<HostTime, HeldEvent> held_;                       // by the operators, until their release
   std::multimap<SimTime, contact_event_t> pending_;          // released, by the time of the event
   std::vector<contact_event_t> dropped_;
   std::int64_t epoch_ = 0, duplicates_ = 0, refused_ = 0, overflow_ = 0;

@@ -107,21 +107,21 @@ TEST_CASE("A running replay executes the commands from its pipe") {
     while (const auto m = states.pop()) times.push_back(m->message.header.sim_time_ns);
     return times;
   };
-  REQUIRE(ear.wait_until([&] { return ear.health("replay") != nullptr; }, kPatience_s));
-  CHECK(heard(0.5).empty());
-  order("loop on\nresume");
-  CHECK_FALSE(heard(1).empty());
-  order("pause");
-  CHECK(heard(0.5).empty());
-  order("seek 1\nstep 0.5");
-  ear.listen(3);
-  CHECK_THAT(processes.said("replay"), Catch::Contains("1.00 of"));
-  CHECK(heard(0.3).empty());
-  order("fly");
-  CHECK(ear.wait_until([&] { return processes.said("replay").find("cannot execute 'fly'") != std::string::npos; },
-                       kPatience_s));
-  order("quit");
-  CHECK(processes.wait_for_exit("replay", kPatience_s) == 0);
+  REQUIRE(monitor.wait_until([&] { return monitor.health("replay") != nullptr; }, kTimeout_s));
+  CHECK(received_times(0.5).empty());
+  command("loop on\nresume");
+  CHECK_FALSE(received_times(1).empty());
+  command("pause");
+  CHECK(received_times(0.5).empty());
+  command("seek 1\nstep 0.5");
+  monitor.receive_for(3);
+  CHECK_THAT(processes.output("replay"), Catch::Contains("1.00 of"));
+  CHECK(received_times(0.3).empty());
+  command("fly");
+  CHECK(monitor.wait_until([&] { return processes.output("replay").find("cannot execute 'fly'") != std::string::npos; },
+                       kTimeout_s));
+  command("quit");
+  CHECK(processes.wait_for_exit("replay", kTimeout_s) == 0);
 }
 
 TEST_CASE("The stock lcm-logger receives all replayed messages unchanged, and its log can be replayed") {

@@ -43,8 +43,8 @@ TEST_CASE(
   const bool joined = c.monitor.wait_until([&] { return c.is_running("wind_node"); }, kTimeout_s);
   INFO(c.processes.output("wind_node"));
   REQUIRE(joined);
-  CHECK(c.ear.health("wind_node")->modality == "wind");
-  CHECK(c.ear.health("wind_node")->expected_events == node_health_t::EXPECTS_HIT);
+  CHECK(c.monitor.health("wind_node")->modality == "wind");
+  CHECK(c.monitor.health("wind_node")->expected_events == node_health_t::EXPECTS_HIT);
 
   modality_report_t latest{};
   std::set<std::string> paired_with;
@@ -57,9 +57,9 @@ TEST_CASE(
     }
     return latest.presented >= 5 && paired_with.size() == kOthers.size();
   };
-  CHECK(c.ear.wait_until(reported, kPatience_s));
-  INFO("presented " << kept.presented << " of " << kept.expected << ", with " << paired_with.size() << " others");
-  CHECK(kept.lost == 0);
+  CHECK(c.monitor.wait_until(reported, kTimeout_s));
+  INFO("presented " << latest.presented << " of " << latest.expected << ", with " << paired_with.size() << " others");
+  CHECK(latest.lost == 0);
 
   // The other nodes keep their rates.
   c.check_rates_hold(before, 2);

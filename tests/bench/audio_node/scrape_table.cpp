@@ -89,7 +89,7 @@ Scrape scrape_of(const Row& row, int i, double t, sync::HostTime now, const Sour
     side.roughness = {3e-6, row.mapped ? sources.relief.texel_m() : 0};
     const double speed = k == 0 || row.rolls ? 0.1 : 0;
     side.place_m.x() = speed * t + 0.01 * i, side.velocity_m_s.x() = speed;
-    if (speed > 0) side.slides.x() = side.rolls.x() = 1;
+    if (speed > 0) side.slide_vector.x() = side.roll_vector.x() = 1;
   }
   return s;
 }
@@ -102,7 +102,7 @@ std::vector<double> callback_us(const Row& row, int blocks, const Sources& sourc
   for (int b = 0; b < blocks; ++b) {
     const double t = b * kFrames / kRate_Hz;
     const sync::HostTime now = sync::host_time(static_cast<std::int64_t>(1e9 * (1 + t)));
-    for (int i = 0; i < row.contacts; ++i) scrapes->take(scrape_of(row, i, t, now, sources));
+    for (int i = 0; i < row.contacts; ++i) scrapes->update(scrape_of(row, i, t, now, sources));
     float stereo[2 * kFrames] = {};
     const auto begin = std::chrono::steady_clock::now();
     scrapes->drive(*voices, kFrames, now);
@@ -129,7 +129,7 @@ sync::Contacts sliding_contacts(int count, int tick) {
 
 // Durations of each tick of the node's loop with these contacts, us.
 std::vector<double> loop_us(int count, int ticks, const scene_t& scene, const Impacts& impacts) {
-  auto surfaces = std::make_shared<HeardSurfaces>();
+  auto surfaces = std::make_shared<AudioSurfaces>();
   const sync::BodyHistory bodies(1);
   Sliding sliding(scene, surfaces, bodies, impacts, Settings{}, kRate_Hz);
   std::vector<double> took_us;
@@ -197,82 +197,8 @@ int main(int argc, char** argv) {
   const Impacts impacts(
       scene, [](std::int64_t) { return std::nullopt; }, Settings{}, kRate_Hz, 1);
   nlohmann::json rows = nlohmann::json::array();
-
-  std::printf("%-34s %9s %12s %12s %12s\n", "callback, block of 64", "contacts", "median us", "p99 us",
-              "% / contact");
-  for (const Row& row :
-       {Row{"none", 0, false, false, false}, Row{"scrape, roughness", 1, false, false, false},
-        Row{"scrape, relief", 1, true, false, false}, Row{"scrape, relief and friction map", 1, true, true, false},
-        Row{"roll, relief", 1, true, false, true}, Row{"scrape, relief", 16, true, false, false},
-        Row{"scrape, relief and friction map", 16, true, true, false}}) {
-    auto scrapes = std::make_unique<Scrapes>(kRate_Hz);
-    auto voices = std::make_unique<Voices>(64, kRate_Hz, ring(available_instructions().back()));
-    std::vector<double> took_us;
-    for (int b = 0; b < blocks; ++b) {
-      const double t = b * kFrames / kRate_Hz;
-      const sync::HostTime now = sync::host_time(static_cast<std::int64_t>(1e9 * (1 + t)));
-      for (int i = 0; i < row.contacts; ++i) {
-        Scrape s;
-        s.id = i, s.at = now, s.cutoff_Hz = 3000;
-        (row.rolls ? s.roll : s.slide) = 1e-4f;
-        for (std::size_t k = 0; k < 2; ++k) {
-          ScrapeSide& side = s.sides[k];
-          const int body = k == 0 ? 0 : i + 1;
-          side.voice = body, side.known = true;
-          side.resonators = impacts.resonators(body), side.gains = impacts.gains(body, std::nullopt);
-          if (row.mapped) side.relief = &relief;
-          if (row.friction && k == 0) side.friction = &friction;
-          side.roughness = {3e-6, row.mapped ? relief.texel_m() : 0};
-          const double speed = k == 0 || row.rolls ? 0.1 : 0;
-          side.place_m.x() = speed * t + 0.01 * i, side.velocity_m_s.x() = speed;
-          if (speed > 0) side.slide_vector.x() = side.roll_vector.x() = 1;
-        }
-        scrapes->update(s);
-      }
-      float stereo[2 * kFrames] = {};
-      const auto begin = std::chrono::steady_clock::now();
-      scrapes->drive(*voices, kFrames, now);
-      voices->render(stereo, kFrames);
-      took_us.push_back(
-          std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
-    }
-    const auto [median, p99] = figures(took_us);
-    const double share = row.contacts ? 100 * median / period_us / row.contacts : 0;
-    std::printf("%-34s %9d %12.2f %12.2f %12.2f\n", row.what.c_str(), row.contacts, median, p99, share);
-    rows.push_back({{"of", "callback"},
-                    {"what", row.what},
-                    {"contacts", row.contacts},
-                    {"median_us", median},
-                    {"p99_us", p99},
-                    {"period_us", period_us},
-                    {"percent_a_contact", share}});
-  }
-
-  std::printf("%-34s %9s %12s %12s\n", "loop, tick of 1 ms", "contacts", "median us", "p99 us");
-  for (const int count : {1, 16, 50}) {
-    auto surfaces = std::make_shared<AudioSurfaces>();
-    const sync::BodyHistory bodies(1);
-    Sliding sliding(scene, surfaces, bodies, impacts, Settings{}, kRate_Hz);
-    std::vector<double> took_us;
-    for (int tick = 0; tick < blocks; ++tick) {
-      sync::Contacts contacts;
-      for (int i = 0; i < count; ++i) {
-        contact_t c{};
-        c.contact_id = i, c.body_b = i % Scrapes::kMax + 1, c.tool = -1, c.kind = contact_t::SURFACE;
-        c.normal.z = 1, c.normal_force_N = 1, c.sliding_velocity_m_s.x = 0.1f;
-        c.points.resize(1), c.point_count = 1;
-        c.points[0].a_body_m.x = c.points[0].a_world_m.x = 1e-4f * static_cast<float>(tick);
-        contacts.push_back(c);
-      }
-      const auto begin = std::chrono::steady_clock::now();
-      sliding.scrapes(contacts, sync::sim_time(1'000'000LL * tick), sync::host_time(1'000'000LL * tick), 0.001);
-      took_us.push_back(
-          std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
-    }
-    const auto [median, p99] = figures(took_us);
-    std::printf("%-34s %9d %12.2f %12.2f\n", "contacts that slide", count, median, p99);
-    rows.push_back({{"of", "loop"}, {"contacts", count}, {"median_us", median}, {"p99_us", p99}});
-  }
+  callback_table(blocks, {relief, friction, impacts}, rows);
+  loop_table(blocks, scene, impacts, rows);
   if (!json.empty()) std::ofstream(json) << rows.dump(1) << "\n";
   return 0;
 }

@@ -1,6 +1,6 @@
 // Reception and bookkeeping of the subscriber of the cluster tests.
 #include "sync/clocks/pacing.h"
-#include "tests/cluster/support/ear.h"
+#include "tests/cluster/support/cluster_monitor.h"
 
 #include <cmath>
 #include <tactus/contact_event_t.hpp>

@@ -67,9 +67,9 @@ struct RunningCluster {
   std::string log_text() const {
     std::string all;
     for (const char* n : {"sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node"}) {
-      const node_health_t* h = ear.health(n);
+      const node_health_t* h = monitor.health(n);
       all += std::string(n) + (h ? " state " + std::to_string(h->state) + " (" + h->status_text + ")" : " silent") +
-             ": " + processes.said(n) + "\n";
+             ": " + processes.output(n) + "\n";
     }
     return all;
   }

@@ -16,7 +16,7 @@ struct Example {
   int voices = 8;
   bool loud = false;
   std::string mode = "fast";
-  std::string note;
+  std::string label;
   double hottest_degC = 42, coldest_degC = 15;
 };
 const std::vector<SettingField<Example>> kTable{
@@ -24,7 +24,7 @@ const std::vector<SettingField<Example>> kTable{
     {{"voices", "count", "8", 1, 64, "Voices", "design"}, &Example::voices},
     {{"loud", "bool", "false", 0, 0, "Loud", "design"}, &Example::loud},
     {{"mode", "fast|slow", "fast", 0, 0, "Mode", "design"}, &Example::mode},
-    {{"note", "text", "", 0, 0, "Note", "design"}, &Example::note},
+    {{"note", "text", "", 0, 0, "Note", "design"}, &Example::label},
     {{"hottest", "degC", "42", 34, 43, "Hottest", "design", "max", true}, &Example::hottest_degC},
     {{"coldest", "degC", "15", 10, 30, "Coldest", "design", "min", true}, &Example::coldest_degC}};
 
@@ -77,7 +77,7 @@ TEST_CASE("Settings are set by name") {
   CHECK(e.voices == 12);
   CHECK(e.loud);
   CHECK(e.mode == "slow");
-  CHECK(e.note == "anything = goes");
+  CHECK(e.label == "anything = goes");
 }
 
 TEST_CASE("The error for an invalid value names setting, value and range") {
@@ -119,7 +119,7 @@ TEST_CASE("The command line overrides the scene, entries of other nodes and inva
   CHECK(e.delay_s == Approx(0.07));
   CHECK(e.voices == 8);
   CHECK(e.mode == "slow");
-  CHECK(e.note == "a=b");
+  CHECK(e.label == "a=b");
   REQUIRE(refused.size() == 2);
   CHECK(refused[0].starts_with("me: setting \"voices\""));
   CHECK(refused[1].starts_with("me: setting \"loud\""));

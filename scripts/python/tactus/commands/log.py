@@ -18,11 +18,11 @@ Example: tactus log upgrade out/2026-01-31_120000 old_run.lcmlog"""
 
 def main(words):
     if {"--help", "-h"} & set(words):
-        return prepare.show(USAGE)
+        return prepare.print_usage(USAGE)
     if len(words) != 3 or words[0] != "upgrade":
         return prepare.refuse("tactus log", "give `upgrade`, the log and the name of the new log; see tactus log --help")
     old, new = words[1:]
     if os.path.exists(new):
         return prepare.refuse("tactus log", f"{new} exists already; give the name of a new file")
     program = prepare.program("upgrade_log")
-    prepare.become([program, old, new])
+    prepare.replace_process([program, old, new])

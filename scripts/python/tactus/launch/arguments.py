@@ -12,7 +12,8 @@ from tactus.refusal import Refusal
 from tactus.tables import read_rows
 
 SENSES = ("haptic_node", "audio_node", "visual_node", "thermal_node")
-PLAYER = "participant"
+PLAYER = "participant"  # name of its node, also in recordings
+PLAYER_PROGRAM = "simulated_player"
 REMOVABLE = ("sim_node", *SENSES, "sync_node")
 MIN_FREE_BYTES = 20_000_000  # about ten seconds of log and sound
 MAX_SECONDS = 86400  # one day; a longer log fills most disks
@@ -65,7 +66,7 @@ class Plan:
 
     def program(self, name):
         """Name of the program of a process."""
-        if name == PARTICIPANT:
+        if name == PLAYER:
             return PLAYER_PROGRAM
         return hands.FIRST if name in self.hands else walls.FIRST if name in self.walls else name
 

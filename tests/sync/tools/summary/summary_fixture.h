@@ -23,7 +23,7 @@ struct RunLog {
   std::shared_ptr<MemorySink::State> state = std::make_shared<MemorySink::State>();
   LogWriter writer{std::make_unique<MemorySink>(state)};
   std::map<std::string, std::int64_t> seq;
-  std::string note = "SCHED_FIFO 60, memory locked";  // in every health message
+  std::string status_text = "SCHED_FIFO 60, memory locked";  // in every health message
 
   explicit RunLog(bool with_info = true) {
     if (!with_info) return;
@@ -57,7 +57,7 @@ struct RunLog {
     m.ticks = static_cast<std::int64_t>(ms * 1e-3 * rate_Hz);
     m.missed_ticks = missed;
     m.stale_ticks = 4;
-    m.status_text = note;
+    m.status_text = status_text;
     Histogram h;
     h.add(Nanoseconds(static_cast<std::int64_t>(incarnation) * 100'000));
     m.tick = m.wake = h.to_message();

@@ -138,7 +138,7 @@ TEST_CASE("Late events count as presented and also as late") {
 TEST_CASE("The summary uses the last note of a node before the simulation ended") {
   RunLog log;
   for (int ms = 0; ms <= 4000; ms += 100) {
-    if (ms == 3000) log.note = "input lost";
+    if (ms == 3000) log.status_text = "input lost";
     log.health("haptic_node", "haptic", ms, 1000);
     world_state_t world{};
     world.header = header_of("sim_node", 100, 0, to_ns(MatcherFixture::at(ms)));
@@ -152,7 +152,7 @@ TEST_CASE("The summary uses the last note of a node before the simulation ended"
 
 TEST_CASE("Control characters are escaped in the text of a summary") {
   RunLog log;
-  log.note = "a\x1b[2Jb\nc";
+  log.status_text = "a\x1b[2Jb\nc";
   ordinary_run(log);
   const std::string text = to_text(log.summary());
   CHECK(text.find('\x1b') == std::string::npos);
