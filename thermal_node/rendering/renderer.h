@@ -25,7 +25,7 @@
 namespace tactus::thermal {
 
 // Heat is a slow state: late events still apply.
-inline constexpr sync::LateRule kLate = sync::LateRule::kAlwaysApply;
+inline constexpr sync::LateRule kLatePolicy = sync::LateRule::kAlwaysApply;
 
 // Quality of a tick.
 struct TickOptions {
