@@ -102,7 +102,7 @@ void record(const std::string& path, const std::string& profile = "") {
     m.header = stamp(0.01, 0);
     m.generation = 1, m.pages = 1, m.text = profile, m.size = static_cast<std::int32_t>(profile.size());
     m.hash = sync::fnv1a_64(profile.data(), profile.size());
-    run.write_raw(0.01, channels::kDegradation, sync::encode(m));
+    run.raw(0.01, channels::kDegradation, sync::encode(m));
   }
   std::size_t next = 0;
   for (int ms = 20; ms < static_cast<int>(1000 * kRun_s); ++ms) {
@@ -111,7 +111,7 @@ void record(const std::string& path, const std::string& profile = "") {
       const auto id = static_cast<std::int64_t>(next) + 1;
       contact_event_t hit = RecordedRun::hit(id, kHits[next], 0, 0);
       hit.point_m.x = 2, hit.point_m.y = 0, hit.point_m.z = 0;
-      run.write_events(now, {hit});
+      run.hear(now, {hit});
       ++next;
     }
     if (ms % 17) continue;
@@ -123,7 +123,7 @@ void record(const std::string& path, const std::string& profile = "") {
     body.position_m.x = 2, body.position_m.y = -0.5 + 0.3 * now, body.velocity_m_s.y = 0.3f,
     body.orientation.w = 1;
     w.bodies = {body};
-    run.write_raw(now, channels::kWorldState, sync::encode(w));
+    run.raw(now, channels::kWorldState, sync::encode(w));
   }
   run.finish();
 }
@@ -145,7 +145,8 @@ std::vector<std::vector<std::uint8_t>> frames_of(const Folder& folder, const std
 
 }  // namespace
 
-TEST_CASE("A log rendered twice gives identical files with every event in its frame") {
+TEST_CASE(
+    "A log rendered twice gives identical files with every event in its frame") {
   const Folder folder;
   record(folder.file("run.lcmlog"));
   const Done first = render(folder, "run.lcmlog", "a.mp4", {"--frames", folder.file("frames.csv")}),
