@@ -111,7 +111,7 @@ void record(const std::string& path, const std::string& profile = "") {
       const auto id = static_cast<std::int64_t>(next) + 1;
       contact_event_t hit = RecordedRun::hit(id, kHits[next], 0, 0);
       hit.point_m.x = 2, hit.point_m.y = 0, hit.point_m.z = 0;
-      run.hear(now, {hit});
+      run.write_events(now, {hit});
       ++next;
     }
     if (ms % 17) continue;

@@ -87,7 +87,7 @@ TEST_CASE("An overlay subscribes to its channels when it is switched on") {
   CHECK_FALSE(c.drawn(640, 480).empty());
   c.overlays.toggle(Overlay::kReport);
   CHECK(c.drawn(640, 480).empty());
-  // A configured plot is shown whatever overlays are on.
+  // A configured plot is shown independently of the overlays.
   CHECK(c.configure("none", "text TOOL_STATE.force_N.z").empty());
   CHECK(c.overlays.on().on(Overlay::kPlots));
   CHECK_FALSE(c.drawn(640, 480).empty());
