@@ -102,7 +102,7 @@ void record(const std::string& path, const std::string& profile = "") {
     m.header = stamp(0.01, 0);
     m.generation = 1, m.pages = 1, m.text = profile, m.size = static_cast<std::int32_t>(profile.size());
     m.hash = sync::fnv1a_64(profile.data(), profile.size());
-    run.raw(0.01, channels::kDegradation, sync::encode(m));
+    run.write_raw(0.01, channels::kDegradation, sync::encode(m));
   }
   std::size_t next = 0;
   for (int ms = 20; ms < static_cast<int>(1000 * kRun_s); ++ms) {
@@ -123,7 +123,7 @@ void record(const std::string& path, const std::string& profile = "") {
     body.position_m.x = 2, body.position_m.y = -0.5 + 0.3 * now, body.velocity_m_s.y = 0.3f,
     body.orientation.w = 1;
     w.bodies = {body};
-    run.raw(now, channels::kWorldState, sync::encode(w));
+    run.write_raw(now, channels::kWorldState, sync::encode(w));
   }
   run.finish();
 }
