@@ -55,7 +55,7 @@ Rule parse_rule(const Element& e, const DeclaredOutput& own) {
       rule.modality = value;
     } else if (name == "material") {
       rule.material = value;
-      if (value.empty()) throw std::invalid_argument("material=\"\" names none; leave it away, or name one");
+      if (value.empty()) throw std::invalid_argument("material=\"\" names no material; remove it, or name one");
     } else if (name == "bodies") {
       std::istringstream two(value);
       std::string rest;
@@ -105,11 +105,11 @@ void refuse_more_than_root(const tinyxml2::XMLDocument& document, const tinyxml2
   for (const tinyxml2::XMLNode* n = document.FirstChild(); n; n = n->NextSibling()) {
     line = n->GetLineNum();
     if (n->ToDeclaration() && says_another_encoding(n->Value()))
-      throw std::invalid_argument("a profile is read as UTF-8; save it so, and leave its encoding away");
+      throw std::invalid_argument("a profile must be UTF-8; save it as UTF-8 and remove its encoding declaration");
     if (n == root || n->ToComment() || n->ToDeclaration()) continue;
     throw std::invalid_argument(n->ToElement()
                                     ? "a file holds one <profile> and nothing after it; put all <degrade> into it"
-                                    : "only <profile> may stand here; leave this away");
+                                    : "only <profile> is valid here; remove this element");
   }
 }
 

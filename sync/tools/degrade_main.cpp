@@ -101,7 +101,7 @@ int main(int argc, char** argv) try {
   if (accepted.empty())
     throw std::runtime_error(joined(missing) +
                              " did not accept it; they may not support it, see their logs");
-  std::cout << "in force since " << sync::to_seconds(profile.start - sync::SimTime{}) << " s of the world in "
+  std::cout << "in force since " << sync::to_seconds(profile.start - sync::SimTime{}) << " s of simulated time in "
             << joined(accepted) << std::endl;
   if (!missing.empty()) throw std::runtime_error(joined(missing) + " did not accept it; see their logs");
   return 0;

@@ -85,7 +85,7 @@ def text(figures):
         for when, of in by_when.items():
             if of:
                 parts.append(f"asynchrony of {name}, {TITLES[when]}, ms:\n{asynchrony.text(of)}")
-    parts.append(f"instants that each node meant and met, nothing spoilt, ms:\n{asynchrony.scheduling_text(figures['instants'])}")
+    parts.append(f"scheduled and measured times of each node, in windows without faults, ms:\n{asynchrony.scheduling_text(figures['instants'])}")
     parts.append("\n".join(f"summary {r['pair']}: n {r['n_said']}, here {r['n']}; quantiles differ by {r['differs_ms'] if r['differs_ms'] is None else round(r['differs_ms'], 3)} ms; "
                            f"uncertainty {r['uncertainty_said_ms']} ms, here {r['uncertainty_ms']:.3f} ms" for r in figures["summary"]))
     return "\n".join(parts)
