@@ -77,7 +77,8 @@ class Words {
     for (const auto& [name, value] : choices) {
       if (!word(name)) continue;
       if (chosen)
-        throw std::invalid_argument("\"" + given_name + "\" and \"" + name + "\" contradict each other; remove one");
+        throw std::invalid_argument("\"" + given_name + "\" and \"" + name +
+                                    "\" contradict each other; remove one");
       chosen = value;
       given_name = name;
     }

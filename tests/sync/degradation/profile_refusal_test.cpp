@@ -77,8 +77,10 @@ TEST_CASE("Contradictory options are rejected") {
   CHECK_THAT(refusal_of("gain=\"2 force velocity\""), Contains("contradict"));
   CHECK_THAT(refusal_of("freeze=\"hold zero\""), Contains("contradict"));
   CHECK_THAT(refusal_of("off=\"true false\""), Contains("contradict"));
-  CHECK_THAT(refusal_of("jitter=\"normal trace=1ms,2ms\""), Contains("a trace already defines shape and correlation"));
-  CHECK_THAT(refusal_of("jitter=\"trace=1ms,2ms correlation=0.5\""), Contains("a trace already defines shape and correlation"));
+  CHECK_THAT(refusal_of("jitter=\"normal trace=1ms,2ms\""),
+             Contains("a trace already defines shape and correlation"));
+  CHECK_THAT(refusal_of("jitter=\"trace=1ms,2ms correlation=0.5\""),
+             Contains("a trace already defines shape and correlation"));
   CHECK_THAT(refusal_of("jitter=\"3ms trace=1ms\""), Contains("\"3ms\" means nothing here"));
 }
 

@@ -125,7 +125,7 @@ class Operator:
                 raise Refusal(f"{host}: the messages of its build differ: {first_difference(ours, a['messages'])}; build the same version there, or remove build= "
                               "to install this build")
             if host in runs and runs[host]["build"] != self.identity and not own:
-                raise Refusal(f"{host}: runs the build {runs[host]['build']}, and this is {self.identity}; a cluster runs one build: run tactus cluster "
+                raise Refusal(f"{host}: runs the build {runs[host]['build']}, and this machine has {self.identity}; all hosts of a cluster run one build: run tactus cluster "
                               "down first")
             if not own and a["machine"] != os.uname().machine:
                 raise Refusal(f"{host}: is a {a['machine']}, but this build is for {os.uname().machine}; build there, and name its folder with build=")
@@ -228,7 +228,7 @@ class Operator:
         host = self.placement(states).get(node)
         if host is None:
             unreachable = [h for h, s in states.items() if isinstance(s, Exception)]
-            raise Refusal(f"{node}: runs on no host that can be reached" + (f" ({', '.join(unreachable)} cannot); --lost moves it anyway, and a later up stops it there" if unreachable else "; start it with tactus cluster up"))
+            raise Refusal(f"{node}: runs on no reachable host" + (f" (not reachable: {', '.join(unreachable)}); --lost moves it anyway, and a later tactus cluster up stops it there" if unreachable else "; start it with tactus cluster up"))
         return host
 
     def restart(self, node):

@@ -137,8 +137,8 @@ def parse(words, here):
             raise Refusal("--player holds the device of the first tool itself; remove --device and --without haptic_node")
         plan.devices = {"": f"external:{PLAYER}"}
     if plan.window and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        raise Refusal("visual_node: --window needs a display and neither DISPLAY nor WAYLAND_DISPLAY is set; leave "
-                      "--window away and look at video.mp4")
+        raise Refusal("visual_node: --window needs a display and neither DISPLAY nor WAYLAND_DISPLAY is set; remove "
+                      "--window and watch video.mp4")
     return plan
 
 
