@@ -151,8 +151,9 @@ Profile parse_profile(const std::string& xml, const std::string& file, const Dec
       if (std::string(e->Name()) != "degrade")
         throw std::invalid_argument(std::string("<") + e->Name() +
                                     "> is not known in a profile; it holds <degrade>");
-      if (e->FirstChildElement()) throw std::invalid_argument("a <degrade> has attributes, no elements within");
-      refuse_other_than_elements(*e, "a <degrade> has attributes, no text within", line);
+      if (e->FirstChildElement())
+        throw std::invalid_argument("a <degrade> has only attributes; remove the elements inside it");
+      refuse_other_than_elements(*e, "a <degrade> has only attributes; remove the text inside it", line);
       if (profile.rules.size() == kMaxRules) throw std::invalid_argument("a profile has at most 64 <degrade>");
       profile.rules.push_back(parse_rule(*e, own));
     }

@@ -125,14 +125,14 @@ RelayRules parse_relay_rules(const std::string& xml, const std::string& file) {
     if (root->FirstAttribute())
       throw std::invalid_argument(std::string("<relay> has no ") + root->FirstAttribute()->Name());
     if (root->NextSiblingElement()) throw std::invalid_argument("a file holds one <relay>");
-    refuse_text_in(document, "outside of <relay> there is nothing but comments", line);
-    refuse_text_in(*root, "in <relay> there is nothing but <pass .../> and comments", line);
+    refuse_text_in(document, "only comments are valid outside <relay>", line);
+    refuse_text_in(*root, "<relay> contains only <pass .../> and comments", line);
     std::vector<PassRule> rules;
     for (const tinyxml2::XMLElement* e = root->FirstChildElement(); e; e = e->NextSiblingElement()) {
       line = e->GetLineNum();
       if (std::string(e->Name()) != "pass")
         throw std::invalid_argument(std::string("<relay> holds no <") + e->Name() + ">; it holds <pass .../>");
-      if (e->FirstChild()) throw std::invalid_argument("a <pass> holds nothing; end it with />");
+      if (e->FirstChild()) throw std::invalid_argument("a <pass> has no content; end it with />");
       rules.push_back(parse_pass(*e));
       rules.back().line = line;
       for (std::size_t i = 0; i + 1 < rules.size(); ++i)
