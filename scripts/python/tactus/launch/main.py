@@ -137,7 +137,7 @@ def run(plan, watch=watch_over):
         if name not in lost:
             report_run(f"{name} died and was restarted {count} times" if count > 1 else f"{name} died once and was restarted")
     for name in taken_down:
-        report_run(f"{name} was taken down and not brought back")
+        report_run(f"{name} was taken down and not started again")
     errors += summarise(plan, git, {*lost, *taken_down}, restarts, warnings)
     report_run(f"results in {plan.out}")
     os.close(claim)
