@@ -8,7 +8,7 @@ import numpy as np
 # Channels of a report; large channels are not exported.
 CHANNELS = "LOG_INFO|NODE_HEALTH|CONTACT_EVENTS|PLAYOUT|DEGRADATION|DEGRADED|TAG_LIST|TAG_VALUES"
 PHASES = ("collision", "solve", "integrate", "decode", "render", "other")  # sync/time/phases.h
-DROP_REASONS = ("let through", "rate", "deadband", "loss", "off", "freeze")  # sync::Why, sync/degradation/operator_chain.h
+DROP_REASONS = ("let through", "rate", "deadband", "loss", "off", "freeze")  # sync::DropReason, sync/degradation/operator_chain.h
 PRESENTED = ("presented", "late", "inaudible")                               # outcomes of presented.csv that count as presented (docs/results.md)
 POLICIES = ("asap", "aligned", "experiment", "local_haptic_first", "itouch2005")  # lcmtypes/types/control/playout_t.lcm
 SENSES = ("haptic", "haptic_push", "audio", "visual", "thermal")             # an asynchrony is later minus earlier in this list
