@@ -31,7 +31,7 @@ const sync::NodeDescriptor kAudio{.name = "audio_node",
                                   .about = "Sounds the hits of the scene through a sound card.",
                                   .inputs = {channels::kContactEvents, channels::kContacts, channels::kWorldState},
                                   .presentation_instant = "the DAC time of its first sample",
-                                  .late_rule = audio::kLate,
+                                  .late_rule = audio::kLatePolicy,
                                   .output_operators = sync::output_operators_of("audio"),
                                   .phases = {sync::Phase::kRender}};
 

@@ -139,9 +139,10 @@ def all_rows(out, sources):
 def markdown(out, sources):
     lines = ["# Settings", "",
              "Every option and constant of every node. In a scene: `<tactus:NODE name=\"value\"/>` inside `<world>`, for",
-             "example `<tactus:audio_node presentation_delay=\"20ms\"/>`; on the command line of a node: `--set name=value`.",
+             "example `<tactus:audio_node presentation_delay=\"20ms\"/>`; for a run: `./scripts/run --set NODE.NAME=VALUE`; on the",
+             "command line of a node: `--set NAME=VALUE`.",
              "A limit that protects a person has a second, narrower range for scenes, because scenes arrive over the bus from any sender:",
-             "a scene may tighten it; to loosen it beyond its default takes `--set` on the node's own command line.",
+             "a scene may tighten it; only `--set`, of `run` or of the node, loosens it beyond its default.",
              "Settings marked *live* can be changed while the node runs: `tactus set NODE NAME=VALUE`.",
              "Generated from each folder's `settings.csv` by `cmake/generate_settings.py`; a test keeps it up to date.", ""]
     for source in sources:

@@ -150,7 +150,7 @@ TickOutput& NodeRenderer::render(sync::HostTime now) {
 void NodeRenderer::publish(TickOutput& out) {
   if (log_) log_->add(out.state);
   host().bus().publish(channels::kToolState, out.state);
-  if (host().node().tags().wanted()) published_ = out.state;
+  if (host().node().tags().requested()) published_ = out.state;
   if (device_force_t* force = session_->force_message()) host().bus().publish(channels::kDeviceForce, *force);
 }
 

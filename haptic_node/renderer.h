@@ -42,9 +42,9 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
  private:
   sync::LoadedScene load(const sync::SceneReceiver& scenes, const Settings& settings) override;
   void apply_setting(const Settings& settings, const std::string& name) override;
-  void begin_to_open(const sync::SceneReceiver& scenes);
-  void finish_opening();
-  void take_device();
+  void start_loading(const sync::SceneReceiver& scenes);
+  void finish_loading();
+  void start_session();
   void receive();
   TickOutput& render(sync::HostTime now);
   void publish(TickOutput& out);

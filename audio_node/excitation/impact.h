@@ -40,6 +40,8 @@ class Impacts {
   // T_world_listener from the next strike on; initially that of the scene.
   void set_listener(const Eigen::Isometry3d& listener) { listener_ = listener; }
 
+  // The level is played_level() (signal/loudness.h) times the setting gain. The default recordings are rendered with this, so a
+  // change of the level changes them too (mixer/make_sounds_main.cpp).
   // An implausible event gives an inaudible strike (plausible.h). Bodies or materials that the scene lacks sound
   // as small wooden ones. A body of unknown pose sounds as if struck at an average place.
   Strike strike(const contact_event_t& event, sync::HostTime scheduled, const PoseOf& pose = {}) const;

@@ -26,7 +26,7 @@ struct MethodGains {
 };
 MethodGains gains_of(const Settings& settings);
 
-// Level at 1 m of a blow of that impulse, relative to the level of its recording.
+// Level at 1 m of a blow of that impulse, relative to the level of its recording: gain and recorded_level are included.
 double recorded_blow_level(double impulse_N_s, const Settings& settings);
 // Playback speed relative to the recording: free vibrations of bodies of one form and material scale as 1 / size
 // (Fletcher and Rossing, The Physics of Musical Instruments, 1998, chapters 2 and 3).

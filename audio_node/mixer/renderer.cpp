@@ -49,7 +49,7 @@ LevelLimiterDef level_limiter_def(const RendererDef& def) {
 
 sync::LatePolicy late_policy(double rate_Hz, sync::Nanoseconds limit) {
   const sync::Nanoseconds slack = sync::from_seconds(kSlack_samples / rate_Hz);
-  return {kLate, slack, std::max(slack, limit)};
+  return {kLatePolicy, slack, std::max(slack, limit)};
 }
 
 Renderer::Renderer(CallbackQueues& queues, const RendererDef& def)

@@ -73,7 +73,7 @@ struct CallbackQueues {
 };
 
 // A late sound is weaker, down to zero at the limit: at full strength the ear would take it for another impact.
-inline constexpr sync::LateRule kLate = sync::LateRule::kPlayWithFade;
+inline constexpr sync::LateRule kLatePolicy = sync::LateRule::kPlayWithFade;
 sync::LatePolicy late_policy(double rate_Hz, sync::Nanoseconds limit);
 
 struct RendererDef {

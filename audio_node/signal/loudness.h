@@ -1,4 +1,5 @@
-// Law from computed pressure to played level, for blows and scrapes. Pure.
+// Law from computed pressure to played level, for impacts, scrapes and rolls (excitation/impact.cpp and sliding.cpp). Recorded
+// impacts follow their impulse instead (recorded_blow_level() in excitation/sampler.h). Pure.
 #pragma once
 
 #include <algorithm>

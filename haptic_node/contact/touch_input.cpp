@@ -6,9 +6,9 @@ namespace tactus::haptic {
 
 void TouchInput::push(touch_model_t page, sync::HostTime arrival) {
   if (page.tool != tool_) return;
-  const sync::TrackResult verdict = simulation_.track(page.header, page.clock, arrival);
-  if (verdict == sync::TrackResult::kIgnore) return;
-  if (verdict == sync::TrackResult::kRestart) {
+  const sync::TrackResult result = simulation_.track(page.header, page.clock, arrival);
+  if (result == sync::TrackResult::kIgnore) return;
+  if (result == sync::TrackResult::kRestart) {
     pages_.clear();
     restarted_ = true;
   }

@@ -245,7 +245,7 @@ void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_
   m.energy_J = static_cast<float>(safety_.energy_J());
   m.generated_J = static_cast<float>(passivity_.generated_J());
   m.coupling = static_cast<float>(passivity_.factor());
-  m.touch_status = static_cast<std::int8_t>(status(in));
+  m.touch_how = static_cast<std::int8_t>(status(in));
   m.fade = static_cast<float>(force_scale());
   m.buttons = device_.buttons;
   impulses_.write_constraints(in.now, m.constraints);

@@ -29,9 +29,9 @@ Session::Session(const scene_t& scene, const NodeConfig& config, std::unique_ptr
                  sync::OwnClock own, Safety& safety)
     : device_(std::move(device)),
       safety_(safety),
-      renderer_(scene, choice.tool, choice.settings, safety),
-      touch_(choice.tool, own) {
-  safety.set_limits(safety_limits(choice.settings));
+      renderer_(scene, config.tool, config.settings, safety),
+      touch_(config.tool, own) {
+  safety.set_limits(safety_limits(config.settings));
 }
 
 void Session::change(const Settings& settings) {

@@ -44,7 +44,7 @@ class Session {
   }
   // Events that are due, each once. They are rendered in the next tick that has a map of the time.
   void push(const std::vector<contact_event_t>& due) {
-    if (!over_) events_.insert(events_.end(), due.begin(), due.end());
+    if (!ended_) events_.insert(events_.end(), due.begin(), due.end());
   }
 
   // Applies changed settings from the next tick on, as Renderer::change, and also the limits of safety.
@@ -78,9 +78,9 @@ class Session {
   Renderer renderer_;
   TouchInput touch_;
   std::vector<contact_event_t> events_, rendered_;  // waiting; of this tick
-  bool over_ = false;
-  std::optional<sync::HostTime> since_;  // time of the first tick
-  bool path_begun_ = false;
+  bool ended_ = false;
+  std::optional<sync::HostTime> first_tick_;  // time of the first tick
+  bool path_started_ = false;
 };
 
 }  // namespace tactus::haptic

@@ -14,7 +14,7 @@
 namespace tactus::haptic {
 
 // A late transient is dropped, not reduced: a weaker one would suggest another material.
-inline constexpr sync::LateRule kLate = sync::LateRule::kDrop;
+inline constexpr sync::LateRule kLatePolicy = sync::LateRule::kDrop;
 
 struct TransientShape {
   double gain = 1;

@@ -88,7 +88,7 @@ json PageSession::tag_list() const {
     for (const tag_def_t& t : list.tags) {
       if (t.name.empty() || newest.size() >= kMaxTags) continue;
       auto& entry = newest[list.node + "." + t.name];
-      if (list.heard >= entry.second) entry = {t.unit, list.heard};
+      if (list.received_order >= entry.second) entry = {t.unit, list.received_order};
     }
   for (const auto& [name, unit] : newest)
     out.push_back({{"name", sync::printable(name)}, {"unit", sync::printable(unit.first)}, {"about", "tagged variable"}});

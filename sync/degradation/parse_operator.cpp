@@ -1,4 +1,6 @@
-// Parses the attributes of <degrade>: a value with its unit, then words and name=value pairs in any order.
+// Parses the values of the operators of <degrade> in a profile, and of <pass> in relay rules (sync/relay/rules.cpp): a value
+// with its unit, then words and name=value pairs in any order. Declared in profile.h. The callers put file and line before
+// each message; tests/sync/degradation/ and tests/sync/relay/rules_test.cpp check parts of the messages.
 #include <algorithm>
 #include <charconv>
 #include <functional>

@@ -1,3 +1,4 @@
+// Parses the elements and rules of a profile, declared in profile.h; parse_operator.cpp parses the values of operators.
 #include <tinyxml2.h>
 
 #include <algorithm>

@@ -12,7 +12,8 @@
 namespace tactus::sync {
 
 // Parses a number with a unit into the given base unit: ("20ms", "s") -> 0.02, ("1.5 kHz", "Hz") -> 1500. A number without
-// unit is taken in the base unit. Throws std::invalid_argument with one sentence.
+// unit is taken in the base unit; profiles refuse it (sync/degradation/parse_operator.cpp). A temperature and a difference of
+// temperatures are both in degC; K is refused there. Throws std::invalid_argument with one sentence.
 double parse_quantity(std::string_view text, std::string_view unit);
 
 // One row of a settings.csv.

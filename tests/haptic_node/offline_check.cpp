@@ -84,7 +84,7 @@ contact_events_t hit_at(double t_s) {
 std::string live(const std::string& log, const std::string& profile = "", double until_s = kUntil_s) {
   const scene_t scene = floor_and_stylus();
   RecordedRun run(std::make_unique<sync::FileSink>(log), scene);
-  if (!profile.empty()) run.raw(0.01, channels::kDegradation, in_force(profile, header_at(0.01, 0, 33)));
+  if (!profile.empty()) run.write_raw(0.01, channels::kDegradation, in_force(profile, header_at(0.01, 0, 33)));
   const NodeConfig config = resolve_config(scene, "", {});
   DeviceState hand;
   Safety safety(safety_limits(config.settings));
@@ -101,7 +101,7 @@ std::string live(const std::string& log, const std::string& profile = "", double
     run.write_raw(t_s, channels::kTouchModel, sync::encode(model));
     session.push(model, sync::host_time(model.header.publish_time_ns));
     if (ms == 200) {
-      run.raw(t_s, channels::kContactEvents, sync::encode(hit_at(t_s)));
+      run.write_raw(t_s, channels::kContactEvents, sync::encode(hit_at(t_s)));
       session.push(hit_at(t_s).events);
     }
     hand = hand_at(tick_s);

@@ -145,7 +145,8 @@ std::vector<std::vector<std::uint8_t>> frames_of(const Folder& folder, const std
 
 }  // namespace
 
-TEST_CASE("A log rendered twice gives identical files with every event in its frame") {
+TEST_CASE(
+    "A log rendered twice gives identical files with every event in its frame") {
   const Folder folder;
   record(folder.file("run.lcmlog"));
   const Done first = render(folder, "run.lcmlog", "a.mp4", {"--frames", folder.file("frames.csv")}),

@@ -3,7 +3,8 @@
 // The finger rests on the plate, and the flux between them is h (skin - plate). For a flux q from skin of
 // temperature T_s the plate must be at T_s - q/h: this is the feed-forward part, from the model of the touch. A
 // second skin model, in contact with the measured plate, estimates the real finger temperature; its error is fed
-// back. A plate that is too slow for the first moment of a touch therefore compensates afterwards.
+// back. A plate that is too slow for the first moment of a touch therefore compensates afterwards. An intended change of the
+// command, too, would be compensated: take it out of plate_degC before step().
 #pragma once
 
 #include <memory>

@@ -25,9 +25,9 @@
 namespace tactus::thermal {
 
 // Heat is a slow state: late events still apply.
-inline constexpr sync::LateRule kLate = sync::LateRule::kAlwaysApply;
+inline constexpr sync::LateRule kLatePolicy = sync::LateRule::kAlwaysApply;
 
-// Quality of a tick.
+// Operators of a profile, quality and reading of the display in one tick.
 struct TickOptions {
   double response_s = 0;  // time constant of a display that is slow on purpose; 0: none
   double longest_substep_s = Skin::kLongestSubstep_s;

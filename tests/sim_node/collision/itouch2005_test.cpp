@@ -25,7 +25,7 @@ std::vector<PointPair> contact_of(const Triangle& a, const Triangle& b, const Re
 }  // namespace
 
 TEST_CASE("Vertices with gaps of 11, 5 and 6 and a margin of 2 are an edge-plane contact") {
-  const Active active = active_vertices({11, 5, 6}, kExample);
+  const ActiveVertices active = active_vertices({11, 5, 6}, kExample);
   CHECK(active.count == 2);
   CHECK_FALSE(active.vertex[0]);
   CHECK(active.vertex[1]);

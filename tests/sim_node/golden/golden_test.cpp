@@ -34,7 +34,8 @@ std::map<std::string, std::string> table() {
 
 }  // namespace
 
-TEST_CASE("Every scene ends in the state of the table (update: tests/measure/golden_hashes --write)") {
+TEST_CASE(
+    "Every scene ends in the state of the table (update: tests/measure/golden_hashes --write)") {
   const auto golden = table();
   std::size_t scenes = 0;
   for (const auto& scene : scenes_in(kScenes)) {

@@ -59,7 +59,7 @@ TEST_CASE("Impulse and penalty models reject only detectors that report overlap"
     const DetectorAbilities abilities = make_detector(name)->abilities();
     for (const BehaviourModel& m : behaviour_models()) {
       INFO(name << " " << m.name);
-      const std::string why = load_error(m, abilities);
+      const std::string why = unsupported_reason(m, abilities);
       CHECK(why.empty() == (abilities.separation || m.name == "quick" || m.name == "step"));
       if (!why.empty())
         CHECK_THAT(why, Contains(std::string(name)) && Contains("choose a detector that reports gaps"));
@@ -88,9 +88,9 @@ TEST_CASE("Explicit penalty that is unstable for step and mass is rejected with 
   Settings s = settings("penalty_explicit", "layers");
   const double most = kMass_kg / 1e-6 - 2 * s.penalty_damping_Ns_m / 1e-3;
   s.penalty_stiffness_N_m = 0.99 * most;
-  CHECK(load_error(ball_over_box(0.01), s).empty());
+  CHECK(unsupported_reason(ball_over_box(0.01), s).empty());
   s.penalty_stiffness_N_m = 1.01 * most;
-  CHECK_THAT(load_error(ball_over_box(0.01), s),
+  CHECK_THAT(unsupported_reason(ball_over_box(0.01), s),
              Contains("\"ball\"") && Contains("9e+04 N/m") && Contains("choose \"penalty\""));
   CHECK_THROWS(Solver(ball_over_box(0.01), s));
   // A sphere with one point allows four times the stiffness; a static body allows any.
@@ -98,11 +98,11 @@ TEST_CASE("Explicit penalty that is unstable for step and mass is rejected with 
   add_ball(w, kMass_kg, kRadius_m, {0, 0, 1});
   add_floor(w);
   s.penalty_stiffness_N_m = 3 * most;
-  CHECK(load_error(w, s).empty());
+  CHECK(unsupported_reason(w, s).empty());
   // The implicit form is stable with any stiffness.
   s.solver = "penalty";
   s.penalty_stiffness_N_m = 1e9;
-  CHECK(load_error(ball_over_box(0.01), s).empty());
+  CHECK(unsupported_reason(ball_over_box(0.01), s).empty());
 }
 
 TEST_CASE("Every model that needs trees rejects a loop of joints by name") {

@@ -46,7 +46,7 @@ TEST_CASE("A material has the measured modes of its table in ascending order") {
 }
 
 TEST_CASE("An invalid table of modes is rejected with the line of the scene and its row") {
-  const auto refused = [](const std::string& table, const std::string& because) {
+  const auto expect_rejection = [](const std::string& table, const std::string& because) {
     SceneFile file = scene(table);
     CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:3: ") &&
                                    Catch::Contains("modes \"bell.csv\", which cannot be read: " + because));

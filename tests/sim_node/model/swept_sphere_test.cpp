@@ -66,7 +66,8 @@ TEST_CASE("The first contact time of two linear motions matches a fine sampling 
   CHECK(met > 20);
 }
 
-TEST_CASE("The distance of two capsule axes matches a fine sampling and never exceeds that of the motions") {
+TEST_CASE(
+    "The distance of two capsule axes matches a fine sampling and never exceeds that of the motions") {
   Random c;
   for (int round = 0; round < 100; ++round) {
     SweptSphere a = c.sphere(), b = c.sphere();

@@ -163,7 +163,7 @@ TEST_CASE("Each step publishes touch models, events and tool contacts before the
 }
 
 TEST_CASE("Every event is repeated for 50 ms, and many events at once lose none") {
-  EventRepeater young(4);
+  EventRepeater repeater(4);
   std::map<std::int64_t, int> sent;
   std::int64_t id = 0;
   const int per_step = GENERATE(1, 20, 60);

@@ -51,7 +51,7 @@ TEST_CASE("A material refers to its friction map by content hash, with size and 
 }
 
 TEST_CASE("An invalid friction map is rejected with its line") {
-  const auto refused = [](const std::string& attributes, const std::string& because,
+  const auto expect_rejection = [](const std::string& attributes, const std::string& because,
                           const sync::Bytes& picture = halves()) {
     SceneFile file = scene(attributes, picture);
     CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains(because));

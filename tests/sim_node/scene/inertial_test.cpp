@@ -36,7 +36,7 @@ TEST_CASE("Missing values are computed from the shapes") {
 }
 
 TEST_CASE("An impossible mass or inertia is rejected with its line") {
-  const auto refusal = [](const std::string& inside) {
+  const auto load_error = [](const std::string& inside) {
     SceneFile file(link(inside + kBall));
     return file.load_error();
   };

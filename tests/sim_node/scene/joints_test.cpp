@@ -87,7 +87,7 @@ TEST_CASE("A motor applies a constant torque to an axis") {
 }
 
 TEST_CASE("An invalid joint is rejected with its line") {
-  const auto refusal = [](const std::string& type, const std::string& inside) {
+  const auto load_error = [](const std::string& type, const std::string& inside) {
     SceneFile file(jointed(type, inside));
     return file.load_error();
   };

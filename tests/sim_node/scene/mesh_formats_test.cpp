@@ -64,7 +64,9 @@ bool same_triangles(const MeshParts& a, const MeshParts& b) {
 
 }  // namespace
 
-TEST_CASE("An OBJ material refers to pictures beside the file, and unknown statements are ignored") {
+TEST_CASE(
+    "An OBJ's material names its pictures by their place beside the file, and its unknown statements are "
+    "ignored") {
   SceneFile file;
   file.write("square.obj", kObj);
   file.write("square.mtl", kMtl);
@@ -188,7 +190,8 @@ TEST_CASE("Unknown extras, extensions and attributes of a glTF are ignored") {
   CHECK_THAT(why(file.folder() / "needs.gltf"), Catch::Contains("requires the extension VENDOR_smell"));
 }
 
-TEST_CASE("The nodes of a glTF place its meshes, strips and fans become triangles, and mirrors keep the winding") {
+TEST_CASE(
+    "The nodes of a glTF place its meshes, strips and fans become triangles, and mirrors keep the winding") {
   SceneFile file;
   nlohmann::json document = document_of(square());
   document["nodes"][0]["translation"] = {0, 0, 5};
@@ -308,7 +311,9 @@ TEST_CASE("Deep or very large JSON is rejected before it is stored") {
   CHECK_THAT(why(file.folder() / "wide.gltf"), Catch::Contains("too many values"));
 }
 
-TEST_CASE("A PLY or OBJ with too many elements is rejected at once") {
+TEST_CASE(
+    "A PLY whose header declares billions of vertices, and an OBJ of millions of triangles, are "
+    "refused at once") {
   SceneFile file;
   for (const char* format : {"ascii", "binary_little_endian"}) {
     file.write("t.ply", std::string("ply\nformat ") + format +

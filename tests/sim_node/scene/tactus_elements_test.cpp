@@ -65,13 +65,13 @@ TEST_CASE("A scene can change, derive and define materials") {
 }
 
 TEST_CASE("An invalid material is rejected with its line") {
-  CHECK_THAT(refusal("\n<tactus:material name='x' density='1200'/>"), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("lacks"));
-  CHECK_THAT(refusal("<tactus:material name='x' base='y'/>"), Catch::Contains("no such material"));
-  CHECK_THAT(refusal("<tactus:material density='1'/>"), Catch::Contains("\"name\""));
-  CHECK_THAT(refusal("<tactus:material name='steel' density='-1'/>"), Catch::Contains("between 1 and 25000"));
-  CHECK_THAT(refusal("<tactus:material name='steel' density='7 km'/>"), Catch::Contains("no unit"));
-  CHECK_THAT(refusal("<tactus:material name='steel' densty='7'/>"), Catch::Contains("no attribute \"densty\""));
-  CHECK_THAT(refusal("<model name='m'>\n<tactus:surface material='stel'/><link name='l'/></model>"),
+  CHECK_THAT(load_error("\n<tactus:material name='x' density='1200'/>"), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("lacks"));
+  CHECK_THAT(load_error("<tactus:material name='x' base='y'/>"), Catch::Contains("no such material"));
+  CHECK_THAT(load_error("<tactus:material density='1'/>"), Catch::Contains("\"name\""));
+  CHECK_THAT(load_error("<tactus:material name='steel' density='-1'/>"), Catch::Contains("between 1 and 25000"));
+  CHECK_THAT(load_error("<tactus:material name='steel' density='7 km'/>"), Catch::Contains("no unit"));
+  CHECK_THAT(load_error("<tactus:material name='steel' densty='7'/>"), Catch::Contains("no attribute \"densty\""));
+  CHECK_THAT(load_error("<model name='m'>\n<tactus:surface material='stel'/><link name='l'/></model>"),
              Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("\"stel\"") && Catch::Contains("steel"));
 }
 
@@ -206,7 +206,7 @@ TEST_CASE("Node settings are validated and passed on as written") {
 }
 
 TEST_CASE("A setting that is unknown or out of range is rejected with its line") {
-  CHECK_THAT(refusal("\n<tactus:audio_node presentation_dely='25ms'/>"),
+  CHECK_THAT(load_error("\n<tactus:audio_node presentation_dely='25ms'/>"),
              Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("no setting \"presentation_dely\""));
   CHECK_THAT(load_error("<tactus:audio_node presentation_delay='25'/>"),
              Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("between"));
@@ -288,7 +288,7 @@ TEST_CASE("A profile in a scene that names an unknown material or body is reject
 }
 
 TEST_CASE("Text or elements inside <tactus:degrade> and text in its profile are rejected") {
-  CHECK_THAT(refusal("<tactus:profile>\ndegrade modality='audio' off='true'</tactus:profile>"),
+  CHECK_THAT(load_error("<tactus:profile>\ndegrade modality='audio' off='true'</tactus:profile>"),
              Catch::Contains("has text in it"));
   CHECK_THAT(
       load_error(

@@ -64,7 +64,7 @@ TEST_CASE("Ambient light and background come from the scene, otherwise from the 
 }
 
 TEST_CASE("An invalid camera is rejected with its line") {
-  const auto refusal = [](const std::string& element) {
+  const auto load_error = [](const std::string& element) {
     SceneFile file(world(element));
     return file.load_error();
   };

@@ -68,7 +68,7 @@ TEST_CASE("Every begin and hit has exactly one report under any frame timing") {
 
 TEST_CASE("The outcome of a late event follows the rule of the modality") {
   const sync::TimeMap map{sync::sim_time(0), sync::host_time(0), 1};
-  const auto outcome = [&](sync::LateRule rule, std::int64_t late_ns, std::int64_t foretold_ns) {
+  const auto outcome = [&](sync::LateRule rule, std::int64_t late_ns, std::int64_t predicted_ns) {
     EventLedger ledger(Settings{}, rule);
     ledger.select_flashes({event(1, contact_event_t::HIT, 0)}, map, sync::host_time(predicted_ns));
     return ledger.presented(sync::host_time(late_ns)).at(0).outcome;
@@ -81,7 +81,8 @@ TEST_CASE("The outcome of a late event follows the rule of the modality") {
   CHECK(outcome(sync::LateRule::kAlwaysApply, 5'000'000'000, 5'000'000'000) == presentation_t::LATE);
 }
 
-TEST_CASE("The drawing time is predicted by its median and ignores a single stall") {
+TEST_CASE(
+    "The drawing time is predicted by its median and ignores a single stall") {
   RenderTime time;
   for (int i = 0; i < 9; ++i) time.add(milliseconds(5));
   CHECK(time.expected() == milliseconds(5));

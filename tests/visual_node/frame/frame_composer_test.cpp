@@ -118,7 +118,8 @@ TEST_CASE_METHOD(Fixture, "A frame shows the world at the instant at which it is
   CHECK(x_of(f) == Approx(2 + 1e-9 * static_cast<double>(t) + 0.004).margin(1e-6));  // 4 ms ahead at 1 m/s
 }
 
-TEST_CASE_METHOD(Fixture, "Before the scene arrives a frame is dark and shows WAITING") {
+TEST_CASE_METHOD(Fixture,
+                 "Before the scene arrives a frame is dark and shows WAITING") {
   Frame f = frame(0);
   CHECK(f.state == node_health_t::WAITING);
   CHECK(f.list.instances.empty());
@@ -131,7 +132,9 @@ TEST_CASE_METHOD(Fixture, "Before the scene arrives a frame is dark and shows WA
   CHECK(frame(32'000'000).state == node_health_t::RUNNING);
 }
 
-TEST_CASE_METHOD(Fixture, "Without new state bodies are extrapolated, then held, then shown as lost") {
+TEST_CASE_METHOD(
+    Fixture,
+    "Without new state bodies are extrapolated, then held, then shown as lost") {
   load();
   receive(0);
   frame(0);
@@ -159,7 +162,8 @@ TEST_CASE_METHOD(Fixture, "After a stop of two seconds one frame is stale and th
   CHECK(x_of(f) == Approx(2 + 1e-9 * static_cast<double>(t)).margin(0.01));
 }
 
-TEST_CASE_METHOD(Fixture, "A contact flashes in the first frame at or after its time and is reported once") {
+TEST_CASE_METHOD(Fixture,
+                 "A contact flashes in the first frame at or after its time and is reported once") {
   load();
   for (int i = 0; i < 10; ++i) receive(i * kFrame.count()), frame(i * kFrame.count());
   const std::int64_t t = 10 * kFrame.count();
@@ -195,7 +199,8 @@ TEST_CASE_METHOD(Fixture, "An event that arrives while the surfaces are drawn fl
   }
 }
 
-TEST_CASE_METHOD(Fixture, "A delayed event is shown in the nearest frame, at most half a frame off") {
+TEST_CASE_METHOD(Fixture,
+                 "A delayed event is shown in the nearest frame, at most half a frame off") {
   load();
   delay = milliseconds(GENERATE(9, 17, 30, 45));
   std::mt19937 random(7);
@@ -213,7 +218,9 @@ TEST_CASE_METHOD(Fixture, "A delayed event is shown in the nearest frame, at mos
     CHECK(std::abs(r.presented_ns - r.scheduled_ns) <= kFrame.count() / 2 + 1);
 }
 
-TEST_CASE_METHOD(Fixture, "At a low picture rate an event is shown in the first picture at or after its time") {
+TEST_CASE_METHOD(
+    Fixture,
+    "At a low picture rate an event is shown in the first picture at or after its time") {
   load();
   const int every = GENERATE(6, 30);  // ticks: 10 and 2 pictures a second
   delay = milliseconds(GENERATE(0, 40));

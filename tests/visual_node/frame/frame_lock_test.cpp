@@ -232,7 +232,8 @@ TEST_CASE("Walls stay together while the simulation slows down, pauses and resum
   CHECK(c.head == c.frames);
 }
 
-TEST_CASE("A new presentation delay applies to all walls and moves the world but not the head") {
+TEST_CASE(
+    "A new presentation delay applies to all walls and moves the world but not the head") {
   Room room;
   Wall& a = room.add(kSimClock, {}, milliseconds(4));
   Wall& b = room.add(2, milliseconds(777), milliseconds(11));

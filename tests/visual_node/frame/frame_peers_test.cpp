@@ -53,7 +53,8 @@ TEST_CASE_METHOD(Room, "A wall without messages for a second is absent") {
   CHECK(peers.present(now + milliseconds(1001)) == 0);
 }
 
-TEST_CASE_METHOD(Room, "A wall that is always late is ignored after 250 ms and returns when it keeps up") {
+TEST_CASE_METHOD(
+    Room, "A wall that is always late is ignored after 250 ms and returns when it keeps up") {
   std::int64_t k = 100;
   int waited = 0;
   for (int i = 0; i < 60; ++i, ++k) waited += !frame(k, kLeft, k - 3);

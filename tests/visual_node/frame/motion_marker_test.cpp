@@ -27,7 +27,8 @@ std::vector<std::uint8_t> paint(const std::vector<Rect>& overlay) {
 
 }  // namespace
 
-TEST_CASE("The samples of a frame are decoded beside its events, also with compression noise") {
+TEST_CASE(
+    "The samples of a frame are decoded beside its events, also with compression noise") {
   std::mt19937 random(5);
   std::uniform_int_distribution<int> noise(-60, 60);
   for (int trial = 0; trial < 200; ++trial) {

@@ -12,7 +12,7 @@ constexpr RoomTime kBegin = room_time(10'000'000'000);
 }
 
 TEST_CASE("The delay slews to its target by 5 % of the elapsed time") {
-  AgreedDelay delay;
+  RoomDelay delay;
   CHECK(delay.at(kBegin, kBegin) == milliseconds(0));
   delay.request(kBegin, milliseconds(10));
   CHECK(delay.at(kBegin + milliseconds(100), kBegin + milliseconds(80)) == milliseconds(5));
@@ -24,7 +24,8 @@ TEST_CASE("The delay slews to its target by 5 % of the elapsed time") {
   CHECK(delay.at(kBegin + milliseconds(1000), kBegin + milliseconds(980)) == milliseconds(4));
 }
 
-TEST_CASE("Two walls with different sampling times have the same delay at the same time") {
+TEST_CASE(
+    "Two walls with different sampling times have the same delay at the same time") {
   std::mt19937 random(6);
   for (int trial = 0; trial < 50; ++trial) {
     RoomDelay often, seldom;

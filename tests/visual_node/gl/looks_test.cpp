@@ -224,7 +224,8 @@ Vector3d mirrored(const Point& p, const Vector3d& eye) {
 constexpr double kRounded = 1;
 }  // namespace
 
-TEST_CASE("A mirror shows the environment in the reflected direction, with Schlick's factor") {
+TEST_CASE(
+    "A mirror shows the environment in the reflected direction, with Schlick's factor") {
   const int shape = GENERATE(shape_def_t::SPHERE, shape_def_t::BOX, shape_def_t::PLANE);
   const float reflectance = GENERATE(0.04f, 0.5f, 1.0f);
   scene_t scene = lit(shape, light_def_t::POINT);

@@ -31,7 +31,8 @@ std::pair<std::set<int>, std::vector<std::string>> levels(int samples, const Qua
 
 }  // namespace
 
-TEST_CASE("With four samples a pixel an edge has intermediate levels in linear light, with one it has none") {
+TEST_CASE(
+    "With four samples a pixel an edge has intermediate levels in linear light, with one it has none") {
   CHECK(levels(1).first == std::set<int>{0, 255});
   const auto [seen, messages] = levels(4);
   if (!messages.empty()) return;  // the device supports fewer samples and reports it

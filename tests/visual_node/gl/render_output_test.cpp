@@ -57,7 +57,7 @@ struct OutputFixture {
 }  // namespace
 
 TEST_CASE("A lost device is opened again and draws the scene as before") {
-  Fragile f;
+  OutputFixture f;
   RenderOutput output(f.settings, false, f.make());
   output.load(f.view, f.list, f.settings);
   const auto before = f.picture(output);
@@ -73,7 +73,7 @@ TEST_CASE("A lost device is opened again and draws the scene as before") {
 }
 
 TEST_CASE("A device that is lost before the first scene is opened again") {
-  Fragile f;
+  OutputFixture f;
   RenderOutput output(f.settings, false, f.make());
   f.loss = "the graphics device was reset";
   CHECK_FALSE(output.recover(at_s(2), nullptr, {}).empty());
@@ -81,7 +81,7 @@ TEST_CASE("A device that is lost before the first scene is opened again") {
 }
 
 TEST_CASE("A window without a display server is closed, and drawing continues without it") {
-  Fragile f;
+  OutputFixture f;
   RenderOutput output(f.settings, true, f.make());
   REQUIRE(output.display().has_screen());
   f.loss = "the display server of the window is gone";
@@ -90,8 +90,9 @@ TEST_CASE("A window without a display server is closed, and drawing continues wi
   CHECK_FALSE(output.display().has_screen());
 }
 
-TEST_CASE("A device that is lost more than three times in a minute ends the node with one sentence") {
-  Fragile f;
+TEST_CASE(
+    "A device that is lost more than three times in a minute ends the node with one sentence") {
+  OutputFixture f;
   RenderOutput output(f.settings, false, f.make());
   double now_s = 0;
   for (int i = 0; i < 20; ++i) {
@@ -108,8 +109,8 @@ TEST_CASE("A device that is lost more than three times in a minute ends the node
 }
 
 TEST_CASE("The error for a device that cannot be opened again has the reason and the attempts") {
-  Fragile f;
-  f.may_open = 1;
+  OutputFixture f;
+  f.max_opens = 1;
   RenderOutput output(f.settings, false, f.make());
   f.loss = "the graphics device was reset";
   CHECK_THROWS_WITH(output.recover(at_s(1), nullptr, {}), Catch::Contains("was reset") &&
@@ -118,7 +119,7 @@ TEST_CASE("The error for a device that cannot be opened again has the reason and
 }
 
 TEST_CASE("An OpenGL error in a working context does not count as a lost device") {
-  CHECK(display().lost().empty());
+  CHECK(display().loss_reason().empty());
   Settings settings;
   Renderer renderer(64, 64, settings.shadow_size);
   CHECK(renderer.wait());

@@ -233,7 +233,8 @@ TEST_CASE("A surface without relief looks the same in a scene with reliefs") {
   }
 }
 
-TEST_CASE("An error in a part of a shader is reported with its file and line") {
+TEST_CASE(
+    "An error in a part of a shader is reported with its file and line") {
   display();
   const std::vector<ShaderPiece> vertex{{"a.vert", "void main() { gl_Position = vec4(0); }"}};
   const auto with = [&](const std::string& mine) {

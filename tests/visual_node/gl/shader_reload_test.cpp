@@ -73,8 +73,8 @@ TEST_CASE("A shader of the scene draws its surface, and an edit is visible in th
   CHECK(fixture.middle() == kGreen);
 
   SECTION("a shader that does not compile is reported, and the last valid one stays") {
-    stand.renderer.set_shader_folder({{"mine.frag", kBroken}});
-    const auto messages = stand.renderer.take_trouble();
+    fixture.renderer.set_shader_folder({{"mine.frag", kBroken}});
+    const auto messages = fixture.renderer.take_warnings();
     REQUIRE(messages.size() == 1);
     CHECK_THAT(messages[0], Catch::Contains("look worn") && Catch::Contains("mine.frag:3") &&
                             Catch::Contains("the previous shader stays"));
@@ -84,8 +84,8 @@ TEST_CASE("A shader of the scene draws its surface, and an edit is visible in th
     CHECK(fixture.middle() == kBlue);
   }
   SECTION("without its file the shader of the scene returns") {
-    stand.renderer.set_shader_folder({});
-    CHECK(stand.middle() == kRed);
+    fixture.renderer.set_shader_folder({});
+    CHECK(fixture.middle() == kRed);
   }
 }
 
@@ -101,7 +101,7 @@ TEST_CASE("Every kind of invalid source is reported in one sentence and keeps th
 }
 
 TEST_CASE("A missing or invalid shader is drawn as Phong and reported once") {
-  Stand phong("phong");
+  ShaderFixture phong("phong");
   const Image expected = phong.draw();
   ShaderFixture unknown("nowhere");
   auto messages = unknown.renderer.take_warnings();
@@ -123,15 +123,15 @@ TEST_CASE("A missing or invalid shader is drawn as Phong and reported once") {
 }
 
 TEST_CASE("A shader of the node can be replaced, including its lamps") {
-  Stand stand("phong");
-  const Vector3d before = stand.middle();
-  stand.renderer.set_shader_folder({{"phong.frag", plain("0, 1, 0")}});
-  CHECK(stand.middle() == kGreen);
-  stand.renderer.set_shader_folder({{"lamps.glsl", "broken"}});
-  CHECK_THAT(stand.renderer.take_trouble().front(), Catch::Contains("lamps.glsl:1"));
-  CHECK(stand.middle() == kGreen);
-  stand.renderer.set_shader_folder({});
-  CHECK(stand.middle() == before);
+  ShaderFixture fixture("phong");
+  const Vector3d before = fixture.middle();
+  fixture.renderer.set_shader_folder({{"phong.frag", plain("0, 1, 0")}});
+  CHECK(fixture.middle() == kGreen);
+  fixture.renderer.set_shader_folder({{"lamps.glsl", "broken"}});
+  CHECK_THAT(fixture.renderer.take_warnings().front(), Catch::Contains("lamps.glsl:1"));
+  CHECK(fixture.middle() == kGreen);
+  fixture.renderer.set_shader_folder({});
+  CHECK(fixture.middle() == before);
 }
 
 TEST_CASE("A vertex shader moves its surface") {
@@ -149,8 +149,8 @@ TEST_CASE("A vertex shader moves its surface") {
 }
 
 TEST_CASE("An invalid pass keeps its previous version, and a missing one is omitted") {
-  Stand stand("phong", own(plain("0, 0, 1")), {"mine", "nowhere"});
-  const auto messages = stand.renderer.take_trouble();
+  ShaderFixture fixture("phong", scene_shader(plain("0, 0, 1")), {"mine", "nowhere"});
+  const auto messages = fixture.renderer.take_warnings();
   REQUIRE(messages.size() == 1);
   CHECK_THAT(messages[0], Catch::Contains("pass nowhere") && Catch::Contains("left out"));
   CHECK(fixture.middle() == kBlue);
@@ -166,24 +166,24 @@ TEST_CASE("Uniforms are set by name, and an unsuitable one is reported") {
   uniform_t tint{};
   tint.name = "tint", tint.count = 3, tint.values[1] = 1;
   const std::string tinted = "uniform vec3 tint;\nvec4 shade() { return vec4(tint, 1.0); }\n";
-  Stand stand("mine", own(tinted), {}, {tint});
-  CHECK(stand.renderer.take_trouble().empty());
-  CHECK(stand.middle() == kGreen);
+  ShaderFixture fixture("mine", scene_shader(tinted), {}, {tint});
+  CHECK(fixture.renderer.take_warnings().empty());
+  CHECK(fixture.middle() == kGreen);
   SECTION("the uniform has another type") {
-    stand.renderer.set_shader_folder(
+    fixture.renderer.set_shader_folder(
         {{"mine.frag", "uniform float tint;\nvec4 shade() { return vec4(tint, 0.0, 1.0, 1.0); }\n"}});
     CHECK_THAT(fixture.renderer.take_warnings().at(0),
                Catch::Contains("uniform tint") && Catch::Contains("not a vec3"));
     CHECK(fixture.middle() == kBlue);
   }
   SECTION("the uniform has another name") {
-    stand.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
-    CHECK_THAT(stand.renderer.take_trouble().at(0), Catch::Contains("has no uniform tint"));
-    CHECK(stand.middle() == kBlue);
+    fixture.renderer.set_shader_folder({{"mine.frag", plain("0, 0, 1")}});
+    CHECK_THAT(fixture.renderer.take_warnings().at(0), Catch::Contains("has no uniform tint"));
+    CHECK(fixture.middle() == kBlue);
   }
   SECTION("a uniform without effect is not reported") {
-    stand.renderer.set_shader_folder({{"mine.frag", "uniform vec3 tint;\n" + plain("0, 0, 1")}});
-    CHECK(stand.renderer.take_trouble().empty());
+    fixture.renderer.set_shader_folder({{"mine.frag", "uniform vec3 tint;\n" + plain("0, 0, 1")}});
+    CHECK(fixture.renderer.take_warnings().empty());
   }
 }
 

@@ -14,6 +14,7 @@
 #include "sim_node/scene/load_sdf.h"
 #include "sim_node/scene/scene_assets.h"
 #include "sync/assets/scene_pictures.h"
+#include "sync/assets/scene_receiver.h"
 #include "sync/assets/scene_sender.h"
 #include "sync/bus/bus.h"
 #include "visual_node/devices/display.h"

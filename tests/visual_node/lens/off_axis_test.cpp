@@ -94,7 +94,7 @@ TEST_CASE("Points behind an edge of two walls lie on matching pixels of both wal
 }
 
 TEST_CASE("An eye in front of the centre of a wall has a symmetric perspective") {
-  const Wall wall = *cave().named("front");
+  const Wall wall = *cave().find_wall("front");
   const double away = 1.524, height = 1.524;
   const Camera off = off_axis(wall, {0, 0, height}, kWidth, 0.02, 100);
   const Eigen::Isometry3d pose(Eigen::Translation3d(0, 0, height));
@@ -136,7 +136,7 @@ TEST_CASE("Both eyes see a point on the wall at one place, nearer points crossed
 }
 
 TEST_CASE("An eye in the plane of a wall or behind it has a valid picture") {
-  const Wall wall = *cave().named("front");
+  const Wall wall = *cave().find_wall("front");
   for (const double x : {1.524, 1.6, 50.0}) {
     const Camera camera = off_axis(wall, {x, 0.2, 1}, kWidth, 0.02, 100);
     CHECK(camera.projection.allFinite());

@@ -73,7 +73,7 @@ TEST_CASE("A custom room is read from a file, and an invalid one is rejected wit
 }
 
 TEST_CASE("A moved wall keeps its size and rotates its normal") {
-  const Wall front = *load_room("cave4").named("front");
+  const Wall front = *load_room("cave4").find_wall("front");
   const Eigen::Isometry3d by = Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitZ());
   const Wall there = moved(front, by);
   CHECK(there.width_m() == Approx(front.width_m()));

@@ -23,7 +23,7 @@ world_state_t state(int body, std::int8_t group, std::int64_t seq, std::int64_t 
 }  // namespace
 
 TEST_CASE("A body is in its last published group, also if messages are reordered") {
-  Groups groups;
+  BodyGroups groups;
   groups.push(state(1, world_state_t::NOW, 5));
   groups.push(state(2, world_state_t::AHEAD, 6));
   const auto tints = groups.tints(4);
@@ -40,7 +40,7 @@ TEST_CASE("A body is in its last published group, also if messages are reordered
 }
 
 TEST_CASE("A new incarnation of the simulation clears the groups, and invalid bodies are ignored") {
-  Groups groups;
+  BodyGroups groups;
   groups.push(state(1, world_state_t::NOW, 500));
   groups.push(state(3, world_state_t::AHEAD, 1, 2));
   CHECK(groups.haptic() == 0);

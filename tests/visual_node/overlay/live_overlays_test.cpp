@@ -1,6 +1,6 @@
 // All overlays together, on an in-process bus.
 #include "sync/bus/bus.h"
-#include "visual_node/overlay/live.h"
+#include "visual_node/overlay/live_overlays.h"
 
 #include <catch2/catch.hpp>
 #include <tactus/tool_state_t.hpp>
@@ -50,7 +50,7 @@ bool overlap(const Rect& a, const Rect& b) {
 }  // namespace
 
 TEST_CASE("Overlays do not overlap in any combination and keep the marker free") {
-  Laid c;
+  OverlayLayout c;
   REQUIRE(c.configure("all,help",
                       "graph TOOL_STATE.force_N.z; bar TOOL_STATE.fade; text TOOL_STATE.tool;"
                       "graph TOOL_STATE.energy_J; graph TOOL_STATE.coupling; graph TOOL_STATE.seq_no")
@@ -78,7 +78,7 @@ TEST_CASE("Overlays do not overlap in any combination and keep the marker free")
 }
 
 TEST_CASE("An overlay subscribes to its channels when it is switched on") {
-  Laid c;
+  OverlayLayout c;
   CHECK(c.configure("none").empty());
   CHECK(c.bus.inboxes().empty());
   CHECK(c.drawn(640, 480).empty());
@@ -87,7 +87,7 @@ TEST_CASE("An overlay subscribes to its channels when it is switched on") {
   CHECK_FALSE(c.drawn(640, 480).empty());
   c.overlays.toggle(Overlay::kReport);
   CHECK(c.drawn(640, 480).empty());
-  // A configured plot is shown with any set of overlays.
+  // A configured plot is shown independently of the overlays.
   CHECK(c.configure("none", "text TOOL_STATE.force_N.z").empty());
   CHECK(c.overlays.on().on(Overlay::kPlots));
   CHECK_FALSE(c.drawn(640, 480).empty());

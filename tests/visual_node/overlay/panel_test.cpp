@@ -68,11 +68,11 @@ TEST_CASE("The tick time is that of the last interval") {
 }
 
 TEST_CASE("An overlay has lines with its figures only while it is on") {
-  PanelFacts facts;
-  facts.contacts = 12;
-  facts.rendering = microseconds(8200), facts.period = microseconds(16667);
-  facts.quality = 1, facts.qualities = 4;
-  facts.inputs = {{"WORLD_STATE", {microseconds(12300), {}}, sync::SampleStatus::kInterpolated},
+  PanelData data;
+  data.contacts = 12;
+  data.rendering = microseconds(8200), data.period = microseconds(16667);
+  data.quality = 1, data.qualities = 4;
+  data.inputs = {{"WORLD_STATE", {microseconds(12300), {}}, sync::SampleStatus::kInterpolated},
                   {"TOOL_STATE", {}, sync::SampleStatus::kNone}};
   data.profile = "late sound";
   CHECK(panel_lines({}, data).empty());

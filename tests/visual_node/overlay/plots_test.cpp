@@ -35,7 +35,7 @@ std::string sentence(const char* text) {
 }  // namespace
 
 TEST_CASE("A plot names a variable of a channel and optionally a process and a tool") {
-  std::vector<std::string> trouble;
+  std::vector<std::string> warnings;
   const auto specs = parse_plots(
       "graph TOOL_STATE.force_N.z@tool=1; bar NODE_HEALTH.rate_Hz@audio_node;text SYNC_REPORT.hits;", warnings);
   CHECK(warnings.empty());
@@ -72,10 +72,10 @@ TEST_CASE("A plot with an unknown name is rejected in one sentence with similar 
 }
 
 TEST_CASE("A plot keeps the lowest and highest value of each time slice within its span") {
-  Course course(kSpan);
-  for (int ms = 0; ms < 3000; ++ms) course.add(ms == 2005 ? 50 : ms == 2007 ? -7 : 1, at_ms(ms));
-  const auto slices = course.slices(at_ms(2999));
-  CHECK(slices.size() == Course::kColumns);
+  ValueHistory history(kSpan);
+  for (int ms = 0; ms < 3000; ++ms) history.add(ms == 2005 ? 50 : ms == 2007 ? -7 : 1, at_ms(ms));
+  const auto slices = history.slices(at_ms(2999));
+  CHECK(slices.size() == ValueHistory::kColumns);
   CHECK(slices.front().number == 150);
   CHECK(slices.back().number == 299);
   CHECK(slices[50].lowest == -7);
@@ -86,13 +86,13 @@ TEST_CASE("A plot keeps the lowest and highest value of each time slice within i
 }
 
 TEST_CASE("A plot accepts late and invalid values") {
-  Course course(kSpan);
-  course.add(1, at_ms(100));
-  course.add(9, at_ms(50));  // late: added to the newest slice
-  course.add(std::numeric_limits<double>::quiet_NaN(), at_ms(101));
-  course.add(std::numeric_limits<double>::infinity(), at_ms(200));
-  REQUIRE(course.slices(at_ms(100)).size() == 1);
-  CHECK(course.slices(at_ms(100)).front().highest == 9);
+  ValueHistory history(kSpan);
+  history.add(1, at_ms(100));
+  history.add(9, at_ms(50));  // late: added to the newest slice
+  history.add(std::numeric_limits<double>::quiet_NaN(), at_ms(101));
+  history.add(std::numeric_limits<double>::infinity(), at_ms(200));
+  REQUIRE(history.slices(at_ms(100)).size() == 1);
+  CHECK(history.slices(at_ms(100)).front().highest == 9);
 }
 
 TEST_CASE("Axis numbers have a useful precision") {
@@ -104,7 +104,7 @@ TEST_CASE("Axis numbers have a useful precision") {
 }
 
 TEST_CASE("Plots stay within the picture, and each channel is subscribed once") {
-  std::vector<std::string> trouble;
+  std::vector<std::string> warnings;
   Plots plots(
       parse_plots(
           "graph TOOL_STATE.force_N.z; bar TOOL_STATE.fade; text NODE_HEALTH.status_text; graph TOOL_STATE.energy_J;"
@@ -161,7 +161,7 @@ TEST_CASE("A bar has its value below it, and empty text differs from missing tex
 }
 
 TEST_CASE("Values that are not finite or very large are drawn within their plot") {
-  std::vector<std::string> trouble;
+  std::vector<std::string> warnings;
   const double values[] = {1,
                            -1e308,
                            1e308,

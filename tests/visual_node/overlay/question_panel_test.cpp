@@ -76,7 +76,8 @@ TEST_CASE("A number has as many decimals as its step") {
   CHECK(number_text(1.0 / 3, 1.0 / 3) == "0.333333");
 }
 
-TEST_CASE("A question of usual length is drawn completely in the lower two thirds in large letters") {
+TEST_CASE(
+    "A question of usual length is drawn completely in the lower two thirds in large letters") {
   question_t yes_no = choice(1, {"yes", "no"}), stiff = number(2, 0, 100, 1), read = question(3, question_t::READ);
   stiff.count = 2, stiff.choices = {"very soft", "very hard"};
   for (question_t* m : {&yes_no, &stiff, &read}) {

@@ -35,7 +35,7 @@ TEST_CASE("Look i of a scene has index i + 1, and index 0 is plain Phong") {
   CHECK_FALSE(made.looks[0].mapped());
   CHECK(made.looks[1].shader == "phong");
   CHECK(made.looks[2].shader == "gouraud");
-  // A picture is stored once for any number of looks that use it.
+  // A picture is stored once, also if several looks use it.
   CHECK(made.pictures.size() == 2);
   CHECK(made.looks[2].colour_map == made.looks[3].colour_map);
   CHECK(made.environment == made.looks[3].normal_map);

@@ -159,7 +159,8 @@ TEST_CASE("geometry=physics draws the collision shapes, each body in its own col
   CHECK(colours.size() == 3);
 }
 
-TEST_CASE("The spot factor falls from 1 at the inner angle to 0 at the outer one, linear in the cosine") {
+TEST_CASE(
+    "The spot factor falls from 1 at the inner angle to 0 at the outer one, linear in the cosine") {
   const light_def_t lamp = test::spot({0, 0, 2}, 0.6, 1.0);
   const Light l = make_light(lamp);
   const auto inside = [&](double angle) { return std::cos(angle) * l.cone.x() + l.cone.y(); };
@@ -168,7 +169,8 @@ TEST_CASE("The spot factor falls from 1 at the inner angle to 0 at the outer one
   CHECK(inside(std::acos((std::cos(0.3) + std::cos(0.5)) / 2)) == Approx(0.5).margin(1e-4));
 }
 
-TEST_CASE("A spot light with the name of a tool points at the tool, also with its shadow") {
+TEST_CASE(
+    "A spot light with the name of a tool points at the tool, also with its shadow") {
   scene_t scene = test::empty_scene();
   scene.lights = {test::spot({5, 0, 2}, 0.6, 1.0), test::spot({0, 0, 2}, 0.6, 1.0)};
   scene.lights[0].casts_shadow = 0;

@@ -76,7 +76,7 @@ TEST_CASE("All three removers agree on well-constructed meshes") {
 }
 
 TEST_CASE("The adjacency remover rejects a mesh with wrong adjacency with the reason") {
-  const auto refused = [](const Soup& s, const std::string& why) {
+  const auto expect_rejection = [](const Soup& s, const std::string& why) {
     const Soup good = icosphere(1, 0.1);
     const ContactMesh bad(s.vertices, s.indices), fine(good.vertices, good.indices);
     CHECK_THROWS_WITH(MeshContact({.remover = DuplicateRemover::kAdjacency}).check_supported(fine, bad),

@@ -126,7 +126,8 @@ TEST_CASE("Pictures and shininess of SDF are used, and tactus:look has precedenc
   CHECK_THAT(gone.warnings[0], Catch::Contains("server/x.png") && Catch::Contains("drawn without it"));
 }
 
-TEST_CASE("Shaders, passes and environment are sent to the renderers as assets of the scene") {
+TEST_CASE(
+    "Shaders, passes and environment are sent to the renderers as assets of the scene") {
   SceneFile file = scene(
       "<tactus:environment picture='a.png'/><tactus:pass shader='blur' uniforms='radius 2'/><tactus:pass "
       "shader='own'/>"
@@ -158,7 +159,9 @@ TEST_CASE("Shaders, passes and environment are sent to the renderers as assets o
   CHECK(s->shaders[0].vertex_asset == s->shaders[0].fragment_asset);
 }
 
-TEST_CASE("An unknown shader causes one warning per line with the known names") {
+TEST_CASE(
+    "A shader that belongs neither to the scene nor to visual_node causes a warning with the known names, once for each "
+    "line") {
   SceneFile file = scene("<tactus:shader name='own' fragment='own.frag'/>", "<tactus:look shader='velvet'/>");
   file.load();
   REQUIRE(file.warnings.size() == 1);
@@ -167,7 +170,7 @@ TEST_CASE("An unknown shader causes one warning per line with the known names") 
 }
 
 TEST_CASE("An invalid look, shader, pass or picture is rejected with its line") {
-  const auto worn = [](const std::string& attributes) { return refusal("", "<tactus:look " + attributes + "/>"); };
+  const auto worn = [](const std::string& attributes) { return load_error("", "<tactus:look " + attributes + "/>"); };
   CHECK_THAT(worn("name='wood'"),
              Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("there is none in this scene"));
   CHECK_THAT(load_error("<tactus:look name='oak' shader='phong'/>", "<tactus:look name='wood'/>"),
@@ -245,7 +248,8 @@ SceneFile two(const std::string& inside) {
 }
 }  // namespace
 
-TEST_CASE("A mesh with two materials is drawn as two parts and collides as one") {
+TEST_CASE(
+    "A mesh with two materials is drawn as two parts and collides as one") {
   SceneFile file = two("");
   const WorldDef w = file.load();
   CHECK(file.warnings == std::vector<std::string>{});
@@ -296,7 +300,8 @@ TEST_CASE("Colours, look and pictures of SDF have precedence over those of the m
   CHECK(w.images.empty());
 }
 
-TEST_CASE("A missing picture of a mesh file causes a warning, and the mesh is drawn without it") {
+TEST_CASE(
+    "A missing picture of a mesh file causes a warning, and the mesh is drawn without it") {
   SceneFile file = two("");
   std::filesystem::remove(file.folder() / "b.png");
   const WorldDef w = file.load();
