@@ -62,10 +62,10 @@ void Offline::add(const tool_state_t& state) {
 
 std::string Offline::result(const std::string& problem, sync::HostTime clock) {
   if (rows_ == 0)
-    throw std::runtime_error(!problem.empty() ? problem
-                             : has_tool_
-                                 ? "the log has no TOOL_STATE of this tool; choose another --tool"
-                                 : "the log has no scene; give one that scripts/run wrote from its beginning");
+    throw std::runtime_error(
+        !problem.empty() ? problem
+        : has_tool_      ? "the log has no TOOL_STATE of this tool; choose another --tool"
+                         : "the log has no scene; give a log that scripts/run wrote from the start of the run");
   const double felt_s = sync::to_seconds(run_.now() - *first_);
   const std::string rest = run_.finish(felt_s, clock);
   trace_.finish();

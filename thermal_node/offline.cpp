@@ -38,7 +38,8 @@ void Offline::add(const thermal_state_t& state) {
 std::string Offline::result(const std::string& problem, sync::HostTime clock) {
   if (rows_ == 0)
     throw std::runtime_error(
-        problem.empty() ? "the log has no scene; give one that scripts/run wrote from its beginning" : problem);
+        problem.empty() ? "the log has no scene; give a log that scripts/run wrote from the start of the run"
+                        : problem);
   const double felt_s = static_cast<double>(rows_) * period_s_;
   const std::string rest = run_.finish(felt_s, clock);
   trace_.finish();

@@ -33,7 +33,7 @@ void OfflineOptions::add_to(CLI::App& app) {
 
 std::unique_ptr<Offline> Offline::open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock) {
   if (options.log.empty()) return nullptr;
-  if (options.video.empty()) throw std::runtime_error("--log needs --video FILE, which the pictures are written to");
+  if (options.video.empty()) throw std::runtime_error("--log needs --video FILE, the file for the pictures");
   return std::make_unique<Offline>(options, rate_Hz, clock);
 }
 
@@ -78,7 +78,7 @@ void Offline::add(const std::function<void(std::span<std::uint8_t>)>& read) {
 
 std::string Offline::result(std::int64_t flashed, std::int64_t dropped, sync::HostTime clock) {
   if (!video_)
-    throw std::runtime_error("the log has no scene; give one that scripts/run wrote from its beginning");
+    throw std::runtime_error("the log has no scene; give a log that scripts/run wrote from the start of the run");
   const double film_s = static_cast<double>(video_->frames()) / rate_Hz_;
   const std::string rest = run_.finish(film_s, clock);
   video_->finish();

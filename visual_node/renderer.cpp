@@ -35,7 +35,7 @@ void Options::complete(const std::string& node, const sync::NodeOptions& options
   if (options.name.starts_with(node + "_")) recording.name += options.name.substr(node.size());
   recording.video = !no_video && !no_pictures;
   if (no_pictures && !recording.snapshot.empty())
-    throw std::runtime_error("--no-pictures leaves nothing for --snapshot; leave one out");
+    throw std::runtime_error("--no-pictures and --snapshot contradict each other; remove one");
   log.snapshot = recording.snapshot;
   log.snapshot_every_s = recording.snapshot_every_s;
 }

@@ -1,12 +1,13 @@
-// Driver of a device that haptic_node has no code for: it publishes the pose of the device and exerts the force that it receives.
+// Driver of a device without code in haptic_node: it publishes the pose of the device and exerts the force that it
+// receives.
 //
 //    device_driver [NAME [GROUP [PORT [RUN]]]]        and beside it: haptic_node --device external:NAME
 //
 //    out  DEVICE_STATE   1000 times per second
 //    in   DEVICE_FORCE   the force is 0 when no new message arrives in time
 //
-// It needs LCM and the generated types, nothing else of Tactus. The hardware here is a weight of 0.1 kg that a spring and a damper hold 5
-// mm below the level of a floor; for a real device replace `Hardware`.
+// It needs LCM and the generated types, nothing else of Tactus. The hardware here is a weight of 0.1 kg that a
+// spring and a damper hold 5 mm below the level of a floor; for a real device replace `Hardware`.
 #include <lcm/lcm-cpp.hpp>
 
 #include <chrono>
@@ -49,7 +50,8 @@ struct Forces {
     newest = *m;
     arrived = Clock::now();
   }
-  // Force in N; 0 when it was not renewed in time: haptic_node has ended, and a device must not push any longer.
+  // Force in N; 0 if no new message arrived in time: haptic_node has ended, and a device must not continue to
+  // push.
   double z_N(Clock::time_point now) const {
     return now - arrived > std::chrono::nanoseconds(newest.valid_for_ns) ? 0 : newest.force_N.z;
   }

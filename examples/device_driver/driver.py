@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Driver in Python of a device that haptic_node has no code for: it publishes the pose of the device and exerts the force.
+"""Driver in Python of a device without code in haptic_node: it publishes the pose of the device and exerts the force.
 
   lcm-gen -p --ppath TYPES lcmtypes/types/*/*.lcm             once
   PYTHONPATH=TYPES driver.py [NAME [GROUP [PORT [RUN]]]]     and beside it: haptic_node --device external:NAME

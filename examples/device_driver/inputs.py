@@ -77,7 +77,7 @@ class Evdev:
         self.left, self.sticks, self.ranges = b"", {}, {}
 
     def range_of(self, axis):
-        """(minimum, maximum) of an axis by EVIOCGABS; those of a common gamepad where the source is no device."""
+        """(minimum, maximum) of an axis by EVIOCGABS; the values of a common gamepad if the source is no device."""
         if axis not in self.ranges:
             try:
                 info = fcntl.ioctl(self.file, 2 << 30 | 24 << 16 | 0x45 << 8 | 0x40 + axis, bytes(24))
@@ -171,9 +171,9 @@ def opened(kind, path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("kind", choices=["mouse", "gamepad", "spacenav"])
-    parser.add_argument("source", nargs="?", help="of mouse and gamepad: /dev/input/eventN; of spacenav: its daemon's socket")
+    parser.add_argument("source", nargs="?", help="for mouse and gamepad: /dev/input/eventN; for spacenav: the socket of its daemon")
     parser.add_argument("--name", default="wand")
-    parser.add_argument("--half", type=float, default=0.5, help="it moves so far to each side of its origin, m")
+    parser.add_argument("--half", type=float, default=0.5, help="range to each side of its origin, m")
     parser.add_argument("--group", default="239.255.76.67")
     parser.add_argument("--port", type=int, default=7667)
     parser.add_argument("--run-id", type=int, default=1)

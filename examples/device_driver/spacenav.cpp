@@ -35,11 +35,11 @@ class Daemon {
     next_try_ = now + kRetryPeriod;
     connected_ = spnav_open() != -1;
     if (connected_)
-      std::cerr << "spacenav: the daemon answers\n";
+      std::cerr << "spacenav: connected to the daemon\n";
     else if (!said_)
       std::cerr << "spacenav: no spacenavd answers, so the 3D mouse is lost; install and start it (apt install "
                    "spacenavd), "
-                   "it is tried every second\n";
+                   "the driver tries to connect every second\n";
     said_ = true;
   }
   // Reads the events that have arrived.
@@ -49,7 +49,7 @@ class Daemon {
     if (recv(spnav_fd(), &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0) {  // the daemon has ended
       spnav_close();
       connected_ = false;
-      std::cerr << "spacenav: the daemon is gone; it is tried every second\n";
+      std::cerr << "spacenav: the daemon has ended; the driver tries to connect every second\n";
       return;
     }
     for (spnav_event e; spnav_poll_event(&e) != 0;) {

@@ -28,7 +28,7 @@ double number(std::string_view field, const std::string& name, std::size_t line)
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (error != std::errc{} || end != field.data() + field.size() || !std::isfinite(value) ||
       std::abs(value) > kLargest)
-    reject(name, line, "\"" + std::string(field) + "\" is no usable number; write plain seconds and metres");
+    reject(name, line, "\"" + std::string(field) + "\" is not a valid number; write plain seconds and metres");
   return value;
 }
 

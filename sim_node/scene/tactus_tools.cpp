@@ -120,7 +120,7 @@ void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
     }
     const waypoint_t waypoint = read_waypoint(context, *child);
     if (!tool.waypoints.empty() && !(waypoint.time_s > tool.waypoints.back().time_s))
-      context.reject(*child, "comes at or before the waypoint above it: times must grow");
+      context.reject(*child, "comes at or before the waypoint above it: times must increase");
     tool.waypoints.push_back(waypoint);
   }
   tool.waypoint_count = static_cast<std::int32_t>(tool.waypoints.size());

@@ -3,8 +3,7 @@
 
   make_planks.py > planks.png
 
-Four boards run along u. Their edges are rounded and reflect the light; the grain consists of waves along the boards
-that deviate a little.
+Four boards run along u. Their edges are rounded and reflect the light; the grain consists of slightly irregular waves along the boards.
 """
 import math
 import struct
@@ -13,9 +12,9 @@ import zlib
 
 SIDE_PX, SIDE_MM = 256, 400
 BOARD_MM, BOARDS = 100, 4
-EDGE_MM = 14  # how far the rounding of an edge reaches into a board
+EDGE_MM = 14  # width of the rounding at an edge of a board
 GRAIN = 0.12  # fraction of the height used by the grain
-JOINTS_MM = (60, 260, 160, 340)  # where the end of each board lies
+JOINTS_MM = (60, 260, 160, 340)  # position of the end of each board
 
 
 def rounded(distance_mm):

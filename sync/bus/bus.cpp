@@ -75,7 +75,7 @@ std::unique_ptr<UdpReader> open_reader(const Identity& id, const BusOptions& opt
     throw std::runtime_error(
         cannot_join(id, lcm_url(options, options.port)) + "port " + std::to_string(options.port) +
         " or the next is held by a program that does not share it; choose another --port, and " +
-        "leave the one after it free too");
+        "keep the next port free too");
   throw std::runtime_error(cannot_join(id, lcm_url(options, options.port)) + e.what());
 }
 

@@ -42,7 +42,7 @@ class Words {
                              : !pairs_.try_emplace(name, word.substr(equals + 1)).second;
       if (duplicated)
         throw std::invalid_argument("\"" + (equals == std::string::npos ? name : name + "=") +
-                                    "\" stands there twice; leave one away");
+                                    "\" is given twice; remove one");
       if (equals == std::string::npos) words_.push_back(word);
     }
   }
@@ -79,7 +79,8 @@ class Words {
     for (const auto& [name, value] : choices) {
       if (!word(name)) continue;
       if (chosen)
-        throw std::invalid_argument("\"" + given_name + "\" and \"" + name + "\" contradict each other; leave one away");
+        throw std::invalid_argument("\"" + given_name + "\" and \"" + name +
+                                    "\" contradict each other; remove one");
       chosen = value;
       given_name = name;
     }
@@ -193,7 +194,7 @@ JitterDef jitter(Words& w) {
     return d;
   }
   if (shape || d.correlation != 0)
-    throw std::invalid_argument("a trace is taken as it is; leave its shape and correlation away");
+    throw std::invalid_argument("a trace already defines shape and correlation; remove them");
   d.shape = JitterShape::kTrace;
   d.trace_s = delays_of_trace(w.pair("trace", ""));
   return d;

@@ -56,7 +56,7 @@ Rule parse_rule(const Element& e, const DeclaredOutput& own) {
       rule.modality = value;
     } else if (name == "material") {
       rule.material = value;
-      if (value.empty()) throw std::invalid_argument("material=\"\" names none; leave it away, or name one");
+      if (value.empty()) throw std::invalid_argument("material=\"\" names no material; remove it, or name one");
     } else if (name == "bodies") {
       std::istringstream two(value);
       std::string rest;
@@ -106,11 +106,11 @@ void refuse_more_than_root(const tinyxml2::XMLDocument& document, const tinyxml2
   for (const tinyxml2::XMLNode* n = document.FirstChild(); n; n = n->NextSibling()) {
     line = n->GetLineNum();
     if (n->ToDeclaration() && says_another_encoding(n->Value()))
-      throw std::invalid_argument("a profile is read as UTF-8; save it so, and leave its encoding away");
+      throw std::invalid_argument("a profile must be UTF-8; save it as UTF-8 and remove its encoding declaration");
     if (n == root || n->ToComment() || n->ToDeclaration()) continue;
     throw std::invalid_argument(n->ToElement()
                                     ? "a file holds one <profile> and nothing after it; put all <degrade> into it"
-                                    : "only <profile> may stand here; leave this away");
+                                    : "only <profile> is valid here; remove this element");
   }
 }
 
@@ -152,8 +152,9 @@ Profile parse_profile(const std::string& xml, const std::string& file, const Dec
       if (std::string(e->Name()) != "degrade")
         throw std::invalid_argument(std::string("<") + e->Name() +
                                     "> is not known in a profile; it holds <degrade>");
-      if (e->FirstChildElement()) throw std::invalid_argument("a <degrade> has attributes, no elements within");
-      refuse_other_than_elements(*e, "a <degrade> has attributes, no text within", line);
+      if (e->FirstChildElement())
+        throw std::invalid_argument("a <degrade> has only attributes; remove the elements inside it");
+      refuse_other_than_elements(*e, "a <degrade> has only attributes; remove the text inside it", line);
       if (profile.rules.size() == kMaxRules) throw std::invalid_argument("a profile has at most 64 <degrade>");
       profile.rules.push_back(parse_rule(*e, own));
     }

@@ -93,7 +93,8 @@ ProfileInForce read_profile_file(const std::string& path) {
   if (!file || !(text << file.rdbuf()))
     throw std::invalid_argument("the profile " + path + " cannot be read; give the path of an XML file");
   if (text.str().size() > kMaxProfileBytes)
-    throw std::invalid_argument("the profile " + path + " is larger than 64 kB; leave out what it does not need");
+    throw std::invalid_argument("the profile " + path +
+                                " is larger than 64 kB; remove parts that it does not need");
   return read_profile(text.str(), path);
 }
 

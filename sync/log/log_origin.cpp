@@ -103,7 +103,9 @@ LogOrigin LogClockDetector::find() const {
       if (std::llabs(estimate / 1000 - log_info_->realtime_offset_ns / 1000) <= kContradiction_ns / 1000)
         return origin;
       origin.info.realtime_offset_ns = estimate;
-      origin.recovered = "its LOG_INFO contradicts the times of its messages; theirs are taken, good to a latency";
+      origin.recovered =
+          "its LOG_INFO contradicts the times of its messages; the times of the messages are used, accurate to "
+          "one latency";
       return origin;
     }
   }
@@ -114,7 +116,7 @@ LogOrigin LogClockDetector::find() const {
   origin.info.realtime_offset_ns = offset_ns(found->second);
   origin.recovered = std::string("its LOG_INFO is ") + (log_info_ ? "not of this run" : "missing or damaged") +
                      "; run and clock are taken from the headers of " + std::to_string(found->second.events) +
-                     " messages, its times are good to a latency";
+                     " messages; the times are accurate to one latency";
   return origin;
 }
 

@@ -86,7 +86,7 @@ std::string OfflineInput::finish(double rendered_s, HostTime clock) {
   if (presented_) presented_->finish();
   const double took_s = to_seconds(clock - started_);
   std::ostringstream text;
-  text << ", in " << took_s << " s (" << rendered_s / took_s << " times as fast as time)";
+  text << ", in " << took_s << " s (" << rendered_s / took_s << " times as fast as real time)";
   if (!feed_.recovered().empty()) text << "\n" << feed_.recovered();
   if (feed_.damaged_regions() > 0)
     text << "\nskipped damage of the log: " << feed_.damaged_regions() << " regions, " << feed_.damaged_bytes()

@@ -12,7 +12,8 @@ void PlayoutOptions::add_to(CLI::App& app, bool named) {
       "--aligner", aligner,
       "method that estimates the delay of a modality: quantile (default) or fixed");
   app.add_option("--base", base, "common delay of experiment and of the aligner fixed; default: 150ms");
-  app.add_option("--budget", budget, "senses that need more are not waited for; default: 60ms");
+  app.add_option("--budget", budget,
+                 "maximum delay; other modalities do not wait for one that needs more; default: 60ms");
   app.add_option("--soa", soa, "of experiment: asynchrony of senses, e.g. audio=50ms,visual=-20ms");
 }
 

@@ -60,7 +60,7 @@ void PlayoutPlan::check() const {
   for (const auto& [name, asynchrony] : soa)
     if (base + asynchrony < Nanoseconds(0))
       throw std::invalid_argument("the asynchrony of " + name +
-                                  " reaches before the event; choose a base of at least " +
+                                  " requests a presentation before the event; choose a base of at least " +
                                   std::to_string((-asynchrony.count() + 999'999) / 1'000'000) + " ms");
 }
 

@@ -55,7 +55,7 @@ PassRule parse_pass(const tinyxml2::XMLElement& e) {
   Names given;
   for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a; a = a->Next()) {
     const std::string name = a->Name(), value = a->Value();
-    if (holds(given, name)) throw std::invalid_argument(name + " stands there twice; leave one away");
+    if (holds(given, name)) throw std::invalid_argument(name + " is given twice; remove one");
     given.push_back(name);
     if (name == "channel")
       rule.channel = value;
@@ -125,20 +125,20 @@ RelayRules parse_relay_rules(const std::string& xml, const std::string& file) {
     if (root->FirstAttribute())
       throw std::invalid_argument(std::string("<relay> has no ") + root->FirstAttribute()->Name());
     if (root->NextSiblingElement()) throw std::invalid_argument("a file holds one <relay>");
-    refuse_text_in(document, "outside of <relay> there is nothing but comments", line);
-    refuse_text_in(*root, "in <relay> there is nothing but <pass .../> and comments", line);
+    refuse_text_in(document, "only comments are valid outside <relay>", line);
+    refuse_text_in(*root, "<relay> contains only <pass .../> and comments", line);
     std::vector<PassRule> rules;
     for (const tinyxml2::XMLElement* e = root->FirstChildElement(); e; e = e->NextSiblingElement()) {
       line = e->GetLineNum();
       if (std::string(e->Name()) != "pass")
         throw std::invalid_argument(std::string("<relay> holds no <") + e->Name() + ">; it holds <pass .../>");
-      if (e->FirstChild()) throw std::invalid_argument("a <pass> holds nothing; end it with />");
+      if (e->FirstChild()) throw std::invalid_argument("a <pass> has no content; end it with />");
       rules.push_back(parse_pass(*e));
       rules.back().line = line;
       for (std::size_t i = 0; i + 1 < rules.size(); ++i)
         if (rules[i].channel == rules.back().channel)
           throw std::invalid_argument(rules.back().channel + " passes by line " + std::to_string(rules[i].line) +
-                                      " already; leave one away");
+                                      " already; remove one");
     }
     if (rules.empty())
       throw std::invalid_argument(

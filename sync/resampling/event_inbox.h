@@ -30,7 +30,7 @@ struct ContactSpan {
 class EventInbox {
  public:
   static constexpr std::size_t kMaxPending = 4096;
-  // HeldEvent by a profile: its longest delay, one minute, of 1,000 events a second.
+  // Events held by a profile: 1,000 events per second for its longest delay, one minute.
   static constexpr std::size_t kMaxHeld = 1 << 16;
   // Repetitions end 50 ms after an event; 8192 ids are 80 ms of 100,000 events a second.
   static constexpr std::size_t kRemembered = 8192;

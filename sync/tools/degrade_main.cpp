@@ -39,7 +39,7 @@ std::string joined(const std::set<std::string>& names) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Puts a degradation profile in force in the running cluster; \"off\" takes it away.");
+  CLI::App app("Applies a degradation profile to the running cluster; \"off\" removes it.");
   sync::BusOptions bus_options;
   std::int64_t run_id = 1;
   std::string file;
@@ -48,7 +48,7 @@ int main(int argc, char** argv) try {
   app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
   sync::parse_or_exit(app, "degrade", argc, argv);
 
-  if (file.empty()) throw std::runtime_error("name the profile to put in force, or off; see degrade --help");
+  if (file.empty()) throw std::runtime_error("name a profile, or off; see degrade --help");
 
   auto profile = file == "off" ? sync::read_profile("<profile name=\"off\"/>", file) : sync::read_profile_file(file);
   profile.generation = realtime_ns();
@@ -69,12 +69,12 @@ int main(int argc, char** argv) try {
   }
   if (modalities.empty())
     throw std::runtime_error(
-        "no sense is heard on this bus, nothing was changed; run it inside the cluster: tactus degrade");
+        "no modality publishes on this bus, nothing was changed; run it inside the cluster: tactus degrade");
   for (const sync::Rule& rule : profile.parsed->rules)
     if (!modalities.contains(rule.modality))
-      throw std::runtime_error(sync::printable(file) + ":" + std::to_string(rule.line) + ": no sense \"" +
-                               sync::printable(rule.modality) + "\" is heard in this cluster, only " + joined(modalities) +
-                               "; nothing was changed");
+      throw std::runtime_error(sync::printable(file) + ":" + std::to_string(rule.line) + ": no modality \"" +
+                               sync::printable(rule.modality) + "\" runs in this cluster, only " +
+                               joined(modalities) + "; nothing was changed");
   const auto map = simulation.map(sync::host_now());
   if (map) profile.start = std::max(sync::SimTime{}, map->to_sim(sync::host_now()));
 
@@ -96,12 +96,12 @@ int main(int argc, char** argv) try {
   std::set<std::string> accepted, missing;
   for (const auto& [name, has] : senses) (has ? accepted : missing).insert(name);
   if (senses.empty())
-    throw std::runtime_error("no health arrives any more from " + joined(modalities) +
+    throw std::runtime_error("no health has been received from " + joined(modalities) +
                              " since the profile was sent; it may still take effect when they continue");
   if (accepted.empty())
     throw std::runtime_error(joined(missing) +
                              " did not accept it; they may not support it, see their logs");
-  std::cout << "in force since " << sync::to_seconds(profile.start - sync::SimTime{}) << " s of the world in "
+  std::cout << "in force since " << sync::to_seconds(profile.start - sync::SimTime{}) << " s of simulated time in "
             << joined(accepted) << std::endl;
   if (!missing.empty()) throw std::runtime_error(joined(missing) + " did not accept it; see their logs");
   return 0;

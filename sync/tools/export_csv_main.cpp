@@ -31,7 +31,7 @@ class Table {
   }
   void close() {
     file_.close();
-    if (!file_) throw std::runtime_error("cannot write " + path_ + "; give --out a folder that can be written");
+    if (!file_) throw std::runtime_error("cannot write " + path_ + "; give --out a writable folder");
     std::cout << path_ << ": " << rows_ << " rows\n";
   }
 

@@ -73,7 +73,7 @@ int main(int argc, char** argv) try {
   }
   events.close(), presented.close(), clocks.close(), maps.close(), frames.close();
   if (!events || !presented || !clocks || !maps || !frames)
-    throw std::runtime_error("cannot write the tables to " + out + "; give --out a folder that can be written");
+    throw std::runtime_error("cannot write the tables to " + out + "; give --out a writable folder");
   std::cout << seen.size() << " events, " << reported.size() << " presentations\n";
   return 0;
 } catch (const std::exception& e) {

@@ -40,11 +40,13 @@ class Table {
   void write(const std::string& rows) {
     file_ << rows;
     rows_ += std::count(rows.begin(), rows.end(), '\n');
-    if (!file_) throw std::runtime_error("cannot write " + path_ + "; give --out a folder with room that can be written");
+    if (!file_)
+      throw std::runtime_error("cannot write " + path_ + "; give --out a writable folder with free space");
   }
   std::int64_t close() {
     file_.close();
-    if (!file_) throw std::runtime_error("cannot write " + path_ + "; give --out a folder with room that can be written");
+    if (!file_)
+      throw std::runtime_error("cannot write " + path_ + "; give --out a writable folder with free space");
     return rows_ - 1;
   }
 
@@ -95,7 +97,7 @@ class Export {
     const sync::MappedLog file(path);
     const sync::LogOrigin origin = sync::origin_of(file.bytes());
     if (!origin.known)
-      throw std::runtime_error(path + " holds no message of ours; give the run.lcmlog of a run");
+      throw std::runtime_error(path + " contains no message of Tactus; give the run.lcmlog of a run");
     if (!origin.recovered.empty()) std::cerr << "export_log: " << path << ": " << origin.recovered << "\n";
     sync::TableContext context(origin);
     sync::LogScanner scanner(file.bytes());
@@ -136,7 +138,9 @@ class Export {
     std::ofstream schema(options_.out + "/schema.json");
     schema << json{{"made_by", "Tactus export_log"}, {"logs", options_.logs}, {"files", files}, {"columns", columns()}, {"foreign_messages", foreign_}, {"broken_messages", broken_}, {"damaged_regions", damaged_}, {"damaged_bytes", damaged_bytes_}}.dump(1) << "\n";
     schema.close();
-    if (!schema) throw std::runtime_error("cannot write " + options_.out + "/schema.json; give --out a folder with room that can be written");
+    if (!schema)
+      throw std::runtime_error("cannot write " + options_.out +
+                               "/schema.json; give --out a writable folder with free space");
   }
 
  private:
@@ -201,7 +205,7 @@ int main(int argc, char** argv) try {
   app.add_option("LOG", export_options.logs, "logs of one run, in order, or its folder: all parts")->required()->check(CLI::ExistingPath);
   app.add_option("--out", export_options.out, "folder for the tables")->check(CLI::ExistingDirectory)->capture_default_str();
   app.add_option("--channels", export_options.channels, "regular expression that the whole name of a channel matches; default: all");
-  app.add_option("--since", export_options.since_s, "from this second of the log on");
+  app.add_option("--since", export_options.since_s, "from this second of the log");
   app.add_option("--until", export_options.until_s, "up to this second of the log");
   app.add_flag("--wide", export_options.wide, "a row for each message and a column for each field, without lists, instead of a row for each value");
   sync::parse_or_exit(app, "export_log", argc, argv);

@@ -9,7 +9,8 @@
 using namespace tactus;
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Says which messages this build speaks: its version, then channels, fields and fingerprints as they are in every log."};
+  CLI::App app{
+      "Prints the message types of this build: version, channels, fields and fingerprints, as in every log."};
   sync::parse_or_exit(app, "message_types", argc, argv);
   std::cout << "version " << TACTUS_VERSION << "\n";
   for (const std::string& page : sync::log_types()) std::cout << page.substr(page.find('\n') + 1);

@@ -113,7 +113,7 @@ int main(int argc, char** argv) try {
   double seconds = 5;
   sync::add_bus_options(app, bus);
   app.add_option("--host", host, "name of this host");
-  app.add_option("--expect", expected, "names of all hosts, this one too")->delimiter(',');
+  app.add_option("--expect", expected, "names of all hosts, including this one")->delimiter(',');
   app.add_option("--round", run, "number of this round of probes, the same on all hosts");
   app.add_option("--seconds", seconds, "how long")->check(CLI::Range(0.5, 600.0))->capture_default_str();
   sync::parse_or_exit(app, "probe_pairs", argc, argv);

@@ -89,19 +89,23 @@ struct ReplayArguments {
 
   void add_to(CLI::App& app) {
     app.add_option("LOG", log, "run.lcmlog of a run, or a log of the stock lcm-logger")->required();
-    app.add_option("--speed", speed, "0.01 to 100 times as fast as it was, or max: as fast as --most lets it")->capture_default_str();
+    app.add_option("--speed", speed, "0.01 to 100 times the original speed, or max: as fast as --most allows")
+        ->capture_default_str();
     app.add_option("--start", play.start_s, "s since the world began");
-    app.add_option("--end", play.end_s, "likewise; default: the end of the log");
+    app.add_option("--end", play.end_s, "s since the world began; default: the end of the log");
     app.add_flag("--loop", play.loop, "starts again at the end");
     app.add_flag("--paused", play.paused, "waits for a command of --control");
     app.add_option("--most", play.max_per_s, "messages per second, at any speed")->check(CLI::Range(1.0, 1e6))->capture_default_str();
     app.add_option("--channels", selection_options.channels, "regular expression: only channels that match as a whole");
-    app.add_option("--leave-out", selection_options.leave_out, "likewise: not these");
-    app.add_option("--also", selection_options.also, "likewise: send these too, which are dropped by default");
+    app.add_option("--leave-out", selection_options.leave_out,
+                   "regular expression: channels that match are not sent");
+    app.add_option("--also", selection_options.also,
+                   "regular expression: also sends these channels, which are dropped by default");
     app.add_option("--rename", selection_options.rename, "FROM=TO, channels; may be repeated");
     app.add_option("--live", selection_options.live, "a running process, whose recorded messages are not sent; may be repeated");
     app.add_flag("--as-recorded", selection_options.as_recorded, "applies the degradation profiles of the log");
-    app.add_flag("--verbatim", selection_options.verbatim, "every message of every channel as it is, as the stock lcm-logplayer does");
+    app.add_flag("--verbatim", selection_options.verbatim,
+                 "sends every message of every channel unchanged, like the stock lcm-logplayer");
     app.add_option("--control", control, "named pipe to read commands from, or - for stdin");
     app.add_flag("--stay", stay, "keeps running at the end of the log");
     app.add_flag("--describe", only_describe, "prints the contents of the log as JSON and exits");
@@ -161,7 +165,8 @@ int main(int argc, char** argv) try {
   sync::Node node(kReplay, options);
   if (!origin.recovered.empty()) std::cerr << "replay: " << sync::printable(log) << ": " << origin.recovered << "\n";
   if (!selection_options.verbatim && scene_asset(assets) == assets.end())
-    std::cerr << "replay: " << sync::printable(log) << " holds no whole scene; senses that have none stay idle\n";
+    std::cerr << "replay: " << sync::printable(log)
+              << " contains no complete scene; modalities without a scene stay idle\n";
   std::optional<sync::SceneSender> scene;
   if (!assets.empty()) scene.emplace(node.bus(), assets);
   sync::ReplayPort port(options.bus);

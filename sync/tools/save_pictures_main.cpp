@@ -42,7 +42,9 @@ int main(int argc, char** argv) try {
       std::snprintf(name, sizeof name, "%08x_%06lld.jpg", static_cast<unsigned>(picture->source), static_cast<long long>(picture->picture));
       std::ofstream file(std::filesystem::path(folder) / name, std::ios::binary);
       file.write(reinterpret_cast<const char*>(picture->jpeg.data()), static_cast<std::streamsize>(picture->jpeg.size()));
-      if (!file.flush()) throw std::runtime_error(folder + ": " + name + " cannot be written; give a folder with room");
+      if (!file.flush())
+        throw std::runtime_error(folder + ": " + name +
+                                 " cannot be written; give a writable folder with free space");
       ++saved;
       newest = sync::host_now();
     }

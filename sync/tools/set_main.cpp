@@ -54,10 +54,9 @@ int main(int argc, char** argv) try {
   for (setting_change_t& change : changes) {
     const auto reply = sync::request(bus, channels::kSetting, change, replies, kTimeout);
     if (!reply)
-      throw std::runtime_error(
-          "no \"" + sync::printable(node) +
-          "\" that changes settings while it runs answers; docs/settings.md lists the live settings, "
-          "tactus attach watch which nodes there are");
+      throw std::runtime_error("no \"" + sync::printable(node) +
+                               "\" with live settings answers; docs/settings.md lists the live settings, "
+                               "tactus attach watch lists the nodes");
     if (!reply->done) throw std::runtime_error(sync::printable(reply->text));
     std::cout << sync::printable(reply->text) << std::endl;
   }

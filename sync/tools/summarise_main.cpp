@@ -32,7 +32,7 @@ std::map<std::string, std::int64_t> parse_restarts(const std::vector<std::string
 void write_file(const std::string& path, const std::string& text) {
   std::ofstream file(path, std::ios::binary);
   file << text << std::flush;
-  if (!file) throw std::runtime_error("cannot write " + path + "; give --out a file in a folder that can be written");
+  if (!file) throw std::runtime_error("cannot write " + path + "; give --out a file in a writable folder");
 }
 
 }  // namespace

@@ -264,9 +264,8 @@ class Window : public Display {
     glfwGetError(&why);
     const std::string reason = why ? why : "unknown reason";
     glfwTerminate();
-    throw std::runtime_error(
-        "--window: no window can be opened (" + reason +
-        "); start it on a desktop with DISPLAY or WAYLAND_DISPLAY set, or leave --window out");
+    throw std::runtime_error("--window: no window can be opened (" + reason +
+                             "); start it on a desktop with DISPLAY or WAYLAND_DISPLAY set, or remove --window");
   }
   GLFWwindow* window_ = nullptr;
   GLFWmonitor* monitor_ = nullptr;

@@ -39,7 +39,7 @@ VideoFile::VideoFile(std::string file, int width, int height, const Settings& se
     if (std::filesystem::exists(there, none))
       throw std::runtime_error(there + " exists and is not overwritten; remove it or choose another --video");
   if (!std::ofstream(part_, std::ios::binary))
-    throw std::runtime_error("cannot write " + part_ + "; give --video a file in a folder that can be written");
+    throw std::runtime_error("cannot write " + part_ + "; give --video a file in a writable folder");
   try {
     encoder_.emplace(encoder_command(part_, width, height, settings.rate_Hz, settings.video_crf));
   } catch (...) {

@@ -9,7 +9,7 @@ namespace tactus::haptic {
 namespace {
 
 // Largest change of the pose, in counts, when every string changes by half a count, within the workspace of every
-// known frame (tests/bench/spidar_table).
+// known frame (tests/bench/haptic_node/spidar_table).
 constexpr double kPoseCounts = 1.6;
 // For a grip with a single knot, which does not rotate.
 constexpr double kMinLever_m = 0.001;

@@ -109,14 +109,14 @@ void read_profile(LoadContext& context, const sdf::ElementPtr& world) {
     const std::string rule = tag("degrade", *child) + "/>";
     reject_text(context, *child);
     if (child->GetFirstElement())
-      context.reject(*child->GetFirstElement(), "is within a <tactus:degrade>, which has attributes alone");
+      context.reject(*child->GetFirstElement(), "is inside a <tactus:degrade>, which has only attributes");
     check_names(context, *child, parse_checked(context, *child, "<profile>" + rule + "</profile>"), "");
     rules += "  " + rule + "\n";
   }
   context.world.profile = tag("profile", *element) + ">\n" + rules + "</profile>\n";
   parse_checked(context, *element, context.world.profile);
   if (context.world.profile.size() > sync::kMaxProfileBytes)
-    context.reject(*element, "is longer than 64 kB: leave out what it does not need");
+    context.reject(*element, "is longer than 64 kB: remove parts that it does not need");
 }
 
 }  // namespace tactus::sim

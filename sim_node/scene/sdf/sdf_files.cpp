@@ -82,7 +82,7 @@ void SdfFiles::scan(const fs::path& file, const std::string& from, std::vector<f
   const std::string included_by = from.empty() ? "" : ", included by " + from;
   if (std::find(chain.begin(), chain.end(), file) != chain.end())
     throw std::runtime_error(from + ": includes \"" + file.filename().string() +
-                             "\", which includes this again: break the circle");
+                             "\", which includes this file again: remove the circular include");
   if (documents_.contains(file)) return;
   auto& document = documents_[file] = std::make_unique<tinyxml2::XMLDocument>();
   if (document->LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS)

@@ -76,8 +76,10 @@ int tactus::sync::run_recorder(int argc, char** argv) try {
   app.add_option("--git", info.git, "commit of the run, noted in the log");
   double split_mb = 0, split_minutes = 0, max_mb = 0;
   sync::LogLimits limits;
-  app.add_option("--split-mb", split_mb, "begins another file, which replays alone, at this size")->check(CLI::Range(1.0, 1e6));
-  app.add_option("--split-minutes", split_minutes, "begins another file after this time")->check(CLI::Range(0.01, 1e5));
+  app.add_option("--split-mb", split_mb, "starts another file, which can be replayed alone, at this size")
+      ->check(CLI::Range(1.0, 1e6));
+  app.add_option("--split-minutes", split_minutes, "starts another file after this time")
+      ->check(CLI::Range(0.01, 1e5));
   app.add_option("--keep", limits.keep, "number of the newest files to keep; needs --split-mb or --split-minutes")->check(CLI::Range(1, 100'000));
   app.add_option("--max-mb", max_mb, "size limit of all files: the oldest are removed; messages that exceed it in a single file are dropped and counted")
       ->check(CLI::Range(1.0, 1e7));
@@ -95,7 +97,8 @@ int tactus::sync::run_recorder(int argc, char** argv) try {
   limits.max_bytes = static_cast<std::int64_t>(max_mb * 1e6);
   if (limits.keep > 0 && !limits.splits()) throw std::runtime_error("--keep needs --split-mb or --split-minutes");
   if (limits.splits() && limits.max_bytes > 0 && limits.split_bytes * 2 > limits.max_bytes)
-    throw std::runtime_error("--max-mb must be at least twice --split-mb, so that one file is whole while the next is written");
+    throw std::runtime_error(
+        "--max-mb must be at least twice --split-mb, so that one complete file remains while the next is written");
 
   tag_request_t tag_request = request_for(patterns);
   sync::Node node(descriptor, options);

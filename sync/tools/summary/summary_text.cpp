@@ -41,7 +41,8 @@ std::string game(const RunSummary& s) {
   const game_state_t& g = *s.game();
   const auto filled = std::count_if(g.holes.begin(), g.holes.end(), [](const hole_state_t& h) { return h.filled != 0; });
   if (!g.won) return line("game: %d of %d holes filled", static_cast<int>(filled), g.count);
-  return line("game: all %d holes filled, at %.2f s of the world", g.count, static_cast<double>(g.won_ns) * 1e-9);
+  return line("game: all %d holes filled, at %.2f s of simulated time", g.count,
+              static_cast<double>(g.won_ns) * 1e-9);
 }
 
 std::string contacts(const PresentationMatcher& m) {

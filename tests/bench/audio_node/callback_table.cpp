@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
   app.add_option("--modes", modes, "of each")->check(CLI::Range(1, kMaxModes));
   app.add_option("--frames", frames, "of a block")->check(CLI::Range(1, 4096));
   app.add_option("--seconds", seconds, "of sound")->check(CLI::Range(0.1, 3600.0));
-  app.add_option("--json", json, "also write the figures there");
+  app.add_option("--json", json, "also writes the figures to this file");
   CLI11_PARSE(app, argc, argv);
 
   const double period_s = frames / kRate_Hz;

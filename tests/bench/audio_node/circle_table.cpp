@@ -14,7 +14,7 @@ using namespace tactus::audio;
 int main(int argc, char** argv) {
   std::string json;
   CLI::App app{"Time and level differences between the ears on a circle."};
-  app.add_option("--json", json, "also write the figures there");
+  app.add_option("--json", json, "also writes the figures to this file");
   CLI11_PARSE(app, argc, argv);
 
   constexpr std::array<int, 3> kOctaves_Hz{500, 2000, 8000};

@@ -175,15 +175,15 @@ int main(int argc, char** argv) {
   std::string json, folder = "default";
   int seconds = 10;
   CLI::App app{"Cost of a contact in the audio callback, by method."};
-  app.add_option("--seconds", seconds, "of sound of each row")->check(CLI::Range(1, 600));
+  app.add_option("--seconds", seconds, "seconds of sound of each row")->check(CLI::Range(1, 600));
   app.add_option("--sounds", folder, "folder of recordings; default: the set beside the program");
-  app.add_option("--json", json, "also write the figures there");
+  app.add_option("--json", json, "also writes the figures to this file");
   CLI11_PARSE(app, argc, argv);
   const Database database = read_database(sounds_folder(folder), 48000, 0.05);
   for (const SoundFault& f : database.faults)
     std::fprintf(stderr, "method_bench: %s %s\n", f.path.c_str(), f.what.c_str());
   if (database.sounds.empty()) return 1;
-  std::printf("%-8s  %-26s %10s %10s %10s\n", "method", "us of the callback", "modal", "samples", "in all");
+  std::printf("%-8s  %-26s %10s %10s %10s\n", "method", "us of the callback", "modal", "samples", "total");
   nlohmann::json rows = nlohmann::json::array();
   for (const char* method : {"modal", "samples", "both"})
     for (const bool slides : {false, true}) {

@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
   int modes = 1600;
   CLI::App app{"Number of modes that one core renders at 48 kHz."};
   app.add_option("--modes", modes, "of the bank")->check(CLI::Range(16, 1'000'000));
-  app.add_option("--json", json, "also write the figures there");
+  app.add_option("--json", json, "also writes the figures to this file");
   CLI11_PARSE(app, argc, argv);
   modes = (modes + kModeGroup - 1) / kModeGroup * kModeGroup;
 #if defined(__SSE__)

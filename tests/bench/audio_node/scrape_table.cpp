@@ -183,7 +183,7 @@ int main(int argc, char** argv) {
   int blocks = 4000;
   CLI::App app{"Cost of sliding and rolling contacts in the audio callback and in the loop of its node."};
   app.add_option("--blocks", blocks, "of 64 frames, of each row")->check(CLI::Range(100, 1'000'000));
-  app.add_option("--json", json, "also write the figures there");
+  app.add_option("--json", json, "also writes the figures to this file");
   CLI11_PARSE(app, argc, argv);
 #if defined(__SSE__)
   _mm_setcsr(_mm_getcsr() | 0x8040);  // denormal numbers are 0, as in the callback

@@ -1,6 +1,6 @@
-// Share of one core that many binaural sources take in real time at 48 kHz: ours in blocks of 64 with each instruction set of this
-// machine, and OpenAL Soft's loopback device with its own HRTF in blocks of 256, interleaved. Sources that stay, and sources that all
-// circle the head once per second.
+// Share of one core that many binaural sources take in real time at 48 kHz: ours in blocks of 64 with each
+// instruction set of this machine, and OpenAL Soft's loopback device with its own HRTF in blocks of 256,
+// interleaved. Sources at rest, and sources that all circle the head once per second.
 //
 //    bin/spatial_bench [--json FILE]
 #include <AL/al.h>
@@ -109,7 +109,7 @@ class OpenAl {
     ALCint status = 0;
     alcGetIntegerv(device_, ALC_HRTF_STATUS_SOFT, 1, &status);
     if (status != ALC_HRTF_ENABLED_SOFT && status != ALC_HRTF_REQUIRED_SOFT)
-      throw std::runtime_error("OpenAL Soft does not render for ears here");
+      throw std::runtime_error("OpenAL Soft does not render binaural sound (HRTF) on this machine");
     const auto sound = noise();
     alGenBuffers(1, &buffer_);
     alBufferData(buffer_, AL_FORMAT_MONO_FLOAT32, sound.data(), static_cast<ALsizei>(4 * sound.size()), kRate_Hz);
@@ -121,7 +121,7 @@ class OpenAl {
       place_source(i);
       alSourcePlay(sources_[i]);
     }
-    if (alGetError() != AL_NO_ERROR) throw std::runtime_error("OpenAL Soft does not play that many sources");
+    if (alGetError() != AL_NO_ERROR) throw std::runtime_error("OpenAL Soft cannot play this number of sources");
   }
   ~OpenAl() {
     alcMakeContextCurrent(nullptr);
@@ -174,7 +174,7 @@ int main(int argc, char** argv) try {
   std::string json, file = "/usr/share/libmysofa/MIT_KEMAR_normal_pinna.sofa";
   CLI::App app{"Cost of many sources rendered with a measured HRTF."};
   app.add_option("--hrtf", file, "SOFA file");
-  app.add_option("--json", json, "also write the figures there");
+  app.add_option("--json", json, "also writes the figures to this file");
   CLI11_PARSE(app, argc, argv);
 #if defined(__SSE__)
   _mm_setcsr(_mm_getcsr() | 0x8040);  // denormal numbers are 0, as in the callback

@@ -254,7 +254,7 @@ int main(int argc, char** argv) {
   std::string json_file, picture;
   bool check = false;
   CLI::App app{"Agreement of the felt and the seen height map."};
-  app.add_option("--json", json_file, "also write the figures there");
+  app.add_option("--json", json_file, "also writes the figures to this file");
   app.add_option("--picture", picture, "draw the stroke and the spectra there (SVG)");
   app.add_flag("--check", check, "exit 1 unless all figures stay within their bounds");
   CLI11_PARSE(app, argc, argv);

@@ -1,21 +1,24 @@
-// Energy that touch generates beyond the energy that it received from hand and body. Hands of three sizes press on walls and bodies, tap
-// on them and push bodies along, while the touch model is late, thin, lossy or frozen; and the remaining quality of touch.
+// Energy that touch generates beyond the energy that it received from hand and body. Hands of three sizes press on
+// walls and bodies, tap on them and push bodies along, while the touch model is late, thin, lossy or frozen; and
+// the remaining quality of touch.
 //
 //    bin/passivity_table [--check] [--all] [--seeds N | --seed N] [--json FILE]
 //
-// A row is one surface with one touch model. Each figure is the worst of all hands and, where messages are lost at random, of all seeds;
-// energy also of pressing, tapping and pushing along (tests/haptic_node/support/episode.h):
-//   generated   maximum net energy out of device port and body port together in an episode
-//   told_mJ     maximum of the same energy as the renderer's observer reports it
-//   without     generated, with the controller switched off
+// A row is one surface with one touch model. Each figure is the worst of all hands and, if messages are lost at
+// random, of all seeds; energies are the worst of pressing, tapping and pushing along
+// (tests/haptic_node/support/episode.h):
+//   generated   maximum net energy that leaves device port and body port together in an episode
+//   told_mJ     maximum of the same energy, as the observer of the renderer reports it
+//   without     the value of generated with the controller switched off
 //   cycle       the force oscillates at the end of the hold by more than 0.05 N rms and does not decay
-//   of ideal    mean force of the hold relative to that of springs in series: hand, surface and support of the body
+//   of ideal    mean force of the hold relative to springs in series: hand, surface and support of the body
 //   of design   the same, relative to the stiffness that the coupling rules allow for a mass at that delay
 //   K           force over depth
 //   factor      the minimum that the controller chose
-// --all prints every episode. --check: exit 1 where generated > 1 mJ, at a cycle, or where touch is too weak: a wall whose force is off by
-// more than 25 %; a body with less than half of the force of the design (a fifth after losses and a gap, which are softer than the mean
-// age implies), or one that is pushed along by less than half of the way.
+// --all prints every episode. --check: exit 1 where generated > 1 mJ, at a cycle, or where touch is too weak: a
+// wall whose force is off by more than 25 %; a body with less than half of the design force (a fifth after losses
+// and a gap, after which touch is softer than the mean age implies), or a body that is pushed by less than half of
+// the distance.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -161,10 +164,10 @@ int main(int argc, char** argv) {
   bool check = false, all = false;
   unsigned seed = 0, seeds = 8;
   CLI::App app{"Energy that touch adds to a hand and a body (passivity)."};
-  app.add_option("--json", json, "also write the figures there");
+  app.add_option("--json", json, "also writes the figures to this file");
   app.add_flag("--check", check, "exit 1 unless all rows stay within the limits");
-  app.add_option("--seeds", seeds, "losses are drawn with the seeds 1 to this")->check(CLI::Range(1, 10000));
-  app.add_option("--seed", seed, "losses are drawn with this seed alone")->excludes("--seeds");
+  app.add_option("--seeds", seeds, "draws losses with the seeds 1 to N")->check(CLI::Range(1, 10000));
+  app.add_option("--seed", seed, "draws losses with this seed only")->excludes("--seeds");
   app.add_flag("--all", all, "print every episode");
   CLI11_PARSE(app, argc, argv);
   std::printf("%-14s %-20s %9s %9s %9s %6s %9s %10s %8s %7s\n", "surface", "touch model", "gen. mJ", "told mJ",

@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
   int ticks = 20000;
   CLI::App app{"Cost of one tick of touch."};
   app.add_option("--ticks", ticks, "of each row")->check(CLI::Range(100, 10000000));
-  app.add_option("--json", json, "also write the figures there");
+  app.add_option("--json", json, "also writes the figures to this file");
   CLI11_PARSE(app, argc, argv);
   std::printf("%8s %8s %8s %12s %12s %12s %10s %10s\n", "tool", "planes", "Hz", "model", "median us", "p99 us",
               "force N", "pressed");

@@ -129,7 +129,7 @@ int main(int argc, char** argv) {
   double seconds = 6, waves = 15;
   bool check = false;
   CLI::App app{"Smoothness of the force of a stroke over a bumpy sphere of 20,480 triangles."};
-  app.add_option("--json", json, "also write the figures there");
+  app.add_option("--json", json, "also writes the figures to this file");
   app.add_option("--trace", trace_file, "of the first row: time, force, change, and the planes");
   app.add_option("--seconds", seconds, "of each stroke")->check(CLI::Range(0.1, 100.0));
   app.add_option("--waves", waves, "of a bump per radian")->check(CLI::Range(1.0, 40.0));

@@ -166,7 +166,7 @@ void boxes(int count, int high, nlohmann::json& json) {
 int main(int argc, char** argv) {
   CLI::App app("Cost of contact detection with gaps");
   std::string file;
-  app.add_option("--json", file, "also write the figures there");
+  app.add_option("--json", file, "also writes the figures to this file");
   CLI11_PARSE(app, argc, argv);
   dInitODE2(0);
   nlohmann::json json;

@@ -211,7 +211,7 @@ int main(int argc, char** argv) {
   app.add_option("--gap_mm", options.gap_mm);
   app.add_option("--tolerance_mm", options.tolerance_mm);
   app.add_option("--poses", options.poses);
-  app.add_option("--json", options.json, "also write the figures there");
+  app.add_option("--json", options.json, "also writes the figures to this file");
   CLI11_PARSE(app, argc, argv);
   const WorldDef world = two_spheres(options.triangles);
   Queries queries(world, options.tolerance_m());

@@ -15,7 +15,7 @@ constexpr double kH = 0.001;
 Eigen::Isometry3d at(double x, double y, double z) { return Eigen::Isometry3d(Eigen::Translation3d(x, y, z)); }
 Eigen::Isometry3d about_y(double angle) { return Eigen::Isometry3d(Eigen::AngleAxisd(angle, Vector3d::UnitY())); }
 
-// A box on an incline: acceleration against g (sin - mu cos), or creep where it should stick. Over all yaws.
+// A box on an incline: acceleration against g (sin - mu cos), or creep if it must stick. Over all yaws.
 double incline(const Make& make, double factor) {
   const double theta = 0.3, mu = factor * std::tan(theta);
   double worst = 0;
@@ -236,13 +236,14 @@ std::vector<Proof> contact_proofs(double stand_s) {
       {"incline, mu 0.8 tan: acceleration, 16 yaws", "%", 2, "g (sin - mu cos), straight down",
        "design: 1/20 of the 41 % of a pyramid", [](const Make& m) { return incline(m, 0.8); }},
       {"incline, mu 1.001 tan: creep in 0.5 s", "m", 1e-5, "none",
-       "design: half of what snapshots call moved (20 um)", [](const Make& m) { return incline(m, 1.001); }},
+       "design: half of the distance that counts as motion in snapshots (20 um)",
+       [](const Make& m) { return incline(m, 1.001); }},
       {"cone: braking at 48 headings and yaws", "%", 2, "mu g", "the same as on the incline", cone},
       {"ball slides, then rolls", "%", 0.1, "5/7 v0, whatever mu", "design: 1/3000 of v0", rolling},
-      {"tipping blocks that do the wrong", "of 4", 0, "tips when mu and slope > w/h", "none may", tipping},
+      {"blocks with the wrong outcome", "of 4", 0, "tips when mu and slope > w/h", "none is permitted", tipping},
       {"Painleve's rods: gain of energy", "%", 1, "none", "leapfrog sways by h g / v = 0.3 %", painleve},
       {"resting boxes: sum of forces", "%", 0.01, "m g", "design: below a force sensor's 0.1 %", weight},
-      {"stack of 5, 1/240 s: top moved", "mm", 1, "stands", "design: 0.2 mm a box, what is seen at arm's length",
+      {"stack of 5, 1/240 s: top moved", "mm", 1, "stands", "design: 0.2 mm per box, visible at arm's length",
        standing(5)},
       {"stack of 10, 1/240 s: top moved", "mm", 2, "stands", "the same", standing(10)},
       {"stack of 20, 1/240 s: top moved", "mm", 4, "stands", "the same", standing(20)},
@@ -265,7 +266,7 @@ std::vector<Proof> joint_proofs() {
          return link_momentum(m, {0.5, 1.0});
        }},
       {"ball stays on a link: angular momentum", "%", 1e-4, "kept",
-       "a blow inside a step acts where its beginning had the bodies: design, 1/50 of ODE's",
+       "an impact inside a step acts at the poses of the start of the step: design, 1/50 of ODE's",
        [](const Make& m) { return link_momentum(m, {0.0}); }},
   };
 }

@@ -287,7 +287,7 @@ int main(int argc, char** argv) {
   double seconds = 3;
   bool check = false;
   CLI::App app{"Accuracy and smoothness of touch with six degrees of freedom."};
-  app.add_option("--json", json, "also write the figures there");
+  app.add_option("--json", json, "also writes the figures to this file");
   app.add_option("--seconds", seconds, "of each stroke")->check(CLI::Range(0.1, 100.0));
   app.add_option("--only", only, "only the rows of this name: pressed, pushed, thin, between, hole or stroke");
   app.add_flag("--check", check, "exit 1 unless all rows stay within the limits");

@@ -23,13 +23,13 @@ namespace {
 using Eigen::Vector3d;
 using namespace tactus::sim::test;
 
-// Shell of the simulation, at which surfaces meet behind their springs (contact_law).
+// Shell of the simulation: the gap at which surfaces meet when their springs are compressed (contact_law).
 constexpr double kShell_m = 1e-5;
 // Out of reach of the hand.
 constexpr double kFar_m = 3;
 // Steps before the push, and after it.
 constexpr int kSettleSteps = 300, kWatchedSteps = 3000;
-// A structure far from the hand stands while it is no further than this from its first position, m.
+// A structure far from the hand stands if it is within this distance of its first position, m.
 constexpr double kMaxDrift_m = 1e-3;
 
 const std::array<GroupedRow, 6> kRows{{
@@ -83,7 +83,7 @@ bool grouped_stays_stable(const GroupedRow& row, int boxes, double x) {
   s.penalty_stiffness_N_m = k;
   s.penalty_damping_Ns_m = kDampingRatio * 2 * std::sqrt(k * kLightest_kg);
   s.contact_tolerance_m = up + kShell_m;
-  s.correcting_speed_m_s = 0;  // a load on its springs from the beginning is borne at once
+  s.correcting_speed_m_s = 0;  // springs that are loaded at the start carry the load immediately
   WorldDef w = empty_world(kToyG);
   add_floor(w);
   std::mt19937 random(1);

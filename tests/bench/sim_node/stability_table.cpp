@@ -203,10 +203,10 @@ int main(int argc, char** argv) {
   const double k = 1e4;
   double at_1ms_N_m = 0, at_60Hz_N_m = 0;
   std::printf(
-      "lightest body %.2g kg per point of contact; shell %g mm; stiffness %g N/m unless it is the result\n\n",
+      "lightest body %.2g kg per point of contact; shell %g mm; stiffness %g N/m where it is not the result\n\n",
       kLightest_kg, 1e3 * kShell_m, k);
   std::printf("%-18s %11s | %-38s | %-25s | %s\n", "", "step of 100", "largest force of 1 m/s, N, at a step",
-              "largest change in a step", "largest k h^2/m that is stable, at 1 ms and 1/60 s");
+              "largest change in a step", "largest stable k h^2/m at 1 ms and 1/60 s");
   std::printf("%-18s %11s | %12s %12s %12s | %12s %12s | %8s %8s | %8s %8s\n", "contact", "boxes, us", "of 1 ms",
               "0.1 ms", "0.01 ms", "0.1 ms", "0.01 ms", "ball", "", "tower", "");
   for (const Model& model : models()) {

@@ -94,9 +94,9 @@ int main(int argc, char** argv) {
   std::string json, only;
   int steps = 200;
   CLI::App app{"Cost of the touch model of a tool."};
-  app.add_option("--steps", steps, "of each row of a tool with a shape")->check(CLI::Range(1, 100'000));
+  app.add_option("--steps", steps, "steps of each row of a tool with a shape")->check(CLI::Range(1, 100'000));
   app.add_option("--only", only, "only the rows of a tool with a shape whose scene and tool contain this text, such as \"bowl.obj mesh\"");
-  app.add_option("--json", json, "also write the figures there");
+  app.add_option("--json", json, "also writes the figures to this file");
   CLI11_PARSE(app, argc, argv);
   std::vector<Scene> scenes;
   scenes.push_back(scene_of("81,920 triangles, one mesh", 6, 1, false));
@@ -121,7 +121,7 @@ int main(int argc, char** argv) {
       s.us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
       s.planes += s.touch->model().planes.size();
     }
-  std::printf("ball of %g mm, %d steps of 1 ms, scenes in turn\n%-40s %10s %10s %10s\n", 1e3 * kTool_m, kSteps,
+  std::printf("ball of %g mm, %d steps of 1 ms, scenes interleaved\n%-40s %10s %10s %10s\n", 1e3 * kTool_m, kSteps,
               "us", "median", "p99", "planes");
   nlohmann::json out;
   for (const Scene& s : scenes) {
@@ -129,9 +129,11 @@ int main(int argc, char** argv) {
                 static_cast<double>(s.planes) / kSteps);
     out[s.name] = {{"median_us", quantile(s.us, 0.5)}, {"p99_us", quantile(s.us, 0.99)}};
   }
-  std::printf("\ntools with a shape, %d steps a row, time of the processor; triangles: of the scene, in the ball around the tool and its margin\n"
-              "%-26s %-13s %6s %10s %10s %10s %10s\n",
-              steps, "us", "tool", "m/s", "triangles", "median", "p99", "planes");
+  std::printf(
+      "\ntools with a shape, %d steps per row, processor time; triangles: number of triangles of the scene in the "
+      "ball around the tool and its margin\n"
+      "%-26s %-13s %6s %10s %10s %10s %10s\n",
+      steps, "us", "tool", "m/s", "triangles", "median", "p99", "planes");
   shape_rows(TACTUS_SOURCE_DIR "/sim_node/scenes", steps, only, [&](const ShapeRow& r) {
     std::printf("%-26s %-13s %6.1f %10.0f %10.1f %10.1f %10.1f\n", r.scene.c_str(), r.tool.c_str(), r.speed_m_s, r.triangles,
                 r.median_us, r.p99_us, r.planes);

@@ -232,7 +232,7 @@ void thermal_node(benchmark::State& state) {
   });
 }
 
-// As visual_node: the events, and as many body poses as there are contacts.
+// As visual_node: the events, and one body pose per contact.
 void visual_node(benchmark::State& state) {
   read_and_render(
       state, 16,

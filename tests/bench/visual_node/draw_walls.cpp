@@ -78,7 +78,7 @@ int main(int argc, char** argv) try {
   app.add_option("--edge", edge, "of each wall, pixels; a multiple of 4")->check(CLI::Range(320, 2048))->capture_default_str();
   app.add_option("--at", at, "where the person's eye is, m; not given: where the scene's camera is")->expected(3);
   app.add_option("--set", set, "a setting of visual_node, name=value");
-  app.add_option("--json", json, "also write the figures there");
+  app.add_option("--json", json, "also writes the figures to this file");
   CLI11_PARSE(app, argc, argv);
   edge = edge / 4 * 4;
 

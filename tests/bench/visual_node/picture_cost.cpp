@@ -138,7 +138,7 @@ nlohmann::json bodies(const Options& options) {
 
 // As in the node: a frame each 1/60 s, which the writer's thread encodes on the other core.
 nlohmann::json video(const Options& options) {
-  std::printf("640x480 at 60 Hz: how long the loop is busy with a picture, alone and with video out\n\n");
+  std::printf("640x480 at 60 Hz: time of the loop per picture, without and with video output\n\n");
   Scenery scenery(bench::rough_balls(), 640, 480, false);
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("picture_cost." + std::to_string(getpid()));
@@ -171,7 +171,8 @@ nlohmann::json video(const Options& options) {
   std::filesystem::remove_all(folder);
   const double a = quantile(alone, 0.5), w = quantile(with_video, 0.5), h = quantile(handing_over, 0.5);
   std::printf(
-      "| alone p50 ms | with video p50 ms | of that handing over | more |\n|---|---|---|---|\n| %.2f | %.2f | "
+      "| alone p50 ms | with video p50 ms | share of the hand-over | increase |\n|---|---|---|---|\n| %.2f | %.2f "
+      "| "
       "%.2f | %.1f %% |\n\n",
       a, w, h, 100 * (w / a - 1));
   return {{"alone_p50_ms", a}, {"with_video_p50_ms", w}, {"handing_over_p50_ms", h}, {"more", w / a - 1}};
@@ -189,7 +190,7 @@ int main(int argc, char** argv) try {
       ->required()
       ->check(CLI::IsMember({"triangles", "bodies", "video"}));
   app.add_option("--threads", options.threads,
-                 "that a software renderer draws with; 0: 2, and 1 beside a video, as visual_node")
+                 "threads of a software renderer; 0: 2, or 1 with a video, as in visual_node")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
   app.add_option("--json", options.json, "file for the figures");
@@ -199,7 +200,7 @@ int main(int argc, char** argv) try {
   setenv("LP_NUM_THREADS", std::to_string(options.threads).c_str(), 1);
   visual::configure_software_renderer();
   const auto display = visual::make_headless(-1);
-  std::printf("%s, drawn by %d threads where that is software\n\n", display->description().c_str(),
+  std::printf("%s, drawn by %d threads if it is a software renderer\n\n", display->description().c_str(),
               options.threads);
   nlohmann::json all{{"renderer", display->description()}, {"threads", options.threads}};
   for (const auto& [name, measure] : {std::pair{"triangles", &triangles}, {"bodies", &bodies}, {"video", &video}})

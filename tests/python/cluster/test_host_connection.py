@@ -31,7 +31,7 @@ class Connections(unittest.TestCase):
     def test_another_network_namespace_has_its_own_connection(self):
         inside = ["unshare", "--net", "--user", "--map-root-user"] if os.getuid() else ["unshare", "--net"]
         if subprocess.run([*inside, "true"], capture_output=True, check=False).returncode:
-            self.skipTest("this system allows no network of one's own")
+            self.skipTest("this system allows no private network")
         program = f"import sys; sys.path[:0] = {[str(SCRIPTS / 'python')]!r}; from tactus.cluster import host_connection; print(host_connection.control_folder(None))"
         said = subprocess.run([*inside, sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.strip()
         self.assertNotEqual(str(host_connection.control_folder(None)), said)

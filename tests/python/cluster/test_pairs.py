@@ -64,7 +64,7 @@ class Pairs(unittest.TestCase):
         self.said["a"]["others"]["c"]["round_trip_us"]["p99"] = 50_000
         self.found("a: answers of c take up to 50 ms")
         self.said["a"]["others"]["c"]["uncertainty_us"] = 9000
-        self.found("a: knows the clock of c to 9.0 ms only")
+        self.found("a: the uncertainty of the clock of c is 9.0 ms")
 
     def test_lost_answers_are_reported(self):
         self.said["a"]["others"]["b"]["answered"] = False

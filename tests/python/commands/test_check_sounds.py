@@ -96,7 +96,7 @@ class CheckSounds(unittest.TestCase):
         self.assertEqual(make("mine").returncode, 1)
         self.assertTrue(os.path.exists(self.place("mine/impact/1.wav")))
 
-    @unittest.skipUnless(os.path.isdir(KITS), "hydrogen-drumkits is not installed: no real recordings to try")
+    @unittest.skipUnless(os.path.isdir(KITS), "hydrogen-drumkits is not installed: no real recordings to test")
     def test_real_recordings_make_a_complete_folder(self):
         folder = self.place("drums")
         self.assertEqual(check(folder, command="drumkit-sounds")[0], 0)

@@ -159,7 +159,7 @@ class Files(unittest.TestCase):
             render.render(["sh", "-c", "echo 'a: 5 % of the log' >&2; echo 'a: no scene' >&2; exit 1"], lambda _: None)
         shares = []
         said = render.render(["sh", "-c", "echo 'a: 5 % of the log' >&2; echo 'a: x.wav: 3 s of sound; its first sample was out at 41 ns,"
-                              " in 0.5 s (6 times as fast as time)' >&2"], shares.append)
+                              " in 0.5 s (6 times as fast as real time)' >&2"], shares.append)
         self.assertEqual([5], shares)
         self.assertEqual({"took_s": 0.5, "times_as_fast_as_time": 6.0, "first_sample_ns": 41}, render.facts(said))
 

@@ -256,7 +256,7 @@ class Processes(Folder):
     def test_a_folder_that_cannot_be_written_is_refused_in_one_sentence(self):
         self.folder.parent.mkdir(parents=True)
         self.folder.write_text("a file stands where the folder should be")
-        self.refused(str(self.folder), "choose a folder")
+        self.refused(str(self.folder), "choose a writable folder")
         with self.assertRaisesRegex(Refusal, "give the folder of a participant"):
             journal.read(self.folder.parent)
 

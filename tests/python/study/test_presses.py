@@ -106,7 +106,7 @@ class WhatItCanFind(unittest.TestCase):
         self.id = self.study.conditions[0].id
 
     def rows(self, cost, each=10):
-        """Rows of a pilot in which stiffness falls by the share `cost` a ms."""
+        """Rows of a pilot in which stiffness falls by the share `cost` per ms."""
         dice = np.random.default_rng(1)
         return [{"condition": self.id, "level": level, "degraded_interval": 1, "stiffness_first_n_m": 40 * (1 - cost * level) * (1 + dice.normal(0, 0.01)),
                  "stiffness_second_n_m": 40.0} for level in self.study.conditions[0].levels for _ in range(each)]

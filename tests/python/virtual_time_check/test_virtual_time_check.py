@@ -198,7 +198,7 @@ class Games(unittest.TestCase):
         json.dumps(by_success.row(), allow_nan=False)
 
     def test_of_eight_conditions_chance_reaches_the_bound_one_time_in_sixty(self):
-        order = [0, 1, 2, 3, 7, 6, 5, 4]  # 6 of 28 pairs the other way round: 0.571, just below; 5: 0.643
+        order = [0, 1, 2, 3, 7, 6, 5, 4]  # 6 of 28 pairs in reverse order: 0.571, just below; 5: 0.643
         self.assertLess(kendalltau(range(8), order).statistic, game_figures.LEAST_TAU)
         above = kendalltau(range(8), [0, 1, 2, 3, 7, 6, 4, 5], method="exact")
         self.assertGreater(above.statistic, game_figures.LEAST_TAU)

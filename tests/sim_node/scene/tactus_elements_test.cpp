@@ -160,7 +160,7 @@ TEST_CASE("An invalid tool is rejected with its line") {
   const std::string point = "<tactus:waypoint time='1' position='0 0 0'/>";
   CHECK_THAT(load_error("<tactus:tool name='h'/>"), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("waypoint"));
   CHECK_THAT(load_error("<tactus:tool name='h'>\n" + point + "\n" + point + "</tactus:tool>"),
-             Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("times must grow"));
+             Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("times must increase"));
   CHECK_THAT(load_error("<tactus:tool name='h'><tactus:waypoint time='1' position='0 0'/></tactus:tool>"), Catch::Contains("3 finite"));
   CHECK_THAT(load_error("<tactus:tool name='h'><tactus:waypoint time='1'/></tactus:tool>"), Catch::Contains("position"));
   CHECK_THAT(load_error("<tactus:tool name='h' radius='2m'>" + point + "</tactus:tool>"), Catch::Contains("radius"));
@@ -295,8 +295,8 @@ TEST_CASE("Text or elements inside <tactus:degrade> and text in its profile are 
           "<tactus:profile><tactus:degrade modality='audio' off='true'>loss</tactus:degrade></tactus:profile>"),
       Catch::Contains("has text in it"));
   CHECK_THAT(load_error("<tactus:profile><tactus:degrade modality='audio' "
-                     "off='true'><tactus:x/></tactus:degrade></tactus:profile>"),
-             Catch::Contains("attributes alone"));
+                        "off='true'><tactus:x/></tactus:degrade></tactus:profile>"),
+             Catch::Contains("has only attributes"));
 }
 
 TEST_CASE("A map can drive only a live number, within its range and safety limit") {

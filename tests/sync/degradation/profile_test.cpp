@@ -103,7 +103,7 @@ TEST_CASE("An invalid profile is rejected as a whole, with line and reason") {
   CHECK_THAT(refusal_of("off=\"true\" bodies=\"ball\""), Catch::Contains("name two bodies"));
   CHECK_THAT(refusal_of("dropout=\"2s every=1s\""), Catch::Contains("shorter than the time"));
   CHECK_THAT(refusal("<profile><degrade modality=\"a\" off=\"true\"><x/></degrade></profile>"),
-             Catch::Contains("no elements"));
+             Catch::Contains("only attributes"));
 }
 
 TEST_CASE("A profile without rules changes nothing") {

@@ -123,7 +123,8 @@ TEST_CASE("A rendering that stops early leaves no file, a complete one leaves co
       offline.next(bus);
       if (stopped) CHECK_THROWS_WITH(offline.finish(1, HostTime{}), Contains("stopped before"));
       while (!stopped && !offline.over()) offline.next(bus);
-      if (!stopped) CHECK_THAT(offline.finish(1, host_time(500'000'000)), Contains("0.5 s (2 times as fast as time)"));
+      if (!stopped)
+        CHECK_THAT(offline.finish(1, host_time(500'000'000)), Contains("0.5 s (2 times as fast as real time)"));
     }
     CHECK(std::filesystem::exists(options.presented) != stopped);
     CHECK_FALSE(std::filesystem::exists(options.presented + ".part"));

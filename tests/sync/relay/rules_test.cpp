@@ -60,11 +60,11 @@ TEST_CASE("Invalid relay rules are rejected with their line") {
   CHECK(refusal(within("<pass channel='TOOL_STATE' first='yes'/>")).find("neither true nor false") !=
         std::string::npos);
   CHECK(refusal(within("<pass channel='TOOL_STATE'/>\n<pass channel='TOOL_STATE'/>")) ==
-        "rules.xml:3: TOOL_STATE passes by line 2 already; leave one away");
+        "rules.xml:3: TOOL_STATE passes by line 2 already; remove one");
   CHECK(refusal(within("<drop channel='TOOL_STATE'/>")) ==
         "rules.xml:2: <relay> holds no <drop>; it holds <pass .../>");
-  CHECK(refusal(within("all of it")).find("nothing but <pass .../>") != std::string::npos);
-  CHECK(refusal(within("<pass channel='TOOL_STATE'>x</pass>")).find("a <pass> holds nothing") !=
+  CHECK(refusal(within("all of it")).find("contains only <pass .../>") != std::string::npos);
+  CHECK(refusal(within("<pass channel='TOOL_STATE'>x</pass>")).find("a <pass> has no content") !=
         std::string::npos);
   CHECK(refusal("<relay><pass channel='TOOL_STATE'/></relay><relay/>").find("rules.xml:1:") == 0);
   const std::string whole = within("<pass channel='TOOL_STATE'/>");

@@ -41,7 +41,7 @@ def is_yes(kind, row_response, row_correct, pair):
         raise Refusal(f"the response '{row_response[:40]}' to a synchrony judgement is unknown; write yes or no")
     a, b = pair
     first = word.removesuffix(" first").removesuffix("_first")
-    # `order` of functions.py rises with SOA(a, b) = t(b) - t(a): the later b is, the more answers call a first.
+    # `order` of functions.py rises with SOA(a, b) = t(b) - t(a): the later b is, the more answers name a as the first.
     if first in (a, "a", "first"):
         return True
     if first in (b, "b", "second"):

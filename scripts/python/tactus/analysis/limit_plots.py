@@ -9,7 +9,7 @@ TINT = {"detect": "#2a6fb0", "appear": "#a8871d", "break": BREAK}
 
 
 def limits_figure(factor, found, thresholds, observer):
-    """Limits of one factor, one a row, with published thresholds. found: [Limit]; thresholds: [Threshold]."""
+    """Limits of one factor, one per row, with published thresholds. found: [Limit]; thresholds: [Threshold]."""
     fig, axes = figures.new(height_in=0.9 + 0.27 * (len(found) + len(thresholds)))
     names = []
     y = 0

@@ -116,7 +116,7 @@ def edge_figure(made, observer):
     joined = [(i, limit.value) for i, (_, limit) in enumerate(made.edge) if limit.reached]
     axes.plot(*zip(*joined) if joined else ([], []), color=colour(made.second.modality), linewidth=0.8)
     axes.set_xticks(range(len(made.edge)), [mark(level) for level, _ in made.edge])
-    axes.set(xlabel=made.first.axis(), ylabel=f"L_break: {made.second.axis()}", title="frontier; open triangle: not reached up to this level; 0: the first alone reaches the margin")
+    axes.set(xlabel=made.first.axis(), ylabel=f"L_break: {made.second.axis()}", title="frontier; open triangle: not reached up to this level; 0: the first factor alone reaches the margin")
     axes.set_xlim(-0.5, len(made.edge) - 0.5)
     stamp(fig, observer)
     return fig

@@ -110,7 +110,7 @@ class Operator:
         for name, places in holders.items():
             for _, host in sorted(places)[:-1]:
                 self.request(host, "stop", patience_s=STOP_S, names=[name], leave=True, patience=3)
-                self.report(f"{name} also ran on {host}, from which it had been moved; it was stopped there")
+                self.report(f"{name} still ran on {host} after it had been moved to another host; it was stopped on {host}")
 
     def reject_mixed_builds(self, host_info, hosts, runs):
         ours = deployment.messages()
@@ -125,7 +125,7 @@ class Operator:
                 raise Refusal(f"{host}: the messages of its build differ: {first_difference(ours, a['messages'])}; build the same version there, or remove build= "
                               "to install this build")
             if host in runs and runs[host]["build"] != self.identity and not own:
-                raise Refusal(f"{host}: runs the build {runs[host]['build']}, and this is {self.identity}; a cluster runs one build: run tactus cluster "
+                raise Refusal(f"{host}: runs the build {runs[host]['build']}, and this machine has {self.identity}; all hosts of a cluster run one build: run tactus cluster "
                               "down first")
             if not own and a["machine"] != os.uname().machine:
                 raise Refusal(f"{host}: is a {a['machine']}, but this build is for {os.uname().machine}; build there, and name its folder with build=")
@@ -228,7 +228,7 @@ class Operator:
         host = self.placement(states).get(node)
         if host is None:
             unreachable = [h for h, s in states.items() if isinstance(s, Exception)]
-            raise Refusal(f"{node}: runs on no host that can be reached" + (f" ({', '.join(unreachable)} cannot); --lost moves it anyway, and a later up stops it there" if unreachable else "; start it with tactus cluster up"))
+            raise Refusal(f"{node}: runs on no reachable host" + (f" (not reachable: {', '.join(unreachable)}); --lost moves it anyway, and a later tactus cluster up stops it there" if unreachable else "; start it with tactus cluster up"))
         return host
 
     def restart(self, node):
@@ -268,7 +268,7 @@ class Operator:
             if not lost:
                 self.request(origin, "start", patience_s=START_S, names=[node])
             raise Refusal(f"{node}: does not start on {to} ({error})" + ("" if lost else f"; it runs on {origin} again")) from None
-        self.report(f"{node} moved from {origin or 'where it was lost'} to {to} in {time.monotonic() - self.stop_time_s:.1f} s" + (f"; it did not end when asked and was killed" if killed else ""))
+        self.report(f"{node} moved from {origin or 'an unreachable host'} to {to} in {time.monotonic() - self.stop_time_s:.1f} s" + (f"; it did not end on request and was killed" if killed else ""))
 
     def copy_shaders(self, origin, to):
         """Copies compiled shaders before visual_node stops; without them the new host would compile for seconds."""
@@ -306,7 +306,7 @@ class Operator:
             at = {h: [n for n in group if n in nodes and nodes[n][0] == h] for h in runs}
             answers = self.request_all("stop", [h for h in at if at[h]], patience_s=STOP_S, names=lambda h, at=at: at[h], patience=15)
             for host, a in answers.items():
-                errors += [str(a)] if isinstance(a, Exception) else [f"{n}: did not end when asked and was killed; see {out}/{host}/logs" for n in a["killed"]]
+                errors += [str(a)] if isinstance(a, Exception) else [f"{n}: did not end on request and was killed; see {out}/{host}/logs" for n in a["killed"]]
             if group == [WORLD]:
                 time.sleep(LAST_PRESENTATION_S)
         for host, a in self.request_all("end_supervisor", list(runs), patience_s=STOP_S).items():
@@ -319,7 +319,7 @@ class Operator:
     def summarise(self, out, git, seconds, lost, restarts):
         """Summary and tables, as scripts/run makes them. Returns the errors, one sentence each."""
         for name, count in restarts.items():
-            self.report(f"{name} died and was started again, {count} times" if count > 1 else f"{name} died once and was started again")
+            self.report(f"{name} died and was restarted {count} times" if count > 1 else f"{name} died once and was restarted")
         self.cluster.plan.out, self.cluster.plan.seconds = out, seconds
         return results.summarise(self.cluster.plan, git, lost, restarts, [])
 

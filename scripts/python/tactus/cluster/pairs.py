@@ -40,7 +40,7 @@ def findings(results):
             if o["answered"] and o["round_trip_us"]["p99"] > MAX_ROUND_TRIP_US:
                 found.append(f"{host}: answers of {other} take up to {o['round_trip_us']['p99'] / 1000:.0f} ms (p99), which delays sound and picture or makes them late; use a faster network")
             if o["answered"] and o["uncertainty_us"] > MAX_UNCERTAINTY_US:
-                found.append(f"{host}: knows the clock of {other} to {o['uncertainty_us'] / 1000:.1f} ms only; use a faster network between them")
+                found.append(f"{host}: the uncertainty of the clock of {other} is {o['uncertainty_us'] / 1000:.1f} ms; use a faster network between them")
             if not o["answered"] and o["heard"] and results[other]["others"].get(host, {}).get("heard"):
                 found.append(f"{host}: {other} receives its datagrams, but the answers are lost; allow UDP of these ports both ways in the firewall")
     return found

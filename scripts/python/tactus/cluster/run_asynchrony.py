@@ -85,7 +85,7 @@ def text(figures):
         for when, of in by_when.items():
             if of:
                 parts.append(f"asynchrony of {name}, {TITLES[when]}, ms:\n{asynchrony.text(of)}")
-    parts.append(f"instants that each node meant and met, nothing spoilt, ms:\n{asynchrony.scheduling_text(figures['instants'])}")
+    parts.append(f"scheduled and measured times of each node, in windows without faults, ms:\n{asynchrony.scheduling_text(figures['instants'])}")
     parts.append("\n".join(f"summary {r['pair']}: n {r['n_said']}, here {r['n']}; quantiles differ by {r['differs_ms'] if r['differs_ms'] is None else round(r['differs_ms'], 3)} ms; "
                            f"uncertainty {r['uncertainty_said_ms']} ms, here {r['uncertainty_ms']:.3f} ms" for r in figures["summary"]))
     return "\n".join(parts)
@@ -99,11 +99,11 @@ def violations(figures):
             for r in of:
                 who = f"asynchrony of {name}, {TITLES[when]}, {r['a']} {r['b']}"
                 if r["outside"]:
-                    found.append(f"{who}: {r['outside']} of {r['n']} stated off by more than the clock maps allow, at worst {r['off_worst_ms']:.3f} ms")
+                    found.append(f"{who}: {r['outside']} of {r['n']} differ from the clocks of the lab by more than the uncertainty of the clock maps, by at most {r['off_worst_ms']:.3f} ms")
                 if r["beyond_in_time"] and when == "nothing":
-                    found.append(f"{who}: {r['beyond_in_time']} of {r['aimed']} beyond what is stated and the grain, and not called late; at worst {r['aside_worst_ms']:.1f} ms aside")
+                    found.append(f"{who}: {r['beyond_in_time']} of {r['aimed']} miss the scheduled asynchrony by more than the stated uncertainty and the resolution, and are not reported as late; largest error {r['aside_worst_ms']:.1f} ms")
     for r in figures["summary"]:
         if r["n"] != r["n_said"] or (r["differs_ms"] or 0) > SUMMARY_BIN_MS or abs((r["uncertainty_said_ms"] or 0) - r["uncertainty_ms"]) > SUMMARY_ROUNDS_MS:
-            found.append(f"asynchrony of {r['pair']}: summarise reports {r['n_said']} of them within {r['uncertainty_said_ms']} ms, here are {r['n']} within {r['uncertainty_ms']:.3f} ms, "
+            found.append(f"asynchrony of {r['pair']}: summarise reports {r['n_said']} values with an uncertainty of {r['uncertainty_said_ms']} ms; this evaluation finds {r['n']} with {r['uncertainty_ms']:.3f} ms, "
                          f"and their quantiles differ by {r['differs_ms']} ms")
     return found

@@ -18,7 +18,7 @@ def route():
     found = subprocess.run(["ip", "route", "get", GROUP], capture_output=True, text=True, check=False)
     if found.returncode == 0 and " dev " in found.stdout:
         device = found.stdout.split(" dev ")[1].split()[0]
-        return Line("multicast route", GOOD, f"messages to {GROUP} leave by {device}", figures={"device": device})
+        return Line("multicast route", GOOD, f"messages to {GROUP} are sent through {device}", figures={"device": device})
     return Line("multicast route", WEAK, f"there is no route to {GROUP}: only runs in a private network (--network private) "
                 "are possible", "ip route add 224.0.0.0/4 dev lo, or dev of the network that the hosts share")
 

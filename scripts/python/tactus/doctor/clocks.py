@@ -58,4 +58,4 @@ def offsets(port, seconds=1.5):
     if worst <= FEW_MS:
         return Line("other clocks", GOOD, text, figures=figures)
     return Line("other clocks", WEAK, text + ": the uncertainty of every asynchrony between hosts is at least as large",
-                "use a wired network between the hosts for the cluster alone", figures)
+                "connect the hosts by a wired network that only the cluster uses", figures)

@@ -115,7 +115,7 @@ def parse(words, here):
     several = {**others, **{process: wall for process, wall in pictures.items() if process != walls.FIRST}}
     for node in a.without:
         if node == "recorder":
-            raise Refusal("--without recorder: the recorder cannot be left out, because all results come from its log; leave this option away")
+            raise Refusal("--without recorder: the recorder cannot be left out, because all results come from its log; remove this option")
         if node not in (*REMOVABLE, *several):
             raise Refusal(f"--without {node}: there is no such node to leave out; choose from {', '.join((*REMOVABLE, *several))}")
     if hands.FIRST in a.without:  # all processes of touch
@@ -134,11 +134,11 @@ def parse(words, here):
                 port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set, several), virtual=virtual(a), player=a.player)
     if plan.player:
         if plan.devices or hands.FIRST in plan.without:
-            raise Refusal("--player holds the first tool's device itself; leave --device and --without haptic_node away")
+            raise Refusal("--player holds the device of the first tool itself; remove --device and --without haptic_node")
         plan.devices = {"": f"external:{PLAYER}"}
     if plan.window and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        raise Refusal("visual_node: --window needs a display and neither DISPLAY nor WAYLAND_DISPLAY is set; leave "
-                      "--window away and look at video.mp4")
+        raise Refusal("visual_node: --window needs a display and neither DISPLAY nor WAYLAND_DISPLAY is set; remove "
+                      "--window and watch video.mp4")
     return plan
 
 
@@ -186,7 +186,7 @@ def profile(here, text):
 
 
 def unknown_modalities(plan):
-    """Modalities of the profile and of --soa that no node of this run has: a user's own node may join later, or the name is misspelt."""
+    """Modalities of the profile and of --soa that no node of this run renders: a user's own node may join later, or the name is misspelt."""
     named = {part.partition("=")[0] for word in plan.playout if word.startswith("--soa=") for part in word[len("--soa="):].split(",")}
     try:
         if plan.degrade is not None:
@@ -214,7 +214,7 @@ def playout(a):
     words = [f"--{option}={value}" for option in PLAYOUT if (value := getattr(a, option)) is not None]
     if words and "sync_node" in a.without:
         raise Refusal(f"{words[0].partition('=')[0]} and --without sync_node contradict each other: sync_node applies the "
-                      "playout policy; leave one away")
+                      "playout policy; remove one")
     return words
 
 
@@ -230,7 +230,7 @@ def virtual(a):
                           ("--realtime require", a.realtime == "require"), ("--network host", a.network == "host"),
                           ("--device external", any("external:" in device for device in a.device))):
         if value:
-            raise Refusal(f"--virtual-time and {option} contradict each other: nothing outside the run can keep up with it; leave one away")
+            raise Refusal(f"--virtual-time and {option} contradict each other: no program outside the run can keep up with virtual time; remove one")
     return [word for option, value in given.items()
             for word in (f"--{option}", f"{number(f'--{option}', value, 0, BUS_OPTIONS[option], ''):g}")]
 
@@ -265,14 +265,14 @@ def out_folder(here, text):
         raise Refusal(f"recorder: the folder {path} for the results cannot be written; name another with --out")
     disk = os.statvfs(existing)
     if disk.f_bavail * disk.f_frsize < MIN_FREE_BYTES:
-        raise Refusal(f"recorder: the disk of {path} is full; make room there or name another with --out")
+        raise Refusal(f"recorder: the disk of {path} is full; free space there, or name another folder with --out")
     return path.absolute()
 
 
 def devices(words, without, tools):
     """{tool: spec} of --device. The nodes check the specs. Raises Refusal."""
     if words and hands.FIRST in without:
-        raise Refusal("haptic_node: --device and --without haptic_node contradict each other; leave one away")
+        raise Refusal("haptic_node: --device and --without haptic_node contradict each other; remove one")
     try:
         return hands.devices(words, tools)
     except ValueError as error:

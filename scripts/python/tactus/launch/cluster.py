@@ -134,7 +134,7 @@ class Cluster:
                              for name, command in words.items()}
         except OSError as error:
             self.clean()
-            raise Refusal(f"supervision: cannot prepare the run in {self.folder} ({error.strerror}); make room there, or set "
+            raise Refusal(f"supervision: cannot prepare the run in {self.folder} ({error.strerror}); free space there, or set "
                           "TMPDIR to another folder") from None
 
     def start(self):

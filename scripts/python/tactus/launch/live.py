@@ -30,8 +30,8 @@ class Page:
             self.socket.listen(16)
         except OSError as error:
             self.socket.close()
-            raise Refusal(f"--live {port}: cannot listen on this port ({error.strerror}); choose another, or leave the number "
-                          "away") from None
+            raise Refusal(f"--live {port}: cannot listen on this port ({error.strerror}); choose another, or omit the "
+                          "number") from None
         self.token = os.urandom(16).hex()
         self.process = None
         self.out = None

@@ -132,12 +132,12 @@ def run(plan, watch=watch_over):
         running.clean()
     errors += [f"{name}: could not be kept running: {why} ({last_lines[name]}); see {plan.out}/logs/{name}.log"
               for name, why in lost.items()]
-    errors += [f"{name}: did not end when asked and was killed; see {plan.out}/logs/{name}.log" for name in killed]
+    errors += [f"{name}: did not end on request and was killed; see {plan.out}/logs/{name}.log" for name in killed]
     for name, count in restarts.items():
         if name not in lost:
-            report_run(f"{name} died and was started again, {count} times in all" if count > 1 else f"{name} died once and was started again")
+            report_run(f"{name} died and was restarted {count} times" if count > 1 else f"{name} died once and was restarted")
     for name in taken_down:
-        report_run(f"{name} was taken down and not brought back")
+        report_run(f"{name} was taken down and not started again")
     errors += summarise(plan, git, {*lost, *taken_down}, restarts, warnings)
     report_run(f"results in {plan.out}")
     os.close(claim)

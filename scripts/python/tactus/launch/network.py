@@ -31,7 +31,7 @@ def choose(choice, port):
             if is_allowed(flags, ROUTE):
                 return Network(True, flags, f"private ({description})")
         if choice == "private":
-            raise Refusal("--network private: this system allows neither root nor users a network namespace; use --network "
+            raise Refusal("--network private: this system does not allow network namespaces, not even for root; use --network "
                           "host, or allow user namespaces (sysctl user.max_user_namespaces)")
     check_host(port)
     for flags, description in candidates(net=False):
@@ -78,5 +78,5 @@ def check_host(port):
             s.sendto(b"tactus", (GROUP, port))
             s.recv(16)
         except OSError as error:
-            raise Refusal(f"network: multicast to {GROUP} does not come back to this machine ({error}); use --network "
+            raise Refusal(f"network: multicast to {GROUP} does not return to this machine ({error}); use --network "
                           "private, or add a route: ip route add 224.0.0.0/4 dev lo") from None

@@ -55,7 +55,7 @@ def make_folder(out):
             continue
         return folder
     raise Refusal(f"supervision: neither {tempfile.gettempdir()} nor {out} can hold executable files and named pipes, or "
-                  "both are full; set TMPDIR to a folder that can")
+                  "both are full; set TMPDIR to a folder that can hold them")
 
 
 def lock_folder(folder):

@@ -115,7 +115,7 @@ def analyse(samples, rate, max_modes=64, below_Hz=16000.0, begin_s=None):
     ringing = from_onset[begins:begins + int(LONGEST_S * rate)]
     ringing = ringing - ringing.mean() if len(ringing) else ringing
     if len(ringing) < 256 or not ringing.any():
-        raise Refusal("nothing rings after the loudest moment; give a recording that rings for at least 0.1 s")
+        raise Refusal("no ringing was found after the loudest moment; give a recording that rings for at least 0.1 s")
     poles = esprit.find_poles(ringing, rate, min(below_Hz, 0.49 * rate))
     poles = poles[poles[:, 0] > LOWEST_HZ]
     poles = poles[poles[:, 1] * max(begins / rate, AFTER_BLOW_S) < MAX_LOST_DB / 20 * np.log(10)]

@@ -30,7 +30,7 @@ class Tables:
             raise ValueError("QUEST+ needs levels, and values of every parameter; fill the empty list")
         size = len(levels) * math.prod(len(v) for v in parameters.values())
         if size > MAX_CELLS:
-            raise ValueError(f"QUEST+ would keep {size} probabilities; take coarser lists, so that it is at most {MAX_CELLS}")
+            raise ValueError(f"QUEST+ would keep {size} probabilities; give coarser lists with at most {MAX_CELLS} probabilities")
         self.names = f.parameters
         self.levels = levels
         self.cells = np.array(list(itertools.product(*(parameters[n] for n in self.names))), dtype=float)

@@ -14,7 +14,7 @@ MAX_TOOLS = 4
 
 
 def share_above_jnd(reference_N, other_N, fraction):
-    """Share of ticks, among those with force in either, in which the difference exceeds the just noticeable one. Arrays (n,3), N."""
+    """Share of the ticks with force in at least one of the two, in which the difference exceeds the just noticeable one. Arrays (n,3), N."""
     size = np.linalg.norm(reference_N, axis=1)
     felt = (size > 1e-3) | (np.linalg.norm(other_N, axis=1) > 1e-3)
     apart = np.linalg.norm(other_N - reference_N, axis=1)
@@ -59,7 +59,7 @@ def tool_section(report, tool, first):
     top.legend(ncols=6, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
     bottom.plot(*figures.envelope(t, own["device_m"][known] * 1e3), color="#888888", linewidth=0.9, label="device")
     bottom.plot(*figures.envelope(t, own["proxy_m"][known] * 1e3), color=figures.COLOUR["haptic"], linewidth=0.7, label="proxy")
-    bottom.set(ylabel="height, mm", xlabel="s of the world")
+    bottom.set(ylabel="height, mm", xlabel="simulated time, s")
     bottom.legend(ncols=2, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
     cited = ", ".join(report.cite(source) for source in FORCE_SOURCES)
     more = (" Two runs with a person differ in their motion; " + "; ".join(comparisons) + ".") if comparisons else ""
@@ -80,7 +80,7 @@ def temperature(report):
         other = log.temperatures()
         if len(other) > 1:
             axes.plot(other[:, 0], other[:, 1], color=figures.OF_LOG[i % len(figures.OF_LOG)], linewidth=0.8, label=f"skin, {log.name}")
-    axes.set(xlabel="s of the world", ylabel="°C")
+    axes.set(xlabel="simulated time, s", ylabel="°C")
     axes.legend(ncols=4, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
     return report.gallery.keep(fig, "temperature", f"Model temperature of the skin, {number(warm[:, 1].min(), 4)} to {number(warm[:, 1].max(), 4)} °C, and the command to the display.")
 

@@ -189,7 +189,7 @@ def print_renderings(renderings, options):
             lines.append([f"{name}, {sense}", number(f["took_s"]), number(f["times_as_fast_as_time"], 1)])
         else:
             lines.append([f"{name}, {sense}", "not rendered:", renderings.failed[name, sense]])
-    show(["rendered", "in s", "times as fast as time"], lines)
+    show(["rendered", "in s", "times real time"], lines)
 
 
 def compare_twice(renderings, options):

@@ -16,8 +16,8 @@ from tactus.study.trial_table import COLUMNS, replace, text_of
 
 VERSION = "1.8.0"
 EVENTS = {
-    "onset": {"LongName": "onset", "Description": "time of the question, or of the start of the game, since the start of the session; by the clock of the computer, accurate to some "
-              "hundredths of a second. The log of the run holds the presentation time of the stimulus", "Units": "s"},
+    "onset": {"LongName": "onset", "Description": "time of the question, or of the start of the game, since the start of the session; by the clock of the computer, accurate to a few "
+              "hundredths of a second. The log of the run contains the presentation time of the stimulus", "Units": "s"},
     "duration": {"LongName": "duration", "Description": "time until the answer, or until the end of the game", "Units": "s"},
     "trial_type": {"LongName": "type of trial", "Description": "the condition"},
     "trial": {"LongName": "trial", "Description": "number of the trial, as in the trial table"},

@@ -154,7 +154,7 @@ class Journal:
             raise Refusal(f"{self.folder}: another process holds its journal; end that session first, or choose another participant or folder") from None
         except OSError as error:
             self.close()
-            raise Refusal(f"{self.path}: cannot be written ({sentence_of(error)}); choose a folder that is yours, with room on its disk") from None
+            raise Refusal(f"{self.path}: cannot be written ({sentence_of(error)}); choose a writable folder with free space") from None
         except BaseException:
             self.close()
             raise

@@ -6,8 +6,8 @@ from tactus import terminal
 from tactus.refusal import Refusal, sentence_of
 from tactus.study import session, study_file
 
-USAGE = """Runs a session of one participant on a live cluster: instructions, trials, questions, breaks. Every trial puts its profile in force in every
-sense, presents its stimulus, and reads back the measured presentation times. A trial that misses the tolerance of the study is marked and repeated.
+USAGE = """Runs a session of one participant on a live cluster: instructions, trials, questions, breaks. Every trial applies its profile to every
+sense, presents its stimulus, and reads the measured presentation times. A trial that misses the tolerance of the study is marked and repeated.
 After an interruption, the same command resumes with the next trial."""
 
 

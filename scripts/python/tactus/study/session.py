@@ -124,7 +124,7 @@ class Session:
         """Publishes the answer of a simulated participant."""
         self.runner.send(answer=answer)
         if not self.runner.wait_for(lambda: self.runner.answer is not None, 5):
-            raise Refusal("conductor: did not accept the answer of the simulated participant; see its lines in the log of the run")
+            raise Refusal("trial_runner: did not accept the answer of the simulated participant; see its lines in the log of the run")
         return self.runner.answer
 
     def read(self, text):

@@ -42,7 +42,7 @@ class TrialRunnerClient:
             self.process.stdin.write(json.dumps(what).encode() + b"\n")
             self.process.stdin.flush()
         except OSError:
-            raise Refusal(f"conductor: has ended ({self.last_output_line()}); check that the cluster is running") from None
+            raise Refusal(f"trial_runner: has ended ({self.last_output_line()}); check that the cluster is running") from None
 
     def last_output_line(self):
         try:
@@ -58,7 +58,7 @@ class TrialRunnerClient:
             return
         data = os.read(self.process.stdout.fileno(), 1 << 20)
         if not data:
-            raise Refusal(f"conductor: has ended ({self.last_output_line()}); check that the cluster is running")
+            raise Refusal(f"trial_runner: has ended ({self.last_output_line()}); check that the cluster is running")
         *lines, self.rest = (self.rest + data).split(b"\n")
         for line in lines:
             self.take(json.loads(line))

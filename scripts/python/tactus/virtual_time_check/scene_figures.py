@@ -136,5 +136,5 @@ def read(folder):
     """RunTables of a run. Raises OSError or ValueError if it wrote none."""
     tables = RunTables(folder)
     if not tables.has("events.csv"):
-        raise ValueError(f"{folder}: holds no events: nothing was touched, or the run ended early")
+        raise ValueError(f"{folder}: contains no events: the hand touched nothing, or the run ended early")
     return tables

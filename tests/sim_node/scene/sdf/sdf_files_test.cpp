@@ -58,9 +58,11 @@ TEST_CASE("An include that is missing, empty, circular or invalid is rejected wi
   SceneFile file(world("\n<include><uri>ball.sdf</uri></include>"));
   CHECK(file.load_error() == "scene.sdf:4: include of \"ball.sdf\" is not found: put it beside the file");
   file.write("ball.sdf", ball("ball", "<include><uri>ball.sdf</uri></include>"));
-  CHECK_THAT(file.load_error(), Catch::StartsWith("ball.sdf:3: ") && Catch::Contains("break the circle"));
+  CHECK_THAT(file.load_error(),
+             Catch::StartsWith("ball.sdf:3: ") && Catch::Contains("remove the circular include"));
   file.write("ball.sdf", ball("ball", "<include><uri>scene.sdf</uri></include>"));
-  CHECK_THAT(file.load_error(), Catch::StartsWith("ball.sdf:3: ") && Catch::Contains("break the circle"));
+  CHECK_THAT(file.load_error(),
+             Catch::StartsWith("ball.sdf:3: ") && Catch::Contains("remove the circular include"));
   file.write("ball.sdf", "<sdf version='1.6'><model name='m'><link name='l'></model></sdf>");
   CHECK_THAT(file.load_error(), Catch::StartsWith("ball.sdf:1: ") && Catch::Contains("XML"));
   file.write("ball.sdf", "<sdf version='1.6'>\n<model name='m'><link name='l'/><joint name='j'\n type='revolute'/></model></sdf>");
