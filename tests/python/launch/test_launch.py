@@ -378,7 +378,7 @@ class Programs(unittest.TestCase):
     def test_scripts_build_builds_all_programs_of_a_run_and_a_study(self):
         from tactus.launch import virtual
         built = (SCRIPTS / "build").read_text(encoding="utf-8").partition("targets+=(")[2].partition(")")[0].split()
-        for program in (*arguments.SENSES, *virtual.PROGRAMS, arguments.PLAYER, "conductor", "play_games"):
+        for program in (*arguments.SENSES, *virtual.PROGRAMS, arguments.PLAYER_PROGRAM, "trial_runner", "play_games"):
             self.assertIn(program, built)
 
 

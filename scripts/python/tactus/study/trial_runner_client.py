@@ -18,7 +18,7 @@ class TrialRunnerClient:
     """A trial runner in the cluster whose results are in `out`. hand: (x, y, z, above) in m, if it holds the device. with_pictures: it also sends pictures."""
 
     def __init__(self, out, hand=None, with_pictures=False):
-        words = [*tactus_command("attach"), str(out), "conductor", "--out", str(out)]
+        words = [*tactus_command("attach"), str(out), "trial_runner", "--out", str(out)]
         if hand is not None:
             words += ["--hand", *(f"{x:g}" for x in hand[:3]), "--above", f"{hand[3]:g}"]
         words += ["--look"] if with_pictures else []
