@@ -77,7 +77,7 @@ class Evdev:
         self.left, self.sticks, self.ranges = b"", {}, {}
 
     def range_of(self, axis):
-        """(minimum, maximum) of an axis by EVIOCGABS; those of a common gamepad where the source is no device."""
+        """(minimum, maximum) of an axis by EVIOCGABS; those of a common gamepad where the source is not a device."""
         if axis not in self.ranges:
             try:
                 info = fcntl.ioctl(self.file, 2 << 30 | 24 << 16 | 0x45 << 8 | 0x40 + axis, bytes(24))

@@ -35,7 +35,7 @@ class BindingSet {
   // these rates.
   std::array<double, 6> shares(const std::array<double, 6>& rates) const;
 
-  // Adds a normal; false when it depends on the present ones.
+  // Adds a normal; false when it depends on the normals added before.
   bool add(std::size_t index, const Vector6& normal);
   void drop(std::size_t k);
   void clear() { size_ = 0; }

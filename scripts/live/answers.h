@@ -1,4 +1,4 @@
-// The state of a study for the pages, and the answers of the pages: its leader, the present question, and whether a page has
+// The state of a study for the pages, and the answers of the pages: its leader, the current question, and whether a page has
 // answered. Pure: messages are passed in and out.
 #pragma once
 
@@ -24,7 +24,7 @@ class Answers {
   explicit Answers(std::int64_t run_id) : question_(run_id) {}
 
   void push(const question_t& m, sync::HostTime arrival);
-  // The answer of a page. Throws std::invalid_argument with one sentence when it does not fit the present question, or when
+  // The answer of a page. Throws std::invalid_argument with one sentence when it does not fit the current question, or when
   // that has been answered.
   void answer(const PageAnswer& answer, sync::HostTime now);
   // The answer to publish now: once, and again for each repetition of its question.

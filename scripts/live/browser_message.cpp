@@ -86,7 +86,7 @@ PageAnswer answer(const json& j) {
   const auto question = j.find("question");
   if (question == j.end()) throw std::invalid_argument("the page's answer names no question; load it again");
   const double choice = number(j, "choice", -1, 8);
-  if (choice != std::floor(choice)) throw std::invalid_argument("\"choice\" is no whole number; load the page again");
+  if (choice != std::floor(choice)) throw std::invalid_argument("\"choice\" is not a whole number; load the page again");
   return {text(*question, 64), static_cast<int>(choice), number(j, "number", -1e9, 1e9),
           static_cast<std::int64_t>(number(j, "after_ns", 0, kMaxAnswerTime_ns))};
 }

@@ -25,7 +25,7 @@ class Hand {
   // Design: limits of the distance between the camera and the plane.
   static constexpr double kMinDepth_m = 0.05, kMaxDepth_m = 10;
 
-  // aspect: width of the picture by its height. tool: the present position of the tool, if known; only a new grab uses it.
+  // aspect: width of the picture by its height. tool: the current position of the tool, if known; only a new grab uses it.
   void aim(const HandTarget& at, const scene_t& scene, double aspect, const std::optional<Eigen::Vector3d>& tool,
            sync::HostTime now);
   // The device state to publish now; nullopt while no page holds the device.

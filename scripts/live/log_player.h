@@ -25,7 +25,7 @@ class LogPlayer {
   // Length of the log before the position of a seek that is shown, too, so that graphs are not empty.
   static constexpr sync::Nanoseconds kSeekLead{3'000'000'000};
 
-  // Throws std::runtime_error with one sentence when the file is no log.
+  // Throws std::runtime_error with one sentence when the file is not a log.
   explicit LogPlayer(const std::string& path);
   // The same for bytes that outlive this object.
   explicit LogPlayer(std::span<const std::uint8_t> bytes);

@@ -52,7 +52,7 @@ class PageSession {
   // The tagged variables that the pages show, as patterns of TAG_REQUEST.
   std::vector<std::string> requested_tags() const;
   const Feed& feed() const { return feed_; }
-  // The present question of a study, and the answers of pages.
+  // The current question of a study, and the answers of pages.
   Answers& answers() { return answers_; }
 
  private:

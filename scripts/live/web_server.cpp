@@ -208,7 +208,7 @@ WebServer::WebServer(int listen_fd, std::map<std::string, PageFile> files, std::
   socklen_t size = sizeof listens;
   if (e || getsockopt(listen_fd, SOL_SOCKET, SO_ACCEPTCONN, &listens, &size) != 0 || listens == 0)
     throw std::runtime_error("descriptor " + std::to_string(listen_fd) +
-                             " is no listening IPv4 socket; let scripts/run --live open it");
+                             " is not a listening IPv4 socket; start it with scripts/run --live, which opens one");
   impl_->files = std::move(files);
   impl_->access = {impl_->acceptor.local_endpoint().port(), loopback, std::move(token)};
   impl_->events = std::move(events);

@@ -30,7 +30,7 @@ class WebServer {
     std::function<void(int page, std::string_view text)> message;
   };
   // listen_fd: a listening socket; the server takes ownership. files: by path, "/" at least. Throws std::runtime_error with
-  // one sentence when listen_fd is no listening socket.
+  // one sentence when listen_fd is not a listening socket.
   WebServer(int listen_fd, std::map<std::string, PageFile> files, std::string token, bool loopback, Events events);
   ~WebServer();
   WebServer(const WebServer&) = delete;

@@ -16,7 +16,7 @@ constexpr double kBallMoved_m = 0.03;       // a ball that has moved this far is
 constexpr double kFallen_m = -0.01;         // a ball with its centre below this is in a hole
 constexpr double kFallHeardValid_s = 1.0;   // a heard fall overrides sight for this time
 constexpr double kLost_s = 0.6;             // after pushing for this time without sight or touch, the ball is lost
-constexpr double kStuck_s = 1.5;            // an object that does not move for this time is no ball
+constexpr double kStuck_s = 1.5;            // an object that does not move for this time is not a ball
 constexpr double kSearchPitch_m = 0.025;    // a search widens by this each revolution
 constexpr double kMaxSearchRadius_m = 0.2;  // then it restarts
 constexpr double kSteer_1_s = 6;            // rate of the sideways movement behind a ball
@@ -180,7 +180,7 @@ void Player::feel(const Percept& p) {
   only_felt_ = true;
 }
 
-// Selects the next ball that is not in its hole, when the present one is.
+// Selects the next ball that is not in its hole, when the current one is.
 void Player::select_goal() {
   const int count = static_cast<int>(beliefs_.size());
   if (goal_ < count && !ball().in_hole) return;

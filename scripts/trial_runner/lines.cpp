@@ -30,7 +30,7 @@ std::optional<std::string> Lines::next() {
   const auto end = in_.find('\n');
   if (end == std::string::npos) {
     if (in_.size() > kMaxLine)
-      throw std::runtime_error("a request is longer than 128 KiB; give one JSON object a line");
+      throw std::runtime_error("a request is longer than 128 KiB; give one JSON object per line");
     return std::nullopt;
   }
   std::string line = in_.substr(0, end);

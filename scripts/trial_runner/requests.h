@@ -1,4 +1,4 @@
-// Requests to the trial runner, a JSON object with one member a line. Pure.
+// Requests to the trial runner, one JSON object with one member per line. Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +18,7 @@ struct ProfileRequest {
 struct QuestionRequest {
   question_t question;
 };
-// {"answer": {"choice": 0}} or {"answer": {"number": 0.5}}: a simulated participant's answer to the present question.
+// {"answer": {"choice": 0}} or {"answer": {"number": 0.5}}: a simulated participant's answer to the current question.
 struct AnswerRequest {
   int choice = -1;
   double number = 0;

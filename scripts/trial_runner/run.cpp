@@ -1,6 +1,6 @@
 // trial_runner: the trial runner of a study. It puts the profiles of the trials in force, asks the participant, moves a hand
 // where the study has one, and reports presentations and their times. Commands come on standard input, observations go to
-// standard output, a line of JSON each.
+// standard output, one line of JSON each.
 //
 //   in   NODE_HEALTH, DEGRADATION      the profile of each modality
 //        CONTACTS                      the time of the world

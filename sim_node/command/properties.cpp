@@ -54,7 +54,7 @@ std::string check_values(const PropertyRow& row, std::span<const double> values)
     error << row.name << " takes " << row.count << (row.count == 1 ? " number" : " numbers") << " (" << row.unit
         << "), not " << values.size();
   else if (!std::all_of(values.begin(), values.end(), [&](double x) { return x >= row.low && x <= row.high; }))
-    error << row.name << " must lie between " << row.low << " and " << row.high << " " << row.unit;
+    error << row.name << " must be between " << row.low << " and " << row.high << " " << row.unit;
   return error.str();
 }
 

@@ -38,7 +38,7 @@ class ClockLine {
 
 class ClockMaps {
  public:
-  // The uncertainty of a map grows until the map is renewed. Beyond this value the one-way estimate is no worse; its bias is
+  // The uncertainty of a map grows until the map is renewed. Beyond this value the one-way estimate is at least as good; its bias is
   // a latency (design: one frame at 60 Hz).
   static constexpr Nanoseconds kMaxUncertainty{16'000'000};
   // Of two publishers of one map, the first is used until it has been silent for four of its periods.

@@ -25,7 +25,7 @@ class SimClockTracker {
   static constexpr Nanoseconds kSilence{300'000'000};
   // A publish_time_ns that falls back by more than this means that a log is replayed again.
   static constexpr Nanoseconds kMaxStepBack{1'000'000'000};
-  // A clock that differs from the present one by more than this is accepted only when the present one has not been confirmed
+  // A clock that differs from the current one by more than this is accepted only when the current one has not been confirmed
   // for kSilence, so a forged message cannot shift the time.
   static constexpr Nanoseconds kMaxDeviation{1'000'000'000};
   static constexpr std::size_t kRemembered = 16;

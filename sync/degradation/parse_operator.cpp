@@ -21,7 +21,7 @@ double quantity(std::string_view text, std::string_view unit) {
       std::from_chars(text.data(), text.data() + text.size(), bare).ptr != text.data() + text.size();
   if (unit != "1" && !has_unit && x != 0)
     throw std::invalid_argument("\"" + std::string(text) +
-                                "\" lacks its unit; write it right behind the number, as in " + std::string(text) +
+                                "\" has no unit; write the unit directly after the number, as in " + std::string(text) +
                                 std::string(unit));
   return x;
 }
@@ -40,7 +40,7 @@ class Words {
                              : !pairs_.try_emplace(name, word.substr(equals + 1)).second;
       if (duplicated)
         throw std::invalid_argument("\"" + (equals == std::string::npos ? name : name + "=") +
-                                    "\" stands there twice; leave one away");
+                                    "\" is given twice; remove one");
       if (equals == std::string::npos) words_.push_back(word);
     }
   }
@@ -77,22 +77,22 @@ class Words {
     for (const auto& [name, value] : choices) {
       if (!word(name)) continue;
       if (chosen)
-        throw std::invalid_argument("\"" + given_name + "\" and \"" + name + "\" contradict each other; leave one away");
+        throw std::invalid_argument("\"" + given_name + "\" and \"" + name + "\" contradict each other; remove one");
       chosen = value;
       given_name = name;
     }
     return chosen;
   }
   void expect_end() const {
-    if (!words_.empty()) throw std::invalid_argument("\"" + words_.front() + "\" means nothing here");
-    if (!pairs_.empty()) throw std::invalid_argument("\"" + pairs_.begin()->first + "=\" means nothing here");
+    if (!words_.empty()) throw std::invalid_argument("\"" + words_.front() + "\" is not valid here");
+    if (!pairs_.empty()) throw std::invalid_argument("\"" + pairs_.begin()->first + "=\" is not valid here");
   }
 
  private:
   static double checked(double x, const std::string& text, std::string_view unit, double least, double most) {
     if (x < least || x > most) {
       std::ostringstream message;
-      message << text << " must lie between " << least << " and " << most;
+      message << text << " must be between " << least << " and " << most;
       if (unit != "1") message << " " << unit;
       throw std::invalid_argument(message.str());
     }
@@ -173,7 +173,7 @@ std::vector<double> delays_of_trace(const std::string& trace) {
   for (std::string value; std::getline(values, value, ',');) {
     delays_s.push_back(quantity(value, "s"));
     if (delays_s.back() < 0 || delays_s.back() > kLongest_s)
-      throw std::invalid_argument("the delays of a trace lie between 0 and 60 s");
+      throw std::invalid_argument("the delays of a trace must be between 0 and 60 s");
   }
   return delays_s;
 }
@@ -191,7 +191,7 @@ JitterDef jitter(Words& w) {
     return d;
   }
   if (shape || d.correlation != 0)
-    throw std::invalid_argument("a trace is taken as it is; leave its shape and correlation away");
+    throw std::invalid_argument("the delays of a trace are used unchanged; remove the shape and the correlation");
   d.shape = JitterShape::kTrace;
   d.trace_s = delays_of_trace(w.pair("trace", ""));
   return d;

@@ -55,7 +55,7 @@ Rule parse_rule(const Element& e, const DeclaredOutput& own) {
       rule.modality = value;
     } else if (name == "material") {
       rule.material = value;
-      if (value.empty()) throw std::invalid_argument("material=\"\" names none; leave it away, or name one");
+      if (value.empty()) throw std::invalid_argument("material=\"\" names no material; name one, or remove the attribute");
     } else if (name == "bodies") {
       std::istringstream two(value);
       std::string rest;
@@ -79,7 +79,7 @@ std::uint64_t seed_of(const std::string& text) {
   std::uint64_t seed = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
   if (error != std::errc{} || end != text.data() + text.size())
-    throw std::invalid_argument("seed=\"" + text + "\" is no whole number from 0 to 18446744073709551615");
+    throw std::invalid_argument("seed=\"" + text + "\" is not a whole number from 0 to 18446744073709551615");
   return seed;
 }
 
@@ -105,11 +105,11 @@ void refuse_more_than_root(const tinyxml2::XMLDocument& document, const tinyxml2
   for (const tinyxml2::XMLNode* n = document.FirstChild(); n; n = n->NextSibling()) {
     line = n->GetLineNum();
     if (n->ToDeclaration() && says_another_encoding(n->Value()))
-      throw std::invalid_argument("a profile is read as UTF-8; save it so, and leave its encoding away");
+      throw std::invalid_argument("a profile must be in UTF-8; save it in UTF-8 and remove encoding= from its first line");
     if (n == root || n->ToComment() || n->ToDeclaration()) continue;
     throw std::invalid_argument(n->ToElement()
                                     ? "a file holds one <profile> and nothing after it; put all <degrade> into it"
-                                    : "only <profile> may stand here; leave this away");
+                                    : "only <profile> is allowed here; remove this");
   }
 }
 
@@ -124,10 +124,10 @@ Profile parse_profile(const std::string& xml, const std::string& file, const Dec
   if (const std::size_t nul = xml.find('\0'); nul != std::string::npos)
     refuse(file,
            1 + static_cast<int>(std::count(xml.begin(), xml.begin() + static_cast<std::ptrdiff_t>(nul), '\n')),
-           "there is a NUL byte here, so this is no text in UTF-8");
+           "there is a NUL byte here, so this is not text in UTF-8");
   tinyxml2::XMLDocument document;
   if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS)
-    refuse(file, document.ErrorLineNum(), std::string("this is no XML (") + document.ErrorName() + ")");
+    refuse(file, document.ErrorLineNum(), std::string("this is not XML (") + document.ErrorName() + ")");
   const Element* root = document.RootElement();
   if (!root || std::string(root->Name()) != "profile")
     refuse(file, root ? root->GetLineNum() : 1, "a profile begins with <profile>");

@@ -36,7 +36,7 @@ class ProfileReceiver {
   static constexpr int kMaxPages = 55;
 
   // Returns the profile when this page completes one that is newer than the previous one. A text that does not match its
-  // hash, or that is no valid profile, is refused as a whole: nothing changes.
+  // hash, or that is not a valid profile, is refused as a whole: nothing changes.
   std::optional<ProfileInForce> push(const degradation_t& page);
   // One sentence on the last profile with an invalid text; returned once, then empty.
   std::string take_refusal() { return std::exchange(refusal_, {}); }

@@ -35,7 +35,7 @@ class LogParts {
   const std::string& path() const { return parts_.back().path; }
   // Removes the oldest parts beyond the limits, but not the one being written, whose size is given.
   void prune(std::int64_t present_bytes);
-  // Bytes of the kept parts, without the present one.
+  // Bytes of the kept parts, without the current one.
   std::int64_t bytes_before() const;
   std::int64_t removed() const { return removed_; }
 

@@ -44,7 +44,7 @@ struct PlayoutPlan {
 
 // "audio=50ms,visual=-20ms". Throws std::invalid_argument with one sentence.
 std::map<std::string, Nanoseconds> parse_soa(const std::string& text);
-// "120ms", "0.12s". Throws std::invalid_argument with one sentence when it is no duration, negative, or longer than 60 s.
+// "120ms", "0.12s". Throws std::invalid_argument with one sentence when it is not a duration, is negative, or longer than 60 s.
 Nanoseconds parse_duration(const std::string& text);
 
 // needed: the needs by the aligners; modalities without a report are not in it. The others do not wait for a modality that

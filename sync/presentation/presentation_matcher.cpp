@@ -220,7 +220,7 @@ void PresentationMatcher::finish(HostTime now) {
   advance(now);
   for (const auto& [due, id] : due_) settle(events_.at(id), now, true);
   due_.clear();
-  // At the end of a run all processes end before the log does; that is no failure.
+  // At the end of a run all processes end before the log does; that is not a failure.
   for (const FinalExpectation& d : final_expectations_) {
     --tallies_[d.modality].expected;
     --tallies_[d.modality].dead;

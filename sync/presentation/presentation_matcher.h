@@ -11,7 +11,7 @@
 //                       without output; or the simulation died before it could repeat the event for its 50 ms
 //   lost                no report from a running node
 // While a simulation of this run publishes, no presentation is expected of events of other runs, as of a log that is played
-// beside it. None is expected of a node that never ran. A report that was not expected is no outcome, but counts for the
+// beside it. None is expected of a node that never ran. A report that was not expected is not an outcome, but counts for the
 // asynchrony.
 #pragma once
 

@@ -53,7 +53,7 @@ void print(const playout_t& m) {
 
 int main(int argc, char** argv) try {
   CLI::App app(
-      "Requests another presentation policy from the running cluster, or prints the present one without arguments.");
+      "Requests another presentation policy from the running cluster, or prints the current one without arguments.");
   sync::BusOptions bus_options;
   std::int64_t run_id = 1;
   sync::PlayoutOptions options;

@@ -45,7 +45,7 @@ TEST_CASE("DEGRADE-2: visual_node, frozen for 2 s, disturbs no other node and th
   c.start();
   const std::int64_t stale_at_start = c.monitor.health("visual_node")->stale_ticks;
   const auto before = c.rates(2);
-  // Heavy load alone makes some inputs stale: the same number as before the freeze is no effect of the freeze.
+  // Heavy load alone makes some inputs stale: the same number as before the freeze is not an effect of the freeze.
   const std::int64_t stale = c.monitor.health("visual_node")->stale_ticks;
   const std::int64_t usual = stale - stale_at_start;
   const std::int64_t frames = c.monitor.ticks("visual_node");

@@ -30,7 +30,7 @@ TEST_CASE("A profile put in force in a running cluster degrades only its modalit
                          kTimeout_s));
   for (const std::string& other : std::vector<std::string>{"haptic", "visual"})
     CHECK(count_outcomes(c.monitor, other, presentation_t::DROPPED_BY_PROFILE) == 0);
-  // A commanded gap is no loss: the node itself is well.
+  // A commanded gap is not a loss: the node itself is well.
   CHECK(c.all_running(kNodes));
   c.check_rates_hold(before, 2);
 

@@ -40,7 +40,7 @@ class MeshNearest {
 };
 
 // Appends the result of complete_contact(), without types. A pair whose connection has a nearer point on one of
-// the two triangles is no contact; its gap is infinite. Appends nothing when the tilt of the connections
+// the two triangles is not a contact; its gap is infinite. Appends nothing when the tilt of the connections
 // (NormalCones) rules out a contact. Both triangles are in one frame.
 void marked_pairs(const Triangle& a, double tilt_a, const Triangle& b, double tilt_b, double tolerance_m,
                   std::vector<PointPair>& out);

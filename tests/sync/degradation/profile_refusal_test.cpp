@@ -65,9 +65,9 @@ TEST_CASE("A seed that is not an unsigned 64-bit integer is rejected") {
 
 TEST_CASE("Duplicate options are rejected") {
   CHECK_THAT(refusal_of("loss=\"5% burst=3 burst=9\""),
-             StartsWith("p.xml:2: loss=") && Contains("\"burst=\" stands there twice"));
+             StartsWith("p.xml:2: loss=") && Contains("\"burst=\" is given twice"));
   CHECK_THAT(refusal_of("loss=\"5% burst=3 burst=3\""), Contains("twice"));
-  CHECK_THAT(refusal_of("delay=\"40ms network network\""), Contains("\"network\" stands there twice"));
+  CHECK_THAT(refusal_of("delay=\"40ms network network\""), Contains("\"network\" is given twice"));
   CHECK_THAT(refusal_of("delay=\"40ms 40ms\""), Contains("twice"));
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("Contradictory options are rejected") {
   CHECK_THAT(refusal_of("off=\"true false\""), Contains("contradict"));
   CHECK_THAT(refusal_of("jitter=\"normal trace=1ms,2ms\""), Contains("a trace is taken as it is"));
   CHECK_THAT(refusal_of("jitter=\"trace=1ms,2ms correlation=0.5\""), Contains("a trace is taken as it is"));
-  CHECK_THAT(refusal_of("jitter=\"3ms trace=1ms\""), Contains("\"3ms\" means nothing here"));
+  CHECK_THAT(refusal_of("jitter=\"3ms trace=1ms\""), Contains("\"3ms\" is not valid here"));
 }
 
 TEST_CASE("A trace without delays is rejected") {
@@ -94,7 +94,7 @@ TEST_CASE("A value with a dimension requires its unit, except 0") {
         "quantise=\"0.1\"", "quantise=\"10% log floor=1\"", "deadband=\"10% floor=1\"",
         "deadband=\"10% adaptive=0.2\"", "reorder=\"5% by=1\"", "dropout=\"1\"", "dropout=\"20ms every=1\"",
         "delay=\"40 ms\""})
-    CHECK_THAT(refusal_of(bare), StartsWith("p.xml:2: ") && Contains("lacks its unit"));
+    CHECK_THAT(refusal_of(bare), StartsWith("p.xml:2: ") && Contains("has no unit"));
   CHECK_THAT(refusal_of("delay=\"40\""), Contains("as in 40s"));
   for (const char* fine : {"delay=\"0\"", "delay=\"0.0 network\"", "from=\"0\" off=\"true\"", "gain=\"0.5\"",
                            "loss=\"0.05 burst=3\"", "jitter=\"trace=0,1ms\"", "skew=\"0.001\""})

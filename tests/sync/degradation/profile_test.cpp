@@ -90,10 +90,10 @@ TEST_CASE("An invalid profile is rejected as a whole, with line and reason") {
   CHECK_THAT(refusal_of(""), Catch::Contains("does nothing"));
   CHECK_THAT(refusal_of("from=\"1s\""), Catch::Contains("does nothing"));
   CHECK_THAT(refusal_of("delay=\"40mss\""),
-             Catch::StartsWith("p.xml:2: delay=\"40mss\": \"mss\" is no unit of s"));
+             Catch::StartsWith("p.xml:2: delay=\"40mss\": \"mss\" is not a unit of s"));
   CHECK_THAT(refusal_of("delay=\"-1ms\""), Catch::Contains("between 0 and 60"));
-  CHECK_THAT(refusal_of("delay=\"40ms sideways\""), Catch::Contains("\"sideways\" means nothing here"));
-  CHECK_THAT(refusal_of("delay=\"40ms burst=3\""), Catch::Contains("\"burst=\" means nothing here"));
+  CHECK_THAT(refusal_of("delay=\"40ms sideways\""), Catch::Contains("\"sideways\" is not valid here"));
+  CHECK_THAT(refusal_of("delay=\"40ms burst=3\""), Catch::Contains("\"burst=\" is not valid here"));
   CHECK_THAT(refusal_of("delay=\"\""), Catch::Contains("needs a value"));
   CHECK_THAT(refusal_of("delai=\"1ms\""), Catch::Contains("no operator \"delai\""));
   CHECK_THAT(refusal_of("loss=\"90% burst=2\""), Catch::Contains("impossible"));

@@ -121,7 +121,7 @@ class ClusterReader:
     def only_child(self, tag):
         found = self.root.findall(tag)
         if len(found) > 1:
-            self.refuse(found[1], f"there is a second <{tag}>; leave one away")
+            self.refuse(found[1], f"there is a second <{tag}>; remove one")
         return found[0] if found else None
 
     def cluster(self):
@@ -162,7 +162,7 @@ class ClusterReader:
     def host(self, e):
         reach, address = e.get("reach"), e.get("address", "")
         if reach == "local" and address:
-            self.refuse(e, f"the host {e.get('name')} is local and has an address; leave one away")
+            self.refuse(e, f"the host {e.get('name')} is local and has an address; remove one")
         if reach == "local" and next(h for h in self.root.findall("host") if h.get("reach") == "local") is not e:
             self.refuse(e, f"the host {e.get('name')} is a second local host, but only this machine is local; remove it, or use reach=\"namespace\"")
         for attribute in ("folder", "build"):

@@ -61,7 +61,7 @@ def parsed(words):
     if a.command == "make":
         a.server = server_address(a.server)
     elif not re.fullmatch(r"[A-Za-z0-9_.-]{1,15}", a.device):
-        raise Refusal(f"--device {a.device}: is no name of a network device; list them with ip link")
+        raise Refusal(f"--device {a.device}: is not the name of a network device; list them with ip link")
     return a
 
 
@@ -71,7 +71,7 @@ def host_names(text):
         raise Refusal(f"--hosts {text[:60]}: a path joins 2 to {path_files.MAX_HOSTS} hosts; separate their names by commas")
     for name in names:
         if not NAME.fullmatch(name):
-            raise Refusal(f"--hosts: \"{name[:60]}\" is no name of a host; use letters, digits and hyphens, at highest 32")
+            raise Refusal(f"--hosts: \"{name[:60]}\" is not the name of a host; use at most 32 letters, digits and hyphens")
         if name == path_files.AUTHORITY:
             raise Refusal(f"--hosts: {name} is the folder of the signing key; rename the host")
     if len(set(names)) != len(names):

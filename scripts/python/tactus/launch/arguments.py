@@ -115,7 +115,7 @@ def parse(words, here):
     several = {**others, **{process: wall for process, wall in pictures.items() if process != walls.FIRST}}
     for node in a.without:
         if node == "recorder":
-            raise Refusal("--without recorder: the recorder cannot be left out, because all results come from its log; leave this option away")
+            raise Refusal("--without recorder: the recorder cannot be left out, because all results come from its log; remove this option")
         if node not in (*REMOVABLE, *several):
             raise Refusal(f"--without {node}: there is no such node to leave out; choose from {', '.join((*REMOVABLE, *several))}")
     if hands.FIRST in a.without:  # all processes of touch
@@ -214,7 +214,7 @@ def playout(a):
     words = [f"--{option}={value}" for option in PLAYOUT if (value := getattr(a, option)) is not None]
     if words and "sync_node" in a.without:
         raise Refusal(f"{words[0].partition('=')[0]} and --without sync_node contradict each other: sync_node applies the "
-                      "playout policy; leave one away")
+                      "playout policy; remove one")
     return words
 
 
@@ -230,7 +230,7 @@ def virtual(a):
                           ("--realtime require", a.realtime == "require"), ("--network host", a.network == "host"),
                           ("--device external", any("external:" in device for device in a.device))):
         if value:
-            raise Refusal(f"--virtual-time and {option} contradict each other: nothing outside the run can keep up with it; leave one away")
+            raise Refusal(f"--virtual-time and {option} contradict each other: nothing outside the run can keep up with it; remove one")
     return [word for option, value in given.items()
             for word in (f"--{option}", f"{number(f'--{option}', value, 0, BUS_OPTIONS[option], ''):g}")]
 
@@ -272,7 +272,7 @@ def out_folder(here, text):
 def devices(words, without, tools):
     """{tool: spec} of --device. The nodes check the specs. Raises Refusal."""
     if words and hands.FIRST in without:
-        raise Refusal("haptic_node: --device and --without haptic_node contradict each other; leave one away")
+        raise Refusal("haptic_node: --device and --without haptic_node contradict each other; remove one")
     try:
         return hands.devices(words, tools)
     except ValueError as error:

@@ -68,7 +68,7 @@ def parse(words, here):
     elif hands.FIRST in without:
         without += [*others]
     if a.degrade and a.as_recorded:
-        raise Refusal("--degrade and --as-recorded contradict each other; leave one away")
+        raise Refusal("--degrade and --as-recorded contradict each other; remove one")
     others = {process: tool for process, tool in others.items() if process not in without}
     words = [str(log), "--stay"]
     for option in REPLAY_OPTIONS:

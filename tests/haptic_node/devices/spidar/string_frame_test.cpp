@@ -77,7 +77,7 @@ TEST_CASE("A frame is read from a file, and an error is reported in one sentence
   rejected("[1, 2]", "no JSON object");
   rejected(with("\"max_tension_N\": 20,", ""), "lacks \"max_tension_N\"");
   rejected(with("max_tension_N", "max_force_N"), "no field \"max_force_N\"");
-  rejected(with("20", "\"strong\""), "\"max_tension_N\" is no number");
+  rejected(with("20", "\"strong\""), "\"max_tension_N\" is not a number");
   rejected(with("[0.3, 0.3, 0.3]", "[0.3, 0.3]"), "[x, y, z]");
   rejected(with("\"anchor_m\": [0.3, 0.3, 0.3]", ""), "needs its \"anchor_m\"");
   rejected(with("[0.3, 0.3, 0.3]}", "[0.3, 0.3, 0.3], \"colour\": 1}"), "no \"colour\"");
