@@ -26,7 +26,7 @@ void check_sides(std::size_t columns, std::size_t rows) {
     return side >= 1 && side <= static_cast<std::size_t>(kMaxPictureSide);
   };
   if (!fits(columns) || !fits(rows))
-    throw std::runtime_error("it must have 1 to " + std::to_string(kMaxPictureSide) + " pixels a side");
+    throw std::runtime_error("it must have 1 to " + std::to_string(kMaxPictureSide) + " pixels per side");
 }
 
 // Walks all chunks (ISO/IEC 15948, 5.3).

@@ -31,8 +31,8 @@ class Refusals(unittest.TestCase):
                 return ["make", *(w for pair in words.items() for w in pair)]
             self.refused("2 to 250 hosts", *make(hosts="a"))
             self.refused("named twice", *make(hosts="a,a"))
-            self.refused("no name of a host", *make(hosts="a,../b"))
-            self.refused("no name of a host", *make(hosts="a,"))
+            self.refused("not the name of a host", *make(hosts="a,../b"))
+            self.refused("not the name of a host", *make(hosts="a,"))
             self.refused("authority is the folder", *make(hosts="a,authority"))
             self.refused("no IPv4 address", *make(server="239.0.0.1"))
             self.refused("no IPv4 address", *make(server="::1"))
@@ -43,7 +43,7 @@ class Refusals(unittest.TestCase):
             self.refused("already exists", *make(out=folder))
             self.refused("--help", "make", "--hosts", "a,b")
             self.refused("--help", "mace")
-            self.refused("no name of a network device", "macsec", "--hosts", "a,b", "--device", "eth0; ls")
+            self.refused("not the name of a network device", "macsec", "--hosts", "a,b", "--device", "eth0; ls")
             self.assertEqual(os.listdir(folder), [], "a refusal leaves nothing behind")
 
 

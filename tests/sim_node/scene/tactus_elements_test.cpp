@@ -69,7 +69,7 @@ TEST_CASE("An invalid material is rejected with its line") {
   CHECK_THAT(refusal("<tactus:material name='x' base='y'/>"), Catch::Contains("no such material"));
   CHECK_THAT(refusal("<tactus:material density='1'/>"), Catch::Contains("\"name\""));
   CHECK_THAT(refusal("<tactus:material name='steel' density='-1'/>"), Catch::Contains("between 1 and 25000"));
-  CHECK_THAT(refusal("<tactus:material name='steel' density='7 km'/>"), Catch::Contains("no unit"));
+  CHECK_THAT(refusal("<tactus:material name='steel' density='7 km'/>"), Catch::Contains("not a unit"));
   CHECK_THAT(refusal("<tactus:material name='steel' densty='7'/>"), Catch::Contains("no attribute \"densty\""));
   CHECK_THAT(refusal("<model name='m'>\n<tactus:surface material='stel'/><link name='l'/></model>"),
              Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("\"stel\"") && Catch::Contains("steel"));
@@ -210,7 +210,7 @@ TEST_CASE("A setting that is unknown or out of range is rejected with its line")
              Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("no setting \"presentation_dely\""));
   CHECK_THAT(load_error("<tactus:audio_node presentation_delay='25'/>"),
              Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("between"));
-  CHECK_THAT(load_error("<tactus:audio_node presentation_delay='25kg'/>"), Catch::Contains("no unit"));
+  CHECK_THAT(load_error("<tactus:audio_node presentation_delay='25kg'/>"), Catch::Contains("not a unit"));
   CHECK_THAT(load_error("<tactus:haptic_node force_limit='30 N'/>"), Catch::StartsWith("scene.sdf:3: ") &&
                                                                       Catch::Contains("only tighten") &&
                                                                       Catch::Contains("8 N or less"));
