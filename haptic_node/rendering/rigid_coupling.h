@@ -27,8 +27,8 @@ void direct_forces(std::span<const Surface> surfaces, const DeviceState& device,
                    double tool_radius_m, double factor, std::span<Eigen::Vector3d> forces);
 
 // Changes the forces at those arms as little as possible, large forces most, so that their sum is `felt`. The
-// force is exact. The torque is exact as far as the contact points allow without force couples larger than most_N;
-// points that lie almost on a line would need larger ones.
+// force is exact. The torque is exact as far as the contact points allow without force couples larger than
+// max_couple_N; points that lie almost on a line would need larger ones.
 void share_wrench(const Wrench& felt, std::span<const Eigen::Vector3d> arms, std::span<Eigen::Vector3d> forces,
                   double max_couple_N);
 

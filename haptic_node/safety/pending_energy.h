@@ -30,7 +30,7 @@ class PendingEnergyEstimator {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ(), velocity = Eigen::Vector3d::Zero();
     Eigen::Vector3d impulse_N_s = Eigen::Vector3d::Zero();
   };
-  // Stores a report. most_N: upper bound of the force on the body. Realtime-safe: yes.
+  // Stores a report. max_force_N: upper bound of the force on the body. Realtime-safe: yes.
   void on_report(const BodyReport& report, double max_force_N);
   // Stores a report without motion.
   void on_report(const Eigen::Vector3d& impulse_N_s);

@@ -13,7 +13,7 @@ namespace tactus::sync {
 //
 // A clock that jumps forward gives a larger bound, which is adopted at once. A clock that jumps back looks like latency.
 // Latency varies, so when all bounds of kWindow lie below the kept one, the best of them is adopted. The relaxation corrects
-// a jump smaller than kNoticed within kNoticed / kMaxDrift = 25 s.
+// a jump smaller than kMinJump within kMinJump / kMaxDrift = 25 s.
 class OneWayOffsetEstimator {
  public:
   // Worst relative drift of two quartz clocks: 200 ppm is twice the usual +-100 ppm tolerance of one.

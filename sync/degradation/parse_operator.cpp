@@ -26,7 +26,8 @@ double quantity(std::string_view text, std::string_view unit) {
   return x;
 }
 
-// "5% burst=3 network", split into its value, its words and its pairs. Each may be taken once; none may remain.
+// The text of an attribute, e.g. "5% burst=3 network", split into value, words and pairs. The parser of an operator takes each
+// part once; a part that remains is an error.
 class Words {
  public:
   explicit Words(const std::string& text) {

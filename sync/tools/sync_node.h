@@ -3,7 +3,7 @@
 
 namespace tactus::sync {
 
-// Returns the exit status, after one sentence on stderr where that is not 0.
+// Returns the exit status; when it is not 0, one sentence on stderr gives the reason.
 int run_sync_node(int argc, char** argv);
 
 }  // namespace tactus::sync

@@ -1,5 +1,5 @@
-// Contacts of two meshes in order of increasing gap. For users that need only the nearest contact of each place and
-// direction, such as a tool, which is much cheaper than all contacts.
+// Contacts of two meshes in order of increasing gap. For callers that need only the nearest contact at each place
+// and direction, such as a tool. This is much cheaper than finding all contacts.
 #pragma once
 
 #include <cstdint>
