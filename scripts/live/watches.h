@@ -53,7 +53,7 @@ class Watches {
     std::optional<FieldPath> path, source;
     std::vector<Curve> curves;
   };
-  // Null when there are too many.
+  // Returns null when there are too many senders.
   static Curve* curve(Watch& w, std::int32_t source);
   static void add_value(Curve& c, sync::HostTime time, double value);
   std::vector<Watch> watches_;

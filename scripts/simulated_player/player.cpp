@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// All values are design.
+// All values are design choices.
 constexpr double kArrived_m = 0.006;        // near enough to a place
 constexpr double kBallMoved_m = 0.03;       // a ball that has moved this far is approached again
 constexpr double kFallen_m = -0.01;         // a ball with its centre below this is in a hole
@@ -32,7 +32,7 @@ constexpr double kMaxPrediction_m = 0.05;  // limit of the prediction
 constexpr double kMaxOffsetShare = 0.5;
 constexpr double kHeldForce_N = 4;  // objects that can be pushed do not resist this long
 constexpr double kYieldDistance_m = 0.05;
-constexpr double kMinSlope_m_s2 = 0.05;  // less of a slope needs no balance
+constexpr double kMinSlope_m_s2 = 0.05;  // on a smaller slope the ball needs no balance
 // Distance of a ball that was never seen in front of its hole, as given before the game.
 constexpr double kFirstGuess_m = 0.2;
 
@@ -206,7 +206,7 @@ Vector3d Player::travel(const Percept&) {
   // Without any belief about the ball, a search begins behind its place.
   Vector3d to = clamped_to_floor(position_behind(def_.gap_m));
   to.z() = def_.travel_height_m;
-  // It waits above a rolling ball until the ball is slow, so that it does not come down on it.
+  // It waits above a rolling ball until the ball is slow, so that the hand does not come down on the ball.
   if ((target_m_ - to).norm() < kArrived_m && !ball_rolls()) start(Action::kDescend);
   return step_towards(to, def_.air_speed_m_s);
 }

@@ -1,5 +1,5 @@
-// A simulated player: finds each ball, moves the hand behind it and pushes it into its hole, with nothing but the percepts of
-// its modalities. Pure: time is an argument.
+// A simulated player: finds each ball, moves the hand behind it and pushes it into its hole, using only the percepts of its
+// modalities. Pure: time is an argument.
 //
 // Use of the modalities:
 //   sight     the place of a ball, and whether it lies in its hole, as old as the picture
@@ -8,8 +8,8 @@
 //             the place of the ball on the hand; the place of an unseen object
 // It searches for a ball that it neither sees nor feels around its last known place, in a widening spiral. On a slope it
 // balances the ball on the hand like an inverted pendulum: the hand moves beyond a ball that escapes to a side. It combines
-// sight and touch of the ball's place (Ernst and Banks 2002, Nature 415); a delay of one of them is not announced to it, and
-// misleads it.
+// sight and touch of the ball's place (Ernst and Banks 2002, Nature 415); it cannot correct an additional delay of one of
+// them, which misleads it.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,7 +34,7 @@ struct Percept {
       heard_m{};  // one for each goal: approximate place of a heard hit; nullopt: none
 };
 
-// All values are design: a careful person who pushes a ball the size of an egg.
+// All values are design choices: a careful person who pushes a ball the size of an egg.
 struct PlayerDef {
   double reaction_s = 0.15;         // from sight or sound to action
   double touch_reaction_s = 0.07;   // from touch to action

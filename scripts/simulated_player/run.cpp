@@ -104,7 +104,7 @@ int tactus::simulated_player::run(int argc, char** argv, const Rules* read_befor
     Percept percept = perception.perceive(now);
     percept.force_N = force_of(force, force_arrival, now);
     percept.hand_m = arm.position_m();
-    // A late tick moves no further than one on time.
+    // After a late tick the hand moves no further than after one in time.
     const double dt_s = std::min(2e-3, sync::to_seconds(now - std::exchange(last_tick, now)));
     if (setup && (scatter.along_m > 0 || scatter.aside_m > 0) && !setup->done()) {
       setup->step(now, replies);

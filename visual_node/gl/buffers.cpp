@@ -16,7 +16,7 @@ constexpr unsigned kPlaceAttribute = 2 + sizeof(Instance) / 16;
 
 void check_complete(const char* what) {
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    throw std::runtime_error(std::string("the graphics driver rejects the  ") + what +
+    throw std::runtime_error(std::string("the graphics driver rejects the ") + what +
                              "; choose a smaller picture or shadow_size");
 }
 

@@ -45,7 +45,7 @@ export class Mark {
 
 // The current question, the time of its display, and whether its answer is in transfer. Times: performance.now(), ms.
 export class QuestionState {
-  static readonly ANSWER_TIMEOUT_MS = 1500;  // design: an answer that the server has not accepted within this time may be given again
+  static readonly ANSWER_TIMEOUT_MS = 1500;  // design: after this time without acceptance by the server, the answer may be given again
   private question: Study | undefined;
   private seen_ms: number | undefined;
   private sent_ms: number | undefined;
@@ -68,7 +68,7 @@ export class QuestionState {
   acceptsAnswer(at_ms: number): boolean {
     return this.question !== undefined && this.seen_ms !== undefined && !(this.sent_ms !== undefined && at_ms < this.sent_ms + QuestionState.ANSWER_TIMEOUT_MS);
   }
-  // used: the press has a meaning for the current question.
+  // used: true when the press has a meaning for the current question.
   press(p: Press, at_ms: number): { used: boolean; answer?: Answer } {
     const m = this.question;
     if (!m) return { used: false };
