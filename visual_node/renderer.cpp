@@ -117,7 +117,8 @@ void NodeRenderer::apply_setting(const Settings& settings, const std::string& na
   process_messages();  // they were sent before the change
   LiveOverlays::check(settings);
   if (name.starts_with("stream")) {
-    if (!render_output_.draws()) throw std::invalid_argument("it draws no pictures (--no-pictures), so there is nothing to stream");
+    if (!render_output_.draws())
+      throw std::invalid_argument("it draws no pictures (--no-pictures), so there is nothing to stream");
     stream_.begin(render_output_.picture().width(), render_output_.picture().height(), settings);
   } else {
     overlays_.configure(settings);

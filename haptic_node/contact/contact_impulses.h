@@ -23,7 +23,7 @@ struct ContactForce {
 
 class ContactImpulses {
  public:
-  static constexpr std::size_t kMaxContacts = 128;  // maximum number stored; the least recently felt one is removed
+  static constexpr std::size_t kMaxContacts = 128;  // stored; the least recently felt one is removed
   static constexpr std::size_t kMaxPublished = 12;  // maximum number in one message
   // time after the end of the force during which a contact is still published
   static constexpr sync::Nanoseconds kPublishAfter{50'000'000};

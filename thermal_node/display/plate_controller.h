@@ -20,7 +20,7 @@ struct PlateLimits {
 struct PlateDrive {
   double current_A = 0;
   bool limited = false;  // less than requested
-  bool fault = false;    // plate, sink or reading beyond the limits: only a current that leads back within them is given
+  bool fault = false;    // plate, sink or reading beyond the limits: the current may only lead back within them
 };
 
 // Feed-forward from the equations of the module (load, conduction, requested rate), with proportional and integral
