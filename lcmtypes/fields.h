@@ -49,7 +49,7 @@ class FieldPath {
   // Returns nullopt when the bytes are not a complete message of the type, or its list is too short. Never reads
   // beyond the bytes, and takes time linear in their length.
   std::optional<std::variant<double, std::string>> read(std::span<const std::uint8_t> bytes) const;
-  // As read(); nullopt for text.
+  // Like read(), but returns nullopt for text.
   std::optional<double> number(std::span<const std::uint8_t> bytes) const;
   bool is_text() const { return last_->type == "string"; }
   const Field& field() const { return *last_; }

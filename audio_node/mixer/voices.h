@@ -64,7 +64,7 @@ class Voices {
   static constexpr int kPulses = 16;  // of one voice at a time; more join the strongest of them
   // Voices that fade while others sound: at most this number can be taken within a fade before one ends at once.
   static constexpr int kFading = 16;  // design
-  // Of a cut. Shorter is audible as a click (design).
+  // Fade time of a cut; a shorter one is audible as a click (design).
   static constexpr double kFade_s = 0.005;
 
   struct Pulse {

@@ -22,7 +22,7 @@ double coupling_lever_m(const Settings& settings);
 void rigid_forces(std::span<const Surface> surfaces, const RigidProxy& proxy, const DeviceState& device,
                   double factor, std::span<Eigen::Vector3d> forces);
 
-// As rigid_forces, for direct rendering: friction is dynamic and vanishes with the speed over the surface.
+// Like rigid_forces, but for direct rendering: friction is dynamic and vanishes with the speed over the surface.
 void direct_forces(std::span<const Surface> surfaces, const DeviceState& device, double lever_m,
                    double tool_radius_m, double factor, std::span<Eigen::Vector3d> forces);
 

@@ -23,7 +23,8 @@ constexpr double kRefill_W = 0.0002;
 // The factor falls to zero within 5 ms at 1 kHz, which keeps a force of 8 N below the slew limit. It recovers
 // within a second, slower than any oscillation of hand or body, so that it drives no cycle itself.
 constexpr double kFall_1_s = 200, kRise_1_s = 1;
-// As in safety.cpp: faster than any hand. The device jumped, and no work is counted.
+// The same limits as in safety.cpp, faster than any hand. Above them the device has jumped, and no work is
+// counted.
 constexpr double kMaxHandSpeed_m_s = 40, kMaxHandSpin_rad_s = 100;
 
 // Clamped as the surfaces are: a body that reports a higher speed gives no credit for it.

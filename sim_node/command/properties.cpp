@@ -97,7 +97,7 @@ std::string set_of_joint(Simulation& s, const std::string& joint, const std::str
   if (property == "friction")
     return s.mechanics().apply({.kind = SceneChange::kJointFriction, .joint = joint, .values = {v[0], 0, 0}}) ? ""
                                                                                                               : no_axis;
-  // As in a scene file: a negative torque reverses the direction of the motor.
+  // The same rule as in a scene file: a negative torque reverses the direction of the motor.
   const double speed = v[0] < 0 ? -std::abs(v[1]) : std::abs(v[1]);
   const bool set =
       s.mechanics().apply({.kind = SceneChange::kMotor, .joint = joint, .values = {std::abs(v[0]), speed, 0}});

@@ -140,7 +140,7 @@ class Grouping {
   bool held_ = false;  // bodies outside stand still; they stopped held_after_s_ after the beginning of the step
   double held_after_s_ = 0;
   std::vector<char> leaves_;
-  // Of the group, from watched_from_ on.
+  // Trajectories of the group, from watched_from_ on.
   sync::SimTime watched_from_{};
   std::vector<SweptSphere> inside_, tools_;
   std::vector<ImpactBound> impact_bounds_;

@@ -28,7 +28,7 @@ struct ProbeWave {
 // Sends requests in waves, and keeps for each clock the answer with the smallest round trip.
 class ClockProber {
  public:
-  // As in the Lab Streaming Layer (liblsl, api_config.cpp: TimeProbeCount 8, TimeProbeInterval 64 ms,
+  // Values of the Lab Streaming Layer (liblsl, api_config.cpp: TimeProbeCount 8, TimeProbeInterval 64 ms,
   // TimeUpdateInterval 2 s); its limit of 128 ms for a round trip, rounded up to the next probes.
   static constexpr int kProbes = 8;
   static constexpr Nanoseconds kSpacing{64'000'000};

@@ -32,7 +32,7 @@ class ProfileReceiver {
  public:
   // Profiles that may be in flight at once; the one whose newest page is the oldest is discarded first.
   static constexpr std::size_t kMaxInFlight = 4;
-  // Of one profile.
+  // Maximum number of pages of one profile.
   static constexpr int kMaxPages = 55;
 
   // Returns the profile when this page completes one that is newer than the previous one. A text that does not match its
@@ -47,7 +47,7 @@ class ProfileReceiver {
 
  private:
   std::int64_t generation_ = -1;
-  // By generation and hash.
+  // Incomplete profiles by generation and hash.
   PageAssembler<std::string, std::pair<std::int64_t, std::int64_t>> pages_{{.groups = kMaxInFlight, .pages = kMaxPages},
                                                                            PageOrder::kNewestPage};
   std::string refusal_;

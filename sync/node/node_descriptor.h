@@ -20,7 +20,7 @@ struct NodeDescriptor {
   int fifo_priority = 0;  // 0: normal scheduling
   std::string about;      // one sentence for --help
 
-  // Of a modality only.
+  // Only for a modality.
   std::vector<std::string> inputs = {};    // channels that it reads and that its profile acts on
   std::string presentation_instant = {};   // the instant that PRESENTED reports
   LateRule late_rule = LateRule::kShowNewest;    // treatment of late events

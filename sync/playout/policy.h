@@ -53,8 +53,8 @@ std::map<std::string, Nanoseconds> playout_delays(const PlayoutPlan& plan,
                                                   const std::map<std::string, Nanoseconds>& needed,
                                                   const std::set<std::string>& slow = {});
 
-// Of kItouch2005: rate of a loop in which every modality waits for the one before, Hz; 0 for any other policy or before any
-// need is known.
+// Only for kItouch2005: rate, Hz, of a loop in which every modality waits for the one before. 0 for any other policy, or
+// before any demand is known.
 double lockstep_rate_Hz(const PlayoutPlan& plan, const std::map<std::string, Nanoseconds>& needed);
 
 }  // namespace tactus::sync

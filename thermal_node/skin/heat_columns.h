@@ -67,7 +67,7 @@ class HeatColumns {
     std::vector<HeatCell> cells;  // the cells in use
     std::vector<double> link;     // W/(m^2 K) from each to the next
     std::vector<double> u, stage, right;
-    // Of the factored equations: inverse pivot; share of a right side that passes to the next cell.
+    // The factored equations: inverse pivot; share of a right side that passes to the next cell.
     std::vector<double> inverse, share;
     double back = 0;     // W/(m^2 K) from the last cell to the room
     double contact = 0;  // W/(m^2 K) from the centre of the first cell to the surface

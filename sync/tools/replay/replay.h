@@ -48,7 +48,7 @@ class Replay {
   // Plays this number of recorded seconds, then pauses.
   void step(double seconds, HostTime now);
   void seek(double seconds, HostTime now);
-  // As in the options. Returns false for an invalid speed.
+  // Speed as in the options. Returns false for an invalid speed.
   bool set_speed(double speed, HostTime now);
   void set_loop(bool loop) { loop_ = loop; }
 

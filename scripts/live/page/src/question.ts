@@ -3,7 +3,7 @@ import { Study } from "./messages";
 
 // One press can have several meanings; the current question decides which one counts.
 export interface Press { choice?: number; fine?: number; coarse?: number; confirms?: boolean; continues?: boolean }
-// As parsed by live_server.
+// An answer in the form that live_server parses.
 export interface Answer { t: "answer"; question: string; choice: number; number: number; after_ns: number }
 
 // key: KeyboardEvent.key.
