@@ -78,13 +78,13 @@ class Output {
   sync::Nanoseconds latency() const;
   double callback_rate_Hz() const { return settings_.sample_rate_Hz / settings_.period_frames; }
   const Settings& settings() const { return settings_; }
-  // Cost of each method per contact, in words; empty while nothing has sounded.
+  // Text with the cost of each method per contact; empty while nothing has sounded.
   std::string cost_text() const;
-  // Sound dose and current gain reduction, in words; empty while nothing has sounded.
+  // Text with the sound dose and the current gain reduction; empty while nothing has sounded.
   std::string exposure_text() const;
-  // For a card that is too slow for its delay, in words; otherwise empty.
+  // Text about a card that is too slow for its delay; otherwise empty.
   std::string latency_warning() const;
-  // Lost updates and reports, in words; empty if none.
+  // Text about lost updates and reports; empty if there are none.
   std::string loss_text() const;
   // Step of the quality ladder in use.
   int quality() const { return queues_->quality.load(std::memory_order_relaxed); }

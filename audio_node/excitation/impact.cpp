@@ -171,7 +171,7 @@ double Impacts::click_Pa(const BodySound& s, double impulse_N_s, double length_s
   return kAirDensity_kg_m3 * kSoundSpeed_m_s * impulse_N_s / s.mass_kg * radiation_m(1 / length_s, s.radius_m);
 }
 
-// Hard bodies collide repeatedly in the first 15 ms, in step with their first four modes; the model of van den
+// Hard bodies collide repeatedly in the first 15 ms, at the times of their first four modes; the model of van den
 // Doel, Kry and Pai ("FoleyAutomatic", SIGGRAPH 2001, section 3). Hard means that the blow ends before half a
 // period of the slowest mode. The repeated collisions carry their share of the impulse; the rest is the blow.
 ForcePulse Impacts::pulse(const Voice& a, const Voice& b, double length_s) const {

@@ -16,7 +16,7 @@ namespace {
 // Maximum level of a blow: 12 dB above its recording. Computed blows have the same limit above the reference
 // (design).
 constexpr double kMaxLevel = 4;
-// An octave either way; beyond it a recording suggests another material (design).
+// At most one octave up or down; beyond it a recording sounds like another material (design).
 constexpr double kMinPitch = 0.5, kMaxPitch = 2;
 // The same limits as for scrapes: below the minimum there is no sliding or rolling; above the maximum loudness and
 // speed are clamped (design).

@@ -100,8 +100,8 @@ class Renderer {
   // Channels of the interleaved samples.
   int channels() const { return channels_; }
   // Fills `frames` frames and reports the outcome of each strike. A strike that is due before the earliest sample
-  // is played at once, weakened by the policy, and reported as late, or dropped. A strike whose onset falls into a
-  // drop-out is reported as dropped by the profile. Realtime-safe: yes.
+  // is played immediately, weakened by the policy, and reported as late, or dropped. A strike whose onset falls
+  // into a drop-out is reported as dropped by the profile. Realtime-safe: yes.
   void render(float* out, int frames, const BlockTime& time);
 
   // Reports all waiting strikes as dropped and releases all scrapes. Call on the loop thread, after the callback

@@ -62,7 +62,8 @@ class Voices {
 
  private:
   static constexpr int kPulses = 16;  // of one voice at a time; more join the strongest of them
-  // Voices that fade while others sound: at most this number can be taken within a fade before one ends at once.
+  // Voices that fade while others sound: at most this number can be taken within a fade before one ends
+  // immediately.
   static constexpr int kFading = 16;  // design
   // Fade time of a cut; a shorter one is audible as a click (design).
   static constexpr double kFade_s = 0.005;

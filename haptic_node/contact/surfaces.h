@@ -1,6 +1,6 @@
 // The surfaces near the tool as the servo loop renders them: the planes of the touch model, extrapolated to now
 // and made continuous. A plane that jumps, turns, appears over the proxy or disappears yields within the recovery
-// time (Mark et al. 1996), so that a new message never kicks the hand. Slow changes are followed at once.
+// time (Mark et al. 1996), so that a new message never kicks the hand. Slow changes are followed immediately.
 #pragma once
 
 #include <Eigen/Geometry>

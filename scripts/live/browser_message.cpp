@@ -94,7 +94,7 @@ PageAnswer answer(const json& j) {
 }  // namespace
 
 BrowserMessage parse_browser_message(std::string_view bytes) {
-  if (bytes.size() > kMaxBrowserBytes) throw std::invalid_argument("the page sent more than 8192 bytes at once; reload the page");
+  if (bytes.size() > kMaxBrowserBytes) throw std::invalid_argument("the page sent a message of more than 8192 bytes; reload the page");
   const json j = json::parse(bytes, nullptr, false);
   if (!j.is_object() || !j.contains("t")) throw std::invalid_argument("the page sent a malformed message; reload the page");
   const std::string kind = text(j["t"], 16);

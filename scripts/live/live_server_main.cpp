@@ -241,7 +241,7 @@ void serve_cluster(const Options& o) {
     if (const std::int64_t generation = controls.profile() ? controls.profile()->generation : -1; generation != sent_generation) {
       sent_generation = generation;
       degradation = live::degradation_json(controls.profile()->text);
-      next_scene = now;  // at once
+      next_scene = now;  // immediately
     }
     // Repeats it once a second, for new pages.
     if (controls.scene() != nullptr && now >= next_scene) {

@@ -6,7 +6,7 @@
 //        PLAYOUT, DEGRADATION          the delays and degradations of these modalities
 //   out  DEVICE_STATE                  the pose of the hand, a thousand times a second
 //
-// When an input is lost, it continues without it. Run it beside haptic_node --device external:player.
+// When an input is lost, it continues without it. Run it together with haptic_node --device external:player.
 #include "scripts/simulated_player/run.h"
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// The program simulated_player, as a function, so that virtual time can run it beside other programs in one process
+// The program simulated_player, as a function, so that virtual time can run it together with other programs in one process
 // (sync/virtual_time).
 #pragma once
 

@@ -2,8 +2,8 @@
 // decides. Pure.
 //
 // For bodies computed ahead, one visual step at a time, the state at the end of the step is published when the step
-// begins, so that renderers interpolate. A body that is promoted out of this group is published at once with its
-// current pose, and no further predicted state of it is published.
+// begins, so that renderers interpolate. A body that is promoted out of this group is published immediately with
+// its current pose, and no further predicted state of it is published.
 #pragma once
 
 #include <functional>

@@ -30,7 +30,7 @@ std::optional<ProfileInForce> load_profile(const std::filesystem::path& folder, 
 // Assembles the pages. Pure.
 class ProfileReceiver {
  public:
-  // Profiles that may be in flight at once; the one whose newest page is the oldest is discarded first.
+  // Profiles that may be in flight at the same time; the one whose newest page is the oldest is discarded first.
   static constexpr std::size_t kMaxInFlight = 4;
   // Maximum number of pages of one profile.
   static constexpr int kMaxPages = 55;

@@ -26,7 +26,7 @@ struct NodeDescriptor {
   LateRule late_rule = LateRule::kShowNewest;    // treatment of late events
   std::vector<OutputOperator> output_operators = {};  // operators on its output that a profile can use
 
-  std::vector<Phase> phases = {};  // tagged phases of its tick beside decoding and the rest: "work.render"
+  std::vector<Phase> phases = {};  // tagged phases of its tick in addition to decoding and the rest: "work.render"
 };
 
 }  // namespace tactus::sync

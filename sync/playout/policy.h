@@ -16,7 +16,7 @@ enum class Policy : std::uint8_t {
   kAsap,              // each as soon as it can
   kAligned,           // all when the slowest can
   kExperiment,        // base + SOA, regardless of the needs
-  kLocalHapticFirst,  // touch at once, the others when the slowest of them can
+  kLocalHapticFirst,  // touch immediately, the others when the slowest of them can
   kItouch2005         // one after the other in one loop: touch, sound, picture, then all others
 };
 

@@ -89,15 +89,15 @@ struct ReplayArguments {
 
   void add_to(CLI::App& app) {
     app.add_option("LOG", log, "run.lcmlog of a run, or a log of the stock lcm-logger")->required();
-    app.add_option("--speed", speed, "0.01 to 100 times as fast as it was, or max: as fast as --most lets it")->capture_default_str();
+    app.add_option("--speed", speed, "0.01 to 100 times the recorded speed, or max: limited only by --most")->capture_default_str();
     app.add_option("--start", play.start_s, "s since the world began");
-    app.add_option("--end", play.end_s, "likewise; default: the end of the log");
+    app.add_option("--end", play.end_s, "s since the world began; default: the end of the log");
     app.add_flag("--loop", play.loop, "starts again at the end");
     app.add_flag("--paused", play.paused, "waits for a command of --control");
     app.add_option("--most", play.max_per_s, "messages per second, at any speed")->check(CLI::Range(1.0, 1e6))->capture_default_str();
     app.add_option("--channels", selection_options.channels, "regular expression: only channels that match as a whole");
-    app.add_option("--leave-out", selection_options.leave_out, "likewise: not these");
-    app.add_option("--also", selection_options.also, "likewise: send these too, which are dropped by default");
+    app.add_option("--leave-out", selection_options.leave_out, "regular expression: channels that are not sent");
+    app.add_option("--also", selection_options.also, "regular expression: channels that are sent although they are dropped by default");
     app.add_option("--rename", selection_options.rename, "FROM=TO, channels; may be repeated");
     app.add_option("--live", selection_options.live, "a running process, whose recorded messages are not sent; may be repeated");
     app.add_flag("--as-recorded", selection_options.as_recorded, "applies the degradation profiles of the log");

@@ -7,7 +7,7 @@
 //        PLAYOUT                                  of another host's sync_node: only one publishes
 //   out  CLOCK_PROBE                              eight requests every 2 s, less often with more than 16 hosts; a reply to
 //   each request
-//        CLOCK_MAP                                twice a second, likewise; one per clock of another host
+//        CLOCK_MAP                                twice a second, less often with more than 16 hosts; one per clock of another host
 //        SYNC_REPORT                              once a second
 //        DEGRADATION                              again once a second, for late joiners
 //        PLAYOUT                                  ten times a second: the presentation delay of each modality

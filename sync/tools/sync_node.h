@@ -1,4 +1,5 @@
-// The program sync_node, as a function, so that virtual time can run it beside other programs in one process.
+// The program sync_node, as a function, so that virtual time can run it together with other programs in one
+// process.
 #pragma once
 
 namespace tactus::sync {

@@ -24,7 +24,7 @@ struct PlateDrive {
 };
 
 // Feed-forward from the equations of the module (load, conduction, requested rate), with proportional and integral
-// feedback. Runs at 1 kHz beside the module. Realtime-safe: yes.
+// feedback. Runs at 1 kHz together with the module. Realtime-safe: yes.
 class PlateController {
  public:
   PlateController(const PeltierPlant& plant, const PlateLimits& limits) : plant_(plant), limits_(limits) {}

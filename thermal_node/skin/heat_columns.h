@@ -26,8 +26,8 @@ struct HeatCell {
 // Realtime-safe: yes, except the constructor. Not thread-safe.
 class HeatColumns {
  public:
-  // skin: surface first, insulated at the deep end. object_count: number of objects that can touch it at once,
-  // each of at most max_cells cells.
+  // skin: surface first, insulated at the deep end. object_count: number of objects that can touch it at the same
+  // time, each of at most max_cells cells.
   HeatColumns(std::vector<HeatCell> skin, std::size_t object_count, std::size_t max_cells);
 
   // Temperatures of the surroundings. Any temperature scale is valid if it is the same everywhere.

@@ -27,7 +27,7 @@ class Skin {
 
   // Returns skin and objects to rest.
   virtual void reset() = 0;
-  // Number of objects that can touch the skin at once.
+  // Number of objects that can touch the skin at the same time.
   static constexpr std::size_t kMaxObjects = 4;
   // Puts another object, uniformly at its own temperature, under the skin.
   virtual void set_object(const ObjectProperties& object, std::size_t index = 0) = 0;

@@ -16,7 +16,7 @@ namespace tactus::sync {
 struct ReplayOptions {
   double speed = 1;    // recorded seconds per second; 0: as fast as max_per_s permits
   double start_s = 0;  // since the log's live part began
-  double end_s = -1;   // likewise; negative: at the end of the log
+  double end_s = -1;   // since the log's live part began; negative: the end of the log
   bool loop = false;
   bool paused = false;
   double max_per_s =
