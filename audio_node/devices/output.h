@@ -40,7 +40,7 @@ class Output {
   void submit(const Strike& strike, const StrikeQueue::Table& table = nullptr);
   // Reports a hit as dropped without a strike.
   void drop(std::int64_t event_id, sync::HostTime scheduled);
-  // Later scrapes are of these surfaces; null: none. The previous surfaces are kept while the callback may read
+  // Later scrapes use these surfaces; null: none. The previous surfaces are kept while the callback may read
   // them.
   void set_surfaces(std::shared_ptr<const AudioSurfaces> surfaces) { scrapes_.set_surfaces(std::move(surfaces)); }
   // Returns surfaces that are no longer needed. Freeing them may take milliseconds, so do not free them in the

@@ -61,8 +61,8 @@ struct ClosestPose {
 
 // Distributes a sum over normals, sum = sum of share_i normal_i, with (nearly) the least sum of share_i^2 /
 // weight_i and shares that are not negative. The programme itself does not determine the shares where more half
-// spaces bind than necessary, for example at the four feet of a table. Normals of weight 0 get no share. False:
-// there is no such distribution, and `shares` is unchanged. Realtime-safe: yes.
+// spaces bind than necessary, for example at the four feet of a table. Normals of weight 0 get no share. Returns
+// false, with `shares` unchanged, when there is no such distribution. Realtime-safe: yes.
 bool distribute(std::span<const PoseHalfSpace> region, std::span<const double> weights, const Vector6& sum,
                 std::span<double> shares);
 

@@ -154,7 +154,7 @@ void Passivity::observe(const StoredEnergy& coupling, const Eigen::Vector3d& mov
   const double allowed_J = std::max(0.0, credit_J_ + limits_.allowance_J);
   double wanted = 1;
   if (stored_J > allowed_J) {
-    // Energy generated while the factor moves to `wanted`: half of the energy at the present force.
+    // Energy generated while the factor moves to `wanted`: half of the energy at the current force.
     const double falling_J = 0.5 / kFall_1_s * std::max(0.0, generated_W);
     wanted = stored_J > falling_J ? std::max(0.0, allowed_J - factor_ * falling_J) / (stored_J - falling_J) : 0.0;
   }

@@ -105,8 +105,8 @@ bool BodyHistory::insert(Samples& samples, TimedPose sample) {
   return true;
 }
 
-// A sample of the current step revokes all earlier predictions of that body. No prediction is valid beyond kFar, so a corrupt
-// page cannot revoke more.
+// A sample of the current step revokes all earlier predictions of that body. No prediction is valid beyond kMaxDeviation, so a
+// corrupt page cannot revoke more.
 void BodyHistory::discard_predictions(Samples& samples, const TimedPose& now) {
   const auto end =
       std::find_if(samples.rbegin(), samples.rend(), [&](const TimedPose& s) { return s.time <= now.time; }).base();
