@@ -40,7 +40,7 @@ class LogPlayer {
 
   bool playing() const { return playing_; }
   double rate() const { return rate_; }
-  // On the recorder's clock.
+  // The position on the recorder's clock.
   sync::HostTime position() const { return position_; }
   double position_s() const { return sync::to_seconds(position_ - begin_); }
   double length_s() const { return sync::to_seconds(end_ - begin_); }

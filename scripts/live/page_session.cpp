@@ -31,7 +31,7 @@ constexpr std::size_t kMaxTags = 4096;                 // in the list of a page
 PageSession::PageSession(bool live, std::int64_t run_id, std::string title) : live_(live), title_(std::move(title)), feed_(run_id), answers_(run_id) {}
 
 bool PageSession::accepts(std::string_view channel) const {
-  // Also without a page: given answers are repeated for the leader of a study.
+  // Required even without a page: answers are repeated for the leader of a study.
   if (channel == channels::kQuestion) return true;
   if (watches_.empty()) return false;
   if (Feed::accepts(channel) || channel == channels::kPictureChunk || channel == channels::kTagList ||

@@ -36,7 +36,7 @@ std::int8_t choice_of(const json& j, const char* key,
     if (word == name) return value;
     all += (all.empty() ? "" : ", ") + std::string(name);
   }
-  refuse(std::string(key) + " \"" + word + "\" is none of " + all);
+  refuse(std::string(key) + " \"" + word + "\" is not one of " + all);
 }
 
 Request question(const json& j) {

@@ -19,7 +19,7 @@ LogFeed::LogFeed(const std::string& path, double rate_Hz)
     time_ranges_.add(bounded_us(event.timestamp_us));
   }
   if (scan_.events() == 0)
-    throw std::runtime_error(path + " is no LCM log, or holds not one intact event; give the run.lcmlog of a run");
+    throw std::runtime_error(path + " is not an LCM log, or has no intact event; give the run.lcmlog of a run");
   origin_ = detector.find();
   if (!origin_.known)
     throw std::runtime_error(path + " holds no message of Tactus; give a run.lcmlog that scripts/run wrote");

@@ -161,7 +161,7 @@ int main(int argc, char** argv) try {
   sync::Node node(kReplay, options);
   if (!origin.recovered.empty()) std::cerr << "replay: " << sync::printable(log) << ": " << origin.recovered << "\n";
   if (!selection_options.verbatim && scene_asset(assets) == assets.end())
-    std::cerr << "replay: " << sync::printable(log) << " holds no whole scene; senses that have none stay idle\n";
+    std::cerr << "replay: " << sync::printable(log) << " has no complete scene; renderers without a scene stay idle\n";
   std::optional<sync::SceneSender> scene;
   if (!assets.empty()) scene.emplace(node.bus(), assets);
   sync::ReplayPort port(options.bus);

@@ -230,9 +230,9 @@ TEST_CASE("A file that is not a log of a run is rejected with a sentence that na
   };
   CHECK_THAT(refusal(folder.file("none.lcmlog")), Catch::Contains("cannot read"));
   std::ofstream(folder.file("empty.lcmlog"));
-  CHECK_THAT(refusal(folder.file("empty.lcmlog")), Catch::Contains("no LCM log"));
+  CHECK_THAT(refusal(folder.file("empty.lcmlog")), Catch::Contains("not an LCM log"));
   std::ofstream(folder.file("text.lcmlog")) << "This is a letter, and no log.\n";
-  CHECK_THAT(refusal(folder.file("text.lcmlog")), Catch::Contains("no LCM log"));
+  CHECK_THAT(refusal(folder.file("text.lcmlog")), Catch::Contains("not an LCM log"));
   {
     sync::LogWriter foreign(std::make_unique<sync::FileSink>(folder.file("foreign.lcmlog")));
     const std::vector<std::uint8_t> data(40, 7);

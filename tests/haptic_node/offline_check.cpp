@@ -238,7 +238,7 @@ TEST_CASE("A log without the tool, an unknown tool and a log without a run are r
   CHECK_THAT(refusal({"--log", of.file("run.lcmlog"), "--tool", "toe"}), Catch::Contains("\"toe\""));
   RecordedRun(std::make_unique<sync::FileSink>(of.file("bare.lcmlog")), std::vector<sync::Asset>{}).finish();
   CHECK_THAT(refusal({"--log", of.file("bare.lcmlog")}), Catch::Contains("no scene"));
-  CHECK_THAT(refusal({"--log", of.write("text.lcmlog", "This is a letter.\n")}), Catch::Contains("no LCM log"));
+  CHECK_THAT(refusal({"--log", of.write("text.lcmlog", "This is a letter.\n")}), Catch::Contains("not an LCM log"));
   CHECK_THAT(refusal({"--log", of.file("run.lcmlog"), "--device", "virtual_hand"}), Catch::Contains("--device"));
   const Rendered no_trace = of.render({"--log", of.file("run.lcmlog")});
   CHECK(no_trace.status == 1);

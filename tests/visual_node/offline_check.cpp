@@ -243,7 +243,7 @@ TEST_CASE("A file that is not a log is rejected in one sentence without output f
   };
   CHECK_THAT(error_of("none.lcmlog"), Catch::Contains("cannot read"));
   std::ofstream(folder.file("text.lcmlog")) << "This is a letter, and no log.\n";
-  CHECK_THAT(error_of("text.lcmlog"), Catch::Contains("no LCM log"));
+  CHECK_THAT(error_of("text.lcmlog"), Catch::Contains("not an LCM log"));
   RecordedRun(std::make_unique<sync::FileSink>(folder.file("bare.lcmlog")), std::vector<sync::Asset>{}).finish();
   CHECK_THAT(error_of("bare.lcmlog"), Catch::Contains("no scene"));
   record(folder.file("run.lcmlog"));

@@ -26,7 +26,7 @@ Replay::Replay(std::span<const std::uint8_t> log, const LogOrigin& origin, const
       paused_(o.paused) {
   const auto span = span_of_log(log);
   if (!span)
-    throw std::runtime_error("is no LCM log, or holds not one intact event; give the run.lcmlog of a run");
+    throw std::runtime_error("is not an LCM log, or has no intact event; give the run.lcmlog of a run");
   begin_ = origin_.time(span->first_us);
   end_ = std::max(begin_, origin_.time(span->last_us));
   const HostTime live = host_time(origin.info.live_from_ns);

@@ -122,12 +122,12 @@ TEST_CASE("An undamaged log needs no recovery") {
 TEST_CASE("Empty logs, noise and logs of other systems are rejected with one sentence") {
   const TemporaryFile file;
   file.write({});
-  CHECK_THROWS_WITH(LogFeed(file.path, 1000), Catch::Contains("no LCM log"));
+  CHECK_THROWS_WITH(LogFeed(file.path, 1000), Catch::Contains("not an LCM log"));
   std::vector<std::uint8_t> noise(100'000);
   std::mt19937 random(5);
   for (auto& b : noise) b = static_cast<std::uint8_t>(random());
   file.write(noise);
-  CHECK_THROWS_WITH(LogFeed(file.path, 1000), Catch::Contains("no LCM log"));
+  CHECK_THROWS_WITH(LogFeed(file.path, 1000), Catch::Contains("not an LCM log"));
   const auto state = std::make_shared<MemorySink::State>();
   LogWriter writer(std::make_unique<MemorySink>(state));
   for (int i = 0; i < 100; ++i)

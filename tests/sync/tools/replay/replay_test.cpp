@@ -181,7 +181,7 @@ TEST_CASE("Invalid options are rejected with one sentence") {
   CHECK_THROWS_WITH(with(5, -1, 1), Catch::Contains("--start"));
   CHECK_THROWS_WITH(with(0.005, 0.001, 1), Catch::Contains("--start"));
   CHECK_THROWS_WITH(with(0, -1, 1000), Catch::Contains("speed"));
-  CHECK_THROWS_WITH(Replay({}, origin, {}, kNow), Catch::Contains("no LCM log"));
+  CHECK_THROWS_WITH(Replay({}, origin, {}, kNow), Catch::Contains("not an LCM log"));
 }
 
 TEST_CASE("1,000 damaged logs are replayed to their end with their undamaged messages") {
