@@ -25,7 +25,7 @@ class Offline {
   // Throws std::runtime_error with one sentence when the log holds no run.
   Offline(const OfflineOptions& options, double loop_rate_Hz, sync::HostTime clock);
 
-  // As the constructor when --log is given; otherwise null.
+  // Like the constructor when --log is given; returns null otherwise.
   static std::unique_ptr<Offline> open(const OfflineOptions& options, double loop_rate_Hz, sync::HostTime clock);
 
   // The run, extended by a second after the end of the log, so that sounding bodies decay.

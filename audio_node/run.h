@@ -1,4 +1,4 @@
-// The program as a function, so that virtual time can run it beside other nodes in one process
+// The program as a function, so that virtual time can run it together with other nodes in one process
 // (sync/virtual_time).
 #pragma once
 

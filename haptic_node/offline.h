@@ -1,6 +1,6 @@
 // Renders a recorded run (--log) instead of the bus and the device. The device is where the log recorded it, the
-// ticks are those of the run, and the felt force goes into a table, so that each row can be compared with the
-// recorded force.
+// ticks are those of the run, and the rendered force is written to a table, so that each row can be compared with
+// the recorded force.
 #pragma once
 
 #include <cstdint>
@@ -27,11 +27,11 @@ class Offline {
   // Throws std::runtime_error with one sentence when the log holds no run or the table cannot be written.
   Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
 
-  // As the constructor when --log is given; otherwise null.
+  // Like the constructor when --log is given; returns null otherwise.
   static std::unique_ptr<Offline> open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
 
   sync::OfflineInput& run() { return run_; }
-  // After a scene is loaded: uses the ticks of this tool from now on; -1: no tool.
+  // Call it after a scene is loaded. Uses the ticks of this tool from now on; -1: no tool.
   void follow(int tool);
   std::unique_ptr<Device> device() const { return std::make_unique<RecordedHand>(tick_.device); }
   // Call once per tick. True when the tick is one of the run; false for the tick in which a scene is loaded.

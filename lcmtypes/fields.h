@@ -32,7 +32,7 @@ struct Channel {
 };
 std::span<const MessageType> message_types();
 std::span<const Channel> channel_types();
-// Null when there is none.
+// The type with that name, fingerprint or channel; null when there is none.
 const MessageType* message_type(std::string_view name);
 const MessageType* message_type(std::int64_t fingerprint);
 const MessageType* type_on(std::string_view channel);
@@ -46,10 +46,10 @@ class FieldPath {
   // Throws std::invalid_argument with one sentence that suggests the nearest names.
   FieldPath(const MessageType& type, std::string_view path);
 
-  // Nothing when the bytes are not a complete message of the type, or its list is too short. Never reads beyond
-  // the bytes, and takes time linear in their length.
+  // Returns nullopt when the bytes are not a complete message of the type, or its list is too short. Never reads
+  // beyond the bytes, and takes time linear in their length.
   std::optional<std::variant<double, std::string>> read(std::span<const std::uint8_t> bytes) const;
-  // Only for numbers.
+  // Like read(), but returns nullopt for text.
   std::optional<double> number(std::span<const std::uint8_t> bytes) const;
   bool is_text() const { return last_->type == "string"; }
   const Field& field() const { return *last_; }

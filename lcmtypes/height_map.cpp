@@ -23,7 +23,7 @@ struct Reader {
 
 void on_read(png_structp png, png_bytep to, std::size_t count) {
   auto& left = *static_cast<std::span<const std::uint8_t>*>(png_get_io_ptr(png));
-  if (count > left.size()) throw std::runtime_error("it ends in the middle");
+  if (count > left.size()) throw std::runtime_error("it is truncated");
   std::copy_n(left.begin(), count, to);
   left = left.subspan(count);
 }
@@ -31,7 +31,7 @@ void on_read(png_structp png, png_bytep to, std::size_t count) {
 }  // namespace
 
 HeightMap read_height_map(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() < 8 || png_sig_cmp(bytes.data(), 0, 8) != 0) throw std::runtime_error("it is no PNG file");
+  if (bytes.size() < 8 || png_sig_cmp(bytes.data(), 0, 8) != 0) throw std::runtime_error("it is not a PNG file");
   Reader reader;
   if (!reader.info) throw std::runtime_error("libpng cannot start");
   png_set_read_fn(reader.png, &bytes, on_read);
@@ -42,7 +42,7 @@ HeightMap read_height_map(std::span<const std::uint8_t> bytes) {
   if (png_get_color_type(reader.png, reader.info) != PNG_COLOR_TYPE_GRAY || (bits != 8 && bits != 16))
     throw std::runtime_error("it must be grey with 8 or 16 bits, without alpha or palette");
   if (columns < 2 || rows < 2 || columns > kMaxSide || rows > kMaxSide)
-    throw std::runtime_error("it must have 2 to " + std::to_string(kMaxSide) + " samples a side");
+    throw std::runtime_error("it must have 2 to " + std::to_string(kMaxSide) + " samples per side");
   png_set_interlace_handling(reader.png);
   png_read_update_info(reader.png, reader.info);
 

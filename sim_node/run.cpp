@@ -1,7 +1,7 @@
 // sim_node: simulates the world at 1 kHz and publishes the contacts of every step.
 //
 //   in   TOOL_STATE       proxy and force of each hand; the bodies receive the opposite force
-//        NODE_HEALTH      a new process receives every body at once
+//        NODE_HEALTH      a new process receives every body immediately
 //        ASSET_REQUEST    chunks of the scene that a process lacks
 //        SIM_COMMAND      pause, step, reset, set, push, snapshot, restore
 //   out  TOUCH_MODEL, CONTACT_EVENTS, CONTACTS, WORLD_STATE, GAME_STATE, in this order; SIM_REPLY; SCENE_MANIFEST,

@@ -21,7 +21,7 @@ class Offline {
  public:
   // Throws std::runtime_error with one sentence when the log holds no run or the table cannot be written.
   Offline(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
-  // As the constructor when --log is given; otherwise null.
+  // Like the constructor when --log is given; returns null otherwise.
   static std::unique_ptr<Offline> open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock);
 
   sync::OfflineInput& run() { return run_; }

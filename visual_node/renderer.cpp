@@ -22,7 +22,7 @@ void Options::add_to(CLI::App& app) {
   app.add_flag("--no-video", no_video, "write no video.mp4");
   app.add_flag("--no-pictures", no_pictures, "draw nothing, and report what each picture would have shown")->excludes("--window");
   app.add_option("--snapshot", recording.snapshot, "PNG file that the newest picture is written to");
-  app.add_option("--snapshot-every", recording.snapshot_every_s, "how often, s")
+  app.add_option("--snapshot-every", recording.snapshot_every_s, "interval between two snapshots, s")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   log.add_to(app);
@@ -114,10 +114,11 @@ void NodeRenderer::start_outputs(const SceneView& view, const Settings& settings
 }
 
 void NodeRenderer::apply_setting(const Settings& settings, const std::string& name) {
-  process_messages();  // they came before the change
+  process_messages();  // they were sent before the change
   LiveOverlays::check(settings);
   if (name.starts_with("stream")) {
-    if (!render_output_.draws()) throw std::invalid_argument("it draws no pictures that could be streamed");
+    if (!render_output_.draws())
+      throw std::invalid_argument("it draws no pictures (--no-pictures), so there is nothing to stream");
     stream_.begin(render_output_.picture().width(), render_output_.picture().height(), settings);
   } else {
     overlays_.configure(settings);
@@ -126,7 +127,7 @@ void NodeRenderer::apply_setting(const Settings& settings, const std::string& na
   }
 }
 
-// For a wait within a tick: processes the messages that arrived meanwhile.
+// Processes the messages that arrived during a wait within a tick.
 void NodeRenderer::receive(sync::HostTime now) {
   host().endpoint().step(now);
   process_messages();

@@ -30,7 +30,7 @@ FileCard::FileCard(const StreamOptions& options, const std::string& wav, Render 
       latency_(sync::from_seconds(options.latency_periods * options.period_frames / options.rate_Hz)),
       block_(static_cast<std::size_t>(options.period_frames * options.channels)),
       file_(nullptr, sf_close) {
-  // Of two programs that render into one file the second is rejected; the lock ends with its process.
+  // When two programs render into one file, the second is rejected. The lock ends with its process.
   lock_ = open(part_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (lock_ >= 0 && part_ != wav_ && flock(lock_, LOCK_EX | LOCK_NB) != 0) {
     close(std::exchange(lock_, -1));
@@ -64,7 +64,7 @@ void FileCard::finish() {
   if (closed && !error) return;
   finished_ = false;
   throw std::runtime_error("cannot finish " + wav_ + " (" + (closed ? error.message() : "the file cannot be closed") +
-                           "); free some disk or choose another --wav");
+                           "); free some disk space or choose another --wav");
 }
 
 sync::HostTime FileCard::presentation_time(std::int64_t frame) const {
@@ -85,7 +85,7 @@ void FileCard::play_until(sync::HostTime now) {
     render_(block_.data(), period_frames_, {first, sync::Nanoseconds(0), sync::Nanoseconds(0)});
     if (sf_writef_float(file_.get(), block_.data(), period_frames_) != period_frames_)
       throw std::runtime_error("cannot continue to write " + wav_ + " (" + sf_strerror(file_.get()) +
-                               "); free some disk or choose another --wav");
+                               "); free some disk space or choose another --wav");
     ++blocks_;
   }
 }

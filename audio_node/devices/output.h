@@ -40,7 +40,7 @@ class Output {
   void submit(const Strike& strike, const StrikeQueue::Table& table = nullptr);
   // Reports a hit as dropped without a strike.
   void drop(std::int64_t event_id, sync::HostTime scheduled);
-  // Later scrapes are of these surfaces; null: none. The previous surfaces are kept while the callback may read
+  // Later scrapes use these surfaces; null: none. The previous surfaces are kept while the callback may read
   // them.
   void set_surfaces(std::shared_ptr<const AudioSurfaces> surfaces) { scrapes_.set_surfaces(std::move(surfaces)); }
   // Returns surfaces that are no longer needed. Freeing them may take milliseconds, so do not free them in the
@@ -78,13 +78,13 @@ class Output {
   sync::Nanoseconds latency() const;
   double callback_rate_Hz() const { return settings_.sample_rate_Hz / settings_.period_frames; }
   const Settings& settings() const { return settings_; }
-  // Cost of each method per contact, in words; empty while nothing has sounded.
+  // Text with the cost of each method per contact; empty while nothing has sounded.
   std::string cost_text() const;
-  // Sound dose and current gain reduction, in words; empty while nothing has sounded.
+  // Text with the sound dose and the current gain reduction; empty while nothing has sounded.
   std::string exposure_text() const;
-  // For a card that is too slow for its delay, in words; otherwise empty.
+  // Text about a card that is too slow for its delay; otherwise empty.
   std::string latency_warning() const;
-  // Lost updates and reports, in words; empty if none.
+  // Text about lost updates and reports; empty if there are none.
   std::string loss_text() const;
   // Step of the quality ladder in use.
   int quality() const { return queues_->quality.load(std::memory_order_relaxed); }

@@ -13,7 +13,7 @@
 
 namespace tactus::audio {
 
-// Of one material; null: none, or not readable.
+// The maps of one material; null: there is none, or it cannot be read.
 struct AudioSurface {
   std::shared_ptr<const ReliefLevels> relief;
   std::shared_ptr<const FrictionMap> friction;

@@ -28,7 +28,7 @@ constexpr double kMaxMass_kg = 1e3, kMaxSpeed_m_s = 50, kMinSpeed_m_s = 1e-4, kM
 // FoleyAutomatic, section 3: impulses at the first four modal frequencies, within 15 ms.
 constexpr std::size_t kMicroCollisions = 4;
 constexpr double kMicroWithin_s = 0.015;
-// For a strike that is inaudible at any strength.
+// Value for a strike that is inaudible at any strength.
 constexpr float kInaudible = 2;
 
 // Radiation of an oscillating ball of radius a: pressure at 1 m ahead over rho c v is a (ka)^2 / sqrt(4 + (ka)^4)
@@ -171,7 +171,7 @@ double Impacts::click_Pa(const BodySound& s, double impulse_N_s, double length_s
   return kAirDensity_kg_m3 * kSoundSpeed_m_s * impulse_N_s / s.mass_kg * radiation_m(1 / length_s, s.radius_m);
 }
 
-// Hard bodies collide repeatedly in the first 15 ms, in step with their first four modes; the model of van den
+// Hard bodies collide repeatedly in the first 15 ms, at the times of their first four modes; the model of van den
 // Doel, Kry and Pai ("FoleyAutomatic", SIGGRAPH 2001, section 3). Hard means that the blow ends before half a
 // period of the slowest mode. The repeated collisions carry their share of the impulse; the rest is the blow.
 ForcePulse Impacts::pulse(const Voice& a, const Voice& b, double length_s) const {
@@ -186,7 +186,7 @@ ForcePulse Impacts::pulse(const Voice& a, const Voice& b, double length_s) const
   std::vector<double> after_s;
   for (const double f : frequencies)
     if (1 / f > 2 * length_s && 1 / f < kMicroWithin_s) after_s.push_back(1 / f);
-  // The latest first: those of the lowest modes.
+  // Keeps the latest times, which are first: those of the lowest modes.
   after_s.resize(std::min<std::size_t>(after_s.size(), kMicroCollisions));
   const auto share = static_cast<float>(settings_.micro_collisions);
   for (std::size_t i = 0; i < after_s.size(); ++i) {

@@ -36,7 +36,8 @@ int coarsest(const Roughness& of) {
 
 double grain_m(int octave) { return std::ldexp(kGrain_m, -octave); }
 
-// Of one of the three directions and an octave: all octaves from 0 on together have the requested mean square.
+// Amplitude of one octave in one of the three directions. All octaves from 0 on together have the requested mean
+// square.
 double amplitude_m(const Roughness& of, int octave) {
   const double fall = std::exp2(-2 * kHurst);
   return of.height_m * std::sqrt((1 - fall) / (3 * kSquare)) * std::exp2(-kHurst * octave);

@@ -13,12 +13,13 @@
 namespace tactus::audio {
 namespace {
 
-// Of a blow: at most 12 dB above its recording, as for computed blows above the reference (design).
+// Maximum level of a blow: 12 dB above its recording. Computed blows have the same limit above the reference
+// (design).
 constexpr double kMaxLevel = 4;
-// An octave either way; beyond it a recording suggests another material (design).
+// At most one octave up or down; beyond it a recording sounds like another material (design).
 constexpr double kMinPitch = 0.5, kMaxPitch = 2;
-// As for scrapes: below the minimum there is no sliding or rolling; above the maximum loudness and speed are
-// clamped (design).
+// The same limits as for scrapes: below the minimum there is no sliding or rolling; above the maximum loudness and
+// speed are clamped (design).
 constexpr double kMinSpeed_m_s = 1e-3, kMaxSpeed_m_s = 5, kMaxForce_N = 50;
 // Between two updates of contacts; a longer interval is a gap (design).
 constexpr double kMaxStep_s = 0.1;

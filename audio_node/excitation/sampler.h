@@ -32,7 +32,7 @@ double recorded_blow_level(double impulse_N_s, const Settings& settings);
 // (Fletcher and Rossing, The Physics of Musical Instruments, 1998, chapters 2 and 3).
 double pitch_of(double size_m, double recorded_size_m);
 
-// Of one scene.
+// Selects and scales the recordings of the impacts and contacts of one scene.
 class Sampler {
  public:
   Sampler(const scene_t& scene, const Settings& settings);

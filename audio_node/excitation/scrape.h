@@ -21,7 +21,7 @@ struct ScrapeSide {
   std::int64_t voice = -1;  // the same for the same body, as for strikes; -1: none
   Resonators resonators;
   PerMode gains{};  // of each mode at the place of the contact, Pa at 1 m per N s
-  // The modes above `residual_Hz` are too numerous to render one by one. Together they follow a force at once:
+  // The modes above `residual_Hz` are too numerous to render one by one. Together they follow a force immediately:
   // pressure at 1 m, Pa per N s a sample.
   float residual_gain = 0;
   double residual_Hz = 0;

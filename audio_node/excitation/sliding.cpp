@@ -30,7 +30,7 @@ constexpr std::size_t kManyContacts = 50;
 constexpr double kReplacementFactor = 2;
 // Reference for the law of level: 1 N at 0.1 m/s, with friction 0.5, W^(1/2) (design).
 constexpr double kReferenceForce_N = 1, kReferenceSpeed_m_s = 0.1, kReferenceStrength = 0.22360679774997896;
-// Of noise, peak over rms (design).
+// Crest factor of noise: peak over rms (design).
 constexpr double kCrest = 3;
 constexpr double kHearingThreshold_Pa = 20e-6;  // threshold at 1 kHz (ISO 226): weaker sounds are not raised further
 // The heavier side of a rolling body. Design: not an axis of a box.
@@ -83,8 +83,8 @@ Sliding::ContactSurface Sliding::contact_surface(const contact_t& c, std::size_t
   return g;
 }
 
-// Round bodies by their shape; otherwise the area that the simulation reports. The profile does not lift a rolling
-// body: the rms force is at most the load.
+// The contact patch of round bodies is computed from their shape; otherwise the simulation reports its area. The
+// profile does not lift a rolling body: the rms force is at most the load.
 Sliding::Patch Sliding::patch(const contact_t& c, double force_N, double speed_m_s, double rms_slope) const {
   double curvature = 0, mobility_1_kg = 0;
   for (const std::int32_t body : {c.body_a, c.body_b}) {
@@ -103,7 +103,7 @@ Sliding::Patch Sliding::patch(const contact_t& c, double force_N, double speed_m
           std::min(rolling_force_N(radius, reduced, mass, speed_m_s), force_N / std::max(rms_slope, 1e-9))};
 }
 
-// Of the finish of both surfaces; only a surface with known orientation contributes.
+// Rms slope of the finish of both surfaces. Only a surface with known orientation contributes.
 double Sliding::rms_slope(const std::array<ContactSurface, 2>& surfaces) const {
   double sum = 0;
   for (const ContactSurface& g : surfaces)
@@ -137,7 +137,7 @@ std::optional<Sliding::Candidate> Sliding::candidate(const contact_t& c, sync::S
   ContactMotion& motion = k.state->motion;
   motion.step(c, {k.surfaces[0].to_body, k.surfaces[1].to_body}, best, sliding_velocity, dt_s);
   const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMaxForce_N);
-  double mu = 1;  // without a material, that of the other counts
+  double mu = 1;  // a body without a material takes the friction of the other
   for (const ContactSurface& g : k.surfaces) {
     const auto i = static_cast<std::size_t>(g.material);
     if (g.material >= 0 && i < materials_.size()) mu *= materials_[i].friction_dynamic;
@@ -193,9 +193,9 @@ void Sliding::estimate_loudness(const Candidate& k, std::size_t side) const {
     if (4 * m >= 3 * count) last += variance;
   }
   // A plate has constant modal density in Hz, and its modes lose sound with the square of their frequency (beta of
-  // Rayleigh). All modes above the highest rendered one together have the variance of `count` modes such as it, of
-  // which a quarter was added up. They decay before they are distinguishable. A measured body has only its
-  // recorded modes.
+  // Rayleigh). All modes above the highest rendered one together have the variance of `count` modes like the
+  // highest: four times `last`, the sum over the highest quarter of the rendered modes. They decay before they are
+  // distinguishable. A measured body has only its recorded modes.
   const bool measured = impacts_.body(body).radiation_frequency_Hz.has_value();
   const bool truncated = !measured && count > 0 && r.count >= std::min(settings_.max_modes, kMaxModes);
   const double residual = truncated ? 4 * last : 0;
@@ -213,7 +213,7 @@ ScrapeSide Sliding::side(const Candidate& k, std::size_t i) const {
   s.resonators = impacts_.resonators(g.body);
   s.gains = k.state->gains[i];
   if (k.state->residual_Pa_N[i] > 0) {
-    // Per N s a sample, as the gains.
+    // Per N s and sample, like the gains.
     s.residual_gain = static_cast<float>(k.state->residual_Pa_N[i] * rate_Hz_);
     s.residual_Hz = impacts_.body(g.body).modes.back().frequency_Hz;
   }
@@ -244,7 +244,7 @@ Scrape Sliding::scrape(const Candidate& k, sync::SimTime t, sync::HostTime at, d
     ScrapeSide& side = s.sides[i] = this->side(k, i);
     sliding_Pa2_N2 += k.state->sliding_Pa_N[i] * k.state->sliding_Pa_N[i];
     rolling_Pa2_N2 += k.state->rolling_Pa_N[i] * k.state->rolling_Pa_N[i];
-    // Without the map: a map makes it louder, but does not reduce its roughness.
+    // The reference level is that without a map: a map makes the sound louder, but does not reduce the roughness.
     if (side.known)
       sliding_slope_squared += static_cast<double>(side.slide_vector.squaredNorm()) * mean_square_slope({side.roughness.height_m, 0});
   }

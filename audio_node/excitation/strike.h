@@ -32,7 +32,7 @@ struct Resonators {
   }
 };
 inline const Resonators kNoModes{};
-// Of all bodies of a scene.
+// The resonators of all bodies of a scene.
 using ResonatorTable = std::vector<Resonators>;
 
 // One of the two bodies of an impact.

@@ -56,7 +56,7 @@ void Library::receive_database(std::vector<Shared>& released) {
     }
   } catch (const std::exception& e) {
     messages_.push_back("cannot read the recordings in " + reading_->folder + " (" + e.what() +
-                    "); contacts are computed");
+                    "); contact sounds are computed instead");
   }
   opening_.reset();
   read_ = reading_;

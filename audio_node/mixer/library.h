@@ -33,7 +33,7 @@ class Library {
   // is in use.
   std::vector<Shared> step(bool has_callback = true);
 
-  // Null: none has been read yet, and none is needed or it is being read.
+  // Returns null while no database has been read: none is needed, or it is being read.
   const Database* database() const { return now_.get(); }
   // True while a database is being read. A renderer without a clock repeats step() until it is ready.
   bool reading() const { return opening_ || (requested_ && requested_ != read_); }

@@ -1,4 +1,4 @@
-// All recordings that currently sound: the part of the callback.
+// All recordings that currently sound: the part that runs in the callback.
 #pragma once
 
 #include <atomic>
@@ -21,7 +21,7 @@ struct RecordedQueues {
   Spsc<RecordedContact> contacts{kMaxQueuedUpdates * 2 * Loops::kMax};
   // Strikes and contacts queued after an entry belong to the database of that number.
   Spsc<std::int64_t> databases{16};
-  // The callback holds nothing of a database with a number below this, and never will again: it may be freed.
+  // The callback holds nothing of a database with a lower number, and will receive nothing: those may be freed.
   std::atomic<std::int64_t> oldest_held{0};
   static_assert(std::atomic<std::int64_t>::is_always_lock_free);
 };

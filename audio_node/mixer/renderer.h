@@ -54,12 +54,12 @@ struct ExposureMeter {
 // Queues and counters between the loop of the node and the callback.
 struct CallbackQueues {
   Spsc<Strike> strikes{512};
-  // The callback holds no strike of a scene of a number below this, and will never again: its table may be freed.
+  // The callback holds no strike of a scene with a lower number, and will receive none: their tables may be freed.
   std::atomic<std::int64_t> oldest_held_scene{0};
   Spsc<RenderCommand> commands{16};
   Spsc<Listener> listeners{64};  // the newest applies
   Spsc<Scrape> scrapes{kMaxQueuedUpdates * 2 * Scrapes::kMax};
-  // The callback holds no scrape with a number below this, and never will again: the data of those scrapes may be
+  // The callback holds no scrape with a lower number, and will receive none: the data of those scrapes may be
   // freed.
   std::atomic<std::int64_t> oldest_held_scrape{0};
   static_assert(std::atomic<std::int64_t>::is_always_lock_free);
@@ -88,11 +88,11 @@ struct RendererDef {
   bool silent = false;  // computes no samples: each strike is reported as if it were rendered, on its sample
 };
 
-// Length of the next block for the remaining frames: blocks are as even as possible, since a crossfade within a
-// block would be a jump in a block of one frame.
+// Length of the next block for the remaining frames. Blocks have almost equal lengths, because the crossfade of a
+// block of one frame would be a jump.
 constexpr int next_block(int frames_left) { return frames_left / ((frames_left + kMaxBlock - 1) / kMaxBlock); }
 
-// Same strikes, same blocks and same times give the same samples to the bit.
+// Equal strikes, blocks and times give bit-identical samples.
 class Renderer {
  public:
   Renderer(CallbackQueues& queues, const RendererDef& def);
@@ -100,8 +100,8 @@ class Renderer {
   // Channels of the interleaved samples.
   int channels() const { return channels_; }
   // Fills `frames` frames and reports the outcome of each strike. A strike that is due before the earliest sample
-  // is played at once, weakened by the policy, and reported as late, or dropped. A strike whose onset falls into a
-  // drop-out is reported as dropped by the profile. Realtime-safe: yes.
+  // is played immediately, weakened by the policy, and reported as late, or dropped. A strike whose onset falls
+  // into a drop-out is reported as dropped by the profile. Realtime-safe: yes.
   void render(float* out, int frames, const BlockTime& time);
 
   // Reports all waiting strikes as dropped and releases all scrapes. Call on the loop thread, after the callback
@@ -133,13 +133,13 @@ class Renderer {
   bool silent_;
   sync::LatePolicy late_;
   Scheduler scheduler_{512};
-  std::int64_t newest_scene_;  // of the strikes that were taken out of the queue
+  std::int64_t newest_scene_;  // newest scene of the strikes that were taken out of the queue
   Voices voices_;
   Scrapes scrapes_;
   RecordingPlayer recordings_;
   std::int64_t (*clock_ns_)();
   std::optional<Scrape> next_scrape_;  // taken from the queue, not yet due
-  std::int64_t scrapes_taken_;         // from the queue, including previous renderers
+  std::int64_t scrapes_taken_;         // number of scrapes taken from the queue, including previous renderers
   Dropout dropout_;
   std::array<float, kMaxBlock> open_{};  // factors of the drop-out on the current samples
   Limiter limiter_;
@@ -147,8 +147,8 @@ class Renderer {
   sync::QualityLadder ladder_;
   int fixed_quality_ = -1;
   int last_frames_ = 0;        // of the previous block
-  int frames_ = 0;             // rendered frames that the ladder has not received,
-  sync::Nanoseconds render_time_{0};  // and their rendering time
+  int frames_ = 0;             // rendered frames that are not yet passed to the quality ladder
+  sync::Nanoseconds render_time_{0};  // rendering time of those frames
 };
 
 }  // namespace tactus::audio

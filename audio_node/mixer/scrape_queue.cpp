@@ -11,7 +11,7 @@ constexpr std::size_t kMaxPendingEnds = 4 * Scrapes::kMax;
 }  // namespace
 
 void ScrapeQueue::set_surfaces(Surfaces next) {
-  // Surfaces that no scrape points to may be freed at once, regardless of the callback.
+  // Surfaces that no scrape points to may be freed immediately, regardless of the callback.
   if (now_) kept_.push_back({submitted_ > first_ ? submitted_ : 0, std::move(now_)});
   now_ = std::move(next);
   first_ = submitted_;

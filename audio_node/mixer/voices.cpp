@@ -64,7 +64,8 @@ void Voices::fade_weakest(int max_voices) {
   }
 }
 
-// There are more voices than may sound, so a voice that is not free fades, and the weakest of these ends.
+// Returns a free voice. If there is none, returns the weakest of the fading voices. There is always one, because
+// more voices exist than may sound.
 Voices::Voice& Voices::free_voice() {
   Voice* best = nullptr;
   for (Voice& v : voices_) {
@@ -102,7 +103,7 @@ Voices::Voice& Voices::voice_for(std::int64_t id, const Resonators& resonators, 
   return fresh;
 }
 
-// Modes that were cut return at rest, before a force begins: within a force they would jump.
+// Restores cut modes at rest, before a force begins: during a force they would jump.
 void Voices::restore_modes(Voice& v) const {
   const auto pushes = [](const Pulse& p) { return p.on; };
   if (!v.cut.on && v.rendered < allowed_modes(v) && v.driven == 0 &&
@@ -197,7 +198,7 @@ void Voices::fade(Fade& fade, float* samples, int frames) const {
   }
 }
 
-// Begins when required and while none is in progress: one after another.
+// Begins to fade out the modes above the limit. Does nothing while another cut is in progress.
 void Voices::cut(Voice& v) const {
   if (v.cut.on || v.rendered <= allowed_modes(v)) return;
   v.kept = allowed_modes(v);

@@ -15,7 +15,7 @@ namespace tactus::audio {
 // Limits on the number of voices and modes.
 struct VoiceLimits {
   int voices = 64;
-  // Share of the modes of a body: one in modes_of, the lowest, in whole groups of kModeGroup, so that its pitch
+  // Only the lowest modes of a body are rendered, one in modes_of, in whole groups of kModeGroup. So its pitch
   // stays.
   int modes_of = 1;
 };
@@ -26,7 +26,7 @@ struct Drive {
   const Resonators* resonators = nullptr;
   const PerMode* gains = nullptr;  // at the place of the contact, as for a strike
   SourcePosition place;
-  const float* force = nullptr;   // N s a sample, scaled to full scale per Pa; read until the end of that render()
+  const float* force = nullptr;   // N s per sample, scaled to full scale per Pa; read until the end of that render()
   const float* direct = nullptr;  // direct sound at 1 m besides the modes, in the same units; null: none
 };
 
@@ -41,12 +41,12 @@ class Voices {
   Voices(int voices, double rate_Hz, Ring ring, const Space& space = {},
          Instructions instructions = Instructions::kSse2);
 
-  // From the next render() on.
+  // Applies the limits from the next render() on.
   void set_limits(const VoiceLimits& limits);
 
   // Starts a pulse for one side, scaled by `gain`, at `offset` frames (0 .. kMaxBlock-1) into the next render().
   void strike(const StrikeSide& side, float gain, const ForcePulse& pulse, int offset);
-  // Call before each render() during the contact. Of one body at most kDrives are rendered at a time.
+  // Call before each render() during the contact. At most kDrives of one body are rendered at a time.
   void drive(const Drive& drive);
   // Bodies keep their place in the world, including those that ring already.
   void set_listener(const Listener& listener) { listener_ = listener; }
@@ -61,10 +61,11 @@ class Voices {
   static constexpr int kDrives = 32;
 
  private:
-  static constexpr int kPulses = 16;  // of one voice at a time; more join the strongest of them
-  // Voices that fade while others sound: at most this number can be taken within a fade before one ends at once.
+  static constexpr int kPulses = 16;  // pulses of one voice at a time; more join the strongest of them
+  // Voices that fade while others sound: at most this number can be taken within a fade before one ends
+  // immediately.
   static constexpr int kFading = 16;  // design
-  // Of a cut. Shorter is audible as a click (design).
+  // Fade time of a cut; a shorter one is audible as a click (design).
   static constexpr double kFade_s = 0.005;
 
   struct Pulse {

@@ -32,7 +32,7 @@ struct BodyPlace {
 
 struct BodySound {
   Elastic material;
-  std::vector<Mode> modes;  // ascending
+  std::vector<Mode> modes;  // in order of increasing frequency
   double mass_kg = 1;       // of the vibrating part
   double radius_m = 0.05;   // of a ball of the same extent: determines the radiation
   // Measured modes keep their recorded strength, so all radiate as the strongest does.

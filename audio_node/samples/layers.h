@@ -28,7 +28,7 @@ struct Layer {
 
 inline constexpr int kMaxLayers = 8;  // of one sound (design)
 
-// Of one pair of materials and one interaction.
+// The recordings of one pair of materials and one interaction.
 struct Layers {
   std::vector<Layer> by_speed;  // ascending, each with at least one take; at most kMaxLayers
   double size_m = 0.05;         // of the recorded object: radius of a ball of the same extent

@@ -15,7 +15,7 @@ constexpr double kLevel_s = 0.005;
 constexpr sync::Nanoseconds kUpdateTimeout{30'000'000};
 constexpr double kMaxTimeout_s = 0.5;  // design: or twice the update interval, but at most this
 constexpr float kEndLevel = 1e-6f;
-// An octave either way; beyond it a recording suggests another material (design).
+// At most one octave up or down; beyond it a recording sounds like another material (design).
 constexpr double kMinStep = 0.5, kMaxStep = 2;
 
 }  // namespace

@@ -76,7 +76,7 @@ std::optional<Recording> read_recording(const std::string& path, Interaction int
   if (info.channels < 1 || info.channels > 2)
     return reject("has " + std::to_string(info.channels) + " channels; give one or two");
   if (info.samplerate < 8000 || info.samplerate > 192000)
-    return reject("has " + std::to_string(info.samplerate) + " samples a second; give 8000 to 192000");
+    return reject("has " + std::to_string(info.samplerate) + " samples per second; give 8000 to 192000");
   const auto max_frames = static_cast<sf_count_t>(kMaxLength_s * info.samplerate);
   if (info.frames > max_frames) faults.push_back({path, "is longer than 20 s; only the first 20 s are played; cut it", false});
   // Counts the frames that are read: a header may state any number.

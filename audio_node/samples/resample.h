@@ -5,8 +5,8 @@
 
 namespace tactus::audio {
 
-// By a windowed sinc of 32 zero crossings; removes everything above the bandwidth of the slower rate. Allocates,
-// and takes about 30 ms per second at 48 kHz: do not call it in a loop.
+// Uses a windowed sinc of 32 zero crossings. Removes all frequencies above the bandwidth of the lower rate.
+// Allocates, and takes about 30 ms per second at 48 kHz: do not call it in a loop.
 std::vector<float> resample(const std::vector<float>& in, double from_Hz, double to_Hz);
 
 }  // namespace tactus::audio

@@ -14,13 +14,13 @@ namespace tactus::audio {
 // A fixed number of voices. When all are in use the quietest fades. Realtime-safe: yes, except the constructor.
 class Shots {
  public:
-  static constexpr int kMax = 64;  // impacts at a time, as for bodies
+  static constexpr int kMax = 64;  // maximum number of impacts at a time, the same as for bodies
 
   explicit Shots(double rate_Hz, const Space& space = {}, Instructions instructions = Instructions::kSse2);
 
   void set_listener(const Listener& listener) { listener_ = listener; }
 
-  // From the frame `offset` of the next render() on, scaled by `gain`.
+  // Starts a recording at the frame `offset` of the next render(), scaled by `gain`.
   void start(const RecordedStrike& strike, float gain, int offset);
   // Adds `frames` <= kMaxBlock frames, channels interleaved.
   void render(float* mix, int frames);
@@ -31,12 +31,12 @@ class Shots {
   void clear();
 
  private:
-  static constexpr int kFading = 16;        // that fade while others sound (design)
+  static constexpr int kFading = 16;        // additional voices that fade out while the others sound (design)
   static constexpr double kFade_s = 0.005;  // shorter is audible as a click (design)
 
   struct Playing {
     Shot shot;
-    double at = 0;  // in the recording
+    double at = 0;  // position in the recording
   };
   // Recordings of one impact, summed before they are placed.
   struct Voice {

@@ -22,8 +22,8 @@ class Limiter {
   void process(float* samples, int frames);
 
  private:
-  // 50 ms back to 63 % of the gain: shorter is audible as distortion of low tones (Giannoulis, Massberg, Reiss, J.
-  // Audio Eng. Soc. 60, 2012, section 1.3).
+  // Time constant of the release, 50 ms: a shorter one is audible as distortion of low tones (Giannoulis,
+  // Massberg, Reiss, J. Audio Eng. Soc. 60, 2012, section 1.3).
   static constexpr double kRelease_s = 0.05;
 
   float smallest_in_window(float target);

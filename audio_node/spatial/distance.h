@@ -3,7 +3,8 @@
 
 namespace tactus::audio {
 
-// Of one source. Levels are those at 1 m, so the air counts from there. Realtime-safe: yes.
+// Effects of distance on one source. The input level is that at 1 m, so the absorption of the air counts from
+// there. Realtime-safe: yes.
 class Distance {
  public:
   explicit Distance(double rate_Hz);

@@ -16,7 +16,7 @@ class Ear {
   explicit Ear(sync::OwnClock own) : head_(own) {}
 
   void set_scene(const scene_t& scene);
-  // Of any tool; tools that do not steer the view are ignored.
+  // Accepts the states of all tools, and ignores tools that do not steer the view.
   void push(const tool_state_t& state, sync::HostTime arrival);
   // T_world_listener at an instant.
   Eigen::Isometry3d at(sync::HostTime t);

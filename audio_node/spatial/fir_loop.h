@@ -8,7 +8,7 @@ namespace tactus::audio::TACTUS_FIR {
 namespace {
 
 constexpr int kWidth = TACTUS_FIR_WIDTH;
-// Number of sums that fit into the registers beside their operands: filters share each load of the input.
+// Number of sums that fit into the registers together with their operands: filters share each load of the input.
 constexpr int kSums = kWidth == 16 ? 16 : 8;
 typedef float Lanes __attribute__((vector_size(4 * TACTUS_FIR_WIDTH)));
 typedef float UnalignedLanes __attribute__((vector_size(4 * TACTUS_FIR_WIDTH), aligned(4)));

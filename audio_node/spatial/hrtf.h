@@ -21,7 +21,7 @@ class Hrtf {
   // when the directions do not surround the head.
   Hrtf(const MeasuredHrtf& measured, double rate_Hz);
 
-  // Of one filter, a multiple of 16.
+  // Length of one filter, a multiple of 16.
   int taps() const { return taps_; }
   // Frames from the beginning of the filters to the first audible sample at the nearer ear (onset.h), mean over
   // all directions: the latency of the filters.

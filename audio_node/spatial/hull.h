@@ -10,8 +10,8 @@ namespace tactus::audio {
 // Indices of its corners, anticlockwise as seen from outside.
 using Triangle = std::array<int, 3>;
 
-// Of points on the unit sphere. More than three coplanar points are divided into triangles in one fixed way. Empty
-// when all are coplanar.
+// Convex hull of points on the unit sphere. More than three coplanar points are divided into triangles in one
+// fixed way. Empty when all are coplanar.
 std::vector<Triangle> convex_hull(const std::vector<Eigen::Vector3d>& points);
 
 // The part of the sphere that each direction represents, steradian: a third of each adjacent triangle. Duplicate

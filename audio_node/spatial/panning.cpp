@@ -140,7 +140,7 @@ void Panning::gains(const Vector3f& direction, float* of_channels) const {
   const auto add_power = [&](int speaker, float power) {
     of_channels[channel_of_[static_cast<std::size_t>(speaker)]] += power;
   };
-  // As powers; a source above a level ring is distributed over the whole ring.
+  // The gains are combined as powers; a source above a level ring is distributed over the whole ring.
   float sum = 0;
   if (best) best_gains = best_gains.cwiseMax(0.f), sum = best_gains.head(flat_ ? 2 : 3).squaredNorm();
   for (int k = 0; best && sum > 0 && k < (flat_ ? 2 : 3); ++k) {

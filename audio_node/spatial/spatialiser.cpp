@@ -30,7 +30,7 @@ Spatialiser::Spatialiser(const Space& space, int sources, double rate_Hz, Instru
   for (Source& s : sources_) {
     s.left.resize(taps), s.right.resize(taps);
     s.input.resize(taps + kMaxBlock);
-    // And one more, which a delay of a whole number of samples reads with weight 0.
+    // One more sample, which a delay of a whole number of samples reads with weight 0.
     s.filtered_left.resize(past + kMaxBlock + 1), s.filtered_right.resize(past + kMaxBlock + 1);
   }
 }
@@ -48,7 +48,7 @@ void Spatialiser::add(int source, const SourcePosition& requested, const float* 
   Source& s = sources_[static_cast<std::size_t>(source)];
   std::array<float, kMaxBlock> sound;
   s.distance.apply(mono, place.distance_m, frames, sound.data());
-  // At most in every second block: new filters double the cost.
+  // Filters change in at most every second block, because new filters double the cost.
   const bool moved = (place.direction - s.direction).squaredNorm() > kMinTurn_rad * kMinTurn_rad;
   const bool turned = s.fresh || (moved && s.rested);
   s.rested = !turned;

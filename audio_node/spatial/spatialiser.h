@@ -18,7 +18,8 @@ namespace tactus::audio {
 // Maximum latency of rendering for ears, frames: the lead of the filters and the minimum delay.
 inline constexpr int kMaxEarsLatency = Hrtf::kLead + kMinDelay;
 
-// Data shared by all sources. Without both members: two channels and equal power by the azimuth (pan.h).
+// Data shared by all sources. When both members are null: two channels, panned with equal power by the azimuth
+// (pan.h).
 struct Space {
   std::shared_ptr<const Hrtf> hrtf;
   std::shared_ptr<const Panning> panning;
@@ -39,8 +40,8 @@ class Spatialiser {
   int tail() const { return tail_; }
   // Begins another sound on that source: clears the state of the previous one.
   void begin(int source);
-  // The next `frames` <= kMaxBlock frames of a source, which is at `place` at their end. All sources of a block
-  // have the same number of frames.
+  // Adds the next `frames` <= kMaxBlock frames of a source. The source is at `place` at the end of the block. All
+  // sources of a block have the same number of frames.
   void add(int source, const SourcePosition& place, const float* mono, int frames);
   // Adds the block to `mix`, channels interleaved, and begins the next block.
   void mix(float* mix, int frames);
@@ -54,7 +55,7 @@ class Spatialiser {
     Eigen::Vector3f direction = Eigen::Vector3f::Zero();
     std::array<float, kMaxChannels> gains{};
     float interaural_delay = 0;
-    // For ears: the filters in use, and the past of input and output.
+    // Only for ears: the filters in use, and the previous input and output.
     std::vector<float> left, right, input, filtered_left, filtered_right;
   };
   void add_by_ears(Source& source, const float* sound, int frames, bool turned);

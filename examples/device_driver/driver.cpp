@@ -1,7 +1,7 @@
 // Driver of a device without code in haptic_node: it publishes the pose of the device and exerts the force that it
 // receives.
 //
-//    device_driver [NAME [GROUP [PORT [RUN]]]]        and beside it: haptic_node --device external:NAME
+//    device_driver [NAME [GROUP [PORT [RUN]]]]        together with: haptic_node --device external:NAME
 //
 //    out  DEVICE_STATE   1000 times per second
 //    in   DEVICE_FORCE   the force is 0 when no new message arrives in time

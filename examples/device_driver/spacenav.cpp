@@ -1,6 +1,6 @@
 // Driver of a 3D mouse as a device without force, by libspnav: a head for the view, a wand for the lamp, or a hand without force feedback.
 //
-//    spacenav [NAME [GROUP [PORT [RUN]]]]        and beside it: haptic_node --tool TOOL --device external:NAME
+//    spacenav [NAME [GROUP [PORT [RUN]]]]        together with: haptic_node --tool TOOL --device external:NAME
 //
 //    out  DEVICE_STATE   250 times per second
 //

@@ -23,8 +23,8 @@ struct ContactForce {
 
 class ContactImpulses {
  public:
-  static constexpr std::size_t kMaxContacts = 128;  // stored; the least recently felt is removed
-  static constexpr std::size_t kMaxPublished = 12;  // in one message
+  static constexpr std::size_t kMaxContacts = 128;  // stored; the least recently felt one is removed
+  static constexpr std::size_t kMaxPublished = 12;  // maximum number in one message
   // time after the end of the force during which a contact is still published
   static constexpr sync::Nanoseconds kPublishAfter{50'000'000};
 
@@ -32,7 +32,7 @@ class ContactImpulses {
 
   // One tick: adds the impulse of the forces of the last tick, then stores the forces that act from now on.
   void step(sync::HostTime now, double dt, std::span<const ContactForce> forces);
-  // Time of the first force on that contact, since it was last without force for longer than kPublishAfter.
+  // Time of the first force on that contact after its last pause of more than kPublishAfter.
   std::optional<sync::HostTime> first_force_time(std::int64_t contact_id) const;
   // Writes the contacts that act or recently acted, acting ones first. Realtime-safe once `out` has room for
   // kMaxPublished.

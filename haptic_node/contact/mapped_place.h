@@ -50,7 +50,7 @@ struct MappedPlace {
     published_rotation_ =
         frame(normal, across) * frame(normal_body, Eigen::Vector3d::Unit(bump_axes(normal_body).u)).transpose();
   }
-  // turned: rotation of the body since then.
+  // by: rotation of the body since the plane arrived.
   void rotate(const Eigen::Matrix3d& by) { rotation = by * published_rotation_; }
 
  private:

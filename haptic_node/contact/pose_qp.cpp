@@ -7,14 +7,15 @@
 namespace tactus::haptic {
 namespace {
 
-// As for points (closest_point.cpp): far below the resolution of a hand, far above rounding errors in a room.
+// The same tolerance as for points (closest_point.cpp): far below the resolution of a hand, far above rounding
+// errors in a room.
 constexpr double kTolerance_m = 1e-9;
 // Violation that may remain where only dependent sets exist: 1 mN at 1 N/mm (design).
 constexpr double kNegligible_m = 1e-6;
 // A unit normal whose part outside the span of the others is shorter counts as dependent.
 constexpr double kIndependent = 1e-6;
 
-// In coordinates about the goal, normals of length 1.
+// The half spaces in coordinates about the goal, with normals of length 1.
 struct Problem {
   std::array<Vector6, kMaxHalfSpaces> normal;
   std::array<double, kMaxHalfSpaces> deficit;
@@ -42,9 +43,10 @@ struct State {
   }
 };
 
-// Adds half space p and drops blocking ones; false: it and the binding ones have no common pose.
+// Adds half space p and removes those that block it. Returns false when p and the binding ones have no common
+// pose.
 bool add_constraint(const Problem& problem, std::size_t p, State& s) {
-  double own = 0;  // its multiplier
+  double own = 0;  // multiplier of p
   for (int iteration = 0; iteration <= 6; ++iteration) {
     const Vector6& n = problem.normal[p];
     const std::array<double, 6> r = s.set.coefficients(n);
@@ -73,7 +75,7 @@ bool add_constraint(const Problem& problem, std::size_t p, State& s) {
 }
 
 bool solve(const Problem& problem, State& s) {
-  // More than this number is a cycle caused by rounding.
+  // A larger number of iterations is a cycle caused by rounding.
   constexpr std::size_t kMaxIterations = 3 * kMaxHalfSpaces;
   for (std::size_t iteration = 0; iteration < kMaxIterations; ++iteration) {
     const std::size_t worst = problem.max_violation_index(s.x);
@@ -84,7 +86,7 @@ bool solve(const Problem& problem, State& s) {
   return worst == problem.size || problem.deficit[worst] - problem.normal[worst].dot(s.x) <= kNegligible_m;
 }
 
-// No common pose: every half space yields as a spring does (closest_point.cpp).
+// Used when there is no common pose: every half space yields like a spring (closest_point.cpp).
 Vector6 compromise(const Problem& problem) {
   constexpr double kSoftness = 0.02;
   constexpr int kMaxIterations = 30, kHalvings = 20;

@@ -35,7 +35,7 @@ class BindingSet {
   // these rates.
   std::array<double, 6> shares(const std::array<double, 6>& rates) const;
 
-  // Adds a normal; false when it depends on the present ones.
+  // Adds a normal; false when it depends on the normals added before.
   bool add(std::size_t index, const Vector6& normal);
   void drop(std::size_t k);
   void clear() { size_ = 0; }
@@ -61,8 +61,8 @@ struct ClosestPose {
 
 // Distributes a sum over normals, sum = sum of share_i normal_i, with (nearly) the least sum of share_i^2 /
 // weight_i and shares that are not negative. The programme itself does not determine the shares where more half
-// spaces bind than necessary, for example at the four feet of a table. Normals of weight 0 get no share. False:
-// there is no such distribution, and `shares` is unchanged. Realtime-safe: yes.
+// spaces bind than necessary, for example at the four feet of a table. Normals of weight 0 get no share. Returns
+// false, with `shares` unchanged, when there is no such distribution. Realtime-safe: yes.
 bool distribute(std::span<const PoseHalfSpace> region, std::span<const double> weights, const Vector6& sum,
                 std::span<double> shares);
 

@@ -9,8 +9,8 @@ namespace {
 constexpr double kMaxStretch_m = 2;
 
 // v without its component along the total normal force of all surfaces. It does not remove the component along
-// every binding normal: for two facets that meet in a shallow groove that would remove the friction across it at
-// once, in the tick in which the second facet joins, although its share of the force begins at zero.
+// every binding normal: when two facets meet in a shallow groove, that would suddenly remove the friction across
+// it in the tick in which the second facet joins, although its share of the force begins at zero.
 Eigen::Vector3d tangential(const Eigen::Vector3d& v, std::span<const Surface> surfaces) {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   for (const Surface& s : surfaces) normal += s.depth_m * s.normal;

@@ -27,7 +27,7 @@ struct ReliefDef {
   bool height = false, normal = true;
   double steepest = 1;              // largest rendered slope; the force leans by at most its arctangent
   double recovery_time_s = 0.015;   // transition time of a new method, a loaded map or another side of a body
-  double recovery_speed_m_s = 0.1;  // a height that changes more slowly is followed at once
+  double recovery_speed_m_s = 0.1;  // a height that changes more slowly is followed immediately
 };
 // From the setting `bump`: none, height, normal or both.
 ReliefDef relief_def(const std::string& bump, double steepest, double recovery_time_s, double recovery_speed_m_s);

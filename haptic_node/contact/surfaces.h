@@ -1,6 +1,6 @@
 // The surfaces near the tool as the servo loop renders them: the planes of the touch model, extrapolated to now
 // and made continuous. A plane that jumps, turns, appears over the proxy or disappears yields within the recovery
-// time (Mark et al. 1996), so that a new message never kicks the hand. Slow changes are followed at once.
+// time (Mark et al. 1996), so that a new message never kicks the hand. Slow changes are followed immediately.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -33,7 +33,7 @@ struct Surface {
   double effective_mass_kg = 1;
   double stiffness_N_m = 0, damping_N_s_m = 0;  // of the surface itself
   double friction_static = 0, friction_dynamic = 0;
-  // As rendered now.
+  // The plane that is rendered now.
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   double offset_m = 0;  // the centre of the tool stays at normal . x >= offset, for its current orientation
   Eigen::Vector3d tool_point = Eigen::Vector3d::Zero();  // contact point in the frame of the tool, m; 0 for a ball
@@ -59,7 +59,7 @@ struct Surface {
 
  private:
   friend class Surfaces;
-  // As in the newest message, at the instant `at`.
+  // The plane of the newest message, at its instant `at`.
   Eigen::Vector3d published_point_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d published_normal_ = Eigen::Vector3d::UnitZ();
   sync::SimTime at_{};

@@ -25,7 +25,7 @@ void External::on_message(const device_state_t& state, sync::HostTime arrival) {
       return;
     }
   } else if (newest_) {
-    // A repetition, or overtaken by a newer one.
+    // The message is a repetition, or a newer one has overtaken it.
     const std::int64_t passed_ns = state.header.publish_time_ns - newest_->header.publish_time_ns;
     if (passed_ns <= 0) return;
     // Messages that queued up arrive together, so this uses the times of the sender; at least one tick, because

@@ -22,8 +22,8 @@ class External : public Device {
   // of valid messages before it is accepted again.
   External(std::string name, const Eigen::Vector3d& offset_m, double stale_after_s);
 
-  // Of the states of this name, the newest of one program counts. Two programs that send at once, or a pose that
-  // jumps, are contradictions.
+  // Uses the newest state with this name, from one program. Two programs that send at the same time, or a pose
+  // that jumps, are contradictions.
   void on_message(const device_state_t& state, sync::HostTime arrival) override;
   // Force command of another process. Two processes that hold one device would shake it between their forces: the
   // device is lost for both while this lasts.

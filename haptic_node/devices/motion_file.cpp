@@ -102,7 +102,7 @@ Motion read_motion(const std::string& path) {
   const auto kind = std::filesystem::status(path, error).type();
   // Reading a pipe or a device may never end, or never begin.
   if (kind != std::filesystem::file_type::regular && kind != std::filesystem::file_type::not_found)
-    throw std::runtime_error("motion file " + path + " is no regular file; name a CSV file");
+    throw std::runtime_error("motion file " + path + " is not a regular file; give a CSV file");
   std::ifstream in(path);
   if (!in) throw std::runtime_error("motion file " + path + " cannot be read; check the path and its permissions");
   return read_motion(in, path);

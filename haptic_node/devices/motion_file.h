@@ -18,7 +18,7 @@ struct Motion {
 // Accepts only a regular file of at most kMaxMotionFileBytes with lines of at most 1 kB, because another machine
 // may name any path. Throws std::runtime_error with one sentence that names the file, the line and the remedy.
 Motion read_motion(const std::string& path);
-// As above, from a stream; `name` appears in the error.
+// The same from a stream; `name` appears in the error.
 Motion read_motion(std::istream& in, const std::string& name);
 
 }  // namespace tactus::haptic

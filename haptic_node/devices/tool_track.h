@@ -14,7 +14,7 @@ namespace tactus::haptic {
 
 struct RecordedTick {
   sync::HostTime at{};            // on the clock of the recorder
-  std::int64_t published_ns = 0;  // from its TOOL_STATE, on the clock of its sender
+  std::int64_t published_ns = 0;  // publish time of its TOOL_STATE, on the clock of its sender
   std::int64_t seq = 0;
   DeviceState device;
 };
@@ -29,7 +29,8 @@ class ToolTrack {
   // Maximum duration of a tick: an earlier beginning is not plausible.
   static constexpr sync::Nanoseconds kMaxTickDuration{1'000'000};
 
-  // Ticks of a sender with another clock than that of the recorder are read by arrival. feed: outlives this.
+  // When the clock of the sender differs from that of the recorder, a tick has its arrival time. feed: outlives
+  // this.
   explicit ToolTrack(const sync::LogFeed& feed) : feed_(feed) {}
 
   // Starts at the beginning of the log, for this tool.

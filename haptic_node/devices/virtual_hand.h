@@ -1,5 +1,5 @@
-// A simulated hand: a mass that a spring and a damper pull along a path, so that contact pushes it back; and an
-// inertia held in its rest orientation in the same way, so that torque turns it.
+// A simulated hand. A spring and a damper pull its mass along a path, and a contact can push it back. A second
+// spring and damper hold its inertia in a rest orientation, and a torque can turn it.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ struct HandImpedance {
   double mass_kg = 0.1;
   double damping_N_s_m = 10;
   double stiffness_N_m = 300;
-  // For rotation.
+  // Values of the rotation.
   double inertia_kg_m2 = 0.0003;
   double turn_damping_N_m_s = 0.03;
   double turn_stiffness_N_m = 1;  // N m per radian
@@ -41,7 +41,7 @@ class VirtualHand : public Device {
   std::optional<sync::HostTime> begin_;  // start of the path
   bool read_ = false;
   sync::HostTime last_{};
-  MonotoneCubic::At target_{};  // place of the path at last_
+  MonotoneCubic::At target_{};  // point of the path at the time last_
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero(), velocity_ = Eigen::Vector3d::Zero();
   // Rotation from rest_ as a rotation vector: exact for rotations about one axis, accurate enough for those of a
   // wrist.

@@ -53,7 +53,7 @@ class LoopDelay {
   // Call once per tick with the age of the model in use, s. The peak decays slowly, so that the stiffness does not
   // flicker.
   void advance(double age_s, double dt);
-  // An intended delay of the models is now shorter by by_s: subtracts it from the estimate at once.
+  // An intended delay of the models is now shorter by by_s: subtracts it from the estimate immediately.
   void reduce(double by_s);
   double value_s(double step_s, double period_s) const { return std::max(peak_s_, held_s_) + step_s + period_s; }
 

@@ -14,7 +14,7 @@ namespace tactus::haptic {
 
 class ForceCrossfade {
  public:
-  // A change of less than step_N_s per second passes at once.
+  // A change of less than step_N_s per second passes immediately.
   ForceCrossfade(double recovery_time_s, double step_N_s) : time_s_(recovery_time_s), step_N_s_(step_N_s) {
     last_set_.reserve(kMaxHalfSpaces);
   }

@@ -8,8 +8,8 @@
 namespace tactus::haptic {
 namespace {
 
-// As in tool_touch.h of the simulation, which does not search further around a tool that reports a higher speed.
-// Design: faster than an exploring hand (a reach is 1 to 2 m/s).
+// The limit in tool_touch.h of the simulation, which does not search further around a tool that reports a higher
+// speed. Design: faster than an exploring hand (a reach is 1 to 2 m/s).
 constexpr double kMaxHandSpeed_m_s = 5;
 
 ForceMethod::Kind kind_of(const std::string& name, bool shaped) {

@@ -22,13 +22,13 @@ double coupling_lever_m(const Settings& settings);
 void rigid_forces(std::span<const Surface> surfaces, const RigidProxy& proxy, const DeviceState& device,
                   double factor, std::span<Eigen::Vector3d> forces);
 
-// As rigid_forces, for direct rendering: friction is dynamic and vanishes with the speed over the surface.
+// Like rigid_forces, but for direct rendering: friction is dynamic and vanishes with the speed over the surface.
 void direct_forces(std::span<const Surface> surfaces, const DeviceState& device, double lever_m,
                    double tool_radius_m, double factor, std::span<Eigen::Vector3d> forces);
 
 // Changes the forces at those arms as little as possible, large forces most, so that their sum is `felt`. The
-// force is exact. The torque is exact as far as the contact points allow without force couples larger than most_N;
-// points that lie almost on a line would need larger ones.
+// force is exact. The torque is exact as far as the contact points allow without force couples larger than
+// max_couple_N; points that lie almost on a line would need larger ones.
 void share_wrench(const Wrench& felt, std::span<const Eigen::Vector3d> arms, std::span<Eigen::Vector3d> forces,
                   double max_couple_N);
 

@@ -42,20 +42,21 @@ class Session {
   void push(touch_model_t page, sync::HostTime arrival) {
     if (!ended_) touch_.push(std::move(page), arrival);
   }
-  // Events that are due, each once. They are rendered in the next tick that has a map of the time.
+  // Adds events that are due; pass each event once. They are rendered in the next tick that can convert simulated
+  // to host time.
   void push(const std::vector<contact_event_t>& due) {
     if (!ended_) events_.insert(events_.end(), due.begin(), due.end());
   }
 
-  // Applies changed settings from the next tick on, as Renderer::change, and also the limits of safety.
+  // Applies changed settings from the next tick on, like Renderer::change, and also the safety limits.
   void change(const Settings& settings);
 
-  // The maps of this scene, once they are loaded; until then its surfaces are smooth.
+  // Call it when the maps of this scene are loaded. Until then its surfaces are smooth.
   void set_maps(std::shared_ptr<const SurfaceMaps> maps) { renderer_.set_maps(std::move(maps)); }
 
   void push(const device_state_t& state, sync::HostTime arrival) { device_->on_message(state, arrival); }
   void push(const device_force_t& others, sync::HostTime arrival) { device_->on_message(others, arrival); }
-  // After a step: the message for the program that drives the device; null: none.
+  // Call it after step(). Returns the message for the program that drives the device; null: none.
   device_force_t* force_message() { return device_->force_message(); }
 
   // Call once per tick: reads the device, renders and commands the device. planes: number of planes to consider.

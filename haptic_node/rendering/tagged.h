@@ -1,5 +1,5 @@
-// Tags of haptic_node: values of a hand that can be recorded by name, beside TOOL_STATE, and can drive other
-// renderers (<tactus:map>).
+// Tags of haptic_node: values of a hand that can be recorded by name, in addition to TOOL_STATE, and can drive
+// other renderers (<tactus:map>).
 #pragma once
 
 #include <cmath>

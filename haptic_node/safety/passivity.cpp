@@ -23,7 +23,8 @@ constexpr double kRefill_W = 0.0002;
 // The factor falls to zero within 5 ms at 1 kHz, which keeps a force of 8 N below the slew limit. It recovers
 // within a second, slower than any oscillation of hand or body, so that it drives no cycle itself.
 constexpr double kFall_1_s = 200, kRise_1_s = 1;
-// As in safety.cpp: faster than any hand. The device jumped, and no work is counted.
+// The same limits as in safety.cpp, faster than any hand. Above them the device has jumped, and no work is
+// counted.
 constexpr double kMaxHandSpeed_m_s = 40, kMaxHandSpin_rad_s = 100;
 
 // Clamped as the surfaces are: a body that reports a higher speed gives no credit for it.
@@ -153,7 +154,7 @@ void Passivity::observe(const StoredEnergy& coupling, const Eigen::Vector3d& mov
   const double allowed_J = std::max(0.0, credit_J_ + limits_.allowance_J);
   double wanted = 1;
   if (stored_J > allowed_J) {
-    // Energy generated while the factor moves to `wanted`: half of the energy at the present force.
+    // Energy generated while the factor moves to `wanted`: half of the energy at the current force.
     const double falling_J = 0.5 / kFall_1_s * std::max(0.0, generated_W);
     wanted = stored_J > falling_J ? std::max(0.0, allowed_J - factor_ * falling_J) / (stored_J - falling_J) : 0.0;
   }

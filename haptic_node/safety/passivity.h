@@ -1,7 +1,7 @@
 // Passivity observer and controller of the channel between the hand and the bodies: two ports with a delay between
 // them (Hannaford and Ryu 2002; Ryu, Artigas and Preusche 2010).
 //
-// Port of the device: force on the hand times its motion, known at once. Port of the bodies: the work that the
+// Port of the device: force on the hand times its motion, known immediately. Port of the bodies: the work that the
 // simulation did on them (touch_applied_t), known as late as the touch model. The work since then is estimated
 // (pending_energy.h). The energy that a fan, a falling ball or a swing returns therefore counts towards the energy
 // that the hand gets, at the latest when the simulation reports it.
@@ -10,7 +10,7 @@
 //
 // The springs of the coupling may never hold more than the credit and a small allowance. For any later motion of
 // hand and bodies, the channel then generates at most the allowance. Where the springs would hold more, the controller
-// lowers the coupling at once by the required factor, and restores it slowly. A passive coupling holds less than
+// lowers the coupling immediately by the required factor, and restores it slowly. A passive coupling holds less than
 // the credit, so without a disturbance the factor is 1.
 #pragma once
 

@@ -66,17 +66,17 @@ void PendingEnergyEstimator::advance(double push_N, double dt) {
   speed_m_s_ = next;
 }
 
-// A body that came towards the hand may have swung back: the speed that this adds along the push.
+// A body that moved towards the hand may have swung back. Returns the speed that this adds along the push.
 double PendingEnergyEstimator::swing_back_m_s() const {
   return 2 * std::max(0.0, report_.normal.dot(report_.velocity));
 }
 
-// Replays the pushes of the last window_s, as far back as they add up to the unreported impulse; the missing part
-// came before them.
+// Replays the newest pushes, at most those of the last window_s, until they add up to the unreported impulse. An
+// older push gave the missing part.
 void PendingEnergyEstimator::replay(double window_s, double pending_N_s) {
   const auto push = [&](std::size_t back) { return pushes_[(newest_ + pushes_.size() - back) % pushes_.size()]; };
   std::size_t first = 0;
-  // share of the first push, which may be unreported in part
+  // share of the oldest replayed push, which may be partly reported
   double time_s = 0, remaining_N_s = pending_N_s, share = 1;
   while (first < count_ && time_s < window_s && share == 1) {
     const Push p = push(first++);

@@ -30,11 +30,11 @@ class PendingEnergyEstimator {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ(), velocity = Eigen::Vector3d::Zero();
     Eigen::Vector3d impulse_N_s = Eigen::Vector3d::Zero();
   };
-  // Stores a report. most_N: upper bound of the force on the body. Realtime-safe: yes.
+  // Stores a report. max_force_N: upper bound of the force on the body. Realtime-safe: yes.
   void on_report(const BodyReport& report, double max_force_N);
   // Stores a report without motion.
   void on_report(const Eigen::Vector3d& impulse_N_s);
-  // One tick has passed with this force on the body. Realtime-safe: yes.
+  // Adds one tick with this force on the body. Realtime-safe: yes.
   void add_push(const Eigen::Vector3d& force_N, double dt);
   // Pending energy, J. The model already includes every force rendered more than window_s ago. Realtime-safe: yes.
   double energy_J(double window_s, double max_force_N);

@@ -44,7 +44,7 @@ class Safety {
   // force returned then. A wanted force that is not finite counts as zero. Realtime-safe: yes.
   Eigen::Vector3d limit(const Eigen::Vector3d& wanted_N, const Eigen::Vector3d& moved_m, double dt);
 
-  // As above, for force and torque together: when one reaches its limit, both are reduced, so that the felt
+  // The same for force and torque together: when one reaches its limit, both are reduced, so that the felt
   // contact point does not move. turned_rad: rotation of the device.
   Wrench limit(const Wrench& wanted, const Eigen::Vector3d& moved_m, const Eigen::Vector3d& turned_rad, double dt);
 

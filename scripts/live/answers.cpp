@@ -40,9 +40,9 @@ void Answers::answer(const PageAnswer& given, sync::HostTime now) {
     throw std::invalid_argument("that question is no longer open; answer the shown one");
   if (answered(*m)) throw std::invalid_argument("that question has been answered; wait for the next");
   if (m->kind == question_t::CHOICE ? given.choice < 0 || given.choice >= m->count : given.choice != -1)
-    throw std::invalid_argument("the answer is none of the choices; load the page again");
+    throw std::invalid_argument("the answer is not one of the choices; reload the page");
   if (m->kind == question_t::NUMBER ? !(given.number >= m->lowest && given.number <= m->highest) : given.number != 0)
-    throw std::invalid_argument("the answer is outside the range of its slider; load the page again");
+    throw std::invalid_argument("the answer is outside the range of its slider; reload the page");
   answer_t a{};
   a.header.sim_time_ns = -1;
   a.header.run_id = a.header.incarnation = 1;  // the bus stamps them

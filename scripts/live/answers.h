@@ -1,4 +1,4 @@
-// The state of a study for the pages, and the answers of the pages: its leader, the present question, and whether a page has
+// The state of a study for the pages, and the answers of the pages: its leader, the current question, and whether a page has
 // answered. Pure: messages are passed in and out.
 #pragma once
 
@@ -20,20 +20,20 @@ class Answers {
  public:
   static constexpr std::size_t kMaxStoredAnswers = 64;  // design: a leader asks one question after the other
 
-  // run_id: as of sync::CurrentQuestion.
+  // run_id: as for sync::CurrentQuestion.
   explicit Answers(std::int64_t run_id) : question_(run_id) {}
 
   void push(const question_t& m, sync::HostTime arrival);
-  // The answer of a page. Throws std::invalid_argument with one sentence when it does not fit the present question, or when
+  // The answer of a page. Throws std::invalid_argument with one sentence when it does not fit the current question, or when
   // that has been answered.
   void answer(const PageAnswer& answer, sync::HostTime now);
   // The answer to publish now: once, and again for each repetition of its question.
   std::optional<answer_t> take_answer() { return std::exchange(pending_, std::nullopt); }
-  // The log position was changed.
+  // Call it when the log position has changed.
   void clear() { question_.clear(), pending_.reset(); }
 
-  // For pages; null: no process leads a study. `question` is the name of the question for PageAnswer, as text: JavaScript has
-  // no 64-bit integers.
+  // The state for the pages; null: no process leads a study. `question` is the name of the question for PageAnswer, as text:
+  // JavaScript has no 64-bit integers.
   nlohmann::json to_json(sync::HostTime now) const;
   // header.source of the leader; nullopt: there is none.
   std::optional<std::int32_t> leader(sync::HostTime now) const;

@@ -17,26 +17,26 @@ constexpr int kMaxSteps = 10'000;
 double number(const json& j, const char* name, double min, double max) {
   const auto found = j.find(name);
   if (found == j.end() || !found->is_number())
-    throw std::invalid_argument(std::string("the page sent no number \"") + name + "\"; load it again");
+    throw std::invalid_argument(std::string("the page sent no number \"") + name + "\"; reload the page");
   const double value = found->get<double>();
   if (!(value >= min && value <= max))
-    throw std::invalid_argument(std::string("\"") + name + "\" is out of range; load the page again");
+    throw std::invalid_argument(std::string("\"") + name + "\" is out of range; reload the page");
   return value;
 }
 
 bool flag(const json& j, const char* name) {
   const auto found = j.find(name);
   if (found == j.end() || !found->is_boolean())
-    throw std::invalid_argument(std::string("the page sent no flag \"") + name + "\"; load it again");
+    throw std::invalid_argument(std::string("the page sent no flag \"") + name + "\"; reload the page");
   return found->get<bool>();
 }
 
 std::string text(const json& j, std::size_t max) {
-  if (!j.is_string()) throw std::invalid_argument("the page sent a name that is not text; load it again");
+  if (!j.is_string()) throw std::invalid_argument("the page sent a name that is not text; reload the page");
   std::string s = j.get<std::string>();
   const auto printable = [](unsigned char c) { return c > 32 && c < 127; };
   if (s.empty() || s.size() > max || !std::all_of(s.begin(), s.end(), printable))
-    throw std::invalid_argument("the page sent a name that is empty, too long or not printable; load it again");
+    throw std::invalid_argument("the page sent a name that is empty, too long or not printable; reload the page");
   return s;
 }
 
@@ -62,18 +62,18 @@ Command command(const json& j) {
   if (word == "resume") return {sim_command_t::RESUME, 0};
   if (word == "reset") return {sim_command_t::RESET, 0};
   if (word == "step") return {sim_command_t::STEP, static_cast<int>(number(j, "steps", 1, kMaxSteps))};
-  throw std::invalid_argument("the page sent an unknown command; load it again");
+  throw std::invalid_argument("the page sent an unknown command; reload the page");
 }
 
 DegradeRequest degrade(const json& j) {
   const auto senses = j.find("senses");
   if (senses == j.end() || !senses->is_object() || senses->size() > kMaxModalities)
-    throw std::invalid_argument("the page sent no sliders, or too many; load it again");
+    throw std::invalid_argument("the page sent no sliders, or too many; reload the page");
   DegradeRequest d;
   d.clear = flag(j, "clear");
   for (const auto& [name, s] : senses->items()) {
     if (name.empty() || name.size() > 64 || !is_modality_name(name) || !s.is_object())
-      throw std::invalid_argument("the page sent sliders of an invalid modality name; load it again");
+      throw std::invalid_argument("the page sent sliders of an invalid modality name; reload the page");
     Sliders sliders{number(s, "delay_ms", 0, 2000), number(s, "rate_Hz", 0, 1000), number(s, "loss", 0, 1)};
     if (sliders.rate_Hz > 0 && sliders.rate_Hz < 0.1) throw std::invalid_argument("\"rate_Hz\" is below 0.1; give more, or 0");
     d.senses[name] = sliders;
@@ -84,9 +84,9 @@ DegradeRequest degrade(const json& j) {
 PageAnswer answer(const json& j) {
   constexpr double kMaxAnswerTime_ns = 86'400e9;
   const auto question = j.find("question");
-  if (question == j.end()) throw std::invalid_argument("the page's answer names no question; load it again");
+  if (question == j.end()) throw std::invalid_argument("the page's answer names no question; reload the page");
   const double choice = number(j, "choice", -1, 8);
-  if (choice != std::floor(choice)) throw std::invalid_argument("\"choice\" is no whole number; load the page again");
+  if (choice != std::floor(choice)) throw std::invalid_argument("\"choice\" is not a whole number; reload the page");
   return {text(*question, 64), static_cast<int>(choice), number(j, "number", -1e9, 1e9),
           static_cast<std::int64_t>(number(j, "after_ns", 0, kMaxAnswerTime_ns))};
 }
@@ -94,9 +94,9 @@ PageAnswer answer(const json& j) {
 }  // namespace
 
 BrowserMessage parse_browser_message(std::string_view bytes) {
-  if (bytes.size() > kMaxBrowserBytes) throw std::invalid_argument("the page sent more than 8192 bytes at once; load it again");
+  if (bytes.size() > kMaxBrowserBytes) throw std::invalid_argument("the page sent a message of more than 8192 bytes; reload the page");
   const json j = json::parse(bytes, nullptr, false);
-  if (!j.is_object() || !j.contains("t")) throw std::invalid_argument("the page sent a malformed message; load it again");
+  if (!j.is_object() || !j.contains("t")) throw std::invalid_argument("the page sent a malformed message; reload the page");
   const std::string kind = text(j["t"], 16);
   if (kind == "watch") return watch(j);
   if (kind == "command") return command(j);
@@ -105,7 +105,7 @@ BrowserMessage parse_browser_message(std::string_view bytes) {
   if (kind == "play") return LogPlay{flag(j, "play"), number(j, "rate", 0.1, 16)};
   if (kind == "seek") return LogSeek{number(j, "to_s", 0, 1e7)};
   if (kind == "answer") return answer(j);
-  throw std::invalid_argument("the page sent an unknown kind of message; load it again");
+  throw std::invalid_argument("the page sent an unknown kind of message; reload the page");
 }
 
 }  // namespace tactus::live

@@ -39,7 +39,7 @@ struct LogPlay {
   double rate = 1;  // 0.1 .. 16
 };
 struct LogSeek {
-  double to_s = 0;  // since its beginning
+  double to_s = 0;  // time since the beginning of the log
 };
 // The answer of a participant to a study's question; answers.h checks it against the question.
 struct PageAnswer {

@@ -8,8 +8,8 @@
 
 namespace tactus::live {
 
-// [{"name": "TOOL_STATE:force_N.z", "unit": "N", "about": ...}, ...] of all channels with regular messages. Of a list its
-// first element; others can be requested by name.
+// [{"name": "TOOL_STATE:force_N.z", "unit": "N", "about": ...}, ...] of all channels with regular messages. A list is
+// represented by its first element; other elements can be requested by name.
 nlohmann::json field_catalog();
 
 }  // namespace tactus::live

@@ -22,7 +22,7 @@ constexpr sync::Nanoseconds kTagRequestPeriod{1'000'000'000};      // as require
 header_t unstamped_header() {
   header_t h{};
   h.sim_time_ns = -1;
-  h.run_id = h.incarnation = 1;  // the bus stamps them; a header without is not valid
+  h.run_id = h.incarnation = 1;  // the bus overwrites them; a header without them is not valid
   return h;
 }
 

@@ -41,7 +41,7 @@ class Controls {
   void stream(double rate_Hz, sync::HostTime now);
   void request_tags(const std::vector<std::string>& names, sync::HostTime now);
 
-  // Call it once an iteration of the loop: sends due messages and reads the answers.
+  // Call it once per iteration of the loop: sends due messages and reads the answers.
   void step(sync::HostTime now);
 
   struct World {

@@ -37,7 +37,7 @@ class Feed {
   // True for channels that are used here.
   static bool accepts(std::string_view channel);
   void on_message(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
-  // The log position was changed.
+  // Call it when the log position has changed.
   void clear();
 
   // The changes since the last call, for every page; {} when there are none.

@@ -19,13 +19,13 @@ class Hand {
  public:
   // Design: a quick reach; haptic_node accepts up to 20 m/s and limits its force.
   static constexpr double kMaxSpeed_m_s = 1;
-  // The page repeats the mouse position every 100 ms. After this silence the device stops publishing; haptic_node loses it,
-  // and the force fades to zero (design: three repetitions).
+  // The page repeats the mouse position every 50 ms (page/src/picture.ts). After this silence the device stops publishing;
+  // haptic_node loses it, and the force fades to zero (design: seven repetitions).
   static constexpr sync::Nanoseconds kTimeout{350'000'000};
   // Design: limits of the distance between the camera and the plane.
   static constexpr double kMinDepth_m = 0.05, kMaxDepth_m = 10;
 
-  // aspect: width of the picture by its height. tool: the present position of the tool, if known; only a new grab uses it.
+  // aspect: width of the picture by its height. tool: the current position of the tool, if known; only a new grab uses it.
   void aim(const HandTarget& at, const scene_t& scene, double aspect, const std::optional<Eigen::Vector3d>& tool,
            sync::HostTime now);
   // The device state to publish now; nullopt while no page holds the device.

@@ -4,8 +4,8 @@
 //   out  SIM_COMMAND, DEGRADATION, SETTING (stream of visual_node), TAG_REQUEST, DEVICE_STATE (device "live"), ANSWER: only
 //   on request of a page
 //
-// No other process waits for it. A slow page loses frames of its own, which are counted; without a page no message is
-// decoded.
+// No other process waits for it. A slow page loses only its own frames, which are counted. While no page is open, no message
+// is decoded.
 #include <signal.h>
 
 #include <CLI/CLI.hpp>
@@ -241,9 +241,9 @@ void serve_cluster(const Options& o) {
     if (const std::int64_t generation = controls.profile() ? controls.profile()->generation : -1; generation != sent_generation) {
       sent_generation = generation;
       degradation = live::degradation_json(controls.profile()->text);
-      next_scene = now;  // at once
+      next_scene = now;  // immediately
     }
-    // Again once a second, for new pages.
+    // Repeats it once a second, for new pages.
     if (controls.scene() != nullptr && now >= next_scene) {
       extra["degradation"] = degradation;
       extra["scene"] = scene_of(*controls.scene());

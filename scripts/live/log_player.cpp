@@ -33,7 +33,7 @@ void LogPlayer::begin() {
       break;
     }
   }
-  if (!any) throw std::runtime_error("holds no event of an LCM log; name a run.lcmlog");
+  if (!any) throw std::runtime_error("has no event of an LCM log; give a run.lcmlog");
   scan_next();
   begin_ = position_ = seek_points_.front().time;
   playing_ = true;

@@ -1,5 +1,5 @@
 // Plays a log for pages: forward at any speed, from any position. Pure, except that it maps the file. The log is scanned once
-// in pieces while it plays, so that a large one opens at once.
+// in pieces while it plays, so that a large one opens immediately.
 #pragma once
 
 #include <cstdint>
@@ -20,12 +20,12 @@ namespace tactus::live {
 class LogPlayer {
  public:
   using EventHandler = std::function<void(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival)>;
-  // Design: at most a tenth of a second of reading or playing at once, on a slow machine.
+  // Design: at most a tenth of a second of reading or playing in one call, on a slow machine.
   static constexpr int kMaxEvents = 20'000;
   // Length of the log before the position of a seek that is shown, too, so that graphs are not empty.
   static constexpr sync::Nanoseconds kSeekLead{3'000'000'000};
 
-  // Throws std::runtime_error with one sentence when the file is no log.
+  // Throws std::runtime_error with one sentence when the file is not a log.
   explicit LogPlayer(const std::string& path);
   // The same for bytes that outlive this object.
   explicit LogPlayer(std::span<const std::uint8_t> bytes);
@@ -33,14 +33,14 @@ class LogPlayer {
   // Scans the next piece; returns true while there is more.
   bool scan_next();
   void play(bool on, double rate) { playing_ = on, rate_ = rate; }
-  // The next advance starts kSeekLead earlier, and passes on the events in between at once.
+  // The next advance starts kSeekLead earlier, and immediately passes on the events in between.
   void seek(double to_s);
   // Advances by this real time: passes on the events recorded in that interval.
   void advance(sync::Nanoseconds dt, const EventHandler& on_event);
 
   bool playing() const { return playing_; }
   double rate() const { return rate_; }
-  // On the recorder's clock.
+  // The position on the recorder's clock.
   sync::HostTime position() const { return position_; }
   double position_s() const { return sync::to_seconds(position_ - begin_); }
   double length_s() const { return sync::to_seconds(end_ - begin_); }

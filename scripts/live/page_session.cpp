@@ -31,7 +31,7 @@ constexpr std::size_t kMaxTags = 4096;                 // in the list of a page
 PageSession::PageSession(bool live, std::int64_t run_id, std::string title) : live_(live), title_(std::move(title)), feed_(run_id), answers_(run_id) {}
 
 bool PageSession::accepts(std::string_view channel) const {
-  // Also without a page: given answers are repeated for the leader of a study.
+  // Required even without a page: answers are repeated for the leader of a study.
   if (channel == channels::kQuestion) return true;
   if (watches_.empty()) return false;
   if (Feed::accepts(channel) || channel == channels::kPictureChunk || channel == channels::kTagList ||
@@ -60,7 +60,7 @@ void PageSession::on_message(std::string_view channel, std::span<const std::uint
     if (!m) return;
     auto picture = pictures_.push(*m);
     if (!picture) return;
-    // Of several walls the first, unless visual_node draws one.
+    // With several walls, shows the picture of visual_node if there is one, otherwise that of the first wall.
     if (!wall_ || picture->source == static_cast<std::int32_t>(sync::fnv1a_32("visual_node"))) wall_ = picture->source;
     if (picture->source != *wall_) return;
     if (picture->height > 0) aspect_ = static_cast<double>(picture->width) / picture->height;

@@ -23,7 +23,7 @@ namespace tactus::live {
 
 class PageSession {
  public:
-  static constexpr sync::Nanoseconds kFramePeriod{50'000'000};  // design: 20 a second look smooth
+  static constexpr sync::Nanoseconds kFramePeriod{50'000'000};  // design: 20 frames per second look smooth
 
   // live: false when a log is shown. run_id: as of Feed.
   PageSession(bool live, std::int64_t run_id, std::string title);
@@ -36,7 +36,7 @@ class PageSession {
 
   bool accepts(std::string_view channel) const;
   void on_message(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
-  // The log position was changed.
+  // Call it when the log position has changed.
   void clear();
 
   // The first message to a page.
@@ -52,7 +52,7 @@ class PageSession {
   // The tagged variables that the pages show, as patterns of TAG_REQUEST.
   std::vector<std::string> requested_tags() const;
   const Feed& feed() const { return feed_; }
-  // The present question of a study, and the answers of pages.
+  // The current question of a study, and the answers of pages.
   Answers& answers() { return answers_; }
 
  private:

@@ -54,7 +54,7 @@ std::string number(double value) {
 
 bool nearly_equal(double a, double b) { return std::abs(a - b) <= 1e-9 + 1e-6 * std::abs(a); }
 
-// False for an element without any operator left, which is no valid rule.
+// False for an element without any operator left, which is not a valid rule.
 bool has_operator(const XMLElement& e) {
   for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a; a = a->Next())
     if (const std::string name = a->Name(); name != "modality" && name != "conceal") return true;

@@ -20,7 +20,7 @@ class Watches {
  public:
   // Design: no screen shows more than 200 values of one curve per second.
   static constexpr sync::Nanoseconds kMinInterval{5'000'000};
-  // Values of one curve for one frame, the newest: after a seek, LogPlayer::kSeekLead of the log arrives at once.
+  // Values of one curve for one frame, the newest: after a seek, LogPlayer::kSeekLead of the log arrives in one piece.
   static constexpr std::size_t kMaxWaiting = 600;
   // Curves of one variable; values of further senders are left out. Design: the number of distinguishable colours.
   static constexpr std::size_t kMaxSenders = 8;
@@ -53,7 +53,7 @@ class Watches {
     std::optional<FieldPath> path, source;
     std::vector<Curve> curves;
   };
-  // Null when there are too many.
+  // Returns null when there are too many senders.
   static Curve* curve(Watch& w, std::int32_t source);
   static void add_value(Curve& c, sync::HostTime time, double value);
   std::vector<Watch> watches_;

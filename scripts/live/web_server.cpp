@@ -27,7 +27,8 @@ namespace {
 
 constexpr std::size_t kMaxHeaderBytes = 8192;
 constexpr std::chrono::seconds kRequestTimeout{10};  // design
-// Design: a page that is silent for this time, also to pings, is closed. Until then a frozen page costs a full queue.
+// Design: a page that is silent for this time, also to pings, is closed. Until then a frozen page takes the memory of a full
+// queue.
 constexpr std::chrono::seconds kIdleTimeout{60};
 
 class Page;
@@ -251,7 +252,7 @@ int listen_on(const std::string& address, int port) {
   at.sin_family = AF_INET;
   at.sin_port = htons(static_cast<std::uint16_t>(port));
   if (inet_pton(AF_INET, address.c_str(), &at.sin_addr) != 1)
-    throw std::runtime_error("--bind: \"" + address + "\" is no IPv4 address; write for example 127.0.0.1");
+    throw std::runtime_error("--bind: \"" + address + "\" is not an IPv4 address; write for example 127.0.0.1");
   const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   const int on = 1;
   setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);

@@ -30,7 +30,7 @@ class WebServer {
     std::function<void(int page, std::string_view text)> message;
   };
   // listen_fd: a listening socket; the server takes ownership. files: by path, "/" at least. Throws std::runtime_error with
-  // one sentence when listen_fd is no listening socket.
+  // one sentence when listen_fd is not a listening socket.
   WebServer(int listen_fd, std::map<std::string, PageFile> files, std::string token, bool loopback, Events events);
   ~WebServer();
   WebServer(const WebServer&) = delete;
@@ -39,12 +39,12 @@ class WebServer {
   // Handles events until at least one was handled or max_wait has passed.
   void run_for(std::chrono::nanoseconds max_wait);
 
-  // To one page; no effect when it is closed.
+  // Sends a text to one page; no effect when the page is closed.
   void send(int page, std::shared_ptr<const std::string> text);
   void send_picture(int page, std::shared_ptr<const std::string> picture);
   const SendQueue* queue(int page) const;
   int port() const;
-  // Requests of foreign pages and with wrong tokens.
+  // Number of refused requests: from foreign pages, or with wrong tokens.
   std::int64_t refused() const;
 
  private:

@@ -13,7 +13,7 @@ struct ArmDef {
   double stiffness_N_m = 300;
   double damping_N_s_m = 25;
   // Movement noise grows with the motor command (Harris and Wolpert 1998, Nature 394, "Signal-dependent noise determines
-  // motor planning"); the share is design.
+  // motor planning"); the share is a design choice.
   double noise_share = 0.02;
 };
 

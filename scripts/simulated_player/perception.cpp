@@ -21,8 +21,8 @@ constexpr double kInHoleDepth_m = 0.02;
 constexpr sync::Nanoseconds kHealthTimeout{
     300'000'000};  // a node that is silent for this time counts as stalled, as in sync_node
 // Uncertainty of the direction and distance of a sound source, standard deviation. A still head resolves 3.6 degrees to the
-// side (Blauert 1997, Spatial Hearing, section 2.1): 7 cm at the eye's distance from the floor. A slightly smaller value, and
-// the same for distance, is design: an audible ball lies on the floor, and the head moves.
+// side (Blauert 1997, Spatial Hearing, section 2.1): 7 cm at the eye's distance from the floor. Design choice: a slightly
+// smaller value, also for the distance, because an audible ball lies on the floor and the head moves.
 constexpr double kLocalizationSd_m = 0.05;
 constexpr std::uint64_t kHearingStream = 13;     // random stream of the seed
 constexpr sync::Nanoseconds kEarly{20'000'000};  // events this far ahead are accepted, as in audio_node

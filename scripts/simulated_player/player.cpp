@@ -10,13 +10,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-// All values are design.
+// All values are design choices.
 constexpr double kArrived_m = 0.006;        // near enough to a place
 constexpr double kBallMoved_m = 0.03;       // a ball that has moved this far is approached again
 constexpr double kFallen_m = -0.01;         // a ball with its centre below this is in a hole
 constexpr double kFallHeardValid_s = 1.0;   // a heard fall overrides sight for this time
 constexpr double kLost_s = 0.6;             // after pushing for this time without sight or touch, the ball is lost
-constexpr double kStuck_s = 1.5;            // an object that does not move for this time is no ball
+constexpr double kStuck_s = 1.5;            // an object that does not move for this time is not a ball
 constexpr double kSearchPitch_m = 0.025;    // a search widens by this each revolution
 constexpr double kMaxSearchRadius_m = 0.2;  // then it restarts
 constexpr double kSteer_1_s = 6;            // rate of the sideways movement behind a ball
@@ -32,7 +32,7 @@ constexpr double kMaxPrediction_m = 0.05;  // limit of the prediction
 constexpr double kMaxOffsetShare = 0.5;
 constexpr double kHeldForce_N = 4;  // objects that can be pushed do not resist this long
 constexpr double kYieldDistance_m = 0.05;
-constexpr double kMinSlope_m_s2 = 0.05;  // less of a slope needs no balance
+constexpr double kMinSlope_m_s2 = 0.05;  // on a smaller slope the ball needs no balance
 // Distance of a ball that was never seen in front of its hole, as given before the game.
 constexpr double kFirstGuess_m = 0.2;
 
@@ -180,7 +180,7 @@ void Player::feel(const Percept& p) {
   only_felt_ = true;
 }
 
-// Selects the next ball that is not in its hole, when the present one is.
+// Selects the next ball that is not in its hole, when the current one is.
 void Player::select_goal() {
   const int count = static_cast<int>(beliefs_.size());
   if (goal_ < count && !ball().in_hole) return;
@@ -206,7 +206,7 @@ Vector3d Player::travel(const Percept&) {
   // Without any belief about the ball, a search begins behind its place.
   Vector3d to = clamped_to_floor(position_behind(def_.gap_m));
   to.z() = def_.travel_height_m;
-  // It waits above a rolling ball until the ball is slow, so that it does not come down on it.
+  // It waits above a rolling ball until the ball is slow, so that the hand does not come down on the ball.
   if ((target_m_ - to).norm() < kArrived_m && !ball_rolls()) start(Action::kDescend);
   return step_towards(to, def_.air_speed_m_s);
 }

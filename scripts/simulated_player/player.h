@@ -1,5 +1,5 @@
-// A simulated player: finds each ball, moves the hand behind it and pushes it into its hole, with nothing but the percepts of
-// its modalities. Pure: time is an argument.
+// A simulated player: finds each ball, moves the hand behind it and pushes it into its hole, using only the percepts of its
+// modalities. Pure: time is an argument.
 //
 // Use of the modalities:
 //   sight     the place of a ball, and whether it lies in its hole, as old as the picture
@@ -8,8 +8,8 @@
 //             the place of the ball on the hand; the place of an unseen object
 // It searches for a ball that it neither sees nor feels around its last known place, in a widening spiral. On a slope it
 // balances the ball on the hand like an inverted pendulum: the hand moves beyond a ball that escapes to a side. It combines
-// sight and touch of the ball's place (Ernst and Banks 2002, Nature 415); a delay of one of them is not announced to it, and
-// misleads it.
+// sight and touch of the ball's place (Ernst and Banks 2002, Nature 415); it cannot correct an additional delay of one of
+// them, which misleads it.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,7 +34,7 @@ struct Percept {
       heard_m{};  // one for each goal: approximate place of a heard hit; nullopt: none
 };
 
-// All values are design: a careful person who pushes a ball the size of an egg.
+// All values are design choices: a careful person who pushes a ball the size of an egg.
 struct PlayerDef {
   double reaction_s = 0.15;         // from sight or sound to action
   double touch_reaction_s = 0.07;   // from touch to action
@@ -58,7 +58,7 @@ class Player {
   // The target of the arm from now on, m, world. Call it in order of time.
   Eigen::Vector3d step(const Percept& percept);
   Action action() const { return action_; }
-  // The present goal; the number of goals: all are believed to be reached.
+  // The current goal; the number of goals: all are believed to be reached.
   int goal() const { return goal_; }
 
  private:
@@ -85,7 +85,7 @@ class Player {
   Eigen::Vector3d balance(const Percept& p, const Eigen::Vector3d& direction);
   // Distance from hand to ball at contact, in the plane of the floor, m.
   double contact_distance_m() const;
-  // The predicted present place of the ball: sight compensates for its own delay.
+  // The predicted current place of the ball: sight compensates for its own delay.
   Eigen::Vector3d predicted_ball_m();
   // True while the ball is seen to roll.
   bool ball_rolls();
@@ -118,7 +118,7 @@ class Player {
   Action action_ = Action::kTravel;
   int goal_ = 0;
   double now_s_ = 0, dt_s_ = 0;
-  double action_start_s_ = 0;                                     // start of the present action
+  double action_start_s_ = 0;                                     // start of the current action
   double felt_s_ = -1e9;                                          // when it last felt a contact
   double force_N_ = 0;                                            // felt, in the plane of the floor
   Eigen::Vector3d pull_N_{0, 0, 0};                               // felt
@@ -126,8 +126,8 @@ class Player {
   bool only_felt_ = false;                                        // the belief about the ball comes from touch or hearing alone
   Eigen::Vector3d felt_from_hand_m_{0, 0, 0};                     // place of the ball relative to the hand, as felt
   Eigen::Vector3d felt_at_m_{0, 0, 0}, felt_speed_m_s_{0, 0, 0};  // of the ball
-  Eigen::Vector3d action_start_m_{0, 0, 0};                       // place of the hand at the start of the present action
-  double search_radius_m_ = 0;                                    // radius of the present revolution of the search
+  Eigen::Vector3d action_start_m_{0, 0, 0};                       // place of the hand at the start of the current action
+  double search_radius_m_ = 0;                                    // radius of the current revolution of the search
   double search_angle_rad_ = 0;
   Eigen::Vector3d target_m_{0, 0, 0};
   bool started_ = false;

@@ -34,7 +34,7 @@ Rules read_rules(const std::string& sdf_file) {
       if (shape.body == hole.ball && shape.kind == sim::ShapeKind::kSphere) goal.ball_radius_m = shape.size_m.x();
     if (goal.ball_radius_m <= 0)
       throw std::runtime_error(sdf_file + ": the body of hole \"" + hole.name +
-                               "\" is no ball; a player can push only balls");
+                               "\" is not a ball; a player can push only balls");
     rules.goals.push_back(goal);
   }
   if (rules.goals.empty())

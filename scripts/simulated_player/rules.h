@@ -1,5 +1,5 @@
-// The rules of the game that a player is given beforehand: the hole of each ball, and the places of the holes. Read from the
-// scene.
+// The rules of the game, which a player receives before it begins: the hole of each ball, and the places of the holes. Read
+// from the scene.
 #pragma once
 
 #include <Eigen/Core>

@@ -6,7 +6,7 @@
 //        PLAYOUT, DEGRADATION          the delays and degradations of these modalities
 //   out  DEVICE_STATE                  the pose of the hand, a thousand times a second
 //
-// When an input is lost, it continues without it. Run it beside haptic_node --device external:player.
+// When an input is lost, it continues without it. Run it together with haptic_node --device external:player.
 #include "scripts/simulated_player/run.h"
 
 #include <CLI/CLI.hpp>
@@ -104,7 +104,7 @@ int tactus::simulated_player::run(int argc, char** argv, const Rules* read_befor
     Percept percept = perception.perceive(now);
     percept.force_N = force_of(force, force_arrival, now);
     percept.hand_m = arm.position_m();
-    // A late tick moves no further than one on time.
+    // After a late tick the hand moves no further than after one in time.
     const double dt_s = std::min(2e-3, sync::to_seconds(now - std::exchange(last_tick, now)));
     if (setup && (scatter.along_m > 0 || scatter.aside_m > 0) && !setup->done()) {
       setup->step(now, replies);

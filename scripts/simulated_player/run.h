@@ -1,4 +1,4 @@
-// The program simulated_player, as a function, so that virtual time can run it beside other programs in one process
+// The program simulated_player, as a function, so that virtual time can run it together with other programs in one process
 // (sync/virtual_time).
 #pragma once
 
@@ -6,8 +6,8 @@ namespace tactus::simulated_player {
 
 struct Rules;
 
-// Returns the exit status, after one sentence on stderr where that is not 0. rules: of the command line's scene, when they
-// have been read already; null: they are read from the scene.
+// Returns the exit status; when it is not 0, one sentence on stderr gives the reason. rules: the rules of the scene on the
+// command line, if they have already been read; null: reads them from the scene.
 int run(int argc, char** argv, const Rules* rules = nullptr);
 
 }  // namespace tactus::simulated_player

@@ -1,4 +1,4 @@
-// Publishes the profile of the trial until every present modality reports it in force. Pure.
+// Publishes the profile of the trial until every running modality reports that it is in force. Pure.
 #pragma once
 
 #include <map>
@@ -22,9 +22,9 @@ class Enforcement {
   void push(const node_health_t& m, sync::HostTime arrival);
   // The profile, when it is due to be sent (again).
   const sync::ProfileInForce* to_send(sync::HostTime now);
-  // The modalities with the profile, once, when all present ones have it; nullopt otherwise.
+  // Returns the running modalities once, when all of them have the profile in force; nullopt otherwise.
   std::optional<std::vector<std::string>> take_in_force(sync::HostTime now);
-  // The present modalities without the profile.
+  // The running modalities without the profile.
   std::vector<std::string> missing(sync::HostTime now) const;
   const std::optional<sync::ProfileInForce>& profile() const { return profile_; }
 

@@ -27,7 +27,7 @@ class Hand {
   bool presses() const { return press_.has_value(); }
 
  private:
-  // Depth below its rest at the present time of the movement; nullopt: it has ended.
+  // Depth below its rest at the current time of the movement; nullopt: it has ended.
   std::optional<double> depth_below_rest_m() const;
 
   Eigen::Vector3d rest_m_;

@@ -16,7 +16,7 @@ void Interview::ask(question_t question) {
     throw std::invalid_argument(
         "the question \"" + question.text.substr(0, 40) +
         "\" cannot be asked: text has at most 600 characters of ASCII, a choice 40, condition and progress 64; "
-        "2 to 9 choices; a number lies between two with a step");
+        "2 to 9 choices; a number needs lowest < highest and a step > 0");
   question_ = std::move(question);
   open_ = question_.kind != question_t::NOTHING;
   first_.reset(), next_.reset();

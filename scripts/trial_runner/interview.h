@@ -1,4 +1,4 @@
-// The present question of the study: repeated until it is answered. Pure.
+// The current question of the study: repeated until it is answered. Pure.
 #pragma once
 
 #include <optional>
@@ -15,14 +15,14 @@ class Interview {
 
   explicit Interview(std::uint64_t seed) : seed_(seed) { ask({}); }
 
-  // Replaces the present question. Throws std::invalid_argument with one sentence when no answer to it is possible.
+  // Replaces the current question. Throws std::invalid_argument with one sentence when no answer to it is possible.
   void ask(question_t question);
   // True while a question waits for its answer.
   bool is_open() const { return open_; }
   const question_t& question() const { return question_; }
-  // The answer, when it is the first to the present question and fits it.
+  // The answer, when it is the first to the current question and fits it.
   std::optional<answer_t> accept(const answer_t& answer);
-  // The answer to the present question, from a button of the device or a simulated participant; nullopt: it does not fit the
+  // The answer to the current question, from a button of the device or a simulated participant; nullopt: it does not fit the
   // question.
   std::optional<answer_t> answer(int choice, double number, const char* by, sync::HostTime now) const;
   // The question, when it is due to be published (again).

@@ -30,7 +30,7 @@ std::optional<std::string> Lines::next() {
   const auto end = in_.find('\n');
   if (end == std::string::npos) {
     if (in_.size() > kMaxLine)
-      throw std::runtime_error("a request is longer than 128 KiB; give one JSON object a line");
+      throw std::runtime_error("a request is longer than 128 KiB; give one JSON object per line");
     return std::nullopt;
   }
   std::string line = in_.substr(0, end);
@@ -40,7 +40,7 @@ std::optional<std::string> Lines::next() {
 
 void Lines::write_line(const std::string& line) {
   if (out_.size() > kMaxUnread)
-    throw std::runtime_error("more than 8 MiB of output are unread; read the lines of trial_runner as they come");
+    throw std::runtime_error("more than 8 MiB of output are unread; read the output of trial_runner continuously");
   out_ += line;
   out_ += '\n';
   flush();

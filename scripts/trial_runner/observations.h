@@ -1,4 +1,4 @@
-// Converts received messages to the output of the trial runner, a JSON object a line. Times are host times of its own clock,
+// Converts received messages to the output of the trial runner, one JSON object per line. Times are host times of its own clock,
 // ns. Pure.
 #pragma once
 

@@ -36,7 +36,7 @@ std::int8_t choice_of(const json& j, const char* key,
     if (word == name) return value;
     all += (all.empty() ? "" : ", ") + std::string(name);
   }
-  refuse(std::string(key) + " \"" + word + "\" is none of " + all);
+  refuse(std::string(key) + " \"" + word + "\" is not one of " + all);
 }
 
 Request question(const json& j) {
@@ -49,7 +49,7 @@ Request question(const json& j) {
   q.text = text_of(j, "text"), q.condition = text_of(j, "condition"), q.progress = text_of(j, "progress");
   if (j.contains("trial")) q.trial = static_cast<std::int32_t>(number_of(j, "trial", 0, 1e9));
   if (const auto at = j.find("choices"); at != j.end()) {
-    if (!at->is_array()) refuse("choices is no list");
+    if (!at->is_array()) refuse("choices is not a list");
     for (const json& c : *at) {
       if (!c.is_string()) refuse("a choice is not text");
       q.choices.push_back(c.get<std::string>());
@@ -95,7 +95,7 @@ Request parse_request(std::string_view line) {
     refuse("a request is a JSON object with one member, for example {\"end\": true}");
   const auto& [what, value] = *j.items().begin();
   const auto object = [&]() -> const json& {
-    if (!value.is_object()) refuse(what + " is no JSON object");
+    if (!value.is_object()) refuse(what + " is not a JSON object");
     return value;
   };
   if (what == "profile") {

@@ -1,4 +1,4 @@
-// Requests to the trial runner, a JSON object with one member a line. Pure.
+// Requests to the trial runner, one JSON object with one member per line. Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,11 +14,11 @@ struct ProfileRequest {
   std::string text;
 };
 // {"question": {"kind": "read" | "choice" | "number" | "nothing", "text": , "choices": [], "lowest": , "highest": , "step": ,
-// "trial": , "condition": , "progress": }}: asks it until it is answered. "nothing": a trial is in progress.
+// "trial": , "condition": , "progress": }}: repeats it until it is answered. "nothing": a trial is in progress.
 struct QuestionRequest {
   question_t question;
 };
-// {"answer": {"choice": 0}} or {"answer": {"number": 0.5}}: a simulated participant's answer to the present question.
+// {"answer": {"choice": 0}} or {"answer": {"number": 0.5}}: a simulated participant's answer to the current question.
 struct AnswerRequest {
   int choice = -1;
   double number = 0;

@@ -1,6 +1,6 @@
 // trial_runner: the trial runner of a study. It puts the profiles of the trials in force, asks the participant, moves a hand
-// where the study has one, and reports presentations and their times. Commands come on standard input, observations go to
-// standard output, a line of JSON each.
+// if the study has one, and reports presentations and their times. Commands come on standard input, observations go to
+// standard output, one line of JSON each.
 //
 //   in   NODE_HEALTH, DEGRADATION      the profile of each modality
 //        CONTACTS                      the time of the world
@@ -257,7 +257,7 @@ class TrialRunner {
   void step_hand(sync::HostTime now) {
     if (!hand_) return;
     const bool moved = hand_->busy();
-    // A late tick moves no further than one on time.
+    // After a late tick the hand moves no further than after one in time.
     hand_->step(std::clamp(sync::to_seconds(now - std::exchange(last_tick_, now)), 1e-4, 2e-3));
     const auto& at = hand_->position_m();
     const auto& v = hand_->velocity_m_s();

@@ -55,12 +55,12 @@ volatile std::sig_atomic_t stop_requested = 0;
 std::vector<PlannedProgram> read_plan(const std::string& file) {
   std::ifstream in(file);
   const nlohmann::json plan = nlohmann::json::parse(in, nullptr, false);
-  const std::string wrong = file + " is no plan; write {\"NAME\": [\"PROGRAM\", \"OPTION\", ...], ...}";
+  const std::string wrong = file + " is not a plan; write {\"NAME\": [\"PROGRAM\", \"OPTION\", ...], ...}";
   if (!plan.is_object() || plan.empty()) throw std::runtime_error(wrong);
   std::vector<PlannedProgram> programs;
   for (const auto& [name, words] : plan.items()) {
     if (!words.is_array() || words.empty() || !std::all_of(words.begin(), words.end(), [](const auto& w) { return w.is_string(); }))
-      throw std::runtime_error(wrong + "; the entry " + name + " is no such list");
+      throw std::runtime_error(wrong + "; the entry " + name + " is not such a list");
     programs.push_back({name, words.get<Words>()});
     const std::string program = std::filesystem::path(programs.back().words.front()).filename();
     if (!kPrograms.contains(program)) throw std::runtime_error(program + " does not run in virtual time; leave it out of " + file);

@@ -40,7 +40,7 @@ class Mechanics {
   // for the time at which look-ahead results are ready. Real-time safe once the lists have grown.
   virtual void tick(sync::SimTime now, std::span<const GroupTool> tools, std::vector<contact_event_t>& events) = 0;
 
-  // Of every body. The caller writes the entries of tools.
+  // Motion of every body. The caller writes the entries of tools.
   virtual std::span<BodyMotion> motions() = 0;
   // Moving bodies within reach of a tool, ascending; nullopt: any body may be.
   virtual std::optional<std::span<const int>> near_tools() const { return std::nullopt; }

@@ -41,7 +41,7 @@ class SingleGroup : public Mechanics {
   const Solver& solver() const { return solver_; }
 
  private:
-  // Makes a change effective at once.
+  // Makes a change effective immediately.
   bool updated(bool done) {
     read();
     return done;

@@ -29,13 +29,13 @@ class Solver {
   Solver(const Solver&) = delete;
   Solver& operator=(const Solver&) = delete;
 
-  // Acts during the next step, N, at a world point, m. Static bodies ignore it.
+  // Applies a force during the next step at a point in the world. Static bodies ignore it.
   void add_force(int body, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m);
 
   // The same for a torque about the centre of mass, N m.
   void add_torque(int body, const Eigen::Vector3d& torque_N_m);
 
-  // Changes while the world runs, in force from the next step on. Values are not checked here. Return false when the
+  // Changes of a running world, effective from the next step on. Values are not checked here. Return false when the
   // property does not exist: a static body has no mass and no velocity, a jointed body has no pose and no mass.
   bool apply(const impulse::SceneChange& change);  // any change but pose, velocity and spin
   void set_gravity(const Eigen::Vector3d& gravity_m_s2);
@@ -56,13 +56,13 @@ class Solver {
   // equal steps from equal worlds are bit-identical. Not thread-safe. Real-time safe once its lists have grown.
   void step();
 
-  // Of every body of the world, including tools and static bodies, which do not move.
+  // Motion of every body, including tools and static bodies, which do not move.
   std::span<const BodyMotion> bodies() const;
   // Contacts of the current poses, and contacts of the previous step with the force of each point; both ordered.
   std::span<const Manifold> contacts() const;
   std::span<const Manifold> solved() const;
-  // Speed of the point along n per unit impulse along n at the point, 1/kg. Joints of a link are included where
-  // impulses solve.
+  // Speed of the point along n per unit impulse along n at the point, 1/kg. The impulse solver includes the joints
+  // of a link.
   double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n);
   // Statistics of the penetration recovery; null for ODE.
   const impulse::RecoveryReport* report() const;

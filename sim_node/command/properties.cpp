@@ -54,7 +54,7 @@ std::string check_values(const PropertyRow& row, std::span<const double> values)
     error << row.name << " takes " << row.count << (row.count == 1 ? " number" : " numbers") << " (" << row.unit
         << "), not " << values.size();
   else if (!std::all_of(values.begin(), values.end(), [&](double x) { return x >= row.low && x <= row.high; }))
-    error << row.name << " must lie between " << row.low << " and " << row.high << " " << row.unit;
+    error << row.name << " must be between " << row.low << " and " << row.high << " " << row.unit;
   return error.str();
 }
 
@@ -97,7 +97,7 @@ std::string set_of_joint(Simulation& s, const std::string& joint, const std::str
   if (property == "friction")
     return s.mechanics().apply({.kind = SceneChange::kJointFriction, .joint = joint, .values = {v[0], 0, 0}}) ? ""
                                                                                                               : no_axis;
-  // As in a scene file: a negative torque reverses the direction of the motor.
+  // The same rule as in a scene file: a negative torque reverses the direction of the motor.
   const double speed = v[0] < 0 ? -std::abs(v[1]) : std::abs(v[1]);
   const bool set =
       s.mechanics().apply({.kind = SceneChange::kMotor, .joint = joint, .values = {std::abs(v[0]), speed, 0}});

@@ -25,12 +25,12 @@ std::span<const PropertyRow> properties();
 // Index of a body by its name, or by the name of its model when the model has one link; -1: not found.
 int find_body(const WorldDef& world, const std::string& name);
 
-// Sets a property. Returns an error sentence, and then changes nothing; empty: success. of: a body, a joint, or
-// "world".
+// Sets a property. of: a body, a joint, or "world". Returns an empty string on success, else one sentence with the
+// error; then nothing has changed.
 std::string set_property(Simulation& simulation, const WorldDef& world, const std::string& of,
                          const std::string& property, std::span<const double> values);
 
-// Pushes a body at its centre of mass; returns as set_property().
+// Pushes a body at its centre of mass. Returns the same as set_property().
 std::string push_body(Simulation& simulation, const WorldDef& world, const std::string& body,
                       const Eigen::Vector3d& force_N, const Eigen::Vector3d& torque_N_m,
                       sync::Nanoseconds duration);

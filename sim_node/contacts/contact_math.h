@@ -13,7 +13,8 @@
 
 namespace tactus::sim {
 
-// By the points of the manifold: one is a point; two, or all on a line, are an edge; others are a surface.
+// Kind of the contact by the points of the manifold: one point is a point; two points, or all on a line, are an
+// edge; others are a surface.
 ContactKind kind_of(const Manifold& contact);
 
 // Properties of one surface for its contacts.

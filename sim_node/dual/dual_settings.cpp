@@ -12,7 +12,7 @@ constexpr std::size_t kMaxQueued = 256;
 
 }  // namespace
 
-// The haptic group applies the change at once, the visual group from the next step that it computes.
+// The haptic group applies the change immediately, the visual group from the next step that it computes.
 bool DualGroups::apply(const impulse::SceneChange& change) {
   if (changes_.size() >= kMaxQueued || !scene_.apply(*world_, change)) return false;
   changes_.push_back(change);

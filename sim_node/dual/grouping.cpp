@@ -47,7 +47,7 @@ SweptSphere Grouping::swept(const GroupTool& tool, double t) const {
 }
 
 // An impact changes the velocity by at most (1 + e) times the closing velocity (Newton's law, for a tool of infinite
-// mass), and by at most the impulse of the tool's limited force. Impacts by struck bodies are left to watch(): pads
+// mass), and by at most the impulse of the tool's limited force. Impacts by struck bodies are left to check_pads(): pads
 // for them make the group ten times as large and avoid less than half of the alarms (grouping_table at 30 m/s^2, both
 // variants).
 double Grouping::max_impact_speed_m_s(const SweptSphere& tool, std::size_t body, double t) const {

@@ -5,8 +5,8 @@
 // velocities and intersects the capsules. It misses contacts of a hand that accelerates, of bodies that are struck by
 // struck bodies, and of bodies that rest on them. The sound rule compares positions at equal times, pads them by the
 // largest displacement that forces and impacts can cause, and closes the group over contacts and joints. The pads are
-// checked at the haptic rate; when a body leaves its pad, the group grows at once. So no tick finds a contact between
-// the groups, for any motion of the hand:
+// checked at the haptic rate; when a body leaves its pad, the group grows immediately. So no tick finds a contact
+// between the groups, for any motion of the hand:
 //
 //   |x_i(t) - x_j(t)| >= |p + v t| - pad_i - pad_j > r_i + r_j   for every i in the group and j outside,
 //
@@ -140,7 +140,7 @@ class Grouping {
   bool held_ = false;  // bodies outside stand still; they stopped held_after_s_ after the beginning of the step
   double held_after_s_ = 0;
   std::vector<char> leaves_;
-  // Of the group, from watched_from_ on.
+  // Trajectories of the group, from watched_from_ on.
   sync::SimTime watched_from_{};
   std::vector<SweptSphere> inside_, tools_;
   std::vector<ImpactBound> impact_bounds_;

@@ -74,7 +74,7 @@ class VisualGroup {
   std::vector<LiveContact> sleeping_contacts_;        // of the resting bodies
   SleepingIslands sleeping_;
   sync::SimTime now_{};
-  bool found_ = false;  // contacts_ are valid for the present poses and for steps up to found_for_s_
+  bool found_ = false;  // contacts_ are valid for the current poses and for steps up to found_for_s_
   double found_for_s_ = 0, before_s_ = 0;  // length of the previous sub-step
   std::vector<int> units_, awake_;            // ascending
   std::vector<char> mask_, supported_;        // per body

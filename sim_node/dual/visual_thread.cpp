@@ -18,7 +18,7 @@ VisualThread::VisualThread(std::unique_ptr<VisualGroup> group)
     : group_(std::move(group)), step_(std::make_unique<VisualStep>()) {}
 
 void VisualThread::start() {
-  // In virtual time computation takes no time: request() computes the step at once.
+  // In virtual time computation takes no time: request() computes the step immediately.
   if (!thread_.joinable() && !sync::VirtualTime::current()) thread_ = std::thread([this] { loop(); });
 }
 

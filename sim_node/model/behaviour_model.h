@@ -14,7 +14,7 @@ struct BehaviourModel {
   // Solved by impulse::World for free bodies and systems of joints; otherwise by ODE.
   bool impulses = false;
   // Acts before surfaces meet, and corrects remaining overlaps by positions. Contacts must therefore carry their
-  // gaps: a pair that was separated would otherwise be no contact any more and would never be solved. The other
+  // gaps: a pair that was separated would otherwise stop being a contact and would never be solved. The other
   // models accept overlaps only.
   bool needs_gaps = false;
   // Joints must not form a loop.

@@ -80,7 +80,7 @@ void Snapshots::add_present(std::size_t body, const BodyMotion& m, bool always) 
   moved_[body] = moving;
 }
 
-// A body that was not computed ahead before, or rested, is also published at the present step, where interpolation
+// A body that was not computed ahead before, or rested, is also published at the current step, where interpolation
 // begins.
 void Snapshots::add_ahead(std::size_t body, const BodyMotion& m, const BodyMotion& now, bool always) {
   const bool moving = moves(m, last_published_[body]);

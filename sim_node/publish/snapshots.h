@@ -2,8 +2,8 @@
 // decides. Pure.
 //
 // For bodies computed ahead, one visual step at a time, the state at the end of the step is published when the step
-// begins, so that renderers interpolate. A body that is promoted out of this group is published at once with its
-// present pose, and no further predicted state of it is published.
+// begins, so that renderers interpolate. A body that is promoted out of this group is published immediately with
+// its current pose, and no further predicted state of it is published.
 #pragma once
 
 #include <functional>
@@ -24,7 +24,7 @@ namespace tactus::sim {
 
 // Data source of a snapshot.
 struct StateSource {
-  // Motion of every body: at the present step. For bodies computed ahead, and those that wait for it: at the
+  // Motion of every body: at the current step. For bodies computed ahead, and those that wait for it: at the
   // beginning of the current visual step; while they are held: at the end of the last one.
   std::span<const BodyMotion> bodies;
   std::function<void(std::vector<contact_t>&)> contacts;  // of the group OTHER; clears the list first
@@ -53,7 +53,7 @@ class Snapshots {
 
  private:
   using Pages = std::vector<std::pair<std::size_t, std::size_t>>;
-  // One of the two parts of a snapshot: the present state, and the state ahead.
+  // One of the two parts of a snapshot: the current state, and the state ahead.
   template <class Item>
   struct Part {
     sync::SimTime time{};

@@ -11,7 +11,7 @@ namespace tactus::sim {
 namespace {
 
 double at_least_0(const LoadContext& context, const sdf::Element& element, double value, const char* what) {
-  if (!(value >= 0)) context.reject(element, std::string("has a ") + what + " that is negative or no number");
+  if (!(value >= 0)) context.reject(element, std::string("has a ") + what + " that is negative or not a number");
   return std::min(value, 1e6);
 }
 

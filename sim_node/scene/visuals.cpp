@@ -89,7 +89,7 @@ void read_material(LoadContext& context, const sdf::Visual& from, Appearance& a)
     try {
       a.def.shininess = std::clamp(sync::parse_quantity(shininess->GetValue()->GetAsString(), ""), 1.0, 1e4);
     } catch (const std::invalid_argument& e) {
-      context.reject(*shininess, std::string("is no number: ") + e.what());
+      context.reject(*shininess, std::string("is not a number: ") + e.what());
     }
   }
   a.look.add(read_pbr(context, material));

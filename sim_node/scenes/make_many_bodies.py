@@ -34,7 +34,7 @@ def box(x, y, z):
 def main():
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 100
     if not 1 <= count <= 3000:
-        sys.exit("make_many_bodies.py: N must lie between 1 and 3000")
+        sys.exit("make_many_bodies.py: N must be between 1 and 3000")
     numbers = random.Random(count)
     side = max(3, math.ceil(math.sqrt(count / 3)))  # three layers when all lie at rest
     pitch, half = 1.6 * SIZE_M, 0.8 * SIZE_M * side + 0.02

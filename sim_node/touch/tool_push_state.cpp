@@ -10,7 +10,7 @@ void ToolPush::archive(StateArchive& a, std::size_t bodies) {
     auto& [id, c] = id_and_impulses;
     a(id);
     a.index(c.body, bodies);
-    a.require(c.body >= 0, "the state holds a contact of no body");
+    a.require(c.body >= 0, "the state has a contact without a body");
     a(c.point), a(c.reported), a(c.received), a(c.pending), a(c.mean_N), a(c.applied), a(c.velocity);
     a(c.energy_J), a(c.used);
   });

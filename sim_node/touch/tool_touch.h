@@ -42,7 +42,7 @@ class ToolTouch {
   void update(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> new_messages,
               std::vector<contact_event_t>& events);
 
-  // The same while the world is paused: finds the planes near the present pose of the tool. No contact begins, hits
+  // The same while the world is paused: finds the planes near the current pose of the tool. No contact begins, hits
   // or ends.
   void update_at_rest(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> new_messages);
 

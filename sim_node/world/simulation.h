@@ -47,10 +47,10 @@ class Simulation {
   // Restores the state at start().
   void reset() { restore(begin_); }
   // Call after restore(): starts a new incarnation. Contacts continue under new ids, and tool messages of the old
-  // incarnation are dropped, because the tools stay at their present poses.
+  // incarnation are dropped, because the tools stay at their current poses.
   void begin_incarnation(std::int64_t incarnation);
 
-  // Replaces step() while the world is paused: tools touch the surfaces at their present poses, bodies do not yield,
+  // Replaces step() while the world is paused: tools touch the surfaces at their current poses, bodies do not yield,
   // and everything is published at rest. tools: as for step().
   void hold(std::span<const tool_state_t> tools);
 
@@ -61,7 +61,7 @@ class Simulation {
   sync::SimTime now() const { return sync::SimTime(step_ * steps_); }
   sync::Nanoseconds step_length() const { return step_; }
 
-  // Valid after a step: the events detected in it, and the present state.
+  // Valid after a step: the events detected in it, and the current state.
   const std::vector<contact_event_t>& events() const { return events_; }
   std::vector<touch_model_t>& touch_models() { return models_; }
   const std::vector<contact_t>& tool_contacts() const { return tool_contacts_; }

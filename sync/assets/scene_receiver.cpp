@@ -16,14 +16,14 @@
 namespace tactus::sync {
 namespace {
 
-// Chunks wait here between two ticks of the slowest receiver (20 ms at 4 a millisecond).
+// Chunks that arrive between two ticks of the slowest receiver: 20 ms at 4 chunks per millisecond, with a reserve.
 constexpr std::size_t kChunkQueue = 4096;
 constexpr std::size_t kManifestQueue = 128;
-constexpr int kMaxPages = 64;  // of twelve assets as filled by SceneSender
+constexpr int kMaxPages = 64;  // pages of one manifest; SceneSender fills each with twelve assets
 constexpr Nanoseconds kRetryAfter{100'000'000};
 constexpr int kMaxRequests = 16;  // per round of requests, and assets in transfer at a time
 constexpr int kMaxRun = 256;   // chunks per request: 64 ms of the sender's budget
-// Of each asset in transfer: the chunks that a sender sends in 250 ms.
+// Chunks of one asset that may be requested ahead: the number that a sender sends in 250 ms.
 constexpr std::size_t kWindow = 1024;
 
 // Limits of one poll: about 0.5 ms.
@@ -185,7 +185,7 @@ void SceneReceiver::free_some() {
   }
 }
 
-// The announcing sender does not send the chunks.
+// Ignores the current sender for a while: it announces assets, but does not send their chunks.
 void SceneReceiver::ignore_sender(HostTime now) {
   for (auto& [hash, in] : incoming_) drop(in.chunks);
   incoming_.clear();

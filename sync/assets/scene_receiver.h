@@ -26,16 +26,16 @@ class Queue;
 // The receiving side, in every renderer and in the recorder. Listens on both ports (a replayed log has only one).
 //
 // It runs in loops of 1 kHz, so one poll costs less than 1 ms for any input: memory is allocated chunk by chunk as it is
-// filled, and hashing and freeing are done a bounded amount at a time. The exception is the decoding of a scene with the
-// right hash; it happens when poll returns true.
+// filled, and hashing and freeing are done a bounded amount at a time. Only the decoding of a complete scene takes longer;
+// poll then returns true.
 class SceneReceiver {
  public:
   // A scene is complete or absent. A manifest with more or larger assets is refused.
   static constexpr std::size_t kMaxAssetBytes = 64 << 20;
   static constexpr std::size_t kMaxTotalBytes = 256 << 20;
   static constexpr std::size_t kMaxAssets = 512;
-  // Only one sender of manifests is accepted, until it has been silent for two periods of its manifest or has sent no useful
-  // chunk for kGiveUp; then it is ignored for the same time.
+  // Accepts the manifests of one sender. Accepts another one when this sender has been silent for kSilence, two periods of its
+  // manifest. A sender that has sent no useful chunk for kNoProgressTimeout is ignored for the same time.
   static constexpr Nanoseconds kSilence{2'500'000'000};
   static constexpr Nanoseconds kNoProgressTimeout{3'000'000'000};
 
@@ -85,8 +85,8 @@ class SceneReceiver {
   std::optional<scene_t> scene_;
   std::int64_t scene_hash_ = 0;
   std::int64_t refused_scene_ = 0;  // complete, but not decodable: not requested again
-  std::int64_t sender_ = 0;       // incarnation that the pages below come from
-  HostTime last_message_{};                // newest message of it
+  std::int64_t sender_ = 0;       // incarnation of the sender of the pages below
+  HostTime last_message_{};                // arrival of its newest message
   std::int64_t ignored_sender_ = 0;       // ignored incarnation
   HostTime ignored_until_{};
   PageGroup<std::vector<asset_ref_t>> pages_;

@@ -39,9 +39,9 @@ SceneSender::SceneSender(Bus& bus, std::vector<Asset> assets)
   }
   if (refs_.size() > SceneReceiver::kMaxAssets || total > SceneReceiver::kMaxTotalBytes)
     throw std::runtime_error("the scene has " + std::to_string(refs_.size()) + " meshes and images of " +
-                             std::to_string(total >> 20) + " MB together; no node takes more than " +
+                             std::to_string(total >> 20) + " MB together; a node accepts at most " +
                              std::to_string(SceneReceiver::kMaxAssets) + " and " +
-                             std::to_string(SceneReceiver::kMaxTotalBytes >> 20) + " MB: leave some out");
+                             std::to_string(SceneReceiver::kMaxTotalBytes >> 20) + " MB; remove some");
 }
 
 void SceneSender::announce() {

@@ -1,5 +1,5 @@
-// Sends the scene and its assets over the bus: announces them once a second, and sends the chunks that nodes request. Everything
-// is named by the hash of its content, so a restarted simulation with the same scene costs nothing.
+// Sends the scene and its assets over the bus: announces them once a second, and sends the chunks that nodes request. Assets
+// are identified by the hash of their content, so receivers keep a scene when the simulation restarts with it.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ class Bus;
 template <class Message>
 class Queue;
 
-// The sending side, in sim_node. Sends at most kChunksPerPoll chunks a call (bulk port), so that a late joiner never delays a
-// tick by more than a few microseconds.
+// The sending side, in sim_node. Sends at most kChunksPerPoll chunks per call (bulk port), so that a late joiner never delays
+// a tick by more than a few microseconds.
 class SceneSender {
  public:
   static constexpr int kChunksPerPoll = 4;

@@ -22,7 +22,7 @@ namespace {
 // Size of LCM's own queues, which a bus in memory uses. LCM drops the newest message when a queue is full, so it must not
 // fill.
 constexpr int kLcmQueue = 20000;
-// Time limit of the self test. Multicast returns to its sender at once, unless a firewall blocks it.
+// Time limit of the self test. Multicast returns to its sender immediately, unless a firewall blocks it.
 constexpr Nanoseconds kSelfTest = std::chrono::seconds(2);
 constexpr const char* kSelfTestChannel = "LCM_SELF_TEST";  // LCM's own channel: stock tools recognise it
 

@@ -56,7 +56,7 @@ class Bus {
   // Distributes all received messages to the inboxes, at most kMaxDrain, without waiting.
   void drain(HostTime now);
   static constexpr int kMaxDrain = 8192;
-  // Passes on a message that was received elsewhere, as by the recorder, to the inboxes of its channel.
+  // Passes on a message that was received elsewhere, such as by the recorder, to the inboxes of its channel.
   void on_message(std::string_view channel, std::span<const std::uint8_t> data, HostTime arrival);
   // For event-driven processes: waits until a message arrives, at most this time.
   void wait(Nanoseconds max_wait);

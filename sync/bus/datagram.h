@@ -25,7 +25,7 @@ struct ChannelBytes {
   bool fits() const { return complete && data.size() <= channels::kMaxMessageBytes; }
 };
 
-// nullopt when the bytes are no LCM datagram, or a later fragment, which has no channel. Refers to `bytes`.
+// nullopt when the bytes are not an LCM datagram, or are a later fragment, which has no channel. Refers to `bytes`.
 std::optional<ChannelBytes> parse_datagram(std::span<const std::uint8_t> bytes);
 
 }  // namespace tactus::sync

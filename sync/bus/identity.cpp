@@ -46,7 +46,7 @@ Identity Identity::fresh(std::string node, std::int64_t run_id) {
   if (time)
     random = time->random();
   else if (getrandom(&random, sizeof random, 0) != sizeof random)
-    throw std::system_error(errno, std::generic_category(), "no random numbers for the incarnation");
+    throw std::system_error(errno, std::generic_category(), "the system provides no random numbers for the incarnation");
   Identity id;
   id.source = static_cast<std::int32_t>(fnv1a_32(node));
   id.node = std::move(node);

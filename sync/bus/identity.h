@@ -32,8 +32,8 @@ struct Identity {
   std::int64_t run_id = 1;       // of the cluster run
   std::int32_t clock = 0;        // id of the CLOCK_MONOTONIC of its times
 
-  // With the clock of this process and a new random incarnation. Throws std::system_error when the system provides no random
-  // numbers.
+  // Returns an identity with the clock of this process and a new random incarnation. Throws std::system_error when the system
+  // provides no random numbers.
   static Identity fresh(std::string node, std::int64_t run_id);
 };
 

@@ -13,7 +13,7 @@ namespace tactus::sync {
 namespace {
 
 // The kernel also counts messages as dropped that a socket's own filter rejects, as at the sockets of the clock probes; those
-// are no losses.
+// are not losses.
 bool has_filter(int fd) {
   socklen_t instructions = 0;
   return getsockopt(fd, SOL_SOCKET, SO_GET_FILTER, nullptr, &instructions) == 0 && instructions > 0;

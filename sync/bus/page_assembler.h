@@ -34,19 +34,19 @@ class PageGroup {
     return true;
   }
   bool complete() const { return count_ > 0 && pages_.size() == static_cast<std::size_t>(count_); }
-  // Null: it has not arrived.
+  // Returns null when the page has not arrived.
   const Page* find(int number) const {
     for (const Numbered& p : pages_)
       if (p.number == number) return &p.page;
     return nullptr;
   }
   std::size_t size() const { return pages_.size(); }
-  // In order of their numbers.
+  // Iterates over the pages in order of their numbers.
   auto begin() { return pages_.begin(); }
   auto end() { return pages_.end(); }
   auto begin() const { return pages_.begin(); }
   auto end() const { return pages_.end(); }
-  // Keeps its memory.
+  // Removes the pages; keeps the allocated memory.
   void clear() {
     pages_.clear();
     count_ = 0;
@@ -58,10 +58,10 @@ class PageGroup {
 };
 
 struct PageLimits {
-  std::size_t groups = 4;             // incomplete groups
-  int pages = 1024;                   // of one message; a page of a larger one is ignored
-  std::size_t total = SIZE_MAX;       // of all incomplete groups, while there are two or more
-  std::size_t remembered = 0;         // complete groups whose repeated pages are ignored
+  std::size_t groups = 4;             // maximum number of incomplete groups
+  int pages = 1024;                   // maximum number of pages of one message; pages of larger messages are ignored
+  std::size_t total = SIZE_MAX;       // maximum number of pages of all incomplete groups, while there are two or more groups
+  std::size_t remembered = 0;         // number of newest complete groups whose repeated pages are ignored
 };
 
 // The incomplete group to drop when there are too many: the one whose first page is the oldest, the one whose newest page is

@@ -25,7 +25,7 @@ class RecentMap {
     }
     return {at->second, true};
   }
-  // Null: the key was never added, or has been removed.
+  // Returns null when the key was never added or has been removed.
   const Value* find(const Key& key) const {
     const auto at = values_.find(key);
     return at == values_.end() ? nullptr : &at->second;

@@ -1,7 +1,7 @@
 // One receiving port of the bus: a multicast socket that the owner reads in batches, without a thread.
 //
 // LCM's own receiver wakes a thread for each datagram of the port, on any channel, and passes it on through a pipe. With
-// 10,000 malformed messages a second that used 0.8 of a core in eight processes, and a software-rendered picture fell below
+// 10,000 malformed messages per second that used 0.8 of a core in eight processes, and a software-rendered picture fell below
 // its rate. LCM also reassembles fragments in memory that a forged fragment can overrun (in all releases of LCM, see its pull
 // request 628). No message of this bus is fragmented, so this class reassembles none.
 #pragma once

@@ -14,7 +14,7 @@
 namespace tactus::sync {
 
 // The answer of `own` to a request that arrived at `arrived`; the sender sets reply_sent_ns and the header's numbering.
-// nullopt for a message that is no request, or is of another run or of our own clock.
+// nullopt for a message that is not a request, is of another run, or is of our own clock.
 std::optional<clock_probe_t> probe_reply(const clock_probe_t& request, const Identity& own, HostTime arrived);
 
 // The result of one wave of probes for one clock.
@@ -28,7 +28,7 @@ struct ProbeWave {
 // Sends requests in waves, and keeps for each clock the answer with the smallest round trip.
 class ClockProber {
  public:
-  // As in the Lab Streaming Layer (liblsl, api_config.cpp: TimeProbeCount 8, TimeProbeInterval 64 ms,
+  // Values of the Lab Streaming Layer (liblsl, api_config.cpp: TimeProbeCount 8, TimeProbeInterval 64 ms,
   // TimeUpdateInterval 2 s); its limit of 128 ms for a round trip, rounded up to the next probes.
   static constexpr int kProbes = 8;
   static constexpr Nanoseconds kSpacing{64'000'000};

@@ -34,7 +34,7 @@ struct OffsetLine {
 
 class OffsetTracker {
  public:
-  // Of two clocks with unknown drift: twice the +-100 ppm tolerance of a quartz.
+  // Maximum drift between two clocks whose drift is unknown: twice the +-100 ppm tolerance of a quartz.
   static constexpr double kMaxDrift = 200e-6;
   // Deviation of a clock's rate from the measured mean: PHI, "frequency tolerance", RFC 5905, figure 5.
   static constexpr double kRateTolerance = 15e-6;

@@ -30,7 +30,7 @@ struct PairDatagram {
 
   // Padded with zeros to `size` bytes.
   std::vector<std::uint8_t> encode(std::size_t size) const;
-  // nullopt when the bytes are no such datagram.
+  // nullopt when the bytes are not such a datagram.
   static std::optional<PairDatagram> decode(std::span<const std::uint8_t> data);
 };
 

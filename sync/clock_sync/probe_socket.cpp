@@ -23,7 +23,7 @@ namespace {
 constexpr std::uint32_t kMagic = 0x4c433032;  // "LC02", a message in one datagram
 constexpr std::size_t kChannelBytes = 12;     // "CLOCK_PROBE" and its zero
 constexpr std::size_t kPrefix = 8 + kChannelBytes;
-// An older kernel stamp is not used for a correction: in doubt an arrival counts as later than it was.
+// Maximum age of a kernel stamp. An older one is not used, and the arrival then counts as later than it was.
 constexpr Nanoseconds kOldest{100'000'000};
 // Reading one clock after the other takes less than this unless the thread was interrupted or the clock was set.
 constexpr Nanoseconds kSteady{50'000};

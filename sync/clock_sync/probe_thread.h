@@ -1,5 +1,5 @@
-// The thread of sync_node that probes the clocks of other hosts and answers their probes at once: it blocks only on the probe
-// socket. It passes its results to the loop by value through a lock-free queue.
+// The thread of sync_node that probes the clocks of other hosts and answers their probes immediately: it blocks only on the
+// probe socket. It passes its results to the loop by value through a lock-free queue.
 #pragma once
 
 #include <array>

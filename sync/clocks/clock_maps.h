@@ -38,10 +38,10 @@ class ClockLine {
 
 class ClockMaps {
  public:
-  // The uncertainty of a map grows until the map is renewed. Beyond this value the one-way estimate is no worse; its bias is
+  // The uncertainty of a map grows until the map is renewed. Beyond this value the one-way estimate is at least as good; its bias is
   // a latency (design: one frame at 60 Hz).
   static constexpr Nanoseconds kMaxUncertainty{16'000'000};
-  // Of two publishers of one map, the first is used until it has been silent for four of its periods.
+  // When two processes publish one map, the first is used until it has been silent for four of its periods.
   static constexpr Nanoseconds kTimeout{2'000'000'000};
   // More clocks than a cluster has hosts: more maps can only come from an attack or a mistake.
   static constexpr std::size_t kMax = 1024;

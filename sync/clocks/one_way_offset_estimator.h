@@ -11,9 +11,9 @@ namespace tactus::sync {
 // negative, so every arrival bounds the offset: offset = sender - host >= stamp - arrival. The largest bound is kept and
 // relaxed with its age by the worst drift of the two clocks. The bias is the smallest latency seen.
 //
-// A clock that jumps forward gives a larger bound, which is adopted at once. A clock that jumps back looks like latency.
+// A clock that jumps forward gives a larger bound, which is adopted immediately. A clock that jumps back looks like latency.
 // Latency varies, so when all bounds of kWindow lie below the kept one, the best of them is adopted. The relaxation corrects
-// a jump smaller than kNoticed within kNoticed / kMaxDrift = 25 s.
+// a jump smaller than kMinJump within kMinJump / kMaxDrift = 25 s.
 class OneWayOffsetEstimator {
  public:
   // Worst relative drift of two quartz clocks: 200 ppm is twice the usual +-100 ppm tolerance of one.

@@ -39,7 +39,7 @@ class Deadlines {
   std::int64_t missed_ = 0;
 };
 
-// Sleeps until t; returns at once when t is past. A signal ends the sleep early. Realtime-safe: yes (it only sleeps).
+// Sleeps until t; returns immediately when t is past. A signal ends the sleep early. Realtime-safe: yes (it only sleeps).
 void sleep_until(HostTime t);
 
 // Sleeps on absolute deadlines.

@@ -1,4 +1,4 @@
-// Follows one simulation on the bus: its present incarnation, restarts of its time, and the map from its time to our clock.
+// Follows one simulation on the bus: its current incarnation, restarts of its time, and the map from its time to our clock.
 // Pure.
 #pragma once
 
@@ -25,7 +25,7 @@ class SimClockTracker {
   static constexpr Nanoseconds kSilence{300'000'000};
   // A publish_time_ns that falls back by more than this means that a log is replayed again.
   static constexpr Nanoseconds kMaxStepBack{1'000'000'000};
-  // A clock that differs from the present one by more than this is accepted only when the present one has not been confirmed
+  // A clock that differs from the current one by more than this is accepted only when the current one has not been confirmed
   // for kSilence, so a forged message cannot shift the time.
   static constexpr Nanoseconds kMaxDeviation{1'000'000'000};
   static constexpr std::size_t kRemembered = 16;
@@ -36,8 +36,8 @@ class SimClockTracker {
   // nullopt before the first message.
   std::optional<TimeMap> map(HostTime now) const;
   std::int64_t incarnation() const { return incarnation_; }
-  // A simulation publishes at most about 20 ms ahead, so a time kFar ahead of the newest arrival is invalid. Call it after
-  // follow.
+  // A simulation publishes at most about 20 ms ahead, so a time more than kMaxDeviation ahead of the newest arrival is
+  // invalid. Call it after track().
   SimTime latest_plausible() const { return map(last_arrival_).value_or(TimeMap{}).to_sim(last_arrival_) + kMaxDeviation; }
 
  private:

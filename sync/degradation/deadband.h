@@ -22,9 +22,9 @@ struct Signal {
 
 // "10% velocity floor=0.01m/s lowpass=20Hz adaptive=0.2s/m".
 struct DeadbandDef {
-  double fraction = 0;  // k: of the size of the last value sent
+  double fraction = 0;  // k, as a share of the last value sent
   Quantity quantity = Quantity::kVelocity;
-  double floor = 0;       // least band, in the unit of the quantity
+  double floor = 0;       // minimum size of the band, in the unit of the quantity
   double lowpass_Hz = 0;  // of the signal before it is compared, first order; 0: none
   // Growth of the fraction per m/s of speed, in s/m (Kammerl, Vittorias, Nitsch, Faerber, Steinbach and Hirche 2010,
   // "Perception-based data reduction for haptic force-feedback signals using velocity-adaptive deadbands").

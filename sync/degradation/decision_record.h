@@ -9,7 +9,7 @@
 namespace tactus::sync {
 
 struct DecisionRecord {
-  std::uint64_t key = 0;  // of an event its id, of a snapshot as snapshot_key
+  std::uint64_t key = 0;  // id of an event, or snapshot_key of a snapshot
   bool is_event = false;
   SimTime time{};
   Decision decision;

@@ -84,8 +84,8 @@ class DegradedSnapshots {
 
  private:
   static constexpr std::size_t kRemembered = 256;
-  // Pages of a snapshot are sent before the next snapshot; up to four snapshots may be in flight at once. The largest has
-  // 2,000 pages of 18 bodies.
+  // Pages of a snapshot are sent before the next snapshot; up to four snapshots may be in flight at the same time. The largest
+  // has 2,000 pages of 18 bodies.
   static constexpr PageLimits kPageLimits{.groups = 4, .pages = 4096};
   using Pages = PageAssembler<std::pair<Message, HostTime>, std::uint64_t>;  // by snapshot_key
 

@@ -26,7 +26,7 @@ struct KnownModality {
 
 // Sorted by the "min" cell of their rows, which is their place in the serial order.
 const std::vector<KnownModality>& known_modalities();
-// Null: no table has it.
+// Returns null when no table contains the modality.
 const KnownModality* known_modality(const std::string& name);
 // Index in known_modalities(); its size for an unknown modality.
 std::size_t modality_index(const std::string& name);

@@ -15,16 +15,17 @@ namespace tactus::sync {
 
 // The properties of an event or a snapshot that the operators decide by.
 struct StreamItem {
-  std::uint64_t key = 0;  // of an event its id, of a snapshot its channel and instant; random numbers are drawn for it
+  std::uint64_t key = 0;  // id of an event, or channel and instant of a snapshot; random numbers are drawn for it
   bool is_event = false;
-  // Of a snapshot: its stream, identified by channel and by group, tool or the like. And the incarnation of the simulation.
+  // Only for a snapshot: its stream, identified by channel and by group, tool or the like; and the incarnation of the
+  // simulation.
   std::uint64_t stream = 0;
   std::int64_t incarnation = 0;
   SimTime time{};
   HostTime arrival{};
   std::span<const Signal> signals;  // of a snapshot, for a deadband
   double speed_m_s = 0;             // of the fastest body or tool in it
-  // Of an event: bodies and materials, by their index in the scene.
+  // Only for an event: bodies and materials, by their index in the scene.
   std::int32_t body_a = -1, body_b = -1, material_a = -1, material_b = -1;
 };
 
@@ -34,7 +35,7 @@ struct Decision {
   DropReason why = DropReason::kKept;              // kKept: it is released
   Conceal conceal = Conceal::kHold;  // replacement of a missing snapshot
   HostTime release{};                // time of release
-  Nanoseconds shift{0};              // of an event: the presentation delay of a filtered rule that applies to it
+  Nanoseconds shift{0};              // only for an event: the presentation delay of a filtered rule that applies to it
   bool duplicated = false;
   bool evaluated = false;  // an operator was evaluated, so the decision is logged
   bool dropped() const { return why != DropReason::kKept; }

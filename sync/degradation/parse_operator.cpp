@@ -23,12 +23,13 @@ double quantity(std::string_view text, std::string_view unit) {
       std::from_chars(text.data(), text.data() + text.size(), bare).ptr != text.data() + text.size();
   if (unit != "1" && !has_unit && x != 0)
     throw std::invalid_argument("\"" + std::string(text) +
-                                "\" lacks its unit; write it right behind the number, as in " + std::string(text) +
+                                "\" has no unit; write the unit directly after the number, as in " + std::string(text) +
                                 std::string(unit));
   return x;
 }
 
-// "5% burst=3 network", split into its value, its words and its pairs. Each may be taken once; none may remain.
+// The text of an attribute, e.g. "5% burst=3 network", split into value, words and pairs. The parser of an operator takes each
+// part once; a part that remains is an error.
 class Words {
  public:
   explicit Words(const std::string& text) {
@@ -87,15 +88,15 @@ class Words {
     return chosen;
   }
   void expect_end() const {
-    if (!words_.empty()) throw std::invalid_argument("\"" + words_.front() + "\" means nothing here");
-    if (!pairs_.empty()) throw std::invalid_argument("\"" + pairs_.begin()->first + "=\" means nothing here");
+    if (!words_.empty()) throw std::invalid_argument("\"" + words_.front() + "\" is not valid here");
+    if (!pairs_.empty()) throw std::invalid_argument("\"" + pairs_.begin()->first + "=\" is not valid here");
   }
 
  private:
   static double checked(double x, const std::string& text, std::string_view unit, double least, double most) {
     if (x < least || x > most) {
       std::ostringstream message;
-      message << text << " must lie between " << least << " and " << most;
+      message << text << " must be between " << least << " and " << most;
       if (unit != "1") message << " " << unit;
       throw std::invalid_argument(message.str());
     }
@@ -176,7 +177,7 @@ std::vector<double> delays_of_trace(const std::string& trace) {
   for (std::string value; std::getline(values, value, ',');) {
     delays_s.push_back(quantity(value, "s"));
     if (delays_s.back() < 0 || delays_s.back() > kLongest_s)
-      throw std::invalid_argument("the delays of a trace lie between 0 and 60 s");
+      throw std::invalid_argument("the delays of a trace must be between 0 and 60 s");
   }
   return delays_s;
 }

@@ -80,7 +80,7 @@ std::uint64_t seed_of(const std::string& text) {
   std::uint64_t seed = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
   if (error != std::errc{} || end != text.data() + text.size())
-    throw std::invalid_argument("seed=\"" + text + "\" is no whole number from 0 to 18446744073709551615");
+    throw std::invalid_argument("seed=\"" + text + "\" is not a whole number from 0 to 18446744073709551615");
   return seed;
 }
 
@@ -125,10 +125,10 @@ Profile parse_profile(const std::string& xml, const std::string& file, const Dec
   if (const std::size_t nul = xml.find('\0'); nul != std::string::npos)
     refuse(file,
            1 + static_cast<int>(std::count(xml.begin(), xml.begin() + static_cast<std::ptrdiff_t>(nul), '\n')),
-           "there is a NUL byte here, so this is no text in UTF-8");
+           "there is a NUL byte here, so this is not text in UTF-8");
   tinyxml2::XMLDocument document;
   if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS)
-    refuse(file, document.ErrorLineNum(), std::string("this is no XML (") + document.ErrorName() + ")");
+    refuse(file, document.ErrorLineNum(), std::string("this is not XML (") + document.ErrorName() + ")");
   const Element* root = document.RootElement();
   if (!root || std::string(root->Name()) != "profile")
     refuse(file, root ? root->GetLineNum() : 1, "a profile begins with <profile>");

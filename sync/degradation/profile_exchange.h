@@ -30,13 +30,13 @@ std::optional<ProfileInForce> load_profile(const std::filesystem::path& folder, 
 // Assembles the pages. Pure.
 class ProfileReceiver {
  public:
-  // Profiles that may be in flight at once; the one whose newest page is the oldest is discarded first.
+  // Profiles that may be in flight at the same time; the one whose newest page is the oldest is discarded first.
   static constexpr std::size_t kMaxInFlight = 4;
-  // Of one profile.
+  // Maximum number of pages of one profile.
   static constexpr int kMaxPages = 55;
 
   // Returns the profile when this page completes one that is newer than the previous one. A text that does not match its
-  // hash, or that is no valid profile, is refused as a whole: nothing changes.
+  // hash, or that is not a valid profile, is refused as a whole: nothing changes.
   std::optional<ProfileInForce> push(const degradation_t& page);
   // One sentence on the last profile with an invalid text; returned once, then empty.
   std::string take_refusal() { return std::exchange(refusal_, {}); }
@@ -47,7 +47,7 @@ class ProfileReceiver {
 
  private:
   std::int64_t generation_ = -1;
-  // By generation and hash.
+  // Incomplete profiles by generation and hash.
   PageAssembler<std::string, std::pair<std::int64_t, std::int64_t>> pages_{{.groups = kMaxInFlight, .pages = kMaxPages},
                                                                            PageOrder::kNewestPage};
   std::string refusal_;

@@ -15,7 +15,7 @@
 
 namespace tactus::sync {
 
-// Lines of column names and of values; each ends with a newline. host_ns: CLOCK_MONOTONIC of the sender; of an event, the
+// Lines of column names and of values; each ends with a newline. host_ns: CLOCK_MONOTONIC of the sender; for an event, the
 // host time of its simulated time. -1: never.
 std::string events_csv_names();
 std::string csv_row(const contact_event_t& event, const sim_clock_t& clock);

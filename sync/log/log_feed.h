@@ -49,7 +49,7 @@ class LogFeed {
 
   HostTime begin() const { return begin_; }
   HostTime end() const { return end_; }
-  // Of the whole log.
+  // Totals of the whole log.
   std::int64_t events() const { return scan_.events(); }
   std::int64_t damaged_regions() const { return scan_.damaged_regions(); }
   std::int64_t damaged_bytes() const { return scan_.damaged_bytes(); }

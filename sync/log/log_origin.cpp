@@ -43,7 +43,7 @@ void LogClockDetector::observe(const LogEvent& event) {
   const auto header = peek_header(event.data.data(), event.data.size());
   // Bytes of another system may read as a header, but do not begin with a fingerprint of this system.
   if (message_type(fingerprint_of(event.data)) == nullptr) return;
-  // Not published at that time: a replay of another log, recorded beside a run, and the scene at the head.
+  // Not published at that time: a replay of another log, recorded during a run, and the scene at the head.
   if (!header || event.channel == channels::kSceneManifest || event.channel == channels::kAssetChunk) return;
   auto it = pairs_.find({header->run_id, header->clock});
   if (it == pairs_.end()) {

@@ -22,7 +22,7 @@ int number_of(const std::string& name) {
   return number > 1 && name == name_of(number) ? number : 0;
 }
 
-// By number.
+// The parts of the log in this folder, by number.
 std::map<int, std::string> parts_by_number(const std::string& dir) {
   std::map<int, std::string> parts;
   std::error_code unreadable;

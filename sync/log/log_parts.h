@@ -21,7 +21,7 @@ struct LogLimits {
   std::int64_t split_bytes = 0;
   Nanoseconds split_after{0};
   int keep = 0;  // parts; the oldest are removed
-  // Of all parts together; the oldest are removed. A log of a single part leaves out the excess.
+  // Maximum size of all parts together; the oldest parts are removed. A log of a single part leaves out the excess.
   std::int64_t max_bytes = 0;
   bool splits() const { return split_bytes > 0 || split_after > Nanoseconds(0); }
 };
@@ -35,7 +35,7 @@ class LogParts {
   const std::string& path() const { return parts_.back().path; }
   // Removes the oldest parts beyond the limits, but not the one being written, whose size is given.
   void prune(std::int64_t present_bytes);
-  // Bytes of the kept parts, without the present one.
+  // Bytes of the kept parts, without the current one.
   std::int64_t bytes_before() const;
   std::int64_t removed() const { return removed_; }
 

@@ -50,7 +50,7 @@ class LogWriter {
   void flush();
 
   std::int64_t events() const { return events_; }
-  // Of all events, written or waiting.
+  // Bytes of all events, written or waiting.
   std::int64_t bytes() const { return bytes_; }
   // Number of dropped events.
   std::int64_t lost() const { return lost_; }

@@ -23,7 +23,8 @@ namespace {
 // The newest mapping, for say_cut.
 std::atomic<const std::uint8_t*> mapped_begin{nullptr}, mapped_end{nullptr};
 
-// Handles SIGBUS, which an access behind the end of a truncated file raises and which kills without a message.
+// Handles SIGBUS. An access beyond the end of a truncated file raises it, and by default it ends the process without a
+// message.
 void say_cut(int, siginfo_t* info, void*) {
   const auto* at = static_cast<const std::uint8_t*>(info->si_addr);
   if (at < mapped_begin.load() || at >= mapped_end.load()) {

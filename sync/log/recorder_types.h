@@ -17,7 +17,8 @@ namespace tactus::sync {
 
 inline constexpr const char* kLogTypes = "LOG_TYPES";
 
-// Lines are not split; the pages in order, without the first line of each, are the text.
+// Returns the pages in order. No line is split between pages; the text is the pages without the first line of
+// each.
 std::vector<std::string> log_types();
 
 }  // namespace tactus::sync

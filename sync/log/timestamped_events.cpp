@@ -15,7 +15,8 @@ HostTime TimestampedEvents::time_of(const LogEvent& event) {
   if (!plausible(event)) return before_.value_or(origin_.time(event.timestamp_us));
   const HostTime stamp = origin_.time(event.timestamp_us);
   if (before_ && lookahead_ && plausible(*lookahead_)) {
-    // Recorders stamp in order: a stamp that the next event contradicts, and the previous one does not support, is wrong.
+    // The stamps of a recorder never decrease. A stamp above the next one is wrong if the previous and the next stamp are in
+    // order.
     const HostTime next = origin_.time(lookahead_->timestamp_us);
     if (*before_ <= next && next < stamp) return *before_;
   }

@@ -14,7 +14,7 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::size_t kFingerprintBytes = 8;
-constexpr std::size_t kBlockBytes = 1 << 20;  // passed to the sink at once
+constexpr std::size_t kBlockBytes = 1 << 20;  // passed to the sink in one call
 
 std::int64_t fingerprint_of(Bytes data) {  // big-endian
   std::uint64_t value = 0;

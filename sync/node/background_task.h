@@ -1,6 +1,6 @@
 // Runs a factory function on a background thread, because construction may take long or block forever: PortAudio 19.6 waits
 // without limit for the first callback of a card that opens but does not start; a file may lie on a network. The owner polls
-// done(); no loop blocks. In virtual time the factory runs at once: its duration depends on the machine.
+// done(); no loop blocks. In virtual time the factory runs immediately: its duration depends on the machine.
 #pragma once
 
 #include <atomic>

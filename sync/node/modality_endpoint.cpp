@@ -114,7 +114,7 @@ void ModalityEndpoint::read_control_messages(HostTime) {
   const auto same_run = [&](const header_t& h) { return h.run_id == node_.options().run_id; };
   while (const auto m = degradations_.pop())
     if (same_run(m->message.header))
-      // The same text can come again: its times count from the moment that it comes into force.
+      // A profile with the same text can be received again; its times then count from the new moment.
       if (const auto whole = receiver_.push(m->message)) apply_profile(*whole);
   if (const std::string refusal = receiver_.take_refusal(); !refusal.empty())
     std::cerr << node_.descriptor().name << ": refused: " << refusal << std::endl;
@@ -146,7 +146,7 @@ ModalityEndpoint::Events& ModalityEndpoint::events(std::size_t capacity) {
 }
 
 void ModalityEndpoint::EventSlot::step(ModalityEndpoint& endpoint, HostTime now, HostTime) {
-  HostTime received = now;  // a tick that is held up while it reads also accepts the messages that arrive meanwhile
+  HostTime received = now;  // if reading takes long, this tick also accepts the messages that arrive in the meantime
   while (const auto m = events.received_.pop()) {
     received = std::max(received, m->arrival);
     endpoint.simulation_.track(m->message.header, m->message.clock, m->arrival);

@@ -198,7 +198,7 @@ class ModalityEndpoint {
 
 template <class Message>
 void ModalityEndpoint::StreamSlot<Message>::step(ModalityEndpoint& endpoint, HostTime now, HostTime state_time) {
-  // A tick that is held up while it reads also accepts the messages that arrive meanwhile.
+  // If reading takes long, this tick also accepts the messages that arrive in the meantime.
   HostTime newest_arrival = now;
   while (auto m = stream.inbox_.pop()) {
     newest_arrival = std::max(newest_arrival, m->arrival);

@@ -20,13 +20,13 @@ struct NodeDescriptor {
   int fifo_priority = 0;  // 0: normal scheduling
   std::string about;      // one sentence for --help
 
-  // Of a modality only.
+  // Only for a modality.
   std::vector<std::string> inputs = {};    // channels that it reads and that its profile acts on
   std::string presentation_instant = {};   // the instant that PRESENTED reports
   LateRule late_rule = LateRule::kShowNewest;    // treatment of late events
   std::vector<OutputOperator> output_operators = {};  // operators on its output that a profile can use
 
-  std::vector<Phase> phases = {};  // tagged phases of its tick beside decoding and the rest: "work.render"
+  std::vector<Phase> phases = {};  // tagged phases of its tick in addition to decoding and the rest: "work.render"
 };
 
 }  // namespace tactus::sync

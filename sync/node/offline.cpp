@@ -64,7 +64,7 @@ HostTime OfflineInput::next(Bus& bus) {
 void OfflineInput::require_rate(double rate_Hz) const {
   if (rate_Hz == rate_Hz_) return;
   std::ostringstream text;
-  text << "the scene of the log requires " << rate_Hz << " ticks a second, not " << rate_Hz_
+  text << "the scene of the log requires " << rate_Hz << " ticks per second, not " << rate_Hz_
        << "; give --set rate=" << rate_Hz;
   throw std::runtime_error(text.str());
 }

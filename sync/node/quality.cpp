@@ -28,7 +28,7 @@ void QualityLadder::add(Nanoseconds used) {
   }
 }
 
-// Stores the cost of the abandoned step relative to the cost of the present step.
+// Stores the cost of the abandoned step relative to the cost of the current step.
 void QualityLadder::measure_cost() {
   if (step_ == 0) return;
   const auto better = static_cast<std::size_t>(step_ - 1);

@@ -59,7 +59,7 @@ class QualityLadder {
   std::size_t count_ = 0;
   std::array<Nanoseconds, kMaxSteps> left_at_{};  // upper quartile of a step when it was left for a cheaper one
   std::array<double, kMaxSteps> ratio_{};  // measured cost of a step relative to the next cheaper one
-  int fits_ = 0, spare_ = 0;  // ticks in a row: the better step is expected to fit; the present one has time to spare
+  int fits_ = 0, spare_ = 0;  // ticks in a row: the better step is expected to fit; the current one has time to spare
   int on_trial_ = 0;          // ticks of the trial of a better step; 0: no trial
   int doublings_ = 0;
 };

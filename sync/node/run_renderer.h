@@ -1,5 +1,5 @@
-// The renderer host: the parts that the processes of all modalities have in common. It owns options, bus, scene reception,
-// live settings, degradation, playout, health, real-time priority, and the one loop, live and from a log.
+// The renderer host: the common part of the processes of all modalities. It owns the options, the bus, scene reception, live
+// settings, degradation, playout, health, real-time priority and the loop. The input is the bus or a log.
 //
 // A node's run.cpp is a descriptor, a factory and a call:
 //
@@ -25,11 +25,11 @@ class RendererFactory {
  public:
   virtual ~RendererFactory() = default;
 
-  // Adds the options of this node, beside those that every node has.
+  // Adds the options of this node to the common options of all nodes.
   virtual void add_options(CLI::App&) {}
   // Called after the options are parsed and before the bus is joined. Checks the options and opens the resources that can
-  // fail. Returns the log that is rendered instead of the bus, owned by this factory; null: live. Throws std::runtime_error
-  // with one sentence.
+  // fail. Returns the log to render instead of the bus, or null to render the bus. This factory owns the log. Throws
+  // std::runtime_error with one sentence.
   virtual OfflineInput* prepare(const NodeOptions& options) = 0;
   // Subscribes to the inputs. host: outlives the renderer.
   virtual std::unique_ptr<Renderer> make(RendererHost& host) = 0;
@@ -42,7 +42,7 @@ class PlainFactory : public RendererFactory {
   std::unique_ptr<Renderer> make(RendererHost& host) override { return std::make_unique<Made>(host); }
 };
 
-// The program. Returns its exit status, after one sentence on stderr where that is not 0.
+// Runs the program. Returns its exit status; when it is not 0, one sentence on stderr gives the reason.
 int run_renderer(const NodeDescriptor& descriptor, RendererFactory& factory, int argc, char** argv);
 
 }  // namespace tactus::sync

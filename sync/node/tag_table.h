@@ -43,7 +43,7 @@ class TagTable {
       }
   }
 
-  // By the incarnation of the process and the number of the list.
+  // The lists by the incarnation of the process and the number of the list.
   const std::map<std::pair<std::int64_t, std::int64_t>, List>& lists() const { return lists_; }
   // Number of values whose list has not been received.
   std::int64_t unlisted() const { return unlisted_; }

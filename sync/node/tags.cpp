@@ -43,7 +43,7 @@ void Tags::add(std::string name, std::string unit, Getter getter, double rate_Hz
   };
   if (!is_name(name)) refuse("a name has 1 to 48 letters, digits, '.', '_' and '-'");
   if (unit.empty() || unit.size() > 16) refuse("its unit has 1 to 16 characters; \"1\" for a plain number");
-  if (!(rate_Hz >= 0 && rate_Hz <= 1e6)) refuse("its rate lies within 0 and 1 MHz");
+  if (!(rate_Hz >= 0 && rate_Hz <= 1e6)) refuse("its rate must be between 0 and 1 MHz");
   if (tags_.size() >= kMax) refuse("there are 1024 already");
   for (const Tag& tag : tags_)
     if (tag.def.name == name) refuse("there is one of that name already");

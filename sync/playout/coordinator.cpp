@@ -46,7 +46,7 @@ void PlayoutCoordinator::push(const playout_t& m, HostTime now) {
   if (m.header.clock == own_clock_) return;
   if (m.header.clock < own_clock_) other_published_ = now;
   if (m.generation > generation_) apply_plan(m.generation, plan_of(m));
-  // Of several pages, the one with the asynchronies may arrive later.
+  // A plan may have several pages, and the page with the asynchronies may arrive later.
   if (m.generation == generation_ && m.header.clock < own_clock_ && plan_.policy == Policy::kExperiment)
     plan_.soa.merge(plan_of(m).soa);
 }

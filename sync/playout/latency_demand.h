@@ -27,7 +27,7 @@ class LatencyDemand {
   void add(const std::string& modality, Nanoseconds needed);
   // The aligner's estimate; more than the budget when most recent needs exceeded it; nullopt before the first event.
   std::optional<Nanoseconds> needed(const std::string& modality) const;
-  // Of all registered modalities, for playout_delays: 0 for those that have presented no event yet.
+  // Latencies of all registered modalities, for playout_delays; 0 for those that have presented no event yet.
   std::map<std::string, Nanoseconds> latencies() const;
   const std::set<std::string>& slow() const { return slow_; }
 

@@ -66,7 +66,7 @@ void PlayoutPlan::check() const {
 
 Nanoseconds parse_duration(const std::string& text) {
   const double s = parse_quantity(text, "s");
-  if (s < 0 || s > kMax_s) throw std::invalid_argument("\"" + text + "\" does not lie between 0 and 60 s");
+  if (s < 0 || s > kMax_s) throw std::invalid_argument("\"" + text + "\" is not between 0 and 60 s");
   return from_seconds(s);
 }
 
@@ -76,7 +76,7 @@ std::map<std::string, Nanoseconds> parse_soa(const std::string& text) {
   for (std::string part; std::getline(parts, part, ',');) {
     const auto equals = part.find('=');
     if (equals == std::string::npos || equals == 0)
-      throw std::invalid_argument("\"" + part + "\" is no asynchrony; write one as visual=-50ms");
+      throw std::invalid_argument("\"" + part + "\" is not an asynchrony; write it as visual=-50ms");
     const double s = parse_quantity(part.substr(equals + 1), "s");
     if (std::abs(s) > kMax_s)
       throw std::invalid_argument("the asynchrony \"" + part + "\" is longer than 60 s");

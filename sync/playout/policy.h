@@ -16,7 +16,7 @@ enum class Policy : std::uint8_t {
   kAsap,              // each as soon as it can
   kAligned,           // all when the slowest can
   kExperiment,        // base + SOA, regardless of the needs
-  kLocalHapticFirst,  // touch at once, the others when the slowest of them can
+  kLocalHapticFirst,  // touch immediately, the others when the slowest of them can
   kItouch2005         // one after the other in one loop: touch, sound, picture, then all others
 };
 
@@ -44,7 +44,7 @@ struct PlayoutPlan {
 
 // "audio=50ms,visual=-20ms". Throws std::invalid_argument with one sentence.
 std::map<std::string, Nanoseconds> parse_soa(const std::string& text);
-// "120ms", "0.12s". Throws std::invalid_argument with one sentence when it is no duration, negative, or longer than 60 s.
+// "120ms", "0.12s". Throws std::invalid_argument with one sentence when it is not a duration, is negative, or longer than 60 s.
 Nanoseconds parse_duration(const std::string& text);
 
 // needed: the needs by the aligners; modalities without a report are not in it. The others do not wait for a modality that
@@ -53,8 +53,8 @@ std::map<std::string, Nanoseconds> playout_delays(const PlayoutPlan& plan,
                                                   const std::map<std::string, Nanoseconds>& needed,
                                                   const std::set<std::string>& slow = {});
 
-// Of kItouch2005: rate of a loop in which every modality waits for the one before, Hz; 0 for any other policy or before any
-// need is known.
+// Only for kItouch2005: rate, Hz, of a loop in which every modality waits for the one before. 0 for any other policy, or
+// before any demand is known.
 double lockstep_rate_Hz(const PlayoutPlan& plan, const std::map<std::string, Nanoseconds>& needed);
 
 }  // namespace tactus::sync

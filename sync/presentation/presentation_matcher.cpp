@@ -220,7 +220,7 @@ void PresentationMatcher::finish(HostTime now) {
   advance(now);
   for (const auto& [due, id] : due_) settle(events_.at(id), now, true);
   due_.clear();
-  // At the end of a run all processes end before the log does; that is no failure.
+  // At the end of a run all processes end before the log does; that is not a failure.
   for (const FinalExpectation& d : final_expectations_) {
     --tallies_[d.modality].expected;
     --tallies_[d.modality].dead;
@@ -285,7 +285,7 @@ void PresentationMatcher::settle_expected(Renderer& r, std::int32_t source, cons
 }
 
 void PresentationMatcher::count_asynchrony(const Event& e) {
-  // Of several nodes of one modality (walls of a room) the first.
+  // When one modality has several nodes (the walls of a room), uses the earliest presentation.
   std::map<std::string, const Report*> onset;
   for (const Report& r : e.reports) {
     if (!was_presented(r.outcome) || r.presented_ns < 0 || !is_onset(r.part, e.kind)) continue;

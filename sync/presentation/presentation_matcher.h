@@ -10,9 +10,9 @@
 //   dead                no report, and within 0.1 s after the event the node was gone, replaced, not running again, or
 //                       without output; or the simulation died before it could repeat the event for its 50 ms
 //   lost                no report from a running node
-// While a simulation of this run publishes, no presentation is expected of events of other runs, as of a log that is played
-// beside it. None is expected of a node that never ran. A report that was not expected is no outcome, but counts for the
-// asynchrony.
+// While a simulation of this run publishes, no presentation is expected of events of other runs, such as those of a log that
+// is played at the same time. None is expected of a node that never ran. A report that was not expected is not an outcome, but
+// counts for the asynchrony.
 #pragma once
 
 #include <cstdint>
@@ -103,8 +103,8 @@ class PresentationMatcher {
   std::int64_t hits() const { return hits_; }
   std::int64_t ends() const { return ends_; }
   const std::map<std::string, OutcomeCounts>& modalities() const { return tallies_; }
-  // soa(a, b) = t_present(b) - t_present(a), with a named before b. The push that answers a begin at once, under every
-  // policy, is separate from the vibration that answers a hit when it is due: "haptic_push" beside "haptic".
+  // soa(a, b) = t_present(b) - t_present(a), with a named before b. The push that answers a begin immediately, under every
+  // policy, is separate from the vibration that answers a hit when it is due: "haptic_push" in addition to "haptic".
   const std::map<std::pair<std::string, std::string>, SoaHistogram>& pairs() const { return pairs_; }
 
   // Reports with times on a clock without a map: they count as presented, but not for the asynchrony, because their

@@ -16,8 +16,8 @@ struct JitterDef {
   JitterShape shape = JitterShape::kUniform;
   // uniform: half width around the constant delay; normal: standard deviation; pareto: mean of the added delay; s.
   double scale_s = 0;
-  // Of consecutive delays in the normal domain, 0 .. < 1: a first-order process whose marginal distribution stays that of the
-  // shape.
+  // Correlation of consecutive delays in the normal domain, 0 .. < 1: a first-order process whose marginal distribution stays
+  // that of the shape.
   double correlation = 0;
   // Added delays of a trace, s, used cyclically.
   std::vector<double> trace_s{};

@@ -38,7 +38,8 @@ LineEnd parse_line_end(const std::string& text) {
   const auto port = number(std::string_view(text).substr(colon == std::string::npos ? 0 : colon + 1), 1, 65535);
   if (!port || *port != static_cast<double>(static_cast<int>(*port)) ||
       (colon != std::string::npos && inet_pton(AF_INET, address.c_str(), &end.address.sin_addr) != 1))
-    throw std::invalid_argument("\"" + text + "\" is no end of a line; write ADDRESS:PORT, as in 192.0.2.7:7700");
+    throw std::invalid_argument("\"" + text +
+                                "\" is not an address with a port; write ADDRESS:PORT, as in 192.0.2.7:7700");
   end.address.sin_port = htons(static_cast<std::uint16_t>(*port));
   return end;
 }

@@ -33,7 +33,7 @@ struct LineMessage {
   bool bulk = false;
 };
 std::vector<std::uint8_t> line_datagram(const ChannelBytes& message, bool bulk);
-// nullopt when the bytes are no such datagram. Refers to `bytes`.
+// nullopt when the bytes are not such a datagram. Refers to `bytes`.
 std::optional<LineMessage> parse_line_datagram(std::span<const std::uint8_t> bytes);
 
 class LineSocket {

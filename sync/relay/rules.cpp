@@ -108,12 +108,12 @@ RelayRules parse_relay_rules(const std::string& xml, const std::string& file) {
     // XML allows no NUL; the parser would silently ignore all text after it.
     if (const std::size_t nul = xml.find('\0'); nul != std::string::npos) {
       line = 1 + static_cast<int>(std::count(xml.begin(), xml.begin() + static_cast<std::ptrdiff_t>(nul), '\n'));
-      throw std::invalid_argument("there is a NUL byte here, so this is no text");
+      throw std::invalid_argument("there is a NUL byte here, so this is not text");
     }
     tinyxml2::XMLDocument document;
     if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS) {
       line = std::max(1, document.ErrorLineNum());
-      throw std::invalid_argument(std::string("this is no XML (") +
+      throw std::invalid_argument(std::string("this is not XML (") +
                                   tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()) + ")");
     }
     const tinyxml2::XMLElement* root = document.RootElement();

@@ -30,7 +30,7 @@ struct PassRule {
 class RelayRules {
  public:
   explicit RelayRules(std::vector<PassRule> rules) : rules_(std::move(rules)) {}
-  // Null: the channel does not cross.
+  // Returns null when the channel does not pass the relay.
   const PassRule* find(std::string_view channel) const;
   const std::vector<PassRule>& all() const { return rules_; }
 

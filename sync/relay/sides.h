@@ -17,7 +17,8 @@ class SenderSides {
   static constexpr int kHere = 0;  // the bus of this site; other sites count from 1
   // After this silence a sender may appear on another side.
   static constexpr Nanoseconds kTimeout{10'000'000'000};
-  // As sync/bus/sequence.h for one channel; more come only from corrupt messages, and those silent for longest are removed.
+  // The same limit as in sync/bus/sequence.h for one channel. More senders can only come from corrupt messages; those that
+  // have been silent for longest are removed.
   static constexpr std::size_t kMax = 4096;
 
   // True when this sender belongs to that side: the side where it was first received.

@@ -80,7 +80,7 @@ void BodyHistory::push(const world_state_t& page, HostTime arrival) {
 }
 
 // Inserts a sample in order of time; pages may overtake each other. Returns true when it was inserted. Of several samples of
-// one instant the first stays, but a present sample replaces a predicted one.
+// one instant the first stays, but a sample of the current step replaces a predicted one.
 bool BodyHistory::insert(Samples& samples, TimedPose sample) {
   const auto later = [&](const TimedPose& s) { return s.time <= sample.time; };
   auto at = std::find_if(samples.rbegin(), samples.rend(), later).base();
@@ -105,8 +105,8 @@ bool BodyHistory::insert(Samples& samples, TimedPose sample) {
   return true;
 }
 
-// A present sample of a body revokes all earlier predictions of it. No prediction is valid beyond kFar, so a corrupt page
-// cannot revoke more.
+// A sample of the current step revokes all earlier predictions of that body. No prediction is valid beyond kMaxDeviation, so a
+// corrupt page cannot revoke more.
 void BodyHistory::discard_predictions(Samples& samples, const TimedPose& now) {
   const auto end =
       std::find_if(samples.rbegin(), samples.rend(), [&](const TimedPose& s) { return s.time <= now.time; }).base();

@@ -38,7 +38,7 @@ class BodyHistory {
   static constexpr Nanoseconds kSpan{1'000'000'000};
   // Upper limit of the bodies that one snapshot a second can carry: 2,000 pages of 18.
   static constexpr int kMaxBodies = 36'000;
-  // Of all bodies together, about 64 MB; with more bodies, each keeps fewer samples.
+  // Maximum number of samples of all bodies together, about 64 MB. With more bodies, each keeps fewer samples.
   static constexpr std::size_t kMaxSamples = 1 << 19;
 
   explicit BodyHistory(OwnClock own) : clock_tracker_(own) {}

@@ -53,7 +53,7 @@ class ContactStream {
   static constexpr Nanoseconds kStaleAfter{50'000'000};
   // 2,000 contacts, three a page, need 700 pages.
   static constexpr int kMaxPages = 1024;
-  // Of all snapshots of a group together: half a second of 2,000 contacts at 60 Hz.
+  // Maximum number of contacts in all snapshots of a group: half a second of 2,000 contacts at 60 Hz.
   static constexpr std::size_t kMaxContacts = 1 << 16;
 
   // Length of the stored past, limited by kMaxContacts; it limits the presentation delay of a modality.
@@ -61,7 +61,7 @@ class ContactStream {
 
   // events: of the same simulation; it outlives this object.
   explicit ContactStream(EventInbox& events);
-  // With events of its own, from push(), without a profile. own: as EventInbox.
+  // Stores the events that push() receives itself, without a profile. own: as for EventInbox.
   explicit ContactStream(OwnClock own);
 
   // Stores this time beyond kSpan, for a modality that presents with this delay.
@@ -72,7 +72,7 @@ class ContactStream {
   // Map between simulated time and this host's clock, from the newest message. nullopt before the first.
   std::optional<TimeMap> map(HostTime now) const { return events_.map(now); }
 
-  // As EventInbox::take.
+  // Same as EventInbox::take.
   std::vector<contact_event_t> take_events(SimTime until) { return events_.take(until); }
 
   // Contacts that exist at `t`, of all groups: the newest complete snapshot at or before t, with forces and depths

@@ -42,7 +42,7 @@ class EventInbox {
   // A message from the bus. The profile decides once for each event id, at its first arrival; repetitions change nothing.
   // decisions: list to which the decisions are appended; null: none.
   void push(const contact_events_t&, HostTime arrival, OperatorChain&, Decisions* decisions);
-  // The same without a profile; releases the events at once.
+  // The same without a profile; releases the events immediately.
   void push(const contact_events_t& m, HostTime arrival) {
     OperatorChain none;
     push(m, arrival, none, nullptr);

@@ -28,7 +28,7 @@ class AtomicFile {
   int file_ = -1;
 };
 
-// The path of the unfinished file. An existing path that is no plain file, such as /dev/null, is written directly.
+// The path of the unfinished file. An existing path that is not a plain file, such as /dev/null, is written directly.
 std::string part_of(const std::string& path);
 
 }  // namespace tactus::sync

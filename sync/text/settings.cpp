@@ -53,12 +53,12 @@ double parse_quantity(std::string_view text, std::string_view unit) {
   double number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc{} || !std::isfinite(number))
-    throw std::invalid_argument("\"" + std::string(text) + "\" is no number" + (unit == "1" ? "" : " in " + std::string(unit)));
+    throw std::invalid_argument("\"" + std::string(text) + "\" is not a number" + (unit == "1" ? "" : " in " + std::string(unit)));
   const std::string_view written = trimmed(text.substr(static_cast<std::size_t>(end - text.data())));
   if (written.empty() || written == unit) return number;
   for (const Unit& u : kUnits)
     if (u.written == written && u.base == unit) return number * u.factor;
-  throw std::invalid_argument("\"" + std::string(written) + "\" is no unit of " + (unit == "1" ? "a plain number" : std::string(unit)));
+  throw std::invalid_argument("\"" + std::string(written) + "\" is not a unit of " + (unit == "1" ? "a plain number" : std::string(unit)));
 }
 
 void check_setting(const SettingRow& row, std::string_view value) {

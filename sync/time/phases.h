@@ -26,7 +26,7 @@ class Phases {
   // Begins a tick of this thread. measured: the times are requested; otherwise the last results stay.
   void begin(bool measured);
   void end();
-  // Of the last measured tick, us.
+  // Duration of a phase in the last measured tick, us.
   double us(Phase phase) const { return last_us_[static_cast<std::size_t>(phase)]; }
   const double* us_pointer(Phase phase) const { return &last_us_[static_cast<std::size_t>(phase)]; }
 

@@ -42,7 +42,7 @@ std::string csv_cell(const Leaf& value);
 
 // log_s, world_s, sender, seq, field, unit, value.
 std::string long_names();
-// The rows of a message; empty when it is no whole message of the type.
+// The rows of a message; empty when it is not a complete message of the type.
 std::string long_rows(const TableContext& context, const MessageType& type, const LogEvent& event,
                       HostTime arrival);
 

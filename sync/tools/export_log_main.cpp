@@ -214,7 +214,7 @@ int main(int argc, char** argv) try {
     for (const std::string& path : export_options.logs) all.read(path);
     all.finish();
   } catch (const std::regex_error&) {
-    throw std::runtime_error("--channels " + sync::printable(export_options.channels) + ": is no regular expression; write for example 'TOOL_STATE|CONTACT.*'");
+    throw std::runtime_error("--channels " + sync::printable(export_options.channels) + ": is not a regular expression; write for example 'TOOL_STATE|CONTACT.*'");
   }
   return 0;
 } catch (const std::exception& e) {

@@ -36,7 +36,7 @@ class PictureReader {
  private:
   struct Partial {
     std::int64_t incarnation = 0, picture = -1, last_message = 0;
-    // By incarnation and number of the picture.
+    // Incomplete pictures by incarnation and number of the picture.
     PageAssembler<std::vector<std::uint8_t>, std::pair<std::int64_t, std::int64_t>> chunks{
         {.groups = 1, .pages = kMaxChunks, .remembered = 1}};
   };

@@ -40,7 +40,7 @@ class Socket {
     const auto ttl = static_cast<unsigned char>(o.ttl);
     to_.sin_family = AF_INET;
     to_.sin_port = htons(static_cast<std::uint16_t>(o.port));
-    if (inet_pton(AF_INET, o.group.c_str(), &to_.sin_addr) != 1) throw std::runtime_error("--group " + o.group + ": is no address");
+    if (inet_pton(AF_INET, o.group.c_str(), &to_.sin_addr) != 1) throw std::runtime_error("--group " + o.group + ": is not an address");
     setsockopt(fd_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
     if (setsockopt(fd_, SOL_SOCKET, SO_RCVBUFFORCE, &kReceiveBufferBytes, sizeof kReceiveBufferBytes) < 0)
       setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &kReceiveBufferBytes, sizeof kReceiveBufferBytes);

@@ -1,7 +1,7 @@
-// relay: carries the bus between sites: messages that other sites need go to them, and theirs to this site. One in each site.
+// relay: carries the bus between sites: messages that other sites need go to them, and theirs to this site. One relay runs at each site.
 //
 //   in   the channels that its rules name, on both ports; the same from other relays, by unicast UDP
-//   out  likewise
+//   out  the same channels, to this bus and to other relays
 //
 // Each line has its own queue, which drops messages that would arrive too late: a slow site, or an unreachable one, does not
 // affect the others. Without a relay, this site continues alone; the last state of other sites is held and reported as old.

@@ -120,7 +120,7 @@ std::string position_text(const sync::Replay& replay, const sync::ReplayOptions&
   text << replay.position_s() << " of " << replay.length_s() << " s at ";
   replay.speed() == 0 ? text << "full speed" : text << replay.speed() << " x";
   text << (replay.over() ? ", over" : replay.paused() ? ", paused" : "") << ", " << replay.sent() << " messages";
-  if (replay.behind_s() > 0) text << ", " << replay.behind_s() << " s behind, because at most " << play.max_per_s << " messages a second are sent";
+  if (replay.behind_s() > 0) text << ", " << replay.behind_s() << " s behind, because at most " << play.max_per_s << " messages per second are sent";
   if (refused > 0) text << ", " << refused << " refused by the network";
   if (replay.scanner().damaged_regions() > 0)
     text << ", " << replay.scanner().damaged_regions() << " damaged places (" << replay.scanner().damaged_bytes() << " bytes) skipped";

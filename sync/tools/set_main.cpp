@@ -21,7 +21,7 @@ setting_change_t change_of(const std::string& node, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
     throw std::invalid_argument("\"" + sync::printable(text) +
-                                "\" is no NAME=VALUE; write for example rendering=direct");
+                                "\" is not NAME=VALUE; write for example rendering=direct");
   setting_change_t c{};
   c.header.sim_time_ns = -1;
   c.header.run_id = c.header.incarnation = 1;  // the bus stamps them; a header without is not valid

@@ -109,7 +109,7 @@ int main(int argc, char** argv) try {
   sync::Bus bus(sync::Identity::fresh("spy", run_id), bus_options);
   bus.track_clocks();
   if (once_s == 0 && (isatty(STDIN_FILENO) != 1 || isatty(STDOUT_FILENO) != 1))
-    throw std::runtime_error("this is no terminal; give --once SECONDS for a table");
+    throw std::runtime_error("this is not a terminal; give --once SECONDS for a table");
   auto& lists = bus.queue<tag_list_t>(channels::kTagList, 256);
   auto& values = bus.queue<tag_values_t>(channels::kTagValues, 4096);
   sync::RecorderTap tap(bus_options);

@@ -7,7 +7,7 @@
 //        PLAYOUT                                  of another host's sync_node: only one publishes
 //   out  CLOCK_PROBE                              eight requests every 2 s, less often with more than 16 hosts; a reply to
 //   each request
-//        CLOCK_MAP                                twice a second, likewise; one per clock of another host
+//        CLOCK_MAP                                twice a second, less often with more than 16 hosts; one per clock of another host
 //        SYNC_REPORT                              once a second
 //        DEGRADATION                              again once a second, for late joiners
 //        PLAYOUT                                  ten times a second: the presentation delay of each modality
@@ -149,7 +149,7 @@ int tactus::sync::run_sync_node(int argc, char** argv) try {
     while (const auto wave = probes ? probes->pop() : std::nullopt) map_estimator.add(*wave);
     if (now >= next_maps) {
       std::vector<clock_map_t> maps = map_estimator.maps(clock.read(now));
-      // As for the probes: with many hosts, each map is published less often.
+      // With many hosts each map is published less often, by the same rule as for probes.
       const auto share = std::max<std::int64_t>(1, static_cast<std::int64_t>(maps.size() / sync::ClockProber::kFewClocks));
       next_maps = std::max(next_maps + kMapPeriod * share, now);
       for (clock_map_t& map : maps) node.bus().publish(channels::kClockMap, map);

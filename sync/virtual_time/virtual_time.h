@@ -52,7 +52,7 @@ class VirtualTime {
   // Runs all programs for this time.
   void run_for(Nanoseconds span) { run_until(now_ + span); }
   void run_until(HostTime until);
-  // Asks that program to end, as SIGTERM does; or ends it at once, as SIGKILL does. False: there is none, or it is the
+  // Asks that program to end, as SIGTERM does; or ends it immediately, as SIGKILL does. False: there is none, or it is the
   // running one.
   bool request_stop(std::string_view name);
   bool kill(std::string_view name);

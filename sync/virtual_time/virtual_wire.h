@@ -22,7 +22,7 @@ namespace tactus::sync {
 
 struct WirePlan {
   Nanoseconds latency{0};
-  JitterDef jitter{};  // on top; a message that would arrive before it was sent arrives at once
+  JitterDef jitter{};  // added to the latency; an arrival before the sending time is moved to the sending time
   LossDef loss{};      // of each datagram on its way to each receiver
 };
 
@@ -47,7 +47,7 @@ class VirtualEnd {
   using Inboxes = std::vector<MessageReceiver*>;
   struct Datagram {
     HostTime at;
-    std::uint64_t number;  // of the datagrams that are sent to this end
+    std::uint64_t number;  // counts the datagrams that are sent to this end
     const Inboxes* to;
     std::shared_ptr<const std::vector<std::uint8_t>> bytes;
   };
@@ -65,7 +65,7 @@ class VirtualEnd {
   VirtualWire& wire_;
   std::uint64_t seed_;
   std::array<std::map<std::string, Inboxes, std::less<>>, 2> subscribers_;
-  std::vector<Datagram> in_flight_;  // a heap, the next first
+  std::vector<Datagram> in_flight_;  // a heap; the next arrival is first
   std::uint64_t next_number_ = 0;
   std::map<const VirtualEnd*, Path> paths_;
 };

@@ -9,7 +9,7 @@ using nlohmann::json;
 namespace {
 
 // The hand follows the clock with closed eyes. If the machine stops the simulation for longer than this, the hand moves past the ball
-// meanwhile. Such a run is no evidence about the scene and is repeated.
+// meanwhile. Such a run says nothing about the scene and is repeated.
 constexpr double kStandstillUs = 20000;
 
 double longest_standstill_us(const json& summary) {

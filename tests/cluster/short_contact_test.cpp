@@ -27,7 +27,7 @@ const std::map<std::string, std::vector<std::string>> kExpectedKinds{
     {"haptic", {"begin", "hit"}}, {"audio", {"hit"}}, {"visual", {"begin", "hit"}}, {"thermal", {"begin", "hit"}}};
 
 // The tool dips 0.6 mm into the floor and out of it at 0.5 m/s: 3 ms from touch to the published end, at a gap of 0.3 mm. 257 ms between
-// two dips, which is no multiple of the period of any modality.
+// two dips, which is not a multiple of the period of any modality.
 std::filesystem::path write_motion(const std::filesystem::path& file) {
   constexpr double kRadius_m = 0.008, kDip_m = 0.0006, kSpeed_m_s = 0.5, kAbove_m = 0.03;
   std::ofstream out(file);

@@ -21,7 +21,7 @@ TEST_CASE("A grey image has heights from 0 to 1, its lowest row first") {
 }
 
 TEST_CASE("Data that is not a height map is rejected, also if it is truncated") {
-  CHECK_THROWS_WITH(read_height_map({}), Catch::Contains("no PNG"));
+  CHECK_THROWS_WITH(read_height_map({}), Catch::Contains("not a PNG"));
   CHECK_THROWS_WITH(read_height_map(png_bytes(2, 2, 8, std::vector<std::uint8_t>(12), PNG_COLOR_TYPE_RGB)),
                     Catch::Contains("grey"));
   CHECK_THROWS_WITH(read_height_map(png_bytes(1, 2, 8, {0, 0})), Catch::Contains("samples"));

@@ -77,8 +77,8 @@ TEST_CASE("An answer that fits no question is rejected with a reason, and is not
   a.push(question(question_t::CHOICE, 0), at(0));
   const std::string name = a.to_json(at(0))["question"];
   CHECK_THAT(rejection(a, {name + "0", 0, 0, 0}, at(0)), Catch::Contains("no longer open"));
-  CHECK_THAT(rejection(a, {name, 2, 0, 0}, at(0)), Catch::Contains("none of the choices"));
-  CHECK_THAT(rejection(a, {name, -1, 0, 0}, at(0)), Catch::Contains("none of the choices"));
+  CHECK_THAT(rejection(a, {name, 2, 0, 0}, at(0)), Catch::Contains("not one of the choices"));
+  CHECK_THAT(rejection(a, {name, -1, 0, 0}, at(0)), Catch::Contains("not one of the choices"));
   CHECK_THAT(rejection(a, {name, 0, 0.5, 0}, at(0)), Catch::Contains("range of its slider"));
   CHECK_THAT(rejection(a, {name, 0, 0, 0}, at(2.1)), Catch::Contains("no longer open"));
   CHECK_FALSE(a.take_answer());

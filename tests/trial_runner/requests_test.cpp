@@ -36,7 +36,7 @@ TEST_CASE("A malformed request is rejected with a reason") {
   refuses("{}", "JSON object with one member");
   refuses(R"({"end": true, "tap": {}})", "JSON object with one member");
   refuses(R"({"dance": 1})", "there is no request");
-  refuses(R"({"tap": 1})", "tap is no JSON object");
+  refuses(R"({"tap": 1})", "tap is not a JSON object");
   refuses(R"({"tap": {"depth_m": "deep"}})", "depth_m is not a number from 0");
   refuses(R"({"tap": {"depth_m": 5}})", "depth_m is not a number from 0");
   refuses(R"({"question": {"kind": "riddle"}})", "none of nothing, read, choice, number");

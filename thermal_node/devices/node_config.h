@@ -19,7 +19,7 @@ struct NodeConfig {
 
 // tool_name: from the command line; empty: the setting, otherwise the first tool of the scene.
 NodeConfig resolve_config(const scene_t& scene, const Settings& settings, const std::string& tool_name);
-// As above, with the settings of the scene and of the command line. set: name=value.
+// The same with the settings of the scene and of the command line. set: name=value.
 NodeConfig resolve_config(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set);
 
 }  // namespace tactus::thermal

@@ -25,7 +25,7 @@ class Controller {
   void set_limits(const ControllerLimits& limits) { limits_ = limits; }
 
   // NaN keeps the current command. The range has priority over the slew limit: when a range is narrowed, the
-  // command is inside at once.
+  // command is inside immediately.
   Command step(double wanted_degC, double dt_s);
 
  private:

@@ -20,11 +20,11 @@ struct PlateLimits {
 struct PlateDrive {
   double current_A = 0;
   bool limited = false;  // less than requested
-  bool fault = false;    // plate, sink or reading beyond the limits: the only current is one that leads back
+  bool fault = false;    // plate, sink or reading beyond the limits: the current may only lead back within them
 };
 
 // Feed-forward from the equations of the module (load, conduction, requested rate), with proportional and integral
-// feedback. Runs at 1 kHz beside the module. Realtime-safe: yes.
+// feedback. Runs at 1 kHz together with the module. Realtime-safe: yes.
 class PlateController {
  public:
   PlateController(const PeltierPlant& plant, const PlateLimits& limits) : plant_(plant), limits_(limits) {}

@@ -33,7 +33,7 @@ ControllerLimits limits(const Settings& s) {
   return {s.temperature_min_degC, s.temperature_max_degC, s.slew_max_K_s};
 }
 
-// As published: an invalid quantity reads as 0.
+// Value to publish: an invalid quantity is published as 0.
 float reading(double x) { return x > 0 && x < 1e9 ? static_cast<float>(x) : 0; }
 
 bool usable(sync::SampleStatus status) { return status != sync::SampleStatus::kNone && status != sync::SampleStatus::kStale; }

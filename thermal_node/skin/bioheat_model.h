@@ -56,7 +56,7 @@ class BioheatModel final : public Skin {
 
   Tissue tissue_;
   Mesh mesh_;
-  std::vector<double> width_m_;  // of the cells of skin, surface first
+  std::vector<double> width_m_;  // widths of the skin cells, surface first
   std::array<ObjectProperties, kMaxObjects> objects_{};
   HeatColumns columns_;
   std::vector<double> object_width_m_;  // scratch for set_object

@@ -35,14 +35,14 @@ struct SteadyContact {
   double skin_effusivity;
   double object_effusivity;
   double conductance_W_m2K;
-  double skin_degC;    // before
-  double object_degC;  // before
+  double skin_degC;    // temperature of the skin before the touch
+  double object_degC;  // temperature of the object before the touch
 
-  // Of the skin surface, t seconds after the touch.
+  // Temperature of the skin surface, t seconds after the begin of the touch.
   double skin_surface_degC(double t_s) const;
-  // Out of the skin, W/m^2.
+  // Heat flux out of the skin, W/m^2.
   double heat_flux_W_m2(double t_s) const;
-  // Of the interface when the resistance no longer matters.
+  // Temperature of the interface after a long time, when the resistance no longer matters.
   double contact_degC() const;
 
  private:

@@ -28,7 +28,7 @@ class Dwell {
   explicit Dwell(const DwellLimits& limits) : limits_(limits) {}
 
   // Returns the range for the next dt, after a plate or finger has been at degC for the last; `wide` is the range
-  // without exposure. NaN counts as the warmest and the coldest of it at once.
+  // without exposure. NaN counts as both the warmest and the coldest of it.
   TemperatureRange step(double degC, double dt_s, const TemperatureRange& wide);
 
   // Continues with the exposure accumulated under other limits.

@@ -70,7 +70,7 @@ void HeatColumns::factor(double capacity_share, double weight_s) {
   }
 }
 
-// From u to stage, or from stage to u.
+// Solves from u into stage, or with from_stage from stage into u.
 void HeatColumns::solve(bool from_stage) {
   double into = room_ * room_degC_;
   for (Column& c : columns_) {

@@ -26,8 +26,8 @@ struct HeatCell {
 // Realtime-safe: yes, except the constructor. Not thread-safe.
 class HeatColumns {
  public:
-  // skin: surface first, insulated at the deep end. object_count: number of objects that can touch it at once,
-  // each of at most max_cells cells.
+  // skin: surface first, insulated at the deep end. object_count: number of objects that can touch it at the same
+  // time, each of at most max_cells cells.
   HeatColumns(std::vector<HeatCell> skin, std::size_t object_count, std::size_t max_cells);
 
   // Temperatures of the surroundings. Any temperature scale is valid if it is the same everywhere.
@@ -67,7 +67,7 @@ class HeatColumns {
     std::vector<HeatCell> cells;  // the cells in use
     std::vector<double> link;     // W/(m^2 K) from each to the next
     std::vector<double> u, stage, right;
-    // Of the factored equations: inverse pivot; share of a right side that passes to the next cell.
+    // The factored equations: inverse pivot; share of a right side that passes to the next cell.
     std::vector<double> inverse, share;
     double back = 0;     // W/(m^2 K) from the last cell to the room
     double contact = 0;  // W/(m^2 K) from the centre of the first cell to the surface

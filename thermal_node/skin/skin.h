@@ -27,7 +27,7 @@ class Skin {
 
   // Returns skin and objects to rest.
   virtual void reset() = 0;
-  // Number of objects that can touch the skin at once.
+  // Number of objects that can touch the skin at the same time.
   static constexpr std::size_t kMaxObjects = 4;
   // Puts another object, uniformly at its own temperature, under the skin.
   virtual void set_object(const ObjectProperties& object, std::size_t index = 0) = 0;
@@ -37,7 +37,7 @@ class Skin {
   // Longer substeps are cheaper and less exact; they may change from step to step.
   virtual void step(double dt_s, std::span<const double> conductance_W_m2K, double touched_share,
                     double longest_substep_s = kLongestSubstep_s) = 0;
-  // As above, with the first object only.
+  // The same with the first object only.
   void step(double dt_s, double conductance_W_m2K, double touched_share,
             double longest_substep_s = kLongestSubstep_s) {
     step(dt_s, std::span<const double>(&conductance_W_m2K, 1), touched_share, longest_substep_s);

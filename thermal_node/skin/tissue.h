@@ -15,8 +15,8 @@ struct Layer {
   bool perfused = false;  // by blood; the epidermis has no vessels
 };
 
-// Of blood, J/(m^3 K): 3600 J/(kg K) (doi 10.3390/cancers11081183, caption of table 1) times 1050 kg/m^3 (as
-// muscle there).
+// Heat capacity of blood per volume, J/(m^3 K): 3600 J/(kg K) (doi 10.3390/cancers11081183, caption of table 1)
+// times 1050 kg/m^3 (as muscle there).
 inline constexpr double kBloodHeatCapacity_J_m3K = 1050 * 3600.0;
 
 struct Tissue {

@@ -45,7 +45,7 @@ std::vector<presentation_t> EventLedger::presented(sync::HostTime t) {
   for (presentation_t& r : in_frame_) {
     r.presented_ns = sync::to_ns(t);
     r.outcome = policy_.outcome(sync::Nanoseconds(r.presented_ns - r.scheduled_ns));
-    // Predicted to be in time, and shown.
+    // The event was predicted to be in time and was shown, so it is late, not dropped.
     if (r.outcome == presentation_t::DROPPED_LATE) r.outcome = presentation_t::LATE;
     reports.push_back(r);
   }

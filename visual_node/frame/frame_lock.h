@@ -33,8 +33,8 @@ namespace tactus::visual {
 
 class FrameLock {
  public:
-  // A picture should be ready this long before it is due. Design: wake-up latency of a normal thread beside
-  // others.
+  // A picture should be ready this long before it is due. Design: wake-up latency of a normal thread while others
+  // run.
   static constexpr sync::Nanoseconds kMargin{1'000'000};
   // A picture that is late by at most this is shown late and not skipped. Design: p99 of that wake-up latency.
   static constexpr sync::Nanoseconds kGrace{3'000'000};

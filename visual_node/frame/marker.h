@@ -27,7 +27,7 @@ struct Marker {
 
 // The cells of one row, true: white.
 std::vector<bool> encode_marker(const Marker& marker);
-// Nothing when they hold no marker: wrong beginning or checksum.
+// Returns nullopt when they contain no marker: wrong beginning or checksum.
 std::optional<Marker> decode_marker(const std::vector<bool>& cells);
 
 // Adds the cells of a whole picture. events: newest first, the first kMarkerRows of them are named.

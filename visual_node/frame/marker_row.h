@@ -16,7 +16,7 @@ inline constexpr int kMarkerCells = 4 + 56 + 8;
 
 // The cells of one row, true: white. beginning: 4 bits.
 std::vector<bool> encode_row(std::uint64_t beginning, std::uint64_t payload);
-// Nothing when they hold no such row: wrong beginning or checksum.
+// Returns nullopt when they contain no such row: wrong beginning or checksum.
 std::optional<std::uint64_t> decode_row(const std::vector<bool>& cells, std::uint64_t beginning);
 
 // Row 0 lies on the lowest 4 pixels, row k above it.

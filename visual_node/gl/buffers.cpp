@@ -16,7 +16,7 @@ constexpr unsigned kPlaceAttribute = 2 + sizeof(Instance) / 16;
 
 void check_complete(const char* what) {
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    throw std::runtime_error(std::string("the graphics driver rejects the  ") + what +
+    throw std::runtime_error(std::string("the graphics driver rejects the ") + what +
                              "; choose a smaller picture or shadow_size");
 }
 
@@ -178,7 +178,7 @@ MultisampleTarget::MultisampleTarget(int width, int height, int samples) {
   };
   attach(colour_, GL_SRGB8_ALPHA8, GL_COLOR_ATTACHMENT0);
   attach(depth_, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
-  check_complete("picture of several samples a pixel");
+  check_complete("picture of several samples per pixel");
 }
 
 MultisampleTarget::~MultisampleTarget() {

@@ -92,7 +92,7 @@ class PictureTarget {
   unsigned framebuffer_ = 0, colour_ = 0, depth_ = 0;
 };
 
-// A render target with several samples a pixel, for smooth edges.
+// A render target with several samples per pixel, for smooth edges.
 class MultisampleTarget {
  public:
   // Uses `samples`, or the maximum of the device.

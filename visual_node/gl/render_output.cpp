@@ -24,7 +24,7 @@ RenderOutput::RenderOutput(const Settings& s) : settings_(s), window_(false), qu
 
 void RenderOutput::open() {
   display_ = make_(settings_, window_);
-  if (!display_) throw std::runtime_error("nothing to draw on");
+  if (!display_) throw std::runtime_error("there is no graphics device to draw on");
   renderer_ = std::make_unique<Renderer>(settings_.width / 4 * 4, settings_.height / 4 * 4, settings_.shadow_size);
   unfinished_ = 0;
 }
@@ -33,7 +33,7 @@ std::string RenderOutput::recover(sync::HostTime now, const SceneView* view, con
   if (!draws()) return {};
   std::string why = display_->loss_reason();
   const bool hangs = unfinished_ >= kMaxUnfinished;
-  if (why.empty() && hangs) why = "the graphics device does not finish what it is given";
+  if (why.empty() && hangs) why = "the graphics device does not finish its commands";
   if (why.empty()) return {};
   losses_.push_back(now);
   if (losses_.size() > kMaxLosses) {

@@ -55,7 +55,7 @@ Renderer::Renderer(int width, int height, int shadow_size, int samples)
     samples_ = std::make_unique<MultisampleTarget>(width, height, samples);
     if (samples_->samples() != samples)
       warnings_.push_back("anti_aliasing=" + std::to_string(samples) + ": this device supports " +
-                          std::to_string(samples_->samples()) + " samples a pixel");
+                          std::to_string(samples_->samples()) + " samples per pixel");
   }
   load({}, {});
 }

@@ -19,7 +19,7 @@ namespace tactus::visual {
 
 class Renderer {
  public:
-  // samples: number of samples a pixel for smooth edges. Throws std::runtime_error when a shader does not
+  // samples: number of samples per pixel for smooth edges. Throws std::runtime_error when a shader does not
   // compile.
   Renderer(int width, int height, int shadow_size, int samples = 1);
 

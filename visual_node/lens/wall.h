@@ -27,7 +27,7 @@ struct Room {
   Eigen::Vector3d eye = Eigen::Vector3d::Zero();  // the user's eye while it is not tracked
   std::vector<Wall> walls;
 
-  // Null: no wall of that name.
+  // Returns null when there is no wall of that name.
   const Wall* find_wall(const std::string& name) const;
 };
 

@@ -16,7 +16,7 @@ class BodyGroups {
 
   void push(const world_state_t& m);
   void reset() { *this = {}; }
-  // As SceneView::tint: orange for the haptic group, blue for the visual group. A body without messages, such as
+  // For SceneView::tint: orange for the haptic group, blue for the visual group. A body without messages, such as
   // a static one, keeps its colour.
   std::vector<Eigen::Vector4f> tints(std::size_t bodies) const;
   std::size_t haptic() const { return count(false); }

@@ -19,7 +19,7 @@ std::string text(const char* format, auto... values) {
 
 double ms(sync::Nanoseconds t) { return sync::to_seconds(t) * 1e3; }
 
-// With useful precision.
+// Text of an age with useful precision.
 std::string age(sync::Nanoseconds t) { return text(ms(t) < 100 ? "%.1f ms" : "%.0f ms", ms(t)); }
 
 // Breaks at a blank in the second half of the line, if any; continuation lines are indented.

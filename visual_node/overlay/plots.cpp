@@ -35,7 +35,7 @@ std::size_t letters(const Box& b) {
   return static_cast<std::size_t>(std::max(0.0f, (b.width - 2 * kPad_px) / ((kGlyphWidth + 1) * b.size)));
 }
 
-// Cut at the edge of the box.
+// Appends a line of text, clipped at the edge of the box.
 void words(std::vector<Rect>& out, const Box& b, std::string_view text, float y, const Colour& colour) {
   append_letters(out, text.substr(0, letters(b)), b.x + kPad_px, y, b.size, colour);
 }
@@ -124,7 +124,7 @@ std::string span(double least, double most, const std::string& unit) {
   return label(least) + " to " + label(most) + (unit.empty() ? "" : " " + unit);
 }
 
-// Draws the course between its lowest and highest value, which are printed below it.
+// Draws the curve of the values, scaled to their lowest and highest value, which are printed below it.
 void append_graph(std::vector<Rect>& out, const Box& b, const ValueHistory& history, const std::string& unit,
                   sync::HostTime now, float height) {
   const auto range = history.range(now);
@@ -142,7 +142,7 @@ void append_graph(std::vector<Rect>& out, const Box& b, const ValueHistory& hist
   if (!range) return;
   middle_words(out, b, std::string_view(values).substr(0, letters(b)), bottom + kPad_px, kTitle);
   const double least = range->first, most = range->second;
-  // A constant course is a line in the middle.
+  // A constant value is a line in the middle.
   const auto place = [&](double v) {
     // Halves avoid an overflow: the difference of two of the largest numbers is not finite.
     const double share = most > least ? (v / 2 - least / 2) / (most / 2 - least / 2) : 0.5;

@@ -1,5 +1,5 @@
-// The dialog of a study's questions at the window: the current question, its presentation time, the mark of its
-// number, and the answers. Pure: messages and presses go in, answers come out.
+// The dialog of a study's questions at the window: the current question, its presentation time, the mark on its
+// number scale, and the answers. Pure: messages and presses go in, answers come out.
 #pragma once
 
 #include <deque>
@@ -47,7 +47,7 @@ class QuestionDialog {
   void begin(const question_t& m);
 
   sync::CurrentQuestion current_;
-  std::optional<sync::QuestionKey> key_;  // the question that mark and time belong to
+  std::optional<sync::QuestionKey> key_;  // the question to which the mark and the time belong
   double steps_ = 0, mark_ = 0;          // number of steps from the lowest to the highest number; step of the mark
   std::optional<sync::HostTime> presented_;
   std::deque<Answered> answered_;

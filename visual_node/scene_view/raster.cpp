@@ -18,7 +18,7 @@ constexpr unsigned kMaxSide = 4096;
 
 void check_size(unsigned width, unsigned height) {
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
-    throw std::runtime_error("it must have 1 to " + std::to_string(kMaxSide) + " pixels a side");
+    throw std::runtime_error("it must have 1 to " + std::to_string(kMaxSide) + " pixels per side");
 }
 
 Raster sized(unsigned width, unsigned height) {

@@ -13,7 +13,7 @@ struct Raster {
   std::vector<std::uint8_t> rgba;  // as in the file (colours: sRGB), the lowest row first
 };
 
-// PNG or JPEG, at most 4096 pixels a side. Throws std::runtime_error with one clause when the bytes are another
+// PNG or JPEG, at most 4096 pixels per side. Throws std::runtime_error with one clause when the bytes are another
 // format, damaged, or too large. Takes up to 0.2 s.
 Raster read_raster(std::span<const std::uint8_t> bytes);
 

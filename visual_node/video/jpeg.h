@@ -7,7 +7,7 @@
 
 namespace tactus::visual {
 
-// rgba: 4 bytes a pixel, the lowest row first. Encoded pixels are averaged to the new size; the height keeps the
+// rgba: 4 bytes per pixel, the lowest row first. Encoded pixels are averaged to the new size; the height keeps the
 // aspect ratio. width: limited to that of the picture. quality: 1 .. 100, as in libjpeg. An empty result: encoding
 // failed.
 struct Jpeg {

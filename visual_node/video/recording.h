@@ -24,7 +24,8 @@ struct RecordingOptions {
   std::string name = "video";   // base name of the video file
 };
 
-// With the name "video": "video.mp4" in the folder, or "video.2.mp4" and so on when that file exists.
+// Returns the path of a new video: for the name "video", "video.mp4" in the folder, or "video.2.mp4" and so on
+// when that file exists.
 std::string next_video_path(const std::string& folder, const std::string& name = "video");
 
 class Recording {

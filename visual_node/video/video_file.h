@@ -1,4 +1,4 @@
-// A video for offline rendering: no picture is dropped, and write() blocks for the encoder. No clock, no thread.
+// A video for offline rendering: no picture is dropped, and write() waits for the encoder. No clock, no thread.
 #pragma once
 
 #include <cstdint>

@@ -16,7 +16,7 @@
 
 namespace tactus::audio {
 
-inline constexpr int kMaxBlock = 64;   // frames that are rendered at once
+inline constexpr int kMaxBlock = 64;   // frames that are rendered in one call
 inline constexpr int kModeGroup = 16;  // modes are computed in groups of this size
 
 // A force on a body at one place: the gain of each mode, and its samples.

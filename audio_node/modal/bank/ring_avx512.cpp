@@ -1,4 +1,4 @@
-// With fused multiply-add: see CMakeLists.txt.
+// Compiled with fused multiply-add; CMakeLists.txt sets the flags.
 #if defined(__x86_64__)
 #define TACTUS_RING avx512
 #define TACTUS_RING_WIDTH 16

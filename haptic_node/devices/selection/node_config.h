@@ -18,7 +18,7 @@ struct NodeConfig {
 
 // tool_name: empty selects the first tool.
 NodeConfig resolve_config(const scene_t& scene, const Settings& settings, const std::string& tool_name);
-// As above, with the settings of the scene and of the command line. set: "name=value", which override the scene.
+// The same with the settings of the scene and of the command line. set: "name=value", which override the scene.
 NodeConfig resolve_config(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set);
 
 // The safety limits in one line for the log.

@@ -40,7 +40,7 @@ StringEnds string_ends(const json& value, const std::string& name) {
 
 StringFrame parse_frame(const std::string& text, const std::string& name) {
   const json file = json::parse(text, nullptr, false);
-  if (!file.is_object()) reject(name, "it is no JSON object; see haptic_node/devices/README.md for one");
+  if (!file.is_object()) reject(name, "it is not a JSON object; see haptic_node/devices/README.md for one");
   StringFrame f;
   f.name = name;
   std::map<std::string, double*> wanted = {
@@ -51,13 +51,13 @@ StringFrame parse_frame(const std::string& text, const std::string& name) {
   for (const auto& [field, content] : file.items()) {
     if (field == "strings") {
       if (!content.is_array() || content.size() > kMaxStrings)
-        reject(name, "\"strings\" is no list of four or eight");
+        reject(name, "\"strings\" is not a list of four or eight");
       for (const json& s : content) f.strings.push_back(string_ends(s, name));
       continue;
     }
     const auto number = wanted.find(field);
     if (number == wanted.end()) reject(name, "there is no field \"" + field + "\"");
-    if (!content.is_number()) reject(name, "\"" + field + "\" is no number");
+    if (!content.is_number()) reject(name, "\"" + field + "\" is not a number");
     *number->second = content.get<double>();
     wanted.erase(number);
   }
@@ -70,7 +70,7 @@ StringFrame parse_frame(const std::string& text, const std::string& name) {
 StringFrame read_frame(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) > kMaxBytes)
-    reject(path, "it is no regular file of at most 64 kB; name a JSON file");
+    reject(path, "it is not a regular file of at most 64 kB; give a JSON file");
   std::ifstream in(path);
   std::ostringstream text;
   if (!in || !(text << in.rdbuf())) reject(path, "it cannot be read; check the path and its permissions");

@@ -12,7 +12,7 @@ namespace tactus::haptic {
 // Accepts only a regular file of at most 64 kB. Throws std::runtime_error with one sentence when the file cannot
 // be read, lacks a field, has an unknown field, or describes a frame that check_frame rejects.
 StringFrame read_frame(const std::string& path);
-// As above, from text; `name` appears in the error.
+// The same from text; `name` appears in the error.
 StringFrame parse_frame(const std::string& text, const std::string& name);
 
 }  // namespace tactus::haptic

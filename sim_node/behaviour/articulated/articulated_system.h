@@ -54,7 +54,7 @@ class ArticulatedSystem {
   void set_motor(int dof, double effort, double rate);
   void set_friction(int dof, double friction);
 
-  // Of every dof, at the current state. Real-time safe: yes.
+  // Accelerations of every dof at the current state. Real-time safe: yes.
   std::span<const double> accelerations();
   // Integrates over h_s. Real-time safe: yes. Costs at most six evaluations for each of max_substeps, plus the same
   // number for rejected ones.

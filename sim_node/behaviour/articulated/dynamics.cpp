@@ -251,7 +251,7 @@ void Dynamics::propagate_inward(int link, Spatial force) {
   }
 }
 
-// Outward pass over all links. Clears the forces that were sent.
+// Outward pass over all links. Clears the forces that the inward pass propagated.
 void Dynamics::propagate_outward(std::span<double> rates) {
   for (std::size_t i = 0; i < work_.size(); ++i) {
     const Link& l = tree_.links[i];

@@ -35,7 +35,7 @@ class Dynamics {
   // Computes only the poses and velocities of the links.
   void place(const double* positions, const double* rates);
 
-  // Of a link, as last evaluated or placed, world.
+  // Orientation and centre of a link in the world, as last evaluated or placed.
   const Eigen::Matrix3d& rotation(int link) const { return work_[index(link)].rotation; }
   Eigen::Vector3d centre_m(int link) const { return work_[index(link)].centre + origin_; }
   Eigen::Vector3d spin_rad_s(int link) const { return work_[index(link)].velocity.head<3>(); }

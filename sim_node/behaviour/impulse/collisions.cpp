@@ -58,7 +58,7 @@ bool Collisions::will_touch(const ContactPoint& p, PredictedImpact& out) const {
   return true;
 }
 
-// Speed gained within the step, for example by gravity, is no collision.
+// Speed gained within the step, for example by gravity, is not a collision.
 bool Collisions::will_collide(const ContactPoint& p, PredictedImpact& out) const {
   return will_touch(p, out) && out.speed_m_s > limits_.bounce_speed_m_s + 2 * std::abs(p.drift_m_s.x());
 }

@@ -5,8 +5,8 @@
 namespace tactus::sim {
 namespace {
 
-// kShell_m: surfaces meet at this gap, so that residuals of the sweeps are no overlaps. Design value: equal to the
-// allowed overlap, 10 um. kSlack_m: the part that is not corrected, a fifth, above the rounding of detectors.
+// kShell_m: surfaces meet at this gap, so that residuals of the sweeps are not overlaps. Design value: equal to
+// the allowed overlap, 10 um. kSlack_m: the part that is not corrected, a fifth, above the rounding of detectors.
 constexpr double kShell_m = 1e-5, kSlack_m = 2e-6;
 
 }  // namespace

@@ -24,7 +24,7 @@ Eigen::Vector3d solve_wedged(const ContactPoint& p, const Eigen::Vector3d& start
     impulse =
         moved > 1e-6 * p.mobility(0, 0) ? Eigen::Vector3d(-start.x() / moved * ray) : Eigen::Vector3d(0, 0, 0);
     const Eigen::Vector3d v = start + p.mobility * impulse;
-    // Of the sliding velocity: the component across the friction, and whether friction opposes it.
+    // Returns the component of the sliding velocity across the friction, and whether friction opposes it.
     return std::pair(v.z() * std::cos(angle) - v.y() * std::sin(angle),
                      moved > 1e-6 * p.mobility(0, 0) && v.y() * std::cos(angle) + v.z() * std::sin(angle) <= 0);
   };

@@ -14,8 +14,8 @@ struct JointRow {
   std::size_t first_rate = 0, rates = 0, response = 0;  // of the system: change of all its rates per unit impulse
   double mobility = 0;
   double target_rate = 0;      // target rate, rad/s or m/s
-  double softness = 0;         // a soft row requires rate + softness * impulse = wanted
-  double min_impulse = 0, max_impulse = 0;  // impulse, N m s or N s
+  double softness = 0;         // a soft row requires rate + softness * impulse = target_rate
+  double min_impulse = 0, max_impulse = 0;  // limits of the impulse, N m s or N s
   double impulse = 0;
   int ball = 0;              // for dry friction of a ball joint: 3 in the first of three rows of one torque, 1 in the others
   int mover = 0;             // of its system, numbered as for contacts

@@ -17,13 +17,13 @@ struct Penalty {
   // end of the step (backward Euler), which is stable for any step.
   bool is_explicit = false;
   // Speed at which a point that starts inside the shell, for example in the initial scene, is lifted out: its shell
-  // grows from its gap. 0: at once, so that the spring throws it.
+  // grows from its gap. 0: immediately, so that the spring throws it.
   double rise_m_s = 0;
 };
 
-// Share of the shell over which damping increases to its full value. Full damping at once would act like an impact on
-// arrival (Hunt and Crossley 1975, equation 6 and figure 3). Design value: thin compared with the shell, so that the
-// damper inside is linear.
+// Share of the shell over which damping increases to its full value. Immediate full damping would act like an impact
+// on arrival (Hunt and Crossley 1975, equation 6 and figure 3). Design value: thin compared with the shell, so that
+// the damper inside is linear.
 inline constexpr double kDampingOnsetShare = 0.1;
 
 // Spring and damper as a constraint of the step (Smith 2006, ODE manual 3.8.2).

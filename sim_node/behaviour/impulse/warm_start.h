@@ -1,5 +1,5 @@
-// Warm start: impulses of the previous step for persistent points. Resting contacts converge at once, and a stack
-// over several steps.
+// Warm start: impulses of the previous step for persistent points. Resting contacts converge immediately, and a
+// stack over several steps.
 #pragma once
 
 #include <span>

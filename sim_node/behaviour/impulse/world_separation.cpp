@@ -1,4 +1,4 @@
-// Takes a step back, and resolves overlaps that it left.
+// Undoes a step, and separates bodies that overlap after it.
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +7,8 @@
 namespace tactus::sim::impulse {
 namespace {
 
-// Maximum sweeps over all contacts, and the change at which they end, m: a hundredth of the allowed rest.
+// Maximum sweeps over all contacts, and the change at which they end, m: a hundredth of the overlap that may
+// remain.
 constexpr int kMaxSweeps = 200;
 constexpr double kSettled_m = 1e-7;
 
@@ -144,7 +145,7 @@ void World::separate(std::span<const Manifold> contacts, double max_overlap_m) {
   }
 }
 
-// Applies the result to a system.
+// Moves an articulated system by the result.
 void World::separate(std::size_t s) {
   const std::span<const double> by(velocity_.rates.data() + first_rate_[s], first_rate_[s + 1] - first_rate_[s]);
   if (std::all_of(by.begin(), by.end(), [](double x) { return x == 0; })) return;
@@ -154,7 +155,7 @@ void World::separate(std::size_t s) {
     place(motions_[index(systems_[s].bodies[i])], systems_[s].system.motion(static_cast<int>(i)));
 }
 
-// Changes a pose only.
+// Sets the pose; the velocities are unchanged.
 void World::place(BodyMotion& m, const BodyMotion& at) {
   m.position_m = at.position_m;
   m.centre_m = at.centre_m;

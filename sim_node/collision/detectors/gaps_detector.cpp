@@ -188,9 +188,9 @@ class GapsDetector : public Detector, public NearestFirstDetector {
   std::shared_ptr<MeshTrees> trees_;
   MeshContact contact_;
   gaps::MeshNearest nearest_;
-  bool default_modes_;  // no other way of layers 2 and 3 is wanted, for comparison
+  bool default_modes_;  // false when another mode of layers 2 and 3 is selected for comparison
   std::vector<Shape> shapes_;
-  std::map<const ContactMesh*, std::shared_ptr<const gaps::NormalCones>> cones_;  // one a mesh, as its tree
+  std::map<const ContactMesh*, std::shared_ptr<const gaps::NormalCones>> cones_;  // one per mesh, like its tree
   std::vector<SurfacePlane> planes_;
   MeshContactResult found_;
 };

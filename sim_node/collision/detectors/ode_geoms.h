@@ -13,7 +13,7 @@ namespace tactus::sim::ode {
 // share its tree.
 class Geoms {
  public:
-  // is_static: a plane is infinite, at `pose` in the world. Otherwise a plane is a plate.
+  // is_static: true makes a plane infinite, with `pose` in the world; false makes it a plate of finite size.
   dGeomID make(const WorldDef& world, const ShapeDef& shape, bool is_static, const Eigen::Isometry3d& pose);
   // Pose of ODE's geometry for a shape at `pose`. ODE's heightfields have y up, and a plate lies below its plane.
   static Eigen::Isometry3d geom_pose(const WorldDef& world, const ShapeDef& shape, const Eigen::Isometry3d& pose);

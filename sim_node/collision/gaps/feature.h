@@ -19,7 +19,7 @@ struct Feature {
   double radius_m = 0;
 };
 
-// In the frame that `to` maps to. `along` is a unit vector in that frame.
+// The result is in the frame that `to` maps to. `along` is a unit vector in that frame.
 Feature feature_along(const Convex& c, const Eigen::Isometry3d& to, const Eigen::Vector3d& along);
 
 // A point where two figures face each other along n, with its position on either.

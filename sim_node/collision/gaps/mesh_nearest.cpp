@@ -15,7 +15,7 @@ using layer2::Sides;
 
 namespace {
 
-// Gap of a pair that is no contact but removes the duplicates at its position.
+// Gap of a pair that is not a contact but removes the duplicates at its position.
 constexpr double kNoContact_m = std::numeric_limits<double>::infinity();
 
 // leaves_face() accepts connections whose lateral share of their length is below this.

@@ -1,5 +1,5 @@
-// Contacts of two meshes in order of increasing gap. For users that need only the nearest contact of each place and
-// direction, such as a tool, which is much cheaper than all contacts.
+// Contacts of two meshes in order of increasing gap. For callers that need only the nearest contact at each place
+// and direction, such as a tool. This is much cheaper than finding all contacts.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,7 @@ class MeshNearest {
 };
 
 // Appends the result of complete_contact(), without types. A pair whose connection has a nearer point on one of
-// the two triangles is no contact; its gap is infinite. Appends nothing when the tilt of the connections
+// the two triangles is not a contact; its gap is infinite. Appends nothing when the tilt of the connections
 // (NormalCones) rules out a contact. Both triangles are in one frame.
 void marked_pairs(const Triangle& a, double tilt_a, const Triangle& b, double tilt_b, double tolerance_m,
                   std::vector<PointPair>& out);

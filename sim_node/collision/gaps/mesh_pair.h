@@ -19,7 +19,7 @@ void plane_mesh(const Eigen::Isometry3d& plane_pose, const TriangleTree& mesh, c
                 double reach_m, std::vector<PointPair>& out);
 
 // Returns whether no point of the mesh around `on_mesh`, which lies on the mesh, is nearer to `from` than `share` of
-// the distance. Both points are in the frame of the mesh. A pair that fails is no contact (an internal edge
+// the distance. Both points are in the frame of the mesh. A pair that fails is not a contact (an internal edge
 // collision): it leads from a resting surface to a neighbouring triangle and would stop sliding bodies.
 double nearer_limit_m(double distance_m, double share);  // upper limit of the distance of a nearer point
 bool nearest_around(const TriangleTree& mesh, const Eigen::Vector3d& from, const Eigen::Vector3d& on_mesh,

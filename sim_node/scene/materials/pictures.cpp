@@ -26,7 +26,7 @@ void check_sides(std::size_t columns, std::size_t rows) {
     return side >= 1 && side <= static_cast<std::size_t>(kMaxPictureSide);
   };
   if (!fits(columns) || !fits(rows))
-    throw std::runtime_error("it must have 1 to " + std::to_string(kMaxPictureSide) + " pixels a side");
+    throw std::runtime_error("it must have 1 to " + std::to_string(kMaxPictureSide) + " pixels per side");
 }
 
 // Walks all chunks (ISO/IEC 15948, 5.3).
@@ -41,7 +41,7 @@ void check_png(Bytes bytes) {
     if (kind == 0x49454e44) return;  // IEND
     at += 12 + size;
   }
-  throw std::runtime_error("it ends in the middle");
+  throw std::runtime_error("it is truncated");
 }
 
 // Walks the markers up to the start of frame (ITU-T T.81, B.1.1.3 and B.2.2).
@@ -57,7 +57,7 @@ void check_jpeg(Bytes bytes) {
     if (frame) return check_sides(big_endian(bytes, at + 7, 2), big_endian(bytes, at + 5, 2));
     at += 2 + big_endian(bytes, at + 2, 2);
   }
-  throw std::runtime_error("it ends in the middle");
+  throw std::runtime_error("it is truncated");
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ void check_picture(Bytes bytes, PictureUse use) {
   const bool jpeg = bytes.size() >= 4 && bytes[0] == 0xff && bytes[1] == 0xd8;
   if (jpeg && use == PictureUse::kColour) return check_jpeg(bytes);
   // JPEG compression distorts directions.
-  throw std::runtime_error(use == PictureUse::kColour ? "it is neither PNG nor JPEG" : "it is no PNG file");
+  throw std::runtime_error(use == PictureUse::kColour ? "it is neither PNG nor JPEG" : "it is not a PNG file");
 }
 
 std::int64_t add_image(WorldDef& world, sync::Asset image) {

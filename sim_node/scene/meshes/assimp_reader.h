@@ -7,8 +7,9 @@
 
 namespace tactus::sim {
 
-// As read_mesh_parts (mesh_reader.h). Merges repeated vertices; computes missing normals, with an edge where the
-// direction changes by more than kCrease_deg. Other files that it names (mtllib) must be regular files, too.
+// Same interface as read_mesh_parts (mesh_reader.h). Merges repeated vertices; computes missing normals, with an
+// edge where the direction changes by more than kCrease_deg. Other files that it names (mtllib) must be regular
+// files, too.
 MeshParts read_with_assimp(const std::filesystem::path& file);
 
 }  // namespace tactus::sim

@@ -83,12 +83,12 @@ std::string unpack(const sync::Bytes& bytes, sync::Bytes& binary) {
   if (bytes.size() < 20 || load<std::uint32_t>(bytes.data() + 4) != 2)
     throw std::runtime_error("it is not glTF 2.0");
   const std::size_t length = load<std::uint32_t>(bytes.data() + 8);
-  if (length > bytes.size()) throw std::runtime_error("it ends in the middle");
+  if (length > bytes.size()) throw std::runtime_error("it is truncated");
   std::string text;
   for (std::size_t at = 12; at + 8 <= length;) {
     const std::size_t size = load<std::uint32_t>(bytes.data() + at);
     const auto kind = load<std::uint32_t>(bytes.data() + at + 4);
-    if (size > length - at - 8) throw std::runtime_error("it ends in the middle of a chunk");
+    if (size > length - at - 8) throw std::runtime_error("it ends within a chunk");
     const auto* begin = bytes.data() + at + 8;
     if (at == 12 && kind != kJson) throw std::runtime_error("its first chunk is not JSON");
     if (at == 12)

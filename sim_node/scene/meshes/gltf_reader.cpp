@@ -184,7 +184,7 @@ struct Reader {
     for (const json& child : member_of(node, "children")) add(as_index(child), pose, depth + 1);
   }
 
-  // Of several entries, the first applies to the whole file, because it is one object.
+  // If there are several entries, the first applies to the whole file, because it is one object.
   void read_tactus_extras(const json& of) {
     const json& extras = member_of(member_of(of, "extras"), "tactus");
     if (mesh.material.empty()) mesh.material = read_properties(extras, "material");

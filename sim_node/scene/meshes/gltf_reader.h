@@ -7,9 +7,9 @@
 
 namespace tactus::sim {
 
-// As read_mesh_parts (mesh_reader.h): every triangle of the file's scene, with its node in the rest pose; ignores
-// skins, morph targets, cameras and lights. A part without normals gets them with an edge above kCrease_deg. A file
-// written by write_gltf is read identically to the bit.
+// Same interface as read_mesh_parts (mesh_reader.h): every triangle of the file's scene, with its node in the rest
+// pose; ignores skins, morph targets, cameras and lights. A part without normals gets them with an edge above
+// kCrease_deg. A file written by write_gltf is read identically to the bit.
 MeshParts read_gltf(const std::filesystem::path& file);
 
 // The vertical texture coordinate, upwards. glTF's own is 1 - v, which rounds. Other readers use TEXCOORD_0, with an

@@ -16,7 +16,7 @@ namespace tactus::sync {
 struct ReplayOptions {
   double speed = 1;    // recorded seconds per second; 0: as fast as max_per_s permits
   double start_s = 0;  // since the log's live part began
-  double end_s = -1;   // likewise; negative: at the end of the log
+  double end_s = -1;   // since the log's live part began; negative: the end of the log
   bool loop = false;
   bool paused = false;
   double max_per_s =
@@ -48,7 +48,7 @@ class Replay {
   // Plays this number of recorded seconds, then pauses.
   void step(double seconds, HostTime now);
   void seek(double seconds, HostTime now);
-  // As in the options. Returns false for an invalid speed.
+  // Speed as in the options. Returns false for an invalid speed.
   bool set_speed(double speed, HostTime now);
   void set_loop(bool loop) { loop_ = loop; }
 

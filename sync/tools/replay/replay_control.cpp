@@ -57,7 +57,7 @@ std::string execute_command(Replay& replay, std::string_view line, HostTime now,
     replay.step(value.value_or(kStep_s), now);
   } else if (!argument.empty()) {
     return wrong(
-        "it takes no argument, or is no command; the commands are pause, resume, toggle, step, seek, speed, loop and quit");
+        "it takes no argument, or is not a command; the commands are pause, resume, toggle, step, seek, speed, loop and quit");
   } else if (word == "pause") {
     replay.pause(now);
   } else if (word == "resume") {

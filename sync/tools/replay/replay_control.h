@@ -20,7 +20,7 @@ std::string execute_command(Replay& replay, std::string_view line, HostTime now,
 // "1.5" or "max", which is 0. Negative: invalid.
 double speed_of(std::string_view word);
 
-// Splits the bytes from a pipe into lines. A longer line than this is no command and is ignored.
+// Splits the bytes from a pipe into lines. A line longer than this is ignored.
 class Lines {
  public:
   static constexpr std::size_t kMaxLine = 200;

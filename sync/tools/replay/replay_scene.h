@@ -11,7 +11,7 @@
 
 namespace tactus::sync {
 
-// Empty: the log has no whole scene within its first kMaxSceneBytes.
+// Returns nothing when the log has no complete scene within its first kMaxSceneBytes.
 std::vector<Asset> scene_of(std::span<const std::uint8_t> log, const LogOrigin& origin);
 
 // Enough for a scene of the largest size that any node accepts, and the other messages recorded meanwhile.

@@ -28,7 +28,7 @@ std::optional<std::regex> expression(const char* option, const std::string& text
     return std::regex(text, std::regex::extended | std::regex::optimize);
   } catch (const std::regex_error&) {
     throw std::runtime_error(std::string(option) + " " + text +
-                             ": is no regular expression; write for example 'CONTACT.*|WORLD_STATE'");
+                             ": is not a regular expression; write for example 'CONTACT.*|WORLD_STATE'");
   }
 }
 

@@ -27,8 +27,8 @@ struct ReplaySelectionOptions {
   bool verbatim = false;                 // every message is sent, unchanged
   bool as_recorded = false;              // the profiles that were in force are sent, too
   std::string channels = {};             // regular expression that must match the whole name; empty: all
-  std::string leave_out = {};            // likewise; empty: none
-  std::string also = {};                 // likewise: sent although the default leaves it out
+  std::string leave_out = {};            // regular expression of channels that are not sent; empty: none
+  std::string also = {};                 // regular expression of channels that are sent although they are dropped by default
   std::vector<std::string> rename = {};  // "FROM=TO"
   std::vector<std::string> live = {};    // running processes: their recorded messages are not sent
 };

@@ -39,7 +39,7 @@ class ReplayStamps {
   ReplayStamps(const LogOrigin& origin, Identity live);
   // Call it for every event of the log, in order, before it is restamped or left out.
   void observe(const LogEvent& event, const ReplayMoment& moment);
-  // Returns false, without a change, when the bytes are no message of this system.
+  // Returns false, without a change, when the bytes are not a message of this system.
   bool restamp(std::span<std::uint8_t> message, const ReplayMoment& moment, HostTime now);
 
  private:

@@ -22,7 +22,7 @@ struct ChannelFigures {
   std::int64_t messages = 0, gaps = 0;
   std::int64_t torn = 0;  // fragments, or no whole message of their type
   double rate_Hz = 0, bytes_per_s = 0;
-  Arrivals::Jitter jitter;  // of the sender with the largest
+  Arrivals::Jitter jitter;  // jitter of the sender with the largest jitter
   int senders = 0;
   // From publication to arrival, of the newest message, ms, and its uncertainty; negative: unknown. On a clock without a map:
   // beyond the smallest observed.
@@ -38,7 +38,7 @@ class Channels {
   explicit Channels(OwnClock own) : own_(own) {}
 
   void push(const MessageBatch::Message& message);
-  // By name.
+  // The figures of all channels, ordered by name.
   std::vector<ChannelFigures> figures(HostTime now) const;
   // The bytes of the newest message on a channel; empty: there is none.
   std::span<const std::uint8_t> newest(std::string_view channel) const;

@@ -34,7 +34,7 @@ void RunSummary::observe(const log_info_t& m) {
 void RunSummary::observe(const node_health_t& m, HostTime now) {
   auto [it, first] = incarnations_[m.node].try_emplace(m.header.incarnation);
   Incarnation& incarnation_health = it->second;
-  // A node waits at another rate than it runs at: its rate is counted from the beginning of its present state.
+  // A node waits at another rate than it runs at: its rate is counted from the beginning of its current state.
   const bool began_to_run = m.state == node_health_t::RUNNING && (incarnation_health.first.state == node_health_t::WAITING ||
                                                                   incarnation_health.first.state == node_health_t::READY);
   if (first || began_to_run || m.nominal_rate_Hz != incarnation_health.first.nominal_rate_Hz) incarnation_health.first = m;

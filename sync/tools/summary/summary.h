@@ -116,7 +116,7 @@ class RunSummary {
 
   SummaryOptions options_;
   std::optional<log_info_t> info_;
-  bool time_known_ = false;  // of the present log
+  bool time_known_ = false;  // for the current log
   std::int64_t realtime_offset_ns_ = 0;
   std::int64_t live_from_ns_ = 0;
   SummaryClock clock_;

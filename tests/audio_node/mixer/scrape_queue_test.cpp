@@ -143,7 +143,7 @@ TEST_CASE("A stopped callback releases no surfaces that it may read, and the que
     l.scrape(next, scene);
     freed += l.queue.take_released().size();
   }
-  // All except those with a scrape in the queue, the sounding one and the present one.
+  // All except those with a scrape in the queue, the sounding one and the current one.
   CHECK(freed == 3000 + 1 - l.bench->queues.scrapes.capacity() - 1 - 1);
   SECTION("the resumed callback releases all surfaces") {
     l.queue.set_surfaces(nullptr);

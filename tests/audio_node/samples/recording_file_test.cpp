@@ -102,7 +102,7 @@ TEST_CASE("A recording that cannot be played is rejected with a sentence that na
   CHECK_THAT(faults_of(at("empty.wav"), Interaction::kImpact), Contains("cannot be read"));
   CHECK_THAT(faults_of(at("text.wav"), Interaction::kImpact), Contains("cannot be read"));
   CHECK_THAT(faults_of(at("ten.wav"), Interaction::kImpact), Contains("10 channels"));
-  CHECK_THAT(faults_of(at("slow.wav"), Interaction::kImpact), Contains("4000 samples a second"));
+  CHECK_THAT(faults_of(at("slow.wav"), Interaction::kImpact), Contains("4000 samples per second"));
   CHECK_THAT(faults_of(at("silent.wav"), Interaction::kImpact), Contains("silent"));
   CHECK_THAT(faults_of(at("click.wav"), Interaction::kImpact), Contains("10 ms"));
   CHECK_THAT(faults_of(at("short.wav"), Interaction::kScrape), Contains("too short for a loop"));

@@ -43,7 +43,7 @@ bool spectrum_table(nlohmann::json& json) {
         const BumpTrace t = run(stroke);
         const Spectrum s =
             spectra(t.along_N, leaning(t, 1e3 * stroke.depth_m), t.step_m, kSegment_m, kBands_per_m[5]);
-        // Steep and fast strokes reach the slew limit, which is no property of the map.
+        // Steep and fast strokes reach the slew limit, which is not a property of the map.
         const bool limited = quantile(t.change_N, 1) > 0.999 * kSlew_N_s / rate_Hz;
         for (std::size_t b = 0; b + 1 < std::size(kBands_per_m); ++b) {
           // Near half the sampling rate there is nothing to compare.

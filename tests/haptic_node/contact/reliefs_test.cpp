@@ -393,8 +393,9 @@ TEST_CASE("Maps are read from the pictures of the scene, and unreadable maps are
   CHECK(maps.by_material[1].friction);
   CHECK_FALSE(maps.by_material[2].friction);
   CHECK_FALSE(maps.by_material[3].relief);
-  CHECK(maps.error ==
-        "the friction map of material m2 cannot be read: it is no PNG file; the surface is rendered without it");
+  CHECK(
+      maps.error ==
+      "the friction map of material m2 cannot be read: it is not a PNG file; the surface is rendered without it");
   CHECK(maps.find(-1) == nullptr);
   CHECK(maps.find(4) == nullptr);
 }

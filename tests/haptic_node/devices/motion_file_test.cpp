@@ -45,7 +45,7 @@ TEST_CASE("An error in a motion file is reported with its line") {
 
 TEST_CASE("A motion file must be a regular file of limited size and line length") {
   for (const char* path : {"/dev/zero", "/dev/null", "/"})
-    CHECK_THROWS_WITH(read_motion(path), Contains(path) && Contains("no regular file"));
+    CHECK_THROWS_WITH(read_motion(path), Contains(path) && Contains("not a regular file"));
   CHECK_THROWS_WITH(read(std::string(1001, 't')), Contains("line 1") && Contains("longer than 1000"));
   CHECK_THROWS_WITH(read("time_s,x_m,y_m,z_m\n0,0,0,0" + std::string(1000, '0') + "\n"),
                     Contains("line 2") && Contains("longer than 1000"));

@@ -132,9 +132,9 @@ class Descriptions(unittest.TestCase):
             with self.assertRaisesRegex(Refusal, "not built"):
                 replay.describe_log("run.lcmlog")
             program = pathlib.Path(folder) / "replay"
-            program.write_text("#!/bin/sh\necho replay: run.lcmlog is no log >&2\nexit 1\n")
+            program.write_text("#!/bin/sh\necho replay: run.lcmlog is not a log >&2\nexit 1\n")
             program.chmod(0o755)
-            with self.assertRaisesRegex(Refusal, "run.lcmlog is no log"):
+            with self.assertRaisesRegex(Refusal, "run.lcmlog is not a log"):
                 replay.describe_log("run.lcmlog")
             program.write_text("#!/bin/sh\necho '{\"tools\": []}'\n")
             self.assertEqual(replay.describe_log("run.lcmlog"), {"tools": []})

@@ -35,7 +35,7 @@ struct Blow {
   double curvature_1_m = 0;
 };
 
-// It stands upright and falls onto its head. The centre of mass is in the middle of the head, which is thus no end of
+// It stands upright and falls onto its head. The centre of mass is in the middle of the head, which is therefore not an end of
 // the body as seen from it.
 Blow falling_head_first() {
   Blow b;

@@ -111,11 +111,11 @@ TEST_CASE("An invalid height map is rejected with its line") {
     const auto unread = [](const sync::Bytes& picture, const std::string& because) {
       CHECK_THAT(load_error(kGood, picture), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("cannot be read: " + because));
     };
-    unread({'h', 'e', 'l', 'l', 'o'}, "it is no PNG file");
+    unread({'h', 'e', 'l', 'l', 'o'}, "it is not a PNG file");
     unread(png_bytes(2, 2, 8, sync::Bytes(12), PNG_COLOR_TYPE_RGB), "it must be grey");
-    unread(png_bytes(5000, 2, 8, sync::Bytes(10'000)), "it must have 2 to 4097 samples a side");
+    unread(png_bytes(5000, 2, 8, sync::Bytes(10'000)), "it must have 2 to 4097 samples per side");
     sync::Bytes cut = png_bytes(100, 100, 8, sync::Bytes(10'000, 7));
     cut.resize(60);
-    unread(cut, "it ends in the middle");
+    unread(cut, "it is truncated");
   }
 }

@@ -70,5 +70,5 @@ TEST_CASE("An invalid friction map is rejected with its line") {
   expect_rejection(with("1m 1m", "-0.1 1"), "between 0 and 20");
   expect_rejection(with("1m 1m", "0 21"), "between 0 and 20");
   expect_rejection(with("1m 1m", "0 nan"), "friction_factors");
-  expect_rejection(kGood, "names friction_map \"halves.png\", which cannot be read: it is no PNG file", {'x'});
+  expect_rejection(kGood, "names friction_map \"halves.png\", which cannot be read: it is not a PNG file", {'x'});
 }

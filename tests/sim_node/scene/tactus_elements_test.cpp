@@ -210,7 +210,7 @@ TEST_CASE("A setting that is unknown or out of range is rejected with its line")
              Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("no setting \"presentation_dely\""));
   CHECK_THAT(load_error("<tactus:audio_node presentation_delay='25'/>"),
              Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("between"));
-  CHECK_THAT(load_error("<tactus:audio_node presentation_delay='25kg'/>"), Catch::Contains("no unit"));
+  CHECK_THAT(load_error("<tactus:audio_node presentation_delay='25kg'/>"), Catch::Contains("not a unit"));
   CHECK_THAT(load_error("<tactus:haptic_node force_limit='30 N'/>"), Catch::StartsWith("scene.sdf:3: ") &&
                                                                       Catch::Contains("only tighten") &&
                                                                       Catch::Contains("8 N or less"));

@@ -226,7 +226,7 @@ class PenetrationOracle {
     }
     double depth = probe(mesh, j, to_mesh);
     if (shapes_[j].mesh) return std::max(depth, probe(*shapes_[j].mesh, i, to_other));
-    // The mesh's vertices inside a shape that is no mesh.
+    // The mesh's vertices inside a shape that is not a mesh.
     for (const Vector3d& v : mesh.vertices) depth = std::max(depth, inside(other, to_other * v));
     return depth;
   }

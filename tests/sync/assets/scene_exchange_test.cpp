@@ -189,7 +189,7 @@ TEST_CASE("The sender rejects a scene with more assets than a receiver accepts")
   std::vector<Asset> assets;
   for (std::size_t i = 0; i <= SceneReceiver::kMaxAssets; ++i)
     assets.push_back({asset_ref_t::MESH, "m", Bytes(i + 1, 1)});
-  CHECK_THROWS_WITH(SceneSender(bus, assets), Catch::Contains("leave some out"));
+  CHECK_THROWS_WITH(SceneSender(bus, assets), Catch::Contains("remove some"));
 }
 
 TEST_CASE("Memory is allocated as chunks arrive and released when an incomplete transfer times out") {

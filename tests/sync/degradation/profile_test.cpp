@@ -84,20 +84,20 @@ TEST_CASE("An invalid profile is rejected as a whole, with line and reason") {
   CHECK_THAT(refusal("<profile>\n\n<degrade modality=\"audio\""), Catch::StartsWith("p.xml:"));
   CHECK_THAT(refusal("<sdf/>"), Catch::Contains("begins with <profile>"));
   CHECK_THAT(refusal("<profile colour=\"red\"/>"), Catch::Contains("no \"colour\""));
-  CHECK_THAT(refusal("<profile seed=\"x\"/>"), Catch::Contains("no whole number"));
+  CHECK_THAT(refusal("<profile seed=\"x\"/>"), Catch::Contains("not a whole number"));
   CHECK_THAT(refusal("<profile>\n<delay/></profile>"), Catch::StartsWith("p.xml:2: <delay> is not known"));
   CHECK_THAT(refusal("<profile>\n<degrade delay=\"1ms\"/></profile>"), Catch::Contains("needs a modality"));
   CHECK_THAT(refusal_of(""), Catch::Contains("does nothing"));
   CHECK_THAT(refusal_of("from=\"1s\""), Catch::Contains("does nothing"));
   CHECK_THAT(refusal_of("delay=\"40mss\""),
-             Catch::StartsWith("p.xml:2: delay=\"40mss\": \"mss\" is no unit of s"));
+             Catch::StartsWith("p.xml:2: delay=\"40mss\": \"mss\" is not a unit of s"));
   CHECK_THAT(refusal_of("delay=\"-1ms\""), Catch::Contains("between 0 and 60"));
-  CHECK_THAT(refusal_of("delay=\"40ms sideways\""), Catch::Contains("\"sideways\" means nothing here"));
-  CHECK_THAT(refusal_of("delay=\"40ms burst=3\""), Catch::Contains("\"burst=\" means nothing here"));
+  CHECK_THAT(refusal_of("delay=\"40ms sideways\""), Catch::Contains("\"sideways\" is not valid here"));
+  CHECK_THAT(refusal_of("delay=\"40ms burst=3\""), Catch::Contains("\"burst=\" is not valid here"));
   CHECK_THAT(refusal_of("delay=\"\""), Catch::Contains("needs a value"));
   CHECK_THAT(refusal_of("delai=\"1ms\""), Catch::Contains("no operator \"delai\""));
   CHECK_THAT(refusal_of("loss=\"90% burst=2\""), Catch::Contains("impossible"));
-  CHECK_THAT(refusal_of("loss=\"nan\""), Catch::Contains("no number"));
+  CHECK_THAT(refusal_of("loss=\"nan\""), Catch::Contains("not a number"));
   CHECK_THAT(refusal_of("freeze=\"maybe\""), Catch::Contains("choose hold or zero"));
   CHECK_THAT(refusal_of("delay=\"1ms\" from=\"5s\" until=\"5s\""), Catch::Contains("until must be after from"));
   CHECK_THAT(refusal_of("off=\"true\" bodies=\"ball\""), Catch::Contains("name two bodies"));

@@ -76,8 +76,8 @@ TEST_CASE("A damaged log is rendered to its end, with its undamaged messages") {
         while (const auto m = healths.pop()) missing.erase(m->message.header.seq);
       }
       CHECK(feed.over(Nanoseconds(20'000'000)));
-      // Sequence numbers and send times are damaged, too. kContradictions messages must contradict a wrong value before it is discarded
-      // (sync/bus/sequence.h). A log is damaged in up to eight places.
+      // Sequence numbers and send times are damaged, too. A wrong value is discarded after kMaxContradictions messages that
+      // contradict it (sync/bus/sequence.h). A log is damaged in up to eight places.
       CHECK(missing.size() <= 8 * SequenceTracker::kMaxContradictions);
       missed_in_all += missing.size();
     } catch (const std::runtime_error&) {

@@ -10,7 +10,7 @@ using namespace tactus::sync;
 
 namespace {
 
-// Oracle of LogTimeRanges, by sorting all stamps: groups with gaps of more than kApart_us between them.
+// Oracle of LogTimeRanges, by sorting all stamps: groups with gaps of more than kMaxGap_us between them.
 struct Oracle {
   std::vector<std::vector<std::int64_t>> ages;
   std::size_t fullest = 0;

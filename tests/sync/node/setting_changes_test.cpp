@@ -45,11 +45,11 @@ TEST_CASE("A repeated change of a setting is applied once and answered each time
 TEST_CASE("An invalid change is rejected with the reason") {
   sync::SettingChanges changes("haptic_node", 7);
   changes.process(change(4, "many"),
-               [](const auto&, const auto&) { throw std::invalid_argument("many is no number"); });
+               [](const auto&, const auto&) { throw std::invalid_argument("many is not a number"); });
   const auto replies = changes.replies();
   REQUIRE(replies.size() == 1);
   CHECK(replies[0].done == 0);
-  CHECK(replies[0].text == "haptic_node: many is no number");
+  CHECK(replies[0].text == "haptic_node: many is not a number");
 }
 
 TEST_CASE("Changes for other nodes and other runs are ignored") {

@@ -42,8 +42,8 @@ TEST_CASE("Relay rules are parsed with channel, rate, deadband and priority") {
 }
 
 TEST_CASE("Invalid relay rules are rejected with their line") {
-  CHECK(refusal("").find("rules.xml:1: this is no XML") == 0);
-  CHECK(refusal("<relay><pass></relay>").find("rules.xml:1: this is no XML") == 0);
+  CHECK(refusal("").find("rules.xml:1: this is not XML") == 0);
+  CHECK(refusal("<relay><pass></relay>").find("rules.xml:1: this is not XML") == 0);
   CHECK(refusal("<profile/>") == "rules.xml:1: rules of a relay begin with <relay>");
   CHECK(refusal("<relay>\n</relay>").find("pass no channel") != std::string::npos);
   CHECK(refusal("<relay name='a'/>") == "rules.xml:1: <relay> has no name");
@@ -54,7 +54,7 @@ TEST_CASE("Invalid relay rules are rejected with their line") {
         std::string::npos);
   CHECK(refusal(within("<pass channel='NODE_HEALTH' deadband='10%'/>"))
             .find("cannot compare messages of NODE_HEALTH") != std::string::npos);
-  CHECK(refusal(within("<pass channel='TOOL_STATE' rate='60'/>")).find("lacks its unit") != std::string::npos);
+  CHECK(refusal(within("<pass channel='TOOL_STATE' rate='60'/>")).find("has no unit") != std::string::npos);
   CHECK(refusal(within("<pass channel='TOOL_STATE' delay='60ms'/>")).find("a <pass> has no delay") !=
         std::string::npos);
   CHECK(refusal(within("<pass channel='TOOL_STATE' first='yes'/>")).find("neither true nor false") !=

@@ -1,4 +1,4 @@
-// Tests of contacts that move between the bodies at the present time and those that are computed ahead, over a wire that loses, repeats
+// Tests of contacts that move between the bodies of the current step and those that are computed ahead, over a wire that loses, repeats
 // and reorders.
 #include <algorithm>
 #include <catch2/catch.hpp>

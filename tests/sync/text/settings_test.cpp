@@ -93,7 +93,7 @@ TEST_CASE("The error for an invalid value names setting, value and range") {
   for (const auto& [name, value, part] :
        std::vector<std::array<const char*, 3>>{{"delay", "2", "and 1 s"},
                                                {"delay", "-1ms", "between"},
-                                               {"delay", "soon", "no number"},
+                                               {"delay", "soon", "not a number"},
                                                {"voices", "2.5", "whole"},
                                                {"voices", "0", "between 1"},
                                                {"loud", "maybe", "true or false"},

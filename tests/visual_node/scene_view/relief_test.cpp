@@ -51,6 +51,6 @@ TEST_CASE("A damaged or missing height map is reported once and does not affect 
   CHECK(maps.size() == 1);
   CHECK(maps.contains(1));
   REQUIRE(warnings.size() == 2);
-  CHECK_THAT(warnings[0], Catch::Contains("it is no PNG file; it is drawn smooth"));
+  CHECK_THAT(warnings[0], Catch::Contains("it is not a PNG file; it is drawn smooth"));
   CHECK_THAT(warnings[1], Catch::Contains("it was not sent"));
 }

@@ -1,9 +1,9 @@
 // Interprets a participant's input to a question, from any input device, and creates the answer. Independent of the document.
 import { Study } from "./messages";
 
-// One press can have several meanings; the present question decides which one counts.
+// One press can have several meanings; the current question decides which one counts.
 export interface Press { choice?: number; fine?: number; coarse?: number; confirms?: boolean; continues?: boolean }
-// As parsed by live_server.
+// An answer in the form that live_server parses.
 export interface Answer { t: "answer"; question: string; choice: number; number: number; after_ns: number }
 
 // key: KeyboardEvent.key.
@@ -43,15 +43,15 @@ export class Mark {
   }
 }
 
-// The present question, the time of its display, and whether its answer is in transfer. Times: performance.now(), ms.
+// The current question, the time of its display, and whether its answer is in transfer. Times: performance.now(), ms.
 export class QuestionState {
-  static readonly ANSWER_TIMEOUT_MS = 1500;  // design: an answer that the server has not accepted within this time may be given again
+  static readonly ANSWER_TIMEOUT_MS = 1500;  // design: after this time without acceptance by the server, the answer may be given again
   private question: Study | undefined;
   private seen_ms: number | undefined;
   private sent_ms: number | undefined;
   mark: Mark | undefined;
 
-  // Returns true when the present question has changed or ended.
+  // Returns true when the current question has changed or ended.
   update(study: Study | null): boolean {
     const open = study && study.kind !== "nothing" && !study.answered ? study : undefined;
     const changed = open?.question !== this.question?.question;
@@ -68,7 +68,7 @@ export class QuestionState {
   acceptsAnswer(at_ms: number): boolean {
     return this.question !== undefined && this.seen_ms !== undefined && !(this.sent_ms !== undefined && at_ms < this.sent_ms + QuestionState.ANSWER_TIMEOUT_MS);
   }
-  // used: the press has a meaning for the present question.
+  // used: true when the press has a meaning for the current question.
   press(p: Press, at_ms: number): { used: boolean; answer?: Answer } {
     const m = this.question;
     if (!m) return { used: false };

@@ -3,7 +3,7 @@ import { Event, Presentation, colourOf, element, make } from "./messages";
 
 const SPAN_S = 10;
 const MAX_EVENTS = 6000;
-// Of presentation_t.outcome; 0 and 1: presented.
+// Values of presentation_t.outcome; 0 and 1 mean presented.
 const DROPPED_LATE = 2, DROPPED_BY_PROFILE = 3, INAUDIBLE = 4;
 
 export class Raster {

@@ -56,7 +56,7 @@ export class StudyPanel {
     if (m.kind === "read") answers.append(this.button("continue", "Enter", { continues: true }));
     this.box.append(answers, make("p", "quiet", m.progress));
     this.showMark();
-    // After painting: a message that is posted just before a frame is drawn arrives just after it.
+    // Measures the time after painting: a message that is posted just before a frame is drawn arrives just after it.
     requestAnimationFrame(() => {
       const channel = new MessageChannel();
       channel.port1.onmessage = () => { this.state.seen(m.question, performance.now()); this.box.classList.toggle("sent", !this.state.acceptsAnswer(performance.now())); };

@@ -50,7 +50,7 @@ class Resampler:
 
     def share(self, share, mass):
         """Draws of a share with Jeffreys' prior, half a success and half a failure, added (Brown, Cai and DasGupta 2001, Statistical
-        Science 16:101): 20 of 20 successes are no proof of 100 %."""
+        Science 16:101): 20 of 20 successes do not prove 100 %."""
         yes, no = self.rng.standard_gamma(0.5, size=(2, self.draws))
         return (share * mass + yes) / (mass + yes + no)
 

@@ -22,7 +22,7 @@ class Flow:
     of: str         # world, hand, node, host or pair
     per_s: float    # of one sender
     bytes: int      # of the message
-    thin_per_s: float  # messages a second that a relay forwards
+    thin_per_s: float  # messages per second that a relay forwards
 
 
 def read_flows():

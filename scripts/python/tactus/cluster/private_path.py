@@ -87,7 +87,7 @@ def server_address(text):
             return text
         raise Refusal(f"--server {text[:60]}: is neither an address nor a name; give the one at which the other hosts reach the first host") from None
     if address.version != 4 or address.is_multicast or address.is_unspecified:
-        raise Refusal(f"--server {text}: is no IPv4 address of a host; give the one at which the other hosts reach the first host")
+        raise Refusal(f"--server {text}: is not an IPv4 address of a host; give the one at which the other hosts reach the first host")
     return text
 
 

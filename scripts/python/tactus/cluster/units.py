@@ -58,7 +58,7 @@ def parsed(words):
     a.only = a.only.split(",")
     for kind in a.only:
         if kind not in KINDS:
-            raise Refusal(f"--only: there is no unit of \"{kind[:40]}\"; there are {', '.join(KINDS)}")
+            raise Refusal(f"--only: there is not a unit of \"{kind[:40]}\"; there are {', '.join(KINDS)}")
     for option in ("prefix", "out", "scene"):
         path = getattr(a, option)
         if path is not None and not re.fullmatch(r"/[A-Za-z0-9._/+-]+", path):

@@ -22,7 +22,7 @@ def arguments(words):
     parser = argparse.ArgumentParser(prog="tactus disturb", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=("malformed", "bulk"))
     parser.add_argument("--channel", default="CONTACT_EVENTS", help="channel of the malformed messages (default: %(default)s)")
-    parser.add_argument("--rate", type=float, help="messages a second, or bytes a second (default: 10,000 and 60,000,000)")
+    parser.add_argument("--rate", type=float, help="messages per second, or bytes per second (default: 10,000 and 60,000,000)")
     parser.add_argument("--seconds", type=float, default=10)
     parser.add_argument("--port", type=int, default=int(os.environ.get("TACTUS_PORT", "7667")))
     return parser.parse_args(words)

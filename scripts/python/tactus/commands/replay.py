@@ -17,7 +17,7 @@ Plays a log to the nodes of the modalities, which render it again, live. Each no
   --channels REGEX       only channels whose complete name matches; --leave-out REGEX: not these channels; --also REGEX: also
                          these channels, which are not replayed by default
   --rename FROM=TO       renames a channel; may be repeated
-  --most N               maximum number of messages a second, at any speed; default: 16000
+  --most N               maximum number of messages per second, at any speed; default: 16000
   --set, --seed, --device, --policy, --soa, --base, --budget, --aligner, --window, --listen, --realtime, --network, --port, --out
                          as for scripts/run
   --stay                 continues to run at the end of the log

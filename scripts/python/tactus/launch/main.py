@@ -97,7 +97,7 @@ def run(plan, watch=watch_over):
             raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
     cluster.check(cluster.commands(plan, run_id, git), stop)
     for name in arguments.unknown_modalities(plan):
-        report_run(f"{name!r} is no modality of this run; check the names in the profile and in --soa")
+        report_run(f"{name!r} is not a modality of this run; check the names in the profile and in --soa")
     expectation = priority.expectation(plan.realtime)
     net = network.choose(plan.network, plan.port)
     services.remove_leftovers()

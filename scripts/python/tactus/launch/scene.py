@@ -11,7 +11,7 @@ def world_elements(scene):
         if path[1:] == ["world", name]:
             found.append((name, attributes))
 
-    # Without namespace processing, so that undeclared prefixes are no error.
+    # Without namespace processing, so that undeclared prefixes are not an error.
     parser = xml.parsers.expat.ParserCreate()
     parser.StartElementHandler = begin
     parser.EndElementHandler = lambda name: path.pop()

@@ -32,7 +32,7 @@ def run(plan, stop, claim_out):
     words = commands(plan, git)
     cluster.check(words, stop)
     for name in arguments.unknown_modalities(plan):
-        report_run(f"{name!r} is no modality of this run; check the names in the profile and in --soa")
+        report_run(f"{name!r} is not a modality of this run; check the names in the profile and in --soa")
     claim = claim_out(plan)
     for name in words:  # claim_out may have chosen another folder
         words[name][words[name].index("--out") + 1] = str(plan.out)

@@ -1,7 +1,7 @@
 """Fits of psychometric functions to answers: maximum likelihood with lapse and guess rates.
 
   fit(levels, yes, total, "order")          one set of answers -> Fit
-  fit_many(levels, yes, total, "order")     n sets at once, arrays (n, k) -> Fits
+  fit_many(levels, yes, total, "order")     n sets together, arrays (n, k) -> Fits
   interval(fit, "pss")                      (low, high)
 
 Lapse rates are fitted within [0, 0.06] (Wichmann and Hill 2001), guess rates of yes/no tasks within [0, 0.5] under the weak prior Beta(1, 10) (Schuett

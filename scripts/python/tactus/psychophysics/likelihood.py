@@ -1,4 +1,4 @@
-"""Maximum likelihood parameters of psychometric functions, for many sets of answers at once, by Fisher scoring within bounds.
+"""Maximum likelihood parameters of psychometric functions, for many sets of answers together, by Fisher scoring within bounds.
 
 There are always four parameters, theta = (location q, log spread t, guess, lapse); functions.py defines them for each function. q is the point at which
 u = `anchor`: the location m for an anchor of 0, or a derived point, m + s u. Arrays: n sets of answers, k levels.

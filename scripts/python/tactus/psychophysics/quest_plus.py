@@ -3,7 +3,7 @@ Vision Research 39:2729).
 
 The posterior is a grid over the parameters; levels have one or two dimensions. With the likelihood L(r | x, theta) of the two answers r, the expected
 entropy at x is H(theta) - I(x), and I(x) = h(p(x)) - E[h(L)] with the entropy h of an answer and p(x) = E[L]. This takes two products of a matrix with the
-posterior for all levels at once.
+posterior for all levels together.
 """
 import itertools
 import math

@@ -27,7 +27,7 @@ QUESTIONS = {
 JUDGED = {"tap": "asynchrony", "press": "factor"}  # kind of condition that each task allows
 SOFTER = "Which of the two felt softer?"  # default question for two presses of a study of stiffness
 # The haptic node adapts its coupling to these operators of its input and recovers within seconds (LoopDelay in haptic_node/rendering/coupling.h). A degraded
-# press would therefore also soften the next press. A delay of the output ends at once.
+# press would therefore also soften the next press. A delay of the output ends immediately.
 SLOW_RECOVERY = ("network_delay", "jitter", "loss", "rate", "deadband")
 SPOKEN = {"haptic": "touch", "audio": "sound", "visual": "picture", "thermal": "warmth"}
 

@@ -73,14 +73,14 @@ TEST_CASE("A frame is read from a file, and an error is reported in one sentence
   const auto rejected = [](const std::string& text, const std::string& what) {
     CHECK_THROWS_WITH(parse_frame(text, "mine.json"), Contains("mine.json") && Contains(what));
   };
-  rejected("", "no JSON object");
-  rejected("[1, 2]", "no JSON object");
+  rejected("", "not a JSON object");
+  rejected("[1, 2]", "not a JSON object");
   rejected(with("\"max_tension_N\": 20,", ""), "lacks \"max_tension_N\"");
   rejected(with("max_tension_N", "max_force_N"), "no field \"max_force_N\"");
-  rejected(with("20", "\"strong\""), "\"max_tension_N\" is no number");
+  rejected(with("20", "\"strong\""), "\"max_tension_N\" is not a number");
   rejected(with("[0.3, 0.3, 0.3]", "[0.3, 0.3]"), "[x, y, z]");
   rejected(with("\"anchor_m\": [0.3, 0.3, 0.3]", ""), "needs its \"anchor_m\"");
   rejected(with("[0.3, 0.3, 0.3]}", "[0.3, 0.3, 0.3], \"colour\": 1}"), "no \"colour\"");
   rejected(with("0.1", "1e308"), "workspace_radius_m");
-  CHECK_THROWS_WITH(read_frame("/no/such.json"), Contains("no regular file"));
+  CHECK_THROWS_WITH(read_frame("/no/such.json"), Contains("not a regular file"));
 }

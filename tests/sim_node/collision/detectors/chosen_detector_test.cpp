@@ -88,7 +88,7 @@ TEST_CASE("ODE handles pairs that the selected detector does not support, and an
   CHECK_THROWS_WITH(Solver(w, with("ccd")), Catch::Contains("convex meshes only"));
   CHECK_NOTHROW(Solver(w, with("layers")));
 
-  // Options that the mesh does not support are rejected too: a plate is no closed mesh.
+  // Options that the mesh does not support are rejected too: a plate is not a closed mesh.
   Settings adjacency = with("layers");
   adjacency.duplicate_remover = "adjacency";
   CHECK_NOTHROW(Solver(w, adjacency));

@@ -36,7 +36,7 @@ TEST_CASE("The hashed remover keeps the same pairs as brute force, also across c
       for (int k = static_cast<int>(random() % 4); k >= 0; --k)
         pairs.push_back(
             pair_at(at + 0.4 * kSamePosition_m * direction(random), at + 0.4 * kSamePosition_m * direction(random)));
-      // The same position on one surface only is no duplicate.
+      // The same position on one surface only is not a duplicate.
       pairs.push_back(pair_at(at, at + 1e-4 * direction(random)));
     }
     for (std::size_t i = pairs.size(); i > 1; --i) std::swap(pairs[i - 1], pairs[random() % i]);

@@ -96,7 +96,8 @@ TEST_CASE("Patches do not depend on the order of pairs and cover every contact d
       CHECK(again[k].normal == patches[k].normal);
       CHECK(again[k].points[0].on_a_m == patches[k].points[0].on_a_m);
     }
-    // Every pair is represented: by a patch of its direction, or by one along whose normal its gap is no smaller.
+    // Every pair is represented: by a patch of its direction, or by one along whose normal its gap is at least as
+    // large.
     for (const PointPair& p : pairs)
       CHECK(std::any_of(patches.begin(), patches.end(), [&](const ContactPatch& patch) {
         const double along = patch.normal.dot(p.normal), least = patch.points[0].gap_m - 2e-6;

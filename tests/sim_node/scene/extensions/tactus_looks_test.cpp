@@ -177,7 +177,7 @@ TEST_CASE("An invalid look, shader, pass or picture is rejected with its line") 
              Catch::Contains("there are oak"));
   CHECK_THAT(worn("colour_map='gone.png'"), Catch::Contains("gone.png\", which is not found"));
   CHECK_THAT(worn("colour_map='own.frag'"), Catch::Contains("neither PNG nor JPEG"));
-  CHECK_THAT(worn("normal_map='own.frag'"), Catch::Contains("no PNG"));
+  CHECK_THAT(worn("normal_map='own.frag'"), Catch::Contains("not a PNG"));
   CHECK_THAT(worn("reflectance='1.5'"), Catch::Contains("between 0 and 1"));
   CHECK_THAT(worn("reflectance='nan'"), Catch::Contains("reflectance"));
   CHECK_THAT(worn("shader='two words'"), Catch::Contains("letters"));
@@ -222,10 +222,10 @@ TEST_CASE("Pictures are complete files of limited size, and JPEG is accepted onl
   // The start of a JPEG of 3 x 2: an application segment, then the frame.
   sync::Bytes jpeg{0xff, 0xd8, 0xff, 0xe0, 0, 4, 1, 2, 0xff, 0xc0, 0, 11, 8, 0, 2, 0, 3, 1, 1, 0x11, 0};
   CHECK_NOTHROW(check_picture(jpeg, PictureUse::kColour));
-  CHECK_THROWS_WITH(check_picture(jpeg, PictureUse::kDirections), Catch::Contains("no PNG"));
+  CHECK_THROWS_WITH(check_picture(jpeg, PictureUse::kDirections), Catch::Contains("not a PNG"));
   jpeg[13] = 0xff;
   CHECK_THROWS_WITH(check_picture(jpeg, PictureUse::kColour), Catch::Contains("4096"));
-  CHECK_THROWS_WITH(check_picture(std::span(jpeg).first(12), PictureUse::kColour), Catch::Contains("middle"));
+  CHECK_THROWS_WITH(check_picture(std::span(jpeg).first(12), PictureUse::kColour), Catch::Contains("truncated"));
 }
 
 namespace {

@@ -63,7 +63,7 @@ TEST_CASE("A picture that is not a height map is rejected with its line") {
   SceneFile file(heightmap());
   CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("not found"));
   file.write("h.png", "no picture at all");
-  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("no PNG"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("not a PNG"));
   write_png(file, 2, 2, 8, PNG_COLOR_TYPE_RGB, std::vector<unsigned char>(12));
   CHECK_THAT(file.load_error(), Catch::Contains("grey"));
   write_png(file, 1, 2, 8, PNG_COLOR_TYPE_GRAY, {0, 0});
