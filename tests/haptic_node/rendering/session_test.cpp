@@ -126,13 +126,14 @@ TEST_CASE("A session renders only the touch models of its own tool") {
 TEST_CASE("Repeated events are rendered once") {
   const scene_t s = pressing_scene();
   Safety safety{SafetyLimits{}};
-  Session session(s, choice_of(s), device_of(s, choice_of(s)), 1, safety);
+  Session session(s, config_of(s), make_tool_device(s, config_of(s)), 1, safety);
   sync::EventInbox events(1);
   int begins = 0, hits = 0;
   for (int ms = 0; ms < 300; ++ms) {
     session.push(sent(ms, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())}), host_ms(ms));
     if (ms >= 100 && ms < 150)
-      events.push(events_of(ms, {event(1, contact_event_t::BEGIN, 99.5), event(2, contact_event_t::HIT, 99.5)}), host_ms(ms));
+      events.push(events_of(ms, {event(1, contact_event_t::BEGIN, 99.5), event(2, contact_event_t::HIT, 99.5)}),
+                   host_ms(ms));
     session.push(events.take(sync::SimTime::max()));
     for (const presentation_t& r : session.step(host_ms(ms)).reports) {
       r.part == presentation_t::TRANSIENT ? ++hits : ++begins;
