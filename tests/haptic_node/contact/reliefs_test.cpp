@@ -87,8 +87,7 @@ TEST_CASE("With the height method the surface has the height of its map, and the
   }
 }
 
-TEST_CASE(
-    "With the normal method the surface stays flat, and the force keeps its magnitude and tilts with the slope") {
+TEST_CASE("With the normal method the surface stays flat, and the force tilts with the slope at constant size") {
   Bench bench(settled("normal"));
   bench.renderer.set_maps(waves());
   double ms = 0, proxy_z = 0;
