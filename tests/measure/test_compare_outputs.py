@@ -106,16 +106,16 @@ class Differences(Folders):
         other[9000] ^= 1
         self.assertEqual(self.one_row({"clean/audio.wav": bytes(other)}).detail, "byte 9000")
 
-    def test_an_artefact_that_ends_early_says_after_what(self):
+    def test_the_row_of_an_artefact_that_ends_early_gives_its_length(self):
         row = self.one_row({"clean/frames.csv": b"frame,host_ns,pixels\n0,10,aa\n"})
         self.assertIn("ends after 2 lines", row.detail)
 
-    def test_missing_and_new_artefacts_are_no_success(self):
+    def test_missing_and_new_artefacts_are_failures(self):
         self.assertEqual(self.one_row({"clean/thermal.csv": None}).result, comparison.MISSING)
         self.assertEqual(self.one_row({"clean/thermal.csv": FILES["clean/thermal.csv"], "clean/extra.csv": b"a\n"}).result, comparison.NEW)
         self.assertTrue({comparison.MISSING, comparison.NEW, comparison.FAILED, comparison.DIFFERS} == set(comparison.FAILURES))
 
-    def test_a_case_that_is_not_stored_is_one_row(self):
+    def test_a_case_without_stored_results_gives_one_row(self):
         rows = comparison.compare("case", artefacts.records(self.make("new"), self.none), {}, self.none, comparison.locate_by_trail)
         self.assertEqual([(row.artefact, row.result) for row in rows], [("case", comparison.NEW)])
 
@@ -199,12 +199,12 @@ class Announced(Folders):
         rows = self.bad_rows(new, self.announced(("text", "presented_*.csv", "audio", "sound")))
         self.assertEqual([row.artefact for row in rows], ["case/run/summary.json"])
 
-    def test_an_accepted_difference_is_announced_and_no_failure(self):
+    def test_an_accepted_difference_is_announced_and_is_not_a_failure(self):
         row = self.one_row({"clean/thermal.csv": b"host_s\n"}, self.announced(("accept", "case/clean/thermal*", "", "")))
         self.assertEqual(row.result, comparison.ANNOUNCED)
         self.assertNotIn(row.result, comparison.FAILURES)
 
-    def test_programs_and_options_get_the_names_that_a_build_has(self):
+    def test_programs_and_options_get_the_names_of_the_build(self):
         announced = self.announced(("program", "", "export_csv", "tactus export"), ("option", "export_csv", "--out", "--output"))
         for name in ("old/export_csv", "new/tactus"):
             path = os.path.join(self.folder, name)
@@ -253,7 +253,7 @@ class Stored(Folders):
         with open(path, encoding="utf-8") as file:
             self.assertEqual(file.read().count(records["clean/thermal.csv"]["sha256"]), 1)
 
-    def test_a_file_that_is_none_is_refused(self):
+    def test_a_file_without_stored_results_is_refused(self):
         path = os.path.join(self.folder, "results.json")
         for content in ("", "[]", '{"format": 99}'):
             with open(path, "w", encoding="utf-8") as file:
@@ -263,7 +263,7 @@ class Stored(Folders):
 
 
 class Cases(Folders):
-    def test_every_scene_and_profile_is_there(self):
+    def test_every_scene_and_profile_exists(self):
         root = os.path.dirname(os.path.dirname(HERE))
         self.assertGreaterEqual(len(cases.CASES), 6)
         for case in cases.CASES:
@@ -271,7 +271,7 @@ class Cases(Folders):
             self.assertTrue(not case.profile or os.path.isfile(cases.profile_file(root, case.profile)))
         self.assertTrue(os.path.isfile(cases.profile_file(root, "several_operators")))
 
-    def test_quick_is_one_case_and_a_log_is_a_case_of_its_own(self):
+    def test_quick_selects_one_case_and_a_log_is_a_separate_case(self):
         names = lambda *words: [case.name for case in cases.chosen(*words)]
         self.assertEqual(names(None, True, None), ["dark_room"])
         self.assertEqual(names(None, False, "x.lcmlog"), ["log"])
@@ -279,12 +279,12 @@ class Cases(Folders):
         self.assertEqual(len(names(None, False, None)), len(cases.CASES))
         self.assertNotIn("virtual_time", [words[0] for _, words in cases.steps(cases.of_log("x.lcmlog"), "/", {}, [])])
 
-    def test_no_output_names_the_folder_that_it_lies_in(self):
+    def test_commands_do_not_contain_the_path_of_the_output_folder(self):
         for case in cases.CASES:
             for name, words in cases.steps(case, "/root", {}, ["sse2"]):
                 self.assertEqual([word for word in words if word.startswith("/") and not word.endswith((".sdf", ".xml"))], [], name)
 
-    def test_a_program_that_fails_or_is_not_there_is_named(self):
+    def test_the_error_names_a_program_that_fails_or_is_missing(self):
         build = runner.Build(self.folder, "/", self.none, "best", [], environment.of_programs("best", self.folder), {})
         os.makedirs(os.path.join(self.folder, "logs"))
         with self.assertRaisesRegex(runner.Failed, "metronome: a: ended with status 3 .no scene"):

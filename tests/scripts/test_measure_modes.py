@@ -2,9 +2,11 @@
 import importlib.machinery
 import importlib.util
 import os
+import sys
 import unittest
 
 PATH = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "measure", "measure_modes")
+sys.path.insert(0, os.path.dirname(PATH))
 loader = importlib.machinery.SourceFileLoader("measure_modes", PATH)
 measure_modes = importlib.util.module_from_spec(importlib.util.spec_from_loader("measure_modes", loader))
 loader.exec_module(measure_modes)
@@ -22,7 +24,7 @@ class Check(unittest.TestCase):
     def test_refuses_missing_and_additional_modes(self):
         for found in (2, 4, 0):
             self.assertEqual(list(measure_modes.failures(table(found))),
-                             [f"a bar: {found} modes were found, where by closed forms the blow drives 3"])
+                             [f"a bar: {found} modes were found, but by closed forms the hit excites 3"])
 
     def test_refuses_wrong_frequencies_and_dampings(self):
         for wrong in ({"frequency_error": 0.0011}, {"damping_error": -0.051}, {"below_dB": 39.9}):

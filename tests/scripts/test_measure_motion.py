@@ -2,9 +2,11 @@
 import importlib.machinery
 import importlib.util
 import os
+import sys
 import unittest
 
 PATH = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "measure", "measure_motion")
+sys.path.insert(0, os.path.dirname(PATH))
 loader = importlib.machinery.SourceFileLoader("measure_motion", PATH)
 measure_motion = importlib.util.module_from_spec(importlib.util.spec_from_loader("measure_motion", loader))
 loader.exec_module(measure_motion)

@@ -10,6 +10,7 @@ import tempfile
 import unittest
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[1] / "measure" / "measure_recording"
+sys.path.insert(0, str(SCRIPT.parent))
 sys.dont_write_bytecode = True
 loader = importlib.machinery.SourceFileLoader("measure_recording", str(SCRIPT))
 measure_recording = importlib.util.module_from_spec(importlib.util.spec_from_loader("measure_recording", loader))

@@ -144,7 +144,7 @@ def first_difference(kind, ours, theirs, channel=""):
 
 def describe(kind, number, offset, one, two, channel):
     if one is None or two is None:
-        return f"ends after {number} {kind} ({offset} bytes), the other goes on" if one is None else f"goes on after {number} {kind}, where the other ends"
+        return f"ends after {number} {kind} ({offset} bytes), the other continues" if one is None else f"continues after {number} {kind}, where the other ends"
     byte = next((i for i, (a, b) in enumerate(zip(one, two)) if a != b), min(len(one), len(two)))
     if kind == "lines":
         return f"line {number + 1}: {shown(one)} | before: {shown(two)}"
@@ -153,9 +153,9 @@ def describe(kind, number, offset, one, two, channel):
     return f"byte {offset + byte}"
 
 
-def shown(line, at_most=100):
+def shown(line, max_length=100):
     text = line.decode("utf-8", "replace").strip()
-    return text if len(text) <= at_most else text[:at_most] + "..."
+    return text if len(text) <= max_length else text[:max_length] + "..."
 
 
 def rough_difference(kind, record, stored):

@@ -19,7 +19,7 @@ class Case:
     scene: str = ""              # file in sim_node/scenes; empty: that of the name
     tools: tuple = ()            # names of the tools after the first
     player: bool = False         # a simulated player holds the device
-    bus: tuple = ()              # options of virtual_time: what the bus does to messages
+    bus: tuple = ()              # options of virtual_time: faults of the bus
     playout: tuple = ()          # options of sync_node
     profile: str = ""            # in force while the run is recorded
     pictures: tuple = SMALL      # settings of the visual node when it renders the log
