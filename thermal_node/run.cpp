@@ -6,9 +6,8 @@
 //   out  THERMAL_STATE, THERMAL_DEVICE every tick; the latter of the simulated display
 //        PRESENTED                     every begin and hit of its tool
 //
-// When the readings of the display are lost, it is assumed to be at its command. When the contacts are lost, the
-// command returns to the temperature of resting skin. The loop never waits for another node. With --log it renders
-// a recorded run instead of the bus, as fast as it can, and writes --trace; the same log gives the same bytes.
+// Lost readings: the display is assumed to be at its command. Lost contacts: the command returns to the temperature of resting
+// skin. With --log it renders a recorded run, as fast as it can, and writes --trace; the same log gives the same bytes.
 #include "thermal_node/run.h"
 
 #include <CLI/CLI.hpp>

@@ -3,14 +3,12 @@
 //   in   WORLD_STATE, CONTACT_EVENTS, TOOL_STATE   bodies, contacts and tools; the position of a tracked head
 //        SCENE, SETTING, QUESTION                  the scene, changes of settings, questions for a participant
 //        PLAYOUT, FRAME_SHOWN                      of a room: its delay, and the frames that other walls have
-//        drawn CONTACTS, NODE_HEALTH                     while an overlay shows them, and the channels that a plot
-//        names
+//        CONTACTS, NODE_HEALTH, others             while an overlay or a plot shows them
 //   out  PRESENTED, MEDIA_CLOCK, FRAME_SHOWN       a report for every begin and hit; presentation times of frames
 //        SIM_COMMAND, DEVICE_STATE, ANSWER         keys, mouse and gamepad of a window
 //        PICTURE_CHUNK                             the picture, when streamed
 //
-// When WORLD_STATE is lost, bodies are extrapolated for 50 ms, then held, and the picture is marked. With --log
-// the node renders a log to the file --video.
+// Lost WORLD_STATE: bodies are extrapolated for 50 ms, then held, and the picture is marked. --log: renders a log to --video.
 #include "visual_node/run.h"
 
 #include <iostream>

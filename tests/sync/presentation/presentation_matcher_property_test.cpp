@@ -15,12 +15,25 @@ using namespace tactus::sync;
 namespace {
 constexpr int kHit = node_health_t::EXPECTS_HIT;
 constexpr int kBoth = int{node_health_t::EXPECTS_BEGIN} | int{node_health_t::EXPECTS_HIT};
+
+// Counts one expected event.
+void count(OutcomeCounts& t, bool reported, std::int8_t outcome) {
+  ++t.expected;
+  if (!reported)
+    ++t.lost;
+  else if (outcome == presentation_t::DROPPED_LATE)
+    ++t.dropped_late;
+  else if (outcome == presentation_t::DROPPED_BY_PROFILE)
+    ++t.dropped_by_profile;
+  else
+    ++t.presented;
+}
 }  // namespace
 
 TEST_CASE("Every expected event has one outcome when messages are lost, repeated and reordered") {
   struct Node {
     std::string name, modality;
-    int owes;
+    int expected_events;
   };
   for (unsigned seed = 0; seed < 40; ++seed) {
     MatcherFixture f;
@@ -40,7 +53,7 @@ TEST_CASE("Every expected event has one outcome when messages are lost, repeated
     std::vector<Sent> sent;
     for (const Node& n : nodes)
       for (int ms = 0; ms <= 12000; ms += 100)
-        f.health(n.name, n.modality, n.owes, ms);  // no loss: liveness is not under test here
+        f.health(n.name, n.modality, n.expected_events, ms);  // no loss: liveness is not under test here
 
     std::map<std::string, OutcomeCounts> expected;
     std::int64_t hits = 0, begins = 0;
@@ -59,7 +72,7 @@ TEST_CASE("Every expected event has one outcome when messages are lost, repeated
       if (heard) ++(kind == contact_event_t::HIT ? hits : begins), begins -= kind == contact_event_t::END;
       for (const Node& n : nodes) {
         const bool is_expected =
-            kind == contact_event_t::BEGIN ? (n.owes & 1) != 0 : kind == contact_event_t::HIT && (n.owes & 2) != 0;
+            kind == contact_event_t::BEGIN ? (n.expected_events & 1) != 0 : kind == contact_event_t::HIT && (n.expected_events & 2) != 0;
         const auto outcome = static_cast<std::int8_t>(random() % 5);
         const bool reports = chance(0.8);
         bool reported = false;
@@ -75,15 +88,7 @@ TEST_CASE("Every expected event has one outcome when messages are lost, repeated
         }
         if (!is_expected || !heard) continue;
         OutcomeCounts& t = expected[n.modality];
-        ++t.expected;
-        if (!reported)
-          ++t.lost;
-        else if (outcome == presentation_t::DROPPED_LATE)
-          ++t.dropped_late;
-        else if (outcome == presentation_t::DROPPED_BY_PROFILE)
-          ++t.dropped_by_profile;
-        else
-          ++t.presented;
+        count(t, reported, outcome);
       }
     }
     std::sort(sent.begin(), sent.end(), [](const Sent& a, const Sent& b) { return a.ms < b.ms; });
