@@ -80,6 +80,13 @@ void publish_state(WorldPublisher& world_publisher, sim::Simulation& simulation,
       map);
 }
 
+void add_tags(sync::Tags& tags, const sim::Simulation& simulation, const std::optional<WorldPublisher>& publisher) {
+  tags.add("world.time", "s", [&] { return sync::to_seconds(simulation.now().time_since_epoch()); });
+  tags.add("world.realtime_factor", "1", [&] { return publisher->pacer.realtime_factor(); }, 10);
+  tags.add("contacts.tools", "1", [&] { return static_cast<double>(simulation.tool_contacts().size()); });
+  tags.add("contacts.events", "1", [&] { return static_cast<double>(simulation.events().size()); });
+}
+
 }  // namespace
 
 int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
@@ -113,11 +120,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
   sim::FollowedRate followed_rate(settings.visual_follows);
   std::vector<tool_state_t> new_messages;
 
-  node.tags().add("world.time", "s", [&] { return sync::to_seconds(simulation.now().time_since_epoch()); });
-  node.tags().add(
-      "world.realtime_factor", "1", [&] { return world_publisher->pacer.realtime_factor(); }, 10);
-  node.tags().add("contacts.tools", "1", [&] { return static_cast<double>(simulation.tool_contacts().size()); });
-  node.tags().add("contacts.events", "1", [&] { return static_cast<double>(simulation.events().size()); });
+  add_tags(node.tags(), simulation, world_publisher);
 
   // A fixed time for other processes to load the scene; no particular process is awaited.
   node.set_state(node_health_t::WAITING, "waits for other processes to load the scene");

@@ -178,24 +178,7 @@ TEST_CASE("The trap counts each call that waits, maps memory or does I/O, and pa
   timeval at_once{0, 0};
   epoll_event event{};
   int waiting = -1;
-  // Of conditions: the timeout has expired, so no thread waits for ever; and a thread that is woken.
-  pthread_mutex_lock(&mutex);
-  bool woken = false;
-  const auto wait_to_be_woken = [&] {
-    std::thread waker([&] {
-      pthread_mutex_lock(&mutex);
-      woken = true;
-      pthread_cond_signal(&condition);
-      pthread_mutex_unlock(&mutex);
-    });
-    reset_trapped();
-    {
-      const Trap trap;
-      while (!woken) pthread_cond_wait(&condition, &mutex);
-    }
-    waker.join();
-    return true;
-  };
+  pthread_mutex_lock(&mutex);  // the timeouts of the waits for a condition have expired
   struct Call {
     const char* name;
     std::function<bool()> does;  // true: the result is the same as without the trap
@@ -234,12 +217,36 @@ TEST_CASE("The trap counts each call that waits, maps memory or does I/O, and pa
     CHECK(right);
     CHECK(first_trapped() == call.name);
   }
-  CHECK(wait_to_be_woken());
-  CHECK(first_trapped() == "pthread_cond_wait");
   pthread_mutex_unlock(&mutex);
   sem_destroy(&semaphore);
   fclose(file);
   for (const int open_fd : {events, in, out}) ::close(open_fd);
+  reset_trapped();
+}
+
+TEST_CASE("The trap counts a wait for a condition that another thread ends") {
+  if (!traps_allocation()) {
+    WARN("skipped: a sanitizer replaces the allocator, so the trap counts nothing");
+    return;
+  }
+  pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+  pthread_cond_t condition = PTHREAD_COND_INITIALIZER;
+  bool woken = false;
+  pthread_mutex_lock(&mutex);
+  std::thread waker([&] {
+    pthread_mutex_lock(&mutex);
+    woken = true;
+    pthread_cond_signal(&condition);
+    pthread_mutex_unlock(&mutex);
+  });
+  reset_trapped();
+  {
+    const Trap trap;
+    while (!woken) pthread_cond_wait(&condition, &mutex);
+  }
+  waker.join();
+  CHECK(first_trapped() == "pthread_cond_wait");
+  pthread_mutex_unlock(&mutex);
   reset_trapped();
 }
 

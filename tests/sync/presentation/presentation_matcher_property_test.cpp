@@ -16,6 +16,11 @@ namespace {
 constexpr int kHit = node_health_t::EXPECTS_HIT;
 constexpr int kBoth = int{node_health_t::EXPECTS_BEGIN} | int{node_health_t::EXPECTS_HIT};
 
+struct Node {
+  std::string name, modality;
+  int expected_events;
+};
+
 // Counts one expected event.
 void count(OutcomeCounts& t, bool reported, std::int8_t outcome) {
   ++t.expected;
@@ -31,10 +36,6 @@ void count(OutcomeCounts& t, bool reported, std::int8_t outcome) {
 }  // namespace
 
 TEST_CASE("Every expected event has one outcome when messages are lost, repeated and reordered") {
-  struct Node {
-    std::string name, modality;
-    int expected_events;
-  };
   for (unsigned seed = 0; seed < 40; ++seed) {
     MatcherFixture f;
     std::mt19937 random(seed);
