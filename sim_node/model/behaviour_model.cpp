@@ -33,8 +33,6 @@ constexpr std::array<BehaviourModel, 5> kModels{{
 
 }  // namespace
 
-std::span<const BehaviourModel> behaviour_models() { return kModels; }
-
 const BehaviourModel& behaviour_model(std::string_view name) {
   for (const BehaviourModel& m : kModels)
     if (m.name == name) return m;
