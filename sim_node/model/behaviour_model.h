@@ -9,7 +9,7 @@
 namespace tactus::sim {
 
 struct BehaviourModel {
-  std::string_view name, description;
+  std::string_view name;
   // Solved by impulse::World for free bodies and systems of joints; otherwise by ODE.
   bool impulses = false;
   // Acts before surfaces meet, and corrects remaining overlaps by positions. Contacts must therefore carry their
