@@ -107,11 +107,11 @@ inline WorldDef chain_world(int n, double length = 0.1, double mass = 0.05, doub
   return w;
 }
 
-// Largest distance between the two images of an anchor, m: the error of the joints without sliding axes.
+// Largest distance between the two images of an anchor, m: the error of the joints that turn.
 inline double largest_joint_gap_m(const WorldDef& w, std::span<const BodyMotion> bodies) {
   double largest = 0;
   for (const JointDef& j : w.joints) {
-    if (j.kind == JointKind::kPrismatic) continue;
+    if (j.kind == JointKind::kPrismatic || j.kind == JointKind::kFixed) continue;
     const auto now = [&](int body) -> Eigen::Vector3d {
       if (body < 0) return j.anchor_m;
       const auto b = static_cast<std::size_t>(body);
