@@ -22,7 +22,7 @@ void Options::add_to(CLI::App& app) {
       "--device", device,
       "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R], "
       "spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z]; default: the device of the scene");
-  log.add_to(app);
+  log.add_to(app, "force", "haptic.csv");
   app.get_option("--trace")->excludes("--device");
 }
 

@@ -24,7 +24,7 @@ struct Options {
   std::string tool;    // empty: the first tool of the scene
   std::string device;  // empty: the device that the scene specifies
   std::shared_ptr<const DeviceSpec> device_spec;
-  OfflineOptions log;
+  sync::OfflineTableOptions log;
 
   void add_to(CLI::App& app);
   // Fills device_spec. Throws std::runtime_error with one sentence when there is no such device.

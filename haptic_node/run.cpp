@@ -42,8 +42,9 @@ class Factory : public sync::RendererFactory {
   sync::OfflineInput* prepare(const sync::NodeOptions& options) override {
     sync::settings_of(haptic::setting_fields(), kHaptic.name, options.set);
     options_.parse_device();
-    log_ = haptic::Offline::open(options_.log, kHaptic.rate_Hz, sync::host_now());
-    return log_ ? &log_->run() : nullptr;
+    if (options_.log.log.empty()) return nullptr;
+    log_ = std::make_unique<haptic::Offline>(options_.log, kHaptic.rate_Hz, sync::host_now());
+    return &log_->run();
   }
   std::unique_ptr<sync::Renderer> make(sync::RendererHost& host) override {
     return std::make_unique<haptic::NodeRenderer>(host, options_, log_.get());

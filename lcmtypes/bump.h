@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <tactus/material_def_t.hpp>
 
 namespace tactus {
 
@@ -32,9 +31,9 @@ inline BumpAxes bump_axes(const Eigen::Vector3d& normal_body) {
 
 // Place of a point of the body frame in the map, in repetitions; drop the integer part. u grows to the right of the
 // picture and v upwards; its lower left corner is at (0, 0), so the centre of pixel i is at (i + 1/2) / columns.
-inline Eigen::Vector2d bump_at(const material_def_t& material, const BumpAxes& axes,
-                               const Eigen::Vector3d& point_body_m) {
-  return {point_body_m[axes.u] / material.bump_size_u_m, point_body_m[axes.v] / material.bump_size_v_m};
+// size_m: of one repetition.
+inline Eigen::Vector2d bump_at(const Eigen::Vector2f& size_m, const BumpAxes& axes, const Eigen::Vector3d& point_body_m) {
+  return Eigen::Vector2d(point_body_m[axes.u], point_body_m[axes.v]).cwiseQuotient(size_m.cast<double>());
 }
 
 }  // namespace tactus

@@ -7,6 +7,7 @@
 #include <tactus/thermal_state_t.hpp>
 #include <utility>
 
+#include "sync/log/export_csv.h"
 #include "sync/time/phases.h"
 #include "thermal_node/devices/external.h"
 #include "thermal_node/devices/make_device.h"
@@ -14,7 +15,7 @@
 
 namespace tactus::thermal {
 
-NodeRenderer::NodeRenderer(sync::RendererHost& host, std::string tool_name, Offline* log)
+NodeRenderer::NodeRenderer(sync::RendererHost& host, std::string tool_name, sync::OfflineTable* log)
     : SettingsRenderer(host, setting_fields()),
       tool_name_(std::move(tool_name)),
       log_(log),
@@ -91,7 +92,10 @@ void NodeRenderer::render(sync::HostTime now) {
   published_ = state;
   command_degC_ = state.commanded_degC;
   device_silent_ = device_ && !plate;
-  if (log_) log_->add(state);
+  if (log_) {
+    state.header.publish_time_ns = sync::to_ns(log_->run().now());
+    log_->add_row(sync::csv_row(state));
+  }
   host().bus().publish(channels::kThermalState, state);
   if (plate) plate_degC_ = plate->plate_degC;
   if (plate && device_->simulated() && !log_) {

@@ -10,10 +10,10 @@
 #include <tactus/thermal_state_t.hpp>
 
 #include "sync/resampling/contact_stream.h"
+#include "sync/node/offline.h"
 #include "sync/node/renderer.h"
 #include "thermal_node/devices/node_config.h"
 #include "thermal_node/devices/device.h"
-#include "thermal_node/offline.h"
 #include "thermal_node/display/quality.h"
 #include "thermal_node/rendering/renderer.h"
 #include "thermal_node/display/ticks.h"
@@ -24,7 +24,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
  public:
   // tool_name: from the command line; empty: the setting, otherwise the first tool of the scene. log: null:
   // renders the bus.
-  NodeRenderer(sync::RendererHost& host, std::string tool_name, Offline* log);
+  NodeRenderer(sync::RendererHost& host, std::string tool_name, sync::OfflineTable* log);
 
   std::optional<sync::Status> step(sync::HostTime now) override;
   std::string finish_log(sync::HostTime clock) override { return log_->result(config_.problem, clock); }
@@ -38,7 +38,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   void add_tags();
 
   std::string tool_name_;
-  Offline* log_;
+  sync::OfflineTable* log_;
   sync::ModalityEndpoint::Events& events_;
   sync::ModalityEndpoint::Stream<contact_frame_t>& frames_;
   sync::Queue<thermal_device_t>& device_messages_;

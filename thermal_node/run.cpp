@@ -14,6 +14,7 @@
 #include <tactus/node_health_t.hpp>
 
 #include "sync/degradation/known_modalities.h"
+#include "sync/log/export_csv.h"
 #include "sync/node/run_renderer.h"
 #include "thermal_node/renderer.h"
 
@@ -37,19 +38,21 @@ class Factory : public sync::RendererFactory {
   void add_options(CLI::App& app) override {
     app.add_option("--tool", tool_,
                    "tool to render; default: the setting `tool`, else the first tool of the scene");
-    log_options_.add_to(app);
+    log_options_.add_to(app, "temperature", "thermal.csv");
   }
   sync::OfflineInput* prepare(const sync::NodeOptions& options) override {
     const auto settings = sync::settings_of(thermal::setting_fields(), kThermal.name, options.set);
-    log_ = thermal::Offline::open(log_options_, settings.rate_Hz, sync::host_now());
-    return log_ ? &log_->run() : nullptr;
+    if (log_options_.log.empty()) return nullptr;
+    log_ = std::make_unique<sync::OfflineTable>(log_options_, sync::thermal_csv_names(), settings.rate_Hz,
+                                                sync::host_now());
+    return &log_->run();
   }
   std::unique_ptr<sync::Renderer> make(sync::RendererHost& host) override {
     return std::make_unique<thermal::NodeRenderer>(host, tool_, log_.get());
   }
   std::string tool_;
-  thermal::OfflineOptions log_options_;
-  std::unique_ptr<thermal::Offline> log_;
+  sync::OfflineTableOptions log_options_;
+  std::unique_ptr<sync::OfflineTable> log_;
 };
 
 }  // namespace

@@ -76,13 +76,6 @@ double contact_time_s(double mass_kg, double curvature_1_m, double speed_m_s, co
   return 2.87 * std::pow(mass_kg * mass_kg * curvature_1_m / (e * e * speed_m_s), 0.2);
 }
 
-double pulse_spectrum(double frequency_Hz, double length_s) {
-  const double x = frequency_Hz * length_s;
-  if (x < 1e-6) return 1;
-  if (std::abs(x - 1) < 1e-6) return 0.5;
-  return std::abs(std::sin(pi * x) / (pi * x * (1 - x * x)));
-}
-
 SourcePosition place_of(const Eigen::Isometry3d& T_W_listener, const Eigen::Vector3d& source_m, double nearest_m) {
   const Eigen::Vector3d p = T_W_listener.inverse() * source_m;
   const double r = p.norm();

@@ -18,9 +18,6 @@ namespace tactus::audio {
 double contact_time_s(double effective_mass_kg, double curvature_1_m, double speed_m_s, const Elastic& a,
                       const Elastic& b);
 
-// Magnitude of the spectrum of a raised-cosine pulse of unit area and length T at a frequency.
-double pulse_spectrum(double frequency_Hz, double length_s);
-
 // Position of a source relative to a listener who faces +x, z up; not nearer than nearest_m.
 SourcePosition place_of(const Eigen::Isometry3d& T_W_listener, const Eigen::Vector3d& source_m, double nearest_m);
 

@@ -99,13 +99,6 @@ double damping_1_s(const Elastic& m, double frequency_Hz) {
 double bar_speed_m_s(const Elastic& m) { return std::sqrt(m.youngs_modulus_Pa / m.density_kg_m3); }
 double shear_speed_m_s(const Elastic& m) { return bar_speed_m_s(m) / std::sqrt(2 * (1 + m.poissons_ratio)); }
 
-std::vector<NaturalFrequency> free_bar_bending(const Elastic& m, double length_m, double gyration_m, ModeRange range) {
-  return ascending(range, 0, [&](int n) {
-    const double b = free_bar_root(n) / length_m;
-    return b * b * gyration_m * bar_speed_m_s(m) / (2 * pi);
-  });
-}
-
 std::vector<NaturalFrequency> thick_bar_bending(const Elastic& m, double length_m, double gyration_m, ModeRange range) {
   return ascending(range, 0, [&](int n) {
     const double b = free_bar_root(n) / length_m, br = b * gyration_m;

@@ -38,12 +38,10 @@ struct ModeRange {
 // (n + 3/2) pi.
 double free_bar_root(int n);
 
-// Bending of a thin free-free bar of length L with radius of gyration r (h/sqrt(12) of a rectangle, R/2 of a
-// circle) (Euler-Bernoulli; Fletcher and Rossing, The Physics of Musical Instruments, 2nd ed., eq. 2.63). i: from
-// 0.
-std::vector<NaturalFrequency> free_bar_bending(const Elastic& material, double length_m, double gyration_m, ModeRange range);
-// The same with the first-order correction for shear and rotary inertia, for thick bars (Graff, Wave Motion in
-// Elastic Solids, 1975, section 3.4): f / sqrt(1 + (beta r)^2 (1 + E / (kappa G))), kappa = 5/6.
+// Bending of a free-free bar of length L with radius of gyration r (h/sqrt(12) of a rectangle, R/2 of a circle)
+// (Euler-Bernoulli; Fletcher and Rossing, The Physics of Musical Instruments, 2nd ed., eq. 2.63), with the
+// first-order correction for shear and rotary inertia (Graff, Wave Motion in Elastic Solids, 1975, section 3.4):
+// f / sqrt(1 + (beta r)^2 (1 + E / (kappa G))), kappa = 5/6. i: from 0.
 std::vector<NaturalFrequency> thick_bar_bending(const Elastic& material, double length_m, double gyration_m, ModeRange range);
 // n c / (2 L), free-free (Fletcher and Rossing, section 2.14). Torsion of a round bar: with the shear speed. i: n,
 // from 1.

@@ -19,12 +19,6 @@ constexpr double kMaxPixels = 64;
 // now the nearest, and no slope connects the two.
 constexpr double kMaxHandSpeed_m_s = 5;
 
-// Position in a relief of a place in the body frame.
-Vector2d repetitions(const Relief& relief, const BumpAxes& axes, const Vector3d& place_body) {
-  return {place_body[axes.u] / static_cast<double>(relief.size_m.x()),
-          place_body[axes.v] / static_cast<double>(relief.size_m.y())};
-}
-
 double towards(double from, double to, double max_change) {
   return from + std::clamp(to - from, -max_change, max_change);
 }
@@ -67,7 +61,7 @@ void Reliefs::update_height(Surface& s, const Relief& relief, const ToolPose& to
   m.jumped = m.initialised && axes.across != m.axes.across;
   m.axes = axes;
   const bool by_height = height_share_ > 0;
-  const double map_m = by_height ? relief.height_m(repetitions(relief, axes, place_body)) : 0;
+  const double map_m = by_height ? relief.height_m(bump_at(relief.size_m, axes, place_body)) : 0;
   const double room_m = s.normal.dot(tool.position) - s.offset_m;  // between the proxy and the smooth surface
   const Vector3d motion = place_body - m.last_lookup_body;
   // along the surface; the height itself may move
@@ -96,7 +90,7 @@ void Reliefs::update_height(Surface& s, const Relief& relief, const ToolPose& to
 }
 
 void Reliefs::update_tilt(MappedPlace& m, const Relief& relief, const Vector3d& place_body, double decay) const {
-  const Vector2d at = repetitions(relief, m.axes, place_body);
+  const Vector2d at = bump_at(relief.size_m, m.axes, place_body);
   if (m.jumped) m.initialised = false;
   Vector3d tilt = Vector3d::Zero();
   if (normal_share_ > 0)

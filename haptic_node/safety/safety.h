@@ -51,7 +51,6 @@ class Safety {
   // Energy given to the hand since the start, J.
   double energy_J() const { return energy_J_; }
   // Energy that the hand may receive now, J.
-  double tank_J() const { return tank_J_; }
 
  private:
   SafetyLimits limits_;

@@ -29,7 +29,6 @@ struct Solver::Engine {
   std::vector<JointPoint> joint_points;
   std::vector<dJointFeedback> feedback;
   bool exact = false;
-  long long messages_before = 0;  // number of messages up to the end of the construction
 
   Engine() : world(dWorldCreate()), contact_joints(dJointGroupCreate(0)) {}
   ~Engine() {

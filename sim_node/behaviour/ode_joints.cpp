@@ -227,29 +227,4 @@ void Joints::archive(StateArchive& a) {
   });
 }
 
-double Joints::largest_gap_m() const {
-  double gap = 0;
-  for (const Joint& j : joints_) {
-    dVector3 p, q;
-    switch (j.def.kind) {
-      case JointKind::kRevolute:
-        dJointGetHingeAnchor(j.id, p);
-        dJointGetHingeAnchor2(j.id, q);
-        break;
-      case JointKind::kUniversal:
-        dJointGetUniversalAnchor(j.id, p);
-        dJointGetUniversalAnchor2(j.id, q);
-        break;
-      case JointKind::kBall:
-        dJointGetBallAnchor(j.id, p);
-        dJointGetBallAnchor2(j.id, q);
-        break;
-      case JointKind::kPrismatic:
-      case JointKind::kFixed: continue;
-    }
-    gap = std::max(gap, (to_eigen(p) - to_eigen(q)).norm());
-  }
-  return gap;
-}
-
 }  // namespace tactus::sim::ode

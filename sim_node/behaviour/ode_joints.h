@@ -22,9 +22,6 @@ class Joints {
   bool set_friction(const std::string& name, int axis, double friction);
   void archive(StateArchive& a);
 
-  // Largest distance between the two images of an anchor, m: the joint error.
-  double largest_gap_m() const;
-
  private:
   struct Joint {
     dJointID id;

@@ -114,7 +114,6 @@ void Solver::start(const WorldDef& world) {
   moved_back_m_.resize(world.bodies.size());
   read_bodies();
   engine_->shapes->collide(contacts_);
-  engine_->messages_before = ode::message_count();
 }
 
 Solver::~Solver() = default;
@@ -246,8 +245,6 @@ std::span<const BodyMotion> Solver::bodies() const { return impulse_ ? impulse_-
 std::span<const Manifold> Solver::contacts() const { return impulse_ ? impulse_->contacts() : contacts_; }
 std::span<const Manifold> Solver::solved() const { return impulse_ ? impulse_->solved() : solved_; }
 const impulse::RecoveryReport* Solver::report() const { return impulse_ ? &impulse_->report() : nullptr; }
-std::int64_t Solver::solver_failures() const { return engine_ ? ode::message_count() - engine_->messages_before : 0; }
-double Solver::largest_joint_gap_m() const { return engine_ ? engine_->joints->largest_gap_m() : 0; }
 
 double Solver::mobility(int body, const Eigen::Vector3d& point, const Eigen::Vector3d& n) {
   return impulse_ ? impulse_->mobility(body, point, n) : sim::mobility(motions_[static_cast<std::size_t>(body)], point, n);

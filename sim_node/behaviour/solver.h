@@ -66,10 +66,6 @@ class Solver {
   double mobility(int body, const Eigen::Vector3d& point_m, const Eigen::Vector3d& n);
   // Statistics of the penetration recovery; null for ODE.
   const impulse::RecoveryReport* report() const;
-  // Number of solver failures that the engine has reported since the start.
-  std::int64_t solver_failures() const;
-  // Largest joint error, m.
-  double largest_joint_gap_m() const;
 
  private:
   struct Engine;

@@ -1,13 +1,10 @@
 #include "sim_node/collision/detector.h"
 
-#include <array>
 #include <stdexcept>
 #include <utility>
 
 namespace tactus::sim {
 namespace {
-
-constexpr std::array<std::string_view, 6> kNames{"ode", "ccd", "ccd_mpr", "fcl", "layers", "gaps"};
 
 std::string_view shape_word(ShapeKind kind) {
   switch (kind) {
@@ -29,8 +26,6 @@ std::string Detector::unsupported_reason(ShapeKind a, ShapeKind b) const {
   return "sim_node: the detector \"" + std::string(abilities().name) + "\" does not support a " + std::string(shape_word(a)) +
          " against a " + std::string(shape_word(b)) + "; choose \"ode\", which supports every pair";
 }
-
-std::span<const std::string_view> detector_names() { return kNames; }
 
 std::unique_ptr<Detector> make_detector(std::string_view name, const MeshContactOptions& layers,
                                         std::shared_ptr<MeshTrees> trees) {

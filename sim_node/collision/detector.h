@@ -54,7 +54,6 @@ class Detector {
 // ode: dCollide of ODE. ccd, ccd_mpr: libccd for convex shapes, by GJK and EPA or by MPR. fcl: FCL, where it was
 // built in. layers: own detector for meshes, boxes and heightfields as triangles. gaps: own detector for every pair;
 // it uses the layers for meshes. auto: gaps.
-std::span<const std::string_view> detector_names();
 // Throws std::runtime_error with one sentence when the name is unknown or the detector was not built in. trees:
 // shared trees of the world whose shapes will be added; null: the detector makes its own.
 std::unique_ptr<Detector> make_detector(std::string_view name, const MeshContactOptions& layers = {},

@@ -37,7 +37,6 @@ class SleepingIslands {
   // Wakes the islands of these bodies; returns the woken bodies, ascending.
   std::span<const int> wake_islands_of(std::span<const int> bodies);
   std::span<const int> wake_all();
-  std::span<const int> sleeping() const { return sleeping_; }
 
   bool is_asleep(int body) const { return island_[static_cast<std::size_t>(body)] >= 0; }
   std::size_t count() const { return sleeping_.size(); }

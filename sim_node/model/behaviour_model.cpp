@@ -7,22 +7,19 @@ namespace tactus::sim {
 namespace {
 
 constexpr std::array<BehaviourModel, 5> kModels{{
-    {.name = "quick", .description = "iterative: ODE's QuickStep"},
-    {.name = "step", .description = "LCP: ODE's dWorldStep"},
-    {.name = "impulse",
-     .description = "impulses: collisions pair by pair, then contact",
+    {.name = "quick"},  // iterative: ODE's QuickStep
+    {.name = "step"},   // LCP: ODE's dWorldStep
+    {.name = "impulse",  // collisions pair by pair, then contact
      .impulses = true,
      .needs_gaps = true,
      .needs_trees = true},
-    {.name = "penalty",
-     .description = "spring and damper in a shell, of the end of the step",
+    {.name = "penalty",  // spring and damper in a shell, of the end of the step
      .impulses = true,
      .needs_gaps = true,
      .needs_trees = true,
      .bounces = false,
      .finite_forces = true},
-    {.name = "penalty_explicit",
-     .description = "spring and damper in a shell, of the start of the step",
+    {.name = "penalty_explicit",  // the same, of the start of the step
      .impulses = true,
      .needs_gaps = true,
      .needs_trees = true,
@@ -32,8 +29,6 @@ constexpr std::array<BehaviourModel, 5> kModels{{
 }};
 
 }  // namespace
-
-std::span<const BehaviourModel> behaviour_models() { return kModels; }
 
 const BehaviourModel& behaviour_model(std::string_view name) {
   for (const BehaviourModel& m : kModels)

@@ -1,7 +1,6 @@
 // Contact laws that a scene may select (setting `solver`), and the requirements of each.
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -10,7 +9,7 @@
 namespace tactus::sim {
 
 struct BehaviourModel {
-  std::string_view name, description;
+  std::string_view name;
   // Solved by impulse::World for free bodies and systems of joints; otherwise by ODE.
   bool impulses = false;
   // Acts before surfaces meet, and corrects remaining overlaps by positions. Contacts must therefore carry their
@@ -25,7 +24,6 @@ struct BehaviourModel {
   bool finite_forces = false;  // forces are finite and continuous; otherwise an impact takes one step
 };
 
-std::span<const BehaviourModel> behaviour_models();
 // Throws std::runtime_error with one sentence when the name is unknown.
 const BehaviourModel& behaviour_model(std::string_view name);
 

@@ -9,7 +9,6 @@ OffsetTracker::Outcome ClockMapEstimator::add(const ProbeWave& wave) {
   other.replies = wave.replies;
   const OffsetTracker::Outcome outcome = other.tracker.add(wave.sample);
   jumps_ += outcome == OffsetTracker::Outcome::kJumped;
-  rate_changes_ += outcome == OffsetTracker::Outcome::kRateChanged;
   return outcome;
 }
 

@@ -23,9 +23,8 @@ class ClockMapEstimator {
   OffsetTracker::Outcome add(const ProbeWave& wave);
   // One map of each clock, for this instant.
   std::vector<clock_map_t> maps(HostTime now);
-  // Detected jumps and changes of rate since the start, over all clocks.
+  // Detected jumps since the start, over all clocks.
   std::int64_t jumps() const { return jumps_; }
-  std::int64_t rate_changes() const { return rate_changes_; }
 
  private:
   struct Other {
@@ -36,7 +35,7 @@ class ClockMapEstimator {
   };
   std::int32_t own_clock_;
   std::map<std::int32_t, Other> others_;
-  std::int64_t jumps_ = 0, rate_changes_ = 0;
+  std::int64_t jumps_ = 0;
 };
 
 }  // namespace tactus::sync

@@ -98,4 +98,35 @@ std::string OfflineInput::finish(double rendered_s, HostTime clock) {
   return text.str();
 }
 
+void OfflineTableOptions::add_to(CLI::App& app, const std::string& quantity, const std::string& columns) {
+  OfflineOptions::add_to(app, "renders this log of a run", "--trace");
+  app.add_option("--trace", trace, "file for the rendered " + quantity + ", CSV with the columns of " + columns)->needs("--log");
+}
+
+OfflineTable::OfflineTable(const OfflineTableOptions& options, const std::string& names, double rate_Hz, HostTime clock)
+    : run_(options, {{options.trace, "--trace"}}, rate_Hz, clock),
+      table_(!options.trace.empty() ? options.trace
+                                    : throw std::runtime_error("--log needs --trace FILE for the table of the output"),
+             "--trace") {
+  table_.write(names);
+}
+
+void OfflineTable::add_row(const std::string& row) {
+  if (!first_) first_ = run_.now();
+  table_.write(row);
+  ++rows_;
+}
+
+std::string OfflineTable::result(const std::string& problem, HostTime clock) {
+  if (!first_)
+    throw std::runtime_error(problem.empty() ? "the log has no scene; give one that scripts/run wrote from its beginning"
+                                             : problem);
+  const double rendered_s = to_seconds(run_.now() - *first_);
+  const std::string rest = run_.finish(rendered_s, clock);
+  table_.finish();
+  std::ostringstream text;
+  text << table_.path() << ": " << rows_ << " ticks, " << rendered_s << " s" << rest;
+  return text.str();
+}
+
 }  // namespace tactus::sync

@@ -69,4 +69,32 @@ class OfflineInput {
   std::optional<HostTime> next_tick_;
 };
 
+// Options of a renderer whose output is a table.
+struct OfflineTableOptions : OfflineOptions {
+  std::string trace;  // path of the CSV table
+
+  // quantity: in the table, e.g. "force". columns: the exported table with the same columns, e.g. "haptic.csv".
+  void add_to(CLI::App& app, const std::string& quantity, const std::string& columns);
+};
+
+// A recorded run and its output, a table with one row per tick.
+class OfflineTable {
+ public:
+  // Throws std::runtime_error with one sentence when the log holds no run or the table cannot be written.
+  OfflineTable(const OfflineTableOptions& options, const std::string& names, double rate_Hz, HostTime clock);
+
+  OfflineInput& run() { return run_; }
+  // Adds the row of this tick.
+  void add_row(const std::string& row);
+  // Renames the table to its final name and returns a summary in lines. Throws std::runtime_error with one sentence, the
+  // problem, when there is no row.
+  std::string result(const std::string& problem, HostTime clock);
+
+ private:
+  OfflineInput run_;
+  AtomicFile table_;
+  std::optional<HostTime> first_;  // tick of the first row
+  std::int64_t rows_ = 0;
+};
+
 }  // namespace tactus::sync

@@ -211,7 +211,6 @@ void PresentationMatcher::advance(HostTime now) {
       forget_.emplace(now + kRemember, it->first);
       continue;
     }
-    if (!it->second.known) unknown_reports_ += static_cast<std::int64_t>(it->second.reports.size());
     events_.erase(it);
   }
 }

@@ -110,9 +110,8 @@ class PresentationMatcher {
   // Reports with times on a clock without a map: they count as presented, but not for the asynchrony, because their
   // uncertainty is unknown.
   std::int64_t unmapped_reports() const { return unmapped_reports_; }
-  // Reports of events that were settled already, reports of unknown events, and messages of other runs.
+  // Reports of events that were settled already, and messages of other runs.
   std::int64_t late_reports() const { return late_reports_; }
-  std::int64_t unknown_reports() const { return unknown_reports_; }
   std::int64_t foreign() const { return foreign_; }
   // Events, nodes, modalities, pairs and simulations of other runs beyond the limits.
   std::int64_t overflow() const { return overflow_; }
@@ -177,7 +176,7 @@ class PresentationMatcher {
   std::map<std::string, OutcomeCounts> tallies_;
   std::map<std::pair<std::string, std::string>, SoaHistogram> pairs_;
   std::int64_t begins_ = 0, hits_ = 0, ends_ = 0;
-  std::int64_t late_reports_ = 0, unknown_reports_ = 0, foreign_ = 0, overflow_ = 0, unmapped_reports_ = 0;
+  std::int64_t late_reports_ = 0, foreign_ = 0, overflow_ = 0, unmapped_reports_ = 0;
 };
 
 }  // namespace tactus::sync

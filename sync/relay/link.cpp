@@ -110,7 +110,6 @@ std::optional<LineSocket::Arrived> LineSocket::receive(std::span<const LineEnd> 
   for (std::size_t i = 0; i < sites.size(); ++i)
     if (sites[i].address.sin_addr.s_addr == from.sin_addr.s_addr && sites[i].address.sin_port == from.sin_port)
       return Arrived{static_cast<int>(i), {buffer_.data(), static_cast<std::size_t>(size)}};
-  ++unknown_senders_;
   return Arrived{-1, {}};
 }
 

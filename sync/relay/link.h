@@ -59,8 +59,7 @@ class LineSocket {
         ++bad_;
     }
   }
-  // Datagrams from other addresses, and malformed ones.
-  std::int64_t unknown_senders() const { return unknown_senders_; }
+  // Malformed datagrams.
   std::int64_t bad() const { return bad_; }
 
  private:
@@ -73,7 +72,7 @@ class LineSocket {
 
   int socket_;
   std::array<std::uint8_t, 2048> buffer_;
-  std::int64_t unknown_senders_ = 0, bad_ = 0;
+  std::int64_t bad_ = 0;
 };
 
 }  // namespace tactus::sync

@@ -31,12 +31,11 @@ TEST_CASE("The dominant axis of the normal selects the projection cyclically") {
 }
 
 TEST_CASE("Map coordinates are counted in repetitions of the map") {
-  material_def_t material{};
-  material.bump_size_u_m = 0.5, material.bump_size_v_m = 0.25;
+  const Eigen::Vector2f size_m(0.5, 0.25);
   const Vector3d point(1, 2, 3);
-  CHECK(bump_at(material, bump_axes({0, 0, 1}), point) == Vector2d(2, 8));   // x, y
-  CHECK(bump_at(material, bump_axes({1, 0, 0}), point) == Vector2d(4, 12));  // y, z
-  CHECK(bump_at(material, bump_axes({0, -1, 0}), point) == Vector2d(6, 4));  // z, x
+  CHECK(bump_at(size_m, bump_axes({0, 0, 1}), point) == Vector2d(2, 8));   // x, y
+  CHECK(bump_at(size_m, bump_axes({1, 0, 0}), point) == Vector2d(4, 12));  // y, z
+  CHECK(bump_at(size_m, bump_axes({0, -1, 0}), point) == Vector2d(6, 4));  // z, x
 }
 
 TEST_CASE("A relief out of range is rejected, and without a map any finite numbers are valid") {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "tests/thermal_node/support/finite_differences.h"
+#include "tests/thermal_node/support/steady_contact.h"
 #include "thermal_node/skin/bioheat_model.h"
 #include "thermal_node/skin/contact_model.h"
 #include "thermal_node/skin/skin_model.h"
@@ -35,7 +36,7 @@ Slab deep(double conductivity, double heat_capacity) {
 TEST_CASE("The oracle itself is within 1 mK of the closed form of two half-spaces") {
   for (const Material& m : kMaterials) {
     const double h = contact_conductance_W_m2K(m.conductivity);
-    const SteadyContact exact{effusivity(0.37, 1000, 3770), effusivity(m.conductivity, m.density, m.specific_heat),
+    const test::SteadyContact exact{effusivity(0.37, 1000, 3770), effusivity(m.conductivity, m.density, m.specific_heat),
                               h, 33, 23};
     FiniteDifferences truth({{deep(0.37, 3.77e6)}, deep(m.conductivity, m.heat_capacity()), h});
     for (const double t : kTimes) {

@@ -20,8 +20,8 @@
 
 #include "sync/bus/identity.h"
 #include "tests/audio_node/support/recorded_run.h"
+#include "tests/visual_node/support/read_marker.h"
 #include "tests/visual_node/support/test_scene.h"
-#include "visual_node/frame/marker.h"
 
 using namespace tactus;
 using audio::test::kLogBegins_ns;
@@ -165,13 +165,13 @@ TEST_CASE(
   std::map<std::uint32_t, std::int64_t> seen;  // event: number of the first frame that shows it
   std::int64_t last = -1, first_number = -1;
   for (const auto& luma : frames) {
-    const auto newest = visual::read_marker(luma, kWidth, kHeight, 0);
+    const auto newest = test::read_marker(luma, kWidth, kHeight, 0);
     REQUIRE(newest);
     if (last >= 0) CHECK(newest->frame == last + 1);  // none is skipped, none repeated
     last = newest->frame;
     if (first_number < 0) first_number = last;
     for (int row = 0; row < visual::kMarkerRows; ++row) {
-      const auto marker = visual::read_marker(luma, kWidth, kHeight, row);
+      const auto marker = test::read_marker(luma, kWidth, kHeight, row);
       if (!marker || marker->frame != newest->frame || marker->event == 0) break;
       seen.try_emplace(marker->event, marker->frame);
     }
@@ -283,6 +283,6 @@ TEST_CASE("A snapshot is written beside its video, and each wall of a room can b
   REQUIRE(a.size() == b.size());
   REQUIRE(a.size() > 170);
   for (std::size_t i = 0; i < a.size(); ++i)
-    CHECK(visual::read_marker(a[i], kWidth, kHeight, 0)->frame ==
-          visual::read_marker(b[i], kWidth, kHeight, 0)->frame);
+    CHECK(test::read_marker(a[i], kWidth, kHeight, 0)->frame ==
+          test::read_marker(b[i], kWidth, kHeight, 0)->frame);
 }

@@ -20,8 +20,8 @@ bool conducts(double conductivity_W_mK, double heat_capacity_J_m3K) {
 
 }  // namespace
 
-BioheatModel::Grid BioheatModel::grid_of(const Tissue& tissue, const Mesh& mesh) {
-  Grid grid;
+std::vector<HeatCell> BioheatModel::skin_cells(const Tissue& tissue, const Mesh& mesh) {
+  std::vector<HeatCell> cells;
   const Layer& top = tissue.layers.front();
   double next = mesh.first_cell * std::sqrt(top.conductivity_W_mK / (top.density_kg_m3 * top.specific_heat_J_kgK));
   std::vector<double> widths(kMaxCells);
@@ -30,23 +30,18 @@ BioheatModel::Grid BioheatModel::grid_of(const Tissue& tissue, const Mesh& mesh)
     const double blood = layer.perfused ? tissue.perfusion_1_s * kBloodHeatCapacity_J_m3K : 0;
     for (std::size_t i = 0; i < count; ++i) {
       const double w = widths[i];
-      grid.width_m.push_back(w);
-      grid.cells.push_back(
+      cells.push_back(
           {w * layer.density_kg_m3 * layer.specific_heat_J_kgK, 2 * layer.conductivity_W_mK / w, w * blood});
+      next = w * mesh.growth;
     }
-    next = grid.width_m.back() * mesh.growth;
   }
-  return grid;
+  return cells;
 }
 
 BioheatModel::BioheatModel(const Tissue& tissue, const Mesh& mesh)
-    : BioheatModel(tissue, mesh, grid_of(tissue, mesh)) {}
-
-BioheatModel::BioheatModel(const Tissue& tissue, const Mesh& mesh, Grid grid)
     : tissue_(tissue),
       mesh_(mesh),
-      width_m_(std::move(grid.width_m)),
-      columns_(std::move(grid.cells), kMaxObjects, kMaxCells),
+      columns_(skin_cells(tissue, mesh), kMaxObjects, kMaxCells),
       object_width_m_(kMaxCells),
       object_cells_(kMaxCells) {
   reset();
@@ -98,20 +93,6 @@ void BioheatModel::step(double dt_s, std::span<const double> conductance_W_m2K, 
                         double longest_substep_s) {
   const double bare = 1 - std::clamp(touched_share, 0.0, 1.0);
   columns_.step(dt_s, conductance_W_m2K, tissue_.air_conductance_W_m2K * bare, longest_substep_s);
-}
-
-double BioheatModel::at_depth_degC(double depth_m) const {
-  double above_m = 0, above_degC = surface_degC(), top_m = 0;
-  for (std::size_t i = 0; i < width_m_.size(); ++i) {
-    const double here_m = top_m + width_m_[i] / 2, here_degC = columns_.skin(i);
-    if (depth_m <= here_m)
-      return above_degC +
-             (here_degC - above_degC) * std::clamp((depth_m - above_m) / (here_m - above_m), 0.0, 1.0);
-    above_m = here_m;
-    above_degC = here_degC;
-    top_m += width_m_[i];
-  }
-  return above_degC;
 }
 
 }  // namespace tactus::thermal

@@ -41,22 +41,14 @@ class BioheatModel final : public Skin {
   double heat_flux_W_m2() const override { return columns_.flux_W_m2(); }
 
   double blood_degC() const { return blood_degC_; }
-  // Temperature of the tissue, linear between the centres of cells.
-  double at_depth_degC(double depth_m) const;
-  // For the heat balance.
+  // For the heat balance and the profile of the skin.
   const HeatColumns& columns() const { return columns_; }
 
  private:
-  struct Grid {
-    std::vector<HeatCell> cells;
-    std::vector<double> width_m;
-  };
-  BioheatModel(const Tissue& tissue, const Mesh& mesh, Grid grid);
-  static Grid grid_of(const Tissue& tissue, const Mesh& mesh);
+  static std::vector<HeatCell> skin_cells(const Tissue& tissue, const Mesh& mesh);
 
   Tissue tissue_;
   Mesh mesh_;
-  std::vector<double> width_m_;  // widths of the skin cells, surface first
   std::array<ObjectProperties, kMaxObjects> objects_{};
   HeatColumns columns_;
   std::vector<double> object_width_m_;  // scratch for set_object

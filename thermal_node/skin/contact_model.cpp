@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "thermal_node/skin/erfcx.h"
-
 namespace tactus::thermal {
 namespace {
 constexpr double kMinPatch_m2 = 1e-6;
@@ -22,21 +20,6 @@ double contact_share(double force_N, double area_m2, const Press& p) {
   const double area = std::max(area_m2, kMinPatch_m2);
   const double pressure_ratio = (force_N / area) / (p.reference_force_N / p.reference_area_m2);
   return std::min(1.0, area / p.reference_area_m2 * std::pow(pressure_ratio, p.pressure_exponent));
-}
-
-double SteadyContact::beta() const { return conductance_W_m2K * (1 / skin_effusivity + 1 / object_effusivity); }
-
-double SteadyContact::skin_surface_degC(double t_s) const {
-  const double share = object_effusivity / (skin_effusivity + object_effusivity);
-  return skin_degC - (skin_degC - object_degC) * share * (1 - erfcx(beta() * std::sqrt(t_s)));
-}
-
-double SteadyContact::heat_flux_W_m2(double t_s) const {
-  return conductance_W_m2K * (skin_degC - object_degC) * erfcx(beta() * std::sqrt(t_s));
-}
-
-double SteadyContact::contact_degC() const {
-  return (skin_effusivity * skin_degC + object_effusivity * object_degC) / (skin_effusivity + object_effusivity);
 }
 
 }  // namespace tactus::thermal

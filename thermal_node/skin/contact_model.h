@@ -1,9 +1,4 @@
-// Temperature of skin that touches an object: two semi-infinite bodies with a contact resistance, in closed form.
-//
-// Carslaw and Jaeger, Conduction of Heat in Solids, 1959, section 2.5 (solution with a boundary conductance), in
-// the form that Ho and Jones (2008, "Modeling the thermal responses of the skin surface during hand-object
-// interactions") use for touch. It covers one uninterrupted contact; skin_model.h integrates intermittent contacts
-// and is tested against this.
+// Effusivity of a material, and the conductance of the contact between it and a finger pad.
 #pragma once
 
 namespace tactus::thermal {
@@ -29,24 +24,5 @@ struct Press {
 // area/reference times (pressure/reference)^n, at most 1. An area below 1 mm^2 counts as 1 mm^2: a point contact
 // of the simulation is rendered as the smallest patch that skin can form.
 double contact_share(double force_N, double area_m2, const Press& press);
-
-// One contact that begins at t = 0 and lasts.
-struct SteadyContact {
-  double skin_effusivity;
-  double object_effusivity;
-  double conductance_W_m2K;
-  double skin_degC;    // temperature of the skin before the touch
-  double object_degC;  // temperature of the object before the touch
-
-  // Temperature of the skin surface, t seconds after the begin of the touch.
-  double skin_surface_degC(double t_s) const;
-  // Heat flux out of the skin, W/m^2.
-  double heat_flux_W_m2(double t_s) const;
-  // Temperature of the interface after a long time, when the resistance no longer matters.
-  double contact_degC() const;
-
- private:
-  double beta() const;  // s^-1/2: conductance (1/e_skin + 1/e_object)
-};
 
 }  // namespace tactus::thermal

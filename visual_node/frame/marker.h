@@ -9,7 +9,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,21 +19,8 @@ namespace tactus::visual {
 
 inline constexpr int kMarkerRows = 12;
 
-struct Marker {
-  std::uint32_t frame = 0;  // modulo 2^24
-  std::uint32_t event = 0;  // low 32 bits of event_id
-};
-
-// The cells of one row, true: white.
-std::vector<bool> encode_marker(const Marker& marker);
-// Returns nullopt when they contain no marker: wrong beginning or checksum.
-std::optional<Marker> decode_marker(const std::vector<bool>& cells);
-
 // Adds the cells of a whole picture. events: newest first, the first kMarkerRows of them are named.
 void append_marker(std::vector<Rect>& overlay, std::uint32_t frame, std::span<const std::int64_t> events,
                    int height);
-
-// Reads row `row` from the luma of a picture (rows from the top, one byte per pixel).
-std::optional<Marker> read_marker(std::span<const std::uint8_t> luma, int width, int height, int row);
 
 }  // namespace tactus::visual

@@ -28,39 +28,12 @@ std::vector<bool> encode_row(std::uint64_t beginning, std::uint64_t payload) {
   return cells;
 }
 
-std::optional<std::uint64_t> decode_row(const std::vector<bool>& cells, std::uint64_t beginning) {
-  if (cells.size() != kMarkerCells) return std::nullopt;
-  const auto bits = [&](int first, int count) {
-    std::uint64_t value = 0;
-    for (int i = 0; i < count; ++i)
-      value = value << 1 | static_cast<std::uint64_t>(cells[static_cast<std::size_t>(first + i)]);
-    return value;
-  };
-  const std::uint64_t payload = bits(4, 56);
-  if (bits(0, 4) != beginning || bits(60, 8) != crc8(payload, 7)) return std::nullopt;
-  return payload;
-}
-
 void append_row(std::vector<Rect>& overlay, const std::vector<bool>& cells, int row, int height) {
   const auto y = static_cast<float>(height - kMarkerCell_px * (row + 1));
   const float cell = kMarkerCell_px;
   overlay.push_back({0, y, cell * kMarkerCells, cell, 0, 0, 0, 1});
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (cells[i]) overlay.push_back({cell * static_cast<float>(i), y, cell, cell, 1, 1, 1, 1});
-}
-
-std::vector<bool> read_row(std::span<const std::uint8_t> luma, int width, int height, int row) {
-  const int y = height - kMarkerCell_px * (row + 1);
-  std::vector<bool> cells;
-  if (y < 0 || width < kMarkerCell_px * kMarkerCells) return cells;
-  for (int i = 0; i < kMarkerCells; ++i) {
-    int sum = 0;  // of the inner 2 x 2 pixels, which compression changes least
-    for (const int dy : {1, 2})
-      for (const int dx : {1, 2})
-        sum += luma[static_cast<std::size_t>((y + dy) * width + kMarkerCell_px * i + dx)];
-    cells.push_back(sum > 4 * 127);
-  }
-  return cells;
 }
 
 }  // namespace tactus::visual

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <span>
 #include <vector>
 
 #include "visual_node/scene_view/draw_list.h"
@@ -16,12 +14,8 @@ inline constexpr int kMarkerCells = 4 + 56 + 8;
 
 // The cells of one row, true: white. beginning: 4 bits.
 std::vector<bool> encode_row(std::uint64_t beginning, std::uint64_t payload);
-// Returns nullopt when they contain no such row: wrong beginning or checksum.
-std::optional<std::uint64_t> decode_row(const std::vector<bool>& cells, std::uint64_t beginning);
 
 // Row 0 lies on the lowest 4 pixels, row k above it.
 void append_row(std::vector<Rect>& overlay, const std::vector<bool>& cells, int row, int height);
-// Reads the luma of a picture, rows from the top, one byte per pixel. Empty: the picture has no such row.
-std::vector<bool> read_row(std::span<const std::uint8_t> luma, int width, int height, int row);
 
 }  // namespace tactus::visual

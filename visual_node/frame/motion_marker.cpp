@@ -27,12 +27,4 @@ void append_motion_marker(std::vector<Rect>& overlay, std::uint32_t frame, std::
   }
 }
 
-std::optional<MotionMarker> read_motion_marker(std::span<const std::uint8_t> luma, int width, int height,
-                                               int row) {
-  const auto payload = decode_row(read_row(luma, width, height, kMarkerRows + row), kBeginning);
-  if (!payload) return std::nullopt;
-  return MotionMarker{static_cast<std::uint32_t>(*payload >> 32), static_cast<int>(*payload >> 28 & 0xf),
-                      static_cast<std::uint32_t>(*payload & 0xfffffff)};
-}
-
 }  // namespace tactus::visual

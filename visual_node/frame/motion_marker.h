@@ -2,12 +2,11 @@
 // the latency from motion to pixel can be read from the frames themselves. scripts/python/tactus/log/marker.py reads them. Pure.
 //
 // A row has the format of frame/marker_row.h, begins with 0 1 1 0 and continues with
-//   frame, 24 bits | index of the tool, 4 bits | low 28 bits of header.seq of its TOOL_STATE
+//   frame, 24 bits | index of the tool, 4 bits | low 28 bits of header.seq of its TOOL_STATE: three days at 1 kHz
 // There are at most kMotionRows rows, on rows kMarkerRows and above, one for each tool with recent messages.
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,18 +22,10 @@ struct PoseSample {
   std::int64_t seq = 0;
 };
 
-struct MotionMarker {
-  std::uint32_t frame = 0;   // modulo 2^24
-  int tool = 0;              // modulo 2^4
-  std::uint32_t sample = 0;  // modulo 2^28: three days at 1 kHz
-};
-
 // Height of the region at the lower edge of a picture that programs read: nothing is drawn over it.
 int marker_height_px(bool events, bool motion);
 
 void append_motion_marker(std::vector<Rect>& overlay, std::uint32_t frame, std::span<const PoseSample> samples,
                           int height);
-// row: 0 .. kMotionRows - 1.
-std::optional<MotionMarker> read_motion_marker(std::span<const std::uint8_t> luma, int width, int height, int row);
 
 }  // namespace tactus::visual

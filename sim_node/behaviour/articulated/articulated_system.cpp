@@ -104,11 +104,6 @@ void ArticulatedSystem::add_moment(int link, const Eigen::Vector3d& moment_N_m) 
   slope_known_ = false;
 }
 
-void ArticulatedSystem::set_torque(int dof, double torque) {
-  loads_.torque[static_cast<std::size_t>(dof)] = torque;
-  slope_known_ = false;
-}
-
 void ArticulatedSystem::set_gravity(int link, const Eigen::Vector3d& gravity_m_s2) {
   tree_->links[static_cast<std::size_t>(link)].def.gravity_m_s2 = gravity_m_s2;
   slope_known_ = false;
@@ -230,23 +225,6 @@ BodyMotion ArticulatedSystem::motion(int link) const {
   m.inverse_mass_1_kg = 1 / d.mass_kg;
   m.inverse_inertia = turn * d.inertia_kg_m2.inverse() * turn.transpose();
   return m;
-}
-
-double ArticulatedSystem::kinetic_energy_J() { return dynamics().kinetic_energy_J(); }
-
-double ArticulatedSystem::potential_energy_J() {
-  const Dynamics& placed = dynamics();
-  double sum = 0;
-  for (std::size_t i = 0; i < tree_->links.size(); ++i) {
-    const LinkDef& d = tree_->links[i].def;
-    sum -= d.mass_kg * d.gravity_m_s2.dot(placed.centre_m(static_cast<int>(i)));
-  }
-  for (const Dof& dof : tree_->dofs)
-    if (dof.stiffness > 0) {
-      const double stretch = state_.positions[static_cast<std::size_t>(dof.coordinate)] - dof.reference;
-      sum += 0.5 * dof.stiffness * stretch * stretch;
-    }
-  return sum;
 }
 
 }  // namespace tactus::sim::articulated

@@ -47,8 +47,6 @@ class ArticulatedSystem {
   // Acts during the next step only. force N at a world point m; moment N m.
   void add_force(int link, const Eigen::Vector3d& force_N, const Eigen::Vector3d& point_m);
   void add_moment(int link, const Eigen::Vector3d& moment_N_m);
-  // Acts along a degree of freedom until it is changed, N m or N.
-  void set_torque(int dof, double torque);
   // These hold until they are changed.
   void set_gravity(int link, const Eigen::Vector3d& gravity_m_s2);
   void set_motor(int dof, double effort, double rate);
@@ -71,8 +69,6 @@ class ArticulatedSystem {
   bool is_stiff(int dof) const { return !passive_[static_cast<std::size_t>(dof)]; }
 
   BodyMotion motion(int link) const;  // position and orientation: of the centre, relative to rest
-  double kinetic_energy_J();
-  double potential_energy_J();                     // of gravity and springs; gravity is zero at the origin
   int substeps_last() const { return substeps_; }  // number of sub-steps tried in the last step
 
  private:

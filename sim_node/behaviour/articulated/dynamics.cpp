@@ -211,18 +211,6 @@ void Dynamics::evaluate(const double* positions, const double* rates, const Load
   }
 }
 
-double Dynamics::kinetic_energy_J() const {
-  double sum = 0;
-  for (std::size_t i = 0; i < work_.size(); ++i) {
-    const LinkDef& d = tree_.links[i].def;
-    const Work& w = work_[i];
-    const Eigen::Vector3d spin = w.velocity.head<3>(), speed = w.velocity.tail<3>() + spin.cross(w.centre);
-    const Eigen::Vector3d local = w.rotation.transpose() * spin;
-    sum += 0.5 * (d.mass_kg * speed.squaredNorm() + local.dot(d.inertia_kg_m2 * local));
-  }
-  return sum;
-}
-
 // Inward pass along the path from the link: each joint takes its share and passes the rest to the parent.
 void Dynamics::propagate_inward(int link, Spatial force) {
   for (int i = link; i >= 0; i = tree_.links[index(i)].def.parent) {

@@ -43,7 +43,6 @@ class Dynamics {
     const Spatial& v = work_[index(link)].velocity;
     return v.tail<3>() + v.head<3>().cross(point_m - origin_);
   }
-  double kinetic_energy_J() const;
 
   // The following functions need an evaluate() of the current pose. impulse_to_rates() gives the change of every
   // rate by an impulse, N s, at a point of a link: M^-1 J^T impulse. Cost: one pass over all links.

@@ -23,14 +23,6 @@ int World::add_free(const FreeBody& body) {
   return static_cast<int>(movers_.size()) - 1;
 }
 
-int World::add_system(articulated::ArticulatedSystem system) {
-  std::vector<int> bodies;
-  for (std::size_t i = 0; i < system.tree().links.size(); ++i) bodies.push_back(add_fixed());
-  const int first = bodies.front();
-  make_system(bodies, std::move(system));
-  return first;
-}
-
 void World::make_system(const std::vector<int>& bodies, articulated::ArticulatedSystem system) {
   const std::size_t dofs = system.tree().dofs.size();
   system.dynamics();

@@ -49,10 +49,9 @@ class World {
  public:
   explicit World(ContactLaw law = {}) : law_(law), collisions_({law.bounce_speed_m_s, law.slop_m}) {}
 
-  // Each returns the next body index, from 0. A system takes one index per link, in order.
+  // Each returns the next body index, from 0.
   int add_fixed();
   int add_free(const FreeBody& body);
-  int add_system(articulated::ArticulatedSystem system);
   // Turns bodies that were added as fixed into the links of a system, in order.
   void make_system(const std::vector<int>& bodies, articulated::ArticulatedSystem system);
   // Returns the next shape index.

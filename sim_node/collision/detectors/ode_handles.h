@@ -29,10 +29,6 @@ class Library {
   Library& operator=(const Library&) = delete;
 };
 
-// Number of messages of the solver since the process started. ODE's LCP solver prints a message when it fails on a
-// redundant contact.
-long long message_count();
-
 inline Eigen::Vector3d to_eigen(const dReal* v) { return {v[0], v[1], v[2]}; }
 inline Eigen::Quaterniond quaternion(const dReal* q) { return {q[0], q[1], q[2], q[3]}; }
 inline void set_quaternion(const Eigen::Quaterniond& q, dQuaternion out) {

@@ -128,7 +128,7 @@ BumpTrace run(const BumpStroke& stroke) {
     out.place_m.push_back(stroke.speed_m_s * (t - kEnds_s));
     out.along_N.push_back(tick.force_N.dot(along));
     out.up_N.push_back(tick.force_N.z());
-    out.slope.push_back(relief->slope(bump_at(wears, {2, 0, 1}, at)).dot(along.head<2>()));
+    out.slope.push_back(relief->slope(bump_at(relief->size_m, {2, 0, 1}, at)).dot(along.head<2>()));
     out.proxy_m.push_back(tick.state.proxy.position_m.z);
     out.change_N.push_back(loop.change_N());
   }

@@ -30,12 +30,12 @@ class Ours : public Engine {
     auto state = s.state();
     state.rates[1] = about_vertical;
     s.set_state(state);
-    jointed_ = toys_.world.add_system(std::move(s));
+    jointed_ = add_system(toys_.world, std::move(s));
   }
   int hanging_rod(double restitution) override {
     articulated::LinkDef link = rod_link(-1, JointKind::kBall, {0, 0, 0}, {0, 0, -1});
     link.gravity_m_s2 = toys_.gravity_m_s2;
-    jointed_ = toys_.world.add_system(articulated::ArticulatedSystem({link}));
+    jointed_ = add_system(toys_.world, articulated::ArticulatedSystem({link}));
     return toys_.capsule(jointed_, 0.1, 0.01, {0, 0, 1}, 0, restitution);
   }
   void pendulum(double angle) override {
@@ -45,7 +45,7 @@ class Ours : public Engine {
     auto state = s.state();
     state.positions[0] = angle;
     s.set_state(state);
-    jointed_ = toys_.world.add_system(std::move(s));
+    jointed_ = add_system(toys_.world, std::move(s));
   }
   void set_motion(int body, const Eigen::Vector3d& v, const Eigen::Vector3d& w) override {
     toys_.world.free_body(body).velocity_m_s = v;

@@ -24,10 +24,10 @@ struct Wheel {
     l.joint = JointKind::kRevolute;
     l.axes[0] = axis;
     l.inertia_kg_m2 = inertia * Eigen::Matrix3d::Identity();
-    body = world.add_system(articulated::ArticulatedSystem({l}));
+    body = add_system(world, articulated::ArticulatedSystem({l}));
   }
   void run(double seconds, double torque = 0) {
-    world.system_of(body).set_torque(0, torque);
+    set_torque(world.system_of(body), 0, torque);
     for (int i = 0; i < static_cast<int>(std::lround(seconds / kH)); ++i) world.step({}, kH);
   }
   double angle() { return world.system_of(body).state().positions[0]; }
@@ -130,7 +130,7 @@ TEST_CASE("A chain that falls on the floor rests with its weight shared between 
   state.positions[7] = 1.2;
   state.positions[9] = 0.5;
   system.set_state(state);
-  const int chain = toys.world.add_system(std::move(system));
+  const int chain = add_system(toys.world, std::move(system));
   for (int i = 0; i < 8; ++i) toys.capsule(chain + i, 0.08, 0.01, {0, 0, 1}, 0.6);
   for (int i = 0; i < 6000; ++i) toys.step(kH);
   double fastest = 0;
@@ -156,7 +156,7 @@ TEST_CASE("Boxes and links carry each other's weight in one solve") {
     lever.inertia_kg_m2 = Eigen::Vector3d(1e-4, 2e-3, 2e-3).asDiagonal();
     lever.gravity_m_s2 = kDown;
     lever.axes[0].friction = 1e-3;
-    const int body = toys.world.add_system(articulated::ArticulatedSystem({lever}));
+    const int body = add_system(toys.world, articulated::ArticulatedSystem({lever}));
     toys.capsule(body, 0.6, 0.01, {1, 0, 0}, 0.8);
     const int left = toys.ball(0.1, 0.02, {-0.2, 0, 0.03}, 0.8), right = toys.ball(0.2, 0.02, {0.1, 0, 0.03}, 0.8);
     for (int i = 0; i < 500; ++i) toys.step(kH);

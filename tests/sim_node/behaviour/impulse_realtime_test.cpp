@@ -43,7 +43,7 @@ TEST_CASE("A step with bodies, links and impacts allocates no memory after warm-
   lever.mass_kg = 0.2;
   lever.inertia_kg_m2 = Eigen::Vector3d(1e-4, 2e-3, 2e-3).asDiagonal();
   lever.gravity_m_s2 = kDown;
-  const int body = toys.world.add_system(articulated::ArticulatedSystem({lever}));
+  const int body = add_system(toys.world, articulated::ArticulatedSystem({lever}));
   toys.capsule(body, 0.6, 0.01, {1, 0, 0}, 0.8, 0.8);
   int ball = 0;
   for (int i = 0; i < 3; ++i) ball = toys.ball(0.05, 0.02, {-0.2 + 0.15 * i, 0, 0.2 + 0.1 * i}, 0.5, 0.8);

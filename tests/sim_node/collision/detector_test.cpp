@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "sim_node/collision/closest_surface.h"
+#include "tests/sim_node/support/detectors.h"
 #include "tests/sim_node/support/meshes.h"
 
 using namespace tactus::sim;
@@ -31,7 +32,7 @@ WorldDef world_of_meshes() {
 
 std::vector<std::unique_ptr<Detector>> built_in() {
   std::vector<std::unique_ptr<Detector>> all;
-  for (const std::string_view name : detector_names())
+  for (const std::string_view name : kDetectors)
     if (name != "fcl" || make_fcl_detector()) all.push_back(make_detector(name));
   return all;
 }

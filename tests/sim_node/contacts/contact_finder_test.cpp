@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
+#include "tests/sim_node/support/detectors.h"
 #include "tests/sim_node/support/meshes.h"
 #include "tests/sim_node/support/small_worlds.h"
 
@@ -57,7 +58,7 @@ TEST_CASE("A contact finder rejects detectors that report no gaps") {
   WorldDef w = empty_world();
   add_floor(w);
   add_ball(w, 1, 0.05, {0, 0, 0.0501});
-  for (const std::string_view name : detector_names()) {
+  for (const std::string_view name : kDetectors) {
     INFO(name);
     Settings s;
     s.detector = name;

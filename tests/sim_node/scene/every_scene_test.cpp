@@ -1,7 +1,9 @@
 // Every scene of the project loads without a warning, runs, is touched, and stays in one piece.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdarg>
 #include <filesystem>
+#include <ode/error.h>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/contact_t.hpp>
 #include <tactus/game_state_t.hpp>
@@ -13,12 +15,15 @@
 #include "sim_node/collision/detector.h"
 #include "sim_node/scene/load_sdf.h"
 #include "tests/sim_node/support/simple_hand.h"
+#include "tests/sim_node/support/small_worlds.h"
 
 using namespace tactus;
 using namespace tactus::sim;
 using Eigen::Vector3d;
 
 namespace {
+
+int solver_failures = 0;  // messages of ODE: its LCP solver prints one when it fails on a redundant contact
 
 std::vector<std::filesystem::path> scenes() {
   std::vector<std::filesystem::path> found;
@@ -73,6 +78,8 @@ TEST_CASE(
     const WorldDef w = load_sdf(file, warnings);
     Simulation s(w, settings_of(w));
     s.start(11);
+    solver_failures = 0;
+    dSetMessageHandler([](int, const char*, va_list) { ++solver_failures; });
     test::Hand hand{.radius = w.tools[0].radius_m, .stiffness = 500, .last = along(w, w.tools[0], 0)};
     double fastest = 0, farthest = 0;
     std::size_t begins = 0, contacts = 0;
@@ -93,16 +100,13 @@ TEST_CASE(
     CHECK(contacts > 0);
     CHECK(fastest < kFastest_m_s);
     CHECK(farthest < kFarthest_m);
-    if (const auto* single = dynamic_cast<const SingleGroup*>(&s.mechanics())) {
-      CHECK(single->solver().solver_failures() == 0);
-      CHECK(single->solver().largest_joint_gap_m() < 0.005);
-    }
+    CHECK(solver_failures == 0);
+    if (dynamic_cast<const SingleGroup*>(&s.mechanics())) CHECK(test::largest_joint_gap_m(w, s.bodies()) < 0.005);
   }
 }
 
-TEST_CASE("The stack scene stays finite in two groups, even with a library that gives contacts no direction") {
-  const auto built = detector_names();
-  if (std::find(built.begin(), built.end(), "fcl") == built.end()) return;
+TEST_CASE("The stack scene stays finite in two groups, also if a contact has no direction") {
+  if (!make_fcl_detector()) return;
   std::vector<std::string> warnings;
   const WorldDef w = load_sdf(TACTUS_SOURCE_DIR "/sim_node/scenes/stack.sdf", warnings);
   Settings settings = settings_of(w);

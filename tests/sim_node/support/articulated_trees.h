@@ -2,9 +2,11 @@
 #pragma once
 
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "sim_node/behaviour/articulated/articulated_system.h"
+#include "sim_node/behaviour/impulse/world.h"
 
 namespace tactus::sim::test {
 
@@ -39,7 +41,53 @@ inline std::vector<articulated::LinkDef> horizontal_chain(int n, JointKind joint
   return links;
 }
 
-inline double energy_J(articulated::ArticulatedSystem& s) { return s.kinetic_energy_J() + s.potential_energy_J(); }
+inline double kinetic_energy_J(articulated::ArticulatedSystem& s) {
+  const articulated::Dynamics& placed = s.dynamics();
+  double sum = 0;
+  for (std::size_t i = 0; i < s.tree().links.size(); ++i) {
+    const articulated::LinkDef& d = s.tree().links[i].def;
+    const int link = static_cast<int>(i);
+    const Eigen::Vector3d spin = placed.rotation(link).transpose() * placed.spin_rad_s(link);
+    sum += 0.5 * (d.mass_kg * placed.velocity_at(link, placed.centre_m(link)).squaredNorm() +
+                  spin.dot(d.inertia_kg_m2 * spin));
+  }
+  return sum;
+}
+
+// Of gravity and springs; gravity is zero at the origin.
+inline double potential_energy_J(articulated::ArticulatedSystem& s) {
+  const articulated::Dynamics& placed = s.dynamics();
+  const articulated::Tree& tree = s.tree();
+  double sum = 0;
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    const articulated::LinkDef& d = tree.links[i].def;
+    sum -= d.mass_kg * d.gravity_m_s2.dot(placed.centre_m(static_cast<int>(i)));
+  }
+  for (const articulated::Dof& dof : tree.dofs)
+    if (dof.stiffness > 0) {
+      const double stretch = s.state().positions[static_cast<std::size_t>(dof.coordinate)] - dof.reference;
+      sum += 0.5 * dof.stiffness * stretch * stretch;
+    }
+  return sum;
+}
+
+inline double energy_J(articulated::ArticulatedSystem& s) { return kinetic_energy_J(s) + potential_energy_J(s); }
+
+// Acts along a degree of freedom until it is changed, N m or N.
+inline void set_torque(articulated::ArticulatedSystem& s, int dof, double torque) {
+  auto saved = s.saved_loads();
+  saved.loads.torque[static_cast<std::size_t>(dof)] = torque;
+  s.set_loads(saved);
+}
+
+// Adds one body per link, in order; returns the index of the first.
+inline int add_system(impulse::World& world, articulated::ArticulatedSystem system) {
+  std::vector<int> bodies;
+  for (std::size_t i = 0; i < system.tree().links.size(); ++i) bodies.push_back(world.add_fixed());
+  const int first = bodies.front();
+  world.make_system(bodies, std::move(system));
+  return first;
+}
 
 // A random tree of up to n links with joints of every kind and bodies of every shape.
 inline std::vector<articulated::LinkDef> random_tree(int n, bool is_free, std::mt19937& random) {

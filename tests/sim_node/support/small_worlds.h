@@ -1,10 +1,14 @@
 // Small worlds, built in code, for the tests of the simulation.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <span>
 #include <string>
 
+#include "sim_node/model/body_motion.h"
 #include "sim_node/model/world_def.h"
 
 namespace tactus::sim::test {
@@ -101,6 +105,21 @@ inline WorldDef chain_world(int n, double length = 0.1, double mass = 0.05, doub
     if (i > 0) w.no_collision.emplace_back(i - 1, i);
   }
   return w;
+}
+
+// Largest distance between the two images of an anchor, m: the error of the joints that turn.
+inline double largest_joint_gap_m(const WorldDef& w, std::span<const BodyMotion> bodies) {
+  double largest = 0;
+  for (const JointDef& j : w.joints) {
+    if (j.kind == JointKind::kPrismatic || j.kind == JointKind::kFixed) continue;
+    const auto now = [&](int body) -> Eigen::Vector3d {
+      if (body < 0) return j.anchor_m;
+      const auto b = static_cast<std::size_t>(body);
+      return bodies[b].position_m + bodies[b].orientation * (w.bodies[b].pose.inverse() * j.anchor_m);
+    };
+    largest = std::max(largest, (now(j.parent) - now(j.child)).norm());
+  }
+  return largest;
 }
 
 }  // namespace tactus::sim::test

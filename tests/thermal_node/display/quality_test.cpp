@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/thermal_node/support/steady_contact.h"
 #include "thermal_node/skin/contact_model.h"
 #include "thermal_node/skin/skin_model.h"
 
@@ -50,7 +51,7 @@ TEST_CASE("Every quality step follows the closed form") {
   // 1 % of the change. In the tick of the touch itself the change follows the root of time, and one substep has an
   // error of 7 % of it, 0.15 K.
   const double h = contact_conductance_W_m2K(401);
-  const SteadyContact exact{kSkin, kCopper, h, 33, 23};
+  const test::SteadyContact exact{kSkin, kCopper, h, 33, 23};
   for (const double substep_s : Quality::kLongestSubsteps_s) {
     SkinModel skin = touching_copper();
     for (int tick = 1; tick <= 500; ++tick) {

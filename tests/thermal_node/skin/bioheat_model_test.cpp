@@ -1,9 +1,11 @@
 #include "thermal_node/skin/bioheat_model.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
+#include "tests/thermal_node/support/steady_contact.h"
 #include "thermal_node/skin/contact_model.h"
 
 using namespace tactus::thermal;
@@ -57,7 +59,7 @@ TEST_CASE("Deep plain skin on a deep object follows the closed form of two half-
   // The bound of skin_model_test.cpp: 0.5 % of the change, derived there; heat does not cross 0.5 m in 100 s.
   for (const Material& m : {kCopper, kSteel, kGlass, kOak, kFoam}) {
     const double h = contact_conductance_W_m2K(m.conductivity);
-    const SteadyContact exact{kSkinEffusivity, m.object(23).effusivity, h, 33, 23};
+    const test::SteadyContact exact{kSkinEffusivity, m.object(23).effusivity, h, 33, 23};
     BioheatModel skin(plain(0.5));
     skin.set_object(m.object(23));
     for (int tick = 1; tick <= 5000; ++tick) {
@@ -97,17 +99,25 @@ TEST_CASE("Skin and a finite object without losses reach the mean temperature we
 
 TEST_CASE("The profile of resting skin is the steady solution of Pennes' equation") {
   // T_a - T = (T_a - T_s) cosh(m (L - x))/cosh(m L), m^2 = w rho c of blood/k; the heat that leaves the surface is
-  // lost to the room. The volumes are of second order: 0.1 % of the difference to the blood. Between the centres
-  // of cells, of at most 1.2 mm, the profile is linear: (1.2 mm m)^2/8 = 0.5 % at 0.0025/s; with more blood the
-  // difference is zero where cells are that wide.
+  // lost to the room. The volumes are of second order: 0.1 % of the difference to the blood at the surface, and
+  // 0.5 % in the deepest cells, of at most 1.2 mm.
   const double depth = 0.01, perfusion = GENERATE(0.0005, 0.0025, 0.02), air = 8;
   const BioheatModel skin(plain(depth, perfusion, air));
   const double m = std::sqrt(perfusion * kBloodHeatCapacity_J_m3K / 0.37);
   const double warmer = air * (33 - 23) / (0.37 * m * std::tanh(m * depth));
   CHECK(skin.blood_degC() - 33 == Approx(warmer).epsilon(1e-3));
-  for (double x = 0; x <= depth; x += depth / 20) {
-    const double expected = skin.blood_degC() - warmer * std::cosh(m * (depth - x)) / std::cosh(m * depth);
-    CHECK(skin.at_depth_degC(x) == Approx(expected).margin(5e-3 * warmer));
+  const auto expected_degC = [&](double x) {
+    return skin.blood_degC() - warmer * std::cosh(m * (depth - x)) / std::cosh(m * depth);
+  };
+  CHECK(skin.surface_degC() == Approx(expected_degC(0)).margin(5e-3 * warmer));
+  std::array<double, 200> widths_m;
+  const std::size_t cells =
+      growing_widths(depth, Mesh{}.first_cell * std::sqrt(0.37 / 3.77e6), Mesh{}.growth, widths_m);
+  REQUIRE(cells == skin.columns().skin_cells());
+  double top_m = 0;
+  for (std::size_t i = 0; i < cells; ++i) {
+    CHECK(skin.columns().skin(i) == Approx(expected_degC(top_m + widths_m[i] / 2)).margin(5e-3 * warmer));
+    top_m += widths_m[i];
   }
 }
 
@@ -171,7 +181,7 @@ TEST_CASE("The error is of second order in the substep") {
 
 TEST_CASE("The error is of second order in the grid") {
   const double h = contact_conductance_W_m2K(1.4);
-  const SteadyContact exact{kSkinEffusivity, kGlass.object(23).effusivity, h, 33, 23};
+  const test::SteadyContact exact{kSkinEffusivity, kGlass.object(23).effusivity, h, 33, 23};
   const auto error = [&](const Mesh& mesh) {
     BioheatModel skin(plain(0.2), mesh);
     skin.set_object(kGlass.object(23));

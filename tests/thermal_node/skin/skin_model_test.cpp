@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/thermal_node/support/steady_contact.h"
 #include "thermal_node/skin/contact_model.h"
 
 using namespace tactus::thermal;
@@ -25,7 +26,7 @@ TEST_CASE("The numeric skin model follows the closed form from 20 ms to 100 s fo
   // Time: second order, (5 ms/tau)^2/10 < 0.1 % with tau >= 0.1 s. Together below 0.5 % of the change.
   for (const Material& m : kMaterials) {
     const double h = contact_conductance_W_m2K(m.conductivity);
-    const SteadyContact exact{kSkin, m.effusivity, h, 33, 23};
+    const test::SteadyContact exact{kSkin, m.effusivity, h, 33, 23};
     SkinModel skin(kDry);
     skin.set_object({23, m.effusivity});
     for (int tick = 1; tick <= 5000; ++tick) {

@@ -4,8 +4,10 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "tests/visual_node/support/read_marker.h"
 #include "visual_node/frame/text.h"
 
+using namespace tactus::test;
 using namespace tactus::visual;
 
 namespace {
@@ -45,7 +47,9 @@ TEST_CASE("A marker is decoded from the picture, also with compression noise") {
 }
 
 TEST_CASE("A marker with any one or two inverted cells is rejected") {
-  const std::vector<bool> good = encode_marker({123456, 0xdeadbeef});
+  std::vector<Rect> overlay;
+  append_marker(overlay, 123456, std::vector<std::int64_t>{0xdeadbeef}, 480);
+  const std::vector<bool> good = read_cells(paint(overlay, 640, 480), 640, 480, 0);
   REQUIRE(decode_marker(good));
   for (std::size_t a = 0; a < good.size(); ++a)
     for (std::size_t b = a; b < good.size(); ++b) {

@@ -5,10 +5,12 @@
 #include <random>
 #include <tactus/media_clock_t.hpp>
 
+#include "tests/visual_node/support/read_marker.h"
 #include "visual_node/frame/frame_times.h"
 #include "visual_node/frame/marker.h"
 
 using namespace tactus;
+using namespace tactus::test;
 using namespace tactus::visual;
 
 namespace {

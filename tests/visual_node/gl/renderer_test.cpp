@@ -9,7 +9,7 @@
 #include <tactus/visual_def_t.hpp>
 
 #include "tests/visual_node/support/offscreen.h"
-#include "visual_node/frame/marker.h"
+#include "tests/visual_node/support/read_marker.h"
 
 using namespace tactus;
 using namespace tactus::visual;

@@ -128,14 +128,11 @@ Angles compare(const Program& program, const Relief& relief, const Vector3d& nor
   const double angle = turn.norm();
   const Eigen::Matrix3d body = angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix()
                                          : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
-  material_def_t material{};
-  material.bump_size_u_m = static_cast<double>(relief.size_m.x()),
-  material.bump_size_v_m = static_cast<double>(relief.size_m.y());
   Angles found;
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column) {
       const Vector3d place = corner + x * ((column + 0.5) / width) + y * ((row + 0.5) / height);
-      const Vector3d mine = body * relief_normal(normal_body, relief.slope(bump_at(material, axes, place)));
+      const Vector3d mine = body * relief_normal(normal_body, relief.slope(bump_at(relief.size_m, axes, place)));
       const Vector3d gpu = drawn[static_cast<std::size_t>(row * width + column)].head<3>().cast<double>();
       const double apart_deg = 180 / M_PI * std::atan2(mine.cross(gpu).norm(), mine.dot(gpu));
       found.max_deg = std::max(found.max_deg, apart_deg);

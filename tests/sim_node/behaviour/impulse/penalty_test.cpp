@@ -224,7 +224,7 @@ TEST_CASE("A link on a hinge rests on the shell with all of its weight") {
   articulated::LinkDef link = rod_link(-1, JointKind::kRevolute, {0, 0, 0}, {1, 0, 0});
   link.axes[0].axis = {0, 1, 0};
   link.gravity_m_s2 = toys.gravity_m_s2;
-  const int body = toys.world.add_system(articulated::ArticulatedSystem({link}));
+  const int body = add_system(toys.world, articulated::ArticulatedSystem({link}));
   toys.capsule(body, 0, 0.01, {1, 0, 0}, 0);
   for (int i = 0; i < 4000; ++i) toys.step(0.001);
   // The hinge carries no moment; the depth follows from the spring.
