@@ -80,7 +80,7 @@ struct ClusterWithHead : RunningCluster {
     std::ifstream file(raw, std::ios::binary);
     return Pixels(std::istreambuf_iterator<char>(file), {});
   }
-  std::string note(const std::string& node) const { return ear.health(node) ? ear.health(node)->status_text : "silent"; }
+  std::string note(const std::string& node) const { return monitor.health(node) ? monitor.health(node)->status_text : "silent"; }
 };
 
 }  // namespace

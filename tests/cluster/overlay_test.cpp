@@ -21,7 +21,7 @@ TEST_CASE("Overlays and plots are added to a running picture and removed, and un
   CHECK(half_difference(plain, words, true) > 5);
   c.set({"overlay=none"});
   const Grey again = c.later_picture();
-  CHECK(part_apart(plain, again, true) < 2);
+  CHECK(half_difference(plain, again, true) < 2);
   CHECK_THAT(c.set({"plots=graph TOOL_STATE.force_N.z@tool=0; text NODE_HEALTH.status_text@sim_node"}),
              Catch::Contains("plots is graph"));
   const Grey plots = c.later_picture();

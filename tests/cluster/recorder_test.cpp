@@ -98,8 +98,8 @@ TEST_CASE("A recorder with a full disk reports it, and its file is valid up to t
     CHECK(numbers.size() > 100);
     for (std::size_t i = 0; i < numbers.size(); ++i) CHECK(numbers[i] == static_cast<std::int64_t>(i));
     processes.signal("recorder", SIGTERM);
-    CHECK(processes.wait_for_exit("recorder", kPatience_s) == 1);
-    CHECK_THAT(processes.said("recorder"), Catch::Contains("free space on its disk"));
+    CHECK(processes.wait_for_exit("recorder", kTimeout_s) == 1);
+    CHECK_THAT(processes.output("recorder"), Catch::Contains("free space on its disk"));
   }
   umount(small.c_str());
 }
