@@ -1,6 +1,7 @@
 // Decodes received bytes: accepts only exactly one valid message of the right type.
 #pragma once
 
+#include <cstdint>
 #include <exception>
 #include <optional>
 #include <vector>

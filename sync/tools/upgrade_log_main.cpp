@@ -19,10 +19,11 @@ using namespace tactus;
 int main(int argc, char** argv) try {
   CLI::App app{"Converts a recording to the message types of this release."};
   std::string from, to;
-  app.add_option("OLD", from, "log, or folder of a run: all parts of its recording")->required()->check(CLI::ExistingPath);
-  app.add_option("NEW", to, "new log; must not exist")->required();
+  app.add_option("OLD", from, "log, or folder of a run: all parts of its recording")->check(CLI::ExistingPath);
+  app.add_option("NEW", to, "new log; must not exist");
   sync::parse_or_exit(app, "upgrade_log", argc, argv);
 
+  if (from.empty() || to.empty()) throw std::runtime_error("give the log and the name of the new log; see upgrade_log --help");
   const sync::MappedLog file(from, sync::LogTypes::kAny);
   auto sink = std::make_unique<sync::FileSink>(to);
   try {

@@ -83,5 +83,5 @@ TEST_CASE("Without a terminal or without messages, spy reports it in one sentenc
   CHECK_THAT(c.processes.output("none"), Catch::Contains("--once"));
   c.processes.spawn("silent", {programs() / "spy", "--once", "0.5"});
   CHECK(c.processes.wait_for_exit("silent", 20) == 1);
-  CHECK_THAT(c.processes.said("silent"), Catch::Contains("received no message on port"));
+  CHECK_THAT(c.processes.output("silent"), Catch::Contains("received no message on port"));
 }

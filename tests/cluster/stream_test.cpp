@@ -32,7 +32,7 @@ TEST_CASE("A running picture is streamed on request as complete JPEG files, in o
     return c.processes.wait_for_exit(name, kTimeout_s);
   };
   CHECK(save("too_early", "1", "1") == 1);
-  CHECK_THAT(c.processes.said("too_early"), Catch::Contains("no picture arrived") && Catch::Contains("stream=10"));
+  CHECK_THAT(c.processes.output("too_early"), Catch::Contains("no picture arrived") && Catch::Contains("stream=10"));
 
   c.set({"stream_width=160", "stream=20"});
   const int status = save("save", "12", "20");

@@ -11,7 +11,9 @@
 #include "haptic_node/devices/recorded_hand.h"
 #include "haptic_node/rendering/session.h"
 #include "lcmtypes/channels.h"
+#include "sync/bus/decode.h"
 #include "sync/log/log_reader.h"
+#include "sync/resampling/event_inbox.h"
 
 using namespace tactus;
 using namespace tactus::haptic;

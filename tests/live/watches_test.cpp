@@ -107,7 +107,7 @@ TEST_CASE("An invalid name is reported with a reason, and the others keep their 
   REQUIRE(values.size() == 1);
   CHECK(values[0][0] == 1);
   CHECK_FALSE(w.set({"TOOL_STATE:no_such_field"}).empty());
-  CHECK_THAT(w.set({"NODE_HEALTH:note"}), Catch::Contains("is text"));
+  CHECK_THAT(w.set({"NODE_HEALTH:status_text"}), Catch::Contains("is text"));
   CHECK(w.set({}).empty());
   CHECK(w.values().empty());
 }

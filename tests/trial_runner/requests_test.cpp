@@ -39,8 +39,8 @@ TEST_CASE("A malformed request is rejected with a reason") {
   refuses(R"({"tap": 1})", "tap is not a JSON object");
   refuses(R"({"tap": {"depth_m": "deep"}})", "depth_m is not a number from 0");
   refuses(R"({"tap": {"depth_m": 5}})", "depth_m is not a number from 0");
-  refuses(R"({"question": {"kind": "riddle"}})", "none of nothing, read, choice, number");
+  refuses(R"({"question": {"kind": "riddle"}})", "not one of nothing, read, choice, number");
   refuses(R"({"question": {"kind": "choice", "choices": [1]}})", "a choice is not text");
-  refuses(R"({"command": {"kind": "explode"}})", "none of pause");
+  refuses(R"({"command": {"kind": "explode"}})", "not one of pause");
   refuses(R"({"profile": 3})", "profile is not text");
 }

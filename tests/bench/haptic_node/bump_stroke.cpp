@@ -125,7 +125,7 @@ BumpTrace run(const BumpStroke& stroke) {
     const Vector3d at = device(t);
     const haptic::TickOutput& tick = loop.tick(at);
     if (t < kEnds_s + kStart_s) continue;
-    out.place_m.push_back(stroke.speed_m_s * (t - kEnds_s));
+    out.position_m.push_back(stroke.speed_m_s * (t - kEnds_s));
     out.along_N.push_back(tick.force_N.dot(along));
     out.up_N.push_back(tick.force_N.z());
     out.slope.push_back(relief->slope(bump_at(relief->size_m, {2, 0, 1}, at)).dot(along.head<2>()));

@@ -43,7 +43,7 @@ bool spectrum_table(nlohmann::json& json) {
         const BumpTrace t = run(stroke);
         const Spectrum s =
             spectra(t.along_N, leaning(t, 1e3 * stroke.depth_m), t.step_m, kSegment_m, kBands_per_m[5]);
-        // Steep and fast strokes reach the slew limit, which is not a property of the map.
+        // Steep and fast strokes reach the slew limit, which is no property of the map.
         const bool limited = quantile(t.change_N, 1) > 0.999 * kSlew_N_s / rate_Hz;
         for (std::size_t b = 0; b + 1 < std::size(kBands_per_m); ++b) {
           // Near half the sampling rate there is nothing to compare.
@@ -84,7 +84,7 @@ std::vector<double> sampled(const std::vector<double>& x, const std::vector<doub
   return out;
 }
 
-Compared compare(const BumpTrace& felt, const BumpTrace& truth) {
+Comparison compare(const BumpTrace& felt, const BumpTrace& truth) {
   return {correlation(felt.along_N, sampled(truth.position_m, truth.along_N, felt.position_m)),
           correlation(felt.up_N, sampled(truth.position_m, truth.up_N, felt.position_m))};
 }
@@ -254,7 +254,7 @@ int main(int argc, char** argv) {
   std::string json_file, picture;
   bool check = false;
   CLI::App app{"Agreement of the felt and the seen height map."};
-  app.add_option("--json", json_file, "also writes the figures to this file");
+  app.add_option("--json", json_file, "also write the figures there");
   app.add_option("--picture", picture, "draw the stroke and the spectra there (SVG)");
   app.add_flag("--check", check, "exit 1 unless all figures stay within their bounds");
   CLI11_PARSE(app, argc, argv);

@@ -19,6 +19,7 @@
 #include "sim_node/publish/publisher.h"
 #include "sync/bus/bus.h"
 #include "sync/log/log_writer.h"
+#include "sync/resampling/event_inbox.h"
 
 namespace tactus::bench {
 
@@ -51,10 +52,10 @@ class OfflineWorld {
 
  private:
   struct Hand {
-    sync::EventInbox events{kRun};
     haptic::Safety safety;
     std::unique_ptr<haptic::Session> session;
     std::int64_t seq = 0;
+    sync::EventInbox events{kRun};
   };
   void publish();
   template <class Message, class Deliver>

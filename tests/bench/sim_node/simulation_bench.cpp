@@ -63,8 +63,8 @@ json without_hands(const sim::WorldDef& world, const sim::Settings& settings, do
     const auto bodies = run.simulation().bodies();
     run.simulation().body_contacts(list);
     contacts += static_cast<double>(list.size());
-    if (const sim::Ahead* ahead = run.simulation().ahead()) {
-      if (ahead->fresh) ahead->contacts(ahead_contacts);
+    if (const sim::LookAhead* look_ahead = run.simulation().look_ahead()) {
+      if (look_ahead->fresh) look_ahead->contacts(ahead_contacts);
       contacts += static_cast<double>(ahead_contacts.size());
     }
     if (list.size() < 60 || i % 10 == 0) deepest = std::max(deepest, oracle.deepest(bodies).depth_m);
@@ -105,9 +105,9 @@ int body_named(const sim::WorldDef& world, const std::string& model) {
 // Includes the contacts of bodies that are published ahead, in the step in which they are published; the second list then holds their new contacts.
 void body_contacts(sim::Simulation& simulation, std::vector<contact_t>& out, std::vector<contact_t>& ahead_contacts) {
   simulation.body_contacts(out);
-  const sim::Ahead* ahead = simulation.ahead();
-  if (!ahead || !ahead->fresh) return;
-  ahead->contacts(ahead_contacts);
+  const sim::LookAhead* look_ahead = simulation.look_ahead();
+  if (!look_ahead || !look_ahead->fresh) return;
+  look_ahead->contacts(ahead_contacts);
   out.insert(out.end(), ahead_contacts.begin(), ahead_contacts.end());
 }
 

@@ -147,6 +147,11 @@ struct StreamBench {
   BodyHistory bodies{1};
 
   explicit StreamBench(bool degraded) : chain(chain_of(degraded)) {}
+  void take_events(const Wire& wire, HostTime now) {
+    for (const auto& bytes : wire)
+      events.push(*decode<contact_events_t>(bytes.data(), bytes.size()), now, chain, &decisions);
+    events.release(now);
+  }
   template <class Message, class Degraded, class Sink>
   void take(const Wire& wire, HostTime now, Degraded& degraded, Sink& sink) {
     for (const auto& bytes : wire)
@@ -197,10 +202,8 @@ class Table : public benchmark::BenchmarkReporter {
   }
 };
 
-void read_contacts(ModalityEndpoint& s, const Second& second, std::size_t ms, HostTime now) {
-  for (const auto& bytes : second.events[ms])
-    s.events.push(*decode<contact_events_t>(bytes.data(), bytes.size()), now, s.stack, &s.decisions);
-  s.events.release(now);
+void read_contacts(StreamBench& s, const RecordedSecond& second, std::size_t ms, HostTime now) {
+  s.take_events(second.events[ms], now);
   s.take<contact_frame_t>(second.contacts[ms], now, s.contacts, s.stream);
 }
 
@@ -216,10 +219,8 @@ void every_millisecond(benchmark::State& state) {
 void audio_node(benchmark::State& state) {
   read_and_render(
       state, 3,
-      [](ModalityEndpoint& s, const Second& second, std::size_t ms, HostTime now) {
-        for (const auto& bytes : second.events[ms])
-    s.events.push(*decode<contact_events_t>(bytes.data(), bytes.size()), now, s.stack, &s.decisions);
-  s.events.release(now);
+      [](StreamBench& s, const RecordedSecond& second, std::size_t ms, HostTime now) {
+        s.take_events(second.events[ms], now);
       },
       [](StreamBench& s, SimTime t, int) { benchmark::DoNotOptimize(s.stream.take_events(t)); });
 }
@@ -232,14 +233,12 @@ void thermal_node(benchmark::State& state) {
   });
 }
 
-// As visual_node: the events, and one body pose per contact.
+// As visual_node: the events, and as many body poses as there are contacts.
 void visual_node(benchmark::State& state) {
   read_and_render(
       state, 16,
-      [](ModalityEndpoint& s, const Second& second, std::size_t ms, HostTime now) {
-        for (const auto& bytes : second.events[ms])
-    s.events.push(*decode<contact_events_t>(bytes.data(), bytes.size()), now, s.stack, &s.decisions);
-  s.events.release(now);
+      [](StreamBench& s, const RecordedSecond& second, std::size_t ms, HostTime now) {
+        s.take_events(second.events[ms], now);
         s.take<world_state_t>(second.bodies[ms], now, s.world, s.bodies);
       },
       [](StreamBench& s, SimTime t, int n) {

@@ -12,6 +12,7 @@
 #include "lcmtypes/vectors.h"
 #include "sim_node/scene/load_sdf.h"
 #include "sim_node/scene/scene_assets.h"
+#include "sync/assets/scene_sender.h"
 #include "sync/bus/bus.h"
 #include "sync/clocks/pacing.h"
 #include "visual_node/devices/display.h"

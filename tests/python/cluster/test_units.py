@@ -117,7 +117,7 @@ class Units(unittest.TestCase):
             self.assertFalse((pathlib.Path(folder) / "etc/systemd/system/tactus-path.service").exists(), "unless it is asked for")
 
     def test_each_invalid_argument_is_refused_with_one_sentence(self):
-        for sentence, words in (("no unit of \"smell\"", ["--only", "smell"]), ("absolute path", ["--prefix", "opt"]), ("absolute path", ["--out", "/a b"]),
+        for sentence, words in (("not a unit of \"smell\"", ["--only", "smell"]), ("absolute path", ["--prefix", "opt"]), ("absolute path", ["--out", "/a b"]),
                                 ("from 0 to 255", ["--ttl", "256"]), ("not a multicast group", ["--group", "10.0.0.1"]), ("--host", ["--host", "a b"]),
                                 ("is not a folder", ["--root", "/none/such"]), ("--help", ["--wrong"])):
             done = run("install", "--units-only", "--root", os.devnull, *words)

@@ -69,7 +69,7 @@ TEST_CASE("An invalid material is rejected with its line") {
   CHECK_THAT(load_error("<tactus:material name='x' base='y'/>"), Catch::Contains("no such material"));
   CHECK_THAT(load_error("<tactus:material density='1'/>"), Catch::Contains("\"name\""));
   CHECK_THAT(load_error("<tactus:material name='steel' density='-1'/>"), Catch::Contains("between 1 and 25000"));
-  CHECK_THAT(load_error("<tactus:material name='steel' density='7 km'/>"), Catch::Contains("no unit"));
+  CHECK_THAT(load_error("<tactus:material name='steel' density='7 km'/>"), Catch::Contains("not a unit"));
   CHECK_THAT(load_error("<tactus:material name='steel' densty='7'/>"), Catch::Contains("no attribute \"densty\""));
   CHECK_THAT(load_error("<model name='m'>\n<tactus:surface material='stel'/><link name='l'/></model>"),
              Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("\"stel\"") && Catch::Contains("steel"));

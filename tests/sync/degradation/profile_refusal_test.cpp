@@ -81,7 +81,7 @@ TEST_CASE("Contradictory options are rejected") {
              Contains("a trace already defines shape and correlation"));
   CHECK_THAT(refusal_of("jitter=\"trace=1ms,2ms correlation=0.5\""),
              Contains("a trace already defines shape and correlation"));
-  CHECK_THAT(refusal_of("jitter=\"3ms trace=1ms\""), Contains("\"3ms\" means nothing here"));
+  CHECK_THAT(refusal_of("jitter=\"3ms trace=1ms\""), Contains("\"3ms\" is not valid here"));
 }
 
 TEST_CASE("A trace without delays is rejected") {
