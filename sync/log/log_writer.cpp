@@ -25,7 +25,7 @@ void append_big_endian(std::vector<std::uint8_t>& out, std::uint64_t value, int 
 FileSink::FileSink(const std::string& path)
     : fd_(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644)) {
   if (fd_ < 0)
-    throw std::runtime_error("cannot create " + path + " (" + strerror(errno) + "); give --out a writable folder");
+    throw std::runtime_error("cannot create " + path + " (" + strerror(errno) + "); choose a folder that exists and is writable");
 }
 
 FileSink::~FileSink() { close(fd_); }
