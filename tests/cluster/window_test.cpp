@@ -344,7 +344,7 @@ TEST_CASE("A killed display server closes the window and not the node, and witho
     CHECK(c.processes.wait_for_exit("visual_node", kTimeout_s) == 1);
     const std::string output = c.processes.output("visual_node");
     CHECK_THAT(output.substr(output.rfind('\n', output.size() - 2) + 1),
-               Catch::Contains("--window: no window can be opened") && Catch::Contains("leave --window out"));
+               Catch::Contains("--window: no window can be opened") && Catch::Contains("remove --window"));
   }
   CHECK(c.others_running());
 }

@@ -36,7 +36,7 @@ try {
 
   // Malformed answers and answers to another question are refused with a reason, and not published.
   const answer = { t: "answer", question: "1.2", choice: -1, number: 0, after_ns: 5 };
-  for (const [message, reason] of [[answer, /no longer open/], [{ ...answer, choice: 0.5 }, /no whole number/], [{ ...answer, after_ns: -1 }, /out of range/],
+  for (const [message, reason] of [[answer, /no longer open/], [{ ...answer, choice: 0.5 }, /not a whole number/], [{ ...answer, after_ns: -1 }, /out of range/],
     [{ ...answer, number: "1" }, /no number/], [{ ...answer, question: 7 }, /not text/], [{ t: "answer" }, /names no question/]])
     assert.match(await refusal(message), reason);
 
