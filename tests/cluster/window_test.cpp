@@ -126,7 +126,7 @@ X.XCloseDisplay(d)
 
 }  // namespace
 
-TEST_CASE("A window shows the picture, and its keys pause, step and reset the world, toggle overlays and fill the screen") {
+TEST_CASE("A window shows the picture, and its keys pause, step and reset the world, toggle overlays and fill the screen", "[display]") {
   Desktop c;
   c.start_window();
   c.monitor.receive_for(1);
@@ -162,7 +162,7 @@ TEST_CASE("A window shows the picture, and its keys pause, step and reset the wo
   CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
 }
 
-TEST_CASE("The window draws a question of a study and answers it by its keys, which have no other effect meanwhile") {
+TEST_CASE("The window draws a question of a study and answers it by its keys, which have no other effect meanwhile", "[display]") {
   Desktop c;
   c.start_window();
   c.monitor.receive_for(1);
@@ -228,7 +228,7 @@ TEST_CASE("The window draws a question of a study and answers it by its keys, wh
   CHECK(c.receive_until([&] { return c.rate > 0; }));
 }
 
-TEST_CASE("The mouse in the window is a device that points at the object under the cursor") {
+TEST_CASE("The mouse in the window is a device that points at the object under the cursor", "[display]") {
   Desktop c;
   c.start_window();
   c.xdotool({"mousemove", "320", "400"});
@@ -286,7 +286,7 @@ TEST_CASE("The spot light follows the pressed mouse, and stays in place after it
   CHECK(c.mouse_y_m.size() == 1);
 }
 
-TEST_CASE("A hidden, tiny or oversized window stops no node, and a closed window ends visual_node") {
+TEST_CASE("A hidden, tiny or oversized window stops no node, and a closed window ends visual_node", "[display]") {
   Desktop c;
   c.start_window({"--set", "window_width=16384", "--set", "window_height=1", "--set", "monitor=7", "--set",
                   "stereo=quad_buffer"});
@@ -320,7 +320,7 @@ TEST_CASE("A hidden, tiny or oversized window stops no node, and a closed window
   CHECK(c.processes.wait_for_exit("visual_node", kTimeout_s) == 0);
 }
 
-TEST_CASE("A killed display server closes the window and not the node, and without a display server the start fails with a message") {
+TEST_CASE("A killed display server closes the window and not the node, and without a display server the start fails with a message", "[display]") {
   Desktop c;
   c.start_window();
   const auto before = c.rates(1);
@@ -349,7 +349,7 @@ TEST_CASE("A killed display server closes the window and not the node, and witho
   CHECK(c.others_running());
 }
 
-TEST_CASE("A frozen display server ends visual_node with a message, and the other nodes continue") {
+TEST_CASE("A frozen display server ends visual_node with a message, and the other nodes continue", "[display]") {
   Desktop c;
   c.start_window();
   const auto before = c.rates(1);
