@@ -102,7 +102,7 @@ class Hosts(unittest.TestCase):
     def test_10_nodes_run_without_root_and_the_doctor_reports_missing_rights(self):
         users = {pathlib.Path(f"/proc/{p}").stat().st_uid for p in self.r.lab.hosts["sound"].processes() if self.name_of(p) in ("audio_node", "thermal_node", "sync_node")}
         self.assertEqual({1000}, users)
-        self.assertIn("normal schedul", self.health()["audio_node"]["note"])
+        self.assertIn("normal schedul", self.health()["audio_node"]["status_text"])
         _, wrong = self.doctor()
         output = [w for w in wrong if w.startswith("sound: SCHED_FIFO")]
         self.assertEqual(1, len(output), wrong)
@@ -243,8 +243,8 @@ class Hosts(unittest.TestCase):
 
         def joined():
             now = self.health()
-            return now["visual_node"]["profile"] == before["haptic_node"]["profile"] and "3 other" not in now["sync_node"]["note"] and \
-                "2 other clocks" in now["sync_node_picture"]["note"]
+            return now["visual_node"]["profile"] == before["haptic_node"]["profile"] and "3 other" not in now["sync_node"]["status_text"] and \
+                "2 other clocks" in now["sync_node_picture"]["status_text"]
         self.wait(joined, "visual_node has the profile, and its host has the clocks of the others")
         after = self.incarnations()
         for name in ("sim_node", "haptic_node", "audio_node", "thermal_node", "recorder", "sync_node", "sync_node_sound"):
