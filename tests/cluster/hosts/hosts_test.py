@@ -215,7 +215,7 @@ class Hosts(unittest.TestCase):
         self.assertEqual("running", self.states_at("world").get("visual_node"))
         self.assertNotIn("sim_node", [n for n, s in self.states_at("sound").items() if s == "running"])
         here = self.at("world", "degrade", str(self.folder / "here.xml"))
-        self.assertRegex(here.stderr + here.stdout, "no sense .audio. runs")  # the node runs in the other half: nothing was changed
+        self.assertRegex(here.stderr + here.stdout, "no modality .audio. runs")  # the node runs in the other half: nothing was changed
         there = self.at("sound", "degrade", str(self.folder / "there.xml"))
         self.assertEqual(0, there.returncode, there.stderr)
         halves = {row["profile"] for name, row in self.health().items() if name in ("haptic_node", "visual_node")}
