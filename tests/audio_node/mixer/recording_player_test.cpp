@@ -171,14 +171,13 @@ TEST_CASE("Recordings are released when contacts are computed again, and read ag
 
   SECTION("recordings that are still being read are released too") {
     l.select("both", l.two);
-    l.library.step();
+    l.released_count += l.library.step().size();  // the thread may already have read them
     l.select("modal", l.two);
     for (std::int64_t spins = 0; l.library.reading() && spins < 2'000'000'000; ++spins) {
       l.released_count += l.library.step().size();
       l.run_callback();
     }
-    l.run_callback();
-    l.released_count += l.library.step().size();
+    for (int rounds = 0; rounds < 3; ++rounds) l.run_callback(), l.released_count += l.library.step().size();
     CHECK_FALSE(l.library.database());
     CHECK(l.released_count == 2);
   }
