@@ -27,8 +27,7 @@ namespace {
 
 const sync::NodeDescriptor kHaptic{.name = "haptic_node",
                                    .modality = "haptic",
-                                   .expected_events = int{node_health_t::EXPECTS_BEGIN} | node_health_t::EXPECTS_HIT |
-                                                      node_health_t::EXPECTS_OWN_TOOL_ONLY,
+                                   .expected_events = int{node_health_t::EXPECTS_BEGIN} | node_health_t::EXPECTS_HIT | node_health_t::EXPECTS_OWN_TOOL_ONLY,
                                    .rate_Hz = haptic::Settings{}.rate_Hz,
                                    .fifo_priority = 60,
                                    .about = "Renders the contact force on the hand.",

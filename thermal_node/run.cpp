@@ -24,8 +24,7 @@ namespace {
 
 const sync::NodeDescriptor kThermal{.name = "thermal_node",
                                     .modality = "thermal",
-                                    .expected_events = int{node_health_t::EXPECTS_BEGIN} | node_health_t::EXPECTS_HIT |
-                                                       node_health_t::EXPECTS_OWN_TOOL_ONLY,
+                                    .expected_events = int{node_health_t::EXPECTS_BEGIN} | node_health_t::EXPECTS_HIT | node_health_t::EXPECTS_OWN_TOOL_ONLY,
                                     .rate_Hz = thermal::Settings{}.rate_Hz,
                                     .about = "Renders the temperature of the objects that a tool touches.",
                                     .inputs = {channels::kContacts, channels::kContactEvents},
@@ -36,15 +35,13 @@ const sync::NodeDescriptor kThermal{.name = "thermal_node",
 
 class Factory : public sync::RendererFactory {
   void add_options(CLI::App& app) override {
-    app.add_option("--tool", tool_,
-                   "tool to render; default: the setting `tool`, else the first tool of the scene");
+    app.add_option("--tool", tool_, "tool to render; default: the setting `tool`, else the first tool of the scene");
     log_options_.add_to(app, "temperature", "thermal.csv");
   }
   sync::OfflineInput* prepare(const sync::NodeOptions& options) override {
     const auto settings = sync::settings_of(thermal::setting_fields(), kThermal.name, options.set);
     if (log_options_.log.empty()) return nullptr;
-    log_ = std::make_unique<sync::OfflineTable>(log_options_, sync::thermal_csv_names(), settings.rate_Hz,
-                                                sync::host_now());
+    log_ = std::make_unique<sync::OfflineTable>(log_options_, sync::thermal_csv_names(), settings.rate_Hz, sync::host_now());
     return &log_->run();
   }
   std::unique_ptr<sync::Renderer> make(sync::RendererHost& host) override {
