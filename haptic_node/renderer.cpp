@@ -112,8 +112,12 @@ void NodeRenderer::apply_setting(const Settings& settings, const std::string&) {
 void NodeRenderer::receive() {
   while (auto m = touch_.pop())
     if (session_) session_->push(std::move(m->message), m->arrival);
-  // The simulation publishes events when they are due, so all received events are due.
-  if (const auto due = events_.inbox().take(sync::SimTime::max()); session_) session_->push(due);
+  // The simulation publishes events when they are due, so all received events are due. Until the first touch model they wait in
+  // the inbox, which discards them when the simulation restarts.
+  if (!session_ || session_->has_touch_model()) {
+    const auto due = events_.inbox().take(sync::SimTime::max());
+    if (session_) session_->push(due);
+  }
   while (const auto m = device_states_.pop())
     if (session_) session_->push(m->message, m->arrival);
   // Commands of other nodes of this run; a replayed log commands no device.

@@ -1,6 +1,8 @@
 // One tool of one scene with its device: from the arriving messages to the tool state. Pure: no bus, no clock.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <tactus/contact_event_t.hpp>
@@ -42,10 +44,12 @@ class Session {
   void push(touch_model_t page, sync::HostTime arrival) {
     if (!ended_) touch_.push(std::move(page), arrival);
   }
-  // Adds events that are due; pass each event once. They are rendered in the next tick that can convert simulated
-  // to host time.
+  // Adds events that are due, in order of time; pass each event once. They are rendered in the next tick that can convert
+  // simulated to host time. Beyond kMaxEvents waiting ones the latest are dropped.
+  static constexpr std::size_t kMaxEvents = 4096;
   void push(const std::vector<contact_event_t>& due) {
-    if (!ended_) events_.insert(events_.end(), due.begin(), due.end());
+    const std::size_t count = ended_ ? 0 : std::min(due.size(), kMaxEvents - events_.size());
+    events_.insert(events_.end(), due.begin(), due.begin() + static_cast<std::ptrdiff_t>(count));
   }
 
   // Applies changed settings from the next tick on, like Renderer::change, and also the safety limits.

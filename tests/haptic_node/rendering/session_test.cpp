@@ -147,6 +147,23 @@ TEST_CASE("Repeated events are rendered once") {
   CHECK(hits == 1);
 }
 
+TEST_CASE("Events wait for the first touch model, and a flood of them is bounded") {
+  const scene_t s = pressing_scene();
+  Safety safety{SafetyLimits{}};
+  Session session(s, config_of(s), make_tool_device(s, config_of(s)), 1, safety);
+  std::vector<contact_event_t> flood;
+  for (int i = 0; i < 3000; ++i) flood.push_back(event(i + 1, contact_event_t::HIT, 0.5));
+  std::size_t reports = 0;
+  for (int ms = 0; ms < 3; ++ms) {
+    session.push(flood);
+    reports += session.step(host_ms(ms)).reports.size();
+  }
+  CHECK(reports == 0);
+  session.push(sent(3, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())}), host_ms(3));
+  for (int ms = 3; ms < 400; ++ms) reports += session.step(host_ms(ms)).reports.size();
+  CHECK(reports == Session::kMaxEvents);
+}
+
 TEST_CASE("The first touch model of a restarted simulation causes no jump of the force") {
   const scene_t s = pressing_scene();
   Safety safety{SafetyLimits{}};
