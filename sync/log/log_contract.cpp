@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lcmtypes/fields.h"
+#include "sync/log/log_header.h"
 #include "sync/log/log_reader.h"
 #include "sync/log/recorder_types.h"
 
@@ -17,6 +18,9 @@ namespace {
 
 // LOG_TYPES follows LOG_INFO at the start of each part of a recording. Design: room for other leading events.
 constexpr int kHeadEvents = 1024;
+// Without LOG_TYPES. Design: a few seconds of a run; more damaged messages in a row on one channel are not plausible.
+constexpr int kSearchedEvents = 50'000;
+constexpr int kMinMessages = 20;
 
 struct RenamedField {
   std::string_view type, before, now;
@@ -68,6 +72,27 @@ std::string all_pages(std::span<const std::uint8_t> log) {
   return {};
 }
 
+// A channel of this system on which no message has the present type, although at least kMinMessages were found: their type has
+// changed. Single messages can be damaged. Empty: there is none.
+std::string channel_of_another_type(std::span<const std::uint8_t> log) {
+  struct Count {
+    int messages = 0, current = 0;
+  };
+  std::map<std::string, Count> counts;
+  LogScanner scanner(log);
+  LogEvent e;
+  for (int n = 0; n < kSearchedEvents && scanner.next(e); ++n) {
+    const MessageType* expected = type_on(e.channel);
+    if (!expected || !peek_header(e.data.data(), e.data.size())) continue;  // else of another system
+    Count& count = counts[std::string(e.channel)];
+    ++count.messages;
+    count.current += type_of(e.data) == expected;
+  }
+  for (const auto& [channel, count] : counts)
+    if (count.messages >= kMinMessages && count.current == 0) return channel;
+  return {};
+}
+
 }  // namespace
 
 std::vector<RecordedType> recorded_types(std::span<const std::uint8_t> log) {
@@ -103,6 +128,9 @@ void require_current_types(std::span<const std::uint8_t> log, const std::string&
     return !now || now->fingerprint != type.fingerprint;
   };
   const std::vector<RecordedType> types = recorded_types(log);
+  if (const std::string channel = types.empty() ? channel_of_another_type(log) : ""; !channel.empty())
+    throw std::runtime_error(path + " has messages of another release on " + channel + ", and no intact LOG_TYPES to convert it by; " +
+                             "read it with the release that recorded it");
   const auto first = std::find_if(types.begin(), types.end(), changed);
   if (first == types.end()) return;
   throw std::runtime_error(path + " was recorded with an earlier form of the message type " + first->name +

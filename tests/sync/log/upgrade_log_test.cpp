@@ -135,3 +135,21 @@ TEST_CASE("A reader refuses a log with renamed fields and names the command that
   REQUIRE(FileSink(converted).append(upgraded(old_log("int8_t touch_how")).bytes).empty());
   CHECK_NOTHROW(MappedLog(converted));
 }
+
+TEST_CASE("A reader refuses a log of another release that has no intact description of its types") {
+  const TemporaryFolder folder;
+  const auto path_of = [&](const char* name, int old_messages, int current_messages) {
+    Bytes log;
+    std::int64_t number = 0;
+    for (int i = 0; i < old_messages; ++i)
+      append_event(log, number++, i, channels::kToolState, with_fingerprint(sync::encode(tool()), kOldFingerprint));
+    for (int i = 0; i < current_messages; ++i) append_event(log, number++, i, channels::kToolState, sync::encode(tool()));
+    const std::string path = (folder.path / name).string();
+    REQUIRE(FileSink(path).append(log).empty());
+    return path;
+  };
+  CHECK_THROWS_WITH(MappedLog(path_of("old.lcmlog", 50, 0)), Catch::Contains("another release on TOOL_STATE"));
+  CHECK_NOTHROW(MappedLog(path_of("damaged.lcmlog", 50, 1)));
+  CHECK_NOTHROW(MappedLog(path_of("short.lcmlog", 5, 0)));
+  CHECK_NOTHROW(MappedLog(path_of("current.lcmlog", 0, 50)));
+}
