@@ -1,4 +1,5 @@
 // Tests of a recorded run rendered again as a film.
+#include <algorithm>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/world_state_t.hpp>
@@ -22,10 +23,13 @@ std::string word_after(const std::string& output, const std::string& before) {
   return word;
 }
 
-// Number of begins and hits at least before_end_ns before the log ends, each counted once.
+// Number of begins and hits at least before_end_ns before the log ends, each counted once. The simulation publishes events in
+// each step but the state of the world less often, so an event can be newer than the last state.
 std::size_t events_of(const RunLog& log, std::int64_t before_end_ns) {
   std::int64_t end_ns = 0;
-  log.for_each<world_state_t>(channels::kWorldState, [&](const auto& m) { end_ns = m.header.publish_time_ns; });
+  const auto extend = [&](const auto& m) { end_ns = std::max(end_ns, m.header.publish_time_ns); };
+  log.for_each<world_state_t>(channels::kWorldState, extend);
+  log.for_each<contact_events_t>(channels::kContactEvents, extend);
   std::set<std::int64_t> ids;
   log.for_each<contact_events_t>(channels::kContactEvents, [&](const auto& m) {
     for (const contact_event_t& e : m.events)
