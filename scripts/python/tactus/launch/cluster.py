@@ -21,7 +21,7 @@ WORLDS = ("sim_node", "replay")
 STOP_ORDER = ((WORLDS, 0.3), (SENSES, 0.3), (("sync_node",), 0.3), (("recorder",), 10.0))
 SCATTER_M = "0.08"  # design: keeps the balls of the dark room apart from each other and from other bodies
 LAST_PRESENTATION_S = 0.2  # sound comes 20 ms after its event, and each report is repeated 20 ms later
-PATIENCE_S = 15           # to close a video on a busy machine
+PATIENCE_S = 15  # for a node that ends, since its video last grew: a busy machine closes a video slowly
 CHECK_S, READ_SCENE_S = 60, 600
 PROGRESS_S = 10
 WORLD_BEGINS = {"sim_node": "sim_node: the world begins", "replay": "replay: begins"}  # sim_node/run.cpp, sync/tools/replay_main.cpp
@@ -209,7 +209,7 @@ class Cluster:
             services.request_end([self.services[name] for name in names if name in self.services], grace_s)
             if names == WORLDS:
                 time.sleep(LAST_PRESENTATION_S)
-        killed = services.end_or_kill(self.services.values(), PATIENCE_S)
+        killed = services.end_or_kill(self.services.values(), PATIENCE_S, lambda: video_sizes(self.plan.out))
         self.end_supervisor()
         return killed
 
@@ -230,6 +230,13 @@ class Cluster:
         shutil.rmtree(self.folder, ignore_errors=True)
         if self.in_use:
             self.in_use.close()
+
+
+def video_sizes(folder):
+    """The sizes of the videos of a run, in bytes, by name."""
+    with contextlib.suppress(OSError):  # a video is removed meanwhile
+        return {file.name: file.stat().st_size for file in folder.glob("*.mp4")}
+    return {}
 
 
 def children(pid):

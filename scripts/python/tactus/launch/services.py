@@ -160,13 +160,19 @@ def request_end(services, patience_s):
     wait_until(lambda: all(s.is_down() for s in services), patience_s)
 
 
-def end_or_kill(services, patience_s):
-    """Waits at most patience_s for all services, then kills the others. Returns their names."""
-    wait_until(lambda: all(s.is_down() for s in services), patience_s)
+def end_or_kill(services, patience_s, progress=lambda: None):
+    """Waits for all services, at most patience_s after the last change of progress(), then kills the others. Returns their names."""
+    def all_down():
+        return all(s.is_down() for s in services)
+
+    advancing = True
+    while advancing and not all_down():
+        before = progress()
+        advancing = wait_until(lambda state=before: all_down() or progress() != state, patience_s)
     killed = [s for s in services if not s.is_down()]
     for s in killed:
         s.control("k")
-    wait_until(lambda: all(s.is_down() for s in services), 2.0)
+    wait_until(all_down, 2.0)
     return [s.name for s in killed]
 
 
