@@ -44,7 +44,7 @@ json run_scenario(RunScript& run, const std::string& scenario) {
 
 TEST_CASE(
     "The clock maps of two hosts contain the true offset: idle, drifting, delayed in one direction, "
-    "jumping, replaced", "[exclusive]") {
+    "jumping, replaced") {
   const std::string scenario = GENERATE(as<std::string>{}, "idle", "drift", "held", "jump", "restart");
   RunScript run;
   const json row = run_scenario(run, scenario);
@@ -58,7 +58,7 @@ TEST_CASE(
   CHECK(row["epochs"].get<int>() == (scenario == "jump" ? 2 : 1));
 }
 
-TEST_CASE("A modality on a host whose clock is an hour ahead presents all expected events and reports correct ages", "[exclusive]") {
+TEST_CASE("A modality on a host whose clock is an hour ahead presents all expected events and reports correct ages") {
   RunScript run;
   if (!has_time_namespaces(run)) return;
   RunningCluster r;

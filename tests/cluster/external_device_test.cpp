@@ -53,7 +53,7 @@ struct ClusterWithDriver : RunningCluster {
 
 }  // namespace
 
-TEST_CASE("A device driven by a program is felt, lost when the program is killed or frozen, and felt again", "[exclusive]") {
+TEST_CASE("A device driven by a program is felt, lost when the program is killed or frozen, and felt again") {
   const std::string language = GENERATE("C++", "Python");
   CAPTURE(language);
   ClusterWithDriver c;
@@ -81,7 +81,7 @@ TEST_CASE("A device driven by a program is felt, lost when the program is killed
   CHECK(c.monitor.malformed("haptic_node") == 0);
 }
 
-TEST_CASE("A simulated string device taps the floor like any other hand", "[exclusive]") {
+TEST_CASE("A simulated string device taps the floor like any other hand") {
   RunningCluster c;
   c.processes.start("sim_node", {tapping_scene()});
   c.processes.start("haptic_node", {"--device", "spidar:desktop,offset=0/0/0.03"});
@@ -91,7 +91,7 @@ TEST_CASE("A simulated string device taps the floor like any other hand", "[excl
   CHECK(c.monitor.wait_until([&] { return c.monitor.hits() >= 3; }, kTimeout_s));
 }
 
-TEST_CASE("A device driven by two programs is lost until one of them ends", "[exclusive]") {
+TEST_CASE("A device driven by two programs is lost until one of them ends") {
   ClusterWithDriver c;
   c.start_touch();
   c.start_driver("C++");

@@ -19,7 +19,7 @@ double longest_standstill_us(const json& summary) {
 
 }  // namespace
 
-TEST_CASE("A live simulated player pushes every ball into its hole, and none without a picture", "[exclusive]") {
+TEST_CASE("A live simulated player pushes every ball into its hole, and none without a picture") {
   for (const bool seen : {true, false}) {
     RunScript run;
     std::vector<std::string> words{"--seconds", "20", "--player", "--without", "audio_node", "--without", "thermal_node", "--out", run.out(),
@@ -38,7 +38,7 @@ TEST_CASE("A live simulated player pushes every ball into its hole, and none wit
   }
 }
 
-TEST_CASE("The hand of the dark room, or a string device, pushes every ball into its hole", "[exclusive]") {
+TEST_CASE("The hand of the dark room, or a string device, pushes every ball into its hole") {
   // The simulated string device is driven by the same hand; its pose comes from string lengths, its force from tensions.
   const std::string device = GENERATE("virtual_hand", "spidar:cave,offset=-0.1/0/0.2");
   for (int attempt = 1;; ++attempt) {

@@ -85,7 +85,7 @@ struct ClusterWithHead : RunningCluster {
 
 }  // namespace
 
-TEST_CASE("A head that a program moves changes the picture and nothing else, and the view stays after its loss", "[exclusive]") {
+TEST_CASE("A head that a program moves changes the picture and nothing else, and the view stays after its loss") {
   ClusterWithHead c;
   c.start_all();
   const Pixels at_rest = c.picture_at({0, 0, 0}, 0);
@@ -126,7 +126,7 @@ TEST_CASE("A head that a program moves changes the picture and nothing else, and
   CHECK(c.note("visual_node").find("head") == std::string::npos);
 }
 
-TEST_CASE("A wand that a program moves directs the light to its position, and the light stays there after its loss", "[exclusive]") {
+TEST_CASE("A wand that a program moves directs the light to its position, and the light stays there after its loss") {
   ClusterWithHead c;
   c.start_all();
   c.start_head("wand");

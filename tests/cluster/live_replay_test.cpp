@@ -68,7 +68,7 @@ TEST_CASE("All modalities render a replayed log, and continue when one of them i
   REQUIRE(rendered);
   // The recorded health of renderers is not replayed: one haptic_node publishes, with one incarnation.
   CHECK(monitor.rejoined("haptic_node") == 0);
-  CHECK(monitor.health("sim_node") == nullptr);
+  CHECK(monitor.wait_until([&] { return monitor.health("sim_node") == nullptr; }, kTimeout_s));
 
   processes.kill("audio_node");
   std::map<std::string, std::int64_t> before;

@@ -15,6 +15,7 @@
 #include "lcmtypes/channels.h"
 #include "sync/degradation/profile.h"
 #include "sync/bus/identity.h"
+#include "tests/cluster/support/rate_factor.h"
 #include "tests/cluster/support/run_log.h"
 #include "tests/cluster/support/run_script.h"
 
@@ -51,9 +52,10 @@ void run_browser_test(RunScript& run, const std::string& test, const std::vector
   std::vector<std::string> command{"node", (repository() / "scripts/live/page/test" / test).string()};
   command.insert(command.end(), arguments.begin(), arguments.end());
   run.processes.spawn(test, command);
-  const int status = run.processes.wait_for_exit(test, 3 * kTimeout_s);
+  const int status = run.processes.wait_for_exit(test, 9 * kTimeout_s);
   INFO(run.processes.output(test));
   INFO(run.processes.output("run"));
+  INFO(contents(run.out() / "logs/live_server.log"));
   REQUIRE(status == 0);
 }
 
@@ -116,15 +118,14 @@ void check_world(const RunLog& log, const Marks& marks) {
   CHECK(after_m > 0.25);
 }
 
-void check_profile_received(const RunLog& log, std::int64_t hash, std::int64_t at_ns) {
-  std::map<std::string, std::int64_t> profiles;  // newest before that instant
-  log.for_each<node_health_t>(channels::kNodeHealth, [&](const node_health_t& m) {
-    if (!m.modality.empty() && m.header.publish_time_ns < at_ns) profiles[m.modality] = m.profile;
+void check_profile_received(const RunLog& log, std::int64_t hash, const Span& span) {
+  std::set<std::string> received;
+  log.for_each<node_health_t>(channels::kNodeHealth, span, [&](const node_health_t& m) {
+    if (m.profile == hash) received.insert(m.modality);
   });
   for (const char* sense : {"haptic", "audio", "visual", "thermal"}) {
     INFO(sense);
-    REQUIRE(profiles.contains(sense));
-    CHECK(profiles[sense] == hash);
+    CHECK(received.contains(sense));
   }
 }
 
@@ -136,7 +137,7 @@ void check_profiles(const RunLog& log, const Marks& marks) {
     });
     return newest;
   };
-  const degradation_t degraded = newest_in({marks.at("cleared") - 60'000 * kMs, marks.at("clear")});
+  const degradation_t degraded = newest_in(marks.between("filled", "clear"));
   INFO(degraded.text);
   REQUIRE(degraded.pages == 1);  // shorter than a datagram
   std::map<std::string, sync::Rule> rules;
@@ -152,11 +153,11 @@ void check_profiles(const RunLog& log, const Marks& marks) {
   CHECK(rules["visual"].rate->rate_Hz == Approx(10));
   REQUIRE(rules["haptic"].loss);
   CHECK(rules["haptic"].loss->share == Approx(0.5));
-  check_profile_received(log, degraded.hash, marks.at("degraded"));
+  check_profile_received(log, degraded.hash, marks.between("degrade", "clear"));
 
-  const degradation_t well = newest_in(marks.between("clear", "cleared"));
+  const degradation_t well = newest_in(marks.between("clear", "freeze"));
   CHECK(sync::parse_profile(well.text, "of all well").rules.empty());
-  check_profile_received(log, well.hash, marks.at("cleared"));
+  check_profile_received(log, well.hash, marks.between("clear", "freeze"));
 }
 
 void check_hand(const RunLog& log, const Marks& marks) {
@@ -235,8 +236,8 @@ void check_rates_unchanged(const RunLog& log, const Marks& marks) {
          {"sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node"}) {
       INFO(node << " while the browser is " << to);
       REQUIRE(before.contains(node));
-      CHECK(during[node] > before.at(node) / 2);  // the machine may be busy
-      CHECK(during[node] < before.at(node) * 2);
+      CHECK(during[node] > before.at(node) / rate_factor(node));
+      CHECK(during[node] < before.at(node) * rate_factor(node));
     }
   }
 }
@@ -260,13 +261,13 @@ std::int64_t sim_time_at(const std::filesystem::path& path, double at_s) {
 
 TEST_CASE(
     "Actions in the live page reach the bus, a frozen or killed browser changes nothing, and the log "
-    "can be replayed in the page", "[exclusive]") {
+    "can be replayed in the page") {
   require_browser();
   RunScript run;
   const std::filesystem::path profile = run.folder.path() / "late_warmth.xml";
   std::ofstream(profile)
       << R"(<profile name="late warmth"><degrade modality="thermal" delay="30ms" jitter="5ms normal"/></profile>)";
-  run.start({tapping_scene(), "--live", "--degrade", profile, "--device", "external:live", "--seconds", "90",
+  run.start({tapping_scene(), "--live", "--degrade", profile, "--device", "external:live", "--seconds", "900",
              "--out", run.out()});
   const std::string address = address_of(run.processes, "run");
   INFO(run.processes.output("run"));

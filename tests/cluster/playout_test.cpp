@@ -34,7 +34,7 @@ double settled_asynchrony_ms(RunningCluster& c, const std::string& a, const std:
 
 }  // namespace
 
-TEST_CASE("Sound and picture have the requested SOA, also after a change in the running cluster", "[exclusive]") {
+TEST_CASE("Sound and picture have the requested SOA, also after a change in the running cluster") {
   RunningCluster c;
   c.start();
   // 100 ms of a base of 200 ms are slewed at 5 % of the time: within 4.5 s.
@@ -51,7 +51,7 @@ TEST_CASE("Sound and picture have the requested SOA, also after a change in the 
 
 TEST_CASE(
     "When sync_node is killed the modalities keep the playout policy, and the restarted sync_node "
-    "publishes the requested one", "[exclusive]") {
+    "publishes the requested one") {
   RunningCluster c;
   c.start();
   request_playout(c, {"experiment", "--base", "150ms", "--soa", "visual=100ms"});
@@ -68,7 +68,7 @@ TEST_CASE(
   CHECK(request_playout(c, {}).find("experiment") != std::string::npos);
 }
 
-TEST_CASE("In the serial loop of 2005 all modalities render, one after the other", "[exclusive]") {
+TEST_CASE("In the serial loop of 2005 all modalities render, one after the other") {
   RunningCluster c;
   c.start();
   CHECK(request_playout(c, {"itouch2005"}).find("one loop") != std::string::npos);
@@ -76,7 +76,7 @@ TEST_CASE("In the serial loop of 2005 all modalities render, one after the other
   CHECK(c.all_running(kNodes));
 }
 
-TEST_CASE("The reported presentation time includes the display latency after the fence, and playout compensates for it", "[exclusive]") {
+TEST_CASE("The reported presentation time includes the display latency after the fence, and playout compensates for it") {
   RunningCluster c;
   c.start();
   c.processes.kill("visual_node");

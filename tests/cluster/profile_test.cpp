@@ -20,7 +20,7 @@ int count_outcomes(const ClusterMonitor& monitor, const std::string& modality, s
 
 }  // namespace
 
-TEST_CASE("A profile put in force in a running cluster degrades only its modality, and can be removed", "[exclusive]") {
+TEST_CASE("A profile put in force in a running cluster degrades only its modality, and can be removed") {
   RunningCluster c;
   c.start();
   const auto before = c.rates(1);
@@ -40,7 +40,7 @@ TEST_CASE("A profile put in force in a running cluster degrades only its modalit
       c.monitor.wait_until([&] { return count_outcomes(c.monitor, "audio", presentation_t::PRESENTED) > presented; }, kTimeout_s));
 }
 
-TEST_CASE("The profile of a scene degrades the modality that it names and no other, until a user removes it", "[exclusive]") {
+TEST_CASE("The profile of a scene degrades the modality that it names and no other, until a user removes it") {
   RunningCluster c;
   std::stringstream text;
   text << std::ifstream(tapping_scene()).rdbuf();

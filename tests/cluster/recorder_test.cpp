@@ -54,7 +54,7 @@ std::vector<std::int64_t> numbers_in(const std::filesystem::path& log) {
 
 }  // namespace
 
-TEST_CASE("A killed recorder loses at most the last 100 ms, and its file is valid up to that point", "[exclusive]") {
+TEST_CASE("A killed recorder loses at most the last 100 ms, and its file is valid up to that point") {
   Folder folder;
   Processes processes(folder.path(), RunningCluster::kRunId);
   Sender sender;
@@ -71,7 +71,7 @@ TEST_CASE("A killed recorder loses at most the last 100 ms, and its file is vali
   for (std::size_t i = 0; i < numbers.size(); ++i) CHECK(numbers[i] == static_cast<std::int64_t>(i));
 }
 
-TEST_CASE("A recorder with a full disk reports it, and its file is valid up to that point", "[exclusive]") {
+TEST_CASE("A recorder with a full disk reports it, and its file is valid up to that point") {
   Folder folder;
   const std::filesystem::path small = folder.path() / "small";
   std::filesystem::create_directory(small);
@@ -106,7 +106,7 @@ TEST_CASE("A recorder with a full disk reports it, and its file is valid up to t
 
 TEST_CASE(
     "The recorder stores all messages that the kernel delivers while a node floods the bus, and those "
-    "of the other nodes", "[exclusive]") {
+    "of the other nodes") {
   Folder folder;
   Processes processes(folder.path(), RunningCluster::kRunId);
   Sender sender;

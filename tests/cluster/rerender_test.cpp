@@ -26,7 +26,7 @@ json changed_of(const json& result, const std::string& sense) {
 
 TEST_CASE(
     "A recorded run renders twice to the same bytes, within 1 ms of its live sound, and a profile "
-    "changes only its modality", "[exclusive]") {
+    "changes only its modality") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "5", "--out", run.out()});
   const int status = run.finish(150);

@@ -59,7 +59,7 @@ TEST_CASE("scripts/run writes the log, sound, pictures, tables and a complete su
   for (const auto& [channel, counts] : summary["bus"].items()) check_keys(counts, {"messages", "bytes", "gaps"});
 }
 
-TEST_CASE("With two groups every modality presents its expected events, and the world keeps its rate", "[exclusive]") {
+TEST_CASE("With two groups every modality presents its expected events, and the world keeps its rate") {
   RunScript run;
   run.start({"--seconds", "8", "--set", "sim_node.groups=dual", "--out", run.out()});
   const int status = run.finish(kRunTimeout_s);
@@ -73,7 +73,7 @@ TEST_CASE("With two groups every modality presents its expected events, and the 
   }
 }
 
-TEST_CASE("Without audio_node the others run unchanged, in the default scene", "[exclusive]") {
+TEST_CASE("Without audio_node the others run unchanged, in the default scene") {
   RunScript run;
   run.start({"--seconds", "6", "--without", "audio_node", "--out", run.out()});
   const int status = run.finish(kRunTimeout_s);
@@ -133,7 +133,7 @@ TEST_CASE("Errors of the command line are reported in one sentence before any pr
   CHECK_FALSE(std::filesystem::exists(run.folder.path() / "out"));
 }
 
-TEST_CASE("A busy port of the machine's network is named, with the remedy", "[exclusive]") {
+TEST_CASE("A busy port of the machine's network is named, with the remedy") {
   RunScript run;
   run.start({tapping_scene(), "--seconds", "30", "--network", "host", "--without", "visual_node", "--out", run.out("a")}, "first");
   const auto up = [&] {
@@ -156,7 +156,7 @@ TEST_CASE("A busy port of the machine's network is named, with the remedy", "[ex
   CHECK(std::filesystem::exists(run.out("a") / "summary.json"));
 }
 
-TEST_CASE("Two simultaneous runs do not receive each other's messages", "[exclusive]") {
+TEST_CASE("Two simultaneous runs do not receive each other's messages") {
   RunScript run;
   const std::vector<std::string> names{"a", "b"};
   for (const std::string& name : names)

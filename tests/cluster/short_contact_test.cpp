@@ -102,6 +102,9 @@ void check_presentations(const std::string& degraded) {
     std::vector<std::string> options{
         (repository() / "tests/cluster/scenes/short_contacts.sdf").string(),          "--seconds", "7",      "--device",
         "playback:" + write_motion(run.folder.path() / "motion.csv").string(), "--out",     run.out()};
+    // A busy machine delays a presentation but must not lose it.
+    for (const char* limit : {"visual_node.drop_after=10", "haptic_node.drop_after=1", "audio_node.late_limit=0.5"})
+      options.insert(options.end(), {"--set", limit});
     if (!degraded.empty()) options.insert(options.end(), {"--degrade", profile});
     if (!policy.empty()) options.insert(options.end(), {"--policy", policy});
     run.start(options);
@@ -141,18 +144,18 @@ void check_presentations(const std::string& degraded) {
 
 }  // namespace
 
-TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, without degradation", "[exclusive]") {
+TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, without degradation") {
   check_presentations("");
 }
-TEST_CASE("A 3 ms contact between two video frames flashes, warms and is felt, with degraded sound", "[exclusive]") {
+TEST_CASE("A 3 ms contact between two video frames flashes, warms and is felt, with degraded sound") {
   check_presentations("audio");
 }
-TEST_CASE("A 3 ms contact between two video frames sounds, warms and is felt, with degraded vision", "[exclusive]") {
+TEST_CASE("A 3 ms contact between two video frames sounds, warms and is felt, with degraded vision") {
   check_presentations("visual");
 }
-TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, with degraded touch", "[exclusive]") {
+TEST_CASE("A 3 ms contact between two video frames flashes, sounds and warms, with degraded touch") {
   check_presentations("haptic");
 }
-TEST_CASE("A 3 ms contact between two video frames flashes, sounds and is felt, with degraded warmth", "[exclusive]") {
+TEST_CASE("A 3 ms contact between two video frames flashes, sounds and is felt, with degraded warmth") {
   check_presentations("thermal");
 }

@@ -33,7 +33,7 @@ const std::vector<std::string> kOthers{"haptic", "audio", "visual", "thermal"};
 
 TEST_CASE(
     "A sixth modality joins a running cluster: health, report and summary contain it, with expected "
-    "events and asynchronies", "[exclusive]") {
+    "events and asynchronies") {
   RunningCluster c;
   auto& reports = c.monitor.bus().queue<sync_report_t>(channels::kSyncReport, 256);
   c.processes.start("recorder");
@@ -82,7 +82,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A profile delays the sixth modality by its 50 ms, and no other modality", "[exclusive]") {
+TEST_CASE("A profile delays the sixth modality by its 50 ms, and no other modality") {
   RunningCluster c;
   c.start();
   c.processes.start("wind_node");

@@ -27,7 +27,7 @@ const json& channel(const json& all, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("spy lists the channels of a running cluster with rates, losses and ages", "[exclusive]") {
+TEST_CASE("spy lists the channels of a running cluster with rates, losses and ages") {
   RunningCluster c;
   c.start();
   const std::string file = c.folder.path() / "spy.json";

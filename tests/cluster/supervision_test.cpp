@@ -28,7 +28,7 @@ std::int64_t run_id_of(RunScript& run) {
 
 }  // namespace
 
-TEST_CASE("DEGRADE-4: every killed node rejoins by itself", "[exclusive]") {
+TEST_CASE("DEGRADE-4: every killed node rejoins by itself") {
   RunScript run;
   // Uses the network of this test, so that the test receives the bus.
   run.start({tapping_scene(), "--seconds", "120", "--network", "host", "--out", run.out()});
@@ -65,7 +65,7 @@ TEST_CASE("DEGRADE-4: every killed node rejoins by itself", "[exclusive]") {
   CHECK(all_processes_ended(5));
 }
 
-TEST_CASE("A node that dies repeatedly stays lost and is named, and the others continue", "[exclusive]") {
+TEST_CASE("A node that dies repeatedly stays lost and is named, and the others continue") {
   RunScript run;
   run.start(
       {tapping_scene(), "--seconds", "14", "--network", "host", "--without", "visual_node", "--out", run.out()});

@@ -73,7 +73,7 @@ std::string scene_with(const Folder& folder, const std::string& element) {
 
 }  // namespace
 
-TEST_CASE("Every node publishes its requested variables at each of its ticks, and stops when no request is active", "[exclusive]") {
+TEST_CASE("Every node publishes its requested variables at each of its ticks, and stops when no request is active") {
   TagCluster c;
   c.start();
   c.receive_for(2);
@@ -119,7 +119,7 @@ TEST_CASE("Every node publishes its requested variables at each of its ticks, an
   CHECK(c.messages == before);
 }
 
-TEST_CASE("One line of a scene makes the sound level weaken the felt vibration", "[exclusive]") {
+TEST_CASE("One line of a scene makes the sound level weaken the felt vibration") {
   TagCluster c;
   // Each hit that sounded reduces the largest force by half a newton, down to half a newton.
   c.processes.start_all(scene_with(

@@ -125,14 +125,14 @@ struct TwoHosts {
 
 }  // namespace
 
-TEST_CASE("Two walls on two hosts show the same time and the same head pose in 99 of 100 frames", "[exclusive]") {
+TEST_CASE("Two walls on two hosts show the same time and the same head pose in 99 of 100 frames") {
   TwoHosts c;
   if (!c.start()) return;
   c.record_frames(100);
   c.check_agreement();
 }
 
-TEST_CASE("A wall keeps its rate beside another that draws ten pictures a second, and both show the same state", "[exclusive]") {
+TEST_CASE("A wall keeps its rate beside another that draws ten pictures a second, and both show the same state") {
   TwoHosts c;
   if (!c.start({"--emulate-load", "5"})) return;  // wastes five of six periods
   c.record_frames(20);
@@ -146,7 +146,7 @@ TEST_CASE("A wall keeps its rate beside another that draws ten pictures a second
   CHECK(share < 0.3);  // 10 of 60, and other work of the machine
 }
 
-TEST_CASE("Walls that wait for each other show the same state, and stop waiting for a dead wall", "[exclusive]") {
+TEST_CASE("Walls that wait for each other show the same state, and stop waiting for a dead wall") {
   TwoHosts c;
   if (!c.start({}, "wait")) return;
   c.record_frames(100);

@@ -45,7 +45,7 @@ struct TwoWalls : RunningCluster {
 
 TEST_CASE(
     "Each of two walls of a room shows every event, and a frozen or killed wall does not disturb the "
-    "other processes", "[exclusive]") {
+    "other processes") {
   TwoWalls c;
   c.start_all();
   CHECK(c.keeps_rendering(TwoWalls::kLeft));

@@ -239,7 +239,7 @@ TEST_CASE("The mouse in the window is a device that points at the object under t
   CHECK(c.keeps_ticking("visual_node"));
 }
 
-TEST_CASE("The spot light follows the pressed mouse, and stays in place after its release", "[exclusive]") {
+TEST_CASE("The spot light follows the pressed mouse, and stays in place after its release") {
   Desktop c;
   c.start_server();
   const std::string run = std::to_string(RunningCluster::kRunId);

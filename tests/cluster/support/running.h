@@ -7,6 +7,7 @@
 
 #include "tests/cluster/support/cluster_monitor.h"
 #include "tests/cluster/support/processes.h"
+#include "tests/cluster/support/rate_factor.h"
 
 namespace tactus::cluster {
 
@@ -46,8 +47,8 @@ struct RunningCluster {
     }
     return out;
   }
-  // Checks that rates hold within a factor of two, in the best of three spans: other work on the machine comes and goes, but a node that
-  // is blocked, or runs too fast, is so in all of them.
+  // Checks that rates hold within rate_factor(), in the best of three spans: other work on the machine comes and goes, but a node that is
+  // blocked, or runs too fast, is so in all of them.
   void check_rates_hold(const std::map<std::string, double>& before, double seconds,
                         const std::string& except = "") {
     std::map<std::string, double> left = before;
@@ -57,7 +58,8 @@ struct RunningCluster {
       now = rates(seconds);
       std::erase_if(left, [&](const auto& b) {
         const auto at = now.find(b.first);
-        return at != now.end() && at->second > b.second / 2 && at->second < b.second * 2;
+        const double factor = rate_factor(b.first);
+        return at != now.end() && at->second > b.second / factor && at->second < b.second * factor;
       });
     }
     for (const auto& [node, rate] : left)

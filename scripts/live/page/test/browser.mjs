@@ -6,7 +6,7 @@ import puppeteer from "puppeteer-core";
 export const wait = (ms) => new Promise((done) => setTimeout(done, ms));
 // CLOCK_MONOTONIC, which stamps the messages too.
 export const now_ns = () => Number(process.hrtime.bigint());
-export const TIMEOUT_MS = 20000; // liveness, not speed: the machine may be busy
+export const TIMEOUT_MS = 60000; // liveness, not speed: the machine may be busy
 
 // Waits until the condition holds; `what` names the condition in the error message.
 export async function until(what, check, timeout_ms = TIMEOUT_MS) {

@@ -103,7 +103,8 @@ try {
   mark("degraded");
   mark("clear");  // before the click: the message may be on the bus before the click returns
   await it.click("#clear");
-  await wait(1500);
+  await until("all modalities are restored", async () =>
+    (await it.page.$eval("#inforce", (e) => e.dataset.senses)) === "{}" && (await it.text("#nodes")).match(/taken/g)?.length === 4 || it.text("#nodes"));
   mark("cleared");
 
   // Pauses the world, advances it by 25 steps, resumes it, and resets it.
@@ -113,14 +114,16 @@ try {
   mark("paused");
   await it.page.$eval("#steps", (e) => { e.value = "25"; });
   await it.click("#step");
-  await wait(1000);
+  await until("the world has made 25 steps", async () => /25 steps/.test(await it.text("#toast")) || it.text("#toast"));
+  await wait(600);
   mark("stepped");
   await it.click("#pause");
   await until("the world resumes", async () => !/stands still/.test(await it.text("#world")) || it.text("#world"));
   await wait(500);
   mark("reset");
   await it.click("#reset");
-  await wait(1000);
+  await until("the world is reset", async () => /is reset/.test(await it.text("#toast")) || it.text("#toast"));
+  await wait(500);
   mark("was_reset");
 
   // The server itself refuses foreign origins and wrong tokens.
