@@ -66,11 +66,7 @@ TEST_CASE("DEGRADE-2: visual_node, frozen for 2 s, disturbs no other node and th
   CHECK(h->stale_ticks - stale <= 5 + usual);
   // The node skipped the missed frames: two seconds at its rate.
   CHECK(h->missed_ticks - missed > before.at("visual_node"));
-  for (const input_health_t& in : h->inputs) {
-    INFO(in.channel << " is " << in.age_ns << " ns old");
-    if (in.channel == channels::kWorldState || in.channel == channels::kContactEvents)
-      CHECK(in.age_ns < 500'000'000);
-  }
+  CHECK(c.monitor.wait_until([&] { return c.receives_the_present("visual_node"); }, kTimeout_s));
   CHECK(c.all_running(kNodes));
 }
 

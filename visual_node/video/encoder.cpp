@@ -5,12 +5,14 @@
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <thread>
@@ -23,7 +25,15 @@ namespace {
 // Room for two pictures of 640x480, which reduces switches between the two processes.
 constexpr int kPipeBytes = 1 << 20;
 constexpr auto kWaitInterval = std::chrono::milliseconds(10);
-constexpr int kMaxWaits = 300;  // 3 s
+constexpr int kMaxIdleWaits = 1000;  // 10 s
+
+// Processor time that a process has used, ns; 0: unknown.
+std::int64_t processor_time_ns(pid_t process) {
+  clockid_t clock;
+  timespec used{};
+  if (clock_getcpuclockid(process, &clock) != 0 || clock_gettime(clock, &used) != 0) return 0;
+  return std::int64_t{used.tv_sec} * 1'000'000'000 + used.tv_nsec;
+}
 
 }  // namespace
 
@@ -114,9 +124,12 @@ Encoder::Encoder(const std::vector<std::string>& command) {
 Encoder::~Encoder() {
   if (child_ < 0) return;
   close(pipe_);
-  for (int i = 0; i < kMaxWaits; ++i) {
+  // On a busy machine the encoder needs long for the last pictures; only one that does nothing hangs.
+  std::int64_t used_ns = 0;
+  for (int idle = 0; idle < kMaxIdleWaits; ++idle) {
     if (waitpid(child_, nullptr, WNOHANG) != 0) return;
     std::this_thread::sleep_for(kWaitInterval);
+    if (const std::int64_t now_ns = processor_time_ns(child_); now_ns > used_ns) idle = 0, used_ns = now_ns;
   }
   kill(child_, SIGKILL);
   waitpid(child_, nullptr, 0);

@@ -19,7 +19,7 @@ class Encoder {
   // Starts the process with normal scheduling and nice 10. Throws std::runtime_error with one sentence when it
   // cannot start.
   explicit Encoder(const std::vector<std::string>& command);
-  // Closes its input, waits for the end of the file, at most 3 s, then ends the process.
+  // Closes its input and waits for the end of the file; ends a process that does nothing for 10 s.
   ~Encoder();
   Encoder(const Encoder&) = delete;
   Encoder& operator=(const Encoder&) = delete;

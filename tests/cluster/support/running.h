@@ -1,10 +1,13 @@
 // A whole cluster with the small scene, and a subscriber to its bus.
 #pragma once
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
+#include <tactus/input_health_t.hpp>
 #include <tactus/node_health_t.hpp>
 
+#include "lcmtypes/channels.h"
 #include "tests/cluster/support/cluster_monitor.h"
 #include "tests/cluster/support/processes.h"
 #include "tests/cluster/support/rate_factor.h"
@@ -64,6 +67,14 @@ struct RunningCluster {
     }
     for (const auto& [node, rate] : left)
       FAIL_CHECK(node << ": " << rate << " Hz before, " << now[node] << " Hz in the last of three spans");
+  }
+  // True when the newest state and events that a node has received are less than half a second old.
+  bool receives_the_present(const std::string& node) const {
+    const node_health_t* h = monitor.health(node);
+    return h && std::all_of(h->inputs.begin(), h->inputs.end(), [](const input_health_t& in) {
+             const bool timed = in.channel == channels::kWorldState || in.channel == channels::kContactEvents;
+             return !timed || in.age_ns < 500'000'000;
+           });
   }
   // The last output of every process, for the report of a failure.
   std::string log_text() const {
