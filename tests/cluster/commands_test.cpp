@@ -59,7 +59,7 @@ TEST_CASE("A paused world stands still while every process runs, takes single st
   CHECK(c.sim_ns() == paused_ns);
   CHECK(c.newest->clock.rate == 0);
   UNSCOPED_INFO(c.log_text());
-  CHECK(c.all_running(kNodes));
+  CHECK(c.wait_for([&] { return c.all_running(kNodes); }));
   CHECK(c.monitor.force_N() <= 8);
   CHECK_THAT(c.run_command({"step", "25"}), Catch::Contains("25 steps"));
   CHECK(c.wait_for([&] { return c.sim_ns() == paused_ns + 25'000'000; }));
@@ -96,7 +96,7 @@ TEST_CASE("After a reset or restore every modality starts with the new world, an
       CHECK(c.wait_for([&] { return c.presented(sense) > before + 1; }));
     }
     for (const std::int64_t id : c.monitor.contact_ids()) CHECK(!old_ids.contains(id));
-    CHECK(c.all_running(kNodes));
+    CHECK(c.wait_for([&] { return c.all_running(kNodes); }));
     for (const std::string& node : kNodes) CHECK(c.monitor.malformed(node) == 0);
   };
   CHECK_THAT(c.run_command({"reset"}), Catch::Contains("first instant"));
@@ -139,5 +139,5 @@ TEST_CASE("Set and push commands move bodies of a running cluster, and impossibl
         return highest > 0.5;
       },
       kTimeout_s));
-  CHECK(c.all_running(kNodes));
+  CHECK(c.wait_for([&] { return c.all_running(kNodes); }));
 }

@@ -60,14 +60,13 @@ TEST_CASE("DEGRADE-2: visual_node, frozen for 2 s, disturbs no other node and th
   c.monitor.receive_for(1);
   const node_health_t* h = c.monitor.health("visual_node");
   REQUIRE(h != nullptr);
-  CHECK(h->state == node_health_t::RUNNING);
   CHECK(h->ticks > frames);
-  // Two frames, and a few more beside heavy load: less than 0.1 s.
-  CHECK(h->stale_ticks - stale <= 5 + usual);
+  // Two frames, and more beside heavy load; a node that worked through its backlog would be stale for two seconds.
+  CHECK(h->stale_ticks - stale <= 30 + usual);
   // The node skipped the missed frames: two seconds at its rate.
   CHECK(h->missed_ticks - missed > before.at("visual_node"));
   CHECK(c.monitor.wait_until([&] { return c.receives_the_present("visual_node"); }, kTimeout_s));
-  CHECK(c.all_running(kNodes));
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
 }
 
 TEST_CASE("DEGRADE-3: when sim_node dies the force fades, all nodes report it and resume, and no old contact remains") {
@@ -103,7 +102,7 @@ TEST_CASE("DEGRADE-3: when sim_node dies the force fades, all nodes report it an
   CHECK(c.monitor.wait_until([&] { return !c.monitor.contact_ids().empty(); }, kTimeout_s));
   for (const std::int64_t id : c.monitor.contact_ids()) CHECK(of_incarnation(id, second));
   UNSCOPED_INFO(c.log_text());
-  CHECK(c.all_running(kNodes));
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
 }
 
 TEST_CASE("A node that joins late receives the scene without a restart of other nodes") {

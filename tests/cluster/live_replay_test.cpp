@@ -107,16 +107,21 @@ TEST_CASE("A running replay executes the commands from its pipe") {
     while (const auto m = states.pop()) times.push_back(m->message.header.sim_time_ns);
     return times;
   };
+  // A busy machine executes a command late.
+  const auto eventually_plays = [&](bool wanted) {
+    for (double waited_s = 0; waited_s < kTimeout_s; waited_s += 0.8)
+      if (!received_times(0.5).empty() == wanted) return true;
+    return false;
+  };
   REQUIRE(monitor.wait_until([&] { return monitor.health("replay") != nullptr; }, kTimeout_s));
   CHECK(received_times(0.5).empty());
   command("loop on\nresume");
-  CHECK_FALSE(received_times(1).empty());
+  CHECK(eventually_plays(true));
   command("pause");
-  CHECK(received_times(0.5).empty());
+  CHECK(eventually_plays(false));
   command("seek 1\nstep 0.5");
-  monitor.receive_for(3);
-  CHECK_THAT(processes.output("replay"), Catch::Contains("1.00 of"));
-  CHECK(received_times(0.3).empty());
+  CHECK(monitor.wait_until([&] { return processes.output("replay").find("1.00 of") != std::string::npos; }, kTimeout_s));
+  CHECK(eventually_plays(false));
   command("fly");
   CHECK(monitor.wait_until([&] { return processes.output("replay").find("cannot execute 'fly'") != std::string::npos; },
                        kTimeout_s));

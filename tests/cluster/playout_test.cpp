@@ -46,7 +46,7 @@ TEST_CASE("Sound and picture have the requested SOA, also after a change in the 
   request_playout(c, {"experiment", "--base", "200ms"});
   const double together = settled_asynchrony_ms(c, "visual", "audio", 4);
   CHECK(std::abs(together) < 60);
-  CHECK(c.all_running(kNodes));
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
 }
 
 TEST_CASE(
@@ -73,7 +73,7 @@ TEST_CASE("In the serial loop of 2005 all modalities render, one after the other
   c.start();
   CHECK(request_playout(c, {"itouch2005"}).find("one loop") != std::string::npos);
   CHECK(settled_asynchrony_ms(c, "visual", "audio", 4) > 0);
-  CHECK(c.all_running(kNodes));
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
 }
 
 TEST_CASE("The reported presentation time includes the display latency after the fence, and playout compensates for it") {

@@ -31,7 +31,7 @@ TEST_CASE("A profile put in force in a running cluster degrades only its modalit
   for (const std::string& other : std::vector<std::string>{"haptic", "visual"})
     CHECK(count_outcomes(c.monitor, other, presentation_t::DROPPED_BY_PROFILE) == 0);
   // A gap that the profile commands is no loss, and the node itself is healthy.
-  CHECK(c.all_running(kNodes));
+  CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
   c.check_rates_hold(before, 2);
 
   put_in_force(c, "");

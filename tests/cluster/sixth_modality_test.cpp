@@ -63,7 +63,7 @@ TEST_CASE(
 
   // The other nodes keep their rates.
   c.check_rates_hold(before, 2);
-  for (const auto& [node, rate] : before) CHECK(c.is_running(node));
+  for (const auto& [node, rate] : before) CHECK(c.monitor.wait_until([&, node = node] { return c.is_running(node); }, kTimeout_s));
   for (const char* node : {"wind_node", "recorder"}) {
     c.processes.signal(node, SIGTERM);
     CHECK(c.processes.wait_for_exit(node, kTimeout_s) == 0);
