@@ -87,9 +87,9 @@ TEST_CASE("Every node publishes its requested variables at each of its ticks, an
   // Within a factor of two of their rates: the machine may be busy.
   CHECK(c.rate_Hz("sim_node.work.collision") > 500);
   CHECK(c.rate_Hz("haptic_node.force") > 500);
-  CHECK(c.rate_Hz("thermal_node.skin") > 25);
+  CHECK(c.rate_Hz("thermal_node.skin") > 10);
   CHECK(c.rate_Hz("thermal_node.skin") < 100);
-  CHECK(c.rate_Hz("visual_node.work.render") > 15);
+  CHECK(c.rate_Hz("visual_node.work.render") > 2);
   CHECK(c.series["haptic_node.force"].unit == "N");
   const auto max = [&](const std::string& name) {
     const auto& v = c.series[name].values;
