@@ -3,7 +3,6 @@
 #include <cmath>
 #include <fstream>
 #include <span>
-#include <stdexcept>
 #include <tactus/tool_def_t.hpp>
 #include <tactus/waypoint_t.hpp>
 

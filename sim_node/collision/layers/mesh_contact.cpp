@@ -1,6 +1,5 @@
 #include "sim_node/collision/layers/mesh_contact.h"
 
-#include <algorithm>
 #include <functional>
 #include <stdexcept>
 
