@@ -54,9 +54,8 @@ class Grouping {
   // Begins a visual step. trajectories: of the bodies that are computed ahead, from now on; they must live until the
   // next call. Bodies of the group stay or leave; bodies with a trajectory may enter. touching: pairs of bodies that
   // touch now, in addition to those of the trajectories. bodies: current motions of all bodies; only those of the
-  // group and of entering bodies are read. A body leaves
-  // only when it can reach no body outside in this step, so that it can be computed by itself. Cost: proportional to
-  // the group. Realtime-safe once the lists have grown.
+  // group and of entering bodies are read. A body leaves only when it can reach no body outside in this step, so that
+  // it can be computed by itself. Cost: proportional to the group. Realtime-safe once the lists have grown.
   void begin_step(sync::SimTime now, const SweptTrajectories& trajectories, std::span<const BodyMotion> bodies,
                   std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools);
   // The same, with trajectories of all bodies inside and outside the group: deviations_m is the maximum distance of
