@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <tactus/contact_event_t.hpp>
-#include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <tactus/tool_state_t.hpp>

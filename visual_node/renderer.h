@@ -4,9 +4,7 @@
 
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
-#include <tactus/contact_events_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <tactus/tool_state_t.hpp>
 #include <tactus/world_state_t.hpp>

@@ -1,7 +1,6 @@
 #include "audio_node/excitation/roughness.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 

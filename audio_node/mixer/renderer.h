@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <optional>
-#include <span>
 #include <tactus/presentation_t.hpp>
 
 #include "audio_node/signal/dropout.h"

@@ -1,7 +1,6 @@
 // Holds strikes until their sample. Pure.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "audio_node/excitation/strike.h"

@@ -1,7 +1,6 @@
 #include "audio_node/modal/body_sound.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <tactus/material_def_t.hpp>
 #include <tactus/shape_def_t.hpp>

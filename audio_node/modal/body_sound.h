@@ -5,7 +5,6 @@
 #include <optional>
 #include <tactus/body_def_t.hpp>
 #include <tactus/material_def_t.hpp>
-#include <tactus/scene_t.hpp>
 #include <tactus/shape_def_t.hpp>
 #include <vector>
 

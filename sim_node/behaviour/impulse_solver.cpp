@@ -4,6 +4,7 @@
 
 #include "sim_node/behaviour/impulse/build_world.h"
 #include "sim_node/model/archive_motion.h"
+#include "sim_node/model/tool_shape.h"
 
 namespace tactus::sim {
 namespace {
@@ -13,23 +14,6 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 // Maximum number of contacts in a state: more than any step has.
 constexpr std::size_t kMaxContacts = 1 << 16;
 
-// Bounding radius of a shape about the origin of its frame, and the lever arm of the points that rotation about its z
-// axis moves.
-double bound_of(const ShapeDef& s, const WorldDef& world) {
-  switch (s.kind) {
-    case ShapeKind::kSphere: return s.size_m.x();
-    case ShapeKind::kCapsule: return s.size_m.x() + s.size_m.z() / 2;
-    case ShapeKind::kCylinder: return std::hypot(s.size_m.x(), s.size_m.z() / 2);
-    case ShapeKind::kMesh: {
-      double max_radius_m = 0;
-      for (const Eigen::Vector3d& v : world.meshes[index(s.mesh)].vertices)
-        max_radius_m = std::max(max_radius_m, v.norm());
-      return max_radius_m;
-    }
-    default: return s.size_m.norm() / 2;
-  }
-}
-
 }  // namespace
 
 std::vector<impulse::Extent> extents_of(const WorldDef& world) {
@@ -38,7 +22,7 @@ std::vector<impulse::Extent> extents_of(const WorldDef& world) {
     const BodyDef& body = world.bodies[index(s.body)];
     if (body.is_static || body.tool >= 0) continue;
     impulse::Extent& e = out[index(s.body)];
-    const double from_centre = (s.pose.translation() - body.centre_of_mass_m).norm(), bound = bound_of(s, world);
+    const double from_centre = (s.pose.translation() - body.centre_of_mass_m).norm(), bound = bound_m(world, s);
     e.bound_m = std::max(e.bound_m, from_centre + bound);
     e.rotation_lever_m = std::max(e.rotation_lever_m, from_centre + (s.kind == ShapeKind::kSphere ? 0 : bound));
   }

@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "sim_node/behaviour/impulse/adaptive_stepper.h"

@@ -2,11 +2,9 @@
 // groups.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/contact_t.hpp>
 #include <vector>

@@ -1,7 +1,6 @@
 #include "sim_node/behaviour/ode_joints.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tactus::sim::ode {
 namespace {

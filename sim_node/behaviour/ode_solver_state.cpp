@@ -16,16 +16,18 @@ bool Solver::apply(const SceneChange& c) {
   switch (c.kind) {
     case SceneChange::kGravity: set_gravity(c.values); return true;
     case SceneChange::kMass: return set_mass(c.body, c.values.x());
-    case SceneChange::kFriction: set_friction(c.body, c.values.x()); return true;
-    case SceneChange::kRestitution: set_restitution(c.body, c.values.x()); return true;
-    case SceneChange::kMotor: return set_motor(c.joint, c.axis, c.values.x(), c.values.y());
-    case SceneChange::kJointFriction: return set_joint_friction(c.joint, c.axis, c.values.x());
+    case SceneChange::kFriction:
+    case SceneChange::kRestitution:
+      for (std::size_t s = 0; s < body_of_.size(); ++s)
+        if (body_of_[s] == c.body) (c.kind == SceneChange::kFriction ? friction_ : restitution_)[s] = c.values.x();
+      return true;
+    case SceneChange::kMotor: return engine_->joints->set_motor(c.joint, c.axis, c.values.x(), c.values.y());
+    case SceneChange::kJointFriction: return engine_->joints->set_friction(c.joint, c.axis, c.values.x());
     default: return false;
   }
 }
 
 void Solver::set_gravity(const Eigen::Vector3d& g) {
-  if (impulse_) return static_cast<void>(impulse_->apply({.kind = SceneChange::kGravity, .values = g}));
   dWorldSetGravity(engine_->world.get(), g.x(), g.y(), g.z());
   for (std::size_t i = 0; i < inertias_.size(); ++i) {
     if (!has_gravity_[i]) continue;
@@ -35,7 +37,6 @@ void Solver::set_gravity(const Eigen::Vector3d& g) {
 }
 
 bool Solver::set_mass(int body, double mass_kg) {
-  if (impulse_) return impulse_->apply({.kind = SceneChange::kMass, .body = body, .values = {mass_kg, 0, 0}});
   const auto i = static_cast<std::size_t>(body);
   const dBodyID id = engine_->bodies[i];
   if (!id || engine_->jointed[i]) return false;
@@ -80,34 +81,6 @@ bool Solver::set_spin(int body, const Eigen::Vector3d& w) {
   dBodySetAngularVel(id, w.x(), w.y(), w.z());
   read_bodies();
   return true;
-}
-
-void Solver::set_friction(int body, double friction) {
-  if (impulse_)
-    return static_cast<void>(impulse_->apply({.kind = SceneChange::kFriction, .body = body, .values = {friction, 0, 0}}));
-  for (std::size_t s = 0; s < body_of_.size(); ++s)
-    if (body_of_[s] == body) friction_[s] = friction;
-}
-
-void Solver::set_restitution(int body, double restitution) {
-  if (impulse_)
-    return static_cast<void>(
-        impulse_->apply({.kind = SceneChange::kRestitution, .body = body, .values = {restitution, 0, 0}}));
-  for (std::size_t s = 0; s < body_of_.size(); ++s)
-    if (body_of_[s] == body) restitution_[s] = restitution;
-}
-
-bool Solver::set_motor(const std::string& joint, int axis, double effort, double velocity) {
-  if (impulse_)
-    return impulse_->apply({.kind = SceneChange::kMotor, .joint = joint, .axis = axis, .values = {effort, velocity, 0}});
-  return engine_->joints->set_motor(joint, axis, effort, velocity);
-}
-
-bool Solver::set_joint_friction(const std::string& joint, int axis, double friction) {
-  if (impulse_)
-    return impulse_->apply(
-        {.kind = SceneChange::kJointFriction, .joint = joint, .axis = axis, .values = {friction, 0, 0}});
-  return engine_->joints->set_friction(joint, axis, friction);
 }
 
 void Solver::Engine::archive(StateArchive& a, dBodyID id) {

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "sim_node/behaviour/impulse/recovery_report.h"
@@ -38,15 +37,9 @@ class Solver {
   // Changes of a running world, effective from the next step on. Values are not checked here. Return false when the
   // property does not exist: a static body has no mass and no velocity, a jointed body has no pose and no mass.
   bool apply(const impulse::SceneChange& change);  // any change but pose, velocity and spin
-  void set_gravity(const Eigen::Vector3d& gravity_m_s2);
-  bool set_mass(int body, double mass_kg);  // scales the inertia
   bool set_pose(int body, const Eigen::Isometry3d& pose);
   bool set_velocity(int body, const Eigen::Vector3d& velocity_m_s);  // of the centre of mass
   bool set_spin(int body, const Eigen::Vector3d& spin_rad_s);
-  void set_friction(int body, double friction);
-  void set_restitution(int body, double restitution);
-  bool set_motor(const std::string& joint, int axis, double effort, double velocity);
-  bool set_joint_friction(const std::string& joint, int axis, double friction);
 
   // Archives all state of the next steps. Throws InvalidState when the data does not fit; the solver is then
   // partly changed.
@@ -75,6 +68,8 @@ class Solver {
     Eigen::Vector3d gravity_m_s;  // speed that gravity adds per step
   };
   void start(const WorldDef& world);
+  void set_gravity(const Eigen::Vector3d& gravity_m_s2);
+  bool set_mass(int body, double mass_kg);  // scales the inertia
   void read_bodies();
   void move_back(Manifold& contact, bool is_new);
   void add_contact_joint(Manifold& contact);

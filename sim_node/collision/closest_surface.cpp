@@ -52,10 +52,6 @@ SurfacePlane cylinder(const Vector3d& p, double radius, double half) {
 
 }  // namespace
 
-ClosestSurface::ClosestSurface(const ShapeDef& shape, const TriangleMesh* mesh, double merge_angle_rad)
-    : ClosestSurface(shape, mesh ? std::make_shared<const TriangleTree>(mesh->vertices, mesh->indices) : nullptr,
-                     merge_angle_rad) {}
-
 ClosestSurface::ClosestSurface(const ShapeDef& shape, std::shared_ptr<const TriangleTree> tree, double merge_angle_rad)
     : kind_(shape.kind), same_direction_(std::cos(merge_angle_rad)), size_m_(shape.size_m), tree_(std::move(tree)) {
   switch (kind_) {

@@ -23,10 +23,8 @@ class ClosestSurface {
   static constexpr int kMaxPlanes = 4;
   static constexpr double kMergeAngle_rad = 0.1745;  // default of the setting touch_merge_angle
 
-  // mesh: the triangles of a mesh or heightfield; ignored for other shapes. Planes of a mesh whose normals differ by
-  // less than merge_angle_rad are merged.
-  ClosestSurface(const ShapeDef& shape, const TriangleMesh* mesh, double merge_angle_rad = kMergeAngle_rad);
-  // The same with a tree that may be shared. null or empty: no mesh.
+  // tree: the triangles of a mesh or heightfield, which may be shared; null or empty: no mesh. Planes of a mesh whose
+  // normals differ by less than merge_angle_rad are merged.
   ClosestSurface(const ShapeDef& shape, std::shared_ptr<const TriangleTree> tree, double merge_angle_rad = kMergeAngle_rad);
 
   // Writes the planes within `reach_m` of `place` (shape frame), nearest first, into `out`. A convex surface has one

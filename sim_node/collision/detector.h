@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -1,7 +1,6 @@
 #include "sim_node/contacts/contact_math.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <tactus/material_def_t.hpp>

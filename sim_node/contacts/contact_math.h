@@ -1,7 +1,6 @@
 // Properties of a contact from the geometry of its two surfaces and their materials. Pure.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #include "sim_node/contacts/contact_tracker.h"
 
 #include <algorithm>
-#include <cmath>
 #include <tactus/contact_point_t.hpp>
 
 #include "lcmtypes/vectors.h"

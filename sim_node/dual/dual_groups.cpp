@@ -1,7 +1,6 @@
 #include "sim_node/dual/dual_groups.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/contact_t.hpp>

@@ -55,7 +55,6 @@ class DualGroups : public Mechanics {
 
   std::span<const int> haptic() const { return grouping_.haptic(); }
   bool is_haptic(int body) const { return grouping_.is_haptic(body); }
-  const Grouping& grouping() const { return grouping_; }
   // The current visual step, and the time at which it ends.
   const VisualStep* step() const { return step_.get(); }
   sync::SimTime step_ends() const { return ends_; }

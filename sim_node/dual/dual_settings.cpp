@@ -1,5 +1,4 @@
 // Changes that can be applied to a running world in two groups.
-#include <algorithm>
 
 #include "sim_node/dual/dual_groups.h"
 

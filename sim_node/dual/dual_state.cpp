@@ -1,5 +1,4 @@
 // Serializes the state of both groups, with the current visual step and the next one.
-#include <algorithm>
 
 #include "sim_node/dual/dual_groups.h"
 #include "sim_node/model/archive_motion.h"

@@ -215,18 +215,16 @@ void Grouping::begin_step(sync::SimTime now, std::span<const BodyMotion> bodies,
         {bodies[k].centre_m, bodies[k].velocity_m_s, bodies_[k].radius_m, deviations_m[k] + limits_.tolerance_m});
   }
   own_trajectories_.set(bodies.size(), movers_, straight_, touching, sync::to_seconds(limits_.horizon));
-  begin(now, own_trajectories_, true, bodies, {}, tools, true);
+  begin(now, own_trajectories_, true, bodies, {}, tools);
 }
 
 void Grouping::begin_step(sync::SimTime now, const SweptTrajectories& trajectories, std::span<const BodyMotion> bodies,
-                          std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools,
-                          bool may_leave) {
-  begin(now, trajectories, false, bodies, touching, tools, may_leave);
+                          std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools) {
+  begin(now, trajectories, false, bodies, touching, tools);
 }
 
 void Grouping::begin(sync::SimTime now, const SweptTrajectories& trajectories, bool includes_all, std::span<const BodyMotion> bodies,
-                     std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools,
-                     bool may_leave) {
+                     std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools) {
   step_began_ = now;
   all_have_trajectories_ = includes_all;
   trajectories_ = &trajectories;
@@ -254,7 +252,7 @@ void Grouping::begin(sync::SimTime now, const SweptTrajectories& trajectories, b
     enter_requested(now, bodies);
     for (const int i : haptic_) last_reached_[static_cast<std::size_t>(i)] = now;
     for (const int i : before_)
-      if (!may_leave || now - last_reached_[static_cast<std::size_t>(i)] < limits_.leave_after)
+      if (now - last_reached_[static_cast<std::size_t>(i)] < limits_.leave_after)
         add_to_group(i, {}, now, bodies);
     close_group(now, bodies, tools);
     update_leaving(now, bodies);

@@ -54,12 +54,10 @@ class Grouping {
   // Begins a visual step. trajectories: of the bodies that are computed ahead, from now on; they must live until the
   // next call. Bodies of the group stay or leave; bodies with a trajectory may enter. touching: pairs of bodies that
   // touch now, in addition to those of the trajectories. bodies: current motions of all bodies; only those of the
-  // group and of entering bodies are read. may_leave: false when no other group exists to receive them. A body leaves
-  // only when it can reach no body outside in this step, so that it can be computed by itself. Cost: proportional to
-  // the group. Realtime-safe once the lists have grown.
+  // group and of entering bodies are read. A body leaves only when it can reach no body outside in this step, so that
+  // it can be computed by itself. Cost: proportional to the group. Realtime-safe once the lists have grown.
   void begin_step(sync::SimTime now, const SweptTrajectories& trajectories, std::span<const BodyMotion> bodies,
-                  std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools,
-                  bool may_leave = true);
+                  std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools);
   // The same, with trajectories of all bodies inside and outside the group: deviations_m is the maximum distance of
   // each body from its straight line.
   void begin_step(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const double> deviations_m,
@@ -110,7 +108,7 @@ class Grouping {
   void add_to_group(int body, ImpactBound bound, sync::SimTime now, std::span<const BodyMotion> bodies);
   double max_impact_speed_m_s(const SweptSphere& tool, std::size_t body, double t_s) const;
   void begin(sync::SimTime now, const SweptTrajectories& trajectories, bool includes_all, std::span<const BodyMotion> bodies,
-             std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools, bool may_leave);
+             std::span<const std::pair<int, int>> touching, std::span<const GroupTool> tools);
   void set_touching(std::span<const std::pair<int, int>> touching);
   void record_entered(sync::SimTime now);
   void update_leaving(sync::SimTime now, std::span<const BodyMotion> bodies);

@@ -1,5 +1,4 @@
 // Serializes the state of grouping. The trajectories of the step belong to the caller: pass them again by resume().
-#include <algorithm>
 
 #include "sim_node/dual/grouping.h"
 #include "sim_node/model/state_archive.h"

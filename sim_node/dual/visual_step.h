@@ -3,10 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <tactus/contact_event_t.hpp>
-#include <tactus/contact_t.hpp>
-#include <utility>
 #include <vector>
 
 #include "sim_node/behaviour/impulse/scene_settings.h"

@@ -1,7 +1,6 @@
 // Contact laws that a scene may select (setting `solver`), and the requirements of each.
 #pragma once
 
-#include <string>
 #include <string_view>
 
 #include "sim_node/settings.gen.h"

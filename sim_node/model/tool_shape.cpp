@@ -1,6 +1,7 @@
 #include "sim_node/model/tool_shape.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tactus/tool_def_t.hpp>
 
 #include "lcmtypes/vectors.h"
@@ -26,17 +27,18 @@ ShapeDef tool_shape(const tool_def_t& tool) {
   return s;
 }
 
-double tool_bound_m(const WorldDef& world, const tool_def_t& tool) {
-  switch (tool.shape) {
-    case tool_def_t::BOX: return 0.5 * to_eigen(tool.size_m).norm();
-    case tool_def_t::CAPSULE: return tool.size_m.x + 0.5 * tool.size_m.z;
-    case tool_def_t::MESH: {
-      double bound = 0;
-      for (const Eigen::Vector3d& v : world.meshes[static_cast<std::size_t>(tool_mesh(tool))].vertices)
-        bound = std::max(bound, v.norm());
-      return bound;
+double bound_m(const WorldDef& world, const ShapeDef& s) {
+  switch (s.kind) {
+    case ShapeKind::kSphere: return s.size_m.x();
+    case ShapeKind::kCapsule: return s.size_m.x() + s.size_m.z() / 2;
+    case ShapeKind::kCylinder: return std::hypot(s.size_m.x(), s.size_m.z() / 2);
+    case ShapeKind::kMesh: {
+      double max_radius_m = 0;
+      for (const Eigen::Vector3d& v : world.meshes[static_cast<std::size_t>(s.mesh)].vertices)
+        max_radius_m = std::max(max_radius_m, v.norm());
+      return max_radius_m;
     }
-    default: return tool.radius_m;
+    default: return s.size_m.norm() / 2;
   }
 }
 

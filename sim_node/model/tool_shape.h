@@ -17,7 +17,8 @@ inline int tool_mesh(const tool_def_t& tool) { return static_cast<int>(tool.mesh
 // In the frame of the tool's body. A ball tool becomes a sphere of its radius.
 ShapeDef tool_shape(const tool_def_t& tool);
 
-// Radius of the bounding sphere of the tool, about the origin of its body.
-double tool_bound_m(const WorldDef& world, const tool_def_t& tool);
+// Radius of the bounding sphere of a shape, about the origin of its frame, and so the lever arm of the points that a
+// rotation moves.
+double bound_m(const WorldDef& world, const ShapeDef& shape);
 
 }  // namespace tactus::sim

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <string>
-#include <tactus/scene_t.hpp>
 #include <vector>
 #include <tactus/light_def_t.hpp>
 #include <tactus/look_t.hpp>

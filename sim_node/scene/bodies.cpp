@@ -1,6 +1,5 @@
 #include "sim_node/scene/bodies.h"
 
-#include <cmath>
 #include <limits>
 #include <sdf/Collision.hh>
 #include <sdf/Link.hh>

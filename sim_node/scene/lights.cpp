@@ -1,6 +1,5 @@
 #include "sim_node/scene/lights.h"
 
-#include <cmath>
 #include <tactus/light_def_t.hpp>
 #include <tactus/vec3f_t.hpp>
 

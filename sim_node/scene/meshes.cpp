@@ -3,7 +3,6 @@
 #include <functional>
 #include <sstream>
 
-#include "sim_node/scene/meshes/file_properties.h"
 #include "sim_node/scene/meshes/mesh_reader.h"
 #include "sim_node/scene/sdf/sdf_eigen.h"
 #include "sim_node/scene/meshes/subdivide.h"

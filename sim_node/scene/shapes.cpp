@@ -8,7 +8,6 @@
 #include <sdf/Plane.hh>
 #include <sdf/Sphere.hh>
 #include <sstream>
-#include <stdexcept>
 
 #include "sim_node/scene/materials/height_image.h"
 #include "sim_node/scene/meshes.h"

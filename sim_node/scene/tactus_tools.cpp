@@ -3,7 +3,6 @@
 #include <cmath>
 #include <fstream>
 #include <span>
-#include <stdexcept>
 #include <tactus/tool_def_t.hpp>
 #include <tactus/waypoint_t.hpp>
 
@@ -137,7 +136,7 @@ void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
   tool.body = static_cast<std::int32_t>(context.world.bodies.size());
   context.body_of[body.name] = tool.body;
   context.world.bodies.push_back(body);
-  if (is_shaped(tool)) tool.radius_m = tool_bound_m(context.world, tool);
+  if (is_shaped(tool)) tool.radius_m = bound_m(context.world, tool_shape(tool));
   if (tool.radius_m > kMaxSize_m)
     context.reject(*element, "extends further than 1 m from its origin: make it smaller");
   BodyDef& held = context.world.bodies.back();

@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "sim_node/model/body_motion.h"
 #include "sim_node/collision/closest_surface.h"
 #include "sim_node/collision/detector.h"
 #include "sim_node/settings.gen.h"

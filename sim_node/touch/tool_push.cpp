@@ -1,7 +1,6 @@
 #include "sim_node/touch/tool_push.h"
 
 #include <algorithm>
-#include <cmath>
 #include <tactus/header_t.hpp>
 #include <tactus/tool_constraint_t.hpp>
 

@@ -1,6 +1,5 @@
 #include "visual_node/devices/gamepad.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace tactus::visual {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "sync/resampling/body_history.h"
 #include "sync/resampling/sample_status.h"

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <deque>
-#include <optional>
 #include <tactus/header_t.hpp>
 #include <tactus/sim_clock_t.hpp>
 

@@ -22,8 +22,6 @@ void check_complete(const char* what) {
 
 }  // namespace
 
-StreamBuffer::StreamBuffer() { glGenBuffers(1, &id_); }
-StreamBuffer::~StreamBuffer() { glDeleteBuffers(1, &id_); }
 void StreamBuffer::write(const void* data, std::size_t bytes) {
   glBindBuffer(GL_ARRAY_BUFFER, id_);
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes), data, GL_STREAM_DRAW);
@@ -37,9 +35,6 @@ GeometryBuffer::GeometryBuffer(const Triangles& t)
     interleaved.push_back(t.positions[i]);
     interleaved.push_back(t.normals[i]);
   }
-  glGenVertexArrays(1, &array_);
-  glGenBuffers(1, &vertices_);
-  glGenBuffers(1, &indices_);
   glBindVertexArray(array_);
   glBindBuffer(GL_ARRAY_BUFFER, vertices_);
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(interleaved.size() * sizeof(Eigen::Vector3f)),
@@ -57,7 +52,6 @@ GeometryBuffer::GeometryBuffer(const Triangles& t)
       places.insert(places.end(),
                     {t.texcoords[i].x(), t.texcoords[i].y(), tangent.x(), tangent.y(), tangent.z(), tangent.w()});
     }
-    glGenBuffers(1, &places_);
     glBindBuffer(GL_ARRAY_BUFFER, places_);
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(places.size() * sizeof(float)), places.data(),
                  GL_STATIC_DRAW);
@@ -76,13 +70,6 @@ GeometryBuffer::GeometryBuffer(const Triangles& t)
                t.indices.data(), GL_STATIC_DRAW);
 }
 
-GeometryBuffer::~GeometryBuffer() {
-  glDeleteVertexArrays(1, &array_);
-  glDeleteBuffers(1, &vertices_);
-  glDeleteBuffers(1, &places_);
-  glDeleteBuffers(1, &indices_);
-}
-
 void GeometryBuffer::draw(const StreamBuffer& instances, int first, int count) const {
   glBindVertexArray(array_);
   glBindBuffer(GL_ARRAY_BUFFER, instances.id());
@@ -94,7 +81,6 @@ void GeometryBuffer::draw(const StreamBuffer& instances, int first, int count) c
 }
 
 QuadArray::QuadArray(int floats4) : floats4_(floats4) {
-  glGenVertexArrays(1, &array_);
   glBindVertexArray(array_);
   glBindBuffer(GL_ARRAY_BUFFER, instances_.id());
   for (int i = 0; i < floats4_; ++i) {
@@ -105,8 +91,6 @@ QuadArray::QuadArray(int floats4) : floats4_(floats4) {
   }
 }
 
-QuadArray::~QuadArray() { glDeleteVertexArrays(1, &array_); }
-
 void QuadArray::draw(const void* data, std::size_t count) {
   if (count == 0) return;
   instances_.write(data, count * 16 * static_cast<std::size_t>(floats4_));
@@ -115,7 +99,6 @@ void QuadArray::draw(const void* data, std::size_t count) {
 }
 
 ReliefTexture::ReliefTexture(const Relief& relief) : size_m_(relief.size_m) {
-  glGenTextures(1, &id_);
   glBindTexture(GL_TEXTURE_2D, id_);
   // Full floats and one mipmap level at a time: on a software renderer both were faster than half floats and two
   // levels.
@@ -126,12 +109,7 @@ ReliefTexture::ReliefTexture(const Relief& relief) : size_m_(relief.size_m) {
   for (const auto wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) glTexParameteri(GL_TEXTURE_2D, wrap, GL_REPEAT);
 }
 
-ReliefTexture::~ReliefTexture() { glDeleteTextures(1, &id_); }
-
 PictureTarget::PictureTarget(int width, int height) : width_(width), height_(height) {
-  glGenFramebuffers(1, &framebuffer_);
-  glGenTextures(1, &colour_);
-  glGenRenderbuffers(1, &depth_);
   glBindTexture(GL_TEXTURE_2D, colour_);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
@@ -145,12 +123,6 @@ PictureTarget::PictureTarget(int width, int height) : width_(width), height_(hei
   glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
   check_complete("picture");
-}
-
-PictureTarget::~PictureTarget() {
-  glDeleteFramebuffers(1, &framebuffer_);
-  glDeleteTextures(1, &colour_);
-  glDeleteRenderbuffers(1, &depth_);
 }
 
 void PictureTarget::bind(int width, int height) const {
@@ -168,10 +140,8 @@ MultisampleTarget::MultisampleTarget(int width, int height, int samples) {
   int max_samples = 1;
   glGetIntegerv(GL_MAX_SAMPLES, &max_samples);
   samples_ = std::min(samples, max_samples);
-  glGenFramebuffers(1, &framebuffer_);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-  const auto attach = [&](unsigned& buffer, unsigned format, unsigned where) {
-    glGenRenderbuffers(1, &buffer);
+  const auto attach = [&](unsigned buffer, unsigned format, unsigned where) {
     glBindRenderbuffer(GL_RENDERBUFFER, buffer);
     glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples_, format, width, height);
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, where, GL_RENDERBUFFER, buffer);
@@ -179,12 +149,6 @@ MultisampleTarget::MultisampleTarget(int width, int height, int samples) {
   attach(colour_, GL_SRGB8_ALPHA8, GL_COLOR_ATTACHMENT0);
   attach(depth_, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
   check_complete("picture of several samples per pixel");
-}
-
-MultisampleTarget::~MultisampleTarget() {
-  glDeleteFramebuffers(1, &framebuffer_);
-  glDeleteRenderbuffers(1, &colour_);
-  glDeleteRenderbuffers(1, &depth_);
 }
 
 void MultisampleTarget::bind(int width, int height) const {
@@ -201,8 +165,6 @@ void MultisampleTarget::resolve(const PictureTarget& picture, int width, int hei
 }
 
 ShadowTarget::ShadowTarget(int size) : size_(size) {
-  glGenFramebuffers(1, &framebuffer_);
-  glGenTextures(1, &depth_);
   glBindTexture(GL_TEXTURE_2D, depth_);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, size, size, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
                nullptr);
@@ -216,11 +178,6 @@ ShadowTarget::ShadowTarget(int size) : size_(size) {
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_, 0);
   glDrawBuffer(GL_NONE);
   check_complete("shadow map");
-}
-
-ShadowTarget::~ShadowTarget() {
-  glDeleteFramebuffers(1, &framebuffer_);
-  glDeleteTextures(1, &depth_);
 }
 
 void ShadowTarget::bind() const {

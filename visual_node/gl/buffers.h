@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "visual_node/gl/gl_object.h"
 #include "visual_node/scene_view/draw_list.h"
 #include "visual_node/scene_view/relief.h"
 #include "visual_node/scene_view/triangles.h"
@@ -12,30 +13,24 @@ namespace tactus::visual {
 // Per-instance data, rewritten each frame.
 class StreamBuffer {
  public:
-  StreamBuffer();
-  ~StreamBuffer();
-  StreamBuffer(const StreamBuffer&) = delete;
-  StreamBuffer& operator=(const StreamBuffer&) = delete;
   void write(const void* data, std::size_t bytes);
   unsigned id() const { return id_; }
 
  private:
-  unsigned id_ = 0;
+  GlObject id_{GlObject::Kind::kBuffer};
 };
 
 // The triangles of one geometry.
 class GeometryBuffer {
  public:
   explicit GeometryBuffer(const Triangles& triangles);
-  ~GeometryBuffer();
-  GeometryBuffer(const GeometryBuffer&) = delete;
-  GeometryBuffer& operator=(const GeometryBuffer&) = delete;
   // Draws `count` instances that begin at index `first` in the stream of Instances.
   void draw(const StreamBuffer& instances, int first, int count) const;
   bool two_sided() const { return two_sided_; }
 
  private:
-  unsigned array_ = 0, vertices_ = 0, places_ = 0, indices_ = 0;
+  GlObject array_{GlObject::Kind::kVertexArray}, vertices_{GlObject::Kind::kBuffer}, places_{GlObject::Kind::kBuffer},
+      indices_{GlObject::Kind::kBuffer};
   int index_count_ = 0;
   bool two_sided_ = false;
 };
@@ -44,13 +39,10 @@ class GeometryBuffer {
 class QuadArray {
  public:
   explicit QuadArray(int floats4);
-  ~QuadArray();
-  QuadArray(const QuadArray&) = delete;
-  QuadArray& operator=(const QuadArray&) = delete;
   void draw(const void* data, std::size_t count);
 
  private:
-  unsigned array_ = 0;
+  GlObject array_{GlObject::Kind::kVertexArray};
   int floats4_;
   StreamBuffer instances_;
 };
@@ -59,14 +51,11 @@ class QuadArray {
 class ReliefTexture {
  public:
   explicit ReliefTexture(const Relief& relief);
-  ~ReliefTexture();
-  ReliefTexture(const ReliefTexture&) = delete;
-  ReliefTexture& operator=(const ReliefTexture&) = delete;
   unsigned id() const { return id_; }
   const Eigen::Vector2f& size_m() const { return size_m_; }
 
  private:
-  unsigned id_ = 0;
+  GlObject id_{GlObject::Kind::kTexture};
   Eigen::Vector2f size_m_;
 };
 
@@ -74,9 +63,6 @@ class ReliefTexture {
 class PictureTarget {
  public:
   PictureTarget(int width, int height);
-  ~PictureTarget();
-  PictureTarget(const PictureTarget&) = delete;
-  PictureTarget& operator=(const PictureTarget&) = delete;
   // Binds all of it, or this many pixels at the lower left.
   void bind() const { bind(width_, height_); }
   void bind(int width, int height) const;
@@ -89,7 +75,8 @@ class PictureTarget {
 
  private:
   int width_, height_;
-  unsigned framebuffer_ = 0, colour_ = 0, depth_ = 0;
+  GlObject framebuffer_{GlObject::Kind::kFramebuffer}, colour_{GlObject::Kind::kTexture},
+      depth_{GlObject::Kind::kRenderbuffer};
 };
 
 // A render target with several samples per pixel, for smooth edges.
@@ -97,9 +84,6 @@ class MultisampleTarget {
  public:
   // Uses `samples`, or the maximum of the device.
   MultisampleTarget(int width, int height, int samples);
-  ~MultisampleTarget();
-  MultisampleTarget(const MultisampleTarget&) = delete;
-  MultisampleTarget& operator=(const MultisampleTarget&) = delete;
   int samples() const { return samples_; }
   void bind(int width, int height) const;
   // Each pixel of the picture becomes the mean of its samples, in linear light.
@@ -107,22 +91,20 @@ class MultisampleTarget {
 
  private:
   int samples_;
-  unsigned framebuffer_ = 0, colour_ = 0, depth_ = 0;
+  GlObject framebuffer_{GlObject::Kind::kFramebuffer}, colour_{GlObject::Kind::kRenderbuffer},
+      depth_{GlObject::Kind::kRenderbuffer};
 };
 
 // Depth seen from the lamp, compared and filtered by the sampler.
 class ShadowTarget {
  public:
   explicit ShadowTarget(int size);
-  ~ShadowTarget();
-  ShadowTarget(const ShadowTarget&) = delete;
-  ShadowTarget& operator=(const ShadowTarget&) = delete;
   void bind() const;
   unsigned texture() const { return depth_; }
 
  private:
   int size_;
-  unsigned framebuffer_ = 0, depth_ = 0;
+  GlObject framebuffer_{GlObject::Kind::kFramebuffer}, depth_{GlObject::Kind::kTexture};
 };
 
 }  // namespace tactus::visual

@@ -62,16 +62,13 @@ Eigen::Vector2d equirectangular_uv(const Eigen::Vector3d& direction) {
 }
 
 SurfaceTexture::SurfaceTexture(const Raster& r, bool encoded) {
-  glGenTextures(1, &id_);
   glBindTexture(GL_TEXTURE_2D, id_);
   glTexImage2D(GL_TEXTURE_2D, 0, encoded ? GL_SRGB8_ALPHA8 : GL_RGBA8, r.width, r.height, 0, GL_RGBA,
                GL_UNSIGNED_BYTE, r.rgba.data());
   finish(GL_TEXTURE_2D, GL_REPEAT);
 }
-SurfaceTexture::~SurfaceTexture() { glDeleteTextures(1, &id_); }
 
 EnvironmentTexture::EnvironmentTexture(const Raster& around) {
-  glGenTextures(1, &id_);
   glBindTexture(GL_TEXTURE_CUBE_MAP, id_);
   const int edge = std::clamp(around.width / 4, 1, kMaxFace_px);
   std::vector<std::uint8_t> rgba(static_cast<std::size_t>(4 * edge * edge));
@@ -90,13 +87,10 @@ EnvironmentTexture::EnvironmentTexture(const Raster& around) {
 }
 
 EnvironmentTexture::EnvironmentTexture(const Eigen::Vector3f& colour) {
-  glGenTextures(1, &id_);
   glBindTexture(GL_TEXTURE_CUBE_MAP, id_);
   for (unsigned face = 0; face < 6; ++face)
     glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, GL_RGB32F, 1, 1, 0, GL_RGB, GL_FLOAT, colour.data());
   finish(GL_TEXTURE_CUBE_MAP, GL_CLAMP_TO_EDGE);
 }
-
-EnvironmentTexture::~EnvironmentTexture() { glDeleteTextures(1, &id_); }
 
 }  // namespace tactus::visual

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "visual_node/gl/gl_object.h"
 #include "visual_node/scene_view/raster.h"
 
 namespace tactus::visual {
@@ -11,13 +12,10 @@ namespace tactus::visual {
 class SurfaceTexture {
  public:
   SurfaceTexture(const Raster& raster, bool encoded);
-  ~SurfaceTexture();
-  SurfaceTexture(const SurfaceTexture&) = delete;
-  SurfaceTexture& operator=(const SurfaceTexture&) = delete;
   unsigned id() const { return id_; }
 
  private:
-  unsigned id_ = 0;
+  GlObject id_{GlObject::Kind::kTexture};
 };
 
 // The environment in each direction, as a cube map.
@@ -27,13 +25,10 @@ class EnvironmentTexture {
   explicit EnvironmentTexture(const Raster& around);
   // One colour in all directions, linear.
   explicit EnvironmentTexture(const Eigen::Vector3f& colour);
-  ~EnvironmentTexture();
-  EnvironmentTexture(const EnvironmentTexture&) = delete;
-  EnvironmentTexture& operator=(const EnvironmentTexture&) = delete;
   unsigned id() const { return id_; }
 
  private:
-  unsigned id_ = 0;
+  GlObject id_{GlObject::Kind::kTexture};
 };
 
 // The place of a direction in that picture: shares of width and height from the lower left, 0 .. 1.

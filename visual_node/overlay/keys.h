@@ -1,7 +1,6 @@
 // Actions of the keys of a window. Pure: the window passes the pressed keys.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>

@@ -6,7 +6,6 @@
 #include <tactus/node_health_t.hpp>
 
 #include "sync/bus/decode.h"
-#include "visual_node/frame/marker.h"
 #include "visual_node/frame/motion_marker.h"
 #include "visual_node/overlay/contact_strokes.h"
 

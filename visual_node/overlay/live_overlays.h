@@ -4,7 +4,6 @@
 
 #include <map>
 #include <string>
-#include <tactus/contact_events_t.hpp>
 #include <tactus/tool_state_t.hpp>
 #include <tactus/world_state_t.hpp>
 #include <vector>

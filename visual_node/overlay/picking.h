@@ -3,9 +3,7 @@
 
 #include <optional>
 #include <span>
-#include <string>
 #include <tactus/device_state_t.hpp>
-#include <tactus/scene_t.hpp>
 
 #include "sync/time/time.h"
 #include "visual_node/scene_view/draw_list.h"

@@ -4,7 +4,6 @@
 
 #include <deque>
 #include <optional>
-#include <string>
 #include <tactus/answer_t.hpp>
 #include <tactus/question_t.hpp>
 #include <utility>

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
-#include <cstdint>
 #include <vector>
 
 #include "visual_node/lens/camera.h"

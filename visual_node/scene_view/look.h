@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <map>
 #include <string>
-#include <tactus/look_t.hpp>
 #include <tactus/pass_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <tactus/uniform_t.hpp>

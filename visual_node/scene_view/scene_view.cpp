@@ -210,7 +210,7 @@ bool SceneView::shape(const shape_def_t& s, const Meshes& meshes, ShapePart& par
       return true;
     case shape_def_t::MESH: {
       const auto mesh = meshes.find(s.mesh_hash);
-      if (mesh == meshes.end()) return ++missing_meshes_, false;
+      if (mesh == meshes.end()) return false;
       const auto [at, fresh] = mesh_geometry_.try_emplace(s.mesh_hash, static_cast<int>(geometries_.size()));
       if (fresh) geometries_.push_back(from_mesh(mesh->second));
       part.geometry = at->second;

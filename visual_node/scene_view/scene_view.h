@@ -46,7 +46,6 @@ class SceneView {
   const Appearance& appearance() const { return appearance_; }
   const Lighting& lighting() const { return lighting_; }
   const Lens& lens() const { return lens_; }
-  int missing_meshes() const { return missing_meshes_; }
   // One sentence for each thing that is not drawn as the scene defines it.
   const std::vector<std::string>& warnings() const { return warnings_; }
   int width() const { return width_; }
@@ -113,7 +112,6 @@ class SceneView {
     light_def_t lamp{};
   };
   std::vector<Tool> tools_;
-  int missing_meshes_ = 0;
   std::vector<std::string> warnings_;
   std::vector<Eigen::Vector4f> tints_;
 };

@@ -7,9 +7,9 @@ namespace tactus::visual {
 
 // Shared by both threads: the newest picture that is ready to send. The loop only tries the lock.
 struct PictureStream::Outbox {
-  mutable std::mutex mutex;
+  std::mutex mutex;
   std::vector<picture_chunk_t> ready;
-  std::int64_t pictures = 0, dropped = 0;
+  std::int64_t pictures = 0;
 };
 
 std::vector<picture_chunk_t> chunks_of(const Jpeg& jpeg, std::int64_t picture, std::int64_t sim_time_ns,
@@ -47,7 +47,6 @@ void PictureStream::begin(int width, int height, const Settings& s) {
     const Jpeg jpeg = encode_jpeg(p.rgba, width, height, to_width, quality);
     if (jpeg.bytes.empty()) return false;
     const std::lock_guard lock(box->mutex);
-    if (!box->ready.empty()) ++box->dropped;
     box->ready = chunks_of(jpeg, box->pictures++, p.tick, p.presented_ns);
     return true;
   };
@@ -82,11 +81,6 @@ std::vector<picture_chunk_t> PictureStream::take_chunks() {
   std::vector<picture_chunk_t> chunks;
   for (; sent_ < end; ++sent_) chunks.push_back(std::move(sending_[sent_]));
   return chunks;
-}
-
-std::int64_t PictureStream::dropped() const {
-  const std::lock_guard lock(outbox_->mutex);
-  return outbox_->dropped;
 }
 
 }  // namespace tactus::visual

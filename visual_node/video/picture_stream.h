@@ -36,8 +36,6 @@ class PictureStream {
            const std::function<void(std::span<std::uint8_t>)>& read);
   // The pieces to send in this tick.
   std::vector<picture_chunk_t> take_chunks();
-  // Encoded pictures that were dropped because the previous one was still being sent.
-  std::int64_t dropped() const;
 
  private:
   struct Outbox;

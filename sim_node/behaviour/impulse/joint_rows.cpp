@@ -16,6 +16,19 @@ bool of_ball(const articulated::Tree& tree, const articulated::Dof& d) {
   return tree.links[static_cast<std::size_t>(d.link)].dofs == 3;
 }
 
+// The row of a degree of freedom, with its response in the pool, without limits and targets.
+JointRow row_of(articulated::ArticulatedSystem& system, std::size_t first_rate, std::size_t dof, std::vector<double>& pool) {
+  JointRow row;
+  row.rate = first_rate + dof;
+  row.first_rate = first_rate;
+  row.rates = system.tree().dofs.size();
+  row.response = pool.size();
+  pool.resize(pool.size() + row.rates);
+  system.dynamics().dof_impulse_to_rates(static_cast<int>(dof), {pool.data() + row.response, row.rates});
+  row.mobility = pool[row.response + dof];
+  return row;
+}
+
 }  // namespace
 
 bool needs_rows(const articulated::ArticulatedSystem& system) {
@@ -43,14 +56,7 @@ void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate,
     if (!low && !high) memory.limit[j] = 0;
     const bool ball = of_ball(system.tree(), d);
     if (!((d.friction > 0 && !ball) || d.motor_effort > 0 || low || high || stiff)) continue;
-    JointRow row;
-    row.rate = first_rate + j;
-    row.first_rate = first_rate;
-    row.rates = n;
-    row.response = pool.size();
-    pool.resize(pool.size() + n);
-    system.dynamics().dof_impulse_to_rates(static_cast<int>(j), {pool.data() + row.response, n});
-    row.mobility = pool[row.response + j];
+    JointRow row = row_of(system, first_rate, j, pool);
     const auto add = [&](double target_rate, double softness, double min_impulse, double max_impulse,
                          double& saved) {
       row.target_rate = target_rate;
@@ -81,14 +87,7 @@ void append_ball_friction(articulated::ArticulatedSystem& system, std::size_t fi
   for (std::size_t j = 0; j < n; ++j) {
     const articulated::Dof& d = tree.dofs[j];
     if (!of_ball(tree, d) || !(d.friction > 0)) continue;
-    JointRow row;
-    row.rate = first_rate + j;
-    row.first_rate = first_rate;
-    row.rates = n;
-    row.response = pool.size();
-    pool.resize(pool.size() + n);
-    system.dynamics().dof_impulse_to_rates(static_cast<int>(j), {pool.data() + row.response, n});
-    row.mobility = pool[row.response + j];
+    JointRow row = row_of(system, first_rate, j, pool);
     row.max_impulse = h * d.friction;
     row.impulse = std::clamp(memory.friction[j], -row.max_impulse, row.max_impulse);
     row.memory = &memory.friction[j];

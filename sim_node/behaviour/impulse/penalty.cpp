@@ -1,7 +1,6 @@
 #include "sim_node/behaviour/impulse/penalty.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tactus::sim::impulse {
 

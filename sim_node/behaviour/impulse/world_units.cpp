@@ -70,9 +70,7 @@ void World::set_state(int unit, const UnitState& state) {
   }
   System& s = systems_[index(unit) - free_.size()];
   s.system.set_state(state.joints);
-  s.system.dynamics();
-  for (std::size_t i = 0; i < s.bodies.size(); ++i)
-    motions_[index(s.bodies[i])] = s.system.motion(static_cast<int>(i));
+  refresh(s);
 }
 
 }  // namespace tactus::sim::impulse

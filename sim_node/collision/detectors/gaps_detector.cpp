@@ -2,7 +2,6 @@
 // nearest points, meshes are tested triangle by triangle, and meshes against meshes and boxes use the three layers.
 #include <algorithm>
 #include <map>
-#include <stdexcept>
 #include <utility>
 
 #include "sim_node/collision/closest_surface.h"

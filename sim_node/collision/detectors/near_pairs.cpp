@@ -1,7 +1,6 @@
 #include "sim_node/collision/detectors/near_pairs.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "sim_node/collision/gaps/convex.h"

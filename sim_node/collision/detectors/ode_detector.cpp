@@ -1,5 +1,4 @@
 #include <cmath>
-#include <stdexcept>
 
 #include "sim_node/collision/detector.h"
 #include "sim_node/collision/detectors/ode_geoms.h"

@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <memory>
 #include <type_traits>
-#include <vector>
 
 namespace tactus::sim::ode {
 

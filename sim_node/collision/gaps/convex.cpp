@@ -1,6 +1,5 @@
 #include "sim_node/collision/gaps/convex.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace tactus::sim::gaps {

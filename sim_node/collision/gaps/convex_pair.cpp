@@ -1,7 +1,6 @@
 #include "sim_node/collision/gaps/convex_pair.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "sim_node/collision/gaps/feature.h"
 #include "sim_node/collision/gaps/nearest_points.h"

@@ -1,7 +1,6 @@
 #include "sim_node/collision/gaps/nearest_points.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace tactus::sim::gaps {

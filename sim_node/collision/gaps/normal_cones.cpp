@@ -10,7 +10,6 @@ namespace tactus::sim::gaps {
 namespace {
 
 using Eigen::Vector3d;
-using Eigen::Vector3f;
 
 // Slack of a cone, rad. Covers the deviation from the normal of a point that is nearest only to within a millionth of
 // its distance, and the rounding to float.

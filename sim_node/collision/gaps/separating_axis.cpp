@@ -1,7 +1,6 @@
 #include "sim_node/collision/gaps/separating_axis.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "sim_node/collision/gaps/nearest_points.h"
 

@@ -1,6 +1,5 @@
 #include "sim_node/collision/layers/leaf_pairs.h"
 
-#include <algorithm>
 #include <bit>
 
 namespace tactus::sim {
@@ -42,10 +41,9 @@ LeafPairs::LeafPairs(Isa isa)
                : isa == Isa::kAvx2 ? overlap_avx2
                                    : overlap_baseline) {}
 
-template <bool kNearFirst, class Found>
-void LeafPairs::descend(const ObbTree& a, const Eigen::Isometry3d& pose_a, const ObbTree& b,
-                        const Eigen::Isometry3d& pose_b, double tolerance_m, Found&& found) {
-  tests_ = 0;
+void LeafPairs::find(const ObbTree& a, const Eigen::Isometry3d& pose_a, const ObbTree& b,
+                     const Eigen::Isometry3d& pose_b, double tolerance_m, std::vector<std::pair<int, int>>& out) {
+  out.clear();
   if (a.empty() || b.empty()) return;
   const Eigen::Isometry3d b_from_a = pose_b.inverse() * pose_a;
   const Motion to_b = motion_of(b_from_a, a, b), to_a = motion_of(b_from_a.inverse(), b, a);
@@ -63,19 +61,16 @@ void LeafPairs::descend(const ObbTree& a, const Eigen::Isometry3d& pose_a, const
     const WideNode &na = nodes_a[s.a.node], &nb = nodes_b[s.b.node];
     const int child_a = na.child[s.a.lane], child_b = nb.child[s.b.lane];
     if (child_a < 0 && child_b < 0) {
-      const double left = found(~child_a, ~child_b);
-      if constexpr (kNearFirst) query.grow = static_cast<float>(left / 2) + query.slack;
+      out.emplace_back(~child_a, ~child_b);
       continue;
     }
     // Descends into the larger box, which makes the next test more selective.
     const bool open_a = child_b < 0 || (child_a >= 0 && na.size[s.a.lane] > nb.size[s.b.lane]);
-    ++tests_;
     const WideNode& opened = open_a ? nodes_a[child_a] : nodes_b[child_b];
     if (open_a)
       move(nb, s.b.lane, to_a, query);
     else
       move(na, s.a.lane, to_b, query);
-    const std::size_t first = open_.size();
     for (unsigned hit = overlap_(opened, query); hit; hit &= hit - 1) {
       const int lane = std::countr_zero(hit);
       if (open_a)
@@ -83,32 +78,7 @@ void LeafPairs::descend(const ObbTree& a, const Eigen::Isometry3d& pose_a, const
       else
         open_.push_back({s.a, {child_b, lane}});
     }
-    if constexpr (kNearFirst) {
-      const auto far = [&](const Step& x) {
-        const int lane = open_a ? x.a.lane : x.b.lane;
-        float sum = 0;
-        for (int k = 0; k < 3; ++k)
-          sum += (opened.centre[k][lane] - query.centre[k]) * (opened.centre[k][lane] - query.centre[k]);
-        return sum;
-      };
-      std::sort(open_.begin() + static_cast<std::ptrdiff_t>(first), open_.end(),
-                [&](const Step& x, const Step& y) { return far(x) > far(y); });
-    }
   }
-}
-
-void LeafPairs::find(const ObbTree& a, const Eigen::Isometry3d& pose_a, const ObbTree& b,
-                     const Eigen::Isometry3d& pose_b, double tolerance_m, std::vector<std::pair<int, int>>& out) {
-  out.clear();
-  descend<false>(a, pose_a, b, pose_b, tolerance_m, [&](int i, int j) {
-    out.emplace_back(i, j);
-    return tolerance_m;
-  });
-}
-
-void LeafPairs::narrow(const ObbTree& a, const Eigen::Isometry3d& pose_a, const ObbTree& b,
-                       const Eigen::Isometry3d& pose_b, double tolerance_m, const Leaf& leaf) {
-  descend<true>(a, pose_a, b, pose_b, tolerance_m, leaf);
 }
 
 }  // namespace tactus::sim

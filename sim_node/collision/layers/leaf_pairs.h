@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <functional>
 #include <utility>
 #include <vector>
 
@@ -19,13 +18,6 @@ class LeafPairs {
   // and poses. Real-time safe once the lists have grown.
   void find(const ObbTree& a, const Eigen::Isometry3d& pose_a, const ObbTree& b, const Eigen::Isometry3d& pose_b,
             double tolerance_m, std::vector<std::pair<int, int>>& out);
-  // The same with a decreasing tolerance. Near triangles come first. `leaf` receives each pair that may still be
-  // within the tolerance and returns the new tolerance.
-  using Leaf = std::function<double(int, int)>;
-  void narrow(const ObbTree& a, const Eigen::Isometry3d& pose_a, const ObbTree& b, const Eigen::Isometry3d& pose_b,
-              double tolerance_m, const Leaf& leaf);
-  // Number of box tests of the last search, eight boxes each.
-  long long tests() const { return tests_; }
 
  private:
   struct Slot {
@@ -34,12 +26,8 @@ class LeafPairs {
   struct Step {
     Slot a, b;
   };
-  template <bool kNearFirst, class Found>
-  void descend(const ObbTree& a, const Eigen::Isometry3d& pose_a, const ObbTree& b,
-               const Eigen::Isometry3d& pose_b, double tolerance_m, Found&& found);
   OverlapTest overlap_;
   std::vector<Step> open_;
-  long long tests_ = 0;
 };
 
 }  // namespace tactus::sim

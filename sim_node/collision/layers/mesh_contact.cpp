@@ -1,7 +1,5 @@
 #include "sim_node/collision/layers/mesh_contact.h"
 
-#include <algorithm>
-#include <functional>
 #include <stdexcept>
 
 namespace tactus::sim {
@@ -71,36 +69,6 @@ void MeshContact::query(const ContactMesh& a, const Eigen::Isometry3d& pose_a, c
     case DuplicateRemover::kAdjacency: layer3_.remove_adjacent(a.check, b.check, out.pairs); break;
   }
   for (PointPair& p : out.pairs) to_world(pose_b, p);
-}
-
-bool MeshContact::nearest(const ContactMesh& a, const Eigen::Isometry3d& pose_a, const ContactMesh& b,
-                          const Eigen::Isometry3d& pose_b, double beyond_m, PointPair& out) {
-  const Eigen::Isometry3d b_from_a = pose_b.inverse() * pose_a;
-  double min_distance_m = beyond_m;
-  bool found = false;
-  const auto leaf = [&](int i, int j) {
-    search_.clear();
-    complete_contact(moved(a.tree.triangles()[static_cast<std::size_t>(i)], b_from_a),
-                     b.tree.triangles()[static_cast<std::size_t>(j)], {min_distance_m, min_distance_m}, search_);
-    for (const PointPair& p : search_) {
-      if (found && p.gap_m >= min_distance_m) continue;
-      found = true;
-      min_distance_m = p.gap_m;
-      out = p;
-      out.triangle_a = i, out.triangle_b = j;
-    }
-    return min_distance_m;
-  };
-  // Passed by reference: a copy into a std::function would allocate.
-  layer1_.narrow(a.tree, pose_a, b.tree, pose_b, beyond_m, std::ref(leaf));
-  if (found) to_world(pose_b, out);
-  return found;
-}
-
-double MeshContact::distance_m(const ContactMesh& a, const Eigen::Isometry3d& pose_a, const ContactMesh& b,
-                               const Eigen::Isometry3d& pose_b, double beyond_m) {
-  PointPair pair;
-  return nearest(a, pose_a, b, pose_b, beyond_m, pair) ? pair.gap_m : beyond_m;
 }
 
 }  // namespace tactus::sim

@@ -46,21 +46,12 @@ class MeshContact {
   // every instruction set. Real-time safe once the lists have grown. Not thread-safe.
   void query(const ContactMesh& a, const Eigen::Isometry3d& pose_a, const ContactMesh& b,
              const Eigen::Isometry3d& pose_b, const Reach& reach, MeshContactResult& out);
-  // Minimum distance between the meshes, m; 0 in overlap; `beyond_m` when the distance is larger. A smaller
-  // `beyond_m` is faster.
-  double distance_m(const ContactMesh& a, const Eigen::Isometry3d& pose_a, const ContactMesh& b,
-                    const Eigen::Isometry3d& pose_b, double beyond_m);
-  // The same with the location, world frame. Returns false when the distance is larger than `beyond_m`. Costs as much
-  // as a few contacts for any `beyond_m`, while a query() with a wide tolerance lists all pairs.
-  bool nearest(const ContactMesh& a, const Eigen::Isometry3d& pose_a, const ContactMesh& b,
-               const Eigen::Isometry3d& pose_b, double beyond_m, PointPair& out);
 
  private:
   MeshContactOptions options_;
   LeafPairs layer1_;
   Duplicates layer3_;
   std::vector<std::pair<int, int>> leaves_;
-  std::vector<PointPair> search_;
 };
 
 }  // namespace tactus::sim

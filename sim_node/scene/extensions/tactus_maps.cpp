@@ -1,8 +1,5 @@
 #include "sim_node/scene/extensions/tactus_maps.h"
 
-#include <algorithm>
-#include <limits>
-#include <stdexcept>
 #include <tactus/map_def_t.hpp>
 
 #include "sim_node/all_settings.gen.h"

@@ -29,16 +29,9 @@ std::string moved(const std::string& file, const fs::path& from, const fs::path&
 
 fs::path folder_of(const fs::path& file) { return fs::absolute(file).parent_path(); }
 
-template <typename List>
-bool same_floats(const List& a, const List& b) {
-  if (a.size() != b.size()) return false;
-  return std::equal(a.begin(), a.end(), b.begin(), [](const auto& x, const auto& y) { return x == y; });
-}
-
 bool same(const MeshPart& a, const MeshPart& b) {
-  return a.material == b.material && same_floats(a.positions_m, b.positions_m) &&
-         same_floats(a.normals, b.normals) && same_floats(a.texcoords, b.texcoords) &&
-         same_floats(a.tangents, b.tangents) && a.indices == b.indices;
+  return a.material == b.material && a.positions_m == b.positions_m && a.normals == b.normals &&
+         a.texcoords == b.texcoords && a.tangents == b.tangents && a.indices == b.indices;
 }
 
 }  // namespace

@@ -25,14 +25,8 @@ constexpr int kMaxDepth = 64;
 constexpr std::size_t kMaxValues = 4'000'000;
 
 // Component types of glTF 2.0, 3.6.2.2, and their sizes in bytes.
-enum : int {
-  kByte = 5120,
-  kUnsignedByte = 5121,
-  kShort = 5122,
-  kUnsignedShort = 5123,
-  kUnsignedInt = 5125,
-  kFloat = 5126
-};
+constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125,
+              kFloat = 5126;
 std::size_t bytes_of(int type) {
   switch (type) {
     case kByte:
@@ -184,15 +178,18 @@ const json& GltfDocument::entry(const char* list, int index) const {
   return all[static_cast<std::size_t>(index)];
 }
 
-sync::Bytes GltfDocument::view(int index) const {
-  const json& view = entry("bufferViews", index);
+std::span<const std::uint8_t> GltfDocument::view_bytes(const json& view) const {
   const int buffer = index_of(view, "buffer");
   const std::size_t offset = size_of(view, "byteOffset"), length = size_of(view, "byteLength");
   if (buffer < 0 || static_cast<std::size_t>(buffer) >= buffers_.size() ||
       offset + length > buffers_[static_cast<std::size_t>(buffer)].size())
     throw std::runtime_error("a view reaches beyond its buffer");
-  const auto* begin = buffers_[static_cast<std::size_t>(buffer)].data() + offset;
-  return {begin, begin + length};
+  return {buffers_[static_cast<std::size_t>(buffer)].data() + offset, length};
+}
+
+sync::Bytes GltfDocument::view(int index) const {
+  const auto bytes = view_bytes(entry("bufferViews", index));
+  return {bytes.begin(), bytes.end()};
 }
 
 GltfDocument::Elements GltfDocument::elements(int accessor, int components) const {
@@ -214,15 +211,11 @@ GltfDocument::Elements GltfDocument::elements(int accessor, int components) cons
   const json& v = entry("bufferViews", view);
   e.stride = size_of(v, "byteStride");
   if (e.stride == 0) e.stride = size;
-  const int buffer = index_of(v, "buffer");
-  const std::size_t from = size_of(a, "byteOffset"), offset = size_of(v, "byteOffset"),
-                    length = size_of(v, "byteLength");
-  if (buffer < 0 || static_cast<std::size_t>(buffer) >= buffers_.size() ||
-      offset + length > buffers_[static_cast<std::size_t>(buffer)].size())
-    throw std::runtime_error("a view reaches beyond its buffer");
-  if (e.stride < size || from + (e.count - 1) * e.stride + size > length)
+  const std::size_t from = size_of(a, "byteOffset");
+  const auto bytes = view_bytes(v);
+  if (e.stride < size || from + (e.count - 1) * e.stride + size > bytes.size())
     throw std::runtime_error("an accessor reaches beyond its view");
-  e.data = buffers_[static_cast<std::size_t>(buffer)].data() + offset + from;
+  e.data = bytes.data() + from;
   return e;
 }
 

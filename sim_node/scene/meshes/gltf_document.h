@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,7 @@ class GltfDocument {
  private:
   struct Elements;
   Elements elements(int accessor, int components) const;
+  std::span<const std::uint8_t> view_bytes(const nlohmann::json& view) const;
   void load_buffers(const std::filesystem::path& folder);
 
   nlohmann::json json_;

@@ -13,6 +13,7 @@
 
 #include "sim_node/collision/detector.h"
 #include "sim_node/collision/layers/patches.h"
+#include "tests/sim_node/support/least_gap.h"
 #include "tests/sim_node/support/meshes.h"
 
 using namespace tactus::sim;
@@ -45,12 +46,11 @@ double time_us(const std::function<std::size_t(const Isometry3d&)>& query, const
 
 // Moves b straight towards a until the gap is exact, each time by a distance that cannot overshoot (conservative advancement).
 Isometry3d approach(const ContactMesh& a, const ContactMesh& b, Random& random, double gap_m) {
-  MeshContact contact;
   Isometry3d pose = random_pose(random, 1);
   const Eigen::Vector3d away = direction(random);
   pose.translation() = 3 * kRadius_m * away;
   for (int i = 0; i < 200; ++i) {
-    const double d = contact.distance_m(a, Isometry3d::Identity(), b, pose, 10 * kRadius_m);
+    const double d = least_gap_m(a, b, pose);
     if (std::abs(d - gap_m) < 1e-9) break;
     pose.translation() -= (d - gap_m) * away;
   }

@@ -61,7 +61,7 @@ sim::WorldDef& add_shaped_tool(sim::WorldDef& w, std::int8_t shape, const Vector
   t.shape = shape;
   t.size_m = to_vec3(size);
   t.mesh_hash = mesh;
-  t.radius_m = sim::tool_bound_m(w, t);
+  t.radius_m = sim::bound_m(w, sim::tool_shape(t));
   return w;
 }
 

@@ -69,7 +69,8 @@ Scene scene_of(const std::string& name, int level, int count, bool moving) {
     s.bodies.push_back(m);
   }
   // Around the sphere at 0.2 m/s, at the distance of its surface in each direction, which the tree finds.
-  ClosestSurface surface(s.world.shapes[0], &s.world.meshes[0]);
+  const TriangleMesh& mesh = s.world.meshes[0];
+  ClosestSurface surface(s.world.shapes[0], std::make_shared<const TriangleTree>(mesh.vertices, mesh.indices));
   std::vector<SurfacePlane> planes;
   for (int i = 0; i < kSteps; ++i) {
     const double angle = 0.004 * i, tilt = 0.0007 * i;

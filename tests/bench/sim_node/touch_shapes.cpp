@@ -136,7 +136,7 @@ class Bench {
       t.mesh_hash = static_cast<std::int64_t>(world_.meshes.size());
       world_.meshes.push_back(tool.mesh);
     }
-    t.radius_m = static_cast<float>(tool_bound_m(world_, t));
+    t.radius_m = static_cast<float>(bound_m(world_, tool_shape(t)));
     bound_m_ = t.radius_m;
     for (const BodyDef& b : world_.bodies) {
       BodyMotion m;

@@ -6,6 +6,7 @@
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;
+using impulse::SceneChange;
 using Eigen::Vector3d;
 
 namespace {
@@ -21,6 +22,17 @@ const BodyMotion& body(const Solver& s, int i) { return s.bodies()[static_cast<s
 
 void run(Solver& s, double seconds) {
   for (int i = 0; i < std::lround(seconds / kStep); ++i) s.step();
+}
+
+void set_gravity(Solver& s, const Vector3d& g) { s.apply({.kind = SceneChange::kGravity, .values = g}); }
+bool set_mass(Solver& s, int body, double mass_kg) {
+  return s.apply({.kind = SceneChange::kMass, .body = body, .values = {mass_kg, 0, 0}});
+}
+bool set_motor(Solver& s, const std::string& joint, int axis, double effort, double velocity) {
+  return s.apply({.kind = SceneChange::kMotor, .joint = joint, .axis = axis, .values = {effort, velocity, 0}});
+}
+void set_restitution(Solver& s, int body, double restitution) {
+  s.apply({.kind = SceneChange::kRestitution, .body = body, .values = {restitution, 0, 0}});
 }
 
 // A rod of 0.4 m and 0.5 kg that hangs on its end, without gravity.
@@ -43,14 +55,14 @@ TEST_CASE("The impulse solver accepts new gravity, mass, pose, velocity and spin
   SECTION("gravity applies from the next step on") {
     run(s, 0.1);
     const double z = body(s, ball).centre_m.z(), v = -kG * 0.1;
-    s.set_gravity({1, 0, -2});
+    set_gravity(s, {1, 0, -2});
     run(s, 0.1);
     CHECK(body(s, ball).centre_m.z() == Approx(z + v * 0.1 - 0.01).margin(1e-9));
     CHECK(body(s, ball).centre_m.x() == Approx(0.005).margin(1e-9));
   }
   SECTION("the acceleration by a force follows the new mass") {
-    s.set_gravity({0, 0, 0});
-    REQUIRE(s.set_mass(ball, 0.8));
+    set_gravity(s, {0, 0, 0});
+    REQUIRE(set_mass(s, ball, 0.8));
     for (int i = 0; i < 100; ++i) {
       s.add_force(ball, {0.4, 0, 0}, body(s, ball).centre_m);
       s.step();
@@ -74,7 +86,7 @@ TEST_CASE("The impulse solver accepts new gravity, mass, pose, velocity and spin
     CHECK(body(s, ball).spin_rad_s.z() == Approx(7));
   }
   SECTION("a static body rejects mass, pose, velocity and spin") {
-    CHECK_FALSE(s.set_mass(ball + 1, 1));
+    CHECK_FALSE(set_mass(s, ball + 1, 1));
     CHECK_FALSE(s.set_pose(ball + 1, at(0, 0, 0)));
     CHECK_FALSE(s.set_velocity(ball + 1, {1, 0, 0}));
     CHECK_FALSE(s.set_spin(ball + 1, {1, 0, 0}));
@@ -87,8 +99,8 @@ TEST_CASE("The impulse solver accepts new friction and restitution") {
   const int box = add_box(w, 1, {0.1, 0.1, 0.1}, at(0, 0, 0.05 + 1e-5), 0.4, 0);
   const int ball = add_ball(w, 0.2, 0.03, {1, 0, 0.53}, 0.4, 0);
   Solver s(w, by_impulse());
-  s.set_friction(box, 0.1);
-  s.set_restitution(ball, 0.8);
+  s.apply({.kind = SceneChange::kFriction, .body = box, .values = {0.1, 0, 0}});
+  set_restitution(s, ball, 0.8);
   s.set_velocity(box, {1, 0, 0});
   run(s, 0.2);
   // The geometric mean with the floor's.
@@ -121,18 +133,18 @@ TEST_CASE("In the impulse solver a new velocity of a link acts like an impulse o
 TEST_CASE("The impulse solver accepts new motors and dry friction of joints") {
   WorldDef w = hanging_rod(JointKind::kRevolute);
   Solver s(w, by_impulse());
-  REQUIRE(s.set_motor("joint", 0, 0.2, 100));
+  REQUIRE(set_motor(s, "joint", 0, 0.2, 100));
   run(s, 0.1);
   CHECK(body(s, 0).spin_rad_s.y() == Approx(0.2 * 0.1 / kAtPivot).epsilon(0.01));
   const double rate = body(s, 0).spin_rad_s.y();
-  REQUIRE(s.set_motor("joint", 0, 0, 0));
-  REQUIRE(s.set_joint_friction("joint", 0, 0.05));
+  REQUIRE(set_motor(s, "joint", 0, 0, 0));
+  REQUIRE(s.apply({.kind = SceneChange::kJointFriction, .joint = "joint", .values = {0.05, 0, 0}}));
   run(s, 0.1);
   CHECK(body(s, 0).spin_rad_s.y() == Approx(rate - 0.05 * 0.1 / kAtPivot).epsilon(0.01));
   run(s, 1);
   CHECK(body(s, 0).spin_rad_s.norm() < 1e-9);
-  CHECK_FALSE(s.set_motor("joint", 1, 1, 1));
-  CHECK_FALSE(s.set_motor("no such", 0, 1, 1));
+  CHECK_FALSE(set_motor(s, "joint", 1, 1, 1));
+  CHECK_FALSE(set_motor(s, "no such", 0, 1, 1));
 }
 
 TEST_CASE("In the impulse solver dry friction of a ball joint is equal about every axis") {
@@ -166,10 +178,10 @@ TEST_CASE("The impulse solver restores changed properties with a state") {
   const int ball = add_ball(w, 0.2, 0.03, {1, 0, 1});
   add_floor(w);
   Solver s(w, by_impulse()), fresh(w, by_impulse());
-  s.set_gravity({0, 0, -3});
-  s.set_mass(ball, 0.5);
-  s.set_motor("joint", 0, 0.3, 5);
-  s.set_restitution(ball, 0.5);
+  set_gravity(s, {0, 0, -3});
+  set_mass(s, ball, 0.5);
+  set_motor(s, "joint", 0, 0.3, 5);
+  set_restitution(s, ball, 0.5);
   run(s, 0.05);
   StateArchive out;
   s.archive(out);

@@ -24,7 +24,7 @@ WorldDef with_tool(WorldDef w, std::int8_t shape, const Vector3d& size, const Ve
   tool_def_t& t = w.tools.back();
   t.shape = shape;
   t.size_m = to_vec3(size);
-  t.radius_m = tool_bound_m(w, t);
+  t.radius_m = bound_m(w, tool_shape(t));
   return w;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sim_node/collision/layers/mesh_contact.h"
+#include "tests/sim_node/support/least_gap.h"
 #include "tests/sim_node/support/meshes.h"
 #include "tests/sim_node/support/triangle_oracle.h"
 
@@ -79,12 +80,11 @@ inline void check_sound(const Placed& a, const Placed& b, double tolerance_m, co
 // Moves b from far along a random direction to about `gap_m` from a. Each move is a distance that is safe.
 inline Eigen::Isometry3d placed_near(const ContactMesh& a, const ContactMesh& b, Random& random, double from_m,
                                       double gap_m) {
-  MeshContact contact;
   Eigen::Isometry3d pose = random_pose(random, 1);
   const Eigen::Vector3d towards = direction(random);
   pose.translation() = from_m * towards;
   for (int i = 0; i < 60; ++i) {
-    const double d = contact.distance_m(a, Eigen::Isometry3d::Identity(), b, pose, 1);
+    const double d = least_gap_m(a, b, pose);
     if (d <= gap_m || pose.translation().dot(towards) < 0) break;
     pose.translation() -= (d - 0.9 * gap_m) * towards;
   }

@@ -48,7 +48,8 @@ TEST_CASE("A height field has its nominal height for bodies and tools") {
   w.shapes[static_cast<std::size_t>(shape)].mesh = 0;
   w.heightfields.push_back(slope());
   const TriangleMesh mesh = triangulate(w.heightfields[0], 1025);
-  const ClosestSurface surface(w.shapes[static_cast<std::size_t>(shape)], &mesh);
+  const ClosestSurface surface(w.shapes[static_cast<std::size_t>(shape)],
+                               std::make_shared<const TriangleTree>(mesh.vertices, mesh.indices));
   std::vector<SurfacePlane> planes;
   const double r = 0.03;
   for (const double x : {-0.7, -0.13, 0.4, 0.95})

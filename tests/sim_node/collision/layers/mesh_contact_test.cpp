@@ -130,31 +130,6 @@ TEST_CASE("Every instruction set gives a bit-identical contact") {
   }
 }
 
-TEST_CASE("The distance of two meshes is the minimum over all pairs of triangles") {
-  const Soup sa = lumpy_sphere(2, 0.1, 8), sb = comb(3, 0.1);
-  const ContactMesh a = mesh(sa), b = mesh(sb);
-  Random random(9);
-  MeshContact contact;
-  for (int i = 0; i < 10; ++i) {
-    Isometry3d pose = random_pose(random, 1);
-    pose.translation() = uniform(random, 0.12, 0.3) * direction(random);
-    double least = 1e300;
-    const Placed pa(sa, Isometry3d::Identity()), pb(sb, pose);
-    for (std::size_t k = 0; k < pa.triangles.size(); ++k)
-      for (std::size_t l = 0; l < pb.triangles.size(); ++l)
-        if (pa.boxes[k].squaredExteriorDistance(pb.boxes[l]) < least * least)
-          least = std::min(least, exact_distance(pa.triangles[k], pb.triangles[l]));
-    CHECK(contact.distance_m(a, Isometry3d::Identity(), b, pose, 1) == Approx(least).margin(1e-9));
-    PointPair at;
-    REQUIRE(contact.nearest(a, Isometry3d::Identity(), b, pose, 1, at));
-    CHECK((at.on_b_m - at.on_a_m).norm() == Approx(least).margin(1e-9));
-    CHECK(exact_distance(at.on_a_m, pa.triangles[static_cast<std::size_t>(at.triangle_a)]) < 1e-9);
-    CHECK(exact_distance(at.on_b_m, pb.triangles[static_cast<std::size_t>(at.triangle_b)]) < 1e-9);
-    if (least > 1e-5) CHECK_FALSE(contact.nearest(a, Isometry3d::Identity(), b, pose, least / 2, at));
-    if (least > 1e-5) CHECK(contact.distance_m(a, Isometry3d::Identity(), b, pose, least / 2) == least / 2);
-  }
-}
-
 TEST_CASE("An invalid mesh is rejected with one sentence") {
   const std::vector<Vector3d> v{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   using Indices = std::vector<int>;
