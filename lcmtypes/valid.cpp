@@ -42,6 +42,7 @@ namespace tactus {
 namespace {
 
 using tactus::sane;  // from plausible.h, in addition to the overloads here
+using tactus::sane_not_negative;
 
 constexpr std::size_t kMaxProfileBytes = 65536;  // as sync/degradation
 // A minute: a later presentation cannot belong to the event.
@@ -53,6 +54,8 @@ constexpr double kMaxSimRate = 100;
 bool finite_positive(double x) { return std::isfinite(x) && x > 0; }  // the masses of fixed bodies are huge
 bool sane(const vec3_t& v) { return sane(v.x) && sane(v.y) && sane(v.z); }
 bool sane(const vec3f_t& v) { return sane(v.x) && sane(v.y) && sane(v.z); }
+bool sane_not_negative(const vec3_t& v) { return sane(v) && v.x >= 0 && v.y >= 0 && v.z >= 0; }
+bool within(double value, double low, double high) { return value >= low && value <= high; }
 
 template <class Q>
 bool rotation(const Q& q) {
@@ -131,9 +134,7 @@ bool sane(const presentation_t& p) {
          between(p.outcome, presentation_t::PRESENTED, presentation_t::INAUDIBLE);
 }
 bool sane(const histogram_t& h) {
-  for (int bin : h.bins)
-    if (bin < 0) return false;
-  return h.max_ns >= 0;
+  return h.max_ns >= 0 && std::all_of(std::begin(h.bins), std::end(h.bins), [](int bin) { return bin >= 0; });
 }
 bool sane(const input_health_t& i) {
   return i.age_ns >= -1 && i.uncertainty_ns >= -1 && i.messages >= 0 && i.gaps >= 0 && i.bad >= 0;
@@ -143,14 +144,12 @@ bool sane(const pair_report_t& p) {
 }
 bool sane(const asset_ref_t& a) { return a.size > 0 && between(a.kind, asset_ref_t::SCENE, asset_ref_t::SHADER); }
 bool sane_bump(const material_def_t& m) {
-  const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
   if (m.bump_asset == 0) return sane(m.bump_size_u_m) && sane(m.bump_size_v_m) && sane(m.bump_height_m);
   return within(m.bump_size_u_m, kMinBumpSize_m, kMaxBumpSize_m) &&
          within(m.bump_size_v_m, kMinBumpSize_m, kMaxBumpSize_m) &&
          within(m.bump_height_m, kMinBumpHeight_m, kMaxBumpHeight_m);
 }
 bool sane_friction_map(const material_def_t& m) {
-  const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
   if (m.friction_asset == 0)
     return sane(m.friction_size_u_m) && sane(m.friction_size_v_m) && sane(m.friction_black) &&
            sane(m.friction_white);
@@ -174,8 +173,7 @@ bool sane(const material_def_t& m) {
 }
 bool sane(const shape_def_t& s, int bodies, int materials) {
   return between(s.body, 0, bodies - 1) && between(s.material, -1, materials - 1) && sane(s.pose) &&
-         between(s.kind, shape_def_t::BOX, shape_def_t::MESH) && sane_not_negative(s.size_m.x) &&
-         sane_not_negative(s.size_m.y) && sane_not_negative(s.size_m.z);
+         between(s.kind, shape_def_t::BOX, shape_def_t::MESH) && sane_not_negative(s.size_m);
 }
 bool sane(const visual_def_t& v) {
   return sane(v.ambient) && sane(v.diffuse) && sane(v.specular) && sane(v.emissive) &&
@@ -337,22 +335,11 @@ bool valid(const asset_chunk_t& m) {
 }
 
 bool valid(const mesh_t& m) {
-  if (m.vertex_floats % 3 != 0 || m.index_count % 3 != 0) return false;
-  for (float x : m.positions_m)
-    if (!sane(x)) return false;
-  for (float x : m.normals)
-    if (!sane(x)) return false;
   const std::int64_t vertices = m.vertex_floats / 3;
-  if ((m.texcoord_floats != 0 && m.texcoord_floats != 2 * vertices) ||
-      (m.tangent_floats != 0 && m.tangent_floats != 4 * vertices))
-    return false;
-  for (float x : m.texcoords)
-    if (!sane(x)) return false;
-  for (float x : m.tangents)
-    if (!sane(x)) return false;
-  for (int i : m.indices)
-    if (!between(i, 0, m.vertex_floats / 3 - 1)) return false;
-  return true;
+  return m.vertex_floats % 3 == 0 && m.index_count % 3 == 0 && all_sane(m.positions_m) && all_sane(m.normals) &&
+         (m.texcoord_floats == 0 || m.texcoord_floats == 2 * vertices) && all_sane(m.texcoords) &&
+         (m.tangent_floats == 0 || m.tangent_floats == 4 * vertices) && all_sane(m.tangents) &&
+         std::all_of(m.indices.begin(), m.indices.end(), [&](int i) { return between(i, 0, vertices - 1); });
 }
 
 bool valid(const scene_t& m) {
@@ -368,8 +355,7 @@ bool valid(const scene_t& m) {
       return false;
   for (const tool_def_t& t : m.tools)
     if (!between(t.body, 0, m.body_count - 1) || !between(t.shape, tool_def_t::BALL, tool_def_t::MESH) ||
-        !sane_not_negative(t.radius_m) || !sane_not_negative(t.size_m.x) || !sane_not_negative(t.size_m.y) ||
-        !sane_not_negative(t.size_m.z) || !finite_positive(t.mass_kg) ||
+        !sane_not_negative(t.radius_m) || !sane_not_negative(t.size_m) || !finite_positive(t.mass_kg) ||
         !between(t.material, -1, m.material_count - 1) || !all_sane(t.waypoints))
       return false;
   return m.step_ns > 0 && sane(m.gravity_m_s2) && all_sane(m.materials) && all_sane(m.lights) &&

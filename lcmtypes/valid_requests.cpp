@@ -47,8 +47,7 @@ bool valid(const question_t& m) {
   const auto choice = [](const std::string& c) { return !c.empty() && c.size() <= 40 && printable(c); };
   const auto line = [](const std::string& l) { return l.size() <= 64 && printable(l); };
   if (!sane(m.header) || m.id <= 0 || m.text.size() > 600 || !printable(m.text) || !between(m.count, 0, 9) ||
-      !std::all_of(m.choices.begin(), m.choices.end(), choice) || m.trial < 0 || !line(m.condition) ||
-      !line(m.progress))
+      !std::ranges::all_of(m.choices, choice) || m.trial < 0 || !line(m.condition) || !line(m.progress))
     return false;
   const bool no_number = m.lowest == 0 && m.highest == 0 && m.step == 0;
   switch (m.kind) {

@@ -7,12 +7,10 @@
 namespace tactus::haptic {
 
 ContactImpulses::Entry& ContactImpulses::entry(std::int64_t contact_id, sync::HostTime now) {
-  const auto known = std::find_if(contacts_.begin(), contacts_.end(),
-                                  [&](const Entry& e) { return e.force.contact_id == contact_id; });
+  const auto known = std::ranges::find_if(contacts_, [&](const Entry& e) { return e.force.contact_id == contact_id; });
   if (known != contacts_.end()) return *known;
   if (contacts_.size() >= kMaxContacts)
-    contacts_.erase(std::min_element(contacts_.begin(), contacts_.end(),
-                                     [](const Entry& a, const Entry& b) { return a.last < b.last; }));
+    contacts_.erase(std::ranges::min_element(contacts_, [](const Entry& a, const Entry& b) { return a.last < b.last; }));
   Entry& e = contacts_.emplace_back();
   e.first = e.last = now;
   return e;

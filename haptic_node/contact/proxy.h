@@ -8,7 +8,6 @@
 // tangential parts.
 #pragma once
 
-#include <array>
 #include <span>
 
 #include "haptic_node/contact/surfaces.h"
@@ -34,7 +33,6 @@ class Proxy {
   // Tangential displacement of the coupling, m: position = device + shift + sum of depth_i normal_i.
   const Eigen::Vector3d& shift() const { return shift_; }
   bool slipping() const { return slipping_; }
-  bool touching() const { return touching_; }
   // False: the surfaces have no common point, and each is pressed separately.
   bool feasible() const { return feasible_; }
 

@@ -2,7 +2,6 @@
 // simulated time and the host clock. Pure.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <tactus/touch_model_t.hpp>
 #include <utility>

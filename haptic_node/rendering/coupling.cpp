@@ -1,7 +1,6 @@
 #include "haptic_node/rendering/coupling.h"
 
 #include <cmath>
-#include <cstdlib>
 
 namespace tactus::haptic {
 namespace {

@@ -3,7 +3,6 @@
 #include "haptic_node/rendering/coupling.h"
 #include "haptic_node/contact/direct.h"
 #include "haptic_node/rendering/rigid_coupling.h"
-#include "haptic_node/contact/rotation_math.h"
 
 namespace tactus::haptic {
 namespace {

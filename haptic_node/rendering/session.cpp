@@ -1,10 +1,8 @@
 #include "haptic_node/rendering/session.h"
 
 #include <algorithm>
-#include <tactus/contact_event_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <tactus/tool_def_t.hpp>
-#include <tactus/touch_model_t.hpp>
 
 #include "lcmtypes/vectors.h"
 

@@ -1,7 +1,6 @@
 #include "haptic_node/safety/safety.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "haptic_node/devices/device.h"

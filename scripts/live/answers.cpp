@@ -1,6 +1,5 @@
 #include "scripts/live/answers.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "sync/text/printable.h"
@@ -26,19 +25,14 @@ std::string kind_name(const question_t& m) {
 void Answers::push(const question_t& m, sync::HostTime arrival) {
   if (!question_.push(m, arrival)) return;
   pending_.reset();
-  if (const answer_t* known = answered(m)) pending_ = *known;
-}
-
-const answer_t* Answers::answered(const question_t& m) const {
-  const auto found = std::find_if(answers_.begin(), answers_.end(), [&](const auto& a) { return a.first == sync::key_of(m); });
-  return found == answers_.end() ? nullptr : &found->second;
+  if (const answer_t* known = answers_.find(sync::key_of(m))) pending_ = *known;
 }
 
 void Answers::answer(const PageAnswer& given, sync::HostTime now) {
   const question_t* m = question_.newest(now);
   if (!m || m->kind == question_t::NOTHING || given.question != question_name(*m))
     throw std::invalid_argument("that question is no longer open; answer the shown one");
-  if (answered(*m)) throw std::invalid_argument("that question has been answered; wait for the next");
+  if (answers_.find(sync::key_of(*m))) throw std::invalid_argument("that question has been answered; wait for the next");
   if (m->kind == question_t::CHOICE ? given.choice < 0 || given.choice >= m->count : given.choice != -1)
     throw std::invalid_argument("the answer is not one of the choices; reload the page");
   if (m->kind == question_t::NUMBER ? !(given.number >= m->lowest && given.number <= m->highest) : given.number != 0)
@@ -47,8 +41,7 @@ void Answers::answer(const PageAnswer& given, sync::HostTime now) {
   a.header.sim_time_ns = -1;
   a.header.run_id = a.header.incarnation = 1;  // the bus stamps them
   a.id = m->id, a.choice = given.choice, a.number = given.number, a.after_ns = given.after_ns, a.by = "page";
-  answers_.emplace_back(sync::key_of(*m), a);
-  if (answers_.size() > kMaxStoredAnswers) answers_.pop_front();
+  answers_.try_emplace(sync::key_of(*m), a);
   pending_ = a;
 }
 
@@ -60,7 +53,7 @@ json Answers::to_json(sync::HostTime now) const {
   return {{"question", question_name(*m)}, {"kind", kind_name(*m)}, {"text", sync::printable(m->text)}, {"choices", choices},
           {"lowest", m->lowest}, {"highest", m->highest}, {"step", m->step}, {"trial", m->trial},
           {"condition", sync::printable(m->condition)}, {"progress", sync::printable(m->progress)},
-          {"answered", answered(*m) != nullptr}};
+          {"answered", answers_.find(sync::key_of(*m)) != nullptr}};
 }
 
 std::optional<std::int32_t> Answers::leader(sync::HostTime now) const {

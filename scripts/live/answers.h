@@ -3,15 +3,14 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 #include <tactus/answer_t.hpp>
 #include <tactus/question_t.hpp>
 #include <utility>
 
 #include "scripts/live/browser_message.h"
+#include "sync/bus/recent_map.h"
 #include "sync/node/current_question.h"
 
 namespace tactus::live {
@@ -39,10 +38,8 @@ class Answers {
   std::optional<std::int32_t> leader(sync::HostTime now) const;
 
  private:
-  const answer_t* answered(const question_t& m) const;
-
   sync::CurrentQuestion question_;
-  std::deque<std::pair<sync::QuestionKey, answer_t>> answers_;
+  sync::RecentMap<sync::QuestionKey, answer_t> answers_{kMaxStoredAnswers};
   std::optional<answer_t> pending_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lcmtypes/fields.h"
+
 namespace tactus::live {
 namespace {
 

@@ -2,9 +2,6 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
-#include <string>
-
-#include "lcmtypes/fields.h"
 
 namespace tactus::live {
 

@@ -112,7 +112,7 @@ void Controls::step(sync::HostTime now) {
       if (auto received = profiles_.push(m->message);
           received && (!in_force_ || received->generation >= in_force_->generation))
         in_force_ = std::move(received);
-  if (scene_.poll(now)) ++scenes_;
+  scene_.poll(now);
   while (const auto m = replies_.pop()) {
     if (!command_ || !is_own_run(m->message.header) || m->message.id != command_->message.id) continue;
     command_.reset();

@@ -52,8 +52,6 @@ class Controls {
   // The profile in force, from any sender; nullopt: none has been received.
   const std::optional<sync::ProfileInForce>& profile() const { return in_force_; }
   const scene_t* scene() const { return scene_.scene(); }
-  // Number of scenes so far; increases with each new one.
-  int scenes() const { return scenes_; }
 
  private:
   template <class Message>
@@ -80,7 +78,6 @@ class Controls {
   sync::HostTime profile_until_{}, profile_next_{};
   tag_request_t tags_{};
   std::optional<sync::HostTime> tags_next_;
-  int scenes_ = 0;
 };
 
 }  // namespace tactus::live

@@ -1,7 +1,6 @@
 #include "scripts/live/feed.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/input_health_t.hpp>
 #include <tactus/modality_report_t.hpp>
@@ -29,39 +28,29 @@ bool Feed::accepts(std::string_view channel) {
 }
 
 void Feed::on_message(std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival) {
-  if (!accepts(channel)) return;
   if (channel == channels::kNodeHealth) {
-    const auto m = sync::decode<node_health_t>(bytes.data(), bytes.size());
-    if (!m) {
-      ++malformed_;
-    } else if (is_own_run(m->header) && (nodes_.contains(m->node) || nodes_.size() < kMaxNodes)) {
-      nodes_[m->node] = {*m, arrival};
-    }
+    if (const auto m = sync::decode<node_health_t>(bytes.data(), bytes.size())) on_message(*m, arrival);
   } else if (channel == channels::kSyncReport) {
     if (const auto m = sync::decode<sync_report_t>(bytes.data(), bytes.size())) on_message(*m);
-    else ++malformed_;
   } else if (channel == channels::kContactEvents) {
     if (const auto m = sync::decode<contact_events_t>(bytes.data(), bytes.size())) on_message(*m);
-    else ++malformed_;
-  } else {
+  } else if (channel == channels::kPresented) {
     if (const auto m = sync::decode<presented_t>(bytes.data(), bytes.size())) on_message(*m);
-    else ++malformed_;
   }
+}
+
+void Feed::on_message(const node_health_t& m, sync::HostTime arrival) {
+  if (is_own_run(m.header) && (nodes_.contains(m.node) || nodes_.size() < kMaxNodes)) nodes_[m.node] = {m, arrival};
 }
 
 void Feed::on_message(const contact_events_t& m) {
   if (!is_own_run(m.header)) return;
   event_clock_ = m.header.clock;
   for (const contact_event_t& e : m.events) {
-    if (event_host_ns_.contains(e.event_id)) continue;
+    if (event_host_ns_.find(e.event_id)) continue;
     const sync::TimeMap map{sync::sim_time(m.clock.sim_ns), sync::host_time(m.clock.host_ns), m.clock.rate};
     const std::int64_t host_ns = sync::to_ns(map.to_host(sync::sim_time(e.time_ns)));
-    event_host_ns_[e.event_id] = host_ns;
-    event_order_.push_back(e.event_id);
-    if (event_order_.size() > kMaxStoredEvents) {
-      event_host_ns_.erase(event_order_.front());
-      event_order_.pop_front();
-    }
+    event_host_ns_.try_emplace(e.event_id, host_ns);
     if (events_.size() < kMaxPerFrame)
       events_.push_back({seconds(host_ns), e.kind, e.body_a, e.body_b, e.approach_speed_m_s});
     else
@@ -72,23 +61,17 @@ void Feed::on_message(const contact_events_t& m) {
 void Feed::on_message(const presented_t& m) {
   if (!is_own_run(m.header)) return;
   for (const presentation_t& p : m.reports) {
-    const std::tuple key{p.event_id, m.modality, static_cast<int>(p.part)};
-    if (!presented_.insert(key).second) continue;
-    presented_order_.push_back(key);
-    if (presented_order_.size() > kMaxStoredEvents) {
-      presented_.erase(presented_order_.front());
-      presented_order_.pop_front();
-    }
+    if (!presented_.try_emplace({p.event_id, m.modality, static_cast<int>(p.part)}).second) continue;
     if (presentations_.size() >= kMaxPerFrame) {
       ++dropped_events_;
       continue;
     }
     // Times of two clocks are not compared: such a presentation is drawn at its event, without a latency.
-    const auto event = event_host_ns_.find(p.event_id);
+    const std::int64_t* event_ns = event_host_ns_.find(p.event_id);
     const bool comparable = p.presented_ns >= 0 && m.header.clock == event_clock_;
-    const std::int64_t at_ns = comparable ? p.presented_ns : event != event_host_ns_.end() ? event->second : m.header.publish_time_ns;
+    const std::int64_t at_ns = comparable ? p.presented_ns : event_ns ? *event_ns : m.header.publish_time_ns;
     json latency_ms = nullptr;
-    if (comparable && event != event_host_ns_.end()) latency_ms = seconds(p.presented_ns - event->second) * 1e3;
+    if (comparable && event_ns) latency_ms = seconds(p.presented_ns - *event_ns) * 1e3;
     presentations_.push_back({seconds(at_ns), m.modality, p.part, p.outcome, latency_ms});
   }
 }
@@ -150,13 +133,6 @@ std::string Feed::node_of(std::int32_t source) const {
   for (const auto& [name, n] : nodes_)
     if (n.health.header.source == source) return name;
   return "";
-}
-
-std::set<std::string> Feed::modalities() const {
-  std::set<std::string> names;
-  for (const auto& [name, n] : nodes_)
-    if (!n.health.modality.empty()) names.insert(n.health.modality);
-  return names;
 }
 
 }  // namespace tactus::live

@@ -3,11 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,6 +18,7 @@
 #include <tactus/sync_report_t.hpp>
 #include <tuple>
 
+#include "sync/bus/recent_map.h"
 #include "sync/time/time.h"
 
 namespace tactus::live {
@@ -44,10 +43,8 @@ class Feed {
   nlohmann::json take_changes(sync::HostTime now);
   // The complete state for a new page: all nodes and the newest report.
   nlohmann::json state(sync::HostTime now) const;
-  std::set<std::string> modalities() const;
   // The node with this header.source; "": unknown.
   std::string node_of(std::int32_t source) const;
-  std::int64_t malformed() const { return malformed_; }
 
  private:
   struct Node {
@@ -55,6 +52,7 @@ class Feed {
     sync::HostTime arrival;
   };
   bool is_own_run(const header_t& header) const { return run_id_ == 0 || header.run_id == run_id_; }
+  void on_message(const node_health_t& m, sync::HostTime arrival);
   void on_message(const contact_events_t& m);
   void on_message(const presented_t& m);
   void on_message(const sync_report_t& m);
@@ -65,13 +63,11 @@ class Feed {
   std::map<std::string, Node> nodes_;
   std::map<std::string, modality_report_t> modalities_;
   std::map<std::pair<std::string, std::string>, pair_report_t> pairs_;
-  std::map<std::int64_t, std::int64_t> event_host_ns_;  // by event_id
-  std::deque<std::int64_t> event_order_;
+  sync::RecentMap<std::int64_t, std::int64_t> event_host_ns_{kMaxStoredEvents};  // by event_id
   std::int32_t event_clock_ = 0;
-  std::set<std::tuple<std::int64_t, std::string, int>> presented_;
-  std::deque<std::tuple<std::int64_t, std::string, int>> presented_order_;
+  sync::RecentMap<std::tuple<std::int64_t, std::string, int>, bool> presented_{kMaxStoredEvents};
   nlohmann::json events_ = nlohmann::json::array(), presentations_ = nlohmann::json::array();
-  std::int64_t dropped_events_ = 0, malformed_ = 0;
+  std::int64_t dropped_events_ = 0;
   bool report_new_ = false;
   std::optional<sync::HostTime> last_health_;
 };

@@ -11,7 +11,6 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <random>
 #include <sstream>
@@ -27,6 +26,7 @@
 #include "scripts/live/web_server.h"
 #include "sync/bus/bus.h"
 #include "sync/node/node_options.h"
+#include "sync/text/csv.h"
 #include "sync/text/printable.h"
 
 using namespace tactus;
@@ -47,12 +47,9 @@ struct Options {
 
 live::PageFile read_file(const std::string& folder, const char* name, const char* type) {
   const auto path = std::filesystem::path(folder) / name;
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream bytes;
-  bytes << file.rdbuf();
-  if (!file || bytes.str().empty() || bytes.str().size() > kMaxFileBytes)
-    throw std::runtime_error(path.string() + " is missing; scripts/live/bundle makes the page");
-  return {type, bytes.str()};
+  auto bytes = sync::read_small_file(path, kMaxFileBytes);
+  if (!bytes || bytes->empty()) throw std::runtime_error(path.string() + " is missing; scripts/live/bundle makes the page");
+  return {type, *std::move(bytes)};
 }
 
 std::string random_token() {
@@ -66,10 +63,6 @@ std::shared_ptr<const std::string> shared(std::string text) { return std::make_s
 
 std::shared_ptr<const std::string> reply_message(const std::string& sentence, bool good) {
   return shared(nlohmann::json{{"t", "reply"}, {"text", sync::printable(sentence)}, {"good", good}}.dump());
-}
-
-std::int64_t realtime_ns() {
-  return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
 // The served content, with the open pages.
@@ -201,7 +194,7 @@ void serve_cluster(const Options& o) {
     server.step([&](const live::BrowserMessage& m) {
       const sync::HostTime now = sync::host_now();
       if (const auto* command = std::get_if<live::Command>(&m)) controls.command(*command, now);
-      else if (const auto* degrade = std::get_if<live::DegradeRequest>(&m)) controls.degrade(*degrade, realtime_ns(), now);
+      else if (const auto* degrade = std::get_if<live::DegradeRequest>(&m)) controls.degrade(*degrade, sync::realtime_ns(), now);
       else if (const auto* hand = std::get_if<live::HandTarget>(&m)) controls.hand(*hand, session.picture_aspect(), now);
       else if (const auto* answer = std::get_if<live::PageAnswer>(&m)) session.answers().answer(*answer, now);
       else throw std::invalid_argument("a running world cannot seek; open its log");

@@ -2,7 +2,6 @@
 // haptic device. Pure.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <string_view>
 

@@ -1,7 +1,6 @@
 #include "scripts/live/page_session.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <tactus/picture_chunk_t.hpp>
 #include <tactus/question_t.hpp>
 #include <tactus/tag_def_t.hpp>

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -30,7 +29,6 @@ class PageSession {
 
   void open(int page) { watches_[page]; }
   void close(int page) { watches_.erase(page); }
-  bool has_pages() const { return !watches_.empty(); }
   // Sets the variables that one page shows from now on. Returns a sentence about invalid names; "": all are valid.
   std::string watch(int page, const std::vector<std::string>& names) { return watches_[page].set(names); }
 
@@ -51,7 +49,6 @@ class PageSession {
 
   // The tagged variables that the pages show, as patterns of TAG_REQUEST.
   std::vector<std::string> requested_tags() const;
-  const Feed& feed() const { return feed_; }
   // The current question of a study, and the answers of pages.
   Answers& answers() { return answers_; }
 

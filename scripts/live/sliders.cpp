@@ -2,7 +2,6 @@
 
 #include <tinyxml2.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -109,6 +108,11 @@ std::string parse(tinyxml2::XMLDocument& document, const std::string& profile) {
   return name;
 }
 
+struct SliderState {
+  Sliders sliders;
+  bool more = false;  // as in degradation_json
+};
+
 std::map<std::string, SliderState> slider_states(XMLElement& root) {
   std::map<std::string, int> elements;
   std::map<std::string, SliderState> out;
@@ -131,12 +135,6 @@ std::map<std::string, SliderState> slider_states(XMLElement& root) {
 }
 
 }  // namespace
-
-std::map<std::string, SliderState> slider_states(const std::string& profile) {
-  tinyxml2::XMLDocument document;
-  parse(document, profile);
-  return slider_states(*document.RootElement());
-}
 
 nlohmann::json degradation_json(const std::string& profile) {
   tinyxml2::XMLDocument document;

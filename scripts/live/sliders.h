@@ -10,14 +10,9 @@
 
 namespace tactus::live {
 
-// The slider positions of each modality for a profile: the first value that applies at all times and to all contacts.
-struct SliderState {
-  Sliders sliders;
-  bool more = false;  // the profile has more operators of this modality than its sliders show
-};
-// Throws std::invalid_argument with one sentence for an invalid profile; "" degrades nothing.
-std::map<std::string, SliderState> slider_states(const std::string& profile);
-// {"name": ..., "senses": {sense: {delay_ms, rate_Hz, loss, more}}}, as sent to pages.
+// {"name": ..., "senses": {sense: {delay_ms, rate_Hz, loss, more}}}, as sent to pages: for each modality the first values that
+// apply at all times and to all contacts. more: the profile has more operators of this modality than its sliders show. Throws
+// std::invalid_argument with one sentence for an invalid profile; "" degrades nothing.
 nlohmann::json degradation_json(const std::string& profile);
 
 // The profile with the sliders at these positions: a value that a slider has not changed stays as written, with its kind, its

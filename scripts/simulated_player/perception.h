@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <tactus/contact_events_t.hpp>
 #include <tactus/node_health_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <tactus/world_state_t.hpp>

@@ -10,7 +10,6 @@
 #include "scripts/simulated_player/run.h"
 
 #include <CLI/CLI.hpp>
-#include <iostream>
 #include <optional>
 #include <tactus/device_force_t.hpp>
 #include <tactus/device_state_t.hpp>

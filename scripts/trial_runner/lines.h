@@ -2,7 +2,6 @@
 // with an error, because waiting would stop its hand.
 #pragma once
 
-#include <deque>
 #include <optional>
 #include <string>
 

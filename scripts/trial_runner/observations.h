@@ -10,7 +10,6 @@
 #include <tactus/game_state_t.hpp>
 #include <tactus/header_t.hpp>
 #include <tactus/media_clock_t.hpp>
-#include <tactus/node_health_t.hpp>
 #include <tactus/picture_chunk_t.hpp>
 #include <tactus/presented_t.hpp>
 #include <tactus/tool_state_t.hpp>

@@ -1,6 +1,5 @@
 #include "scripts/trial_runner/requests.h"
 
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>

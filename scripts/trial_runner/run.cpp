@@ -19,8 +19,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
-#include <iostream>
 #include <tactus/device_force_t.hpp>
 #include <tactus/device_state_t.hpp>
 #include <tactus/sim_command_t.hpp>
@@ -43,6 +41,7 @@
 #include "scripts/trial_runner/lines.h"
 #include "scripts/trial_runner/observations.h"
 #include "scripts/trial_runner/requests.h"
+#include "sync/clocks/pacing.h"
 #include "sync/random/keyed_random.h"
 #include "sync/bus/identity.h"
 #include "sync/node/node.h"
@@ -62,11 +61,6 @@ const sync::NodeDescriptor kTrialRunner{.name = "conductor",
 constexpr sync::Nanoseconds kHealthPeriod{500'000'000}, kRepeat{50'000'000};
 constexpr int kForceDecimation = 5;  // ticks between two lines on the force of a press
 constexpr int kMaxRequestsPerTick = 16;
-
-std::int64_t realtime_ns() {
-  return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 class TrialRunner {
  public:
@@ -139,7 +133,7 @@ class TrialRunner {
   void handle(const ProfileRequest& o, sync::HostTime now) {
     if (o.text.size() > sync::kMaxProfileBytes) throw std::invalid_argument("the profile is longer than 64 KiB");
     sync::ProfileInForce profile = sync::read_profile(o.text, "profile");
-    profile.generation = realtime_ns();
+    profile.generation = sync::realtime_ns();
     if (const auto map = simulation_.map(now)) profile.start = std::max(sync::SimTime{}, map->to_sim(now));
     enforcement_.begin(std::move(profile));
   }

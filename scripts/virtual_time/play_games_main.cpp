@@ -12,7 +12,6 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>

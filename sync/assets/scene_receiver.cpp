@@ -94,10 +94,7 @@ bool SceneReceiver::accept_sender(const header_t& header, HostTime arrival) {
 
 // A manifest is the same for the whole incarnation of its sender, so pages of different repetitions complete each other.
 void SceneReceiver::process(const scene_manifest_t& page) {
-  if (page.pages > kMaxPages) {
-    ++refused_;
-    return;
-  }
+  if (page.pages > kMaxPages) return;
   const std::vector<asset_ref_t>* known = pages_.find(page.page);
   if (!known || !same(*known, page.assets)) pages_new_ = true;
   pages_.put(page.page, page.pages, page.assets);
@@ -113,10 +110,7 @@ void SceneReceiver::prepare_incoming() {
     for (const asset_ref_t& ref : refs) {
       const std::size_t size = static_cast<std::size_t>(ref.size);
       total += size;
-      if (++assets > kMaxAssets || size > kMaxAssetBytes || total > kMaxTotalBytes) {
-        ++refused_;
-        return;
-      }
+      if (++assets > kMaxAssets || size > kMaxAssetBytes || total > kMaxTotalBytes) return;
       if (named.insert(ref.hash).second) manifest.push_back(ref);
     }
   for (auto it = incoming_.begin(); it != incoming_.end();) {
@@ -125,10 +119,8 @@ void SceneReceiver::prepare_incoming() {
     it = stays ? std::next(it) : incoming_.erase(it);
   }
   refs_ = std::move(manifest);
-  for (const asset_ref_t& ref : refs_) {
-    if (assets_.contains(ref.hash)) continue;
-    incoming_.try_emplace(ref.hash).first->second.size = static_cast<std::size_t>(ref.size);
-  }
+  for (const asset_ref_t& ref : refs_)
+    if (!assets_.contains(ref.hash)) incoming_[ref.hash].size = static_cast<std::size_t>(ref.size);
 }
 
 void SceneReceiver::process(asset_chunk_t&& m, HostTime now) {

@@ -49,8 +49,6 @@ class SceneReceiver {
   // Null when no asset has that hash. Joins the chunks at the first call.
   const Asset* asset(std::int64_t hash) const;
   const std::vector<asset_ref_t>& manifest() const { return refs_; }
-  // Invalid manifests.
-  std::int64_t refused() const { return refused_; }
   // Memory of chunks and assets, bytes.
   std::size_t bytes_held() const { return bytes_held_; }
 
@@ -97,7 +95,6 @@ class SceneReceiver {
   mutable std::map<std::int64_t, Arrived> assets_;
   std::deque<std::deque<Bytes>> garbage_;
   std::size_t bytes_held_ = 0;
-  std::int64_t refused_ = 0;
   HostTime next_request_{};
 };
 

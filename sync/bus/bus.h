@@ -33,10 +33,6 @@ class Bus {
 
   // Subscriptions exist as long as the bus; create them before the first drain.
   template <class Message>
-  Latest<Message>& latest(const char* channel, Port port = Port::kRealtime) {
-    return add(std::make_unique<Latest<Message>>(channel), channel, port);
-  }
-  template <class Message>
   Queue<Message>& queue(const char* channel, std::size_t capacity, Port port = Port::kRealtime) {
     return add(std::make_unique<Queue<Message>>(channel, capacity), channel, port);
   }

@@ -1,9 +1,11 @@
 // Decodes received bytes: accepts only exactly one valid message of the right type.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "lcmtypes/channels.h"
@@ -11,30 +13,25 @@
 
 namespace tactus::sync {
 
-// nullopt when the bytes are truncated, too many, of another type, or hold a value out of range.
+// The message of an asset, without a size limit. nullopt when the bytes are truncated, too many, of another type, or hold a
+// value out of range.
 template <class Message>
-std::optional<Message> decode(const void* data, std::size_t size) {
-  if (size > channels::kMaxMessageBytes) return std::nullopt;
+std::optional<Message> decode_asset(std::span<const std::uint8_t> bytes) {
   try {
     Message m{};
-    if (m.decode(data, 0, static_cast<int>(size)) != static_cast<int>(size) || !valid(m)) return std::nullopt;
+    const int size = static_cast<int>(bytes.size());
+    if (m.decode(bytes.data(), 0, size) != size || !valid(m)) return std::nullopt;
     return m;
   } catch (const std::exception&) {
     return std::nullopt;  // the generated decoder throws on hostile lengths
   }
 }
 
-// The same for an asset: without a size limit, but with the same validation.
-template <class Asset>
-std::optional<Asset> decode_asset(const std::vector<std::uint8_t>& bytes) {
-  try {
-    Asset a{};
-    if (a.decode(bytes.data(), 0, static_cast<int>(bytes.size())) != static_cast<int>(bytes.size()) || !valid(a))
-      return std::nullopt;
-    return a;
-  } catch (const std::exception&) {
-    return std::nullopt;
-  }
+// The same for a message of the bus.
+template <class Message>
+std::optional<Message> decode(const void* data, std::size_t size) {
+  if (size > channels::kMaxMessageBytes) return std::nullopt;
+  return decode_asset<Message>({static_cast<const std::uint8_t*>(data), size});
 }
 
 template <class Message>

@@ -7,8 +7,7 @@
 namespace tactus::sync {
 
 void add_input(node_health_t& m, const input_health_t& input) {
-  const auto same = std::find_if(m.inputs.begin(), m.inputs.end(),
-                                 [&](const input_health_t& i) { return i.channel == input.channel; });
+  const auto same = std::ranges::find_if(m.inputs, [&](const input_health_t& i) { return i.channel == input.channel; });
   if (same == m.inputs.end()) {
     m.inputs.push_back(input);
   } else {

@@ -1,5 +1,4 @@
-// The inboxes of a subscriber: the newest message of a channel, or a bounded queue. Bus::drain fills them; they are read in
-// the same thread.
+// The inbox of a subscriber, a bounded queue of the messages of a channel. Bus::drain fills it; it is read in the same thread.
 #pragma once
 
 #include <cstdint>
@@ -62,35 +61,6 @@ class InboxBase : public MessageReceiver {
     return sequence_status;
   }
   InputCount count_;
-};
-
-// Stores the newest message of all sources and its arrival.
-template <class Message>
-class Latest : public InboxBase {
- public:
-  using InboxBase::InboxBase;
-  void accept(const void* data, std::size_t size, HostTime arrival) noexcept override {
-    auto m = decode<Message>(data, size);
-    if (!m) {
-      ++count_.bad;
-      return;
-    }
-    if (record_arrival(*m, arrival) == SequenceStatus::kOld) return;
-    value_ = std::move(*m);
-    arrival_ = arrival;
-    is_new_ = true;
-  }
-
-  // Null until the first message.
-  const Message* get() const { return value_ ? &*value_ : nullptr; }
-  HostTime arrival() const { return arrival_; }
-  // The newest message if it has not been taken yet, else null.
-  const Message* take() { return std::exchange(is_new_, false) ? get() : nullptr; }
-
- private:
-  std::optional<Message> value_;
-  HostTime arrival_{};
-  bool is_new_ = false;
 };
 
 // Stores messages in order of arrival; when it is full, the oldest is dropped and counted. Old and repeated messages are

@@ -5,7 +5,6 @@
 #include <map>
 #include <set>
 #include <tactus/header_t.hpp>
-#include <utility>
 
 namespace tactus::sync {
 

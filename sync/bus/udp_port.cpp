@@ -1,7 +1,6 @@
 #include "sync/bus/udp_port.h"
 
 #include <arpa/inet.h>
-#include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
 #include <unistd.h>

@@ -7,9 +7,7 @@ OffsetTracker::Outcome ClockMapEstimator::add(const ProbeWave& wave) {
   other.last_wave = wave.sample.at;
   other.round_trip = wave.round_trip;
   other.replies = wave.replies;
-  const OffsetTracker::Outcome outcome = other.tracker.add(wave.sample);
-  jumps_ += outcome == OffsetTracker::Outcome::kJumped;
-  return outcome;
+  return other.tracker.add(wave.sample);
 }
 
 std::vector<clock_map_t> ClockMapEstimator::maps(HostTime now) {

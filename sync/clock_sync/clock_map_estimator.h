@@ -23,8 +23,6 @@ class ClockMapEstimator {
   OffsetTracker::Outcome add(const ProbeWave& wave);
   // One map of each clock, for this instant.
   std::vector<clock_map_t> maps(HostTime now);
-  // Detected jumps since the start, over all clocks.
-  std::int64_t jumps() const { return jumps_; }
 
  private:
   struct Other {
@@ -35,7 +33,6 @@ class ClockMapEstimator {
   };
   std::int32_t own_clock_;
   std::map<std::int32_t, Other> others_;
-  std::int64_t jumps_ = 0;
 };
 
 }  // namespace tactus::sync

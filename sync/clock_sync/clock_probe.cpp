@@ -48,10 +48,7 @@ void ClockProber::reply(const clock_probe_t& r, HostTime returned) {
   if (r.kind == clock_probe_t::REPLY && r.asking_clock != own_.clock) return;  // addressed to another process
   const auto known = replies_.find(r.header.clock);
   const bool has_room = known != replies_.end() ? known->second.wave.replies < 2 * kProbes : replies_.size() < kMaxClocks;
-  if (!accepts(r, returned) || !has_room) {
-    ++refused_;
-    return;
-  }
+  if (!accepts(r, returned) || !has_room) return;
   const HostTime sent = host_time(r.request_sent_ns), arrived = host_time(r.request_arrived_ns),
                  replied = host_time(r.reply_sent_ns);
   const ProbeWave wave{r.header.clock, probe_sample(sent, arrived, replied, returned),
@@ -76,12 +73,9 @@ void ClockProber::reply(const clock_probe_t& r, HostTime returned) {
 std::vector<ProbeWave> ClockProber::finish(HostTime now) {
   std::vector<ProbeWave> out;
   if (static_cast<int>(sent_.size()) < kProbes || now < next()) return out;
-  for (const auto& [clock, replies] : replies_) {
-    if (replies.min_offset <= replies.max_offset)
-      out.push_back(replies.wave);
-    else
-      ++contradictory_;
-  }
+  // Answers that contradict each other are left out: the clock jumped meanwhile, or one was forged.
+  for (const auto& [clock, replies] : replies_)
+    if (replies.min_offset <= replies.max_offset) out.push_back(replies.wave);
   Nanoseconds period = kPeriod * std::max<std::int64_t>(1, static_cast<std::int64_t>(out.size() / kFewClocks));
   if (waves_.size() > kMaxClocks) waves_.clear();  // limits the memory when hosts come and go for months
   for (const ProbeWave& wave : out)

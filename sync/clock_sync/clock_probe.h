@@ -41,7 +41,7 @@ class ClockProber {
   // of hosts and not with its square. 64 clocks are probed every 8 s, in which the 15 ppm uncertainty of a measured rate (RFC
   // 5905, PHI) amounts to 120 us.
   static constexpr std::size_t kFewClocks = 16;
-  // Design: more hosts than a cluster has; further answers count as refused.
+  // Design: more hosts than a cluster has; further answers are refused.
   static constexpr std::size_t kMaxClocks = 64;
 
   ClockProber(Identity own, HostTime first_wave) : own_(std::move(own)), wave_begin_(first_wave) {}
@@ -54,11 +54,6 @@ class ClockProber {
   void reply(const clock_probe_t& reply, HostTime returned);
   // Returns the results of a wave after its last possible answer, and starts the next wave.
   std::vector<ProbeWave> finish(HostTime now);
-
-  // Number of answers that were not requested, late, impossible or in excess.
-  std::int64_t refused() const { return refused_; }
-  // Waves in which the answers of a clock contradicted each other: it jumped meanwhile, or an answer was forged.
-  std::int64_t contradictory() const { return contradictory_; }
 
  private:
   struct Sent {
@@ -75,7 +70,6 @@ class ClockProber {
   std::vector<Sent> sent_;  // of this wave
   std::map<std::int32_t, ClockReplies> replies_;
   std::map<std::int32_t, int> waves_;  // received of each clock, up to kFirstWaves
-  std::int64_t refused_ = 0, contradictory_ = 0;
 };
 
 }  // namespace tactus::sync

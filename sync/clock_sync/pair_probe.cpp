@@ -1,7 +1,7 @@
 #include "sync/clock_sync/pair_probe.h"
 
 #include <algorithm>
-#include <cstring>
+#include <array>
 
 namespace tactus::sync {
 namespace {

@@ -2,9 +2,7 @@
 // numbered datagrams to the group, and answers those of the others. Pure.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <set>
 #include <span>

@@ -12,7 +12,6 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "sync/bus/decode.h"
 #include "sync/clocks/pacing.h"
@@ -128,7 +127,6 @@ std::optional<ProbeSocket::Received> ProbeSocket::read_one() {
     if (length >= kPrefix) std::memcpy(&magic, bytes, sizeof magic);
     if (ntohl(magic) != kMagic || std::memcmp(bytes + 8, channels::kClockProbe, kChannelBytes) != 0) continue;
     if (const auto probe = decode<clock_probe_t>(bytes + kPrefix, length - kPrefix)) return Received{*probe, at};
-    ++bad_;
   }
 }
 

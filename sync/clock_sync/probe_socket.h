@@ -31,8 +31,6 @@ class ProbeSocket {
   bool send(const clock_probe_t& probe);
   // Ends a receive(). Thread-safe: yes.
   void wake();
-  // Number of datagrams of the channel that were no valid message.
-  std::int64_t bad() const { return bad_; }
 
  private:
   std::optional<Received> read_one();
@@ -41,7 +39,6 @@ class ProbeSocket {
   std::uint16_t port_ = 0;
   std::uint32_t next_number_ = 0;
   Nanoseconds realtime_minus_monotonic_{0};  // of the monotonic clock, when last read
-  std::int64_t bad_ = 0;
 };
 
 }  // namespace tactus::sync

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <tactus/clock_map_t.hpp>
-#include <tactus/header_t.hpp>
 
 namespace tactus::sync {
 namespace {

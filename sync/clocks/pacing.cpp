@@ -3,6 +3,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -16,6 +17,10 @@ HostTime host_now() {
   timespec t{};
   clock_gettime(CLOCK_MONOTONIC, &t);
   return host_time(t.tv_sec * 1'000'000'000 + t.tv_nsec);
+}
+
+std::int64_t realtime_ns() {
+  return std::chrono::duration_cast<Nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
 void Deadlines::set_rate(double rate_Hz) {

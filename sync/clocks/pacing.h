@@ -10,6 +10,9 @@ namespace tactus::sync {
 // CLOCK_MONOTONIC. Realtime-safe: yes. Thread-safe: yes.
 HostTime host_now();
 
+// CLOCK_REALTIME, ns: numbers profiles and requests across restarts of their senders.
+std::int64_t realtime_ns();
+
 // The deadlines of a loop, without a clock. Pure: tests set the time.
 class Deadlines {
  public:

@@ -36,7 +36,6 @@ class SenderClock {
   // Returns true when a jump of the clock was detected.
   bool observe(const header_t& header, HostTime arrival);
 
-  bool known() const { return known_; }
   Reading read(std::int64_t sender_ns, HostTime now) const;
   HostTime to_host(std::int64_t sender_ns, HostTime now) const { return read(sender_ns, now).time; }
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <optional>
 #include <tactus/sim_clock_t.hpp>
@@ -24,7 +23,7 @@
 namespace tactus::sync {
 
 // Messages that wait for their release time, in the order of that time; equal times keep their order. Bounded: when it is
-// full, the oldest message is dropped and counted.
+// full, the oldest message is dropped.
 template <class Message>
 class DelayQueue {
  public:
@@ -32,9 +31,7 @@ class DelayQueue {
   static constexpr std::size_t kMax = 1 << 16;
   void push(HostTime release, Message m, HostTime arrival) {
     waiting_.emplace(release, std::make_pair(std::move(m), arrival));
-    if (waiting_.size() <= kMax) return;
-    waiting_.erase(waiting_.begin());
-    ++dropped_;
+    if (waiting_.size() > kMax) waiting_.erase(waiting_.begin());
   }
   std::optional<std::pair<Message, HostTime>> pop(HostTime now) {
     if (waiting_.empty() || waiting_.begin()->first > now) return std::nullopt;
@@ -42,12 +39,9 @@ class DelayQueue {
     waiting_.erase(waiting_.begin());
     return first;
   }
-  bool empty() const { return waiting_.empty(); }
-  std::int64_t dropped() const { return dropped_; }
 
  private:
   std::multimap<HostTime, std::pair<Message, HostTime>> waiting_;
-  std::int64_t dropped_ = 0;
 };
 
 // Snapshots. The profile decides once per snapshot, on its first page; the other pages share the decision. A deadband

@@ -56,18 +56,13 @@ class Words {
     return checked(quantity(first, unit), first, unit, least, most);
   }
   double pair(const std::string& name, std::string_view unit, double otherwise, double least, double most) {
-    const auto it = pairs_.find(name);
-    if (it == pairs_.end()) return otherwise;
-    const std::string text = it->second;
-    pairs_.erase(it);
+    if (!has(name)) return otherwise;
+    const std::string text = pair(name, "");
     return checked(quantity(text, unit), name + "=" + text, unit, least, most);
   }
   std::string pair(const std::string& name, const std::string& otherwise) {
-    const auto it = pairs_.find(name);
-    if (it == pairs_.end()) return otherwise;
-    const std::string text = it->second;
-    pairs_.erase(it);
-    return text;
+    const auto node = pairs_.extract(name);
+    return node ? node.mapped() : otherwise;
   }
   bool has(const std::string& name) const { return pairs_.contains(name); }
   // Returns true and removes the word when it is present.
@@ -122,10 +117,12 @@ std::string_view unit_of(Quantity q) {
   return q == Quantity::kForce ? "N" : q == Quantity::kVelocity ? "m/s" : "m";
 }
 
-Conceal conceal_of(Words& w) {
-  if (const auto chosen = w.one_of(kConceals)) return *chosen;
-  throw std::invalid_argument("choose hold or zero");
+template <class Value>
+Value chosen(Words& w, const std::map<std::string, Value>& choices, const char* remedy) {
+  if (const auto value = w.one_of(choices)) return *value;
+  throw std::invalid_argument(remedy);
 }
+Conceal conceal_of(Words& w) { return chosen(w, kConceals, "choose hold or zero"); }
 
 QuantiseDef quantise(Words& w) {
   QuantiseDef d;
@@ -201,18 +198,6 @@ JitterDef jitter(Words& w) {
   return d;
 }
 
-ReorderDef reorder(Words& w) {
-  ReorderDef d;
-  d.share = w.value("1", 0, 1);
-  d.by_s = w.pair("by", "s", 0.01, 0, kLongest_s);
-  return d;
-}
-
-bool truth(Words& w) {
-  if (const auto chosen = w.one_of(kTruths)) return *chosen;
-  throw std::invalid_argument("choose true or false");
-}
-
 using Fill = std::function<void(Rule&, Words&)>;
 const std::map<std::string, Fill>& operators() {
   static const std::map<std::string, Fill> table{
@@ -227,11 +212,11 @@ const std::map<std::string, Fill>& operators() {
       {"deadband", [](Rule& r, Words& w) { r.deadband = deadband(w); }},
       {"loss", [](Rule& r, Words& w) { r.loss = loss(w); }},
       {"wire_loss", [](Rule& r, Words& w) { r.wire_loss = w.value("1", 0, 1); }},
-      {"off", [](Rule& r, Words& w) { r.off = truth(w); }},
+      {"off", [](Rule& r, Words& w) { r.off = chosen(w, kTruths, "choose true or false"); }},
       {"delay", [](Rule& r, Words& w) { r.delay = delay(w); }},
       {"jitter", [](Rule& r, Words& w) { r.jitter = jitter(w); }},
       {"skew", [](Rule& r, Words& w) { r.skew = w.value("1", 0, 0.01); }},
-      {"reorder", [](Rule& r, Words& w) { r.reorder = reorder(w); }},
+      {"reorder", [](Rule& r, Words& w) { r.reorder = {w.value("1", 0, 1), w.pair("by", "s", 0.01, 0, kLongest_s)}; }},
       {"duplicate", [](Rule& r, Words& w) { r.duplicate = w.value("1", 0, 1); }},
       {"freeze", [](Rule& r, Words& w) { r.freeze = conceal_of(w); }},
       {"conceal", [](Rule& r, Words& w) { r.conceal = conceal_of(w); }},
@@ -240,10 +225,6 @@ const std::map<std::string, Fill>& operators() {
   };
   return table;
 }
-
-}  // namespace
-
-namespace {
 
 template <class Parse>
 void parse_words(const std::string& name, const std::string& value, Parse parse) {

@@ -63,20 +63,18 @@ void store_profile(const std::filesystem::path& folder, const ProfileInForce& p,
 
 std::optional<ProfileInForce> load_profile(const std::filesystem::path& folder, std::int64_t run_id) {
   std::ifstream in(folder / kFile, std::ios::binary);
-  std::int64_t run = 0, start_ns = 0;
-  ProfileInForce p;
-  if (!(in >> run >> p.generation >> start_ns >> p.hash) || run != run_id || p.generation <= 0 || start_ns < 0)
-    return std::nullopt;
+  std::int64_t run = 0, generation = 0, start_ns = 0, hash = 0;
+  if (!(in >> run >> generation >> start_ns >> hash) || run != run_id || generation <= 0 || start_ns < 0) return std::nullopt;
   in.get();
-  p.text.assign(std::istreambuf_iterator<char>(in), {});
-  p.start = sim_time(start_ns);
-  if (fnv1a_64(p.text.data(), p.text.size()) != p.hash) return std::nullopt;
   try {
-    p.parsed = std::make_shared<const Profile>(parse_profile(p.text, "profile"));
+    ProfileInForce p = read_profile({std::istreambuf_iterator<char>(in), {}}, "profile");
+    if (p.hash != hash) return std::nullopt;
+    p.generation = generation;
+    p.start = sim_time(start_ns);
+    return p;
   } catch (const std::invalid_argument&) {
     return std::nullopt;
   }
-  return p;
 }
 
 ProfileInForce read_profile(std::string xml, const std::string& file) {

@@ -18,22 +18,17 @@ std::uint64_t key(const header_t& h, std::uint64_t which) {
 }
 
 // Applies the operators to the values of one contact, body or plane.
-class Changer {
- public:
-  Changer(OperatorChain& stack, SimTime t, std::int64_t id, std::int32_t material_a = -1, std::int32_t material_b = -1,
-          std::int32_t body_a = -1, std::int32_t body_b = -1)
-      : stack_(stack),
-        t_(t),
-        id_(id),
-        material_a_(material_a),
-        material_b_(material_b),
-        body_a_(body_a),
-        body_b_(body_b) {}
+struct Changer {
+  OperatorChain& stack;
+  SimTime time;
+  std::int64_t id;
+  std::int32_t material_a = -1, material_b = -1, body_a = -1, body_b = -1;
+  int component = 0;
 
   template <class Number>
   void operator()(Quantity q, Number& x, double least = -1e300) {
     x = static_cast<Number>(
-        std::max(least, stack_.degraded_value(q, id_, component_++, x, t_, material_a_, material_b_, body_a_, body_b_)));
+        std::max(least, stack.degraded_value(q, id, component++, x, time, material_a, material_b, body_a, body_b)));
   }
   template <class Vector>
   void vector(Quantity q, Vector& v) {
@@ -41,13 +36,6 @@ class Changer {
     (*this)(q, v.y);
     (*this)(q, v.z);
   }
-
- private:
-  OperatorChain& stack_;
-  SimTime t_;
-  std::int64_t id_;
-  std::int32_t material_a_, material_b_, body_a_, body_b_;
-  int component_ = 0;
 };
 
 }  // namespace
@@ -106,8 +94,8 @@ std::vector<Signal> signals_of(const tool_state_t& m) {
 
 void change_values(contact_frame_t& m, OperatorChain& stack) {
   for (contact_t& c : m.contacts) {
-    Changer change(stack, sim_time(m.header.sim_time_ns), c.contact_id, c.material_a, c.material_b, c.body_a,
-                   c.body_b);
+    Changer change{stack, sim_time(m.header.sim_time_ns), c.contact_id, c.material_a, c.material_b, c.body_a,
+                   c.body_b};
     change(Quantity::kForce, c.normal_force_N, 0);
     change(Quantity::kPosition, c.depth_m);
     change.vector(Quantity::kVelocity, c.sliding_velocity_m_s);
@@ -117,7 +105,7 @@ void change_values(contact_frame_t& m, OperatorChain& stack) {
 
 void change_values(world_state_t& m, OperatorChain& stack) {
   for (body_state_t& b : m.bodies) {
-    Changer change(stack, sim_time(m.header.sim_time_ns), b.body, -1, -1, b.body, -1);
+    Changer change{stack, sim_time(m.header.sim_time_ns), b.body, -1, -1, b.body, -1};
     change.vector(Quantity::kPosition, b.position_m);
     change.vector(Quantity::kVelocity, b.velocity_m_s);
   }
@@ -125,7 +113,7 @@ void change_values(world_state_t& m, OperatorChain& stack) {
 
 void change_values(touch_model_t& m, OperatorChain& stack) {
   for (touch_plane_t& p : m.planes) {
-    Changer change(stack, sim_time(m.header.sim_time_ns), p.contact_id, p.material, -1, p.body, -1);
+    Changer change{stack, sim_time(m.header.sim_time_ns), p.contact_id, p.material, -1, p.body, -1};
     change(Quantity::kForce, p.stiffness_N_m, 0);  // scales the force with which a surface responds
     change.vector(Quantity::kPosition, p.point_m);
     change.vector(Quantity::kVelocity, p.velocity_m_s);
@@ -133,7 +121,7 @@ void change_values(touch_model_t& m, OperatorChain& stack) {
 }
 
 void change_values(tool_state_t& m, OperatorChain& stack) {
-  Changer change(stack, sim_time(m.header.sim_time_ns), m.tool);
+  Changer change{stack, sim_time(m.header.sim_time_ns), m.tool};
   change.vector(Quantity::kForce, m.force_N);
   change.vector(Quantity::kPosition, m.device.position_m);
   change.vector(Quantity::kPosition, m.proxy.position_m);
@@ -142,7 +130,7 @@ void change_values(tool_state_t& m, OperatorChain& stack) {
 }
 
 void change_values(contact_event_t& e, OperatorChain& stack) {
-  Changer change(stack, sim_time(e.time_ns), e.contact_id, e.material_a, e.material_b, e.body_a, e.body_b);
+  Changer change{stack, sim_time(e.time_ns), e.contact_id, e.material_a, e.material_b, e.body_a, e.body_b};
   change(Quantity::kVelocity, e.approach_speed_m_s, 0);
 }
 

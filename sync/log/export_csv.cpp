@@ -4,7 +4,6 @@
 #include <tactus/header_t.hpp>
 
 #include "sync/resampling/sample_status.h"
-#include "sync/time/time.h"
 
 namespace tactus::sync {
 namespace {
@@ -18,30 +17,22 @@ std::string seconds(std::int64_t ns) {
   return text;
 }
 
-class Row {
- public:
-  Row& text(const std::string& value) {
-    line_ += (line_.empty() ? "" : ",") + value;
-    return *this;
-  }
-  Row& number(double value) {
-    char digits[32];
-    std::snprintf(digits, sizeof digits, "%.9g", value);
-    return text(digits);
-  }
-  template <class Vector>
-  Row& vector(const Vector& v) {
-    return number(v.x).number(v.y).number(v.z);
-  }
-  Row& time(const header_t& h) {
-    line_ = seconds(h.sim_time_ns) + "," + seconds(h.publish_time_ns);
-    return *this;
-  }
-  std::string end() { return line_ + "\n"; }
+std::string cell(const std::string& text) { return text; }
+std::string cell(double value) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.9g", value);
+  return digits;
+}
+template <class Vector>
+requires requires(const Vector& v) { v.z; }
+std::string cell(const Vector& v) { return cell(v.x) + "," + cell(v.y) + "," + cell(v.z); }
 
- private:
-  std::string line_;
-};
+template <class... Values>
+std::string row(const header_t& h, const Values&... values) {
+  std::string line = seconds(h.sim_time_ns) + "," + seconds(h.publish_time_ns);
+  ((line += "," + cell(values)), ...);
+  return line + "\n";
+}
 
 }  // namespace
 
@@ -53,22 +44,9 @@ std::string haptic_csv_names() {
 }
 
 std::string csv_row(const tool_state_t& m) {
-  return Row()
-      .time(m.header)
-      .number(m.tool)
-      .vector(m.device.position_m)
-      .vector(m.proxy.position_m)
-      .vector(m.force_N)
-      .vector(m.torque_N_m)
-      .vector(m.transient_N)
-      .number(m.fade)
-      .number(m.coupling)
-      .text(to_string(static_cast<SampleStatus>(m.touch_status)))
-      .number(m.constraint_count)
-      .number(m.energy_J)
-      .number(m.generated_J)
-      .text(std::to_string(m.header.seq))
-      .end();
+  return row(m.header, m.tool, m.device.position_m, m.proxy.position_m, m.force_N, m.torque_N_m, m.transient_N, m.fade,
+             m.coupling, to_string(static_cast<SampleStatus>(m.touch_status)), m.constraint_count, m.energy_J,
+             m.generated_J, std::to_string(m.header.seq));
 }
 
 std::string thermal_csv_names() {
@@ -76,17 +54,7 @@ std::string thermal_csv_names() {
 }
 
 std::string csv_row(const thermal_state_t& m) {
-  return Row()
-      .time(m.header)
-      .number(m.tool)
-      .number(m.material)
-      .number(m.force_N)
-      .number(m.area_m2)
-      .number(m.heat_flux_W_m2)
-      .number(m.skin_degC)
-      .number(m.commanded_degC)
-      .number(m.limited)
-      .end();
+  return row(m.header, m.tool, m.material, m.force_N, m.area_m2, m.heat_flux_W_m2, m.skin_degC, m.commanded_degC, m.limited);
 }
 
 }  // namespace tactus::sync

@@ -22,6 +22,15 @@ constexpr std::array kOutcomes{"presented", "late", "dropped_late", "dropped_by_
 constexpr std::array kReasons{"start", "periodic", "underflow"};
 constexpr std::array kStages{"ready", "shown"};
 
+template <class First, class... Rest>
+std::string row(const First& first, const Rest&... rest) {
+  std::ostringstream line;
+  line << first;
+  ((line << ',' << rest), ...);
+  line << '\n';
+  return line.str();
+}
+
 }  // namespace
 
 std::string events_csv_names() {
@@ -31,29 +40,22 @@ std::string events_csv_names() {
 
 std::string csv_row(const contact_event_t& e, const sim_clock_t& clock) {
   const TimeMap map{sim_time(clock.sim_ns), host_time(clock.host_ns), clock.rate};
-  std::ostringstream row;
-  row << e.event_id << ',' << e.contact_id << ',' << name_of(kKinds, e.kind) << ',' << e.time_ns << ','
-      << to_ns(map.to_host(sim_time(e.time_ns))) << ',' << e.body_a << ',' << e.body_b << ',' << e.material_a << ','
-      << e.material_b << ',' << e.tool << ',' << e.point_m.x << ',' << e.point_m.y << ',' << e.point_m.z << ','
-      << e.approach_speed_m_s << ',' << e.effective_mass_kg << '\n';
-  return row.str();
+  return row(e.event_id, e.contact_id, name_of(kKinds, e.kind), e.time_ns, to_ns(map.to_host(sim_time(e.time_ns))), e.body_a,
+             e.body_b, e.material_a, e.material_b, e.tool, e.point_m.x, e.point_m.y, e.point_m.z, e.approach_speed_m_s,
+             e.effective_mass_kg);
 }
 
 std::string presented_csv_names() { return "modality,event_id,part,scheduled_ns,presented_ns,uncertainty_ns,outcome\n"; }
 
 std::string csv_row(const std::string& modality, const presentation_t& p) {
-  std::ostringstream row;
-  row << modality << ',' << p.event_id << ',' << name_of(kParts, p.part) << ',' << p.scheduled_ns << ',' << p.presented_ns
-      << ',' << p.uncertainty_ns << ',' << name_of(kOutcomes, p.outcome) << '\n';
-  return row.str();
+  return row(modality, p.event_id, name_of(kParts, p.part), p.scheduled_ns, p.presented_ns, p.uncertainty_ns,
+             name_of(kOutcomes, p.outcome));
 }
 
 std::string media_clock_csv_names() { return "medium,index,host_ns,reason\n"; }
 
 std::string csv_row(const media_clock_t& m) {
-  std::ostringstream row;
-  row << m.medium << ',' << m.index << ',' << m.host_time_ns << ',' << name_of(kReasons, m.reason) << '\n';
-  return row.str();
+  return row(m.medium, m.index, m.host_time_ns, name_of(kReasons, m.reason));
 }
 
 std::string clock_map_csv_names() {
@@ -61,20 +63,15 @@ std::string clock_map_csv_names() {
 }
 
 std::string csv_row(const clock_map_t& m) {
-  std::ostringstream row;
-  row << m.of_clock << ',' << m.to_clock << ',' << m.at_ns << ',' << m.offset_ns << ',' << m.drift << ',' << m.uncertainty_ns
-      << ',' << m.uncertainty_drift << ',' << m.epoch << ',' << m.round_trip_ns << ',' << m.replies << '\n';
-  return row.str();
+  return row(m.of_clock, m.to_clock, m.at_ns, m.offset_ns, m.drift, m.uncertainty_ns, m.uncertainty_drift, m.epoch,
+             m.round_trip_ns, m.replies);
 }
 
 std::string frame_shown_csv_names() { return "node,incarnation,clock,stage,frame,due_ns,sim_ns,head_ns,publish_ns\n"; }
 
 std::string csv_row(const std::string& name, const frame_shown_t& m) {
-  std::ostringstream row;
-  row << name << ',' << m.header.incarnation << ',' << m.header.clock << ',' << name_of(kStages, m.stage) << ','
-      << m.frame << ',' << m.due_ns << ',' << m.header.sim_time_ns << ',' << m.head_ns << ',' << m.header.publish_time_ns
-      << '\n';
-  return row.str();
+  return row(name, m.header.incarnation, m.header.clock, name_of(kStages, m.stage), m.frame, m.due_ns, m.header.sim_time_ns,
+             m.head_ns, m.header.publish_time_ns);
 }
 
 }  // namespace tactus::sync

@@ -5,13 +5,10 @@
 #include <string>
 #include <tactus/clock_map_t.hpp>
 #include <tactus/contact_event_t.hpp>
-#include <tactus/contact_events_t.hpp>
 #include <tactus/frame_shown_t.hpp>
 #include <tactus/media_clock_t.hpp>
 #include <tactus/presentation_t.hpp>
-#include <tactus/presented_t.hpp>
 #include <tactus/sim_clock_t.hpp>
-#include <vector>
 
 namespace tactus::sync {
 

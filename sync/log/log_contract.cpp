@@ -6,7 +6,6 @@
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
-#include <utility>
 
 #include "lcmtypes/fields.h"
 #include "sync/log/log_header.h"

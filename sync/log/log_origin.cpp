@@ -1,7 +1,6 @@
 #include "sync/log/log_origin.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/fields.h"
@@ -13,12 +12,6 @@ namespace tactus::sync {
 namespace {
 
 constexpr std::int64_t kMaxStamp_ns = 4'000'000'000'000'000'000;  // the difference of two stamps still fits the type
-
-std::int64_t fingerprint_of(std::span<const std::uint8_t> data) {
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < 8 && i < data.size(); ++i) value = value << 8 | data[i];
-  return static_cast<std::int64_t>(value);
-}
 
 }  // namespace
 
@@ -42,7 +35,7 @@ void LogClockDetector::observe(const LogEvent& event) {
   }
   const auto header = peek_header(event.data.data(), event.data.size());
   // Bytes of another system may read as a header, but do not begin with a fingerprint of this system.
-  if (message_type(fingerprint_of(event.data)) == nullptr) return;
+  if (type_of(event.data) == nullptr) return;
   // Not published at that time: a replay of another log, recorded during a run, and the scene at the head.
   if (!header || event.channel == channels::kSceneManifest || event.channel == channels::kAssetChunk) return;
   auto it = pairs_.find({header->run_id, header->clock});

@@ -71,7 +71,6 @@ void LogParts::prune(std::int64_t present_bytes) {
     std::error_code ignored;  // another process has removed it already
     std::filesystem::remove(parts_.front().path, ignored);
     parts_.pop_front();
-    ++removed_;
   }
 }
 

@@ -37,7 +37,6 @@ class LogParts {
   void prune(std::int64_t present_bytes);
   // Bytes of the kept parts, without the current one.
   std::int64_t bytes_before() const;
-  std::int64_t removed() const { return removed_; }
 
  private:
   struct Part {
@@ -48,7 +47,6 @@ class LogParts {
   LogLimits limits_;
   int next_ = 0;  // 0: not determined yet
   std::deque<Part> parts_;
-  std::int64_t removed_ = 0;
 };
 
 }  // namespace tactus::sync

@@ -35,15 +35,13 @@ void LogTimeRanges::remove_small_ranges() {
   std::nth_element(counts.begin(), middle, counts.end());
   const std::int64_t max_removed_events = std::min(*middle, kMinRunEvents - 1);
   std::size_t to_remove = ranges_.size() / 2;
-  for (auto it = ranges_.begin(); it != ranges_.end() && to_remove > 0;) {
-    if (it->second.events > max_removed_events || it->second.events == max_events_) {
-      ++it;
-      continue;
-    }
-    removed_ += it->second.events;
-    it = ranges_.erase(it);
+  std::erase_if(ranges_, [&](const auto& entry) {
+    const std::int64_t events = entry.second.events;
+    if (to_remove == 0 || events > max_removed_events || events == max_events_) return false;
+    removed_ += events;
     --to_remove;
-  }
+    return true;
+  });
 }
 
 bool LogTimeRanges::in_run(std::int64_t t) const {

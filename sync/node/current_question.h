@@ -2,6 +2,7 @@
 // (lcmtypes/types/control/question_t.lcm). Pure.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <tactus/question_t.hpp>
@@ -42,7 +43,7 @@ class CurrentQuestion {
 // Identifies a question across leaders: the ids start again when a leader is restarted.
 struct QuestionKey {
   std::int64_t incarnation = 0, id = 0;
-  bool operator==(const QuestionKey&) const = default;
+  auto operator<=>(const QuestionKey&) const = default;
 };
 inline QuestionKey key_of(const question_t& m) { return {m.header.incarnation, m.id}; }
 

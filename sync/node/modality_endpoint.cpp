@@ -32,8 +32,7 @@ std::vector<std::string> undeclared_operators(const Profile& profile, const Node
   for (const Rule& rule : profile.rules) {
     if (rule.modality != d.modality) continue;
     for (const std::string& name : rule.output.operators())
-      if (std::none_of(d.output_operators.begin(), d.output_operators.end(),
-                       [&](const OutputOperator& o) { return o.name == name; }))
+      if (std::ranges::none_of(d.output_operators, [&](const OutputOperator& o) { return o.name == name; }))
         missing.push_back(name);
   }
   return missing;

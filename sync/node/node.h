@@ -14,7 +14,6 @@
 #include <string>
 #include <tactus/node_health_t.hpp>
 #include <tactus/tag_request_t.hpp>
-#include <vector>
 
 #include "sync/bus/bus.h"
 #include "sync/node/node_descriptor.h"

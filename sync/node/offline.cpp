@@ -37,8 +37,7 @@ OfflineInput::OfflineInput(const OfflineOptions& options, std::vector<Written> w
   parts.push_back(options.log);
   for (const Written& w : written)
     for (const std::string& path : {w.path, w.path + ".part"})
-      if (std::any_of(parts.begin(), parts.end(),
-                      [&](const std::string& part) { return std::filesystem::equivalent(part, path, none); }))
+      if (std::ranges::any_of(parts, [&](const std::string& part) { return std::filesystem::equivalent(part, path, none); }))
         throw std::runtime_error(path + " is the log itself, which would be lost; choose another " + w.option);
   if (options.presented.empty()) return;
   presented_ = std::make_unique<AtomicFile>(options.presented, "--presented");

@@ -7,9 +7,7 @@ namespace tactus::sync {
 
 void SettingChanges::process(const setting_change_t& change, const Apply& apply) {
   if (change.node != node_ || change.header.run_id != run_id_) return;
-  const auto known =
-      std::find_if(known_.begin(), known_.end(), [&](const setting_reply_t& r) { return r.id == change.id; });
-  if (known != known_.end()) {
+  if (const setting_reply_t* known = known_.find(change.id)) {
     replies_.push_back(*known);
     return;
   }
@@ -24,8 +22,7 @@ void SettingChanges::process(const setting_change_t& change, const Apply& apply)
     reply.text = node_ + ": " + e.what();
   }
   reply.text.resize(std::min<std::size_t>(reply.text.size(), 512));
-  known_.push_back(reply);
-  if (known_.size() > kRemembered) known_.pop_front();
+  known_.try_emplace(reply.id, reply);
   replies_.push_back(reply);
 }
 

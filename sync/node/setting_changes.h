@@ -3,13 +3,14 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <string>
 #include <tactus/setting_change_t.hpp>
 #include <tactus/setting_reply_t.hpp>
 #include <utility>
 #include <vector>
+
+#include "sync/bus/recent_map.h"
 
 namespace tactus::sync {
 
@@ -31,7 +32,7 @@ class SettingChanges {
  private:
   std::string node_;
   std::int64_t run_id_;
-  std::deque<setting_reply_t> known_;
+  RecentMap<std::int64_t, setting_reply_t> known_{kRemembered};  // by id
   std::vector<setting_reply_t> replies_;
 };
 

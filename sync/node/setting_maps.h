@@ -2,7 +2,6 @@
 // speed that raises the volume. Pure.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <tactus/map_def_t.hpp>
 #include <tactus/tag_list_t.hpp>

@@ -41,8 +41,7 @@ bool TagRequests::expire(HostTime now) {
 
 bool TagRequests::is_requested(std::string_view name) const {
   return std::any_of(requests_.begin(), requests_.end(), [&](const Request& r) {
-    return std::any_of(r.patterns.begin(), r.patterns.end(),
-                       [&](const std::string& pattern) { return matches(pattern, name); });
+    return std::ranges::any_of(r.patterns, [&](const std::string& pattern) { return matches(pattern, name); });
   });
 }
 

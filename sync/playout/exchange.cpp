@@ -52,8 +52,7 @@ void add_page(playout_t& whole, const playout_t& page) {
   if (page.generation > whole.generation) whole.entries.clear();
   std::vector<playout_entry_t> entries = std::move(whole.entries);
   for (const playout_entry_t& e : page.entries) {
-    const auto same = std::find_if(entries.begin(), entries.end(),
-                                   [&](const playout_entry_t& known) { return known.modality == e.modality; });
+    const auto same = std::ranges::find_if(entries, [&](const playout_entry_t& known) { return known.modality == e.modality; });
     if (same == entries.end())
       entries.push_back(e);
     else

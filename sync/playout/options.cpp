@@ -1,7 +1,6 @@
 #include "sync/playout/options.h"
 
 #include <CLI/CLI.hpp>
-#include <stdexcept>
 
 namespace tactus::sync {
 

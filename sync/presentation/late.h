@@ -10,7 +10,6 @@
 // Every outcome is reported. Pure.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <tactus/presentation_t.hpp>
 

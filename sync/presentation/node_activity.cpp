@@ -1,5 +1,7 @@
 #include "sync/presentation/node_activity.h"
 
+#include <tactus/node_health_t.hpp>
+
 #include <algorithm>
 
 namespace tactus::sync {

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <deque>
-#include <tactus/node_health_t.hpp>
 
 #include "sync/time/time.h"
 

@@ -9,7 +9,6 @@
 #include <tactus/playout_entry_t.hpp>
 #include <tactus/presentation_t.hpp>
 
-#include "lcmtypes/channels.h"
 #include "sync/degradation/known_modalities.h"
 
 namespace tactus::sync {
@@ -73,10 +72,7 @@ void PresentationMatcher::observe(const contact_events_t& m, HostTime arrival) {
   const bool any_run = own_.run_id == 0;
   const bool ours = any_run || m.header.run_id == own_.run_id;
   if (ours && has_room(simulations_, m.header.source, kMaxModalities)) simulations_.insert(m.header.source);
-  if (!ours && simulation_last_seen_ && arrival - *simulation_last_seen_ < kSettleAfter) {
-    ++foreign_;
-    return;
-  }
+  if (!ours && simulation_last_seen_ && arrival - *simulation_last_seen_ < kSettleAfter) return;
   TimeMap map{sim_time(m.clock.sim_ns), host_time(m.clock.host_ns), m.clock.rate};
   if (!any_run) map.host = clock_of(m.header, arrival).to_host(m.clock.host_ns, arrival);
   for (const contact_event_t& e : m.events) {
@@ -96,10 +92,7 @@ void PresentationMatcher::observe(const contact_events_t& m, HostTime arrival) {
 
 void PresentationMatcher::observe(const node_health_t& m, HostTime arrival) {
   if (own_.run_id == 0) own_ = OwnClock(m.header.run_id, m.header.clock, own_.maps);
-  if (m.header.run_id != own_.run_id) {
-    ++foreign_;
-    return;
-  }
+  if (m.header.run_id != own_.run_id) return;
   if (!has_room(renderers_, m.header.source, kMaxModalities) ||
       (!m.modality.empty() && !has_room(tallies_, m.modality, kMaxModalities))) {
     ++overflow_;
@@ -124,10 +117,7 @@ void PresentationMatcher::observe(const node_health_t& m, HostTime arrival) {
 }
 
 void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
-  if (m.header.run_id != own_.run_id) {
-    ++foreign_;
-    return;
-  }
+  if (m.header.run_id != own_.run_id) return;
   const SenderClock& clock = clock_of(m.header, arrival);
   for (const presentation_t& p : m.reports) {
     Event* event = find_or_add(p.event_id, arrival);
@@ -140,9 +130,7 @@ void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
       if (at.uncertainty >= Nanoseconds(0)) {
         report.presented_ns = to_ns(at.time);
         report.uncertainty = Nanoseconds(std::min(p.uncertainty_ns, kMaxUncertainty.count())) + at.uncertainty;
-      } else {
-        ++unmapped_reports_;
-      }
+      }  // else its clock has no map: it counts as presented, but its uncertainty is unknown, so it has no asynchrony
     }
     if (p.ready_ns >= 0 && event->known && needs_.size() < kMaxNeeds) {
       const SenderClock::Reading ready = clock.read(p.ready_ns, arrival);
@@ -150,7 +138,6 @@ void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
         needs_.push_back({p.event_id, m.modality, ready.time - event->time});
     }
     event->reports.push_back(std::move(report));
-    if (event->settled) ++late_reports_;
   }
 }
 

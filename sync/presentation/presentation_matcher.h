@@ -26,7 +26,6 @@
 #include <tactus/node_health_t.hpp>
 #include <tactus/playout_t.hpp>
 #include <tactus/presented_t.hpp>
-#include <tactus/sync_report_t.hpp>
 #include <utility>
 #include <vector>
 
@@ -79,7 +78,7 @@ class PresentationMatcher {
   // Each keeps a histogram of 160 kB.
   static constexpr std::size_t kMaxPairs = 256;
 
-  // All times are converted to this clock. Health and reports of another run are ignored and counted. Run 0: the run and
+  // All times are converted to this clock. Health and reports of another run are ignored. Run 0: the run and
   // clock of the first health message.
   explicit PresentationMatcher(OwnClock own) : own_(own) {}
 
@@ -107,12 +106,6 @@ class PresentationMatcher {
   // policy, is separate from the vibration that answers a hit when it is due: "haptic_push" in addition to "haptic".
   const std::map<std::pair<std::string, std::string>, SoaHistogram>& pairs() const { return pairs_; }
 
-  // Reports with times on a clock without a map: they count as presented, but not for the asynchrony, because their
-  // uncertainty is unknown.
-  std::int64_t unmapped_reports() const { return unmapped_reports_; }
-  // Reports of events that were settled already, and messages of other runs.
-  std::int64_t late_reports() const { return late_reports_; }
-  std::int64_t foreign() const { return foreign_; }
   // Events, nodes, modalities, pairs and simulations of other runs beyond the limits.
   std::int64_t overflow() const { return overflow_; }
 
@@ -176,7 +169,7 @@ class PresentationMatcher {
   std::map<std::string, OutcomeCounts> tallies_;
   std::map<std::pair<std::string, std::string>, SoaHistogram> pairs_;
   std::int64_t begins_ = 0, hits_ = 0, ends_ = 0;
-  std::int64_t late_reports_ = 0, foreign_ = 0, overflow_ = 0, unmapped_reports_ = 0;
+  std::int64_t overflow_ = 0;
 };
 
 }  // namespace tactus::sync

@@ -9,18 +9,6 @@ namespace {
 constexpr std::size_t kReportsPerMessage = 30;  // of 42 bytes each
 }
 
-void PresentationReporter::report(std::int64_t event_id, std::int8_t part, HostTime scheduled, HostTime presented,
-                                  Nanoseconds uncertainty, std::int8_t outcome) {
-  presentation_t r{};
-  r.event_id = event_id;
-  r.part = part;
-  r.scheduled_ns = to_ns(scheduled);
-  r.presented_ns = to_ns(presented);
-  r.uncertainty_ns = uncertainty.count();
-  r.outcome = outcome;
-  report(r);
-}
-
 void PresentationReporter::report(const presentation_t& r) {
   if (pending_.size() >= kMaxPending) {
     pending_.pop_front();

@@ -20,9 +20,6 @@ class PresentationReporter {
 
   explicit PresentationReporter(std::string modality) : modality_(std::move(modality)) {}
 
-  // scheduled, presented: on this host's clock; presented: -1 when the event was not presented.
-  void report(std::int64_t event_id, std::int8_t part, HostTime scheduled, HostTime presented, Nanoseconds uncertainty,
-              std::int8_t outcome);
   void report(const presentation_t& report);
   // Call once a tick: publishes new reports and due repetitions, in pages.
   void publish(Bus& bus, HostTime now);

@@ -3,25 +3,11 @@
 #include <algorithm>
 #include <sstream>
 
+#include "sync/text/csv.h"
 #include "sync/thresholds.gen.h"
 
 namespace tactus::sync {
 namespace {
-
-// One line of the file: fields with commas are quoted.
-std::vector<std::string> fields_of(const std::string& line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      fields.emplace_back();
-    else
-      fields.back() += c;
-  }
-  return fields;
-}
 
 std::vector<Threshold> read() {
   std::vector<Threshold> rows;
@@ -29,7 +15,7 @@ std::vector<Threshold> read() {
   std::string line;
   std::getline(lines, line);  // names of the columns
   while (std::getline(lines, line)) {
-    const auto f = fields_of(line);
+    const auto f = csv_cells(line);
     if (f.size() == 6) rows.push_back({f[0], f[1], from_seconds(std::stod(f[2]) * 1e-3), f[3], f[4], f[5]});
   }
   return rows;

@@ -1,7 +1,6 @@
 // Random delays with a given distribution and correlation. Pure.
 #pragma once
 
-#include <cstdint>
 #include <utility>
 #include <vector>
 

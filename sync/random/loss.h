@@ -1,8 +1,6 @@
 // Draws the lost items of a sequence: independently, or in bursts. Pure.
 #pragma once
 
-#include <cstdint>
-
 namespace tactus::sync {
 
 // The loss of a profile: "5%" or "5% burst=3".

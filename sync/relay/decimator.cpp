@@ -32,13 +32,12 @@ class Decimator::Compared : public Comparison {
  public:
   explicit Compared(const Rule& rule) : stack_({"", 1, {rule}}, rule.modality, SimTime{}) {}
 
-  bool push(std::span<const std::uint8_t> message, HostTime arrival,
+  void push(std::span<const std::uint8_t> message, HostTime arrival,
             std::vector<std::vector<std::uint8_t>>& out) override {
     auto m = decode<Message>(message.data(), message.size());
-    if (!m) return false;
+    if (!m) return;
     stream_.push(std::move(*m), arrival, stack_, nullptr);
     while (const auto next = stream_.pop(arrival)) out.push_back(encode(next->first));
-    return true;
   }
 
  private:
@@ -80,18 +79,12 @@ void Decimator::push(const header_t& h, std::span<const std::uint8_t> message, H
     sender.incarnation = h.incarnation;
     sender.comparison = comparison();
   }
-  if (!due(sender, h)) {
-    ++left_out_;
-    return;
-  }
+  if (!due(sender, h)) return;
   passing_.clear();
   if (!sender.comparison)
     passing_.emplace_back(message.begin(), message.end());
-  else if (!sender.comparison->push(message, arrival, passing_)) {
-    ++bad_;
-    return;
-  }
-  left_out_ += 1 - static_cast<std::int64_t>(passing_.size());  // pages that waited pass with the last one
+  else
+    sender.comparison->push(message, arrival, passing_);
   for (auto& bytes : passing_) {
     number(bytes, sender.next_seq++);
     out(bytes);

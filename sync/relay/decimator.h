@@ -30,16 +30,14 @@ class Decimator {
 
   // Calls out(message) for the messages that pass now: this one or none, or with the last page of a snapshot all its pages.
   void push(const header_t& header, std::span<const std::uint8_t> message, HostTime arrival, const Out& out);
-  std::int64_t left_out() const { return left_out_; }
-  // Number of invalid messages.
-  std::int64_t bad() const { return bad_; }
 
  private:
   // The messages of one sender.
   class Comparison {
    public:
     virtual ~Comparison() = default;
-    virtual bool push(std::span<const std::uint8_t> message, HostTime arrival,
+    // Appends the messages that pass now; an invalid message is ignored.
+    virtual void push(std::span<const std::uint8_t> message, HostTime arrival,
                       std::vector<std::vector<std::uint8_t>>& out) = 0;
   };
   template <class Message>
@@ -56,7 +54,6 @@ class Decimator {
   PassRule rule_;
   std::map<std::int32_t, Sender> senders_;  // by header.source
   std::vector<std::vector<std::uint8_t>> passing_;
-  std::int64_t left_out_ = 0, bad_ = 0;
 };
 
 }  // namespace tactus::sync

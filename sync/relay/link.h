@@ -55,12 +55,8 @@ class LineSocket {
       if (arrived->site < 0) continue;
       if (const auto m = parse_line_datagram(arrived->bytes))
         on_message(static_cast<std::size_t>(arrived->site), *m);
-      else
-        ++bad_;
     }
   }
-  // Malformed datagrams.
-  std::int64_t bad() const { return bad_; }
 
  private:
   static constexpr int kMax = 4096;
@@ -72,7 +68,6 @@ class LineSocket {
 
   int socket_;
   std::array<std::uint8_t, 2048> buffer_;
-  std::int64_t bad_ = 0;
 };
 
 }  // namespace tactus::sync

@@ -3,7 +3,6 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 
 #include "lcmtypes/channels.h"

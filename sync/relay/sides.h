@@ -23,8 +23,6 @@ class SenderSides {
 
   // True when this sender belongs to that side: the side where it was first received.
   bool belongs_to(const header_t& h, int side, HostTime now);
-  // Messages that arrived from a side other than that of their sender.
-  std::int64_t echoes() const { return echoes_; }
 
  private:
   struct Sender {
@@ -32,7 +30,6 @@ class SenderSides {
     HostTime last_seen;
   };
   std::map<std::pair<std::int32_t, std::int64_t>, Sender> senders_;  // by source and incarnation
-  std::int64_t echoes_ = 0;
 };
 
 }  // namespace tactus::sync

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <tactus/contact_event_t.hpp>
 #include <tactus/contact_frame_t.hpp>
 #include <tactus/contact_t.hpp>
 

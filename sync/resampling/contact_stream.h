@@ -13,8 +13,6 @@
 #include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
 #include <tactus/contact_t.hpp>
-#include <tactus/header_t.hpp>
-#include <tactus/sim_clock_t.hpp>
 #include <vector>
 
 #include "sync/bus/page_assembler.h"
@@ -87,10 +85,8 @@ class ContactStream {
 
   // Number of new incarnations or epochs of the simulation, each of which ended all contacts.
   std::int64_t restarts() const { return std::max<std::int64_t>(0, events_.epoch() - 1); }
-  std::int64_t duplicates() const { return events_.duplicates(); }
   // Rejected events and pages: more than 1 s ahead of their simulation's own time, or with too many pages.
   std::int64_t refused() const { return refused_ + events_.refused(); }
-  std::int64_t overflow() const { return events_.overflow(); }
 
  private:
   static constexpr std::size_t kGroups = 3;  // by contact_frame_t.group

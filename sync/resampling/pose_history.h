@@ -3,7 +3,6 @@
 #pragma once
 
 #include <deque>
-#include <optional>
 #include <tactus/tool_state_t.hpp>
 
 #include "sync/resampling/body_history.h"

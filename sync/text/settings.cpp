@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
-#include <utility>
 
 namespace tactus::sync {
 namespace {

@@ -27,7 +27,6 @@ class Phases {
   void begin(bool measured);
   void end();
   // Duration of a phase in the last measured tick, us.
-  double us(Phase phase) const { return last_us_[static_cast<std::size_t>(phase)]; }
   const double* us_pointer(Phase phase) const { return &last_us_[static_cast<std::size_t>(phase)]; }
 
  private:

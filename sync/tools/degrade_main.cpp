@@ -1,7 +1,6 @@
 // degrade: puts a degradation profile in force in a running cluster, or removes it, and prints which nodes have adopted it.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 #include <map>
 #include <set>
@@ -25,11 +24,6 @@ constexpr sync::Nanoseconds kListen{500'000'000};      // health comes every 100
 constexpr sync::Nanoseconds kTimeout{2'000'000'000};  // health comes every 100 ms
 constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
 
-std::int64_t realtime_ns() {
-  return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 std::string joined(const std::set<std::string>& names) {
   std::string text;
   for (const std::string& n : names) text += (text.empty() ? "" : ", ") + sync::printable(n);
@@ -51,7 +45,7 @@ int main(int argc, char** argv) try {
   if (file.empty()) throw std::runtime_error("name a profile, or off; see degrade --help");
 
   auto profile = file == "off" ? sync::read_profile("<profile name=\"off\"/>", file) : sync::read_profile_file(file);
-  profile.generation = realtime_ns();
+  profile.generation = sync::realtime_ns();
 
   sync::Bus bus(sync::Identity::fresh("degrade", run_id), bus_options);
   auto& frames = bus.queue<contact_frame_t>(channels::kContacts, 4096);

@@ -1,9 +1,7 @@
 // playout: requests another playout policy from the running cluster, and prints the presentation delay of each modality under
 // it.
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdio>
-#include <iostream>
 #include <optional>
 #include <set>
 #include <tactus/node_health_t.hpp>
@@ -28,11 +26,6 @@ constexpr sync::Nanoseconds kTimeout{3'000'000'000};  // PLAYOUT comes every 100
 constexpr sync::Nanoseconds kListen{500'000'000};     // health comes every 100 ms
 constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
 constexpr sync::Nanoseconds kPages{300'000'000};       // a plan of many modalities comes in several messages, three times within this
-
-std::int64_t realtime_ns() {
-  return std::chrono::duration_cast<sync::Nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 void print(const playout_t& m) {
   std::printf("policy %s, aligner %s\n", name_of(static_cast<sync::Policy>(m.policy)),
@@ -79,7 +72,7 @@ int main(int argc, char** argv) try {
   for (const auto& [name, asynchrony] : plan.soa)
     if (!modalities.contains(name))
       throw std::runtime_error("no sense \"" + sync::printable(name) + "\" runs in this cluster; no change was made");
-  playout_request_t request = sync::request_for(plan, realtime_ns());
+  playout_request_t request = sync::request_for(plan, sync::realtime_ns());
   std::optional<playout_t> answer;
   sync::HostTime until = sync::host_now() + kTimeout;
   for (sync::HostTime next = sync::host_now(); sync::host_now() < until;) {

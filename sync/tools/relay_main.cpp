@@ -7,7 +7,6 @@
 // affect the others. Without a relay, this site continues alone; the last state of other sites is held and reported as old.
 #include <CLI/CLI.hpp>
 #include <fstream>
-#include <iostream>
 #include <sstream>
 #include <tactus/node_health_t.hpp>
 

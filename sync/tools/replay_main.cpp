@@ -5,12 +5,10 @@
 //
 // It needs no other process and waits for none. Damaged parts of the log are skipped and counted.
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>

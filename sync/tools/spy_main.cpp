@@ -20,7 +20,6 @@
 #include <tactus/tag_values_t.hpp>
 
 #include "sync/bus/bus_arguments.h"
-#include "sync/bus/decode.h"
 #include "sync/bus/bus.h"
 #include "sync/node/node_options.h"
 #include "sync/tools/recorder/recorder_tap.h"

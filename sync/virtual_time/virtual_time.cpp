@@ -133,14 +133,6 @@ bool VirtualTime::request_stop(std::string_view name) {
   return program != nullptr;
 }
 
-bool VirtualTime::kill(std::string_view name) {
-  Program* program = find(name);
-  if (!program || program == running_) return false;
-  unwind(*program);
-  std::erase_if(programs_, [&](const auto& p) { return p.get() == program; });
-  return true;
-}
-
 int VirtualTime::result(std::string_view name) const {
   const Program* program = find(name);
   return program && program->over ? program->result : -1;

@@ -52,10 +52,8 @@ class VirtualTime {
   // Runs all programs for this time.
   void run_for(Nanoseconds span) { run_until(now_ + span); }
   void run_until(HostTime until);
-  // Asks that program to end, as SIGTERM does; or ends it immediately, as SIGKILL does. False: there is none, or it is the
-  // running one.
+  // Asks that program to end, as SIGTERM does. False: there is none.
   bool request_stop(std::string_view name);
-  bool kill(std::string_view name);
   // Asks all programs to end and runs them until they have, at most for this time. Programs still running at the timeout are
   // unwound.
   void end(Nanoseconds timeout = std::chrono::seconds(5));

@@ -39,10 +39,7 @@ void VirtualWire::send(const VirtualEnd& from, std::size_t side, std::string_vie
     VirtualEnd::Path& path = end->paths_.try_emplace(&from, plan_).first->second;
     const std::uint64_t number = path.sent++;
     const bool own = end == &from;
-    if (!own && path.loss.lose(uniform(end->seed_, 2 * number))) {
-      ++lost_;
-      continue;
-    }
+    if (!own && path.loss.lose(uniform(end->seed_, 2 * number))) continue;
     const Nanoseconds delay = own ? Nanoseconds(0) : plan_.latency + path.jitter.next(uniform(end->seed_, 2 * number + 1));
     path.newest = std::max({path.newest, now, now + delay});
     if (!bytes) bytes = std::make_shared<const std::vector<std::uint8_t>>(data.begin(), data.end());

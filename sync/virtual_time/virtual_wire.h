@@ -83,7 +83,6 @@ class VirtualWire {
   void remove_listener(int number) { listeners_.erase(number); }
 
   std::int64_t sent() const { return sent_; }
-  std::int64_t lost() const { return lost_; }
 
  private:
   friend class VirtualEnd;
@@ -93,7 +92,7 @@ class VirtualWire {
   std::vector<VirtualEnd*> ends_;
   std::map<int, Listener> listeners_;
   int listener_count_ = 0;
-  std::int64_t sent_ = 0, lost_ = 0;
+  std::int64_t sent_ = 0;
 };
 
 }  // namespace tactus::sync

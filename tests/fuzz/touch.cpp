@@ -14,6 +14,7 @@
 #include "sync/bus/decode.h"
 #include "sync/log/log_reader.h"
 #include "sync/resampling/event_inbox.h"
+#include "tests/haptic_node/support/node_config.h"
 
 using namespace tactus;
 using namespace tactus::haptic;

@@ -15,6 +15,7 @@
 #include "sync/log/export_csv.h"
 #include "sync/log/log_reader.h"
 #include "tests/audio_node/support/recorded_run.h"
+#include "tests/haptic_node/support/node_config.h"
 #include "tests/haptic_node/support/world.h"
 #include "tests/rendered_log.h"
 

@@ -114,7 +114,7 @@ TEST_CASE("The health of nodes is sent four times a second, and silent nodes are
   CHECK(f.feed.take_changes(at(0.4)).contains("health"));
   CHECK(f.feed.state(at(1.4))["health"][0]["lost"] == false);
   CHECK(f.feed.state(at(1.6))["health"][0]["lost"] == true);
-  CHECK(f.feed.modalities() == std::set<std::string>{"audio"});
+  CHECK(f.feed.state(at(1.6))["health"][0]["modality"] == "audio");
   f.feed.clear();
   CHECK(f.feed.state(at(2))["health"].empty());
 }
@@ -130,7 +130,7 @@ TEST_CASE("Events of another run are ignored, and a log shows all runs") {
   CHECK(log.feed.state(at(0))["health"].size() == 1);
 }
 
-TEST_CASE("A flood is bounded and its dropped events are counted, and malformed messages are counted and ignored") {
+TEST_CASE("A flood is bounded and its dropped events are counted, and malformed messages are ignored") {
   FeedInput f;
   for (int i = 0; i < 10'000; ++i) {
     f.on_message(channels::kContactEvents, hit(i, i));
@@ -152,6 +152,5 @@ TEST_CASE("A flood is bounded and its dropped events are counted, and malformed 
     bytes.resize(random() % bytes.size());
     f.feed.on_message(channels[(i + i / 3) % 3], bytes, at(1));
   }
-  CHECK(f.feed.malformed() == 3000);
   CHECK_NOTHROW(f.feed.take_changes(at(2)).dump());
 }

@@ -22,7 +22,9 @@ const std::string kRich = R"(<profile name="late sound" seed="7">
 
 std::map<std::string, Sliders> sliders_of(const std::string& profile) {
   std::map<std::string, Sliders> out;
-  for (const auto& [sense, s] : slider_states(profile)) out[sense] = s.sliders;
+  const nlohmann::json shown = degradation_json(profile)["senses"];
+  for (const auto& [sense, s] : shown.items())
+    out[sense] = {s["delay_ms"].get<double>(), s["rate_Hz"].get<double>(), s["loss"].get<double>()};
   return out;
 }
 
@@ -33,18 +35,19 @@ bool same_positions(const Sliders& a, const Sliders& b) {
 }  // namespace
 
 TEST_CASE("Sliders show the unconditional operators of a profile, and that it has others") {
-  const auto shown = slider_states(kRich);
-  CHECK(same_positions(shown.at("audio").sliders, {40, 0, 0.05}));
-  CHECK(same_positions(shown.at("haptic").sliders, {0, 50, 0}));
-  CHECK(same_positions(shown.at("visual").sliders, {0, 0, 0}));
-  CHECK(shown.at("audio").more);
-  CHECK(shown.at("visual").more);
-  CHECK_FALSE(shown.at("haptic").more);
-  CHECK(slider_states("").empty());
+  const auto at = sliders_of(kRich);
+  const nlohmann::json shown = degradation_json(kRich)["senses"];
+  CHECK(same_positions(at.at("audio"), {40, 0, 0.05}));
+  CHECK(same_positions(at.at("haptic"), {0, 50, 0}));
+  CHECK(same_positions(at.at("visual"), {0, 0, 0}));
+  CHECK(shown["audio"]["more"] == true);
+  CHECK(shown["visual"]["more"] == true);
+  CHECK(shown["haptic"]["more"] == false);
+  CHECK(degradation_json("")["senses"].empty());
   CHECK(degradation_json(kRich)["name"] == "late sound");
   CHECK(degradation_json(kRich)["senses"]["audio"]["delay_ms"] == 40);
   CHECK(degradation_json("")["name"] == "");
-  CHECK_THROWS_AS(slider_states("<profile"), std::invalid_argument);
+  CHECK_THROWS_AS(degradation_json("<profile"), std::invalid_argument);
 }
 
 TEST_CASE("A slider changes its own operator, and the rest of the profile in force stays") {

@@ -11,16 +11,15 @@
 // run_id and clock as in the THERMAL_STATE that you answer if you run on its machine, source and incarnation of
 // your own, seq counting up from 0, publish_time_ns of CLOCK_MONOTONIC.
 #include <CLI/CLI.hpp>
-#include <iostream>
 #include <tactus/node_health_t.hpp>
-#include <tactus/scene_t.hpp>
 #include <tactus/thermal_device_t.hpp>
 #include <tactus/thermal_state_t.hpp>
 
 #include "sync/node/node.h"
-#include "thermal_node/devices/node_config.h"
+#include "sync/node/renderer.h"
 #include "thermal_node/devices/external.h"
 #include "thermal_node/devices/simulated_peltier.h"
+#include "thermal_node/settings.gen.h"
 
 using namespace tactus;
 
@@ -36,9 +35,7 @@ int main(int argc, char** argv) try {
   int tool = 0;
   app.add_option("--tool", tool, "index of the tool that carries the display")->check(CLI::Range(0, 1000));
   sync::parse_or_exit(app, descriptor.name, argc, argv);
-  const thermal::NodeConfig config = thermal::resolve_config(scene_t{}, "", options.set);
-  if (!config.rejected.empty()) throw std::runtime_error(config.rejected.front());
-  const thermal::Settings& settings = config.settings;
+  const thermal::Settings settings = sync::settings_of(thermal::setting_fields(), "thermal_node", options.set);
 
   sync::Node node(descriptor, options);
   auto& commands = node.bus().queue<thermal_state_t>(channels::kThermalState, 64);

@@ -1,18 +1,8 @@
 #include "thermal_node/devices/node_config.h"
 
 #include <tactus/tool_def_t.hpp>
-#include <utility>
 
 namespace tactus::thermal {
-
-NodeConfig resolve_config(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set) {
-  Settings settings;
-  std::vector<std::string> rejected =
-      sync::apply_settings(settings, setting_fields(), "thermal_node", scene.settings, set);
-  NodeConfig config = resolve_config(scene, settings, tool_name);
-  config.rejected = std::move(rejected);
-  return config;
-}
 
 NodeConfig resolve_config(const scene_t& scene, const Settings& settings, const std::string& tool_name) {
   NodeConfig config;

@@ -3,7 +3,6 @@
 
 #include <string>
 #include <tactus/scene_t.hpp>
-#include <vector>
 
 #include "thermal_node/settings.gen.h"
 
@@ -14,12 +13,9 @@ struct NodeConfig {
   int tool = -1;  // index in scene.tools; -1: none
   int tool_body = -1;
   std::string problem;               // reason why there is no tool, one sentence; otherwise empty
-  std::vector<std::string> rejected;  // invalid settings, one sentence each
 };
 
 // tool_name: from the command line; empty: the setting, otherwise the first tool of the scene.
 NodeConfig resolve_config(const scene_t& scene, const Settings& settings, const std::string& tool_name);
-// The same with the settings of the scene and of the command line. set: name=value.
-NodeConfig resolve_config(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set);
 
 }  // namespace tactus::thermal

@@ -1,18 +1,8 @@
 #include "haptic_node/devices/selection/node_config.h"
 
 #include <sstream>
-#include <utility>
 
 namespace tactus::haptic {
-
-NodeConfig resolve_config(const scene_t& scene, const std::string& tool_name, const std::vector<std::string>& set) {
-  Settings settings;
-  std::vector<std::string> rejected =
-      sync::apply_settings(settings, setting_fields(), "haptic_node", scene.settings, set);
-  NodeConfig c = resolve_config(scene, settings, tool_name);
-  c.rejected = std::move(rejected);
-  return c;
-}
 
 NodeConfig resolve_config(const scene_t& scene, const Settings& settings, const std::string& tool_name) {
   NodeConfig c;

@@ -2,7 +2,6 @@
 // "knot_m": [x, y, z]}, ...] (knot_m only with eight).
 #pragma once
 
-#include <iosfwd>
 #include <string>
 
 #include "haptic_node/devices/spidar/string_frame.h"

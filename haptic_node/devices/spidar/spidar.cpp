@@ -1,7 +1,6 @@
 #include "haptic_node/devices/spidar/spidar.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "haptic_node/contact/rotation_math.h"
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "haptic_node/devices/device.h"
 #include "haptic_node/devices/spidar/string_motors.h"
@@ -33,7 +32,6 @@ class Spidar : public Device {
   // With four strings the torque is ignored. Realtime-safe: yes, as read().
   void write(const Wrench& wanted) override;
 
-  double residual_m() const { return solved_.residual_m; }
   // Tensions of the last written force, its error and the reason.
   const Tensions& tensions() const { return tensions_; }
   // 1 inside the workspace, 0 beyond its edge.

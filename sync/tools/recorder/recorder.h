@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <tactus/asset_ref_t.hpp>
 #include <tactus/log_info_t.hpp>

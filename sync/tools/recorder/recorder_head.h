@@ -1,7 +1,6 @@
 // The head of a log: its run, and the scene with all its assets, so that a log is complete in itself. Pure.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <tactus/asset_ref_t.hpp>
 #include <tactus/log_info_t.hpp>

@@ -5,7 +5,6 @@
 #include <functional>
 #include <optional>
 #include <span>
-#include <string>
 
 #include "sync/log/timestamped_events.h"
 #include "sync/log/log_seek.h"

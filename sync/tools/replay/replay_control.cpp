@@ -1,9 +1,8 @@
 #include "sync/tools/replay/replay_control.h"
 
-#include <charconv>
-#include <cmath>
 #include <optional>
 
+#include "sync/text/csv.h"
 #include "sync/text/printable.h"
 
 namespace tactus::sync {
@@ -11,10 +10,7 @@ namespace {
 
 std::optional<double> number(std::string_view word) {
   if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
+  return csv_number(word);
 }
 
 std::string_view next_word(std::string_view& line) {

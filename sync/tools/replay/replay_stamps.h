@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <map>
 #include <span>
-#include <string_view>
 #include <utility>
 
 #include "sync/clocks/clock_maps.h"

@@ -16,7 +16,7 @@
 #include "sync/bus/decode.h"
 #include "sync/log/log_reader.h"
 #include "tests/bench/offline/offline_world.h"
-#include "thermal_node/devices/node_config.h"
+#include "tests/thermal_node/support/node_config.h"
 #include "thermal_node/rendering/renderer.h"
 #include "thermal_node/display/ticks.h"
 #include "visual_node/frame/frame_composer.h"

@@ -12,6 +12,7 @@
 
 #include "sim_node/scene/scene_assets.h"
 #include "sync/bus/decode.h"
+#include "tests/haptic_node/support/node_config.h"
 
 namespace tactus::bench {
 

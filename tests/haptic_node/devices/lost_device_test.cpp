@@ -7,6 +7,7 @@
 #include <tactus/touch_model_t.hpp>
 
 #include "haptic_node/rendering/session.h"
+#include "tests/haptic_node/support/node_config.h"
 #include "tests/haptic_node/support/world.h"
 
 using namespace tactus;

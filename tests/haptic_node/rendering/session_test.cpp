@@ -9,6 +9,7 @@
 #include <tactus/touch_plane_t.hpp>
 
 #include "sync/resampling/event_inbox.h"
+#include "tests/haptic_node/support/node_config.h"
 #include "tests/haptic_node/support/world.h"
 
 using namespace tactus;
@@ -67,7 +68,7 @@ TEST_CASE("Tool and settings are selected by name, and unknown names are reporte
   CHECK(resolve_config(s, "toe", {}).tool == -1);
   CHECK_THAT(resolve_config(s, "toe", {}).problem, Contains("toe"));
   CHECK_THAT(resolve_config(scene_t{}, "", {}).problem, Contains("no tool"));
-  CHECK(resolve_config(s, "", {"force=2"}).rejected.size() == 1);
+  CHECK(rejected_settings(s, {"force=2"}).size() == 1);
   CHECK_THAT(limits_sentence(resolve_config(s, "", {}).settings), Contains("3 N") && Contains("0.49 J"));
 }
 
@@ -90,11 +91,11 @@ TEST_CASE("A scene cannot widen a safety limit, the command line can") {
     s.settings[0].node = "haptic_node";
     s.settings[0].name = name;
     s.settings[0].value = value;
-    const NodeConfig rejected = resolve_config(s, "", {});
-    REQUIRE(rejected.rejected.size() == 1);
-    CHECK_THAT(rejected.rejected[0], Contains(name) && Contains("only tighten") && Contains("--set"));
-    CHECK(limits_sentence(rejected.settings) == limits_sentence(safe));
-    CHECK(resolve_config(scene(), "", {name + "=" + value}).rejected.empty());
+    const auto rejected = rejected_settings(s, {});
+    REQUIRE(rejected.size() == 1);
+    CHECK_THAT(rejected[0], Contains(name) && Contains("only tighten") && Contains("--set"));
+    CHECK(limits_sentence(resolve_config(s, "", {}).settings) == limits_sentence(safe));
+    CHECK(rejected_settings(scene(), {name + "=" + value}).empty());
   }
   CHECK(resolve_config(s, "", {"force_limit=12"}).settings.force_limit_N == 12);
 }

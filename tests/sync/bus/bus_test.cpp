@@ -80,32 +80,17 @@ TEST_CASE("Receivers count a new incarnation as a restart and not as lost messag
 
 TEST_CASE("Each channel has its own sequence numbers and subscribers") {
   sync::Bus bus(me(), memory());
-  auto& a = bus.latest<asset_request_t>("A");
-  auto& ab = bus.latest<asset_request_t>("AB");
+  auto& a = bus.queue<asset_request_t>("A", 4);
+  auto& ab = bus.queue<asset_request_t>("AB", 4);
   asset_request_t m = request(1);
   bus.publish("A", m);
   bus.publish("A", m);
   bus.publish("AB", m);
   bus.drain(kNow);
-  CHECK(a.get()->header.seq == 1);
-  CHECK(ab.get()->header.seq == 0);
+  CHECK(a.pop()->message.header.seq == 0);
+  CHECK(a.pop()->message.header.seq == 1);
+  CHECK(ab.pop()->message.header.seq == 0);
   CHECK(a.count().sequence.messages() == 2);
-}
-
-TEST_CASE("Latest holds the newest message and take() returns it once") {
-  sync::Bus bus(me(), memory());
-  auto& latest = bus.latest<asset_request_t>("A");
-  CHECK(latest.get() == nullptr);
-  CHECK(latest.take() == nullptr);
-  for (int i = 0; i < 3; ++i) {
-    asset_request_t m = request(i);
-    bus.publish("A", m);
-  }
-  bus.drain(kNow);
-  REQUIRE(latest.take() != nullptr);
-  CHECK(latest.get()->first_chunk == 2);
-  CHECK(latest.take() == nullptr);
-  CHECK(latest.get() != nullptr);
 }
 
 TEST_CASE("A full queue drops the oldest message and counts it") {
@@ -134,7 +119,7 @@ TEST_CASE("A burst of 8000 messages arrives without loss") {
 
 TEST_CASE("A bad message is counted and dropped, and the next good one arrives") {
   sync::Bus bus(me(), memory());
-  auto& latest = bus.latest<asset_request_t>("A");
+  auto& queue = bus.queue<asset_request_t>("A", 4);
   asset_request_t wrong = request(0);
   wrong.chunk_count = -5;
   bus.publish("A", wrong);
@@ -142,17 +127,17 @@ TEST_CASE("A bad message is counted and dropped, and the next good one arrives")
   other.medium = "x";
   bus.publish("A", other);
   bus.drain(kNow);
-  CHECK(latest.get() == nullptr);
-  CHECK(latest.count().bad == 2);
+  CHECK_FALSE(queue.pop());
+  CHECK(queue.count().bad == 2);
   asset_request_t good = request(3);
   bus.publish("A", good);
   bus.drain(kNow);
-  CHECK(latest.get()->first_chunk == 3);
+  CHECK(queue.pop()->message.first_chunk == 3);
 }
 
 TEST_CASE("A message above 1400 bytes is rejected before it is sent") {
   sync::Bus bus(me(), memory());
-  auto& latest = bus.latest<world_state_t>("W");
+  auto& queue = bus.queue<world_state_t>("W", 4);
   world_state_t m{};
   m.pages = 1;
   m.bodies.resize(100);
@@ -160,8 +145,8 @@ TEST_CASE("A message above 1400 bytes is rejected before it is sent") {
   CHECK_FALSE(bus.publish("W", m));
   CHECK(bus.refused() == 1);
   bus.drain(kNow);
-  CHECK(latest.get() == nullptr);
-  CHECK(latest.count().bad == 0);
+  CHECK_FALSE(queue.pop());
+  CHECK(queue.count().bad == 0);
 }
 
 TEST_CASE("A subscription to both ports receives each message once") {
@@ -176,12 +161,12 @@ TEST_CASE("A subscription to both ports receives each message once") {
 
 TEST_CASE("wait() returns at once when a message has arrived") {
   sync::Bus bus(me(), memory());
-  auto& latest = bus.latest<asset_request_t>("A");
+  auto& queue = bus.queue<asset_request_t>("A", 4);
   asset_request_t m = request(0);
   bus.publish("A", m);
   bus.wait(std::chrono::seconds(2));
   bus.drain(kNow);
-  CHECK(latest.get() != nullptr);
+  CHECK(queue.pop());
 }
 
 TEST_CASE("The LCM URL contains group, port and time to live") {

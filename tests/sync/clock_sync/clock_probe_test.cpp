@@ -152,9 +152,7 @@ TEST_CASE("A forged reply is rejected and changes nothing") {
   altered([](auto& m) { m.header.clock = 1; });                            // with the receiver's own clock id
   altered([](auto& m) { m.kind = clock_probe_t::REQUEST; });
   for (const clock_probe_t& m : hostile) p.prober.reply(m, back);
-  CHECK(p.prober.refused() == static_cast<std::int64_t>(hostile.size()));
   p.prober.reply(good, host_time(200 * kMs));                              // too late for this request
-  CHECK(p.prober.refused() == static_cast<std::int64_t>(hostile.size()) + 1);
   for (int i = 1; i < ClockProber::kProbes; ++i) p.ask(p.prober.next());
   CHECK(p.prober.finish(p.prober.next()).empty());
 
@@ -171,7 +169,7 @@ TEST_CASE("A forged reply is rejected and changes nothing") {
   }
 }
 
-TEST_CASE("A wave with contradictory replies is dropped and counted") {
+TEST_CASE("A wave with contradictory replies is dropped") {
   Pair p;
   for (int i = 0; i < ClockProber::kProbes; ++i) {
     const HostTime now = p.prober.next();
@@ -180,7 +178,6 @@ TEST_CASE("A wave with contradictory replies is dropped and counted") {
     p.prober.reply(reply, now + Nanoseconds(3000));
   }
   CHECK(p.prober.finish(p.prober.next()).empty());
-  CHECK(p.prober.contradictory() == 1);
 }
 
 TEST_CASE("Every other clock has a valid map until it has been silent for 30 s") {
@@ -200,7 +197,6 @@ TEST_CASE("Every other clock has a valid map until it has been silent for 30 s")
     CHECK(m.replies == 8);
   }
   CHECK(heard(2, 5000, kAhead + 900 * kMs) == OffsetTracker::Outcome::kJumped);
-  CHECK(map_estimator.jumps() == 1);
   CHECK(map_estimator.maps(host_time(32'000 * kMs)).size() == 1);
   CHECK(map_estimator.maps(host_time(36'000 * kMs)).empty());
 }

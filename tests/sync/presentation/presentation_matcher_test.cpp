@@ -47,10 +47,9 @@ TEST_CASE("An event that a running node does not report is lost after one second
   CHECK(f.tally("audio").expected == 1);
   CHECK(f.tally("audio").lost == 1);
 
-  SECTION("a later report changes nothing and is counted") {
+  SECTION("a later report changes nothing") {
     f.presented("audio_node", "audio", 1, 2500);
     CHECK(f.tally("audio").lost == 1);
-    CHECK(f.matcher.late_reports() == 1);
   }
 }
 
@@ -231,7 +230,6 @@ TEST_CASE("Health messages and reports of another run are ignored and counted") 
   f.matcher.observe(report, f.at(1020));
   f.matcher.advance(f.at(2500));
   CHECK(f.tally("audio").lost == 1);
-  CHECK(f.matcher.foreign() == 2);
 }
 
 TEST_CASE("Events of a replayed run are expected at their time of arrival") {
@@ -256,7 +254,6 @@ TEST_CASE("Events of a replayed log are not expected while a simulation of this 
   f.event(2, 900);
   f.health("sim_node", "", 0, 950, 100);
   f.matcher.observe(old, f.at(1001));
-  CHECK(f.matcher.foreign() == 1);
   f.matcher.advance(f.at(2100));
   CHECK(f.tally("audio").expected == 1);  // its own event
   // The node is silent for the next second: the log is the only source.

@@ -10,6 +10,20 @@
 using namespace tactus;
 using namespace tactus::sync;
 
+namespace {
+
+presentation_t presented_event(std::int64_t event_id, HostTime at) {
+  presentation_t r{};
+  r.event_id = event_id;
+  r.part = presentation_t::WHOLE;
+  r.scheduled_ns = r.presented_ns = to_ns(at);
+  r.uncertainty_ns = 1;
+  r.outcome = presentation_t::PRESENTED;
+  return r;
+}
+
+}  // namespace
+
 TEST_CASE("Each report is sent twice, at least 20 ms apart") {
   BusOptions memory;
   memory.memory = true;
@@ -20,8 +34,7 @@ TEST_CASE("Each report is sent twice, at least 20 ms apart") {
   HostTime now = host_time(1);
   for (int ms = 0; ms < 100; ++ms, now += Nanoseconds(1'000'000)) {
     if (ms < 10)
-      for (int i = 0; i < 45; ++i)
-        reporter.report(ms * 100 + i, presentation_t::WHOLE, now, now, Nanoseconds(1), presentation_t::PRESENTED);
+      for (int i = 0; i < 45; ++i) reporter.report(presented_event(ms * 100 + i, now));
     reporter.publish(bus, now);
     bus.drain(now);
     while (const auto m = inbox.pop()) {
@@ -39,7 +52,6 @@ TEST_CASE("Each report is sent twice, at least 20 ms apart") {
 
 TEST_CASE("The number of pending reports is bounded, and dropped ones are counted") {
   PresentationReporter reporter("audio");
-  for (int i = 0; i < 3000; ++i)
-    reporter.report(i, presentation_t::WHOLE, host_time(0), host_time(0), Nanoseconds(0), presentation_t::PRESENTED);
+  for (int i = 0; i < 3000; ++i) reporter.report(presented_event(i, host_time(0)));
   CHECK(reporter.dropped() == 3000 - static_cast<int>(PresentationReporter::kMaxPending));
 }

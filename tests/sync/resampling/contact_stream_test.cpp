@@ -89,7 +89,6 @@ TEST_CASE("A repeated event is delivered once, in its tick") {
   REQUIRE(due.size() == 1);
   CHECK(due[0].time_ns == 9'500'000);
   CHECK(stream.take_events(sim_time(1000 * kMs)).empty());
-  CHECK(stream.duplicates() == 49);
 }
 
 TEST_CASE("Events are delivered once and in order of time when messages are lost, repeated and reordered") {
@@ -342,14 +341,13 @@ TEST_CASE("Events far in the future are rejected, current ones are delivered") {
   CHECK(due[0].event_id == 1);
 }
 
-TEST_CASE("When too many events are pending, the latest are dropped and counted") {
+TEST_CASE("When too many events are pending, the latest are dropped") {
   ContactStream stream(kRun);
   std::vector<contact_event_t> early, late;
   for (int i = 0; i < 5000; ++i) late.push_back(event(10'000 + i, i, contact_event_t::HIT, 500 * kMs + i));
   for (int i = 0; i < 10; ++i) early.push_back(event(i, i, contact_event_t::HIT, 9 * kMs + i));
   stream.push(events(10 * kMs, late), at(10 * kMs));
   stream.push(events(10 * kMs, early), at(10 * kMs));
-  CHECK(stream.overflow() == 5010 - static_cast<std::int64_t>(EventInbox::kMaxPending));
   CHECK(stream.take_events(sim_time(10 * kMs)).size() == 10);
 }
 

@@ -95,7 +95,6 @@ TEST_CASE("Each receiver independently loses the specified share") {
   const auto both = std::count(arrived.begin(), arrived.end(), std::pair{false, false});
   CHECK(std::abs(kSent * 0.01 - static_cast<double>(both)) < 5 * std::sqrt(kSent * 0.01));
   CHECK(wire.sent() == kSent);
-  CHECK(wire.lost() == 2 * kSent - static_cast<std::int64_t>(a.heard.size() + b.heard.size()));
 }
 
 TEST_CASE("Messages are delivered in batches, oldest first, and not to removed receivers") {
