@@ -44,6 +44,7 @@
 #include "sync/bus/decode.h"
 #include "tests/lcmtypes/samples.h"
 #include "tests/lcmtypes/schema.h"
+#include "tests/source_dir.h"
 
 using namespace tactus;
 using namespace tactus::test;
@@ -59,7 +60,7 @@ namespace {
       tag_list_t, tag_request_t, tag_values_t, question_t, answer_t
 
 const Schema& schema() {
-  static const Schema s(std::string(TACTUS_SOURCE_DIR) + "/lcmtypes");
+  static const Schema s(source_dir() + "/lcmtypes");
   return s;
 }
 

@@ -47,6 +47,7 @@
 #include "sync/bus/decode.h"
 #include "tests/lcmtypes/samples.h"
 #include "tests/lcmtypes/schema.h"
+#include "tests/source_dir.h"
 
 namespace {
 std::atomic<std::size_t> largest_allocation{0};
@@ -72,7 +73,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 const Schema& schema() {
-  static const Schema s(std::string(TACTUS_SOURCE_DIR) + "/lcmtypes");
+  static const Schema s(source_dir() + "/lcmtypes");
   return s;
 }
 

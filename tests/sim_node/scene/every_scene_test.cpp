@@ -16,6 +16,7 @@
 #include "sim_node/scene/load_sdf.h"
 #include "tests/sim_node/support/simple_hand.h"
 #include "tests/sim_node/support/small_worlds.h"
+#include "tests/source_dir.h"
 
 using namespace tactus;
 using namespace tactus::sim;
@@ -27,7 +28,7 @@ int solver_failures = 0;  // messages of ODE: its LCP solver prints one when it 
 
 std::vector<std::filesystem::path> scenes() {
   std::vector<std::filesystem::path> found;
-  for (const auto& entry : std::filesystem::directory_iterator(TACTUS_SOURCE_DIR "/sim_node/scenes"))
+  for (const auto& entry : std::filesystem::directory_iterator(source_dir() + "/sim_node/scenes"))
     if (entry.path().extension() == ".sdf") found.push_back(entry.path());
   std::sort(found.begin(), found.end());
   return found;
@@ -108,7 +109,7 @@ TEST_CASE(
 TEST_CASE("The stack scene stays finite in two groups, also if a contact has no direction") {
   if (!make_fcl_detector()) return;
   std::vector<std::string> warnings;
-  const WorldDef w = load_sdf(TACTUS_SOURCE_DIR "/sim_node/scenes/stack.sdf", warnings);
+  const WorldDef w = load_sdf(source_dir() + "/sim_node/scenes/stack.sdf", warnings);
   Settings settings = settings_of(w);
   settings.groups = "dual";
   settings.detector = "fcl";
@@ -121,7 +122,7 @@ TEST_CASE("The stack scene stays finite in two groups, also if a contact has no 
 TEST_CASE(
     "Pushing each ball of the dark room into its own hole wins the game") {
   std::vector<std::string> warnings;
-  const WorldDef w = load_sdf(TACTUS_SOURCE_DIR "/sim_node/scenes/dark_room.sdf", warnings);
+  const WorldDef w = load_sdf(source_dir() + "/sim_node/scenes/dark_room.sdf", warnings);
   REQUIRE(w.holes.size() == 3);
   Simulation s(w, settings_of(w));
   s.start(11);

@@ -10,13 +10,14 @@
 #include "tests/sim_node/support/scene_file.h"
 #include "sync/bus/decode.h"
 #include "sync/bus/identity.h"
+#include "tests/source_dir.h"
 
 using namespace tactus;
 using namespace tactus::sim;
 
 namespace {
 WorldDef dark_room(std::vector<std::string>& warnings) {
-  return load_sdf(TACTUS_SOURCE_DIR "/sim_node/scenes/dark_room.sdf", warnings);
+  return load_sdf(source_dir() + "/sim_node/scenes/dark_room.sdf", warnings);
 }
 }  // namespace
 

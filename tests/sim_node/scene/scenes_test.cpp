@@ -10,14 +10,15 @@
 #include "sim_node/scene/scene_assets.h"
 #include "sync/assets/scene_receiver.h"
 #include "sync/bus/decode.h"
+#include "tests/source_dir.h"
 
 using namespace tactus;
 using namespace tactus::sim;
 using Eigen::Vector3d;
 
 namespace {
-const std::string kRoom = TACTUS_SOURCE_DIR "/sim_node/scenes/dark_room.sdf";
-const std::string kData = TACTUS_SOURCE_DIR "/tests/sim_node/scene/data/";
+const std::string kRoom = source_dir() + "/sim_node/scenes/dark_room.sdf";
+const std::string kData = source_dir() + "/tests/sim_node/scene/data/";
 
 const BodyDef& body(const WorldDef& w, const std::string& name) {
   for (const BodyDef& b : w.bodies)

@@ -22,6 +22,7 @@
 #include "sync/bus/decode.h"
 #include "sync/bus/identity.h"
 #include "tests/sim_node/support/simple_hand.h"
+#include "tests/source_dir.h"
 
 using namespace tactus;
 using namespace tactus::sim;
@@ -100,7 +101,7 @@ struct World {
 
 WorldDef scene(const std::string& name) {
   std::vector<std::string> warnings;
-  return load_sdf(TACTUS_SOURCE_DIR "/sim_node/scenes/" + name + ".sdf", warnings);
+  return load_sdf(source_dir() + "/sim_node/scenes/" + name + ".sdf", warnings);
 }
 
 // Presses and pushes among the balls and boxes.

@@ -36,6 +36,7 @@
 #include "sync/bus/decode.h"
 #include "tests/lcmtypes/samples.h"
 #include "tests/lcmtypes/schema.h"
+#include "tests/source_dir.h"
 
 using namespace tactus;
 using namespace tactus::sync;
@@ -70,7 +71,7 @@ std::vector<std::vector<std::string>> cells_of(const std::string& rows) {
 }
 
 const Schema& schema() {
-  static const Schema s(std::string(TACTUS_SOURCE_DIR) + "/lcmtypes");
+  static const Schema s(source_dir() + "/lcmtypes");
   return s;
 }
 

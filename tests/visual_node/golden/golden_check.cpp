@@ -15,6 +15,7 @@
 #include <tactus/uniform_t.hpp>
 #include <tactus/visual_def_t.hpp>
 
+#include "tests/source_dir.h"
 #include "tests/visual_node/golden/colour_difference.h"
 #include "tests/visual_node/golden/shipped_scene.h"
 #include "visual_node/scene_view/raster.h"
@@ -26,7 +27,7 @@ using namespace tactus::test;
 namespace {
 
 constexpr int kWidth = 160, kHeight = 120;
-const std::string kFolder = TACTUS_SOURCE_DIR "/tests/visual_node/golden/";
+const std::string kFolder = source_dir() + "/tests/visual_node/golden/";
 
 // Tolerance for other renderers: rounding to eight bits is below 0.4 of CIEDE2000, and one pixel in a hundred lies
 // on an edge that falls on the other side of a sample.
@@ -107,7 +108,7 @@ Picture draw(const Frame& frame, const std::function<void(scene_t&)>& change = {
   static std::map<std::string, std::unique_ptr<ShippedScene>> scenes;
   auto& shipped = scenes[frame.scene];
   if (!shipped)
-    shipped = std::make_unique<ShippedScene>(TACTUS_SOURCE_DIR "/sim_node/scenes/" + frame.scene + ".sdf");
+    shipped = std::make_unique<ShippedScene>(source_dir() + "/sim_node/scenes/" + frame.scene + ".sdf");
   scene_t scene = shipped->scene;
   frame.change(scene);
   if (change) change(scene);

@@ -7,6 +7,7 @@
 #include "sim_node/collision/nearest_first.h"
 #include "sim_node/scene/meshes/mesh_file.h"
 #include "tests/sim_node/support/meshes.h"
+#include "tests/source_dir.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;
@@ -39,7 +40,7 @@ struct Scene {
 };
 
 Soup soup_of(const std::string& file) {
-  const TriangleMesh m = read_mesh(TACTUS_SOURCE_DIR "/sim_node/scenes/" + file, "", false, {1, 1, 1});
+  const TriangleMesh m = read_mesh(source_dir() + "/sim_node/scenes/" + file, "", false, {1, 1, 1});
   return {m.vertices, m.indices};
 }
 

@@ -11,6 +11,7 @@
 #include "sim_node/scene/meshes/mesh_reader.h"
 #include "sim_node/scene/scene_assets.h"
 #include "tests/grey_png.h"
+#include "tests/source_dir.h"
 
 using namespace tactus;
 using namespace tactus::sim;
@@ -111,7 +112,7 @@ TEST_CASE("A random mesh written as glTF is read back bit-identically") {
 TEST_CASE("Every mesh of the project is converted to glTF and back bit-identically") {
   SceneFile file;
   int met = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(TACTUS_SOURCE_DIR "/sim_node/scenes")) {
+  for (const auto& entry : std::filesystem::directory_iterator(source_dir() + "/sim_node/scenes")) {
     if (entry.path().extension() != ".obj") continue;
     INFO(entry.path());
     ++met;
