@@ -10,7 +10,6 @@
 // in lcmtypes/ and begin with header_t; sync::Bus fills and checks it here. In another language fill it by hand:
 // run_id and clock as in the THERMAL_STATE that you answer if you run on its machine, source and incarnation of
 // your own, seq counting up from 0, publish_time_ns of CLOCK_MONOTONIC.
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <tactus/node_health_t.hpp>
 #include <tactus/scene_t.hpp>
@@ -30,11 +29,11 @@ int main(int argc, char** argv) try {
       .modality = "",
       .rate_Hz = 100,
       .about = "A thermal display behind two messages: an example, with a simulated element."};
-  CLI::App app;
+  sync::Arguments app;
   sync::NodeOptions options;
   options.add_to(app, descriptor);
   int tool = 0;
-  app.add_option("--tool", tool, "index of the tool that carries the display")->check(CLI::Range(0, 1000));
+  app.add_option("--tool", tool, "index of the tool that carries the display").range(0, 1000);
   sync::parse_or_exit(app, descriptor.name, argc, argv);
   const thermal::NodeConfig config = thermal::resolve_config(scene_t{}, "", options.set);
   if (!config.rejected.empty()) throw std::runtime_error(config.rejected.front());
