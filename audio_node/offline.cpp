@@ -1,6 +1,5 @@
 #include "audio_node/offline.h"
 
-#include <CLI/CLI.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -9,9 +8,9 @@
 
 namespace tactus::audio {
 
-void OfflineOptions::add_to(CLI::App& app) {
+void OfflineOptions::add_to(sync::Arguments& app) {
   sync::OfflineOptions::add_to(app, "renders this log of a run", "--wav");
-  app.add_option("--wav", wav, "file for the sound of the log")->needs("--log");
+  app.add_option("--wav", wav, "file for the sound of the log").needs("--log");
 }
 
 std::unique_ptr<Offline> Offline::open(const OfflineOptions& options, double loop_rate_Hz, sync::HostTime clock) {

@@ -15,7 +15,7 @@ class FileCard;
 struct OfflineOptions : sync::OfflineOptions {
   std::string wav;
 
-  void add_to(CLI::App& app);
+  void add_to(sync::Arguments& app);
 };
 
 // All times are times of the log, except `clock`, which is this host's clock.

@@ -1,6 +1,5 @@
 #include "audio_node/renderer.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <thread>
 #include <tactus/contact_event_t.hpp>
@@ -51,7 +50,7 @@ bool in_real_time(bool live) { return live && !sync::VirtualTime::current(); }
 
 }  // namespace
 
-void Options::add_to(CLI::App& app) {
+void Options::add_to(sync::Arguments& app) {
   app.add_option("--audio-device", device, "sound card: default, virtual, or part of its name");
   app.add_flag("--no-sound", no_sound, "compute no samples, and report when each sound would have begun; only in virtual time");
   log.add_to(app);

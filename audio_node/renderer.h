@@ -31,7 +31,7 @@ struct Options {
   bool no_sound = false;  // computes no samples
   OfflineOptions log;
 
-  void add_to(CLI::App& app);
+  void add_to(sync::Arguments& app);
   // Throws std::runtime_error with one sentence.
   void check() const;
 };

@@ -11,7 +11,6 @@
 // run instead of the bus, as fast as it can, and writes --wav; the same log gives the same bytes.
 #include "audio_node/run.h"
 
-#include <CLI/CLI.hpp>
 #include <tactus/node_health_t.hpp>
 
 #include "audio_node/renderer.h"
@@ -36,7 +35,7 @@ const sync::NodeDescriptor kAudio{.name = "audio_node",
                                   .phases = {sync::Phase::kRender}};
 
 class Factory : public sync::RendererFactory {
-  void add_options(CLI::App& app) override { options_.add_to(app); }
+  void add_options(sync::Arguments& app) override { options_.add_to(app); }
   sync::OfflineInput* prepare(const sync::NodeOptions& options) override {
     sync::settings_of(audio::setting_fields(), kAudio.name, options.set);
     options_.check();

@@ -1,6 +1,5 @@
 #include "haptic_node/renderer.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <thread>
 #include <tactus/node_health_t.hpp>
@@ -16,14 +15,14 @@
 
 namespace tactus::haptic {
 
-void Options::add_to(CLI::App& app) {
+void Options::add_to(sync::Arguments& app) {
   app.add_option("--tool", tool, "tool that the hand holds; default: the scene's first");
   app.add_option(
       "--device", device,
       "virtual_hand, virtual_hand:FILE, playback:FILE[,scale=S][,offset=X/Y/Z][,rate=R], "
       "spidar:NAME|FILE.json[,offset=X/Y/Z] or external:NAME[,offset=X/Y/Z]; default: the device of the scene");
   log.add_to(app, "force", "haptic.csv");
-  app.get_option("--trace")->excludes("--device");
+  app.option("--trace").excludes("--device");
 }
 
 void Options::parse_device() {

@@ -25,7 +25,7 @@ struct Options {
   std::shared_ptr<const DeviceSpec> device_spec;
   sync::OfflineTableOptions log;
 
-  void add_to(CLI::App& app);
+  void add_to(sync::Arguments& app);
   // Fills device_spec. Throws std::runtime_error with one sentence when there is no such device.
   void parse_device();
 };

@@ -14,7 +14,6 @@
 // where TOOL_STATE recorded it. The same log gives the same bytes.
 #include "haptic_node/run.h"
 
-#include <CLI/CLI.hpp>
 #include <tactus/node_health_t.hpp>
 
 #include "haptic_node/renderer.h"
@@ -37,7 +36,7 @@ const sync::NodeDescriptor kHaptic{.name = "haptic_node",
                                    .output_operators = sync::output_operators_of("haptic")};
 
 class Factory : public sync::RendererFactory {
-  void add_options(CLI::App& app) override { options_.add_to(app); }
+  void add_options(sync::Arguments& app) override { options_.add_to(app); }
   sync::OfflineInput* prepare(const sync::NodeOptions& options) override {
     sync::settings_of(haptic::setting_fields(), kHaptic.name, options.set);
     options_.parse_device();

@@ -13,7 +13,6 @@
 // contacts.
 #include "sim_node/run.h"
 
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <optional>
 #include <set>
@@ -90,11 +89,11 @@ void add_tags(sync::Tags& tags, const sim::Simulation& simulation, const std::op
 }  // namespace
 
 int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
-  CLI::App app;
+  sync::Arguments app;
   sync::NodeOptions options;
   std::string scene;
   options.add_to(app, kSimulation);
-  app.add_option("SCENE", scene, "SDF file of the world")->required()->check(CLI::ExistingFile);
+  app.add_option("SCENE", scene, "SDF file of the world").required().existing_file();
   sync::parse_or_exit(app, kSimulation.name, argc, argv);
 
   std::vector<std::string> warnings;

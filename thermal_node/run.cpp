@@ -10,7 +10,6 @@
 // skin. With --log it renders a recorded run, as fast as it can, and writes --trace; the same log gives the same bytes.
 #include "thermal_node/run.h"
 
-#include <CLI/CLI.hpp>
 #include <tactus/node_health_t.hpp>
 
 #include "sync/degradation/known_modalities.h"
@@ -34,7 +33,7 @@ const sync::NodeDescriptor kThermal{.name = "thermal_node",
                                     .phases = {sync::Phase::kRender}};
 
 class Factory : public sync::RendererFactory {
-  void add_options(CLI::App& app) override {
+  void add_options(sync::Arguments& app) override {
     app.add_option("--tool", tool_, "tool to render; default: the setting `tool`, else the first tool of the scene");
     log_options_.add_to(app, "temperature", "thermal.csv");
   }

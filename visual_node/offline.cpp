@@ -1,6 +1,5 @@
 #include "visual_node/offline.h"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <sstream>
 #include <stdexcept>
@@ -22,13 +21,12 @@ std::vector<sync::OfflineInput::Written> overwritten_files(const OfflineOptions&
 
 }  // namespace
 
-void OfflineOptions::add_to(CLI::App& app) {
+void OfflineOptions::add_to(sync::Arguments& app) {
   sync::OfflineOptions::add_to(app, "draws this log of a run", "--video");
-  app.add_option("--video", video, "file for the pictures of the log, MP4")->needs("--log");
+  app.add_option("--video", video, "file for the pictures of the log, MP4").needs("--log");
   app.add_option("--frames", frames,
-                 "file for a table of the time and the pixel hash of each frame of the log, CSV")
-      ->needs("--log");
-  app.add_flag("--as-recorded", as_recorded, "the same as --degrade logged")->needs("--log");
+                 "file for a table of the time and the pixel hash of each frame of the log, CSV").needs("--log");
+  app.add_flag("--as-recorded", as_recorded, "the same as --degrade logged").needs("--log");
 }
 
 std::unique_ptr<Offline> Offline::open(const OfflineOptions& options, double rate_Hz, sync::HostTime clock) {

@@ -21,7 +21,7 @@ struct OfflineOptions : sync::OfflineOptions {
   std::string snapshot;  // PNG file; empty: none
   double snapshot_every_s = 1;
 
-  void add_to(CLI::App& app);
+  void add_to(sync::Arguments& app);
 };
 
 // All times are on the clock of the log, except `clock`, the current time of this host.

@@ -1,6 +1,5 @@
 #include "visual_node/renderer.h"
 
-#include <CLI/CLI.hpp>
 #include <stdexcept>
 #include <tactus/media_clock_t.hpp>
 #include <tactus/node_health_t.hpp>
@@ -17,16 +16,14 @@
 
 namespace tactus::visual {
 
-void Options::add_to(CLI::App& app) {
+void Options::add_to(sync::Arguments& app) {
   app.add_flag("--window", window, "open a window");
   app.add_flag("--no-video", no_video, "write no video.mp4");
-  app.add_flag("--no-pictures", no_pictures, "draw nothing, and report what each picture would have shown")->excludes("--window");
+  app.add_flag("--no-pictures", no_pictures, "draw nothing, and report what each picture would have shown").excludes("--window");
   app.add_option("--snapshot", recording.snapshot, "PNG file that the newest picture is written to");
-  app.add_option("--snapshot-every", recording.snapshot_every_s, "interval between two snapshots, s")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  app.add_option("--snapshot-every", recording.snapshot_every_s, "interval between two snapshots, s").positive().show_default();
   log.add_to(app);
-  app.get_option("--no-pictures")->excludes("--log");
+  app.option("--no-pictures").excludes("--log");
 }
 
 void Options::complete(const std::string& node, const sync::NodeOptions& options) {

@@ -29,7 +29,7 @@ struct Options {
   RecordingOptions recording;
   OfflineOptions log;
 
-  void add_to(CLI::App& app);
+  void add_to(sync::Arguments& app);
   // Sets the values that follow from the options of every node. Throws std::runtime_error with one sentence.
   void complete(const std::string& node, const sync::NodeOptions& options);
 };

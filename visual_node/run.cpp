@@ -35,7 +35,7 @@ const sync::NodeDescriptor kVisual{
     .phases = {sync::Phase::kRender}};
 
 class Factory : public sync::RendererFactory {
-  void add_options(CLI::App& app) override { options_.add_to(app); }
+  void add_options(sync::Arguments& app) override { options_.add_to(app); }
   sync::OfflineInput* prepare(const sync::NodeOptions& options) override {
     const auto settings = sync::settings_of(visual::setting_fields(), kVisual.name, options.set);
     options_.complete(kVisual.name, options);

@@ -1,6 +1,5 @@
 // check_sounds: lists the contents of a folder of recordings, its faults, and the fallbacks for contacts of given
 // materials. tactus check-sounds calls it.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
@@ -76,10 +75,10 @@ int main(int argc, char** argv) try {
   std::vector<std::string> materials;
   bool json = false;
   double rate_Hz = 48000;
-  CLI::App app{"Lists the contents of a folder of recordings, its faults, and its gaps."};
+  sync::Arguments app{"Lists the contents of a folder of recordings, its faults, and its gaps."};
   app.add_option("folder", folder, "folder of recordings; default: the set beside this program");
-  app.add_option("--materials", materials, "materials; prints the source of sound of each pair")->delimiter(',');
-  app.add_option("--rate", rate_Hz, "sample rate of the sound card, Hz")->check(CLI::Range(8000.0, 192000.0));
+  app.add_option("--materials", materials, "materials; prints the source of sound of each pair").delimiter(',');
+  app.add_option("--rate", rate_Hz, "sample rate of the sound card, Hz").range(8000.0, 192000.0);
   app.add_flag("--json", json, "print it as JSON");
   sync::parse_or_exit(app, "check_sounds", argc, argv);
   std::sort(materials.begin(), materials.end());

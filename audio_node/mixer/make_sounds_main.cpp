@@ -4,7 +4,6 @@
 // Every material is a bar of 160 x 40 x 10 mm, which is struck at two places, scraped and rolled upon.
 #include <sndfile.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -209,7 +208,7 @@ class Set {
 
 int main(int argc, char** argv) try {
   std::string folder, materials, readme;
-  CLI::App app{"Renders the default set of recordings from modal models."};
+  sync::Arguments app{"Renders the default set of recordings from modal models."};
   app.add_option("folder", folder, "output folder");
   app.add_option("--materials", materials, "table of materials");
   app.add_option("--readme", readme, "README that is copied into the folder");

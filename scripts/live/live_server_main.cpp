@@ -8,7 +8,6 @@
 // is decoded.
 #include <signal.h>
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <filesystem>
 #include <iostream>
@@ -250,16 +249,16 @@ void serve_cluster(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Shows a running cluster, or a log, in a web page; prints the address. scripts/run --live starts it.");
+  sync::Arguments app("Shows a running cluster, or a log, in a web page; prints the address. scripts/run --live starts it.");
   Options o;
   app.add_option("LOG", o.log, "shows this log instead of a running cluster");
-  app.add_option("--page", o.page, "folder of the page, made by scripts/live/bundle")->required();
-  app.add_option("--http-port", o.http_port, "port of the page; 0: any free port")->check(CLI::Range(0, 65535))->capture_default_str();
-  app.add_option("--bind", o.bind, "address of the page's server; beyond 127.0.0.1 any user with the token can control the cluster")->capture_default_str();
-  app.add_option("--listen-fd", o.listen_fd, "inherited listening socket, instead of --http-port")->check(CLI::Range(0, 1'000'000));
-  app.add_option("--token", o.token, "token of the address; default: random")->envname("TACTUS_LIVE_TOKEN");
-  app.add_option("--port", o.bus.port, "UDP port of the bus")->envname("TACTUS_PORT")->check(CLI::Range(1, 65534))->capture_default_str();
-  app.add_option("--run-id", o.run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
+  app.add_option("--page", o.page, "folder of the page, made by scripts/live/bundle").required();
+  app.add_option("--http-port", o.http_port, "port of the page; 0: any free port").range(0, 65535).show_default();
+  app.add_option("--bind", o.bind, "address of the page's server; beyond 127.0.0.1 any user with the token can control the cluster").show_default();
+  app.add_option("--listen-fd", o.listen_fd, "inherited listening socket, instead of --http-port").range(0, 1'000'000);
+  app.add_option("--token", o.token, "token of the address; default: random").environment("TACTUS_LIVE_TOKEN");
+  app.add_option("--port", o.bus.port, "UDP port of the bus").environment("TACTUS_PORT").range(1, 65534).show_default();
+  app.add_option("--run-id", o.run_id, "number of the cluster run").environment("TACTUS_RUN_ID").show_default();
   sync::parse_or_exit(app, "live_server", argc, argv);
   for (int s : {SIGINT, SIGTERM, SIGHUP}) signal(s, [](int) { stop = true; });
   signal(SIGPIPE, SIG_IGN);

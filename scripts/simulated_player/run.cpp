@@ -9,7 +9,6 @@
 // When an input is lost, it continues without it. Run it together with haptic_node --device external:player.
 #include "scripts/simulated_player/run.h"
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <tactus/device_force_t.hpp>
 #include <tactus/device_state_t.hpp>
@@ -43,7 +42,7 @@ Eigen::Vector3d force_of(const device_force_t& m, sync::HostTime arrival, sync::
 }  // namespace
 
 int tactus::simulated_player::run(int argc, char** argv, const Rules* read_before) try {
-  CLI::App app;
+  sync::Arguments app;
   sync::NodeOptions options;
   std::string scene_file, device = "player";
   double frame_rate_Hz = 60;
@@ -51,24 +50,16 @@ int tactus::simulated_player::run(int argc, char** argv, const Rules* read_befor
   ArmDef arm_def;
   PlayerDef player_def;
   options.add_to(app, kSimulatedPlayer);
-  app.add_option("SCENE", scene_file, "SDF file of the world, for the rules of its game")
-      ->required()
-      ->check(CLI::ExistingFile);
-  app.add_option("--device", device, "name of the device that it controls: haptic_node --device external:NAME")
-      ->capture_default_str();
+  app.add_option("SCENE", scene_file, "SDF file of the world, for the rules of its game").required().existing_file();
+  app.add_option("--device", device, "name of the device that it controls: haptic_node --device external:NAME").show_default();
   app.add_option("--degrade", options.degrade,
                  "degradation profile (XML) of the observed modalities");
-  app.add_option("--frame-rate", frame_rate_Hz, "rate of the observed pictures, Hz")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
+  app.add_option("--frame-rate", frame_rate_Hz, "rate of the observed pictures, Hz").range(1.0, 1000.0).show_default();
   app.add_option(
          "--scatter-along", scatter.along_m,
-         "half range of each ball's random start position (from the seed), towards its hole or away, m")
-      ->check(CLI::Range(0.0, 0.2));
-  app.add_option("--scatter-aside", scatter.aside_m, "half range of each ball's random start position to the side, m")->check(CLI::Range(0.0, 0.2));
-  app.add_option("--reaction", player_def.reaction_s, "reaction time to sight and hearing, s")
-      ->check(CLI::Range(0.0, 2.0))
-      ->capture_default_str();
+         "half range of each ball's random start position (from the seed), towards its hole or away, m").range(0.0, 0.2);
+  app.add_option("--scatter-aside", scatter.aside_m, "half range of each ball's random start position to the side, m").range(0.0, 0.2);
+  app.add_option("--reaction", player_def.reaction_s, "reaction time to sight and hearing, s").range(0.0, 2.0).show_default();
   sync::parse_or_exit(app, kSimulatedPlayer.name, argc, argv);
   const Rules rules = read_before ? *read_before : read_rules(scene_file);
 

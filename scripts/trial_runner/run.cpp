@@ -18,7 +18,6 @@
 
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <tactus/device_force_t.hpp>
 #include <tactus/device_state_t.hpp>
 #include <tactus/sim_command_t.hpp>
@@ -304,18 +303,14 @@ class TrialRunner {
 }  // namespace
 
 int run(int argc, char** argv) try {
-  CLI::App app;
+  sync::Arguments app;
   sync::NodeOptions options;
   std::vector<double> rest_m;
   double above_m = 0;
   bool with_pictures = false;
   options.add_to(app, kTrialRunner);
-  auto* hand =
-      app.add_option("--hand", rest_m, "rest position of the hand, device external:conductor: X Y Z, m")
-          ->expected(3);
-  app.add_option("--above", above_m, "height of the rest position above the surface, m")
-      ->check(CLI::Range(0.0, 1.0))
-      ->needs(hand);
+  app.add_option("--hand", rest_m, "rest position of the hand, device external:conductor: X Y Z, m").expected(3);
+  app.add_option("--above", above_m, "height of the rest position above the surface, m").range(0.0, 1.0).needs("--hand");
   app.add_flag("--look", with_pictures, "writes the pictures that visual_node streams");
   sync::parse_or_exit(app, kTrialRunner.name, argc, argv);
   std::optional<std::pair<Eigen::Vector3d, double>> hand_pose;

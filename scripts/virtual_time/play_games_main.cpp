@@ -9,7 +9,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstring>
 #include <fstream>
@@ -162,25 +161,22 @@ json play_in_process(const Loaded& loaded, const GameDef& game) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app(
+  sync::Arguments app(
       "Plays games of the simulated player in virtual time: a JSON line on stdin for each, "
       "{\"game\": NAME, \"seed\": N, \"limit_s\": S, \"profile\": XML}, and one on stdout.");
   Loaded loaded;
   std::string
       along = "0.08",
       aside = "0.08";  // design: the balls of the dark room stay apart from each other and from the objects there
-  app.add_option("SCENE", loaded.scene, "SDF file of a world with a game")->required()->check(CLI::ExistingFile);
-  app.add_option("--out", loaded.out, "empty folder for the output of the nodes")
-      ->required()
-      ->check(CLI::ExistingDirectory);
+  app.add_option("SCENE", loaded.scene, "SDF file of a world with a game").required().existing_file();
+  app.add_option("--out", loaded.out, "empty folder for the output of the nodes").required().existing_folder();
   app.add_option("--scatter-along", along, "half range of the balls' start positions towards or away from their holes, m")
-      ->capture_default_str();
-  app.add_option("--scatter-aside", aside, "half range of the balls' start positions to the side, m")->capture_default_str();
+      .show_default();
+  app.add_option("--scatter-aside", aside, "half range of the balls' start positions to the side, m").show_default();
   double latency_ms = 0, jitter_ms = 0, loss_percent = 0;
-  app.add_option("--latency-ms", latency_ms, "latency of the bus, ms")->check(CLI::Range(0.0, 10000.0))->capture_default_str();
-  app.add_option("--jitter-ms", jitter_ms, "mean of the additional latency of the bus, ms; heavy-tailed")
-      ->check(CLI::Range(0.0, 10000.0));
-  app.add_option("--loss-percent", loss_percent, "share of lost datagrams on the bus, percent")->check(CLI::Range(0.0, 100.0));
+  app.add_option("--latency-ms", latency_ms, "latency of the bus, ms").range(0.0, 10000.0).show_default();
+  app.add_option("--jitter-ms", jitter_ms, "mean of the additional latency of the bus, ms; heavy-tailed").range(0.0, 10000.0);
+  app.add_option("--loss-percent", loss_percent, "share of lost datagrams on the bus, percent").range(0.0, 100.0);
   sync::parse_or_exit(app, "play_games", argc, argv);
   loaded.wire.latency = sync::from_seconds(latency_ms * 1e-3);
   if (jitter_ms > 0) loaded.wire.jitter = {.shape = sync::JitterShape::kPareto, .scale_s = jitter_ms * 1e-3};

@@ -1,6 +1,5 @@
 // virtual_time: runs a cluster in one process, on a simulated clock and a simulated bus. Its nodes are the live ones, with
 // the same options; with one seed, their output is the same to the bit.
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -93,18 +92,18 @@ void stop_in_order(sync::VirtualTime& time, const std::vector<PlannedProgram>& p
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Runs the nodes of a cluster in one process, in virtual time.");
+  sync::Arguments app("Runs the nodes of a cluster in one process, in virtual time.");
   std::string file;
   double seconds = 10, latency_ms = 0, jitter_ms = 0, loss_percent = 0;
   sync::VirtualPlan plan;
   app.add_option("PLAN", file, "command lines of the nodes, JSON: {\"NAME\": [\"PROGRAM\", \"OPTION\", ...], ...}")
-      ->required()
-      ->check(CLI::ExistingFile);
-  app.add_option("--seconds", seconds, "simulated time to run after the start of the world, s")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--seed", plan.seed, "seed of identities, phases of loops, and the bus")->capture_default_str();
-  app.add_option("--latency-ms", latency_ms, "latency of the bus, ms")->check(CLI::Range(0.0, 10000.0))->capture_default_str();
-  app.add_option("--jitter-ms", jitter_ms, "mean of the additional latency of the bus, ms; heavy-tailed")->check(CLI::Range(0.0, 10000.0));
-  app.add_option("--loss-percent", loss_percent, "share of lost datagrams on the bus, percent")->check(CLI::Range(0.0, 100.0));
+      .required()
+      .existing_file();
+  app.add_option("--seconds", seconds, "simulated time to run after the start of the world, s").positive().show_default();
+  app.add_option("--seed", plan.seed, "seed of identities, phases of loops, and the bus").show_default();
+  app.add_option("--latency-ms", latency_ms, "latency of the bus, ms").range(0.0, 10000.0).show_default();
+  app.add_option("--jitter-ms", jitter_ms, "mean of the additional latency of the bus, ms; heavy-tailed").range(0.0, 10000.0);
+  app.add_option("--loss-percent", loss_percent, "share of lost datagrams on the bus, percent").range(0.0, 100.0);
   sync::parse_or_exit(app, "virtual_time", argc, argv);
   const std::vector<PlannedProgram> programs = read_plan(file);
   plan.wire = {.latency = sync::from_seconds(latency_ms * 1e-3),

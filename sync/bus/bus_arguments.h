@@ -2,13 +2,12 @@
 // attach as defaults.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "sync/bus/bus_options.h"
+#include "sync/text/arguments.h"
 
 namespace tactus::sync {
 
 // --group, --port and --ttl; TACTUS_GROUP, TACTUS_PORT and TACTUS_TTL are their defaults.
-void add_bus_options(CLI::App& app, BusOptions& options);
+void add_bus_options(Arguments& app, BusOptions& options);
 
 }  // namespace tactus::sync

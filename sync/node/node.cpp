@@ -3,7 +3,6 @@
 #include <signal.h>
 #include <sys/prctl.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
@@ -66,36 +65,35 @@ constexpr std::size_t kMaxNote = 140;
 
 }  // namespace
 
-void NodeOptions::add_to(CLI::App& app, const NodeDescriptor& d) {
+void NodeOptions::add_to(Arguments& app, const NodeDescriptor& d) {
   name = d.name;
   app.description(d.about);
   add_bus_options(app, bus);
   app.add_option("--run-id", run_id, "number of the cluster run, the same for all its nodes")
-      ->envname("TACTUS_RUN_ID")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--name", name, "name of this process on the bus")->capture_default_str();
+      .environment("TACTUS_RUN_ID")
+      .positive()
+      .show_default();
+  app.add_option("--name", name, "name of this process on the bus").show_default();
   app.add_option("--realtime", realtime, "real-time priority: require, try or off")
-      ->check(CLI::IsMember({"require", "try", "off"}))
-      ->capture_default_str();
-  app.add_option("--out", out, "folder for what this node writes")
-      ->check(CLI::ExistingDirectory)
-      ->capture_default_str();
-  app.add_option("--seed", seed, "seed of all random numbers")->capture_default_str();
+      .one_of({"require", "try", "off"})
+      .show_default();
+  app.add_option("--out", out, "folder for what this node writes").existing_folder().show_default();
+  app.add_option("--seed", seed, "seed of all random numbers").show_default();
   app.add_option("--set", set, "name=value of a setting, see docs/settings.md; may be repeated");
   if (!d.modality.empty() || d.name == "sync_node")
     app.add_option("--degrade", degrade, "degradation profile (XML): the intended degradations of each sense");
   // For measurements only, hence not in --help: a renderer that uses up its core.
-  app.add_option("--emulate-load", load)->envname("TACTUS_LOAD_" + d.name)->check(CLI::Range(0.0, 100.0))->group("");
+  app.add_option("--emulate-load", load).environment("TACTUS_LOAD_" + d.name).range(0.0, 100.0).hidden();
   app.add_flag("--check", check, "checks options and files, then exits without joining the bus");
 }
 
-void parse_or_exit(CLI::App& app, const std::string& node, int argc, char** argv) {
+void parse_or_exit(Arguments& app, const std::string& node, int argc, char** argv) {
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp& e) {
-    std::exit(app.exit(e));
-  } catch (const CLI::ParseError& e) {
+    const std::optional<std::string> help = app.parse(argc, argv);
+    if (!help) return;
+    std::cout << *help;
+    std::exit(0);
+  } catch (const ArgumentError& e) {
     std::cerr << node << ": " << e.what() << "; see " << node << " --help\n";
     std::exit(1);
   }

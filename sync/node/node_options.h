@@ -8,16 +8,13 @@
 
 #include "sync/bus/bus_options.h"
 #include "sync/degradation/profile.h"
-
-namespace CLI {
-class App;
-}
+#include "sync/text/arguments.h"
 
 namespace tactus::sync {
 
 struct NodeDescriptor;
 
-// The options that every node has. Bind them to a CLI11 app with add_to, add the node's own, then parse.
+// The options that every node has. Add them to the program's arguments with add_to, add the node's own, then parse.
 struct NodeOptions {
   BusOptions bus;
   std::int64_t run_id = 1;
@@ -31,11 +28,11 @@ struct NodeOptions {
   double load = 0;               // for measurements: this share of its period is spent in an idle loop
   bool check = false;            // exit with success before joining the bus
 
-  void add_to(CLI::App& app, const NodeDescriptor& descriptor);
+  void add_to(Arguments& app, const NodeDescriptor& descriptor);
 };
 
 // Parses. Prints help or one error sentence and exits where the process must not start.
-void parse_or_exit(CLI::App& app, const std::string& node, int argc, char** argv);
+void parse_or_exit(Arguments& app, const std::string& node, int argc, char** argv);
 
 // For `int main() try { ... } catch (const std::exception& e) { return sync::fail("audio_node", e); }`: prints one
 // sentence to stderr and returns 1.

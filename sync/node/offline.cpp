@@ -1,6 +1,5 @@
 #include "sync/node/offline.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -13,12 +12,11 @@
 
 namespace tactus::sync {
 
-void OfflineOptions::add_to(CLI::App& app, const std::string& does, const std::string& output) {
+void OfflineOptions::add_to(Arguments& app, const std::string& does, const std::string& output) {
   app.add_option("--log", log,
                  does + " instead of the messages on the bus, as fast as possible; needs " + output +
                      "; --degrade logged takes the profiles of the run");
-  app.add_option("--presented", presented, "file for a table of the outcome of each event of the log, CSV")
-      ->needs("--log");
+  app.add_option("--presented", presented, "file for a table of the outcome of each event of the log, CSV").needs("--log");
 }
 
 OfflineInput::OfflineInput(const OfflineOptions& options, std::vector<Written> written, double rate_Hz, HostTime clock,
@@ -97,9 +95,9 @@ std::string OfflineInput::finish(double rendered_s, HostTime clock) {
   return text.str();
 }
 
-void OfflineTableOptions::add_to(CLI::App& app, const std::string& quantity, const std::string& columns) {
+void OfflineTableOptions::add_to(Arguments& app, const std::string& quantity, const std::string& columns) {
   OfflineOptions::add_to(app, "renders this log of a run", "--trace");
-  app.add_option("--trace", trace, "file for the rendered " + quantity + ", CSV with the columns of " + columns)->needs("--log");
+  app.add_option("--trace", trace, "file for the rendered " + quantity + ", CSV with the columns of " + columns).needs("--log");
 }
 
 OfflineTable::OfflineTable(const OfflineTableOptions& options, const std::string& names, double rate_Hz, HostTime clock)

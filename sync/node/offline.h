@@ -23,7 +23,7 @@ struct OfflineOptions {
   bool as_recorded = false;  // true: the profiles of the run apply; false: only the profile of --degrade applies
 
   // does: the use of the log, e.g. "draws this log of a run". output: the option that names the output file.
-  void add_to(CLI::App& app, const std::string& does, const std::string& output);
+  void add_to(Arguments& app, const std::string& does, const std::string& output);
 };
 
 class OfflineInput {
@@ -74,7 +74,7 @@ struct OfflineTableOptions : OfflineOptions {
   std::string trace;  // path of the CSV table
 
   // quantity: in the table, e.g. "force". columns: the exported table with the same columns, e.g. "haptic.csv".
-  void add_to(CLI::App& app, const std::string& quantity, const std::string& columns);
+  void add_to(Arguments& app, const std::string& quantity, const std::string& columns);
 };
 
 // A recorded run and its output, a table with one row per tick.

@@ -1,6 +1,5 @@
 #include "sync/node/run_renderer.h"
 
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <tactus/presentation_t.hpp>
 
@@ -72,7 +71,7 @@ class RendererRun {
 void RendererHost::print(const std::string& line) const { std::cerr << line << std::endl; }
 
 int run_renderer(const NodeDescriptor& descriptor, RendererFactory& factory, int argc, char** argv) try {
-  CLI::App app;
+  Arguments app;
   NodeOptions options;
   options.add_to(app, descriptor);
   factory.add_options(app);

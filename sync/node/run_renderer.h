@@ -14,10 +14,6 @@
 
 #include "sync/node/renderer.h"
 
-namespace CLI {
-class App;
-}
-
 namespace tactus::sync {
 
 // Creates the renderer of a node in three steps: options, resources that are opened before the bus, the renderer itself.
@@ -26,7 +22,7 @@ class RendererFactory {
   virtual ~RendererFactory() = default;
 
   // Adds the options of this node to the common options of all nodes.
-  virtual void add_options(CLI::App&) {}
+  virtual void add_options(Arguments&) {}
   // Called after the options are parsed and before the bus is joined. Checks the options and opens the resources that can
   // fail. Returns the log to render instead of the bus, or null to render the bus. This factory owns the log. Throws
   // std::runtime_error with one sentence.

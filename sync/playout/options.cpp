@@ -1,10 +1,9 @@
 #include "sync/playout/options.h"
 
-#include <CLI/CLI.hpp>
 
 namespace tactus::sync {
 
-void PlayoutOptions::add_to(CLI::App& app, bool named) {
+void PlayoutOptions::add_to(Arguments& app, bool named) {
   app.add_option(named ? "--policy" : "POLICY", policy,
                  "when each sense presents an event: asap, aligned, experiment, local_haptic_first or itouch2005");
   app.add_option(

@@ -4,10 +4,7 @@
 #include <string>
 
 #include "sync/playout/policy.h"
-
-namespace CLI {
-class App;
-}
+#include "sync/text/arguments.h"
 
 namespace tactus::sync {
 
@@ -15,7 +12,7 @@ struct PlayoutOptions {
   std::string policy, aligner, base, budget, soa;  // empty: not given
 
   // named: the policy is an option, --policy; otherwise it is the program's first argument.
-  void add_to(CLI::App& app, bool named);
+  void add_to(Arguments& app, bool named);
   // An asynchrony without a policy means experiment. Throws std::invalid_argument with one sentence.
   PlayoutPlan plan() const;
 };

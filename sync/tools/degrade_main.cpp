@@ -1,5 +1,4 @@
 // degrade: puts a degradation profile in force in a running cluster, or removes it, and prints which nodes have adopted it.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <map>
@@ -33,13 +32,13 @@ std::string joined(const std::set<std::string>& names) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Applies a degradation profile to the running cluster; \"off\" removes it.");
+  sync::Arguments app("Applies a degradation profile to the running cluster; \"off\" removes it.");
   sync::BusOptions bus_options;
   std::int64_t run_id = 1;
   std::string file;
   app.add_option("PROFILE", file, "XML file of the profile, or off");
   sync::add_bus_options(app, bus_options);
-  app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
+  app.add_option("--run-id", run_id, "number of the cluster run").environment("TACTUS_RUN_ID").show_default();
   sync::parse_or_exit(app, "degrade", argc, argv);
 
   if (file.empty()) throw std::runtime_error("name a profile, or off; see degrade --help");

@@ -4,7 +4,6 @@
 //   out  DIR/haptic.csv, DIR/thermal.csv
 //
 // Intact parts of a damaged log are read.
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
 #include <tactus/thermal_state_t.hpp>
@@ -44,11 +43,11 @@ class Table {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Writes tables of forces and skin temperatures from the log of a run."};
+  sync::Arguments app{"Writes tables of forces and skin temperatures from the log of a run."};
   std::vector<std::string> logs;
   std::string out = ".";
-  app.add_option("LOG", logs, "logs of one run, in order, or its folder: all parts")->required()->check(CLI::ExistingPath);
-  app.add_option("--out", out, "folder for the tables")->check(CLI::ExistingDirectory)->capture_default_str();
+  app.add_option("LOG", logs, "logs of one run, in order, or its folder: all parts").required().existing_path();
+  app.add_option("--out", out, "folder for the tables").existing_folder().show_default();
   sync::parse_or_exit(app, "export_csv", argc, argv);
 
   Table haptic(out + "/haptic.csv", sync::haptic_csv_names());

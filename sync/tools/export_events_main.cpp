@@ -4,7 +4,6 @@
 //   out  DIR/events.csv, DIR/presented.csv, DIR/media_clock.csv, DIR/clock_map.csv, DIR/frame_shown.csv
 //
 // Intact parts of a damaged log are read. Each event and each report is listed once, although it is sent repeatedly.
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -28,11 +27,11 @@
 using namespace tactus;
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Makes tables of contact events, presentations, media clocks and clock maps from the log of a run."};
+  sync::Arguments app{"Makes tables of contact events, presentations, media clocks and clock maps from the log of a run."};
   std::vector<std::string> logs;
   std::string out = ".";
-  app.add_option("LOG", logs, "logs of one run, in order, or its folder: all parts")->required()->check(CLI::ExistingPath);
-  app.add_option("--out", out, "folder for the tables")->check(CLI::ExistingDirectory)->capture_default_str();
+  app.add_option("LOG", logs, "logs of one run, in order, or its folder: all parts").required().existing_path();
+  app.add_option("--out", out, "folder for the tables").existing_folder().show_default();
   sync::parse_or_exit(app, "export_events", argc, argv);
 
   std::ofstream events(out + "/events.csv"), presented(out + "/presented.csv"), clocks(out + "/media_clock.csv"),

@@ -6,7 +6,6 @@
 // Intact parts of a damaged log are read; damage is counted. docs/export.md describes the tables.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -200,10 +199,10 @@ class Export {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Makes a table of every channel of a log, for pandas, R, MATLAB, PlotJuggler."};
+  sync::Arguments app{"Makes a table of every channel of a log, for pandas, R, MATLAB, PlotJuggler."};
   ExportOptions export_options;
-  app.add_option("LOG", export_options.logs, "logs of one run, in order, or its folder: all parts")->required()->check(CLI::ExistingPath);
-  app.add_option("--out", export_options.out, "folder for the tables")->check(CLI::ExistingDirectory)->capture_default_str();
+  app.add_option("LOG", export_options.logs, "logs of one run, in order, or its folder: all parts").required().existing_path();
+  app.add_option("--out", export_options.out, "folder for the tables").existing_folder().show_default();
   app.add_option("--channels", export_options.channels, "regular expression that the whole name of a channel matches; default: all");
   app.add_option("--since", export_options.since_s, "from this second of the log");
   app.add_option("--until", export_options.until_s, "up to this second of the log");

@@ -1,6 +1,5 @@
 // message_types: prints the messages of this build: its version, the channels, and the fields and fingerprint of every type.
 // Builds with the same output can communicate.
-#include <CLI/CLI.hpp>
 #include <iostream>
 
 #include "sync/node/node_options.h"
@@ -9,7 +8,7 @@
 using namespace tactus;
 
 int main(int argc, char** argv) try {
-  CLI::App app{
+  sync::Arguments app{
       "Prints the message types of this build: version, channels, fields and fingerprints, as in every log."};
   sync::parse_or_exit(app, "message_types", argc, argv);
   std::cout << "version " << TACTUS_VERSION << "\n";

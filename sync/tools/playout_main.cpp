@@ -1,6 +1,5 @@
 // playout: requests another playout policy from the running cluster, and prints the presentation delay of each modality under
 // it.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <optional>
 #include <set>
@@ -45,14 +44,14 @@ void print(const playout_t& m) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app(
+  sync::Arguments app(
       "Requests another playout policy from the running cluster; without arguments, prints the current one.");
   sync::BusOptions bus_options;
   std::int64_t run_id = 1;
   sync::PlayoutOptions options;
   options.add_to(app, false);
   sync::add_bus_options(app, bus_options);
-  app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
+  app.add_option("--run-id", run_id, "number of the cluster run").environment("TACTUS_RUN_ID").show_default();
   sync::parse_or_exit(app, "playout", argc, argv);
   const sync::PlayoutPlan plan = options.plan();
   const bool changes_policy = !options.policy.empty() || !options.soa.empty();

@@ -9,7 +9,6 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -105,7 +104,7 @@ double us(sync::Nanoseconds t) { return static_cast<double>(t.count()) * 1e-3; }
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Measures the network to other hosts that run this program at the same time: reachability, losses, round trips and clock offsets."};
+  sync::Arguments app{"Measures the network to other hosts that run this program at the same time: reachability, losses, round trips and clock offsets."};
   sync::BusOptions bus;
   std::string host;
   std::vector<std::string> expected;
@@ -113,9 +112,9 @@ int main(int argc, char** argv) try {
   double seconds = 5;
   sync::add_bus_options(app, bus);
   app.add_option("--host", host, "name of this host");
-  app.add_option("--expect", expected, "names of all hosts, including this one")->delimiter(',');
+  app.add_option("--expect", expected, "names of all hosts, including this one").delimiter(',');
   app.add_option("--round", run, "number of this round of probes, the same on all hosts");
-  app.add_option("--seconds", seconds, "how long")->check(CLI::Range(0.5, 600.0))->capture_default_str();
+  app.add_option("--seconds", seconds, "how long").range(0.5, 600.0).show_default();
   sync::parse_or_exit(app, "probe_pairs", argc, argv);
 
   Socket socket(bus);

@@ -5,7 +5,6 @@
 //
 // Each line has its own queue, which drops messages that would arrive too late: a slow site, or an unreachable one, does not
 // affect the others. Without a relay, this site continues alone; the last state of other sites is held and reported as old.
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <sstream>
 #include <tactus/node_health_t.hpp>
@@ -49,13 +48,13 @@ int main(int argc, char** argv) try {
                                         .rate_Hz = 500,  // so it adds a millisecond on average
                                         .fifo_priority = 40,
                                         .about = "Carries the bus between sites: sends the channels of its rules, at the rates of its rules, over one line to each other site."};
-  CLI::App app;
+  sync::Arguments app;
   sync::NodeOptions options;
   std::string listen, rules_file;
   std::vector<std::string> to;
   options.add_to(app, descriptor);
   app.add_option("--listen", listen, "address at which other relays reach this one: [ADDRESS:]PORT");
-  app.add_option("--to", to, "address of another site's relay, and the bit rate of the line to it: ADDRESS:PORT[,KBIT]; once for each")->allow_extra_args(false);
+  app.add_option("--to", to, "address of another site's relay, and the bit rate of the line to it: ADDRESS:PORT[,KBIT]; once for each").one_value_per_use();
   app.add_option("--rules", rules_file, "file of the channels to send, the same for all relays; scripts/python/tactus/cluster/relays/ has examples");
   sync::parse_or_exit(app, descriptor.name, argc, argv);
 

@@ -7,7 +7,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -85,15 +84,14 @@ struct ReplayArguments {
   sync::ReplaySelectionOptions selection_options;
   bool only_describe = false, stay = false;
 
-  void add_to(CLI::App& app) {
-    app.add_option("LOG", log, "run.lcmlog of a run, or a log of the stock lcm-logger")->required();
-    app.add_option("--speed", speed, "0.01 to 100 times the original speed, or max: as fast as --most allows")
-        ->capture_default_str();
+  void add_to(sync::Arguments& app) {
+    app.add_option("LOG", log, "run.lcmlog of a run, or a log of the stock lcm-logger").required();
+    app.add_option("--speed", speed, "0.01 to 100 times the original speed, or max: as fast as --most allows").show_default();
     app.add_option("--start", play.start_s, "s since the world began");
     app.add_option("--end", play.end_s, "s since the world began; default: the end of the log");
     app.add_flag("--loop", play.loop, "starts again at the end");
     app.add_flag("--paused", play.paused, "waits for a command of --control");
-    app.add_option("--most", play.max_per_s, "messages per second, at any speed")->check(CLI::Range(1.0, 1e6))->capture_default_str();
+    app.add_option("--most", play.max_per_s, "messages per second, at any speed").range(1.0, 1e6).show_default();
     app.add_option("--channels", selection_options.channels, "regular expression: only channels that match as a whole");
     app.add_option("--leave-out", selection_options.leave_out,
                    "regular expression: channels that match are not sent");
@@ -134,7 +132,7 @@ const sync::NodeDescriptor kReplay{.name = "replay",
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app;
+  sync::Arguments app;
   sync::NodeOptions options;
   options.add_to(app, kReplay);
   ReplayArguments arguments;

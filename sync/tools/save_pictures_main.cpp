@@ -1,5 +1,4 @@
 // save_pictures: writes the pictures that a visual_node streams into JPEG files.
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -14,17 +13,17 @@
 using namespace tactus;
 
 int main(int argc, char** argv) try {
-  CLI::App app("Writes the pictures that a visual_node streams into JPEG files: FOLDER/SOURCE_NUMBER.jpg.");
+  sync::Arguments app("Writes the pictures that a visual_node streams into JPEG files: FOLDER/SOURCE_NUMBER.jpg.");
   sync::BusOptions bus_options;
   std::int64_t run_id = 1;
   std::string folder;
   int pictures = 10;
   double seconds = 10;
-  app.add_option("FOLDER", folder, "created when it does not exist")->required();
-  app.add_option("--pictures", pictures, "number of pictures after which it ends")->check(CLI::Range(1, 100000))->capture_default_str();
-  app.add_option("--seconds", seconds, "ends when no picture has arrived for this time")->check(CLI::Range(0.1, 3600.0))->capture_default_str();
+  app.add_option("FOLDER", folder, "created when it does not exist").required();
+  app.add_option("--pictures", pictures, "number of pictures after which it ends").range(1, 100000).show_default();
+  app.add_option("--seconds", seconds, "ends when no picture has arrived for this time").range(0.1, 3600.0).show_default();
   sync::add_bus_options(app, bus_options);
-  app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
+  app.add_option("--run-id", run_id, "number of the cluster run").environment("TACTUS_RUN_ID").show_default();
   sync::parse_or_exit(app, "save_pictures", argc, argv);
   std::filesystem::create_directories(folder);
 

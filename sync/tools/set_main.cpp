@@ -1,5 +1,4 @@
 // set: changes settings of a node of the running cluster, and prints the results.
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <stdexcept>
 #include <tactus/setting_change_t.hpp>
@@ -36,15 +35,15 @@ setting_change_t change_of(const std::string& node, const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Changes settings of a node of the running cluster, and prints the result.");
+  sync::Arguments app("Changes settings of a node of the running cluster, and prints the result.");
   sync::BusOptions bus_options;
   std::int64_t run_id = 1;
   std::string node;
   std::vector<std::string> words;
   sync::add_bus_options(app, bus_options);
-  app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
-  app.add_option("NODE", node, "name in its health: haptic_node, or its --name")->required();
-  app.add_option("NAME=VALUE", words, "as in a scene; docs/settings.md lists the settings that can change")->required();
+  app.add_option("--run-id", run_id, "number of the cluster run").environment("TACTUS_RUN_ID").show_default();
+  app.add_option("NODE", node, "name in its health: haptic_node, or its --name").required();
+  app.add_option("NAME=VALUE", words, "as in a scene; docs/settings.md lists the settings that can change").required();
   sync::parse_or_exit(app, "set", argc, argv);
   std::vector<setting_change_t> changes;  // all are parsed before the first is sent
   for (const std::string& word : words) changes.push_back(change_of(node, word));

@@ -1,5 +1,4 @@
 // simulation: sends one request to the simulation of the running cluster, and prints the result.
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <stdexcept>
 #include <tactus/sim_command_t.hpp>
@@ -37,30 +36,25 @@ struct Words {
   bool to_file = false;
 };
 
-void add_commands(CLI::App& app, Words& w) {
-  app.require_subcommand(1);
-  app.fallthrough();
-  app.add_subcommand("pause", "pauses the world; hands feel its surfaces, which do not yield");
-  app.add_subcommand("resume", "continues the simulation");
-  app.add_subcommand("step", "number of steps of 1 ms of a paused world")
-      ->add_option("N", w.steps)
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
-  app.add_subcommand("reset", "back to the first instant of the scene");
-  auto* set =
-      app.add_subcommand("set", "sets a property of a body, a joint or the world; docs/commands.md lists them");
-  set->add_option("NAME.PROPERTY", w.name, "for example steel_ball.mass, fan::axle.motor, world.gravity")
-      ->required();
-  set->add_option("VALUE", w.values, "in SI units")->required()->expected(1, kMaxValues);
-  auto* push = app.add_subcommand("push", "a force on a body at its centre of mass");
-  push->add_option("BODY", w.name)->required();
-  push->add_option("FORCE", w.force_N, "FX FY FZ, N, along the axes of the world")->required()->expected(3);
-  push->add_option("--torque", w.torque_N_m, "TX TY TZ, N m")->expected(3);
-  push->add_option("--seconds", w.seconds, "duration, s")->check(CLI::Range(0.001, 10.0))->capture_default_str();
-  auto* snapshot = app.add_subcommand("snapshot", "stores the state of the world under a name");
-  snapshot->add_option("NAME", w.name)->required();
-  snapshot->add_flag("--to-file", w.to_file, "also in a file of the run's folder");
-  app.add_subcommand("restore", "restores a stored state")->add_option("NAME", w.name)->required();
+void add_commands(sync::Arguments& app, Words& w) {
+  app.add_command("pause", "pauses the world; hands feel its surfaces, which do not yield");
+  app.add_command("resume", "continues the simulation");
+  app.add_command("step", "number of steps of 1 ms of a paused world")
+      .add_option("N", w.steps).range(1, 1'000'000).show_default();
+  app.add_command("reset", "back to the first instant of the scene");
+  sync::Arguments set =
+      app.add_command("set", "sets a property of a body, a joint or the world; docs/commands.md lists them");
+  set.add_option("NAME.PROPERTY", w.name, "for example steel_ball.mass, fan::axle.motor, world.gravity").required();
+  set.add_option("VALUE", w.values, "in SI units").required().expected(1, kMaxValues);
+  sync::Arguments push = app.add_command("push", "a force on a body at its centre of mass");
+  push.add_option("BODY", w.name).required();
+  push.add_option("FORCE", w.force_N, "FX FY FZ, N, along the axes of the world").required().expected(3);
+  push.add_option("--torque", w.torque_N_m, "TX TY TZ, N m").expected(3);
+  push.add_option("--seconds", w.seconds, "duration, s").range(0.001, 10.0).show_default();
+  sync::Arguments snapshot = app.add_command("snapshot", "stores the state of the world under a name");
+  snapshot.add_option("NAME", w.name).required();
+  snapshot.add_flag("--to-file", w.to_file, "also in a file of the run's folder");
+  app.add_command("restore", "restores a stored state").add_option("NAME", w.name).required();
 }
 
 sim_command_t command_of(const std::string& verb, const Words& w) {
@@ -93,15 +87,15 @@ sim_command_t command_of(const std::string& verb, const Words& w) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Sends one command to the simulation of the running cluster, and prints the result.");
+  sync::Arguments app("Sends one command to the simulation of the running cluster, and prints the result.");
   sync::BusOptions bus_options;
   std::int64_t run_id = 1;
   Words words;
   sync::add_bus_options(app, bus_options);
-  app.add_option("--run-id", run_id, "number of the cluster run")->envname("TACTUS_RUN_ID")->capture_default_str();
+  app.add_option("--run-id", run_id, "number of the cluster run").environment("TACTUS_RUN_ID").show_default();
   add_commands(app, words);
   sync::parse_or_exit(app, "simulation", argc, argv);
-  sim_command_t command = command_of(app.get_subcommands().front()->get_name(), words);
+  sim_command_t command = command_of(app.command(), words);
 
   sync::Bus bus(sync::Identity::fresh("simulation", run_id), bus_options);
   auto& replies = bus.queue<sim_reply_t>(channels::kSimReply, 256);

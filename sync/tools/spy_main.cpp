@@ -10,7 +10,6 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <fstream>
 #include <iostream>
@@ -92,16 +91,16 @@ json to_json(const sync::spy::ChannelFigures& f) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Shows all messages on the bus in a terminal: each channel's rate, bandwidth, gaps, jitter and age, the fields of "
+  sync::Arguments app{"Shows all messages on the bus in a terminal: each channel's rate, bandwidth, gaps, jitter and age, the fields of "
                "its newest message, and tagged variables."};
   sync::BusOptions bus_options;
   double once_s = 0;
   std::string json_file;
   std::int64_t run_id = 1;
   sync::add_bus_options(app, bus_options);
-  app.add_option("--run-id", run_id, "cluster run whose clocks and variables are used")->envname("TACTUS_RUN_ID")->check(CLI::PositiveNumber);
-  app.add_option("--once", once_s, "receives for this number of seconds, prints the table and ends; status 1 when no message was received")->check(CLI::Range(0.1, 3600.0));
-  app.add_option("--json", json_file, "with --once: the same figures as JSON")->needs("--once");
+  app.add_option("--run-id", run_id, "cluster run whose clocks and variables are used").environment("TACTUS_RUN_ID").positive();
+  app.add_option("--once", once_s, "receives for this number of seconds, prints the table and ends; status 1 when no message was received").range(0.1, 3600.0);
+  app.add_option("--json", json_file, "with --once: the same figures as JSON").needs("--once");
   sync::parse_or_exit(app, "spy", argc, argv);
   for (int s : {SIGINT, SIGTERM, SIGHUP}) signal(s, [](int) { stop = true; });
 

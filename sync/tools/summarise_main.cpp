@@ -4,7 +4,6 @@
 //   out  the summary on stdout, and as JSON in a file
 //
 // Intact parts of a damaged log are read.
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
 
@@ -38,13 +37,13 @@ void write_file(const std::string& path, const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Summarises a run from its log."};
+  sync::Arguments app{"Summarises a run from its log."};
   sync::SummaryOptions options;
   std::vector<std::string> logs, restarts;
   std::string out;
-  app.add_option("LOG", logs, "logs of one run, in order, or its folder: all parts")->required()->check(CLI::ExistingPath);
+  app.add_option("LOG", logs, "logs of one run, in order, or its folder: all parts").required().existing_path();
   app.add_option("--out", out, "file for the summary as JSON");
-  app.add_option("--nodes", options.nodes, "nodes that must be alive at the end: a,b,c")->delimiter(',');
+  app.add_option("--nodes", options.nodes, "nodes that must be alive at the end: a,b,c").delimiter(',');
   app.add_option("--seconds", options.seconds, "length of the run");
   app.add_option("--scene", options.scene, "scene of the run");
   app.add_option("--seed", options.seed, "seed of the run");

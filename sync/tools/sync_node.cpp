@@ -16,7 +16,6 @@
 // less to report; a modality that falls silent is named in the report.
 #include "sync/tools/sync_node.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <optional>
@@ -74,10 +73,10 @@ std::string clock_status_text(const std::vector<clock_map_t>& maps) {
 struct EmulatedClockOptions {
   double drift_ppm = 0, jump_ms = 0, jump_after_s = 0;
 
-  void add_to(CLI::App& app) {
-    app.add_option("--emulate-drift", drift_ppm)->check(CLI::Range(-1000.0, 1000.0))->group("");
-    app.add_option("--emulate-jump", jump_ms)->group("");
-    app.add_option("--emulate-jump-after", jump_after_s)->group("");
+  void add_to(sync::Arguments& app) {
+    app.add_option("--emulate-drift", drift_ppm).range(-1000.0, 1000.0).hidden();
+    app.add_option("--emulate-jump", jump_ms).hidden();
+    app.add_option("--emulate-jump-after", jump_after_s).hidden();
   }
   sync::EmulatedClock clock(sync::HostTime start) const {
     return {drift_ppm * 1e-6, sync::from_seconds(jump_ms * 1e-3), start,
@@ -109,16 +108,15 @@ const sync::NodeDescriptor kSyncNode{.name = "sync_node",
 }  // namespace
 
 int tactus::sync::run_sync_node(int argc, char** argv) try {
-  CLI::App app;
+  sync::Arguments app;
   sync::NodeOptions options;
   options.add_to(app, kSyncNode);
   EmulatedClockOptions emulated;
   emulated.add_to(app);
   sync::PlayoutOptions playout_options;
   playout_options.add_to(app, true);
-  sync::PlayoutPlan plan;
-  app.callback([&] { plan = playout_options.plan(); });  // also when only the arguments are checked
   sync::parse_or_exit(app, kSyncNode.name, argc, argv);
+  const sync::PlayoutPlan plan = playout_options.plan();
 
   sync::Node node(kSyncNode, options);
   auto& health = node.bus().queue<node_health_t>(channels::kNodeHealth, kHealthQueue);

@@ -2,7 +2,6 @@
 //
 //   in   OLD: a log, or the folder of a run: all parts of its recording
 //   out  NEW: one log
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -16,9 +15,9 @@
 using namespace tactus;
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Converts a recording to the message types of this release."};
+  sync::Arguments app{"Converts a recording to the message types of this release."};
   std::string from, to;
-  app.add_option("OLD", from, "log, or folder of a run: all parts of its recording")->check(CLI::ExistingPath);
+  app.add_option("OLD", from, "log, or folder of a run: all parts of its recording").existing_path();
   app.add_option("NEW", to, "new log; must not exist");
   sync::parse_or_exit(app, "upgrade_log", argc, argv);
 

@@ -8,7 +8,6 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <iostream>
 #include <tactus/node_health_t.hpp>
@@ -41,18 +40,18 @@ void show(const sync::WatchTable& table, sync::HostTime now, bool json, bool in_
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Shows the state of every node of the running cluster once a second."};
+  sync::Arguments app{"Shows the state of every node of the running cluster once a second."};
   sync::BusOptions bus_options;
   bool once = false, json = false;
   std::int64_t run_id = 0;
   double period_s = 1;
   sync::add_bus_options(app, bus_options);
-  app.add_option("--run-id", run_id, "only nodes of this cluster run; 0: of all")->envname("TACTUS_RUN_ID");
+  app.add_option("--run-id", run_id, "only nodes of this cluster run; 0: of all").environment("TACTUS_RUN_ID");
   app.add_flag("--once", once, "show one table and end; status 1 when no node was received");
   app.add_flag("--json", json, "one line of JSON each time instead of the table");
   app.add_option("--period", period_s, "seconds from one table to the next; health is published ten times a second")
-      ->check(CLI::Range(0.05, 3600.0))
-      ->capture_default_str();
+      .range(0.05, 3600.0)
+      .show_default();
   sync::parse_or_exit(app, "watch", argc, argv);
   for (int s : {SIGINT, SIGTERM}) signal(s, [](int) { stop = true; });
 

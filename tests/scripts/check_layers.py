@@ -19,6 +19,7 @@ MAY_INCLUDE.update({node: {node, "sync", "lcmtypes"} for node in NODES})
 # External headers and the places where they may appear.
 QUARANTINE = [
     (r"lcm/", r"(sync/(bus|log|tools)/|examples/)", "LCM is used in sync/bus, sync/log and sync/tools only"),
+    (r"CLI/", r"sync/text/", "CLI11 is used in sync/text only"),
     (r"(ode|ccd|fcl)/", r"sim_node/(collision|contacts|behaviour)/", "ODE, libccd and FCL are used in sim_node/collision, contacts and behaviour only"),
     (r"(EGL|GL|GLES\d|epoxy|gbm|X11)(/|\.h)", r"visual_node/(devices|gl|scene_view|frame)/",
      "EGL and GL are used in the drawing folders of visual_node only"),

@@ -30,6 +30,7 @@ class CheckLayers(unittest.TestCase):
         for name, line in [("audio_node/a.h", '#include "haptic_node/a.h"'), ("audio_node/a.h", '#include "a.h"'),
                            ("sync/a.h", '#include "sim_node/a.h"'), ("lcmtypes/a.h", '#include "sync/a.h"'),
                            ("audio_node/a.h", "#include <lcm/lcm-cpp.hpp>"), ("sync/time/time.h", "#include <lcm/lcm.h>"),
+                           ("sync/tools/a.cpp", "#include <CLI/CLI.hpp>"),
                            ("sim_node/main.cpp", "#include <ode/ode.h>"), ("haptic_node/a.h", "#include <epoxy/gl.h>"),
                            ("visual_node/scene_view/a.cpp", "#include <EGL/egl.h>"),
                            ("visual_node/main.cpp", "#include <GL/gl.h>"),

@@ -10,7 +10,6 @@
 // in lcmtypes/ and begin with header_t; sync::Bus fills and checks it here. In another language fill it by hand:
 // run_id and clock as in the THERMAL_STATE that you answer if you run on its machine, source and incarnation of
 // your own, seq counting up from 0, publish_time_ns of CLOCK_MONOTONIC.
-#include <CLI/CLI.hpp>
 #include <tactus/node_health_t.hpp>
 #include <tactus/thermal_device_t.hpp>
 #include <tactus/thermal_state_t.hpp>
@@ -29,11 +28,11 @@ int main(int argc, char** argv) try {
       .modality = "",
       .rate_Hz = 100,
       .about = "A thermal display behind two messages: an example, with a simulated element."};
-  CLI::App app;
+  sync::Arguments app;
   sync::NodeOptions options;
   options.add_to(app, descriptor);
   int tool = 0;
-  app.add_option("--tool", tool, "index of the tool that carries the display")->check(CLI::Range(0, 1000));
+  app.add_option("--tool", tool, "index of the tool that carries the display").range(0, 1000);
   sync::parse_or_exit(app, descriptor.name, argc, argv);
   const thermal::Settings settings = sync::settings_of(thermal::setting_fields(), "thermal_node", options.set);
 

@@ -1,6 +1,5 @@
 // convert_geometry: converts a geometry file to glTF 2.0 with material, relief and appearance of the object.
 // tactus convert-geometry calls it.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -50,11 +49,11 @@ int main(int argc, char** argv) try {
   std::string in, out;
   bool force = false;
   std::vector<PropertyOption> given = property_options();
-  CLI::App app{"Reads OBJ, STL, PLY, 3DS, DAE, glTF and other formats of assimp, and writes glTF 2.0: positions, normals,\n"
+  sync::Arguments app{"Reads OBJ, STL, PLY, 3DS, DAE, glTF and other formats of assimp, and writes glTF 2.0: positions, normals,\n"
                "tangents, texture coordinates, triangles and links to pictures, and the given properties in \"extras\". A scene that\n"
                "loads OUT uses these properties where it defines none itself. The file is read back and must be identical to the bit."};
-  app.add_option("IN", in, "geometry file")->required();
-  app.add_option("OUT", out, ".glb, or .gltf with its buffer inside")->required();
+  app.add_option("IN", in, "geometry file").required();
+  app.add_option("OUT", out, ".glb, or .gltf with its buffer inside").required();
   app.add_flag("--force", force, "overwrite OUT when it exists");
   for (PropertyOption& word : given) app.add_option(word.option, word.value, word.meaning);
   sync::parse_or_exit(app, "convert_geometry", argc, argv);

@@ -12,7 +12,6 @@
 
 #include <time.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 #include <tactus/asset_ref_t.hpp>
@@ -66,7 +65,7 @@ int tactus::sync::run_recorder(int argc, char** argv) try {
                                         .rate_Hz = 50,  // of writing to disk; a separate thread stamps messages on arrival
                                         .fifo_priority = 40,
                                         .about = "Writes all messages on the bus to OUT/run.lcmlog."};
-  CLI::App app;
+  sync::Arguments app;
   sync::NodeOptions options;
   log_info_t info{};
   std::string scene_file;
@@ -76,16 +75,14 @@ int tactus::sync::run_recorder(int argc, char** argv) try {
   app.add_option("--git", info.git, "commit of the run, noted in the log");
   double split_mb = 0, split_minutes = 0, max_mb = 0;
   sync::LogLimits limits;
-  app.add_option("--split-mb", split_mb, "starts another file, which can be replayed alone, at this size")
-      ->check(CLI::Range(1.0, 1e6));
-  app.add_option("--split-minutes", split_minutes, "starts another file after this time")
-      ->check(CLI::Range(0.01, 1e5));
-  app.add_option("--keep", limits.keep, "number of the newest files to keep; needs --split-mb or --split-minutes")->check(CLI::Range(1, 100'000));
+  app.add_option("--split-mb", split_mb, "starts another file, which can be replayed alone, at this size").range(1.0, 1e6);
+  app.add_option("--split-minutes", split_minutes, "starts another file after this time").range(0.01, 1e5);
+  app.add_option("--keep", limits.keep, "number of the newest files to keep; needs --split-mb or --split-minutes").range(1, 100'000);
   app.add_option("--max-mb", max_mb, "size limit of all files: the oldest are removed; messages that exceed it in a single file are dropped and counted")
-      ->check(CLI::Range(1.0, 1e7));
+      .range(1.0, 1e7);
   std::vector<std::string> patterns{"*"};
   app.add_option("--tags", patterns, "tagged variables to record, as node.tag with * for any letters, or none; may be repeated")
-      ->capture_default_str();
+      .show_default();
   sync::parse_or_exit(app, descriptor.name, argc, argv);
   info.scene = std::filesystem::path(scene_file).filename().string();
   info.version = TACTUS_VERSION;

@@ -4,7 +4,6 @@
 //
 //    in   ASSET_REQUEST
 //    out  SCENE_MANIFEST, ASSET_CHUNK, CONTACT_EVENTS, CONTACTS
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <iostream>
 #include <random>
@@ -75,7 +74,7 @@ int main(int argc, char** argv) try {
                                         .rate_Hz = 1000,
                                         .fifo_priority = 50,
                                         .about = "Replaces sim_node: strikes a board at random times."};
-  CLI::App app;
+  sync::Arguments app;
   sync::NodeOptions options;
   std::string scene_file;
   options.add_to(app, descriptor);

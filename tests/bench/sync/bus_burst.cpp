@@ -2,7 +2,6 @@
 //   bus_burst [--count 20000] [--bytes 100] [--channel BURST] [--port N]
 // Then `summarise run.lcmlog` prints the number of messages that arrived and the gaps in their numbers; the recorder's health gives the
 // number that the kernel dropped.
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <tactus/asset_chunk_t.hpp>
 
@@ -12,14 +11,14 @@
 using namespace tactus;
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Sends a burst of numbered messages as fast as it can."};
+  sync::Arguments app{"Sends a burst of numbered messages as fast as it can."};
   sync::BusOptions options;
   int count = 20000, bytes = 100;
   std::string channel = "BURST";
-  app.add_option("--count", count, "messages")->capture_default_str();
-  app.add_option("--bytes", bytes, "of one message")->check(CLI::Range(73, 1090))->capture_default_str();
-  app.add_option("--channel", channel, "channel")->capture_default_str();
-  app.add_option("--port", options.port, "UDP port of the bus")->capture_default_str();
+  app.add_option("--count", count, "messages").show_default();
+  app.add_option("--bytes", bytes, "of one message").range(73, 1090).show_default();
+  app.add_option("--channel", channel, "channel").show_default();
+  app.add_option("--port", options.port, "UDP port of the bus").show_default();
   sync::parse_or_exit(app, "bus_burst", argc, argv);
 
   sync::Bus bus(sync::Identity::fresh("bus_burst", 1), options);

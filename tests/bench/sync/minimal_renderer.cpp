@@ -7,7 +7,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <atomic>
 #include <cstring>
@@ -125,7 +124,7 @@ class Subscriber {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Receives the bus like a renderer without rendering, and prints statistics of the received messages at its end."};
+  sync::Arguments app{"Receives the bus like a renderer without rendering, and prints statistics of the received messages at its end."};
   sync::BusOptions bus;
   sync::add_bus_options(app, bus);
   sync::parse_or_exit(app, "minimal_renderer", argc, argv);
