@@ -46,6 +46,7 @@ class SendQueue {
     return std::nullopt;
   }
   std::size_t waiting() const { return texts_.size() + (picture_ ? 1 : 0); }
+  std::size_t bytes() const { return bytes_; }
   std::int64_t dropped() const { return dropped_; }
   std::int64_t dropped_pictures() const { return dropped_pictures_; }
 
