@@ -126,7 +126,7 @@ TEST_CASE("The impulse solver rejects joints that close a loop by name") {
 TEST_CASE("The impulse solver runs the dark room identically twice, with balls that stay on the table") {
   const auto run = [](std::uint64_t& digest, double& fan, double& lowest) {
     std::vector<std::string> warnings;
-    const WorldDef world = load_sdf(source_dir() + "/sim_node/scenes/dark_room.sdf", warnings);
+    const WorldDef world = load_sdf(tactus::source_dir() + "/sim_node/scenes/dark_room.sdf", warnings);
     Settings settings = by_impulse();
     Simulation s(world, settings);
     s.start(11);

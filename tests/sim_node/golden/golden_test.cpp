@@ -13,7 +13,7 @@ using namespace tactus::sim::test;
 
 namespace {
 
-const std::filesystem::path kScenes = source_dir() + "/sim_node/scenes";
+const std::filesystem::path kScenes = tactus::source_dir() + "/sim_node/scenes";
 
 std::string hex(std::uint64_t hash) {
   char text[17];
@@ -24,7 +24,7 @@ std::string hex(std::uint64_t hash) {
 // Lines "scene hash"; a # starts a comment.
 std::map<std::string, std::string> table() {
   std::map<std::string, std::string> rows;
-  std::ifstream in(source_dir() + "/tests/sim_node/golden/golden_hashes.txt");
+  std::ifstream in(tactus::source_dir() + "/tests/sim_node/golden/golden_hashes.txt");
   for (std::string line; std::getline(in, line);) {
     const auto space = line.find(' ');
     if (!line.empty() && line[0] != '#' && space != std::string::npos)

@@ -40,7 +40,7 @@ struct Scene {
 };
 
 Soup soup_of(const std::string& file) {
-  const TriangleMesh m = read_mesh(source_dir() + "/sim_node/scenes/" + file, "", false, {1, 1, 1});
+  const TriangleMesh m = read_mesh(tactus::source_dir() + "/sim_node/scenes/" + file, "", false, {1, 1, 1});
   return {m.vertices, m.indices};
 }
 
