@@ -19,7 +19,7 @@ from tactus.cluster.host_connection import Failed
 from tactus.launch.cluster import BIN
 from tactus.refusal import Refusal
 
-TIMEOUT_S = 60
+TIMEOUT_S = 180  # liveness: other tests run beside it
 FILE = """<cluster name="{name}">
   <bus ttl="1" port="{port}"/>
   <run scene="{scene}" budget="150ms"/>

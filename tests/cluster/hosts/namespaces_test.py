@@ -13,7 +13,7 @@ sys.path.insert(0, str(REPOSITORY / "scripts" / "python"))
 from tactus.cluster import cluster_file, lab_cluster, status
 from tactus.cluster.cluster_operator import Operator
 
-TIMEOUT_S = 60
+TIMEOUT_S = 180  # liveness: other tests run beside it
 FILE = """<cluster name="beside">
   <bus ttl="1"/>
   <run scene="metronome.sdf"/>

@@ -22,7 +22,7 @@ from tactus.cluster import lab_cluster
 from tactus.launch.cluster import BIN
 from tactus.refusal import Refusal
 
-TIMEOUT_S = 60
+TIMEOUT_S = 180  # liveness: other tests run beside it
 LINE = 7700
 FILE = """<cluster name="sites">
   <bus ttl="1"/>

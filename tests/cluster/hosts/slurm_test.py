@@ -17,7 +17,7 @@ from tactus.study import trial_table
 EXIT_SKIPPED = 77
 NODE, ADDRESS = "one", "10.88.0.1"  # an interface name and an address that no other program uses
 NAMESPACES = ["unshare", "--net", "--uts", "--pid", "--fork", "--kill-child", "--mount-proc"]
-TIMEOUT_S = 60
+TIMEOUT_S = 180  # liveness: other tests run beside it
 CONFIGURATION = """ClusterName=one
 SlurmctldHost={node}({address})
 AuthType=auth/none

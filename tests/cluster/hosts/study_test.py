@@ -15,7 +15,7 @@ sys.path.insert(0, str(SCRIPTS / "python"))
 from tactus.refusal import Refusal
 from tactus.study import journal
 
-TIMEOUT_S = 90  # a cluster starts within seconds; beside other work it takes longer
+TIMEOUT_S = 180  # a cluster starts within seconds; beside other work it takes longer
 
 
 class StudyOnALiveCluster(unittest.TestCase):

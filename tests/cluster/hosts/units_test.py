@@ -16,7 +16,7 @@ BIN = pathlib.Path(os.environ.get("TACTUS_BIN") or ROOT / "build" / "dev" / "bin
 SYSTEMD = "/lib/systemd/systemd"
 KINDS = ("sync", "recorder", "haptic", "haptic@lamp", "audio", "visual", "thermal", "sim", "path")
 PRIORITIES = {"sync": 40, "recorder": 40, "haptic": 60, "haptic@lamp": 60, "audio": 45, "visual": 0, "thermal": 0, "sim": 50}
-TIMEOUT_S = 60
+TIMEOUT_S = 180  # liveness: other tests run beside it
 EXIT_SKIPPED = 77
 # Includes only the targets of the system's own units: this system runs only the units of Tactus.
 BOOT = r"""
