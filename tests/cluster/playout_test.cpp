@@ -1,4 +1,5 @@
 // Tests of playout policies in a running cluster: changed at run time, and kept when no program repeats them.
+#include <algorithm>
 #include <cstdlib>
 
 #include "tests/cluster/support/profiles.h"
@@ -24,12 +25,15 @@ std::vector<double> asynchronies_ms(const ClusterMonitor& monitor, const std::st
   return out;
 }
 
-// Median asynchrony over the next seconds, after the delays have been slewed.
-double settled_asynchrony_ms(RunningCluster& c, const std::string& a, const std::string& b, double slewed_s) {
+// Asynchrony over the next seconds, after the delays have been slewed: the median, or a lower quantile, because other work on the machine
+// makes pictures late, never early.
+double settled_asynchrony_ms(RunningCluster& c, const std::string& a, const std::string& b, double slewed_s, double quantile = 0.1) {
   c.monitor.receive_for(slewed_s);
   const PresentedEvents before = presented_events(c.monitor);
   CHECK(c.monitor.wait_until([&] { return asynchronies_ms(c.monitor, a, b, before).size() >= 5; }, kTimeout_s));
-  return median(asynchronies_ms(c.monitor, a, b, before));
+  std::vector<double> sorted = asynchronies_ms(c.monitor, a, b, before);
+  std::sort(sorted.begin(), sorted.end());
+  return sorted.empty() ? 0 : sorted[static_cast<std::size_t>(quantile * static_cast<double>(sorted.size()))];
 }
 
 }  // namespace
@@ -72,7 +76,7 @@ TEST_CASE("In the serial loop of 2005 all modalities render, one after the other
   RunningCluster c;
   c.start();
   CHECK(request_playout(c, {"itouch2005"}).find("one loop") != std::string::npos);
-  CHECK(settled_asynchrony_ms(c, "visual", "audio", 4) > 0);
+  CHECK(settled_asynchrony_ms(c, "visual", "audio", 4, 0.5) > 0);
   CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
 }
 
@@ -80,11 +84,11 @@ TEST_CASE("The reported presentation time includes the display latency after the
   RunningCluster c;
   c.start();
   c.processes.kill("visual_node");
-  c.processes.start("visual_node", {"--set", "display_latency=0.1"});
+  c.processes.start("visual_node", {"--set", "display_latency=0.2"});
   CHECK(c.monitor.wait_until([&] { return c.is_running("visual_node"); }, kTimeout_s));
   request_playout(c, {"asap"});
   // Without the policy, picture and sound come within one or two frames of each other.
-  CHECK(settled_asynchrony_ms(c, "visual", "audio", 2) > 60);
-  request_playout(c, {"experiment", "--base", "300ms"});
-  CHECK(std::abs(settled_asynchrony_ms(c, "visual", "audio", 7)) < 60);
+  CHECK(settled_asynchrony_ms(c, "visual", "audio", 2) > 150);
+  request_playout(c, {"experiment", "--base", "400ms"});
+  CHECK(std::abs(settled_asynchrony_ms(c, "visual", "audio", 10)) < 120);
 }
