@@ -23,13 +23,10 @@ bool SimClockTracker::contradicts(const header_t& header, const sim_clock_t& clo
 
 TrackResult SimClockTracker::track(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
   TrackResult result = TrackResult::kSame;
-  if (header.incarnation != incarnation_) {
-    const bool replaced = std::find(replaced_.begin(), replaced_.end(), header.incarnation) != replaced_.end();
-    if (replaced && arrival - last_arrival_ < kSilence) return TrackResult::kIgnore;
-    if (incarnation_ != 0) replaced_.push_back(incarnation_);
-    std::erase(replaced_, header.incarnation);
-    if (replaced_.size() > kRemembered) replaced_.pop_front();
-    incarnation_ = header.incarnation;
+  const SenderStatus status = sender_of_world_.on_page(header, arrival);
+  if (!accepted(status)) return TrackResult::kIgnore;
+  known_ = true;
+  if (status == SenderStatus::kFirst) {
     result = TrackResult::kRestart;
   } else if (header.publish_time_ns < newest_publish_ns_ - kMaxStepBack.count()) {
     result = TrackResult::kRestart;
@@ -51,7 +48,7 @@ TrackResult SimClockTracker::track(const header_t& header, const sim_clock_t& cl
 }
 
 std::optional<TimeMap> SimClockTracker::map(HostTime now) const {
-  if (incarnation_ == 0) return std::nullopt;
+  if (!known_) return std::nullopt;
   return TimeMap{sim_time(clock_.sim_ns), sender_.to_host(clock_.host_ns, now), clock_.rate};
 }
 

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <tactus/header_t.hpp>
 #include <tactus/sim_clock_t.hpp>
 
 #include "sync/clocks/sender_clock.h"
+#include "sync/clocks/single_sender.h"
 #include "sync/time/time.h"
 
 namespace tactus::sync {
@@ -16,26 +16,31 @@ namespace tactus::sync {
 enum class TrackResult {
   kSame,     // of the followed simulation
   kRestart,  // of a new one, or its time fell back: the known world has ended
-  kIgnore,   // of a replaced one, or its time contradicts the most recent messages
+  kIgnore,   // of another one while the followed one sends, or its time contradicts the most recent messages
 };
 
 class SimClockTracker {
  public:
-  // A replaced incarnation is accepted again only when its successor has been silent for this time.
-  static constexpr Nanoseconds kSilence{300'000'000};
+  // A replaced incarnation is accepted again only when its successor has been silent for this time. A clock that contradicts
+  // the messages is accepted after the same time.
+  static constexpr Nanoseconds kSilence = SingleSender::kSilence;
+  // A new incarnation is followed when the current one has been silent for this time. Shorter than the silence of a simulation
+  // that is reset (its setting new_life_silence, at least 80 ms).
+  static constexpr Nanoseconds kTakeOver{75'000'000};
   // A publish_time_ns that falls back by more than this means that a log is replayed again.
   static constexpr Nanoseconds kMaxStepBack{1'000'000'000};
   // A clock that differs from the current one by more than this is accepted only when the current one has not been confirmed
   // for kSilence, so a forged message cannot shift the time.
   static constexpr Nanoseconds kMaxDeviation{1'000'000'000};
-  static constexpr std::size_t kRemembered = 16;
 
   explicit SimClockTracker(OwnClock own) : own_(own) {}
 
   TrackResult track(const header_t& header, const sim_clock_t& clock, HostTime arrival);
   // nullopt before the first message.
   std::optional<TimeMap> map(HostTime now) const;
-  std::int64_t incarnation() const { return incarnation_; }
+  std::int64_t incarnation() const { return sender_of_world_.incarnation(); }
+  // Whether another simulation has sent within the last 0.3 s. It is ignored, and its user should stop it.
+  bool conflict(HostTime now) const { return sender_of_world_.conflict(now); }
   // A simulation publishes at most about 20 ms ahead, so a time more than kMaxDeviation ahead of the newest arrival is
   // invalid. Call it after track().
   SimTime latest_plausible() const { return map(last_arrival_).value_or(TimeMap{}).to_sim(last_arrival_) + kMaxDeviation; }
@@ -44,11 +49,11 @@ class SimClockTracker {
   bool contradicts(const header_t& header, const sim_clock_t& clock) const;
 
   OwnClock own_;
-  std::int64_t incarnation_ = 0;
+  SingleSender sender_of_world_{SingleSender::kAnyRun, kTakeOver};
+  bool known_ = false;
   std::int64_t newest_publish_ns_ = 0;
   HostTime last_arrival_{};
   HostTime confirmed_{};
-  std::deque<std::int64_t> replaced_;
   SenderClock sender_{own_};
   sim_clock_t clock_{};
 };

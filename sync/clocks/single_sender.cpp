@@ -9,22 +9,25 @@ bool SingleSender::impossible(const header_t& h) const {
 }
 
 SenderStatus SingleSender::accept(const header_t& h, HostTime arrival, SenderStatus status) {
+  if (known_ && h.incarnation != incarnation_) former_[next_former_++ % kRemembered] = incarnation_;
+  known_ = true;
   incarnation_ = h.incarnation;
   followed_run_ = h.run_id;
   seq_ = h.seq;
   publish_ns_ = h.publish_time_ns;
   contradictions_ = 0;
-  last_arrival_ = arrival;
+  last_arrival_ = std::max(last_arrival_, arrival);
   return status;
 }
 
 // kCurrent: of the followed sender; nothing is stored yet.
 SenderStatus SingleSender::follow(const header_t& h, HostTime arrival) {
   if (run_id_ != kAnyRun && h.run_id != run_id_) return ++foreign_, SenderStatus::kForeign;
-  if (h.incarnation == incarnation_ && h.run_id == followed_run_) return SenderStatus::kCurrent;
-  if (silent(arrival)) return accept(h, arrival, SenderStatus::kFirst);
+  if (known_ && h.incarnation == incarnation_ && h.run_id == followed_run_) return SenderStatus::kCurrent;
+  const bool former = std::find(former_.begin(), former_.end(), h.incarnation) != former_.end();
+  if (silent_for(former ? std::max(silence_, kSilence) : silence_, arrival)) return accept(h, arrival, SenderStatus::kFirst);
   ++conflicts_;
-  last_conflict_ = arrival;
+  last_conflict_ = std::max(last_conflict_, arrival);
   return SenderStatus::kConflict;
 }
 

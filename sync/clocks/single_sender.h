@@ -8,9 +8,13 @@
 //   kForeign       of another run                                          ignores it
 //
 // A sender is a run and an incarnation. The followed sender keeps the output while it sends: a second one changes nothing for it.
-// After a silence the next sender takes over, or the same one continues. Pure.
+// After a silence the next sender takes over, or the same one continues. A sender that was followed before its successor needs a
+// silence of at least kSilence. Pure.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <tactus/header_t.hpp>
 
@@ -46,13 +50,13 @@ class SingleSender {
   // Never kOld.
   SenderStatus on_page(const header_t& header, HostTime arrival);
 
-  // Whether another sender has sent within the last `silence`, while this one was followed.
-  bool conflict(HostTime now) const { return conflicts_ > 0 && now - last_conflict_ < silence_; }
+  // Whether another sender has sent within the last `silence`, at least within kSilence.
+  bool conflict(HostTime now) const { return conflicts_ > 0 && now - last_conflict_ < std::max(silence_, kSilence); }
   // Whether the followed sender has been silent for `silence` or longer; true before the first message.
-  bool silent(HostTime now) const { return incarnation_ == 0 || now - last_arrival_ >= silence_; }
+  bool silent(HostTime now) const { return silent_for(silence_, now); }
   // Arrival of its newest accepted message; the epoch before the first one.
   HostTime last_arrival() const { return last_arrival_; }
-  // Incarnation and run of the followed sender; 0: none yet.
+  // Incarnation and run of the followed sender; 0 before the first message.
   std::int64_t incarnation() const { return incarnation_; }
   std::int64_t run_id() const { return followed_run_; }
   // Number of messages of other senders, and of other runs, since the start.
@@ -61,13 +65,19 @@ class SingleSender {
 
  private:
   SenderStatus follow(const header_t& header, HostTime arrival);
+  bool silent_for(Nanoseconds time, HostTime now) const { return !known_ || now - last_arrival_ >= time; }
   bool impossible(const header_t& header) const;
   bool repeated(const header_t& header) const { return header.seq <= seq_; }
   SenderStatus accept(const header_t& header, HostTime arrival, SenderStatus status);
 
   std::int64_t run_id_;
   Nanoseconds silence_;
+  static constexpr std::size_t kRemembered = 16;
+
+  bool known_ = false;  // a sender is followed
   std::int64_t incarnation_ = 0, followed_run_ = 0;
+  std::array<std::int64_t, kRemembered> former_{};  // incarnations that were followed before
+  std::size_t next_former_ = 0;
   std::int64_t seq_ = 0, publish_ns_ = 0;  // of its newest message
   int contradictions_ = 0;
   HostTime last_arrival_{}, last_conflict_{};

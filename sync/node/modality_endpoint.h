@@ -123,6 +123,8 @@ class ModalityEndpoint {
   const std::string& profile_name() const { return profile_name_; }
   // The arrival of the newest message of any stream, before any delay of the profile.
   HostTime newest_arrival() const;
+  // Whether a second simulation sends. Its messages are ignored.
+  bool simulation_conflict(HostTime now) const { return simulation_.conflict(now); }
 
   void report(const presentation_t& report);
   // Sets a function that receives every report. Needed when a log is rendered: nothing reads the reports from the bus then.

@@ -8,6 +8,8 @@
 namespace tactus::sync {
 namespace {
 
+constexpr const char* kConflict = "two simulations send; the first one counts, stop the other";
+
 // One run of a renderer.
 class RendererRun {
  public:
@@ -48,7 +50,8 @@ class RendererRun {
     for (const std::string& refused : live_.step(now, change)) host_.print_status(refused);
   }
   void report_status(const Status& status) {
-    node_.set_state(status.state, status.text);
+    const bool conflict = endpoint_.simulation_conflict(ticks_.now());
+    node_.set_state(status.state, status.text + (!conflict ? "" : status.text.empty() ? kConflict : std::string("; ") + kConflict));
     if (status.qualities > 0) node_.set_quality(status.quality, status.qualities);
   }
   void show_progress() {

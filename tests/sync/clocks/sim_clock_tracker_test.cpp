@@ -2,6 +2,7 @@
 #include "sync/clocks/sim_clock_tracker.h"
 
 #include <catch2/catch.hpp>
+#include <random>
 #include <tactus/header_t.hpp>
 #include <tactus/sim_clock_t.hpp>
 
@@ -20,17 +21,37 @@ header_t header(std::int64_t incarnation, std::int64_t publish_ns, std::int64_t 
 }
 }  // namespace
 
-TEST_CASE("The first simulation is tracked, a new one replaces it and the old one is ignored") {
+TEST_CASE("The first simulation is tracked until it is silent, then a new one replaces it and the old one is ignored") {
   SimClockTracker f(1);
   CHECK_FALSE(f.map(host_time(0)));
   CHECK(f.track(header(1, 0), {0, 0, 1}, host_time(0)) == TrackResult::kRestart);
   CHECK(f.track(header(1, kMs), {kMs, kMs, 1}, host_time(kMs)) == TrackResult::kSame);
-  CHECK(f.track(header(2, 2 * kMs), {0, 2 * kMs, 1}, host_time(2 * kMs)) == TrackResult::kRestart);
-  CHECK(f.track(header(1, 3 * kMs), {2 * kMs, 3 * kMs, 1}, host_time(3 * kMs)) == TrackResult::kIgnore);
+  CHECK(f.track(header(2, 2 * kMs), {0, 2 * kMs, 1}, host_time(2 * kMs)) == TrackResult::kIgnore);
+  CHECK(f.conflict(host_time(2 * kMs)));
+  CHECK(f.track(header(2, 76 * kMs), {0, 76 * kMs, 1}, host_time(76 * kMs)) == TrackResult::kRestart);
+  CHECK(f.track(header(1, 77 * kMs), {76 * kMs, 77 * kMs, 1}, host_time(77 * kMs)) == TrackResult::kIgnore);
+  CHECK(f.track(header(1, 170 * kMs), {169 * kMs, 170 * kMs, 1}, host_time(170 * kMs)) == TrackResult::kIgnore);
   SECTION("the old one is tracked again after its successor was silent for 0.3 s") {
     CHECK(f.track(header(1, 400 * kMs), {0, 400 * kMs, 1}, host_time(400 * kMs)) == TrackResult::kRestart);
     CHECK(f.incarnation() == 1);
   }
+}
+
+TEST_CASE("Simulations with random incarnations do not disturb the tracked one") {
+  SimClockTracker f(1);
+  std::mt19937_64 random(9);
+  for (std::int64_t ms = 0; ms < 2000; ++ms) {
+    const TrackResult expected = ms == 0 ? TrackResult::kRestart : TrackResult::kSame;
+    CHECK(f.track(header(1, ms * kMs), {ms * kMs, ms * kMs, 1}, host_time(ms * kMs)) == expected);
+    for (int i = 0; i < 5; ++i) {
+      const auto other = static_cast<std::int64_t>(random() >> 2) + 2;
+      const auto stamp = static_cast<std::int64_t>(random() >> 4);
+      CHECK(f.track(header(other, stamp), {stamp, stamp, 1}, host_time(ms * kMs)) == TrackResult::kIgnore);
+    }
+  }
+  CHECK(f.map(host_time(2000 * kMs))->to_sim(host_time(2000 * kMs)) == sim_time(2000 * kMs));
+  CHECK(f.conflict(host_time(2000 * kMs)));
+  CHECK_FALSE(f.conflict(host_time(2300 * kMs)));
 }
 
 TEST_CASE("A late message does not move the map back") {

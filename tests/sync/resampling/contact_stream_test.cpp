@@ -181,10 +181,10 @@ TEST_CASE("Interpolation does not cross a begin or an end") {
 TEST_CASE("A restart of the simulation ends all contacts, and messages of the old one are ignored") {
   ContactStream stream(kRun);
   stream.push(frame(10 * kMs, {contact(1, 2)}, 0, 1, 1), at(10 * kMs));
-  stream.push(frame(1 * kMs, {}, 0, 1, 2), at(20 * kMs));
+  stream.push(frame(1 * kMs, {}, 0, 1, 2), at(90 * kMs));
   CHECK(stream.restarts() == 1);
   CHECK(stream.state_at(sim_time(1 * kMs)).value.empty());
-  stream.push(frame(12 * kMs, {contact(1, 2)}, 0, 1, 1), at(21 * kMs));
+  stream.push(frame(12 * kMs, {contact(1, 2)}, 0, 1, 1), at(91 * kMs));
   CHECK(stream.state_at(sim_time(12 * kMs)).value.empty());
   CHECK(stream.restarts() == 1);
 }

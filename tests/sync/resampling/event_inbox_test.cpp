@@ -98,7 +98,7 @@ TEST_CASE("A restart discards pending and held events of the ended simulation") 
   CHECK(inbox.epoch() == 1);
   inbox.push(message(11, {event(2, contact_event_t::HIT, 11)}), at(11), chain, nullptr);
   inbox.release(at(11));
-  inbox.push(message(20, {event(3, contact_event_t::HIT, 20)}, 2), at(20));
+  inbox.push(message(20, {event(3, contact_event_t::HIT, 20)}, 2), at(90));
   CHECK(inbox.epoch() == 2);
   CHECK_FALSE(inbox.span_of(7)->begin);  // only the event of the new simulation is known
   inbox.release(at(100));

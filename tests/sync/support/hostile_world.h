@@ -291,7 +291,7 @@ inline World make_world(Random& random, bool other_clock) {
   const auto lives = random.whole(1, 2);
   for (std::int64_t i = 0; i < lives; ++i) {
     w.lives.push_back(make_life(random, static_cast<std::size_t>(i), begin_ns));
-    begin_ns += w.lives.back().length_ns + random.whole(2, 60) * kMs;
+    begin_ns += w.lives.back().length_ns + random.whole(102, 160) * kMs;  // longer than kTakeOver and the jitter
   }
   for (std::size_t i = 0; i < w.lives.size(); ++i) LifePublisher(w, i, random).publish();
   std::stable_sort(w.packets.begin(), w.packets.end(),

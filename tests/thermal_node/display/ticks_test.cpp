@@ -175,6 +175,8 @@ TEST_CASE("A restarted simulation begins a new interval") {
   world.run(500);
   world.tick(ticks);
   world.incarnation = 6;
+  world.host_ms += 100;  // the silence of a restart
+  world.tick(ticks);
   world.run(20);
   const Tick tick = world.tick(ticks);
   CHECK(tick.sim_end - tick.sim_begin == 20ms);
