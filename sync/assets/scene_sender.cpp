@@ -32,8 +32,8 @@ SceneSender::SceneSender(Bus& bus, std::vector<Asset> assets)
     ref.size = static_cast<std::int32_t>(asset.bytes.size());
     ref.kind = asset.kind;
     ref.name = asset.name.substr(0, kMaxName);
-    const std::vector<bool> none(chunk_count(asset.bytes.size()), false);
-    if (!assets_.try_emplace(ref.hash, Outgoing{std::move(asset), none}).second) continue;
+    const std::size_t chunks = chunk_count(asset.bytes.size());
+    if (!assets_.try_emplace(ref.hash, Outgoing{std::move(asset), chunks, {}}).second) continue;
     refs_.push_back(ref);
     total += static_cast<std::size_t>(ref.size);
   }
@@ -66,39 +66,48 @@ void SceneSender::send_chunk(std::int64_t hash, const Outgoing& outgoing, std::s
   m.header.sim_time_ns = -1;
   m.hash = hash;
   m.chunk = static_cast<std::int32_t>(chunk);
-  m.chunks = static_cast<std::int32_t>(outgoing.wanted.size());
+  m.chunks = static_cast<std::int32_t>(outgoing.chunk_count);
   m.data.assign(bytes.begin() + static_cast<std::ptrdiff_t>(begin),
                 bytes.begin() + static_cast<std::ptrdiff_t>(end));
   m.size = static_cast<std::int32_t>(m.data.size());
   bus_.publish(channels::kAssetChunk, m, Port::kBulk);
 }
 
-void SceneSender::poll(HostTime now) {
-  while (const auto request = requests_.pop()) {
+void SceneSender::receive_requests() {
+  for (int left = kRequestsPerPoll; left > 0; --left) {
+    const auto request = requests_.pop();
+    if (!request) return;
     const asset_request_t& r = request->message;
     const auto it = assets_.find(r.hash);
     if (it == assets_.end()) continue;
-    std::vector<bool>& wanted = it->second.wanted;
     const std::size_t first = static_cast<std::size_t>(r.first_chunk);
-    for (std::size_t i = first; i < wanted.size() && i < first + static_cast<std::size_t>(r.chunk_count); ++i) {
-      if (!wanted[i]) ++wanted_;
-      wanted[i] = true;
-    }
+    const std::size_t end = std::min(it->second.chunk_count, first + static_cast<std::size_t>(r.chunk_count));
+    it->second.wanted.add(first, end);
+    waiting_ = true;
   }
+}
+
+void SceneSender::poll(HostTime now) {
+  receive_requests();
   if (now >= next_manifest_) {
     next_manifest_ = now + kManifestPeriod;
     announce();
   }
-  int budget = kChunksPerPoll;
-  for (auto& [hash, outgoing] : assets_) {
-    for (std::size_t i = 0; wanted_ > 0 && budget > 0 && i < outgoing.wanted.size(); ++i) {
-      if (!outgoing.wanted[i]) continue;
-      send_chunk(hash, outgoing, i);
-      outgoing.wanted[i] = false;
-      --wanted_;
-      --budget;
-    }
+  for (int budget = kChunksPerPoll; waiting_ && budget > 0; --budget) waiting_ = send_next();
+}
+
+// The next requested chunk of the next asset. False: no chunk is requested.
+bool SceneSender::send_next() {
+  auto at = assets_.upper_bound(last_sent_);
+  for (std::size_t passed = 0; passed < assets_.size(); ++passed, ++at) {
+    if (at == assets_.end()) at = assets_.begin();
+    const auto chunk = at->second.wanted.take();
+    if (!chunk) continue;
+    send_chunk(at->first, at->second, *chunk);
+    last_sent_ = at->first;
+    return true;
   }
+  return false;
 }
 
 }  // namespace tactus::sync

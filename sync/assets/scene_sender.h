@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sync/assets/asset.h"
+#include "sync/assets/chunk_ranges.h"
 #include "sync/time/time.h"
 
 namespace tactus::sync {
@@ -17,11 +18,13 @@ class Bus;
 template <class Message>
 class Queue;
 
-// The sending side, in sim_node. Sends at most kChunksPerPoll chunks per call (bulk port), so that a late joiner never delays
-// a tick by more than a few microseconds.
+// The sending side, in sim_node. Sends at most kChunksPerPoll chunks per call (bulk port) and reads at most kRequestsPerPoll
+// requests, each of bounded cost, so that no receiver and no flood of requests delays a tick by more than some microseconds. The
+// assets and their chunks take turns, so that a receiver that repeats its requests without end delays the others only.
 class SceneSender {
  public:
   static constexpr int kChunksPerPoll = 4;
+  static constexpr int kRequestsPerPoll = 16;
   // Throws std::runtime_error with one sentence when the assets exceed the limits of the receivers.
   SceneSender(Bus& bus, std::vector<Asset> assets);
   // Call it once a tick: sends the manifest when due, then requested chunks.
@@ -31,17 +34,21 @@ class SceneSender {
  private:
   struct Outgoing {
     Asset asset;
-    std::vector<bool> wanted;  // per chunk: requested and not yet sent
+    std::size_t chunk_count = 0;
+    ChunkRanges wanted;  // requested and not yet sent
   };
   void announce();
+  void receive_requests();
+  bool send_next();
   void send_chunk(std::int64_t hash, const Outgoing& outgoing, std::size_t chunk);
 
   Bus& bus_;
   Queue<asset_request_t>& requests_;
   std::map<std::int64_t, Outgoing> assets_;
+  std::int64_t last_sent_ = 0;  // the asset of the last chunk
+  bool waiting_ = false;        // a chunk may be requested and not sent
   std::vector<asset_ref_t> refs_;
   HostTime next_manifest_{};
-  std::size_t wanted_ = 0;
 };
 
 }  // namespace tactus::sync
