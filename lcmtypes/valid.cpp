@@ -110,7 +110,7 @@ bool sane(const touch_plane_t& p) {
 
 bool sane(const touch_applied_t& a) { return sane(a.impulse_N_s) && sane(a.energy_J); }
 bool sane(const tool_constraint_t& c) {
-  return c.body >= 0 && sane(c.point_m) && sane(c.force_N) && sane(c.impulse_N_s);
+  return c.body >= 0 && sane(c.point_m) && sane(c.force_N) && sane(c.impulse_N_s) && clock_time(c.impulse_since_ns);
 }
 bool sane(const playout_entry_t& e) {
   return name(e.modality) && between(e.delay_ns, 0, kMaxDelay_ns) &&

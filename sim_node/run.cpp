@@ -7,7 +7,8 @@
 //   out  TOUCH_MODEL, CONTACT_EVENTS, CONTACTS, WORLD_STATE, GAME_STATE, in this order; SIM_REPLY; SCENE_MANIFEST,
 //        ASSET_CHUNK
 //
-// When TOOL_STATE is lost, the forces on the bodies fade within 10 ms. A simulation that cannot keep up keeps its
+// When TOOL_STATE is lost, the forces on the bodies fade within 10 ms. A tool has one sender: a second haptic process, and a
+// second simulation of the run, are named in the health and change nothing. A simulation that cannot keep up keeps its
 // step length: simulated time falls behind the clock, and the published map shows the speed. A world that is reset
 // or restored continues under another incarnation, as after a restart, so that no receiver keeps obsolete
 // contacts.
@@ -15,7 +16,6 @@
 
 #include <iostream>
 #include <optional>
-#include <set>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/node_health_t.hpp>
 #include <tactus/sim_command_t.hpp>
@@ -26,10 +26,12 @@
 #include "sim_node/world/simulation.h"
 #include "sim_node/command/commander.h"
 #include "sim_node/dual/followed_rate.h"
+#include "sim_node/publish/known_processes.h"
 #include "sim_node/publish/publisher.h"
 #include "sim_node/publish/sim_pacer.h"
 #include "sim_node/scene/load_sdf.h"
 #include "sim_node/scene/scene_assets.h"
+#include "sim_node/touch/tool_senders.h"
 #include "sync/node/node.h"
 #include "sync/assets/scene_sender.h"
 
@@ -47,6 +49,26 @@ sim::Settings settings_of(const sim::WorldDef& world, const std::vector<std::str
 
 // Bounds the time that commands take from a step; a sender without a reply repeats its command.
 constexpr int kMaxCommandsPerTick = 4;
+
+// Executes commands of this run. Those of other runs cost nothing, so they delay none.
+void execute_commands(sync::Queue<sim_command_t>& commands, sim::Commander& commander, std::int64_t run_id) {
+  for (int left = kMaxCommandsPerTick; left > 0;) {
+    const auto m = commands.pop();
+    if (!m) return;
+    if (m->message.header.run_id != run_id) continue;
+    commander.execute(m->message);
+    --left;
+  }
+}
+
+// One line for the health: a pause, and outputs with two senders. Empty: nothing to report.
+std::string status_of(const sim::Commander& commander, const sim::ToolSenders& senders, const sim::KnownProcesses& processes,
+                      sync::HostTime now) {
+  std::string text = commander.paused() ? "the world stands still" : "";
+  for (const std::string& part : {senders.conflict_text(now), processes.conflict_text(now)})
+    if (!part.empty()) text += (text.empty() ? "" : "; ") + part;
+  return text;
+}
 
 // Publisher and clock map of one incarnation of the world.
 struct WorldPublisher {
@@ -77,6 +99,16 @@ void publish_state(WorldPublisher& world_publisher, sim::Simulation& simulation,
        .state = {simulation.bodies(), [&](auto& out) { simulation.body_contacts(out); }, simulation.look_ahead()},
        .game = &simulation.game()},
       map);
+}
+
+// A fixed time for other processes to load the scene; no particular process is awaited.
+void offer_scene(sync::Node& node, sync::SceneSender& sender, sync::Nanoseconds duration) {
+  node.set_state(node_health_t::WAITING, "waits for other processes to load the scene");
+  const sync::HostTime begin = sync::host_now() + duration;
+  for (sync::HostTime now = node.wait(); node.running() && now < begin; now = node.wait()) sender.poll(now);
+  node.set_state(node_health_t::RUNNING);
+  if (node.running())
+    std::cerr << "sim_node: the world begins" << std::endl;  // scripts/run measures its duration from here
 }
 
 void add_tags(sync::Tags& tags, const sim::Simulation& simulation, const std::optional<WorldPublisher>& publisher) {
@@ -115,36 +147,30 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
   auto& commands = node.bus().queue<sim_command_t>(channels::kSimCommand, 256);
   bool restart_pending = false;  // the world was reset or restored and continues at restart_time
   sync::HostTime restart_time{};
-  std::set<std::int64_t> known_processes;
+  sim::KnownProcesses processes(options.name, options.run_id);
+  processes.add_own(node.bus().identity().incarnation);
+  sim::ToolSenders senders(world.tools, options.run_id);
   sim::FollowedRate followed_rate(settings.visual_follows);
   std::vector<tool_state_t> new_messages;
 
   add_tags(node.tags(), simulation, world_publisher);
 
-  // A fixed time for other processes to load the scene; no particular process is awaited.
-  node.set_state(node_health_t::WAITING, "waits for other processes to load the scene");
-  const sync::HostTime begin = sync::host_now() + sync::from_seconds(settings.scene_grace_s);
-  for (sync::HostTime now = node.wait(); node.running() && now < begin; now = node.wait()) scene_sender.poll(now);
-  node.set_state(node_health_t::RUNNING);
-  if (node.running())
-    std::cerr << "sim_node: the world begins" << std::endl;  // scripts/run measures its duration from here
+  offer_scene(node, scene_sender, sync::from_seconds(settings.scene_grace_s));
 
   while (node.running()) {
     const sync::HostTime now = node.wait();
     new_messages.clear();
     while (auto m = tool_states.pop())
-      if (m->sequence_status != sync::SequenceStatus::kOld) new_messages.push_back(std::move(m->message));
+      if (senders.accept(m->message, m->arrival)) new_messages.push_back(std::move(m->message));
     while (const auto m = healths.pop()) {
-      if (const auto rate_Hz = followed_rate.on_message(m->message)) {
+      if (m->message.header.run_id != options.run_id) continue;
+      if (const auto rate_Hz = followed_rate.on_message(m->message, m->arrival)) {
         simulation.mechanics().set_visual_rate(*rate_Hz);
         std::cerr << "sim_node: visual steps follow " << m->message.node << " at " << *rate_Hz << " Hz" << std::endl;
       }
-      if (known_processes.size() < 4096 && known_processes.insert(m->message.header.incarnation).second)
-        world_publisher->publisher.request_full_state();
+      if (processes.is_new(m->message, m->arrival)) world_publisher->publisher.request_full_state();
     }
-    for (int left = kMaxCommandsPerTick; left > 0; --left)
-      if (const auto m = commands.pop(); m && m->message.header.run_id == options.run_id)
-        commander.execute(m->message);
+    execute_commands(commands, commander, options.run_id);
     for (sim_reply_t& reply : commander.take_replies()) {
       reply.header.sim_time_ns = -1;
       node.bus().publish(channels::kSimReply, reply);
@@ -157,6 +183,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
     if (restart_pending && now < restart_time) continue;
     if (std::exchange(restart_pending, false)) {
       node.begin_incarnation();
+      processes.add_own(node.bus().identity().incarnation);
       simulation.begin_incarnation(node.bus().identity().incarnation);
       start_publishing();
     }
@@ -164,7 +191,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
     steps ? simulation.step(new_messages) : simulation.hold(new_messages);
     publish_state(*world_publisher, simulation, steps, node.deadlines().next() - simulation.step_length());
     node.set_realtime_factor(world_publisher->pacer.realtime_factor());
-    node.set_state(node_health_t::RUNNING, commander.paused() ? "the world stands still" : "");
+    node.set_state(node_health_t::RUNNING, status_of(commander, senders, processes, now));
   }
   return 0;
 } catch (const std::exception& e) {

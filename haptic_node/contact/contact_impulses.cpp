@@ -12,7 +12,7 @@ ContactImpulses::Entry& ContactImpulses::entry(std::int64_t contact_id, sync::Ho
   if (contacts_.size() >= kMaxContacts)
     contacts_.erase(std::ranges::min_element(contacts_, [](const Entry& a, const Entry& b) { return a.last < b.last; }));
   Entry& e = contacts_.emplace_back();
-  e.first = e.last = now;
+  e.first = e.last = e.since = now;
   return e;
 }
 
@@ -46,7 +46,8 @@ void ContactImpulses::write_constraints(sync::HostTime now, std::vector<tool_con
       c.body = e.force.body;
       c.point_m = to_vec3f(e.force.point);
       c.force_N = to_vec3f(e.force.force_N);
-      c.impulse_N_s = to_vec3f(e.impulse_N_s);
+      c.impulse_N_s = to_vec3(e.impulse_N_s);
+      c.impulse_since_ns = sync::to_ns(e.since);
       out.push_back(c);
     }
   };

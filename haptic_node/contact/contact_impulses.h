@@ -22,7 +22,7 @@ struct ContactForce {
 
 class ContactImpulses {
  public:
-  static constexpr std::size_t kMaxContacts = 128;  // stored; the least recently felt one is removed
+  static constexpr std::size_t kMaxContacts = 128;  // stored; the least recently felt one is removed, and its sum begins again
   static constexpr std::size_t kMaxPublished = 12;  // maximum number in one message
   // time after the end of the force during which a contact is still published
   static constexpr sync::Nanoseconds kPublishAfter{50'000'000};
@@ -41,7 +41,7 @@ class ContactImpulses {
   struct Entry {
     ContactForce force;
     Eigen::Vector3d impulse_N_s = Eigen::Vector3d::Zero();
-    sync::HostTime first, last;
+    sync::HostTime first, last, since;  // since: begin of the sum
   };
   Entry& entry(std::int64_t contact_id, sync::HostTime now);
 

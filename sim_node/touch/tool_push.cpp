@@ -19,25 +19,31 @@ constexpr double kMinForce_N = 1e-9;
 
 }  // namespace
 
-bool ToolPush::is_current(const header_t& header) {
-  if (header.incarnation == incarnation_) {
-    if (header.seq <= last_seq_) return false;
-    last_seq_ = header.seq;
-    return true;
+bool ToolPush::is_repetition(const header_t& h) const {
+  return h.incarnation == incarnation_ && h.seq == last_seq_ && h.publish_time_ns == last_publish_ns_;
+}
+
+// Another sender, or one whose numbers begin again, has other sums: all of them start with this message.
+void ToolPush::follow(const header_t& h) {
+  if (h.incarnation != incarnation_ || h.seq <= last_seq_) {
+    impulses_.clear();
+    last_publish_ns_ = 0;
   }
-  if (header.incarnation == replaced_) return false;
-  impulses_.clear();
-  replaced_ = incarnation_;
-  incarnation_ = header.incarnation;
-  last_seq_ = header.seq;
-  last_publish_ns_ = 0;
-  return true;
+  incarnation_ = h.incarnation;
+  last_seq_ = h.seq;
 }
 
 void ToolPush::add_constraint(const tool_constraint_t& c, sync::SimTime now, std::span<const BodyMotion> bodies) {
   if (!ids_.issued(c.contact_id) || c.body < 0 || static_cast<std::size_t>(c.body) >= bodies.size()) return;
   ContactImpulses& a = impulses_[c.contact_id];
   const Vector3d reported = to_eigen(c.impulse_N_s);
+  if (a.since_ns != c.impulse_since_ns) {
+    // A sum that is not known here. It counts from zero only if it began after the previous message of this sender;
+    // a part of an older sum may have been applied already.
+    const bool is_new = last_publish_ns_ > 0 && c.impulse_since_ns > last_publish_ns_;
+    a.reported = is_new ? Vector3d(0, 0, 0) : reported;
+    a.since_ns = c.impulse_since_ns;
+  }
   a.received += reported - a.reported;
   a.reported = reported;
   a.body = c.body;
@@ -49,26 +55,36 @@ void ToolPush::add_constraint(const tool_constraint_t& c, sync::SimTime now, std
 }
 
 void ToolPush::receive(std::span<const tool_state_t> new_messages, sync::SimTime now, std::span<const BodyMotion> bodies) {
+  const std::int64_t publish_before_ns = last_publish_ns_;
   bool any = false;
-  std::int64_t publish_ns = 0;
   for (auto& [id, a] : impulses_) a.received.setZero();
   for (const tool_state_t& m : new_messages) {
-    if (!is_current(m.header)) continue;
+    if (is_repetition(m.header)) continue;
     any = true;
-    publish_ns = m.header.publish_time_ns;
+    follow(m.header);
     for (const tool_constraint_t& c : m.constraints) add_constraint(c, now, bodies);
+    last_publish_ns_ = m.header.publish_time_ns;
   }
+  while (impulses_.size() > kMaxContacts)
+    impulses_.erase(std::min_element(impulses_.begin(), impulses_.end(),
+                                     [](const auto& x, const auto& y) { return x.second.used < y.second.used; }));
   if (!any) return;
-  const double since_s = last_publish_ns_ > 0 ? static_cast<double>(publish_ns - last_publish_ns_) * 1e-9 : settings_.step_s;
-  last_publish_ns_ = publish_ns;
-  last_message_ = now;
+  const double since_s =
+      publish_before_ns > 0 ? static_cast<double>(last_publish_ns_ - publish_before_ns) * 1e-9 : settings_.step_s;
   // After a long silence, during which the force was held and faded, the impulse received meanwhile is scaled down,
   // because applying it all would be a blow.
   const double longest_s = settings_.tool_hold_s + settings_.tool_fade_s;
   const double share = since_s > longest_s ? longest_s / since_s : 1;
+  // The sender's stamps do not limit what it may give; the time of this world does.
+  const double heard_s = last_message_ ? sync::to_seconds(now - *last_message_) : 0;
+  const double max_N_s = settings_.tool_force_limit_N * std::max(settings_.step_s, std::min(heard_s, longest_s));
+  last_message_ = now;
   for (auto& [id, a] : impulses_) {
-    a.pending -= share * a.received;
-    a.mean_N = -a.received / std::max(since_s, kMinInterval_s);
+    a.received *= share;
+    const double size = a.received.norm();
+    if (size > max_N_s) a.received *= max_N_s / size;
+    a.pending -= a.received;
+    a.mean_N = -a.received / std::max(kMinInterval_s, std::min(since_s, longest_s));
   }
 }
 
@@ -98,9 +114,6 @@ const std::vector<Push>& ToolPush::step(sync::SimTime now, std::span<const tool_
     a.velocity = bodies[static_cast<std::size_t>(a.body)].velocity_at(a.point);
     pushes_.push_back({id, a.body, force, a.point});
   }
-  while (impulses_.size() > kMaxContacts)
-    impulses_.erase(std::min_element(impulses_.begin(), impulses_.end(),
-                                     [](const auto& x, const auto& y) { return x.second.used < y.second.used; }));
   return pushes_;
 }
 
@@ -124,8 +137,8 @@ void ToolPush::applied_impulses(std::vector<touch_applied_t>& out, std::size_t m
     const ContactImpulses& a = impulses_.at(latest[i].second);
     touch_applied_t entry{};
     entry.contact_id = latest[i].second;
-    entry.impulse_N_s = to_vec3f(a.applied);
-    entry.energy_J = static_cast<float>(a.energy_J);
+    entry.impulse_N_s = to_vec3(a.applied);
+    entry.energy_J = a.energy_J;
     out.push_back(entry);
   }
 }

@@ -36,11 +36,12 @@ class ToolPush {
   ToolPush(const Settings& settings, const Ids& ids, std::vector<double> reach_m)
       : settings_(settings), ids_(ids), reach_m_(std::move(reach_m)) {}
 
-  // Pushes for the step that follows `now`. new_messages: messages of the tool since the last call, in order. The
-  // impulse that they report since the previous messages is applied as a mean force. The remaining difference, caused
-  // by steps with no message or with two, is corrected over 5 steps. Without messages the force is held, then fades.
-  // A new haptic process counts its impulses from zero. Forces on contact ids that this simulation never issued are
-  // ignored.
+  // Pushes for the step that follows `now`. new_messages: messages of the one sender of the tool since the last call,
+  // in order (tool_senders.h). The impulse that they report since the previous messages is applied as a mean force.
+  // The remaining difference, caused by steps with no message or with two, is corrected over 5 steps. Without messages
+  // the force is held, then fades. At most the force limit times the time since the last message is applied, and no
+  // more than a held and fading force would have given. The first message of a sender only sets the start of its sums.
+  // Forces on contact ids that this simulation never issued are ignored.
   const std::vector<Push>& step(sync::SimTime now, std::span<const tool_state_t> new_messages, std::span<const BodyMotion> bodies);
   // The same while the world is paused: impulses received meanwhile are never applied.
   void hold(sync::SimTime now, std::span<const tool_state_t> new_messages, std::span<const BodyMotion> bodies);
@@ -60,6 +61,7 @@ class ToolPush {
   static constexpr std::size_t kMaxContacts = 64;
 
   struct ContactImpulses {
+    std::int64_t since_ns = -1;  // begin of the reported sum on the sender's clock; -1: no sum yet
     int body = -1;
     Eigen::Vector3d point{0, 0, 0};
     Eigen::Vector3d reported{0, 0, 0};     // cumulative impulse on the tool in the newest message, N s
@@ -71,7 +73,8 @@ class ToolPush {
     double energy_J = 0;
     sync::SimTime used{};
   };
-  bool is_current(const header_t& header);
+  bool is_repetition(const header_t& header) const;
+  void follow(const header_t& header);
   void receive(std::span<const tool_state_t> new_messages, sync::SimTime now, std::span<const BodyMotion> bodies);
   void add_constraint(const tool_constraint_t& c, sync::SimTime now, std::span<const BodyMotion> bodies);
 
@@ -79,7 +82,7 @@ class ToolPush {
   const Ids& ids_;
   std::vector<double> reach_m_;
   std::map<std::int64_t, ContactImpulses> impulses_;
-  std::int64_t incarnation_ = 0, replaced_ = 0;
+  std::int64_t incarnation_ = 0;
   std::int64_t last_seq_ = -1;
   std::int64_t last_publish_ns_ = 0;  // 0: no message of this incarnation yet
   std::optional<sync::SimTime> last_message_;

@@ -11,7 +11,7 @@ namespace tactus::sim {
 
 namespace {
 
-constexpr std::size_t kMaxApplied = 14;  // of a touch model; design: more contacts than a tool message reports
+constexpr std::size_t kMaxApplied = 12;  // of a touch model, two pages; design: the contacts that a tool message reports
 // Margin for forces outside the bounding sphere of a body, m: rounding of the wire format and the motion of one step.
 constexpr double kReachMargin_m = 0.02;
 

@@ -31,23 +31,25 @@ constexpr std::array<RenamedField, 5> kRenamedFields{{{"modality_report_t", "owe
                                                       {"node_health_t", "owes", "expected_events"},
                                                       {"node_health_t", "note", "status_text"}}};
 
-std::string text_of(const Field& f) {
-  return std::string(f.type) + " " + std::string(f.name) + (f.count.empty() ? "" : "[" + std::string(f.count) + "]");
-}
+struct AddedField {
+  std::string_view type, name;
+};
+// Fields that did not exist in 0.1.0 and for which 0 means that the value is not known.
+constexpr std::array<AddedField, 1> kAddedFields{{{"tool_constraint_t", "impulse_since_ns"}}};
 
-// The line of a field of a recorded type, with the name that the field has now.
-std::string with_new_name(const std::string& type, const std::string& line) {
-  const std::size_t begin = line.find(' ') + 1;
-  const std::size_t end = std::min(line.find('[', begin), line.size());
+std::string_view new_name(std::string_view type, std::string_view name) {
   for (const RenamedField& r : kRenamedFields)
-    if (r.type == type && line.substr(begin, end - begin) == r.before)
-      return line.substr(0, begin) + std::string(r.now) + line.substr(end);
-  return line;
+    if (r.type == type && r.before == name) return r.now;
+  return name;
 }
 
-bool same_fields(const RecordedType& recorded, const MessageType& now) {
-  return std::equal(recorded.fields.begin(), recorded.fields.end(), now.fields.begin(), now.fields.end(),
-                    [&](const std::string& line, const Field& f) { return with_new_name(recorded.name, line) == text_of(f); });
+// Whether every value of a recorded type is a value of the type that a field has now.
+bool holds_values_of(std::string_view now, std::string_view before) {
+  return now == before || (now == "double" && before == "float") || (now == "vec3_t" && before == "vec3f_t");
+}
+
+bool is_added(std::string_view type, std::string_view name) {
+  return std::any_of(kAddedFields.begin(), kAddedFields.end(), [&](const AddedField& a) { return a.type == type && a.name == name; });
 }
 
 // The text of all pages, without their titles; empty when one is missing.
@@ -108,12 +110,37 @@ std::vector<RecordedType> recorded_types(std::span<const std::uint8_t> log) {
   return types;
 }
 
+RecordedField parse_field(std::string_view line) {
+  const std::size_t space = std::min(line.find(' '), line.size());
+  const std::size_t begin = std::min(space + 1, line.size()), bracket = std::min(line.find('[', begin), line.size());
+  std::string_view count = line.substr(std::min(bracket + 1, line.size()));
+  if (!count.empty()) count.remove_suffix(1);
+  return {line.substr(0, space), line.substr(begin, bracket - begin), count};
+}
+
+std::optional<std::vector<int>> matching_fields(const RecordedType& recorded, const MessageType& now) {
+  std::vector<int> places;
+  std::size_t next = 0;
+  for (const Field& f : now.fields) {
+    const RecordedField before = next < recorded.fields.size() ? parse_field(recorded.fields[next]) : RecordedField{};
+    const bool same = new_name(recorded.name, before.name) == f.name && new_name(recorded.name, before.count) == f.count &&
+                      holds_values_of(f.type, before.type);
+    if (same)
+      places.push_back(static_cast<int>(next++));
+    else if (is_added(recorded.name, f.name))
+      places.push_back(-1);
+    else
+      return std::nullopt;
+  }
+  return next == recorded.fields.size() ? std::optional(places) : std::nullopt;
+}
+
 std::map<std::int64_t, std::int64_t> renamed_types(const std::vector<RecordedType>& recorded) {
   std::map<std::int64_t, std::int64_t> renamed;
   for (const RecordedType& type : recorded) {
     const MessageType* now = message_type(type.name);
     if (now && now->fingerprint == type.fingerprint) continue;
-    if (!now || !same_fields(type, *now))
+    if (!now || !matching_fields(type, *now))
       throw std::runtime_error("has messages of the type " + type.name + " with other fields than this release; " +
                                "use the release that LOG_INFO of the log names");
     renamed[type.fingerprint] = now->fingerprint;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "sync/log/convert_message.h"
 #include "sync/log/log_contract.h"
 #include "sync/log/log_reader.h"
 #include "sync/log/recorder_types.h"
@@ -13,18 +14,7 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-constexpr std::size_t kFingerprintBytes = 8;
 constexpr std::size_t kBlockBytes = 1 << 20;  // passed to the sink in one call
-
-std::int64_t fingerprint_of(Bytes data) {  // big-endian
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < kFingerprintBytes; ++i) value = value << 8 | data[i];
-  return static_cast<std::int64_t>(value);
-}
-
-void set_fingerprint(std::vector<std::uint8_t>& data, std::int64_t fingerprint) {
-  for (std::size_t i = kFingerprintBytes; i-- > 0; fingerprint >>= 8) data[i] = static_cast<std::uint8_t>(fingerprint & 0xff);
-}
 
 // True for the first page of LOG_TYPES; each part of a recording has one.
 bool is_first_page(Bytes data) {
@@ -55,23 +45,21 @@ class Output {
 }  // namespace
 
 UpgradeCounts upgrade_log(Bytes log, std::unique_ptr<LogSink> sink) {
-  const std::vector<RecordedType> types = recorded_types(log);
+  std::vector<RecordedType> types = recorded_types(log);
   if (types.empty()) throw std::runtime_error("does not describe its message types (LOG_TYPES), so it cannot be converted");
-  const auto renamed = renamed_types(types);
+  const MessageConverter converter(std::move(types));
   UpgradeCounts counts;
   Output out(std::move(sink));
   LogScanner scanner(log);
-  std::vector<std::uint8_t> data;
   for (LogEvent e; scanner.next(e);) {
     if (e.channel == kLogTypes) {
       if (!is_first_page(e.data)) continue;
       for (const std::string& page : log_types()) out.write(e, {reinterpret_cast<const std::uint8_t*>(page.data()), page.size()});
       continue;
     }
-    data.assign(e.data.begin(), e.data.end());
-    const auto change = data.size() < kFingerprintBytes ? renamed.end() : renamed.find(fingerprint_of(data));
-    if (change != renamed.end()) set_fingerprint(data, change->second), ++counts.converted;
-    out.write(e, data);
+    const auto converted = converter.convert(e.data);
+    counts.converted += converted.has_value();
+    out.write(e, converted ? Bytes(*converted) : e.data);
   }
   out.flush();
   counts.events = out.events();

@@ -86,7 +86,7 @@ struct FalseModels {
       touch_applied_t a{};
       a.contact_id = below(4);
       a.energy_J = static_cast<float>(number());
-      a.impulse_N_s = to_vec3f(vector());
+      a.impulse_N_s = to_vec3(to_eigen(to_vec3f(vector())));
       m.applied.push_back(a);
     }
     m.applied_count = static_cast<std::int8_t>(m.applied.size());

@@ -99,9 +99,10 @@ class Samples {
     p.friction_static = single(0, 1), p.friction_dynamic = single(0, 1);
     p.bump_asset = whole(0, 100), fill(p.bump_u);
   }
-  void fill(touch_applied_t& a) { a.contact_id = whole(0, 9), fill(a.impulse_N_s), a.energy_J = single(-1, 1); }
+  void fill(touch_applied_t& a) { a.contact_id = whole(0, 9), fill(a.impulse_N_s), a.energy_J = real(-1, 1); }
   void fill(tool_constraint_t& c) {
     c.contact_id = whole(0, 9), c.body = whole(0, 9), fill(c.point_m), fill(c.force_N), fill(c.impulse_N_s);
+    c.impulse_since_ns = whole(0, 1 << 30);
   }
   void fill(presentation_t& p) {
     p.event_id = whole(0, 1 << 30), p.part = static_cast<std::int8_t>(whole(0, 2));
@@ -142,7 +143,7 @@ class Samples {
     fill(m.header), fill(m.clock);
     m.tool = whole(0, 3);
     m.pages = static_cast<std::int8_t>(whole(1, 9)), m.page = static_cast<std::int8_t>(whole(0, m.pages - 1));
-    fill_list(m.plane_count, m.planes, 0, 6), fill_list(m.applied_count, m.applied, 0, 7);
+    fill_list(m.plane_count, m.planes, 0, 6), fill_list(m.applied_count, m.applied, 0, 6);
   }
   void fill(tool_state_t& m) {
     fill(m.header);

@@ -131,6 +131,7 @@ struct Holding {
   int tool;
   std::int64_t seq = 0;
   std::map<std::int64_t, Vector3d> impulses{};
+  std::map<std::int64_t, std::int64_t> begun_ns{};  // begin of each of these sums
 
   tool_state_t tick(const touch_model_t& model, double since_s, std::int64_t time_ns) {
     tool_state_t m{};
@@ -148,6 +149,7 @@ struct Holding {
         proxy -= gap * n;
         force = std::max(0.0, -stiffness_N_m * gap + damping_N_s_m * v.dot(n)) * n;
       }
+      const std::int64_t since_ns = begun_ns.try_emplace(p.contact_id, m.header.publish_time_ns - 1).first->second;
       Vector3d& impulse = impulses.try_emplace(p.contact_id, Vector3d::Zero()).first->second;
       impulse += 0.001 * force;
       tool_constraint_t& c = m.constraints.emplace_back();
@@ -155,7 +157,8 @@ struct Holding {
       c.body = p.body;
       c.point_m = to_vec3f(proxy - radius_m * n);
       c.force_N = to_vec3f(force);
-      c.impulse_N_s = to_vec3f(impulse);
+      c.impulse_N_s = to_vec3(impulse);
+      c.impulse_since_ns = since_ns;
     }
     m.constraint_count = static_cast<std::int32_t>(m.constraints.size());
     m.device.position_m = to_vec3(place);

@@ -34,8 +34,8 @@ struct Ports {
       touch_model_t m = model(ms, {p});
       touch_applied_t a{};
       a.contact_id = 7;
-      a.energy_J = static_cast<float>(given_J);
-      a.impulse_N_s = to_vec3f(Vector3d(0, 0, impulse));
+      a.energy_J = given_J;
+      a.impulse_N_s = to_vec3(Vector3d(0, 0, impulse));
       m.applied = {a};
       passivity.on_message(m);
     }
@@ -134,8 +134,8 @@ TEST_CASE("The last of two reports of a body counts, and its speed is clamped") 
       touch_model_t m = model(ports.ms, twice ? std::vector{first, p} : std::vector{p});
       touch_applied_t a{};
       a.contact_id = 7;
-      a.energy_J = static_cast<float>(ports.given_J);
-      a.impulse_N_s = to_vec3f(Vector3d(0, 0, ports.impulse));
+      a.energy_J = ports.given_J;
+      a.impulse_N_s = to_vec3(Vector3d(0, 0, ports.impulse));
       m.applied = {a};
       ports.passivity.on_message(m);
     }

@@ -79,8 +79,8 @@ struct World {
     touch_model_t m = model(ms, {p});
     touch_applied_t a{};
     a.contact_id = 7;
-    a.impulse_N_s = to_vec3f(place(impulse));
-    a.energy_J = static_cast<float>(energy_J);
+    a.impulse_N_s = to_vec3(place(impulse));
+    a.energy_J = energy_J;
     m.applied.push_back(a);
     m.applied_count = 1;
     return m;

@@ -35,6 +35,7 @@ struct Hand {
   std::int64_t seq = 0, incarnation = 40;
   Eigen::Vector3d last;
   std::map<std::int64_t, Eigen::Vector3d> impulses{};
+  std::map<std::int64_t, std::int64_t> begun_ns{};  // begin of each of these sums, on the clock of publish_time_ns
 
   // Skin radius of a plane's contact point. A ball has its radius, since its centre is its only point. The points of
   // a tool with a shape, which this hand never rotates, have none.
@@ -58,13 +59,15 @@ struct Hand {
       const double depth = skin(p) - (device + to_eigen(p.tool_point_m) - to_eigen(p.point_m)).dot(n);
       if (depth > 0)
         impulses.try_emplace(p.contact_id, Eigen::Vector3d::Zero()).first->second += stiffness * depth * 0.001 * n;
+      const std::int64_t since_ns = begun_ns.try_emplace(p.contact_id, m.header.publish_time_ns - 1).first->second;
       if (!impulses.count(p.contact_id)) continue;
       tool_constraint_t c{};
       c.contact_id = p.contact_id;
       c.body = p.body;
       c.point_m = to_vec3f(proxy + to_eigen(p.tool_point_m) - skin(p) * n);
       c.force_N = to_vec3f(Eigen::Vector3d(stiffness * std::max(0.0, depth) * n));
-      c.impulse_N_s = to_vec3f(impulses[p.contact_id]);
+      c.impulse_N_s = to_vec3(impulses[p.contact_id]);
+      c.impulse_since_ns = since_ns;
       m.constraints.push_back(c);
     }
     m.constraint_count = static_cast<std::int32_t>(m.constraints.size());

@@ -3,8 +3,12 @@
 
 #include <catch2/catch.hpp>
 #include <cstdio>
+#include <cstring>
 #include <string>
+#include <tactus/tool_constraint_t.hpp>
 #include <tactus/tool_state_t.hpp>
+#include <tactus/touch_applied_t.hpp>
+#include <tactus/touch_model_t.hpp>
 #include <vector>
 
 #include "lcmtypes/channels.h"
@@ -15,6 +19,7 @@
 #include "sync/log/log_writer.h"
 #include "sync/log/mapped_log.h"
 #include "sync/log/recorder_types.h"
+#include "tests/lcmtypes/samples.h"
 #include "tests/sync/support/memory_sink.h"
 #include "tests/sync/support/temporary_folder.h"
 
@@ -99,6 +104,100 @@ TEST_CASE("A log with renamed fields is converted to messages that this release 
   const auto state = decode<tool_state_t>(messages[1].data.data(), messages[1].data.size());
   REQUIRE(state);
   CHECK(state->touch_status == 2);
+}
+
+namespace {
+
+template <class Number>
+void append_number(Bytes& out, Number value) {
+  Bytes raw(sizeof value);
+  std::memcpy(raw.data(), &value, sizeof value);
+  out.insert(out.end(), raw.rbegin(), raw.rend());  // big-endian
+}
+void append_vector(Bytes& out, const vec3f_t& v) { append_number(out, v.x), append_number(out, v.y), append_number(out, v.z); }
+vec3f_t single(const vec3_t& v) {
+  vec3f_t f{};
+  f.x = static_cast<float>(v.x), f.y = static_cast<float>(v.y), f.z = static_cast<float>(v.z);
+  return f;
+}
+
+// Messages of the release in which cumulative impulses had single precision. The changed lists are the last fields.
+constexpr std::size_t kConstraintBytes = 68, kAppliedBytes = 40;
+Bytes in_single_precision(const tool_state_t& m) {
+  Bytes bytes = with_fingerprint(sync::encode(m), kOldFingerprint);
+  bytes.resize(bytes.size() - kConstraintBytes * m.constraints.size());
+  for (const tool_constraint_t& c : m.constraints) {
+    append_number(bytes, c.contact_id), append_number(bytes, c.body);
+    append_vector(bytes, c.point_m), append_vector(bytes, c.force_N), append_vector(bytes, single(c.impulse_N_s));
+  }
+  return bytes;
+}
+Bytes in_single_precision(const touch_model_t& m) {
+  Bytes bytes = with_fingerprint(sync::encode(m), kOldFingerprint + 1);
+  bytes.resize(bytes.size() - kAppliedBytes * m.applied.size());
+  for (const touch_applied_t& a : m.applied)
+    append_number(bytes, a.contact_id), append_vector(bytes, single(a.impulse_N_s)), append_number(bytes, static_cast<float>(a.energy_J));
+  return bytes;
+}
+
+std::string replaced_everywhere(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size()) text.replace(at, from.size(), to);
+  return text;
+}
+
+std::vector<std::string> types_in_single_precision() {
+  std::vector<std::string> pages = log_types();
+  for (std::string& page : pages) {
+    page = replaced(page, hexadecimal(tool_state_t::getHash()), hexadecimal(kOldFingerprint));
+    page = replaced(page, hexadecimal(touch_model_t::getHash()), hexadecimal(kOldFingerprint + 1));
+    page = replaced(page, hexadecimal(tool_constraint_t::getHash()), hexadecimal(kOldFingerprint + 2));
+    page = replaced(page, hexadecimal(touch_applied_t::getHash()), hexadecimal(kOldFingerprint + 3));
+    page = replaced_everywhere(page, "  vec3_t impulse_N_s\n", "  vec3f_t impulse_N_s\n");
+    page = replaced(page, "  double energy_J\n", "  float energy_J\n");
+    page = replaced(page, "  int64_t impulse_since_ns\n", "");
+  }
+  return pages;
+}
+
+}  // namespace
+
+TEST_CASE("A log with impulses of single precision is converted with the same values, and an unknown begin of the sums") {
+  test::Samples samples(8);
+  std::vector<tool_state_t> tools(40);
+  std::vector<touch_model_t> models(40);
+  Bytes log;
+  std::int64_t number = 0;
+  for (const std::string& page : types_in_single_precision()) append_event(log, number++, 10, kLogTypes, Bytes(page.begin(), page.end()));
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    samples.fill(tools[i]), samples.fill(models[i]);
+    append_event(log, number++, 20, channels::kToolState, in_single_precision(tools[i]));
+    append_event(log, number++, 20, channels::kTouchModel, in_single_precision(models[i]));
+    Bytes damaged = in_single_precision(models[i]);
+    damaged.resize(damaged.size() - 1 - i);
+    append_event(log, number++, 20, channels::kTouchModel, damaged);
+  }
+  const Result result = upgraded(log);
+  CHECK(result.counts.converted == 80);
+  std::vector<LogEvent> out;
+  for (const LogEvent& e : read_all(result.bytes))
+    if (e.channel != kLogTypes) out.push_back(e);
+  REQUIRE(out.size() == 120);
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    // The oracle: the message of this release, with rounded sums.
+    for (tool_constraint_t& c : tools[i].constraints) {
+      const vec3f_t f = single(c.impulse_N_s);
+      c.impulse_N_s.x = f.x, c.impulse_N_s.y = f.y, c.impulse_N_s.z = f.z;
+      c.impulse_since_ns = 0;
+    }
+    for (touch_applied_t& a : models[i].applied) {
+      const vec3f_t f = single(a.impulse_N_s);
+      a.impulse_N_s.x = f.x, a.impulse_N_s.y = f.y, a.impulse_N_s.z = f.z;
+      a.energy_J = static_cast<float>(a.energy_J);
+    }
+    CHECK(Bytes(out[3 * i].data.begin(), out[3 * i].data.end()) == sync::encode(tools[i]));
+    CHECK(Bytes(out[3 * i + 1].data.begin(), out[3 * i + 1].data.end()) == sync::encode(models[i]));
+    CHECK_FALSE(decode<touch_model_t>(out[3 * i + 2].data.data(), out[3 * i + 2].data.size()));
+  }
 }
 
 TEST_CASE("A conversion keeps channels, stamps, order and all other bytes") {

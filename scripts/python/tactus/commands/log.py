@@ -5,9 +5,9 @@ from tactus.commands import prepare
 
 USAGE = """Usage: tactus log upgrade OLD NEW
 
-Converts a recording to the message types of this release, so that replay, rerender, export and report read it. The contents,
-the time stamps and the order of the messages stay the same; only renamed fields of messages get their new names. A log whose
-messages have other fields is refused.
+Converts a recording to the message types of this release, so that replay, rerender, export and report read it. The values,
+the time stamps and the order of the messages stay the same. Renamed fields get their new names, numbers that are more precise
+now get their new form, and new fields say that their value is not known. A log whose messages have other fields is refused.
 
   OLD      run.lcmlog of a run, or its folder: all parts of its recording. It is not changed.
   NEW      name of the converted log; must not exist
