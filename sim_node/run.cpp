@@ -47,8 +47,13 @@ sim::Settings settings_of(const sim::WorldDef& world, const std::vector<std::str
   return settings;
 }
 
-// Bounds the time that commands take from a step; a sender without a reply repeats its command.
+// Bounds the time that commands take from a step; a sender without a reply repeats its command. A command that copies the whole
+// state takes all of it.
 constexpr int kMaxCommandsPerTick = 4;
+int cost_of(const sim_command_t& c) {
+  const bool copies_state = c.kind == sim_command_t::RESET || c.kind == sim_command_t::SNAPSHOT || c.kind == sim_command_t::RESTORE;
+  return copies_state ? kMaxCommandsPerTick : 1;
+}
 
 // Executes commands of this run. Those of other runs cost nothing, so they delay none.
 void execute_commands(sync::Queue<sim_command_t>& commands, sim::Commander& commander, std::int64_t run_id) {
@@ -57,7 +62,7 @@ void execute_commands(sync::Queue<sim_command_t>& commands, sim::Commander& comm
     if (!m) return;
     if (m->message.header.run_id != run_id) continue;
     commander.execute(m->message);
-    --left;
+    left -= cost_of(m->message);
   }
 }
 

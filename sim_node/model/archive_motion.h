@@ -1,15 +1,28 @@
 // Archive functions shared by several states.
 #pragma once
 
+#include <cmath>
+
 #include "sim_node/model/body_motion.h"
 #include "sim_node/model/manifold.h"
 #include "sim_node/model/state_archive.h"
 
 namespace tactus::sim {
 
+// Whether a motion can be continued without an overflow. The bounds are far beyond any scene: a body that falls for a week
+// stays within them.
+inline bool plausible(const BodyMotion& m) {
+  constexpr double kMaxPosition_m = 1e13, kMaxRate = 1e9, kMaxMobility = 1e12, kMaxNormError = 1e-3;
+  return m.position_m.cwiseAbs().maxCoeff() <= kMaxPosition_m && m.centre_m.cwiseAbs().maxCoeff() <= kMaxPosition_m &&
+         m.velocity_m_s.cwiseAbs().maxCoeff() <= kMaxRate && m.spin_rad_s.cwiseAbs().maxCoeff() <= kMaxRate &&
+         m.inverse_mass_1_kg >= 0 && m.inverse_mass_1_kg <= kMaxMobility &&
+         m.inverse_inertia.cwiseAbs().maxCoeff() <= kMaxMobility && std::abs(m.orientation.norm() - 1) <= kMaxNormError;
+}
+
 inline void archive(StateArchive& a, BodyMotion& m) {
   a(m.position_m), a(m.orientation), a(m.centre_m), a(m.velocity_m_s), a(m.spin_rad_s);
   a(m.inverse_mass_1_kg), a(m.inverse_inertia);
+  a.require(!a.reads() || plausible(m), "the state holds a motion that no body can have");
 }
 
 // bodies, shapes: numbers of bodies and shapes in the world.

@@ -74,9 +74,7 @@ void SceneSender::send_chunk(std::int64_t hash, const Outgoing& outgoing, std::s
 }
 
 void SceneSender::receive_requests() {
-  for (int left = kRequestsPerPoll; left > 0; --left) {
-    const auto request = requests_.pop();
-    if (!request) return;
+  while (const auto request = requests_.pop()) {
     const asset_request_t& r = request->message;
     const auto it = assets_.find(r.hash);
     if (it == assets_.end()) continue;

@@ -18,13 +18,12 @@ class Bus;
 template <class Message>
 class Queue;
 
-// The sending side, in sim_node. Sends at most kChunksPerPoll chunks per call (bulk port) and reads at most kRequestsPerPoll
-// requests, each of bounded cost, so that no receiver and no flood of requests delays a tick by more than some microseconds. The
+// The sending side, in sim_node. Sends at most kChunksPerPoll chunks per call (bulk port). It reads at most a queue of requests,
+// each of bounded cost, so that no receiver and no flood of requests delays a tick by more than some tens of microseconds. The
 // assets and their chunks take turns, so that a receiver that repeats its requests without end delays the others only.
 class SceneSender {
  public:
   static constexpr int kChunksPerPoll = 4;
-  static constexpr int kRequestsPerPoll = 16;
   // Throws std::runtime_error with one sentence when the assets exceed the limits of the receivers.
   SceneSender(Bus& bus, std::vector<Asset> assets);
   // Call it once a tick: sends the manifest when due, then requested chunks.

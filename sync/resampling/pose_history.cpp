@@ -16,8 +16,9 @@ Eigen::Quaterniond rotated(const Eigen::Quaterniond& from, const Eigen::Vector3d
 }  // namespace
 
 void PoseHistory::push(const tool_state_t& m, HostTime arrival) {
-  if (m.header.incarnation != incarnation_) {  // another process controls the tool now; earlier reports are void
-    incarnation_ = m.header.incarnation;
+  const SenderStatus status = followed_.on_page(m.header, arrival);
+  if (!accepted(status)) return;
+  if (status == SenderStatus::kFirst) {  // another process controls the tool now; earlier reports are void
     sender_ = SenderClock(own_);
     samples_.clear();
   }

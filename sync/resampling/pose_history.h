@@ -8,6 +8,7 @@
 #include "sync/resampling/body_history.h"
 #include "sync/resampling/sample_status.h"
 #include "sync/clocks/sender_clock.h"
+#include "sync/clocks/single_sender.h"
 #include "sync/time/time.h"
 
 namespace tactus::sync {
@@ -27,7 +28,10 @@ class PoseHistory {
   // own: times on another clock are converted by its map; times of another run by arrival.
   explicit PoseHistory(OwnClock own) : sender_(own), own_(own) {}
 
+  // A report. Those of a second process of the tool are ignored while the first one sends.
   void push(const tool_state_t& state, HostTime arrival);
+  // Whether a second process of the tool has sent within the last 0.3 s.
+  bool conflict(HostTime now) const { return followed_.conflict(now); }
   // Removes all reports, because they belong to an earlier world.
   void forget() { samples_.clear(); }
   // kNone: no report has arrived. After kStaleAfter it is the last pose with kStale.
@@ -40,7 +44,7 @@ class PoseHistory {
   };
   SenderClock sender_;
   OwnClock own_;
-  std::int64_t incarnation_ = 0;
+  SingleSender followed_;
   std::deque<TimedPose> samples_;  // in order of time
 };
 

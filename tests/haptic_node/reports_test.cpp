@@ -48,6 +48,23 @@ TEST_CASE("The number of contact impulses is bounded, and the oldest contact is 
   CHECK(published[0].contact_id == 999);
 }
 
+TEST_CASE("The begin of a sum of impulses is published, and a removed contact begins another sum") {
+  ContactImpulses impulses;
+  std::vector<tool_constraint_t> published;
+  const auto publish = [&](int ms, int contact) {
+    impulses.step(host_ms(ms), 1e-3, std::vector{felt(contact, 1)});
+    impulses.write_constraints(host_ms(ms), published);
+    return published.at(0);
+  };
+  CHECK(publish(5, 0).impulse_since_ns == sync::to_ns(host_ms(5)));
+  CHECK(publish(6, 0).impulse_since_ns == sync::to_ns(host_ms(5)));
+  CHECK(publish(200, 0).impulse_since_ns == sync::to_ns(host_ms(5)));  // the sum continues after a pause
+  for (int i = 1; i <= 200; ++i) publish(200 + i, i);
+  const tool_constraint_t again = publish(500, 0);
+  CHECK(again.impulse_since_ns == sync::to_ns(host_ms(500)));
+  CHECK(again.impulse_N_s.z == 0);
+}
+
 TEST_CASE("A begin is presented at its first force, before or after the event arrives") {
   ContactImpulses impulses;
   PendingOnsets onsets;

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <tactus/asset_chunk_t.hpp>
 #include <tactus/asset_ref_t.hpp>
+#include <tactus/asset_request_t.hpp>
 #include <tactus/scene_manifest_t.hpp>
 #include <tactus/scene_t.hpp>
 
@@ -72,6 +73,40 @@ TEST_CASE("The sender never sends more than kChunksPerPoll chunks at once") {
     while (chunks.pop()) ++sent;
     CHECK(sent <= SceneSender::kChunksPerPoll);
   }
+}
+
+TEST_CASE("A flood of requests for one asset does not keep another asset or later chunks from being sent") {
+  Bus bus(Identity::fresh("test", 1), in_memory());
+  SceneSender sender(bus, assets_of("room", 2'000'000));
+  auto& chunks = bus.queue<asset_chunk_t>(channels::kAssetChunk, 10'000);
+  auto& requests = bus.queue<asset_request_t>(channels::kAssetRequest, 10'000);
+  const std::int64_t mesh = sender.manifest()[1].hash;
+  const auto request = [&](std::int64_t hash, std::int32_t first, std::int32_t count) {
+    asset_request_t m{};
+    m.header.sim_time_ns = -1;
+    m.hash = hash;
+    m.first_chunk = first, m.chunk_count = count;
+    bus.publish(channels::kAssetRequest, m, Port::kBulk);
+  };
+  HostTime now = host_time(1);
+  bool sent_scene = false, sent_end = false;
+  for (int ms = 0; ms < 600; ++ms, now += Nanoseconds(1'000'000)) {
+    for (int i = 0; i < 300; ++i) request(mesh, 0, 1 << 20);
+    if (ms == 10) request(sender.manifest()[0].hash, 0, 1);
+    bus.drain(now);
+    sender.poll(now);
+    while (requests.pop()) continue;
+    bus.drain(now);
+    int sent = 0;
+    while (const auto m = chunks.pop()) {
+      ++sent;
+      sent_scene = sent_scene || m->message.hash != mesh;
+      sent_end = sent_end || m->message.chunk == m->message.chunks - 1;
+    }
+    CHECK(sent <= SceneSender::kChunksPerPoll);
+  }
+  CHECK(sent_end);
+  CHECK(sent_scene);
 }
 
 TEST_CASE("Forged chunks do not become an asset") {

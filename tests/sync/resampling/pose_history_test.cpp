@@ -86,13 +86,17 @@ TEST_CASE("One second of history is kept, and the oldest pose is held before it"
   CHECK(h.at(1000).status == SampleStatus::kHeld);
 }
 
-TEST_CASE("A late report changes nothing, and a new process replaces the history") {
+TEST_CASE("A late report and a second process change nothing, and a successor replaces the history") {
   Heard h;
   h.history.push(head_at(100 * kMs), host_time(402 * kMs));
   CHECK(h.at(400).status == SampleStatus::kExact);
   h.history.push(head_at(404 * kMs, 10), host_time(405 * kMs));
+  CHECK(h.at(300).status != SampleStatus::kHeld);
+  CHECK(h.at(400).status == SampleStatus::kExact);
+  CHECK(h.history.conflict(host_time(405 * kMs)));
+  h.history.push(head_at(704 * kMs, 10), host_time(705 * kMs));
   CHECK(h.at(300).status == SampleStatus::kHeld);
-  CHECK(h.at(404).status == SampleStatus::kExact);
+  CHECK(h.at(704).status == SampleStatus::kExact);
 }
 
 TEST_CASE("forget() removes all poses, and later poses are not interpolated with them") {
