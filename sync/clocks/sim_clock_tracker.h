@@ -39,6 +39,10 @@ class SimClockTracker {
   // nullopt before the first message.
   std::optional<TimeMap> map(HostTime now) const;
   std::int64_t incarnation() const { return sender_of_world_.incarnation(); }
+  // Whether a message is of the followed simulation. Call it after track().
+  bool follows(const header_t& header) const {
+    return known_ && header.incarnation == sender_of_world_.incarnation() && header.run_id == sender_of_world_.run_id();
+  }
   // Whether another simulation has sent within the last 0.3 s. It is ignored, and its user should stop it.
   bool conflict(HostTime now) const { return sender_of_world_.conflict(now); }
   // A simulation publishes at most about 20 ms ahead, so a time more than kMaxDeviation ahead of the newest arrival is

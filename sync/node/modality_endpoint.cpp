@@ -148,7 +148,8 @@ void ModalityEndpoint::EventSlot::step(ModalityEndpoint& endpoint, HostTime now,
   HostTime received = now;  // if reading takes long, this tick also accepts the messages that arrive in the meantime
   while (const auto m = events.received_.pop()) {
     received = std::max(received, m->arrival);
-    endpoint.simulation_.track(m->message.header, m->message.clock, m->arrival);
+    if (!endpoint.follow(m->message.header, m->message.clock, m->arrival)) continue;
+    newest = std::max(newest, m->arrival);
     events.inbox_.push(m->message, m->arrival, endpoint.operators_, &endpoint.decisions_);
   }
   endpoint.report_dropped(events.inbox_.take_dropped());

@@ -121,7 +121,8 @@ class ModalityEndpoint {
   const OutputValues& output() const { return output_; }
   // The name of the profile in force, whether or not it applies to this modality; empty: there is none.
   const std::string& profile_name() const { return profile_name_; }
-  // The arrival of the newest message of any stream, before any delay of the profile.
+  // The arrival of the newest message of any stream, before any delay of the profile. Messages of a second simulation do not
+  // count.
   HostTime newest_arrival() const;
   // Whether a second simulation sends. Its messages are ignored.
   bool simulation_conflict(HostTime now) const { return simulation_.conflict(now); }
@@ -144,15 +145,17 @@ class ModalityEndpoint {
     explicit StreamSlot(Queue<Message>& inbox) : stream(inbox) {}
     void step(ModalityEndpoint& endpoint, HostTime now, HostTime state_time) override;
     void change_profile() override { stream.degraded_.change_profile(); }
-    HostTime newest_arrival() const override { return stream.inbox_.count().newest_arrival; }
+    HostTime newest_arrival() const override { return newest; }
     Stream<Message> stream;
+    HostTime newest{};  // arrival of the newest used message
   };
   struct EventSlot : AnyStream {
     explicit EventSlot(Events e) : events(std::move(e)) {}
     void step(ModalityEndpoint& endpoint, HostTime now, HostTime state_time) override;
     void change_profile() override {}  // each event has its own decision
-    HostTime newest_arrival() const override { return events.count().newest_arrival; }
+    HostTime newest_arrival() const override { return newest; }
     Events events;
+    HostTime newest{};  // arrival of the newest used message
   };
   template <class Message>
   Stream<Message>& add(const char* channel, std::size_t capacity) {
@@ -162,6 +165,11 @@ class ModalityEndpoint {
     return stream;
   }
 
+  // Follows the simulation. False: the message is of a second one and is not used.
+  bool follow(const header_t& header, const sim_clock_t& clock, HostTime arrival) {
+    simulation_.track(header, clock, arrival);
+    return simulation_.follows(header);
+  }
   // Logs the delay of events that have arrived and are not presented yet, when a delay of a profile begins: it applies to
   // them, too.
   void log_in_flight_delays(HostTime now, SimTime sim_now);
@@ -203,7 +211,9 @@ void ModalityEndpoint::StreamSlot<Message>::step(ModalityEndpoint& endpoint, Hos
   HostTime newest_arrival = now;
   while (auto m = stream.inbox_.pop()) {
     newest_arrival = std::max(newest_arrival, m->arrival);
-    if constexpr (requires { m->message.clock; }) endpoint.simulation_.track(m->message.header, m->message.clock, m->arrival);
+    if constexpr (requires { m->message.clock; })
+      if (!endpoint.follow(m->message.header, m->message.clock, m->arrival)) continue;
+    newest = std::max(newest, m->arrival);
     stream.degraded_.push(std::move(m->message), m->arrival, endpoint.operators_, &endpoint.decisions_);
   }
   // In lock-step the state of the world is the state at the start of the iteration; each event carries its own due time.

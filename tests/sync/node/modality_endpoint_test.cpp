@@ -47,3 +47,31 @@ TEST_CASE("Messages that arrive while a tick reads its inputs are processed in t
   while (const auto m = frames.pop()) ++heard;
   CHECK(heard == 3);
 }
+
+TEST_CASE("A second simulation changes nothing for a modality, does not keep its input alive, and is a conflict") {
+  Node node({.name = "nose_node", .modality = "smell", .rate_Hz = 50, .fifo_priority = 0, .about = "For a test."},
+            in_memory());
+  ModalityEndpoint sense(node);
+  auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 64);
+  Identity first = Identity::fresh("sim_node", 1), second = Identity::fresh("sim_node", 1);
+  HostTime now = host_now(), last_of_first{};
+  int received = 0, of_second = 0;
+  for (std::int64_t ms = 0; ms < 400; ++ms, now += kMs) {
+    // The first one stops after 200 ms, the second one begins after 100 ms.
+    for (Identity* sender : {&first, &second}) {
+      if (sender == &first ? ms >= 200 : ms < 100) continue;
+      node.bus().on_message(channels::kContacts, encode(frame(*sender, ms, now)), now);
+      if (sender == &first) last_of_first = now;
+    }
+    sense.step(now);
+    while (const auto m = frames.pop()) {
+      ++received;
+      of_second += m->message.header.incarnation == second.incarnation;
+    }
+    if (ms < 274) CHECK(sense.newest_arrival() == last_of_first);
+    if (ms < 274) CHECK(of_second == 0);
+    CHECK(sense.simulation_conflict(now) == (ms >= 100));
+  }
+  CHECK(received == 200 + 400 - 274);
+  CHECK(of_second == 400 - 274);
+}
