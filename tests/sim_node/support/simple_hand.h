@@ -57,9 +57,10 @@ struct Hand {
     for (const touch_plane_t& p : model.planes) {
       const Eigen::Vector3d n = to_eigen(p.normal).normalized();
       const double depth = skin(p) - (device + to_eigen(p.tool_point_m) - to_eigen(p.point_m)).dot(n);
-      if (depth > 0)
+      if (depth > 0) {
         impulses.try_emplace(p.contact_id, Eigen::Vector3d::Zero()).first->second += stiffness * depth * 0.001 * n;
-      const std::int64_t since_ns = begun_ns.try_emplace(p.contact_id, m.header.publish_time_ns - 1).first->second;
+        begun_ns.try_emplace(p.contact_id, m.header.publish_time_ns - 1);
+      }
       if (!impulses.count(p.contact_id)) continue;
       tool_constraint_t c{};
       c.contact_id = p.contact_id;
@@ -67,7 +68,7 @@ struct Hand {
       c.point_m = to_vec3f(proxy + to_eigen(p.tool_point_m) - skin(p) * n);
       c.force_N = to_vec3f(Eigen::Vector3d(stiffness * std::max(0.0, depth) * n));
       c.impulse_N_s = to_vec3(impulses[p.contact_id]);
-      c.impulse_since_ns = since_ns;
+      c.impulse_since_ns = begun_ns[p.contact_id];
       m.constraints.push_back(c);
     }
     m.constraint_count = static_cast<std::int32_t>(m.constraints.size());
