@@ -45,6 +45,7 @@ class ChunkRanges {
   }
 
   bool empty() const { return ranges_.empty(); }
+  // Number of ranges: at most kMaxRanges after add(); take() may divide one.
   std::size_t ranges() const { return ranges_.size(); }
 
  private:
