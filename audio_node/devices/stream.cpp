@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <pa_linux_alsa.h>
 #include <portaudio.h>
-#include <pthread.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -181,11 +180,7 @@ int Stream::on_block(const void*, void* out, unsigned long frames, const PaStrea
 // callback.
 void Stream::configure_thread() {
   thread_configured_ = true;
-  if (!sync::is_realtime()) return request_short_slice();
-  if (fifo_priority_ <= 0) return;
-  sched_param param{};
-  param.sched_priority = fifo_priority_;
-  pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);
+  if (!fifo_.enter(fifo_priority_)) request_short_slice();
 }
 
 void Stream::block(float* out, int frames, const PaStreamCallbackTimeInfo& time, bool underflow) {
@@ -201,7 +196,7 @@ void Stream::block(float* out, int frames, const PaStreamCallbackTimeInfo& time,
   last_ns_.store(sync::to_ns(now), std::memory_order_relaxed);
   const sync::HostTime done = sync::host_now();
   render_time_ = done - now;
-  if (sync::is_realtime() && guard_.tick(now, done)) sync::leave_realtime();
+  fifo_.tick(now, done);
 }
 
 void Stream::tee(const float* out, int frames, const BlockTime& time, bool underflow) {

@@ -55,7 +55,7 @@ class Stream : public Card {
 
   // Used on the callback thread only.
   DacClock dac_;
-  sync::OverrunGuard guard_;
+  sync::FifoThread fifo_;
   bool thread_configured_ = false;
   std::int64_t next_pair_frame_ = 0;
   sync::Nanoseconds render_time_{0};  // by the previous block
