@@ -1,5 +1,6 @@
 #include "sync/tools/recorder/read_in_turns.h"
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 
