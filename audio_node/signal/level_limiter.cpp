@@ -30,8 +30,8 @@ constexpr double kFast_s = 0.01;
 // 0.05 dB a sample at 48 kHz, half as steep as the ramp of the peak limiter: 5 ms for 12 dB. Slow rise: pumping is
 // audible above about 10 dB a second. Design.
 constexpr double kFall_dB_s = 2400, kRise_dB_s = 10;
-// Each sample takes at most its part of this time of the remaining energy. This acts only at onsets of sound that is
-// more than 14 dB above the allowed level. Design.
+// Each sample takes at most its part of this time of the remaining energy. This acts only at onsets of sound that
+// is more than 14 dB above the allowed level. Design.
 constexpr double kSpend_s = 0.002;
 // The gain rises again from here, -100 dB.
 constexpr double kLeastGain = 1e-5;
@@ -62,6 +62,7 @@ LevelLimiter::LevelLimiter(const LevelLimiterDef& def, double rate_Hz, int chann
   floor_ = floor_power_ * block_frames_;
   const double blocks = static_cast<double>(surpluses_.size()) + 1;
   surplus_limit_ = limit * second - floor_ * blocks;
+  surpluses_.back() = surplus_ = std::clamp(def.spent_Pa2_s / (Pa2_per_power_ * period_s_), 0.0, surplus_limit_);
   // Power p that can last: the surplus (p - floor) of a second leaves what allows p.
   settled_power_ =
       kSettled * (floor_power_ + kPlanned * surplus_limit_ / (blocks * block_frames_ + burst_frames_));
@@ -146,6 +147,10 @@ void LevelLimiter::process(float* samples, int frames) {
     exposure_ += out.counted;
     if (++frames_ == block_frames_) end_block();
   }
+}
+
+double LevelLimiter::spent_Pa2_s() const {
+  return (surplus_ + std::max(0.0, block_energy_ + output_tail_ - floor_)) * Pa2_per_power_ * period_s_;
 }
 
 double LevelLimiter::take_exposure_Pa2_s() { return std::exchange(exposure_, 0) * Pa2_per_power_ * period_s_; }

@@ -15,6 +15,9 @@ struct LevelLimiterDef {
   // True: each ear has its own channel, and the louder one counts. False: the channels are loudspeakers for both
   // ears, and their powers add up, as those of a source between them do.
   bool ears = false;
+  // Exposure of the last second beyond its floor, of the limiter before this one (spent_Pa2_s): a new limiter
+  // continues with it, so that the limit holds across both.
+  double spent_Pa2_s = 0;
 };
 
 // Follows the peak limiter, so that it measures the played sound. It never delays, and changes no bit of steady
@@ -36,6 +39,8 @@ class LevelLimiter {
   void process(float* samples, int frames);
 
   double gain() const { return gain_; }
+  // A-weighted sound exposure beyond the floor within the last second, with the tail of the sound, Pa^2 s.
+  double spent_Pa2_s() const;
   // A-weighted sound exposure at the ears (IEC 61672-1, 3.12) since the last call.
   double take_exposure_Pa2_s();
 
