@@ -78,19 +78,19 @@ void Output::start_opening(sync::HostTime now) {
   opened_with_ = settings_;
   sent_command_.reset();
   sent_listener_.reset();
-  if (open_) return use_stream(*open(settings_, folder_, fifo_priority_, queues_, open_, silent_));
-  opening_.emplace([settings = settings_, folder = folder_, priority = fifo_priority_, queues = queues_, silent = silent_] {
-    return open(settings, folder, priority, queues, {}, silent);
-  });
+  if (open_) return use_stream(*open(settings_, folder_, fifo_priority_, queues_, open_, silent_, spent_Pa2_s_));
+  opening_.emplace([settings = settings_, folder = folder_, priority = fifo_priority_, queues = queues_, silent = silent_,
+                    spent = spent_Pa2_s_] { return open(settings, folder, priority, queues, {}, silent, spent); });
 }
 
 std::unique_ptr<Output::Opened> Output::open(const Settings& settings, const std::string& folder, int priority,
-                                             const std::shared_ptr<CallbackQueues>& queues, const OpenCard& open, bool silent) {
+                                             const std::shared_ptr<CallbackQueues>& queues, const OpenCard& open, bool silent,
+                                             double spent_Pa2_s) {
   RendererDef def;
   def.rate_Hz = settings.sample_rate_Hz;
   def.period_frames = settings.period_frames;
   def.ceiling = settings.limiter_ceiling;
-  def.level_limit = {.full_scale_dB = settings.full_scale_level_dB, .limit_dB = settings.level_limit_dB};
+  def.level_limit = {.full_scale_dB = settings.full_scale_level_dB, .limit_dB = settings.level_limit_dB, .spent_Pa2_s = spent_Pa2_s};
   def.late = late_policy(settings.sample_rate_Hz, sync::from_seconds(settings.late_limit_s));
   def.instructions = instructions_of(settings);
   // reading an HRTF takes a third of a second
@@ -141,6 +141,7 @@ void Output::close() {
   const std::int64_t callbacks = stream_->callbacks(), underflows = stream_->underflows();
   stream_.reset();
   renderer_->abandon();
+  spent_Pa2_s_ = renderer_->spent_Pa2_s();
   past_callbacks_ += callbacks, past_underflows_ += underflows;
 }
 

@@ -104,6 +104,7 @@ class Output {
   // The callback of the stream shares the ownership of both.
   std::shared_ptr<CallbackQueues> queues_;
   std::shared_ptr<Renderer> renderer_;
+  double spent_Pa2_s_ = 0;  // of the previous renderer's level limit
   StrikeQueue strikes_;  // outlives the stream, whose callback reads its data; so do the next three
   ScrapeQueue scrapes_;
   RecordedContactQueue recorded_contacts_;
@@ -118,7 +119,8 @@ class Output {
     std::unique_ptr<Card> card;
   };
   static std::unique_ptr<Opened> open(const Settings& settings, const std::string& folder, int priority,
-                                      const std::shared_ptr<CallbackQueues>& queues, const OpenCard& open, bool silent);
+                                      const std::shared_ptr<CallbackQueues>& queues, const OpenCard& open, bool silent,
+                                      double spent_Pa2_s);
   void use_stream(Opened& opened);
   std::optional<sync::BackgroundTask<Opened>> opening_;
   std::unique_ptr<Card> stream_;

@@ -3,15 +3,16 @@
 #include <fcntl.h>
 #include <pa_linux_alsa.h>
 #include <portaudio.h>
-#include <pthread.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 #include <tactus/media_clock_t.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <stdexcept>
+#include <thread>
 
 #include "sync/clocks/pacing.h"
 
@@ -22,6 +23,11 @@ static_assert(MediaPair::kStart == media_clock_t::START && MediaPair::kPeriodic 
               MediaPair::kUnderflow == media_clock_t::UNDERFLOW);
 
 constexpr sync::Nanoseconds kCallbackTimeout{500'000'000};
+// A pause between callbacks of more than the buffer and this is an interruption, also where the card does not report
+// an underflow: the process was stopped. Design.
+constexpr double kPause_s = 0.05;
+// Longest wait for the end of the sound when a stream is closed. Design: ten times a usual one.
+constexpr sync::Nanoseconds kEndTimeout{200'000'000};
 
 void check(PaError error, const std::string& what) {
   if (error < 0)
@@ -94,7 +100,9 @@ std::string free_wav_name(const std::string& folder) {
 Stream::Stream(const StreamOptions& options, Render render)
     : render_(std::move(render)),
       rate_Hz_(options.rate_Hz),
+      channels_(options.channels),
       fifo_priority_(options.fifo_priority),
+      edge_(options.rate_Hz),
       dac_(options.rate_Hz) {
   silence_sound_libraries();
   medium_ = free_wav_name(options.folder);
@@ -150,7 +158,18 @@ void Stream::open(const StreamOptions& options, const std::string& wav) {
   }
 }
 
+// The callback fades to silence; then the buffer plays. A card that is lost is silent already.
+void Stream::end_quietly() {
+  ends_ = true;
+  sync::HostTime until = sync::host_now() + kEndTimeout;
+  for (bool fades = true; alive(sync::host_now()) && sync::host_now() < until;) {
+    if (fades && ended_) fades = false, until = std::min(until, sync::host_now() + sync::from_seconds(latency_s_));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
 Stream::~Stream() {
+  end_quietly();
   Pa_AbortStream(stream_);
   Pa_CloseStream(stream_);
   portaudio_.reset();
@@ -181,11 +200,7 @@ int Stream::on_block(const void*, void* out, unsigned long frames, const PaStrea
 // callback.
 void Stream::configure_thread() {
   thread_configured_ = true;
-  if (!sync::is_realtime()) return request_short_slice();
-  if (fifo_priority_ <= 0) return;
-  sched_param param{};
-  param.sched_priority = fifo_priority_;
-  pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);
+  if (!fifo_.enter(fifo_priority_)) request_short_slice();
 }
 
 void Stream::block(float* out, int frames, const PaStreamCallbackTimeInfo& time, bool underflow) {
@@ -193,15 +208,20 @@ void Stream::block(float* out, int frames, const PaStreamCallbackTimeInfo& time,
   const sync::HostTime now = sync::host_now();
   const auto estimate =
       dac_.block(frames, {time.currentTime, time.outputBufferDacTime, now, underflow}, latency_s_);
-  const BlockTime block_time{estimate.first_sample, estimate.uncertainty, render_time_};
+  const double pause_s = sync::to_seconds(now - sync::host_time(last_ns_.load(std::memory_order_relaxed)));
+  const bool interrupted = underflow || pause_s > latency_s_ + kPause_s + static_cast<double>(frames) / rate_Hz_;
+  const BlockTime block_time{estimate.first_sample, estimate.uncertainty, render_time_, interrupted};
   render_(out, frames, block_time);
+  if (ends_) edge_.end();
+  edge_.apply(out, frames, channels_);
+  if (edge_.ended()) ended_ = true;
   if (tee_) tee(out, frames, block_time, underflow);
   callbacks_.fetch_add(1, std::memory_order_relaxed);
   if (underflow) underflows_.fetch_add(1, std::memory_order_relaxed);
   last_ns_.store(sync::to_ns(now), std::memory_order_relaxed);
   const sync::HostTime done = sync::host_now();
   render_time_ = done - now;
-  if (sync::is_realtime() && guard_.tick(now, done)) sync::leave_realtime();
+  fifo_.tick(now, done);
 }
 
 void Stream::tee(const float* out, int frames, const BlockTime& time, bool underflow) {

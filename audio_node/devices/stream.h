@@ -8,6 +8,7 @@
 #include "audio_node/devices/card.h"
 #include "audio_node/devices/dac_clock.h"
 #include "audio_node/devices/sound_system.h"
+#include "audio_node/signal/edge_fade.h"
 #include "sync/node/realtime.h"
 
 struct PaStreamCallbackTimeInfo;  // of PortAudio, whose header is included in stream.cpp only
@@ -38,11 +39,12 @@ class Stream : public Card {
   static int on_block(const void*, void* out, unsigned long frames, const PaStreamCallbackTimeInfo* time,
                       unsigned long flags, void* self);
   void block(float* out, int frames, const PaStreamCallbackTimeInfo& time, bool underflow);
+  void end_quietly();
   void tee(const float* out, int frames, const BlockTime& time, bool underflow);
   void configure_thread();
 
   Render render_;
-  int rate_Hz_;
+  int rate_Hz_, channels_;
   int fifo_priority_;
   std::string card_, medium_;
   int pairs_[2] = {-1, -1};
@@ -53,9 +55,12 @@ class Stream : public Card {
   double latency_s_ = 0;
   std::atomic<std::int64_t> callbacks_{0}, underflows_{0}, last_ns_{0};
 
+  std::atomic<bool> ends_{false}, ended_{false};  // requested by the destructor, and done by the callback
+
   // Used on the callback thread only.
+  EdgeFade edge_;
   DacClock dac_;
-  sync::OverrunGuard guard_;
+  sync::FifoThread fifo_;
   bool thread_configured_ = false;
   std::int64_t next_pair_frame_ = 0;
   sync::Nanoseconds render_time_{0};  // by the previous block

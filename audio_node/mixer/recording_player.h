@@ -53,6 +53,8 @@ class RecordingPlayer {
   // Stops all recordings; no strike waits.
   void abandon(const Scheduler& waiting);
 
+  // Stops all recordings at once.
+  void clear() { shots_.clear(), loops_.clear(); }
   int active() const { return shots_.active() + loops_.active(); }
 
  private:

@@ -68,8 +68,22 @@ Renderer::Renderer(CallbackQueues& queues, const RendererDef& def)
       dropout_(def.rate_Hz),
       limiter_(def.ceiling, def.rate_Hz, channels_),
       level_limiter_(level_limiter_def(def), def.rate_Hz, channels_),
+      edge_(def.rate_Hz),
       ladder_(static_cast<int>(kQualities.size()), sync::from_seconds(kBudget),
               static_cast<int>(kCalm_s * std::min(kMeans_Hz, def.rate_Hz / def.period_frames))) {}
+
+// The process was stopped, or the card was: its last sound is over.
+void Renderer::resume(const BlockTime& time) {
+  const auto gap = next_first_ ? time.first_sample - *next_first_ : sync::Nanoseconds(0);
+  if (gap > kForget || -gap > kForget) {
+    voices_.clear();
+    scrapes_.clear();
+    recordings_.clear();
+    limiter_.clear();
+    edge_.restart();
+  }
+  if (time.interrupted) edge_.restart();
+}
 
 void Renderer::receive_commands() {
   RenderCommand command;
@@ -114,6 +128,7 @@ void Renderer::report(const Strike& strike, std::int8_t outcome, std::int64_t pr
 
 void Renderer::render(float* out, int frames, const BlockTime& time) {
   const FlushToZero guard;
+  resume(time);
   receive_commands();
   recordings_.receive_databases();
   adapt(frames, time.render_time);
@@ -127,6 +142,7 @@ void Renderer::render(float* out, int frames, const BlockTime& time) {
     render_block(out + channels_ * done, some, {time.first_sample + samples(done), time.uncertainty, {}});
     done += some;
   }
+  next_first_ = time.first_sample + samples(frames);
   release_strikes();
   release_scrapes();
   recordings_.release(scheduler_);
@@ -176,10 +192,11 @@ void Renderer::render_sound(float* out, int frames, sync::HostTime leaving) {
   limit(out, frames);
 }
 
-// The level limiter is last, so that it measures the played sound.
+// The level limiter is after all gains, so that it measures the played sound; an edge only makes it quieter.
 void Renderer::limit(float* out, int frames) {
   limiter_.process(out, frames);
   level_limiter_.process(out, frames);
+  edge_.apply(out, frames, channels_);
   // no other thread writes it
   const double exposure = queues_.exposure.exposure_Pa2_s.load(std::memory_order_relaxed);
   queues_.exposure.exposure_Pa2_s.store(exposure + level_limiter_.take_exposure_Pa2_s(), std::memory_order_relaxed);

@@ -7,6 +7,7 @@
 #include <tactus/presentation_t.hpp>
 
 #include "audio_node/signal/dropout.h"
+#include "audio_node/signal/edge_fade.h"
 #include "audio_node/signal/level_limiter.h"
 #include "audio_node/signal/limiter.h"
 #include "audio_node/mixer/recording_player.h"
@@ -24,6 +25,7 @@ struct BlockTime {
   sync::HostTime first_sample{};
   sync::Nanoseconds uncertainty{0};
   sync::Nanoseconds render_time{0};  // rendering time of the previous block; 0: not known
+  bool interrupted = false;          // the card did not play continuously before this block
 };
 
 // The quality ladder of sound.
@@ -100,7 +102,8 @@ class Renderer {
   int channels() const { return channels_; }
   // Fills `frames` frames and reports the outcome of each strike. A strike that is due before the earliest sample
   // is played immediately, weakened by the policy, and reported as late, or dropped. A strike whose onset falls
-  // into a drop-out is reported as dropped by the profile. Realtime-safe: yes.
+  // into a drop-out is reported as dropped by the profile. After an interruption the sound fades in. After one of more
+  // than kForget, sounds of before do not return. Realtime-safe: yes.
   void render(float* out, int frames, const BlockTime& time);
 
   // Reports all waiting strikes as dropped and releases all scrapes. Call on the loop thread, after the callback
@@ -111,7 +114,15 @@ class Renderer {
   int scraping() const { return scrapes_.active(); }
   int recorded() const { return recordings_.active(); }
 
+  // Exposure of the current second beyond the floor of the level limiter, Pa^2 s, for the renderer that follows
+  // (LevelLimiterDef::spent_Pa2_s). Call after the callback has ended.
+  double spent_Pa2_s() const { return level_limiter_.spent_Pa2_s(); }
+
+  // Design: a gap in which sounds end for the listener.
+  static constexpr sync::Nanoseconds kForget{100'000'000};
+
  private:
+  void resume(const BlockTime& time);
   void receive_commands();
   void adapt(int frames, sync::Nanoseconds render_time);
   void render_block(float* out, int frames, const BlockTime& time);
@@ -143,6 +154,8 @@ class Renderer {
   std::array<float, kMaxBlock> open_{};  // factors of the drop-out on the current samples
   Limiter limiter_;
   LevelLimiter level_limiter_;
+  EdgeFade edge_;
+  std::optional<sync::HostTime> next_first_;  // presentation of the next block, without an interruption
   sync::QualityLadder ladder_;
   int fixed_quality_ = -1;
   int last_frames_ = 0;        // of the previous block

@@ -92,7 +92,19 @@ void Voices::start(Voice& v, std::int64_t id, const Resonators& resonators, cons
   v.place = v.current_place = place;
   v.silent = 0;
   spatialiser_.begin(static_cast<int>(&v - voices_.data()));
-  v.expected = v.level = 0;
+  v.expected = v.level = v.last = 0;
+}
+
+// Its state is not a number: it comes to rest, and its sound goes linearly to zero within the block.
+void Voices::silence(Voice& v, float* samples, int frames) {
+  for (int n = 0; n < frames; ++n) samples[n] = v.last * (1 - static_cast<float>(n + 1) / static_cast<float>(frames));
+  v.velocity.fill(0), v.displacement.fill(0);
+  for (Pulse& p : v.pulses) p.on = false;
+  v.expected = 0;
+}
+
+void Voices::clear() {
+  for (Voice& v : voices_) v.id = -1, v.driven = 0;
 }
 
 Voices::Voice& Voices::voice_for(std::int64_t id, const Resonators& resonators, const SourcePosition& place) {
@@ -228,16 +240,17 @@ void Voices::render(Voice& v, int frames) {
   }
   fade(v.ending, out.data(), frames);
   const bool numbers = std::all_of(out.begin(), out.begin() + frames, [](float x) { return std::isfinite(x); });
-  if (!numbers) out.fill(0);
+  if (!numbers) silence(v, out.data(), frames);
+  v.last = out[static_cast<std::size_t>(frames - 1)];
   const Eigen::Vector3f ear_m = listener_.value_or(Listener{}).T_W_listener.translation();
   v.current_place = glide(v.current_place, v.place, ear_m, glide_step_rad_ * static_cast<float>(frames));
   const SourcePosition place = listener_ ? relative_to_listener(*listener_, v.current_place) : v.current_place;
   spatialiser_.add(static_cast<int>(&v - voices_.data()), place, out.data(), frames);
   v.level = over_modes(v, [](float a2) { return std::sqrt(a2); }) / place.distance_m * v.ending.gain;
   const bool pushed = pushes.count > 0;
-  // Sound in the filters of the ears still counts, except for a voice that has become NaN.
+  // Sound in the filters of the ears still counts.
   const bool over = v.ending.gain <= 0 || (!pushed && !(v.level > kEndLevel));
-  if (!numbers || !std::isfinite(v.level) || (over && v.silent >= spatialiser_.tail())) v.id = -1;
+  if (!std::isfinite(v.level) || (over && v.silent >= spatialiser_.tail())) v.id = -1;
   v.silent = over ? v.silent + frames : 0;
   if (pushes.of_blows) v.level += v.expected;
 }

@@ -53,6 +53,9 @@ class Voices {
   // Adds `frames` <= kMaxBlock frames, channels interleaved.
   void render(float* mix, int frames);
 
+  // Silences all voices at once.
+  void clear();
+
   // Number of sounding voices, including fading ones.
   int active() const;
   // Sum of the squared amplitudes of all modes of all voices.
@@ -98,6 +101,7 @@ class Voices {
     SourcePosition current_place;         // moves smoothly to `place`
     int silent = 0;      // frames since the last input
     float expected = 0;  // expected level of the last pulse
+    float last = 0;      // last sample
     float level = 0;  // largest sum of amplitudes of the last block, plus the expected level while a pulse is on
   };
   // Forces on a voice within one block.
@@ -120,6 +124,7 @@ class Voices {
   void render(Voice& voice, int frames);
   void fade(Fade& fade, float* samples, int frames) const;
   static void join(Voice& voice, const Pulse& blow);
+  static void silence(Voice& voice, float* samples, int frames);
   static void collect(Voice& voice, int frames, Pushes& pushes, float* out);
   void resonate(Voice& voice, int from, int to, int frames, const Pushes& pushes, float* out) const;
 

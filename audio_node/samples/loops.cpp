@@ -27,7 +27,9 @@ bool Loops::update(const RecordedContact& contact) {
         v.ends_in = static_cast<int>(kEnd_s * rate_Hz_);
     return false;
   }
-  if (!contact.layers) return false;
+  if (!contact.layers || !std::isfinite(contact.level) || !std::isfinite(contact.speed_m_s) ||
+      !std::isfinite(contact.update_interval_s))
+    return false;
   Voice* free = nullptr;
   for (Voice& v : voices_) {
     // A contact of another database is another sound; the previous one fades.

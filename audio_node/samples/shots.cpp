@@ -36,7 +36,9 @@ void Shots::start(const RecordedStrike& strike, float gain, int offset) {
   float level = 0;
   for (const Shot& s : strike.shots)
     if (s.recording) level += s.gain * gain * s.recording->peak;
-  if (strike.database == 0 || !(level > 0)) return;
+  const bool plays = std::all_of(strike.shots.begin(), strike.shots.end(),
+                                 [](const Shot& s) { return !s.recording || (s.step > 0 && std::isfinite(s.step)); });
+  if (strike.database == 0 || !plays || !(level > 0) || !std::isfinite(level)) return;
   fade_weakest();
   Voice& v = free_voice();
   v = Voice{};

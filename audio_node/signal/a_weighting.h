@@ -13,6 +13,9 @@ namespace tactus::audio {
 // less at 8 kHz and 2.5 dB less at 12.5 kHz, within class 1. Realtime-safe: yes.
 class AWeighting {
  public:
+  static constexpr std::size_t kStates = 6;
+  using State = std::array<double, kStates>;
+
   explicit AWeighting(double rate_Hz) {
     for (std::size_t i = 0; i < kPoles_Hz.size(); ++i) {
       const double g = std::numbers::pi * kPoles_Hz[i] / rate_Hz;
@@ -28,10 +31,12 @@ class AWeighting {
     }
     return gain_ * x;
   }
+  const State& state() const { return state_; }
+  void set_state(const State& state) { state_ = state; }
 
  private:
-  static constexpr std::array<double, 6> kPoles_Hz{20.598997, 20.598997, 107.65265,
-                                                   737.86223, 12194.217, 12194.217};
+  static constexpr std::array<double, kStates> kPoles_Hz{20.598997, 20.598997, 107.65265,
+                                                         737.86223, 12194.217, 12194.217};
   static constexpr std::size_t kZeros = 4;
 
   // Before the gain is known.
@@ -43,7 +48,7 @@ class AWeighting {
     return h;
   }
 
-  std::array<double, 6> step_{}, state_{};
+  State step_{}, state_{};
   double gain_ = 1;
 };
 

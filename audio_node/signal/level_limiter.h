@@ -1,26 +1,34 @@
-// Keeps the level at the ears, averaged over a second, within a limit, and accumulates the sound exposure. Pure.
+// Keeps the level at the ears, averaged over any second, within a limit, and accumulates the sound exposure. Pure.
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "audio_node/signal/a_weighting.h"
+#include "audio_node/signal/weighted_tail.h"
 
 namespace tactus::audio {
 
 struct LevelLimiterDef {
   double full_scale_dB = 100;  // SPL of a full-scale sine at the ear
-  double limit_dB = 85;        // A-weighted
+  double limit_dB = 85;        // A-weighted, equivalent level of any second
   // True: each ear has its own channel, and the louder one counts. False: the channels are loudspeakers for both
   // ears, and their powers add up, as those of a source between them do.
   bool ears = false;
+  // Exposure of the last second beyond its floor, of the limiter before this one (spent_Pa2_s): a new limiter
+  // continues with it, so that the limit holds across both.
+  double spent_Pa2_s = 0;
 };
 
-// Follows the peak limiter, so that it measures the played sound. Below the limit it changes no bit, and it never
-// delays. The level is the mean of A-weighted power with time weighting S. Above the limit a slowly moving gain
-// reduces it: even a full-scale tone after silence is within the limit after kSettled_s. Its first moments exceed
-// the limit, as those of a blow do, by up to 9 dB while the mean is low. Realtime-safe: yes, except the
-// constructor.
+// Follows the peak limiter, so that it measures the played sound. It never delays, and changes no bit of steady
+// sound that is half a decibel below the limit or quieter.
+//
+// The A-weighted energy of every second (L_Aeq,1s of IEC 61672-1, 3.9), from the first sample on and also when the
+// sound stops at any moment, is at most that of the limit, for any input. Half of it is always available: the
+// floor. Energy of a block of 10 ms beyond the floor is surplus, and the surplus of all blocks of a second has a
+// limit too. A gain that falls with the surplus lets a blow through: 9 dB above the limit at first. A tone that
+// continues is 3 dB below it until its onset is a second old, and then within a decibel. Realtime-safe: yes,
+// except the constructor.
 class LevelLimiter {
  public:
   static constexpr double kSettled_s = 3;
@@ -31,31 +39,42 @@ class LevelLimiter {
   void process(float* samples, int frames);
 
   double gain() const { return gain_; }
+  // A-weighted sound exposure beyond the floor within the last second, with the tail of the sound, Pa^2 s.
+  double spent_Pa2_s() const;
   // A-weighted sound exposure at the ears (IEC 61672-1, 3.12) since the last call.
   double take_exposure_Pa2_s();
 
  private:
-  // IEC 61672-1, 3.6: time weightings S and F.
-  static constexpr double kSlow_s = 1, kFast_s = 0.125;
-  // Factor by which the fast mean may exceed the limit while the slow one is low: it fills the slow mean in
-  // kFast_s.
-  static constexpr double kBurst = kSlow_s / kFast_s;
-  // After an excess the fast mean is held at this share of the limit until the slow one has fallen: 3 dB, since
-  // silence would sound like a fault. Design.
-  static constexpr double kRecoveryShare = 0.5;
-  // 0.004 dB a sample at 48 kHz: no click; from full scale to the limit within 0.1 s. Slow rise: pumping is
-  // audible above about 10 dB a second. Design.
-  static constexpr double kFall_dB_s = 200, kRise_dB_s = 10;
+  // Sums over the channels of one frame. Sums of squares.
+  struct Energy {
+    double counted = 0;  // of the A-weighted sound: the louder ear, or all loudspeakers
+    double change = 0;   // of all channels, with the tails of their filters
+    double all = 0;      // of the A-weighted sound of all channels
+  };
+  double slope(std::span<const float> frame, const std::vector<AWeighting>& filters) const;
+  Energy filter(std::span<const float> frame, std::vector<AWeighting>& filters) const;
+  double tails(const std::vector<AWeighting>& filters) const;
+  double next_gain() const;
+  double within_budget(double gain, std::span<const float> frame) const;
+  void end_block();
 
-  double power_of(std::span<const float> frame);
-  double wanted_gain() const;
-
-  double limit_, Pa2_per_power_, slow_step_, fast_step_, fall_, rise_, period_s_;
+  double Pa2_per_power_, period_s_, fall_, rise_, fast_step_, spent_share_;
   bool ears_;
   std::size_t channels_;
-  std::vector<AWeighting> weighting_;
-  double slow_ = 0;  // mean power of the output
-  double fast_ = 0;  // of the input
+  // Energies are sums of squares of samples.
+  int block_frames_;            // 10 ms
+  double floor_power_, floor_;  // of each sample, of each block
+  double surplus_limit_;        // of all blocks that overlap one second
+  double burst_frames_, settled_power_;
+  WeightedTail tail_;
+  std::vector<AWeighting> input_, output_;
+  double input_tail_ = 0, output_tail_ = 0;
+  std::vector<double> surpluses_;  // of the previous blocks
+  std::size_t oldest_ = 0;
+  double surplus_ = 0;       // their sum
+  double block_energy_ = 0;  // of the current block
+  int frames_ = 0;           // of the current block
+  double fast_ = 0;          // mean power of the input
   double gain_ = 1, exposure_ = 0;
 };
 

@@ -19,12 +19,13 @@ Limiter::Limiter(double ceiling, double rate_Hz, int channels)
   gains_.fill(1);
 }
 
+// Expired candidates leave before the new one enters: the ring has room for exactly one window.
 float Limiter::smallest_in_window(float target) {
+  if (front_ < back_ && ends_[slot(front_)] <= count_) ++front_;
   while (back_ > front_ && values_[slot(back_ - 1)] >= target) --back_;
   values_[slot(back_)] = target;
   ends_[slot(back_)] = count_ + kLookAhead;
   ++back_;
-  if (ends_[slot(front_)] <= count_) ++front_;
   return values_[slot(front_)];
 }
 

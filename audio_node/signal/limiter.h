@@ -1,6 +1,7 @@
 // Peak limiter: keeps every sample within a ceiling, for any input. Pure.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -20,6 +21,8 @@ class Limiter {
   Limiter(double ceiling, double rate_Hz, int channels = 2);
   // In place, channels interleaved: the output is the input of kDelay frames before. One gain for all channels.
   void process(float* samples, int frames);
+  // Forgets the input of the last kDelay frames.
+  void clear() { std::fill(delayed_.begin(), delayed_.end(), 0.f); }
 
  private:
   // Time constant of the release, 50 ms: a shorter one is audible as distortion of low tones (Giannoulis,

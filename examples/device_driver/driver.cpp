@@ -4,22 +4,28 @@
 //    device_driver [NAME [GROUP [PORT [RUN]]]]        together with: haptic_node --device external:NAME
 //
 //    out  DEVICE_STATE   1000 times per second
-//    in   DEVICE_FORCE   the force is 0 when no new message arrives in time
+//    in   DEVICE_FORCE   within the limits of guards.h; the force is 0 when no new message arrives in time
 //
-// It needs LCM and the generated types, nothing else of Tactus. The hardware here is a weight of 0.1 kg that a
+// It needs LCM, the generated types and guards.h, nothing else of Tactus. The hardware here is a weight of 0.1 kg that a
 // spring and a damper hold 5 mm below the level of a floor; for a real device replace `Hardware`.
 #include <lcm/lcm-cpp.hpp>
 
 #include <chrono>
 #include <iostream>
+#include <limits>
 #include <random>
 #include <string>
 #include <tactus/device_force_t.hpp>
 #include <tactus/device_state_t.hpp>
 #include <thread>
 
+#include "guards.h"
+
 namespace {
 
+using tactus::examples::Exerted;
+using tactus::examples::ForceGuard;
+using tactus::examples::Reason;
 using Clock = std::chrono::steady_clock;  // CLOCK_MONOTONIC on Linux, as header_t requires
 std::int64_t to_ns(Clock::time_point t) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(t.time_since_epoch()).count();
@@ -39,23 +45,21 @@ struct Hardware {
   bool answers() const { return true; }
 };
 
-// The newest force for this device.
+// Forces for this device, from any sender: the guard decides which are commands.
 struct Forces {
   std::string device;
-  tactus::device_force_t newest{};
-  Clock::time_point arrived{};
+  ForceGuard guard;
 
   void on_message(const lcm::ReceiveBuffer*, const std::string&, const tactus::device_force_t* m) {
     if (m->device != device) return;
-    newest = *m;
-    arrived = Clock::now();
-  }
-  // Force in N; 0 if no new message arrived in time: haptic_node has ended, and a device must not continue to
-  // push.
-  double z_N(Clock::time_point now) const {
-    return now - arrived > std::chrono::nanoseconds(newest.valid_for_ns) ? 0 : newest.force_N.z;
+    const tactus::header_t& h = m->header;
+    guard.on_message({h.run_id, h.incarnation, h.seq, h.publish_time_ns}, {m->force_N.x, m->force_N.y, m->force_N.z},
+                     {m->torque_N_m.x, m->torque_N_m.y, m->torque_N_m.z}, m->valid_for_ns, to_ns(Clock::now()));
   }
 };
+
+// A flood of messages must not hold the loop: at most this number is read in a tick.
+constexpr int kMaxMessages = 100;
 
 }  // namespace
 
@@ -67,7 +71,8 @@ int main(int argc, char** argv) {
                  "external:NAME until it is ended; inside a running cluster: tactus attach device_driver NAME\n";
     return argument(1, "") == "--help" ? 0 : 1;
   }
-  Forces forces{argument(1, "arm")};
+  const std::int64_t run = std::stoll(argument(4, "1"));
+  Forces forces{argument(1, "arm"), ForceGuard({}, {.run = run})};
   // ttl=0: messages stay on this machine.
   lcm::LCM bus("udpm://" + argument(2, "239.255.76.67") + ":" + argument(3, "7667") + "?ttl=0");
   if (!bus.good()) {
@@ -79,19 +84,25 @@ int main(int argc, char** argv) {
   tactus::device_state_t state{};  // LCM initialises nothing by itself
   state.device = forces.device;
   state.header.sim_time_ns = -1;
-  state.header.run_id = std::stoll(argument(4, "1"));
+  state.header.run_id = run;
   // A new number at every start distinguishes a restarted driver from one whose clock was set back.
   std::random_device random;
   state.header.incarnation = std::uniform_int_distribution<std::int64_t>(1, INT64_MAX)(random);
   state.pose.orientation.w = 1;
 
   Hardware hardware;
+  Reason reported = Reason::kNone;
   for (Clock::time_point next = Clock::now();; next += std::chrono::milliseconds(1)) {
     std::this_thread::sleep_until(next);
-    while (bus.handleTimeout(0) > 0) {
-    }
-    hardware.command_motors(forces.z_N(Clock::now()));
+    for (int left = kMaxMessages; left > 0 && bus.handleTimeout(0) > 0; --left) continue;
     hardware.read_encoders(1e-3);
+    const double velocity = hardware.answers() ? hardware.velocity : std::numeric_limits<double>::quiet_NaN();
+    const Exerted out = forces.guard.update(to_ns(Clock::now()), {0, 0, velocity});
+    hardware.command_motors(out.force[2]);
+    if (out.reason != reported && out.reason == Reason::kSecondSender)
+      std::cerr << "device_driver: two programs send DEVICE_FORCE for " << forces.device
+                << ", so its force is zero; end one of them\n";
+    reported = out.reason;
 
     state.pose.position_m.z = hardware.z;
     state.velocity_m_s.z = static_cast<float>(hardware.velocity);

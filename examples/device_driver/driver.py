@@ -4,8 +4,8 @@
   lcm-gen -p --ppath TYPES lcmtypes/types/*/*.lcm             once
   PYTHONPATH=TYPES driver.py [NAME [GROUP [PORT [RUN]]]]     and beside it: haptic_node --device external:NAME
 
-It publishes DEVICE_STATE 250 times per second and receives DEVICE_FORCE; the force is 0 when no new message arrives in time. The
-hardware here is a weight of 0.1 kg that a spring and a damper hold 5 mm below the level of a floor; for a real device replace Hardware.
+It publishes DEVICE_STATE 250 times per second and receives DEVICE_FORCE, within the limits of guards.py; the force is 0 when no new
+message arrives in time. The hardware here is a weight of 0.1 kg that a spring and a damper hold 5 mm below the level of a floor; for a real device replace Hardware.
 """
 import random
 import select
@@ -14,6 +14,7 @@ import struct
 import sys
 import time
 
+import guards
 from tactus import device_force_t, device_state_t, header_t, pose_t, quat_t, vec3_t, vec3f_t
 
 PERIOD_S = 0.004
@@ -24,6 +25,7 @@ class Bus:
     publish and subscribe. A small message is one datagram: "LC02", a sequence number, the channel, 0, the message."""
 
     SMALL = 0x4C433032
+    MOST = 100  # datagrams read at a time, so that a flood does not hold the loop
 
     def __init__(self, group, port):
         self.to = (group, port)
@@ -40,8 +42,10 @@ class Bus:
         self.sequence = (self.sequence + 1) & 0xFFFFFFFF
 
     def received(self, channel):
-        """The messages of a channel that have arrived; does not wait."""
-        while select.select([self.socket], [], [], 0)[0]:
+        """The messages of a channel that have arrived, from at most MOST datagrams; does not wait."""
+        for _ in range(self.MOST):
+            if not select.select([self.socket], [], [], 0)[0]:
+                return
             datagram = self.socket.recv(65536)
             name, found, data = datagram[8:].partition(b"\0")
             if datagram[:4] == struct.pack(">I", self.SMALL) and found and name == channel.encode():
@@ -77,13 +81,17 @@ def first_state(name, run):
     return state
 
 
+def vector(v):
+    return v.x, v.y, v.z
+
+
 def main():
     if sys.argv[1:] and sys.argv[1].startswith("-"):
         print(__doc__)
         sys.exit(0 if sys.argv[1] == "--help" else 1)
     name, group, port, run = (sys.argv[1:] + ["arm", "239.255.76.67", "7667", "1"][len(sys.argv) - 1:])[:4]
     bus, hardware, state = Bus(group, int(port)), Hardware(), first_state(name, int(run))
-    force_n, good_until = 0.0, 0.0
+    guard, reported = guards.ForceGuard(sender=guards.SenderLimits(run=int(run))), ""
     tick = time.monotonic()
     while True:
         tick += PERIOD_S
@@ -94,10 +102,13 @@ def main():
             except ValueError:  # a message of another type
                 continue
             if message.device == name:
-                force_n, good_until = message.force_N.z, time.monotonic() + message.valid_for_ns * 1e-9
-        if time.monotonic() > good_until:
-            force_n = 0.0
-        hardware.step(force_n, PERIOD_S)
+                guard.on_message(guards.Sent.of(message.header), vector(message.force_N), vector(message.torque_N_m),
+                                 message.valid_for_ns, time.monotonic_ns())
+        out = guard.update(time.monotonic_ns(), (0.0, 0.0, hardware.velocity))
+        if out.reason != reported and out.reason == "second sender":
+            print(f"driver.py: two programs send DEVICE_FORCE for {name}, so its force is zero; end one of them", file=sys.stderr)
+        reported = out.reason
+        hardware.step(out.force[2], PERIOD_S)
         state.pose.position_m.z, state.velocity_m_s.z = hardware.z, hardware.velocity
         state.header.publish_time_ns = time.monotonic_ns()
         bus.publish("DEVICE_STATE", state.encode())

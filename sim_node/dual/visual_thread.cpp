@@ -35,8 +35,8 @@ VisualThread::~VisualThread() {
 }
 
 void VisualThread::loop() {
-  if (sync::is_realtime()) sync::set_realtime(sync::Realtime::kTry, kPriority);
-  sync::OverrunGuard guard;
+  sync::FifoThread fifo;
+  fifo.enter(kPriority);
   while (true) {
     const int state = state_.load(std::memory_order_acquire);
     if (state == kEnd) return;
@@ -47,7 +47,7 @@ void VisualThread::loop() {
     const sync::HostTime began = sync::host_now();
     group_->run(task_, *step_);
     // Steps that take longer than their own length would starve the machine.
-    if (guard.tick(began, sync::host_now())) sync::leave_realtime();
+    fifo.tick(began, sync::host_now());
     state_.store(kDone, std::memory_order_release);
     state_.notify_all();
   }

@@ -18,6 +18,9 @@ constexpr Nanoseconds kMaxUnread = milliseconds(4);
 // and the kernel counts the dropped datagrams.
 constexpr std::size_t kMaxStoredBytes = 16 << 20;
 constexpr int kBatch = 256;
+// Datagrams that the thread reads from one port at a time: more than its socket holds. Malformed ones fill no memory, so
+// only this bound ends the reading of a flood of them.
+constexpr int kMaxRead = 25'000;
 // Event-driven processes only count and coordinate, so they can wait; they wake a third as often as with 1 ms.
 constexpr Nanoseconds kGatherTime = milliseconds(3);
 
@@ -61,7 +64,8 @@ void UdpReader::read_while_loop_is_late() {
     for (ReadPort& read_port : ports_) {
       if (!loop_is_late) break;
       const auto store = [&](const ChannelBytes& m) { read_port.stored.add(now, m, kMaxStoredBytes + kBatch * 2048); };
-      while (read_port.stored.bytes() < kMaxStoredBytes && read_port.port.read(kBatch, store) == kBatch) continue;
+      for (int left = kMaxRead; left > 0 && read_port.stored.bytes() < kMaxStoredBytes; left -= kBatch)
+        if (read_port.port.read(kBatch, store) < kBatch) break;
     }
     busy_.clear(std::memory_order_release);
   }

@@ -56,8 +56,6 @@ NodeOptions with_profile(NodeOptions o) {
 std::int32_t saturated(std::int64_t n) { return static_cast<std::int32_t>(std::min<std::int64_t>(n, INT32_MAX)); }
 
 constexpr Nanoseconds kReportPeriod{100'000'000};
-// A demoted loop regains its priority after this time below 80 % load.
-constexpr Nanoseconds kPromoteAfter{10'000'000'000};
 constexpr Nanoseconds kRateWindow{1'000'000'000};
 constexpr std::size_t kMaxTagRequests = 64;
 // A note may quote text from the bus; a report with a note of this length still fits a datagram.
@@ -184,15 +182,13 @@ void Node::end_tick(HostTime now) {
   serve_tags(now);
   tick_.add(now - tick_begin_);
   if (health_.state == node_health_t::STALE || health_.state == node_health_t::INPUT_LOST) ++health_.stale_ticks;
-  if (VirtualTime::current() || (!demoted_ && !is_realtime())) return;
-  const bool too_busy = guard_.tick(tick_begin_, now);
-  if (too_busy && !demoted_) {
+  if (VirtualTime::current() || (!priority_.demoted() && !is_realtime())) return;
+  const PriorityKeeper::Change change = priority_.tick(tick_begin_, now);
+  if (change == PriorityKeeper::Change::kLeave) {
     leave_realtime();
-    demoted_ = true;
     scheduling_ = "demoted to normal scheduling: used more than 80 % of its time for 100 ms";
     std::cerr << options_.name << ": " << scheduling_ << std::endl;
-  } else if (demoted_ && guard_.time_below_limit() >= kPromoteAfter) {
-    demoted_ = false;
+  } else if (change == PriorityKeeper::Change::kReturn) {
     scheduling_ = set_realtime(Realtime::kTry, descriptor_.fifo_priority) + " again, after a demotion";
     std::cerr << options_.name << ": " << scheduling_ << std::endl;
   }

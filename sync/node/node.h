@@ -87,10 +87,9 @@ class Node {
   NodeDescriptor descriptor_;
   NodeOptions options_;
   std::string scheduling_;
-  bool demoted_ = false;
   Bus bus_;
   Loop loop_;
-  OverrunGuard guard_;
+  PriorityKeeper priority_;
   Tags tags_;
   Queue<tag_request_t> tag_requests_;
   Phases phases_{host_now};

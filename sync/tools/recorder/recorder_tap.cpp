@@ -3,6 +3,7 @@
 #include <poll.h>
 
 #include "sync/clocks/pacing.h"
+#include "sync/tools/recorder/read_in_turns.h"
 #include "sync/virtual_time/virtual_time.h"
 
 namespace tactus::sync {
@@ -12,6 +13,9 @@ namespace {
 constexpr int kPollMs = 50;
 // Messages read from one port before the other is read.
 constexpr int kBatch = 64;
+// Messages read before the thread checks for its stop, and at most after it: more than the buffers of both sockets hold at
+// that moment (udp_port.cpp). Later messages were sent after the end of the recording.
+constexpr int kMaxAtOnce = 50'000;
 
 }  // namespace
 
@@ -47,14 +51,10 @@ void RecorderTap::run() {
   while (true) {
     const bool last = stop_;
     poll(fds, 2, last ? 0 : kPollMs);
-    bool more = true;
-    while (more) {
-      more = false;
-      for (UdpPort& port : ports_->both) {
-        const std::lock_guard lock(mutex_);
-        more |= port.read(kBatch, [this](const ChannelBytes& m) { store(m); }) > 0;
-      }
-    }
+    read_in_turns(ports_->both, kBatch, kMaxAtOnce, [this](UdpPort& port, int batch) {
+      const std::lock_guard lock(mutex_);
+      return port.read(batch, [this](const ChannelBytes& m) { store(m); });
+    });
     if (last) return;
   }
 }

@@ -28,7 +28,7 @@ class RecorderTap {
 
   // Exchanges an empty batch for the received messages. Thread-safe.
   void take(MessageBatch& batch);
-  // Receives pending messages and ends the thread; remaining messages can still be taken.
+  // Receives pending messages and ends the thread, also under a flood; remaining messages can still be taken.
   void stop();
   // Number of messages dropped because the batch was full.
   std::int64_t overflow() const { return overflow_; }

@@ -55,6 +55,63 @@ TEST_CASE("calm() is the time since the loop last exceeded its share") {
   CHECK(guard.time_below_limit() >= Nanoseconds(10'000'000'000 - 200'000'000));
 }
 
+TEST_CASE("A loop that overran its share leaves FIFO, and returns after ten seconds without overload") {
+  using Change = PriorityKeeper::Change;
+  PriorityKeeper keeper;
+  HostTime now = host_time(1'000'000'000);
+  int left = 0, returned = 0;
+  HostTime returned_at{};
+  const auto run = [&](int ms, std::int64_t busy_us) {
+    for (const HostTime end = now + Nanoseconds(ms * 1'000'000LL); now < end; now += Nanoseconds(1'000'000)) {
+      const Change change = keeper.tick(now, now + Nanoseconds(busy_us * 1000));
+      left += change == Change::kLeave;
+      if (change == Change::kReturn) ++returned, returned_at = now;
+    }
+  };
+  for (int round = 1; round <= 3; ++round) {
+    run(1000, 950);
+    CHECK(left == round);  // once, not in every window
+    CHECK(keeper.demoted());
+    run(5000, 300);
+    CHECK(returned == round - 1);
+    run(500, 950);  // overload again: the time counts from its end
+    const HostTime calm = now;
+    run(12'000, 300);
+    CHECK(returned == round);
+    CHECK_FALSE(keeper.demoted());
+    // Windows of 100 ms: one of them may hold the end of the overload.
+    CHECK(returned_at - calm > Nanoseconds(9'800'000'000));
+    CHECK(returned_at - calm < Nanoseconds(10'300'000'000));
+  }
+}
+
+TEST_CASE("A loop that was stopped for a minute leaves FIFO at most once, and returns") {
+  PriorityKeeper keeper;
+  HostTime now = host_time(1'000'000'000);
+  int left = 0, returned = 0;
+  for (int i = 0; i < 20'000; ++i, now += Nanoseconds(1'000'000)) {
+    const Nanoseconds busy = i == 1000 ? Nanoseconds(60'000'000'000) : Nanoseconds(200'000);
+    const auto change = keeper.tick(now, now + busy);
+    if (i == 1000) now += busy;
+    left += change == PriorityKeeper::Change::kLeave;
+    returned += change == PriorityKeeper::Change::kReturn;
+  }
+  CHECK(left == 1);
+  CHECK(returned == 1);
+}
+
+TEST_CASE("Memory is locked without a limit, or with the capability outside user namespaces") {
+  const std::string initial = "         0          0 4294967295\n", container = "         0     100000      65536\n";
+  constexpr std::uint64_t kNone = 0, kLock = 1 << 14, kAll = (std::uint64_t{1} << 41) - 1;
+  CHECK(can_lock_all_memory(false, kNone, container));
+  CHECK(can_lock_all_memory(true, kLock, initial));
+  CHECK(can_lock_all_memory(true, kAll, initial));
+  CHECK_FALSE(can_lock_all_memory(true, kNone, initial));
+  CHECK_FALSE(can_lock_all_memory(true, kAll & ~kLock, initial));
+  CHECK_FALSE(can_lock_all_memory(true, kAll, container));
+  CHECK_FALSE(can_lock_all_memory(true, kAll, ""));
+}
+
 TEST_CASE("Normal scheduling is reported when real-time priority is off or zero") {
   CHECK(set_realtime(Realtime::kOff, 60) == "normal scheduling");
   CHECK(set_realtime(Realtime::kRequire, 0) == "normal scheduling");
