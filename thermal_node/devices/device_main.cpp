@@ -4,18 +4,25 @@
 //   in   THERMAL_STATE    command for the plate of its tool
 //   out  THERMAL_DEVICE   every tick
 //
-// When THERMAL_STATE is missing for 0.3 s the plate returns to neutral. Its own limits apply to any command.
+// DisplayGuard is the last check before the plate: it follows one sender, keeps range, slew and duration of warmth and cold
+// for any command, and returns the plate to neutral when THERMAL_STATE is missing for 0.3 s, is dated ahead or comes from two
+// programs. Its limits are the settings of thermal_node (--set); give both programs the same. The exposure of the person
+// survives a restart, in a file of --out.
 //
 // The contract: read THERMAL_STATE of your tool; apply your own limits to it; answer with THERMAL_DEVICE. Both are
 // in lcmtypes/ and begin with header_t; sync::Bus fills and checks it here. In another language fill it by hand:
 // run_id and clock as in the THERMAL_STATE that you answer if you run on its machine, source and incarnation of
 // your own, seq counting up from 0, publish_time_ns of CLOCK_MONOTONIC.
+#include <cmath>
+#include <optional>
 #include <tactus/node_health_t.hpp>
 #include <tactus/thermal_device_t.hpp>
 #include <tactus/thermal_state_t.hpp>
 
 #include "sync/node/node.h"
 #include "sync/node/renderer.h"
+#include "thermal_node/devices/display_guard.h"
+#include "thermal_node/devices/dose_file.h"
 #include "thermal_node/devices/external.h"
 #include "thermal_node/devices/simulated_peltier.h"
 #include "thermal_node/settings.gen.h"
@@ -38,24 +45,27 @@ int main(int argc, char** argv) try {
 
   sync::Node node(descriptor, options);
   auto& commands = node.bus().queue<thermal_state_t>(channels::kThermalState, 64);
-  const double neutral_degC = settings.skin_rest_degC;
-  thermal::SimulatedPeltier plate({}, {}, neutral_degC);
-  thermal_state_t command{};
-  command.commanded_degC = static_cast<float>(neutral_degC);
-  sync::HostTime last_arrival{};
+  const sync::Identity& identity = node.bus().identity();
+  thermal::DisplayGuard guard(settings, tool, options.run_id, identity.clock);
+  thermal::SimulatedPeltier plate({}, {}, settings.skin_rest_degC);
+  thermal::DoseFile file(options.out + "/" + identity.node + ".dose", identity.clock);
+  guard.resume(file.load(sync::host_now()));
+  std::optional<thermal::PlateReading> reading;
   node.set_state(node_health_t::WAITING, "waits for THERMAL_STATE");
 
   while (node.running()) {
     const sync::HostTime now = node.wait();
-    while (const auto m = commands.pop())
-      if (m->message.tool == tool) command = m->message, last_arrival = m->arrival;
-    const bool silent = now - last_arrival > thermal::Device::kSilence;
-    const double load_W = silent ? 0 : command.heat_flux_W_m2 * settings.reference_area_m2;
-    const auto reading = plate.step(silent ? neutral_degC : command.commanded_degC, load_W, now);
-    if (last_arrival != sync::HostTime{})
-      node.set_state(silent ? node_health_t::INPUT_LOST : node_health_t::RUNNING,
-                     silent ? "no THERMAL_STATE: the plate is neutral" : "");
+    while (const auto m = commands.pop()) guard.receive(m->message, m->arrival);
+    const thermal::GuardedTarget target =
+        guard.step(reading ? std::optional(reading->plate_degC) : std::nullopt, now);
+    file.save(guard.account_after(thermal::DoseFile::kAhead_s), now);
+    // A target that is not a number switches the element off.
+    reading = plate.step(target.off ? std::nan("") : target.target_degC, target.load_W, now);
+    if (guard.has_command())
+      node.set_state(target.problem ? node_health_t::INPUT_LOST : node_health_t::RUNNING,
+                     target.problem ? target.problem : file.problem());
     if (!reading) continue;
+    reading->limited = reading->limited || target.limited;
     thermal_device_t message = thermal::to_message(*reading, tool);
     node.bus().publish(channels::kThermalDevice, message);
   }
