@@ -1,6 +1,6 @@
 // The last check before a thermal display: from received commands to a target that its plate may be brought to. It keeps its
 // own limits for any content of THERMAL_STATE: range, slew, duration of warmth and cold, age, one sender. A driver in C++
-// uses it as it is; examples/ and device_main.cpp show the loop. Pure.
+// uses it as it is; display_program.cpp shows the loop. Pure.
 //
 //   guard.receive(message, arrival);                               // each THERMAL_STATE
 //   const GuardedTarget t = guard.step(plate_degC, now);           // 10 Hz or more
