@@ -1,5 +1,6 @@
 #include "thermal_node/renderer.h"
 
+#include <chrono>
 #include <tactus/node_health_t.hpp>
 #include <tactus/presentation_t.hpp>
 #include <tactus/scene_t.hpp>
@@ -14,6 +15,13 @@
 #include "thermal_node/skin/thickness.h"
 
 namespace tactus::thermal {
+namespace {
+
+bool recent(sync::HostTime at, sync::HostTime now) {
+  return at != sync::HostTime{} && std::chrono::abs(now - at) <= Device::kSilence;
+}
+
+}  // namespace
 
 NodeRenderer::NodeRenderer(sync::RendererHost& host, std::string tool_name, sync::OfflineTable* log)
     : SettingsRenderer(host, setting_fields()),
@@ -26,6 +34,11 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, std::string tool_name, sync
       quality_(Settings{}) {
   add_tags();
   host.node().set_state(node_health_t::WAITING, "waits for the scene");
+  if (log_) return;
+  host.bus().attach(commands_);
+  const sync::Identity& identity = host.bus().identity();
+  dose_file_ = std::make_unique<DoseFile>(host.options().out + "/" + identity.node + ".dose", identity.clock);
+  account_ = dose_file_->load(host.clock());
 }
 
 void NodeRenderer::add_tags() {
@@ -42,13 +55,16 @@ sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Se
   config_ = resolve_config(scene, settings, tool_name_);
   if (log_) log_->run().require_rate(settings.rate_Hz);
   quality_ = Quality(settings);
-  if (renderer_) dwell_ = renderer_->dwell();
+  if (renderer_) account_ = renderer_->dwell().account();
   renderer_.reset();
-  device_ = make_device(settings, config_.tool, plate_degC_.value_or(settings.skin_rest_degC));
+  device_ = make_device(settings, config_.tool, plate_degC_.value_or(settings.skin_rest_degC),
+                        host().bus().identity().clock);
+  displays_ = 0;
+  if (config_.tool < 0) command_degC_.reset();  // without commands the plate is neutral
   if (config_.tool >= 0) {
     renderer_.emplace(settings, scene.materials, config_.tool, config_.tool_body, command_degC_,
                       thickness_of_bodies(scene));
-    renderer_->resume(dwell_);
+    renderer_->resume(account_);
   }
   return {.tool = config_.tool,
           .rate_Hz = settings.rate_Hz,
@@ -64,9 +80,37 @@ void NodeRenderer::apply_setting(const Settings& settings, const std::string&) {
 void NodeRenderer::receive() {
   stream_.extend_history(host().endpoint().delay());
   while (const auto m = frames_.pop()) stream_.push(m->message, m->arrival);
-  while (const auto m = device_messages_.pop())
+  while (const auto m = device_messages_.pop()) {
+    const thermal_device_t& reading = m->message;
     // Ignores readings of a log that is replayed meanwhile: that plate is not under this finger.
-    if (device_ && m->message.header.run_id == host().options().run_id) device_->receive(m->message, m->arrival);
+    if (reading.header.run_id != host().options().run_id) continue;
+    if (device_) device_->receive(reading, m->arrival);
+    const bool own = reading.header.incarnation == host().bus().identity().incarnation;
+    if (!log_ && !own && reading.tool == config_.tool && config_.settings.device != "external") other_reading_ = m->arrival;
+  }
+  while (const auto m = commands_.pop()) {
+    const header_t& header = m->message.header;
+    if (header.run_id == host().options().run_id && header.incarnation != host().bus().identity().incarnation &&
+        m->message.tool == config_.tool)
+      other_command_ = m->arrival;
+  }
+}
+
+const char* NodeRenderer::display_problem(sync::HostTime now) const {
+  if (log_) return nullptr;
+  if (recent(other_command_, now))
+    return "two programs send THERMAL_STATE for its tool: the plate is neutral; stop one of them";
+  if (recent(other_reading_, now))
+    return "another program sends THERMAL_DEVICE for its tool: the plate is neutral; stop it, or set device=external";
+  return device_ ? device_->problem(now) : nullptr;
+}
+
+void NodeRenderer::store_dose(sync::HostTime now) {
+  if (!dose_file_) return;
+  dose_file_->save(renderer_->account_after(DoseFile::kAhead_s), now);
+  if (dose_file_->problem() == dose_problem_) return;
+  dose_problem_ = dose_file_->problem();
+  host().print_status(dose_problem_);
 }
 
 std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
@@ -85,13 +129,18 @@ void NodeRenderer::render(sync::HostTime now) {
   std::optional<sync::ScopedPhaseTimer> rendering(sync::Phase::kRender);
   const double command_degC = command_degC_.value_or(config_.settings.skin_rest_degC);
   const auto plate = device_ ? device_->step(command_degC, renderer_->load_W(), now) : std::nullopt;
+  problem_ = display_problem(now);
+  if (device_ && std::exchange(displays_, device_->displays()) != device_->displays()) renderer_->restart_display();
   thermal_state_t state = renderer_->step(tick, {.response_s = endpoint.output().value("response"),
                                                  .longest_substep_s = quality_.longest_substep_s(),
-                                                 .plate = plate});
+                                                 .plate = plate,
+                                                 .display_lost = problem_ != nullptr,
+                                                 .check_following = !log_ || (device_ && device_->simulated()),
+                                                 .plate_return_K_s = device_ ? device_->return_K_s() : kDisplayReturn_K_s});
   rendering.reset();
+  store_dose(now);
   published_ = state;
   command_degC_ = state.commanded_degC;
-  device_silent_ = device_ && !plate;
   if (log_) {
     state.header.publish_time_ns = sync::to_ns(log_->run().now());
     log_->add_row(sync::csv_row(state));
@@ -112,10 +161,25 @@ sync::Status NodeRenderer::status() const {
   } else if (renderer_->input_lost()) {
     s.state = node_health_t::INPUT_LOST;
     s.text = "no contacts: the command returns to resting skin";
-  } else if (device_silent_) {
-    s.text = "the display is silent: the plate is assumed to be at its command";
+  }
+  // A display that is not there does not hide the state of the inputs.
+  if (const char* trouble = display_trouble()) {
+    if (s.state == node_health_t::RUNNING && renderer_->display() != DisplayState::kShort) s.state = node_health_t::OUTPUT_LOST;
+    s.text = trouble;
   }
   return s;
+}
+
+const char* NodeRenderer::display_trouble() const {
+  switch (renderer_->display()) {
+    case DisplayState::kGood: return nullptr;
+    case DisplayState::kShort: return "the display reports that it delivers less than commanded: the command stays near its plate";
+    case DisplayState::kLost: return problem_ ? problem_ : "the display was lost: the plate is neutral for a moment";
+    case DisplayState::kFault: return "the display reports a fault or an impossible temperature: the plate is neutral; check it";
+    case DisplayState::kNotFollowing:
+      return "the plate does not follow its command: it stays neutral; check the display and its limits, then start it again";
+  }
+  return nullptr;
 }
 
 }  // namespace tactus::thermal

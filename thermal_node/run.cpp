@@ -6,8 +6,9 @@
 //   out  THERMAL_STATE, THERMAL_DEVICE every tick; the latter of the simulated display
 //        PRESENTED                     every begin and hit of its tool
 //
-// Lost readings: the display is assumed to be at its command. Lost contacts: the command returns to the temperature of resting
-// skin. With --log it renders a recorded run, as fast as it can, and writes --trace; the same log gives the same bytes.
+// Lost contacts, lost or false readings, a second sender of either output: the command returns to the temperature of resting
+// skin. The exposure of the skin survives a restart, in a file of --out. With --log it renders a recorded run, as fast as it
+// can, and writes --trace; the same log gives the same bytes.
 #include "thermal_node/run.h"
 
 #include <tactus/node_health_t.hpp>

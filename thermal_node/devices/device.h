@@ -1,6 +1,7 @@
 // Interface of a thermal display under a finger: plate command in, sensor readings out. Pure: time is an argument.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <tactus/thermal_device_t.hpp>
 
@@ -31,6 +32,12 @@ class Device {
   // Call once per tick. command_degC: target of the plate; load_W: estimated heat from the finger, W. Returns the
   // reading since the last tick; empty while the display is silent.
   virtual std::optional<PlateReading> step(double command_degC, double load_W, sync::HostTime now) = 0;
+  // Reason why the display cannot be relied on, one sentence; null: none.
+  virtual const char* problem(sync::HostTime /*now*/) const { return nullptr; }
+  // Number of displays so far; another one begins when it changes.
+  virtual std::int64_t displays() const { return 1; }
+  // Slowest return of the plate to neutral. Design: half of the rate of the default element.
+  virtual double return_K_s() const { return 10; }
 };
 
 }  // namespace tactus::thermal

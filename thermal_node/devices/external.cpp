@@ -6,13 +6,22 @@ namespace tactus::thermal {
 
 void External::receive(const thermal_device_t& m, sync::HostTime arrival) {
   if (m.tool != tool_) return;
-  reading_ = to_reading(m);
-  arrival_ = arrival;
+  const OneSender::Result result = sender_.observe(m.header, arrival);
+  if (result == OneSender::Result::kUse || result == OneSender::Result::kRestart) reading_ = to_reading(m);
 }
 
 std::optional<PlateReading> External::step(double, double, sync::HostTime now) {
-  if (!arrival_ || now - *arrival_ > kSilence) return std::nullopt;
+  if (sender_.silent(now) || sender_.conflict(now)) return std::nullopt;
   return reading_;
+}
+
+const char* External::problem(sync::HostTime now) const {
+  if (sender_.conflict(now)) return "two programs send THERMAL_DEVICE for its tool: the plate is neutral; stop one of them";
+  if (sender_.ahead(now))
+    return "THERMAL_DEVICE is dated ahead: the plate is neutral; check the clock of the display's program";
+  if (sender_.followed() == 0) return "no display answers: the plate is neutral; start its program, or set device=none";
+  if (sender_.silent(now)) return "the display is silent: the plate is neutral; check its program";
+  return sender_.trusted(now) ? nullptr : "the display has begun to answer: the plate is neutral for a moment";
 }
 
 thermal_device_t to_message(const PlateReading& r, int tool) {

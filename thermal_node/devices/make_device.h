@@ -1,6 +1,7 @@
 // Makes the display that the settings select.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "thermal_node/devices/device.h"
@@ -8,7 +9,8 @@
 
 namespace tactus::thermal {
 
-// Null for device=none. plate_degC: initial temperature of a simulated plate.
-std::unique_ptr<Device> make_device(const Settings& settings, int tool, double plate_degC);
+// Null for device=none. plate_degC: initial temperature of a simulated plate. clock: id of the clock of this process, see
+// External.
+std::unique_ptr<Device> make_device(const Settings& settings, int tool, double plate_degC, std::int32_t clock = 0);
 
 }  // namespace tactus::thermal

@@ -29,6 +29,10 @@ constexpr double kRunaway_K = 2;
 // Possible range of a plate under a finger; other values mean a broken sensor.
 constexpr double kColdestPlate_degC = -50, kHottestPlate_degC = 150;
 
+// A longer interval is integrated in at most this many substeps, so that a process that was stopped for hours continues at
+// once. The implicit method is stable for any substep.
+constexpr double kMaxSubsteps = 2000;
+
 ControllerLimits limits(const Settings& s) {
   return {s.temperature_min_degC, s.temperature_max_degC, s.slew_max_K_s};
 }
@@ -54,7 +58,9 @@ Renderer::Renderer(const Settings& settings, std::vector<material_def_t> materia
       display_({contact_conductance_W_m2K(settings.plate_conductivity_W_mK)}, make_skin(settings)),
       dwell_({settings.dose_max_s, settings.cold_below_degC, settings.cold_max_s}),
       controller_(limits(settings), element_degC.value_or(settings.skin_rest_degC)),
-      commanded_degC_(element_degC.value_or(settings.skin_rest_degC)) {}
+      commanded_degC_(element_degC.value_or(settings.skin_rest_degC)),
+      target_degC_(commanded_degC_),
+      exposure_{commanded_degC_, commanded_degC_} {}
 
 ObjectProperties Renderer::object(const material_def_t& m, int body) const {
   const double degC = std::isfinite(m.temperature_degC) ? m.temperature_degC : kRoom_degC;
@@ -142,41 +148,95 @@ void Renderer::report(const contact_event_t& event, const Tick& tick) {
 
 double Renderer::load_W() const { return display_.finger_flux_W_m2() * settings_.reference_area_m2; }
 
+double Renderer::neutral_degC() const {
+  return std::clamp(settings_.skin_rest_degC, settings_.temperature_min_degC, settings_.temperature_max_degC);
+}
+
+// A trouble outlasts its cause by kTrust_s, so that a display that is good now and then stays at rest.
+DisplayState Renderer::check_display(const TickOptions& options, bool measured, bool gap, double interval_s) {
+  using Result = Following::Result;
+  DisplayState state = DisplayState::kGood;
+  if (measured && options.check_following && !gap) {
+    const Result result = following_.step(commanded_degC_, options.plate->plate_degC, options.plate->limited,
+                                          neutral_degC(), interval_s);
+    if (result != Result::kFollows) state = result == Result::kShort ? DisplayState::kShort : DisplayState::kNotFollowing;
+  } else {
+    following_.skip();
+  }
+  const bool runaway =
+      options.plate && (!measured || options.plate->fault ||
+                        options.plate->plate_degC < settings_.temperature_min_degC - kRunaway_K ||
+                        options.plate->plate_degC > settings_.temperature_max_degC + kRunaway_K);
+  if (runaway) state = DisplayState::kFault;
+  if (options.display_lost) state = DisplayState::kLost;
+
+  distrust_s_ = std::max(0.0, distrust_s_ - interval_s);
+  if (state == DisplayState::kFault || state == DisplayState::kLost) {
+    distrust_s_ = kTrust_s;
+    last_trouble_ = state;
+  }
+  return distrust_s_ > 0 && state != DisplayState::kNotFollowing ? last_trouble_ : state;
+}
+
+DwellAccount Renderer::account_after(double seconds) const {
+  Dwell ahead = dwell_;
+  ahead.step(exposure_, seconds, {settings_.temperature_min_degC, settings_.temperature_max_degC});
+  return ahead.account();
+}
+
 // From the wanted skin state to the plate command: lag, then the required plate temperature, then the limits, the
-// tightest last. A plate whose sensor is out of its range or that reports a fault is commanded to rest.
+// tightest last. The range is entered at once, with any slew limit. A display that cannot be relied on is commanded to
+// rest. The exposure is that of the last interval, by the worse of command and reading: no reading lowers it.
 Command Renderer::command(const TickOptions& options, double interval_s) {
   const bool measured = options.plate && options.plate->plate_degC > kColdestPlate_degC &&
                         options.plate->plate_degC < kHottestPlate_degC;
   const double plate_degC = measured ? options.plate->plate_degC : commanded_degC_;
   const TemperatureRange wide{settings_.temperature_min_degC, settings_.temperature_max_degC};
-  const TemperatureRange range = dwell_.step(plate_degC, interval_s, wide);
-  const bool runaway =
-      options.plate && (!measured || options.plate->fault || plate_degC < wide.min_degC - kRunaway_K ||
-                        plate_degC > wide.max_degC + kRunaway_K);
+  exposure_ = {std::max(plate_degC, commanded_degC_), std::min(plate_degC, commanded_degC_), target_degC_,
+               options.plate_return_K_s, kReaction_s + interval_s, kPlateSwing_K};
+  TemperatureRange range = dwell_.step(exposure_, interval_s, wide);
+  range.min_degC = std::min(range.min_degC, neutral_degC());  // a neutral of 25 degC at cold_below remains allowed
+
+  const bool gap = interval_s > sync::to_seconds(Device::kSilence);
+  if (gap) {
+    controller_ = Controller(limits(settings_), neutral_degC());
+    lag_.set(neutral_degC());
+    flux_lag_.set(0);
+  }
+  display_state_ = check_display(options, measured, gap, interval_s);
 
   const double skin_degC = lag_.step(skin_->surface_degC(), interval_s, options.response_s);
   const double flux_W_m2 = flux_lag_.step(skin_->heat_flux_W_m2(), interval_s, options.response_s);
   const double plate_target =
       display_.step(skin_degC, flux_W_m2, plate_degC, interval_s, options.longest_substep_s);
   double wanted = settings_.display == "flux" ? plate_target : skin_degC;
-  if (input_lost_ || runaway) wanted = settings_.skin_rest_degC;
+  if (display_state_ == DisplayState::kShort)
+    wanted = std::clamp(wanted, std::min(neutral_degC(), plate_degC - Following::kTolerance_K / 2),
+                        std::max(neutral_degC(), plate_degC + Following::kTolerance_K / 2));
+  const bool rest = input_lost_ || gap || !std::isfinite(wanted) ||
+                    (display_state_ != DisplayState::kGood && display_state_ != DisplayState::kShort);
+  if (rest) wanted = settings_.skin_rest_degC;
 
-  const double allowed = std::clamp(wanted, range.min_degC, range.max_degC);
-  Command command = controller_.step(allowed, interval_s);
-  command.limited = command.limited || allowed != wanted || runaway;
+  target_degC_ = std::clamp(wanted, range.min_degC, range.max_degC);
+  const double slew_K_s = rest ? std::max(kReturn_K_s, settings_.slew_max_K_s) : settings_.slew_max_K_s;
+  controller_.set_limits({range.min_degC, range.max_degC, slew_K_s});
+  Command command = controller_.step(wanted, interval_s);
+  command.limited = command.limited || (rest && !input_lost_) || display_state_ == DisplayState::kShort;
   commanded_degC_ = command.command_degC;
-  if (input_lost_ || runaway) {
+  if (rest) {
     lag_.set(command.command_degC);
     flux_lag_.set(0);
   }
   return command;
 }
 
-thermal_state_t Renderer::step(const Tick& tick, const TickOptions& options) {
+thermal_state_t Renderer::step(const Tick& tick, const TickOptions& tick_options) {
   reports_.clear();
   for (const contact_event_t& event : tick.events) report(event, tick);
 
   const double interval_s = std::max(0.0, sync::to_seconds(tick.end - tick.begin));
+  TickOptions options = tick_options;
+  options.longest_substep_s = std::max(options.longest_substep_s, interval_s / kMaxSubsteps);
   const bool lost = input_lost_ = !usable(tick.contact.status);
   ++tick_;
   HeatExchange e;

@@ -2,6 +2,8 @@
 // command. Pure.
 #pragma once
 
+#include <limits>
+
 namespace tactus::thermal {
 
 struct DwellLimits {
@@ -13,6 +15,30 @@ struct DwellLimits {
 // Range of allowed commands.
 struct TemperatureRange {
   double min_degC, max_degC;
+};
+
+// Temperatures under a finger during one step, and the time that the display needs to leave them.
+struct Exposure {
+  // Of the commanded and the measured temperature. NaN: unknown, counts as the worst of the range.
+  double warmest_degC, coldest_degC;
+  // The command moves towards this temperature, maybe slowly. NaN: not known.
+  double target_degC = std::numeric_limits<double>::quiet_NaN();
+  // Slowest return of the plate, and the time until the return begins, the next step included.
+  double return_K_s = std::numeric_limits<double>::infinity(), delay_s = 0;
+  // The narrower range is inside the limits by this, because a plate swings about its command: a plate at 39.01 degC would
+  // never recover.
+  double margin_K = 0;
+};
+
+// Sums of warm and cold exposure, in a form that can be stored.
+struct DwellAccount {
+  double dose_s = 0, cold_s = 0;
+  bool warm_limited = false, cold_limited = false;  // until half of the sum has decayed
+
+  // Of a person whose exposure is unknown: both limits are reached. Dwell cuts the sums to its limits.
+  static constexpr DwellAccount full() { return {1e6, 1e6, true, true}; }
+  // After `seconds` at neutral, >= 0. The next step of Dwell updates the limits.
+  DwellAccount recovered(double seconds) const;
 };
 
 // Warmth is summed as the dose of Sapareto and Dewey 1984: seconds at 43 degC; each kelvin more doubles the rate,
@@ -27,15 +53,20 @@ class Dwell {
  public:
   explicit Dwell(const DwellLimits& limits) : limits_(limits) {}
 
-  // Returns the range for the next dt, after a plate or finger has been at degC for the last; `wide` is the range
-  // without exposure. NaN counts as both the warmest and the coldest of it.
-  TemperatureRange step(double degC, double dt_s, const TemperatureRange& wide);
-
-  // Continues with the exposure accumulated under other limits.
-  void resume(const Dwell& before);
-
-  double dose_s() const { return dose_s_; }
-  double cold_s() const { return cold_s_; }
+  // Returns the range for the next dt, after `exposure` for the last dt; `wide` is the range without exposure. The way to
+  // the end of that range and back counts beforehand, so the sums stay within the limits until the plate is back. While the
+  // plate is warm, the dose counts at the rate of the target: a slow approach does not lengthen the time above kWarm_degC.
+  TemperatureRange step(const Exposure& exposure, double dt_s, const TemperatureRange& wide);
+  // The same for a plate or finger at degC that returns at once.
+  TemperatureRange step(double degC, double dt_s, const TemperatureRange& wide) {
+    return step(Exposure{degC, degC}, dt_s, wide);
+  }
+  // Continues with the exposure accumulated under other limits. Sums that are not finite or negative count as full.
+  void resume(const Dwell& before) { resume(before.account_); }
+  void resume(const DwellAccount& before);
+  const DwellAccount& account() const { return account_; }
+  double dose_s() const { return account_.dose_s; }
+  double cold_s() const { return account_.cold_s; }
 
   // Exposure above this temperature is a dose; after too large a dose it is the upper limit.
   static constexpr double kWarm_degC = 39;
@@ -43,10 +74,15 @@ class Dwell {
   // rest.
   static constexpr double kDecay_s = 300;
 
+  // Longest recovery that one step counts. A longer gap was not observed; design: ten ticks at the lowest rate.
+  static constexpr double kMaxRecovery_s = 1;
+
  private:
+  void cut();
+  void update_limits(double warm_reserve_s, double cold_reserve_s);
+
   DwellLimits limits_;
-  double dose_s_ = 0, cold_s_ = 0;
-  bool warm_limited_ = false, cold_limited_ = false;  // until half of the sum has decayed
+  DwellAccount account_;
 };
 
 }  // namespace tactus::thermal

@@ -91,3 +91,12 @@ TEST_CASE("The settings select the display") {
   REQUIRE(made("external"));
   CHECK_FALSE(made("external")->simulated());
 }
+
+TEST_CASE("A tight slew limit does not slow down the plate") {
+  thermal::Settings settings;
+  settings.slew_max_K_s = 0.1;
+  const auto device = thermal::make_device(settings, 0, 15);
+  PlateReading r;
+  for (int i = 0; i <= 30; ++i) r = *device->step(20, 0.5, at(20 * i));
+  CHECK(r.plate_degC > 19.8);
+}

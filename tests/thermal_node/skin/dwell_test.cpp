@@ -94,3 +94,60 @@ TEST_CASE("The range is valid and the dose is finite for any input") {
     REQUIRE(std::isfinite(dwell.cold_s()));
   }
 }
+
+TEST_CASE("The way to the end of the range and back counts beforehand") {
+  // Half a second until the return begins, and 3 K or 5 K at 2 K/s.
+  const auto allowed = [](double degC) {
+    Dwell dwell({60, 20, 60});
+    for (int i = 1; i < 100'000; ++i) {
+      const TemperatureRange range = dwell.step(Exposure{degC, degC, degC, 2, 0.5}, 0.02, kWide);
+      if (range.min_degC != kWide.min_degC || range.max_degC != kWide.max_degC) return 0.02 * i;
+    }
+    return 1e9;
+  };
+  CHECK(allowed(42) == Approx(240 - 0.5 - 1.5).margin(0.05));
+  CHECK(allowed(15) == Approx(60 - 0.5 - 2.5).margin(0.05));
+  CHECK(allowed(19) == Approx(60 - 0.5 - 2.5).margin(0.05));
+}
+
+TEST_CASE("A slow approach to warmth counts like the warmth") {
+  Dwell slow({60, 20, 60}), fast({60, 20, 60}), mild({60, 20, 60});
+  for (int i = 0; i < 1000; ++i) {
+    slow.step(Exposure{39.5, 39.5, 42}, 0.02, kWide);
+    fast.step(42, 0.02, kWide);
+    mild.step(Exposure{38, 38, 42}, 0.02, kWide);
+  }
+  CHECK(slow.dose_s() == Approx(fast.dose_s()));
+  CHECK(mild.dose_s() == 0);
+}
+
+TEST_CASE("One step recovers at most a second, and counts exposure of any length") {
+  Dwell dwell({60, 20, 60});
+  for (int i = 0; i < 50 * 30; ++i) dwell.step(43, 0.02, kWide);
+  dwell.step(33, 1e6, kWide);
+  CHECK(dwell.dose_s() == Approx(30 * std::exp(-1 / Dwell::kDecay_s)));
+  dwell.step(43, INFINITY, kWide);
+  CHECK(dwell.dose_s() == 120);
+  dwell.step(16, 1e6, kWide);
+  CHECK(dwell.cold_s() == 120);
+}
+
+TEST_CASE("An account that is not finite or negative counts as full") {
+  for (const double sum : {double{NAN}, double{INFINITY}, -1.0}) {
+    Dwell dwell({60, 20, 60});
+    dwell.resume(DwellAccount{sum, sum});
+    const TemperatureRange range = dwell.step(33, 0.02, kWide);
+    CHECK(range.max_degC == Dwell::kWarm_degC);
+    CHECK(range.min_degC == 20);
+  }
+}
+
+TEST_CASE("An account recovers as the limit does") {
+  const DwellAccount before{60, 60, true, true};
+  Dwell dwell({60, 20, 60});
+  dwell.resume(before);
+  for (int i = 0; i < 50 * 40; ++i) dwell.step(33, 0.02, kWide);
+  const DwellAccount after = before.recovered(40);
+  CHECK(after.dose_s == Approx(dwell.dose_s()));
+  CHECK(after.cold_s == Approx(dwell.cold_s()).margin(1e-9));
+}
