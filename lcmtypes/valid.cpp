@@ -36,6 +36,7 @@
 
 #include "lcmtypes/bump.h"
 #include "lcmtypes/measured_modes.h"
+#include "lcmtypes/page_limits.h"
 #include "lcmtypes/plausible.h"
 
 namespace tactus {
@@ -70,7 +71,7 @@ bool unit(const V& v) {
 }
 
 bool sane(const pose_t& p) { return sane(p.position_m) && rotation(p.orientation); }
-bool page_of(int page, int pages) { return pages >= 1 && page >= 0 && page < pages; }
+bool page_of(int page, int pages, int max_pages) { return between(pages, 1, max_pages) && page >= 0 && page < pages; }
 
 bool sane(const sim_clock_t& c) {
   return between(c.sim_ns, 0, kMaxTime_ns) && between(c.host_ns, 0, kMaxTime_ns) && sane_not_negative(c.rate) &&
@@ -125,7 +126,7 @@ bool sane(const hole_state_t& h) {
   return name(h.name) && h.ball >= 0 && h.inside >= -1 && between(h.filled, 0, 1);
 }
 bool sane(const decision_t& d) {
-  return between(d.is_event, 0, 1) && d.time_ns >= 0 && between(d.drop_reason, 0, 5) && d.held_ns >= 0 &&
+  return between(d.is_event, 0, 1) && d.time_ns >= 0 && between(d.drop_reason, 0, 6) && d.held_ns >= 0 &&
          between(d.twice, 0, 1);
 }
 bool sane(const presentation_t& p) {
@@ -222,18 +223,18 @@ bool sane_policy(const auto& m) {
 }  // namespace
 
 bool valid(const contact_events_t& m) {
-  return sane(m.header) && sane(m.clock) && page_of(m.page, m.pages) && all_sane(m.events);
+  return sane(m.header) && sane(m.clock) && page_of(m.page, m.pages, kMaxEventPages) && all_sane(m.events);
 }
 bool valid(const contact_frame_t& m) {
   return sane(m.header) && sane(m.clock) && between(m.group, contact_frame_t::TOOL, contact_frame_t::AHEAD) &&
-         page_of(m.page, m.pages) && all_sane(m.contacts);
+         page_of(m.page, m.pages, kMaxContactPages) && all_sane(m.contacts);
 }
 bool valid(const world_state_t& m) {
   return sane(m.header) && sane(m.clock) && between(m.group, world_state_t::NOW, world_state_t::PROMOTED) &&
-         sane_not_negative(m.rate_Hz) && page_of(m.page, m.pages) && all_sane(m.bodies);
+         sane_not_negative(m.rate_Hz) && page_of(m.page, m.pages, kMaxWorldPages) && all_sane(m.bodies);
 }
 bool valid(const touch_model_t& m) {
-  return sane(m.header) && sane(m.clock) && m.tool >= 0 && page_of(m.page, m.pages) && all_sane(m.planes) &&
+  return sane(m.header) && sane(m.clock) && m.tool >= 0 && page_of(m.page, m.pages, kMaxStatePages) && all_sane(m.planes) &&
          all_sane(m.applied);
 }
 bool valid(const tool_state_t& m) {
@@ -261,7 +262,7 @@ bool valid(const node_health_t& m) {
 }
 bool valid(const degradation_t& m) {
   return sane(m.header) && m.generation >= 0 && m.start_sim_ns >= 0 && between(m.size, 0, 65536) &&
-         page_of(m.page, m.pages) && m.text.size() <= 1200;
+         page_of(m.page, m.pages, kMaxProfilePages) && m.text.size() <= 1200;
 }
 bool valid(const degraded_t& m) { return sane(m.header) && name(m.modality) && all_sane(m.decisions); }
 bool valid(const playout_t& m) {
@@ -298,7 +299,7 @@ bool valid(const frame_shown_t& m) {
          between(m.stage, frame_shown_t::READY, frame_shown_t::SHOWN);
 }
 bool valid(const picture_chunk_t& m) {
-  return sane(m.header) && m.picture >= 0 && m.presented_ns >= -1 && m.width > 0 && m.height > 0 && page_of(m.chunk, m.chunks) &&
+  return sane(m.header) && m.picture >= 0 && m.presented_ns >= -1 && m.width > 0 && m.height > 0 && page_of(m.chunk, m.chunks, kMaxPictureChunks) &&
          between(m.size, 1, 1024);
 }
 bool valid(const thermal_device_t& m) {
@@ -310,7 +311,7 @@ bool valid(const thermal_state_t& m) {
   return sane(m.header) && m.tool >= 0 && m.material >= -1 && sane_not_negative(m.force_N) &&
          sane_not_negative(m.area_m2) && sane(m.heat_flux_W_m2) && sane(m.skin_degC) && sane(m.commanded_degC);
 }
-bool valid(const sync_report_t& m) { return sane(m.header) && page_of(m.page, m.pages) && all_sane(m.pairs); }
+bool valid(const sync_report_t& m) { return sane(m.header) && page_of(m.page, m.pages, kMaxReportPages) && all_sane(m.pairs); }
 bool valid(const clock_probe_t& m) {
   if (!sane(m.header) || !between(m.kind, clock_probe_t::REQUEST, clock_probe_t::REPLY) ||
       !clock_time(m.request_sent_ns))
@@ -326,12 +327,12 @@ bool valid(const clock_map_t& m) {
          m.uncertainty_ns >= 0 && m.uncertainty_drift >= 0 && m.uncertainty_drift <= 0.01 && m.epoch >= 0 &&
          m.round_trip_ns >= 0 && m.replies >= 0;
 }
-bool valid(const scene_manifest_t& m) { return sane(m.header) && page_of(m.page, m.pages) && all_sane(m.assets); }
+bool valid(const scene_manifest_t& m) { return sane(m.header) && page_of(m.page, m.pages, kMaxManifestPages) && all_sane(m.assets); }
 bool valid(const asset_request_t& m) {
   return sane(m.header) && m.first_chunk >= 0 && between(m.chunk_count, 1, 1 << 20);
 }
 bool valid(const asset_chunk_t& m) {
-  return sane(m.header) && page_of(m.chunk, m.chunks) && between(m.size, 1, 1024);
+  return sane(m.header) && page_of(m.chunk, m.chunks, kMaxAssetChunks) && between(m.size, 1, 1024);
 }
 
 bool valid(const mesh_t& m) {

@@ -77,9 +77,14 @@ void set(XMLElement& root, const std::string& sense, const char* attribute, cons
 }
 
 void apply_delay(XMLElement& root, const std::string& sense, double delay_ms) {
-  const auto old = operator_of("delay", first_element(root, sense, "delay")).delay.value_or(sync::DelayDef{});
+  XMLElement* const e = first_element(root, sense, "delay");
+  const auto old = operator_of("delay", e).delay.value_or(sync::DelayDef{});
   if (nearly_equal(old.delay_s * 1e3, delay_ms)) return;
   const char* kind = old.kind == sync::DelayKind::kNetwork ? " network" : "";
+  // A jitter that the shorter delay cannot carry ends (sync/random/jitter.h).
+  if (e != nullptr && has_value(*e, "jitter") &&
+      sync::needed_delay_s(operator_of("jitter", e).jitter.value_or(sync::JitterDef{})) * 1e3 > delay_ms)
+    e->DeleteAttribute("jitter");
   set(root, sense, "delay", delay_ms > 0 ? number(delay_ms) + "ms" + kind : "");
 }
 

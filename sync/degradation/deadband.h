@@ -11,9 +11,12 @@
 
 namespace tactus::sync {
 
-enum class Quantity : std::uint8_t { kForce, kVelocity, kPosition };
+// The first three are quantities of a profile. An impulse is input of TouchForces only; a stiffness (of a surface of touch) is
+// scaled by a gain of force, because the force with which the surface responds is proportional to it, and changed by no other
+// operator.
+enum class Quantity : std::uint8_t { kForce, kVelocity, kPosition, kImpulse, kStiffness };
 
-// One signal of a snapshot: its id (of a contact, body or plane) and its value in N, m/s or m.
+// One signal of a snapshot: its id (of a contact, body or plane) and its value in N, m/s, m or N s.
 struct Signal {
   std::int64_t id = 0;
   Quantity quantity = Quantity::kForce;

@@ -14,6 +14,7 @@ struct DecisionRecord {
   SimTime time{};
   Decision decision;
   HostTime arrival{};
+  std::uint64_t stream = 0;  // of a snapshot, as in StreamItem
 };
 using Decisions = std::vector<DecisionRecord>;
 

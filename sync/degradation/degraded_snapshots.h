@@ -14,26 +14,39 @@
 #include <utility>
 #include <vector>
 
+#include "lcmtypes/page_limits.h"
 #include "sync/bus/page_assembler.h"
 #include "sync/bus/recent_map.h"
 #include "sync/degradation/decision_record.h"
 #include "sync/degradation/operator_chain.h"
 #include "sync/degradation/snapshot.h"
+#include "sync/degradation/stream_pace.h"
+#include "sync/degradation/touch_forces.h"
 
 namespace tactus::sync {
 
-// Messages that wait for their release time, in the order of that time; equal times keep their order. Bounded: when it is
-// full, the oldest message is dropped.
+// A message that waits for its release.
+template <class Message>
+struct WaitingMessage {
+  Message message;
+  HostTime arrival;
+  std::uint64_t order = 0;  // of its snapshot, by arrival
+  Decision decision{};
+  HostTime decided{};  // arrival of the first page of its snapshot
+};
+
+// Messages in the order of their release time; equal times keep their order. Bounded: when it is full, the oldest message is
+// dropped.
 template <class Message>
 class DelayQueue {
  public:
   // Enough for the longest delay of a profile, one minute, of a stream of 1 kHz.
   static constexpr std::size_t kMax = 1 << 16;
-  void push(HostTime release, Message m, HostTime arrival) {
-    waiting_.emplace(release, std::make_pair(std::move(m), arrival));
+  void push(HostTime release, WaitingMessage<Message> m) {
+    waiting_.emplace(release, std::move(m));
     if (waiting_.size() > kMax) waiting_.erase(waiting_.begin());
   }
-  std::optional<std::pair<Message, HostTime>> pop(HostTime now) {
+  std::optional<WaitingMessage<Message>> pop(HostTime now) {
     if (waiting_.empty() || waiting_.begin()->first > now) return std::nullopt;
     auto first = std::move(waiting_.begin()->second);
     waiting_.erase(waiting_.begin());
@@ -41,27 +54,38 @@ class DelayQueue {
   }
 
  private:
-  std::multimap<HostTime, std::pair<Message, HostTime>> waiting_;
+  std::multimap<HostTime, WaitingMessage<Message>> waiting_;
 };
 
 // Snapshots. The profile decides once per snapshot, on its first page; the other pages share the decision. A deadband
-// compares all values of a snapshot: then the decision falls on the last page, and the other pages wait for it.
+// compares all values of a snapshot: then the decision falls on the last page, and the other pages wait for it. While the world
+// stands still, its snapshots are repeated; each repetition is decided on as a snapshot of its own.
+//
+// A jitter shifts the instants at which snapshots are presented. With a delay of the network that is their release. With a
+// presentation delay the renderer samples the state of a delayed instant, so each snapshot is moved to a later or earlier
+// simulated time, and is held back by the delay, so that a newer snapshot can replace it before it is presented.
 template <class Message>
 class DegradedSnapshots {
  public:
+  // For a servo loop, which renders the newest message: its presentation delay holds back messages, by an earlier `now` of pop.
+  void present_on_release() { presents_on_release_ = true; }
   // decisions: list to which decisions are appended; null: none.
   void push(Message m, HostTime arrival, OperatorChain& operators, Decisions* decisions) {
     record_newest(m, arrival);
     const SimTime time = sim_time(m.header.sim_time_ns);
     if constexpr (requires { m.pages; })
       if (m.pages > 1 && spans_profiles(m)) return;
-    if (operators.empty()) return waiting_.push(arrival, std::move(m), arrival);
+    if (decisions) decisions->insert(decisions->end(), overtaken_.begin(), overtaken_.end());
+    overtaken_.clear();
+    if (operators.empty()) return waiting_.push(arrival, {std::move(m), arrival, ++order_, {}, arrival});
     if (operators.lost_on_wire(wire_key(m), time)) return;
-    if constexpr (requires { m.pages; })
-      if (operators.compares() && m.pages > 1 && !decided_.find(snapshot_key(m)))
+    if constexpr (requires { m.pages; }) {
+      if (m.page == 0) forget_if_repeated(m);
+      if (operators.compares() && m.pages > 1 && !is_decided(m))
         return collect_page(std::move(m), arrival, operators, decisions);
-    const Decision decision = decide(m, arrival, signals_of(m), operators, decisions);
-    release(std::move(m), arrival, decision, operators);
+    }
+    const Decided& decided = decide(m, arrival, signals_of(m), operators, decisions);
+    release(std::move(m), arrival, decided, operators);
   }
   // From now on a new profile decides. Snapshots whose pages are arriving began under the previous profile: their remaining
   // pages are dropped, so that no receiver combines pages of two profiles.
@@ -71,16 +95,19 @@ class DegradedSnapshots {
   }
   // The next message that is released by now, and its arrival.
   std::optional<std::pair<Message, HostTime>> pop(HostTime now) {
-    auto next = waiting_.pop(now);
-    if (next) update_header(next->first, next->second);
-    return next;
+    while (auto next = waiting_.pop(now)) {
+      if (is_overtaken(*next)) continue;
+      update_header(next->message, next->arrival);
+      return std::make_pair(std::move(next->message), next->arrival);
+    }
+    return std::nullopt;
   }
 
  private:
   static constexpr std::size_t kRemembered = 256;
-  // Pages of a snapshot are sent before the next snapshot; up to four snapshots may be in flight at the same time. The largest
-  // has 2,000 pages of 18 bodies.
-  static constexpr PageLimits kPageLimits{.groups = 4, .pages = 4096};
+  // Pages of a snapshot are sent before the next snapshot; up to four snapshots may be in flight at the same time, but no more
+  // pages than two of the largest have.
+  static constexpr PageLimits kPageLimits{.groups = 4, .pages = kMaxStatePages, .total = 2 * kMaxStatePages};
   using Pages = PageAssembler<std::pair<Message, HostTime>, std::uint64_t>;  // by snapshot_key
 
   // The pages of the most recent snapshot of a stream.
@@ -91,6 +118,22 @@ class DegradedSnapshots {
   };
   // More streams than tools and groups exist come only from corrupt messages.
   static constexpr std::size_t kStreams = 64;
+  static constexpr std::size_t kMaxOvertaken = 1024;  // records that wait for the next push
+
+  // The decision on a snapshot.
+  struct Decided {
+    Decision decision;
+    HostTime arrival{};           // of its first page
+    std::uint64_t order = 0;      // 0: not decided yet
+    std::int64_t first_seq = -1;  // header.seq of its page 0; -1: has not arrived
+    bool repeated = false;
+  };
+  // The released snapshots of a stream.
+  struct Released {
+    std::uint64_t newest = 0;  // order of the newest one
+    SimTime time{};            // its instant, with its shift
+    std::uint64_t newest_overtaken = 0;
+  };
 
   // True when the page belongs to a snapshot that began under another profile. While the world stands still, the same
   // snapshot is repeated; it starts again with its first page.
@@ -103,16 +146,65 @@ class DegradedSnapshots {
     return now.split;
   }
 
-  void release(Message m, HostTime arrival, const Decision& decision, OperatorChain& operators) {
+  // The key of a snapshot of bodies or contacts is that of its instant. A page 0 with another number repeats an instant: the
+  // world stands still, or a receiver has asked for the whole world.
+  void forget_if_repeated(const Message& m) {
+    if constexpr (requires { m.group; }) {
+      Decided& known = decided_.try_emplace(snapshot_key(m)).first;
+      const bool repeats = known.first_seq >= 0 && known.first_seq != m.header.seq;
+      if (repeats) known = Decided();
+      known.repeated |= repeats;
+      known.first_seq = m.header.seq;
+    }
+  }
+  bool is_decided(const Message& m) const {
+    const Decided* known = decided_.find(snapshot_key(m));
+    return known && known->order > 0;
+  }
+
+  void release(Message m, HostTime arrival, const Decided& decided, OperatorChain& operators) {
+    const Decision& decision = decided.decision;
     if (decision.dropped()) {
       if (decision.conceal != Conceal::kZero || !make_zero(m)) return;
     } else if (operators.changes_values()) {
-      change_values(m, operators);
+      change_values(m, operators, decision.paced);
     }
     // Later pages of a delayed snapshot have the same delay as the first.
-    const HostTime release = std::max(decision.release, arrival);
-    if (decision.duplicated) waiting_.push(release, m, arrival);
-    waiting_.push(release, std::move(m), arrival);
+    HostTime release = std::max(decision.release, arrival) + decision.shift;
+    if (!presents_on_release_) {
+      release += decision.jittered_delay;
+      m.header.sim_time_ns = std::max<std::int64_t>(0, m.header.sim_time_ns + decision.shift.count());
+    }
+    if (decision.duplicated) waiting_.push(release, {m, arrival, decided.order, decision, decided.arrival});
+    waiting_.push(release, {std::move(m), arrival, decided.order, decision, decided.arrival});
+  }
+
+  // True for a snapshot that a newer one of its stream has overtaken, if the order must be kept. WORLD_STATE contains only
+  // moving bodies: an overtaken one may hold the last pose of a body, so it is released, too, for an instant before that of the
+  // newer one; each body takes the newest of its poses (sync/resampling/body_history.h).
+  bool is_overtaken(WaitingMessage<Message>& next) {
+    if (released_.size() >= kStreams && !released_.contains(stream_of(next.message))) released_.clear();
+    Released& released = released_[stream_of(next.message)];
+    const bool late = next.decision.newest_wins() && next.order < released.newest;
+    if constexpr (requires { next.message.bodies; }) {
+      if (late && next.decision.shift != Nanoseconds(0))
+        next.message.header.sim_time_ns =
+            std::max<std::int64_t>(0, std::min<std::int64_t>(next.message.header.sim_time_ns, to_ns(released.time) - 1));
+    } else if (late) {
+      record_overtaken(next, released);
+      return true;
+    }
+    released.newest = std::max(released.newest, next.order);
+    released.time = next.order == released.newest ? sim_time(next.message.header.sim_time_ns) : released.time;
+    return false;
+  }
+  void record_overtaken(const WaitingMessage<Message>& next, Released& released) {
+    if (next.decision.dropped() || next.order == released.newest_overtaken || overtaken_.size() >= kMaxOvertaken) return;
+    released.newest_overtaken = next.order;  // once for all pages
+    DecisionRecord record{snapshot_key(next.message), false, sim_time(next.message.header.sim_time_ns), next.decision, next.decided,
+                          stream_of(next.message)};
+    record.decision.why = DropReason::kOvertaken;
+    overtaken_.push_back(record);
   }
 
   void collect_page(Message m, HostTime arrival, OperatorChain& operators, Decisions* decisions) {
@@ -124,30 +216,50 @@ class DegradedSnapshots {
         const std::vector<Signal> more = signals_of(page.first);
         signals.insert(signals.end(), more.begin(), more.end());
       }
-      const Decision decision = decide(group.pages.begin()->page.first, arrival, signals, operators, decisions);
-      for (auto& [number, page] : group.pages) release(std::move(page.first), page.second, decision, operators);
+      const Decided decided = decide(group.pages.begin()->page.first, arrival, std::move(signals), operators, decisions);
+      for (auto& [number, page] : group.pages) release(std::move(page.first), page.second, decided, operators);
     };
     // An incomplete snapshot that newer ones have overtaken is judged by its received pages: missing signals count as a
     // change.
     if (auto* whole = incomplete_.add(key, number, count, {std::move(m), arrival}, decide_group)) decide_group(*whole);
   }
 
-  Decision decide(const Message& m, HostTime arrival, const std::vector<Signal>& signals, OperatorChain& operators,
-                     Decisions* decisions) {
+  const Decided& decide(const Message& m, HostTime arrival, std::vector<Signal> signals, OperatorChain& operators,
+                        Decisions* decisions) {
     const std::uint64_t key = snapshot_key(m);
-    if (const Decision* known = decided_.find(key)) return *known;
-    StreamItem item{.key = key,
-              .stream = stream_of(m),
-              .incarnation = m.header.incarnation,
-              .time = sim_time(m.header.sim_time_ns),
-              .arrival = arrival,
-              .signals = signals};
+    Decided& known = decided_.try_emplace(key).first;
+    if (known.order > 0) return known;
+    Stream& stream = stream_state(stream_of(m), m.header.incarnation);
+    StreamItem item{.key = known.repeated ? mixed(key, static_cast<std::uint64_t>(m.header.seq)) : key,
+                    .stream = stream_of(m),
+                    .incarnation = m.header.incarnation,
+                    .time = sim_time(m.header.sim_time_ns),
+                    .arrival = arrival,
+                    .publish_ns = m.header.publish_time_ns,
+                    .paced = stream.pace.advance(sim_time(m.header.sim_time_ns), m.header.publish_time_ns),
+                    .signals = {}};
+    if constexpr (requires { m.applied; })
+      if (operators.compares()) stream.forces.append(signals, item.time);
+    item.signals = signals;
     for (const Signal& s : signals)
       if (s.quantity == Quantity::kVelocity) item.speed_m_s = std::max(item.speed_m_s, s.value.norm());
-    const Decision decision = operators.decide(item);
-    decided_.try_emplace(key, decision);
-    if (decisions && decision.evaluated) decisions->push_back({key, false, item.time, decision, arrival});
-    return decision;
+    known.decision = operators.decide(item);
+    known.arrival = arrival;
+    known.order = ++order_;
+    if (decisions && known.decision.evaluated) decisions->push_back({key, false, item.time, known.decision, arrival, item.stream});
+    return known;
+  }
+  // The past of one stream that its operators need; a new incarnation is another stream.
+  struct Stream {
+    std::int64_t incarnation = 0;
+    StreamPace pace;
+    TouchForces forces;
+  };
+  Stream& stream_state(std::uint64_t id, std::int64_t incarnation) {
+    if (streams_.size() >= kStreams && !streams_.contains(id)) streams_.clear();
+    Stream& stream = streams_[id];
+    if (stream.incarnation != incarnation) stream = {incarnation, {}, {}};
+    return stream;
   }
   void record_newest(const Message& m, HostTime arrival) {
     const bool same = m.header.incarnation == incarnation_;
@@ -167,8 +279,13 @@ class DegradedSnapshots {
 
   DelayQueue<Message> waiting_;
   Pages incomplete_{kPageLimits};
-  std::map<std::uint64_t, NewestSnapshot> newest_snapshots_;                // by stream
-  RecentMap<std::uint64_t, Decision> decided_{kRemembered};
+  std::map<std::uint64_t, NewestSnapshot> newest_snapshots_;  // by stream
+  std::map<std::uint64_t, Stream> streams_;                   // by stream
+  std::map<std::uint64_t, Released> released_;                // by stream
+  RecentMap<std::uint64_t, Decided> decided_{kRemembered};
+  Decisions overtaken_;
+  std::uint64_t order_ = 0;
+  bool presents_on_release_ = false;
   std::int64_t incarnation_ = 0, newest_publish_ns_ = 0;
   HostTime newest_arrival_{};
   sim_clock_t newest_clock_{};

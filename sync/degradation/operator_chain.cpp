@@ -22,6 +22,16 @@ double slot_s(const RateDef& rate, std::int64_t slot) {
   return static_cast<double>(slot) / rate.rate_Hz + rate.phase_s;
 }
 
+// The newest slot that has begun at t_s.
+std::int64_t slot_at(const RateDef& rate, double t_s) {
+  return static_cast<std::int64_t>(std::floor((t_s - rate.phase_s) * rate.rate_Hz));
+}
+
+// A uniform or normal jitter varies a delay by no more than this delay, so that its mean stays 0.
+Jitter jitter_of(const Rule& rule) {
+  return rule.delay ? Jitter(*rule.jitter, from_seconds(rule.delay->delay_s)) : Jitter(*rule.jitter);
+}
+
 }  // namespace
 
 OperatorChain::OperatorChain(const Profile& profile, const std::string& modality, SimTime start) : start_(start) {
@@ -51,11 +61,12 @@ OperatorChain::Chain& OperatorChain::chain_of(Active& a, const StreamItem& item)
   if (is_new || chain.incarnation != item.incarnation || chain.newest - item.time > kMaxStepBack) {
     chain = {};
     chain.incarnation = item.incarnation;
-    chain.newest = item.time;
+    chain.newest = SimTime::min();
     if (a.rule.loss) chain.loss.emplace(*a.rule.loss);
-    if (a.rule.jitter) chain.jitter.emplace(*a.rule.jitter);
+    if (a.rule.jitter) chain.jitter.emplace(jitter_of(a.rule));
     if (a.rule.deadband) chain.deadband.emplace(*a.rule.deadband);
   }
+  chain.newest_before = chain.newest;
   chain.newest = std::max(chain.newest, item.time);
   return chain;
 }
@@ -74,6 +85,18 @@ bool OperatorChain::applies_to(const Rule& rule, std::int32_t material_a, std::i
          (named(bodies, body_a, rule.body_b) && named(bodies, body_b, rule.body_a));
 }
 
+// Keeps one snapshot in each slot of simulated time. A tool moves on while the world stands still or is set back: its
+// snapshots are then paced by their time of publication.
+bool OperatorChain::thinned(const RateDef& rate, Chain& chain, const StreamItem& item) const {
+  const std::int64_t slot = slot_at(rate, elapsed_s(item.time));
+  const std::int64_t publish_slot = slot_at(rate, static_cast<double>(item.publish_ns) * 1e-9);
+  const bool stands = item.time <= chain.newest_before;
+  if (slot <= chain.newest_slot && !(stands && publish_slot > chain.newest_publish_slot)) return true;
+  chain.newest_slot = std::max(slot, chain.newest_slot);
+  chain.newest_publish_slot = publish_slot;
+  return false;
+}
+
 // Rate, deadband, loss, off, freeze: the operators that drop items. An event that a rate delays is not dropped.
 bool OperatorChain::drops(Active& a, Chain& chain, const StreamItem& item, Decision& decision) {
   const Rule& rule = a.rule;
@@ -84,13 +107,8 @@ bool OperatorChain::drops(Active& a, Chain& chain, const StreamItem& item, Decis
   };
   if (rule.off) return drop(DropReason::kOff, Conceal::kZero);
   if (rule.freeze) return drop(DropReason::kFreeze, *rule.freeze);
-  if (rule.rate && !item.is_event) {
-    const auto slot =
-        static_cast<std::int64_t>(std::floor((elapsed_s(item.time) - rule.rate->phase_s) * rule.rate->rate_Hz));
-    if (slot <= chain.newest_slot) return drop(DropReason::kRate, Conceal::kHold);
-    chain.newest_slot = slot;
-  }
-  if (chain.deadband && !item.is_event && !chain.deadband->send(item.time, item.signals, item.speed_m_s))
+  if (rule.rate && !item.is_event && thinned(*rule.rate, chain, item)) return drop(DropReason::kRate, Conceal::kHold);
+  if (chain.deadband && !item.is_event && !chain.deadband->send(std::max(item.time, item.paced), item.signals, item.speed_m_s))
     return drop(DropReason::kDeadband, Conceal::kHold);
   if (chain.loss && chain.loss->lose(uniform(mixed(a.seed, kLossDraw), item.key)))
     return drop(DropReason::kLoss, rule.conceal);
@@ -106,25 +124,30 @@ void OperatorChain::delay_item(Active& a, Chain& chain, const StreamItem& item, 
     const auto slot = static_cast<std::int64_t>(std::ceil((t - rule.rate->phase_s) * rule.rate->rate_Hz));
     wait += std::max(Nanoseconds(0), from_seconds(slot_s(*rule.rate, slot) - t));
   }
-  if (rule.delay) {
-    const Nanoseconds delay = from_seconds(rule.delay->delay_s);
-    if (rule.delay->kind == DelayKind::kNetwork)
-      wait += delay;
-    else if (rule.filtered() && item.is_event)
-      decision.shift += delay;
+  const bool presentation = rule.delay && rule.delay->kind == DelayKind::kPresentation;
+  const Nanoseconds delay = rule.delay ? from_seconds(rule.delay->delay_s) : Nanoseconds(0);
+  if (!presentation)
+    wait += delay;
+  else if (rule.filtered() && item.is_event)
+    decision.shift += delay;
+  if (chain.jitter) {
+    // A presentation delay would absorb the jitter of messages, so its jitter shifts the presentation itself.
+    (presentation ? decision.shift : wait) += chain.jitter->next(uniform(mixed(a.seed, kJitterDraw), item.key));
+    if (presentation) decision.jittered_delay += delay;
+    decision.in_order |= chain.jitter->keeps_order();
   }
-  if (chain.jitter) wait += chain.jitter->next(uniform(mixed(a.seed, kJitterDraw), item.key));
   decision.release += std::max(Nanoseconds(0), wait);
-  if (chain.jitter && chain.jitter->keeps_order()) decision.release = std::max(decision.release, chain.last_release);
-  chain.last_release = decision.release;
-  if (rule.reorder && uniform(mixed(a.seed, kReorderDraw), item.key) < rule.reorder->share)
+  if (rule.reorder && uniform(mixed(a.seed, kReorderDraw), item.key) < rule.reorder->share) {
     decision.release += from_seconds(rule.reorder->by_s);
+    decision.reordered = true;
+  }
   if (rule.duplicate && uniform(mixed(a.seed, kDuplicateDraw), item.key) < *rule.duplicate) decision.duplicated = true;
 }
 
 Decision OperatorChain::decide(const StreamItem& item) {
   Decision decision;
   decision.release = item.arrival;
+  decision.paced = item.paced;
   for (Active& a : rules_) {
     // A snapshot covers many bodies and contacts, so a filtered rule applies only to its values.
     if (!active_at(a.rule, item.time) || (a.rule.filtered() && !item.is_event)) continue;
@@ -138,10 +161,15 @@ Decision OperatorChain::decide(const StreamItem& item) {
 }
 
 bool OperatorChain::lost_on_wire(std::uint64_t message, SimTime now) {
-  return std::any_of(rules_.begin(), rules_.end(), [&](const Active& a) {
-    return a.rule.wire_loss && active_at(a.rule, now) &&
-           uniform(mixed(a.seed, kWireDraw), message) < *a.rule.wire_loss;
-  });
+  bool applies = false, lost = false;
+  for (const Active& a : rules_) {
+    if (!a.rule.wire_loss || !active_at(a.rule, now)) continue;
+    applies = true;
+    lost |= uniform(mixed(a.seed, kWireDraw), message) < *a.rule.wire_loss;
+  }
+  wire_messages_ += applies;
+  wire_lost_ += lost;
+  return lost;
 }
 
 Nanoseconds OperatorChain::presentation_delay(SimTime now) const {
@@ -162,20 +190,23 @@ OutputValues OperatorChain::output(SimTime now) const {
 }
 
 double OperatorChain::degraded_value(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
-                      std::int32_t material_a, std::int32_t material_b, std::int32_t body_a, std::int32_t body_b) {
+                      std::int32_t material_a, std::int32_t material_b, std::int32_t body_a, std::int32_t body_b,
+                      SimTime paced) {
+  const SimTime now = std::max(t, paced);
   for (Active& a : rules_) {
     const Rule& r = a.rule;
     if (!active_at(r, t) || (r.filtered() && !applies_to(r, material_a, material_b, body_a, body_b))) continue;
     if (r.quantise && r.quantise->quantity == quantity) value = quantised(*r.quantise, value);
-    if (r.gain && r.gain->quantity == quantity) value *= r.gain->value;
+    const bool scales_force = r.gain && r.gain->quantity == Quantity::kForce;
+    if (r.gain && (r.gain->quantity == quantity || (scales_force && quantity == Quantity::kStiffness))) value *= r.gain->value;
     if (r.bias && r.bias->quantity == quantity) value += r.bias->value;
     if (r.lowpass && r.lowpass->quantity == quantity) {
       if (a.lowpass.size() > kRememberedValues) a.lowpass.clear();
-      const auto [it, is_new] = a.lowpass.try_emplace({id, component}, Filtered{value, t});
-      if (it->second.time - t > kMaxStepBack) it->second = {value, t};
-      if (!is_new && t > it->second.time) {
-        it->second.value = lowpassed(it->second.value, value, r.lowpass->value, to_seconds(t - it->second.time));
-        it->second.time = t;
+      const auto [it, is_new] = a.lowpass.try_emplace({id, component}, Filtered{value, now});
+      if (it->second.time - now > kMaxStepBack) it->second = {value, now};
+      if (!is_new && now > it->second.time) {
+        it->second.value = lowpassed(it->second.value, value, r.lowpass->value, to_seconds(now - it->second.time));
+        it->second.time = now;
       }
       value = it->second.value;
     }

@@ -22,22 +22,35 @@ struct StreamItem {
   std::int64_t incarnation = 0;
   SimTime time{};
   HostTime arrival{};
+  // Only for a snapshot. When its sender published it, ns by the clock of the sender; and its time on a clock that runs
+  // while the world stands still, too (stream_pace.h), at least `time`.
+  std::int64_t publish_ns = 0;
+  SimTime paced{};
   std::span<const Signal> signals;  // of a snapshot, for a deadband
   double speed_m_s = 0;             // of the fastest body or tool in it
   // Only for an event: bodies and materials, by their index in the scene.
   std::int32_t body_a = -1, body_b = -1, material_a = -1, material_b = -1;
 };
 
-enum class DropReason : std::int8_t { kKept = 0, kRate, kDeadband, kLoss, kOff, kFreeze };
+// kOvertaken: a newer snapshot was released before it, under a jitter that keeps the order; decided at its release.
+enum class DropReason : std::int8_t { kKept = 0, kRate, kDeadband, kLoss, kOff, kFreeze, kOvertaken };
 
 struct Decision {
   DropReason why = DropReason::kKept;              // kKept: it is released
   Conceal conceal = Conceal::kHold;  // replacement of a missing snapshot
   HostTime release{};                // time of release
-  Nanoseconds shift{0};              // only for an event: the presentation delay of a filtered rule that applies to it
+  // Change of the instant of its presentation, beside the presentation delay of the whole modality: for an event the
+  // presentation delay of a filtered rule that applies to it; and the jitter of a presentation delay, which may be negative.
+  Nanoseconds shift{0};
+  Nanoseconds jittered_delay{0};  // the presentation delay that `shift` varies, part of that of the whole modality
+  SimTime paced{};                // of the item, for a low-pass
   bool duplicated = false;
+  bool in_order = false;   // delayed by a jitter that keeps the order
+  bool reordered = false;  // held back by a reorder
   bool evaluated = false;  // an operator was evaluated, so the decision is logged
   bool dropped() const { return why != DropReason::kKept; }
+  // True for a snapshot that must not be released after a newer one.
+  bool newest_wins() const { return in_order && !reordered; }
 };
 
 // The names of the scene's bodies and materials, by index.
@@ -62,24 +75,28 @@ class OperatorChain {
   Nanoseconds presentation_delay(SimTime now) const;
   OutputValues output(SimTime now) const;
 
-  // A value after quantise, gain, bias and low-pass. id: of the contact, body or plane; component: of its vectors.
+  // A value after quantise, gain, bias and low-pass. id: of the contact, body or plane; component: of its vectors; paced: as
+  // in StreamItem, for the low-pass.
   double degraded_value(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
-                 std::int32_t material_a, std::int32_t material_b, std::int32_t body_a, std::int32_t body_b);
+                 std::int32_t material_a, std::int32_t material_b, std::int32_t body_a, std::int32_t body_b, SimTime paced = {});
   bool changes_values() const { return changes_values_; }
   // True when a rule compares the content of a snapshot, so that all of its pages are needed for a decision.
   bool compares() const { return compares_; }
+  // Messages of streams with a wire loss so far, and the lost ones among them.
+  std::int64_t wire_messages() const { return wire_messages_; }
+  std::int64_t wire_lost() const { return wire_lost_; }
 
  private:
   // The state of the operators of one rule, separate for events and for each stream of snapshots. It is reset when the world
   // restarts.
   struct Chain {
     std::int64_t incarnation = 0;
-    SimTime newest{};
+    SimTime newest{}, newest_before{};  // of all items; of those before the current one
     std::optional<Loss> loss;
     std::optional<Jitter> jitter;
     std::optional<Deadband> deadband;
-    std::int64_t newest_slot = INT64_MIN;  // of the rate
-    HostTime last_release{};
+    // Of the rate: the newest slots of simulated time and of publication time with an item.
+    std::int64_t newest_slot = INT64_MIN, newest_publish_slot = INT64_MIN;
   };
   struct Filtered {
     double value;
@@ -98,12 +115,14 @@ class OperatorChain {
   bool applies_to(const Rule& rule, std::int32_t material_a, std::int32_t material_b, std::int32_t body_a,
                 std::int32_t body_b) const;
   bool drops(Active& a, Chain& chain, const StreamItem& item, Decision& decision);
+  bool thinned(const RateDef& rate, Chain& chain, const StreamItem& item) const;
   void delay_item(Active& a, Chain& chain, const StreamItem& item, Decision& decision);
 
   std::vector<Active> rules_;
   SceneNames names_;
   SimTime start_{};
   bool changes_values_ = false, compares_ = false;
+  std::int64_t wire_messages_ = 0, wire_lost_ = 0;
 };
 
 }  // namespace tactus::sync

@@ -45,6 +45,42 @@ void read_output(Rule& rule, const Attribute& a, const DeclaredOutput& own) {
   }
 }
 
+std::string milliseconds(double t_s, int digits = 3) {
+  std::ostringstream text;
+  text.precision(digits);
+  text << t_s * 1e3 << "ms";
+  return text.str();
+}
+
+// Throws when a jitter would not have its mean and its deviation.
+void check_jitter(const Rule& rule) {
+  if (!rule.jitter) return;
+  const double needed_s = needed_delay_s(*rule.jitter), delay_s = rule.delay ? rule.delay->delay_s : 0;
+  if (delay_s >= needed_s * (1 - 1e-6)) return;  // both were rounded
+  const std::string needed = milliseconds(needed_s, 6);
+  const DelayMoments cut = moments_cut_at_zero(*rule.jitter);
+  const bool normal = rule.jitter->shape == JitterShape::kNormal;
+  throw std::invalid_argument(
+      "a jitter varies the delay of its own <degrade>, and nothing can be presented before it arrives: give a delay of at least " +
+      needed + ", " + (normal ? "three standard deviations" : "the half width of the jitter") + ", for example delay=\"" +
+      needed + " network\"; without a delay it would add " + milliseconds(cut.mean_s) +
+      " on average, with a standard deviation of only " + milliseconds(cut.sd_s));
+}
+
+// Throws when an operator has nothing to act on. The servo loop of a local modality receives surfaces, not forces.
+void check_force_operators(const Rule& rule) {
+  const KnownModality* known = known_modality(rule.modality);
+  if (!known || known->kind != PlayoutKind::kLocal) return;
+  const auto refuse_force = [&](bool given, const char* name) {
+    if (given)
+      throw std::invalid_argument(std::string(name) + " of force has no effect on " + rule.modality +
+                                  ", which receives surfaces and no forces; name velocity or position, or use force_step");
+  };
+  refuse_force(rule.quantise && rule.quantise->quantity == Quantity::kForce, "quantise");
+  refuse_force(rule.bias && rule.bias->quantity == Quantity::kForce, "bias");
+  refuse_force(rule.lowpass && rule.lowpass->quantity == Quantity::kForce, "lowpass");
+}
+
 Rule parse_rule(const Element& e, const DeclaredOutput& own) {
   Rule rule;
   rule.line = e.GetLineNum();
@@ -73,6 +109,8 @@ Rule parse_rule(const Element& e, const DeclaredOutput& own) {
     throw std::invalid_argument("this <degrade> does nothing; give it an operator, for example delay=\"40ms\"");
   if (rule.until_s && *rule.until_s <= rule.from_s) throw std::invalid_argument("until must be after from");
   for (const Attribute& a : of_output) read_output(rule, a, own);
+  check_jitter(rule);
+  check_force_operators(rule);
   return rule;
 }
 

@@ -9,6 +9,7 @@
 #include <tactus/degradation_t.hpp>
 #include <utility>
 
+#include "lcmtypes/page_limits.h"
 #include "sync/bus/page_assembler.h"
 #include "sync/degradation/profile.h"
 
@@ -33,7 +34,7 @@ class ProfileReceiver {
   // Profiles that may be in flight at the same time; the one whose newest page is the oldest is discarded first.
   static constexpr std::size_t kMaxInFlight = 4;
   // Maximum number of pages of one profile.
-  static constexpr int kMaxPages = 55;
+  static constexpr int kMaxPages = kMaxProfilePages;
 
   // Returns the profile when this page completes one that is newer than the previous one. A text that does not match its
   // hash, or that is not a valid profile, is refused as a whole: nothing changes.

@@ -20,7 +20,7 @@ std::uint64_t key(const header_t& h, std::uint64_t which) {
 // Applies the operators to the values of one contact, body or plane.
 struct Changer {
   OperatorChain& stack;
-  SimTime time;
+  SimTime time, paced;
   std::int64_t id;
   std::int32_t material_a = -1, material_b = -1, body_a = -1, body_b = -1;
   int component = 0;
@@ -28,7 +28,7 @@ struct Changer {
   template <class Number>
   void operator()(Quantity q, Number& x, double least = -1e300) {
     x = static_cast<Number>(
-        std::max(least, stack.degraded_value(q, id, component++, x, time, material_a, material_b, body_a, body_b)));
+        std::max(least, stack.degraded_value(q, id, component++, x, time, material_a, material_b, body_a, body_b, paced)));
   }
   template <class Vector>
   void vector(Quantity q, Vector& v) {
@@ -82,7 +82,7 @@ std::vector<Signal> signals_of(const touch_model_t& m) {
     signals.push_back({p.contact_id, Quantity::kPosition, to_eigen(p.point_m)});
   }
   for (const touch_applied_t& a : m.applied)
-    signals.push_back({a.contact_id, Quantity::kForce, Eigen::Vector3d(to_eigen(a.impulse_N_s))});
+    signals.push_back({a.contact_id, Quantity::kImpulse, Eigen::Vector3d(to_eigen(a.impulse_N_s))});
   return signals;
 }
 
@@ -92,9 +92,9 @@ std::vector<Signal> signals_of(const tool_state_t& m) {
           {m.tool, Quantity::kForce, to_eigen(m.force_N)}};
 }
 
-void change_values(contact_frame_t& m, OperatorChain& stack) {
+void change_values(contact_frame_t& m, OperatorChain& stack, SimTime paced) {
   for (contact_t& c : m.contacts) {
-    Changer change{stack, sim_time(m.header.sim_time_ns), c.contact_id, c.material_a, c.material_b, c.body_a,
+    Changer change{stack, sim_time(m.header.sim_time_ns), paced, c.contact_id, c.material_a, c.material_b, c.body_a,
                    c.body_b};
     change(Quantity::kForce, c.normal_force_N, 0);
     change(Quantity::kPosition, c.depth_m);
@@ -103,25 +103,25 @@ void change_values(contact_frame_t& m, OperatorChain& stack) {
   }
 }
 
-void change_values(world_state_t& m, OperatorChain& stack) {
+void change_values(world_state_t& m, OperatorChain& stack, SimTime paced) {
   for (body_state_t& b : m.bodies) {
-    Changer change{stack, sim_time(m.header.sim_time_ns), b.body, -1, -1, b.body, -1};
+    Changer change{stack, sim_time(m.header.sim_time_ns), paced, b.body, -1, -1, b.body, -1};
     change.vector(Quantity::kPosition, b.position_m);
     change.vector(Quantity::kVelocity, b.velocity_m_s);
   }
 }
 
-void change_values(touch_model_t& m, OperatorChain& stack) {
+void change_values(touch_model_t& m, OperatorChain& stack, SimTime paced) {
   for (touch_plane_t& p : m.planes) {
-    Changer change{stack, sim_time(m.header.sim_time_ns), p.contact_id, p.material, -1, p.body, -1};
-    change(Quantity::kForce, p.stiffness_N_m, 0);  // scales the force with which a surface responds
+    Changer change{stack, sim_time(m.header.sim_time_ns), paced, p.contact_id, p.material, -1, p.body, -1};
+    change(Quantity::kStiffness, p.stiffness_N_m, 0);
     change.vector(Quantity::kPosition, p.point_m);
     change.vector(Quantity::kVelocity, p.velocity_m_s);
   }
 }
 
-void change_values(tool_state_t& m, OperatorChain& stack) {
-  Changer change{stack, sim_time(m.header.sim_time_ns), m.tool};
+void change_values(tool_state_t& m, OperatorChain& stack, SimTime paced) {
+  Changer change{stack, sim_time(m.header.sim_time_ns), paced, m.tool};
   change.vector(Quantity::kForce, m.force_N);
   change.vector(Quantity::kPosition, m.device.position_m);
   change.vector(Quantity::kPosition, m.proxy.position_m);
@@ -130,7 +130,7 @@ void change_values(tool_state_t& m, OperatorChain& stack) {
 }
 
 void change_values(contact_event_t& e, OperatorChain& stack) {
-  Changer change{stack, sim_time(e.time_ns), e.contact_id, e.material_a, e.material_b, e.body_a, e.body_b};
+  Changer change{stack, sim_time(e.time_ns), {}, e.contact_id, e.material_a, e.material_b, e.body_a, e.body_b};
   change(Quantity::kVelocity, e.approach_speed_m_s, 0);
 }
 

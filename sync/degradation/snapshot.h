@@ -35,17 +35,18 @@ std::uint64_t wire_key(const Message& m) {
                static_cast<std::uint64_t>(m.header.source));
 }
 
-// Forces and velocities by contact, body or plane, of one page.
+// Forces, velocities and positions by contact, body or plane, of one page; of a touch model impulses (touch_forces.h) in
+// place of forces.
 std::vector<Signal> signals_of(const contact_frame_t&);
 std::vector<Signal> signals_of(const world_state_t&);
 std::vector<Signal> signals_of(const touch_model_t&);
 std::vector<Signal> signals_of(const tool_state_t&);
 
-// Applies the operators to every degradable value; values that must not be negative stay so.
-void change_values(contact_frame_t&, OperatorChain&);
-void change_values(world_state_t&, OperatorChain&);
-void change_values(touch_model_t&, OperatorChain&);
-void change_values(tool_state_t&, OperatorChain&);
+// Applies the operators to every degradable value; values that must not be negative stay so. paced: as in StreamItem.
+void change_values(contact_frame_t&, OperatorChain&, SimTime paced = {});
+void change_values(world_state_t&, OperatorChain&, SimTime paced = {});
+void change_values(touch_model_t&, OperatorChain&, SimTime paced = {});
+void change_values(tool_state_t&, OperatorChain&, SimTime paced = {});
 void change_values(contact_event_t&, OperatorChain&);
 
 // Changes the message to "no contact". A message of poses has no such form: returns false without a change, and the message

@@ -63,7 +63,7 @@ ModalityEndpoint::ModalityEndpoint(Node& node, NodeDescriptor observed)
   receiver_.set_generation(0);
 }
 
-ModalityEndpoint::~ModalityEndpoint() = default;
+ModalityEndpoint::~ModalityEndpoint() { report_effect(); }
 
 void ModalityEndpoint::set_scene(const scene_t& scene, int tool) {
   names_ = {};
@@ -94,6 +94,9 @@ void ModalityEndpoint::apply_profile(const ProfileInForce& profile) {
     std::cerr << d.name << ": refused: " << e.what() << std::endl;
     return;
   }
+  report_effect();
+  effect_ = {};
+  if (!observes_) node_.set_profile_effect("");
   const Profile& parsed = *shared;
   operators_ = OperatorChain(parsed, d.modality, profile.start);
   operators_.set_scene(names_);
@@ -175,8 +178,10 @@ HostTime ModalityEndpoint::schedule(std::int64_t event_id, HostTime happened) co
   if (lockstep_) return lockstep_->next_iteration(happened) + serial_delay_;
   if (!playout_.as_soon_as_possible()) return happened + serial_delay_;
   const auto arrived = arrival_of(event_id);
-  const HostTime ready = arrived ? *arrived + output_latency_ : happened;
-  return std::max(happened, ready) + profile_delay_;
+  // `happened` contains the shift of the profile; the event is not ready earlier for that.
+  const Nanoseconds shift = events_ ? events_->inbox_.shift_of(event_id) : Nanoseconds(0);
+  const HostTime ready = arrived ? *arrived + output_latency_ : happened - shift;
+  return std::max(happened - shift, ready) + shift + profile_delay_;
 }
 
 HostTime ModalityEndpoint::newest_arrival() const {
@@ -232,13 +237,14 @@ void ModalityEndpoint::publish_decisions() {
   m.profile = profile_hash_;
   for (std::size_t i = 0; i < decisions_.size(); ++i) {
     const DecisionRecord& d = decisions_[i];
+    effect_.add(d, profile_delay_);
     decision_t out{};
     out.key = static_cast<std::int64_t>(d.key);
     out.is_event = d.is_event ? 1 : 0;
     out.time_ns = to_ns(d.time);
     out.drop_reason = static_cast<std::int8_t>(d.decision.why);
-    const Nanoseconds held = d.decision.release - d.arrival + d.decision.shift + (d.is_event ? profile_delay_ : Nanoseconds(0));
-    out.held_ns = d.decision.dropped() ? 0 : held.count();
+    const Nanoseconds held = d.decision.release - d.arrival + d.decision.shift + profile_delay_;
+    out.held_ns = d.decision.dropped() ? 0 : std::max<std::int64_t>(0, held.count());
     out.twice = d.decision.duplicated ? 1 : 0;
     m.decisions.push_back(out);
     if (m.decisions.size() < kDecisionsPerMessage && i + 1 < decisions_.size()) continue;
@@ -247,6 +253,13 @@ void ModalityEndpoint::publish_decisions() {
     m.decisions.clear();
   }
   decisions_.clear();
+  effect_.set_wire(operators_.wire_messages(), operators_.wire_lost());
+  node_.set_profile_effect(effect_.text());
+}
+
+void ModalityEndpoint::report_effect() {
+  if (const std::string text = observes_ ? "" : effect_.text(); !text.empty())
+    std::cerr << descriptor_.name << ": measured effect of the profile \"" << profile_name_ << "\": " << text << std::endl;
 }
 
 }  // namespace tactus::sync

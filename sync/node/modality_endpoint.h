@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "sync/degradation/degraded_snapshots.h"
+#include "sync/degradation/measured_effect.h"
 #include "sync/resampling/event_inbox.h"
 #include "sync/degradation/profile_exchange.h"
 #include "sync/node/node.h"
@@ -96,6 +97,7 @@ class ModalityEndpoint {
   Stream<Message>& delayed_snapshots(const char* channel, std::size_t capacity) {
     auto& stream = add<Message>(channel, capacity);
     stream.delayed_ = true;
+    stream.degraded_.present_on_release();
     return stream;
   }
 
@@ -130,7 +132,7 @@ class ModalityEndpoint {
   void report(const presentation_t& report);
   // Sets a function that receives every report. Needed when a log is rendered: nothing reads the reports from the bus then.
   void set_report_listener(std::function<void(const presentation_t&)> listener) { report_listener_ = std::move(listener); }
-  // Publishes reports, and the decisions of the profile.
+  // Publishes reports, the decisions of the profile, and its measured effect in the health of the node.
   void publish(HostTime now);
 
  private:
@@ -180,6 +182,8 @@ class ModalityEndpoint {
   void report_dropped(const std::vector<contact_event_t>& dropped);
   bool expects(const contact_event_t& event) const;
   void publish_decisions();
+  // Prints the effect of the profile in force.
+  void report_effect();
 
   Node& node_;
   NodeDescriptor descriptor_;
@@ -193,6 +197,7 @@ class ModalityEndpoint {
   SceneNames names_;
   int tool_ = -1;
   Decisions decisions_;
+  MeasuredEffect effect_;
   HostTime next_decisions_{};
   std::vector<std::unique_ptr<AnyStream>> streams_;
   SimClockTracker simulation_;

@@ -13,6 +13,7 @@
 #include <tactus/tag_values_t.hpp>
 
 #include "sync/bus/bus_arguments.h"
+#include "sync/degradation/measured_effect.h"
 #include "sync/degradation/profile_exchange.h"
 #include "sync/bus/health_inputs.h"
 #include "sync/bus/kernel_drops.h"
@@ -231,6 +232,7 @@ node_health_t Node::health_message(HostTime now) {
   m.expected_events = descriptor_.expected_events | (descriptor_.late_rule == LateRule::kAlwaysApply ? node_health_t::OTHERS_DO_NOT_WAIT : 0);
   m.status_text = status_text_.empty() ? scheduling_ : status_text_ + "; " + scheduling_;
   if (m.status_text.size() > kMaxNote) m.status_text.replace(kMaxNote - 3, std::string::npos, "...");
+  if (!profile_effect_.empty()) m.status_text += std::string(kEffectPrefix) + profile_effect_;
   m.tick = tick_.to_message();
   m.wake = wake_.to_message();
   std::int64_t forgotten = 0;

@@ -14,6 +14,7 @@
 #include <string>
 #include <tactus/node_health_t.hpp>
 #include <tactus/tag_request_t.hpp>
+#include <utility>
 
 #include "sync/bus/bus.h"
 #include "sync/node/node_descriptor.h"
@@ -71,6 +72,9 @@ class Node {
     health_.qualities = static_cast<std::int8_t>(steps);
   }
   void set_profile(std::int64_t hash) { health_.profile = hash; }
+  // The measured effect of the profile (sync/degradation/measured_effect.h): the end of the text of the next health reports,
+  // after "profile effect: "; empty: none.
+  void set_profile_effect(std::string text) { profile_effect_ = std::move(text); }
   void set_realtime_factor(double factor) { health_.realtime_factor = factor; }
   // For nodes that tick elsewhere (the audio callback): totals that replace those of the loop.
   void override_ticks(std::int64_t ticks, std::int64_t missed, double rate_Hz);
@@ -96,7 +100,7 @@ class Node {
   double work_us_ = 0;
   Histogram tick_, wake_;
   node_health_t health_{};
-  std::string status_text_;
+  std::string status_text_, profile_effect_;
   HostTime tick_begin_{};
   HostTime next_report_{};
   HostTime rate_since_{};

@@ -5,6 +5,7 @@
 #include <tactus/sync_report_t.hpp>
 #include <vector>
 
+#include "lcmtypes/page_limits.h"
 #include "sync/bus/page_assembler.h"
 #include "sync/presentation/presentation_matcher.h"
 
@@ -23,7 +24,7 @@ class SyncReportReader {
 
  private:
   std::int64_t incarnation_ = 0, first_seq_ = -1;
-  PageAssembler<sync_report_t, std::int64_t> pages_{{.groups = 1}};  // by the number of the first page
+  PageAssembler<sync_report_t, std::int64_t> pages_{{.groups = 1, .pages = kMaxReportPages}};  // by the number of the first page
 };
 
 }  // namespace tactus::sync

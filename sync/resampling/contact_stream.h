@@ -15,6 +15,7 @@
 #include <tactus/contact_t.hpp>
 #include <vector>
 
+#include "lcmtypes/page_limits.h"
 #include "sync/bus/page_assembler.h"
 #include "sync/resampling/event_inbox.h"
 #include "sync/resampling/sample_status.h"
@@ -49,8 +50,7 @@ class ContactStream {
   // After the newest snapshot the contact state is held for this time, because begin and end arrive as events; then it is
   // stale.
   static constexpr Nanoseconds kStaleAfter{50'000'000};
-  // 2,000 contacts, three a page, need 700 pages.
-  static constexpr int kMaxPages = 1024;
+  static constexpr int kMaxPages = kMaxContactPages;
   // Maximum number of contacts in all snapshots of a group: half a second of 2,000 contacts at 60 Hz.
   static constexpr std::size_t kMaxContacts = 1 << 16;
 

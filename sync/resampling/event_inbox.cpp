@@ -51,7 +51,8 @@ void EventInbox::push(const contact_events_t& m, HostTime arrival, OperatorChain
     }
     contact_event_t event = received;
     if (chain.changes_values()) change_values(event, chain);
-    event.time_ns += v.shift.count();
+    event.time_ns = std::max<std::int64_t>(0, event.time_ns + v.shift.count());
+    memory_.try_emplace(event.event_id).first.shift = v.shift;
     if (v.duplicated) ++duplicates_;
     hold(event, m.header.incarnation, v.release);
   }
@@ -73,7 +74,7 @@ void EventInbox::release(HostTime now) {
 
 // Drops an event of a replaced simulation, or of an impossible future.
 void EventInbox::release_one(const HeldEvent& held) {
-  const contact_event_t& e = held.event;
+  contact_event_t e = held.event;
   if (held.incarnation != clock_.incarnation()) return;
   if (sim_time(e.time_ns) > clock_.latest_plausible()) {
     ++refused_;
@@ -82,6 +83,8 @@ void EventInbox::release_one(const HeldEvent& held) {
   }
   ContactSpan& span = spans_.try_emplace(e.contact_id).first;
   if (e.kind == contact_event_t::BEGIN) span.begin = e;
+  // A jitter of the presentation shifts both ends of a contact; a short contact does not end before it begins.
+  if (e.kind == contact_event_t::END && span.begin) e.time_ns = std::max(e.time_ns, span.begin->time_ns);
   if (e.kind == contact_event_t::END) span.end = sim_time(e.time_ns);
   pending_.emplace(sim_time(e.time_ns), e);
   if (pending_.size() <= kMaxPending) return;
@@ -117,6 +120,11 @@ const contact_event_t* EventInbox::front(SimTime until) const {
 
 void EventInbox::pop_front() {
   if (!pending_.empty()) pending_.erase(pending_.begin());
+}
+
+Nanoseconds EventInbox::shift_of(std::int64_t event_id) const {
+  const Known* known = memory_.find(event_id);
+  return known ? known->shift : Nanoseconds(0);
 }
 
 std::optional<HostTime> EventInbox::arrival_of(std::int64_t event_id) const {

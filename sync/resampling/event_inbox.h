@@ -69,6 +69,8 @@ class EventInbox {
   // The arrival of the first message with an event, also of an event that the profile lost on the wire; nullopt: it has not
   // arrived, or is forgotten.
   std::optional<HostTime> arrival_of(std::int64_t event_id) const;
+  // Change of the instant of its presentation by the profile, which its time contains already: Decision::shift.
+  Nanoseconds shift_of(std::int64_t event_id) const;
   // Calls use(event id, first arrival), newest event first, until it returns false.
   template <class Use>
   void each_newest_first(Use use) const {
@@ -89,6 +91,7 @@ class EventInbox {
   struct Known {
     HostTime arrival{};
     bool decided = false;  // in this incarnation of the simulation
+    Nanoseconds shift{0};
   };
   struct HeldEvent {
     contact_event_t event;

@@ -10,6 +10,7 @@
 #include <tactus/pair_report_t.hpp>
 
 #include "lcmtypes/channels.h"
+#include "sync/degradation/measured_effect.h"
 #include "sync/text/printable.h"
 
 namespace tactus::sync {
@@ -77,7 +78,8 @@ std::vector<WatchTable::Row> WatchTable::rows(HostTime now) const {
     const Nanoseconds silence = now - node.arrival;
     const bool lost = silence > kLostAfter;
     Row row{name, lost ? "LOST" : state_name(h.state), lost ? 0 : h.rate_Hz, h.missed_ticks, Nanoseconds(-1), "",
-            h.contacts_rendered, lost ? "silent for " + duration(silence) : quality_text(h) + h.status_text};
+            h.contacts_rendered, lost ? "silent for " + duration(silence) : quality_text(h) + without_effect(h.status_text),
+            lost ? "" : effect_in(h.status_text)};
     for (const input_health_t& in : h.inputs) {
       if (!flows(in.channel) || Nanoseconds(in.age_ns) <= row.input_age) continue;
       row.input_age = Nanoseconds(in.age_ns);
@@ -99,6 +101,7 @@ std::string WatchTable::to_text(HostTime now, std::size_t width) const {
                   r.state.c_str(), r.rate_Hz, static_cast<long long>(r.missed_ticks), age.c_str(),
                   static_cast<long long>(r.rendered), r.status_text.c_str());
     out += cut(text, width);
+    if (!r.profile_effect.empty()) out += cut("  profile effect: " + r.profile_effect, width);
   }
   if (nodes_.empty()) out += "no node has reported yet\n";
   if (report_) {
@@ -121,7 +124,8 @@ std::string WatchTable::to_json(HostTime now) const {
   for (const Row& r : rows(now))
     nodes[r.node] = {{"state", r.state}, {"rate_hz", r.rate_Hz}, {"missed_ticks", r.missed_ticks},
                      {"input_age_ms", r.input_age < Nanoseconds(0) ? Json() : Json(static_cast<double>(r.input_age.count()) * 1e-6)},
-                     {"oldest_input", r.oldest_input}, {"contacts_rendered", r.rendered}, {"note", r.status_text}};
+                     {"oldest_input", r.oldest_input}, {"contacts_rendered", r.rendered}, {"note", r.status_text},
+                     {"profile_effect", r.profile_effect}};
   Json out = {{"host_s", to_seconds(now.time_since_epoch())}, {"nodes", nodes}};
   if (report_) {
     for (const modality_report_t& m : report_->modalities)

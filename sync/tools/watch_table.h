@@ -32,6 +32,7 @@ class WatchTable {
     std::string oldest_input;
     std::int64_t rendered = 0;
     std::string status_text;
+    std::string profile_effect;  // measured by the node; empty: no profile degrades its modality
   };
   std::vector<Row> rows(HostTime now) const;
   bool empty() const { return nodes_.empty(); }

@@ -103,7 +103,7 @@ TEST_CASE("A command without a reply fails after three seconds, with a sentence"
 TEST_CASE("Sliders start from the profile in force, and show the newest profile") {
   PageFixture p;
   CHECK_FALSE(p.controls.profile());
-  p.in_force(R"(<profile name="by hand" seed="3"><degrade modality="visual" jitter="5ms"/></profile>)", kRealtime_ns + 50);
+  p.in_force(R"(<profile name="by hand" seed="3"><degrade modality="visual" delay="5ms network" jitter="5ms"/></profile>)", kRealtime_ns + 50);
   REQUIRE(p.controls.profile());
   CHECK(p.controls.profile()->generation == kRealtime_ns + 50);
 

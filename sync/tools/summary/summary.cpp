@@ -13,6 +13,7 @@
 
 #include "sync/bus/decode.h"
 #include "sync/degradation/known_modalities.h"
+#include "sync/degradation/measured_effect.h"
 #include "sync/log/log_header.h"
 #include "sync/log/log_origin.h"
 
@@ -172,7 +173,12 @@ std::map<std::string, NodeSummary> RunSummary::nodes() const {
       node.wake.merge(Histogram::from_message(incarnation_health.last.wake));
       ticks += incarnation_health.last.ticks - incarnation_health.first.ticks;
       ns += incarnation_health.last.header.publish_time_ns - incarnation_health.first.header.publish_time_ns;
-      if (incarnation_health.last_received >= newest) node.scheduling = incarnation_health.status_text.empty() ? incarnation_health.last.status_text : incarnation_health.status_text;
+      if (incarnation_health.last_received >= newest) {
+        const std::string& at_end = incarnation_health.last.status_text;
+        const std::string& text = incarnation_health.status_text.empty() ? at_end : incarnation_health.status_text;
+        node.scheduling = without_effect(text);
+        node.profile_effect = effect_in(text);
+      }
       newest = std::max(newest, incarnation_health.last_received);
     }
     node.rate_Hz = ns > 0 ? static_cast<double>(ticks) / (static_cast<double>(ns) * 1e-9) : 0;

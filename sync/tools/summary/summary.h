@@ -42,6 +42,7 @@ struct NodeSummary {
   std::int64_t restarts = 0;
   // The node's last note on its priority and its troubles while a simulation was present: a run ends without one.
   std::string scheduling;
+  std::string profile_effect;  // measured by the node; empty: no profile degraded its modality
   bool alive_at_end = false;
 };
 

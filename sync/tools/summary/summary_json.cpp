@@ -50,7 +50,8 @@ Json nodes(const RunSummary& s) {
                  {"input_age_ms", ages},
                  {"quality", quality},
                  {"restarts", n.restarts},
-                 {"scheduling", n.scheduling}};
+                 {"scheduling", n.scheduling},
+                 {"profile_effect", n.profile_effect}};
   }
   return out;
 }

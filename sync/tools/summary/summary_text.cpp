@@ -32,6 +32,7 @@ std::string nodes(const RunSummary& s) {
                 us(n.tick.quantile(0.99)), us(n.tick.max()), us(n.wake.quantile(0.5)), us(n.wake.quantile(0.99)),
                 us(n.wake.max()), static_cast<long long>(n.restarts), n.alive_at_end ? "" : "  gone");
     out += line("  %.180s", n.scheduling.c_str());
+    if (!n.profile_effect.empty()) out += line("  profile effect: %.180s", n.profile_effect.c_str());
   }
   return out;
 }

@@ -146,6 +146,15 @@ class Figures(Logs):
         self.assertEqual(list(found["audio", "events"]["held_ms"]), [40])
         self.assertEqual(found["audio", "snapshots"]["twice"], 1)
 
+    def test_an_overtaken_snapshot_is_not_counted_as_passed(self):
+        fields = [("modality", "haptic"), ("count", 3)]
+        for i, (key, why, held) in enumerate(((7, 0, 12_000_000), (8, 0, 6_000_000), (7, 6, 0))):
+            fields += [(f"decisions[{i}].key", key), (f"decisions[{i}].is_event", 0), (f"decisions[{i}].drop_reason", why), (f"decisions[{i}].held_ns", held), (f"decisions[{i}].twice", 0)]
+        log = self.log({"DEGRADED.csv": self.long(*(["1", "", "haptic_node", 0, f, "", v] for f, v in fields))})
+        found = log.decisions()["haptic", "snapshots"]
+        self.assertEqual(found["why"], {"let through": 1, "overtaking": 1})
+        self.assertEqual(list(found["held_ms"]), [6])
+
 
 class Words(unittest.TestCase):
     def test_numbers_are_printed_with_significant_digits(self):

@@ -172,6 +172,23 @@ class StudyFile(unittest.TestCase):
             value = next(v for k, v in element.attrib.items() if k != "modality")
             self.assertTrue(value.startswith(f"{level:g}{unit}"), value)
 
+    def test_a_jitter_has_the_constant_delay_that_it_needs(self):
+        element = xml.fromstring(quantities.degrade("visual", "jitter", 25.0))
+        self.assertEqual((element.get("jitter"), element.get("delay")), ("25ms normal", "75ms network"))
+
+    def test_touch_quantises_the_commanded_force_and_has_no_low_pass_of_force(self):
+        self.assertEqual(xml.fromstring(quantities.degrade("haptic", "quantise", 0.1)).get("force_step"), "0.1N")
+        self.assertEqual(xml.fromstring(quantities.degrade("audio", "quantise", 0.1)).get("quantise"), "0.1N")
+        for operator, levels in (("lowpass", "20Hz"), ("quantise", "0.1N")):
+            text = f'''<study name="s" version="1" scene="dark_room_game.sdf" task="game" seed="1"><instructions>Play.</instructions>
+              <conditions><factor modality="haptic" operator="{operator}" levels="{levels}"/></conditions><procedure kind="constant" repetitions="1"/>
+              <response kind="performance"/><stimulus by="participant" limit="30s"/></study>'''
+            if operator == "lowpass":
+                with self.assertRaisesRegex(Refusal, "lowpass has no effect on haptic"):
+                    self.read(text)
+            else:
+                self.read(text)
+
     def test_every_shipped_study_is_valid(self):
         names = sorted(p.stem for p in study_file.SHIPPED.glob("*.xml"))
         self.assertGreaterEqual(len(names), 6)

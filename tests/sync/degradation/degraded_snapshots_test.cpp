@@ -323,7 +323,7 @@ TEST_CASE("A delayed message does not change the estimated clock of its sender")
   maps.observe(map, host_time(kEpoch) + kBehind);
   REQUIRE(maps.read(host_time(kEpoch), kTheirs, kOurs));
   SenderClock clock({1, kOurs, &maps});
-  OperatorChain stack = stack_of(GENERATE("delay=\"40ms network\"", "jitter=\"10ms uniform\"", "rate=\"60Hz\""));
+  OperatorChain stack = stack_of(GENERATE("delay=\"40ms network\"", "delay=\"10ms network\" jitter=\"10ms uniform\"", "rate=\"60Hz\""));
   DegradedSnapshots<contact_frame_t> snapshots;
   EventInbox events({1, kOurs, &maps});
   std::size_t heard = 0;

@@ -1,8 +1,11 @@
 // Tests of operator state: each stream has its own, and a new incarnation of the simulation clears it.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <tactus/contact_frame_t.hpp>
+#include <tactus/touch_model_t.hpp>
+#include <tactus/touch_plane_t.hpp>
 
 #include "sync/degradation/degraded_snapshots.h"
 
@@ -149,6 +152,76 @@ TEST_CASE("A rate continues at once when the world restarts") {
       kept.push_back(m->first.header.sim_time_ns / kMs);
   }
   CHECK(kept == std::vector<std::int64_t>{0, 200, 400, 600, 800});
+}
+
+TEST_CASE("A rate continues while the world is paused, by the time of publication") {
+  OperatorChain stack = stack_of("rate=\"50Hz\"");
+  DegradedSnapshots<touch_model_t> models;
+  std::vector<std::int64_t> kept;
+  // The world runs for a second, stands for five, runs for a second, is set back by half a second and runs on. The hand moves.
+  const auto world_ms = [](std::int64_t ms) { return ms <= 1000 ? ms : ms <= 6000 ? 1000 : ms <= 7000 ? ms - 5000 : ms - 5500; };
+  for (std::int64_t ms = 0; ms < 8000; ++ms) {
+    touch_model_t m{};
+    m.header.sim_time_ns = world_ms(ms) * kMs;
+    m.header.publish_time_ns = ms * kMs;
+    m.header.run_id = m.header.incarnation = 1;
+    m.header.seq = ms;
+    m.clock = {m.header.sim_time_ns, m.header.publish_time_ns, 1};
+    m.pages = 1;
+    models.push(m, host_time(ms * kMs), stack, nullptr);
+    while (const auto out = models.pop(host_time(ms * kMs))) kept.push_back(out->first.header.seq);
+  }
+  for (std::int64_t second = 0; second < 8; ++second) {
+    const auto in_second = std::count_if(kept.begin(), kept.end(), [&](std::int64_t ms) { return ms / 1000 == second; });
+    CAPTURE(second);
+    CHECK(in_second >= 49);
+    CHECK(in_second <= 52);
+  }
+  for (std::size_t i = 1; i < kept.size(); ++i) CHECK(kept[i] - kept[i - 1] <= 40);
+}
+
+TEST_CASE("While the world is paused, each repetition of a snapshot is decided on as one of its own") {
+  const std::string attributes = GENERATE("rate=\"5Hz\"", "loss=\"50%\"");
+  OperatorChain stack = stack_of(attributes);
+  DegradedSnapshots<contact_frame_t> frames;
+  int passed = 0, broken = 0;
+  constexpr int kRepetitions = 600;  // 60 a second
+  for (int i = 0; i < kRepetitions; ++i) {
+    const std::int64_t ms = 16 * i;
+    for (int page = 0; page < 2; ++page) {
+      contact_frame_t m = frame(contact_frame_t::OTHER, 7, ms, 1);
+      m.header.seq = 2 * i + page;
+      m.page = page, m.pages = 2;
+      frames.push(m, host_time(ms * kMs), stack, nullptr);
+    }
+    int pages = 0;
+    while (frames.pop(host_time(ms * kMs))) ++pages;
+    passed += pages == 2;
+    broken += pages == 1;
+  }
+  CHECK(broken == 0);
+  if (attributes.starts_with("rate"))
+    CHECK(std::abs(passed - 48) <= 1);  // 9.6 s
+  else
+    CHECK(std::abs(passed - kRepetitions / 2) < 5 * std::sqrt(kRepetitions / 4));
+}
+
+TEST_CASE("The low-pass of a value continues while the world is paused") {
+  OperatorChain stack = stack_of("lowpass=\"1Hz position\"");
+  DegradedSnapshots<touch_model_t> models;
+  double last_m = 0;
+  for (std::int64_t ms = 0; ms <= 1000; ++ms) {
+    touch_model_t m{};
+    m.header.sim_time_ns = 7 * kMs;
+    m.header.publish_time_ns = ms * kMs;
+    m.header.incarnation = 1, m.header.seq = ms;
+    m.pages = m.plane_count = 1;
+    m.planes.resize(1);
+    m.planes[0].point_m.x = ms > 0 ? 1 : 0;
+    models.push(m, host_time(ms * kMs), stack, nullptr);
+    while (const auto out = models.pop(host_time(ms * kMs))) last_m = out->first.planes.at(0).point_m.x;
+  }
+  CHECK(last_m == Approx(1 - std::exp(-2 * M_PI)).epsilon(1e-3));
 }
 
 TEST_CASE("The times and the low-pass of a rule restart with the world") {

@@ -86,7 +86,7 @@ TEST_CASE("Off and freeze drop all messages within their time range") {
 
 TEST_CASE("The same seed gives the same decisions for any order of arrival") {
   constexpr int kN = 2000;
-  const std::string ops = "loss=\"20%\" jitter=\"5ms normal order=free\" duplicate=\"10%\" reorder=\"10% by=7ms\"";
+  const std::string ops = "loss=\"20%\" delay=\"15ms network\" jitter=\"5ms normal order=free\" duplicate=\"10%\" reorder=\"10% by=7ms\"";
   std::vector<StreamItem> items;
   for (int i = 0; i < kN; ++i) items.push_back(event(static_cast<std::uint64_t>(i + 1), i * 0.001));
   const auto decide_all = [&](const std::vector<StreamItem>& order, bool company, std::uint64_t seed) {
@@ -123,18 +123,20 @@ TEST_CASE("Two rules or two modalities draw independent random numbers") {
   CHECK(std::abs(same - 500) < 5 * std::sqrt(250));
 }
 
-TEST_CASE("Jitter with kept order prevents overtaking, reordering allows it") {
-  OperatorChain kept = stack_of("jitter=\"20ms uniform\"");
-  HostTime last{};
+TEST_CASE("A jitter delays each item by itself and never before its arrival, and the order is kept by dropping") {
+  OperatorChain kept = stack_of("delay=\"20ms network\" jitter=\"20ms uniform\"");
+  OperatorChain unordered = stack_of("delay=\"20ms network\" jitter=\"20ms uniform order=free\"");
   for (int i = 0; i < 1000; ++i) {
-    const Decision v = kept.decide(snapshot(i * 0.001));
-    CHECK(v.release >= last);
-    CHECK(v.release >= host(i * 0.001 + 0.001));
-    last = v.release;
+    const StreamItem item = snapshot(i * 0.001);
+    const Decision v = kept.decide(item), other = unordered.decide(item);
+    CHECK(v.release == other.release);
+    CHECK(v.newest_wins());
+    CHECK_FALSE(other.newest_wins());
+    CHECK(v.release >= item.arrival);
   }
   OperatorChain free = stack_of("reorder=\"20% by=10ms\"");
   int overtaken = 0;
-  last = {};
+  HostTime last{};
   for (int i = 0; i < 1000; ++i) {
     const Decision v = free.decide(snapshot(i * 0.001));
     overtaken += v.release < last;

@@ -103,6 +103,25 @@ TEST_CASE("A value with a dimension requires its unit, except 0") {
     CHECK(refusal_of(fine) == "");
 }
 
+TEST_CASE("A jitter without the delay that it needs is rejected with the reason") {
+  CHECK_THAT(refusal_of("jitter=\"3ms normal\""), StartsWith("p.xml:2: ") && Contains("a delay of at least 9ms, three standard deviations") &&
+                                                      Contains("delay=\"9ms network\"") && Contains("1.2ms on average") && Contains("only 1.75ms"));
+  CHECK_THAT(refusal_of("jitter=\"10ms uniform\" delay=\"9ms\""), Contains("at least 10ms, the half width"));
+  CHECK_THAT(refusal_of("delay=\"8.9ms network\" jitter=\"3ms normal\""), Contains("at least 9ms"));
+  for (const char* fine : {"delay=\"9ms\" jitter=\"3ms normal\"", "jitter=\"3ms normal\" delay=\"9ms network\"", "jitter=\"10ms\" delay=\"10ms\"",
+                           "jitter=\"3ms pareto\"", "jitter=\"trace=1ms,2ms\"", "jitter=\"0 normal\"", "jitter=\"0.1ms normal\" delay=\"0.3ms\""})
+    CHECK(refusal_of(fine) == "");
+}
+
+TEST_CASE("An operator on the force of touch is rejected, because touch receives no forces") {
+  for (const char* force : {"quantise=\"0.1N\"", "bias=\"0.1N\"", "lowpass=\"20Hz\"", "lowpass=\"20Hz force\""}) {
+    CHECK_THAT(refusal_of(force, "haptic"), StartsWith("p.xml:2: ") && Contains("no effect on haptic"));
+    CHECK(refusal_of(force, "audio") == "");
+  }
+  for (const char* fine : {"quantise=\"1mm position\"", "lowpass=\"20Hz velocity\"", "gain=\"0.5\"", "force_step=\"0.1N\""})
+    CHECK(refusal_of(fine, "haptic") == "");
+}
+
 TEST_CASE("A profile with a NUL byte is rejected with its line") {
   const std::string cut{"<profile/>\n\0<!-- lost -->", 25};
   CHECK_THAT(refusal(cut), StartsWith("p.xml:2: ") && Contains("NUL"));

@@ -54,6 +54,18 @@ TEST_CASE("The table shows state, ticks and input age of a node") {
   }
 }
 
+TEST_CASE("The measured effect of a profile is a line below its node, and a member of the JSON") {
+  node_health_t m = health("audio_node");
+  m.status_text += "; profile effect: events +40.0 ms (sd 3.0)";
+  WatchTable table;
+  table.observe(m, kNow);
+  CHECK(table.rows(kNow)[0].status_text == "SCHED_FIFO 60, memory locked");
+  CHECK_THAT(table.to_text(kNow), Catch::Contains("\n  profile effect: events +40.0 ms (sd 3.0)\n"));
+  CHECK_THAT(table.to_json(kNow), Catch::Contains("\"profile_effect\":\"events +40.0 ms (sd 3.0)\"") && Catch::Contains("memory locked\""));
+  table.observe(health("audio_node"), kNow);
+  CHECK_THAT(table.to_text(kNow), !Catch::Contains("profile effect"));
+}
+
 TEST_CASE("The table fits the width of the terminal") {
   WatchTable table;
   for (const char* name : {"audio_node", "haptic_node", "a_node_with_quite_a_long_name_indeed"})

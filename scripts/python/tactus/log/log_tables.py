@@ -8,7 +8,7 @@ import numpy as np
 # Channels of a report; large channels are not exported.
 CHANNELS = "LOG_INFO|NODE_HEALTH|CONTACT_EVENTS|PLAYOUT|DEGRADATION|DEGRADED|TAG_LIST|TAG_VALUES"
 PHASES = ("collision", "solve", "integrate", "decode", "render", "other")  # sync/time/phases.h
-DROP_REASONS = ("let through", "rate", "deadband", "loss", "off", "freeze")  # sync::DropReason, sync/degradation/operator_chain.h
+DROP_REASONS = ("let through", "rate", "deadband", "loss", "off", "freeze", "overtaking")  # sync::DropReason, sync/degradation/operator_chain.h
 PRESENTED = ("presented", "late", "inaudible")                               # outcomes of presented.csv that count as presented (docs/results.md)
 POLICIES = ("asap", "aligned", "experiment", "local_haptic_first", "itouch2005")  # lcmtypes/types/control/playout_t.lcm
 SENSES = ("haptic", "haptic_push", "audio", "visual", "thermal")             # an asynchrony is later minus earlier in this list
@@ -114,7 +114,7 @@ class LogTables:
 
     def decisions(self):
         """{(modality, "events" or "snapshots"): {"why": {reason: count}, "held_ms": delays of passed messages, "twice": repetitions}}."""
-        out = {}
+        out, passed = {}, {}
         for message in self.messages("DEGRADED.csv"):
             for i in range(int(message["count"])):
                 what = "events" if int(message[f"decisions[{i}].is_event"]) else "snapshots"
@@ -123,10 +123,18 @@ class LogTables:
                 name = DROP_REASONS[why] if 0 <= why < len(DROP_REASONS) else f"reason {why}"
                 own["why"][name] = own["why"].get(name, 0) + 1
                 own["twice"] += int(message[f"decisions[{i}].twice"])
+                key = message.get(f"decisions[{i}].key", "")
                 if why == 0:
                     own["held_ms"].append(float(message[f"decisions[{i}].held_ns"]) * 1e-6)
+                    passed.setdefault((message["modality"], what), {})[key] = len(own["held_ms"]) - 1
+                elif name == "overtaking" and own["why"].get("let through", 0) > 0:  # follows its own "let through": a newer snapshot was released first
+                    own["why"]["let through"] -= 1
+                    index = passed.get((message["modality"], what), {}).pop(key, None)
+                    if index is not None:
+                        own["held_ms"][index] = np.nan
         for own in out.values():
-            own["held_ms"] = np.array(own["held_ms"])
+            held_ms = np.array(own["held_ms"])
+            own["held_ms"] = held_ms[~np.isnan(held_ms)]
         return out
 
     def messages(self, name):

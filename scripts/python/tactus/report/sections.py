@@ -258,9 +258,11 @@ def profile_effect(report, log, which):
     for (sense, what), d in sorted(decisions.items()):
         dropped = ", ".join(f"{number(n)} by {why}" for why, n in sorted(d["why"].items()) if why != "let through") or "none"
         total = sum(d["why"].values())
-        rows.append([named(sense, what), total, d["why"].get("let through", 0), dropped, d["twice"], percentile(d["held_ms"], 5), percentile(d["held_ms"], 50), percentile(d["held_ms"], 95)])
-    out.append(report.table("Measured effect of the profile: events and snapshots received, passed, dropped and repeated, and their delay, ms.",
-                            ["modality", "received", "passed", "dropped", "repeated", "delay p5", "p50", "p95"], rows))
+        held_ms = d["held_ms"]
+        mean_sd = [held_ms.mean(), held_ms.std()] if len(held_ms) else [None, None]
+        rows.append([named(sense, what), total, d["why"].get("let through", 0), dropped, d["twice"], *mean_sd, percentile(held_ms, 5), percentile(held_ms, 50), percentile(held_ms, 95)])
+    out.append(report.table("Measured effect of the profile: events and snapshots received, passed, dropped and repeated, and the delay of the passed ones, ms.",
+                            ["modality", "received", "passed", "dropped", "repeated", "delay mean", "sd", "p5", "p50", "p95"], rows))
     held = {s: d["held_ms"] for s, d in decisions.items() if len(d["held_ms"]) and d["held_ms"].max() > 0}
     if held:
         fig, axes = figures.new(height_in=2.1)

@@ -7,12 +7,14 @@ TIME_MS = {"us": 1e-3, "ms": 1.0, "s": 1e3}
 # Operator of a study: (unit of its levels, factor of each permitted unit, least, most). The ranges are those of
 # sync/degradation/parse_operator.cpp where it has one, else the range that a person could notice (design).
 OPERATORS = {
-    "delay": ("ms", TIME_MS, 0, 10_000), "network_delay": ("ms", TIME_MS, 0, 10_000), "jitter": ("ms", TIME_MS, 0, 10_000),
+    "delay": ("ms", TIME_MS, 0, 10_000), "network_delay": ("ms", TIME_MS, 0, 10_000), "jitter": ("ms", TIME_MS, 0, 10_000),  # jitter: standard deviation
     "loss": ("%", {"%": 1.0}, 0, 100), "rate": ("Hz", {"Hz": 1.0}, 0.1, 1000), "deadband": ("%", {"%": 1.0}, 0, 100),
     "quantise": ("N", {"N": 1.0, "mN": 1e-3}, 0, 100), "gain": ("", {"": 1.0}, 0, 10), "lowpass": ("Hz", {"Hz": 1.0}, 0.1, 1000),
     "frame_rate": ("Hz", {"Hz": 1.0}, 2, 240), "resolution": ("", {"": 1.0}, 0.01, 1), "response": ("ms", TIME_MS, 0, 60_000)}
+JITTER_DELAY = 3  # constant network delay of a jitter, in standard deviations: the least one with which its mean and deviation hold (sync/random/jitter.h)
 OUTPUT_OF = {"frame_rate": "visual", "resolution": "visual", "response": "thermal"}  # modality.csv of each node folder
 LOWER_IS_WORSE = ("rate", "frame_rate", "lowpass", "resolution", "gain")  # a lower level is a stronger degradation, as in analysis/operators.py
+NOT_OF = {"lowpass": "haptic"}  # touch receives surfaces and no forces, so a low-pass of force has no effect on it
 SMALLEST = {"response": 1.0}  # of levels above 0
 ASYNCHRONY = ("ms", TIME_MS, -5_000, 5_000)
 PAUSE = ("s", {"ms": 1e-3, "s": 1.0}, 0, 3600)
@@ -40,11 +42,14 @@ def written(value):
 
 
 def degrade(modality, operator, level):
-    """Profile element (sync/degradation/README.md) that applies the operator to a sense at this level."""
+    """Profile element (sync/degradation/README.md) that applies the operator to a sense at this level. A jitter has a constant delay of JITTER_DELAY times
+    its level: compare it with network_delay at that delay. Touch quantises the commanded force."""
     unit = OPERATORS[operator][0]
-    words = {"network_delay": ("delay", f"{written(level)}ms network"), "jitter": ("jitter", f"{written(level)}ms normal")}
-    name, value = words.get(operator, (operator, written(level) + unit))
-    return f'<degrade modality="{modality}" {name}="{value}"/>'
+    words = {"network_delay": f'delay="{written(level)}ms network"', "jitter": f'jitter="{written(level)}ms normal" delay="{written(JITTER_DELAY * level)}ms network"'}
+    if (modality, operator) == ("haptic", "quantise"):
+        words["quantise"] = f'force_step="{written(level)}{unit}"'
+    words.setdefault(operator, f'{operator}="{written(level)}{unit}"')
+    return f'<degrade modality="{modality}" {words[operator]}/>'
 
 
 def nothing(operator, level):

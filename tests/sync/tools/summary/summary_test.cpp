@@ -150,6 +150,15 @@ TEST_CASE("The summary uses the last note of a node before the simulation ended"
   CHECK(log.summary().nodes().at("haptic_node").scheduling == "SCHED_FIFO 60, memory locked");
 }
 
+TEST_CASE("The summary contains the effect of the profile that a node measured") {
+  RunLog log;
+  log.status_text = "SCHED_FIFO 60, memory locked; profile effect: events +40.0 ms (sd 3.0)";
+  ordinary_run(log);
+  CHECK(log.summary().nodes().at("audio_node").scheduling == "SCHED_FIFO 60, memory locked");
+  CHECK_THAT(to_text(log.summary()), Catch::Contains("  profile effect: events +40.0 ms (sd 3.0)\n"));
+  CHECK_THAT(to_json(log.summary()), Catch::Contains("profile_effect"));
+}
+
 TEST_CASE("Control characters are escaped in the text of a summary") {
   RunLog log;
   log.status_text = "a\x1b[2Jb\nc";
