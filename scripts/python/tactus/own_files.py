@@ -30,7 +30,7 @@ def owner(path):
 
 
 def is_private_folder(path):
-    """True for a folder of the own user, not a link, that nobody else can read or write."""
+    """True for a folder of the own user, not a link, that no other user can read or write."""
     try:
         found = os.lstat(path)
     except OSError:

@@ -90,8 +90,8 @@ class Archives(Folders):
         self.assertLess(sum(p.stat().st_size for p in self.files().values()), LIMIT)
 
     def test_more_files_than_permitted_refuse_the_archive(self):
-        limit, archives.MOST_FILES = archives.MOST_FILES, 20
-        self.addCleanup(setattr, archives, "MOST_FILES", limit)
+        limit, archives.MAX_FILES = archives.MAX_FILES, 20
+        self.addCleanup(setattr, archives, "MAX_FILES", limit)
         self.refused(archive(*((f"{i}", FILE, b"", 0o644, "") for i in range(30))), "more than 20 files")
 
     def test_any_damage_is_one_sentence(self):

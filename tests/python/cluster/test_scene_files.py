@@ -69,8 +69,8 @@ class SceneFiles(unittest.TestCase):
         self.assertIn("picture.png", scene_files.files_of(self.scene("<uri>m.glb</uri>")))
 
     def test_too_many_files_are_refused_with_one_sentence(self):
-        limit, scene_files.MOST_FILES = scene_files.MOST_FILES, 5
-        self.addCleanup(setattr, scene_files, "MOST_FILES", limit)
+        limit, scene_files.MAX_FILES = scene_files.MAX_FILES, 5
+        self.addCleanup(setattr, scene_files, "MAX_FILES", limit)
         with self.assertRaisesRegex(Refusal, "names more than 5 files"):
             scene_files.files_of(self.scene())
 

@@ -1,4 +1,4 @@
-"""Tests that tactus attach enters only clusters of its own user, whoever forges a folder in the temporary folder."""
+"""Tests that tactus attach enters only clusters of its own user, also when another user forges a folder in the temporary folder."""
 import os
 import pathlib
 import sys

@@ -1,4 +1,4 @@
-"""Tests of the temporary folders of clusters: what other users put beside them neither is used nor stops a run."""
+"""Tests of the temporary folders of clusters: files of other users beside them are not used and do not stop a run."""
 import os
 import pathlib
 import sys

@@ -12,7 +12,7 @@ from tactus.launch import cluster, cluster_folder, main, privileges, services
 from tactus.refusal import Refusal
 
 STATUS = ["cat", "/proc/self/status"]
-ANY_USER = 65534  # nobody
+ANY_USER = 65534  # the user without files: passwd of Debian
 
 
 def rights(status):

@@ -11,9 +11,9 @@ import tarfile
 import zlib
 
 LARGEST_READ = 1 << 20  # design: longest header of an entry; tarfile reads a header in one piece
-MOST_FILES = 100_000
+MAX_FILES = 100_000
 LONGEST_NAME = 1000     # bytes
-HEADERS_BYTES = 1024 * MOST_FILES  # of a header and the padding of each file
+HEADERS_BYTES = 1024 * MAX_FILES  # of a header and the padding of each file
 CHUNK = 1 << 18
 
 
@@ -21,24 +21,22 @@ class Unsafe(Exception):
     """The archive holds something else than regular files, or too much; one sentence."""
 
 
-class Limited:
+class Limited(gzip.GzipFile):
     """The uncompressed bytes of an archive; raises Unsafe beyond largest_bytes, so that a small archive cannot fill memory or disk."""
 
     def __init__(self, file, largest_bytes):
-        self.file, self.largest_bytes = file, largest_bytes
+        super().__init__(fileobj=file, mode="rb")
+        self.largest_bytes = largest_bytes
 
-    def tell(self):
-        return self.file.tell()
-
-    def seek(self, to, whence=os.SEEK_SET):
-        self.check(to if whence == os.SEEK_SET else 0)
-        return self.file.seek(to, whence)
+    def seek(self, offset, whence=os.SEEK_SET):
+        self.check(offset if whence == os.SEEK_SET else 0)
+        return super().seek(offset, whence)
 
     def read(self, size=-1):
         if not 0 <= size <= LARGEST_READ:
             raise Unsafe(f"has a header of more than {LARGEST_READ} bytes")
-        self.check(self.file.tell())
-        return self.file.read(size)
+        self.check(self.tell())
+        return super().read(size)
 
     def check(self, end):
         if end > self.largest_bytes:
@@ -47,13 +45,13 @@ class Limited:
 
 def entries(file, largest_bytes):
     """Yields (path, TarInfo, file with the content) of each file of an archive. Raises Unsafe and the errors of tarfile."""
-    with gzip.GzipFile(fileobj=file, mode="rb") as plain, tarfile.open(fileobj=Limited(plain, largest_bytes + HEADERS_BYTES), mode="r:") as tar:
+    with Limited(file, largest_bytes + HEADERS_BYTES) as plain, tarfile.open(fileobj=plain, mode="r:") as tar:
         count = total = 0
         while (entry := tar.next()) is not None:
             tar.members = []  # it would keep all of them
             count, total = count + 1, total + entry.size
-            if count > MOST_FILES or total > largest_bytes:
-                raise Unsafe(f"holds more than {MOST_FILES} files or {largest_bytes} bytes")
+            if count > MAX_FILES or total > largest_bytes:
+                raise Unsafe(f"holds more than {MAX_FILES} files or {largest_bytes} bytes")
             if entry.isdir():
                 continue  # folders are made for their files
             yield checked_path(entry), entry, tar.extractfile(entry)
@@ -85,7 +83,7 @@ def reading():
 
 
 def unpack(file, into, largest_bytes, reserved=()):
-    """Unpacks an archive into a folder of this user in which nobody else can write; existing files are not replaced. reserved: names in the
+    """Unpacks an archive into a folder of this user in which no other user can write; existing files are not replaced. reserved: names in the
     folder that the archive may not use. Returns the number of files. Raises Unsafe, and OSError when a file cannot be written; the files
     before the fault then exist."""
     into = pathlib.Path(into)

@@ -23,7 +23,7 @@ LARGEST_SCENE_BYTES = 500_000_000
 def parts():
     """{path on the host: local path} of all files. Raises Refusal."""
     found = {f"bin/{name}": BIN / name for name in PROGRAMS}
-    found |= {f"bin/{path.name}": path for path in BIN.glob("lib*.so")}
+    found |= {f"bin/{path.name}": path for path in (*BIN.glob("lib*.so"), *BIN.glob("read_*"))}  # read_*: confined readers of foreign formats
     found |= {f"bin/sounds/{path.relative_to(BIN / 'sounds')}": path for path in sorted((BIN / "sounds").rglob("*")) if path.is_file()}
     for there, here in FOLDERS.items():
         found |= {f"{there}/{path.relative_to(here)}": path for path in sorted(here.rglob("*")) if path.is_file() and path.suffix not in LEFT_OUT}

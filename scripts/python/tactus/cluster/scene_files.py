@@ -17,7 +17,7 @@ NAMING = {".sdf", ".world", ".xml", ".config", ".dae", ".gltf", ".glb", ".obj", 
 KINDS = NAMING | {".stl", ".ply", ".3ds", ".off", ".bin", ".png", ".jpg", ".jpeg", ".bmp", ".tga", ".csv", ".json", ".frag", ".vert", ".glsl", ".wav", ".flac",
                   ".sofa"}
 FOLDER_NAMES = ("model.config", "model.sdf")  # of a folder that <include> names
-MOST_FILES = 10_000
+MAX_FILES = 10_000
 LARGEST_TEXT_BYTES = 128 << 20  # as of a geometry file: docs/scene_format.md
 GLB_MAGIC, JSON_CHUNK = 0x46546C67, 0x4E4F534A  # glTF 2.0, binary file format
 WORDS = re.compile(r"[^\s,;|]+")
@@ -33,8 +33,8 @@ def files_of(scene):
         if name in found:
             continue
         found[name] = path
-        if len(found) > MOST_FILES:
-            raise Refusal(f"sim_node: the scene {scene} names more than {MOST_FILES} files, which is too much to copy to every host; name fewer")
+        if len(found) > MAX_FILES:
+            raise Refusal(f"sim_node: the scene {scene} names more than {MAX_FILES} files, which is too much to copy to every host; name fewer")
         if path == scene or path.suffix.lower() in NAMING:
             waiting += [file for text in texts_of(path) for file in named_by(text, path, folder)]
     return found

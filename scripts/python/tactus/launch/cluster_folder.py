@@ -81,7 +81,7 @@ def is_running(folder):
 
 
 def own_folders():
-    """Temporary folders with the name of a cluster of this user; whoever made them."""
+    """Temporary folders with the name of a cluster of this user; another user may have made them."""
     return list(pathlib.Path(tempfile.gettempdir()).glob(PREFIX.format(user=os.geteuid()) + "*"))
 
 
