@@ -78,11 +78,12 @@ def first_quantity(root, program):
 
 
 def small_log():
-    """A log of one event."""
-    path = os.path.join(tempfile.gettempdir(), f"tactus_one_event_{os.getpid()}.lcmlog")
+    """A log of one event, in a folder that only this user can write."""
+    folder = tempfile.mkdtemp(prefix="tactus-check-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    path = os.path.join(folder, "one_event.lcmlog")
     with open(path, "wb") as file:
         file.write(struct.pack(">IqqII", 0xEDA1DA01, 0, 1, 1, 8) + b"X" + bytes(8))
-    atexit.register(lambda: os.path.exists(path) and os.remove(path))
     return path
 
 

@@ -80,6 +80,13 @@ def read_own(path, largest_bytes):
     return data.decode("utf-8", "surrogateescape")
 
 
+def open_private(path):
+    """A new text file that only this user can read, instead of an existing one. Raises OSError."""
+    path = pathlib.Path(path)
+    path.unlink(missing_ok=True)
+    return open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | OPEN_FLAGS, 0o600), "w", encoding="utf-8")
+
+
 def is_own_process(pid):
     """True when the process exists and all of its user ids are those of the own user."""
     try:

@@ -74,6 +74,14 @@ class EveryProgram(unittest.TestCase):
             self.assertEqual([], [answer for answer in answers if answer[1] != 0])
 
 
+    def test_figures_ignore_the_settings_file_of_the_current_folder(self):
+        program = f"import sys; sys.path.insert(0, {str(ROOT / 'scripts' / 'python')!r}); from tactus.report import figures; print(figures.matplotlib.rcParams['figure.facecolor'])"
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "matplotlibrc").write_text("figure.facecolor: red\n", encoding="utf-8")
+            done = subprocess.run(["/usr/bin/python3", "-I", "-c", program], cwd=folder, capture_output=True, text=True, check=False, timeout=120)
+        self.assertEqual(("white\n", ""), (done.stdout, done.stderr))
+
+
 def restarts_first(text):
     """True when a program imports only os and sys before it restarts in isolated mode."""
     for statement in ast.parse(text).body:

@@ -52,6 +52,14 @@ class OwnFiles(unittest.TestCase):
             with self.assertRaisesRegex(Refusal, "belongs to the user"):
                 own_files.make_private_folder(made)
 
+    def test_a_private_file_replaces_a_file_or_link_of_the_same_name(self):
+        (self.folder / "target").write_text("kept", encoding="utf-8")
+        (self.folder / "log").symlink_to(self.folder / "target")
+        with own_files.open_private(self.folder / "log") as file:
+            file.write("new")
+        self.assertEqual(("kept", "new"), ((self.folder / "target").read_text(encoding="utf-8"), (self.folder / "log").read_text(encoding="utf-8")))
+        self.assertEqual(0o600, (self.folder / "log").lstat().st_mode & 0o777)
+
     def test_only_a_process_of_this_user_is_its_own(self):
         self.assertTrue(own_files.is_own_process(os.getpid()))
         for pid in ("none", -1, 2**30, "../1"):

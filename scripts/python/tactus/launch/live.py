@@ -57,7 +57,7 @@ class Page:
     def launch(self):
         self.started = time.monotonic()
         words = [*tactus_command("attach"), str(self.out), *privileges.least([BIN / "live_server", "--page", PAGE, "--listen-fd", self.socket.fileno()])]
-        with open(self.log(), "a", encoding="utf-8") as log:
+        with open(os.open(self.log(), os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600), "a", encoding="utf-8") as log:
             self.process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
                                             env={**os.environ, "TACTUS_LIVE_TOKEN": self.token},
                                             pass_fds=(self.socket.fileno(),), preexec_fn=die_with_parent)
