@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -I
 """Generates a table of the message types for use at run time; lcmtypes/fields.h describes its use.
 
   generate_fields.py OUT.cpp channels.h TYPE.lcm ...
@@ -6,8 +6,12 @@
 A comment belongs to the field below it. The comment after a channel name in channels.h is its message type.
 """
 import os
-import re
 import sys
+
+if __name__ == "__main__" and not sys.flags.isolated:  # started as `python3 FILE`: never imports from PYTHONPATH
+    os.execv(sys.executable, [sys.executable, "-I", *sys.argv])
+
+import re
 
 STRUCT = re.compile(r"struct\s+(\w+)\s*\{(.*)\}", re.S)
 FIELD = re.compile(r"(\w+)\s+(\w+)\s*(?:\[(\w+)\])?\s*;")

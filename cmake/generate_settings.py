@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -I
 """Turns the settings.csv of the nodes into code and documentation.
 
   generate_settings.py header NODE/settings.csv OUT.h     the Settings struct of one node
@@ -10,9 +10,13 @@ choice "a|b|c". A row without a source is an error: a constant without a source 
 upper or a lower limit that protects a person; a scene may only tighten it. live: "yes" marks what `tactus set` may change while the node
 runs.
 """
-import csv
 import os
 import sys
+
+if __name__ == "__main__" and not sys.flags.isolated:  # started as `python3 FILE`: never imports from PYTHONPATH
+    os.execv(sys.executable, [sys.executable, "-I", *sys.argv])
+
+import csv
 
 SUFFIX = {"1": "", "count": "", "bool": "", "text": "", "%": ""}
 

@@ -92,7 +92,7 @@ int main(int argc, char** argv) try {
   for (const SoundFault& f : database.faults)
     report["faults"].push_back({{"path", f.path}, {"what", f.what}, {"played", !f.unusable}});
   if (json)
-    std::cout << report.dump(1) << std::endl;
+    std::cout << report.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
   else
     print(report);
   return database.faults.empty() ? 0 : 1;

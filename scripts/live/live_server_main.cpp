@@ -14,6 +14,7 @@
 #include <random>
 #include <sstream>
 #include <stdexcept>
+#include <stdlib.h>
 #include <tactus/body_def_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <tactus/tool_def_t.hpp>
@@ -39,6 +40,7 @@ std::atomic<bool> stop{false};
 
 struct Options {
   std::string log, page, bind = "127.0.0.1", token;
+  bool prints_token = false;  // it was made here
   int http_port = 0, listen_fd = -1;
   std::int64_t run_id = 1;
   sync::BusOptions bus;
@@ -61,7 +63,8 @@ std::string random_token() {
 std::shared_ptr<const std::string> shared(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
 std::shared_ptr<const std::string> reply_message(const std::string& sentence, bool good) {
-  return shared(nlohmann::json{{"t", "reply"}, {"text", sync::printable(sentence)}, {"good", good}}.dump());
+  return shared(nlohmann::json{{"t", "reply"}, {"text", sync::printable(sentence)}, {"good", good}}
+                    .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 // The served content, with the open pages.
@@ -77,8 +80,10 @@ class Server {
              o.token, o.bind == "127.0.0.1",
              {[this](int page) { opened_.push_back(page); }, [this](int page) { session_.close(page); pages_.erase(page); },
               [this](int page, std::string_view text) { messages_.emplace_back(page, text); }}) {
-    // The address is for the user; a program that reads this output can open it.
-    std::cout << "live_server: open http://" << o.bind << ":" << web_.port() << "/?token=" << o.token << std::endl;
+    // The address is for the user. A token that was inherited is known to the process that made it, which prints it; this output may be a
+    // log that other users can read.
+    std::cout << "live_server: open http://" << o.bind << ":" << web_.port()
+              << (o.prints_token ? "/?token=" + o.token : std::string("/ with the token that was inherited")) << std::endl;
   }
   // Calls handle(page, message) for each request of a page.
   template <class Handle>
@@ -256,13 +261,14 @@ int main(int argc, char** argv) try {
   app.add_option("--http-port", o.http_port, "port of the page; 0: any free port").range(0, 65535).show_default();
   app.add_option("--bind", o.bind, "address of the page's server; beyond 127.0.0.1 any user with the token can control the cluster").show_default();
   app.add_option("--listen-fd", o.listen_fd, "inherited listening socket, instead of --http-port").range(0, 1'000'000);
-  app.add_option("--token", o.token, "token of the address; default: random").environment("TACTUS_LIVE_TOKEN");
+  app.add_option("--token", o.token, "token of the address, which other users of this machine can then see; default: $TACTUS_LIVE_TOKEN, otherwise random").environment("TACTUS_LIVE_TOKEN");
   app.add_option("--port", o.bus.port, "UDP port of the bus").environment("TACTUS_PORT").range(1, 65534).show_default();
   app.add_option("--run-id", o.run_id, "number of the cluster run").environment("TACTUS_RUN_ID").show_default();
   sync::parse_or_exit(app, "live_server", argc, argv);
   for (int s : {SIGINT, SIGTERM, SIGHUP}) signal(s, [](int) { stop = true; });
   signal(SIGPIPE, SIG_IGN);
-  if (o.token.empty()) o.token = random_token();
+  unsetenv("TACTUS_LIVE_TOKEN");
+  if (o.token.empty()) o.token = random_token(), o.prints_token = true;
   if (o.token.size() < 16 || o.token.size() > 128)
     throw std::runtime_error("--token: give 16 to 128 letters and digits, or none");
   if (o.log.empty()) serve_cluster(o);

@@ -9,7 +9,9 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <algorithm>
 #include <cstring>
+#include <deque>
 #include <stdexcept>
 #include <utility>
 
@@ -43,11 +45,14 @@ struct WebServer::Impl : std::enable_shared_from_this<WebServer::Impl> {
   Access access;
   Events events;
   std::map<int, std::shared_ptr<Page>> pages;
+  std::deque<std::weak_ptr<Connection>> requests;  // in the order of their arrival
   std::size_t connections = 0;
   int next_page = 1;
   std::int64_t refused = 0;
 
   void accept();
+  // Closes the oldest connection that has not sent its request, otherwise the oldest that does not take its answer. Returns false without one.
+  bool close_oldest();
 };
 
 namespace {
@@ -127,12 +132,17 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
+  bool is_waiting() const { return waiting_; }
+  void close() {
+    waiting_ = false;
+    stream_.close();
+  }
   void read() {
     parser_.header_limit(kMaxHeaderBytes);
     parser_.body_limit(0);
     stream_.expires_after(kRequestTimeout);
     http::async_read(stream_, buffer_, parser_, [self = shared_from_this()](Code e, std::size_t) {
-      if (!e) self->answer();
+      if (std::exchange(self->waiting_, false) && !e) self->answer();
     });
   }
 
@@ -185,6 +195,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   beast::flat_buffer buffer_{2 * kMaxHeaderBytes};
   http::request_parser<http::empty_body> parser_;
   http::response<http::string_body> response_;
+  bool waiting_ = true;  // for the request
 };
 
 }  // namespace
@@ -192,13 +203,29 @@ class Connection : public std::enable_shared_from_this<Connection> {
 void WebServer::Impl::accept() {
   acceptor.async_accept([self = shared_from_this()](Code e, tcp::socket socket) {
     if (e == boost::asio::error::operation_aborted) return;
-    if (!e && self->connections < kMaxConnections) {
+    // A browser sends its request at once and takes the answer, so that idle connections give way to new ones.
+    if (!e && (self->connections < kMaxConnections || self->close_oldest())) {
       Code ignored;
       socket.set_option(tcp::no_delay(true), ignored);
-      std::make_shared<Connection>(std::move(socket), self)->read();
+      const auto connection = std::make_shared<Connection>(std::move(socket), self);
+      std::erase_if(self->requests, [](const std::weak_ptr<Connection>& w) { return w.expired(); });
+      self->requests.push_back(connection);
+      connection->read();
     }
     self->accept();
   });
+}
+
+bool WebServer::Impl::close_oldest() {
+  if (requests.empty()) return false;
+  auto oldest = std::find_if(requests.begin(), requests.end(), [](const std::weak_ptr<Connection>& w) {
+    const auto connection = w.lock();
+    return connection && connection->is_waiting();
+  });
+  if (oldest == requests.end()) oldest = requests.begin();
+  if (const auto connection = oldest->lock()) connection->close();
+  requests.erase(oldest);
+  return true;
 }
 
 WebServer::WebServer(int listen_fd, std::map<std::string, PageFile> files, std::string token, bool loopback, Events events)

@@ -135,7 +135,7 @@ json play_in_process(const Loaded& loaded, const GameDef& game) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(1);
     if (stderr_fd >= 0) dup2(stderr_fd, STDERR_FILENO);
-    const std::string line = play_to_json(loaded, game).dump();
+    const std::string line = play_to_json(loaded, game).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     for (std::size_t done = 0; done < line.size();) {
       const ssize_t n = write(ends[1], line.data() + done, line.size() - done);
       if (n <= 0) _exit(1);
@@ -199,7 +199,7 @@ int main(int argc, char** argv) try {
           line.substr(0, 200));
     }
     result["game"] = request["game"];
-    std::cout << result.dump() << std::endl;
+    std::cout << result.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
     if (!std::cout) return 1;
   }
   return 0;

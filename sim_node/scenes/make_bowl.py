@@ -1,8 +1,14 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -I
 """Writes bowl.obj: half a hollow sphere, 60 mm in radius and 3 mm thick, standing on a small flat foot; z up, metres.
 
   make_bowl.py > bowl.obj
 """
+import os
+import sys
+
+if __name__ == "__main__" and not sys.flags.isolated:  # started as `python3 FILE`: never imports from PYTHONPATH
+    os.execv(sys.executable, [sys.executable, "-I", *sys.argv])
+
 import math
 
 OUTER_M, WALL_M = 0.060, 0.003

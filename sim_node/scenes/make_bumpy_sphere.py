@@ -1,8 +1,14 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -I
 """Writes bumpy_sphere.obj: a ball of 60 mm radius with bumps of 3 mm, z up, 2784 triangles.
 
   make_bumpy_sphere.py > bumpy_sphere.obj
 """
+import os
+import sys
+
+if __name__ == "__main__" and not sys.flags.isolated:  # started as `python3 FILE`: never imports from PYTHONPATH
+    os.execv(sys.executable, [sys.executable, "-I", *sys.argv])
+
 import math
 
 RADIUS_M, BUMP_M = 0.060, 0.003

@@ -1,10 +1,15 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -I
 """Writes halves.png: a friction map whose left half is black and whose right half is white, 8 bits.
 
   make_halves.py > halves.png
 """
-import struct
+import os
 import sys
+
+if __name__ == "__main__" and not sys.flags.isolated:  # started as `python3 FILE`: never imports from PYTHONPATH
+    os.execv(sys.executable, [sys.executable, "-I", *sys.argv])
+
+import struct
 import zlib
 
 COLUMNS, ROWS = 2048, 2  # a fine boundary: one pixel of 0.6 m is 0.3 mm

@@ -1,14 +1,18 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -I
 """Writes the files of looks_bench.sdf: a ball with texture coordinates whose material names its pictures (tiled_ball.obj, .mtl),
 the same ball without pictures (plain_ball.obj), tiles in colour (tiles.png), their normals (tiles_normal.png) and a room with
 windows as the environment (room.png).
 
   make_looks.py FOLDER
 """
-import math
 import os
-import struct
 import sys
+
+if __name__ == "__main__" and not sys.flags.isolated:  # started as `python3 FILE`: never imports from PYTHONPATH
+    os.execv(sys.executable, [sys.executable, "-I", *sys.argv])
+
+import math
+import struct
 import zlib
 
 SIDE = 128  # of the tiles, pixels; four tiles a side

@@ -1,12 +1,17 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -I
 """Writes many_bodies.sdf: N boxes, balls and cylinders that fall into a tray, all of one size, so that worlds of every N are
 similar; a hand stirs them. The same N gives the same file.
 
   make_many_bodies.py [N] > many_bodies.sdf       N: 1 .. 3000, default 100
 """
+import os
+import sys
+
+if __name__ == "__main__" and not sys.flags.isolated:  # started as `python3 FILE`: never imports from PYTHONPATH
+    os.execv(sys.executable, [sys.executable, "-I", *sys.argv])
+
 import math
 import random
-import sys
 
 SIZE_M = 0.04
 MATERIALS = (("oak", "0.66 0.43 0.20 1"), ("steel", "0.62 0.65 0.70 1"), ("rubber", "0.70 0.10 0.08 1"), ("abs", "0.12 0.30 0.75 1"),

@@ -1,9 +1,14 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -I
 """Writes peg.obj and hole_plate.obj beside itself: a round peg with a chamfer, and a square plate with a round hole through
 it, 0.5 mm wider than the peg all around; z up, metres.
 """
-import math
 import os
+import sys
+
+if __name__ == "__main__" and not sys.flags.isolated:  # started as `python3 FILE`: never imports from PYTHONPATH
+    os.execv(sys.executable, [sys.executable, "-I", *sys.argv])
+
+import math
 
 PEG_RADIUS_M, PEG_LENGTH_M, CHAMFER_M = 0.0145, 0.080, 0.002
 HOLE_RADIUS_M, PLATE_M, THICK_M = 0.015, 0.120, 0.030

@@ -1,13 +1,18 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -I
 """Writes planks.png: the height map of four boards, drawn as 0.4 m by 0.4 m, white 2 mm over black, 16 bits; a scene may scale it.
 
   make_planks.py > planks.png
 
 Four boards run along u. Their edges are rounded and reflect the light; the grain consists of slightly irregular waves along the boards.
 """
+import os
+import sys
+
+if __name__ == "__main__" and not sys.flags.isolated:  # started as `python3 FILE`: never imports from PYTHONPATH
+    os.execv(sys.executable, [sys.executable, "-I", *sys.argv])
+
 import math
 import struct
-import sys
 import zlib
 
 SIDE_PX, SIDE_MM = 256, 400

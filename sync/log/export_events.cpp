@@ -6,6 +6,7 @@
 #include <tactus/presentation_t.hpp>
 #include <tactus/sim_clock_t.hpp>
 
+#include "sync/text/csv.h"
 #include "sync/time/time.h"
 
 namespace tactus::sync {
@@ -22,11 +23,18 @@ constexpr std::array kOutcomes{"presented", "late", "dropped_late", "dropped_by_
 constexpr std::array kReasons{"start", "periodic", "underflow"};
 constexpr std::array kStages{"ready", "shown"};
 
+// A text is one cell; numbers and names of kinds are written as they are.
+std::string cell(const std::string& text) { return csv_cell(text); }
+template <class Other>
+const Other& cell(const Other& value) {
+  return value;
+}
+
 template <class First, class... Rest>
 std::string row(const First& first, const Rest&... rest) {
   std::ostringstream line;
-  line << first;
-  ((line << ',' << rest), ...);
+  line << cell(first);
+  ((line << ',' << cell(rest)), ...);
   line << '\n';
   return line.str();
 }

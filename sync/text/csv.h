@@ -1,4 +1,4 @@
-// Parses small hand-written tables: rooms, layouts of loudspeakers, materials. Pure, except read_small_file.
+// Parses small hand-written tables: rooms, layouts of loudspeakers, materials; writes cells. Pure, except read_small_file.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,10 @@ namespace tactus::sync {
 // The cells of a line (RFC 4180, section 2, without line breaks inside of cells): a cell in double quotes may contain commas,
 // and a double quote written twice. A leading byte order mark and a trailing carriage return are ignored.
 std::vector<std::string> csv_cells(std::string_view line);
+
+// One cell of a table (RFC 4180). A text from the bus or from a user that a spreadsheet would run as a formula gets an apostrophe in
+// front; scripts/python/tactus/tables.py removes it.
+std::string csv_cell(std::string_view text);
 
 // A finite number and nothing else.
 std::optional<double> csv_number(std::string_view cell);

@@ -13,6 +13,7 @@
 #include "lcmtypes/channels.h"
 #include "sync/bus/decode.h"
 #include "sync/log/log_header.h"
+#include "sync/text/csv.h"
 
 namespace tactus::sync {
 namespace {
@@ -63,13 +64,6 @@ std::string TableContext::sender(std::int32_t source) const {
   char text[16];
   std::snprintf(text, sizeof text, "0x%08x", static_cast<unsigned>(source));
   return text;
-}
-
-std::string csv_cell(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string cell = "\"";
-  for (const char c : text) cell += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return cell + "\"";
 }
 
 std::string csv_cell(const Leaf& value) {
@@ -140,7 +134,7 @@ std::string tag_rows(TagTable& tags, const TableContext& context, const LogEvent
   const std::int64_t sent_ns =
       (m->header.clock == info.header.clock ? 0 : to_ns(arrival) - m->header.publish_time_ns) - info.live_from_ns;
   tags.read(*m, [&](const TagTable::List& list, const tag_def_t& tag, std::int64_t time_ns, double value) {
-    rows += seconds(sent_ns + time_ns) + "," + csv_cell(std::string_view(list.node)) + "," + tag.name + "," +
+    rows += seconds(sent_ns + time_ns) + "," + csv_cell(std::string_view(list.node)) + "," + csv_cell(std::string_view(tag.name)) + "," +
             csv_cell(std::string_view(tag.unit)) + "," + number(value) + "\n";
   });
   return rows;

@@ -36,8 +36,7 @@ class TableContext {
   TagTable tags_;
 };
 
-// One cell by RFC 4180; a number is written so that it reads back unchanged.
-std::string csv_cell(std::string_view text);
+// One cell by RFC 4180, a text as by csv_cell(std::string_view) of csv.h; a number is written so that it reads back unchanged.
 std::string csv_cell(const Leaf& value);
 
 // log_s, world_s, sender, seq, field, unit, value.

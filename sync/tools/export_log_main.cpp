@@ -135,7 +135,7 @@ class Export {
     count(unlisted_, "tagged values were left out: no list in the log names them");
     if (damaged_ > 0) std::cout << damaged_ << " damaged places, " << damaged_bytes_ << " bytes in all, were skipped\n";
     std::ofstream schema(options_.out + "/schema.json");
-    schema << json{{"made_by", "Tactus export_log"}, {"logs", options_.logs}, {"files", files}, {"columns", columns()}, {"foreign_messages", foreign_}, {"broken_messages", broken_}, {"damaged_regions", damaged_}, {"damaged_bytes", damaged_bytes_}}.dump(1) << "\n";
+    schema << json{{"made_by", "Tactus export_log"}, {"logs", options_.logs}, {"files", files}, {"columns", columns()}, {"foreign_messages", foreign_}, {"broken_messages", broken_}, {"damaged_regions", damaged_}, {"damaged_bytes", damaged_bytes_}}.dump(1, ' ', false, json::error_handler_t::replace) << "\n";
     schema.close();
     if (!schema)
       throw std::runtime_error("cannot write " + options_.out +

@@ -160,7 +160,7 @@ int main(int argc, char** argv) try {
     json all = json::array();
     for (const auto& f : channel_stats.figures(now)) all.push_back(to_json(f));
     std::ofstream file(json_file);
-    file << json{{"seconds", once_s}, {"messages", channel_stats.messages()}, {"lost_here", tap.overflow()}, {"channels", all}}.dump(1) << "\n";
+    file << json{{"seconds", once_s}, {"messages", channel_stats.messages()}, {"lost_here", tap.overflow()}, {"channels", all}}.dump(1, ' ', false, json::error_handler_t::replace) << "\n";
     if (!file.flush()) throw std::runtime_error("cannot write " + json_file + "; give --json a writable file");
   }
   return 0;

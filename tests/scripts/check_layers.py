@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -I
 """Checks the includes between folders, and the size and tidiness of folders and files, over the source tree.
 
   check_layers.py [ROOT]          prints every offence as FILE:LINE: what; exits 1 when there is one
@@ -7,10 +7,14 @@
 A node folder includes itself, sync/ and lcmtypes/; sync/ includes lcmtypes/; external libraries stay in few files. The
 allowed includes between folders are listed in folder_graph.txt beside this file. They form no cycle.
 """
-import collections
 import os
-import re
 import sys
+
+if __name__ == "__main__" and not sys.flags.isolated:  # started as `python3 FILE`: never imports from PYTHONPATH
+    os.execv(sys.executable, [sys.executable, "-I", *sys.argv])
+
+import collections
+import re
 
 NODES = ["sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node"]
 MAY_INCLUDE = {"lcmtypes": {"lcmtypes"}, "sync": {"sync", "lcmtypes"}}

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -I
 """Checks how the programs of the cluster meet wrong options and an unusable network.
 
   check_programs.py help SOURCE_ROOT PROGRAM...      every program prints help
@@ -7,14 +7,18 @@
 
 Programs run in a network namespace of their own; where that is not allowed, `network` is skipped (exit 77).
 """
+import os
+import sys
+
+if __name__ == "__main__" and not sys.flags.isolated:  # started as `python3 FILE`: never imports from PYTHONPATH
+    os.execv(sys.executable, [sys.executable, "-I", *sys.argv])
+
 import atexit
 import csv
-import os
 import shutil
 import socket
 import struct
 import subprocess
-import sys
 import tempfile
 
 SKIPPED = 77
@@ -74,11 +78,12 @@ def first_quantity(root, program):
 
 
 def small_log():
-    """A log of one event."""
-    path = os.path.join(tempfile.gettempdir(), f"tactus_one_event_{os.getpid()}.lcmlog")
+    """A log of one event, in a folder that only this user can write."""
+    folder = tempfile.mkdtemp(prefix="tactus-check-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    path = os.path.join(folder, "one_event.lcmlog")
     with open(path, "wb") as file:
         file.write(struct.pack(">IqqII", 0xEDA1DA01, 0, 1, 1, 8) + b"X" + bytes(8))
-    atexit.register(lambda: os.path.exists(path) and os.remove(path))
     return path
 
 

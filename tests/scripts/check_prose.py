@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -I
 """Checks comments, documentation, help texts and messages for constructions that the glossary refuses, and code for old names.
 
   check_prose.py [OPTIONS] [PATH...]
@@ -15,12 +15,17 @@ Checked text: comments and string literals of three words or more in C++, Python
 .lcm files; Markdown and HTML without code; the columns meaning and source of settings.csv. Old names are searched in C++, Python, TypeScript and
 .lcm code. docs/glossary.md describes the language; prose_exceptions.txt lists files that a rule does not apply to.
 """
+import os
+import sys
+
+if __name__ == "__main__" and not sys.flags.isolated:  # started as `python3 FILE`: never imports from PYTHONPATH
+    os.execv(sys.executable, [sys.executable, "-I", *sys.argv])
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+
 import argparse
 import collections
 import functools
-import os
 import re
-import sys
 
 from prose_rules import FILES, FOLDERS, NAME_PATTERNS, NAMES, NEEDS, RULES
 from prose_texts import C_LIKE, code, line_counter, texts

@@ -1,14 +1,18 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -I
 """Checks that docs/settings.md is what cmake/generate_settings.py makes of every settings.csv.
 
   check_settings_doc.py ROOT            exits 1 and says what to do when it is not
   check_settings_doc.py ROOT --write    writes it
 """
+import os
+import sys
+
+if __name__ == "__main__" and not sys.flags.isolated:  # started as `python3 FILE`: never imports from PYTHONPATH
+    os.execv(sys.executable, [sys.executable, "-I", *sys.argv])
+
 import difflib
 import glob
-import os
 import subprocess
-import sys
 import tempfile
 
 

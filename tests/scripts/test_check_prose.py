@@ -1,6 +1,11 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -I
 """The checker of the language must find each offence that is planted, with its line, and pass a good sentence for each."""
 import os
+import sys
+
+if __name__ == "__main__" and not sys.flags.isolated:  # started as `python3 FILE`: never imports from PYTHONPATH
+    os.execv(sys.executable, [sys.executable, "-I", *sys.argv])
+
 import tempfile
 import unittest
 

@@ -104,6 +104,8 @@ class Files(unittest.TestCase):
         for n, part in enumerate(parts):
             self.assertEqual(re.findall(r"rx port 1 address \S+ sa 0 pn 1 on key \S+ (\S+)", part), [k for m, k in enumerate(own) if m != n])
             self.assertIn('oifname != { "lo", "macsec0" }', part)
+            before, inside, after = re.split(r"ip -batch - << 'KEYS'\n|^KEYS\n", part, flags=re.MULTILINE)
+            self.assertEqual((0, 3), (sum(key in before + after for key in own), sum(key in inside for key in own)), "a key is an argument of a program")
 
 
 if __name__ == "__main__":

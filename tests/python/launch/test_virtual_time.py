@@ -10,6 +10,7 @@ import tempfile
 import time
 import unittest
 
+BIN = pathlib.Path(os.environ.get("TACTUS_BIN") or pathlib.Path(__file__).resolve().parents[3] / "build" / "dev" / "bin")
 RUN = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "run"
 PROFILE = """<profile name="late">
   <degrade modality="audio" delay="100ms"/>
@@ -52,6 +53,16 @@ class VirtualTime(unittest.TestCase):
         for name, node in facts["nodes"].items():
             self.assertEqual(node["missed_ticks"], 0, name)
         self.assertIn("times as fast as real time", said.stderr)
+
+    def test_a_log_with_any_bytes_in_its_name_is_exported(self):
+        run(self.folder / "run", seconds=1)
+        log = os.fsencode(self.folder) + b"/caf\xe9 \xff.lcmlog"
+        os.rename(self.folder / "run" / "run.lcmlog", log)
+        tables = self.folder / "tables"
+        tables.mkdir()
+        done = subprocess.run([BIN / "export_log", log, "--out", tables], capture_output=True, check=False)
+        self.assertEqual((0, b""), (done.returncode, done.stderr))
+        self.assertIn("caf\ufffd", json.loads((tables / "schema.json").read_text(encoding="utf-8"))["logs"][0])
 
     def test_a_profile_delays_only_its_modality(self):
         profile = self.folder / "late.xml"

@@ -6,6 +6,7 @@ import threading
 import time
 import types
 import unittest
+from unittest import mock
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[3] / "scripts"
 sys.path.insert(0, str(SCRIPTS / "python"))
@@ -37,6 +38,14 @@ class TheLivePageOfAStudy(unittest.TestCase):
         teller.start()
         self.addCleanup(teller.join)
         self.assertEqual(self.cluster.page(), "http://127.0.0.1:46417/?token=3a8d")
+
+    def test_is_in_a_log_that_only_the_user_can_read(self):
+        self.cluster.log.chmod(0o644)
+        with mock.patch.object(live_cluster.subprocess, "Popen") as start:
+            made = live_cluster.LiveCluster(self.cluster.log.with_suffix(""), ["--live"])
+        self.assertEqual(self.cluster.log, made.log)
+        self.assertEqual(0o600, made.log.stat().st_mode & 0o777)
+        self.assertTrue(start.called)
 
     def test_is_none_if_the_run_reports_that_it_does_not_start(self):
         self.say(f"run: {live_cluster.NO_PAGE}; the run continues without it; see logs/live_server.log\n")

@@ -12,6 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 SCRIPTS = ROOT / "scripts"
 sys.path.insert(0, str(ROOT / "scripts" / "python"))
 from tactus.refusal import Refusal
+from tactus import tables
 from tactus.study import bids, formats, journal, trial_table
 
 LEVELS = (-100.0, 0.0, 62.5)
@@ -224,11 +225,11 @@ class RandomJournals(unittest.TestCase):
                 for line, row in zip(lines[1:], rows, strict=True):
                     fields = dict(zip(trial_table.COLUMNS, line.split("\t"), strict=True))
                     for name, value in row.items():
-                        expected = "n/a" if value in (None, "") else re.sub(r"[\t\r\n]", " ", value) if isinstance(value, str) else repr(value)
+                        expected = "n/a" if value in (None, "") else tables.escaped(re.sub(r"[\t\r\n]", " ", value)) if isinstance(value, str) else repr(value)
                         self.assertEqual(fields[name], expected)
                 with open(folder / "psychopy.csv", encoding="utf-8", newline="") as file:
                     wide = list(csv.DictReader(file))
-                self.assertEqual([r["condition"] for r in wide], [e["condition"] for e in counted])
+                self.assertEqual([r["condition"] for r in wide], [tables.escaped(e["condition"]) for e in counted])
 
     def psignifit(self, folder, answered):
         """Each condition has its own file, even with similar names, and no answer is lost."""

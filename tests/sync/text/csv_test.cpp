@@ -15,6 +15,19 @@ TEST_CASE("A line is split at its commas, and a cell may be empty") {
   CHECK(csv_cells(",") == Cells{"", ""});
 }
 
+TEST_CASE("A cell is never a formula of a spreadsheet, and numbers stay numbers") {
+  for (const char* text : {"=HYPERLINK(1)", "+cmd|' /C calc'!A0", "-2+3", "@SUM(1)", "\t=1", "\r=1"}) {
+    INFO(text);
+    CHECK(csv_cells(csv_cell(text)) == Cells{std::string("'") + text});
+  }
+  for (const char* text : {"", "-", "=", "plain", "-5", "+1.5", "-2.5e-3", "1-2", "'quoted'"}) {
+    INFO(text);
+    CHECK(csv_cell(text) == text);
+  }
+  CHECK(csv_cell("'=1") == "''=1");  // the escape can be undone
+  CHECK(csv_cell("=1,2") == "\"'=1,2\"");
+}
+
 TEST_CASE("A quoted cell may contain commas and doubled quotes") {
   CHECK(csv_cells(R"("a, b",c)") == Cells{"a, b", "c"});
   CHECK(csv_cells(R"("say ""so""",2)") == Cells{R"(say "so")", "2"});

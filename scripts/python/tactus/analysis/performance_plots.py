@@ -1,9 +1,9 @@
 """Figures of games: success and time over the level of a degradation, two degraded senses, and each sense removed."""
 import numpy as np
-from matplotlib.colors import TwoSlopeNorm
 
 from tactus.analysis import limits, resampling
 from tactus.analysis.plot_style import BREAK, INK, PALE, colour, figures, stamp
+from tactus.plotting import matplotlib
 
 SHADE = "RdYlBu"
 
@@ -79,7 +79,7 @@ def frontier_figure(made, cells, margins, observer):
         known = grid[~np.isnan(grid)]
         low, high = float(min(known.min(), bound)), float(max(known.max(), bound))
         pad = 1e-6 + 0.02 * (high - low)
-        image = axes.imshow(grid, origin="lower", aspect="auto", cmap=SHADE + "_r" if time else SHADE, alpha=0.75, norm=TwoSlopeNorm(bound, low - pad, high + pad))
+        image = axes.imshow(grid, origin="lower", aspect="auto", cmap=SHADE + "_r" if time else SHADE, alpha=0.75, norm=matplotlib.colors.TwoSlopeNorm(bound, low - pad, high + pad))
         for i in range(len(y)):
             for j in range(len(x)):
                 if not np.isnan(grid[i, j]):

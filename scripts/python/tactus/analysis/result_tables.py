@@ -4,13 +4,14 @@ import math
 import os
 
 from tactus.analysis import mixed, resampling
+from tactus.tables import escaped
 
 
 def plain(value):
-    """A field of a CSV: six digits, `inf` for a limit that was not reached, empty for no value."""
+    """A field of a CSV: six digits, `inf` for a limit that was not reached, empty for no value; formulas of spreadsheets are escaped."""
     if isinstance(value, float):
         return "" if value != value else f"{value:.6g}"
-    return "" if value is None else str(value)
+    return "" if value is None else escaped(str(value))
 
 
 def curve_rows(analysis):

@@ -1,10 +1,7 @@
 """The agent: runs on a host for one request, which host_connection.py sends together with this code, answers and exits. runit
-supervises the nodes, as on one machine (scripts/python/tactus/launch/services.py).
-
-FOLDER (~/.local/share/tactus) holds builds/IDENTITY and clusters/NAME with run.json, files/ and out/."""
+supervises the nodes, as on one machine (scripts/python/tactus/launch/services.py)."""
 import base64
 import contextlib
-import fcntl
 import gzip
 import io
 import json
@@ -19,43 +16,17 @@ import sys
 import tarfile
 import time
 
-from tactus.cluster import shader_cache
-from tactus.launch import network, services
+from tactus import own_files
+from tactus.cluster import archives, shader_cache
+from tactus.cluster.agent_folders import build_folder, builds_in_use, cluster_home, entering, run_record, write_run_record
+from tactus.launch import cluster_folder, network, privileges, services
 from tactus.refusal import Refusal
 
 KEPT_BUILDS = 3
+LARGEST_FILES_BYTES = 4_000_000_000  # design: of a build, or of a scene with its files
 CHECK_S, READ_SCENE_S = 60, 600
 END_S = 5
 URL = "udpm://{group}:{port}?ttl={ttl}"
-
-
-def tactus_folder(request):
-    return pathlib.Path(request["folder"] or "~/.local/share/tactus").expanduser()
-
-
-def cluster_folder(request):
-    return tactus_folder(request) / "clusters" / request["cluster"]
-
-
-def run_record(request):
-    """The record of the running cluster on this host; {} when it does not run."""
-    try:
-        run = json.loads((cluster_folder(request) / "run.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return run if is_locked(pathlib.Path(run["services"])) else {}
-
-
-def is_locked(folder):
-    """True while the supervisor runs, because it holds the lock."""
-    try:
-        with open(folder / "in_use", "r", encoding="ascii") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        return False
-    except BlockingIOError:
-        return True
-    except OSError:
-        return False
 
 
 def ping(_):
@@ -72,10 +43,6 @@ def inspect_host(request):
             "realtime": resource.getrlimit(resource.RLIMIT_RTPRIO)[1], "root": os.geteuid() == 0}
 
 
-def build_folder(request):
-    return pathlib.Path(request["own_build"]).expanduser() if request.get("own_build") else tactus_folder(request) / "builds" / request["build"]
-
-
 def missing_libraries(programs):
     output = subprocess.run(["ldd", *programs], capture_output=True, text=True, check=False).stdout if programs else ""
     return sorted({line.split()[0] for line in output.splitlines() if "not found" in line})
@@ -90,20 +57,19 @@ def message_types(build):
 
 def receive(request):
     """Unpacks the tar behind the request: a build, or the files of a run. All or nothing."""
-    into = build_folder(request) if request["into"] == "build" else cluster_folder(request) / "files"
-    into.parent.mkdir(parents=True, exist_ok=True)
+    into = build_folder(request) if request["into"] == "build" else cluster_home(request) / "files"
+    own_files.make_private_folder(into.parent)
     fresh = into.with_name(f"{into.name}.{os.getpid()}.new")
     try:
-        with tarfile.open(fileobj=io.BytesIO(sys.stdin.buffer.read()), mode="r:gz") as tar:
-            tar.extractall(fresh)
-    except (OSError, tarfile.TarError, EOFError) as error:
+        archives.unpack(io.BytesIO(sys.stdin.buffer.read()), fresh, LARGEST_FILES_BYTES)
+    except (OSError, archives.Unsafe) as error:
         shutil.rmtree(fresh, ignore_errors=True)
         raise Refusal(f"cannot unpack the received files in {into.parent} ({error}); free space there, or set another folder= of the host") from None
     shutil.rmtree(into, ignore_errors=True)
     fresh.rename(into)
     if request["into"] == "build":
         old = sorted((p for p in into.parent.iterdir() if p != into), key=lambda p: p.stat().st_mtime)
-        in_use = {json.loads(p.read_text(encoding="utf-8")).get("build") for p in tactus_folder(request).glob("clusters/*/run.json")}
+        in_use = builds_in_use(request)
         for path in old[:max(0, len(old) - KEPT_BUILDS + 1)]:
             if path.name not in in_use:
                 shutil.rmtree(path, ignore_errors=True)
@@ -122,7 +88,7 @@ def store_shaders(_):
 
 def with_folders(request, words):
     """The words with placeholders replaced by the folders of this host."""
-    into = {"@BUILD@": str(build_folder(request)), "@FILES@": str(cluster_folder(request) / "files"), "@OUT@": str(cluster_folder(request) / "out")}
+    into = {"@BUILD@": str(build_folder(request)), "@FILES@": str(cluster_home(request) / "files"), "@OUT@": str(cluster_home(request) / "out")}
     done = []
     for word in words:
         for mark, folder in into.items():
@@ -137,7 +103,7 @@ def check(request):
     for name, words in request["nodes"].items():
         words = with_folders(request, words)
         at = words.index("--out")
-        started[name] = subprocess.Popen(words[:at] + words[at + 2:] + ["--check"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+        started[name] = subprocess.Popen(privileges.least(words[:at] + words[at + 2:] + ["--check"]), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                          stderr=subprocess.PIPE, text=True, errors="replace")
     findings = {}
     for name, process in started.items():
@@ -158,24 +124,23 @@ def prepare(request):
     """Starts the supervisor with every node as a stopped service, so that any node can be started immediately."""
     if run_record(request):
         return {"prepared": False}
-    home = cluster_folder(request)
+    home = cluster_home(request)
     out = home / "out"
     kept = set_earlier_results_aside(home, out)
-    (out / "logs").mkdir(parents=True, exist_ok=True)
+    own_files.make_private_folder(home)
+    own_files.make_private_folder(out / "logs")
     (home / "files").mkdir(exist_ok=True)
-    services.remove_leftovers()
-    folder = services.make_folder(out)
-    lock = services.lock_folder(folder)
+    cluster_folder.remove_leftovers()
+    folder = cluster_folder.make(out)
+    lock = cluster_folder.lock(folder)
     for name, words in request["nodes"].items():
         services.Service(folder, name, with_folders(request, words), out / "logs" / f"{name}.log", home)
     net = network.choose("auto", request["port"]) if request["private"] else network.Network(False, [], "the host's")
-    words = [*net.unshare, str(build_folder(request) / "share" / "inside"), str(folder), "private" if net.private else "host"]
+    words = [*net.unshare, str(build_folder(request) / "share" / "inside"), str(folder), "private" if net.private else "host",
+             *privileges.needed([home, build_folder(request) / "bin"])]
     with open(out / "logs" / "supervisor.log", "w", encoding="utf-8") as log:
         holder = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True, pass_fds=[lock.fileno()])
-    names = [n for n, flag in (("net", "--net"), ("user", "--user"), ("pid", "--pid")) if flag in net.unshare]
-    url = URL.format(**request)
-    (folder / "address").write_text(f"holder={holder.pid}\nnamespaces={','.join(names) or 'none'}\nrun_id={request['run_id']}\nurl={url}\n"
-                                    f"port={request['port']}\nout={out}\n", encoding="utf-8")
+    cluster_folder.write_address(folder, holder.pid, net.unshare, request["run_id"], URL.format(**request), request["port"], out)
     (out / "cluster").unlink(missing_ok=True)
     (out / "cluster").symlink_to(folder)
     run = {"run_id": request["run_id"], "build": request["build"], "services": str(folder), "holder": holder.pid, "here": [], "began": time.time(),
@@ -202,12 +167,6 @@ def set_earlier_results_aside(home, out):
     return str(aside)
 
 
-def write_run_record(request, run):
-    path = cluster_folder(request) / "run.json"
-    path.with_suffix(".new").write_text(json.dumps(run), encoding="utf-8")
-    path.with_suffix(".new").rename(path)
-
-
 class RunningService(services.Service):
     """An existing service."""
 
@@ -228,7 +187,7 @@ def running_service(request, name):
     run = run_record(request)
     if not run:
         raise Refusal(f"the cluster {request['cluster']} does not run here; start it with tactus cluster up")
-    service = RunningService(pathlib.Path(run["services"]), name, cluster_folder(request) / "out" / "logs" / f"{name}.log")
+    service = RunningService(pathlib.Path(run["services"]), name, cluster_home(request) / "out" / "logs" / f"{name}.log")
     if not service.path.is_dir():
         raise Refusal(f"there is no node {name} in this cluster")
     return service
@@ -293,7 +252,7 @@ def node_states(request):
 
 
 def logs(request):
-    folder = cluster_folder(request) / "out" / "logs"
+    folder = cluster_home(request) / "out" / "logs"
     found = {}
     for path in sorted(folder.glob("*.log")):
         if not request["names"] or path.stem in request["names"]:
@@ -309,15 +268,15 @@ def run_bus_program(request):
     run = run_record(request)
     words = with_folders(request, request["words"])
     for name, text in request.get("files", {}).items():  # named by the words
-        (cluster_folder(request) / "files").mkdir(parents=True, exist_ok=True)
-        (cluster_folder(request) / "files" / name).write_text(text, encoding="utf-8")
-    if "--net" in run.get("namespaces", []):
-        ns = f"/proc/{run['holder']}/ns"
-        words = ["nsenter", f"--net={ns}/net", *([f"--user={ns}/user", "--preserve-credentials"] if "--user" in run["namespaces"] else []), *words]
+        (cluster_home(request) / "files").mkdir(parents=True, exist_ok=True)
+        (cluster_home(request) / "files" / name).write_text(text, encoding="utf-8")
+    if request["words"][0].startswith("@BUILD@/bin/"):  # programs of the bus; the doctor checks the rights of the user
+        words = privileges.least(words, privileges.needed([build_folder(request) / "bin"]))
+    words = [*(entering(run) if run else []), *words]
     try:
         done = subprocess.run(words, capture_output=True, text=True, errors="replace", timeout=request["patience"], check=False)
     except subprocess.TimeoutExpired:
-        raise Refusal(f"{pathlib.Path(words[0]).name}: does not end within {request['patience']} s") from None
+        raise Refusal(f"{pathlib.Path(request['words'][0]).name}: does not end within {request['patience']} s") from None
     return {"status": done.returncode, "out": done.stdout, "err": done.stderr}
 
 
@@ -334,23 +293,23 @@ def end_supervisor(request):
         for pid in pids:
             with contextlib.suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGHUP)
-        if not services.wait_until(lambda: not is_locked(folder), END_S):
+        if not services.wait_until(lambda: not cluster_folder.is_running(folder), END_S):
             with contextlib.suppress(ProcessLookupError):
                 os.kill(holder, signal.SIGKILL)
         shutil.rmtree(folder, ignore_errors=True)
-        (cluster_folder(request) / "out" / "cluster").unlink(missing_ok=True)
-    (cluster_folder(request) / "run.json").unlink(missing_ok=True)
+        (cluster_home(request) / "out" / "cluster").unlink(missing_ok=True)
+    (cluster_home(request) / "run.json").unlink(missing_ok=True)
     return {"was_there": bool(run)}
 
 
 def collect(request):
     """Writes all results as a tar to stdout, instead of an answer."""
-    with gzip.GzipFile(fileobj=sys.stdout.buffer, mode="wb", compresslevel=1) as packed, tarfile.open(fileobj=packed, mode="w|") as tar:
-        out = cluster_folder(request) / "out"
+    with gzip.GzipFile(fileobj=sys.stdout.buffer, mode="wb", compresslevel=1) as packed, tarfile.open(fileobj=packed, mode="w|", dereference=True) as tar:
+        out = cluster_home(request) / "out"
         for path in sorted(out.rglob("*")):
             if path.is_file() and not path.is_symlink():
                 tar.add(path, str(path.relative_to(out)))
-    (cluster_folder(request) / "gathered").touch()
+    (cluster_home(request) / "gathered").touch()
 
 
 REQUESTS = {f.__name__: f for f in (ping, inspect_host, receive, shaders, store_shaders, check, prepare, start, stop, restart, send_command, node_states, logs,

@@ -1,9 +1,7 @@
 """tactus cluster doctor: checks every host, then every pair of hosts."""
-import json
-import os
 import random
 
-from tactus.cluster import pairs, deployment
+from tactus.cluster import answers, deployment, pairs
 from tactus.cluster.host_connection import Failed, Unreachable
 from tactus.refusal import Refusal
 from tactus.terminal import report
@@ -26,10 +24,10 @@ def run(operator, seconds):
     operator.install(host_info, hosts)
     report(f"{'host':14} {'reached in':>10}  cores  load  priority  weak or missing")
     figures = {"hosts": {}, "pairs": {}, "wrong": errors, "remarks": []}
-    answers = request_with_retry(operator, "run_bus_program", hosts, patience_s=HOST_S + 5, patience=HOST_S, words=doctor_command(operator))
+    replies = request_with_retry(operator, "run_bus_program", hosts, patience_s=HOST_S + 5, patience=HOST_S, words=doctor_command(operator))
     states = request_with_retry(operator, "node_states", hosts)
     for host in hosts:
-        errors += check_host(operator, host, host_info[host], answers[host], states[host], figures)
+        errors += check_host(operator, host, host_info[host], replies[host], states[host], figures)
     for site in dict.fromkeys(operator.cluster.hosts[h].site for h in hosts):
         of_site = [h for h in hosts if operator.cluster.hosts[h].site == site]
         if len(of_site) > 1:
@@ -41,26 +39,27 @@ def run(operator, seconds):
 
 def request_with_retry(operator, what, hosts, **request):
     """operator.request_all, repeated once for unreachable hosts, because a faulty cable also breaks connections."""
-    answers = operator.request_all(what, hosts, **request)
-    not_reached = unreachable(answers)
-    return answers | operator.request_all(what, not_reached, **request) if not_reached else answers
+    replies = operator.request_all(what, hosts, **request)
+    not_reached = unreachable(replies)
+    return replies | operator.request_all(what, not_reached, **request) if not_reached else replies
 
 
-def unreachable(answers):
-    return [h for h, a in answers.items() if isinstance(a, Unreachable)]
+def unreachable(replies):
+    return [h for h, a in replies.items() if isinstance(a, Unreachable)]
 
 
 def doctor_command(operator):
-    """Command line of `tactus doctor` on a host."""
-    return ["sh", "-c", f"@BUILD@/share/scripts/tactus doctor --seconds {WAKE_S} --port {operator.cluster.bus.port} --out /tmp --json \"$1\" >&2; cat \"$1\"; "
-            "rm -f \"$1\"", "doctor", f"/tmp/tactus-doctor-{os.getpid()}-{random.randrange(10**9)}.json"]
+    """Command line of `tactus doctor` on a host. Its figures go to stdout by a descriptor, not by a file in a folder of all users; the folder of
+    the build is an argument of the shell, not a part of its program."""
+    return ["sh", "-c", 'exec "$0" "$@" --json /dev/fd/3 3>&1 >&2', "@BUILD@/share/scripts/tactus", "doctor", "--seconds", str(WAKE_S),
+            "--port", str(operator.cluster.bus.port), "--out", "/tmp"]
 
 
 def check_host(operator, host, host_info, answer, state, figures):
     if isinstance(answer, Exception):
         return [str(answer)]
     try:
-        report_of_doctor = json.loads(answer["out"])
+        report_of_doctor = answers.read(answer["out"], answers.DOCTOR)
     except ValueError:
         return [f"{host}: tactus doctor failed ({(answer['err'].strip().splitlines() or ['no output'])[-1]}); run it on this host"]
     not_good = [line for line in report_of_doctor["lines"] if line["verdict"] != "good" and line["what"] not in irrelevant_checks(operator, host)]
@@ -100,17 +99,20 @@ def check_pairs(operator, hosts, seconds, figures):
                        "--port", str(bus.port + PORT_OFFSET), "--ttl", str(bus.ttl)]
     for _ in range(2):  # repeated for all hosts when one is missing, because probes belong to one round
         round_ = random.getrandbits(60)
-        answers = operator.request_all("run_bus_program", hosts, patience_s=seconds + 20, patience=seconds + 15, words=lambda h: words(h, round_))
-        if not unreachable(answers):
+        replies = operator.request_all("run_bus_program", hosts, patience_s=seconds + 20, patience=seconds + 15, words=lambda h: words(h, round_))
+        if not unreachable(replies):
             break
     errors, results = [], {}
-    for host, a in answers.items():
+    for host, a in replies.items():
         if isinstance(a, Exception):
             errors.append(str(a))
         elif a["status"] != 0:
             errors.append(f"{host}: {(a['err'].strip().splitlines() or ['probe_pairs ended with status ' + str(a['status'])])[-1]}")
         else:
-            results[host] = json.loads(a["out"])
+            try:
+                results[host] = answers.read(a["out"], answers.PAIRS)
+            except ValueError as error:
+                errors.append(f"{host}: the answer of probe_pairs is not valid ({error}); check this host")
     figures["pairs"] |= results
     report("\n" + pairs.text(pairs.rows(results)))
     return errors + pairs.findings(results)

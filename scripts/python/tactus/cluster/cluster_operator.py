@@ -1,17 +1,18 @@
 """The operations of tactus cluster: up, down, restart, move, and requests to the hosts."""
 import base64
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 import time
 
-from tactus.cluster import commands, deployment
+from tactus.cluster import archives, commands, deployment
 from tactus.cluster.cluster_file import RECORDER, SYNC, WORLD
 from tactus.cluster.host_connection import Failed, HostConnection, Unreachable, request_all_hosts
 from tactus.launch import results
 from tactus.launch.arguments import SENSES
-from tactus.refusal import Refusal
+from tactus.refusal import Refusal, sentence_of
 from tactus.terminal import report
 
 SEND_S = 600          # for a build over a slow line
@@ -19,6 +20,8 @@ CHECK_S = 620         # agent.READ_SCENE_S and the transfer
 START_S, STOP_S = 40, 25
 LOADING_S = 600
 SHADERS_S = 20
+LARGEST_RESULTS_BYTES = 500_000_000_000  # design: of one host, a day of all channels and videos
+RESERVE_BYTES = 1_000_000_000            # design: of the disk, left free
 PICTURE = "visual_node"
 LAST_PRESENTATION_S = 0.2  # sound comes 20 ms after its event, and each report is repeated 20 ms later
 
@@ -237,7 +240,8 @@ class Operator:
         self.request(host, "restart", patience_s=STOP_S + START_S, names=[node], patience=3)
         self.report(f"{node} was restarted on {host}, {time.monotonic() - self.stop_time_s:.1f} s after it was asked to end")
 
-    def move(self, node, to, restart_world=False, lost=False):
+    def move(self, node, to, restart_world=False, lost=False, shaders=False):
+        """shaders: copies compiled shaders, which the new host runs; only between hosts that are trusted alike."""
         if to not in self.cluster.hosts:
             raise Refusal(f"{to}: there is no such host in {self.cluster.name}; there are {', '.join(self.cluster.hosts)}")
         if node.startswith(SYNC):
@@ -257,7 +261,7 @@ class Operator:
         if not state["run"]:
             raise Refusal(f"{to}: the cluster does not run there yet; run tactus cluster up first")
         self.identity = state["run"]["build"]
-        if not lost and node.startswith(PICTURE):
+        if shaders and not lost and node.startswith(PICTURE):
             self.copy_shaders(origin, to)
         self.stop_time_s = time.monotonic()
         killed = [] if lost else self.request(origin, "stop", patience_s=STOP_S, names=[node], leave=True, patience=3)["killed"]
@@ -271,11 +275,11 @@ class Operator:
         self.report(f"{node} moved from {origin or 'an unreachable host'} to {to} in {time.monotonic() - self.stop_time_s:.1f} s" + (f"; it did not end on request and was killed" if killed else ""))
 
     def copy_shaders(self, origin, to):
-        """Copies compiled shaders before visual_node stops; without them the new host would compile for seconds."""
+        """Copies compiled shaders before visual_node stops; without them the new host compiles for seconds."""
         try:
-            data = base64.b64decode(self.request(origin, "shaders", patience_s=SHADERS_S)["tar"])
+            data = base64.b64decode(self.request(origin, "shaders", patience_s=SHADERS_S)["tar"], validate=True)
             self.request(to, "store_shaders", patience_s=SHADERS_S, data=data)
-        except (Unreachable, Failed) as error:
+        except (Unreachable, Failed, ValueError) as error:
             self.report(f"shaders were not copied ({error}); the picture may need seconds to start")
 
     def run_bus_program(self, words, files):
@@ -324,21 +328,26 @@ class Operator:
         return results.summarise(self.cluster.plan, git, lost, restarts, [])
 
     def collect_results(self, out, hosts):
-        """Copies the results of the recorder host into the folder itself, of each other host into a subfolder of its name. Returns the errors."""
+        """Copies the results of the recorder host into the folder itself, of each other host into a subfolder of its name. Only regular files are
+        written, as files of this user, and at most the free space of the disk. Returns the errors."""
         first = self.cluster.nodes[RECORDER].host
+        others = [host for host in self.cluster.hosts if host != first]
         errors = []
         for host in hosts:
             into = out if host == first else out / host
             into.mkdir(parents=True, exist_ok=True)
-            with tempfile.TemporaryFile() as file:
-                try:
-                    self.connections[host].request("collect", patience_s=SEND_S, to=file, **self.common(host))
+            largest = min(LARGEST_RESULTS_BYTES, shutil.disk_usage(into).free - RESERVE_BYTES)
+            try:
+                with tempfile.TemporaryFile(dir=into) as file:
+                    self.connections[host].request("collect", patience_s=SEND_S, to=file, largest_bytes=max(1, largest // 2), **self.common(host))
                     file.seek(0)
-                    done = subprocess.run(["tar", "-xz", "-C", str(into)], stdin=file, capture_output=True, check=False)
-                    if done.returncode != 0:
-                        errors.append(f"{host}: its results arrived incomplete; the originals are in its folder on the host")
-                except (Unreachable, Failed) as error:
-                    errors.append(f"{error}; its results remain on the host")
+                    archives.unpack(file, into, largest - os.fstat(file.fileno()).st_size, others if host == first else ())
+            except archives.Unsafe as error:
+                errors.append(f"{host}: the archive of its results {error}; the rest was not unpacked, and the originals are in its folder on the host")
+            except OSError as error:
+                errors.append(f"{host}: its results cannot be written ({sentence_of(error)}); the originals are in its folder on the host")
+            except (Unreachable, Failed) as error:
+                errors.append(f"{error}; its results remain on the host")
         return errors
 
 

@@ -7,7 +7,7 @@ import subprocess
 import tarfile
 import tempfile
 
-from tactus.cluster import sites
+from tactus.cluster import scene_files, sites
 from tactus.paths import BIN, REPOSITORY, SCRIPTS
 from tactus.refusal import Refusal
 
@@ -23,7 +23,7 @@ LARGEST_SCENE_BYTES = 500_000_000
 def parts():
     """{path on the host: local path} of all files. Raises Refusal."""
     found = {f"bin/{name}": BIN / name for name in PROGRAMS}
-    found |= {f"bin/{path.name}": path for path in BIN.glob("lib*.so")}
+    found |= {f"bin/{path.name}": path for path in (*BIN.glob("lib*.so"), *BIN.glob("read_*"))}  # read_*: confined readers of foreign formats
     found |= {f"bin/sounds/{path.relative_to(BIN / 'sounds')}": path for path in sorted((BIN / "sounds").rglob("*")) if path.is_file()}
     for there, here in FOLDERS.items():
         found |= {f"{there}/{path.relative_to(here)}": path for path in sorted(here.rglob("*")) if path.is_file() and path.suffix not in LEFT_OUT}
@@ -72,22 +72,23 @@ def stripped(path):
 
 
 def run_files(cluster):
-    """(tar of the files of this run, {local path: path on the host}): a scene with its folder, the profile, a room, relay rules. Raises Refusal."""
+    """(tar of the files of this run, {local path: path on the host}): a scene with the files that it names, the profile, a room, relay rules. Raises Refusal."""
     into, there = io.BytesIO(), {}
-    with tarfile.open(fileobj=into, mode="w:gz", compresslevel=1) as tar:
+    with tarfile.open(fileobj=into, mode="w:gz", compresslevel=1, dereference=True) as tar:
         scene = cluster.plan.scene
         for folder, here in FOLDERS.items():
             there[str(here)] = f"@BUILD@/{folder}"
         if FOLDERS["share/scenes"] not in scene.parents:
-            size = sum(p.stat().st_size for p in scene.parent.rglob("*") if p.is_file())
+            found = scene_files.files_of(scene)
+            size = sum(path.stat().st_size for path in found.values())
             if size > LARGEST_SCENE_BYTES:
-                raise Refusal(f"sim_node: the folder {scene.parent} of the scene holds {size // 1_000_000} MB, which is too much to copy to every host; put the scene "
-                              "and its files into a separate folder")
-            tar.add(scene.parent, "scene")
+                raise Refusal(f"sim_node: the files of the scene {scene} hold {size // 1_000_000} MB, which is too much to copy to every host; use smaller ones")
+            for name, path in sorted(found.items()):
+                tar.add(path, f"scene/{name}", recursive=False)
             there[str(scene.parent)] = "@FILES@/scene"
         rules = cluster.relays.rules if cluster.relays and sites.SHIPPED not in cluster.relays.rules.parents else None
         for name, path in (("profile.xml", cluster.plan.degrade), ("room.csv", cluster.plan.room if os.sep in cluster.plan.room else None), ("relay.xml", rules)):
             if path:
-                tar.add(path, name)
+                tar.add(path, name, recursive=False)
                 there[str(path)] = f"@FILES@/{name}"
     return into.getvalue(), there

@@ -13,13 +13,17 @@ import subprocess
 import time
 import zlib
 
+from tactus import own_files
+from tactus.cluster import answers, exchange
+from tactus.refusal import Refusal
+
 PACKAGE = pathlib.Path(__file__).resolve().parents[1]
 # Modules of the agent, in import order: packages before their modules.
-MODULES = {"tactus": PACKAGE / "__init__.py", "tactus.refusal": PACKAGE / "refusal.py",
-           "tactus.launch": PACKAGE / "launch" / "__init__.py", "tactus.launch.services": PACKAGE / "launch" / "services.py",
-           "tactus.launch.network": PACKAGE / "launch" / "network.py",
-           "tactus.cluster": PACKAGE / "cluster" / "__init__.py", "tactus.cluster.shader_cache": PACKAGE / "cluster" / "shader_cache.py",
-           "tactus.cluster.agent": PACKAGE / "cluster" / "agent.py"}
+PACKAGES = ("tactus", "tactus.launch", "tactus.cluster")
+NAMES = ("tactus", "tactus.refusal", "tactus.own_files", "tactus.launch", "tactus.launch.cluster_folder", "tactus.launch.services", "tactus.launch.network",
+         "tactus.launch.privileges", "tactus.cluster", "tactus.cluster.archives", "tactus.cluster.shader_cache", "tactus.cluster.agent_folders",
+         "tactus.cluster.agent")
+MODULES = {name: PACKAGE.parent / (name.replace(".", "/") + ("/__init__.py" if name in PACKAGES else ".py")) for name in NAMES}
 LOADER = ("import sys,json,types,base64,zlib\n"
           "p=json.loads(zlib.decompress(base64.b64decode(sys.stdin.buffer.readline())))\n"
           "for n,s in p['modules'].items():\n"
@@ -28,6 +32,9 @@ LOADER = ("import sys,json,types,base64,zlib\n"
 CONNECT_S = 3
 REQUEST_S = 10
 MAX_PARALLEL = 32
+LONGEST_SENTENCE = 1000           # characters of a message of a host
+LARGEST_ANSWER_BYTES = 128 << 20  # design: compiled shaders as base64 are the largest answer
+LONGEST_SOCKET_FOLDER = 45        # bytes: ssh adds 58 to the path of a socket, which holds 107 (unix(7))
 
 
 class Unreachable(Exception):
@@ -40,14 +47,23 @@ class Failed(Exception):
 
 def control_folder(ssh_config):
     """Folder of the sockets of shared ssh connections, private to the user. ssh names a socket by user, host and port, so each
-    configuration and each network namespace has its own folder. Raises Unreachable."""
-    parent = pathlib.Path(os.environ.get("XDG_RUNTIME_DIR") or f"/tmp/tactus-ssh-{os.getuid()}")
+    configuration and each network namespace has its own folder. Raises Unreachable when it belongs to another user."""
     scope = f"{pathlib.Path(ssh_config).resolve() if ssh_config else ''} {os.readlink('/proc/self/ns/net')}"
-    folder = parent / "tactus" / hashlib.sha256(scope.encode()).hexdigest()[:8]
-    folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-    if folder.stat().st_uid != os.getuid() or parent.stat().st_uid not in (os.getuid(), 0):
-        raise Unreachable(f"the folder {folder} belongs to another user; set XDG_RUNTIME_DIR to your own folder")
-    return folder
+    try:
+        return own_files.make_private_folder(socket_folder() / hashlib.sha256(scope.encode()).hexdigest()[:8])
+    except (OSError, Refusal) as error:
+        raise Unreachable(f"no folder for the connections of ssh: {error}; set XDG_RUNTIME_DIR to your own folder") from None
+
+
+def socket_folder():
+    """The first of these places that is private to the user, and short: the runtime folder of the login, the home, /tmp."""
+    runtime = os.environ.get("XDG_RUNTIME_DIR")
+    if runtime and own_files.is_private_folder(runtime):
+        return own_files.make_private_folder(pathlib.Path(runtime) / "tactus")
+    in_home = pathlib.Path("~/.cache/tactus/ssh").expanduser()
+    if in_home.is_absolute() and len(os.fsencode(in_home)) <= LONGEST_SOCKET_FOLDER and own_files.owner(in_home.parents[2]) == os.geteuid():
+        return own_files.make_private_folder(in_home)
+    return own_files.make_private_folder(f"/tmp/tactus-ssh-{os.geteuid()}")
 
 
 class HostConnection:
@@ -57,52 +73,63 @@ class HostConnection:
         self.host, self.ssh_config = host, ssh_config
 
     def command_line(self, command):
-        """The command line that runs a command on the host."""
+        """The command line that runs a command on the host. Raises Unreachable."""
+        if self.host.address.startswith("-"):
+            raise Unreachable(f"{self.host.name}: the address {self.host.address} begins with -, so that ssh would read it as an option; name another")
         if self.host.reach == "local":
             return list(command)
         if self.host.reach == "namespace":
             return ["ip", "netns", "exec", self.host.address, *command]
-        options = ["BatchMode=yes", f"ConnectTimeout={CONNECT_S}", "ServerAliveInterval=1", "ServerAliveCountMax=3", "ControlMaster=auto",
-                   f"ControlPath={control_folder(self.ssh_config)}/%C", "ControlPersist=60", "LogLevel=ERROR"]
-        return ["ssh", "-T", *(["-F", str(self.ssh_config)] if self.ssh_config else []), *(w for o in options for w in ("-o", o)),
-                self.host.address, "--", shlex.join(command)]
+        return [*self.ssh_words(self.ssh_options()), "--", self.host.address, shlex.join(command)]
 
-    def request(self, what, patience_s=REQUEST_S, data=None, to=None, **fields):
-        """The answer of the agent to a request. data: bytes to send with it; to: file for the output, then the result is None.
-        Raises Unreachable or Failed."""
+    def ssh_words(self, options):
+        return ["ssh", "-T", *(["-F", str(self.ssh_config)] if self.ssh_config else []), *(w for o in options for w in ("-o", o))]
+
+    def ssh_options(self):
+        return ["BatchMode=yes", f"ConnectTimeout={CONNECT_S}", "ServerAliveInterval=1", "ServerAliveCountMax=3", "ControlMaster=auto",
+                f"ControlPath={control_folder(self.ssh_config)}/%C", "ControlPersist=60", "LogLevel=ERROR", "ForwardAgent=no", "ForwardX11=no"]
+
+    def request(self, what, patience_s=REQUEST_S, data=None, to=None, largest_bytes=LARGEST_ANSWER_BYTES, **fields):
+        """The checked answer of the agent to a request. data: bytes to send with it; to: file for the output, at most largest_bytes, then the
+        result is None. Raises Unreachable or Failed."""
         modules = {name: path.read_text(encoding="utf-8") for name, path in MODULES.items()}
         request_fields = {"what": what, "folder": self.host.folder, **fields}
         line = base64.b64encode(zlib.compress(json.dumps({"modules": modules, "request": request_fields}).encode())) + b"\n"
-        process = subprocess.Popen(self.command_line(["/usr/bin/python3", "-I", "-c", LOADER]), stdin=subprocess.PIPE, stdout=to or subprocess.PIPE,
-                                   stderr=subprocess.PIPE, start_new_session=True)
+        process = subprocess.Popen(self.command_line(["/usr/bin/python3", "-I", "-c", LOADER]), stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, start_new_session=True, bufsize=0)
         try:
-            out, err = process.communicate(line + (data or b""), timeout=patience_s)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.communicate()
+            out, err = exchange.exchange(process, line + (data or b""), patience_s, largest_bytes, to)
+        except exchange.TooSlow:
             self.close_shared_connection()
             raise Unreachable(f"{self.host.name}: does not answer within {patience_s:g} s") from None
-        error_text = err.decode("utf-8", "replace").strip()
+        except exchange.TooLong:
+            self.close_shared_connection()
+            raise Failed(f"{self.host.name}: its answer is longer than {largest_bytes // 1_000_000} MB; check this host") from None
+        error_text = err.strip()
         if process.returncode == 255 and self.host.reach == "ssh" or process.returncode == 127:
             raise Unreachable(f"{self.host.name}: cannot be reached ({last_line(error_text)}); try: {shlex.join(self.command_line(['true'])[:1] + [self.host.address, 'true'])}")
         if process.returncode != 0:
             raise Failed(f"{self.host.name}: {last_line(error_text)}")
-        if to is not None:
-            return None
+        return None if to is not None else self.checked(what, out)
+
+    def checked(self, what, out):
+        """The answer of a host, which is not trusted. Raises Failed."""
         try:
             answer = json.loads(out)
-        except ValueError:
+        except (ValueError, RecursionError):
             raise Failed(f"{self.host.name}: its shell prints text besides the answer ({out[:60]!r}); remove the output from "
                          "its start-up files") from None
-        if "refusal" in answer:
-            raise Failed(f"{self.host.name}: {answer['refusal']}")
+        if isinstance(answer, dict) and "refusal" in answer:
+            raise Failed(f"{self.host.name}: {' '.join(str(answer['refusal'])[:LONGEST_SENTENCE].split())}")
+        fault = answers.wrong(what, answer)
+        if fault:
+            raise Failed(f"{self.host.name}: its answer to {what} is not valid: {fault}; check this host")
         return answer
 
     def close_shared_connection(self):
         """Closes the shared connection; the next request opens a new one."""
         if self.host.reach == "ssh":
-            words = self.command_line(["true"])
-            subprocess.run([*words[:-2][:-1], "-O", "exit", self.host.address], capture_output=True, check=False, timeout=5)
+            subprocess.run([*self.ssh_words(self.ssh_options()), "-O", "exit", "--", self.host.address], capture_output=True, check=False, timeout=5)
 
     def measure_round_trip_s(self):
         """Duration of a request and its answer, s."""
@@ -112,7 +139,7 @@ class HostConnection:
 
 
 def last_line(text):
-    return text.splitlines()[-1] if text else "no reason is given"
+    return text.splitlines()[-1][:LONGEST_SENTENCE] if text else "no reason is given"
 
 
 def request_all_hosts(connections, make_request):

@@ -6,6 +6,7 @@ processes end with the process that made it.
 import json
 import os
 import pathlib
+import shlex
 import shutil
 import signal
 import subprocess
@@ -86,11 +87,12 @@ class Host:
             file.write(f"Host {self.name}\n  HostName {self.address}\n" + (f"  User {USER}\n" if self.ordinary else ""))
 
     def boot(self):
-        person = (f"mount --bind /root/.lab/passwd /etc/passwd && mount -t tmpfs tmpfs /home && mkdir /home/{USER} && mount --bind {self.home} /home/{USER} && "
+        home, disk, repository = (shlex.quote(str(path)) for path in (self.home, self.disk, REPOSITORY))
+        person = (f"mount --bind /root/.lab/passwd /etc/passwd && mount -t tmpfs tmpfs /home && mkdir /home/{USER} && mount --bind {home} /home/{USER} && "
                   if self.ordinary else "")
         limits = "" if self.ordinary else "ulimit -l unlimited 2>/dev/null; "
         # The repository is hidden first, because its mount point may be inside a folder that is hidden next.
-        inside = (f"mount -t tmpfs tmpfs {REPOSITORY} && mount --bind {self.disk} /root && {person} mount -t tmpfs tmpfs /tmp && mount -t tmpfs tmpfs /run && "
+        inside = (f"mount -t tmpfs tmpfs {repository} && mount --bind {disk} /root && {person} mount -t tmpfs tmpfs /tmp && mount -t tmpfs tmpfs /run && "
                   f"mkdir -m 755 /run/sshd && hostname {self.name} && cd /root && export HOME=/root && "
                   "ip link set lo up && echo up && read linked && { ulimit -l unlimited 2>/dev/null; exec /usr/sbin/sshd -D -f /root/.lab/sshd_config -E /root/.lab/sshd.log; }")
         environment = {"PATH": os.environ.get("PATH", "/usr/bin:/bin") + ":/usr/sbin:/sbin"}

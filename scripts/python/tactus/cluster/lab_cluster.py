@@ -131,7 +131,7 @@ def enter(script, words):
             signal.signal(number, lambda *_: sys.exit("ended from outside"))
         return
     try:
-        lab.enter([sys.executable, os.path.abspath(script), *words])
+        lab.enter([sys.executable, "-I", os.path.abspath(script), *words])
     except lab.Error as error:
         print(f"skipped: {error}")
         sys.exit(77)

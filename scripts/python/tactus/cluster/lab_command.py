@@ -38,7 +38,7 @@ def parse_host_names(words):
     if names.isdigit():
         names = ",".join(f"host{n}" for n in range(1, int(names) + 1))
     names = names.split(",")
-    if not 1 <= len(names) <= lab.MAX_HOSTS or len(set(names)) != len(names) or not all(n.replace("-", "").isalnum() and n.isascii() for n in names):
+    if not 1 <= len(names) <= lab.MAX_HOSTS or len(set(names)) != len(names) or not all(n[:1].isalnum() and n.replace("-", "").isalnum() and n.isascii() for n in names):
         raise lab.Error(f"--hosts {','.join(names)[:60]}: give a number from 1 to {lab.MAX_HOSTS}, or different names of letters, digits and hyphens")
     if not words:
         raise lab.Error("name a command to run in the lab; see tactus lab --help")

@@ -6,7 +6,7 @@ import pathlib
 import sys
 import time
 
-from tactus import terminal
+from tactus import own_files, terminal
 from tactus.refusal import Refusal, sentence_of
 from tactus.terminal import report
 
@@ -38,7 +38,7 @@ def parsed(words):
     command("status", (["--once"], flag), (["--json"], flag))
     command("logs", (["nodes"], {"nargs": "*"}), (["--lines"], {"type": int, "default": 10}), (["--follow"], flag))
     command("restart", (["node"], {}))
-    command("move", (["node"], {}), (["host"], {}), (["--restart"], flag), (["--lost"], flag))
+    command("move", (["node"], {}), (["host"], {}), (["--restart"], flag), (["--lost"], flag), (["--shaders"], flag))
     for name in BUS_PROGRAMS:
         command(name, (["words"], {"nargs": argparse.REMAINDER}))
     command("doctor", (["--seconds"], {"type": float, "default": 5.0}), (["--json"], {}))
@@ -60,6 +60,10 @@ def cluster_file_name(a):
     if named:
         return named
     if pathlib.Path("cluster.xml").is_file():
+        # A cluster file is as powerful as a script: it names programs, options and environments for its hosts, this machine among them.
+        if own_files.owner("cluster.xml") not in (0, os.geteuid()):
+            raise Refusal("cluster.xml in this folder belongs to another user, and a cluster file can run any program; read it, and name it with --file if you "
+                          "trust it")
         return "cluster.xml"
     try:
         return last_file_path().read_text(encoding="utf-8").strip()
@@ -70,9 +74,9 @@ def cluster_file_name(a):
 
 def remember(path):
     try:
-        last_file_path().parent.mkdir(parents=True, exist_ok=True)
+        own_files.make_private_folder(last_file_path().parent)
         last_file_path().write_text(str(path), encoding="utf-8")
-    except OSError:
+    except (OSError, Refusal):
         pass  # the next command then needs --file
 
 
@@ -156,7 +160,7 @@ def restart(a, cluster):
 
 
 def move(a, cluster):
-    operator_of(a, cluster).move(a.node, a.host, a.restart, a.lost)
+    operator_of(a, cluster).move(a.node, a.host, a.restart, a.lost, a.shaders)
     return []
 
 

@@ -60,7 +60,7 @@ def parsed(words):
             raise Refusal(f"--{option} {getattr(a, option)}: give a number from 1 to {highest}")
     if a.command == "make":
         a.server = server_address(a.server)
-    elif not re.fullmatch(r"[A-Za-z0-9_.-]{1,15}", a.device):
+    elif not re.fullmatch(r"[A-Za-z0-9_.][A-Za-z0-9_.-]{0,14}", a.device):
         raise Refusal(f"--device {a.device}: is not a network device; list them with ip link")
     return a
 

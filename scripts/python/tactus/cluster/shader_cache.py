@@ -1,10 +1,14 @@
-"""Copies compiled shaders between hosts, so that a moved visual_node starts without compiling them. Mesa names each file by
-content, driver and build of the driver, so a host with another processor or Mesa ignores them."""
+"""Copies compiled shaders between hosts on request, so that a moved visual_node starts without compiling them. Mesa names each file by
+source, driver and build of the driver, so a host with another processor or Mesa ignores them. A compiled shader is a program that the
+other host runs: only shaders of a host that is trusted like the others may be copied."""
+import contextlib
 import io
 import os
 import pathlib
 import re
 import tarfile
+
+from tactus.cluster import archives
 
 FOLDERS = ("mesa_shader_cache", "mesa_shader_cache_db")  # Mesa up to 24.0, and since
 LARGEST_BYTES = 64_000_000
@@ -34,19 +38,16 @@ def packed(root, largest_bytes=LARGEST_BYTES):
 
 
 def unpack(data, root, largest_bytes=LARGEST_BYTES):
-    """Stores shaders that are missing; returns their number. Accepts only regular files in the folders of Mesa."""
+    """Stores missing shaders, up to the first invalid entry; returns their number. Accepts only regular files in the folders of Mesa, and
+    never replaces an existing one."""
     count = 0
-    with tarfile.open(fileobj=io.BytesIO(data), mode="r:gz") as tar:
-        for entry in tar:
-            largest_bytes -= entry.size
-            if largest_bytes < 0:
-                break
-            into = root / entry.name
-            if not entry.isreg() or not NAME.fullmatch(entry.name) or ".." in entry.name.split("/") or into.exists():
-                continue
-            into.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
-            fresh = into.with_name(f"{into.name}.{os.getpid()}.tmp")
-            fresh.write_bytes(tar.extractfile(entry).read())
-            fresh.rename(into)
-            count += 1
+    with contextlib.suppress(archives.Unsafe):
+        with archives.reading():
+            for path, entry, content in archives.entries(io.BytesIO(data), largest_bytes):
+                if NAME.fullmatch(str(path)) and not (root / path).exists():
+                    (root / path).parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+                    fresh = (root / path).with_name(f"{path.name}.{os.getpid()}.tmp")
+                    archives.write(fresh, entry, content)
+                    fresh.rename(root / path)
+                    count += 1
     return count

@@ -1,6 +1,5 @@
 """One table of all hosts: the state of each node from its supervisor and from the bus."""
-import json
-
+from tactus.cluster import answers
 from tactus.cluster.cluster_file import RECORDER
 
 COLUMNS = ("host", "node", "process", "on the bus", "rate Hz", "missed", "input age ms", "rendered", "restarts", "note")
@@ -20,7 +19,7 @@ def query(operator):
         words = ["@BUILD@/bin/watch", "--once", "--json", "--run-id", str(s["run"]["run_id"]), "--group", c.bus.group, "--port", str(c.bus.port)]
         try:
             result = operator.request(host, "run_bus_program", words=words, patience_s=5, patience=4)
-            bus = {"host": host, **json.loads(result["out"] or "{}")}
+            bus = {"host": host, **answers.read(result["out"], answers.WATCH)} if result["out"] else {"host": host}
             break
         except Exception:  # pylint: disable=broad-except  # try the next host
             continue

@@ -72,7 +72,7 @@ def parsed(words):
             raise ValueError
     except ValueError:
         raise Refusal(f"--group {a.group[:40]}: is not a multicast group; use one from 224.0.0.0 to 239.255.255.255") from None
-    if a.host is not None and not re.fullmatch(r"[A-Za-z0-9-]{1,32}", a.host):
+    if a.host is not None and not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9-]{0,31}", a.host):
         raise Refusal(f"--host {a.host[:40]}: give a name of letters, digits and hyphens")
     return a
 

@@ -1,17 +1,18 @@
 """Runs a command inside the network of a running cluster."""
-import fcntl
-import glob
 import os
 import pathlib
 import shutil
+import tempfile
 
+from tactus import own_files
 from tactus.commands import prepare
+from tactus.launch import cluster_folder
 from tactus.paths import BIN, TACTUS
 from tactus.refusal import Refusal
 
 USAGE = """Usage: tactus attach [OUT_DIR] CMD [ARG]...
 
-Runs CMD inside the network of the running cluster that writes to OUT_DIR; default: the cluster that was started last. CMD sees
+Runs CMD inside the network of the running cluster that writes to OUT_DIR; default: the cluster that you started last. CMD sees
 only the processes of the cluster. Its environment holds the bus (LCM_DEFAULT_URL, for LCM's own tools; TACTUS_GROUP, TACTUS_PORT, TACTUS_TTL), the run
 (TACTUS_RUN_ID) and the services (SVDIR, for sv), and its PATH begins with the programs of Tactus. For example:
 
@@ -21,41 +22,38 @@ only the processes of the cluster. Its environment holds the bus (LCM_DEFAULT_UR
   tactus attach lcm-logplayer old/run.lcmlog     replay a log to the modalities; if the simulation still ran, they would
                                                   receive both states alternately
   tactus attach sv pause visual_node             freeze a node; sv cont visual_node resumes it
-  tactus attach pkill -x audio_node              kill a node; the supervisor restarts it"""
+  tactus attach pkill -x audio_node              kill a node; the supervisor restarts it
 
-
-def address(folder):
-    """{key: value} of the running cluster of this folder; None without one. The folder is locked while its cluster runs, and the holder must be visible here."""
-    try:
-        text = (folder / "address").read_text(encoding="utf-8", errors="surrogateescape")
-        with open(folder / "in_use", "r", encoding="ascii") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        return None
-    except BlockingIOError:
-        pass
-    except OSError:
-        return None
-    found = dict(line.split("=", 1) for line in text.splitlines() if "=" in line)
-    return found if os.path.isdir(f"/proc/{found.get('holder', 'none')}") else None
+Only the user who started a cluster can enter it, not root on behalf of that user. CMD keeps your rights."""
 
 
 def cluster_of(out):
     """(folder, address) of the cluster that writes to `out`. Raises Refusal."""
     folder = pathlib.Path(os.path.realpath(os.path.join(out, "cluster")))
-    found = address(folder)
+    found = cluster_folder.address(folder)
     if found is None:
+        refuse_foreign(folder)
         raise Refusal(f"no cluster is running that writes to {out}; start one with scripts/run --out {out}")
     return folder, found
 
 
 def newest():
-    """(folder, address) of the newest running cluster. Raises Refusal."""
-    folders = [pathlib.Path(f) for f in glob.glob(os.path.join(glob.escape(os.environ.get("TMPDIR") or "/tmp"), "tactus-*-*")) if os.path.isdir(f)]
-    for folder in sorted(folders, key=lambda f: f.stat().st_mtime, reverse=True):
-        found = address(folder)
+    """(folder, address) of the newest running cluster of this user. Raises Refusal."""
+    for folder in cluster_folder.running():
+        found = cluster_folder.address(folder)
         if found is not None:
             return folder, found
+    for folder in sorted(pathlib.Path(tempfile.gettempdir()).glob(cluster_folder.PREFIX.format(user="[0-9]*") + "*")):
+        refuse_foreign(folder)
     raise Refusal("no cluster is running; start one with scripts/run, or name its output folder")
+
+
+def refuse_foreign(folder):
+    """Raises Refusal when the folder belongs to another user. Root does not enter it either: the processes inside could then act as root."""
+    uid = own_files.owner(folder)
+    if uid not in (None, os.geteuid()):
+        raise Refusal(f"{folder} belongs to the user {own_files.user_name(uid)}, and only the user who started a cluster can enter it; run tactus attach as "
+                      "that user")
 
 
 def environment(folder, found):

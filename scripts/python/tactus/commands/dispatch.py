@@ -31,6 +31,9 @@ def main(words):
         return 0 if words else 1
     name, *words = words
     if name == MODULE:
+        if not words or not words[0].startswith("tactus."):
+            print(f"tactus: {MODULE} needs a module of the package tactus; tactus --help lists the commands", file=sys.stderr)
+            return 1
         return importlib.import_module(words[0]).main(words[1:])
     if name not in BY_NAME:
         print(unknown(name), file=sys.stderr)

@@ -8,7 +8,7 @@ import signal
 import subprocess
 import time
 
-from tactus.launch import arguments, services, walls
+from tactus.launch import arguments, cluster_folder, privileges, services, walls
 from tactus.launch.arguments import SENSES
 from tactus.paths import BIN, tactus_command
 from tactus.refusal import Interrupted, Refusal
@@ -68,14 +68,14 @@ def names_sound_card(plan):
     return any(s.startswith("device=") for s in plan.settings.get("audio_node", []))
 
 
-def check(words, stop):
-    """Runs every node with --check. Raises Refusal with the message of the first that fails."""
+def check(words, stop, kept=privileges.KEPT):
+    """Runs every node with --check and the rights that it has in the run. Raises Refusal with the message of the first that fails."""
     started = {}
     try:
         for name, command in words.items():
             at = command.index("--out")
             # A new session, so that only this process receives Ctrl-C.
-            started[name] = subprocess.Popen(command[:at] + command[at + 2:] + ["--check"], stdin=subprocess.DEVNULL,
+            started[name] = subprocess.Popen(privileges.least(command[:at] + command[at + 2:] + ["--check"], kept), stdin=subprocess.DEVNULL,
                                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace",
                                              start_new_session=True, preexec_fn=die_with_parent)
         output = {name: check_output(name, process, stop) for name, process in started.items()}
@@ -120,15 +120,16 @@ def die_with_parent():
 
 
 class Cluster:
-    def __init__(self, plan, network, words, run_id):
-        self.plan, self.network, self.run_id = plan, network, run_id
-        self.folder = services.make_folder(plan.out)
+    def __init__(self, plan, network, words, run_id, kept=privileges.KEPT):
+        """words: {process: command line}; kept: the capabilities that the nodes of root keep."""
+        self.plan, self.network, self.run_id, self.kept = plan, network, run_id, kept
+        self.folder = cluster_folder.make(plan.out)
         self.in_use = None
         self.holder = self.table = self.page = None
         try:
-            self.in_use = services.lock_folder(self.folder)
+            self.in_use = cluster_folder.lock(self.folder)
             logs = plan.out / "logs"
-            logs.mkdir(exist_ok=True)
+            logs.mkdir(mode=0o700, exist_ok=True)
             here = pathlib.Path.cwd()
             self.services = {name: services.Service(self.folder, name, command, logs / f"{name}.log", here)
                              for name, command in words.items()}
@@ -140,7 +141,7 @@ class Cluster:
     def start(self):
         """Starts the supervisor, recorder and sync_node, the modalities, then the simulation. Raises Refusal."""
         words = [*self.network.unshare, str(INSIDE), str(self.folder),
-                 "private" if self.network.private else "host"]
+                 "private" if self.network.private else "host", *self.kept]
         if not self.network.unshare:
             # Without a process namespace, SIGHUP makes runsvdir end all of its services.
             words = ["setpriv", "--pdeathsig", "HUP", *words]
@@ -159,18 +160,15 @@ class Cluster:
 
     def write_address(self):
         """Writes the file by which tactus attach finds the cluster."""
-        names = [n for n, flag in (("net", "--net"), ("user", "--user"), ("pid", "--pid")) if flag in self.network.unshare]
-        (self.folder / "address").write_text(
-            f"holder={self.holder.pid}\nnamespaces={','.join(names) or 'none'}\nrun_id={self.run_id}\n"
-            f"url=udpm://239.255.76.67:{self.plan.port}?ttl=0\nport={self.plan.port}\nout={self.plan.out}\n",
-            encoding="utf-8", errors="surrogateescape")
+        cluster_folder.write_address(self.folder, self.holder.pid, self.network.unshare, self.run_id, f"udpm://239.255.76.67:{self.plan.port}?ttl=0",
+                                     self.plan.port, self.plan.out)
         link = self.plan.out / "cluster"
         link.unlink(missing_ok=True)
         link.symlink_to(self.folder)
 
     def show_table(self):
         """Starts the live table, printed once a second until the end."""
-        words = [*tactus_command("attach"), str(self.plan.out), str(BIN / "watch")]
+        words = [*tactus_command("attach"), str(self.plan.out), *privileges.least([BIN / "watch"], self.kept)]
         self.table = subprocess.Popen(words, stdin=subprocess.DEVNULL, start_new_session=True, preexec_fn=die_with_parent)
 
     def end_table(self):

@@ -6,13 +6,14 @@ import socket
 import subprocess
 import time
 
+from tactus.launch import privileges
 from tactus.launch.cluster import die_with_parent
 from tactus.paths import BIN, SCRIPTS, tactus_command
 from tactus.refusal import Refusal
 from tactus.terminal import report_run
 
 PAGE = SCRIPTS / "live" / "page" / "dist"
-ADDRESS = "live_server: open "  # scripts/live/live_server_main.cpp
+ADDRESS = "live_server: open "  # scripts/live/live_server_main.cpp, which never prints the token that it inherits
 TIMEOUT_S = 10
 RESTART_DELAY_S = 1  # minimum time between two starts of the server
 
@@ -55,9 +56,8 @@ class Page:
 
     def launch(self):
         self.started = time.monotonic()
-        words = [*tactus_command("attach"), str(self.out), str(BIN / "live_server"), "--page", str(PAGE),
-                 "--listen-fd", str(self.socket.fileno())]
-        with open(self.log(), "a", encoding="utf-8") as log:
+        words = [*tactus_command("attach"), str(self.out), *privileges.least([BIN / "live_server", "--page", PAGE, "--listen-fd", self.socket.fileno()])]
+        with open(os.open(self.log(), os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600), "a", encoding="utf-8") as log:
             self.process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
                                             env={**os.environ, "TACTUS_LIVE_TOKEN": self.token},
                                             pass_fds=(self.socket.fileno(),), preexec_fn=die_with_parent)

@@ -7,10 +7,11 @@ INTERRUPTED = 130  # exit status of a shell after Ctrl-C
 signal.signal(signal.SIGINT, lambda *_: (os.write(2, b"run: interrupted\n"), os._exit(INTERRUPTED)))
 
 import fcntl
+import stat
 import time
 
-from tactus import terminal
-from tactus.launch import arguments, cluster, equipment, hands, live, network, priority, services, virtual, walls
+from tactus import own_files, terminal
+from tactus.launch import arguments, cluster, cluster_folder, equipment, hands, live, network, priority, privileges, virtual, walls
 from tactus.launch.results import git_commit, summarise
 from tactus.refusal import Interrupted, Refusal, sentence_of
 from tactus.terminal import report_run
@@ -69,6 +70,7 @@ def claim_out(plan):
         try:
             plan.out.mkdir(parents=True, exist_ok=not plan.out_is_ours)
             claim = os.open(plan.out, os.O_RDONLY | os.O_DIRECTORY)
+            refuse_foreign_folder(plan.out, os.fstat(claim))
         except FileExistsError:
             plan.out = plan.out.with_name(plan.out.name + "+")
             continue
@@ -84,30 +86,47 @@ def claim_out(plan):
         return claim
 
 
+def refuse_foreign_folder(path, found):
+    """Raises Refusal for a shared folder such as /tmp, and, for root, a folder of another user: links that others put there would be
+    followed. found: os.stat_result of the folder."""
+    if found.st_mode & stat.S_ISVTX and found.st_mode & stat.S_IWOTH:
+        raise Refusal(f"recorder: --out {path}: every user can write there; name a folder of your own")
+    if os.geteuid() == 0 and found.st_uid != 0:
+        raise Refusal(f"recorder: --out {path}: belongs to the user {own_files.user_name(found.st_uid)}, and this run is of root; run as that user, or "
+                      "name another folder")
+
+
+def inputs(plan):
+    """Files and folders that the nodes read."""
+    window = [os.environ["XAUTHORITY"]] if plan.window and os.environ.get("XAUTHORITY") else []
+    return [os.getcwd(), cluster.BIN, cluster.BIN / "sim_node", plan.scene.parent, plan.scene, *filter(None, [plan.degrade, plan.shaders]), *plan.replay[:1], *window]
+
+
 def run(plan, watch=watch_over):
     """Executes one run; watch(running, seconds, stop) determines its duration. Returns the errors, one sentence each.
     Raises Refusal when the run does not start."""
+    kept = privileges.needed(inputs(plan))
     if plan.virtual is not None:
-        return virtual.run(plan, Stop(), claim_out)
+        return virtual.run(plan, Stop(), claim_out, kept)
     stop = Stop()
     git = git_commit()
     run_id = time.time_ns()
     for name in [*dict.fromkeys(plan.program(n) for n in plan.nodes()), "watch", "summarise", "export_csv", "export_events"]:
         if not os.access(cluster.BIN / name, os.X_OK):
             raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
-    cluster.check(cluster.commands(plan, run_id, git), stop)
+    cluster.check(cluster.commands(plan, run_id, git), stop, kept)
     for name in arguments.unknown_modalities(plan):
         report_run(f"{name!r} is not a modality of this run; check the names in the profile and in --soa")
     expectation = priority.expectation(plan.realtime)
     net = network.choose(plan.network, plan.port)
-    services.remove_leftovers()
+    cluster_folder.remove_leftovers()
     page = live.Page(plan.live) if plan.live is not None else None
     claim = claim_out(plan)
     warnings = equipment.missing_equipment(plan)
-    running = cluster.Cluster(plan, net, cluster.commands(plan, run_id, git), run_id)
+    running = cluster.Cluster(plan, net, cluster.commands(plan, run_id, git), run_id, kept)
     report_run(f"{plan.scene.name}, {plan.seconds:g} s, seed {plan.seed}, network {net.description}, results in {plan.out}")
     report_run(expectation)
-    for warning in warnings:
+    for warning in (*filter(None, [privileges.description(kept)]), *warnings):
         report_run(warning)
     errors = []
     try:

@@ -9,7 +9,7 @@ import tempfile
 import time
 
 from tactus import terminal
-from tactus.launch import arguments, cluster, hands, keys, main as supervisor
+from tactus.launch import arguments, cluster, hands, keys, main as supervisor, privileges
 from tactus.refusal import Refusal, sentence_of
 from tactus.terminal import report_run
 
@@ -26,7 +26,7 @@ def describe_log(log):
     program = cluster.BIN / "replay"
     if not os.access(program, os.X_OK):
         raise Refusal(f"replay: {program} is not built; run scripts/build")
-    done = subprocess.run([program, str(log), "--describe"], capture_output=True, text=True, errors="replace", check=False)
+    done = subprocess.run(privileges.least([program, log, "--describe"], privileges.needed([program, log])), capture_output=True, text=True, errors="replace", check=False)
     if done.returncode != 0:
         raise Refusal(done.stderr.strip().split("\n")[-1] or f"replay: cannot read {log}")
     return json.loads(done.stdout)

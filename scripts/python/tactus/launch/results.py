@@ -3,6 +3,7 @@ import os
 import subprocess
 
 from tactus import terminal
+from tactus.launch import privileges
 from tactus.paths import BIN, REPOSITORY
 
 
@@ -30,12 +31,13 @@ def summarise(plan, git, lost, restarts, warnings):
                        *(word for sentence in warnings for word in ("--warning", sentence))]
     exports = [[str(BIN / name), str(plan.out), "--out", str(plan.out)] for name in ("export_csv", "export_events")]
     # All results are written before the first is printed. A second Ctrl-C does not reach these programs.
-    all_done = [subprocess.run(words, capture_output=True, text=True, errors="replace", check=False, start_new_session=True)
+    kept = privileges.needed([BIN, plan.out])
+    all_done = [subprocess.run(privileges.least(words, kept), capture_output=True, text=True, errors="replace", check=False, start_new_session=True)
                 for words in (summary_command, *exports)]
     terminal.report(all_done[0].stdout.rstrip("\n"))
     errors = []
-    for done in all_done:
-        name = os.path.basename(done.args[0])
+    for words, done in zip((summary_command, *exports), all_done):
+        name = os.path.basename(words[0])
         if done.returncode != 0:
             errors.append(done.stderr.strip().split("\n")[-1] or f"{name}: ended with status {done.returncode}")
         elif done.stderr:

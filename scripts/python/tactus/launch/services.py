@@ -3,16 +3,11 @@
 A node runs as a service: runsv restarts it when it dies. Its `finish` script records each death. After more than MAX_DEATHS
 deaths within WINDOW_S it leaves the node down and writes the reason to the file `lost`.
 """
-import fcntl
 import os
-import pathlib
 import shlex
-import shutil
-import subprocess
-import tempfile
 import time
 
-from tactus.refusal import Refusal
+from tactus.launch.cluster_folder import write_script
 
 MAX_DEATHS = 5
 WINDOW_S = 10
@@ -37,50 +32,6 @@ exec >>{log} 2>&1 </dev/null
 cd {folder} || exit 1
 exec setpriv --pdeathsig KILL -- {command}
 """
-
-
-def make_folder(out):
-    """A new folder on a file system that has named pipes and executable files, which --out may lack."""
-    for parent in (tempfile.gettempdir(), str(out)):
-        folder = None
-        try:
-            folder = pathlib.Path(tempfile.mkdtemp(prefix=f"tactus-{os.getuid()}-", dir=parent))
-            os.mkfifo(folder / "pipe")
-            write_script(folder / "script", "#!/bin/sh\n")
-            subprocess.run([folder / "script"], check=True)
-            (folder / "services").mkdir()
-        except (OSError, subprocess.SubprocessError):
-            if folder:
-                shutil.rmtree(folder, ignore_errors=True)
-            continue
-        return folder
-    raise Refusal(f"supervision: neither {tempfile.gettempdir()} nor {out} can hold executable files and named pipes, or "
-                  "both are full; set TMPDIR to a folder that can hold them")
-
-
-def lock_folder(folder):
-    """Marks the folder as in use until the returned file is closed or this process ends. A lock, because process ids differ
-    between process namespaces."""
-    lock = open(folder / "new", "w", encoding="ascii")
-    fcntl.flock(lock, fcntl.LOCK_EX)
-    (folder / "new").rename(folder / "in_use")  # in_use never exists unlocked
-    return lock
-
-
-def remove_leftovers():
-    """Removes the folders of clusters whose run was killed."""
-    for folder in pathlib.Path(tempfile.gettempdir()).glob(f"tactus-{os.getuid()}-*"):
-        try:
-            with open(folder / "in_use", "r", encoding="ascii") as lock:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                shutil.rmtree(folder, ignore_errors=True)
-        except OSError:
-            continue  # in use, or incomplete
-
-
-def write_script(path, text):
-    path.write_text(text, encoding="utf-8", errors="surrogateescape")  # file names are bytes
-    path.chmod(0o755)
 
 
 class Service:

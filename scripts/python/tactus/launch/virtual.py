@@ -5,7 +5,7 @@ import signal
 import subprocess
 import time
 
-from tactus.launch import arguments, cluster
+from tactus.launch import arguments, cluster, privileges
 from tactus.launch.results import git_commit, summarise
 from tactus.refusal import Refusal
 from tactus.terminal import report_error, report_run
@@ -23,36 +23,36 @@ def commands(plan, git):
     return words
 
 
-def run(plan, stop, claim_out):
-    """Executes one run in the folder that claim_out locks. Returns the errors, one sentence each. Raises Refusal when it does not start."""
+def run(plan, stop, claim_out, kept=privileges.KEPT):
+    """Executes one run in the folder that claim_out locks. kept: the capabilities that the nodes of root keep. Returns the errors, one sentence each. Raises Refusal when it does not start."""
     for name in [*dict.fromkeys(plan.program(n) for n in plan.nodes()), *PROGRAMS]:
         if not os.access(cluster.BIN / name, os.X_OK):
             raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
     git = git_commit()
     words = commands(plan, git)
-    cluster.check(words, stop)
+    cluster.check(words, stop, kept)
     for name in arguments.unknown_modalities(plan):
         report_run(f"{name!r} is not a modality of this run; check the names in the profile and in --soa")
     claim = claim_out(plan)
     for name in words:  # claim_out may have chosen another folder
         words[name][words[name].index("--out") + 1] = str(plan.out)
-    (plan.out / "logs").mkdir(exist_ok=True)
+    (plan.out / "logs").mkdir(mode=0o700, exist_ok=True)
     plan_file = plan.out / "logs" / "virtual_time.json"
     plan_file.write_text(json.dumps(words, indent=1) + "\n", encoding="utf-8")
     report_run(f"{plan.scene.name}, {plan.seconds:g} s of virtual time, seed {plan.seed}, without pictures, results in {plan.out}")
-    errors = play(plan, plan_file, stop)
+    errors = play(plan, plan_file, stop, kept)
     errors += summarise(plan, git, set(), {}, [])
     report_run(f"results in {plan.out}")
     os.close(claim)
     return errors
 
 
-def play(plan, plan_file, stop):
+def play(plan, plan_file, stop, kept):
     """Runs virtual_time and prints its progress. Returns the errors."""
     command = [str(cluster.BIN / "virtual_time"), str(plan_file), "--seconds", f"{plan.seconds:g}", "--seed", str(plan.seed), *plan.virtual]
     log = plan.out / "logs" / "virtual_time.log"
     with open(log, "w", encoding="utf-8") as log_file, open(log, encoding="utf-8", errors="replace") as output:
-        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log_file, stderr=log_file, start_new_session=True,
+        process = subprocess.Popen(privileges.least(command, kept), stdin=subprocess.DEVNULL, stdout=log_file, stderr=log_file, start_new_session=True,
                                    preexec_fn=cluster.die_with_parent)
         forwarded = False
         while process.poll() is None:

@@ -5,6 +5,8 @@ import os
 
 import numpy as np
 
+from tactus.tables import unescaped
+
 # Channels of a report; large channels are not exported.
 CHANNELS = "LOG_INFO|NODE_HEALTH|CONTACT_EVENTS|PLAYOUT|DEGRADATION|DEGRADED|TAG_LIST|TAG_VALUES"
 PHASES = ("collision", "solve", "integrate", "decode", "render", "other")  # sync/time/phases.h
@@ -23,7 +25,7 @@ class LogTables:
             self.summary = json.load(file)
         with open(os.path.join(folder, "schema.json"), encoding="utf-8") as file:
             self.schema = json.load(file)
-        self.info = {row["field"]: row["value"] for row in self.rows("LOG_INFO.csv")}
+        self.info = {row["field"]: unescaped(row["value"]) for row in self.rows("LOG_INFO.csv")}
         # CLOCK_MONOTONIC of the recorder at log_s 0, ns.
         self.live_from_ns = int(self.info.get("live_from_ns", 0))
 
@@ -145,7 +147,7 @@ class LogTables:
                 if message:
                     yield message
                 key, message = (row["sender"], row["seq"], row["log_s"]), {"log_s": row["log_s"], "sender": row["sender"]}
-            message[row["field"]] = row["value"]
+            message[row["field"]] = unescaped(row["value"])
         if message:
             yield message
 

@@ -2,7 +2,7 @@
 import base64
 import os
 
-import matplotlib
+from tactus.plotting import matplotlib
 
 matplotlib.use("Agg")
 matplotlib.rcParams.update({

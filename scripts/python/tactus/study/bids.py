@@ -13,6 +13,7 @@ import json
 import re
 
 from tactus.study.trial_table import COLUMNS, replace, text_of
+from tactus.tables import escaped
 
 VERSION = "1.8.0"
 EVENTS = {
@@ -47,8 +48,9 @@ def described():
 
 
 def field(value):
-    """Text of a field; tabs and line ends become spaces."""
-    return re.sub(r"[\t\r\n]", " ", text_of(value)) or "n/a"
+    """Text of a field; tabs and line ends become spaces, and formulas of spreadsheets are escaped."""
+    plain = re.sub(r"[\t\r\n]", " ", text_of(value)) or "n/a"
+    return escaped(plain) if isinstance(value, str) else plain
 
 
 def put(path, columns, rows, meaning):

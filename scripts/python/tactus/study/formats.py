@@ -15,6 +15,7 @@ import re
 from tactus.refusal import Refusal
 from tactus.study import bids, journal, trial_table
 from tactus.study.trial_table import COLUMNS, replace, text_of
+from tactus.tables import escaped
 
 # Columns that psychopy.csv stores under PsychoPy's names.
 RENAMED = ("participant_id", "session", "trial", "study", "response", "correct", "response_time", "observer", "repeated_as", "missed", "missed_reason")
@@ -78,7 +79,7 @@ def table(columns, rows):
     file = io.StringIO()
     out = csv.writer(file)
     out.writerow(columns)
-    out.writerows([text_of(v) for v in row] for row in rows)
+    out.writerows([escaped(v) if isinstance(v, str) else text_of(v) for v in row] for row in rows)
     return file.getvalue()
 
 

@@ -4,6 +4,7 @@ import signal
 import subprocess
 import time
 
+from tactus import own_files
 from tactus.paths import SCRIPTS
 from tactus.refusal import Refusal
 
@@ -24,7 +25,7 @@ class LiveCluster:
         """words: arguments of scripts/run, except --out and --seconds."""
         self.out = out
         self.log = out.with_suffix(".log")
-        with open(self.log, "w", encoding="utf-8") as said:
+        with own_files.open_private(self.log) as said:  # the address of the live page with its token is in it
             self.process = subprocess.Popen([str(SCRIPTS / "run"), *words, "--seconds", str(LONGEST_S), "--out", str(out)],
                                             stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT, start_new_session=True,
                                             preexec_fn=die_with_parent)

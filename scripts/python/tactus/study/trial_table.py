@@ -11,6 +11,7 @@ import pathlib
 from typing import NamedTuple
 
 from tactus.refusal import Refusal, sentence_of
+from tactus.tables import escaped, unescaped
 
 LARGEST_BYTES = 1_000_000_000  # design: five million rows
 LONGEST_TEXT = 100_000         # characters of one field; design: an answer in words
@@ -118,6 +119,11 @@ def wrong(row):
     return None
 
 
+def fields_of(row):
+    """The fields of a row. A text that a spreadsheet would run as a formula is escaped; value_of() reads the text again."""
+    return [escaped(text_of(row.get(name))) if column.kind == "text" else text_of(row.get(name)) for name, column in COLUMNS.items()]
+
+
 def text(rows):
     """The table as text. Raises ValueError with the number of the invalid row (from 1) and the reason."""
     file = io.StringIO()
@@ -127,7 +133,7 @@ def text(rows):
         sentence = wrong(row)
         if sentence:
             raise ValueError(f"row {number}: {sentence}")
-        out.writerow([text_of(row.get(name)) for name in COLUMNS])
+        out.writerow(fields_of(row))
     return file.getvalue()
 
 
@@ -152,7 +158,7 @@ def value_of(written, name):
     """The value of a field; raises ValueError with the reason."""
     column = COLUMNS[name]
     if column.kind == "text":
-        return written
+        return unescaped(written)
     if written == "":
         return None
     try:
@@ -173,6 +179,11 @@ def read(path):
             data = file.read(LARGEST_BYTES + 1)
     except OSError as error:
         raise Refusal(f"{path}: cannot be read ({sentence_of(error)}); give a table of trials") from None
+    return parsed(data, path)
+
+
+def parsed(data, path):
+    """As read(), from the bytes of a table. path: for messages."""
     if len(data) > LARGEST_BYTES:
         raise Refusal(f"{path}: is longer than {LARGEST_BYTES} bytes; give a smaller table of trials")
     try:

@@ -1,14 +1,15 @@
 """Reuses the games of an earlier sweep, which had fewer games or other levels, in a new sweep."""
 import lzma
 import pathlib
-import tempfile
 
-from tactus.refusal import Refusal
+from tactus.refusal import Refusal, sentence_of
 from tactus.study import trial_table
 from tactus.sweep import virtual_games
 from tactus.sweep.chunk_file import ChunkFile
 from tactus.sweep.player import Player
 
+DECOMPRESSOR_BYTES = 256 << 20  # design: memory of the decompressor; xz -9 needs 65 MB (xz(1))
+CHUNK = 1 << 20
 SAME = ("missed", "success", "completion_time_s", "errors", "peak_force_n", "path_m")  # columns with the result of a game
 
 
@@ -16,16 +17,26 @@ def read(path):
     """{(condition, seed): row} of the games of a table, CSV or CSV.xz. Raises Refusal."""
     path = pathlib.Path(path)
     try:
-        if path.suffix != ".xz":
-            rows = trial_table.read(path)
-        else:
-            with tempfile.TemporaryDirectory() as scratch:
-                plain = pathlib.Path(scratch) / path.stem
-                plain.write_bytes(lzma.decompress(path.read_bytes()))
-                rows = trial_table.read(plain)
-    except (lzma.LZMAError, ValueError) as error:
+        rows = trial_table.read(path) if path.suffix != ".xz" else trial_table.parsed(plain_bytes(path, trial_table.LARGEST_BYTES), path)
+    except (lzma.LZMAError, EOFError, ValueError) as error:
         raise Refusal(f"{path}: holds no table of games ({error}); give games.csv or .csv.xz of a sweep") from None
+    except OSError as error:
+        raise Refusal(f"{path}: cannot be read ({sentence_of(error)}); give games.csv or .csv.xz of a sweep") from None
     return {(row["condition"], row["seed"]): row for row in rows if row["task"] == "game"}
+
+
+def plain_bytes(path, largest_bytes):
+    """The uncompressed bytes of an xz file, at most largest_bytes + 1: a small file can expand to any size. Raises OSError, lzma.LZMAError, EOFError."""
+    decompressor = lzma.LZMADecompressor(format=lzma.FORMAT_XZ, memlimit=DECOMPRESSOR_BYTES)
+    out = bytearray()
+    with open(path, "rb") as file:
+        data = b""
+        while not decompressor.eof and len(out) <= largest_bytes:
+            data = file.read(CHUNK) if decompressor.needs_input else b""
+            if decompressor.needs_input and not data:
+                raise EOFError("it ends within the data")
+            out += decompressor.decompress(data, max_length=min(CHUNK, largest_bytes + 1 - len(out)))
+    return bytes(out)
 
 
 def adopt(folder, table):

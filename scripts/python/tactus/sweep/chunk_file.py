@@ -31,7 +31,7 @@ class ChunkFile:
         sentence = trial_table.wrong(row)
         if sentence:
             raise ValueError(sentence)
-        whole = line([trial_table.text_of(row.get(name)) for name in trial_table.COLUMNS])
+        whole = line(trial_table.fields_of(row))
         if os.write(self.file, whole) != len(whole):
             raise OSError(28, "No space left on device")
         self.done.add(row["trial"])
