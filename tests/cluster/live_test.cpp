@@ -41,7 +41,7 @@ std::string address_of(Processes& processes, const std::string& name) {
 }
 
 void require_browser() {
-  INFO("install the packages chromium, nodejs and npm, and run scripts/live/bundle");
+  INFO("install the packages chromium, nodejs and npm, and run scripts/live/bundle --for-tests");
   REQUIRE(std::filesystem::exists("/usr/bin/chromium"));
   REQUIRE(std::filesystem::exists(repository() / "scripts/live/page/node_modules/puppeteer-core/package.json"));
   REQUIRE(std::filesystem::exists(repository() / "scripts/live/page/dist/main.js"));

@@ -71,6 +71,21 @@ def open_own(path):
     return descriptor
 
 
+def open_regular(path):
+    """A regular file of any user, open for reading as bytes. A named pipe or a device, which may never end, is refused. Raises OSError."""
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY)
+    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        os.close(descriptor)
+        raise OSError(errno.EINVAL, "is not a regular file", str(path))
+    return open(descriptor, "rb")
+
+
+def read_regular(path, largest_bytes):
+    """At most largest_bytes + 1 bytes of a regular file of any user. Raises OSError."""
+    with open_regular(path) as file:
+        return file.read(largest_bytes + 1)
+
+
 def read_own(path, largest_bytes):
     """Text of a regular file of the own user. Raises OSError, also when it is longer than largest_bytes."""
     with open(open_own(path), "rb") as file:

@@ -17,9 +17,8 @@ from tactus.commands import dispatch, table
 from tactus.paths import TACTUS
 
 SHEBANG = "#!/usr/bin/python3 -I"
-# Drivers of devices: PYTHONPATH names the message types that the user generated.
-EXEMPT = {ROOT / "examples" / "device_driver" / name for name in ("driver.py", "inputs.py")}
-SKIPPED = {"build", "node_modules", "out"}
+# examples: PYTHONPATH names the message types that the user generated for a driver.
+SKIPPED = {"build", "node_modules", "out", "examples"}
 TRAPS = ("json", "copy", "random", "statistics", "numpy", "tactus", "common", "pathlib", "subprocess", "argparse", "tempfile", "math", "struct", "csv")
 
 
@@ -29,7 +28,7 @@ def programs():
     for folder, folders, names in os.walk(ROOT):
         folders[:] = [name for name in folders if name not in SKIPPED and not name.startswith(".")]
         for path in (pathlib.Path(folder) / name for name in names):
-            if os.access(path, os.X_OK) and path.is_file() and path not in EXEMPT:
+            if os.access(path, os.X_OK) and path.is_file():
                 with open(path, "rb") as file:
                     first = file.readline(200)
                 if first.startswith(b"#!") and b"python" in first:

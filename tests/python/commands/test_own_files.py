@@ -8,7 +8,10 @@ from unittest import mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "python"))
 from tactus import own_files
+from tactus.cluster import cluster_file
 from tactus.refusal import Refusal
+from tactus.study import journal, study_file, trial_table
+from tactus.sweep import adopted
 
 as_another_user = mock.patch("os.geteuid", return_value=os.geteuid() + 1)
 
@@ -34,6 +37,23 @@ class OwnFiles(unittest.TestCase):
             self.assertRaises(OSError, own_files.open_own, self.folder / name)
         with as_another_user, self.assertRaisesRegex(OSError, "not a regular file of this user"):
             own_files.open_own(self.folder / "file")
+
+    def test_a_pipe_or_a_device_is_refused_as_input_without_waiting(self):
+        os.mkfifo(self.folder / "pipe")
+        (self.folder / "link").symlink_to("/dev/zero")
+        for path in (self.folder / "pipe", self.folder / "link", "/dev/zero", self.folder):
+            with self.assertRaisesRegex(OSError, "is not a regular file"):
+                own_files.read_regular(path, 10)
+        (self.folder / "file").write_bytes(b"x" * 20)
+        with as_another_user:
+            self.assertEqual(b"x" * 11, own_files.read_regular(self.folder / "file", 10))
+
+    def test_tables_studies_clusters_and_journals_that_are_pipes_are_one_sentence(self):
+        for name, read in (("t.csv", trial_table.read), ("s.xml", study_file.read), ("c.xml", lambda path: cluster_file.read(str(path))),
+                           ("t.csv.xz", adopted.read), (journal.NAME, lambda path: journal.read(path.parent))):
+            os.mkfifo(self.folder / name)
+            with self.assertRaisesRegex(Refusal, "cannot be read"):
+                read(self.folder / name)
 
     def test_a_private_folder_is_closed_to_others_and_not_of_another_user_or_a_link(self):
         made = own_files.make_private_folder(self.folder / "a" / "b")

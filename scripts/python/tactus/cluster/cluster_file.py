@@ -3,6 +3,7 @@ import dataclasses
 import pathlib
 import shlex
 
+from tactus import own_files
 from tactus.cluster import sites
 from tactus.launch import arguments, hands, scene, walls
 from tactus.refusal import Refusal
@@ -85,7 +86,7 @@ def read(text, out="."):
     from lxml import etree  # imported only when a file is read
     path = find(text)
     try:
-        data = path.read_bytes()
+        data = own_files.read_regular(path, LARGEST_BYTES)
     except OSError as error:
         shipped = ", ".join(sorted(p.stem for p in SHIPPED.glob("*.xml")))
         raise Refusal(f"{text}: cannot be read ({error.strerror}); give a cluster file, or the name of a shipped one: {shipped}") from None

@@ -4,6 +4,7 @@ import subprocess
 
 import numpy as np
 
+from tactus import own_files
 from tactus.refusal import Refusal
 
 FEWEST_SAMPLES = 256
@@ -69,7 +70,7 @@ def read_by_ffmpeg(path):
 def read_channels(path):
     """Samples, full scale 1, as frames x channels, and the rate in Hz. Raises Refusal."""
     try:
-        with open(path, "rb") as file:
+        with own_files.open_regular(path) as file:
             data = file.read()
     except OSError as e:
         raise Refusal(f"{path}: {e.strerror}; give a WAV or FLAC file") from e

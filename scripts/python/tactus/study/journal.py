@@ -18,6 +18,7 @@ import os
 import pathlib
 import zlib
 
+from tactus import own_files
 from tactus.refusal import Refusal, sentence_of
 
 NAME = "journal.jsonl"
@@ -130,7 +131,7 @@ def read(folder):
     """Entries of a journal, which another process may be writing; an incomplete last line is skipped. Raises Refusal."""
     path = pathlib.Path(folder) / NAME
     try:
-        with open(path, "rb") as file:
+        with own_files.open_regular(path) as file:
             return read_lines(read_bytes(file, path), path)[0]
     except OSError as error:
         raise Refusal(f"{path}: cannot be read ({error.strerror}); give the folder of a participant that tactus study run wrote") from None

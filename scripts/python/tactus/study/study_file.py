@@ -7,6 +7,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from tactus import own_files
 from tactus.paths import SCENES, SCRIPTS
 from tactus.psychophysics import functions, observers
 from tactus.refusal import Refusal
@@ -119,7 +120,7 @@ def read(text, with_scene=True):
     from lxml import etree  # slow to import
     path = find(str(text))
     try:
-        data = path.read_bytes()
+        data = own_files.read_regular(path, LARGEST_BYTES)
     except OSError as error:
         shipped = ", ".join(sorted(p.stem for p in SHIPPED.glob("*.xml")))
         raise Refusal(f"{text}: cannot be read ({error.strerror}); give a study file, or one of {shipped}") from None

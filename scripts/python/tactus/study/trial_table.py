@@ -10,6 +10,7 @@ import os
 import pathlib
 from typing import NamedTuple
 
+from tactus import own_files
 from tactus.refusal import Refusal, sentence_of
 from tactus.tables import escaped, unescaped
 
@@ -175,8 +176,7 @@ def read(path):
 
     Raises Refusal with file, line and reason: one invalid row refuses the whole table."""
     try:
-        with open(path, "rb") as file:
-            data = file.read(LARGEST_BYTES + 1)
+        data = own_files.read_regular(path, LARGEST_BYTES)
     except OSError as error:
         raise Refusal(f"{path}: cannot be read ({sentence_of(error)}); give a table of trials") from None
     return parsed(data, path)

@@ -2,6 +2,7 @@
 import lzma
 import pathlib
 
+from tactus import own_files
 from tactus.refusal import Refusal, sentence_of
 from tactus.study import trial_table
 from tactus.sweep import virtual_games
@@ -29,7 +30,7 @@ def plain_bytes(path, largest_bytes):
     """The uncompressed bytes of an xz file, at most largest_bytes + 1: a small file can expand to any size. Raises OSError, lzma.LZMAError, EOFError."""
     decompressor = lzma.LZMADecompressor(format=lzma.FORMAT_XZ, memlimit=DECOMPRESSOR_BYTES)
     out = bytearray()
-    with open(path, "rb") as file:
+    with own_files.open_regular(path) as file:
         data = b""
         while not decompressor.eof and len(out) <= largest_bytes:
             data = file.read(CHUNK) if decompressor.needs_input else b""
