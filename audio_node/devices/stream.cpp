@@ -26,8 +26,8 @@ constexpr sync::Nanoseconds kCallbackTimeout{500'000'000};
 // A pause between callbacks of more than the buffer and this is an interruption, also where the card does not report
 // an underflow: the process was stopped. Design.
 constexpr double kPause_s = 0.05;
-// Longest wait for the end of the sound when a stream is closed. Design: ten times a usual one.
-constexpr sync::Nanoseconds kEndTimeout{200'000'000};
+// Longest wait for the end of the sound when a stream is closed. Design: as long as a card without callbacks is not lost.
+constexpr sync::Nanoseconds kEndTimeout{500'000'000};
 
 void check(PaError error, const std::string& what) {
   if (error < 0)

@@ -3,6 +3,9 @@
 //
 //    device_driver [NAME [GROUP [PORT [RUN]]]]        together with: haptic_node --device external:NAME
 //
+// RUN is the number of the cluster run, whose forces it obeys. tactus attach sets GROUP, PORT and RUN by the
+// variables TACTUS_GROUP, TACTUS_PORT and TACTUS_RUN_ID.
+//
 //    out  DEVICE_STATE   1000 times per second
 //    in   DEVICE_FORCE   within the limits of guards.h; the force is 0 when no new message arrives in time
 //
@@ -11,6 +14,7 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include <chrono>
+#include <cstdlib>
 #include <iostream>
 #include <limits>
 #include <random>
@@ -64,17 +68,21 @@ constexpr int kMaxMessages = 100;
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto argument = [&](int i, const char* default_value) { return std::string(argc > i ? argv[i] : default_value); };
+  // An argument, or else the variable of the environment, which tactus attach sets, or else the default.
+  const auto argument = [&](int i, const char* default_value, const char* variable = nullptr) {
+    const char* set = variable ? std::getenv(variable) : nullptr;
+    return std::string(argc > i ? argv[i] : set ? set : default_value);
+  };
   if (argument(1, "").starts_with("-")) {
     std::cout << "Usage: device_driver [NAME [GROUP [PORT [RUN]]]]\nDrives the device NAME (arm) for haptic_node "
                  "--device "
                  "external:NAME until it is ended; inside a running cluster: tactus attach device_driver NAME\n";
     return argument(1, "") == "--help" ? 0 : 1;
   }
-  const std::int64_t run = std::stoll(argument(4, "1"));
+  const std::int64_t run = std::stoll(argument(4, "1", "TACTUS_RUN_ID"));
   Forces forces{argument(1, "arm"), ForceGuard({}, {.run = run})};
   // ttl=0: messages stay on this machine.
-  lcm::LCM bus("udpm://" + argument(2, "239.255.76.67") + ":" + argument(3, "7667") + "?ttl=0");
+  lcm::LCM bus("udpm://" + argument(2, "239.255.76.67", "TACTUS_GROUP") + ":" + argument(3, "7667", "TACTUS_PORT") + "?ttl=0");
   if (!bus.good()) {
     std::cerr << "device_driver: cannot open the bus; check that the network lets multicast through\n";
     return 1;

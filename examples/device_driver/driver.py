@@ -7,6 +7,7 @@
 It publishes DEVICE_STATE 250 times per second and receives DEVICE_FORCE, within the limits of guards.py; the force is 0 when no new
 message arrives in time. The hardware here is a weight of 0.1 kg that a spring and a damper hold 5 mm below the level of a floor; for a real device replace Hardware.
 """
+import os
 import random
 import select
 import socket
@@ -18,6 +19,8 @@ import guards
 from tactus import device_force_t, device_state_t, header_t, pose_t, quat_t, vec3_t, vec3f_t
 
 PERIOD_S = 0.004
+# Group, port and number of the run: the variables that tactus attach sets, and the defaults.
+BUS = (("TACTUS_GROUP", "239.255.76.67"), ("TACTUS_PORT", "7667"), ("TACTUS_RUN_ID", "1"))
 
 
 class Bus:
@@ -89,7 +92,8 @@ def main():
     if sys.argv[1:] and sys.argv[1].startswith("-"):
         print(__doc__)
         sys.exit(0 if sys.argv[1] == "--help" else 1)
-    name, group, port, run = (sys.argv[1:] + ["arm", "239.255.76.67", "7667", "1"][len(sys.argv) - 1:])[:4]
+    usual = ["arm", *(os.environ.get(variable, default) for variable, default in BUS)]
+    name, group, port, run = (sys.argv[1:] + usual[len(sys.argv) - 1:])[:4]
     bus, hardware, state = Bus(group, int(port)), Hardware(), first_state(name, int(run))
     guard, reported = guards.ForceGuard(sender=guards.SenderLimits(run=int(run))), ""
     tick = time.monotonic()

@@ -174,9 +174,9 @@ def main():
     parser.add_argument("source", nargs="?", help="for mouse and gamepad: /dev/input/eventN; for spacenav: the socket of its daemon")
     parser.add_argument("--name", default="wand")
     parser.add_argument("--half", type=float, default=0.5, help="range to each side of its origin, m")
-    parser.add_argument("--group", default="239.255.76.67")
-    parser.add_argument("--port", type=int, default=7667)
-    parser.add_argument("--run-id", type=int, default=1)
+    parser.add_argument("--group", default=os.environ.get("TACTUS_GROUP", "239.255.76.67"))
+    parser.add_argument("--port", type=int, default=int(os.environ.get("TACTUS_PORT", "7667")))
+    parser.add_argument("--run-id", type=int, default=int(os.environ.get("TACTUS_RUN_ID", "1")))
     options = parser.parse_args()
     path = options.source or ("/var/run/spnav.sock" if options.kind == "spacenav" else None)
     if path is None:

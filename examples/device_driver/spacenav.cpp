@@ -11,6 +11,7 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include <chrono>
+#include <cstdlib>
 #include <iostream>
 #include <random>
 #include <string>
@@ -68,7 +69,11 @@ class Daemon {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto argument = [&](int i, const char* default_value) { return std::string(argc > i ? argv[i] : default_value); };
+  // An argument, or else the variable of the environment, which tactus attach sets, or else the default.
+  const auto argument = [&](int i, const char* default_value, const char* variable = nullptr) {
+    const char* set = variable ? std::getenv(variable) : nullptr;
+    return std::string(argc > i ? argv[i] : set ? set : default_value);
+  };
   if (argument(1, "").starts_with("-")) {
     std::cout << "spacenav [NAME [GROUP [PORT [RUN]]]]: a 3D mouse as the device NAME (head); beside it: "
                  "haptic_node --tool "
@@ -76,7 +81,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   // ttl=0: messages stay on this machine.
-  lcm::LCM bus("udpm://" + argument(2, "239.255.76.67") + ":" + argument(3, "7667") + "?ttl=0");
+  lcm::LCM bus("udpm://" + argument(2, "239.255.76.67", "TACTUS_GROUP") + ":" + argument(3, "7667", "TACTUS_PORT") + "?ttl=0");
   if (!bus.good()) {
     std::cerr << "spacenav: cannot open the bus; check that the network lets multicast through\n";
     return 1;
@@ -84,7 +89,7 @@ int main(int argc, char** argv) {
   tactus::device_state_t state{};  // LCM initialises nothing by itself
   state.device = argument(1, "head");
   state.header.sim_time_ns = -1;
-  state.header.run_id = std::stoll(argument(4, "1"));
+  state.header.run_id = std::stoll(argument(4, "1", "TACTUS_RUN_ID"));
   std::random_device random;
   state.header.incarnation = std::uniform_int_distribution<std::int64_t>(1, INT64_MAX)(random);
 

@@ -131,6 +131,29 @@ TEST_CASE("A restarted stream overwrites no recording") {
   }
 }
 
+TEST_CASE("A closed stream fades to silence") {
+  const Folder folder;
+  int quiet = 0;
+  constexpr int kStreams = 6;
+  for (int i = 0; i < kStreams; ++i) {
+    std::string name;
+    {
+      StreamOptions options;
+      options.device = "virtual", options.folder = folder.path;
+      Stream stream(options, [](float* out, int frames, const BlockTime&) { std::fill(out, out + 2 * frames, 0.5f); });
+      name = stream.medium();
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    const std::vector<float> wav = left_of(folder.path + "/" + name);
+    float steepest = 0;
+    for (std::size_t n = 1; n < wav.size(); ++n) steepest = std::max(steepest, wav[n - 1] - wav[n]);
+    CAPTURE(i, wav.size(), steepest);
+    // A raised cosine over 240 samples. On a machine that stalls for half a second the wait ends before.
+    quiet += wav.size() > 240 && wav.back() == 0 && steepest < 0.5f * 1.5708f / 240 * 1.05f;
+  }
+  CHECK(quiet >= kStreams - 2);
+}
+
 TEST_CASE("The virtual card has one channel per loudspeaker and records each in its own channel") {
   const Folder folder;
   {
