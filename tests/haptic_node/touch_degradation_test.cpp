@@ -35,6 +35,8 @@ struct TouchPath {
   std::vector<touch_model_t> late;  // pages that arrive with the next tick
   std::int64_t seq = 0;
 
+  TouchPath() { degraded.present_on_release(); }  // as in ModalityEndpoint for a servo loop
+
   // One tick. Returns the new model of the hand, or none.
   TouchModelView tick(std::int64_t ms, const touch_model_t& model) {
     const sync::HostTime now = sync::host_time(ms * kMs);

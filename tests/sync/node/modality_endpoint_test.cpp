@@ -2,7 +2,13 @@
 #include "sync/node/modality_endpoint.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <tactus/contact_event_t.hpp>
+#include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
+#include <tactus/node_health_t.hpp>
+#include <tactus/playout_entry_t.hpp>
+#include <tactus/playout_t.hpp>
 
 #include "sync/bus/decode.h"
 
@@ -74,4 +80,64 @@ TEST_CASE("A second simulation changes nothing for a modality, does not keep its
   }
   CHECK(received == 200 + 400 - 274);
   CHECK(of_second == 400 - 274);
+}
+
+TEST_CASE("A jitter of presentation has the asked mean and deviation under every policy, and the health of the node states it") {
+  const bool asap = GENERATE(true, false);
+  NodeOptions options = in_memory();
+  options.name = "nose_node";
+  options.profile = read_profile(R"(<profile><degrade modality="smell" delay="40ms" jitter="10ms normal"/></profile>)", "p.xml");
+  Node node({.name = "nose_node", .modality = "smell", .rate_Hz = 50, .fifo_priority = 0, .about = "For a test."}, options);
+  ModalityEndpoint sense(node);
+  auto& inbox = sense.events().inbox();
+  auto& healths = node.bus().queue<node_health_t>(channels::kNodeHealth, 8);
+  Identity sender = Identity::fresh("sim_node", 1);
+  const HostTime begin = host_now();
+  if (asap) {
+    playout_t plan{};
+    plan.header = {-1, to_ns(begin), sender.clock, sender.run_id, sender.source, sender.incarnation, 0};
+    plan.policy = playout_t::ASAP;
+    plan.entries.resize(1);
+    plan.entries[0].modality = "smell";
+    plan.entries[0].needs_ns = -1;
+    plan.count = 1;
+    node.bus().on_message(channels::kPlayout, encode(plan), begin);
+  }
+  constexpr int kN = 4000;
+  double sum_ms = 0, square = 0;
+  int n = 0;
+  for (int i = 0; i < kN; ++i) {
+    // An event that happened 2 ms before its arrival.
+    const HostTime arrival = begin + 20 * i * kMs;
+    contact_events_t m{};
+    m.header = frame(sender, 100 + 20 * i, arrival).header;
+    m.clock = {m.header.sim_time_ns, to_ns(arrival), 1};
+    m.pages = m.count = 1;
+    m.events.resize(1);
+    m.events[0].event_id = 1 + i;
+    m.events[0].kind = contact_event_t::HIT;
+    m.events[0].time_ns = m.header.sim_time_ns - 2'000'000;
+    m.events[0].normal.z = 1;
+    m.events[0].effective_mass_kg = 1;
+    node.bus().on_message(channels::kContactEvents, encode(m), arrival);
+    sense.step(arrival);
+    const auto map = inbox.map(arrival);
+    REQUIRE(map);
+    for (const contact_event_t& e : inbox.take(SimTime::max())) {
+      const HostTime scheduled = sense.schedule(e.event_id, map->to_host(sim_time(e.time_ns)));
+      const double late_ms = 1e3 * to_seconds(scheduled - (arrival - (asap ? 0 : 2) * kMs));
+      sum_ms += late_ms, square += late_ms * late_ms, ++n;
+    }
+    sense.publish(arrival);
+    node.bus().drain(arrival);
+  }
+  REQUIRE(n == kN);
+  const double mean_ms = sum_ms / n, sd_ms = std::sqrt(square / n - mean_ms * mean_ms);
+  CHECK(mean_ms == Approx(40).margin(4.5 * 10 / std::sqrt(n)));
+  CHECK(sd_ms == Approx(10).margin(4.5 * 10 / std::sqrt(2 * n)));
+  node.heartbeat();
+  node.bus().drain(host_now());
+  const auto health = healths.pop();
+  REQUIRE(health);
+  CHECK_THAT(health->message.status_text, Catch::Contains("; profile effect: events +") && Catch::Contains(" ms (sd "));
 }
