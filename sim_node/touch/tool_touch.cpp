@@ -259,7 +259,7 @@ void ToolTouch::receive(const tool_state_t& m, SimTime now, std::span<const Body
     n.force_N = 0;
     for (const tool_constraint_t& c : m.constraints) {
       if (c.contact_id != n.contact_id) continue;
-      n.force_N = std::clamp(to_eigen(c.force_N).dot(n.plane.normal), 0.0, settings_.tool_force_limit_N);
+      n.force_N = std::max(0.0, to_eigen(c.force_N).dot(n.plane.normal));
       n.impulse_N_s = std::max(n.impulse_N_s, to_eigen(c.impulse_N_s).dot(n.plane.normal));
     }
     update_contact(n, when, before, now, bodies, events);
