@@ -106,7 +106,7 @@ TEST_CASE("A driver that slows down softens the coupling within 50 ms and the no
     def.device_Hz = 1000, def.slows_at_s = 2, def.slow_Hz = slow_Hz;
     always_slow.device_Hz = slow_Hz;
     const DeviceEpisodeResult r = run_device_episode(def);
-    const double final_N_m = run_device_episode(always_slow).limits.back().stiffness_N_m;
+    const double final_N_m = run_device_episode(always_slow).limits.back().stiffness_limit_N_m;
     CAPTURE(slow_Hz, final_N_m);
     for (const auto& at : r.limits) {
       if (at.time_s > 0.5 && at.time_s < 2) CHECK_FALSE(at.softened);
