@@ -136,7 +136,7 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   publish(out);
   for (const presentation_t& report : out.reports) host().report(report);
   if (host().live()) quality_.add(host().clock() - now);
-  return status();
+  return status(now);
 }
 
 TickOutput& NodeRenderer::render(sync::HostTime now) {
@@ -157,11 +157,12 @@ void NodeRenderer::publish(TickOutput& out) {
   if (device_force_t* force = session_->force_message()) host().bus().publish(channels::kDeviceForce, *force);
 }
 
-sync::Status NodeRenderer::status() const {
+sync::Status NodeRenderer::status(sync::HostTime now) const {
   sync::Status s{.quality = quality_.step(), .qualities = Quality::steps()};
   if (session_->device_lost()) {
     s.state = node_health_t::OUTPUT_LOST;
-    s.text = "the device does not answer, or two processes command it: the force is zero";
+    const std::string reason = session_->device_text(now);
+    s.text = (reason.empty() ? "the device does not answer" : reason) + ": the force is zero";
   } else if (is_pointer_) {
     s.text = "the tool is a pointer and does not touch";
   } else if (session_->has_touch_model() && session_->lost()) {
@@ -169,6 +170,7 @@ sync::Status NodeRenderer::status() const {
     s.text = "no touch model: the force is zero";
   } else if (session_->has_touch_model()) {
     s.text = maps_ ? maps_->error : "reads the maps of its surfaces";
+    if (s.text.empty()) s.text = session_->device_text(now);
   } else {
     s.state = node_health_t::READY;
     s.text = "waits for a touch model";

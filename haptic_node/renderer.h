@@ -47,7 +47,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   void receive();
   TickOutput& render(sync::HostTime now);
   void publish(TickOutput& out);
-  sync::Status status() const;
+  sync::Status status(sync::HostTime now) const;
 
   std::string tool_name_;
   std::shared_ptr<const DeviceSpec> device_spec_;

@@ -1,15 +1,14 @@
 #include "haptic_node/devices/external.h"
 
-#include <algorithm>
-#include <tactus/device_force_t.hpp>
-#include <tactus/device_state_t.hpp>
-
 #include "lcmtypes/vectors.h"
 
 namespace tactus::haptic {
 
-External::External(std::string name, const Eigen::Vector3d& offset_m, double stale_after_s)
-    : name_(std::move(name)), offset_m_(offset_m), stale_after_(sync::from_seconds(stale_after_s)) {
+External::External(std::string name, const Eigen::Vector3d& offset_m, const ExternalDef& def)
+    : name_(std::move(name)),
+      offset_m_(offset_m),
+      stream_(sync::from_seconds(def.stale_after_s), sync::from_seconds(def.unknown_delay_s)),
+      timing_(def.at_once) {
   accepted_.position = offset_m_;
   force_.header.sim_time_ns = -1;
   force_.device = name_;
@@ -18,49 +17,49 @@ External::External(std::string name, const Eigen::Vector3d& offset_m, double sta
 
 void External::on_message(const device_state_t& state, sync::HostTime arrival) {
   if (state.device != name_) return;
-  const bool silent = !newest_ || arrival - newest_arrival_ > stale_after_;
-  if (newest_ && state.header.incarnation != newest_->header.incarnation) {
-    if (!silent) {
-      last_contradiction_ = arrival;
-      return;
-    }
-  } else if (newest_) {
-    // The message is a repetition, or a newer one has overtaken it.
-    const std::int64_t passed_ns = state.header.publish_time_ns - newest_->header.publish_time_ns;
-    if (passed_ns <= 0) return;
-    // Messages that queued up arrive together, so this uses the times of the sender; at least one tick, because
-    // its clock may be coarse.
-    const double passed_s = std::max(1e-9 * static_cast<double>(passed_ns), 1e-3);
-    const double jump_m = (to_eigen(state.pose.position_m) - to_eigen(newest_->pose.position_m)).norm();
-    if (!silent && jump_m > kMaxSpeed_m_s * passed_s) last_contradiction_ = arrival;
-  }
-  newest_ = state;
-  newest_arrival_ = arrival;
+  const StateStream::Result result = stream_.add(state, arrival);
+  if (result == StateStream::Result::kRejected) return;
+  if (result == StateStream::Result::kRestarted) timing_.restart();
+  timing_.on_state(state.header.publish_time_ns, stream_.transit_s(), arrival);
+  if (!lost(arrival)) accept_newest();
 }
 
 void External::on_message(const device_force_t& others, sync::HostTime arrival) {
-  if (others.device == name_) last_contradiction_ = arrival;
+  if (others.device == name_) stream_.report(StateFault::kTwoCommanders, arrival);
 }
 
 bool External::lost(sync::HostTime now) const {
-  return !newest_ || newest_->state != device_state_t::ANSWERS || now - newest_arrival_ > stale_after_ ||
-         (last_contradiction_ && now - *last_contradiction_ < stale_after_);
+  return stream_.silent(now) || stream_.newest()->state != device_state_t::ANSWERS || stream_.fault(now).has_value();
+}
+
+void External::accept_newest() {
+  const device_state_t& m = *stream_.newest();
+  accepted_.position = offset_m_ + to_eigen(m.pose.position_m);
+  accepted_.orientation = to_eigen(m.pose.orientation).normalized();
+  accepted_.velocity = to_eigen(m.velocity_m_s);
+  accepted_.spin = to_eigen(m.spin_rad_s);
+  accepted_.buttons = m.buttons;
 }
 
 DeviceState External::read(sync::HostTime now) {
+  accepted_.loop = timing_.step(now);
   accepted_.lost = lost(now);
-  if (accepted_.lost) {
-    accepted_.velocity.setZero();
-    accepted_.spin.setZero();
-    accepted_.buttons = 0;
+  if (!accepted_.lost) {
+    accept_newest();
     return accepted_;
   }
-  accepted_.position = offset_m_ + to_eigen(newest_->pose.position_m);
-  accepted_.orientation = to_eigen(newest_->pose.orientation).normalized();
-  accepted_.velocity = to_eigen(newest_->velocity_m_s);
-  accepted_.spin = to_eigen(newest_->spin_rad_s);
-  accepted_.buttons = newest_->buttons;
+  accepted_.velocity.setZero();
+  accepted_.spin.setZero();
+  accepted_.buttons = 0;
   return accepted_;
+}
+
+std::string External::problem(sync::HostTime now) const {
+  if (!lost(now)) return "";
+  const std::string device = "the device \"" + name_ + "\" ";
+  if (const auto fault = stream_.fault(now)) return device + stream_.describe(*fault);
+  if (!stream_.newest()) return device + "has sent no state; start its driver";
+  return device + (stream_.silent(now) ? "sends no new states; check its driver" : "does not answer its driver");
 }
 
 void External::write(const Wrench& wrench) {

@@ -16,6 +16,9 @@ struct CouplingLimits {
   double damping_ratio = 0.7;
   double device_mass_kg = 0.1;
   double device_damping_N_s_m = 10;
+  // Least damping of device and holding hand together. It counts for the damping ratio only, because a device must
+  // also be stable without a hand.
+  double held_damping_N_s_m = 0;
 };
 
 struct Gains {
@@ -25,9 +28,13 @@ struct Gains {
 
 // Device (mass M, damper b to ground) and body (mass m, seen along the normal) are joined by spring K and damper
 // B. They move against each other with reduced mass mu = M m / (M + m), damped by B + b rho^2, rho = m / (M + m).
-// The limits:
-//   B <= b / 2                                  half of the dissipation of the device is left for the sampling
-//   K <= 2 (b - B) / T                          passive for any hand (Colgate and Schenkel 1997)
+// The force is computed from a state that is device_delay old when it acts, and is held for a period T, so it lags by
+// L = T / 2 + device_delay. The limits:
+//   B <= b / 2, B <= b - 0.05 N s/m             half of the dissipation of the device is left for the lag; a nearly
+//                                               undamped device gets no damper
+//   K <= 0.8 (b - B) / L                        passive for any hand (Colgate and Schenkel 1997, with a delay: Gil et
+//                                               al. 2009); 0.8 leaves dissipation for fast motion
+//   B >= 1.25 K L                               for slow motion, a spring that lags by L is a damper of -K L
 //   K <= factor * m / tau^2                     a moving body answers only after the loop delay tau; lower when
 //                                               tau is long compared with the motion of hands
 //   B >= 1.5 K tau, B <= 3 factor * m / tau     for motion of frequency w, a spring that is tau late is a damper
@@ -35,10 +42,23 @@ struct Gains {
 //                                               -K sin(w tau) / w and drives the oscillation of the body. The
 //                                               damper returns the energy that the spring takes; both are late, so
 //                                               K decreases where B cannot increase
-//   (B + b rho^2) / (2 sqrt(K mu)) >= ratio     first by more damping, then by less stiffness
-// body_mass_kg of 1e9 and above means a fixed body; the limits with tau then do not apply.
+//   (B + h rho^2) / (2 sqrt(K mu)) >= ratio     first by more damping, then by less stiffness; h: the larger one of b
+//                                               and of the damping with a holding hand
+// body_mass_kg of 1e9 and above means a fixed body; the limits with tau then do not apply. loop_delay_s: tau, with the
+// lag of the device; period_s: T, > 0, the longer one of the periods of the tick and of the device; device_delay_s: from
+// the measurement of a state to the effect of its force, without the hold.
 Gains coupling_gains(double surface_stiffness_N_m, double surface_damping_N_s_m, double body_mass_kg,
-                     double loop_delay_s, double period_s, const CouplingLimits& limits);
+                     double loop_delay_s, double period_s, const CouplingLimits& limits, double device_delay_s = 0);
+
+// Least damping of a hand that holds a stylus: the lowest of fifteen people (Fu and Cavusoglu 2012, table III, as
+// others quote it).
+inline constexpr double kHeldDamping_N_s_m = 3.7;
+
+// Factors of the passivity controller on the stiffness, 0 .. 1, to movable bodies and to walls.
+struct CouplingFactors {
+  CouplingFactors(double to_bodies = 1, double to_walls = 1) : bodies(to_bodies), walls(to_walls) {}
+  double bodies, walls;
+};
 
 // Estimates the loop delay: the time from a movement of the tool until the resulting motion of the body is felt.
 // It is the recent peak of the age of an arriving touch model, or the mean age in use if that is larger, plus one
@@ -69,14 +89,14 @@ class LoopDelay {
 
 // The gains of a surface as rendered. The damping increases with the depth of the tool (after Hunt and Crossley
 // 1975) up to half a millimetre, where it reaches its full value, so the force begins and ends at zero at any
-// speed of the hand. factor: on the stiffness to moving bodies; its square root applies to the damping.
-Gains rendered_gains(const Surface& s, double factor, double pressed_m);
+// speed of the hand. The square root of a factor applies to the damping.
+Gains rendered_gains(const Surface& s, const CouplingFactors& factors, double pressed_m);
 
 // Computes the force of each surface on the hand, N, into `forces`. The normal part never pulls. The tangential
 // part acts along the shift of the proxy and, while it sticks, against the motion over the surface; it stays
 // within the friction cone and uses the rendered gains. Realtime-safe: yes.
 void coupling_forces(std::span<const Surface> surfaces, const Eigen::Vector3d& shift_m,
                      const Eigen::Vector3d& device_velocity, bool slipping, std::span<Eigen::Vector3d> forces,
-                     double factor = 1);
+                     const CouplingFactors& factors = {});
 
 }  // namespace tactus::haptic

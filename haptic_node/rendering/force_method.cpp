@@ -1,6 +1,5 @@
 #include "haptic_node/rendering/force_method.h"
 
-#include "haptic_node/rendering/coupling.h"
 #include "haptic_node/contact/direct.h"
 #include "haptic_node/rendering/rigid_coupling.h"
 
@@ -80,24 +79,24 @@ void ForceMethod::solve(std::span<Surface> surfaces, const DeviceState& device, 
   }
 }
 
-void ForceMethod::compute_forces(std::span<const Surface> surfaces, const DeviceState& device, double factor,
+void ForceMethod::compute_forces(std::span<const Surface> surfaces, const DeviceState& device, const CouplingFactors& factors,
                                  std::span<Eigen::Vector3d> forces) const {
   switch (kind_) {
     case Kind::kProxy:
-      coupling_forces(surfaces, proxy_.shift(), device.velocity, proxy_.slipping(), forces, factor);
+      coupling_forces(surfaces, proxy_.shift(), device.velocity, proxy_.slipping(), forces, factors);
       break;
-    case Kind::kRigid: rigid_forces(surfaces, rigid_, device, factor, forces); break;
-    case Kind::kDirect: direct_forces(surfaces, device, rigid_.lever_m(), radius_m_, factor, forces); break;
+    case Kind::kRigid: rigid_forces(surfaces, rigid_, device, factors, forces); break;
+    case Kind::kDirect: direct_forces(surfaces, device, rigid_.lever_m(), radius_m_, factors, forces); break;
   }
 }
 
-StoredEnergy ForceMethod::stored_energy(std::span<const Surface> surfaces) const {
+StoredEnergy ForceMethod::stored_energy(std::span<const Surface> surfaces, bool movable) const {
   StoredEnergy all;
   Eigen::Vector3d push_N = Eigen::Vector3d::Zero(), depth_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d moment_N = Eigen::Vector3d::Zero(), turn_m = Eigen::Vector3d::Zero();
   double stiffest_N_m = 0, friction_J = 0, each_J = 0;
   for (const Surface& s : surfaces) {
-    if (s.depth_m <= 0 || !s.movable()) continue;
+    if (s.depth_m <= 0 || s.movable() != movable) continue;
     all.pressed = true;
     const double K = s.coupling_stiffness_N_m;
     push_N += K * s.depth_m * s.normal;

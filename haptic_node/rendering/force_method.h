@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "haptic_node/devices/device.h"
+#include "haptic_node/rendering/coupling.h"
 #include "haptic_node/safety/passivity.h"
 #include "haptic_node/contact/proxy.h"
 #include "haptic_node/contact/rigid_proxy.h"
@@ -37,11 +38,11 @@ class ForceMethod {
   void reset_reach(const DeviceState& device);
   // One tick: sets the depths. Realtime-safe: yes.
   void solve(std::span<Surface> surfaces, const DeviceState& device, double dt);
-  // After solve(): the force of each surface on the hand, N. factor: on the coupling stiffness to moving bodies.
-  void compute_forces(std::span<const Surface> surfaces, const DeviceState& device, double factor,
+  // After solve(): the force of each surface on the hand, N.
+  void compute_forces(std::span<const Surface> surfaces, const DeviceState& device, const CouplingFactors& factors,
                       std::span<Eigen::Vector3d> forces) const;
-  // Energy in the springs to moving bodies, at factor 1.
-  StoredEnergy stored_energy(std::span<const Surface> surfaces) const;
+  // Energy in the springs to movable bodies, or to walls, at factor 1.
+  StoredEnergy stored_energy(std::span<const Surface> surfaces, bool movable = true) const;
 
   // Pose of the proxy; with direct rendering, of the device.
   const Eigen::Vector3d& position() const { return pose_.position; }

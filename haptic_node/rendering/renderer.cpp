@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "haptic_node/contact/rotation_math.h"
+#include "haptic_node/rendering/rigid_coupling.h"
 #include "lcmtypes/vectors.h"
 
 namespace tactus::haptic {
@@ -24,20 +25,36 @@ SurfaceLimits surface_limits(const Settings& s) {
   return {s.recovery_time_s, s.recovery_speed_m_s, s.recovery_turn_rad_s, s.extrapolate_at_most_s,
           s.surface_speed_limit_m_s};
 }
+// Lag above which the controller of the passivity also acts on walls. Below it a spring of 1 N/mm generates at most
+// 1 N s/m times the squared speed, which the damping of the coupling takes back. Design.
+constexpr double kSlowLag_s = 0.001;
+// Touch that is softer than this share of that of an immediate device is reported. Design: 0.7, as for the largest
+// difference of stiffness that passes unnoticed in a comparison (unverified).
+constexpr double kSoftened = 0.7;
+// Ticks in one period of the fastest transient. Design: fewer do not show a vibration.
+constexpr double kTicksPerPeriod = 3;
+
 CouplingLimits coupling_limits(const Settings& s) {
-  return {s.stiffness_limit_N_m, s.mass_factor, s.damping_ratio, s.device_mass_kg, s.device_damping_Ns_m};
+  return {s.stiffness_limit_N_m, s.mass_factor,         s.damping_ratio,
+          s.device_mass_kg,      s.device_damping_Ns_m, kHeldDamping_N_s_m};
 }
 ReliefDef reliefs_of(const Settings& s) {
   return relief_def(s.bump, s.bump_steepest, s.recovery_time_s, s.recovery_speed_m_s);
 }
-PassivityLimits passivity_limits(const Settings& s) {
-  return {s.generated_limit_J, s.force_limit_N, s.surface_speed_limit_m_s};
+// The simulation holds the mean force of a tick for as long as the next tick, if ticks are longer than its steps.
+double hold_of_push_s(double rate_Hz, double step_s) { return std::max(0.0, 1 / rate_Hz - step_s); }
+// step_s: of the simulation.
+PassivityLimits passivity_limits(const Settings& s, double step_s) {
+  PassivityLimits limits{s.generated_limit_J, s.force_limit_N, s.surface_speed_limit_m_s};
+  limits.round_trip_s = std::max(limits.round_trip_s, step_s + 1 / s.rate_Hz + hold_of_push_s(s.rate_Hz, step_s));
+  return limits;
 }
 TransientShape transient_shape(const Settings& s) {
+  const double fastest_Hz = s.rate_Hz / kTicksPerPeriod;
   return {s.transient_gain,
           s.transient_limit_N,
-          s.transient_soft_frequency_Hz,
-          s.transient_hard_frequency_Hz,
+          std::min(s.transient_soft_frequency_Hz, fastest_Hz),
+          std::min(s.transient_hard_frequency_Hz, fastest_Hz),
           s.transient_decay_1_s,
           {kLatePolicy, sync::from_seconds(s.late_tolerance_s),
            sync::from_seconds(std::max(s.late_tolerance_s, s.drop_after_s))}};
@@ -71,7 +88,7 @@ Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Saf
       force_crossfade_(settings.recovery_time_s, settings.recovery_speed_m_s * settings.stiffness_limit_N_m),
       torque_crossfade_(settings.recovery_time_s,
                         settings.recovery_speed_m_s * settings.stiffness_limit_N_m * force_method_.lever_m()),
-      passivity_(passivity_limits(settings)),
+      passivity_(passivity_limits(settings, step_s_)),
       transients_(transient_shape(settings)),
       safety_(safety),
       fade_(settings.stale_after_s, settings.fade_s) {
@@ -96,7 +113,7 @@ void Renderer::change(const Settings& settings) {
     force_crossfade_.restart();
     torque_crossfade_.restart();
   }
-  passivity_.change(passivity_limits(settings));
+  passivity_.change(passivity_limits(settings, step_s_));
 }
 
 sync::Nanoseconds Renderer::uncertainty() const {
@@ -108,8 +125,7 @@ void Renderer::update_device(const TickInput& in) {
   if (!device.position.allFinite() || !device.velocity.allFinite() || !device.orientation.coeffs().allFinite() ||
       !device.spin.allFinite()) {
     device = device_;
-    device.velocity.setZero();
-    device.spin.setZero();
+    device.lost = true;
   }
   if (!started_) {
     started_ = true;
@@ -154,12 +170,31 @@ void Renderer::update_surfaces(const TickInput& in, double dt) {
   surfaces_.step(in.fresh, sim_now, force_method_.position(), dt, force_method_.planes(in.planes));
 }
 
+Gains Renderer::gains(const Surface& s) const {
+  // A state that is held for the period of the device is late by half of it.
+  const double delay_s = device_.loop.delay_s, device_s = delay_s + (hold_s() - period_s_) / 2;
+  double stiffness_N_m = s.stiffness_N_m;
+  if (!device_.loop.immediate() && force_method_.renders_torque())
+    stiffness_N_m =
+        std::min(stiffness_N_m, turning_limit_N_m(settings_, force_method_.lever_m(), hold_s(), delay_s));
+  return coupling_gains(stiffness_N_m, s.damping_N_s_m, s.effective_mass_kg,
+                        loop_delay_.value_s(step_s_, period_s_) + hold_of_push_s(settings_.rate_Hz, step_s_) + device_s,
+                        hold_s(), coupling_, delay_s);
+}
+
+Renderer::DeviceLimit Renderer::device_limit() const {
+  constexpr double kRigid_N_m = 1e12, kFixed_kg = 1e10;
+  const auto wall = [&](double hold, double delay) {
+    return coupling_gains(kRigid_N_m, 0, kFixed_kg, period_s_, hold, coupling_, delay).stiffness_N_m;
+  };
+  const double limit = wall(hold_s(), device_.loop.delay_s);
+  return {device_.loop, limit, limit < kSoftened * wall(period_s_, 0)};
+}
+
 Wrench Renderer::constraint_wrench(double dt) {
-  const double delay_s = loop_delay_.value_s(step_s_, period_s_);
   const double follow = 1 - std::exp(-dt / settings_.recovery_time_s);
   for (Surface& s : surfaces_.list()) {
-    const Gains g =
-        coupling_gains(s.stiffness_N_m, s.damping_N_s_m, s.effective_mass_kg, delay_s, period_s_, coupling_);
+    const Gains g = gains(s);
     if (s.coupling_stiffness_N_m < 0) s.coupling_stiffness_N_m = g.stiffness_N_m;
     s.coupling_stiffness_N_m += follow * (g.stiffness_N_m - s.coupling_stiffness_N_m);
     s.coupling_damping_N_s_m = g.damping_N_s_m;
@@ -167,8 +202,10 @@ Wrench Renderer::constraint_wrench(double dt) {
   forces_.assign(surfaces_.list().size(), Eigen::Vector3d::Zero());
   reliefs_.apply_heights(surfaces_.list(), force_method_.tool_pose(), dt);
   force_method_.solve(surfaces_.list(), device_, dt);
-  passivity_.observe(force_method_.stored_energy(surfaces_.list()), motion_m_, rotation_rad_, model_age_s_, dt);
-  force_method_.compute_forces(surfaces_.list(), device_, passivity_.factor(), forces_);
+  passivity_.control_walls(lag_s() > kSlowLag_s);
+  passivity_.observe(force_method_.stored_energy(surfaces_.list()), motion_m_, rotation_rad_, model_age_s_, dt,
+                     device_.loop, force_method_.stored_energy(surfaces_.list(), false));
+  force_method_.compute_forces(surfaces_.list(), device_, {passivity_.factor(), passivity_.wall_factor()}, forces_);
   reliefs_.tilt_forces(surfaces_.list(), force_method_.tool_pose(), forces_);
   const Wrench sum = force_method_.sum(surfaces_.list(), forces_);
   return {force_crossfade_.step(surfaces_.list(), sum.force_N, dt),
@@ -244,12 +281,23 @@ void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_
   m.transient_N = to_vec3f(transient_N);
   m.energy_J = static_cast<float>(safety_.energy_J());
   m.generated_J = static_cast<float>(passivity_.generated_J());
-  m.coupling = static_cast<float>(passivity_.factor());
+  m.coupling = static_cast<float>(std::min(passivity_.factor(), passivity_.wall_factor()));
   m.touch_status = static_cast<std::int8_t>(status(in));
   m.fade = static_cast<float>(force_scale());
   m.buttons = device_.buttons;
   impulses_.write_constraints(in.now, m.constraints);
   m.constraint_count = static_cast<std::int32_t>(m.constraints.size());
+}
+
+// Applies the limits of safety. The energy account pairs the motion with the force that acted during it.
+Wrench Renderer::limited(const Wrench& wanted, double dt) {
+  const double now_s = sync::to_seconds(last_.time_since_epoch());
+  const DeviceLoop& loop = device_.loop;
+  if (!loop.immediate())
+    safety_.set_acting(acting_force_of_tick(commands_, now_s, dt, loop), std::max(loop.span_s, dt));
+  const Wrench command = safety_.limit(wanted, motion_m_, rotation_rad_, dt);
+  commands_.record(now_s, command);
+  return command;
 }
 
 TickOutput& Renderer::step(const TickInput& in) {
@@ -267,10 +315,9 @@ TickOutput& Renderer::step(const TickInput& in) {
   const Eigen::Vector3d transient = transients_.step(in.now, period_s_, felt, uncertainty(), out_.reports);
   const Eigen::Vector3d wanted = quantised(force_scale() * (constraint.force_N + transient), in.force_step_N);
   if (!device_.lost) safety_.set_position(device_.position);
-  const Wrench limited =
-      safety_.limit(Wrench{wanted, force_scale() * constraint.torque_N_m}, motion_m_, rotation_rad_, dt);
-  out_.force_N = limited.force_N;
-  out_.torque_N_m = limited.torque_N_m;
+  const Wrench command = limited(Wrench{wanted, force_scale() * constraint.torque_N_m}, dt);
+  out_.force_N = command.force_N;
+  out_.torque_N_m = command.torque_N_m;
   // The limits reduce the transient in proportion.
   const double left = wanted.norm() > 0 ? std::min(1.0, out_.force_N.norm() / wanted.norm()) : 0.0;
   const Eigen::Vector3d felt_transient = left * force_scale() * transient;

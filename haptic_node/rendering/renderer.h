@@ -2,6 +2,7 @@
 // hand, the tool state and the reports. Pure: no clock, no bus, no device.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <tactus/contact_event_t.hpp>
@@ -76,11 +77,24 @@ class Renderer {
   bool lost() const { return fade_.lost(); }
   // True while the device is lost.
   bool device_lost() const { return device_.lost; }
+  // Timing of the device, and the stiffness that it leaves for a wall, N/m: lower than that of a device that is read
+  // and commanded in the tick itself. softened: touch is less than 0.7 as stiff as with such a device.
+  struct DeviceLimit {
+    DeviceLoop loop;
+    double stiffness_N_m = 0;
+    bool softened = false;
+  };
+  DeviceLimit device_limit() const;
 
  private:
   // Factor on the wanted force: below 1 while the touch model or the device is lost or has just returned.
   double force_scale() const { return fade_.value() * device_share_; }
   void update_device(const TickInput& in);
+  // Period for which a force is held, and the lag of the force behind the state, s.
+  double hold_s() const { return std::max(period_s_, device_.loop.period_s); }
+  double lag_s() const { return hold_s() / 2 + device_.loop.delay_s; }
+  Gains gains(const Surface& s) const;
+  Wrench limited(const Wrench& wanted, double dt);
   void update_surfaces(const TickInput& in, double dt);
   void handle_events(const TickInput& in);
   Hit hit_of(const contact_event_t& e, sync::HostTime scheduled) const;
@@ -106,6 +120,7 @@ class Renderer {
   Passivity passivity_;
   Transients transients_;
   Safety& safety_;
+  ForceHistory commands_;  // to the device
   Fade fade_;
   ContactImpulses impulses_;
   PendingOnsets pending_onsets_;

@@ -29,22 +29,31 @@ double off_centre_factor(const Surface& s, const Eigen::Vector3d& arm, double le
   return 1 + (arm.cross(s.normal) / lever_m).squaredNorm();
 }
 
+CouplingLimits turning_limits(const Settings& s) {
+  return {s.turn_stiffness_limit_Nm_rad, s.mass_factor, s.damping_ratio, s.device_inertia_kgm2,
+          s.device_turn_damping_Nms_rad};
+}
+
+// Of a wall without compliance.
+double stiffest(const CouplingLimits& limits, double period_s, double device_delay_s) {
+  return coupling_gains(kRigid_N_m, 0, kFixed_kg, period_s, period_s, limits, device_delay_s).stiffness_N_m;
+}
+
 }  // namespace
 
 double coupling_lever_m(const Settings& s) {
   const double period_s = 1 / s.rate_Hz;
   const CouplingLimits moving{s.stiffness_limit_N_m, s.mass_factor, s.damping_ratio, s.device_mass_kg,
                               s.device_damping_Ns_m};
-  const CouplingLimits turning{s.turn_stiffness_limit_Nm_rad, s.mass_factor, s.damping_ratio,
-                               s.device_inertia_kgm2, s.device_turn_damping_Nms_rad};
-  const auto stiffest = [&](const CouplingLimits& limits) {
-    return coupling_gains(kRigid_N_m, 0, kFixed_kg, period_s, period_s, limits).stiffness_N_m;
-  };
-  return std::sqrt(stiffest(turning) / stiffest(moving));
+  return std::sqrt(stiffest(turning_limits(s), period_s, 0) / stiffest(moving, period_s, 0));
+}
+
+double turning_limit_N_m(const Settings& s, double lever_m, double period_s, double device_delay_s) {
+  return stiffest(turning_limits(s), period_s, device_delay_s) / (lever_m * lever_m);
 }
 
 void rigid_forces(std::span<const Surface> surfaces, const RigidProxy& proxy, const DeviceState& device,
-                  double factor, std::span<Eigen::Vector3d> forces) {
+                  const CouplingFactors& factors, std::span<Eigen::Vector3d> forces) {
   const std::size_t n = std::min({surfaces.size(), forces.size(), kMaxHalfSpaces});
   std::array<double, kMaxHalfSpaces> rate{};  // of each depth, m/s
   proxy.depth_rates(surfaces, device.velocity, device.spin, {rate.data(), n});
@@ -60,7 +69,7 @@ void rigid_forces(std::span<const Surface> surfaces, const RigidProxy& proxy, co
     if (!proxy.feasible())
       rate[i] =
           -share * relative_velocity(s, device, arm).dot(s.normal) / off_centre_factor(s, arm, proxy.lever_m());
-    const auto [K, B] = rendered_gains(s, factor, pressed);
+    const auto [K, B] = rendered_gains(s, factors, pressed);
     const double normal = std::max(0.0, K * s.depth_m + B * rate[i]);
     Eigen::Vector3d along = K * s.grip;
     if (!s.slipping) along -= share * B / off_centre_factor(s, arm, proxy.lever_m()) * slip_velocity;
@@ -69,7 +78,7 @@ void rigid_forces(std::span<const Surface> surfaces, const RigidProxy& proxy, co
 }
 
 void direct_forces(std::span<const Surface> surfaces, const DeviceState& device, double lever_m,
-                   double tool_radius_m, double factor, std::span<Eigen::Vector3d> forces) {
+                   double tool_radius_m, const CouplingFactors& factors, std::span<Eigen::Vector3d> forces) {
   double pressed = 0;
   for (const Surface& s : surfaces) pressed += s.depth_m;
   for (std::size_t i = 0; i < surfaces.size() && i < forces.size(); ++i) {
@@ -78,7 +87,7 @@ void direct_forces(std::span<const Surface> surfaces, const DeviceState& device,
     if (s.depth_m <= 0) continue;
     const Eigen::Vector3d arm = device.orientation * s.tool_point - tool_radius_m * s.normal;
     const Eigen::Vector3d speed = relative_velocity(s, device, arm);
-    const auto [K, B] = rendered_gains(s, factor, pressed);
+    const auto [K, B] = rendered_gains(s, factors, pressed);
     const double damping = s.depth_m / pressed * B / off_centre_factor(s, arm, lever_m);
     const double normal = std::max(0.0, K * s.depth_m - damping * speed.dot(s.normal));
     forces[i] = normal * s.normal + clamped(-damping * tangential(speed, s.normal), normal * s.friction_dynamic);

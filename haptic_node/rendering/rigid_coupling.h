@@ -15,16 +15,19 @@ namespace tactus::haptic {
 // times angle. It is the square root of the largest rotational over the largest translational stiffness, each from
 // coupling_gains; the rotational one uses the inertia and the damping of rotation.
 double coupling_lever_m(const Settings& settings);
+// Largest translational stiffness, N/m, whose rotational counterpart (times lever^2) is passive with this period of the
+// hold and this delay of the device, as in coupling_gains.
+double turning_limit_N_m(const Settings& settings, double lever_m, double period_s, double device_delay_s);
 
 // Computes the force of each binding surface, N, into `forces`. Normal part: from the depth and from the rate at
 // which the device presses into the surface, shared among all binding surfaces; it never pulls. Tangential part:
-// from the grip of the surface, within the friction cone. factor: as in coupling_forces. Realtime-safe: yes.
+// from the grip of the surface, within the friction cone. factors: as in coupling_forces. Realtime-safe: yes.
 void rigid_forces(std::span<const Surface> surfaces, const RigidProxy& proxy, const DeviceState& device,
-                  double factor, std::span<Eigen::Vector3d> forces);
+                  const CouplingFactors& factors, std::span<Eigen::Vector3d> forces);
 
 // Like rigid_forces, but for direct rendering: friction is dynamic and vanishes with the speed over the surface.
 void direct_forces(std::span<const Surface> surfaces, const DeviceState& device, double lever_m,
-                   double tool_radius_m, double factor, std::span<Eigen::Vector3d> forces);
+                   double tool_radius_m, const CouplingFactors& factors, std::span<Eigen::Vector3d> forces);
 
 // Changes the forces at those arms as little as possible, large forces most, so that their sum is `felt`. The
 // force is exact. The torque is exact as far as the contact points allow without force couples larger than

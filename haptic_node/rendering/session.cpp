@@ -1,6 +1,7 @@
 #include "haptic_node/rendering/session.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <tactus/scene_t.hpp>
 #include <tactus/tool_def_t.hpp>
 
@@ -30,6 +31,7 @@ Session::Session(const scene_t& scene, const NodeConfig& config, std::unique_ptr
       renderer_(scene, config.tool, config.settings, safety),
       touch_(config.tool, own) {
   safety.set_limits(safety_limits(config.settings));
+  device_->set_clock(own);
 }
 
 void Session::change(const Settings& settings) {
@@ -47,6 +49,17 @@ void Session::start_path(sync::HostTime now, const TouchModelView& fresh, const 
   const auto map = touch_.map(now);
   const sync::HostTime at = fresh && map ? map->to_host(sync::sim_time(fresh.header().sim_time_ns)) : now;
   device_->begin(std::clamp(at, now - kMaxModelDelay, now));
+}
+
+std::string Session::device_text(sync::HostTime now) const {
+  if (device_lost()) return device_->problem(now);
+  const Renderer::DeviceLimit limit = renderer_.device_limit();
+  if (!limit.softened) return "";
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the device sends every %.1f ms and its force acts %.0f ms later: touch is softer, at most %.0f N/m",
+                1e3 * limit.loop.period_s, 1e3 * limit.loop.delay_s, limit.stiffness_N_m);
+  return text;
 }
 
 TickOutput& Session::step(sync::HostTime now, const Degraded& degraded, std::size_t planes) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <string>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/device_force_t.hpp>
 #include <tactus/device_state_t.hpp>
@@ -74,6 +75,10 @@ class Session {
   bool has_touch_model() const { return touch_.arrival().has_value(); }  // a touch model has arrived
   bool lost() const { return renderer_.lost(); }
   bool device_lost() const { return renderer_.device_lost(); }
+  // Why the device is lost, or how its timing softens touch, without the end of the sentence; empty: neither, or not
+  // known. now: of the last step.
+  std::string device_text(sync::HostTime now) const;
+  Renderer::DeviceLimit device_limit() const { return renderer_.device_limit(); }
 
  private:
   void start_path(sync::HostTime now, const TouchModelView& fresh, const Degraded& degraded);

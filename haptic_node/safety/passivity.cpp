@@ -9,20 +9,8 @@
 namespace tactus::haptic {
 namespace {
 
-// Longer than any delay of a touch model before it counts as lost, so that the last reports have arrived.
-constexpr double kEpisodeGap_s = 0.2;
-// From a tick to the simulation step that applies its force and back, in addition to the age of the touch model: a
-// step and a tick.
-constexpr double kRoundTrip_s = 0.002;
 // Number of entries kept without force. Design: several times the number in a touch model.
 constexpr std::size_t kMaxLedgers = 32;
-// Dissipated energy counts as credit up to this value, so that old friction does not pay for a new oscillation.
-constexpr double kMaxCredit_J = 0.01;
-// Refill rate of the allowance: after a violation, touch recovers within seconds.
-constexpr double kRefill_W = 0.0002;
-// The factor falls to zero within 5 ms at 1 kHz, which keeps a force of 8 N below the slew limit. It recovers
-// within a second, slower than any oscillation of hand or body, so that it drives no cycle itself.
-constexpr double kFall_1_s = 200, kRise_1_s = 1;
 // The same limits as in safety.cpp, faster than any hand. Above them the device has jumped, and no work is
 // counted.
 constexpr double kMaxHandSpeed_m_s = 40, kMaxHandSpin_rad_s = 100;
@@ -94,19 +82,28 @@ void Passivity::record(std::span<const ContactForce> forces, std::span<const Sur
     b.force_N.setZero();
     b.torque_N_m.setZero();
   }
+  Wrench bodies, walls;
   for (std::size_t i = 0; i < forces.size() && i < surfaces.size(); ++i) {
     const ContactForce& f = forces[i];
-    if (!surfaces[i].movable() || f.force_N.isZero(0) || !f.force_N.allFinite()) continue;
+    if (f.force_N.isZero(0) || !f.force_N.allFinite()) continue;
+    Wrench& sum = surfaces[i].movable() ? bodies : walls;
+    sum.force_N += f.force_N;
+    if (about_m) sum.torque_N_m += (f.point - *about_m).cross(f.force_N);
+    if (!surfaces[i].movable()) continue;
     EnergyLedger* b = find(f.contact_id);
     if (!b) b = &add(f.contact_id);
     b->force_N -= f.force_N;
     if (about_m) b->torque_N_m -= (f.point - *about_m).cross(f.force_N);
     b->idle_s = 0;
   }
+  from_bodies_.record(time_s_, bodies);
+  from_walls_.record(time_s_, walls);
 }
 
-void Passivity::begin_episode() {
-  hand_J_ = closed_J_ = discarded_J_ = credit_J_ = 0;
+void Passivity::begin_body_episode() {
+  bodies_.begin_episode();
+  closed_J_ = 0;
+  given_bodies_J_.clear();
   for (EnergyLedger& b : ledgers_) {
     b.baseline_J = b.energy_J;
     b.pending.reset();
@@ -119,47 +116,62 @@ void Passivity::remove_idle() {
     const auto oldest =
         std::max_element(ledgers_.begin(), ledgers_.end(),
                          [](const EnergyLedger& x, const EnergyLedger& y) { return x.idle_s < y.idle_s; });
-    if (oldest->idle_s <= kEpisodeGap_s) return;
+    if (oldest->idle_s <= EnergyAccount::kEpisodeGap_s) return;
     closed_J_ += oldest->energy_J - oldest->baseline_J;
     ledgers_.erase(oldest);
   }
 }
 
-void Passivity::observe(const StoredEnergy& coupling, const Eigen::Vector3d& moved_m,
-                        const Eigen::Vector3d& turned_rad, double age_s, double dt) {
-  const bool moved = moved_m.allFinite() && moved_m.norm() <= kMaxHandSpeed_m_s * dt;
-  const bool turned = turned_rad.allFinite() && turned_rad.norm() <= kMaxHandSpin_rad_s * dt;
-  const double window_s = std::max(0.0, age_s) + kRoundTrip_s;
-  double bodies_J = 0, generated_W = 0;
+// Power that forces on the hand give to it at its newest speed, W.
+double Passivity::generated_W(const Wrench& on_hand) const {
+  if (!(motion_s_ > 0)) return 0;
+  return (on_hand.force_N.dot(moved_m_) + on_hand.torque_N_m.dot(turned_rad_)) / motion_s_;
+}
+
+// Adds the motion to the accounts of the bodies. Returns the power that the current forces generate.
+double Passivity::observe_bodies(const Eigen::Vector3d& moved_m, const Eigen::Vector3d& turned_rad, double window_s,
+                                 double dt, const DeviceLoop& loop) {
+  double bodies_J = 0, power_W = 0;
   for (EnergyLedger& b : ledgers_) {
     b.pending.add_push(b.force_N, dt);
-    if (moved) hand_J_ -= b.force_N.dot(moved_m);
-    if (turned) hand_J_ -= b.torque_N_m.dot(turned_rad);
+    // The sum of these is acting_force_of_tick; without a sum the result does not depend on the order of the contacts.
+    if (loop.immediate())
+      bodies_.give_hand(-b.force_N.dot(moved_m) - b.torque_N_m.dot(turned_rad));
     b.idle_s += dt;
     bodies_J += b.energy_J - b.baseline_J;
     if (b.idle_s <= window_s) bodies_J += b.pending.energy_J(window_s, limits_.force_N);
-    generated_W += b.force_N.dot(b.pending.velocity());
-    if (moved && dt > 0) generated_W -= b.force_N.dot(moved_m) / dt;
-    if (turned && dt > 0) generated_W -= b.torque_N_m.dot(turned_rad) / dt;
+    power_W += b.force_N.dot(b.pending.velocity()) + generated_W({-b.force_N, -b.torque_N_m});
   }
-  const double stored_J = coupling.energy_J;
+  if (!loop.immediate()) {
+    const Wrench acted = acting_force_of_tick(from_bodies_, time_s_, dt, loop);
+    bodies_.give_hand(acted.force_N.dot(moved_m) + acted.torque_N_m.dot(turned_rad));
+  }
+  given_bodies_J_.record(time_s_, closed_J_ + bodies_J);
+  return power_W;
+}
 
-  no_contact_s_ = coupling.pressed ? 0 : no_contact_s_ + dt;
-  if (no_contact_s_ > kEpisodeGap_s) begin_episode(), bodies_J = 0;
-  credit_J_ = -hand_J_ - closed_J_ - bodies_J - discarded_J_;
-  if (credit_J_ < stored_J) discarded_J_ -= kRefill_W * dt;
-  const double excess_J = std::max(0.0, credit_J_ - stored_J - kMaxCredit_J);
-  discarded_J_ += excess_J;
-  credit_J_ -= excess_J;
-  const double allowed_J = std::max(0.0, credit_J_ + limits_.allowance_J);
-  double wanted = 1;
-  if (stored_J > allowed_J) {
-    // Energy generated while the factor moves to `wanted`: half of the energy at the current force.
-    const double falling_J = 0.5 / kFall_1_s * std::max(0.0, generated_W);
-    wanted = stored_J > falling_J ? std::max(0.0, allowed_J - factor_ * falling_J) / (stored_J - falling_J) : 0.0;
-  }
-  factor_ = std::clamp(wanted, std::max(0.0, factor_ - kFall_1_s * dt), std::min(1.0, factor_ + kRise_1_s * dt));
+void Passivity::observe(const StoredEnergy& bodies, const Eigen::Vector3d& moved_m,
+                        const Eigen::Vector3d& turned_rad, double age_s, double dt, const DeviceLoop& loop,
+                        const StoredEnergy& walls) {
+  time_s_ += dt;
+  const double span_s = loop.immediate() ? dt : loop.span_s;
+  const bool moved = moved_m.allFinite() && moved_m.norm() <= kMaxHandSpeed_m_s * span_s;
+  const bool turned = turned_rad.allFinite() && turned_rad.norm() <= kMaxHandSpin_rad_s * span_s;
+  const Eigen::Vector3d by_m = moved ? moved_m : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  const Eigen::Vector3d by_rad = turned ? turned_rad : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  if (span_s > 0) moved_m_ = by_m, turned_rad_ = by_rad, motion_s_ = span_s;
+
+  const double power_W = observe_bodies(by_m, by_rad, std::max(0.0, age_s) + limits_.round_trip_s, dt, loop);
+  if (bodies_.apart(bodies.pressed, dt)) begin_body_episode();
+  const double given_J = given_bodies_J_.empty() ? 0 : given_bodies_J_.at(time_s_ - loop.age_s);
+  bodies_.settle(bodies.energy_J, given_J, power_W, limits_.allowance_J, dt);
   remove_idle();
+
+  const Wrench wall = acting_force_of_tick(from_walls_, time_s_, dt, loop);
+  walls_.give_hand(wall.force_N.dot(by_m) + wall.torque_N_m.dot(by_rad));
+  if (walls_.apart(walls.pressed, dt)) walls_.begin_episode();
+  walls_.settle(walls.energy_J, 0, generated_W(from_walls_.at(time_s_)), limits_.allowance_J, dt);
+  if (!control_walls_) walls_.release();
 }
 
 }  // namespace tactus::haptic

@@ -14,8 +14,8 @@ constexpr double kMaxHandSpeed_m_s = 40;
 // The same for rotation: one revolution per tenth of a second (design: twice the speed of a wrist).
 constexpr double kMaxHandSpin_rad_s = 63;
 
-// A late tick must not cause a jump of the force: it counts as two ticks of 1 kHz at most.
-constexpr double kMaxSlewTime_s = 0.002;
+// A late tick must not cause a jump of the force: it counts as two ticks at most.
+constexpr double kMaxSlewTicks = 2;
 
 // Share of the workspace radius over which the force goes to zero. Design: 0.2 m of 2 m take 0.2 s at a hand speed
 // of 1 m/s.
@@ -30,7 +30,7 @@ Eigen::Vector3d clamped(const Eigen::Vector3d& v, double limit) {
 
 SafetyLimits safety_limits(const Settings& s) {
   return {s.force_limit_N, s.slew_limit_N_s,  s.energy_limit_J,
-          s.power_limit_W, s.torque_limit_Nm, s.torque_slew_limit_Nm_s, s.workspace_m};
+          s.power_limit_W, s.torque_limit_Nm, s.torque_slew_limit_Nm_s, s.workspace_m, 1 / s.rate_Hz};
 }
 
 void Safety::begin_tick(sync::HostTime now) {
@@ -52,8 +52,9 @@ void Safety::set_position(const Eigen::Vector3d& device_m) {
 }
 
 Eigen::Vector3d Safety::limit(const Eigen::Vector3d& wanted_N, const Eigen::Vector3d& moved_m, double dt) {
-  const bool jumped = !moved_m.allFinite() || moved_m.norm() > kMaxHandSpeed_m_s * dt;
-  const double work_J = (jumped ? 0 : last_.dot(moved_m)) + std::exchange(torque_work_J_, 0.0);
+  const auto [acted, span_s] = std::exchange(acting_, std::nullopt).value_or(Acting{{last_, last_torque_}, dt});
+  const bool jumped = !moved_m.allFinite() || moved_m.norm() > kMaxHandSpeed_m_s * span_s;
+  const double work_J = (jumped ? 0 : acted.force_N.dot(moved_m)) + std::exchange(torque_work_J_, 0.0);
   energy_J_ += work_J;
   // A negative tank recovers within a second, so that one bad instant does not stop touch for long.
   tank_J_ = std::clamp(tank_J_ - work_J + limits_.power_W * dt, -limits_.power_W, limits_.energy_J);
@@ -61,14 +62,15 @@ Eigen::Vector3d Safety::limit(const Eigen::Vector3d& wanted_N, const Eigen::Vect
   // Full force until half of the allowance is spent; the change is too slow to be felt as a step.
   const double remaining = std::clamp(2 * tank_J_ / limits_.energy_J, 0.0, 1.0);
   const Eigen::Vector3d allowed = workspace_factor_ * remaining * clamped(wanted, limits_.force_N);
-  last_ += clamped(allowed - last_, limits_.slew_N_s * std::min(dt, kMaxSlewTime_s));
+  last_ += clamped(allowed - last_, limits_.slew_N_s * std::min(dt, kMaxSlewTicks * limits_.period_s));
   return last_;
 }
 
 Wrench Safety::limit(const Wrench& wanted, const Eigen::Vector3d& moved_m, const Eigen::Vector3d& turned_rad,
                      double dt) {
-  const bool jumped = !turned_rad.allFinite() || turned_rad.norm() > kMaxHandSpin_rad_s * dt;
-  torque_work_J_ = jumped ? 0 : last_torque_.dot(turned_rad);
+  const Acting acting = acting_.value_or(Acting{{last_, last_torque_}, dt});
+  const bool jumped = !turned_rad.allFinite() || turned_rad.norm() > kMaxHandSpin_rad_s * acting.span_s;
+  torque_work_J_ = jumped ? 0 : acting.wrench.torque_N_m.dot(turned_rad);
   Wrench w = wanted;
   if (!w.torque_N_m.allFinite()) w.torque_N_m.setZero();
   if (!w.force_N.allFinite()) w = {};
@@ -78,7 +80,7 @@ Wrench Safety::limit(const Wrench& wanted, const Eigen::Vector3d& moved_m, const
   w.force_N = limit(w.force_N, moved_m, dt);
   const double remaining = std::clamp(2 * tank_J_ / limits_.energy_J, 0.0, 1.0);
   const Eigen::Vector3d allowed = workspace_factor_ * remaining * clamped(w.torque_N_m, limits_.torque_N_m);
-  last_torque_ += clamped(allowed - last_torque_, limits_.torque_slew_N_m_s * std::min(dt, kMaxSlewTime_s));
+  last_torque_ += clamped(allowed - last_torque_, limits_.torque_slew_N_m_s * std::min(dt, kMaxSlewTicks * limits_.period_s));
   w.torque_N_m = last_torque_;
   return w;
 }

@@ -20,6 +20,7 @@ struct SafetyLimits {
   double torque_N_m = 0.3;
   double torque_slew_N_m_s = 75;
   double workspace_m = 2;
+  double period_s = 0.001;  // of the tick
 };
 SafetyLimits safety_limits(const Settings& settings);
 
@@ -40,6 +41,10 @@ class Safety {
   // force goes to zero over its outermost tenth and is zero outside. A position that is not finite is outside.
   void set_position(const Eigen::Vector3d& device_m);
 
+  // The wrench that acted during the motion of the next limit(), and the duration of that motion, > 0. Call it when the
+  // device has its own period or delay; without it, the motion is that of dt, under the force returned last.
+  void set_acting(const Wrench& acting, double span_s) { acting_ = Acting{acting, span_s}; }
+
   // One tick: returns the force to command now, N. moved_m: motion of the device since the last call, under the
   // force returned then. A wanted force that is not finite counts as zero. Realtime-safe: yes.
   Eigen::Vector3d limit(const Eigen::Vector3d& wanted_N, const Eigen::Vector3d& moved_m, double dt);
@@ -57,6 +62,11 @@ class Safety {
   double tank_J_;
   double energy_J_ = 0;
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero(), last_torque_ = Eigen::Vector3d::Zero();
+  struct Acting {
+    Wrench wrench;
+    double span_s;
+  };
+  std::optional<Acting> acting_;  // for the next limit()
   double torque_work_J_ = 0;  // of the torque, since the last tick
   sync::HostTime last_tick_{};
   std::optional<Eigen::Vector3d> centre_m_;

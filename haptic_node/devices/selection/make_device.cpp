@@ -74,7 +74,9 @@ std::unique_ptr<Device> make_device(const DeviceSpec& spec, const tool_def_t& to
                                     const Settings& settings, const Eigen::Quaterniond& rest) {
   if (spec.kind == DeviceSpec::Kind::kPlayback) return std::make_unique<Playback>(*spec.motion, spec.placement);
   if (spec.kind == DeviceSpec::Kind::kExternal)
-    return std::make_unique<External>(spec.name, spec.placement.offset_m, settings.device_stale_after_s);
+    return std::make_unique<External>(
+        spec.name, spec.placement.offset_m,
+        ExternalDef{settings.device_stale_after_s, settings.device_delay_s, settings.device_output == "at_once"});
   auto hand = make_hand(spec, tool, rest_m, settings, rest);
   if (spec.kind == DeviceSpec::Kind::kVirtualHand) return hand;
   const Eigen::Vector3d& origin_m = spec.placement.offset_m;

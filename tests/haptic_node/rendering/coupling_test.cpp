@@ -119,3 +119,32 @@ TEST_CASE("The force of one wall is stiffness times depth minus damping times th
   coupling_forces(wall, Vector3d::Zero(), {0, 0, 2}, false, force);
   CHECK(force[0].norm() == 0);
 }
+
+TEST_CASE("The stiffness of a wall is passive and uses 0.7 of what passivity and damping ratio allow, at any lag") {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> u(0, 1);
+  const auto log_between = [&](double low, double high) { return low * std::pow(high / low, u(random)); };
+  for (int round = 0; round < 20000; ++round) {
+    CouplingLimits limits;
+    limits.device_damping_N_s_m = log_between(0.02, 20);
+    limits.held_damping_N_s_m = kHeldDamping_N_s_m;
+    const double T = log_between(2.5e-4, 0.02), delay = 0.03 * u(random), surface = log_between(50, 1000);
+    const Gains g = coupling_gains(surface, 0, 1e10, 0.003, T, limits, delay);
+    const double b = limits.device_damping_N_s_m, lag = T / 2 + delay;
+    CAPTURE(b, T, delay, surface, g.stiffness_N_m, g.damping_N_s_m);
+    REQUIRE(g.damping_N_s_m <= b / 2 * 1.000001);
+    REQUIRE(g.stiffness_N_m <= (b - g.damping_N_s_m) / lag * 1.000001);
+    const double ratio = (std::clamp(b - 0.05, 0.0, b / 2) + std::max(b, 3.7)) / 1.4;
+    REQUIRE(g.stiffness_N_m >= 0.7 * std::min({surface, (b - g.damping_N_s_m) / lag, ratio * ratio / 0.1}) * 0.999);
+    // The lag must not drive slow motion: at most 0.25 mJ for 0.005 m2/s.
+    REQUIRE(g.stiffness_N_m * lag - g.damping_N_s_m <= 0.05 * 1.000001);
+  }
+}
+
+TEST_CASE("A device that lags is coupled like a node that lags by as much") {
+  const CouplingLimits limits;
+  const Gains late = coupling_gains(1e6, 0, 1e10, 0.003, 0.001, limits, 0.02);
+  CHECK(late.stiffness_N_m == Approx(0.8 * 5 / 0.0205));
+  CHECK(coupling_gains(1e6, 0, 1e10, 0.003, 0.041, limits).stiffness_N_m == Approx(late.stiffness_N_m));
+  CHECK(late.damping_N_s_m == Approx(5));
+}

@@ -120,3 +120,22 @@ TEST_CASE("The fade goes to 0 from 50 to 70 ms after the last touch model and re
   CHECK(fade.step(host_ms(500), host_ms(20), kDt) == 0);
   for (int ms = 501; ms <= 520; ++ms) CHECK(fade.step(host_ms(ms), host_ms(ms), kDt) == Approx((ms - 500) / 20.0));
 }
+
+TEST_CASE("The energy of a late device is that of the force that acted during its motion") {
+  Safety safety(SafetyLimits{});
+  for (int k = 0; k < 10; ++k) safety.limit({5, 0, 0}, Vector3d::Zero(), 1e-3);
+  // The device felt 1 N when it moved by 20 mm in 20 ms, although 5 N are commanded now.
+  safety.set_acting({Vector3d(1, 0, 0), Vector3d(0, 0.1, 0)}, 0.02);
+  safety.limit({Vector3d(5, 0, 0), Vector3d::Zero()}, {0.02, 0, 0}, {0, 0.1, 0}, 1e-3);
+  CHECK(safety.energy_J() == Approx(0.02 + 0.01));
+  // It applies to one motion only.
+  safety.limit({5, 0, 0}, {0.001, 0, 0}, 1e-3);
+  CHECK(safety.energy_J() == Approx(0.035).margin(1e-4));
+}
+
+TEST_CASE("A slow tick has the whole slew of its period") {
+  Settings settings;
+  settings.rate_Hz = 100;
+  Safety safety(safety_limits(settings));
+  CHECK(safety.limit({8, 0, 0}, Vector3d::Zero(), 0.01).x() == 8);
+}

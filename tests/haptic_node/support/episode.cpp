@@ -8,23 +8,15 @@
 #include <tactus/touch_applied_t.hpp>
 #include <tactus/touch_model_t.hpp>
 
-#include "tests/haptic_node/support/world.h"
+#include "tests/haptic_node/support/episode_world.h"
 
 namespace tactus::haptic::test {
 namespace {
 
-constexpr double kDt = 1e-3, kTool_m = 0.005;
-// The body is on a spring so that it can be pressed; the damper removes its oscillation within seconds.
-constexpr double kBodySpring_N_m = 500, kBodyDamper_Ns_m = 0.5;
-// Pushed along a table: friction of wood.
-constexpr double kTableFriction = 0.3, kGravity_m_s2 = 9.81;
 // The hand waits, so that the renderer has measured the network before the first touch.
 constexpr double kWait_s = 1;
 constexpr int kHold_ms = 3800, kEnd_ms = 5000, kJudged_ms = 500, kApart_ms = 200;
-constexpr double kSwing_N = 0.03;
 constexpr int kFreeze_ms = 1700, kThaw_ms = 2200;
-
-Vector3d place(double z) { return {0, 0, z}; }
 
 struct BurstLoss {
   std::mt19937 random;
@@ -35,6 +27,8 @@ struct BurstLoss {
     return bad;
   }
 };
+
+}  // namespace
 
 MonotoneCubic path_of(Act act) {
   const double top = kTool_m + 0.01;
@@ -54,45 +48,8 @@ MonotoneCubic path_of(Act act) {
   return {times, places, MonotoneCubic::Ends::kRest};
 }
 
-struct World {
-  const EpisodeDef& def;
-  double z = 0, v = 0, impulse = 0, energy_J = 0;  // of the body, and the impulse and energy that it received
-
-  void step(double force_N) {
-    const double m = def.mass_kg;
-    if (m <= 0) return;
-    if (def.act == Act::kPush) {
-      v += kDt * force_N / m;
-      v -= std::clamp(v, -kTableFriction * kGravity_m_s2 * kDt, kTableFriction * kGravity_m_s2 * kDt);
-    } else {
-      v += kDt * (force_N - kBodySpring_N_m * z - kBodyDamper_Ns_m * v) / m;
-    }
-    z += kDt * v;
-    impulse += force_N * kDt;
-    energy_J += force_N * v * kDt;  // this step moves the body by v dt
-  }
-  touch_model_t model_at(int ms) const {
-    auto p = plane(7, place(z), Vector3d::UnitZ());
-    p.stiffness_N_m = static_cast<float>(def.stiffness_N_m);
-    if (def.mass_kg > 0) p.effective_mass_kg = static_cast<float>(def.mass_kg);
-    p.velocity_m_s = to_vec3f(place(v));
-    touch_model_t m = model(ms, {p});
-    touch_applied_t a{};
-    a.contact_id = 7;
-    a.impulse_N_s = to_vec3(place(impulse));
-    a.energy_J = energy_J;
-    m.applied.push_back(a);
-    m.applied_count = 1;
-    return m;
-  }
-};
-
-// About the straight line that fits best: a drift is not an oscillation.
-struct Sway {
-  double rms_N = 0;
-  int swings = 0;
-};
 Sway sway(const std::vector<double>& y) {
+  constexpr double kSwing_N = 0.03;
   const double n = static_cast<double>(y.size());
   double mean = 0, slope = 0, squares = 0;
   for (const double v : y) mean += v / n;
@@ -111,6 +68,8 @@ Sway sway(const std::vector<double>& y) {
   return s;
 }
 
+namespace {
+
 double ideal_N(const EpisodeDef& def) {
   if (def.act == Act::kPush) return kTableFriction * kGravity_m_s2 * def.mass_kg;
   double compliance = 1 / def.hand.stiffness_N_m + 1 / def.stiffness_N_m;
@@ -124,7 +83,7 @@ EpisodeResult run_episode(const EpisodeDef& def, bool timed) {
   VirtualHand hand(path_of(def.act), false, def.hand);
   hand.begin(host_ms(0));
   Bench bench(def.settings);
-  World world{def};
+  EpisodeWorld world{def.mass_kg, def.stiffness_N_m, def.act == Act::kPush};
   BurstLoss bursts{std::mt19937(def.seed)};
   std::deque<touch_model_t> in_transit;
   touch_model_t now_used;
@@ -142,7 +101,7 @@ EpisodeResult run_episode(const EpisodeDef& def, bool timed) {
     const touch_model_t* fresh = nullptr;
     if (i % per_ms == 0) {
       // The reported force of the hand reaches the body a step later, as the mean force of that step.
-      world.step(-(felt - applied) / kDt);
+      world.step(-(felt - applied) / kStep_s);
       applied = felt;
       const bool lost = def.network.bursts && bursts.lost();
       const bool frozen = def.network.freezes && ms >= kFreeze_ms && ms < kThaw_ms;

@@ -60,6 +60,16 @@ struct EpisodeResult {
   std::vector<double> tick_us;  // duration of each tick, if requested
 };
 
+// The path of the hand, which waits for a second; the centre of the tool touches at 5 mm.
+MonotoneCubic path_of(Act act);
+
+// Oscillation of a force about the straight line that fits it best: a drift is not an oscillation.
+struct Sway {
+  double rms_N = 0;
+  int swings = 0;  // number of crossings of the line by more than 0.03 N to either side
+};
+Sway sway(const std::vector<double>& force_N);
+
 EpisodeResult run_episode(const EpisodeDef& def, bool timed = false);
 
 // Hand of the settings, finger tip, hand, arm; published values where available, see the definition.
