@@ -33,6 +33,7 @@
 #include "sim_node/scene/scene_assets.h"
 #include "sim_node/touch/tool_senders.h"
 #include "sync/node/node.h"
+#include "sync/text/printable.h"
 #include "sync/assets/scene_sender.h"
 
 using namespace tactus;
@@ -129,13 +130,18 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
   sync::Arguments app;
   sync::NodeOptions options;
   std::string scene;
+  std::vector<std::string> folders;
   options.add_to(app, kSimulation);
   app.add_option("SCENE", scene, "SDF file of the world").required().existing_file();
+  app.add_option("--scene-folder", folders,
+                 "folder that the scene may read besides its own, once for each; also TACTUS_SCENE_FOLDERS=DIR:DIR")
+      .existing_folder()
+      .one_value_per_use();
   sync::parse_or_exit(app, kSimulation.name, argc, argv);
 
   std::vector<std::string> warnings;
-  const sim::WorldDef world = loaded_world ? *loaded_world : sim::load_sdf(scene, warnings);
-  for (const std::string& warning : warnings) std::cerr << "sim_node: " << warning << "\n";
+  const sim::WorldDef world = loaded_world ? *loaded_world : sim::load_sdf(scene, warnings, {.folders = sim::scene_folders(folders)});
+  for (const std::string& warning : warnings) std::cerr << "sim_node: " << sync::printable(warning) << "\n";
   const sim::Settings settings = settings_of(world, options.set);
 
   sim::Simulation simulation(world, settings);

@@ -25,7 +25,7 @@ Eigen::AlignedBox2d floor_of(const sim::WorldDef& world, double rim_m) {
 
 Rules read_rules(const std::string& sdf_file) {
   std::vector<std::string> warnings;
-  const sim::WorldDef world = sim::load_sdf(sdf_file, warnings);
+  const sim::WorldDef world = sim::load_sdf(sdf_file, warnings, {.folders = sim::scene_folders({})});
   Rules rules;
   for (const sim::HoleDef& hole : world.holes) {
     Goal goal{.hole_m = hole.position_m, .hole_radius_m = hole.radius_m};

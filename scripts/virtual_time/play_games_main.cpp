@@ -183,7 +183,7 @@ int main(int argc, char** argv) try {
   loaded.wire.loss = {.share = loss_percent / 100};
   loaded.scatter = {"--scatter-along", along, "--scatter-aside", aside};
   std::vector<std::string> warnings;
-  loaded.world = sim::load_sdf(loaded.scene, warnings);
+  loaded.world = sim::load_sdf(loaded.scene, warnings, {.folders = sim::scene_folders({})});
   loaded.rules = simulated_player::read_rules(loaded.scene);
   for (std::string line; std::getline(std::cin, line);) {
     const json request = json::parse(line, nullptr, false);

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "sync/node/realtime.h"
+#include "sync/sandbox/regular_file.h"
 
 namespace tactus::sim {
 namespace {
@@ -21,15 +22,13 @@ StateStore::Done write(const std::filesystem::path& file, const StateStore::Byte
 
 StateStore::Done read(const std::filesystem::path& file) {
   std::error_code error;
-  const auto size = std::filesystem::file_size(file, error);
-  std::ifstream in(file, std::ios::binary);
-  if (error || !in) return {{}, "no state is stored under this name, and there is no file " + file.string()};
-  if (size > StateStore::kMaxBytes) return {{}, "the file " + file.string() + " is too large to be a state"};
-  StateStore::Done done;
-  done.bytes.resize(size);
-  in.read(reinterpret_cast<char*>(done.bytes.data()), static_cast<std::streamsize>(size));
-  if (!in) return {{}, "the file " + file.string() + " cannot be read"};
-  return done;
+  if (!std::filesystem::exists(file, error))
+    return {{}, "no state is stored under this name, and there is no file " + file.string()};
+  try {
+    return {sync::read_regular_file(file, StateStore::kMaxBytes), {}};
+  } catch (const std::runtime_error& e) {
+    return {{}, "the file " + file.string() + " cannot be read: " + e.what()};
+  }
 }
 
 }  // namespace

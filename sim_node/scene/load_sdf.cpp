@@ -1,7 +1,10 @@
 #include "sim_node/scene/load_sdf.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <new>
 #include <sdf/World.hh>
+#include <sstream>
 #include <stdexcept>
 
 #include "sim_node/scene/bodies.h"
@@ -83,8 +86,9 @@ void read_world(LoadContext& context, const sdf::World* world, const sdf::Model*
 
 }  // namespace
 
-WorldDef load_sdf(const std::filesystem::path& file, std::vector<std::string>& warnings) {
-  const SdfFiles files(file, warnings);
+WorldDef load_sdf(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                  const LoadOptions& options) try {
+  const SdfFiles files(file, warnings, options.folders);
   const auto root = read_sdf(files);
   const sdf::World* world = root->WorldByIndex(0);
   const sdf::Model* model = root->Model();
@@ -92,6 +96,7 @@ WorldDef load_sdf(const std::filesystem::path& file, std::vector<std::string>& w
     throw std::runtime_error(files.where(*root->Element()) + ": there is no <world> and no <model> in it");
   WorldDef def;
   LoadContext context{files, warnings, def, {}, {}, {}, nullptr};
+  context.confined = options.confined;
   if (root->WorldCount() > 1) context.warn(*root->WorldByIndex(1)->Element(), "is a second world and has no effect");
   def.name = world ? world->Name() : model->Name();
   def.source_file = file.filename().string();
@@ -99,6 +104,17 @@ WorldDef load_sdf(const std::filesystem::path& file, std::vector<std::string>& w
   read_world(context, world, model, world ? world->Element() : root->Element());
   warn_unsupported(context, root->Element());
   return def;
+} catch (const std::bad_alloc&) {
+  throw std::runtime_error(file.string() + ": the scene needs more memory than is available: simplify it");
+}
+
+std::vector<std::filesystem::path> scene_folders(const std::vector<std::string>& named) {
+  std::vector<std::filesystem::path> folders(named.begin(), named.end());
+  const char* variable = std::getenv("TACTUS_SCENE_FOLDERS");
+  std::istringstream list(variable ? variable : "");
+  for (std::string folder; std::getline(list, folder, ':');)
+    if (!folder.empty()) folders.emplace_back(folder);
+  return folders;
 }
 
 }  // namespace tactus::sim

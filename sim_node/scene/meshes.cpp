@@ -2,7 +2,9 @@
 
 #include <functional>
 #include <sstream>
+#include <stdexcept>
 
+#include "sim_node/scene/meshes/confined_reader.h"
 #include "sim_node/scene/meshes/mesh_reader.h"
 #include "sim_node/scene/sdf/sdf_eigen.h"
 #include "sim_node/scene/meshes/subdivide.h"
@@ -12,11 +14,15 @@
 namespace tactus::sim {
 namespace {
 
+// Of all meshes of a scene: each scale of a file is a mesh of its own, so that a scene of a kilobyte could need any amount
+// of memory. Twice the limit of one file; more do not fit into the assets that a receiver accepts.
+constexpr std::size_t kMaxSceneTriangles = 2 * kMaxTriangles;
+
 int add(LoadContext& context, const std::string& key, const NamedMesh& named, const sdf::Element& element,
         const std::function<TriangleMesh()>& make) {
   const auto [at, is_new] = context.mesh_of.try_emplace(key, static_cast<int>(context.world.meshes.size()));
   if (is_new) try {
-      context.world.meshes.push_back(make());
+      add_mesh(context, make());
     } catch (const std::exception& e) {
       context.reject(element, "names mesh \"" + named.uri + "\", which cannot be read: " + e.what());
     }
@@ -71,14 +77,30 @@ NamedMesh named_mesh(LoadContext& context, const sdf::Mesh& mesh, const sdf::Ele
   std::ostringstream key;
   key << named.file.string() << '|' << mesh.Submesh() << '|' << mesh.CenterSubmesh() << '|' << scale.transpose();
   named.key = key.str();
-  auto& parts = context.mesh_files[named.file.string()];
-  if (!parts) try {
-      parts = std::make_shared<const MeshParts>(read_mesh_parts(named.file));
-    } catch (const std::exception& e) {
-      context.reject(element, "names mesh \"" + named.uri + "\", which cannot be read: " + e.what());
-    }
-  named.parts = parts.get();
+  try {
+    named.parts = &mesh_parts(context, named.file);
+  } catch (const std::exception& e) {
+    context.reject(element, "names mesh \"" + named.uri + "\", which cannot be read: " + e.what());
+  }
   return named;
+}
+
+const MeshParts& mesh_parts(LoadContext& context, const std::filesystem::path& file) {
+  auto& parts = context.mesh_files[file.string()];
+  const auto& folders = context.files.readable().folders();
+  if (!parts)
+    parts = std::make_shared<const MeshParts>(context.confined ? read_mesh_parts_confined(file, folders)
+                                                               : read_mesh_parts(file, folders));
+  return *parts;
+}
+
+void add_mesh(LoadContext& context, TriangleMesh mesh) {
+  std::size_t corners = mesh.indices.size();
+  for (const TriangleMesh& other : context.world.meshes) corners += other.indices.size();
+  if (corners / 3 > kMaxSceneTriangles)
+    throw std::runtime_error("with it the scene has more than " + std::to_string(kMaxSceneTriangles) +
+                             " triangles: simplify it, or use fewer sizes of it");
+  context.world.meshes.push_back(std::move(mesh));
 }
 
 int collision_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element) {

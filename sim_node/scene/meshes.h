@@ -21,6 +21,12 @@ struct NamedMesh {
 // `element`: the <mesh>. Rejects an invalid scale and an unreadable file.
 NamedMesh named_mesh(LoadContext& context, const sdf::Mesh& mesh, const sdf::Element& element);
 
+// The content of a geometry file; each file is read once. Throws std::runtime_error with one clause.
+const MeshParts& mesh_parts(LoadContext& context, const std::filesystem::path& file);
+
+// Appends a mesh to the world. Throws std::runtime_error with one clause when the scene has too many triangles.
+void add_mesh(LoadContext& context, TriangleMesh mesh);
+
 // The whole file as one mesh, for collision; returns its index in WorldDef::meshes.
 int collision_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element);
 

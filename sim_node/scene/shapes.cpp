@@ -8,6 +8,7 @@
 #include <sdf/Plane.hh>
 #include <sdf/Sphere.hh>
 #include <sstream>
+#include <stdexcept>
 
 #include "sim_node/scene/materials/height_image.h"
 #include "sim_node/scene/meshes.h"
@@ -16,6 +17,9 @@
 
 namespace tactus::sim {
 namespace {
+
+// Of all height maps of a scene, each size of one counts: two of the largest (lcmtypes/height_map.cpp), 270 MB.
+constexpr std::size_t kMaxHeightSamples = std::size_t{2} * 4097 * 4097;
 
 int heightfield_index(LoadContext& context, const sdf::Heightmap& map, const sdf::Element& element) {
   const Eigen::Vector3d size = to_eigen(map.Size()), centre = to_eigen(map.Position());
@@ -26,7 +30,13 @@ int heightfield_index(LoadContext& context, const sdf::Heightmap& map, const sdf
   key << file.string() << "|height|" << size.transpose() << '|' << centre.transpose();
   const auto [at, is_new] = context.mesh_of.try_emplace(key.str(), static_cast<int>(context.world.heightfields.size()));
   if (is_new) try {
-      context.world.heightfields.push_back(read_height_image(file, size, centre));
+      Heightfield field = read_height_image(file, size, centre);
+      std::size_t samples = field.heights_m.size();
+      for (const Heightfield& other : context.world.heightfields) samples += other.heights_m.size();
+      if (samples > kMaxHeightSamples)
+        throw std::runtime_error("with it the height maps of the scene have more than " +
+                                 std::to_string(kMaxHeightSamples) + " samples: use smaller ones, or fewer sizes of one");
+      context.world.heightfields.push_back(std::move(field));
     } catch (const std::exception& e) {
       context.reject(element, "names height image \"" + map.Uri() + "\", which cannot be read: " + e.what());
     }

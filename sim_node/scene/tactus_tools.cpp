@@ -1,7 +1,6 @@
 #include "sim_node/scene/tactus_tools.h"
 
 #include <cmath>
-#include <fstream>
 #include <span>
 #include <tactus/tool_def_t.hpp>
 #include <tactus/waypoint_t.hpp>
@@ -10,8 +9,9 @@
 #include "lcmtypes/vectors.h"
 #include "sim_node/scene/sdf/attributes.h"
 #include "sim_node/scene/mass.h"
-#include "sim_node/scene/meshes/mesh_file.h"
+#include "sim_node/scene/meshes.h"
 #include "sim_node/model/tool_shape.h"
+#include "sync/sandbox/regular_file.h"
 
 namespace tactus::sim {
 namespace {
@@ -35,9 +35,11 @@ std::string read_device(const LoadContext& context, const sdf::Element& element,
   const ToolDevice device = parse_tool_device(text);
   if (device.file.empty()) return text;
   const std::filesystem::path file = context.asset_file(device.file, element);
-  if (std::filesystem::file_size(file) > kMaxMotionFileBytes || !std::ifstream(file))
-    context.reject(element, "names \"" + device.file + "\", which is not readable or larger than " +
-                                std::to_string(kMaxMotionFileBytes >> 20) + " MiB: give it another motion file");
+  try {
+    sync::check_regular_file(file, kMaxMotionFileBytes);
+  } catch (const std::runtime_error& e) {
+    context.reject(element, "names \"" + device.file + "\", which cannot be read: " + e.what());
+  }
   return with_device_file(text, std::filesystem::absolute(file).lexically_normal().string());
 } catch (const BadDevice& e) {
   context.reject(element, std::string("has a bad device: ") + e.what());
@@ -51,7 +53,7 @@ int mesh_of_tool(LoadContext& context, const sdf::Element& element, const std::s
   const std::string key = file.string() + "|tool|" + std::to_string(scale);
   const auto [at, is_new] = context.mesh_of.try_emplace(key, static_cast<int>(context.world.meshes.size()));
   if (is_new) try {
-      context.world.meshes.push_back(read_mesh(file, "", false, Eigen::Vector3d::Constant(scale)));
+      add_mesh(context, join_parts(mesh_parts(context, file), {"", false, Eigen::Vector3d::Constant(scale)}));
     } catch (const std::exception& e) {
       context.reject(element, "names mesh \"" + uri + "\", which cannot be read: " + e.what());
     }

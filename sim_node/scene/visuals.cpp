@@ -121,6 +121,9 @@ std::optional<std::int64_t> picture_of_file(LoadContext& context, const sdf::Ele
     sync::Asset image{asset_ref_t::IMAGE, named.file.filename().string(), picture.bytes};
     if (!picture.file.empty()) {
       const std::filesystem::path file = named.file.parent_path() / picture.file;
+      std::error_code error;
+      if (std::filesystem::exists(file, error) && !context.files.readable().resolve(file))
+        throw std::runtime_error("it is hidden or outside the folder of the scene");
       image.name = file.filename().string();
       image.bytes = read_image_file(file);
     }

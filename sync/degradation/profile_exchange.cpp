@@ -3,16 +3,18 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 #include <stdexcept>
 
 #include "sync/bus/bus.h"
 #include "sync/bus/identity.h"
+#include "sync/sandbox/regular_file.h"
 
 namespace tactus::sync {
 namespace {
 constexpr std::size_t kPageBytes = 1200;
 static_assert(ProfileReceiver::kMaxPages == kMaxProfileBytes / kPageBytes + 1);
+// Bounds the memory for a file that is then rejected as too long.
+constexpr std::uintmax_t kMaxProfileFileBytes = 1 << 20;
 constexpr const char* kFile = "profile.in_force";
 constexpr const char* kFreshFile = "profile.in_force.new";
 }  // namespace
@@ -86,14 +88,17 @@ ProfileInForce read_profile(std::string xml, const std::string& file) {
 }
 
 ProfileInForce read_profile_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  if (!file || !(text << file.rdbuf()))
-    throw std::invalid_argument("the profile " + path + " cannot be read; give the path of an XML file");
-  if (text.str().size() > kMaxProfileBytes)
+  std::string text;
+  try {
+    text = read_regular_text(path, kMaxProfileFileBytes);
+  } catch (const std::runtime_error& e) {
+    throw std::invalid_argument("the profile " + path + " cannot be read (" + e.what() +
+                                "); give the path of an XML file");
+  }
+  if (text.size() > kMaxProfileBytes)
     throw std::invalid_argument("the profile " + path +
                                 " is larger than 64 kB; remove parts that it does not need");
-  return read_profile(text.str(), path);
+  return read_profile(std::move(text), path);
 }
 
 }  // namespace tactus::sync

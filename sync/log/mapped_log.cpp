@@ -1,21 +1,21 @@
 #include "sync/log/mapped_log.h"
 
-#include <fcntl.h>
 #include <signal.h>
 #include <sys/mman.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
 #include "sync/log/log_contract.h"
 #include "sync/log/log_parts.h"
 #include "sync/log/log_reader.h"
+#include "sync/sandbox/regular_file.h"
 
 namespace tactus::sync {
 namespace {
@@ -53,8 +53,8 @@ struct File {
   }
 };
 
-[[noreturn]] void refuse(const std::string& path) {
-  throw std::runtime_error("cannot read " + path + " (" + std::strerror(errno) + "); give the path of a log");
+[[noreturn]] void refuse(const std::string& path, const std::string& why) {
+  throw std::runtime_error("cannot read " + path + " (" + why + "); give the path of a log");
 }
 
 std::vector<std::string> files_of(const std::string& path) {
@@ -75,16 +75,19 @@ MappedLog::MappedLog(const std::string& path, LogTypes types) {
   std::vector<File> files(names.size());
   std::size_t size = 0;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    struct stat status {};
-    files[i].descriptor = open(names[i].c_str(), O_RDONLY | O_CLOEXEC);
-    if (files[i].descriptor < 0 || fstat(files[i].descriptor, &status) != 0) refuse(names[i]);
-    files[i].bytes = static_cast<std::size_t>(status.st_size);
+    try {
+      RegularFile file(names[i], std::numeric_limits<std::uintmax_t>::max());
+      files[i].bytes = file.size_bytes();
+      files[i].descriptor = file.release();
+    } catch (const std::runtime_error& e) {
+      refuse(names[i], e.what());
+    }
     if (files[i].bytes > 0) size = with_border(size) + files[i].bytes;
   }
   if (size == 0) return;
   // Reserves the whole length first, so that each part has room behind the previous one.
   void* start = mmap(nullptr, size, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (start == MAP_FAILED) refuse(path);
+  if (start == MAP_FAILED) refuse(path, std::strerror(errno));
   bytes_ = {static_cast<const std::uint8_t*>(start), size};
   std::size_t at = 0;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -92,8 +95,9 @@ MappedLog::MappedLog(const std::string& path, LogTypes types) {
     if (files[i].bytes == 0) continue;
     void* place = static_cast<std::uint8_t*>(start) + at;
     if (mmap(place, files[i].bytes, PROT_READ, MAP_PRIVATE | MAP_FIXED, files[i].descriptor, 0) == MAP_FAILED) {
+      const std::string why = std::strerror(errno);
       munmap(start, size);
-      refuse(names[i]);
+      refuse(names[i], why);
     }
     at += files[i].bytes;
   }

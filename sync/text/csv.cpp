@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <sstream>
+#include <stdexcept>
+
+#include "sync/sandbox/regular_file.h"
 
 namespace tactus::sync {
 namespace {
@@ -77,14 +78,11 @@ std::optional<double> csv_number(std::string_view cell) {
 }
 
 std::optional<std::string> read_small_file(const std::filesystem::path& file, std::uintmax_t max_bytes) {
-  std::error_code none;
-  if (!std::filesystem::is_regular_file(file, none) || std::filesystem::file_size(file, none) > max_bytes)
+  try {
+    return read_regular_text(file, max_bytes);
+  } catch (const std::runtime_error&) {
     return std::nullopt;
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in || text.view().size() > max_bytes) return std::nullopt;
-  return std::move(text).str();
+  }
 }
 
 }  // namespace tactus::sync

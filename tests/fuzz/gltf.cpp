@@ -10,7 +10,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto& file = size > 4 && data[0] == 'g' ? binary : text;
   file.write(data, size);
   try {
-    const auto read = tactus::sim::read_gltf(file.path());
+    static const tactus::sync::ReadableFolders readable({file.folder()});
+    const auto read = tactus::sim::read_gltf(file.path(), readable);
     for (const auto& part : read.parts) {
       const auto corners = static_cast<int>(part.positions_m.size());
       for (const int index : part.indices)

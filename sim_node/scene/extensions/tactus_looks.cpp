@@ -12,9 +12,9 @@
 
 #include "sim_node/scene/sdf/attributes.h"
 #include "sim_node/scene/materials/pictures.h"
-#include "sim_node/scene/sdf/regular_file.h"
 #include "sync/bus/decode.h"
 #include "sync/bus/identity.h"
+#include "sync/sandbox/regular_file.h"
 #include "sync/text/settings.h"
 
 namespace tactus::sim {
@@ -138,7 +138,7 @@ std::int64_t read_text(LoadContext& context, const sdf::Element& element, const 
                        const std::string& uri) {
   const std::filesystem::path file = context.asset_file(uri, element);
   try {
-    sync::Asset text{asset_ref_t::SHADER, file.filename().string(), read_regular_file(file, kMaxShaderBytes)};
+    sync::Asset text{asset_ref_t::SHADER, file.filename().string(), sync::read_regular_file(file, kMaxShaderBytes)};
     if (text.bytes.empty()) throw std::runtime_error("it is empty");
     int line = 1;
     for (const std::uint8_t c : text.bytes) {

@@ -1,20 +1,13 @@
 #include "sim_node/scene/materials/height_image.h"
 
-#include <fstream>
-#include <stdexcept>
-
 #include "lcmtypes/height_map.h"
 #include "sync/assets/scene_receiver.h"
+#include "sync/sandbox/regular_file.h"
 
 namespace tactus::sim {
 
 sync::Bytes read_image_file(const std::filesystem::path& file) {
-  if (std::filesystem::file_size(file) > sync::SceneReceiver::kMaxAssetBytes)
-    throw std::runtime_error("it is larger than " + std::to_string(sync::SceneReceiver::kMaxAssetBytes >> 20) + " MiB");
-  std::ifstream in(file, std::ios::binary);
-  sync::Bytes bytes{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw std::runtime_error("it is not readable");
-  return bytes;
+  return sync::read_regular_file(file, sync::SceneReceiver::kMaxAssetBytes);
 }
 
 Heightfield read_height_image(const std::filesystem::path& file, const Eigen::Vector3d& size_m,

@@ -11,48 +11,95 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "sim_node/scene/meshes/collada_size.h"
 #include "sim_node/scene/meshes/mesh_reader.h"
-#include "sim_node/scene/sdf/regular_file.h"
+#include "sync/sandbox/regular_file.h"
 
 namespace tactus::sim {
 namespace {
 
-// Opens regular files of bounded size only, because a material library may be named "/dev/zero".
+constexpr int kMaxNodeDepth = 256;  // as in gltf_reader.cpp
+
+// Opens regular files of bounded size below the readable folders only, because a material library may be named
+// "/dev/zero" or "../../.ssh/id_rsa".
 class BoundedFiles : public Assimp::DefaultIOSystem {
  public:
+  BoundedFiles(std::filesystem::path main, const sync::ReadableFolders& readable, std::string& outside)
+      : main_(std::move(main)), readable_(readable), outside_(outside) {}
   bool Exists(const char* file) const override { return may_open(file) && DefaultIOSystem::Exists(file); }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     return may_open(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
   }
 
  private:
-  static bool may_open(const char* file) try {
-    check_regular_file(file, kMaxMeshFileBytes);
+  bool may_open(const char* file) const try {
+    if (file != main_) {
+      std::error_code error;
+      if (!std::filesystem::is_regular_file(file, error)) return false;
+      if (!readable_.resolve(file)) {
+        outside_ = std::filesystem::path(file).filename().string();
+        return false;
+      }
+    }
+    sync::check_regular_file(file, kMaxMeshFileBytes);
     return true;
   } catch (const std::runtime_error&) {
     return false;
   }
+
+  std::filesystem::path main_;
+  const sync::ReadableFolders& readable_;
+  std::string& outside_;  // a file that exists, but may not be read
 };
 
-void check_triangle_count(std::size_t triangles) {
-  if (triangles > kMaxTriangles)
-    throw std::runtime_error("it has more than " + std::to_string(kMaxTriangles) + " triangles: simplify it");
-}
+// Totals of a file. Its nodes may show one mesh many times, so they are counted before their vertices are copied.
+struct Totals {
+  std::size_t triangles = 0, vertices = 0, nodes = 0;
+
+  void check() const {
+    if (triangles > kMaxTriangles)
+      throw std::runtime_error("it has more than " + std::to_string(kMaxTriangles) + " triangles: simplify it");
+    if (vertices > kMaxVertices)
+      throw std::runtime_error("it has more than " + std::to_string(kMaxVertices) + " vertices: simplify it");
+    if (nodes > kMaxMeshParts)
+      throw std::runtime_error("it has more than " + std::to_string(kMaxMeshParts) + " nodes and parts: simplify it");
+  }
+  void add(const aiMesh& mesh) {
+    triangles += mesh.mNumFaces, vertices += mesh.mNumVertices, ++nodes;
+    check();
+  }
+  // depth: levels above the node. Post-processing and the copy below call themselves for each level.
+  void add(const aiScene& scene, const aiNode& node, int depth) {
+    ++nodes;
+    check();
+    if (depth > kMaxNodeDepth)
+      throw std::runtime_error("its nodes are nested deeper than " + std::to_string(kMaxNodeDepth) + " levels");
+    for (unsigned m = 0; m < node.mNumMeshes; ++m) add(*scene.mMeshes[node.mMeshes[m]]);
+    for (unsigned c = 0; c < node.mNumChildren; ++c) add(scene, *node.mChildren[c], depth + 1);
+  }
+};
 
 // Assimp allocates the number of vertices in the header of a PLY file, which may be billions.
 void check_counts(const std::filesystem::path& file) {
+  constexpr std::size_t kMaxHeader = 64 << 10;
+  std::string head(kMaxHeader, '\0');
   std::ifstream in(file, std::ios::binary);
-  std::string line(256, 0);
-  if (!in.read(line.data(), 3) || (line.substr(0, 3) != "ply" && line.substr(0, 3) != "PLY")) return;
-  for (int n = 0; n < 1000 && in.getline(line.data(), static_cast<std::streamsize>(line.size())); ++n) {
-    std::istringstream words(line.c_str());
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  const auto is = [&](std::size_t at, char c) { return head[at] == c || head[at] == c - 'a' + 'A'; };
+  if (head.size() < 3 || !is(0, 'p') || !is(1, 'l') || !is(2, 'y')) return;
+  std::replace(head.begin(), head.end(), '\r', '\n');
+  std::istringstream lines(head);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
     std::string word, name;
     double count = 0;
     words >> word;
     if (word == "end_header") return;
-    if (word == "element" && words >> name >> count && !(count <= static_cast<double>(3 * kMaxTriangles)))
-      throw std::runtime_error("its header declares more than " + std::to_string(3 * kMaxTriangles) + " of " + name);
+    if (word == "element" && !(words >> name >> count && count >= 0 && count <= static_cast<double>(kMaxVertices)))
+      throw std::runtime_error("its header declares more than " + std::to_string(kMaxVertices) + " of " + name.substr(0, 64));
   }
+  throw std::runtime_error("it is a PLY file whose header has no end within " + std::to_string(kMaxHeader >> 10) + " KiB");
 }
 
 void add(const aiMesh& from, const aiNode& node, const aiMatrix4x4& pose, MeshParts& mesh) {
@@ -85,24 +132,23 @@ void add(const aiMesh& from, const aiNode& node, const aiMatrix4x4& pose, MeshPa
   mesh.parts.push_back(std::move(part));
 }
 
-void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent, MeshParts& mesh,
-         std::size_t& triangles) {
+void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent, MeshParts& mesh) {
   const aiMatrix4x4 pose = parent * node.mTransformation;
-  for (unsigned m = 0; m < node.mNumMeshes; ++m) {
-    const aiMesh& part = *scene.mMeshes[node.mMeshes[m]];
-    check_triangle_count(triangles += part.mNumFaces);
-    add(part, node, pose, mesh);
-  }
-  for (unsigned c = 0; c < node.mNumChildren; ++c) add(scene, *node.mChildren[c], pose, mesh, triangles);
+  for (unsigned m = 0; m < node.mNumMeshes; ++m) add(*scene.mMeshes[node.mMeshes[m]], node, pose, mesh);
+  for (unsigned c = 0; c < node.mNumChildren; ++c) add(scene, *node.mChildren[c], pose, mesh);
 }
 
-MeshPicture picture(const aiScene& scene, const aiMaterial& material, std::initializer_list<aiTextureType> types) {
+// bytes: total of all pictures inside the file. A file may name one picture many times.
+MeshPicture picture(const aiScene& scene, const aiMaterial& material, std::initializer_list<aiTextureType> types,
+                    std::size_t& bytes_so_far) {
   for (const aiTextureType type : types) {
     aiString path;
     if (material.GetTexture(type, 0, &path) != aiReturn_SUCCESS || path.length == 0) continue;
     if (const aiTexture* inside = scene.GetEmbeddedTexture(path.C_Str())) {
       // Height 0 marks a compressed file of mWidth bytes; otherwise raw pixels, which no documented format contains.
       if (inside->mHeight != 0) continue;
+      if ((bytes_so_far += inside->mWidth) > kMaxPictureBytes)
+        throw std::runtime_error("its pictures are larger than " + std::to_string(kMaxPictureBytes >> 20) + " MiB together");
       const auto* bytes = reinterpret_cast<const std::uint8_t*>(inside->pcData);
       return {"", {bytes, bytes + inside->mWidth}};
     }
@@ -114,7 +160,7 @@ MeshPicture picture(const aiScene& scene, const aiMaterial& material, std::initi
   return {};
 }
 
-MeshMaterial read(const aiScene& scene, const aiMaterial& from) {
+MeshMaterial read(const aiScene& scene, const aiMaterial& from, std::size_t& picture_bytes) {
   MeshMaterial m;
   m.name = from.GetName().C_Str();
   const auto colour = [&](const char* key, unsigned type, unsigned index, Eigen::Vector3f& to) {
@@ -135,8 +181,8 @@ MeshMaterial read(const aiScene& scene, const aiMaterial& from) {
   number(AI_MATKEY_SHININESS, 0, 1e4f, shininess);
   if (shininess >= 1) m.shininess = shininess;
   number(AI_MATKEY_OPACITY, 0, 1, m.alpha);
-  m.colour_map = picture(scene, from, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE});
-  m.normal_map = picture(scene, from, {aiTextureType_NORMAL_CAMERA, aiTextureType_NORMALS});
+  m.colour_map = picture(scene, from, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}, picture_bytes);
+  m.normal_map = picture(scene, from, {aiTextureType_NORMAL_CAMERA, aiTextureType_NORMALS}, picture_bytes);
   return m;
 }
 
@@ -147,28 +193,36 @@ bool is_default_material(const MeshMaterial& m) {
 
 }  // namespace
 
-MeshParts read_with_assimp(const std::filesystem::path& file) {
+MeshParts read_with_assimp(const std::filesystem::path& file, const sync::ReadableFolders& readable) {
+  check_counts(file);
+  check_collada(file);
+  std::string outside;
   Assimp::Importer importer;
-  importer.SetIOHandler(new BoundedFiles);  // owned by the importer
+  importer.SetIOHandler(new BoundedFiles(file, readable, outside));  // owned by the importer
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION,
                            true);  // keeps the coordinates: z is up in SDF
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCrease_deg);
-  check_counts(file);
   const aiScene* scene = importer.ReadFile(file.string(), 0);
-  std::size_t faces = 0;  // counted before processing: normals of millions of triangles take minutes
-  for (unsigned m = 0; scene && m < scene->mNumMeshes; ++m) faces += scene->mMeshes[m]->mNumFaces;
-  check_triangle_count(faces);
-  if (scene)
+  if (!outside.empty())
+    throw std::runtime_error("it names \"" + outside.substr(0, 200) + "\", which is hidden or outside the folder of the scene");
+  if (scene && scene->mRootNode) {
+    // Counted before processing: normals of millions of triangles take minutes.
+    Totals all, shown;
+    for (unsigned m = 0; m < scene->mNumMeshes; ++m) all.add(*scene->mMeshes[m]);
+    shown.add(*scene, *scene->mRootNode, 0);
     scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType |
                                          aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices);
+  }
   if (!scene || !scene->mRootNode) throw std::runtime_error(importer.GetErrorString());
+  Totals shown;  // again, because polygons have become triangles
+  shown.add(*scene, *scene->mRootNode, 0);
   MeshParts mesh;
-  std::size_t triangles = 0;
-  add(*scene, *scene->mRootNode, aiMatrix4x4(), mesh, triangles);
+  add(*scene, *scene->mRootNode, aiMatrix4x4(), mesh);
+  std::size_t picture_bytes = 0;
   std::vector<int> renamed;
   for (unsigned m = 0; m < scene->mNumMaterials; ++m) {
-    MeshMaterial material = read(*scene, *scene->mMaterials[m]);
+    MeshMaterial material = read(*scene, *scene->mMaterials[m], picture_bytes);
     renamed.push_back(is_default_material(material) ? -1 : static_cast<int>(mesh.materials.size()));
     if (renamed.back() >= 0) mesh.materials.push_back(std::move(material));
   }

@@ -7,7 +7,7 @@
 
 #include "sim_node/scene/meshes/convert_geometry.h"
 #include "sim_node/scene/materials/materials.h"
-#include "sim_node/scene/meshes/mesh_reader.h"
+#include "sim_node/scene/meshes/confined_reader.h"
 #include "sync/node/node_options.h"
 
 using namespace tactus;
@@ -67,7 +67,7 @@ int main(int argc, char** argv) try {
 
   MeshParts mesh;
   try {
-    mesh = with_output_paths(read_mesh_parts(in), in, out);
+    mesh = with_output_paths(read_mesh_parts_confined(in), in, out);
   } catch (const std::exception& e) {
     reject("\"" + in + "\" cannot be read: " + e.what());
   }

@@ -8,7 +8,7 @@
 
 #include "sim_node/scene/meshes/mesh_parts.h"
 #include "sim_node/scene/meshes/mesh_reader.h"
-#include "sim_node/scene/sdf/regular_file.h"
+#include "sync/sandbox/regular_file.h"
 
 namespace tactus::sim {
 namespace {
@@ -16,9 +16,6 @@ namespace {
 using nlohmann::json;
 
 static_assert(std::endian::native == std::endian::little, "glTF is little-endian, and is read as it lies");
-
-// More vertices than the triangles of a mesh can use (mesh_parts.h).
-constexpr std::size_t kMaxElements = 3 * kMaxTriangles;
 
 // Limits for the JSON: each value uses about 50 bytes of memory, even a short one (design).
 constexpr int kMaxDepth = 64;
@@ -127,8 +124,8 @@ struct GltfDocument::Elements {
   bool normalised = false;
 };
 
-GltfDocument::GltfDocument(const std::filesystem::path& file) {
-  const sync::Bytes bytes = read_regular_file(file, kMaxMeshFileBytes);
+GltfDocument::GltfDocument(const std::filesystem::path& file, const sync::ReadableFolders& readable) {
+  const sync::Bytes bytes = sync::read_regular_file(file, kMaxMeshFileBytes);
   const bool packed = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
   const std::string text = packed ? unpack(bytes, binary_) : std::string(bytes.begin(), bytes.end());
   std::size_t values = 0;
@@ -145,10 +142,10 @@ GltfDocument::GltfDocument(const std::filesystem::path& file) {
     throw std::runtime_error("it requires the extension " +
                              (needed.is_string() ? needed.get<std::string>().substr(0, 64) : "?") +
                              ", which is not supported: export it without");
-  load_buffers(file.parent_path());
+  load_buffers(file.parent_path(), readable);
 }
 
-void GltfDocument::load_buffers(const std::filesystem::path& folder) {
+void GltfDocument::load_buffers(const std::filesystem::path& folder, const sync::ReadableFolders& readable) {
   std::size_t total = 0;
   for (const json& buffer : member_of(json_, "buffers")) {
     const std::string uri = text_of(buffer, "uri");
@@ -159,7 +156,10 @@ void GltfDocument::load_buffers(const std::filesystem::path& folder) {
       if (uri.starts_with("data:")) throw std::runtime_error("a buffer in it is not base64");
       const std::string path = decode_path(uri);
       try {
-        bytes = read_regular_file(folder / path, kMaxMeshFileBytes);
+        std::error_code error;
+        if (std::filesystem::is_regular_file(folder / path, error) && !readable.resolve(folder / path))
+          throw std::runtime_error("it is hidden or outside the folder of the scene");
+        bytes = sync::read_regular_file(folder / path, kMaxMeshFileBytes);
       } catch (const std::runtime_error& e) {
         throw std::runtime_error("its buffer \"" + path.substr(0, 200) + "\" cannot be read: " + e.what());
       }
@@ -187,10 +187,11 @@ std::span<const std::uint8_t> GltfDocument::view_bytes(const json& view) const {
   return {buffers_[static_cast<std::size_t>(buffer)].data() + offset, length};
 }
 
-sync::Bytes GltfDocument::view(int index) const {
-  const auto bytes = view_bytes(entry("bufferViews", index));
-  return {bytes.begin(), bytes.end()};
+std::span<const std::uint8_t> GltfDocument::view(int index) const {
+  return view_bytes(entry("bufferViews", index));
 }
+
+std::size_t GltfDocument::count(int accessor) const { return size_of(entry("accessors", accessor), "count"); }
 
 GltfDocument::Elements GltfDocument::elements(int accessor, int components) const {
   const json& a = entry("accessors", accessor);
@@ -200,8 +201,8 @@ GltfDocument::Elements GltfDocument::elements(int accessor, int components) cons
   if (components_of(text_of(a, "type")) != components)
     throw std::runtime_error("an accessor is not of the type that its use needs");
   e.count = size_of(a, "count");
-  if (e.count > kMaxElements)
-    throw std::runtime_error("it has more than " + std::to_string(kMaxElements) + " vertices or corners");
+  if (e.count > kMaxVertices)
+    throw std::runtime_error("it has more than " + std::to_string(kMaxVertices) + " vertices or corners");
   const json& normalised = member_of(a, "normalized");
   e.normalised = normalised.is_boolean() && normalised.get<bool>();
   if (member_of(a, "sparse").is_object())
@@ -238,7 +239,7 @@ std::vector<int> GltfDocument::indices(int accessor) const {
   if (!e.data) return values;
   for (std::size_t i = 0; i < e.count; ++i) {
     const double index = component(e.data + i * e.stride, e.type, false);
-    if (index > static_cast<double>(kMaxElements))
+    if (index > static_cast<double>(kMaxVertices))
       throw std::runtime_error("an index refers to a vertex that does not exist");
     values[i] = static_cast<int>(index);
   }

@@ -8,29 +8,32 @@
 #include <vector>
 
 #include "sync/assets/asset.h"
+#include "sync/sandbox/readable_folders.h"
 
 namespace tactus::sim {
 
 class GltfDocument {
  public:
-  // Detects .gltf or .glb by the content. Throws std::runtime_error with one clause.
-  explicit GltfDocument(const std::filesystem::path& file);
+  // Detects .gltf or .glb by the content. readable: folders of its buffers. Throws std::runtime_error with one clause.
+  GltfDocument(const std::filesystem::path& file, const sync::ReadableFolders& readable);
 
   const nlohmann::json& root() const { return json_; }
   // An entry of a list of the document ("nodes", "meshes", ...).
   const nlohmann::json& entry(const char* list, int index) const;
 
+  // The number of elements of an accessor, before they are read.
+  std::size_t count(int accessor) const;
   // `components` numbers per element, scaled as the accessor defines.
   std::vector<float> floats(int accessor, int components) const;
   std::vector<int> indices(int accessor) const;
   // The bytes of a buffer view.
-  sync::Bytes view(int index) const;
+  std::span<const std::uint8_t> view(int index) const;
 
  private:
   struct Elements;
   Elements elements(int accessor, int components) const;
   std::span<const std::uint8_t> view_bytes(const nlohmann::json& view) const;
-  void load_buffers(const std::filesystem::path& folder);
+  void load_buffers(const std::filesystem::path& folder, const sync::ReadableFolders& readable);
 
   nlohmann::json json_;
   sync::Bytes binary_;  // of a .glb

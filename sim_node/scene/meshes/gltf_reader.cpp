@@ -21,24 +21,40 @@ Eigen::Vector3f colour(const json& object, const char* member, const Eigen::Vect
   const json& list = member_of(object, member);
   if (!list.is_array() || list.size() < 3) return missing;
   Eigen::Vector3f c;
-  for (std::size_t i = 0; i < 3; ++i) c[static_cast<int>(i)] = list[i].is_number() ? list[i].get<float>() : 0.0f;
-  return c.allFinite() ? Eigen::Vector3f(c.cwiseMax(0).cwiseMin(1)) : missing;
+  for (std::size_t i = 0; i < 3; ++i)
+    c[static_cast<int>(i)] = list[i].is_number() ? static_cast<float>(std::clamp(list[i].get<double>(), 0.0, 1.0)) : 0.0f;
+  return c;
 }
 
-MeshPicture picture(const GltfDocument& document, const json& info) {
+// Number in [low, high]; `missing` when there is none.
+float bounded(const json& object, const char* member, float missing, double low, double high) {
+  return static_cast<float>(std::clamp(number_of(object, member, static_cast<double>(missing)), low, high));
+}
+
+// bytes: total of all pictures inside the file. A file may name one picture many times.
+MeshPicture picture(const GltfDocument& document, const json& info, std::size_t& bytes_so_far) {
+  const auto check = [&](std::size_t more) {
+    if ((bytes_so_far += more) > kMaxPictureBytes)
+      throw std::runtime_error("its pictures are larger than " + std::to_string(kMaxPictureBytes >> 20) + " MiB together");
+  };
   const int texture = index_of(info, "index");
   if (texture < 0) return {};
   const int source = index_of(document.entry("textures", texture), "source");
   if (source < 0) return {};
   const json& image = document.entry("images", source);
-  if (const int view = index_of(image, "bufferView"); view >= 0) return {"", document.view(view)};
+  if (const int view = index_of(image, "bufferView"); view >= 0) {
+    const auto bytes = document.view(view);
+    check(bytes.size());
+    return {"", {bytes.begin(), bytes.end()}};
+  }
   const std::string uri = text_of(image, "uri");
+  check(uri.size());
   sync::Bytes bytes;
   if (decode_data_uri(uri, bytes)) return {"", std::move(bytes)};
   return {decode_path(uri), {}};
 }
 
-MeshMaterial read_material(const GltfDocument& document, const json& from) {
+MeshMaterial read_material(const GltfDocument& document, const json& from, std::size_t& picture_bytes) {
   MeshMaterial m;
   m.name = text_of(from, "name");
   const json& pbr = member_of(from, "pbrMetallicRoughness");
@@ -47,7 +63,7 @@ MeshMaterial read_material(const GltfDocument& document, const json& from) {
   if (text_of(from, "alphaMode") == "BLEND") {
     const json& factor = member_of(pbr, "baseColorFactor");
     if (factor.is_array() && factor.size() == 4 && factor[3].is_number())
-      m.alpha = std::clamp(factor[3].get<float>(), 0.0f, 1.0f);
+      m.alpha = static_cast<float>(std::clamp(factor[3].get<double>(), 0.0, 1.0));
   }
   // Converts the roughness r of glTF to a Phong exponent of equal width: 2 / r^4 - 2 (Walter et al. 2007, eq. 30,
   // with glTF's alpha = r^2). Reflectance at normal incidence: 0.04 for a dielectric (glTF 2.0, B.2.1).
@@ -56,9 +72,9 @@ MeshMaterial read_material(const GltfDocument& document, const json& from) {
   m.specular.setConstant(0.04f);
   const json& extras = member_of(member_of(from, "extras"), "tactus");
   m.specular = colour(extras, "specular", m.specular);
-  m.shininess = std::clamp(static_cast<float>(number_of(extras, "shininess", m.shininess)), 1.0f, 1e4f);
-  m.colour_map = picture(document, member_of(pbr, "baseColorTexture"));
-  m.normal_map = picture(document, member_of(from, "normalTexture"));
+  m.shininess = bounded(extras, "shininess", m.shininess, 1, 1e4);
+  m.colour_map = picture(document, member_of(pbr, "baseColorTexture"), picture_bytes);
+  m.normal_map = picture(document, member_of(from, "normalTexture"), picture_bytes);
   return m;
 }
 
@@ -123,11 +139,30 @@ void place(MeshPart& part, const Eigen::Affine3d& pose) {
 struct Reader {
   const GltfDocument& document;
   MeshParts mesh;
-  std::set<int> visited;  // nodes visited: each node is used once
-  std::size_t corners = 0;
+  std::set<int> visited = {};  // nodes visited: each node is used once
+  std::size_t corners = 0, vertices = 0, parts = 0;
+
+  // Adds the part to the totals before anything is allocated: a file of some kilobytes may use one accessor a thousand
+  // times, and an accessor without a buffer may have any count.
+  void count(const json& primitive, const json& attributes) {
+    const auto elements = [&](const json& object, const char* member) {
+      const int accessor = index_of(object, member);
+      return accessor < 0 ? std::size_t{0} : document.count(accessor);
+    };
+    const std::size_t positions = elements(attributes, "POSITION");
+    if ((vertices += positions) > kMaxVertices)
+      throw std::runtime_error("it has more than " + std::to_string(kMaxVertices) + " vertices: simplify it");
+    std::size_t more = index_of(primitive, "indices") >= 0 ? elements(primitive, "indices") : positions;
+    if (number_of(primitive, "mode", 4) != 4 && more > 2) more = 3 * (more - 2);  // of a strip or a fan
+    if ((corners += more) / 3 > kMaxTriangles)
+      throw std::runtime_error("it has more than " + std::to_string(kMaxTriangles) + " triangles: simplify it");
+    if (++parts > kMaxMeshParts)
+      throw std::runtime_error("it has more than " + std::to_string(kMaxMeshParts) + " parts: simplify it");
+  }
 
   MeshPart read_part(const json& primitive) {
     const json& attributes = member_of(primitive, "attributes");
+    count(primitive, attributes);
     MeshPart part;
     part.material = index_of(primitive, "material");
     part.positions_m = vectors<3>(document, attributes, "POSITION");
@@ -143,9 +178,6 @@ struct Reader {
       if (static_cast<std::size_t>(i) >= count)
         throw std::runtime_error("an index refers to a vertex that does not exist");
     part.indices = triangles_of(static_cast<int>(number_of(primitive, "mode", 4)), part.indices);
-    corners += part.indices.size();
-    if (corners / 3 > kMaxTriangles)
-      throw std::runtime_error("it has more than " + std::to_string(kMaxTriangles) + " triangles: simplify it");
     part.normals = vectors<3>(document, attributes, "NORMAL");
     part.tangents = vectors<4>(document, attributes, "TANGENT");
     int set = 0;
@@ -211,11 +243,12 @@ struct Reader {
 
 }  // namespace
 
-MeshParts read_gltf(const std::filesystem::path& file) {
-  const GltfDocument document(file);
-  Reader reader{document, {}, {}};
+MeshParts read_gltf(const std::filesystem::path& file, const sync::ReadableFolders& readable) {
+  const GltfDocument document(file, readable);
+  Reader reader{document, {}};
+  std::size_t picture_bytes = 0;
   for (const json& material : member_of(document.root(), "materials"))
-    reader.mesh.materials.push_back(read_material(document, material));
+    reader.mesh.materials.push_back(read_material(document, material, picture_bytes));
   const int scene = std::max(0, index_of(document.root(), "scene"));
   if (member_of(document.root(), "scenes").empty()) throw std::runtime_error("it has no scene");
   const json& top = document.entry("scenes", scene);

@@ -51,6 +51,15 @@ struct MeshParts {
 // Limit for an asset, and for a collision query of a millisecond.
 constexpr std::size_t kMaxTriangles = 1'000'000;
 
+// More vertices than that number of triangles can use.
+constexpr std::size_t kMaxVertices = 3 * kMaxTriangles;
+
+// Parts and nodes of a file; a part takes 200 bytes even when it is empty (design).
+constexpr std::size_t kMaxMeshParts = 100'000;
+
+// Of all pictures inside a file: as many as a receiver accepts for a whole scene (sync/assets/scene_receiver.h).
+constexpr std::size_t kMaxPictureBytes = std::size_t{256} << 20;
+
 // Degrees; a larger change of direction is an edge, not a curve (design). Assimp's default is 175.
 constexpr float kCrease_deg = 50;
 

@@ -7,7 +7,7 @@
 
 #include "sim_node/scene/meshes/assimp_reader.h"
 #include "sim_node/scene/meshes/gltf_reader.h"
-#include "sim_node/scene/sdf/regular_file.h"
+#include "sync/sandbox/regular_file.h"
 
 namespace tactus::sim {
 namespace {
@@ -17,6 +17,19 @@ bool is_gltf(const std::filesystem::path& file) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   return extension == ".gltf" || extension == ".glb";
+}
+
+void check_sizes(const MeshPart& part, std::size_t materials) {
+  const std::size_t count = part.positions_m.size();
+  const auto fits = [&](const auto& list) { return list.empty() || list.size() == count; };
+  if (part.normals.size() != count || !fits(part.texcoords) || !fits(part.tangents))
+    throw std::runtime_error("its vertices have different numbers of normals, texture coordinates or tangents");
+  if (part.indices.size() % 3 != 0) throw std::runtime_error("a triangle has no three corners");
+  for (const int i : part.indices)
+    if (i < 0 || static_cast<std::size_t>(i) >= count)
+      throw std::runtime_error("an index refers to a vertex that does not exist");
+  if (part.material < -1 || part.material >= static_cast<int>(materials))
+    throw std::runtime_error("a part refers to a material that does not exist");
 }
 
 // Rejects values that are not possible for a position in a world or for a direction.
@@ -45,16 +58,26 @@ void check(MeshPart& part) {
 
 }  // namespace
 
-MeshParts read_mesh_parts(const std::filesystem::path& file) try {
-  check_regular_file(file, kMaxMeshFileBytes);
-  MeshParts mesh = is_gltf(file) ? read_gltf(file) : read_with_assimp(file);
-  std::size_t indices = 0;
+void check_mesh_parts(MeshParts& mesh) {
+  std::size_t corners = 0, vertices = 0;
   for (MeshPart& part : mesh.parts) {
+    check_sizes(part, mesh.materials.size());
     check(part);
-    indices += part.indices.size();
+    corners += part.indices.size();
+    vertices += part.positions_m.size();
   }
-  if (indices / 3 > kMaxTriangles)
+  if (corners / 3 > kMaxTriangles)
     throw std::runtime_error("it has more than " + std::to_string(kMaxTriangles) + " triangles: simplify it");
+  if (vertices > kMaxVertices)
+    throw std::runtime_error("it has more than " + std::to_string(kMaxVertices) + " vertices: simplify it");
+}
+
+MeshParts read_mesh_parts(const std::filesystem::path& file,
+                          const std::vector<std::filesystem::path>& folders) try {
+  sync::check_regular_file(file, kMaxMeshFileBytes);
+  const sync::ReadableFolders readable(folders.empty() ? std::vector{file.parent_path()} : folders);
+  MeshParts mesh = is_gltf(file) ? read_gltf(file, readable) : read_with_assimp(file, readable);
+  check_mesh_parts(mesh);
   return mesh;
 } catch (const std::bad_alloc&) {
   throw std::runtime_error("it needs more memory than is available");

@@ -5,20 +5,31 @@
 #include "sim_node/scene/sdf/sdf_eigen.h"
 
 namespace tactus::sim {
+namespace {
+
+constexpr std::size_t kMaxWarnings = 1000;  // more than anyone reads (design)
+
+}  // namespace
 
 void LoadContext::reject(const sdf::Element& element, const std::string& sentence) const {
   throw std::runtime_error(files.where(element) + ": " + xml_path(element) + " " + sentence);
 }
 
 void LoadContext::warn(const sdf::Element& element, const std::string& sentence) const {
-  warnings.push_back(files.where(element) + ": " + xml_path(element) + " " + sentence);
+  // The place of a warning is found by a search through the file.
+  if (warnings.size() > kMaxWarnings) return;
+  warnings.push_back(warnings.size() == kMaxWarnings
+                         ? "there are more than " + std::to_string(kMaxWarnings) + " warnings; the rest is left out"
+                         : files.where(element) + ": " + xml_path(element) + " " + sentence);
 }
 
 std::filesystem::path LoadContext::asset_file(const std::string& uri, const sdf::Element& element) const {
   const std::filesystem::path file = files.find(uri, element.FilePath());
   if (file.empty()) reject(element, "names \"" + uri + "\", which is not found: put it beside the scene file");
-  if (!std::filesystem::is_regular_file(file))
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
     reject(element, "names \"" + uri + "\", which is not a regular file: name a regular file");
+  if (!files.readable().resolve(file)) reject(element, "names \"" + uri + "\", which " + SdfFiles::kOutside);
   return file;
 }
 

@@ -29,12 +29,14 @@ struct LoadContext {
   std::map<std::string, std::shared_ptr<const MeshParts>> mesh_files = {};  // each file once
   std::map<std::string, int> material_of_file = {};                         // of a mesh file that names one
   std::map<std::string, std::shared_ptr<const LookAttributes>> look_of = {};     // name -> definition in <world>
+  bool confined = true;  // geometry files are read in a process of their own
 
   // "FILE:LINE: sentence"
   [[noreturn]] void reject(const sdf::Element& element, const std::string& sentence) const;
   void warn(const sdf::Element& element, const std::string& sentence) const;
 
-  // The file of a mesh or picture that an element names; rejects a missing file.
+  // The file of a mesh, picture or table that an element names; rejects a missing file, and one outside the readable
+  // folders.
   std::filesystem::path asset_file(const std::string& uri, const sdf::Element& element) const;
 
   // The pose resolved by libsdformat's frame graph; rejects a pose that is not finite.

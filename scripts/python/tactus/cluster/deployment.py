@@ -12,7 +12,8 @@ from tactus.paths import BIN, REPOSITORY, SCRIPTS
 from tactus.refusal import Refusal
 
 PROGRAMS = ("sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node", "recorder", "replay", "watch", "spy", "degrade",
-            "playout", "set", "message_types", "probe_pairs", "relay")
+            "playout", "set", "message_types", "probe_pairs", "relay",
+            "read_geometry", "read_sounds")
 FOLDERS = {"share/scenes": REPOSITORY / "sim_node" / "scenes", "share/rooms": REPOSITORY / "visual_node" / "rooms", "share/relays": sites.SHIPPED}
 LEFT_OUT = {".py", ".md"}
 # Files that `tactus doctor` imports besides its own package.

@@ -1,0 +1,22 @@
+// read_geometry FILE [FOLDER...]: parses a geometry file in a confined process, for read_mesh_parts_confined. Not for
+// users: the output is a record (sync/sandbox/records.h).
+#include <cstdio>
+
+#include "sim_node/scene/meshes/mesh_packing.h"
+#include "sim_node/scene/meshes/mesh_reader.h"
+#include "sync/sandbox/reader_program.h"
+
+int main(int argc, char** argv) {
+  if (argc < 2 || argv[1][0] != '/') {
+    std::fprintf(stderr, "read_geometry: no file; sim_node starts this program, and tactus convert-geometry is for users\n");
+    return 1;
+  }
+  const std::filesystem::path file(argv[1]);
+  const std::vector<std::filesystem::path> folders(argv + 2, argv + argc);
+  std::vector<std::filesystem::path> readable = folders;
+  if (readable.empty()) readable.push_back(file.parent_path());
+  readable.push_back(file);
+  return tactus::sync::reader_main(readable, {}, [&](const tactus::sync::SendRecord& send) {
+    send('R', tactus::sim::pack(tactus::sim::read_mesh_parts(file, folders)));
+  });
+}

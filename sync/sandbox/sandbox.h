@@ -1,0 +1,29 @@
+// Confines the calling process before it parses a foreign file. Libraries that parse such files have had memory errors;
+// a file that abuses one reaches nothing but the files that it may read anyway.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace tactus::sync {
+
+struct SandboxLimits {
+  // Address space. No limit in a build with sanitizers, whose shadow memory is larger than any limit.
+  std::uint64_t memory_bytes = std::uint64_t{2} << 30;
+  int processor_s = 120;
+};
+
+// The measures that the kernel accepted.
+struct Confinement {
+  bool files = false;         // Landlock, Linux 5.13: no file outside the folders, no write, no TCP connection
+  bool system_calls = false;  // seccomp: no socket, no new process or thread, no signal to others, no write to a file
+  bool capabilities = false;  // none, except reading files of other users below the folders for root
+};
+
+// Irreversible. Call it before starting threads: the kernel confines the calling thread and its children. readable:
+// folders or files that may be read; nothing else can be opened. Writing is possible only to descriptors that are open.
+// A measure that the kernel does not have is left out; the limits of memory and time hold on every kernel.
+Confinement confine_process(const std::vector<std::filesystem::path>& readable, const SandboxLimits& limits);
+
+}  // namespace tactus::sync
