@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include "sync/sandbox/regular_file.h"
 
 namespace tactus::audio {
 namespace {
@@ -13,6 +16,7 @@ namespace fs = std::filesystem;
 
 // Maximum size of all recordings in memory (design: half an hour at 48 kHz); further files are left out.
 constexpr std::size_t kMaxBytes = std::size_t{350} << 20;
+constexpr std::uintmax_t kMaxSizeBytes = 4096;  // of size.txt, which holds one number
 
 // Sorted, so that the same folder gives the same takes on every machine.
 std::vector<fs::path> entries(const fs::path& folder) {
@@ -86,9 +90,15 @@ class Reader {
   }
 
   std::optional<double> size_of(const fs::path& folder) {
-    std::ifstream file(folder / "size.txt");
+    std::error_code none;
+    if (!fs::exists(folder / "size.txt", none)) return std::nullopt;
     std::string word;
-    if (!file || !(file >> word)) return std::nullopt;
+    try {
+      std::istringstream(sync::read_regular_text(folder / "size.txt", kMaxSizeBytes)) >> word;
+    } catch (const std::runtime_error& e) {
+      add_fault(folder / "size.txt", std::string("cannot be read (") + e.what() + "); write one number in metres");
+      return std::nullopt;
+    }
     const auto size = positive(word);
     if (!size) add_fault(folder / "size.txt", "has no size; write one number in metres");
     return size;

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
+
+struct MYSOFA_HRTF;
 
 namespace tactus::audio {
 
@@ -23,8 +26,20 @@ struct MeasuredHrtf {
   double delay(std::size_t direction, std::size_t ear) const { return delays[2 * direction + ear]; }
 };
 
-// Loads the directions at the largest distance in the file. Reads a file: do not call it in a loop or in the
-// callback. Throws std::runtime_error with one sentence.
+// Loads the directions at the largest distance in the file. The program read_sounds parses it, confined
+// (sync/sandbox/reader_process.h): do not call it in a loop or in the callback. Throws std::runtime_error with one
+// sentence.
 MeasuredHrtf load_sofa(const std::string& path);
+
+// The same in this process. Throws std::runtime_error with the end of the sentence: "has no Data.Delay ...".
+MeasuredHrtf parse_sofa(const std::string& path);
+
+// Whether the arrays of a parsed file are as long as its dimensions say; empty: they are, else the end of a sentence. For
+// a file that libmysofa has not checked yet.
+std::string array_fault(const MYSOFA_HRTF& file);
+
+// Between the two processes. unpack_hrtf throws std::runtime_error with one clause.
+std::vector<std::uint8_t> pack(const MeasuredHrtf& measured);
+MeasuredHrtf unpack_hrtf(std::span<const std::uint8_t> bytes);
 
 }  // namespace tactus::audio

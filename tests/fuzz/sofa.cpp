@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const tactus::fuzz::FileOf file("ears.sofa");
   file.write(data, size);
   try {
-    tactus::audio::load_sofa(file.path());
+    tactus::audio::parse_sofa(file.path());
   } catch (const std::runtime_error& e) {
     if (*e.what() == 0) std::abort();
   }

@@ -1,8 +1,13 @@
 #include "audio_node/samples/recording_file.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <random>
 
@@ -132,4 +137,40 @@ TEST_CASE("A truncated recording is read as far as possible") {
   bool read = false;
   faults_of(folder.path() + "/a.wav", Interaction::kImpact, &read);
   CHECK(read);
+}
+
+TEST_CASE("A recording that is a pipe, a device or another format inside is rejected at once") {
+  const SoundFolder folder;
+  REQUIRE(mkfifo(folder.place("pipe.wav").c_str(), 0600) == 0);
+  std::filesystem::create_symlink("/dev/zero", folder.place("zero.wav"));
+  for (const char* name : {"pipe.wav", "zero.wav"})
+    CHECK_THAT(faults_of(folder.place(name), Interaction::kImpact), Catch::Contains("not a regular file"));
+  // An AU file, which libsndfile reads too.
+  std::string au = std::string(".snd") + std::string("\0\0\0\x18\0\0\x4\0\0\0\0\x3\0\0\xbb\x80\0\0\0\x1", 20);
+  folder.text("au.wav", au + std::string(1024, '\x20'));
+  CHECK_THAT(faults_of(folder.place("au.wav"), Interaction::kImpact), Catch::Contains("neither WAV nor FLAC inside"));
+}
+
+TEST_CASE("A recording that is cut off or damaged is a recording without invalid samples, or a fault") {
+  const SoundFolder folder;
+  std::mt19937 random(9);
+  for (const std::string name : {"a.wav", "a.flac"}) {
+    CAPTURE(name);
+    folder.write(name, tone(500, 0.02, 0.5, 48000, 20));
+    std::ifstream in(folder.place(name), std::ios::binary);
+    const std::string whole{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    const auto check = [&](const std::string& bytes) {
+      folder.text(name, bytes);
+      std::vector<SoundFault> faults;
+      const auto r = read_recording(folder.place(name), Interaction::kImpact, 48000, faults);
+      REQUIRE((r || !faults.empty()));
+      if (r) REQUIRE(std::all_of(r->samples.begin(), r->samples.end(), [](float x) { return std::isfinite(x); }));
+    };
+    for (std::size_t size = 0; size < whole.size(); size += size < 100 ? 1 : 37) check(whole.substr(0, size));
+    for (int i = 0; i < 300; ++i) {
+      std::string changed = whole;
+      for (int k = 0; k <= i % 4; ++k) changed[random() % (i % 2 == 0 ? 64 : changed.size())] = static_cast<char>(random() % 4 == 0 ? 0xff : random());
+      check(changed);
+    }
+  }
 }
