@@ -237,6 +237,7 @@ class DegradedSnapshots {
                     .arrival = arrival,
                     .publish_ns = m.header.publish_time_ns,
                     .paced = stream.pace.advance(sim_time(m.header.sim_time_ns), m.header.publish_time_ns),
+                    .has_forces = has_forces(m),
                     .signals = {}};
     if constexpr (requires { m.applied; })
       if (operators.compares()) stream.forces.append(signals, item.time);

@@ -44,6 +44,12 @@ OutputPair pair_of(const Cells& row) {
           above ? row[kMeaning] : ""};
 }
 
+WithoutEffect without_effect(const Cells& row) {
+  const auto quantity = word<Quantity>(
+      row, {{"force", Quantity::kForce}, {"velocity", Quantity::kVelocity}, {"position", Quantity::kPosition}});
+  return {row[kName], quantity, row[kMeaning]};
+}
+
 using Ranked = std::pair<double, KnownModality>;
 
 void add(std::vector<Ranked>& found, const Cells& row) {
@@ -52,6 +58,8 @@ void add(std::vector<Ranked>& found, const Cells& row) {
   } else if (row[kWhat] == "operator" && !found.empty()) {
     found.back().second.operators.push_back(
         {row[kName], row[kUnit], number(row, kMin), number(row, kMax), row[kMeaning], combine(row)});
+  } else if (row[kWhat] == "without" && !found.empty()) {
+    found.back().second.without_effect.push_back(without_effect(row));
   } else if (row[kWhat] == "pair" && !found.empty() && !found.back().second.operators.empty()) {
     found.back().second.operators.back().pairs.push_back(pair_of(row));
   } else {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sync/degradation/deadband.h"
 #include "sync/degradation/output_operator.h"
 
 namespace tactus::sync {
@@ -18,10 +19,18 @@ enum class PlayoutKind : std::uint8_t {
   kSlow      // presents with the others, but they do not wait for it
 };
 
+// An operator on a quantity that the modality does not receive, so that it would have no effect.
+struct WithoutEffect {
+  std::string name;  // quantise, gain, bias, lowpass or deadband
+  Quantity quantity = Quantity::kForce;
+  std::string reason;  // a clause: "touch receives surfaces and no forces; use force_step"
+};
+
 struct KnownModality {
   std::string name;
   PlayoutKind kind = PlayoutKind::kAligned;
   std::vector<OutputOperator> operators = {};
+  std::vector<WithoutEffect> without_effect = {};
 };
 
 // Sorted by the "min" cell of their rows, which is their place in the serial order.

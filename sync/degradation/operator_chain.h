@@ -26,6 +26,7 @@ struct StreamItem {
   // while the world stands still, too (stream_pace.h), at least `time`.
   std::int64_t publish_ns = 0;
   SimTime paced{};
+  bool has_forces = true;           // a deadband on force passes all snapshots of a stream without forces
   std::span<const Signal> signals;  // of a snapshot, for a deadband
   double speed_m_s = 0;             // of the fastest body or tool in it
   // Only for an event: bodies and materials, by their index in the scene.

@@ -45,6 +45,10 @@ void read_output(Rule& rule, const Attribute& a, const DeclaredOutput& own) {
   }
 }
 
+const char* name_of(Quantity q) {
+  return q == Quantity::kForce ? "force" : q == Quantity::kVelocity ? "velocity" : "position";
+}
+
 std::string milliseconds(double t_s, int digits = 3) {
   std::ostringstream text;
   text.precision(digits);
@@ -67,18 +71,22 @@ void check_jitter(const Rule& rule) {
       " on average, with a standard deviation of only " + milliseconds(cut.sd_s));
 }
 
-// Throws when an operator has nothing to act on. The servo loop of a local modality receives surfaces, not forces.
-void check_force_operators(const Rule& rule) {
+// Throws when an operator acts on a quantity that the modality does not receive.
+void check_quantities(const Rule& rule) {
   const KnownModality* known = known_modality(rule.modality);
-  if (!known || known->kind != PlayoutKind::kLocal) return;
-  const auto refuse_force = [&](bool given, const char* name) {
-    if (given)
-      throw std::invalid_argument(std::string(name) + " of force has no effect on " + rule.modality +
-                                  ", which receives surfaces and no forces; name velocity or position, or use force_step");
+  if (!known) return;
+  const auto check = [&](const char* name, const auto& given) {
+    if (!given) return;
+    for (const WithoutEffect& w : known->without_effect)
+      if (w.name == name && w.quantity == given->quantity)
+        throw std::invalid_argument(std::string(name) + " of " + name_of(w.quantity) + " has no effect on " + rule.modality +
+                                    ": " + w.reason);
   };
-  refuse_force(rule.quantise && rule.quantise->quantity == Quantity::kForce, "quantise");
-  refuse_force(rule.bias && rule.bias->quantity == Quantity::kForce, "bias");
-  refuse_force(rule.lowpass && rule.lowpass->quantity == Quantity::kForce, "lowpass");
+  check("quantise", rule.quantise);
+  check("gain", rule.gain);
+  check("bias", rule.bias);
+  check("lowpass", rule.lowpass);
+  check("deadband", rule.deadband);
 }
 
 Rule parse_rule(const Element& e, const DeclaredOutput& own) {
@@ -110,7 +118,7 @@ Rule parse_rule(const Element& e, const DeclaredOutput& own) {
   if (rule.until_s && *rule.until_s <= rule.from_s) throw std::invalid_argument("until must be after from");
   for (const Attribute& a : of_output) read_output(rule, a, own);
   check_jitter(rule);
-  check_force_operators(rule);
+  check_quantities(rule);
   return rule;
 }
 

@@ -42,6 +42,12 @@ std::vector<Signal> signals_of(const world_state_t&);
 std::vector<Signal> signals_of(const touch_model_t&);
 std::vector<Signal> signals_of(const tool_state_t&);
 
+// False for a stream that carries no forces, so that a deadband on force cannot compare its snapshots.
+constexpr bool has_forces(const contact_frame_t&) { return true; }
+constexpr bool has_forces(const world_state_t&) { return false; }
+constexpr bool has_forces(const touch_model_t&) { return true; }
+constexpr bool has_forces(const tool_state_t&) { return true; }
+
 // Applies the operators to every degradable value; values that must not be negative stay so. paced: as in StreamItem.
 void change_values(contact_frame_t&, OperatorChain&, SimTime paced = {});
 void change_values(world_state_t&, OperatorChain&, SimTime paced = {});

@@ -184,7 +184,7 @@ class StudyFile(unittest.TestCase):
               <conditions><factor modality="haptic" operator="{operator}" levels="{levels}"/></conditions><procedure kind="constant" repetitions="1"/>
               <response kind="performance"/><stimulus by="participant" limit="30s"/></study>'''
             if operator == "lowpass":
-                with self.assertRaisesRegex(Refusal, "lowpass has no effect on haptic"):
+                with self.assertRaisesRegex(Refusal, "lowpass changes forces and has no effect on haptic"):
                     self.read(text)
             else:
                 self.read(text)

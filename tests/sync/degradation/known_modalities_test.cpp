@@ -16,6 +16,7 @@ constexpr const char* kTable =
     "what,name,kind,unit,min,max,default,meaning\n"
     "modality,wind,local,,1,,,Wind\n"
     "operator,swirl,sum,s,0.1,5,,\"How long, at the most\"\n"
+    "without,bias,velocity,,,,,wind has no velocity\n"
     "pair,every,above,s,0.2,9,3,it must be shorter than every=\n";
 
 }  // namespace
@@ -30,6 +31,9 @@ TEST_CASE("Modality tables are parsed in the order of their positions, with oper
   const OutputOperator& swirl = modalities[0].operators.front();
   CHECK((swirl.unit == "s" && swirl.min == 0.1 && swirl.max == 5 && swirl.combine == Combine::kSum));
   CHECK(swirl.meaning == "How long, at the most");
+  REQUIRE(modalities[0].without_effect.size() == 1);
+  const WithoutEffect& bias = modalities[0].without_effect.front();
+  CHECK((bias.name == "bias" && bias.quantity == Quantity::kVelocity && bias.reason == "wind has no velocity"));
   REQUIRE(swirl.pairs.size() == 1);
   CHECK((swirl.pairs.front().initial == 3 && swirl.pairs.front().too_small == "it must be shorter than every="));
 }
@@ -39,6 +43,7 @@ TEST_CASE("An invalid modality table is rejected with its row") {
   CHECK_THROWS_WITH(parse_modalities("modality,wind,local,,first,,,\n"), Contains("\"first\" is not a number"));
   CHECK_THROWS_WITH(parse_modalities("modality,wind,fast,,1,,,\n"), Contains("no kind \"fast\""));
   CHECK_THROWS_WITH(parse_modalities("modality,wind\n"), Contains("8 cells"));
+  CHECK_THROWS_WITH(parse_modalities("modality,wind,local,,1,,,\nwithout,bias,colour,,,,,x\n"), Contains("no kind \"colour\""));
 }
 
 TEST_CASE("In the tables of the node folders every operator has a range and a meaning") {

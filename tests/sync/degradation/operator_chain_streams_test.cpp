@@ -6,6 +6,7 @@
 #include <tactus/contact_frame_t.hpp>
 #include <tactus/touch_model_t.hpp>
 #include <tactus/touch_plane_t.hpp>
+#include <tactus/world_state_t.hpp>
 
 #include "sync/degradation/degraded_snapshots.h"
 
@@ -77,6 +78,21 @@ TEST_CASE("A deadband compares each stream only with itself") {
   auto kept = both_groups(stack, [](int group, std::int64_t ms) { return group == 0 && ms >= 1000 ? 2.0 : 1.0; });
   CHECK(kept[contact_frame_t::TOOL] == std::vector<std::int64_t>{0, 1000});
   CHECK(kept[contact_frame_t::OTHER].size() == 1);
+}
+
+TEST_CASE("A deadband on force passes every snapshot of poses, which have no forces") {
+  OperatorChain stack = stack_of("deadband=\"10% force\"");
+  DegradedSnapshots<world_state_t> poses;
+  int passed = 0;
+  for (std::int64_t ms = 0; ms < 160; ms += 16) {
+    world_state_t m{};
+    m.header.sim_time_ns = m.header.publish_time_ns = ms * kMs;
+    m.header.incarnation = 1, m.header.seq = ms;
+    m.pages = 1;
+    poses.push(m, host_time(ms * kMs), stack, nullptr);
+    while (poses.pop(host_time(ms * kMs))) ++passed;
+  }
+  CHECK(passed == 10);
 }
 
 TEST_CASE("A deadband compares all pages of a snapshot in any order and keeps or drops them together") {

@@ -113,7 +113,12 @@ TEST_CASE("A jitter without the delay that it needs is rejected with the reason"
     CHECK(refusal_of(fine) == "");
 }
 
-TEST_CASE("An operator on the force of touch is rejected, because touch receives no forces") {
+TEST_CASE("An operator on a quantity that a modality does not receive is rejected with the reason") {
+  for (const char* force : {"quantise=\"0.1N\"", "gain=\"0.5\"", "bias=\"0.1N\"", "lowpass=\"20Hz\"", "deadband=\"10% force\""}) {
+    CHECK_THAT(refusal_of(force, "visual"), StartsWith("p.xml:2: ") && Contains("of force has no effect on visual: vision receives positions"));
+    CHECK(refusal_of(force, "thermal") == "");
+  }
+  CHECK(refusal_of("deadband=\"10% force\"", "haptic") == "");
   for (const char* force : {"quantise=\"0.1N\"", "bias=\"0.1N\"", "lowpass=\"20Hz\"", "lowpass=\"20Hz force\""}) {
     CHECK_THAT(refusal_of(force, "haptic"), StartsWith("p.xml:2: ") && Contains("no effect on haptic"));
     CHECK(refusal_of(force, "audio") == "");

@@ -14,7 +14,8 @@ OPERATORS = {
 JITTER_DELAY = 3  # constant network delay of a jitter, in standard deviations: the least one with which its mean and deviation hold (sync/random/jitter.h)
 OUTPUT_OF = {"frame_rate": "visual", "resolution": "visual", "response": "thermal"}  # modality.csv of each node folder
 LOWER_IS_WORSE = ("rate", "frame_rate", "lowpass", "resolution", "gain")  # a lower level is a stronger degradation, as in analysis/operators.py
-NOT_OF = {"lowpass": "haptic"}  # touch receives surfaces and no forces, so a low-pass of force has no effect on it
+# Senses that receive no forces, on which these operators of force have no effect ("without" in modality.csv of each node folder).
+NOT_OF = {"quantise": ("visual",), "gain": ("visual",), "lowpass": ("haptic", "visual")}
 SMALLEST = {"response": 1.0}  # of levels above 0
 ASYNCHRONY = ("ms", TIME_MS, -5_000, 5_000)
 PAUSE = ("s", {"ms": 1e-3, "s": 1.0}, 0, 3600)

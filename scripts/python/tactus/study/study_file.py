@@ -216,8 +216,8 @@ class Reading:
         modality, only = self.sense(e, e.get("modality")), quantities.OUTPUT_OF.get(operator)
         if only not in (None, modality):
             self.refuse(e, f"{modality} has no operator {operator}; only {only} has it")
-        if quantities.NOT_OF.get(operator) == modality:
-            self.refuse(e, f"{operator} has no effect on {modality}, which receives surfaces and no forces; choose another operator, for example quantise")
+        if modality in quantities.NOT_OF.get(operator, ()):
+            self.refuse(e, f"{operator} changes forces and has no effect on {modality}, which receives none; choose another operator, for example rate")
         low = [l for l in levels if 0 < l < quantities.SMALLEST.get(operator, 0)]
         if low:
             self.refuse(e, f"the level {low[0]:g} of {operator} is too small; give 0, or at least {quantities.SMALLEST[operator]:g} {quantities.OPERATORS[operator][0]}")
