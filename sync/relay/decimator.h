@@ -2,7 +2,8 @@
 // losses. Pure.
 //
 // Snapshots in pages are decided on as a whole, by the operator chain of a degradation profile (sync/degradation/), in
-// simulated time. Other states are decided on by their publication time, because the hand moves while the world stands still.
+// simulated time, and by publication time while the world stands still. Other states are decided on by their publication time,
+// because the hand moves while the world stands still.
 #pragma once
 
 #include <cstdint>
