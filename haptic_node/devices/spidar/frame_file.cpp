@@ -1,11 +1,10 @@
 #include "haptic_node/devices/spidar/frame_file.h"
 
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stdexcept>
+
+#include "sync/sandbox/regular_file.h"
 
 namespace tactus::haptic {
 namespace {
@@ -68,13 +67,13 @@ StringFrame parse_frame(const std::string& text, const std::string& name) {
 }
 
 StringFrame read_frame(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) > kMaxBytes)
-    reject(path, "it is not a regular file of at most 64 kB; give a JSON file");
-  std::ifstream in(path);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) reject(path, "it cannot be read; check the path and its permissions");
-  return parse_frame(text.str(), path);
+  std::string text;
+  try {
+    text = sync::read_regular_text(path, kMaxBytes);
+  } catch (const std::runtime_error& e) {
+    reject(path, std::string(e.what()) + "; give a JSON file, which is a regular file of at most 64 kB");
+  }
+  return parse_frame(text, path);
 }
 
 }  // namespace tactus::haptic

@@ -1,11 +1,16 @@
 #include "haptic_node/devices/motion_file.h"
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <random>
 #include <sstream>
 
 #include "haptic_node/devices/playback.h"
+#include "haptic_node/devices/spidar/frame_file.h"
 
 using namespace tactus;
 using namespace tactus::haptic;
@@ -53,6 +58,46 @@ TEST_CASE("A motion file must be a regular file of limited size and line length"
                     Contains("64 MiB"));
   CHECK(read("time_s,x_m,y_m,z_m\n\n0,0,0,1\n\n1,0,0,2").times_s.size() == 2);
   CHECK(read("time_s,x_m,y_m,z_m\n0,0,0,1." + std::string(900, '0') + "\n").positions_m[0].z() == 1);
+}
+
+TEST_CASE("A motion file or a string frame that is a pipe is refused at once") {
+  std::string folder = (std::filesystem::temp_directory_path() / "tactus_XXXXXX").string();
+  REQUIRE(mkdtemp(folder.data()));
+  const std::string pipe = folder + "/pipe";
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  CHECK_THROWS_WITH(read_motion(pipe), Contains(pipe) && Contains("not a regular file"));
+  CHECK_THROWS_WITH(read_frame(pipe), Contains(pipe) && Contains("not a regular file"));
+  std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("A motion of too many rows is rejected, and one that is cut off or damaged is a motion or one sentence") {
+  std::string rows = "time_s,x_m,y_m,z_m\n";
+  for (int i = 0; i <= 2'000'000; ++i) rows += std::to_string(i) + "e-3,0,0,0\n";
+  CHECK_THROWS_WITH(read(rows), Contains("line 2000002") && Contains("more than 2000000 rows"));
+  const std::string whole = "time_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0.1,-2e-3,0,1,0,0,0\n0.5,1,2,3,0.8,0,0,0.6\n";
+  std::mt19937 random(4);
+  const auto check = [](const std::string& text) {
+    try {
+      const Motion motion = read(text);
+      for (std::size_t i = 0; i < motion.times_s.size(); ++i)
+        REQUIRE((std::isfinite(motion.times_s[i]) && motion.positions_m[i].allFinite() && motion.orientations[i].coeffs().allFinite()));
+    } catch (const std::runtime_error& e) {
+      REQUIRE(std::string(e.what()).find('\n') == std::string::npos);
+    }
+  };
+  for (std::size_t size = 0; size < whole.size(); ++size) check(whole.substr(0, size));
+  const std::string pieces[] = {"nan", "inf", "-1e999", ",,", "\n", "0x1p9", "-"};
+  for (int i = 0; i < 5000; ++i) {
+    std::string changed = whole;
+    for (int k = 0; k <= i % 3; ++k) {
+      const std::size_t at = random() % changed.size();
+      if (random() % 2 == 0)
+        changed[at] = static_cast<char>(random());
+      else
+        changed.replace(at, random() % 5, pieces[random() % std::size(pieces)]);
+    }
+    check(changed);
+  }
 }
 
 TEST_CASE("A playback passes every sample with its scale, offset and rate, and rests at the last sample") {

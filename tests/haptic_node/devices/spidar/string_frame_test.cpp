@@ -82,5 +82,5 @@ TEST_CASE("A frame is read from a file, and an error is reported in one sentence
   rejected(with("\"anchor_m\": [0.3, 0.3, 0.3]", ""), "needs its \"anchor_m\"");
   rejected(with("[0.3, 0.3, 0.3]}", "[0.3, 0.3, 0.3], \"colour\": 1}"), "no \"colour\"");
   rejected(with("0.1", "1e308"), "workspace_radius_m");
-  CHECK_THROWS_WITH(read_frame("/no/such.json"), Contains("not a regular file"));
+  CHECK_THROWS_WITH(read_frame("/no/such.json"), Contains("does not exist"));
 }
