@@ -23,7 +23,8 @@ bool recent(sync::HostTime at, sync::HostTime now) {
 
 }  // namespace
 
-NodeRenderer::NodeRenderer(sync::RendererHost& host, std::string tool_name, sync::OfflineTable* log)
+NodeRenderer::NodeRenderer(sync::RendererHost& host, std::string tool_name, sync::OfflineTable* log,
+                           const std::string& exposure)
     : SettingsRenderer(host, setting_fields()),
       tool_name_(std::move(tool_name)),
       log_(log),
@@ -37,7 +38,8 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, std::string tool_name, sync
   if (log_) return;
   host.bus().attach(commands_);
   const sync::Identity& identity = host.bus().identity();
-  dose_file_ = std::make_unique<DoseFile>(host.options().out + "/" + identity.node + ".dose", identity.clock);
+  dose_file_ = std::make_unique<DoseFile>(
+      exposure.empty() ? default_dose_file(host.options().out, identity.node) : exposure, identity.clock);
   account_ = dose_file_->load(host.clock());
 }
 

@@ -24,8 +24,8 @@ namespace tactus::thermal {
 class NodeRenderer : public sync::SettingsRenderer<Settings> {
  public:
   // tool_name: from the command line; empty: the setting, otherwise the first tool of the scene. log: null:
-  // renders the bus.
-  NodeRenderer(sync::RendererHost& host, std::string tool_name, sync::OfflineTable* log);
+  // renders the bus. exposure: file for the exposure of the skin; empty: default_dose_file().
+  NodeRenderer(sync::RendererHost& host, std::string tool_name, sync::OfflineTable* log, const std::string& exposure);
 
   std::optional<sync::Status> step(sync::HostTime now) override;
   std::string finish_log(sync::HostTime clock) override { return log_->result(config_.problem, clock); }

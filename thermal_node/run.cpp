@@ -7,8 +7,7 @@
 //        PRESENTED                     every begin and hit of its tool
 //
 // Lost contacts, lost or false readings, a second sender of either output: the command returns to the temperature of resting
-// skin. The exposure of the skin survives a restart, in a file of --out. With --log it renders a recorded run, as fast as it
-// can, and writes --trace; the same log gives the same bytes.
+// skin. With --log it renders a recorded run, as fast as it can, and writes --trace; the same log gives the same bytes.
 #include "thermal_node/run.h"
 
 #include <tactus/node_health_t.hpp>
@@ -36,6 +35,7 @@ const sync::NodeDescriptor kThermal{.name = "thermal_node",
 class Factory : public sync::RendererFactory {
   void add_options(sync::Arguments& app) override {
     app.add_option("--tool", tool_, "tool to render; default: the setting `tool`, else the first tool of the scene");
+    app.add_option("--exposure", exposure_, "file that keeps the exposure of the skin across restarts; default: NODE.dose in --out");
     log_options_.add_to(app, "temperature", "thermal.csv");
   }
   sync::OfflineInput* prepare(const sync::NodeOptions& options) override {
@@ -45,9 +45,9 @@ class Factory : public sync::RendererFactory {
     return &log_->run();
   }
   std::unique_ptr<sync::Renderer> make(sync::RendererHost& host) override {
-    return std::make_unique<thermal::NodeRenderer>(host, tool_, log_.get());
+    return std::make_unique<thermal::NodeRenderer>(host, tool_, log_.get(), exposure_);
   }
-  std::string tool_;
+  std::string tool_, exposure_;
   sync::OfflineTableOptions log_options_;
   std::unique_ptr<sync::OfflineTable> log_;
 };

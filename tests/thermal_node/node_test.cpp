@@ -153,12 +153,12 @@ TEST_CASE("Two nodes of one tool command the plate to rest, and the remaining on
 
 TEST_CASE("A restarted node continues with the exposure of its predecessor") {
   Cluster c;
-  c.start("thermal_node", thermal::run);
+  const std::vector<std::string> stored{"--exposure", c.folder() + "/exposure"};
+  c.start("thermal_node", thermal::run, stored);
   c.run(150);
   CHECK(c.warm_s() > 120);
   c.stop("thermal_node");
-  CHECK(std::filesystem::exists(c.folder() + "/thermal_node.dose"));
-  c.start("thermal_node", thermal::run);
+  c.start("thermal_node", thermal::run, stored);
   c.run(200);
   CHECK(c.warm_s() <= 240);
   CHECK(c.warm_s() > 200);

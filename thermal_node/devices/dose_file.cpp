@@ -14,6 +14,8 @@
 #include <optional>
 #include <utility>
 
+#include "sync/virtual_time/virtual_time.h"
+
 namespace tactus::thermal {
 namespace {
 
@@ -42,6 +44,10 @@ std::optional<Stored> parse(const char* text) {
 
 }  // namespace
 
+std::string default_dose_file(const std::string& folder, const std::string& name) {
+  return sync::VirtualTime::current() ? "" : folder + "/" + name + ".dose";
+}
+
 DoseFile::~DoseFile() {
   if (file_ >= 0) close(file_);
 }
@@ -56,10 +62,10 @@ bool DoseFile::refuse(const std::string& reason) {
 // A link is not followed, and a pipe is not waited for.
 bool DoseFile::open(bool create) {
   if (file_ >= 0) return true;
-  if (refused_) return false;
+  if (refused_ || path_.empty()) return false;
   file_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | (create ? O_CREAT : 0), 0600);
   if (file_ < 0 && errno == ENOENT && !create) return false;
-  if (file_ < 0) return refuse(std::string("cannot be stored (") + std::strerror(errno) + "); choose another --out");
+  if (file_ < 0) return refuse(std::string("cannot be stored (") + std::strerror(errno) + "); choose another --exposure");
   struct stat s {};
   if (fstat(file_, &s) != 0 || !S_ISREG(s.st_mode) || s.st_uid != geteuid() || (s.st_mode & 022) != 0 || s.st_nlink != 1)
     return refuse("is not a file of this user alone; remove it");
@@ -96,7 +102,7 @@ void DoseFile::save(const DwellAccount& account, sync::HostTime now) {
   line[static_cast<std::size_t>(size)] = ' ';
   line.back() = '\n';
   if (pwrite(file_, line.data(), line.size(), 0) != static_cast<ssize_t>(line.size())) {
-    refuse(std::string("cannot be stored (") + std::strerror(errno) + "); free space, or choose another --out");
+    refuse(std::string("cannot be stored (") + std::strerror(errno) + "); free space, or choose another --exposure");
     return;
   }
   written_ = account;

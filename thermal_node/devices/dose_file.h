@@ -11,6 +11,9 @@
 
 namespace tactus::thermal {
 
+// The file that a program of this name uses by default: NAME.dose in its folder; empty in virtual time, which has no person.
+std::string default_dose_file(const std::string& folder, const std::string& name);
+
 class DoseFile {
  public:
   // A display holds its command for this time after its sender has ended: the exposure that save() counts ahead. It covers
@@ -19,7 +22,8 @@ class DoseFile {
   // Smallest time between two writes.
   static constexpr sync::Nanoseconds kPeriod{100'000'000};
 
-  // clock: id of the clock of all times (sync/bus/identity.h). Nothing is created before the first exposure.
+  // path: empty: nothing is stored. clock: id of the clock of all times (sync/bus/identity.h). Nothing is created before the
+  // first exposure.
   DoseFile(std::string path, std::int32_t clock) : path_(std::move(path)), clock_(clock) {}
   ~DoseFile();
   DoseFile(const DoseFile&) = delete;

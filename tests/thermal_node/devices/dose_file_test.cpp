@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "sync/virtual_time/virtual_time.h"
+
 using namespace tactus;
 using namespace tactus::thermal;
 
@@ -119,5 +121,15 @@ TEST_CASE("A folder that cannot be written is named, once") {
   DoseFile file("/nonexistent/thermal_node.dose", kClock);
   CHECK(file.load(at(0)).dose_s == 0);
   file.save({10, 0, false, false}, at(0));
-  CHECK_THAT(file.problem(), Catch::Contains("choose another --out"));
+  CHECK_THAT(file.problem(), Catch::Contains("choose another --exposure"));
+}
+
+TEST_CASE("The default file is in the folder of the program, and virtual time has none") {
+  CHECK(default_dose_file("/results", "thermal_node") == "/results/thermal_node.dose");
+  sync::VirtualTime time;
+  CHECK(default_dose_file("/results", "thermal_node").empty());
+  DoseFile none("", kClock);
+  none.save({10, 0, false, false}, at(0));
+  CHECK(none.load(at(1)).dose_s == 0);
+  CHECK(none.problem().empty());
 }
