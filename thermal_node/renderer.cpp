@@ -88,7 +88,8 @@ void NodeRenderer::receive() {
     if (reading.header.run_id != host().options().run_id) continue;
     if (device_) device_->receive(reading, m->arrival);
     const bool own = reading.header.incarnation == host().bus().identity().incarnation;
-    if (!log_ && !own && reading.tool == config_.tool && config_.settings.device != "external") other_reading_ = m->arrival;
+    if (!log_ && !own && reading.tool == config_.tool && config_.settings.device != "external")
+      other_reading_ = m->arrival;
   }
   while (const auto m = commands_.pop()) {
     const header_t& header = m->message.header;
@@ -103,7 +104,8 @@ const char* NodeRenderer::display_problem(sync::HostTime now) const {
   if (recent(other_command_, now))
     return "two programs send THERMAL_STATE for its tool: the plate is neutral; stop one of them";
   if (recent(other_reading_, now))
-    return "another program sends THERMAL_DEVICE for its tool: the plate is neutral; stop it, or set device=external";
+    return "another program sends THERMAL_DEVICE for its tool: the plate is neutral; stop it, or set "
+           "device=external";
   return device_ ? device_->problem(now) : nullptr;
 }
 
@@ -132,13 +134,15 @@ void NodeRenderer::render(sync::HostTime now) {
   const double command_degC = command_degC_.value_or(config_.settings.skin_rest_degC);
   const auto plate = device_ ? device_->step(command_degC, renderer_->load_W(), now) : std::nullopt;
   problem_ = display_problem(now);
-  if (device_ && std::exchange(displays_, device_->displays()) != device_->displays()) renderer_->restart_display();
-  thermal_state_t state = renderer_->step(tick, {.response_s = endpoint.output().value("response"),
-                                                 .longest_substep_s = quality_.longest_substep_s(),
-                                                 .plate = plate,
-                                                 .display_lost = problem_ != nullptr,
-                                                 .check_following = !log_ || (device_ && device_->simulated()),
-                                                 .plate_return_K_s = device_ ? device_->return_K_s() : kDisplayReturn_K_s});
+  if (device_ && std::exchange(displays_, device_->displays()) != device_->displays())
+    renderer_->restart_display();
+  thermal_state_t state =
+      renderer_->step(tick, {.response_s = endpoint.output().value("response"),
+                             .longest_substep_s = quality_.longest_substep_s(),
+                             .plate = plate,
+                             .display_lost = problem_ != nullptr,
+                             .check_following = !log_ || (device_ && device_->simulated()),
+                             .plate_return_K_s = device_ ? device_->return_K_s() : kDisplayReturn_K_s});
   rendering.reset();
   store_dose(now);
   published_ = state;
@@ -166,7 +170,8 @@ sync::Status NodeRenderer::status() const {
   }
   // A display that is not there does not hide the state of the inputs.
   if (const char* trouble = display_trouble()) {
-    if (s.state == node_health_t::RUNNING && renderer_->display() != DisplayState::kShort) s.state = node_health_t::OUTPUT_LOST;
+    if (s.state == node_health_t::RUNNING && renderer_->display() != DisplayState::kShort)
+      s.state = node_health_t::OUTPUT_LOST;
     s.text = trouble;
   }
   return s;
@@ -175,11 +180,15 @@ sync::Status NodeRenderer::status() const {
 const char* NodeRenderer::display_trouble() const {
   switch (renderer_->display()) {
     case DisplayState::kGood: return nullptr;
-    case DisplayState::kShort: return "the display reports that it delivers less than commanded: the command stays near its plate";
-    case DisplayState::kLost: return problem_ ? problem_ : "the display was lost: the plate is neutral for a moment";
-    case DisplayState::kFault: return "the display reports a fault or an impossible temperature: the plate is neutral; check it";
+    case DisplayState::kShort:
+      return "the display reports that it delivers less than commanded: the command stays near its plate";
+    case DisplayState::kLost:
+      return problem_ ? problem_ : "the display was lost: the plate is neutral for a moment";
+    case DisplayState::kFault:
+      return "the display reports a fault or an impossible temperature: the plate is neutral; check it";
     case DisplayState::kNotFollowing:
-      return "the plate does not follow its command: it stays neutral; check the display and its limits, then start it again";
+      return "the plate does not follow its command: it stays neutral; check the display and its limits, then "
+             "start it again";
   }
   return nullptr;
 }

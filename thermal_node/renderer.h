@@ -8,15 +8,15 @@
 #include <tactus/thermal_device_t.hpp>
 #include <tactus/thermal_state_t.hpp>
 
-#include "sync/resampling/contact_stream.h"
 #include "sync/node/offline.h"
 #include "sync/node/renderer.h"
-#include "thermal_node/devices/node_config.h"
+#include "sync/resampling/contact_stream.h"
 #include "thermal_node/devices/device.h"
 #include "thermal_node/devices/dose_file.h"
+#include "thermal_node/devices/node_config.h"
 #include "thermal_node/display/quality.h"
-#include "thermal_node/rendering/renderer.h"
 #include "thermal_node/display/ticks.h"
+#include "thermal_node/rendering/renderer.h"
 #include "thermal_node/skin/dwell.h"
 
 namespace tactus::thermal {
@@ -25,7 +25,8 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
  public:
   // tool_name: from the command line; empty: the setting, otherwise the first tool of the scene. log: null:
   // renders the bus. exposure: file for the exposure of the skin; empty: default_dose_file().
-  NodeRenderer(sync::RendererHost& host, std::string tool_name, sync::OfflineTable* log, const std::string& exposure);
+  NodeRenderer(sync::RendererHost& host, std::string tool_name, sync::OfflineTable* log,
+               const std::string& exposure);
 
   std::optional<sync::Status> step(sync::HostTime now) override;
   std::string finish_log(sync::HostTime clock) override { return log_->result(config_.problem, clock); }
@@ -59,11 +60,11 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   std::unique_ptr<Device> device_;
   std::int64_t displays_ = 0;                         // see Device::displays
   sync::HostTime other_command_{}, other_reading_{};  // last message of another program for its display
-  std::optional<double> command_degC_;  // last command, kept across scenes
-  std::optional<double> plate_degC_;    // last measurement
-  const char* problem_ = nullptr;       // of the display in the last tick
-  std::string dose_problem_;            // last printed
-  thermal_state_t published_{};  // the latest published state, for the tags
+  std::optional<double> command_degC_;                // last command, kept across scenes
+  std::optional<double> plate_degC_;                  // last measurement
+  const char* problem_ = nullptr;                     // of the display in the last tick
+  std::string dose_problem_;                          // last printed
+  thermal_state_t published_{};                       // the latest published state, for the tags
 };
 
 }  // namespace tactus::thermal

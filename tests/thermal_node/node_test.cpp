@@ -1,5 +1,5 @@
-// Tests of the whole program in virtual time, with a finger that rests on hot copper: two nodes, a restarted node, displays of
-// other programs.
+// Tests of the whole program in virtual time, with a finger that rests on hot copper: two nodes, a restarted node,
+// displays of other programs.
 #include <stdlib.h>
 
 #include <catch2/catch.hpp>
@@ -76,9 +76,8 @@ class Cluster {
   Cluster() {
     char name[] = "/tmp/tactus_node_XXXXXX";
     folder_ = mkdtemp(name);
-    time_.wire().add_listener([this](sync::HostTime now, std::string_view channel, std::span<const std::uint8_t> data) {
-      on_message(now, channel, data);
-    });
+    time_.wire().add_listener([this](sync::HostTime now, std::string_view channel,
+                                     std::span<const std::uint8_t> data) { on_message(now, channel, data); });
     time_.add("sim_node", simulate);
   }
   ~Cluster() {
@@ -88,7 +87,8 @@ class Cluster {
 
   using Program = int (*)(int, char**);
   void start(const std::string& name, Program program, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> words{name, "--name", name, "--run-id", std::to_string(kRun), "--realtime", "off", "--out", folder_};
+    std::vector<std::string> words{name,         "--name", name,    "--run-id", std::to_string(kRun),
+                                   "--realtime", "off",    "--out", folder_};
     words.insert(words.end(), more.begin(), more.end());
     time_.add(name, [words, program]() mutable {
       std::vector<char*> argv;

@@ -35,8 +35,10 @@ void DisplayGuard::receive(const thermal_state_t& m, sync::HostTime arrival) {
 }
 
 const char* DisplayGuard::problem(sync::HostTime now) const {
-  if (sender_.conflict(now)) return "two programs send THERMAL_STATE for its tool: the plate is neutral; stop one of them";
-  if (sender_.ahead(now)) return "THERMAL_STATE is dated ahead: the plate is neutral; check the clock of thermal_node";
+  if (sender_.conflict(now))
+    return "two programs send THERMAL_STATE for its tool: the plate is neutral; stop one of them";
+  if (sender_.ahead(now))
+    return "THERMAL_STATE is dated ahead: the plate is neutral; check the clock of thermal_node";
   if (sender_.followed() == 0) return "waits for THERMAL_STATE";
   if (sender_.silent(now)) return "no THERMAL_STATE: the plate is neutral";
   if (!sender_.trusted(now)) return "THERMAL_STATE has begun: the plate is neutral for a moment";
@@ -57,15 +59,20 @@ GuardedTarget DisplayGuard::step(std::optional<double> plate_degC, sync::HostTim
   const bool failed = plate_degC && !std::isfinite(*plate_degC);
   const double plate = plate_degC && !failed ? *plate_degC : target_degC_;
   const TemperatureRange wide{settings_.temperature_min_degC, settings_.temperature_max_degC};
-  exposure_ = {std::max(plate, target_degC_), std::min(plate, target_degC_), target_degC_, kPlateReturn_K_s,
-               kReaction_s + dt_s, kPlateSwing_K};
+  exposure_ = {std::max(plate, target_degC_),
+               std::min(plate, target_degC_),
+               target_degC_,
+               kPlateReturn_K_s,
+               kReaction_s + dt_s,
+               kPlateSwing_K};
   TemperatureRange range = dwell_.step(exposure_, dt_s, wide);
   range.min_degC = std::min(range.min_degC, neutral_degC_);  // a neutral of 25 degC at cold_below remains allowed
 
   GuardedTarget out;
   out.problem = problem(now);
   if (failed) out.problem = "its sensor has failed: the display is off";
-  if (!first && runs_away(plate)) out.problem = "its plate is out of the range: the display is off until it is back";
+  if (!first && runs_away(plate))
+    out.problem = "its plate is out of the range: the display is off until it is back";
   out.off = failed || (!first && runs_away(plate));
   plate_degC_ = plate;
 

@@ -4,10 +4,10 @@
 //   in   THERMAL_STATE    command for the plate of its tool
 //   out  THERMAL_DEVICE   every tick
 //
-// DisplayGuard is the last check before the plate: it follows one sender, keeps range, slew and duration of warmth and cold
-// for any command, and returns the plate to neutral when THERMAL_STATE is missing for 0.3 s, is dated ahead or comes from two
-// programs. Its limits are the settings of thermal_node (--set); give both programs the same. The exposure of the person
-// survives a restart, in the file --exposure.
+// DisplayGuard is the last check before the plate: it follows one sender, keeps range, slew and duration of warmth
+// and cold for any command, and returns the plate to neutral when THERMAL_STATE is missing for 0.3 s, is dated
+// ahead or comes from two programs. Its limits are the settings of thermal_node (--set); give both programs the
+// same. The exposure of the person survives a restart, in the file --exposure.
 //
 // The contract: read THERMAL_STATE of your tool; apply your own limits to it; answer with THERMAL_DEVICE. Both are
 // in lcmtypes/ and begin with header_t; sync::Bus fills and checks it here. In another language fill it by hand:
@@ -44,7 +44,8 @@ int thermal::run_display(int argc, char** argv) try {
   int tool = 0;
   std::string exposure;
   app.add_option("--tool", tool, "index of the tool that carries the display").range(0, 1000);
-  app.add_option("--exposure", exposure, "file that keeps the exposure of the skin across restarts; default: NODE.dose in --out");
+  app.add_option("--exposure", exposure,
+                 "file that keeps the exposure of the skin across restarts; default: NODE.dose in --out");
   sync::parse_or_exit(app, descriptor.name, argc, argv);
   const thermal::Settings settings = sync::settings_of(thermal::setting_fields(), "thermal_node", options.set);
 
@@ -53,7 +54,8 @@ int thermal::run_display(int argc, char** argv) try {
   const sync::Identity& identity = node.bus().identity();
   thermal::DisplayGuard guard(settings, tool, options.run_id, identity.clock);
   thermal::SimulatedPeltier plate({}, {}, settings.skin_rest_degC);
-  thermal::DoseFile file(exposure.empty() ? thermal::default_dose_file(options.out, identity.node) : exposure, identity.clock);
+  thermal::DoseFile file(exposure.empty() ? thermal::default_dose_file(options.out, identity.node) : exposure,
+                         identity.clock);
   guard.resume(file.load(sync::host_now()));
   std::optional<thermal::PlateReading> reading;
   node.set_state(node_health_t::WAITING, "waits for THERMAL_STATE");

@@ -1,4 +1,5 @@
-// The program thermal_device as a function, so that virtual time can run it together with other nodes in one process.
+// The program thermal_device as a function, so that virtual time can run it together with other nodes in one
+// process.
 #pragma once
 
 namespace tactus::thermal {

@@ -28,14 +28,16 @@ struct Stored {
   DwellAccount account;
 };
 
-std::int64_t microseconds(double seconds) { return static_cast<std::int64_t>(std::ceil(std::min(seconds, 1e6) / kUs)); }
+std::int64_t microseconds(double seconds) {
+  return static_cast<std::int64_t>(std::ceil(std::min(seconds, 1e6) / kUs));
+}
 
 std::optional<Stored> parse(const char* text) {
   Stored s;
   std::int64_t dose_us = -1, cold_us = -1;
   int warm = -1, cold = -1;
-  if (std::sscanf(text, "tactus_dose 1 %" SCNd32 " %" SCNd64 " %" SCNd64 " %" SCNd64 " %d %d", &s.clock, &s.at_ns, &dose_us,
-                  &cold_us, &warm, &cold) != 6)
+  if (std::sscanf(text, "tactus_dose 1 %" SCNd32 " %" SCNd64 " %" SCNd64 " %" SCNd64 " %d %d", &s.clock, &s.at_ns,
+                  &dose_us, &cold_us, &warm, &cold) != 6)
     return std::nullopt;
   if (dose_us < 0 || cold_us < 0 || (warm != 0 && warm != 1) || (cold != 0 && cold != 1)) return std::nullopt;
   s.account = {static_cast<double>(dose_us) * kUs, static_cast<double>(cold_us) * kUs, warm == 1, cold == 1};
@@ -65,9 +67,11 @@ bool DoseFile::open(bool create) {
   if (refused_ || path_.empty()) return false;
   file_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | (create ? O_CREAT : 0), 0600);
   if (file_ < 0 && errno == ENOENT && !create) return false;
-  if (file_ < 0) return refuse(std::string("cannot be stored (") + std::strerror(errno) + "); choose another --exposure");
+  if (file_ < 0)
+    return refuse(std::string("cannot be stored (") + std::strerror(errno) + "); choose another --exposure");
   struct stat s {};
-  if (fstat(file_, &s) != 0 || !S_ISREG(s.st_mode) || s.st_uid != geteuid() || (s.st_mode & 022) != 0 || s.st_nlink != 1)
+  if (fstat(file_, &s) != 0 || !S_ISREG(s.st_mode) || s.st_uid != geteuid() || (s.st_mode & 022) != 0 ||
+      s.st_nlink != 1)
     return refuse("is not a file of this user alone; remove it");
   return true;
 }
@@ -79,7 +83,8 @@ DwellAccount DoseFile::load(sync::HostTime now) {
   if (size == 0) return {};  // created, and ended before its first write
   const auto stored = size > 0 ? parse(text.data()) : std::nullopt;
   if (!stored) {
-    problem_ = "the exposure of the skin in " + path_ + " cannot be read: the limits count as reached; wait, or remove it";
+    problem_ = "the exposure of the skin in " + path_ +
+               " cannot be read: the limits count as reached; wait, or remove it";
     return DwellAccount::full();
   }
   written_ = stored->account;
@@ -96,13 +101,15 @@ void DoseFile::save(const DwellAccount& account, sync::HostTime now) {
   if (!open(true)) return;
   std::array<char, kBytes> line;
   line.fill(' ');
-  const int size = std::snprintf(line.data(), line.size(), "tactus_dose 1 %" PRId32 " %" PRId64 " %" PRId64 " %" PRId64 " %d %d",
-                                 clock_, sync::to_ns(now), microseconds(account.dose_s), microseconds(account.cold_s),
+  const int size = std::snprintf(line.data(), line.size(),
+                                 "tactus_dose 1 %" PRId32 " %" PRId64 " %" PRId64 " %" PRId64 " %d %d", clock_,
+                                 sync::to_ns(now), microseconds(account.dose_s), microseconds(account.cold_s),
                                  account.warm_limited ? 1 : 0, account.cold_limited ? 1 : 0);
   line[static_cast<std::size_t>(size)] = ' ';
   line.back() = '\n';
   if (pwrite(file_, line.data(), line.size(), 0) != static_cast<ssize_t>(line.size())) {
-    refuse(std::string("cannot be stored (") + std::strerror(errno) + "); free space, or choose another --exposure");
+    refuse(std::string("cannot be stored (") + std::strerror(errno) +
+           "); free space, or choose another --exposure");
     return;
   }
   written_ = account;

@@ -16,10 +16,12 @@ std::optional<PlateReading> External::step(double, double, sync::HostTime now) {
 }
 
 const char* External::problem(sync::HostTime now) const {
-  if (sender_.conflict(now)) return "two programs send THERMAL_DEVICE for its tool: the plate is neutral; stop one of them";
+  if (sender_.conflict(now))
+    return "two programs send THERMAL_DEVICE for its tool: the plate is neutral; stop one of them";
   if (sender_.ahead(now))
     return "THERMAL_DEVICE is dated ahead: the plate is neutral; check the clock of the display's program";
-  if (sender_.followed() == 0) return "no display answers: the plate is neutral; start its program, or set device=none";
+  if (sender_.followed() == 0)
+    return "no display answers: the plate is neutral; start its program, or set device=none";
   if (sender_.silent(now)) return "the display is silent: the plate is neutral; check its program";
   return sender_.trusted(now) ? nullptr : "the display has begun to answer: the plate is neutral for a moment";
 }

@@ -1,5 +1,5 @@
-// A display that another program drives: it reads its command from THERMAL_STATE and answers with THERMAL_DEVICE. Its
-// messages may be late, missing, repeated, wrongly dated, or come from two programs. Pure.
+// A display that another program drives: it reads its command from THERMAL_STATE and answers with THERMAL_DEVICE.
+// Its messages may be late, missing, repeated, wrongly dated, or come from two programs. Pure.
 #pragma once
 
 #include <tactus/thermal_device_t.hpp>

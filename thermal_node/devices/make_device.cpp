@@ -13,7 +13,8 @@ std::unique_ptr<Device> make_device(const Settings& s, int tool, double plate_de
   PeltierPlant plant;
   plant.room_degC = s.room_degC;
   PlateLimits limits;
-  // The command keeps the slew limit. A tight one must not slow down the return into a range that has become narrower.
+  // The command keeps the slew limit. A tight one must not slow down the return into a range that has become
+  // narrower.
   limits.rate_K_s = std::max(limits.rate_K_s, s.slew_max_K_s);
   return std::make_unique<SimulatedPeltier>(plant, limits, plate_degC);
 }

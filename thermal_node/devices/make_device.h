@@ -9,8 +9,8 @@
 
 namespace tactus::thermal {
 
-// Null for device=none. plate_degC: initial temperature of a simulated plate. clock: id of the clock of this process, see
-// External.
+// Null for device=none. plate_degC: initial temperature of a simulated plate. clock: id of the clock of this
+// process, see External.
 std::unique_ptr<Device> make_device(const Settings& settings, int tool, double plate_degC, std::int32_t clock = 0);
 
 }  // namespace tactus::thermal

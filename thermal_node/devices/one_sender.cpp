@@ -34,8 +34,8 @@ OneSender::Result OneSender::observe(const header_t& h, sync::HostTime arrival) 
   return gone ? Result::kRestart : Result::kUse;
 }
 
-// The clock of another machine has an unknown offset, so its messages are compared with its earlier ones. Their latency
-// differs by the jitter of a network, for which `silence` is enough.
+// The clock of another machine has an unknown offset, so its messages are compared with its earlier ones. Their
+// latency differs by the jitter of a network, for which `silence` is enough.
 sync::Nanoseconds OneSender::lateness(const header_t& h, sync::HostTime arrival) {
   const sync::Nanoseconds latency = arrival - sync::host_time(h.publish_time_ns);
   if (clock_ != 0 && h.clock == clock_) return latency;

@@ -1,5 +1,5 @@
-// Follows the one sender of an output. Several programs may send at the same time, by mistake or on purpose; then none of
-// them is right. Pure.
+// Follows the one sender of an output. Several programs may send at the same time, by mistake or on purpose; then
+// none of them is right. Pure.
 #pragma once
 
 #include <chrono>
@@ -21,11 +21,12 @@ class OneSender {
     kLate,      // sent longer than `silence` ago
     kAhead,     // sent later than it arrives: the clock of the sender has stepped, or the date is false
   };
-  // Design: clocks of one machine agree to less; a message that is sent later than it arrives by more is dated ahead.
+  // Design: clocks of one machine agree to less; a message that is sent later than it arrives by more is dated
+  // ahead.
   static constexpr sync::Nanoseconds kMaxAhead{10'000'000};
 
-  // silence: without a message for this time the sender is gone, and any other is followed. clock: id of the clock of this
-  // process (sync/bus/identity.h); 0: no sender reads the same clock.
+  // silence: without a message for this time the sender is gone, and any other is followed. clock: id of the clock
+  // of this process (sync/bus/identity.h); 0: no sender reads the same clock.
   explicit OneSender(sync::Nanoseconds silence, std::int32_t clock = 0) : silence_(silence), clock_(clock) {}
 
   // Messages of one output. Use only kUse and kRestart. Realtime-safe: yes.

@@ -10,7 +10,8 @@ struct ControllerLimits {
   double slew_K_s = 20;
 };
 
-// Largest swing of a plate about a constant command, under a load that is not known: see plate_controller_test.cpp.
+// Largest swing of a plate about a constant command, under a load that is not known: see
+// plate_controller_test.cpp.
 inline constexpr double kPlateSwing_K = 0.3;
 
 struct Command {

@@ -4,7 +4,8 @@
 
 namespace tactus::thermal {
 
-Following::Result Following::step(double command_degC, double plate_degC, bool limited, double neutral_degC, double dt_s) {
+Following::Result Following::step(double command_degC, double plate_degC, bool limited, double neutral_degC,
+                                  double dt_s) {
   if (!(dt_s > 0)) dt_s = 0;
   if (!reachable_) reachable_ = {plate_degC, plate_degC};
   const double way_K = kSlowest_K_s * dt_s;

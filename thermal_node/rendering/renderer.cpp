@@ -29,8 +29,8 @@ constexpr double kRunaway_K = 2;
 // Possible range of a plate under a finger; other values mean a broken sensor.
 constexpr double kColdestPlate_degC = -50, kHottestPlate_degC = 150;
 
-// A longer interval is integrated in at most this many substeps, so that a process that was stopped for hours continues at
-// once. The implicit method is stable for any substep.
+// A longer interval is integrated in at most this many substeps, so that a process that was stopped for hours
+// continues at once. The implicit method is stable for any substep.
 constexpr double kMaxSubsteps = 2000;
 
 ControllerLimits limits(const Settings& s) {
@@ -40,7 +40,9 @@ ControllerLimits limits(const Settings& s) {
 // Value to publish: an invalid quantity is published as 0.
 float reading(double x) { return x > 0 && x < 1e9 ? static_cast<float>(x) : 0; }
 
-bool usable(sync::SampleStatus status) { return status != sync::SampleStatus::kNone && status != sync::SampleStatus::kStale; }
+bool usable(sync::SampleStatus status) {
+  return status != sync::SampleStatus::kNone && status != sync::SampleStatus::kStale;
+}
 
 }  // namespace
 
@@ -159,14 +161,14 @@ DisplayState Renderer::check_display(const TickOptions& options, bool measured, 
   if (measured && options.check_following && !gap) {
     const Result result = following_.step(commanded_degC_, options.plate->plate_degC, options.plate->limited,
                                           neutral_degC(), interval_s);
-    if (result != Result::kFollows) state = result == Result::kShort ? DisplayState::kShort : DisplayState::kNotFollowing;
+    if (result != Result::kFollows)
+      state = result == Result::kShort ? DisplayState::kShort : DisplayState::kNotFollowing;
   } else {
     following_.skip();
   }
-  const bool runaway =
-      options.plate && (!measured || options.plate->fault ||
-                        options.plate->plate_degC < settings_.temperature_min_degC - kRunaway_K ||
-                        options.plate->plate_degC > settings_.temperature_max_degC + kRunaway_K);
+  const bool runaway = options.plate && (!measured || options.plate->fault ||
+                                         options.plate->plate_degC < settings_.temperature_min_degC - kRunaway_K ||
+                                         options.plate->plate_degC > settings_.temperature_max_degC + kRunaway_K);
   if (runaway) state = DisplayState::kFault;
   if (options.display_lost) state = DisplayState::kLost;
 
@@ -185,15 +187,20 @@ DwellAccount Renderer::account_after(double seconds) const {
 }
 
 // From the wanted skin state to the plate command: lag, then the required plate temperature, then the limits, the
-// tightest last. The range is entered at once, with any slew limit. A display that cannot be relied on is commanded to
-// rest. The exposure is that of the last interval, by the worse of command and reading: no reading lowers it.
+// tightest last. The range is entered at once, with any slew limit. A display that cannot be relied on is
+// commanded to rest. The exposure is that of the last interval, by the worse of command and reading: no reading
+// lowers it.
 Command Renderer::command(const TickOptions& options, double interval_s) {
   const bool measured = options.plate && options.plate->plate_degC > kColdestPlate_degC &&
                         options.plate->plate_degC < kHottestPlate_degC;
   const double plate_degC = measured ? options.plate->plate_degC : commanded_degC_;
   const TemperatureRange wide{settings_.temperature_min_degC, settings_.temperature_max_degC};
-  exposure_ = {std::max(plate_degC, commanded_degC_), std::min(plate_degC, commanded_degC_), target_degC_,
-               options.plate_return_K_s, kReaction_s + interval_s, kPlateSwing_K};
+  exposure_ = {std::max(plate_degC, commanded_degC_),
+               std::min(plate_degC, commanded_degC_),
+               target_degC_,
+               options.plate_return_K_s,
+               kReaction_s + interval_s,
+               kPlateSwing_K};
   TemperatureRange range = dwell_.step(exposure_, interval_s, wide);
   range.min_degC = std::min(range.min_degC, neutral_degC());  // a neutral of 25 degC at cold_below remains allowed
 

@@ -12,16 +12,16 @@
 #include <vector>
 
 #include "sync/presentation/late.h"
-#include "thermal_node/skin/contact_model.h"
-#include "thermal_node/display/controller.h"
 #include "thermal_node/devices/device.h"
-#include "thermal_node/skin/dwell.h"
+#include "thermal_node/display/controller.h"
 #include "thermal_node/display/flux_display.h"
 #include "thermal_node/display/following.h"
 #include "thermal_node/display/lag.h"
-#include "thermal_node/settings.gen.h"
-#include "thermal_node/skin/skin.h"
 #include "thermal_node/display/ticks.h"
+#include "thermal_node/settings.gen.h"
+#include "thermal_node/skin/contact_model.h"
+#include "thermal_node/skin/dwell.h"
+#include "thermal_node/skin/skin.h"
 
 namespace tactus::thermal {
 
@@ -36,9 +36,9 @@ struct TickOptions {
   double response_s = 0;  // time constant of a display that is slow on purpose; 0: none
   double longest_substep_s = Skin::kLongestSubstep_s;
   std::optional<PlateReading>
-      plate{};  // reading of the display since the last tick; empty: assumed to be at its command
-  bool display_lost = false;     // the display cannot be relied on: its plate is commanded to rest
-  bool check_following = true;   // false: the readings belong to other commands
+      plate{};                  // reading of the display since the last tick; empty: assumed to be at its command
+  bool display_lost = false;    // the display cannot be relied on: its plate is commanded to rest
+  bool check_following = true;  // false: the readings belong to other commands
   double plate_return_K_s = kDisplayReturn_K_s;
 };
 
@@ -60,9 +60,9 @@ class Renderer {
            std::optional<double> element_degC = std::nullopt, std::vector<double> thickness_m = {});
 
   // The state to publish at tick.end; of the header only the simulated instant is filled. Stale or missing input
-  // counts as no contact; the command then returns to the resting temperature, independent of skin model, quality and
-  // slew limit. After a gap of more than Device::kSilence the command begins at rest, because a display without commands has
-  // returned there.
+  // counts as no contact; the command then returns to the resting temperature, independent of skin model, quality
+  // and slew limit. After a gap of more than Device::kSilence the command begins at rest, because a display
+  // without commands has returned there.
   thermal_state_t step(const Tick& tick, const TickOptions& options = {});
 
   // Applies changed settings from the next step on, as far as they can change while it runs.
@@ -82,13 +82,13 @@ class Renderer {
   // The exposure as it will be if the plate stays where it is for this time.
   DwellAccount account_after(double seconds) const;
 
-  // Slowest return of the command to rest, also with a tighter slew limit: from any command within a second. Design: the
-  // default of slew_max.
+  // Slowest return of the command to rest, also with a tighter slew limit: from any command within a second.
+  // Design: the default of slew_max.
   static constexpr double kReturn_K_s = 20;
   // Design: time for which the display must be good before it is used again.
   static constexpr double kTrust_s = 1;
-  // Time until a display leaves its command, besides the tick: Device::kSilence if this process stops, and the way of the
-  // message (design).
+  // Time until a display leaves its command, besides the tick: Device::kSilence if this process stops, and the way
+  // of the message (design).
   static constexpr double kReaction_s = 0.4;
 
   DisplayState display() const { return display_state_; }
@@ -104,7 +104,7 @@ class Renderer {
   // Means over the tick.
   struct HeatExchange {
     std::array<double, Skin::kMaxObjects> conductance_W_m2K{};  // to each object under the skin
-    double touched_share = 0;                               // of the pad and of the time
+    double touched_share = 0;                                   // of the pad and of the time
     double pressed_share = 0;  // share of the conductance of the whole pad, firmly pressed: at most 1
   };
   // An object that the models hold under the skin.

@@ -16,8 +16,8 @@ double dose_rate(double degC) {
   return std::pow(degC > kReference_degC ? kAbove : kBelow, std::min(degC, kHottest_degC) - kReference_degC);
 }
 
-// The reserve is part of the sum also for the release: with a limit of less than two ways the range stays narrow, instead of
-// opening for a tick at a time.
+// The reserve is part of the sum also for the release: with a limit of less than two ways the range stays narrow,
+// instead of opening for a tick at a time.
 void narrow(bool& limited, double sum_s, double max_s) {
   if (sum_s >= max_s) limited = true;
   if (sum_s <= max_s / 2) limited = false;
@@ -29,7 +29,8 @@ double usable(double sum_s) { return std::isfinite(sum_s) && sum_s >= 0 ? sum_s 
 
 DwellAccount DwellAccount::recovered(double seconds) const {
   if (!(seconds > 0)) return *this;
-  return {dose_s * std::exp(-seconds / Dwell::kDecay_s), std::max(0.0, cold_s - seconds), warm_limited, cold_limited};
+  return {dose_s * std::exp(-seconds / Dwell::kDecay_s), std::max(0.0, cold_s - seconds), warm_limited,
+          cold_limited};
 }
 
 TemperatureRange Dwell::step(const Exposure& e, double dt_s, const TemperatureRange& wide) {

@@ -25,8 +25,8 @@ struct Exposure {
   double target_degC = std::numeric_limits<double>::quiet_NaN();
   // Slowest return of the plate, and the time until the return begins, the next step included.
   double return_K_s = std::numeric_limits<double>::infinity(), delay_s = 0;
-  // The narrower range is inside the limits by this, because a plate swings about its command: a plate at 39.01 degC would
-  // never recover.
+  // The narrower range is inside the limits by this, because a plate swings about its command: a plate at 39.01
+  // degC would never recover.
   double margin_K = 0;
 };
 
@@ -53,15 +53,17 @@ class Dwell {
  public:
   explicit Dwell(const DwellLimits& limits) : limits_(limits) {}
 
-  // Returns the range for the next dt, after `exposure` for the last dt; `wide` is the range without exposure. The way to
-  // the end of that range and back counts beforehand, so the sums stay within the limits until the plate is back. While the
-  // plate is warm, the dose counts at the rate of the target: a slow approach does not lengthen the time above kWarm_degC.
+  // Returns the range for the next dt, after `exposure` for the last dt; `wide` is the range without exposure. The
+  // way to the end of that range and back counts beforehand, so the sums stay within the limits until the plate is
+  // back. While the plate is warm, the dose counts at the rate of the target: a slow approach does not lengthen
+  // the time above kWarm_degC.
   TemperatureRange step(const Exposure& exposure, double dt_s, const TemperatureRange& wide);
   // The same for a plate or finger at degC that returns at once.
   TemperatureRange step(double degC, double dt_s, const TemperatureRange& wide) {
     return step(Exposure{degC, degC}, dt_s, wide);
   }
-  // Continues with the exposure accumulated under other limits. Sums that are not finite or negative count as full.
+  // Continues with the exposure accumulated under other limits. Sums that are not finite or negative count as
+  // full.
   void resume(const Dwell& before) { resume(before.account_); }
   void resume(const DwellAccount& before);
   const DwellAccount& account() const { return account_; }

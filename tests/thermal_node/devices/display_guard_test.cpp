@@ -68,7 +68,8 @@ TEST_CASE("A command beyond the range of the display is cut to it") {
   CHECK(g.follow(-1000, 400).target_degC == 15);
 }
 
-TEST_CASE("A guarded plate returns to neutral without commands, with old ones, with two senders and with a date ahead") {
+TEST_CASE(
+    "A guarded plate returns to neutral without commands, with old ones, with two senders and with a date ahead") {
   Guarded g;
   g.follow(40, 200);
   REQUIRE(g.target.target_degC == 40);

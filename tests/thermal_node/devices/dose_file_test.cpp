@@ -109,7 +109,8 @@ TEST_CASE("A file that cannot be believed counts as a full exposure, and is not 
     refused();
   }
   SECTION("damaged") {
-    for (const char* text : {"nonsense", "tactus_dose 1 77 0 -5 0 0 0", "tactus_dose 1 77 0 nan 0 0 0", "tactus_dose 1 77"}) {
+    for (const char* text :
+         {"nonsense", "tactus_dose 1 77 0 -5 0 0 0", "tactus_dose 1 77 0 nan 0 0 0", "tactus_dose 1 77"}) {
       std::ofstream(folder.file()) << text;
       chmod(folder.file().c_str(), 0600);
       refused();

@@ -59,7 +59,8 @@ TEST_CASE("A second sender is a conflict, and a successor is followed within twi
 TEST_CASE("Repeated and overtaken messages do not keep a sender alive") {
   OneSender sender(kSilence, kClock);
   sender.observe(header(5, 10, 0), at(0));
-  for (int ms = 20; ms <= 300; ms += 20) CHECK(sender.observe(header(5, 10 - ms / 100, 0), at(ms)) == Result::kRepeated);
+  for (int ms = 20; ms <= 300; ms += 20)
+    CHECK(sender.observe(header(5, 10 - ms / 100, 0), at(ms)) == Result::kRepeated);
   CHECK(sender.silent(at(301)));
   // Further repetitions: the sender is never trusted.
   for (int ms = 310; ms < 5000; ms += 20) {

@@ -27,14 +27,15 @@ TEST_CASE("A plate at any speed of 1 K/s or more follows any command") {
   }
 }
 
-TEST_CASE("A reading that does not move while the command does is a failure within seconds, until another display begins") {
+TEST_CASE(
+    "A reading that does not move while the command does is a failure within seconds, until another display "
+    "begins") {
   Following following;
   int ticks = 0;
   while (following.step(42, 33, false, kNeutral_degC, kTick_s) == Result::kFollows && ticks < 10'000) ++ticks;
   // 2 K at 1 K/s, and the patience of half a second.
   CHECK(ticks * kTick_s == Approx(2.5).margin(0.1));
-  for (int i = 0; i < 5000; ++i)
-    REQUIRE(following.step(33, 33, false, kNeutral_degC, kTick_s) == Result::kFailed);
+  for (int i = 0; i < 5000; ++i) REQUIRE(following.step(33, 33, false, kNeutral_degC, kTick_s) == Result::kFailed);
   following.restart();
   CHECK(following.step(33, 33, false, kNeutral_degC, kTick_s) == Result::kFollows);
 }
@@ -44,7 +45,8 @@ TEST_CASE("A plate that is further from neutral than its command has failed, als
     Following following;
     Result result = Result::kFollows;
     // 7 to 16 K on the way back at 1 K/s.
-    for (int i = 0; i < 50 * 20; ++i) result = following.step(plate > 33 ? 35 : 31, plate, true, kNeutral_degC, kTick_s);
+    for (int i = 0; i < 50 * 20; ++i)
+      result = following.step(plate > 33 ? 35 : 31, plate, true, kNeutral_degC, kTick_s);
     CHECK(result == Result::kFailed);
   }
 }

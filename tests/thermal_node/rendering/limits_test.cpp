@@ -180,9 +180,10 @@ TEST_CASE("No settings, operator, display or report passes a limit") {
   int warm = 0, cold = 0;
   for (int trial = 0; trial < kTrials; ++trial) {
     const TrialResult r = LimitsTrial(static_cast<std::uint64_t>(trial) + 1, kTicks, kSeconds).run();
-    INFO("trial " << trial << ", device " << r.settings.device << ", slew " << r.settings.slew_max_K_s << " K/s, rate "
-                  << r.settings.rate_Hz << " Hz, dose_max " << r.settings.dose_max_s << " s, cold_max "
-                  << r.settings.cold_max_s << " s below " << r.settings.cold_below_degC << " degC");
+    INFO("trial " << trial << ", device " << r.settings.device << ", slew " << r.settings.slew_max_K_s
+                  << " K/s, rate " << r.settings.rate_Hz << " Hz, dose_max " << r.settings.dose_max_s
+                  << " s, cold_max " << r.settings.cold_max_s << " s below " << r.settings.cold_below_degC
+                  << " degC");
     REQUIRE(r.dose_share <= 1 + 1e-9);
     REQUIRE(r.cold_share <= 1 + 1e-9);
     REQUIRE(r.beyond_range_K <= 1e-5);

@@ -1,5 +1,5 @@
-// One random trial of the thermal safety limits: settings, operators, touches, a display and its faults, all from one seed. The
-// exposure is counted by the test itself, from the plate that a finger would touch.
+// One random trial of the thermal safety limits: settings, operators, touches, a display and its faults, all from
+// one seed. The exposure is counted by the test itself, from the plate that a finger would touch.
 #pragma once
 
 #include <algorithm>
@@ -46,7 +46,8 @@ inline Settings any_settings(Random& random) {
     const std::string unit = entry.row.unit;
     if (const auto number = std::get_if<double Settings::*>(&entry.field))
       settings.**number = random.in_range(entry.row.min, entry.row.max);
-    else if (const auto text = std::get_if<std::string Settings::*>(&entry.field); text && unit.find('|') != std::string::npos) {
+    else if (const auto text = std::get_if<std::string Settings::*>(&entry.field);
+             text && unit.find('|') != std::string::npos) {
       const auto count = static_cast<std::size_t>(std::count(unit.begin(), unit.end(), '|')) + 1;
       std::size_t begin = 0;
       for (std::size_t skip = random.index(count); skip > 0; --skip) begin = unit.find('|', begin) + 1;
@@ -70,7 +71,8 @@ struct TrueExposure {
     const double above_K = degC - 43;
     dose_s = degC > 39 ? dose_s + std::pow(above_K > 0 ? 2 : 4, above_K) * dt_s : dose_s * std::exp(-dt_s / 300);
     // A plate that swings about a neutral of 25 degC is not cold.
-    const double cold_degC = std::min(s.cold_below_degC, std::max(s.skin_rest_degC, s.temperature_min_degC) - kPlateSwing_K);
+    const double cold_degC =
+        std::min(s.cold_below_degC, std::max(s.skin_rest_degC, s.temperature_min_degC) - kPlateSwing_K);
     cold_s = std::max(0.0, cold_s + (degC < cold_degC ? dt_s : -dt_s));
   }
 };
@@ -185,7 +187,8 @@ class LimitsTrial {
     TrialResult& r = result_;
     r.dose_share = std::max(r.dose_share, exposure_.dose_s / s.dose_max_s);
     r.cold_share = std::max(r.cold_share, exposure_.cold_s / s.cold_max_s);
-    r.beyond_range_K = std::max({r.beyond_range_K, command_degC_ - s.temperature_max_degC, s.temperature_min_degC - command_degC_});
+    r.beyond_range_K = std::max(
+        {r.beyond_range_K, command_degC_ - s.temperature_max_degC, s.temperature_min_degC - command_degC_});
     if (std::abs(command_degC_ - neutral_degC()) > std::abs(before - neutral_degC()))
       r.beyond_slew_K = std::max(r.beyond_slew_K, std::abs(command_degC_ - before) - s.slew_max_K_s * dt_s);
     to_neutral_s_ = to_neutral ? to_neutral_s_ + dt_s : 0;
