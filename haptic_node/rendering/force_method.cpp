@@ -81,7 +81,7 @@ void ForceMethod::solve(std::span<Surface> surfaces, const DeviceState& device, 
 }
 
 void ForceMethod::compute_forces(std::span<const Surface> surfaces, const DeviceState& device, double factor,
-                                 std::span<Eigen::Vector3d> forces) const {
+                                 double wall_factor, std::span<Eigen::Vector3d> forces) const {
   switch (kind_) {
     case Kind::kProxy:
       coupling_forces(surfaces, proxy_.shift(), device.velocity, proxy_.slipping(), forces, factor);
@@ -89,15 +89,17 @@ void ForceMethod::compute_forces(std::span<const Surface> surfaces, const Device
     case Kind::kRigid: rigid_forces(surfaces, rigid_, device, factor, forces); break;
     case Kind::kDirect: direct_forces(surfaces, device, rigid_.lever_m(), radius_m_, factor, forces); break;
   }
+  for (std::size_t i = 0; i < surfaces.size() && i < forces.size(); ++i)
+    if (!surfaces[i].movable()) forces[i] *= wall_factor;
 }
 
-StoredEnergy ForceMethod::stored_energy(std::span<const Surface> surfaces) const {
+StoredEnergy ForceMethod::stored_energy(std::span<const Surface> surfaces, Partner partner) const {
   StoredEnergy all;
   Eigen::Vector3d push_N = Eigen::Vector3d::Zero(), depth_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d moment_N = Eigen::Vector3d::Zero(), turn_m = Eigen::Vector3d::Zero();
   double stiffest_N_m = 0, friction_J = 0, each_J = 0;
   for (const Surface& s : surfaces) {
-    if (s.depth_m <= 0 || !s.movable()) continue;
+    if (s.depth_m <= 0 || s.movable() != (partner == Partner::kBodies)) continue;
     all.pressed = true;
     const double K = s.coupling_stiffness_N_m;
     push_N += K * s.depth_m * s.normal;

@@ -38,10 +38,12 @@ class ForceMethod {
   // One tick: sets the depths. Realtime-safe: yes.
   void solve(std::span<Surface> surfaces, const DeviceState& device, double dt);
   // After solve(): the force of each surface on the hand, N. factor: on the coupling stiffness to moving bodies.
-  void compute_forces(std::span<const Surface> surfaces, const DeviceState& device, double factor,
+  // wall_factor: on the force of fixed surfaces.
+  void compute_forces(std::span<const Surface> surfaces, const DeviceState& device, double factor, double wall_factor,
                       std::span<Eigen::Vector3d> forces) const;
-  // Energy in the springs to moving bodies, at factor 1.
-  StoredEnergy stored_energy(std::span<const Surface> surfaces) const;
+  // Energy in the springs to moving bodies or to fixed surfaces, at factor 1.
+  enum class Partner { kBodies, kWalls };
+  StoredEnergy stored_energy(std::span<const Surface> surfaces, Partner partner = Partner::kBodies) const;
 
   // Pose of the proxy; with direct rendering, of the device.
   const Eigen::Vector3d& position() const { return pose_.position; }
