@@ -9,9 +9,9 @@ namespace {
 constexpr double kEpisodeGap_s = 0.2;
 // Dissipated energy counts as credit up to this value, so that old friction does not pay for a new oscillation.
 constexpr double kMaxCredit_J = 0.01;
-// A wall that lost its stiffness regains it while the hand stays, at half of the rate of bodies. Design: as of bodies,
-// the fast refill ends at 0.4 mJ, so that an episode of ten seconds generates at most 1 mJ.
-constexpr double kRefill_W = 0.0001, kMaxRefill_J = 0.0004, kSlowRefill_W = 0.00001;
+// A wall that lost its stiffness regains it while the hand stays, at the rate of bodies (energy_account.cpp): the
+// fast refill ends at 0.4 mJ, so that an episode of ten seconds generates at most 1 mJ.
+constexpr double kRefill_W = 0.0002, kMaxRefill_J = 0.0004, kSlowRefill_W = 0.00001;
 // The same limits as in safety.cpp: above them the device has jumped, and no work is counted.
 constexpr double kMaxHandSpeed_m_s = 40, kMaxHandSpin_rad_s = 63;
 

@@ -133,7 +133,8 @@ TEST_CASE("Models of another tool or of a replaced simulation do not keep the fo
   // From the bus, and from there to the hand, with a delay of the profile.
   const int delay_ms = GENERATE(0, 30);
   const auto arrives = [&](int ms, const touch_model_t& m) { session.observe_arrival(m, host_ms(ms)); };
-  session.observe_arrival(sent(0, {floor}, 0, 9), host_ms(0));
+  // The predecessor was silent before the simulation began.
+  session.observe_arrival(sent(0, {floor}, 0, 9), host_ms(-200));
   double force = 0;
   for (int ms = 0; ms < 590; ++ms) {
     // The simulation ends at 300 ms. Foreign models continue at 100 Hz, in part those of its predecessor.
