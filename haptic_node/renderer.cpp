@@ -40,6 +40,9 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Off
       events_(host.endpoint().events()),
       safety_(safety_limits(settings())),
       quality_(settings()) {
+  touch_.on_arrival([this](const touch_model_t& page, sync::HostTime arrival) {
+    if (session_) session_->observe_arrival(page, arrival);
+  });
   tag(host.node().tags(), published_);
   host.node().set_state(node_health_t::WAITING, "waits for the scene");
 }
@@ -133,7 +136,7 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   if (!session_ || !in_tick) return std::nullopt;
   TickOutput& out = render(now);
   if (session_->ended()) return std::nullopt;
-  publish(out);
+  publish(now, out);
   for (const presentation_t& report : out.reports) host().report(report);
   if (host().live()) quality_.add(host().clock() - now);
   return status(now);
@@ -146,15 +149,18 @@ TickOutput& NodeRenderer::render(sync::HostTime now) {
                         {.delay = endpoint.delay(),
                          .touch_delay = endpoint.profile_delay(),
                          .force_step_N = endpoint.output().value("force_step"),
-                         .touch_arrival = only_pointers_ ? now : touch_.count().newest_arrival},
+                         .touch_arrival = only_pointers_ ? std::optional(now) : std::nullopt},
                         quality_.planes());
 }
 
-void NodeRenderer::publish(TickOutput& out) {
+void NodeRenderer::publish(sync::HostTime now, TickOutput& out) {
   if (log_) log_->add(out.state);
   host().bus().publish(channels::kToolState, out.state);
   if (host().node().tags().requested()) published_ = out.state;
-  if (device_force_t* force = session_->force_message()) host().bus().publish(channels::kDeviceForce, *force);
+  // The force of a tick that was held up belongs to a pose from before. The next tick begins from zero.
+  const bool late = host().live() && host().clock() - now > Device::kWatchdog;
+  device_force_t* const force = late ? nullptr : session_->force_message();
+  if (force) host().bus().publish(channels::kDeviceForce, *force);
 }
 
 sync::Status NodeRenderer::status(sync::HostTime now) const {

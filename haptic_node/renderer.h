@@ -46,7 +46,7 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   void start_session();
   void receive();
   TickOutput& render(sync::HostTime now);
-  void publish(TickOutput& out);
+  void publish(sync::HostTime now, TickOutput& out);
   sync::Status status(sync::HostTime now) const;
 
   std::string tool_name_;

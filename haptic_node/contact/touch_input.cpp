@@ -11,6 +11,7 @@ void TouchInput::push(touch_model_t page, sync::HostTime arrival) {
   if (result == sync::TrackResult::kRestart) {
     pages_.clear();
     restarted_ = true;
+    new_world_ = new_world_ || newest_;
   }
   const std::int64_t latest_ns = sync::to_ns(simulation_.latest_plausible());
   if (page.header.sim_time_ns > latest_ns) return;

@@ -28,6 +28,8 @@ class TouchInput {
   // page that never arrives is a loss, even when other pages arrive.
   std::optional<sync::HostTime> unfinished_since() const { return unfinished_since_; }
   std::optional<sync::TimeMap> map(sync::HostTime now) const { return simulation_.map(now); }
+  // True once after the simulation has begun again, when models of the one before have been returned.
+  bool take_restart() { return std::exchange(new_world_, false); }
 
  private:
   int tool_;
@@ -36,6 +38,7 @@ class TouchInput {
   TouchModelView newest_;
   std::optional<sync::HostTime> arrival_, unfinished_since_;
   bool fresh_ = false;
+  bool new_world_ = false;
   bool restarted_ = false;  // no model of the new incarnation is complete yet: older instants then count as newer
 };
 

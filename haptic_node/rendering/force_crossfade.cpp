@@ -20,6 +20,13 @@ bool ForceCrossfade::binding_set_changed(std::span<const Surface> surfaces) {
   return !same;
 }
 
+void ForceCrossfade::reset() {
+  last_set_.clear();
+  last_.setZero();
+  remainder_.setZero();
+  remaining_s_ = 0;
+}
+
 Eigen::Vector3d ForceCrossfade::step(std::span<const Surface> surfaces, const Eigen::Vector3d& force_N, double dt) {
   const bool was_pressed = !last_set_.empty() && !last_.isZero(0);
   const bool changed = binding_set_changed(surfaces) || restart_pending_;

@@ -90,13 +90,13 @@ void ForceMethod::compute_forces(std::span<const Surface> surfaces, const Device
   }
 }
 
-StoredEnergy ForceMethod::stored_energy(std::span<const Surface> surfaces, bool movable) const {
+StoredEnergy ForceMethod::stored_energy(std::span<const Surface> surfaces, Partner partner) const {
   StoredEnergy all;
   Eigen::Vector3d push_N = Eigen::Vector3d::Zero(), depth_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d moment_N = Eigen::Vector3d::Zero(), turn_m = Eigen::Vector3d::Zero();
   double stiffest_N_m = 0, friction_J = 0, each_J = 0;
   for (const Surface& s : surfaces) {
-    if (s.depth_m <= 0 || s.movable() != movable) continue;
+    if (s.depth_m <= 0 || s.movable() != (partner == Partner::kBodies)) continue;
     all.pressed = true;
     const double K = s.coupling_stiffness_N_m;
     push_N += K * s.depth_m * s.normal;

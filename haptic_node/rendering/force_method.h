@@ -41,8 +41,9 @@ class ForceMethod {
   // After solve(): the force of each surface on the hand, N.
   void compute_forces(std::span<const Surface> surfaces, const DeviceState& device, const CouplingFactors& factors,
                       std::span<Eigen::Vector3d> forces) const;
-  // Energy in the springs to movable bodies, or to walls, at factor 1.
-  StoredEnergy stored_energy(std::span<const Surface> surfaces, bool movable = true) const;
+  // Energy in the springs to moving bodies or to fixed surfaces, at factor 1.
+  enum class Partner { kBodies, kWalls };
+  StoredEnergy stored_energy(std::span<const Surface> surfaces, Partner partner = Partner::kBodies) const;
 
   // Pose of the proxy; with direct rendering, of the device.
   const Eigen::Vector3d& position() const { return pose_.position; }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <tactus/material_def_t.hpp>
 #include <utility>
 
@@ -13,6 +14,8 @@
 
 namespace tactus::haptic {
 namespace {
+
+constexpr double kMaxReported_J = 1e6;  // the range of the message
 
 // Quantises the magnitude of the force to multiples of `step_N`; 0: returns it unchanged.
 Eigen::Vector3d quantised(const Eigen::Vector3d& force_N, double step_N) {
@@ -25,9 +28,6 @@ SurfaceLimits surface_limits(const Settings& s) {
   return {s.recovery_time_s, s.recovery_speed_m_s, s.recovery_turn_rad_s, s.extrapolate_at_most_s,
           s.surface_speed_limit_m_s};
 }
-// Lag above which the controller of the passivity also acts on walls. Below it a spring of 1 N/mm generates at most
-// 1 N s/m times the squared speed, which the damping of the coupling takes back. Design.
-constexpr double kSlowLag_s = 0.001;
 // Touch that is softer than this share of that of an immediate device is reported. Design: 0.7, as for the largest
 // difference of stiffness that passes unnoticed in a comparison (unverified).
 constexpr double kSoftened = 0.7;
@@ -48,6 +48,10 @@ PassivityLimits passivity_limits(const Settings& s, double step_s) {
   PassivityLimits limits{s.generated_limit_J, s.force_limit_N, s.surface_speed_limit_m_s};
   limits.round_trip_s = std::max(limits.round_trip_s, step_s + 1 / s.rate_Hz + hold_of_push_s(s.rate_Hz, step_s));
   return limits;
+}
+WallLimits wall_limits(const Settings& s) {
+  return {s.generated_limit_J, s.device_mass_kg, s.device_inertia_kgm2, s.device_damping_Ns_m,
+          s.device_turn_damping_Nms_rad};
 }
 TransientShape transient_shape(const Settings& s) {
   const double fastest_Hz = s.rate_Hz / kTicksPerPeriod;
@@ -89,11 +93,13 @@ Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Saf
       torque_crossfade_(settings.recovery_time_s,
                         settings.recovery_speed_m_s * settings.stiffness_limit_N_m * force_method_.lever_m()),
       passivity_(passivity_limits(settings, step_s_)),
+      walls_(wall_limits(settings)),
       transients_(transient_shape(settings)),
       safety_(safety),
       fade_(settings.stale_after_s, settings.fade_s) {
   for (const material_def_t& m : scene.materials) youngs_modulus_Pa_.push_back(m.youngs_modulus_Pa);
   forces_.reserve(kMaxHalfSpaces);
+  arms_.reserve(kMaxHalfSpaces);
   felt_.reserve(kMaxHalfSpaces);
   out_.reports.reserve(256);
   out_.state.tool = tool;
@@ -114,6 +120,7 @@ void Renderer::change(const Settings& settings) {
     torque_crossfade_.restart();
   }
   passivity_.change(passivity_limits(settings, step_s_));
+  walls_.change(wall_limits(settings));
 }
 
 sync::Nanoseconds Renderer::uncertainty() const {
@@ -123,7 +130,7 @@ sync::Nanoseconds Renderer::uncertainty() const {
 void Renderer::update_device(const TickInput& in) {
   DeviceState device = in.device;
   if (!device.position.allFinite() || !device.velocity.allFinite() || !device.orientation.coeffs().allFinite() ||
-      !device.spin.allFinite()) {
+      !device.spin.allFinite() || !(device.orientation.squaredNorm() > 0)) {
     device = device_;
     device.lost = true;
   }
@@ -138,36 +145,52 @@ void Renderer::update_device(const TickInput& in) {
     device.velocity.setZero();
     device.spin.setZero();
   }
-  motion_m_ = device.position - device_.position;
-  rotation_rad_ = rotation_between(device_.orientation, device.orientation);
+  motion_ = {device.position - device_.position, rotation_between(device_.orientation, device.orientation), device.loop};
   device_ = device;
+}
+
+void Renderer::restart_touch() {
+  device_share_ = 0;
+  motion_ = {};
+  motion_.loop = device_.loop;
+  commands_.clear();
+  passivity_.drop_commands();
+  walls_.reset();
+  force_crossfade_.reset();
+  torque_crossfade_.reset();
+  transients_.stop();
+  felt_transient_N_.setZero();
 }
 
 void Renderer::update_surfaces(const TickInput& in, double dt) {
   // A lost device may return anywhere: touch restarts there.
   const bool away = device_share_ <= 0;
   device_share_ = std::clamp(device_share_ + (device_.lost ? -1 : 1) * dt / settings_.fade_s, 0.0, 1.0);
+  if (in.restarted) fade_.restart();
   const bool silent = fade_.step(in.now, in.touch_arrival, dt) <= 0 || away || device_share_ <= 0;
   if (silent) {
     // Surfaces that arrive after the loss are new.
     surfaces_.clear();
     force_method_.reset(device_);
+    returning_s_ = settings_.recovery_time_s + 2 * period_s_;
   }
-  if (in.fresh) model_time_ = sync::sim_time(in.fresh.header().sim_time_ns);
+  // While the force of the previous world fades, its surfaces remain.
+  const TouchModelView fresh = fade_.restarting() ? TouchModelView{} : in.fresh;
+  if (fresh) model_time_ = sync::sim_time(fresh.header().sim_time_ns);
   const double age_s = model_time_ && in.map ? sync::to_seconds(in.map->to_sim(in.now) - *model_time_) : 0;
   model_age_s_ = age_s;
   // Otherwise the loop delay would contain, for seconds, a delay that the profile has already removed.
   const auto before = std::exchange(touch_delay_, in.touch_delay);
   if (in.touch_delay < before) loop_delay_.reduce(sync::to_seconds(before - in.touch_delay));
   loop_delay_.advance(age_s, dt);
-  if (in.fresh) {
+  if (fresh) {
     loop_delay_.observe(age_s);
-    passivity_.on_message(in.fresh);
+    passivity_.on_message(fresh);
   }
   const auto sim_now = in.map ? std::optional(in.map->to_sim(in.now - in.touch_delay)) : std::nullopt;
-  if (in.fresh) force_method_.reset_reach(device_);
+  if (fresh) force_method_.reset_reach(device_);
   surfaces_.set_orientation(force_method_.tool_orientation(device_));
-  surfaces_.step(in.fresh, sim_now, force_method_.position(), dt, force_method_.planes(in.planes));
+  surfaces_.step(fresh, sim_now, force_method_.position(), dt, force_method_.planes(in.planes));
 }
 
 Gains Renderer::gains(const Surface& s) const {
@@ -191,7 +214,7 @@ Renderer::DeviceLimit Renderer::device_limit() const {
   return {device_.loop, limit, limit < kSoftened * wall(period_s_, 0)};
 }
 
-Wrench Renderer::constraint_wrench(double dt) {
+Wrench Renderer::constraint_wrench(double dt, double held_s) {
   const double follow = 1 - std::exp(-dt / settings_.recovery_time_s);
   for (Surface& s : surfaces_.list()) {
     const Gains g = gains(s);
@@ -202,10 +225,12 @@ Wrench Renderer::constraint_wrench(double dt) {
   forces_.assign(surfaces_.list().size(), Eigen::Vector3d::Zero());
   reliefs_.apply_heights(surfaces_.list(), force_method_.tool_pose(), dt);
   force_method_.solve(surfaces_.list(), device_, dt);
-  passivity_.control_walls(lag_s() > kSlowLag_s);
-  passivity_.observe(force_method_.stored_energy(surfaces_.list()), motion_m_, rotation_rad_, model_age_s_, dt,
-                     device_.loop, force_method_.stored_energy(surfaces_.list(), false));
-  force_method_.compute_forces(surfaces_.list(), device_, {passivity_.factor(), passivity_.wall_factor()}, forces_);
+  passivity_.observe(force_method_.stored_energy(surfaces_.list()), motion_.moved_m, motion_.turned_rad, model_age_s_,
+                     held_s, motion_.loop);
+  const StoredEnergy walls = force_method_.stored_energy(surfaces_.list(), ForceMethod::Partner::kWalls);
+  walls_.observe(walls.energy_J, walls.pressed, motion_, held_s, returning_s_ > 0);
+  returning_s_ -= dt;
+  force_method_.compute_forces(surfaces_.list(), device_, {passivity_.factor(), walls_.factor()}, forces_);
   reliefs_.tilt_forces(surfaces_.list(), force_method_.tool_pose(), forces_);
   const Wrench sum = force_method_.sum(surfaces_.list(), forces_);
   return {force_crossfade_.step(surfaces_.list(), sum.force_N, dt),
@@ -239,6 +264,69 @@ void Renderer::handle_events(const TickInput& in) {
       pending_onsets_.add(e.event_id, e.contact_id, happened, in.now, surfaces_.find(e.contact_id) != nullptr,
                           out_.reports);
   }
+}
+
+// The part of the constraint that fixed surfaces give. A crossfade from other surfaces is shared by magnitude.
+WallForce Renderer::force_of_walls(const Wrench& constraint) {
+  const auto list = surfaces_.list();
+  arms_.clear();
+  if (force_method_.renders_torque())
+    for (const Surface& s : list) arms_.push_back(force_method_.arm(s));
+  WallForce walls = wall_force(list, forces_, arms_);
+  const Wrench sum = force_method_.sum(list, forces_);
+  double walls_N = 0, all_N = 0;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    all_N += forces_[i].norm();
+    if (!list[i].movable()) walls_N += forces_[i].norm();
+  }
+  if (!(walls_N > 0)) return {};
+  walls.wrench.force_N += walls_N / all_N * (constraint.force_N - sum.force_N);
+  walls.wrench.torque_N_m += walls_N / all_N * (constraint.torque_N_m - sum.torque_N_m);
+  return walls;
+}
+
+// Applies the limits of safety. The energy account pairs the motion with the force that acted during it.
+Wrench Renderer::limited(const Wrench& wanted, double dt) {
+  const double now_s = sync::to_seconds(last_.time_since_epoch());
+  const DeviceLoop& loop = motion_.loop;
+  // The force of the previous scene acts until the first command of this one.
+  if (commands_.empty()) commands_.record(std::numeric_limits<double>::lowest(), safety_.released());
+  if (!loop.immediate())
+    safety_.set_acting(acting_in_tick(commands_, now_s, dt, loop), std::max(loop.span_s, dt));
+  const Wrench command = safety_.limit(wanted, motion_.moved_m, motion_.turned_rad, dt);
+  commands_.record(now_s, command);
+  return command;
+}
+
+// Everything that changes the force acts on constraint and transient in one proportion, so that the bodies receive
+// exactly the constraint that the hand feels.
+Renderer::Commanded Renderer::command(Wrench constraint, Eigen::Vector3d transient_N, double force_step_N, double dt) {
+  WallForce walls = force_of_walls(constraint);
+  // The fade acts on the rounded force within its limit. Otherwise a strong or a rounded one would return almost at once.
+  const Eigen::Vector3d plain = constraint.force_N + transient_N;
+  const double all_N = plain.norm();
+  const double share = all_N > settings_.force_limit_N ? settings_.force_limit_N / all_N : 1;
+  constraint = {share * constraint.force_N, share * constraint.torque_N_m};
+  transient_N *= share;
+  const double rounded_N = std::min(quantised(share * plain, force_step_N).norm(), settings_.force_limit_N);
+  const double scale = all_N > 0 ? force_scale() * rounded_N / (share * all_N) : 0;
+  const Wrench of_walls{share * walls.wrench.force_N, share * walls.wrench.torque_N_m};
+  walls = {{scale * of_walls.force_N, force_scale() * of_walls.torque_N_m}, scale * share * walls.power_W};
+  const double kept = walls_.brake(walls, motion_, dt);
+  if (kept < 1) {
+    constraint.force_N -= (1 - kept) * of_walls.force_N;
+    constraint.torque_N_m -= (1 - kept) * of_walls.torque_N_m;
+    for (std::size_t i = 0; i < forces_.size(); ++i)
+      if (!surfaces_.list()[i].movable()) forces_[i] *= kept;
+  }
+  const Wrench wanted{scale * (constraint.force_N + transient_N), force_scale() * constraint.torque_N_m};
+  const Wrench all = limited(wanted, dt);
+  out_.force_N = all.force_N;
+  out_.torque_N_m = all.torque_N_m;
+  const Eigen::Vector3d own_N = all.force_N - safety_.released().force_N;
+  const double wanted_N = wanted.force_N.norm();
+  const Eigen::Vector3d felt_N = wanted_N > 0 ? own_N.norm() / wanted_N * scale * transient_N : own_N;
+  return {{own_N - felt_N, all.torque_N_m - safety_.released().torque_N_m}, felt_N};
 }
 
 // Splits the constraint force that remains after all limits over the surfaces, so that the bodies feel exactly the
@@ -280,8 +368,8 @@ void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_
   m.torque_N_m = to_vec3f(out_.torque_N_m);
   m.transient_N = to_vec3f(transient_N);
   m.energy_J = static_cast<float>(safety_.energy_J());
-  m.generated_J = static_cast<float>(passivity_.generated_J());
-  m.coupling = static_cast<float>(std::min(passivity_.factor(), passivity_.wall_factor()));
+  m.generated_J = static_cast<float>(std::min(passivity_.generated_J() + walls_.generated_J(), kMaxReported_J));
+  m.coupling = static_cast<float>(std::min(passivity_.factor(), walls_.factor()));
   m.touch_status = static_cast<std::int8_t>(status(in));
   m.fade = static_cast<float>(force_scale());
   m.buttons = device_.buttons;
@@ -289,43 +377,34 @@ void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_
   m.constraint_count = static_cast<std::int32_t>(m.constraints.size());
 }
 
-// Applies the limits of safety. The energy account pairs the motion with the force that acted during it.
-Wrench Renderer::limited(const Wrench& wanted, double dt) {
-  const double now_s = sync::to_seconds(last_.time_since_epoch());
-  const DeviceLoop& loop = device_.loop;
-  if (!loop.immediate())
-    safety_.set_acting(acting_force_of_tick(commands_, now_s, dt, loop), std::max(loop.span_s, dt));
-  const Wrench command = safety_.limit(wanted, motion_m_, rotation_rad_, dt);
-  commands_.record(now_s, command);
-  return command;
-}
-
 TickOutput& Renderer::step(const TickInput& in) {
   out_.reports.clear();
   update_device(in);
-  // Beyond the watchdog time no force was applied.
-  const double dt = sync::to_seconds(std::clamp(in.now - last_, sync::Nanoseconds(1000), Device::kWatchdog));
+  // Beyond the watchdog time no force was applied, and the clock may have stepped.
+  const sync::Nanoseconds passed = in.now - last_;
+  const bool gap = passed > Device::kWatchdog || passed < -Device::kWatchdog;
+  const double held_s = sync::to_seconds(std::clamp(passed, sync::Nanoseconds(1000), Device::kWatchdog));
+  const double dt = gap ? period_s_ : held_s;
+  transients_.add_felt_impulse(held_s * felt_transient_N_);
+  if (gap) restart_touch();
   safety_.begin_tick(in.now);
   last_ = in.now;
 
   update_surfaces(in, dt);
   handle_events(in);
-  const Wrench constraint = constraint_wrench(dt);
+  const Wrench constraint = constraint_wrench(dt, held_s);
   const bool felt = force_scale() > 0;
   const Eigen::Vector3d transient = transients_.step(in.now, period_s_, felt, uncertainty(), out_.reports);
-  const Eigen::Vector3d wanted = quantised(force_scale() * (constraint.force_N + transient), in.force_step_N);
   if (!device_.lost) safety_.set_position(device_.position);
-  const Wrench command = limited(Wrench{wanted, force_scale() * constraint.torque_N_m}, dt);
-  out_.force_N = command.force_N;
-  out_.torque_N_m = command.torque_N_m;
-  // The limits reduce the transient in proportion.
-  const double left = wanted.norm() > 0 ? std::min(1.0, out_.force_N.norm() / wanted.norm()) : 0.0;
-  const Eigen::Vector3d felt_transient = left * force_scale() * transient;
-  distribute({out_.force_N - felt_transient, out_.torque_N_m});
-  impulses_.step(in.now, dt, felt_);
-  passivity_.record(felt_, surfaces_.list(), force_method_.renders_torque() ? &force_method_.position() : nullptr);
+  const Commanded commanded = command(constraint, transient, in.force_step_N, dt);
+  felt_transient_N_ = commanded.transient_N;
+  distribute(commanded.constraint);
+  impulses_.step(in.now, held_s, felt_);
+  const Eigen::Vector3d* const about = force_method_.renders_torque() ? &force_method_.position() : nullptr;
+  passivity_.record(felt_, surfaces_.list(), about);
+  walls_.record(wall_force(surfaces_.list(), forces_, arms_));
   pending_onsets_.step(in.now, impulses_, uncertainty(), out_.reports);
-  fill_state(in, felt_transient);
+  fill_state(in, commanded.transient_N);
   return out_;
 }
 

@@ -23,6 +23,7 @@
 #include "haptic_node/rendering/transient.h"
 #include "haptic_node/safety/passivity.h"
 #include "haptic_node/safety/safety.h"
+#include "haptic_node/safety/wall_energy.h"
 #include "haptic_node/settings.gen.h"
 #include "sync/resampling/sample_status.h"
 #include "sync/time/time.h"
@@ -34,6 +35,8 @@ struct TickInput {
   DeviceState device;
   // A touch model of this tool that has not been given before; null: none.
   TouchModelView fresh;
+  // The simulation has begun again, and its models describe another world than before.
+  bool restarted = false;
   // When the newest touch model arrived, raw; nothing: none yet.
   std::optional<sync::HostTime> touch_arrival;
   // Map between simulated time and the host clock; empty: not known.
@@ -89,16 +92,24 @@ class Renderer {
  private:
   // Factor on the wanted force: below 1 while the touch model or the device is lost or has just returned.
   double force_scale() const { return fade_.value() * device_share_; }
+  // The commanded force of the surfaces and of the hit transients, after all limits.
+  struct Commanded {
+    Wrench constraint;
+    Eigen::Vector3d transient_N;
+  };
   void update_device(const TickInput& in);
-  // Period for which a force is held, and the lag of the force behind the state, s.
+  // Period for which a force is held, s.
   double hold_s() const { return std::max(period_s_, device_.loop.period_s); }
-  double lag_s() const { return hold_s() / 2 + device_.loop.delay_s; }
   Gains gains(const Surface& s) const;
   Wrench limited(const Wrench& wanted, double dt);
+  // The device has dropped the force, and the hand may be anywhere: touch restarts, as after a lost device.
+  void restart_touch();
   void update_surfaces(const TickInput& in, double dt);
   void handle_events(const TickInput& in);
   Hit hit_of(const contact_event_t& e, sync::HostTime scheduled) const;
-  Wrench constraint_wrench(double dt);
+  Wrench constraint_wrench(double dt, double held_s);
+  WallForce force_of_walls(const Wrench& constraint);
+  Commanded command(Wrench constraint, Eigen::Vector3d transient_N, double force_step_N, double dt);
   void distribute(const Wrench& felt_constraint);
   void fill_state(const TickInput& in, const Eigen::Vector3d& transient_N);
   sync::SampleStatus status(const TickInput& in) const;
@@ -118,6 +129,7 @@ class Renderer {
   LoopDelay loop_delay_;
   sync::Nanoseconds touch_delay_{0};  // of the previous tick
   Passivity passivity_;
+  WallEnergy walls_;
   Transients transients_;
   Safety& safety_;
   ForceHistory commands_;  // to the device
@@ -129,11 +141,13 @@ class Renderer {
   sync::HostTime last_{};
   DeviceState device_;
   double device_share_ = 1;
-  // motion of the device since the last tick
-  Eigen::Vector3d motion_m_ = Eigen::Vector3d::Zero(), rotation_rad_ = Eigen::Vector3d::Zero();
+  double returning_s_ = 0;  // remaining time in which surfaces appear because touch begins or returns
+  DeviceMotion motion_;  // since the last tick
+  Eigen::Vector3d felt_transient_N_ = Eigen::Vector3d::Zero();  // of the last tick
   std::optional<sync::SimTime> model_time_;
   double model_age_s_ = 0;
   std::vector<Eigen::Vector3d> forces_;  // of each surface, before the limits
+  std::vector<Eigen::Vector3d> arms_;    // from the proxy to each contact, if a torque is rendered
   std::vector<ContactForce> felt_;       // of each surface, as commanded
   TickOutput out_;
 };

@@ -29,9 +29,11 @@ Session::Session(const scene_t& scene, const NodeConfig& config, std::unique_ptr
     : device_(std::move(device)),
       safety_(safety),
       renderer_(scene, config.tool, config.settings, safety),
-      touch_(config.tool, own) {
+      touch_(config.tool, own),
+      watchdog_(config.tool, own) {
   safety.set_limits(safety_limits(config.settings));
   device_->set_clock(own);
+  safety.release();
 }
 
 void Session::change(const Settings& settings) {
@@ -41,9 +43,9 @@ void Session::change(const Settings& settings) {
 
 // The path of the device begins at the simulated instant of the first touch model, so that it is equal in every
 // run. With an intended delay that model is not available yet; the path then begins at its arrival.
-void Session::start_path(sync::HostTime now, const TouchModelView& fresh, const Degraded& degraded) {
+void Session::start_path(sync::HostTime now, const TouchModelView& fresh, std::optional<sync::HostTime> arrival) {
   if (!first_tick_) first_tick_ = now;
-  const bool arrived = degraded.touch_arrival && *degraded.touch_arrival >= *first_tick_;
+  const bool arrived = arrival && *arrival >= *first_tick_;
   if (path_started_ || (!fresh && !arrived)) return;
   path_started_ = true;
   const auto map = touch_.map(now);
@@ -67,11 +69,12 @@ TickOutput& Session::step(sync::HostTime now, const Degraded& degraded, std::siz
   in.now = now;
   if (!ended_) {
     in.fresh = touch_.pop();
-    start_path(now, in.fresh, degraded);
-    // An intended gap is not a loss.
+    in.restarted = touch_.take_restart();
+    const auto arrival = degraded.touch_arrival ? degraded.touch_arrival : watchdog_.arrival();
+    start_path(now, in.fresh, arrival);
+    // An intended gap is not a loss, and delayed models do not outlive the simulation.
     in.touch_arrival = touch_.arrival();
-    if (in.touch_arrival && degraded.touch_arrival)
-      in.touch_arrival = std::max(*in.touch_arrival, *degraded.touch_arrival);
+    if (in.touch_arrival && arrival) in.touch_arrival = arrival;
     // Pages that never complete a model do not count as a touch model.
     if (in.touch_arrival && touch_.unfinished_since())
       in.touch_arrival = std::min(*in.touch_arrival, *touch_.unfinished_since());

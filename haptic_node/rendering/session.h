@@ -18,6 +18,7 @@
 #include "haptic_node/devices/selection/make_device.h"
 #include "haptic_node/rendering/renderer.h"
 #include "haptic_node/contact/touch_input.h"
+#include "haptic_node/contact/touch_watchdog.h"
 
 namespace tactus::haptic {
 
@@ -26,7 +27,7 @@ struct Degraded {
   sync::Nanoseconds delay{0};        // of hit transients, in addition to the setting
   sync::Nanoseconds touch_delay{0};  // intended delay of the touch models
   double force_step_N = 0;           // step of the commanded force; 0: no steps
-  // Actual arrival of the newest touch model, before any intended delay; empty: as received here.
+  // Replaces the measured arrival of the newest touch model (Session::observe_arrival); for tools that need none.
   std::optional<sync::HostTime> touch_arrival;
 };
 
@@ -45,6 +46,9 @@ class Session {
   void push(touch_model_t page, sync::HostTime arrival) {
     if (!ended_) touch_.push(std::move(page), arrival);
   }
+  // The same page as it arrived from the bus, before the operators of a profile. When no page of the tool is observed, the
+  // arrivals of push() count.
+  void observe_arrival(const touch_model_t& page, sync::HostTime arrival) { watchdog_.observe(page, arrival); }
   // Adds events that are due, in order of time; pass each event once. They are rendered in the next tick that can convert
   // simulated to host time. Beyond kMaxEvents waiting ones the latest are dropped.
   static constexpr std::size_t kMaxEvents = 4096;
@@ -68,7 +72,7 @@ class Session {
   // The output is valid, and may be stamped, until the next call.
   TickOutput& step(sync::HostTime now, const Degraded& degraded = {}, std::size_t planes = Surfaces::kMaxPresent);
 
-  // Ends the scene: later messages are ignored, and the force goes to zero as fast as the limits allow.
+  // Ends the scene: later messages are ignored, and the force fades to zero.
   void end() { ended_ = true; }
   bool ended() const { return ended_; }
 
@@ -81,12 +85,13 @@ class Session {
   Renderer::DeviceLimit device_limit() const { return renderer_.device_limit(); }
 
  private:
-  void start_path(sync::HostTime now, const TouchModelView& fresh, const Degraded& degraded);
+  void start_path(sync::HostTime now, const TouchModelView& fresh, std::optional<sync::HostTime> arrival);
 
   std::unique_ptr<Device> device_;
   Safety& safety_;
   Renderer renderer_;
   TouchInput touch_;
+  TouchWatchdog watchdog_;
   std::vector<contact_event_t> events_, rendered_;  // waiting; of this tick
   bool ended_ = false;
   std::optional<sync::HostTime> first_tick_;  // time of the first tick

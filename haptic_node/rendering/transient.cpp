@@ -13,6 +13,10 @@ constexpr double kSoft_Pa = 1e7, kHard_Pa = 7e10;
 // The ringing ends below this amplitude. One hundredth of a newton is below the threshold of fingers for a
 // vibration of a held tool.
 constexpr double kSilent_N = 0.01;
+// Time in which the impulse of a transient is taken back: a corner of 3.2 Hz, below the 5 Hz of the slowest transient.
+constexpr double kReturn_s = 0.05;
+// Below this force the rest of the impulse is dropped: 5 uN s, a thousandth of a light tap.
+constexpr double kReturned_N = 1e-4;
 
 presentation_t report_of(const Hit& hit, std::int64_t presented_ns, sync::Nanoseconds uncertainty,
                          std::int8_t outcome) {
@@ -47,6 +51,11 @@ void Transients::schedule(const Hit& hit, std::vector<presentation_t>& reports) 
     reports.push_back(report_of(hit, -1, sync::Nanoseconds(0), presentation_t::DROPPED_LATE));
 }
 
+void Transients::stop() {
+  active_.clear();
+  felt_N_s_.setZero();
+}
+
 void Transients::begin(const Hit& hit, sync::HostTime now) {
   if (active_.size() >= kMaxActive) active_.erase(active_.begin());  // the oldest has decayed most
   active_.push_back({hit.direction, transient_amplitude_N(hit, shape_),
@@ -74,6 +83,8 @@ Eigen::Vector3d Transients::step(sync::HostTime now, double dt, bool felt, sync:
     force += envelope * std::sin(2 * std::numbers::pi * r.frequency_Hz * t) * r.direction;
     return false;
   });
+  if (!felt || (active_.empty() && felt_N_s_.norm() < kReturned_N * kReturn_s)) felt_N_s_.setZero();
+  force -= felt_N_s_ / kReturn_s;
   const double size = force.norm();
   return size > shape_.limit_N ? Eigen::Vector3d(force * (shape_.limit_N / size)) : force;
 }

@@ -1,6 +1,9 @@
 // The hit transient: a short decaying vibration at each hit, which a coupling of finite stiffness cannot render
 // (Kuchenbecker, Fiene and Niemeyer 2006). F(t) = A exp(-decay t) sin(2 pi f t), as tapped materials ring
 // (Okamura, Cutkosky and Dennerlein 2001). Its first half wave carries the momentum of the hit: A = gain pi f m v.
+//
+// A transient acts on the hand only, and no body receives its reaction. So its impulse is taken back, slower than any
+// vibration that it renders: a high pass of the first order, at 3 Hz. Hand and bodies then receive the same impulse.
 #pragma once
 
 #include <Eigen/Core>
@@ -52,6 +55,10 @@ class Transients {
 
   // Every hit gets exactly one report: here when the queue is full, otherwise in a later step.
   void schedule(const Hit& hit, std::vector<presentation_t>& reports);
+  // Stores the impulse that transients gave to the hand since the last step, after all limits, N s.
+  void add_felt_impulse(const Eigen::Vector3d& impulse_N_s) { felt_N_s_ += impulse_N_s; }
+  // Stops all transients that have begun, without taking back their impulse: the device has dropped the force.
+  void stop();
   // Force on the hand over the tick that begins now, N (value at mid tick). felt: false when no force reaches the
   // hand; due hits are then dropped. Realtime-safe: yes.
   Eigen::Vector3d step(sync::HostTime now, double dt, bool felt, sync::Nanoseconds uncertainty,
@@ -68,6 +75,7 @@ class Transients {
   TransientShape shape_;
   std::vector<Hit> pending_;
   std::vector<ActiveTransient> active_;
+  Eigen::Vector3d felt_N_s_ = Eigen::Vector3d::Zero();  // given to the hand and not yet taken back
 };
 
 }  // namespace tactus::haptic

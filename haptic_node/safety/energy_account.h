@@ -1,12 +1,12 @@
-// The energy of one kind of contact in an episode, and the factor on its coupling that keeps it passive: walls, or
-// movable bodies (passivity.h). Pure.
+// The energy of contact with movable bodies in an episode, and the factor on their coupling that keeps it passive
+// (passivity.h). Pure.
 #pragma once
 
 #include <algorithm>
 
 namespace tactus::haptic {
 
-// Energy in the springs of the coupling to one kind of surfaces, at full stiffness.
+// Energy in the springs of the coupling to movable bodies or to walls, at full stiffness.
 struct StoredEnergy {
   double energy_J = 0;
   bool pressed = false;  // true when any of them is pressed
@@ -28,8 +28,6 @@ class EnergyAccount {
   // After apart(): sets the factor. stored_J: in the springs, at full stiffness; bodies_J: energy given to the bodies
   // in this episode; generated_W: power that the current forces generate. Realtime-safe: yes.
   void settle(double stored_J, double bodies_J, double generated_W, double allowance_J, double dt);
-  // No control: the factor is 1.
-  void release() { factor_ = 1; }
 
   double factor() const { return factor_; }
   // Energy that hand and bodies have received minus the energy that they gave in this episode, J; below zero: they gave

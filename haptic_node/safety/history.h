@@ -1,6 +1,7 @@
 // Values with the time since which each holds, the newest kValues of them. Pure.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -18,9 +19,9 @@ class History {
 
   void clear() { count_ = 0; }
   bool empty() const { return count_ == 0; }
-  // time_s: not before the previous one. Realtime-safe: yes.
+  // time_s: before the previous one, it counts as the same time. Realtime-safe: yes.
   void record(double time_s, const T& value) {
-    entries_[next_] = {time_s, value};
+    entries_[next_] = {empty() ? time_s : std::max(time_s, entry(count_ - 1).time_s), value};
     next_ = (next_ + 1) % kValues;
     count_ = count_ < kValues ? count_ + 1 : kValues;
   }

@@ -82,14 +82,12 @@ void Passivity::record(std::span<const ContactForce> forces, std::span<const Sur
     b.force_N.setZero();
     b.torque_N_m.setZero();
   }
-  Wrench bodies, walls;
+  Wrench bodies;
   for (std::size_t i = 0; i < forces.size() && i < surfaces.size(); ++i) {
     const ContactForce& f = forces[i];
-    if (f.force_N.isZero(0) || !f.force_N.allFinite()) continue;
-    Wrench& sum = surfaces[i].movable() ? bodies : walls;
-    sum.force_N += f.force_N;
-    if (about_m) sum.torque_N_m += (f.point - *about_m).cross(f.force_N);
-    if (!surfaces[i].movable()) continue;
+    if (!surfaces[i].movable() || f.force_N.isZero(0) || !f.force_N.allFinite()) continue;
+    bodies.force_N += f.force_N;
+    if (about_m) bodies.torque_N_m += (f.point - *about_m).cross(f.force_N);
     EnergyLedger* b = find(f.contact_id);
     if (!b) b = &add(f.contact_id);
     b->force_N -= f.force_N;
@@ -97,7 +95,6 @@ void Passivity::record(std::span<const ContactForce> forces, std::span<const Sur
     b->idle_s = 0;
   }
   from_bodies_.record(time_s_, bodies);
-  from_walls_.record(time_s_, walls);
 }
 
 void Passivity::begin_body_episode() {
@@ -134,7 +131,7 @@ double Passivity::observe_bodies(const Eigen::Vector3d& moved_m, const Eigen::Ve
   double bodies_J = 0, power_W = 0;
   for (EnergyLedger& b : ledgers_) {
     b.pending.add_push(b.force_N, dt);
-    // The sum of these is acting_force_of_tick; without a sum the result does not depend on the order of the contacts.
+    // The sum of these is acting_in_tick; without a sum the result does not depend on the order of the contacts.
     if (loop.immediate())
       bodies_.give_hand(-b.force_N.dot(moved_m) - b.torque_N_m.dot(turned_rad));
     b.idle_s += dt;
@@ -143,7 +140,7 @@ double Passivity::observe_bodies(const Eigen::Vector3d& moved_m, const Eigen::Ve
     power_W += b.force_N.dot(b.pending.velocity()) + generated_W({-b.force_N, -b.torque_N_m});
   }
   if (!loop.immediate()) {
-    const Wrench acted = acting_force_of_tick(from_bodies_, time_s_, dt, loop);
+    const Wrench acted = acting_in_tick(from_bodies_, time_s_, dt, loop);
     bodies_.give_hand(acted.force_N.dot(moved_m) + acted.torque_N_m.dot(turned_rad));
   }
   given_bodies_J_.record(time_s_, closed_J_ + bodies_J);
@@ -151,8 +148,7 @@ double Passivity::observe_bodies(const Eigen::Vector3d& moved_m, const Eigen::Ve
 }
 
 void Passivity::observe(const StoredEnergy& bodies, const Eigen::Vector3d& moved_m,
-                        const Eigen::Vector3d& turned_rad, double age_s, double dt, const DeviceLoop& loop,
-                        const StoredEnergy& walls) {
+                        const Eigen::Vector3d& turned_rad, double age_s, double dt, const DeviceLoop& loop) {
   time_s_ += dt;
   const double span_s = loop.immediate() ? dt : loop.span_s;
   const bool moved = moved_m.allFinite() && moved_m.norm() <= kMaxHandSpeed_m_s * span_s;
@@ -166,12 +162,6 @@ void Passivity::observe(const StoredEnergy& bodies, const Eigen::Vector3d& moved
   const double given_J = given_bodies_J_.empty() ? 0 : given_bodies_J_.at(time_s_ - loop.age_s);
   bodies_.settle(bodies.energy_J, given_J, power_W, limits_.allowance_J, dt);
   remove_idle();
-
-  const Wrench wall = acting_force_of_tick(from_walls_, time_s_, dt, loop);
-  walls_.give_hand(wall.force_N.dot(by_m) + wall.torque_N_m.dot(by_rad));
-  if (walls_.apart(walls.pressed, dt)) walls_.begin_episode();
-  walls_.settle(walls.energy_J, 0, generated_W(from_walls_.at(time_s_)), limits_.allowance_J, dt);
-  if (!control_walls_) walls_.release();
 }
 
 }  // namespace tactus::haptic

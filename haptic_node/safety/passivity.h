@@ -12,9 +12,7 @@
 // The springs of the coupling may never hold more than the credit and a small allowance. For any later motion of
 // hand and bodies, the channel then generates at most the allowance. Where the springs would hold more, the controller
 // lowers the coupling immediately by the required factor, and restores it slowly. A passive coupling holds less than
-// the credit, so without a disturbance the factor is 1. Walls and movable bodies have an account and a factor each.
-// Walls are always observed. They are controlled when the loop through the device is slow: at 1 kHz without a delay the
-// gains alone keep them passive, and a relief that is rendered by tilted forces is no spring.
+// the credit, so without a disturbance the factor is 1. Walls have an account of their own (wall_energy.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -51,13 +49,13 @@ class Passivity {
 
   // Stores the energy and the motion of the bodies from a new touch model. Ignores numbers that are not finite.
   void on_message(const TouchModelView& fresh);
-  // One tick, after the depths are solved. bodies, walls: energy of the springs to each. moved_m, turned_rad:
-  // translation and rotation of the device since its previous state; age_s: of the touch model in use; loop: timing of
-  // that motion. Realtime-safe: yes.
+  // One tick, after the depths are solved. bodies: energy of the springs to them. moved_m, turned_rad: translation and
+  // rotation of the device since its previous state; age_s: of the touch model in use; loop: timing of that motion.
+  // Realtime-safe: yes.
   void observe(const StoredEnergy& bodies, const Eigen::Vector3d& moved_m, const Eigen::Vector3d& turned_rad,
-               double age_s, double dt, const DeviceLoop& loop = {}, const StoredEnergy& walls = {});
-  // Selects whether walls are controlled; initially not.
-  void control_walls(bool on) { control_walls_ = on; }
+               double age_s, double dt, const DeviceLoop& loop = {});
+  // The device has dropped the force: no command from before acts later.
+  void drop_commands() { from_bodies_.clear(); }
   // Stores the forces on the hand that act from now on, of these surfaces. about_m: the reference point of the
   // rendered torque; null: no torque is rendered. Realtime-safe: yes.
   void record(std::span<const ContactForce> forces, std::span<const Surface> surfaces,
@@ -65,13 +63,9 @@ class Passivity {
 
   // Factor on the stiffness of the coupling to moving bodies, 0 .. 1.
   double factor() const { return bodies_.factor(); }
-  // The same for walls.
-  double wall_factor() const { return walls_.factor(); }
   // Energy that the channel has generated since the contact episode began, J. Within 0 .. kMaxReported_J, the
   // range of the message, even if the simulation reports invalid values.
-  double generated_J() const {
-    return std::clamp(std::max(0.0, bodies_.generated_J()) + std::max(0.0, walls_.generated_J()), 0.0, kMaxReported_J);
-  }
+  double generated_J() const { return std::clamp(bodies_.generated_J(), 0.0, kMaxReported_J); }
 
  private:
   void on_message(const touch_applied_t& applied, const TouchModelView& fresh);
@@ -98,11 +92,10 @@ class Passivity {
   PassivityLimits limits_;
   std::vector<EnergyLedger> ledgers_;
   double closed_J_ = 0;  // given in this episode to bodies whose entries are closed
-  EnergyAccount bodies_, walls_;
-  bool control_walls_ = false;
+  EnergyAccount bodies_;
   double time_s_ = 0;  // of the tick
-  // Forces on the hand of all bodies, and of all walls; energy given to the bodies.
-  ForceHistory from_bodies_, from_walls_;
+  // Force on the hand of all bodies; energy given to the bodies.
+  ForceHistory from_bodies_;
   History<double> given_bodies_J_;
   // Newest motion of the device and its duration.
   Eigen::Vector3d moved_m_ = Eigen::Vector3d::Zero(), turned_rad_ = Eigen::Vector3d::Zero();

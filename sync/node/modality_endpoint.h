@@ -55,12 +55,16 @@ class ModalityEndpoint {
       return Delivered<Message>{std::move(next->first), next->second};
     }
     const InputCount& count() const { return inbox_.count(); }
+    // Sets a function that receives every message of the followed simulation as it arrives from the bus, before the
+    // operators of the profile.
+    void on_arrival(std::function<void(const Message&, HostTime arrival)> listener) { arrival_listener_ = std::move(listener); }
 
    private:
     friend class ModalityEndpoint;
     explicit Stream(Queue<Message>& inbox) : inbox_(inbox) {}
     Queue<Message>& inbox_;
     DegradedSnapshots<Message> degraded_;
+    std::function<void(const Message&, HostTime)> arrival_listener_;
     bool delayed_ = false;
     HostTime now_{};
   };
@@ -218,6 +222,7 @@ void ModalityEndpoint::StreamSlot<Message>::step(ModalityEndpoint& endpoint, Hos
     newest_arrival = std::max(newest_arrival, m->arrival);
     if constexpr (requires { m->message.clock; })
       if (!endpoint.follow(m->message.header, m->message.clock, m->arrival)) continue;
+    if (stream.arrival_listener_) stream.arrival_listener_(m->message, m->arrival);
     newest = std::max(newest, m->arrival);
     stream.degraded_.push(std::move(m->message), m->arrival, endpoint.operators_, &endpoint.decisions_);
   }

@@ -82,7 +82,9 @@ contact_events_t hit_at(double t_s) {
 
 // Runs a live session and records it: touch models at whole milliseconds, ticks a varying time after each, as in a
 // real loop. Returns the rendered force as a table.
-std::string live(const std::string& log, const std::string& profile = "", double until_s = kUntil_s) {
+// From foreign_s on, the log holds only touch models of another simulation for another tool, at 100 Hz.
+std::string live(const std::string& log, const std::string& profile = "", double until_s = kUntil_s,
+                 double foreign_s = 1e9) {
   const scene_t scene = floor_and_stylus();
   RecordedRun run(std::make_unique<sync::FileSink>(log), scene);
   if (!profile.empty()) run.write_raw(0.01, channels::kDegradation, in_force(profile, header_at(0.01, 0, 33)));
@@ -99,7 +101,12 @@ std::string live(const std::string& log, const std::string& profile = "", double
   for (int ms = static_cast<int>(kFrom_s * 1000); ms < static_cast<int>(until_s * 1000); ++ms, ++seq) {
     const double t_s = ms * 1e-3, tick_s = t_s + after_us(random) * 1e-6;
     const touch_model_t model = model_at(t_s, seq);
-    run.write_raw(t_s, channels::kTouchModel, sync::encode(model));
+    if (t_s < foreign_s) run.write_raw(t_s, channels::kTouchModel, sync::encode(model));
+    if (t_s >= foreign_s && ms % 10 == 0) {
+      touch_model_t foreign = model;
+      foreign.header.incarnation = 77, foreign.tool = 1;
+      run.write_raw(t_s, channels::kTouchModel, sync::encode(foreign));
+    }
     session.push(model, sync::host_time(model.header.publish_time_ns));
     if (ms == 200) {
       run.write_raw(t_s, channels::kContactEvents, sync::encode(hit_at(t_s)));
@@ -162,6 +169,18 @@ TEST_CASE("A profile degrades the rendered log, and the recorded profile applies
     CHECK(table.at(18).at(20) == "none");
     CHECK(table.at(25).at(20) != "none");
   }
+}
+
+TEST_CASE("Touch models of another simulation for another tool do not keep the force alive") {
+  const RenderedLog of("haptic_node");
+  live(of.file("run.lcmlog"), "", kUntil_s, 1);
+  const auto table = cells_of(of.trace());
+  const auto force_N = [&](std::size_t row) { return std::abs(std::stod(table.at(row).at(11))); };
+  double before_N = 0, after_N = 0;
+  for (std::size_t row = 0; row < 900; ++row) before_N = std::max(before_N, force_N(row));
+  for (std::size_t row = 980; row < table.size(); ++row) after_N = std::max(after_N, force_N(row));
+  CHECK(before_N > 2);
+  CHECK(after_N == 0);
 }
 
 TEST_CASE("Ticks before and after a gap in the recording are rendered, missing ticks are not") {

@@ -17,8 +17,8 @@ NodeConfig resolve_config(const scene_t& scene, const Settings& settings, const 
 
 std::string limits_sentence(const Settings& s) {
   std::ostringstream out;
-  out << "force at most " << s.force_limit_N << " N, changing by at most " << s.slew_limit_N_s / 1000
-      << " N/ms, torque at most " << s.torque_limit_Nm << " N m, changing by at most "
+  out << "force at most " << s.force_limit_N << " N, rising by at most " << s.slew_limit_N_s / 1000
+      << " N/ms, torque at most " << s.torque_limit_Nm << " N m, rising by at most "
       << s.torque_slew_limit_Nm_s / 1000 << " N m/ms, energy to the hand at most " << s.energy_limit_J
       << " J plus " << s.power_limit_W << " W, within " << s.workspace_m
       << " m of the initial position of the device; zero within " << (s.stale_after_s + s.fade_s) * 1000

@@ -75,6 +75,28 @@ TEST_CASE("A transient is a decaying sinusoid and ends") {
   CHECK(reports[0].part == presentation_t::TRANSIENT);
 }
 
+TEST_CASE("The impulse of a transient is taken back, whole or in part, as the hand felt it") {
+  const double share = GENERATE(1.0, 0.3);
+  const double modulus_Pa = GENERATE(1e7, 70e9);
+  Transients transients(TransientShape{});
+  std::vector<presentation_t> reports;
+  Hit h = hit(1, 10);
+  h.youngs_modulus_Pa = modulus_Pa;
+  transients.schedule(h, reports);
+  Vector3d felt = Vector3d::Zero();
+  double impulse = 0, first = 0;
+  for (int ms = 0; ms < 600; ++ms) {
+    transients.add_felt_impulse(kDt * felt);
+    impulse += kDt * felt.z();
+    if (ms == 40) first = impulse;
+    felt = share * transients.step(host_ms(ms), kDt, true, kUncertain, reports);
+  }
+  // Of the 5 mN s of the hit about a half remains when the ringing has ended; then 5 uN s.
+  CHECK(first > share * 0.0004);
+  CHECK(std::abs(impulse) < 6e-6);
+  CHECK(felt.norm() == 0);
+}
+
 TEST_CASE("Every hit has one report: presented, late or dropped") {
   Transients transients(TransientShape{});
   std::vector<presentation_t> reports;

@@ -28,9 +28,54 @@ TEST_CASE("The force obeys its limits of magnitude and slew for any wanted force
     const Vector3d force = safety.limit(wanted, 1e-3 * Vector3d(normal(random), 0, 0), kDt);
     REQUIRE(force.allFinite());
     REQUIRE(force.norm() <= limits.force_N + 1e-9);
-    REQUIRE((force - last).norm() <= limits.slew_N_s * kDt + 1e-9);
+    REQUIRE(beyond_slew_N(force, last, limits.slew_N_s * kDt) <= 1e-9);
     last = force;
   }
+}
+
+TEST_CASE("The force is the wanted one times a factor of 0 to 1, at any slew limit") {
+  // A part of an earlier force that stayed behind would push a hand that has turned back.
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal(0, 1);
+  for (const double slew_N_s : {10.0, 100.0, 2000.0}) {
+    SafetyLimits limits;
+    limits.slew_N_s = slew_N_s;
+    limits.torque_slew_N_m_s = slew_N_s / 100;
+    Safety safety(limits);
+    Wrench wanted;
+    for (int k = 0; k < 5000; ++k) {
+      if (k % 20 == 0) wanted.force_N = 3 * Vector3d(normal(random), normal(random), normal(random));
+      wanted.force_N += 0.3 * Vector3d(normal(random), normal(random), normal(random));
+      wanted.torque_N_m = 0.02 * wanted.force_N.cross(Vector3d::UnitX());
+      const Wrench w = safety.limit(wanted, Vector3d::Zero(), Vector3d::Zero(), kDt);
+      const auto check = [](const Vector3d& force, const Vector3d& of) {
+        REQUIRE(force.cross(of).norm() < 1e-9);
+        REQUIRE(force.dot(of) >= 0);
+        REQUIRE(force.norm() <= of.norm() + 1e-12);
+      };
+      check(w.force_N, wanted.force_N);
+      check(w.torque_N_m, wanted.torque_N_m);
+    }
+  }
+}
+
+TEST_CASE("The force of the scene before goes to zero within 20 ms, beside the force of the next") {
+  Safety safety(SafetyLimits{});
+  for (int k = 0; k < 10; ++k) safety.limit({6, 0, 0}, Vector3d::Zero(), kDt);
+  safety.release();
+  Vector3d last(6, 0, 0);
+  for (int k = 1; k <= 20; ++k) {
+    const Vector3d force = safety.limit({0, 1, 0}, Vector3d::Zero(), kDt);
+    CHECK(force.x() == Approx(6 * (1 - k / 20.0)).margin(1e-9));
+    CHECK(safety.released().force_N.x() == Approx(force.x()));
+    CHECK(force.y() == Approx(1));
+    CHECK((force - last).norm() < 1.1);
+    last = force;
+  }
+  safety.release();
+  safety.begin_tick(host_ms(0));
+  safety.begin_tick(host_ms(30));
+  CHECK(safety.limit({0, 0, 0}, Vector3d::Zero(), kDt).norm() == 0);
 }
 
 TEST_CASE("A late tick does not cause a jump of the force") {
@@ -84,7 +129,7 @@ TEST_CASE("Alternating limits give the hand no more energy than the wider limits
     if (k % 20 == 0) safety.set_limits(k % 40 == 0 ? wide : narrow);
     given += force.dot(moved);
     const Vector3d next = safety.limit({8, 0, 0}, moved, kDt);
-    REQUIRE((next - force).norm() <= wide.slew_N_s * kDt + 1e-9);
+    REQUIRE(beyond_slew_N(next, force, wide.slew_N_s * kDt) <= 1e-9);
     force = next;
     moved = {1e-3, 0, 0};
     REQUIRE(given <= wide.energy_J + wide.power_W * k * kDt + 0.008 + 1e-9);
@@ -138,4 +183,35 @@ TEST_CASE("A slow tick has the whole slew of its period") {
   settings.rate_Hz = 100;
   Safety safety(safety_limits(settings));
   CHECK(safety.limit({8, 0, 0}, Vector3d::Zero(), 0.01).x() == 8);
+}
+
+TEST_CASE("The fade never changes faster than within its time, also when the arrivals end or the clock steps") {
+  std::mt19937 random(5);
+  Fade fade(0.05, 0.02);
+  double last = 0;
+  for (int k = 0; k < 5000; ++k) {
+    std::optional<sync::HostTime> newest;
+    if (k / 50 % 3 != 0) newest = host_ms(k + (random() % 200 == 0 ? 1000.0 : 0.0) - static_cast<double>(random() % 40));
+    if (random() % 100 == 0) fade.restart();
+    const double value = fade.step(host_ms(k), newest, kDt);
+    REQUIRE(std::abs(value - last) <= 0.05 + 1e-12);
+    REQUIRE(value >= 0);
+    REQUIRE(value <= 1);
+    last = value;
+  }
+  for (int k = 0; k < 20; ++k) fade.step(host_ms(k), host_ms(k + 51), kDt);
+  CHECK(fade.lost());
+  CHECK(fade.value() == 0);
+}
+
+TEST_CASE("After a restart the fade goes to zero before it returns") {
+  Fade fade(0.05, 0.02);
+  for (int ms = 0; ms < 30; ++ms) fade.step(host_ms(ms), host_ms(ms), kDt);
+  fade.restart();
+  for (int ms = 30; ms < 50; ++ms) {
+    CHECK(fade.restarting());
+    CHECK(fade.step(host_ms(ms), host_ms(ms), kDt) == Approx(1 - (ms - 29) / 20.0).margin(1e-9));
+  }
+  for (int ms = 50; ms < 70; ++ms)
+    CHECK(fade.step(host_ms(ms), host_ms(ms), kDt) == Approx((ms - 49) / 20.0).margin(0.051));
 }

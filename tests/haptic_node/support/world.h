@@ -1,6 +1,7 @@
 // A small world for touch tests: a scene with one tool, planes, touch models and a manual clock.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/scene_t.hpp>
@@ -83,6 +84,13 @@ inline contact_event_t event(std::int64_t id, std::int8_t kind, double sim_ms, s
   e.approach_speed_m_s = 0.1f;
   e.effective_mass_kg = 0.02f;
   return e;
+}
+
+// Part of the rise from `last` to `force` that the slew limit does not allow, N: the force may rise by rise_N above the part
+// of the last one along it, and falls at once.
+inline double beyond_slew_N(const Vector3d& force, const Vector3d& last, double rise_N) {
+  const double size = force.norm();
+  return size > 0 ? size - std::max(0.0, last.dot(force) / size) - rise_N : 0;
 }
 
 // Drives a renderer tick by tick with a device whose position the test sets.

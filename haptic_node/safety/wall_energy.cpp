@@ -1,0 +1,95 @@
+#include "haptic_node/safety/wall_energy.h"
+
+#include <cmath>
+
+namespace tactus::haptic {
+namespace {
+
+// As of the channel to bodies (passivity.cpp): an episode ends when the hand has been away for this time.
+constexpr double kEpisodeGap_s = 0.2;
+// Dissipated energy counts as credit up to this value, so that old friction does not pay for a new oscillation.
+constexpr double kMaxCredit_J = 0.01;
+// A wall that lost its stiffness regains it while the hand stays, at the rate of bodies (energy_account.cpp): the
+// fast refill ends at 0.4 mJ, so that an episode of ten seconds generates at most 1 mJ.
+constexpr double kRefill_W = 0.0002, kMaxRefill_J = 0.0004, kSlowRefill_W = 0.00001;
+// The same limits as in safety.cpp: above them the device has jumped, and no work is counted.
+constexpr double kMaxHandSpeed_m_s = 40, kMaxHandSpin_rad_s = 63;
+
+double work_J(const WallForce& f, const DeviceMotion& motion, double dt) {
+  const bool moved = motion.moved_m.allFinite() && motion.moved_m.norm() <= kMaxHandSpeed_m_s * dt;
+  const bool turned = motion.turned_rad.allFinite() && motion.turned_rad.norm() <= kMaxHandSpin_rad_s * dt;
+  return (moved ? f.wrench.force_N.dot(motion.moved_m) : 0) +
+         (turned ? f.wrench.torque_N_m.dot(motion.turned_rad) : 0) - f.power_W * dt;
+}
+
+// Twice the distance, m/N, that a constant force moves a mass with a damper from rest: twice, because its speed at the
+// begin may be higher than the mean of the last motion by as much.
+double twice_moved(double seconds, double mass_kg, double damping_N_s_m) {
+  const double x = seconds * damping_N_s_m / mass_kg;
+  // (x - 1 + exp(-x)) / x^2, by its series where the difference would cancel.
+  const double share = x < 1e-3 ? 0.5 - x / 6 : (x + std::expm1(-x)) / (x * x);
+  return 2 * share * seconds * seconds / mass_kg;
+}
+
+}  // namespace
+
+void WallEnergy::reset() {
+  commands_.clear();
+  motion_ = {};
+  motion_s_ = 0;
+  balance_J_ = credit_J_ = refilled_J_ = 0;
+  factor_ = 1;
+  apart_s_ = 0;
+}
+
+void WallEnergy::observe(double springs_J, bool pressed, const DeviceMotion& motion, double held_s, bool begins) {
+  time_s_ += held_s;
+  const double span_s = motion.loop.immediate() ? held_s : motion.loop.span_s;
+  const double given_J = work_J(acting_in_tick(commands_, time_s_, held_s, motion.loop), motion, span_s);
+  if (span_s > 0) motion_ = motion, motion_s_ = span_s;
+  balance_J_ -= given_J;
+  credit_J_ -= given_J;
+  apart_s_ = pressed ? 0 : apart_s_ + held_s;
+  if (apart_s_ > kEpisodeGap_s) balance_J_ = credit_J_ = refilled_J_ = 0;
+  if (begins && credit_J_ < springs_J) {
+    balance_J_ += springs_J - credit_J_;
+    credit_J_ = springs_J;
+  }
+  if (available_J() < springs_J) {
+    const double refill_J = (refilled_J_ < kMaxRefill_J ? kRefill_W : kSlowRefill_W) * held_s;
+    credit_J_ += refill_J;
+    refilled_J_ += refill_J;
+  }
+  credit_J_ = std::min(credit_J_, springs_J + kMaxCredit_J);
+  factor_ = springs_J > available_J() ? available_J() / springs_J : 1;
+}
+
+double WallEnergy::brake(const WallForce& next, const DeviceMotion& last, double dt) const {
+  DeviceMotion during = last;
+  double held_s = dt;
+  if (!last.loop.immediate()) {
+    held_s = std::max(dt, last.loop.period_s);
+    const double scale = motion_s_ > 0 ? held_s / motion_s_ : 0;
+    during = {scale * motion_.moved_m, scale * motion_.turned_rad, last.loop};
+  }
+  const double accelerated_J =
+      next.wrench.force_N.squaredNorm() * twice_moved(held_s, limits_.device_mass_kg, limits_.device_damping_N_s_m) +
+      next.wrench.torque_N_m.squaredNorm() *
+          twice_moved(held_s, limits_.device_inertia_kg_m2, limits_.device_turn_damping_N_m_s_rad);
+  const double given_J = work_J(next, during, held_s) + accelerated_J;
+  return given_J > available_J() ? available_J() / given_J : 1;
+}
+
+WallForce wall_force(std::span<const Surface> surfaces, std::span<const Eigen::Vector3d> forces,
+                     std::span<const Eigen::Vector3d> arms) {
+  WallForce sum;
+  for (std::size_t i = 0; i < surfaces.size() && i < forces.size(); ++i) {
+    if (surfaces[i].movable() || forces[i].isZero(0) || !forces[i].allFinite()) continue;
+    sum.wrench.force_N += forces[i];
+    if (i < arms.size()) sum.wrench.torque_N_m += arms[i].cross(forces[i]);
+    sum.power_W += forces[i].dot(surfaces[i].velocity_at(surfaces[i].point));
+  }
+  return sum;
+}
+
+}  // namespace tactus::haptic

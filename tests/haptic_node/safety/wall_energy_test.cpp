@@ -1,0 +1,144 @@
+#include "haptic_node/safety/wall_energy.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "tests/haptic_node/support/trial.h"
+#include "tests/haptic_node/support/world.h"
+
+using namespace tactus;
+using namespace tactus::haptic;
+using namespace tactus::haptic::test;
+
+namespace {
+
+constexpr double kDt = 1e-3;
+
+// A spring of 1 N/mm whose end the test moves; force and motion along z.
+struct Spring {
+  // Moves the hand to this depth. Returns the force that acts from now on.
+  double to(double depth_m, double force_share = 1, bool begins = false) {
+    walls.observe(500 * depth_m * depth_m, depth_m > 0, {Vector3d(0, 0, depth - depth_m), Vector3d::Zero()}, kDt, begins);
+    given_J += force * (depth - depth_m);
+    depth = depth_m;
+    force = force_share * walls.factor() * 1000 * depth_m;
+    walls.record({{Vector3d(0, 0, force), Vector3d::Zero()}, 0});
+    return force;
+  }
+  WallEnergy walls{WallLimits{}};
+  double depth = 0, force = 0, given_J = 0;
+};
+
+}  // namespace
+
+TEST_CASE("A wall that the hand pressed keeps its stiffness") {
+  Spring spring;
+  for (int k = 0; k <= 100; ++k) CHECK(spring.to(5e-5 * k) == Approx(0.05 * k));
+  for (int k = 100; k >= 0; --k) CHECK(spring.to(5e-5 * k) == Approx(0.05 * k));
+  CHECK(spring.walls.generated_J() == Approx(spring.given_J).margin(1e-12));
+}
+
+TEST_CASE("A wall that appears above the hand gives it at most the allowance") {
+  Spring spring;
+  spring.to(0.005);
+  CHECK(spring.force < 0.5);
+  for (int k = 99; k >= 0; --k) spring.to(5e-5 * k);
+  CHECK(spring.given_J > 0.0001);
+  CHECK(spring.given_J < 0.0006);
+  CHECK(spring.walls.generated_J() == Approx(spring.given_J).margin(3e-5));  // less the refill in 0.1 s
+}
+
+TEST_CASE("A wall whose force came late returns no more energy than it received") {
+  Spring spring;
+  // A tenth of the force while the hand presses, all of it while the hand withdraws.
+  for (int k = 0; k <= 100; ++k) spring.to(5e-5 * k, 0.1);
+  for (int k = 100; k >= 0; --k) spring.to(5e-5 * k);
+  CHECK(spring.given_J < 0.0006);
+}
+
+TEST_CASE("While touch begins the energy of the springs is credited") {
+  Spring spring;
+  for (int k = 0; k < 20; ++k) spring.to(2.5e-4 * k, 1, true);
+  CHECK(spring.to(0.005) == Approx(5));
+}
+
+TEST_CASE("A softened wall recovers while the hand stays, and at once after the hand was away") {
+  Spring spring;
+  const double soft = spring.to(0.002);
+  for (int k = 0; k < 1000; ++k) spring.to(0.002);
+  CHECK(spring.force > 1.1 * soft);
+  for (int k = 0; k < 250; ++k) spring.to(0);
+  for (int k = 0; k <= 40; ++k) spring.to(5e-5 * k);
+  CHECK(spring.force == Approx(2));
+}
+
+TEST_CASE("The brake lets the next tick give at most the remaining energy") {
+  const WallLimits limits;
+  WallEnergy walls(limits);
+  const WallForce push{{Vector3d(0, 0, 5), Vector3d::Zero()}, 0};
+  // 1 mm at 5 N is 5 mJ, of which the allowance covers a tenth; the force itself adds 25 N^2 / 0.1 kg (1 ms)^2.
+  const double kept = walls.brake(push, {Vector3d(0, 0, 0.001), Vector3d::Zero()}, kDt);
+  CHECK(kept == Approx(limits.allowance_J / (0.005 + 25 / 0.1 * 1e-6)));
+  CHECK(walls.brake(push, {Vector3d(0, 0, -0.001), Vector3d::Zero()}, kDt) == 1);
+  // A surface that moves with the hand does the work itself.
+  const WallForce belt{push.wrench, 5};
+  CHECK(walls.brake(belt, {Vector3d(0, 0, 0.001), Vector3d::Zero()}, kDt) == 1);
+}
+
+TEST_CASE("Only the forces of fixed surfaces count, with their torque and their own motion") {
+  std::vector<Surface> surfaces(3);
+  surfaces[0].effective_mass_kg = 1;
+  surfaces[1].effective_mass_kg = surfaces[2].effective_mass_kg = 1e10;
+  surfaces[2].velocity = {0.5, 0, 0};
+  const std::vector<Vector3d> forces{{1, 2, 3}, {0, 0, 4}, {2, 0, 0}}, arms{{1, 1, 1}, {0.1, 0, 0}, {0, 0, 0.1}};
+  const WallForce sum = wall_force(surfaces, forces, arms);
+  CHECK(sum.wrench.force_N == Vector3d(2, 0, 4));
+  CHECK((sum.wrench.torque_N_m - Vector3d(0, -0.4 + 0.2, 0)).norm() < 1e-12);
+  CHECK(sum.power_W == Approx(1));
+}
+
+TEST_CASE("Motion that is not finite counts as no work") {
+  WallEnergy walls{WallLimits{}};
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  walls.record({{Vector3d(0, 0, 5), Vector3d::Zero()}, 0});
+  walls.observe(0.001, true, {Vector3d(nan, 0, 0), Vector3d(0, nan, 0)}, kDt, false);
+  CHECK(walls.generated_J() == 0);
+  CHECK(walls.factor() == Approx(0.5).epsilon(0.01));
+}
+
+TEST_CASE("A stricter slew limit never gives the hand energy from a fixed wall") {
+  // Once 1.4 to 1.8 J in 6 s at 100 and 30 N/s.
+  for (const double slew_N_s : {2000.0, 500.0, 100.0, 30.0, 10.0}) {
+    TrialDef def = metronome();
+    def.settings.slew_limit_N_s = slew_N_s;
+    const TrialResult r = run_trial(def);
+    CAPTURE(slew_N_s, r.observed_mJ, r.peak_N);
+    CHECK(r.energy_mJ < 0);
+    CHECK(r.generated_mJ <= 1);
+    CHECK(r.peak_N > 0.1);
+  }
+}
+
+TEST_CASE("A fixed wall generates at most 1 mJ an episode at any delay") {
+  for (int delay_ms = 0; delay_ms <= 300; delay_ms += delay_ms < 60 ? 5 : 40) {
+    TrialDef def = metronome();
+    def.delay_ms = delay_ms;
+    const TrialResult r = run_trial(def);
+    CAPTURE(delay_ms, r.energy_mJ, r.observed_mJ);
+    CHECK(r.generated_mJ <= 1);
+    if (delay_ms <= 30) CHECK(r.peak_N > 3);
+    // The observer sees the energy within half a millijoule.
+    CHECK(std::abs(r.observed_mJ - r.generated_mJ) < 0.5);
+  }
+}
+
+TEST_CASE("A fixed wall generates at most 1 mJ an episode at any rate") {
+  for (const double rate_Hz : {100.0, 120.0, 150.0, 250.0, 500.0, 1000.0, 4000.0}) {
+    TrialDef def = metronome();
+    def.settings.rate_Hz = rate_Hz;
+    const TrialResult r = run_trial(def);
+    CAPTURE(rate_Hz, r.energy_mJ, r.observed_mJ);
+    CHECK(r.generated_mJ <= 1);
+    CHECK(r.energy_mJ < 0);
+  }
+}

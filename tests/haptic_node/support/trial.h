@@ -1,0 +1,74 @@
+// One trial of touch in closed loop: a virtual hand, the renderer with any settings, and a world of one wall or one body
+// that is late, far from the hand, or fails. Pure. Every figure is measured at the true ports.
+#pragma once
+
+#include <random>
+#include <string>
+
+#include "haptic_node/devices/virtual_hand.h"
+#include "haptic_node/settings.gen.h"
+
+namespace tactus::haptic::test {
+
+// The disturbance in the middle of a trial.
+enum class Failure {
+  kNone,
+  kModels,     // no touch model for 0.4 s
+  kDevice,     // the device is lost for 0.2 s
+  kNotFinite,  // the state of the device is not finite for 0.2 s
+  kStall,      // no tick for a random time of up to 0.4 s
+  kRestart,    // the simulation begins again
+  kClock,      // the clock steps back by 1 s
+};
+inline constexpr int kFailures = 7;
+
+struct TrialDef {
+  Settings settings;
+  HandImpedance hand;
+  double mass_kg = 0;           // of the body; 0: a wall
+  double stiffness_N_m = 1000;  // of the surface
+  int delay_ms = 0;             // of the touch models
+  // The simulation reports a surface only while the tool is within its margin: this distance, or the way of the tool in
+  // margin_s. 0: always.
+  double margin_m = 0, margin_s = 0;
+  double force_step_N = 0;
+  bool hits = false;  // events of hits, which begin transients
+  double period_s = 0.25, depth_m = 0.012, top_m = 0.032;  // of a tap
+  double hold_s = 0.04;
+  int taps = 4;
+  Failure failure = Failure::kNone;
+  double failure_s = 0;  // when it begins, s
+  double stall_s = 0;
+};
+
+struct TrialResult {
+  double generated_mJ = 0;  // largest energy in an episode to hand and body, without transients
+  double energy_mJ = 0;     // to the hand, in the whole trial, without transients
+  double observed_mJ = 0;   // the largest generated_J of the state
+  double hand_N_s = 0, constraint_N_s = 0, body_N_s = 0;  // impulses along the normal, towards hand and body
+  bool rung_down = true;  // the last transient has ended, and its impulse has been returned
+  double received_N_s = 0;  // integral of the magnitude of the force
+  double peak_N = 0;
+  double beyond_force_N = 0;  // above the force limit
+  double beyond_rise_N = 0;   // of one tick above the slew limit
+  double beyond_fade_N = 0;   // above the fade of a failure, or of the return after it
+  double least_coupling = 1;
+  bool finite = true;
+};
+
+TrialResult run_trial(const TrialDef& def);
+
+// The taps of sim_node/scenes/metronome.sdf: a ball of 8 mm on a board, four times a second for 6 s.
+TrialDef metronome();
+
+// Draws every setting of haptic_node within its range, on a logarithmic scale where the range allows, and a hand, a
+// surface, a delay and a failure. The hand has at least the mass, damping and inertia that the settings state.
+TrialDef random_trial(std::mt19937& random);
+
+// The limits that a trial passes, in words; empty: none.
+std::string faults(const TrialDef& def, const TrialResult& r);
+// For messages of tests: all values that differ from the defaults.
+std::string describe(const TrialDef& def);
+std::string describe(const TrialResult& r);
+
+}  // namespace tactus::haptic::test
