@@ -7,9 +7,13 @@ namespace {
 constexpr double kEpisodeGap_s = 0.2;
 // Dissipated energy counts as credit up to this value, so that old friction does not pay for a new oscillation.
 constexpr double kMaxCredit_J = 0.01;
-// A wall that lost its stiffness regains it while the hand stays, at half of the rate of bodies. Design: 0.25 mJ in the
-// 2.5 s of a long press, beside the allowance of 0.5 mJ.
-constexpr double kRefill_W = 0.0001;
+// Part of the allowance with which a contact begins, and which is not returned: the default of generated_limit.
+constexpr double kBegin_J = 0.0005;
+// Largest share of the credit that one tick returns: the rest covers the error of the predicted motion. Design.
+constexpr double kReturned = 0.9;
+// A hand that rests or presses may be pushed by this much without a credit, so that a slow contact can begin: 1 N on 0.1 kg
+// for a millisecond. Design.
+constexpr double kStart_J = 1e-5;
 // The same limits as in safety.cpp: above them the device has jumped, and no work is counted.
 constexpr double kMaxHandSpeed_m_s = 40, kMaxHandSpin_rad_s = 63;
 
@@ -34,16 +38,18 @@ void WallEnergy::observe(double springs_J, bool pressed, const DeviceMotion& mot
   apart_s_ = pressed ? 0 : apart_s_ + held_s;
   if (apart_s_ > kEpisodeGap_s) credit_J_ = 0;
   if (begins) credit_J_ = std::max(credit_J_, springs_J);
-  if (available_J() < springs_J) credit_J_ += kRefill_W * held_s;
   credit_J_ = std::min(credit_J_, springs_J + kMaxCredit_J);
-  factor_ = springs_J > available_J() ? available_J() / springs_J : 1;
+  const double available_J = std::max(0.0, credit_J_ + limits_.allowance_J);
+  factor_ = springs_J > available_J ? available_J / springs_J : 1;
 }
 
 double WallEnergy::brake(const WallForce& next, const DeviceMotion& last, double dt) const {
   const double accelerated_J = dt * dt * (next.wrench.force_N.squaredNorm() / limits_.device_mass_kg +
                                           next.wrench.torque_N_m.squaredNorm() / limits_.device_inertia_kg_m2);
-  const double given_J = work_J(next, last, dt) + accelerated_J;
-  return given_J > available_J() ? available_J() / given_J : 1;
+  const double moved_J = work_J(next, last, dt), given_J = moved_J + accelerated_J;
+  const double credit_J = credit_J_ + std::max(0.0, limits_.allowance_J - kBegin_J);
+  const double left_J = std::max(0.0, moved_J > 0 ? kReturned * credit_J : credit_J + kStart_J);
+  return given_J > left_J ? left_J / given_J : 1;
 }
 
 WallForce wall_force(std::span<const Surface> surfaces, std::span<const Eigen::Vector3d> forces,

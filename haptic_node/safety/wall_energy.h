@@ -1,13 +1,14 @@
-// Energy account of fixed surfaces. A wall holds only the energy that the hand gave it, so the hand gets back at most
-// that, and a small allowance (time-domain passivity: Hannaford and Ryu 2002).
+// Energy account of fixed surfaces. A wall returns at most the energy that the hand gave it (time-domain passivity:
+// Hannaford and Ryu 2002).
 //
 //   credit = energy from the hand to the walls in this episode of contact; below zero: generated
 //
 // The force of a wall may lag (slew limit), come in steps (force_step), or come too late (a plane that appears only
 // when the hand is inside). In each case the springs of the coupling would hold more than the credit. Two measures
-// hold the energy down: a factor on the coupling, so that its springs hold at most the credit and the allowance; and
-// a brake on the force to command, so that the next tick gives the hand at most the remaining energy. Undisturbed
-// walls hold less than the credit: both are then 1.
+// limit the energy: a factor on the coupling, so that its springs hold at most the credit and the allowance; and a
+// brake on the force to command, so that the next tick gives the hand at most the credit and the allowance beyond its
+// default, with which a contact begins. Undisturbed walls hold less than the credit: both are then 1. A softened wall recovers while the hand
+// presses, and when the hand was away.
 #pragma once
 
 #include <Eigen/Core>
@@ -62,7 +63,6 @@ class WallEnergy {
 
  private:
   static constexpr double kMaxReported_J = 1e6;  // the range of the message
-  double available_J() const { return std::max(0.0, credit_J_ + limits_.allowance_J); }
 
   WallLimits limits_;
   WallForce commanded_;
