@@ -24,6 +24,13 @@ Eigen::Vector3d quantised(const Eigen::Vector3d& force_N, double step_N) {
   return force_N * (std::round(size / step_N) * step_N / size);
 }
 
+// Energy of a spring whose force is rounded, relative to that of the spring: the area under the staircase. A force of n
+// steps is rounded to N: (n N - N^2 / 2) / (n^2 / 2).
+double rounded_energy(double force_N, double rounded_N) {
+  const double error = force_N > 0 ? (force_N - rounded_N) / force_N : 0;
+  return std::max(0.0, 1 - error * error);
+}
+
 SurfaceLimits surface_limits(const Settings& s) {
   return {s.recovery_time_s, s.recovery_speed_m_s, s.recovery_turn_rad_s, s.extrapolate_at_most_s,
           s.surface_speed_limit_m_s};
@@ -130,7 +137,7 @@ sync::Nanoseconds Renderer::uncertainty() const {
 void Renderer::update_device(const TickInput& in) {
   DeviceState device = in.device;
   if (!device.position.allFinite() || !device.velocity.allFinite() || !device.orientation.coeffs().allFinite() ||
-      !device.spin.allFinite() || !(device.orientation.squaredNorm() > 0)) {
+      !device.spin.allFinite()) {
     device = device_;
     device.lost = true;
   }
@@ -139,6 +146,7 @@ void Renderer::update_device(const TickInput& in) {
     last_ = in.now - sync::from_seconds(period_s_);
     device_ = device;
     device_share_ = device.lost ? 0 : 1;
+    begin_touch();
     force_method_.reset(device);
   }
   if (device.lost) {
@@ -172,7 +180,7 @@ void Renderer::update_surfaces(const TickInput& in, double dt) {
     // Surfaces that arrive after the loss are new.
     surfaces_.clear();
     force_method_.reset(device_);
-    returning_s_ = settings_.recovery_time_s + 2 * period_s_;
+    begin_touch();
   }
   // While the force of the previous world fades, its surfaces remain.
   const TouchModelView fresh = fade_.restarting() ? TouchModelView{} : in.fresh;
@@ -214,7 +222,7 @@ Renderer::DeviceLimit Renderer::device_limit() const {
   return {device_.loop, limit, limit < kSoftened * wall(period_s_, 0)};
 }
 
-Wrench Renderer::constraint_wrench(double dt, double held_s) {
+Wrench Renderer::constraint_wrench(double force_step_N, double dt, double held_s) {
   const double follow = 1 - std::exp(-dt / settings_.recovery_time_s);
   for (Surface& s : surfaces_.list()) {
     const Gains g = gains(s);
@@ -228,7 +236,10 @@ Wrench Renderer::constraint_wrench(double dt, double held_s) {
   passivity_.observe(force_method_.stored_energy(surfaces_.list()), motion_.moved_m, motion_.turned_rad, model_age_s_,
                      held_s, motion_.loop);
   const StoredEnergy walls = force_method_.stored_energy(surfaces_.list(), ForceMethod::Partner::kWalls);
-  walls_.observe(walls.energy_J, walls.pressed, motion_, held_s, returning_s_ > 0);
+  if (!walls.pressed && returning_s_ < 3 * settings_.recovery_time_s) returning_s_ = 0;
+  // The energy that a relief takes or gives along a stroke is its own, and the limits of safety bound it.
+  const bool appears = returning_s_ > 0 || reliefs_.pressed(surfaces_.list());
+  walls_.observe((force_step_N > 0 ? rounded_share_ : 1) * walls.energy_J, walls.pressed, motion_, held_s, appears);
   returning_s_ -= dt;
   force_method_.compute_forces(surfaces_.list(), device_, {passivity_.factor(), walls_.factor()}, forces_);
   reliefs_.tilt_forces(surfaces_.list(), force_method_.tool_pose(), forces_);
@@ -309,6 +320,7 @@ Renderer::Commanded Renderer::command(Wrench constraint, Eigen::Vector3d transie
   constraint = {share * constraint.force_N, share * constraint.torque_N_m};
   transient_N *= share;
   const double rounded_N = std::min(quantised(share * plain, force_step_N).norm(), settings_.force_limit_N);
+  rounded_share_ = rounded_energy(share * all_N, rounded_N);
   const double scale = all_N > 0 ? force_scale() * rounded_N / (share * all_N) : 0;
   const Wrench of_walls{share * walls.wrench.force_N, share * walls.wrench.torque_N_m};
   walls = {{scale * of_walls.force_N, force_scale() * of_walls.torque_N_m}, scale * share * walls.power_W};
@@ -392,7 +404,7 @@ TickOutput& Renderer::step(const TickInput& in) {
 
   update_surfaces(in, dt);
   handle_events(in);
-  const Wrench constraint = constraint_wrench(dt, held_s);
+  const Wrench constraint = constraint_wrench(in.force_step_N, dt, held_s);
   const bool felt = force_scale() > 0;
   const Eigen::Vector3d transient = transients_.step(in.now, period_s_, felt, uncertainty(), out_.reports);
   if (!device_.lost) safety_.set_position(device_.position);

@@ -9,9 +9,13 @@ namespace {
 constexpr double kEpisodeGap_s = 0.2;
 // Dissipated energy counts as credit up to this value, so that old friction does not pay for a new oscillation.
 constexpr double kMaxCredit_J = 0.01;
-// A wall that lost its stiffness regains it while the hand stays, at the rate of bodies (energy_account.cpp): the
-// fast refill ends at 0.4 mJ, so that an episode of ten seconds generates at most 1 mJ.
-constexpr double kRefill_W = 0.0002, kMaxRefill_J = 0.0004, kSlowRefill_W = 0.00001;
+// Part of the allowance with which a contact begins, and which is not returned: the default of generated_limit.
+constexpr double kBegin_J = 0.0005;
+// Largest share of the credit that one tick returns: the rest covers the error of the predicted motion. Design.
+constexpr double kReturned = 0.9;
+// A hand that rests or presses may be pushed by this much without a credit, so that a slow contact can begin: 1 N on 0.1 kg
+// for a millisecond. Design.
+constexpr double kStart_J = 1e-5;
 // The same limits as in safety.cpp: above them the device has jumped, and no work is counted.
 constexpr double kMaxHandSpeed_m_s = 40, kMaxHandSpin_rad_s = 63;
 
@@ -37,7 +41,7 @@ void WallEnergy::reset() {
   commands_.clear();
   motion_ = {};
   motion_s_ = 0;
-  balance_J_ = credit_J_ = refilled_J_ = 0;
+  balance_J_ = credit_J_ = 0;
   factor_ = 1;
   apart_s_ = 0;
 }
@@ -50,18 +54,14 @@ void WallEnergy::observe(double springs_J, bool pressed, const DeviceMotion& mot
   balance_J_ -= given_J;
   credit_J_ -= given_J;
   apart_s_ = pressed ? 0 : apart_s_ + held_s;
-  if (apart_s_ > kEpisodeGap_s) balance_J_ = credit_J_ = refilled_J_ = 0;
+  if (apart_s_ > kEpisodeGap_s) balance_J_ = credit_J_ = 0;
   if (begins && credit_J_ < springs_J) {
     balance_J_ += springs_J - credit_J_;
     credit_J_ = springs_J;
   }
-  if (available_J() < springs_J) {
-    const double refill_J = (refilled_J_ < kMaxRefill_J ? kRefill_W : kSlowRefill_W) * held_s;
-    credit_J_ += refill_J;
-    refilled_J_ += refill_J;
-  }
   credit_J_ = std::min(credit_J_, springs_J + kMaxCredit_J);
-  factor_ = springs_J > available_J() ? available_J() / springs_J : 1;
+  const double available_J = std::max(0.0, credit_J_ + limits_.allowance_J);
+  factor_ = springs_J > available_J ? available_J / springs_J : 1;
 }
 
 double WallEnergy::brake(const WallForce& next, const DeviceMotion& last, double dt) const {
@@ -76,8 +76,10 @@ double WallEnergy::brake(const WallForce& next, const DeviceMotion& last, double
       next.wrench.force_N.squaredNorm() * twice_moved(held_s, limits_.device_mass_kg, limits_.device_damping_N_s_m) +
       next.wrench.torque_N_m.squaredNorm() *
           twice_moved(held_s, limits_.device_inertia_kg_m2, limits_.device_turn_damping_N_m_s_rad);
-  const double given_J = work_J(next, during, held_s) + accelerated_J;
-  return given_J > available_J() ? available_J() / given_J : 1;
+  const double moved_J = work_J(next, during, held_s), given_J = moved_J + accelerated_J;
+  const double credit_J = credit_J_ + std::max(0.0, limits_.allowance_J - kBegin_J);
+  const double left_J = std::max(0.0, moved_J > 0 ? kReturned * credit_J : credit_J + kStart_J);
+  return given_J > left_J ? left_J / given_J : 1;
 }
 
 WallForce wall_force(std::span<const Surface> surfaces, std::span<const Eigen::Vector3d> forces,
