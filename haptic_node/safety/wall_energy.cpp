@@ -16,6 +16,9 @@ constexpr double kReturned = 0.9;
 // A hand that rests or presses may be pushed by this much without a credit, so that a slow contact can begin: 1 N on 0.1 kg
 // for a millisecond. Design.
 constexpr double kStart_J = 1e-5;
+// A force that is held for longer than this acts on a hand that opposes it, and only its change accelerates the hand. Such
+// a loop lags so far that its walls also return the allowance. Design: twice the tick of 1 kHz.
+constexpr double kSlow_s = 0.002;
 // The same limits as in safety.cpp: above them the device has jumped, and no work is counted.
 constexpr double kMaxHandSpeed_m_s = 40, kMaxHandSpin_rad_s = 63;
 
@@ -72,13 +75,19 @@ double WallEnergy::brake(const WallForce& next, const DeviceMotion& last, double
     const double scale = motion_s_ > 0 ? held_s / motion_s_ : 0;
     during = {scale * motion_.moved_m, scale * motion_.turned_rad, last.loop};
   }
+  const bool slow = held_s > kSlow_s;
+  // Part of the force that accelerates the hand: all of it, or its change.
+  Wrench free = next.wrench;
+  if (slow && !commands_.empty())
+    free = plus_scaled(next.wrench, commands_.entry(commands_.size() - 1).value.wrench, -1);
   const double accelerated_J =
-      next.wrench.force_N.squaredNorm() * twice_moved(held_s, limits_.device_mass_kg, limits_.device_damping_N_s_m) +
-      next.wrench.torque_N_m.squaredNorm() *
+      std::max(0.0, next.wrench.force_N.dot(free.force_N)) *
+          twice_moved(held_s, limits_.device_mass_kg, limits_.device_damping_N_s_m) +
+      std::max(0.0, next.wrench.torque_N_m.dot(free.torque_N_m)) *
           twice_moved(held_s, limits_.device_inertia_kg_m2, limits_.device_turn_damping_N_m_s_rad);
   const double moved_J = work_J(next, during, held_s), given_J = moved_J + accelerated_J;
-  const double credit_J = credit_J_ + std::max(0.0, limits_.allowance_J - kBegin_J);
-  const double left_J = std::max(0.0, moved_J > 0 ? kReturned * credit_J : credit_J + kStart_J);
+  const double credit_J = credit_J_ + (slow ? limits_.allowance_J : std::max(0.0, limits_.allowance_J - kBegin_J));
+  const double left_J = std::max(0.0, moved_J > 0 && !slow ? kReturned * credit_J : credit_J + kStart_J);
   return given_J > left_J ? left_J / given_J : 1;
 }
 
