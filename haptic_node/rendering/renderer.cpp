@@ -15,6 +15,8 @@
 namespace tactus::haptic {
 namespace {
 
+// Time until a hand that was inside when touch began presses a surface: a touch model, and two in reserve.
+constexpr double kFirstPress_s = 0.003;
 constexpr double kMaxReported_J = 1e6;  // the range of the message
 
 // Quantises the magnitude of the force to multiples of `step_N`; 0: returns it unchanged.
@@ -236,7 +238,8 @@ Wrench Renderer::constraint_wrench(double force_step_N, double dt, double held_s
   passivity_.observe(force_method_.stored_energy(surfaces_.list()), motion_.moved_m, motion_.turned_rad, model_age_s_,
                      held_s, motion_.loop);
   const StoredEnergy walls = force_method_.stored_energy(surfaces_.list(), ForceMethod::Partner::kWalls);
-  if (!walls.pressed && returning_s_ < 3 * settings_.recovery_time_s) returning_s_ = 0;
+  if (!walls.pressed && since_begin_s_ > kFirstPress_s + 3 * period_s_) returning_s_ = 0;
+  since_begin_s_ += dt;
   // The energy that a relief takes or gives along a stroke is its own, and the limits of safety bound it.
   const bool appears = returning_s_ > 0 || reliefs_.pressed(surfaces_.list());
   walls_.observe((force_step_N > 0 ? rounded_share_ : 1) * walls.energy_J, walls.pressed, motion_, held_s, appears);

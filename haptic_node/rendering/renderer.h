@@ -104,7 +104,10 @@ class Renderer {
   Wrench limited(const Wrench& wanted, double dt);
   // Surfaces that appear now may be above a hand that is already inside. A jump of 10 mm is followed within four recovery
   // times (surfaces.h).
-  void begin_touch() { returning_s_ = 4 * settings_.recovery_time_s + 2 * period_s_; }
+  void begin_touch() {
+    returning_s_ = 4 * settings_.recovery_time_s + 2 * period_s_;
+    since_begin_s_ = 0;
+  }
   // The device has dropped the force, and the hand may be anywhere: touch restarts, as after a lost device.
   void restart_touch();
   void update_surfaces(const TickInput& in, double dt);
@@ -145,7 +148,7 @@ class Renderer {
   DeviceState device_;
   double device_share_ = 1;
   double rounded_share_ = 1;  // energy of the springs with rounded forces, in the last tick, relative to without
-  double returning_s_ = 0;  // remaining time in which surfaces appear because touch begins or returns
+  double since_begin_s_ = 0, returning_s_ = 0;  // remaining time in which surfaces appear because touch begins or returns
   DeviceMotion motion_;  // since the last tick
   Eigen::Vector3d felt_transient_N_ = Eigen::Vector3d::Zero();  // of the last tick
   std::optional<sync::SimTime> model_time_;

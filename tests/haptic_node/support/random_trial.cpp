@@ -44,8 +44,6 @@ TrialDef random_trial(std::mt19937& random) {
             s.hand_stiffness_N_m, std::max(s.hand_inertia_kgm2, s.device_inertia_kgm2),
             std::max(s.hand_turn_damping_Nms_rad, s.device_turn_damping_Nms_rad), s.hand_turn_stiffness_Nm_rad};
   d.mass_kg = random() % 2 ? 0 : draw(random, 0.05, 2);
-  // Larger values are less safe by intention: the estimate of the energy of a body assumes a coupling that is slow.
-  s.mass_factor = std::min(s.mass_factor, Settings{}.mass_factor);
   d.stiffness_N_m = draw(random, 100, 20000);
   d.delay_ms = random() % 2 ? 0 : static_cast<int>(draw(random, 1, 200));
   if (d.mass_kg == 0 && random() % 2) d.margin_m = 0.008, d.margin_s = 0.03;

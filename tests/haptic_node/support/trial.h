@@ -62,8 +62,7 @@ TrialResult run_trial(const TrialDef& def);
 TrialDef metronome();
 
 // Draws every setting of haptic_node within its range, on a logarithmic scale where the range allows, and a hand, a
-// surface, a delay and a failure. The hand has at least the mass, damping and inertia that the settings state, and
-// mass_factor is at most its default.
+// surface, a delay and a failure. The hand has at least the mass, damping and inertia that the settings state.
 TrialDef random_trial(std::mt19937& random);
 
 // The limits that a trial passes, in words; empty: none.
