@@ -7,8 +7,8 @@ namespace tactus::haptic {
 namespace {
 
 // Time constant of the peaks: longer than a swing of a hand at 2 Hz, so that the stiffness does not follow single
-// late states up and down. Design.
-constexpr double kPeakDecay_s = 0.5;
+// late states up and down; as of the peak of the loop delay (coupling.h). Design.
+constexpr double kPeakDecay_s = 1;
 // Time constant of the means: several states at 50 Hz. Design.
 constexpr double kMean_s = 0.1;
 // Fastest plausible device, s: four times the rate limit of the servo loop. Design.

@@ -87,13 +87,13 @@ TEST_CASE("A driver that slows down is measured during its first long gap") {
   CHECK(rig.tick().delay_s > 0.95 * slow_s);
 }
 
-TEST_CASE("One late state softens for about a second only") {
+TEST_CASE("One late state softens for a few seconds only") {
   Rig rig{1e-3, 1e-4};
   for (int ms = 0; ms < 500; ++ms) rig.tick();
   rig.next_s += 0.03;
   for (int ms = 0; ms < 32; ++ms) rig.tick();
   CHECK(rig.tick().period_s > 0.029);
-  for (int ms = 0; ms < 1500; ++ms) rig.tick();
+  for (int ms = 0; ms < 3500; ++ms) rig.tick();
   CHECK(rig.tick().period_s < 2.5e-3);
 }
 

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "haptic_node/rendering/rigid_coupling.h"
 #include "tests/haptic_node/support/world.h"
 
 using namespace tactus::haptic;
@@ -147,4 +148,21 @@ TEST_CASE("A device that lags is coupled like a node that lags by as much") {
   CHECK(late.stiffness_N_m == Approx(0.8 * 5 / 0.0205));
   CHECK(coupling_gains(1e6, 0, 1e10, 0.003, 0.041, limits).stiffness_N_m == Approx(late.stiffness_N_m));
   CHECK(late.damping_N_s_m == Approx(5));
+}
+
+TEST_CASE("The rotational stiffness of a slow device is passive too, for any damping of both") {
+  std::mt19937 random(10);
+  std::uniform_real_distribution<double> u(0, 1);
+  const auto log_between = [&](double low, double high) { return low * std::pow(high / low, u(random)); };
+  for (int round = 0; round < 5000; ++round) {
+    Settings s;
+    s.stiffness_limit_N_m = log_between(20, 5000);
+    s.device_damping_Ns_m = log_between(0.1, 50);
+    s.device_turn_damping_Nms_rad = log_between(0.0005, 0.5);
+    const double T = log_between(2.5e-4, 0.02), delay = 0.03 * u(random), lever = coupling_lever_m(s);
+    const double stiffness = turning_limit_N_m(s, lever, T, delay) * lever * lever;
+    const double b = s.device_turn_damping_Nms_rad;
+    REQUIRE(stiffness > 0);
+    REQUIRE(stiffness <= b / (T / 2 + delay));
+  }
 }

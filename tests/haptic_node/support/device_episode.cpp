@@ -3,6 +3,8 @@
 #include <cmath>
 #include <deque>
 #include <memory>
+#include <optional>
+#include <random>
 #include <tactus/tool_constraint_t.hpp>
 
 #include "haptic_node/devices/external.h"
@@ -53,7 +55,7 @@ struct InTick : Device {
 // The driver, with the messages under way between it and the node.
 struct Driver {
   struct Command {
-    double sent_s, stamp_s, force_N;
+    double sent_s, arrival_s, stamp_s, force_N;
   };
   const DeviceEpisodeDef& def;
   HeldDevice& held;
@@ -61,13 +63,14 @@ struct Driver {
   std::int64_t seq = 0;
   std::deque<std::pair<double, device_state_t>> states{};  // with their arrival
   std::deque<Command> commands{};
-  Command received{-1, -1, 0};
+  Command received{-1, -1, -1, 0};
+  std::mt19937 random{def.seed};
+  double last_state_s = 0, last_command_s = 0;  // newest arrivals
   double delay_sum_s = 0;
   int delays = 0;
 
   void step(double t) {
-    while (!commands.empty() && commands.front().sent_s < t - 1e-9 &&
-           commands.front().sent_s + 1e-3 * def.delay_ms <= t + 1e-9)
+    while (!commands.empty() && commands.front().sent_s < t - 1e-9 && commands.front().arrival_s <= t + 1e-9)
       received = commands.front(), commands.pop_front();
     const bool due = t >= next_s - 1e-9;
     if (due || def.at_once) apply(t);
@@ -84,7 +87,17 @@ struct Driver {
     m.pose.position_m.z = held.z;
     m.pose.orientation.w = 1;
     m.velocity_m_s.z = static_cast<float>(held.v);
-    states.emplace_back(t + 1e-3 * def.delay_ms, m);
+    if (const auto arrival_s = arrival(t, last_state_s)) states.emplace_back(*arrival_s, m);
+  }
+  void command(double t, double force_N) {
+    if (const auto arrival_s = arrival(t, last_command_s)) commands.push_back({t, *arrival_s, stamp_s, force_N});
+  }
+  double drawn() { return static_cast<double>(random() >> 5) * 0x1p-27; }
+  // Of a message sent now; nothing: it is lost.
+  std::optional<double> arrival(double t, double& last_s) {
+    if (def.loss > 0 && drawn() < def.loss) return std::nullopt;
+    last_s = std::max(last_s, t + 1e-3 * (def.delay_ms + (def.jitter_ms > 0 ? def.jitter_ms * drawn() : 0)));
+    return last_s;
   }
   void apply(double t) {
     if (received.stamp_s < 0) return;
@@ -164,7 +177,7 @@ DeviceEpisodeResult run_device_episode(const DeviceEpisodeDef& def) {
   const bool external = def.device_Hz > 0;
   std::unique_ptr<Device> device;
   if (external)
-    device = std::make_unique<External>("arm", Vector3d::Zero(), ExternalDef{.at_once = def.at_once});
+    device = std::make_unique<External>("arm", Vector3d::Zero(), ExternalDef{.at_once = def.at_once && def.known_output});
   else
     device = std::make_unique<InTick>(held);
   const auto session =
@@ -189,7 +202,7 @@ DeviceEpisodeResult run_device_episode(const DeviceEpisodeDef& def) {
     if (t >= next_tick_s - 1e-9) {
       next_tick_s = std::max(next_tick_s + 1 / def.settings.rate_Hz, t);
       const TickOutput& out = session->step(host_ms(1e3 * t));
-      if (external) driver.commands.push_back({t, driver.stamp_s, session->force_message()->force_N.z});
+      if (external) driver.command(t, session->force_message()->force_N.z);
       for (const tool_constraint_t& c : out.state.constraints) felt = c.impulse_N_s.z;
       reported = true;
       r.observed_mJ = std::max(r.observed_mJ, 1e3 * out.state.generated_J);

@@ -3,6 +3,7 @@
 // ports: the force that acts on the hand, and its motion. Pure.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "tests/haptic_node/support/episode.h"
@@ -15,12 +16,16 @@ struct DeviceEpisodeDef {
   double stiffness_N_m = 1000;  // of the surface
   double device_Hz = 1000;      // rate of the driver; 0: a device that is read and commanded in the tick itself
   double delay_ms = 0;          // of DEVICE_STATE and of DEVICE_FORCE, each
+  double jitter_ms = 0;         // of each delay: from 0 to this, evenly; messages do not overtake each other
+  double loss = 0;              // share of the messages that are lost, each way
+  unsigned seed = 1;            // of jitter and losses
   bool at_once = false;         // the driver applies a force on arrival, not once per period
+  bool known_output = true;     // the setting of the node agrees; otherwise it has its default
   double damping_N_s_m = 10;    // of the device, to the ground
   HandImpedance hand;           // mass: of hand and device together
   // From here on the driver has this rate; negative: never.
   double slows_at_s = -1, slow_Hz = 100;
-  Settings settings;  // settings.device_damping_Ns_m: as known to the node
+  Settings settings;  // settings.device_damping_Ns_m: the value that the node has
 };
 
 struct DeviceEpisodeResult {
@@ -41,7 +46,7 @@ struct DeviceEpisodeResult {
     double time_s, stiffness_limit_N_m;
     bool softened;
   };
-  std::vector<Sample> limits;  // each 5 ms: the limit that the node sees
+  std::vector<Sample> limits;  // each 5 ms: the limit that the node computes
 };
 
 DeviceEpisodeResult run_device_episode(const DeviceEpisodeDef& def);
