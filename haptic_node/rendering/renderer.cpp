@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "haptic_node/contact/rotation_math.h"
+#include "haptic_node/rendering/limits_of_settings.h"
 #include "haptic_node/rendering/rigid_coupling.h"
 #include "lcmtypes/vectors.h"
 
@@ -33,45 +34,9 @@ double rounded_energy(double force_N, double rounded_N) {
   return std::max(0.0, 1 - error * error);
 }
 
-SurfaceLimits surface_limits(const Settings& s) {
-  return {s.recovery_time_s, s.recovery_speed_m_s, s.recovery_turn_rad_s, s.extrapolate_at_most_s,
-          s.surface_speed_limit_m_s};
-}
 // Touch that is softer than this share of that of an immediate device is reported. Design: 0.7, as for the largest
 // difference of stiffness that passes unnoticed in a comparison (unverified).
 constexpr double kSoftened = 0.7;
-// Ticks in one period of the fastest transient. Design: fewer do not show a vibration.
-constexpr double kTicksPerPeriod = 3;
-
-CouplingLimits coupling_limits(const Settings& s) {
-  return {s.stiffness_limit_N_m, s.mass_factor,         s.damping_ratio,
-          s.device_mass_kg,      s.device_damping_Ns_m, kHeldDamping_N_s_m};
-}
-ReliefDef reliefs_of(const Settings& s) {
-  return relief_def(s.bump, s.bump_steepest, s.recovery_time_s, s.recovery_speed_m_s);
-}
-// The simulation holds the mean force of a tick for as long as the next tick, if ticks are longer than its steps.
-double hold_of_push_s(double rate_Hz, double step_s) { return std::max(0.0, 1 / rate_Hz - step_s); }
-// step_s: of the simulation.
-PassivityLimits passivity_limits(const Settings& s, double step_s) {
-  PassivityLimits limits{s.generated_limit_J, s.force_limit_N, s.surface_speed_limit_m_s};
-  limits.round_trip_s = std::max(limits.round_trip_s, step_s + 1 / s.rate_Hz + hold_of_push_s(s.rate_Hz, step_s));
-  return limits;
-}
-WallLimits wall_limits(const Settings& s) {
-  return {s.generated_limit_J, s.device_mass_kg, s.device_inertia_kgm2, s.device_damping_Ns_m,
-          s.device_turn_damping_Nms_rad};
-}
-TransientShape transient_shape(const Settings& s) {
-  const double fastest_Hz = s.rate_Hz / kTicksPerPeriod;
-  return {s.transient_gain,
-          s.transient_limit_N,
-          std::min(s.transient_soft_frequency_Hz, fastest_Hz),
-          std::min(s.transient_hard_frequency_Hz, fastest_Hz),
-          s.transient_decay_1_s,
-          {kLatePolicy, sync::from_seconds(s.late_tolerance_s),
-           sync::from_seconds(std::max(s.late_tolerance_s, s.drop_after_s))}};
-}
 
 // Keeps the largest forces, up to the number that a message holds; the shares of the others go to these.
 void keep_largest(std::span<Eigen::Vector3d> forces) {
