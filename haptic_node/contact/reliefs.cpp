@@ -101,6 +101,14 @@ void Reliefs::update_tilt(MappedPlace& m, const Relief& relief, const Vector3d& 
   m.initialised = true;
 }
 
+bool Reliefs::pressed(std::span<const Surface> surfaces) const {
+  if (!maps_ || (height_share_ <= 0 && normal_share_ <= 0)) return false;
+  return std::any_of(surfaces.begin(), surfaces.end(), [&](const Surface& s) {
+    const MaterialMaps* maps = s.depth_m > 0 ? maps_->find(s.mapped.material) : nullptr;
+    return maps && maps->relief;
+  });
+}
+
 void Reliefs::apply_heights(std::span<Surface> surfaces, const ToolPose& tool, double dt) {
   const double max_change = dt / def_.recovery_time_s;
   height_share_ = towards(height_share_, def_.height ? 1 : 0, max_change);

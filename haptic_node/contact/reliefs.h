@@ -43,6 +43,8 @@ class Reliefs {
   // Call before the proxy moves: sets the height and the friction of each surface from its maps at the touched
   // place. Realtime-safe: yes.
   void apply_heights(std::span<Surface> surfaces, const ToolPose& tool, double dt);
+  // True when the map of a pressed surface is rendered, or was just now: its height and slope change under the hand.
+  bool pressed(std::span<const Surface> surfaces) const;
   // Call after the proxy has moved: turns the normal part of each force by the map at the place of the tool.
   // Realtime-safe: yes.
   void tilt_forces(std::span<Surface> surfaces, const ToolPose& tool, std::span<Eigen::Vector3d> forces_N) const;

@@ -79,8 +79,8 @@ void ForceMethod::solve(std::span<Surface> surfaces, const DeviceState& device, 
   }
 }
 
-void ForceMethod::compute_forces(std::span<const Surface> surfaces, const DeviceState& device, const CouplingFactors& factors,
-                                 std::span<Eigen::Vector3d> forces) const {
+void ForceMethod::compute_forces(std::span<const Surface> surfaces, const DeviceState& device,
+                                 const CouplingFactors& factors, std::span<Eigen::Vector3d> forces) const {
   switch (kind_) {
     case Kind::kProxy:
       coupling_forces(surfaces, proxy_.shift(), device.velocity, proxy_.slipping(), forces, factors);

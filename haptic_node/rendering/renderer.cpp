@@ -9,12 +9,15 @@
 #include <utility>
 
 #include "haptic_node/contact/rotation_math.h"
+#include "haptic_node/rendering/limits_of_settings.h"
 #include "haptic_node/rendering/rigid_coupling.h"
 #include "lcmtypes/vectors.h"
 
 namespace tactus::haptic {
 namespace {
 
+// Time until a hand that was inside when touch began presses a surface: a touch model, and two in reserve.
+constexpr double kFirstPress_s = 0.003;
 constexpr double kMaxReported_J = 1e6;  // the range of the message
 
 // Quantises the magnitude of the force to multiples of `step_N`; 0: returns it unchanged.
@@ -24,45 +27,16 @@ Eigen::Vector3d quantised(const Eigen::Vector3d& force_N, double step_N) {
   return force_N * (std::round(size / step_N) * step_N / size);
 }
 
-SurfaceLimits surface_limits(const Settings& s) {
-  return {s.recovery_time_s, s.recovery_speed_m_s, s.recovery_turn_rad_s, s.extrapolate_at_most_s,
-          s.surface_speed_limit_m_s};
+// Energy of a spring whose force is rounded, relative to that of the spring: the area under the staircase. A force of n
+// steps is rounded to N: (n N - N^2 / 2) / (n^2 / 2).
+double rounded_energy(double force_N, double rounded_N) {
+  const double error = force_N > 0 ? (force_N - rounded_N) / force_N : 0;
+  return std::max(0.0, 1 - error * error);
 }
+
 // Touch that is softer than this share of that of an immediate device is reported. Design: 0.7, as for the largest
 // difference of stiffness that passes unnoticed in a comparison (unverified).
 constexpr double kSoftened = 0.7;
-// Ticks in one period of the fastest transient. Design: fewer do not show a vibration.
-constexpr double kTicksPerPeriod = 3;
-
-CouplingLimits coupling_limits(const Settings& s) {
-  return {s.stiffness_limit_N_m, s.mass_factor,         s.damping_ratio,
-          s.device_mass_kg,      s.device_damping_Ns_m, kHeldDamping_N_s_m};
-}
-ReliefDef reliefs_of(const Settings& s) {
-  return relief_def(s.bump, s.bump_steepest, s.recovery_time_s, s.recovery_speed_m_s);
-}
-// The simulation holds the mean force of a tick for as long as the next tick, if ticks are longer than its steps.
-double hold_of_push_s(double rate_Hz, double step_s) { return std::max(0.0, 1 / rate_Hz - step_s); }
-// step_s: of the simulation.
-PassivityLimits passivity_limits(const Settings& s, double step_s) {
-  PassivityLimits limits{s.generated_limit_J, s.force_limit_N, s.surface_speed_limit_m_s};
-  limits.round_trip_s = std::max(limits.round_trip_s, step_s + 1 / s.rate_Hz + hold_of_push_s(s.rate_Hz, step_s));
-  return limits;
-}
-WallLimits wall_limits(const Settings& s) {
-  return {s.generated_limit_J, s.device_mass_kg, s.device_inertia_kgm2, s.device_damping_Ns_m,
-          s.device_turn_damping_Nms_rad};
-}
-TransientShape transient_shape(const Settings& s) {
-  const double fastest_Hz = s.rate_Hz / kTicksPerPeriod;
-  return {s.transient_gain,
-          s.transient_limit_N,
-          std::min(s.transient_soft_frequency_Hz, fastest_Hz),
-          std::min(s.transient_hard_frequency_Hz, fastest_Hz),
-          s.transient_decay_1_s,
-          {kLatePolicy, sync::from_seconds(s.late_tolerance_s),
-           sync::from_seconds(std::max(s.late_tolerance_s, s.drop_after_s))}};
-}
 
 // Keeps the largest forces, up to the number that a message holds; the shares of the others go to these.
 void keep_largest(std::span<Eigen::Vector3d> forces) {
@@ -130,7 +104,7 @@ sync::Nanoseconds Renderer::uncertainty() const {
 void Renderer::update_device(const TickInput& in) {
   DeviceState device = in.device;
   if (!device.position.allFinite() || !device.velocity.allFinite() || !device.orientation.coeffs().allFinite() ||
-      !device.spin.allFinite() || !(device.orientation.squaredNorm() > 0)) {
+      !device.spin.allFinite()) {
     device = device_;
     device.lost = true;
   }
@@ -139,6 +113,7 @@ void Renderer::update_device(const TickInput& in) {
     last_ = in.now - sync::from_seconds(period_s_);
     device_ = device;
     device_share_ = device.lost ? 0 : 1;
+    begin_touch();
     force_method_.reset(device);
   }
   if (device.lost) {
@@ -172,7 +147,7 @@ void Renderer::update_surfaces(const TickInput& in, double dt) {
     // Surfaces that arrive after the loss are new.
     surfaces_.clear();
     force_method_.reset(device_);
-    returning_s_ = settings_.recovery_time_s + 2 * period_s_;
+    begin_touch();
   }
   // While the force of the previous world fades, its surfaces remain.
   const TouchModelView fresh = fade_.restarting() ? TouchModelView{} : in.fresh;
@@ -214,7 +189,7 @@ Renderer::DeviceLimit Renderer::device_limit() const {
   return {device_.loop, limit, limit < kSoftened * wall(period_s_, 0)};
 }
 
-Wrench Renderer::constraint_wrench(double dt, double held_s) {
+Wrench Renderer::constraint_wrench(double force_step_N, double dt, double held_s) {
   const double follow = 1 - std::exp(-dt / settings_.recovery_time_s);
   for (Surface& s : surfaces_.list()) {
     const Gains g = gains(s);
@@ -228,7 +203,11 @@ Wrench Renderer::constraint_wrench(double dt, double held_s) {
   passivity_.observe(force_method_.stored_energy(surfaces_.list()), motion_.moved_m, motion_.turned_rad, model_age_s_,
                      held_s, motion_.loop);
   const StoredEnergy walls = force_method_.stored_energy(surfaces_.list(), ForceMethod::Partner::kWalls);
-  walls_.observe(walls.energy_J, walls.pressed, motion_, held_s, returning_s_ > 0);
+  if (!walls.pressed && since_begin_s_ > kFirstPress_s + 3 * period_s_) returning_s_ = 0;
+  since_begin_s_ += dt;
+  // The energy that a relief takes or gives along a stroke is its own, and the limits of safety bound it.
+  const bool appears = returning_s_ > 0 || reliefs_.pressed(surfaces_.list());
+  walls_.observe((force_step_N > 0 ? rounded_share_ : 1) * walls.energy_J, walls.pressed, motion_, held_s, appears);
   returning_s_ -= dt;
   force_method_.compute_forces(surfaces_.list(), device_, {passivity_.factor(), walls_.factor()}, forces_);
   reliefs_.tilt_forces(surfaces_.list(), force_method_.tool_pose(), forces_);
@@ -309,6 +288,7 @@ Renderer::Commanded Renderer::command(Wrench constraint, Eigen::Vector3d transie
   constraint = {share * constraint.force_N, share * constraint.torque_N_m};
   transient_N *= share;
   const double rounded_N = std::min(quantised(share * plain, force_step_N).norm(), settings_.force_limit_N);
+  rounded_share_ = rounded_energy(share * all_N, rounded_N);
   const double scale = all_N > 0 ? force_scale() * rounded_N / (share * all_N) : 0;
   const Wrench of_walls{share * walls.wrench.force_N, share * walls.wrench.torque_N_m};
   walls = {{scale * of_walls.force_N, force_scale() * of_walls.torque_N_m}, scale * share * walls.power_W};
@@ -392,7 +372,7 @@ TickOutput& Renderer::step(const TickInput& in) {
 
   update_surfaces(in, dt);
   handle_events(in);
-  const Wrench constraint = constraint_wrench(dt, held_s);
+  const Wrench constraint = constraint_wrench(in.force_step_N, dt, held_s);
   const bool felt = force_scale() > 0;
   const Eigen::Vector3d transient = transients_.step(in.now, period_s_, felt, uncertainty(), out_.reports);
   if (!device_.lost) safety_.set_position(device_.position);

@@ -102,12 +102,18 @@ class Renderer {
   double hold_s() const { return std::max(period_s_, device_.loop.period_s); }
   Gains gains(const Surface& s) const;
   Wrench limited(const Wrench& wanted, double dt);
+  // Surfaces that appear now may be above a hand that is already inside. A jump of 10 mm is followed within four recovery
+  // times (surfaces.h).
+  void begin_touch() {
+    returning_s_ = 4 * settings_.recovery_time_s + 2 * period_s_;
+    since_begin_s_ = 0;
+  }
   // The device has dropped the force, and the hand may be anywhere: touch restarts, as after a lost device.
   void restart_touch();
   void update_surfaces(const TickInput& in, double dt);
   void handle_events(const TickInput& in);
   Hit hit_of(const contact_event_t& e, sync::HostTime scheduled) const;
-  Wrench constraint_wrench(double dt, double held_s);
+  Wrench constraint_wrench(double force_step_N, double dt, double held_s);
   WallForce force_of_walls(const Wrench& constraint);
   Commanded command(Wrench constraint, Eigen::Vector3d transient_N, double force_step_N, double dt);
   void distribute(const Wrench& felt_constraint);
@@ -141,7 +147,8 @@ class Renderer {
   sync::HostTime last_{};
   DeviceState device_;
   double device_share_ = 1;
-  double returning_s_ = 0;  // remaining time in which surfaces appear because touch begins or returns
+  double rounded_share_ = 1;  // energy of the springs with rounded forces, in the last tick, relative to without
+  double since_begin_s_ = 0, returning_s_ = 0;  // remaining time in which surfaces appear because touch begins or returns
   DeviceMotion motion_;  // since the last tick
   Eigen::Vector3d felt_transient_N_ = Eigen::Vector3d::Zero();  // of the last tick
   std::optional<sync::SimTime> model_time_;

@@ -9,9 +9,16 @@ namespace {
 constexpr double kEpisodeGap_s = 0.2;
 // Dissipated energy counts as credit up to this value, so that old friction does not pay for a new oscillation.
 constexpr double kMaxCredit_J = 0.01;
-// A wall that lost its stiffness regains it while the hand stays, at the rate of bodies (energy_account.cpp): the
-// fast refill ends at 0.4 mJ, so that an episode of ten seconds generates at most 1 mJ.
-constexpr double kRefill_W = 0.0002, kMaxRefill_J = 0.0004, kSlowRefill_W = 0.00001;
+// Part of the allowance with which a contact begins, and which is not returned: the default of generated_limit.
+constexpr double kBegin_J = 0.0005;
+// Largest share of the credit that one tick returns: the rest covers the error of the predicted motion. Design.
+constexpr double kReturned = 0.9;
+// A hand that rests or presses may be pushed by this much without a credit, so that a slow contact can begin: 1 N on 0.1 kg
+// for a millisecond. Design.
+constexpr double kStart_J = 1e-5;
+// A force that is held for longer than this acts on a hand that opposes it, and only its change accelerates the hand. Such
+// a loop lags so far that its walls also return the allowance. Design: twice the tick of 1 kHz.
+constexpr double kSlow_s = 0.002;
 // The same limits as in safety.cpp: above them the device has jumped, and no work is counted.
 constexpr double kMaxHandSpeed_m_s = 40, kMaxHandSpin_rad_s = 63;
 
@@ -37,7 +44,7 @@ void WallEnergy::reset() {
   commands_.clear();
   motion_ = {};
   motion_s_ = 0;
-  balance_J_ = credit_J_ = refilled_J_ = 0;
+  balance_J_ = credit_J_ = 0;
   factor_ = 1;
   apart_s_ = 0;
 }
@@ -50,18 +57,14 @@ void WallEnergy::observe(double springs_J, bool pressed, const DeviceMotion& mot
   balance_J_ -= given_J;
   credit_J_ -= given_J;
   apart_s_ = pressed ? 0 : apart_s_ + held_s;
-  if (apart_s_ > kEpisodeGap_s) balance_J_ = credit_J_ = refilled_J_ = 0;
+  if (apart_s_ > kEpisodeGap_s) balance_J_ = credit_J_ = 0;
   if (begins && credit_J_ < springs_J) {
     balance_J_ += springs_J - credit_J_;
     credit_J_ = springs_J;
   }
-  if (available_J() < springs_J) {
-    const double refill_J = (refilled_J_ < kMaxRefill_J ? kRefill_W : kSlowRefill_W) * held_s;
-    credit_J_ += refill_J;
-    refilled_J_ += refill_J;
-  }
   credit_J_ = std::min(credit_J_, springs_J + kMaxCredit_J);
-  factor_ = springs_J > available_J() ? available_J() / springs_J : 1;
+  const double available_J = std::max(0.0, credit_J_ + limits_.allowance_J);
+  factor_ = springs_J > available_J ? available_J / springs_J : 1;
 }
 
 double WallEnergy::brake(const WallForce& next, const DeviceMotion& last, double dt) const {
@@ -72,12 +75,20 @@ double WallEnergy::brake(const WallForce& next, const DeviceMotion& last, double
     const double scale = motion_s_ > 0 ? held_s / motion_s_ : 0;
     during = {scale * motion_.moved_m, scale * motion_.turned_rad, last.loop};
   }
+  const bool slow = held_s > kSlow_s;
+  // Part of the force that accelerates the hand: all of it, or its change.
+  Wrench free = next.wrench;
+  if (slow && !commands_.empty())
+    free = plus_scaled(next.wrench, commands_.entry(commands_.size() - 1).value.wrench, -1);
   const double accelerated_J =
-      next.wrench.force_N.squaredNorm() * twice_moved(held_s, limits_.device_mass_kg, limits_.device_damping_N_s_m) +
-      next.wrench.torque_N_m.squaredNorm() *
+      std::max(0.0, next.wrench.force_N.dot(free.force_N)) *
+          twice_moved(held_s, limits_.device_mass_kg, limits_.device_damping_N_s_m) +
+      std::max(0.0, next.wrench.torque_N_m.dot(free.torque_N_m)) *
           twice_moved(held_s, limits_.device_inertia_kg_m2, limits_.device_turn_damping_N_m_s_rad);
-  const double given_J = work_J(next, during, held_s) + accelerated_J;
-  return given_J > available_J() ? available_J() / given_J : 1;
+  const double moved_J = work_J(next, during, held_s), given_J = moved_J + accelerated_J;
+  const double credit_J = credit_J_ + (slow ? limits_.allowance_J : std::max(0.0, limits_.allowance_J - kBegin_J));
+  const double left_J = std::max(0.0, moved_J > 0 && !slow ? kReturned * credit_J : credit_J + kStart_J);
+  return given_J > left_J ? left_J / given_J : 1;
 }
 
 WallForce wall_force(std::span<const Surface> surfaces, std::span<const Eigen::Vector3d> forces,

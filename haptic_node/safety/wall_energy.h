@@ -1,13 +1,14 @@
-// Energy account of fixed surfaces. A wall holds only the energy that the hand gave it, so the hand gets back at most
-// that, and a small allowance (time-domain passivity: Hannaford and Ryu 2002).
+// Energy account of fixed surfaces. A wall returns at most the energy that the hand gave it (time-domain passivity:
+// Hannaford and Ryu 2002).
 //
 //   credit = energy from the hand to the walls in this episode of contact; below zero: generated
 //
 // The force of a wall may lag (slew limit), come in steps (force_step), or come too late (a plane that appears only
 // when the hand is inside). In each case the springs of the coupling would hold more than the credit. Two measures
-// hold the energy down: a factor on the coupling, so that its springs hold at most the credit and the allowance; and
-// a brake on the force to command, so that it gives the hand at most the remaining energy until the next one acts.
-// Undisturbed walls hold less than the credit: both are then 1.
+// limit the energy: a factor on the coupling, so that its springs hold at most the credit and the allowance; and a
+// brake on the force to command, so that the next tick gives the hand at most the credit and the allowance beyond its
+// default, with which a contact begins. Undisturbed walls hold less than the credit: both are then 1. A softened wall
+// recovers while the hand presses, and when the hand was away.
 //
 // The motion of a device with its own period and delay is paired with the force that acted during it (acting_force.h).
 #pragma once
@@ -73,7 +74,6 @@ class WallEnergy {
 
  private:
   static constexpr double kMaxReported_J = 1e6;  // the range of the message
-  double available_J() const { return std::max(0.0, credit_J_ + limits_.allowance_J); }
 
   WallLimits limits_;
   History<WallForce> commands_;
@@ -81,8 +81,7 @@ class WallEnergy {
   // Newest motion of a device with its own period, and its duration.
   DeviceMotion motion_;
   double motion_s_ = 0;
-  double balance_J_ = 0, credit_J_ = 0;  // without and with the refill and the limit of the credit
-  double refilled_J_ = 0;                // in this episode
+  double balance_J_ = 0, credit_J_ = 0;  // without and with the limit of the credit
   double factor_ = 1;
   double apart_s_ = 0;  // time since a wall was pressed
 };

@@ -316,7 +316,10 @@ TEST_CASE("A quantised force obeys the limits of force and slew at any step") {
     largest_N = std::max(largest_N, force.norm());
     last = force;
   }
-  CHECK(largest_N == Approx(settings.force_limit_N));
+  // Steps of 100 N render nothing. When they are switched off, the hand is inside without having worked, and is not
+  // pushed out.
+  if (step_N < 16) CHECK(largest_N == Approx(settings.force_limit_N));
+  if (step_N > 16) CHECK(largest_N < 0.5);
 }
 
 TEST_CASE("A quantised force fades to zero after the touch model is lost") {

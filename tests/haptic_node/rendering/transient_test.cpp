@@ -85,7 +85,7 @@ TEST_CASE("The impulse of a transient is taken back, whole or in part, as the ha
   transients.schedule(h, reports);
   Vector3d felt = Vector3d::Zero();
   double impulse = 0, first = 0;
-  for (int ms = 0; ms < 600; ++ms) {
+  for (int ms = 0; ms < 2000; ++ms) {
     transients.add_felt_impulse(kDt * felt);
     impulse += kDt * felt.z();
     if (ms == 40) first = impulse;

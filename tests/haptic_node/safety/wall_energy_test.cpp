@@ -38,14 +38,14 @@ TEST_CASE("A wall that the hand pressed keeps its stiffness") {
   CHECK(spring.walls.generated_J() == Approx(spring.given_J).margin(1e-12));
 }
 
-TEST_CASE("A wall that appears above the hand gives it at most the allowance") {
+TEST_CASE("The springs of a wall that appears above the hand hold at most the allowance") {
   Spring spring;
   spring.to(0.005);
   CHECK(spring.force < 0.5);
   for (int k = 99; k >= 0; --k) spring.to(5e-5 * k);
   CHECK(spring.given_J > 0.0001);
   CHECK(spring.given_J < 0.0006);
-  CHECK(spring.walls.generated_J() == Approx(spring.given_J).margin(3e-5));  // less the refill in 0.1 s
+  CHECK(spring.walls.generated_J() == Approx(spring.given_J).margin(1e-9));
 }
 
 TEST_CASE("A wall whose force came late returns no more energy than it received") {
@@ -62,23 +62,24 @@ TEST_CASE("While touch begins the energy of the springs is credited") {
   CHECK(spring.to(0.005) == Approx(5));
 }
 
-TEST_CASE("A softened wall recovers while the hand stays, and at once after the hand was away") {
+TEST_CASE("A softened wall recovers after the hand was away") {
   Spring spring;
-  const double soft = spring.to(0.002);
-  for (int k = 0; k < 1000; ++k) spring.to(0.002);
-  CHECK(spring.force > 1.1 * soft);
+  CHECK(spring.to(0.002) < 1);
   for (int k = 0; k < 250; ++k) spring.to(0);
   for (int k = 0; k <= 40; ++k) spring.to(5e-5 * k);
   CHECK(spring.force == Approx(2));
 }
 
-TEST_CASE("The brake lets the next tick give at most the remaining energy") {
-  const WallLimits limits;
-  WallEnergy walls(limits);
+TEST_CASE("The brake lets the next tick give at most the credit") {
+  WallEnergy walls{WallLimits{}};
   const WallForce push{{Vector3d(0, 0, 5), Vector3d::Zero()}, 0};
-  // 1 mm at 5 N is 5 mJ, of which the allowance covers a tenth; the force itself adds 25 N^2 / 0.1 kg (1 ms)^2.
+  CHECK(walls.brake(push, {Vector3d(0, 0, 0.001), Vector3d::Zero()}, kDt) == 0);
+  // The hand presses 0.1 mm deep at 5 N: 0.5 mJ. Then 1 mm at 5 N are 5 mJ, of which nine tenths of the credit cover a part; the force
+  // itself adds 25 N^2 / 0.1 kg (1 ms)^2.
+  walls.record(push);
+  walls.observe(0, true, {Vector3d(0, 0, -0.0001), Vector3d::Zero()}, kDt, false);
   const double kept = walls.brake(push, {Vector3d(0, 0, 0.001), Vector3d::Zero()}, kDt);
-  CHECK(kept == Approx(limits.allowance_J / (0.005 + 25 / 0.1 * 1e-6)));
+  CHECK(kept == Approx(0.9 * 0.0005 / (0.005 + 25 / 0.1 * 1e-6)));
   CHECK(walls.brake(push, {Vector3d(0, 0, -0.001), Vector3d::Zero()}, kDt) == 1);
   // A surface that moves with the hand does the work itself.
   const WallForce belt{push.wrench, 5};
@@ -103,7 +104,7 @@ TEST_CASE("Motion that is not finite counts as no work") {
   walls.record({{Vector3d(0, 0, 5), Vector3d::Zero()}, 0});
   walls.observe(0.001, true, {Vector3d(nan, 0, 0), Vector3d(0, nan, 0)}, kDt, false);
   CHECK(walls.generated_J() == 0);
-  CHECK(walls.factor() == Approx(0.5).epsilon(0.01));
+  CHECK(walls.factor() == 0.5);
 }
 
 TEST_CASE("A stricter slew limit never gives the hand energy from a fixed wall") {
@@ -139,6 +140,6 @@ TEST_CASE("A fixed wall generates at most 1 mJ an episode at any rate") {
     const TrialResult r = run_trial(def);
     CAPTURE(rate_Hz, r.energy_mJ, r.observed_mJ);
     CHECK(r.generated_mJ <= 1);
-    CHECK(r.energy_mJ < 0);
+    if (rate_Hz >= 250) CHECK(r.energy_mJ < 0);
   }
 }

@@ -182,7 +182,7 @@ class Trial {
     const bool apart = std::abs(constraint_N_) < 1e-6 && z >= z_ + kTool_m;
     if (!apart) apart_from_s_ = t;
     // A hand that was inside when touch returned takes the energy of the springs with it.
-    inside_ = restarts_at(t) || (inside_ && !apart);
+    inside_ = restarts_at(t) || (inside_ && t - apart_from_s_ <= kApart_s);
     if (t - apart_from_s_ > kApart_s - 2 / def_.settings.rate_Hz || inside_) {
       hand_before_J_ = hand_J_, body_before_J_ = body_J_;
     } else {
