@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <filesystem>
+#include <iostream>
 #include <new>
 #include <string>
 
@@ -32,6 +34,17 @@ void send_error(const std::string& clause) {
 }
 
 }  // namespace
+
+std::optional<int> reader_options(int argc, char** argv, const std::string& help) {
+  if (argc < 2 || argv[1][0] != '-') return std::nullopt;
+  const std::string option = argv[1];
+  if (option == "--help" || option == "-h") {
+    std::cout << help;
+    return 0;
+  }
+  std::cerr << std::filesystem::path(argv[0]).filename().string() << ": unknown option '" << option << "'; see --help\n";
+  return 1;
+}
 
 int reader_main(const std::vector<std::filesystem::path>& readable, const SandboxLimits& limits,
                 const std::function<void(const SendRecord&)>& read) {

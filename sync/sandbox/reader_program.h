@@ -2,7 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
+#include <string>
 
 #include "sync/sandbox/records.h"
 #include "sync/sandbox/sandbox.h"
@@ -10,6 +12,9 @@
 namespace tactus::sync {
 
 using SendRecord = std::function<void(char kind, std::span<const std::uint8_t> content)>;
+
+// Answers --help and rejects an option: the exit status, or none when the arguments are not options. help: the text of --help.
+std::optional<int> reader_options(int argc, char** argv, const std::string& help);
 
 // Calls `read` in the confined process; the records that it sends go to standard output. An exception becomes a record
 // 'E' with one clause. Returns the exit status.
