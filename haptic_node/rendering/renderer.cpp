@@ -298,6 +298,11 @@ Renderer::Commanded Renderer::command(Wrench constraint, Eigen::Vector3d transie
     constraint.torque_N_m -= (1 - kept) * of_walls.torque_N_m;
     for (std::size_t i = 0; i < forces_.size(); ++i)
       if (!surfaces_.list()[i].movable()) forces_[i] *= kept;
+    // A transient that the walls opposed may now be stronger than before.
+    const double left_N = scale * (constraint.force_N + transient_N).norm();
+    const double within = std::min(1.0, force_scale() * settings_.force_limit_N / std::max(left_N, 1e-12));
+    constraint = {within * constraint.force_N, within * constraint.torque_N_m};
+    transient_N *= within;
   }
   const Wrench wanted{scale * (constraint.force_N + transient_N), force_scale() * constraint.torque_N_m};
   const Wrench all = limited(wanted, dt);

@@ -46,6 +46,41 @@ TEST_CASE("After any failure at any moment the force fades to zero and returns t
     }
 }
 
+TEST_CASE("The fade also limits a transient whose wall gives way") {
+  // Touch returns through a slow fade. The hand leaves the wall quickly, so its energy is used up, while a transient
+  // pulls into the wall.
+  std::mt19937 random(365);
+  const auto draw = [&](double from, double to) { return from + (to - from) * 1e-6 * (random() % 1'000'001); };
+  int pulled = 0;
+  for (int round = 0; round < 200; ++round) {
+    Settings s;
+    s.force_limit_N = draw(0.1, 2);
+    s.fade_s = 0.2;
+    s.transient_limit_N = 3;
+    s.transient_gain = 5;
+    Bench bench(s);
+    const auto m = model(0, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())});
+    const double enters_ms = draw(5, 100), depth_m = draw(1e-4, 2e-3), leaves_m = draw(0.5e-4, 5e-4);
+    double z = 0.0052;
+    for (int ms = 0; ms < 150; ++ms) {
+      z = ms < enters_ms ? 0.0052 : ms < enters_ms + 4 ? 0.005 - depth_m : std::min(0.0052, z + leaves_m);
+      std::vector<contact_event_t> events;
+      if (ms % 7 == 0) {
+        auto e = event(ms + 1, contact_event_t::HIT, ms);
+        e.normal = to_vec3f(random() % 2 ? Vector3d::UnitZ() : Vector3d(-Vector3d::UnitZ()));
+        e.approach_speed_m_s = static_cast<float>(draw(0.01, 1));
+        events.push_back(e);
+      }
+      const auto& out = bench.tick(ms, {0, 0, z}, &m, events);
+      CAPTURE(round, ms, s.force_limit_N, out.state.fade, out.force_N.z());
+      // The state holds the fade in single precision.
+      CHECK(out.force_N.norm() <= s.force_limit_N * out.state.fade + 1e-6);
+      pulled += out.force_N.z() < -0.01 && z < 0.005;
+    }
+  }
+  CHECK(pulled > 100);
+}
+
 TEST_CASE("A loop that stalled begins from zero, with the slew limit in its first tick") {
   Bench bench;
   const auto m = model(0, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())});
