@@ -102,6 +102,7 @@ void Surfaces::update(const touch_plane_t& plane, sync::SimTime at, const Eigen:
   const double height = true_height(predicted, tool_point_at(s.tool_point, proxy));
   // A lag in progress continues, also in front of the hand, between walls that leave it no room.
   const double pushes = std::max(0.0, -height);
+  if (added) s.appeared_m = pushes;
   s.lag_m_ = s.depth_m > 0 ? rendered - height : added ? pushes : std::clamp(rendered - height, 0.0, pushes);
   s.lag_speed_m_s_ = std::max(limits_.recovery_speed_m_s, std::abs(s.lag_m_) / limits_.recovery_time_s);
   if (s.depth_m <= 0) s.normal = predicted.normal;
@@ -175,6 +176,7 @@ void Surfaces::remove_expired() {
 
 void Surfaces::render(Surface& s, const Eigen::Vector3d& proxy, double dt) const {
   const PredictedPlane predicted = predict(s);
+  s.appeared_m = std::min(s.appeared_m, s.depth_m + std::max(0.0, s.lag_m_));
   if (s.remaining_s_ > 0) {
     // Retracts so that the depth is zero when the time is over.
     s.lag_m_ += s.depth_m * std::min(1.0, dt / s.remaining_s_);

@@ -206,8 +206,10 @@ Wrench Renderer::constraint_wrench(double force_step_N, double dt, double held_s
   if (!walls.pressed && since_begin_s_ > kFirstPress_s + 3 * period_s_) returning_s_ = 0;
   since_begin_s_ += dt;
   // The energy that a relief takes or gives along a stroke is its own, and the limits of safety bound it.
-  const bool appears = returning_s_ > 0 || reliefs_.pressed(surfaces_.list());
-  walls_.observe((force_step_N > 0 ? rounded_share_ : 1) * walls.energy_J, walls.pressed, motion_, held_s, appears);
+  const double appeared_J =
+      reliefs_.pressed(surfaces_.list()) ? walls.energy_J : returning_s_ > 0 ? walls.appeared_J : 0;
+  const double rounded = force_step_N > 0 ? rounded_share_ : 1;
+  walls_.observe(rounded * walls.energy_J, walls.pressed, motion_, held_s, rounded * appeared_J);
   returning_s_ -= dt;
   force_method_.compute_forces(surfaces_.list(), device_, {passivity_.factor(), walls_.factor()}, forces_);
   reliefs_.tilt_forces(surfaces_.list(), force_method_.tool_pose(), forces_);

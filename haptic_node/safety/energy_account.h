@@ -10,6 +10,7 @@ namespace tactus::haptic {
 struct StoredEnergy {
   double energy_J = 0;
   bool pressed = false;  // true when any of them is pressed
+  double appeared_J = 0;  // part of the energy that surfaces brought when they appeared above the hand
 };
 
 class EnergyAccount {

@@ -49,7 +49,8 @@ void WallEnergy::reset() {
   apart_s_ = 0;
 }
 
-void WallEnergy::observe(double springs_J, bool pressed, const DeviceMotion& motion, double held_s, bool begins) {
+void WallEnergy::observe(double springs_J, bool pressed, const DeviceMotion& motion, double held_s,
+                         double appeared_J) {
   time_s_ += held_s;
   const double span_s = motion.loop.immediate() ? held_s : motion.loop.span_s;
   const double given_J = work_J(acting_in_tick(commands_, time_s_, held_s, motion.loop), motion, span_s);
@@ -58,9 +59,9 @@ void WallEnergy::observe(double springs_J, bool pressed, const DeviceMotion& mot
   credit_J_ -= given_J;
   apart_s_ = pressed ? 0 : apart_s_ + held_s;
   if (apart_s_ > kEpisodeGap_s) balance_J_ = credit_J_ = 0;
-  if (begins && credit_J_ < springs_J) {
-    balance_J_ += springs_J - credit_J_;
-    credit_J_ = springs_J;
+  if (appeared_J > 0 && credit_J_ < appeared_J) {
+    balance_J_ += appeared_J - credit_J_;
+    credit_J_ = appeared_J;
   }
   credit_J_ = std::min(credit_J_, springs_J + kMaxCredit_J);
   const double available_J = std::max(0.0, credit_J_ + limits_.allowance_J);

@@ -56,10 +56,12 @@ class WallEnergy {
   // The device has dropped the force, and touch restarts: forgets the episode and the commands.
   void reset();
   // One tick, after the depths are solved. springs_J: energy of the coupling to walls at full stiffness; pressed:
-  // whether any is pressed. motion: since the last call. held_s: time since then. begins: touch begins or returns,
-  // and its surfaces appear; the energy of the springs is then credited, because the hand may already be inside.
+  // whether any is pressed. motion: since the last call. held_s: time since then. appeared_J: the part
+  // of springs_J that surfaces brought when they appeared above a hand that was already inside. It is credited; the part
+  // that the hand pressed is not, because its force may still fade in.
   // Realtime-safe: yes.
-  void observe(double springs_J, bool pressed, const DeviceMotion& motion, double held_s, bool begins);
+  void observe(double springs_J, bool pressed, const DeviceMotion& motion, double held_s,
+               double appeared_J);
   // Stores the force on the hand that acts from now on.
   void record(const WallForce& commanded) { commands_.record(time_s_, commanded); }
 

@@ -38,6 +38,29 @@ TEST_CASE("A plane keeps the centre of the tool a radius away") {
   CHECK(touch.proxy.position().z() == Approx(1.005));
 }
 
+TEST_CASE("A surface remembers how deep the tool was when it appeared, until the tool withdraws") {
+  Touch touch;
+  touch.proxy.reset({0, 0, -0.003});
+  const auto m = model(0, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())});
+  const auto appeared_m = [&] { return touch.surfaces.list()[0].appeared_m; };
+  for (int ms = 0; ms < 30; ++ms) {
+    touch.tick(ms, {0, 0, -0.003}, &m);
+    CHECK(appeared_m() == Approx(0.003));
+  }
+  for (const double z : {-0.008, -0.008}) touch.tick(30, {0, 0, z}, nullptr);
+  CHECK(appeared_m() == Approx(0.003));
+  for (const double z : {-0.001, -0.006, -0.006}) touch.tick(30, {0, 0, z}, nullptr);
+  CHECK(appeared_m() == Approx(0.001));
+}
+
+TEST_CASE("A surface that the tool reaches has not appeared above it") {
+  Touch touch;
+  const auto m = model(0, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())});
+  for (const double z : {0.01, -0.003, -0.003}) touch.tick(0, {0, 0, z}, &m);
+  CHECK(touch.surfaces.list()[0].depth_m == Approx(0.003));
+  CHECK(touch.surfaces.list()[0].appeared_m == 0);
+}
+
 TEST_CASE("Between messages a plane is extrapolated with its velocity for a limited time") {
   Surfaces surfaces(0, SurfaceLimits{});
   auto p = plane(7, Vector3d::Zero(), Vector3d::UnitZ());

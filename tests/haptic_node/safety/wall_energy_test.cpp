@@ -17,8 +17,9 @@ constexpr double kDt = 1e-3;
 // A spring of 1 N/mm whose end the test moves; force and motion along z.
 struct Spring {
   // Moves the hand to this depth. Returns the force that acts from now on.
-  double to(double depth_m, double force_share = 1, bool begins = false) {
-    walls.observe(500 * depth_m * depth_m, depth_m > 0, {Vector3d(0, 0, depth - depth_m), Vector3d::Zero()}, kDt, begins);
+  double to(double depth_m, double force_share = 1, bool appears = false) {
+    walls.observe(500 * depth_m * depth_m, depth_m > 0, {Vector3d(0, 0, depth - depth_m), Vector3d::Zero()}, kDt,
+                  appears ? 500 * depth_m * depth_m : 0);
     given_J += force * (depth - depth_m);
     depth = depth_m;
     force = force_share * walls.factor() * 1000 * depth_m;
@@ -77,7 +78,7 @@ TEST_CASE("The brake lets the next tick give at most the credit") {
   // The hand presses 0.1 mm deep at 5 N: 0.5 mJ. Then 1 mm at 5 N are 5 mJ, of which nine tenths of the credit cover a part; the force
   // itself adds 25 N^2 / 0.1 kg (1 ms)^2.
   walls.record(push);
-  walls.observe(0, true, {Vector3d(0, 0, -0.0001), Vector3d::Zero()}, kDt, false);
+  walls.observe(0, true, {Vector3d(0, 0, -0.0001), Vector3d::Zero()}, kDt, 0);
   const double kept = walls.brake(push, {Vector3d(0, 0, 0.001), Vector3d::Zero()}, kDt);
   CHECK(kept == Approx(0.9 * 0.0005 / (0.005 + 25 / 0.1 * 1e-6)));
   CHECK(walls.brake(push, {Vector3d(0, 0, -0.001), Vector3d::Zero()}, kDt) == 1);
@@ -102,7 +103,7 @@ TEST_CASE("Motion that is not finite counts as no work") {
   WallEnergy walls{WallLimits{}};
   const double nan = std::numeric_limits<double>::quiet_NaN();
   walls.record({{Vector3d(0, 0, 5), Vector3d::Zero()}, 0});
-  walls.observe(0.001, true, {Vector3d(nan, 0, 0), Vector3d(0, nan, 0)}, kDt, false);
+  walls.observe(0.001, true, {Vector3d(nan, 0, 0), Vector3d(0, nan, 0)}, kDt, 0);
   CHECK(walls.generated_J() == 0);
   CHECK(walls.factor() == 0.5);
 }
@@ -131,6 +132,23 @@ TEST_CASE("A fixed wall generates at most 1 mJ an episode at any delay") {
     // The observer sees the energy within half a millijoule.
     CHECK(std::abs(r.observed_mJ - r.generated_mJ) < 0.5);
   }
+}
+
+TEST_CASE("A hand that presses while the force fades in gets back no more than it gave") {
+  // The hand is outside when touch begins, and presses a part of the force. Once 24 mJ at 150 Hz and 150 ms.
+  for (const double rate_Hz : {100.0, 150.0, 250.0, 1000.0})
+    for (const double fade_s : {0.02, 0.05, 0.15, 0.5})
+      for (const double top_m : {0.001, 0.0025, 0.005}) {
+        TrialDef def;
+        def.settings.rate_Hz = rate_Hz;
+        def.settings.fade_s = fade_s;
+        def.hand = {0.755, 56, 9.2};
+        def.stiffness_N_m = 10000;
+        def.top_m = top_m;
+        const TrialResult r = run_trial(def);
+        CAPTURE(rate_Hz, fade_s, top_m, r.energy_mJ, r.observed_mJ);
+        CHECK(r.generated_mJ <= 1);
+      }
 }
 
 TEST_CASE("A fixed wall generates at most 1 mJ an episode at any rate") {
