@@ -178,8 +178,9 @@ class Trial {
     tick_s_ = t;
     // Both ports: positive energy to the hand, and to the body.
     const double out_J = hand_J_ - hand_before_J_ + body_J_ - body_before_J_;
-    // The state holds the transient in single precision.
-    const bool apart = std::abs(constraint_N_) < 1e-6 && z >= z_ + kTool_m;
+    // The state holds the transient in single precision. A surface that no model has reported yet is in no contact: the
+    // hand passes it without a force, also for longer than an episode lasts.
+    const bool apart = std::abs(constraint_N_) < 1e-6 && (z >= z_ + kTool_m || used_.planes.empty());
     if (!apart) apart_from_s_ = t;
     // A hand that was inside when touch returned takes the energy of the springs with it.
     inside_ = restarts_at(t) || (inside_ && t - apart_from_s_ <= kApart_s);
