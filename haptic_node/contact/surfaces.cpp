@@ -176,7 +176,6 @@ void Surfaces::remove_expired() {
 
 void Surfaces::render(Surface& s, const Eigen::Vector3d& proxy, double dt) const {
   const PredictedPlane predicted = predict(s);
-  s.appeared_m = std::min(s.appeared_m, s.depth_m + std::max(0.0, s.lag_m_));
   if (s.remaining_s_ > 0) {
     // Retracts so that the depth is zero when the time is over.
     s.lag_m_ += s.depth_m * std::min(1.0, dt / s.remaining_s_);

@@ -41,8 +41,8 @@ struct Surface {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
   // Depth of the device under the surface in the last tick, m; set by the solver of the proxy.
   double depth_m = 0;
-  // Depth at which the tool was under the surface when it appeared, m; at most the depth since then. The hand gave no
-  // energy for it.
+  // Depth at which the tool was under the surface when it appeared, m: geometric, not a multiplier of the solver. The hand
+  // gave no energy for it.
   double appeared_m = 0;
   MappedPlace mapped;  // in the maps of its material
   // Friction state for a rigid tool, kept between ticks: the displacement of friction, m; the remaining correction

@@ -94,7 +94,7 @@ StoredEnergy ForceMethod::stored_energy(std::span<const Surface> surfaces, Partn
   StoredEnergy all;
   Eigen::Vector3d push_N = Eigen::Vector3d::Zero(), depth_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d moment_N = Eigen::Vector3d::Zero(), turn_m = Eigen::Vector3d::Zero();
-  double stiffest_N_m = 0, friction_J = 0, each_J = 0, deep_m = 0, appeared_m = 0;
+  double stiffest_N_m = 0, friction_J = 0, each_J = 0;
   for (const Surface& s : surfaces) {
     if (s.depth_m <= 0 || s.movable() != (partner == Partner::kBodies)) continue;
     all.pressed = true;
@@ -103,8 +103,6 @@ StoredEnergy ForceMethod::stored_energy(std::span<const Surface> surfaces, Partn
     depth_m += s.depth_m * s.normal;
     stiffest_N_m = std::max(stiffest_N_m, K);
     each_J += 0.5 * K * s.depth_m * s.depth_m;
-    deep_m += s.depth_m;
-    appeared_m += std::min(s.depth_m, s.appeared_m);
     if (!renders_torque()) continue;
     const Eigen::Vector3d moment = arm(s).cross(s.normal) / lever_m();
     moment_N += K * s.depth_m * moment;
@@ -116,7 +114,16 @@ StoredEnergy ForceMethod::stored_energy(std::span<const Surface> surfaces, Partn
   // into one displacement.
   const bool one = kind_ == Kind::kProxy ? proxy_.feasible() : kind_ == Kind::kRigid && rigid_.feasible();
   all.energy_J = friction_J + (one ? 0.5 * push_N.dot(depth_m) + 0.5 * moment_N.dot(turn_m) : each_J);
-  if (deep_m > 0) all.appeared_J = all.energy_J * (appeared_m / deep_m) * (appeared_m / deep_m);
+  // The hand has pressed where it is deeper than when the surface appeared. The depths along the normals count: between
+  // walls that wedge the tool, the multipliers of the solver are much larger.
+  double appeared = all.pressed ? 1 : 0;
+  for (const Surface& s : surfaces) {
+    if (s.depth_m <= 0 || s.movable() != (partner == Partner::kBodies)) continue;
+    double deep_m = one ? s.normal.dot(depth_m) : s.depth_m;
+    if (one && renders_torque()) deep_m += arm(s).cross(s.normal).dot(turn_m) / lever_m();
+    if (deep_m > s.appeared_m) appeared = std::min(appeared, s.appeared_m / deep_m);
+  }
+  all.appeared_J = appeared * appeared * all.energy_J;
   return all;
 }
 
