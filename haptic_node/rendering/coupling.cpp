@@ -9,10 +9,7 @@ constexpr double kFixed_kg = 1e9;
 // Share of the largest passive stiffness that is used. Simulated taps of hands of 0.05 to 2 kg with lags of 1 to 50 ms
 // generate less than 1 mJ with it (tests/bench/haptic_node/passivity_table).
 constexpr double kPassiveShare = 0.8;
-// A spring that lags generates at most K L times the integral of the squared speed, 0.005 m2/s for a fast tap. This
-// value, N s/m, gives 0.25 mJ, so K L up to it needs no damper.
-constexpr double kFreeLag_N_s_m = 0.05;
-// The same for a movable body, which is pushed along: 0.02 m2/s.
+// As free_lag_N_s_m, for a movable body, which is pushed along: 0.02 m2/s.
 constexpr double kFreeBodyLag_N_s_m = 0.02;
 // Ratio of B to K tau. A delay takes K tau from the damping of slow motion; the additional half covers faster
 // motion.
@@ -39,7 +36,7 @@ Gains coupling_gains(double surface_stiffness_N_m, double surface_damping_N_s_m,
   const double rho = fixed ? 1 : body_mass_kg / (body_mass_kg + limits.device_mass_kg);
   const double reduced_kg = rho * limits.device_mass_kg;
   const double b = limits.device_damping_N_s_m, held = std::max(b, limits.held_damping_N_s_m);
-  const double max_damping = std::clamp(b - kFreeLag_N_s_m, 0.0, b / 2);
+  const double max_damping = std::clamp(b - limits.free_lag_N_s_m, 0.0, b / 2);
   const double of_device = held * rho * rho, lag_s = period_s / 2 + device_delay_s;
 
   Gains g;

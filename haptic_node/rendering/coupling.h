@@ -19,6 +19,9 @@ struct CouplingLimits {
   // Least damping of device and holding hand together. It counts for the damping ratio only, because a device must
   // also be stable without a hand.
   double held_damping_N_s_m = 0;
+  // A spring that lags by L generates at most K L times the integral of the squared speed, 0.005 m2/s for a fast tap. K L up
+  // to this value needs no damper: 0.25 mJ.
+  double free_lag_N_s_m = 0.05;
 };
 
 struct Gains {

@@ -29,9 +29,12 @@ double off_centre_factor(const Surface& s, const Eigen::Vector3d& arm, double le
   return 1 + (arm.cross(s.normal) / lever_m).squaredNorm();
 }
 
+// The same in N m/rad, N m s/rad and kg m2. A lag that needs no damper scales with the inertia, like the energy.
 CouplingLimits turning_limits(const Settings& s) {
-  return {s.turn_stiffness_limit_Nm_rad, s.mass_factor, s.damping_ratio, s.device_inertia_kgm2,
-          s.device_turn_damping_Nms_rad};
+  CouplingLimits limits{s.turn_stiffness_limit_Nm_rad, s.mass_factor, s.damping_ratio, s.device_inertia_kgm2,
+                        s.device_turn_damping_Nms_rad};
+  limits.free_lag_N_s_m *= s.device_inertia_kgm2 / s.device_mass_kg;
+  return limits;
 }
 
 // Of a wall without compliance.
