@@ -117,13 +117,15 @@ BumpTrace run(const BumpStroke& stroke) {
   };
 
   BumpTrace out;
+  Vector3d force_N = Vector3d::Zero();
   out.step_m = stroke.speed_m_s / stroke.rate_Hz;
   const double end_s = kEnds_s + stroke.length_m / along.y() / stroke.speed_m_s;
   const auto ticks = static_cast<std::int64_t>(end_s * stroke.rate_Hz);
   for (std::int64_t i = 0; i < ticks; ++i) {
     const double t = loop.time_s();
-    const Vector3d at = device(t);
+    const Vector3d at = device(t), last_N = force_N;
     const haptic::TickOutput& tick = loop.tick(at);
+    force_N = tick.force_N;
     if (t < kEnds_s + kStart_s) continue;
     out.position_m.push_back(stroke.speed_m_s * (t - kEnds_s));
     out.along_N.push_back(tick.force_N.dot(along));
@@ -131,6 +133,8 @@ BumpTrace run(const BumpStroke& stroke) {
     out.slope.push_back(relief->slope(bump_at(relief->size_m, {2, 0, 1}, at)).dot(along.head<2>()));
     out.proxy_m.push_back(tick.state.proxy.position_m.z);
     out.change_N.push_back(loop.change_N());
+    const double size = tick.force_N.norm();
+    out.rise_N.push_back(size > 0 ? size - std::max(0.0, last_N.dot(tick.force_N) / size) : 0);
   }
   return out;
 }

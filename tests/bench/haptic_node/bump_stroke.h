@@ -26,6 +26,7 @@ struct BumpTrace {
   std::vector<double> slope;     // of the map, along the stroke, at the device
   std::vector<double> proxy_m;   // height of the proxy
   std::vector<double> change_N;  // change of the force per tick
+  std::vector<double> rise_N;    // growth of the force per tick beyond the part of the last one along it
 };
 
 BumpTrace run(const BumpStroke& stroke);

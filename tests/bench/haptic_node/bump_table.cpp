@@ -5,7 +5,7 @@
 //
 // --check: exit 1 unless, by normals at 0.05 to 0.5 m/s, the force has the spectrum of the slope in every band that holds more than 1 % of
 // it (coherence at least 0.95, gain 0.9 to 1.1), its correlation with the force of the triangles is at least 0.9 and larger than by
-// heights, and the force changes by no more than the slew limit.
+// heights, and the force rises by no more than the slew limit (it falls at once).
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
@@ -138,8 +138,8 @@ bool method_table(nlohmann::json& json) {
 }
 
 bool steep_table(nlohmann::json& json) {
-  std::printf("\nsteep maps: the change of the force from tick to tick, by each method\n");
-  std::printf("%8s %6s %8s %-8s %9s %9s\n", "m/s", "Hz", "relief", "method", "p99 N", "max N");
+  std::printf("\nsteep maps: the change and the rise of the force from tick to tick, by each method\n");
+  std::printf("%8s %6s %8s %-8s %9s %9s %9s\n", "m/s", "Hz", "relief", "method", "p99 N", "max N", "rise N");
   bool good = true;
   for (const double height_m : {0.003, 0.01})
     for (const double rate_Hz : {1000.0, 4000.0})
@@ -151,14 +151,16 @@ bool steep_table(nlohmann::json& json) {
                                    .height_m = height_m,
                                    .friction = 0.2});
           const double p99 = quantile(t.change_N, 0.99), most = quantile(t.change_N, 1);
-          std::printf("%8g %6g %5g mm %-8s %9.3f %9.3f\n", speed_m_s, rate_Hz, 1e3 * height_m, method, p99, most);
+          const double rise = quantile(t.rise_N, 1);
+          std::printf("%8g %6g %5g mm %-8s %9.3f %9.3f %9.3f\n", speed_m_s, rate_Hz, 1e3 * height_m, method, p99, most, rise);
           json.push_back({{"speed_m_s", speed_m_s},
                           {"rate_Hz", rate_Hz},
                           {"relief_m", height_m},
                           {"method", method},
                           {"p99_N", p99},
-                          {"max_N", most}});
-          good = good && most <= kSlew_N_s / rate_Hz + 1e-6;
+                          {"max_N", most},
+                          {"max_rise_N", rise}});
+          good = good && rise <= kSlew_N_s / rate_Hz + 1e-6;
         }
   return good;
 }
