@@ -165,7 +165,7 @@ class Tables(unittest.TestCase):
         header, good = "participant_id,task,observer,level,missed", "P01,sj,human,1.5,0"
         for text, line, reason in (
                 ("", 1, "no column participant_id"), (header.replace("level", "colour"), 1, "the column 'colour' is not a column"), (header + ",level", 1, "'level' occurs twice"),
-                (f"{header}\n{good}\n{good},7", 3, "6 fields, but the header has 5"), (f"{header}\n{good}\n\n{good}", 3, "0 fields"), (f"{header}\nP01,sj,human,much,0", 2, "level is 'much'"),
+                (f"{header}\n{good}\n{good},7", 3, "6 fields, but the header has 5"), (f"{header}\n{good}\n\n{good},7", 4, "6 fields"), (f"{header}\nP01,sj,human,much,0", 2, "level is 'much'"),
                 (f"{header}\n{good}\nP01,sj,human,nan,0", 3, "level is 'nan'"), (f"{header}\nP01,sj,human,1,0.5", 2, "missed is 0.5"), (f"{header}\nP01,sj,robot,1,0", 2, "observer is 'robot'"),
                 (f"{header}\n,sj,human,1,0", 2, "participant_id is empty"), (f'{header}\n"P01,sj', 2, "unexpected end"), (f"{header}\nP01,sj,human,1e999,0", 2, "level is 'inf'")):
             self.path.write_text(text, encoding="utf-8")
