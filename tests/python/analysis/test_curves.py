@@ -95,6 +95,19 @@ class Curves(unittest.TestCase):
         self.assertTrue((np.diff(levels) > 0).all())
 
 
+    def test_a_sharp_observer_between_far_levels_has_no_lower_end_of_the_spread_and_the_reason(self):
+        rows = []
+        for x in (-120.0, -80.0, -40.0, 0.0, 40.0, 80.0, 120.0):
+            rows += [{"study": "s", "participant_id": "P01", "task": "toj", "pair": "audio,visual", "observer": "human", "trial": len(rows) + i, "soa_nominal_ms": x,
+                      "soa_achieved_ms": x, "response": "audio" if x > 20 else "visual"} for i in range(20)]
+        curve, = psychometric.curves(trials.of_rows(rows), 1)
+        self.assertEqual(curve.why, psychometric.TOO_FAR)
+        for name in ("pss", "sd", "jnd"):
+            low, high = curve.intervals[name]
+            self.assertTrue(low <= curve.value(name) <= high, name)
+        self.assertEqual(curve.intervals["sd"][0], 0)
+
+
 class Detection(unittest.TestCase):
     def test_the_edges_of_the_window_are_recovered_from_one_person(self):
         inside = np.zeros(2)

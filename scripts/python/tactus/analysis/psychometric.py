@@ -11,9 +11,10 @@ import numpy as np
 from tactus.analysis import answers, operators
 from tactus.analysis.detection import ALL_PARTICIPANTS
 from tactus.analysis.operators import Factor
-from tactus.psychophysics import fits
+from tactus.psychophysics import fits, intervals
 
 MAX_LEVELS = 60  # design; more measured values are grouped into this number of bins, each at its mean
+TOO_FAR = "the levels are too far apart to estimate the spread; it may be 0, and its interval gives the largest one"
 FEWEST_TRIALS = 20  # needed for a fit; design
 
 
@@ -43,7 +44,7 @@ class Condition:
 @dataclasses.dataclass
 class Curve:
     """One fit. levels, yes, total: (k,) data of the fit; intervals: {name: (low, high)} of parameters and derived values. Without a fit, fit is None
-    and why the reason."""
+    and why the reason; with one, why names a value that the answers do not determine, or is empty."""
     condition: Condition
     participant: str
     levels: np.ndarray
@@ -121,6 +122,7 @@ def curve(condition, participant, rows, rng):
             made.why = "the fit did not converge; use more levels on either side of the threshold"
         else:
             made.fit = fitted
+            made.why = TOO_FAR if intervals.unresolved(fitted.many)[0] else ""
             made.intervals = {name: tuple(float(v) for v in fits.interval(fitted, name, rng=rng)) for name in wanted(fitted)}
     return made
 

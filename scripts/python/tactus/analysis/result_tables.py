@@ -22,7 +22,7 @@ def curve_rows(analysis):
             continue
         for name, value in {**c.fit.params, **c.fit.derived}.items():
             low, high = c.intervals.get(name, (math.nan, math.nan))
-            yield {**base, "parameter": name, "value": float(value), "low": low, "high": high, "why": "" if name in c.intervals else "fixed"}
+            yield {**base, "parameter": name, "value": float(value), "low": low, "high": high, "why": c.why if name in c.intervals else "fixed"}
 
 
 def limit_rows(analysis):

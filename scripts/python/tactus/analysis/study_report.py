@@ -124,6 +124,9 @@ def curves_section(report):
         rows = [[c.participant or "all together", int(c.total.sum())] + ([f"{number(0.0 if abs(c.value(n)) < SMALLEST else c.value(n))} {span(*c.intervals[n], 'no end')}" if n in c.intervals else "–" for n in names] if c.fit
                 else [c.why, *[""] * (len(names) - 1)]) for c in mine]
         parts.append(report.table(f"Maximum likelihood with 95 % intervals: {safe(condition.axis())}.", ["participant", "n", *(names or ["why not"])], rows))
+        doubtful = [c.participant or "all together" for c in mine if c.fit and c.why]
+        if doubtful:
+            parts.append(f"<p>{safe(listed(doubtful).capitalize())}: {safe(psychometric.TOO_FAR)}.</p>\n")
         if everybody.fit is not None:
             fig, beyond = curve_plots.curve_figure(everybody, seed)
             for t in dict.fromkeys(t for _, t in published.of_pair(*condition.pair)) if condition.pair else []:
