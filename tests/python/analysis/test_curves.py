@@ -129,6 +129,13 @@ class Detection(unittest.TestCase):
             self.assertTrue(14 < late.high - late.low < 45, late)
         self.assertGreaterEqual(inside, 21)
 
+    def test_participants_without_a_fit_are_named(self):
+        rng = np.random.default_rng(6)
+        rows = [r for i in range(6) for r in judgements(rng, 15, 60, 0.02, LEVELS, 12, f"P{i:02}")]
+        rows += [{**r, "participant_id": "P99", "response": "yes"} for r in rows[:len(LEVELS) * 12]]  # judges everything together
+        for limit in detection.detection_limits(psychometric.curves(trials.of_rows(rows), 1), 1):
+            self.assertEqual(limit.note, "without 1 of 7 participants, whose answers have no fit: P99")
+
     def test_for_two_intervals_the_limit_is_at_75_percent_right(self):
         rng = np.random.default_rng(4)
         rows = []

@@ -3,7 +3,7 @@ import csv
 import math
 import os
 
-from tactus.analysis import mixed, resampling
+from tactus.analysis import mixed, performance, resampling
 from tactus.tables import escaped
 
 
@@ -74,6 +74,12 @@ def difference_cells(d):
     return {name: cells.get(name) for name in DIFFERENCE}
 
 
+def between_people(cell):
+    """Correlation of the success of two games of the same person, beta-binomial."""
+    from tactus.psychophysics import overdispersion
+    return overdispersion.beta_binomial(*performance.counted(cell, sorted(set(cell.participants)))).rho
+
+
 def condition_rows(analysis):
     for p in analysis.performances:
         for degraded, c in p.cells.items():
@@ -81,7 +87,7 @@ def condition_rows(analysis):
             d = p.differences.get(degraded)
             row = {"study": p.study, "condition": degraded_words(degraded), "achieved": c.achieved, "n": c.n, "success": c.share, "success_low": share[0],
                    "success_high": share[1], "time_s": c.mean_time_s, "time_low_s": time[0], "time_high_s": time[1], "time_to_win_s": math.exp(c.times.mu), "sd_log_time": c.times.sd,
-                   "winnable": c.times.winnable}
+                   "winnable": c.times.winnable, "rho": between_people(c) if p.clustered else math.nan}
             row.update(difference_cells(d))
             for name, values in c.extras.items():
                 known = values[values == values]
