@@ -44,13 +44,13 @@ Layout parse_layout(const std::string& csv, const std::string& name) {
   std::string line;
   std::getline(lines, line);
   if (sync::csv_cells(line) != std::vector<std::string>{"channel", "azimuth_deg", "elevation_deg"})
-    reject(name, "does not begin with the line channel,azimuth_deg,elevation_deg");
+    reject(name, "does not begin in line 1 with channel,azimuth_deg,elevation_deg");
   Layout layout;
   bool any = false;
-  while (std::getline(lines, line)) {
+  for (int number = 2; std::getline(lines, line); ++number) {
     const std::vector<std::string> row = sync::csv_cells(line);
-    if (row.size() == 1 && row[0].empty()) continue;
-    const std::string which = "row " + std::to_string(layout.size() + 1);
+    if (row.size() == 1 && sync::is_blank(row)) continue;  // two commas are a channel without a loudspeaker
+    const std::string which = "line " + std::to_string(number);
     if (row.size() != 3) reject(name, "needs three columns in " + which);
     if (row[1].empty() && row[2].empty()) {
       layout.push_back(std::nullopt);

@@ -74,7 +74,7 @@ std::vector<KnownModality> parse_modalities(const std::string& csv) {
   std::istringstream lines(csv);
   for (std::string line; std::getline(lines, line);) {
     const Cells row = csv_cells(line);
-    if (line.empty() || row[0] == "what") continue;
+    if (is_blank(row) || row[0] == "what") continue;
     if (row.size() != kColumns) throw std::invalid_argument("modality.csv: this row does not have 8 cells: " + line);
     add(found, row);
   }

@@ -69,6 +69,10 @@ std::vector<std::string> csv_cells(std::string_view line) {
   return cells;
 }
 
+bool is_blank(const std::vector<std::string>& cells) {
+  return std::ranges::all_of(cells, [](const std::string& cell) { return cell.find_first_not_of(" \t\r") == std::string::npos; });
+}
+
 std::optional<double> csv_number(std::string_view cell) {
   double value = 0;
   const char* end = cell.data() + cell.size();

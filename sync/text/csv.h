@@ -14,6 +14,9 @@ namespace tactus::sync {
 // and a double quote written twice. A leading byte order mark and a trailing carriage return are ignored.
 std::vector<std::string> csv_cells(std::string_view line);
 
+// Whether all cells are empty or white space: a blank line, or one of a spreadsheet that holds only separators.
+bool is_blank(const std::vector<std::string>& cells);
+
 // One cell of a table (RFC 4180). A text from the bus or from a user that a spreadsheet would run as a formula gets an apostrophe in
 // front; scripts/python/tactus/tables.py removes it.
 std::string csv_cell(std::string_view text);

@@ -54,14 +54,14 @@ Room parse_room(const std::string& csv, const std::string& name) {
   std::string line;
   std::getline(lines, line);
   if (sync::csv_cells(line) != sync::csv_cells(kColumns))
-    reject(name, std::string("does not begin with the line ") + kColumns);
+    reject(name, std::string("does not begin in line 1 with ") + kColumns);
   Room room;
   bool has_eye = false;
-  while (std::getline(lines, line)) {
+  for (int number = 2; std::getline(lines, line); ++number) {
     const std::vector<std::string> row = sync::csv_cells(line);
-    if (row.size() == 1 && row[0].empty()) continue;
-    const std::string which = "row " + std::to_string(room.walls.size() + 1);
-    if (row.size() != 10) reject(name, "does not have ten columns in its " + which);
+    if (sync::is_blank(row)) continue;
+    const std::string which = "line " + std::to_string(number);
+    if (row.size() != 10) reject(name, "does not have ten columns in " + which);
     if (row[0] == "eye") {
       const auto at = numbers<3>(row);
       if (!at || has_eye) reject(name, "does not have one row eye with three numbers");
@@ -70,11 +70,11 @@ Room parse_room(const std::string& csv, const std::string& name) {
       continue;
     }
     const auto n = numbers<9>(row);
-    if (row[0].empty() || !n) reject(name, "does not have a name and nine numbers in its " + which);
+    if (row[0].empty() || !n) reject(name, "does not have a name and nine numbers in " + which);
     const Wall wall{row[0], {(*n)[0], (*n)[1], (*n)[2]}, {(*n)[3], (*n)[4], (*n)[5]}, {(*n)[6], (*n)[7], (*n)[8]}};
     if (!(wall.width_m() >= kMinSide_m) || !(wall.height_m() >= kMinSide_m) ||
         !(std::abs(wall.right().dot(wall.up())) <= kSquare))
-      reject(name, "does not have a rectangle of at least 1 cm in its " + which + " (" + wall.name + ")");
+      reject(name, "does not have a rectangle of at least 1 cm in " + which + " (" + wall.name + ")");
     if (room.find_wall(wall.name)) reject(name, "has two walls " + wall.name);
     room.walls.push_back(wall);
     if (room.walls.size() > kMaxWalls) reject(name, "has more than " + std::to_string(kMaxWalls) + " walls");

@@ -1,16 +1,58 @@
-"""Reads tables (CSV), and escapes texts in them."""
+"""Reads tables (CSV), and escapes texts in them.
+
+Tables from other programs differ in ways that do not change their content: a byte order mark, CRLF or CR as line end, blank lines, and lines of empty
+fields that spreadsheets leave at the end. They are read. Other separators and encodings, and lines with more or fewer fields than the header, are refused
+with file and line.
+"""
 import csv
+import io
 import re
+
+from tactus.refusal import Refusal
 
 # Spreadsheets run a cell that begins so as a formula (OWASP, CSV injection), except a number. The apostrophes make the escape reversible.
 FORMULA = re.compile(r"'*[=+\-@\t\r](?s:.)")
 NUMBER = re.compile(r"[+-][0-9]+(\.[0-9]*)?([eE][+-]?[0-9]+)?")
+UTF16 = (b"\xff\xfe", b"\xfe\xff")  # byte order marks; spreadsheets write them as "Unicode text"
+SEPARATORS = {";": "semicolons", "\t": "tabs"}  # of spreadsheets in other languages, beside the comma
+
+
+def decoded(data, path):
+    """The text of a table of bytes. Raises Refusal with the line that is not UTF-8."""
+    if data.startswith(UTF16):
+        raise Refusal(f"{path}:1: is UTF-16 and not UTF-8; save it as UTF-8")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise Refusal(f"{path}:{data.count(bytes([10]), 0, error.start) + 1}: is not UTF-8; save it as UTF-8") from None
+
+
+def records(text, path):
+    """Yields (line number, fields) of the header and of each row that is not blank. Every row has as many fields as the header. Raises Refusal."""
+    reader, header = csv.reader(io.StringIO(text, newline=""), strict=True), None
+    try:
+        for fields in reader:
+            if not any(field.strip() for field in fields):
+                continue
+            line = reader.line_num
+            if header is None:
+                header = fields
+                used = [name for mark, name in SEPARATORS.items() if mark in "".join(fields)] if len(fields) == 1 else []
+                if used:
+                    raise Refusal(f"{path}:{line}: its fields are separated by {used[0]}; save it with commas between fields and points in numbers")
+            elif len(fields) != len(header):
+                raise Refusal(f"{path}:{line}: has {len(fields)} fields, but the header has {len(header)}; check for an incomplete line or an unquoted comma")
+            yield line, fields
+    except csv.Error as error:
+        raise Refusal(f"{path}:{max(1, reader.line_num)}: {error}; save it as comma-separated text") from None
 
 
 def read_rows(path):
-    """A dictionary for each row; values are texts. Raises OSError, UnicodeDecodeError, csv.Error."""
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    """A dictionary for each row; values are texts. Raises OSError, and Refusal with file and line."""
+    with open(path, "rb") as file:
+        lines = records(decoded(file.read(), path), path)
+    _, header = next(lines, (1, []))
+    return [dict(zip(header, fields)) for _, fields in lines]
 
 
 def escaped(text):

@@ -40,8 +40,8 @@ std::vector<material_def_t> parse_materials(std::string_view csv) {
     const auto end = csv.find('\n');
     const std::string_view line = csv.substr(0, end);
     csv.remove_prefix(end == std::string_view::npos ? csv.size() : end + 1);
-    if (line.empty()) continue;
     const std::vector<std::string> cells = sync::csv_cells(line);
+    if (sync::is_blank(cells)) continue;
     if (header.empty()) {
       header = cells;
       continue;

@@ -30,13 +30,13 @@ TEST_CASE("An unusable layout is rejected with a sentence that names the reason"
   CHECK_THROWS_WITH(load_layout("/nowhere/room.csv"), Contains("/nowhere/room.csv cannot be read; choose stereo"));
   CHECK_THROWS_WITH(load_layout("/dev/zero"), Contains("/dev/zero cannot be read"));  // it has no end
   CHECK_THROWS_WITH(parse_layout("", "room.csv"),
-                    Contains("begin with the line channel,azimuth_deg,elevation_deg"));
+                    Contains("begin in line 1 with channel,azimuth_deg,elevation_deg"));
   CHECK_THROWS_WITH(parse_layout(kHead, "room.csv"), Contains("has no loudspeaker"));
   CHECK_THROWS_WITH(parse_layout(kHead + "low,,\n", "room.csv"), Contains("has no loudspeaker"));
-  CHECK_THROWS_WITH(parse_layout(kHead + "left,90\n", "room.csv"), Contains("needs three columns in row 1"));
-  CHECK_THROWS_WITH(parse_layout(kHead + "left,90,0\nright,x,0\n", "room.csv"), Contains("degrees in row 2"));
-  CHECK_THROWS_WITH(parse_layout(kHead + "left,90,91\n", "room.csv"), Contains("degrees in row 1"));
-  CHECK_THROWS_WITH(parse_layout(kHead + "left,nan,0\n", "room.csv"), Contains("degrees in row 1"));
+  CHECK_THROWS_WITH(parse_layout(kHead + "left,90\n", "room.csv"), Contains("needs three columns in line 2"));
+  CHECK_THROWS_WITH(parse_layout(kHead + "left,90,0\nright,x,0\n", "room.csv"), Contains("degrees in line 3"));
+  CHECK_THROWS_WITH(parse_layout(kHead + "left,90,91\n", "room.csv"), Contains("degrees in line 2"));
+  CHECK_THROWS_WITH(parse_layout(kHead + "left,nan,0\n", "room.csv"), Contains("degrees in line 2"));
   std::string many = kHead;
   for (int i = 0; i < 33; ++i) many += "x,0,0\n";
   CHECK_THROWS_WITH(parse_layout(many, "room.csv"), Contains("more than 32 channels"));

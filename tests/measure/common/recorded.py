@@ -1,5 +1,4 @@
 """Tables of recorded runs."""
-import csv
 import glob
 import json
 import os
@@ -7,13 +6,13 @@ import tempfile
 
 from common import runs
 from tactus.refusal import Refusal, sentence_of
+from tactus.tables import read_rows
 
 
 def read_csv(path):
     """Rows of a table as dictionaries. Raises Refusal."""
     try:
-        with open(path, newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file))
+        return read_rows(path)
     except OSError as error:
         raise Refusal(f"cannot read {sentence_of(error)}; name the output folder of a run") from error
 

@@ -6,7 +6,7 @@ import analysis_tables  # noqa: F401 (the path)
 import numpy as np
 from scipy import integrate, stats
 
-from tactus.analysis import laplace, mixed
+from tactus.analysis import censored_mixed, laplace, mixed
 
 
 def people(rng, participants, intercept, slope, levels, repetitions):
@@ -73,14 +73,65 @@ class Logistic(unittest.TestCase):
 
 
 class Times(unittest.TestCase):
-    def test_the_interval_covers_the_ratio_of_times_in_95_of_100(self):
-        inside = 0
-        for seed in range(100):
+    # Three participants, three games each, with a limit of 30 s.
+    LOGS, WON = np.log([8, 12, 30, 10, 15, 9, 25, 30, 30.0]), np.array([1, 1, 0, 1, 1, 1, 1, 0, 0], dtype=bool)
+    AT, ONES = np.repeat([0, 1, 2], 3), np.ones((9, 1))
+
+    def test_the_likelihood_agrees_with_the_integral(self):
+        # Computed independently by quadrature: -24.305121 at mu 2.9, sigma 0.5, tau 0.4, with the factor 1 / t of the density of times.
+        found = censored_mixed.log_likelihood(np.array([2.9, np.log(0.5), 0.4]), self.ONES, self.ONES, self.AT, self.LOGS, self.WON, 3, np.zeros((3, 1)))
+        self.assertAlmostEqual(found - self.LOGS[self.WON].sum(), -24.305121, places=5)
+        by_hand = 0
+        for i in range(3):
+            mine = self.AT == i
+            density = lambda u, mine=mine: np.prod(np.where(self.WON[mine], stats.norm.pdf(self.LOGS[mine], 2.9 + u, 0.5), stats.norm.sf(self.LOGS[mine], 2.9 + u, 0.5))) * stats.norm.pdf(u, 0, 0.4)
+            by_hand += np.log(integrate.quad(density, -4, 4)[0])
+        self.assertAlmostEqual(found, by_hand, places=6)
+
+    def test_the_maximum_agrees_with_an_independent_search(self):
+        fitted = censored_mixed.fit(self.ONES, self.ONES, self.AT, self.LOGS, self.WON)
+        np.testing.assert_allclose((fitted.beta[0], fitted.sd, np.sqrt(fitted.random[0, 0])), (2.943091, 0.599622, 0.417769), atol=2e-5)
+        self.assertAlmostEqual(fitted.log_likelihood - self.LOGS[self.WON].sum(), -24.164522, places=5)
+
+    def test_seven_nodes_in_two_effects_agree_with_fifteen(self):
+        rng = np.random.default_rng(1)
+        names, x, mean = people(rng, 4, (2.0, 0.3), (0.004, 0.002), (0, 100, 200), 6)
+        at, z = np.unique(names, return_inverse=True)[1], x / 100
+        logs = np.minimum(mean + rng.normal(0, 0.4, len(x)), 2.8)
+        exog, theta = np.stack([np.ones_like(z), z], axis=1), np.array([2.0, 0.4, np.log(0.4), 0.3, 0.05, 0.2])
+        value = lambda: censored_mixed.log_likelihood(theta, exog, exog, at, logs, logs < 2.8, 4, np.zeros((4, 2)))
+        usual, kept = value(), censored_mixed.NODES[2]
+        try:
+            censored_mixed.NODES[2] = 15
+            self.assertAlmostEqual(usual, value(), places=4)
+        finally:
+            censored_mixed.NODES[2] = kept
+
+    def held(self, limit, censored, seeds):
+        """Number of intervals that hold a slope of 0.002 (0.4 over the levels) of 10 people with 10 games at each level and a time limit."""
+        inside, estimates = 0, []
+        for seed in range(seeds):
             rng = np.random.default_rng(seed)
-            names, x, mean = people(rng, 10, (2.0, 0.2), (0.001, 0.0005), (0, 50, 100, 200, 300), 10)
-            model = mixed.log_linear(names, x, np.exp(mean + rng.normal(0, 0.3, len(x))), "delay")
-            inside += model.effects[1].low <= 0.001 <= model.effects[1].high
-        self.assertTrue(inside >= 89, inside)
+            names, x, mean = people(rng, 10, (2.0, 0.2), (0.002, 0.0005), (0, 50, 100, 200), 8)
+            drawn = np.exp(mean + rng.normal(0, 0.3, len(x)))
+            model = mixed.log_linear(names, x, np.minimum(drawn, limit), "delay", drawn < limit if censored else None)
+            inside += model.effects[1].low <= 0.002 <= model.effects[1].high
+            estimates.append(model.effects[1].estimate)
+        return inside, np.mean(estimates)
+
+    def test_the_interval_covers_the_ratio_of_times_in_95_of_100(self):
+        for limit in (np.inf, 12.0):  # at 12 s every fourth game is not won, at the highest level every second
+            inside, mean = self.held(limit, True, 25)
+            self.assertGreaterEqual(inside, 20, limit)  # 24 expected, standard deviation 1.1
+            self.assertAlmostEqual(mean, 0.002, delta=0.0002)
+
+    def test_lost_games_that_count_as_won_at_the_limit_hide_the_slope(self):
+        inside, mean = self.held(12.0, False, 12)
+        self.assertLess(inside, 6)
+        self.assertLess(mean, 0.0016)
+
+    def test_too_few_won_games_permit_no_model(self):
+        self.assertIn("too few", mixed.log_linear(["P01", "P02"] * 5, np.arange(10.0), np.ones(10), "delay", np.arange(10) < 3))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ import numpy as np
 from analysis_tables import game, games
 from scipy import optimize, stats
 
-from tactus.analysis import crossing, frontier, limits, performance, resampling, trials
+from tactus.analysis import break_limits, frontier, limits, performance, resampling, trials
 from tactus.analysis.operators import Factor
 from tactus.refusal import Refusal
 
@@ -78,21 +78,64 @@ class Draws(unittest.TestCase):
         self.assertEqual(resampling.interval(np.array([1.0] * 10 + [np.inf] * 10)), (1.0, np.inf))
 
 
-class Crossings(unittest.TestCase):
-    def test_the_isotonic_curve_is_the_nearest_that_does_not_fall(self):
-        rng = np.random.default_rng(3)
-        for _ in range(20):
-            values, weights = rng.normal(0, 1, (5, 1)), rng.uniform(1, 4, 5)
-            found = crossing.isotonic(values, weights)[:, 0]
-            best = optimize.minimize(lambda v: np.sum(weights * (v - values[:, 0]) ** 2), np.sort(values[:, 0]), method="SLSQP", options={"ftol": 1e-14},
-                                     constraints=[{"type": "ineq", "fun": np.diff}]).x
-            np.testing.assert_allclose(found, best, atol=1e-4)
+def broken(made, clustered=False, factor=DELAY, margins=MARGINS, seed=1):
+    return break_limits.break_limits(made, factor, clustered, margins, "simulated", np.random.default_rng(seed))
 
-    def test_a_straight_worsening_crosses_where_algebra_says(self):
-        at = crossing.crossing(np.array([10.0, 20, 40]), np.array([[0.05], [0.1], [0.2]]), [1, 1, 1], 0.08)
-        self.assertAlmostEqual(at[0], 16)
-        self.assertEqual(crossing.crossing(np.array([10.0, 20]), np.array([[0.01], [0.02]]), [1, 1], 0.08)[0], np.inf)
-        self.assertEqual(crossing.crossing(np.array([10.0, 20]), np.array([[0.3], [0.4]]), [1, 1], 0.08, np.array([0.2]))[0], 0)
+
+class Brackets(unittest.TestCase):
+    """L_break of a Hill function of 0.96 / (1 + (x / 60)^4): 35.0370 ms for 10 points, in closed form."""
+    def made(self, seed, each=1000):
+        rng = np.random.default_rng(seed)
+        rows = [row for x in (0, 25, 50, 100, 150, 200) for row in games(rng, each, [("visual", "delay", x, "ms")], 0.96 / (1 + (x / 60) ** 4), 6, first=10_000 * x)]
+        return cells(rows, draws=10)[0]
+
+    def test_it_lies_between_levels_and_holds_the_limit_with_the_estimate_inside(self):
+        held = 0
+        for seed in range(20):
+            success = broken(self.made(seed))[0]
+            self.assertTrue(set(success.bracket) <= {0, 25, 50, 100, 150, 200, math.inf}, success.bracket)
+            held += success.bracket[0] <= 35.0370 <= success.bracket[1]
+        self.assertGreaterEqual(held, 19)  # at least 95 of 100
+
+    def test_it_uses_intervals_that_hold_over_all_levels_together(self):
+        # Sidak: five levels need z = 2.57 each.
+        self.assertAlmostEqual(stats.norm.ppf((1 + 0.95 ** (1 / 5)) / 2), 2.57, places=2)
+        # 20 games a level show nothing about a loss of 10 points at 25 and 50 ms, but that 200 ms loses all.
+        made = self.made(1, each=20)
+        low, high = break_limits.bracket(limits.series(made, DELAY), np.array([25, 50, 100, 150, 200.0]), made[()], False, MARGINS, "success")
+        self.assertTrue(low == 0 and 50 <= high <= 150, (low, high))
+
+    def test_success_that_falls_does_not_make_the_time_longer(self):
+        # 86 % won at 40 ms instead of 96 %, in the same times: the restricted mean grows by 1.14, the time to win does not.
+        rng = np.random.default_rng(4)
+        rows = [row for x, share in ((0, 0.96), (40, 0.86)) for row in games(rng, 4000, [("visual", "delay", x, "ms")], share, 12.1875, first=10_000 * x)]
+        d, = performance.differences(*cells(rows, draws=10), MARGINS, limit=30.0).values()
+        self.assertAlmostEqual(d.time, 1.0, delta=0.02)
+        self.assertAlmostEqual(d.restricted, 14.681 / 12.9, delta=0.02)
+        self.assertAlmostEqual(sum(d.parts_s), d.restricted * 12.9 - 12.9, delta=0.2)
+        self.assertLess(abs(d.parts_s[1]), 0.15)
+
+    def test_a_level_at_which_few_win_has_no_time_and_the_limit_says_so(self):
+        rng = np.random.default_rng(5)
+        rows = [row for x in (0, 40, 80) for row in games(rng, 200, [("visual", "delay", x, "ms")], 0.95, 8 * (1 + 0.02 * x), first=10_000 * x)]
+        rows += [game(900_000 + i, False, 30, [("visual", "delay", 160, "ms")]) for i in range(200)]
+        _, time, either = broken(cells(rows, draws=10)[0])
+        self.assertIn("not identified at 160 ms", time.note)
+        self.assertEqual(time.up_to, 80)
+        self.assertIn("not identified", either.note)
+
+    def test_the_limit_over_the_margin_and_over_the_time_limit(self):
+        made = self.made(6)
+        found = break_limits.worsenings(made, DELAY, False, np.random.default_rng(1))
+        rows = break_limits.curves(made, DELAY, False, MARGINS, 30.0, np.random.default_rng(1), found)
+        over = {round(100 * r["margin"]): r for r in rows if r["outcome"] == "success" and r["limit_s"] == 30.0}
+        self.assertEqual(sorted(over), list(range(1, 51)))
+        # Closed form: x50 ((m / p0) / (1 - m / p0))^(1 / n).
+        for percent, truth in ((5, 29.0491), (10, 35.0370), (20, 42.9740)):
+            self.assertTrue(over[percent]["low"] <= truth <= over[percent]["high"], (percent, over[percent]))
+        values = [over[p]["value"] for p in sorted(over)]
+        self.assertEqual(values, sorted(values))
+        self.assertEqual({r["limit_s"] for r in rows}, {30.0 * s for s in break_limits.SHORTER})
 
 
 class Breaking(unittest.TestCase):
@@ -113,12 +156,12 @@ class Breaking(unittest.TestCase):
         for seed in range(repetitions):
             # No game reaches the limit, and lost games end early: time and success are separate, each with its known crossing.
             rows = self.rows(np.random.default_rng(seed))
-            made, _ = cells(rows, seed, 400)
-            found = limits.break_limits(made, DELAY, MARGINS, "simulated")[0]
+            made, clustered = cells(rows, seed, 400)
+            found = broken(made, clustered)[0]
             inside[0] += found.low <= 120 <= found.high
             values.append(found.value)
-        # 285 expected, binomial standard deviation 3.8.
-        self.assertTrue(273 <= inside[0] <= 297, inside)
+        # At least 285 expected, binomial standard deviation 3.8. The fit must hold for steep curves too, so it holds a straight one more often.
+        self.assertGreaterEqual(inside[0], 273)
         self.assertTrue(90 < np.median(values) < 150, np.median(values))
 
     def test_l_break_by_time_is_recovered_in_95_of_100(self):
@@ -126,8 +169,8 @@ class Breaking(unittest.TestCase):
         for seed in range(300):
             rng = np.random.default_rng(1000 + seed)
             rows = [row for x in (0, *self.LEVELS) for row in games(rng, 100, [("visual", "delay", x, "ms")], 1.1, 6 * (1 + 0.1 * x / 120), first=1000 * x)]
-            made, _ = cells(rows, seed, 400)
-            found = limits.break_limits(made, DELAY, MARGINS, "simulated")[1]
+            made, clustered = cells(rows, seed, 400)
+            found = broken(made, clustered)[1]
             inside += found.low <= 120 <= found.high
         self.assertTrue(273 <= inside <= 297, inside)
 
@@ -142,25 +185,25 @@ class Breaking(unittest.TestCase):
                     rows += games(rng, 10, [("visual", "delay", x, "ms")], 1.1, 6 * (1 + slope * x / 120), first=len(rows), participant=f"P{p:02}")
             made, clustered = cells(rows, seed, 400)
             self.assertTrue(clustered)
-            found = limits.break_limits(made, DELAY, MARGINS, "simulated")[1]
+            found = broken(made, clustered)[1]
             inside += found.low <= 120 <= found.high
-        # 190 expected; a percentile interval of 12 clusters is known to hold a little less (Davison and Hinkley 1997, section 5.3).
-        self.assertGreaterEqual(inside, 178)
+        # 190 expected, binomial standard deviation 3.1.
+        self.assertTrue(181 <= inside <= 199, inside)
 
     def test_a_rate_counts_by_its_period(self):
         rate = Factor("visual", "rate", "Hz")
         rows = [game(i, True, 6.0) for i in range(50)]
         for hz in (60, 30, 10, 5):
             rows += [game(1000 * hz + i, True, 6.0 * (1 + 2 / hz), [("visual", "rate", hz, "Hz")]) for i in range(50)]
-        made, _ = cells(rows)
-        found = limits.break_limits(made, rate, MARGINS, "simulated")
-        self.assertAlmostEqual(found[1].value, 20, places=6)  # 2 / hz = 0.1
+        made, clustered = cells(rows)
+        found = broken(made, clustered, rate)
+        self.assertAlmostEqual(found[1].value, 20, delta=1)  # 2 / hz = 0.1; between the played 30 and 10 Hz
         self.assertFalse(found[0].reached)
         self.assertEqual(found[0].up_to, 5)
 
     def test_a_limit_that_was_not_reached_names_the_largest_level(self):
         rows = [row for x in (0, 40, 80) for row in games(np.random.default_rng(x), 100, [("visual", "delay", x, "ms")], 1.1, 6, first=1000 * x)]
-        found = limits.break_limits(cells(rows)[0], DELAY, (0.1, 1.5), "simulated")
+        found = broken(cells(rows)[0], margins=(0.1, 1.5))
         self.assertEqual([(l.reached, l.up_to) for l in found], [(False, 80)] * 3)
 
     def test_harmless_needs_evidence(self):
@@ -170,17 +213,42 @@ class Breaking(unittest.TestCase):
             d, = performance.differences(made, clustered, MARGINS).values()
             self.assertEqual((d.harmless, d.harmful), (harmless, False), n)
 
-    def test_holm_corrects_the_tests_of_each_factor_separately(self):
-        # All won in the same time: p of time is the smallest possible, p of success lies between alpha/2 and alpha, which passes Holm's second test but not Bonferroni's.
-        alike = lambda factor, first: [game(first + i, True, 5, factor) for i in range(27)]
-        sight = alike((), 0) + alike([("visual", "delay", 40, "ms")], 100)
-        one, = performance.differences(*cells(sight), MARGINS).values()
-        self.assertTrue(0.025 < one.p_success < 0.05 and one.p_time < 0.025, one)
-        self.assertTrue(one.harmless)
-        other = performance.differences(*cells(sight + alike([("audio", "delay", 40, "ms")], 200)), MARGINS)
-        self.assertTrue(all(d.harmless for d in other.values()))
-        second = performance.differences(*cells(sight + alike([("visual", "delay", 80, "ms")], 200)), MARGINS)
-        self.assertFalse(any(d.harmless for d in second.values()))  # two tests of success: the smaller p must be at most alpha/2
+    def test_levels_are_tested_from_the_mildest_to_the_first_that_fails(self):
+        # Success lower by 0, 9, 0 points of 600: the second level cannot be shown to be harmless, so the third is not tested.
+        rows = [game(1000 * x + i, i >= lost, 5 + 0.01 * (i % 7), [("visual", "delay", x, "ms")]) for x, lost in ((0, 6), (20, 6), (40, 60), (80, 6)) for i in range(600)]
+        found = performance.differences(*cells(rows), MARGINS, limit=30.0)
+        self.assertEqual([found[((DELAY, x),)].harmless for x in (20.0, 40.0, 80.0)], [True, False, False])
+        self.assertLess(found[((DELAY, 80.0),)].p_success, 0.025)
+
+    def test_conditions_without_an_order_are_tested_by_holm(self):
+        # Published example: p of .004 .011 .02 .03 .2 become .020 .044 .060 .060 .200 (Holm 1979).
+        from statsmodels.stats.multitest import multipletests
+        np.testing.assert_allclose(multipletests([0.004, 0.011, 0.02, 0.03, 0.2], method="holm")[1], [0.020, 0.044, 0.060, 0.060, 0.200])
+        alike = lambda factor, first, lost: [game(first + i, i >= lost, 5 + 0.01 * (i % 7), factor) for i in range(38)]
+        # One removal alone: p between alpha / 2 and alpha passes; of two such it does not.
+        one = performance.differences(*cells(alike((), 0, 0) + alike([("visual", "off", "", "")], 100, 0)), MARGINS)
+        p = next(iter(one.values())).p_success
+        self.assertTrue(0.0125 < p < 0.025, p)
+        self.assertTrue(all(d.harmless for d in one.values()))
+        two = performance.differences(*cells(alike((), 0, 0) + alike([("visual", "off", "", "")], 100, 0) + alike([("audio", "off", "", "")], 200, 0)), MARGINS)
+        self.assertFalse(any(d.harmless for d in two.values()))
+
+    def test_a_level_at_the_margin_is_called_harmless_in_at_most_2_5_of_100(self):
+        # 12 people who differ (standard deviation 0.5 of the log odds), 20 games each; success is lower by the margin. Standard error 0.7 %.
+        rng, wrong, names = np.random.default_rng(3), 0, np.repeat([f"P{i:02}" for i in range(12)], 20)
+        for _ in range(500):
+            own = rng.normal(0, 0.5, 12)
+            share = lambda p: (rng.random(240) < np.repeat(1 / (1 + np.exp(-(np.log(p / (1 - p)) + own))), 20)) * 1.0
+            made = {(): performance.Cell((), names, share(0.955), np.ones(240), {}), "x": performance.Cell((), names, share(0.852), np.ones(240), {})}
+            for c in made.values():
+                c.ended_s = c.time_s
+            wrong += performance.compared_success(made["x"], made[()], True, 0.95)[0] > -0.1
+        self.assertLessEqual(wrong / 500, 0.025 + 3 * 0.007)
+
+    def test_the_score_test_agrees_with_published_examples(self):
+        # Farrington and Manning 1990, computed independently: 440/500 against 460/500 and 44/50 against 46/50, margin 10 points.
+        self.assertAlmostEqual(performance.farrington_manning(440, 500, 460, 500, 0.1), 0.00115696, places=7)
+        self.assertAlmostEqual(performance.farrington_manning(44, 50, 46, 50, 0.1), 0.167663, places=5)
 
     def test_a_low_baseline_shows_no_level_to_be_harmless(self):
         rows = [game(i, i % 600 < 30, 29, [("visual", "delay", 40, "ms")] if i >= 600 else ()) for i in range(1200)]
@@ -244,9 +312,9 @@ class Frontiers(unittest.TestCase):
                 rows += [game(len(rows) + i, True, 6 * (1 + 0.05 * a / 20 + 0.1 * b / 100), [("haptic", "delay", a, "ms"), ("visual", "delay", b, "ms")]) for i in range(10)]
         made, _ = cells(rows)
         self.assertEqual(frontier.pairs_of(made), [(touch, sight)])
-        found = frontier.frontier(made, touch, sight, MARGINS, "simulated")
+        found = frontier.frontier(made, touch, sight, False, MARGINS, "simulated", np.random.default_rng(1))
         self.assertEqual((found.first_levels, found.second_levels), ([0, 20, 40], [0, 50, 100, 200]))
-        np.testing.assert_allclose([l.value for _, l in found.edge], [100, 50, 0], atol=1e-6)
+        np.testing.assert_allclose([l.value for _, l in found.edge], [100, 50, 0], atol=3)
         self.assertFalse(np.isnan(found.grid(lambda c: c.share)).any())
 
     def test_if_the_first_alone_reaches_the_margin_the_limit_of_the_second_is_0(self):
@@ -254,7 +322,7 @@ class Frontiers(unittest.TestCase):
         rows = [game(100 * i + j, not late, 6, ([("haptic", "delay", late, "ms")] if late else []) + slow[hz]) for i, (late, hz) in enumerate((late, hz) for late in (0, 200) for hz in slow)
                 for j in range(20)]
         made, _ = cells(rows)
-        found = frontier.frontier(made, *frontier.pairs_of(made)[0], MARGINS, "simulated")
+        found = frontier.frontier(made, *frontier.pairs_of(made)[0], False, MARGINS, "simulated", np.random.default_rng(1))
         (_, borne), (_, none) = found.edge
         self.assertFalse(borne.reached)
         self.assertEqual((none.reached, none.value, limits.severity_of(none)), (True, 0, 0))

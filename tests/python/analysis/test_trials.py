@@ -59,13 +59,35 @@ class Tables(unittest.TestCase):
             HEADER + GOOD.replace("7.5", "inf"): ":2: completion_time_s is 'inf'",
             HEADER + GOOD.replace(",9\n", "\n"): ":2: has 10 fields, but the header has 11",
             HEADER + GOOD.replace("simulated", "ghost"): ":2: observer is 'ghost'",
-            HEADER + GOOD + GOOD: "row 2: the same trial of P01",
+            HEADER + GOOD + GOOD: ":3: the same trial of P01",
             HEADER.replace("observer,", "") + GOOD: ":1: there is no column observer",
             HEADER.encode() + GOOD.encode().replace(b"P01", b"P\xff"): "not UTF-8",
         }
         for text, reason in cases.items():
             with self.subTest(reason):
                 self.assertIn(reason, self.refusal(text))
+
+    def test_the_same_table_from_another_program_gives_the_same_rows(self):
+        plain = HEADER + GOOD + GOOD.replace(",1,1,20", ",1,2,20")
+        first, *rest = plain.splitlines()
+        empty = "," * HEADER.count(",")
+        def rows(data):
+            return trials.read([self.file(data)]).columns
+        expected = rows(plain)
+        for end in ("\n", "\r\n", "\r"):
+            for mark in ("", "\ufeff"):
+                for lines in ([first, *rest], [first, *rest, ""], [first, "", *rest, "", ""], ["", first, *rest, empty], [first, "  ", *rest, empty, empty]):
+                    found = rows((mark + end.join(lines) + end).encode())
+                    for name, values in expected.items():
+                        np.testing.assert_array_equal(found[name], values)
+
+    def test_another_separator_or_encoding_is_refused_with_its_line(self):
+        plain = HEADER + GOOD
+        for data, reason in ((plain.replace(",", ";"), ":1: its fields are separated by semicolons"), (plain.replace(",", "\t"), ":1: its fields are separated by tabs"),
+                             ("\n\n" + plain.replace(",", ";"), ":3: its fields are separated by semicolons"), (plain.encode("utf-16"), ":1: is UTF-16"),
+                             ("\ufeff" + plain.replace(",", ";"), ":1: its fields"), (plain + "\n\n" + GOOD.replace(",7.5", ""), ":5: has 10 fields")):
+            with self.subTest(reason):
+                self.assertIn(reason, self.refusal(data))
 
     def test_a_level_without_a_severity_is_refused(self):
         head = HEADER.replace(",level,", ",level,modality_degraded,operator,")

@@ -145,6 +145,34 @@ class Intervals(unittest.TestCase):
         narrow, usual, wide = (fits.interval(got, "pss", level) for level in (0.5, 0.95, 0.99))
         self.assertTrue(wide[0] < usual[0] < narrow[0] < got.params["pss"] < narrow[1] < usual[1] < wide[1])
 
+    def test_estimates_of_nearly_separable_answers_lie_in_their_intervals(self):
+        dice = np.random.default_rng(14)
+        levels = np.array([-300, -240, -180, -120, -80, -40, 0, 40, 80, 120, 180, 240.0])
+        sharp, pss = dice.uniform(0.3, 15, 60), dice.uniform(-45, 45, 60)  # spreads below the distance of the levels, 40
+        for name, fixed in (("order", {}), ("cumulative_gaussian", {"guess": 0.0})):
+            p = np.stack([FUNCTIONS[name].p(levels, **{FUNCTIONS[name].location: m, "sd": sd, "guess": 0.0, "lapse": 0.0}) if name != "order" else
+                          FUNCTIONS[name].p(levels, pss=m, sd=sd, lapse=0.0) for m, sd in zip(pss, sharp)])
+            yes, total = dice.binomial(20, p).astype(float), np.full(p.shape, 20.0)
+            many = fits.fit_many(levels, yes, total, name, fixed)
+            steps = ((yes == 0) | (yes == total)).all(axis=1)
+            self.assertTrue(steps.any() and not steps.all())
+            far = intervals.unresolved(many)
+            self.assertTrue(far[steps].all())
+            for value in (FUNCTIONS[name].location, "sd", "jnd"):
+                low, high = intervals.of_many(many, value)
+                self.assertTrue(((low <= many.estimates(value)) & (many.estimates(value) <= high)).all(), value)
+                self.assertTrue(np.isfinite(high).all())
+            low, high = intervals.of_many(many, FUNCTIONS[name].location)
+            below = np.where(yes < 10, levels, -np.inf).max(axis=1)
+            above = np.where(yes > 10, levels, np.inf).min(axis=1)
+            # A step determines the location only to the gap between two levels.
+            self.assertTrue((low[steps] < below[steps] + 2).all() and (high[steps] > above[steps] - 2).all())
+            self.assertTrue((intervals.of_many(many, "sd")[0][far] == 0).all())
+
+    def test_levels_that_are_close_enough_resolve_the_spread(self):
+        yes, total = answers("order", SOA, 20, {"pss": 10, "sd": 60, "lapse": 0.03}, 40, 15)
+        self.assertFalse(intervals.unresolved(fits.fit_many(SOA, yes, total, "order")).any())
+
     def test_unknown_kinds_and_names_are_refused(self):
         (yes,), (total,) = answers("order", SOA, 20, {"pss": 10, "sd": 60, "lapse": 0.03}, 1, 13)
         got = fits.fit(SOA, yes, total, "order")

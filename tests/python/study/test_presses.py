@@ -15,7 +15,7 @@ from tactus.refusal import Refusal
 from tactus.study import check, conditions, duration, power, power_felt, quantities, simulated, stimuli, study_file
 from tactus.study.plan import Plan, Trial
 
-WEBER, LAPSE = 0.23, 0.02
+WEBER, LAPSE = 0.155, 0.02
 SPRING_N_m = 40.0
 
 

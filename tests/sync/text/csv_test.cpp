@@ -38,6 +38,11 @@ TEST_CASE("The byte order mark and carriage return of a line are removed") {
   CHECK(csv_cells("\xef\xbb\xbfname,x_m\r") == Cells{"name", "x_m"});
 }
 
+TEST_CASE("A line without content is blank") {
+  for (const char* line : {"", "\r", "  ", ",,", " ,\t,\r"}) CHECK(is_blank(csv_cells(line)));
+  for (const char* line : {"0", ",a", "-"}) CHECK_FALSE(is_blank(csv_cells(line)));
+}
+
 TEST_CASE("A cell is a number only if all of it is one finite number") {
   CHECK(csv_number("1.5e-3") == 1.5e-3);
   CHECK(csv_number("-7") == -7);

@@ -58,7 +58,8 @@ TEST_CASE("A custom room is read from a file, and an invalid one is rejected wit
   const auto expect_rejection = [](const std::string& rows, const std::string& why) {
     CHECK_THROWS_WITH(parse_room(rows, "mine"), Catch::StartsWith("the room mine ") && Catch::Contains(why));
   };
-  expect_rejection("", "does not begin with");
+  expect_rejection("", "does not begin in line 1");
+  expect_rejection(kHead + "\n\na,1,2,3\n", "ten columns in line 4");
   expect_rejection(kHead, "has no wall");
   expect_rejection(kHead + "a,1,2,3\n", "does not have ten columns");
   expect_rejection(kHead + "a,1,0.5,0,1,-0.5,0,1,0.5,nan\n", "nine numbers");

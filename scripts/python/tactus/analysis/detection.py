@@ -4,7 +4,8 @@
   temporal order        PSS ± JND, where 75 % of the orders are right, without lapses
   two intervals         75 % correct; if the study asks which of two felt softer, this is L_appear as judged
 
-With FEWEST_PARTICIPANTS people or more, the limit is the mean of their own values, with draws over people. With fewer, it comes from the fit to all
+With FEWEST_PARTICIPANTS people or more, the limit is the mean of their own values, of thresholds the geometric mean, with Student's t over people. People
+whose answers have no fit are named in the note of the limit. With fewer people, it comes from the fit to all
 answers, with draws from the interval of the fit: a normal distribution with a separate width for each half. (PSS and JND of an order judgement are
 estimated independently of each other if the levels surround the PSS, because the curve is symmetric.) A limit below 0 counts as 0.
 """
@@ -27,8 +28,8 @@ def draws_of(value, interval, rng, draws=resampling.DRAWS):
 def edges(curve, sign, rng):
     """(value, draws) of the largest lateness of one sense, ms, in one fit; sign: +1 for the second of the pair, -1 for the first."""
     if curve.condition.kind == "sj":
-        name = "high75" if sign > 0 else "low75"
-        return sign * curve.value(name), None if rng is None else sign * draws_of(curve.value(name), curve.intervals[name], rng)
+        value, interval = curve.window("high75" if sign > 0 else "low75")
+        return sign * value, None if rng is None else sign * draws_of(value, interval, rng)
     value = sign * curve.value("pss") + curve.value("jnd")
     if rng is None:
         return value, None
@@ -44,30 +45,38 @@ def severities(values):
     return np.array([max(v, 0.0) for v in values])
 
 
+def of_people(values, logarithmic, rng, draws=resampling.DRAWS):
+    """(mean of the values of people, or their geometric mean; draws of it by Student's t)."""
+    on = np.log(values) if logarithmic else values
+    drawn = on.mean() + on.std(ddof=1) / np.sqrt(len(on)) * rng.standard_t(len(on) - 1, draws)
+    return (float(np.exp(on.mean())), np.exp(drawn)) if logarithmic else (float(on.mean()), severities(drawn))
+
+
 def condition_limits(condition, curves, rng, felt=""):
-    """[Limit] of one condition from its curves. felt: the property by which its two intervals were compared, or ""."""
+    """[Limit] of one condition from its curves, also if some have no fit. felt: the property by which its two intervals were compared, or ""."""
     fitted = [c for c in curves if c.fit is not None]
     all_participants = [c for c in fitted if c.participant == ALL_PARTICIPANTS]
-    people = [c for c in fitted if c.participant != ALL_PARTICIPANTS]
+    fitted_people = [c for c in fitted if c.participant != ALL_PARTICIPANTS]
+    without = [c.participant for c in curves if c.fit is None and c.participant != ALL_PARTICIPANTS]
+    note = f"without {len(without)} of {len(without) + len(fitted_people)} participants, whose answers have no fit: {', '.join(without)}" if without else ""
     sides = [(+1, condition.pair[1], condition.pair[0]), (-1, condition.pair[0], condition.pair[1])] if condition.pair else [(0, None, None)]
     made = []
     for sign, late, early in sides:
         factor = Factor(late, "delay", "ms") if condition.pair else condition.factor
         one = (lambda c, r: edges(c, sign, r)) if condition.pair else threshold
         by = f"{early} → {late}, {condition.kind}" if condition.pair else f"{felt}, judged" if felt else condition.kind
-        if len(people) >= resampling.FEWEST_PARTICIPANTS:
-            values = severities([one(c, None)[0] for c in people])
-            point = float(values.mean())
-            draws = resampling.Resampler([c.participant for c in people], rng).of_cell([c.participant for c in people], values[:, None])[0][:, 0]
+        if len(fitted_people) >= resampling.FEWEST_PARTICIPANTS:
+            values = severities([one(c, None)[0] for c in fitted_people])
+            point, draws = of_people(values, condition.pair is None and (values > 0).all(), rng)
         elif all_participants:
             point, draws = one(all_participants[0], rng)
             point, draws = severities([point])[0], severities(draws)
         else:
             continue
-        used = people if len(people) >= resampling.FEWEST_PARTICIPANTS else all_participants
+        used = fitted_people if len(fitted_people) >= resampling.FEWEST_PARTICIPANTS else all_participants
         tried = np.abs(np.concatenate([c.levels for c in used]))
         made.append(limits.from_draws("appear" if felt else "detect", factor, by, point, draws, float(tried.max()),
-                                    " and ".join(sorted({c.observer for c in used})), int(sum(c.total.sum() for c in used))))
+                                      " and ".join(sorted({c.observer for c in used})), int(sum(c.total.sum() for c in used)), note=note))
     return made
 
 

@@ -8,8 +8,7 @@ import dataclasses
 
 import numpy as np
 
-from tactus.analysis import limits
-from tactus.analysis.crossing import crossing
+from tactus.analysis import break_limits, limits, monotone_fit
 
 
 @dataclasses.dataclass
@@ -32,7 +31,7 @@ def pairs_of(cells):
     return sorted({(d[0][0], d[1][0]) for d in cells if len(d) == 2 and not d[0][0].removal and not d[1][0].removal})
 
 
-def frontier(cells, first, second, margins, observer):
+def frontier(cells, first, second, clustered, margins, observer, rng):
     together = {(d[0][1], d[1][1]): cell for d, cell in cells.items() if len(d) == 2 and (d[0][0], d[1][0]) == (first, second)}
     single = lambda factor, level: cells.get(((factor, level),) if level is not None else ())
     levels = [sorted({pair[i] for pair in together}, key=factor.severity) for i, factor in enumerate((first, second))]
@@ -40,28 +39,21 @@ def frontier(cells, first, second, margins, observer):
     rows = [[at(a, b) for b in [None, *levels[1]]] for a in [None, *levels[0]]]
     baseline = cells[()]
     edge = [(0.0 if a is None else a, limit) for a, row in zip([None, *levels[0]], rows)
-            for limit in [edge_of(row, baseline, second, levels[1], margins, observer)] if limit]
+            for limit in [edge_of(row, baseline, second, levels[1], clustered, margins, observer, rng)] if limit]
     return Frontier(first, second, [0.0, *levels[0]], [0.0, *levels[1]], rows, edge)
 
 
-def edge_of(row, baseline, second, levels, margins, observer):
-    """L_break of the second factor along one row of the grid; None: too few cells of the row were played."""
+def edge_of(row, baseline, second, levels, clustered, margins, observer, rng):
+    """L_break of the second factor along one row of the grid, by success or by time; None: too few cells of the row were played."""
     played = [(second.severity(level), cell) for level, cell in zip(levels, row[1:]) if cell is not None]
     if row[0] is None or not played:
         return None
-    severities = np.array([s for s, _ in played])
-    weights = np.array([cell.n for _, cell in played], dtype=float)
-
-    def first_reached(of, of_baseline):
-        """of: [(B, 2)] of the cells; the first is the one without the second factor."""
-        found = []
-        for worsening, margin in (([of_baseline[:, 0] - d[:, 0] for d in of], margins[0]), ([d[:, 1] / of_baseline[:, 1] - 1 for d in of], margins[1] - 1)):
-            found.append(crossing(severities, np.stack(worsening[1:]), weights, margin, worsening[0]))
-        return np.minimum(*found)
-
-    mean = lambda cell: np.array([[cell.share, cell.mean_time_s]])
-    mine = [row[0], *(cell for _, cell in played)]
-    whole = ~np.isnan(np.stack([c.draws[:, 0] for c in [*mine, baseline]])).any(axis=0)
-    point = first_reached([mean(c) for c in mine], mean(baseline))[0]
-    draws = first_reached([c.draws[whole] for c in mine], baseline.draws[whole])
-    return limits.from_draws("break", second, limits.EITHER, point, draws, float(severities.max()), observer, int(weights.sum()))
+    cells, drawn = [(0.0, row[0]), *played], np.full(monotone_fit.DRAWS, np.nan)
+    reference = None if row[0] is baseline else baseline
+    for outcome in ("success", "time"):
+        kept = [(s, c) for s, c in cells if outcome == "success" or c.times.identified]
+        if len(kept) < 2 or kept[0][0] or (outcome == "time" and not baseline.times.identified):
+            continue
+        worse = break_limits.worsening([c for _, c in kept], np.array([s for s, _ in kept]), clustered, rng, outcome, reference)
+        drawn = np.fmin(drawn, break_limits.crossing_of(worse, margins, outcome))
+    return limits.from_draws("break", second, limits.EITHER, limits.middle(drawn), drawn, max(s for s, _ in played), observer, sum(c.n for _, c in played))

@@ -69,7 +69,7 @@ def felt_figure(felt):
     fig, axes = figures.new(height_in=2.5)
     scale, unit = (100, "%") if felt.source.unit == "%" else (1, felt.source.unit)
     tint = colour(felt.factor.modality)
-    axes.axhspan(-scale * felt.jnd, scale * felt.jnd, color="#f3e9d2", linewidth=0, zorder=0, label=f"JND {felt.source.jnd:g} {felt.source.unit}: {felt.source.source}")
+    axes.axhspan(-scale * felt.jnd, scale * felt.jnd, color="#f3e9d2", linewidth=0, zorder=0, label=f"JND {felt.source.at75:.3g} {felt.source.unit} at 75 %: {felt.source.source}")
     axes.axhline(0, color=INK, linewidth=0.7)
     y = scale * np.array(felt.shifts)
     axes.errorbar(felt.levels, y, yerr=np.abs(scale * np.array(felt.intervals).T - y), fmt="o-", color=tint, markersize=4, capsize=2, linewidth=1)

@@ -2,26 +2,24 @@
 
   L_detect  noticed                  detection.py: 75 % detected, or the edge of the window in which the senses are judged synchronous
   L_appear  a felt property changes  appearance.py: the property differs by more than its JND
-  L_break   the task suffers         here: success or time is worse than undegraded by the study's margin
-
-L_break is the level at which the worsening, made non-decreasing over the played levels and interpolated linearly, reaches the margin. Its interval comes
-from a joint bootstrap of the levels and the baseline.
+  L_break   the task suffers         break_limits.py: success, or time given success, is worse than undegraded by the study's margin
 """
 import dataclasses
+import math
 
 import numpy as np
 
 from tactus.analysis import resampling
-from tactus.analysis.crossing import crossing
 from tactus.analysis.operators import Factor
 
-
 EITHER = "either"  # by success or by time, the earlier of both
+NO_BRACKET = (math.nan, math.nan)
 
 
 @dataclasses.dataclass
 class Limit:
-    """One limit of one factor. value, low, high: levels in the factor's unit; infinite: not reached up to `up_to`; 0: reached when nothing is degraded."""
+    """One limit of one factor. value, low, high: levels in the factor's unit; infinite: not reached up to `up_to`; 0: reached when nothing is degraded; NaN:
+    not identified, and note is the reason."""
     kind: str  # detect, appear, break
     factor: Factor
     by: str  # criterion: success, time, either; the pair of senses; the property
@@ -33,20 +31,32 @@ class Limit:
     observer: str
     n: int
     participant: str = ""  # "" = all together
+    bracket: tuple = NO_BRACKET  # two levels between which the limit lies, without an assumption but that it gets no better with the level
+    note: str = ""  # levels or participants that were left out
 
     @property
     def reached(self):
         return np.isfinite(self.value)
 
 
-def from_draws(kind, factor, by, point, draws, up_to, observer, n):
-    """A Limit from a severity and its draws."""
+def level_of(factor, severity):
+    """The level of a severity; infinite: not reached."""
+    if not np.isfinite(severity):
+        return float(severity)
+    return factor.level(severity) if np.isfinite(factor.level(severity)) else 0.0  # a rate is undegraded at infinity, but an infinite limit means "not reached"
+
+
+def from_draws(kind, factor, by, point, draws, up_to, observer, n, bracket=NO_BRACKET, note=""):
+    """A Limit from a severity, its draws, and a bracket of severities."""
     low, high = resampling.interval(draws)
-    def at(s):
-        if not np.isfinite(s):
-            return float(s)
-        return factor.level(s) if np.isfinite(factor.level(s)) else 0.0  # a rate is undegraded at infinity, but an infinite limit means "not reached"
-    return Limit(kind, factor, by, at(float(point)), at(low), at(high), factor.level(up_to), draws, observer, n)
+    return Limit(kind, factor, by, *(level_of(factor, float(s)) for s in (point, low, high)), factor.level(up_to) if up_to > 0 else math.nan, draws, observer, n,
+                 bracket=tuple(level_of(factor, float(s)) for s in bracket), note=note)
+
+
+def middle(draws):
+    """The median of draws of a limit; infinite if half of them do not reach it; NaN without draws."""
+    kept = np.sort(draws[~np.isnan(draws)])
+    return float(kept[(len(kept) - 1) // 2]) if len(kept) else math.nan
 
 
 def series(cells, factor):
@@ -58,27 +68,6 @@ def series(cells, factor):
 def factors_of(cells):
     """Factors with levels that were played without another degradation."""
     return sorted({degraded[0][0] for degraded in cells if len(degraded) == 1 and not degraded[0][0].removal})
-
-
-def break_limits(cells, factor, margins, observer):
-    """[Limit] by success, by time, and by whichever comes first."""
-    baseline, mine = cells[()], series(cells, factor)
-    severities = np.array([factor.severity(cell.achieved) for cell in mine])
-    weights = np.array([cell.n for cell in mine], dtype=float)
-    n = int(weights.sum()) + baseline.n
-
-    def both(of_cell, of_baseline):
-        shares = np.stack([of_baseline[:, 0] - d[:, 0] for d in of_cell])
-        times = np.stack([d[:, 1] / of_baseline[:, 1] - 1 for d in of_cell])
-        return crossing(severities, shares, weights, margins[0]), crossing(severities, times, weights, margins[1] - 1)
-
-    points = both([np.array([[cell.share, cell.mean_time_s]]) for cell in mine], np.array([[baseline.share, baseline.mean_time_s]]))
-    whole = ~np.isnan(np.stack([d.draws[:, 0] for d in [*mine, baseline]])).any(axis=0)
-    draws = both([cell.draws[whole] for cell in mine], baseline.draws[whole])
-    up_to = float(severities.max())
-    make = lambda by, point, draw: from_draws("break", factor, by, point, draw, up_to, observer, n)
-    return [make("success", points[0][0], draws[0]), make("time", points[1][0], draws[1]),
-            make(EITHER, min(points[0][0], points[1][0]), np.minimum(*draws))]
 
 
 @dataclasses.dataclass
@@ -100,11 +89,10 @@ def ratio(upper, lower, rng):
     a, b = rng.permutation(np.resize(a, n)), np.resize(b, n)
     with np.errstate(invalid="ignore", divide="ignore"):
         draws = np.where(np.isinf(b), np.where(np.isinf(a), np.nan, 0.0), a / b)
-        severity = upper.factor.severity
-        point = severity_of(upper) / severity_of(lower)
+        point = np.divide(severity_of(upper), severity_of(lower))
     return Ratio(upper, lower, float(point), *resampling.interval(draws))
 
 
 def severity_of(limit):
     """Severity of a limit; infinite: not reached."""
-    return limit.value if np.isinf(limit.value) or limit.value == 0 else limit.factor.severity(limit.value)
+    return limit.value if not np.isfinite(limit.value) or limit.value == 0 else limit.factor.severity(limit.value)

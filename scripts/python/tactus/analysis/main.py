@@ -11,6 +11,7 @@ from tactus.refusal import Refusal
 USAGE = """Analyses trials and games: limits of detection, of a felt change and of the task for each degradation.
 
   tactus study analyse PLACE... [--out DIR] [--json FILE] [--seed N] [--time-limit S] [--margin-success POINTS] [--margin-time PERCENT] [--alpha A]
+                              [--window symmetric|asymmetric]
 
   PLACE                    a results folder of `study run` or `study sweep` (all trials.csv and games.csv in it), or one such table
   --out DIR                folder of tables, figures and report.html; default: analysis, in the first PLACE
@@ -19,10 +20,11 @@ USAGE = """Analyses trials and games: limits of detection, of a felt change and 
   --time-limit S           time limit of a game, which games not won count with; default: that of the study file, else of the tables
   --margin-success POINTS  smallest relevant loss of success, in points; default: that of the study file, else 10
   --margin-time PERCENT    smallest relevant increase of time; default: that of the study file, else 10
-  --alpha A                level of the tests of non-inferiority; default: 0.05
+  --alpha A                one-sided level of the tests of non-inferiority; default: 0.025
+  --window KIND            window of synchrony judgements: symmetric (default), or asymmetric, of two independent channels; intervals take seconds each
 
 Levels are measured ones where the apparatus measured them. Missed trials are left out and counted. Writes report.html, figures/, and those of
-psychometric.csv, limits.csv, ratios.csv, conditions.csv, frontier.csv, felt.csv and mixed_models.csv that have rows.
+psychometric.csv, limits.csv, limit_curves.csv, ratios.csv, conditions.csv, frontier.csv, felt.csv and mixed_models.csv that have rows.
 """
 
 
@@ -40,7 +42,8 @@ def parsed(words):
     parser.add_argument("--time-limit", type=float)
     parser.add_argument("--margin-success", type=float)
     parser.add_argument("--margin-time", type=float)
-    parser.add_argument("--alpha", type=float, default=0.05)
+    parser.add_argument("--alpha", type=float, default=0.025)
+    parser.add_argument("--window", choices=("symmetric", "asymmetric"), default="symmetric")
     options = parser.parse_args(words)
     for name, value, low, high in (("--margin-success", options.margin_success, 0, 100), ("--margin-time", options.margin_time, 0, 1000),
                                    ("--alpha", options.alpha, 0, 0.5), ("--time-limit", options.time_limit, 0, 1e6)):
@@ -65,7 +68,8 @@ def analyse(options):
     files = trials.files_of(options.place)
     rows = trials.read(files)
     share = lambda percent: None if percent is None else percent / 100
-    settings = study_analysis.Settings(share(options.margin_success), share(options.margin_time), options.alpha, options.time_limit, options.seed, study_files.stated(files))
+    settings = study_analysis.Settings(share(options.margin_success), share(options.margin_time), options.alpha, options.time_limit, options.seed, options.window == "asymmetric",
+                                       study_files.stated(files))
     analysis = study_analysis.analyse(rows, settings)
     made = result_tables.all_rows(analysis)
     if not made:
@@ -92,9 +96,11 @@ def print_summary(analysis, made, page, report):
     if "limits" in made:
         print(f"{'limit':9} {'sense':9} {'operator':10} {'by':34} {'value':>9} {'low':>9} {'high':>9} unit")
         for row in made["limits"]:
-            beyond = ("<" if row["operator"] in operators.LOWER_IS_WORSE else ">") + f"{row['up_to']:.4g}"  # not reached up to this level
+            beyond = "unknown" if math.isnan(row["value"]) else ("<" if row["operator"] in operators.LOWER_IS_WORSE else ">") + f"{row['up_to']:.4g}"  # not reached up to this level
             fields = [f"{row[k]:9.4g}" if math.isfinite(row[k]) else f"{beyond:>9}" for k in ("value", "low", "high")]
             print(f"{row['limit']:9} {row['modality']:9} {row['operator']:10} {row['by']:34} {' '.join(fields)} {row['unit']}")
+        for note in dict.fromkeys(row["note"] for row in made["limits"] if row["note"]):
+            print(f"  note: {note}")
     print(f"study analyse: {page}, {os.path.getsize(page) // 1000} kB, {report.gallery.count} figures, tables {', '.join(name + '.csv' for name in made)}")
 
 

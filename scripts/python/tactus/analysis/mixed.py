@@ -2,22 +2,21 @@
 
 Yes/no outcomes (success, answers): logistic with a random intercept and slope for each participant, by maximum likelihood (laplace.py). GEE estimates the
 mean over people, but its sandwich variance needs about 40 of them (Mancl and DeRouen 2001, Biometrics 57:126); a study has 5 to 20. Times: linear in the
-logarithm, with the same random effects, by restricted maximum likelihood (MixedLM of statsmodels). Intervals and p use Student's t with (participants - 1)
-degrees of freedom.
+logarithm, with the same random effects and with games that were not won as censored (censored_mixed.py). Intervals and p use Student's t with
+(participants - 1) degrees of freedom.
 
 Synchrony judgements peak at the PSS: their log odds are modelled as a parabola of the asynchrony, a + b x + c x^2, with the PSS at -b / 2c; only intercept
 and slope are random. Severities and asynchronies are divided by their standard deviation for the fit; results are per unit.
 """
 import dataclasses
-import warnings
 
 import numpy as np
 from scipy import stats
-from statsmodels.regression.mixed_linear_model import MixedLM
 
-from tactus.analysis import laplace
+from tactus.analysis import censored_mixed, laplace
 
 FEWEST = 2
+FEWEST_WON = 10  # games, for a model of times; design
 ONE = "There is only one participant: differences between people cannot be estimated, and no mixed model was fitted."
 ONCE = "Each participant did one trial: differences between people cannot be separated from chance, and no mixed model was fitted."
 FEW = 5  # design, as resampling.FEWEST_PARTICIPANTS
@@ -91,22 +90,25 @@ def peak(fitted, scale, participants):
     return effect("PSS", -b / (2 * c) * scale, sd * scale, participants)
 
 
-def log_linear(participants, x, times, name):
-    """Model of ln(time) over x, or the reason why there is none, as a sentence. The effect is a ratio per unit: exp(estimate)."""
+def log_linear(participants, x, times, name, won=None):
+    """Model of ln(time) over x, or the reason why there is none, as a sentence. The effect is a ratio per unit: exp(estimate). times: when the game was won,
+    or when a game that was not won ended. won: (n,) of bool; None: all."""
     people, at, scale = design(participants, x)
+    won = np.ones(len(x), dtype=bool) if won is None else np.asarray(won, dtype=bool)
     if len(people) < FEWEST:
         return ONE
     if scale == 0:
         return "All levels are the same: there is no slope to estimate."
-    y, z = np.log(times), x / scale
+    if np.count_nonzero(won) < FEWEST_WON:
+        return f"{np.count_nonzero(won)} games were won: too few for a model of times."
+    z, n = x / scale, len(people)
     exog = np.stack([np.ones_like(z), z], axis=1)
-    with warnings.catch_warnings(record=True) as said:
-        warnings.simplefilter("always")
-        fitted = MixedLM(y, exog, groups=at, exog_re=exog).fit(reml=True, method=["lbfgs", "powell"])
-    good = fitted.converged and not any("converge" in str(w.message).lower() for w in said)
-    edge = any(word in str(w.message).lower() for w in said for word in ("boundary", "singular"))
-    boundary = " The random effects are at a boundary (a variance of 0, or a correlation of 1)." if edge else ""
-    sds = np.sqrt(np.maximum(0, np.diag(np.atleast_2d(fitted.cov_re))))
-    effects = [effect("intercept", fitted.fe_params[0], fitted.bse_fe[0], len(people)), effect(name, fitted.fe_params[1], fitted.bse_fe[1], len(people), scale)]
-    return Model("mixed log-linear", effects, float(sds[0]), float(sds[1] / scale), len(people), len(z),
-                 "Linear in ln(time) with random intercept and slope per participant (MixedLM, REML)." + boundary + doubts(people, good))
+    fitted = censored_mixed.fit(exog, exog, at, np.log(times), won)
+    # Maximum likelihood estimates the variances between n people too small by (n - 1) / n.
+    sds = np.sqrt(np.maximum(0, np.diag(fitted.covariance)) * n / (n - 1))
+    between = np.sqrt(np.diag(fitted.random))
+    edge = " A difference between people is at its bound of 0." if (between < 2 * censored_mixed.SMALLEST_SD).any() else ""
+    lost = f" {np.count_nonzero(~won)} games that were not won are censored; games that cannot be won at all count as slow." if not won.all() else ""
+    effects = [effect("intercept", fitted.beta[0], sds[0], n), effect(name, fitted.beta[1], sds[1], n, scale)]
+    return Model("mixed log-linear", effects, float(between[0]), float(between[1] / scale), n, len(z),
+                 "Linear in ln(time) with random intercept and slope per participant (maximum likelihood, adaptive quadrature)." + lost + edge + doubts(people, fitted.converged))

@@ -1,7 +1,9 @@
 """Figures of games: success and time over the level of a degradation, two degraded senses, and each sense removed."""
 import numpy as np
 
-from tactus.analysis import limits, resampling
+from scipy.stats import t as student
+
+from tactus.analysis import limits
 from tactus.analysis.plot_style import BREAK, INK, PALE, colour, figures, stamp
 from tactus.plotting import matplotlib
 
@@ -16,8 +18,8 @@ def limit_mark(axes, limit):
         axes.axvline(limit.value, color=BREAK, linewidth=1.2)
 
 
-def factor_figure(cells, factor, found, margins, observer):
-    """Success and time over the level, with the margin and its crossing. found: [Limit] of breaking()."""
+def factor_figure(cells, factor, found, margins, observer, clustered=False):
+    """Success and time to win over the level, with the margin and its crossing. found: [Limit] of break_limits()."""
     baseline, mine = cells[()], limits.series(cells, factor)
     fig, (left, right) = figures.new(1, 2, height_in=2.6)
     tint = colour(factor.modality)
@@ -25,14 +27,14 @@ def factor_figure(cells, factor, found, margins, observer):
     x = np.array([cell.achieved for cell in mine])
     zero = None if falling else 0.0
     shares = np.array([100 * cell.share for cell in mine])
-    ends = np.array([[100 * v for v in cell.share_interval()] for cell in mine])
-    times = np.array([cell.mean_time_s for cell in mine])
-    time_ends = np.array([resampling.interval(cell.draws[:, 1]) for cell in mine])
-    base_time = resampling.interval(baseline.draws[:, 1])
-    base_share = [100 * v for v in baseline.share_interval()]
+    ends = np.array([[100 * v for v in cell.share_interval(clustered)] for cell in mine])
+    times = np.exp([cell.times.mu if cell.times.identified else np.nan for cell in mine])
+    time_ends = np.array([time_interval(cell) for cell in mine])
+    base_time = time_interval(baseline)
+    base_share = [100 * v for v in baseline.share_interval(clustered)]
     for axes, y, low_high, base, base_ends, bound in (
             (left, shares, ends, 100 * baseline.share, base_share, 100 * (baseline.share - margins[0])),
-            (right, times, time_ends, baseline.mean_time_s, base_time, baseline.mean_time_s * margins[1])):
+            (right, times, time_ends, np.exp(baseline.times.mu), base_time, np.exp(baseline.times.mu) * margins[1])):
         axes.axhspan(*base_ends, color="#e6ece6", linewidth=0, zorder=0)
         axes.axhline(base, color="#5c7a5c", linewidth=0.9)
         axes.axhline(bound, color=BREAK, linewidth=0.9, linestyle="--")
@@ -46,7 +48,7 @@ def factor_figure(cells, factor, found, margins, observer):
             axes.invert_xaxis()
         axes.set_xlabel(factor.axis())
     left.set(ylabel="games won (%)", ylim=(-3, 103))
-    right.set_ylabel("time to win (s)")
+    right.set_ylabel("time to win, median (s)")
     right.set_ylim(bottom=0)
     for axes, limit in ((left, found[0]), (right, found[1])):
         limit_mark(axes, limit)
@@ -57,10 +59,43 @@ def factor_figure(cells, factor, found, margins, observer):
     return fig
 
 
+def time_interval(cell):
+    """95 % interval of the median time to win, s."""
+    half = student.ppf(0.975, max(1, cell.times.won - 1)) * np.sqrt(cell.times.variance) if cell.times.identified else np.nan
+    return float(np.exp(cell.times.mu - half)), float(np.exp(cell.times.mu + half))
+
+
+def margin_figure(factor, rows, margins, observer):
+    """The limit over the margin (left: success; middle: time given success), and over the time limit at the study's margins (right). rows: of
+    break_limits.curves()."""
+    fig, panels = figures.new(1, 3, height_in=2.5)
+    tints = {"success": colour(factor.modality), "time": INK}
+    full = max(r["limit_s"] for r in rows)
+    by_limit = lambda outcome: sorted((r for r in rows if r["outcome"] == outcome and np.isclose(r["margin"], margins[0] if outcome == "success" else margins[1] - 1)),
+                                      key=lambda r: r["limit_s"])
+    of_margin = lambda outcome: [r for r in rows if r["outcome"] == outcome and r["limit_s"] == full]
+    for axes, outcome, mine, name, x in ((panels[0], "success", of_margin("success"), "margin of success (points)", lambda r: 100 * r["margin"]),
+                                         (panels[1], "time", of_margin("time"), "margin of time (%)", lambda r: 100 * r["margin"]),
+                                         *((panels[2], outcome, by_limit(outcome), "time limit (s)", lambda r: r["limit_s"]) for outcome in ("success", "time"))):
+        xs = np.array([x(r) for r in mine])
+        finite = lambda name: np.array([r[name] if np.isfinite(r[name]) else (np.nan if name == "value" else r["up_to"]) for r in mine])
+        axes.fill_between(xs, finite("low"), finite("high"), color=tints[outcome], alpha=0.13, linewidth=0)
+        axes.plot(xs, finite("value"), color=tints[outcome], linewidth=1.3, label=outcome)
+        axes.set(xlabel=name)
+        if factor.lower_is_worse and not axes.yaxis_inverted():
+            axes.invert_yaxis()
+    panels[0].set_ylabel(f"L_break: {factor.axis()}")
+    panels[2].legend(fontsize=7)
+    stamp(fig, observer)
+    return fig
+
+
 def limit_text(limit):
     """L_break and its interval as text."""
     unit = f" {limit.factor.unit}" if limit.factor.unit else ""
     number = lambda v: f"{v:.3g}"
+    if np.isnan(limit.value):
+        return f"L_break by {limit.by}: not identified"
     if not limit.reached:
         return f"L_break by {limit.by}: not reached up to {number(limit.up_to)}{unit}"
     ends = [number(v) if np.isfinite(v) else f"not by {number(limit.up_to)}" for v in (limit.low, limit.high)]

@@ -40,5 +40,5 @@ def felt(trials, rng):
             continue
         _, plain = stiffnesses(*(rows[name] for name in COLUMNS))
         resampler = resampling.Resampler(rows["participant_id"], rng)
-        made.append(appearance.of_levels(PROPERTY, jnd, jnd.jnd / 100, factor, rows, shift, resampler, 0.0, float(plain.mean()), 0, measured=True))
+        made.append(appearance.of_levels(PROPERTY, jnd, jnd.at75 / 100, factor, rows, shift, resampler, 0.0, float(plain.mean()), 0, measured=True))
     return made

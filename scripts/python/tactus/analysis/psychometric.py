@@ -11,9 +11,11 @@ import numpy as np
 from tactus.analysis import answers, operators
 from tactus.analysis.detection import ALL_PARTICIPANTS
 from tactus.analysis.operators import Factor
-from tactus.psychophysics import fits
+from tactus.psychophysics import fits, independent_channels, intervals, overdispersion
 
 MAX_LEVELS = 60  # design; more measured values are grouped into this number of bins, each at its mean
+FOLLOW = ("peak", "absolute_low75", "absolute_high75")  # without an interval: peak is 1 - lapse
+TOO_FAR = "the levels are too far apart to estimate the spread; it may be 0, and its interval gives the largest one"
 FEWEST_TRIALS = 20  # needed for a fit; design
 
 
@@ -43,7 +45,7 @@ class Condition:
 @dataclasses.dataclass
 class Curve:
     """One fit. levels, yes, total: (k,) data of the fit; intervals: {name: (low, high)} of parameters and derived values. Without a fit, fit is None
-    and why the reason."""
+    and why the reason; with one, why names a value that the answers do not determine, or is empty."""
     condition: Condition
     participant: str
     levels: np.ndarray
@@ -54,9 +56,19 @@ class Curve:
     fit: object = None
     intervals: dict = dataclasses.field(default_factory=dict)
     why: str = ""
+    asymmetric: independent_channels.Fit = None  # of judgements of synchrony
+    aic: dict = dataclasses.field(default_factory=dict)  # {model: Akaike's criterion}; the smallest describes the answers best
+
+    dispersion: overdispersion.Dispersion = None
 
     def value(self, name):
         return {**self.fit.params, **self.fit.derived}[name]
+
+    def window(self, name):
+        """(value, interval) of low75, high75 or pss: of the asymmetric window if its intervals were asked for, else of the symmetric one."""
+        if self.asymmetric and self.asymmetric.intervals:
+            return self.asymmetric.values[name], self.asymmetric.intervals[name]
+        return self.value(name), self.intervals[name]
 
 
 def achieved(rows, condition):
@@ -101,7 +113,7 @@ def conditions_of(trials):
     return found
 
 
-def curve(condition, participant, rows, rng):
+def curve(condition, participant, rows, rng, asymmetric=False):
     """The Curve of these rows; its fit is None, with the reason, if they do not permit one."""
     levels, _ = achieved(rows, (None, condition.pair, condition.factor))
     answered, yes = answers.answered(condition.kind, rows, condition.pair)
@@ -121,22 +133,31 @@ def curve(condition, participant, rows, rng):
             made.why = "the fit did not converge; use more levels on either side of the threshold"
         else:
             made.fit = fitted
-            made.intervals = {name: tuple(float(v) for v in fits.interval(fitted, name, rng=rng)) for name in wanted(fitted)}
+            made.why = TOO_FAR if intervals.unresolved(fitted.many)[0] else ""
+            if condition.kind == "sj":
+                made.asymmetric = independent_channels.fit(made.levels, made.yes, made.total, rng if asymmetric else None)
+                forced = fits.fit(made.levels, made.yes, made.total, answers.FUNCTION["sj"], forced_peak=True)
+                made.aic = {"free peak": fitted.aic, "peak near 1": forced.aic, "asymmetric": made.asymmetric.aic}
+            made.dispersion = overdispersion.dispersion(fitted, rng)
+            judged = overdispersion.inflated(fitted.many, made.dispersion.width())
+            for name in wanted(fitted):
+                low, high = (float(v[0]) for v in intervals.of_many(judged, name))
+                made.intervals[name] = min(low, made.value(name)), max(high, made.value(name))
     return made
 
 
 def wanted(fitted):
-    """Names of the parameters and derived values with an interval: all except fixed ones."""
-    return [name for name in [*fitted.params, *fitted.derived] if name not in fitted.fixed]
+    """Names of the parameters and derived values with an interval: all except fixed ones, and those that follow from others."""
+    return [name for name in [*fitted.params, *fitted.derived] if name not in fitted.fixed and name not in FOLLOW]
 
 
-def curves(trials, seed):
+def curves(trials, seed, asymmetric=False):
     """[Curve]: for each condition first that of all participants, then one for each. Each has its own random numbers, so an additional participant does
-    not change the intervals of the others."""
+    not change the intervals of the others. asymmetric: also intervals of asymmetric windows, which take seconds each."""
     made = []
     for i, (condition, rows) in enumerate(conditions_of(trials)):
         people = rows.participants()
         parts = [(ALL_PARTICIPANTS, rows)] + ([(p, rows.where(rows["participant_id"] == p)) for p in people] if len(people) > 1 else [])
         for participant, mine in parts:
-            made.append(curve(condition, participant, mine, np.random.default_rng([seed, i, *participant.encode()])))
+            made.append(curve(condition, participant, mine, np.random.default_rng([seed, i, *participant.encode()]), asymmetric))
     return made

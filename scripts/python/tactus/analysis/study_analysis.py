@@ -3,7 +3,7 @@ import dataclasses
 
 import numpy as np
 
-from tactus.analysis import appearance, detection, frontier, limits, mixed, performance, presses, published, trials as tables
+from tactus.analysis import appearance, break_limits, detection, frontier, limits, mixed, performance, presses, published, trials as tables
 from tactus.analysis.answers import kind_of
 
 
@@ -16,9 +16,10 @@ class Settings:
     {study: study_files.Stated}."""
     margin_success: float = None
     margin_time: float = None
-    alpha: float = 0.05
+    alpha: float = performance.ALPHA  # one-sided
     time_limit_s: float = None
     seed: int = 1
+    asymmetric: bool = False  # windows of synchrony
     stated: dict = dataclasses.field(default_factory=dict)
 
     def margins(self, study):
@@ -45,6 +46,7 @@ class Performance:
     limit_s: float
     differences: dict
     limits: dict  # {Factor: [Limit]}
+    curves: dict  # {Factor: rows of break_limits.curves}
     frontiers: list
     observer: str
     participants: int
@@ -69,19 +71,24 @@ def performances_of(trials, settings):
     made = []
     for i, ((study,), games) in enumerate(performance.games_of(trials).groups("study")):
         limit_s, margins = performance.limit_s(games, settings.limit_s(study)), settings.margins(study)
-        cells, clustered = performance.cells_of(games, limit_s, np.random.default_rng([settings.seed, 2000 + i]))
+        rng = np.random.default_rng([settings.seed, 2000 + i])
+        cells, clustered = performance.cells_of(games, limit_s, rng)
         differences = performance.differences(cells, clustered, margins, settings.alpha, limit_s)
-        found = {factor: limits.break_limits(cells, factor, margins, games.observer()) for factor in limits.factors_of(cells)}
-        edges = [frontier.frontier(cells, *pair, margins, games.observer()) for pair in frontier.pairs_of(cells)]
-        made.append(Performance(study, margins, cells, clustered, limit_s, differences, found, edges, games.observer(), len(games.participants())))
+        found, over = {}, {}
+        for factor in limits.factors_of(cells):
+            worse = break_limits.worsenings(cells, factor, clustered, rng)
+            found[factor] = break_limits.break_limits(cells, factor, clustered, margins, games.observer(), rng, worse)
+            over[factor] = break_limits.curves(cells, factor, clustered, margins, limit_s, rng, worse)
+        edges = [frontier.frontier(cells, *pair, clustered, margins, games.observer(), rng) for pair in frontier.pairs_of(cells)]
+        made.append(Performance(study, margins, cells, clustered, limit_s, differences, found, over, edges, games.observer(), len(games.participants())))
     return made
 
 
-def curves_of(trials, seed):
+def curves_of(trials, settings):
     if not any(kind_of(task) for task in trials["task"]):
         return []
     from tactus.analysis import psychometric
-    return psychometric.curves(trials, seed)
+    return psychometric.curves(trials, settings.seed, settings.asymmetric)
 
 
 def ratios_of(limits_, rng):
@@ -107,9 +114,9 @@ def models_of(trials, curves, performances):
             people = np.concatenate([c.participants for c in mine])
             join = lambda name: np.concatenate([getattr(c, name) for c in mine])
             many = len(people) == len(set(people))
-            for words, model in (("games won", mixed.logistic), ("time to win", mixed.log_linear)):
-                said = mixed.ONCE if many else model(people, severity, join("success" if model is mixed.logistic else "time_s"), factor.severity_axis())
-                made.append((f"{words}, {factor.words()}", said))
+            won = join("success")
+            made.append((f"games won, {factor.words()}", mixed.ONCE if many else mixed.logistic(people, severity, won, factor.severity_axis())))
+            made.append((f"time to win, {factor.words()}", mixed.ONCE if many else mixed.log_linear(people, severity, join("ended_s"), factor.severity_axis(), won == 1)))
     return made
 
 
@@ -125,7 +132,7 @@ def analyse(trials, settings):
     """Analysis of all rows. Raises Refusal if the rows lack data that an analysis needs."""
     kept, left_out = tables.usable(trials)
     rng = np.random.default_rng([settings.seed, 3000])
-    curves = curves_of(kept, settings.seed)
+    curves = curves_of(kept, settings)
     felt = [f for (name, rows) in appearance.judged(kept, settings.felt) for f in appearance.felt(name, rows, rng)] + presses.felt(kept, rng)
     performances = performances_of(kept, settings)
     found = detection.detection_limits(curves, settings.seed, settings.felt) if curves else []

@@ -45,6 +45,7 @@ class Report:
         return page(f"Study {name}", body)
 
 
+POOR = 0.05  # p of a fit below which the page mentions it; usual
 SMALLEST = 1e-6  # magnitudes below are printed as 0; design
 
 
@@ -56,6 +57,8 @@ def span(low, high, endless="not reached"):
 
 def value_of(limit):
     unit = f" {limit.factor.unit}" if limit.factor.unit else ""
+    if np.isnan(limit.value):
+        return "not identified"
     return f"{number(limit.value)}{unit} {span(limit.low, limit.high)}" if limit.reached else f"not reached up to {number(limit.up_to)}{unit}"
 
 
@@ -88,8 +91,16 @@ def limits_section(report):
     parts = ["<h2>Limits of each sense</h2>\n",
              report.table("Limits with 95 % intervals. L_detect: noticed; L_appear: a felt property differs by more than its JND; L_break: success or time worse than "
                           f"undegraded by the margin{margins_of(a)}.",
-                          ["sense and operator", "limit", "by", "level", "n"],
-                          [[l.factor.words(), f"L_{l.kind}", l.by, value_of(l), l.n] for f in factors for l in a.limits if l.factor == f])]
+                          ["sense and operator", "limit", "by", "level", "bracket", "n"],
+                          [[l.factor.words(), f"L_{l.kind}", l.by, value_of(l), "" if np.isnan(l.bracket).any() else span(*l.bracket, "∞"), l.n]
+                           for f in factors for l in a.limits if l.factor == f]),
+             "<p>A bracket holds the limit with 95 % and assumes only that performance gets no better with the level; the limit and its interval assume that it changes smoothly.</p>\n"
+             if any(l.kind == "break" for l in a.limits) else ""]
+    noted = collections.defaultdict(list)
+    for l in a.limits:
+        if l.note:
+            noted[l.note].append(f"L_{l.kind} of {l.factor.words()} by {l.by}")
+    parts += [f"<p>{safe(listed(of))}: {safe(note)}.</p>\n" for note, of in noted.items()]
     for factor in factors:
         mine = [l for l in a.limits if l.factor == factor]
         behind = published.of_factor(factor)
@@ -118,22 +129,36 @@ def curves_section(report):
             conditions.append(curve.condition)
     for condition in conditions:
         mine = [c for c in report.analysis.curves if c.condition == condition]
-        everybody = mine[0]
+        together_curve = mine[0]
         parts.append(f"<h3>{safe(condition.words())}{safe(f' ({condition.study})' if condition.study else '')}</h3>\n")
         names = list(dict.fromkeys(name for c in mine if c.fit for name in c.intervals))
         rows = [[c.participant or "all together", int(c.total.sum())] + ([f"{number(0.0 if abs(c.value(n)) < SMALLEST else c.value(n))} {span(*c.intervals[n], 'no end')}" if n in c.intervals else "–" for n in names] if c.fit
                 else [c.why, *[""] * (len(names) - 1)]) for c in mine]
         parts.append(report.table(f"Maximum likelihood with 95 % intervals: {safe(condition.axis())}.", ["participant", "n", *(names or ["why not"])], rows))
-        if everybody.fit is not None:
-            fig, beyond = curve_plots.curve_figure(everybody, seed)
+        if together_curve.aic:
+            best = min(together_curve.aic, key=together_curve.aic.get)
+            parts.append(f"<p>Of three windows, the one with {safe(best) if best != 'asymmetric' else 'an asymmetric form'} describes the answers of all together best: "
+                         + safe(", ".join(f"AIC {value:.1f} ({model})" for model, value in together_curve.aic.items())) + f". The asymmetric window has its maximum at "
+                         f"{number(together_curve.asymmetric.values['pss'])} ms, a peak of {number(together_curve.asymmetric.values['peak'])}, and reaches 75 % of it at "
+                         f"{number(together_curve.asymmetric.values['low75'])} and {number(together_curve.asymmetric.values['high75'])} ms.</p>\n")
+        varied = [c for c in mine if c.fit and c.dispersion.p < POOR]
+        if varied:
+            parts.append(f"<p>The answers of {safe(listed([c.participant or 'all together' for c in varied]))} do not fit the function as independent answers would (p = "
+                         + safe(", ".join(f"{c.dispersion.p:.3f}" for c in varied)) + ", deviance of refits); the variances of the estimates are multiplied by "
+                         + safe(", ".join(f"{c.dispersion.width():.2f}" for c in varied)) + ".</p>\n")
+        doubtful = [c.participant or "all together" for c in mine if c.fit and c.why]
+        if doubtful:
+            parts.append(f"<p>{safe(listed(doubtful).capitalize())}: {safe(psychometric.TOO_FAR)}.</p>\n")
+        if together_curve.fit is not None:
+            fig, beyond = curve_plots.curve_figure(together_curve, seed)
             for t in dict.fromkeys(t for _, t in published.of_pair(*condition.pair)) if condition.pair else []:
                 report.cite(t.source)
             parts.append(report.keep(fig, f"curve_{condition.slug()}", f"{safe(condition.words().capitalize())}: points proportional to the number of answers, the function with its 95 % band; at the bottom the 95 % interval of its centre" + ("; dashed: published thresholds" if condition.pair else "")
                                      + (f", {beyond} of them outside the presented levels" if beyond else "") + "."))
         if len(mine) > 2:
             parts.append(report.keep(curve_plots.small_multiples(mine), f"participants_{condition.slug()}", "Each participant; grey: all together."))
-        if condition.pair and len(everybody.levels):
-            parts.append(report.keep(curve_plots.achieved_figure(everybody), f"achieved_{condition.slug()}", "Measured asynchronies, and their differences to the requested ones."))
+        if condition.pair and len(together_curve.levels):
+            parts.append(report.keep(curve_plots.achieved_figure(together_curve), f"achieved_{condition.slug()}", "Measured asynchronies, and their differences to the requested ones."))
         if any(len(c.trials) for c in mine):
             parts.append(report.keep(curve_plots.trace_figure(mine), f"levels_{condition.slug()}", "Levels in order of presentation; filled: "
                                      f"{ {'sj': 'judged synchronous', 'toj': 'first sense first', '2ifc': 'correct'}[condition.kind]}. Line: running estimate of the centre; band: its final interval."))
@@ -151,7 +176,7 @@ def felt_section(report):
         left = f" {f.left_out} answers of participants who never judged the undegraded stimulus are left out." if f.left_out else ""
         parts.append(report.keep(limit_plots.felt_figure(f), f"felt_{f.property}_{f.factor.modality}_{f.factor.operator}",
                                  f"{'Measured' if f.measured else 'Felt'} {f.property} under {safe(f.factor.words())}, relative to the undegraded stimulus, with 95 % intervals. Band: the JND {report.cite(f.source.source)} "
-                                 f"({safe(f.source.situation)}). L_appear: {safe(value_of(f.limit))}; the property is felt as {f.toward}.{left}"))
+                                 f"({safe(f.source.situation)}; {number(f.source.jnd)} {safe(f.source.unit)} by {safe(f.source.criterion)}" + ("" if f.source.percent != f.source.percent else f", {number(f.source.at75)} at 75 %") + f"). L_appear: {safe(value_of(f.limit))}; the property is felt as {f.toward}.{left}"))
     return "".join(parts)
 
 
@@ -164,17 +189,22 @@ def performance_section(report):
         for degraded, c in p.cells.items():
             d = p.differences.get(degraded)
             time = resampling.interval(c.draws[:, 1])
-            rows.append([degraded_words(degraded), c.n, f"{100 * c.share:.1f} [{100 * c.share_interval()[0]:.1f}, {100 * c.share_interval()[1]:.1f}]", f"{c.mean_time_s:.2f} {span(*time)}"]
-                        + ([f"{100 * d.success:+.1f} [{100 * d.success_interval[0]:+.1f}, {100 * d.success_interval[1]:+.1f}]", f"{d.time:.3f} {span(*d.time_interval)}",
-                            "harmless" if d.harmless else "harmful" if d.harmful else "open"] if d else ["", "", "baseline"]))
-        parts.append(report.table(f"Games won (%, Wilson’s interval), time to win (s; games not won count {number(p.limit_s) if np.isfinite(p.limit_s) else 'with the limit, but all were won'}"
-                                  f"{' s' if np.isfinite(p.limit_s) else ''}), and both compared with all senses. Harmless: shown to be within both margins, Holm’s correction; harmful: an interval lies "
-                                  "beyond its margin.", ["condition", "n", "won %", "time s", "difference, points", "ratio of time", "shown"], rows))
-        if baseline.share < p.margins[0] or baseline.mean_time_s * p.margins[1] > p.limit_s:
+            low, high = c.share_interval(p.clustered)
+            rows.append([degraded_words(degraded), c.n, f"{100 * c.share:.1f} [{100 * low:.1f}, {100 * high:.1f}]", f"{c.mean_time_s:.2f} {span(*time)}"]
+                        + ([f"{100 * d.success:+.1f} [{100 * d.success_interval[0]:+.1f}, {100 * d.success_interval[1]:+.1f}]",
+                            f"{d.time:.3f} {span(*d.time_interval)}" if d.time == d.time else "not identified", f"{d.parts_s[0]:+.2f} {d.parts_s[1]:+.2f}" if d.parts_s[0] == d.parts_s[0] else "",
+                            "harmless" if d.harmless else "harmful" if d.harmful else "open"] if d else ["", "", "", "baseline"]))
+        parts.append(report.table(f"Games won (%), mean time (s; games not won count {number(p.limit_s) if np.isfinite(p.limit_s) else 'with the limit, but all were won'}"
+                                  f"{' s' if np.isfinite(p.limit_s) else ''}), and both compared with all senses: the difference of success, the ratio of the times to win with games not won as "
+                                  "censored, and the change of the mean time by success and by time to win (s). Harmless: shown to be within both margins; harmful: an interval lies "
+                                  "beyond its margin.", ["condition", "n", "won %", "time s", "difference, points", "ratio of time to win", "by success, by time", "shown"], rows))
+        if baseline.share < p.margins[0] or not np.exp(baseline.times.mu) * p.margins[1] <= p.limit_s:
             parts.append("<p>The undegraded games were won too rarely, or too late, for any level to be worse by a margin: no level is shown to be harmless by that outcome.</p>\n")
         for factor, found in p.limits.items():
-            parts.append(report.keep(performance_plots.factor_figure(p.cells, factor, found, p.margins, p.observer), f"games_{factor.modality}_{factor.operator}",
+            parts.append(report.keep(performance_plots.factor_figure(p.cells, factor, found, p.margins, p.observer, p.clustered), f"games_{factor.modality}_{factor.operator}",
                                      f"Games under {safe(factor.words())}. Green: all senses, with their interval; dashed: the margin; red: L_break with its interval."))
+            parts.append(report.keep(performance_plots.margin_figure(factor, p.curves[factor], p.margins, p.observer), f"limits_over_margin_{factor.modality}_{factor.operator}",
+                                     f"L_break of {safe(factor.words())} over the margin and over the time limit, with 95 % bands. An answer that hangs on one margin or limit is a property of that choice."))
         removed = [(degraded_words(degraded), d) for degraded, d in p.differences.items() if all(f.removal for f, _ in degraded)]
         if removed:
             parts.append(report.keep(performance_plots.removal_figure(removed, baseline, p.margins, p.observer), "removal",
@@ -212,10 +242,10 @@ def models_section(report):
 
 def methods(report):
     a = report.analysis
-    clusters = "Participants were the sample of the bootstrap." if len(a.trials.participants()) >= resampling.FEWEST_PARTICIPANTS else \
+    clusters = "Participants were the sample." if len(a.trials.participants()) >= resampling.FEWEST_PARTICIPANTS else \
         f"There were fewer than {resampling.FEWEST_PARTICIPANTS} participants: intervals hold for the trials of these participants and not for other people."
-    limit = " Games not won count with the time limit, so that times are restricted means." if any(np.isfinite(p.limit_s) for p in a.performances) else ""
     return ("<h2>Methods</h2>\n<p>All levels are measured ones where the apparatus measured them. "
-            f"{clusters} Bayesian bootstrap with {resampling.DRAWS} draws, seed {a.settings.seed}.{limit} L_break is the level at which the worsening, made non-decreasing over the levels and interpolated "
-            "linearly, reaches the margin. Success was tested by Farrington and Manning’s score test of non-inferiority with Newcombe’s interval, time by the "
-            f"bootstrap of the ratio of means, at α = {a.settings.alpha:g} with Holm’s correction over the levels of a factor.</p>\n")
+            f"{clusters} Seed {a.settings.seed}. L_break is the level at which success, or the time to win given success, is worse by the margin: a Gaussian process, made "
+            "monotone, over the log odds of success and over the logarithm of the time, whose games not won are censored (log-normal, with a share that cannot be won). Its bracket holds "
+            "over all levels together. Success was tested by Farrington and Manning’s score test of non-inferiority with Newcombe’s interval, or over people by Student’s t on the log "
+            f"odds; time by Student’s t on the logarithm; one-sided at α = {a.settings.alpha:g}, from the mildest level on. Synchrony windows have a free peak.</p>\n")

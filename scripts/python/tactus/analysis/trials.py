@@ -97,8 +97,8 @@ def read(files):
     """All rows of the tables as Trials. Raises Refusal with file, line and reason."""
     kept, seen = [], {}
     for path in files:
-        for number, row in enumerate(trial_table.read(path), start=1):
-            where = f"{path} row {number}"
+        for line, row in trial_table.numbered(path):
+            where = f"{path}:{line}"
             identity = tuple(row.get(name) for name in IDENTITY)
             if identity in seen:
                 raise Refusal(f"{where}: the same trial of {row['participant_id']} is already in {seen[identity]}; give each table once")

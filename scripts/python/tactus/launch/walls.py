@@ -1,8 +1,8 @@
 """The walls of a room: one visual_node for each, so that a slow one does not delay the others."""
-import csv
 import re
 
 from tactus.paths import REPOSITORY
+from tactus.refusal import Refusal
 from tactus.tables import read_rows
 
 FIRST = "visual_node"  # draws the first wall, or the camera of the scene without a room
@@ -16,7 +16,9 @@ def room(here, text):
     path = ROOMS / f"{text}.csv" if text in shipped else here / text
     try:
         names = [row["wall"] for row in read_rows(path)]
-    except (OSError, KeyError, TypeError, UnicodeDecodeError, csv.Error):
+    except Refusal as error:
+        raise ValueError(f"--room {text}: {error}") from None
+    except (OSError, KeyError):
         raise ValueError(f"--room {text}: is not a file of walls; choose {', '.join(shipped)} or a CSV file such as {ROOMS}/cave4.csv") from None
     names = [name for name in names if name and name != "eye"]
     if not names:

@@ -4,7 +4,7 @@
   fit_many(levels, yes, total, "order")     n sets together, arrays (n, k) -> Fits
   interval(fit, "pss")                      (low, high)
 
-Lapse rates are fitted within [0, 0.06] (Wichmann and Hill 2001), guess rates of yes/no tasks within [0, 0.5] under the weak prior Beta(1, 10) (Schuett
+Lapse rates are fitted within [0, 0.06] (Wichmann and Hill 2001), the peak of a synchrony window is free, guess rates of yes/no tasks within [0, 0.5] under the weak prior Beta(1, 10) (Schuett
 et al. 2016). In forced choice the number of choices fixes the guess rate: fixed={"guess": 0.5}.
 """
 import dataclasses
@@ -86,6 +86,11 @@ class Fit:
     fixed: dict
     many: Fits
 
+    @property
+    def aic(self):
+        """Akaike's criterion (1974, IEEE Transactions on Automatic Control 19:716); the model with the smallest describes the answers best."""
+        return 2 * int(self.many.free.sum()) - 2 * self.log_likelihood
+
     def value(self, name):
         return float(self.many.estimates(name)[0])
 
@@ -105,8 +110,9 @@ def arranged(levels, yes, total):
     return levels, yes, total
 
 
-def fit_many(levels, yes, total, name, fixed=None):
-    """Fits of n sets of answers. levels (k,) or (n, k), yes and total (n, k); total 0 pads shorter sets. fixed: name -> value of guess or lapse."""
+def fit_many(levels, yes, total, name, fixed=None, forced_peak=False):
+    """Fits of n sets of answers. levels (k,) or (n, k), yes and total (n, k); total 0 pads shorter sets. fixed: name -> value of guess or lapse. forced_peak:
+    holds the peak of a window near 1, for comparison."""
     shape, fixed = function(name), dict(fixed or {})
     if shape.dimensions != 1:
         raise ValueError(f"{name} has two levels in each trial and cannot be fitted here; estimate it with QUEST+")
@@ -122,22 +128,23 @@ def fit_many(levels, yes, total, name, fixed=None):
     n = len(z)
     rates = np.tile([0.0 if shape.symmetric else fixed.get("guess", FIRST_RATES[0]), fixed.get("lapse", FIRST_RATES[1])], (n, 1)).astype(float)
     free = np.array([True, True, "guess" not in fixed and not shape.symmetric, "lapse" not in fixed])
-    low = np.tile([-FARTHEST, math.log(SPREAD[0]), GUESS_BOUNDS[0], LAPSE_BOUNDS[0]], (n, 1))
-    high = np.tile([FARTHEST, math.log(SPREAD[1]), GUESS_BOUNDS[1], LAPSE_BOUNDS[1]], (n, 1))
+    lapse = LAPSE_BOUNDS if forced_peak else shape.bounds["lapse"]
+    low = np.tile([-FARTHEST, math.log(SPREAD[0]), GUESS_BOUNDS[0], lapse[0]], (n, 1))
+    high = np.tile([FARTHEST, math.log(SPREAD[1]), GUESS_BOUNDS[1], lapse[1]], (n, 1))
     theta, value, done = fit_from_grid(answers, rates, free, low, high)
     return Fits(shape, answers, theta, value, done, free, low, high, middle, span, fixed)
 
 
-def fit(levels, yes, total, name, fixed=None, rng=None):
+def fit(levels, yes, total, name, fixed=None, rng=None, forced_peak=False):
     """Fit of one set: levels, yes, total (k,). rng is not used; the search is deterministic."""
     levels, yes, total = (np.asarray(a, dtype=float).reshape(1, -1) for a in (levels, yes, total))
-    many = fit_many(levels, yes, total, name, fixed)
+    many = fit_many(levels, yes, total, name, fixed, forced_peak)
     m, s, guess, lapse = (float(v[0]) for v in many.inner())
     params = {k: float(v) for k, v in many.function.outer(m, s, guess, lapse).items()}
     likelihood = float(log_likelihood(many.answers, probability(many.function, many.answers.z, many.theta)[0])[0])
     named = dict(zip((many.function.location, many.function.spread, "guess", "lapse"), range(4)))
     at = tuple(n for n, i in named.items() if many.free[i] and (many.theta[0, i] <= many.low[0, i] or many.theta[0, i] >= many.high[0, i]))
-    return Fit(name, params, many.function.derived(m, s, guess), likelihood, 2 * (saturated(yes[0], total[0]) - likelihood),
+    return Fit(name, params, many.function.derived(m, s, guess, lapse), likelihood, 2 * (saturated(yes[0], total[0]) - likelihood),
                bool(many.done[0] and many.placed()[0]), at, dict(many.fixed), many)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import expit, ndtr, ndtri
 
 LAPSE = (0.0, 0.06)  # range of plausible lapse rates: Wichmann and Hill 2001
+MISSED = (0.0, 0.9)  # of judgements of synchrony: their peak may be far below 1 without lapses (independent_channels.py); design
 GUESS = (0.0, 0.5)   # design; above, the fitted threshold is meaningless
 GUESS_PRIOR = 10.0   # Schuett et al. 2016, Vision Research 122:105: Beta(1, 10) on rates near 0
 SMALLEST_LEVEL = 1e-12  # argument of a logarithm; design
@@ -126,15 +127,25 @@ class OneLevel:
         """Converts a point on the axis to a level."""
         return z
 
-    def derived(self, m, s, guess):
+    def derived(self, m, s, guess, lapse=0.0):
         """{name: value} of all derived values."""
         found = {name: float(self.level_of(m + s * self.anchor(name, guess))) for name in self.anchors()}
         return {**found, **{name: float(factor * s) for name, factor in self.widths().items()}}
 
 
 class Synchrony(OneLevel):
-    """Judgements of synchrony over SOA: a Gaussian window around the point of subjective simultaneity (pss). window75 is the width at 75 % of the peak,
-    from low75 to high75."""
+    """Judgements of synchrony over SOA: a Gaussian window around the point of subjective simultaneity (pss), with a free peak of 1 - lapse. window75 is the
+    width at 75 % of the peak, from low75 to high75; absolute_low75 and absolute_high75 are where 75 % are judged together, NaN if the peak is lower. A
+    peak that is held near 1 makes the window too narrow: with a true sd of 60 and a peak of 0.75 it gives about 53."""
+
+    def __init__(self, name, core, parameters):
+        super().__init__(name, core, parameters)
+        self.bounds["lapse"] = MISSED
+
+    def derived(self, m, s, guess, lapse=0.0):
+        share = (0.75 - guess) / (1 - guess - lapse)
+        half = float(s) * math.sqrt(-2 * math.log(share)) if 0 < share <= 1 else math.nan
+        return {**super().derived(m, s, guess), "peak": float(1 - lapse), "absolute_low75": float(m) - half, "absolute_high75": float(m) + half}
 
     def anchors(self):
         return {"low75": -self.core.half_width75, "high75": self.core.half_width75}

@@ -23,6 +23,7 @@ from tactus.psychophysics.starts import fit_from_grid
 
 DRAWS = 2000          # Efron and Tibshirani 1993, section 12.5: at least 1000 for the ends of an interval
 STEPS = 14            # of the search for an end, whose error is then below 1e-3 of a standard error; design
+STEP, OFFSETS = 0.05, (-1.5, -0.5, 0.5, 1.5)  # spread of a step, in gaps of the levels; its distances to a level, in spreads; design
 METHODS = ("posterior", "profile", "bootstrap")
 
 
@@ -69,8 +70,37 @@ def posterior(fits, name, level):
     which, anchor, out = index_of(fits, name)
     if which not in (Q, T):
         return profile(fits, name, level)
-    ends = [out(end) for end in credible(fits, which, anchor, level, lambda w, a: profile_ends(fits, w, a, WIDE))]
-    return tuple(np.where(np.isnan(fits.estimates(name)), np.nan, e) for e in (np.minimum(*ends), np.maximum(*ends)))
+    theta = list(credible(fits, which, anchor, level, lambda w, a: profile_ends(fits, w, a, WIDE)))
+    steps = np.flatnonzero(unresolved(fits, level))
+    if len(steps):  # the location may be anywhere between two levels, which spreads above the smallest of the grid do not permit
+        wider = profile_ends(fits.rows(steps), which, anchor, level)
+        theta[0][steps] = -np.inf if which == T else np.minimum(theta[0][steps], wider[0])
+        theta[1][steps] = np.maximum(theta[1][steps], wider[1])
+    with np.errstate(divide="ignore"):
+        ends = [out(end) for end in theta]
+    estimate = fits.estimates(name)
+    # The grid of the posterior ends at a smallest spread, which a maximum of the likelihood may lie below.
+    return np.fmin(np.minimum(*ends), estimate) + 0 * estimate, np.fmax(np.maximum(*ends), estimate) + 0 * estimate
+
+
+def unresolved(fits, level=0.95):
+    """(n,) whether the levels are too far apart to estimate the spread: a step explains the answers as well, within half a chi-square quantile of log
+    likelihood, so the spread has no lower end (separation; Albert and Anderson 1984, Biometrika 71:1)."""
+    z = np.where(fits.answers.total > 0, fits.answers.z, np.nan)
+    found = np.zeros(len(fits), dtype=bool)
+    gaps = np.nanmax(np.diff(np.sort(z, axis=1), axis=1), axis=1, initial=0.0)
+    free = fits.free.copy()
+    free[T] = False
+    for i in np.flatnonzero(np.exp(fits.theta[:, T]) < gaps):
+        levels = np.unique(z[i][~np.isnan(z[i])])
+        step = STEP * np.diff(levels).min(initial=1.0)
+        q = np.concatenate([(levels[1:] + levels[:-1]) / 2, *(levels + step * offset for offset in OFFSETS)])
+        start = np.repeat(fits.theta[i:i + 1], len(q), axis=0)
+        start[:, Q], start[:, T] = q, np.log(step)
+        rows = np.full(len(q), i)
+        value = maximise(fits.answers.rows(rows), start, free, fits.low[rows], fits.high[rows])[1]
+        found[i] = fits.value[i] - value.max() < chi2.ppf(level, 1) / 2
+    return found
 
 
 def profile(fits, name, level):

@@ -31,8 +31,8 @@ class SimulatedObserver:
 
 
 class Presser:
-    """Judges which of two felt surfaces is softer, by their stiffness only. weber: relative difference with 75 % right answers without lapses (design: the
-    `jnd` of functions.py). Only the ratio of the stiffnesses counts, not their order. lapse: share of random answers."""
+    """Judges which of two felt surfaces is softer, by their stiffness only. weber: relative difference with 75 % right answers without lapses (the
+    criterion of the `jnd` of functions.py; a published JND with another criterion is converted first: felt_properties.py). Only the ratio of the stiffnesses counts, not their order. lapse: share of random answers."""
     parameters = ("weber", "lapse")
 
     def __init__(self, weber, lapse, seed):

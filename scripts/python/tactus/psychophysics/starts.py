@@ -8,6 +8,7 @@ from tactus.psychophysics.likelihood import GUESS, LAPSE, Q, T, Answers, log_lik
 
 LOCATIONS = np.linspace(-0.6, 0.6, 25)                     # of the span of the levels, from its middle; design
 SPREADS = np.log(np.geomspace(0.02, 1.5, 10))              # design
+LOW_PEAK = 0.35  # lapse rate of a further start, if the bounds permit it; design
 AT_ONCE = 4_000_000                                        # probabilities held in memory; design
 
 
@@ -41,7 +42,10 @@ def quick(answers, theta):
 def fit_from_grid(answers, rates, free, low, high, more=()):
     """maximise() from the starts of the grid and from `more`; returns the best of each set: (theta, value, done)."""
     best = None
-    for start in [*grid_starts(answers, rates), *more]:
+    lower = rates.copy()  # a window whose peak is far below 1
+    lower[:, 1] = LOW_PEAK
+    lows = grid_starts(answers, lower) if free[LAPSE] and (high[:, LAPSE] > LOW_PEAK).all() else []
+    for start in [*grid_starts(answers, rates), *lows, *more]:
         theta, value, done = maximise(answers, start, free, low, high)
         if best is None:
             best = [theta, value, done]

@@ -1,7 +1,7 @@
 """Exports the journal to standard file formats, which docs/study_formats.md describes.
 
   trials.csv                             long format, a row a trial (trial_table.py)
-  psignifit/CONDITION.csv                level, yes, total: n x 3, for psignifit, Palamedes and quickpsy
+  psignifit/CONDITION.csv                level, yes, total: n x 3, for psignifit, Palamedes and quickpsy; of a judgement of synchrony each flank
   bids/                                  a data set of the Brain Imaging Data Structure (bids.py)
   psychopy.csv                           wide format of PsychoPy's ExperimentHandler
   questionnaire.csv                      item, answer
@@ -9,6 +9,7 @@
 import collections
 import csv
 import io
+import math
 import pathlib
 import re
 
@@ -68,11 +69,37 @@ def file_names(texts):
 
 
 def psignifit(folder, entries):
-    cells = counted(entries)
-    names = file_names(cells)
-    for condition, levels in cells.items():
+    """Writes level, yes and total of each condition. The answers to a judgement of synchrony rise and fall again, which no sigmoid does: its flanks are
+    two files, each with a share that rises with the level."""
+    tables = {}
+    for condition, levels in counted(entries).items():
         lines = sorted((achieved(level, es), sum(bool(e["yes"]) for e in es), len(es)) for level, es in levels.items())
-        replace(folder / "psignifit" / f"{names[condition]}.csv", "\n".join(["level,yes,total"] + [",".join(map(text_of, line)) for line in lines]) + "\n")
+        if any(e["row"].get("task") == "sj" for es in levels.values() for e in es):
+            top = peak(lines)
+            tables[f"{condition} rising"] = lines[:top + 1]
+            tables[f"{condition} falling"] = [(level, total - yes, total) for level, yes, total in lines[top:]]  # yes: apart
+        else:
+            tables[condition] = lines
+    names = file_names(tables)
+    for name, lines in tables.items():
+        replace(folder / "psignifit" / f"{names[name]}.csv", "\n".join(["level,yes,total"] + [",".join(map(text_of, line)) for line in lines]) + "\n")
+
+
+def peak(lines):
+    """Index of the line (level, yes, total) up to which the share rises and from which it falls, by maximum likelihood (unimodal regression; Turner and Wollan
+    1997, Computational Statistics & Data Analysis 25:305)."""
+    def likelihood(part):
+        blocks = []  # [yes, total] of pooled lines, whose shares do not fall
+        for _, yes, total in part:
+            blocks.append([yes, total])
+            while len(blocks) > 1 and blocks[-2][0] * blocks[-1][1] > blocks[-1][0] * blocks[-2][1]:
+                yes, total = blocks.pop()
+                blocks[-1] = [blocks[-1][0] + yes, blocks[-1][1] + total]
+        return sum(y * math.log(y / n) + (n - y) * math.log(1 - y / n) for y, n in blocks if 0 < y < n)
+
+    # Of equal likelihoods, the one with the largest share in the middle.
+    share = [yes / total for _, yes, total in lines]
+    return max(range(len(lines)), key=lambda i: (likelihood(lines[:i + 1]) + likelihood(lines[:i:-1]), share[i], -abs(i - (len(lines) - 1) / 2)))
 
 
 def table(columns, rows):

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from tactus import own_files
 from tactus.refusal import Refusal, sentence_of
-from tactus.tables import escaped, unescaped
+from tactus.tables import decoded, escaped, records, unescaped
 
 LARGEST_BYTES = 1_000_000_000  # design: five million rows
 LONGEST_TEXT = 100_000         # characters of one field; design: an answer in words
@@ -175,43 +175,41 @@ def read(path):
     """[{column: value}] of a table: texts, whole numbers, floats; None for an empty number. Absent columns are left out.
 
     Raises Refusal with file, line and reason: one invalid row refuses the whole table."""
+    return [row for _, row in numbered(path)]
+
+
+def numbered(path):
+    """[(line number, row)], as read()."""
     try:
         data = own_files.read_regular(path, LARGEST_BYTES)
     except OSError as error:
         raise Refusal(f"{path}: cannot be read ({sentence_of(error)}); give a table of trials") from None
-    return parsed(data, path)
+    return lines_of(data, path)
 
 
 def parsed(data, path):
     """As read(), from the bytes of a table. path: for messages."""
+    return [row for _, row in lines_of(data, path)]
+
+
+def lines_of(data, path):
     if len(data) > LARGEST_BYTES:
         raise Refusal(f"{path}: is longer than {LARGEST_BYTES} bytes; give a smaller table of trials")
-    try:
-        lines = io.StringIO(data.decode("utf-8-sig"), newline="")
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise Refusal(f"{path}:{line}: is not UTF-8; save it as UTF-8") from None
     csv.field_size_limit(max(csv.field_size_limit(), LONGEST_TEXT))
-    reader = csv.reader(lines, strict=True)
-    try:
-        return list(rows_of(reader, path))
-    except csv.Error as error:
-        raise Refusal(f"{path}:{max(1, reader.line_num)}: {error}; save it as comma-separated text") from None
+    return list(rows_of(records(decoded(data, path), path), path))
 
 
-def rows_of(reader, path):
-    header = next(reader, None) or []
+def rows_of(lines, path):
+    at, header = next(lines, (1, []))
     for name in header:
         if name not in COLUMNS or header.count(name) > 1:
             what = "occurs twice" if name in COLUMNS else "is not a column of trial tables"
-            raise Refusal(f"{path}:1: the column '{name[:40]}' {what}; use each column once, named as in docs/study_formats.md")
+            raise Refusal(f"{path}:{at}: the column '{name[:40]}' {what}; use each column once, named as in docs/study_formats.md")
     for name in NEEDED:
         if name not in header:
-            raise Refusal(f"{path}:1: there is no column {name}; every trial table needs {', '.join(NEEDED)}")
-    for fields in reader:
-        where = f"{path}:{reader.line_num}"
-        if len(fields) != len(header):
-            raise Refusal(f"{where}: has {len(fields)} fields, but the header has {len(header)}; check for an incomplete line or an unquoted comma")
+            raise Refusal(f"{path}:{at}: there is no column {name}; every trial table needs {', '.join(NEEDED)}")
+    for line, fields in lines:
+        where = f"{path}:{line}"
         try:
             row = {name: value_of(field, name) for name, field in zip(header, fields)}
         except ValueError as error:
@@ -219,4 +217,4 @@ def rows_of(reader, path):
         sentence = wrong(row)
         if sentence:
             raise Refusal(f"{where}: {sentence}")
-        yield row
+        yield line, row

@@ -1,0 +1,48 @@
+"""Tables of other programs are read, or refused with file and line."""
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "python"))
+from tactus import tables
+from tactus.launch import walls
+from tactus.refusal import Refusal
+
+ROWS = [{"name": "a, b", "value": "1.5"}, {"name": "ä", "value": ""}]
+TEXT = 'name,value\n"a, b",1.5\nä,\n'
+
+
+class Tables(unittest.TestCase):
+    def setUp(self):
+        kept = tempfile.TemporaryDirectory()
+        self.addCleanup(kept.cleanup)
+        self.path = pathlib.Path(kept.name) / "table.csv"
+
+    def test_marks_line_ends_and_blank_lines_do_not_change_the_rows(self):
+        for end in ("\n", "\r\n", "\r"):
+            for mark in ("", "\ufeff"):
+                for more in ("", "\n", " \n,\n\n"):
+                    self.path.write_bytes((mark + (more + TEXT + more).replace("\n", end)).encode())
+                    self.assertEqual(tables.read_rows(self.path), ROWS)
+
+    def test_a_table_of_another_form_is_refused_with_file_and_line(self):
+        for data, line, reason in ((TEXT.replace(",", ";").encode(), 1, "semicolons"), (TEXT.replace(",", "\t").encode(), 1, "tabs"), (TEXT.encode("utf-16"), 1, "UTF-16"),
+                                   (TEXT.encode("latin-1"), 3, "not UTF-8"), (TEXT.encode() + b"\n\nc,1,2\n", 6, "3 fields"), (TEXT.encode() + b"c\n", 4, "1 fields"),
+                                   (TEXT.encode() + b'"c', 4, "unexpected end")):
+            self.path.write_bytes(data)
+            with self.assertRaisesRegex(Refusal, f"^{self.path}:{line}: .*{reason}"):
+                tables.read_rows(self.path)
+
+    def test_a_room_with_semicolons_is_refused_with_its_line(self):
+        self.path.write_text("wall;x\na;1\n", encoding="utf-8")
+        with self.assertRaisesRegex(ValueError, "table.csv:1: its fields are separated by semicolons"):
+            walls.room(self.path.parent, self.path.name)
+
+    def test_an_empty_table_has_no_rows(self):
+        self.path.write_bytes(b"\n\n")
+        self.assertEqual(tables.read_rows(self.path), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
