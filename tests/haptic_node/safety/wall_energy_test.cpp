@@ -23,7 +23,7 @@ struct Spring {
     given_J += force * (depth - depth_m);
     depth = depth_m;
     force = force_share * walls.factor() * 1000 * depth_m;
-    walls.record({{Vector3d(0, 0, force), Vector3d::Zero()}, 0});
+    walls.record({{Vector3d(0, 0, force), Vector3d::Zero()}, {}, 0});
     return force;
   }
   WallEnergy walls{WallLimits{}};
@@ -73,7 +73,7 @@ TEST_CASE("A softened wall recovers after the hand was away") {
 
 TEST_CASE("The brake lets the next tick give at most the credit") {
   WallEnergy walls{WallLimits{}};
-  const WallForce push{{Vector3d(0, 0, 5), Vector3d::Zero()}, 0};
+  const WallForce push{{Vector3d(0, 0, 5), Vector3d::Zero()}, {}, 0};
   CHECK(walls.brake(push, {Vector3d(0, 0, 0.001), Vector3d::Zero()}, kDt) == 0);
   // The hand presses 0.1 mm deep at 5 N: 0.5 mJ. Then 1 mm at 5 N are 5 mJ, of which nine tenths of the credit cover a part; the force
   // itself adds 25 N^2 / 0.1 kg (1 ms)^2.
@@ -83,7 +83,7 @@ TEST_CASE("The brake lets the next tick give at most the credit") {
   CHECK(kept == Approx(0.9 * 0.0005 / (0.005 + 25 / 0.1 * 1e-6)));
   CHECK(walls.brake(push, {Vector3d(0, 0, -0.001), Vector3d::Zero()}, kDt) == 1);
   // A surface that moves with the hand does the work itself.
-  const WallForce belt{push.wrench, 5};
+  const WallForce belt{push.wrench, {}, 5};
   CHECK(walls.brake(belt, {Vector3d(0, 0, 0.001), Vector3d::Zero()}, kDt) == 1);
 }
 
@@ -102,7 +102,7 @@ TEST_CASE("Only the forces of fixed surfaces count, with their torque and their 
 TEST_CASE("Motion that is not finite counts as no work") {
   WallEnergy walls{WallLimits{}};
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  walls.record({{Vector3d(0, 0, 5), Vector3d::Zero()}, 0});
+  walls.record({{Vector3d(0, 0, 5), Vector3d::Zero()}, {}, 0});
   walls.observe(0.001, true, {Vector3d(nan, 0, 0), Vector3d(0, nan, 0)}, kDt, 0);
   CHECK(walls.generated_J() == 0);
   CHECK(walls.factor() == 0.5);
