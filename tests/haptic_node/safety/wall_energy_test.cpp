@@ -134,6 +134,43 @@ TEST_CASE("A fixed wall generates at most 1 mJ an episode at any delay") {
   }
 }
 
+TEST_CASE("A fixed wall is as stiff with a late touch model as with a fresh one") {
+  // Once 0.03 N instead of 3.1 N at 200 ms, and half of the peak of a tap at 50 ms.
+  const TrialResult tapped = run_trial(metronome()), pressed = run_trial(press());
+  CHECK(pressed.hold_N > 2.5);
+  CHECK(tapped.last_peak_N > 3);
+  for (const int delay_ms : {10, 30, 50, 70, 100, 150, 200}) {
+    TrialDef taps = metronome(), presses = press();
+    taps.delay_ms = presses.delay_ms = delay_ms;
+    const TrialResult tap = run_trial(taps), hold = run_trial(presses);
+    CAPTURE(delay_ms, tap.generated_mJ, hold.generated_mJ);
+    CHECK(hold.hold_N == Approx(pressed.hold_N).epsilon(0.01));
+    CHECK(hold.hold_m == Approx(pressed.hold_m).epsilon(0.01));
+    CHECK(tap.last_peak_N == Approx(tapped.last_peak_N).epsilon(0.03));
+    CHECK(tap.deepest_m == Approx(tapped.deepest_m).epsilon(0.03));
+    CHECK(tap.generated_mJ <= 1);
+    CHECK(hold.generated_mJ <= 1);
+    CHECK(tap.energy_mJ < 0);
+  }
+}
+
+TEST_CASE("A wall that appears deep above a hand that presses on is stiff from there, without pushing it out") {
+  for (const int delay_ms : {150, 200}) {
+    TrialDef def = press();
+    def.margin_late_m = 0;  // the simulation ignores that the tool renders late
+    def.delay_ms = delay_ms;
+    def.depth_m = 0.04;
+    def.settings.transient_gain = 0;
+    const TrialResult r = run_trial(def);
+    CAPTURE(delay_ms, r.hold_m, r.observed_mJ);
+    // Of a spring of 300 N/m that is 40 mm away, the wall holds what it needs at the depth at which it appeared.
+    CHECK(r.hold_N == Approx(300 * (0.04 - r.hold_m)).epsilon(0.02));
+    CHECK(r.hold_N > 2);
+    CHECK(r.generated_mJ <= 1);
+    CHECK(r.least_coupling > 0.9);
+  }
+}
+
 TEST_CASE("A hand that presses while the force fades in gets back no more than it gave") {
   // The hand is outside when touch begins, and presses a part of the force. Once 24 mJ at 150 Hz and 150 ms.
   for (const double rate_Hz : {100.0, 150.0, 250.0, 1000.0})

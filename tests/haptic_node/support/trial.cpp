@@ -4,16 +4,15 @@
 #include <cmath>
 #include <deque>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <tactus/contact_event_t.hpp>
-#include <tactus/material_def_t.hpp>
 #include <tactus/tool_constraint_t.hpp>
 #include <tactus/touch_applied_t.hpp>
 #include <tactus/touch_model_t.hpp>
 #include <tactus/touch_plane_t.hpp>
 
 #include "sync/resampling/sample_status.h"
+#include "tests/haptic_node/support/waves.h"
 #include "tests/haptic_node/support/world.h"
 
 namespace tactus::haptic::test {
@@ -32,19 +31,6 @@ double transients_s(const Settings& s) {
 }
 
 Vector3d place(double z) { return {0, 0, z}; }
-
-// Waves along x of a material.
-std::shared_ptr<const SurfaceMaps> waves(double height_m) {
-  HeightMap map{64, 4, 65535, {}};
-  for (int i = 0; i < 64 * 4; ++i)
-    map.levels.push_back(static_cast<std::uint16_t>(std::lround(65535 * (0.5 + 0.5 * std::sin(2 * M_PI * (i % 64) / 64)))));
-  material_def_t m{};
-  m.bump_size_u_m = m.bump_size_v_m = 0.02, m.bump_height_m = height_m;
-  auto maps = std::make_shared<SurfaceMaps>();
-  maps->by_material.resize(1);
-  maps->by_material[0].relief = std::make_shared<const Relief>(make_relief(map, m));
-  return maps;
-}
 
 MonotoneCubic path_of(const TrialDef& d) {
   std::vector<double> times;
@@ -119,11 +105,7 @@ class Trial {
       p.stiffness_N_m = static_cast<float>(def_.stiffness_N_m);
       if (def_.mass_kg > 0) p.effective_mass_kg = static_cast<float>(def_.mass_kg);
       p.velocity_m_s = to_vec3f(place(v_));
-      if (def_.relief_m > 0) {
-        p.material = 0, p.bump_asset = 1;
-        p.normal_body = to_vec3f(Vector3d::UnitZ());
-        p.bump_u = to_vec3f(Vector3d::UnitX());
-      }
+      if (def_.relief_m > 0) add_map(p);
       planes.push_back(p);
     }
     touch_model_t m = model(1e3 * now_s, planes);
