@@ -304,7 +304,7 @@ TrialDef metronome() {
 TrialDef press() {
   TrialDef d = metronome();
   d.taps = 2;
-  // The first touch is after the first models: the way down takes 0.43 of the time that is not held.
+  // The way down takes 0.43 of the time that is not held.
   d.period_s = 3, d.hold_s = 2.3;
   d.depth_m = 0.013;
   return d;

@@ -63,7 +63,7 @@ TrialResult run_trial(const TrialDef& def);
 
 // The taps of sim_node/scenes/metronome.sdf: a ball of 8 mm on a board, four times a second for 6 s.
 TrialDef metronome();
-// A hand that presses 13 mm into a board within 0.3 s, after 1 s of touch models, and holds it for 2 s.
+// A hand that presses 13 mm into that board within 0.3 s and holds it for 2.3 s; twice.
 TrialDef press();
 
 // Draws every setting of haptic_node within its range, on a logarithmic scale where the range allows, and a hand, a
