@@ -42,9 +42,9 @@ bool valid_plane(const touch_plane_t& p) {
          std::isfinite(p.friction_static) && std::isfinite(p.friction_dynamic);
 }
 
-// A plane under another id continues a still surface within these differences: 6 degrees, and less than a finger resolves
-// along a surface. Design.
-constexpr double kSameNormal_rad = 0.1, kSamePlace_m = 0.001;
+// A plane under another id continues a still surface within these differences. Design: the facets of a fine mesh differ by
+// more, and are surfaces of their own.
+constexpr double kSameNormal_rad = 0.01, kSamePlace_m = 0.0001;
 
 // Above any apparent rotation of a body for a hand: one radian in 10 ms.
 constexpr double kMaxSpin_rad_s = 100;
