@@ -211,6 +211,7 @@ void Surfaces::rise(Surface& s, double height_m, double dt) const {
   double step_m = s.lag_speed_m_s_ * dt;
   if (s.lag_m_ <= 0) {
     s.lag_m_ = std::min(0.0, s.lag_m_ + step_m);
+    s.held = false;
     return;
   }
   if (s.held) {
@@ -221,7 +222,6 @@ void Surfaces::rise(Surface& s, double height_m, double dt) const {
     step_m = std::min(step_m, std::sqrt(depth_m * depth_m + 2 * rise_J_ / stiffness_N_m) - depth_m);
   }
   s.lag_m_ = std::max(0.0, s.lag_m_ - step_m);
-  if (s.lag_m_ <= 0) s.held = false;
 }
 
 void Surfaces::render(Surface& s, const Eigen::Vector3d& proxy, double dt) const {

@@ -155,7 +155,7 @@ TEST_CASE("A fixed wall is as stiff with a late touch model as with a fresh one"
 }
 
 TEST_CASE("A wall that appears deep above a hand that presses on is stiff from there, without pushing it out") {
-  for (const int delay_ms : {150, 200}) {
+  for (const int delay_ms : {90, 120}) {
     TrialDef def = press();
     def.margin_late_m = 0;  // the simulation ignores that the tool renders late
     def.delay_ms = delay_ms;

@@ -214,11 +214,12 @@ class Trial {
     r_.finite = r_.finite && out.force_N.allFinite() && out.torque_N_m.allFinite();
     r_.peak_N = std::max(r_.peak_N, std::abs(force));
     r_.beyond_force_N = std::max(r_.beyond_force_N, out.force_N.norm() - s.force_limit_N);
-    const double along = force * force_N_ > 0 ? std::abs(force_N_) : 0;
     const bool gap = t - judged_s_ > sync::to_seconds(Device::kWatchdog);
     const double dt = gap ? 1 / s.rate_Hz : t - judged_s_;
+    const Vector3d last_N = gap ? Vector3d(Vector3d::Zero()) : last_force_N_;
     r_.beyond_rise_N =
-        std::max(r_.beyond_rise_N, std::abs(force) - (gap ? 0 : along) - s.slew_limit_N_s * std::min(dt, 2 / s.rate_Hz));
+        std::max(r_.beyond_rise_N, beyond_slew_N(out.force_N, last_N, s.slew_limit_N_s * std::min(dt, 2 / s.rate_Hz)));
+    last_force_N_ = out.force_N;
     r_.beyond_fade_N = std::max(r_.beyond_fade_N, std::abs(force) - fade_limit_N(t));
     r_.observed_mJ = std::max(r_.observed_mJ, 1e3 * out.state.generated_J);
     r_.least_coupling = std::min<double>(r_.least_coupling, out.state.coupling);
@@ -283,6 +284,7 @@ class Trial {
   double z_ = 0, v_ = 0, body_N_s_ = 0, body_J_ = 0, applied_N_s_ = 0;  // of the body
   double z_hand_ = 0, speed_m_s_ = 0, hand_J_ = 0, hand_before_J_ = 0, body_before_J_ = 0;
   double tick_s_ = 0, judged_s_ = 0, apart_from_s_ = 0, impulse_N_s_ = 0;
+  Vector3d last_force_N_ = Vector3d::Zero();
   double force_N_ = 0, constraint_N_ = 0, quiet_from_s_ = 0;
   double proxy_z_ = 1, proxy_speed_m_s_ = 0;
   double late_until_s_ = -1;  // the tool has rendered a late model shortly before
