@@ -27,6 +27,7 @@ struct MappedPlace {
   Eigen::Vector3d last_lookup_body = Eigen::Vector3d::Zero();  // place of the last lookup, m
   double map_height_m = 0;                                   // height there, limited in slope
   double height_m = 0;                                       // as rendered
+  double height_change_m = 0;                                // of height_m, in this tick
   Eigen::Vector3d force_tilt = Eigen::Vector3d::Zero();      // world: direction of the force minus the normal
   double height_lag_m = 0;                                   // remaining part of a jump; decays to zero
   double height_lag_speed_m_s = 0;                           // speed of the decay

@@ -85,7 +85,10 @@ void Reliefs::update_height(Surface& s, const Relief& relief, const ToolPose& to
     m.map_height_m += rise_m;
   }
   m.height_lag_m = towards(m.height_lag_m, 0, m.height_lag_speed_m_s * dt);
+  const double before_m = m.height_m;
   m.height_m = height_share_ * m.map_height_m + m.height_lag_m;
+  // A new surface yields to the hand.
+  m.height_change_m = m.initialised ? m.height_m - before_m : 0;
   s.offset_m += m.height_m;
 }
 
@@ -101,12 +104,11 @@ void Reliefs::update_tilt(MappedPlace& m, const Relief& relief, const Vector3d& 
   m.initialised = true;
 }
 
-bool Reliefs::pressed(std::span<const Surface> surfaces) const {
-  if (!maps_ || (height_share_ <= 0 && normal_share_ <= 0)) return false;
-  return std::any_of(surfaces.begin(), surfaces.end(), [&](const Surface& s) {
-    const MaterialMaps* maps = s.depth_m > 0 ? maps_->find(s.mapped.material) : nullptr;
-    return maps && maps->relief;
-  });
+double Reliefs::half_energy_of_heights(std::span<const Surface> surfaces) {
+  double sum_J = 0;
+  for (const Surface& s : surfaces)
+    if (!s.movable() && s.depth_m > 0) sum_J += 0.5 * s.coupling_stiffness_N_m * s.depth_m * s.mapped.height_change_m;
+  return sum_J;
 }
 
 void Reliefs::apply_heights(std::span<Surface> surfaces, const ToolPose& tool, double dt) {
@@ -116,6 +118,7 @@ void Reliefs::apply_heights(std::span<Surface> surfaces, const ToolPose& tool, d
   // One twentieth remains at the end of the recovery time.
   jump_decay_ = std::exp(-3 * dt / def_.recovery_time_s);
   for (Surface& s : surfaces) {
+    s.mapped.height_change_m = 0;
     const MaterialMaps* maps = maps_ ? maps_->find(s.mapped.material) : nullptr;
     if (!maps) continue;
     const Vector3d at = place_in_body(s, tool);
@@ -132,12 +135,23 @@ void Reliefs::tilt_forces(std::span<Surface> surfaces, const ToolPose& tool, std
   for (std::size_t i = 0; i < surfaces.size() && i < forces_N.size(); ++i) {
     Surface& s = surfaces[i];
     const MaterialMaps* maps = maps_ ? maps_->find(s.mapped.material) : nullptr;
-    if (!maps || !maps->relief) continue;
+    if (!maps || !maps->relief) {
+      s.mapped.force_tilt.setZero();
+      continue;
+    }
     update_tilt(s.mapped, *maps->relief, place_in_body(s, tool), jump_decay_);
     if (s.mapped.force_tilt.isZero(0)) continue;
     const double pressed_N = forces_N[i].dot(s.normal);
     forces_N[i] += pressed_N * ((s.normal + s.mapped.force_tilt).normalized() - s.normal);
   }
+}
+
+Vector3d without_tilt(const Surface& s, const Vector3d& force_N) {
+  if (s.mapped.force_tilt.isZero(0)) return force_N;
+  const Vector3d tilted = (s.normal + s.mapped.force_tilt).normalized();
+  const double along = tilted.dot(s.normal);
+  constexpr double kSteep = 1e-3;  // a force almost along the surface has no part that presses
+  return along > kSteep ? Vector3d(force_N - force_N.dot(s.normal) / along * (tilted - s.normal)) : force_N;
 }
 
 }  // namespace tactus::haptic

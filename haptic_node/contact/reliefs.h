@@ -7,7 +7,8 @@
 //
 // The normal is that of the displayed picture (lcmtypes/relief.h). It is continuous over the map, and so is the
 // force. Neither method stores energy as a true relief does: a user who presses harder downhill than uphill gains
-// the difference. The limits of energy and power apply.
+// the difference. The limits of energy and power apply. The account of fixed surfaces (safety/wall_energy.h) contains
+// the rest: the force without its tilt, and the depth without the changes of height.
 //
 // Both methods are limited to the same slope. The force leans no further, and under pressure a height changes by
 // at most the motion over the surface times that slope. A relief that appears over the proxy, or jumps, yields as
@@ -43,11 +44,12 @@ class Reliefs {
   // Call before the proxy moves: sets the height and the friction of each surface from its maps at the touched
   // place. Realtime-safe: yes.
   void apply_heights(std::span<Surface> surfaces, const ToolPose& tool, double dt);
-  // True when the map of a pressed surface is rendered, or was just now: its height and slope change under the hand.
-  bool pressed(std::span<const Surface> surfaces) const;
   // Call after the proxy has moved: turns the normal part of each force by the map at the place of the tool.
   // Realtime-safe: yes.
   void tilt_forces(std::span<Surface> surfaces, const ToolPose& tool, std::span<Eigen::Vector3d> forces_N) const;
+  // Half of the energy, J, that the changes of height in this tick give to the springs of fixed surfaces at the present
+  // depths. Before and after the proxy moves, the sum is exact for springs.
+  static double half_energy_of_heights(std::span<const Surface> surfaces);
 
  private:
   // The touched place in the frame of the body, m.
@@ -62,5 +64,8 @@ class Reliefs {
   double jump_decay_ = 0;               // share of a jump that remains from tick to tick
   double height_share_, normal_share_;  // of each method; follow the setting
 };
+
+// The force of a surface as it was before its map tilted it, N: its part along the tilted normal, along the normal.
+Eigen::Vector3d without_tilt(const Surface& s, const Eigen::Vector3d& force_N);
 
 }  // namespace tactus::haptic

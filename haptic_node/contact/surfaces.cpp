@@ -42,6 +42,10 @@ bool valid_plane(const touch_plane_t& p) {
          std::isfinite(p.friction_static) && std::isfinite(p.friction_dynamic);
 }
 
+// A plane under another id continues a still surface within these differences. Design: the facets of a fine mesh differ by
+// more, and are surfaces of their own.
+constexpr double kSameNormal_rad = 0.01, kSamePlace_m = 0.0001;
+
 // Above any apparent rotation of a body for a hand: one radian in 10 ms.
 constexpr double kMaxSpin_rad_s = 100;
 
@@ -102,7 +106,7 @@ void Surfaces::update(const touch_plane_t& plane, sync::SimTime at, const Eigen:
   const double height = true_height(predicted, tool_point_at(s.tool_point, proxy));
   // A lag in progress continues, also in front of the hand, between walls that leave it no room.
   const double pushes = std::max(0.0, -height);
-  if (added) s.appeared_m = pushes;
+  if (added) s.appeared_m = pushes, s.held = !s.movable() && pushes > deep_m_;
   s.lag_m_ = s.depth_m > 0 ? rendered - height : added ? pushes : std::clamp(rendered - height, 0.0, pushes);
   s.lag_speed_m_s_ = std::max(limits_.recovery_speed_m_s, std::abs(s.lag_m_) / limits_.recovery_time_s);
   if (s.depth_m <= 0) s.normal = predicted.normal;
@@ -110,6 +114,33 @@ void Surfaces::update(const touch_plane_t& plane, sync::SimTime at, const Eigen:
   if (!angle_within(s.normal, predicted.normal, limits_.recovery_turn_rad_s * limits_.recovery_time_s))
     s.normal_rate_rad_s_ =
         std::max(s.normal_rate_rad_s_, angle_between(s.normal, predicted.normal) / limits_.recovery_time_s);
+}
+
+// The simulation gives a contact another id when it has ended. A late model then renames a surface while the hand is
+// already on it again: it continues instead of giving way to a new one.
+void Surfaces::continue_renamed(const TouchModelView& model, const std::bitset<kMaxOffered>& chosen,
+                                const Eigen::Vector3d& proxy) {
+  const std::size_t offered = std::min(model.plane_count(), kMaxOffered);
+  const auto in_model = [&](std::int64_t id) {
+    for (std::size_t i = 0; i < offered; ++i)
+      if (model.plane(i).contact_id == id) return true;
+    return false;
+  };
+  for (std::size_t i = 0; i < offered; ++i) {
+    const touch_plane_t& p = model.plane(i);
+    if (!chosen[i] || !valid_plane(p) || find(p.contact_id, i)) continue;
+    const Eigen::Vector3d normal = to_eigen(p.normal).normalized(), tool_point = to_eigen(p.tool_point_m);
+    const double height_m = true_height({to_eigen(p.point_m), normal}, tool_point_at(tool_point, proxy));
+    for (Surface& s : list_) {
+      if (s.body != p.body || !s.still() || s.remaining_s_ >= 0 || (s.tool_point - tool_point).norm() > kSamePlace_m ||
+          !angle_within(s.published_normal_, normal, kSameNormal_rad))
+        continue;
+      const double before_m = true_height(predict(s), tool_point_at(s.tool_point, proxy));
+      if (std::abs(before_m - height_m) > kSamePlace_m || in_model(s.contact_id)) continue;
+      s.contact_id = p.contact_id;
+      break;
+    }
+  }
 }
 
 void Surfaces::start_removal(Surface& s) {
@@ -153,6 +184,7 @@ std::bitset<Surfaces::kMaxOffered> Surfaces::select_planes(const TouchModelView&
 void Surfaces::update(const TouchModelView& model, const Eigen::Vector3d& proxy, std::size_t max_planes) {
   const auto chosen = select_planes(model, proxy, max_planes);
   for (Surface& s : list_) s.in_model_ = false;
+  continue_renamed(model, chosen, proxy);
   // The list usually has the order of the planes, so each search starts at its own index.
   for (std::size_t i = 0; i < kMaxOffered; ++i)
     if (chosen[i] && valid_plane(model.plane(i)))
@@ -174,6 +206,24 @@ void Surfaces::remove_expired() {
   if (list_.size() > kMaxHalfSpaces) list_.erase(list_.begin() + kMaxHalfSpaces, list_.end());
 }
 
+// The lag of the surface goes to zero. height_m: of the tool over the true surface.
+void Surfaces::rise(Surface& s, double height_m, double dt) const {
+  double step_m = s.lag_speed_m_s_ * dt;
+  if (s.lag_m_ <= 0) {
+    s.lag_m_ = std::min(0.0, s.lag_m_ + step_m);
+    s.held = false;
+    return;
+  }
+  if (s.held) {
+    // A hand that leaves takes the surface with it, without a force.
+    if (s.depth_m <= 0) s.lag_m_ = std::min(s.lag_m_, std::max(0.0, -height_m));
+    // K (d z + z^2 / 2) <= E for the rise z at depth d.
+    const double stiffness_N_m = std::max(1.0, s.coupling_stiffness_N_m), depth_m = std::max(0.0, s.depth_m);
+    step_m = std::min(step_m, std::sqrt(depth_m * depth_m + 2 * rise_J_ / stiffness_N_m) - depth_m);
+  }
+  s.lag_m_ = std::max(0.0, s.lag_m_ - step_m);
+}
+
 void Surfaces::render(Surface& s, const Eigen::Vector3d& proxy, double dt) const {
   const PredictedPlane predicted = predict(s);
   if (s.remaining_s_ > 0) {
@@ -181,8 +231,7 @@ void Surfaces::render(Surface& s, const Eigen::Vector3d& proxy, double dt) const
     s.lag_m_ += s.depth_m * std::min(1.0, dt / s.remaining_s_);
     s.remaining_s_ = std::max(0.0, s.remaining_s_ - dt);
   } else {
-    const double step = s.lag_speed_m_s_ * dt;
-    s.lag_m_ = s.lag_m_ > 0 ? std::max(0.0, s.lag_m_ - step) : std::min(0.0, s.lag_m_ + step);
+    rise(s, true_height(predicted, tool_point_at(s.tool_point, proxy)), dt);
   }
   s.normal = rotate_towards(s.normal, predicted.normal, s.normal_rate_rad_s_ * dt);
   // While it turns it pivots about the place under the proxy, where the height is correct.

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <bitset>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -49,11 +50,16 @@ struct Surface {
   // of a contact that holds, m; whether it slips.
   Eigen::Vector3d grip = Eigen::Vector3d::Zero(), stick_error = Eigen::Vector3d::Zero();
   bool slipping = false;
+  // It appeared deep above the hand. It is then as stiff as any other, from where the hand is: it rises only as far as the
+  // energy account allows (Surfaces::set_rise), and follows a hand that leaves.
+  bool held = false;
   // Gains of the coupling, kept with the surface so that they change smoothly; set by the renderer.
   double coupling_stiffness_N_m = -1, coupling_damping_N_s_m = 0;
 
   // True when a push moves the body.
   bool movable() const { return effective_mass_kg < 1e9; }
+  // True when neither a push nor its own motion moves it: a late report of it is as good as a fresh one.
+  bool still() const { return !movable() && velocity.isZero(0) && angular_velocity.isZero(0); }
   // Velocity of its material at a place, m/s.
   Eigen::Vector3d velocity_at(const Eigen::Vector3d& place) const {
     return velocity + angular_velocity.cross(place - point);
@@ -99,6 +105,9 @@ class Surfaces {
   void step(const TouchModelView& fresh, std::optional<sync::SimTime> now, const Eigen::Vector3d& proxy, double dt,
             std::size_t max_planes = kMaxPresent);
   void clear() { list_.clear(); }
+  // How fixed surfaces that appear above the hand rise, from now on; initially without a limit. deep_m: those that appear
+  // deeper are held. energy_J: that the springs of a held surface may gain in a tick because it rises.
+  void set_rise(double deep_m, double energy_J) { deep_m_ = deep_m, rise_J_ = energy_J; }
   // Sets the orientation of the tool from now on; initially the identity.
   void set_orientation(const Eigen::Quaterniond& orientation) { rotation_ = orientation.toRotationMatrix(); }
 
@@ -123,14 +132,17 @@ class Surfaces {
                                          std::size_t max_planes) const;
   void update(const TouchModelView& model, const Eigen::Vector3d& proxy, std::size_t max_planes);
   void update(const touch_plane_t& plane, sync::SimTime at, const Eigen::Vector3d& proxy, std::size_t expected);
+  void continue_renamed(const TouchModelView& model, const std::bitset<kMaxOffered>& chosen, const Eigen::Vector3d& proxy);
   void start_removal(Surface& s);
   void remove_expired();
   void render(Surface& s, const Eigen::Vector3d& proxy, double dt) const;
+  void rise(Surface& s, double height_m, double dt) const;
 
   double radius_m_;
   SurfaceLimits limits_;
   Eigen::Matrix3d rotation_ = Eigen::Matrix3d::Identity();  // of the tool, from its frame to the world
   std::optional<sync::SimTime> now_;
+  double deep_m_ = std::numeric_limits<double>::infinity(), rise_J_ = deep_m_;
   std::vector<Surface> list_;
 };
 

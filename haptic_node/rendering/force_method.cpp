@@ -121,7 +121,9 @@ StoredEnergy ForceMethod::stored_energy(std::span<const Surface> surfaces, Partn
     if (s.depth_m <= 0 || s.movable() != (partner == Partner::kBodies)) continue;
     double deep_m = one ? s.normal.dot(depth_m) : s.depth_m;
     if (one && renders_torque()) deep_m += arm(s).cross(s.normal).dot(turn_m) / lever_m();
-    if (deep_m > s.appeared_m) appeared = std::min(appeared, s.appeared_m / deep_m);
+    // The height of its map comes with the surface.
+    const double own_m = s.appeared_m + std::max(0.0, s.mapped.height_m);
+    if (deep_m > own_m) appeared = std::min(appeared, own_m / deep_m);
   }
   all.appeared_J = appeared * appeared * all.energy_J;
   return all;

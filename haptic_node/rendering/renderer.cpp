@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "haptic_node/contact/rotation_math.h"
+#include "haptic_node/rendering/force_steps.h"
 #include "haptic_node/rendering/limits_of_settings.h"
 #include "haptic_node/rendering/rigid_coupling.h"
 #include "lcmtypes/vectors.h"
@@ -19,20 +20,6 @@ namespace {
 // Time until a hand that was inside when touch began presses a surface: a touch model, and two in reserve.
 constexpr double kFirstPress_s = 0.003;
 constexpr double kMaxReported_J = 1e6;  // the range of the message
-
-// Quantises the magnitude of the force to multiples of `step_N`; 0: returns it unchanged.
-Eigen::Vector3d quantised(const Eigen::Vector3d& force_N, double step_N) {
-  const double size = force_N.norm();
-  if (!(step_N > 0) || !(size > 0)) return force_N;
-  return force_N * (std::round(size / step_N) * step_N / size);
-}
-
-// Energy of a spring whose force is rounded, relative to that of the spring: the area under the staircase. A force of n
-// steps is rounded to N: (n N - N^2 / 2) / (n^2 / 2).
-double rounded_energy(double force_N, double rounded_N) {
-  const double error = force_N > 0 ? (force_N - rounded_N) / force_N : 0;
-  return std::max(0.0, 1 - error * error);
-}
 
 // Touch that is softer than this share of that of an immediate device is reported. Design: 0.7, as for the largest
 // difference of stiffness that passes unnoticed in a comparison (unverified).
@@ -164,6 +151,11 @@ void Renderer::update_surfaces(const TickInput& in, double dt) {
   }
   const auto sim_now = in.map ? std::optional(in.map->to_sim(in.now - in.touch_delay)) : std::nullopt;
   if (fresh) force_method_.reset_reach(device_);
+  // While touch begins or returns, surfaces rise to the hand. Later, one that would need more than the allowance is held.
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  const bool begins = returning_s_ > 0;
+  surfaces_.set_rise(begins ? kAny : std::sqrt(2 * settings_.generated_limit_J / settings_.stiffness_limit_N_m),
+                     begins ? kAny : walls_.headroom_J());
   surfaces_.set_orientation(force_method_.tool_orientation(device_));
   surfaces_.step(fresh, sim_now, force_method_.position(), dt, force_method_.planes(in.planes));
 }
@@ -199,17 +191,17 @@ Wrench Renderer::constraint_wrench(double force_step_N, double dt, double held_s
   }
   forces_.assign(surfaces_.list().size(), Eigen::Vector3d::Zero());
   reliefs_.apply_heights(surfaces_.list(), force_method_.tool_pose(), dt);
+  double relief_J = Reliefs::half_energy_of_heights(surfaces_.list());
   force_method_.solve(surfaces_.list(), device_, dt);
+  relief_J += Reliefs::half_energy_of_heights(surfaces_.list());
   passivity_.observe(force_method_.stored_energy(surfaces_.list()), motion_.moved_m, motion_.turned_rad, model_age_s_,
                      held_s, motion_.loop);
   const StoredEnergy walls = force_method_.stored_energy(surfaces_.list(), ForceMethod::Partner::kWalls);
   if (!walls.pressed && since_begin_s_ > kFirstPress_s + 3 * period_s_) returning_s_ = 0;
   since_begin_s_ += dt;
-  // The energy that a relief takes or gives along a stroke is its own, and the limits of safety bound it.
-  const double appeared_J =
-      reliefs_.pressed(surfaces_.list()) ? walls.energy_J : returning_s_ > 0 ? walls.appeared_J : 0;
+  const double appeared_J = returning_s_ > 0 ? walls.appeared_J : 0;
   const double rounded = force_step_N > 0 ? rounded_share_ : 1;
-  walls_.observe(rounded * walls.energy_J, walls.pressed, motion_, held_s, rounded * appeared_J);
+  walls_.observe(rounded * walls.energy_J, walls.pressed, motion_, held_s, rounded * appeared_J, rounded * relief_J);
   returning_s_ -= dt;
   force_method_.compute_forces(surfaces_.list(), device_, {passivity_.factor(), walls_.factor()}, forces_);
   reliefs_.tilt_forces(surfaces_.list(), force_method_.tool_pose(), forces_);
@@ -292,8 +284,11 @@ Renderer::Commanded Renderer::command(Wrench constraint, Eigen::Vector3d transie
   const double rounded_N = std::min(quantised(share * plain, force_step_N).norm(), settings_.force_limit_N);
   rounded_share_ = rounded_energy(share * all_N, rounded_N);
   const double scale = all_N > 0 ? force_scale() * rounded_N / (share * all_N) : 0;
-  const Wrench of_walls{share * walls.wrench.force_N, share * walls.wrench.torque_N_m};
-  walls = {{scale * of_walls.force_N, force_scale() * of_walls.torque_N_m}, scale * share * walls.power_W};
+  const auto scaled = [](const Wrench& w, double force, double torque) {
+    return Wrench{force * w.force_N, torque * w.torque_N_m};
+  };
+  const Wrench of_walls = scaled(walls.wrench, share, share), tilt = scaled(walls.tilt, share, share);
+  walls = {scaled(of_walls, scale, force_scale()), scaled(tilt, scale, force_scale()), scale * share * walls.power_W};
   const double kept = walls_.brake(walls, motion_, dt);
   if (kept < 1) {
     constraint.force_N -= (1 - kept) * of_walls.force_N;

@@ -25,8 +25,9 @@ constexpr double kMaxHandSpeed_m_s = 40, kMaxHandSpin_rad_s = 63;
 double work_J(const WallForce& f, const DeviceMotion& motion, double dt) {
   const bool moved = motion.moved_m.allFinite() && motion.moved_m.norm() <= kMaxHandSpeed_m_s * dt;
   const bool turned = motion.turned_rad.allFinite() && motion.turned_rad.norm() <= kMaxHandSpin_rad_s * dt;
-  return (moved ? f.wrench.force_N.dot(motion.moved_m) : 0) +
-         (turned ? f.wrench.torque_N_m.dot(motion.turned_rad) : 0) - f.power_W * dt;
+  const Wrench plain = f.plain();
+  return (moved ? plain.force_N.dot(motion.moved_m) : 0) + (turned ? plain.torque_N_m.dot(motion.turned_rad) : 0) -
+         f.power_W * dt;
 }
 
 // Twice the distance, m/N, that a constant force moves a mass with a damper from rest: twice, because its speed at the
@@ -46,17 +47,18 @@ void WallEnergy::reset() {
   motion_s_ = 0;
   balance_J_ = credit_J_ = 0;
   factor_ = 1;
+  headroom_J_ = 0;
   apart_s_ = 0;
 }
 
-void WallEnergy::observe(double springs_J, bool pressed, const DeviceMotion& motion, double held_s,
-                         double appeared_J) {
+void WallEnergy::observe(double springs_J, bool pressed, const DeviceMotion& motion, double held_s, double appeared_J,
+                         double relief_J) {
   time_s_ += held_s;
   const double span_s = motion.loop.immediate() ? held_s : motion.loop.span_s;
   const double given_J = work_J(acting_in_tick(commands_, time_s_, held_s, motion.loop), motion, span_s);
   if (span_s > 0) motion_ = motion, motion_s_ = span_s;
-  balance_J_ -= given_J;
-  credit_J_ -= given_J;
+  balance_J_ += relief_J - given_J;
+  credit_J_ += relief_J - given_J;
   apart_s_ = pressed ? 0 : apart_s_ + held_s;
   if (apart_s_ > kEpisodeGap_s) balance_J_ = credit_J_ = 0;
   if (appeared_J > 0 && credit_J_ < appeared_J) {
@@ -66,6 +68,7 @@ void WallEnergy::observe(double springs_J, bool pressed, const DeviceMotion& mot
   credit_J_ = std::min(credit_J_, springs_J + kMaxCredit_J);
   const double available_J = std::max(0.0, credit_J_ + limits_.allowance_J);
   factor_ = springs_J > available_J ? available_J / springs_J : 1;
+  headroom_J_ = std::max(0.0, credit_J_ + 0.5 * limits_.allowance_J - springs_J);
 }
 
 double WallEnergy::brake(const WallForce& next, const DeviceMotion& last, double dt) const {
@@ -78,13 +81,13 @@ double WallEnergy::brake(const WallForce& next, const DeviceMotion& last, double
   }
   const bool slow = held_s > kSlow_s;
   // Part of the force that accelerates the hand: all of it, or its change.
-  Wrench free = next.wrench;
-  if (slow && !commands_.empty())
-    free = plus_scaled(next.wrench, commands_.entry(commands_.size() - 1).value.wrench, -1);
+  const Wrench all = next.plain();
+  Wrench free = all;
+  if (slow && !commands_.empty()) free = plus_scaled(all, commands_.entry(commands_.size() - 1).value.plain(), -1);
   const double accelerated_J =
-      std::max(0.0, next.wrench.force_N.dot(free.force_N)) *
+      std::max(0.0, all.force_N.dot(free.force_N)) *
           twice_moved(held_s, limits_.device_mass_kg, limits_.device_damping_N_s_m) +
-      std::max(0.0, next.wrench.torque_N_m.dot(free.torque_N_m)) *
+      std::max(0.0, all.torque_N_m.dot(free.torque_N_m)) *
           twice_moved(held_s, limits_.device_inertia_kg_m2, limits_.device_turn_damping_N_m_s_rad);
   const double moved_J = work_J(next, during, held_s), given_J = moved_J + accelerated_J;
   const double credit_J = credit_J_ + (slow ? limits_.allowance_J : std::max(0.0, limits_.allowance_J - kBegin_J));
@@ -97,9 +100,14 @@ WallForce wall_force(std::span<const Surface> surfaces, std::span<const Eigen::V
   WallForce sum;
   for (std::size_t i = 0; i < surfaces.size() && i < forces.size(); ++i) {
     if (surfaces[i].movable() || forces[i].isZero(0) || !forces[i].allFinite()) continue;
+    const Eigen::Vector3d plain = without_tilt(surfaces[i], forces[i]), tilt = forces[i] - plain;
     sum.wrench.force_N += forces[i];
-    if (i < arms.size()) sum.wrench.torque_N_m += arms[i].cross(forces[i]);
-    sum.power_W += forces[i].dot(surfaces[i].velocity_at(surfaces[i].point));
+    sum.tilt.force_N += tilt;
+    if (i < arms.size()) {
+      sum.wrench.torque_N_m += arms[i].cross(forces[i]);
+      sum.tilt.torque_N_m += arms[i].cross(tilt);
+    }
+    sum.power_W += plain.dot(surfaces[i].velocity_at(surfaces[i].point));
   }
   return sum;
 }

@@ -10,6 +10,11 @@
 // default, with which a contact begins. Undisturbed walls hold less than the credit: both are then 1. A softened wall
 // recovers while the hand presses, and when the hand was away.
 //
+// The map of a relief tilts the force and moves the surface under a hand that moves along it. The energy of both is its own:
+// a hand that presses harder downhill than uphill gains the difference. The account contains the force without its tilt,
+// and adds the energy that a change of height puts into the springs. The limits of energy and power (safety.h) bound the
+// rest.
+//
 // The motion of a device with its own period and delay is paired with the force that acted during it (acting_force.h).
 #pragma once
 
@@ -18,6 +23,7 @@
 #include <span>
 
 #include "haptic_node/contact/contact_impulses.h"
+#include "haptic_node/contact/reliefs.h"
 #include "haptic_node/contact/surfaces.h"
 #include "haptic_node/devices/device.h"
 #include "haptic_node/safety/acting_force.h"
@@ -26,8 +32,11 @@ namespace tactus::haptic {
 
 // Force of all fixed surfaces on the hand.
 struct WallForce {
-  Wrench wrench;      // on the hand
+  Wrench wrench;       // on the hand
+  Wrench tilt;         // its part that the maps of reliefs add
   double power_W = 0;  // of the motion of the surfaces themselves, as a conveyor has
+  // The wrench without that part.
+  Wrench plain() const { return plus_scaled(wrench, tilt, -1); }
 };
 
 struct WallLimits {
@@ -39,7 +48,7 @@ struct WallLimits {
 };
 
 inline WallForce plus_scaled(const WallForce& a, const WallForce& b, double scale) {
-  return {plus_scaled(a.wrench, b.wrench, scale), a.power_W + scale * b.power_W};
+  return {plus_scaled(a.wrench, b.wrench, scale), plus_scaled(a.tilt, b.tilt, scale), a.power_W + scale * b.power_W};
 }
 
 // Motion of the device that a tick reports, and its timing.
@@ -58,15 +67,17 @@ class WallEnergy {
   // One tick, after the depths are solved. springs_J: energy of the coupling to walls at full stiffness; pressed:
   // whether any is pressed. motion: since the last call. held_s: time since then. appeared_J: the part
   // of springs_J that surfaces brought when they appeared above a hand that was already inside. It is credited; the part
-  // that the hand pressed is not, because its force may still fade in.
-  // Realtime-safe: yes.
-  void observe(double springs_J, bool pressed, const DeviceMotion& motion, double held_s,
-               double appeared_J);
+  // that the hand pressed is not, because its force may still fade in. relief_J: energy that changes of height put into the
+  // springs since the last call; below zero: took. Realtime-safe: yes.
+  void observe(double springs_J, bool pressed, const DeviceMotion& motion, double held_s, double appeared_J,
+               double relief_J = 0);
   // Stores the force on the hand that acts from now on.
   void record(const WallForce& commanded) { commands_.record(time_s_, commanded); }
 
   // Factor on the coupling to walls, 0 .. 1.
   double factor() const { return factor_; }
+  // Energy that the springs may gain without softening the coupling, J; half of the allowance is left.
+  double headroom_J() const { return headroom_J_; }
   // Factor on a force that is about to be commanded, 0 .. 1. last: motion in the last tick. Assumes that the
   // hand continues as in its last motion and that the force accelerates it, until the device applies the next one.
   // Realtime-safe: yes.
@@ -84,7 +95,7 @@ class WallEnergy {
   DeviceMotion motion_;
   double motion_s_ = 0;
   double balance_J_ = 0, credit_J_ = 0;  // without and with the limit of the credit
-  double factor_ = 1;
+  double factor_ = 1, headroom_J_ = 0;
   double apart_s_ = 0;  // time since a wall was pressed
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tactus/contact_point_t.hpp>
 #include <tactus/material_def_t.hpp>
 #include <tactus/tool_constraint_t.hpp>
@@ -12,6 +13,7 @@
 #include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"
 #include "sim_node/model/tool_shape.h"
+#include "sync/resampling/sample_status.h"
 
 namespace tactus::sim {
 
@@ -33,10 +35,17 @@ constexpr sync::Nanoseconds kTrackingTimeout{50'000'000};
 // Maximum back-dating of a begin: the age at which a message counts as lost.
 constexpr sync::Nanoseconds kMaxMessageAge{20'000'000};
 constexpr double kMinForce_N = 1e-4;  // smaller forces are rounding
+// A tool that has rendered a late model counts as late for this time: losses in bursts do not change the model each time.
+// Design.
+constexpr sync::Nanoseconds kLateFor{1'000'000'000};
+// Places in a model that far fixed surfaces may fill: one page (touch_model_t.plane_count).
+constexpr std::size_t kMaxWithFar = 7;
 // Rounding of positions in the world, m.
 constexpr double kRounding_m = 1e-9;
 
 sync::Nanoseconds ns(double s) { return sync::from_seconds(s); }
+
+bool is_meshed(ShapeKind kind) { return kind == ShapeKind::kMesh || kind == ShapeKind::kHeightfield; }
 
 }  // namespace
 
@@ -61,8 +70,7 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
   for (std::size_t i = 0; i < world.shapes.size() && !points; ++i) {
     const ShapeDef& s = world.shapes[i];
     if (world.bodies[static_cast<std::size_t>(s.body)].tool >= 0) continue;
-    const bool meshed = s.kind == ShapeKind::kMesh || s.kind == ShapeKind::kHeightfield;
-    ClosestSurface surface(s, meshed ? trees.triangles(s, world) : nullptr, settings.touch_merge_angle_rad);
+    ClosestSurface surface(s, is_meshed(s.kind) ? trees.triangles(s, world) : nullptr, settings.touch_merge_angle_rad);
     const Vector3d centre = s.pose * surface.centre();
     if (shape_) shape_->add(s, world);
     surfaces_.push_back({std::move(surface), traits[i], s.pose.inverse(), centre,
@@ -79,6 +87,8 @@ ToolTouch::ToolTouch(const WorldDef& world, int tool, const Settings& settings, 
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     const Surface& s = surfaces_[i];
     const BodyDef& body = world.bodies[static_cast<std::size_t>(s.traits.body)];
+    // Between a shape and triangles all pairs within reach are checked: too many from afar.
+    if (body.is_static) surfaces_[i].from_afar = !shape_ || (def.shape != tool_def_t::MESH && !is_meshed(s.traits.kind));
     if (body.is_static)
       fixed.push_back({body.pose * s.centre_in_body, s.shape.bound_m(), static_cast<int>(i)});
     else
@@ -131,9 +141,9 @@ void ToolTouch::track_shape(SimTime now, std::size_t surface, const BodyMotion& 
 }
 
 void ToolTouch::find_surfaces(SimTime now, std::span<const BodyMotion> bodies) {
-  const double reach = reach_m();
+  const double reach = reach_m(), fixed_reach = fixed_reach_m(now);
   candidates_.clear();
-  fixed_.near(proxy_, reach + kRounding_m, candidates_);
+  fixed_.near(proxy_, fixed_reach + kRounding_m, candidates_);
   const auto add_candidate = [&](const Moving& m) {
     // Check the position first, because there may be a thousand bodies.
     const BodyMotion& body = bodies[static_cast<std::size_t>(m.body)];
@@ -154,13 +164,18 @@ void ToolTouch::find_surfaces(SimTime now, std::span<const BodyMotion> bodies) {
     const auto i = static_cast<std::size_t>(candidate);
     const Surface& s = surfaces_[i];
     const BodyMotion& body = bodies[static_cast<std::size_t>(s.traits.body)];
+    const double within = s.from_afar ? fixed_reach : reach;
     if (shape_) {
-      const bool meshed = s.traits.kind == ShapeKind::kMesh || s.traits.kind == ShapeKind::kHeightfield;
-      track_shape(now, i, body, reach - bound_m_ - (meshed ? std::max(0.0, settings_.touch_margin_m - kMeshMargin_m) : 0));
+      const double less_m = is_meshed(s.traits.kind) ? std::max(0.0, settings_.touch_margin_m - kMeshMargin_m) : 0;
+      track_shape(now, i, body, within - bound_m_ - less_m);
       continue;
     }
     const Vector3d place = s.from_body * body.to_body(proxy_);
-    s.shape.query(place, reach, found_);
+    s.shape.query(place, within, found_);
+    // From afar only the nearest plane of a shape.
+    if (found_.size() > 1)
+      found_.erase(std::find_if(found_.begin() + 1, found_.end(), [&](const SurfacePlane& p) { return p.distance_m > reach; }),
+                   found_.end());
     for (SurfacePlane plane : found_) {
       plane.point = body.to_world(s.traits.in_body * plane.point);
       plane.normal = body.orientation * (s.traits.in_body.linear() * plane.normal);
@@ -266,8 +281,9 @@ void ToolTouch::receive(const tool_state_t& m, SimTime now, std::span<const Body
   }
 }
 
-// The newest pose and velocity of the proxy.
-void ToolTouch::set_proxy(const tool_state_t& m) {
+// The newest pose and velocity of the proxy, and whether it was found on a late model.
+void ToolTouch::set_proxy(const tool_state_t& m, SimTime now) {
+  if (m.touch_status >= static_cast<std::int8_t>(sync::SampleStatus::kHeld)) late_until_ = now + kLateFor;
   proxy_ = to_eigen(m.proxy.position_m);
   proxy_velocity_ = to_eigen(m.proxy_velocity_m_s);
   if (shape_) proxy_orientation_ = to_eigen(m.proxy.orientation).normalized();
@@ -275,7 +291,7 @@ void ToolTouch::set_proxy(const tool_state_t& m) {
 
 void ToolTouch::update(SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> new_messages,
                        std::vector<contact_event_t>& events) {
-  if (!new_messages.empty()) set_proxy(new_messages.back());
+  if (!new_messages.empty()) set_proxy(new_messages.back(), now);
   find_surfaces(now, bodies);
   for (const tool_state_t& m : new_messages) receive(m, now, bodies, events);
   const bool lost = !has_message_ || now - last_message_ > ns(settings_.tool_stale_s);
@@ -295,8 +311,10 @@ void ToolTouch::update(SimTime now, std::span<const BodyMotion> bodies, std::spa
 void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
   std::sort(near_.begin(), near_.end(), [](const Near& a, const Near& b) { return a.gap_m < b.gap_m; });
   model_.planes.clear();
+  const double far_m = now < late_until_ ? reach_m() - bound_m_ : std::numeric_limits<double>::infinity();
   for (const Near& n : near_) {
     if (n.last_seen != now || model_.planes.size() >= static_cast<std::size_t>(settings_.touch_planes)) continue;
+    if (n.gap_m > far_m && model_.planes.size() >= kMaxWithFar) continue;
     const Surface& s = surfaces_[n.surface];
     const BodyMotion& body = body_of(n, bodies);
     touch_plane_t& p = model_.planes.emplace_back();

@@ -84,6 +84,7 @@ class ToolTouch {
     double compliance_1_Pa = 0;                            // of the pair
     std::int64_t bump_asset = 0;                           // of its material
     bool mapped = false;                                   // its material has a height map or a friction map
+    bool from_afar = false;                                // fixed, and cheap to find at touch_margin_late
   };
   // A surface near the tool, tracked from step to step.
   struct Near {
@@ -110,10 +111,15 @@ class ToolTouch {
     const double speed_m_s = std::min(velocity_.norm() + bound_m_ * spin_.norm(), kMaxToolSpeed_m_s);
     return bound_m_ + relief_m_ + settings_.touch_margin_m + settings_.touch_margin_time_s * speed_m_s;
   }
+  // Reach for fixed surfaces. A tool that renders a late model is given them from further away: it may be at them before the
+  // next model arrives, and a surface that does not move is as good late as fresh.
+  double fixed_reach_m(sync::SimTime now) const {
+    return std::max(reach_m(), now < late_until_ ? bound_m_ + relief_m_ + settings_.touch_margin_late_m : 0);
+  }
   void find_surfaces(sync::SimTime now, std::span<const BodyMotion> bodies);
   void track_shape(sync::SimTime now, std::size_t surface, const BodyMotion& body, double reach_m);
   void track(sync::SimTime now, const SurfacePlane& plane, std::size_t surface, const Eigen::Vector3d& tool_point_m);
-  void set_proxy(const tool_state_t& m);
+  void set_proxy(const tool_state_t& m, sync::SimTime now);
   // Vector from the centre of the tool, in this orientation, to the point that meets the surface, including the skin.
   Eigen::Vector3d arm(const Near& n, const Eigen::Quaterniond& orientation) const {
     return orientation * n.tool_point_m - radius_m_ * n.plane.normal;
@@ -162,6 +168,7 @@ class ToolTouch {
   Eigen::Vector3d spin_{0, 0, 0};
   Eigen::Quaterniond proxy_orientation_ = Eigen::Quaterniond::Identity(), device_orientation_ = Eigen::Quaterniond::Identity();
   sync::SimTime last_message_{}, last_stamp_{};
+  sync::SimTime late_until_{};  // the tool has rendered a late model shortly before
 };
 
 }  // namespace tactus::sim

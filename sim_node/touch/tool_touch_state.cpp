@@ -30,7 +30,7 @@ void ToolTouch::archive(StateArchive& a) {
     if (shape_) a(n.tool_point_m);
   });
   a.fixed(surfaces_, [&](Surface& s) { a(s.friction_static), a(s.friction_dynamic); });
-  a(has_message_), a(proxy_), a(device_), a(velocity_), a(proxy_velocity_), a(last_message_), a(last_stamp_);
+  a(has_message_), a(proxy_), a(device_), a(velocity_), a(proxy_velocity_), a(last_message_), a(last_stamp_), a(late_until_);
   if (shape_) a(spin_), a(proxy_orientation_), a(device_orientation_);
   a.message(model_);
 }
@@ -50,7 +50,7 @@ void ToolTouch::set_friction(int body, double friction) {
 
 void ToolTouch::update_at_rest(sync::SimTime now, std::span<const BodyMotion> bodies, std::span<const tool_state_t> new_messages) {
   if (!new_messages.empty()) {
-    set_proxy(new_messages.back());
+    set_proxy(new_messages.back(), now);
     velocity_ = to_eigen(new_messages.back().device_velocity_m_s);
     if (shape_) {
       spin_ = to_eigen(new_messages.back().device_spin_rad_s);

@@ -1,6 +1,8 @@
 #include "haptic_node/contact/surfaces.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
 #include <tactus/touch_model_t.hpp>
 #include <tactus/touch_plane_t.hpp>
 
@@ -54,6 +56,80 @@ TEST_CASE("A surface that the tool reaches has not appeared above it") {
   for (const double z : {0.01, -0.003, -0.003}) touch.tick(0, {0, 0, z}, &m);
   CHECK(touch.surfaces.list()[0].depth_m == Approx(0.003));
   CHECK(touch.surfaces.list()[0].appeared_m == 0);
+}
+
+TEST_CASE("A late model that renames a fixed surface under the hand changes nothing") {
+  Touch touch;
+  // The plane of body 0 has another id from 50 ms on, at another place of the same plane.
+  for (int ms = 0; ms < 100; ++ms) {
+    const auto m = model(ms, {plane(ms < 50 ? 7 : 8, {1e-4 * ms, 0, 0}, Vector3d::UnitZ())});
+    touch.tick(ms, {0, 0, ms < 10 ? 0.002 : -0.003}, &m);
+    if (ms < 10) continue;
+    CAPTURE(ms);
+    REQUIRE(touch.surfaces.list().size() == 1);
+    CHECK(touch.surfaces.list()[0].contact_id == (ms < 50 ? 7 : 8));
+    CHECK(touch.surfaces.list()[0].depth_m == Approx(0.003));
+  }
+}
+
+TEST_CASE("A plane of another place, body, direction or of a moving body does not continue a surface") {
+  touch_plane_t other = plane(8, Vector3d::Zero(), Vector3d::UnitZ()), first = plane(7, Vector3d::Zero(), Vector3d::UnitZ());
+  SECTION("another height") { other = plane(8, {0, 0, 0.0015}, Vector3d::UnitZ()); }
+  SECTION("another direction") { other = plane(8, Vector3d::Zero(), Vector3d(0.2, 0, 1)); }
+  SECTION("another body") { other.body = 1; }
+  SECTION("another point of the tool") { other.tool_point_m.x = 0.002f; }
+  SECTION("a movable body") { first.effective_mass_kg = other.effective_mass_kg = 1; }
+  SECTION("a conveyor") { first.velocity_m_s.x = other.velocity_m_s.x = 0.1f; }
+  SECTION("both in the model") {}
+  const bool both = other.point_m.z == 0 && other.body == 0 && other.normal.x == 0 && other.tool_point_m.x == 0 &&
+                    other.effective_mass_kg > 1e9f && other.velocity_m_s.x == 0;
+  Touch touch;
+  for (int ms = 0; ms < 20; ++ms) {
+    const auto m = model(ms, {first});
+    touch.tick(ms, {0, 0, ms < 10 ? 0.002 : -0.003}, &m);
+  }
+  const auto m = model(20, both ? std::vector{first, other} : std::vector{other});
+  touch.tick(20, {0, 0, -0.003}, &m);
+  CHECK(touch.surfaces.list().size() == 2);
+}
+
+TEST_CASE("A fixed surface that appears deep above the hand rises by the given energy, and follows the hand that leaves") {
+  Touch touch;
+  touch.proxy.reset({0, 0, -0.01});
+  touch.surfaces.set_rise(0.001, 0);
+  const auto m = model(0, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())});
+  const auto depth_at = [&](double z) {
+    touch.tick(0, {0, 0, z}, &m);
+    touch.surfaces.list()[0].coupling_stiffness_N_m = 1000;
+    return touch.surfaces.list()[0].depth_m;
+  };
+  // Without energy it stays where the hand was, and is pressed from there.
+  for (int k = 0; k < 100; ++k) CHECK(depth_at(-0.01) == Approx(0).margin(1e-9));
+  CHECK(depth_at(-0.012) == Approx(0.002));
+  // A rise of z at 2 mm takes 1000 N/m (2 mm z + z^2 / 2): 0.01 mJ a tick.
+  touch.surfaces.set_rise(0.001, 1e-5);
+  const double once_m = std::sqrt(4e-6 + 2e-8) - 0.002;
+  CHECK(depth_at(-0.012) == Approx(0.002 + once_m));
+  touch.surfaces.set_rise(0.001, 0);
+  CHECK(depth_at(-0.012) == Approx(0.002 + once_m));
+  // A hand that leaves feels nothing, and meets the surface at its true height when it returns.
+  for (double z = -0.009; z < 0.003; z += 0.0005) CHECK(depth_at(z) == Approx(0).margin(1e-9));
+  CHECK(depth_at(-0.002) == Approx(0.002));
+  CHECK_FALSE(touch.surfaces.list()[0].held);
+}
+
+TEST_CASE("Shallow, movable and first surfaces rise within the recovery time") {
+  auto p = plane(7, Vector3d::Zero(), Vector3d::UnitZ());
+  double deep_m = 0.001, hand_m = -0.01;
+  SECTION("shallow") { hand_m = -0.0009; }
+  SECTION("movable") { p.effective_mass_kg = 1; }
+  SECTION("first") { deep_m = std::numeric_limits<double>::infinity(); }
+  Touch touch;
+  touch.proxy.reset({0, 0, hand_m});
+  touch.surfaces.set_rise(deep_m, 0);
+  const auto m = model(0, {p});
+  for (int k = 0; k < 100; ++k) touch.tick(0, {0, 0, hand_m}, &m);
+  CHECK(touch.surfaces.list()[0].depth_m == Approx(-hand_m).epsilon(1e-3));
 }
 
 TEST_CASE("Between messages a plane is extrapolated with its velocity for a limited time") {

@@ -23,7 +23,7 @@ struct Spring {
     given_J += force * (depth - depth_m);
     depth = depth_m;
     force = force_share * walls.factor() * 1000 * depth_m;
-    walls.record({{Vector3d(0, 0, force), Vector3d::Zero()}, 0});
+    walls.record({{Vector3d(0, 0, force), Vector3d::Zero()}, {}, 0});
     return force;
   }
   WallEnergy walls{WallLimits{}};
@@ -73,7 +73,7 @@ TEST_CASE("A softened wall recovers after the hand was away") {
 
 TEST_CASE("The brake lets the next tick give at most the credit") {
   WallEnergy walls{WallLimits{}};
-  const WallForce push{{Vector3d(0, 0, 5), Vector3d::Zero()}, 0};
+  const WallForce push{{Vector3d(0, 0, 5), Vector3d::Zero()}, {}, 0};
   CHECK(walls.brake(push, {Vector3d(0, 0, 0.001), Vector3d::Zero()}, kDt) == 0);
   // The hand presses 0.1 mm deep at 5 N: 0.5 mJ. Then 1 mm at 5 N are 5 mJ, of which nine tenths of the credit cover a part; the force
   // itself adds 25 N^2 / 0.1 kg (1 ms)^2.
@@ -83,7 +83,7 @@ TEST_CASE("The brake lets the next tick give at most the credit") {
   CHECK(kept == Approx(0.9 * 0.0005 / (0.005 + 25 / 0.1 * 1e-6)));
   CHECK(walls.brake(push, {Vector3d(0, 0, -0.001), Vector3d::Zero()}, kDt) == 1);
   // A surface that moves with the hand does the work itself.
-  const WallForce belt{push.wrench, 5};
+  const WallForce belt{push.wrench, {}, 5};
   CHECK(walls.brake(belt, {Vector3d(0, 0, 0.001), Vector3d::Zero()}, kDt) == 1);
 }
 
@@ -102,7 +102,7 @@ TEST_CASE("Only the forces of fixed surfaces count, with their torque and their 
 TEST_CASE("Motion that is not finite counts as no work") {
   WallEnergy walls{WallLimits{}};
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  walls.record({{Vector3d(0, 0, 5), Vector3d::Zero()}, 0});
+  walls.record({{Vector3d(0, 0, 5), Vector3d::Zero()}, {}, 0});
   walls.observe(0.001, true, {Vector3d(nan, 0, 0), Vector3d(0, nan, 0)}, kDt, 0);
   CHECK(walls.generated_J() == 0);
   CHECK(walls.factor() == 0.5);
@@ -131,6 +131,43 @@ TEST_CASE("A fixed wall generates at most 1 mJ an episode at any delay") {
     if (delay_ms <= 30) CHECK(r.peak_N > 3);
     // The observer sees the energy within half a millijoule.
     CHECK(std::abs(r.observed_mJ - r.generated_mJ) < 0.5);
+  }
+}
+
+TEST_CASE("A fixed wall is as stiff with a late touch model as with a fresh one") {
+  // Once 0.03 N instead of 3.1 N at 200 ms, and half of the peak of a tap at 50 ms.
+  const TrialResult tapped = run_trial(metronome()), pressed = run_trial(press());
+  CHECK(pressed.hold_N > 2.5);
+  CHECK(tapped.last_peak_N > 3);
+  for (const int delay_ms : {10, 30, 50, 70, 100, 150, 200}) {
+    TrialDef taps = metronome(), presses = press();
+    taps.delay_ms = presses.delay_ms = delay_ms;
+    const TrialResult tap = run_trial(taps), hold = run_trial(presses);
+    CAPTURE(delay_ms, tap.generated_mJ, hold.generated_mJ);
+    CHECK(hold.hold_N == Approx(pressed.hold_N).epsilon(0.01));
+    CHECK(hold.hold_m == Approx(pressed.hold_m).epsilon(0.01));
+    CHECK(tap.last_peak_N == Approx(tapped.last_peak_N).epsilon(0.03));
+    CHECK(tap.deepest_m == Approx(tapped.deepest_m).epsilon(0.03));
+    CHECK(tap.generated_mJ <= 1);
+    CHECK(hold.generated_mJ <= 1);
+    CHECK(tap.energy_mJ < 0);
+  }
+}
+
+TEST_CASE("A wall that appears deep above a hand that presses on is stiff from there, without pushing it out") {
+  for (const int delay_ms : {90, 120}) {
+    TrialDef def = press();
+    def.margin_late_m = 0;  // the simulation ignores that the tool renders late
+    def.delay_ms = delay_ms;
+    def.depth_m = 0.04;
+    def.settings.transient_gain = 0;
+    const TrialResult r = run_trial(def);
+    CAPTURE(delay_ms, r.hold_m, r.observed_mJ);
+    // Of a spring of 300 N/m that is 40 mm away, the wall holds what it needs at the depth at which it appeared.
+    CHECK(r.hold_N == Approx(300 * (0.04 - r.hold_m)).epsilon(0.02));
+    CHECK(r.hold_N > 2);
+    CHECK(r.generated_mJ <= 1);
+    CHECK(r.least_coupling > 0.9);
   }
 }
 

@@ -11,6 +11,8 @@
 #include <tactus/touch_model_t.hpp>
 #include <tactus/touch_plane_t.hpp>
 
+#include "sync/resampling/sample_status.h"
+#include "tests/haptic_node/support/waves.h"
 #include "tests/haptic_node/support/world.h"
 
 namespace tactus::haptic::test {
@@ -53,6 +55,7 @@ class Trial {
         renderer_(scene_, 0, def.settings, safety_),
         hand_(path_of(def), false, def.hand) {
     hand_.begin(host_ms(0));
+    if (def.relief_m > 0) renderer_.set_maps(waves(def.relief_m));
   }
 
   TrialResult run() {
@@ -86,17 +89,23 @@ class Trial {
       body_J_ += force_N * v_ * kStep_s;
     }
     ++world_steps_;
+    // As in the simulation, the next touch is another contact.
+    const double height_m = proxy_z_ - kTool_m - z_;
+    if (height_m < 1e-4) touched_ = true;
+    if (def_.mass_kg == 0 && def_.margin_m > 0 && touched_ && height_m > 3e-4) touched_ = false, ++contact_;
     if (!fails(Failure::kModels, now_s, kLoss_s)) way_.push_back({now_s, model_now(now_s)});
   }
   touch_model_t model_now(double now_s) const {
     std::vector<touch_plane_t> planes;
     const double height_m = proxy_z_ - kTool_m - z_;
-    const double margin_m = def_.margin_m + def_.margin_s * std::abs(proxy_speed_m_s_);
+    double margin_m = def_.margin_m + def_.margin_s * std::abs(proxy_speed_m_s_);
+    if (def_.mass_kg == 0 && now_s < late_until_s_) margin_m = std::max(margin_m, def_.margin_late_m);
     if (margin_m <= 0 || height_m <= margin_m) {
-      auto p = plane(7, place(z_), Vector3d::UnitZ());
+      auto p = plane(contact_, place(z_), Vector3d::UnitZ());
       p.stiffness_N_m = static_cast<float>(def_.stiffness_N_m);
       if (def_.mass_kg > 0) p.effective_mass_kg = static_cast<float>(def_.mass_kg);
       p.velocity_m_s = to_vec3f(place(v_));
+      if (def_.relief_m > 0) add_map(p);
       planes.push_back(p);
     }
     touch_model_t m = model(1e3 * now_s, planes);
@@ -205,20 +214,32 @@ class Trial {
     r_.finite = r_.finite && out.force_N.allFinite() && out.torque_N_m.allFinite();
     r_.peak_N = std::max(r_.peak_N, std::abs(force));
     r_.beyond_force_N = std::max(r_.beyond_force_N, out.force_N.norm() - s.force_limit_N);
-    const double along = force * force_N_ > 0 ? std::abs(force_N_) : 0;
     const bool gap = t - judged_s_ > sync::to_seconds(Device::kWatchdog);
     const double dt = gap ? 1 / s.rate_Hz : t - judged_s_;
+    const Vector3d last_N = gap ? Vector3d(Vector3d::Zero()) : last_force_N_;
     r_.beyond_rise_N =
-        std::max(r_.beyond_rise_N, std::abs(force) - (gap ? 0 : along) - s.slew_limit_N_s * std::min(dt, 2 / s.rate_Hz));
+        std::max(r_.beyond_rise_N, beyond_slew_N(out.force_N, last_N, s.slew_limit_N_s * std::min(dt, 2 / s.rate_Hz)));
+    last_force_N_ = out.force_N;
     r_.beyond_fade_N = std::max(r_.beyond_fade_N, std::abs(force) - fade_limit_N(t));
     r_.observed_mJ = std::max(r_.observed_mJ, 1e3 * out.state.generated_J);
     r_.least_coupling = std::min<double>(r_.least_coupling, out.state.coupling);
+    judge_last_tap(t, force);
+    if (out.state.touch_status >= static_cast<std::int8_t>(sync::SampleStatus::kHeld)) late_until_s_ = t + 1;
     force_N_ = force;
     constraint_N_ = force - out.state.transient_N.z;
     judged_s_ = t;
     const double before_m = proxy_z_;
     proxy_z_ = out.state.proxy.position_m.z;
     proxy_speed_m_s_ = begun_ ? (proxy_z_ - before_m) * s.rate_Hz : 0;
+  }
+  void judge_last_tap(double t, double force_N) {
+    const double begin_s = (def_.taps - 1) * def_.period_s;
+    const double depth_m = z_ + kTool_m - z_hand_;
+    if (t < begin_s) return;
+    r_.last_peak_N = std::max(r_.last_peak_N, force_N);
+    r_.deepest_m = std::max(r_.deepest_m, depth_m);
+    if (t > begin_s + 0.43 * (def_.period_s - def_.hold_s) + def_.hold_s) return;
+    r_.hold_N = force_N, r_.hold_m = depth_m;
   }
   // The largest force that the fade of a failure and of the return allow at time t, N. Two ticks are left for the
   // discrete time.
@@ -259,13 +280,15 @@ class Trial {
   touch_model_t used_{};
   std::optional<sync::HostTime> arrival_;
   int world_steps_ = 0;
-  std::int64_t events_ = 0;
+  std::int64_t events_ = 0, contact_ = 7;
   double z_ = 0, v_ = 0, body_N_s_ = 0, body_J_ = 0, applied_N_s_ = 0;  // of the body
   double z_hand_ = 0, speed_m_s_ = 0, hand_J_ = 0, hand_before_J_ = 0, body_before_J_ = 0;
   double tick_s_ = 0, judged_s_ = 0, apart_from_s_ = 0, impulse_N_s_ = 0;
+  Vector3d last_force_N_ = Vector3d::Zero();
   double force_N_ = 0, constraint_N_ = 0, quiet_from_s_ = 0;
   double proxy_z_ = 1, proxy_speed_m_s_ = 0;
-  bool begun_ = false, was_in_ = false, stalled_ = false, restarted_ = false, lost_ = false, inside_ = false;
+  double late_until_s_ = -1;  // the tool has rendered a late model shortly before
+  bool begun_ = false, was_in_ = false, touched_ = false, stalled_ = false, restarted_ = false, lost_ = false, inside_ = false;
 };
 
 }  // namespace
@@ -276,7 +299,16 @@ TrialDef metronome() {
   TrialDef d;
   d.taps = 24;
   // As sim_node reports planes (its settings touch_margin and touch_margin_time).
-  d.margin_m = 0.008, d.margin_s = 0.03;
+  d.margin_m = 0.008, d.margin_s = 0.03, d.margin_late_m = 0.1;
+  return d;
+}
+
+TrialDef press() {
+  TrialDef d = metronome();
+  d.taps = 2;
+  // The way down takes 0.43 of the time that is not held.
+  d.period_s = 3, d.hold_s = 2.3;
+  d.depth_m = 0.013;
   return d;
 }
 

@@ -29,8 +29,9 @@ struct TrialDef {
   double stiffness_N_m = 1000;  // of the surface
   int delay_ms = 0;             // of the touch models
   // The simulation reports a surface only while the tool is within its margin: this distance, or the way of the tool in
-  // margin_s. 0: always.
-  double margin_m = 0, margin_s = 0;
+  // margin_s. 0: always. A fixed surface is reported at margin_late_m to a tool that renders late models.
+  double margin_m = 0, margin_s = 0, margin_late_m = 0;
+  double relief_m = 0;  // height of the waves on the surface, 20 mm long
   double force_step_N = 0;
   bool hits = false;  // events of hits, which begin transients
   double period_s = 0.25, depth_m = 0.012, top_m = 0.032;  // of a tap
@@ -48,7 +49,9 @@ struct TrialResult {
   double hand_N_s = 0, constraint_N_s = 0, body_N_s = 0;  // impulses along the normal, towards hand and body
   bool rung_down = true;  // the last transient has ended, and its impulse has been returned
   double received_N_s = 0;  // integral of the magnitude of the force
-  double peak_N = 0;
+  double peak_N = 0, last_peak_N = 0;  // of all taps, of the last one
+  double deepest_m = 0;                // of the tool under the surface, in the last tap
+  double hold_N = 0, hold_m = 0;       // force and depth at the end of the last hold
   double beyond_force_N = 0;  // above the force limit
   double beyond_rise_N = 0;   // of one tick above the slew limit
   double beyond_fade_N = 0;   // above the fade of a failure, or of the return after it
@@ -60,6 +63,8 @@ TrialResult run_trial(const TrialDef& def);
 
 // The taps of sim_node/scenes/metronome.sdf: a ball of 8 mm on a board, four times a second for 6 s.
 TrialDef metronome();
+// A hand that presses 13 mm into that board within 0.3 s and holds it for 2.3 s; twice.
+TrialDef press();
 
 // Draws every setting of haptic_node within its range, on a logarithmic scale where the range allows, and a hand, a
 // surface, a delay and a failure. The hand has at least the mass, damping and inertia that the settings state.
