@@ -224,7 +224,7 @@ void NodeRenderer::submit_contacts(sync::HostTime now) {
   contacts_.extend_history(delay);
   bodies_.extend_history(delay);
   // Without contact snapshots they would never end.
-  const bool known = now - frames_.count().newest_arrival < kContactsTimeout;
+  const bool known = now - frames_.newest_arrival() < kContactsTimeout;
   const sync::Contacts lasting = known ? contacts_.state_at(t).value : sync::Contacts{};
   for (const RecordedContact& contact : sampler_->recorded_contacts(lasting, presented_at)) output_.submit(contact);
   if (!slides) return;
@@ -253,7 +253,7 @@ void NodeRenderer::print_messages() {
 
 sync::Status NodeRenderer::status(sync::HostTime now, bool plays) {
   host().node().override_ticks(output_.callbacks(), output_.underflows(), output_.callback_rate_Hz());
-  const sync::HostTime newest_input = std::max(events_.count().newest_arrival, frames_.count().newest_arrival);
+  const sync::HostTime newest_input = std::max(events_.newest_arrival(), frames_.newest_arrival());
   const std::int8_t state = !impacts_                   ? node_health_t::WAITING
                             : !plays                    ? node_health_t::OUTPUT_LOST
                             : newest_input == sync::HostTime{} ? node_health_t::READY

@@ -129,7 +129,7 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
 void NodeRenderer::render(sync::HostTime now) {
   const sync::ModalityEndpoint& endpoint = host().endpoint();
   const Tick tick =
-      ticks_.next(stream_, now, endpoint.newest_arrival(), config_.tool, config_.tool_body, endpoint.delay());
+      ticks_.next(stream_, now, frames_.newest_arrival(), config_.tool, config_.tool_body, endpoint.delay());
   std::optional<sync::ScopedPhaseTimer> rendering(sync::Phase::kRender);
   const double command_degC = command_degC_.value_or(config_.settings.skin_rest_degC);
   const auto plate = device_ ? device_->step(command_degC, renderer_->load_W(), now) : std::nullopt;
@@ -161,7 +161,7 @@ void NodeRenderer::render(sync::HostTime now) {
 
 sync::Status NodeRenderer::status() const {
   sync::Status s{.quality = quality_.step(), .qualities = Quality::steps()};
-  if (host().endpoint().newest_arrival() == sync::HostTime{}) {
+  if (frames_.newest_arrival() == sync::HostTime{}) {
     s.state = node_health_t::READY;
     s.text = "waits for contacts";
   } else if (renderer_->input_lost()) {

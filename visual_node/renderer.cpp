@@ -181,7 +181,7 @@ void NodeRenderer::draw(sync::HostTime now, const std::optional<LockedFrame>& lo
   const auto meanwhile = [this](sync::HostTime t) { receive(t); };
   output_ = endpoint.output();
   overlays_.tint(composer_, scene_ ? scene_->bodies.size() : 0);
-  const sync::HostTime newest_arrival = world_.count().newest_arrival;
+  const sync::HostTime newest_arrival = world_.newest_arrival();
   frame_ = locked ? composer_.frame(now, *locked, newest_arrival)
                   : composer_.frame(now, slot_, endpoint.delay(), newest_arrival, endpoint.profile_delay());
   render_output_.draw_scene(frame_.list, output_);

@@ -13,6 +13,7 @@
 // spring and a damper hold 5 mm below the level of a floor; for a real device replace `Hardware`.
 #include <lcm/lcm-cpp.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
@@ -100,7 +101,8 @@ int main(int argc, char** argv) {
 
   Hardware hardware;
   Reason reported = Reason::kNone;
-  for (Clock::time_point next = Clock::now();; next += std::chrono::milliseconds(1)) {
+  // Ticks that were missed, as after a stop of the process, are not made up for.
+  for (Clock::time_point next = Clock::now();; next = std::max(next + std::chrono::milliseconds(1), Clock::now())) {
     std::this_thread::sleep_until(next);
     for (int left = kMaxMessages; left > 0 && bus.handleTimeout(0) > 0; --left) continue;
     hardware.read_encoders(1e-3);

@@ -186,7 +186,7 @@ def main():
     source, tried = None, -math.inf
     tick = time.monotonic()
     while True:
-        tick += PERIOD_S
+        tick = max(tick + PERIOD_S, time.monotonic())  # ticks that were missed are not made up for
         time.sleep(max(0.0, tick - time.monotonic()))
         if source is None and tick - tried > TRY_AGAIN_S:
             source, tried = opened(options.kind, path), tick

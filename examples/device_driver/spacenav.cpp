@@ -10,6 +10,7 @@
 
 #include <lcm/lcm-cpp.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
@@ -95,7 +96,8 @@ int main(int argc, char** argv) {
 
   Daemon daemon;
   tactus::examples::PushMotion motion(kHalf_m);
-  for (Clock::time_point next = Clock::now();; next += kPeriod) {
+  // Ticks that were missed, as after a stop of the process, are not made up for.
+  for (Clock::time_point next = Clock::now();; next = std::max(next + kPeriod, Clock::now())) {
     std::this_thread::sleep_until(next);
     daemon.poll_connection(Clock::now());
     daemon.read(motion);

@@ -152,7 +152,7 @@ void ModalityEndpoint::EventSlot::step(ModalityEndpoint& endpoint, HostTime now,
   while (const auto m = events.received_.pop()) {
     received = std::max(received, m->arrival);
     if (!endpoint.follow(m->message.header, m->message.clock, m->arrival)) continue;
-    newest = std::max(newest, m->arrival);
+    events.newest_ = std::max(events.newest_, m->arrival);
     events.inbox_.push(m->message, m->arrival, endpoint.operators_, &endpoint.decisions_);
   }
   endpoint.report_dropped(events.inbox_.take_dropped());

@@ -55,6 +55,9 @@ class ModalityEndpoint {
       return Delivered<Message>{std::move(next->first), next->second};
     }
     const InputCount& count() const { return inbox_.count(); }
+    // The arrival of its newest message of the followed simulation, before any delay of the profile; the epoch: none. Ages of
+    // an input are judged by it, because other channels and other simulations do not replace a lost input.
+    HostTime newest_arrival() const { return newest_; }
     // Sets a function that receives every message of the followed simulation as it arrives from the bus, before the
     // operators of the profile.
     void on_arrival(std::function<void(const Message&, HostTime arrival)> listener) { arrival_listener_ = std::move(listener); }
@@ -66,7 +69,7 @@ class ModalityEndpoint {
     DegradedSnapshots<Message> degraded_;
     std::function<void(const Message&, HostTime)> arrival_listener_;
     bool delayed_ = false;
-    HostTime now_{};
+    HostTime now_{}, newest_{};
   };
 
   // The contact events of this modality.
@@ -74,12 +77,14 @@ class ModalityEndpoint {
    public:
     EventInbox& inbox() { return inbox_; }
     const InputCount& count() const { return received_.count(); }
+    HostTime newest_arrival() const { return newest_; }  // as of a Stream
 
    private:
     friend class ModalityEndpoint;
     Events(Queue<contact_events_t>& received, OwnClock own) : received_(received), inbox_(own) {}
     Queue<contact_events_t>& received_;
     EventInbox inbox_;
+    HostTime newest_{};
   };
 
   // Reads the node's --degrade. Throws std::runtime_error with one sentence when the file is not a valid profile.
@@ -151,17 +156,15 @@ class ModalityEndpoint {
     explicit StreamSlot(Queue<Message>& inbox) : stream(inbox) {}
     void step(ModalityEndpoint& endpoint, HostTime now, HostTime state_time) override;
     void change_profile() override { stream.degraded_.change_profile(); }
-    HostTime newest_arrival() const override { return newest; }
+    HostTime newest_arrival() const override { return stream.newest_; }
     Stream<Message> stream;
-    HostTime newest{};  // arrival of the newest used message
   };
   struct EventSlot : AnyStream {
     explicit EventSlot(Events e) : events(std::move(e)) {}
     void step(ModalityEndpoint& endpoint, HostTime now, HostTime state_time) override;
     void change_profile() override {}  // each event has its own decision
-    HostTime newest_arrival() const override { return newest; }
+    HostTime newest_arrival() const override { return events.newest_; }
     Events events;
-    HostTime newest{};  // arrival of the newest used message
   };
   template <class Message>
   Stream<Message>& add(const char* channel, std::size_t capacity) {
@@ -223,7 +226,7 @@ void ModalityEndpoint::StreamSlot<Message>::step(ModalityEndpoint& endpoint, Hos
     if constexpr (requires { m->message.clock; })
       if (!endpoint.follow(m->message.header, m->message.clock, m->arrival)) continue;
     if (stream.arrival_listener_) stream.arrival_listener_(m->message, m->arrival);
-    newest = std::max(newest, m->arrival);
+    stream.newest_ = std::max(stream.newest_, m->arrival);
     stream.degraded_.push(std::move(m->message), m->arrival, endpoint.operators_, &endpoint.decisions_);
   }
   // In lock-step the state of the world is the state at the start of the iteration; each event carries its own due time.

@@ -22,7 +22,7 @@ constexpr std::uint64_t kOfWire = 1, kOfPrograms = 2;
 struct VirtualTime::Program {
   std::string name;
   std::unique_ptr<StackSwitch> stack;
-  HostTime wakes{};
+  HostTime wakes{}, frozen_until{};
   VirtualEnd* waits_for = nullptr;
   bool stop_requested = false, killed = false, begun = false, over = false;
   int result = -1;
@@ -71,7 +71,9 @@ void VirtualTime::add(std::string name, std::function<int()> body) {
 
 HostTime VirtualTime::wakes(const Program& program) const {
   if (program.over) return HostTime::max();
-  return program.waits_for ? std::min(program.wakes, std::max(now_, program.waits_for->next_arrival())) : program.wakes;
+  const HostTime due =
+      program.waits_for ? std::min(program.wakes, std::max(now_, program.waits_for->next_arrival())) : program.wakes;
+  return std::max(due, program.frozen_until);
 }
 
 void VirtualTime::run_until(HostTime until) {
@@ -130,6 +132,12 @@ bool VirtualTime::stop_requested() const { return running_ && running_->stop_req
 bool VirtualTime::request_stop(std::string_view name) {
   Program* program = find(name);
   if (program) program->stop_requested = true;
+  return program != nullptr;
+}
+
+bool VirtualTime::freeze(std::string_view name, HostTime until) {
+  Program* program = find(name);
+  if (program) program->frozen_until = until;
   return program != nullptr;
 }
 

@@ -54,6 +54,8 @@ class VirtualTime {
   void run_until(HostTime until);
   // Asks that program to end, as SIGTERM does. False: there is none.
   bool request_stop(std::string_view name);
+  // Stops that program until then, as SIGSTOP and SIGCONT do: no deadline and no message wakes it. False: there is none.
+  bool freeze(std::string_view name, HostTime until);
   // Asks all programs to end and runs them until they have, at most for this time. Programs still running at the timeout are
   // unwound.
   void end(Nanoseconds timeout = std::chrono::seconds(5));

@@ -31,6 +31,7 @@ void VirtualWire::send(const VirtualEnd& from, std::size_t side, std::string_vie
                        HostTime now) {
   ++sent_;
   for (const auto& [number, listener] : listeners_) listener(now, channel, data);
+  if (const auto at = blocked_.find(channel); at != blocked_.end() && now < at->second) return;
   std::shared_ptr<const std::vector<std::uint8_t>> bytes;
   for (VirtualEnd* end : ends_) {
     const auto to = end->subscribers_[side].find(channel);

@@ -77,6 +77,8 @@ class VirtualWire {
 
   std::unique_ptr<VirtualEnd> join();
   void send(const VirtualEnd& from, std::size_t side, std::string_view channel, std::span<const std::uint8_t> data, HostTime now);
+  // Loses every message of that channel that is sent before then, on its way to every receiver.
+  void block(const std::string& channel, HostTime until) { blocked_[channel] = until; }
   // Calls the listener for every message when it is sent: for a recorder without losses. Pass the returned number to remove_listener.
   using Listener = std::function<void(HostTime, std::string_view channel, std::span<const std::uint8_t> data)>;
   int add_listener(Listener listener);
@@ -91,6 +93,7 @@ class VirtualWire {
   std::uint64_t joined_ = 0;
   std::vector<VirtualEnd*> ends_;
   std::map<int, Listener> listeners_;
+  std::map<std::string, HostTime, std::less<>> blocked_;
   int listener_count_ = 0;
   std::int64_t sent_ = 0;
 };

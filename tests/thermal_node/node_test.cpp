@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 #include <tactus/body_def_t.hpp>
+#include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
 #include <tactus/contact_t.hpp>
 #include <tactus/material_def_t.hpp>
@@ -65,6 +66,9 @@ int simulate() {
     c.normal.z = 1;
     c.points.resize(1), c.point_count = 1;
     m.contacts = {c}, m.count = 1;
+    contact_events_t events{};
+    events.header.sim_time_ns = m.header.sim_time_ns, events.clock = m.clock, events.pages = 1;
+    node.bus().publish(channels::kContactEvents, events);
     node.bus().publish(channels::kContacts, m);
   }
   return 0;
@@ -100,6 +104,7 @@ class Cluster {
     time_.request_stop(name);
     time_.run_for(100ms);
   }
+  void block(const char* channel, double seconds) { time_.wire().block(channel, time_.now() + sync::from_seconds(seconds)); }
   void run(double seconds) { time_.run_for(sync::from_seconds(seconds)); }
 
   double command_degC(const std::string& name) { return commands_[sync::fnv1a_32(name)]; }
@@ -149,6 +154,19 @@ TEST_CASE("Two nodes of one tool command the plate to rest, and the remaining on
   c.run(3);
   CHECK(c.command_degC("second") > 36);
   CHECK_THAT(c.text("second"), !Contains("two programs"));
+}
+
+TEST_CASE("Lost contact snapshots return the plate to neutral, also while contact events arrive") {
+  Cluster c;
+  c.start("thermal_node", thermal::run);
+  c.run(4);
+  REQUIRE(c.command_degC("thermal_node") > 36);
+  c.block(channels::kContacts, 2);
+  c.run(1.5);
+  CHECK(c.command_degC("thermal_node") == Approx(33).margin(0.1));
+  CHECK_THAT(c.text("thermal_node"), Contains("no contacts"));
+  c.run(3);
+  CHECK(c.command_degC("thermal_node") > 36);
 }
 
 TEST_CASE("A restarted node continues with the exposure of its predecessor") {

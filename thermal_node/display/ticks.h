@@ -32,7 +32,7 @@ class Ticks {
   // A tick integrates at most this much simulated time, also after a long stop of the process.
   static constexpr sync::Nanoseconds kMaxInterval{2'000'000'000};
 
-  // now: the clock; newest_arrival: actual arrival of the newest contact message; delay: of presentation. A gap in
+  // now: the clock; newest_arrival: actual arrival of the newest contact snapshot; delay: of presentation. A gap in
   // the stream while messages arrive is intended: the last contact is held.
   Tick next(sync::ContactStream& stream, sync::HostTime now, sync::HostTime newest_arrival, int tool,
             int tool_body, sync::Nanoseconds delay = sync::Nanoseconds(0));

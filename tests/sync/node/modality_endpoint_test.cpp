@@ -75,11 +75,34 @@ TEST_CASE("A second simulation changes nothing for a modality, does not keep its
       of_second += m->message.header.incarnation == second.incarnation;
     }
     if (ms < 274) CHECK(sense.newest_arrival() == last_of_first);
+    if (ms < 274) CHECK(frames.newest_arrival() == last_of_first);
     if (ms < 274) CHECK(of_second == 0);
     CHECK(sense.simulation_conflict(now) == (ms >= 100));
   }
   CHECK(received == 200 + 400 - 274);
   CHECK(of_second == 400 - 274);
+}
+
+TEST_CASE("Each input has its own newest arrival: events do not keep snapshots alive") {
+  Node node({.name = "nose_node", .modality = "smell", .rate_Hz = 50, .fifo_priority = 0, .about = "For a test."},
+            in_memory());
+  ModalityEndpoint sense(node);
+  auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 64);
+  auto& events = sense.events();
+  Identity sender = Identity::fresh("sim_node", 1);
+  HostTime now = host_now(), last_frame{};
+  for (std::int64_t ms = 0; ms < 300; ++ms, now += kMs) {
+    const contact_frame_t f = frame(sender, ms, now);
+    contact_events_t e{};
+    e.header = f.header, e.clock = f.clock, e.pages = 1;
+    if (ms < 100) node.bus().on_message(channels::kContacts, encode(f), last_frame = now);
+    node.bus().on_message(channels::kContactEvents, encode(e), now);
+    sense.step(now);
+    while (frames.pop()) {
+    }
+    CHECK(frames.newest_arrival() == last_frame);
+    CHECK(events.newest_arrival() == now);
+  }
 }
 
 TEST_CASE("A jitter of presentation has the asked mean and deviation under every policy, and the health of the node states it") {

@@ -71,6 +71,61 @@ TEST_CASE("The same seed gives the same trace, another seed gives another") {
   CHECK(two_loops(3) != two_loops(4));
 }
 
+TEST_CASE("A frozen program does nothing until it continues, and the others are not affected") {
+  VirtualTime time({.seed = 3});
+  Trace trace;
+  const auto loop = [&](const char* name) {
+    return [&trace, &time, name] {
+      for (HostTime next = host_now(); !time.stop_requested(); sleep_until(next += 1ms)) trace.emplace_back(name, host_now());
+      return 0;
+    };
+  };
+  time.add("frozen", loop("frozen"));
+  time.add("other", loop("other"));
+  time.run_for(100ms);
+  CHECK_FALSE(time.freeze("nobody", time.now() + 1s));
+  const HostTime from = time.now(), until = from + 250ms;
+  CHECK(time.freeze("frozen", until));
+  time.run_for(1s);
+  int meanwhile = 0, others = 0;
+  for (const auto& [name, at] : trace) {
+    const bool between = at > from && at < until;
+    (name == "frozen" ? meanwhile : others) += between;
+  }
+  CHECK(meanwhile == 0);
+  CHECK(others == 250);
+  CHECK(std::find(trace.begin(), trace.end(), std::pair<std::string, HostTime>("frozen", until)) != trace.end());
+  time.end();
+}
+
+TEST_CASE("A message does not wake a frozen program, and waits for it") {
+  VirtualTime time;
+  HostTime woke{};
+  time.add("reader", [&] {
+    Bus bus(Identity::fresh("reader", 1), {});
+    auto& queue = bus.queue<node_health_t>(channels::kNodeHealth, 8);
+    while (!time.stop_requested()) {
+      bus.wait(10s);
+      bus.drain(host_now());
+      if (queue.pop()) woke = host_now();
+    }
+    return 0;
+  });
+  time.run_for(10ms);
+  const HostTime until = time.now() + 500ms;
+  CHECK(time.freeze("reader", until));
+  Bus sender(Identity::fresh("sender", 1), {});
+  node_health_t health{};
+  health.node = "sender";
+  health.qualities = 1;
+  health.kernel_drops = -1;
+  sender.publish(channels::kNodeHealth, health);
+  time.run_for(400ms);
+  CHECK(woke == HostTime{});
+  time.run_for(200ms);
+  CHECK(woke == until);
+}
+
 TEST_CASE("A program ends on request, and is unwound at the timeout") {
   VirtualTime time;
   bool polite = false, stubborn = false;

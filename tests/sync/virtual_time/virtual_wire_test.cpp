@@ -51,6 +51,23 @@ TEST_CASE("A message arrives after the latency at the subscribers of its channel
   CHECK(own.heard.size() == 1);
 }
 
+TEST_CASE("A blocked channel loses its messages until it is open again, and no other channel does") {
+  VirtualWire wire({}, 1);
+  const auto sender = wire.join(), receiver = wire.join();
+  Ear a("A"), b("B");
+  receiver->subscribe(0, "A", &a);
+  receiver->subscribe(0, "B", &b);
+  wire.block("A", kBegin + 3ms);
+  for (int ms = 0; ms < 6; ++ms) {
+    send(wire, *sender, ms, kBegin + ms * 1ms, "A");
+    send(wire, *sender, ms, kBegin + ms * 1ms, "B");
+  }
+  receiver->drain(kBegin + 10ms, 100);
+  CHECK(a.heard.size() == 3);
+  CHECK(a.heard.front().first == 3);
+  CHECK(b.heard.size() == 6);
+}
+
 TEST_CASE("Jitter keeps the order and never delivers before sending") {
   VirtualWire wire({.latency = 1ms, .jitter = {.shape = JitterShape::kNormal, .scale_s = 5e-3}}, 2);
   const auto sender = wire.join(), receiver = wire.join();
