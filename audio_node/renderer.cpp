@@ -254,11 +254,14 @@ void NodeRenderer::print_messages() {
 sync::Status NodeRenderer::status(sync::HostTime now, bool plays) {
   host().node().override_ticks(output_.callbacks(), output_.underflows(), output_.callback_rate_Hz());
   const sync::HostTime newest_input = std::max(events_.count().newest_arrival, frames_.count().newest_arrival);
-  const std::int8_t state = !impacts_                   ? node_health_t::WAITING
-                            : !plays                    ? node_health_t::OUTPUT_LOST
-                            : newest_input == sync::HostTime{} ? node_health_t::READY
-                            : now - newest_input > kInputTimeout  ? node_health_t::INPUT_LOST
-                                                        : node_health_t::RUNNING;
+  const bool first_input = newest_input == sync::HostTime{};
+  // The world waits for a sense that prepares, so that its first sounds have their maps and recordings.
+  const bool prepares = output_.opening() || (first_input && (loading_surfaces_ || output_.library().reading()));
+  const std::int8_t state = !impacts_ || prepares                ? node_health_t::WAITING
+                            : !plays                             ? node_health_t::OUTPUT_LOST
+                            : first_input                        ? node_health_t::READY
+                            : now - newest_input > kInputTimeout ? node_health_t::INPUT_LOST
+                                                                 : node_health_t::RUNNING;
   return {state, output_.status_text(), output_.quality(), static_cast<int>(kQualities.size())};
 }
 

@@ -34,7 +34,7 @@ using nlohmann::json;
 namespace {
 
 constexpr sync::Nanoseconds kRunStep{50'000'000};
-constexpr sync::Nanoseconds kWorldStartTimeout{60'000'000'000};  // at the latest: a scene's grace is some seconds
+constexpr sync::Nanoseconds kWorldStartTimeout{400'000'000'000};  // above the maxima of scene_grace and ready_timeout (sim_node/settings.csv)
 
 struct Loaded {
   std::string scene, out;
