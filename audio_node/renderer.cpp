@@ -170,6 +170,8 @@ void NodeRenderer::take_surfaces() {
 }
 
 void NodeRenderer::receive() {
+  contacts_.extend_history(host().endpoint().delay());
+  bodies_.extend_history(host().endpoint().delay());
   while (const auto m = frames_.pop()) contacts_.push(m->message, m->arrival);
   while (const auto m = world_.pop()) bodies_.push(m->message, m->arrival);
   while (const auto m = tools_.pop()) listener_.push(m->message, m->arrival);
@@ -180,6 +182,7 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   const bool plays = (impacts_ || (real_time_ && now - started_ > kSceneTimeout)) && output_.keep_open(now);
   const sync::ModalityEndpoint& endpoint = host().endpoint();
   output_.set_presentation_delay(endpoint.delay());
+  if (log_) log_->run().set_delay(std::max(sync::Nanoseconds(0), endpoint.delay() - Offline::kDecayTime / 2));
   output_.degrade({endpoint.output().value("dropout"), endpoint.output().value("dropout.every")});
   if (scene_) output_.set_listener(listener_.at(now + output_.latency()));
   receive();
@@ -240,8 +243,6 @@ void NodeRenderer::submit_contacts(sync::HostTime now) {
   const sync::HostTime presented_at = map->to_host(*t) + std::max(delay, ahead);
   if (sliding_) sliding_->set_listener(listener_.at(presented_at));
   sampler_->set_listener(listener_.at(presented_at));
-  contacts_.extend_history(delay);
-  bodies_.extend_history(delay);
   // Without contact snapshots they would never end.
   const bool known = now - frames_.count().newest_arrival < kContactsTimeout;
   const sync::Contacts lasting = known ? contacts_.state_at(*t).value : sync::Contacts{};

@@ -1,4 +1,5 @@
 """Tests of a complete run in virtual time: bit-identical results, presentation of all expected events, effects of faults of bus and modalities."""
+import csv
 import filecmp
 import json
 import os
@@ -83,6 +84,20 @@ class VirtualTime(unittest.TestCase):
         run(out, "--set", "audio_node.presentation_delay=0.5", "--without", "sync_node", seconds=6)
         audio = summary(out)["contacts"]["by_modality"]["audio"]
         self.assertEqual((0, audio["expected"]), (audio["lost"], audio["presented"]))
+
+    def test_a_log_renders_the_forces_of_the_run_also_after_the_world_has_ended(self):
+        out = self.folder / "press"
+        scene = RUN.parent.parent / "sim_node" / "scenes" / "yielding_board.sdf"
+        run(out, str(scene), "--seed", "3", seconds=5)
+        done = subprocess.run([BIN / "haptic_node", "--log", out / "run.lcmlog", "--trace", out / "again.csv"], capture_output=True, text=True, check=False)
+        self.assertEqual(0, done.returncode, done.stderr)
+        read = lambda name: {row["host_s"]: row for row in csv.DictReader((out / name).read_text(encoding="utf-8").splitlines())}
+        live, again = read("haptic.csv"), read("again.csv")
+        ticks = sorted(live.keys() & again.keys(), key=float)
+        self.assertGreater(len(ticks), 4000)
+        self.assertGreater(max(abs(float(row["force_z_N"])) for row in live.values()), 0.3)
+        for name in ("force_x_N", "force_y_N", "force_z_N", "fade"):  # in single precision
+            self.assertLess(max(abs(float(live[t][name]) - float(again[t][name])) for t in ticks), 1e-5, name)
 
     def test_a_log_with_any_bytes_in_its_name_is_exported(self):
         run(self.folder / "run", seconds=1)

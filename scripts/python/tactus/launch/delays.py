@@ -38,8 +38,16 @@ def profile_s(path):
     if path is None:
         return 0.0
     try:
-        rules = list(xml.etree.ElementTree.parse(path).getroot().iter("degrade"))
-    except (xml.etree.ElementTree.ParseError, OSError, LookupError, ValueError):
+        return profile_text_s(path.read_bytes())
+    except OSError:
+        return 0.0  # the nodes report the error
+
+
+def profile_text_s(text):
+    """The same of the XML of a profile."""
+    try:
+        rules = list(xml.etree.ElementTree.fromstring(text).iter("degrade"))
+    except (xml.etree.ElementTree.ParseError, LookupError, ValueError):
         return 0.0  # the nodes report the error with its line
     by_modality = {}
     for rule in rules:
