@@ -26,8 +26,9 @@ void PendingOnsets::add(std::int64_t event_id, std::int64_t contact_id, sync::Ho
 }
 
 void PendingOnsets::step(const Rendered& rendered, const ContactImpulses& impulses, std::vector<presentation_t>& reports) {
-  std::erase_if(pending_, [&](PendingBegin& w) {
+  for (PendingBegin& w : pending_)
     if (!w.known && rendered.surface_known(w.contact_id)) w.known = rendered.now;
+  std::erase_if(pending_, [&](const PendingBegin& w) {
     const auto felt = impulses.first_force_time(w.contact_id);
     const sync::Nanoseconds waited = rendered.now - w.received;
     const bool passed = rendered.shown && *rendered.shown - w.scheduled >= kMaxWait;

@@ -63,7 +63,7 @@ TEST_CASE("A process that starts after the world is named, unless the log begins
     world(log, 0, 1000, midway ? 5000 : 0);
     healths(log, 1000, 4000, node_health_t::RUNNING);
     world(log, 1020, 4000, 1020);
-    CHECK(warnings(log).size() == (midway ? 0 : 1));
+    CHECK(warnings(log).size() == (midway ? 0u : 1u));
   }
 }
 
