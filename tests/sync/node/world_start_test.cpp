@@ -140,7 +140,8 @@ TEST_CASE("Other runs, programs without a modality and a flood of names delay no
 TEST_CASE("A world begins when every modality has its scene, for every seed, rate, bus and order of starting") {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     VirtualPlan plan{.seed = seed};
-    const auto draw = [&, n = seed * 1000]() mutable { return uniform(99, ++n); };
+    std::uint64_t drawn = seed * 1000;
+    const auto draw = [&drawn] { return uniform(99, ++drawn); };
     plan.wire.latency = from_seconds(0.02 * draw());
     plan.wire.loss.share = seed % 3 == 0 ? 0.2 * draw() : 0;
     const std::size_t mesh_bytes = 1 + static_cast<std::size_t>(300'000 * draw());

@@ -92,9 +92,12 @@ TEST_CASE("A silent modality is named when events happened, and is not when a pr
 TEST_CASE("An output that cannot be opened is a warning, and its events are counted as dead") {
   RunLog log;
   log.status_text = "there is no sound card \"x\"; normal scheduling";
-  healths(log, 0, 4000, node_health_t::OUTPUT_LOST);
-  world(log, 1000, 4000);
-  hits(log, 5);
+  healths(log, 0, 900, node_health_t::OUTPUT_LOST);
+  for (int ms = 1000; ms <= 4000; ms += 100) {
+    world(log, ms, ms + 80, ms - 1000);
+    healths(log, ms, ms, node_health_t::OUTPUT_LOST);
+    if (ms == 1500) hits(log, 5);
+  }
   const RunSummary s = log.summary();
   CHECK(s.matcher().modalities().at("audio").dead == 5);
   CHECK_THAT(s.warnings().at(0), Contains("audio_node had no output in") && Contains("there is no sound card"));
