@@ -42,6 +42,7 @@ std::string Offline::result(double rate_Hz, std::int64_t hits, std::int64_t drop
   std::ostringstream text;
   text << wav_ << ": " << sound_s << " s of sound, " << hits << " hits";
   if (dropped > 0) text << " (" << dropped << " of them dropped: too late, or silenced by a profile)";
+  if (hits > 0 && hits == dropped) text << "; it is silent, because every hit was dropped";
   text << "; its first sample was out at " << sync::to_ns(*card_->start()) << " ns" << rest;
   return text.str();
 }

@@ -27,7 +27,10 @@ class Offline {
   // Like the constructor when --log is given; returns null otherwise.
   static std::unique_ptr<Offline> open(const OfflineOptions& options, double loop_rate_Hz, sync::HostTime clock);
 
-  // The run, extended by a second after the end of the log, so that sounding bodies decay.
+  // Time after the end of the log in which sounding bodies decay, also with a delay of up to half of it; design.
+  static constexpr sync::Nanoseconds kDecayTime{1'000'000'000};
+
+  // The run, extended by that time and by a longer delay.
   sync::OfflineInput& run() { return run_; }
   // Opens the file; may be called once. The card must not outlive this or the output that uses it.
   OpenCard open_card();
@@ -36,8 +39,6 @@ class Offline {
   std::string result(double rate_Hz, std::int64_t hits, std::int64_t dropped, sync::HostTime clock);
 
  private:
-  static constexpr sync::Nanoseconds kDecayTime{1'000'000'000};  // design
-
   sync::OfflineInput run_;
   std::string wav_;
   FileCard* card_ = nullptr;

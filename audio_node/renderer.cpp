@@ -25,7 +25,11 @@ constexpr int kCallbackPriority = 70;
 constexpr sync::Nanoseconds kSceneTimeout{2'000'000'000};  // the scene may select the card, but may be missing
 constexpr sync::Nanoseconds kInputTimeout{300'000'000};     // contact snapshots arrive at 60 Hz
 constexpr sync::Nanoseconds kContactsTimeout{100'000'000};  // six snapshots
-constexpr sync::Nanoseconds kScrapeLead{2'000'000};      // before the callback needs it: two ticks
+constexpr sync::Nanoseconds kScrapeLead{3'000'000};      // before the callback needs it: two ticks and a step of the grid
+// Lasting contacts are sampled at multiples of this simulated time: their sound then depends on the world alone, and not on the
+// phase of the ticks, which differs between a run and the rendering of its log.
+constexpr sync::Nanoseconds kGrid{1'000'000};
+constexpr sync::Nanoseconds kMaxStepBack{100'000'000};   // design: a grid that becomes coarser steps back by 17 ms at most
 // Design: half a tick; a blow takes up to 0.3 ms to prepare. Simultaneous blows wait for the next ticks.
 constexpr sync::Nanoseconds kStrikeBudget{500'000};
 constexpr sync::Nanoseconds kEarlyWindow{20'000'000};  // accepts events of the near future, in case a map lags
@@ -45,6 +49,13 @@ template <class Released>
 void free_in_background(Released released) {
   if (!released.empty()) std::thread([gone = std::move(released)] { sync::leave_realtime(); }).detach();
 }
+
+// A multiple of the grid, at least one step.
+sync::Nanoseconds whole_steps(sync::Nanoseconds interval) {
+  return std::max<std::int64_t>(1, (interval + kGrid - sync::Nanoseconds(1)) / kGrid) * kGrid;
+}
+
+sync::SimTime on_grid(sync::SimTime t, sync::Nanoseconds step) { return t - t.time_since_epoch() % step; }
 
 bool in_real_time(bool live) { return live && !sync::VirtualTime::current(); }
 
@@ -159,6 +170,8 @@ void NodeRenderer::take_surfaces() {
 }
 
 void NodeRenderer::receive() {
+  contacts_.extend_history(host().endpoint().delay());
+  bodies_.extend_history(host().endpoint().delay());
   while (const auto m = frames_.pop()) contacts_.push(m->message, m->arrival);
   while (const auto m = world_.pop()) bodies_.push(m->message, m->arrival);
   while (const auto m = tools_.pop()) listener_.push(m->message, m->arrival);
@@ -169,6 +182,7 @@ std::optional<sync::Status> NodeRenderer::step(sync::HostTime now) {
   const bool plays = (impacts_ || (real_time_ && now - started_ > kSceneTimeout)) && output_.keep_open(now);
   const sync::ModalityEndpoint& endpoint = host().endpoint();
   output_.set_presentation_delay(endpoint.delay());
+  if (log_) log_->run().set_delay(std::max(sync::Nanoseconds(0), endpoint.delay() - Offline::kDecayTime / 2));
   output_.degrade({endpoint.output().value("dropout"), endpoint.output().value("dropout.every")});
   if (scene_) output_.set_listener(listener_.at(now + output_.latency()));
   receive();
@@ -208,32 +222,39 @@ void NodeRenderer::strike(const contact_event_t& event, sync::HostTime scheduled
 }
 
 void NodeRenderer::submit_contacts(sync::HostTime now) {
-  const sync::Nanoseconds every = output_.update_interval(kScrapeLead);
-  const bool due = !no_sound_ && now - submitted_at_ >= every;
-  if (sliding_) sliding_->set_update_interval(sync::to_seconds(every));
-  const bool slides = due && sliding_ && sync::to_seconds(now - scraped_at_) >= sliding_->period_s();
   const auto map = contacts_.map(now);
-  if (!map || !sampler_ || !due || !(slides || sampler_->enabled())) return;
-  submitted_at_ = now;
+  if (no_sound_ || !map || !sampler_) return;
+  const sync::Nanoseconds every = whole_steps(output_.update_interval(kScrapeLead));
+  if (sliding_) sliding_->set_update_interval(sync::to_seconds(every));
+  // The state is presented with the delay of this modality, or as soon as the callback can.
+  const sync::Nanoseconds delay = host().endpoint().delay(), ahead = output_.latency() + kScrapeLead;
+  const sync::SimTime newest = map->to_sim(std::min(now, now + ahead - delay));
+  const auto due = [&](const std::optional<sync::SimTime>& last, sync::Nanoseconds step) -> std::optional<sync::SimTime> {
+    const sync::SimTime t = on_grid(newest, step);
+    const bool replaced = last && t < *last - kMaxStepBack;  // the world began again
+    return !last || t > *last || replaced ? std::optional(t) : std::nullopt;
+  };
+  const auto t = due(submitted_at_, every);
+  if (!t) return;
+  const bool slides = sliding_ && due(scraped_at_, whole_steps(sync::from_seconds(sliding_->period_s()))).has_value();
+  if (!slides && !sampler_->enabled()) return;
+  submitted_at_ = *t;
   sampler_->set_update_interval(sync::to_seconds(every));
-  const sync::HostTime presented_at = now + output_.latency() + kScrapeLead;
+  const sync::HostTime presented_at = map->to_host(*t) + std::max(delay, ahead);
   if (sliding_) sliding_->set_listener(listener_.at(presented_at));
   sampler_->set_listener(listener_.at(presented_at));
-  const sync::Nanoseconds delay = host().endpoint().delay();
-  const sync::SimTime t = map->to_sim(std::min(now, presented_at - delay));
-  contacts_.extend_history(delay);
-  bodies_.extend_history(delay);
   // Without contact snapshots they would never end.
   const bool known = now - frames_.newest_arrival() < kContactsTimeout;
-  const sync::Contacts lasting = known ? contacts_.state_at(t).value : sync::Contacts{};
+  const sync::Contacts lasting = known ? contacts_.state_at(*t).value : sync::Contacts{};
   for (const RecordedContact& contact : sampler_->recorded_contacts(lasting, presented_at)) output_.submit(contact);
   if (!slides) return;
-  for (Scrape scrape : sliding_->scrapes(lasting, t, presented_at, sync::to_seconds(now - scraped_at_))) {
+  const double step_s = scraped_at_ ? sync::to_seconds(*t - *scraped_at_) : 0;
+  for (Scrape scrape : sliding_->scrapes(lasting, *t, presented_at, step_s)) {
     scrape.slide *= sampler_->modal_gain(scrape.id, Interaction::kScrape);
     scrape.roll *= sampler_->modal_gain(scrape.id, Interaction::kRoll);
     output_.submit(scrape);
   }
-  scraped_at_ = now;
+  scraped_at_ = *t;
 }
 
 void NodeRenderer::publish() {
@@ -254,11 +275,14 @@ void NodeRenderer::print_messages() {
 sync::Status NodeRenderer::status(sync::HostTime now, bool plays) {
   host().node().override_ticks(output_.callbacks(), output_.underflows(), output_.callback_rate_Hz());
   const sync::HostTime newest_input = std::max(events_.newest_arrival(), frames_.newest_arrival());
-  const std::int8_t state = !impacts_                   ? node_health_t::WAITING
-                            : !plays                    ? node_health_t::OUTPUT_LOST
-                            : newest_input == sync::HostTime{} ? node_health_t::READY
-                            : now - newest_input > kInputTimeout  ? node_health_t::INPUT_LOST
-                                                        : node_health_t::RUNNING;
+  const bool first_input = newest_input == sync::HostTime{};
+  // The world waits for a sense that prepares, so that its first sounds have their maps and recordings.
+  const bool prepares = output_.opening() || (first_input && (loading_surfaces_ || output_.library().reading()));
+  const std::int8_t state = !impacts_ || prepares                ? node_health_t::WAITING
+                            : !plays                             ? node_health_t::OUTPUT_LOST
+                            : first_input                        ? node_health_t::READY
+                            : now - newest_input > kInputTimeout ? node_health_t::INPUT_LOST
+                                                                 : node_health_t::RUNNING;
   return {state, output_.status_text(), output_.quality(), static_cast<int>(kQualities.size())};
 }
 

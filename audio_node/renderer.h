@@ -80,7 +80,8 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   std::unique_ptr<Sliding> sliding_;
   std::unique_ptr<Sampler> sampler_;
   std::optional<sync::BackgroundTask<AudioSurfaces>> loading_surfaces_;
-  sync::HostTime started_, scraped_at_{}, submitted_at_{};
+  sync::HostTime started_;
+  std::optional<sync::SimTime> scraped_at_, submitted_at_;  // instants of the world, of lasting contacts
   std::int64_t scenes_ = 0, hits_ = 0, dropped_ = 0;
 };
 

@@ -61,7 +61,7 @@ sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Se
   return {.tool = config_.tool,
           .rate_Hz = settings.rate_Hz,
           .output_latency = sync::from_seconds(1 / settings.rate_Hz),
-          .status = {.state = node_health_t::WAITING,
+          .status = {.state = config_.tool >= 0 ? node_health_t::WAITING : node_health_t::READY,
                      .text = config_.tool >= 0 ? "waits for its device" : config_.problem}};
 }
 
@@ -96,10 +96,9 @@ void NodeRenderer::start_session() {
   try {
     session_.emplace(*scene_, config_, device_task_->take(), host().bus().clocks(), safety_);
     if (maps_) session_->set_maps(maps_);
-    host().node().set_state(node_health_t::READY, "waits for a touch model");
   } catch (const std::exception& e) {
     host().print_status(e.what());
-    host().node().set_state(node_health_t::WAITING, e.what());
+    host().node().set_state(node_health_t::OUTPUT_LOST, e.what());
   }
   device_task_.reset();
 }
@@ -177,6 +176,9 @@ sync::Status NodeRenderer::status(sync::HostTime now) const {
   } else if (session_->has_touch_model()) {
     s.text = maps_ ? maps_->error : "reads the maps of its surfaces";
     if (s.text.empty()) s.text = session_->device_text(now);
+  } else if (!maps_) {
+    s.state = node_health_t::WAITING;
+    s.text = "reads the maps of its surfaces";
   } else {
     s.state = node_health_t::READY;
     s.text = "waits for a touch model";

@@ -33,6 +33,7 @@
 #include "sim_node/scene/scene_assets.h"
 #include "sim_node/touch/tool_senders.h"
 #include "sync/node/node.h"
+#include "sync/node/world_start.h"
 #include "sync/text/printable.h"
 #include "sync/assets/scene_sender.h"
 
@@ -107,14 +108,25 @@ void publish_state(WorldPublisher& world_publisher, sim::Simulation& simulation,
       map);
 }
 
-// A fixed time for other processes to load the scene; no particular process is awaited.
-void offer_scene(sync::Node& node, sync::SceneSender& sender, sync::Nanoseconds duration) {
-  node.set_state(node_health_t::WAITING, "waits for other processes to load the scene");
-  const sync::HostTime begin = sync::host_now() + duration;
-  for (sync::HostTime now = node.wait(); node.running() && now < begin; now = node.wait()) sender.poll(now);
+// Offers the scene until every awaited process has it, for a bounded time.
+void offer_scene(sync::Node& node, sync::SceneSender& sender, sync::Queue<node_health_t>& healths, const sync::WorldStartDef& def) {
+  sync::WorldStart start(def, sync::host_now());
+  const sync::HostTime announce = sync::host_now() + def.min_wait;
+  bool announced = false;
+  for (sync::HostTime now = node.wait(); node.running() && !start.due(now); now = node.wait()) {
+    while (const auto m = healths.pop()) start.observe(m->message);
+    sender.poll(now, sync::SceneSender::kOfferPeriod);
+    const std::string late = sync::printable(start.late());
+    node.set_state(node_health_t::WAITING, "waits for " + (late.empty() ? "other processes to load the scene" : late));
+    if (now >= announce && !late.empty() && !std::exchange(announced, true))
+      std::cerr << "sim_node: waits for " << late << std::endl;
+  }
   node.set_state(node_health_t::RUNNING);
-  if (node.running())
-    std::cerr << "sim_node: the world begins" << std::endl;  // scripts/run measures its duration from here
+  if (!node.running()) return;
+  if (const std::string late = start.late(); !late.empty())
+    std::cerr << "sim_node: begins the world without " << sync::printable(late) << ": not ready after "
+              << sync::to_seconds(def.min_wait + def.max_wait) << " s; its first events are missed. Increase ready_timeout" << std::endl;
+  std::cerr << "sim_node: the world begins" << std::endl;  // scripts/run measures its duration from here
 }
 
 void add_tags(sync::Tags& tags, const sim::Simulation& simulation, const std::optional<WorldPublisher>& publisher) {
@@ -130,13 +142,14 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
   sync::Arguments app;
   sync::NodeOptions options;
   std::string scene;
-  std::vector<std::string> folders;
+  std::vector<std::string> folders, awaited;
   options.add_to(app, kSimulation);
   app.add_option("SCENE", scene, "SDF file of the world").required().existing_file();
   app.add_option("--scene-folder", folders,
                  "folder that the scene may read besides its own, once for each; also TACTUS_SCENE_FOLDERS=DIR:DIR")
       .existing_folder()
       .one_value_per_use();
+  app.add_option("--await", awaited, "name of a process that must have its scene before the world begins, once for each").one_value_per_use();
   sync::parse_or_exit(app, kSimulation.name, argc, argv);
 
   std::vector<std::string> warnings;
@@ -166,7 +179,11 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
 
   add_tags(node.tags(), simulation, world_publisher);
 
-  offer_scene(node, scene_sender, sync::from_seconds(settings.scene_grace_s));
+  offer_scene(node, scene_sender, healths,
+              {.awaited = awaited,
+               .run_id = options.run_id,
+               .min_wait = sync::from_seconds(settings.scene_grace_s),
+               .max_wait = sync::from_seconds(settings.ready_timeout_s)});
 
   while (node.running()) {
     const sync::HostTime now = node.wait();
@@ -179,7 +196,9 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
         simulation.mechanics().set_visual_rate(*rate_Hz);
         std::cerr << "sim_node: visual steps follow " << m->message.node << " at " << *rate_Hz << " Hz" << std::endl;
       }
-      if (processes.is_new(m->message, m->arrival)) world_publisher->publisher.request_full_state();
+      if (!processes.is_new(m->message, m->arrival)) continue;
+      world_publisher->publisher.request_full_state();
+      scene_sender.announce_soon();
     }
     execute_commands(commands, commander, options.run_id);
     for (sim_reply_t& reply : commander.take_replies()) {

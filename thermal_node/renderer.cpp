@@ -71,7 +71,7 @@ sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Se
   return {.tool = config_.tool,
           .rate_Hz = settings.rate_Hz,
           .output_latency = sync::from_seconds(1 / settings.rate_Hz) + Ticks::kSettle,
-          .status = {.state = node_health_t::WAITING, .text = config_.problem}};
+          .status = {.state = config_.tool >= 0 ? node_health_t::WAITING : node_health_t::READY, .text = config_.problem}};
 }
 
 void NodeRenderer::apply_setting(const Settings& settings, const std::string&) {

@@ -65,6 +65,9 @@ class Output {
   std::optional<presentation_t> next_report();
   std::optional<MediaPair> next_pair() { return stream_ ? stream_->next_pair() : std::nullopt; }
 
+  // True while the first attempt to open a card has neither succeeded nor failed; bounded by 5 s.
+  bool opening() const { return !stream_ && error_text_.empty(); }
+
   // One line of status: the card in use, or the reason why nothing plays.
   std::string status_text() const;
   // The same line once after each change of the card or the reason.

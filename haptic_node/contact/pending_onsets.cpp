@@ -18,20 +18,24 @@ presentation_t report_of(std::int64_t event_id, sync::HostTime scheduled, std::i
 }  // namespace
 
 void PendingOnsets::add(std::int64_t event_id, std::int64_t contact_id, sync::HostTime scheduled, sync::HostTime now,
-                     bool surface_known, std::vector<presentation_t>& reports) {
+                        std::vector<presentation_t>& reports) {
   if (pending_.size() < kMaxPending)
-    pending_.push_back({event_id, contact_id, scheduled, now, surface_known});
+    pending_.push_back({event_id, contact_id, scheduled, now, std::nullopt});
   else
     reports.push_back(report_of(event_id, scheduled, -1, sync::Nanoseconds(0)));
 }
 
-void PendingOnsets::step(sync::HostTime now, const ContactImpulses& impulses, sync::Nanoseconds uncertainty,
-                         std::vector<presentation_t>& reports) {
+void PendingOnsets::step(const Rendered& rendered, const ContactImpulses& impulses, std::vector<presentation_t>& reports) {
+  for (PendingBegin& w : pending_)
+    if (!w.known && rendered.surface_known(w.contact_id)) w.known = rendered.now;
   std::erase_if(pending_, [&](const PendingBegin& w) {
     const auto felt = impulses.first_force_time(w.contact_id);
-    if (!felt && now - w.received < kMaxWait) return false;
-    const std::int64_t presented = felt ? sync::to_ns(*felt) : w.surface_known ? sync::to_ns(w.received) : -1;
-    reports.push_back(report_of(w.event_id, w.scheduled, presented, uncertainty));
+    const sync::Nanoseconds waited = rendered.now - w.received;
+    const bool passed = rendered.shown && *rendered.shown - w.scheduled >= kMaxWait;
+    const bool over = waited >= kMaxWait && (passed || waited >= kMaxWait + rendered.delay + kMaxModelWait);
+    if (!felt && !over) return false;
+    const std::optional<sync::HostTime> presented = felt ? felt : w.known;
+    reports.push_back(report_of(w.event_id, w.scheduled, presented ? sync::to_ns(*presented) : -1, rendered.uncertainty));
     return true;
   });
 }

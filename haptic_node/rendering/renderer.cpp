@@ -234,8 +234,7 @@ void Renderer::handle_events(const TickInput& in) {
           hit_of(e, happened + sync::from_seconds(settings_.presentation_delay_s) + in.transient_delay),
           out_.reports);
     if (e.kind == contact_event_t::BEGIN)
-      pending_onsets_.add(e.event_id, e.contact_id, happened, in.now, surfaces_.find(e.contact_id) != nullptr,
-                          out_.reports);
+      pending_onsets_.add(e.event_id, e.contact_id, happened, in.now, out_.reports);
   }
 }
 
@@ -385,7 +384,9 @@ TickOutput& Renderer::step(const TickInput& in) {
   const Eigen::Vector3d* const about = force_method_.renders_torque() ? &force_method_.position() : nullptr;
   passivity_.record(felt_, surfaces_.list(), about);
   walls_.record(wall_force(surfaces_.list(), forces_, arms_));
-  pending_onsets_.step(in.now, impulses_, uncertainty(), out_.reports);
+  const auto known = [this](std::int64_t contact) { return surfaces_.find(contact) != nullptr; };
+  const auto shown = in.map && model_time_ ? std::optional(in.map->to_host(*model_time_)) : std::nullopt;
+  pending_onsets_.step({in.now, shown, in.touch_delay, uncertainty(), known}, impulses_, out_.reports);
   fill_state(in, commanded.transient_N);
   return out_;
 }

@@ -43,7 +43,8 @@ double transient_amplitude_N(const Hit& hit, const TransientShape& shape);
 
 class Transients {
  public:
-  static constexpr std::size_t kMaxPending = 64, kMaxActive = 16;
+  // Hits of a minute, the longest delay of a profile, at 60 a second; and the newest ringing ones.
+  static constexpr std::size_t kMaxPending = 4096, kMaxActive = 16;
 
   explicit Transients(const TransientShape& shape) : shape_(shape) {
     pending_.reserve(kMaxPending);

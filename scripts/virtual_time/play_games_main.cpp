@@ -34,7 +34,7 @@ using nlohmann::json;
 namespace {
 
 constexpr sync::Nanoseconds kRunStep{50'000'000};
-constexpr sync::Nanoseconds kWorldStartTimeout{60'000'000'000};  // at the latest: a scene's grace is some seconds
+constexpr sync::Nanoseconds kWorldStartTimeout{400'000'000'000};  // above the maxima of scene_grace and ready_timeout (sim_node/settings.csv)
 
 struct Loaded {
   std::string scene, out;
@@ -92,7 +92,7 @@ GameVerdict play(const Loaded& loaded, const GameDef& game) {
   add("participant",
       words(words({"simulated_player", loaded.scene, "--device", "participant"}, loaded.scatter), degraded),
       [&](int argc, char** argv) { return simulated_player::run(argc, argv, &loaded.rules); });
-  add("sim_node", words({"sim_node", loaded.scene}, common),
+  add("sim_node", words({"sim_node", loaded.scene, "--await", "participant"}, common),
       [&](int argc, char** argv) { return sim::run(argc, argv, &loaded.world); });
   const sync::HostTime latest = time.now() + kWorldStartTimeout;
   while (!referee.begun() && time.now() < latest) time.run_for(kRunStep);

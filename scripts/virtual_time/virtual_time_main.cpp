@@ -39,8 +39,8 @@ const std::map<std::string, std::function<int(int, char**)>> kPrograms{
 using Words = std::vector<std::string>;
 
 constexpr sync::Nanoseconds kRunStep{100'000'000};
-constexpr sync::Nanoseconds kWorldStartTimeout{60'000'000'000};  // at the latest: a scene's grace is some seconds
-constexpr sync::Nanoseconds kFinalPresentations{300'000'000};    // time to present and report the last events
+constexpr sync::Nanoseconds kWorldStartTimeout{400'000'000'000};  // above the maxima of scene_grace and ready_timeout (sim_node/settings.csv)
+constexpr sync::Nanoseconds kFinalPresentations{300'000'000};  // time to present and report the last events, beyond intended delays
 constexpr std::chrono::seconds kProgressPeriod{5};
 
 // One line of the plan.
@@ -77,13 +77,15 @@ int run_program(const Words& given) {
 }
 
 // Ends the simulation first, so that all modalities present its last events; the recorder last, so that the log is complete.
-void stop_in_order(sync::VirtualTime& time, const std::vector<PlannedProgram>& programs) {
+// delay: longest intended delay of a presentation.
+void stop_in_order(sync::VirtualTime& time, const std::vector<PlannedProgram>& programs, sync::Nanoseconds delay) {
   const auto request_stop = [&](auto&& selects) {
     for (const PlannedProgram& program : programs)
       if (selects(program.words.front())) time.request_stop(program.name);
     time.run_for(kFinalPresentations);
   };
   request_stop([](const std::string& program) { return program == "sim_node"; });
+  time.run_for(delay);
   request_stop([](const std::string& program) { return program != "sync_node" && program != "recorder"; });
   request_stop([](const std::string& program) { return program == "sync_node"; });
   time.end();
@@ -94,12 +96,14 @@ void stop_in_order(sync::VirtualTime& time, const std::vector<PlannedProgram>& p
 int main(int argc, char** argv) try {
   sync::Arguments app("Runs the nodes of a cluster in one process, in virtual time.");
   std::string file;
-  double seconds = 10, latency_ms = 0, jitter_ms = 0, loss_percent = 0;
+  double seconds = 10, last_presentations_s = 0, latency_ms = 0, jitter_ms = 0, loss_percent = 0;
   sync::VirtualPlan plan;
   app.add_option("PLAN", file, "command lines of the nodes, JSON: {\"NAME\": [\"PROGRAM\", \"OPTION\", ...], ...}")
       .required()
       .existing_file();
   app.add_option("--seconds", seconds, "simulated time to run after the start of the world, s").positive().show_default();
+  app.add_option("--last-presentations", last_presentations_s, "longest intended delay of a presentation: time after the world for its last events, s")
+      .range(0.0, 120.0);
   app.add_option("--seed", plan.seed, "seed of identities, phases of loops, and the bus").show_default();
   app.add_option("--latency-ms", latency_ms, "latency of the bus, ms").range(0.0, 10000.0).show_default();
   app.add_option("--jitter-ms", jitter_ms, "mean of the additional latency of the bus, ms; heavy-tailed").range(0.0, 10000.0);
@@ -130,7 +134,7 @@ int main(int argc, char** argv) try {
       std::cerr << "virtual_time: " << sync::to_seconds(time.now() - *world_start) << " of " << seconds << " s" << std::endl;
     }
   }
-  stop_in_order(time, programs);
+  stop_in_order(time, programs, stop_requested ? sync::Nanoseconds(0) : sync::from_seconds(last_presentations_s));
   const double real_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   const double virtual_s = sync::to_seconds(time.now() - sync::VirtualTime::kBegin);
   std::cerr << "virtual_time: " << virtual_s << " s in " << real_s << " s, " << virtual_s / real_s << " times as fast as real time; "

@@ -13,7 +13,6 @@
 namespace tactus::sync {
 namespace {
 
-constexpr Nanoseconds kManifestPeriod{1'000'000'000};
 constexpr std::size_t kRefsPerPage = 12;  // of at most 100 bytes each
 constexpr std::size_t kMaxName = 64;
 constexpr std::size_t kRequestQueue = 256;
@@ -85,10 +84,13 @@ void SceneSender::receive_requests() {
   }
 }
 
-void SceneSender::poll(HostTime now) {
+void SceneSender::announce_soon() { next_manifest_ = std::min(next_manifest_, last_manifest_ + kOfferPeriod); }
+
+void SceneSender::poll(HostTime now, Nanoseconds period) {
   receive_requests();
   if (now >= next_manifest_) {
-    next_manifest_ = now + kManifestPeriod;
+    last_manifest_ = now;
+    next_manifest_ = now + period;
     announce();
   }
   for (int budget = kChunksPerPoll; waiting_ && budget > 0; --budget) waiting_ = send_next();

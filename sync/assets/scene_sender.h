@@ -1,5 +1,6 @@
-// Sends the scene and its assets over the bus: announces them once a second, and sends the chunks that nodes request. Assets
-// are identified by the hash of their content, so receivers keep a scene when the simulation restarts with it.
+// Sends the scene and its assets over the bus: announces them once a second, faster before the world begins and to a new process,
+// and sends the chunks that nodes request. Assets are identified by the hash of their content, so receivers keep a scene when the
+// simulation restarts with it.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +25,15 @@ class Queue;
 class SceneSender {
  public:
   static constexpr int kChunksPerPoll = 4;
+  // Interval of the manifest while the world runs, and before it begins: a receiver that joins after one manifest must have the
+  // next, and the scene, before the first instant of the world.
+  static constexpr Nanoseconds kPeriod{1'000'000'000}, kOfferPeriod{50'000'000};
   // Throws std::runtime_error with one sentence when the assets exceed the limits of the receivers.
   SceneSender(Bus& bus, std::vector<Asset> assets);
-  // Call it once a tick: sends the manifest when due, then requested chunks.
-  void poll(HostTime now);
+  // Call it once a tick: sends the manifest when due, then requested chunks. period: the interval until the next manifest.
+  void poll(HostTime now, Nanoseconds period = kPeriod);
+  // A new process lacks the scene: the next manifest is due kOfferPeriod after the last one.
+  void announce_soon();
   const std::vector<asset_ref_t>& manifest() const { return refs_; }
 
  private:
@@ -47,7 +53,7 @@ class SceneSender {
   std::int64_t last_sent_ = 0;  // the asset of the last chunk
   bool waiting_ = false;        // a chunk may be requested and not sent
   std::vector<asset_ref_t> refs_;
-  HostTime next_manifest_{};
+  HostTime last_manifest_{}, next_manifest_{};
 };
 
 }  // namespace tactus::sync

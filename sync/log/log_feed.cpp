@@ -50,7 +50,8 @@ HostTime LogFeed::next_at(Bus& bus, HostTime tick) {
     if (!has_pending_ && !events_.next(pending_, pending_at_)) break;
     has_pending_ = true;
     if (pending_at_ > now_) break;
-    if (!excluded_.contains(pending_.channel)) bus.on_message(pending_.channel, pending_.data, pending_at_);
+    // A message arrives at the tick that reads it, as from the bus: ages then have the same values as in the run.
+    if (!excluded_.contains(pending_.channel)) bus.on_message(pending_.channel, pending_.data, now_);
     has_pending_ = false;
   }
   return now_;

@@ -1,5 +1,5 @@
-// Replaces the bus by a log: passes the recorded messages to the inboxes, tick by tick, at the recorder's times. A node then
-// renders the log as it would have rendered the run, as fast as it can. Pure, except that it maps the file.
+// Replaces the bus by a log: passes the recorded messages to the inboxes, each at the first tick after the recorder's stamp, as
+// a node reads the bus. A node then renders the log as it would have rendered the run, as fast as it can. Pure, except that it maps the file.
 #pragma once
 
 #include <cstdint>

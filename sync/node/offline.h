@@ -46,9 +46,11 @@ class OfflineInput {
   // Sets the time of the next tick, instead of one period after the last.
   void set_next_tick(HostTime at) { next_tick_ = at; }
   HostTime now() const { return now_; }
-  bool over() const { return now_ >= end_; }
+  bool over() const { return now_ >= end_ + delay_; }
   // Ends the rendering at this time, because there is nothing more to do.
-  void end_at(HostTime end) { end_ = end; }
+  void end_at(HostTime end) { end_ = end, delay_ = Nanoseconds(0); }
+  // The delay with which the output follows the log: it is rendered for this longer, so that its last events are presented.
+  void set_delay(Nanoseconds delay) { delay_ = delay; }
   // Throws std::runtime_error with one sentence when the rate of the ticks differs from the rate that the scene requires.
   void require_rate(double rate_Hz) const;
   // Adds the outcome of an event to the table of outcomes.
@@ -66,6 +68,7 @@ class OfflineInput {
   bool as_recorded_;
   std::unique_ptr<AtomicFile> presented_;
   HostTime end_, now_, started_, last_progress_;
+  Nanoseconds delay_{0};
   std::optional<HostTime> next_tick_;
 };
 

@@ -1,7 +1,9 @@
 #include "sync/node/run_renderer.h"
 
 #include <iostream>
+#include <tactus/node_health_t.hpp>
 #include <tactus/presentation_t.hpp>
+#include <utility>
 
 #include "sync/node/live_settings.h"
 
@@ -51,7 +53,11 @@ class RendererRun {
   }
   void report_status(const Status& status) {
     const bool conflict = endpoint_.simulation_conflict(ticks_.now());
-    node_.set_state(status.state, status.text + (!conflict ? "" : status.text.empty() ? kConflict : std::string("; ") + kConflict));
+    // The world waits for a modality without a scene.
+    const bool lacks_scene = !scenes_.scene() && status.state == node_health_t::READY;
+    std::string text = lacks_scene ? "waits for the scene" : status.text;
+    if (conflict) text += (text.empty() ? "" : "; ") + std::string(kConflict);
+    node_.set_state(lacks_scene ? node_health_t::WAITING : status.state, std::move(text));
     if (status.qualities > 0) node_.set_quality(status.quality, status.qualities);
   }
   void show_progress() {

@@ -3,6 +3,7 @@
 #include <tactus/node_health_t.hpp>
 
 #include <algorithm>
+#include <iterator>
 
 namespace tactus::sync {
 
@@ -19,7 +20,8 @@ bool NodeActivity::observe(std::int64_t incarnation, std::int8_t state, HostTime
     spans_.push_back(next);
   }
   Span& now = spans_.back();
-  const bool ready = state == node_health_t::READY;
+  // A node whose output cannot be opened has the scene: its events count, as dead.
+  const bool ready = state == node_health_t::READY || state == node_health_t::OUTPUT_LOST;
   if ((ready || state == node_health_t::RUNNING || state == node_health_t::STALE) &&
       now.expected_from == HostTime::max()) {
     now.expected_from = ready ? sent : sent + kGrace;
@@ -53,6 +55,11 @@ bool NodeActivity::died_before(std::int64_t incarnation, HostTime until, HostTim
       std::find_if(spans_.rbegin(), spans_.rend(), [&](const Span& s) { return s.incarnation == incarnation; });
   if (last == spans_.rend() || last->end >= until) return false;
   return last != spans_.rbegin() || now - last->end > kDeath;
+}
+
+bool NodeActivity::replaced_before(std::int64_t incarnation, HostTime until) const {
+  const auto last = std::find_if(spans_.rbegin(), spans_.rend(), [&](const Span& s) { return s.incarnation == incarnation; });
+  return last != spans_.rend() && last != spans_.rbegin() && std::prev(last)->begin < until;
 }
 
 }  // namespace tactus::sync

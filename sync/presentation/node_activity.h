@@ -15,7 +15,8 @@ class NodeActivity {
   static constexpr Nanoseconds kStall{300'000'000};
   static constexpr Nanoseconds kDeath{500'000'000};
   // Time from a node's first report that it runs until presentations are expected of it: its subscriptions and its clock map
-  // have to settle. Of a node that was ready before the world began, they are expected from then on.
+  // have to settle. Of a node that was ready before the world began, or reports that it has no output, they are expected from
+  // then on.
   static constexpr Nanoseconds kGrace{200'000'000};
   // Length of the stored history.
   static constexpr Nanoseconds kRemember{10'000'000'000};
@@ -41,6 +42,9 @@ class NodeActivity {
   // True when the last report of this incarnation is before `until` and none can follow: another incarnation has replaced it,
   // or it has been silent for too long.
   bool died_before(std::int64_t incarnation, HostTime until, HostTime now) const;
+
+  // True when another incarnation had replaced this one by `until`.
+  bool replaced_before(std::int64_t incarnation, HostTime until) const;
 
   // True when the last report is before `since` and the process has been silent for too long.
   bool silent_since(HostTime since, HostTime now) const {

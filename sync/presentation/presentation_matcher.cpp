@@ -124,6 +124,13 @@ void PresentationMatcher::observe(const presented_t& m, HostTime arrival) {
     if (event == nullptr || event->reports.size() >= kMaxReportsPerEvent) continue;
     const auto same = [&](const Report& r) { return r.source == m.header.source && r.part == p.part; };
     if (std::any_of(event->reports.begin(), event->reports.end(), same)) continue;
+    if (p.scheduled_ns >= 0 && event->known && has_room(reported_delay_, m.modality, kMaxModalities)) {
+      const SenderClock::Reading at = clock.read(p.scheduled_ns, arrival);
+      const auto held = event->held.find(m.modality);
+      if (at.uncertainty >= Nanoseconds(0))
+        reported_delay_[m.modality] =
+            std::clamp(at.time - event->time - (held == event->held.end() ? Nanoseconds(0) : held->second), Nanoseconds(0), kMaxDelay);
+    }
     Report report{m.header.source, m.modality, p.part, p.outcome, -1, Nanoseconds(0)};
     if (p.presented_ns >= 0) {
       const SenderClock::Reading at = clock.read(p.presented_ns, arrival);
@@ -168,7 +175,10 @@ void PresentationMatcher::observe(const degraded_t& m, HostTime) {
 Nanoseconds PresentationMatcher::intended_delay(const Event& e, const std::string& modality) const {
   const auto playout = playout_.find(modality);
   const auto held = e.held.find(modality);
-  return lockstep_period_ + (playout == playout_.end() ? Nanoseconds(0) : playout->second.delay()) +
+  const auto reported = reported_delay_.find(modality);
+  return lockstep_period_ +
+         std::max(playout == playout_.end() ? Nanoseconds(0) : playout->second.delay(),
+                  reported == reported_delay_.end() ? Nanoseconds(0) : reported->second) +
          (held == e.held.end() ? Nanoseconds(0) : held->second);
 }
 
@@ -252,7 +262,8 @@ void PresentationMatcher::settle_expected(Renderer& r, std::int32_t source, cons
     if (last && later > Nanoseconds(0) && now < e.time + later + kReportsWithin) return;
     const auto simulation = renderers_.find(e.source);
     const bool source_died = simulation != renderers_.end() &&
-                             simulation->second.activity.died_before(e.incarnation, e.time + kRepeated, now);
+                             (simulation->second.activity.died_before(e.incarnation, e.time + kRepeated, now) ||
+                              simulation->second.activity.replaced_before(e.incarnation, e.time + later + kReportsWithin));
     if (last && (activity.may_return || activity.state == NodeActivity::State::kUndecided || source_died)) return;
     if (activity.state == NodeActivity::State::kStalled) {
       outcome = &tally.stalled;

@@ -8,7 +8,8 @@
 //   dropped_late        the node reported so
 //   stalled             no report, and its health had a gap of more than 0.3 s within 0.1 s after the event
 //   dead                no report, and within 0.1 s after the event the node was gone, replaced, not running again, or
-//                       without output; or the simulation died before it could repeat the event for its 50 ms
+//                       without output; or the simulation died before it could repeat the event for its 50 ms, or was
+//                       replaced before the event was due
 //   lost                no report from a running node
 // While a simulation of this run publishes, no presentation is expected of events of other runs, such as those of a log that
 // is played at the same time. None is expected of a node that never ran. A report that was not expected is not an outcome, but
@@ -145,7 +146,8 @@ class PresentationMatcher {
 
   Event* find_or_add(std::int64_t id, HostTime arrival);
   bool expects(const Renderer&, const Event&) const;
-  // The intended delay of this modality for the event.
+  // The intended delay of this modality for the event: of the playout plan or, if longer, the one that its newest report
+  // shows, since a modality also has a delay of its own; and the delay of its profile.
   Nanoseconds intended_delay(const Event&, const std::string& modality) const;
   Nanoseconds max_intended_delay(const Event&) const;
   SenderClock& clock_of(const header_t&, HostTime arrival);
@@ -162,6 +164,7 @@ class PresentationMatcher {
   std::vector<FinalExpectation> final_expectations_;
   std::vector<Need> needs_;
   std::map<std::string, PlayoutFollower> playout_;  // by modality: each follows as its node does
+  std::map<std::string, Nanoseconds> reported_delay_;  // by modality: of its newest scheduled presentation, without its profile
   Nanoseconds lockstep_period_{0};                             // period of a lock-step
   // Simulations of this run that have published events, and the newest arrival from one.
   std::set<std::int32_t> simulations_;

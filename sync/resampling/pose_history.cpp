@@ -31,7 +31,8 @@ void PoseHistory::push(const tool_state_t& m, HostTime arrival) {
   samples_.push_back({time,
                       {to_eigen(m.device.position_m), to_eigen(m.device.orientation).normalized(),
                        to_eigen(m.device_velocity_m_s), to_eigen(m.device_spin_rad_s)}});
-  while (samples_.size() > kMaxSamples || samples_.front().time < time - kSpan) samples_.pop_front();
+  const std::size_t max_samples = kMaxSamples * static_cast<std::size_t>(1 + span_ / kSpan);
+  while (samples_.size() > max_samples || samples_.front().time < time - span_) samples_.pop_front();
 }
 
 Sample<BodyPose> PoseHistory::at(HostTime t) const {

@@ -21,13 +21,15 @@ class PoseHistory {
   static constexpr Nanoseconds kMaxExtrapolation{20'000'000};
   // design: as for the bodies of the world
   static constexpr Nanoseconds kStaleAfter{200'000'000};
-  // Length of the stored past, for a modality with a presentation delay: 4096 reports at 4 kHz.
+  // Length of the stored past, beyond the delay of extend_history(): 4096 reports at 4 kHz.
   static constexpr Nanoseconds kSpan{1'000'000'000};
   static constexpr std::size_t kMaxSamples = 4096;
 
   // own: times on another clock are converted by its map; times of another run by arrival.
   explicit PoseHistory(OwnClock own) : sender_(own), own_(own) {}
 
+  // Stores this time beyond kSpan, for a view that a profile delays.
+  void extend_history(Nanoseconds delay) { span_ = kSpan + delay; }
   // A report. Those of a second process of the tool are ignored while the first one sends.
   void push(const tool_state_t& state, HostTime arrival);
   // Whether a second process of the tool has sent within the last 0.3 s.
@@ -46,6 +48,7 @@ class PoseHistory {
   OwnClock own_;
   SingleSender followed_;
   std::deque<TimedPose> samples_;  // in order of time
+  Nanoseconds span_ = kSpan;
 };
 
 }  // namespace tactus::sync

@@ -3,7 +3,8 @@
 //   in   a log; commands from --control; ASSET_REQUEST
 //   out  the messages of the log, as if they were sent now; the scene of the log on request
 //
-// It needs no other process and waits for none. Damaged parts of the log are skipped and counted.
+// It begins when the processes of --live have the scene, for a bounded time, and needs none of them. Damaged parts of the log are
+// skipped and counted.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -16,10 +17,12 @@
 #include <tactus/node_health_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <tactus/tool_def_t.hpp>
+#include <utility>
 
 #include "sync/assets/scene_sender.h"
 #include "sync/log/mapped_log.h"
 #include "sync/node/node.h"
+#include "sync/node/world_start.h"
 #include "sync/text/printable.h"
 #include "sync/tools/replay/replay.h"
 #include "sync/tools/replay/replay_selection.h"
@@ -35,8 +38,10 @@ namespace {
 class KernelDrops {
  public:
   explicit KernelDrops(sync::Bus& bus) : run_id_(bus.identity().run_id), healths_(bus.queue<node_health_t>(channels::kNodeHealth, 64)) {}
-  void update() {
+  // Also passes each report to `start`.
+  void update(sync::WorldStart& start) {
     while (const auto m = healths_.pop()) {
+      start.observe(m->message);
       const header_t& h = m->message.header;
       if (h.run_id != run_id_ || m->message.kernel_drops < 0 || (nodes_.size() >= kMax && !nodes_.contains({h.source, h.incarnation}))) continue;
       nodes_.try_emplace({h.source, h.incarnation}, m->message.kernel_drops, 0).first->second.second = m->message.kernel_drops;
@@ -83,6 +88,7 @@ struct ReplayArguments {
   sync::ReplayOptions play;
   sync::ReplaySelectionOptions selection_options;
   bool only_describe = false, stay = false;
+  double ready_timeout_s = 10;  // as ready_timeout of sim_node/settings.csv
 
   void add_to(sync::Arguments& app) {
     app.add_option("LOG", log, "run.lcmlog of a run, or a log of the stock lcm-logger").required();
@@ -99,6 +105,7 @@ struct ReplayArguments {
                    "regular expression: also sends these channels, which are dropped by default");
     app.add_option("--rename", selection_options.rename, "FROM=TO, channels; may be repeated");
     app.add_option("--live", selection_options.live, "a running process, whose recorded messages are not sent; may be repeated");
+    app.add_option("--ready-timeout", ready_timeout_s, "longest wait for the processes of --live to have the scene, s").range(0.0, 300.0).show_default();
     app.add_flag("--as-recorded", selection_options.as_recorded, "applies the degradation profiles of the log");
     app.add_flag("--verbatim", selection_options.verbatim,
                  "sends every message of every channel unchanged, like the stock lcm-logplayer");
@@ -177,11 +184,23 @@ int main(int argc, char** argv) try {
   std::vector<std::uint8_t> message;
   bool quit = false, end_reported = false;
   const auto status_text = [&] { return position_text(*replay, play, port.refused()); };
-  std::cerr << "replay: begins, " << status_text() << std::endl;
+  sync::WorldStart start({.awaited = selection_options.live, .run_id = options.run_id, .max_wait = sync::from_seconds(arguments.ready_timeout_s)},
+                         sync::host_now());
+  bool waits = scene.has_value();
+  if (waits) replay->pause(sync::host_now());
+  const auto begin = [&](sync::HostTime now) {
+    if (waits && !start.late().empty())
+      std::cerr << "replay: begins without " << sync::printable(start.late()) << ": not ready after " << arguments.ready_timeout_s
+                << " s; it misses the first messages. Increase --ready-timeout" << std::endl;
+    if (std::exchange(waits, false) && !play.paused) replay->resume(now);
+    std::cerr << "replay: begins, " << status_text() << std::endl;
+  };
+  if (!waits) begin(sync::host_now());
   sync::HostTime next_status{};
   while (node.running() && !quit) {
     const sync::HostTime now = node.wait();
-    drops.update();
+    drops.update(start);
+    if (waits && start.due(now)) begin(now);
     char bytes[512];
     for (ssize_t n; control_fd >= 0 && (n = read(control_fd, bytes, sizeof bytes)) > 0;) lines.add({bytes, static_cast<std::size_t>(n)});
     for (std::string line; lines.take(line);) {
@@ -198,7 +217,7 @@ int main(int argc, char** argv) try {
       port.send(*channel, message);
       return true;
     });
-    if (scene) scene->poll(now);
+    if (scene) scene->poll(now, waits ? sync::SceneSender::kOfferPeriod : sync::SceneSender::kPeriod);
     if (now >= next_status) {
       next_status = now + sync::from_seconds(0.1);
       node.set_state(node_health_t::RUNNING, status_text());

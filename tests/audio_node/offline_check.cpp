@@ -1,20 +1,16 @@
 // The program renders a recorded run, without bus and card.
-#include <fcntl.h>
-#include <sndfile.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <random>
 #include <span>
 
 #include "audio_node/modal/bank/ring.h"
 #include "audio_node/spatial/onset.h"
+#include "tests/audio_node/support/offline_program.h"
 #include "tests/audio_node/support/recorded_run.h"
 #include "tests/rendered_log.h"
 
@@ -25,59 +21,6 @@ namespace {
 
 constexpr double kRate = 48000, kDelay_s = 0.020;  // of settings.csv
 constexpr int kHits = 40;
-
-struct Folder {
-  Folder() {
-    char name[] = "/tmp/tactus_offline_XXXXXX";
-    if (mkdtemp(name)) path = name;
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-  std::string file(const std::string& name) const { return path + "/" + name; }
-  std::string path;
-};
-
-struct Done {
-  int status;
-  std::string message;
-};
-
-// Runs the program in the folder of this one.
-Done render(const Folder& folder, std::vector<std::string> words) {
-  const auto bin = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  const std::string message_path = folder.file("messages.txt");
-  const pid_t child = fork();
-  if (child == 0) {
-    words.insert(words.begin(), bin / "audio_node");
-    std::vector<char*> raw;
-    for (std::string& w : words) raw.push_back(w.data());
-    raw.push_back(nullptr);
-    const int fd = open(message_path.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
-    dup2(fd, STDERR_FILENO);
-    execv(raw[0], raw.data());
-    _exit(127);
-  }
-  int status = -1;
-  waitpid(child, &status, 0);
-  std::ifstream text(message_path);
-  return {WEXITSTATUS(status), std::string(std::istreambuf_iterator<char>(text), {})};
-}
-
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::vector<float> mono_of(const std::string& path) {
-  SF_INFO info{};
-  SNDFILE* file = sf_open(path.c_str(), SFM_READ, &info);
-  REQUIRE(file);
-  std::vector<float> all(static_cast<std::size_t>(info.channels * info.frames)), mono;
-  sf_readf_float(file, all.data(), info.frames);
-  sf_close(file);
-  for (std::size_t i = 0; i < all.size(); i += static_cast<std::size_t>(info.channels))
-    mono.push_back(all[i] + all[i + 1]);
-  return mono;
-}
 
 // Hits far enough apart to be distinguished, at random times. Returns them.
 std::vector<double> record(const std::string& path, const std::string& profile = "") {
@@ -102,13 +45,6 @@ std::vector<double> record(const std::string& path, const std::string& profile =
   }
   run.finish();
   return times;
-}
-
-std::int64_t first_sample_ns(const std::string& message) {
-  const std::string before = "first sample was out at ";
-  const auto at = message.find(before);
-  REQUIRE(at != std::string::npos);
-  return std::stoll(message.substr(at + before.size()));
 }
 
 // Samples from the time of hit t plus its delay to its onset out of silence.

@@ -58,6 +58,7 @@ Frame FrameComposer::frame(sync::HostTime now, std::int64_t number, sync::Nanose
   due_.reset();
   const sync::HostTime t = now + render_time_.expected();
   const auto map = bodies_.map(now);
+  head_.extend_history(view_delay);
   Frame frame;
   frame.number = number;
   draw(frame, now, delay, map ? std::optional(map->to_sim(t - delay)) : std::nullopt, head_.at(t - view_delay),

@@ -63,6 +63,7 @@ std::optional<LockedFrame> FrameLock::begin_frame(sync::HostTime now, sync::Nano
   frame.due_host_time = clock_.to_host(frame.due, now);
   const RoomTime by = frame.due - lag_;
   set_world_instant(frame, by, profile_delay);
+  heads_.extend_history(profile_delay);
   if (const auto sample = heads_.published_by(by - profile_delay)) {
     frame.head = extrapolate(*sample, frame.due - profile_delay);
     frame.head_ns = sample->publish_ns;

@@ -22,7 +22,8 @@ void HeadSamples::push(const tool_state_t& m, RoomTime sent) {
                        m.header.seq,
                        {to_eigen(m.device.position_m), to_eigen(m.device.orientation).normalized(),
                         to_eigen(m.device_velocity_m_s), to_eigen(m.device_spin_rad_s)}});
-  while (samples_.size() > kMax || samples_.front().sent < samples_.back().sent - kSpan) samples_.pop_front();
+  const std::size_t max = kMax * static_cast<std::size_t>(1 + span_ / kSpan);
+  while (samples_.size() > max || samples_.front().sent < samples_.back().sent - span_) samples_.pop_front();
 }
 
 std::optional<HeadSample> HeadSamples::published_by(RoomTime t) const {

@@ -25,6 +25,8 @@ class HeadSamples {
   static constexpr std::size_t kMax = 4096;
   static constexpr sync::Nanoseconds kSpan{1'000'000'000};
 
+  // Stores this time beyond kSpan, for a view that a profile delays.
+  void extend_history(sync::Nanoseconds delay) { span_ = kSpan + delay; }
   void push(const tool_state_t& m, RoomTime sent);
   void clear() { samples_.clear(); }
   // Send time of the newest pose; nothing: there is none.
@@ -37,6 +39,7 @@ class HeadSamples {
  private:
   std::int64_t incarnation_ = 0;
   std::deque<HeadSample> samples_;  // in order of time
+  sync::Nanoseconds span_ = kSpan;
 };
 
 // The pose of the head at t, extrapolated with its velocity for at most kMaxHeadExtrapolation, and its status.

@@ -16,6 +16,7 @@
 #include "sync/degradation/measured_effect.h"
 #include "sync/log/log_header.h"
 #include "sync/log/log_origin.h"
+#include "sync/text/printable.h"
 
 namespace tactus::sync {
 
@@ -35,6 +36,7 @@ void RunSummary::observe(const log_info_t& m) {
 void RunSummary::observe(const node_health_t& m, HostTime now) {
   auto [it, first] = incarnations_[m.node].try_emplace(m.header.incarnation);
   Incarnation& incarnation_health = it->second;
+  warnings_.observe(m, now);
   // A node waits at another rate than it runs at: its rate is counted from the beginning of its current state.
   const bool began_to_run = m.state == node_health_t::RUNNING && (incarnation_health.first.state == node_health_t::WAITING ||
                                                                   incarnation_health.first.state == node_health_t::READY);
@@ -125,7 +127,9 @@ void RunSummary::add(const LogEvent& e) {
   });
   feed.template operator()<degraded_t>(channels::kDegraded, match);
   feed.template operator()<world_state_t>(channels::kWorldState, [&](const world_state_t& m) {
-    if (m.group == world_state_t::NOW) observe_sim_progress(m.header);  // predicted states have future times
+    if (m.group != world_state_t::NOW) return;  // predicted states have future times
+    observe_sim_progress(m.header);
+    if (!info_ || m.header.run_id == info_->header.run_id) warnings_.observe_world(m.header.sim_time_ns, now);
   });
   matcher_.advance(now);
 }
@@ -196,6 +200,12 @@ std::vector<std::string> RunSummary::absent() const {
   std::vector<std::string> out;
   for (const KnownModality& m : known_modalities())
     if (!matcher_.modalities().contains(m.name)) out.push_back(m.name);
+  return out;
+}
+
+std::vector<std::string> RunSummary::warnings() const {
+  std::vector<std::string> out = options_.warnings;
+  for (std::string& sentence : warnings_.sentences(matcher_)) out.push_back(printable(sentence));
   return out;
 }
 

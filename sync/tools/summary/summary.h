@@ -18,6 +18,7 @@
 #include "sync/presentation/presentation_matcher.h"
 #include "sync/bus/sequence.h"
 #include "sync/log/summary_clock.h"
+#include "sync/tools/summary/run_warnings.h"
 
 namespace tactus::sync {
 
@@ -79,7 +80,8 @@ class RunSummary {
   std::map<std::string, NodeSummary> nodes() const;
   // Modalities without a report by any node.
   std::vector<std::string> absent() const;
-  const std::vector<std::string>& warnings() const { return options_.warnings; }
+  // Of the caller, then of the run itself (run_warnings.h).
+  std::vector<std::string> warnings() const;
   const PresentationMatcher& matcher() const { return matcher_; }
   std::map<std::string, ChannelSummary> channels() const;
   std::int64_t damaged_regions() const { return damaged_regions_; }
@@ -130,6 +132,7 @@ class RunSummary {
   std::map<std::string, Channel, std::less<>> channels_;
   std::map<std::int64_t, SimProgress> sim_progress_;
   std::optional<game_state_t> game_;
+  RunWarnings warnings_;
   std::optional<HostTime> begin_;
   HostTime now_{};
   Nanoseconds recorded_{0};

@@ -265,7 +265,8 @@ class Checks(Folders):
 class Running:
     """A fake cluster whose simulation begins at a set time of its clock, which main reads."""
 
-    def __init__(self, begins_at, expected=True):
+    def __init__(self, begins_at, expected=True, waits=""):
+        self.waits = waits
         self.now, self.begins_at, self.expected, self.table = 0.0, begins_at, expected, False
         self.plan = types.SimpleNamespace(out="out")
         self.page = None
@@ -281,6 +282,9 @@ class Running:
 
     def expects_world(self):
         return self.expected
+
+    def waits_for(self):
+        return self.waits
 
     def show_table(self):
         self.table = True
@@ -303,6 +307,10 @@ class Seconds(Folders):
         self.assertAlmostEqual(52, running.now, delta=0.3)
         self.assertTrue(running.table)
         self.assertEqual(6, len(self.lines))
+
+    def test_the_process_that_the_world_waits_for_is_named(self):
+        self.watch(Running(begins_at=8, waits="waits for visual_node (prepares the pictures of the scene)"))
+        self.assertEqual(["sim_node waits for visual_node (prepares the pictures of the scene) (5 s)"], self.lines)
 
     def test_seconds_count_immediately_without_a_world(self):
         running = Running(begins_at=1e9, expected=False)

@@ -1,4 +1,5 @@
 """Tests of a complete run in virtual time: bit-identical results, presentation of all expected events, effects of faults of bus and modalities."""
+import csv
 import filecmp
 import json
 import os
@@ -12,6 +13,15 @@ import unittest
 
 BIN = pathlib.Path(os.environ.get("TACTUS_BIN") or pathlib.Path(__file__).resolve().parents[3] / "build" / "dev" / "bin")
 RUN = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "run"
+# A steel ball falls 2 cm onto oak: its first hit comes 64 ms after the world begins.
+EARLY = """<?xml version="1.0"?>
+<sdf version="1.9" xmlns:tactus="https://tactus.dev/sdf"><world name="w"><gravity>0 0 -9.81</gravity>
+<model name="floor"><static>true</static><pose>0 0 -0.1 0 0 0</pose><link name="l"><tactus:surface material="oak"/><collision name="c">
+<geometry><box><size>3 3 0.2</size></box></geometry></collision></link></model>
+<model name="b"><pose>0.5 0 0.04 0 0 0</pose><link name="l"><tactus:surface material="steel"/><collision name="c">
+<geometry><sphere><radius>0.02</radius></sphere></geometry></collision></link></model>
+</world></sdf>
+"""
 PROFILE = """<profile name="late">
   <degrade modality="audio" delay="100ms"/>
 </profile>
@@ -53,6 +63,41 @@ class VirtualTime(unittest.TestCase):
         for name, node in facts["nodes"].items():
             self.assertEqual(node["missed_ticks"], 0, name)
         self.assertIn("times as fast as real time", said.stderr)
+
+    def test_the_events_of_the_first_instants_are_presented_with_every_seed(self):
+        scene = self.folder / "early.sdf"
+        scene.write_text(EARLY, encoding="utf-8")
+        heard = set()
+        for seed in range(1, 8):
+            out = self.folder / f"early{seed}"
+            run(out, str(scene), "--seed", str(seed), seconds=1)
+            facts = summary(out)
+            self.assertEqual([], [w for w in facts["warnings"] if "ready" in w or "presented none" in w], seed)
+            for name in ("audio", "visual"):
+                sense = facts["contacts"]["by_modality"][name]
+                self.assertEqual(facts["contacts"]["hit"] + (facts["contacts"]["begin"] if name == "visual" else 0), sense["presented"], (seed, name))
+            heard.add(facts["contacts"]["hit"])
+        self.assertEqual({5}, heard)
+
+    def test_an_own_delay_that_is_longer_than_the_rest_of_the_run_loses_no_event(self):
+        out = self.folder / "late"
+        run(out, "--set", "audio_node.presentation_delay=0.5", "--without", "sync_node", seconds=6)
+        audio = summary(out)["contacts"]["by_modality"]["audio"]
+        self.assertEqual((0, audio["expected"]), (audio["lost"], audio["presented"]))
+
+    def test_a_log_renders_the_forces_of_the_run_also_after_the_world_has_ended(self):
+        out = self.folder / "press"
+        scene = RUN.parent.parent / "sim_node" / "scenes" / "yielding_board.sdf"
+        run(out, str(scene), "--seed", "3", seconds=5)
+        done = subprocess.run([BIN / "haptic_node", "--log", out / "run.lcmlog", "--trace", out / "again.csv"], capture_output=True, text=True, check=False)
+        self.assertEqual(0, done.returncode, done.stderr)
+        read = lambda name: {row["host_s"]: row for row in csv.DictReader((out / name).read_text(encoding="utf-8").splitlines())}
+        live, again = read("haptic.csv"), read("again.csv")
+        ticks = sorted(live.keys() & again.keys(), key=float)
+        self.assertGreater(len(ticks), 4000)
+        self.assertGreater(max(abs(float(row["force_z_N"])) for row in live.values()), 0.3)
+        for name in ("force_x_N", "force_y_N", "force_z_N", "fade"):  # in single precision
+            self.assertLess(max(abs(float(live[t][name]) - float(again[t][name])) for t in ticks), 1e-5, name)
 
     def test_a_log_with_any_bytes_in_its_name_is_exported(self):
         run(self.folder / "run", seconds=1)

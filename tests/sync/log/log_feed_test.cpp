@@ -92,8 +92,7 @@ TEST_CASE("A log feed delivers each message in the first tick after its arrival"
     const HostTime now = feed.next(bus);
     CHECK(now == feed.begin() + tick * Nanoseconds(1'000'000));
     while (const auto m = healths.pop()) {
-      CHECK(m->arrival <= now);
-      CHECK(m->arrival > now - Nanoseconds(1'000'000));
+      CHECK(m->arrival == now);  // as a node reads the bus
       ++heard;
     }
     REQUIRE(tick < 100);

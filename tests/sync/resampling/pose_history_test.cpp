@@ -122,3 +122,15 @@ TEST_CASE("A replayed log is read by arrival") {
   CHECK(s.status == SampleStatus::kInterpolated);
   CHECK(error_m(s, 101) < 1e-4);
 }
+
+TEST_CASE("A history is as long as the delay of its view, for every delay of a minute") {
+  for (const std::int64_t delay_ms : {0, 900, 1500, 10'000, 60'000}) {
+    PoseHistory history{kRun};
+    history.extend_history(Nanoseconds(delay_ms * kMs));
+    const std::int64_t until_ms = delay_ms + 2000;
+    for (std::int64_t t = 0; t <= until_ms * kMs; t += 4 * kMs) history.push(head_at(t), host_time(t + kMs));
+    const auto shown = history.at(host_time((until_ms - delay_ms) * kMs));
+    CHECK((shown.status == SampleStatus::kExact || shown.status == SampleStatus::kInterpolated));
+    CHECK(error_m(shown, static_cast<double>(until_ms - delay_ms)) < 1e-6);
+  }
+}

@@ -10,6 +10,8 @@ def node_commands(cluster, run_id, git, there):
     plan = cluster.plan
     paths = {str(one_machine.BIN): "@BUILD@/bin", str(plan.out): "@OUT@", **there}
     made = one_machine.commands(plan, run_id, git)
+    if plan.world in made:
+        made[plan.world] = without_absent(made[plan.world], cluster.nodes)
     for name in cluster.nodes:
         if cluster.relays and name in cluster.relays.by_name:
             made[name] = [str(one_machine.BIN / RELAY), *cluster.relays.words(name), *one_machine.common(plan, run_id)]
@@ -17,6 +19,12 @@ def node_commands(cluster, run_id, git, there):
             made[name] = [*made[SYNC], "--name", name]
     return {name: with_scheduling(placed, [translate_paths(word, paths) for word in made[name]] + bus_arguments(cluster, name, placed))
             for name, placed in cluster.nodes.items()}
+
+
+def without_absent(words, nodes):
+    """The command line of the simulation, which does not wait for a process that no host runs."""
+    skipped = {i for i, word in enumerate(words) if word == one_machine.AWAIT and words[i + 1] not in nodes}
+    return [word for i, word in enumerate(words) if i not in skipped and i - 1 not in skipped]
 
 
 def translate_paths(word, paths):

@@ -23,6 +23,8 @@ SCATTER_M = "0.08"  # design: keeps the balls of the dark room apart from each o
 LAST_PRESENTATION_S = 0.2  # sound comes 20 ms after its event, and each report is repeated 20 ms later
 PATIENCE_S = 15  # for a node that ends, since its video last grew: a busy machine closes a video slowly
 CHECK_S, READ_SCENE_S = 60, 600
+WAITS = "sim_node: "  # sim_node/run.cpp
+AWAIT = "--await"  # option of sim_node: a process that has its scene before the world begins
 PROGRESS_S = 10
 WORLD_BEGINS = {"sim_node": "sim_node: the world begins", "replay": "replay: begins"}  # sim_node/run.cpp, sync/tools/replay_main.cpp
 
@@ -40,7 +42,7 @@ def commands(plan, run_id, git):
         # A run is silent by default; with --listen the node searches for the sound card.
         "audio_node": [] if plan.listen or names_sound_card(plan) else ["--audio-device", "virtual"],
         "visual_node": ["--window"] if plan.window else [],
-        "sim_node": [str(plan.scene)],
+        "sim_node": [str(plan.scene), *(word for name in plan.nodes() if name != "sim_node" for word in (AWAIT, name))],
         # The seed sets the positions of the balls, so no player can rely on fixed ones.
         arguments.PLAYER: [str(plan.scene), "--device", arguments.PLAYER, "--scatter-along", SCATTER_M, "--scatter-aside", SCATTER_M],
         "replay": [*plan.replay, *(word for name in plan.nodes() if name != "replay" for word in ("--live", name))],
@@ -184,6 +186,11 @@ class Cluster:
         world = self.plan.world
         return world in self.services and self.services[world].log_contains(WORLD_BEGINS[world])
 
+    def waits_for(self):
+        """"waits for NODE (REASON)" when the simulation has loaded its scene and another process has not; "" otherwise."""
+        line = self.services[self.plan.world].last_output_line()
+        return line.removeprefix(WAITS) if line.startswith(WAITS + "waits for") else ""
+
     def alive(self):
         return self.holder is not None and self.holder.poll() is None
 
@@ -195,8 +202,9 @@ class Cluster:
         """The nodes that the user stopped with sv. Call it before stop()."""
         return [name for name, s in self.services.items() if s.is_stopped_by_user()] if self.alive() else []
 
-    def stop(self):
-        """Stops all processes in order. Returns the names of those that had to be killed."""
+    def stop(self, delay_s=0.0):
+        """Stops all processes in order. Returns the names of those that had to be killed. delay_s: longest intended delay of the
+        last presentations."""
         self.end_table()
         with contextlib.suppress(OSError):  # full disk: the only effect is that exits count as deaths
             (self.folder / "stopping").touch()
@@ -206,7 +214,7 @@ class Cluster:
             names = (*self.plan.senses(), *self.plan.players()) if names == SENSES else names
             services.request_end([self.services[name] for name in names if name in self.services], grace_s)
             if names == WORLDS:
-                time.sleep(LAST_PRESENTATION_S)
+                time.sleep(LAST_PRESENTATION_S + delay_s)
         killed = services.end_or_kill(self.services.values(), PATIENCE_S, lambda: video_sizes(self.plan.out))
         self.end_supervisor()
         return killed

@@ -11,7 +11,7 @@ import stat
 import time
 
 from tactus import own_files, terminal
-from tactus.launch import arguments, cluster, cluster_folder, equipment, hands, live, network, priority, privileges, virtual, walls
+from tactus.launch import arguments, cluster, cluster_folder, delays, equipment, hands, live, network, priority, privileges, virtual, walls
 from tactus.launch.results import git_commit, summarise
 from tactus.refusal import Interrupted, Refusal, sentence_of
 from tactus.terminal import report_run
@@ -49,7 +49,8 @@ def watch_over(running, seconds, stop):
             raise Refusal(f"sim_node: its world has not begun after {MAX_LOADING_S // 60} minutes; see "
                           f"{running.plan.out}/logs/sim_node.log")
         elif end is None and now > next_report:
-            report_run(f"sim_node is still reading the scene ({now - loading_since:.0f} s)")
+            waits = running.waits_for()
+            report_run(f"sim_node {waits} ({now - loading_since:.0f} s)" if waits else f"sim_node is still reading the scene ({now - loading_since:.0f} s)")
             next_report += PROGRESS_S
         if running.page is not None:
             running.page.restart_if_ended()
@@ -144,7 +145,7 @@ def run(plan, watch=watch_over):
         if page is not None:
             page.stop()
         taken_down = running.taken_down()
-        killed = running.stop()
+        killed = running.stop(0.0 if stop.requested else delays.longest_s(plan))
         lost = running.lost()
         restarts = {name: s.deaths() for name, s in running.services.items() if s.deaths()}
         last_lines = {name: running.services[name].last_output_line() for name in lost}

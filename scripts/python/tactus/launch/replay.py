@@ -9,7 +9,7 @@ import tempfile
 import time
 
 from tactus import terminal
-from tactus.launch import arguments, cluster, hands, keys, main as supervisor, privileges
+from tactus.launch import arguments, cluster, delays, hands, keys, main as supervisor, privileges
 from tactus.refusal import Refusal, sentence_of
 from tactus.terminal import report_run
 
@@ -92,6 +92,7 @@ def watcher(control, stay):
     def watch_over(running, _seconds, stop):
         world = running.services["replay"]
         begun, over_since = False, None
+        settling_s = SETTLING_S + delays.longest_s(running.plan)
         reported = set()
         with keys.KeyCommands(control) as commands:
             while not stop.requested:
@@ -102,7 +103,7 @@ def watcher(control, stay):
                     break
                 over = END_REACHED in world.last_output_line()
                 over_since = (over_since or time.monotonic()) if over else None
-                if over and not stay and time.monotonic() > over_since + SETTLING_S:
+                if over and not stay and time.monotonic() > over_since + settling_s:
                     break
                 if not running.alive():
                     raise Refusal(f"supervisor: ended too early; see {running.plan.out}/logs/supervisor.log")

@@ -5,7 +5,7 @@ import signal
 import subprocess
 import time
 
-from tactus.launch import arguments, cluster, privileges
+from tactus.launch import arguments, cluster, delays, privileges
 from tactus.launch.results import git_commit, summarise
 from tactus.refusal import Refusal
 from tactus.terminal import report_error, report_run
@@ -49,7 +49,8 @@ def run(plan, stop, claim_out, kept=privileges.KEPT):
 
 def play(plan, plan_file, stop, kept):
     """Runs virtual_time and prints its progress. Returns the errors."""
-    command = [str(cluster.BIN / "virtual_time"), str(plan_file), "--seconds", f"{plan.seconds:g}", "--seed", str(plan.seed), *plan.virtual]
+    command = [str(cluster.BIN / "virtual_time"), str(plan_file), "--seconds", f"{plan.seconds:g}", "--seed", str(plan.seed),
+               "--last-presentations", f"{delays.longest_s(plan):g}", *plan.virtual]
     log = plan.out / "logs" / "virtual_time.log"
     with open(log, "w", encoding="utf-8") as log_file, open(log, encoding="utf-8", errors="replace") as output:
         process = subprocess.Popen(privileges.least(command, kept), stdin=subprocess.DEVNULL, stdout=log_file, stderr=log_file, start_new_session=True,

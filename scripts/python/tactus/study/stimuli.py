@@ -4,9 +4,11 @@ import random
 
 import numpy as np
 
+from tactus.launch import delays
+
 IN_FORCE_TIMEOUT_S = 5.0     # health arrives at 10 Hz; after this time a sense is considered stuck
 FOREPERIOD_S = (0.3, 0.7)    # range of the random time before the stimulus, which makes its onset unpredictable (design)
-SETTLES_S = 0.2              # after a change of the profile, until messages under the previous profile have been presented (design)
+SETTLES_S = 0.2              # after a change of the profile and the delays of the previous one, until its messages have been presented (design)
 REPORT_TIMEOUT_S = 1.5       # a sense reports twice, 20 ms apart, after it has presented
 PART = {"haptic": "transient"}  # the part of a hit that is scheduled; the contact force of a surface is never delayed
 
@@ -35,10 +37,12 @@ def wait(runner, seconds):
 
 
 def ready(runner, profile):
-    """"" if the profile is in force in every sense, else the reason."""
+    """"" if the profile is in force in every sense and nothing under the previous one is still to be presented, else the reason."""
+    pending_s = delays.profile_text_s(getattr(runner, "profile", ""))
+    runner.profile = profile
     if not runner.apply_profile(profile, IN_FORCE_TIMEOUT_S):
         return f"the profile was not in force in {', '.join(runner.missing()) or 'any sense'} after {IN_FORCE_TIMEOUT_S:g} s"
-    wait(runner, SETTLES_S)
+    wait(runner, SETTLES_S + pending_s)
     return ""
 
 
