@@ -52,6 +52,8 @@ def clean():
     if libraries := os.environ.pop("LD_PRELOAD", ""):
         if kept := loadable(libraries):
             os.environ["LD_PRELOAD"] = kept
+    if os.environ.get("TACTUS_BIN"):  # a job of a cluster starts in another folder
+        os.environ["TACTUS_BIN"] = os.path.abspath(os.environ["TACTUS_BIN"])
     called = os.environ.pop(CALLER, None) is not None
     ORIGINAL.pop(CALLER, None)
     os.stat(os.path.join(os.getcwd(), "."))

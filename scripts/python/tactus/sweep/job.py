@@ -1,4 +1,4 @@
-"""Plays chunks of games of a sweep, as a job of GNU parallel or a task of a Slurm array.
+"""Plays chunks of games of a sweep, as one job on this machine or a task of a Slurm array.
 
     tactus --module tactus.sweep.job FOLDER CHUNK...                     these chunks
     tactus --module tactus.sweep.job FOLDER --of-array LIST.txt          every SLURM_ARRAY_TASK_COUNT-th line of the list, from SLURM_ARRAY_TASK_ID on

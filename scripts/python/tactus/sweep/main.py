@@ -98,7 +98,7 @@ def main(words):
         print(f"sweep: {folder.study.name}, {len(folder.study.conditions)} conditions, {folder.games_each} games each, into {folder.path}", flush=True)
         if left:
             signal.signal(signal.SIGTERM, stop)
-            runner = Slurm(folder, left, a.partition, a.array_size) if a.slurm else Parallel(folder, left, a.jobs or os.cpu_count() or 1)
+            runner = Slurm(folder, left, a.partition, a.array_size) if a.slurm else Parallel(folder, left, a.jobs or len(os.sched_getaffinity(0)))
             try:
                 follow(folder, runner)
             finally:
