@@ -33,6 +33,8 @@ if [[ -n ${LD_PRELOAD-} ]]; then
   unset -v libraries
 fi
 unset -v name
+# A locale that is not installed: each script would print a warning.
+[[ -z $( { LC_ALL=${LC_ALL-${LANG-}}; } 2>&1 ) ]] || export LC_ALL=C.UTF-8
 
 here=$(dirname -- "$(readlink -f -- "${BASH_SOURCE[1]}")")
 pwd -P >/dev/null 2>&1 && [[ -x . ]] || fail "the current folder does not exist any more, or this user cannot enter it; change to another folder"

@@ -1,5 +1,6 @@
 """Prologue of scripts/tactus; scripts/prologue.sh does the same for the scripts. Removes from this process what would change a command: variables
 of the user's shell, closed streams, libraries that cannot be loaded."""
+import locale
 import os
 import pathlib
 import re
@@ -40,6 +41,17 @@ def open_streams():
             setattr(sys, name, open(number, mode, encoding="utf-8", closefd=False))
 
 
+def use_installed_locale():
+    """Replaces a locale that is not installed: each script that a command calls would print a warning."""
+    before = locale.setlocale(locale.LC_CTYPE)
+    try:
+        locale.setlocale(locale.LC_ALL, "")
+    except locale.Error:
+        os.environ["LC_ALL"] = "C.UTF-8"
+    locale.setlocale(locale.LC_ALL, "C")  # as Python starts: numbers and messages of this process depend on no locale
+    locale.setlocale(locale.LC_CTYPE, before)
+
+
 def clean():
     """Cleans this process and the environment of its children. Returns True when another command of Tactus called this one. Raises OSError when
     the current folder does not exist any more or this user cannot enter it."""
@@ -54,6 +66,7 @@ def clean():
             os.environ["LD_PRELOAD"] = kept
     if os.environ.get("TACTUS_BIN"):  # a job of a cluster starts in another folder
         os.environ["TACTUS_BIN"] = os.path.abspath(os.environ["TACTUS_BIN"])
+    use_installed_locale()
     called = os.environ.pop(CALLER, None) is not None
     ORIGINAL.pop(CALLER, None)
     os.stat(os.path.join(os.getcwd(), "."))

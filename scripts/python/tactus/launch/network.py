@@ -62,17 +62,18 @@ def candidates(net):
             yield ["unshare", *user, *(["--net"] if net else []), "--pid", "--fork", "--kill-child", *proc], description
 
 
-# With --mount-proc, /proc/self exists only when the new /proc was mounted; some versions of unshare return 0 after a refused mount.
-MOUNTED = "[ -e /proc/self/stat ] && "
+# With --mount-proc, /proc/self exists only when the new /proc was mounted. Some versions of unshare return 0 after a refused mount.
+PROBE = "{mounted}{command} && echo inside"
 
 
 def is_allowed(flags, command):
-    """True when a shell command succeeds in these namespaces."""
-    words = [*flags, "sh", "-c", (MOUNTED if "--mount-proc" in flags else "") + command]
+    """True when a shell command succeeds in these namespaces. Judged by its effect: a library of LD_PRELOAD may write to stderr."""
+    probe = PROBE.format(mounted="[ -e /proc/self/stat ] && " if "--mount-proc" in flags else "", command=command)
     try:
-        return subprocess.run(words, env={**os.environ, "PATH": PATH}, capture_output=True, timeout=10, check=False).returncode == 0
+        done = subprocess.run([*flags, "sh", "-c", probe], env={**os.environ, "PATH": PATH}, capture_output=True, timeout=10, check=False)
     except (OSError, subprocess.TimeoutExpired):
         return False
+    return done.returncode == 0 and done.stdout.endswith(b"inside\n")
 
 
 LISTENING_S = 0.3  # three reports of the health of a node, which publishes at 10 Hz
