@@ -3,7 +3,7 @@
 # A compiler needs up to 1.5 GB for files with Eigen.
 compiler_kB=1500000
 
-# free_memory_kB [PROC [GROUPS]]: what this process can still allocate: the free memory of the machine, or less in a container or another
+# free_memory_kB [PROC [GROUPS]]: the memory that is left for this process: that of the machine, or less in a container or another
 # control group with a limit (Linux, cgroup-v2.rst: memory.max; cgroup-v1/memory.txt). The cached files of a group count as free.
 free_memory_kB() {
   local proc=${1:-/proc} groups=${2:-/sys/fs/cgroup} least controllers path folder limit usage cache cached most used free

@@ -57,7 +57,7 @@ class Moved(Tree):
         (self.top / "link").symlink_to(self.tree)
         self.assertEqual(["ninja"], self.build(self.top / "link")[0])
 
-    def test_a_moved_and_a_copied_checkout_are_configured_again_and_the_user_is_told(self):
+    def test_a_moved_and_a_copied_checkout_are_configured_again_with_a_sentence(self):
         self.build(self.tree)
         (self.tree / "build" / "dev" / "old.o").touch()
         for name, transfer in (("copy", shutil.copytree), ("a b'$(x)", os.rename)):
