@@ -111,7 +111,9 @@ int main(int argc, char** argv) try {
                .loss = {.share = loss_percent / 100}};
   if (jitter_ms == 0) plan.wire.jitter = {};
 
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop_requested = 1; });
+  // A signal that the caller ignores stays ignored.
+  for (const int signal : {SIGINT, SIGTERM})
+    if (std::signal(signal, [](int) { stop_requested = 1; }) == SIG_IGN) std::signal(signal, SIG_IGN);
   sync::VirtualTime time(plan);
   std::optional<sync::HostTime> world_start;
   time.wire().add_listener([&](sync::HostTime now, std::string_view channel, std::span<const std::uint8_t>) {

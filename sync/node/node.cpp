@@ -29,10 +29,14 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 void request_stop(int) { stop_requested = true; }
 
 void catch_signals() {
-  struct sigaction action {};
-  action.sa_handler = request_stop;
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGINT, &action, nullptr);
+  // A signal that the caller ignores stays ignored: Ctrl-C in a background job of a script.
+  for (const int number : {SIGTERM, SIGINT}) {
+    struct sigaction action {};
+    if (sigaction(number, nullptr, &action) == 0 && action.sa_handler == SIG_IGN) continue;
+    action = {};
+    action.sa_handler = request_stop;
+    sigaction(number, &action, nullptr);
+  }
   signal(SIGPIPE, SIG_IGN);
 }
 

@@ -53,8 +53,8 @@ def use_installed_locale():
 
 
 def clean():
-    """Cleans this process and the environment of its children. Returns True when another command of Tactus called this one. Raises OSError when
-    the current folder does not exist any more or this user cannot enter it."""
+    """Cleans this process and the environment of its children. Raises OSError when the current folder does not exist any more or this user
+    cannot enter it."""
     open_streams()
     for name in removed(list(os.environ)):
         del os.environ[name]
@@ -67,10 +67,13 @@ def clean():
     if os.environ.get("TACTUS_BIN"):  # a job of a cluster starts in another folder
         os.environ["TACTUS_BIN"] = os.path.abspath(os.environ["TACTUS_BIN"])
     use_installed_locale()
-    called = os.environ.pop(CALLER, None) is not None
-    ORIGINAL.pop(CALLER, None)
+    os.environ.pop(CALLER, None)
     os.stat(os.path.join(os.getcwd(), "."))
-    return called
+
+
+def was_called():
+    """True when another command or script of Tactus called this one; that one reports Ctrl-C."""
+    return CALLER in ORIGINAL
 
 
 def for_called():

@@ -23,12 +23,10 @@ TRAP = "#!/bin/sh\n: >>'{folder}/sprung'\nexit 7\n"
 
 @dataclasses.dataclass(frozen=True)
 class Environment:
-    """variables: added to the environment, with {folder} for the scratch folder. prefix: command words before the command. streams: of the process.
-    refused: the sentence that replaces the answer of every command."""
+    """variables: added to the environment, with {folder} for the scratch folder. prefix: command words before the command. refused: the sentence that replaces the answer of every command."""
     name: str
     variables: dict = dataclasses.field(default_factory=dict)
     prefix: tuple = ()
-    streams: dict = dataclasses.field(default_factory=dict)
     refused: str = ""
     linked: bool = False
     folder: str = ""
@@ -41,17 +39,17 @@ ENVIRONMENTS = (
     Environment("CDPATH with the folder itself", {"CDPATH": "{folder}:/:."}),
     Environment("CDPATH empty", {"CDPATH": ":"}),
     Environment("a link to the command", linked=True),
-    Environment("GIT_DIR of another repository", {"GIT_DIR": "{folder}/other/.git", "GIT_WORK_TREE": "{folder}", "GIT_INDEX_FILE": "/none"}),
-    Environment("LD_PRELOAD of a missing library", {"LD_PRELOAD": "/none/lib.so"}),
-    Environment("LD_PRELOAD of a missing and an installed library", {"LD_PRELOAD": "/none/lib.so:libm.so.6"}),
-    Environment("TMP and TEMP", {"TMP": "{folder}/tmp", "TEMP": "/none"}),
-    Environment("TMPDIR that is not there", {"TMPDIR": "/none"}),
+    Environment("GIT_DIR of another repository", {"GIT_DIR": "{folder}/other/.git", "GIT_WORK_TREE": "{folder}", "GIT_INDEX_FILE": "/proc/none"}),
+    Environment("LD_PRELOAD of a missing library", {"LD_PRELOAD": "/proc/none/lib.so"}),
+    Environment("LD_PRELOAD of a missing and an installed library", {"LD_PRELOAD": "/proc/none/lib.so:libm.so.6"}),
+    Environment("TMP and TEMP", {"TMP": "{folder}/tmp", "TEMP": "/proc/none"}),
+    Environment("TMPDIR that is not there", {"TMPDIR": "/proc/none"}),
     Environment("TMPDIR with a space", {"TMPDIR": "{folder}/tmp dir"}),
     Environment("another python3 first in PATH", {"PATH": "{folder}/traps:" + os.environ["PATH"]}),
     Environment("a short PATH", {"PATH": "/usr/bin:/bin"}),
-    Environment("PYTHONPATH and PYTHONHOME", {"PYTHONPATH": "{folder}/traps", "PYTHONHOME": "/none", "PYTHONINSPECT": "1", "PYTHONWARNINGS": "error"}),
+    Environment("PYTHONPATH and PYTHONHOME", {"PYTHONPATH": "{folder}/traps", "PYTHONHOME": "/proc/none", "PYTHONINSPECT": "1", "PYTHONWARNINGS": "error"}),
     Environment("a dead PULSE_SERVER", {"PULSE_SERVER": "tcp:127.0.0.1:1", "PIPEWIRE_REMOTE": "none"}),
-    Environment("a dead DISPLAY", {"DISPLAY": ":99", "WAYLAND_DISPLAY": "none", "XAUTHORITY": "/none"}),
+    Environment("a dead DISPLAY", {"DISPLAY": ":99", "WAYLAND_DISPLAY": "none", "XAUTHORITY": "/proc/none"}),
     Environment("BASH_ENV and ENV", {"BASH_ENV": "{folder}/traps/start", "ENV": "{folder}/traps/start"}),
     Environment("options of bash", {"SHELLOPTS": "errexit:noglob:nounset:xtrace", "BASHOPTS": "nullglob:failglob", "PS4": "$(touch {folder}/sprung)"}),
     Environment("exported functions", {f"BASH_FUNC_{name}%%": "() {{ touch {folder}/sprung; return 7; }}" for name in ("cd", "dirname", "cat", "cmake", "source", "fail")}),
@@ -59,9 +57,9 @@ ENVIRONMENTS = (
     Environment("IFS, GLOBIGNORE, FUNCNEST, TMOUT", {"IFS": "/", "GLOBIGNORE": "*", "EXECIGNORE": "*", "FUNCNEST": "1", "TMOUT": "1"}),
     Environment("GREP_OPTIONS", {"GREP_OPTIONS": "-v --color=always", "GREP_COLOR": "1"}),
     Environment("PARALLEL and SHELL", {"PARALLEL": "--dry-run", "SHELL": "/bin/false"}),
-    Environment("settings of matplotlib", {"MATPLOTLIBRC": "/none", "MPLBACKEND": "none", "MPLCONFIGDIR": "/none"}),
-    Environment("settings of node and cmake", {"NODE_OPTIONS": "--require /none", "NODE_ENV": "production", "CMAKE_GENERATOR": "none"}),
-    Environment("no HOME", {"HOME": "/none", "XDG_CACHE_HOME": "/none", "XDG_RUNTIME_DIR": "/none"}),
+    Environment("settings of matplotlib", {"MATPLOTLIBRC": "/proc/none", "MPLBACKEND": "none", "MPLCONFIGDIR": "/proc/none"}),
+    Environment("settings of node and cmake", {"NODE_OPTIONS": "--require /proc/none", "NODE_ENV": "production", "CMAKE_GENERATOR": "none"}),
+    Environment("no HOME", {"HOME": "/proc/none", "XDG_CACHE_HOME": "/proc/none", "XDG_RUNTIME_DIR": "/proc/none"}),
     Environment("locale C", {"LC_ALL": "C"}),
     Environment("a locale with a decimal comma", {"LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8", "LANGUAGE": "de"}),
     Environment("a Turkish locale", {"LC_ALL": "tr_TR.UTF-8"}),
@@ -122,8 +120,11 @@ def answer(folder, environment, words):
         program = folder / "linked"
         if not program.is_symlink():
             program.symlink_to(SCRIPTS / "tactus")
-    done = subprocess.run([*environment.prefix, program, *words], cwd=folder / environment.folder, env=variables, stdin=subprocess.DEVNULL, capture_output=True,
-                          check=False, timeout=TIMEOUT_S, **environment.streams)
+    try:
+        done = subprocess.run([*environment.prefix, program, *words], cwd=folder / environment.folder, env=variables, stdin=subprocess.DEVNULL, capture_output=True,
+                              check=False, timeout=TIMEOUT_S)
+    except subprocess.TimeoutExpired:
+        return None, b"", b"still runs"
     said = b"\n".join(line for line in done.stderr.splitlines() if not line.decode(errors="replace").startswith((*NOT_OURS, "nohup: ")))
     return done.returncode, done.stdout, said
 

@@ -6,6 +6,7 @@ import os
 import pathlib
 import sys
 
+from tactus import own_files
 from tactus.refusal import Refusal
 
 USAGE = """Analyses trials and games: limits of detection, of a felt change and of the task for each degradation.
@@ -58,7 +59,6 @@ def analyse(options):
         from tactus.analysis import result_tables
         from tactus.analysis import study_analysis
         from tactus.analysis import study_files
-        from tactus.analysis import study_report
         from tactus.analysis import trials
     except ImportError as error:
         raise Refusal(f"{error.name} is missing; run scripts/setup") from None
@@ -70,7 +70,14 @@ def analyse(options):
     made = result_tables.all_rows(analysis)
     if not made:
         raise Refusal(f"{options.place[0]}: holds no judgements, no matches of a known property and no games; give results of a study")
-    os.makedirs(options.out, exist_ok=True)
+    with own_files.results_folder(options.out):
+        write(options, analysis, made)
+
+
+def write(options, analysis, made):
+    """Writes tables, figures and the page, and prints the summary."""
+    from tactus.analysis import result_tables
+    from tactus.analysis import study_report
     result_tables.write(made, options.out)
     report = study_report.Report(analysis, os.path.join(options.out, "figures"))
     text = report.html(", ".join(sorted({s for s in analysis.trials["study"] if s})))

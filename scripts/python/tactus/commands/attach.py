@@ -88,7 +88,7 @@ def main(words):
             folder, found = cluster_of(out)
         else:
             folder, found = newest()
-        there = bus_variables(folder, found, environment.ORIGINAL)
+        there = bus_variables(folder, found, {name: value for name, value in environment.ORIGINAL.items() if name != environment.CALLER})
         if words[0] == "tactus":  # this installation
             words = [str(TACTUS), *words[1:]]
         if not shutil.which(words[0], path=there["PATH"]):

@@ -1,35 +1,18 @@
 """One run, after the build: checks, start, live table, stop, summary."""
-import os
-import signal
-
-INTERRUPTED = 130  # exit status of a shell after Ctrl-C
-# Until a process was started, Ctrl-C exits immediately, also during the imports below.
-signal.signal(signal.SIGINT, lambda *_: (os.write(2, b"run: interrupted\n"), os._exit(INTERRUPTED)))
-
 import fcntl
+import os
 import stat
 import time
 
-from tactus import own_files, terminal
+from tactus import own_files, signals, terminal
 from tactus.launch import arguments, cluster, cluster_folder, equipment, hands, live, network, priority, privileges, virtual, walls
 from tactus.launch.results import git_commit, summarise
 from tactus.refusal import Interrupted, Refusal, sentence_of
 from tactus.terminal import report_run
 
+INTERRUPTED = 130  # exit status of a shell after Ctrl-C
 MAX_LOADING_S = 600
 PROGRESS_S = 5
-
-
-class Stop:
-    """Flag set by SIGINT, SIGTERM and SIGHUP; polled by the loop."""
-
-    def __init__(self):
-        self.requested = False
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, self.request)
-
-    def request(self, *_):
-        self.requested = True
 
 
 def watch_over(running, seconds, stop):
@@ -60,6 +43,8 @@ def watch_over(running, seconds, stop):
                 reported.add(name)
                 report_run(f"{name}: {why}; the others continue ({running.services[name].last_output_line()})")
         time.sleep(0.1)
+    if end is not None and now < end:
+        stop.cut_short = f"ended by {stop.reason} after {seconds - (end - now):.1f} of {seconds:g} s"
     return end is not None
 
 
@@ -107,8 +92,8 @@ def run(plan, watch=watch_over):
     Raises Refusal when the run does not start."""
     kept = privileges.needed(inputs(plan))
     if plan.virtual is not None:
-        return virtual.run(plan, Stop(), claim_out, kept)
-    stop = Stop()
+        return virtual.run(plan, signals.Stop(), claim_out, kept)
+    stop = signals.Stop()
     git = git_commit()
     run_id = time.time_ns()
     for name in [*dict.fromkeys(plan.program(n) for n in plan.nodes()), "watch", "summarise", "export_csv", "export_events"]:
@@ -157,6 +142,9 @@ def run(plan, watch=watch_over):
             report_run(f"{name} died and was restarted {count} times" if count > 1 else f"{name} died once and was restarted")
     for name in taken_down:
         report_run(f"{name} was taken down and not started again")
+    if stop.cut_short:
+        report_run(stop.cut_short)
+        warnings.append(stop.cut_short)
     errors += summarise(plan, git, {*lost, *taken_down}, restarts, warnings)
     report_run(f"results in {plan.out}")
     os.close(claim)
@@ -178,7 +166,9 @@ def main(words):
         errors = [str(refusal)]
     except OSError as error:
         errors = [sentence_of(error)]
-    except Interrupted:
+    except (Interrupted, KeyboardInterrupt):
+        if only_arguments:  # scripts/run reports it
+            return INTERRUPTED
         terminal.report_error("run: interrupted; nothing was started")
         return INTERRUPTED
     for sentence in errors:

@@ -13,7 +13,7 @@ MAX_DEATHS = 5
 WINDOW_S = 10
 
 FINISH = """#!/bin/sh
-# {name} died with exit code $1 (-1: by signal $2); runsv restarts it after this script.
+# The node died with exit code $1 (-1: by signal $2); runsv restarts it after this script.
 [ -e ../../stopping ] && exit 0
 [ -e asked ] && rm asked && exit 0
 date +%s >>deaths
@@ -27,7 +27,7 @@ printf d >supervise/control
 """
 
 RUN = """#!/bin/sh
-# Appends the output of {name} to its log. The node dies with its supervisor.
+# Appends the output of the node to its log. The node dies with its supervisor.
 exec >>{log} 2>&1 </dev/null
 cd {folder} || exit 1
 exec setpriv --pdeathsig KILL -- {command}
@@ -42,9 +42,9 @@ class Service:
         self.path = folder / "services" / name
         self.path.mkdir()
         (self.path / "down").touch()  # runsv waits for a command
-        write_script(self.path / "run", RUN.format(name=name, log=shlex.quote(str(log)),
+        write_script(self.path / "run", RUN.format(log=shlex.quote(str(log)),
                                                    folder=shlex.quote(str(working_folder)), command=shlex.join(command)))
-        write_script(self.path / "finish", FINISH.format(name=name, window=WINDOW_S, most=MAX_DEATHS))
+        write_script(self.path / "finish", FINISH.format(window=WINDOW_S, most=MAX_DEATHS))
 
     def control(self, letter):
         """Sends a command of runsv(8): u, d, t, k, p, c. False without a running runsv."""

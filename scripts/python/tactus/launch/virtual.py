@@ -41,7 +41,10 @@ def run(plan, stop, claim_out, kept=privileges.KEPT):
     plan_file.write_text(json.dumps(words, indent=1) + "\n", encoding="utf-8")
     report_run(f"{plan.scene.name}, {plan.seconds:g} s of virtual time, seed {plan.seed}, without pictures, results in {plan.out}")
     errors = play(plan, plan_file, stop, kept)
-    errors += summarise(plan, git, set(), {}, [])
+    warnings = [f"ended by {stop.reason} before {plan.seconds:g} s of virtual time were over"] if stop.requested else []
+    for warning in warnings:
+        report_run(warning)
+    errors += summarise(plan, git, set(), {}, warnings)
     report_run(f"results in {plan.out}")
     os.close(claim)
     return errors

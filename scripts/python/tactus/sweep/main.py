@@ -5,6 +5,7 @@ import signal
 import sys
 import time
 
+from tactus import signals
 from tactus.refusal import Refusal, sentence_of
 from tactus.study import study_file
 from tactus.sweep import adopted, player
@@ -97,7 +98,7 @@ def main(words):
         left = folder.unfinished()
         print(f"sweep: {folder.study.name}, {len(folder.study.conditions)} conditions, {folder.games_each} games each, into {folder.path}", flush=True)
         if left:
-            signal.signal(signal.SIGTERM, stop)
+            signals.handle([signal.SIGTERM], stop)
             runner = Slurm(folder, left, a.partition, a.array_size) if a.slurm else Parallel(folder, left, a.jobs or len(os.sched_getaffinity(0)))
             try:
                 follow(folder, runner)
