@@ -12,7 +12,10 @@ SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 CMAKE = """#!/bin/sh
 echo "cmake $PWD" >>"$RECORD"
 mkdir -p build/dev
-printf 'CMAKE_HOME_DIRECTORY:INTERNAL=%s\\nCMAKE_CACHEFILE_DIR:INTERNAL=%s/build/dev\\n' "$PWD" "$PWD" >build/dev/CMakeCache.txt
+tests=ON
+case "$*" in *TACTUS_TESTS=OFF*) tests=OFF ;; esac
+printf 'TACTUS_TESTS:BOOL=%s\\n' $tests >build/dev/CMakeCache.txt
+printf 'CMAKE_HOME_DIRECTORY:INTERNAL=%s\\nCMAKE_CACHEFILE_DIR:INTERNAL=%s/build/dev\\n' "$PWD" "$PWD" >>build/dev/CMakeCache.txt
 touch build/dev/build.ninja
 """
 NINJA = """#!/bin/sh
@@ -73,6 +76,17 @@ class Moved(Tree):
         self.build(self.tree)
         (self.tree / "build" / "dev" / "CMakeCache.txt").unlink()
         self.assertEqual(["cmake", "ninja"], self.build(self.tree)[0])
+
+
+class Tests(Tree):
+    def has_tests(self):
+        return "TACTUS_TESTS:BOOL=ON" in (self.tree / "build" / "dev" / "CMakeCache.txt").read_text(encoding="utf-8")
+
+    def test_a_run_builds_without_tests_and_a_later_test_adds_them_for_good(self):
+        for words, called, tests in ((("--programs",), ["cmake", "ninja"], False), (("--programs",), ["ninja"], False), (("sim_node",), ["ninja"], False),
+                                     (("sync_test",), ["cmake", "ninja"], True), (("--programs",), ["ninja"], True), ((), ["ninja"], True)):
+            self.assertEqual(called, self.build(self.tree, *words)[0], words)
+            self.assertEqual(tests, self.has_tests(), words)
 
 
 class Memory(Tree):

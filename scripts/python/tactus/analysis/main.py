@@ -61,7 +61,7 @@ def analyse(options):
         from tactus.analysis import study_files
         from tactus.analysis import trials
     except ImportError as error:
-        raise Refusal(f"{error.name} is missing; run scripts/setup") from None
+        raise Refusal(f"{error.name} is missing; run scripts/setup study") from None
     files = trials.files_of(options.place)
     rows = trials.read(files)
     share = lambda percent: None if percent is None else percent / 100

@@ -27,6 +27,13 @@ def run_script(*words):
         sys.exit(status if status > 0 else 1)
 
 
+def install(*groups):
+    """Installs the missing packages of these groups of scripts/packages.txt, unless TACTUS_BIN is set or this is a copy on a host of a cluster.
+    Exits on failure."""
+    if not os.environ.get("TACTUS_BIN") and (SCRIPTS / "setup").exists():
+        run_script(SCRIPTS / "setup", "--packages", *groups)
+
+
 def install_and_build(*targets):
     """Installs missing packages and builds, unless TACTUS_BIN is set. targets: of the build; default: all programs. Exits on failure."""
     if os.environ.get("TACTUS_BIN"):

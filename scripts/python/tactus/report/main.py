@@ -68,7 +68,7 @@ def main(words):
         from tactus.log import log_tables
         from tactus.report import report
     except ImportError as error:
-        refuse(f"{error.name} is missing; run scripts/setup")
+        refuse(f"{error.name} is missing; run scripts/setup report")
     with tempfile.TemporaryDirectory() as folder:
         logs = []
         for i, (log, name) in enumerate(zip(options.log, options.name)):
