@@ -7,7 +7,7 @@
 set +o posix
 
 program=${BASH_SOURCE[1]##*/}
-fail() { echo "$program: $*" >&2; exit 1; }
+fail() { printf '%s: %s\n' "$program" "${*//$'\n'/\\n}" >&2; exit 1; }  # one line, also with a name that holds line ends
 
 # In place of a closed stream, the next file that a program opens would receive its output.
 [[ -e /proc/self/fd/0 ]] || exec 0</dev/null

@@ -33,8 +33,13 @@ def report(text, stream=None):
 
 def report_run(text):
     """Prints a line of scripts/run."""
-    report(f"run: {text}")
+    report(one_line(f"run: {text}"))
 
 
 def report_error(text):
     report(text, sys.stderr)
+
+
+def report_refusal(text):
+    """Prints one sentence for the user, which may name a file, to stderr."""
+    report_error(one_line(text))

@@ -6,7 +6,7 @@ import os
 import pathlib
 import sys
 
-from tactus import own_files
+from tactus import own_files, terminal
 from tactus.refusal import Refusal
 
 USAGE = """Analyses trials and games: limits of detection, of a felt change and of the task for each degradation.
@@ -112,7 +112,7 @@ def main(argv):
     try:
         analyse(parsed(argv))
     except Refusal as error:
-        print(f"study analyse: {error}", file=sys.stderr)
+        terminal.report_refusal(f"study analyse: {error}")
         return 1
     except OSError as error:
         print(f"study analyse: {error.filename or 'a file'}: {error.strerror or error}; give folders with permission to read and write", file=sys.stderr)

@@ -17,7 +17,7 @@ import signal
 import subprocess
 import sys
 
-from tactus import signals
+from tactus import signals, terminal
 from tactus.cluster import lab
 from tactus.paths import tactus_command
 
@@ -124,5 +124,5 @@ def main(words):
         finally:
             made.close()
     except lab.Error as error:
-        print(f"lab: {error}", file=sys.stderr)
+        terminal.report_refusal(f"lab: {error}")
         return 1

@@ -211,5 +211,5 @@ def main(words):
     except OSError as error:
         errors = [sentence_of(error)]
     for sentence in errors:
-        terminal.report_error(f"cluster: {sentence}")
+        terminal.report_refusal(f"cluster: {sentence}")
     return 1 if errors else 0

@@ -124,5 +124,5 @@ def main(words):
         error_text = str(refusal)
     except OSError as error:
         error_text = sentence_of(error)
-    terminal.report_error(f"private_path: {error_text}")
+    terminal.report_refusal(f"private_path: {error_text}")
     return 1

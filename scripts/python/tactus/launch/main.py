@@ -131,7 +131,8 @@ def run(plan, watch=watch_over):
         taken_down = running.taken_down()
         killed = running.stop()
         lost = running.lost()
-        restarts = {name: s.deaths() for name, s in running.services.items() if s.deaths()}
+        deaths = {name: reasons for name, s in running.services.items() if (reasons := s.death_reasons())}
+        restarts = {name: len(reasons) for name, reasons in deaths.items()}
         last_lines = {name: running.services[name].last_output_line() for name in lost}
         running.clean()
     errors += [f"{name}: could not be kept running: {why} ({last_lines[name]}); see {plan.out}/logs/{name}.log"
@@ -147,7 +148,23 @@ def run(plan, watch=watch_over):
         warnings.append(stop.cut_short)
     errors += summarise(plan, git, {*lost, *taken_down}, restarts, warnings)
     report_run(f"results in {plan.out}")
+    errors += incomplete_recording(plan.out, running.services["recorder"].last_output_line(), deaths.get("recorder", []))
     os.close(claim)
+    return errors
+
+
+def incomplete_recording(out, last_line, deaths):
+    """The errors of the recorder, one sentence each, with the lost part. last_line: of its output; deaths: how it died, each time."""
+    errors = []
+    if deaths:
+        times = "once" if len(deaths) == 1 else f"{len(deaths)} times"
+        errors.append(f"recorder: died {times}, the last time by {deaths[-1]}; the messages of that time are not in {out}/run.lcmlog; see {out}/logs/recorder.log")
+    disk = os.statvfs(out)
+    if "the disk refuses the log" in last_line or " lost because " in last_line:
+        errors.append(f"{last_line}; free space, raise the limit of file sizes (ulimit -f), or name another folder with --out")
+    elif disk.f_bavail * disk.f_frsize < arguments.FULL_BYTES:
+        errors.append(f"recorder: the disk of {out} is full; the last messages, the end of sound and video, and tables can be missing; free space, or name "
+                      "another folder with --out")
     return errors
 
 
@@ -172,5 +189,5 @@ def main(words):
         terminal.report_error("run: interrupted; nothing was started")
         return INTERRUPTED
     for sentence in errors:
-        terminal.report_error(sentence if starts_with_program_name(sentence) else f"run: {sentence}")
+        terminal.report_error(terminal.one_line(sentence if starts_with_program_name(sentence) else f"run: {sentence}"))
     return 1 if errors else 0

@@ -16,12 +16,12 @@ FINISH = """#!/bin/sh
 # The node died with exit code $1 (-1: by signal $2); runsv restarts it after this script.
 [ -e ../../stopping ] && exit 0
 [ -e asked ] && rm asked && exit 0
-date +%s >>deaths
+how="exit code $1"
+[ "$1" = -1 ] && how="signal $2"
+echo "$(date +%s) $how" >>deaths
 since=$(($(date +%s) - {window}))
 recent=$(awk -v since="$since" '$1 >= since' deaths | wc -l)
 [ "$recent" -le {most} ] && exit 0
-how="exit code $1"
-[ "$1" = -1 ] && how="signal $2"
 echo "left down after $recent deaths in {window} s, the last by $how" >lost
 printf d >supervise/control
 """
@@ -91,10 +91,14 @@ class Service:
         return next((line.strip() for line in reversed(lines) if line.strip()), "")
 
     def deaths(self):
+        return len(self.death_reasons())
+
+    def death_reasons(self):
+        """How the node died, each time: "exit code N" or "signal N"."""
         try:
-            return len((self.path / "deaths").read_text(encoding="utf-8").split())
+            return [line.partition(" ")[2] for line in (self.path / "deaths").read_text(encoding="utf-8").splitlines()]
         except OSError:
-            return 0
+            return []
 
     def lost(self):
         """The reason why the node was left down; "" otherwise."""

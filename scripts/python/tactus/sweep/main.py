@@ -5,7 +5,7 @@ import signal
 import sys
 import time
 
-from tactus import signals
+from tactus import signals, terminal
 from tactus.refusal import Refusal, sentence_of
 from tactus.study import study_file
 from tactus.sweep import adopted, player
@@ -114,5 +114,5 @@ def main(words):
         print("study sweep: interrupted; no finished game is lost; continue with --resume", file=sys.stderr)
         return 130
     except (Refusal, OSError) as error:
-        print(f"study sweep: {sentence_of(error) if isinstance(error, OSError) else error}", file=sys.stderr)
+        terminal.report_refusal(f"study sweep: {sentence_of(error) if isinstance(error, OSError) else error}")
         return 1
