@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "audio_node/mixer/sound_writer.h"
+
 namespace tactus::audio {
 namespace {
 
@@ -40,10 +42,11 @@ FileCard::FileCard(const StreamOptions& options, const std::string& wav, Render 
   info.samplerate = options.rate_Hz;
   info.channels = options.channels;
   info.format = SF_FORMAT_WAV | SF_FORMAT_FLOAT;
-  file_.reset(sf_open(part_.c_str(), SFM_WRITE, &info));
-  if (!file_) {
+  try {
+    file_.reset(open_for_writing(part_, info, "--wav"));
+  } catch (...) {
     if (lock_ >= 0) close(lock_);
-    throw std::runtime_error("cannot write " + wav + " (" + sf_strerror(nullptr) + "); choose another --wav");
+    throw;
   }
   // The peak chunk holds the time of day, which would make two equal runs differ.
   sf_command(file_.get(), SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);

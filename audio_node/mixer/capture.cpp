@@ -9,6 +9,8 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "audio_node/mixer/sound_writer.h"
+
 namespace tactus::audio {
 namespace {
 
@@ -26,9 +28,7 @@ Capture::Capture(const std::string& path, int rate_Hz, int channels, int pairs_f
   info.samplerate = rate_Hz;
   info.channels = channels;
   info.format = SF_FORMAT_WAV | SF_FORMAT_FLOAT;
-  file_ = sf_open(path.c_str(), SFM_WRITE, &info);
-  if (!file_)
-    throw std::runtime_error("cannot write " + path + " (" + sf_strerror(nullptr) + "); choose another --out");
+  file_ = open_for_writing(path, info, "--out");
   // The peak chunk holds the time of day, which would make two equal runs differ.
   sf_command(file_, SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);
   sf_command(file_, SFC_UPDATE_HEADER_NOW, nullptr, 0);

@@ -19,6 +19,7 @@
 #include "audio_node/excitation/impact.h"
 #include "audio_node/excitation/roughness.h"
 #include "audio_node/samples/layers.h"
+#include "audio_node/mixer/sound_writer.h"
 #include "audio_node/mixer/voices.h"
 #include "lcmtypes/vectors.h"
 #include "sync/node/node_options.h"
@@ -193,9 +194,8 @@ class Set {
     SF_INFO info{};
     info.samplerate = static_cast<int>(kRate_Hz), info.channels = 1;
     info.format = SF_FORMAT_FLAC | SF_FORMAT_PCM_24;
-    SNDFILE* out = sf_open(path.c_str(), SFM_WRITE, &info);
-    if (!out ||
-        sf_writef_float(out, x.data(), static_cast<sf_count_t>(x.size())) != static_cast<sf_count_t>(x.size()))
+    SNDFILE* out = open_for_writing(path, info, "folder");
+    if (sf_writef_float(out, x.data(), static_cast<sf_count_t>(x.size())) != static_cast<sf_count_t>(x.size()))
       throw std::runtime_error("cannot write " + path.string() + "; choose another folder");
     sf_close(out);
   }

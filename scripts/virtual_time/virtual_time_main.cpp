@@ -51,6 +51,17 @@ struct PlannedProgram {
 
 volatile std::sig_atomic_t stop_requested = 0;
 
+// A word of the plan: a text, or {"hex": "..."} with the bytes of one that is not UTF-8, such as the name of a folder.
+std::optional<std::string> word_of(const nlohmann::json& entry) {
+  if (entry.is_string()) return entry.get<std::string>();
+  if (!entry.is_object() || entry.size() != 1 || !entry.contains("hex") || !entry["hex"].is_string()) return std::nullopt;
+  const auto digits = entry["hex"].get<std::string>();
+  if (digits.size() % 2 != 0 || digits.find_first_not_of("0123456789abcdef") != std::string::npos) return std::nullopt;
+  std::string bytes;
+  for (std::size_t at = 0; at < digits.size(); at += 2) bytes += static_cast<char>(std::stoi(digits.substr(at, 2), nullptr, 16));
+  return bytes;
+}
+
 std::vector<PlannedProgram> read_plan(const std::string& file) {
   std::ifstream in(file);
   const nlohmann::json plan = nlohmann::json::parse(in, nullptr, false);
@@ -58,9 +69,12 @@ std::vector<PlannedProgram> read_plan(const std::string& file) {
   if (!plan.is_object() || plan.empty()) throw std::runtime_error(wrong);
   std::vector<PlannedProgram> programs;
   for (const auto& [name, words] : plan.items()) {
-    if (!words.is_array() || words.empty() || !std::all_of(words.begin(), words.end(), [](const auto& w) { return w.is_string(); }))
+    programs.push_back({name, {}});
+    if (words.is_array())
+      for (const auto& entry : words)
+        if (auto word = word_of(entry)) programs.back().words.push_back(std::move(*word));
+    if (!words.is_array() || words.empty() || programs.back().words.size() != words.size())
       throw std::runtime_error(wrong + "; the entry " + name + " is not such a list");
-    programs.push_back({name, words.get<Words>()});
     const std::string program = std::filesystem::path(programs.back().words.front()).filename();
     if (!kPrograms.contains(program)) throw std::runtime_error(program + " does not run in virtual time; leave it out of " + file);
     programs.back().words.front() = program;
@@ -115,7 +129,9 @@ int main(int argc, char** argv) try {
                .loss = {.share = loss_percent / 100}};
   if (jitter_ms == 0) plan.wire.jitter = {};
 
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop_requested = 1; });
+  // A signal that the caller ignores stays ignored.
+  for (const int signal : {SIGINT, SIGTERM})
+    if (std::signal(signal, [](int) { stop_requested = 1; }) == SIG_IGN) std::signal(signal, SIG_IGN);
   sync::VirtualTime time(plan);
   std::optional<sync::HostTime> world_start;
   time.wire().add_listener([&](sync::HostTime now, std::string_view channel, std::span<const std::uint8_t>) {

@@ -50,7 +50,7 @@ std::vector<std::string> LiveSettings::step(HostTime now, const SettingChanges::
     push(decode<tag_values_t>(bytes.data(), bytes.size()));
   });
   for (const SettingMaps::Change& change : maps_.take_changes(now)) try {
-      apply(change.name, change.value);
+      apply({{change.name, change.value}});
     } catch (const std::invalid_argument& e) {
       problems.push_back("a <tactus:map> cannot drive " + change.name + ": " + e.what());
       maps_.disable(change.name);

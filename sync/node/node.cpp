@@ -17,6 +17,7 @@
 #include "sync/degradation/profile_exchange.h"
 #include "sync/bus/health_inputs.h"
 #include "sync/bus/kernel_drops.h"
+#include "sync/text/error_text.h"
 #include "sync/text/printable.h"
 #include "sync/virtual_time/virtual_time.h"
 
@@ -29,11 +30,16 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 void request_stop(int) { stop_requested = true; }
 
 void catch_signals() {
-  struct sigaction action {};
-  action.sa_handler = request_stop;
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGINT, &action, nullptr);
+  // A signal that the caller ignores stays ignored: Ctrl-C in a background job of a script.
+  for (const int number : {SIGTERM, SIGINT}) {
+    struct sigaction action {};
+    if (sigaction(number, nullptr, &action) == 0 && action.sa_handler == SIG_IGN) continue;
+    action = {};
+    action.sa_handler = request_stop;
+    sigaction(number, &action, nullptr);
+  }
   signal(SIGPIPE, SIG_IGN);
+  signal(SIGXFSZ, SIG_IGN);  // beyond the limit of file sizes a write fails, as on a full disk, and is reported
 }
 
 Realtime parse_realtime(const std::string& text) {
@@ -99,7 +105,7 @@ void parse_or_exit(Arguments& app, const std::string& node, int argc, char** arg
 }
 
 int fail(const std::string& node, const std::exception& e) {
-  const std::string message = e.what();
+  const std::string message = error_text(e);
   std::cerr << (message.starts_with(node) ? "" : node + ": ") << printable(message) << "\n";
   return 1;
 }

@@ -40,8 +40,8 @@ class Renderer {
 
   // A scene is complete. Slow file reads run in a thread of their own (BackgroundTask); step() polls it.
   virtual LoadedScene begin_scene(const SceneReceiver& scenes) = 0;
-  // Throws std::invalid_argument with one sentence; then no setting has changed.
-  virtual void change_setting(const std::string& name, const std::string& value) = 0;
+  // Changes all of these settings. Throws std::invalid_argument with one sentence; then none has changed.
+  virtual void change_settings(const SettingList& settings) = 0;
   // One tick: reads the received messages, renders, publishes, reports. nullopt: there is nothing to render yet.
   virtual std::optional<Status> step(HostTime now) = 0;
 
@@ -80,11 +80,9 @@ class SettingsRenderer : public Renderer {
     return load(scenes, settings_);
   }
   // A request over the bus cannot exceed the safety limits of scene and command line.
-  void change_setting(const std::string& name, const std::string& value) final {
-    Settings changed = settings_;
-    change_live(changed, configured_, fields_, name, value);
-    apply_setting(changed, name);
-    settings_ = std::move(changed);
+  void change_settings(const SettingList& settings) final {
+    change_live_together(settings_, configured_, fields_, settings,
+                         [this](const Settings& changed, const std::string& name) { apply_setting(changed, name); });
   }
 
  protected:

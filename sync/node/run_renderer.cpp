@@ -48,7 +48,7 @@ class RendererRun {
     report_status(loaded.status);
   }
   void change_settings(HostTime now) {
-    const auto change = [this](const std::string& name, const std::string& value) { renderer_->change_setting(name, value); };
+    const auto change = [this](const SettingList& settings) { renderer_->change_settings(settings); };
     for (const std::string& refused : live_.step(now, change)) host_.print_status(refused);
   }
   void report_status(const Status& status) {

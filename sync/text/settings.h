@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -90,6 +91,26 @@ void change_live(Settings& settings, const Settings& own, std::span<const Settin
   throw std::invalid_argument(
       live.empty() ? "none of its settings can be changed while it runs"
                    : "setting \"" + std::string(name) + "\" cannot be changed while it runs; these settings can: " + live);
+}
+
+using SettingList = std::vector<std::pair<std::string, std::string>>;  // {name, value}, in the order of their change
+
+// Changes several settings of a running node, all or none. apply(settings, name) makes a changed setting effective; it may
+// throw std::invalid_argument, and then the earlier ones get their old values again. Throws std::invalid_argument with one
+// sentence; then nothing has changed.
+template <class Settings, class Apply>
+void change_live_together(Settings& settings, const Settings& own, std::span<const SettingField<Settings>> table,
+                          const SettingList& changes, const Apply& apply) {
+  Settings changed = settings;
+  for (const auto& [name, value] : changes) change_live(changed, own, table, name, value);
+  std::size_t applied = 0;
+  try {
+    for (; applied < changes.size(); ++applied) apply(changed, changes[applied].first);
+  } catch (const std::invalid_argument&) {
+    while (applied-- > 0) apply(settings, changes[applied].first);
+    throw;
+  }
+  settings = std::move(changed);
 }
 
 // Applies the settings of a scene for `node` (a list of {node, name, value}), then those of the command line ("name=value").

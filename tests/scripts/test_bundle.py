@@ -27,6 +27,8 @@ class Bundle(unittest.TestCase):
         self.asked = self.folder / "asked"
         (self.folder / "live").mkdir()
         shutil.copy(LIVE / "bundle", self.folder / "live")
+        for name in ("prologue.sh", "removed_variables.txt"):
+            shutil.copy(LIVE.parent / name, self.folder)
         shutil.copytree(LIVE / "page", self.folder / "live" / "page", ignore=shutil.ignore_patterns("node_modules", "dist", ".lock"))
         (self.folder / "bin").mkdir()
         (self.folder / "bin" / "npm").write_text(NPM.format(asked=self.asked), encoding="utf-8")

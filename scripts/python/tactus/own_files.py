@@ -2,10 +2,12 @@
 
 Only files of the own user are used. No function follows a link at the end of a path, and none waits for a named pipe.
 """
+import contextlib
 import errno
 import os
 import pathlib
 import pwd
+import shutil
 import stat
 
 from tactus.refusal import Refusal
@@ -56,6 +58,22 @@ def make_private_folder(path):
     if found.st_mode & 0o077:
         os.chmod(path, 0o700)
     return path
+
+
+@contextlib.contextmanager
+def results_folder(path):
+    """Makes a folder with its parents, or accepts an existing one; for a block that writes into it. When Ctrl-C ends the block, removes the folders
+    that it made, with their incomplete content. Raises OSError."""
+    made, place = None, pathlib.Path(path).absolute()
+    while not place.exists():
+        made, place = place, place.parent
+    try:
+        os.makedirs(path, exist_ok=True)
+        yield
+    except KeyboardInterrupt:
+        if made is not None:
+            shutil.rmtree(made, ignore_errors=True)
+        raise
 
 
 def open_own(path):

@@ -15,6 +15,11 @@ def printable(text):
     return "".join(c if c == "\n" or not (ord(c) < 32 or 127 <= ord(c) < 160) else f"\\x{ord(c):02x}" for c in text)
 
 
+def one_line(text):
+    """As printable(), also for line ends: a sentence with a name of the user stays one line."""
+    return printable(text).replace("\n", "\\n")
+
+
 def report(text, stream=None):
     """Prints complete lines and flushes."""
     stream = stream or sys.stdout
@@ -28,8 +33,13 @@ def report(text, stream=None):
 
 def report_run(text):
     """Prints a line of scripts/run."""
-    report(f"run: {text}")
+    report(one_line(f"run: {text}"))
 
 
 def report_error(text):
     report(text, sys.stderr)
+
+
+def report_refusal(text):
+    """Prints one sentence for the user, which may name a file, to stderr."""
+    report_error(one_line(text))

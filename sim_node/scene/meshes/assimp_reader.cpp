@@ -18,6 +18,7 @@
 namespace tactus::sim {
 namespace {
 
+constexpr char kNoSurface[] = "it holds no surface, neither a triangle nor a polygon; export it with faces";
 constexpr int kMaxNodeDepth = 256;  // as in gltf_reader.cpp
 
 // Opens regular files of bounded size below the readable folders only, because a material library may be named
@@ -191,6 +192,13 @@ bool is_default_material(const MeshMaterial& m) {
   return (m.name.empty() || m.name == AI_DEFAULT_MATERIAL_NAME) && m.colour_map.none();
 }
 
+bool has_surface(const aiScene& scene) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m)
+    for (unsigned f = 0; f < scene.mMeshes[m]->mNumFaces; ++f)
+      if (scene.mMeshes[m]->mFaces[f].mNumIndices >= 3) return true;
+  return false;
+}
+
 }  // namespace
 
 MeshParts read_with_assimp(const std::filesystem::path& file, const sync::ReadableFolders& readable) {
@@ -207,6 +215,7 @@ MeshParts read_with_assimp(const std::filesystem::path& file, const sync::Readab
   if (!outside.empty())
     throw std::runtime_error("it names \"" + outside.substr(0, 200) + "\", which is hidden or outside the folder of the scene");
   if (scene && scene->mRootNode) {
+    if (!has_surface(*scene)) throw std::runtime_error(kNoSurface);
     // Counted before processing: normals of millions of triangles take minutes.
     Totals all, shown;
     for (unsigned m = 0; m < scene->mNumMeshes; ++m) all.add(*scene->mMeshes[m]);
@@ -214,7 +223,12 @@ MeshParts read_with_assimp(const std::filesystem::path& file, const sync::Readab
     scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType |
                                          aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices);
   }
-  if (!scene || !scene->mRootNode) throw std::runtime_error(importer.GetErrorString());
+  if (!scene || !scene->mRootNode) {
+    // The words of assimp for a file of points and lines alone.
+    const std::string reason = importer.GetErrorString();
+    const bool empty = reason.find("No meshes") != std::string::npos || reason.find("invalid primitive type") != std::string::npos;
+    throw std::runtime_error(empty ? kNoSurface : reason);
+  }
   Totals shown;  // again, because polygons have become triangles
   shown.add(*scene, *scene->mRootNode, 0);
   MeshParts mesh;

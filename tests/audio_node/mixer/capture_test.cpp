@@ -59,3 +59,20 @@ TEST_CASE("Samples that the disk cannot take are replaced by silence, so that in
   }
   std::filesystem::remove_all(folder);
 }
+
+TEST_CASE("A sound file is written into a folder whose path has more than 1023 bytes") {
+  char top[] = "/tmp/tactus_capture_XXXXXX";
+  REQUIRE(mkdtemp(top));
+  std::filesystem::path folder = top;
+  for (int i = 0; i < 6; ++i) folder /= std::string(200, 'd');
+  std::filesystem::create_directories(folder);
+  const std::string path = folder / "a.wav";
+  {
+    Capture capture(path, 48000, 1, -1);
+    const std::vector<float> samples(100, 0.25f);
+    capture.append(samples.data(), 100);
+  }
+  CHECK(std::filesystem::file_size(path) >= 400);
+  CHECK_THROWS_WITH(Capture(path + "/b.wav", 48000, 1, -1), Catch::Contains("cannot write " + path + "/b.wav (Not a directory)"));
+  std::filesystem::remove_all(top);
+}

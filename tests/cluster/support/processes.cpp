@@ -67,6 +67,7 @@ void Processes::spawn(const std::string& name, const std::vector<std::string>& c
     const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
     dup2(file, STDOUT_FILENO);
     dup2(file, STDERR_FILENO);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) ::signal(number, SIG_DFL);  // the caller of the test may ignore them
     execvp(words[0], words.data());
     _exit(127);
   }

@@ -28,8 +28,8 @@ class Attach(unittest.TestCase):
         self.addCleanup(lock.close)
         cluster_folder.write_address(folder, holder or os.getpid(), ["--net", "--pid"], 5, "udpm://239.255.76.67:7667?ttl=0", 7667, self.tmp / "out")
         if fields:
-            lines = dict(line.split("=", 1) for line in (folder / "address").read_text(encoding="utf-8").splitlines())
-            (folder / "address").write_text("".join(f"{k}={v}\n" for k, v in {**lines, **fields}.items()), encoding="utf-8")
+            entries = dict(entry.split("=", 1) for entry in (folder / "address").read_text(encoding="utf-8").split("\0") if entry)
+            (folder / "address").write_text("".join(f"{k}={v}\0" for k, v in {**entries, **fields}.items()), encoding="utf-8")
         out = self.tmp / "out"
         out.mkdir(exist_ok=True)
         (out / "cluster").unlink(missing_ok=True)
@@ -48,6 +48,12 @@ class Attach(unittest.TestCase):
             self.assertEqual((folder, str(os.getpid())), (found[0], found[1]["holder"]))
         words = attach.entering(attach.newest()[1])
         self.assertIn(f"--net=/proc/{os.getpid()}/ns/net", words)
+
+    def test_a_cluster_whose_output_has_a_hostile_name_is_found_with_this_name(self):
+        folder, _ = self.cluster()
+        out = "/out/a b\n\u2028port=1\udcff=$(x)"
+        cluster_folder.write_address(folder, os.getpid(), [], 5, "udpm://239.255.76.67:7667?ttl=0", 7667, out)
+        self.assertEqual((out, "7667"), tuple(cluster_folder.address(folder)[key] for key in ("out", "port")))
 
     def test_a_cluster_of_another_user_is_refused_also_for_root(self):
         folder, out = self.cluster()
@@ -79,7 +85,7 @@ class Attach(unittest.TestCase):
         self.assertIn("no cluster is running", self.refusal(attach.cluster_of, self.cluster(namespaces="net,user,mnt")[1]))
 
     def test_an_incomplete_or_endless_address_is_no_cluster(self):
-        for text in ("", "holder=1\n", "x" * 10**6):
+        for text in ("", "holder=1\0", "x" * 10**6):
             folder, out = self.cluster()
             (folder / "address").write_text(text, encoding="utf-8")
             self.assertIn("no cluster is running", self.refusal(attach.cluster_of, out))

@@ -103,7 +103,7 @@ class Entry(unittest.TestCase):
     def test_a_missing_module_is_named_with_the_python_that_lacks_it(self):
         with mock.patch.object(dispatch, "main", side_effect=ModuleNotFoundError("No module named 'lxml'", name="lxml.etree")):
             said = self.entry().main(["cluster"])
-        self.assertIn("has no module lxml.etree; run scripts/setup", said)
+        self.assertIn("has no module lxml.etree; run scripts/setup cluster, which installs it", said)
         self.assertIn(sys.executable, said)
 
     def test_a_missing_module_of_the_package_is_a_defect_and_not_hidden(self):

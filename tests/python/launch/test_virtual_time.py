@@ -140,7 +140,7 @@ class VirtualTime(unittest.TestCase):
     def test_an_interrupted_run_ends_early_with_all_results(self):
         out = self.folder / "long"
         process = subprocess.Popen([str(RUN), "--virtual-time", "--seconds", "80000", "--out", str(out)], stdout=subprocess.PIPE,
-                                   stderr=subprocess.STDOUT, text=True)
+                                   stderr=subprocess.STDOUT, text=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         until = time.monotonic() + 60
         while not (out / "run.lcmlog").exists() and time.monotonic() < until:
             time.sleep(0.1)

@@ -180,3 +180,35 @@ TEST_CASE("A live change loosens no safety limit beyond the default or the comma
   change_live(s, own, std::span(kTable), "coldest", "20");
   CHECK(s.coldest_degC == 20);
 }
+
+TEST_CASE("Several live settings change together or not at all") {
+  const Example own;
+  Example s = own;
+  std::vector<std::string> effective;
+  const auto apply = [&](const Example& e, const std::string& name) { effective.push_back(name + " " + std::to_string(e.delay_s)); };
+  const auto unchanged = [&] {
+    return s.delay_s == own.delay_s && s.hottest_degC == own.hottest_degC && s.coldest_degC == own.coldest_degC;
+  };
+  // A value out of range, a setting that cannot change, a looser safety limit, and an unknown name, at each position.
+  for (const auto& [name, value] : SettingList{{"delay", "2s"}, {"voices", "9"}, {"hottest", "43"}, {"nothing", "1"}})
+    for (std::size_t at = 0; at < 3; ++at) {
+      SettingList changes{{"coldest", "20"}, {"hottest", "37"}};
+      changes.insert(changes.begin() + static_cast<std::ptrdiff_t>(at), {name, value});
+      CHECK_THROWS_AS(change_live_together(s, own, std::span(kTable), changes, apply), std::invalid_argument);
+      CHECK(unchanged());
+      CHECK(effective.empty());
+    }
+  // The renderer itself refuses the last one: the first gets its old value again.
+  const auto refuse = [&](const Example& e, const std::string& name) {
+    apply(e, name);
+    if (name == "hottest") throw std::invalid_argument("no");
+  };
+  CHECK_THROWS_AS(change_live_together(s, own, std::span(kTable), {{"delay", "50ms"}, {"hottest", "37"}}, refuse), std::invalid_argument);
+  CHECK(unchanged());
+  CHECK(effective == std::vector<std::string>{"delay 0.050000", "hottest 0.050000", "delay 0.020000"});
+  effective.clear();
+  change_live_together(s, own, std::span(kTable), {{"delay", "50ms"}, {"hottest", "37"}}, apply);
+  CHECK(s.delay_s == Approx(0.05));
+  CHECK(s.hottest_degC == 37);
+  CHECK(effective.size() == 2);
+}

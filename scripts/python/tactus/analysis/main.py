@@ -6,6 +6,7 @@ import os
 import pathlib
 import sys
 
+from tactus import own_files, terminal
 from tactus.refusal import Refusal
 
 USAGE = """Analyses trials and games: limits of detection, of a felt change and of the task for each degradation.
@@ -61,10 +62,9 @@ def analyse(options):
         from tactus.analysis import result_tables
         from tactus.analysis import study_analysis
         from tactus.analysis import study_files
-        from tactus.analysis import study_report
         from tactus.analysis import trials
     except ImportError as error:
-        raise Refusal(f"{error.name} is missing; run scripts/setup") from None
+        raise Refusal(f"{error.name} is missing; run scripts/setup study") from None
     files = trials.files_of(options.place)
     rows = trials.read(files)
     share = lambda percent: None if percent is None else percent / 100
@@ -74,7 +74,14 @@ def analyse(options):
     made = result_tables.all_rows(analysis)
     if not made:
         raise Refusal(f"{options.place[0]}: holds no judgements, no matches of a known property and no games; give results of a study")
-    os.makedirs(options.out, exist_ok=True)
+    with own_files.results_folder(options.out):
+        write(options, analysis, made)
+
+
+def write(options, analysis, made):
+    """Writes tables, figures and the page, and prints the summary."""
+    from tactus.analysis import result_tables
+    from tactus.analysis import study_report
     result_tables.write(made, options.out)
     report = study_report.Report(analysis, os.path.join(options.out, "figures"))
     text = report.html(", ".join(sorted({s for s in analysis.trials["study"] if s})))
@@ -111,7 +118,7 @@ def main(argv):
     try:
         analyse(parsed(argv))
     except Refusal as error:
-        print(f"study analyse: {error}", file=sys.stderr)
+        terminal.report_refusal(f"study analyse: {error}")
         return 1
     except OSError as error:
         print(f"study analyse: {error.filename or 'a file'}: {error.strerror or error}; give folders with permission to read and write", file=sys.stderr)

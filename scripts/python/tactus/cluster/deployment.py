@@ -17,7 +17,7 @@ PROGRAMS = ("sim_node", "haptic_node", "audio_node", "visual_node", "thermal_nod
 FOLDERS = {"share/scenes": REPOSITORY / "sim_node" / "scenes", "share/rooms": REPOSITORY / "visual_node" / "rooms", "share/relays": sites.SHIPPED}
 LEFT_OUT = {".py", ".md"}
 # Files that `tactus doctor` imports besides its own package.
-DOCTOR = ("__init__.py", "refusal.py", "commands/__init__.py", "commands/dispatch.py", "commands/table.py", "launch/__init__.py", "launch/equipment.py", "launch/network.py")
+DOCTOR = ("__init__.py", "refusal.py", "environment.py", "terminal.py", "commands/__init__.py", "commands/dispatch.py", "commands/table.py", "launch/__init__.py", "launch/equipment.py", "launch/network.py")
 LARGEST_SCENE_BYTES = 500_000_000
 
 
@@ -29,7 +29,7 @@ def parts():
     for there, here in FOLDERS.items():
         found |= {f"{there}/{path.relative_to(here)}": path for path in sorted(here.rglob("*")) if path.is_file() and path.suffix not in LEFT_OUT}
     package = SCRIPTS / "python" / "tactus"
-    for path in (SCRIPTS / "tactus", *(package / name for name in DOCTOR), *(package / "doctor").glob("*.py")):
+    for path in (SCRIPTS / "tactus", SCRIPTS / "removed_variables.txt", *(package / name for name in DOCTOR), *(package / "doctor").glob("*.py")):
         found[f"share/scripts/{path.relative_to(SCRIPTS)}"] = path
     found["share/inside"] = package / "launch" / "inside"
     for name, path in found.items():

@@ -6,7 +6,6 @@ processes end with the process that made it.
 import json
 import os
 import pathlib
-import shlex
 import shutil
 import signal
 import subprocess
@@ -87,18 +86,18 @@ class Host:
             file.write(f"Host {self.name}\n  HostName {self.address}\n" + (f"  User {USER}\n" if self.ordinary else ""))
 
     def boot(self):
-        home, disk, repository = (shlex.quote(str(path)) for path in (self.home, self.disk, REPOSITORY))
-        person = (f"mount --bind /root/.lab/passwd /etc/passwd && mount -t tmpfs tmpfs /home && mkdir /home/{USER} && mount --bind {home} /home/{USER} && "
+        # $1 to $4: names of folders and of the host are no part of the shell's text.
+        person = (f"mount --bind /root/.lab/passwd /etc/passwd && mount -t tmpfs tmpfs /home && mkdir /home/{USER} && mount --bind \"$1\" /home/{USER} && "
                   if self.ordinary else "")
         limits = "" if self.ordinary else "ulimit -l unlimited 2>/dev/null; "
         # The repository is hidden first, because its mount point may be inside a folder that is hidden next.
-        inside = (f"mount -t tmpfs tmpfs {repository} && mount --bind {disk} /root && {person} mount -t tmpfs tmpfs /tmp && mount -t tmpfs tmpfs /run && "
-                  f"mkdir -m 755 /run/sshd && hostname {self.name} && cd /root && export HOME=/root && "
+        inside = (f"mount -t tmpfs tmpfs \"$3\" && mount --bind \"$2\" /root && {person} mount -t tmpfs tmpfs /tmp && mount -t tmpfs tmpfs /run && "
+                  f"mkdir -m 755 /run/sshd && hostname \"$4\" && cd /root && export HOME=/root && "
                   "ip link set lo up && echo up && read linked && { ulimit -l unlimited 2>/dev/null; exec /usr/sbin/sshd -D -f /root/.lab/sshd_config -E /root/.lab/sshd.log; }")
         environment = {"PATH": os.environ.get("PATH", "/usr/bin:/bin") + ":/usr/sbin:/sbin"}
         self.process = subprocess.Popen(
             ["unshare", "--net", "--uts", "--mount", "--time", "--monotonic", str(self.ahead_s), "--pid", "--fork", "--kill-child",
-             "--mount-proc", "sh", "-c", inside],
+             "--mount-proc", "sh", "-c", inside, "sh", str(self.home), str(self.disk), str(REPOSITORY), self.name],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, start_new_session=True, env=environment)
         if self.process.stdout.readline() != "up\n":
             raise Error(f"cannot create the host {self.name}; run as root on Linux 5.6 or later")
@@ -253,7 +252,7 @@ def enter(words):
         raise Error("a lab needs root, because it makes network, mount and time namespaces; run it as root")
     for program in ("unshare", "nsenter", "ip", "tc", "nft", "/usr/sbin/sshd", "ssh", "ssh-keygen"):
         if not shutil.which(program, path=os.environ.get("PATH", "") + ":/usr/sbin:/sbin"):
-            raise Error(f"{program} is not installed; run scripts/setup --packages")
+            raise Error(f"{program} is not installed; run scripts/setup lab")
     environment = dict(os.environ, TACTUS_LAB_INSIDE="1", PATH=os.environ.get("PATH", "") + ":/usr/sbin:/sbin")
     space = ["unshare", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc"]
     probe = subprocess.run([*space, "unshare", "--time", "--monotonic", "1", "--fork", "true"], capture_output=True, check=False)

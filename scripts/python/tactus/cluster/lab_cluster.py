@@ -78,7 +78,7 @@ class LabCluster:
             time.sleep(seconds)
         else:
             until.wait()
-        observer.send_signal(signal.SIGINT)
+        observer.send_signal(signal.SIGTERM)
         observer.wait(20)
         subprocess.run([BIN / "summarise", out, "--out", out / "summary.json"], capture_output=True, check=False)
         return json.loads((out / "summary.json").read_text(encoding="utf-8"))

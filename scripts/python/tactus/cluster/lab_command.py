@@ -17,6 +17,7 @@ import signal
 import subprocess
 import sys
 
+from tactus import signals, terminal
 from tactus.cluster import lab
 from tactus.paths import tactus_command
 
@@ -73,8 +74,8 @@ def serve_faults(made, command):
     pipe = made.folder / "order"
     os.mkfifo(pipe)
     child = subprocess.Popen(command, env=made.environment())
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # forwarded to the command
-        signal.signal(number, lambda n, _: child.poll() is None and child.send_signal(n) if n != signal.SIGINT else None)
+    # Forwarded to the command; Ctrl-C reaches it from the terminal.
+    signals.handle(signals.ENDING, lambda n, _: child.poll() is None and child.send_signal(n) if n != signal.SIGINT else None)
     descriptor = os.open(pipe, os.O_RDWR | os.O_NONBLOCK)
     rest = b""
     while True:
@@ -123,5 +124,5 @@ def main(words):
         finally:
             made.close()
     except lab.Error as error:
-        print(f"lab: {error}", file=sys.stderr)
+        terminal.report_refusal(f"lab: {error}")
         return 1

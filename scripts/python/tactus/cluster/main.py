@@ -210,8 +210,6 @@ def main(words):
         errors = [str(refusal)]
     except OSError as error:
         errors = [sentence_of(error)]
-    except KeyboardInterrupt:
-        return 130
     for sentence in errors:
-        terminal.report_error(f"cluster: {sentence}")
+        terminal.report_refusal(f"cluster: {sentence}")
     return 1 if errors else 0

@@ -93,7 +93,7 @@ def server_address(text):
 
 def make(a):
     if not shutil.which("openssl"):
-        raise Refusal("openssl is not installed; run scripts/setup --packages")
+        raise Refusal("openssl is not installed; run scripts/setup private-path")
     out = pathlib.Path(a.out)
     if out.exists() or out.is_symlink():
         raise Refusal(f"--out {out}: already exists, and its keys may be in use; name a new folder")
@@ -124,5 +124,5 @@ def main(words):
         error_text = str(refusal)
     except OSError as error:
         error_text = sentence_of(error)
-    terminal.report_error(f"private_path: {error_text}")
+    terminal.report_refusal(f"private_path: {error_text}")
     return 1

@@ -163,5 +163,5 @@ def main(words):
         error_text = str(refusal)
     except OSError as error:
         error_text = sentence_of(error)
-    terminal.report_error(f"units: {error_text}")
+    terminal.report_refusal(f"units: {error_text}")
     return 1

@@ -4,7 +4,7 @@ import pathlib
 import shutil
 import tempfile
 
-from tactus import own_files
+from tactus import environment, own_files
 from tactus.commands import prepare
 from tactus.launch import cluster_folder
 from tactus.paths import BIN, TACTUS
@@ -56,11 +56,12 @@ def refuse_foreign(folder):
                       "that user")
 
 
-def environment(folder, found):
+def bus_variables(folder, found, variables):
+    """The variables of a command inside the cluster: those of the caller, and those that name the bus and the run."""
     bus = found["url"].removeprefix("udpm://")
-    return {**os.environ, "TACTUS_GROUP": bus.partition(":")[0], "TACTUS_TTL": bus.rpartition("ttl=")[2], "LCM_DEFAULT_URL": found["url"],
+    return {**variables, "TACTUS_GROUP": bus.partition(":")[0], "TACTUS_TTL": bus.rpartition("ttl=")[2], "LCM_DEFAULT_URL": found["url"],
             "TACTUS_PORT": found["port"], "TACTUS_RUN_ID": found["run_id"], "SVDIR": str(folder / "services"),
-            "PATH": f"{BIN}:{os.environ.get('PATH', '')}"}
+            "PATH": f"{BIN}:{variables.get('PATH', '')}"}
 
 
 def entering(found):
@@ -87,7 +88,7 @@ def main(words):
             folder, found = cluster_of(out)
         else:
             folder, found = newest()
-        there = environment(folder, found)
+        there = bus_variables(folder, found, {name: value for name, value in environment.ORIGINAL.items() if name != environment.CALLER})
         if words[0] == "tactus":  # this installation
             words = [str(TACTUS), *words[1:]]
         if not shutil.which(words[0], path=there["PATH"]):

@@ -42,4 +42,7 @@ def main(words):
     if "." not in target:
         script = str(SCRIPTS / target)
         os.execv(script, [script, *words])
+    if BY_NAME[name].packages and words and not {"--help", "-h"} & set(words):
+        from tactus.commands import prepare
+        prepare.install(BY_NAME[name].packages)
     return importlib.import_module(target).main(words)

@@ -14,6 +14,8 @@ import os
 import shutil
 import sys
 
+from tactus import own_files
+
 KITS = "/usr/share/hydrogen/data/drumkits"
 # (recording, path in the folder), softest first: the kits number their layers in this order.
 DRUMS = [
@@ -37,6 +39,13 @@ def main(words):
         sys.exit(f"drumkit_sounds: {options.kits} does not exist; install hydrogen-drumkits or give --from FOLDER")
     if os.path.exists(options.folder):
         sys.exit(f"drumkit_sounds: {options.folder} already exists; give a new folder")
+    with own_files.results_folder(options.folder):
+        copy(options)
+    print(f"{len(DRUMS)} recordings in {options.folder}")
+    return 0
+
+
+def copy(options):
     for source, place in DRUMS:
         place = os.path.join(options.folder, place)
         os.makedirs(os.path.dirname(place), exist_ok=True)
@@ -47,5 +56,3 @@ def main(words):
     for folder, size_m in SIZES.items():
         with open(os.path.join(options.folder, folder, "size.txt"), "w", encoding="utf-8") as file:
             file.write(f"{size_m}\n")
-    print(f"{len(DRUMS)} recordings in {options.folder}")
-

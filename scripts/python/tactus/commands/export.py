@@ -3,6 +3,7 @@ import glob
 import os
 import subprocess
 
+from tactus import own_files
 from tactus.commands import prepare
 from tactus.paths import BIN
 from tactus.refusal import Refusal
@@ -56,13 +57,18 @@ def main(words):
     try:
         logs, options, out = parsed(words)
         out = out or os.path.join(logs[0] if os.path.isdir(logs[0]) else os.path.dirname(logs[0]), "tables")
-        try:
-            os.makedirs(out, exist_ok=True)
-        except OSError:
-            raise Refusal(f"cannot create the folder {out}; give a writable folder with --out") from None
     except Refusal as refusal:
         return prepare.refuse("export", refusal)
     prepare.install_and_build()
+    try:
+        with own_files.results_folder(out):
+            return run_programs(logs, out, options)
+    except OSError:
+        return prepare.refuse("export", f"cannot create the folder {out}; give a writable folder with --out")
+
+
+def run_programs(logs, out, options):
+    """Writes all tables; returns the exit status of the first program that fails, or 0."""
     for name, own in (("export_log", options), ("export_events", []), ("export_csv", [])):
         try:
             status = subprocess.run([BIN / name, *logs, "--out", out, *own], check=False).returncode

@@ -14,6 +14,8 @@ import urllib.parse
 
 import websockets
 
+from tactus import terminal
+
 # Values that the page shows first, and the computing time of each node.
 USUAL = ["TOOL_STATE:force_N.z", "TOOL_STATE:proxy.position_m.z", "THERMAL_STATE:skin_degC",
          *(f"{node}_node.work.other" for node in ("sim", "haptic", "audio", "visual", "thermal"))]
@@ -54,7 +56,7 @@ def main(words):
         asyncio.run(follow(options.url, options.watch or USUAL, options.seconds, counted))
     except (OSError, ValueError, websockets.WebSocketException) as error:
         # The run may end before this client; the counts are printed in any case.
-        print(f"follow: {options.url.split('?')[0]} no longer answers ({error})", file=sys.stderr)
+        terminal.report_refusal(f"follow: {options.url.split('?')[0]} no longer answers ({error})")
     print("  ".join(f"{name} {value}" for name, value in counted.items()))
     if options.json:
         with open(options.json, "w", encoding="utf-8") as file:

@@ -1,7 +1,4 @@
 """The command `tactus live open`: shows a log in a web page."""
-import subprocess
-import sys
-
 from tactus.commands import prepare
 from tactus.paths import BIN, SCRIPTS
 
@@ -14,6 +11,5 @@ def main(words):
     if not words or words[0] in ("--help", "-h"):
         return prepare.print_usage(USAGE, requested=bool(words))
     prepare.install_and_build("live_server")
-    if subprocess.run([SCRIPTS / "live" / "bundle"], check=False).returncode != 0:
-        sys.exit(1)
+    prepare.run_script(SCRIPTS / "live" / "bundle")
     prepare.replace_process([str(BIN / "live_server"), *words, "--page", str(SCRIPTS / "live" / "page" / "dist")])

@@ -4,6 +4,7 @@ import signal
 import subprocess
 import sys
 
+from tactus import environment, terminal
 from tactus.paths import BIN, SCRIPTS
 
 
@@ -15,30 +16,45 @@ def print_usage(usage, requested=True):
 
 def refuse(name, sentence):
     """Prints an error message to stderr; returns the exit status 1."""
-    print(f"{name}: {sentence}", file=sys.stderr)
+    print(terminal.one_line(f"{name}: {sentence}"), file=sys.stderr)
     return 1
 
 
+def run_script(*words):
+    """Runs a script of scripts/; exits with its status when it fails."""
+    status = subprocess.run(words, check=False, env=environment.for_called()).returncode
+    if status != 0:
+        sys.exit(status if status > 0 else 1)
+
+
+def install(*groups):
+    """Installs the missing packages of these groups of scripts/packages.txt, unless TACTUS_BIN is set or this is a copy on a host of a cluster.
+    Exits on failure."""
+    if not os.environ.get("TACTUS_BIN") and (SCRIPTS / "setup").exists():
+        run_script(SCRIPTS / "setup", "--packages", *groups)
+
+
 def install_and_build(*targets):
-    """Installs missing packages and builds, unless TACTUS_BIN is set. targets: of the build; default: all programs. Exits with 1 on failure."""
+    """Installs missing packages and builds, unless TACTUS_BIN is set. targets: of the build; default: all programs. Exits on failure."""
     if os.environ.get("TACTUS_BIN"):
         return
-    for words in ([SCRIPTS / "setup", "--packages"], [SCRIPTS / "build", *(targets or ("--programs",))]):
-        if subprocess.run(words, check=False).returncode != 0:
-            sys.exit(1)
+    run_script(SCRIPTS / "setup", "--packages")
+    run_script(SCRIPTS / "build", *(targets or ("--programs",)))
 
 
 def program(name):
-    """Path of a program of the build; builds it when missing. Exits with 1 on failure."""
+    """Path of a program of the build; builds it when missing, unless TACTUS_BIN is set. Exits on failure."""
     path = BIN / name
-    if not os.access(path, os.X_OK) and subprocess.run([SCRIPTS / "build", name], check=False).returncode != 0:
-        sys.exit(1)
+    if not os.access(path, os.X_OK):
+        if os.environ.get("TACTUS_BIN"):
+            sys.exit(f"{name}: {path} does not exist; correct TACTUS_BIN")
+        run_script(SCRIPTS / "build", name)
     return str(path)
 
 
-def replace_process(words, environment=None):
-    """Replaces this process by a program, with default signal handlers. Does not return."""
+def replace_process(words, variables=None):
+    """Replaces this process by a program, with default signal handlers. variables: its environment. Does not return."""
     for number in (signal.SIGPIPE, signal.SIGXFSZ):  # Python ignores them, and ignored signals are inherited
         signal.signal(number, signal.SIG_DFL)
     sys.stdout.flush()
-    os.execvpe(words[0], words, environment or os.environ)
+    os.execvpe(words[0], words, os.environ if variables is None else variables)

@@ -4,17 +4,19 @@ import dataclasses
 
 @dataclasses.dataclass(frozen=True)
 class Command:
-    """target: a module with main(words) that returns the exit status; or, without a dot, a script of scripts/."""
+    """target: a module with main(words) that returns the exit status; or, without a dot, a script of scripts/. packages: the group of
+    scripts/packages.txt that the command needs besides build and run."""
     name: str
     summary: str
     target: str
+    packages: str = ""
 
 
 GROUPS = {
     "Run": (
         Command("run", "runs a scene with each node in its own process, and summarises the results", "run"),
         Command("replay", "plays the log of a run to live nodes", "tactus.commands.replay"),
-        Command("live", "live page: `live open LOG`, `live follow URL`", "tactus.commands.live"),
+        Command("live", "live page: `live open LOG`, `live follow URL`", "tactus.commands.live", "live"),
         Command("doctor", "checks whether this machine is fit for a run", "tactus.doctor.main"),
     ),
     "While a cluster runs": (
@@ -28,22 +30,22 @@ GROUPS = {
     ),
     "Results of a run": (
         Command("export", "makes tables of a log", "tactus.commands.export"),
-        Command("report", "makes one HTML page about one or several runs", "tactus.report.main"),
+        Command("report", "makes one HTML page about one or several runs", "tactus.report.main", "report"),
         Command("log", "`log upgrade OLD NEW`: converts a log to the message types of this release", "tactus.commands.log"),
-        Command("rerender", "renders a log again under other degradation profiles, and compares", "tactus.rerender.main"),
+        Command("rerender", "renders a log again under other degradation profiles, and compares", "tactus.rerender.main", "report"),
     ),
     "Studies": (
-        Command("study", "`study check`, `run`, `sweep`, `analyse`: how far can a modality degrade?", "tactus.commands.study"),
+        Command("study", "`study check`, `run`, `sweep`, `analyse`: how far can a modality degrade?", "tactus.commands.study", "study"),
     ),
     "Several hosts": (
-        Command("cluster", "runs a scene on several hosts described by a cluster file", "tactus.commands.cluster"),
-        Command("lab", "runs a command together with simulated hosts on this machine", "tactus.cluster.lab_command"),
-        Command("private-path", "makes keys and configurations for a private path of the bus", "tactus.cluster.private_path"),
-        Command("units", "installs systemd units of the nodes", "tactus.cluster.units"),
+        Command("cluster", "runs a scene on several hosts described by a cluster file", "tactus.commands.cluster", "cluster"),
+        Command("lab", "runs a command together with simulated hosts on this machine", "tactus.cluster.lab_command", "lab"),
+        Command("private-path", "makes keys and configurations for a private path of the bus", "tactus.cluster.private_path", "private-path"),
+        Command("units", "installs systemd units of the nodes", "tactus.cluster.units", "cluster"),
     ),
     "Scenes and sounds": (
         Command("convert-geometry", "converts a geometry file to glTF with material, relief and modes", "tactus.commands.convert_geometry"),
-        Command("analyse-modes", "finds the modes of a struck object in a recording", "tactus.modal_analysis.main"),
+        Command("analyse-modes", "finds the modes of a struck object in a recording", "tactus.modal_analysis.main", "report"),
         Command("check-sounds", "checks a folder of recordings", "tactus.commands.check_sounds"),
         Command("drumkit-sounds", "makes a folder of recordings from a Debian package of drums", "tactus.commands.drumkit_sounds"),
     ),

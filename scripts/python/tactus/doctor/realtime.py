@@ -83,14 +83,16 @@ def lateness_us(seconds, fifo, progress):
             LIBC.clock_nanosleep(clock, 1, ctypes.byref(until), None)  # TIMER_ABSTIME
             late.append((time.clock_gettime_ns(clock) - due) / 1000)
 
-    thread = threading.Thread(target=loop)
+    thread = threading.Thread(target=loop, daemon=True)  # Ctrl-C does not wait for it
     switch = sys.getswitchinterval()
     sys.setswitchinterval(1e-4)
-    thread.start()
-    while thread.is_alive():
-        thread.join(0.5)
-        progress(len(late) / (seconds * RATE_Hz))
-    sys.setswitchinterval(switch)
+    try:
+        thread.start()
+        while thread.is_alive():
+            thread.join(0.5)
+            progress(len(late) / (seconds * RATE_Hz))
+    finally:
+        sys.setswitchinterval(switch)
     return late
 
 

@@ -16,6 +16,7 @@ PLAYER = "participant"  # name of its node, also in recordings
 PLAYER_PROGRAM = "simulated_player"
 REMOVABLE = ("sim_node", *SENSES, "sync_node")
 MIN_FREE_BYTES = 20_000_000  # about ten seconds of log and sound
+FULL_BYTES = 65536  # a disk with less space has refused the last messages: the recorder writes blocks of this size
 MAX_SECONDS = 86400  # one day; a longer log fills most disks
 RECORDING = ("split_mb", "split_minutes", "keep", "max_mb")  # sync/tools/recorder/recorder_node.cpp
 BUS_OPTIONS = {"latency-ms": 10_000, "jitter-ms": 10_000, "loss-percent": 100}  # maximum of each: scripts/virtual_time/virtual_time_main.cpp

@@ -14,6 +14,7 @@ from tactus import own_files
 from tactus.refusal import Refusal
 
 PREFIX = "tactus-{user}-"  # before the random part of the name; user: the user id
+DEFAULT_TMPDIR = "/tmp"
 ADDRESS_BYTES = 65536      # design: the longest address file
 ADDRESS_KEYS = {"holder", "namespaces", "run_id", "url", "port", "out"}
 NAMESPACES = {"none", "net", "user", "pid"}
@@ -81,8 +82,24 @@ def is_running(folder):
 
 
 def own_folders():
-    """Temporary folders with the name of a cluster of this user; another user may have made them."""
-    return list(pathlib.Path(tempfile.gettempdir()).glob(PREFIX.format(user=os.geteuid()) + "*"))
+    """Folders with the name of a cluster of this user: those of the temporary folder, where another user may have made them. Without TMPDIR also
+    those that a supervisor of this user serves elsewhere, because its run had TMPDIR or wrote the folder to its results."""
+    name, temporary = PREFIX.format(user=os.geteuid()), tempfile.gettempdir()
+    served = [folder for folder in served_folders() if folder.name.startswith(name)] if temporary == DEFAULT_TMPDIR else []
+    return list(dict.fromkeys([*pathlib.Path(temporary).glob(name + "*"), *served]))
+
+
+def served_folders():
+    """Folders of the supervisors of this user (launch/inside), from their command lines."""
+    found = []
+    for line in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            words = line.read_bytes().split(b"\0")
+            if words[:2] == [b"runsvdir", b"-P"] and line.stat().st_uid == os.geteuid():
+                found.append(pathlib.Path(os.fsdecode(words[2])).parent)
+        except (OSError, IndexError):
+            continue  # it has ended, or belongs to another user
+    return found
 
 
 def running():
@@ -102,8 +119,9 @@ def remove_leftovers():
 def write_address(folder, holder, unshare, run_id, url, port, out):
     """Writes the address of a cluster. holder: the process that holds the namespaces; unshare: the command words that made them."""
     names = [name for name, flag in (("net", "--net"), ("user", "--user"), ("pid", "--pid")) if flag in unshare]
-    (folder / "address").write_text(f"holder={holder}\nnamespaces={','.join(names) or 'none'}\nrun_id={run_id}\nurl={url}\nport={port}\nout={out}\n",
-                                    encoding="utf-8", errors="surrogateescape")
+    entries = {"holder": holder, "namespaces": ",".join(names) or "none", "run_id": run_id, "url": url, "port": port, "out": out}
+    text = "".join(f"{key}={value}\0" for key, value in entries.items())  # a folder name may hold line ends
+    (folder / "address").write_text(text, encoding="utf-8", errors="surrogateescape")
 
 
 def address(folder):
@@ -114,7 +132,7 @@ def address(folder):
         text = own_files.read_own(folder / "address", ADDRESS_BYTES)
     except OSError:
         return None
-    found = dict(line.split("=", 1) for line in text.splitlines() if "=" in line)
+    found = dict(entry.split("=", 1) for entry in text.split("\0") if "=" in entry)
     valid = ADDRESS_KEYS <= found.keys() and set(found["namespaces"].split(",")) <= NAMESPACES
     return found if valid and own_files.is_own_process(found["holder"]) else None
 

@@ -1,35 +1,18 @@
 """One run, after the build: checks, start, live table, stop, summary."""
-import os
-import signal
-
-INTERRUPTED = 130  # exit status of a shell after Ctrl-C
-# Until a process was started, Ctrl-C exits immediately, also during the imports below.
-signal.signal(signal.SIGINT, lambda *_: (os.write(2, b"run: interrupted\n"), os._exit(INTERRUPTED)))
-
 import fcntl
+import os
 import stat
 import time
 
-from tactus import own_files, terminal
+from tactus import own_files, signals, terminal
 from tactus.launch import arguments, cluster, cluster_folder, delays, equipment, hands, live, network, priority, privileges, virtual, walls
 from tactus.launch.results import git_commit, summarise
 from tactus.refusal import Interrupted, Refusal, sentence_of
 from tactus.terminal import report_run
 
+INTERRUPTED = 130  # exit status of a shell after Ctrl-C
 MAX_LOADING_S = 600
 PROGRESS_S = 5
-
-
-class Stop:
-    """Flag set by SIGINT, SIGTERM and SIGHUP; polled by the loop."""
-
-    def __init__(self):
-        self.requested = False
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, self.request)
-
-    def request(self, *_):
-        self.requested = True
 
 
 def watch_over(running, seconds, stop):
@@ -61,6 +44,8 @@ def watch_over(running, seconds, stop):
                 reported.add(name)
                 report_run(f"{name}: {why}; the others continue ({running.services[name].last_output_line()})")
         time.sleep(0.1)
+    if end is not None and now < end:
+        stop.cut_short = f"ended by {stop.reason} after {seconds - (end - now):.1f} of {seconds:g} s"
     return end is not None
 
 
@@ -108,8 +93,8 @@ def run(plan, watch=watch_over):
     Raises Refusal when the run does not start."""
     kept = privileges.needed(inputs(plan))
     if plan.virtual is not None:
-        return virtual.run(plan, Stop(), claim_out, kept)
-    stop = Stop()
+        return virtual.run(plan, signals.Stop(), claim_out, kept)
+    stop = signals.Stop()
     git = git_commit()
     run_id = time.time_ns()
     for name in [*dict.fromkeys(plan.program(n) for n in plan.nodes()), "watch", "summarise", "export_csv", "export_events"]:
@@ -147,7 +132,8 @@ def run(plan, watch=watch_over):
         taken_down = running.taken_down()
         killed = running.stop(0.0 if stop.requested else delays.longest_s(plan))
         lost = running.lost()
-        restarts = {name: s.deaths() for name, s in running.services.items() if s.deaths()}
+        deaths = {name: reasons for name, s in running.services.items() if (reasons := s.death_reasons())}
+        restarts = {name: len(reasons) for name, reasons in deaths.items()}
         last_lines = {name: running.services[name].last_output_line() for name in lost}
         running.clean()
     errors += [f"{name}: could not be kept running: {why} ({last_lines[name]}); see {plan.out}/logs/{name}.log"
@@ -158,9 +144,28 @@ def run(plan, watch=watch_over):
             report_run(f"{name} died and was restarted {count} times" if count > 1 else f"{name} died once and was restarted")
     for name in taken_down:
         report_run(f"{name} was taken down and not started again")
+    if stop.cut_short:
+        report_run(stop.cut_short)
+        warnings.append(stop.cut_short)
     errors += summarise(plan, git, {*lost, *taken_down}, restarts, warnings)
     report_run(f"results in {plan.out}")
+    errors += incomplete_recording(plan.out, running.services["recorder"].last_output_line(), deaths.get("recorder", []))
     os.close(claim)
+    return errors
+
+
+def incomplete_recording(out, last_line, deaths):
+    """The errors of the recorder, one sentence each, with the lost part. last_line: of its output; deaths: how it died, each time."""
+    errors = []
+    if deaths:
+        times = "once" if len(deaths) == 1 else f"{len(deaths)} times"
+        errors.append(f"recorder: died {times}, the last time by {deaths[-1]}; the messages of that time are not in {out}/run.lcmlog; see {out}/logs/recorder.log")
+    disk = os.statvfs(out)
+    if "the disk refuses the log" in last_line or " lost because " in last_line:
+        errors.append(f"{last_line}; free space, raise the limit of file sizes (ulimit -f), or name another folder with --out")
+    elif disk.f_bavail * disk.f_frsize < arguments.FULL_BYTES:
+        errors.append(f"recorder: the disk of {out} is full; the last messages, the end of sound and video, and tables can be missing; free space, or name "
+                      "another folder with --out")
     return errors
 
 
@@ -179,9 +184,11 @@ def main(words):
         errors = [str(refusal)]
     except OSError as error:
         errors = [sentence_of(error)]
-    except Interrupted:
+    except (Interrupted, KeyboardInterrupt):
+        if only_arguments:  # scripts/run reports it
+            return INTERRUPTED
         terminal.report_error("run: interrupted; nothing was started")
         return INTERRUPTED
     for sentence in errors:
-        terminal.report_error(sentence if starts_with_program_name(sentence) else f"run: {sentence}")
+        terminal.report_error(terminal.one_line(sentence if starts_with_program_name(sentence) else f"run: {sentence}"))
     return 1 if errors else 0

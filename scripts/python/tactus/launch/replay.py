@@ -138,7 +138,7 @@ def main(words):
         errors = [str(refusal)]
     except OSError as error:
         errors = [sentence_of(error)]
-    except supervisor.Interrupted:
+    except (supervisor.Interrupted, KeyboardInterrupt):
         terminal.report_error("replay: interrupted; nothing was started")
         return supervisor.INTERRUPTED
     finally:

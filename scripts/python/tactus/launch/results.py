@@ -8,11 +8,14 @@ from tactus.paths import BIN, REPOSITORY
 
 
 def git_commit():
-    """The commit of this repository, with + for modified files; "unknown" without git."""
+    """The commit of this repository, with + for modified files; "unknown" without git. A repository that contains this one, or that the variables
+    of git name, is another."""
     git = ["git", "-c", "safe.directory=*", "-C", str(REPOSITORY)]
+    variables = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
+    variables["GIT_CEILING_DIRECTORIES"] = str(REPOSITORY.parent)
     try:
         git_output = lambda *words: subprocess.run([*git, *words], capture_output=True, check=True, text=True, errors="replace",
-                                             start_new_session=True).stdout
+                                             start_new_session=True, env=variables).stdout
         commit, changed = git_output("rev-parse", "HEAD").strip(), git_output("status", "--porcelain", "-uno")
     except (OSError, subprocess.CalledProcessError):
         return "unknown"

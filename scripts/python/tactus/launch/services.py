@@ -13,21 +13,21 @@ MAX_DEATHS = 5
 WINDOW_S = 10
 
 FINISH = """#!/bin/sh
-# {name} died with exit code $1 (-1: by signal $2); runsv restarts it after this script.
+# The node died with exit code $1 (-1: by signal $2); runsv restarts it after this script.
 [ -e ../../stopping ] && exit 0
 [ -e asked ] && rm asked && exit 0
-date +%s >>deaths
+how="exit code $1"
+[ "$1" = -1 ] && how="signal $2"
+echo "$(date +%s) $how" >>deaths
 since=$(($(date +%s) - {window}))
 recent=$(awk -v since="$since" '$1 >= since' deaths | wc -l)
 [ "$recent" -le {most} ] && exit 0
-how="exit code $1"
-[ "$1" = -1 ] && how="signal $2"
 echo "left down after $recent deaths in {window} s, the last by $how" >lost
 printf d >supervise/control
 """
 
 RUN = """#!/bin/sh
-# Appends the output of {name} to its log. The node dies with its supervisor.
+# Appends the output of the node to its log. The node dies with its supervisor.
 exec >>{log} 2>&1 </dev/null
 cd {folder} || exit 1
 exec setpriv --pdeathsig KILL -- {command}
@@ -42,9 +42,9 @@ class Service:
         self.path = folder / "services" / name
         self.path.mkdir()
         (self.path / "down").touch()  # runsv waits for a command
-        write_script(self.path / "run", RUN.format(name=name, log=shlex.quote(str(log)),
+        write_script(self.path / "run", RUN.format(log=shlex.quote(str(log)),
                                                    folder=shlex.quote(str(working_folder)), command=shlex.join(command)))
-        write_script(self.path / "finish", FINISH.format(name=name, window=WINDOW_S, most=MAX_DEATHS))
+        write_script(self.path / "finish", FINISH.format(window=WINDOW_S, most=MAX_DEATHS))
 
     def control(self, letter):
         """Sends a command of runsv(8): u, d, t, k, p, c. False without a running runsv."""
@@ -91,10 +91,14 @@ class Service:
         return next((line.strip() for line in reversed(lines) if line.strip()), "")
 
     def deaths(self):
+        return len(self.death_reasons())
+
+    def death_reasons(self):
+        """How the node died, each time: "exit code N" or "signal N"."""
         try:
-            return len((self.path / "deaths").read_text(encoding="utf-8").split())
+            return [line.partition(" ")[2] for line in (self.path / "deaths").read_text(encoding="utf-8").splitlines()]
         except OSError:
-            return 0
+            return []
 
     def lost(self):
         """The reason why the node was left down; "" otherwise."""

@@ -23,6 +23,15 @@ def commands(plan, git):
     return words
 
 
+def as_json(word):
+    """The word, or its bytes when it is not UTF-8, such as the name of a folder."""
+    try:
+        word.encode()
+        return word
+    except UnicodeEncodeError:
+        return {"hex": os.fsencode(word).hex()}
+
+
 def run(plan, stop, claim_out, kept=privileges.KEPT):
     """Executes one run in the folder that claim_out locks. kept: the capabilities that the nodes of root keep. Returns the errors, one sentence each. Raises Refusal when it does not start."""
     for name in [*dict.fromkeys(plan.program(n) for n in plan.nodes()), *PROGRAMS]:
@@ -38,10 +47,13 @@ def run(plan, stop, claim_out, kept=privileges.KEPT):
         words[name][words[name].index("--out") + 1] = str(plan.out)
     (plan.out / "logs").mkdir(mode=0o700, exist_ok=True)
     plan_file = plan.out / "logs" / "virtual_time.json"
-    plan_file.write_text(json.dumps(words, indent=1) + "\n", encoding="utf-8")
+    plan_file.write_text(json.dumps({name: [*map(as_json, command)] for name, command in words.items()}, indent=1) + "\n", encoding="utf-8")
     report_run(f"{plan.scene.name}, {plan.seconds:g} s of virtual time, seed {plan.seed}, without pictures, results in {plan.out}")
     errors = play(plan, plan_file, stop, kept)
-    errors += summarise(plan, git, set(), {}, [])
+    warnings = [f"ended by {stop.reason} before {plan.seconds:g} s of virtual time were over"] if stop.requested else []
+    for warning in warnings:
+        report_run(warning)
+    errors += summarise(plan, git, set(), {}, warnings)
     report_run(f"results in {plan.out}")
     os.close(claim)
     return errors

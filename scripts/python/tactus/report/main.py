@@ -18,8 +18,8 @@ import subprocess
 import sys
 import tempfile
 
+from tactus import own_files
 from tactus.paths import BIN
-
 
 
 def refuse(sentence):
@@ -68,7 +68,7 @@ def main(words):
         from tactus.log import log_tables
         from tactus.report import report
     except ImportError as error:
-        refuse(f"{error.name} is missing; run scripts/setup")
+        refuse(f"{error.name} is missing; run scripts/setup report")
     with tempfile.TemporaryDirectory() as folder:
         logs = []
         for i, (log, name) in enumerate(zip(options.log, options.name)):
@@ -77,9 +77,11 @@ def main(words):
             tables_of(log, os.path.join(folder, str(i)))
             logs.append(log_tables.LogTables(os.path.join(folder, str(i)), name))
         try:
-            gallery = figures.Gallery(os.path.splitext(options.out)[0] + "_figures")
-            made = report.Report(logs, gallery)
-            text = made.html()
+            figures_folder = os.path.splitext(options.out)[0] + "_figures"
+            with own_files.results_folder(figures_folder):
+                gallery = figures.Gallery(figures_folder)
+                made = report.Report(logs, gallery)
+                text = made.html()
             with open(options.out + ".part", "w", encoding="utf-8") as file:
                 file.write(text)
             os.replace(options.out + ".part", options.out)

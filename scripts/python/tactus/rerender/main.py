@@ -33,7 +33,7 @@ import os
 import sys
 import time
 
-
+from tactus import own_files
 from tactus.paths import BIN
 from tactus.refusal import Refusal
 from tactus.rerender import changed, live, render
@@ -225,7 +225,8 @@ def main(words):
     except Refusal as refusal:
         sys.exit(f"rerender: {refusal}")
     except KeyboardInterrupt:
-        sys.exit("rerender: stopped")
+        print("rerender: interrupted", file=sys.stderr)
+        return 130
 
 
 def rerender(words):
@@ -237,7 +238,8 @@ def rerender(words):
     if options.live:
         folders["as_run"] = "logged"
     renderings = Renderings(options, folders)
-    renderings.run()
+    with own_files.results_folder(options.out):
+        renderings.run()
     result = {"log": os.path.abspath(options.log), "out": os.path.abspath(options.out), "profiles": options.profiles}
     result["changed"] = list(compare_all(renderings, options))
     if renderings.terminal:

@@ -135,7 +135,7 @@ def main(words):
             pathlib.Path(options.json).write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
         return 0
     except Refusal as refusal:
-        terminal.report_error(f"study: {refusal}")
+        terminal.report_refusal(f"study: {refusal}")
     except (OSError, subprocess.TimeoutExpired) as error:
         terminal.report_error(f"study: {sentence_of(error) if isinstance(error, OSError) else 'sync_node did not end in time; run scripts/build again'}")
     return 1

@@ -54,7 +54,7 @@ def main(words):
             raise Refusal(f"{options.study}: has no <observer> for {next(c.id for c in study.conditions if study.observer(c) is None)}; add one, or leave out --simulated")
         return session.run_session(study, options)
     except Refusal as refusal:
-        terminal.report_error(f"study: {refusal}")
+        terminal.report_refusal(f"study: {refusal}")
     except OSError as error:
         terminal.report_error(f"study: {sentence_of(error)}")
     except KeyboardInterrupt:

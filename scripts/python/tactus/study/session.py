@@ -7,6 +7,7 @@ import shutil
 import signal
 import time
 
+from tactus import signals
 from tactus.refusal import Refusal
 from tactus.study import formats, games, questions, stimuli
 from tactus.study.cluster_words import cluster_words, sees
@@ -40,7 +41,7 @@ def resume(plan, answered):
 
 def run_session(study, options):
     """Runs or resumes a session; returns the exit status."""
-    signal.signal(signal.SIGTERM, lambda *_: (_ for _ in ()).throw(KeyboardInterrupt()))
+    signals.handle([signal.SIGTERM], lambda *_: (_ for _ in ()).throw(KeyboardInterrupt()))
     folder = session_folder(study, options)
     plan = Plan(study, options.participant, options.seed)
     observer = "simulated" if options.simulated else "human"

@@ -1,4 +1,4 @@
-"""Plays chunks of games of a sweep, as a job of GNU parallel or a task of a Slurm array.
+"""Plays chunks of games of a sweep, as one job on this machine or a task of a Slurm array.
 
     tactus --module tactus.sweep.job FOLDER CHUNK...                     these chunks
     tactus --module tactus.sweep.job FOLDER --of-array LIST.txt          every SLURM_ARRAY_TASK_COUNT-th line of the list, from SLURM_ARRAY_TASK_ID on
@@ -7,8 +7,10 @@ Finished games are not played again. One process of bin/play_games plays all gam
 """
 import os
 import pathlib
+import signal
 import sys
 
+from tactus import signals
 from tactus.refusal import Refusal
 from tactus.sweep import virtual_games
 from tactus.sweep.chunk_file import Busy, ChunkFile
@@ -38,7 +40,12 @@ def chunks_of(words):
     return [int(w) for w in listed[first::step]]
 
 
+def stop(*_):
+    raise KeyboardInterrupt
+
+
 def main(words):
+    signals.handle([signal.SIGTERM], stop)  # removes the temporary folder of the player
     if not words or words[0] in ("-h", "--help"):
         print(__doc__)
         return 0
@@ -47,6 +54,8 @@ def main(words):
         for number in chunks_of(words[1:]):
             play(folder, number)
         return 0
+    except KeyboardInterrupt:
+        return 130
     except (Refusal, OSError, ValueError) as error:
         print(f"sweep job: {error}", file=sys.stderr)
         return 1

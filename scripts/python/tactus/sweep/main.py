@@ -5,6 +5,7 @@ import signal
 import sys
 import time
 
+from tactus import signals, terminal
 from tactus.refusal import Refusal, sentence_of
 from tactus.study import study_file
 from tactus.sweep import adopted, player
@@ -97,8 +98,8 @@ def main(words):
         left = folder.unfinished()
         print(f"sweep: {folder.study.name}, {len(folder.study.conditions)} conditions, {folder.games_each} games each, into {folder.path}", flush=True)
         if left:
-            signal.signal(signal.SIGTERM, stop)
-            runner = Slurm(folder, left, a.partition, a.array_size) if a.slurm else Parallel(folder, left, a.jobs or os.cpu_count() or 1)
+            signals.handle([signal.SIGTERM], stop)
+            runner = Slurm(folder, left, a.partition, a.array_size) if a.slurm else Parallel(folder, left, a.jobs or len(os.sched_getaffinity(0)))
             try:
                 follow(folder, runner)
             finally:
@@ -113,5 +114,5 @@ def main(words):
         print("study sweep: interrupted; no finished game is lost; continue with --resume", file=sys.stderr)
         return 130
     except (Refusal, OSError) as error:
-        print(f"study sweep: {sentence_of(error) if isinstance(error, OSError) else error}", file=sys.stderr)
+        terminal.report_refusal(f"study sweep: {sentence_of(error) if isinstance(error, OSError) else error}")
         return 1

@@ -1,4 +1,4 @@
-"""Runners of the chunks of a sweep: GNU parallel on this machine, or a Slurm cluster."""
+"""Runners of the chunks of a sweep: processes on this machine, or a Slurm cluster. No name of the user is parsed by a shell or as a pattern."""
 import contextlib
 import ctypes
 import os
@@ -26,33 +26,48 @@ def die_with_parent():
 
 
 class Parallel:
-    """Plays chunks on the cores of this machine. A failed chunk does not stop the others."""
+    """Plays chunks on the cores of this machine, each in its own process. A failed chunk does not stop the others."""
 
     def __init__(self, folder, chunks, jobs):
-        needed("parallel", "parallel")
-        words = ["parallel", "--will-cite", "--jobs", str(jobs), *JOB, str(folder.path.absolute()), "{}", ":::", *map(str, chunks)]
-        self.errors = open(folder.path / "errors.txt", "w+", encoding="utf-8")
-        self.process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=self.errors, start_new_session=True,
-                                        preexec_fn=die_with_parent)
+        self.waiting = list(chunks)
+        self.jobs, self.words = jobs, [*JOB, str(folder.path.absolute())]
+        self.running = []
+        self.errors = folder.path / "errors.txt"
+        self.errors.write_bytes(b"")
+        try:
+            self.fill()
+        except OSError:
+            self.end()
+            raise
+
+    def fill(self):
+        """Starts waiting chunks until `jobs` run."""
+        while self.waiting and len(self.running) < self.jobs:
+            words = [*self.words, str(self.waiting.pop(0))]
+            with open(self.errors, "ab") as errors:
+                # A new session, so that Ctrl-C reaches only the sweep, which ends its jobs.
+                self.running.append(subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors, start_new_session=True,
+                                                     preexec_fn=die_with_parent))
 
     def poll(self):
-        """True when all chunks are finished."""
-        return self.process.poll() is not None
+        """Starts the next chunks. True when all are finished."""
+        self.running = [job for job in self.running if job.poll() is None]
+        self.fill()
+        return not self.running
 
     def said(self):
-        self.errors.seek(0)
-        return (self.errors.read().strip().splitlines() or ["no message"])[-1]
+        return (self.errors.read_text(encoding="utf-8", errors="replace").strip().splitlines() or ["no message"])[-1]
 
     def end(self):
-        with contextlib.suppress(ProcessLookupError):  # on the second SIGTERM parallel also ends running jobs
-            for _ in range(2):
-                if self.process.poll() is None:
-                    self.process.terminate()
-        try:
-            self.process.wait(10)
-        except subprocess.TimeoutExpired:
-            os.killpg(self.process.pid, signal.SIGKILL)
-            self.process.wait()
+        self.waiting = []
+        for number in (signal.SIGTERM, signal.SIGKILL):
+            for job in self.running:
+                with contextlib.suppress(ProcessLookupError):  # its programs are in its session
+                    os.killpg(job.pid, number)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                for job in self.running:
+                    job.wait(10)
+                return
 
 
 class Slurm:
@@ -62,17 +77,22 @@ class Slurm:
         for program in ("sbatch", "squeue", "scancel"):
             needed(program, "slurm-wlm")
         self.folder = folder
-        listed = folder.path.absolute() / "array.txt"
+        self.place = folder.path.absolute()
+        listed = self.place / "array.txt"
         listed.write_text("\n".join(map(str, chunks)) + "\n", encoding="utf-8")
         last = min(size, len(chunks)) - 1
-        words = ["sbatch", "--parsable", f"--array=0-{last}", "--ntasks=1", "--cpus-per-task=1", f"--job-name=sweep-{folder.study.name}",
-                 f"--output={folder.path.absolute()}/slurm-%a.txt", *([f"--partition={partition}"] if partition else []),
-                 "--wrap", "exec " + shlex.join([*JOB, str(folder.path.absolute()), "--of-array", str(listed)])]
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        # The output pattern is relative to --chdir, because a folder may hold % and \\ (sbatch(1), filename pattern).
+        words = ["sbatch", "--parsable", f"--array=0-{last}", "--ntasks=1", "--cpus-per-task=1", f"--job-name=sweep-{folder.study.name}", "--export=ALL",
+                 f"--chdir={self.place}", "--output=slurm-%a.txt", *([f"--partition={partition}"] if partition else [])]
+        done = subprocess.run(words, input=self.script(listed), capture_output=True, text=True, errors="surrogateescape", check=False)
         if done.returncode != 0:
             raise Refusal(f"sbatch refused the jobs: {(done.stderr.strip().splitlines() or ['no message'])[-1]}")
         self.job = done.stdout.strip().split(";")[0]
         self.over = False
+
+    def script(self, listed):
+        """The batch script, which sbatch reads from stdin."""
+        return "#!/bin/sh\nexec " + shlex.join([*JOB, str(self.place), "--of-array", str(listed)]) + "\n"
 
     def poll(self):
         """True when no task of the array is pending or running."""
@@ -82,7 +102,7 @@ class Slurm:
         return self.over
 
     def said(self):
-        said = [line for file in sorted(self.folder.path.glob("slurm-*.txt")) for line in file.read_text(errors="replace").splitlines()]
+        said = [line for file in sorted(self.folder.path.glob("slurm-*.txt")) for line in file.read_text(encoding="utf-8", errors="replace").splitlines()]
         return (said or ["no message"])[-1]
 
     def end(self):
