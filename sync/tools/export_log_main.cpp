@@ -119,7 +119,8 @@ class Export {
     const auto count = [](std::int64_t n, const char* label) {
       if (n > 0) std::cout << n << " " << label << "\n";
     };
-    count(foreign_, "messages were left out, on more channels than can be exported");
+    count(foreign_, "messages of other systems were exported with their bytes");
+    count(left_out_, "messages were left out: they are on more channels than can be exported");
     count(broken_, "messages were incomplete or damaged and were left out");
     count(unlisted_, "tagged values were left out: no list in the log names them");
     if (index.damaged_regions() > 0)
@@ -128,7 +129,7 @@ class Export {
     for (std::size_t i = 0; i < index.runs().size(); ++i)
       runs.push_back({{"run", i + 1}, {"run_id", index.runs()[i].run_id}, {"scene", sync::printable(index.runs()[i].origin.info.scene)}, {"length_s", index.runs()[i].length_s()}});
     std::ofstream schema(options_.out + "/schema.json");
-    schema << json{{"made_by", "Tactus export_log"}, {"logs", options_.logs}, {"runs", runs}, {"files", files}, {"columns", columns()}, {"foreign_messages", foreign_}, {"broken_messages", broken_}, {"damaged_regions", index.damaged_regions()}, {"damaged_bytes", index.damaged_bytes()}}.dump(1, ' ', false, json::error_handler_t::replace) << "\n";
+    schema << json{{"made_by", "Tactus export_log"}, {"logs", options_.logs}, {"runs", runs}, {"files", files}, {"columns", columns()}, {"foreign_messages", foreign_}, {"left_out_messages", left_out_}, {"broken_messages", broken_}, {"damaged_regions", index.damaged_regions()}, {"damaged_bytes", index.damaged_bytes()}}.dump(1, ' ', false, json::error_handler_t::replace) << "\n";
     schema.close();
     if (!schema)
       throw std::runtime_error("cannot write " + options_.out +
@@ -166,7 +167,7 @@ class Export {
     auto it = channels_.find({name, type});
     if (it == channels_.end()) {
       if (channels_.size() >= kMaxFiles) {
-        ++foreign_;
+        ++left_out_;
         return;
       }
       it = channels_.emplace(std::pair(name, type), Channel{.name = name, .type = type, .columns = {}, .file = sync::table_file_of(name, files_), .table = {}}).first;
@@ -184,6 +185,7 @@ class Export {
     }
     c.table->write(rows);
     ++c.messages;
+    foreign_ += !type;
   }
 
   const ExportOptions& options_;
@@ -191,7 +193,7 @@ class Export {
   std::map<std::pair<std::string, const MessageType*>, Channel> channels_;
   std::set<std::string> files_ = sync::reserved_table_files();
   std::unique_ptr<Table> tags_;
-  std::int64_t foreign_ = 0, broken_ = 0, unlisted_ = 0;
+  std::int64_t foreign_ = 0, left_out_ = 0, broken_ = 0, unlisted_ = 0;
 };
 
 }  // namespace
