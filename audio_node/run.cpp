@@ -13,6 +13,7 @@
 
 #include <tactus/node_health_t.hpp>
 
+#include "audio_node/named_files.h"
 #include "audio_node/renderer.h"
 #include "sync/degradation/known_modalities.h"
 #include "sync/node/run_renderer.h"
@@ -37,8 +38,9 @@ const sync::NodeDescriptor kAudio{.name = "audio_node",
 class Factory : public sync::RendererFactory {
   void add_options(sync::Arguments& app) override { options_.add_to(app); }
   sync::OfflineInput* prepare(const sync::NodeOptions& options) override {
-    sync::settings_of(audio::setting_fields(), kAudio.name, options.set);
+    const auto settings = sync::settings_of(audio::setting_fields(), kAudio.name, options.set);
     options_.check();
+    if (options.check) audio::check_named_files(settings);
     log_ = audio::Offline::open(options_.log, kAudio.rate_Hz, sync::host_now());
     return log_ ? &log_->run() : nullptr;
   }

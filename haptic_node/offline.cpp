@@ -34,7 +34,7 @@ void Offline::add(const tool_state_t& state) {
   tool_state_t row = state;
   row.header.publish_time_ns = tick_.published_ns;
   row.header.seq = tick_.seq;
-  add_row(sync::csv_row(row));
+  add_row(sync::csv_row(row, run().run_number()));
 }
 
 std::string Offline::result(const std::string& problem, sync::HostTime clock) {

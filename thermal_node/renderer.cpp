@@ -149,7 +149,7 @@ void NodeRenderer::render(sync::HostTime now) {
   command_degC_ = state.commanded_degC;
   if (log_) {
     state.header.publish_time_ns = sync::to_ns(log_->run().now());
-    log_->add_row(sync::csv_row(state));
+    log_->add_row(sync::csv_row(state, log_->run().run_number()));
   }
   host().bus().publish(channels::kThermalState, state);
   if (plate) plate_degC_ = plate->plate_degC;

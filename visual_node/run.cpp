@@ -16,6 +16,7 @@
 
 #include "sync/degradation/known_modalities.h"
 #include "sync/node/run_renderer.h"
+#include "visual_node/named_files.h"
 #include "visual_node/renderer.h"
 
 using namespace tactus;
@@ -39,6 +40,7 @@ class Factory : public sync::RendererFactory {
   sync::OfflineInput* prepare(const sync::NodeOptions& options) override {
     const auto settings = sync::settings_of(visual::setting_fields(), kVisual.name, options.set);
     options_.complete(kVisual.name, options);
+    if (options.check) visual::check_named_files(settings);
     log_ = visual::Offline::open(options_.log, settings.rate_Hz, sync::host_now());
     render_output_ = visual::open_render_output(settings, options_);
     std::cerr << options.name << ": " << render_output_->description() << std::endl;

@@ -98,6 +98,9 @@ std::string array_fault(const MYSOFA_HRTF& file) {
   if (!has(file.SourcePosition, std::size_t{3} * file.M)) return "has no SourcePosition for each of its directions";
   if (!has(file.ReceiverPosition, per_measurement(file.ReceiverPosition) ? std::size_t{6} * file.M : 6))
     return "has no ReceiverPosition for each ear";
+  // libmysofa converts these in steps of three values.
+  for (const MYSOFA_ARRAY* p : {&file.SourcePosition, &file.ReceiverPosition, &file.ListenerPosition, &file.ListenerView, &file.ListenerUp, &file.EmitterPosition})
+    if (p->elements % 3 != 0 || (p->elements > 0 && !p->values)) return "has a position, view or up vector without three coordinates";
   if (!has(file.DataSamplingRate, 1)) return "has no Data.SamplingRate";
   const double rate_Hz = static_cast<double>(file.DataSamplingRate.values[0]);
   if (!(rate_Hz >= kMinRate_Hz && rate_Hz <= kMaxRate_Hz))

@@ -41,7 +41,7 @@ std::atomic<bool> stop{false};
 struct Options {
   std::string log, page, bind = "127.0.0.1", token;
   bool prints_token = false;  // it was made here
-  int http_port = 0, listen_fd = -1;
+  int http_port = 0, listen_fd = -1, run = 1;
   std::int64_t run_id = 1;
   sync::BusOptions bus;
 };
@@ -140,7 +140,8 @@ class Server {
 };
 
 void serve_log(const Options& o) {
-  live::LogPlayer player(o.log);
+  live::LogPlayer player(o.log, o.run);
+  std::size_t reported_warnings = 0;
   live::PageSession session(false, 0, std::filesystem::path(o.log).filename());
   Server server(o, session);
   sync::HostTime last = sync::host_now();
@@ -158,14 +159,18 @@ void serve_log(const Options& o) {
       }
     });
     const sync::HostTime now = sync::host_now();
-    player.scan_next();
+    if (!player.scan_next()) {
+      const std::vector<std::string> warnings = player.warnings();
+      for (; reported_warnings < warnings.size(); ++reported_warnings)
+        std::cerr << "live_server: " << sync::printable(o.log) << ": " << warnings[reported_warnings] << std::endl;
+    }
     if (server.has_pages())  // playback waits for the first page
       player.advance(now - last, [&](std::string_view channel, std::span<const std::uint8_t> bytes, sync::HostTime t) {
         if (session.accepts(channel)) session.on_message(channel, bytes, t);
       });
     last = now;
     nlohmann::json extra{{"log", {{"position_s", player.position_s()}, {"length_s", player.length_s()},
-                                  {"playing", player.playing()}, {"rate", player.rate()}, {"damaged", player.damaged_regions()}}}};
+                                  {"playing", player.playing()}, {"rate", player.rate()}, {"damaged", player.damaged_regions()}, {"warnings", player.warnings()}}}};
     if (position_changed) extra["wound"] = true;
     if (server.send_frames(player.position(), extra)) position_changed = false;
   }
@@ -257,6 +262,7 @@ int main(int argc, char** argv) try {
   sync::Arguments app("Shows a running cluster, or a log, in a web page; prints the address. scripts/run --live starts it.");
   Options o;
   app.add_option("LOG", o.log, "shows this log instead of a running cluster");
+  app.add_option("--run", o.run, "number of the run, of a log with several").range(1, 1'000'000).show_default();
   app.add_option("--page", o.page, "folder of the page, made by scripts/live/bundle").required();
   app.add_option("--http-port", o.http_port, "port of the page; 0: any free port").range(0, 65535).show_default();
   app.add_option("--bind", o.bind, "address of the page's server; beyond 127.0.0.1 any user with the token can control the cluster").show_default();

@@ -5,14 +5,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "sync/log/log_reader.h"
 #include "sync/log/mapped_log.h"
-#include "sync/log/summary_clock.h"
+#include "sync/log/timestamped_events.h"
 #include "sync/time/time.h"
 
 namespace tactus::live {
@@ -25,10 +25,11 @@ class LogPlayer {
   // Length of the log before the position of a seek that is shown, too, so that graphs are not empty.
   static constexpr sync::Nanoseconds kSeekLead{3'000'000'000};
 
-  // Throws std::runtime_error with one sentence when the file is not a log.
-  explicit LogPlayer(const std::string& path);
+  // run: its number among the runs of the log, from 1. Throws std::runtime_error with one sentence when the file is not a log
+  // or has no such run.
+  explicit LogPlayer(const std::string& path, int run = 1);
   // The same for bytes that outlive this object.
-  explicit LogPlayer(std::span<const std::uint8_t> bytes);
+  explicit LogPlayer(std::span<const std::uint8_t> bytes, int run = 1);
 
   // Scans the next piece; returns true while there is more.
   bool scan_next();
@@ -43,26 +44,22 @@ class LogPlayer {
   // The position on the recorder's clock.
   sync::HostTime position() const { return position_; }
   double position_s() const { return sync::to_seconds(position_ - begin_); }
-  double length_s() const { return sync::to_seconds(end_ - begin_); }
-  std::int64_t damaged_regions() const { return scan_.damaged_regions(); }
+  double length_s() const { return sync::to_seconds(end() - begin_); }
+  std::int64_t damaged_regions() const { return index_.damaged_regions(); }
+  // Sentences about other runs in the log, jumps of the recorder's clock and copies of messages, as far as the log was scanned.
+  std::vector<std::string> warnings() const { return index_.warnings(run_); }
 
  private:
   void begin();
-  sync::HostTime stamp(const sync::LogEvent& event) const;
-  struct SeekPoint {
-    sync::HostTime time;
-    std::size_t offset;
-  };
-  static constexpr sync::Nanoseconds kSeekPointInterval{500'000'000};
+  sync::HostTime end() const;
 
   std::unique_ptr<sync::MappedLog> file_;
-  std::span<const std::uint8_t> bytes_;
-  sync::LogScanner scan_, scanner_;
-  sync::SummaryClock scan_clock_, clock_;
-  std::vector<SeekPoint> seek_points_;
-  std::int64_t offset_ns_ = 0;
-  sync::HostTime begin_{}, end_{}, position_{};
+  sync::LogIndex index_;
+  int run_;
+  std::optional<sync::TimestampedEvents> events_;
+  sync::HostTime begin_{}, position_{};
   sync::LogEvent pending_;
+  sync::HostTime pending_at_{};
   bool has_pending_ = false, playing_ = true;
   double rate_ = 1;
 };

@@ -4,6 +4,7 @@
 #include <tactus/contact_event_t.hpp>
 
 #include "sim_node/dual/group_bodies.h"
+#include "sim_node/model/finite_motion.h"
 
 namespace tactus::sim {
 namespace {
@@ -197,7 +198,10 @@ void VisualGroup::sub_steps(ContactTracker& tracker, sync::SimTime begin, sync::
     found_for_s_ = next_s;
     before_s_ = h;
     // The last contact detection was at the end of the step.
-    for (const int body : world_->active_bodies()) motions_[index(body)] = contact_motions_[index(body)];
+    for (const int body : world_->active_bodies()) {
+      motions_[index(body)] = contact_motions_[index(body)];
+      require_finite(body, motions_[index(body)]);
+    }
     const std::size_t first = out.events.size();
     tracker.update(begin + at(k + 1), at(k + 1) - at(k), motions_, contacts_, solved_, out.events);
     if (record) {

@@ -21,7 +21,7 @@ class VisualGroup {
               const std::shared_ptr<MeshTrees>& trees);
 
   // Adds entering units, removes leaving units, and computes the step. Deterministic: the same tasks give the same
-  // steps to the bit. Realtime-safe once the lists have grown.
+  // steps to the bit. Realtime-safe once the lists have grown. Throws StateNotFinite (sim_node/model/finite_motion.h).
   void run(const VisualTask& task, VisualStep& out);
 
   const impulse::World& world() const { return *world_; }

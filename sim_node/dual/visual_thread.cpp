@@ -34,6 +34,15 @@ VisualThread::~VisualThread() {
   thread_.join();
 }
 
+// An exception must not end the thread, which would end the process without a sentence.
+void VisualThread::compute() {
+  try {
+    group_->run(task_, *step_);
+  } catch (...) {
+    failure_ = std::current_exception();
+  }
+}
+
 void VisualThread::loop() {
   sync::FifoThread fifo;
   fifo.enter(kPriority);
@@ -45,7 +54,7 @@ void VisualThread::loop() {
       continue;
     }
     const sync::HostTime began = sync::host_now();
-    group_->run(task_, *step_);
+    compute();
     // Steps that take longer than their own length would starve the machine.
     fifo.tick(began, sync::host_now());
     state_.store(kDone, std::memory_order_release);
@@ -57,7 +66,7 @@ void VisualThread::request(const VisualTask& task) {
   task_ = task;
   requested_ = true;
   if (!thread_.joinable()) {
-    group_->run(task_, *step_);
+    compute();
     state_ = kDone;
     return;
   }
@@ -67,6 +76,7 @@ void VisualThread::request(const VisualTask& task) {
 
 bool VisualThread::poll(std::unique_ptr<VisualStep>& step) {
   if (state_.load(std::memory_order_acquire) != kDone) return false;
+  if (failure_) std::rethrow_exception(failure_);
   std::swap(step_, step);
   if (!step_) step_ = std::make_unique<VisualStep>();
   requested_ = false;
@@ -76,6 +86,7 @@ bool VisualThread::poll(std::unique_ptr<VisualStep>& step) {
 
 VisualStep& VisualThread::finish() {
   while (thread_.joinable() && state_.load(std::memory_order_acquire) == kRequested) state_.wait(kRequested);
+  if (failure_) std::rethrow_exception(failure_);
   return *step_;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <exception>
 #include <memory>
 #include <thread>
 
@@ -25,11 +26,11 @@ class VisualThread {
   // once the lists have grown.
   void request(const VisualTask& task);
   // Exchanges the finished step for the caller's previous one; false when it is not ready. Never waits.
-  // Realtime-safe: yes.
+  // Realtime-safe: yes. Throws what the group threw while it computed the step.
   bool poll(std::unique_ptr<VisualStep>& step);
   bool requested() const { return requested_; }
 
-  // Waits for the requested step; poll() still returns it. For use while the world is paused.
+  // Waits for the requested step; poll() still returns it. For use while the world is paused. Throws as poll().
   VisualStep& finish();
   // Not while a step is being computed.
   VisualGroup& group() { return *group_; }
@@ -37,11 +38,13 @@ class VisualThread {
  private:
   enum State { kIdle, kRequested, kDone, kEnd };
   void loop();
+  void compute();
 
   std::unique_ptr<VisualGroup> group_;
   VisualTask task_;
   std::unique_ptr<VisualStep> step_;
   bool requested_ = false;
+  std::exception_ptr failure_;  // of the step; written before the state is kDone
   std::atomic<int> state_{kIdle};
   std::thread thread_;
 };

@@ -1,10 +1,12 @@
 #include "sim_node/world/simulation.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "lcmtypes/vectors.h"
 #include "sim_node/dual/group_bodies.h"
 #include "sim_node/model/fingerprint.h"
+#include "sim_node/model/finite_motion.h"
 #include "sync/time/phases.h"
 
 namespace tactus::sim {
@@ -31,6 +33,7 @@ Simulation::Simulation(const WorldDef& world, const Settings& settings)
       mechanics_(make_mechanics(world, settings, ids_, trees_)),
       game_(world.holes),
       fingerprint_(fingerprint(world, settings)) {
+  for (const BodyDef& body : world.bodies) names_.push_back(body.name);
   tools_.reserve(world.tools.size());
   const std::vector<double> reach_m = force_reaches_m(world, *trees_);
   for (std::size_t i = 0; i < world.tools.size(); ++i) {
@@ -45,12 +48,31 @@ Simulation::Simulation(const WorldDef& world, const Settings& settings)
   for (const Tool& tool : tools_) models_.push_back(tool.touch.model());
 }
 
-void Simulation::start(std::int64_t incarnation) {
+void Simulation::start(std::int64_t incarnation) try {
   ids_.restart(incarnation);
   collect_group_tools();
   mechanics_->start(group_tools_, events_);
+  require_finite();
   detect_contacts();
   begin_ = save();
+} catch (const StateNotFinite& e) {
+  stop_at(e.body, e.quantity);
+}
+
+// Of the present state, and of the state of bodies that are computed ahead.
+void Simulation::require_finite() {
+  const std::span<const BodyMotion> motions = mechanics_->motions();
+  for (std::size_t i = 0; i < motions.size(); ++i) sim::require_finite(static_cast<int>(i), motions[i]);
+  const LookAhead* const ahead = mechanics_->look_ahead();
+  if (ahead == nullptr || !ahead->fresh) return;
+  for (std::size_t i = 0; i < ahead->bodies.size(); ++i) sim::require_finite(ahead->bodies[i], ahead->motions[i]);
+}
+
+void Simulation::stop_at(int body, const char* quantity) const {
+  const std::string name = static_cast<std::size_t>(body) < names_.size() ? names_[static_cast<std::size_t>(body)] : std::to_string(body);
+  throw std::runtime_error(std::string(quantity) + " of the body " + name + " is not finite after step " + std::to_string(steps_) + ", at " +
+                           std::to_string(sync::to_seconds(now().time_since_epoch())) +
+                           " s, so the world stops; correct its mass, its shapes or bodies that overlap at the start, or choose a smaller step");
 }
 
 void Simulation::sort_messages(std::span<const tool_state_t> messages) {
@@ -59,7 +81,7 @@ void Simulation::sort_messages(std::span<const tool_state_t> messages) {
     if (static_cast<std::size_t>(m.tool) < tools_.size()) tools_[static_cast<std::size_t>(m.tool)].new_messages.push_back(m);
 }
 
-void Simulation::step(std::span<const tool_state_t> messages) {
+void Simulation::step(std::span<const tool_state_t> messages) try {
   if (held_) {
     for (Tool& tool : tools_) tool.new_messages.clear();
     place_tools(mechanics_->motions());
@@ -75,8 +97,11 @@ void Simulation::step(std::span<const tool_state_t> messages) {
   collect_group_tools();
   mechanics_->tick(now(), group_tools_, events_);
   ++steps_;
+  require_finite();
   for (Tool& tool : tools_) tool.push.add_work(mechanics_->motions());
   detect_contacts();
+} catch (const StateNotFinite& e) {
+  stop_at(e.body, e.quantity);
 }
 
 void Simulation::collect_group_tools() {

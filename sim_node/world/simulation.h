@@ -35,7 +35,7 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
   // Starts the world at its first instant. incarnation: of the process; prefixes the ids of events and contacts. Call
-  // once before the first step; that step also returns the events of this instant.
+  // once before the first step; that step also returns the events of this instant. Throws as step().
   void start(std::int64_t incarnation);
 
   // The whole state of the world as bytes in the format of sim_node/model/envelope.h.
@@ -55,7 +55,8 @@ class Simulation {
   void hold(std::span<const tool_state_t> tools);
 
   // Advances by one step. tools: all TOOL_STATE messages since the last call, in order of arrival.
-  // Deterministic: the same messages give the same world to the bit.
+  // Deterministic: the same messages give the same world to the bit. Throws std::runtime_error with one sentence, which names
+  // the body and the step, when a state is not finite; the world cannot continue then.
   void step(std::span<const tool_state_t> tools);
 
   sync::SimTime now() const { return sync::SimTime(step_ * steps_); }
@@ -99,10 +100,13 @@ class Simulation {
   void sort_messages(std::span<const tool_state_t> messages);
   void apply_wrenches();
   void archive(StateArchive& a);
+  void require_finite();
+  [[noreturn]] void stop_at(int body, const char* quantity) const;
 
   Settings settings_;
   sync::Nanoseconds step_;
   std::int64_t steps_ = 0;
+  std::vector<std::string> names_;  // of the bodies
   Ids ids_;
   std::shared_ptr<MeshTrees> trees_;
   std::unique_ptr<Mechanics> mechanics_;

@@ -40,21 +40,22 @@ std::string haptic_csv_names() {
   return "time_s,host_s,tool,device_x_m,device_y_m,device_z_m,proxy_x_m,proxy_y_m,proxy_z_m,force_x_N,force_y_N,"
          "force_z_N,torque_x_N_m,torque_y_N_m,torque_z_N_m,transient_x_N,transient_y_N,transient_z_N,fade,"
          "coupling,"
-         "touch_status,constraints,energy_J,generated_J,seq\n";
+         "touch_status,constraints,energy_J,generated_J,seq,run\n";
 }
 
-std::string csv_row(const tool_state_t& m) {
+std::string csv_row(const tool_state_t& m, int run) {
   return row(m.header, m.tool, m.device.position_m, m.proxy.position_m, m.force_N, m.torque_N_m, m.transient_N, m.fade,
              m.coupling, to_string(static_cast<SampleStatus>(m.touch_status)), m.constraint_count, m.energy_J,
-             m.generated_J, std::to_string(m.header.seq));
+             m.generated_J, std::to_string(m.header.seq), std::to_string(run));
 }
 
 std::string thermal_csv_names() {
-  return "time_s,host_s,tool,material,force_N,area_m2,heat_flux_W_m2,skin_degC,commanded_degC,limited\n";
+  return "time_s,host_s,tool,material,force_N,area_m2,heat_flux_W_m2,skin_degC,commanded_degC,limited,run\n";
 }
 
-std::string csv_row(const thermal_state_t& m) {
-  return row(m.header, m.tool, m.material, m.force_N, m.area_m2, m.heat_flux_W_m2, m.skin_degC, m.commanded_degC, m.limited);
+std::string csv_row(const thermal_state_t& m, int run) {
+  return row(m.header, m.tool, m.material, m.force_N, m.area_m2, m.heat_flux_W_m2, m.skin_degC, m.commanded_degC, m.limited,
+             std::to_string(run));
 }
 
 }  // namespace tactus::sync

@@ -9,10 +9,10 @@ namespace tactus::sync {
 
 // Lines of column names, with units, and of values; each ends with a newline. Times in s: simulated (empty when the message
 // belongs to no instant of the world) and CLOCK_MONOTONIC of the sender. Lengths in m, forces in N, torques in N m, world
-// frame.
+// frame. run: number of the run in its log, from 1.
 std::string haptic_csv_names();
-std::string csv_row(const tool_state_t&);
+std::string csv_row(const tool_state_t&, int run = 1);
 std::string thermal_csv_names();
-std::string csv_row(const thermal_state_t&);
+std::string csv_row(const thermal_state_t&, int run = 1);
 
 }  // namespace tactus::sync

@@ -13,17 +13,17 @@
 namespace tactus::sync {
 
 // Lines of column names and of values; each ends with a newline. host_ns: CLOCK_MONOTONIC of the sender; for an event, the
-// host time of its simulated time. -1: never.
+// host time of its simulated time. -1: never. run: number of the run in its log, from 1.
 std::string events_csv_names();
-std::string csv_row(const contact_event_t& event, const sim_clock_t& clock);
+std::string csv_row(const contact_event_t& event, const sim_clock_t& clock, int run = 1);
 std::string presented_csv_names();
-std::string csv_row(const std::string& modality, const presentation_t&);
+std::string csv_row(const std::string& modality, const presentation_t&, int run = 1);
 std::string media_clock_csv_names();
-std::string csv_row(const media_clock_t&);
+std::string csv_row(const media_clock_t&, int run = 1);
 std::string clock_map_csv_names();
-std::string csv_row(const clock_map_t&);
+std::string csv_row(const clock_map_t&, int run = 1);
 // name: of the wall's process. publish_ns is on its clock; due_ns is on the clock of sim_node's host.
 std::string frame_shown_csv_names();
-std::string csv_row(const std::string& name, const frame_shown_t&);
+std::string csv_row(const std::string& name, const frame_shown_t&, int run = 1);
 
 }  // namespace tactus::sync

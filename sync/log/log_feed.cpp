@@ -7,33 +7,38 @@
 
 namespace tactus::sync {
 
-// Reads the log three times: for its run and its damage, for its end, and for the inboxes.
-LogFeed::LogFeed(const std::string& path, double rate_Hz)
-    : file_(path),
-      scan_(file_.bytes()),
-      events_(file_.bytes(), origin_, &time_ranges_),
-      period_(from_seconds(1 / rate_Hz)) {
-  LogClockDetector detector;
-  for (LogEvent event; scan_.next(event);) {
-    detector.observe(event);
-    time_ranges_.add(bounded_us(event.timestamp_us));
-  }
-  if (scan_.events() == 0)
+namespace {
+
+LogIndex whole_index(std::span<const std::uint8_t> bytes) {
+  LogIndex index(bytes);
+  index.read_all();
+  return index;
+}
+
+// Throws std::runtime_error with one sentence.
+int checked_run(const LogIndex& index, const std::string& path, int run) {
+  if (index.events() == 0)
     throw std::runtime_error(path +
                              " is not an LCM log, or contains no intact event; give the run.lcmlog of a run");
-  origin_ = detector.find();
-  if (!origin_.known)
-    throw std::runtime_error(path + " holds no message of Tactus; give a run.lcmlog that scripts/run wrote");
-  TimestampedEvents events(file_.bytes(), origin_, &time_ranges_);
-  bool started = false;
-  HostTime at{};
-  for (LogEvent event; events.next(event, at);) {
-    if (!started && !time_ranges_.in_run(bounded_us(event.timestamp_us))) continue;
-    if (!started) begin_ = end_ = at;
-    started = true;
-    end_ = std::max(end_, at);
+  try {
+    if (index.run(run).origin.known) return run;
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(path + " " + e.what());
   }
-  events_.seek(0, begin_);
+  throw std::runtime_error(path + " holds no message of Tactus; give a run.lcmlog that scripts/run wrote");
+}
+
+}  // namespace
+
+// Reads the log twice: for its runs, times and damage, and for the inboxes.
+LogFeed::LogFeed(const std::string& path, double rate_Hz, int run)
+    : file_(path),
+      index_(whole_index(file_.bytes())),
+      run_(checked_run(index_, path, run)),
+      events_(index_, run_),
+      period_(from_seconds(1 / rate_Hz)) {
+  begin_ = origin().time(index_.run(run_).first_us);
+  end_ = origin().time(index_.run(run_).last_us);
   now_ = begin_ - period_;
 }
 

@@ -7,12 +7,11 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "sync/bus/bus_options.h"
 #include "sync/log/timestamped_events.h"
-#include "sync/log/log_time_ranges.h"
-#include "sync/log/log_origin.h"
-#include "sync/log/log_reader.h"
+#include "sync/log/log_index.h"
 #include "sync/log/mapped_log.h"
 
 namespace tactus::sync {
@@ -21,12 +20,13 @@ class Bus;
 
 class LogFeed {
  public:
-  // rate_Hz: of the ticks. Throws std::runtime_error with one sentence when the file holds no message of a run.
-  LogFeed(const std::string& path, double rate_Hz);
+  // rate_Hz: of the ticks. run: its number among the runs of the log, from 1. Throws std::runtime_error with one sentence when
+  // the file holds no message of a run, or no such run.
+  LogFeed(const std::string& path, double rate_Hz, int run = 1);
 
   // Run and clock of the recorder: a node in that run converts the simulation's times as a node on the recorder's host would.
-  std::int64_t run_id() const { return origin_.info.header.run_id; }
-  std::int32_t clock() const { return origin_.info.header.clock; }
+  std::int64_t run_id() const { return origin().info.header.run_id; }
+  std::int32_t clock() const { return origin().info.header.clock; }
   // Bus options for that node: in memory, with the run and the clock of the log.
   BusOptions bus() const;
 
@@ -42,29 +42,29 @@ class LogFeed {
 
   // All events again from the beginning, for look-ahead. Refers to this object.
   TimestampedEvents from_begin() const {
-    TimestampedEvents events(file_.bytes(), origin_, &time_ranges_);
-    events.seek(0, begin_);
-    return events;
+    return {index_, run_};
   }
 
   HostTime begin() const { return begin_; }
   HostTime end() const { return end_; }
   // Totals of the whole log.
-  std::int64_t events() const { return scan_.events(); }
-  std::int64_t damaged_regions() const { return scan_.damaged_regions(); }
-  std::int64_t damaged_bytes() const { return scan_.damaged_bytes(); }
-  // Events with damaged stamps: further than LogTimeRanges::kMaxGap_us from the stamps of the run, and too few to be a later
-  // part of it. They are passed on with the event before them, and do not lengthen the run.
-  std::int64_t misdated() const { return time_ranges_.misdated(); }
+  std::int64_t events() const { return index_.events(); }
+  std::int64_t damaged_regions() const { return index_.damaged_regions(); }
+  std::int64_t damaged_bytes() const { return index_.damaged_bytes(); }
+  // Events of the run with damaged stamps. They are passed on with the event before them, and do not lengthen the run.
+  std::int64_t misdated() const { return index_.run(run_).misdated; }
   // One sentence when the log does not state its run, or states it wrongly; empty otherwise.
-  const std::string& recovered() const { return origin_.recovered; }
+  const std::string& recovered() const { return origin().recovered; }
+  // Sentences about other runs in the log, jumps of the recorder's clock and copies of messages.
+  std::vector<std::string> warnings() const { return index_.warnings(run_); }
 
  private:
+  const LogOrigin& origin() const { return index_.run(run_).origin; }
+
   MappedLog file_;
+  LogIndex index_;
+  int run_;
   std::set<std::string, std::less<>> excluded_;
-  LogScanner scan_;
-  LogTimeRanges time_ranges_;
-  LogOrigin origin_;
   TimestampedEvents events_;
   LogEvent pending_;
   HostTime pending_at_{};

@@ -113,15 +113,4 @@ LogOrigin LogClockDetector::find() const {
   return origin;
 }
 
-LogOrigin origin_of(std::span<const std::uint8_t> log) {
-  // A second of a run; more than the largest scene at its head.
-  constexpr std::int64_t kEnoughMessages = 4096;
-  constexpr std::size_t kMaxBytes = 320 << 20;
-  LogScanner scanner(log);
-  LogClockDetector detector;
-  for (LogEvent e; detector.messages_with_run() < kEnoughMessages && scanner.at() < kMaxBytes && scanner.next(e);)
-    detector.observe(e);
-  return detector.find();
-}
-
 }  // namespace tactus::sync

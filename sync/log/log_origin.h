@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <tactus/log_info_t.hpp>
 #include <utility>
@@ -30,9 +29,6 @@ struct LogOrigin {
 std::int64_t bounded_us(std::int64_t timestamp_us);
 // Converts a stamp to the recorder's CLOCK_MONOTONIC (lcmtypes/types/status/log_info_t.lcm); within the same bounds.
 HostTime time_of_stamp(std::int64_t timestamp_us, std::int64_t realtime_offset_ns);
-
-// Reads only the beginning of a log.
-LogOrigin origin_of(std::span<const std::uint8_t> log);
 
 class LogClockDetector {
  public:

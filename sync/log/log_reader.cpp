@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
+#include "sync/bus/datagram.h"
+
 namespace tactus::sync {
 namespace {
 
-// LCM allows channel names of 63 characters and messages of 256 MB.
-constexpr std::uint32_t kMaxChannelBytes = 63;
-constexpr std::uint32_t kMaxDataBytes = 1u << 28;
+constexpr std::uint32_t kMaxDataBytes = 1u << 28;  // LCM allows messages of 256 MB
 
 std::uint64_t big_endian(const std::uint8_t* p, int bytes) {
   std::uint64_t value = 0;
@@ -17,11 +17,11 @@ std::uint64_t big_endian(const std::uint8_t* p, int bytes) {
   return value;
 }
 
-bool printable(std::string_view text) {
-  return std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c <= '~'; });
-}
-
 }  // namespace
+
+bool is_legal_channel(std::string_view name) {
+  return !name.empty() && name.size() <= kMaxChannelBytes && name.find('\0') == name.npos;
+}
 
 bool LogScanner::sync_at(std::size_t at) const {
   return at + 4 <= bytes_.size() && big_endian(&bytes_[at], 4) == kLogSync;
@@ -44,7 +44,7 @@ bool LogScanner::event_at(std::size_t at, LogEvent& event) const {
   event.timestamp_us = static_cast<std::int64_t>(big_endian(p + 12, 8));
   event.channel = {reinterpret_cast<const char*>(p) + kLogEventHeaderBytes, channel_bytes};
   event.data = bytes_.subspan(at + kLogEventHeaderBytes + channel_bytes, data_bytes);
-  return printable(event.channel);
+  return is_legal_channel(event.channel);
 }
 
 std::size_t LogScanner::next_event_after(std::size_t at, std::size_t until) const {

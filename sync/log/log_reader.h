@@ -17,12 +17,20 @@ inline constexpr std::size_t kLogEventHeaderBytes = 28;
 // Linux memory page on supported machines, so that a file can be mapped there.
 inline constexpr std::size_t kLogPartBytes = 65536;
 
+// True for a name that LCM can send: 1 to 63 bytes of any kind but 0.
+bool is_legal_channel(std::string_view name);
+
 // One event; the views are valid as long as the bytes that it was read from.
 struct LogEvent {
   std::int64_t number = 0;
   std::int64_t timestamp_us = 0;
   std::string_view channel;
   std::span<const std::uint8_t> data;
+
+  // The byte of the log that it was read from.
+  std::size_t begins_at(std::span<const std::uint8_t> log) const {
+    return static_cast<std::size_t>(reinterpret_cast<const std::uint8_t*>(channel.data()) - log.data()) - kLogEventHeaderBytes;
+  }
 };
 
 // Finds every intact event; skips damaged bytes up to the next one.

@@ -70,8 +70,12 @@ std::size_t with_border(std::size_t bytes) { return (bytes + kLogPartBytes - 1) 
 
 }  // namespace
 
-MappedLog::MappedLog(const std::string& path, LogTypes types) {
-  const std::vector<std::string> names = files_of(path);
+MappedLog::MappedLog(const std::string& path, LogTypes types) : MappedLog(std::vector<std::string>{path}, types) {}
+
+MappedLog::MappedLog(const std::vector<std::string>& paths, LogTypes types) {
+  std::vector<std::string> names;
+  for (const std::string& path : paths)
+    for (std::string& name : files_of(path)) names.push_back(std::move(name));
   std::vector<File> files(names.size());
   std::size_t size = 0;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -87,7 +91,7 @@ MappedLog::MappedLog(const std::string& path, LogTypes types) {
   if (size == 0) return;
   // Reserves the whole length first, so that each part has room behind the previous one.
   void* start = mmap(nullptr, size, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (start == MAP_FAILED) refuse(path, std::strerror(errno));
+  if (start == MAP_FAILED) refuse(names.front(), std::strerror(errno));
   bytes_ = {static_cast<const std::uint8_t*>(start), size};
   std::size_t at = 0;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -103,7 +107,7 @@ MappedLog::MappedLog(const std::string& path, LogTypes types) {
   }
   madvise(start, size, MADV_SEQUENTIAL);
   tell_of_cuts(bytes_);
-  if (types == LogTypes::kCurrent) require_current_types(bytes_, path);
+  if (types == LogTypes::kCurrent) require_current_types(bytes_, paths.front());
 }
 
 MappedLog::~MappedLog() {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace tactus::sync {
 
@@ -17,6 +18,8 @@ class MappedLog {
  public:
   // path: a file, or a folder that a recorder wrote to. Throws std::runtime_error with one sentence.
   explicit MappedLog(const std::string& path, LogTypes types = LogTypes::kCurrent);
+  // Several logs, one behind the other.
+  explicit MappedLog(const std::vector<std::string>& paths, LogTypes types = LogTypes::kCurrent);
   ~MappedLog();
   MappedLog(const MappedLog&) = delete;
   MappedLog& operator=(const MappedLog&) = delete;

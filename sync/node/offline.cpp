@@ -16,12 +16,14 @@ void OfflineOptions::add_to(Arguments& app, const std::string& does, const std::
   app.add_option("--log", log,
                  does + " instead of the messages on the bus, as fast as possible; needs " + output +
                      "; --degrade logged takes the profiles of the run");
+  app.add_option("--run", run, "number of the run, of a log with several").range(1, 1'000'000).needs("--log").show_default();
   app.add_option("--presented", presented, "file for a table of the outcome of each event of the log, CSV").needs("--log");
 }
 
 OfflineInput::OfflineInput(const OfflineOptions& options, std::vector<Written> written, double rate_Hz, HostTime clock,
                  Nanoseconds tail)
-    : feed_(options.log, rate_Hz),
+    : feed_(options.log, rate_Hz, options.run),
+      run_number_(options.run),
       rate_Hz_(rate_Hz),
       as_recorded_(options.as_recorded),
       end_(feed_.end() + tail),
@@ -67,7 +69,7 @@ void OfflineInput::require_rate(double rate_Hz) const {
 }
 
 void OfflineInput::record_outcome(const std::string& modality, const presentation_t& report) {
-  if (presented_) presented_->write(csv_row(modality, report));
+  if (presented_) presented_->write(csv_row(modality, report, run_number_));
 }
 
 std::optional<std::string> OfflineInput::progress(HostTime clock) {
@@ -85,6 +87,7 @@ std::string OfflineInput::finish(double rendered_s, HostTime clock) {
   std::ostringstream text;
   text << ", in " << took_s << " s (" << rendered_s / took_s << " times as fast as real time)";
   if (!feed_.recovered().empty()) text << "\n" << feed_.recovered();
+  for (const std::string& sentence : feed_.warnings()) text << "\n" << sentence;
   if (feed_.damaged_regions() > 0)
     text << "\nskipped damage of the log: " << feed_.damaged_regions() << " regions, " << feed_.damaged_bytes()
          << " bytes";

@@ -19,6 +19,7 @@ namespace tactus::sync {
 
 struct OfflineOptions {
   std::string log;           // empty: live
+  int run = 1;               // its number in a log with several
   std::string presented;     // table of the outcome of each event; empty: none
   bool as_recorded = false;  // true: the profiles of the run apply; false: only the profile of --degrade applies
 
@@ -41,6 +42,8 @@ class OfflineInput {
   // Adapts the options of a node to the run of the log. `--degrade logged` uses the profiles of the run.
   void adapt(NodeOptions& options);
   const LogFeed& feed() const { return feed_; }
+  // Its number in the log.
+  int run_number() const { return run_number_; }
   // The next tick of the log.
   HostTime next(Bus& bus);
   // Sets the time of the next tick, instead of one period after the last.
@@ -64,6 +67,7 @@ class OfflineInput {
 
  private:
   LogFeed feed_;
+  int run_number_;
   double rate_Hz_;
   bool as_recorded_;
   std::unique_ptr<AtomicFile> presented_;

@@ -72,16 +72,16 @@ std::string csv_cell(const Leaf& value) {
   return number(std::get<double>(value));
 }
 
-std::string long_names() { return "log_s,world_s,sender,seq,field,unit,value\n"; }
+std::string long_names() { return "log_s,world_s,sender,seq,field,unit,value,run\n"; }
 
 std::string long_rows(const TableContext& context, const MessageType& type, const LogEvent& event,
                       HostTime arrival) {
-  const std::string begin = begin_of(context, event, arrival);
+  const std::string begin = begin_of(context, event, arrival), end = "," + std::to_string(context.run()) + "\n";
   std::string rows;
   const bool whole =
       for_each_leaf(type, event.data, [&](const std::string& path, const Field&, const Leaf& value) {
         if (path.starts_with(kHeader)) return;
-        rows += begin + "," + path + "," + unit_of_path(path) + "," + csv_cell(value) + "\n";
+        rows += begin + "," + path + "," + unit_of_path(path) + "," + csv_cell(value) + end;
       });
   return whole ? rows : "";
 }
@@ -107,7 +107,7 @@ std::string WideColumns::names() const {
     const std::string unit = unit_of_path(path);
     text += "," + csv_cell(std::string_view(path + (unit.empty() ? "" : " (" + unit + ")")));
   }
-  return text + "\n";
+  return text + ",run\n";
 }
 
 std::string WideColumns::row(const TableContext& context, const LogEvent& event, HostTime arrival) const {
@@ -119,10 +119,10 @@ std::string WideColumns::row(const TableContext& context, const LogEvent& event,
   if (!whole) return "";
   std::string text = begin_of(context, event, arrival);
   for (const std::string& cell : cells) text += "," + cell;
-  return text + "\n";
+  return text + "," + std::to_string(context.run()) + "\n";
 }
 
-std::string tag_names() { return "log_s,node,tag,unit,value\n"; }
+std::string tag_names() { return "log_s,node,tag,unit,value,run\n"; }
 
 std::string tag_rows(TagTable& tags, const TableContext& context, const LogEvent& event, HostTime arrival) {
   const auto m = decode<tag_values_t>(event.data.data(), event.data.size());
@@ -135,9 +135,41 @@ std::string tag_rows(TagTable& tags, const TableContext& context, const LogEvent
       (m->header.clock == info.header.clock ? 0 : to_ns(arrival) - m->header.publish_time_ns) - info.live_from_ns;
   tags.read(*m, [&](const TagTable::List& list, const tag_def_t& tag, std::int64_t time_ns, double value) {
     rows += seconds(sent_ns + time_ns) + "," + csv_cell(std::string_view(list.node)) + "," + csv_cell(std::string_view(tag.name)) + "," +
-            csv_cell(std::string_view(tag.unit)) + "," + number(value) + "\n";
+            csv_cell(std::string_view(tag.unit)) + "," + number(value) + "," + std::to_string(context.run()) + "\n";
   });
   return rows;
+}
+
+std::string foreign_names() { return "log_s,bytes,data_hex,run\n"; }
+
+std::string foreign_row(const TableContext& context, const LogEvent& event, HostTime arrival) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string text = seconds(to_ns(arrival) - context.origin().info.live_from_ns) + "," + std::to_string(event.data.size()) + ",";
+  text.reserve(text.size() + 2 * event.data.size() + 12);
+  for (const std::uint8_t byte : event.data) {
+    text += kDigits[byte >> 4];
+    text += kDigits[byte & 15];
+  }
+  return text + "," + std::to_string(context.run()) + "\n";
+}
+
+std::string table_file_of(std::string_view channel, std::set<std::string>& used) {
+  const auto kept = [](char c) { return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' || c == '.' || c == '_'; };
+  std::string name;
+  for (const char c : channel) name += kept(c) ? c : '_';
+  if (name.empty() || name[0] == '.') name.insert(0, 1, '_');
+  std::string file = name + ".csv";
+  if (type_on(channel) == nullptr)
+    for (int number = 2; used.contains(file); ++number) file = name + "." + std::to_string(number) + ".csv";
+  used.insert(file);
+  return file;
+}
+
+std::set<std::string> reserved_table_files() {
+  std::set<std::string> files{"tags.csv",      "events.csv",      "presented.csv", "media_clock.csv",
+                              "clock_map.csv", "frame_shown.csv", "haptic.csv",    "thermal.csv"};
+  for (const Channel& c : channel_types()) files.insert(std::string(c.name) + ".csv");
+  return files;
 }
 
 }  // namespace tactus::sync

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,7 +21,8 @@ class TableContext {
  public:
   static constexpr std::size_t kMaxNames = 4096;
 
-  explicit TableContext(const LogOrigin& origin) : origin_(origin) {}
+  // run: number of the run in its log, from 1: the last column of every table.
+  explicit TableContext(const LogOrigin& origin, int run = 1) : origin_(origin), run_(run) {}
   // Call it once for each event of the log, before making any row: collects names of senders and lists of tags.
   void learn(const LogEvent& event);
   // Seconds since the live part of the log began.
@@ -29,9 +31,11 @@ class TableContext {
   std::string sender(std::int32_t source) const;
   const TagTable& tags() const { return tags_; }
   const LogOrigin& origin() const { return origin_; }
+  int run() const { return run_; }
 
  private:
   const LogOrigin& origin_;
+  int run_;
   std::map<std::int32_t, std::string> names_;
   TagTable tags_;
 };
@@ -39,7 +43,7 @@ class TableContext {
 // One cell by RFC 4180, a text as by csv_cell(std::string_view) of csv.h; a number is written so that it reads back unchanged.
 std::string csv_cell(const Leaf& value);
 
-// log_s, world_s, sender, seq, field, unit, value.
+// log_s, world_s, sender, seq, field, unit, value, run.
 std::string long_names();
 // The rows of a message; empty when it is not a complete message of the type.
 std::string long_rows(const TableContext& context, const MessageType& type, const LogEvent& event,
@@ -59,8 +63,18 @@ class WideColumns {
   std::vector<std::string> paths_;
 };
 
-// log_s, node, tag, unit, value: of every value in a TAG_VALUES.
+// log_s, node, tag, unit, value, run: of every value in a TAG_VALUES.
 std::string tag_names();
 std::string tag_rows(TagTable& tags, const TableContext& context, const LogEvent& event, HostTime arrival);
+
+// log_s, bytes, data_hex, run: of a message of another system, whose fields are unknown.
+std::string foreign_names();
+std::string foreign_row(const TableContext& context, const LogEvent& event, HostTime arrival);
+
+// The name of the table of a channel: letters, digits and - . _ of its name, the others replaced by _. A name that is in `used` gets
+// a number, unless the channel is one of this system; the name is added to it.
+std::string table_file_of(std::string_view channel, std::set<std::string>& used);
+// The names of the other tables of an export, and of the tables of the channels of this system.
+std::set<std::string> reserved_table_files();
 
 }  // namespace tactus::sync

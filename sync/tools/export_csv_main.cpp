@@ -3,7 +3,7 @@
 //   in   LOG...
 //   out  DIR/haptic.csv, DIR/thermal.csv
 //
-// Intact parts of a damaged log are read.
+// Intact parts of a damaged log are read. Each message has one row, in the order of time, also when it is in the log twice.
 #include <fstream>
 #include <iostream>
 #include <tactus/thermal_state_t.hpp>
@@ -11,9 +11,8 @@
 
 #include "sync/bus/decode.h"
 #include "sync/log/export_csv.h"
-#include "sync/log/log_reader.h"
-#include "sync/log/mapped_log.h"
-#include "sync/node/node_options.h"
+#include "sync/log/timestamped_events.h"
+#include "sync/tools/exported_logs.h"
 
 using namespace tactus;
 
@@ -25,8 +24,8 @@ class Table {
     file_ << names;
   }
   template <class Message>
-  void add(const sync::LogEvent& e) {
-    if (const auto m = sync::decode<Message>(e.data.data(), e.data.size())) file_ << sync::csv_row(*m), ++rows_;
+  void add(const sync::LogEvent& e, int run) {
+    if (const auto m = sync::decode<Message>(e.data.data(), e.data.size())) file_ << sync::csv_row(*m, run), ++rows_;
   }
   void close() {
     file_.close();
@@ -44,20 +43,21 @@ class Table {
 
 int main(int argc, char** argv) try {
   sync::Arguments app{"Writes tables of forces and skin temperatures from the log of a run."};
-  std::vector<std::string> logs;
+  sync::ExportedLogOptions options;
   std::string out = ".";
-  app.add_option("LOG", logs, "logs of one run, in order, or its folder: all parts").required().existing_path();
+  options.add_to(app);
   app.add_option("--out", out, "folder for the tables").existing_folder().show_default();
   sync::parse_or_exit(app, "export_csv", argc, argv);
 
+  const sync::ExportedLogs logs(options, "export_csv");
   Table haptic(out + "/haptic.csv", sync::haptic_csv_names());
   Table thermal(out + "/thermal.csv", sync::thermal_csv_names());
-  for (const std::string& path : logs) {
-    const sync::MappedLog file(path);
-    sync::LogScanner scanner(file.bytes());
-    for (sync::LogEvent event; scanner.next(event);) {
-      if (event.channel == channels::kToolState) haptic.add<tool_state_t>(event);
-      if (event.channel == channels::kThermalState) thermal.add<thermal_state_t>(event);
+  for (const int run : logs.runs()) {
+    sync::TimestampedEvents events(logs.index(), run);
+    sync::HostTime at{};
+    for (sync::LogEvent event; events.next(event, at);) {
+      if (event.channel == channels::kToolState) haptic.add<tool_state_t>(event, run);
+      if (event.channel == channels::kThermalState) thermal.add<thermal_state_t>(event, run);
     }
   }
   haptic.close();

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <set>
 #include <tactus/clock_map_t.hpp>
 #include <tactus/contact_event_t.hpp>
@@ -20,60 +21,91 @@
 
 #include "sync/bus/decode.h"
 #include "sync/log/export_events.h"
-#include "sync/log/log_reader.h"
-#include "sync/log/mapped_log.h"
-#include "sync/node/node_options.h"
+#include "sync/log/timestamped_events.h"
+#include "sync/tools/exported_logs.h"
 
 using namespace tactus;
 
+namespace {
+
+template <class Message>
+std::optional<Message> message_of(const sync::LogEvent& e) {
+  return sync::decode<Message>(e.data.data(), e.data.size());
+}
+
+class Tables {
+ public:
+  explicit Tables(const std::string& out)
+      : events_(out + "/events.csv"), presented_(out + "/presented.csv"), clocks_(out + "/media_clock.csv"), maps_(out + "/clock_map.csv"),
+        frames_(out + "/frame_shown.csv") {
+    events_ << sync::events_csv_names();
+    presented_ << sync::presented_csv_names();
+    clocks_ << sync::media_clock_csv_names();
+    maps_ << sync::clock_map_csv_names();
+    frames_ << sync::frame_shown_csv_names();
+  }
+
+  void add_run(const sync::LogIndex& index, int run) {
+    names_.clear(), seen_.clear(), reported_.clear();
+    sync::TimestampedEvents events(index, run);
+    sync::HostTime at{};
+    for (sync::LogEvent e; events.next(e, at);) add(e, run);
+    event_count_ += seen_.size(), report_count_ += reported_.size();
+  }
+
+  // Throws std::runtime_error with one sentence when the tables cannot be written.
+  void close(const std::string& out) {
+    for (std::ofstream* table : {&events_, &presented_, &clocks_, &maps_, &frames_}) {
+      table->close();
+      if (!*table) throw std::runtime_error("cannot write the tables to " + out + "; give --out a writable folder");
+    }
+    std::cout << event_count_ << " events, " << report_count_ << " presentations\n";
+  }
+
+ private:
+  void add(const sync::LogEvent& e, int run) {
+    if (e.channel == channels::kContactEvents)
+      if (const auto m = message_of<contact_events_t>(e))
+        for (const contact_event_t& event : m->events)
+          if (seen_.insert(event.event_id).second) events_ << sync::csv_row(event, m->clock, run);
+    if (e.channel == channels::kPresented)
+      if (const auto m = message_of<presented_t>(e))
+        for (const presentation_t& p : m->reports)
+          if (reported_.insert({m->header.source, p.event_id, p.part}).second) presented_ << sync::csv_row(m->modality, p, run);
+    if (e.channel == channels::kMediaClock)
+      if (const auto m = message_of<media_clock_t>(e)) clocks_ << sync::csv_row(*m, run);
+    if (e.channel == channels::kClockMap)
+      if (const auto m = message_of<clock_map_t>(e)) maps_ << sync::csv_row(*m, run);
+    if (e.channel == channels::kNodeHealth)
+      if (const auto m = message_of<node_health_t>(e)) names_[m->header.source] = m->node;
+    if (e.channel == channels::kFrameShown)
+      if (const auto m = message_of<frame_shown_t>(e)) {
+        const auto name = names_.find(m->header.source);
+        frames_ << sync::csv_row(name == names_.end() ? std::to_string(m->header.source) : name->second, *m, run);
+      }
+  }
+
+  std::ofstream events_, presented_, clocks_, maps_, frames_;
+  std::map<std::int32_t, std::string> names_;  // of processes, by header.source
+  std::set<std::int64_t> seen_;
+  std::set<std::tuple<std::int32_t, std::int64_t, std::int8_t>> reported_;
+  std::size_t event_count_ = 0, report_count_ = 0;
+};
+
+}  // namespace
+
 int main(int argc, char** argv) try {
   sync::Arguments app{"Makes tables of contact events, presentations, media clocks and clock maps from the log of a run."};
-  std::vector<std::string> logs;
+  sync::ExportedLogOptions options;
   std::string out = ".";
-  app.add_option("LOG", logs, "logs of one run, in order, or its folder: all parts").required().existing_path();
+  options.add_to(app);
   app.add_option("--out", out, "folder for the tables").existing_folder().show_default();
   sync::parse_or_exit(app, "export_events", argc, argv);
 
-  std::ofstream events(out + "/events.csv"), presented(out + "/presented.csv"), clocks(out + "/media_clock.csv"),
-      maps(out + "/clock_map.csv"), frames(out + "/frame_shown.csv");
-  events << sync::events_csv_names();
-  presented << sync::presented_csv_names();
-  clocks << sync::media_clock_csv_names();
-  maps << sync::clock_map_csv_names();
-  frames << sync::frame_shown_csv_names();
-  std::map<std::int32_t, std::string> names;  // of processes, by header.source
-  std::set<std::int64_t> seen;
-  std::set<std::tuple<std::int32_t, std::int64_t, std::int8_t>> reported;
-  for (const std::string& path : logs) {
-    const sync::MappedLog file(path);
-    sync::LogScanner scanner(file.bytes());
-    for (sync::LogEvent e; scanner.next(e);) {
-      if (e.channel == channels::kContactEvents)
-        if (const auto m = sync::decode<contact_events_t>(e.data.data(), e.data.size()))
-          for (const contact_event_t& event : m->events)
-            if (seen.insert(event.event_id).second) events << sync::csv_row(event, m->clock);
-      if (e.channel == channels::kPresented)
-        if (const auto m = sync::decode<presented_t>(e.data.data(), e.data.size()))
-          for (const presentation_t& p : m->reports)
-            if (reported.insert({m->header.source, p.event_id, p.part}).second)
-              presented << sync::csv_row(m->modality, p);
-      if (e.channel == channels::kMediaClock)
-        if (const auto m = sync::decode<media_clock_t>(e.data.data(), e.data.size())) clocks << sync::csv_row(*m);
-      if (e.channel == channels::kClockMap)
-        if (const auto m = sync::decode<clock_map_t>(e.data.data(), e.data.size())) maps << sync::csv_row(*m);
-      if (e.channel == channels::kNodeHealth)
-        if (const auto m = sync::decode<node_health_t>(e.data.data(), e.data.size())) names[m->header.source] = m->node;
-      if (e.channel == channels::kFrameShown)
-        if (const auto m = sync::decode<frame_shown_t>(e.data.data(), e.data.size())) {
-          const auto name = names.find(m->header.source);
-          frames << sync::csv_row(name == names.end() ? std::to_string(m->header.source) : name->second, *m);
-        }
-    }
-  }
-  events.close(), presented.close(), clocks.close(), maps.close(), frames.close();
-  if (!events || !presented || !clocks || !maps || !frames)
-    throw std::runtime_error("cannot write the tables to " + out + "; give --out a writable folder");
-  std::cout << seen.size() << " events, " << reported.size() << " presentations\n";
+  const sync::ExportedLogs logs(options, "export_events");
+  Tables tables(out);
+  for (const int run : logs.runs()) tables.add_run(logs.index(), run);
+  tables.close(out);
   return 0;
 } catch (const std::exception& e) {
   return tactus::sync::fail("export_events", e);

@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "sync/assets/scene_sender.h"
+#include "sync/log/log_index.h"
 #include "sync/log/mapped_log.h"
 #include "sync/node/node.h"
 #include "sync/node/world_start.h"
@@ -65,20 +66,42 @@ std::vector<sync::Asset>::const_iterator scene_asset(const std::vector<sync::Ass
 }
 
 // Prints the properties of a log that tactus replay needs before it starts any process.
-void describe(const sync::LogOrigin& origin, const std::vector<sync::Asset>& assets, double length_s) {
-  nlohmann::json j;
-  j["scene"] = sync::printable(origin.info.scene);
-  j["version"] = sync::printable(origin.info.version);
-  j["git"] = sync::printable(origin.info.git);
-  j["seed"] = origin.info.seed;
+void describe(const sync::LogIndex& index, int number, const std::vector<sync::Asset>& assets, double length_s) {
+  const auto properties = [](const sync::LogOrigin& origin) {
+    nlohmann::json j;
+    j["scene"] = sync::printable(origin.info.scene);
+    j["version"] = sync::printable(origin.info.version);
+    j["git"] = sync::printable(origin.info.git);
+    j["seed"] = origin.info.seed;
+    j["of_tactus"] = origin.known;
+    j["recovered"] = origin.recovered;
+    return j;
+  };
+  const sync::RecordedRun& run = index.run(number);
+  nlohmann::json j = properties(run.origin);
   j["length_s"] = length_s;
-  j["of_tactus"] = origin.known;
-  j["recovered"] = origin.recovered;
   j["assets"] = assets.size();
   j["tools"] = nlohmann::json::array();
   if (const auto it = scene_asset(assets); it != assets.end())
     if (const auto scene = sync::decode_asset<scene_t>(it->bytes))
       for (const tool_def_t& tool : scene->tools) j["tools"].push_back(sync::printable(tool.name));
+  j["run"] = number;
+  j["runs"] = nlohmann::json::array();
+  for (std::size_t i = 0; i < index.runs().size(); ++i) {
+    const sync::RecordedRun& r = index.runs()[i];
+    nlohmann::json one = properties(r.origin);
+    one["run"] = i + 1;
+    one["run_id"] = r.run_id;
+    one["replayed_run_ids"] = r.guests;
+    one["length_s"] = r.length_s();
+    one["messages"] = r.events - r.copies;
+    one["copies"] = r.copies;
+    one["clock_jumps_s"] = nlohmann::json::array();
+    for (const auto& jump : r.jumps) one["clock_jumps_s"].push_back(static_cast<double>(jump.by_us) * 1e-6);
+    j["runs"].push_back(one);
+  }
+  j["damaged_regions"] = index.damaged_regions();
+  j["warnings"] = index.warnings(number);
   std::cout << j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
 }
 
@@ -89,10 +112,12 @@ struct ReplayArguments {
   sync::ReplaySelectionOptions selection_options;
   bool only_describe = false, stay = false;
   double ready_timeout_s = 10;  // as ready_timeout of sim_node/settings.csv
+  int run = 1;
 
   void add_to(sync::Arguments& app) {
     app.add_option("LOG", log, "run.lcmlog of a run, or a log of the stock lcm-logger").required();
     app.add_option("--speed", speed, "0.01 to 100 times the original speed, or max: as fast as --most allows").show_default();
+    app.add_option("--run", run, "number of the run, of a log with several; --describe lists them").range(1, 1'000'000).show_default();
     app.add_option("--start", play.start_s, "s since the world began");
     app.add_option("--end", play.end_s, "s since the world began; default: the end of the log");
     app.add_flag("--loop", play.loop, "starts again at the end");
@@ -116,7 +141,7 @@ struct ReplayArguments {
 };
 
 // Position, speed, and faults of a replay. refused: messages that the network did not take.
-std::string position_text(const sync::Replay& replay, const sync::ReplayOptions& play, std::int64_t refused) {
+std::string position_text(const sync::Replay& replay, const sync::LogIndex& index, const sync::ReplayOptions& play, std::int64_t refused) {
   std::ostringstream text;
   text << std::fixed;
   text.precision(2);
@@ -125,8 +150,8 @@ std::string position_text(const sync::Replay& replay, const sync::ReplayOptions&
   text << (replay.over() ? ", over" : replay.paused() ? ", paused" : "") << ", " << replay.sent() << " messages";
   if (replay.behind_s() > 0) text << ", " << replay.behind_s() << " s behind, because at most " << play.max_per_s << " messages per second are sent";
   if (refused > 0) text << ", " << refused << " refused by the network";
-  if (replay.scanner().damaged_regions() > 0)
-    text << ", " << replay.scanner().damaged_regions() << " damaged places (" << replay.scanner().damaged_bytes() << " bytes) skipped";
+  if (index.damaged_regions() > 0)
+    text << ", " << index.damaged_regions() << " damaged places (" << index.damaged_bytes() << " bytes) skipped";
   return text.str();
 }
 
@@ -145,26 +170,34 @@ int main(int argc, char** argv) try {
   ReplayArguments arguments;
   arguments.add_to(app);
   sync::parse_or_exit(app, kReplay.name, argc, argv);
-  auto& [log, speed, control, play, selection_options, only_describe, stay] = arguments;
+  auto& [log, speed, control, play, selection_options, only_describe, stay, run] = arguments;
   play.speed = sync::speed_of(speed);
   if (play.speed < 0) throw std::runtime_error("--speed " + speed + ": give a number from 0.01 to 100, or max");
 
   const sync::MappedLog file(log, selection_options.verbatim ? sync::LogTypes::kAny : sync::LogTypes::kCurrent);
-  const sync::LogOrigin origin = sync::origin_of(file.bytes());
-  if (!origin.known && !selection_options.verbatim && !only_describe)
+  sync::LogIndex index(file.bytes());
+  index.read_all();
+  const auto checked = [&](auto&& use) -> decltype(auto) {
+    try {
+      return use();
+    } catch (const std::runtime_error& e) {
+      throw std::runtime_error(sync::printable(log) + " " + e.what());
+    }
+  };
+  const sync::RecordedRun& recorded = checked([&]() -> const sync::RecordedRun& { return index.run(run); });
+  const sync::LogOrigin& origin = recorded.origin;
+  if (!origin.known && !selection_options.verbatim && !only_describe && index.events() > 0)
     std::cerr << "replay: " << sync::printable(log) << " holds no message of Tactus; it is played as it is\n";
   selection_options.verbatim |= !origin.known;
   play.from_head = selection_options.verbatim;
   sync::ReplaySelection selection(selection_options);
-  std::optional<sync::Replay> replay;
-  try {
-    replay.emplace(file.bytes(), origin, play, sync::host_now());
-  } catch (const std::runtime_error& e) {
-    throw std::runtime_error(sync::printable(log) + " " + e.what());
-  }
-  const std::vector<sync::Asset> assets = selection_options.verbatim ? std::vector<sync::Asset>() : sync::scene_of(file.bytes(), origin);
-  if (only_describe) return describe(origin, assets, replay->length_s()), 0;
+  const int played = selection_options.verbatim ? sync::TimestampedEvents::kWholeFile : run;
+  sync::Replay replay_of_log = checked([&] { return sync::Replay(index, played, play, sync::host_now()); });
+  sync::Replay* const replay = &replay_of_log;
+  const std::vector<sync::Asset> assets = selection_options.verbatim ? std::vector<sync::Asset>() : sync::scene_of(file.bytes(), recorded);
+  if (only_describe) return describe(index, run, assets, replay->length_s()), 0;
 
+  for (const std::string& sentence : index.warnings(selection_options.verbatim ? 0 : run)) std::cerr << "replay: " << sync::printable(log) << ": " << sentence << "\n";
   sync::Node node(kReplay, options);
   if (!origin.recovered.empty()) std::cerr << "replay: " << sync::printable(log) << ": " << origin.recovered << "\n";
   if (!selection_options.verbatim && scene_asset(assets) == assets.end())
@@ -183,7 +216,7 @@ int main(int argc, char** argv) try {
   sync::Lines lines;
   std::vector<std::uint8_t> message;
   bool quit = false, end_reported = false;
-  const auto status_text = [&] { return position_text(*replay, play, port.refused()); };
+  const auto status_text = [&] { return position_text(*replay, index, play, port.refused()); };
   sync::WorldStart start({.awaited = selection_options.live, .run_id = options.run_id, .max_wait = sync::from_seconds(arguments.ready_timeout_s)},
                          sync::host_now());
   bool waits = scene.has_value();

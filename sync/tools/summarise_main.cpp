@@ -7,9 +7,10 @@
 #include <fstream>
 #include <iostream>
 
-#include "sync/log/log_reader.h"
 #include "sync/log/mapped_log.h"
+#include "sync/log/timestamped_events.h"
 #include "sync/node/node_options.h"
+#include "sync/text/printable.h"
 #include "sync/tools/summary/summary.h"
 
 using namespace tactus;
@@ -34,6 +35,17 @@ void write_file(const std::string& path, const std::string& text) {
   if (!file) throw std::runtime_error("cannot write " + path + "; give --out a file in a writable folder");
 }
 
+// Throws std::runtime_error with one sentence.
+void add_run(sync::RunSummary& summary, const sync::LogIndex& index, const std::string& path, int run) try {
+  for (const std::string& sentence : index.warnings(run)) std::cerr << "summarise: " << sync::printable(path) << ": " << sentence << "\n";
+  sync::TimestampedEvents events(index, run);
+  sync::HostTime at{};
+  for (sync::LogEvent event; events.next(event, at);) summary.add(event);
+  summary.end_of_log(index.damaged_regions());
+} catch (const std::runtime_error& e) {
+  throw std::runtime_error(sync::printable(path) + " " + e.what());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -42,6 +54,8 @@ int main(int argc, char** argv) try {
   std::vector<std::string> logs, restarts;
   std::string out;
   app.add_option("LOG", logs, "logs of one run, in order, or its folder: all parts").required().existing_path();
+  int run = 1;
+  app.add_option("--run", run, "number of the run, of logs with several").range(1, 1'000'000).show_default();
   app.add_option("--out", out, "file for the summary as JSON");
   app.add_option("--nodes", options.nodes, "nodes that must be alive at the end: a,b,c").delimiter(',');
   app.add_option("--seconds", options.seconds, "length of the run");
@@ -56,9 +70,9 @@ int main(int argc, char** argv) try {
   sync::RunSummary summary(options);
   for (const std::string& path : logs) {
     const sync::MappedLog file(path);
-    sync::LogScanner scanner(file.bytes());
-    for (sync::LogEvent event; scanner.next(event);) summary.add(event);
-    summary.end_of_log(scanner.damaged_regions());
+    sync::LogIndex index(file.bytes());
+    index.read_all();
+    add_run(summary, index, path, run);
   }
   if (!out.empty()) write_file(out, sync::to_json(summary));
   std::cout << sync::to_text(summary) << std::flush;

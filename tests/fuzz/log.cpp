@@ -3,9 +3,8 @@
 #include <cstdlib>
 
 #include "sync/bus/decode.h"
-#include "sync/log/log_time_ranges.h"
-#include "sync/log/log_origin.h"
-#include "sync/log/log_seek.h"
+#include "sync/log/log_index.h"
+#include "sync/log/timestamped_events.h"
 #include "sync/tools/replay/replay.h"
 #include "sync/tools/replay/replay_scene.h"
 
@@ -14,26 +13,25 @@ using namespace tactus::sync;
 namespace {
 
 // Returns the number of events found.
-std::int64_t scan(std::span<const std::uint8_t> log, LogClockDetector& finder, LogTimeRanges& ages) {
+std::int64_t scan(std::span<const std::uint8_t> log) {
   LogScanner scanner(log);
   LogEvent event;
   std::size_t at = 0;
   while (scanner.next(event)) {
     if (scanner.at() <= at || scanner.at() > log.size()) std::abort();
     at = scanner.at();
-    finder.observe(event);
-    ages.add(bounded_us(event.timestamp_us));
   }
   if (scanner.damaged_bytes() < 0 || scanner.damaged_bytes() > static_cast<std::int64_t>(log.size())) std::abort();
   return scanner.events();
 }
 
-void play(std::span<const std::uint8_t> log, const LogOrigin& origin, std::int64_t events) try {
+void play(const LogIndex& index, std::int64_t events) try {
+  const LogOrigin& origin = index.run(1).origin;
   HostTime now = host_time(1'000'000'000);
   ReplayOptions options;
   options.speed = 0;
   options.from_head = true;
-  Replay replay(log, origin, options, now);
+  Replay replay(index, TimestampedEvents::kWholeFile, options, now);
   ReplayStamps stamps(origin, {"replay", 9, 1234, 5678, 4242});
   std::vector<std::uint8_t> message;
   for (int i = 0; i < 100 && !replay.over(); ++i)
@@ -54,20 +52,22 @@ void play(std::span<const std::uint8_t> log, const LogOrigin& origin, std::int64
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::uint8_t> log(data, size);
-  LogClockDetector finder;
-  LogTimeRanges ages;
-  const std::int64_t events = scan(log, finder, ages);
-  const LogOrigin origin = finder.find();
-  TimestampedEvents dated(log, origin, &ages);
-  LogEvent event;
-  HostTime time{};
-  std::int64_t read = 0;
-  while (dated.next(event, time)) ++read;
-  if (read != events) std::abort();
-  if (const auto span = span_of_log(log))
-    for (const std::int64_t us : {span->first_us, span->last_us, span->first_us / 2 + span->last_us / 2})
-      if (seek_log(log, us) > log.size()) std::abort();
-  scene_of(log, origin);
-  play(log, origin, events);
+  const std::int64_t events = scan(log);
+  LogIndex index(log);
+  index.read_all();
+  if (index.events() != events) std::abort();
+  std::int64_t read = 0, copies = 0;
+  for (std::size_t run = 0; run < index.runs().size(); ++run) {
+    TimestampedEvents dated(index, static_cast<int>(run) + 1);
+    LogEvent event;
+    HostTime time{}, before = HostTime::min();
+    for (; dated.next(event, time); before = time, ++read)
+      if (time < before) std::abort();
+    copies += index.runs()[run].copies;
+    scene_of(log, index.runs()[run]);
+  }
+  if (read + copies != events) std::abort();
+  index.warnings(0);
+  play(index, events);
   return 0;
 }

@@ -46,14 +46,8 @@ Lens::Lens(const scene_t& scene, const Settings& settings, int width, int height
 void Lens::place_room(const scene_t& scene, const Settings& settings) {
   if (settings.room == "none") return;
   const Room room = load_room(settings.room);
-  const Wall* const wall = settings.wall == "first" ? &room.walls.front() : room.find_wall(settings.wall);
-  if (!wall) {
-    std::string all;
-    for (const Wall& w : room.walls) all += (all.empty() ? "" : ", ") + w.name;
-    throw std::runtime_error("the room " + settings.room + " has no wall " + settings.wall + ", only " + all);
-  }
   const Eigen::Isometry3d camera = to_eigen(scene.camera);
-  wall_ = moved(*wall, (room.walls.size() > 1 ? heading(camera) : camera) * Eigen::Translation3d(-room.eye));
+  wall_ = moved(room.chosen_wall(settings.room, settings.wall), (room.walls.size() > 1 ? heading(camera) : camera) * Eigen::Translation3d(-room.eye));
 }
 
 Camera Lens::camera(const std::optional<Eigen::Isometry3d>& head) const {

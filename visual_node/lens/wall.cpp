@@ -49,6 +49,14 @@ const Wall* Room::find_wall(const std::string& name) const {
   return found == walls.end() ? nullptr : &*found;
 }
 
+const Wall& Room::chosen_wall(const std::string& room, const std::string& wall) const {
+  if (wall == "first") return walls.front();
+  if (const Wall* const found = find_wall(wall)) return *found;
+  std::string all;
+  for (const Wall& w : walls) all += (all.empty() ? "" : ", ") + w.name;
+  throw std::runtime_error("the room " + room + " has no wall " + wall + ", only " + all);
+}
+
 Room parse_room(const std::string& csv, const std::string& name) {
   std::istringstream lines(csv);
   std::string line;

@@ -29,6 +29,9 @@ struct Room {
 
   // Returns null when there is no wall of that name.
   const Wall* find_wall(const std::string& name) const;
+  // The wall of the setting `wall`, where "first" is the first one. room: its name or path. Throws std::runtime_error with one
+  // sentence when there is no such wall.
+  const Wall& chosen_wall(const std::string& room, const std::string& wall) const;
 };
 
 // Loads desk, cave4 (left, front, right, floor), cave6 (also back and ceiling), or a CSV file with one row a wall.

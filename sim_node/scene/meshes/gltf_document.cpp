@@ -62,7 +62,8 @@ double component(const std::uint8_t* at, int type, bool normalised) {
 
 // A count or an offset: any value below 2^32, which no accepted file reaches.
 std::size_t size_of(const json& object, const char* member) {
-  const double value = number_of(object, member, 0);
+  const json& given = member_of(object, member);
+  const double value = given.is_null() ? 0 : given.is_number() ? given.get<double>() : -1;
   if (!(value >= 0 && value < 4294967296.0) || value != std::floor(value))
     throw std::runtime_error(std::string("a ") + member + " is not a count of bytes or elements");
   return static_cast<std::size_t>(value);
@@ -100,10 +101,15 @@ double number_of(const json& object, const char* member, double missing) {
 
 int as_index(const json& value) {
   const double number = value.is_number() ? value.get<double>() : -1;
-  return number >= 0 && number < 1e9 ? static_cast<int>(number) : -1;
+  return number >= 0 && number < 1e9 && number == std::floor(number) ? static_cast<int>(number) : -1;
 }
 
-int index_of(const json& object, const char* member) { return as_index(member_of(object, member)); }
+int index_of(const json& object, const char* member) {
+  const json& value = member_of(object, member);
+  const int index = as_index(value);
+  if (index < 0 && !value.is_null()) throw std::runtime_error(std::string("a ") + member + " is not the number of an entry");
+  return index;
+}
 
 std::string text_of(const json& object, const char* member) {
   const json& value = member_of(object, member);
@@ -165,6 +171,7 @@ void GltfDocument::load_buffers(const std::filesystem::path& folder, const sync:
       }
     }
     if (bytes.size() < size_of(buffer, "byteLength")) throw std::runtime_error("a buffer is shorter than its byteLength");
+    if (!member_of(buffer, "byteLength").is_null()) bytes.resize(size_of(buffer, "byteLength"));  // no view reaches beyond it
     total += bytes.size();
     if (total > 2 * kMaxMeshFileBytes) throw std::runtime_error("its buffers are too large");
     buffers_.push_back(std::move(bytes));

@@ -42,8 +42,9 @@ class GltfDocument {
 
 // The number of a member, or `missing` when it does not exist or is not a number.
 double number_of(const nlohmann::json& object, const char* member, double missing);
-int as_index(const nlohmann::json& value);                       // -1: not an index
-int index_of(const nlohmann::json& object, const char* member);  // -1: none
+int as_index(const nlohmann::json& value);  // -1: not an index
+// -1: the member does not exist. Throws std::runtime_error with one clause when it is no index.
+int index_of(const nlohmann::json& object, const char* member);
 std::string text_of(const nlohmann::json& object, const char* member);
 const nlohmann::json& member_of(const nlohmann::json& object, const char* member);  // null: none
 

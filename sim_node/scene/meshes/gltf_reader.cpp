@@ -91,7 +91,8 @@ Properties read_properties(const json& extras, const char* member) {
 
 // Three corners per triangle, from lists, strips and fans (glTF 2.0, 3.7.2.1).
 std::vector<int> triangles_of(int mode, const std::vector<int>& corners) {
-  if (mode == 4) return {corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(corners.size() / 3 * 3)};
+  if (mode == 4 && corners.size() % 3 != 0) throw std::runtime_error("its triangles do not have three corners each");
+  if (mode == 4) return corners;
   std::vector<int> triangles;
   for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
     if (mode == 6)
@@ -226,7 +227,9 @@ struct Reader {
   static Eigen::Affine3d pose_of(const json& node) {
     const auto list = [&](const char* member, std::size_t count, double* to) {
       const json& values = member_of(node, member);
-      if (!values.is_array() || values.size() != count) return false;
+      if (values.is_null()) return false;
+      if (!values.is_array() || values.size() != count)
+        throw std::runtime_error(std::string("the ") + member + " of a node is not " + std::to_string(count) + " numbers");
       for (std::size_t i = 0; i < count; ++i) to[i] = values[i].is_number() ? values[i].get<double>() : NAN;
       return true;
     };

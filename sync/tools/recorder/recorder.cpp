@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "sync/log/log_header.h"
+#include "sync/text/printable.h"
 
 namespace tactus::sync {
 
@@ -128,7 +129,7 @@ std::string Recorder::status_text(std::int64_t tap_overflow, std::int64_t tap_ov
   if (gaps() == 0) return text;
   text += ", gaps:";
   for (const auto& [channel, sequence] : sequences_)
-    if (sequence.gaps() > 0 && text.size() < 300) text += " " + channel + " " + std::to_string(sequence.gaps());
+    if (sequence.gaps() > 0 && text.size() < 300) text += " " + printable(channel) + " " + std::to_string(sequence.gaps());
   return text;
 }
 

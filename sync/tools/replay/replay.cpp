@@ -17,18 +17,17 @@ Nanoseconds bounded(double seconds) {
 
 }  // namespace
 
-Replay::Replay(std::span<const std::uint8_t> log, const LogOrigin& origin, const ReplayOptions& o, HostTime now)
-    : log_(log),
-      origin_(origin),
+Replay::Replay(const LogIndex& index, int run, const ReplayOptions& o, HostTime now)
+    : events_(index, run),
       speed_(o.speed),
       max_per_s_(std::max(1.0, o.max_per_s)),
       loop_(o.loop),
       paused_(o.paused) {
-  const auto span = span_of_log(log);
-  if (!span)
+  if (index.events() == 0)
     throw std::runtime_error("is not an LCM log, or contains no intact event; give the run.lcmlog of a run");
-  begin_ = origin_.time(span->first_us);
-  end_ = std::max(begin_, origin_.time(span->last_us));
+  const LogOrigin& origin = events_.origin();
+  begin_ = origin.time(events_.first_us());
+  end_ = std::max(begin_, origin.time(events_.last_us()));
   const HostTime live = host_time(origin.info.live_from_ns);
   if (!o.from_head && origin.recovered.empty() && live > begin_ && live <= end_) begin_ = live;
   if (o.end_s >= 0) end_ = std::min(end_, begin_ + bounded(o.end_s));
@@ -44,15 +43,13 @@ Replay::Replay(std::span<const std::uint8_t> log, const LogOrigin& origin, const
 
 void Replay::jump(HostTime to, HostTime now) {
   position_ = position_polled_ = std::clamp(to, begin_, end_);
-  // Stamps are truncated to whole microseconds.
-  const std::int64_t stamp_us = (to_ns(position_) + origin_.info.realtime_offset_ns) / 1000;
-  events_.seek(seek_log(log_, stamp_us), position_);
+  events_.seek(position_);
   pending_.reset();
   over_ = false;
   ++pass_;
   anchor(now);
-  // Skips earlier events without sending them.
-  while (read() && origin_.time(pending_->timestamp_us) < position_ - Nanoseconds(1000)) pending_.reset();
+  // Skips earlier events without sending them. Stamps are truncated to whole microseconds.
+  while (read() && pending_at_ < position_ - Nanoseconds(1000)) pending_.reset();
 }
 
 bool Replay::read() {

@@ -4,10 +4,8 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <span>
 
 #include "sync/log/timestamped_events.h"
-#include "sync/log/log_seek.h"
 #include "sync/tools/replay/replay_stamps.h"
 
 namespace tactus::sync {
@@ -34,9 +32,9 @@ class Replay {
   // the delay.
   static constexpr Nanoseconds kMaxBehind{100'000'000};
 
-  // `log` outlives this object. Throws std::runtime_error with one sentence when it holds no event, or lacks the part that
-  // the options select.
-  Replay(std::span<const std::uint8_t> log, const LogOrigin& origin, const ReplayOptions& options, HostTime now);
+  // run: its number, from 1, or TimestampedEvents::kWholeFile. The index is complete and outlives this object. Throws
+  // std::runtime_error with one sentence when the log holds no event, or lacks the part that the options select.
+  Replay(const LogIndex& index, int run, const ReplayOptions& options, HostTime now);
 
   // Passes on the due events. take: returns true when the event was sent, so that it counts.
   using Take = std::function<bool(const LogEvent&, const ReplayMoment&)>;
@@ -62,7 +60,6 @@ class Replay {
   std::int64_t passes() const { return pass_; }
   // Total delay behind the selected speed.
   double behind_s() const { return seconds(behind_); }
-  const LogScanner& scanner() const { return events_.scanner(); }
 
  private:
   static double seconds(Nanoseconds d) { return static_cast<double>(d.count()) * 1e-9; }
@@ -71,9 +68,7 @@ class Replay {
   HostTime due(HostTime now) const;
   bool read();
 
-  std::span<const std::uint8_t> log_;
-  LogOrigin origin_;
-  TimestampedEvents events_{log_, origin_};
+  TimestampedEvents events_;
   HostTime begin_{}, start_{}, end_{};
   HostTime position_{};
   HostTime anchor_live_{}, anchor_recorded_{};

@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "sync/log/log_origin.h"
+#include "sync/log/log_index.h"
 #include "sync/assets/asset.h"
 
 namespace tactus::sync {
 
-// Returns nothing when the log has no complete scene within its first kMaxSceneBytes.
-std::vector<Asset> scene_of(std::span<const std::uint8_t> log, const LogOrigin& origin);
+// Returns nothing when the log has no complete scene within the first kMaxSceneBytes of the run.
+std::vector<Asset> scene_of(std::span<const std::uint8_t> log, const RecordedRun& run);
 
 // Enough for a scene of the largest size that any node accepts, and the other messages recorded meanwhile.
 inline constexpr std::size_t kMaxSceneBytes = 512 << 20;

@@ -8,6 +8,7 @@
 #include "sync/bus/identity.h"
 #include "sync/log/log_header.h"
 #include "sync/log/recorder_types.h"
+#include "sync/text/printable.h"
 
 namespace tactus::sync {
 namespace {
@@ -43,10 +44,9 @@ ReplaySelection::ReplaySelection(const ReplaySelectionOptions& w)
   for (const std::string& word : w.rename) {
     const std::size_t at = word.find('=');
     const std::string to = at == std::string::npos ? "" : word.substr(at + 1);
-    if (at == 0 || to.empty() || to.size() > kMaxChannelBytes ||
-        !std::all_of(to.begin(), to.end(), [](char c) { return c > ' ' && c <= '~'; }))
-      throw std::runtime_error("--rename " + word + ": write it as FROM=TO, two names of channels of at most " +
-                               std::to_string(kMaxChannelBytes) + " letters");
+    if (at == 0 || !is_legal_channel(to))
+      throw std::runtime_error("--rename " + printable(word) + ": write it as FROM=TO, two names of channels of at most " +
+                               std::to_string(kMaxChannelBytes) + " bytes");
     rename_.emplace_back(word.substr(0, at), to);
   }
   for (const std::string& node : w.live) live_.insert(static_cast<std::int32_t>(fnv1a_32(node)));

@@ -37,7 +37,7 @@ std::string bytes_of(const std::string& path) {
 // A valid set of four directions, with a response of eight samples for each ear.
 struct Set {
   std::vector<float> ir = std::vector<float>(4 * 2 * 8, 0.5f), delay{0, 0}, source = std::vector<float>(12, 1.f),
-                     receiver{0, 0.09f, 0, 0, -0.09f, 0}, rate{48000};
+                     receiver{0, 0.09f, 0, 0, -0.09f, 0}, rate{48000}, listener{0, 0, 0}, view{1, 0, 0}, up{0, 0, 1}, emitter{0, 0, 0};
   unsigned M = 4, R = 2, C = 3, N = 8;
 
   std::string fault() {
@@ -49,6 +49,7 @@ struct Set {
     };
     point(file.DataIR, ir), point(file.DataDelay, delay), point(file.SourcePosition, source);
     point(file.ReceiverPosition, receiver), point(file.DataSamplingRate, rate);
+    point(file.ListenerPosition, listener), point(file.ListenerView, view), point(file.ListenerUp, up), point(file.EmitterPosition, emitter);
     return array_fault(file);
   }
 };
@@ -96,6 +97,10 @@ TEST_CASE("Arrays of measured ears that are shorter than their dimensions are fo
   CHECK_THAT(broken([](Set& s) { s.source.pop_back(); }), Contains("SourcePosition"));
   CHECK_THAT(broken([](Set& s) { s.receiver.pop_back(); }), Contains("ReceiverPosition"));
   CHECK_THAT(broken([](Set& s) { s.rate.clear(); }), Contains("SamplingRate"));
+  // All positions are converted in steps of three values.
+  for (const std::size_t count : {1u, 2u, 4u, 14u})
+    for (std::vector<float> Set::*array : {&Set::listener, &Set::view, &Set::up, &Set::emitter, &Set::source, &Set::receiver})
+      CHECK(broken([&](Set& s) { (s.*array).resize(count + 12 * (array == &Set::source)); }) != "");
   for (const float rate : {0.f, -48000.f, 1e9f, std::nanf(""), std::numeric_limits<float>::infinity()})
     CHECK_THAT(broken([&](Set& s) { s.rate = {rate}; }), Contains("sampling rate"));
   for (const unsigned huge : {32'769u, 0x80000000u, 0xffffffffu}) CHECK(broken([&](Set& s) { s.M = huge; }) != "");

@@ -95,7 +95,8 @@ TEMPLATE_TEST_CASE("Every number and text of a message has a row that parses to 
       INFO(spot.path);
       REQUIRE(at < rows.size());
       const auto& row = rows[at++];
-      REQUIRE(row.size() == 7);
+      REQUIRE(row.size() == 8);
+      CHECK(row[7] == "1");
       CHECK(row[0] == "2.250000000");
       CHECK(row[1] == (i % 2 ? "1.500000000" : ""));
       CHECK(row[3] == std::to_string(i));
@@ -129,7 +130,9 @@ TEMPLATE_TEST_CASE("A wide table has a column for each field outside lists, and 
     const auto rows = cells_of(columns.row(log.context, log.event("X", bytes), host_time(7'250'000'000)));
     REQUIRE(rows.size() == 1);
     REQUIRE(rows[0].size() == names.size());
-    for (std::size_t c = 4; c < names.size(); ++c) {
+    CHECK(names.back() == "run");
+    CHECK(rows[0].back() == "1");
+    for (std::size_t c = 4; c + 1 < names.size(); ++c) {
       const std::string path = names[c].substr(0, names[c].find(" ("));
       const FieldPath field(type, path);
       CHECK(names[c] == path + (field.unit().empty() ? "" : " (" + field.unit() + ")"));
@@ -186,8 +189,31 @@ TEST_CASE("Tagged values have their own time stamps, and senders have names") {
     REQUIRE(rows.size() == 3);
     // A message of another clock: its arrival has the same offset as its sending.
     CHECK(rows[0] ==
-          std::vector<std::string>{clock == 77 ? "0.100000000" : "0.110000000", "haptic_node", "force", "N", "1"});
+          std::vector<std::string>{clock == 77 ? "0.100000000" : "0.110000000", "haptic_node", "force", "N", "1", "1"});
     CHECK(rows[2] == std::vector<std::string>{clock == 77 ? "0.200000000" : "0.210000000", "haptic_node", "speed",
-                                              "m/s", "0.25"});
+                                              "m/s", "0.25", "1"});
   }
+}
+
+TEST_CASE("A message of another system has a row with all its bytes") {
+  Log log;
+  const auto rows = cells_of(foreign_names() + foreign_row(TableContext(log.origin, 3), log.event("imu data", {0, 255, 16}), host_time(5'500'000'000)));
+  CHECK(rows[0] == std::vector<std::string>{"log_s", "bytes", "data_hex", "run"});
+  CHECK(rows[1] == std::vector<std::string>{"0.500000000", "3", "00ff10", "3"});
+}
+
+TEST_CASE("Each channel has a table of its own within the folder, for any name") {
+  std::set<std::string> used = reserved_table_files();
+  std::set<std::string> files;
+  const std::vector<std::string> names{"a b",    "a_b",    "a/b",         "../../evil", ".hidden", "events", "tags", "TOOL STATE",
+                                       "line\nbreak", "\xc3\x9c",   "=1+1", std::string(63, 'L'), "TOOL_STATE", "WORLD_STATE2"};
+  for (const std::string& name : names) {
+    const std::string file = table_file_of(name, used);
+    INFO(file);
+    CHECK(files.insert(file).second);
+    CHECK(file.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._") == file.npos);
+    CHECK(file[0] != '.');
+  }
+  CHECK(files.contains("TOOL_STATE.csv"));
+  CHECK_FALSE(files.contains("events.csv"));
 }

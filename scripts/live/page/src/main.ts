@@ -70,6 +70,8 @@ function frame(m: Frame): void {
     seek.max = String(Math.max(0.01, m.log.length_s));
     if (!seeking) seek.value = String(m.log.position_s);
     element("place").textContent = `${m.log.position_s.toFixed(1)} / ${m.log.length_s.toFixed(1)} s${m.log.damaged ? `, ${m.log.damaged} damaged regions` : ""}`;
+    element("place").title = m.log.warnings.join("\n");
+    if (m.log.warnings.length > 0) element("place").textContent += ` (${m.log.warnings.join("; ")})`;
     element("play").textContent = playing ? "Pause" : "Play";
   }
 }

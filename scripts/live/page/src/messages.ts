@@ -27,7 +27,7 @@ export interface Frame extends Common {
   study?: Study | null;
   scene?: { name: string; bodies: string[]; tools: string[] };
   pages?: { open: number; dropped: number; refused: number };
-  log?: { position_s: number; length_s: number; playing: boolean; rate: number; damaged: number };
+  log?: { position_s: number; length_s: number; playing: boolean; rate: number; damaged: number; warnings: string[] };
 }
 export interface Reply { t: "reply"; text: string; good: boolean }
 export type ServerMessage = Hello | Frame | Reply;

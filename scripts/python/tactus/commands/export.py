@@ -8,7 +8,7 @@ from tactus.commands import prepare
 from tactus.paths import BIN
 from tactus.refusal import Refusal
 
-VALUES = ("--channels", "--since", "--until")
+VALUES = ("--channels", "--since", "--until", "--run")
 USAGE = """Usage: tactus export LOG... [option]...
 
 Makes tables of a log for pandas, R, MATLAB and PlotJuggler: one for each channel, one for all tagged variables, and tables of the
@@ -17,12 +17,13 @@ contact events and of their presentation by each modality. docs/export.md and sc
   LOG                    run.lcmlog of a run, or its folder: all parts of its recording
   --out DIR              folder for the tables; default: tables, beside the log
   --channels REGEX       only channels whose complete name matches: 'TOOL_STATE|CONTACT.*'; default: all
+  --run N                only this run, of a log with several; default: all, with their number in the column run
   --since S, --until S   from and up to this second of the log
   --wide                 one row for each message with a column for each scalar field, for PlotJuggler; default: one row for
                          each value
   --help                 this text
 
-Damaged logs are read up to the damage; the missing parts are reported at the end."""
+A message that is in the logs twice has one row. Damaged logs are read without the damage, which is reported at the end."""
 
 
 def parsed(words):
@@ -69,7 +70,8 @@ def main(words):
 
 def run_programs(logs, out, options):
     """Writes all tables; returns the exit status of the first program that fails, or 0."""
-    for name, own in (("export_log", options), ("export_events", []), ("export_csv", [])):
+    run = options[options.index("--run"):][:2] if "--run" in options else []
+    for name, own in (("export_log", options), ("export_events", ["--quiet", *run]), ("export_csv", ["--quiet", *run])):
         try:
             status = subprocess.run([BIN / name, *logs, "--out", out, *own], check=False).returncode
         except OSError as error:

@@ -2,9 +2,10 @@
 from tactus.commands import prepare
 from tactus.paths import BIN, SCRIPTS
 
-USAGE = """Usage: tactus live open LOG [--http-port N]
+USAGE = """Usage: tactus live open LOG [--run N] [--http-port N]
 
-Serves the live page for a log, with a seek bar, and prints its address. Ctrl-C ends it."""
+Serves the live page for a log, with a seek bar, and prints its address. Ctrl-C ends it. --run: number of the run, of a log with
+several; default: 1."""
 
 
 def main(words):

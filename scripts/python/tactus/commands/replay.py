@@ -7,6 +7,7 @@ Plays a log to the nodes of the modalities, which render it again, live. Each no
 
   LOG                    run.lcmlog of a run, or its folder: all parts of its recording; damaged logs are played up to
                          the damage
+  --run N                number of the run, of a log with several; default: 1
   --speed FACTOR         0.01 to 100 times the recorded speed; max: limited only by --most; default: 1
   --start S, --end S     from and to this second of the simulation; default: the whole log
   --loop                 restarts at the end

@@ -1,6 +1,5 @@
 """A replay, after the build: reads the description of the log, then runs like scripts/run with `replay` instead of the
 simulation."""
-import json
 import os
 import pathlib
 import shutil
@@ -10,6 +9,7 @@ import time
 
 from tactus import terminal
 from tactus.launch import arguments, cluster, delays, hands, keys, main as supervisor, privileges
+from tactus.log import description
 from tactus.refusal import Refusal, sentence_of
 from tactus.terminal import report_run
 
@@ -21,15 +21,9 @@ SETTLING_S = 0.5  # the last sounds and frames are presented after the last mess
 MAX_SECONDS = arguments.MAX_SECONDS
 
 
-def describe_log(log):
-    """Description of the log: scene, tools, seed, recovered. Raises Refusal."""
-    program = cluster.BIN / "replay"
-    if not os.access(program, os.X_OK):
-        raise Refusal(f"replay: {program} is not built; run scripts/build")
-    done = subprocess.run(privileges.least([program, log, "--describe"], privileges.needed([program, log])), capture_output=True, text=True, errors="replace", check=False)
-    if done.returncode != 0:
-        raise Refusal(done.stderr.strip().split("\n")[-1] or f"replay: cannot read {log}")
-    return json.loads(done.stdout)
+def describe_log(log, run=1):
+    """Description of a run of the log: scene, tools, seed, recovered, warnings. Raises Refusal."""
+    return description.describe(log, run, lambda words: privileges.least(words, privileges.needed([words[0], log])), cluster.BIN)
 
 
 def parse(words, here):
@@ -45,6 +39,7 @@ def parse(words, here):
         parser.add_argument("--" + option, action="store_true")
     parser.add_argument("--realtime", choices=("require", "try", "off"), default="try")
     parser.add_argument("--seed")
+    parser.add_argument("--run", default="1")
     parser.add_argument("--network", choices=("auto", "private", "host"), default="auto")
     parser.add_argument("--port", default="7667")
     for word in words:
@@ -53,8 +48,11 @@ def parse(words, here):
     a = parser.parse_args(words)
     here = pathlib.Path(here)
     log = here / a.log  # for a folder, the program replay reads all parts
-    description = describe_log(log)
-    others = hands.processes(description["tools"])
+    number = description.run_number(a.run)
+    if number is None:
+        raise Refusal(f"--run {a.run}: is not the number of a run; see replay LOG --describe")
+    described = describe_log(log, number)
+    others = hands.processes(described["tools"])
     known = (*SENSES, *others, "sync_node")
     for node in (*a.only, *a.without):
         if node not in known:
@@ -70,7 +68,7 @@ def parse(words, here):
     if a.degrade and a.as_recorded:
         raise Refusal("--degrade and --as-recorded contradict each other; remove one")
     others = {process: tool for process, tool in others.items() if process not in without}
-    words = [str(log), "--stay"]
+    words = [str(log), "--stay", "--run", str(number)]
     for option in REPLAY_OPTIONS:
         if (value := getattr(a, option)) is not None:
             words += ["--" + option.replace("_", "-"), value]
@@ -78,13 +76,13 @@ def parse(words, here):
     words += [word for rename in a.rename for word in ("--rename", rename)]
     a.without = without
     return arguments.Plan(
-        scene=pathlib.Path(description["scene"] or log.name), shaders=None, seconds=MAX_SECONDS,
+        scene=pathlib.Path(described["scene"] or log.name), shaders=None, seconds=MAX_SECONDS,
         out=arguments.out_folder(here, a.out), out_is_ours=not a.out, without=without,
-        devices=arguments.devices(a.device, without, description["tools"]), hands=others, room="", walls={},
+        devices=arguments.devices(a.device, without, described["tools"]), hands=others, room="", walls={},
         degrade=arguments.profile(here, a.degrade), playout=arguments.playout(a), window=a.window, listen=a.listen,
-        realtime=a.realtime, seed=int(arguments.number("--seed", a.seed or str(description["seed"]), 0, 2**63 - 1, "", whole=True)),
+        realtime=a.realtime, seed=int(arguments.number("--seed", a.seed or str(described["seed"]), 0, 2**63 - 1, "", whole=True)),
         network=a.network, port=int(arguments.number("--port", a.port, 1024, 65534, "", whole=True)),
-        settings=arguments.settings(a.set, others), world="replay", replay=words), a.stay, description
+        settings=arguments.settings(a.set, others), world="replay", replay=words), a.stay, described
 
 
 def watcher(control, stay):
@@ -124,10 +122,11 @@ def main(words):
     control = folder / "control"
     try:
         os.mkfifo(control)
-        plan, stay, description = parse(words, os.getcwd())
+        plan, stay, described = parse(words, os.getcwd())
         plan.replay += ["--control", str(control)]
-        if description["recovered"]:
-            report_run(description["recovered"])
+        if described["recovered"]:
+            report_run(described["recovered"])
+        description.report_warnings("run", described)
         plan.out.mkdir(parents=True, exist_ok=True)
         (plan.out / "control").unlink(missing_ok=True)
         (plan.out / "control").symlink_to(control)

@@ -32,7 +32,7 @@ def summarise(plan, git, lost, restarts, warnings):
                        "--seconds", f"{plan.seconds:g}", "--scene", str(plan.scene), "--seed", str(plan.seed), "--git", git,
                        *(word for name, count in restarts.items() for word in ("--restarts", f"{name}={count}")),
                        *(word for sentence in warnings for word in ("--warning", sentence))]
-    exports = [[str(BIN / name), str(plan.out), "--out", str(plan.out)] for name in ("export_csv", "export_events")]
+    exports = [[str(BIN / name), str(plan.out), "--out", str(plan.out), "--quiet"] for name in ("export_csv", "export_events")]
     # All results are written before the first is printed. A second Ctrl-C does not reach these programs.
     kept = privileges.needed([BIN, plan.out])
     all_done = [subprocess.run(privileges.least(words, kept), capture_output=True, text=True, errors="replace", check=False, start_new_session=True)

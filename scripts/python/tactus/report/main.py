@@ -4,6 +4,7 @@
 
   LOG          run.lcmlog of a run, or its folder. With several, the first is described and the others are overlaid
   --out FILE   default: report.html beside the first log. Figures are also written to FILE_figures, as PNG and SVG
+  --run N      number of the run, of logs with several; default: 1
   --name NAME  name of a log in the report, in the order of the logs; default: the name of its folder
   --json FILE  also writes the figures of the report as JSON
 
@@ -19,7 +20,9 @@ import sys
 import tempfile
 
 from tactus import own_files
+from tactus.log import description
 from tactus.paths import BIN
+from tactus.refusal import Refusal
 
 
 def refuse(sentence):
@@ -32,12 +35,15 @@ def arguments(words):
     parser.add_argument("--out", metavar="FILE.html")
     parser.add_argument("--name", action="append", default=[])
     parser.add_argument("--json", metavar="FILE")
+    parser.add_argument("--run", default="1", metavar="N")
     options = parser.parse_args(words)
     for log in options.log:
         if not os.path.exists(log):
             refuse(f"{log} does not exist; give the run.lcmlog of a run, or its folder")
     if len(options.name) > len(options.log):
         refuse(f"{len(options.name)} names for {len(options.log)} logs; give at most one --name for each log")
+    if description.run_number(options.run) is None:
+        refuse(f"--run {options.run}: is not the number of a run; see replay LOG --describe")
     folder = lambda log: os.path.abspath(log) if os.path.isdir(log) else os.path.dirname(os.path.abspath(log))
     options.out = options.out or os.path.join(folder(options.log[0]), "report.html")
     options.name += [os.path.basename(folder(log)) or log for log in options.log[len(options.name):]]
@@ -46,13 +52,14 @@ def arguments(words):
     return options
 
 
-def tables_of(log, folder):
-    """Exports the tables of one log for the report into the folder."""
+def tables_of(log, folder, run):
+    """Exports the tables of one run of a log for the report into the folder, and prints the warnings about the log."""
     from tactus.log import log_tables
     os.makedirs(folder)
-    for words in ([BIN / "summarise", log, "--out", os.path.join(folder, "summary.json")],
-                  [BIN / "export_log", log, "--out", folder, "--channels", log_tables.CHANNELS],
-                  [BIN / "export_events", log, "--out", folder], [BIN / "export_csv", log, "--out", folder]):
+    quiet = ["--run", run, "--quiet"]
+    for words in ([BIN / "summarise", log, "--out", os.path.join(folder, "summary.json"), "--run", run],
+                  [BIN / "export_log", log, "--out", folder, "--channels", log_tables.CHANNELS, *quiet],
+                  [BIN / "export_events", log, "--out", folder, *quiet], [BIN / "export_csv", log, "--out", folder, *quiet]):
         if not os.access(words[0], os.X_OK):
             refuse(f"{words[0]} is not built; run scripts/build --programs")
         done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False)
@@ -74,7 +81,11 @@ def main(words):
         for i, (log, name) in enumerate(zip(options.log, options.name)):
             if sys.stderr.isatty():
                 print(f"report: reading {log}", file=sys.stderr)
-            tables_of(log, os.path.join(folder, str(i)))
+            tables_of(log, os.path.join(folder, str(i)), options.run)
+            try:
+                description.report_warnings(f"report: {log}", description.describe(log, options.run))
+            except Refusal as refusal:
+                refuse(refusal)
             logs.append(log_tables.LogTables(os.path.join(folder, str(i)), name))
         try:
             figures_folder = os.path.splitext(options.out)[0] + "_figures"

@@ -5,6 +5,7 @@
   tactus rerender LOG --live      compares the log with the results of the run
 
   LOG          run.lcmlog of a run, or its folder: all parts of its recording. The profile of the run is not applied
+  --run N      number of the run, of a log with several; default: 1
   --degrade    a profile (sync/degradation/README.md); "logged": the profile of the run
   --only       haptic, audio, visual or thermal; may be repeated; default: all four
   --out        new or empty folder (default: rerendered, beside LOG)
@@ -34,6 +35,7 @@ import sys
 import time
 
 from tactus import own_files
+from tactus.log import description
 from tactus.paths import BIN
 from tactus.refusal import Refusal
 from tactus.rerender import changed, live, render
@@ -49,6 +51,7 @@ def arguments(words):
     parser.add_argument("--only", action="append", choices=list(render.SENSES))
     parser.add_argument("--out", metavar="DIR")
     parser.add_argument("--tool")
+    parser.add_argument("--run", dest="run_number", default="1", metavar="N")
     parser.add_argument("--set", action="append", default=[], metavar="SENSE:NAME=VALUE")
     parser.add_argument("--twice", action="store_true", help="render the reference twice and compare all bytes")
     parser.add_argument("--live", action="store_true", help="compare with the results of the run")
@@ -58,6 +61,8 @@ def arguments(words):
     options.run = os.path.abspath(options.log) if os.path.isdir(options.log) else os.path.dirname(os.path.abspath(options.log))
     if not os.path.isfile(options.log) and not (os.path.isdir(options.log) and glob.glob(os.path.join(glob.escape(options.log), "run*.lcmlog"))):
         refuse(f"{options.log} is neither a log nor the folder of a run; give the run.lcmlog of a run, or its folder")
+    if description.run_number(options.run_number) is None:
+        refuse(f"--run {options.run_number}: is not the number of a run; see replay LOG --describe")
     options.out = options.out or os.path.join(options.run, "rerendered")
     if os.path.exists(options.out) and (not os.path.isdir(options.out) or os.listdir(options.out)):
         refuse(f"{options.out} exists and is not empty; remove it or give another --out")
@@ -102,7 +107,7 @@ class Renderings:
             folder = os.path.join(self.options.out, name)
             os.makedirs(folder, exist_ok=True)
             words = render.command(self.options.programs, sense, self.options.log, folder, self.folders[name], self.options.tool,
-                                   self.options.settings)
+                                   self.options.settings, self.options.run_number)
             head = f"rerender: {number} of {len(todo)}: {name}, {sense}"
             self.show_progress(head)
             try:
@@ -237,6 +242,7 @@ def rerender(words):
         folders["again"] = None
     if options.live:
         folders["as_run"] = "logged"
+    description.report_warnings("rerender", description.describe(options.log, options.run_number))
     renderings = Renderings(options, folders)
     with own_files.results_folder(options.out):
         renderings.run()

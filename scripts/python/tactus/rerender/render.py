@@ -17,13 +17,15 @@ class Refused(Exception):
     """The node failed; its last message."""
 
 
-def command(programs, sense, log, folder, profile, tool, settings):
-    """The command line of a node. profile: a file, "logged", or None; settings: {modality: [name=value]}."""
+def command(programs, sense, log, folder, profile, tool, settings, run="1"):
+    """The command line of a node. profile: a file, "logged", or None; settings: {modality: [name=value]}; run: its number in the log."""
     node, output, name = SENSES[sense]
     words = [os.path.join(programs, node), "--log", log, output, os.path.join(folder, name),
              "--presented", os.path.join(folder, f"presented_{sense}.csv")]
     if sense == "visual":
         words += ["--frames", os.path.join(folder, "frames.csv")]
+    if run != "1":
+        words += ["--run", run]
     if profile:
         words += ["--degrade", profile]
     if tool and sense in PER_TOOL:

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -245,6 +246,32 @@ TEST_CASE("Counts in files that are negative, huge or wrong are one clause and l
   for (const std::string number : {"nan", "inf", "-inf", "1e40", "1e999"})
     CHECK(said("t.obj", "v 0 0 " + number + "\nv 1 0 0\nv 0 1 0\nf 1 2 3\n") != "");
   CHECK(memory_of_readers_MB() < 1200);
+}
+
+TEST_CASE("A glTF whose sizes, offsets or indices are no numbers, or contradict each other, is refused, not read in part") {
+  SceneFile file;
+  const auto why_with = [&](const std::function<void(Json&)>& change) {
+    Json document = gltf();
+    change(document);
+    file.write("mesh.gltf", document.dump());
+    return why_here(file.folder() / "mesh.gltf");
+  };
+  CHECK(why_with([](Json&) {}) == "");
+  const std::size_t bytes = gltf()["buffers"][0]["byteLength"];
+  CHECK_THAT(why_with([&](Json& f) { f["buffers"][0]["byteLength"] = bytes - 1; }), Contains("beyond its buffer"));
+  CHECK_THAT(why_with([&](Json& f) { f["buffers"][0]["byteLength"] = bytes + 1; }), Contains("shorter than its byteLength"));
+  for (const Json bad : {Json(-1), Json(1.5), Json("x"), Json(1e12)}) {
+    INFO(bad);
+    CHECK(why_with([&](Json& f) { f["meshes"][0]["primitives"][0]["indices"] = bad; }) != "");
+    CHECK(why_with([&](Json& f) { f["buffers"][0]["byteLength"] = bad; }) != "");
+    CHECK(why_with([&](Json& f) { f["bufferViews"][0]["byteOffset"] = bad; }) != "");
+    CHECK(why_with([&](Json& f) { f["bufferViews"][0]["byteStride"] = bad; }) != "");
+    CHECK(why_with([&](Json& f) { f["accessors"][0]["byteOffset"] = bad; }) != "");
+    CHECK(why_with([&](Json& f) { f["accessors"][0]["bufferView"] = bad; }) != "");
+  }
+  const int indices = gltf()["meshes"][0]["primitives"][0]["indices"];
+  CHECK_THAT(why_with([&](Json& f) { f["accessors"][static_cast<std::size_t>(indices)]["count"] = 5; }), Contains("three corners"));
+  CHECK_THAT(why_with([](Json& f) { f["nodes"][0]["scale"] = {1, 2}; }), Contains("the scale of a node is not 3 numbers"));
 }
 
 TEST_CASE("A mesh with a million triangles around one point has its normals in linear time") {

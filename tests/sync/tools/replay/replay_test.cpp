@@ -19,17 +19,23 @@ namespace {
 constexpr Nanoseconds kTick{1'000'000};
 const HostTime kNow = host_time(900'000'000'000);
 
+LogIndex index_of(const std::vector<std::uint8_t>& bytes) {
+  LogIndex index(bytes);
+  index.read_all();
+  return index;
+}
+
 // 1,200 messages, 1 ms apart, and their player.
 struct Player {
   DamagedLog log{1200};
-  LogOrigin origin = origin_of(log.bytes);
+  LogIndex index = index_of(log.bytes);
   HostTime now = kNow;
   Replay replay;
   std::vector<std::int64_t> numbers;
   std::vector<HostTime> at;
   std::vector<ReplayMoment> moments;
 
-  explicit Player(const ReplayOptions& options = {}) : replay(log.bytes, origin, options, now) {}
+  explicit Player(const ReplayOptions& options = {}) : replay(index, 1, options, now) {}
   void play(Nanoseconds d) {
     for (const HostTime end = now + d; now < end;) {
       now += kTick;
@@ -172,16 +178,16 @@ TEST_CASE("A range of a log is replayed in a loop") {
 
 TEST_CASE("Invalid options are rejected with one sentence") {
   DamagedLog log(10);
-  const LogOrigin origin = origin_of(log.bytes);
+  const LogIndex index = index_of(log.bytes);
   const auto with = [&](double start, double end, double speed) {
     ReplayOptions o;
     o.start_s = start, o.end_s = end, o.speed = speed;
-    Replay(log.bytes, origin, o, kNow);
+    Replay(index, 1, o, kNow);
   };
   CHECK_THROWS_WITH(with(5, -1, 1), Catch::Contains("--start"));
   CHECK_THROWS_WITH(with(0.005, 0.001, 1), Catch::Contains("--start"));
   CHECK_THROWS_WITH(with(0, -1, 1000), Catch::Contains("speed"));
-  CHECK_THROWS_WITH(Replay({}, origin, {}, kNow), Catch::Contains("not an LCM log"));
+  CHECK_THROWS_WITH(Replay(LogIndex({}), 1, {}, kNow), Catch::Contains("not an LCM log"));
 }
 
 TEST_CASE("1,000 damaged logs are replayed to their end with their undamaged messages") {
@@ -190,11 +196,11 @@ TEST_CASE("1,000 damaged logs are replayed to their end with their undamaged mes
     std::mt19937 random(seed);
     DamagedLog log = sound;
     log.damage(random);
-    const LogOrigin origin = origin_of(log.bytes);
+    const LogIndex index = index_of(log.bytes);
     ReplayOptions o;
     o.speed = 0;
     o.max_per_s = 1e6;
-    Replay replay(log.bytes, origin, o, kNow);
+    Replay replay(index, 1, o, kNow);
     std::set<std::int64_t> missing = log.whole;
     HostTime now = kNow;
     for (int i = 0; i < 100 && !replay.over(); ++i)
@@ -207,34 +213,6 @@ TEST_CASE("1,000 damaged logs are replayed to their end with their undamaged mes
     missing.erase(0);    // LOG_INFO is not in the live part
     missing.erase(119);  // a damaged neighbour may hide the end of the log
     CHECK(missing.size() <= 1);
-  }
-}
-
-TEST_CASE("seek_log() finds a time in a damaged log without reading all of it") {
-  for (unsigned seed = 0; seed < 100; ++seed) {
-    std::mt19937 random(seed);
-    DamagedLog log(3000);
-    if (seed % 2)
-      for (int i = 0; i < 20; ++i) log.damage(random);
-    if (seed % 5 == 0) {
-      // A hole, as a full disk or an interrupted copy leaves it; longer than the whole log.
-      log.bytes.insert(log.bytes.end(), 1'000'000, 0);
-    }
-    const std::int64_t begin_us = (DamagedLog::kBegin_ns + DamagedLog::kOffset_ns) / 1000;
-    const std::int64_t wanted = static_cast<std::int64_t>(random() % 3000);
-    LogScanner scanner(log.bytes);
-    scanner.seek(seek_log(log.bytes, begin_us + 1000 * wanted));
-    std::set<std::int64_t> missing;
-    for (const std::int64_t n : log.whole)
-      if (n >= wanted) missing.insert(n);
-    std::int64_t before = 0;
-    for (LogEvent e; scanner.next(e);) {
-      missing.erase(e.number);
-      if (e.number < wanted) ++before;
-    }
-    INFO("seed " << seed);
-    CHECK(missing.empty());
-    CHECK(before < 1500);
   }
 }
 

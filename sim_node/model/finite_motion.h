@@ -1,0 +1,34 @@
+// A state that is not finite stops the world: no force, pose or sound may follow from it.
+#pragma once
+
+#include <cmath>
+#include <stdexcept>
+
+#include "sim_node/model/body_motion.h"
+
+namespace tactus::sim {
+
+// The first quantity of a body that is not finite, as the subject of a sentence; null: all are finite. Realtime-safe: yes.
+inline const char* infinite_quantity(const BodyMotion& m) {
+  // A sum of finite numbers below 1e300 is finite, and a number that is not finite stays so in a sum.
+  const double sum = m.position_m.sum() + m.centre_m.sum() + m.orientation.coeffs().sum() + m.velocity_m_s.sum() + m.spin_rad_s.sum();
+  if (std::isfinite(sum)) return nullptr;
+  if (!m.position_m.allFinite() || !m.centre_m.allFinite()) return "the position";
+  if (!m.orientation.coeffs().allFinite()) return "the orientation";
+  if (!m.velocity_m_s.allFinite()) return "the velocity";
+  return m.spin_rad_s.allFinite() ? nullptr : "the spin";
+}
+
+class StateNotFinite : public std::runtime_error {
+ public:
+  StateNotFinite(int body_index, const char* of) : std::runtime_error("the state of a body is not finite"), body(body_index), quantity(of) {}
+  int body;  // index in the world
+  const char* quantity;
+};
+
+// Throws StateNotFinite.
+inline void require_finite(int body, const BodyMotion& motion) {
+  if (const char* const quantity = infinite_quantity(motion)) throw StateNotFinite(body, quantity);
+}
+
+}  // namespace tactus::sim
