@@ -170,7 +170,7 @@ int main(int argc, char** argv) try {
   ReplayArguments arguments;
   arguments.add_to(app);
   sync::parse_or_exit(app, kReplay.name, argc, argv);
-  auto& [log, speed, control, play, selection_options, only_describe, stay, run] = arguments;
+  auto& [log, speed, control, play, selection_options, only_describe, stay, ready_timeout_s, run] = arguments;
   play.speed = sync::speed_of(speed);
   if (play.speed < 0) throw std::runtime_error("--speed " + speed + ": give a number from 0.01 to 100, or max");
 
@@ -217,13 +217,13 @@ int main(int argc, char** argv) try {
   std::vector<std::uint8_t> message;
   bool quit = false, end_reported = false;
   const auto status_text = [&] { return position_text(*replay, index, play, port.refused()); };
-  sync::WorldStart start({.awaited = selection_options.live, .run_id = options.run_id, .max_wait = sync::from_seconds(arguments.ready_timeout_s)},
+  sync::WorldStart start({.awaited = selection_options.live, .run_id = options.run_id, .max_wait = sync::from_seconds(ready_timeout_s)},
                          sync::host_now());
   bool waits = scene.has_value();
   if (waits) replay->pause(sync::host_now());
   const auto begin = [&](sync::HostTime now) {
     if (waits && !start.late().empty())
-      std::cerr << "replay: begins without " << sync::printable(start.late()) << ": not ready after " << arguments.ready_timeout_s
+      std::cerr << "replay: begins without " << sync::printable(start.late()) << ": not ready after " << ready_timeout_s
                 << " s; it misses the first messages. Increase --ready-timeout" << std::endl;
     if (std::exchange(waits, false) && !play.paused) replay->resume(now);
     std::cerr << "replay: begins, " << status_text() << std::endl;
