@@ -217,9 +217,9 @@ void Surfaces::rise(Surface& s, double height_m, double dt) const {
   if (s.held) {
     // A hand that leaves takes the surface with it, without a force.
     if (s.depth_m <= 0) s.lag_m_ = std::min(s.lag_m_, std::max(0.0, -height_m));
-    // K (d z + z^2 / 2) <= E for the rise z at depth d.
-    const double stiffness_N_m = std::max(1.0, s.coupling_stiffness_N_m), depth_m = std::max(0.0, s.depth_m);
-    step_m = std::min(step_m, std::sqrt(depth_m * depth_m + 2 * rise_J_ / stiffness_N_m) - depth_m);
+    // K (d z + z^2 / 2) <= E for the rise z at depth d. K is not yet known in the first tick.
+    const double K = s.coupling_stiffness_N_m, depth_m = std::max(0.0, s.depth_m);
+    step_m = K > 0 ? std::min(step_m, std::sqrt(depth_m * depth_m + 2 * rise_J_ / K) - depth_m) : 0;
   }
   s.lag_m_ = std::max(0.0, s.lag_m_ - step_m);
 }

@@ -54,7 +54,7 @@ class ClusterRecord {
 
   Series exerted_N_, commanded_N_, command_degC_, plate_degC_;
   ForceAccount force_;
-  HeatAccount commanded_heat_, plate_heat_;
+  HeatAccount commanded_heat_, plate_heat_{kPlateOvershoot_K};
   sync::HostTime sound_start_{};
   std::map<std::string, Gap> gaps_;  // by output, see kOutputs
 };

@@ -23,8 +23,9 @@ using namespace std::chrono_literals;
 constexpr double kFelt_N = 0.3;
 // After the last hostile message: 0.3 s for a successor, 2.5 s for the scene of another sender, a lift of the hand.
 constexpr sync::Nanoseconds kReturn = 4s;
-// Bounded memories fill in the first half; later growth has no bound. Design: one page of each of 35 channels.
-constexpr double kMaxGrowth_kB = 256;
+// Bounded memories fill in the first half; later growth has no bound. Queues and histories vary by some hundred kB. In 90,000 ticks of a
+// row a leak of 24 bytes a tick passes this limit.
+constexpr double kMaxGrowth_kB = 1024;
 
 const std::map<std::string, unsigned, std::less<>> kOutputOf{
     {channels::kTouchModel, kWorld}, {channels::kContactEvents, kWorld}, {channels::kContacts, kWorld},     {channels::kWorldState, kWorld},
@@ -66,7 +67,7 @@ class Outputs {
   }
 
   ForceAccount force;
-  HeatAccount commanded, plate;
+  HeatAccount commanded, plate{kPlateOvershoot_K};
   Hashes hashes;
   double commanded_N = 0;
   bool hashing = true;
@@ -77,12 +78,13 @@ void add_fault(std::string& faults, const std::string& what, const std::string& 
   if (!fault.empty()) faults += (faults.empty() ? "" : "; ") + what + ": " + fault;
 }
 
-// Sends one message on each channel of the row in each millisecond.
+// Sends one message on each channel of the row in each millisecond. Alone: loses all others of these channels until the next.
 class Attacker {
  public:
   // current: refers to it as long as it exists.
   Attacker(const HostileRow& row, sync::VirtualTime& time, unsigned seed, Attacker*& current)
-      : current_(current), time_(time), end_(time.wire().join()), source_(row.kind, VirtualCluster::kRun, sync::VirtualTime::kClock, seed) {
+      : current_(current), time_(time), end_(time.wire().join()), source_(row.kind, VirtualCluster::kRun, sync::VirtualTime::kClock, seed),
+        alone_(row.alone) {
     for (const std::string& name : row.channels) channels_.push_back(&hostile_channel(name));
     current_ = this;
   }
@@ -95,8 +97,10 @@ class Attacker {
   void attack() {
     sending_ = true;
     for (const HostileChannel* channel : channels_) {
+      if (alone_) time_.wire().block(channel->name, time_.now());
       const Bytes bytes = source_.next(*channel, sync::to_ns(time_.now()));
       for (std::size_t side : {0u, 1u}) time_.wire().send(*end_, side, channel->name, bytes, time_.now());
+      if (alone_) time_.wire().block(channel->name, time_.now() + 1ms);
       ++sent_;
     }
     sending_ = false;
@@ -108,6 +112,7 @@ class Attacker {
   sync::VirtualTime& time_;
   std::unique_ptr<sync::VirtualEnd> end_;
   HostileSource source_;
+  bool alone_;
   std::vector<const HostileChannel*> channels_;
   bool sending_ = false;
   std::int64_t sent_ = 0;
@@ -142,10 +147,8 @@ std::vector<HostileRow> hostile_rows() {
       {"forged display", display, Hostility::kForged, kWorld | kTouch | kSound},
       {"forged, all outputs", outputs, Hostility::kForged},
       {"commands of the run", control, Hostility::kSecondSender, 0, false},
-      {"renderers alone", all, Hostility::kSecondSender, 0, false, {"sim_node", "arm_driver", "thermal_device"}},
-      {"renderers alone, forged", outputs, Hostility::kForged, 0, true, {"sim_node", "arm_driver", "thermal_device"}},
-      {"simulation, driver and display alone", outputs, Hostility::kForged, 0, true,
-       {"haptic_node", "audio_node", "thermal_node", "visual_node", "sync_node"}},
+      {"alone: another sender, all channels", all, Hostility::kSecondSender, 0, false, true},
+      {"alone: forged, all outputs", outputs, Hostility::kForged, 0, true, true},
   };
 }
 
@@ -165,9 +168,6 @@ HostileResult run_row(const HostileRow& row, int milliseconds, unsigned seed, bo
     sync::VirtualTime& time = cluster.time();
     std::optional<Attacker> owned;
     if (hostile) owned.emplace(row, time, seed, attacker);
-    const sync::HostTime until = time.now() + milliseconds * 1ms;
-    if (hostile)
-      for (const std::string& program : row.stopped) time.freeze(program, until);
     double half_kB = 0;
     for (int ms = 0; ms < milliseconds; ++ms) {
       if (ms == milliseconds / 2) half_kB = allocated_kB();

@@ -21,7 +21,7 @@ struct HostileRow {
   Hostility kind = Hostility::kMalformed;
   unsigned same = 0;  // outputs that do not change, to the bit
   bool returns = true;  // the hand feels a force again when the hostile messages have ended
-  std::vector<std::string> stopped = {};  // programs that do not run meanwhile
+  bool alone = false;   // all genuine messages of these channels are lost meanwhile
 };
 std::vector<HostileRow> hostile_rows();
 

@@ -77,8 +77,8 @@ void HeatAccount::add(sync::HostTime time, double degC) {
 
 std::string HeatAccount::faults() const {
   std::string text = finite_ ? "" : "a temperature that is not finite";
-  append(text, lowest_degC_ < limits_.min_degC - kRounding, "temperature in degC", lowest_degC_);
-  append(text, highest_degC_ > limits_.max_degC + kRounding, "temperature in degC", highest_degC_);
+  append(text, lowest_degC_ < limits_.min_degC - overshoot_K_ - kRounding, "temperature in degC", lowest_degC_);
+  append(text, highest_degC_ > limits_.max_degC + overshoot_K_ + kRounding, "temperature in degC", highest_degC_);
   append(text, max_dose_s_ > limits_.dose_s + kFollow_s, "dose of warmth in s", max_dose_s_);
   append(text, max_cold_s_ > limits_.cold_s + kFollow_s, "time of cold in s", max_cold_s_);
   return text;

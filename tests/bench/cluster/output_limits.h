@@ -11,6 +11,9 @@
 
 namespace tactus::bench {
 
+// Design: a tenth of the deviation of 2 K that makes a plate count as one that does not follow (thermal_node/display/following.h).
+inline constexpr double kPlateOvershoot_K = 0.2;
+
 // Of the default settings (haptic_node, thermal_node and audio_node/settings.csv, which name the sources).
 struct SafeLimits {
   double force_N = 8, slew_N_s = 2000, torque_N_m = 0.3, energy_J = 0.49, power_W = 1;
@@ -40,6 +43,8 @@ class ForceAccount {
 // Exposure of the skin to commanded or measured temperatures.
 class HeatAccount {
  public:
+  // overshoot_K: by which a real plate may pass the range of its commands while it approaches them.
+  explicit HeatAccount(double overshoot_K = 0) : overshoot_K_(overshoot_K) {}
   void add(sync::HostTime time, double degC);
   std::string faults() const;
   double lowest_degC() const { return lowest_degC_; }
@@ -50,6 +55,7 @@ class HeatAccount {
 
  private:
   SafeLimits limits_;
+  double overshoot_K_;
   std::optional<sync::HostTime> last_;
   double lowest_degC_ = 33, highest_degC_ = 33, degC_ = 33, dose_s_ = 0, cold_s_ = 0, max_dose_s_ = 0, max_cold_s_ = 0;
   bool finite_ = true;

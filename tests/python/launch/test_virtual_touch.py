@@ -71,10 +71,11 @@ class VirtualTouch(unittest.TestCase):
                 profile = self.folder / "late.xml"
                 profile.write_text(f'<profile name="late"><degrade modality="haptic" {how}/></profile>', encoding="utf-8")
                 words += ["--degrade", str(profile)]
-            touch = self.run_scene(PRESS, *words, *(["--latency-ms", "100"] if how == "latency" else []))
+            touch = self.run_scene(PRESS, *words, *(["--latency-ms", "100"] if how == "latency" else []), seconds=5)
             held = []
-            for begin, end in ((1.4, 1.6), (2.9, 3.1)):
-                at = [i for i, time in enumerate(touch["time_s"]) if begin < time < end]
+            start = next(time for time, z in zip(touch["host_s"], touch["device_z_m"]) if z < 0.0399)  # 0.5 s after the path began
+            for begin, end in ((0.9, 1.1), (2.4, 2.6)):
+                at = [i for i, time in enumerate(touch["host_s"]) if begin < time - start < end]
                 held.append((sum(touch["force_z_N"][i] for i in at) / len(at), sum(0.008 - touch["device_z_m"][i] for i in at) / len(at)))
             fresh = fresh or held
             for one, same in zip(held, fresh):
