@@ -30,7 +30,7 @@ class Server(unittest.TestCase):
                     said = equipment.missing_equipment(plan)
                 self.assertEqual(dead, any("does not answer" in sentence for sentence in said), (variable, said))
 
-    def test_nothing_is_reported_when_nobody_listens(self):
+    def test_nothing_is_reported_without_listen(self):
         with mock.patch.dict(os.environ, {"PULSE_SERVER": "tcp:127.0.0.1:1"}):
             self.assertEqual([], equipment.missing_equipment(types.SimpleNamespace(listen=False, without=["visual_node"])))
 
