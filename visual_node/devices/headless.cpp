@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 #include "visual_node/devices/context_loss.h"
@@ -135,6 +136,25 @@ void configure_software_renderer() {
   setenv("EGL_LOG_LEVEL", "fatal", 0);  // our own message names the failures
 }
 
+namespace {
+
+// The remedy that fits this machine: the packages of the software renderer where it is missing, else the variables of the
+// environment that choose another one.
+std::string renderer_advice() {
+  if (!dlopen("libEGL_mesa.so.0", RTLD_LAZY)) return "install libegl-mesa0 and libgl1-mesa-dri for a software renderer";
+  std::string chosen;
+  for (char** entry = environ; *entry; ++entry) {
+    const std::string_view text = *entry;
+    const std::string_view name = text.substr(0, text.find('='));
+    for (const std::string_view prefix : {"__EGL_", "EGL_PLATFORM", "LIBGL_", "MESA_GL_", "MESA_LOADER_", "GALLIUM_"})
+      if (name.starts_with(prefix)) chosen += (chosen.empty() ? "" : ", ") + std::string(name);
+  }
+  return "the software renderer libegl-mesa0 is installed, but " +
+         (chosen.empty() ? "does not start; read the output of eglinfo (mesa-utils)" : "variables choose another; unset " + chosen);
+}
+
+}  // namespace
+
 std::unique_ptr<Display> make_headless(int egl_device) {
   // libepoxy would abort the process without this library.
   if (!dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL))
@@ -145,8 +165,7 @@ std::unique_ptr<Display> make_headless(int egl_device) {
     if (auto display = try_candidate(c, reason)) return display;
     tried += (tried.empty() ? "" : "; ") + c.name + " (" + reason + ")";
   }
-  throw std::runtime_error("no OpenGL 3.3 context, tried " + tried +
-                           "; install libegl-mesa0 and libgl1-mesa-dri for a software renderer");
+  throw std::runtime_error("no OpenGL 3.3 context, tried " + tried + "; " + renderer_advice());
 }
 
 }  // namespace tactus::visual

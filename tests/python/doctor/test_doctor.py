@@ -135,6 +135,13 @@ class Devices(unittest.TestCase):
         self.assertEqual(devices.picture(lambda: "llvmpipe (LLVM)").verdict, WEAK)
         self.assertEqual(devices.picture(fails).verdict, MISSING)
 
+    def test_the_remedy_for_a_missing_renderer_fits_the_machine(self):
+        with mock.patch.object(devices.glob, "glob", return_value=[]), mock.patch.object(devices.pathlib.Path, "exists", return_value=False):
+            self.assertIn("scripts/setup run installs", devices.renderer_advice())
+        with mock.patch.object(devices.pathlib.Path, "exists", return_value=True), mock.patch.object(devices.pathlib.Path, "is_dir", return_value=True), \
+                mock.patch.dict(os.environ, {"LIBGL_DRIVERS_PATH": "/none"}, clear=True):
+            self.assertEqual("a software renderer is installed; unset LIBGL_DRIVERS_PATH", devices.renderer_advice())
+
     def test_a_missing_sound_card_is_reported(self):
         self.assertEqual(devices.sound(False).verdict, WEAK)
         self.assertEqual(devices.sound(True).verdict, GOOD)

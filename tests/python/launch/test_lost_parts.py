@@ -17,12 +17,11 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts" /
 from tactus.launch import main, network, services
 from tactus.refusal import Refusal
 
-GOOD = "recorder: /out/run.lcmlog: 9000 events"
 FREE, FULL = (types.SimpleNamespace(f_bavail=blocks, f_frsize=4096) for blocks in (10**6, 3))
 
 
 class Recording(unittest.TestCase):
-    def errors(self, line=GOOD, deaths=(), disk=FREE):
+    def errors(self, line="", deaths=(), disk=FREE):
         with mock.patch.object(main.os, "statvfs", lambda _: disk):
             return main.incomplete_recording(pathlib.Path("/out"), line, list(deaths))
 
@@ -38,10 +37,20 @@ class Recording(unittest.TestCase):
         self.assertTrue(self.errors(line)[-1].startswith(line + "; free space, raise the limit of file sizes"))
 
     def test_a_full_disk_is_named_also_when_the_log_of_the_recorder_is_on_it(self):
-        self.assertIn("the disk of /out is full", self.errors("", disk=FULL)[-1])
+        self.assertIn("the disk of /out is full", self.errors(disk=FULL)[-1])
 
 
 class Deaths(unittest.TestCase):
+    def test_the_line_about_refused_messages_is_found_before_later_ones(self):
+        with tempfile.TemporaryDirectory() as kept:
+            folder = pathlib.Path(kept)
+            (folder / "services").mkdir()
+            service = services.Service(folder, "recorder", ["true"], folder / "log", folder)
+            self.assertEqual("", service.last_line_with(main.REFUSED))
+            line = "recorder: run.lcmlog: the disk refuses the log (File too large); 7 events"
+            (folder / "log").write_text(f"recorder: writing run.lcmlog\n{line}\nrecorder: run.lcmlog is incomplete; free space on its disk\n", encoding="utf-8")
+            self.assertEqual(line, service.last_line_with(main.REFUSED))
+
     def test_the_way_of_each_death_is_kept(self):
         with tempfile.TemporaryDirectory() as kept:
             folder = pathlib.Path(kept)

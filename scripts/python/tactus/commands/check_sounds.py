@@ -13,9 +13,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ET
 
-from tactus.paths import BIN
-
-PROGRAM = str(BIN / "check_sounds")
+from tactus.commands import prepare
 
 
 def materials_of(scene):
@@ -38,7 +36,7 @@ def main(words):
     parser.add_argument("--scene")
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args(words)
-    command = [PROGRAM, options.folder]
+    command = [prepare.program("check_sounds"), options.folder]
     if options.scene:
         command += ["--materials", ",".join(materials_of(options.scene))]
     if options.json:
@@ -46,5 +44,5 @@ def main(words):
     try:
         return subprocess.run(command, check=False).returncode
     except OSError as e:
-        sys.exit(f"check_sounds: {PROGRAM}: {e.strerror}; run scripts/build first")
+        sys.exit(f"check_sounds: {command[0]}: {e.strerror}; run scripts/build check_sounds")
 

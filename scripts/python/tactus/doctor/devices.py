@@ -47,11 +47,21 @@ def renderer():
     return name
 
 
+def renderer_advice():
+    """The remedy that fits this machine: packages where they are missing, else the variables that choose another renderer."""
+    folders = [*map(pathlib.Path, glob.glob("/usr/lib/*-linux-gnu*")), pathlib.Path("/usr/lib64"), pathlib.Path("/usr/lib")]
+    installed = any((folder / "libEGL_mesa.so.0").exists() for folder in folders) and any((folder / "dri").is_dir() for folder in folders)
+    if not installed:
+        return "scripts/setup run installs a software renderer (libegl-mesa0, libgl1-mesa-dri)"
+    chosen = sorted(name for name in os.environ if name.startswith(("__EGL_", "EGL_PLATFORM", "LIBGL_", "MESA_GL_", "MESA_LOADER_", "GALLIUM_")))
+    return ("a software renderer is installed; unset " + ", ".join(chosen)) if chosen else "a software renderer is installed; read the output of eglinfo (mesa-utils)"
+
+
 def picture(find=renderer):
     try:
         name = find()
     except (OSError, AttributeError, ValueError) as error:
-        return Line("pictures (EGL)", MISSING, f"rendering is impossible: {error}", "scripts/setup --packages installs a software renderer")
+        return Line("pictures (EGL)", MISSING, f"rendering is impossible: {error}", renderer_advice())
     if "llvmpipe" in name or "softpipe" in name:
         return Line("pictures (EGL)", WEAK, f"{name}: software rendering, 60 frames a second of 640 x 480 on one free core",
                     "install a graphics card and its driver for larger frames", {"renderer": name})

@@ -3,13 +3,19 @@ import glob
 import os
 import shutil
 
+from tactus.launch import sound_server
+
 
 def missing_equipment(plan):
     """One sentence for each missing item."""
     found = []
     if "visual_node" not in plan.without and not shutil.which("ffmpeg"):
         found.append("visual_node: ffmpeg is not installed, so video.mp4 is not written; run scripts/setup")
-    if plan.listen and "audio_node" not in plan.without and not has_sound_card():
+    server = os.environ.get("PULSE_SERVER")
+    if plan.listen and "audio_node" not in plan.without and sound_server.is_silent(server):
+        found.append(f"audio_node: --listen, but the sound server of PULSE_SERVER ({server}) does not answer, so sound may only be written to audio.wav; "
+                     "start the server, or unset the variable")
+    elif plan.listen and "audio_node" not in plan.without and not has_sound_card():
         found.append("audio_node: --listen, but there is no sound card, so only audio.wav is written; connect a sound card or start a sound server")
     return found
 

@@ -149,20 +149,24 @@ def run(plan, watch=watch_over):
         warnings.append(stop.cut_short)
     errors += summarise(plan, git, {*lost, *taken_down}, restarts, warnings)
     report_run(f"results in {plan.out}")
-    errors += incomplete_recording(plan.out, running.services["recorder"].last_output_line(), deaths.get("recorder", []))
+    errors += incomplete_recording(plan.out, running.services["recorder"].last_line_with(REFUSED), deaths.get("recorder", []))
     os.close(claim)
     return errors
 
 
-def incomplete_recording(out, last_line, deaths):
-    """The errors of the recorder, one sentence each, with the lost part. last_line: of its output; deaths: how it died, each time."""
+REFUSED = ("the disk refuses the log", " lost because ")  # sync/tools/recorder/recorder.cpp
+
+
+def incomplete_recording(out, refused, deaths):
+    """The errors of the recorder, one sentence each, with the lost part. refused: the line of its output about refused messages, or ""; deaths: how it
+    died, each time."""
     errors = []
     if deaths:
         times = "once" if len(deaths) == 1 else f"{len(deaths)} times"
         errors.append(f"recorder: died {times}, the last time by {deaths[-1]}; the messages of that time are not in {out}/run.lcmlog; see {out}/logs/recorder.log")
     disk = os.statvfs(out)
-    if "the disk refuses the log" in last_line or " lost because " in last_line:
-        errors.append(f"{last_line}; free space, raise the limit of file sizes (ulimit -f), or name another folder with --out")
+    if refused:
+        errors.append(f"{refused}; free space, raise the limit of file sizes (ulimit -f), or name another folder with --out")
     elif disk.f_bavail * disk.f_frsize < arguments.FULL_BYTES:
         errors.append(f"recorder: the disk of {out} is full; the last messages, the end of sound and video, and tables can be missing; free space, or name "
                       "another folder with --out")

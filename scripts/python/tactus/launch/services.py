@@ -90,6 +90,14 @@ class Service:
             return ""
         return next((line.strip() for line in reversed(lines) if line.strip()), "")
 
+    def last_line_with(self, words):
+        """The last line of its output that holds one of these texts, or ""."""
+        try:
+            lines = self.log.read_text(encoding="utf-8", errors="replace").split("\n")
+        except OSError:
+            return ""
+        return next((line.strip() for line in reversed(lines) if any(word in line for word in words)), "")
+
     def deaths(self):
         return len(self.death_reasons())
 

@@ -349,3 +349,14 @@ TEST_CASE("A picture that is cut off at any byte or damaged is accepted or one c
     }
   }
 }
+
+TEST_CASE("A geometry file without a surface is refused with a sentence that names the lack") {
+  SceneFile file;
+  const char* points = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n";
+  for (const auto& [name, text] : {std::pair{"lines.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\np 3\n"}, {"points.obj", "v 0 0 0\nv 1 0 0\n"},
+                                   {"empty.stl", "solid a\nendsolid a\n"}, {"points.ply", points}}) {
+    INFO(name);
+    file.write(name, text);
+    CHECK_THAT(why_here(file.folder() / name), Contains("it holds no surface, neither a triangle nor a polygon; export it with faces"));
+  }
+}
