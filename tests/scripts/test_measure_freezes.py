@@ -80,7 +80,7 @@ class Freezes(unittest.TestCase):
 
     def test_a_pause_of_another_process_is_found(self):
         found = violations("audio_node", log_of(lambda ms: RESTING_N))
-        self.assertTrue(any(v.startswith("audio_node: TOUCH_MODEL has") for v in found), found)
+        self.assertTrue(any(v.startswith("audio_node: TOUCH_MODEL has 1 messages during the stops") for v in found), found)
 
     def test_a_step_of_sound_after_an_interruption_is_found(self):
         for first, wrong in ((0.0, False), (0.5, True)):

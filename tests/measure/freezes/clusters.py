@@ -26,7 +26,7 @@ SENSES = {
     "thermal_node": ("thermal_node", ("--tool", "hand", "--set", "device=external")),
     "thermal_device": ("thermal_device", ("--tool", "0")),
 }
-PICTURES = {"visual_node": ("visual_node", ("--no-video", "--set", "width=160", "--set", "height=120"))}
+PICTURES = {"visual_node": ("visual_node", ("--no-video", "--set", "width=320", "--set", "height=240"))}
 
 
 class Cluster:

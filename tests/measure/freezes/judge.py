@@ -12,11 +12,11 @@ from . import bus_log
 
 FORCE_LIMIT_N, SLEW_N_S, FADE_S = 8.0, 2000.0, 0.02
 MIN_DEGC, MAX_DEGC, NEUTRAL_DEGC, RETURN_K_S = 15.0, 42.0, 33.0, 20.0
+PLATE_OVERSHOOT_K = 0.2  # a real plate passes its command while it approaches it
 ZERO_N = 1e-3  # single precision of the velocity: 1e-7 m/s of 0.1 kg in 1 ms is 1e-5 N
 FELT_N = 0.3
 ROUNDING_N = 1e-2
 RATE_TOLERANCE = 0.02  # of the outputs of the others while a process is stopped
-HEALTH_TOLERANCE = 0.1  # of health at 10 Hz: a stop begins and ends between two messages
 UNDERFLOW, FADE_IN_S = 2, 0.005  # MEDIA_CLOCK: after an interruption sound fades in
 MIN_STOPPED_S = 0.2  # shorter stops have too few messages for a rate
 # Times after which an effect must be over, s: (DEVICE_FORCE is zero, the driver exerts nothing, the command returns to neutral).
@@ -97,9 +97,10 @@ class Judge:
                 self.result.worst("rise_N", rise)
                 if rise > ROUNDING_N:
                     self.violation(None, f"the force rises by {rise:.2f} N more than its limit")
-        for _, degC in (*self.log.command_degC, *self.log.plate_degC):
-            if not MIN_DEGC - 1e-3 <= degC <= MAX_DEGC + 1e-3:
-                self.violation(None, f"temperature of {degC:.2f} degC")
+        for what, series, overshoot_K in (("command", self.log.command_degC, 1e-3), ("plate", self.log.plate_degC, PLATE_OVERSHOOT_K)):
+            for _, degC in series:
+                if not MIN_DEGC - overshoot_K <= degC <= MAX_DEGC + overshoot_K:
+                    self.violation(None, f"{what} of {degC:.2f} degC")
         for _, force_N in self.log.commanded_N:
             if force_N > FORCE_LIMIT_N + ROUNDING_N:
                 self.violation(None, f"DEVICE_FORCE of {force_N:.2f} N")
@@ -168,21 +169,20 @@ class Judge:
             if owner == self.process:
                 continue
             times = sorted(times)
-            inside, outside = self.rates(times, stopped)
-            tolerance = RATE_TOLERANCE if output in bus_log.OUTPUTS else HEALTH_TOLERANCE
-            if outside and abs(inside / outside - 1) > tolerance:
-                self.violation(None, f"{output} has {inside:.1f} messages a second during the stops and {outside:.1f} otherwise")
+            found, expected = self.messages(times, stopped)
+            if found < expected * (1 - RATE_TOLERANCE) - len(stopped):  # a stop begins and ends between two messages
+                self.violation(None, f"{output} has {found} messages during the stops, and by its rate otherwise {expected:.0f}")
             gap_ms = max(longest_gap_ms(times, freeze) for freeze in stopped)
             if output in bus_log.OUTPUTS and gap_ms > self.result.gap_ms:
                 self.result.gap_ms, self.result.gap_of = gap_ms, output
 
-    def rates(self, times, stopped):
-        """(messages a second during the stops, otherwise)."""
+    def messages(self, times, stopped):
+        """(messages during the stops, number expected by the rate at other times)."""
         whole = (self.freezes[0][0], self.freezes[-1][1])
         stopped_s = sum(end - begin for begin, end in stopped) * 1e-9
         other_s = (whole[1] - whole[0]) * 1e-9 - stopped_s
-        inside = sum(count(times, freeze) for freeze in stopped)
-        return inside / stopped_s, (count(times, whole) - inside) / other_s if other_s > 0 else 0.0
+        found = sum(count(times, freeze) for freeze in stopped)
+        return found, (count(times, whole) - found) / other_s * stopped_s if other_s > 0 else 0.0
 
     def judge_sound(self):
         """Sound that continues after a stop of its process fades in within 5 ms."""
