@@ -134,7 +134,7 @@ def curve(condition, participant, rows, rng, asymmetric=False):
         else:
             made.fit = fitted
             made.why = TOO_FAR if intervals.unresolved(fitted.many)[0] else ""
-            if condition.kind == "sj":
+            if condition.kind == "sj" and (asymmetric or participant == ALL_PARTICIPANTS):
                 made.asymmetric = independent_channels.fit(made.levels, made.yes, made.total, rng if asymmetric else None)
                 forced = fits.fit(made.levels, made.yes, made.total, answers.FUNCTION["sj"], forced_peak=True)
                 made.aic = {"free peak": fitted.aic, "peak near 1": forced.aic, "asymmetric": made.asymmetric.aic}
