@@ -43,13 +43,17 @@ bool is_head_channel(std::string_view channel) {
   return channel == channels::kLogInfo || channel == kLogTypes || channel == channels::kSceneManifest || channel == channels::kAssetChunk;
 }
 
+std::uint64_t DuplicateFinder::stream_of(const LogEvent& event, const header_t& header) {
+  const std::int64_t sender[] = {header.source, header.incarnation, header.run_id};
+  return hashed(hashed(0, event.channel.data(), event.channel.size()), sender, sizeof sender);
+}
+
 Copy DuplicateFinder::observe(const LogEvent& event, const header_t& header) {
   if (is_head_channel(event.channel)) {
     if (head_.size() >= kMaxRemembered) head_.clear();
     return head_.insert(hash_of(event)).second ? Copy::kFirst : Copy::kDuplicate;
   }
-  const std::int64_t sender[] = {header.source, header.incarnation, header.run_id};
-  const std::uint64_t key = hashed(hashed(0, event.channel.data(), event.channel.size()), sender, sizeof sender);
+  const std::uint64_t key = stream_of(event, header);
   auto it = streams_.find(key);
   if (it == streams_.end()) {
     if (streams_.size() >= kMaxStreams) return Copy::kFirst;

@@ -34,6 +34,8 @@ class DuplicateFinder {
 
   // A message of this system. The head of a log (LOG_INFO and the scene) has no numbering of its own: it is never a contradiction.
   Copy observe(const LogEvent& event, const header_t& header);
+  // The same for all messages of one sender on one channel, which it numbers.
+  static std::uint64_t stream_of(const LogEvent& event, const header_t& header);
   // A message of another system, which has no number. Returns how many messages with the same channel and bytes came before it,
   // none of them more than kMaxDelay_us after the previous one; 0: none.
   std::int64_t observe_plain(const LogEvent& event);

@@ -87,7 +87,7 @@ bool LogIndex::add(const LogEvent& event, const LogScanner& before) {
     return true;
   }
   run.messages += known != nullptr;
-  place(event, present_->clock.observe(sample, scanner_));
+  place(event, known, present_->clock.observe(sample, scanner_));
   return true;
 }
 
@@ -143,7 +143,25 @@ bool LogIndex::same_identities_again() {
   return now.contradiction && std::popcount(now.recent_contradictions) >= kMinContradictions;
 }
 
-void LogIndex::place(const LogEvent& event, const RecorderClock::Result& result) {
+// True for a message that was written behind a later one of its sender, with the same stamp.
+bool LogIndex::overtaken(const LogEvent& event, const header_t* header, std::int64_t us) {
+  if (header == nullptr || present_->newest.size() > DuplicateFinder::kMaxStreams) return false;
+  const auto [it, first] = present_->newest.try_emplace(DuplicateFinder::stream_of(event, *header), Attempt::Newest{header->seq, us, events()});
+  if (!first && header->seq < it->second.seq && us == it->second.us) return true;
+  it->second = {header->seq, us, events()};
+  return false;
+}
+
+void LogIndex::add_late(const LogEvent& event, const header_t* header, std::int64_t us) {
+  RecordedRun& run = runs_.back();
+  const auto newest = header ? present_->newest.find(DuplicateFinder::stream_of(event, *header)) : present_->newest.end();
+  const bool precedes = newest != present_->newest.end() && newest->second.us == us && newest->second.seq > header->seq;
+  const RecordedRun::LateEvent late{us, precedes ? newest->second.event : INT64_MAX, event.begins_at(bytes_)};
+  run.late.insert(std::upper_bound(run.late.begin(), run.late.end(), late), late);
+  run.first_us = std::min(run.first_us, us);
+}
+
+void LogIndex::place(const LogEvent& event, const header_t* header, const RecorderClock::Result& result) {
   RecordedRun& run = runs_.back();
   Attempt& now = *present_;
   const std::size_t at = event.begins_at(bytes_);
@@ -151,12 +169,11 @@ void LogIndex::place(const LogEvent& event, const RecorderClock::Result& result)
                  : result.order == RecorderClock::Order::kLate  ? EventUse::kLate
                                                                 : EventUse::kMisdated;
   if (result.jump_us != 0) run.jumps.push_back({at, result.us, result.jump_us, now.clock.shift_us()});
+  if (use == EventUse::kInOrder && overtaken(event, header, result.us)) use = EventUse::kLate;
   if (use == EventUse::kLate && run.late.size() >= kMaxLate) use = EventUse::kMisdated;
   if (use == EventUse::kMisdated) ++run.misdated;
   if (use == EventUse::kLate) {
-    const RecordedRun::LateEvent late{result.us, at};
-    run.late.insert(std::upper_bound(run.late.begin(), run.late.end(), late), late);
-    run.first_us = std::min(run.first_us, result.us);
+    add_late(event, header, result.us);
   } else if (use == EventUse::kInOrder || !now.dated) {
     run.first_us = now.dated ? run.first_us : result.us;
     run.last_us = now.dated ? std::max(run.last_us, result.us) : result.us;

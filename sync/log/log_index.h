@@ -14,6 +14,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "sync/log/duplicate_finder.h"
@@ -40,6 +41,7 @@ struct RecordedRun {
   };
   struct LateEvent {
     std::int64_t us;
+    std::int64_t before;  // the number of the event with the same stamp that it precedes; INT64_MAX: it follows all of them
     std::size_t at;
     auto operator<=>(const LateEvent&) const = default;
   };
@@ -121,13 +123,19 @@ class LogIndex {
     std::uint32_t recent_contradictions = 0;  // a bit for each of the last messages with a known number
     std::vector<std::pair<std::int64_t, std::int64_t>> plain;  // events without number that may be copies, and how many came before
     bool origin_known = false;
+    struct Newest {
+      std::int64_t seq, us, event;
+    };
+    std::unordered_map<std::uint64_t, Newest> newest;  // message of each stream (DuplicateFinder)
   };
 
   Mark mark(const LogScanner& before) const;
   bool begins_other_run(const LogEvent& event, const header_t* header, const LogScanner& before);
   bool other_run_confirmed() const;
   bool add(const LogEvent& event, const LogScanner& before);
-  void place(const LogEvent& event, const RecorderClock::Result& result);
+  void place(const LogEvent& event, const header_t* header, const RecorderClock::Result& result);
+  void add_late(const LogEvent& event, const header_t* header, std::int64_t us);
+  bool overtaken(const LogEvent& event, const header_t* header, std::int64_t us);
   bool is_copy(const LogEvent& event, const header_t* header, const StampSample& sample, const LogScanner& before);
   bool same_identities_again();
   void begin_run(Mark at);

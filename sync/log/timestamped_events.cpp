@@ -19,7 +19,7 @@ void TimestampedEvents::enter(std::size_t run, std::int64_t join_us) {
   event_ = r.first_event;
   ahead_.reset();
   newest_us_ = join_us + (r.seek_points.empty() ? r.first_us : r.seek_points.front().us);
-  passed_late_ = {INT64_MIN, 0};
+  passed_late_ = {INT64_MIN, 0, 0};
 }
 
 std::int64_t TimestampedEvents::join_behind(std::size_t run, std::int64_t join_us) const {
@@ -64,7 +64,7 @@ void TimestampedEvents::seek(HostTime from) {
   scanner_.seek(point.at);
   event_ = point.event;
   newest_us_ = point.us + join_us_;
-  passed_late_ = {point.us, 0};
+  passed_late_ = {point.us, 0, 0};
 }
 
 bool TimestampedEvents::read_ahead() {
@@ -81,6 +81,7 @@ bool TimestampedEvents::read_ahead() {
       newest_us_ = bounded_us(event.timestamp_us) + r.shift_us(event.begins_at(index_->bytes())) + join_us_;
     event.timestamp_us = newest_us_;
     ahead_ = event;
+    ahead_event_ = event_ - 1;
   }
   return true;
 }
@@ -95,7 +96,8 @@ const RecordedRun::LateEvent* TimestampedEvents::next_late() const {
 bool TimestampedEvents::next(LogEvent& event, HostTime& time) {
   const bool more = read_ahead();
   const RecordedRun::LateEvent* const late = next_late();
-  if (late != nullptr && (!more || late->us < ahead_->timestamp_us)) {
+  const bool precedes = late != nullptr && (!more || late->us < ahead_->timestamp_us || (late->us == ahead_->timestamp_us && late->before <= ahead_event_));
+  if (precedes) {
     LogScanner scanner(index_->bytes());
     scanner.seek(late->at);
     if (!scanner.next(event)) return false;

@@ -48,8 +48,9 @@ class TimestampedEvents {
   LogScanner scanner_;
   std::int64_t event_ = 0;    // number of the next event in the log
   std::optional<LogEvent> ahead_;
+  std::int64_t ahead_event_ = 0;  // number of ahead_
   std::int64_t newest_us_ = 0, returned_us_ = INT64_MIN;
-  RecordedRun::LateEvent passed_late_{INT64_MIN, 0};
+  RecordedRun::LateEvent passed_late_{INT64_MIN, 0, 0};
 };
 
 }  // namespace tactus::sync

@@ -125,6 +125,10 @@ class Words(unittest.TestCase):
         for words in (["--port", "80"], ["--seed", "x"]):
             self.assertEqual(len(self.refusal(*words).strip().split("\n")), 1)
 
+    def test_the_number_of_a_run_is_passed_to_the_replay_or_refused(self):
+        self.assertIn("--run x", self.refusal("--run", "x"))
+        self.assertIn("--run 0", self.refusal("--run", "0"))
+
 
 class Descriptions(unittest.TestCase):
     def test_an_unreadable_log_is_refused_with_the_message_of_the_program(self):

@@ -39,7 +39,7 @@ def parse(words, here):
         parser.add_argument("--" + option, action="store_true")
     parser.add_argument("--realtime", choices=("require", "try", "off"), default="try")
     parser.add_argument("--seed")
-    parser.add_argument("--run", default="1")
+    parser.add_argument("--run")
     parser.add_argument("--network", choices=("auto", "private", "host"), default="auto")
     parser.add_argument("--port", default="7667")
     for word in words:
@@ -48,10 +48,10 @@ def parse(words, here):
     a = parser.parse_args(words)
     here = pathlib.Path(here)
     log = here / a.log  # for a folder, the program replay reads all parts
-    number = description.run_number(a.run)
-    if number is None:
+    if a.run and description.run_number(a.run) is None:
         raise Refusal(f"--run {a.run}: is not the number of a run; see replay LOG --describe")
-    described = describe_log(log, number)
+    run = [a.run] if a.run else []
+    described = describe_log(log, *run)
     others = hands.processes(described["tools"])
     known = (*SENSES, *others, "sync_node")
     for node in (*a.only, *a.without):
@@ -68,7 +68,7 @@ def parse(words, here):
     if a.degrade and a.as_recorded:
         raise Refusal("--degrade and --as-recorded contradict each other; remove one")
     others = {process: tool for process, tool in others.items() if process not in without}
-    words = [str(log), "--stay", "--run", str(number)]
+    words = [str(log), "--stay", *(word for number in run for word in ("--run", number))]
     for option in REPLAY_OPTIONS:
         if (value := getattr(a, option)) is not None:
             words += ["--" + option.replace("_", "-"), value]

@@ -312,3 +312,23 @@ TEST_CASE("A log stops at its maximum size, and further messages are counted") {
   CHECK(static_cast<std::int64_t>(read_but_types(f.disk->bytes).size()) + f.recorder.beyond() == 2001);
   CHECK_THAT(f.recorder.status_text(0, 0), Catch::Contains("beyond the maximum size"));
 }
+
+TEST_CASE("A message on any channel that LCM can send is recorded with all its bytes") {
+  Fixture f;
+  f.recorder.begin({}, kStart);
+  std::vector<Bytes> contents;
+  const std::vector<std::string> names{"imu data", "a,b\"c", "line\nbreak", "\xc3\x9c", "\xff\x01", std::string(63, 'L')};
+  for (std::size_t i = 0; i < names.size(); ++i) contents.push_back(some_bytes(i));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    f.batch.clear();
+    f.batch.add(kStart + Nanoseconds(1'000'000) * static_cast<std::int64_t>(i + 1), {names[i], contents[i]}, 1 << 20);
+    f.recorder.push(f.batch);
+  }
+  f.recorder.finish(kStart + Nanoseconds(1'000'000'000));
+  const auto events = read_but_types(f.disk->bytes);
+  REQUIRE(events.size() == 1 + names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    CHECK(events[i + 1].channel == names[i]);
+    CHECK(Bytes(events[i + 1].data.begin(), events[i + 1].data.end()) == some_bytes(i));
+  }
+}
