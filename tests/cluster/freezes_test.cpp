@@ -31,6 +31,7 @@ struct PressedCluster : RunningCluster {
     processes.start("audio_node");
     processes.start("thermal_node", {"--tool", "hand", "--set", "device=external"});
     processes.start("thermal_device", {"--tool", "0"});
+    processes.start("visual_node", {"--no-video"});
     processes.start("sim_node", {(repository() / "tests/cluster/scenes/pressed_and_tapped.sdf").string()});
     processes.spawn("arm_driver", {(programs() / "device_driver").string(), "arm", channels::kGroup, "7667", std::to_string(kRunId)});
   }
@@ -92,7 +93,7 @@ TEST_CASE("While any process is stopped no force remains, and afterwards it retu
   c.monitor.receive_for(1);
   c.receive();
   c.force.clear();
-  for (const char* process : {"sim_node", "haptic_node", "arm_driver", "thermal_node", "thermal_device", "audio_node", "sync_node"})
+  for (const char* process : {"sim_node", "haptic_node", "arm_driver", "thermal_node", "thermal_device", "audio_node", "visual_node", "sync_node"})
     for (const double seconds : kStops_s) {
       INFO(process << " is stopped for " << seconds << " s");
       stop_once(c, process, seconds);
