@@ -24,6 +24,7 @@
 #include <utility>
 
 #include "sim_node/world/simulation.h"
+#include "sim_node/command/command_queue.h"
 #include "sim_node/command/commander.h"
 #include "sim_node/dual/followed_rate.h"
 #include "sim_node/publish/known_processes.h"
@@ -46,25 +47,6 @@ sim::Settings settings_of(const sim::WorldDef& world, const std::vector<std::str
       sync::apply_settings(settings, sim::setting_fields(), "sim_node", world.settings, from_command_line);
   if (!errors.empty()) throw std::runtime_error(errors.front());
   return settings;
-}
-
-// Bounds the time that commands take from a step; a sender without a reply repeats its command. A command that copies the whole
-// state takes all of it.
-constexpr int kMaxCommandsPerTick = 4;
-int cost_of(const sim_command_t& c) {
-  const bool copies_state = c.kind == sim_command_t::RESET || c.kind == sim_command_t::SNAPSHOT || c.kind == sim_command_t::RESTORE;
-  return copies_state ? kMaxCommandsPerTick : 1;
-}
-
-// Executes commands of this run. Those of other runs cost nothing, so they delay none.
-void execute_commands(sync::Queue<sim_command_t>& commands, sim::Commander& commander, std::int64_t run_id) {
-  for (int left = kMaxCommandsPerTick; left > 0;) {
-    const auto m = commands.pop();
-    if (!m) return;
-    if (m->message.header.run_id != run_id) continue;
-    commander.execute(m->message);
-    left -= cost_of(m->message);
-  }
 }
 
 // One line for the health: a pause, and outputs with two senders. Empty: nothing to report.
@@ -181,7 +163,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
       }
       if (processes.is_new(m->message, m->arrival)) world_publisher->publisher.request_full_state();
     }
-    execute_commands(commands, commander, options.run_id);
+    sim::execute_commands(commands, commander, options.run_id);
     for (sim_reply_t& reply : commander.take_replies()) {
       reply.header.sim_time_ns = -1;
       node.bus().publish(channels::kSimReply, reply);
