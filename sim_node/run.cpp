@@ -32,6 +32,7 @@
 #include "sim_node/publish/sim_pacer.h"
 #include "sim_node/scene/load_sdf.h"
 #include "sim_node/scene/scene_assets.h"
+#include "sim_node/scene/scene_folders.h"
 #include "sim_node/touch/tool_senders.h"
 #include "sync/node/node.h"
 #include "sync/text/printable.h"
@@ -115,10 +116,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
   std::vector<std::string> folders;
   options.add_to(app, kSimulation);
   app.add_option("SCENE", scene, "SDF file of the world").required().existing_file();
-  app.add_option("--scene-folder", folders,
-                 "folder that the scene may read besides its own, once for each; also TACTUS_SCENE_FOLDERS=DIR:DIR")
-      .existing_folder()
-      .one_value_per_use();
+  sim::add_scene_folder_option(app, folders);
   sync::parse_or_exit(app, kSimulation.name, argc, argv);
 
   std::vector<std::string> warnings;
