@@ -35,6 +35,7 @@
 #include "sim_node/scene/scene_folders.h"
 #include "sim_node/touch/tool_senders.h"
 #include "sync/node/node.h"
+#include "sync/sandbox/sandbox.h"
 #include "sync/text/printable.h"
 #include "sync/assets/scene_sender.h"
 
@@ -119,6 +120,8 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
   sim::add_scene_folder_option(app, folders);
   sync::parse_or_exit(app, kSimulation.name, argc, argv);
 
+  if (const std::string notice = sync::confinement_notice(sync::available_confinement()); !notice.empty())
+    std::cerr << "sim_node: " << notice << "\n";
   std::vector<std::string> warnings;
   const sim::WorldDef world = loaded_world ? *loaded_world : sim::load_sdf(scene, warnings, {.folders = sim::scene_folders(folders)});
   for (const std::string& warning : warnings) std::cerr << "sim_node: " << sync::printable(warning) << "\n";

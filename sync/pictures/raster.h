@@ -1,11 +1,13 @@
-// Decodes a PNG or JPEG picture for a surface or the environment.
+// The pixels of a picture for a surface or the environment.
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
-namespace tactus::visual {
+namespace tactus::sync {
+
+// 64 MB. Every OpenGL 3.3 device supports 1024; the devices at hand support 16384.
+inline constexpr int kMaxRasterSide = 4096;
 
 struct Raster {
   int width = 0, height = 0;
@@ -13,8 +15,4 @@ struct Raster {
   std::vector<std::uint8_t> rgba;  // as in the file (colours: sRGB), the lowest row first
 };
 
-// PNG or JPEG, at most 4096 pixels per side. Throws std::runtime_error with one clause when the bytes are another
-// format, damaged, or too large. Takes up to 0.2 s.
-Raster read_raster(std::span<const std::uint8_t> bytes);
-
-}  // namespace tactus::visual
+}  // namespace tactus::sync

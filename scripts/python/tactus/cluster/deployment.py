@@ -13,7 +13,7 @@ from tactus.refusal import Refusal
 
 PROGRAMS = ("sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node", "recorder", "replay", "watch", "spy", "degrade",
             "playout", "set", "message_types", "probe_pairs", "relay",
-            "read_geometry", "read_sounds")
+            "read_geometry", "read_pictures", "read_sounds")
 FOLDERS = {"share/scenes": REPOSITORY / "sim_node" / "scenes", "share/rooms": REPOSITORY / "visual_node" / "rooms", "share/relays": sites.SHIPPED}
 LEFT_OUT = {".py", ".md"}
 # Files that `tactus doctor` imports besides its own package.
