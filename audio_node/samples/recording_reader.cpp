@@ -18,8 +18,8 @@ std::vector<std::string> arguments(const sync::ReadableFolders& readable) {
 }
 
 bool valid(const Recording& r, double rate_Hz) {
-  // A resampled recording of kMaxRecording_s may be longer by a few samples.
-  const auto max_samples = static_cast<std::size_t>(kMaxRecording_s * rate_Hz) + 64;
+  // read_recording reads whole blocks of 4096 frames, which are half a second at 8 kHz.
+  const auto max_samples = static_cast<std::size_t>((kMaxRecording_s + 1) * rate_Hz);
   const auto plausible = [](float x) { return std::abs(x) <= 4 * kMaxSample; };  // a seam and resampling add; false for NaN
   return !r.samples.empty() && r.samples.size() <= max_samples && plausible(r.peak) && r.peak > 0 && plausible(r.rms) && r.rms > 0 &&
          std::all_of(r.samples.begin(), r.samples.end(), plausible);

@@ -91,7 +91,7 @@ TEST_CASE("An answer of a reader that is no valid sound is rejected") {
     rejected([&](Recording& r) { r.rms = x; });
   }
   rejected([](Recording& r) { r.samples.clear(); });
-  rejected([](Recording& r) { r.samples.assign(48000 * 21, 0.5f); });
+  rejected([](Recording& r) { r.samples.assign(48000 * 22, 0.5f); });
   rejected([](Recording& r) { r.peak = 0; });
   ReadSound hostile = good;
   hostile.recording.reset();
