@@ -1,11 +1,14 @@
-// Height map: reads heights from a grey PNG of 8 or 16 bits, for ground and surface relief.
+// Height map: heights from a grey picture of 8 or 16 bits, for ground and surface relief. sync/pictures reads it from a PNG.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace tactus {
+
+// Samples per side. The largest is a limit of memory; 2^n + 1 is the usual size of terrain tools.
+inline constexpr int kMinHeightMapSide = 2, kMaxHeightMapSide = 4097;
 
 struct HeightMap {
   int columns = 0, rows = 0;
@@ -17,8 +20,5 @@ struct HeightMap {
     return static_cast<double>(levels[static_cast<std::size_t>(row * columns + column)]) / white;
   }
 };
-
-// Throws std::runtime_error with one clause when the bytes are another format, damaged, or too many.
-HeightMap read_height_map(std::span<const std::uint8_t> png);
 
 }  // namespace tactus

@@ -24,6 +24,7 @@
 #include <utility>
 
 #include "sim_node/world/simulation.h"
+#include "sim_node/command/command_queue.h"
 #include "sim_node/command/commander.h"
 #include "sim_node/dual/followed_rate.h"
 #include "sim_node/publish/known_processes.h"
@@ -31,8 +32,10 @@
 #include "sim_node/publish/sim_pacer.h"
 #include "sim_node/scene/load_sdf.h"
 #include "sim_node/scene/scene_assets.h"
+#include "sim_node/scene/scene_folders.h"
 #include "sim_node/touch/tool_senders.h"
 #include "sync/node/node.h"
+#include "sync/sandbox/sandbox.h"
 #include "sync/node/world_start.h"
 #include "sync/text/printable.h"
 #include "sync/assets/scene_sender.h"
@@ -47,25 +50,6 @@ sim::Settings settings_of(const sim::WorldDef& world, const std::vector<std::str
       sync::apply_settings(settings, sim::setting_fields(), "sim_node", world.settings, from_command_line);
   if (!errors.empty()) throw std::runtime_error(errors.front());
   return settings;
-}
-
-// Bounds the time that commands take from a step; a sender without a reply repeats its command. A command that copies the whole
-// state takes all of it.
-constexpr int kMaxCommandsPerTick = 4;
-int cost_of(const sim_command_t& c) {
-  const bool copies_state = c.kind == sim_command_t::RESET || c.kind == sim_command_t::SNAPSHOT || c.kind == sim_command_t::RESTORE;
-  return copies_state ? kMaxCommandsPerTick : 1;
-}
-
-// Executes commands of this run. Those of other runs cost nothing, so they delay none.
-void execute_commands(sync::Queue<sim_command_t>& commands, sim::Commander& commander, std::int64_t run_id) {
-  for (int left = kMaxCommandsPerTick; left > 0;) {
-    const auto m = commands.pop();
-    if (!m) return;
-    if (m->message.header.run_id != run_id) continue;
-    commander.execute(m->message);
-    left -= cost_of(m->message);
-  }
 }
 
 // One line for the health: a pause, and outputs with two senders. Empty: nothing to report.
@@ -145,13 +129,12 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
   std::vector<std::string> folders, awaited;
   options.add_to(app, kSimulation);
   app.add_option("SCENE", scene, "SDF file of the world").required().existing_file();
-  app.add_option("--scene-folder", folders,
-                 "folder that the scene may read besides its own, once for each; also TACTUS_SCENE_FOLDERS=DIR:DIR")
-      .existing_folder()
-      .one_value_per_use();
+  sim::add_scene_folder_option(app, folders);
   app.add_option("--await", awaited, "name of a process that must have its scene before the world begins, once for each").one_value_per_use();
   sync::parse_or_exit(app, kSimulation.name, argc, argv);
 
+  if (const std::string notice = sync::confinement_notice(sync::available_confinement()); !notice.empty())
+    std::cerr << "sim_node: " << notice << "\n";
   std::vector<std::string> warnings;
   const sim::WorldDef world = loaded_world ? *loaded_world : sim::load_sdf(scene, warnings, {.folders = sim::scene_folders(folders)});
   for (const std::string& warning : warnings) std::cerr << "sim_node: " << sync::printable(warning) << "\n";
@@ -200,7 +183,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
       world_publisher->publisher.request_full_state();
       scene_sender.announce_soon();
     }
-    execute_commands(commands, commander, options.run_id);
+    sim::execute_commands(commands, commander, options.run_id);
     for (sim_reply_t& reply : commander.take_replies()) {
       reply.header.sim_time_ns = -1;
       node.bus().publish(channels::kSimReply, reply);

@@ -12,6 +12,7 @@
 #include "sync/clocks/pacing.h"
 #include "sync/time/phases.h"
 #include "sync/assets/scene_pictures.h"
+#include "sync/pictures/confined_pictures.h"
 #include "visual_node/scene_view/meshes.h"
 
 namespace tactus::visual {
@@ -82,9 +83,10 @@ sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Se
   loaded_ = true;
   scene_ = scenes.scene();
   std::vector<std::string> warnings;
+  sync::ConfinedPictures reader;
   const SceneView& view = composer_.load(*scene_, meshes_of(scenes), settings,
-                                         height_maps_of(*scene_, sync::pictures_of(scenes), warnings),
-                                         look_files_of(scenes, warnings));
+                                         height_maps_of(*scene_, sync::pictures_of(scenes), reader, warnings),
+                                         look_files_of(scenes, reader, warnings));
   warnings.insert(warnings.end(), view.warnings().begin(), view.warnings().end());
   if (!view.lens().warning().empty()) warnings.push_back(view.lens().warning());
   for (const std::string& sentence : overlays_.configure(settings)) warnings.push_back(sentence);

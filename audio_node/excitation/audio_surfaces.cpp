@@ -5,12 +5,15 @@
 #include <tactus/material_def_t.hpp>
 #include <tuple>
 
+#include "sync/pictures/confined_pictures.h"
+
 namespace tactus::audio {
 
 std::unique_ptr<AudioSurfaces> load_surfaces(const scene_t& scene, const sync::Pictures& pictures) {
   std::map<std::int64_t, HeightMap> maps;
+  sync::ConfinedPictures reader;
   for (const auto& [hash, bytes] : pictures) try {
-      maps.emplace(hash, read_height_map(bytes));
+      maps.emplace(hash, reader.height_map(bytes));
     } catch (const std::runtime_error&) {  // vision and touch report the reason
     }
   auto surfaces = std::make_unique<AudioSurfaces>();

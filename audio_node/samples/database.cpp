@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "audio_node/samples/recording_reader.h"
 #include "sync/sandbox/regular_file.h"
 
 namespace tactus::audio {
@@ -67,7 +68,7 @@ void equalise_levels(Layers& layers, Interaction interaction) {
 
 class Reader {
  public:
-  Reader(Database& into, double rate_Hz) : into_(into), rate_Hz_(rate_Hz) {}
+  Reader(Database& into, const std::string& folder, double rate_Hz) : into_(into), recordings_(folder, rate_Hz) {}
 
   void read_materials(const fs::path& folder, double size_m) {
     const auto materials = materials_of(folder.filename().string());
@@ -119,7 +120,7 @@ class Reader {
         add_fault(path, "does not begin with a speed in m/s; name it 0.5.wav or 0.5_2.wav, for example");
       } else if (into_.bytes > kMaxBytes) {
         add_fault(path, "is left out: the recordings before it fill 350 MB; remove some");
-      } else if (auto take = read_recording(path.string(), key.interaction, rate_Hz_, into_.faults)) {
+      } else if (auto take = recordings_.read(path.string(), key.interaction, into_.faults)) {
         into_.bytes += take->samples.size() * sizeof(float);
         layers[*speed].takes.push_back(std::move(*take));
       }
@@ -142,7 +143,7 @@ class Reader {
   }
 
   Database& into_;
-  double rate_Hz_;
+  RecordingReader recordings_;
 };
 
 }  // namespace
@@ -178,7 +179,7 @@ Database read_database(const std::string& folder, double rate_Hz, double size_m)
         {folder, "is not a folder; choose another one with the setting sounds", true});
     return database;
   }
-  Reader reader(database, rate_Hz);
+  Reader reader(database, folder, rate_Hz);
   for (const fs::path& inside : entries(folder))
     if (fs::is_directory(inside, error))
       reader.read_materials(inside, size_m);

@@ -15,7 +15,6 @@
 namespace tactus::audio {
 namespace {
 
-constexpr double kMaxLength_s = 20;         // longer recordings are cut (design: no blow rings longer)
 constexpr double kMinBlow_s = 0.01;  // design: shorter is a click without material
 constexpr double kMinLoop_s = 0.25;  // design: shorter is audible as a hum of its repetitions
 constexpr float kOnset = 1e-3f;           // of the peak: a blow begins above it (design: -60 dB)
@@ -24,7 +23,6 @@ constexpr float kClippingLevel = 0.9995f;  // of full scale: kClippedSamples con
 constexpr int kClippedSamples = 4;
 constexpr double kEnd_s = 0.005;  // fade at the end of a blow (design: shorter is audible as a click)
 constexpr double kSeam_s = 0.05;  // of a loop, at most a quarter of it (design)
-constexpr float kMaxSample = 10;    // of a float file: larger values are not sound
 
 struct Close {
   void operator()(SNDFILE* file) const { sf_close(file); }
@@ -90,7 +88,7 @@ std::optional<Recording> read_recording(const std::string& path, Interaction int
     return reject("has " + std::to_string(info.channels) + " channels; give one or two");
   if (info.samplerate < 8000 || info.samplerate > 192000)
     return reject("has " + std::to_string(info.samplerate) + " samples per second; give 8000 to 192000");
-  const auto max_frames = static_cast<sf_count_t>(kMaxLength_s * info.samplerate);
+  const auto max_frames = static_cast<sf_count_t>(kMaxRecording_s * info.samplerate);
   if (info.frames > max_frames) faults.push_back({path, "is longer than 20 s; only the first 20 s are played; cut it", false});
   // Counts the frames that are read: a header may state any number.
   std::vector<float> x, block(4096 * static_cast<std::size_t>(info.channels));

@@ -9,6 +9,9 @@
 
 namespace tactus::audio {
 
+constexpr double kMaxRecording_s = 20;  // longer recordings are cut (design: no blow rings longer)
+constexpr float kMaxSample = 10;        // of a float file: larger values are not sound
+
 // A fault of a file or folder of a database; `what` states the fault and the remedy.
 struct SoundFault {
   std::string path, what;
@@ -16,7 +19,8 @@ struct SoundFault {
 };
 
 // Accepts sample rates of 8 to 192 kHz and one or two channels, which are summed to one. Appends its faults;
-// empty: it cannot be played. May take a second, so do not call it in a loop.
+// empty: it cannot be played. May take a second, so do not call it in a loop. Parses the file in this process: nodes use
+// RecordingReader.
 std::optional<Recording> read_recording(const std::string& path, Interaction interaction, double rate_Hz,
                                         std::vector<SoundFault>& faults);
 

@@ -201,6 +201,14 @@ struct TemperatureLimits {
   double valid_s = 0.3;                                    // of a command after its arrival
   double warm_degC = 39, dose_s = 60, dose_decay_s = 300;  // seconds at 43 degC or the equivalent, above warm_degC
   double cold_degC = 20, cold_s = 60;                      // time below cold_degC
+  double return_K_s = 20;  // at least, on the way to neutral: a slower slew would lengthen an exposure
+  double runaway_K = 2;    // beyond the range: the plate does not obey (design: an overshoot is smaller)
+};
+
+// The exposure of the person, to store and to continue with after a restart.
+struct SkinAccount {
+  double dose_s = 0, cold_s = 0;
+  bool too_warm = false, too_cold = false;
 };
 
 class TemperatureGuard {
@@ -227,11 +235,31 @@ class TemperatureGuard {
     reason_ = live ? Reason::kNone : sender_.conflict(now_ns) ? Reason::kSecondSender : Reason::kNoCommand;
     const double low = too_cold_ ? limits_.cold_degC : limits_.min_degC,
                  high = too_warm_ ? limits_.warm_degC : limits_.max_degC;
-    const double step = limits_.slew_K_s * std::min(dt, 0.1);
-    out_degC_ += std::clamp((live ? wanted_degC_ : limits_.neutral_degC) - out_degC_, -step, step);
+    const double wanted_degC = live ? wanted_degC_ : limits_.neutral_degC;
+    const bool returns = std::abs(wanted_degC - limits_.neutral_degC) < std::abs(out_degC_ - limits_.neutral_degC);
+    const double slew_K_s = returns ? std::max(limits_.slew_K_s, limits_.return_K_s) : limits_.slew_K_s;
+    const double step = slew_K_s * std::min(dt, 0.1);
+    out_degC_ += std::clamp(wanted_degC - out_degC_, -step, step);
+    // A plate that was cold when the display was switched on must be heated.
+    off_ = !known || plate_degC > limits_.max_degC + limits_.runaway_K ||
+           (plate_degC < limits_.min_degC - limits_.runaway_K && plate_degC < before_degC_);
+    if (known) before_degC_ = plate_degC;
     return out_degC_ = std::clamp(out_degC_, low, high);  // a limit is entered at once
   }
   Reason reason() const { return reason_; }
+  // No current may flow: the sensor has failed, or the plate is out of its range.
+  bool off() const { return off_; }
+  SkinAccount account() const { return {dose_s_, cold_s_, too_warm_, too_cold_}; }
+  // before: the account of an earlier process, or of this one; away_s: time at neutral since then, 0 if it is not known. Sums that
+  // are not finite or negative count as full.
+  void resume(const SkinAccount& before, double away_s = 0) {
+    const auto sum = [](double stored_s, double max_s) { return stored_s >= 0 && stored_s <= max_s ? stored_s : max_s; };
+    away_s = away_s > 0 ? away_s : 0;
+    dose_s_ = sum(before.dose_s, 2 * limits_.dose_s) * std::exp(-away_s / limits_.dose_decay_s);
+    cold_s_ = std::max(0.0, sum(before.cold_s, 2 * limits_.cold_s) - away_s);
+    too_warm_ = before.too_warm, too_cold_ = before.too_cold;
+    update_limits();
+  }
 
  private:
   // Of the command and the plate, the warmer counts for warmth and the colder for cold. Dose of Sapareto and Dewey
@@ -243,6 +271,9 @@ class TemperatureGuard {
       dose_s_ *= std::exp(-dt / limits_.dose_decay_s);
     cold_s_ = std::max(0.0, cold_s_ + (coldest < limits_.cold_degC ? dt : -dt));
     dose_s_ = std::min(dose_s_, 2 * limits_.dose_s), cold_s_ = std::min(cold_s_, 2 * limits_.cold_s);
+    update_limits();
+  }
+  void update_limits() {
     too_warm_ = dose_s_ >= limits_.dose_s || (too_warm_ && dose_s_ > limits_.dose_s / 2);
     too_cold_ = cold_s_ >= limits_.cold_s || (too_cold_ && cold_s_ > limits_.cold_s / 2);
   }
@@ -250,7 +281,8 @@ class TemperatureGuard {
   TemperatureLimits limits_;
   OneSender sender_;
   double out_degC_, wanted_degC_ = 0, dose_s_ = 0, cold_s_ = 0;
-  bool too_warm_ = false, too_cold_ = false;
+  double before_degC_ = -1e9;  // plate at the last tick
+  bool too_warm_ = false, too_cold_ = false, off_ = false;
   Reason reason_ = Reason::kNoCommand;
   std::optional<std::int64_t> until_ns_, last_ns_;
 };

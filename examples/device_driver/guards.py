@@ -209,6 +209,17 @@ class TemperatureLimits:
     dose_decay_s: float = 300.0
     cold_degC: float = 20.0
     cold_s: float = 60.0  # time below cold_degC
+    return_K_s: float = 20.0  # at least, on the way to neutral: a slower slew would lengthen an exposure
+    runaway_K: float = 2.0  # beyond the range: the plate does not obey (design: an overshoot is smaller)
+
+
+@dataclasses.dataclass(frozen=True)
+class SkinAccount:
+    """The exposure of the person, to store and to continue with after a restart."""
+    dose_s: float = 0.0
+    cold_s: float = 0.0
+    too_warm: bool = False
+    too_cold: bool = False
 
 
 class TemperatureGuard:
@@ -217,6 +228,24 @@ class TemperatureGuard:
         self.out_degC, self.wanted_degC = limits.neutral_degC, limits.neutral_degC
         self.dose_s, self.cold_s, self.too_warm, self.too_cold = 0.0, 0.0, False, False
         self.until_ns, self.last_ns, self.reason = None, None, "no command"
+        self.before_degC = -1e9  # plate at the last tick
+        self.off = False  # no current may flow: the sensor has failed, or the plate is out of its range
+
+    def account(self):
+        return SkinAccount(self.dose_s, self.cold_s, self.too_warm, self.too_cold)
+
+    def resume(self, before, away_s=0.0):
+        """before: the SkinAccount of an earlier process, or of this one; away_s: time at neutral since then, 0 if it is not known. Sums that
+        are not finite or negative count as full."""
+        limits = self.limits
+        away_s = away_s if away_s > 0 else 0.0
+
+        def total(stored_s, max_s):
+            return stored_s if 0 <= stored_s <= max_s else max_s
+        self.dose_s = total(before.dose_s, 2 * limits.dose_s) * math.exp(-away_s / limits.dose_decay_s)
+        self.cold_s = max(0.0, total(before.cold_s, 2 * limits.cold_s) - away_s)
+        self.too_warm, self.too_cold = before.too_warm, before.too_cold
+        self.update_limits()
 
     def on_message(self, sent, wanted_degC, now_ns):
         """A message for this plate arrived. Returns "", or why it is no command."""
@@ -240,8 +269,14 @@ class TemperatureGuard:
         conflict = self.sender.conflict(now_ns)
         live = self.until_ns is not None and now_ns < self.until_ns and not conflict
         self.reason = "" if live else "second sender" if conflict else "no command"
-        step = limits.slew_K_s * min(dt, 0.1)
-        self.out_degC += clamp((self.wanted_degC if live else limits.neutral_degC) - self.out_degC, -step, step)
+        wanted_degC = self.wanted_degC if live else limits.neutral_degC
+        returns = abs(wanted_degC - limits.neutral_degC) < abs(self.out_degC - limits.neutral_degC)
+        step = (max(limits.slew_K_s, limits.return_K_s) if returns else limits.slew_K_s) * min(dt, 0.1)
+        self.out_degC += clamp(wanted_degC - self.out_degC, -step, step)
+        # A plate that was cold when the display was switched on must be heated.
+        self.off = (not known or plate_degC > limits.max_degC + limits.runaway_K
+                    or (plate_degC < limits.min_degC - limits.runaway_K and plate_degC < self.before_degC))
+        self.before_degC = plate_degC if known else self.before_degC
         # A limit is entered at once.
         self.out_degC = clamp(self.out_degC, limits.cold_degC if self.too_cold else limits.min_degC,
                               limits.warm_degC if self.too_warm else limits.max_degC)
@@ -256,5 +291,9 @@ class TemperatureGuard:
             self.dose_s *= math.exp(-dt / limits.dose_decay_s)
         self.cold_s = max(0.0, self.cold_s + (dt if coldest < limits.cold_degC else -dt))
         self.dose_s, self.cold_s = min(self.dose_s, 2 * limits.dose_s), min(self.cold_s, 2 * limits.cold_s)
+        self.update_limits()
+
+    def update_limits(self):
+        limits = self.limits
         self.too_warm = self.dose_s >= limits.dose_s or (self.too_warm and self.dose_s > limits.dose_s / 2)
         self.too_cold = self.cold_s >= limits.cold_s or (self.too_cold and self.cold_s > limits.cold_s / 2)

@@ -5,11 +5,14 @@
 #include <tactus/material_def_t.hpp>
 #include <tuple>
 
+#include "sync/pictures/confined_pictures.h"
+
 namespace tactus::haptic {
 
 SurfaceMaps read_maps(const scene_t& scene, const sync::Pictures& pictures) {
   SurfaceMaps maps;
   std::map<std::int64_t, HeightMap> read;
+  sync::ConfinedPictures reader;
   const auto map_of = [&](std::int64_t hash, const std::string& material, const char* what) -> const HeightMap* {
     if (hash == 0) return nullptr;
     try {
@@ -17,7 +20,7 @@ SurfaceMaps read_maps(const scene_t& scene, const sync::Pictures& pictures) {
       if (known != read.end()) return &known->second;
       const auto picture = pictures.find(hash);
       if (picture == pictures.end()) throw std::runtime_error("it was not sent");
-      return &read.emplace(hash, read_height_map(picture->second)).first->second;
+      return &read.emplace(hash, reader.height_map(picture->second)).first->second;
     } catch (const std::exception& e) {
       if (maps.error.empty())
         maps.error = std::string("the ") + what + " of material " + material + " cannot be read: " + e.what() +

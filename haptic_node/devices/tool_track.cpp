@@ -26,7 +26,7 @@ void ToolTrack::follow(int tool) {
   tool_ = tool;
   events_.emplace(feed_.from_begin());
   simulation_ = sync::SimClockTracker(own());
-  incarnation_ = 0;
+  sender_ = sync::SingleSender();
 }
 
 std::optional<RecordedTick> ToolTrack::next(sync::HostTime after) {
@@ -50,10 +50,7 @@ std::optional<RecordedTick> ToolTrack::tick_of(const tool_state_t& m, sync::Host
   tick.seq = m.header.seq;
   tick.at = m.header.clock == feed_.clock() ? tick_start(m.header) : arrival;
   if (tick.at < arrival - kMaxTransit || tick.at > arrival + kMaxTransit) return std::nullopt;
-  if (m.header.incarnation != incarnation_ && incarnation_ != 0 && arrival - last_arrival_ < kSilence)
-    return std::nullopt;
-  incarnation_ = m.header.incarnation;
-  last_arrival_ = arrival;
+  if (!sync::accepted(sender_.on_page(m.header, arrival))) return std::nullopt;  // a log may hold overtaken messages
   tick.device = device_state_of(m);
   return tick;
 }

@@ -9,6 +9,7 @@
 #include "haptic_node/devices/device.h"
 #include "sync/log/log_feed.h"
 #include "sync/clocks/sim_clock_tracker.h"
+#include "sync/clocks/single_sender.h"
 
 namespace tactus::haptic {
 
@@ -21,8 +22,6 @@ struct RecordedTick {
 
 class ToolTrack {
  public:
-  // Another process of the same tool is accepted only after the previous one has been silent for this time.
-  static constexpr sync::Nanoseconds kSilence{300'000'000};
   // A TOOL_STATE that arrived at the recorder further than this before or after its publish time is invalid.
   static constexpr sync::Nanoseconds kMaxTransit{1'000'000'000};
 
@@ -48,8 +47,7 @@ class ToolTrack {
   std::optional<sync::TimestampedEvents> events_;
   int tool_ = -1;
   sync::SimClockTracker simulation_{own()};
-  std::int64_t incarnation_ = 0;
-  sync::HostTime last_arrival_{};  // last arrival of that incarnation
+  sync::SingleSender sender_;  // another process of the tool counts only after its silence
 };
 
 }  // namespace tactus::haptic

@@ -25,6 +25,7 @@
 #include "scripts/live/page_session.h"
 #include "scripts/live/web_server.h"
 #include "sync/bus/bus.h"
+#include "sync/bus/receive_buffer.h"
 #include "sync/node/node_options.h"
 #include "sync/text/csv.h"
 #include "sync/text/printable.h"
@@ -185,6 +186,7 @@ nlohmann::json scene_of(const scene_t& scene) {
 
 void serve_cluster(const Options& o) {
   sync::Bus bus(sync::Identity::fresh("live_server", o.run_id), o.bus);
+  sync::drop_receive_buffer_right();
   bus.track_clocks();
   live::PageSession session(true, o.run_id, "live");
   Server server(o, session);

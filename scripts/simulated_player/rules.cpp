@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "sim_node/scene/load_sdf.h"
+#include "sim_node/scene/scene_folders.h"
 
 namespace tactus::simulated_player {
 namespace {
@@ -23,9 +24,9 @@ Eigen::AlignedBox2d floor_of(const sim::WorldDef& world, double rim_m) {
 
 }  // namespace
 
-Rules read_rules(const std::string& sdf_file) {
+Rules read_rules(const std::string& sdf_file, const std::vector<std::string>& folders) {
   std::vector<std::string> warnings;
-  const sim::WorldDef world = sim::load_sdf(sdf_file, warnings, {.folders = sim::scene_folders({})});
+  const sim::WorldDef world = sim::load_sdf(sdf_file, warnings, {.folders = sim::scene_folders(folders)});
   Rules rules;
   for (const sim::HoleDef& hole : world.holes) {
     Goal goal{.hole_m = hole.position_m, .hole_radius_m = hole.radius_m};

@@ -25,7 +25,8 @@ struct Rules {
   Eigen::Vector3d slope_m_s2{0, 0, 0};
 };
 
-// Throws std::runtime_error with one sentence when the file holds no game of balls.
-Rules read_rules(const std::string& sdf_file);
+// folders: that the scene may read besides its own and those of the environment (sim_node/scene/scene_folders.h). Throws
+// std::runtime_error with one sentence when the file holds no game of balls.
+Rules read_rules(const std::string& sdf_file, const std::vector<std::string>& folders = {});
 
 }  // namespace tactus::simulated_player

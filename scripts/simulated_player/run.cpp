@@ -18,6 +18,7 @@
 #include "scripts/simulated_player/arm.h"
 #include "scripts/simulated_player/perception.h"
 #include "scripts/simulated_player/setup.h"
+#include "sim_node/scene/scene_folders.h"
 #include "sync/node/node.h"
 #include "sync/assets/scene_receiver.h"
 
@@ -51,6 +52,8 @@ int tactus::simulated_player::run(int argc, char** argv, const Rules* read_befor
   PlayerDef player_def;
   options.add_to(app, kSimulatedPlayer);
   app.add_option("SCENE", scene_file, "SDF file of the world, for the rules of its game").required().existing_file();
+  std::vector<std::string> folders;
+  sim::add_scene_folder_option(app, folders);
   app.add_option("--device", device, "name of the device that it controls: haptic_node --device external:NAME").show_default();
   app.add_option("--degrade", options.degrade,
                  "degradation profile (XML) of the observed modalities");
@@ -61,7 +64,7 @@ int tactus::simulated_player::run(int argc, char** argv, const Rules* read_befor
   app.add_option("--scatter-aside", scatter.aside_m, "half range of each ball's random start position to the side, m").range(0.0, 0.2);
   app.add_option("--reaction", player_def.reaction_s, "reaction time to sight and hearing, s").range(0.0, 2.0).show_default();
   sync::parse_or_exit(app, kSimulatedPlayer.name, argc, argv);
-  const Rules rules = read_before ? *read_before : read_rules(scene_file);
+  const Rules rules = read_before ? *read_before : read_rules(scene_file, folders);
 
   sync::Node node(kSimulatedPlayer, options);
   sync::SceneReceiver scenes(node.bus());

@@ -22,6 +22,7 @@
 #include "scripts/virtual_time/referee.h"
 #include "sim_node/run.h"
 #include "sim_node/scene/load_sdf.h"
+#include "sim_node/scene/scene_folders.h"
 #include "sync/node/node_options.h"
 #include "sync/tools/sync_node.h"
 #include "sync/virtual_time/virtual_time.h"
@@ -169,6 +170,8 @@ int main(int argc, char** argv) try {
       along = "0.08",
       aside = "0.08";  // design: the balls of the dark room stay apart from each other and from the objects there
   app.add_option("SCENE", loaded.scene, "SDF file of a world with a game").required().existing_file();
+  std::vector<std::string> folders;
+  sim::add_scene_folder_option(app, folders);
   app.add_option("--out", loaded.out, "empty folder for the output of the nodes").required().existing_folder();
   app.add_option("--scatter-along", along, "half range of the balls' start positions towards or away from their holes, m")
       .show_default();
@@ -183,8 +186,8 @@ int main(int argc, char** argv) try {
   loaded.wire.loss = {.share = loss_percent / 100};
   loaded.scatter = {"--scatter-along", along, "--scatter-aside", aside};
   std::vector<std::string> warnings;
-  loaded.world = sim::load_sdf(loaded.scene, warnings, {.folders = sim::scene_folders({})});
-  loaded.rules = simulated_player::read_rules(loaded.scene);
+  loaded.world = sim::load_sdf(loaded.scene, warnings, {.folders = sim::scene_folders(folders)});
+  loaded.rules = simulated_player::read_rules(loaded.scene, folders);
   for (std::string line; std::getline(std::cin, line);) {
     const json request = json::parse(line, nullptr, false);
     if (!request.is_object() || !request.contains("game") || !request["game"].is_string())

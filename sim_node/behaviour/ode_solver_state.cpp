@@ -97,6 +97,7 @@ void Solver::Engine::archive(StateArchive& a, dBodyID id) {
   const Eigen::LLT<Eigen::Matrix3d> cholesky(inertia.leftCols<3>());
   a.require(mass.mass > 0 && cholesky.info() == Eigen::Success, "the state holds a mass that is not positive");
   a.require(std::abs(q.squaredNorm() - 1) < 1e-6, "the state holds an invalid orientation");
+  a.require(plausible(p, v, w), kImplausible);
   dBodySetMass(id, &mass);
   dBodySetPosition(id, p.x(), p.y(), p.z());
   // dBodySetQuaternion normalises, which may change the last bit, and marks the geoms as moved. They read the pose at

@@ -4,17 +4,19 @@
 #include <tactus/material_def_t.hpp>
 
 #include "sync/bus/identity.h"
+#include "sync/pictures/confined_pictures.h"
 
 namespace tactus::sim {
 
 FrictionMaps::FrictionMaps(const WorldDef& world) {
   std::map<int, std::shared_ptr<const FrictionMap>> of_material;
+  sync::ConfinedPictures pictures;
   for (std::size_t i = 0; i < world.materials.size(); ++i) {
     const material_def_t& m = world.materials[i];
     if (m.friction_asset == 0) continue;
     for (const sync::Asset& image : world.images)
       if (sync::fnv1a_64(image.bytes.data(), image.bytes.size()) == m.friction_asset)
-        of_material[static_cast<int>(i)] = std::make_shared<const FrictionMap>(read_height_map(image.bytes), m);
+        of_material[static_cast<int>(i)] = std::make_shared<const FrictionMap>(pictures.height_map(image.bytes), m);
   }
   for (const ShapeDef& s : world.shapes) {
     const auto map = of_material.find(s.material);

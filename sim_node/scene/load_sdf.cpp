@@ -1,10 +1,8 @@
 #include "sim_node/scene/load_sdf.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <new>
 #include <sdf/World.hh>
-#include <sstream>
 #include <stdexcept>
 
 #include "sim_node/scene/bodies.h"
@@ -106,15 +104,6 @@ WorldDef load_sdf(const std::filesystem::path& file, std::vector<std::string>& w
   return def;
 } catch (const std::bad_alloc&) {
   throw std::runtime_error(file.string() + ": the scene needs more memory than is available: simplify it");
-}
-
-std::vector<std::filesystem::path> scene_folders(const std::vector<std::string>& named) {
-  std::vector<std::filesystem::path> folders(named.begin(), named.end());
-  const char* variable = std::getenv("TACTUS_SCENE_FOLDERS");
-  std::istringstream list(variable ? variable : "");
-  for (std::string folder; std::getline(list, folder, ':');)
-    if (!folder.empty()) folders.emplace_back(folder);
-  return folders;
 }
 
 }  // namespace tactus::sim

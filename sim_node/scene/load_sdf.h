@@ -11,7 +11,7 @@
 namespace tactus::sim {
 
 struct LoadOptions {
-  // Folders that the user named; the scene may read files below them and below its own folder, and no others.
+  // Folders that the user named (scene_folders.h); the scene may read files below them and below its own folder, and no others.
   std::vector<std::filesystem::path> folders = {};
   // Reads geometry files in a confined process (meshes/confined_reader.h); false: in this one, for tests.
   bool confined = true;
@@ -20,8 +20,5 @@ struct LoadOptions {
 // Adds one sentence per unsupported or repaired element to `warnings`: "FILE:LINE: XML path ...". Throws
 // std::runtime_error with one sentence, "FILE:LINE: problem: remedy", when the file is invalid.
 WorldDef load_sdf(const std::filesystem::path& file, std::vector<std::string>& warnings, const LoadOptions& options = {});
-
-// The named folders, then those of the environment variable TACTUS_SCENE_FOLDERS, which a colon separates.
-std::vector<std::filesystem::path> scene_folders(const std::vector<std::string>& named);
 
 }  // namespace tactus::sim

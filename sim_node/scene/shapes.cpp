@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "lcmtypes/height_map.h"
 #include "sim_node/scene/materials/height_image.h"
 #include "sim_node/scene/meshes.h"
 #include "sim_node/scene/sdf/sdf_eigen.h"
@@ -18,8 +19,8 @@
 namespace tactus::sim {
 namespace {
 
-// Of all height maps of a scene, each size of one counts: two of the largest (lcmtypes/height_map.cpp), 270 MB.
-constexpr std::size_t kMaxHeightSamples = std::size_t{2} * 4097 * 4097;
+// Of all height maps of a scene, each size of one counts: two of the largest, 270 MB.
+constexpr std::size_t kMaxHeightSamples = std::size_t{2} * kMaxHeightMapSide * kMaxHeightMapSide;
 
 int heightfield_index(LoadContext& context, const sdf::Heightmap& map, const sdf::Element& element) {
   const Eigen::Vector3d size = to_eigen(map.Size()), centre = to_eigen(map.Position());
@@ -30,7 +31,7 @@ int heightfield_index(LoadContext& context, const sdf::Heightmap& map, const sdf
   key << file.string() << "|height|" << size.transpose() << '|' << centre.transpose();
   const auto [at, is_new] = context.mesh_of.try_emplace(key.str(), static_cast<int>(context.world.heightfields.size()));
   if (is_new) try {
-      Heightfield field = read_height_image(file, size, centre);
+      Heightfield field = read_height_image(file, size, centre, context.pictures);
       std::size_t samples = field.heights_m.size();
       for (const Heightfield& other : context.world.heightfields) samples += other.heights_m.size();
       if (samples > kMaxHeightSamples)

@@ -81,15 +81,13 @@ bool SceneReceiver::poll(HostTime now) {
 }
 
 bool SceneReceiver::accept_sender(const header_t& header, HostTime arrival) {
-  if (header.incarnation != sender_) {
-    if (sender_ != 0 && arrival - last_message_ < kSilence) return false;
-    if (header.incarnation == ignored_sender_ && arrival < ignored_until_) return false;
-    sender_ = header.incarnation;
+  if (header.incarnation == ignored_sender_ && arrival < ignored_until_) return false;
+  const SenderStatus status = sender_.on_page(header, arrival);
+  if (status == SenderStatus::kFirst) {
     progress_ = arrival;
     pages_.clear();
   }
-  last_message_ = arrival;
-  return true;
+  return accepted(status);
 }
 
 // A manifest is the same for the whole incarnation of its sender, so pages of different repetitions complete each other.
@@ -183,7 +181,8 @@ void SceneReceiver::ignore_sender(HostTime now) {
   incoming_.clear();
   refs_.clear();
   pages_.clear();
-  ignored_sender_ = std::exchange(sender_, 0);
+  ignored_sender_ = sender_.incarnation();
+  sender_ = SingleSender(SingleSender::kAnyRun, kSilence);
   ignored_until_ = now + kNoProgressTimeout;
 }
 

@@ -15,6 +15,7 @@
 #include "sync/assets/asset.h"
 #include "sync/bus/identity.h"
 #include "sync/bus/page_assembler.h"
+#include "sync/clocks/single_sender.h"
 #include "sync/time/time.h"
 
 namespace tactus::sync {
@@ -83,8 +84,7 @@ class SceneReceiver {
   std::optional<scene_t> scene_;
   std::int64_t scene_hash_ = 0;
   std::int64_t refused_scene_ = 0;  // complete, but not decodable: not requested again
-  std::int64_t sender_ = 0;       // incarnation of the sender of the pages below
-  HostTime last_message_{};                // arrival of its newest message
+  SingleSender sender_{SingleSender::kAnyRun, kSilence};  // of the pages below
   std::int64_t ignored_sender_ = 0;       // ignored incarnation
   HostTime ignored_until_{};
   PageGroup<std::vector<asset_ref_t>> pages_;

@@ -9,11 +9,10 @@
 #include <cerrno>
 #include <system_error>
 
+#include "sync/bus/receive_buffer.h"
+
 namespace tactus::sync {
 namespace {
-
-// 4 MB: a burst of 20,000 datagrams of 100 bytes. Without CAP_NET_ADMIN the kernel limits it to net.core.rmem_max.
-constexpr int kReceiveBufferBytes = 4 << 20;
 
 [[noreturn]] void fail(const char* action) { throw std::system_error(errno, std::generic_category(), action); }
 
@@ -24,8 +23,7 @@ void set(int socket, int level, int option, const void* value, socklen_t size, c
 void prepare(int socket, const std::string& group, int port) {
   const int yes = 1;
   set(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes, "SO_REUSEADDR");
-  if (setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &kReceiveBufferBytes, sizeof kReceiveBufferBytes) < 0)
-    set(socket, SOL_SOCKET, SO_RCVBUF, &kReceiveBufferBytes, sizeof kReceiveBufferBytes, "SO_RCVBUF");
+  request_receive_buffer(socket);
   sockaddr_in at{};
   at.sin_family = AF_INET;
   at.sin_port = htons(static_cast<std::uint16_t>(port));

@@ -4,6 +4,8 @@
 
 #include <chrono>
 
+#include "sync/bus/receive_buffer.h"
+#include "sync/bus/store_unread.h"
 #include "sync/clocks/pacing.h"
 
 namespace tactus::sync {
@@ -14,13 +16,6 @@ using std::chrono::milliseconds;
 // A default Debian buffers about 90 of the largest messages per socket (net.core.rmem_max); a busy bus carries 6 a
 // millisecond.
 constexpr Nanoseconds kMaxUnread = milliseconds(4);
-// Limit of the stored messages while the loop is held up: four seconds of a busy bus. Beyond it the kernel's buffers fill,
-// and the kernel counts the dropped datagrams.
-constexpr std::size_t kMaxStoredBytes = 16 << 20;
-constexpr int kBatch = 256;
-// Datagrams that the thread reads from one port at a time: more than its socket holds. Malformed ones fill no memory, so
-// only this bound ends the reading of a flood of them.
-constexpr int kMaxRead = 25'000;
 // Event-driven processes only count and coordinate, so they can wait; they wake a third as often as with 1 ms.
 constexpr Nanoseconds kGatherTime = milliseconds(3);
 
@@ -56,6 +51,7 @@ void UdpReader::wait(Nanoseconds max_wait) {
 }
 
 void UdpReader::read_while_loop_is_late() {
+  drop_receive_buffer_right();
   while (!stop_) {
     std::this_thread::sleep_for(kMaxUnread);
     if (busy_.test_and_set(std::memory_order_acquire)) continue;
@@ -63,9 +59,7 @@ void UdpReader::read_while_loop_is_late() {
     const bool loop_is_late = now - last_loop_read_.load(std::memory_order_relaxed) > kMaxUnread;
     for (ReadPort& read_port : ports_) {
       if (!loop_is_late) break;
-      const auto store = [&](const ChannelBytes& m) { read_port.stored.add(now, m, kMaxStoredBytes + kBatch * 2048); };
-      for (int left = kMaxRead; left > 0 && read_port.stored.bytes() < kMaxStoredBytes; left -= kBatch)
-        if (read_port.port.read(kBatch, store) < kBatch) break;
+      store_unread(read_port.port, read_port.stored, now);
     }
     busy_.clear(std::memory_order_release);
   }

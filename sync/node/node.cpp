@@ -17,6 +17,7 @@
 #include "sync/degradation/profile_exchange.h"
 #include "sync/bus/health_inputs.h"
 #include "sync/bus/kernel_drops.h"
+#include "sync/bus/receive_buffer.h"
 #include "sync/text/error_text.h"
 #include "sync/text/printable.h"
 #include "sync/virtual_time/virtual_time.h"
@@ -118,6 +119,7 @@ Node::Node(NodeDescriptor descriptor, NodeOptions options)
       loop_(descriptor_.rate_Hz),
       tags_(options_.name, options_.run_id),
       tag_requests_(channels::kTagRequest, kMaxTagRequests) {
+  if (!descriptor_.opens_sockets && !options_.bus.memory && !VirtualTime::current()) drop_receive_buffer_right();
   bus_.track_clocks();
   bus_.attach(tag_requests_);
   tag_work();

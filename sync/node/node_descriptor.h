@@ -27,6 +27,9 @@ struct NodeDescriptor {
   std::vector<OutputOperator> output_operators = {};  // operators on its output that a profile can use
 
   std::vector<Phase> phases = {};  // tagged phases of its tick in addition to decoding and the rest: "work.render"
+  // It opens sockets of its own after the Node, and calls drop_receive_buffer_right() (sync/bus/receive_buffer.h) after them;
+  // otherwise the Node does.
+  bool opens_sockets = false;
 };
 
 }  // namespace tactus::sync

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "sync/node/live_settings.h"
+#include "sync/sandbox/sandbox.h"
+#include "sync/virtual_time/virtual_time.h"
 
 namespace tactus::sync {
 namespace {
@@ -18,6 +20,8 @@ class RendererRun {
   RendererRun(const NodeDescriptor& descriptor, const NodeOptions& options, RendererFactory& factory, OfflineInput* log)
       : log_(log), node_(descriptor, options), scenes_(node_.bus()), endpoint_(node_), ticks_(node_, log),
         host_(node_, endpoint_, ticks_), renderer_(factory.make(host_)), live_(node_) {
+    // In virtual time all nodes are one process, and the simulation reports it.
+    if (const std::string notice = confinement_notice(available_confinement()); !notice.empty() && !VirtualTime::current()) host_.print_status(notice);
     if (log_) endpoint_.set_report_listener([this](const presentation_t& r) { log_->record_outcome(node_.descriptor().modality, r); });
   }
 

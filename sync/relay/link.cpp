@@ -10,12 +10,13 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "sync/bus/receive_buffer.h"
+
 namespace tactus::sync {
 namespace {
 
 constexpr std::string_view kMagic = "TRL1";
 constexpr std::size_t kChannelAt = kMagic.size() + 1;  // after the port
-constexpr int kReceiveBufferBytes = 4 << 20;           // as sync/bus/udp_port.cpp
 // The limit of an unfragmented datagram on an Ethernet, plus a margin.
 static_assert(kChannelAt + kMaxChannelBytes + 1 + channels::kMaxMessageBytes <= 2047);
 
@@ -84,8 +85,7 @@ std::optional<LineMessage> parse_line_datagram(std::span<const std::uint8_t> byt
 
 LineSocket::LineSocket(const LineEnd& here)
     : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)) {
-  if (setsockopt(socket_, SOL_SOCKET, SO_RCVBUFFORCE, &kReceiveBufferBytes, sizeof kReceiveBufferBytes) < 0)
-    setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &kReceiveBufferBytes, sizeof kReceiveBufferBytes);
+  if (socket_ >= 0) request_receive_buffer(socket_);
   if (bind(socket_, reinterpret_cast<const sockaddr*>(&here.address), sizeof here.address) == 0) return;
   const std::string reason = std::strerror(errno);
   if (socket_ >= 0) close(socket_);

@@ -10,10 +10,12 @@
 namespace tactus::sync {
 
 struct ReaderLimits {
-  // Of all records together.
+  // Of all records together; of a ReaderSession: of one answer.
   std::size_t max_bytes = std::size_t{512} << 20;
   // Longer than the processor time that a reader may use (sandbox.h), so that only a process that waits reaches it.
   std::chrono::seconds timeout{600};
+  // From the end of its output to its own end; then it is killed.
+  std::chrono::milliseconds grace{5000};
 };
 
 struct ReaderOutput {
@@ -33,5 +35,13 @@ std::string text_of(const Record& record);
 // The content of its only record. Throws std::runtime_error with one clause: that of the reader, or why it ended.
 std::vector<std::uint8_t> read_in_process(const std::string& program, const std::vector<std::string>& arguments,
                                           const ReaderLimits& limits = {});
+
+// The content of a record 'R'. Throws std::runtime_error with the text of another one.
+std::vector<std::uint8_t> content_of(Record record);
+
+// Why a reader was ended, in one clause.
+inline constexpr const char* kReaderTimeout = "it takes too long to read: simplify it";
+inline constexpr const char* kReaderEndedEarly = "its reader ended too early: the file is damaged or hostile";
+std::string too_much_content(std::size_t max_bytes);
 
 }  // namespace tactus::sync

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <stdexcept>
 #include <string>
 
 namespace tactus::sync {
@@ -33,6 +34,38 @@ void send_error(const std::string& clause) {
   send('E', {reinterpret_cast<const std::uint8_t*>(clause.data()), clause.size()});
 }
 
+// False at the end of the input.
+bool read_all(void* bytes, std::size_t count) {
+  auto* to = static_cast<char*>(bytes);
+  while (count > 0) {
+    const ssize_t n = ::read(STDIN_FILENO, to, count);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    to += n;
+    count -= static_cast<std::size_t>(n);
+  }
+  return true;
+}
+
+// Empty, or why this process must not parse anything.
+std::string confine(const std::vector<std::filesystem::path>& readable, const SandboxLimits& limits) {
+  const Confinement available = available_confinement();
+  return missing_measure(confine_process(readable, limits), available);
+}
+
+// Runs `work`, which answers; an exception becomes the answer.
+template <class Work>
+void answer(const SandboxLimits& limits, Work&& work) {
+  try {
+    work();
+  } catch (const std::bad_alloc&) {
+    send_error("it needs more than " + std::to_string(limits.memory_bytes >> 20) +
+               " MiB of memory to read: simplify it");
+  } catch (const std::exception& e) {
+    send_error(e.what());
+  }
+}
+
 }  // namespace
 
 std::optional<int> reader_options(int argc, char** argv, const std::string& help) {
@@ -48,16 +81,26 @@ std::optional<int> reader_options(int argc, char** argv, const std::string& help
 
 int reader_main(const std::vector<std::filesystem::path>& readable, const SandboxLimits& limits,
                 const std::function<void(const SendRecord&)>& read) {
-  confine_process(readable, limits);
-  try {
+  const std::string refused = confine(readable, limits);
+  answer(limits, [&] {
+    if (!refused.empty()) throw std::runtime_error(refused);
     read(send);
-  } catch (const std::bad_alloc&) {
-    send_error("it needs more than " + std::to_string(limits.memory_bytes >> 20) +
-               " MiB of memory to read: simplify it");
-  } catch (const std::exception& e) {
-    send_error(e.what());
-  }
+  });
   // Without destructors and without the checks of a sanitizer at exit, which need system calls.
+  _exit(0);
+}
+
+int reader_session_main(const std::vector<std::filesystem::path>& readable, const SandboxLimits& limits,
+                        const std::function<std::vector<std::uint8_t>(std::span<const std::uint8_t>)>& read) {
+  const std::string refused = confine(readable, limits);
+  for (std::uint64_t size = 0; read_all(&size, sizeof size);) {
+    answer(limits, [&] {
+      std::vector<std::uint8_t> request(size);
+      if (!read_all(request.data(), request.size())) _exit(1);
+      if (!refused.empty()) throw std::runtime_error(refused);
+      send('R', read(request));
+    });
+  }
   _exit(0);
 }
 

@@ -1,6 +1,7 @@
 // The output of a reader program: records of a kind and a content. And values packed into a content.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -16,6 +17,12 @@ struct Record {
   char kind = 'R';
   std::vector<std::uint8_t> content;
 };
+
+// On the wire: the kind, the size of the content as 64 bits, the content.
+inline constexpr std::size_t kRecordHeaderBytes = 9;
+
+// Moves the complete records from the front of `bytes` into `records`.
+void split_records(std::vector<std::uint8_t>& bytes, std::vector<Record>& records);
 
 // Appends values in the byte order of this machine: writer and reader are one build.
 class Packer {

@@ -54,8 +54,10 @@ void allow_reading(int ruleset, const std::filesystem::path& path) {
   if (parent >= 0) close(parent);
 }
 
+long landlock_version() { return syscall(kCreateRuleset, nullptr, 0, 1); }  // 1: LANDLOCK_CREATE_RULESET_VERSION
+
 bool confine_files(const std::vector<std::filesystem::path>& readable) {
-  const long version = syscall(kCreateRuleset, nullptr, 0, 1);  // 1: LANDLOCK_CREATE_RULESET_VERSION
+  const long version = landlock_version();
   if (version < 1) return false;
   RulesetAttributes all;
   all.files = (1 << 13) - 1;                 // every right of version 1
@@ -101,6 +103,28 @@ Confinement confine_process(const std::vector<std::filesystem::path>& readable, 
   done.capabilities = drop_capabilities(done.files);
   done.system_calls = restrict_system_calls();
   return done;
+}
+
+Confinement available_confinement() {
+  return {.files = landlock_version() >= 1, .system_calls = has_system_call_filter(), .capabilities = true};
+}
+
+std::string missing_measure(const Confinement& done, const Confinement& available) {
+  const char* const refused = available.files && !done.files                 ? "Landlock"
+                              : available.system_calls && !done.system_calls ? "a seccomp filter"
+                              : available.capabilities && !done.capabilities ? "dropping capabilities"
+                                                                             : nullptr;
+  return refused ? "its reader cannot be confined: the kernel refuses " + std::string(refused) : "";
+}
+
+std::string confinement_notice(const Confinement& available) {
+  if (available.files && available.system_calls) return "";
+  const std::string lacks = available.files ? "seccomp filters" : available.system_calls ? "Landlock" : "Landlock and seccomp filters";
+  const std::string risk = available.files          ? "a hostile scene, picture or sound could use the network"
+                           : available.system_calls ? "a hostile scene, picture or sound could read other files of the user"
+                                                    : "a hostile scene, picture or sound could read other files of the user and send them";
+  return "this kernel has no " + lacks + ": " + risk +
+         "; boot Linux 5.13 or later with both (lsm=landlock), or open only files from sources that you trust";
 }
 
 }  // namespace tactus::sync

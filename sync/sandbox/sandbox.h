@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace tactus::sync {
@@ -23,7 +24,17 @@ struct Confinement {
 
 // Irreversible. Call it before starting threads: the kernel confines the calling thread and its children. readable:
 // folders or files that may be read; nothing else can be opened. Writing is possible only to descriptors that are open.
-// A measure that the kernel does not have is left out; the limits of memory and time hold on every kernel.
+// A measure that the kernel does not have is left out; the limits of memory and time hold on every kernel. Check the result
+// with missing_measure().
 Confinement confine_process(const std::vector<std::filesystem::path>& readable, const SandboxLimits& limits);
+
+// The measures that this kernel offers to this process. Changes nothing. Not after confine_process().
+Confinement available_confinement();
+
+// Why a process must not parse foreign files: a measure that the kernel offers was refused. One clause; empty: none was. Pure.
+std::string missing_measure(const Confinement& done, const Confinement& available);
+
+// One sentence for the user about the measures that this kernel lacks; empty: it has all. Pure.
+std::string confinement_notice(const Confinement& available);
 
 }  // namespace tactus::sync

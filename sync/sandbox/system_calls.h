@@ -1,4 +1,4 @@
-// The system calls of a process that parses a file.
+// The system calls of a process that parses a file, by libseccomp.
 #pragma once
 
 namespace tactus::sync {
@@ -7,5 +7,8 @@ namespace tactus::sync {
 // end; every other system call fails with EPERM. Needs no_new_privs. Irreversible. Returns false when the kernel or the
 // architecture has no such filter.
 bool restrict_system_calls();
+
+// Whether this kernel has such filters, and allows this process to install them. Changes nothing.
+bool has_system_call_filter();
 
 }  // namespace tactus::sync

@@ -17,6 +17,7 @@
 #include <system_error>
 
 #include "sync/bus/bus_arguments.h"
+#include "sync/bus/receive_buffer.h"
 #include "sync/node/node_options.h"
 #include "sync/clocks/pacing.h"
 #include "sync/clock_sync/pair_probe.h"
@@ -28,7 +29,6 @@ namespace {
 constexpr sync::Nanoseconds kPeriod{20'000'000};  // of requests, short and long alternately
 constexpr std::uint64_t kBurst = 100;             // datagrams of a burst, as fast as possible
 constexpr int kBursts = 3;
-constexpr int kReceiveBufferBytes = 4 << 20;  // as in sync/bus/udp_port.cpp
 constexpr int kEnds = 5;
 constexpr sync::Nanoseconds kLead{500'000'000};  // the other hosts start at about the same time, no better
 
@@ -41,8 +41,8 @@ class Socket {
     to_.sin_port = htons(static_cast<std::uint16_t>(o.port));
     if (inet_pton(AF_INET, o.group.c_str(), &to_.sin_addr) != 1) throw std::runtime_error("--group " + o.group + ": is not an address");
     setsockopt(fd_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    if (setsockopt(fd_, SOL_SOCKET, SO_RCVBUFFORCE, &kReceiveBufferBytes, sizeof kReceiveBufferBytes) < 0)
-      setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &kReceiveBufferBytes, sizeof kReceiveBufferBytes);
+    sync::request_receive_buffer(fd_);
+    sync::drop_receive_buffer_right();
     setsockopt(fd_, IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
     setsockopt(fd_, IPPROTO_IP, IP_RECVTTL, &on, sizeof on);
     ip_mreq member{};

@@ -12,6 +12,7 @@
 #include "sync/node/node.h"
 #include "sync/relay/relay.h"
 #include "sync/tools/replay/replay_port.h"
+#include "sync/bus/receive_buffer.h"
 #include "sync/bus/udp_reader.h"
 
 using namespace tactus;
@@ -47,7 +48,8 @@ int main(int argc, char** argv) try {
                                         .modality = "",
                                         .rate_Hz = 500,  // so it adds a millisecond on average
                                         .fifo_priority = 40,
-                                        .about = "Carries the bus between sites: sends the channels of its rules, at the rates of its rules, over one line to each other site."};
+                                        .about = "Carries the bus between sites: sends the channels of its rules, at the rates of its rules, over one line to each other site.",
+                                        .opens_sockets = true};
   sync::Arguments app;
   sync::NodeOptions options;
   std::string listen, rules_file;
@@ -68,6 +70,7 @@ int main(int argc, char** argv) try {
   sync::Relay relay(*rules, sites, options.run_id);
   sync::LineSocket line(*here);
   sync::UdpReader reader(options.bus.group, options.bus.port);
+  sync::drop_receive_buffer_right();
   sync::ReplayPort realtime(options.bus), bulk(bulk_of(options.bus));
   for (std::size_t i = 0; i < relay.sites().size(); ++i)
     node.tags().add("late_" + std::to_string(i + 1), "1", [&relay, i] { return static_cast<double>(relay.line(i).late); }, 1);

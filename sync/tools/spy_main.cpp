@@ -20,6 +20,7 @@
 
 #include "sync/bus/bus_arguments.h"
 #include "sync/bus/bus.h"
+#include "sync/bus/receive_buffer.h"
 #include "sync/node/node_options.h"
 #include "sync/tools/recorder/recorder_tap.h"
 #include "sync/tools/spy/screen.h"
@@ -105,6 +106,7 @@ int main(int argc, char** argv) try {
   for (int s : {SIGINT, SIGTERM, SIGHUP}) signal(s, [](int) { stop = true; });
 
   sync::Bus bus(sync::Identity::fresh("spy", run_id), bus_options);
+  sync::drop_receive_buffer_right();
   bus.track_clocks();
   if (once_s == 0 && (isatty(STDIN_FILENO) != 1 || isatty(STDOUT_FILENO) != 1))
     throw std::runtime_error("this is not a terminal; give --once SECONDS for a table");

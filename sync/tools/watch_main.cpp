@@ -15,6 +15,7 @@
 
 #include "sync/bus/bus_arguments.h"
 #include "sync/bus/bus.h"
+#include "sync/bus/receive_buffer.h"
 #include "sync/node/node_options.h"
 #include "sync/tools/watch_table.h"
 
@@ -56,6 +57,7 @@ int main(int argc, char** argv) try {
   for (int s : {SIGINT, SIGTERM}) signal(s, [](int) { stop = true; });
 
   sync::Bus bus(sync::Identity::fresh("watch", std::max<std::int64_t>(1, run_id)), bus_options);
+  sync::drop_receive_buffer_right();
   auto& health = bus.queue<node_health_t>(channels::kNodeHealth, 1024);
   auto& report = bus.queue<sync_report_t>(channels::kSyncReport, 256);
   const bool in_place = !once && !json && isatty(STDOUT_FILENO) == 1;

@@ -3,6 +3,7 @@
 #include "examples/device_driver/guards.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -170,4 +171,68 @@ TEST_CASE("A driver stays within its limits for random messages, gaps and motion
   }
   CHECK(within);
   CHECK(slow);
+}
+
+namespace {
+
+// A TemperatureGuard at 10 Hz, with time moved by hand. Commands are sent unless `wanted` is empty; the plate follows unless it is given.
+struct PlateRun {
+  TemperatureGuard guard;
+  std::int64_t now_ns = kStart_ns, seq = 0;
+  explicit PlateRun(const TemperatureLimits& limits = {}) : guard(limits, {}) {}
+  double run(double seconds, std::optional<double> wanted_degC, std::optional<double> plate_degC = {}) {
+    double out = 33;
+    for (int i = 0; i < std::lround(seconds * 10); ++i) {
+      now_ns += 100 * kMs;
+      if (wanted_degC) guard.on_message({1, 5, ++seq, now_ns}, *wanted_degC, now_ns);
+      out = guard.update(now_ns, plate_degC.value_or(last));
+      last = out;
+    }
+    return out;
+  }
+  double last = 33;
+};
+
+}  // namespace
+
+TEST_CASE("A plate that does not obey, or whose sensor has failed, is switched off") {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  PlateRun plate;
+  plate.run(1, 33);
+  for (const auto& [degC, off] : std::vector<std::pair<double, bool>>{
+           {33, false}, {44, false}, {44.1, true}, {33, false}, {13, false}, {12.9, true}, {12.95, false}, {kNan, true}, {33, false}}) {
+    plate.run(0.1, 33, degC);
+    CAPTURE(degC);
+    CHECK(plate.guard.off() == off);
+  }
+  PlateRun cold;
+  cold.run(0.1, 33, -5);
+  CHECK_FALSE(cold.guard.off());  // it was cold when it was switched on
+}
+
+TEST_CASE("The exposure of a person at a plate survives a restart of the driver") {
+  PlateRun plate;
+  CHECK(plate.run(250, 42) == 39);
+  PlateRun again;
+  again.guard.resume(plate.guard.account());
+  CHECK(again.run(5, 42) == 39);
+  PlateRun rested;
+  rested.guard.resume(plate.guard.account(), 3600);
+  CHECK(rested.run(5, 42) == 42);
+  for (const double damaged : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1.0, 1e9}) {
+    PlateRun full;
+    full.guard.resume({damaged, damaged, false, false});
+    CHECK(full.run(5, 42) == 39);
+    CHECK(full.run(5, 15) == 20);
+  }
+}
+
+TEST_CASE("No slew limit of a plate lengthens its way to neutral") {
+  for (const double slew : {0.1, 1.0, 20.0}) {
+    TemperatureLimits limits;
+    limits.slew_K_s = slew;
+    PlateRun plate(limits);
+    CHECK(plate.run(9 / slew + 1, 42) == Approx(42));
+    CHECK(plate.run(0.3 + 0.5, std::nullopt) == Approx(33));  // 0.3 s of validity, and 9 K at 20 K/s
+  }
 }

@@ -2,19 +2,18 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "lcmtypes/height_map.h"
-#include "visual_node/scene_view/raster.h"
+#include "sync/pictures/picture_decoders.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    const auto raster = tactus::visual::read_raster({data, size});
+    const auto raster = tactus::sync::read_raster({data, size});
     if (raster.width < 1 || raster.height < 1 ||
         raster.rgba.size() != 4u * static_cast<unsigned>(raster.width * raster.height))
       std::abort();
   } catch (const std::runtime_error&) {
   }
   try {
-    const auto map = tactus::read_height_map({data, size});
+    const auto map = tactus::sync::read_height_map({data, size});
     if (map.columns < 1 || map.rows < 1 ||
         map.levels.size() != static_cast<std::size_t>(map.columns) * static_cast<std::size_t>(map.rows))
       std::abort();

@@ -7,10 +7,12 @@ import itertools
 import math
 import os
 import sys
+import tempfile
 import unittest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", "..", "examples", "device_driver"))
+import display  # noqa: E402
 import guards  # noqa: E402
 
 START_NS = 10_000_000_000
@@ -125,6 +127,76 @@ class OtherClock(unittest.TestCase):
         self.assertEqual(1000, self.accepted([0.001] * 1000))
         self.assertEqual(500, self.accepted([0.001] * 500 + [0.2] * 500))
         self.assertEqual(20_000, self.accepted([0.001] * 20_000, drift=1e-4))
+
+
+class Plate(unittest.TestCase):
+    """A TemperatureGuard at 10 Hz, with time moved by hand."""
+
+    def setUp(self):
+        self.now_ns, self.seq = START_NS, 0
+
+    def run_for(self, guard, seconds, wanted_degC=None, plate_degC=None):
+        for _ in range(round(seconds * 10)):
+            self.now_ns, self.seq = self.now_ns + 100 * MS, self.seq + 1
+            if wanted_degC is not None:
+                guard.on_message(guards.Sent(1, 5, self.seq, self.now_ns), wanted_degC, self.now_ns)
+            guard.update(self.now_ns, guard.out_degC if plate_degC is None else plate_degC)
+        return guard.out_degC
+
+    def test_a_plate_that_does_not_obey_or_whose_sensor_has_failed_is_switched_off(self):
+        guard = guards.TemperatureGuard()
+        self.run_for(guard, 1, 33)
+        for plate, off in ((33, False), (44, False), (44.1, True), (33, False), (13, False), (12.9, True), (12.95, False), (math.nan, True), (math.inf, True), (33, False)):
+            self.run_for(guard, 0.1, 33, plate)
+            self.assertEqual(off, guard.off, plate)
+        cold = guards.TemperatureGuard()
+        self.run_for(cold, 0.1, 33, -5)
+        self.assertFalse(cold.off)  # it was cold when it was switched on
+
+    def test_the_exposure_survives_a_restart(self):
+        guard = guards.TemperatureGuard()
+        self.assertEqual(39, self.run_for(guard, 250, 42))
+        account = guard.account()
+        again = guards.TemperatureGuard()
+        again.resume(account)
+        self.assertEqual(39, self.run_for(again, 5, 42))
+        self.assertAlmostEqual(account.dose_s, again.account().dose_s, delta=2)
+        rested = guards.TemperatureGuard()
+        rested.resume(account, 3600)
+        self.assertEqual(42, self.run_for(rested, 5, 42))
+        for damaged in (math.nan, math.inf, -1.0, 1e9):
+            full = guards.TemperatureGuard()
+            full.resume(guards.SkinAccount(damaged, damaged))
+            self.assertEqual((39, 20), (self.run_for(full, 5, 42), self.run_for(full, 5, 15)), damaged)
+
+    def test_no_slew_limit_lengthens_the_way_to_neutral(self):
+        for slew in (0.1, 1, 20):
+            guard = guards.TemperatureGuard(guards.TemperatureLimits(slew_K_s=slew))
+            self.assertAlmostEqual(42, self.run_for(guard, 9 / slew + 1, 42), 6)
+            self.assertEqual(33, self.run_for(guard, 0.3 + 0.5))  # 0.3 s of validity, and 9 K at 20 K/s
+
+
+class StoredExposure(unittest.TestCase):
+    def test_a_file_keeps_the_exposure_and_one_that_cannot_be_believed_is_a_full_one(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "display.dose")
+            stored = display.Exposure(path)
+            self.assertEqual((guards.SkinAccount(), 0.0), stored.load(5))
+            account = guards.SkinAccount(30.5, 2.25, True, False)
+            stored.save(account, 1000.0)
+            self.assertEqual(0o600, os.stat(path).st_mode & 0o777)
+            self.assertEqual((account, 20.0), stored.load(1020.0))
+            self.assertEqual((account, 0.0), stored.load(900.0))  # the clock was put back
+            for text in ("", "{}", "[]", '{"dose_s": "x"}', "\xff" * 9, '{"dose_s": 1, "cold_s": 1, "too_warm": 0, "too_cold": 0}'):
+                with open(path, "w", encoding="latin-1") as file:
+                    file.write(text)
+                self.assertEqual((display.FULL, 0.0), stored.load(5), text)
+            stored.save(account, 1000.0)
+            os.chmod(path, 0o666)
+            self.assertEqual((display.FULL, 0.0), stored.load(1020.0))
+            guard = guards.TemperatureGuard()
+            guard.resume(*stored.load(1020.0))
+            self.assertTrue(guard.too_warm and guard.too_cold)
 
 
 if __name__ == "__main__":

@@ -20,8 +20,7 @@ DisplayGuard::DisplayGuard(const Settings& s, int tool, std::int64_t run_id, std
     : settings_(s),
       neutral_degC_(std::clamp(s.skin_rest_degC, s.temperature_min_degC, s.temperature_max_degC)),
       tool_(tool),
-      run_id_(run_id),
-      sender_(Device::kSilence, clock),
+      sender_(Device::kSilence, clock, run_id),
       dwell_({s.dose_max_s, s.cold_below_degC, s.cold_max_s}),
       controller_({s.temperature_min_degC, s.temperature_max_degC, s.slew_max_K_s}, neutral_degC_),
       target_degC_(neutral_degC_),
@@ -29,9 +28,9 @@ DisplayGuard::DisplayGuard(const Settings& s, int tool, std::int64_t run_id, std
       exposure_{neutral_degC_, neutral_degC_} {}
 
 void DisplayGuard::receive(const thermal_state_t& m, sync::HostTime arrival) {
-  if (m.tool != tool_ || m.header.run_id != run_id_) return;
-  const OneSender::Result result = sender_.observe(m.header, arrival);
-  if (result == OneSender::Result::kUse || result == OneSender::Result::kRestart) command_ = m;
+  if (m.tool != tool_) return;
+  const DatedSender::Result result = sender_.observe(m.header, arrival);
+  if (result == DatedSender::Result::kUse || result == DatedSender::Result::kRestart) command_ = m;
 }
 
 const char* DisplayGuard::problem(sync::HostTime now) const {

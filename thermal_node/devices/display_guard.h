@@ -11,8 +11,8 @@
 #include <optional>
 #include <tactus/thermal_state_t.hpp>
 
+#include "thermal_node/devices/dated_sender.h"
 #include "thermal_node/devices/device.h"
-#include "thermal_node/devices/one_sender.h"
 #include "thermal_node/display/controller.h"
 #include "thermal_node/settings.gen.h"
 #include "thermal_node/skin/dwell.h"
@@ -59,8 +59,7 @@ class DisplayGuard {
   Settings settings_;
   double neutral_degC_;
   int tool_;
-  std::int64_t run_id_;
-  OneSender sender_;
+  DatedSender sender_;
   thermal_state_t command_{};
   Dwell dwell_;
   Controller controller_;

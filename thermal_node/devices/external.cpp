@@ -6,8 +6,8 @@ namespace tactus::thermal {
 
 void External::receive(const thermal_device_t& m, sync::HostTime arrival) {
   if (m.tool != tool_) return;
-  const OneSender::Result result = sender_.observe(m.header, arrival);
-  if (result == OneSender::Result::kUse || result == OneSender::Result::kRestart) reading_ = to_reading(m);
+  const DatedSender::Result result = sender_.observe(m.header, arrival);
+  if (result == DatedSender::Result::kUse || result == DatedSender::Result::kRestart) reading_ = to_reading(m);
 }
 
 std::optional<PlateReading> External::step(double, double, sync::HostTime now) {

@@ -4,15 +4,15 @@
 
 #include <tactus/thermal_device_t.hpp>
 
+#include "thermal_node/devices/dated_sender.h"
 #include "thermal_node/devices/device.h"
-#include "thermal_node/devices/one_sender.h"
 #include "thermal_node/display/following.h"
 
 namespace tactus::thermal {
 
 class External final : public Device {
  public:
-  // tool: index; messages of other tools are ignored. clock: id of the clock of this process, see OneSender.
+  // tool: index; messages of other tools are ignored. clock: id of the clock of this process, see DatedSender.
   explicit External(int tool, std::int32_t clock = 0) : tool_(tool), sender_(kSilence, clock) {}
 
   void receive(const thermal_device_t& message, sync::HostTime arrival) override;
@@ -26,7 +26,7 @@ class External final : public Device {
  private:
   int tool_;
   PlateReading reading_;
-  OneSender sender_;
+  DatedSender sender_;
 };
 
 // Converts a reading to a message. Of the header it sets only sim_time_ns, to -1 (no simulated instant).

@@ -36,7 +36,7 @@ void FrameLock::push(const world_state_t& m, sync::HostTime arrival) {
 }
 
 void FrameLock::push(const tool_state_t& m, sync::HostTime arrival) {
-  if (m.tool == head_tool_ && clock_.known()) heads_.push(m, clock_.sent(m.header, arrival));
+  if (m.tool == head_tool_ && clock_.known()) heads_.push(m, clock_.sent(m.header, arrival), arrival);
 }
 
 void FrameLock::push(const playout_t& m, sync::HostTime arrival) {
@@ -115,6 +115,7 @@ frame_shown_t FrameLock::message(const LockedFrame& frame, std::int8_t stage) co
 
 std::string FrameLock::status_text(sync::HostTime now) const {
   if (!active()) return "";
+  if (heads_.conflict(now)) return "two programs control the head; the first one counts, stop the other";
   if (!clock_.mapped(now)) return "walls by arrival: no map of sim_node's clock";
   if (head_tool_ >= 0 && expected_draw_time() + kMessageLatency > lag_)
     return "drawing takes longer than frame_lag: other walls have a newer head";

@@ -7,11 +7,10 @@
 
 namespace tactus::visual {
 
-void HeadSamples::push(const tool_state_t& m, RoomTime sent) {
-  if (m.header.incarnation != incarnation_) {  // another process holds the head now
-    incarnation_ = m.header.incarnation;
-    samples_.clear();
-  }
+void HeadSamples::push(const tool_state_t& m, RoomTime sent, sync::HostTime arrival) {
+  const sync::SenderStatus status = followed_.on_page(m.header, arrival);
+  if (!sync::accepted(status)) return;
+  if (status == sync::SenderStatus::kFirst) samples_.clear();  // another process controls the head now
   if (!samples_.empty() && sent < samples_.back().sent - kSpan) samples_.clear();  // its clock was put back
   // Messages may overtake each other.
   auto at = samples_.end();

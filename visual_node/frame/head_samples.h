@@ -7,6 +7,7 @@
 #include <optional>
 #include <tactus/tool_state_t.hpp>
 
+#include "sync/clocks/single_sender.h"
 #include "sync/resampling/body_history.h"
 #include "visual_node/frame/room_time.h"
 
@@ -27,7 +28,10 @@ class HeadSamples {
 
   // Stores this time beyond kSpan, for a view that a profile delays.
   void extend_history(sync::Nanoseconds delay) { span_ = kSpan + delay; }
-  void push(const tool_state_t& m, RoomTime sent);
+  // A report of the head. Those of a second process of the tool are ignored while the first one sends.
+  void push(const tool_state_t& m, RoomTime sent, sync::HostTime arrival);
+  // Whether a second process of the tool has sent within the last 0.3 s.
+  bool conflict(sync::HostTime now) const { return followed_.conflict(now); }
   void clear() { samples_.clear(); }
   // Send time of the newest pose; nothing: there is none.
   std::optional<RoomTime> newest() const {
@@ -37,7 +41,7 @@ class HeadSamples {
   std::optional<HeadSample> published_by(RoomTime t) const;
 
  private:
-  std::int64_t incarnation_ = 0;
+  sync::SingleSender followed_;
   std::deque<HeadSample> samples_;  // in order of time
   sync::Nanoseconds span_ = kSpan;
 };

@@ -29,7 +29,7 @@ Eigen::Vector3d through(int face, double s, double t) {
 
 // Bilinear between the centres of four pixels; wraps around in longitude, ends at the poles. Interpolates the
 // encoded values, since neighbours are similar.
-std::array<std::uint8_t, 4> sample(const Raster& r, const Eigen::Vector2d& at) {
+std::array<std::uint8_t, 4> sample(const sync::Raster& r, const Eigen::Vector2d& at) {
   const double x = at.x() * r.width - 0.5, y = std::clamp(at.y() * r.height - 0.5, 0.0, r.height - 1.0);
   const int left = static_cast<int>(std::floor(x)), below = std::min(static_cast<int>(y), r.height - 1);
   const double along_x = x - left, along_y = y - below;
@@ -61,14 +61,14 @@ Eigen::Vector2d equirectangular_uv(const Eigen::Vector3d& direction) {
           0.5 + std::asin(std::clamp(d.z(), -1.0, 1.0)) / std::numbers::pi};
 }
 
-SurfaceTexture::SurfaceTexture(const Raster& r, bool encoded) {
+SurfaceTexture::SurfaceTexture(const sync::Raster& r, bool encoded) {
   glBindTexture(GL_TEXTURE_2D, id_);
   glTexImage2D(GL_TEXTURE_2D, 0, encoded ? GL_SRGB8_ALPHA8 : GL_RGBA8, r.width, r.height, 0, GL_RGBA,
                GL_UNSIGNED_BYTE, r.rgba.data());
   finish(GL_TEXTURE_2D, GL_REPEAT);
 }
 
-EnvironmentTexture::EnvironmentTexture(const Raster& around) {
+EnvironmentTexture::EnvironmentTexture(const sync::Raster& around) {
   glBindTexture(GL_TEXTURE_CUBE_MAP, id_);
   const int edge = std::clamp(around.width / 4, 1, kMaxFace_px);
   std::vector<std::uint8_t> rgba(static_cast<std::size_t>(4 * edge * edge));

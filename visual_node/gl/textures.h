@@ -3,15 +3,15 @@
 
 #include <Eigen/Core>
 
+#include "sync/pictures/raster.h"
 #include "visual_node/gl/gl_object.h"
-#include "visual_node/scene_view/raster.h"
 
 namespace tactus::visual {
 
 // Repeated in both directions, filtered. encoded: the colours are sRGB; otherwise linear numbers.
 class SurfaceTexture {
  public:
-  SurfaceTexture(const Raster& raster, bool encoded);
+  SurfaceTexture(const sync::Raster& raster, bool encoded);
   unsigned id() const { return id_; }
 
  private:
@@ -22,7 +22,7 @@ class SurfaceTexture {
 class EnvironmentTexture {
  public:
   // From an equirectangular picture, as defined in scene_t.lcm.
-  explicit EnvironmentTexture(const Raster& around);
+  explicit EnvironmentTexture(const sync::Raster& around);
   // One colour in all directions, linear.
   explicit EnvironmentTexture(const Eigen::Vector3f& colour);
   unsigned id() const { return id_; }

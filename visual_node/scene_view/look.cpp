@@ -12,7 +12,7 @@ constexpr float kReflectanceOfGlass = 0.04f;
 
 }  // namespace
 
-LookFiles look_files_of(const sync::SceneReceiver& scenes, std::vector<std::string>& warnings) {
+LookFiles look_files_of(const sync::SceneReceiver& scenes, sync::ConfinedPictures& reader, std::vector<std::string>& warnings) {
   LookFiles files;
   if (!scenes.scene()) return files;
   const auto picture = [&](std::int64_t hash, const std::string& of) {
@@ -20,7 +20,7 @@ LookFiles look_files_of(const sync::SceneReceiver& scenes, std::vector<std::stri
     const sync::Asset* asset = scenes.asset(hash);
     try {
       if (!asset) throw std::runtime_error("it was not sent");
-      files.pictures.emplace(hash, read_raster(asset->bytes));
+      files.pictures.emplace(hash, reader.raster(asset->bytes));
     } catch (const std::exception& e) {
       warnings.push_back("the " + of + " cannot be read: " + e.what() + "; it is drawn without");
     }

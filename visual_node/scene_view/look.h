@@ -10,18 +10,19 @@
 #include <vector>
 
 #include "sync/assets/scene_receiver.h"
-#include "visual_node/scene_view/raster.h"
+#include "sync/pictures/confined_pictures.h"
+#include "sync/pictures/raster.h"
 
 namespace tactus::visual {
 
 // The files of looks, passes and the environment, by content hash.
 struct LookFiles {
-  std::map<std::int64_t, Raster> pictures;
+  std::map<std::int64_t, sync::Raster> pictures;
   std::map<std::int64_t, std::string> texts;
 };
 
-// Decodes them. Adds one sentence to `warnings` for each missing or damaged file.
-LookFiles look_files_of(const sync::SceneReceiver& scenes, std::vector<std::string>& warnings);
+// Decodes them in a confined process. Adds one sentence to `warnings` for each missing or damaged file.
+LookFiles look_files_of(const sync::SceneReceiver& scenes, sync::ConfinedPictures& reader, std::vector<std::string>& warnings);
 
 // The sources of a shader; empty: the built-in source of the stage.
 struct ShaderText {
@@ -42,7 +43,7 @@ struct Look {
 // All looks and their files for the renderer. The first look is that of surfaces without a look.
 struct Appearance {
   std::vector<Look> looks{Look{}};
-  std::vector<Raster> pictures;
+  std::vector<sync::Raster> pictures;
   std::vector<ShaderText> shaders;  // shaders of the scene
   std::vector<pass_t> passes;
   int environment = -1;  // index in pictures; -1: the background colour

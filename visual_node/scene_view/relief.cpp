@@ -6,7 +6,7 @@
 
 namespace tactus::visual {
 
-HeightMaps height_maps_of(const scene_t& scene, const sync::Pictures& pictures,
+HeightMaps height_maps_of(const scene_t& scene, const sync::Pictures& pictures, sync::ConfinedPictures& reader,
                           std::vector<std::string>& warnings) {
   HeightMaps maps;
   std::set<std::int64_t> tried{0};  // 0: smooth
@@ -15,9 +15,9 @@ HeightMaps height_maps_of(const scene_t& scene, const sync::Pictures& pictures,
     const auto picture = pictures.find(material.bump_asset);
     try {
       if (picture == pictures.end()) throw std::runtime_error("it was not sent");
-      maps.emplace(material.bump_asset, read_height_map(picture->second));
+      maps.emplace(material.bump_asset, reader.height_map(picture->second));
     } catch (const std::exception& e) {
-      warnings.push_back("the height map of material  " + material.name + " cannot be read: " + e.what() +
+      warnings.push_back("the height map of material " + material.name + " cannot be read: " + e.what() +
                          "; it is drawn smooth");
     }
   }

@@ -15,6 +15,7 @@ void archive(StateArchive& a, FreeBody& b) {
   a.require(b.mass_kg > 0 && positive.info() == Eigen::Success, "the state holds a mass that is not positive");
   a(b.centre_m), a(b.orientation), a(b.velocity_m_s), a(b.step_s), a(b.spin_rad_s), a(b.force_N), a(b.moment_N_m);
   a.require(std::abs(b.orientation.squaredNorm() - 1) < 1e-6, "the state holds an invalid orientation");
+  a.require(!a.reads() || plausible(b.centre_m, b.velocity_m_s, b.spin_rad_s), kImplausible);
 }
 
 void archive(StateArchive& a, articulated::ArticulatedSystem& system) {

@@ -5,7 +5,6 @@
 #include <tactus/material_def_t.hpp>
 
 #include "lcmtypes/bump.h"
-#include "lcmtypes/height_map.h"
 #include "sim_node/scene/sdf/attributes.h"
 #include "sim_node/scene/meshes/file_properties.h"
 #include "sim_node/scene/materials/height_image.h"
@@ -21,7 +20,7 @@ std::int64_t image_hash(LoadContext& context, const sdf::Element& element, const
   const std::filesystem::path file = context.asset_file(uri, element);
   try {
     sync::Asset image{asset_ref_t::IMAGE, file.filename().string(), read_image_file(file)};
-    read_height_map(image.bytes);
+    context.pictures.height_map(image.bytes);
     return add_image(context.world, std::move(image));
   } catch (const std::exception& e) {
     context.reject(element, "names " + what + " \"" + uri + "\", which cannot be read: " + e.what());

@@ -1,6 +1,5 @@
 #include "sim_node/scene/materials/height_image.h"
 
-#include "lcmtypes/height_map.h"
 #include "sync/assets/scene_receiver.h"
 #include "sync/sandbox/regular_file.h"
 
@@ -10,9 +9,9 @@ sync::Bytes read_image_file(const std::filesystem::path& file) {
   return sync::read_regular_file(file, sync::SceneReceiver::kMaxAssetBytes);
 }
 
-Heightfield read_height_image(const std::filesystem::path& file, const Eigen::Vector3d& size_m,
-                              const Eigen::Vector3d& centre_m) {
-  const HeightMap map = read_height_map(read_image_file(file));
+Heightfield read_height_image(const std::filesystem::path& file, const Eigen::Vector3d& size_m, const Eigen::Vector3d& centre_m,
+                              sync::ConfinedPictures& pictures) {
+  const HeightMap map = pictures.height_map(read_image_file(file));
   Heightfield field;
   field.columns = map.columns, field.rows = map.rows;
   field.size_m = size_m, field.centre_m = centre_m;

@@ -6,13 +6,13 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "lcmtypes/height_map.h"
 #include "sim_node/scene/meshes/gltf_writer.h"
 #include "sim_node/scene/materials/height_image.h"
 #include "sim_node/model/measured_modes.h"
 #include "sim_node/scene/meshes/mesh_reader.h"
 #include "sim_node/scene/materials/pictures.h"
 #include "sim_node/scene/meshes/tangents.h"
+#include "sync/pictures/confined_pictures.h"
 
 namespace tactus::sim {
 namespace {
@@ -71,8 +71,9 @@ void check_properties(const MeshParts& mesh, const fs::path& out) {
       throw std::runtime_error(std::string(key) + " \"" + at->second + "\" cannot be read: " + e.what());
     }
   };
+  sync::ConfinedPictures pictures;
   for (const char* key : {"bump", "friction_map"})
-    check(mesh.material, key, [](const sync::Bytes& b) { read_height_map(b); });
+    check(mesh.material, key, [&](const sync::Bytes& b) { pictures.height_map(b); });
   check(mesh.material, "modes", [](const sync::Bytes& b) {
     parse_measured_modes({reinterpret_cast<const char*>(b.data()), b.size()});
   });

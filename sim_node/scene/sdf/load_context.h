@@ -11,6 +11,7 @@
 
 #include "sim_node/scene/sdf/sdf_files.h"
 #include "sim_node/model/world_def.h"
+#include "sync/pictures/confined_pictures.h"
 
 namespace tactus::sim {
 
@@ -30,6 +31,7 @@ struct LoadContext {
   std::map<std::string, int> material_of_file = {};                         // of a mesh file that names one
   std::map<std::string, std::shared_ptr<const LookAttributes>> look_of = {};     // name -> definition in <world>
   bool confined = true;  // geometry files are read in a process of their own
+  sync::ConfinedPictures pictures = {};
 
   // "FILE:LINE: sentence"
   [[noreturn]] void reject(const sdf::Element& element, const std::string& sentence) const;

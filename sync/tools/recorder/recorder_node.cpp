@@ -20,6 +20,7 @@
 #include <tactus/tag_request_t.hpp>
 
 #include "lcmtypes/valid.h"
+#include "sync/bus/receive_buffer.h"
 #include "sync/node/node.h"
 #include "sync/tools/recorder/recorder.h"
 #include "sync/tools/recorder/recorder_tap.h"
@@ -64,7 +65,8 @@ int tactus::sync::run_recorder(int argc, char** argv) try {
                                         .modality = "",
                                         .rate_Hz = 50,  // of writing to disk; a separate thread stamps messages on arrival
                                         .fifo_priority = 40,
-                                        .about = "Writes all messages on the bus to OUT/run.lcmlog."};
+                                        .about = "Writes all messages on the bus to OUT/run.lcmlog.",
+                                        .opens_sockets = true};
   sync::Arguments app;
   sync::NodeOptions options;
   log_info_t info{};
@@ -100,6 +102,7 @@ int tactus::sync::run_recorder(int argc, char** argv) try {
   tag_request_t tag_request = request_for(patterns);
   sync::Node node(descriptor, options);
   sync::RecorderTap tap(options.bus);
+  sync::drop_receive_buffer_right();
   sync::SceneReceiver scene(node.bus());
   sync::LogParts parts(options.out, limits);
   std::unique_ptr<sync::LogSink> first = parts.open();

@@ -2,6 +2,7 @@
 
 #include <poll.h>
 
+#include "sync/bus/receive_buffer.h"
 #include "sync/clocks/pacing.h"
 #include "sync/tools/recorder/read_in_turns.h"
 #include "sync/virtual_time/virtual_time.h"
@@ -47,6 +48,7 @@ void RecorderTap::store(const ChannelBytes& m) {
 }
 
 void RecorderTap::run() {
+  drop_receive_buffer_right();
   pollfd fds[2] = {{ports_->both[0].descriptor(), POLLIN, 0}, {ports_->both[1].descriptor(), POLLIN, 0}};
   while (true) {
     const bool last = stop_;

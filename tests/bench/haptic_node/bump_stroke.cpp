@@ -9,6 +9,7 @@
 
 #include "lcmtypes/relief.h"
 #include "sim_node/model/triangles.h"
+#include "sync/pictures/confined_pictures.h"
 #include "tests/bench/haptic_node/stroke_loop.h"
 #include "tests/sim_node/support/simple_hand.h"
 
@@ -24,7 +25,7 @@ constexpr double kStart_s = 0.05;  // the hand starts to move and the damper res
 const HeightMap& planks() {
   static const HeightMap map = [] {
     std::ifstream file(TACTUS_SOURCE_DIR "/sim_node/scenes/planks.png", std::ios::binary);
-    return read_height_map(std::vector<std::uint8_t>(std::istreambuf_iterator<char>(file), {}));
+    return sync::ConfinedPictures().height_map(std::vector<std::uint8_t>(std::istreambuf_iterator<char>(file), {}));
   }();
   return map;
 }

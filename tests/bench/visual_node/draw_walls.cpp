@@ -100,6 +100,7 @@ int main(int argc, char** argv) try {
 
   Sheet sheet{edge, room == "cave4" ? 3 : 4, room == "cave4" ? 2 : 3};
   std::vector<Place> drawn;
+  sync::ConfinedPictures reader;
   for (const Place& place : kUnfolded) {
     if (place.column >= sheet.columns || place.row >= sheet.rows) continue;
     visual::Settings settings;
@@ -107,8 +108,8 @@ int main(int argc, char** argv) try {
     for (const std::string& wrong : sync::apply_settings(settings, visual::setting_fields(), "visual_node", scene.settings, set))
       throw std::runtime_error(wrong);
     const visual::SceneView view(scene, visual::meshes_of(scenes), settings,
-                                 visual::height_maps_of(*scenes.scene(), sync::pictures_of(scenes), said),
-                                 visual::look_files_of(scenes, said));
+                                 visual::height_maps_of(*scenes.scene(), sync::pictures_of(scenes), reader, said),
+                                 visual::look_files_of(scenes, reader, said));
     if (!view.lens().warning().empty()) throw std::runtime_error(view.lens().warning());
     visual::Renderer renderer(edge, edge, settings.shadow_size);
     renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());

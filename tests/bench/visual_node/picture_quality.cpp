@@ -62,8 +62,9 @@ int main(int argc, char** argv) try {
   visual::configure_software_renderer();
   const auto display = visual::make_headless(-1);
   const visual::Settings settings;
+  sync::ConfinedPictures reader;
   const visual::SceneView view(*scenes.scene(), visual::meshes_of(scenes), settings,
-                               visual::height_maps_of(*scenes.scene(), sync::pictures_of(scenes), said));
+                               visual::height_maps_of(*scenes.scene(), sync::pictures_of(scenes), reader, said));
   visual::Renderer renderer(view.width(), view.height(), settings.shadow_size);
   renderer.load(view.geometries(), view.lighting(), view.reliefs(), view.appearance());
   std::vector<Eigen::Isometry3d> poses;

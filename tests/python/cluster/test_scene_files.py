@@ -9,6 +9,7 @@ import tarfile
 import tempfile
 import types
 import unittest
+from unittest import mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "python"))
 from tactus.cluster import deployment, scene_files
@@ -78,10 +79,40 @@ class SceneFiles(unittest.TestCase):
         self.assertEqual({"looks_bench.sdf", "bumpy_sphere.obj", "plain_ball.obj", "room.png", "stripes.frag", "tiled_ball.mtl", "tiled_ball.obj", "tiles.png",
                           "tiles_normal.png"}, set(scene_files.files_of(SCENES / "looks_bench.sdf")))
 
+    def test_folders_that_the_user_allows_are_sent_at_their_places_and_only_with_their_named_files(self):
+        models = self.home.parent / "models"
+        for name, text in {"table/model.config": "<model><sdf>table.sdf</sdf></model>", "table/table.sdf": "<sdf><uri>../shared/wood.png</uri></sdf>",
+                           "shared/wood.png": "", "shared/other.png": "", "table/.key": ""}.items():
+            (models / name).parent.mkdir(parents=True, exist_ok=True)
+            (models / name).write_text(text, encoding="utf-8")
+        unused = self.home.parent / "unused"
+        unused.mkdir()
+        scene = self.scene("<include><uri>model://table</uri></include><uri>../models/shared/wood.png</uri>")
+        self.assertEqual(self.NAMED, set(scene_files.files_of(scene)))
+        from_models = {"models/table/model.config", "models/table/table.sdf", "models/shared/wood.png"}
+        for folders in ([models], [models, unused]):
+            plan = types.SimpleNamespace(scene=scene, scene_folders=folders, degrade=None, room="")
+            data, there = deployment.run_files(types.SimpleNamespace(plan=plan, relays=None))
+            with tarfile.open(fileobj=io.BytesIO(data)) as tar:
+                names = {e.name for e in tar.getmembers()}
+            self.assertEqual({f"scene/{name}" for name in (*(f"home/{n}" for n in self.NAMED), *from_models)}, names)
+            self.assertEqual("@FILES@/scene/home", there[str(self.home)])
+            self.assertEqual("@FILES@/scene/models", there[str(models)])
+            self.assertNotIn(str(unused), there)
+        # A scene of the build names a model of the user.
+        plan = types.SimpleNamespace(scene=SCENES / "dark_room.sdf", scene_folders=[models], degrade=None, room="")
+        texts_of = scene_files.texts_of
+        with mock.patch.object(scene_files, "texts_of", lambda path: ["model://table"] if path == plan.scene else texts_of(path)):
+            data, there = deployment.run_files(types.SimpleNamespace(plan=plan, relays=None))
+        with tarfile.open(fileobj=io.BytesIO(data)) as tar:
+            names = {e.name for e in tar.getmembers()}
+        self.assertEqual({f"scene/{name.removeprefix('models/')}" for name in from_models}, names)
+        self.assertEqual("@FILES@/scene", there[str(models)])
+
     def test_the_archive_for_the_hosts_holds_these_files_and_no_link(self):
         profile = self.home / "profile.xml"
         profile.symlink_to(self.home / "part.sdf")
-        plan = types.SimpleNamespace(scene=self.scene(), degrade=profile, room="")
+        plan = types.SimpleNamespace(scene=self.scene(), scene_folders=[], degrade=profile, room="")
         data, there = deployment.run_files(types.SimpleNamespace(plan=plan, relays=None))
         with tarfile.open(fileobj=io.BytesIO(data)) as tar:
             entries = tar.getmembers()

@@ -56,6 +56,15 @@ class Units(unittest.TestCase):
         values = re.findall(rf"(?m)^{key}=(.*)$", (self.system / f"tactus-{kind}.service").read_text(encoding="ascii"))
         return values[-1] if values else None
 
+    def test_nodes_that_read_foreign_files_may_confine_the_readers(self):
+        """Readers of sync/sandbox limit their resources and use Landlock and seccomp."""
+        for kind in ("sim", "audio", "haptic", "visual"):
+            text = (self.system / f"tactus-{kind}.service").read_text(encoding="ascii")
+            filters = re.findall(r"(?m)^SystemCallFilter=(.*)$", text)
+            self.assertIn("landlock_create_ruleset landlock_add_rule landlock_restrict_self seccomp", filters)
+            self.assertGreater(max(i for i, words in enumerate(filters) if "@resources" in words.split()),
+                               next(i for i, words in enumerate(filters) if words.startswith("~")), kind)
+
     def test_systemd_accepts_every_unit(self):
         self.assertEqual(len(self.names), len(KINDS) + 3)
         done = self.analyze("verify", *self.names)

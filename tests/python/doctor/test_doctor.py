@@ -14,7 +14,7 @@ from unittest import mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "scripts" / "python"))
-from tactus.doctor import bus, clocks, devices, realtime
+from tactus.doctor import bus, clocks, devices, realtime, sandbox
 from tactus.doctor.line import GOOD, MISSING, WEAK, Line
 
 LCM = {"int8_t": "b", "int16_t": "h", "int32_t": "i", "int64_t": "q", "float": "f", "double": "d"}
@@ -87,6 +87,24 @@ class Clocks(unittest.TestCase):
             self.assertEqual(line.verdict, verdict)
             self.assertEqual(line.figures["hosts"], 2)
             self.assertEqual(line.figures["maps"][0]["offset_ms"], 5)
+
+
+class Sandbox(unittest.TestCase):
+    def test_a_kernel_without_landlock_or_seccomp_is_weak_with_the_risk_and_the_remedy(self):
+        for version, filters, lacks, risk in ((0, True, "no Landlock:", "read other files of the user"), (3, False, "no seccomp filters:", "use the network"),
+                                              (0, False, "no Landlock and no seccomp filters:", "read other files of the user and use the network")):
+            line = sandbox.confinement(lambda v=version: v, lambda f=filters: f)
+            self.assertEqual(line.verdict, WEAK)
+            self.assertIn(lacks, line.found)
+            self.assertTrue(line.found.endswith(risk), line.found)
+            self.assertIn("lsm=landlock", line.remedy)
+        self.assertEqual(sandbox.confinement(lambda: 1, lambda: True).verdict, GOOD)
+
+    def test_the_measures_of_this_kernel_are_found(self):
+        modules = pathlib.Path("/sys/kernel/security/lsm")
+        if modules.exists():
+            self.assertEqual(sandbox.landlock_version() > 0, "landlock" in modules.read_text().split(","))
+        self.assertEqual(sandbox.has_seccomp(), "Seccomp:" in pathlib.Path("/proc/self/status").read_text())
 
 
 class Realtime(unittest.TestCase):

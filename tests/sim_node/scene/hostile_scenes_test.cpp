@@ -7,6 +7,7 @@
 #include <random>
 
 #include "sim_node/scene/meshes/gltf_document.h"
+#include "sim_node/scene/scene_folders.h"
 #include "tests/grey_png.h"
 #include "tests/sim_node/support/scene_file.h"
 

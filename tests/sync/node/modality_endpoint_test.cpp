@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <vector>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
@@ -102,6 +103,34 @@ TEST_CASE("Each input has its own newest arrival: events do not keep snapshots a
     }
     CHECK(frames.newest_arrival() == last_frame);
     CHECK(events.newest_arrival() == now);
+  }
+}
+
+TEST_CASE("The arrival listener of a stream receives the messages of the followed simulation only, before the profile acts") {
+  NodeOptions options = in_memory();
+  options.profile = read_profile(R"(<profile><degrade modality="smell" delay="100ms"/></profile>)", "p.xml");
+  Node node({.name = "nose_node", .modality = "smell", .rate_Hz = 50, .fifo_priority = 0, .about = "For a test."}, options);
+  ModalityEndpoint sense(node);
+  auto& frames = sense.snapshots<contact_frame_t>(channels::kContacts, 256);
+  struct Heard {
+    std::int64_t incarnation, seq;
+    HostTime arrival;
+  };
+  std::vector<Heard> heard;
+  frames.on_arrival([&](const contact_frame_t& m, HostTime arrival) { heard.push_back({m.header.incarnation, m.header.seq, arrival}); });
+  Identity first = Identity::fresh("sim_node", 1), second = Identity::fresh("sim_node", 1), foreign = Identity::fresh("sim_node", 2);
+  HostTime now = host_now();
+  for (std::int64_t ms = 0; ms < 200; ++ms, now += kMs) {
+    const std::size_t before = heard.size();
+    node.bus().on_message(channels::kContacts, encode(frame(first, ms, now)), now);
+    if (ms > 0) node.bus().on_message(channels::kContacts, encode(frame(second, 1000 + ms, now)), now);
+    if (ms > 0) node.bus().on_message(channels::kContacts, encode(frame(foreign, 2000 + ms, now)), now);
+    sense.step(now);
+    // At its arrival, although the profile delays it.
+    REQUIRE(heard.size() == before + 1);
+    CHECK(heard.back().incarnation == first.incarnation);
+    CHECK(heard.back().seq == ms);
+    CHECK(heard.back().arrival == now);
   }
 }
 

@@ -122,6 +122,37 @@ TEST_CASE("A confined process cannot allocate more than its limit") {
 }
 #endif
 
+TEST_CASE("A measure that the kernel offers and refuses stops a reader, and one that it lacks is named to the user") {
+  const auto with = [](bool files, bool calls, bool capabilities) { return Confinement{files, calls, capabilities}; };
+  for (const bool files : {false, true})
+    for (const bool calls : {false, true}) {
+      const Confinement available = with(files, calls, true);
+      CAPTURE(files, calls);
+      CHECK(missing_measure(available, available).empty());
+      CHECK(missing_measure(with(false, calls, true), available).empty() == !files);
+      CHECK(missing_measure(with(files, false, true), available).empty() == !calls);
+      CHECK_THAT(missing_measure(with(files, calls, false), available), Catch::Contains("dropping capabilities"));
+      const std::string notice = confinement_notice(available);
+      CHECK(notice.empty() == (files && calls));
+      CHECK((notice.find("Landlock") < notice.find(":")) == !files);
+      CHECK((notice.find("seccomp filters") < notice.find(":")) == !calls);
+      if (!notice.empty()) CHECK_THAT(notice, Catch::Contains("could") && Catch::Contains("lsm=landlock"));
+    }
+  CHECK_THAT(missing_measure(with(false, true, true), with(true, true, true)), Catch::Contains("Landlock"));
+  CHECK_THAT(missing_measure(with(true, false, true), with(true, true, true)), Catch::Contains("seccomp"));
+}
+
+TEST_CASE("A confined process gets every measure that the kernel offers") {
+  const TemporaryFolder folder;
+  const Confinement available = available_confinement();
+  const std::string done = in_process([&](int out) {
+    const bool missing = !missing_measure(confine_process({folder.path}, {}), available).empty();
+    const char letter = missing ? 'm' : 'c';
+    if (write(out, &letter, 1) != 1) _exit(1);
+  });
+  CHECK(done == "c");
+}
+
 TEST_CASE("A reader that ends badly, never, or with too much output is one clause") {
   setenv("TACTUS_BIN", "/bin", 1);
   CHECK_THAT(why("no_such_reader", {}), Catch::Contains("no_such_reader") && Catch::Contains("is missing"));

@@ -13,7 +13,7 @@
 using namespace tactus;
 using namespace tactus::test;
 using namespace tactus::test::reference;
-using visual::Raster;
+using sync::Raster;
 
 namespace {
 

@@ -15,10 +15,10 @@
 #include <tactus/uniform_t.hpp>
 #include <tactus/visual_def_t.hpp>
 
+#include "sync/pictures/picture_decoders.h"
 #include "tests/source_dir.h"
 #include "tests/visual_node/golden/colour_difference.h"
 #include "tests/visual_node/golden/shipped_scene.h"
-#include "visual_node/scene_view/raster.h"
 #include "visual_node/video/png.h"
 
 using namespace tactus;
@@ -120,7 +120,7 @@ Picture draw(const Frame& frame, const std::function<void(scene_t&)>& change = {
 std::vector<std::uint8_t> kept(const std::string& name) {
   std::ifstream file(kFolder + name + ".png", std::ios::binary);
   const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
-  const visual::Raster raster = visual::read_raster(bytes);
+  const sync::Raster raster = sync::read_raster(bytes);
   REQUIRE(raster.width == kWidth);
   REQUIRE(raster.height == kHeight);
   return raster.rgba;

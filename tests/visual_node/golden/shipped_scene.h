@@ -42,8 +42,9 @@ class ShippedScene {
     }
     scene = *scenes_.scene();
     meshes = visual::meshes_of(scenes_);
-    height_maps = visual::height_maps_of(scene, sync::pictures_of(scenes_), warnings);
-    look_files = visual::look_files_of(scenes_, warnings);
+    sync::ConfinedPictures reader;
+    height_maps = visual::height_maps_of(scene, sync::pictures_of(scenes_), reader, warnings);
+    look_files = visual::look_files_of(scenes_, reader, warnings);
   }
 
   // The scene, its lamps and looks may be changed; files that it names by hash stay. overlay: drawn over it.

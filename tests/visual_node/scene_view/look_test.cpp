@@ -20,7 +20,7 @@ look_t look(const std::string& name, const std::string& shader, std::int64_t col
   l.name = name, l.shader = shader, l.colour_map = colour, l.normal_map = normal, l.reflectance = reflectance;
   return l;
 }
-Raster dot(bool translucent) {
+sync::Raster dot(bool translucent) {
   return {1, 1, translucent, {1, 2, 3, static_cast<std::uint8_t>(translucent ? 4 : 255)}};
 }
 }  // namespace

@@ -10,6 +10,7 @@
 #include <tactus/material_def_t.hpp>
 
 #include "lcmtypes/relief.h"
+#include "sync/pictures/confined_pictures.h"
 #include "tests/source_dir.h"
 #include "tests/visual_node/support/offscreen.h"
 #include "visual_node/gl/buffers.h"
@@ -147,7 +148,7 @@ Angles compare(const Program& program, const Relief& relief, const Vector3d& nor
 HeightMap planks() {
   std::ifstream file(source_dir() + "/sim_node/scenes/planks.png", std::ios::binary);
   const std::vector<std::uint8_t> bytes(std::istreambuf_iterator<char>(file), {});
-  return read_height_map(bytes);
+  return sync::ConfinedPictures().height_map(bytes);
 }
 
 // As rough as a map can be: neighbouring pixels are independent.

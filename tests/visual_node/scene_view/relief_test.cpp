@@ -47,7 +47,8 @@ TEST_CASE("A damaged or missing height map is reported once and does not affect 
   const std::vector<std::uint8_t> good = test::png_bytes(2, 2, 8, {0, 10, 20, 255}), bad{'x'};
   for (const std::int64_t asset : {1, 2, 2, 12345, 0}) scene.materials.push_back(test::rough(asset, 1, 1, 0.001));
   std::vector<std::string> warnings;
-  const HeightMaps maps = height_maps_of(scene, {{1, good}, {2, bad}}, warnings);
+  sync::ConfinedPictures reader;
+  const HeightMaps maps = height_maps_of(scene, {{1, good}, {2, bad}}, reader, warnings);
   CHECK(maps.size() == 1);
   CHECK(maps.contains(1));
   REQUIRE(warnings.size() == 2);

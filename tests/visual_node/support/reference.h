@@ -141,7 +141,7 @@ inline Vector3d gouraud(const scene_t& scene, const visual_def_t& m, const Hit& 
 }
 
 // Bilinear between texel centres, repeated (OpenGL 3.3, 3.8.11); value(column, row), rows from the lowest.
-inline Vector3d bilinear(const visual::Raster& r, const Vector2d& uv, double (*decode)(double)) {
+inline Vector3d bilinear(const sync::Raster& r, const Vector2d& uv, double (*decode)(double)) {
   const double x = uv.x() * r.width - 0.5, y = uv.y() * r.height - 0.5;
   const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
   const auto texel = [&](int column, int row) {

@@ -1,4 +1,5 @@
 """Command lines of the nodes of a cluster, with placeholders @BUILD@, @FILES@ and @OUT@ for the folders of each host."""
+import dataclasses
 
 from tactus.cluster.cluster_file import SYNC
 from tactus.cluster.sites import RELAY
@@ -7,7 +8,8 @@ from tactus.launch import cluster as one_machine
 
 def node_commands(cluster, run_id, git, there):
     """{node: command line}. there: {path here: path on the hosts}, of deployment.run_files."""
-    plan = cluster.plan
+    # A folder from which the scene names no file is not sent.
+    plan = dataclasses.replace(cluster.plan, scene_folders=[folder for folder in cluster.plan.scene_folders if str(folder) in there])
     paths = {str(one_machine.BIN): "@BUILD@/bin", str(plan.out): "@OUT@", **there}
     made = one_machine.commands(plan, run_id, git)
     if plan.world in made:

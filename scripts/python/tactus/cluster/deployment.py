@@ -13,7 +13,7 @@ from tactus.refusal import Refusal
 
 PROGRAMS = ("sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node", "recorder", "replay", "watch", "spy", "degrade",
             "playout", "set", "message_types", "probe_pairs", "relay",
-            "read_geometry", "read_sounds")
+            "read_geometry", "read_pictures", "read_sounds")
 FOLDERS = {"share/scenes": REPOSITORY / "sim_node" / "scenes", "share/rooms": REPOSITORY / "visual_node" / "rooms", "share/relays": sites.SHIPPED}
 LEFT_OUT = {".py", ".md"}
 # Files that `tactus doctor` imports besides its own package.
@@ -79,14 +79,20 @@ def run_files(cluster):
         scene = cluster.plan.scene
         for folder, here in FOLDERS.items():
             there[str(here)] = f"@BUILD@/{folder}"
-        if FOLDERS["share/scenes"] not in scene.parents:
-            found = scene_files.files_of(scene)
+        shipped = FOLDERS["share/scenes"] in scene.parents  # it is part of the build
+        if not shipped or cluster.plan.scene_folders:
+            folders = [folder for folder in (*([] if shipped else [scene.parent]), *cluster.plan.scene_folders)
+                       if FOLDERS["share/scenes"] not in (folder, *folder.parents)]
+            found = scene_files.files_of(scene, folders, shipped)
             size = sum(path.stat().st_size for path in found.values())
             if size > LARGEST_SCENE_BYTES:
                 raise Refusal(f"sim_node: the files of the scene {scene} hold {size // 1_000_000} MB, which is too much to copy to every host; use smaller ones")
             for name, path in sorted(found.items()):
                 tar.add(path, f"scene/{name}", recursive=False)
-            there[str(scene.parent)] = "@FILES@/scene"
+            base = scene_files.base_of(folders)
+            for folder in folders:
+                if any(folder in path.parents for path in found.values()):
+                    there[str(folder)] = str(pathlib.PurePosixPath("@FILES@/scene", folder.relative_to(base)))
         rules = cluster.relays.rules if cluster.relays and sites.SHIPPED not in cluster.relays.rules.parents else None
         for name, path in (("profile.xml", cluster.plan.degrade), ("room.csv", cluster.plan.room if os.sep in cluster.plan.room else None), ("relay.xml", rules)):
             if path:

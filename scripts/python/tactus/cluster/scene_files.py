@@ -1,7 +1,8 @@
-"""The files that a scene needs on another host: the scene, and the files below its folder that it names, directly or by other files.
+"""The files that a scene needs on another host: the scene, and the files that it names, directly or by other files, below its folder and below
+the folders that the user allows it besides (scene_folders of launch/arguments.py).
 
 Only files of known kinds are found, so that a scene in a home folder never sends other files of the user: every text of the scene that is
-the path of such a file counts as a name. Hidden files, links out of the folder and special files are never sent.
+the path of such a file counts as a name. Hidden files, links out of the folders and special files are never sent.
 """
 import json
 import os
@@ -23,34 +24,43 @@ GLB_MAGIC, JSON_CHUNK = 0x46546C67, 0x4E4F534A  # glTF 2.0, binary file format
 WORDS = re.compile(r"[^\s,;|]+")
 
 
-def files_of(scene):
-    """{path relative to the folder of the scene: path} of the scene and all files that it names. Raises Refusal when there are too many."""
-    folder = scene.parent
-    found, waiting = {}, [scene]
+def base_of(folders):
+    """The folder to which the sent paths are relative, so that the folders keep their places relative to each other."""
+    return pathlib.Path(os.path.commonpath(folders)) if folders else pathlib.Path("/")
+
+
+def files_of(scene, folders=None, elsewhere=False):
+    """{path relative to base_of(folders): path} of the scene and all files that it names. folders: those that the scene may read; default: its
+    own. elsewhere: the scene itself, and the files of its folder, are on the hosts already. Raises Refusal when there are too many."""
+    folders = [scene.parent] if folders is None else folders
+    base = base_of(folders)
+    readable = [scene.parent, *folders] if elsewhere else folders
+    found, seen, waiting = {}, set(), [scene]
     while waiting:
         path = waiting.pop()
-        name = str(path.relative_to(folder))
-        if name in found:
+        if path in seen:
             continue
-        found[name] = path
-        if len(found) > MAX_FILES:
+        seen.add(path)
+        if any(folder in path.parents for folder in folders):
+            found[str(path.relative_to(base))] = path
+        if len(seen) > MAX_FILES:
             raise Refusal(f"sim_node: the scene {scene} names more than {MAX_FILES} files, which is too much to copy to every host; name fewer")
         if path == scene or path.suffix.lower() in NAMING:
-            waiting += [file for text in texts_of(path) for file in named_by(text, path, folder)]
+            waiting += [file for text in texts_of(path) for file in named_by(text, path, readable)]
     return found
 
 
-def named_by(text, path, folder):
-    """Files below the folder that a text within the file `path` names; nothing when it names none."""
+def named_by(text, path, folders):
+    """Files below the folders that a text within the file `path` names; nothing when it names none."""
     for word in dict.fromkeys((text.strip(), *WORDS.findall(text))):
         plain = word.removeprefix("file://").removeprefix("model://")
         plain = plain.rpartition(":")[2]  # playback:FILE
         is_file, is_folder = pathlib.PurePosixPath(plain).suffix.lower() in KINDS, word.startswith(("file://", "model://"))
         if not (is_file or is_folder) or len(plain) > 1000 or "\0" in plain:
             continue
-        for base in dict.fromkeys((path.parent, path.parent / "models", folder, folder / "models")):
+        for base in dict.fromkeys((path.parent, path.parent / "models", *(base for folder in folders for base in (folder, folder / "models")))):
             for name in ([plain] if is_file else [f"{plain}/{name}" for name in FOLDER_NAMES]):
-                if (file := allowed(base / name, folder)) is not None:
+                if (file := next(filter(None, (allowed(base / name, folder) for folder in folders)), None)) is not None:
                     yield file
 
 

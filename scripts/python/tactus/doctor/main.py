@@ -15,7 +15,7 @@ import json
 import os
 import sys
 
-from tactus.doctor import bus, clocks, devices, realtime
+from tactus.doctor import bus, clocks, devices, realtime, sandbox
 from tactus.doctor.line import GOOD, MISSING, WEAK
 from tactus.launch.equipment import has_sound_card
 from tactus.launch.network import ROUTE, candidates, is_allowed
@@ -56,6 +56,7 @@ def examine(seconds, port, out):
     yield devices.sound(has_sound_card())
     yield devices.picture()
     yield devices.disk(out)
+    yield sandbox.confinement()
 
 
 def main(words):

@@ -20,6 +20,7 @@ FULL_BYTES = 65536  # a disk with less space has refused the last messages: the 
 MAX_SECONDS = 86400  # one day; a longer log fills most disks
 RECORDING = ("split_mb", "split_minutes", "keep", "max_mb")  # sync/tools/recorder/recorder_node.cpp
 BUS_OPTIONS = {"latency-ms": 10_000, "jitter-ms": 10_000, "loss-percent": 100}  # maximum of each: scripts/virtual_time/virtual_time_main.cpp
+SCENE_FOLDERS = "TACTUS_SCENE_FOLDERS"  # sim_node/scene/scene_folders.cpp
 PLAYOUT = ("policy", "aligner", "base", "budget", "soa")  # sync/playout/options.cpp
 
 
@@ -45,6 +46,7 @@ class Plan:
     network: str
     port: int
     settings: dict  # node: list of "name=value"
+    scene_folders: list = dataclasses.field(default_factory=list)  # that the scene may read besides its own
     world: str = "sim_node"  # the process that publishes the simulation state: sim_node or replay
     replay: list = dataclasses.field(default_factory=list)  # command line of replay
     recorder: list = dataclasses.field(default_factory=list)  # options of the recorder: size of its files, tags
@@ -81,6 +83,7 @@ def parse(words, here):
     """Plan of a command line. here: the directory of the caller. Raises Refusal."""
     parser = Parser(add_help=False, allow_abbrev=False, prog="run")
     parser.add_argument("scene", nargs="?", default=str(SCENES / "dark_room.sdf"))
+    parser.add_argument("--scene-folder", action="append", default=[])
     parser.add_argument("--seconds", default="20")
     parser.add_argument("--out")
     parser.add_argument("--without", action="append", default=[])
@@ -125,7 +128,7 @@ def parse(words, here):
         pictures = {}
     others = {process: tool for process, tool in others.items() if process not in a.without}
     pictures = {process: wall for process, wall in pictures.items() if process not in a.without}
-    plan = Plan(scene=scene_path, shaders=scene.shader_folder(scene_path),
+    plan = Plan(scene=scene_path, scene_folders=scene_folders(here, a.scene_folder), shaders=scene.shader_folder(scene_path),
                 seconds=number("--seconds", a.seconds, 1, MAX_SECONDS, "seconds"),
                 out=out_folder(here, a.out), out_is_ours=not a.out, without=a.without,
                 devices=devices(a.device, a.without, tools), hands=others, room=room, walls=pictures,
@@ -174,6 +177,21 @@ def scene_file(here, text):
     if not os.access(path, os.R_OK):
         raise Refusal(f"sim_node: the scene {text} cannot be read; change its permissions")
     return path.absolute()
+
+
+def scene_folders(here, named):
+    """Absolute paths of the folders that the scene may read besides its own: of --scene-folder, then of TACTUS_SCENE_FOLDERS, which a colon
+    separates. Every program that reads the scene receives them. Raises Refusal."""
+    found = []
+    for option, text in (*(("--scene-folder", text) for text in named), *(("TACTUS_SCENE_FOLDERS:", text) for text in os.environ.get(SCENE_FOLDERS, "").split(":"))):
+        path = pathlib.Path(os.path.normpath(here / text))
+        if not text and option == "TACTUS_SCENE_FOLDERS:":
+            continue
+        if not path.is_dir() or not os.access(path, os.R_OK | os.X_OK):
+            raise Refusal(f"sim_node: {option} {text} is not a folder that can be read; name a folder of files of the scene")
+        if path not in found:
+            found.append(path)
+    return found
 
 
 def profile(here, text):

@@ -42,9 +42,9 @@ def commands(plan, run_id, git):
         # A run is silent by default; with --listen the node searches for the sound card.
         "audio_node": [] if plan.listen or names_sound_card(plan) else ["--audio-device", "virtual"],
         "visual_node": ["--window"] if plan.window else [],
-        "sim_node": [str(plan.scene), *(word for name in plan.nodes() if name != "sim_node" for word in (AWAIT, name))],
+        "sim_node": [str(plan.scene), *scene_folders(plan), *(word for name in plan.nodes() if name != "sim_node" for word in (AWAIT, name))],
         # The seed sets the positions of the balls, so no player can rely on fixed ones.
-        arguments.PLAYER: [str(plan.scene), "--device", arguments.PLAYER, "--scatter-along", SCATTER_M, "--scatter-aside", SCATTER_M],
+        arguments.PLAYER: [str(plan.scene), *scene_folders(plan), "--device", arguments.PLAYER, "--scatter-along", SCATTER_M, "--scatter-aside", SCATTER_M],
         "replay": [*plan.replay, *(word for name in plan.nodes() if name != "replay" for word in ("--live", name))],
     }
     own["sync_node"] = list(plan.playout)
@@ -60,6 +60,11 @@ def commands(plan, run_id, git):
             own[name] = [*own.get(name, []), "--degrade", str(plan.degrade)]
     return {name: [str(BIN / plan.program(name)), *own.get(name, []), *common(plan, run_id),
                    *(word for s in plan.settings.get(name, []) for word in ("--set", s))] for name in plan.nodes()}
+
+
+def scene_folders(plan):
+    """The option of every program that reads the scene."""
+    return [word for folder in plan.scene_folders for word in ("--scene-folder", str(folder))]
 
 
 def device_arguments(plan, tool):

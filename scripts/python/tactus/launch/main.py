@@ -85,7 +85,7 @@ def refuse_foreign_folder(path, found):
 def inputs(plan):
     """Files and folders that the nodes read."""
     window = [os.environ["XAUTHORITY"]] if plan.window and os.environ.get("XAUTHORITY") else []
-    return [os.getcwd(), cluster.BIN, cluster.BIN / "sim_node", plan.scene.parent, plan.scene, *filter(None, [plan.degrade, plan.shaders]), *plan.replay[:1], *window]
+    return [os.getcwd(), cluster.BIN, cluster.BIN / "sim_node", plan.scene.parent, plan.scene, *plan.scene_folders, *filter(None, [plan.degrade, plan.shaders]), *plan.replay[:1], *window]
 
 
 def run(plan, watch=watch_over):

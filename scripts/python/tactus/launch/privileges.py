@@ -12,7 +12,9 @@ import subprocess
 KEPT = ("sys_nice", "ipc_lock")  # SCHED_FIFO and mlockall: sync/node/realtime.cpp
 # Reads files that the permissions close to root without capabilities, such as a scene in a home folder of another user.
 READ_ALL = "dac_read_search"
-RECEIVE_BUFFER = "net_admin"     # SO_RCVBUFFORCE: sync/bus/udp_port.cpp, which needs it only below this limit of the kernel
+# SO_RCVBUFFORCE: sync/bus/receive_buffer.cpp, which needs it only below this limit of the kernel. A node gives it up when its sockets are
+# open, before it reads a message.
+RECEIVE_BUFFER = "net_admin"
 RECEIVE_BUFFER_BYTES = 4 << 20
 NUMBERS = {"dac_read_search": 2, "net_admin": 12, "ipc_lock": 14, "sys_nice": 23}  # capability.h of Linux
 LIMIT = pathlib.Path("/proc/sys/net/core/rmem_max")
@@ -66,7 +68,7 @@ def description(kept):
         return ""
     if not is_allowed(kept):
         return "runs as root, and this system refuses to limit the rights of the nodes; run it as an ordinary user"
-    also = {READ_ALL: "; they also read all files, because root alone may not open the scene or its folder", RECEIVE_BUFFER: "; their receive buffers need "
-            f"CAP_NET_ADMIN, because net.core.rmem_max is below {RECEIVE_BUFFER_BYTES}"}
+    also = {READ_ALL: "; they also read all files, because root alone may not open the scene or its folder", RECEIVE_BUFFER: "; they open their "
+            f"sockets with CAP_NET_ADMIN and then give it up, because net.core.rmem_max is below {RECEIVE_BUFFER_BYTES}"}
     return ("runs as root: the nodes keep only real-time priority and locked memory" + "".join(also.get(name, "") for name in kept) +
             "; an ordinary user suffices (scripts/setup --realtime)")

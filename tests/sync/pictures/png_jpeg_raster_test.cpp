@@ -1,4 +1,4 @@
-#include "visual_node/scene_view/raster.h"
+#include "sync/pictures/picture_decoders.h"
 
 #include <catch2/catch.hpp>
 #include <csetjmp>
@@ -11,8 +11,8 @@
 #include "tests/grey_png.h"
 
 using namespace tactus;
-using visual::Raster;
-using visual::read_raster;
+using sync::Raster;
+using sync::read_raster;
 
 namespace {
 

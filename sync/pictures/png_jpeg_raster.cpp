@@ -1,4 +1,4 @@
-#include "visual_node/scene_view/raster.h"
+#include "sync/pictures/picture_decoders.h"
 
 #include <png.h>
 
@@ -9,11 +9,10 @@
 
 #include <jpeglib.h>
 
-namespace tactus::visual {
+namespace tactus::sync {
 namespace {
 
-// 64 MB. Every OpenGL 3.3 device supports 1024; the devices at hand support 16384.
-constexpr unsigned kMaxSide = 4096;
+constexpr unsigned kMaxSide = kMaxRasterSide;
 
 void check_size(unsigned width, unsigned height) {
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
@@ -103,4 +102,4 @@ Raster read_raster(std::span<const std::uint8_t> bytes) {
   throw std::runtime_error("it is neither a PNG nor a JPEG file");
 }
 
-}  // namespace tactus::visual
+}  // namespace tactus::sync

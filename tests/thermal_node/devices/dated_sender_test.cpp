@@ -1,11 +1,11 @@
-#include "thermal_node/devices/one_sender.h"
+#include "thermal_node/devices/dated_sender.h"
 
 #include <catch2/catch.hpp>
 
 using namespace tactus;
 using namespace std::chrono_literals;
-using thermal::OneSender;
-using Result = OneSender::Result;
+using thermal::DatedSender;
+using Result = DatedSender::Result;
 
 namespace {
 
@@ -22,7 +22,7 @@ header_t header(std::int64_t who, std::int64_t seq, std::int64_t sent_ms, std::i
 }  // namespace
 
 TEST_CASE("One sender is followed and trusted after the silence, without a pause") {
-  OneSender sender(kSilence, kClock);
+  DatedSender sender(kSilence, kClock);
   CHECK(sender.silent(at(0)));
   CHECK(sender.observe(header(5, 0, 0), at(1)) == Result::kRestart);
   CHECK_FALSE(sender.trusted(at(1)));
@@ -35,7 +35,7 @@ TEST_CASE("One sender is followed and trusted after the silence, without a pause
 }
 
 TEST_CASE("A second sender is a conflict, and a successor is followed within twice the silence") {
-  OneSender sender(kSilence, kClock);
+  DatedSender sender(kSilence, kClock);
   int seq = 0;
   for (int ms = 0; ms < 1000; ms += 20) sender.observe(header(5, ++seq, ms), at(ms));
   CHECK_FALSE(sender.conflict(at(990)));
@@ -57,7 +57,7 @@ TEST_CASE("A second sender is a conflict, and a successor is followed within twi
 }
 
 TEST_CASE("Repeated and overtaken messages do not keep a sender alive") {
-  OneSender sender(kSilence, kClock);
+  DatedSender sender(kSilence, kClock);
   sender.observe(header(5, 10, 0), at(0));
   for (int ms = 20; ms <= 300; ms += 20)
     CHECK(sender.observe(header(5, 10 - ms / 100, 0), at(ms)) == Result::kRepeated);
@@ -69,18 +69,52 @@ TEST_CASE("Repeated and overtaken messages do not keep a sender alive") {
   }
 }
 
-TEST_CASE("A number far ahead hides the sender for no longer than the silence") {
-  OneSender sender(kSilence, kClock);
+TEST_CASE("A number far ahead hides the sender for no longer than four messages") {
+  DatedSender sender(kSilence, kClock);
   sender.observe(header(5, std::int64_t{1} << 60, 0), at(0));
   int used = 0;
   for (int ms = 20; ms < 1000; ms += 20) used += sender.observe(header(5, ms, ms), at(ms)) != Result::kRepeated;
-  CHECK(used == (1000 - 320) / 20);
+  CHECK(used == 49 - 3);
+  CHECK(sender.trusted(at(990)));
+}
+
+TEST_CASE("Messages with a false date neither keep a sender alive nor make another one the followed one") {
+  for (const std::int64_t false_ms : {-400, 100'000}) {
+    CAPTURE(false_ms);
+    DatedSender sender(kSilence, kClock);
+    int seq = 0;
+    CHECK(sender.observe(header(5, ++seq, 0), at(0)) == Result::kRestart);
+    for (int ms = 20; ms < 2000; ms += 20) {
+      const Result result = sender.observe(header(5, ++seq, ms + false_ms), at(ms));
+      CHECK((result == Result::kLate || result == Result::kAhead));
+      CHECK(sender.silent(at(ms)) == (ms > 300));
+    }
+    for (int ms = 2000; ms < 3000; ms += 20) {
+      const Result result = sender.observe(header(6, ++seq, ms + false_ms), at(ms));
+      CHECK((result == Result::kLate || result == Result::kAhead));
+    }
+    CHECK(sender.followed() == 1);
+    // A true one is followed at once.
+    CHECK(sender.observe(header(7, 1, 3000), at(3000)) == Result::kRestart);
+    CHECK(sender.followed() == 2);
+  }
+}
+
+TEST_CASE("A dated sender of another run is ignored and is no conflict") {
+  DatedSender sender(kSilence, kClock, 2);
+  CHECK(sender.observe(header(5, 1, 0), at(0)) == Result::kForeign);
+  CHECK(sender.silent(at(0)));
+  header_t own = header(6, 1, 10);
+  own.run_id = 2;
+  CHECK(sender.observe(own, at(10)) == Result::kRestart);
+  CHECK(sender.observe(header(5, 2, 20), at(20)) == Result::kForeign);
+  CHECK_FALSE(sender.conflict(at(20)));
 }
 
 TEST_CASE("A message that is dated ahead or too old is not used, by either clock") {
   for (const std::int32_t clock : {kClock, kForeign}) {
     INFO(clock);
-    OneSender sender(kSilence, kClock);
+    DatedSender sender(kSilence, kClock);
     // The other machine started ten minutes later.
     const std::int64_t offset_ms = clock == kClock ? 0 : -600'000;
     int seq = 0;
@@ -95,7 +129,7 @@ TEST_CASE("A message that is dated ahead or too old is not used, by either clock
 }
 
 TEST_CASE("The clock of another machine may drift for a day") {
-  OneSender sender(kSilence, kClock);
+  DatedSender sender(kSilence, kClock);
   int seq = 0;
   for (std::int64_t ms = 0; ms < 86'400'000; ms += 250) {
     const std::int64_t sent_ms = ms - ms / 10'000;  // 1e-4 slow
@@ -106,7 +140,7 @@ TEST_CASE("The clock of another machine may drift for a day") {
 
 TEST_CASE("A step of the own clock, in both directions, ends with the sender followed again") {
   for (const std::int64_t step_ms : {-500'000, 500'000}) {
-    OneSender sender(kSilence, kClock);
+    DatedSender sender(kSilence, kClock);
     int seq = 0;
     for (int ms = 0; ms < 1000; ms += 20) sender.observe(header(5, ++seq, ms), at(ms));
     for (int ms = 1000; ms < 2000; ms += 20) sender.observe(header(5, ++seq, ms + step_ms), at(ms + step_ms));

@@ -1,4 +1,4 @@
-#include "lcmtypes/height_map.h"
+#include "sync/pictures/picture_decoders.h"
 
 #include <png.h>
 
@@ -6,11 +6,10 @@
 #include <stdexcept>
 #include <string>
 
-namespace tactus {
+namespace tactus::sync {
 namespace {
 
-// Memory limit; 2^n + 1 is the usual size of terrain tools.
-constexpr png_uint_32 kMaxSide = 4097;
+constexpr png_uint_32 kMin = kMinHeightMapSide, kMax = kMaxHeightMapSide;
 
 [[noreturn]] void on_error(png_structp, png_const_charp message) { throw std::runtime_error(message); }
 void on_warning(png_structp, png_const_charp) {}
@@ -41,8 +40,8 @@ HeightMap read_height_map(std::span<const std::uint8_t> bytes) {
   const int bits = png_get_bit_depth(reader.png, reader.info);
   if (png_get_color_type(reader.png, reader.info) != PNG_COLOR_TYPE_GRAY || (bits != 8 && bits != 16))
     throw std::runtime_error("it must be grey with 8 or 16 bits, without alpha or palette");
-  if (columns < 2 || rows < 2 || columns > kMaxSide || rows > kMaxSide)
-    throw std::runtime_error("it must have 2 to " + std::to_string(kMaxSide) + " samples per side");
+  if (columns < kMin || rows < kMin || columns > kMax || rows > kMax)
+    throw std::runtime_error("it must have 2 to " + std::to_string(kMax) + " samples per side");
   png_set_interlace_handling(reader.png);
   png_read_update_info(reader.png, reader.info);
 
@@ -64,4 +63,4 @@ HeightMap read_height_map(std::span<const std::uint8_t> bytes) {
   return map;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sync

@@ -1,5 +1,5 @@
 // Tests of reading height maps from PNG.
-#include "lcmtypes/height_map.h"
+#include "sync/pictures/picture_decoders.h"
 
 #include <catch2/catch.hpp>
 #include <stdexcept>
@@ -7,6 +7,7 @@
 #include "tests/grey_png.h"
 
 using namespace tactus;
+using sync::read_height_map;
 using test::png_bytes;
 
 TEST_CASE("A grey image has heights from 0 to 1, its lowest row first") {
