@@ -260,7 +260,7 @@ TEST_CASE("A glTF whose sizes, offsets or indices are no numbers, or contradict 
   const std::size_t bytes = gltf()["buffers"][0]["byteLength"];
   CHECK_THAT(why_with([&](Json& f) { f["buffers"][0]["byteLength"] = bytes - 1; }), Contains("beyond its buffer"));
   CHECK_THAT(why_with([&](Json& f) { f["buffers"][0]["byteLength"] = bytes + 1; }), Contains("shorter than its byteLength"));
-  for (const Json bad : {Json(-1), Json(1.5), Json("x"), Json(1e12)}) {
+  for (const Json& bad : {Json(-1), Json(1.5), Json("x"), Json(1e12)}) {
     INFO(bad);
     CHECK(why_with([&](Json& f) { f["meshes"][0]["primitives"][0]["indices"] = bad; }) != "");
     CHECK(why_with([&](Json& f) { f["buffers"][0]["byteLength"] = bad; }) != "");
