@@ -96,7 +96,7 @@ TEST_CASE("The head of a view that a profile delays by more than a second is kno
   for (const int delay_ms : {0, 1500, 60'000}) {
     HeadSamples samples;
     samples.extend_history(milliseconds(delay_ms));
-    for (int i = 0; i <= delay_ms + 2000; i += 4) samples.push(head(500 + i, i), kBegin + milliseconds(i));
+    for (int i = 0; i <= delay_ms + 2000; i += 4) samples.push(head(500 + i, i), kBegin + milliseconds(i), arrival(kBegin + milliseconds(i)));
     const auto shown = samples.published_by(kBegin + milliseconds(2000));
     REQUIRE(shown);
     CHECK(shown->publish_ns == 2500);
