@@ -27,8 +27,9 @@ def decoded(data, path):
         raise Refusal(f"{path}:{data.count(bytes([10]), 0, error.start) + 1}: is not UTF-8; save it as UTF-8") from None
 
 
-def records(text, path):
-    """Yields (line number, fields) of the header and of each row that is not blank. Every row has as many fields as the header. Raises Refusal."""
+def records(text, path, may_end_early=False):
+    """Yields (line number, fields) of the header and of each row that is not blank. Every row has as many fields as the header; with may_end_early
+    it may also have fewer. Raises Refusal."""
     reader, header = csv.reader(io.StringIO(text, newline=""), strict=True), None
     try:
         for fields in reader:
@@ -40,17 +41,18 @@ def records(text, path):
                 used = [name for mark, name in SEPARATORS.items() if mark in "".join(fields)] if len(fields) == 1 else []
                 if used:
                     raise Refusal(f"{path}:{line}: its fields are separated by {used[0]}; save it with commas between fields and points in numbers")
-            elif len(fields) != len(header):
+            elif len(fields) > len(header) or (len(fields) < len(header) and not may_end_early):
                 raise Refusal(f"{path}:{line}: has {len(fields)} fields, but the header has {len(header)}; check for an incomplete line or an unquoted comma")
             yield line, fields
     except csv.Error as error:
         raise Refusal(f"{path}:{max(1, reader.line_num)}: {error}; save it as comma-separated text") from None
 
 
-def read_rows(path):
-    """A dictionary for each row; values are texts. Raises OSError, and Refusal with file and line."""
+def read_rows(path, may_end_early=False):
+    """A dictionary for each row; values are texts. may_end_early: the last fields of a row may be left out. Raises OSError, and Refusal with file and
+    line."""
     with open(path, "rb") as file:
-        lines = records(decoded(file.read(), path), path)
+        lines = records(decoded(file.read(), path), path, may_end_early)
     _, header = next(lines, (1, []))
     return [dict(zip(header, fields)) for _, fields in lines]
 

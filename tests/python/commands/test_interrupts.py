@@ -59,7 +59,7 @@ class Interrupted(unittest.TestCase):
         (here / "sound.wav").write_bytes(bytes(100))
         (here / "study.xml").write_text(STUDY, encoding="utf-8")
         for other in (*deployment.PROGRAMS, "summarise", "export_csv", "export_events", "play_games"):
-            self.write(programs / other, "#!/bin/sh\n")
+            self.write(programs / other, "#!/bin/sh\necho '{}'\n")  # as the description of a log, for example
         if program:
             self.write(programs / program, WAITS)
         return here, {**os.environ, "TACTUS_BIN": str(programs), "PATH": f"{programs}:{os.environ['PATH']}", "STARTED": str(self.top / name / "started"), "TMPDIR": str(temporary)}

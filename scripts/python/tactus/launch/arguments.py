@@ -311,7 +311,7 @@ def settings(words, others):
             raise Refusal(f"--set {word}: write it as NODE.NAME=VALUE, for example audio_node.gain=0.5")
         if node not in ("sim_node", *SENSES, *others):
             raise Refusal(f"--set {word}: {node} has no settings; choose from sim_node, {', '.join((*SENSES, *others))}")
-        names = [row["name"] for row in read_rows(REPOSITORY / program(node) / "settings.csv")]
+        names = [row["name"] for row in read_rows(REPOSITORY / program(node) / "settings.csv", may_end_early=True)]
         if name not in names:
             raise Refusal(f"{node}: there is no setting {name}; docs/settings.md lists them all")
         if node in others:

@@ -17,7 +17,7 @@ def room(here, text):
     try:
         names = [row["wall"] for row in read_rows(path)]
     except Refusal as error:
-        raise ValueError(f"--room {text}: {error}") from None
+        raise ValueError(f"--room {text}: is not a file of walls: {error}") from None
     except (OSError, KeyError):
         raise ValueError(f"--room {text}: is not a file of walls; choose {', '.join(shipped)} or a CSV file such as {ROOMS}/cave4.csv") from None
     names = [name for name in names if name and name != "eye"]

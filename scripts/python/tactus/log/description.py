@@ -19,7 +19,10 @@ def describe(log, run=1, command=lambda words: words, folder=BIN):
     done = subprocess.run(command([program, log, "--describe", "--run", str(run)]), capture_output=True, text=True, errors="replace", check=False)
     if done.returncode != 0:
         raise Refusal(done.stderr.strip().split("\n")[-1] or f"replay: cannot read {log}")
-    return json.loads(done.stdout)
+    try:
+        return json.loads(done.stdout)
+    except ValueError:
+        raise Refusal(f"replay: {program} gave no description of {log}; run scripts/build") from None
 
 
 def report_warnings(name, description):
