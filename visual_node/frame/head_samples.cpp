@@ -21,7 +21,7 @@ void HeadSamples::push(const tool_state_t& m, RoomTime sent, sync::HostTime arri
                        m.header.seq,
                        {to_eigen(m.device.position_m), to_eigen(m.device.orientation).normalized(),
                         to_eigen(m.device_velocity_m_s), to_eigen(m.device_spin_rad_s)}});
-  const std::size_t max = kMax * static_cast<std::size_t>(1 + span_ / kSpan);
+  const std::size_t max = kMax * static_cast<std::size_t>((span_ + kSpan - sync::Nanoseconds(1)) / kSpan);
   while (samples_.size() > max || samples_.front().sent < samples_.back().sent - span_) samples_.pop_front();
 }
 

@@ -36,7 +36,7 @@ class Streams(unittest.TestCase):
 
     def test_a_full_output_is_one_sentence(self):
         done = self.shell('"$0" --help >/dev/full')
-        self.assertEqual((1, "tactus --help: No space left on device\n"), (done.returncode, done.stderr))
+        self.assertEqual((1, "tactus: No space left on device\n"), (done.returncode, done.stderr))
 
     def test_a_closed_output_gets_no_file_of_the_command(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -128,7 +128,7 @@ TEST_CASE("A rendering that stops early leaves no file, a complete one leaves co
     CHECK(std::filesystem::exists(options.presented) != stopped);
     CHECK_FALSE(std::filesystem::exists(options.presented + ".part"));
   }
-  CHECK_THAT(text_of(options.presented), Contains("audio,4,whole,8,9,0,presented\n"));
+  CHECK_THAT(text_of(options.presented), Contains("audio,4,whole,8,9,0,presented,1\n"));
 }
 
 TEST_CASE("An output path that is the log itself is rejected, also through a link, as is another tick rate") {
