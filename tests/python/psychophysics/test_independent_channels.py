@@ -58,11 +58,11 @@ class Channels(unittest.TestCase):
     def test_the_intervals_hold_the_edges(self):
         rng, held = np.random.default_rng(3), 0
         p = independent_channels.together(LEVELS, {**MODEL, "missed": 0.02, "false": 0.02})
-        for _ in range(10):
+        for _ in range(3):
             found = independent_channels.fit(LEVELS, rng.binomial(40, p).astype(float), np.full(len(LEVELS), 40.0), rng)
             for name, truth in (("low75", -55.383), ("high75", 73.736)):
                 held += found.intervals[name][0] <= truth <= found.intervals[name][1]
-        self.assertGreaterEqual(held, 16)  # 19 of 20 expected, standard deviation 1.0
+        self.assertGreaterEqual(held, 4)  # 5.7 of 6 expected, standard deviation 0.5
 
 
 class FreePeak(unittest.TestCase):
@@ -87,14 +87,15 @@ class FreePeak(unittest.TestCase):
 
     def test_the_intervals_hold_the_truth_at_every_peak(self):
         levels = np.array([-240, -160, -110, -70, -35, 0, 35, 70, 110, 160, 240.0])
-        for peak in (0.98, 0.9, 0.8, 0.65):
+        n = 100  # tests/measure/measure_coverage --only window: more
+        for peak in (0.9, 0.65):
             p = 0.02 + (peak - 0.02) * np.exp(-((levels - 10) ** 2) / (2 * 60**2))
-            yes = np.random.default_rng(4).binomial(20, p, (300, len(levels))).astype(float)
+            yes = np.random.default_rng(4).binomial(20, p, (n, len(levels))).astype(float)
             many = fits.fit_many(levels, yes, np.full(yes.shape, 20.0), "synchrony_window")
             for name, truth in (("pss", 10), ("sd", 60)):
                 low, high = intervals.of_many(many, name)
                 held = np.mean((low <= truth) & (truth <= high))
-                self.assertLess(abs(held - 0.95), 4 * math.sqrt(0.95 * 0.05 / 300), (peak, name, held))
+                self.assertLess(abs(held - 0.95), 4 * math.sqrt(0.95 * 0.05 / n), (peak, name, held))
 
 
 if __name__ == "__main__":
