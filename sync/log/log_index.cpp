@@ -55,7 +55,7 @@ bool LogIndex::read(std::int64_t max_events) {
     LogEvent event;
     if (scanner_.next(event)) {
       add(event, before);
-    } else if (present_->other && other_run_confirmed()) {
+    } else if (present_->other && other_run_confirmed() && other_run_begins()) {
       begin_run(*present_->other);
     } else {
       end_run();
@@ -110,14 +110,23 @@ bool LogIndex::begins_other_run(const LogEvent& event, const header_t* header, c
     if (++now.others[header->run_id] == kMinRunMessages) run.guests.insert(header->run_id);
   if (!now.other) {
     now.other = mark(before);
-    now.other_run = header->run_id, now.other_messages = 0, now.other_since_us = bounded_us(event.timestamp_us);
+    now.other_messages = 0, now.other_since_us = bounded_us(event.timestamp_us);
+    now.since_other.clear();
   }
-  now.other_messages += header->run_id == now.other_run;
+  // The first message may be damaged and name a run that never was: the run with the most messages counts.
+  if (now.since_other.size() < kMaxOthers || now.since_other.contains(header->run_id))
+    if (const std::int64_t messages = ++now.since_other[header->run_id]; messages > now.other_messages)
+      now.other_run = header->run_id, now.other_messages = messages;
   if (!other_run_confirmed() || std::abs(bounded_us(event.timestamp_us) - now.other_since_us) < kMinRun_us) return false;
-  if (now.other->messages >= kMinOwnMessages) return true;
-  run.run_id = now.other_run;  // the others were strays before it
-  run.guests.erase(run.run_id);
-  now.other.reset();
+  return other_run_begins();
+}
+
+// Of a confirmed run: true when it begins at its mark. False: the few messages before it are strays or damaged, and this run is that one.
+bool LogIndex::other_run_begins() {
+  if (present_->other->messages >= kMinOwnMessages) return true;
+  runs_.back().run_id = present_->other_run;
+  runs_.back().guests.erase(present_->other_run);
+  present_->other.reset();
   return false;
 }
 

@@ -119,7 +119,8 @@ class LogIndex {
     bool has_info = false, dated = false;
     std::optional<Mark> other, info, contradiction;  // where another run may begin
     std::map<std::int64_t, std::int64_t> others;  // messages of other runs, by run id
-    std::int64_t other_run = 0, other_messages = 0, other_since_us = 0;
+    std::map<std::int64_t, std::int64_t> since_other;  // the same since the mark `other`
+    std::int64_t other_run = 0, other_messages = 0, other_since_us = 0;  // of the most frequent of them
     std::uint32_t recent_contradictions = 0;  // a bit for each of the last messages with a known number
     std::vector<std::pair<std::int64_t, std::int64_t>> plain;  // events without number that may be copies, and how many came before
     bool origin_known = false;
@@ -132,6 +133,7 @@ class LogIndex {
   Mark mark(const LogScanner& before) const;
   bool begins_other_run(const LogEvent& event, const header_t* header, const LogScanner& before);
   bool other_run_confirmed() const;
+  bool other_run_begins();
   bool add(const LogEvent& event, const LogScanner& before);
   void place(const LogEvent& event, const header_t* header, const RecorderClock::Result& result);
   void add_late(const LogEvent& event, const header_t* header, std::int64_t us);

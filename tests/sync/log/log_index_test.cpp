@@ -134,6 +134,29 @@ TEST_CASE("Two runs in one file are distinguished, with different identities and
   }
 }
 
+TEST_CASE("A LOG_INFO that names a run that never was hides no message, whether the run is short or another one precedes it") {
+  const auto forged = [](int ticks, std::int64_t begin_ns, std::int64_t run_id) {
+    TestEvents events = events_of({.run_id = run_id, .incarnation = run_id, .ticks = ticks, .begin_ns = begin_ns});
+    events[0] = events_of({.run_id = run_id + 65536, .incarnation = run_id, .ticks = 0, .begin_ns = begin_ns})[0];
+    return events;
+  };
+  const int ticks = GENERATE(5, 15, 100, 1000);
+  const TestEvents second = forged(ticks, 9'000'000'000'000, 78), first = forged(1000, 5'000'000'000, 77);
+  const auto alone = log_bytes(second), both = log_bytes(first + second);
+  const LogIndex index = index_of(alone), two = index_of(both);
+  INFO(ticks << " ticks");
+  REQUIRE(index.runs().size() == 1);
+  CHECK(read_run(index, 1).data == data_of(second));
+  CHECK(index.run(1).origin.info.header.run_id == 78);
+  if (ticks < 15) return;  // too few messages for a run
+  CHECK(index.run(1).run_id == 78);
+  REQUIRE(two.runs().size() == 2);
+  CHECK(read_run(two, 1).data == data_of(first));
+  CHECK(read_run(two, 2).data == data_of(second));
+  CHECK(two.run(1).run_id == 77);
+  CHECK(two.run(2).run_id == 78);
+}
+
 TEST_CASE("A run that begins like another one and then differs is a run of its own") {
   const TestEvents a = events_of({});
   TestEvents b = a;
