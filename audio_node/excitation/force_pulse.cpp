@@ -45,6 +45,16 @@ void join(ForcePulse& pulse, int sample, const ForcePulse& other, int later, flo
   }
 }
 
+float steepest(const ForcePulse& pulse) {
+  float most = 0, before = 0;
+  for (int i = 0; i <= length_of(pulse); ++i) {
+    const float weight = weight_at(pulse, i);
+    most = std::max(most, std::abs(weight - before));
+    before = weight;
+  }
+  return most;
+}
+
 int length_of(const ForcePulse& pulse) {
   int end = 0;
   for (const Hump& h : pulse) end = std::max(end, h.begin + h.samples);

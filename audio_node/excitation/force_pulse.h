@@ -18,6 +18,9 @@ inline ForcePulse one_hump(int samples) { return {Hump{0, samples, 1}}; }
 // Share of the impulse in that sample after the onset; 0 outside. The sum over all samples equals the sum of the
 // shares.
 float weight_at(const ForcePulse& pulse, int sample);
+// Largest change of the weight from one sample to the next, from the sample before the onset to the one after the end. For a long
+// hump of n samples it is 2 / n sin(pi / n); few samples miss the steepest places of the curve, and theirs is smaller.
+float steepest(const ForcePulse& pulse);
 // Samples from the onset to the end.
 int length_of(const ForcePulse& pulse);
 

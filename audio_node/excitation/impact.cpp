@@ -72,6 +72,14 @@ std::optional<shape_def_t> shape_of(const tool_def_t& tool) {
   return shape;
 }
 
+// Peak pressure of an undivided blow of that many samples, whose clicks are peak pressures.
+double blow_Pa(Strike strike, int samples, double rate_Hz) {
+  strike.pulse = one_hump(samples);
+  const float change = steepest(strike.pulse);
+  for (StrikeSide& side : strike.sides) side.click /= change;
+  return peak_Pa(strike, rate_Hz);
+}
+
 }  // namespace
 
 double contact_time_s(double mass_kg, double curvature_1_m, double speed_m_s, const Elastic& a, const Elastic& b) {
@@ -210,26 +218,28 @@ Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, c
   const double length_s = std::min(settings_.longest_contact_s, contact_time_s(mass, curvature, speed, a, b));
 
   strike.impulse_N_s = static_cast<float>(impulse), strike.speed_m_s = static_cast<float>(speed);
-  const ForcePulse pulse = this->pulse(*bodies[0], *bodies[1], length_s);
-  strike.pulse = one_hump(pulse[0].samples);
   const Eigen::Vector3d point = to_eigen(event.point_m), normal = to_eigen(event.normal);
   const SourcePosition place = place_of(listener_, point, settings_.nearest_m);
-  // The largest change between successive samples of a unit-sum raised cosine of n samples.
-  const double n = strike.pulse[0].samples;
-  const double steepest = n > 1 ? 2 / n * std::sin(pi / n) : 1;
   for (std::size_t i = 0; i < 2; ++i) {
     StrikeSide& side = strike.sides[i];
     side.voice = voice_id(ids[i]);
     side.resonators = &(*resonators_)[bodies[i]->number];
     side.gains = gains(ids[i], place_on_body(ids[i], point, i == 0 ? Eigen::Vector3d(-normal) : normal, pose));
     side.impulse = static_cast<float>(impulse);
-    side.click = static_cast<float>(click_Pa(bodies[i]->sound, impulse, length_s) / steepest);
+    side.click = static_cast<float>(click_Pa(bodies[i]->sound, impulse, length_s));
     side.place = place;
   }
-  // Full scale per Pa. The level is that of the undivided blow: it rises with the speed, also where repeated collisions set in.
-  const double pressure = std::max(peak_Pa(strike, rate_Hz_), 1e-9), level = played_level(pressure, settings_);
-  strike.pulse = pulse;
-  const double played = pulse[1].samples > 0 ? std::max(peak_Pa(strike, rate_Hz_), 1e-9) : pressure;
+  // Full scale per Pa. The level is that of the undivided blow, between those of the two nearest whole numbers of samples: it rises
+  // with the speed, also where repeated collisions set in and where the blow becomes one sample shorter.
+  const double length = std::max(1.0, length_s * rate_Hz_), more = length - std::floor(length);
+  const int shorter = static_cast<int>(length);
+  double pressure = blow_Pa(strike, shorter, rate_Hz_);
+  if (more > 0) pressure += more * (blow_Pa(strike, shorter + 1, rate_Hz_) - pressure);
+  const double level = played_level(std::max(pressure, 1e-9), settings_);
+  strike.pulse = pulse(*bodies[0], *bodies[1], length_s);
+  const auto steepest_change = steepest(one_hump(strike.pulse[0].samples));
+  for (StrikeSide& side : strike.sides) side.click /= steepest_change;
+  const double played = std::max(peak_Pa(strike, rate_Hz_), 1e-9);
   const auto scale = static_cast<float>(settings_.gain * level / played);
   for (StrikeSide& side : strike.sides) side.impulse *= scale, side.click *= scale;
   const double peak_level = settings_.gain * level / static_cast<double>(place.distance_m);
