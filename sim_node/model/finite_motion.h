@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "sim_node/model/body_motion.h"
 
@@ -19,9 +20,13 @@ inline const char* infinite_quantity(const BodyMotion& m) {
   return m.spin_rad_s.allFinite() ? nullptr : "the spin";
 }
 
+// Simulation adds the name of the body and the step to the sentence.
 class StateNotFinite : public std::runtime_error {
  public:
-  StateNotFinite(int body_index, const char* of) : std::runtime_error("the state of a body is not finite"), body(body_index), quantity(of) {}
+  StateNotFinite(int body_index, const char* of)
+      : std::runtime_error(std::string(of) + " of the body with the index " + std::to_string(body_index) + " is not finite, so the world stops"),
+        body(body_index),
+        quantity(of) {}
   int body;  // index in the world
   const char* quantity;
 };

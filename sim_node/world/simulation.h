@@ -38,16 +38,16 @@ class Simulation {
   // once before the first step; that step also returns the events of this instant. Throws as step().
   void start(std::int64_t incarnation);
 
-  // The whole state of the world as bytes in the format of sim_node/model/envelope.h.
+  // The whole state of the world as bytes in the format of sim_node/model/envelope.h. Throws as step().
   std::vector<std::uint8_t> save();
   // Restores a state; the continuation is identical to the bit, in this process or another one of the same build.
   // Returns an error sentence when the bytes are damaged or belong to another world, and then changes nothing. Empty:
-  // success.
+  // success. Throws as step().
   std::string restore(std::span<const std::uint8_t> bytes);
   // Restores the state at start().
   void reset() { restore(begin_); }
   // Call after restore(): starts a new incarnation. Contacts continue under new ids, and tool messages of the old
-  // incarnation are dropped, because the tools stay at their current poses.
+  // incarnation are dropped, because the tools stay at their current poses. Throws as step().
   void begin_incarnation(std::int64_t incarnation);
 
   // Replaces step() while the world is paused: tools touch the surfaces at their current poses, bodies do not yield,

@@ -7,6 +7,7 @@
 #include "sim_node/world/simulation.h"
 #include "sim_node/model/archive_motion.h"
 #include "sim_node/model/envelope.h"
+#include "sim_node/model/finite_motion.h"
 
 namespace tactus::sim {
 namespace {
@@ -43,10 +44,13 @@ void Simulation::archive(StateArchive& a) {
   game_.archive(a, bodies);
 }
 
-std::vector<std::uint8_t> Simulation::save() {
+// Waits for the step that is computed ahead, and so meets its failure.
+std::vector<std::uint8_t> Simulation::save() try {
   StateArchive a;
   archive(a);
   return wrap_state(a.bytes(), fingerprint_);
+} catch (const StateNotFinite& e) {
+  stop_at(e.body, e.quantity);
 }
 
 std::string Simulation::restore(std::span<const std::uint8_t> bytes) {
@@ -63,7 +67,8 @@ std::string Simulation::restore(std::span<const std::uint8_t> bytes) {
   }
 }
 
-void Simulation::begin_incarnation(std::int64_t incarnation) {
+// Waits as save().
+void Simulation::begin_incarnation(std::int64_t incarnation) try {
   ids_.rename(incarnation);
   mechanics_->rename(incarnation);
   for (contact_event_t& e : events_) {
@@ -78,6 +83,8 @@ void Simulation::begin_incarnation(std::int64_t incarnation) {
     models_[i].applied.clear();
     models_[i].applied_count = 0;
   }
+} catch (const StateNotFinite& e) {
+  stop_at(e.body, e.quantity);
 }
 
 }  // namespace tactus::sim
