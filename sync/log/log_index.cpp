@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 #include <utility>
 
@@ -143,8 +144,18 @@ bool LogIndex::is_copy(const LogEvent& event, const header_t* header, const Stam
   now.recent_contradictions = now.recent_contradictions << 1 | (copy == Copy::kContradiction);
   if (copy == Copy::kContradiction) return false;
   // LCM's player sends a recorded run again without any change, while another one is recorded: that is no copy.
+  if (!now.has_info || header->run_id == runs_.back().run_id) return true;
   const auto excess_us = now.clock.excess_us(sample);
-  return !(now.has_info && header->run_id != runs_.back().run_id && excess_us && *excess_us > kReplayedAgain_us);
+  const auto played = now.played_again_us.find(header->run_id);
+  const bool continues = played != now.played_again_us.end() && std::abs(event.timestamp_us - played->second) < kReplayedAgain_us;
+  // The clock of the recorder soon takes the later times of the player for right, so the playing continues until a pause.
+  if (!continues && !(excess_us && *excess_us > kReplayedAgain_us)) return true;
+  if (played != now.played_again_us.end()) {
+    played->second = event.timestamp_us;
+  } else if (now.played_again_us.size() < kMaxOthers) {
+    now.played_again_us.emplace(header->run_id, event.timestamp_us);
+  }
+  return false;
 }
 
 bool LogIndex::same_identities_again() {

@@ -121,6 +121,7 @@ class LogIndex {
     std::map<std::int64_t, std::int64_t> others;  // messages of other runs, by run id
     std::map<std::int64_t, std::int64_t> since_other;  // the same since the mark `other`
     std::int64_t other_run = 0, other_messages = 0, other_since_us = 0;  // of the most frequent of them
+    std::map<std::int64_t, std::int64_t> played_again_us;  // newest message of a run that LCM's player sends again, by run id
     std::uint32_t recent_contradictions = 0;  // a bit for each of the last messages with a known number
     std::vector<std::pair<std::int64_t, std::int64_t>> plain;  // events without number that may be copies, and how many came before
     bool origin_known = false;

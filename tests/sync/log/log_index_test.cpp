@@ -39,7 +39,7 @@ TEST_CASE("An ordinary log is one run, read as it was written, without a warning
   CHECK(index.run(1).run_id == 77);
   CHECK(index.run(1).origin.recovered.empty());
   const ReadRun read = read_run(index, 1);
-  CHECK(read.data == data_of(events));
+  CHECK((read.data == data_of(events)));
   for (std::size_t i = 0; i < events.size(); ++i) REQUIRE(read.us[i] == events[i].stamp_us);
 }
 
@@ -61,7 +61,7 @@ TEST_CASE("A jump of the recorder's clock, in either direction and of any size, 
     REQUIRE(index.run(1).jumps.size() == 1);
     CHECK(std::abs(index.run(1).jumps[0].by_us - by_us) <= 1000);
     const ReadRun read = read_run(index, 1);
-    CHECK(read.data == data_of(events));
+    CHECK((read.data == data_of(events)));
     // Accurate to one latency.
     for (std::size_t i = 0; i < events.size(); ++i) REQUIRE(std::abs(read.us[i] - events[i].stamp_us) <= 1000);
     CHECK(std::is_sorted(read.us.begin(), read.us.end()));
@@ -125,8 +125,8 @@ TEST_CASE("Two runs in one file are distinguished, with different identities and
     REQUIRE(index.runs().size() == 2);
     CHECK(index.runs()[swapped].origin.info.scene == "one.sdf");
     CHECK(index.runs()[!swapped].origin.info.scene == "two.sdf");
-    CHECK(read_run(index, swapped ? 2 : 1).data == data_of(a));
-    CHECK(read_run(index, swapped ? 1 : 2).data == data_of(b));
+    CHECK((read_run(index, swapped ? 2 : 1).data == data_of(a)));
+    CHECK((read_run(index, swapped ? 1 : 2).data == data_of(b)));
     for (const int run : {1, 2}) CHECK(index.run(run).jumps.empty());
     REQUIRE(index.warnings(1).size() == 1);
     CHECK_THAT(index.warnings(1)[0], Catch::Contains("2 runs") && Catch::Contains("one.sdf") && Catch::Contains("two.sdf"));
@@ -146,13 +146,13 @@ TEST_CASE("A LOG_INFO that names a run that never was hides no message, whether 
   const LogIndex index = index_of(alone), two = index_of(both);
   INFO(ticks << " ticks");
   REQUIRE(index.runs().size() == 1);
-  CHECK(read_run(index, 1).data == data_of(second));
+  CHECK((read_run(index, 1).data == data_of(second)));
   CHECK(index.run(1).origin.info.header.run_id == 78);
   if (ticks < 15) return;  // too few messages for a run
   CHECK(index.run(1).run_id == 78);
   REQUIRE(two.runs().size() == 2);
-  CHECK(read_run(two, 1).data == data_of(first));
-  CHECK(read_run(two, 2).data == data_of(second));
+  CHECK((read_run(two, 1).data == data_of(first)));
+  CHECK((read_run(two, 2).data == data_of(second)));
   CHECK(two.run(1).run_id == 77);
   CHECK(two.run(2).run_id == 78);
 }
@@ -167,8 +167,8 @@ TEST_CASE("A run that begins like another one and then differs is a run of its o
   const auto bytes = log_bytes(a + b);
   const LogIndex index = index_of(bytes);
   REQUIRE(index.runs().size() == 2);
-  CHECK(read_run(index, 1).data == data_of(a));
-  CHECK(read_run(index, 2).data == data_of(b));
+  CHECK((read_run(index, 1).data == data_of(a)));
+  CHECK((read_run(index, 2).data == data_of(b)));
 }
 
 TEST_CASE("A run that is replayed without a change while another one is recorded is part of it") {
@@ -184,7 +184,7 @@ TEST_CASE("A run that is replayed without a change while another one is recorded
   REQUIRE(index.runs().size() == 1);
   CHECK(index.run(1).run_id == 77);
   CHECK(index.run(1).guests == std::set<std::int64_t>{12});
-  CHECK(read_run(index, 1).data == data_of(events));
+  CHECK((read_run(index, 1).data == data_of(events)));  // in parentheses, because Catch prints megabytes otherwise
   CHECK(index.run(1).jumps.empty());
 }
 
@@ -210,7 +210,7 @@ TEST_CASE("Copies of messages are left out, however two logs were merged") {
   const LogIndex index = index_of(bytes);
   REQUIRE(index.runs().size() == 1);
   const ReadRun read = read_run(index, 1);
-  CHECK(read.data == data_of(events));
+  CHECK((read.data == data_of(events)));
   for (std::size_t i = 0; i < events.size(); ++i) REQUIRE(read.us[i] == events[i].stamp_us);
   REQUIRE(index.warnings(1).size() == 1);
   CHECK_THAT(index.warnings(1)[0], Catch::Contains("copies"));
@@ -253,7 +253,7 @@ TEST_CASE("A log without messages of this system continues after a step back wit
   const auto bytes = log_bytes(events);
   const LogIndex index = index_of(bytes);
   CHECK(index.run(1).length_s() == Approx(9.98));
-  CHECK(read_run(index, 1).data == data_of(events));
+  CHECK((read_run(index, 1).data == data_of(events)));
   CHECK_FALSE(index.run(1).origin.known);
 }
 
