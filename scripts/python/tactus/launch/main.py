@@ -6,7 +6,7 @@ import time
 
 from tactus import own_files, signals, terminal
 from tactus.launch import arguments, cluster, cluster_folder, delays, equipment, hands, live, network, priority, privileges, virtual, walls
-from tactus.launch.results import git_commit, summarise
+from tactus.launch.results import WORLD_STOPPED, git_commit, summarise
 from tactus.refusal import Interrupted, Refusal, sentence_of
 from tactus.terminal import report_run
 
@@ -150,6 +150,8 @@ def run(plan, watch=watch_over):
     errors += summarise(plan, git, {*lost, *taken_down}, restarts, warnings)
     report_run(f"results in {plan.out}")
     errors += incomplete_recording(plan.out, running.services["recorder"].last_line_with(REFUSED), deaths.get("recorder", []))
+    if (simulation := running.services.get("sim_node")) and (stopped := simulation.last_line_with([WORLD_STOPPED])):
+        errors.append(f"{stopped}; see {plan.out}/logs/sim_node.log")
     os.close(claim)
     return errors
 

@@ -6,6 +6,9 @@ from tactus import terminal
 from tactus.launch import privileges
 from tactus.paths import BIN, REPOSITORY
 
+# In the sentence of a world whose state is not finite (sim_node/world/simulation.cpp).
+WORLD_STOPPED = "so the world stops"
+
 
 def git_commit():
     """The commit of this repository, with + for modified files; "unknown" without git. A repository that contains this one, or that the variables

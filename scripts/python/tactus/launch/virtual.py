@@ -6,7 +6,7 @@ import subprocess
 import time
 
 from tactus.launch import arguments, cluster, delays, privileges
-from tactus.launch.results import git_commit, summarise
+from tactus.launch.results import WORLD_STOPPED, git_commit, summarise
 from tactus.refusal import Refusal
 from tactus.terminal import report_error, report_run
 
@@ -77,7 +77,8 @@ def play(plan, plan_file, stop, kept):
         forward_output(output)
     if process.returncode == 0:
         return []
-    last = log.read_text(encoding="utf-8", errors="replace").strip().split("\n")[-1]
+    lines = log.read_text(encoding="utf-8", errors="replace").strip().split("\n")
+    last = next((line for line in reversed(lines) if WORLD_STOPPED in line), lines[-1])
     return [f"virtual_time: ended with status {process.returncode} ({last}); see {log}"]
 
 
