@@ -1,5 +1,4 @@
 // visual_node: draws the scene, its tools and a flash for every contact, at 60 Hz.
-//
 //   in   WORLD_STATE, CONTACT_EVENTS, TOOL_STATE   bodies, contacts and tools; the position of a tracked head
 //        SCENE, SETTING, QUESTION                  the scene, changes of settings, questions for a participant
 //        PLAYOUT, FRAME_SHOWN                      of a room: its delay, and the frames that other walls have
@@ -7,7 +6,6 @@
 //   out  PRESENTED, MEDIA_CLOCK, FRAME_SHOWN       a report for every begin and hit; presentation times of frames
 //        SIM_COMMAND, DEVICE_STATE, ANSWER         keys, mouse and gamepad of a window
 //        PICTURE_CHUNK                             the picture, when streamed
-//
 // Lost WORLD_STATE: bodies are extrapolated for 50 ms, then held, and the picture is marked. --log: renders a log to --video.
 #include "visual_node/run.h"
 
