@@ -1,5 +1,6 @@
 // virtual_time: runs a cluster in one process, on a simulated clock and a simulated bus. Its nodes are the live ones, with
 // the same options; with one seed, their output is the same to the bit.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -140,21 +141,27 @@ int main(int argc, char** argv) try {
   for (const PlannedProgram& program : programs) time.add(program.name, [&] { return run_program(program.words); });
   const auto begun = std::chrono::steady_clock::now();
   auto next_progress = begun + kProgressPeriod;
-  while (!world_start && !stop_requested && time.now() < sync::VirtualTime::kBegin + kWorldStartTimeout) time.run_for(kRunStep);
-  if (!world_start && !stop_requested) throw std::runtime_error("the world does not begin; add a sim_node with a readable scene to the plan");
+  // A world that stops by itself ends the run; the other programs do not.
+  const auto world_lost = [&] {
+    return std::any_of(programs.begin(), programs.end(), [&](const auto& p) { return p.name == "sim_node" && time.result(p.name) > 0; });
+  };
+  while (!world_start && !stop_requested && !world_lost() && time.now() < sync::VirtualTime::kBegin + kWorldStartTimeout) time.run_for(kRunStep);
+  if (!world_start && !stop_requested && !world_lost()) throw std::runtime_error("the world does not begin; add a sim_node with a readable scene to the plan");
   const sync::HostTime until = world_start.value_or(time.now()) + sync::from_seconds(seconds);
-  while (time.now() < until && !stop_requested) {
+  while (time.now() < until && !stop_requested && !world_lost()) {
     time.run_until(std::min(until, time.now() + kRunStep));
     if (const auto now = std::chrono::steady_clock::now(); now >= next_progress) {
       next_progress = now + kProgressPeriod;
       std::cerr << "virtual_time: " << sync::to_seconds(time.now() - *world_start) << " of " << seconds << " s" << std::endl;
     }
   }
+  const bool lost = world_lost();
   stop_in_order(time, programs, stop_requested ? sync::Nanoseconds(0) : sync::from_seconds(last_presentations_s));
   const double real_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   const double virtual_s = sync::to_seconds(time.now() - sync::VirtualTime::kBegin);
   std::cerr << "virtual_time: " << virtual_s << " s in " << real_s << " s, " << virtual_s / real_s << " times as fast as real time; "
             << time.wire().sent() << " messages sent" << std::endl;
+  if (lost) throw std::runtime_error("sim_node ended; see its message above");
   return 0;
 } catch (const std::exception& e) {
   return sync::fail("virtual_time", e);

@@ -14,7 +14,7 @@ import unittest
 from unittest import mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "python"))
-from tactus.launch import main, network, services
+from tactus.launch import main, network, services, virtual
 from tactus.refusal import Refusal
 
 FREE, FULL = (types.SimpleNamespace(f_bavail=blocks, f_frsize=4096) for blocks in (10**6, 3))
@@ -38,6 +38,29 @@ class Recording(unittest.TestCase):
 
     def test_a_full_disk_is_named_also_when_the_log_of_the_recorder_is_on_it(self):
         self.assertIn("the disk of /out is full", self.errors(disk=FULL)[-1])
+
+
+class StoppedWorld(unittest.TestCase):
+    # As in sim_node/world/simulation.cpp.
+    SAID = "sim_node: the position of the body ball is not finite after step 7, at 0.007 s, so the world stops; correct its mass"
+
+    def test_a_world_that_stopped_is_an_error_with_its_sentence_although_it_was_restarted(self):
+        with tempfile.TemporaryDirectory() as kept:
+            folder = pathlib.Path(kept)
+            (folder / "services").mkdir()
+            service = services.Service(folder, "sim_node", ["true"], folder / "log", folder)
+            (folder / "log").write_text(f"sim_node: the world begins\n{self.SAID}\nsim_node: the world begins\n", encoding="utf-8")
+            said = service.last_line_with([main.WORLD_STOPPED])
+        self.assertEqual([f"{self.SAID}; see /out/logs/sim_node.log"], main.stopped_world("/out", said))
+        self.assertEqual([], main.stopped_world("/out", ""))
+
+    def test_in_virtual_time_its_sentence_comes_before_the_last_line(self):
+        self.assertEqual(self.SAID, virtual.reason(f"sim_node: the world begins\n{self.SAID}\nvirtual_time: the end\n"))
+        self.assertEqual("virtual_time: no file", virtual.reason("virtual_time: no file\n"))
+
+    def test_the_words_are_those_of_the_simulation(self):
+        text = (pathlib.Path(__file__).resolve().parents[3] / "sim_node/world/simulation.cpp").read_text(encoding="utf-8")
+        self.assertIn(main.WORLD_STOPPED, text)
 
 
 class Deaths(unittest.TestCase):

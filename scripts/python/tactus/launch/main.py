@@ -150,13 +150,18 @@ def run(plan, watch=watch_over):
     errors += summarise(plan, git, {*lost, *taken_down}, restarts, warnings)
     report_run(f"results in {plan.out}")
     errors += incomplete_recording(plan.out, running.services["recorder"].last_line_with(REFUSED), deaths.get("recorder", []))
-    if (simulation := running.services.get("sim_node")) and (stopped := simulation.last_line_with([WORLD_STOPPED])):
-        errors.append(f"{stopped}; see {plan.out}/logs/sim_node.log")
+    if "sim_node" in running.services:
+        errors += stopped_world(plan.out, running.services["sim_node"].last_line_with([WORLD_STOPPED]))
     os.close(claim)
     return errors
 
 
 REFUSED = ("the disk refuses the log", " lost because ")  # sync/tools/recorder/recorder.cpp
+
+
+def stopped_world(out, said):
+    """The error of a world whose state is not finite. said: its sentence, or ""; its restarts stop likewise."""
+    return [f"{said}; see {out}/logs/sim_node.log"] if said else []
 
 
 def incomplete_recording(out, refused, deaths):

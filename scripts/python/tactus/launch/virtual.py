@@ -77,9 +77,13 @@ def play(plan, plan_file, stop, kept):
         forward_output(output)
     if process.returncode == 0:
         return []
-    lines = log.read_text(encoding="utf-8", errors="replace").strip().split("\n")
-    last = next((line for line in reversed(lines) if WORLD_STOPPED in line), lines[-1])
-    return [f"virtual_time: ended with status {process.returncode} ({last}); see {log}"]
+    return [f"virtual_time: ended with status {process.returncode} ({reason(log.read_text(encoding='utf-8', errors='replace'))}); see {log}"]
+
+
+def reason(said):
+    """The line of an output that names why it ended: that of a world that stopped, otherwise the last one."""
+    lines = said.strip().split("\n")
+    return next((line for line in reversed(lines) if WORLD_STOPPED in line), lines[-1])
 
 
 def forward_output(output):
