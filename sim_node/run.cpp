@@ -120,6 +120,16 @@ void add_tags(sync::Tags& tags, const sim::Simulation& simulation, const std::op
   tags.add("contacts.events", "1", [&] { return static_cast<double>(simulation.events().size()); });
 }
 
+// Prints a missing confinement of its readers, and the warnings about the scene. Raises its errors.
+sim::WorldDef read_world(const std::string& scene, const std::vector<std::string>& folders) {
+  if (const std::string notice = sync::confinement_notice(sync::available_confinement()); !notice.empty())
+    std::cerr << "sim_node: " << notice << "\n";
+  std::vector<std::string> warnings;
+  sim::WorldDef world = sim::load_sdf(scene, warnings, {.folders = sim::scene_folders(folders)});
+  for (const std::string& warning : warnings) std::cerr << "sim_node: " << sync::printable(warning) << "\n";
+  return world;
+}
+
 }  // namespace
 
 int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
@@ -133,15 +143,9 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
   app.add_option("--await", awaited, "name of a process that must have its scene before the world begins, once for each").one_value_per_use();
   sync::parse_or_exit(app, kSimulation.name, argc, argv);
 
-  if (const std::string notice = sync::confinement_notice(sync::available_confinement()); !notice.empty())
-    std::cerr << "sim_node: " << notice << "\n";
-  std::vector<std::string> warnings;
-  const sim::WorldDef world = loaded_world ? *loaded_world : sim::load_sdf(scene, warnings, {.folders = sim::scene_folders(folders)});
-  for (const std::string& warning : warnings) std::cerr << "sim_node: " << sync::printable(warning) << "\n";
+  const sim::WorldDef world = loaded_world ? *loaded_world : read_world(scene, folders);
   const sim::Settings settings = settings_of(world, options.set);
-
   sim::Simulation simulation(world, settings);
-
   sync::Node node(kSimulation, options);
   simulation.start(node.bus().identity().incarnation);
   sync::SceneSender scene_sender(node.bus(), sim::make_assets(world, simulation.step_length().count()));

@@ -105,6 +105,42 @@ void describe(const sync::LogIndex& index, int number, const std::vector<sync::A
   std::cout << j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
 }
 
+// The descriptor of --control, or -1 without one. A pipe without a writer, before or after one, is not at its end.
+int open_control(const std::string& control) {
+  if (control.empty()) return -1;
+  const int fd = control == "-" ? STDIN_FILENO : open(control.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  if (fd < 0) throw std::runtime_error("--control " + control + " cannot be read; make it with mkfifo");
+  if (fd == STDIN_FILENO) fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) | O_NONBLOCK);
+  return fd;
+}
+
+// A replay with a scene is paused until the processes of --live have it.
+class Beginning {
+ public:
+  Beginning(sync::Replay& replay, const sync::WorldStartDef& def, bool has_scene)
+      : replay_(replay), max_wait_s_(sync::to_seconds(def.max_wait)), processes_(def, sync::host_now()), waits_(has_scene) {
+    if (waits_) replay_.pause(sync::host_now());
+  }
+  sync::WorldStart& processes() { return processes_; }
+  bool waits() const { return waits_; }
+  // True once: when the replay begins. paused: it begins paused.
+  bool now(sync::HostTime now, bool paused) {
+    if (begun_ || (waits_ && !processes_.due(now))) return false;
+    if (waits_ && !processes_.late().empty())
+      std::cerr << "replay: begins without " << sync::printable(processes_.late()) << ": not ready after " << max_wait_s_
+                << " s; it misses the first messages. Increase --ready-timeout" << std::endl;
+    if (waits_ && !paused) replay_.resume(now);
+    waits_ = false;
+    return begun_ = true;
+  }
+
+ private:
+  sync::Replay& replay_;
+  double max_wait_s_;
+  sync::WorldStart processes_;
+  bool waits_, begun_ = false;
+};
+
 // The command line.
 struct ReplayArguments {
   std::string log, speed = "1", control;
@@ -161,6 +197,16 @@ const sync::NodeDescriptor kReplay{.name = "replay",
                                    .fifo_priority = 50,
                                    .about = "Plays a log to the senses of a running cluster, in place of its simulation."};
 
+// The result of `use`. Its errors name the log.
+template <class F>
+decltype(auto) naming(const std::string& log, F&& use) {
+  try {
+    return use();
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(sync::printable(log) + " " + e.what());
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -177,14 +223,7 @@ int main(int argc, char** argv) try {
   const sync::MappedLog file(log, selection_options.verbatim ? sync::LogTypes::kAny : sync::LogTypes::kCurrent);
   sync::LogIndex index(file.bytes());
   index.read_all();
-  const auto checked = [&](auto&& use) -> decltype(auto) {
-    try {
-      return use();
-    } catch (const std::runtime_error& e) {
-      throw std::runtime_error(sync::printable(log) + " " + e.what());
-    }
-  };
-  const sync::RecordedRun& recorded = checked([&]() -> const sync::RecordedRun& { return index.run(run); });
+  const sync::RecordedRun& recorded = naming(log, [&]() -> const sync::RecordedRun& { return index.run(run); });
   const sync::LogOrigin& origin = recorded.origin;
   if (!origin.known && !selection_options.verbatim && !only_describe && index.events() > 0)
     std::cerr << "replay: " << sync::printable(log) << " holds no message of Tactus; it is played as it is\n";
@@ -192,7 +231,7 @@ int main(int argc, char** argv) try {
   play.from_head = selection_options.verbatim;
   sync::ReplaySelection selection(selection_options);
   const int played = selection_options.verbatim ? sync::TimestampedEvents::kWholeFile : run;
-  sync::Replay replay_of_log = checked([&] { return sync::Replay(index, played, play, sync::host_now()); });
+  sync::Replay replay_of_log = naming(log, [&] { return sync::Replay(index, played, play, sync::host_now()); });
   sync::Replay* const replay = &replay_of_log;
   const std::vector<sync::Asset> assets = selection_options.verbatim ? std::vector<sync::Asset>() : sync::scene_of(file.bytes(), recorded);
   if (only_describe) return describe(index, run, assets, replay->length_s()), 0;
@@ -207,33 +246,20 @@ int main(int argc, char** argv) try {
   if (!assets.empty()) scene.emplace(node.bus(), assets);
   sync::ReplayPort port(options.bus);
   sync::ReplayStamps stamps(origin, node.bus().identity());
-  // A pipe without a writer, before or after one, is not at its end.
-  const int control_fd = control == "-" ? STDIN_FILENO : control.empty() ? -1 : open(control.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-  if (!control.empty() && control_fd < 0) throw std::runtime_error("--control " + control + " cannot be read; make it with mkfifo");
-  if (control_fd == STDIN_FILENO) fcntl(control_fd, F_SETFL, fcntl(control_fd, F_GETFL) | O_NONBLOCK);
+  const int control_fd = open_control(control);
   KernelDrops drops(node.bus());
 
   sync::Lines lines;
   std::vector<std::uint8_t> message;
   bool quit = false, end_reported = false;
   const auto status_text = [&] { return position_text(*replay, index, play, port.refused()); };
-  sync::WorldStart start({.awaited = selection_options.live, .run_id = options.run_id, .max_wait = sync::from_seconds(ready_timeout_s)},
-                         sync::host_now());
-  bool waits = scene.has_value();
-  if (waits) replay->pause(sync::host_now());
-  const auto begin = [&](sync::HostTime now) {
-    if (waits && !start.late().empty())
-      std::cerr << "replay: begins without " << sync::printable(start.late()) << ": not ready after " << ready_timeout_s
-                << " s; it misses the first messages. Increase --ready-timeout" << std::endl;
-    if (std::exchange(waits, false) && !play.paused) replay->resume(now);
-    std::cerr << "replay: begins, " << status_text() << std::endl;
-  };
-  if (!waits) begin(sync::host_now());
+  Beginning beginning(*replay, {.awaited = selection_options.live, .run_id = options.run_id, .max_wait = sync::from_seconds(ready_timeout_s)},
+                      scene.has_value());
   sync::HostTime next_status{};
   while (node.running() && !quit) {
     const sync::HostTime now = node.wait();
-    drops.update(start);
-    if (waits && start.due(now)) begin(now);
+    drops.update(beginning.processes());
+    if (beginning.now(now, play.paused)) std::cerr << "replay: begins, " << status_text() << std::endl;
     char bytes[512];
     for (ssize_t n; control_fd >= 0 && (n = read(control_fd, bytes, sizeof bytes)) > 0;) lines.add({bytes, static_cast<std::size_t>(n)});
     for (std::string line; lines.take(line);) {
@@ -250,7 +276,7 @@ int main(int argc, char** argv) try {
       port.send(*channel, message);
       return true;
     });
-    if (scene) scene->poll(now, waits ? sync::SceneSender::kOfferPeriod : sync::SceneSender::kPeriod);
+    if (scene) scene->poll(now, beginning.waits() ? sync::SceneSender::kOfferPeriod : sync::SceneSender::kPeriod);
     if (now >= next_status) {
       next_status = now + sync::from_seconds(0.1);
       node.set_state(node_health_t::RUNNING, status_text());
