@@ -25,6 +25,8 @@ def read(path):
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     for number, row in enumerate(rows, start=2):
+        if None in row:
+            sys.exit(f"{path}:{number}: has more fields than the header; check for an unquoted comma or a missing column")
         for column in ("name", "unit", "default", "min", "max", "meaning", "source"):
             if row.get(column) is None or (not row[column] and column not in ("min", "max", "default")):
                 sys.exit(f"{path}:{number}: column {column} is empty; give every setting a name, unit, meaning and source")

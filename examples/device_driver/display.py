@@ -85,7 +85,7 @@ def main():
     guard.resume(*exposure.load(time.time()))
     wanted_degC, tick = guard.out_degC, time.monotonic()
     while True:
-        tick += PERIOD_S
+        tick = max(tick + PERIOD_S, time.monotonic())  # ticks that were missed are not made up for
         time.sleep(max(0.0, tick - time.monotonic()))
         for data in bus.received("THERMAL_STATE"):
             try:

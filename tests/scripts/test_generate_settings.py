@@ -40,7 +40,7 @@ class GenerateSettings(unittest.TestCase):
     def test_a_bad_row_is_refused_with_its_place(self):
         for row in ("rate,Hz,50,1,100,Rate,", "rate,Hz,50,1,100,,design", "rate,,50,1,100,Rate,design",
                     "rate,Hz,500,1,100,Rate,design", "rate,Hz,fast,1,100,Rate,design", "rate,Hz,50,,,Rate,design",
-                    "mode,fast|slow,medium,,,Mode,design", "loud,bool,maybe,,,Loud,design", "rate,Hz,50"):
+                    "mode,fast|slow,medium,,,Mode,design", "loud,bool,maybe,,,Loud,design", "rate,Hz,50", "rate,Hz,50,1,100,Rate,design,max,yes"):
             with self.subTest(row=row):
                 code, err, text = self.generate(GOOD + row.replace("rate", "other") + "\n")
                 self.assertNotEqual(0, code)

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Tests of scripts/run: closed terminals, invalid texts, full disks and wrong arguments give results or one sentence."""
+import csv
 import errno
 import os
 import pathlib
@@ -150,6 +151,14 @@ class Hands(Folders):
             with self.assertRaises(arguments.Refusal) as refused:
                 self.of("a", "b", words=[w for word in words for w in ("--device", word)])
             self.assertIn(said, str(refused.exception))
+
+    def test_every_setting_of_every_node_is_found(self):
+        for node in ("sim_node", *arguments.SENSES):
+            with open(SCRIPTS.parent / node / "settings.csv", encoding="utf-8", newline="") as table:
+                words = [f"{row['name']}=1" for row in csv.DictReader(table)]
+            self.assertGreater(len(words), 5)
+            given = [each for word in words for each in ("--set", f"{node}.{word}")]
+            self.assertEqual(words, arguments.parse(given, os.getcwd()).settings[node])
 
     def test_a_setting_of_haptic_node_applies_to_every_hand_and_is_overridden_by_its_own(self):
         _, commands = self.of("a", "b", "c", words=["--set", "haptic_node_b.force_limit=2", "--set", "haptic_node.force_limit=3"])

@@ -12,7 +12,7 @@ from scipy.optimize import minimize
 from scipy.special import log_ndtr
 from statsmodels.tools.numdiff import approx_hess
 
-from tactus.analysis.laplace import sums
+from tactus.analysis.laplace import fixed_covariance, sums
 
 NODES = {1: 20, 2: 7}  # of the quadrature in each random effect, by their number; 7 agree with 15 to 1e-6 of the log likelihood; design
 NEWTON_STEPS, NEWTON_DONE = 50, 1e-9  # of the mode; it converges in 5 to 10
@@ -89,13 +89,7 @@ def fit(fixed, random, at, logs, won):
         first = found.x
     theta = found.x
     hessian = approx_hess(theta, cost)
-    try:
-        covariance = np.linalg.inv(hessian)[:k, :k]
-        good = bool(np.all(np.linalg.eigvalsh(hessian) > 0))
-    except np.linalg.LinAlgError:
-        good = False
-    if not good:  # a variance at its bound: covariance of the fixed effects given the variances
-        covariance = np.linalg.pinv(hessian[:k, :k])
+    covariance = fixed_covariance(hessian, k)
     factor = np.zeros((q, q))
     factor[np.tril_indices(q)] = theta[k + 1:]
     return Fitted(theta[:k], covariance, factor @ factor.T, math.exp(theta[k]), -float(found.fun), bool(found.success) and bool(np.all(np.diag(covariance) > 0)))

@@ -54,6 +54,17 @@ def negative_log_likelihood(theta, fixed, random, at, yes, groups, start):
     return float(np.sum(np.logaddexp(0, eta) - yes * eta) + 0.5 * np.sum(v**2) + 0.5 * np.sum(np.linalg.slogdet(curve)[1]))
 
 
+def fixed_covariance(hessian, k):
+    """Covariance (k, k) of the first k parameters, from the Hessian of the negative log likelihood. Where a variance lies at its bound the likelihood
+    is flat; then it is that of the fixed effects given the variances."""
+    try:
+        if np.all(np.linalg.eigvalsh(hessian) > 0):
+            return np.linalg.inv(hessian)[:k, :k]
+    except np.linalg.LinAlgError:
+        pass
+    return np.linalg.pinv(hessian[:k, :k])
+
+
 def fit(fixed, slope, at, yes):
     """fixed: (n, k), intercept first; slope: (n,) variable of the random slope; at: (n,) index of the participant; yes: (n,) 0 or 1."""
     groups, k = int(at.max()) + 1, fixed.shape[1]
@@ -63,13 +74,7 @@ def fit(fixed, slope, at, yes):
     found = minimize(value, np.concatenate([np.zeros(k), [0.5, 0.0, 0.3]]), method="BFGS", options={"gtol": 1e-4, "maxiter": 200})
     theta = found.x
     hessian = approx_hess(theta, value)
-    try:
-        covariance = np.linalg.inv(hessian)[:k, :k]
-        good = bool(np.all(np.linalg.eigvalsh(hessian) > 0))
-    except np.linalg.LinAlgError:
-        good = False
-    if not good:  # at a variance of 0 the likelihood is flat: covariance of the fixed effects given the variances
-        covariance = np.linalg.pinv(hessian[:k, :k])
+    covariance = fixed_covariance(hessian, k)
     factor = np.array([[theta[k], 0.0], [theta[k + 1], theta[k + 2]]])
     converged = bool(found.success or np.abs(found.jac).max() < 1e-2) and bool(np.all(np.diag(covariance) > 0))
     return Fitted(theta[:k], covariance, factor @ factor.T, -found.fun, converged)
