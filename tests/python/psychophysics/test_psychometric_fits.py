@@ -3,12 +3,13 @@ import math
 import pathlib
 import sys
 import unittest
+from unittest import mock
 
 import numpy as np
 from scipy.optimize import minimize
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "python"))
-from tactus.psychophysics import fits, intervals
+from tactus.psychophysics import fits, intervals, posterior
 from tactus.psychophysics.functions import FUNCTIONS
 
 SOA = np.array([-240, -160, -110, -70, -35, 0, 35, 70, 110, 160, 240.0])
@@ -138,6 +139,17 @@ class Intervals(unittest.TestCase):
                 low, high = intervals.of_many(many, name, method=method)
                 held = ((low <= truth[name]) & (truth[name] <= high)).mean()
                 self.assertLess(abs(held - 0.95), 4 * math.sqrt(0.95 * 0.05 / 300), f"{method} {name}")
+
+    def test_the_intervals_of_one_fit_share_their_posteriors_and_equal_separate_ones(self):
+        truth = {"pss": 20, "sd": 60, "guess": 0.02, "lapse": 0.02}
+        (yes,), (total,) = answers("synchrony_window", SOA, 20, truth, 1, 14)
+        names = ("pss", "sd", "window75", "low75", "high75", "guess", "lapse")
+        with mock.patch.object(posterior, "marginals", side_effect=posterior.marginals) as computed:
+            together = fits.fit(SOA, yes, total, "synchrony_window")
+            shared = [fits.interval(together, name) for name in names]
+            self.assertEqual(computed.call_count, 3)  # about the location, and about each edge of the window
+        self.assertEqual(shared, [fits.interval(fits.fit(SOA, yes, total, "synchrony_window"), name) for name in names])
+        self.assertEqual(together.many.rows(slice(0, 1)).posteriors, {})
 
     def test_a_higher_level_gives_a_wider_interval(self):
         (yes,), (total,) = answers("order", SOA, 20, {"pss": 10, "sd": 60, "lapse": 0.03}, 1, 12)

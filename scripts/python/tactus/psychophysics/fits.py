@@ -26,7 +26,8 @@ FIRST_RATES = (0.02, 0.02)  # initial guess and lapse rates; design
 @dataclasses.dataclass
 class Fits:
     """n fits of one function. theta (n, 4) and answers are on an axis where the levels of each set span 1, from -0.5 to 0.5: z = middle +
-    span * axis. free (4,): mask of fitted parameters. value (n,): log likelihood plus log prior. done (n,): scoring converged."""
+    span * axis. free (4,): mask of fitted parameters. value (n,): log likelihood plus log prior. done (n,): scoring converged.
+    posteriors: results that the intervals of several parameters share (posterior.py); empty in a copy with other rows."""
     function: object
     answers: Answers
     theta: np.ndarray
@@ -38,6 +39,7 @@ class Fits:
     middle: np.ndarray
     span: np.ndarray
     fixed: dict
+    posteriors: dict = dataclasses.field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __len__(self):
         return len(self.theta)

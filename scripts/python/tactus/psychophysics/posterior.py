@@ -11,7 +11,7 @@ import numpy as np
 from scipy.special import roots_legendre
 
 from tactus.psychophysics.functions import GUESS_PRIOR
-from tactus.psychophysics.likelihood import GUESS, LAPSE, LEAST_P, T
+from tactus.psychophysics.likelihood import GUESS, LAPSE, LEAST_P, Q, T
 
 SPREAD = (0.01, 0.9)       # in spans of the levels: 3.3 spreads (5 to 95 %) are at most three spans (Schuett et al. 2016); the lower end resolves a step
 CELLS = (49, 33)           # of the grid over location and spread; design
@@ -74,9 +74,26 @@ def quantiles(low, high, weights, level):
 
 def credible(fits, which, anchor, level, profile_range):
     """(low, high) of q or of t on the axis of the fit. profile_range(which, anchor) returns their profile interval of level WIDE."""
-    q_range, t_range = ([np.clip(end, *limits) for end in profile_range(w, a)] for w, a, limits in
-                        ((0, anchor, (-4.0, 4.0)), (T, None, tuple(math.log(s) for s in SPREAD))))
-    t_range = [np.minimum(t_range[0], t_range[1] - 1e-3), t_range[1]]
-    nodes = [rate_nodes(fits, rate, profile_range) for rate in (GUESS, LAPSE)]
-    _, _, joint = marginals(fits, anchor, q_range, t_range, nodes)
-    return quantiles(*(t_range if which == T else q_range), joint.sum(axis=1 if which == T else 2), level)
+    low, high, weights = posterior_of(fits, anchor, profile_range)[which]
+    return quantiles(low, high, weights, level)
+
+
+def posterior_of(fits, anchor, profile_range):
+    """{Q or T: (low (n,), high (n,), weights (n, c)) of its marginal posterior}. The parameters of a fit share them, so each is computed once."""
+    def shared(key, compute):
+        if key not in fits.posteriors:
+            fits.posteriors[key] = compute()
+        return fits.posteriors[key]
+
+    def profile_of(which, of_anchor):
+        return shared((which, of_anchor), lambda: profile_range(which, of_anchor))
+
+    def compute():
+        q_range, t_range = ([np.clip(end, *limits) for end in profile_of(w, a)] for w, a, limits in
+                            ((Q, anchor, (-4.0, 4.0)), (T, None, tuple(math.log(s) for s in SPREAD))))
+        t_range = [np.minimum(t_range[0], t_range[1] - 1e-3), t_range[1]]
+        nodes = [rate_nodes(fits, rate, profile_of) for rate in (GUESS, LAPSE)]
+        _, _, joint = marginals(fits, anchor, q_range, t_range, nodes)
+        return {Q: (*q_range, joint.sum(axis=2)), T: (*t_range, joint.sum(axis=1))}
+
+    return shared(anchor, compute)
