@@ -9,8 +9,8 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <regex>
 
+#include "sync/text/pattern.h"
 #include "sync/tools/channel_table.h"
 #include "sync/log/timestamped_events.h"
 #include "sync/log/log_time_ranges.h"
@@ -90,7 +90,7 @@ json schema_of(const Channel& c, bool wide) {
 class Export {
  public:
   explicit Export(const ExportOptions& export_options)
-      : options_(export_options), selected_(export_options.channels.empty() ? ".*" : export_options.channels, std::regex::extended | std::regex::optimize) {}
+      : options_(export_options), selected_(export_options.channels.empty() ? ".*" : export_options.channels) {}
 
   void read(const std::string& path) {
     const sync::MappedLog file(path);
@@ -162,7 +162,7 @@ class Export {
       ++foreign_;
       return;
     }
-    if (!std::regex_match(name, selected_)) return;
+    if (!selected_.matches(name)) return;
     if (name == channels::kTagValues) {
       if (!tags_) tags_ = std::make_unique<Table>(options_.out + "/tags.csv", sync::tag_names());
       tags_->write(sync::tag_rows(tags, context, event, at));
@@ -190,7 +190,7 @@ class Export {
   }
 
   const ExportOptions& options_;
-  std::regex selected_;
+  sync::Pattern selected_;
   std::map<std::string, Channel> channels_;
   std::unique_ptr<Table> tags_;
   std::int64_t foreign_ = 0, broken_ = 0, unlisted_ = 0, damaged_ = 0, damaged_bytes_ = 0;
@@ -208,13 +208,14 @@ int main(int argc, char** argv) try {
   app.add_option("--until", export_options.until_s, "up to this second of the log");
   app.add_flag("--wide", export_options.wide, "a row for each message and a column for each field, without lists, instead of a row for each value");
   sync::parse_or_exit(app, "export_log", argc, argv);
+  std::optional<Export> all;
   try {
-    Export all(export_options);
-    for (const std::string& path : export_options.logs) all.read(path);
-    all.finish();
-  } catch (const std::regex_error&) {
+    all.emplace(export_options);
+  } catch (const std::invalid_argument&) {
     throw std::runtime_error("--channels " + sync::printable(export_options.channels) + ": is not a regular expression; write for example 'TOOL_STATE|CONTACT.*'");
   }
+  for (const std::string& path : export_options.logs) all->read(path);
+  all->finish();
   return 0;
 } catch (const std::exception& e) {
   return sync::fail("export_log", e);
