@@ -4,11 +4,10 @@
 #include <tactus/contact_event_t.hpp>
 
 #include "sim_node/dual/group_bodies.h"
+#include "sim_node/model/index.h"
 
 namespace tactus::sim {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // Bodies touch within this distance, m; design: the gap at which a contact is reported before it closes.
 constexpr double kTouching_m = 0.001;
